@@ -1,10 +1,11 @@
 //! `--mcap`: a run as a bag of ROS 2.
 
+use anyhow::bail;
 use interfaces::{CellState, Grid, LaserReading};
 use logs::{LogError, McapWriter};
 use mapper::Mapper;
 use nalgebra::{Isometry2, Point2};
-use results::output::UnfinishedFile;
+use results::output::{UnfinishedFile, is_another_kind};
 use robot::{Pilot, Turn};
 use std::fs::File;
 use std::io::BufWriter;
@@ -33,8 +34,11 @@ impl RunBag {
     ///
     /// # Errors
     ///
-    /// When the file cannot be written.
+    /// When the file cannot be written, or is another kind of file, which is not replaced.
     pub fn create(path: &Path, begin_s: f64) -> anyhow::Result<Self> {
+        if is_another_kind(path, b"\x89MCAP0\r\n") {
+            bail!("there is a file {} that is not an MCAP file; choose another name", path.display());
+        }
         let file = UnfinishedFile::create(path)?;
         let to = BufWriter::new(file.file().try_clone()?);
         Ok(Self {

@@ -50,6 +50,11 @@ pub fn results_folder(out: &Path) -> Result<RunFolder, Failure> {
     Ok(folder)
 }
 
+/// The command line without the name of the program; what is no text in it is replaced.
+pub fn arguments() -> Vec<String> {
+    std::env::args_os().skip(1).map(|argument| argument.to_string_lossy().into_owned()).collect()
+}
+
 /// An invalid argument or input file.
 pub fn input(error: impl Into<anyhow::Error>) -> Failure {
     Failure::Input(error.into())

@@ -20,6 +20,7 @@ mod known_place;
 mod masks;
 mod median;
 mod noise;
+mod odometry_check;
 mod passes;
 mod permanent;
 mod places;

@@ -2,6 +2,7 @@
 
 use crate::error::SurveyError;
 use crate::known_place::KnownPlace;
+use crate::odometry_check;
 use crate::replay::judged;
 use crate::route::{FirstPass, Route, uncertain};
 use crate::search::Search;
@@ -78,10 +79,13 @@ impl<W: FnMut(RouteProgress) -> ControlFlow<()>> RoutePass<'_, W> {
     /// # Errors
     ///
     /// When a setting is out of range, when the log cannot be read, when its scans turn against its poses, when most of them
-    /// have no certain pose, when the place is too large for a map, and when the pass is interrupted.
+    /// have no certain pose, when they move otherwise than its odometry, when the place is too large for a map, and when the pass
+    /// is interrupted.
     pub(crate) fn route(&mut self) -> Result<Route, PassError> {
         let mut pass = FirstPass::new(self.settings)?;
+        let mut odometry = Vec::new();
         self.each_reading(Stage::Trajectory, |_, reading| {
+            odometry.push(reading.pose);
             pass.add(reading);
             pass.check()
         })?;
@@ -95,6 +99,7 @@ impl<W: FnMut(RouteProgress) -> ControlFlow<()>> RoutePass<'_, W> {
         if left_out * 2 > scans {
             return Err(SurveyError::MostLeftOut { left_out, scans }.into());
         }
+        odometry_check::check(&route.poses, &odometry)?;
         Ok(route)
     }
 

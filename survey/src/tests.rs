@@ -345,3 +345,50 @@ fn mirrored_beams_are_refused_before_the_pass_is_over() {
         }
     }
 }
+
+/// The error of `map_log` for the log of a drive, of which `change` changes the readings.
+fn refused(mut change: impl FnMut(usize, &mut LaserReading)) -> Option<String> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.mcap");
+    let mut writer = McapWriter::new(File::create(&path).unwrap(), "a.mcap", 0.0).unwrap();
+    let (mut readings, _) = drive(2, 120.0);
+    for (index, reading) in readings.iter_mut().enumerate() {
+        change(index, reading);
+        writer.reading(reading).unwrap();
+    }
+    writer.finish().unwrap();
+    let log = Log::open(&path, &TopicChoice::default()).unwrap();
+    let found = routes(&[&log], &SurveySettings::default(), |_| ControlFlow::Continue(()));
+    found.err().map(|error| error.to_string())
+}
+
+#[test]
+fn logs_whose_scans_are_not_from_one_place_are_refused() {
+    // Beams in another order in every scan.
+    let error = refused(|index, LaserReading { scan, .. }| {
+        let beams = scan.ranges_m.len();
+        scan.ranges_m = (0..beams).map(|beam| scan.ranges_m[(beam * 77 + index * index) % beams]).collect();
+    });
+    let error = error.unwrap();
+    let parts = [
+        " of 1201 scans have no certain pose: neither do they fit to each other, nor to the odometry; no map",
+        "units",
+    ];
+    assert!(parts.iter().all(|part| error.contains(part)), "{error}");
+}
+
+#[test]
+fn an_odometry_of_something_else_is_refused() {
+    assert_eq!(refused(|_, _| {}), None);
+    // One that never moves says nothing.
+    assert_eq!(refused(|_, reading| reading.pose = Isometry2::identity()), None);
+    let lengths =
+        refused(|_, reading| reading.scan.ranges_m.iter_mut().for_each(|range_m| *range_m *= 0.3)).unwrap();
+    assert!(lengths.contains("(the scans move 0.29 times as far)"), "{lengths}");
+    let exchanged = refused(|_, reading| {
+        let at = &mut reading.pose.translation;
+        (at.x, at.y) = (at.y, at.x);
+    });
+    let exchanged = exchanged.unwrap();
+    assert!(exchanged.starts_with("the odometry moves otherwise than the scans: in "), "{exchanged}");
+}

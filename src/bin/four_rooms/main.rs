@@ -8,6 +8,7 @@ mod saves;
 
 use anyhow::Context;
 use args::{Args, DriveChoice};
+use curious::flags::check_distinct;
 use curious::program::{Failure, INTERRUPTED, input, interrupt_flag, start};
 use curious::worlds::list_physics_worlds;
 use evaluation::physics_trial::PhysicsTrial;
@@ -39,6 +40,10 @@ enum Ended {
 }
 
 fn run(args: &Args) -> Result<ExitCode, Failure> {
+    let Args { rrd, gif, mcap, state, .. } = args;
+    let files = [("--rrd", rrd), ("--gif", gif), ("--mcap", mcap), ("--state", state)];
+    let files = files.map(|(flag, file)| (flag, file.as_deref()));
+    check_distinct(&[&files[..], &[("--out", Some(args.out.as_path()))]].concat()).map_err(input)?;
     let parts = Parts::new(args)?;
     match args.drive {
         DriveChoice::Agent => explore(args, &parts, parts.agent(args)?),

@@ -6,7 +6,7 @@ use crate::saves::Saves;
 use agent::Policy;
 use anyhow::{Context, anyhow};
 use curious::bag::RunBag;
-use curious::program::{BEST_STRATEGY_GAIN, Failure, input, results_folder};
+use curious::program::{BEST_STRATEGY_GAIN, Failure, arguments, input, results_folder};
 use curious::progress::Progress;
 use curious::terminal::{print, say};
 use evaluation::metrics::map_scores;
@@ -225,7 +225,7 @@ fn summary(
         schema: SCHEMA,
         build: BUILD,
         version: env!("CARGO_PKG_VERSION"),
-        arguments: std::env::args().skip(1).collect(),
+        arguments: arguments(),
         settings: serde_json::to_value(settings).unwrap_or_default(),
         world: trial.world.spec().name.clone(),
         seed: args.seed,

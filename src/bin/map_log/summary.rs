@@ -3,6 +3,7 @@
 use crate::logs_in_order::begin_s;
 use crate::second_pass::{Learned, ignored};
 use anyhow::Context;
+use curious::program::arguments;
 use curious::words::{how_often, list};
 use interfaces::{CellState, PoseMode};
 use mapper::{NoReturn, NoReturnEvidence};
@@ -87,7 +88,7 @@ impl Summary {
             schema: SCHEMA,
             build: BUILD,
             version: env!("CARGO_PKG_VERSION"),
-            arguments: std::env::args().skip(1).collect(),
+            arguments: arguments(),
             settings: survey.settings_of(logs.len()),
             logs: entries().map(|entry| entry.name.clone()).collect(),
             scans: logs.iter().map(|log| log.used).sum(),
