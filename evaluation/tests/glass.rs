@@ -40,7 +40,7 @@ fn run(spec: &WorldSpec, meaning: NoReturn) -> Run {
     for _ in 0..1200 {
         let reading = world.sense();
         let mut filtered = reading.clone();
-        no_returns.apply(&mut filtered);
+        no_returns.apply(&mut filtered, &reading.pose);
         mapper.update(&filtered).unwrap();
         no_returns.learn(&reading);
         let is_wall = |y: i32| y >= 118;

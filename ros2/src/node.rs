@@ -251,7 +251,8 @@ impl<L: Link> CuriousNode<L> {
             reading.pose = in_odom;
         }
         let mut seen = reading.clone();
-        self.no_returns.apply(&mut reading);
+        let pose = self.map_to_odom.map_or(reading.pose, |to_map| to_map * in_odom);
+        self.no_returns.apply(&mut reading, &pose);
         let reading = self.in_session(self.settings.filtered(reading), stamp, is_restart);
         if reading.time_s - self.mapper.time() > LONGEST_GAP_S && self.mapper.readings() > 0 {
             self.mapper.pause(reading.time_s);

@@ -162,8 +162,8 @@ impl<W: FnMut(RouteProgress) -> ControlFlow<()>> RoutePass<'_, W> {
         let mut place = KnownPlace::new(self.settings, route)?;
         let no_returns = judged(self.log, &route.poses, self.settings)?;
         self.each_reading(Stage::Map, |index, mut reading| {
-            no_returns.apply(&mut reading);
             if let Some(found) = route.poses.get(index) {
+                no_returns.apply(&mut reading, &found.pose);
                 place.add(reading, found);
             }
             Ok(())

@@ -5,7 +5,7 @@ use interfaces::{LaserReading, ValueError, World};
 use localizer::{GivenPoses, PoseEstimate, PoseState, TrajectoryPose};
 use logs::{Log, LogError};
 use mapper::{Mapper, NoReturn, NoReturns};
-use nalgebra::Matrix3;
+use nalgebra::{Isometry2, Matrix3};
 use robot::{Belief, Localization, Permission, Pilot, Posed, Session};
 
 /// A log as a world. It has at least one reading; the last one is repeated at the end, see [`Replay::is_over`].
@@ -14,6 +14,9 @@ pub struct Replay<I> {
     settings: SurveySettings,
     session: Session,
     no_returns: NoReturns,
+    /// The poses at which beams without a return are judged: that of the present reading, and those of the next ones.
+    pose: Option<Isometry2<f64>>,
+    poses: std::vec::IntoIter<TrajectoryPose>,
     now: LaserReading,
     next: Option<LaserReading>,
     problem: Option<LogError>,
@@ -33,6 +36,8 @@ impl<I: Iterator<Item = Result<LaserReading, LogError>>> Replay<I> {
             settings: settings.clone(),
             session,
             no_returns: NoReturns::new(NoReturn::Free),
+            pose: None,
+            poses: Vec::new().into_iter(),
             now,
             next: None,
             problem: None,
@@ -41,9 +46,11 @@ impl<I: Iterator<Item = Result<LaserReading, LogError>>> Replay<I> {
         Ok(Some(replay))
     }
 
-    /// Leaves out the beams without a return that are not trusted; before, all are.
-    pub(crate) fn judge(&mut self, no_returns: NoReturns) {
-        self.no_returns = no_returns;
+    /// Leaves out the beams without a return that are not trusted; before, all are. `poses` are those of the readings from
+    /// the present one on.
+    pub(crate) fn judge(&mut self, no_returns: NoReturns, poses: Vec<TrajectoryPose>) {
+        (self.no_returns, self.poses) = (no_returns, poses.into_iter());
+        self.pose = self.poses.next().map(|found| found.pose);
     }
 
     /// What was learned about beams without a return.
@@ -81,7 +88,8 @@ impl<I: Iterator<Item = Result<LaserReading, LogError>>> World for Replay<I> {
 
     fn sense(&mut self) -> LaserReading {
         let mut reading = self.now.clone();
-        self.no_returns.apply(&mut reading); // before ranges that are too long become free ones
+        let pose = self.pose.unwrap_or(reading.pose);
+        self.no_returns.apply(&mut reading, &pose); // before ranges that are too long become free ones
         self.session.shifted(self.settings.filtered(reading))
     }
 
@@ -92,6 +100,7 @@ impl<I: Iterator<Item = Result<LaserReading, LogError>>> World for Replay<I> {
     fn act(&mut self, (): &()) {
         if let Some(next) = self.next.take() {
             self.now = next;
+            self.pose = self.poses.next().map(|found| found.pose);
             self.read();
         }
     }

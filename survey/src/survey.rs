@@ -146,8 +146,9 @@ impl Survey {
         }
         let no_returns = judged(log, &surveyed.poses, settings)?;
         let Some(mut replay) = Replay::new(readings, settings, offset_s)? else { return Ok(None) };
-        replay.judge(no_returns);
-        let mut poses = FoundPoses::new(surveyed.poses.get(before..).unwrap_or_default().to_vec());
+        let poses = surveyed.poses.get(before..).unwrap_or_default().to_vec();
+        replay.judge(no_returns, poses.clone());
+        let mut poses = FoundPoses::new(poses);
         if used > 0 {
             poses.pass(replay.sense());
             replay.act(&());
