@@ -15,7 +15,9 @@ use mapper::{Mapper, MapperSettings, NoReturn, NoReturns};
 use nalgebra::{Point2, Vector2};
 use rand::RngExt;
 use rayon::prelude::*;
-use sim::physics::{BehaviorSpec, Fleet, FleetSpec, Glass, Motion, Rectangle, RobotView, WanderSpec, WorldSpec};
+use sim::physics::{
+    BehaviorSpec, Fleet, FleetSpec, Glass, Motion, Rectangle, RobotView, WanderSpec, WorldSpec,
+};
 
 /// One kind of world.
 #[derive(Clone, Copy)]
@@ -95,7 +97,8 @@ impl Kind {
 fn hall(spec: &mut FleetSpec, rng: &mut RandomStream) {
     let at = Point2::new;
     spec.frame = GridFrame::covering(Point2::origin(), 40.0, 30.0, 0.05).expect("a valid frame");
-    let walls = [(0.0, 0.0, 40.0, 0.1), (0.0, 29.9, 40.0, 30.0), (0.0, 0.1, 0.1, 29.9), (39.9, 0.1, 40.0, 29.9)];
+    let walls =
+        [(0.0, 0.0, 40.0, 0.1), (0.0, 29.9, 40.0, 30.0), (0.0, 0.1, 0.1, 29.9), (39.9, 0.1, 40.0, 29.9)];
     spec.walls = walls.map(|(x, y, right, top)| Rectangle::between(at(x, y), at(right, top))).into();
     spec.walls.extend((0..10).map(|_| {
         let low = at(rng.random_range(14.0..38.0), rng.random_range(2.0..28.0));
@@ -187,7 +190,8 @@ fn outcomes(kind: &Kind, seed: u64, duration_s: f64) -> [Outcome; 4] {
 }
 
 fn main() {
-    let argument = |index, default| std::env::args().nth(index).map_or(Ok(default), |text| text.parse::<u64>());
+    let argument =
+        |index, default| std::env::args().nth(index).map_or(Ok(default), |text| text.parse::<u64>());
     let number = |index, default| argument(index, default).expect("a whole number");
     let (first, seeds, minutes) = (number(1, 7000), number(2, 8), number(3, 3));
     println!(
@@ -195,16 +199,25 @@ fn main() {
     );
     println!("|---|---|---|---|---|");
     for kind in &KINDS {
-        let runs: Vec<[Outcome; 4]> =
-            (first..first + seeds).into_par_iter().map(|seed| outcomes(kind, seed, 60.0 * minutes as f64)).collect();
+        let runs: Vec<[Outcome; 4]> = (first..first + seeds)
+            .into_par_iter()
+            .map(|seed| outcomes(kind, seed, 60.0 * minutes as f64))
+            .collect();
         let mean = |of: fn(&Outcome) -> f64| {
             let mean = |way: usize| runs.iter().map(|run| of(&run[way])).sum::<f64>() / runs.len() as f64;
             [0, 1, 2, 3].map(|way| format!("{:.0}", mean(way))).join(", ")
         };
-        let trusted = [1, 2].map(|way| runs.iter().filter(|run| run[way].is_trusted).count().to_string()).join(", ");
+        let trusted =
+            [1, 2].map(|way| runs.iter().filter(|run| run[way].is_trusted).count().to_string()).join(", ");
         let mut swallowed: Vec<f64> = runs.iter().map(|run| run[2].swallowed).collect();
         swallowed.sort_by(f64::total_cmp);
-        let swallowed = swallowed.iter().map(|share| format!("{:.1}", 100.0 * share)).collect::<Vec<_>>().join(" ");
-        println!("| {} | {swallowed} % | {trusted} | {} | {} |", kind.name, mean(|o| o.cleared), mean(|o| o.free_m2));
+        let swallowed =
+            swallowed.iter().map(|share| format!("{:.1}", 100.0 * share)).collect::<Vec<_>>().join(" ");
+        println!(
+            "| {} | {swallowed} % | {trusted} | {} | {} |",
+            kind.name,
+            mean(|o| o.cleared),
+            mean(|o| o.free_m2)
+        );
     }
 }

@@ -79,7 +79,9 @@ fn search(side_m: f64, cell_m: f64, range_max_m: f64, seed: u64) {
     let map = place(side_m, cell_m, seed);
     let mut random = RandomStream::new(seed + 1, Purpose::WorldGenerator);
     let is_free = |at: &Isometry2<f64>| cast(&map, at, 1.0).iter().all(|range_m| *range_m > 0.5);
-    let mut draw = || pose(random.uniform(2.0..side_m - 2.0), random.uniform(2.0..side_m - 2.0), random.uniform(-3.0..3.0));
+    let mut draw = || {
+        pose(random.uniform(2.0..side_m - 2.0), random.uniform(2.0..side_m - 2.0), random.uniform(-3.0..3.0))
+    };
     let at = (0..1000).map(|_| draw()).find(is_free).expect("a free place");
     let begin_ms = cpu_ms();
     let mut localizer =
@@ -115,10 +117,16 @@ fn trip(size_m: [f64; 2], missing_s: f64, range_m: f32) -> String {
     let true_pose = |number: u32| {
         let angle = 0.02 * f64::from(number.saturating_sub(20));
         let radius_m = 0.2 * size_m[1];
-        pose(size_m[0] / 2.0 + radius_m * libm::cos(angle), size_m[1] / 2.0 + radius_m * libm::sin(angle), angle + 1.6)
+        pose(
+            size_m[0] / 2.0 + radius_m * libm::cos(angle),
+            size_m[1] / 2.0 + radius_m * libm::sin(angle),
+            angle + 1.6,
+        )
     };
-    let frame = GridFrame::covering(Point2::new(-1.0, -1.0), size_m[0] + 2.0, size_m[1] + 2.0, 0.05).expect("a valid frame");
-    let mut localizer = Localizer::from_nothing(&LocalizerSettings::default(), &frame, true_pose(0)).expect("valid");
+    let frame = GridFrame::covering(Point2::new(-1.0, -1.0), size_m[0] + 2.0, size_m[1] + 2.0, 0.05)
+        .expect("a valid frame");
+    let mut localizer =
+        Localizer::from_nothing(&LocalizerSettings::default(), &frame, true_pose(0)).expect("valid");
     let mut map = Mapper::new(&MapperSettings::default(), frame).expect("valid");
     let (mut worst_m, mut mapped, mut after) = (0.0_f64, 0, 0);
     let last = 150 + (10.0 * missing_s) as u32;
@@ -138,7 +146,8 @@ fn trip(size_m: [f64; 2], missing_s: f64, range_m: f32) -> String {
         let localized = localizer.localize(&reading, &map);
         if localized.estimate.state == PoseState::Tracking {
             map.update(&localized.reading).expect("a valid reading");
-            worst_m = worst_m.max((localized.estimate.pose.translation.vector - at.translation.vector).norm());
+            worst_m =
+                worst_m.max((localized.estimate.pose.translation.vector - at.translation.vector).norm());
             mapped += u32::from(number >= last);
         }
         after += u32::from(number >= last);
@@ -147,13 +156,26 @@ fn trip(size_m: [f64; 2], missing_s: f64, range_m: f32) -> String {
 }
 
 fn main() {
-    println!("| side, m | cell, m | range, m | off, m | scans | CPU per scan, ms: median | most | to build |\n|---|---|---|---|---|---|---|---|");
-    for (side_m, cell_m) in [(60.0, 0.02), (60.0, 0.05), (200.0, 0.05), (350.0, 0.1), (420.0, 0.1), (700.0, 0.1), (1000.0, 0.2), (1000.0, 0.5)] {
+    println!(
+        "| side, m | cell, m | range, m | off, m | scans | CPU per scan, ms: median | most | to build |\n|---|---|---|---|---|---|---|---|"
+    );
+    for (side_m, cell_m) in [
+        (60.0, 0.02),
+        (60.0, 0.05),
+        (200.0, 0.05),
+        (350.0, 0.1),
+        (420.0, 0.1),
+        (700.0, 0.1),
+        (1000.0, 0.2),
+        (1000.0, 0.5),
+    ] {
         for (range_max_m, seed) in [(30.0, 1), (8.0, 2)] {
             search(side_m, cell_m, range_max_m, seed);
         }
     }
-    println!("\n| room, m | no returns for, s | mapped afterwards, worst error of a certain pose, m: NaN | +inf |\n|---|---|---|---|");
+    println!(
+        "\n| room, m | no returns for, s | mapped afterwards, worst error of a certain pose, m: NaN | +inf |\n|---|---|---|---|"
+    );
     for size_m in [[6.0, 4.0], [5.0, 5.0], [40.0, 2.0], [12.0, 9.0]] {
         for missing_s in [0.5, 2.0, 10.0, 60.0] {
             let [nan, infinite] = [f32::NAN, f32::INFINITY].map(|range_m| trip(size_m, missing_s, range_m));

@@ -72,7 +72,8 @@ fn found(kind: &Kind, rate_hz: f64, dwell_s: f64, phase: u32) -> f64 {
     }
     let [low, high] = kind.cells;
     let cells = (low[1]..=high[1]).flat_map(|y| (low[0]..=high[0]).map(move |x| Vector2::new(x, y)));
-    let index = |at: Vector2<i32>| mapper.frame().index(interfaces::Cell::new(at.x, at.y)).expect("in the map");
+    let index =
+        |at: Vector2<i32>| mapper.frame().index(interfaces::Cell::new(at.x, at.y)).expect("in the map");
     let rates: Vec<f64> = cells.map(|at| mapper.rate(index(at))).collect();
     rates.iter().sum::<f64>() / rates.len() as f64 * 2.0 * dwell_s
 }
@@ -86,7 +87,8 @@ fn main() {
                 let phases: Vec<f64> =
                     (0..PHASES).map(|phase| found(kind, rate_hz, dwell_s, phase)).collect();
                 let mean = phases.iter().sum::<f64>() / phases.len() as f64;
-                let (low, high) = phases.iter().fold((f64::MAX, 0.0_f64), |(low, high), &p| (low.min(p), high.max(p)));
+                let (low, high) =
+                    phases.iter().fold((f64::MAX, 0.0_f64), |(low, high), &p| (low.min(p), high.max(p)));
                 format!("{mean:.2} ({low:.2} – {high:.2})")
             };
             println!("| {dwell_s} | {} |", RATES_HZ.map(entry).join(" | "));

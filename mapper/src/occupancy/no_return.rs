@@ -193,9 +193,7 @@ impl NoReturns {
         match self.meaning {
             NoReturn::Free => true,
             NoReturn::Ignore => false,
-            NoReturn::Learn => {
-                self.evidence_of(reading).is_some_and(NoReturnEvidence::is_trusted)
-            }
+            NoReturn::Learn => self.evidence_of(reading).is_some_and(NoReturnEvidence::is_trusted),
         }
     }
 
