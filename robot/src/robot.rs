@@ -52,17 +52,24 @@ impl<R: Reading, P: Pilot> Robot<R, P> {
         // The times of the map never go back; what must not enter it is removed.
         if let Some(laser) = reading.laser_mut() {
             self.session.shift(laser);
-            self.filter.iter_mut().for_each(|filter| filter.apply(laser));
+            if let Some(filter) = &mut self.filter {
+                filter.apply(laser);
+            }
         }
         if reading.time() - self.mapper.time() > self.session.max_step_s && self.mapper.readings() > 0 {
             self.mapper.pause(reading.time());
         }
         // Localize.
-        let (reading, belief) = self.localization.localize(reading, &mut self.mapper);
+        let (mut reading, belief) = self.localization.localize(reading, &mut self.mapper);
         // Map.
         if belief.is_certain() {
+            if let (Some(filter), Some(laser)) = (&self.filter, reading.laser_mut()) {
+                filter.protect(laser);
+            }
             self.mapper.update(&reading)?;
-            self.filter.iter_mut().for_each(|filter| filter.learn(&belief.pose));
+            if let Some(filter) = &mut self.filter {
+                filter.learn(&belief.pose);
+            }
         } else {
             self.mapper.skip(&reading);
         }

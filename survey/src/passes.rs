@@ -132,8 +132,11 @@ impl<W: FnMut(RouteProgress) -> ControlFlow<()>> RoutePass<'_, W> {
         let mut place = KnownPlace::new(self.settings, route)?;
         let no_returns = judged(self.log, &route.poses, &self.settings.filter)?;
         self.each_reading(Stage::Map, |index, mut reading| {
-            no_returns.apply(&mut reading);
             if let Some(found) = route.poses.get(index) {
+                let odometry = std::mem::replace(&mut reading.pose, found.pose);
+                no_returns.apply(&mut reading);
+                no_returns.protect(&mut reading);
+                reading.pose = odometry;
                 place.add(reading, found);
             }
             Ok(())

@@ -134,6 +134,11 @@ impl ScanFilter {
         removed.into_iter().for_each(|beam| scan.ranges_m[beam] = f32::NAN);
     }
 
+    /// Removes from a reading whose pose in the map is certain the beams without a return that pass a known surface.
+    pub fn protect(&self, reading: &mut LaserReading) {
+        self.no_returns.protect(reading);
+    }
+
     /// Learns about beams without a return from the last reading, whose pose in the map is certain.
     pub fn learn(&mut self, pose: &Isometry2<f64>) {
         if let Some(reading) = self.last.take() {
