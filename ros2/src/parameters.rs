@@ -9,7 +9,6 @@ use crate::value::Value;
 use choices::Choice;
 use interfaces::{PoseMode, SettingsCheck, SettingsError};
 use mapper::NoReturn;
-use survey::PoseMode;
 
 /// The error for a parameter.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -2,7 +2,6 @@
 
 use interfaces::PoseMode;
 use mapper::NoReturn;
-use survey::PoseMode;
 
 /// What the node does.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
