@@ -1,7 +1,7 @@
 //! Things that change fast, before a laser that stands: the cycle rate that the mapper finds, divided by the true one.
 //!
 //! ```text
-//! cargo run -p mapper --example fast_cells
+//! cargo run -p curious-mapper --example fast_cells
 //! ```
 //!
 //! A box comes and goes; the leaf of a door swings between closed and open within 0.2 s; a row of round bodies, 0.4 m wide and
@@ -22,12 +22,15 @@ const RATES_HZ: [f64; 3] = [5.0, 10.0, 20.0];
 const SWING_S: f64 = 0.2;
 const LASER: [f64; 2] = [3.0, 2.0];
 
+/// Outlines, and discs with their radius, m.
+type Solids = (Vec<Vec<Point2<f64>>>, Vec<(Point2<f64>, f64)>);
+
 /// A thing that moves, and the cells (from and to, by column and row) whose rate is looked at.
 struct Kind {
     name: &'static str,
     cells: [[i32; 2]; 2],
     /// The outlines and the discs at a time, for a dwell.
-    place: fn(f64, f64) -> (Vec<Vec<Point2<f64>>>, Vec<(Point2<f64>, f64)>),
+    place: fn(f64, f64) -> Solids,
 }
 
 const KINDS: [Kind; 4] = [
@@ -37,13 +40,13 @@ const KINDS: [Kind; 4] = [
     Kind { name: "bodies that pass", cells: [[50, 59], [68, 61]], place: pass },
 ];
 
-fn blink(time_s: f64, dwell_s: f64) -> (Vec<Vec<Point2<f64>>>, Vec<(Point2<f64>, f64)>) {
+fn blink(time_s: f64, dwell_s: f64) -> Solids {
     let is_there = time_s.rem_euclid(2.0 * dwell_s) < dwell_s;
     (if is_there { vec![rectangle(1.5, 3.0, 1.9, 3.4)] } else { Vec::new() }, Vec::new())
 }
 
 /// The hinge is at (2.6, 3.4); closed, the leaf points along x.
-fn swing(time_s: f64, dwell_s: f64) -> (Vec<Vec<Point2<f64>>>, Vec<(Point2<f64>, f64)>) {
+fn swing(time_s: f64, dwell_s: f64) -> Solids {
     let at_s = time_s.rem_euclid(2.0 * dwell_s);
     let closed = (1.0 - at_s / SWING_S).max(0.0) + ((at_s - dwell_s) / SWING_S).clamp(0.0, 1.0);
     let turn = interfaces::rotation((1.0 - closed) * 1.5);
@@ -51,7 +54,7 @@ fn swing(time_s: f64, dwell_s: f64) -> (Vec<Vec<Point2<f64>>>, Vec<(Point2<f64>,
     (vec![rectangle(0.0, 0.0, 0.8, 0.05).into_iter().map(corner).collect()], Vec::new())
 }
 
-fn pass(time_s: f64, dwell_s: f64) -> (Vec<Vec<Point2<f64>>>, Vec<(Point2<f64>, f64)>) {
+fn pass(time_s: f64, dwell_s: f64) -> Solids {
     let first_m = (0.4 / dwell_s * time_s).rem_euclid(0.8);
     let body = |number: i32| (Point2::new(2.0 + first_m + 0.8 * f64::from(number), 3.0), 0.2);
     (Vec::new(), (0..3).map(body).collect())

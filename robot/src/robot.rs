@@ -10,7 +10,7 @@ use mapper::{Mapper, ReadingError, ScanFilter};
 pub struct Robot<R, P> {
     /// Removes from scans what must not enter a map; `None`: the sensor has no errors.
     filter: Option<ScanFilter>,
-    localization: Box<dyn Localization<R> + Send>,
+    localization: Box<dyn Localization<R> + Send + Sync>,
     /// The map and the change statistics.
     pub mapper: Mapper,
     /// Decides the commands.
@@ -33,7 +33,7 @@ pub struct Turn<R, C> {
 
 impl<R: Reading, P: Pilot> Robot<R, P> {
     /// A robot that has seen nothing, or goes on with what its parts have learned.
-    pub fn new(localization: Box<dyn Localization<R> + Send>, mapper: Mapper, pilot: P) -> Self {
+    pub fn new(localization: Box<dyn Localization<R> + Send + Sync>, mapper: Mapper, pilot: P) -> Self {
         Self { filter: None, localization, mapper, pilot, session: Session::default() }
     }
 
@@ -123,12 +123,12 @@ impl<R: Reading, P: Pilot> Robot<R, P> {
     }
 
     /// What gives the readings their poses.
-    pub fn localization(&self) -> &(dyn Localization<R> + Send) {
+    pub fn localization(&self) -> &(dyn Localization<R> + Send + Sync) {
         self.localization.as_ref()
     }
 
     /// What gives the readings their poses.
-    pub fn localization_mut(&mut self) -> &mut (dyn Localization<R> + Send) {
+    pub fn localization_mut(&mut self) -> &mut (dyn Localization<R> + Send + Sync) {
         self.localization.as_mut()
     }
 }

@@ -168,7 +168,7 @@ impl Settings {
         start: Isometry2<f64>,
         pilot: P,
     ) -> Result<Robot<LaserReading, P>, SettingsError> {
-        let localization: Box<dyn Localization<LaserReading> + Send> = match (self.pose, &prior) {
+        let localization: Box<dyn Localization<LaserReading> + Send + Sync> = match (self.pose, &prior) {
             (PoseMode::Exact | PoseMode::Odometry, _) => Box::new(GivenPoses::default()),
             (PoseMode::Localized, Some(map)) => {
                 Box::new(Localizer::in_map(&self.localizer, map, Start::Unknown)?)

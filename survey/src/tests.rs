@@ -1,5 +1,6 @@
 //! Tests of the parts, and of two logs of one simulated place.
 
+use crate::passes::RoutePass;
 use crate::route::frame;
 use crate::{
     ChangeLog, FirstPass, KnownPlace, LogEntry, PassError, Route, RouteProgress, Search, Stage, Survey,
@@ -358,8 +359,10 @@ fn refused(mut change: impl FnMut(usize, &mut LaserReading)) -> Option<String> {
     }
     writer.finish().unwrap();
     let log = Log::open(&path, &TopicChoice::default()).unwrap();
-    let found = routes(&[&log], &SurveySettings::default(), |_| ControlFlow::Continue(()));
-    found.err().map(|error| error.to_string())
+    let settings = SurveySettings::default();
+    let mut pass =
+        RoutePass { log: &log, number: 0, settings: &settings, watch: |_| ControlFlow::Continue(()) };
+    pass.route().err().map(|error| error.to_string())
 }
 
 #[test]

@@ -9,7 +9,7 @@ use interfaces::{GridFrame, LaserReading, Scan, Twist, heading_rad, pose, wrap_r
 use localizer::PoseEstimate;
 use mapper::{Mapper, MapperSettings};
 use nalgebra::{Isometry2, Point2, Vector2};
-use robot::{Level, Message, StrategyState};
+use robot::{Belief, Level, Message, StrategyState};
 use std::f64::consts::TAU;
 
 const TICK_S: f64 = 0.1;
