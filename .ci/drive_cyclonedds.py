@@ -1,7 +1,7 @@
 """CycloneDDS as another vendor, with messages written down by hand: what the packages of rclpy lack (tf, parts of maps,
 markers), and a stand-in for Nav2's action server.
 
-Arguments: a folder for files, the program curious_node, the program sim_node.
+Arguments: a folder for files, the program curious_node, the program sim_node; `hear`: prints when transforms come.
 """
 
 import os
@@ -10,7 +10,7 @@ import subprocess
 import sys
 import time
 
-DOMAIN = 100 + os.getpid() % 90
+DOMAIN = int(os.environ.get("DRIVE_ROS2_DOMAIN", 100 + os.getpid() % 90))
 os.environ["ROS_DOMAIN_ID"] = str(DOMAIN)
 os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
 os.environ["CYCLONEDDS_URI"] = ("<CycloneDDS><Domain><General><Interfaces><NetworkInterface name='lo'/></Interfaces>"
@@ -288,6 +288,16 @@ def test_action():
     end(node)
 
 
+def hear():
+    """Prints when a transform from the map to the odometry comes, s."""
+    transforms = reader("rt/tf", TFMessage)
+    while True:
+        for message in transforms.take(100):
+            if any((t.header.frame_id, t.child_frame_id) == ("map", "odom") for t in message.transforms):
+                print(time.monotonic(), flush=True)
+        time.sleep(0.001)
+
+
 def main():
     simulation = subprocess.Popen([SIM, "house"], stderr=subprocess.DEVNULL)
     try:
@@ -298,4 +308,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    hear() if sys.argv[4:] == ["hear"] else main()

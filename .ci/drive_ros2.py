@@ -133,6 +133,7 @@ class Robot(Peer):
         self.odometry = self.node.create_publisher(Odometry, "odom", RELIABLE)
         self.beams, self.noise, self.sent = beams, np.random.default_rng(1), 0
         self.segments, self.phase, self.shift_s, self.frame = ROOM + BOX, 0.0, 0.0, "base_link"
+        self.angle_min = -np.pi
 
     def stamp(self):
         now = time.time() + self.shift_s
@@ -142,6 +143,9 @@ class Robot(Peer):
         x, y = 1.0 + 1.4 * np.cos(self.phase), 1.2 * np.sin(self.phase)
         heading = np.arctan2(1.2 * np.cos(self.phase), -1.4 * np.sin(self.phase))
         return x, y, heading
+
+    def ranges(self, x, y, heading):
+        return ranges(x, y, heading, self.segments, self.beams, self.noise)
 
     def step(self):
         x, y, heading = self.pose()
@@ -156,10 +160,10 @@ class Robot(Peer):
         scan = LaserScan()
         scan.header.stamp.sec, scan.header.stamp.nanosec = sec, nanosec
         scan.header.frame_id = self.frame
-        scan.angle_min, scan.angle_increment = -np.pi, 2 * np.pi / self.beams
+        scan.angle_min, scan.angle_increment = self.angle_min, -2 * self.angle_min / self.beams
         scan.angle_max = scan.angle_min + (self.beams - 1) * scan.angle_increment
         scan.range_min, scan.range_max, scan.scan_time = 0.05, 12.0, 0.1
-        scan.ranges = ranges(x, y, heading, self.segments, self.beams, self.noise)
+        scan.ranges = self.ranges(x, y, heading)
         self.scans.publish(scan)
         self.sent += 1
 

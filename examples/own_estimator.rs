@@ -5,7 +5,7 @@
 //! ```
 
 use agent::Policy;
-use evaluation::physics_trial::{PhysicsSettings, PhysicsTrial};
+use evaluation::physics_trial::{self, PhysicsTrial};
 use evaluation::trials::{Experiment, GridRobot, TrialStrategy};
 use mapper::{CellStatistics, Estimator, EstimatorChoice};
 use reports::Report;
@@ -26,7 +26,7 @@ impl Estimator for HalfOfEvents {
 
 fn main() -> anyhow::Result<()> {
     let world = curious::worlds::load("four_rooms")?.spec;
-    let mut settings = PhysicsSettings::of(&world)?;
+    let mut settings = physics_trial::settings(&world)?;
     settings.mapper.estimator = HalfOfEvents.into();
     let pilot = settings.pilot(settings.agent(&Policy::default(), 0)?, 0)?;
     let mut trial = PhysicsTrial::new(&world, 0, &settings, None, pilot)?;

@@ -5,7 +5,7 @@
 //! ```
 
 use agent::{Policy, Situation, Strategy};
-use evaluation::physics_trial::{PhysicsSettings, PhysicsTrial};
+use evaluation::physics_trial::{self, PhysicsTrial};
 use evaluation::trials::{Experiment, GridRobot, TrialStrategy};
 use mapper::MapperSettings;
 use reports::Report;
@@ -31,7 +31,7 @@ fn main() -> anyhow::Result<()> {
     let events = Policy::single("events", "old cells that changed before", |_| Events);
 
     let world = curious::worlds::load("four_rooms")?.spec;
-    let settings = PhysicsSettings::of(&world)?;
+    let settings = physics_trial::settings(&world)?;
     let pilot = settings.pilot(settings.agent(&events, 0)?, 0)?;
     let mut trial = PhysicsTrial::new(&world, 0, &settings, None, pilot)?;
     trial.run(300.0)?;

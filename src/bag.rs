@@ -1,16 +1,15 @@
 //! `--mcap`: a run as a bag of ROS 2.
 
+use anyhow::bail;
 use interfaces::{CellState, Grid, LaserReading};
 use logs::{LogError, McapWriter};
 use mapper::Mapper;
 use nalgebra::{Isometry2, Point2};
-use results::output::UnfinishedFile;
-use robot::{Belief, Localization, Pilot, Tapped};
-use std::cell::RefCell;
+use results::output::{UnfinishedFile, is_another_kind};
+use robot::{Pilot, Turn};
 use std::fs::File;
 use std::io::BufWriter;
 use std::path::Path;
-use std::rc::Rc;
 use survey::CHANGE_HORIZON_S;
 
 /// The time between two maps, and between two maps of changes and predictions, s.
@@ -21,13 +20,8 @@ const CHANGES_S: f64 = 10.0;
 /// [`finish`](Self::finish) reports it.
 pub struct RunBag {
     file: UnfinishedFile,
-    state: Rc<RefCell<BagState>>,
-}
-
-/// What is written, and what was written last.
-struct BagState {
     writer: Result<McapWriter<BufWriter<File>>, LogError>,
-    odometry: Isometry2<f64>,
+    /// What was written last.
     correction: Option<Isometry2<f64>>,
     goal: Option<Point2<f64>>,
     path: Vec<Point2<f64>>,
@@ -40,36 +34,37 @@ impl RunBag {
     ///
     /// # Errors
     ///
-    /// When the file cannot be written.
+    /// When the file cannot be written, or is another kind of file, which is not replaced.
     pub fn create(path: &Path, begin_s: f64) -> anyhow::Result<Self> {
+        if is_another_kind(path, b"\x89MCAP0\r\n") {
+            bail!("there is a file {} that is not an MCAP file; choose another name", path.display());
+        }
         let file = UnfinishedFile::create(path)?;
         let to = BufWriter::new(file.file().try_clone()?);
-        let state = BagState {
+        Ok(Self {
+            file,
             writer: Ok(McapWriter::new(to, &path.display().to_string(), begin_s)?),
-            odometry: Isometry2::identity(),
             correction: None,
             goal: None,
             path: Vec::new(),
             next_map_s: f64::NEG_INFINITY,
             next_changes_s: f64::NEG_INFINITY,
-        };
-        Ok(Self { file, state: Rc::new(RefCell::new(state)) })
+        })
     }
 
-    /// A localization that writes every reading to this bag before it gives the reading its pose.
-    pub fn recorded<L>(&self, inner: Box<L>) -> impl Localization<LaserReading> + use<L>
-    where
-        L: Localization<LaserReading> + ?Sized,
-    {
-        let state = self.state.clone();
-        Tapped::new(inner, move |reading: &LaserReading| state.borrow_mut().reading(reading))
-    }
-
-    /// Writes what the robot knows after a reading: its pose, its maps, changes, goal and path.
-    pub fn add(&self, belief: &Belief, pilot: &impl Pilot) {
-        let mut state = self.state.borrow_mut();
-        if let Err(problem) = state.add(belief, pilot.goal(), pilot.path()) {
-            state.writer = Err(problem);
+    /// Writes a turn of the robot: `raw`, the reading as the source gave it, with the times of the map; the pose, the maps, the
+    /// changes, the goal and the path.
+    pub fn add<C>(
+        &mut self,
+        raw: &LaserReading,
+        turn: &Turn<LaserReading, C>,
+        mapper: &Mapper,
+        pilot: &impl Pilot,
+    ) {
+        let correction = turn.belief.pose * raw.pose.inverse();
+        let written = self.write(raw, &correction, mapper, pilot);
+        if let Err(problem) = written {
+            self.writer = Err(problem);
         }
     }
 
@@ -79,34 +74,23 @@ impl RunBag {
     ///
     /// When a part of it could not be written. There is no file then.
     pub fn finish(self) -> anyhow::Result<()> {
-        let mut state = self.state.borrow_mut();
-        let ended = Err(LogError::Unusable { file: String::new(), why: "the bag is complete".to_owned() });
-        std::mem::replace(&mut state.writer, ended)?.finish()?;
+        self.writer?.finish()?;
         Ok(self.file.finish()?)
     }
-}
 
-impl BagState {
-    fn reading(&mut self, reading: &LaserReading) {
-        self.odometry = reading.pose;
-        let Ok(writer) = &mut self.writer else { return };
-        if let Err(problem) = writer.reading(reading) {
-            self.writer = Err(problem);
-        }
-    }
-
-    fn add(
+    fn write(
         &mut self,
-        belief: &Belief,
-        goal: Option<Point2<f64>>,
-        path: &[Point2<f64>],
+        raw: &LaserReading,
+        correction: &Isometry2<f64>,
+        mapper: &Mapper,
+        pilot: &impl Pilot,
     ) -> Result<(), LogError> {
-        let (mapper, time_s) = (belief.mapper, belief.mapper.time());
+        let time_s = mapper.time();
         let Ok(writer) = &mut self.writer else { return Ok(()) };
-        let correction = belief.pose * self.odometry.inverse();
-        if self.correction != Some(correction) {
-            writer.correction(time_s, &correction)?;
-            self.correction = Some(correction);
+        writer.reading(raw)?;
+        if self.correction != Some(*correction) {
+            writer.correction(time_s, correction)?;
+            self.correction = Some(*correction);
         }
         let frame = mapper.frame();
         let changes = mapper.transitions().iter();
@@ -130,6 +114,7 @@ impl BagState {
             let predicted = layer(mapper, |index| mapper.blocked_probability(index));
             writer.grid("/predicted_map", time_s, &predicted, |share| *share)?;
         }
+        let (goal, path) = (pilot.goal(), pilot.path());
         if let Some(at) = goal.filter(|_| goal != self.goal) {
             writer.goal(time_s, &interfaces::pose(at.x, at.y, 0.0))?;
         }

@@ -1,8 +1,10 @@
 //! Parsers of the values of flags: an invalid value is refused before anything is read or written, and its flag is named.
 
+use anyhow::bail;
 use clap::builder::{PathBufValueParser, TypedValueParser};
+use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// An invalid value of a flag, which is named unless the message points at a place in a file.
 pub fn value_of(flag: &'static str, error: impl Into<anyhow::Error>) -> anyhow::Error {
@@ -35,10 +37,30 @@ pub fn output_file() -> impl TypedValueParser<Value = PathBuf> {
     })
 }
 
+/// Checks that flags name different files: of one file for two purposes, one would be lost.
+///
+/// # Errors
+///
+/// When two are the same.
+pub fn check_distinct(files: &[(&str, Option<&Path>)]) -> anyhow::Result<()> {
+    let place = |path: &Path| {
+        let path = std::path::absolute(path).ok()?;
+        Some((path.parent()?.canonicalize().ok()?, path.file_name()?.to_owned()))
+    };
+    let mut known = BTreeMap::new();
+    for (flag, path) in files.iter().filter_map(|(flag, path)| Some((flag, (*path)?))) {
+        if let Some(other) = place(path).and_then(|place| known.insert(place, flag)) {
+            bail!("{other} and {flag} name the same file {}: give each its own", path.display());
+        }
+    }
+    Ok(())
+}
+
 /// A parser of the path of a folder, which may be missing.
 pub fn folder() -> impl TypedValueParser<Value = PathBuf> {
     PathBufValueParser::new().try_map(|path| {
-        let file = path.ancestors().find(|path| path.exists()).filter(|found| !found.is_dir());
+        let file =
+            path.ancestors().find(|path| path.symlink_metadata().is_ok()).filter(|found| !found.is_dir());
         file.map_or(Ok(()), |file| Err(format!("{} is a file, not a folder", file.display())))
             .map(|()| path.clone())
     })

@@ -1,8 +1,10 @@
 //! The keyboard pilot: a person drives with the keys of a terminal.
 
+use agent::Features;
 use crossterm::event::{self, Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 use crossterm::terminal;
 use interfaces::Twist;
+use mapper::Mapper;
 use robot::{Belief, Pilot};
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
@@ -75,7 +77,7 @@ impl Keyboard {
 impl Pilot for Keyboard {
     type Command = Twist;
 
-    fn command(&mut self, _belief: &Belief) -> Twist {
+    fn command(&mut self, _: &Belief, _: Features, _: &Mapper) -> Twist {
         // The terminal is gone after an error: stop, and let the run write its results.
         loop {
             match event::poll(Duration::ZERO)

@@ -4,7 +4,7 @@ use crate::terminal::{check_printed, print, say};
 use anyhow::Context;
 use clap::Parser;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use interfaces::printable_lines;
+use interfaces::{PoseMode, printable_lines};
 use results::output::{OutputError, RunFolder};
 use std::error::Error;
 use std::fmt::Display;
@@ -48,6 +48,11 @@ pub fn results_folder(out: &Path) -> Result<RunFolder, Failure> {
     let folder = RunFolder::open(out)?;
     folder.notes().iter().for_each(|note| say(stderr(), format_args!("note: {}", printable_lines(note))));
     Ok(folder)
+}
+
+/// The command line without the name of the program; what is no text in it is replaced.
+pub fn arguments() -> Vec<String> {
+    std::env::args_os().skip(1).map(|argument| argument.to_string_lossy().into_owned()).collect()
 }
 
 /// An invalid argument or input file.
@@ -141,6 +146,21 @@ where
             .cloned()
             .ok_or("not one of the possible values")
     })
+}
+
+/// A parser of how the pose is known. `describe` says what a mode means.
+pub fn pose_mode(describe: fn(PoseMode) -> &'static str) -> impl TypedValueParser<Value = PoseMode> {
+    let named = PoseMode::ALL.map(|mode| PossibleValue::new(mode.name()).help(describe(mode)));
+    PossibleValuesParser::new(named).map(|name| PoseMode::named(&name).unwrap_or_default())
+}
+
+/// What the ways to know the pose mean in a simulated world.
+pub fn pose_in_world(mode: PoseMode) -> &'static str {
+    match mode {
+        PoseMode::Exact => "The true pose",
+        PoseMode::Odometry => "The pose by odometry, with its drift: the map becomes wrong",
+        PoseMode::Localized => "The pose that fits the scan to the map",
+    }
 }
 
 /// The longest run, s: 1000 hours.

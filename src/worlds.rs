@@ -1,8 +1,6 @@
-//! The world to run: a shipped world, a world file, or a Stage file; and how the robot knows its pose there.
+//! The world to run: a shipped world, a world file, or a Stage file.
 
 use crate::program::list;
-use clap::ValueEnum;
-use evaluation::physics_trial::PoseChoice;
 use interfaces::printable;
 use results::file_name::{self, FileNameError};
 use sim::grid::GridSpec;
@@ -93,27 +91,6 @@ pub fn load_grid(name: &str) -> Result<GridSpec, WorldError> {
 /// When the standard output cannot be written.
 pub fn list_physics_worlds() -> anyhow::Result<()> {
     list(&SHIPPED, 18, |name| load(name).map(|world| world.spec.description.clone()))
-}
-
-/// How the robot knows its pose.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum PoseArg {
-    /// The true pose
-    Exact,
-    /// The pose by odometry, with its drift: the map becomes wrong
-    Odometry,
-    /// The pose that fits the scan to the map
-    Localized,
-}
-
-impl From<PoseArg> for PoseChoice {
-    fn from(pose: PoseArg) -> Self {
-        match pose {
-            PoseArg::Exact => Self::Exact,
-            PoseArg::Odometry => Self::Odometry,
-            PoseArg::Localized => Self::Localized,
-        }
-    }
 }
 
 fn load_stage(name: &str) -> Result<Loaded, WorldError> {

@@ -1,3 +1,4 @@
+use crate::driver::{Driver, Outcome, Status};
 use crate::drives::Drive;
 use crate::dynamic_obstacles::DynamicObstacleFilter;
 use crate::navigation::{LocalExploration, NavigationTask, Progress, Surroundings, Tick, random_step};
@@ -7,33 +8,9 @@ use crate::situation::Situation;
 use interfaces::{CellState, Grid, RandomStream, SettingsError, Values, value};
 use nalgebra::Point2;
 
-/// The state of a controller.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Status {
-    /// There was no goal yet, or the goal was canceled.
-    Idle,
-    /// The robot drives to the goal.
-    Travelling,
-    /// The robot explores around the goal, or observes at the goal.
-    Exploring,
-    /// The goal is finished; the robot stops until the next goal.
-    Finished(Outcome),
-}
-
-/// The outcome of a goal.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize, serde::Serialize)]
-pub enum Outcome {
-    /// The robot reached the goal.
-    Reached,
-    /// The goal is blocked or hidden; the robot reached the nearest point that can be reached.
-    Nearest,
-    /// The goal was given up, because the robot was stuck for too long.
-    GivenUp,
-}
-
 /// Drives the robot to a goal and explores around it (paper, section 2).
 ///
-/// [`drive`](Self::drive) is called once per tick and returns no error. The [`Drive`] defines the type of the
+/// [`drive`](Driver::drive) is called once per tick and returns no error. The [`Drive`] defines the type of the
 /// commands. All random numbers come from the stream given at construction.
 #[derive(Clone, Debug)]
 pub struct Controller<D: Drive> {
@@ -98,90 +75,34 @@ impl<D: Drive> Controller<D> {
         let (state, path) = (State::Idle, Path::default());
         Ok(Self { settings, drive, rng, surroundings: None, state, path, last_change: None })
     }
+}
 
-    /// Sets a goal in the frame of the map, m: the robot drives there, then explores around it. Replaces any other
-    /// goal. A goal outside of the map is replaced by the nearest point in the map.
-    pub fn set_goal(&mut self, goal: Point2<f64>) {
-        self.start(goal, AtGoal::Explore);
-    }
+impl<D: Drive> Driver for Controller<D> {
+    type Command = D::Command;
 
-    /// Sets a goal as [`set_goal`](Self::set_goal) does, but without local exploration: for a tour.
-    pub fn go_to(&mut self, goal: Point2<f64>) {
-        self.watch_at(goal, 0.0);
-    }
-
-    /// Sets a goal as [`set_goal`](Self::set_goal) does, but with a stop of `duration` at the goal (s; steps in a
-    /// grid world) instead of local exploration. A duration that is NaN counts as 0.
-    pub fn watch_at(&mut self, goal: Point2<f64>, duration: f64) {
-        self.start(goal, AtGoal::Watch(duration.max(0.0)));
-    }
-
-    fn start(&mut self, goal: Point2<f64>, at_goal: AtGoal) {
+    fn set_goal(&mut self, goal: Point2<f64>, watch: Option<f64>) {
+        let at_goal = watch.map_or(AtGoal::Explore, |duration| AtGoal::Watch(duration.max(0.0)));
         self.state = State::New { goal, at_goal };
         self.path.clear();
     }
 
-    /// Cancels the goal; the robot stops.
-    pub fn cancel(&mut self) {
+    fn cancel(&mut self) {
         self.state = State::Idle;
         self.path.clear();
     }
 
-    /// Forgets the map: the next one is not the last one with some changes. A path to the goal is planned anew; a local
-    /// exploration ends.
-    pub fn forget_map(&mut self) {
-        (self.surroundings, self.last_change) = (None, None);
-        self.path.clear();
-        self.state = match std::mem::replace(&mut self.state, State::Idle) {
-            State::Travelling { task, at_goal } => State::New { goal: *task.goal(), at_goal },
-            State::Exploring { done, .. } => State::Finished(done),
-            other => other,
-        };
-    }
-
-    /// Writes the travel time from the robot to each cell at full speed, in row-major order, s (steps in a grid
-    /// world); ∞ where no path is known. Call it after [`drive`](Self::drive), which applies the changes of the
-    /// map. The computing time is that of one wave over the whole map.
-    pub fn travel_times(&mut self, situation: &Situation, times: &mut Vec<f64>) {
-        let body = self.drive.body();
-        times.clear();
-        times.resize(situation.map.frame().len(), f64::INFINITY);
-        if let Some(surroundings) = &mut self.surroundings {
-            surroundings.planner.lengths_m(situation.map, &situation.position(), times);
-            times.iter_mut().for_each(|time| *time /= body.speed_mps);
-        }
-    }
-
-    /// The state after the last tick.
-    pub fn status(&self) -> Status {
-        match self.state {
-            State::Idle => Status::Idle,
-            State::New { .. } | State::Travelling { .. } => Status::Travelling,
-            State::Exploring { .. } | State::Watching { .. } => Status::Exploring,
-            State::Finished(done) => Status::Finished(done.outcome),
-        }
-    }
-
-    /// The last goal; `None` before the first goal, and after the goal was canceled.
-    pub fn goal(&self) -> Option<&Point2<f64>> {
+    fn goal(&self) -> Option<Point2<f64>> {
         match &self.state {
             State::Idle => None,
-            State::New { goal, .. } => Some(goal),
-            State::Travelling { task, .. } => Some(task.goal()),
+            State::New { goal, .. } => Some(*goal),
+            State::Travelling { task, .. } => Some(*task.goal()),
             State::Exploring { done, .. } | State::Watching { done, .. } | State::Finished(done) => {
-                Some(&done.goal)
+                Some(done.goal)
             }
         }
     }
 
-    /// The present path, from the position where it was planned to its end, m; empty without a path.
-    pub fn path(&self) -> &[Point2<f64>] {
-        self.path.points()
-    }
-
-    /// Returns the command for this tick. After a new goal was set, the method may be called again in the same
-    /// tick, with the same situation but without its transitions; the robot then starts without delay.
-    pub fn drive(&mut self, situation: &Situation) -> D::Command {
+    fn drive(&mut self, situation: &Situation) -> D::Command {
         if let Some(change) = situation.change() {
             self.last_change = Some((change, situation.time));
         }
@@ -203,8 +124,7 @@ impl<D: Drive> Controller<D> {
         command
     }
 
-    /// Returns the command for a tick in which the robot does not drive to its goal: it rests, or looks around.
-    pub fn pause(&mut self, situation: &Situation, looks_around: bool) -> D::Command {
+    fn pause(&mut self, situation: &Situation, looks_around: bool) -> D::Command {
         let mut surroundings = self.update_surroundings(situation);
         let settings = self.settings.navigation;
         let scene = Tick { settings: &settings, situation, surroundings: &mut surroundings };
@@ -216,6 +136,59 @@ impl<D: Drive> Controller<D> {
         command
     }
 
+    fn status(&self) -> Status {
+        match self.state {
+            State::Idle => Status::Idle,
+            State::New { .. } | State::Travelling { .. } => Status::Travelling,
+            State::Exploring { .. } | State::Watching { .. } => Status::Exploring,
+            State::Finished(done) => Status::Finished(done.outcome),
+        }
+    }
+
+    fn travel_times(&mut self, situation: &Situation, times: &mut Vec<f64>) {
+        let body = self.drive.body();
+        times.clear();
+        times.resize(situation.map.frame().len(), f64::INFINITY);
+        if let Some(surroundings) = &mut self.surroundings {
+            surroundings.planner.lengths_m(situation.map, &situation.position(), times);
+            times.iter_mut().for_each(|time| *time /= body.speed_mps);
+        }
+    }
+
+    fn forget_map(&mut self) {
+        (self.surroundings, self.last_change) = (None, None);
+        self.path.clear();
+        self.state = match std::mem::replace(&mut self.state, State::Idle) {
+            State::Travelling { task, at_goal } => State::New { goal: *task.goal(), at_goal },
+            State::Exploring { done, .. } => State::Finished(done),
+            other => other,
+        };
+    }
+
+    fn path(&self) -> &[Point2<f64>] {
+        self.path.points()
+    }
+
+    fn values(&mut self, map: &Grid<CellState>) -> Values<'_> {
+        let surroundings = match self.surroundings.take() {
+            Some(known) => known,
+            None => self.surroundings_of(map),
+        };
+        let surroundings = self.surroundings.insert(surroundings);
+        let mut values = vec![
+            value(&mut self.rng),
+            value(&mut self.state),
+            value(&mut self.path),
+            value(&mut self.last_change),
+            surroundings.planner.value(),
+            surroundings.dynamic.value(),
+        ];
+        values.extend(self.drive.values());
+        values
+    }
+}
+
+impl<D: Drive> Controller<D> {
     /// Applies the changes of the map. Reads the whole map at the first tick, and when the frame of the map has
     /// changed.
     fn update_surroundings(&mut self, situation: &Situation) -> Surroundings {
@@ -236,26 +209,6 @@ impl<D: Drive> Controller<D> {
         let body = self.drive.body();
         let planner = Planner::new(&self.settings.inflation, body.radius_m, body.moves, map);
         Surroundings { planner, dynamic: DynamicObstacleFilter::new(map) }
-    }
-
-    /// Everything that a tick changes and a later tick needs: what a state file holds of the controller. `map` is the map
-    /// of the last tick; what follows from it is not in the list.
-    pub fn values(&mut self, map: &Grid<CellState>) -> Values<'_> {
-        let surroundings = match self.surroundings.take() {
-            Some(known) => known,
-            None => self.surroundings_of(map),
-        };
-        let surroundings = self.surroundings.insert(surroundings);
-        let mut values = vec![
-            value(&mut self.rng),
-            value(&mut self.state),
-            value(&mut self.path),
-            value(&mut self.last_change),
-            surroundings.planner.value(),
-            surroundings.dynamic.value(),
-        ];
-        values.extend(self.drive.values());
-        values
     }
 
     fn travel(&mut self, tick: &mut Tick, mut task: NavigationTask, at_goal: AtGoal) -> D::Command {

@@ -10,6 +10,7 @@
 //! a robot in a grid world.
 
 mod controller;
+mod driver;
 mod drives;
 mod dynamic_obstacles;
 mod navigation;
@@ -19,7 +20,8 @@ mod situation;
 #[cfg(test)]
 mod tests;
 
-pub use controller::{Controller, Outcome, Status};
+pub use controller::Controller;
+pub use driver::{Driver, Outcome, Status};
 pub use drives::{Body, CellDrive, DiffDrive, DiffDriveSettings, Drive, Scene};
 pub use dynamic_obstacles::DynamicObstacleFilter;
 pub use planner::{

@@ -206,7 +206,7 @@ impl Task for Drive {
         }
     }
 
-    fn snapshot(&self) -> Vec<u8> {
+    fn snapshot(&mut self) -> Vec<u8> {
         let (mut fleet, mut agents, mut steps) = (self.fleet.snapshot(), self.agents.clone(), self.steps);
         interfaces::snapshot(vec![value(&mut fleet), value(&mut agents), value(&mut steps)])
     }

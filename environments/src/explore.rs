@@ -7,8 +7,8 @@ use crate::place::size_m;
 use crate::task::{Outcome, Part, Task, TaskError};
 use evaluation::metrics::{MAX_LOG_ERROR, mean_log_error};
 use interfaces::{CellState, LaserReading, Purpose, RandomStream, Twist, Values, World, heading_rad, value};
-use localizer::GivenPoses;
 use mapper::Mapper;
+use robot::{NoPilot, Robot};
 use sim::physics::{PhysicsWorld, SnapshotError};
 use std::sync::Arc;
 
@@ -32,8 +32,8 @@ pub struct Explore {
     place: Arc<ExplorePlace>,
     number: usize,
     world: PhysicsWorld,
-    mapper: Mapper,
-    poses: GivenPoses,
+    /// The robot without a pilot: the commands are the actions.
+    robot: Robot<LaserReading, NoPilot>,
     reading: LaserReading,
     episode: Episode,
     /// The map of the observation.
@@ -60,11 +60,9 @@ impl Explore {
     pub fn new(place: &Arc<ExplorePlace>) -> Result<Self, TaskError> {
         let one = &place.worlds[0];
         let mut world = one.world.clone();
-        let mapper = Mapper::new(&one.mapper, world.spec().frame)?;
-        let reading = world.sense();
-        let (poses, episode) = (GivenPoses::default(), Episode::default());
+        let (robot, reading, episode) = (one.robot()?, world.sense(), Episode::default());
         let layers = vec![0.0; place.patches.len()];
-        Ok(Self { place: Arc::clone(place), number: 0, world, mapper, poses, reading, episode, layers })
+        Ok(Self { place: Arc::clone(place), number: 0, world, robot, reading, episode, layers })
     }
 
     /// The simulated world.
@@ -74,7 +72,7 @@ impl Explore {
 
     /// The map, and what was learned about it.
     pub fn mapper(&self) -> &Mapper {
-        &self.mapper
+        &self.robot.mapper
     }
 
     /// The index of the world of the present episode.
@@ -86,28 +84,30 @@ impl Explore {
     /// robots.
     pub fn picture(&self, size: usize) -> Picture {
         let mut picture = Picture::floor(&self.world.spec().frame, size);
-        picture.cells(self.mapper.frame(), |index| match self.mapper.states().cells()[index] {
+        picture.cells(self.robot.mapper.frame(), |index| match self.robot.mapper.states().cells()[index] {
             CellState::Unknown => Some([160, 160, 165]),
             CellState::Blocked => Some([70, 70, 75]),
-            CellState::Free if self.mapper.rate(index) > 0.0 => Some([245, 180, 90]),
+            CellState::Free if self.robot.mapper.rate(index) > 0.0 => Some([245, 180, 90]),
             CellState::Free => None,
         });
         picture.robots(self.world.fleet(), &[self.world.spec().driven_index()]);
         picture
     }
 
-    /// Senses, and updates the map.
+    /// Senses: one turn of the robot.
     fn sense(&mut self) {
-        self.reading = self.poses.unswept(self.world.sense());
-        let update = self.mapper.update(&self.reading);
-        debug_assert!(update.is_ok(), "a simulated reading is valid: {update:?}");
-        let updates = self.mapper.transitions().iter().filter(|transition| transition.event().is_some());
+        match self.robot.step(self.world.sense()) {
+            Ok(turn) => self.reading = turn.reading,
+            Err(why) => debug_assert!(false, "a simulated reading is valid: {why}"),
+        }
+        let updates =
+            self.robot.mapper.transitions().iter().filter(|transition| transition.event().is_some());
         self.episode.last_updates = updates.count() as u32;
         self.episode.map_updates += u64::from(self.episode.last_updates);
     }
 
     fn log_error(&self) -> f64 {
-        mean_log_error(&self.mapper, self.world.truth()).unwrap_or(MAX_LOG_ERROR)
+        mean_log_error(&self.robot.mapper, self.world.truth()).unwrap_or(MAX_LOG_ERROR)
     }
 
     /// Takes the world with an index, at its start, and an empty map.
@@ -118,10 +118,10 @@ impl Explore {
             self.number = number;
         }
         // It was made with these settings once before.
-        if let Ok(mapper) = Mapper::new(&one.mapper, self.world.spec().frame) {
-            self.mapper = mapper;
+        if let Ok(robot) = one.robot() {
+            self.robot = robot;
         }
-        (self.poses, self.episode) = (GivenPoses::default(), Episode::default());
+        self.episode = Episode::default();
     }
 }
 
@@ -154,7 +154,7 @@ impl Task for Explore {
         self.world.reset(seed);
         self.sense();
         self.episode.log_error = self.log_error();
-        self.place.patches.write(&self.mapper, &mut self.layers);
+        self.place.patches.write(&self.robot.mapper, &mut self.layers);
     }
 
     fn step(&mut self, actions: &[f32], outcome: Outcome<'_>) {
@@ -180,7 +180,7 @@ impl Task for Explore {
             self.episode.log_error = log_error;
         }
         if is_over || self.episode.steps.is_multiple_of(settings.map_every) {
-            place.patches.write(&self.mapper, &mut self.layers);
+            place.patches.write(&self.robot.mapper, &mut self.layers);
         }
         let Outcome { rewards, terminated, truncated } = outcome;
         (rewards[0], terminated[0], truncated[0]) = (reward as f32, false, is_over);
@@ -218,12 +218,12 @@ impl Task for Explore {
         info.copy_from_slice(&values);
     }
 
-    fn snapshot(&self) -> Vec<u8> {
+    fn snapshot(&mut self) -> Vec<u8> {
         let mut parts = Parts {
             number: self.number,
             world: self.world.snapshot().into_bytes(),
-            mapper: self.mapper.clone().snapshot(),
-            poses: self.poses.clone().snapshot(),
+            mapper: self.robot.mapper.snapshot(),
+            poses: self.robot.localization_mut().snapshot(),
             reading: self.reading.clone(),
             episode: self.episode,
             layers: self.layers.clone(),
@@ -247,8 +247,8 @@ impl Task for Explore {
         }
         self.take(parts.number);
         self.world.restore(&parts.world)?;
-        self.mapper.restore(&parts.mapper).map_err(|_| SnapshotError::Damaged)?;
-        self.poses.restore(&parts.poses).map_err(|_| SnapshotError::Damaged)?;
+        self.robot.mapper.restore(&parts.mapper).map_err(|_| SnapshotError::Damaged)?;
+        self.robot.localization_mut().restore(&parts.poses).map_err(|_| SnapshotError::Damaged)?;
         (self.reading, self.episode, self.layers) = (parts.reading, parts.episode, parts.layers);
         Ok(())
     }

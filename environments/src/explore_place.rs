@@ -2,9 +2,10 @@
 
 use crate::patches::Patches;
 use crate::task::TaskError;
-use evaluation::physics_trial::PhysicsSettings;
-use interfaces::{SettingsCheck, SettingsError};
-use mapper::{Mapper, MapperSettings};
+use evaluation::physics_trial;
+use interfaces::{LaserReading, PoseMode, SettingsCheck, SettingsError};
+use nalgebra::Isometry2;
+use robot::{NoPilot, Robot, Settings};
 use sim::physics::{ContactModel, FleetSpec, PhysicsWorld, WorldSpec};
 
 /// Settings of [`Explore`](crate::Explore).
@@ -70,10 +71,10 @@ pub struct ExplorePlace {
     pub(crate) beams: usize,
 }
 
-/// A world at its start, and the settings of the mapper in it.
+/// A world at its start, and the settings of its robot.
 pub(crate) struct One {
     pub(crate) world: PhysicsWorld,
-    pub(crate) mapper: MapperSettings,
+    settings: Settings,
     pub(crate) range_max_m: f64,
     /// The number of cells in the width of the robot.
     pub(crate) cells_wide: f64,
@@ -107,14 +108,20 @@ impl One {
         let laser = &mut fleet.robots[driven].laser;
         laser.beams = settings.beams.unwrap_or(laser.beams);
         let spec = WorldSpec::driving(fleet, driven).unwrap_or_else(|| spec.clone());
-        let mapper = PhysicsSettings::of(&spec)?.mapper;
-        // Errors of the settings and of the size of the map are found here, and not in an episode.
-        Mapper::new(&mapper, spec.frame)?;
+        let settings = Settings { pose: PoseMode::Exact, ..physics_trial::settings(&spec)? };
         let robot = spec.driven();
         let cells_wide = (2.0 * robot.radius_m / spec.frame.resolution_m()).max(1.0);
         let (range_max_m, mut world) = (robot.laser.range_max_m, PhysicsWorld::new(&spec, 0));
         world.correct_odometry();
-        Ok(Self { world, mapper, range_max_m, cells_wide })
+        let one = Self { world, settings, range_max_m, cells_wide };
+        // Errors of the settings and of the size of the map are found here, and not in an episode.
+        one.robot()?;
+        Ok(one)
+    }
+
+    /// The robot at its start.
+    pub(crate) fn robot(&self) -> Result<Robot<LaserReading, NoPilot>, SettingsError> {
+        self.settings.robot(self.world.spec().frame, None, Isometry2::identity(), NoPilot)
     }
 
     fn beams(&self) -> usize {

@@ -31,7 +31,7 @@ pub trait Task: Send {
     fn info(&self, info: &mut [f32]);
 
     /// The state as bytes.
-    fn snapshot(&self) -> Vec<u8>;
+    fn snapshot(&mut self) -> Vec<u8>;
 
     /// Returns to the state of a snapshot of a task with the same settings.
     ///

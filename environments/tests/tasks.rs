@@ -82,9 +82,9 @@ fn a_snapshot_goes_on_bit_by_bit() {
         for step in 0..30 {
             here.step(&action(0, step), &[9], &mut results).unwrap();
         }
-        let snapshot = here.tasks()[0].snapshot();
+        let snapshot = here.tasks_mut()[0].snapshot();
         there.tasks_mut()[0].restore(&snapshot).unwrap();
-        assert_eq!(there.tasks()[0].snapshot(), snapshot);
+        assert_eq!(there.tasks_mut()[0].snapshot(), snapshot);
         for step in 30..60 {
             here.step(&action(0, step), &[9], &mut results).unwrap();
             there.step(&action(0, step), &[9], &mut other).unwrap();
@@ -175,7 +175,7 @@ fn invalid_input_is_refused_and_changes_nothing() {
     let mut batch = Batch::new((0..2).map(|_| Drive::new(&place)).collect());
     let mut results = batch.results();
     batch.reset(&[1, 2], &mut results.observations).unwrap();
-    let before = [0, 1].map(|index| batch.tasks()[index].snapshot());
+    let before = [0, 1].map(|index| batch.tasks_mut()[index].snapshot());
     let message = |error: Result<(), TaskError>| error.unwrap_err().to_string();
     for (value, printed) in [(f32::NAN, "NaN"), (1.5, "1.5"), (f32::NEG_INFINITY, "-inf")] {
         let error = message(batch.step(&[0.0, 0.0, 0.0, value], &[3, 4], &mut results));
@@ -183,7 +183,7 @@ fn invalid_input_is_refused_and_changes_nothing() {
     }
     assert_eq!(message(batch.step(&[0.0; 3], &[3, 4], &mut results)), "actions: 3 values, and not 4");
     assert_eq!(message(batch.step(&[0.0; 4], &[3], &mut results)), "seeds: 1 values, and not 2");
-    assert_eq!([0, 1].map(|index| batch.tasks()[index].snapshot()), before);
+    assert_eq!([0, 1].map(|index| batch.tasks_mut()[index].snapshot()), before);
     let refused = |settings| DrivePlace::new(&driving_hall(), settings).err().unwrap().to_string();
     assert_eq!(
         refused(DriveSettings { decision_s: 0.25, ..DriveSettings::default() }),

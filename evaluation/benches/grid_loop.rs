@@ -10,14 +10,15 @@
 
 mod generated;
 
-use agent::{Agent, AgentSettings, Travel};
+use agent::{Agent, AgentSettings, Features, Travel};
 use controller::{CellDrive, Controller};
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use generated::generated;
-use interfaces::{Purpose, RandomStream, Step};
+use interfaces::{CellReading, Purpose, RandomStream, Step};
 use mapper::{Mapper, MapperSettings, ReadingError};
-use robot::{Autonomous, Belief, Destination, ExactPoses, GoalSelector, Pilot, explore};
+use nalgebra::Isometry2;
+use robot::{Autonomous, Belief, Destination, ExactPoses, GoalSelector, Pilot, Robot, explore};
 use sim::grid::{GridSpec, GridWorld};
 use std::ops::ControlFlow;
 
@@ -50,36 +51,28 @@ fn world(name: &str) -> GridSpec {
 /// A robot in its world.
 struct Run<P> {
     world: GridWorld,
-    mapper: Mapper,
-    pilot: P,
+    robot: Robot<CellReading, P>,
 }
 
 impl<P: Pilot<Command = Step>> Run<P> {
     fn new(spec: &GridSpec, pilot: P) -> Self {
         let mapper = Mapper::new(&MapperSettings::default(), *spec.frame()).expect("defaults make sense");
-        Self { world: GridWorld::new(spec, SEED), mapper, pilot }
+        Self { world: GridWorld::new(spec, SEED), robot: Robot::new(Box::new(ExactPoses), mapper, pilot) }
     }
 
-    fn run(self) -> Self {
-        let Self { mut world, mut mapper, mut pilot } = self;
+    fn run(mut self) -> Self {
         let mut step = 0;
-        explore(
-            &mut world,
-            &mut ExactPoses,
-            &mut mapper,
-            &mut pilot,
-            |_, _, _, pilot| -> Result<_, ReadingError> {
-                pilot.take_messages();
-                step += 1;
-                Ok(if step < STEPS { ControlFlow::Continue(()) } else { ControlFlow::Break(()) })
-            },
-        )
+        explore(&mut self.world, &mut self.robot, |_, robot, _| -> Result<_, ReadingError> {
+            robot.pilot.take_messages();
+            step += 1;
+            Ok(if step < STEPS { ControlFlow::Continue(()) } else { ControlFlow::Break(()) })
+        })
         .expect("a grid world's readings make sense");
-        Self { world, mapper, pilot }
+        self
     }
 }
 
-fn autonomous<G: GoalSelector>(selector: G) -> Autonomous<G, CellDrive> {
+fn autonomous<G: GoalSelector>(selector: G) -> Autonomous<G, Controller<CellDrive>> {
     let controller =
         Controller::new(CellDrive::settings(), CellDrive, RandomStream::new(SEED, Purpose::GridController));
     Autonomous::new(selector, controller.expect("the drive's own settings make sense"))
@@ -98,14 +91,19 @@ struct Remembering {
 }
 
 impl GoalSelector for Remembering {
-    fn next_goal(&mut self, belief: &Belief, travel: &mut impl Travel) -> Option<Destination> {
-        let visit = GoalSelector::next_goal(&mut self.agent, belief, travel);
+    fn next_goal(
+        &mut self,
+        pose: &Isometry2<f64>,
+        mapper: &Mapper,
+        travel: &mut impl Travel,
+    ) -> Option<Destination> {
+        let visit = GoalSelector::next_goal(&mut self.agent, pose, mapper, travel);
         self.visits.extend(visit);
         visit
     }
 
-    fn observe(&mut self, belief: &Belief) {
-        GoalSelector::observe(&mut self.agent, belief);
+    fn observe(&mut self, features: Features, mapper: &Mapper) {
+        GoalSelector::observe(&mut self.agent, features, mapper);
     }
 
     fn reason(&self) -> String {
@@ -117,7 +115,7 @@ impl GoalSelector for Remembering {
 struct Repeating(std::vec::IntoIter<Destination>);
 
 impl GoalSelector for Repeating {
-    fn next_goal(&mut self, _: &Belief, _: &mut impl Travel) -> Option<Destination> {
+    fn next_goal(&mut self, _: &Isometry2<f64>, _: &Mapper, _: &mut impl Travel) -> Option<Destination> {
         self.0.next()
     }
 
@@ -135,8 +133,8 @@ struct Followed<P> {
 impl<P: Pilot<Command = Step>> Pilot for Followed<P> {
     type Command = Step;
 
-    fn command(&mut self, belief: &Belief) -> Step {
-        let step = self.pilot.command(belief);
+    fn command(&mut self, belief: &Belief, features: Features, mapper: &Mapper) -> Step {
+        let step = self.pilot.command(belief, features, mapper);
         self.way.push(step);
         step
     }
@@ -148,7 +146,7 @@ struct Way(std::vec::IntoIter<Step>);
 impl Pilot for Way {
     type Command = Step;
 
-    fn command(&mut self, _: &Belief) -> Step {
+    fn command(&mut self, _: &Belief, _: Features, _: &Mapper) -> Step {
         self.0.next().unwrap_or_default()
     }
 }
@@ -172,7 +170,7 @@ fn known_goals(bencher: Bencher<'_, '_>, (name, policy): (&str, &str)) {
     let spec = world(name);
     let remembering = Remembering { agent: agent(policy), visits: Vec::new() };
     let mut run = Run::new(&spec, autonomous(remembering)).run();
-    let visits = std::mem::take(&mut run.pilot.selector_mut().visits);
+    let visits = std::mem::take(&mut run.robot.pilot.selector_mut().visits);
     let robot = run.world.robot();
     let again = || autonomous(Repeating(visits.clone().into_iter()));
     assert_eq!(Run::new(&spec, again()).run().world.robot(), robot, "the same goals, the same way");
@@ -184,6 +182,6 @@ fn known_goals(bencher: Bencher<'_, '_>, (name, policy): (&str, &str)) {
 fn known_way(bencher: Bencher<'_, '_>, (name, policy): (&str, &str)) {
     let spec = world(name);
     let followed = Followed { pilot: autonomous(agent(policy)), way: Vec::with_capacity(STEPS) };
-    let way = Run::new(&spec, followed).run().pilot.way;
+    let way = Run::new(&spec, followed).run().robot.pilot.way;
     bench(bencher, &spec, || Way(way.clone().into_iter()));
 }

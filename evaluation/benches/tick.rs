@@ -6,14 +6,14 @@
 //!
 //! Run it by `cargo bench -p curious-evaluation --bench tick`.
 
-use agent::{Agent, Features, Policy};
-use controller::DiffDrive;
+use agent::{Agent, Policy};
+use controller::{Controller, DiffDrive};
 use evaluation::map_hash::map_hash;
 use evaluation::observer::Observer;
-use evaluation::physics_trial::{PhysicsSettings, PhysicsTrial};
-use interfaces::World;
-use mapper::{Mapper, ReadingError};
-use robot::{Autonomous, Belief, ExactPoses, Pilot, explore};
+use evaluation::physics_trial::{self, PhysicsTrial};
+use interfaces::{LaserReading, World};
+use mapper::ReadingError;
+use robot::{Autonomous, Pilot, Robot, explore};
 use sim::physics::PhysicsWorld;
 use std::ops::ControlFlow;
 
@@ -24,47 +24,37 @@ fn main() {
 /// A robot in the shipped world.
 struct Run {
     world: PhysicsWorld,
-    mapper: Mapper,
-    pilot: Autonomous<Agent, DiffDrive>,
+    robot: Robot<LaserReading, Autonomous<Agent, Controller<DiffDrive>>>,
 }
 
 impl Run {
     fn new(world: &str) -> Self {
         let spec = worldfile::shipped::load(world).expect("the shipped world is valid");
-        let settings = PhysicsSettings::of(&spec).expect("the robot has a differential drive");
+        let settings = physics_trial::settings(&spec).expect("the robot has a differential drive");
         let agent = settings.agent(&Policy::default(), 0).expect("the default settings are valid");
         let pilot = settings.pilot(agent, 0).expect("the default settings are valid");
         let trial = PhysicsTrial::new(&spec, 0, &settings, None, pilot);
-        let PhysicsTrial { world, mapper, pilot, .. } = trial.expect("the default settings are valid");
-        Self { world, mapper, pilot }
+        let PhysicsTrial { world, robot, .. } = trial.expect("the default settings are valid");
+        Self { world, robot }
     }
 
     fn tick(&mut self) {
-        let reading = self.world.sense();
-        self.mapper.update(&reading).expect("the physics world gives readings that are valid");
-        let belief = Belief::exact(&reading.pose, Features::of(&mut self.mapper), &self.mapper);
-        let command = self.pilot.command(&belief);
-        self.pilot.take_messages();
-        self.world.act(&command);
+        let turn = self.robot.step(self.world.sense());
+        let turn = turn.expect("the physics world gives readings that are valid");
+        self.robot.pilot.take_messages();
+        self.world.act(&turn.command);
     }
 
     /// Runs until `end_s`, with the metrics or without.
     fn explore(&mut self, end_s: f64, mut observer: Option<Observer>) {
-        let Self { world, mapper, pilot } = self;
-        explore(
-            world,
-            &mut ExactPoses,
-            mapper,
-            pilot,
-            |world, reading, belief, pilot| -> Result<_, ReadingError> {
-                match &mut observer {
-                    Some(observer) => observer.observe(world, reading, belief, pilot),
-                    None => drop(pilot.take_messages()),
-                }
-                let is_over = reading.time_s >= end_s;
-                Ok(if is_over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
-            },
-        )
+        explore(&mut self.world, &mut self.robot, |world, robot, turn| -> Result<_, ReadingError> {
+            match &mut observer {
+                Some(observer) => observer.observe(world, robot, turn),
+                None => drop(robot.pilot.take_messages()),
+            }
+            let is_over = turn.reading.time_s >= end_s;
+            Ok(if is_over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
+        })
         .expect("the physics world gives readings that are valid");
     }
 }
@@ -100,5 +90,5 @@ fn explore_60_s_of(bencher: divan::Bencher, world: &str) {
 fn hash_of_the_map(bencher: divan::Bencher) {
     let mut run = Run::new("four_rooms");
     run.explore(60.0, None);
-    bencher.bench_local(|| map_hash(&run.mapper));
+    bencher.bench_local(|| map_hash(&run.robot.mapper));
 }

@@ -1,8 +1,8 @@
 //! The time of planning and driving in a house of 12×12 m with four rooms, in cells of 0.05 m.
 
 use controller::{
-    Controller, Costmap, DIAGONAL, DiffDrive, DiffDriveSettings, Inflation, InflationSettings, Moves, Path,
-    Planner, STRAIGHT, Settings, Situation, Wavefront,
+    Controller, Costmap, DIAGONAL, DiffDrive, DiffDriveSettings, Driver, Inflation, InflationSettings, Moves,
+    Path, Planner, STRAIGHT, Settings, Situation, Wavefront,
 };
 use divan::{Bencher, black_box};
 use interfaces::{Cell, CellState, Grid, GridFrame, Purpose, RandomStream, Transition, pose};
@@ -142,7 +142,7 @@ fn drive_tick(bencher: Bencher) {
     let drive = DiffDrive::new(DiffDriveSettings::default()).expect("defaults");
     let rng = RandomStream::new(0, Purpose::Controller);
     let mut controller = Controller::new(Settings::default(), drive, rng).expect("defaults");
-    controller.go_to(Point2::new(5.0, 0.5));
+    controller.set_goal(Point2::new(5.0, 0.5), Some(0.0));
     (0..10).for_each(|tick| {
         controller.drive(&situation(0.1 * f64::from(tick)));
     });

@@ -14,21 +14,22 @@
 
 use agent::Policy;
 use evaluation::metrics::{RateScores, rate_scores};
-use evaluation::physics_trial::{PhysicsSettings, PhysicsTrial};
-use interfaces::{GridFrame, LaserReading, heading_rad};
-use localizer::GivenPoses;
+use evaluation::physics_trial::{self, PhysicsTrial};
+use interfaces::{GridFrame, LaserReading, PoseMode, World, heading_rad};
+use localizer::{GivenPoses, TrajectoryPose};
 use logs::{Log, McapWriter, TopicChoice};
-use mapper::{Mapper, ReadingError};
+use mapper::{Mapper, NoReturn, ScanFilter, ScanFilterSettings};
 use nalgebra::{Isometry2, Vector2};
-use robot::{ExactPoses, Tapped};
-use std::cell::Cell;
+use robot::{NoPilot, Robot};
 use std::error::Error;
 use std::fs::File;
 use std::io::BufWriter;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
-use std::rc::Rc;
-use survey::{FoundPoses, PoseMode, Replay, Route, SurveySettings, learn, routes};
+use survey::{FoundPoses, LogEntry, Survey, SurveySettings};
+
+/// The poses of a bag.
+type Route = Vec<TrajectoryPose>;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -38,52 +39,46 @@ fn main() -> Result<(), Box<dyn Error>> {
     let folder = tempfile::tempdir()?;
 
     let spec = worldfile::physics::load_world(path)?;
-    let settings = PhysicsSettings::of(&spec)?;
+    let settings = physics_trial::settings(&spec)?;
     let pilot = settings.pilot(settings.agent(&Policy::default(), seed)?, seed)?;
     let mut trial = PhysicsTrial::new(&spec, seed, &settings, None, pilot)?;
     let mut exact = Mapper::new(&settings.mapper, spec.frame)?;
-    let raw = Rc::new(Cell::new(None));
-    let inner = std::mem::replace(&mut trial.localization, Box::new(ExactPoses));
-    let show = {
-        let raw = raw.clone();
-        move |reading: &LaserReading| raw.set(Some(reading.clone()))
-    };
-    trial.localization = Box::new(Tapped::new(inner, show));
     let (mut given, mut truth) = (GivenPoses::default(), vec![Vec::new(); sessions as usize]);
     let bags: Vec<PathBuf> = (0..sessions).map(|bag| folder.path().join(format!("{bag}.mcap"))).collect();
     for (number, bag) in bags.iter().enumerate() {
         let mut writer = McapWriter::new(BufWriter::new(File::create(bag)?), "bag", 1e9)?;
         let end_s = (number + 1) as f64 * minutes as f64 * 60.0;
-        let mut problem = None;
-        trial.run_with(|world, _, _, _, _| -> Result<_, ReadingError> {
-            let Some(raw) = raw.take() else { return Ok(ControlFlow::Continue(())) };
-            problem = problem.take().or_else(|| writer.reading(&raw).err());
-            let pose = *world.true_pose();
+        while trial.world.time_s() < end_s {
+            trial.turn()?;
+            let (raw, pose) = (trial.world.sense(), *trial.world.true_pose());
+            writer.reading(&raw)?;
             truth[number].push(pose);
             exact.update(&given.unswept(LaserReading { pose, ..raw }))?;
-            let is_over = world.time_s() >= end_s;
-            Ok(if is_over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
-        })?;
-        problem.map_or(Ok(()), Err)?;
+        }
         writer.finish()?;
     }
 
     let mut settings = SurveySettings::of(PoseMode::Localized);
     settings.resolution_m = spec.frame.resolution_m();
-    let logs =
-        bags.iter().map(|bag| Log::open(bag, &TopicChoice::default())).collect::<Result<Vec<_>, _>>()?;
-    let routes = routes(&logs.iter().collect::<Vec<_>>(), &settings, |_| ControlFlow::Continue(()))?;
-    settings.learn_noise(&routes);
-    if let Some(noise_m) = arguments.get(4) {
-        settings.mapper.steady.range_noise_std_m = noise_m.parse()?;
+    let (mut survey, mut logs) = (Survey::new(settings, true), Vec::new());
+    for (number, bag) in bags.iter().enumerate() {
+        let log = Log::open(bag, &TopicChoice::default())?;
+        let entry = LogEntry::of(bag.display().to_string(), &log, &TopicChoice::default())?;
+        survey.first_pass(&log, entry, number + 1 < bags.len(), |_| ControlFlow::Continue(()))?;
+        logs.push(log);
     }
+    let mut settings = survey.settings_of(logs.len());
+    if let Some(noise_m) = arguments.get(4) {
+        settings.set_noise(noise_m.parse()?);
+    }
+    let mut routes: Vec<Route> = survey.logs().iter().map(|log| log.route().to_vec()).collect();
     let to_world = alignment(&routes, &truth);
     let turn_rad = heading_rad(&(to_world.inverse() * truth[0][0]));
-    let routes: Vec<Route> = routes.into_iter().map(|route| route.moved(&to_world)).collect();
+    routes.iter_mut().flatten().for_each(|at| at.pose = to_world * at.pose);
     let mapper = learned(&logs, &routes, &settings, spec.frame)?;
     let mut true_routes = routes.clone();
     for (route, truth) in true_routes.iter_mut().zip(&truth) {
-        route.poses.iter_mut().zip(truth).for_each(|(at, truth)| at.pose = *truth);
+        route.iter_mut().zip(truth).for_each(|(at, truth)| at.pose = *truth);
     }
     let mapper_of_truth = learned(&logs, &true_routes, &settings, spec.frame)?;
 
@@ -92,13 +87,12 @@ fn main() -> Result<(), Box<dyn Error>> {
         settings.mapper.steady.range_noise_std_m
     );
     print("same scans, true poses", &rate_scores(&exact, trial.world.truth()));
-    print("live, localized       ", &rate_scores(&trial.mapper, trial.world.truth()));
+    print("live, localized       ", &rate_scores(&trial.robot.mapper, trial.world.truth()));
     print("survey of the bags    ", &rate_scores(&mapper, trial.world.truth()));
     print("survey, true poses    ", &rate_scores(&mapper_of_truth, trial.world.truth()));
     println!("the first pose is turned by {:.2}° against the rest", turn_rad.to_degrees());
     for (number, (route, truth)) in routes.iter().zip(&truth).enumerate() {
         let mut errors_m: Vec<f64> = route
-            .poses
             .iter()
             .zip(truth)
             .map(|(found, truth)| (found.pose.translation.vector - truth.translation.vector).norm())
@@ -117,7 +111,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 /// The rigid motion of all routes together that brings their positions nearest to the true ones.
 fn alignment(routes: &[Route], truth: &[Vec<Isometry2<f64>>]) -> Isometry2<f64> {
-    let found = routes.iter().flat_map(|route| &route.poses).map(|at| at.pose.translation.vector);
+    let found = routes.iter().flatten().map(|at| at.pose.translation.vector);
     let pairs: Vec<[Vector2<f64>; 2]> =
         found.zip(truth.iter().flatten()).map(|(found, truth)| [found, truth.translation.vector]).collect();
     let middle =
@@ -131,7 +125,7 @@ fn alignment(routes: &[Route], truth: &[Vec<Isometry2<f64>>]) -> Isometry2<f64> 
     Isometry2::from_parts((to - rotation * from).into(), rotation)
 }
 
-/// What the survey learns from bags along these routes.
+/// What a robot learns from bags along these routes.
 fn learned(
     logs: &[Log],
     routes: &[Route],
@@ -141,10 +135,15 @@ fn learned(
     let mut mapper = Mapper::new(&settings.mapper, frame)?;
     let begin_s = |log: &Log| log.summary().begin_s.unwrap_or_default();
     for (log, route) in logs.iter().zip(routes) {
-        let offset_s = begin_s(log) - begin_s(&logs[0]);
-        let replay = Replay::new(log.readings()?, settings, offset_s)?.ok_or("a bag has no reading")?;
-        let mut poses = FoundPoses::new(route.poses.clone());
-        learn(replay, &mut poses, &mut mapper, |_, _, _| ControlFlow::Continue(()))?;
+        let poses = FoundPoses::new(route.clone());
+        let filter =
+            ScanFilter::new(&ScanFilterSettings { no_return: NoReturn::Free, ..settings.filter.clone() })?;
+        let mut robot = Robot::new(Box::new(poses), mapper, NoPilot).with_filter(filter);
+        robot.begin_session(0.0, Some(begin_s(log) - begin_s(&logs[0]) - robot.mapper.time()));
+        for reading in log.readings()? {
+            robot.step(reading?)?;
+        }
+        mapper = robot.mapper;
     }
     Ok(mapper)
 }

@@ -11,11 +11,10 @@
 
 use agent::Policy;
 use evaluation::metrics::rate_scores;
-use evaluation::physics_trial::{PhysicsSettings, PhysicsTrial};
+use evaluation::physics_trial::{self, PhysicsTrial};
 use interfaces::{CellReading, GroundTruth, TrueState};
-use mapper::{Mapper, ReadingError};
+use mapper::Mapper;
 use std::error::Error;
-use std::ops::ControlFlow;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -26,22 +25,21 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (seed, minutes) = (number(1, 100)?, number(2, 60)?);
 
     let spec = worldfile::physics::load_world(path)?;
-    let settings = PhysicsSettings::of(&spec)?;
+    let settings = physics_trial::settings(&spec)?;
     let pilot = settings.pilot(settings.agent(&Policy::default(), seed)?, seed)?;
     let mut trial = PhysicsTrial::new(&spec, seed, &settings, None, pilot)?;
     let mut informed = Mapper::new(&settings.mapper, spec.frame)?;
     let frame = spec.frame;
-    trial.run_with(|world, reading, belief, _, _| -> Result<_, ReadingError> {
-        let seen = (0..frame.len()).filter(|&index| belief.mapper.is_in_view(index));
-        let is_blocked = |index| world.truth().state(index) != TrueState::Free;
+    while trial.robot.mapper.time() < minutes as f64 * 60.0 {
+        let reading = trial.turn()?.reading;
+        let seen = (0..frame.len()).filter(|&index| trial.robot.mapper.is_in_view(index));
+        let is_blocked = |index| trial.world.truth().state(index) != TrueState::Free;
         let cells = seen.map(|index| (frame.cell(index), is_blocked(index))).collect();
         informed.update(&CellReading { time: reading.time_s, pose: reading.pose, cells })?;
-        let is_over = reading.time_s >= minutes as f64 * 60.0;
-        Ok(if is_over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
-    })?;
+    }
 
     let truth = trial.world.truth();
-    let [noticed, bound] = [&trial.mapper, &informed].map(|mapper| rate_scores(mapper, truth));
+    let [noticed, bound] = [&trial.robot.mapper, &informed].map(|mapper| rate_scores(mapper, truth));
     let text = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| format!("{value:.3}"));
     println!("{path}, seed {seed}, {minutes} min: noticed / every shown change");
     println!("rate AUC   {} / {}", text(noticed.rate_auc), text(bound.rate_auc));

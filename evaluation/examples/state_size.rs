@@ -5,7 +5,7 @@
 //! known cell.
 
 use agent::Policy;
-use evaluation::physics_trial::{PhysicsSettings, PhysicsTrial};
+use evaluation::physics_trial::{self, PhysicsTrial};
 use evaluation::trial_state::TrialFacts;
 use interfaces::CellState;
 use robot::state::Facts;
@@ -21,7 +21,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let path = arguments.next().ok_or("give a world file and a number of minutes")?;
     let name = Path::new(&path).file_stem().ok_or("give a world file")?.to_string_lossy();
     let spec = worldfile::physics::load_world(Path::new(&path))?;
-    let settings = PhysicsSettings::of(&spec)?;
+    let settings = physics_trial::settings(&spec)?;
     let facts = TrialFacts::new(&spec, SEED, &settings, Facts::default());
     let pilot = settings.pilot(settings.agent(&Policy::default(), SEED)?, SEED)?;
     let mut trial = PhysicsTrial::new(&spec, SEED, &settings, None, pilot)?;
@@ -42,7 +42,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let bytes = copy.into_state().to_bytes()?;
         let write_ms = 1e3 * start.elapsed().as_secs_f64();
         let known =
-            trial.mapper.states().cells().iter().filter(|state| **state != CellState::Unknown).count();
+            trial.robot.mapper.states().cells().iter().filter(|state| **state != CellState::Unknown).count();
         println!(
             "{name}, {minutes} min: stop {:.1} ms (median {:.1}), bytes {write_ms:.0} ms, {} kB, {:.1} bytes per known cell",
             copies_ms[0],

@@ -4,14 +4,14 @@
 //! interrupted, and the median), how long a thread takes to turn the copy into bytes, and the size per known cell: with the
 //! poses of the log, as within it, and without them, as after it.
 
-use interfaces::CellState;
+use interfaces::{CellState, PoseMode};
 use logs::{Log, TopicChoice};
 use robot::state::{Facts, State};
 use std::error::Error;
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::Instant;
-use survey::{LogEntry, PoseMode, Survey, SurveySettings};
+use survey::{LogEntry, Survey, SurveySettings};
 
 const COPIES: usize = 40;
 
@@ -22,22 +22,20 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut survey = Survey::new(SurveySettings::of(pose), true);
     let entry = LogEntry::of(file.clone(), &log, &TopicChoice::default())?;
     survey.first_pass(&log, entry, true, |_| ControlFlow::Continue(()))?;
-    let (mut replay, mut poses) = survey.replay(0, &log)?.ok_or("the log has no reading")?;
+    let mut replay = survey.replay(0, &log)?.ok_or("the log has no reading")?;
     let readings = log.summary().scans;
-    let mut learned = 0;
     // As in the middle of the log: what was copied before is still shared.
-    survey.learn(0, &mut replay, &mut poses, |_, _, _| {
-        learned += 1;
-        if learned == readings / 2 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-    })?;
-    let earlier = survey.clone();
-    survey.learn(0, &mut replay, &mut poses, |_, _, _| ControlFlow::Continue(()))?;
+    for _ in 0..readings / 2 {
+        survey.turn(&mut replay)?;
+    }
+    let earlier = survey.saved();
+    while survey.turn(&mut replay)?.is_some() {}
     drop(earlier);
 
     let mut copies_ms: Vec<f64> = (0..COPIES)
         .map(|_| {
             let start = Instant::now();
-            let copy = survey.clone();
+            let copy = survey.saved();
             let copy_ms = 1e3 * start.elapsed().as_secs_f64();
             drop(copy);
             copy_ms
@@ -54,7 +52,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     );
     for what in ["with", "without"] {
         let start = Instant::now();
-        let (logs, learned) = survey.clone().into_snapshot();
+        let (logs, learned) = survey.saved().into_snapshot();
         let state =
             State::default().with("logs", Facts::default(), logs).with("survey", Facts::default(), learned);
         let bytes = state.to_bytes()?.len();

@@ -7,7 +7,7 @@ use crate::summary::CurvePoint;
 use interfaces::{GroundTruth, LaserReading, Twist};
 use mapper::Mapper;
 use results::thinned::{Goals, Thinned};
-use robot::{Belief, Level, Message, Pilot};
+use robot::{Level, Message, Pilot, Robot, Turn};
 use sim::physics::{Body, PhysicsWorld};
 
 /// Coverage, quality and predictions need a pass over many cells: they are computed once in this many readings.
@@ -71,17 +71,16 @@ mod saved_curve {
 }
 
 impl Observer {
-    /// Measures one tick: called once per reading.
-    pub fn observe(
+    /// Measures one turn.
+    pub fn observe<P: Pilot<Command = Twist>>(
         &mut self,
         world: &PhysicsWorld,
-        reading: &LaserReading,
-        belief: &Belief,
-        pilot: &mut impl Pilot<Command = Twist>,
+        robot: &mut Robot<LaserReading, P>,
+        Turn { reading, belief, .. }: &Turn<LaserReading, Twist>,
     ) {
-        self.poses.observe(reading.time_s, &reading.pose, world.true_pose(), belief.estimate);
-        self.measure(world, reading, belief.mapper);
-        self.collect_messages(world, pilot);
+        self.poses.observe(reading.time_s, &belief.pose, world.true_pose(), belief.estimate.as_ref());
+        self.measure(world, reading, &robot.mapper);
+        self.collect_messages(world, &mut robot.pilot);
         if let Some(correction) = &belief.correction {
             self.poses.correct(correction);
             self.messages.push(Message { level: Level::Event, text: correction.to_string() });

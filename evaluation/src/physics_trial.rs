@@ -1,79 +1,20 @@
-//! A run in a physics world as a library call: the settings of the robot, its parts, and the loop with the
-//! observer.
+//! A run in a physics world as a library call: what the world says of itself, the robot, and the loop with the observer.
 
 use crate::map_hash::map_hash;
 use crate::metrics::{age, map_scores, rate_scores, reachable_scores};
 use crate::observer::Observer;
 use crate::summary::{Contacts, Liveliest, RunResults};
-use agent::{Agent, AgentSettings, Features, Policy};
-use controller::{Controller, DiffDrive, DiffDriveSettings};
-use interfaces::{CellState, Grid, LaserReading, Purpose, RandomStream, SettingsError, Twist, World};
-use localizer::{GivenPoses, Localizer, LocalizerSettings, LoopClosingLocalizer, Start};
-use mapper::{Mapper, MapperSettings, ReadingError};
-use robot::{Autonomous, Belief, GoalSelector, Localization, Pilot, explore};
-use serde::Serialize;
+use agent::Features;
+use controller::DiffDriveSettings;
+use interfaces::{
+    CellState, Grid, LaserReading, PoseMode, Purpose, RandomStream, SettingsError, Twist, World,
+};
+use mapper::{NoReturn, ReadingError};
+use robot::{Pilot, Robot, Settings, Source, Turn};
+use sim::physics::shape::Transform;
 use sim::physics::{BehaviorSpec, DriveKind, PhysicsWorld, WorldSpec};
 use std::collections::BTreeMap;
-use std::ops::ControlFlow;
-
-/// The side of the patches over which goal weights are averaged, m.
-const PATCH_M: f64 = 0.5;
-/// The time for which a body can hide a cell without interrupting the view of the cell, s: the time in which a slow
-/// robot and its shadow pass. Without this time, only changes that are seen from the right side would count, one in
-/// five.
-const HIDING_S: f64 = 8.0;
-/// The maximum number of steps of local exploration. The paper's 42 steps suit a block that moves one cell per
-/// step. Here a step is a robot's diameter, and if the robot follows the dummy robot for longer, other rooms stay
-/// unseen.
-pub const LOCAL_STEPS: u32 = 15;
-/// The maximum range noise that the mapper accepts, m.
-const MAX_NOISE_M: f64 = 0.5;
-
-/// How the robot knows its pose.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum PoseChoice {
-    /// The true pose: odometry without any error.
-    #[default]
-    Exact,
-    /// The pose by odometry, with its errors.
-    Odometry,
-    /// The pose that the localizer estimates.
-    Localized,
-}
-
-impl PoseChoice {
-    /// Exact poses where the world says that its poses are exact, otherwise a localizer.
-    pub fn of(spec: &WorldSpec) -> Self {
-        if spec.driven().odometry.is_exact() { Self::Exact } else { Self::Localized }
-    }
-
-    /// The name on the command line and in files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Exact => "exact",
-            Self::Odometry => "odometry",
-            Self::Localized => "localized",
-        }
-    }
-}
-
-/// All settings of a robot in a physics world.
-#[derive(Clone, Debug, Serialize)]
-pub struct PhysicsSettings {
-    /// The settings of the mapper.
-    pub mapper: MapperSettings,
-    /// The settings of the agent.
-    pub agent: AgentSettings,
-    /// The settings of the controller.
-    pub controller: controller::Settings,
-    /// The settings of the drive.
-    pub drive: DiffDriveSettings,
-    /// How the robot knows its pose.
-    pub pose: PoseChoice,
-    /// The settings of the localizer.
-    pub localizer: LocalizerSettings,
-}
+use std::f64::consts::PI;
 
 /// The error for a driven robot that the controller cannot drive.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -88,99 +29,71 @@ pub struct UnsupportedDrive {
     pub drive: &'static str,
 }
 
-impl PhysicsSettings {
-    /// The default settings for the driven robot of a world.
-    ///
-    /// # Errors
-    ///
-    /// When the robot has no differential drive.
-    pub fn of(spec: &WorldSpec) -> Result<Self, UnsupportedDrive> {
-        let (robot, defaults) = (spec.driven(), DiffDriveSettings::default());
-        let unsupported = |drive| Err(UnsupportedDrive { robot: robot.name.clone(), drive });
-        match robot.drive.kind {
-            DriveKind::Differential => {}
-            DriveKind::Omni { .. } => return unsupported("omni"),
-            DriveKind::Car { .. } => return unsupported("car"),
-        }
-        let mut mapper = MapperSettings { max_gap: HIDING_S, ..MapperSettings::default() };
-        let noise_m = &mut mapper.steady.range_noise_std_m;
-        *noise_m = noise_m.max(robot.laser.noise_std_m).min(MAX_NOISE_M);
-        let cell_m = spec.frame.resolution_m();
-        let mut agent = AgentSettings {
-            patch_cells: (PATCH_M / cell_m).round().max(1.0) as _,
-            sensor_radius_m: robot.laser.range_max_m,
-            looks_at_unseen: true,
-            ..AgentSettings::default()
-        };
-        // A reward counts cells. The paper's temperature is for blocks of one cell; a robot is many cells wide, and
-        // each of its moves changes about as many cells.
-        agent.curious.temperature *= (2.0 * robot.radius_m / cell_m).max(1.0);
-        let mut controller = controller::Settings::default();
-        controller.exploration.max_steps = LOCAL_STEPS;
-        let drive = DiffDriveSettings {
+/// What a world says of itself and of its driven robot.
+///
+/// # Errors
+///
+/// When the robot has no differential drive.
+pub fn source(spec: &WorldSpec) -> Result<Source, UnsupportedDrive> {
+    let robot = spec.driven();
+    let unsupported = |drive| Err(UnsupportedDrive { robot: robot.name.clone(), drive });
+    match robot.drive.kind {
+        DriveKind::Differential => {}
+        DriveKind::Omni { .. } => return unsupported("omni"),
+        DriveKind::Car { .. } => return unsupported("car"),
+    }
+    let period_s = 1.0 / robot.laser.rate_hz;
+    Ok(Source {
+        pose: if robot.odometry.is_exact() { PoseMode::Exact } else { PoseMode::Localized },
+        cell_m: spec.frame.resolution_m(),
+        range_max_m: robot.laser.range_max_m,
+        range_noise_m: Some(robot.laser.noise_std_m),
+        no_return: NoReturn::Free, // nothing in a simulated world swallows beams
+        period_s,
+        drive: DiffDriveSettings {
             radius_m: robot.radius_m,
             max_linear_mps: robot.drive.max_linear_mps,
             max_angular_radps: robot.drive.max_angular_radps,
             acceleration_mps2: robot.drive.max_linear_acceleration_mps2,
             angular_acceleration_radps2: robot.drive.max_angular_acceleration_radps2,
-            tolerance_m: defaults.tolerance_m.min(robot.radius_m / 2.0),
-            reaction_s: 1.0 / robot.laser.rate_hz + spec.step_s,
-            ..defaults
-        };
-        let noise = mapper.steady.range_noise_std_m;
-        let localizer = LocalizerSettings { range_noise_std_m: noise, ..LocalizerSettings::default() };
-        Ok(Self { mapper, agent, controller, drive, pose: PoseChoice::of(spec), localizer })
-    }
+            reaction_s: period_s + spec.step_s,
+            ..DiffDriveSettings::default()
+        },
+    })
+}
 
-    /// What gives the readings of a world their poses. `prior` is the map that the robot knows at the start.
-    ///
-    /// # Errors
-    ///
-    /// When a setting is out of range.
-    pub fn localization(
-        &self,
-        world: &mut PhysicsWorld,
-        prior: Option<&Grid<CellState>>,
-    ) -> Result<Box<dyn Localization<LaserReading>>, SettingsError> {
-        Ok(match (self.pose, prior) {
-            (PoseChoice::Exact, _) => {
-                world.correct_odometry();
-                Box::new(GivenPoses::default())
-            }
-            (PoseChoice::Odometry, _) => Box::new(GivenPoses::default()),
-            (PoseChoice::Localized, None) => {
-                let (start, frame) = (*world.true_pose(), world.spec().frame);
-                Box::new(LoopClosingLocalizer::from_nothing(&self.localizer, &frame, start)?)
-            }
-            (PoseChoice::Localized, Some(map)) => {
-                Box::new(Localizer::in_map(&self.localizer, map, Start::Unknown)?)
-            }
-        })
-    }
+/// The default settings for the driven robot of a world.
+///
+/// # Errors
+///
+/// When the robot has no differential drive.
+pub fn settings(spec: &WorldSpec) -> Result<Settings, UnsupportedDrive> {
+    source(spec).map(|source| Settings::of(&source))
+}
 
-    /// The pilot that drives to the goals of `selector`.
-    ///
-    /// # Errors
-    ///
-    /// When a setting is out of range.
-    pub fn pilot<G: GoalSelector>(
-        &self,
-        selector: G,
-        seed: u64,
-    ) -> Result<Autonomous<G, DiffDrive>, SettingsError> {
-        let stream = RandomStream::new(seed, Purpose::Controller);
-        let controller = Controller::new(self.controller, DiffDrive::new(self.drive)?, stream)?;
-        Ok(Autonomous::new(selector, controller))
-    }
+/// The world in the frame of the map of a robot that is localized and knows no map, and the motion to it: the robot starts
+/// at the origin, and its heading follows from the seed, so that no wall is aligned with the cells. `None` for a robot that
+/// knows the frame of the world.
+pub fn in_own_frame(settings: &Settings, spec: &WorldSpec, seed: u64) -> Option<(WorldSpec, Transform)> {
+    let heading_rad = RandomStream::new(seed, Purpose::MapFrame).uniform(-PI..PI);
+    (settings.pose == PoseMode::Localized).then(|| spec.around_robot(heading_rad))?
+}
 
-    /// The agent that follows `policy`.
-    ///
-    /// # Errors
-    ///
-    /// When a setting is out of range.
-    pub fn agent(&self, policy: &Policy, seed: u64) -> Result<Agent, SettingsError> {
-        Agent::new(&self.agent, policy, RandomStream::new(seed, Purpose::Agent))
+/// The driven robot of a world at its start. `prior` is the map that it knows.
+///
+/// # Errors
+///
+/// When a setting is out of range.
+pub fn robot<P: Pilot>(
+    settings: &Settings,
+    world: &mut PhysicsWorld,
+    prior: Option<Grid<CellState>>,
+    pilot: P,
+) -> Result<Robot<LaserReading, P>, SettingsError> {
+    if settings.pose == PoseMode::Exact {
+        world.correct_odometry();
     }
+    settings.robot(world.spec().frame, prior, *world.true_pose(), pilot)
 }
 
 /// A run in a physics world: the world, the robot, and the measurements.
@@ -188,17 +101,13 @@ pub struct PhysicsTrial<P> {
     /// The world.
     pub world: PhysicsWorld,
     /// How the robot knows its pose.
-    pub pose: PoseChoice,
-    /// What gives readings their poses.
-    pub localization: Box<dyn Localization<LaserReading>>,
-    /// The map and the change statistics.
-    pub mapper: Mapper,
-    /// The pilot.
-    pub pilot: P,
+    pub pose: PoseMode,
+    /// The robot.
+    pub robot: Robot<LaserReading, P>,
     /// The measurements.
     pub observer: Observer,
-    /// The last command of a run that was ended, which the world has not executed.
-    pub(crate) pending: Option<Twist>,
+    /// The last command, which the world executes at the next turn.
+    pub(crate) command: Option<Twist>,
 }
 
 impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
@@ -206,49 +115,34 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
     ///
     /// # Errors
     ///
-    /// When a setting of the mapper is out of range.
+    /// When a setting is out of range.
     pub fn new(
         spec: &WorldSpec,
         seed: u64,
-        settings: &PhysicsSettings,
+        settings: &Settings,
         prior: Option<Grid<CellState>>,
         pilot: P,
     ) -> Result<Self, SettingsError> {
-        let mut world = PhysicsWorld::new(spec, seed);
-        let localization = settings.localization(&mut world, prior.as_ref())?;
-        let mapper = match prior {
-            None => Mapper::new(&settings.mapper, spec.frame)?,
-            Some(map) => Mapper::with_prior(&settings.mapper, map)?,
-        };
-        let (pose, observer) = (settings.pose, Observer::default());
-        Ok(Self { world, pose, localization, mapper, pilot, observer, pending: None })
+        let own = if prior.is_none() { in_own_frame(settings, spec, seed) } else { None };
+        let mut world = PhysicsWorld::new(own.as_ref().map_or(spec, |(spec, _)| spec), seed);
+        let robot = robot(settings, &mut world, prior, pilot)?;
+        Ok(Self { world, pose: settings.pose, robot, observer: Observer::default(), command: None })
     }
 
-    /// Runs until `watch` breaks; the next call goes on from there. `watch` is called once per reading, after the
-    /// measurement.
+    /// One turn: the world executes the last command, the robot makes of the next reading another one, and the observer
+    /// measures. Between two turns, the run can be saved.
     ///
     /// # Errors
     ///
-    /// When `watch` fails.
-    pub fn run_with<E: From<ReadingError>>(
-        &mut self,
-        mut watch: impl FnMut(
-            &PhysicsWorld,
-            &LaserReading,
-            &Belief,
-            &mut P,
-            &Observer,
-        ) -> Result<ControlFlow<()>, E>,
-    ) -> Result<(), E> {
-        let Self { world, localization, mapper, pilot, observer, pending, .. } = self;
-        pending.take().into_iter().for_each(|command| world.act(&command));
-        let command =
-            explore(world, localization.as_mut(), mapper, pilot, |world, reading, belief, pilot| {
-                observer.observe(world, reading, belief, pilot);
-                watch(world, reading, belief, pilot, observer)
-            })?;
-        *pending = Some(command);
-        Ok(())
+    /// When the mapper refuses the reading.
+    pub fn turn(&mut self) -> Result<Turn<LaserReading, Twist>, ReadingError> {
+        if let Some(command) = self.command.take() {
+            self.world.act(&command);
+        }
+        let turn = self.robot.step(self.world.sense())?;
+        self.observer.observe(&self.world, &mut self.robot, &turn);
+        self.command = Some(turn.command);
+        Ok(turn)
     }
 
     /// Runs until `end_s` of simulated time, or until the pilot is done.
@@ -257,15 +151,13 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
     ///
     /// When the mapper refuses a reading.
     pub fn run(&mut self, end_s: f64) -> Result<(), ReadingError> {
-        self.run_with(|_, reading, _, pilot, _| {
-            let is_over = reading.time_s >= end_s || pilot.is_done();
-            Ok(if is_over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
-        })
+        while self.turn()?.reading.time_s < end_s && !self.robot.pilot.is_done() {}
+        Ok(())
     }
 
     /// The results so far.
     pub fn results(&self) -> RunResults {
-        let Self { world, pose, mapper, pilot, observer, .. } = self;
+        let Self { world, pose, robot: Robot { mapper, pilot, .. }, observer, .. } = self;
         let truth = world.truth();
         let [block_latency, free_latency] = observer.latency.delays();
         let [contacts_while_standing, collisions] = observer.contacts;

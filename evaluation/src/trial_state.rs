@@ -2,10 +2,10 @@
 //! bit.
 
 use crate::observer::Observer;
-use crate::physics_trial::{PhysicsSettings, PhysicsTrial, PoseChoice};
-use interfaces::{Twist, Values, value};
-use robot::Pilot;
+use crate::physics_trial::PhysicsTrial;
+use interfaces::{PoseMode, Twist, Values, value};
 use robot::state::{Facts, LearnedFacts, LearnedSnapshot, State, StateError};
+use robot::{Pilot, Settings};
 use sim::physics::{WorldSnapshot, WorldSpec};
 use xxhash_rust::xxh3::xxh3_64;
 
@@ -27,9 +27,9 @@ pub struct TrialFacts {
 
 impl TrialFacts {
     /// The facts of a run. `pilot` is what its pilot is made of, beside the settings.
-    pub fn new(spec: &WorldSpec, seed: u64, settings: &PhysicsSettings, pilot: Facts) -> Self {
-        let PhysicsSettings { mapper, agent, controller, drive, pose, localizer } = settings;
-        let localizer = (*pose == PoseChoice::Localized).then_some(localizer);
+    pub fn new(spec: &WorldSpec, seed: u64, settings: &Settings, pilot: Facts) -> Self {
+        let Settings { mapper, agent, controller, drive, pose, localizer, .. } = settings;
+        let localizer = (*pose == PoseMode::Localized).then_some(localizer);
         let content = xxh3_64(format!("{spec:?}").as_bytes());
         let world = Facts::default().with("world", &spec.name).with("seed", seed);
         let content = Facts::default().with("content of the world", format!("{content:016x}"));
@@ -72,11 +72,11 @@ impl TrialSnapshot {
 }
 
 impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
-    /// Copies the state of a run between two calls of [`run_with`](Self::run_with). This is short.
+    /// Copies the state of a run between two [turns](Self::turn). This is short.
     pub fn snapshot(&mut self, facts: &TrialFacts) -> TrialSnapshot {
         TrialSnapshot {
             facts: facts.clone(),
-            learned: facts.learned.snapshot(&self.mapper, self.localization.as_mut()),
+            learned: facts.learned.snapshot(&mut self.robot),
             world: self.world.snapshot(),
             pilot: interfaces::snapshot(self.pilot_values()),
             observer: self.observer.clone(),
@@ -98,7 +98,7 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
             Err(_) => {}
             Ok(()) => drop(state.section(CONTENT, &facts.content)?),
         }
-        facts.learned.restore(state, &mut self.mapper, self.localization.as_mut())?;
+        facts.learned.restore(state, &mut self.robot)?;
         self.world.restore(world).map_err(|_| misfit(WORLD))?;
         interfaces::restore(self.pilot_values(), pilot).map_err(|_| misfit(PILOT))?;
         interfaces::restore(vec![value(&mut self.observer)], observer).map_err(|_| misfit(MEASUREMENTS))
@@ -106,8 +106,8 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
 
     /// The values of the pilot and of its last command.
     fn pilot_values(&mut self) -> Values<'_> {
-        let mut values = self.pilot.values(&self.mapper);
-        values.push(value(&mut self.pending));
+        let mut values = self.robot.pilot.values(&self.robot.mapper);
+        values.push(value(&mut self.command));
         values
     }
 }

@@ -5,8 +5,8 @@
 //! `CASES=1000000 cargo test -p curious-evaluation --test fuzz -- --nocapture`; `FIRST=4711 CASES=1` repeats one.
 
 use agent::{Agent, Policy};
-use controller::DiffDrive;
-use evaluation::physics_trial::{PhysicsSettings, PhysicsTrial};
+use controller::{Controller, DiffDrive};
+use evaluation::physics_trial::{self, PhysicsTrial};
 use evaluation::trial_state::TrialFacts;
 use interfaces::{GridFrame, LaserReading, Twist, World};
 use localizer::{Localizer, LocalizerSettings};
@@ -49,7 +49,7 @@ const NUMBERS: [&str; 16] = [
     "x",
 ];
 
-type Trial = PhysicsTrial<Autonomous<Agent, DiffDrive>>;
+type Trial = PhysicsTrial<Autonomous<Agent, Controller<DiffDrive>>>;
 
 /// The inputs as they should be, and what reads them.
 struct Targets {
@@ -57,6 +57,7 @@ struct Targets {
     readings: Vec<LaserReading>,
     carmen: Vec<u8>,
     mcap: Vec<u8>,
+    sqlite: Vec<u8>,
     worlds: Vec<(String, Vec<u8>)>,
     trial: Trial,
     facts: TrialFacts,
@@ -72,7 +73,7 @@ impl Targets {
         let text = std::str::from_utf8(&worlds[0].1).unwrap();
         let spec = worldfile::physics::parse_world("four_rooms", text).unwrap();
         let readings = readings(&spec);
-        let settings = PhysicsSettings::of(&spec).unwrap();
+        let settings = physics_trial::settings(&spec).unwrap();
         let agent = settings.agent(&"curious".parse::<Policy>().unwrap(), 1).unwrap();
         let pilot = settings.pilot(agent, 1).unwrap();
         let mut trial: Trial = PhysicsTrial::new(&spec, 1, &settings, None, pilot).unwrap();
@@ -83,6 +84,7 @@ impl Targets {
             folder: tempfile::tempdir().unwrap(),
             carmen: carmen(&readings),
             mcap: bag(&readings),
+            sqlite: database(&bag(&readings[..8])),
             worlds: worlds.into(),
             trial,
             facts,
@@ -93,7 +95,7 @@ impl Targets {
 
     /// One mutated input, and what becomes of it.
     fn run(&mut self, random: &mut Random) {
-        match random.below(6) {
+        match random.below(7) {
             0 => {
                 let text = random.mutated_text(&self.carmen);
                 self.read_log("a.log", &text);
@@ -102,8 +104,12 @@ impl Targets {
                 let bytes = random.mutated(&self.mcap);
                 self.read_log("a.mcap", &bytes);
             }
-            2 => self.read_state(random),
-            3 | 4 => self.read_world(random),
+            2 => {
+                let bytes = random.mutated(&self.sqlite);
+                self.read_log("a.db3", &bytes);
+            }
+            3 => self.read_state(random),
+            4 | 5 => self.read_world(random),
             _ => self.read_messages(random),
         }
     }
@@ -213,6 +219,28 @@ fn bag(readings: &[LaserReading]) -> Vec<u8> {
     bytes.into_inner()
 }
 
+/// The messages of a bag as a database.
+fn database(bag: &[u8]) -> Vec<u8> {
+    let file = tempfile::NamedTempFile::new().unwrap();
+    let database = rusqlite::Connection::open(file.path()).unwrap();
+    let tables = "PRAGMA page_size = 1024; CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT, type TEXT, \
+                  serialization_format TEXT); CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER, \
+                  timestamp INTEGER, data BLOB); BEGIN";
+    database.execute_batch(tables).unwrap();
+    for message in mcap::MessageStream::new(bag).unwrap().map(Result::unwrap) {
+        let (channel, id) = (&message.channel, i64::from(message.channel.id));
+        let topic = (id, &channel.topic, channel.schema.as_ref().map(|schema| &schema.name), "cdr");
+        database.execute("INSERT OR IGNORE INTO topics VALUES (?1, ?2, ?3, ?4)", topic).unwrap();
+        let row = (id, message.log_time as i64, message.data.as_ref());
+        database.execute("INSERT INTO messages VALUES (NULL, ?1, ?2, ?3)", row).unwrap();
+    }
+    database.execute_batch("COMMIT").unwrap();
+    drop(database);
+    let bytes = fs::read(file.path()).unwrap();
+    assert!(bytes.len() < MAX_INPUT_BYTES, "{}", bytes.len());
+    bytes
+}
+
 struct Random(ChaCha8Rng);
 
 impl Random {
@@ -320,6 +348,9 @@ fn setting(name: &str, default: u64) -> u64 {
 #[test]
 fn no_input_panics_or_takes_long_or_takes_much_memory() {
     let mut targets = Targets::new();
+    let path = targets.folder.path().join("whole.db3");
+    fs::write(&path, &targets.sqlite).unwrap();
+    assert_eq!(Log::open(&path, &TopicChoice::default()).unwrap().summary().scans, 8);
     let (first, cases) = (setting("FIRST", 0), setting("CASES", 10_000));
     peak_memory();
     let (mut slowest, mut largest) = (Duration::ZERO, 0);

@@ -41,6 +41,7 @@ fn run(spec: &WorldSpec, meaning: NoReturn) -> Run {
         let reading = world.sense();
         let mut filtered = reading.clone();
         no_returns.apply(&mut filtered);
+        no_returns.protect(&mut filtered);
         mapper.update(&filtered).unwrap();
         no_returns.learn(&reading);
         let is_wall = |y: i32| y >= 118;

@@ -48,6 +48,8 @@ pub enum Purpose {
     HouseGenerator,
     /// Learning tasks: worlds, start poses and goals. Stream `4 << 48`.
     Task,
+    /// The heading at the start of a robot whose map has a frame of its own. Stream `5 << 48`.
+    MapFrame,
 }
 
 impl Purpose {
@@ -71,6 +73,7 @@ impl Purpose {
             Self::WorldGenerator => 0,
             Self::HouseGenerator => 3 << 48,
             Self::Task => 4 << 48,
+            Self::MapFrame => 5 << 48,
         }
     }
 }
@@ -200,7 +203,8 @@ mod tests {
                 Purpose::Carried(index),
             ]
         };
-        let once = [Purpose::Agent, Purpose::Controller, Purpose::HouseGenerator, Purpose::Task];
+        let once =
+            [Purpose::Agent, Purpose::Controller, Purpose::HouseGenerator, Purpose::Task, Purpose::MapFrame];
         let physics = (0..1000).flat_map(per_index).chain(once);
         let blocks = (0..1000).map(Purpose::BlockTransition);
         let grid = blocks.chain([Purpose::RobotTransition, Purpose::GridAgent, Purpose::GridController]);

@@ -11,6 +11,11 @@ pub trait Reading {
 
     /// The observation from which a map is updated.
     fn observation(&self) -> Observation<'_>;
+
+    /// The reading of the laser; `None` of a sensor without error.
+    fn laser_mut(&mut self) -> Option<&mut LaserReading> {
+        None
+    }
 }
 
 /// The observation from which a map is updated.
@@ -77,6 +82,10 @@ impl Reading for LaserReading {
 
     fn observation(&self) -> Observation<'_> {
         Observation::Scan(self)
+    }
+
+    fn laser_mut(&mut self) -> Option<&mut LaserReading> {
+        Some(self)
     }
 }
 

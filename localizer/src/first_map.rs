@@ -164,12 +164,13 @@ impl FirstMap {
         map_s > self.log.time_s && !self.log.kept.is_empty()
     }
 
-    /// Adds the pose of the reading, from which the map with these states, whose time was `map_s`, had not learned yet. Returns
-    /// whether a loop shows that the map is inconsistent, so that all readings must be read again.
+    /// Adds the pose of the reading, from which the map with these states, whose time was `map_s`, had not learned yet. Without
+    /// states, the map counts as not finished. Returns whether a loop shows that the map is inconsistent, so that all readings
+    /// must be read again.
     pub(crate) fn add(
         &mut self,
         reading: &LaserReading,
-        (map_s, states): (f64, &Grid<CellState>),
+        (map_s, states): (f64, Option<&Grid<CellState>>),
         localized: &Localized,
     ) -> bool {
         let (pose, state) = (localized.estimate.pose, localized.estimate.state);
@@ -185,7 +186,8 @@ impl FirstMap {
             self.look_at_keyframe();
             let (new_m, known_m) = self.finder.ways_on_ground_m();
             let has_returned = known_m >= new_m.max(STANDS_M);
-            self.log.is_whole = has_returned && (known_m >= LEFT_ALONE_M || !has_opening(states));
+            self.log.is_whole = has_returned
+                && (known_m >= LEFT_ALONE_M || states.is_some_and(|states| !has_opening(states)));
         }
         if self.finder.loops() != self.log.loops {
             self.look_at_loops();

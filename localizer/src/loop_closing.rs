@@ -13,8 +13,8 @@
 //!   guided by the corrected trajectory. So there is one kind of map, and what it knows of changes and rates follows from the
 //!   better poses as well.
 //!
-//! A live robot goes on in the old map while a thread reads its log ([`Switch`]): it catches up with the readings that came
-//! meanwhile, and then changes to the new map.
+//! A live robot goes on in the old map while a thread reads its log ([`Switch`]), and then the readings that came meanwhile.
+//! When the thread has caught up, the robot changes to the new map.
 //!
 //! The map can move until it *stands*: nothing is left to explore, and the robot has gone as far on known ground as on new
 //! ground before. From then on, its frame stays for ever.
@@ -27,6 +27,9 @@ use interfaces::{GridFrame, LaserReading, SettingsError, ValueError, read_value,
 use mapper::Mapper;
 use nalgebra::Isometry2;
 use std::fmt;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::mpsc::{self, Receiver, Sender};
 use std::thread::JoinHandle;
 
 /// The readings are not read again if this share of those with a certain pose would no longer be certain: then the loop
@@ -46,11 +49,12 @@ pub struct LoopClosingLocalizer {
     /// `None`: the first map stands, or a thread has it.
     first: Option<FirstMap>,
     switch: Switch,
+    switches: Vec<usize>,
     background: Option<Background>,
 }
 
 /// When the robot changes to the map that it has learned again.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum Switch {
     /// At the reading that closes the loop, which takes as long as all readings so far.
     #[default]
@@ -59,13 +63,39 @@ pub enum Switch {
     After(usize),
     /// At the first reading after the new map is complete.
     WhenReady,
+    /// At these readings, which another run has [reported](LoopClosingLocalizer::switches): the same readings give the same
+    /// bits as there.
+    At(Vec<usize>),
 }
 
-/// A thread that reads the readings again, and the readings since then, with the times of the map before them.
+/// A reading that came while others were read again, with the time of the map before it.
+type Meanwhile = (LaserReading, f64, Localized);
+
+/// A thread that reads the readings again.
 #[derive(Debug)]
 struct Background {
     thread: JoinHandle<Replayed>,
-    since: Vec<(LaserReading, f64, Localized)>,
+    meanwhile: Sender<Meanwhile>,
+    /// The number of readings when the thread began, and now.
+    begun: usize,
+    readings: usize,
+    /// The number of readings that the thread has read.
+    read: Arc<AtomicUsize>,
+}
+
+impl Background {
+    /// Passes a reading on. Returns whether the robot changes to the new map with it.
+    fn add(&mut self, meanwhile: Meanwhile, switch: &Switch) -> bool {
+        let is_up_to_date = self.read.load(Ordering::Relaxed) == self.readings || self.thread.is_finished();
+        self.readings += 1;
+        // A thread that has failed is noticed by its result.
+        self.meanwhile.send(meanwhile).ok();
+        match switch {
+            Switch::After(readings) => self.readings - self.begun >= *readings,
+            Switch::At(readings) => readings.contains(&self.readings),
+            Switch::AtOnce | Switch::WhenReady => is_up_to_date,
+        }
+    }
 }
 
 /// The readings, and what reading them again has changed, if anything.
@@ -121,6 +151,7 @@ impl LoopClosingLocalizer {
             localizer: Localizer::from_nothing(settings, frame, pose)?,
             first: Some(FirstMap::new(settings)?),
             switch: Switch::AtOnce,
+            switches: Vec::new(),
             background: None,
         })
     }
@@ -139,6 +170,11 @@ impl LoopClosingLocalizer {
     /// Whether no map is being learned again in another thread.
     pub fn is_settled(&self) -> bool {
         self.background.is_none()
+    }
+
+    /// The numbers of the readings, the first one is 1, with which a thread that had read the readings again has ended.
+    pub fn switches(&self) -> &[usize] {
+        &self.switches
     }
 
     /// Waits for the map that is being learned again, and changes to it: before a snapshot, or another session.
@@ -172,7 +208,7 @@ impl LoopClosingLocalizer {
             self.first = None;
             return LoopClosed { localized, correction: None };
         }
-        let is_due = first.add(reading, (map.time(), map.states()), &localized);
+        let is_due = first.add(reading, (map.time(), Some(map.states())), &localized);
         let closed = if is_due { self.read_again(map) } else { None };
         if self.first.as_ref().is_some_and(FirstMap::stands) {
             self.first = None;
@@ -184,16 +220,21 @@ impl LoopClosingLocalizer {
     fn read_again(&mut self, map: &mut Mapper) -> Option<LoopClosed> {
         let (settings, frame, start) = (self.settings.clone(), self.frame, self.start);
         let (emptied, first) = (map.emptied(), self.first.take()?);
+        let (meanwhile, coming) = mpsc::channel();
+        let (begun, read) = (first.kept().len(), Arc::new(AtomicUsize::new(0)));
+        let count = read.clone();
         // To make a large map takes time as well.
-        let read = move || match Localizer::from_nothing(&settings, &frame, start) {
-            Ok(localizer) => Replay { localizer, map: emptied(), last: None }.all(first),
+        let read_all = move || match Localizer::from_nothing(&settings, &frame, start) {
+            Ok(localizer) => Replay { localizer, map: emptied(), last: None }.all(first, coming, &count),
             Err(_) => (first, None), // the settings were valid before
         };
         if self.switch == Switch::AtOnce {
-            return self.take_over(read(), &[], map);
+            drop(meanwhile);
+            return self.take_over(read_all(), map);
         }
-        let thread = std::thread::Builder::new().spawn(read);
-        self.background = thread.ok().map(|thread| Background { thread, since: Vec::new() });
+        let thread = std::thread::Builder::new().spawn(read_all);
+        self.background =
+            thread.ok().map(|thread| Background { thread, meanwhile, begun, readings: begun, read });
         None
     }
 
@@ -203,55 +244,29 @@ impl LoopClosingLocalizer {
         let localized = self.localizer.localize(reading, map);
         if self.localizer.much_has_moved() {
             self.background = None;
-        } else if let Some(Background { thread, since }) = &mut self.background {
-            since.push((reading.clone(), map_s, localized.clone()));
-            let is_ready = match self.switch {
-                Switch::After(readings) => since.len() >= readings,
-                Switch::AtOnce | Switch::WhenReady => thread.is_finished(),
-            };
-            if is_ready && let Some(closed) = self.change_map(map) {
-                return closed;
-            }
+        } else if let Some(background) = &mut self.background
+            && background.add((reading.clone(), map_s, localized.clone()), &self.switch)
+            && let Some(closed) = self.change_map(map)
+        {
+            return closed;
         }
         LoopClosed { localized, correction: None }
     }
 
     /// Waits for the thread, and takes over what it has learned.
     fn change_map(&mut self, map: &mut Mapper) -> Option<LoopClosed> {
-        let Background { thread, since } = self.background.take()?;
-        let closed = self.take_over(thread.join().ok()?, &since, map);
-        if self.first.as_ref().is_some_and(FirstMap::stands) {
-            self.first = None;
-        }
-        closed
+        let Background { thread, meanwhile, readings, .. } = self.background.take()?;
+        drop(meanwhile); // the thread ends
+        self.switches.push(readings);
+        self.take_over(thread.join().ok()?, map)
     }
 
-    /// Changes to what was learned again, after the readings since then. `None` if that was no use.
-    fn take_over(
-        &mut self,
-        (mut first, again): Replayed,
-        since: &[(LaserReading, f64, Localized)],
-        map: &mut Mapper,
-    ) -> Option<LoopClosed> {
-        let (mut again, correction) = again.unzip();
-        for (reading, map_s, localized) in since {
-            let (near, is_after_pause) = (first.guide(reading), first.is_after_pause(*map_s));
-            if let Some(again) = &mut again {
-                again.read(reading, is_after_pause, near);
-            }
-            let (states, localized) = match &again {
-                Some(Replay { map, last: Some(last), .. }) => (map.states(), last),
-                _ => (map.states(), localized),
-            };
-            if first.add(reading, (*map_s, states), localized) {
-                first.postpone();
-            }
-        }
-        self.first = Some(first);
-        let (Replay { localizer, map: learned, last }, correction) = again.zip(correction)?;
+    /// Changes to what was learned again. `None` if that was no use.
+    fn take_over(&mut self, (first, again): Replayed, map: &mut Mapper) -> Option<LoopClosed> {
+        self.first = Some(first).filter(|first| !first.stands());
+        let (Replay { localizer, map: learned, last }, correction) = again?;
         (self.localizer, *map) = (localizer, learned);
-        let readings = correction.readings + since.len();
-        Some(LoopClosed { localized: last?, correction: Some(Correction { readings, ..correction }) })
+        Some(LoopClosed { localized: last?, correction: Some(correction) })
     }
 }
 
@@ -280,8 +295,30 @@ impl Replay {
         self.last.insert(localized).estimate.clone()
     }
 
-    /// Reads all readings, near their corrected poses.
-    fn all(mut self, mut first: FirstMap) -> Replayed {
+    /// Reads all readings, near their corrected poses, and those that come meanwhile.
+    fn all(self, first: FirstMap, coming: Receiver<Meanwhile>, read: &AtomicUsize) -> Replayed {
+        let (mut first, mut again) = self.log(first);
+        read.store(first.kept().len(), Ordering::Relaxed);
+        for (reading, map_s, localized) in coming {
+            let (near, is_after_pause) = (first.guide(&reading), first.is_after_pause(map_s));
+            if let Some((again, correction)) = &mut again {
+                again.read(&reading, is_after_pause, near);
+                correction.readings += 1;
+            }
+            let (states, localized) = match &again {
+                Some((Self { map, last: Some(last), .. }, _)) => (Some(map.states()), last),
+                _ => (None, &localized),
+            };
+            if first.add(&reading, (map_s, states), localized) {
+                first.postpone();
+            }
+            read.store(first.kept().len(), Ordering::Relaxed);
+        }
+        (first, again)
+    }
+
+    /// Reads the readings of a log, near their corrected poses.
+    fn log(mut self, mut first: FirstMap) -> Replayed {
         let near = first.corrected();
         let read = |(kept, near): (&Kept, Guide)| self.read(&kept.reading, kept.is_after_pause, Some(near));
         let estimates: Vec<PoseEstimate> = first.kept().iter().zip(near).map(read).collect();

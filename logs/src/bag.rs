@@ -94,7 +94,7 @@ impl Bag {
             odom_origin,
             scan_topics,
             notes,
-            impossible: counts.doubts.impossible(counts.invalid_scans),
+            impossible: counts.doubts.impossible(counts.invalid_scans, stands),
         };
         if stands {
             Arc::make_mut(&mut plan).motion = Motion::Standing;

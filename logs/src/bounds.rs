@@ -1,6 +1,7 @@
 //! What a log may hold: a few bytes that unpack to gigabytes must fill neither the memory nor the disk.
 
 use std::io::{self, Error, ErrorKind, Read};
+use std::path::Path;
 
 /// The longest name of a topic, a type, an encoding or a frame, bytes: ROS allows 256.
 pub(crate) const MAX_NAME_BYTES: usize = 1024;
@@ -14,6 +15,8 @@ pub(crate) const MAX_CHUNK_GROWTH: u64 = 1000;
 const ALLOWED_UNPACKED_BYTES: u64 = 64 << 20;
 /// No file may grow beyond this number of bytes.
 const MAX_UNPACKED_BYTES: u64 = 16 << 30;
+/// The bytes of a disk that stay free when a file is unpacked.
+const KEPT_FREE_BYTES: u64 = 256 << 20;
 
 /// The most bytes that `packed` bytes may unpack to.
 pub(crate) fn max_unpacked_bytes(packed: u64, growth: u64) -> u64 {
@@ -42,31 +45,70 @@ pub(crate) fn one_more(scans: usize) -> Result<(), String> {
 /// Bytes that are unpacked, up to a bound; then an error.
 pub(crate) struct Unpacked<R> {
     bytes: R,
-    packed: u64,
     remaining: u64,
-    by_hand: &'static str,
+    exceeded: String,
 }
 
 impl<R> Unpacked<R> {
     /// `bytes` from a file of `packed` bytes. `by_hand` is the program that unpacks it for those who know that it is large.
-    pub(crate) fn new(bytes: R, packed: u64, by_hand: &'static str) -> Self {
-        Self { bytes, packed, remaining: max_unpacked_bytes(packed, MAX_GROWTH), by_hand }
+    pub(crate) fn new(bytes: R, packed: u64, by_hand: &str) -> Self {
+        let most = max_unpacked_bytes(packed, MAX_GROWTH);
+        let exceeded = format!(
+            "the {packed} bytes of the file unpack to more than {most}, which is the most that is unpacked; if it is a log, \
+             unpack it first: {by_hand}"
+        );
+        Self { bytes, remaining: most, exceeded }
     }
+
+    /// The same, written into a folder with this number of free bytes: others need some of them.
+    pub(crate) fn into_folder(self, folder: &Path, free_bytes: Option<u64>) -> Self {
+        let most = free_bytes.map_or(u64::MAX, |free| free.saturating_sub(KEPT_FREE_BYTES));
+        if most >= self.remaining {
+            return self;
+        }
+        let folder = folder.display();
+        let exceeded = format!(
+            "it unpacks to more than the {most} bytes that can be used in {folder}, where it is unpacked; free space there, or \
+             name another folder by TMPDIR"
+        );
+        Self { remaining: most, exceeded, ..self }
+    }
+}
+
+/// The bytes that are free in a folder, where the system says it.
+pub(crate) fn free_bytes(folder: &Path) -> Option<u64> {
+    #[cfg(unix)]
+    return rustix::fs::statvfs(folder).ok().map(|known| known.f_bavail.saturating_mul(known.f_frsize));
+    #[cfg(not(unix))]
+    return None;
 }
 
 impl<R: Read> Read for Unpacked<R> {
     fn read(&mut self, to: &mut [u8]) -> io::Result<usize> {
         let count = self.bytes.read(to)?;
-        let Some(remaining) = self.remaining.checked_sub(count as u64) else {
-            let (most, by_hand) = (max_unpacked_bytes(self.packed, MAX_GROWTH), self.by_hand);
-            let what = format!(
-                "the {} bytes of the file unpack to more than {most}, which is the most that is unpacked; if it is a log, \
-                 unpack it first: {by_hand}",
-                self.packed
-            );
-            return Err(Error::new(ErrorKind::InvalidData, what));
-        };
-        self.remaining = remaining;
+        let remaining = self.remaining.checked_sub(count as u64);
+        let exceeded = || Error::new(ErrorKind::InvalidData, self.exceeded.clone());
+        self.remaining = remaining.ok_or_else(exceeded)?;
         Ok(count)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn some_of_a_disk_stays_free() {
+        let folder = std::env::temp_dir();
+        let unpack = |free| {
+            let unpacked = Unpacked::new(&[0; 2000][..], 100, "zstd -d FILE").into_folder(&folder, free);
+            std::io::read_to_string(unpacked).map(|text| text.len()).map_err(|error| error.to_string())
+        };
+        assert_eq!(unpack(free_bytes(&folder)), Ok(2000));
+        assert_eq!(unpack(Some(KEPT_FREE_BYTES + 2000)), Ok(2000));
+        let error = unpack(Some(KEPT_FREE_BYTES + 1999)).unwrap_err();
+        let expected =
+            format!("it unpacks to more than the 1999 bytes that can be used in {}", folder.display());
+        assert!(error.starts_with(&expected), "{error}");
     }
 }

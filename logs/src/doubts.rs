@@ -1,9 +1,21 @@
 //! What cannot be true of a log, as far as its numbers show it before anything is mapped.
 
 use nalgebra::Isometry2;
+use std::collections::{HashSet, VecDeque};
+use xxhash_rust::xxh3::{xxh3_64, xxh3_64_with_seed};
 
-/// Ranges whose median is beyond this are no metres: no laser of a robot sees so far.
-const FARTHEST_M: f32 = 200.0;
+/// Ranges whose median is beyond these are no metres: no laser of a robot is so far from what it sees, or so near.
+const FARTHEST_M: f32 = 100.0;
+const NEAREST_M: f32 = 0.05;
+/// Larger numbers are millimetres, others centimetres.
+const MIN_MILLIMETRES: f32 = 1000.0;
+/// A log contains a part twice if this number of scans, and this share, come twice after the same scan. Scans that are as one
+/// of the last ones are those of a robot that stands.
+const MIN_REPEATED: usize = 20;
+const MIN_REPEATED_SHARE: f64 = 0.2;
+const RECENT: usize = 8;
+/// The most scans that are compared.
+const MAX_COMPARED: usize = 1 << 22;
 /// A scan with fewer ranges says nothing about their unit.
 const MIN_RANGES: usize = 10;
 /// Times of the odometry that go back in this share of the steps are no times; they are near those of the scans, s.
@@ -21,6 +33,10 @@ pub(crate) struct Doubts {
     /// Scans whose ranges are no metres, and the median range of the first one.
     beyond: usize,
     first_beyond: f32,
+    /// The hashes of the last scans, and of all that came after another scan; the number of those that came twice.
+    recent: VecDeque<u64>,
+    moved: HashSet<u64>,
+    repeated: usize,
 }
 
 impl Doubts {
@@ -28,24 +44,37 @@ impl Doubts {
     pub(crate) fn add(&mut self, typical: Option<f32>, ranges_m: &[f32]) {
         self.scans += 1;
         self.seeing += usize::from(ranges_m.iter().any(|range_m| range_m.is_finite() && *range_m > 0.0));
-        if let Some(typical) = typical.filter(|typical| *typical > FARTHEST_M) {
+        if let Some(typical) = typical.filter(|typical| !(NEAREST_M..=FARTHEST_M).contains(typical)) {
             if self.beyond == 0 {
                 self.first_beyond = typical;
             }
             self.beyond += 1;
         }
+        self.compare(xxh3_64(
+            &ranges_m.iter().flat_map(|range_m| range_m.to_le_bytes()).collect::<Vec<u8>>(),
+        ));
     }
 
-    /// Why no map can be made of these scans, beside `invalid` ones that are none.
-    pub(crate) fn impossible(&self, invalid: usize) -> Option<String> {
-        let Self { scans, seeing, beyond, first_beyond } = *self;
+    fn compare(&mut self, scan: u64) {
+        if self.recent.contains(&scan) || self.moved.len() == MAX_COMPARED {
+            return;
+        }
+        if let Some(before) = self.recent.back() {
+            let both = xxh3_64_with_seed(&before.to_le_bytes(), scan);
+            self.repeated += usize::from(!self.moved.insert(both));
+        }
+        self.recent.push_back(scan);
+        if self.recent.len() > RECENT {
+            self.recent.pop_front();
+        }
+    }
+
+    /// Why no map can be made of these scans, beside `invalid` ones that are none. `stands`: whether the laser stands.
+    pub(crate) fn impossible(&self, invalid: usize, stands: bool) -> Option<String> {
+        let Self { scans, seeing, beyond, repeated, .. } = *self;
         let all = scans + invalid;
         if beyond * 2 > scans {
-            return Some(format!(
-                "the ranges look like millimetres: in {beyond} of {scans} scans, their median is beyond {FARTHEST_M} m (the \
-                 first: {first_beyond}, which would be {} m); ranges are in metres: divide them by 1000",
-                first_beyond / 1000.0
-            ));
+            return Some(self.other_unit());
         }
         if seeing == 0 {
             return Some(format!(
@@ -55,7 +84,30 @@ impl Doubts {
         if invalid > scans {
             return Some(format!("{invalid} of {all} scans are invalid: what is left is no log of a place"));
         }
+        let moved = self.moved.len() + repeated;
+        if !stands && repeated >= MIN_REPEATED && repeated as f64 > MIN_REPEATED_SHARE * moved as f64 {
+            return Some(format!(
+                "{repeated} of {scans} scans are in the log twice, after the same scan as the first time: they would count \
+                 twice; leave them out"
+            ));
+        }
         (scans == 1).then(|| "one scan: what changes is found by comparing scans, at least 2".to_owned())
+    }
+
+    /// That most ranges are not in metres.
+    fn other_unit(&self) -> String {
+        let Self { scans, beyond, first_beyond: first, .. } = *self;
+        let (unit, median, in_metres, what) = match first {
+            _ if first < NEAREST_M => ("kilometres", "below 0.05 m", first * 1000.0, "multiply them by 1000"),
+            _ if first < MIN_MILLIMETRES => {
+                ("centimetres", "beyond 100 m", first / 100.0, "divide them by 100")
+            }
+            _ => ("millimetres", "beyond 100 m", first / 1000.0, "divide them by 1000"),
+        };
+        format!(
+            "the ranges look like {unit}: in {beyond} of {scans} scans, their median is {median} (the first: {first}, which \
+             would be {in_metres} m); ranges are in metres: {what}"
+        )
     }
 }
 

@@ -43,6 +43,12 @@ impl Log {
             let bag = Bag::open(&name, files, choice, note.into_iter().collect())?;
             return Ok(Self { format: Format::Bag(bag) });
         }
+        if path.metadata().is_ok_and(|known| !known.is_file()) {
+            // A pipe would wait for ever.
+            let why =
+                "it is not a regular file, and a log is read several times: write it into a file".to_owned();
+            return Err(LogError::Unusable { file: name, why });
+        }
         match BagFile::open(path)? {
             Some(file) => {
                 let bag = Bag::open(&name, vec![file], choice, Vec::new())?;

@@ -5,6 +5,7 @@
 //! [`Mapper::update`] processes one reading; all other methods return results. The work per reading is proportional
 //! to the number of cells that the reading observes and of cells that ever changed, not to the size of the map.
 //!
+//! - `scan_filter`: what must not enter a map is removed from scans, before a pose is searched for them.
 //! - `occupancy`: from scans to the states of cells. A new model implements [`OccupancyModel`].
 //! - `change`: the change statistics of cells, and the estimators of rates. A new estimator implements
 //!   [`Estimator`].
@@ -14,6 +15,7 @@ mod change;
 mod derived;
 mod growth;
 mod occupancy;
+mod scan_filter;
 
 pub use change::{
     CellMap, CellStatistics, ChoGarciaMolina, Estimator, EstimatorChoice, Exposure, GapBin, GapEvidence,
@@ -22,9 +24,9 @@ pub use change::{
 };
 pub use growth::Growth;
 pub use occupancy::{
-    BeamReturn, CloneModel, NoReturn, NoReturnEvidence, NoReturns, OccupancyChoice, OccupancyModel,
-    ProjectedScan, SurfaceGridSettings,
+    BeamReturn, CloneModel, OccupancyChoice, OccupancyModel, ProjectedScan, SurfaceGridSettings,
 };
+pub use scan_filter::{NoReturn, NoReturnEvidence, NoReturns, ScanFilter, ScanFilterSettings};
 
 use derived::ExpectedChanges;
 use interfaces::{

@@ -2,6 +2,7 @@ use crate::convert::{log_error, points_array, pose_values, value_error};
 use crate::mapper::Mapper;
 use crate::reading::Reading;
 use ::logs::{PoseSource, TopicChoice};
+use interfaces::PoseMode;
 use localizer::PoseState;
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
@@ -9,7 +10,7 @@ use pyo3::types::PyDict;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
-use survey::{ChangeLog, FoundPoses, PoseMode, Replay, SurveySettings};
+use survey::{LogEntry, SurveySettings};
 
 /// A log of a robot: a CARMEN log (also with gzip), a bag of ROS 2 (MCAP or SQLite, a file or a folder).
 ///
@@ -123,17 +124,14 @@ pub(crate) fn map_log(
     estimator: Option<&str>,
     range_noise: Option<f64>,
 ) -> PyResult<Survey> {
+    let other = |name| value_error(format!("`pose` is localized, odometry or exact, and not {name:?}"));
     let mode = match pose {
+        Some(name) => PoseMode::named(name).ok_or_else(|| other(name))?,
         None if log.stands() => PoseMode::Exact,
-        None | Some("localized") => PoseMode::Localized,
-        Some("odometry") => PoseMode::Odometry,
-        Some("exact") => PoseMode::Exact,
-        Some(other) => {
-            return Err(value_error(format!("`pose` is localized, odometry or exact, and not {other:?}")));
-        }
+        None => PoseMode::Localized,
     };
-    let mut settings =
-        SurveySettings { resolution_m: cell, max_range_m: max_range, ..SurveySettings::of(mode) };
+    let mut settings = SurveySettings { resolution_m: cell, ..SurveySettings::of(mode) };
+    settings.filter.max_range_m = max_range;
     settings.mapper = crate::mapper::settings_of(settings.mapper, estimator, None, None, range_noise)?;
     py.detach(|| learn(&log.log, settings, range_noise.is_none()))
 }
@@ -159,30 +157,25 @@ impl Signal {
     }
 }
 
-fn learn(log: &::logs::Log, mut settings: SurveySettings, learns_noise: bool) -> PyResult<Survey> {
-    use value_error as text;
+fn learn(log: &::logs::Log, settings: SurveySettings, learns_noise: bool) -> PyResult<Survey> {
     let mut signal = Signal::default();
-    let routes = survey::routes(&[log], &settings, |progress| signal.check(progress.readings));
-    let routes = signal.or(routes)?;
-    if learns_noise {
-        settings.learn_noise(&routes);
-    }
-    let frame = survey::frame(&routes, &settings).map_err(text)?;
-    let mut mapper = mapper::Mapper::new(&settings.mapper, frame).map_err(text)?;
-    let replay = Replay::new(log.readings().map_err(text)?, &settings, 0.0).map_err(text)?;
-    let replay = replay.ok_or_else(|| text("the log has changed since the first pass"))?;
-    let mut changes = ChangeLog::default();
-    let poses: Vec<_> = routes.into_iter().flat_map(|route| route.poses).collect();
-    let learned = survey::learn(replay, &mut FoundPoses::new(poses.clone()), &mut mapper, |_, _, belief| {
-        changes.note(belief.mapper);
-        signal.check(belief.mapper.readings())
-    });
-    signal.or(learned)?;
-    let (mut places, permanent) = (survey::places(&mapper, &changes), survey::permanent(&mapper));
+    let entry = LogEntry::of(String::new(), log, &TopicChoice::default()).map_err(value_error)?;
+    let mut survey = survey::Survey::new(settings, learns_noise);
+    let found = survey.first_pass(log, entry, false, |progress| signal.check(progress.readings));
+    signal.or(found)?;
+    let replay = survey.replay(0, log).map_err(value_error)?;
+    let changed = || value_error("the log has changed since the first pass");
+    let mut replay = replay.ok_or_else(changed)?;
+    while survey.turn(&mut replay).map_err(value_error)?.is_some()
+        && signal.check(survey.logs()[0].used).is_continue()
+    {}
+    signal.or(Ok(()))?;
+    let mapper = survey.mapper().ok_or_else(changed)?.clone();
+    let (mut places, permanent) = (survey::places(&mapper, survey.changes()), survey::permanent(&mapper));
     if !log.summary().has_times {
         places.iter_mut().for_each(|place| place.rates = None);
     }
-    Ok(Survey { mapper, places, poses, permanent })
+    Ok(Survey { mapper, places, poses: survey.logs()[0].poses().collect(), permanent })
 }
 
 #[pymethods]

@@ -4,7 +4,7 @@ use crate::convert::{
 use crate::reading::{Laser, Reading, laser_reading};
 use crate::snapshots::Kind;
 use crate::spec::{driving, spec_of};
-use evaluation::physics_trial::PhysicsSettings;
+use evaluation::physics_trial;
 use interfaces::{CellState, GridFrame};
 use mapper::MapperSettings;
 use nalgebra::Point2;
@@ -62,7 +62,7 @@ impl Mapper {
         occupancy: Option<&str>,
         max_gap: Option<f64>,
     ) -> PyResult<Self> {
-        let settings = PhysicsSettings::of(spec).map_err(world_error)?.mapper;
+        let settings = physics_trial::settings(spec).map_err(world_error)?.mapper;
         let settings = settings_of(settings, estimator, occupancy, max_gap, None)?;
         Ok(Self { mapper: mapper::Mapper::new(&settings, spec.frame).map_err(value_error)? })
     }

@@ -338,12 +338,12 @@ impl Batch {
     /// The state of an environment as bytes.
     #[pyo3(signature = (environment = 0))]
     fn snapshot<'py>(
-        &self,
+        &mut self,
         py: Python<'py>,
         #[pyo3(from_py_with = index)] environment: usize,
     ) -> PyResult<Bound<'py, PyBytes>> {
         self.check(environment)?;
-        let bytes = each!(&self.tasks, batch => batch.tasks()[environment].snapshot());
+        let bytes = each!(&mut self.tasks, batch => batch.tasks_mut()[environment].snapshot());
         Ok(self.kind().seal(py, &bytes))
     }
 

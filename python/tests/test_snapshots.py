@@ -36,11 +36,13 @@ def an_environment():
     return batch
 
 
+def at(thing):
+    """What names the environment of a batch."""
+    return [0] if isinstance(thing, curious.Batch) else []
+
+
 def restore(thing, snapshot):
-    if isinstance(thing, curious.Batch):
-        thing.restore(0, snapshot)
-    else:
-        thing.restore(snapshot)
+    thing.restore(*at(thing), snapshot)
 
 
 @pytest.mark.parametrize("make", [a_world, a_mapper, a_localizer, an_environment])
@@ -67,3 +69,34 @@ def test_snapshots_of_something_else():
     with pytest.raises(curious.SnapshotError, match="a map with other cells or another estimator"):
         mapper.restore(curious.Mapper(2.0, 2.0).snapshot())
     assert mapper.snapshot() == before
+
+
+def of_another_build(snapshot):
+    """The same snapshot as another build seals it."""
+    xxhash = pytest.importorskip("xxhash")
+    body = snapshot[:8] + b"0123456789abcdef" + snapshot[24:-8]
+    return body + xxhash.xxh3_64_intdigest(body).to_bytes(8, "little")
+
+
+@pytest.mark.parametrize("make", [a_world, an_environment])
+def test_the_bits_of_another_build_are_promised_to_nobody(make):
+    thing = make()
+    snapshot = thing.snapshot()
+    other = of_another_build(snapshot)
+    thing.restore(*at(thing), snapshot)
+    why = (
+        r"the snapshot was taken by another build \(0123456789abcdef, this one is [0-9a-f]{16}\), whose results can differ; "
+        r"allow_other_build=True takes it"
+    )
+    with pytest.raises(curious.SnapshotError, match=why):
+        thing.restore(*at(thing), other)
+    thing.restore(*at(thing), other, allow_other_build=True)
+    assert thing.snapshot() == snapshot
+
+
+@pytest.mark.parametrize("make", [a_mapper, a_localizer])
+def test_what_another_build_has_learned_is_taken(make):
+    thing = make()
+    snapshot = thing.snapshot()
+    thing.restore(of_another_build(snapshot))
+    assert thing.snapshot() == snapshot

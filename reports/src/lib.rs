@@ -63,6 +63,9 @@ pub struct ReportSettings {
     /// The range of the sensor of a grid world, in cells.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sensor_radius: Option<u32>,
+    /// What is said of the build of trials that are not all of this one.
+    #[serde(skip)]
+    pub other_build: Option<&'static str>,
     /// Whether the experiment was interrupted before all trials were finished.
     pub interrupted: bool,
     /// The names of the worlds, in the order of the report; other worlds come last, sorted by name. Estimators and

@@ -1,6 +1,8 @@
-use crate::{Belief, GoalCount, Level, Message, Permission, Pilot, StrategyState};
+use crate::belief::{Belief, Permission};
+use crate::messages::{Level, Message};
+use crate::pilot::{GoalCount, Pilot, StrategyState};
 use agent::{Agent, Features, Goal, Stay, Travel};
-use controller::{Controller, Drive, Outcome, Situation, Status};
+use controller::{Driver, Outcome, Situation, Status};
 use interfaces::{Values, value};
 use mapper::Mapper;
 use nalgebra::{Isometry2, Point2};
@@ -16,17 +18,22 @@ pub struct Destination {
 
 /// Selects goals. Implemented by the agent, by a tour, and by a reference that knows the ground truth.
 pub trait GoalSelector {
-    /// The next goal; `None` when no goal is left. Called when the controller has finished a goal. `travel`
-    /// gives the travel time to every cell.
-    fn next_goal(&mut self, belief: &Belief, travel: &mut impl Travel) -> Option<Destination>;
+    /// The next goal of a robot at `pose`; `None` when no goal is left. Called when the last goal is finished. `travel` gives
+    /// the travel time to every cell.
+    fn next_goal(
+        &mut self,
+        pose: &Isometry2<f64>,
+        mapper: &Mapper,
+        travel: &mut impl Travel,
+    ) -> Option<Destination>;
 
     /// Whether the present goal has served its purpose before the robot is there.
-    fn is_obsolete(&self, _belief: &Belief) -> bool {
+    fn is_obsolete(&self, _: &Mapper) -> bool {
         false
     }
 
     /// Called at every reading.
-    fn observe(&mut self, _belief: &Belief) {}
+    fn observe(&mut self, _: Features, _: &Mapper) {}
 
     /// The reason for the last goal, in a few words.
     fn reason(&self) -> String;
@@ -42,20 +49,20 @@ pub trait GoalSelector {
     }
 }
 
-/// The pilot of a robot that explores: a goal selector, and a controller that drives to the goals.
+/// The pilot of a robot that explores: a goal selector, and a driver to the goals.
 #[derive(Debug)]
-pub struct Autonomous<G, D: Drive> {
+pub struct Autonomous<G, D> {
     selector: G,
-    controller: Controller<D>,
+    driver: D,
     goals: GoalCount,
     messages: Vec<Message>,
     is_done: bool,
 }
 
-impl<G: GoalSelector, D: Drive> Autonomous<G, D> {
+impl<G: GoalSelector, D: Driver> Autonomous<G, D> {
     /// A pilot that has no goal yet.
-    pub fn new(selector: G, controller: Controller<D>) -> Self {
-        Self { selector, controller, goals: GoalCount::default(), messages: Vec::new(), is_done: false }
+    pub fn new(selector: G, driver: D) -> Self {
+        Self { selector, driver, goals: GoalCount::default(), messages: Vec::new(), is_done: false }
     }
 
     /// The goal selector.
@@ -63,9 +70,9 @@ impl<G: GoalSelector, D: Drive> Autonomous<G, D> {
         &mut self.selector
     }
 
-    /// Plans anew: the controller has not seen all changes of the map.
-    pub fn forget_map(&mut self) {
-        self.controller.forget_map();
+    /// The driver.
+    pub fn driver_mut(&mut self) -> &mut D {
+        &mut self.driver
     }
 
     fn log(&mut self, level: Level, text: String) {
@@ -73,62 +80,67 @@ impl<G: GoalSelector, D: Drive> Autonomous<G, D> {
     }
 
     /// Counts the outcome of the last goal, and selects the next one.
-    fn start_next(&mut self, belief: &Belief, last: Option<Outcome>) {
+    fn start_next(&mut self, pose: &Isometry2<f64>, mapper: &Mapper, last: Option<Outcome>) {
         match last {
             Some(Outcome::GivenUp) => {
                 self.goals.given_up += 1;
-                self.log(Level::Trouble, "goal given up: no path leads nearer to it".into());
+                self.log(Level::Trouble, format!("goal given up: {}", self.driver.trouble()));
             }
             Some(Outcome::Reached) => self.goals.reached += 1,
             Some(Outcome::Nearest) => self.goals.approached += 1,
             None => {}
         }
-        let mut travel = TravelTimes { controller: &mut self.controller };
-        let Some(Destination { position, stay }) = self.selector.next_goal(belief, &mut travel) else {
-            self.controller.cancel();
+        let mut travel = TravelTimes { driver: &mut self.driver };
+        let Some(Destination { position, stay }) = self.selector.next_goal(pose, mapper, &mut travel) else {
+            self.driver.cancel();
             self.is_done = true;
             return;
         };
-        match stay {
-            Stay::Explore => self.controller.set_goal(position),
-            Stay::Watch(duration) => self.controller.watch_at(position, duration),
-        }
+        self.driver.set_goal(
+            position,
+            match stay {
+                Stay::Explore => None,
+                Stay::Watch(duration) => Some(duration),
+            },
+        );
         let reason = self.selector.reason();
         self.log(Level::Decision, format!("{reason}: to ({:.2}, {:.2})", position.x, position.y));
     }
 }
 
-impl<G: GoalSelector, D: Drive> Pilot for Autonomous<G, D> {
+impl<G: GoalSelector, D: Driver> Pilot for Autonomous<G, D> {
     type Command = D::Command;
 
-    fn command(&mut self, belief: &Belief) -> D::Command {
-        self.selector.observe(belief);
-        if belief.correction.is_some() {
-            self.forget_map();
-        }
-        let situation = situation(belief.mapper, belief.pose);
+    fn command(&mut self, belief: &Belief, features: Features, mapper: &Mapper) -> D::Command {
+        self.selector.observe(features, mapper);
+        let situation = situation(mapper, &belief.pose);
         if belief.permission != Permission::Drive {
-            return self.controller.pause(&situation, belief.permission == Permission::LookAround);
+            return self.driver.pause(&situation, belief.permission == Permission::LookAround);
         }
-        let command = self.controller.drive(&situation);
-        match self.controller.status() {
-            Status::Idle if !self.is_done => self.start_next(belief, None),
-            Status::Finished(outcome) => self.start_next(belief, Some(outcome)),
-            Status::Travelling | Status::Exploring if self.selector.is_obsolete(belief) => {
-                self.start_next(belief, Some(Outcome::Reached));
+        let command = self.driver.drive(&situation);
+        let last = match self.driver.status() {
+            Status::Idle if !self.is_done => None,
+            Status::Finished(outcome) => Some(outcome),
+            Status::Travelling | Status::Exploring if self.selector.is_obsolete(mapper) => {
+                Some(Outcome::Reached)
             }
             _ => return command,
-        }
-        // Drive to the new goal in the same tick. The controller already has the transitions of this reading.
-        self.controller.drive(&Situation { transitions: &[], ..situation })
+        };
+        self.start_next(&belief.pose, mapper, last);
+        // Drive to the new goal in the same tick. The driver already has the transitions of this reading.
+        self.driver.drive(&Situation { transitions: &[], ..situation })
+    }
+
+    fn forget_map(&mut self) {
+        self.driver.forget_map();
     }
 
     fn path(&self) -> &[Point2<f64>] {
-        self.controller.path()
+        self.driver.path()
     }
 
     fn goal(&self) -> Option<Point2<f64>> {
-        self.controller.goal().copied()
+        self.driver.goal()
     }
 
     fn strategies(&self, features: Features) -> Vec<StrategyState> {
@@ -149,7 +161,7 @@ impl<G: GoalSelector, D: Drive> Pilot for Autonomous<G, D> {
 
     fn values(&mut self, mapper: &Mapper) -> Values<'_> {
         let mut values = self.selector.values(mapper);
-        values.extend(self.controller.values(mapper.states()));
+        values.extend(self.driver.values(mapper.states()));
         values.extend([value(&mut self.goals), value(&mut self.messages), value(&mut self.is_done)]);
         values
     }
@@ -165,29 +177,34 @@ fn situation<'a>(mapper: &'a Mapper, pose: &'a Isometry2<f64>) -> Situation<'a> 
     }
 }
 
-/// The travel times along the paths that the controller would plan.
-struct TravelTimes<'a, D: Drive> {
-    controller: &'a mut Controller<D>,
+/// The travel times along the paths that the driver would take.
+struct TravelTimes<'a, D> {
+    driver: &'a mut D,
 }
 
-impl<D: Drive> Travel for TravelTimes<'_, D> {
+impl<D: Driver> Travel for TravelTimes<'_, D> {
     fn times(&mut self, mapper: &Mapper, pose: &Isometry2<f64>, times: &mut Vec<f64>) {
-        self.controller.travel_times(&situation(mapper, pose), times);
+        self.driver.travel_times(&situation(mapper, pose), times);
     }
 }
 
 impl GoalSelector for Agent {
-    fn next_goal(&mut self, belief: &Belief, travel: &mut impl Travel) -> Option<Destination> {
-        let Goal { cell, stay } = Agent::next_goal(self, belief.mapper, belief.pose, travel);
-        Some(Destination { position: belief.mapper.frame().center(cell), stay })
+    fn next_goal(
+        &mut self,
+        pose: &Isometry2<f64>,
+        mapper: &Mapper,
+        travel: &mut impl Travel,
+    ) -> Option<Destination> {
+        let Goal { cell, stay } = Agent::next_goal(self, mapper, pose, travel);
+        Some(Destination { position: mapper.frame().center(cell), stay })
     }
 
-    fn is_obsolete(&self, belief: &Belief) -> bool {
-        self.is_goal_obsolete(belief.mapper)
+    fn is_obsolete(&self, mapper: &Mapper) -> bool {
+        self.is_goal_obsolete(mapper)
     }
 
-    fn observe(&mut self, belief: &Belief) {
-        Agent::watch(self, belief.features, belief.mapper.transitions());
+    fn observe(&mut self, features: Features, mapper: &Mapper) {
+        Agent::watch(self, features, mapper.transitions());
     }
 
     fn reason(&self) -> String {

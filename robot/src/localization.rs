@@ -1,14 +1,13 @@
-use interfaces::{LaserReading, ValueError};
-use localizer::{
-    Correction, GivenPoses, Localized, Localizer, LoopClosed, LoopClosingLocalizer, PoseEstimate, PoseState,
-};
+use crate::belief::{Belief, Permission};
+use interfaces::{LaserReading, Reading, ValueError};
+use localizer::{Correction, GivenPoses, Localized, Localizer, LoopClosed, LoopClosingLocalizer, PoseState};
 use mapper::Mapper;
 
-/// Gives every reading its pose: the part between the source and the mapper.
+/// Gives every reading its pose: the part between the filter and the mapper.
 pub trait Localization<R> {
-    /// The pose of a reading. The map contains all earlier readings whose pose was certain. If their poses have become
-    /// better, the map is learned again.
-    fn localize(&mut self, reading: R, mapper: &mut Mapper) -> Posed<R>;
+    /// The reading at the pose that the robot believes in; all beams of a scan belong to this pose. The map contains all
+    /// earlier readings whose pose was certain. If their poses have become better, the map is learned again.
+    fn localize(&mut self, reading: R, mapper: &mut Mapper) -> (R, Belief);
 
     /// Everything that readings have changed, as bytes; settings are not in it.
     fn snapshot(&mut self) -> Vec<u8>;
@@ -30,47 +29,21 @@ pub trait Localization<R> {
 
     /// Waits for what is being learned again, and takes it over: before a snapshot, and before another session.
     fn settle(&mut self, _: &mut Mapper) {}
-}
 
-/// A reading with its pose.
-#[derive(Clone, Debug)]
-pub struct Posed<R> {
-    /// The reading. Its pose is the estimated one.
-    pub reading: R,
-    /// The estimate with its uncertainty; `None` if the source says that its poses are exact.
-    pub estimate: Option<PoseEstimate>,
-    /// What the robot may do with this pose.
-    pub permission: Permission,
-    /// If a loop was closed: the map was learned again with better poses.
-    pub correction: Option<Correction>,
-}
-
-impl<R> Posed<R> {
-    /// A reading of a source whose poses are exact.
-    fn exact(reading: R) -> Self {
-        Self { reading, estimate: None, permission: Permission::Drive, correction: None }
+    /// See [`LoopClosingLocalizer::switches`].
+    fn switches(&self) -> &[usize] {
+        &[]
     }
-}
-
-/// What a robot may do, as far as its pose is known.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Permission {
-    /// Drive to goals.
-    #[default]
-    Drive,
-    /// Stand: the first scans at a start without a map should all be made from one pose.
-    Rest,
-    /// Look around, first in place, then from elsewhere: the robot is lost.
-    LookAround,
 }
 
 /// The poses of the source, taken as exact.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ExactPoses;
 
-impl<R> Localization<R> for ExactPoses {
-    fn localize(&mut self, reading: R, _: &mut Mapper) -> Posed<R> {
-        Posed::exact(reading)
+impl<R: Reading> Localization<R> for ExactPoses {
+    fn localize(&mut self, reading: R, _: &mut Mapper) -> (R, Belief) {
+        let belief = Belief::exact(*reading.pose());
+        (reading, belief)
     }
 
     fn snapshot(&mut self) -> Vec<u8> {
@@ -85,8 +58,8 @@ impl<R> Localization<R> for ExactPoses {
 }
 
 impl Localization<LaserReading> for GivenPoses {
-    fn localize(&mut self, reading: LaserReading, _: &mut Mapper) -> Posed<LaserReading> {
-        Posed::exact(self.unswept(reading))
+    fn localize(&mut self, reading: LaserReading, mapper: &mut Mapper) -> (LaserReading, Belief) {
+        ExactPoses.localize(self.unswept(reading), mapper)
     }
 
     fn snapshot(&mut self) -> Vec<u8> {
@@ -103,9 +76,9 @@ impl Localization<LaserReading> for GivenPoses {
 }
 
 impl Localization<LaserReading> for Localizer {
-    fn localize(&mut self, reading: LaserReading, mapper: &mut Mapper) -> Posed<LaserReading> {
+    fn localize(&mut self, reading: LaserReading, mapper: &mut Mapper) -> (LaserReading, Belief) {
         let localized = Localizer::localize(self, &reading, mapper);
-        posed(localized, self.wants_rest(), None)
+        believed(localized, self.wants_rest(), None)
     }
 
     fn snapshot(&mut self) -> Vec<u8> {
@@ -122,9 +95,9 @@ impl Localization<LaserReading> for Localizer {
 }
 
 impl Localization<LaserReading> for LoopClosingLocalizer {
-    fn localize(&mut self, reading: LaserReading, mapper: &mut Mapper) -> Posed<LaserReading> {
+    fn localize(&mut self, reading: LaserReading, mapper: &mut Mapper) -> (LaserReading, Belief) {
         let LoopClosed { localized, correction } = LoopClosingLocalizer::localize(self, &reading, mapper);
-        posed(localized, self.wants_rest(), correction)
+        believed(localized, self.wants_rest(), correction)
     }
 
     fn snapshot(&mut self) -> Vec<u8> {
@@ -146,13 +119,22 @@ impl Localization<LaserReading> for LoopClosingLocalizer {
     fn settle(&mut self, mapper: &mut Mapper) {
         LoopClosingLocalizer::settle(self, mapper);
     }
+
+    fn switches(&self) -> &[usize] {
+        LoopClosingLocalizer::switches(self)
+    }
 }
 
-fn posed(localized: Localized, rests: bool, correction: Option<Correction>) -> Posed<LaserReading> {
-    let permission = match localized.estimate.state {
-        _ if rests => Permission::Rest,
+fn believed(
+    Localized { reading, estimate }: Localized,
+    wants_rest: bool,
+    correction: Option<Correction>,
+) -> (LaserReading, Belief) {
+    let permission = match estimate.state {
+        _ if wants_rest => Permission::Rest,
         PoseState::Lost => Permission::LookAround,
         PoseState::Tracking | PoseState::Uncertain => Permission::Drive,
     };
-    Posed { reading: localized.reading, estimate: Some(localized.estimate), permission, correction }
+    let belief = Belief { pose: reading.pose, estimate: Some(estimate), permission, correction };
+    (reading, belief)
 }

@@ -1,44 +1,21 @@
-use crate::Message;
-use crate::Permission;
+use crate::belief::Belief;
+use crate::messages::Message;
 use agent::Features;
 use interfaces::Values;
-use localizer::{Correction, PoseEstimate};
 use mapper::Mapper;
-use nalgebra::{Isometry2, Point2};
+use nalgebra::Point2;
 use serde::{Deserialize, Serialize};
-
-/// What the robot knows when it decides: the inputs of a pilot.
-#[derive(Clone, Copy, Debug)]
-pub struct Belief<'a> {
-    /// The pose that the robot uses, in the frame of the map, m and rad.
-    pub pose: &'a Isometry2<f64>,
-    /// The uncertainty of the pose; `None` if the source says that its poses are exact.
-    pub estimate: Option<&'a PoseEstimate>,
-    /// What the robot may do with this pose.
-    pub permission: Permission,
-    /// If a loop was closed with this reading: the map was learned again with better poses, and has other cells than its
-    /// [transitions](Mapper::transitions) say.
-    pub correction: Option<Correction>,
-    /// The features by which the agent chooses a strategy.
-    pub features: Features,
-    /// The map and the change statistics, with the latest reading included.
-    pub mapper: &'a Mapper,
-}
-
-impl<'a> Belief<'a> {
-    /// The belief of a robot with an exact pose.
-    pub fn exact(pose: &'a Isometry2<f64>, features: Features, mapper: &'a Mapper) -> Self {
-        Self { pose, estimate: None, permission: Permission::Drive, correction: None, features, mapper }
-    }
-}
 
 /// Decides the next command of the robot.
 pub trait Pilot {
     /// The type of the commands that the world executes.
     type Command;
 
-    /// The command until the next reading.
-    fn command(&mut self, belief: &Belief) -> Self::Command;
+    /// The command until the next reading. The map contains the latest reading, if its pose was certain.
+    fn command(&mut self, belief: &Belief, features: Features, mapper: &Mapper) -> Self::Command;
+
+    /// Plans anew: the map is another one, with other cells than its transitions say.
+    fn forget_map(&mut self) {}
 
     /// The planned path, m; empty without a path.
     fn path(&self) -> &[Point2<f64>] {
@@ -76,6 +53,16 @@ pub trait Pilot {
     fn values(&mut self, _mapper: &Mapper) -> Values<'_> {
         Vec::new()
     }
+}
+
+/// A pilot that gives no command: of a log, or of a robot that someone else drives.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct NoPilot;
+
+impl Pilot for NoPilot {
+    type Command = ();
+
+    fn command(&mut self, _: &Belief, _: Features, _: &Mapper) {}
 }
 
 /// The number of goals by outcome.

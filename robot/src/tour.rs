@@ -1,8 +1,8 @@
-use crate::{Belief, Destination, GoalSelector};
+use crate::autonomous::{Destination, GoalSelector};
 use agent::{Stay, Travel};
 use interfaces::{Values, value};
 use mapper::Mapper;
-use nalgebra::Point2;
+use nalgebra::{Isometry2, Point2};
 
 /// A list of waypoints, visited one after the other.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,7 +21,7 @@ impl Tour {
 }
 
 impl GoalSelector for Tour {
-    fn next_goal(&mut self, _belief: &Belief, _travel: &mut impl Travel) -> Option<Destination> {
+    fn next_goal(&mut self, _: &Isometry2<f64>, _: &Mapper, _: &mut impl Travel) -> Option<Destination> {
         if self.repeat && self.next == self.waypoints.len() {
             self.next = 0;
         }

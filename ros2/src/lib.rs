@@ -2,11 +2,11 @@
 //! nothing depends on it.
 //!
 //! ```text
-//! network ─Event─▶ Link ─▶ Source ─reading─▶ robot::explore ─order─▶ Link ─Message─▶ network
+//! network ─Event─▶ Link ─▶ Source ─reading─▶ Robot::step ─order─▶ Link ─Message─▶ network
 //! ```
 //!
-//! - [`CuriousNode`]: the robot of this project on a live robot. What arrives becomes readings; each reading is one turn
-//!   of the loop of every robot, [`robot::explore`]; maps, transforms and orders are published.
+//! - [`CuriousNode`]: the robot of this project on a live robot. What arrives becomes readings; each reading is one
+//!   [`robot::Robot::step`]; maps, transforms and orders are published.
 //! - [`SimulatedRobot`]: a simulated world as a robot of ROS, as `stage_ros2` is for Stage.
 //! - [`Link`]: what both need of a network. [`DdsLink`] is the only implementation that knows the client library; the tests
 //!   have one without a network.
@@ -43,7 +43,7 @@ pub use message::{
 pub use names::{NameError, Names};
 pub use node::{CuriousNode, NodeReport, Signals};
 pub use notes::Output;
-pub use parameters::{Mode, Navigator, ParameterError, Parameters, PoseSource};
+pub use parameters::{Mode, Navigator, ParameterError, Parameters};
 pub use params_file::ParamsFileError;
 pub use ros_args::{Given, RosArgs, RosArgsError};
 pub use simulated::{SimulatedRobot, SimulationSettings};

@@ -9,28 +9,24 @@ mod setup;
 mod tests;
 
 use crate::link::{Event, Link};
-use crate::maps::PublishedMaps;
 use crate::message::{Message, Time, Topic};
 use crate::notes::{Notes, Output};
-use crate::order::Order;
-use crate::parameters::{Parameters, PoseSource};
+use crate::parameters::Parameters;
 use crate::pilot::LivePilot;
+use crate::saves::Asker;
 use crate::saves::Saves;
 use crate::source::{FrameNames, LiveReading, ScanCount, Source};
 use anyhow::anyhow;
-use interfaces::{LaserReading, World};
-use localizer::{GivenPoses, LocalizerSettings, LoopClosingLocalizer, PoseState, Switch};
-use mapper::{Mapper, NoReturns, ReadingError};
+use interfaces::{LaserReading, PoseMode};
+use localizer::PoseState;
+use mapper::Mapper;
 use nalgebra::Isometry2;
-use outputs::Markers;
-use robot::{Localization, Session, explore};
-use saving::Asker;
-use std::ops::ControlFlow;
+use outputs::Published;
+use robot::{Belief, Robot};
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
-use survey::SurveySettings;
 
 /// The longest wait for an event.
 const NAP: Duration = Duration::from_millis(100);
@@ -38,12 +34,6 @@ const NAP: Duration = Duration::from_millis(100);
 const BLIND: Duration = Duration::from_millis(500);
 /// After this time without a reading, a sentence says why.
 const SILENCE: Duration = Duration::from_secs(5);
-/// Between readings that are farther apart, nothing was in view, s.
-const LONGEST_GAP_S: f64 = 2.0;
-
-/// With a simulated clock, the map that a closed loop has corrected replaces the old one after this number of readings.
-const SWITCH_READINGS: usize = 50;
-
 /// What signals ask for.
 #[derive(Debug, Default)]
 pub struct Signals {
@@ -72,29 +62,16 @@ pub struct NodeReport {
 pub struct CuriousNode<L: Link> {
     link: L,
     parameters: Parameters,
-    settings: SurveySettings,
     source: Source,
-    mapper: Mapper,
-    no_returns: NoReturns,
-    localization: Box<dyn Localization<LaserReading> + Send>,
-    pilot: LivePilot,
-    maps: PublishedMaps,
-    markers: Markers,
+    robot: Robot<LaserReading, LivePilot>,
+    published: Published,
     saves: Option<Saves>,
-    /// Those who wait until the state is saved.
-    askers: Vec<Asker>,
-    notes: Notes,
-    /// The time of the first reading by its clock, s.
-    first_s: Option<f64>,
-    session: Session,
     /// The time of the last reading of the state that was loaded.
     continued: Option<Time>,
-    /// The pose of the frame of the odometry in the frame of the map.
-    map_to_odom: Option<Isometry2<f64>>,
+    notes: Notes,
+    /// The last reading that was used: its time, and when it came.
     last: Option<(Time, Instant)>,
-    next_transform: Instant,
     next_silence: Instant,
-    state: PoseState,
     is_stopped: bool,
     report: NodeReport,
 }
@@ -112,68 +89,33 @@ impl<L: Link> CuriousNode<L> {
         output: Output,
     ) -> anyhow::Result<Self> {
         parameters.check()?;
-        let settings = setup::settings(parameters);
-        let frame = setup::frame(parameters)?;
-        let mut mapper = Mapper::new(&settings.mapper, frame)?;
-        let localizer = LocalizerSettings {
-            range_noise_std_m: parameters.range_noise_m,
-            lost_after_s: parameters.lost_after_s,
-            ..LocalizerSettings::default()
-        };
-        let is_localized = parameters.pose == PoseSource::Localized;
-        let mut localization: Box<dyn Localization<LaserReading> + Send> = match is_localized {
-            true => {
-                let loops = LoopClosingLocalizer::from_nothing(&localizer, &frame, Isometry2::identity())?;
-                let by_count = Switch::After(SWITCH_READINGS);
-                Box::new(loops.switching(if parameters.use_sim_time { by_count } else { Switch::WhenReady }))
-            }
-            false => Box::new(GivenPoses::default()),
-        };
-        let mut pilot = LivePilot::new(parameters)?;
+        let (settings, frame) = (setup::settings(parameters), setup::frame(parameters)?);
+        let pilot = LivePilot::new(parameters, &settings)?;
+        let mut robot = settings.robot(frame, None, Isometry2::identity(), pilot)?;
         let mut notes = Notes::new(output);
-        let pose = if is_localized { ("localized", Some(&localizer)) } else { ("given", None) };
-        let strategy = &parameters.strategy;
-        let saves =
-            state.map(|path| Saves::new(path, &settings.mapper, &frame, pose, strategy)).transpose()?;
-        let continued = match &saves {
-            Some(saves) => saves.restore(&mut mapper, localization.as_mut(), &mut pilot)?,
-            None => None,
-        };
-        let mut maps = PublishedMaps::new(parameters.map_update_interval_s);
+        let saves = state.map(|path| Saves::new(path, &settings, &frame, parameters)).transpose()?;
+        let continued = saves.as_ref().map(|saves| saves.restore(&mut robot)).transpose()?.flatten();
+        let mut published = Published::new(parameters);
         if let Some(last) = continued {
             let header = outputs::header(last, &parameters.map_frame);
-            for (topic, message) in maps.after(&mapper, &header, Instant::now()) {
+            for (topic, message) in published.maps.after(&robot.mapper, &header, Instant::now()) {
                 link.send(topic, message);
             }
-            notes.say(&format!("the map goes on from {} readings", mapper.readings()));
+            notes.say(&format!("the map goes on from {} readings", robot.mapper.readings()));
         }
         let Parameters { map_frame, odom_frame, base_frame, .. } = parameters.clone();
-        let now = Instant::now();
+        let names = FrameNames { map: map_frame, odom: odom_frame, base: base_frame };
         Ok(Self {
             link,
+            source: Source::new(names, parameters.transform_publish_period_s > 0.0),
             parameters: parameters.clone(),
-            settings,
-            source: Source::new(
-                FrameNames { map: map_frame, odom: odom_frame, base: base_frame },
-                parameters.transform_publish_period_s > 0.0,
-            ),
-            mapper,
-            no_returns: NoReturns::new(parameters.no_return),
-            localization,
-            pilot,
-            maps,
-            markers: Markers::default(),
+            robot,
+            published,
             saves,
-            askers: Vec::new(),
-            notes,
-            first_s: None,
-            session: Session::default(),
             continued,
-            map_to_odom: None,
+            notes,
             last: None,
-            next_transform: now,
-            next_silence: now + SILENCE,
-            state: PoseState::Tracking,
+            next_silence: Instant::now() + SILENCE,
             is_stopped: true,
             report: NodeReport::default(),
         })
@@ -202,7 +144,7 @@ impl<L: Link> CuriousNode<L> {
             self.take(event, now);
         }
         while let Some(reading) = self.source.next(now) {
-            self.learn(reading, now);
+            self.step(reading, now);
         }
         for note in self.source.take_notes() {
             self.notes.note(&note, now);
@@ -220,11 +162,11 @@ impl<L: Link> CuriousNode<L> {
 
     /// The map.
     pub fn mapper(&self) -> &Mapper {
-        &self.mapper
+        &self.robot.mapper
     }
 
     fn nap(&self) -> Duration {
-        let transform = self.next_transform.saturating_duration_since(Instant::now());
+        let transform = self.published.next_transform.saturating_duration_since(Instant::now());
         if self.parameters.transform_publish_period_s > 0.0 { transform.min(NAP) } else { NAP }
     }
 
@@ -232,78 +174,73 @@ impl<L: Link> CuriousNode<L> {
         match event {
             Event::Message(Topic::Resume, Message::Bool(resume)) => {
                 self.notes.say(if resume.data { "exploring" } else { "exploring is paused" });
-                self.pilot.resume(resume.data);
+                self.robot.pilot.resume(resume.data);
                 if !resume.data {
                     self.stop_robot();
                 }
             }
             Event::Message(topic, message) => self.source.take(topic, message, now),
             Event::SaveState(request) => self.save_for(Asker::Request(request)),
-            Event::Navigation(navigation) => self.pilot.navigated(navigation),
+            Event::Navigation(navigation) => self.robot.pilot.navigated(navigation),
             Event::Problem(text) => self.notes.note(&text, now),
         }
     }
 
-    /// One turn of the loop of every robot.
-    fn learn(&mut self, live: LiveReading, now: Instant) {
+    /// One step of the robot: a live scan enters here.
+    fn step(&mut self, live: LiveReading, now: Instant) {
         let LiveReading { mut reading, in_odom, stamp, is_restart } = live;
-        if self.parameters.pose != PoseSource::Localized {
+        if self.parameters.pose != PoseMode::Localized {
             reading.pose = in_odom;
         }
-        let mut seen = reading.clone();
-        self.no_returns.apply(&mut reading);
-        let reading = self.in_session(self.settings.filtered(reading), stamp, is_restart);
-        if reading.time_s - self.mapper.time() > LONGEST_GAP_S && self.mapper.readings() > 0 {
-            self.mapper.pause(reading.time_s);
-        }
-        let Self { mapper, localization, pilot, .. } = self;
-        let mut moment = Moment(reading);
-        let (mut pose, mut state) = (Isometry2::identity(), PoseState::Tracking);
-        let mut correction = None;
-        let localization: &mut dyn Localization<LaserReading> = localization.as_mut();
-        let order = explore(&mut moment, localization, mapper, pilot, |_, _, belief, _| {
-            pose = *belief.pose;
-            state = belief.estimate.map_or(PoseState::Tracking, |estimate| estimate.state);
-            correction = belief.correction;
-            Ok::<_, ReadingError>(ControlFlow::Break(()))
-        });
-        self.last = Some((stamp, now));
-        self.next_silence = now + SILENCE;
-        let order = match order {
-            Ok(order) => order,
-            Err(why) => {
-                self.notes.note(&format!("a scan is left out: {why}"), now);
-                return;
-            }
+        self.begin_session(&reading, stamp, is_restart);
+        let (was_trusted, was_settled) = (self.is_trusted(&reading), self.robot.is_settled());
+        let turn = self.robot.step(reading);
+        (self.last, self.next_silence) = (Some((stamp, now)), now + SILENCE);
+        let turn = match turn {
+            Ok(turn) => turn,
+            Err(why) => return self.notes.note(&format!("a scan is left out: {why}"), now),
         };
-        if let Some(correction) = correction {
-            self.notes.say(&correction.to_string());
-            self.maps.repeat();
-        }
         self.report.readings += 1;
-        self.report.mapped += u64::from(state == PoseState::Tracking);
-        if state != self.state && (state == PoseState::Lost || self.state == PoseState::Lost) {
-            let is_lost = state == PoseState::Lost;
-            self.notes.say(if is_lost {
-                "the pose of the robot is not known"
-            } else {
-                "the pose is known again"
-            });
+        self.report.mapped += u64::from(turn.belief.is_certain());
+        if was_settled && !self.robot.is_settled() {
+            self.notes
+                .say("a loop is found: a thread learns the map again, and the robot goes on in the old one");
         }
-        self.state = state;
-        if state == PoseState::Tracking {
-            seen.pose = pose;
-            self.no_returns.learn(&seen);
+        self.say_news(&turn.belief);
+        if self.is_trusted(&turn.reading) != was_trusted {
+            let what = if was_trusted { "say nothing" } else { "count as free" };
+            self.notes
+                .say(&format!("beams without a return {what} from now on: see the parameter `no_return`"));
         }
-        if state != PoseState::Lost {
-            self.map_to_odom = Some(pose * in_odom.inverse());
+        if turn.belief.state() != PoseState::Lost {
+            self.published.map_to_odom = Some(turn.belief.pose * in_odom.inverse());
         }
-        self.publish_reading(stamp, order, now);
+        self.publish_reading(stamp, turn.command, now);
+    }
+
+    /// What a user should know of the pose.
+    fn say_news(&mut self, belief: &Belief) {
+        if let Some(correction) = &belief.correction {
+            self.notes.say(&correction.to_string());
+            self.published.maps.repeat();
+        }
+        self.say_switches();
+        let is_lost = belief.state() == PoseState::Lost;
+        if std::mem::replace(&mut self.published.is_lost, is_lost) != is_lost {
+            let known =
+                if is_lost { "the pose of the robot is not known" } else { "the pose is known again" };
+            self.notes.say(known);
+        }
+    }
+
+    /// Whether beams without a return of the scanner of a reading mean free space.
+    fn is_trusted(&self, reading: &LaserReading) -> bool {
+        self.robot.filter().is_some_and(|filter| filter.no_returns().is_trusted(reading))
     }
 
     fn tick(&mut self, now: Instant) {
         let period_s = self.parameters.transform_publish_period_s;
-        if period_s > 0.0 && now >= self.next_transform {
+        if period_s > 0.0 && now >= self.published.next_transform {
             self.publish_transform(now);
         }
         if self.last.is_some_and(|(_, at)| now.duration_since(at) >= BLIND) {
@@ -318,7 +255,7 @@ impl<L: Link> CuriousNode<L> {
         self.answer_askers();
         let is_due = self.saves.as_ref().is_some_and(Saves::is_due) && self.report.readings > 0;
         if is_due
-            && self.localization.is_settled()
+            && self.robot.is_settled()
             && let Some(Err(why)) = self.save()
         {
             self.notes.note(&format!("the state cannot be saved: {why}"), now);
@@ -329,32 +266,11 @@ impl<L: Link> CuriousNode<L> {
         self.stop_robot();
         self.link.navigate(None);
         if self.save().is_some() {
-            let answer = self.written();
-            for asker in std::mem::take(&mut self.askers) {
-                self.answer(asker, answer.clone());
-            }
+            let answer = self.answer_all();
             if !answer.is_done {
                 return Err(anyhow!(answer.text));
             }
         }
         Ok(self.report())
     }
-}
-
-/// One reading as a world: the order is carried out elsewhere.
-struct Moment(LaserReading);
-
-impl World for Moment {
-    type Reading = LaserReading;
-    type Command = Order;
-
-    fn sense(&mut self) -> LaserReading {
-        self.0.clone()
-    }
-
-    fn poses_are_exact(&self) -> bool {
-        false
-    }
-
-    fn act(&mut self, _: &Order) {}
 }

@@ -3,11 +3,11 @@
 mod choices;
 mod given;
 
-pub use choices::{Mode, Navigator, PoseSource};
+pub use choices::{Mode, Navigator};
 
 use crate::value::Value;
 use choices::Choice;
-use interfaces::{SettingsCheck, SettingsError};
+use interfaces::{PoseMode, SettingsCheck, SettingsError};
 use mapper::NoReturn;
 
 /// The error for a parameter.
@@ -52,7 +52,8 @@ pub enum ParameterError {
 
 impl ParameterError {
     fn unknown(name: &str) -> Self {
-        Self::Unknown { name: name.to_owned(), known: NAMES.join(", ") }
+        let known = Parameters::default().slots().map(|(name, _)| name).join(", ");
+        Self::Unknown { name: name.to_owned(), known }
     }
 }
 
@@ -64,7 +65,7 @@ pub struct Parameters {
     /// `navigator`.
     pub navigator: Navigator,
     /// `pose`.
-    pub pose: PoseSource,
+    pub pose: PoseMode,
     /// `map_frame`, `odom_frame` and `base_frame`: the frames of REP-105.
     pub map_frame: String,
     /// See [`Parameters::map_frame`].
@@ -112,6 +113,8 @@ pub struct Parameters {
     /// `use_sim_time`: whether the clock is simulated: then a corrected map replaces the old one after a fixed number of
     /// readings, and not when it is ready. All times are those of the messages.
     pub use_sim_time: bool,
+    /// `--switch-at`: with which readings corrected maps replace the old one, as an earlier run has printed.
+    pub switch_at: Vec<usize>,
     /// `qos_overrides./scan.subscription.reliability`: `best_effort` or `reliable`.
     pub scan_reliability: String,
 }
@@ -122,7 +125,7 @@ impl Default for Parameters {
         Self {
             mode: Mode::default(),
             navigator: Navigator::default(),
-            pose: PoseSource::default(),
+            pose: PoseMode::Localized,
             map_frame: text("map"),
             odom_frame: text("odom"),
             base_frame: text("base_footprint"),
@@ -146,6 +149,7 @@ impl Default for Parameters {
             strategy: text("curious"),
             seed: 1,
             use_sim_time: false,
+            switch_at: Vec::new(),
             scan_reliability: text("best_effort"),
         }
     }
@@ -155,44 +159,13 @@ impl Default for Parameters {
 enum Slot<'a> {
     Mode(&'a mut Mode),
     Navigator(&'a mut Navigator),
-    Pose(&'a mut PoseSource),
+    Pose(&'a mut PoseMode),
     NoReturn(&'a mut NoReturn),
     Text(&'a mut String),
     Float(&'a mut f64),
     Integer(&'a mut i64),
     Bool(&'a mut bool),
 }
-
-/// The names of all parameters.
-const NAMES: [&str; 27] = [
-    "mode",
-    "navigator",
-    "pose",
-    "map_frame",
-    "odom_frame",
-    "base_frame",
-    "scan_topic",
-    "odom_topic",
-    "resolution",
-    "map_size",
-    "max_laser_range",
-    "no_return",
-    "range_noise",
-    "map_update_interval",
-    "transform_publish_period",
-    "transform_timeout",
-    "lost_after",
-    "enable_stamped_cmd_vel",
-    "robot_radius",
-    "max_vel_x",
-    "max_vel_theta",
-    "acc_lim_x",
-    "acc_lim_theta",
-    "strategy",
-    "seed",
-    "use_sim_time",
-    "qos_overrides./scan.subscription.reliability",
-];
 
 impl Parameters {
     /// Sets a parameter.
@@ -247,8 +220,7 @@ impl Parameters {
             Slot::Integer(number) => Value::Integer(*number),
             Slot::Bool(value) => Value::Bool(*value),
         };
-        let named = |name: &str| copy.slot(name).map(|slot| (name.to_owned(), value(slot)));
-        NAMES.into_iter().filter_map(named).collect()
+        copy.slots().into_iter().map(|(name, slot)| (name.to_owned(), value(slot))).collect()
     }
 
     /// Checks the ranges.
@@ -290,37 +262,41 @@ impl Parameters {
         Ok(())
     }
 
+    /// The parameters by name.
+    fn slots(&mut self) -> [(&'static str, Slot<'_>); 27] {
+        [
+            ("mode", Slot::Mode(&mut self.mode)),
+            ("navigator", Slot::Navigator(&mut self.navigator)),
+            ("pose", Slot::Pose(&mut self.pose)),
+            ("map_frame", Slot::Text(&mut self.map_frame)),
+            ("odom_frame", Slot::Text(&mut self.odom_frame)),
+            ("base_frame", Slot::Text(&mut self.base_frame)),
+            ("scan_topic", Slot::Text(&mut self.scan_topic)),
+            ("odom_topic", Slot::Text(&mut self.odom_topic)),
+            ("resolution", Slot::Float(&mut self.resolution_m)),
+            ("map_size", Slot::Float(&mut self.map_size_m)),
+            ("max_laser_range", Slot::Float(&mut self.max_laser_range_m)),
+            ("no_return", Slot::NoReturn(&mut self.no_return)),
+            ("range_noise", Slot::Float(&mut self.range_noise_m)),
+            ("map_update_interval", Slot::Float(&mut self.map_update_interval_s)),
+            ("transform_publish_period", Slot::Float(&mut self.transform_publish_period_s)),
+            ("transform_timeout", Slot::Float(&mut self.transform_timeout_s)),
+            ("lost_after", Slot::Float(&mut self.lost_after_s)),
+            ("enable_stamped_cmd_vel", Slot::Bool(&mut self.enable_stamped_cmd_vel)),
+            ("robot_radius", Slot::Float(&mut self.robot_radius_m)),
+            ("max_vel_x", Slot::Float(&mut self.max_vel_x_mps)),
+            ("max_vel_theta", Slot::Float(&mut self.max_vel_theta_radps)),
+            ("acc_lim_x", Slot::Float(&mut self.acc_lim_x_mps2)),
+            ("acc_lim_theta", Slot::Float(&mut self.acc_lim_theta_radps2)),
+            ("strategy", Slot::Text(&mut self.strategy)),
+            ("seed", Slot::Integer(&mut self.seed)),
+            ("use_sim_time", Slot::Bool(&mut self.use_sim_time)),
+            ("qos_overrides./scan.subscription.reliability", Slot::Text(&mut self.scan_reliability)),
+        ]
+    }
+
     fn slot(&mut self, name: &str) -> Option<Slot<'_>> {
-        Some(match name {
-            "mode" => Slot::Mode(&mut self.mode),
-            "navigator" => Slot::Navigator(&mut self.navigator),
-            "pose" => Slot::Pose(&mut self.pose),
-            "map_frame" => Slot::Text(&mut self.map_frame),
-            "odom_frame" => Slot::Text(&mut self.odom_frame),
-            "base_frame" => Slot::Text(&mut self.base_frame),
-            "scan_topic" => Slot::Text(&mut self.scan_topic),
-            "odom_topic" => Slot::Text(&mut self.odom_topic),
-            "resolution" => Slot::Float(&mut self.resolution_m),
-            "map_size" => Slot::Float(&mut self.map_size_m),
-            "max_laser_range" => Slot::Float(&mut self.max_laser_range_m),
-            "no_return" => Slot::NoReturn(&mut self.no_return),
-            "range_noise" => Slot::Float(&mut self.range_noise_m),
-            "map_update_interval" => Slot::Float(&mut self.map_update_interval_s),
-            "transform_publish_period" => Slot::Float(&mut self.transform_publish_period_s),
-            "transform_timeout" => Slot::Float(&mut self.transform_timeout_s),
-            "lost_after" => Slot::Float(&mut self.lost_after_s),
-            "enable_stamped_cmd_vel" => Slot::Bool(&mut self.enable_stamped_cmd_vel),
-            "robot_radius" => Slot::Float(&mut self.robot_radius_m),
-            "max_vel_x" => Slot::Float(&mut self.max_vel_x_mps),
-            "max_vel_theta" => Slot::Float(&mut self.max_vel_theta_radps),
-            "acc_lim_x" => Slot::Float(&mut self.acc_lim_x_mps2),
-            "acc_lim_theta" => Slot::Float(&mut self.acc_lim_theta_radps2),
-            "strategy" => Slot::Text(&mut self.strategy),
-            "seed" => Slot::Integer(&mut self.seed),
-            "use_sim_time" => Slot::Bool(&mut self.use_sim_time),
-            "qos_overrides./scan.subscription.reliability" => Slot::Text(&mut self.scan_reliability),
-            _ => return None,
-        })
+        self.slots().into_iter().find(|(known, _)| *known == name).map(|(_, slot)| slot)
     }
 }
 

@@ -1,38 +1,25 @@
-//! Who decides: nobody, the controller of this project, or Nav2 with goals of our agent.
+//! Who decides: nobody, or our agent. Who drives: someone else, our controller, or another navigation.
 
 mod navigation;
 
-use crate::link::Navigation;
+use crate::link;
 use crate::order::Order;
 use crate::parameters::{Mode, Navigator, Parameters};
-use agent::{Agent, AgentSettings, Features, Policy};
+use agent::{Agent, Features, Policy};
 use anyhow::{Context, anyhow};
-use controller::{Controller, DiffDrive, DiffDriveSettings};
-use interfaces::{Purpose, RandomStream, SettingsError, Values};
+use controller::{Controller, DiffDrive, Driver, Situation, Status};
+use interfaces::{CellState, Grid, Values};
 use mapper::Mapper;
 use nalgebra::Point2;
-use navigation::NavigationPilot;
-use robot::{Autonomous, Belief, GoalCount, Message, Pilot, StrategyState};
-
-/// The side of the patches over which goal weights are averaged, m.
-const PATCH_M: f64 = 0.5;
-/// The most steps of local exploration at a goal: a step is a robot's diameter.
-const LOCAL_STEPS: u32 = 15;
-/// The time from a scan to the motion that follows from it, s.
-const REACTION_S: f64 = 0.15;
+use navigation::Navigation;
+use robot::{Autonomous, Belief, GoalCount, Message, Pilot, Settings, StrategyState};
 
 /// Decides what the robot is asked to do.
-pub(crate) enum LivePilot {
-    /// The robot is driven by someone else.
-    Watching,
-    /// The controller drives.
-    Driving {
-        pilot: Box<Autonomous<Agent, DiffDrive>>,
-        /// Whether the robot waits, see [`LivePilot::resume`].
-        is_paused: bool,
-    },
-    /// Nav2 drives.
-    Navigating(Box<NavigationPilot>),
+pub(crate) struct LivePilot {
+    /// `None`: the robot is driven by someone else.
+    explorer: Option<Autonomous<Agent, LiveDriver>>,
+    /// Whether the robot waits, see [`LivePilot::resume`].
+    is_paused: bool,
 }
 
 impl LivePilot {
@@ -41,71 +28,35 @@ impl LivePilot {
     /// # Errors
     ///
     /// When a parameter is out of range.
-    pub(crate) fn new(parameters: &Parameters) -> anyhow::Result<Self> {
+    pub(crate) fn new(parameters: &Parameters, settings: &Settings) -> anyhow::Result<Self> {
         if parameters.mode == Mode::Map {
-            return Ok(Self::Watching);
+            return Ok(Self { explorer: None, is_paused: false });
         }
         let seed = parameters.seed as u64;
-        let settings = AgentSettings {
-            patch_cells: (PATCH_M / parameters.resolution_m).round().max(1.0) as _,
-            sensor_radius_m: parameters.max_laser_range_m,
-            looks_at_unseen: true,
-            ..AgentSettings::default()
+        let agent = settings.agent(&policy(&parameters.strategy)?, seed)?;
+        let controller = settings.controller(seed).context("cannot drive this robot")?;
+        let navigation = match parameters.navigator {
+            Navigator::CmdVel => None,
+            Navigator::Nav2 => Some(Navigation::new(true)),
+            Navigator::GoalPose => Some(Navigation::new(false)),
         };
-        let policy = policy(&parameters.strategy)?;
-        let agent = Agent::new(&settings, &policy, RandomStream::new(seed, Purpose::Agent))?;
-        let controller = controller(parameters, seed).context("cannot drive this robot")?;
-        Ok(match parameters.navigator {
-            Navigator::CmdVel => {
-                Self::Driving { pilot: Box::new(Autonomous::new(agent, controller)), is_paused: false }
-            }
-            Navigator::Nav2 => Self::Navigating(Box::new(NavigationPilot::new(agent, controller, true))),
-            Navigator::GoalPose => Self::Navigating(Box::new(NavigationPilot::new(agent, controller, false))),
-        })
+        let driver = LiveDriver { controller, navigation };
+        Ok(Self { explorer: Some(Autonomous::new(agent, driver)), is_paused: false })
     }
 
     /// Lets the robot explore, or wait.
     pub(crate) fn resume(&mut self, resume: bool) {
-        match self {
-            Self::Watching => {}
-            Self::Driving { pilot, is_paused } => {
-                *is_paused = !resume;
-                pilot.forget_map();
-            }
-            Self::Navigating(pilot) => pilot.resume(resume),
-        }
-    }
-
-    /// Plans anew in a map that was replaced.
-    pub(crate) fn forget_map(&mut self) {
-        if let Self::Driving { pilot, .. } = self {
-            pilot.forget_map();
-        }
+        self.is_paused = !resume;
+        self.forget_map();
     }
 
     /// Takes the new state of the goal that Nav2 has.
-    pub(crate) fn navigated(&mut self, navigation: Navigation) {
-        if let Self::Navigating(pilot) = self {
-            pilot.navigated(navigation);
+    pub(crate) fn navigated(&mut self, news: link::Navigation) {
+        let driver = self.explorer.as_mut().map(Autonomous::driver_mut);
+        if let Some(navigation) = driver.and_then(|driver| driver.navigation.as_mut()) {
+            navigation.navigated(news);
         }
     }
-}
-
-fn controller(parameters: &Parameters, seed: u64) -> Result<Controller<DiffDrive>, SettingsError> {
-    let defaults = DiffDriveSettings::default();
-    let drive = DiffDriveSettings {
-        radius_m: parameters.robot_radius_m,
-        max_linear_mps: parameters.max_vel_x_mps,
-        max_angular_radps: parameters.max_vel_theta_radps,
-        acceleration_mps2: parameters.acc_lim_x_mps2,
-        angular_acceleration_radps2: parameters.acc_lim_theta_radps2,
-        tolerance_m: defaults.tolerance_m.min(parameters.robot_radius_m / 2.0),
-        reaction_s: REACTION_S,
-        ..defaults
-    };
-    let mut settings = controller::Settings::default();
-    settings.exploration.max_steps = LOCAL_STEPS;
-    Controller::new(settings, DiffDrive::new(drive)?, RandomStream::new(seed, Purpose::Controller))
 }
 
 fn policy(name: &str) -> anyhow::Result<Policy> {
@@ -119,59 +70,113 @@ fn policy(name: &str) -> anyhow::Result<Policy> {
 impl Pilot for LivePilot {
     type Command = Order;
 
-    fn command(&mut self, belief: &Belief) -> Order {
-        match self {
-            Self::Watching => Order::None,
+    fn command(&mut self, belief: &Belief, features: Features, mapper: &Mapper) -> Order {
+        match &mut self.explorer {
+            None => Order::None,
             // The node stops the robot once. Then it leaves the robot to others.
-            Self::Driving { is_paused: true, .. } => Order::None,
-            Self::Driving { pilot, .. } => Order::Velocity(pilot.command(belief)),
-            Self::Navigating(pilot) => pilot.command(belief),
+            Some(explorer) if self.is_paused => {
+                explorer.driver_mut().navigation.as_mut().map_or(Order::None, Navigation::withdraw)
+            }
+            Some(explorer) => explorer.command(belief, features, mapper),
         }
     }
 
+    fn forget_map(&mut self) {
+        self.explorer.iter_mut().for_each(Pilot::forget_map);
+    }
+
     fn path(&self) -> &[Point2<f64>] {
-        match self {
-            Self::Driving { pilot, .. } => pilot.path(),
-            Self::Watching | Self::Navigating(_) => &[],
+        self.explorer.as_ref().map_or(Default::default(), Pilot::path)
+    }
+
+    fn goal(&self) -> Option<Point2<f64>> {
+        self.explorer.as_ref().and_then(Pilot::goal)
+    }
+
+    fn strategies(&self, features: Features) -> Vec<StrategyState> {
+        self.explorer.as_ref().map(|explorer| explorer.strategies(features)).unwrap_or_default()
+    }
+
+    fn goals(&self) -> GoalCount {
+        self.explorer.as_ref().map(Pilot::goals).unwrap_or_default()
+    }
+
+    fn take_messages(&mut self) -> Vec<Message> {
+        self.explorer.as_mut().map(Pilot::take_messages).unwrap_or_default()
+    }
+
+    fn values(&mut self, mapper: &Mapper) -> Values<'_> {
+        self.explorer.as_mut().map(|explorer| explorer.values(mapper)).unwrap_or_default()
+    }
+}
+
+/// Drives to the goals of our agent.
+struct LiveDriver {
+    /// Knows the travel times; without another navigation, it drives as well.
+    controller: Controller<DiffDrive>,
+    navigation: Option<Navigation>,
+}
+
+impl Driver for LiveDriver {
+    type Command = Order;
+
+    fn set_goal(&mut self, goal: Point2<f64>, watch: Option<f64>) {
+        match &mut self.navigation {
+            None => self.controller.set_goal(goal, watch),
+            Some(navigation) => navigation.set_goal(goal, watch),
+        }
+    }
+
+    fn cancel(&mut self) {
+        match &mut self.navigation {
+            None => self.controller.cancel(),
+            Some(navigation) => navigation.cancel(),
         }
     }
 
     fn goal(&self) -> Option<Point2<f64>> {
-        match self {
-            Self::Watching => None,
-            Self::Driving { pilot, .. } => pilot.goal(),
-            Self::Navigating(pilot) => pilot.goal(),
+        self.navigation.as_ref().map_or_else(|| self.controller.goal(), Navigation::goal)
+    }
+
+    fn drive(&mut self, situation: &Situation) -> Order {
+        match &mut self.navigation {
+            None => Order::Velocity(self.controller.drive(situation)),
+            Some(navigation) => {
+                self.controller.pause(situation, false); // so that it knows the map
+                navigation.drive(situation)
+            }
         }
     }
 
-    fn strategies(&self, features: Features) -> Vec<StrategyState> {
-        match self {
-            Self::Driving { pilot, .. } => pilot.strategies(features),
-            Self::Watching | Self::Navigating(_) => Vec::new(),
+    fn pause(&mut self, situation: &Situation, looks_around: bool) -> Order {
+        let twist = self.controller.pause(situation, looks_around);
+        match &mut self.navigation {
+            None => Order::Velocity(twist),
+            Some(navigation) => navigation.pause(situation, looks_around),
         }
     }
 
-    fn goals(&self) -> GoalCount {
-        match self {
-            Self::Watching => GoalCount::default(),
-            Self::Driving { pilot, .. } => pilot.goals(),
-            Self::Navigating(pilot) => pilot.goals(),
-        }
+    fn status(&self) -> Status {
+        self.navigation.as_ref().map_or_else(|| self.controller.status(), Navigation::status)
     }
 
-    fn take_messages(&mut self) -> Vec<Message> {
-        match self {
-            Self::Watching => Vec::new(),
-            Self::Driving { pilot, .. } => pilot.take_messages(),
-            Self::Navigating(pilot) => pilot.take_messages(),
-        }
+    fn trouble(&self) -> &'static str {
+        self.navigation.as_ref().map_or_else(|| self.controller.trouble(), Navigation::trouble)
     }
 
-    fn values(&mut self, mapper: &Mapper) -> Values<'_> {
-        match self {
-            Self::Watching => Vec::new(),
-            Self::Driving { pilot, .. } => pilot.values(mapper),
-            Self::Navigating(pilot) => pilot.values(mapper),
-        }
+    fn travel_times(&mut self, situation: &Situation, times: &mut Vec<f64>) {
+        self.controller.travel_times(situation, times);
+    }
+
+    fn forget_map(&mut self) {
+        self.controller.forget_map();
+    }
+
+    fn path(&self) -> &[Point2<f64>] {
+        self.controller.path()
+    }
+
+    fn values(&mut self, map: &Grid<CellState>) -> Values<'_> {
+        self.controller.values(map)
     }
 }

@@ -1,12 +1,13 @@
 //! `--state`: what the node has learned, from one run to the next.
 
+use crate::link::Request;
 use crate::message::Time;
+use crate::parameters::{Navigator, Parameters};
+use crate::pilot::LivePilot;
 use anyhow::{Context, anyhow};
-use interfaces::{GridFrame, LaserReading};
-use localizer::LocalizerSettings;
-use mapper::{Mapper, MapperSettings};
+use interfaces::{GridFrame, LaserReading, PoseMode};
 use robot::state::{Facts, LearnedFacts, State, StateFile};
-use robot::{Localization, Pilot};
+use robot::{Pilot, Robot, Settings};
 use std::path::Path;
 
 /// The names of the sections of the node, beside those of every robot.
@@ -15,85 +16,90 @@ const PILOT: &str = "pilot";
 
 /// The state file of a node.
 pub(crate) struct Saves {
-    file: StateFile,
+    pub(crate) file: StateFile,
     facts: LearnedFacts,
     pilot: Facts,
+    /// Those who wait until the state is saved, and whether that has not begun.
+    pub(crate) askers: Vec<Asker>,
+    pub(crate) must_save: bool,
+}
+
+/// Who has asked to save the state.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Asker {
+    Signal,
+    Request(Request),
 }
 
 impl Saves {
-    /// The file, and what it belongs to. `pose` is the name of the parameter's value.
+    /// The file, and what it belongs to.
     ///
     /// # Errors
     ///
     /// When the file cannot be written, or another run uses it.
     pub(crate) fn new(
         path: &Path,
-        mapper: &MapperSettings,
+        settings: &Settings,
         frame: &GridFrame,
-        (pose, localizer): (&str, Option<&LocalizerSettings>),
-        strategy: &str,
+        parameters: &Parameters,
     ) -> anyhow::Result<Self> {
-        let facts = LearnedFacts::new(mapper, frame, pose, localizer);
-        let file = StateFile::open(path).with_context(|| format!("{}: cannot use it", path.display()))?;
-        Ok(Self { file, facts, pilot: Facts::default().with("strategy", strategy) })
+        let (pose, localizer) = match settings.pose {
+            PoseMode::Localized => ("localized", Some(&settings.localizer)),
+            PoseMode::Exact | PoseMode::Odometry => ("given", None),
+        };
+        let pilot = Facts::default().with("strategy", &parameters.strategy);
+        let pilot = match parameters.navigator {
+            Navigator::CmdVel => pilot,
+            Navigator::Nav2 | Navigator::GoalPose => pilot.with("navigator", "another"),
+        };
+        Ok(Self {
+            file: StateFile::open(path).with_context(|| format!("{}: cannot use it", path.display()))?,
+            facts: LearnedFacts::new(&settings.mapper, frame, pose, localizer),
+            pilot,
+            askers: Vec::new(),
+            must_save: false,
+        })
     }
 
-    /// Goes on from the file: the time of the last reading in it. `None` if there is no such file.
+    /// Lets the robot go on from the file: the time of the last reading in it. `None` if there is no such file.
     ///
     /// # Errors
     ///
     /// When the file is no state, or that of another node.
-    pub(crate) fn restore(
-        &self,
-        mapper: &mut Mapper,
-        localization: &mut dyn Localization<LaserReading>,
-        pilot: &mut impl Pilot,
-    ) -> anyhow::Result<Option<Time>> {
-        let name = self.file.path().display().to_string();
-        let state = self.file.load().with_context(|| name.clone())?;
-        let Some(state) = state else { return Ok(None) };
-        self.facts.restore(&state, mapper, localization).with_context(|| name.clone())?;
+    pub(crate) fn restore(&self, robot: &mut Robot<LaserReading, LivePilot>) -> anyhow::Result<Option<Time>> {
+        let name = self.name();
+        let Some(state) = self.file.load().with_context(|| name.clone())? else { return Ok(None) };
+        self.facts.restore(&state, robot).with_context(|| name.clone())?;
         let clock = state.section(CLOCK, &Facts::default()).with_context(|| name.clone())?;
         let clock = clock.try_into().map_err(|_| anyhow!("{name}: the part `{CLOCK}` has another length"))?;
         // Another strategy, or none, has learned nothing that this one could use.
         if let Ok(learned) = state.section(PILOT, &self.pilot)
             && !learned.is_empty()
         {
-            let restored = interfaces::restore(pilot.values(mapper), learned);
+            let restored = interfaces::restore(robot.pilot.values(&robot.mapper), learned);
             restored.map_err(|_| anyhow!("{name}: the part `{PILOT}` does not fit this program"))?;
         }
         Ok(Some(Time::from_ns(i64::from_le_bytes(clock))))
     }
 
     pub(crate) fn is_due(&self) -> bool {
-        self.file.is_due()
+        self.must_save || self.file.is_due()
     }
 
     /// Begins to write the file. An error is that of the writing before.
     pub(crate) fn save(
         &mut self,
         last: Time,
-        mapper: &Mapper,
-        localization: &mut dyn Localization<LaserReading>,
-        pilot: &mut impl Pilot,
+        robot: &mut Robot<LaserReading, LivePilot>,
     ) -> std::io::Result<()> {
-        let learned = self.facts.snapshot(mapper, localization);
-        let (facts, driven) = (self.pilot.clone(), interfaces::snapshot(pilot.values(mapper)));
+        self.must_save = false;
+        let learned = self.facts.snapshot(robot);
+        let (facts, pilot) = (self.pilot.clone(), interfaces::snapshot(robot.pilot.values(&robot.mapper)));
         let clock = last.ns().to_le_bytes().to_vec();
         self.file.save(move || {
             let state = learned.added_to(State::default()).with(CLOCK, Facts::default(), clock);
-            state.with(PILOT, facts, driven).with_build()
+            state.with(PILOT, facts, pilot).with_build()
         })
-    }
-
-    /// Whether the file is being written now.
-    pub(crate) fn is_writing(&self) -> bool {
-        self.file.is_writing()
-    }
-
-    /// Waits until the file is written.
-    pub(crate) fn wait(&mut self) -> std::io::Result<()> {
-        self.file.wait()
     }
 
     /// The name of the file.

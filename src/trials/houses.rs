@@ -1,13 +1,14 @@
 //! Trials in houses and other physics worlds: `house_trials`.
 
 use super::TrialKind;
-use crate::program::duration_s;
-use crate::worlds::{Loaded, PoseArg, list_physics_worlds, load};
+use crate::program::{duration_s, pose_in_world, pose_mode};
+use crate::worlds::{Loaded, list_physics_worlds, load};
 use agent::Reward;
 use anyhow::Context;
 use clap::Args;
-use evaluation::physics_trial::PhysicsSettings;
+use evaluation::physics_trial;
 use evaluation::trials::PhysicsRobot;
+use interfaces::PoseMode;
 use sim::physics::WorldSpec;
 
 /// Compares exploration strategies in houses with doors, people and furniture: physics worlds, with statistics.
@@ -39,8 +40,8 @@ pub struct Houses {
     duration: u64,
 
     /// How the robot knows its pose [default: exact where the world's odometry is exact, otherwise localized]
-    #[arg(long, value_enum, help_heading = "Comparison")]
-    pose: Option<PoseArg>,
+    #[arg(long, value_parser = pose_mode(pose_in_world), help_heading = "Comparison")]
+    pose: Option<PoseMode>,
 }
 
 impl TrialKind for Houses {
@@ -63,7 +64,7 @@ impl TrialKind for Houses {
 
     fn load(&self, name: &str) -> anyhow::Result<(WorldSpec, Vec<String>)> {
         let Loaded { spec, warnings } = load(name)?;
-        PhysicsSettings::of(&spec).with_context(|| format!("cannot run `{name}`"))?;
+        physics_trial::source(&spec).with_context(|| format!("cannot run `{name}`"))?;
         Ok((spec, warnings.into_iter().map(|warning| warning + "\n").collect()))
     }
 
@@ -76,7 +77,7 @@ impl TrialKind for Houses {
     }
 
     fn robot(&self, reward: Reward, max_steps: u32) -> PhysicsRobot {
-        PhysicsRobot { reward, max_steps, pose: self.pose.map(Into::into) }
+        PhysicsRobot { reward, max_steps, pose: self.pose }
     }
 
     fn to_toml(world: &WorldSpec) -> Option<String> {

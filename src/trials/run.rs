@@ -85,7 +85,9 @@ where
             None => None,
             Some(file) => {
                 let trial = jobs.remove(0);
-                Some((Recorder::new(Some(file), &[], trial.world.into())?, trial))
+                let own = trial.world.in_own_frame(&experiment.robot, trial.seed);
+                let scene = own.as_ref().unwrap_or(trial.world).into();
+                Some((Recorder::new(Some(file), &[], scene)?, trial))
             }
         };
         let record = || -> Result<_, TrialError> {

@@ -9,8 +9,8 @@ use crate::terminal::{print, say};
 use anyhow::{Context, anyhow};
 use clap::{Parser, Subcommand};
 use evaluation::trials::Experiment;
-use reports::Plan;
 use reports::shards::{Header, Shard, ShardFile, Shards, array, check_builds};
+use reports::{Plan, ReportSettings};
 use std::io::stderr;
 use std::iter::once;
 use std::path::{Path, PathBuf};
@@ -92,7 +92,7 @@ where
     for<'a> Plan<'a>: From<&'a K::Spec>,
 {
     let shards = Shards::read(dir).map_err(input)?;
-    shards.check(K::NAME, env!("CARGO_PKG_VERSION"), allows_other_build).map_err(input)?;
+    let other_build = shards.check(K::NAME, env!("CARGO_PKG_VERSION"), allows_other_build).map_err(input)?;
     let found = shards.header();
     let args =
         TrialArgs::<K>::try_parse_from(once(K::NAME).chain(found.arguments.iter().map(String::as_str)));
@@ -103,7 +103,8 @@ where
         let why = "a world file was changed after the shards ran, or the program is another one";
         return Err(input(anyhow!("the experiment of {} cannot be repeated: {why}", dir.display())));
     }
-    let settings = report_settings(&experiment, found.arguments.clone());
+    let arguments = found.arguments.clone();
+    let settings = ReportSettings { other_build, ..report_settings(&experiment, arguments) };
     let folder = results_folder(out).map_err(|(Failure::Run(why) | Failure::Input(why))| input(why))?;
     let results = Results { folder, out, world_names: &args.world, quiet };
     let trials = shards.trials().map_err(input)?.map(|trial| trial.map_err(Into::into));

@@ -10,6 +10,7 @@
 //! cargo run -p curious-survey --example people_tracks -- LOG TRACKS.csv [COUNTS.csv]
 //! ```
 
+use interfaces::PoseMode;
 use logs::{Log, TopicChoice};
 use mapper::Mapper;
 use nalgebra::Point2;
@@ -18,7 +19,7 @@ use std::error::Error;
 use std::fs;
 use std::ops::ControlFlow;
 use std::path::Path;
-use survey::{LogEntry, PoseMode, Survey, SurveySettings};
+use survey::{LogEntry, Survey, SurveySettings};
 
 /// An event belongs to a person at most this far away, m.
 const NEAR_M: f64 = 0.3;
@@ -50,14 +51,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     let entry = LogEntry::of(file.clone(), &log, &TopicChoice::default())?;
     let mut survey = Survey::new(SurveySettings::of(PoseMode::Exact), true);
     survey.first_pass(&log, entry, false, |_| ControlFlow::Continue(()))?;
-    let (mut replay, mut poses) = survey.replay(0, &log)?.ok_or("the log has no reading")?;
+    let mut replay = survey.replay(0, &log)?.ok_or("the log has no reading")?;
     let mut events: Vec<(f64, Point2<f64>)> = Vec::new();
-    survey.learn(0, &mut replay, &mut poses, |_, _, belief| {
-        let mapper = belief.mapper;
+    while survey.turn(&mut replay)?.is_some() {
+        let mapper = survey.mapper().ok_or("the log has no reading")?;
         let changed = mapper.transitions().iter().filter(|change| change.event().is_some());
         events.extend(changed.map(|change| (mapper.time(), mapper.frame().center(change.cell))));
-        ControlFlow::Continue(())
-    })?;
+    }
     let mapper = survey.mapper().ok_or("the log has no reading")?;
 
     let share = |around_s: f64| {

@@ -7,50 +7,51 @@
 //! cargo run -p curious-survey --example static_changes -- LOG
 //! ```
 
+use interfaces::PoseMode;
 use logs::{Log, TopicChoice};
-use mapper::Mapper;
+use mapper::NoReturn;
 use std::collections::BTreeSet;
 use std::error::Error;
 use std::ops::ControlFlow;
 use std::path::Path;
-use survey::{FoundPoses, PoseMode, Replay, SurveySettings, frame, learn, routes};
+use survey::{LogEntry, Survey, SurveySettings};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let Some(file) = std::env::args().nth(1) else { return Err("usage: static_changes LOG".into()) };
     let log = Log::open(Path::new(&file), &TopicChoice::default())?;
     let mut settings = SurveySettings::of(PoseMode::Localized);
-    let routes = routes(&[&log], &settings, |_| ControlFlow::Continue(()))?;
-    settings.learn_noise(&routes);
-    let mut mapper = Mapper::new(&settings.mapper, frame(&routes, &settings)?)?;
+    settings.filter.no_return = NoReturn::Free;
+    let max_range_m = settings.filter.max_range_m;
+    let mut survey = Survey::new(settings, true);
+    let entry = LogEntry::of(file, &log, &TopicChoice::default())?;
+    survey.first_pass(&log, entry, false, |_| ControlFlow::Continue(()))?;
+    let mut replay = survey.replay(0, &log)?.ok_or("the log has no reading")?;
+    while survey.turn(&mut replay)?.is_some() {}
+    let mapper = survey.mapper().ok_or("the log has no reading")?;
 
     let third_s = log.summary().duration_s / 3.0;
     let mut hit = [BTreeSet::new(), BTreeSet::new()];
     // What was hit is judged by the scans as they are: nothing is left out.
-    for (reading, found) in log.readings()?.zip(&routes[0].poses) {
+    for (reading, found) in log.readings()?.zip(survey.logs()[0].route()) {
         let reading = reading?;
         let part = match reading.time_s {
             time_s if time_s < third_s => 0,
             time_s if time_s > 2.0 * third_s => 1,
             _ => continue,
         };
-        let cells = reading.hits().filter(|at| at.coords.norm() < settings.max_range_m);
+        let cells = reading.hits().filter(|at| at.coords.norm() < max_range_m);
         hit[part]
             .extend(cells.filter_map(|at| mapper.frame().index(mapper.frame().cell_at(&(found.pose * at)))));
     }
 
-    let readings = log.readings()?;
-    let replay = Replay::new(readings, &settings, 0.0)?.ok_or("the log has no reading")?;
-    let scans = routes[0].poses.len();
-    let mut poses = FoundPoses::new(routes[0].poses.clone());
-    learn(replay, &mut poses, &mut mapper, |_, _, _| ControlFlow::Continue(()))?;
-
+    let scans = survey.logs()[0].readings;
     let events = |index: usize| u64::from(mapper.statistics(index).events());
     let static_cells = hit[0].intersection(&hit[1]);
     let changes: u64 = static_cells.clone().map(|index| events(*index)).sum();
     let all: u64 = mapper.changed().map(events).sum();
     println!(
         "noise {:.3} m, {scans} scans, {all} changes of cells",
-        settings.mapper.steady.range_noise_std_m
+        survey.settings_of(0).mapper.steady.range_noise_std_m
     );
     println!(
         "{changes} changes on {} static cells: {:.1} per 1000 scans",

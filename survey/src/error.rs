@@ -38,13 +38,27 @@ pub enum SurveyError {
     /// The trajectory contains few scans.
     #[error(
         "{left_out} of {scans} scans have no certain pose: neither do they fit to each other, nor to the odometry; no map is \
-         made of the rest"
+         made of the rest; check the units (m, rad), the angles of the beams, and whether all is of one robot"
     )]
     MostLeftOut {
         /// The number of scans without a certain pose.
         left_out: usize,
         /// The number of scans.
         scans: usize,
+    },
+    /// The odometry does not move as the scans do.
+    #[error(
+        "the odometry moves otherwise than the scans: in {differing} of {steps} steps of 0.5 m or 0.5 rad (the scans move \
+         {ratio:.2} times as far); check the units (m, rad), and whether both are of one robot; a log without odometry is \
+         mapped by its scans alone"
+    )]
+    OtherOdometry {
+        /// The number of motions that differ.
+        differing: usize,
+        /// The number of motions that were compared.
+        steps: usize,
+        /// The median length of the motions by scans, per length by odometry.
+        ratio: f64,
     },
     /// The place of a log is not that of the first one.
     #[error(

@@ -5,6 +5,7 @@ use crate::route::{Route, frame};
 use crate::settings::SurveySettings;
 use interfaces::{GridFrame, LaserReading, ValueError, read_value, write_value};
 use localizer::{LineMap, PoseState, TrajectoryPose, TrajectorySettings};
+use mapper::ScanFilter;
 use nalgebra::Vector2;
 
 /// How far later logs may leave the extent of the first one and still be aligned there, m.
@@ -14,6 +15,7 @@ const AROUND_M: f64 = 10.0;
 #[derive(Clone, Debug)]
 pub struct KnownPlace {
     pub(crate) settings: SurveySettings,
+    filter: ScanFilter,
     /// The rectangle of the surfaces.
     frame: GridFrame,
     pub(crate) lines: LineMap,
@@ -33,13 +35,13 @@ impl KnownPlace {
         // Around a place of the largest size, there is no space left.
         let frame = GridFrame::new(origin, extent.resolution_m(), sides[0], sides[1]).unwrap_or(extent);
         let lines = LineMap::new(&TrajectorySettings::default(), &frame)?;
-        Ok(Self { settings: settings.clone(), frame, lines })
+        Ok(Self { settings: settings.clone(), filter: settings.scan_filter(), frame, lines })
     }
 
     /// Adds a reading of the first log, with the pose that was found for it; if the pose is not certain, it says nothing.
     pub fn add(&mut self, reading: LaserReading, found: &TrajectoryPose) {
         if found.state == PoseState::Tracking {
-            self.lines.add(&LaserReading { pose: found.pose, ..self.settings.filtered(reading) });
+            self.lines.add(&LaserReading { pose: found.pose, ..self.filter.filter(reading) });
         }
     }
 
@@ -58,6 +60,6 @@ impl KnownPlace {
         let frame = read_value(&mut snapshot)?;
         let mut lines = LineMap::new(&TrajectorySettings::default(), &frame).map_err(|_| ValueError)?;
         lines.restore(snapshot)?;
-        Ok(Self { settings: settings.clone(), frame, lines })
+        Ok(Self { settings: settings.clone(), filter: settings.scan_filter(), frame, lines })
     }
 }

@@ -6,13 +6,12 @@
 //! ```text
 //! first pass:   log ─▶ trajectory and reach                  [`FirstPass`] ─▶ [`Route`]
 //!               later log ─▶ its place in the first one      [`KnownPlace`], [`Search`]
-//! second pass:  log ─▶ found poses ─▶ mapper ─▶ changes      [`Replay`], [`FoundPoses`], [`ChangeLog`]
+//! second pass:  log ─▶ robot at the found poses ─▶ changes    [`Replay`], [`FoundPoses`], [`ChangeLog`]
 //! ```
 //!
-//! [`Survey`] does both, log after log; it can be saved, and go on with another log later. [`routes()`] is the first pass over
-//! all logs alone, and [`learn()`] the second pass over one. The second pass is the loop of every robot, [`robot::explore`],
-//! with a source that ignores commands and a pilot that gives none. From its map follow the [places](places()) where
-//! something changes, and the [map](permanent()) of what is permanent.
+//! [`Survey`] does both, log after log; it can be saved, and go on with another log later. In the second pass, a robot without a
+//! pilot reads the log: each reading is one [`robot::Robot::step`]. From its map follow the [places](places()) where something
+//! changes, and the [map](permanent()) of what is permanent.
 
 mod change_log;
 mod error;
@@ -21,6 +20,7 @@ mod known_place;
 mod masks;
 mod median;
 mod noise;
+mod odometry_check;
 mod passes;
 mod permanent;
 mod places;
@@ -30,7 +30,6 @@ mod replay;
 mod route;
 mod search;
 mod settings;
-mod shadows;
 mod survey;
 mod surveyed_log;
 #[cfg(test)]
@@ -41,13 +40,12 @@ pub use change_log::ChangeLog;
 pub use error::SurveyError;
 pub use known_place::KnownPlace;
 pub use masks::{CHANGE_HORIZON_S, keepout_mask, speed_mask};
-pub use passes::{PassError, RoutePass, RouteProgress, Stage, learn, routes};
+pub use passes::{PassError, RouteProgress, Stage};
 pub use permanent::permanent;
 pub use places::{Place, PlaceRates, places};
-pub use replay::{FoundPoses, NoPilot, Replay};
-pub use route::{FirstPass, Route, frame, length_m, uncertain};
+pub use replay::{FoundPoses, Replay};
+pub use route::{FirstPass, Route};
 pub use search::Search;
-pub use settings::{PoseMode, SurveySettings};
-pub use shadows::remove_shadows;
-pub use survey::{SavedLogs, Survey};
+pub use settings::SurveySettings;
+pub use survey::{SavedLogs, SavedSurvey, Survey};
 pub use surveyed_log::{LogEntry, SurveyedLog, Travelled};

@@ -1,99 +1,55 @@
-//! The second pass as the loop of a robot: a log as a world that ignores commands.
+//! The second pass: a robot reads a log, at the poses that the first pass has found.
 
-use crate::settings::SurveySettings;
-use interfaces::{LaserReading, ValueError, World};
+use interfaces::{LaserReading, ValueError};
 use localizer::{GivenPoses, PoseEstimate, PoseState, TrajectoryPose};
-use logs::{Log, LogError};
-use mapper::{Mapper, NoReturn, NoReturns};
+use logs::{Log, LogError, Readings};
+use mapper::{Mapper, NoReturn, NoReturns, ScanFilterSettings};
 use nalgebra::Matrix3;
-use robot::{Belief, Localization, Permission, Pilot, Posed, Session};
+use robot::{Belief, Localization, Session};
+use std::iter::Peekable;
 
-/// A log as a world. It has at least one reading; the last one is repeated at the end, see [`Replay::is_over`].
-pub struct Replay<I> {
-    readings: I,
-    settings: SurveySettings,
+/// The readings of a log, with the times of the survey.
+pub struct Replay {
+    /// The number of the log in the survey.
+    pub(crate) number: usize,
+    readings: Peekable<Readings>,
     session: Session,
-    no_returns: NoReturns,
-    now: LaserReading,
-    next: Option<LaserReading>,
-    problem: Option<LogError>,
+    last: Option<LaserReading>,
 }
 
-impl<I: Iterator<Item = Result<LaserReading, LogError>>> Replay<I> {
-    /// The log from its first reading on, `offset_s` later than its own times; `None` if there is no reading.
+impl Replay {
+    /// The log from its first reading on, `offset_s` later than its own times.
     ///
     /// # Errors
     ///
-    /// When the first reading cannot be read.
-    pub fn new(mut readings: I, settings: &SurveySettings, offset_s: f64) -> Result<Option<Self>, LogError> {
-        let Some(now) = readings.next().transpose()? else { return Ok(None) };
-        let session = Session::with_offset(offset_s);
-        let mut replay = Self {
-            readings,
-            settings: settings.clone(),
-            session,
-            no_returns: NoReturns::new(NoReturn::Free),
-            now,
-            next: None,
-            problem: None,
-        };
-        replay.read();
-        Ok(Some(replay))
+    /// When the log cannot be read.
+    pub(crate) fn new(number: usize, log: &Log, offset_s: f64) -> Result<Self, LogError> {
+        let session = Session { offset_s, ..Session::default() };
+        Ok(Self { number, readings: log.readings()?.peekable(), session, last: None })
     }
 
-    /// Leaves out the beams without a return that are not trusted; before, all are.
-    pub(crate) fn judge(&mut self, no_returns: NoReturns) {
-        self.no_returns = no_returns;
+    /// The last reading, as the log has it.
+    pub fn last(&self) -> Option<&LaserReading> {
+        self.last.as_ref()
     }
 
-    /// What was learned about beams without a return.
-    pub fn no_returns(&self) -> &NoReturns {
-        &self.no_returns
+    /// The time of the next reading, s; `None` at the end.
+    pub(crate) fn next_s(&mut self) -> Option<f64> {
+        let next = self.readings.peek()?.as_ref();
+        Some(next.map_or(f64::NAN, |reading| reading.time_s + self.session.offset_s))
     }
 
-    /// The time of the present reading, s.
-    pub fn time_s(&self) -> f64 {
-        self.now.time_s + self.session.offset_s()
+    /// Whether there is no other reading.
+    pub fn is_over(&mut self) -> bool {
+        self.readings.peek().is_none()
     }
 
-    /// Whether the present reading is the last one.
-    pub fn is_over(&self) -> bool {
-        self.next.is_none()
-    }
-
-    /// Why the log ended before its end; the next call gives `None`.
-    pub fn take_problem(&mut self) -> Option<LogError> {
-        self.problem.take()
-    }
-
-    fn read(&mut self) {
-        match self.readings.next() {
-            Some(Ok(reading)) => self.next = Some(reading),
-            Some(Err(problem)) => self.problem = Some(problem),
-            None => {}
-        }
-    }
-}
-
-impl<I: Iterator<Item = Result<LaserReading, LogError>>> World for Replay<I> {
-    type Reading = LaserReading;
-    type Command = ();
-
-    fn sense(&mut self) -> LaserReading {
-        let mut reading = self.now.clone();
-        self.no_returns.apply(&mut reading); // before ranges that are too long become free ones
-        self.session.shifted(self.settings.filtered(reading))
-    }
-
-    fn poses_are_exact(&self) -> bool {
-        true // There is no better pose to compare with.
-    }
-
-    fn act(&mut self, (): &()) {
-        if let Some(next) = self.next.take() {
-            self.now = next;
-            self.read();
-        }
+    /// The next reading.
+    pub(crate) fn next(&mut self) -> Result<Option<LaserReading>, LogError> {
+        let Some(mut reading) = self.readings.next().transpose()? else { return Ok(None) };
+        self.session.shift(&mut reading);
+        self.last = Some(reading.clone());
+        Ok(Some(reading))
     }
 }
 
@@ -109,9 +65,7 @@ impl FoundPoses {
     pub fn new(poses: Vec<TrajectoryPose>) -> Self {
         Self { poses: poses.into_iter(), given: GivenPoses::default() }
     }
-}
 
-impl FoundPoses {
     /// Gives a reading its pose, without a map.
     pub(crate) fn posed(&mut self, mut reading: LaserReading) -> (LaserReading, PoseState) {
         let state = self.poses.next().map_or_else(Default::default, |found| {
@@ -120,20 +74,15 @@ impl FoundPoses {
         });
         (self.given.unswept(reading), state)
     }
-
-    /// Passes a reading from which was learned before.
-    pub(crate) fn pass(&mut self, reading: LaserReading) {
-        self.posed(reading);
-    }
 }
 
 impl Localization<LaserReading> for FoundPoses {
     /// A reading beyond the last pose keeps its own pose and is not certain. The covariance is not estimated: 0.
-    fn localize(&mut self, reading: LaserReading, _: &mut Mapper) -> Posed<LaserReading> {
+    fn localize(&mut self, reading: LaserReading, _: &mut Mapper) -> (LaserReading, Belief) {
         let (reading, state) = self.posed(reading);
         let (pose, covariance, support) = (reading.pose, Matrix3::zeros(), 1.0);
         let estimate = Some(PoseEstimate { pose, covariance, support, state });
-        Posed { reading, estimate, permission: Permission::Drive, correction: None }
+        (reading, Belief { estimate, ..Belief::exact(pose) })
     }
 
     fn snapshot(&mut self) -> Vec<u8> {
@@ -153,7 +102,7 @@ impl Localization<LaserReading> for FoundPoses {
 pub(crate) fn judged(
     log: &Log,
     poses: &[TrajectoryPose],
-    settings: &SurveySettings,
+    settings: &ScanFilterSettings,
 ) -> Result<NoReturns, LogError> {
     let mut no_returns = NoReturns::new(settings.no_return);
     if settings.no_return == NoReturn::Learn {
@@ -166,14 +115,4 @@ pub(crate) fn judged(
         }
     }
     Ok(no_returns)
-}
-
-/// A pilot that gives no command.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct NoPilot;
-
-impl Pilot for NoPilot {
-    type Command = ();
-
-    fn command(&mut self, _: &Belief) {}
 }

@@ -3,12 +3,12 @@
 use crate::error::SurveyError;
 use crate::extent::{self, Reach};
 use crate::range_noise::RangeNoise;
-use crate::settings::{PoseMode, SurveySettings};
+use crate::settings::SurveySettings;
 use crate::turns::Turns;
-use interfaces::{GridFrame, LaserReading};
+use interfaces::{GridFrame, LaserReading, PoseMode};
 use localizer::{PoseState, Residual, TrajectoryFinder, TrajectoryPose, TrajectorySettings};
+use mapper::ScanFilter;
 use nalgebra::{Isometry2, Point2};
-use std::ops::Add;
 
 /// A log along its trajectory.
 #[derive(Clone, Debug)]
@@ -33,14 +33,13 @@ impl Route {
     }
 }
 
-/// The length of a part of a route, m.
-pub fn length_m(poses: &[TrajectoryPose]) -> f64 {
-    let position = |at: &TrajectoryPose| at.pose.translation.vector;
-    poses.windows(2).map(|pair| (position(&pair[1]) - position(&pair[0])).norm()).fold(0.0, Add::add)
+/// The distance between two poses, m.
+pub(crate) fn distance_m(from: &TrajectoryPose, to: &TrajectoryPose) -> f64 {
+    (to.pose.translation.vector - from.pose.translation.vector).norm()
 }
 
 /// The number of readings in a part of a route whose scan does not support their pose.
-pub fn uncertain(poses: &[TrajectoryPose]) -> usize {
+pub(crate) fn uncertain(poses: &[TrajectoryPose]) -> usize {
     poses.iter().filter(|pose| pose.state != PoseState::Tracking).count()
 }
 
@@ -49,7 +48,7 @@ pub fn uncertain(poses: &[TrajectoryPose]) -> usize {
 /// # Errors
 ///
 /// When no reading has a certain pose, or when the place is too large for a map.
-pub fn frame(routes: &[Route], settings: &SurveySettings) -> Result<GridFrame, SurveyError> {
+pub(crate) fn frame(routes: &[Route], settings: &SurveySettings) -> Result<GridFrame, SurveyError> {
     let readings = routes.iter().flat_map(|route| route.poses.iter().zip(&route.reaches));
     let used = readings.filter(|(pose, _)| pose.state == PoseState::Tracking);
     let placed = used.map(|(pose, reach)| (&pose.pose, reach));
@@ -60,6 +59,7 @@ pub fn frame(routes: &[Route], settings: &SurveySettings) -> Result<GridFrame, S
 #[derive(Debug)]
 pub struct FirstPass {
     settings: SurveySettings,
+    filter: ScanFilter,
     /// Finds the trajectory; `None` where the poses of the log are used.
     finder: Option<TrajectoryFinder>,
     given: Vec<TrajectoryPose>,
@@ -87,6 +87,7 @@ impl FirstPass {
         };
         Ok(Self {
             settings: settings.clone(),
+            filter: settings.scan_filter(),
             finder,
             given: Vec::new(),
             range_noise: RangeNoise::default(),
@@ -98,7 +99,7 @@ impl FirstPass {
 
     /// Adds the next reading.
     pub fn add(&mut self, reading: LaserReading) {
-        let reach = Reach::of(&self.settings.filtered(reading.clone()));
+        let reach = Reach::of(&self.filter.filter(reading.clone()));
         self.reaches.push(reach);
         self.turns.add(&reading);
         let found = match &mut self.finder {

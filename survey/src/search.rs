@@ -10,6 +10,7 @@ use crate::known_place::KnownPlace;
 use crate::median::median;
 use interfaces::{LaserReading, heading_rad, wrap_rad};
 use localizer::{GivenPoses, LineFit, Start, TrajectoryPose};
+use mapper::ScanFilter;
 use nalgebra::{Isometry2, Vector2};
 
 /// The number of scans that are searched for in the whole map, at most.
@@ -36,6 +37,7 @@ const CORRECTED_STD: (f64, f64) = (0.05, 0.01);
 #[derive(Debug)]
 pub struct Search<'a> {
     place: &'a KnownPlace,
+    filter: ScanFilter,
     start: Start,
     /// The number of readings that the log has.
     expected: usize,
@@ -59,12 +61,13 @@ impl<'a> Search<'a> {
     /// is known.
     pub fn new(place: &'a KnownPlace, start: Start, readings: usize) -> Self {
         let (given, compared) = (GivenPoses::default(), Vec::new());
-        Self { place, start, expected: readings, readings: 0, given, compared }
+        let filter = place.settings.scan_filter();
+        Self { place, filter, start, expected: readings, readings: 0, given, compared }
     }
 
     /// Adds the next reading of the log, with its pose on the route of this log.
     pub fn add(&mut self, reading: LaserReading, found: &TrajectoryPose) {
-        let reading = LaserReading { pose: found.pose, ..self.place.settings.filtered(reading) };
+        let reading = LaserReading { pose: found.pose, ..self.filter.filter(reading) };
         // The motion within a scan follows from the pose before it.
         let mut reading = self.given.unswept(reading);
         // Else the sweep would be undone again where the scan is matched.

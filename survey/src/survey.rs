@@ -4,37 +4,38 @@ mod saved;
 #[cfg(test)]
 mod tests;
 
-pub use saved::SavedLogs;
+pub use saved::{SavedLogs, SavedSurvey};
 
 use crate::change_log::ChangeLog;
 use crate::error::SurveyError;
 use crate::extent::union;
 use crate::known_place::KnownPlace;
-use crate::passes::{PassError, RoutePass, RouteProgress, learn_on};
+use crate::passes::{PassError, RoutePass, RouteProgress};
 use crate::replay::{FoundPoses, Replay, judged};
 use crate::route::frame;
 use crate::settings::SurveySettings;
 use crate::surveyed_log::{LogEntry, SurveyedLog};
-use interfaces::{GridFrame, LaserReading, World};
-use logs::{Log, Readings};
-use mapper::Mapper;
-use robot::{Belief, Localization};
+use interfaces::{GridFrame, LaserReading};
+use logs::Log;
+use mapper::{Mapper, NoReturnEvidence, ScanFilter};
+use robot::{NoPilot, Robot, Turn};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
 /// The map of a place and its changes, from one or more logs in the order of their times.
 ///
-/// A log is added by its [first pass](Self::first_pass), and learned by its [second one](Self::learn). Everything that a
+/// A log is added by its [first pass](Self::first_pass), and learned by its second one: a [replay](Self::replay) and its
+/// [turns](Self::turn). Everything that a
 /// log needs comes from the logs before it: the place in which it finds its own, the frame of the map, which grows, and the
 /// noise. So it makes no difference, to the last bit, whether all logs are added at once or a survey is saved, restored,
 /// and goes on with the next log.
-#[derive(Clone, Debug)]
 pub struct Survey {
     settings: SurveySettings,
     /// Whether the noise of the mapper follows from the routes.
     learns_noise: bool,
     place: Option<Arc<KnownPlace>>,
-    mapper: Option<Mapper>,
+    /// The robot that reads the logs; `None` before the first reading was learned.
+    robot: Option<Robot<LaserReading, NoPilot>>,
     changes: ChangeLog,
     logs: Vec<SurveyedLog>,
 }
@@ -43,7 +44,7 @@ impl Survey {
     /// A survey without a log. `learns_noise`: the noise in the settings is replaced by what the routes say about it.
     pub fn new(settings: SurveySettings, learns_noise: bool) -> Self {
         let changes = ChangeLog::default();
-        Self { settings, learns_noise, place: None, mapper: None, changes, logs: Vec::new() }
+        Self { settings, learns_noise, place: None, robot: None, changes, logs: Vec::new() }
     }
 
     /// The logs, in the order of their times.
@@ -53,7 +54,13 @@ impl Survey {
 
     /// The map; `None` before the first reading was learned.
     pub fn mapper(&self) -> Option<&Mapper> {
-        self.mapper.as_ref()
+        self.robot.as_ref().map(|robot| &robot.mapper)
+    }
+
+    /// What was learned about the beams without a return of each scanner of the present log.
+    pub fn no_returns(&self) -> Vec<NoReturnEvidence> {
+        let filter = self.robot.as_ref().and_then(Robot::filter);
+        filter.map(|filter| filter.no_returns().evidence().collect()).unwrap_or_default()
     }
 
     /// When the cells changed last.
@@ -66,7 +73,9 @@ impl Survey {
         let mut settings = self.settings.clone();
         if self.learns_noise {
             let noises_m = self.logs.iter().take(log + 1).filter_map(|log| log.noise_m);
-            settings.learn_noise_from(noises_m);
+            if let Some(noise_m) = noises_m.reduce(f64::max) {
+                settings.set_noise(noise_m);
+            }
         }
         settings
     }
@@ -100,11 +109,15 @@ impl Survey {
         self.logs.iter_mut().filter(|log| log.is_finished()).for_each(|log| log.poses = Arc::default());
     }
 
-    /// The first pass over the next log. `is_followed`: other logs can follow, and must find their place.
+    /// The first pass over the next log: its route, in the frame of the first one. `is_followed`: other logs can follow, and
+    /// must find their place. `watch` is called when a stage begins and after each of its readings, and interrupts the pass
+    /// with a `Break`.
     ///
     /// # Errors
     ///
-    /// As for [`routes`](crate::routes()).
+    /// When a setting is out of range, when the log cannot be read, when its scans turn against its poses, when most of them
+    /// have no certain pose, when the place is too large for a map, when the log finds no place in the map of the first one,
+    /// and when the pass is interrupted.
     pub fn first_pass(
         &mut self,
         log: &Log,
@@ -126,79 +139,65 @@ impl Survey {
         Ok(())
     }
 
-    /// A log from the first reading on that was not learned yet, and the poses of its readings.
+    /// Begins the second pass over a log, or goes on with it: the first reading is one that was not learned yet. The time
+    /// since the log before counts as not observed.
     ///
     /// # Errors
     ///
-    /// When the log cannot be read. `None` if it has no such reading: it is another one than in the first pass.
-    pub fn replay(
-        &self,
-        number: usize,
-        log: &Log,
-    ) -> Result<Option<(Replay<Readings>, FoundPoses)>, PassError> {
+    /// When the log cannot be read, and when the map is too large. `None` if the log has no such reading: it is another one
+    /// than in the first pass.
+    pub fn replay(&mut self, number: usize, log: &Log) -> Result<Option<Replay>, PassError> {
         let Some(surveyed) = self.logs.get(number) else { return Ok(None) };
-        let (settings, offset_s, used) = (&self.settings, surveyed.entry.offset_s, surveyed.used);
-        let mut readings = log.readings()?;
+        let (settings, route, used) = (self.settings_of(number), surveyed.route(), surveyed.used);
+        let mut filter = ScanFilter::judged(&settings.filter, judged(log, route, &settings.filter)?);
+        let mut replay = Replay::new(number, log, surveyed.entry.offset_s)?;
         // The reading before: a scan that sweeps is undone from there on.
         let before = used.saturating_sub(1);
-        for _ in 0..before {
-            readings.next().transpose()?;
+        let mut poses = FoundPoses::new(route.get(before..).unwrap_or_default().to_vec());
+        for passed in 0..used {
+            let Some(mut reading) = replay.next()? else { break };
+            filter.apply(&mut reading);
+            if passed == before {
+                poses.posed(reading);
+            }
         }
-        let no_returns = judged(log, &surveyed.poses, settings)?;
-        let Some(mut replay) = Replay::new(readings, settings, offset_s)? else { return Ok(None) };
-        replay.judge(no_returns);
-        let mut poses = FoundPoses::new(surveyed.poses.get(before..).unwrap_or_default().to_vec());
-        if used > 0 {
-            poses.pass(replay.sense());
-            replay.act(&());
-        }
-        Ok(Some((replay, poses)))
+        let Some(begin_s) = replay.next_s() else { return Ok(None) };
+        let mapper = self.mapper_for(number, begin_s)?;
+        self.robot = Some(Robot::new(Box::new(poses), mapper, NoPilot).with_filter(filter));
+        Ok(Some(replay))
     }
 
-    /// The second pass over a log, from its [`replay`](Self::replay), until the log or `observe` ends it. Returns whether
-    /// the log is learned; if it is not, the pass can go on with the same replay.
-    ///
-    /// `observe` is called once per reading, after the mapper has integrated it.
+    /// The map of the logs before, which grows by what a new one has seen.
+    fn mapper_for(&mut self, number: usize, begin_s: f64) -> Result<Mapper, SurveyError> {
+        let (settings, frame) = (self.settings_of(number), self.frame_of(number)?);
+        let Some(Robot { mut mapper, .. }) = self.robot.take() else {
+            return Ok(Mapper::new(&settings.mapper, frame)?);
+        };
+        if self.logs[number].used == 0 {
+            if let Some(growth) = mapper.grow(&settings.mapper, frame)? {
+                self.changes.grow(&growth);
+            }
+            mapper.pause(begin_s);
+        }
+        Ok(mapper)
+    }
+
+    /// The robot makes a turn with the next reading of a log; `None` at its end.
     ///
     /// # Errors
     ///
-    /// When the log cannot be read to its end, when the mapper refuses a reading, and when the map is too large.
-    pub fn learn<L>(
-        &mut self,
-        number: usize,
-        replay: &mut Replay<Readings>,
-        poses: &mut L,
-        mut observe: impl FnMut(&Replay<Readings>, &LaserReading, &Belief) -> ControlFlow<()>,
-    ) -> Result<bool, PassError>
-    where
-        L: Localization<LaserReading> + ?Sized,
-    {
-        let is_new = self.logs.get(number).is_some_and(|log| log.used == 0);
-        let (settings, frame) = (self.settings_of(number), self.frame_of(number)?);
-        let Self { mapper, changes, logs, .. } = self;
-        let mapper = match mapper {
-            None => mapper.insert(Mapper::new(&settings.mapper, frame).map_err(SurveyError::from)?),
-            Some(mapper) if is_new => {
-                if let Some(growth) = mapper.grow(&settings.mapper, frame).map_err(SurveyError::from)? {
-                    changes.grow(&growth);
-                }
-                mapper.pause(replay.time_s());
-                mapper
-            }
-            Some(mapper) => mapper,
+    /// When the log cannot be read to its end, and when the mapper refuses a reading.
+    pub fn turn(&mut self, replay: &mut Replay) -> Result<Option<Turn<LaserReading, ()>>, PassError> {
+        let Self { robot: Some(robot), changes, logs, .. } = self else { return Ok(None) };
+        let (Some(reading), Some(log)) = (replay.next()?, logs.get_mut(replay.number)) else {
+            return Ok(None);
         };
-        let Some(log) = logs.get_mut(number) else { return Ok(true) };
-        let mut is_over = false;
-        let learned = learn_on(replay, poses, mapper, |replay, reading, belief| {
-            log.used += 1;
-            changes.note(belief.mapper);
-            is_over = replay.is_over();
-            observe(replay, reading, belief)
-        });
-        if is_over {
+        let turn = robot.step(reading)?;
+        log.pass();
+        changes.note(&robot.mapper);
+        if replay.is_over() {
             log.readings = log.used;
         }
-        log.measure();
-        learned.map(|()| is_over)
+        Ok(Some(turn))
     }
 }

@@ -2,9 +2,9 @@
 
 use crate::noise::noise_m;
 use crate::repeated::{repeats, sketch};
-use crate::route::{Route, length_m, uncertain};
+use crate::route::{Route, distance_m};
 use interfaces::GridFrame;
-use localizer::TrajectoryPose;
+use localizer::{PoseState, TrajectoryPose};
 use logs::{Log, LogError, TopicChoice};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -142,6 +142,11 @@ impl SurveyedLog {
         self.used >= self.readings
     }
 
+    /// The poses of all readings, as the first pass has found them; none if they were forgotten.
+    pub fn route(&self) -> &[TrajectoryPose] {
+        &self.poses
+    }
+
     /// The poses of the readings that were used, in the frame of the map, with times since the first log has begun; none
     /// if they were forgotten.
     pub fn poses(&self) -> impl Iterator<Item = TrajectoryPose> {
@@ -149,13 +154,14 @@ impl SurveyedLog {
         poses.map(|at| TrajectoryPose { time_s: at.time_s + self.entry.offset_s, ..*at })
     }
 
-    /// Sums up the part that was used.
-    pub(crate) fn measure(&mut self) {
-        let used = self.poses.get(..self.used).unwrap_or(&self.poses);
-        if let Some(last) = used.last() {
-            let (length_m, uncertain) = (length_m(used), uncertain(used));
-            self.travelled = Travelled { duration_s: last.time_s, length_m, uncertain };
-        }
+    /// Counts one more reading as used.
+    pub(crate) fn pass(&mut self) {
+        self.used += 1;
+        let Some(at) = self.poses.get(self.used - 1) else { return };
+        let before = self.used.checked_sub(2).and_then(|before| self.poses.get(before));
+        self.travelled.duration_s = at.time_s;
+        self.travelled.length_m += before.map_or(0.0, |before| distance_m(before, at));
+        self.travelled.uncertain += usize::from(at.state != PoseState::Tracking);
     }
 }
 

@@ -1,14 +1,17 @@
 //! Tests of the parts, and of two logs of one simulated place.
 
+use crate::passes::RoutePass;
+use crate::route::frame;
 use crate::{
-    ChangeLog, FirstPass, FoundPoses, KnownPlace, PassError, PoseMode, Replay, Route, RouteProgress, Search,
-    Stage, SurveyError, SurveySettings, frame, keepout_mask, learn, permanent, places, remove_shadows,
-    routes, speed_mask,
+    ChangeLog, FirstPass, KnownPlace, LogEntry, PassError, Route, RouteProgress, Search, Stage, Survey,
+    SurveyError, SurveySettings, keepout_mask, permanent, places, speed_mask,
 };
-use interfaces::{CellReading, CellState, Grid, GridFrame, LaserReading, Scan, Twist, World, heading_rad};
-use localizer::Start;
-use logs::{Log, LogError, McapWriter, TopicChoice};
-use mapper::{Mapper, MapperSettings};
+use interfaces::{
+    CellReading, CellState, Grid, GridFrame, LaserReading, PoseMode, Scan, Twist, World, heading_rad,
+};
+use localizer::{Start, TrajectoryPose};
+use logs::{Log, McapWriter, TopicChoice};
+use mapper::{Mapper, MapperSettings, NoReturn, ScanFilterSettings};
 use nalgebra::{Isometry2, Point2};
 use sim::physics::{OdometryError, PhysicsWorld, WorldSpec};
 use std::f64::consts::TAU;
@@ -25,31 +28,6 @@ fn scan(ranges_m: Vec<f32>) -> Scan {
         sweep_s: 0.0,
         ranges_m,
     }
-}
-
-#[test]
-fn points_between_two_surfaces_are_removed_and_walls_stay() {
-    let limit = 10_f64.to_radians();
-    // A wall 2 m ahead, seen up to 60° from its normal: the angle to the beam is at least 30°.
-    let wall: Vec<f32> = (0..60).map(|beam| (2.0 / f64::from(beam).to_radians().cos()) as f32).collect();
-    let mut straight = scan(wall.clone());
-    remove_shadows(&mut straight, limit);
-    assert_eq!(straight.ranges_m, wall);
-    // A post 1 m away before a wall: one beam meets both.
-    let mut ranges = vec![3.0; 40];
-    ranges[10..20].fill(1.0);
-    ranges[20] = 2.0;
-    let mut jump = scan(ranges.clone());
-    remove_shadows(&mut jump, limit);
-    let removed: Vec<usize> = (0..40).filter(|beam| jump.ranges_m[*beam].is_nan()).collect();
-    assert_eq!(removed, [9, 10, 19, 20, 21]);
-    // Nothing is removed beside a beam without a hit, and with a limit of 0.
-    let mut open = scan(vec![1.0, f32::INFINITY, 3.0, f32::NAN, 1.0]);
-    remove_shadows(&mut open, limit);
-    assert_eq!(open.ranges_m[..3], [1.0, f32::INFINITY, 3.0]);
-    let mut kept = scan(ranges.clone());
-    remove_shadows(&mut kept, 0.0);
-    assert_eq!(kept.ranges_m, ranges);
 }
 
 /// A map of 10 × 1 cells in which the cells from 2 to 4 are blocked for `blocked` of 10 readings, 100 times.
@@ -134,9 +112,9 @@ fn first_pass(settings: &SurveySettings, readings: &[LaserReading]) -> Route {
 }
 
 /// The largest distance between true poses and those of a route whose frame has the true pose `origin`, m.
-fn largest_error_m(route: &Route, origin: &Isometry2<f64>, truth: &[Isometry2<f64>]) -> f64 {
-    let pairs = route.poses.iter().zip(truth);
-    let error = |(at, truth): (&localizer::TrajectoryPose, &Isometry2<f64>)| {
+fn largest_error_m(route: &[TrajectoryPose], origin: &Isometry2<f64>, truth: &[Isometry2<f64>]) -> f64 {
+    let pairs = route.iter().zip(truth);
+    let error = |(at, truth): (&TrajectoryPose, &Isometry2<f64>)| {
         ((origin * at.pose).translation.vector - truth.translation.vector).norm()
     };
     pairs.map(error).fold(0.0, f64::max)
@@ -148,7 +126,7 @@ fn a_later_log_finds_its_place_in_the_first_one() {
     let settings = SurveySettings { resolution_m: 0.15, ..SurveySettings::of(PoseMode::Localized) };
     let (readings, truth) = drive(2, 120.0);
     let first = first_pass(&settings, &readings);
-    assert!(largest_error_m(&first, &truth[0], &truth) < 0.1);
+    assert!(largest_error_m(&first.poses, &truth[0], &truth) < 0.1);
     let mut place = KnownPlace::new(&settings, &first).unwrap();
     readings.iter().zip(&first.poses).for_each(|(reading, found)| place.add(reading.clone(), found));
     // The second log begins where the first one has ended, with another odometry.
@@ -158,7 +136,7 @@ fn a_later_log_finds_its_place_in_the_first_one() {
     let mut search = Search::new(&place, Start::Unknown, later.len());
     later.iter().zip(&second.poses).for_each(|(reading, found)| search.add(reading.clone(), found));
     let second = second.moved(&search.finish().unwrap());
-    let error_m = largest_error_m(&second, &truth[0], later_truth);
+    let error_m = largest_error_m(&second.poses, &truth[0], later_truth);
     assert!(error_m < 0.015, "{error_m}");
 
     // A place that is another one is refused.
@@ -176,6 +154,20 @@ fn bag(path: &Path, readings: &[LaserReading]) -> Log {
     Log::open(path, &TopicChoice::default()).unwrap()
 }
 
+/// The first pass over logs, one after the other.
+fn surveyed(
+    logs: &[&Log],
+    settings: &SurveySettings,
+    mut watch: impl FnMut(RouteProgress) -> ControlFlow<()>,
+) -> Result<Survey, PassError> {
+    let mut survey = Survey::new(settings.clone(), true);
+    for (number, log) in logs.iter().enumerate() {
+        let entry = LogEntry::of(String::new(), log, &TopicChoice::default()).unwrap();
+        survey.first_pass(log, entry, number + 1 < logs.len(), &mut watch)?;
+    }
+    Ok(survey)
+}
+
 #[test]
 fn the_first_pass_finds_the_routes_of_all_logs_in_one_frame() {
     let settings = SurveySettings::of(PoseMode::Localized);
@@ -186,7 +178,7 @@ fn the_first_pass_finds_the_routes_of_all_logs_in_one_frame() {
     let logs = parts.each_ref().map(|part| bag(&path(part), &readings[part.clone()]));
     let logs = logs.each_ref();
     let mut stages: Vec<(usize, Stage, usize)> = Vec::new();
-    let found = routes(&logs, &settings, |RouteProgress { log, stage, readings }| {
+    let found = surveyed(&logs, &settings, |RouteProgress { log, stage, readings }| {
         match stages.last_mut().filter(|_| readings > 0) {
             Some(last) => *last = (log, stage, readings),
             None => stages.push((log, stage, readings)),
@@ -196,13 +188,13 @@ fn the_first_pass_finds_the_routes_of_all_logs_in_one_frame() {
     let of_a_log =
         |log: usize, last| [Stage::Trajectory, Stage::Loops, last].map(|it| (log, it, parts[log].len()));
     assert_eq!(stages, [of_a_log(0, Stage::Map), of_a_log(1, Stage::Search)].concat());
-    for (route, part) in found.unwrap().iter().zip(&parts) {
-        let error_m = largest_error_m(route, &truth[0], &truth[part.clone()]);
+    for (log, part) in found.unwrap().logs().iter().zip(&parts) {
+        let error_m = largest_error_m(log.route(), &truth[0], &truth[part.clone()]);
         assert!(error_m < 0.015, "{error_m}");
     }
 
     let mut calls = 0;
-    let interrupted = routes(&logs, &settings, |progress| {
+    let interrupted = surveyed(&logs, &settings, |progress| {
         calls += 1;
         if progress.readings == 3 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });
@@ -232,8 +224,8 @@ fn lasers_that_stand_are_compared() {
     };
     let first = log("first.mcap", &readings[0], 0.0);
     let route_of = |later: &Log| {
-        let found = routes(&[&first, later], &settings, |_| ControlFlow::Continue(()));
-        found.map(|routes| routes[1].poses[30].pose)
+        let found = surveyed(&[&first, later], &settings, |_| ControlFlow::Continue(()));
+        found.map(|survey| survey.logs()[1].route()[30].pose)
     };
     let same = route_of(&log("same.mcap", &readings[0], 100.0)).unwrap();
     assert!(same.translation.vector.norm() < 0.005 && heading_rad(&same).abs() < 0.002, "{same}");
@@ -280,24 +272,25 @@ fn a_place_too_large_for_a_map_is_named() {
 
 #[test]
 fn the_second_pass_draws_the_house_without_changes() {
-    let settings = SurveySettings::of(PoseMode::Localized);
+    let filter = ScanFilterSettings { no_return: NoReturn::Free, ..ScanFilterSettings::default() };
+    let settings = SurveySettings { filter, ..SurveySettings::of(PoseMode::Localized) };
     let (readings, truth) = drive(3, 90.0);
-    let route = first_pass(&settings, &readings);
-    let frame = frame(std::slice::from_ref(&route), &settings).unwrap();
-    let mut mapper = Mapper::new(&settings.mapper, frame).unwrap();
     let count = readings.len();
-    let log = readings.into_iter().map(Ok::<_, LogError>);
-    let replay = Replay::new(log, &settings, 1000.0).unwrap().unwrap();
-    let (mut changes, mut seen) = (ChangeLog::default(), 0);
-    let mut poses = FoundPoses::new(route.poses.clone());
-    learn(replay, &mut poses, &mut mapper, |_, _, belief| {
-        changes.note(belief.mapper);
+    let folder = tempfile::tempdir().unwrap();
+    let log = bag(&folder.path().join("a.mcap"), &readings);
+    let mut survey = Survey::new(settings, false);
+    let entry = LogEntry::of(String::new(), &log, &TopicChoice::default()).unwrap();
+    let entry = LogEntry { offset_s: 1000.0, ..entry };
+    survey.first_pass(&log, entry, false, |_| ControlFlow::Continue(())).unwrap();
+    let mut replay = survey.replay(0, &log).unwrap().unwrap();
+    let mut seen = 0;
+    while survey.turn(&mut replay).unwrap().is_some() {
         seen += 1;
-        ControlFlow::Continue(())
-    })
-    .unwrap();
+    }
+    let (mapper, changes, route) = (survey.mapper().unwrap(), survey.changes(), survey.logs()[0].route());
+    let frame = *mapper.frame();
     assert_eq!((seen, mapper.readings()), (count, count));
-    assert!((mapper.time() - 1000.0 - route.poses.last().unwrap().time_s).abs() < 1e-9);
+    assert!((mapper.time() - 1000.0 - route.last().unwrap().time_s).abs() < 1e-9);
     // The frame covers all that was seen: no border cell is known.
     let known = |cells: &Grid<CellState>, index: usize| cells.cells()[index] != CellState::Unknown;
     let columns = frame.width();
@@ -307,7 +300,7 @@ fn the_second_pass_draws_the_house_without_changes() {
     let per_1000 = changes.events() as f64 * 1000.0 / count as f64;
     assert!(per_1000 <= 20.0, "{per_1000} changes per 1000 scans");
     // The robot was where the map is free.
-    let to_map = route.poses[0].pose * truth[0].inverse();
+    let to_map = route[0].pose * truth[0].inverse();
     let free = |pose: &Isometry2<f64>| {
         let at = Point2::from((to_map * pose).translation.vector);
         mapper.states().get(frame.cell_at(&at)) == Some(&CellState::Free)
@@ -318,10 +311,11 @@ fn the_second_pass_draws_the_house_without_changes() {
 
 #[test]
 fn settings_are_checked() {
+    let filtering = |filter| SurveySettings { filter, ..SurveySettings::default() };
     for settings in [
         SurveySettings { resolution_m: 0.0, ..SurveySettings::default() },
-        SurveySettings { max_range_m: f64::NAN, ..SurveySettings::default() },
-        SurveySettings { min_shadow_angle_rad: -1.0, ..SurveySettings::default() },
+        filtering(ScanFilterSettings { max_range_m: f64::NAN, ..ScanFilterSettings::default() }),
+        filtering(ScanFilterSettings { min_shadow_angle_rad: -1.0, ..ScanFilterSettings::default() }),
     ] {
         assert!(matches!(FirstPass::new(&settings), Err(SurveyError::Settings(_))));
     }
@@ -351,4 +345,53 @@ fn mirrored_beams_are_refused_before_the_pass_is_over() {
             }
         }
     }
+}
+
+/// The error of `map_log` for the log of a drive, of which `change` changes the readings.
+fn refused(mut change: impl FnMut(usize, &mut LaserReading)) -> Option<String> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.mcap");
+    let mut writer = McapWriter::new(File::create(&path).unwrap(), "a.mcap", 0.0).unwrap();
+    let (mut readings, _) = drive(2, 120.0);
+    for (index, reading) in readings.iter_mut().enumerate() {
+        change(index, reading);
+        writer.reading(reading).unwrap();
+    }
+    writer.finish().unwrap();
+    let log = Log::open(&path, &TopicChoice::default()).unwrap();
+    let settings = SurveySettings::default();
+    let mut pass =
+        RoutePass { log: &log, number: 0, settings: &settings, watch: |_| ControlFlow::Continue(()) };
+    pass.route().err().map(|error| error.to_string())
+}
+
+#[test]
+fn logs_whose_scans_are_not_from_one_place_are_refused() {
+    // Beams in another order in every scan.
+    let error = refused(|index, LaserReading { scan, .. }| {
+        let beams = scan.ranges_m.len();
+        scan.ranges_m = (0..beams).map(|beam| scan.ranges_m[(beam * 77 + index * index) % beams]).collect();
+    });
+    let error = error.unwrap();
+    let parts = [
+        " of 1201 scans have no certain pose: neither do they fit to each other, nor to the odometry; no map",
+        "units",
+    ];
+    assert!(parts.iter().all(|part| error.contains(part)), "{error}");
+}
+
+#[test]
+fn an_odometry_of_something_else_is_refused() {
+    assert_eq!(refused(|_, _| {}), None);
+    // One that never moves says nothing.
+    assert_eq!(refused(|_, reading| reading.pose = Isometry2::identity()), None);
+    let lengths =
+        refused(|_, reading| reading.scan.ranges_m.iter_mut().for_each(|range_m| *range_m *= 0.3)).unwrap();
+    assert!(lengths.contains("(the scans move 0.29 times as far)"), "{lengths}");
+    let exchanged = refused(|_, reading| {
+        let at = &mut reading.pose.translation;
+        (at.x, at.y) = (at.y, at.x);
+    });
+    let exchanged = exchanged.unwrap();
+    assert!(exchanged.starts_with("the odometry moves otherwise than the scans: in "), "{exchanged}");
 }

@@ -1,9 +1,10 @@
 //! The dummy robot waits while the curious robot is in its way, and the map shows it.
 
+use agent::Features;
 use interfaces::{CellState, Twist};
 use mapper::{Mapper, MapperSettings};
 use nalgebra::Point2;
-use robot::{Belief, ExactPoses, Pilot, explore};
+use robot::{Belief, ExactPoses, Pilot, Robot, explore};
 use sim::physics::PhysicsWorld;
 use std::ops::ControlFlow;
 
@@ -16,8 +17,8 @@ struct Visitor;
 impl Pilot for Visitor {
     type Command = Twist;
 
-    fn command(&mut self, belief: &Belief) -> Twist {
-        let goes = belief.mapper.time() > STANDS_UNTIL_S && belief.pose.translation.y > 9.0;
+    fn command(&mut self, belief: &Belief, _: Features, mapper: &Mapper) -> Twist {
+        let goes = mapper.time() > STANDS_UNTIL_S && belief.pose.translation.y > 9.0;
         Twist { linear_mps: if goes { 0.5 } else { 0.0 }, angular_radps: 0.0 }
     }
 }
@@ -33,28 +34,24 @@ fn world() -> PhysicsWorld {
 #[test]
 fn it_waits_and_goes_on() {
     let mut world = world();
-    let mut mapper = Mapper::new(&MapperSettings::default(), world.spec().frame).unwrap();
+    let mapper = Mapper::new(&MapperSettings::default(), world.spec().frame).unwrap();
+    let mut robot = Robot::new(Box::new(ExactPoses), mapper, Visitor);
     let mut way: Vec<(f64, f64)> = Vec::new();
     let mut seen_waiting = Vec::new();
-    explore(
-        &mut world,
-        &mut ExactPoses,
-        &mut mapper,
-        &mut Visitor,
-        |world, reading, belief, _| -> anyhow::Result<_> {
-            let dummy = world.robots().find(|robot| !robot.is_driven).unwrap().pose.translation;
-            way.push((reading.time_s, dummy.x));
-            assert_eq!(world.contacts(), []);
-            if reading.time_s < STANDS_UNTIL_S {
-                // The front of the dummy's body, which the robot observes.
-                let front = Point2::new(dummy.x + 0.18, dummy.y);
-                seen_waiting.push(belief.mapper.states().get(belief.mapper.frame().cell_at(&front)).copied());
-            }
-            let is_over = reading.time_s >= END_S;
-            Ok(if is_over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
-        },
-    )
+    explore(&mut world, &mut robot, |world, robot, turn| -> anyhow::Result<_> {
+        let dummy = world.robots().find(|robot| !robot.is_driven).unwrap().pose.translation;
+        way.push((turn.reading.time_s, dummy.x));
+        assert_eq!(world.contacts(), []);
+        if turn.reading.time_s < STANDS_UNTIL_S {
+            // The front of the dummy's body, which the robot observes.
+            let front = Point2::new(dummy.x + 0.18, dummy.y);
+            seen_waiting.push(robot.mapper.states().get(robot.mapper.frame().cell_at(&front)).copied());
+        }
+        let is_over = turn.reading.time_s >= END_S;
+        Ok(if is_over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
+    })
     .unwrap();
+    let mapper = &robot.mapper;
 
     let x_at = |time_s: f64| way.iter().find(|(at_s, _)| *at_s >= time_s).unwrap().1;
     let waits_at = x_at(20.0);

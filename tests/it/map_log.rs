@@ -1,6 +1,7 @@
 //! `map_log`: logs and bags become maps of what changes.
 
 use crate::bad_input::refuses;
+use crate::map_log_state::moving_log;
 use crate::run::{Run, names};
 use std::fs;
 
@@ -201,11 +202,72 @@ fn logs_that_cannot_be_true_are_refused_before_anything_is_written() {
         message.contains("error: a.log: the ranges look like millimetres: in 40 of 40 scans"),
         "{message}"
     );
+    run.write("a.log", &scaled_log(100.0));
+    let message = refuses(&run, "a.log", &["a.log"]);
+    assert!(
+        message.contains("(the first: 300, which would be 3 m); ranges are in metres: divide them by 100"),
+        "{message}"
+    );
+    run.write("a.log", &scaled_log(0.001));
+    let message = refuses(&run, "a.log", &["a.log"]);
+    assert!(
+        message.contains("error: a.log: the ranges look like kilometres: in 40 of 40 scans"),
+        "{message}"
+    );
+    run.write("a.log", &moving_log(120).repeat(2));
+    insta::assert_snapshot!(refuses(&run, "a.log", &["a.log"]), @"
+    note: a.log: a jump of the clock counts as 0.100 s
+    error: a.log: 119 of 240 scans are in the log twice, after the same scan as the first time: they would count twice; leave them out
+    ");
     run.write("a.log", &standing_log(1.7e9, 1));
     let message = refuses(&run, "a.log", &["a.log"]);
     assert!(message.contains("error: a.log: one scan: "), "{message}");
     run.write("a.log", &scaled_log(1.0));
     run.goes_well("a.log --quiet --no-rrd");
+}
+
+#[test]
+fn a_file_has_one_purpose() {
+    let run = Run::new().with_map_log();
+    run.write("a.log", &standing_log(1.7e9, 40));
+    run.write("thesis.tex", "of the user");
+    let files = ["a.log", "thesis.tex"];
+    insta::assert_snapshot!(refuses(&run, "a.log --no-rrd --mcap thesis.tex", &files), @"error: cannot write the bag of --mcap: there is a file thesis.tex that is not an MCAP file; choose another name");
+    insta::assert_snapshot!(refuses(&run, "a.log --no-rrd --mcap b --state ./b", &files), @"error: --mcap and --state name the same file ./b: give each its own");
+    insta::assert_snapshot!(refuses(&run, "a.log --no-rrd --state out", &files), @"error: --out and --state name the same file out: give each its own");
+    let run = run.with_four_rooms();
+    insta::assert_snapshot!(refuses(&run, "--duration 1 --rrd b --gif b", &files), @"error: --rrd and --gif name the same file b: give each its own");
+    assert_eq!(fs::read_to_string(run.path("thesis.tex")).unwrap(), "of the user");
+}
+
+#[cfg(unix)]
+#[test]
+fn pipes_are_no_logs_and_no_lists_of_results() {
+    let run = Run::new().with_map_log();
+    let pipe = |name: &str| nix::unistd::mkfifo(&run.path(name), nix::sys::stat::Mode::S_IRWXU).unwrap();
+    pipe("pipe");
+    insta::assert_snapshot!(refuses(&run, "pipe", &["pipe"]), @"error: pipe: it is not a regular file, and a log is read several times: write it into a file");
+    run.write("a.log", &standing_log(1.7e9, 40));
+    fs::create_dir(run.path("out")).unwrap();
+    pipe("out/.curious_run.json");
+    insta::assert_snapshot!(refuses(&run, "a.log", &["a.log", "out", "pipe"]), @"error: cannot write out/.curious_run.json: it is not a regular file; move the folder, or give another one by --out");
+}
+
+/// Names of files need not be text.
+#[cfg(target_os = "linux")]
+#[test]
+fn names_that_are_no_text() {
+    use std::ffi::OsStr;
+    use std::os::unix::ffi::OsStrExt;
+    let run = Run::new().with_map_log();
+    for name in [&b"a\xff.log"[..], b"a b\n.log"] {
+        let name = OsStr::from_bytes(name);
+        fs::write(run.path("x").with_file_name(name), standing_log(1.7e9, 40)).unwrap();
+        let ended = run.command("--no-rrd --state s").arg(name).output().unwrap();
+        assert_eq!(ended.status.code(), Some(0), "{ended:?}");
+        fs::remove_file(run.path("s")).unwrap();
+    }
+    assert_eq!(run.summary().at("/logs"), &serde_json::json!(["a b\n.log"]));
 }
 
 #[test]

@@ -297,7 +297,7 @@ fn the_last_log_can_be_removed_and_another_one_cannot() {
 }
 
 /// The log of a robot that moves along a room of 8 m × 6 m with a pillar; its times do not say when it was recorded.
-fn moving_log(scans: u32) -> String {
+pub(crate) fn moving_log(scans: u32) -> String {
     let line = |step: u32| {
         let (x, time_s) = (0.03 * f64::from(step) - 2.0, 5.0 + 0.1 * f64::from(step));
         let range_m = |beam: u32| {

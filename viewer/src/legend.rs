@@ -30,7 +30,7 @@ pub(crate) fn of_run(scene: &Scene, view: &View) -> Legend {
     let has_plan = !view.strategies.is_empty() || view.goal.is_some();
     entries([
         (true, Mark::Dot(palette::CURIOUS), "curious robot"),
-        (view.believed.is_some(), Mark::Line(palette::ESTIMATE), "where it believes to be"),
+        (view.belief.is_some(), Mark::Line(palette::ESTIMATE), "where it believes to be"),
         (scene.has_robot(false), Mark::Dot(palette::OTHER_ROBOT), "other robot"),
         (scene.has_obstacle(false), Mark::Area(palette::MOVING), "what moves"),
         (has_plan, Mark::Dot(palette::GOAL), "goal"),

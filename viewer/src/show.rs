@@ -60,8 +60,8 @@ impl Show {
         for (trail, robot) in self.trails.iter_mut().zip(&view.robots) {
             trail.push(robot.pose.translation.vector.into());
         }
-        if let Some(believed) = view.believed {
-            self.believed.push(believed.pose.translation.vector.into());
+        if let Some(belief) = view.belief {
+            self.believed.push(belief.pose.translation.vector.into());
         }
         let recorded = self.recorder.as_mut().map_or(Ok(()), |recorder| recorder.log(view, is_last));
         if recorded.is_err() {

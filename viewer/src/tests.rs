@@ -2,14 +2,14 @@
 //! and forth, and scans from a simple geometry. No physics, no agent.
 
 use crate::scene::{Obstacle, Outline, Robot, RobotState, Scene, Sight, TimeUnit};
-use crate::view::{Believed, Measured, View};
+use crate::view::{Measured, View};
 use agent::Features;
 use evaluation::metrics::MapScores;
 use interfaces::{GridFrame, LaserReading, Scan, Twist, heading_rad, pose, wrap_rad};
 use localizer::PoseEstimate;
 use mapper::{Mapper, MapperSettings};
 use nalgebra::{Isometry2, Point2, Vector2};
-use robot::{Level, Message, StrategyState};
+use robot::{Belief, Level, Message, StrategyState};
 use std::f64::consts::TAU;
 
 const TICK_S: f64 = 0.1;
@@ -197,6 +197,10 @@ impl FakeRun {
         let seen =
             (0..self.mapper.frame().len()).step_by(7).filter(|&cell| self.mapper.was_ever_seen(cell)).count();
         let coverage = 7.0 * seen as f64 / self.mapper.frame().len() as f64;
+        let belief = self
+            .estimate
+            .clone()
+            .map(|estimate| Belief { estimate: Some(estimate.clone()), ..Belief::exact(estimate.pose) });
         use_view(&View {
             time: self.time_s(),
             step: self.step,
@@ -206,11 +210,7 @@ impl FakeRun {
                 RobotState { pose: self.curious.pose, sight: Some(Sight::Laser(&self.reading)) },
                 RobotState { pose: self.dummy.pose, sight: None },
             ],
-            believed: self.estimate.as_ref().map(|estimate| Believed {
-                pose: estimate.pose,
-                true_pose: self.curious.pose,
-                estimate: Some(estimate),
-            }),
+            belief: belief.as_ref(),
             obstacles: vec![toy.flatten()],
             path: &[Point2::from(self.curious.pose.translation.vector), goal],
             goal: Some(goal),

@@ -41,7 +41,7 @@ pub fn record<W: TrialWorld<World: Visible>>(
     let mut problem = None;
     let trial = run_trial(settings, |mut step| {
         let is_canceled = is_canceled.load(Ordering::Relaxed);
-        if problem.is_none() && step.belief.mapper.readings() <= RECORDED_READINGS + 1 {
+        if problem.is_none() && step.mapper.readings() <= RECORDED_READINGS + 1 {
             problem = log(&mut recorder, settings, &mut step, is_canceled).err();
         }
         !is_canceled
@@ -56,7 +56,7 @@ fn log<W: TrialWorld<World: Visible>>(
     now: &mut TrialStep<W>,
     is_canceled: bool,
 ) -> Result<(), RecordingError> {
-    let (mapper, truth) = (now.belief.mapper, W::truth(now.world));
+    let (mapper, truth) = (now.mapper, W::truth(now.world));
     // The first reading is that of the start.
     let steps = mapper.readings() - 1;
     let is_over = now.is_complete;
@@ -73,7 +73,7 @@ fn log<W: TrialWorld<World: Visible>>(
         measured.scores = Some(map_scores(mapper, truth));
         measured.rate_errors = Some(RateErrors::from(&rate_scores(mapper, truth)));
     }
-    recorder.log(&View::new(now.world, now.reading, now.belief, &*now.pilot, measured), is_last)
+    recorder.log(&View::new(now.world, now.turn, mapper, &*now.pilot, measured), is_last)
 }
 
 #[cfg(test)]

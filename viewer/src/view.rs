@@ -4,12 +4,11 @@ use crate::scene::{Outline, RobotState, Sight, Visible};
 use agent::Features;
 #[cfg(feature = "simulation")]
 use evaluation::metrics::{MapScores, RateErrors};
-use interfaces::Reading;
-use localizer::PoseEstimate;
+use interfaces::LaserReading;
 use mapper::Mapper;
-use nalgebra::{Isometry2, Point2};
+use nalgebra::Point2;
 use results::thinned::Thinned;
-use robot::{Belief, Message, Pilot, StrategyState};
+use robot::{Belief, Message, Pilot, StrategyState, Turn};
 use std::collections::VecDeque;
 
 /// The state of a run at one time.
@@ -24,8 +23,9 @@ pub struct View<'a> {
     pub features: Features,
     /// The robots, in the order of the scene.
     pub robots: Vec<RobotState<'a>>,
-    /// Where the curious robot believes to be; `None` if its poses are exact.
-    pub believed: Option<Believed<'a>>,
+    /// What the curious robot believes about its pose; `None` if its poses are exact. The map, the path and the goal are in the
+    /// frame of this pose.
+    pub belief: Option<&'a Belief>,
     /// The outlines of the obstacles, m, in the order of the scene; `None` for an obstacle that is absent.
     pub obstacles: Vec<Option<Outline>>,
     /// The planned path of the curious robot, m; empty without a plan.
@@ -36,24 +36,6 @@ pub struct View<'a> {
     pub strategies: Vec<StrategyState>,
     /// The measurements against the ground truth.
     pub measured: Measured<'a>,
-}
-
-/// Where the curious robot believes to be. The map, the path and the goal are in this frame.
-#[derive(Clone, Copy)]
-pub struct Believed<'a> {
-    /// The pose that the robot uses, m and rad.
-    pub pose: Isometry2<f64>,
-    /// The true pose.
-    pub true_pose: Isometry2<f64>,
-    /// The pose with its uncertainty; `None` for a robot that follows its odometry.
-    pub estimate: Option<&'a PoseEstimate>,
-}
-
-impl Believed<'_> {
-    /// The error of the position, m.
-    pub fn error_m(&self) -> f64 {
-        (self.pose.translation.vector - self.true_pose.translation.vector).norm()
-    }
 }
 
 /// The measurements that an observer adds to the state of the robot.
@@ -70,35 +52,52 @@ pub struct Measured<'a> {
 }
 
 impl<'a> View<'a> {
-    /// The state of the run in `world` after `pilot` has decided on `reading`.
-    pub fn new<W: Visible<Reading: Reading>>(
+    /// The state of the run in `world` after a turn of the robot.
+    pub fn new<W: Visible>(
         world: &'a W,
-        reading: &'a W::Reading,
-        belief: &Belief<'a>,
+        turn: &'a Turn<W::Reading, W::Command>,
+        mapper: &'a Mapper,
         pilot: &'a (impl Pilot<Command = W::Command> + ?Sized),
         measured: Measured<'a>,
     ) -> Self {
-        let time = belief.mapper.time();
-        let robots = world.robots(reading);
-        let curious = robots.iter().find(|robot| robot.sight.is_some());
-        let believed = curious.filter(|_| !world.poses_are_exact()).map(|robot| Believed {
-            pose: *belief.pose,
-            true_pose: robot.pose,
-            estimate: belief.estimate,
-        });
+        let time = mapper.time();
         Self {
             time,
-            step: W::UNIT.choose(belief.mapper.readings() as u64, time as u64),
-            mapper: belief.mapper,
-            features: belief.features,
-            robots,
-            believed,
+            step: W::UNIT.choose(mapper.readings() as u64, time as u64),
+            mapper,
+            features: turn.features,
+            robots: world.robots(&turn.reading),
+            belief: Some(&turn.belief).filter(|_| !world.poses_are_exact()),
             obstacles: world.obstacles(),
             path: pilot.path(),
             goal: pilot.goal(),
-            strategies: pilot.strategies(belief.features),
+            strategies: pilot.strategies(turn.features),
             measured,
         }
+    }
+
+    /// The state of a pass over a log, in which nothing but the robot is known.
+    pub fn of_log(turn: &'a Turn<LaserReading, ()>, mapper: &'a Mapper) -> Self {
+        let sight = Some(Sight::Laser(&turn.reading));
+        Self {
+            time: mapper.time(),
+            step: mapper.readings() as u64,
+            mapper,
+            features: turn.features,
+            robots: vec![RobotState { pose: turn.reading.pose, sight }],
+            belief: None,
+            obstacles: Vec::new(),
+            path: &[],
+            goal: None,
+            strategies: Vec::new(),
+            measured: Measured::default(),
+        }
+    }
+
+    /// The error of the position that the curious robot believes in, m; `None` if its poses are exact.
+    pub fn error_m(&self) -> Option<f64> {
+        let curious = self.robots.iter().find(|robot| robot.sight.is_some())?;
+        Some((self.belief?.pose.translation.vector - curious.pose.translation.vector).norm())
     }
 
     /// The field of view of the curious robot.

@@ -1,6 +1,6 @@
 //! The same controller in a world of cells, where a command is one move to a neighbor.
 
-use controller::{CellDrive, Controller, Outcome, Situation, Status};
+use controller::{CellDrive, Controller, Driver, Outcome, Situation, Status};
 use interfaces::{Cell, CellState, Grid, GridFrame, Purpose, RandomStream, Step, Transition, pose};
 use nalgebra::{Isometry2, Point2};
 
@@ -63,7 +63,7 @@ fn controller() -> Controller<CellDrive> {
 fn it_takes_a_shortest_way_one_cell_per_step() {
     let mut world = World::new(&["R.......", "######..", "........"]);
     let mut controller = controller();
-    controller.go_to(Point2::new(0.5, 0.5));
+    controller.set_goal(Point2::new(0.5, 0.5), Some(0.0));
     let mut steps = 0;
     loop {
         let moved = world.tick(&mut controller);
@@ -80,7 +80,7 @@ fn it_takes_a_shortest_way_one_cell_per_step() {
 fn it_goes_another_way_when_a_block_stands_in_it() {
     let mut world = World::new(&["......", "R.....", "......"]);
     let mut controller = controller();
-    controller.go_to(Point2::new(5.5, 1.5));
+    controller.set_goal(Point2::new(5.5, 1.5), Some(0.0));
     world.tick(&mut controller);
     world.change(Cell::new(2, 1), CellState::Blocked);
     let mut steps = 1;
@@ -97,7 +97,7 @@ fn it_follows_a_block_one_action_per_step_up_to_the_bound() {
     let row = "................................................................";
     let mut world = World::new(&[row, row, row]);
     let mut controller = controller();
-    controller.set_goal(Point2::new(1.5, 0.5));
+    controller.set_goal(Point2::new(1.5, 0.5), None);
     world.robot = Cell::new(0, 0);
     let (mut block, mut explored) = (3, 0);
     loop {
@@ -122,7 +122,7 @@ fn it_follows_a_block_one_action_per_step_up_to_the_bound() {
 fn it_watches_at_a_goal_for_the_given_time() {
     let mut world = World::new(&["R....."]);
     let mut controller = controller();
-    controller.watch_at(Point2::new(2.5, 0.5), 3.0);
+    controller.set_goal(Point2::new(2.5, 0.5), Some(3.0));
     let steps: Vec<_> = (0..5).map(|_| world.tick(&mut controller)).collect();
     assert_eq!(steps, [Step::Right, Step::Right, Step::Stay, Step::Stay, Step::Stay]);
     assert_eq!(controller.status(), Status::Exploring);

@@ -1,7 +1,7 @@
 //! A small kinematic world: walls drawn in ASCII, boxes that move, a differential-drive robot with bounded
 //! accelerations, a laser with exact rays, and a map that lags behind as a real map does.
 
-use controller::{Controller, DiffDrive, DiffDriveSettings, Settings, Situation, Status};
+use controller::{Controller, DiffDrive, DiffDriveSettings, Driver, Settings, Situation, Status};
 use interfaces::{
     Cell, CellState, Grid, GridFrame, Purpose, RandomStream, Transition, Twist, heading_rad, pose,
 };

@@ -3,7 +3,7 @@
 mod grid;
 mod house;
 
-use controller::{Controller, DiffDrive, Outcome, Settings, Situation, Status};
+use controller::{Controller, DiffDrive, Driver, Outcome, Settings, Situation, Status};
 use house::{House, Mover, controller};
 use interfaces::{CellState, Purpose, RandomStream};
 use nalgebra::Point2;
@@ -67,7 +67,7 @@ fn it_gets_everywhere_and_touches_nothing() {
     let mut rng = RandomStream::new(1, Purpose::Controller);
     for _ in 0..60 {
         let goal = Point2::new(rng.random_range(0.3..6.2), rng.random_range(0.3..6.2));
-        controller.go_to(goal);
+        controller.set_goal(goal, Some(0.0));
         match house.run(&mut controller, 60.0) {
             Outcome::Reached => assert!((house.position() - goal).norm() <= 0.1),
             // No point in this house is farther from the center of a room or a door.
@@ -81,7 +81,7 @@ fn it_gets_everywhere_and_touches_nothing() {
 #[test]
 fn it_goes_through_the_middle_of_a_door() {
     let (mut house, mut controller) = (House::new(&DOOR), controller(Settings::default()));
-    controller.go_to(House::at(22, 7));
+    controller.set_goal(House::at(22, 7), Some(0.0));
     assert_eq!(house.run(&mut controller, 30.0), Outcome::Reached);
     assert!(house.nearest_m > 0.2, "came within {} m", house.nearest_m);
 }
@@ -92,7 +92,7 @@ fn it_goes_around_what_appears_on_its_path() {
         let (mut house, mut controller) = (House::new(&DOOR), controller(Settings::default()));
         let place = House::at(along, 7);
         house.movers = vec![Mover { appears_s, ..Mover::new([place, place], 0.2, 0.3) }];
-        controller.go_to(House::at(22, 7));
+        controller.set_goal(House::at(22, 7), Some(0.0));
         let outcome = house.run(&mut controller, 60.0);
         // In the door, the box leaves too little room on both sides.
         assert_eq!(outcome == Outcome::Reached, along != 14, "a box at {place}");
@@ -105,7 +105,7 @@ fn it_waits_for_a_way_that_opens_again() {
     let (mut house, mut controller) = (House::new(&DOOR), controller(Settings::default()));
     let place = House::at(13, 7);
     house.movers = vec![Mover { appears_s: 2.0, goes_s: 6.0, ..Mover::new([place, place], 0.3, 0.3) }];
-    controller.go_to(House::at(22, 7));
+    controller.set_goal(House::at(22, 7), Some(0.0));
     assert_eq!(house.run(&mut controller, 60.0), Outcome::Reached);
     assert_untouched(&house);
 }
@@ -120,7 +120,7 @@ fn it_gets_past_a_box_that_goes_back_and_forth_across_the_door() {
             house.tick(&mut controller);
         }
         for goal in [House::at(22, 7), House::at(4, 3), House::at(22, 3)] {
-            controller.go_to(goal);
+            controller.set_goal(goal, Some(0.0));
             assert_eq!(house.run(&mut controller, 120.0), Outcome::Reached, "phase {phase}, {goal}");
         }
         assert_untouched(&house);
@@ -149,7 +149,7 @@ fn goals_in_walls_outside_and_behind_walls_end_as_near_as_can_be() {
         (Point2::new(9.0, 9.0), 9.0),
     ] {
         let (mut house, mut controller) = (House::new(&rows), controller(Settings::default()));
-        controller.go_to(goal);
+        controller.set_goal(goal, Some(0.0));
         assert_eq!(house.run(&mut controller, 60.0), Outcome::Nearest);
         assert!((house.position() - goal).norm() < at_most_m, "{goal} {}", house.position());
         assert_untouched(&house);
@@ -161,13 +161,13 @@ fn a_trapped_robot_comes_to_an_end() {
     // By the map there is no room for the robot to stand; and a cage with some room.
     for rows in [["#####", "##R##", "#####"], ["#####", "#.R.#", "#####"]] {
         let (mut house, mut controller) = (House::new(&rows), controller(Settings::default()));
-        controller.set_goal(House::at(0, 0));
+        controller.set_goal(House::at(0, 0), None);
         assert_eq!(house.run(&mut controller, 180.0), Outcome::GivenUp);
     }
     let cage =
         ["########", "#......#", "#......#", "#..R...#", "#......#", "########", "#......#", "########"];
     let (mut house, mut controller) = (House::new(&cage), controller(Settings::default()));
-    controller.set_goal(House::at(3, 1));
+    controller.set_goal(House::at(3, 1), None);
     assert_eq!(house.run(&mut controller, 180.0), Outcome::Nearest);
     assert_untouched(&house);
 }
@@ -179,7 +179,7 @@ fn a_robot_shut_in_gets_out_when_it_can() {
     let place = house.position() + nalgebra::Vector2::new(0.45, 0.1);
     house.movers = vec![Mover::new([place, place], 0.2, 0.3)];
     (0..20).for_each(|_| house.tick(&mut controller));
-    controller.go_to(House::at(22, 7));
+    controller.set_goal(House::at(22, 7), Some(0.0));
     assert_eq!(house.run(&mut controller, 60.0), Outcome::Reached);
     assert_untouched(&house);
 }
@@ -187,7 +187,7 @@ fn a_robot_shut_in_gets_out_when_it_can() {
 #[test]
 fn local_exploration_ends_soon_where_nothing_changes() {
     let (mut house, mut controller) = (House::new(&DOOR), controller(Settings::default()));
-    controller.set_goal(House::at(8, 7));
+    controller.set_goal(House::at(8, 7), None);
     let mut explored_s = 0.0;
     loop {
         house.tick(&mut controller);
@@ -208,7 +208,7 @@ fn local_exploration_stays_with_what_moves_and_does_not_touch_it() {
     house.movers =
         vec![Mover { yields_m: 0.3, ..Mover::new([House::at(23, 2), House::at(23, 11)], 0.2, 0.3) }];
     let (mut nearest_m, mut explored_s) = (f64::INFINITY, 0.0);
-    controller.set_goal(House::at(18, 7));
+    controller.set_goal(House::at(18, 7), None);
     while !matches!(controller.status(), Status::Finished(_)) {
         house.tick(&mut controller);
         if controller.status() == Status::Exploring {
@@ -240,7 +240,7 @@ fn it_lives_with_another_robot() {
                     goals += 1;
                     given_up += u32::from(status == Status::Finished(Outcome::GivenUp));
                     let x_m = rng.random_range(0.3..6.2);
-                    controller.set_goal(Point2::new(x_m, rng.random_range(0.3..6.2)));
+                    controller.set_goal(Point2::new(x_m, rng.random_range(0.3..6.2)), None);
                 }
             }
             house.tick(&mut controller);
@@ -280,7 +280,7 @@ fn the_same_again_is_the_same() {
         house.movers = vec![Mover::new([House::at(15, 18), House::at(23, 18)], 0.2, 0.3)];
         let mut trace = Vec::new();
         for goal in [House::at(20, 20), House::at(5, 20), House::at(20, 4)] {
-            controller.set_goal(goal);
+            controller.set_goal(goal, None);
             for _ in 0..300 {
                 house.tick(&mut controller);
                 trace.push([house.pose.translation.x.to_bits(), house.pose.rotation.im.to_bits()]);
@@ -295,9 +295,9 @@ fn the_same_again_is_the_same() {
 fn a_goal_can_be_taken_back() {
     let (mut house, mut controller) = (House::new(&DOOR), controller(Settings::default()));
     assert_eq!((controller.status(), controller.goal()), (Status::Idle, None));
-    controller.set_goal(House::at(22, 7));
+    controller.set_goal(House::at(22, 7), None);
     (0..30).for_each(|_| house.tick(&mut controller));
-    assert_eq!((controller.status(), controller.goal()), (Status::Travelling, Some(&House::at(22, 7))));
+    assert_eq!((controller.status(), controller.goal()), (Status::Travelling, Some(House::at(22, 7))));
     assert!(!controller.path().is_empty());
     controller.cancel();
     (0..20).for_each(|_| house.tick(&mut controller));
@@ -310,7 +310,7 @@ fn a_goal_can_be_taken_back() {
 fn a_map_that_was_replaced_is_read_again() {
     let (mut house, mut controller) = (House::new(&DOOR), controller(Settings::default()));
     let goal = House::at(22, 7);
-    controller.go_to(goal);
+    controller.set_goal(goal, Some(0.0));
     (0..20).for_each(|_| house.tick(&mut controller));
     // In the new map, the door is closed. No transition says so.
     let mut map = house.situation().map.clone();
@@ -327,5 +327,5 @@ fn a_map_that_was_replaced_is_read_again() {
     assert!((end(&mut controller) - goal).norm() < 0.1);
     controller.forget_map();
     assert!(end(&mut controller).x < House::at(13, 0).x);
-    assert_eq!((controller.status(), controller.goal()), (Status::Travelling, Some(&goal)));
+    assert_eq!((controller.status(), controller.goal()), (Status::Travelling, Some(goal)));
 }

@@ -12,13 +12,12 @@ mod world;
 
 use agent::Policy;
 use evaluation::metrics::map_scores;
-use evaluation::physics_trial::{PhysicsSettings, PhysicsTrial, PoseChoice};
-use interfaces::{CellState, GroundTruth, TrueState};
-use localizer::{Localizer, PoseState};
-use mapper::ReadingError;
+use evaluation::physics_trial::{self, PhysicsTrial};
+use interfaces::{CellState, GroundTruth, PoseMode, TrueState};
+use localizer::Localizer;
+use robot::Robot;
 use sim::physics::WorldSpec;
 use std::error::Error;
-use std::ops::ControlFlow;
 use std::time::Instant;
 
 /// A blocked cell farther than this from everything blocked is a wall that is not there, cells.
@@ -38,9 +37,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         };
         let spec = world::block(sides_m, laser, seed).ok_or("no such world")?;
         for (name, pose, is_closing) in [
-            ("exact poses", PoseChoice::Exact, false),
-            ("localized, no loops", PoseChoice::Localized, false),
-            ("localized", PoseChoice::Localized, true),
+            ("exact poses", PoseMode::Exact, false),
+            ("localized, no loops", PoseMode::Localized, false),
+            ("localized", PoseMode::Localized, true),
         ] {
             print!("{}, {name}: ", spec.name);
             run(&spec, seed, pose, is_closing, number(4, 10.0) * 60.0)?;
@@ -52,37 +51,39 @@ fn main() -> Result<(), Box<dyn Error>> {
 fn run(
     spec: &WorldSpec,
     seed: u64,
-    pose: PoseChoice,
+    pose: PoseMode,
     is_closing: bool,
     end_s: f64,
 ) -> Result<(), Box<dyn Error>> {
-    let mut settings = PhysicsSettings::of(spec)?;
+    let mut settings = physics_trial::settings(spec)?;
     settings.pose = pose;
     let pilot = settings.pilot(settings.agent(&Policy::default(), seed)?, seed)?;
     let mut trial = PhysicsTrial::new(spec, seed, &settings, None, pilot)?;
-    if pose == PoseChoice::Localized && !is_closing {
+    if pose == PoseMode::Localized && !is_closing {
         let start = *trial.world.true_pose();
-        trial.localization = Box::new(Localizer::from_nothing(&settings.localizer, &spec.frame, start)?);
+        let localizer = Localizer::from_nothing(&settings.localizer, &spec.frame, start)?;
+        let Robot { mapper, pilot, .. } = trial.robot;
+        trial.robot = Robot::new(Box::new(localizer), mapper, pilot);
     }
     let (mut errors_m, mut uncertain) = ([Vec::new(), Vec::new()], 0);
     let mut corrections = Vec::new();
     let (begin, mut last, mut slowest_s) = (Instant::now(), Instant::now(), 0.0_f64);
-    trial.run_with(|world, reading, belief, _, _| -> Result<_, ReadingError> {
+    while trial.robot.mapper.time() < end_s {
+        let turn = trial.turn()?;
         slowest_s = slowest_s.max(last.elapsed().as_secs_f64());
-        corrections.extend(belief.correction.map(|correction| (reading.time_s, correction, last.elapsed())));
+        corrections.extend(
+            turn.belief.correction.map(|correction| (turn.reading.time_s, correction, last.elapsed())),
+        );
         last = Instant::now();
-        match belief.estimate.is_none_or(|estimate| estimate.state == PoseState::Tracking) {
-            true => {
-                let off = belief.pose.translation.vector - world.true_pose().translation.vector;
-                errors_m[usize::from(!corrections.is_empty())].push(off.norm());
-            }
-            false => uncertain += 1,
+        if turn.belief.is_certain() {
+            let off = turn.belief.pose.translation.vector - trial.world.true_pose().translation.vector;
+            errors_m[usize::from(!corrections.is_empty())].push(off.norm());
+        } else {
+            uncertain += 1;
         }
-        let is_over = reading.time_s >= end_s;
-        Ok(if is_over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
-    })?;
+    }
     let elapsed_s = begin.elapsed().as_secs_f64();
-    let scores = map_scores(&trial.mapper, trial.world.truth());
+    let scores = map_scores(&trial.robot.mapper, trial.world.truth());
     let [before, after] = errors_m.map(quantiles);
     println!(
         "before {before}; after {after}; {uncertain} scans not certain; seen {:.1} %, right {:.1} %, walls that are not \
@@ -101,7 +102,7 @@ fn run(
 
 /// The share of the blocked cells of the map with nothing blocked around them.
 fn wrong_walls<P>(trial: &PhysicsTrial<P>) -> f64 {
-    let (states, truth) = (trial.mapper.states(), trial.world.truth());
+    let (states, truth) = (trial.robot.mapper.states(), trial.world.truth());
     let frame = *states.frame();
     let is_wrong = |index: &&usize| {
         let cell = frame.cell(**index);

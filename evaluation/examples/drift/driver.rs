@@ -1,9 +1,8 @@
-use controller::{Controller, DiffDrive, Situation, Status};
-use evaluation::physics_trial::PhysicsSettings;
+use controller::{Controller, DiffDrive, Driver as _, Situation, Status};
 use interfaces::{Purpose, RandomStream, SettingsError, Twist};
 use mapper::Mapper;
 use nalgebra::Isometry2;
-use robot::Permission;
+use robot::{Permission, Settings};
 
 /// Drives to random cells of the map.
 pub(crate) struct Driver {
@@ -12,10 +11,8 @@ pub(crate) struct Driver {
 }
 
 impl Driver {
-    pub(crate) fn new(settings: &PhysicsSettings, seed: u64) -> Result<Self, SettingsError> {
-        let stream = RandomStream::new(seed, Purpose::Controller);
-        let controller = Controller::new(settings.controller, DiffDrive::new(settings.drive)?, stream)?;
-        Ok(Self { controller, random: RandomStream::new(seed, Purpose::Agent) })
+    pub(crate) fn new(settings: &Settings, seed: u64) -> Result<Self, SettingsError> {
+        Ok(Self { controller: settings.controller(seed)?, random: RandomStream::new(seed, Purpose::Agent) })
     }
 
     pub(crate) fn command(&mut self, map: &Mapper, pose: &Isometry2<f64>, permission: Permission) -> Twist {
@@ -34,7 +31,7 @@ impl Driver {
             let cells = map.states().cells().len() as f64;
             let mut draws = (0..1000).map(|_| self.random.uniform(0.0..cells) as usize);
             if let Some(index) = draws.find(|&index| map.is_candidate(index)) {
-                self.controller.go_to(map.frame().center(map.frame().cell(index)));
+                self.controller.set_goal(map.frame().center(map.frame().cell(index)), Some(0.0));
             }
         }
         if permission == Permission::Rest { Twist::STOP } else { command }

@@ -1,6 +1,7 @@
 use crate::shelves;
-use evaluation::physics_trial::{PhysicsSettings, UnsupportedDrive};
+use evaluation::physics_trial::{self, UnsupportedDrive};
 use interfaces::LaserReading;
+use robot::Settings;
 use sim::physics::{DisplacementSpec, Motion, OdometryError, WorldSpec};
 
 /// Displacements are 20 s apart in the mean.
@@ -176,8 +177,8 @@ impl Options {
     }
 
     /// The settings of the robot in this world, with the parts of the localizer that are switched off.
-    pub(crate) fn settings(&self, spec: &WorldSpec) -> Result<PhysicsSettings, UnsupportedDrive> {
-        let mut settings = PhysicsSettings::of(spec)?;
+    pub(crate) fn settings(&self, spec: &WorldSpec) -> Result<Settings, UnsupportedDrive> {
+        let mut settings = physics_trial::settings(spec)?;
         let localizer = &mut settings.localizer;
         (localizer.weigh_by_arc_length, localizer.gate) = (!self.no_arc, !self.no_gate);
         if self.no_rates {

@@ -9,9 +9,9 @@ use agent::{Stay, Travel};
 use expectation::{Knowledge, gap_worth};
 use interfaces::GroundTruth;
 use mapper::Mapper;
-use nalgebra::Point2;
+use nalgebra::{Isometry2, Point2};
 use patches::Patches;
-use robot::{Belief, Destination, GoalSelector};
+use robot::{Destination, GoalSelector};
 use sim::grid::GridSpec;
 use sim::physics::WorldSpec;
 
@@ -162,21 +162,24 @@ fn knowledge(mapper: &Mapper, cell: usize, truth: f64) -> Knowledge {
 }
 
 impl GoalSelector for Oracle {
-    fn next_goal(&mut self, belief: &Belief, travel: &mut impl Travel) -> Option<Destination> {
-        self.update_trust(belief.mapper);
+    fn next_goal(
+        &mut self,
+        pose: &Isometry2<f64>,
+        mapper: &Mapper,
+        travel: &mut impl Travel,
+    ) -> Option<Destination> {
+        self.update_trust(mapper);
         let mut times = Vec::new();
-        travel.times(belief.mapper, belief.pose, &mut times);
-        self.last = self.best(belief.mapper, &times);
-        let frame = belief.mapper.frame();
+        travel.times(mapper, pose, &mut times);
+        self.last = self.best(mapper, &times);
+        let frame = mapper.frame();
         Some(match &self.last {
             Some(best) => {
                 let cell = frame.cell(self.patches.middle(best.patch));
                 Destination { position: frame.center(cell), stay: Stay::Watch(best.stay) }
             }
             // Nothing has moved yet, or everything is known: wait for one step or second.
-            None => {
-                Destination { position: Point2::from(belief.pose.translation.vector), stay: Stay::Watch(1.0) }
-            }
+            None => Destination { position: Point2::from(pose.translation.vector), stay: Stay::Watch(1.0) },
         })
     }
 

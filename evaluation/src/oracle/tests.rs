@@ -1,6 +1,5 @@
 use super::*;
 use crate::trials::{Experiment, GridRobot, TrialStrategy};
-use agent::Features;
 use interfaces::{Cell, Step, World};
 use mapper::{EstimatorChoice, MapperSettings};
 use nalgebra::Isometry2;
@@ -53,8 +52,7 @@ fn after(steps: usize) -> (GridWorld, Mapper, Oracle) {
 
 fn next_goal(world: &mut GridWorld, mapper: &Mapper, oracle: &mut Oracle) -> (usize, Stay) {
     let pose = world.sense().pose;
-    let belief = Belief::exact(&pose, Features::default(), mapper);
-    let visit = oracle.next_goal(&belief, &mut Straight).unwrap();
+    let visit = oracle.next_goal(&pose, mapper, &mut Straight).unwrap();
     let frame = mapper.frame();
     (frame.index(frame.cell_at(&visit.position)).unwrap(), visit.stay)
 }

@@ -7,6 +7,7 @@ use nalgebra::Isometry2;
 pub(super) struct FullyObserved<W: TrialWorld>(pub(super) W::World);
 
 /// The reading of the sensors, and the cells that are observed instead.
+#[derive(Clone)]
 pub(super) struct FullReading<R> {
     pub(super) of_sensors: R,
     cells: CellReading,

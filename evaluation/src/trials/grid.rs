@@ -1,11 +1,11 @@
 use super::Length;
-use super::{Poses, TrialError, TrialWorld};
+use super::{TrialError, TrialWorld};
 use crate::oracle::Oracle;
 use agent::{Agent, AgentSettings, Policy};
 use controller::{CellDrive, Controller};
-use interfaces::{Purpose, RandomStream};
-use mapper::MapperSettings;
-use robot::{Autonomous, ExactPoses, GoalSelector};
+use interfaces::{CellReading, Purpose, RandomStream};
+use mapper::{EstimatorChoice, Mapper, MapperSettings};
+use robot::{Autonomous, ExactPoses, GoalSelector, Pilot, Robot};
 use sim::grid::{GridGroundTruth, GridSpec, GridWorld};
 
 /// The settings of the robot in grid worlds.
@@ -58,14 +58,6 @@ impl TrialWorld for GridSpec {
         None
     }
 
-    fn mapper(&self, robot: &GridRobot) -> Result<MapperSettings, TrialError> {
-        Ok(robot.mapper.clone())
-    }
-
-    fn localization(&self, _: &GridRobot, _: &mut GridWorld) -> Result<Poses<Self>, TrialError> {
-        Ok(Box::new(ExactPoses))
-    }
-
     fn agent(&self, robot: &GridRobot, policy: &Policy, seed: u64) -> Result<Agent, TrialError> {
         let sensor_radius_m = f64::from(self.sensor_radius) * self.frame().resolution_m();
         let settings = AgentSettings { sensor_radius_m, ..robot.agent.clone() };
@@ -81,8 +73,19 @@ impl TrialWorld for GridSpec {
         robot: &GridRobot,
         selector: G,
         seed: u64,
-    ) -> Result<Autonomous<G, CellDrive>, TrialError> {
+    ) -> Result<Autonomous<G, Controller<CellDrive>>, TrialError> {
         let stream = RandomStream::new(seed, Purpose::GridController);
         Ok(Autonomous::new(selector, Controller::new(robot.controller, CellDrive, stream)?))
+    }
+
+    fn robot<P: Pilot>(
+        &self,
+        robot: &GridRobot,
+        estimator: &EstimatorChoice,
+        _: &mut GridWorld,
+        pilot: P,
+    ) -> Result<Robot<CellReading, P>, TrialError> {
+        let settings = MapperSettings { estimator: estimator.clone(), ..robot.mapper.clone() };
+        Ok(Robot::new(Box::new(ExactPoses), Mapper::new(&settings, *self.frame())?, pilot))
     }
 }

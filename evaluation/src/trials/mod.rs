@@ -22,7 +22,7 @@ pub use metric::{Metric, Sample, Trial};
 pub use physics::PhysicsRobot;
 pub use run::{TrialSettings, TrialStep, run_trial};
 pub use strategy::TrialStrategy;
-pub use world::{Poses, TrialWorld};
+pub use world::TrialWorld;
 
 use crate::physics_trial::UnsupportedDrive;
 use interfaces::SettingsError;

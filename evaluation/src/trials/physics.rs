@@ -1,14 +1,15 @@
 use super::Length;
-use super::{Poses, TrialError, TrialWorld};
+use super::{TrialError, TrialWorld};
 use crate::oracle::Oracle;
-use crate::physics_trial::{LOCAL_STEPS, PhysicsSettings, PoseChoice, UnsupportedDrive};
+use crate::physics_trial::{self, UnsupportedDrive};
 use agent::{Agent, Policy, Reward};
-use controller::DiffDrive;
-use mapper::MapperSettings;
-use robot::{Autonomous, GoalSelector};
+use controller::{Controller, DiffDrive};
+use interfaces::{LaserReading, PoseMode};
+use mapper::EstimatorChoice;
+use robot::{Autonomous, GoalSelector, LOCAL_STEPS, Pilot, Robot, Settings};
 use sim::physics::{PhysicsGroundTruth, PhysicsWorld, WorldSpec};
 
-/// The settings of the robot in physics worlds; all others are those of [`PhysicsSettings::of`].
+/// The settings of the robot in physics worlds; all others are those of [`physics_trial::settings`].
 #[derive(Clone, Copy, Debug)]
 pub struct PhysicsRobot {
     /// The reward of the learner.
@@ -16,7 +17,7 @@ pub struct PhysicsRobot {
     /// The maximum number of steps of local exploration.
     pub max_steps: u32,
     /// How the robot knows its pose; `None`: as the world suggests.
-    pub pose: Option<PoseChoice>,
+    pub pose: Option<PoseMode>,
 }
 
 impl Default for PhysicsRobot {
@@ -26,8 +27,8 @@ impl Default for PhysicsRobot {
 }
 
 impl PhysicsRobot {
-    fn settings(&self, spec: &WorldSpec) -> Result<PhysicsSettings, UnsupportedDrive> {
-        let mut settings = PhysicsSettings::of(spec)?;
+    fn settings(&self, spec: &WorldSpec) -> Result<Settings, UnsupportedDrive> {
+        let mut settings = physics_trial::settings(spec)?;
         settings.agent.reward = self.reward;
         settings.controller.exploration.max_steps = self.max_steps;
         settings.pose = self.pose.unwrap_or(settings.pose);
@@ -56,6 +57,10 @@ impl TrialWorld for WorldSpec {
         None
     }
 
+    fn in_own_frame(&self, robot: &PhysicsRobot, seed: u64) -> Option<Self> {
+        Some(physics_trial::in_own_frame(&robot.settings(self).ok()?, self, seed)?.0)
+    }
+
     fn start(&self, seed: u64) -> PhysicsWorld {
         PhysicsWorld::new(self, seed)
     }
@@ -66,18 +71,6 @@ impl TrialWorld for WorldSpec {
 
     fn collisions(world: &PhysicsWorld) -> Option<u64> {
         Some(world.contacts().iter().filter(|contact| contact.moving).count() as u64)
-    }
-
-    fn mapper(&self, robot: &PhysicsRobot) -> Result<MapperSettings, TrialError> {
-        Ok(robot.settings(self)?.mapper)
-    }
-
-    fn localization(
-        &self,
-        robot: &PhysicsRobot,
-        world: &mut PhysicsWorld,
-    ) -> Result<Poses<Self>, TrialError> {
-        Ok(robot.settings(self)?.localization(world, None)?)
     }
 
     fn agent(&self, robot: &PhysicsRobot, policy: &Policy, seed: u64) -> Result<Agent, TrialError> {
@@ -93,7 +86,19 @@ impl TrialWorld for WorldSpec {
         robot: &PhysicsRobot,
         selector: G,
         seed: u64,
-    ) -> Result<Autonomous<G, DiffDrive>, TrialError> {
+    ) -> Result<Autonomous<G, Controller<DiffDrive>>, TrialError> {
         Ok(robot.settings(self)?.pilot(selector, seed)?)
+    }
+
+    fn robot<P: Pilot>(
+        &self,
+        robot: &PhysicsRobot,
+        estimator: &EstimatorChoice,
+        world: &mut PhysicsWorld,
+        pilot: P,
+    ) -> Result<Robot<LaserReading, P>, TrialError> {
+        let mut settings = robot.settings(self)?;
+        settings.mapper.estimator = estimator.clone();
+        Ok(physics_trial::robot(&settings, world, None, pilot)?)
     }
 }

@@ -2,13 +2,13 @@ use super::full_observation::FullyObserved;
 use super::sampler::Sampler;
 use super::{Experiment, Sample, Trial, TrialError, TrialStrategy, TrialWorld};
 use crate::map_hash::map_hash;
-use crate::metrics::rate_scores;
+use crate::metrics::{RateScores, rate_scores};
 use crate::oracle::Oracle;
-
 use agent::Features;
+use controller::Controller;
 use interfaces::World;
-use mapper::{EstimatorChoice, Mapper, MapperSettings};
-use robot::{Autonomous, Belief, ExactPoses, GoalSelector, Pilot, Tour, explore};
+use mapper::{EstimatorChoice, Mapper};
+use robot::{Autonomous, ExactPoses, GoalSelector, Pilot, Robot, Tour, Turn, explore};
 use std::ops::ControlFlow;
 
 /// Everything that determines a trial.
@@ -28,14 +28,14 @@ pub struct TrialSettings<'a, W: TrialWorld> {
     pub experiment: &'a Experiment<W>,
 }
 
-/// One reading of a trial.
+/// One turn of the robot of a trial.
 pub struct TrialStep<'a, W: TrialWorld> {
     /// The world.
     pub world: &'a W::World,
-    /// The reading.
-    pub reading: &'a <W::World as World>::Reading,
-    /// What the robot knows: the inputs of the pilot.
-    pub belief: &'a Belief<'a>,
+    /// What the robot has made of the reading of its sensors.
+    pub turn: &'a Turn<<W::World as World>::Reading, <W::World as World>::Command>,
+    /// The map.
+    pub mapper: &'a Mapper,
     /// The pilot.
     pub pilot: &'a mut dyn Pilot<Command = <W::World as World>::Command>,
     /// The sample at this reading; `None` for most readings.
@@ -54,7 +54,10 @@ pub fn run_trial<W: TrialWorld>(
     trial: &TrialSettings<W>,
     observe: impl FnMut(TrialStep<W>) -> bool,
 ) -> Result<Option<Trial>, TrialError> {
-    let (world, seed, robot) = (trial.world, trial.seed, &trial.experiment.robot);
+    let (seed, robot) = (trial.seed, &trial.experiment.robot);
+    let own = trial.world.in_own_frame(robot, seed);
+    let world = own.as_ref().unwrap_or(trial.world);
+    let trial = &TrialSettings { world, ..*trial };
     match trial.strategy {
         TrialStrategy::Agent(policy) => {
             let agent = world.agent(robot, policy, seed)?;
@@ -72,61 +75,89 @@ pub fn run_trial<W: TrialWorld>(
 
 fn run<W: TrialWorld, G: GoalSelector>(
     trial: &TrialSettings<W>,
-    mut pilot: Autonomous<G, W::Drive>,
+    pilot: Autonomous<G, Controller<W::Drive>>,
     reveal: impl Fn(&mut G, &W::Truth),
-    mut observe: impl FnMut(TrialStep<W>) -> bool,
+    observe: impl FnMut(TrialStep<W>) -> bool,
 ) -> Result<Option<Trial>, TrialError> {
     let mut world = trial.world.start(trial.seed);
-    let settings =
-        MapperSettings { estimator: trial.estimator.clone(), ..trial.world.mapper(&trial.experiment.robot)? };
-    let mut mapper = Mapper::new(&settings, *interfaces::GroundTruth::frame(W::truth(&world)))?;
-    let mut sampler = Sampler::new(trial.experiment.length);
-    let (mut collisions, mut rates) = (None, None);
-    let mut step = |world: &W::World,
-                    reading: &<W::World as World>::Reading,
-                    belief: &Belief,
-                    pilot: &mut Autonomous<G, W::Drive>| {
-        let truth = W::truth(world);
-        reveal(pilot.selector_mut(), truth);
-        if let Some(count) = W::collisions(world) {
-            *collisions.get_or_insert(0) += count;
-        }
-        let is_complete = sampler.is_complete(belief.mapper.time());
-        let sample = sampler.update::<W>(belief.mapper, truth);
-        if is_complete {
-            rates = Some(rate_scores(belief.mapper, truth));
-        }
-        let goes_on = observe(TrialStep { world, reading, belief, pilot, sample, is_complete });
-        pilot.take_messages(); // messages that `observe` has not taken must not accumulate
-        Ok::<_, TrialError>(if goes_on && !is_complete {
-            ControlFlow::Continue(())
-        } else {
-            ControlFlow::Break(())
-        })
-    };
+    let mut robot = trial.world.robot(&trial.experiment.robot, trial.estimator, &mut world, pilot)?;
+    let sampler = Sampler::new(trial.experiment.length);
+    let mut measured = Measured { sampler, collisions: None, rates: None, reveal, observe };
     if *trial.strategy == TrialStrategy::FullObservation {
-        let mut world = FullyObserved::<W>(world);
-        explore(&mut world, &mut ExactPoses, &mut mapper, &mut pilot, |world, reading, belief, pilot| {
-            step(&world.0, &reading.of_sensors, belief, pilot)
+        let Robot { mapper, pilot, .. } = robot;
+        let (mut world, mut seeing) =
+            (FullyObserved::<W>(world), Robot::new(Box::new(ExactPoses), mapper, pilot));
+        explore(&mut world, &mut seeing, |world, robot, turn| {
+            let Turn { reading, belief, features, command } = turn.clone();
+            let of_sensors = Turn { reading: reading.of_sensors, belief, features, command };
+            measured.measure(&world.0, robot, &of_sensors)
         })?;
-    } else {
-        let mut poses = trial.world.localization(&trial.experiment.robot, &mut world)?;
-        explore(&mut world, poses.as_mut(), &mut mapper, &mut pilot, step)?;
+        let Robot { mapper, pilot, .. } = seeing;
+        return Ok(measured.result(trial, mapper, &pilot));
     }
-    Ok(rates.map(|rates| Trial {
-        world: trial.world.name().to_owned(),
-        estimator: trial.estimator.name().to_owned(),
-        strategy: trial.strategy.name().to_owned(),
-        seed: trial.seed,
-        samples: sampler.into_samples(),
-        strategy_share: pilot
-            .strategies(Features::of(&mut mapper))
-            .into_iter()
-            .map(|strategy| (strategy.name, strategy.share))
-            .collect(),
-        false_change_events: rates.false_change_events,
-        false_map_changes: rates.false_map_changes,
-        collisions,
-        map_hash: map_hash(&mapper),
-    }))
+    explore(&mut world, &mut robot, |world, robot, turn| measured.measure(world, robot, turn))?;
+    let Robot { mapper, pilot, .. } = robot;
+    Ok(measured.result(trial, mapper, &pilot))
+}
+
+/// The measurements of a trial.
+struct Measured<V, O> {
+    sampler: Sampler,
+    collisions: Option<u64>,
+    /// The rates at the end.
+    rates: Option<RateScores>,
+    reveal: V,
+    observe: O,
+}
+
+impl<V, O> Measured<V, O> {
+    fn measure<W: TrialWorld, G: GoalSelector, R>(
+        &mut self,
+        world: &W::World,
+        robot: &mut Robot<R, Autonomous<G, Controller<W::Drive>>>,
+        turn: &Turn<<W::World as World>::Reading, <W::World as World>::Command>,
+    ) -> Result<ControlFlow<()>, TrialError>
+    where
+        V: Fn(&mut G, &W::Truth),
+        O: FnMut(TrialStep<W>) -> bool,
+    {
+        let (truth, Robot { mapper, pilot, .. }) = (W::truth(world), &mut *robot);
+        (self.reveal)(pilot.selector_mut(), truth);
+        if let Some(count) = W::collisions(world) {
+            *self.collisions.get_or_insert(0) += count;
+        }
+        let is_complete = self.sampler.is_complete(mapper.time());
+        let sample = self.sampler.update::<W>(mapper, truth);
+        if is_complete {
+            self.rates = Some(rate_scores(mapper, truth));
+        }
+        let step = TrialStep { world, turn, mapper, pilot, sample, is_complete };
+        let goes_on = (self.observe)(step) && !is_complete;
+        robot.pilot.take_messages(); // messages that `observe` has not taken must not accumulate
+        Ok(if goes_on { ControlFlow::Continue(()) } else { ControlFlow::Break(()) })
+    }
+
+    /// The result; `None` of a trial that was canceled.
+    fn result<W: TrialWorld>(
+        self,
+        trial: &TrialSettings<W>,
+        mut mapper: Mapper,
+        pilot: &impl Pilot,
+    ) -> Option<Trial> {
+        let Self { sampler, collisions, rates, .. } = self;
+        let rates = rates?;
+        let strategies = pilot.strategies(Features::of(&mut mapper)).into_iter();
+        Some(Trial {
+            world: trial.world.name().to_owned(),
+            estimator: trial.estimator.name().to_owned(),
+            strategy: trial.strategy.name().to_owned(),
+            seed: trial.seed,
+            samples: sampler.into_samples(),
+            strategy_share: strategies.map(|strategy| (strategy.name, strategy.share)).collect(),
+            false_change_events: rates.false_change_events,
+            false_map_changes: rates.false_map_changes,
+            collisions,
+            map_hash: map_hash(&mapper),
+        })
+    }
 }

@@ -1,5 +1,5 @@
 use super::*;
-use crate::physics_trial::PoseChoice;
+use interfaces::PoseMode;
 use mapper::Paper;
 use sim::grid::{GenerateSettings, GridSpec};
 use sim::physics::WorldSpec;
@@ -59,7 +59,7 @@ fn a_robot_that_drifts_is_localized_unless_its_poses_are_chosen() {
         trials(drifting.clone(), 60, &["recency"], robot).remove(0)
     };
     let [default, localized, odometry] =
-        [None, Some(PoseChoice::Localized), Some(PoseChoice::Odometry)].map(trial);
+        [None, Some(PoseMode::Localized), Some(PoseMode::Odometry)].map(trial);
     assert_eq!(default.map_hash, localized.map_hash);
     let [localized, odometry] = [localized, odometry].map(|trial| trial.false_change_events);
     assert!(5 * localized < odometry, "{localized} false changes, {odometry} by odometry");

@@ -2,18 +2,15 @@ use super::Length;
 use super::TrialError;
 use crate::oracle::Oracle;
 use agent::{Agent, Policy};
-use controller::Drive;
+use controller::{Controller, Drive};
 use interfaces::{GroundTruth, Reading, World};
-use mapper::MapperSettings;
-use robot::{Autonomous, GoalSelector, Localization};
-
-/// What gives the readings of a world their poses.
-pub type Poses<W> = Box<dyn Localization<<<W as TrialWorld>::World as World>::Reading>>;
+use mapper::EstimatorChoice;
+use robot::{Autonomous, GoalSelector, Pilot, Robot};
 
 /// The specification of a world in which trials run, of one kind.
 pub trait TrialWorld: Sized + Sync {
     /// The simulated world.
-    type World: World<Reading: Reading>;
+    type World: World<Reading: Reading + Clone, Command: Clone>;
     /// The ground truth of the simulated world.
     type Truth: GroundTruth;
     /// The settings of the robot that are the same in all worlds.
@@ -35,6 +32,11 @@ pub trait TrialWorld: Sized + Sync {
     /// The range of the sensor of a grid world, in cells.
     fn sensor_radius(&self) -> Option<u32>;
 
+    /// The world in the frame of the robot's own map; `None` if the robot knows the frame of the world.
+    fn in_own_frame(&self, _: &Self::Robot, _seed: u64) -> Option<Self> {
+        None
+    }
+
     /// The world at its start.
     fn start(&self, seed: u64) -> Self::World;
 
@@ -43,20 +45,6 @@ pub trait TrialWorld: Sized + Sync {
 
     /// The number of collisions of the moving robot since the last reading; `None` where no robot can collide.
     fn collisions(world: &Self::World) -> Option<u64>;
-
-    /// The settings of the mapper; the estimator in these settings is not used.
-    ///
-    /// # Errors
-    ///
-    /// When the controller cannot drive the robot.
-    fn mapper(&self, robot: &Self::Robot) -> Result<MapperSettings, TrialError>;
-
-    /// What gives the readings of a world their poses.
-    ///
-    /// # Errors
-    ///
-    /// When the controller cannot drive the robot.
-    fn localization(&self, robot: &Self::Robot, world: &mut Self::World) -> Result<Poses<Self>, TrialError>;
 
     /// The agent that follows `policy`.
     ///
@@ -78,5 +66,18 @@ pub trait TrialWorld: Sized + Sync {
         robot: &Self::Robot,
         selector: G,
         seed: u64,
-    ) -> Result<Autonomous<G, Self::Drive>, TrialError>;
+    ) -> Result<Autonomous<G, Controller<Self::Drive>>, TrialError>;
+
+    /// The robot at its start in a world.
+    ///
+    /// # Errors
+    ///
+    /// When a setting is out of range.
+    fn robot<P: Pilot>(
+        &self,
+        robot: &Self::Robot,
+        estimator: &EstimatorChoice,
+        world: &mut Self::World,
+        pilot: P,
+    ) -> Result<Robot<<Self::World as World>::Reading, P>, TrialError>;
 }

@@ -14,11 +14,11 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("agent", &["interfaces", "mapper"]),
     ("controller", &["interfaces"]),
     ("robot", &["interfaces", "mapper", "localizer", "agent", "controller"]),
-    ("survey", &["interfaces", "mapper", "localizer", "logs", "agent", "robot"]),
+    ("survey", &["interfaces", "mapper", "localizer", "logs", "robot"]),
     ("results", &["interfaces", "mapper"]),
     ("evaluation", &["interfaces", "sim", "mapper", "localizer", "agent", "controller", "robot", "results"]),
     ("reports", &["interfaces", "sim", "robot", "results", "evaluation"]),
-    ("environments", &["interfaces", "sim", "worldfile", "mapper", "localizer", "evaluation"]),
+    ("environments", &["interfaces", "sim", "worldfile", "mapper", "robot", "evaluation"]),
     (
         "python",
         &[
@@ -46,8 +46,6 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "agent",
             "controller",
             "robot",
-            "logs",
-            "survey",
             "results",
             "evaluation",
         ],

@@ -1,7 +1,7 @@
 //! The files of a bag: found out by content, put in order, unpacked.
 
 use super::{mcap, sqlite};
-use crate::bounds::Unpacked;
+use crate::bounds::{self, Unpacked};
 use crate::bytes::Bytes;
 use crate::error::LogError;
 use serde::Deserialize;
@@ -86,7 +86,9 @@ fn unpacked(bytes: &Bytes) -> io::Result<(Format, NamedTempFile)> {
     let mut input = bytes.open()?;
     let packed = input.seek(io::SeekFrom::End(0))?;
     input.rewind()?;
-    let mut decoder = Unpacked::new(zstd::stream::read::Decoder::new(input)?, packed, "zstd -d FILE");
+    let folder = std::env::temp_dir();
+    let decoder = Unpacked::new(zstd::stream::read::Decoder::new(input)?, packed, "zstd -d FILE");
+    let mut decoder = decoder.into_folder(&folder, bounds::free_bytes(&folder));
     let mut start = Vec::new();
     decoder.by_ref().take(16).read_to_end(&mut start)?;
     let format = Format::of(&start)

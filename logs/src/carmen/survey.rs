@@ -75,7 +75,8 @@ impl Survey {
         let odometry = if has_origins { timed } else { untimed };
         let begin_s = times_s.first().copied().and_then(since_epoch);
         let pose_source = if odometry_poses > 0 { PoseSource::OdometryLines } else { PoseSource::Standing };
-        let impossible = odometry_times.impossible(&times_s).or_else(|| doubts.impossible(0));
+        let stands = odometry.stands() && standing.looks_so();
+        let impossible = odometry_times.impossible(&times_s).or_else(|| doubts.impossible(0, stands));
         let Times { times_s, has_times, note } = times::repaired(&times_s);
         notes.extend(note);
         let duration_s = times_s.last().copied().unwrap_or_default();
@@ -86,7 +87,7 @@ impl Survey {
             begin_s: begin_s.filter(|_| has_times),
             pose_source,
             odometry_poses,
-            stands: odometry.stands() && standing.looks_so(),
+            stands,
             odom_origin: odom_origin.unwrap_or_default(),
             scan_topics: Vec::new(),
             notes,

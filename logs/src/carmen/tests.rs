@@ -238,9 +238,15 @@ fn impossible(text: &str) -> Option<String> {
 fn logs_that_cannot_be_true_are_named() {
     let right = |time_s: f64| format!("ODOM {} 0 0 0 0 0 {time_s} host {time_s}\n", (time_s * 0.3).sin());
     assert_eq!(impossible(&room(1.0, right)), None);
-    let expected = "the ranges look like millimetres: in 40 of 40 scans, their median is beyond 200 m (the first: 2580, which \
+    let expected = "the ranges look like millimetres: in 40 of 40 scans, their median is beyond 100 m (the first: 2580, which \
                     would be 2.58 m); ranges are in metres: divide them by 1000";
     assert_eq!(impossible(&room(1000.0, right)).unwrap(), expected);
+    assert!(
+        impossible(&room(100.0, right)).unwrap().starts_with("the ranges look like centimetres: in 40 of")
+    );
+    assert!(
+        impossible(&room(0.001, right)).unwrap().starts_with("the ranges look like kilometres: in 40 of")
+    );
     let swapped =
         |time_s: f64| format!("ODOM {time_s} 0 0 0 0 0 {} host {time_s}\n", 5.0 + (time_s * 0.3).sin());
     let why = impossible(&room(1.0, swapped)).unwrap();

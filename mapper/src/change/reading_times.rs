@@ -105,7 +105,9 @@ impl ReadingTimes {
                 Some(offset) => Ok(self.old.len() + offset as usize),
                 None => self.old.binary_search_by_key(&reading, |&(kept, _)| kept),
             };
-            slot.ok().and_then(|slot| is_in_use.get_mut(slot)).into_iter().for_each(|is| *is = true);
+            if let Some(is) = slot.ok().and_then(|slot| is_in_use.get_mut(slot)) {
+                *is = true;
+            }
         }
         let passed = self.recent.drain(..MAX_RECENT / 2);
         self.old.extend((self.start..).zip(passed));

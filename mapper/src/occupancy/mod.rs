@@ -11,7 +11,6 @@
 mod footprint;
 mod inverse_sensor_model;
 mod log_odds_grid;
-mod no_return;
 mod projection;
 mod segmentation;
 mod surface_grid;
@@ -20,7 +19,6 @@ use crate::change::CellMap;
 use crate::{Growth, MapperSettings};
 use interfaces::{Cell, Values};
 use log_odds_grid::LogOddsGrid;
-pub use no_return::{NoReturn, NoReturnEvidence, NoReturns};
 pub use projection::{BeamReturn, ProjectedScan};
 use std::fmt;
 use std::sync::Arc;

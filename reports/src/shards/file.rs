@@ -33,7 +33,7 @@ struct Appended {
 
 impl ShardFile {
     /// Opens the file of the shard of `header` in a folder; folder and file are made unless they exist. A line that
-    /// was cut off at the end is removed.
+    /// was cut off at the end is removed. If another build has begun the shard, it is marked as one of several builds.
     ///
     /// # Errors
     ///
@@ -53,6 +53,9 @@ impl ShardFile {
             return Err(not_a_shard(&path));
         }
         file.set_len(scan.intact).and_then(|()| file.seek(SeekFrom::Start(scan.intact))).map_err(failed)?;
+        if let Some(known) = scan.header.as_ref().filter(|known| known.check_build().is_err()) {
+            mark(&mut file, known).map_err(failed)?;
+        }
         if scan.header.is_none() {
             file.write_all(line.as_bytes()).map_err(failed)?;
             scan.intact = line.len() as u64;
@@ -112,6 +115,16 @@ impl ShardFile {
         let appended = self.file.lock().unwrap_or_else(PoisonError::into_inner);
         appended.file.sync_data().map_err(|why| OutputError::new(&self.path, why))
     }
+}
+
+/// Marks a shard as one of several builds: what follows is of this one, and no program promises the bits of both.
+fn mark(file: &mut File, known: &Header) -> io::Result<()> {
+    let [before, line] = [known.line()?, known.of_several_builds().line()?];
+    if before.len() == line.len() {
+        file.rewind()?;
+        file.write_all(line.as_bytes())?;
+    }
+    file.seek(SeekFrom::End(0)).map(drop)
 }
 
 /// The same error once more.

@@ -8,6 +8,9 @@ use xxhash_rust::xxh3::{Xxh3, xxh3_64};
 /// The version of the format of the files of shards.
 const SCHEMA: u32 = 2;
 
+/// What a shard has in place of its build when another one has gone on with it, and a report of such shards.
+pub const SEVERAL_BUILDS: &str = "mixed of several";
+
 /// The first line of the file of a shard: what all shards of an experiment have in common, and the shard.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Header {
@@ -64,6 +67,11 @@ impl Header {
     /// The header of another shard of the same experiment.
     pub fn of_shard(&self, shard: Shard) -> Self {
         Self { shard: shard.number(), shards: shard.count(), ..self.clone() }
+    }
+
+    /// The header with the mark of a shard whose trials are of several builds, which is as long.
+    pub(super) fn of_several_builds(&self) -> Self {
+        Self { build: SEVERAL_BUILDS.to_owned(), ..self.clone() }
     }
 
     /// Checks that this program computes trials as the one that began the shard.

@@ -3,7 +3,7 @@
 use super::file::{check_builds, shards_in};
 use super::line::{read, unseal};
 use super::scan::Scan;
-use super::{Header, Shard, ShardError, array};
+use super::{Header, SEVERAL_BUILDS, Shard, ShardError, array};
 use evaluation::trials::Trial;
 use rayon::prelude::*;
 use std::collections::VecDeque;
@@ -80,12 +80,17 @@ impl Shards {
     }
 
     /// Checks that this program can merge the shards: that they are its own, of its version and, unless it allows another
-    /// one, of its build, and that no trial is missing.
+    /// one, of its build, and that no trial is missing. Returns what is said of the build if not all shards are of this one.
     ///
     /// # Errors
     ///
     /// When they are not.
-    pub fn check(&self, program: &str, version: &str, allows_other_build: bool) -> Result<(), ShardError> {
+    pub fn check(
+        &self,
+        program: &str,
+        version: &str,
+        allows_other_build: bool,
+    ) -> Result<Option<&'static str>, ShardError> {
         let refuse = |why: String| Err(ShardError::Merge { folder: self.folder.clone(), why });
         let shown = self.folder.display();
         let Header { program: found, version: found_version, .. } = &self.header;
@@ -95,12 +100,13 @@ impl Shards {
         if found_version != version {
             return refuse(format!("has shards of version {found_version}: merge them with that version"));
         }
-        if !allows_other_build {
-            check_builds(&self.folder)?;
-        }
+        let other_build = match check_builds(&self.folder) {
+            Err(_) if allows_other_build => Some(SEVERAL_BUILDS),
+            checked => checked.map(|()| None)?,
+        };
         let missing = self.missing();
         let Some((first, count)) = missing.first().zip(self.header.shard().map(Shard::count)) else {
-            return Ok(());
+            return Ok(other_build);
         };
         let file = Shard::new(*first, count).map(Shard::file_name).unwrap_or_default();
         let which = format!("the shards {} of {count} lack trials, the first is {file}", array(&missing));

@@ -23,7 +23,7 @@ mod status;
 mod tests;
 
 pub use file::{ShardFile, check_builds};
-pub use header::Header;
+pub use header::{Header, SEVERAL_BUILDS};
 pub use line::Cost;
 pub use merge::{Shards, Trials};
 pub use scan::Scan;

@@ -35,19 +35,28 @@ pub(super) fn remove_folder(path: &Path) -> Result<(), OutputError> {
     run(path, || unless_missing(fs::remove_dir_all(path)))
 }
 
-/// Removes a folder with the files in it; the file `last` goes last.
+/// Removes the files in a folder, and the folder, in which the file `last` goes last. A folder in it is not of a run: it
+/// stays, and with it `last`.
 pub(super) fn remove_run(folder: &Path, last: &str) -> Result<(), OutputError> {
     run(folder, || {
         for entry in fs::read_dir(folder)? {
             let entry = entry?;
-            match entry.file_type()?.is_dir() {
-                true => fs::remove_dir_all(entry.path())?,
-                false if entry.file_name() == last => {}
-                false => fs::remove_file(entry.path())?,
+            if !entry.file_type()?.is_dir() && entry.file_name() != last {
+                fs::remove_file(entry.path())?;
             }
         }
-        fs::remove_dir_all(folder)
+        if fs::read_dir(folder)?.count() > 1 { Ok(()) } else { fs::remove_dir_all(folder) }
     })
+}
+
+/// The content of a file; `None` if there is none. Links and what is not a file are errors: a pipe would wait for ever.
+pub(super) fn read(path: &Path) -> io::Result<Option<Vec<u8>>> {
+    match path.symlink_metadata() {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
+        Err(error) => Err(error),
+        Ok(known) if known.is_file() => fs::read(path).map(Some),
+        Ok(_) => Err(io::Error::other("it is not a regular file")),
+    }
 }
 
 /// Returns when a file or folder is on the disk.

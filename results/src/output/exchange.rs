@@ -7,8 +7,6 @@ use super::OutputError;
 use super::disk;
 use super::marker::{MARKER, Marker};
 use serde::{Deserialize, Serialize};
-use std::fs;
-use std::io;
 use std::path::{Path, PathBuf};
 
 /// The journal, and the folder for the results of the earlier run, inside the folder of the unfinished run.
@@ -33,11 +31,15 @@ impl Exchange {
     /// # Errors
     ///
     /// When the journal cannot be read.
-    pub(super) fn begun(unfinished: &Path) -> io::Result<Option<Self>> {
-        match fs::read(unfinished.join(JOURNAL)) {
-            Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
-            journal => Ok(Some(serde_json::from_slice(&journal?)?)),
-        }
+    pub(super) fn begun(unfinished: &Path) -> Result<Option<Self>, OutputError> {
+        let path = unfinished.join(JOURNAL);
+        let Some(text) = disk::read(&path).map_err(|why| OutputError::new(&path, why))? else {
+            return Ok(None);
+        };
+        let begun = serde_json::from_slice(&text).ok();
+        let begun = begun.filter(|begun: &Self| begun.earlier.is_valid() && begun.new.is_valid());
+        let why = "no run of this version has left it; move its folder, or give another one by --out";
+        begun.map(Some).ok_or_else(|| OutputError::refused(&path, why.into()))
     }
 
     /// Writes the journal: from now on the exchange is finished, by this run or by the next one.

@@ -17,39 +17,12 @@ const LOCK_CONTENT: &[u8] =
     b"A run of curious writes here. What a killed run leaves is kept by the next one.\n";
 /// Results of the programs whose names do not depend on the world: a folder that has other files with these names is
 /// refused before the run. Other names are checked at the end.
-const RESULTS: [&str; 31] = [
-    "map_log.rrd",
-    "summary.json",
-    "report.json",
-    "report.html",
-    "trials.csv",
-    "trials.parquet",
-    "map.pgm",
-    "map.yaml",
-    "permanent.pgm",
-    "permanent.yaml",
-    "speed_mask.pgm",
-    "speed_mask.yaml",
-    "keepout_mask.pgm",
-    "keepout_mask.yaml",
-    "cell_statistics.csv",
-    "layers.npy",
-    "layers.json",
-    "places.png",
-    "trajectory.tum",
-    "trajectory_true.tum",
-    "trajectory.png",
-    "figure3.png",
-    "figure3.svg",
-    "curves.png",
-    "curves.svg",
-    "figure5.png",
-    "occupancy.png",
-    "interval.png",
-    "change_probability.png",
-    "recency.png",
-    "predicted.png",
-];
+const RESULTS: &str = "\
+    map_log.rrd summary.json report.json report.html trials.csv trials.parquet map.pgm map.yaml \
+    permanent.pgm permanent.yaml speed_mask.pgm speed_mask.yaml keepout_mask.pgm keepout_mask.yaml \
+    cell_statistics.csv layers.npy layers.json places.png trajectory.tum trajectory_true.tum \
+    trajectory.png figure3.png figure3.svg curves.png curves.svg figure5.png occupancy.png \
+    interval.png change_probability.png recency.png predicted.png";
 
 /// The folder of the results of one run.
 ///
@@ -84,19 +57,23 @@ impl RunFolder {
     /// When the folder cannot be written, when another run is writing to it, or when results would replace a file that
     /// no run wrote, or that was changed since ([`OutputError::is_refusal`]).
     pub fn open(path: &Path) -> Result<Self, OutputError> {
+        if disk::read(&path.join(LOCK)).is_ok_and(|lock| lock.as_deref() == Some(LOCK_CONTENT)) {
+            let why = "a run writes there, or has left it when it was killed; give another folder by --out";
+            return Err(OutputError::refused(path, why.into()));
+        }
         let is_new = !path.exists();
         let unfinished = path.join(UNFINISHED);
         let mut earlier = Marker::read(path)?;
         check_unfinished(&unfinished)?;
         let failed = |why| OutputError::new(path, why);
-        let begun = Exchange::begun(&unfinished).map_err(failed)?;
+        let begun = Exchange::begun(&unfinished)?;
         if begun.is_none() {
             check_names(path, &earlier)?; // before anything is made
         }
         let locked = lock_folder(path, &unfinished)?;
         let mut notes = Vec::new();
         // Again: another run may have ended it.
-        if let Some(exchange) = Exchange::begun(&unfinished).map_err(failed)? {
+        if let Some(exchange) = Exchange::begun(&unfinished)? {
             exchange.carry_out(path, &unfinished, &mut Moves::default())?;
             Exchange::clean_up(&unfinished)?;
             notes.push(format!("the results of a run that was killed are now in {}", path.display()));
@@ -183,7 +160,8 @@ impl RunFolder {
     fn written(&self) -> Result<BTreeSet<String>, OutputError> {
         let mut names = BTreeSet::new();
         for entry in fs::read_dir(&self.unfinished).map_err(|why| self.failed(why))? {
-            names.extend(entry.map_err(|why| self.failed(why))?.file_name().into_string().ok());
+            let entry = entry.map_err(|why| self.failed(why))?;
+            names.extend(entry.file_name().into_string().ok().filter(|_| !entry.path().is_dir()));
         }
         names.remove(LOCK);
         Ok(names)
@@ -252,7 +230,8 @@ fn check_unfinished(unfinished: &Path) -> Result<(), OutputError> {
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
         entries => entries.map_err(|why| OutputError::new(unfinished, why))?,
     };
-    let lock = fs::read(unfinished.join(LOCK)).unwrap_or_default();
+    let lock = disk::read(&unfinished.join(LOCK)).map(Option::unwrap_or_default);
+    let lock = lock.unwrap_or_else(|_| b"not a file".into());
     let is_alone = lock.is_empty() && entries.flatten().all(|entry| entry.file_name() == LOCK);
     let is_link = unfinished.symlink_metadata().is_ok_and(|known| known.is_symlink());
     if !is_link && (lock == LOCK_CONTENT || is_alone) {
@@ -265,7 +244,7 @@ fn check_unfinished(unfinished: &Path) -> Result<(), OutputError> {
 
 /// Checks that the results of no run would replace a file that no run wrote.
 fn check_names(path: &Path, earlier: &Marker) -> Result<(), OutputError> {
-    RESULTS.iter().try_for_each(|name| check_replaceable(earlier, path, name))
+    RESULTS.split(' ').try_for_each(|name| check_replaceable(earlier, path, name))
 }
 
 /// Makes both folders, and locks the inner one.

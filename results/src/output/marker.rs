@@ -1,9 +1,9 @@
 //! The marker of a folder: which files in it a run wrote, and how they looked then.
 
-use super::OutputError;
+use super::{OutputError, disk};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::fs::{self, File};
+use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 use xxhash_rust::xxh3::Xxh3;
@@ -52,17 +52,20 @@ impl Marker {
         let invalid = |why: String| {
             OutputError::refused(&path, format!("{why}; move the folder, or give another one by --out"))
         };
-        match fs::read(&path) {
-            Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(Self::new()),
-            Err(error) => Err(invalid(error.to_string())),
-            Ok(text) => match serde_json::from_slice::<Self>(&text) {
-                Ok(marker) if marker.schema != SCHEMA => {
-                    Err(invalid(format!("it has schema {}, and this program reads {SCHEMA}", marker.schema)))
-                }
-                Ok(marker) if marker.files.keys().all(|name| is_plain(name)) => Ok(marker),
-                Ok(_) | Err(_) => Err(invalid("it does not list the results of a run".into())),
-            },
+        let text = disk::read(&path).map_err(|why| invalid(why.to_string()))?;
+        let Some(text) = text else { return Ok(Self::new()) };
+        match serde_json::from_slice::<Self>(&text) {
+            Ok(marker) if marker.schema != SCHEMA => {
+                Err(invalid(format!("it has schema {}, and this program reads {SCHEMA}", marker.schema)))
+            }
+            Ok(marker) if marker.is_valid() => Ok(marker),
+            Ok(_) | Err(_) => Err(invalid("it does not list the results of a run".into())),
         }
+    }
+
+    /// Whether it is of this version, and names files in one folder.
+    pub(super) fn is_valid(&self) -> bool {
+        self.schema == SCHEMA && self.files.keys().all(|name| is_plain(name))
     }
 
     /// Adds the file with this name in `folder`.

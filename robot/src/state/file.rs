@@ -42,14 +42,17 @@ impl StateFile {
     ///
     /// # Errors
     ///
-    /// When another run uses it, when it is no file that can be replaced (a folder, a pipe, a device), and when its folder
-    /// cannot be written.
+    /// When another run uses it, when it is no file that can be replaced (a folder, a pipe, a device), when its folder cannot
+    /// be written, and when a file beside it, which the run would replace, is of somebody else (`house.state.lock`).
     pub fn open(path: &Path) -> io::Result<Self> {
-        let target = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+        let target = target_of(path);
         match fs::metadata(&target) {
             Ok(known) if !known.is_file() => return Err(io::Error::other(NO_FILE)),
             _ => {}
         }
+        ["lock", "unfinished", "earlier"]
+            .iter()
+            .try_for_each(|ending| check_own(&with_ending(&target, ending)))?;
         let lock = FileLock::new(&with_ending(&target, "lock"))?;
         Ok(Self {
             path: path.to_owned(),
@@ -93,7 +96,7 @@ impl StateFile {
     pub fn keep_earlier(&self) -> io::Result<()> {
         let unfinished = with_ending(&self.target, "unfinished");
         fs::copy(&self.target, &unfinished)?;
-        fs::rename(unfinished, earlier_name(&self.target))
+        fs::rename(unfinished, with_ending(&self.target, "earlier"))
     }
 
     /// Goes back to the file that was [kept](Self::keep_earlier); there is none then.
@@ -102,7 +105,7 @@ impl StateFile {
     ///
     /// When no file was kept.
     pub fn restore_earlier(&self) -> io::Result<()> {
-        fs::rename(earlier_name(&self.target), &self.target)
+        fs::rename(with_ending(&self.target, "earlier"), &self.target)
     }
 
     /// Whether it is time to [`save`](Self::save).
@@ -173,7 +176,12 @@ pub fn read_state(path: &Path) -> Result<State, LoadError> {
 
 /// The name of the file that [`StateFile::keep_earlier`] keeps: `house.state.earlier` for `house.state`.
 pub fn earlier_name(path: &Path) -> PathBuf {
-    with_ending(path, "earlier")
+    with_ending(&target_of(path), "earlier")
+}
+
+/// The file to which a name leads.
+fn target_of(path: &Path) -> PathBuf {
+    path.canonicalize().unwrap_or_else(|_| path.to_owned())
 }
 
 /// A file that one process has, while it is open.
@@ -186,7 +194,11 @@ struct FileLock {
 impl FileLock {
     fn new(path: &Path) -> io::Result<Self> {
         for _ in 0..LOCK_TRIES {
-            let file = File::options().write(true).create(true).truncate(false).open(path)?;
+            let file = File::options().write(true).create(true).truncate(false).open(path);
+            let file = file.map_err(|why| match why.kind() {
+                io::ErrorKind::NotFound => why, // the folder
+                kind => io::Error::new(kind, format!("its lock {} cannot be written: {why}", path.display())),
+            })?;
             match file.try_lock() {
                 // A program that is being started holds the locks of the one that starts it for a moment.
                 Err(TryLockError::WouldBlock) => std::thread::sleep(Duration::from_millis(10)),
@@ -242,6 +254,21 @@ fn write(path: &Path, state: &State) -> io::Result<()> {
 fn sync_folder(path: &Path) {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     File::open(folder).and_then(|folder| folder.sync_all()).ok();
+}
+
+/// Checks that nothing is lost when a run writes this file beside the state: there is none, it is empty, or one of a state.
+fn check_own(path: &Path) -> io::Result<()> {
+    let mut start = Vec::new();
+    let is_own = match path.symlink_metadata() {
+        Ok(known) if known.is_file() => {
+            File::open(path)?.take(State::MAGIC.len() as u64).read_to_end(&mut start)?;
+            State::MAGIC.starts_with(&start)
+        }
+        known => known.is_err(),
+    };
+    let why =
+        "no run has written it, and this one would replace it; move it, or give another file by --state";
+    if is_own { Ok(()) } else { Err(io::Error::other(format!("{}: {why}", path.display()))) }
 }
 
 /// The name of a file beside the state: `house.state.unfinished` while it is incomplete.

@@ -2,19 +2,22 @@
 
 use super::facts::Facts;
 use super::format::{State, StateError};
-use crate::Localization;
+use crate::{Pilot, Robot};
 use interfaces::{GridFrame, LaserReading};
 use localizer::LocalizerSettings;
 use mapper::{Mapper, MapperSettings};
 
 const MAPPER: &str = "mapper";
 const LOCALIZATION: &str = "localization";
+/// Missing where the filter of scans has learned nothing.
+const FILTER: &str = "filter";
 
 /// The settings that what was learned belongs to.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LearnedFacts {
     mapper: Facts,
     localization: Facts,
+    filter: Facts,
 }
 
 impl LearnedFacts {
@@ -38,41 +41,43 @@ impl LearnedFacts {
             }
             None => poses,
         };
+        let filter = map.clone();
         let mapper = map.with_learned_settings("mapper", mapper, Some(&MapperSettings::default()));
-        Self { mapper, localization }
+        Self { mapper, localization, filter }
     }
 
     /// Copies what was learned. This is short; to turn the copy into bytes takes longer.
-    pub fn snapshot<L>(&self, mapper: &Mapper, localization: &mut L) -> LearnedSnapshot
-    where
-        L: Localization<LaserReading> + ?Sized,
-    {
-        let (mapper, localization) = (mapper.clone(), localization.snapshot());
-        LearnedSnapshot { facts: self.clone(), mapper, localization }
+    pub fn snapshot<P: Pilot>(&self, robot: &mut Robot<LaserReading, P>) -> LearnedSnapshot {
+        let (mapper, localization) = (robot.mapper.clone(), robot.localization_mut().snapshot());
+        let filter = robot.filter_mut().filter(|filter| filter.has_learned());
+        let filter = filter.map(|filter| interfaces::snapshot(filter.values()));
+        LearnedSnapshot { facts: self.clone(), mapper, localization, filter: filter.unwrap_or_default() }
     }
 
-    /// Goes on with what was learned. The mapper and the localization were made with the settings of these facts.
+    /// Lets a robot that was made with the settings of these facts go on with what was learned.
     ///
     /// # Errors
     ///
-    /// When the state does not hold what was learned, or holds it with other settings. The mapper and the localization
-    /// must not be used then.
-    pub fn restore<L>(
+    /// When the state does not hold what was learned, or holds it with other settings. The robot must not
+    /// be used then.
+    pub fn restore<P: Pilot>(
         &self,
         state: &State,
-        mapper: &mut Mapper,
-        localization: &mut L,
-    ) -> Result<(), StateError>
-    where
-        L: Localization<LaserReading> + ?Sized,
-    {
+        robot: &mut Robot<LaserReading, P>,
+    ) -> Result<(), StateError> {
         let misfit = |part: &str| StateError::OtherContent(part.to_owned());
         let learned = [
             state.section(MAPPER, &self.mapper)?, //
             state.section(LOCALIZATION, &self.localization)?,
         ];
-        mapper.restore(learned[0]).map_err(|_| misfit(MAPPER))?;
-        localization.restore(learned[1]).map_err(|_| misfit(LOCALIZATION))
+        robot.mapper.restore(learned[0]).map_err(|_| misfit(MAPPER))?;
+        robot.localization_mut().restore(learned[1]).map_err(|_| misfit(LOCALIZATION))?;
+        match (robot.filter_mut(), state.section(FILTER, &self.filter)) {
+            (Some(filter), Ok(learned)) => {
+                interfaces::restore(filter.values(), learned).map_err(|_| misfit(FILTER))
+            }
+            _ => Ok(()), // an earlier version has not saved it
+        }
     }
 }
 
@@ -82,16 +87,15 @@ pub struct LearnedSnapshot {
     facts: LearnedFacts,
     mapper: Mapper,
     localization: Vec<u8>,
+    filter: Vec<u8>,
 }
 
 impl LearnedSnapshot {
     /// Adds what was learned to a state.
     pub fn added_to(self, state: State) -> State {
-        let Self { facts, mut mapper, localization } = self;
-        state.with(MAPPER, facts.mapper, mapper.snapshot()).with(
-            LOCALIZATION,
-            facts.localization,
-            localization,
-        )
+        let Self { facts, mut mapper, localization, filter } = self;
+        let state = state.with(MAPPER, facts.mapper, mapper.snapshot());
+        let state = state.with(LOCALIZATION, facts.localization, localization);
+        if filter.is_empty() { state } else { state.with(FILTER, facts.filter, filter) }
     }
 }

@@ -1,8 +1,8 @@
 //! Maps what a live robot sees, and where the place changes; can explore.
 
 use anyhow::Context;
+use clap::Parser;
 use clap::builder::{PathBufValueParser, TypedValueParser};
-use clap::{Parser, ValueEnum};
 use ros2::program::{Failure, input, note_unused_files, output, say, start};
 use ros2::{CuriousNode, DdsLink, Environment, Names, Parameters, RosArgs, Signals, Value, curious_wiring};
 use std::path::PathBuf;
@@ -18,20 +18,18 @@ use std::sync::atomic::Ordering;
 #[command(name = "curious_node", version, after_long_help = MANUAL, max_term_width = 100)]
 struct Args {
     /// What the node does; the same as `--ros-args -p mode:=MODE`
-    #[arg(long, value_enum)]
-    mode: Option<ModeArg>,
+    ///
+    /// map: only maps, while someone else drives; explore: drives to where looking is worth most
+    #[arg(long, value_parser = ["map", "explore"])]
+    mode: Option<String>,
     /// Goes on from this file if it exists, and saves to it: every minute, at the end, at the signal USR1, and when the
     /// service `~/save_state` is called
     #[arg(long, value_name = "FILE", value_parser = PathBufValueParser::new().try_map(no_folder))]
     state: Option<PathBuf>,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum ModeArg {
-    /// Only maps, while someone else drives
-    Map,
-    /// Drives to where looking is worth most
-    Explore,
+    /// Corrected maps replace the old one with these readings, as an earlier run of the same readings has printed: repeats
+    /// that run
+    #[arg(long, value_name = "READINGS", value_delimiter = ',')]
+    switch_at: Vec<usize>,
 }
 
 fn no_folder(path: PathBuf) -> Result<PathBuf, &'static str> {
@@ -109,9 +107,9 @@ fn run(args: Args, ros: RosArgs) -> Result<(), Failure> {
     parameters.set_all(ros.parameters_of(&names.full_name())).map_err(input)?;
     note_unused_files(&names, &ros);
     if let Some(mode) = args.mode {
-        let name = if matches!(mode, ModeArg::Map) { "map" } else { "explore" };
-        parameters.set("mode", &Value::Text(name.to_owned())).map_err(input)?;
+        parameters.set("mode", &Value::Text(mode)).map_err(input)?;
     }
+    parameters.switch_at = args.switch_at;
     parameters.check().map_err(input)?;
     let environment = Environment::read(|name| std::env::var(name).ok()).map_err(input)?;
     let wiring = curious_wiring(&parameters, &names, &ros).map_err(input)?;
@@ -152,7 +150,7 @@ mod tests {
 
     #[test]
     fn every_flag_refuses_a_wrong_value_by_its_name() {
-        let wrong = [("mode", "sleep"), ("state", "/")];
+        let wrong = [("mode", "sleep"), ("state", "/"), ("switch-at", "-")];
         for argument in
             Args::command().get_arguments().filter(|argument| argument.get_action().takes_values())
         {

@@ -1,16 +1,45 @@
 //! The messages that tell other nodes what the robot does.
 
+use crate::maps::PublishedMaps;
 use crate::message::{
     Color, Header, Marker, Markers as MarkersMessage, Message, Pose, PoseStamped, Time, Topic,
     TransformStamped, Transforms, Twist, TwistStamped, Vector,
 };
+use crate::parameters::Parameters;
 use nalgebra::{Isometry2, Point2};
+use std::time::Instant;
 
 /// The color of the goal and its path.
 const COLOR: Color = Color { r: 0.9, g: 0.3, b: 0.1, a: 1.0 };
 /// The length of the arrow at a goal, and the width of a path, m.
 const ARROW_M: f64 = 0.5;
 const LINE_M: f64 = 0.05;
+
+/// What other nodes have heard.
+pub(super) struct Published {
+    pub(super) maps: PublishedMaps,
+    pub(super) markers: Markers,
+    /// The pose of the frame of the odometry in the frame of the map.
+    pub(super) map_to_odom: Option<Isometry2<f64>>,
+    pub(super) next_transform: Instant,
+    pub(super) is_lost: bool,
+    /// The number of maps that were learned again.
+    pub(super) switches: usize,
+}
+
+impl Published {
+    /// Nothing.
+    pub(super) fn new(parameters: &Parameters) -> Self {
+        Self {
+            maps: PublishedMaps::new(parameters.map_update_interval_s),
+            markers: Markers::default(),
+            map_to_odom: None,
+            next_transform: Instant::now(),
+            is_lost: false,
+            switches: 0,
+        }
+    }
+}
 
 pub(super) fn header(stamp: Time, frame: &str) -> Header {
     Header { stamp, frame_id: frame.to_owned() }

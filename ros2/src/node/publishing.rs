@@ -15,16 +15,16 @@ impl<L: Link> CuriousNode<L> {
         self.obey(order, stamp);
         self.publish_transform(now);
         let header = outputs::header(stamp, &self.parameters.map_frame);
-        for (topic, message) in self.maps.after(&self.mapper, &header, now) {
+        for (topic, message) in self.published.maps.after(&self.robot.mapper, &header, now) {
             if !self.link.send(topic, message) {
-                self.maps.repeat();
+                self.published.maps.repeat();
             }
         }
-        let path: Vec<Point2<f64>> = self.pilot.path().to_vec();
-        if let Some(message) = self.markers.changed(self.pilot.goal(), &path, &header) {
+        let path: Vec<Point2<f64>> = self.robot.pilot.path().to_vec();
+        if let Some(message) = self.published.markers.changed(self.robot.pilot.goal(), &path, &header) {
             self.link.send(Topic::Markers, message);
         }
-        for message in self.pilot.take_messages() {
+        for message in self.robot.pilot.take_messages() {
             if message.level != Level::Event {
                 self.notes.say(&message.text);
             }
@@ -62,7 +62,7 @@ impl<L: Link> CuriousNode<L> {
 
     pub(super) fn publish_transform(&mut self, now: Instant) {
         let period_s = self.parameters.transform_publish_period_s;
-        let (Some(map_to_odom), Some((stamp, at))) = (&self.map_to_odom, self.last) else { return };
+        let (Some(map_to_odom), Some((stamp, at))) = (&self.published.map_to_odom, self.last) else { return };
         if period_s <= 0.0 {
             return;
         }
@@ -72,6 +72,6 @@ impl<L: Link> CuriousNode<L> {
         let Parameters { map_frame, odom_frame, .. } = &self.parameters;
         let message = outputs::transform(map_to_odom, stamp, since_s + timeout_s, map_frame, odom_frame);
         self.link.send(Topic::Transforms, message);
-        self.next_transform = now + Duration::from_secs_f64(period_s);
+        self.published.next_transform = now + Duration::from_secs_f64(period_s);
     }
 }

@@ -4,7 +4,6 @@ use super::CuriousNode;
 use crate::link::Link;
 use crate::message::Time;
 use interfaces::LaserReading;
-use robot::Session;
 
 /// The time between two sessions whose clocks cannot be compared, s.
 const RESTART_GAP_S: f64 = 1.0;
@@ -12,26 +11,18 @@ const RESTART_GAP_S: f64 = 1.0;
 const OTHER_CLOCK_S: f64 = 3.2e8;
 
 impl<L: Link> CuriousNode<L> {
-    /// The reading with the time that the map counts.
-    pub(super) fn in_session(
-        &mut self,
-        mut reading: LaserReading,
-        stamp: Time,
-        is_restart: bool,
-    ) -> LaserReading {
-        let first_s = *self.first_s.get_or_insert(reading.time_s);
-        reading.time_s -= first_s;
-        reading.velocities.iter_mut().for_each(|sample| sample.time_s -= first_s);
+    /// Begins a session with a reading, where the clock of the robot or a state that was loaded demands it.
+    pub(super) fn begin_session(&mut self, reading: &LaserReading, stamp: Time, is_restart: bool) {
         let gap_s = match self.continued.take() {
             Some(last) => Some(self.gap_s(last, stamp)),
             None => is_restart.then_some(RESTART_GAP_S),
         };
         if gap_s.is_some() {
             self.settle();
-            let localization = self.localization.as_mut();
-            self.session = Session::next(localization, &mut self.mapper, reading.time_s, gap_s);
+            self.robot.begin_session(reading.time_s, gap_s);
+        } else if self.last.is_none() {
+            self.robot.session_mut().offset_s = -reading.time_s;
         }
-        self.session.shifted(reading)
     }
 
     /// The time since the last reading of the state that was loaded, s.
@@ -52,10 +43,23 @@ impl<L: Link> CuriousNode<L> {
 
     /// Waits for the map that is being learned again.
     pub(super) fn settle(&mut self) {
-        if !self.localization.is_settled() {
-            self.localization.settle(&mut self.mapper);
-            self.maps.repeat();
-            self.pilot.forget_map();
+        if !self.robot.is_settled() {
+            self.notes.say("waiting for the map that a closed loop has corrected");
+            self.robot.settle();
+            self.published.maps.repeat();
+            self.say_switches();
+        }
+    }
+
+    /// Says with which readings corrected maps have replaced the old ones.
+    pub(super) fn say_switches(&mut self) {
+        let switches = self.robot.localization().switches();
+        if switches.len() > self.published.switches {
+            self.published.switches = switches.len();
+            let readings: Vec<String> = switches.iter().map(usize::to_string).collect();
+            let readings = readings.join(",");
+            self.notes
+                .say(&format!("the same readings with `--switch-at {readings}` repeat this run so far"));
         }
     }
 }

@@ -1,11 +1,17 @@
+mod glass;
+mod loops;
+mod same_robot;
+mod states;
+
 use super::*;
 use crate::fake::FakeLink;
 use crate::link::{Navigation, Request};
-use crate::message::Message;
-use crate::message::{Bool, TwistStamped};
+use crate::message::{Bool, Message, Twist as TwistMessage, TwistStamped, Vector};
 use crate::parameters::{Mode, Navigator};
 use crate::simulated::{SimulatedRobot, SimulationSettings};
 use interfaces::{CellState, Grid};
+use nalgebra::Point2;
+use sim::physics::WorldSpec;
 use std::sync::{Arc, Mutex};
 
 /// A simulated robot, a node, and all that goes between them.
@@ -34,10 +40,13 @@ fn node(
 
 impl Pair {
     fn new(parameters: &Parameters, begin_s: i64, state: Option<&Path>) -> Self {
-        let world = worldfile::shipped::load("house").unwrap();
+        Self::in_world(&worldfile::shipped::load("house").unwrap(), parameters, begin_s, state)
+    }
+
+    fn in_world(world: &WorldSpec, parameters: &Parameters, begin_s: i64, state: Option<&Path>) -> Self {
         let robot = FakeLink::default();
         let settings = SimulationSettings { seed: 1, speed: 1.0, begin_ns: begin_s * 1_000_000_000 };
-        let sim = SimulatedRobot::new(robot.clone(), &world, settings);
+        let sim = SimulatedRobot::new(robot.clone(), world, settings);
         let (node, others, said) = node(parameters, state);
         Self { sim, robot, node, others, said }
     }
@@ -274,7 +283,7 @@ fn a_house_for_hours() {
             pair.run(1.0);
             let [truth, odometry] = pair.sim.poses().unwrap();
             let truth = start.inverse() * truth;
-            let found = pair.node.map_to_odom.unwrap() * odometry;
+            let found = pair.node.published.map_to_odom.unwrap() * odometry;
             worst_m = worst_m.max((truth.translation.vector - found.translation.vector).norm());
             pair.others.others(|others| others.heard.clear());
         }

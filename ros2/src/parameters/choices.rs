@@ -1,5 +1,6 @@
 //! Parameters that are one of a few names.
 
+use interfaces::PoseMode;
 use mapper::NoReturn;
 
 /// What the node does.
@@ -22,18 +23,6 @@ pub enum Navigator {
     Nav2,
     /// Whatever listens to the topic `goal_pose`.
     GoalPose,
-}
-
-/// How the pose of the robot is known.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum PoseSource {
-    /// The odometry is exact.
-    Exact,
-    /// The odometry, as it drifts.
-    Odometry,
-    /// The pose that fits the scan to the map.
-    #[default]
-    Localized,
 }
 
 impl Choice for NoReturn {
@@ -71,7 +60,7 @@ impl Choice for Navigator {
         &[(Self::CmdVel, &["cmd_vel"]), (Self::Nav2, &["nav2"]), (Self::GoalPose, &["goal_pose"])];
 }
 
-impl Choice for PoseSource {
+impl Choice for PoseMode {
     const EXPECTED: &'static str = "exact, odometry or localized";
     const ALL: &'static [(Self, &'static [&'static str])] =
         &[(Self::Exact, &["exact"]), (Self::Odometry, &["odometry"]), (Self::Localized, &["localized"])];

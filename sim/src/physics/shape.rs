@@ -106,7 +106,12 @@ impl Rectangle {
 
     /// The rectangle after a rotation of the world about `middle` (m).
     pub fn turned(&self, turn: &UnitComplex<f64>, middle: &Point2<f64>) -> Self {
-        Self { pose: turned(&self.pose, turn, middle), half_m: self.half_m }
+        self.transformed(&Transform { turn: *turn, from: *middle, to: *middle })
+    }
+
+    /// The rectangle after a rigid motion of the world.
+    pub fn transformed(&self, by: &Transform) -> Self {
+        Self { pose: by.pose(&self.pose), half_m: self.half_m }
     }
 
     /// The lower left and the upper right corner of the axis-aligned box around the rectangle, m.
@@ -117,15 +122,28 @@ impl Rectangle {
     }
 }
 
-/// The pose after a rotation of the world about `middle` (m).
-pub fn turned(pose: &Isometry2<f64>, turn: &UnitComplex<f64>, middle: &Point2<f64>) -> Isometry2<f64> {
-    let at = turned_point(&pose.translation.vector.into(), turn, middle);
-    Isometry2::from_parts(Translation2::from(at), turn * pose.rotation)
+/// A rigid motion of the whole world: a rotation about a point, which moves elsewhere.
+#[derive(Clone, Copy, Debug)]
+pub struct Transform {
+    /// The rotation.
+    pub turn: UnitComplex<f64>,
+    /// The center of the rotation before the motion, m.
+    pub from: Point2<f64>,
+    /// The center of the rotation after the motion, m: exactly here.
+    pub to: Point2<f64>,
 }
 
-/// The point after a rotation of the world about `middle` (m).
-pub fn turned_point(point: &Point2<f64>, turn: &UnitComplex<f64>, middle: &Point2<f64>) -> Point2<f64> {
-    middle + turn * (point - middle)
+impl Transform {
+    /// A point after the motion, m.
+    pub fn point(&self, point: &Point2<f64>) -> Point2<f64> {
+        self.to + self.turn * (point - self.from)
+    }
+
+    /// A pose after the motion.
+    pub fn pose(&self, pose: &Isometry2<f64>) -> Isometry2<f64> {
+        let at = self.point(&pose.translation.vector.into());
+        Isometry2::from_parts(Translation2::from(at), self.turn * pose.rotation)
+    }
 }
 
 /// Whether two segments cross each other in their interiors.

@@ -4,8 +4,8 @@ use agent::Policy;
 use clap::builder::TypedValueParser;
 use clap::{Parser, ValueEnum};
 use curious::flags::{folder, input_file, output_file};
-use curious::program::{duration_s, one_of, strategy_of};
-use curious::worlds::PoseArg;
+use curious::program::{duration_s, one_of, pose_in_world, pose_mode, strategy_of};
+use interfaces::PoseMode;
 use mapper::{EstimatorChoice, OccupancyChoice};
 use std::path::PathBuf;
 use viewer::recording::Live;
@@ -61,8 +61,8 @@ pub(crate) struct Args {
     pub(crate) tour: Option<PathBuf>,
 
     /// How the robot knows its pose [default: exact where the world's odometry is exact, otherwise localized]
-    #[arg(long, value_enum, help_heading = "Robot")]
-    pub(crate) pose: Option<PoseArg>,
+    #[arg(long, value_parser = pose_mode(pose_in_world), help_heading = "Robot")]
+    pub(crate) pose: Option<PoseMode>,
 
     /// With a localized pose: the time without an agreeing scan after which the robot is lost, and looks around and searches for
     /// its pose in the whole map [default: 2s]
@@ -136,6 +136,16 @@ impl Args {
     /// The strategy of the agent.
     pub(crate) fn strategy(&self) -> Policy {
         self.strategy.clone().unwrap_or_default()
+    }
+
+    /// Whether a person drives.
+    pub(crate) fn is_keyboard(&self) -> bool {
+        self.drive == DriveChoice::Keyboard
+    }
+
+    /// The speed as a multiple of real time; ∞: as fast as possible.
+    pub(crate) fn speed(&self) -> f64 {
+        self.speed.unwrap_or(if self.is_keyboard() { 1.0 } else { f64::INFINITY })
     }
 }
 

@@ -1,25 +1,199 @@
-//! The files of a run.
+//! What a run shows while it goes on, and the files that it leaves.
 
 use crate::Ended;
 use crate::args::{Args, DriveChoice};
-use evaluation::physics_trial::{PhysicsSettings, PhysicsTrial};
+use crate::saves::Saves;
+use agent::Policy;
+use anyhow::{Context, anyhow};
+use curious::bag::RunBag;
+use curious::program::{BEST_STRATEGY_GAIN, Failure, arguments, input, results_folder};
+use curious::progress::Progress;
+use curious::terminal::{print, say};
+use evaluation::metrics::map_scores;
+use evaluation::physics_trial::PhysicsTrial;
 use evaluation::summary::{SCHEMA, Summary};
-use interfaces::Twist;
+use interfaces::{LaserReading, Twist, World};
 use mapper::Mapper;
-use results::cell_statistics;
-use results::output::{RunFolder, write_file};
-use results::ros_map;
+use results::output::{RunFolder, TrajectoryFile, UnfinishedFile, is_another_kind, write_file};
 use results::thinned::Goals;
-use robot::BUILD;
-use robot::Pilot;
+use results::{cell_statistics, file_name, ros_map};
+use robot::{BUILD, Pilot, Robot, Settings, Turn};
+use sim::physics::WorldSpec;
+use std::io::stderr;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
 use viewer::layers::Layer;
+use viewer::pictures::Film;
+use viewer::recording::{Live, Recorder};
+use viewer::scene::Scene;
 use viewer::show::Show;
+use viewer::view::{Measured, View};
 
 /// The file that ends a run.
 const SUMMARY: &str = "summary.json";
+/// The longest time for which a run that keeps to real time does not look for Ctrl-C.
+const NAP: Duration = Duration::from_millis(50);
+
+/// Everything that a run shows and writes.
+pub(crate) struct Outputs<'a> {
+    args: &'a Args,
+    /// The simulated time at which the run goes on, s.
+    began_s: f64,
+    folder: RunFolder,
+    bag: Option<RunBag>,
+    show: Show,
+    /// The trajectories as the robot knew it and as it was.
+    trajectories: [TrajectoryFile; 2],
+    saves: Option<Saves>,
+    progress: Progress,
+    /// Why no viewer shows the run, as far as it was reported.
+    reported: Option<String>,
+    is_complete: bool,
+}
+
+impl<'a> Outputs<'a> {
+    /// Opens all files.
+    pub(crate) fn open(
+        args: &'a Args,
+        spec: &WorldSpec,
+        saves: Option<Saves>,
+        began_s: f64,
+    ) -> Result<Self, Failure> {
+        let mut folder = results_folder(&args.out)?;
+        args.mcap.iter().try_for_each(|path| folder.adopt(path, "mcap")).map_err(input)?;
+        let bag = args.mcap.as_deref().map(|path| RunBag::create(path, 0.0)).transpose();
+        let bag = bag.context("cannot write the bag of --mcap").map_err(input)?;
+        let show = show(args, Scene::from(spec.fleet()), &mut folder)?;
+        let file = |name| TrajectoryFile::create(&folder.unfinished().join(name));
+        let trajectories = ["trajectory.tum", "trajectory_true.tum"].map(file);
+        let reported = show.live_problem();
+        reported.iter().for_each(|problem| say(stderr(), format_args!("note: {problem}")));
+        if args.is_keyboard() && !args.quiet {
+            say(stderr(), "arrows or WASD drive, space stops, Q ends the run\r");
+        }
+        let progress = Progress::of_time(args.duration, args.quiet, args.is_keyboard()).from(began_s);
+        if began_s > 0.0 && !args.quiet {
+            progress.say(format_args!("the run goes on from {began_s:.1} s"));
+        }
+        let is_complete = true;
+        Ok(Self { args, began_s, folder, bag, show, trajectories, saves, progress, reported, is_complete })
+    }
+
+    /// Shows one turn.
+    pub(crate) fn add(
+        &mut self,
+        trial: &mut PhysicsTrial<impl Pilot<Command = Twist>>,
+        turn: &Turn<LaserReading, Twist>,
+        is_last: bool,
+    ) {
+        let raw = self.bag.as_ref().map(|_| trial.world.sense());
+        let PhysicsTrial { world, robot: Robot { mapper, pilot, .. }, observer, .. } = trial;
+        let time_s = turn.reading.time_s;
+        self.progress.show(time_s, || map_scores(mapper, world.truth()).coverage);
+        for (bag, raw) in self.bag.iter_mut().zip(&raw) {
+            bag.add(raw, turn, mapper, pilot);
+        }
+        let [used, truth] = &mut self.trajectories;
+        used.add(time_s, &turn.belief.pose);
+        truth.add(time_s, world.true_pose());
+        let measured =
+            Measured { scores: observer.scores(), rate_errors: None, messages: &observer.messages };
+        if let Err(problem) = self.show.add(&View::new(world, turn, mapper, pilot, measured), is_last) {
+            self.is_complete = false;
+            self.progress.say(format_args!("error: {problem}; the run goes on without it"));
+        }
+    }
+
+    /// Saves the state, if it is time to.
+    pub(crate) fn save(&mut self, trial: &mut PhysicsTrial<impl Pilot<Command = Twist>>) {
+        if let Some(saves) = self.saves.as_mut().filter(|saves| saves.is_due())
+            && let Err(problem) = saves.save(trial)
+        {
+            self.is_complete = false;
+            self.progress.say(format_args!("error: cannot save the state: {problem}; the run goes on"));
+        }
+    }
+
+    /// Waits until a simulated time is due, in short naps: an interrupted run ends soon.
+    pub(crate) fn keep_pace(&self, time_s: f64, start: Instant, is_interrupted: &AtomicBool) {
+        if self.args.speed().is_infinite() {
+            return;
+        }
+        let due = Duration::from_secs_f64((time_s - self.began_s).max(0.0) / self.args.speed());
+        while start.elapsed() < due && !is_interrupted.load(Ordering::Relaxed) {
+            std::thread::sleep(due.saturating_sub(start.elapsed()).min(NAP));
+        }
+    }
+
+    /// Writes all results. Returns whether everything could be shown.
+    pub(crate) fn finish(
+        mut self,
+        settings: &Settings,
+        mut trial: PhysicsTrial<impl Pilot<Command = Twist>>,
+        ended: Ended,
+        wall_s: f64,
+    ) -> anyhow::Result<bool> {
+        self.progress.finish();
+        if let Some(problem) =
+            self.show.live_problem().filter(|problem| Some(problem) != self.reported.as_ref())
+        {
+            say(stderr(), format_args!("note: {problem}"));
+        }
+        let mut failures = Vec::new();
+        if let Some(Err(problem)) = self.saves.take().map(|saves| saves.finish(&mut trial)) {
+            failures.push(format!("cannot save the state: {problem}"));
+        }
+        if let Some(Err(problem)) = self.bag.take().map(RunBag::finish) {
+            failures.push(format!("cannot write the bag: {problem:#}"));
+        }
+        for problem in self.trajectories.into_iter().filter_map(|file| file.finish().err()) {
+            failures.push(format!("cannot write a trajectory: {problem}"));
+        }
+        failures.iter().for_each(|failure| say(stderr(), format_args!("error: {failure}")));
+
+        let (args, mut summary) =
+            (self.args, summary(self.args, settings, &trial, ended, self.began_s, wall_s));
+        let PhysicsTrial { robot: Robot { mapper, pilot, .. }, observer, .. } = trial;
+        drop(pilot); // restores the terminal before anything is printed
+        write(&self.folder, &mapper, &self.show, &observer.goals, &mut summary)?;
+        if let Err(problem) = self.show.write_film() {
+            say(stderr(), format_args!("error: {problem}"));
+            failures.push(problem.to_string());
+        }
+        self.folder.finish(&[])?;
+        if !args.quiet {
+            let is_default = args.drive == DriveChoice::Agent && args.strategy() == Policy::default();
+            let hint = if is_default { format!("\n  hint      {BEST_STRATEGY_GAIN}") } else { String::new() };
+            print(format_args!("{summary}{hint}\n  files     {}", args.out.display()))?;
+        }
+        Ok(self.is_complete && failures.is_empty())
+    }
+}
+
+/// Opens everything that shows the run: the recording, viewers, the moving picture.
+fn show(args: &Args, scene: Scene, folder: &mut RunFolder) -> Result<Show, Failure> {
+    for (path, ending) in [(&args.rrd, "rrd"), (&args.gif, "gif")] {
+        path.iter().try_for_each(|path| folder.adopt(path, ending)).map_err(input)?;
+    }
+    if let Some(path) = args.gif.as_ref().filter(|path| is_another_kind(path, b"GIF8")) {
+        let path = path.display();
+        return Err(input(anyhow!("there is a file {path} that is not a GIF picture; choose another name")));
+    }
+    let mut live = Vec::from_iter(args.connect.clone());
+    live.extend(args.view.then_some(Live::Spawn));
+    let named = || folder.reserve(&format!("{}.rrd", file_name::of(&scene.title)));
+    let file = (!args.no_rrd).then(|| args.rrd.clone().map_or_else(named, Ok)).transpose()?;
+    let recorder = match &file {
+        None if live.is_empty() => None,
+        file => Some(Recorder::new(file.as_deref(), &live, scene.clone()).map_err(anyhow::Error::from)?),
+    };
+    let gif = args.gif.as_deref().map(UnfinishedFile::create).transpose().map_err(anyhow::Error::from)?;
+    let film = gif.map(|file| Film::new(file, scene.clone(), args.duration));
+    Ok(Show::new(scene, recorder, film))
+}
 
 /// Writes everything except the recording and the moving picture: no result is lost for them.
-pub(crate) fn write(
+fn write(
     folder: &RunFolder,
     mapper: &Mapper,
     show: &Show,
@@ -38,20 +212,20 @@ pub(crate) fn write(
     Ok(())
 }
 
-pub(crate) fn summary(
+fn summary(
     args: &Args,
-    settings: &PhysicsSettings,
+    settings: &Settings,
     trial: &PhysicsTrial<impl Pilot<Command = Twist>>,
     ended: Ended,
     began_s: f64,
     wall_s: f64,
 ) -> Summary {
-    let simulated_s = trial.mapper.time();
+    let simulated_s = trial.robot.mapper.time();
     Summary {
         schema: SCHEMA,
         build: BUILD,
         version: env!("CARGO_PKG_VERSION"),
-        arguments: std::env::args().skip(1).collect(),
+        arguments: arguments(),
         settings: serde_json::to_value(settings).unwrap_or_default(),
         world: trial.world.spec().name.clone(),
         seed: args.seed,

@@ -4,17 +4,17 @@ use crate::args::{Args, DriveChoice};
 use crate::combination;
 use agent::Agent;
 use anyhow::{Context, anyhow};
-use controller::DiffDrive;
+use controller::{Controller, DiffDrive};
 use curious::flags::value_of;
 use curious::keyboard::Keyboard;
 use curious::program::{Failure, input};
 use curious::reachability;
 use curious::terminal::say;
 use curious::worlds::{self, Loaded};
-use evaluation::physics_trial::{PhysicsSettings, PoseChoice};
-use interfaces::{CellState, Grid, Twist};
+use evaluation::physics_trial;
+use interfaces::{CellState, Grid, PoseMode, Twist};
 use robot::state::Facts;
-use robot::{Autonomous, Tour};
+use robot::{Autonomous, Settings, Tour};
 use sim::physics::WorldSpec;
 use std::io::stderr;
 use std::path::Path;
@@ -24,7 +24,7 @@ use worldfile::{Disk, Findings, Severity, TourSpec};
 /// The world and the settings of the robot.
 pub(crate) struct Parts {
     pub(crate) spec: WorldSpec,
-    pub(crate) settings: PhysicsSettings,
+    pub(crate) settings: Settings,
     /// The map that the robot knows at the start.
     pub(crate) prior: Option<Grid<CellState>>,
 }
@@ -41,13 +41,13 @@ impl Parts {
             worlds::load(&args.world).map_err(|error| input(value_of("--world", error)))?;
         warnings.iter().for_each(warn);
         reachability::warnings(spec.fleet()).iter().for_each(warn);
-        let settings = PhysicsSettings::of(&spec).with_context(|| format!("cannot run `{}`", args.world));
+        let settings = physics_trial::settings(&spec).with_context(|| format!("cannot run `{}`", args.world));
         let mut settings = settings.map_err(input)?;
         settings.mapper.estimator = args.estimator.clone();
         settings.mapper.occupancy = args.occupancy.clone();
-        settings.pose = args.pose.map_or(settings.pose, Into::into);
+        settings.pose = args.pose.unwrap_or(settings.pose);
         if let Some(lost_after_s) = args.lost_after {
-            if settings.pose != PoseChoice::Localized {
+            if settings.pose != PoseMode::Localized {
                 return Err(input(anyhow!(
                     "--lost-after is for a robot that is localized: give --pose localized"
                 )));
@@ -59,12 +59,12 @@ impl Parts {
         Ok(Self { spec, settings, prior })
     }
 
-    pub(crate) fn agent(&self, args: &Args) -> Result<Autonomous<Agent, DiffDrive>, Failure> {
+    pub(crate) fn agent(&self, args: &Args) -> Result<Autonomous<Agent, Controller<DiffDrive>>, Failure> {
         let agent = self.settings.agent(&args.strategy(), args.seed).map_err(input)?;
         self.settings.pilot(agent, args.seed).map_err(input)
     }
 
-    pub(crate) fn tour(&self, args: &Args) -> Result<Autonomous<Tour, DiffDrive>, Failure> {
+    pub(crate) fn tour(&self, args: &Args) -> Result<Autonomous<Tour, Controller<DiffDrive>>, Failure> {
         let (name, text) = worlds::TOUR;
         let home = worlds::SHIPPED[0].0;
         let tour = match &args.tour {
@@ -79,8 +79,13 @@ impl Parts {
                 )));
             }
         };
-        let TourSpec { waypoints, repeat } = tour.map_err(input)?;
+        let TourSpec { mut waypoints, repeat } = tour.map_err(input)?;
         combination::waypoints(&self.spec, &waypoints).iter().for_each(warn);
+        let own =
+            self.prior.is_none().then(|| physics_trial::in_own_frame(&self.settings, &self.spec, args.seed));
+        if let Some((_, to_own)) = own.flatten() {
+            waypoints.iter_mut().for_each(|at| *at = to_own.point(at));
+        }
         self.settings.pilot(Tour::new(waypoints, repeat), args.seed).map_err(input)
     }
 

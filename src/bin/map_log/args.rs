@@ -2,13 +2,14 @@
 
 use crate::logs_in_order::Source;
 use anyhow::ensure;
-use clap::{Parser, ValueEnum};
+use clap::Parser;
 use curious::flags::{folder, number, output_file};
-use curious::program::{duration_s, one_of};
+use curious::program::{duration_s, one_of, pose_mode};
+use interfaces::PoseMode;
 use logs::TopicChoice;
 use mapper::{EstimatorChoice, NoReturn};
 use std::path::PathBuf;
-use survey::{LogEntry, PoseMode, SavedLogs, SurveySettings};
+use survey::{LogEntry, SavedLogs, SurveySettings};
 
 /// Maps the logs of a robot: where the place changes, how often, and when last.
 ///
@@ -53,8 +54,8 @@ pub(crate) struct Args {
     pub(crate) base_frame: Option<String>,
 
     /// How the poses are known [default: exact for a laser that stands, otherwise localized]
-    #[arg(long, value_enum, help_heading = "Poses")]
-    pub(crate) pose: Option<PoseArg>,
+    #[arg(long, value_parser = pose_mode(pose_in_log), help_heading = "Poses")]
+    pub(crate) pose: Option<PoseMode>,
 
     /// The side of a cell, m
     #[arg(
@@ -133,24 +134,12 @@ pub(crate) struct Args {
     pub(crate) quiet: bool,
 }
 
-/// How the poses of a log are known.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum PoseArg {
-    /// The poses of the log, which are exact
-    Exact,
-    /// The poses of the odometry, with their drift: the map becomes wrong
-    Odometry,
-    /// The trajectory is found from the scans
-    Localized,
-}
-
-impl From<PoseArg> for PoseMode {
-    fn from(pose: PoseArg) -> Self {
-        match pose {
-            PoseArg::Exact => Self::Exact,
-            PoseArg::Odometry => Self::Odometry,
-            PoseArg::Localized => Self::Localized,
-        }
+/// What the ways to know the poses of a log mean.
+fn pose_in_log(mode: PoseMode) -> &'static str {
+    match mode {
+        PoseMode::Exact => "The poses of the log, which are exact",
+        PoseMode::Odometry => "The poses of the odometry, with their drift: the map becomes wrong",
+        PoseMode::Localized => "The trajectory is found from the scans",
     }
 }
 
@@ -180,18 +169,18 @@ impl Args {
             None if stands => PoseMode::Exact,
             None => PoseMode::Localized,
         };
-        let mut settings = SurveySettings::of(self.pose.map_or(default, Into::into));
+        let mut settings = SurveySettings::of(self.pose.unwrap_or(default));
         ensure!(
             stands || logs.len() == 1 || settings.pose == PoseMode::Localized,
             "the poses of each log begin at its own origin: several logs of a robot that moves need --pose localized"
         );
         settings.resolution_m = self.resolution;
-        settings.max_range_m = self.max_range;
-        settings.no_return = self.no_return;
-        settings.min_shadow_angle_rad = self.shadow_angle.to_radians();
+        settings.filter.max_range_m = self.max_range;
+        settings.filter.no_return = self.no_return;
+        settings.filter.min_shadow_angle_rad = self.shadow_angle.to_radians();
         settings.mapper.estimator = self.estimator.clone();
         if let Some(noise_m) = self.noise {
-            settings.mapper.steady.range_noise_std_m = noise_m;
+            settings.set_noise(noise_m);
         }
         Ok(settings)
     }

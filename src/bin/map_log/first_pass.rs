@@ -5,8 +5,9 @@ use crate::saves::Saves;
 use anyhow::Error;
 use curious::program::{Failure, input};
 use curious::progress::Progress;
+use interfaces::PoseMode;
 use std::ops::ControlFlow;
-use survey::{PassError, PoseMode, RouteProgress, Stage, Survey};
+use survey::{PassError, RouteProgress, Stage, Survey};
 
 /// Finds the routes of all logs of which the survey has none. Returns whether it was not interrupted.
 pub(crate) fn routes(job: &Job, survey: &mut Survey, saves: &mut Saves) -> Result<bool, Failure> {

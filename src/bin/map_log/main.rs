@@ -12,6 +12,7 @@ mod summary;
 use anyhow::{Context, anyhow};
 use args::Args;
 use curious::bag::RunBag;
+use curious::flags::check_distinct;
 use curious::program::{Failure, INTERRUPTED, input, interrupt_flag, results_folder, start};
 use curious::terminal::{print, say};
 use curious::words::list;
@@ -64,6 +65,8 @@ impl Job<'_> {
 
 fn run(args: &Args) -> Result<ExitCode, Failure> {
     let begin = Instant::now();
+    let (out, mcap, state) = (Some(args.out.as_path()), args.mcap.as_deref(), args.state.as_deref());
+    check_distinct(&[("--out", out), ("--mcap", mcap), ("--state", state)]).map_err(input)?;
     let (mut saves, loaded) = Saves::open(args)?;
     let given = logs_in_order::open(&args.files, &args.topics(), saves.is_kept()).map_err(input)?;
     let settings = args.settings(&given, loaded.as_ref().map(|loaded| &loaded.logs)).map_err(input)?;

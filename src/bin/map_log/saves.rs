@@ -90,7 +90,7 @@ impl Saves {
             say(stderr(), format_args!("note: the state before this run cannot be kept: {problem}"));
         }
         self.learned = self.learned.filter(|learned| survey.logs().len() == *learned);
-        let (survey, facts) = (survey.clone(), self.facts.clone());
+        let (survey, facts) = (survey.saved(), self.facts.clone());
         let saved = file.save(move || {
             let (logs, learned) = survey.into_snapshot();
             State::default()

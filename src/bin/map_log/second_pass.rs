@@ -1,27 +1,23 @@
 //! The second pass: the map and its changes along the trajectories.
 
 use crate::Job;
-use crate::logs_in_order::Source;
 use crate::saves::Saves;
 use anyhow::{Context, anyhow};
 use curious::bag::RunBag;
 use curious::program::{Failure, input};
 use curious::progress::Progress;
 use curious::terminal::say;
-use interfaces::LaserReading;
-use logs::Readings;
 use mapper::NoReturnEvidence;
 use results::numbers::percent;
 use results::output::TrajectoryFile;
-use robot::{Belief, Localization};
+use robot::NoPilot;
 use std::io::stderr;
-use std::ops::ControlFlow;
 use std::path::Path;
-use survey::{NoPilot, Replay, Survey};
+use survey::Survey;
 use viewer::recording::Recorder;
 use viewer::scene::Scene;
 use viewer::show::Show;
-use viewer::view::{Measured, View};
+use viewer::view::View;
 
 /// The name of the recording.
 const RECORDING: &str = "map_log.rrd";
@@ -43,13 +39,13 @@ pub(crate) fn learn(
     job: &Job,
     survey: &mut Survey,
     saves: &mut Saves,
-    bag: Option<RunBag>,
+    mut bag: Option<RunBag>,
     folder: &Path,
 ) -> Result<Learned, Failure> {
     let frame = survey.frame_of(survey.logs().len() - 1).map_err(input)?;
     let first = job.first.log.readings().map_err(input)?.next();
     let first = first.context("the log has no reading").map_err(input)?.map_err(input)?;
-    let scene = Scene::of_log(&job.title(survey), frame, &job.settings.filtered(first));
+    let scene = Scene::of_log(&job.title(survey), frame, &job.settings.scan_filter().filter(first));
     let is_recorded = !job.args.no_rrd && !job.sources.is_empty();
     let recorder = if is_recorded { recorder(&folder.join(RECORDING), &scene)? } else { None };
     let mut learned = Learned {
@@ -64,16 +60,8 @@ pub(crate) fn learn(
         trajectory.add(at.time_s, &at.pose);
         learned.show.pass(&at.pose);
     }
-    let last = job.sources.len().saturating_sub(1);
-    for (number, source) in job.sources.iter().enumerate() {
-        learned.replay(
-            job,
-            number,
-            source,
-            survey,
-            (saves, &mut trajectory, bag.as_ref()),
-            number == last,
-        )?;
+    for number in 0..job.sources.len() {
+        learned.replay(job, number, survey, (saves, &mut trajectory, bag.as_mut()))?;
         if learned.is_interrupted {
             break;
         }
@@ -107,55 +95,44 @@ impl Learned {
         &mut self,
         job: &Job,
         number: usize,
-        source: &Source,
         survey: &mut Survey,
-        (saves, trajectory, bag): (&mut Saves, &mut TrajectoryFile, Option<&RunBag>),
-        is_last_log: bool,
+        (saves, trajectory, mut bag): (&mut Saves, &mut TrajectoryFile, Option<&mut RunBag>),
     ) -> Result<(), Failure> {
-        let name = &source.entry.name;
-        let log = job.first_log + number;
+        let (source, is_last_log) = (&job.sources[number], number + 1 == job.sources.len());
+        let (name, log) = (&source.entry.name, job.first_log + number);
         let used = survey.logs().get(log).map_or(0, |log| log.used);
         match used {
             0 => job.say(format_args!("{name}: learning what changes")),
             _ => job.say(format_args!("{name}: learning what changes, from scan {} on", used + 1)),
         }
         let replay = survey.replay(log, &source.log).map_err(input)?;
-        let changed = || anyhow!("{name}: the log has changed since the first pass");
-        let (mut replay, found) = replay.ok_or_else(|| input(changed()))?;
-        let mut poses: Box<dyn Localization<LaserReading>> = match bag {
-            Some(bag) => Box::new(bag.recorded(Box::new(found))),
-            None => Box::new(found),
-        };
-        for scanner in replay.no_returns().evidence().filter(|scanner| scanner.silent > 0) {
+        let changed = || input(anyhow!("{name}: the log has changed since the first pass"));
+        let mut replay = replay.ok_or_else(changed)?;
+        for scanner in survey.no_returns().into_iter().filter(|scanner| scanner.silent > 0) {
             if let Some(ignored) = ignored(&scanner) {
                 job.say(format_args!("{name}: {ignored}"));
             }
             self.no_return.push(scanner);
         }
         let progress = Progress::of_scans(source.log.summary().scans.saturating_sub(used), job.args.quiet);
-        let Self { show, is_interrupted, is_shown, .. } = self;
-        let mut is_over = false;
-        while !is_over && !*is_interrupted {
-            let observe = |replay: &Replay<Readings>, reading: &LaserReading, belief: &Belief| {
-                progress.step();
-                bag.into_iter().for_each(|bag| bag.add(belief, &NoPilot));
-                trajectory.add(reading.time_s, belief.pose);
-                *is_interrupted = job.is_interrupted();
-                let view = View::new(replay, reading, belief, &NoPilot, Measured::default());
-                let is_last = *is_interrupted || replay.is_over() && is_last_log;
-                if let Err(problem) = show.add(&view, is_last) {
-                    *is_shown = false;
-                    progress.say(format_args!("error: {problem}; the run goes on without it"));
-                }
-                if *is_interrupted || saves.is_due() {
-                    ControlFlow::Break(())
-                } else {
-                    ControlFlow::Continue(())
-                }
-            };
-            is_over = survey.learn(log, &mut replay, poses.as_mut(), observe).map_err(input)?;
-            if is_over || saves.is_due() {
+        while let Some(turn) = survey.turn(&mut replay).map_err(input)? {
+            progress.step();
+            self.is_interrupted = job.is_interrupted();
+            let Some(mapper) = survey.mapper() else { break };
+            if let Some((bag, raw)) = bag.as_deref_mut().zip(replay.last()) {
+                bag.add(raw, &turn, mapper, &NoPilot);
+            }
+            trajectory.add(turn.reading.time_s, &turn.belief.pose);
+            let is_last = self.is_interrupted || replay.is_over() && is_last_log;
+            if let Err(problem) = self.show.add(&View::of_log(&turn, mapper), is_last) {
+                self.is_shown = false;
+                progress.say(format_args!("error: {problem}; the run goes on without it"));
+            }
+            if replay.is_over() || saves.is_due() {
                 saves.save(survey);
+            }
+            if self.is_interrupted {
+                break;
             }
         }
         progress.finish();

@@ -3,14 +3,15 @@
 use crate::logs_in_order::begin_s;
 use crate::second_pass::{Learned, ignored};
 use anyhow::Context;
+use curious::program::arguments;
 use curious::words::{how_often, list};
-use interfaces::CellState;
+use interfaces::{CellState, PoseMode};
 use mapper::{NoReturn, NoReturnEvidence};
 use results::numbers::percent;
 use robot::BUILD;
 use serde::Serialize;
 use std::fmt;
-use survey::{Place, PoseMode, Survey, SurveySettings, places};
+use survey::{Place, Survey, SurveySettings, places};
 
 /// The number of places in the summary and in the report.
 const MOST_PLACES: usize = 20;
@@ -87,7 +88,7 @@ impl Summary {
             schema: SCHEMA,
             build: BUILD,
             version: env!("CARGO_PKG_VERSION"),
-            arguments: std::env::args().skip(1).collect(),
+            arguments: arguments(),
             settings: survey.settings_of(logs.len()),
             logs: entries().map(|entry| entry.name.clone()).collect(),
             scans: logs.iter().map(|log| log.used).sum(),
@@ -99,7 +100,7 @@ impl Summary {
             trajectory_m: logs.iter().map(|log| log.travelled.length_m).sum(),
             loops: logs.iter().map(|log| log.loops).sum(),
             begin_s: begin_s(entries()),
-            no_return: survey.settings_of(logs.len()).no_return,
+            no_return: survey.settings_of(logs.len()).filter.no_return,
             no_return_evidence: learned.no_return.clone(),
             scans_left_out: logs.iter().map(|log| log.travelled.uncertain).sum(),
             seen_m2: seen as f64 * cell_m2,

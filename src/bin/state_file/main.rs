@@ -129,6 +129,9 @@ fn removable(file: &Path, state: &State) -> anyhow::Result<String> {
     let (Some(now), Some(before)) = (now, before) else { bail!("the earlier state holds no logs") };
     match now.logs().split_last() {
         Some((last, rest)) if content(rest) == content(before.logs()) => Ok(last.entry.name.clone()),
+        Some(_) if content(now.logs()) == content(before.logs()) => {
+            bail!("a run that was killed before it added a log has replaced the earlier state")
+        }
         _ => bail!("the run that was the last one added several"),
     }
 }

@@ -3,10 +3,12 @@
 use super::Survey;
 use crate::change_log::ChangeLog;
 use crate::known_place::KnownPlace;
-use crate::settings::{PoseMode, SurveySettings};
+use crate::replay::FoundPoses;
+use crate::settings::SurveySettings;
 use crate::surveyed_log::SurveyedLog;
-use interfaces::{GridFrame, ValueError, read_value, write_value};
+use interfaces::{GridFrame, PoseMode, ValueError, read_value, write_value};
 use mapper::Mapper;
+use robot::{NoPilot, Robot};
 use std::sync::Arc;
 
 /// The logs of a survey that was saved: they can be read before the settings of the survey are known.
@@ -37,10 +39,20 @@ impl SavedLogs {
     }
 }
 
-impl Survey {
+/// A copy of a survey. A thread can turn it into bytes while the survey goes on.
+#[derive(Clone, Debug)]
+pub struct SavedSurvey {
+    pose: PoseMode,
+    place: Option<Arc<KnownPlace>>,
+    mapper: Option<Mapper>,
+    changes: ChangeLog,
+    logs: Vec<SurveyedLog>,
+}
+
+impl SavedSurvey {
     /// Everything that logs have changed, as bytes: the logs, and what was learned from them; settings are not in it.
     pub fn into_snapshot(self) -> (Vec<u8>, Vec<u8>) {
-        let Self { settings, place, mapper, changes, logs, .. } = self;
+        let Self { pose, place, mapper, changes, logs } = self;
         // All of it can be written. What could not would be refused when it is read.
         let bytes = |write: &dyn Fn(&mut Vec<u8>) -> Result<(), ValueError>| {
             let mut bytes = Vec::new();
@@ -52,9 +64,22 @@ impl Survey {
         let place = place.map(|place| Arc::unwrap_or_clone(place).snapshot());
         let mapper = mapper.map(|mut mapper| (*mapper.frame(), mapper.snapshot()));
         (
-            bytes(&|bytes| write_value(&(settings.pose, &logs), bytes)),
+            bytes(&|bytes| write_value(&(pose, &logs), bytes)),
             bytes(&|bytes| write_value(&(&place, &mapper, &changes), bytes)),
         )
+    }
+}
+
+impl Survey {
+    /// Copies what logs have changed. This is short; to turn the copy into bytes takes longer.
+    pub fn saved(&self) -> SavedSurvey {
+        SavedSurvey {
+            pose: self.settings.pose,
+            place: self.place.clone(),
+            mapper: self.mapper().cloned(),
+            changes: self.changes.clone(),
+            logs: self.logs.clone(),
+        }
     }
 
     /// Goes on from the snapshot of a survey with the same settings, bit for bit.
@@ -78,7 +103,7 @@ impl Survey {
             settings,
             learns_noise,
             place: place.map(Arc::new),
-            mapper: None,
+            robot: None,
             changes,
             logs: logs.logs,
         };
@@ -88,7 +113,8 @@ impl Survey {
             let settings = survey.settings_of(last);
             let mut mapper = Mapper::new(&settings.mapper, frame).map_err(|_| ValueError)?;
             mapper.restore(&bytes)?;
-            survey.mapper = Some(mapper);
+            let poses = Box::new(FoundPoses::new(Vec::new()));
+            survey.robot = Some(Robot::new(poses, mapper, NoPilot));
         }
         Ok(survey)
     }

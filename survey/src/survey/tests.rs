@@ -1,10 +1,10 @@
 //! Surveys that are saved and go on, against those that were never interrupted.
 
 use super::{SavedLogs, Survey};
-use crate::settings::{PoseMode, SurveySettings};
+use crate::settings::SurveySettings;
 use crate::surveyed_log::LogEntry;
 use crate::tests::drive;
-use interfaces::{LaserReading, ValueError};
+use interfaces::{LaserReading, PoseMode, ValueError};
 use logs::{Log, McapWriter, TopicChoice};
 use std::fs::File;
 use std::ops::ControlFlow;
@@ -35,19 +35,20 @@ fn add(survey: &mut Survey, log: &Log, name: &str, days: f64) {
     survey.first_pass(log, entry(log, name, days), true, |_| ControlFlow::Continue(())).unwrap();
 }
 
-/// Learns a log, or some readings of it.
+/// Learns a log, or some readings of it. Returns whether it is learned to its end.
 fn learn(survey: &mut Survey, number: usize, log: &Log, most: usize) -> bool {
-    let (mut replay, mut poses) = survey.replay(number, log).unwrap().unwrap();
-    let mut count = 0;
-    let learned = survey.learn(number, &mut replay, &mut poses, |_, _, _| {
-        count += 1;
-        if count == most { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-    });
-    learned.unwrap()
+    let mut replay = survey.replay(number, log).unwrap().unwrap();
+    for _ in 0..most {
+        survey.turn(&mut replay).unwrap().unwrap();
+        if replay.is_over() {
+            return true;
+        }
+    }
+    false
 }
 
 fn restored(survey: Survey) -> Survey {
-    let (logs, learned) = survey.into_snapshot();
+    let (logs, learned) = survey.saved().into_snapshot();
     Survey::restored(settings(), true, SavedLogs::read(&logs).unwrap(), &learned).unwrap()
 }
 
@@ -68,7 +69,7 @@ fn a_survey_that_is_saved_and_goes_on_equals_one_that_was_never_interrupted() {
     assert!(learn(&mut whole, 1, &tuesday, usize::MAX));
     assert!(whole.mapper().unwrap().frame().len() > small.len());
     assert_eq!(*whole.mapper().unwrap().frame(), whole.frame_of(1).unwrap());
-    let whole_bytes = whole.clone().into_snapshot();
+    let whole_bytes = whole.saved().into_snapshot();
 
     // A day later, and in parts.
     for parts in [usize::MAX, 170] {
@@ -81,7 +82,7 @@ fn a_survey_that_is_saved_and_goes_on_equals_one_that_was_never_interrupted() {
             }
             survey = restored(survey);
         }
-        assert!(survey.clone().into_snapshot() == whole_bytes, "{parts} readings at once");
+        assert!(survey.saved().into_snapshot() == whole_bytes, "{parts} readings at once");
     }
     // The place in which later logs find theirs is the same, too.
     let saved = place.as_ref().clone().snapshot();
@@ -93,7 +94,7 @@ fn a_survey_that_is_saved_and_goes_on_equals_one_that_was_never_interrupted() {
     whole.forget_poses();
     assert_eq!((whole.logs()[1].travelled, whole.logs()[1].poses().count()), (travelled, 0));
     assert!(travelled.length_m > 5.0 && travelled.duration_s > 100.0, "{travelled:?}");
-    let [before, after] = [&whole_bytes, &whole.into_snapshot()].map(|(logs, _)| logs.len());
+    let [before, after] = [&whole_bytes, &whole.saved().into_snapshot()].map(|(logs, _)| logs.len());
     assert!(after < 2000 && before > 10 * after, "{before} and {after} bytes");
 }
 
@@ -108,14 +109,16 @@ fn a_map_that_grows_is_the_map_of_the_large_frame() {
         .collect();
     let logs = [bag(folder.path(), "a", &exact[..100], 0.0), bag(folder.path(), "b", &exact[100..], 1.0)];
     let settings = SurveySettings { resolution_m: 0.1, ..SurveySettings::of(PoseMode::Exact) };
-    let mut survey = Survey::new(settings.clone(), true);
-    for (number, log) in logs.iter().enumerate() {
+    let surveyed = || {
+        let mut survey = Survey::new(settings.clone(), true);
+        for (number, log) in logs.iter().enumerate() {
+            let entry = entry(log, "log", number as f64);
+            survey.first_pass(log, entry, false, |_| ControlFlow::Continue(())).unwrap();
+        }
         survey
-            .first_pass(log, entry(log, "log", number as f64), false, |_| ControlFlow::Continue(()))
-            .unwrap();
-    }
+    };
     // The same in the large frame from the start.
-    let mut large = survey.clone();
+    let (mut survey, mut large) = (surveyed(), surveyed());
     large.logs[0].frame = survey.frame_of(1).unwrap();
     for survey in [&mut survey, &mut large] {
         logs.iter().enumerate().for_each(|(number, log)| assert!(learn(survey, number, log, usize::MAX)));
@@ -137,9 +140,9 @@ fn what_cannot_go_on_is_forgotten_or_left_out() {
     let mut survey = Survey::new(settings(), true);
     add(&mut survey, &log, "a", 0.0);
     assert!(survey.place.is_some() && survey.mapper().is_none());
-    let mut forgotten = survey.clone();
-    forgotten.forget_from(0);
-    assert!(forgotten.place.is_none() && forgotten.logs().is_empty());
+    survey.forget_from(0);
+    assert!(survey.place.is_none() && survey.logs().is_empty());
+    add(&mut survey, &log, "a", 0.0);
 
     assert!(!learn(&mut survey, 0, &log, 100));
     assert!(!survey.logs()[0].is_finished());
@@ -156,7 +159,7 @@ fn other_bytes_are_no_survey() {
     let mut survey = Survey::new(settings(), true);
     add(&mut survey, &log, "a", 0.0);
     learn(&mut survey, 0, &log, usize::MAX);
-    let (logs, learned) = survey.into_snapshot();
+    let (logs, learned) = survey.saved().into_snapshot();
     for length in [0, 1, logs.len() / 2, logs.len() - 1] {
         assert!(SavedLogs::read(&logs[..length]).is_err());
     }

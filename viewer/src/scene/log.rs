@@ -1,10 +1,8 @@
 //! The scene of a log: a place of which nothing is known before.
 
-use super::{Outline, Robot, RobotState, Scene, Sector, Sight, TimeUnit, Visible};
+use super::{Robot, Scene, Sector, TimeUnit};
 use interfaces::{GridFrame, LaserReading};
-use logs::LogError;
 use nalgebra::Isometry2;
-use survey::Replay;
 
 /// The drawn radius of a robot of which a log says nothing, m.
 const RADIUS_M: f64 = 0.25;
@@ -37,17 +35,5 @@ impl Scene {
     /// Whether nothing but the robots is known before the run.
     pub(crate) fn is_unknown(&self) -> bool {
         self.walls.is_empty() && self.obstacles.is_empty()
-    }
-}
-
-impl<I: Iterator<Item = Result<LaserReading, LogError>>> Visible for Replay<I> {
-    const UNIT: TimeUnit = TimeUnit::Second;
-
-    fn robots<'a>(&'a self, reading: &'a LaserReading) -> Vec<RobotState<'a>> {
-        vec![RobotState { pose: reading.pose, sight: Some(Sight::Laser(reading)) }]
-    }
-
-    fn obstacles(&self) -> Vec<Option<Outline>> {
-        Vec::new()
     }
 }

@@ -12,8 +12,8 @@ const MOST_LASERS: usize = 100;
 /// The maximum number of sonars of a robot.
 const MOST_SONARS: usize = 100;
 
-const LASER_KEYS: &str =
-    "beams, fov_deg, range_min_m, range_max_m, rate_hz, sweep_s, mount_m, mount_deg, noise_std_m, dropout";
+const LASER_KEYS: &str = "beams, fov_deg, range_min_m, range_max_m, rate_hz, sweep_s, mount_m, mount_deg, noise_std_m, dropout, \
+     beam_width_deg";
 const SONAR_KEYS: &str = "cone_deg, range_min_m, range_max_m, rate_hz, mount_m, mount_deg, noise_std_m";
 
 /// The properties of a robot to which its sensors must fit: the physics step (s) and the radius of the body (m).
@@ -46,6 +46,7 @@ impl Carrier {
         let mount = self.mount(table, "a laser");
         let noise_std_m = table.number_or("noise_std_m", 0.0, 0.0..=1.0);
         let dropout = table.number_or("dropout", 0.0, 0.0..=1.0);
+        let beam_width_deg = table.number_or("beam_width_deg", 0.0, 0.0..=5.0);
         let ([range_min_m, range_max_m], (rate_hz, period_steps)) = (range?, rate?);
         table.sound(LaserSpec {
             beams: beams?,
@@ -58,6 +59,7 @@ impl Carrier {
             mount: mount?,
             noise_std_m: noise_std_m?,
             dropout: dropout?,
+            beam_width_rad: beam_width_deg?.to_radians(),
         })
     }
 

@@ -139,6 +139,7 @@ fn drive(robot: &RobotSpec) -> Option<Keys> {
 
 fn laser(laser: &LaserSpec) -> Option<Keys> {
     let sweep = (laser.sweep_s > 0.0).then(|| ("sweep_s", number(laser.sweep_s)));
+    let width = (laser.beam_width_rad > 0.0).then(|| ("beam_width_deg", degrees(laser.beam_width_rad)));
     let keys = || {
         let keys = vec![
             ("beams", Value::from(laser.beams as i64)),
@@ -149,7 +150,7 @@ fn laser(laser: &LaserSpec) -> Option<Keys> {
             ("noise_std_m", number(laser.noise_std_m)),
             ("dropout", number(laser.dropout)),
         ];
-        keys.into_iter().chain(sweep).collect()
+        keys.into_iter().chain(sweep).chain(width).collect()
     };
     (laser.mount == Isometry2::identity()).then(keys)
 }

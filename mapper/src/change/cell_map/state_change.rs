@@ -98,7 +98,10 @@ impl CellMap {
         let (frame, Cell { x, y }) = (self.frame(), self.frame().cell(index));
         let cells = (y - NEAR..=y + NEAR).flat_map(|y| (x - NEAR..=x + NEAR).map(move |x| Cell::new(x, y)));
         let others = cells.filter_map(|cell| frame.index(cell)).filter(|&other| other != index);
-        let prior = neighbors::prior(self.gaps[index].own(), others.map(|other| self.gaps[other].own()));
+        let prior = neighbors::prior(
+            self.gaps[index].weights().own,
+            others.map(|other| self.gaps[other].weights().own),
+        );
         if let Some(gaps) = self.gaps.get_mut(index) {
             gaps.weigh(model, &seen, prior, &self.regularity);
         }

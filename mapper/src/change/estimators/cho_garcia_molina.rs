@@ -45,7 +45,7 @@ fn changes_in_view(seen: &CellStatistics) -> f64 {
 }
 
 /// The maximum number of iterations; the relative error is below a millionth much earlier.
-const MOST_ROUNDS: usize = 100;
+const MAX_ROUNDS: usize = 100;
 
 /// The expected number of changes in all gaps together, at the rate that best explains the states after the gaps
 /// and the changes in view.
@@ -76,13 +76,13 @@ fn hidden_changes(bins: &GapHistogram, seen: &CellStatistics) -> f64 {
     if !(high > 0.0 && high.is_finite()) {
         return 0.0;
     }
-    for _ in 0..MOST_ROUNDS {
+    for _ in 0..MAX_ROUNDS {
         if excess(high) < 0.0 {
             break;
         }
         (low, high) = (high, 2.0 * high);
     }
-    for _ in 0..MOST_ROUNDS {
+    for _ in 0..MAX_ROUNDS {
         let middle = 0.5 * (low + high);
         if excess(middle) > 0.0 {
             low = middle

@@ -28,7 +28,7 @@ pub(in crate::change) struct Fit {
 }
 
 /// The maximum number of scoring steps. Most fits take two or three.
-const MOST_ROUNDS: usize = 30;
+const MAX_ROUNDS: usize = 30;
 /// The search ends when the log-odds of both probabilities change by less than this.
 const FOUND: f64 = 1e-4;
 /// The maximum change of log-odds in one step.
@@ -36,7 +36,10 @@ const LONGEST_MOVE: f64 = 2.0;
 /// The limit of the absolute value of log-odds.
 const EXTREME: f64 = 30.0;
 /// The maximum number of times that a step which leads downhill is halved.
-const MOST_HALVINGS: usize = 12;
+const MAX_HALVINGS: usize = 12;
+
+/// Evidence whose sum gives more than this many times, or less than this part of, the probability that was found is on a kink.
+const KINK: f64 = 2.0;
 
 /// The logarithm of the posterior at one point, and its first and expected second derivatives in log-odds.
 #[derive(Clone, Copy, Debug, Default)]
@@ -92,11 +95,11 @@ impl Observations<'_> {
         });
         let mut step = from_odds(odds);
         let mut gaps = self.of_gaps(step);
-        for _ in 0..MOST_ROUNDS {
+        for _ in 0..MAX_ROUNDS {
             let here = self.with_exposure(step, gaps);
             let Some(mut by) = here.best_move() else { break };
             let mut found = None;
-            for _ in 0..MOST_HALVINGS {
+            for _ in 0..MAX_HALVINGS {
                 let next = [0, 1].map(|state| (odds[state] + by[state]).clamp(-EXTREME, EXTREME));
                 let next_step = from_odds(next);
                 let next_gaps = self.of_gaps(next_step);
@@ -116,6 +119,13 @@ impl Observations<'_> {
         for (state, leave) in [step.block, step.free].into_iter().enumerate() {
             worth.steps[state] = gaps.information[state] / (leave * (1.0 - leave));
             worth.events[state] = leave * worth.steps[state] + gaps.score[state];
+            // Where stays are equal, the likelihood of gaps has kinks. At a maximum on a kink the scores do not cancel, and
+            // the sum of all evidence would be another chain, down to a negative number of events.
+            let steps = self.exposure.steps[state] + worth.steps[state];
+            let events = self.exposure.events[state] + worth.events[state];
+            if !(leave * steps / KINK..=leave * steps * KINK).contains(&events) {
+                worth.events[state] = leave * steps - self.exposure.events[state];
+            }
         }
         let results = [worth.steps, worth.events, [gaps.mixed, gaps.height]];
         let is_finite = results.iter().flatten().all(|result| result.is_finite());

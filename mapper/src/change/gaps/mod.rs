@@ -118,23 +118,16 @@ impl CellGaps {
         }
     }
 
-    /// [`GapWeights::own`] of the previous result.
-    pub(super) fn own(&self) -> Exposure {
-        self.weighed.as_ref().map_or(Exposure::default(), |weighed| weighed.weights.own)
+    /// The previous result.
+    pub(super) fn weights(&self) -> GapWeights {
+        self.weighed.as_ref().map_or(GapWeights::default(), |weighed| weighed.weights)
     }
 
     /// The information in the gaps, with steps of length `period`.
     pub(super) fn worth(&self, period: f64) -> GapWorth {
-        self.weighed.as_ref().map_or(GapWorth::default(), |weighed| {
-            let Exposure { events: [block_events, free_events], steps: [free, blocked] } =
-                weighed.weights.worth;
-            GapWorth {
-                watched_free: free * period,
-                watched_blocked: blocked * period,
-                block_events,
-                free_events,
-            }
-        })
+        let Exposure { events: [block_events, free_events], steps } = self.weights().worth;
+        let [watched_free, watched_blocked] = steps.map(|steps| steps * period);
+        GapWorth { watched_free, watched_blocked, block_events, free_events }
     }
 
     /// Whether the gaps of a cell that changes must be weighed again.
@@ -148,15 +141,14 @@ impl CellGaps {
     }
 
     fn evidence<'a>(&'a self, seen: &'a CellStatistics, regularity: &Regularity) -> GapEvidence<'a> {
-        let weighed = self.weighed.as_deref();
         GapEvidence {
             seen,
             gaps: &self.histogram,
             prior: Exposure::uniform(MEDIAN_EVENTS, 1.0),
             neighbors: Exposure::default(),
-            whole_stays: weighed.map_or(Exposure::default(), |weighed| weighed.whole_stays),
+            whole_stays: self.weighed.as_ref().map_or(Exposure::default(), |weighed| weighed.whole_stays),
             regularity: regularity.weights(),
-            last_step: weighed.and_then(|weighed| weighed.weights.step),
+            last_step: self.weights().step,
         }
     }
 

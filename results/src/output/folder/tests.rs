@@ -173,6 +173,53 @@ fn a_marker_from_elsewhere_removes_nothing() {
     }
 }
 
+/// A folder that came with an archive, say.
+#[test]
+fn a_journal_from_elsewhere_moves_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("out");
+    fs::create_dir_all(path.join(UNFINISHED)).unwrap();
+    fs::write(path.join(UNFINISHED).join(LOCK), LOCK_CONTENT).unwrap();
+    fs::write(path.join("thesis.tex"), "of the user").unwrap();
+    let marker = |name: &str| {
+        format!(r#"{{"schema":1,"program":"","version":"","files":{{{name:?}:{{"bytes":0,"xxh3":""}}}}}}"#)
+    };
+    let journal = path.join(UNFINISHED).join(".exchange.json");
+    let outside = format!(r#"{{"earlier":{},"new":{}}}"#, marker("a"), marker("../thesis.tex"));
+    for text in [&outside[..], "", "{}"] {
+        fs::write(&journal, text).unwrap();
+        let error = RunFolder::open(&path).unwrap_err();
+        assert!(
+            error.is_refusal() && error.to_string().contains(".exchange.json: no run of this"),
+            "{error}"
+        );
+        assert_eq!(names(&path), ["thesis.tex", UNFINISHED]);
+        assert_eq!(names(folder.path()), ["out"]);
+    }
+}
+
+#[test]
+fn a_folder_of_the_user_in_that_of_a_run_stays() {
+    let folder = tempfile::tempdir().unwrap();
+    for fails in [true, false] {
+        let run = RunFolder::open(folder.path()).unwrap();
+        fs::write(run.unfinished().join("map.pgm"), "new").unwrap();
+        fs::create_dir(run.unfinished().join("mine")).unwrap();
+        fs::write(run.unfinished().join("mine/notes.txt"), "of the user").unwrap();
+        if fails {
+            drop(run)
+        } else {
+            run.finish(&[]).unwrap()
+        }
+        assert_eq!(folder.path().join("map.pgm").exists(), !fails);
+        drop(RunFolder::open(folder.path()).unwrap());
+    }
+    for number in [1, 2] {
+        let kept = folder.path().join(format!("{UNFINISHED}_{number}/mine/notes.txt"));
+        assert_eq!(fs::read_to_string(kept).unwrap(), "of the user");
+    }
+}
+
 /// The files of the folder with their contents, without those of unfinished runs.
 fn contents(folder: &Path) -> BTreeMap<String, String> {
     let is_result = |name: &String| !name.starts_with(UNFINISHED) && name != MARKER;

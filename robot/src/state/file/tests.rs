@@ -13,7 +13,7 @@ fn state() -> State {
 fn a_file_appears_when_it_is_complete_and_is_replaced() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("house.state");
-    fs::write(with_ending(&path, "unfinished"), "of a killed run").unwrap();
+    fs::write(with_ending(&path, "unfinished"), &state().to_bytes().unwrap()[..30]).unwrap(); // of a killed run
     fs::write(with_ending(&path, "lock"), "").unwrap();
     let mut file = StateFile::open(&path).unwrap();
     assert!(file.load().unwrap().is_none() && !file.is_due());
@@ -91,6 +91,24 @@ fn whoever_has_the_lock_is_alone() {
         }
     });
     assert_eq!(count(), 100);
+}
+
+/// A state `Cargo` has the lock `Cargo.lock`.
+#[test]
+fn files_of_others_beside_the_state_stay() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("Cargo");
+    for ending in ["lock", "unfinished", "earlier"] {
+        let other = with_ending(&path, ending);
+        fs::write(&other, "of the user").unwrap();
+        let error = StateFile::open(&path).unwrap_err().to_string();
+        let why =
+            "no run has written it, and this one would replace it; move it, or give another file by --state";
+        assert_eq!(error, format!("{}: {why}", other.display()));
+        assert_eq!(fs::read_to_string(&other).unwrap(), "of the user");
+        fs::remove_file(other).unwrap();
+    }
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
 }
 
 #[test]

@@ -6,6 +6,11 @@ use interfaces::{LaserReading, RandomStream, Scan};
 use nalgebra::{Point2, Vector2};
 use std::sync::Arc;
 
+/// A beam with a width is this number of rays, beside the one in its middle.
+const RAYS: usize = 8;
+/// A surface that gets a smaller share of a beam does not change its range.
+const MIN_SHARE: f64 = 0.25;
+
 /// A planar laser scanner.
 #[derive(Clone)]
 pub(in crate::physics) struct LaserScanner {
@@ -41,6 +46,35 @@ impl LaserScanner {
         });
         rays.collect()
     }
+
+    /// One over the ranges of beams with a width, 1/m. `rays`: the beams of a scan that sweeps.
+    fn mixed(&self, look: &Look, rays: &[Ray]) -> Vec<f64> {
+        let Look { platform, surroundings, .. } = look;
+        let (scene, laser) = (&surroundings.scene, platform.pose * self.spec.mount);
+        let cast = |share: f64| {
+            let turn = interfaces::rotation(self.spec.beam_width_rad * share);
+            let turned: Vec<_> = rays.iter().map(|ray| Ray { along: turn * ray.along, ..*ray }).collect();
+            if rays.is_empty() {
+                scene.cast(&self.beams, &(laser * turn), platform.robot, <[f64]>::to_vec)
+            } else {
+                let (bodies, range_max_m) = (&surroundings.recent.bodies, self.spec.range_max_m);
+                scene.sweep(&turned, bodies, range_max_m, platform.robot, <[f64]>::to_vec)
+            }
+        };
+        let parts: Vec<_> = (0..RAYS).map(|ray| cast((ray as f64 + 0.5) / RAYS as f64 - 0.5)).collect();
+        let middle = cast(0.0).into_iter().enumerate();
+        middle.map(|(beam, middle)| mixed(parts.iter().map(|part| 1.0 / part[beam]), middle)).collect()
+    }
+}
+
+/// One over the range of a beam whose rays have these ranges (m), and the ray in its middle one over the range `middle`:
+/// the mean, if a near and a far surface both have a good share.
+fn mixed(ranges_m: impl Iterator<Item = f64> + Clone, middle: f64) -> f64 {
+    let (near_m, far_m) =
+        (ranges_m.clone().fold(f64::INFINITY, f64::min), ranges_m.clone().fold(0.0, f64::max));
+    let near = ranges_m.clone().filter(|range_m| *range_m < (near_m + far_m) / 2.0).count();
+    let is_mixed = (MIN_SHARE..=1.0 - MIN_SHARE).contains(&(near as f64 / RAYS as f64));
+    if is_mixed && far_m.is_finite() { RAYS as f64 / ranges_m.sum::<f64>() } else { middle }
 }
 
 impl Device for LaserScanner {
@@ -72,7 +106,7 @@ impl Device for LaserScanner {
         // By value: the limits cannot be among the ranges that are written, so that the loops below need not read them
         // again for every beam.
         let kept = &mut exact;
-        let report = move |inverses: &[f64]| {
+        let mut report = move |inverses: &[f64]| {
             if !glass.is_empty() {
                 kept.extend_from_slice(inverses);
             }
@@ -91,7 +125,9 @@ impl Device for LaserScanner {
                 }
             }
         };
-        if rays.is_empty() {
+        if self.spec.beam_width_rad > 0.0 {
+            report(&self.mixed(look, &rays));
+        } else if rays.is_empty() {
             scene.cast(&self.beams, &(platform.pose * mount), platform.robot, report);
         } else {
             scene.sweep(&rays, &surroundings.recent.bodies, range_max_m, platform.robot, report);

@@ -1,7 +1,7 @@
 //! The behavior of a robot.
 
-use crate::physics::shape::turned_point;
-use nalgebra::{Point2, UnitComplex};
+use crate::physics::shape::Transform;
+use nalgebra::Point2;
 
 /// The behavior of a robot.
 #[derive(Clone, Debug, PartialEq)]
@@ -87,15 +87,15 @@ impl PatrolSpec {
 }
 
 impl BehaviorSpec {
-    /// Rotates the points with the world about `middle` (m).
-    pub(super) fn turn(&mut self, turn: &UnitComplex<f64>, middle: &Point2<f64>) {
+    /// Moves the points with the world.
+    pub(super) fn transform(&mut self, by: &Transform) {
         let points: Vec<&mut Point2<f64>> = match self {
             Self::WallPatrol(patrol) => vec![&mut patrol.from, &mut patrol.to],
             Self::Waypoints(way) => way.points.iter_mut().collect(),
             Self::Driven | Self::Standing | Self::Circle(_) | Self::Wander(_) => Vec::new(),
         };
         for point in points {
-            *point = turned_point(point, turn, middle);
+            *point = by.point(point);
         }
     }
 }

@@ -15,7 +15,7 @@ pub use odometry::{DisplacementSpec, OdometryError};
 pub use robot::{DriveKind, DriveLimits, LaserSpec, RobotSpec};
 pub use senses::{BumperSpec, FiducialSpec, SonarSpec};
 
-use super::shape::{Rectangle, TOUCH_M, turned};
+use super::shape::{Rectangle, TOUCH_M, Transform};
 use interfaces::{GridFrame, rotation};
 use nalgebra::{Point2, Vector2};
 
@@ -71,16 +71,20 @@ impl FleetSpec {
         if turn_rad == 0.0 {
             return;
         }
-        let by = rotation(turn_rad);
+        self.transform(&Transform { turn: rotation(turn_rad), from: *center, to: *center });
+    }
+
+    /// Moves everything except the frame.
+    fn transform(&mut self, by: &Transform) {
         for wall in self.walls.iter_mut().chain(self.glass.iter_mut().map(|glass| &mut glass.shape)) {
-            *wall = wall.turned(&by, center);
+            *wall = wall.transformed(by);
         }
         for obstacle in &mut self.obstacles {
-            obstacle.turn(&by, center);
+            obstacle.transform(by);
         }
         for robot in &mut self.robots {
-            robot.pose = turned(&robot.pose, &by, center);
-            robot.behavior.turn(&by, center);
+            robot.pose = by.pose(&robot.pose);
+            robot.behavior.transform(by);
         }
     }
 
@@ -151,6 +155,23 @@ impl WorldSpec {
         }
         fleet.robots.get_mut(driven)?.behavior = BehaviorSpec::Driven;
         Some(Self { fleet, driven })
+    }
+
+    /// The same world in another frame, in which the driven robot starts at the origin with the heading `heading_rad`;
+    /// and the motion from the frame of this world. The frame covers that of this world, in whole cells from the origin.
+    /// `None` if such a frame has too many cells.
+    pub fn around_robot(&self, heading_rad: f64) -> Option<(Self, Transform)> {
+        let (start, frame) = (&self.driven().pose, &self.frame);
+        let turn = rotation(heading_rad) * start.rotation.inverse();
+        let by = Transform { turn, from: start.translation.vector.into(), to: Point2::origin() };
+        let size = Vector2::new(frame.width() as f64, frame.height() as f64) * frame.resolution_m();
+        let place = Rectangle::between(frame.origin(), frame.origin() + size).transformed(&by);
+        let ((low, high), cell_m) = (place.bounds(), frame.resolution_m());
+        let origin = Point2::from((low.coords / cell_m).map(f64::floor) * cell_m);
+        let mut moved = self.clone();
+        moved.fleet.frame = GridFrame::covering(origin, high.x - origin.x, high.y - origin.y, cell_m)?;
+        moved.fleet.transform(&by);
+        Some((moved, by))
     }
 
     /// The same world as a fleet.

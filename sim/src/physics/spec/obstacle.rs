@@ -1,7 +1,7 @@
 //! Obstacles: boxes, moving blocks and doors.
 
-use crate::physics::shape::{Rectangle, turned_point};
-use nalgebra::{Point2, UnitComplex, Vector2};
+use crate::physics::shape::{Rectangle, Transform};
+use nalgebra::{Point2, Vector2};
 
 /// A box, a moving block or a door.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,18 +42,18 @@ impl ObstacleSpec {
         }
     }
 
-    /// Rotates the obstacle with the world about `middle` (m).
-    pub(super) fn turn(&mut self, turn: &UnitComplex<f64>, middle: &Point2<f64>) {
-        self.shape = self.shape.turned(turn, middle);
+    /// Moves the obstacle with the world.
+    pub(super) fn transform(&mut self, by: &Transform) {
+        self.shape = self.shape.transformed(by);
         match &mut self.motion {
             Motion::Fixed | Motion::Pushed(_) => {}
             Motion::Path(path) => {
-                path.keys.iter_mut().for_each(|(_, at)| *at = turned_point(at, turn, middle));
+                path.keys.iter_mut().for_each(|(_, at)| *at = by.point(at));
             }
             Motion::Door(DoorSpec { leaf: Leaf::Hinged { hinge, .. }, .. }) => {
-                *hinge = turned_point(hinge, turn, middle);
+                *hinge = by.point(hinge);
             }
-            Motion::Door(DoorSpec { leaf: Leaf::Sliding { by_m }, .. }) => *by_m = turn * *by_m,
+            Motion::Door(DoorSpec { leaf: Leaf::Sliding { by_m }, .. }) => *by_m = by.turn * *by_m,
         }
     }
 }

@@ -69,6 +69,7 @@ impl RobotSpec {
                 mount: Isometry2::identity(),
                 noise_std_m: 0.0,
                 dropout: 0.0,
+                beam_width_rad: 0.0,
             },
             more_lasers: Vec::new(),
             bumper: None,
@@ -181,6 +182,9 @@ pub struct LaserSpec {
     pub noise_std_m: f64,
     /// The probability that a range is missing (NaN), from 0 to 1.
     pub dropout: f64,
+    /// The angle that a beam covers, rad; 0: a ray. A beam that meets a near surface with a part of its width, and a far
+    /// one with the rest, gives a range between both (a mixed pixel).
+    pub beam_width_rad: f64,
 }
 
 impl LaserSpec {

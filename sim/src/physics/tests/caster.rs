@@ -10,7 +10,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 
 /// A cluttered, rotated house with boxes at odd angles and several robots.
-fn cluttered() -> FleetSpec {
+pub(super) fn cluttered() -> FleetSpec {
     let boxes = [(3.3, 4.1, 0.4, 0.7, 33.0), (8.0, 2.0, 1.5, 0.02, -71.0), (9.0, 8.7, 0.3, 0.3, 45.0)];
     let mut spec = four_rooms();
     spec.obstacles.extend(boxes.map(|(x, y, width, height, heading_deg): (f64, f64, f64, f64, f64)| {

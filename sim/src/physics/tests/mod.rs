@@ -3,6 +3,8 @@
 
 mod caster;
 mod energy;
+mod mixed;
+mod moved;
 mod oracle;
 mod sliding;
 mod specs;

@@ -116,6 +116,18 @@ impl Place {
         Self { spec, scene, bodies, boxes, discs, cornered }
     }
 
+    /// The scan of a laser at `at` on the first robot.
+    pub(super) fn scan(&self, spec: &LaserSpec, at: &Isometry2<f64>) -> Scan {
+        scan(spec, at, &self.scene, 0)
+    }
+
+    /// The range of rapier's ray from `at` on the first robot, m; ∞ beyond 10 m.
+    pub(super) fn rapier_m(&self, at: &Isometry2<f64>, angle_rad: f64) -> f64 {
+        let along = rotation(angle_rad) * (at.rotation * Vector2::x());
+        let range_m = self.bodies.ray_m(&at.translation.vector.into(), &along, 0, 10.0);
+        range_m.unwrap_or(f64::INFINITY)
+    }
+
     /// Whether a laser at this position is outside of all bodies.
     pub(super) fn is_free(&self, at: &Point2<f64>, own: usize) -> bool {
         let mut others = self.discs.iter().enumerate().filter(|(i, _)| *i != own);

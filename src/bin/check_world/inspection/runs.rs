@@ -2,7 +2,7 @@
 
 use agent::Policy;
 use curious::worlds::{self, LoadError, WorldError};
-use evaluation::physics_trial::PhysicsSettings;
+use evaluation::physics_trial;
 use interfaces::printable;
 
 /// The command that runs a physics world or a Stage world.
@@ -17,7 +17,7 @@ pub(super) fn in_grid_world(name: &str) -> String {
 
 /// Whether a robot can explore the world.
 fn explores(name: &str) -> anyhow::Result<()> {
-    let settings = PhysicsSettings::of(&worlds::load(name)?.spec)?;
+    let settings = physics_trial::settings(&worlds::load(name)?.spec)?;
     settings.pilot(settings.agent(&Policy::default(), 0)?, 0)?;
     Ok(())
 }

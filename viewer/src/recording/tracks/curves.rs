@@ -56,20 +56,18 @@ pub(in crate::recording) fn plots(scene: &Scene, view: &View) -> Vec<Plot> {
         });
         plot("Map: coverage and quality", "/curves/scores", SHARE, vec![coverage, quality]);
     }
-    if let Some(believed) = &view.believed {
-        let error = curve("error", "true error", palette::GOAL, |view| {
-            Some(1000.0 * view.believed.as_ref()?.error_m())
-        });
+    if let Some(belief) = view.belief {
+        let error = curve("error", "true error", palette::GOAL, |view| Some(1000.0 * view.error_m()?));
         let mut curves = vec![error];
-        if believed.estimate.is_some() {
+        if belief.estimate.is_some() {
             curves.push(curve("deviation", "standard deviation", palette::SENSOR, |view| {
-                Some(1000.0 * view.believed.as_ref()?.estimate?.position_std_m())
+                Some(1000.0 * view.belief?.estimate.as_ref()?.position_std_m())
             }));
             let support = curve("support", "share of the scan that fits the map", palette::PATH, |view| {
-                Some(view.believed.as_ref()?.estimate?.support)
+                Some(view.belief?.estimate.as_ref()?.support)
             });
             let certain = curve("certain", "the pose is certain", palette::OTHER_ROBOT, |view| {
-                let state = view.believed.as_ref()?.estimate?.state;
+                let state = view.belief?.estimate.as_ref()?.state;
                 Some(if state == PoseState::Tracking { 1.0 } else { 0.0 })
             });
             plot("Localization: support", "/curves/support", SHARE, vec![support, certain]);

@@ -3,9 +3,9 @@
 use super::robots::add_trail;
 use super::{Kind, ON_CHANGE, Strip, Tracks, WORLD, closed, color, line, order, points, position, strips};
 use crate::scene::Sight;
-use crate::view::{Believed, View};
+use crate::view::View;
 use localizer::PoseEstimate;
-use nalgebra::{Point2, SymmetricEigen, Vector2};
+use nalgebra::{Isometry2, Point2, SymmetricEigen, Vector2};
 use rerun::{Points2D, Radius, RecordingStreamResult};
 use results::drawing::palette;
 use std::f64::consts::TAU;
@@ -21,7 +21,7 @@ const EVERY: usize = 4;
 
 /// Adds all entities of the estimate; nothing for a robot whose poses are exact.
 pub(super) fn add(tracks: &mut Tracks) -> RecordingStreamResult<()> {
-    let Some(believed) = tracks.view.believed else { return Ok(()) };
+    let Some(belief) = tracks.view.belief else { return Ok(()) };
     let path = |part: &str| format!("{WORLD}/estimate/{part}");
     let own = color(palette::ESTIMATE, 255);
     let (body, trail, scan) = (path("body"), path("trail"), path("scan"));
@@ -34,12 +34,12 @@ pub(super) fn add(tracks: &mut Tracks) -> RecordingStreamResult<()> {
     tracks.always(&scan, &dots)?;
     let driven = tracks.scene.robots.iter().find(|robot| robot.is_driven);
     let radius_m = driven.map_or(0.2, |robot| robot.radius_m);
-    let outline = move |view: &View| view.believed.iter().map(|it| self::body(it, radius_m)).collect();
+    let outline = move |view: &View| view.belief.iter().map(|it| self::body(&it.pose, radius_m)).collect();
     tracks.add(body, ON_CHANGE, outline, strips);
-    add_trail(tracks, trail, |view| Some(view.believed?.pose));
+    add_trail(tracks, trail, |view| Some(view.belief?.pose));
     let when = (Kind::State, tracks.scene.unit.choose(1.0, 10.0));
     tracks.add(scan, when, hits, points);
-    if believed.estimate.is_some() {
+    if belief.estimate.is_some() {
         let uncertainty = path(&format!("uncertainty_{ENLARGED}_times_enlarged"));
         tracks.always(&uncertainty, &line(own, 1.0, order::HEADING))?;
         tracks.add(uncertainty, ON_CHANGE, |view| estimate(view).map(ellipse).into_iter().collect(), strips);
@@ -48,16 +48,16 @@ pub(super) fn add(tracks: &mut Tracks) -> RecordingStreamResult<()> {
 }
 
 fn estimate<'a>(view: &View<'a>) -> Option<&'a PoseEstimate> {
-    view.believed?.estimate
+    view.belief?.estimate.as_ref()
 }
 
 /// A circle with a line to the front.
-fn body(believed: &Believed, radius_m: f64) -> Strip {
+fn body(believed: &Isometry2<f64>, radius_m: f64) -> Strip {
     let circle =
         (0..=CORNERS).map(|corner| interfaces::rotation(TAU * f64::from(corner) / f64::from(CORNERS)));
     let circle = circle.map(|rotation| Point2::from(rotation * Vector2::x() * radius_m));
     let middle = [Point2::origin()].into_iter();
-    middle.chain(circle).map(|point| position(&(believed.pose * point))).collect()
+    middle.chain(circle).map(|point| position(&(believed * point))).collect()
 }
 
 /// The ellipse of the position.

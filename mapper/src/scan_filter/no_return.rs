@@ -1,8 +1,8 @@
 //! What a beam without a return means. Glass, mirrors and black surfaces swallow beams: a scanner whose beams without a
 //! return often pass through surfaces that its other beams hit does not say that the space is free.
 
-use interfaces::LaserReading;
-use nalgebra::{Point2, Vector2};
+use interfaces::{LaserReading, Scan, Values, value};
+use nalgebra::{Point2, UnitComplex, Vector2};
 use std::collections::BTreeMap;
 
 /// The side of a cell in which hits are counted, m.
@@ -27,6 +27,8 @@ const MAX_TURN_RAD: f64 = 0.02;
 const PRIOR: [f64; 2] = [10.0, 40.0];
 /// The largest probability that a surface gives no return, for a scanner that is trusted.
 const MAX_SWALLOWED: f64 = 0.06;
+/// The largest of these probabilities for a scanner whose beams may clear a surface that others hit.
+const MAX_CLEAN: f64 = 0.003;
 /// A scanner is not trusted before it was seen for this time, s: a robot must drive past glass to notice it.
 const LEARNS_S: f64 = 30.0;
 /// A surface that is hit again after at most this time was there in between, s.
@@ -36,7 +38,7 @@ const SAME_VIEW_M: f64 = 0.3;
 /// The largest number of beams without a return in the same view, per hit: more, and something comes and goes.
 const MAX_SILENT: f64 = 0.5;
 /// More scanners than these are not told apart.
-const MOST: usize = 4;
+const MAX_SCANNERS: usize = 4;
 /// A longer time between two scans counts as this, s.
 const MAX_STEP_S: f64 = 1.0;
 
@@ -71,7 +73,7 @@ impl NoReturn {
 }
 
 /// The hits in a cell.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, serde::Deserialize, serde::Serialize)]
 struct Surface {
     mean: Point2<f64>,
     /// The number of scans that hit the cell, and the time of the last of them, s.
@@ -83,19 +85,28 @@ struct Surface {
     hits: u32,
     silent: u32,
     /// For each scanner the beams without a return that have passed since the last hit.
-    passed: [u32; MOST],
+    passed: [u32; MAX_SCANNERS],
 }
 
 impl Surface {
+    /// Whether a beam meets the surface.
+    fn is_on(&self, origin: &Point2<f64>, along: &Vector2<f64>) -> bool {
+        (self.mean - origin).perp(along).abs() <= NEAR_M
+    }
+
     /// Whether a surface stands here, and nobody who comes and goes: hit often, and seldom silent in the same view.
     fn stands(&self) -> bool {
-        let [hits, silent] = [self.hits, self.silent].map(f64::from);
-        self.scans >= CONFIDENT && silent <= MAX_SILENT * hits
+        self.scans >= CONFIDENT && self.stays()
+    }
+
+    /// Whether the surface is seldom silent in the same view.
+    fn stays(&self) -> bool {
+        f64::from(self.silent) <= MAX_SILENT * f64::from(self.hits)
     }
 }
 
 /// The evidence about the beams of one scanner.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Deserialize, serde::Serialize)]
 pub struct NoReturnEvidence {
     /// Beams without a return that passed through a surface that was hit before and after.
     pub passing: u64,
@@ -142,6 +153,11 @@ impl NoReturns {
         self.scanners.iter().map(|(_, evidence)| *evidence)
     }
 
+    /// What was learned: what a state file holds.
+    pub(crate) fn values(&mut self) -> Values<'_> {
+        vec![value(&mut self.surfaces), value(&mut self.scanners), value(&mut self.last_s)]
+    }
+
     /// Learns from a reading whose pose is certain.
     pub fn learn(&mut self, reading: &LaserReading) {
         let scan = &reading.scan;
@@ -154,21 +170,23 @@ impl NoReturns {
             self.scanners[scanner].1.learned_s += (reading.time_s - self.last_s).clamp(0.0, MAX_STEP_S);
         }
         self.last_s = reading.time_s;
-        let laser = reading.pose * reading.mount;
-        let origin = Point2::from(laser.translation.vector);
-        let judged_m = (JUDGED_SHARE * scan.range_max_m).min(FARTHEST_M);
+        let (origin, rotation, judged_m) = beams(reading);
         for (beam, &range_m) in scan.ranges_m.iter().enumerate().step_by(STRIDE) {
-            let along = laser.rotation * (interfaces::rotation(scan.angle_rad(beam)) * Vector2::x());
+            let along = along(rotation, scan, beam);
             let range_m = f64::from(range_m);
             let evidence = &mut self.scanners[scanner].1;
             if range_m == f64::INFINITY {
                 evidence.silent += 1;
-                self.along(&origin, &along, judged_m, |surface| {
+                for at in passed(origin, along, judged_m) {
+                    let met = self.surfaces.get_mut(&at).filter(|surface| surface.is_on(&origin, &along));
+                    let Some(surface) = met else { continue };
                     let is_same_view = (origin - surface.seen_from).norm() <= SAME_VIEW_M;
                     surface.silent += u32::from(is_same_view);
-                    surface.passed[scanner] += u32::from(surface.stands());
-                    surface.stands()
-                });
+                    if surface.stands() {
+                        surface.passed[scanner] += 1;
+                        break;
+                    }
+                }
             } else if (scan.range_min_m..=judged_m).contains(&range_m) {
                 self.hit(scanner, &origin, &(origin + along * range_m), reading.time_s);
             }
@@ -180,11 +198,13 @@ impl NoReturns {
         match self.meaning {
             NoReturn::Free => true,
             NoReturn::Ignore => false,
-            NoReturn::Learn => {
-                let known = self.scanners.iter().find(|(scanner, _)| *scanner == key(reading));
-                known.is_some_and(|(_, evidence)| evidence.is_trusted())
-            }
+            NoReturn::Learn => self.evidence_of(reading).is_some_and(NoReturnEvidence::is_trusted),
         }
+    }
+
+    fn evidence_of(&self, reading: &LaserReading) -> Option<&NoReturnEvidence> {
+        let known = self.scanners.iter().find(|(scanner, _)| *scanner == key(reading));
+        known.map(|(_, evidence)| evidence).filter(|_| self.meaning == NoReturn::Learn)
     }
 
     /// Turns beams without a return that are not trusted into invalid ones, which say nothing.
@@ -192,6 +212,25 @@ impl NoReturns {
         if !self.is_trusted(reading) {
             let silent = reading.scan.ranges_m.iter_mut().filter(|range_m| **range_m == f32::INFINITY);
             silent.for_each(|range_m| *range_m = f32::NAN);
+        }
+    }
+
+    /// Turns the beams without a return of a trusted scanner that sometimes swallows beams into invalid ones where they pass
+    /// a surface. The pose of the reading is certain.
+    pub fn protect(&self, reading: &mut LaserReading) {
+        if self.evidence_of(reading).is_none_or(|known| known.swallowed() < MAX_CLEAN) {
+            return;
+        }
+        let (origin, rotation, judged_m) = beams(reading);
+        for beam in 0..reading.scan.ranges_m.len() {
+            if reading.scan.ranges_m[beam] != f32::INFINITY {
+                continue;
+            }
+            let along = along(rotation, &reading.scan, beam);
+            let mut surfaces = passed(origin, along, judged_m).filter_map(|at| self.surfaces.get(&at));
+            if surfaces.any(|surface| surface.is_on(&origin, &along) && surface.stays()) {
+                reading.scan.ranges_m[beam] = f32::NAN;
+            }
         }
     }
 
@@ -203,7 +242,7 @@ impl NoReturns {
             seen_from: *origin,
             hits: 0,
             silent: 0,
-            passed: [0; MOST],
+            passed: [0; MAX_SCANNERS],
         };
         let at = cell(end);
         if self.surfaces.len() >= MAX_SURFACES && !self.surfaces.contains_key(&at) {
@@ -228,33 +267,11 @@ impl NoReturns {
         }
     }
 
-    /// Calls `visit` with the surfaces that a beam meets up to a range, until it returns true.
-    fn along(
-        &mut self,
-        origin: &Point2<f64>,
-        along: &Vector2<f64>,
-        range_m: f64,
-        mut visit: impl FnMut(&mut Surface) -> bool,
-    ) {
-        let mut last = cell(origin);
-        for step in 1..=(range_m / (CELL_M / 2.0)) as u32 {
-            let at = cell(&(origin + along * (f64::from(step) * CELL_M / 2.0)));
-            if at != last
-                && let Some(surface) = self.surfaces.get_mut(&at)
-                && (surface.mean - origin).perp(along).abs() <= NEAR_M
-                && visit(surface)
-            {
-                return;
-            }
-            last = at;
-        }
-    }
-
     fn scanner(&mut self, reading: &LaserReading) -> usize {
         let key = key(reading);
         let known = self.scanners.iter().position(|(scanner, _)| *scanner == key);
         known.unwrap_or_else(|| {
-            if self.scanners.len() < MOST {
+            if self.scanners.len() < MAX_SCANNERS {
                 self.scanners.push((key, NoReturnEvidence::default()));
             }
             self.scanners.len() - 1
@@ -262,10 +279,30 @@ impl NoReturns {
     }
 }
 
+/// The start of all beams, their turn, and how far they are judged, m.
+fn beams(reading: &LaserReading) -> (Point2<f64>, UnitComplex<f64>, f64) {
+    let laser = reading.pose * reading.mount;
+    let judged_m = (JUDGED_SHARE * reading.scan.range_max_m).min(FARTHEST_M);
+    (Point2::from(laser.translation.vector), laser.rotation, judged_m)
+}
+
+fn along(rotation: UnitComplex<f64>, scan: &Scan, beam: usize) -> Vector2<f64> {
+    rotation * (interfaces::rotation(scan.angle_rad(beam)) * Vector2::x())
+}
+
 /// The place and the first beam of a scanner.
 fn key(reading: &LaserReading) -> [u64; 5] {
     let (at, turn) = (&reading.mount.translation, &reading.mount.rotation);
     [at.x, at.y, turn.re, turn.im, reading.scan.angle_min_rad].map(f64::to_bits)
+}
+
+/// The cells that a beam passes up to a range.
+fn passed(origin: Point2<f64>, along: Vector2<f64>, range_m: f64) -> impl Iterator<Item = [i32; 2]> {
+    let mut last = cell(&origin);
+    (1..=(range_m / (CELL_M / 2.0)) as u32).filter_map(move |step| {
+        let at = cell(&(origin + along * (f64::from(step) * CELL_M / 2.0)));
+        (std::mem::replace(&mut last, at) != at).then_some(at)
+    })
 }
 
 fn cell(at: &Point2<f64>) -> [i32; 2] {

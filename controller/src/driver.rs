@@ -1,0 +1,75 @@
+use crate::situation::Situation;
+use interfaces::{CellState, Grid, Values};
+use nalgebra::Point2;
+
+/// The state of a driver.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Status {
+    /// There was no goal yet, or the goal was canceled.
+    Idle,
+    /// The robot drives to the goal.
+    Travelling,
+    /// The robot explores around the goal, or observes at the goal.
+    Exploring,
+    /// The goal is finished; the robot stops until the next goal.
+    Finished(Outcome),
+}
+
+/// The outcome of a goal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize, serde::Serialize)]
+pub enum Outcome {
+    /// The robot reached the goal.
+    Reached,
+    /// The goal is blocked or hidden; the robot reached the nearest point that can be reached.
+    Nearest,
+    /// The goal was given up, because the robot was stuck for too long.
+    GivenUp,
+}
+
+/// Drives the robot to goals: the [`Controller`](crate::Controller), or the navigation of another system.
+pub trait Driver {
+    /// The type of the commands.
+    type Command;
+
+    /// Sets a goal in the frame of the map, m; it replaces any other one. The robot drives there, and then explores around it,
+    /// or, with `watch`, stops there for this duration, s (steps in a grid world); NaN counts as 0. A goal outside of the map
+    /// is replaced by the nearest point in the map.
+    fn set_goal(&mut self, goal: Point2<f64>, watch: Option<f64>);
+
+    /// Cancels the goal; the robot stops.
+    fn cancel(&mut self);
+
+    /// The last goal; `None` before the first goal, and after the goal was canceled.
+    fn goal(&self) -> Option<Point2<f64>>;
+
+    /// Returns the command for this tick. After a new goal was set, the method may be called again in the same
+    /// tick, with the same situation but without its transitions; the robot then starts without delay.
+    fn drive(&mut self, situation: &Situation) -> Self::Command;
+
+    /// Returns the command for a tick in which the robot does not drive to its goal: it rests, or looks around.
+    fn pause(&mut self, situation: &Situation, looks_around: bool) -> Self::Command;
+
+    /// The state after the last tick.
+    fn status(&self) -> Status;
+
+    /// Why the last goal was given up.
+    fn trouble(&self) -> &'static str {
+        "no path leads nearer to it"
+    }
+
+    /// Writes the travel time from the robot to each cell at full speed, in row-major order, s (steps in a grid
+    /// world); ∞ where no path is known. Call it after [`drive`](Self::drive), which applies the changes of the
+    /// map. The computing time is that of one wave over the whole map.
+    fn travel_times(&mut self, situation: &Situation, times: &mut Vec<f64>);
+
+    /// Forgets the map: the next one is not the last one with some changes. A path to the goal is planned anew; a local
+    /// exploration ends.
+    fn forget_map(&mut self);
+
+    /// The present path, from the position where it was planned to its end, m; empty without a path.
+    fn path(&self) -> &[Point2<f64>];
+
+    /// Everything that a tick changes and a later tick needs: what a state file holds of the driver. `map` is the map
+    /// of the last tick; what follows from it is not in the list.
+    fn values(&mut self, map: &Grid<CellState>) -> Values<'_>;
+}

@@ -1,0 +1,185 @@
+//! A localizer in places that it was not tuned on: how many scans a robot at an unknown pose of a large place needs, and the
+//! CPU time of the slowest of them (Linux; the time of this thread, not that of the clock); and whether a robot with perfect
+//! odometry is still right after a time without returns, in rooms that look alike from several sides.
+//!
+//! ```text
+//! cargo run -p localizer --example attack
+//! ```
+
+use interfaces::{Cell, CellState, Grid, GridFrame, LaserReading, Purpose, RandomStream, Scan, Twist, pose};
+use localizer::{Localizer, LocalizerSettings, PoseState, Start};
+use mapper::{Mapper, MapperSettings};
+use nalgebra::{Isometry2, Point2, Vector2};
+
+/// The CPU time of this thread so far, ms.
+fn cpu_ms() -> f64 {
+    let text = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
+    text.split(' ').next().and_then(|ns| ns.parse::<f64>().ok()).unwrap_or(f64::NAN) / 1e6
+}
+
+fn reading(time_s: f64, odometry: Isometry2<f64>, range_max_m: f64, ranges_m: Vec<f32>) -> LaserReading {
+    let angle_increment_rad = std::f64::consts::TAU / ranges_m.len() as f64;
+    let (range_min_m, sweep_s) = (0.05, 0.0);
+    let scan = Scan { angle_min_rad: 0.0, angle_increment_rad, range_min_m, range_max_m, sweep_s, ranges_m };
+    let (twist, velocities, mount) = (Twist::STOP, Vec::new(), Isometry2::identity());
+    LaserReading { time_s, pose: odometry, twist, velocities, mount, scan }
+}
+
+/// Rooms of about 12 m with doors, and boxes; all at random.
+fn place(side_m: f64, cell_m: f64, seed: u64) -> Grid<CellState> {
+    let mut random = RandomStream::new(seed, Purpose::WorldGenerator);
+    let frame = GridFrame::covering(Point2::origin(), side_m, side_m, cell_m).expect("a valid frame");
+    let mut map = Grid::filled(frame, CellState::Free);
+    let mut block = |x: f64, y: f64, width: f64, height: f64| {
+        let cells = |m: f64| (m / cell_m).round() as i32;
+        for (y, x) in (cells(y)..cells(y + height).max(cells(y) + 1))
+            .flat_map(|y| (cells(x)..cells(x + width).max(cells(x) + 1)).map(move |x| (y, x)))
+        {
+            if let Some(state) = map.get_mut(Cell::new(x, y)) {
+                *state = CellState::Blocked;
+            }
+        }
+    };
+    let rooms = (side_m / 12.0) as u32;
+    for (row, column) in (0..=rooms).flat_map(|row| (0..=rooms).map(move |column| (row, column))) {
+        let (x, y) = (12.0 * f64::from(column), 12.0 * f64::from(row));
+        for is_upright in [false, true] {
+            let (wall_m, door_m) = (random.uniform(-1.5..1.5), random.uniform(1.0..9.0));
+            for (from_m, to_m) in [(0.0, door_m), (door_m + 1.2, 12.0)] {
+                let length_m = to_m - from_m;
+                if is_upright {
+                    block(x + wall_m, y + from_m, 0.2, length_m);
+                } else {
+                    block(x + from_m, y + wall_m, length_m, 0.2);
+                }
+            }
+        }
+        for _ in 0..4 {
+            let [x, y] = [x, y].map(|m| m + random.uniform(2.0..10.0));
+            block(x, y, random.uniform(0.3..1.5), random.uniform(0.3..1.5));
+        }
+    }
+    map
+}
+
+fn cast(map: &Grid<CellState>, at: &Isometry2<f64>, range_max_m: f64) -> Vec<f32> {
+    let step_m = map.frame().resolution_m().min(0.1) / 4.0;
+    let range = |beam: u32| {
+        let along = at.rotation * interfaces::rotation(f64::from(beam).to_radians()) * Vector2::x();
+        let point = |step: u32| Point2::from(at.translation.vector + along * (f64::from(step) * step_m));
+        let is_hit = |step: &u32| map.get(map.frame().cell_at(&point(*step))) != Some(&CellState::Free);
+        let hit = (1..(range_max_m / step_m) as u32).find(is_hit);
+        hit.map_or(f32::INFINITY, |step| (f64::from(step) * step_m) as f32)
+    };
+    (0..360).map(range).collect()
+}
+
+/// A robot that stands at an unknown pose.
+fn search(side_m: f64, cell_m: f64, range_max_m: f64, seed: u64) {
+    let map = place(side_m, cell_m, seed);
+    let mut random = RandomStream::new(seed + 1, Purpose::WorldGenerator);
+    let is_free = |at: &Isometry2<f64>| cast(&map, at, 1.0).iter().all(|range_m| *range_m > 0.5);
+    let mut draw = || {
+        pose(random.uniform(2.0..side_m - 2.0), random.uniform(2.0..side_m - 2.0), random.uniform(-3.0..3.0))
+    };
+    let at = (0..1000).map(|_| draw()).find(is_free).expect("a free place");
+    let begin_ms = cpu_ms();
+    let mut localizer =
+        Localizer::in_map(&LocalizerSettings::default(), &map, Start::Unknown).expect("a valid map");
+    let build_ms = cpu_ms() - begin_ms;
+    let ranges_m = cast(&map, &at, range_max_m);
+    let mut times_ms = Vec::new();
+    let mut estimate = None;
+    for scan in 0..6000 {
+        let reading = reading(0.1 * f64::from(scan), Isometry2::identity(), range_max_m, ranges_m.clone());
+        let begin_ms = cpu_ms();
+        let found = localizer.localize(&reading, &map).estimate;
+        times_ms.push(cpu_ms() - begin_ms);
+        let is_over = found.state == PoseState::Tracking;
+        estimate = Some(found);
+        if is_over {
+            break;
+        }
+    }
+    let off_m = estimate.filter(|found| found.state == PoseState::Tracking);
+    let off_m = off_m.map(|found| (found.pose.translation.vector - at.translation.vector).norm());
+    let scans = times_ms.len();
+    times_ms.sort_by(f64::total_cmp);
+    let [median, most] = [times_ms[scans / 2], times_ms[scans - 1]];
+    println!(
+        "| {side_m} | {cell_m} | {range_max_m} | {} | {scans} | {median:.0} | {most:.0} | {build_ms:.0} |",
+        off_m.map_or("not found".to_owned(), |off_m| format!("{off_m:.2}"))
+    );
+}
+
+/// A robot that goes round in a rectangle with perfect odometry; `missing_s` from 15 s on without a return.
+fn trip(size_m: [f64; 2], missing_s: f64, range_m: f32) -> String {
+    let true_pose = |number: u32| {
+        let angle = 0.02 * f64::from(number.saturating_sub(20));
+        let radius_m = 0.2 * size_m[1];
+        pose(
+            size_m[0] / 2.0 + radius_m * libm::cos(angle),
+            size_m[1] / 2.0 + radius_m * libm::sin(angle),
+            angle + 1.6,
+        )
+    };
+    let frame = GridFrame::covering(Point2::new(-1.0, -1.0), size_m[0] + 2.0, size_m[1] + 2.0, 0.05)
+        .expect("a valid frame");
+    let mut localizer =
+        Localizer::from_nothing(&LocalizerSettings::default(), &frame, true_pose(0)).expect("valid");
+    let mut map = Mapper::new(&MapperSettings::default(), frame).expect("valid");
+    let (mut worst_m, mut mapped, mut after) = (0.0_f64, 0, 0);
+    let last = 150 + (10.0 * missing_s) as u32;
+    for number in 0..last + 200 {
+        let at = true_pose(number);
+        let range = |beam: u32| {
+            let along = at.rotation * interfaces::rotation(f64::from(beam).to_radians()) * Vector2::x();
+            let to_wall = |axis: usize| {
+                let wall_m = if along[axis] > 0.0 { size_m[axis] } else { 0.0 };
+                (wall_m - at.translation.vector[axis]) / along[axis]
+            };
+            let noise_m = 0.01 * libm::sin(f64::from(beam * 7919 + number * 1049));
+            (to_wall(0).min(to_wall(1)) + noise_m) as f32
+        };
+        let ranges_m = (0..360).map(|beam| if (150..last).contains(&number) { range_m } else { range(beam) });
+        let reading = reading(0.1 * f64::from(number), true_pose(0).inv_mul(&at), 50.0, ranges_m.collect());
+        let localized = localizer.localize(&reading, &map);
+        if localized.estimate.state == PoseState::Tracking {
+            map.update(&localized.reading).expect("a valid reading");
+            worst_m =
+                worst_m.max((localized.estimate.pose.translation.vector - at.translation.vector).norm());
+            mapped += u32::from(number >= last);
+        }
+        after += u32::from(number >= last);
+    }
+    format!("{mapped}/{after}, {worst_m:.2}")
+}
+
+fn main() {
+    println!(
+        "| side, m | cell, m | range, m | off, m | scans | CPU per scan, ms: median | most | to build |\n|---|---|---|---|---|---|---|---|"
+    );
+    for (side_m, cell_m) in [
+        (60.0, 0.02),
+        (60.0, 0.05),
+        (200.0, 0.05),
+        (350.0, 0.1),
+        (420.0, 0.1),
+        (700.0, 0.1),
+        (1000.0, 0.2),
+        (1000.0, 0.5),
+    ] {
+        for (range_max_m, seed) in [(30.0, 1), (8.0, 2)] {
+            search(side_m, cell_m, range_max_m, seed);
+        }
+    }
+    println!(
+        "\n| room, m | no returns for, s | mapped afterwards, worst error of a certain pose, m: NaN | +inf |\n|---|---|---|---|"
+    );
+    for size_m in [[6.0, 4.0], [5.0, 5.0], [40.0, 2.0], [12.0, 9.0]] {
+        for missing_s in [0.5, 2.0, 10.0, 60.0] {
+            let [nan, infinite] = [f32::NAN, f32::INFINITY].map(|range_m| trip(size_m, missing_s, range_m));
+            println!("| {} × {} | {missing_s} | {nan} | {infinite} |", size_m[0], size_m[1]);
+        }
+    }
+}

@@ -1,0 +1,134 @@
+use crate::belief::Belief;
+use crate::localization::Localization;
+use crate::pilot::Pilot;
+use crate::session::Session;
+use agent::Features;
+use interfaces::Reading;
+use mapper::{Mapper, ReadingError, ScanFilter};
+
+/// A robot that localizes itself, maps what it sees, and decides where to go. Its source gives readings and takes commands.
+pub struct Robot<R, P> {
+    /// Removes from scans what must not enter a map; `None`: the sensor has no errors.
+    filter: Option<ScanFilter>,
+    localization: Box<dyn Localization<R> + Send + Sync>,
+    /// The map and the change statistics.
+    pub mapper: Mapper,
+    /// Decides the commands.
+    pub pilot: P,
+    session: Session,
+}
+
+/// What the robot has made of one reading.
+#[derive(Clone, Debug)]
+pub struct Turn<R, C> {
+    /// The reading as it has entered the map: filtered, at the believed pose, with the times of the map.
+    pub reading: R,
+    /// What the robot believes about its pose.
+    pub belief: Belief,
+    /// The features by which the agent chooses a strategy.
+    pub features: Features,
+    /// The command until the next reading.
+    pub command: C,
+}
+
+impl<R: Reading, P: Pilot> Robot<R, P> {
+    /// A robot that has seen nothing, or goes on with what its parts have learned.
+    pub fn new(localization: Box<dyn Localization<R> + Send + Sync>, mapper: Mapper, pilot: P) -> Self {
+        Self { filter: None, localization, mapper, pilot, session: Session::default() }
+    }
+
+    /// The same robot, with a filter for its scans.
+    #[must_use]
+    pub fn with_filter(self, filter: ScanFilter) -> Self {
+        Self { filter: Some(filter), ..self }
+    }
+
+    /// Makes of a reading the next command. A reading whose pose is not certain does not enter the map.
+    ///
+    /// # Errors
+    ///
+    /// When the mapper refuses the reading: the map stays as it was, and there is no command.
+    pub fn step(&mut self, mut reading: R) -> Result<Turn<R, P::Command>, ReadingError> {
+        // The times of the map never go back; what must not enter it is removed.
+        if let Some(laser) = reading.laser_mut() {
+            self.session.shift(laser);
+            if let Some(filter) = &mut self.filter {
+                filter.apply(laser);
+            }
+        }
+        if reading.time() - self.mapper.time() > self.session.max_step_s && self.mapper.readings() > 0 {
+            self.mapper.pause(reading.time());
+        }
+        // Localize.
+        let (mut reading, belief) = self.localization.localize(reading, &mut self.mapper);
+        // Map.
+        if belief.is_certain() {
+            if let (Some(filter), Some(laser)) = (&self.filter, reading.laser_mut()) {
+                filter.protect(laser);
+            }
+            self.mapper.update(&reading)?;
+            if let Some(filter) = &mut self.filter {
+                filter.learn(&belief.pose);
+            }
+        } else {
+            self.mapper.skip(&reading);
+        }
+        // Decide.
+        let features = Features::of(&mut self.mapper);
+        if belief.correction.is_some() {
+            self.pilot.forget_map();
+        }
+        let command = self.pilot.command(&belief, features, &self.mapper);
+        Ok(Turn { reading, belief, features, command })
+    }
+
+    /// How the times of the source become those of the map.
+    pub fn session_mut(&mut self) -> &mut Session {
+        &mut self.session
+    }
+
+    /// Begins another session in the place that was mapped before. The time between the sessions counts as not observed, and
+    /// the localization begins without a pose, in the map that it has learned. `first_s` is the time of the first reading by
+    /// the clock of its source, `gap_s` the time since the last reading, see [`Session::after`].
+    pub fn begin_session(&mut self, first_s: f64, gap_s: Option<f64>) {
+        self.settle();
+        self.session = self.session.after(self.mapper.time(), first_s, gap_s);
+        self.mapper.pause(first_s + self.session.offset_s);
+        self.localization.begin_session();
+    }
+
+    /// Whether nothing is being learned again in another thread.
+    pub fn is_settled(&self) -> bool {
+        self.localization.is_settled()
+    }
+
+    /// Waits for what is being learned again, and takes it over. Returns whether the map is another one now.
+    pub fn settle(&mut self) -> bool {
+        let is_replaced = !self.is_settled();
+        if is_replaced {
+            self.localization.settle(&mut self.mapper);
+            self.pilot.forget_map();
+        }
+        is_replaced
+    }
+
+    /// What is removed from scans; `None` if nothing is.
+    pub fn filter(&self) -> Option<&ScanFilter> {
+        self.filter.as_ref()
+    }
+
+    /// What is removed from scans; `None` if nothing is.
+    pub fn filter_mut(&mut self) -> Option<&mut ScanFilter> {
+        self.filter.as_mut()
+    }
+
+    /// What gives the readings their poses.
+    pub fn localization(&self) -> &(dyn Localization<R> + Send + Sync) {
+        self.localization.as_ref()
+    }
+
+    /// What gives the readings their poses.
+    pub fn localization_mut(&mut self) -> &mut (dyn Localization<R> + Send + Sync) {
+        self.localization.as_mut()
+    }
+}
