@@ -51,9 +51,7 @@ impl DynamicObstacleFilter {
     pub fn update(&mut self, situation: &Situation) {
         for changed in situation.transitions.iter().filter(|transition| transition.event().is_some()) {
             for cell in around(changed.cell) {
-                if let Some(changed_at) = self.changed_at.get_mut(cell) {
-                    *changed_at = situation.time;
-                }
+                self.changed_at.set(cell, situation.time);
             }
         }
     }

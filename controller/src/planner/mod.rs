@@ -207,7 +207,7 @@ impl Planner {
                 planner.reset();
                 let Planner { on_path, goal, end, path_blocked, goal_cleared, is_on_path, .. } = planner;
                 (*on_path, *goal, *end, *path_blocked, *goal_cleared) = read_value(bytes)?;
-                on_path.iter().for_each(|cell| set(is_on_path, *cell, true));
+                on_path.iter().for_each(|cell| is_on_path.set(*cell, true));
                 Ok(())
             }
         }
@@ -216,7 +216,7 @@ impl Planner {
     }
 
     fn reset(&mut self) {
-        self.on_path.drain(..).for_each(|cell| set(&mut self.is_on_path, cell, false));
+        self.on_path.drain(..).for_each(|cell| self.is_on_path.set(cell, false));
         self.wavefront.clear();
         (self.end, self.path_blocked, self.goal_cleared) = (None, false, false);
     }
@@ -226,13 +226,7 @@ impl Planner {
         for leg in self.corners.windows(2) {
             self.on_path.extend(line(leg[0], leg[1]));
         }
-        self.on_path.iter().for_each(|cell| set(&mut self.is_on_path, *cell, true));
-    }
-}
-
-fn set(grid: &mut Grid<bool>, cell: Cell, value: bool) {
-    if let Some(at) = grid.get_mut(cell) {
-        *at = value;
+        self.on_path.iter().for_each(|cell| self.is_on_path.set(*cell, true));
     }
 }
 
