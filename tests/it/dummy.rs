@@ -42,7 +42,7 @@ fn it_waits_and_goes_on() {
         &mut mapper,
         &mut Visitor,
         |world, reading, belief, _| -> anyhow::Result<_> {
-            let dummy = world.robots().find(|robot| !robot.is_driven).unwrap().pose.translation;
+            let dummy = world.fleet().robots().find(|robot| !robot.is_driven).unwrap().pose.translation;
             way.push((reading.time_s, dummy.x));
             assert_eq!(world.contacts(), []);
             if reading.time_s < STANDS_UNTIL_S {

@@ -3,8 +3,8 @@
 mod go_to;
 
 use super::command::{Command, Velocity};
-use super::snapshot::{Values, value};
 use super::spec::{DriveKind, DriveLimits};
+use interfaces::{Values, values};
 use nalgebra::Isometry2;
 
 /// A solved velocity that differs from the wanted one by more than this shows a contact, m/s or rad/s. The
@@ -16,9 +16,9 @@ const HELD_BACK: f64 = 1e-4;
 pub(super) struct Drive {
     limits: DriveLimits,
     /// The present velocity.
-    velocity: Velocity,
+    pub(super) velocity: Velocity,
     /// Whether contacts changed the velocity in the last step.
-    is_stalled: bool,
+    pub(super) is_stalled: bool,
 }
 
 impl Drive {
@@ -29,7 +29,7 @@ impl Drive {
 
     /// The values that a snapshot holds.
     pub(super) fn values(&mut self) -> Values<'_> {
-        vec![value(&mut self.velocity), value(&mut self.is_stalled)]
+        values![self.velocity, self.is_stalled]
     }
 
     /// The velocity of the next physics step under a command. `at` is the pose by odometry. A command that contains
@@ -91,15 +91,5 @@ impl Drive {
         };
         self.is_stalled = is_held || is_turned || is_shifted;
         self.velocity
-    }
-
-    /// The present velocity.
-    pub(super) fn velocity(&self) -> &Velocity {
-        &self.velocity
-    }
-
-    /// Whether contacts changed the velocity in the last step.
-    pub(super) fn is_stalled(&self) -> bool {
-        self.is_stalled
     }
 }

@@ -125,7 +125,7 @@ impl Fleet {
     }
 
     /// All present bodies with a tag, robots first; none if no robot has a fiducial finder.
-    pub(in crate::physics) fn tagged(&self) -> Vec<Tagged> {
+    pub(crate) fn tagged(&self) -> Vec<Tagged> {
         if !self.start.has_fiducial_finders {
             return Vec::new();
         }

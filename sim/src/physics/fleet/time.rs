@@ -45,7 +45,7 @@ impl Fleet {
     }
 
     /// Robots for which `is_meant` is true measure with the sensors that are due, and decide.
-    pub(in crate::physics) fn think(&mut self, is_meant: impl Fn(&Robot) -> bool + Sync) {
+    pub(crate) fn think(&mut self, is_meant: impl Fn(&Robot) -> bool + Sync) {
         let (step, time_s) = (self.step, self.time_s());
         let is_due =
             |robot: &Robot| robot.senses(step) && is_meant(robot) && !robot.has_thought(step, time_s);
@@ -82,7 +82,7 @@ impl Fleet {
     }
 
     /// Moves robots and obstacles by one physics step.
-    pub(in crate::physics) fn advance(&mut self) {
+    pub(crate) fn advance(&mut self) {
         let step_s = self.spec().step_s;
         for robot in &mut self.robots {
             robot.start_step(&mut self.bodies, step_s);
@@ -174,7 +174,7 @@ impl Fleet {
 
     /// Makes obstacles appear and disappear. Each time, `report` receives the index of the obstacle, whether it
     /// appeared, and the walls and obstacles that are present now.
-    pub(in crate::physics) fn update_obstacles(&mut self, mut report: impl FnMut(usize, bool, &[Rectangle])) {
+    pub(crate) fn update_obstacles(&mut self, mut report: impl FnMut(usize, bool, &[Rectangle])) {
         let time_s = self.time_s();
         for index in 0..self.obstacles.len() {
             if !self.obstacles[index].is_due(time_s) {

@@ -8,7 +8,7 @@ const ROOM_M: f64 = 0.005;
 
 /// The bodies that an obstacle must not hit. The obstacle waits instead, so that it does not crush anything.
 #[derive(Default)]
-pub(in crate::physics) struct Blockers {
+pub(crate) struct Blockers {
     things: Vec<Thing>,
 }
 
@@ -21,7 +21,7 @@ struct Thing {
 
 impl Blockers {
     /// Adds a body that lies within `radius_m` of `center` (m).
-    pub(in crate::physics) fn add(&mut self, center: Point2<f64>, radius_m: f64, form: Form) {
+    pub(crate) fn add(&mut self, center: Point2<f64>, radius_m: f64, form: Form) {
         self.things.push(Thing { center, radius_m, form });
     }
 

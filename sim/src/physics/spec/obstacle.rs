@@ -93,7 +93,7 @@ pub struct PathSpec {
 
 impl PathSpec {
     /// The position of the center (m) at a time on the path (s).
-    pub(in crate::physics) fn at(&self, time_s: f64) -> Point2<f64> {
+    pub(crate) fn at(&self, time_s: f64) -> Point2<f64> {
         let (end_s, last) = self.keys[self.keys.len() - 1];
         let time_s = if self.is_loop { time_s % end_s } else { time_s };
         let next = self.keys.partition_point(|(key_s, _)| *key_s <= time_s);
