@@ -5,7 +5,7 @@ use super::{Bounds, Drive, StageRobot, StageSensor, StageWall, StageWorld, faste
 use nalgebra::{Point2, Vector2};
 use sim::physics::{OdometryError, Rectangle};
 use toml::Value;
-use worldfile::physics::MOST_OUT_M;
+use worldfile::physics::MAX_OUT_M;
 use worldfile::toml_value::{degrees, heading, number, point};
 
 /// The side of a cell of the truth grid, m, where the map is not too large for it.
@@ -192,7 +192,7 @@ fn sensor(kind: &str, sensor: &StageSensor, radius_m: f64) -> Keys {
         _ => (&["beams", "range_min_m", "noise_std_m"], "fov_deg"),
     };
     // Not farther out than it may be, by more than rounding.
-    let mount_m = sensor.mount.translation.vector.cap_magnitude(radius_m + MOST_OUT_M - 1e-7);
+    let mount_m = sensor.mount.translation.vector.cap_magnitude(radius_m + MAX_OUT_M - 1e-7);
     let mut keys = vec![
         ("beams", Value::from(sensor.beams as i64)),
         (angle, degrees(sensor.fov_rad)),

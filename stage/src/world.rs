@@ -3,7 +3,7 @@
 use super::builder::{Builder, Pose};
 use super::heights::Heights;
 use super::left_out;
-use super::lexer::Place;
+use super::lexer::Span;
 use super::pictures::Pictures;
 use super::sources::Sources;
 use super::tree::Entity;
@@ -68,7 +68,7 @@ pub(super) fn convert(sources: &mut Sources<'_>, tree: &Entity) -> Option<StageW
     let Some(step_s) = step_s(longest_ms, &robots) else {
         let help = "a step may not be shorter than 1 ms, a robot may not go farther than its radius in it, and \
                     sensors sense at whole numbers of steps";
-        sources.error(Place::default(), "no physics step suits this world", help);
+        sources.error(Span::default(), "no physics step suits this world", help);
         return None;
     };
     let file = sources.path().file_stem();

@@ -1,4 +1,4 @@
-use super::picture::{Pixel, Raster};
+use super::picture::{self, Pixel};
 use super::{MAX_CORNERS, PlanError};
 
 /// The blocked pixels of a picture.
@@ -32,13 +32,11 @@ impl Bitmap {
     /// When the picture has another format, is too large by its header, is damaged or empty, or contains only
     /// noise.
     pub fn decode(bytes: &[u8], is_blocked: impl Fn(Pixel) -> bool) -> Result<Self, PlanError> {
-        let raster = Raster::decode(bytes)?;
-        let (width, height) = (raster.width, raster.height);
-        let mut blocked = Vec::with_capacity(width as usize * height as usize);
-        for y in (0..height).rev() {
-            blocked.extend(raster.row(y).map(&is_blocked));
-        }
-        drop(raster);
+        let image = picture::decode(bytes)?;
+        let (width, height) = (image.width(), image.height());
+        let rows = (0..height).rev();
+        let blocked = rows.flat_map(|y| picture::row(&image, y)).map(is_blocked).collect();
+        drop(image);
         Self::new(width, height, blocked)
     }
 

@@ -3,12 +3,13 @@
 use super::{Obstacle, spec};
 use crate::physics::behavior::REPEATS;
 use crate::physics::space::{MAX_TIME_S, inside};
+use crate::reader::valid;
 use nalgebra::{Point2, Vector2};
 use sim::physics::shape::TOUCH_M;
 use sim::physics::{Motion, ObstacleSpec, PathSpec, Rectangle, Repeat, convex};
 use std::ops::Range;
 
-const MOST_POINTS: usize = 1000;
+const MAX_POINTS: usize = 1000;
 /// The fastest block, m/s.
 const FASTEST_MPS: f64 = 5.0;
 
@@ -28,8 +29,8 @@ impl Obstacle<'_> {
         let heading_rad = self.heading_rad();
         let points = self.needed("path_m").and_then(|path| {
             let count = path.items()?.len();
-            if !(1..=MOST_POINTS).contains(&count) {
-                let help = format!("it must have 1 to {MOST_POINTS}, as in `[[1.0, 2.0], [3.0, 2.0]]`");
+            if !(1..=MAX_POINTS).contains(&count) {
+                let help = format!("it must have 1 to {MAX_POINTS}, as in `[[1.0, 2.0], [3.0, 2.0]]`");
                 return path.invalid(&format!("has {count} points"), "these points", &help);
             }
             path.list(|point| point.point(&self.space.size))
@@ -60,9 +61,9 @@ impl Obstacle<'_> {
             [false, true, _] => {
                 let speed_mps = table.number("speed_mps", 0.001..=FASTEST_MPS);
                 let dwell_s = table.number_or("dwell_s", 0.0, 0.0..=MAX_TIME_S);
-                let speed_mps = speed_mps?;
+                let speed_mps = valid(speed_mps)?;
                 self.is_slow_enough(speed_mps, table.at("speed_mps"))?;
-                Some(Pace::Even { speed_mps, dwell_s: dwell_s? })
+                Some(Pace::Even { speed_mps, dwell_s: valid(dwell_s)? })
             }
             _ => {
                 let help =
