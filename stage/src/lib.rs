@@ -62,9 +62,8 @@ use nalgebra::{Isometry2, Point2};
 use sim::physics::{FleetSpec, Form, OdometryError, Rectangle};
 use std::collections::BTreeMap;
 use std::path::Path;
-use worldfile::Files;
-use worldfile::Findings;
 use worldfile::floor_plan::FloorPlan;
+use worldfile::{Files, Findings};
 
 /// A world as described by a Stage file.
 #[derive(Clone, Debug, PartialEq)]

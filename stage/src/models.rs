@@ -1,12 +1,11 @@
 //! Models: their names, their bodies, and those that are walls.
 
-use super::StageWall;
 use super::body::Body;
 use super::builder::{Builder, Pose};
 use super::heights::Solid;
-use super::left_out;
 use super::lexer::Span;
 use super::tree::Entity;
+use super::{StageWall, left_out};
 use sim::physics::{BoxTree, Rectangle};
 use worldfile::Severity;
 

@@ -5,8 +5,7 @@ use interfaces::printable;
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::ErrorKind;
 use std::path::{Component, Path, PathBuf};
-use worldfile::Files;
-use worldfile::{Findings, Severity, SourceText};
+use worldfile::{Files, Findings, Severity, SourceText};
 
 /// The maximum length of all texts together; an include in an include in an include would exceed any.
 const MAX_BYTES: u64 = 8 << 20;

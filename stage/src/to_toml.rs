@@ -6,7 +6,7 @@ use nalgebra::{Point2, Vector2};
 use sim::physics::{OdometryError, Rectangle};
 use toml::Value;
 use worldfile::physics::MAX_OUT_M;
-use worldfile::toml_value::{degrees, heading, number, point};
+use worldfile::toml_value::{degrees, heading, lines, number, point};
 
 /// The side of a cell of the truth grid, m, where the map is not too large for it.
 const CELL_M: f64 = 0.05;
@@ -45,9 +45,8 @@ impl StageWorld {
             "# Made from {files}. Lengths in metres, angles in degrees.\n# [0, 0] here is {low} there.\nname = {name}\n"
         );
         let mut table = |header: &str, place: &str, keys: Keys| {
-            let lines = keys.into_iter().map(|(key, value)| format!("{key} = {value}\n"));
             let comment = if place.is_empty() { "" } else { "  # " };
-            text.extend([format!("\n{header}{comment}{place}\n")].into_iter().chain(lines));
+            text += &format!("\n{header}{comment}{place}\n{}", lines(keys));
         };
         let size_m = map.size_m.into();
         table("[map]", "", vec![("size_m", point(&size_m)), ("cell_m", number(map.cell_m))]);

@@ -2,12 +2,11 @@
 
 use super::builder::{Builder, Pose};
 use super::heights::Heights;
-use super::left_out;
 use super::lexer::Span;
 use super::pictures::Pictures;
 use super::sources::Sources;
 use super::tree::Entity;
-use super::{Drive, StageRobot, StageWorld, fastest};
+use super::{Drive, StageRobot, StageWorld, fastest, left_out};
 use interfaces::printable;
 use std::collections::{BTreeMap, BTreeSet};
 use worldfile::Severity;

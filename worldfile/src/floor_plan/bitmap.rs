@@ -11,20 +11,6 @@ pub struct Bitmap {
 }
 
 impl Bitmap {
-    /// The bitmap of the given rows, the top row first; `#` is blocked. Shorter rows are extended to the longest
-    /// one.
-    ///
-    /// # Errors
-    ///
-    /// When the bitmap is empty or has too many corners.
-    pub fn from_ascii(rows: &str) -> Result<Self, PlanError> {
-        let rows: Vec<&[u8]> = rows.lines().map(str::as_bytes).collect();
-        let width = rows.iter().map(|row| row.len()).max().unwrap_or(0);
-        let blocked =
-            rows.iter().rev().flat_map(|row| (0..width).map(|x| row.get(x) == Some(&b'#'))).collect();
-        Self::new(width as u32, rows.len() as u32, blocked)
-    }
-
     /// Decodes a PNG, PBM, PGM or PPM picture. `is_blocked` decides for each pixel.
     ///
     /// # Errors

@@ -27,10 +27,11 @@ mod tests;
 
 use crate::error::{WorldError, read_text};
 use crate::reader::{self, Kind};
+use crate::toml_value::lines;
 use interfaces::Cell;
 use sim::grid::{Course, GridSpec};
-use std::fmt::Write;
 use std::path::Path;
+use toml::Value;
 
 /// Reads and checks a world file.
 ///
@@ -60,42 +61,27 @@ pub fn parse(file_name: &str, text: &str) -> Result<GridSpec, WorldError> {
 
 /// The text of a world file that describes `spec`: [`parse`] reads the same spec from it.
 pub fn to_toml(spec: &GridSpec) -> String {
-    let mut text = String::new();
-    write(spec, &mut text).expect("a String takes all that is written");
-    text
-}
-
-fn write(spec: &GridSpec, text: &mut String) -> std::fmt::Result {
-    writeln!(text, "name = {}", quoted(&spec.name))?;
-    writeln!(text, "description = {}", quoted(&spec.description))?;
-    writeln!(text, "sensor_radius = {}", spec.sensor_radius)?;
-    writeln!(text, "map = \"\"\"\n{}\"\"\"", spec.drawing())?;
-    if spec.block_probability != 1.0 || spec.robot_probability != 1.0 {
-        writeln!(text, "\n[transitions]")?;
-        writeln!(text, "block_chance = {:?}", spec.block_probability)?;
-        writeln!(text, "robot_chance = {:?}", spec.robot_probability)?;
+    let [name, description] = [&spec.name, &spec.description].map(|text| Value::from(text.as_str()));
+    let mut text =
+        lines([("name", name), ("description", description), ("sensor_radius", spec.sensor_radius.into())]);
+    text += &format!("map = \"\"\"\n{}\"\"\"\n", spec.drawing());
+    let [block, robot] = [spec.block_probability, spec.robot_probability];
+    if block != 1.0 || robot != 1.0 {
+        text += "\n[transitions]\n";
+        text += &lines([("block_chance", block.into()), ("robot_chance", robot.into())]);
     }
     for block in &spec.blocks {
+        let stood = (block.stood > 0).then(|| ("stood", Value::from(block.stood)));
         let course = match block.course {
             Course::Loop => "loop",
             Course::BackAndForth => "back-and-forth",
         };
-        writeln!(text, "\n[[block]]")?;
-        writeln!(text, "name = {}", quoted(&block.name))?;
-        writeln!(text, "dwell = {}", block.dwell)?;
-        if block.stood > 0 {
-            writeln!(text, "stood = {}", block.stood)?;
-        }
-        writeln!(text, "course = \"{course}\"")?;
-        let points = way_points(&block.path).map(|cell| format!("[{}, {}]", cell.x, cell.y));
-        writeln!(text, "path = [{}]", points.collect::<Vec<_>>().join(", "))?;
+        let points: Vec<Value> = way_points(&block.path).map(|cell| vec![cell.x, cell.y].into()).collect();
+        text += "\n[[block]]\n";
+        text += &lines([("name", block.name.as_str().into()), ("dwell", block.dwell.into())]);
+        text += &lines(stood.into_iter().chain([("course", course.into()), ("path", points.into())]));
     }
-    Ok(())
-}
-
-/// A text with its quotes, as TOML wants it.
-fn quoted(text: &str) -> String {
-    toml::Value::from(text).to_string()
+    text
 }
 
 /// The cells where the path begins, turns and ends.

@@ -45,16 +45,7 @@ pub(super) fn fleet(root: &Table<'_>, files: &dyn Files) -> Option<FleetSpec> {
         movers: Solids::default(),
         is_whole: false,
     };
-    let (mut walls, mut glass) = (Vec::new(), Vec::new());
-    for table in root.tables("wall", "from_m, to_m, thickness_m, min_m, max_m, returns_within_deg") {
-        let shape = wall(&table, &space.size);
-        let within_deg = table.number_or("returns_within_deg", 90.0, 0.0..=90.0);
-        let within_rad = (within_deg < 90.0).then_some(within_deg.to_radians());
-        let pane =
-            shape.zip(within_rad).map(|(shape, returns_within_rad)| Glass { shape, returns_within_rad });
-        glass.extend(pane);
-        walls.extend(shape.map(|shape| Solid { shape, span: table.span.clone() }));
-    }
+    let (mut walls, glass) = walls(root, &space.size);
     let mut plans = FloorPlans::new(files);
     for table in root.tables("floor_plan", floor_plan::KEYS) {
         let pieces = plans.walls(&table, &space.size).unwrap_or_default().into_iter();
@@ -96,6 +87,20 @@ pub(super) fn fleet(root: &Table<'_>, files: &dyn Files) -> Option<FleetSpec> {
     };
     spec.turn(turn_rad, &(space.size / 2.0));
     Some(spec)
+}
+
+/// The walls that are tables of their own, and those of them that are glass.
+fn walls(root: &Table<'_>, size: &Point2<f64>) -> (Vec<Solid>, Vec<Glass>) {
+    let (mut walls, mut glass) = (Vec::new(), Vec::new());
+    for table in root.tables("wall", "from_m, to_m, thickness_m, min_m, max_m, returns_within_deg") {
+        let shape = wall(&table, size);
+        let within_deg = table.number_or("returns_within_deg", 90.0, 0.0..=90.0);
+        if let Some(shape) = shape.filter(|_| within_deg < 90.0) {
+            glass.push(Glass { shape, returns_within_rad: within_deg.to_radians() });
+        }
+        walls.extend(shape.map(|shape| Solid { shape, span: table.span }));
+    }
+    (walls, glass)
 }
 
 /// The size of the map (m); the cells that cover it after its turn, and that turn (rad).

@@ -70,7 +70,7 @@ pub(crate) fn read<T>(
         }
         Ok(_) => None,
     };
-    value.filter(|_| file.is_sound()).ok_or_else(|| WorldError::new(file.findings()))
+    value.filter(|_| file.is_sound()).ok_or_else(|| WorldError(file.findings()))
 }
 
 impl File<'_> {

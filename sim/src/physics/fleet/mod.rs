@@ -2,7 +2,6 @@
 
 mod bulk;
 mod carry;
-mod controller;
 mod slide;
 mod snapshots;
 mod start;
@@ -10,8 +9,8 @@ mod teleport;
 mod time;
 
 pub use bulk::LengthError;
-pub use controller::Controller;
 pub use teleport::TeleportError;
+pub use time::Controller;
 
 use super::bodies::Bodies;
 use super::command::Command;

@@ -1,15 +1,16 @@
 //! The steps of a fleet.
 
-use super::{Controller, Fleet};
+use super::Fleet;
 use crate::physics::bodies::Touch;
-use crate::physics::command::Velocity;
+use crate::physics::command::{Command, Velocity};
 use crate::physics::form::Form;
 use crate::physics::obstacles::{Blockers, Obstacle};
 use crate::physics::past::Recent;
 use crate::physics::report::Contact;
-use crate::physics::robot::Robot;
+use crate::physics::robot::{Robot, RobotView};
 use crate::physics::sensors::{Surroundings, bumper};
 use crate::physics::shape::Rectangle;
+use interfaces::LaserReading;
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -187,5 +188,34 @@ impl Fleet {
                 report(index, appeared, &self.standing_boxes());
             }
         }
+    }
+}
+
+/// A controller of driven robots: any type, or a closure that takes a robot and the reading of its main laser and
+/// returns a velocity ([`interfaces::Twist`]) or any other [`Command`].
+///
+/// The fleet calls the controller at every scan of the main laser of a driven robot. Sensors that the controller does
+/// not read are not simulated. The controller `&mut ()` gives no commands: the robots keep the command of
+/// [`Fleet::command`](super::Fleet::command).
+pub trait Controller {
+    /// The new command; `None` if the robot keeps its command. The readings of all sensors are in the view of the
+    /// robot. A command that contains NaN stops the robot; a command beyond the limits of the drive is limited to
+    /// them.
+    fn drive(&mut self, robot: &RobotView<'_>) -> Option<Command>;
+}
+
+impl<F, C> Controller for F
+where
+    F: FnMut(&RobotView<'_>, &LaserReading) -> C,
+    C: Into<Command>,
+{
+    fn drive(&mut self, robot: &RobotView<'_>) -> Option<Command> {
+        Some(self(robot, robot.reading()?).into())
+    }
+}
+
+impl Controller for () {
+    fn drive(&mut self, _: &RobotView<'_>) -> Option<Command> {
+        None
     }
 }

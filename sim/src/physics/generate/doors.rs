@@ -32,14 +32,8 @@ pub(super) fn doors(layout: &Layout, plan: &Plan, rng: &mut RandomStream) -> Vec
             false => Opening::Random { closed_s, open_s },
         };
         let (move_s, starts_open) = (value(ranges::MOVE_S, rng), rng.random());
-        doors.push(ObstacleSpec {
-            name: format!("door {}", doors.len() + 1),
-            shape,
-            motion: Motion::Door(DoorSpec { leaf, opening, move_s, starts_open }),
-            tag: None,
-            appears_s: None,
-            disappears_s: None,
-        });
+        let motion = Motion::Door(DoorSpec { leaf, opening, move_s, starts_open });
+        doors.push(ObstacleSpec::new(&format!("door {}", doors.len() + 1), shape, motion));
     }
     doors
 }

@@ -81,8 +81,7 @@ fn standing(piece: &Piece, plan: &Plan) -> ObstacleSpec {
         None => plan.rectangle(&piece.area),
         Some((side, heading_deg)) => plan.turned(&piece.area, side, f64::from(heading_deg).to_radians()),
     };
-    let name = piece.name.clone();
-    ObstacleSpec { name, shape, motion: Motion::Fixed, tag: None, appears_s: None, disappears_s: None }
+    ObstacleSpec::new(&piece.name, shape, Motion::Fixed)
 }
 
 /// The explorer, the people, and perhaps a vacuum cleaner.

@@ -21,6 +21,11 @@ pub struct ObstacleSpec {
 }
 
 impl ObstacleSpec {
+    /// An obstacle without a tag that is there from the start to the end.
+    pub fn new(name: &str, shape: Rectangle, motion: Motion) -> Self {
+        Self { name: name.to_owned(), shape, motion, tag: None, appears_s: None, disappears_s: None }
+    }
+
     /// Whether the obstacle ever appears, disappears or moves.
     pub fn is_mover(&self) -> bool {
         self.appears_s.is_some() || self.disappears_s.is_some() || self.motion != Motion::Fixed

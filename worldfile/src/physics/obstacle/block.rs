@@ -1,6 +1,6 @@
 //! A block that moves along a path: the path must lead through free space, and its times must be possible.
 
-use super::{Obstacle, spec};
+use super::Obstacle;
 use crate::physics::behavior::REPEATS;
 use crate::physics::space::{MAX_TIME_S, inside};
 use crate::reader::valid;
@@ -47,7 +47,7 @@ impl Obstacle<'_> {
         let keys = keys?;
         // A block that never moves has no time to begin again at.
         let is_loop = repeat != Repeat::Once && keys[keys.len() - 1].0 > 0.0;
-        Some(spec(shape, Motion::Path(PathSpec { keys, is_loop })))
+        Some(ObstacleSpec::new(self.name, shape, Motion::Path(PathSpec { keys, is_loop })))
     }
 
     /// How fast it moves, as far as that can be judged without its path.

@@ -1,12 +1,15 @@
 //! A door: its leaf, and the times at which it opens.
 
-use super::{Obstacle, spec};
+use super::Obstacle;
 use crate::physics::space::{MAX_TIME_S, inside};
 use sim::physics::{DoorSpec, Leaf, Motion, ObstacleSpec, Opening, Rectangle};
 
 const MAX_SWITCHES: usize = 100_000;
-/// The openings by the times for which the door is closed and open, s; a scripted door has other times.
-const OPENINGS: [(&str, Option<fn(f64, f64) -> Opening>); 3] = [
+/// An opening by the times for which the door is closed and open, s.
+type Stays = fn(f64, f64) -> Opening;
+
+/// The openings; a scripted door has other times.
+const OPENINGS: [(&str, Option<Stays>); 3] = [
     ("periodic", Some(|closed_s, open_s| Opening::Periodic { closed_s, open_s })),
     ("random", Some(|closed_s, open_s| Opening::Random { closed_s, open_s })),
     ("scripted", None),
@@ -48,7 +51,7 @@ impl Obstacle<'_> {
         }
         is_inside?;
         let door = DoorSpec { leaf, opening: opening?, move_s, starts_open };
-        Some(spec(shape, Motion::Door(door)))
+        Some(ObstacleSpec::new(self.name, shape, Motion::Door(door)))
     }
 
     fn opening(&self) -> Option<Opening> {

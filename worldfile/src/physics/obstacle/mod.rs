@@ -83,7 +83,7 @@ impl Obstacle<'_> {
     fn fixed(self) -> Option<ObstacleSpec> {
         let (shape, times_s) = (self.shape(), self.stay_s());
         let [appears_s, disappears_s] = times_s?;
-        Some(ObstacleSpec { appears_s, disappears_s, ..spec(shape?, Motion::Fixed) })
+        Some(ObstacleSpec { appears_s, disappears_s, ..ObstacleSpec::new(self.name, shape?, Motion::Fixed) })
     }
 
     /// When the obstacle appears and disappears, s.
@@ -110,7 +110,7 @@ impl Obstacle<'_> {
             let help = "a box that can be pushed must be 0.02 m wide or more";
             return self.error(&format!("the box `{}` is too thin", self.name), help);
         }
-        Some(spec(shape, Motion::Pushed(PushedSpec { mass_kg: mass_kg?, friction })))
+        Some(ObstacleSpec::new(self.name, shape, Motion::Pushed(PushedSpec { mass_kg: mass_kg?, friction })))
     }
 
     /// The shape of an obstacle that stands at the start: in the map and in no wall.
@@ -146,9 +146,4 @@ impl Obstacle<'_> {
     fn fastest_mps(&self) -> f64 {
         0.1 / self.space.step_s
     }
-}
-
-/// An obstacle without a name.
-fn spec(shape: Rectangle, motion: Motion) -> ObstacleSpec {
-    ObstacleSpec { name: String::new(), shape, motion, tag: None, appears_s: None, disappears_s: None }
 }

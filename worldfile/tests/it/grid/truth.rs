@@ -159,10 +159,10 @@ proptest! {
             before = now;
         }
         let truth = world.truth();
-        for index in 0..cells {
-            prop_assert_eq!(truth.block_events(index), block_events[index]);
-            prop_assert_eq!(truth.cycle_rate(index), f64::from(block_events[index]) / f64::from(time));
-            prop_assert!(block_events[index] == 0 || truth.is_swept(index));
+        for (index, events) in block_events.into_iter().enumerate() {
+            prop_assert_eq!(truth.block_events(index), events);
+            prop_assert_eq!(truth.cycle_rate(index), f64::from(events) / f64::from(time));
+            prop_assert!(events == 0 || truth.is_swept(index));
         }
     }
 }
