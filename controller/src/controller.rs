@@ -4,7 +4,7 @@ use crate::navigation::{LocalExploration, NavigationTask, Progress, Surroundings
 use crate::planner::{Path, Planner};
 use crate::settings::Settings;
 use crate::situation::Situation;
-use interfaces::{CellState, Grid, RandomStream, SettingsError, Values, value};
+use interfaces::{CellState, Grid, RandomStream, SettingsError, Values, values};
 use nalgebra::Point2;
 
 /// The state of a controller.
@@ -208,10 +208,8 @@ impl<D: Drive> Controller<D> {
         let mut surroundings = self.update_surroundings(situation);
         let settings = self.settings.navigation;
         let scene = Tick { settings: &settings, situation, surroundings: &mut surroundings };
-        let command = match looks_around {
-            true => self.drive.look_around(&scene.scene()),
-            false => self.drive.rest(&scene.scene()),
-        };
+        let scene = &scene.scene();
+        let command = if looks_around { self.drive.look_around(scene) } else { self.drive.rest(scene) };
         self.surroundings = Some(surroundings);
         command
     }
@@ -241,19 +239,10 @@ impl<D: Drive> Controller<D> {
     /// Everything that a tick changes and a later tick needs: what a state file holds of the controller. `map` is the map
     /// of the last tick; what follows from it is not in the list.
     pub fn values(&mut self, map: &Grid<CellState>) -> Values<'_> {
-        let surroundings = match self.surroundings.take() {
-            Some(known) => known,
-            None => self.surroundings_of(map),
-        };
+        let surroundings = self.surroundings.take().unwrap_or_else(|| self.surroundings_of(map));
         let surroundings = self.surroundings.insert(surroundings);
-        let mut values = vec![
-            value(&mut self.rng),
-            value(&mut self.state),
-            value(&mut self.path),
-            value(&mut self.last_change),
-            surroundings.planner.value(),
-            surroundings.dynamic.value(),
-        ];
+        let mut values = values![self.rng, self.state, self.path, self.last_change];
+        values.extend([surroundings.planner.value(), surroundings.dynamic.value()]);
         values.extend(self.drive.values());
         values
     }
