@@ -1,12 +1,11 @@
 use crate::choosers::{Chooser, Trajectory};
-use crate::features::Features;
-use crate::goal_sampler::{Goal, GoalSampler};
+use crate::goal_sampler::{Goal, sample};
 use crate::policy::Policy;
 use crate::settings::{AgentSettings, Reward};
-use crate::situation::{Situation, Travel};
+use crate::situation::{Features, Situation, Travel};
 use crate::strategies::Strategy;
 use crate::unseen::UnseenSpace;
-use interfaces::{RandomStream, SettingsError, Transition, Values, value};
+use interfaces::{RandomStream, SettingsError, Transition, Values, values};
 use mapper::Mapper;
 use nalgebra::Isometry2;
 use std::f64::consts::LN_10;
@@ -19,7 +18,7 @@ use std::f64::consts::LN_10;
 pub struct Agent {
     strategies: Vec<Box<dyn Strategy>>,
     chooser: Box<dyn Chooser>,
-    goals: GoalSampler,
+    patch_cells: usize,
     /// Looks into unseen space before the strategies decide; `None`: the strategies decide alone.
     unseen: Option<UnseenSpace>,
     /// The travel time to each cell, for strategies that need it.
@@ -77,7 +76,7 @@ impl Agent {
             goal_counts: vec![0; strategies.len()],
             strategies,
             chooser,
-            goals: GoalSampler::new(settings.patch_cells),
+            patch_cells: settings.patch_cells,
             unseen: settings
                 .looks_at_unseen
                 .then(|| UnseenSpace::new(settings.patch_cells, settings.sensor_radius_m)),
@@ -124,7 +123,7 @@ impl Agent {
         let strategy = self.chooser.choose(&situation, &mut self.rng).min(self.strategies.len() - 1);
         self.current = Some(strategy);
         self.goal_counts[strategy] += 1;
-        self.goals.sample(&mut *self.strategies[strategy], &situation, &mut self.rng)
+        sample(self.patch_cells, &mut *self.strategies[strategy], &situation, &mut self.rng)
     }
 
     /// Whether the present goal has served its purpose before the robot is there: a look into unseen space whose
@@ -150,15 +149,15 @@ impl Agent {
     /// Everything that readings and goals have changed: what a state file holds of the agent. `mapper` is that of the same
     /// state; what follows from it is not in the list.
     pub fn values(&mut self, mapper: &Mapper) -> Values<'_> {
-        let mut values = vec![
-            value(&mut self.rng),
-            value(&mut self.current),
-            value(&mut self.trajectory),
-            value(&mut self.updates),
-            value(&mut self.information),
-            value(&mut self.features),
-            value(&mut self.goal_counts),
-            value(&mut self.last_reward),
+        let mut values = values![
+            self.rng,
+            self.current,
+            self.trajectory,
+            self.updates,
+            self.information,
+            self.features,
+            self.goal_counts,
+            self.last_reward
         ];
         values.extend(self.unseen.iter_mut().flat_map(|unseen| unseen.values(mapper)));
         values.extend(self.strategies.iter_mut().flat_map(|strategy| strategy.values(mapper)));

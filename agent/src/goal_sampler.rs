@@ -28,105 +28,57 @@ pub struct Goal {
     pub stay: Stay,
 }
 
-/// Samples goals; reuses its buffers.
-#[derive(Clone, Debug)]
-pub(crate) struct GoalSampler {
+/// Selects a goal by the weights of `strategy`, with patches of `patch_cells` × `patch_cells` cells; at least one cell.
+pub(crate) fn sample(
     patch_cells: usize,
-    /// One weight per cell, as written by the strategy.
-    weights: Vec<f64>,
-    /// Row-major, like the cells.
-    patches: Vec<Patch>,
+    strategy: &mut dyn Strategy,
+    situation: &Situation,
+    rng: &mut RandomStream,
+) -> Goal {
+    let mapper = situation.mapper;
+    let mut weights = vec![0.0; mapper.frame().len()];
+    strategy.weigh(situation, &mut weights);
+    let best = match strategy.pick() {
+        Pick::Patch => None,
+        Pick::Best => best(&weights, mapper, rng),
+    };
+    let cell = best.or_else(|| draw(patch_cells, &weights, mapper, rng)).unwrap_or_else(|| situation.cell());
+    Goal { cell, stay: strategy.stay(cell) }
 }
 
-#[derive(Clone, Copy, Debug, Default)]
-struct Patch {
-    /// Sum over the candidates.
-    weight: f64,
-    candidates: usize,
-}
-
-impl Patch {
-    fn mean(&self) -> f64 {
-        if self.candidates == 0 { 0.0 } else { self.weight / self.candidates as f64 }
-    }
-}
-
-impl GoalSampler {
-    /// A sampler with patches of `patch_cells` × `patch_cells` cells; at least one cell.
-    pub(crate) fn new(patch_cells: usize) -> Self {
-        Self { patch_cells, weights: Vec::new(), patches: Vec::new() }
-    }
-
-    /// Selects a goal by the weights of `strategy`.
-    pub(crate) fn sample(
-        &mut self,
-        strategy: &mut dyn Strategy,
-        situation: &Situation,
-        rng: &mut RandomStream,
-    ) -> Goal {
-        let mapper = situation.mapper;
-        self.weights.clear();
-        self.weights.resize(mapper.frame().len(), 0.0);
-        strategy.weigh(situation, &mut self.weights);
-        let best = match strategy.pick() {
-            Pick::Patch => None,
-            Pick::Best => self.best(mapper, rng),
-        };
-        let cell = best.unwrap_or_else(|| {
-            self.gather(mapper);
-            self.draw(mapper, rng).unwrap_or_else(|| situation.cell())
-        });
-        Goal { cell, stay: strategy.stay(cell) }
-    }
-
-    /// The candidate with the largest weight, a random one of several equal ones; `None` if no weight is above
-    /// zero.
-    fn best(&self, mapper: &Mapper, rng: &mut RandomStream) -> Option<Cell> {
-        let (mut best, mut largest, mut ties) = (None, 0.0, 0);
-        for (index, &weight) in self.weights.iter().enumerate() {
-            // A comparison with NaN is false: a weight that is NaN is never selected.
-            if weight >= largest && weight > 0.0 && mapper.is_candidate(index) {
-                ties = if weight > largest { 1 } else { ties + 1 };
-                if weight > largest || rng.random_range(0..ties) == 0 {
-                    (best, largest) = (Some(index), weight);
-                }
-            }
-        }
-        best.map(|index| mapper.frame().cell(index))
-    }
-
-    /// A candidate drawn by the weights of the patches; `None` if there is no candidate.
-    fn draw(&self, mapper: &Mapper, rng: &mut RandomStream) -> Option<Cell> {
-        let drawn = proportional(self.patches.iter().map(Patch::mean), rng);
-        let patches = drawn.map_or(0..self.patches.len(), |patch| patch..patch + 1);
-        let candidates: usize = self.patches[patches.clone()].iter().map(|patch| patch.candidates).sum();
-        let nth = (candidates > 0).then(|| rng.random_range(0..candidates))?;
-        let regions = Regions::with_side(*mapper.frame(), self.patch_cells);
-        let mut cells =
-            patches.flat_map(|patch| regions.cells(patch)).filter(|&cell| mapper.is_candidate(cell));
-        cells.nth(nth).map(|index| mapper.frame().cell(index))
-    }
-
-    /// Sums weights and candidates over the patches.
-    fn gather(&mut self, mapper: &Mapper) {
-        let (width, height, side) = (mapper.frame().width(), mapper.frame().height(), self.patch_cells);
-        let columns = width.div_ceil(side);
-        self.patches.clear();
-        self.patches.resize(columns * height.div_ceil(side), Patch::default());
-        let mut index = 0;
-        for (row, weights) in self.weights.chunks_exact(width).enumerate() {
-            let patches = &mut self.patches[row / side * columns..][..columns];
-            for (patch, weights) in patches.iter_mut().zip(weights.chunks(side)) {
-                for &weight in weights {
-                    if mapper.is_candidate(index) {
-                        patch.candidates += 1;
-                        if weight > 0.0 {
-                            patch.weight += weight.min(MAX_WEIGHT);
-                        }
-                    }
-                    index += 1;
-                }
+/// The candidate with the largest weight above zero; a random one of several.
+fn best(weights: &[f64], mapper: &Mapper, rng: &mut RandomStream) -> Option<Cell> {
+    let (mut best, mut largest, mut ties) = (None, 0.0, 0);
+    for (index, &weight) in weights.iter().enumerate() {
+        // A comparison with NaN is false: a weight that is NaN is never selected.
+        if weight >= largest && weight > 0.0 && mapper.is_candidate(index) {
+            ties = if weight > largest { 1 } else { ties + 1 };
+            if weight > largest || rng.random_range(0..ties) == 0 {
+                (best, largest) = (Some(index), weight);
             }
         }
     }
+    best.map(|index| mapper.frame().cell(index))
+}
+
+/// A candidate of a patch that is drawn by its mean weight, or of all patches if none has a weight.
+fn draw(patch_cells: usize, weights: &[f64], mapper: &Mapper, rng: &mut RandomStream) -> Option<Cell> {
+    let regions = Regions::with_side(*mapper.frame(), patch_cells);
+    let candidates = |patch: usize| regions.cells(patch).filter(move |&cell| mapper.is_candidate(cell));
+    let patch = |patch: usize| {
+        let (mut weight, mut count) = (0.0, 0_usize);
+        for cell in candidates(patch) {
+            count += 1;
+            if weights[cell] > 0.0 {
+                weight += weights[cell].min(MAX_WEIGHT);
+            }
+        }
+        (weight / count.max(1) as f64, count)
+    };
+    let patches: Vec<(f64, usize)> = (0..regions.count()).map(patch).collect();
+    let drawn = proportional(patches.iter().map(|(mean, _)| *mean), rng);
+    let drawn = drawn.map_or(0..patches.len(), |patch| patch..patch + 1);
+    let count: usize = patches[drawn.clone()].iter().map(|(_, count)| count).sum();
+    let nth = (count > 0).then(|| rng.random_range(0..count))?;
+    drawn.flat_map(candidates).nth(nth).map(|index| mapper.frame().cell(index))
 }

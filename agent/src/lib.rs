@@ -12,7 +12,6 @@
 
 mod agent;
 mod choosers;
-mod features;
 mod goal_sampler;
 mod policy;
 mod sampling;
@@ -24,11 +23,10 @@ mod visibility;
 
 pub use agent::Agent;
 pub use choosers::{Always, Chooser, Coin, Curious, Progress, TileCoder, Trajectory};
-pub use features::Features;
 pub use goal_sampler::Goal;
 pub use policy::{Parts, Policy};
 pub use settings::{AgentSettings, CuriousSettings, Reward};
-pub use situation::{Situation, StraightLineTravel, Travel};
+pub use situation::{Features, Situation, StraightLineTravel, Travel};
 pub use strategies::{
     Frontier, InformationGain, OptimalRevisiting, Pick, Poisson, Random, Recency, Stay, Strategy,
 };

@@ -13,7 +13,7 @@ use crate::situation::Situation;
 use crate::strategies::Stay;
 use crate::visibility::Regions;
 use interfaces::{Cell, CellState, GridFrame, Values, value};
-use lines_of_sight::LinesOfSight;
+use lines_of_sight::lines_of_sight;
 use mapper::Mapper;
 use std::cmp::Reverse;
 
@@ -56,7 +56,8 @@ pub(crate) struct UnseenSpace {
     range_m: f64,
     frame: Option<GridFrame>,
     looks: Vec<Looks>,
-    lines: LinesOfSight,
+    /// The lines of sight from a cell.
+    lines: Vec<Vec<Cell>>,
     /// The number of frontier cells of each region.
     frontier: Vec<usize>,
     target: Option<Target>,
@@ -66,7 +67,7 @@ impl UnseenSpace {
     /// For regions of `region_cells` × `region_cells` cells, and a sensor with the range `range_m`.
     pub(crate) fn new(region_cells: usize, range_m: f64) -> Self {
         let (frame, target) = (None, None);
-        let (looks, lines, frontier) = (Vec::new(), LinesOfSight::default(), Vec::new());
+        let (looks, lines, frontier) = (Vec::new(), Vec::new(), Vec::new());
         Self { region_cells, range_m, frame, looks, lines, frontier, target }
     }
 
@@ -139,7 +140,7 @@ impl UnseenSpace {
         if self.frame != Some(frame) {
             (self.frame, self.target) = (Some(frame), None);
             self.looks = vec![Looks::default(); regions.count()];
-            self.lines = LinesOfSight::new(&frame, self.range_m, DIRECTIONS);
+            self.lines = lines_of_sight(&frame, self.range_m, DIRECTIONS);
         }
         regions
     }
@@ -157,7 +158,7 @@ impl UnseenSpace {
     fn viewpoint(&self, situation: &Situation, target: usize) -> Option<(f64, Cell)> {
         let (states, frame) = (situation.mapper.states(), situation.mapper.frame());
         let target = frame.cell(target);
-        let along = |line: &[Cell]| {
+        let along = |line: &Vec<Cell>| {
             let cells = line.iter().map_while(|offset| {
                 let cell = Cell::new(target.x + offset.x, target.y + offset.y);
                 let index = frame.index(cell)?;

@@ -5,7 +5,7 @@ use crate::navigation::{LocalExploration, NavigationTask, Progress, Surroundings
 use crate::planner::{Path, Planner};
 use crate::settings::Settings;
 use crate::situation::Situation;
-use interfaces::{CellState, Grid, RandomStream, SettingsError, Values, value};
+use interfaces::{CellState, Grid, RandomStream, SettingsError, Values, values};
 use nalgebra::Point2;
 
 /// Drives the robot to a goal and explores around it (paper, section 2).
@@ -128,10 +128,8 @@ impl<D: Drive> Driver for Controller<D> {
         let mut surroundings = self.update_surroundings(situation);
         let settings = self.settings.navigation;
         let scene = Tick { settings: &settings, situation, surroundings: &mut surroundings };
-        let command = match looks_around {
-            true => self.drive.look_around(&scene.scene()),
-            false => self.drive.rest(&scene.scene()),
-        };
+        let scene = &scene.scene();
+        let command = if looks_around { self.drive.look_around(scene) } else { self.drive.rest(scene) };
         self.surroundings = Some(surroundings);
         command
     }
@@ -170,19 +168,10 @@ impl<D: Drive> Driver for Controller<D> {
     }
 
     fn values(&mut self, map: &Grid<CellState>) -> Values<'_> {
-        let surroundings = match self.surroundings.take() {
-            Some(known) => known,
-            None => self.surroundings_of(map),
-        };
+        let surroundings = self.surroundings.take().unwrap_or_else(|| self.surroundings_of(map));
         let surroundings = self.surroundings.insert(surroundings);
-        let mut values = vec![
-            value(&mut self.rng),
-            value(&mut self.state),
-            value(&mut self.path),
-            value(&mut self.last_change),
-            surroundings.planner.value(),
-            surroundings.dynamic.value(),
-        ];
+        let mut values = values![self.rng, self.state, self.path, self.last_change];
+        values.extend([surroundings.planner.value(), surroundings.dynamic.value()]);
         values.extend(self.drive.values());
         values
     }

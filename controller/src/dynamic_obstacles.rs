@@ -1,5 +1,5 @@
 use crate::Situation;
-use interfaces::{Cell, CellState, Grid, Value, ValueError, read_value, write_value};
+use interfaces::{Cell, CellState, Grid, Value, ValueError, converted};
 use nalgebra::Point2;
 
 /// The time for which a cell counts as dynamic after a change in or beside it, s.
@@ -23,37 +23,25 @@ impl DynamicObstacleFilter {
 
     /// The times of the changes. A change longer ago than [`MEMORY_S`] counts no more.
     pub(crate) fn value(&mut self) -> Box<dyn Value + '_> {
-        struct Changes<'a>(&'a mut [f64]);
-
-        impl Value for Changes<'_> {
-            fn write(&self, bytes: &mut Vec<u8>) -> Result<(), ValueError> {
-                let last = self.0.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-                let times = self.0.iter().copied().enumerate();
-                let recent: Vec<_> =
-                    times.filter(|(_, time)| time.is_finite() && last - time <= MEMORY_S).collect();
-                write_value(&recent, bytes)
+        let recent = |times: &[f64]| -> Vec<(usize, f64)> {
+            let last = times.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            let is_recent = |(_, time): &(usize, f64)| time.is_finite() && last - time <= MEMORY_S;
+            times.iter().copied().enumerate().filter(is_recent).collect()
+        };
+        converted(self.changed_at.cells_mut(), recent, |times, recent| {
+            times.fill(f64::NEG_INFINITY);
+            for (index, time) in recent {
+                *times.get_mut(index).ok_or(ValueError)? = time;
             }
-
-            fn read(&mut self, bytes: &mut &[u8]) -> Result<(), ValueError> {
-                let recent: Vec<(usize, f64)> = read_value(bytes)?;
-                self.0.fill(f64::NEG_INFINITY);
-                for (index, time) in recent {
-                    *self.0.get_mut(index).ok_or(ValueError)? = time;
-                }
-                Ok(())
-            }
-        }
-
-        Box::new(Changes(self.changed_at.cells_mut()))
+            Ok(())
+        })
     }
 
     /// Applies the changes of this update.
     pub fn update(&mut self, situation: &Situation) {
         for changed in situation.transitions.iter().filter(|transition| transition.event().is_some()) {
             for cell in around(changed.cell) {
-                if let Some(changed_at) = self.changed_at.get_mut(cell) {
-                    *changed_at = situation.time;
-                }
+                self.changed_at.set(cell, situation.time);
             }
         }
     }

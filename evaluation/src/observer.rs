@@ -100,8 +100,10 @@ impl Observer {
         if mapper.readings().is_multiple_of(SAMPLE_EVERY) {
             self.changing.sample(mapper, truth);
         }
-        self.standstills
-            .observe(reading.time_s, world.robots().map(|robot| robot.pose.translation.vector.into()));
+        self.standstills.observe(
+            reading.time_s,
+            world.fleet().robots().map(|robot| robot.pose.translation.vector.into()),
+        );
         if mapper.readings() % SCORE_EVERY == 1 {
             self.prediction.sample(mapper, truth, Some(&self.true_chains));
             self.curve.push(CurvePoint { time_s: reading.time_s, scores: map_scores(mapper, truth) });

@@ -185,6 +185,13 @@ impl<T> Grid<T> {
         Some(&mut self.cells[self.frame.index(cell)?])
     }
 
+    /// Sets the value of a cell, if the cell is in the grid.
+    pub fn set(&mut self, cell: Cell, value: T) {
+        if let Some(own) = self.get_mut(cell) {
+            *own = value;
+        }
+    }
+
     /// A grid of the same frame, with `f` applied to every value.
     pub fn map<U>(&self, f: impl FnMut(&T) -> U) -> Grid<U> {
         Grid { frame: self.frame, cells: self.cells.iter().map(f).collect() }

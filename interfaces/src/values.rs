@@ -67,6 +67,38 @@ pub fn value<'a, T: Serialize + DeserializeOwned>(value: &'a mut T) -> Box<dyn V
     Box::new(value)
 }
 
+/// A part that is saved in another form, which `save` makes of it; `load` brings the part into the state of that form.
+pub fn converted<'a, P: ?Sized, T: Serialize + DeserializeOwned + 'a>(
+    part: &'a mut P,
+    save: fn(&P) -> T,
+    load: fn(&mut P, T) -> Result<(), ValueError>,
+) -> Box<dyn Value + 'a> {
+    struct Converted<'a, P: ?Sized, T>(&'a mut P, fn(&P) -> T, fn(&mut P, T) -> Result<(), ValueError>);
+
+    impl<P: ?Sized, T: Serialize + DeserializeOwned> Value for Converted<'_, P, T> {
+        fn write(&self, bytes: &mut Vec<u8>) -> Result<(), ValueError> {
+            write_value(&self.1(self.0), bytes)
+        }
+
+        fn read(&mut self, bytes: &mut &[u8]) -> Result<(), ValueError> {
+            self.2(self.0, read_value(bytes)?)
+        }
+    }
+
+    Box::new(Converted(part, save, load))
+}
+
+/// The [`Values`] of fields, and after a semicolon those of parts that list their own.
+#[macro_export]
+macro_rules! values {
+    ($($field:expr),* $(; $($part:expr),+)?) => {{
+        #[allow(unused_mut)]
+        let mut values: $crate::Values<'_> = vec![$($crate::value(&mut $field)),*];
+        $($(values.extend($part.values());)+)?
+        values
+    }};
+}
+
 /// Appends values to `bytes`.
 ///
 /// # Errors

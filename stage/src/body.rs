@@ -1,7 +1,7 @@
 //! The body of a model: its blocks, its bitmap, or a box.
 
 use super::builder::{Builder, Pose};
-use super::lexer::Place;
+use super::lexer::Span;
 use super::polygon;
 use super::tree::Entity;
 use interfaces::pose;
@@ -112,7 +112,7 @@ impl Builder<'_, '_> {
     }
 
     /// Scales blocks so that they fill the size of their model together, about its middle.
-    fn scale(&mut self, place: Place, blocks: &[Block], at: &Pose, size_m: [f64; 3], body: &mut Body) {
+    fn scale(&mut self, place: Span, blocks: &[Block], at: &Pose, size_m: [f64; 3], body: &mut Body) {
         let (low, high) = polygon::bounds(blocks.iter().flat_map(|(points, _)| points).copied());
         let extent = high - low;
         if extent.min() < 1e-9 {
@@ -135,7 +135,7 @@ impl Builder<'_, '_> {
     fn plan(
         &mut self,
         name: &str,
-        place: Place,
+        place: Span,
         at: &Isometry2<f64>,
         size_m: Vector2<f64>,
     ) -> Option<FloorPlan> {

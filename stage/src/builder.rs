@@ -1,7 +1,7 @@
 //! Reads the values of keys: their number, their units, their range.
 
 use super::heights::Heights;
-use super::lexer::{Kind, Place, Token};
+use super::lexer::{Kind, Span, Token};
 use super::pictures::Pictures;
 use super::sources::Sources;
 use super::tree::Entity;
@@ -44,7 +44,7 @@ pub(super) struct Builder<'a, 'b> {
     pub(super) generated: BTreeMap<String, usize>,
     pub(super) walls: Vec<StageWall>,
     /// The walls that have a tag, with their position and the place of the tag in the file.
-    pub(super) tagged: Vec<(usize, Point2<f64>, Place)>,
+    pub(super) tagged: Vec<(usize, Point2<f64>, Span)>,
     pub(super) robots: Vec<StageRobot>,
     pub(super) heights: Heights,
 }
@@ -56,7 +56,7 @@ impl Builder<'_, '_> {
         entity: &Entity,
         name: &str,
         counts: RangeInclusive<usize>,
-    ) -> Option<(Vec<f64>, Place)> {
+    ) -> Option<(Vec<f64>, Span)> {
         let property = entity.get(name)?;
         let number = |value: &Token| match value.kind {
             Kind::Number(number) if number.abs() <= MAX_NUMBER => Some(number),
@@ -102,7 +102,7 @@ impl Builder<'_, '_> {
     }
 
     /// The text of a key.
-    pub(super) fn text(&mut self, entity: &Entity, name: &str) -> Option<(String, Place)> {
+    pub(super) fn text(&mut self, entity: &Entity, name: &str) -> Option<(String, Span)> {
         let property = entity.get(name)?;
         if let [Token { kind: Kind::Text, place }] = property.values.as_slice() {
             let text = self.sources.text(*place);

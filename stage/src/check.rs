@@ -8,7 +8,7 @@ use sim::physics::{BoxTree, Form, Rectangle};
 use std::f64::consts::PI;
 use std::ops::RangeInclusive;
 use worldfile::Severity;
-use worldfile::physics::{MAX_PIECES, MOST_OUT_M};
+use worldfile::physics::{MAX_OUT_M, MAX_PIECES};
 use worldfile::toml_value::short;
 
 /// The maximum number of lasers of a robot, and of sonars.
@@ -126,10 +126,10 @@ fn check_sensors(sources: &mut Sources<'_>, robot: &StageRobot) {
     let (radius_m, name) = (robot.radius_m(), &robot.name);
     for (kind, sensor) in robot.sensors() {
         let off_m = sensor.mount.translation.vector.norm() - radius_m;
-        if off_m > MOST_OUT_M {
+        if off_m > MAX_OUT_M {
             let what = format!("a {kind} of `{name}` is mounted {off_m:.3} m off its robot");
             let help = format!(
-                "here it is moved back, straight towards the point that the robot turns about, to {MOST_OUT_M} m from \
+                "here it is moved back, straight towards the point that the robot turns about, to {MAX_OUT_M} m from \
                  the circle about the body: it measures from there"
             );
             sources.warning(robot.at, what, help);

@@ -1,6 +1,6 @@
 //! Stage worlds have heights, this simulator has none: warnings where heights matter.
 
-use super::lexer::Place;
+use super::lexer::Span;
 use super::sources::Sources;
 use std::collections::BTreeSet;
 
@@ -12,7 +12,7 @@ pub(super) struct Solid {
     pub(super) name: String,
     /// The robot that it is a part of.
     pub(super) robot: Option<usize>,
-    pub(super) place: Place,
+    pub(super) place: Span,
     /// The lowest and the highest point of the body, m.
     pub(super) z_m: [f64; 2],
 }
@@ -20,7 +20,7 @@ pub(super) struct Solid {
 /// The height of a sensor, and its place in the file.
 pub(super) struct Beam {
     pub(super) robot: usize,
-    pub(super) place: Place,
+    pub(super) place: Span,
     pub(super) z_m: f64,
 }
 

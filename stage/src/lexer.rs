@@ -4,14 +4,14 @@ use std::ops::Range;
 
 /// A place in one of the texts of a world, in bytes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Place {
+pub(super) struct Span {
     /// The index of the text, in the order in which they were read.
     pub(super) file: u32,
     pub(super) start: u32,
     pub(super) end: u32,
 }
 
-impl Place {
+impl Span {
     pub(super) fn range(&self) -> Range<usize> {
         self.start as usize..self.end as usize
     }
@@ -21,7 +21,7 @@ impl Place {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Token {
     pub(super) kind: Kind,
-    pub(super) place: Place,
+    pub(super) place: Span,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,13 +39,13 @@ pub(super) enum Kind {
 
 /// The tokens of a text, which is the `file`th one, without comments and line ends; or what cannot be read: its
 /// place, what it is, and what is valid.
-pub(super) fn tokens(text: &str, file: u32) -> Result<Vec<Token>, (Place, &'static str, &'static str)> {
+pub(super) fn tokens(text: &str, file: u32) -> Result<Vec<Token>, (Span, &'static str, &'static str)> {
     let bytes = text.as_bytes();
     let mut tokens = Vec::new();
     let mut end = 0;
     while let Some(&byte) = bytes.get(end) {
         let start = end;
-        let place = |start: usize, end: usize| Place { file, start: start as u32, end: end as u32 };
+        let place = |start: usize, end: usize| Span { file, start: start as u32, end: end as u32 };
         let run = |from: usize, is_part: &dyn Fn(u8) -> bool| {
             from + bytes[from..].iter().take_while(|byte| is_part(**byte)).count()
         };

@@ -56,16 +56,15 @@ mod to_toml;
 mod tree;
 mod world;
 
-use lexer::Place;
+use lexer::Span;
 use sources::Sources;
 
 use nalgebra::{Isometry2, Point2};
 use sim::physics::{FleetSpec, Form, OdometryError, Rectangle};
 use std::collections::BTreeMap;
 use std::path::Path;
-use worldfile::Files;
-use worldfile::Findings;
 use worldfile::floor_plan::FloorPlan;
+use worldfile::{Files, Findings};
 
 /// A world as described by a Stage file.
 #[derive(Clone, Debug, PartialEq)]
@@ -99,7 +98,7 @@ pub struct StageWall {
     pub rectangles: Vec<Rectangle>,
     /// The tag that fiducial finders detect; a wall with a tag is one rectangle.
     pub tag: Option<u32>,
-    at: Place,
+    at: Span,
 }
 
 /// A model that drives.
@@ -138,9 +137,9 @@ pub struct StageRobot {
     pub mass_kg: Option<f64>,
     /// The controllers that Stage would load.
     pub controllers: Vec<String>,
-    at: Place,
+    at: Span,
     /// The places of the keys of the robot in the file.
-    keys: BTreeMap<String, Place>,
+    keys: BTreeMap<String, Span>,
 }
 
 /// The kind of a drive.
@@ -190,7 +189,7 @@ pub struct StageSensor {
     pub interval_ms: u32,
     /// The standard deviation of a range, m.
     pub noise_std_m: f64,
-    at: Place,
+    at: Span,
 }
 
 impl StageRobot {
@@ -201,7 +200,7 @@ impl StageRobot {
     }
 
     /// The place of this key in the file, or else that of this robot.
-    fn key(&self, key: &str) -> Place {
+    fn key(&self, key: &str) -> Span {
         self.keys.get(key).copied().unwrap_or(self.at)
     }
 

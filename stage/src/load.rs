@@ -29,7 +29,7 @@ pub(super) fn load(sources: &mut Sources<'_>, path: &Path, world: &StageWorld) -
         Ok(spec) => return Some(spec),
         Err(error) => error,
     };
-    for message in error.messages() {
+    for message in &error.messages() {
         let (what, help, place) = in_stage(&text, message);
         sources.findings.add_file(Severity::Error, place.map_or(path, Path::new), what, help);
     }
@@ -57,7 +57,8 @@ mod tests {
     fn an_error_of_the_made_file_names_the_line_that_it_comes_from() {
         let made = "name = \"x\"\n\n[[robot]]  # a.world:3\nname = \"a\"\nradius_m = 99.0\n";
         let message = parse_fleet("made.toml", made).unwrap_err();
-        let places: Vec<_> = message.messages().iter().map(|message| in_stage(made, message).2).collect();
+        let messages = message.messages();
+        let places: Vec<_> = messages.iter().map(|message| in_stage(made, message).2).collect();
         assert!(places.contains(&Some("a.world:3")), "{message}");
         assert_eq!(in_stage(made, "odd"), ("odd", "", None));
     }

@@ -1,12 +1,11 @@
 //! Models: their names, their bodies, and those that are walls.
 
-use super::StageWall;
 use super::body::Body;
 use super::builder::{Builder, Pose};
 use super::heights::Solid;
-use super::left_out;
-use super::lexer::Place;
+use super::lexer::Span;
 use super::tree::Entity;
+use super::{StageWall, left_out};
 use sim::physics::{BoxTree, Rectangle};
 use worldfile::Severity;
 
@@ -22,7 +21,7 @@ pub(super) struct Placed {
     /// Whether robots bump into it or lasers see it.
     pub(super) is_solid: bool,
     /// The tag of the model, and the place of the tag in the file.
-    pub(super) tag: Option<(u32, Place)>,
+    pub(super) tag: Option<(u32, Span)>,
     pub(super) at: Pose,
     /// The reference of the poses of its parts: the pose of the model, on top of it if parts are stacked.
     pub(super) top: Pose,

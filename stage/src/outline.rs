@@ -2,7 +2,7 @@
 
 use super::polygon;
 use nalgebra::Point2;
-use sim::physics::Form;
+use sim::physics::{Form, convex};
 
 /// The maximum number of corners of an outline.
 const MAX_CORNERS: usize = 32;
@@ -32,9 +32,9 @@ pub(super) fn of(parts: &[Vec<Point2<f64>>]) -> Option<Outline> {
     if corners.len() < 3 || inner_m(&corners) < MIN_INNER_M {
         return None;
     }
-    let area_m2 = polygon::area(&corners);
+    let area_m2 = convex::area(&corners);
     // Most bodies have one part that is nearly all of it, and that is quickly seen.
-    let largest_m2 = parts.iter().map(|part| polygon::area(part).abs()).fold(0.0, f64::max);
+    let largest_m2 = parts.iter().map(|part| convex::area(part).abs()).fold(0.0, f64::max);
     let gain = area_m2 / largest_m2 - 1.0;
     let gain = if parts.len() < 2 || gain < 1e-9 { gain } else { gain.min(gain_by_lines(&corners, parts)) };
     Some(Outline { corners, gain })

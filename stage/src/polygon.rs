@@ -2,6 +2,7 @@
 
 use nalgebra::{Isometry2, Point2, UnitComplex, Vector2};
 use sim::physics::Rectangle;
+use sim::physics::convex::{area, sides};
 use worldfile::floor_plan::Bitmap;
 
 /// Corners closer than this are one, and angles right to within it, m and rad.
@@ -51,21 +52,10 @@ fn clean(points: &[Point2<f64>]) -> Vec<Point2<f64>> {
     corners
 }
 
-/// Positive if the corners go counter-clockwise.
-pub(super) fn area(corners: &[Point2<f64>]) -> f64 {
-    let Some(first) = corners.first() else { return 0.0 };
-    corners.windows(2).map(|pair| (pair[0] - first).perp(&(pair[1] - first))).sum::<f64>() / 2.0
-}
-
 /// The lower left and the upper right corner of the upright box around points.
 pub(super) fn bounds(points: impl Iterator<Item = Point2<f64>>) -> (Point2<f64>, Point2<f64>) {
     let none = (Point2::new(f64::MAX, f64::MAX), Point2::new(f64::MIN, f64::MIN));
     points.fold(none, |(low, high), point| (low.inf(&point), high.sup(&point)))
-}
-
-/// The sides of a polygon.
-fn sides(corners: &[Point2<f64>]) -> impl Iterator<Item = (Point2<f64>, Point2<f64>)> {
-    corners.iter().copied().zip(corners.iter().copied().cycle().skip(1))
 }
 
 /// Per corner of a polygon, the side that leads to it and the side that leads away from it.
@@ -92,7 +82,7 @@ fn contains(corners: &[Point2<f64>], point: &Point2<f64>) -> bool {
 /// through its corners.
 fn right_angled(corners: &[Point2<f64>]) -> Option<Cover> {
     let along = (corners[1] - corners[0]).normalize();
-    let is_right = |(a, b): (Point2<f64>, Point2<f64>)| {
+    let is_right = |(a, b): (&Point2<f64>, &Point2<f64>)| {
         let side = (b - a).normalize();
         side.dot(&along).abs() < SAME || side.perp(&along).abs() < SAME
     };
@@ -169,7 +159,7 @@ fn is_inside(corners: &[Point2<f64>], own: usize, inner: &[Point2<f64>; 2]) -> b
     let (from_m, to_m) = (along.dot(&(inner[0] - a)), along.dot(&(inner[1] - a)));
     // Other sides may touch the rectangle, but not enter it: cut each to the strip and look.
     let enters = sides(corners).enumerate().filter(|(i, _)| *i != own).any(|(_, (p, q))| {
-        let local = |point: Point2<f64>| Vector2::new(along.dot(&(point - a)), along.perp(&(point - a)));
+        let local = |point: &Point2<f64>| Vector2::new(along.dot(&(point - a)), along.perp(&(point - a)));
         let (p, q) = (local(p), local(q));
         let (mut low, mut high) = (0.0_f64, 1.0_f64);
         for (axis, least, most) in [(0, from_m + SAME, to_m - SAME), (1, SAME, thickness_m - SAME)] {

@@ -1,12 +1,11 @@
 //! Robots, and what they carry.
 
-use super::StageRobot;
 use super::body::Body;
 use super::builder::{Builder, Pose};
 use super::heights::Solid;
 use super::models::{DEFAULT_SIZE_M, Placed};
-use super::outline;
 use super::tree::Entity;
+use super::{StageRobot, outline};
 
 /// The size of a ranger and a laser, where the file gives none, m.
 const DEFAULT_RANGER_SIZE_M: [f64; 3] = [0.15, 0.15, 0.2];

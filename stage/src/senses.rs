@@ -3,7 +3,7 @@
 use super::builder::{Builder, Pose};
 use super::drive::INVERSE_ROOT_3;
 use super::heights::Beam;
-use super::lexer::Place;
+use super::lexer::Span;
 use super::tree::Entity;
 use super::{StageRobot, StageSensor};
 use nalgebra::Isometry2;
@@ -145,7 +145,7 @@ impl Builder<'_, '_> {
     }
 
     /// The tag of a model; 0 is none.
-    pub(super) fn tag(&mut self, model: &Entity) -> Option<(u32, Place)> {
+    pub(super) fn tag(&mut self, model: &Entity) -> Option<(u32, Span)> {
         let (numbers, place) = self.numbers(model, "fiducial_return", 1..=1)?;
         if numbers[0] < 0.0 || numbers[0] != numbers[0].trunc() {
             let what = format!("the tag {} is left out", numbers[0]);

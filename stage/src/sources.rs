@@ -1,12 +1,11 @@
 //! The texts that make up a world: the file itself and what it includes.
 
-use super::lexer::{self, Kind, Place, Token};
+use super::lexer::{self, Kind, Span, Token};
 use interfaces::printable;
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::ErrorKind;
 use std::path::{Component, Path, PathBuf};
-use worldfile::Files;
-use worldfile::{Findings, Severity, SourceText};
+use worldfile::{Files, Findings, Severity, SourceText};
 
 /// The maximum length of all texts together; an include in an include in an include would exceed any.
 const MAX_BYTES: u64 = 8 << 20;
@@ -102,7 +101,7 @@ impl<'a> Sources<'a> {
         true
     }
 
-    fn include(&mut self, from: &Path, name: Place) -> bool {
+    fn include(&mut self, from: &Path, name: Span) -> bool {
         // Stage looks in the folder of the world file, whatever file the include is in.
         let (mut path, second) = (self.beside(self.path(), name), self.beside(from, name));
         let mut bytes = self.files.read(&path, self.bytes_left);
@@ -129,7 +128,7 @@ impl<'a> Sources<'a> {
     }
 
     /// The path of a file that is named in the file `from`.
-    pub(super) fn beside(&self, from: &Path, name: Place) -> PathBuf {
+    pub(super) fn beside(&self, from: &Path, name: Span) -> PathBuf {
         // Not by the disk: `a/../b` is `b` here, so that a file has one name.
         let mut path = from.parent().unwrap_or(Path::new("")).to_owned();
         for part in Path::new(self.text(name)).components() {
@@ -150,12 +149,12 @@ impl<'a> Sources<'a> {
     }
 
     /// The text at a place.
-    pub(super) fn text(&self, place: Place) -> &str {
+    pub(super) fn text(&self, place: Span) -> &str {
         self.texts[place.file as usize].text.get(place.range()).unwrap_or_default()
     }
 
     /// The file and line of a place, as in `cave.world:12`.
-    pub(super) fn name(&self, place: Place) -> String {
+    pub(super) fn name(&self, place: Span) -> String {
         let text = &self.texts[place.file as usize];
         format!("{}:{}", text.name, text.line_number(place.start as usize))
     }
@@ -166,7 +165,7 @@ impl<'a> Sources<'a> {
     }
 
     /// Remembers that `name` at this place changes nothing.
-    pub(super) fn has_no_effect(&mut self, place: Place, name: &str) {
+    pub(super) fn has_no_effect(&mut self, place: Span, name: &str) {
         let line = self.texts[place.file as usize].line_number(place.start as usize);
         let names = self.no_effect.entry(place.file).or_default();
         names.entry(name.to_owned()).or_default().insert(line);
@@ -187,15 +186,15 @@ impl<'a> Sources<'a> {
         }
     }
 
-    pub(super) fn error(&mut self, place: Place, what: impl AsRef<str>, help: impl AsRef<str>) {
+    pub(super) fn error(&mut self, place: Span, what: impl AsRef<str>, help: impl AsRef<str>) {
         self.add(Severity::Error, place, what, help);
     }
 
-    pub(super) fn warning(&mut self, place: Place, what: impl AsRef<str>, help: impl AsRef<str>) {
+    pub(super) fn warning(&mut self, place: Span, what: impl AsRef<str>, help: impl AsRef<str>) {
         self.add(Severity::Warning, place, what, help);
     }
 
-    pub(super) fn add(&mut self, how: Severity, place: Place, what: impl AsRef<str>, help: impl AsRef<str>) {
+    pub(super) fn add(&mut self, how: Severity, place: Span, what: impl AsRef<str>, help: impl AsRef<str>) {
         let text = &self.texts[place.file as usize];
         self.findings.add(how, text, what.as_ref(), (place.range(), ""), help.as_ref());
     }

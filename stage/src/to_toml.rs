@@ -5,8 +5,8 @@ use super::{Bounds, Drive, StageRobot, StageSensor, StageWall, StageWorld, faste
 use nalgebra::{Point2, Vector2};
 use sim::physics::{OdometryError, Rectangle};
 use toml::Value;
-use worldfile::physics::MOST_OUT_M;
-use worldfile::toml_value::{degrees, heading, number, point};
+use worldfile::physics::MAX_OUT_M;
+use worldfile::toml_value::{degrees, heading, lines, number, point};
 
 /// The side of a cell of the truth grid, m, where the map is not too large for it.
 const CELL_M: f64 = 0.05;
@@ -45,9 +45,8 @@ impl StageWorld {
             "# Made from {files}. Lengths in metres, angles in degrees.\n# [0, 0] here is {low} there.\nname = {name}\n"
         );
         let mut table = |header: &str, place: &str, keys: Keys| {
-            let lines = keys.into_iter().map(|(key, value)| format!("{key} = {value}\n"));
             let comment = if place.is_empty() { "" } else { "  # " };
-            text.extend([format!("\n{header}{comment}{place}\n")].into_iter().chain(lines));
+            text += &format!("\n{header}{comment}{place}\n{}", lines(keys));
         };
         let size_m = map.size_m.into();
         table("[map]", "", vec![("size_m", point(&size_m)), ("cell_m", number(map.cell_m))]);
@@ -192,7 +191,7 @@ fn sensor(kind: &str, sensor: &StageSensor, radius_m: f64) -> Keys {
         _ => (&["beams", "range_min_m", "noise_std_m"], "fov_deg"),
     };
     // Not farther out than it may be, by more than rounding.
-    let mount_m = sensor.mount.translation.vector.cap_magnitude(radius_m + MOST_OUT_M - 1e-7);
+    let mount_m = sensor.mount.translation.vector.cap_magnitude(radius_m + MAX_OUT_M - 1e-7);
     let mut keys = vec![
         ("beams", Value::from(sensor.beams as i64)),
         (angle, degrees(sensor.fov_rad)),

@@ -4,7 +4,7 @@
 //! has these, then its own keys instead of or beside them, then its own parts. As in Stage, the first
 //! definition of a name holds.
 
-use super::lexer::{Kind, Place, Token};
+use super::lexer::{Kind, Span, Token};
 use super::sources::Sources;
 use std::cell::Cell;
 use std::collections::BTreeMap;
@@ -19,7 +19,7 @@ const MAX_ITEMS: usize = 1 << 19;
 /// A key with its values.
 #[derive(Debug)]
 pub(super) struct Property {
-    pub(super) name: Place,
+    pub(super) name: Span,
     pub(super) values: Vec<Token>,
     /// Whether a reader has asked for it.
     pub(super) is_used: Cell<bool>,
@@ -27,9 +27,9 @@ pub(super) struct Property {
 
 impl Property {
     /// From the name to the last value.
-    pub(super) fn place(&self) -> Place {
+    pub(super) fn place(&self) -> Span {
         let end = self.values.last().filter(|last| last.place.file == self.name.file);
-        Place { end: end.map_or(self.name.end, |last| last.place.end), ..self.name }
+        Span { end: end.map_or(self.name.end, |last| last.place.end), ..self.name }
     }
 }
 
@@ -39,13 +39,13 @@ pub(super) struct Entity {
     /// Such as `position`: Stage's own name for the kind, once definitions are written out.
     pub(super) kind: String,
     /// The name of its kind where it is used.
-    pub(super) place: Place,
+    pub(super) place: Span,
     pub(super) properties: BTreeMap<String, Rc<Property>>,
     pub(super) parts: Vec<Entity>,
 }
 
 impl Entity {
-    fn new(kind: &str, place: Place) -> Self {
+    fn new(kind: &str, place: Span) -> Self {
         Self { kind: kind.to_owned(), place, properties: BTreeMap::new(), parts: Vec::new() }
     }
 
@@ -64,7 +64,7 @@ impl Entity {
     }
 
     /// Where it gives this key, or else where it begins.
-    pub(super) fn place_of(&self, name: &str) -> Place {
+    pub(super) fn place_of(&self, name: &str) -> Span {
         self.properties.get(name).map_or(self.place, |property| property.place())
     }
 
@@ -76,7 +76,7 @@ impl Entity {
 
 /// The tree of a file: the keys of the world itself and its models. `None` if there are errors.
 pub(super) fn read(sources: &mut Sources<'_>, tokens: &[Token]) -> Option<Entity> {
-    let start = tokens.first().map_or(Place::default(), |token| token.place);
+    let start = tokens.first().map_or(Span::default(), |token| token.place);
     let mut parser = Parser { sources, tokens, at: 0, definitions: BTreeMap::new(), items: 0 };
     let (mut world, mut models) = (Entity::new("world", start), Vec::new());
     while parser.at < tokens.len() {
@@ -104,7 +104,7 @@ struct Parser<'a, 'b> {
 }
 
 impl Parser<'_, '_> {
-    fn error<T>(&mut self, place: Place, what: &str, help: &str) -> Option<T> {
+    fn error<T>(&mut self, place: Span, what: &str, help: &str) -> Option<T> {
         self.sources.error(place, what, help);
         None
     }
@@ -124,7 +124,7 @@ impl Parser<'_, '_> {
         next.is_some_and(|next| next.kind == Kind::Word && self.sources.text(next.place) == word)
     }
 
-    fn word(&mut self, help: &str) -> Option<Place> {
+    fn word(&mut self, help: &str) -> Option<Span> {
         let token = self.next(help)?;
         if token.kind == Kind::Word {
             return Some(token.place);
@@ -197,7 +197,7 @@ impl Parser<'_, '_> {
     }
 
     /// An entity of which the first bracket is read.
-    fn body(&mut self, kind: Place, depth: usize) -> Option<Entity> {
+    fn body(&mut self, kind: Span, depth: usize) -> Option<Entity> {
         if depth > MAX_DEPTH {
             return self.error(kind, "too many brackets in each other", "64 are the most");
         }
@@ -231,7 +231,7 @@ impl Parser<'_, '_> {
         Some(whole)
     }
 
-    fn count(&mut self, place: Place) -> Option<()> {
+    fn count(&mut self, place: Span) -> Option<()> {
         self.items += 1;
         if self.items > MAX_ITEMS {
             let help = "half a million keys and things are the most, with all definitions written out";

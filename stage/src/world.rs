@@ -2,12 +2,11 @@
 
 use super::builder::{Builder, Pose};
 use super::heights::Heights;
-use super::left_out;
-use super::lexer::Place;
+use super::lexer::Span;
 use super::pictures::Pictures;
 use super::sources::Sources;
 use super::tree::Entity;
-use super::{Drive, StageRobot, StageWorld, fastest};
+use super::{Drive, StageRobot, StageWorld, fastest, left_out};
 use interfaces::printable;
 use std::collections::{BTreeMap, BTreeSet};
 use worldfile::Severity;
@@ -68,7 +67,7 @@ pub(super) fn convert(sources: &mut Sources<'_>, tree: &Entity) -> Option<StageW
     let Some(step_s) = step_s(longest_ms, &robots) else {
         let help = "a step may not be shorter than 1 ms, a robot may not go farther than its radius in it, and \
                     sensors sense at whole numbers of steps";
-        sources.error(Place::default(), "no physics step suits this world", help);
+        sources.error(Span::default(), "no physics step suits this world", help);
         return None;
     };
     let file = sources.path().file_stem();

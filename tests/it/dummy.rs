@@ -39,7 +39,7 @@ fn it_waits_and_goes_on() {
     let mut way: Vec<(f64, f64)> = Vec::new();
     let mut seen_waiting = Vec::new();
     explore(&mut world, &mut robot, |world, robot, turn| -> anyhow::Result<_> {
-        let dummy = world.robots().find(|robot| !robot.is_driven).unwrap().pose.translation;
+        let dummy = world.fleet().robots().find(|robot| !robot.is_driven).unwrap().pose.translation;
         way.push((turn.reading.time_s, dummy.x));
         assert_eq!(world.contacts(), []);
         if turn.reading.time_s < STANDS_UNTIL_S {

@@ -11,33 +11,25 @@ use std::path::Path;
 /// what is invalid, and a valid value. The second and further messages begin with `error: `; the first one is
 /// intended to be printed after `error: `.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{}", findings.error_text())]
-pub struct WorldError {
-    findings: Findings,
-    messages: Vec<String>,
-}
+#[error("{}", .0.error_text())]
+pub struct WorldError(pub(crate) Findings);
 
 impl WorldError {
-    pub(crate) fn new(findings: Findings) -> Self {
-        let messages = findings.messages(Severity::Error).into_iter();
-        let messages = messages.map(|message| message.trim_start_matches("error: ").to_owned()).collect();
-        Self { findings, messages }
-    }
-
     /// The errors.
     pub fn findings(&self) -> &Findings {
-        &self.findings
+        &self.0
     }
 
     /// The errors, one message each; at least one. The first 20 errors are shown; the last message then has the
     /// number of further errors.
-    pub fn messages(&self) -> &[String] {
-        &self.messages
+    pub fn messages(&self) -> Vec<String> {
+        let messages = self.0.messages(Severity::Error).into_iter();
+        messages.map(|message| message.trim_start_matches("error: ").to_owned()).collect()
     }
 
     /// The number of errors.
     pub fn count(&self) -> usize {
-        self.findings.errors()
+        self.0.errors()
     }
 }
 
@@ -49,7 +41,7 @@ pub(crate) fn read_text(kind: &str, path: &Path) -> Result<(String, String), Wor
         Ok(text) => Ok((name, text)),
         Err(error) => {
             let what = format!("cannot read the {kind} `{name}`: {error}");
-            Err(WorldError::new(Findings::of_errors(vec![Finding::unreadable(&name, &what)], 0)))
+            Err(WorldError(Findings::of_errors(vec![Finding::unreadable(&name, &what)], 0)))
         }
     }
 }

@@ -9,9 +9,9 @@ use std::ops::Range;
 use std::path::Path;
 
 /// The number of findings of each severity that are kept; further ones are only counted.
-const MOST_KEPT: usize = 100;
+const MAX_KEPT: usize = 100;
 /// The number of warnings with the same help that are kept, so that other warnings have room.
-const MOST_ALIKE: usize = 10;
+const MAX_ALIKE: usize = 10;
 /// If a line is longer, only the part around the place is shown, bytes.
 const LONG_LINE: usize = 4000;
 /// Texts of a message are cut after this, bytes: they can quote a value that is as long as its file.
@@ -165,10 +165,10 @@ impl Findings {
         }
         let alike = |old: &&Finding| (old.severity, &old.help) == (new.severity, &new.help);
         let is_one_of_many =
-            new.severity == Severity::Warning && self.kept.iter().filter(alike).count() >= MOST_ALIKE;
+            new.severity == Severity::Warning && self.kept.iter().filter(alike).count() >= MAX_ALIKE;
         self.counts[new.severity as usize] += 1;
         let kept = self.kept.iter().filter(|old| old.severity == new.severity).count();
-        if kept < MOST_KEPT && !is_one_of_many {
+        if kept < MAX_KEPT && !is_one_of_many {
             let message = message(&new);
             let index = self.kept.partition_point(|old| old.severity >= new.severity);
             self.kept.insert(index, Finding { message, ..new });

@@ -29,3 +29,8 @@ pub fn heading(pose: &Isometry2<f64>) -> Value {
 pub fn point(point: &Point2<f64>) -> Value {
     vec![number(point.x), number(point.y)].into()
 }
+
+/// Keys with their values, one a line.
+pub fn lines<'a>(keys: impl IntoIterator<Item = (&'a str, Value)>) -> String {
+    keys.into_iter().map(|(key, value)| format!("{key} = {value}\n")).collect()
+}

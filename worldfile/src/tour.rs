@@ -52,7 +52,7 @@ impl TourSpec {
         if waypoints.is_empty() {
             return value.invalid("is empty", "", "a tour needs at least one `[x, y]` in metres");
         }
-        Some(Self { waypoints, repeat: repeat? })
+        table.sound(Self { waypoints, repeat })
     }
 }
 

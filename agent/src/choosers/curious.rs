@@ -1,9 +1,8 @@
 use super::tile_coder::TileCoder;
 use super::{Chooser, Trajectory};
-use crate::features::Features;
 use crate::sampling::proportional;
 use crate::settings::CuriousSettings;
-use crate::situation::Situation;
+use crate::situation::{Features, Situation};
 use interfaces::{RandomStream, Values, value};
 
 /// The paper's learner (section 4): every strategy has a value function over (p, r) that is learned from rewards,

@@ -1,18 +1,14 @@
-mod always;
-mod coin;
 mod curious;
 mod progress;
 mod tile_coder;
 
-pub use always::Always;
-pub use coin::Coin;
 pub use curious::Curious;
 pub use progress::Progress;
 pub use tile_coder::TileCoder;
 
-use crate::features::Features;
-use crate::situation::Situation;
+use crate::situation::{Features, Situation};
 use interfaces::{RandomStream, Values};
+use rand::RngExt;
 
 /// The result of one goal: the data from which a chooser learns.
 #[derive(Clone, Copy, Debug)]
@@ -46,5 +42,25 @@ pub trait Chooser: std::fmt::Debug + Send {
     /// Everything that was learned: what a state file holds of the chooser. Empty for a chooser that learns nothing.
     fn values(&mut self) -> Values<'_> {
         Vec::new()
+    }
+}
+
+/// Always chooses the strategy with this index.
+#[derive(Clone, Copy, Debug)]
+pub struct Always(pub usize);
+
+impl Chooser for Always {
+    fn choose(&mut self, _: &Situation, _: &mut RandomStream) -> usize {
+        self.0
+    }
+}
+
+/// Chooses among this number of strategies at random, all with the same probability: the baseline for learners.
+#[derive(Clone, Copy, Debug)]
+pub struct Coin(pub std::num::NonZeroUsize);
+
+impl Chooser for Coin {
+    fn choose(&mut self, _: &Situation, rng: &mut RandomStream) -> usize {
+        rng.random_range(0..self.0.get())
     }
 }

@@ -1,7 +1,6 @@
 use super::{Chooser, Trajectory};
-use crate::features::Features;
 use crate::sampling::gamma;
-use crate::situation::Situation;
+use crate::situation::{Features, Situation};
 use interfaces::{RandomStream, Values, value};
 
 /// The number of readings after which the weight of an observation of a strategy is one half.

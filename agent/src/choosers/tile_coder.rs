@@ -1,5 +1,5 @@
-use crate::features::Features;
 use crate::settings::CuriousSettings;
+use crate::situation::Features;
 use interfaces::RandomStream;
 use rand::RngExt;
 use std::collections::BTreeMap;

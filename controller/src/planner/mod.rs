@@ -11,7 +11,7 @@ pub use path::Path;
 pub use wavefront::Wavefront;
 
 use costmap::line;
-use interfaces::{Cell, CellState, Grid, Transition, Value, ValueError, read_value, write_value};
+use interfaces::{Cell, CellState, Grid, Transition, Value, converted};
 use nalgebra::Point2;
 use path::corners;
 
@@ -41,8 +41,6 @@ pub struct Planner {
     end: Option<PlanEnd>,
     path_blocked: bool,
     goal_cleared: bool,
-    cells: Vec<Cell>,
-    corners: Vec<Cell>,
 }
 
 impl Planner {
@@ -61,8 +59,6 @@ impl Planner {
             end: None,
             path_blocked: false,
             goal_cleared: false,
-            cells: Vec::new(),
-            corners: Vec::new(),
         }
     }
 
@@ -122,24 +118,25 @@ impl Planner {
         let wanted = frame.cell_at(goal);
         self.goal = Cell::new(inside(wanted.x, frame.width()), inside(wanted.y, frame.height()));
         let (last, is_cut_off) = self.spread_from_nearest(start)?;
-        let (wavefront, costmap, cells) = (&self.wavefront, self.inflation.costmap(), &mut self.cells);
-        wavefront.descend(costmap, start, cells);
-        let cost = |index: usize| wavefront.path_cost(cells[index]).unwrap_or(0);
-        match self.moves {
-            Moves::Four => self.corners.clone_from(cells),
+        let costmap = self.inflation.costmap();
+        let cells = self.wavefront.descend(costmap, start);
+        let cost = |index: usize| self.wavefront.path_cost(cells[index]).unwrap_or(0);
+        let corners = match self.moves {
             Moves::Eight => {
-                let between = |from, to| cost(from) - cost(to);
-                corners(cells, between, |from, to| costmap.line_cost(from, to), &mut self.corners);
+                corners(&cells, |from, to| cost(from) - cost(to), |from, to| costmap.line_cost(from, to))
             }
-        }
+            Moves::Four => cells,
+        };
         let is_goal = last == wanted;
         // The robot stands beside the center of the first cell, or in a lethal cell before it.
-        let skipped = usize::from(start == robot && self.corners.len() > 1);
+        let skipped = usize::from(start == robot && corners.len() > 1);
         let point = |&cell: &Cell| if is_goal && cell == last { *goal } else { frame.center(cell) };
-        path.set(std::iter::once(*from).chain(self.corners[skipped..].iter().map(point)));
+        path.set(std::iter::once(*from).chain(corners[skipped..].iter().map(point)));
         let distance_to_goal_m = distance_squared(last, self.goal).sqrt() * frame.resolution_m();
         self.end = Some(PlanEnd { is_goal, distance_to_goal_m, is_cut_off });
-        self.mark_path(start);
+        self.on_path.push(start);
+        self.on_path.extend(corners.windows(2).flat_map(|leg| line(leg[0], leg[1])));
+        self.on_path.iter().for_each(|cell| self.is_on_path.set(*cell, true));
         self.end
     }
 
@@ -194,45 +191,23 @@ impl Planner {
 
     /// The last plan. What follows from the map is not in it.
     pub(crate) fn value(&mut self) -> Box<dyn Value + '_> {
-        struct Plan<'a>(&'a mut Planner);
-
-        impl Value for Plan<'_> {
-            fn write(&self, bytes: &mut Vec<u8>) -> Result<(), ValueError> {
-                let Planner { on_path, goal, end, path_blocked, goal_cleared, .. } = &*self.0;
-                write_value(&(on_path, goal, end, path_blocked, goal_cleared), bytes)
-            }
-
-            fn read(&mut self, bytes: &mut &[u8]) -> Result<(), ValueError> {
-                let planner = &mut *self.0;
-                planner.reset();
-                let Planner { on_path, goal, end, path_blocked, goal_cleared, is_on_path, .. } = planner;
-                (*on_path, *goal, *end, *path_blocked, *goal_cleared) = read_value(bytes)?;
-                on_path.iter().for_each(|cell| set(is_on_path, *cell, true));
-                Ok(())
-            }
-        }
-
-        Box::new(Plan(self))
+        let save = |planner: &Self| {
+            let Self { on_path, goal, end, path_blocked, goal_cleared, .. } = planner;
+            (on_path.clone(), *goal, *end, *path_blocked, *goal_cleared)
+        };
+        converted(self, save, |planner, saved| {
+            planner.reset();
+            let Self { on_path, goal, end, path_blocked, goal_cleared, is_on_path, .. } = planner;
+            (*on_path, *goal, *end, *path_blocked, *goal_cleared) = saved;
+            on_path.iter().for_each(|cell| is_on_path.set(*cell, true));
+            Ok(())
+        })
     }
 
     fn reset(&mut self) {
-        self.on_path.drain(..).for_each(|cell| set(&mut self.is_on_path, cell, false));
+        self.on_path.drain(..).for_each(|cell| self.is_on_path.set(cell, false));
         self.wavefront.clear();
         (self.end, self.path_blocked, self.goal_cleared) = (None, false, false);
-    }
-
-    fn mark_path(&mut self, start: Cell) {
-        self.on_path.push(start);
-        for leg in self.corners.windows(2) {
-            self.on_path.extend(line(leg[0], leg[1]));
-        }
-        self.on_path.iter().for_each(|cell| set(&mut self.is_on_path, *cell, true));
-    }
-}
-
-fn set(grid: &mut Grid<bool>, cell: Cell, value: bool) {
-    if let Some(at) = grid.get_mut(cell) {
-        *at = value;
     }
 }
 
@@ -324,15 +299,14 @@ mod tests {
             prop_assert_eq!(end.is_goal, nearest == goal);
             prop_assert!((end.distance_to_goal_m - 0.5 * f64::from(square(&nearest)).sqrt()).abs() < 1e-12);
             prop_assert_eq!(path.points()[0], from);
+            let mut cost = 0;
             for leg in path.points().windows(2) {
                 let (a, b) = (frame.cell_at(&leg[0]), frame.cell_at(&leg[1]));
-                prop_assert!(planner.costmap().line_cost(a, b).is_some());
+                cost += planner.costmap().line_cost(a, b).unwrap();
                 prop_assert!(!four || (a.x - b.x).abs() + (a.y - b.y).abs() <= 1);
             }
             // The shortened path costs no more than the field says.
-            let cost = planner.wavefront.path_cost(robot).unwrap();
-            let line = |leg: &[Cell]| planner.costmap().line_cost(leg[0], leg[1]).unwrap();
-            prop_assert!(planner.corners.windows(2).map(line).sum::<u32>() <= cost);
+            prop_assert!(cost <= planner.wavefront.path_cost(robot).unwrap());
         }
     }
 

@@ -127,10 +127,8 @@ pub(super) fn corners(
     path: &[Cell],
     cost: impl Fn(usize, usize) -> u32,
     line: impl Fn(Cell, Cell) -> Option<u32>,
-    corners: &mut Vec<Cell>,
-) {
-    corners.clear();
-    let mut from = 0;
+) -> Vec<Cell> {
+    let (mut corners, mut from) = (Vec::new(), 0);
     while from < path.len() {
         corners.push(path[from]);
         let straight = |to: usize| line(path[from], path[to]).is_some_and(|line| line <= cost(from, to));
@@ -146,6 +144,7 @@ pub(super) fn corners(
         }
         from = to;
     }
+    corners
 }
 
 #[cfg(test)]
@@ -201,8 +200,7 @@ mod tests {
     #[test]
     fn a_path_without_obstacles_is_its_two_ends() {
         let cells: Vec<_> = (0..40).map(|x| Cell::new(x, 0)).collect();
-        let mut found = Vec::new();
-        corners(&cells, |from, to| (to - from) as u32, |a, b| Some((b.x - a.x) as u32), &mut found);
+        let found = corners(&cells, |from, to| (to - from) as u32, |a, b| Some((b.x - a.x) as u32));
         assert_eq!(found, [Cell::new(0, 0), Cell::new(39, 0)]);
     }
 }

@@ -180,24 +180,23 @@ impl Wavefront {
         rows.flat_map(move |row| &row[1..=width]).map(|&cost| (cost != UNREACHED).then_some(cost))
     }
 
-    /// Writes the cells of a cheapest path from `from` to the source into `path`, both included: the descent
-    /// of the field (paper: hill climbing). Nothing where no wave was.
-    pub fn descend(&self, map: &Costmap, from: Cell, path: &mut Vec<Cell>) {
-        path.clear();
-        let Some(mut cost) = self.path_cost(from) else { return };
-        let mut at = from;
-        path.push(at);
+    /// The cells of a cheapest path from `from` to the source, both included: the descent
+    /// of the field (paper: hill climbing). None where no wave was.
+    pub fn descend(&self, map: &Costmap, from: Cell) -> Vec<Cell> {
+        let Some(mut cost) = self.path_cost(from) else { return Vec::new() };
+        let (mut at, mut path) = (from, vec![from]);
         while cost > 0 {
             let step = at.neighbours8().into_iter().find_map(|next| {
                 let allowed = self.moves == Moves::Eight || next.x == at.x || next.y == at.y;
                 let here = self.path_cost(next)?.checked_add(map.line_cost(at, next)?)?;
                 (allowed && here == cost).then_some(next)
             });
-            let Some(next) = step else { return path.clear() };
+            let Some(next) = step else { return Vec::new() };
             at = next;
             cost = self.path_cost(at).unwrap_or(0);
             path.push(at);
         }
+        path
     }
 }
 
@@ -294,9 +293,8 @@ mod tests {
         fn the_descent_costs_what_the_field_states((map, source, target) in random_map(), four in any::<bool>()) {
             let moves = if four { Moves::Four } else { Moves::Eight };
             let mut wave = Wavefront::new(*map.frame(), moves);
-            let mut path = Vec::new();
             if wave.spread(&map, source, Some(target)) {
-                wave.descend(&map, target, &mut path);
+                let path = wave.descend(&map, target);
                 prop_assert_eq!((path[0], path[path.len() - 1]), (target, source));
                 let paid: Option<u32> = path.windows(2).map(|step| map.line_cost(step[0], step[1])).sum();
                 prop_assert_eq!(paid, wave.path_cost(target));
@@ -312,8 +310,7 @@ mod tests {
         let map = costmap(&rows);
         let mut wave = Wavefront::new(*map.frame(), Moves::Eight);
         assert!(wave.spread(&map, find(&rows, 'G'), Some(find(&rows, 'R'))));
-        let mut path = Vec::new();
-        wave.descend(&map, find(&rows, 'R'), &mut path);
+        let path = wave.descend(&map, find(&rows, 'R'));
         assert!(path.contains(&find(&rows, 'D')));
     }
 
@@ -323,9 +320,7 @@ mod tests {
         let map = costmap(&rows);
         let mut wave = Wavefront::new(*map.frame(), Moves::Eight);
         assert!(!wave.spread(&map, find(&rows, 'G'), Some(find(&rows, 'R'))));
-        let mut path = vec![Cell::new(0, 0)];
-        wave.descend(&map, find(&rows, 'R'), &mut path);
-        assert_eq!(path, []);
+        assert_eq!(wave.descend(&map, find(&rows, 'R')), []);
     }
 
     #[test]

@@ -96,12 +96,6 @@ fn shelf(name: String, center: Point2<f64>, sides: Vector2<f64>, shifts: &[Vecto
         before = center + shift;
         keys.push((time_s + SHIFT_S, before));
     }
-    ObstacleSpec {
-        name,
-        shape: Rectangle::around(center, sides, 0.0),
-        motion: Motion::Path(PathSpec { keys, is_loop: false }),
-        tag: None,
-        appears_s: None,
-        disappears_s: None,
-    }
+    let motion = Motion::Path(PathSpec { keys, is_loop: false });
+    ObstacleSpec::new(&name, Rectangle::around(center, sides, 0.0), motion)
 }

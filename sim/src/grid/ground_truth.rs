@@ -27,11 +27,6 @@ struct CellTruth {
     is_blocked: bool,
     is_swept: bool,
     block_events: u32,
-    free_events: u32,
-    /// The time for which the cell was blocked before it took its present state, steps.
-    blocked_before: u64,
-    /// The time at which the cell took its present state, steps.
-    since: u64,
 }
 
 impl GridGroundTruth {
@@ -49,7 +44,9 @@ impl GridGroundTruth {
             things.push(sorted(block.path.iter().filter_map(index).collect()));
         }
         let swept = sorted(things.concat());
-        swept.iter().for_each(|&index| cells[index].is_swept = true);
+        for &index in &swept {
+            cells[index].is_swept = true;
+        }
         let reachable = parts::connected(&spec.walls, spec.start);
         Self { frame, time: 0, cells, reachable, swept, things, changes: Vec::new() }
     }
@@ -58,19 +55,6 @@ impl GridGroundTruth {
     #[inline]
     pub fn is_blocked(&self, index: usize) -> bool {
         self.cells[index].is_blocked
-    }
-
-    /// The number of times that a cell has become free so far.
-    #[inline]
-    pub fn free_events(&self, index: usize) -> u32 {
-        self.cells[index].free_events
-    }
-
-    /// The time for which a cell was blocked so far, steps.
-    pub fn blocked_time(&self, index: usize) -> f64 {
-        let cell = &self.cells[index];
-        let now = if cell.is_blocked { self.time - cell.since } else { 0 };
-        (cell.blocked_before + now) as f64
     }
 
     /// Applies a step in which blocks `moved` from cell to cell. `is_blocked` returns the present state of a cell.
@@ -83,13 +67,8 @@ impl GridGroundTruth {
             if truth.is_blocked == is_blocked {
                 continue;
             }
-            if is_blocked {
-                truth.block_events += 1;
-            } else {
-                truth.free_events += 1;
-                truth.blocked_before += self.time - truth.since;
-            }
-            (truth.is_blocked, truth.since) = (is_blocked, self.time);
+            truth.is_blocked = is_blocked;
+            truth.block_events += u32::from(is_blocked);
             let (before, after) = (state(!is_blocked), state(is_blocked));
             self.changes.push(TrueChange { time: self.time as f64, cell, before, after });
         }

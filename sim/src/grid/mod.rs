@@ -19,7 +19,6 @@
 //! assert_eq!(world.sense().time, 1.0);
 //! ```
 
-mod block;
 mod generate;
 mod ground_truth;
 mod spec;

@@ -1,8 +1,7 @@
-use super::block::Block;
 use super::ground_truth::GridGroundTruth;
-use super::spec::GridSpec;
-use super::visibility::{BlockedCells, LineOfSight};
-use interfaces::{Cell, CellReading, Purpose, RandomStream, Step, World};
+use super::spec::{BlockSpec, Course, GridSpec};
+use super::visibility::LineOfSight;
+use interfaces::{Cell, CellReading, Grid, Purpose, RandomStream, Step, World};
 use nalgebra::Isometry2;
 
 /// A grid world with one robot.
@@ -18,7 +17,7 @@ pub struct GridWorld {
     random: RandomStream,
     blocks: Vec<Block>,
     /// Walls and blocks as they are now, also in the middle of a step.
-    blocked: BlockedCells,
+    blocked: Grid<bool>,
     line_of_sight: LineOfSight,
     truth: GridGroundTruth,
     /// The moves of the last step.
@@ -30,7 +29,7 @@ impl GridWorld {
     pub fn new(spec: &GridSpec, seed: u64) -> Self {
         let block = |(index, block)| Block::new(block, index, spec.block_probability, seed);
         let blocks: Vec<Block> = spec.blocks.iter().enumerate().map(block).collect();
-        let mut blocked = BlockedCells::new(&spec.walls, spec.sensor_radius);
+        let mut blocked = spec.walls.clone();
         for block in &blocks {
             blocked.set(block.cell(), true);
         }
@@ -41,7 +40,7 @@ impl GridWorld {
             moved: Vec::with_capacity(blocks.len()),
             blocks,
             blocked,
-            line_of_sight: LineOfSight::new(spec.sensor_radius),
+            line_of_sight: LineOfSight::new(spec.sensor_radius, spec.frame()),
             truth: GridGroundTruth::new(spec),
             spec: spec.clone(),
         }
@@ -96,12 +95,12 @@ impl World for GridWorld {
     fn act(&mut self, command: &Step) {
         let target = command.target(self.robot);
         let is_obeyed = self.random.bernoulli(self.spec.robot_probability);
-        if is_obeyed && self.spec.frame().contains(target) && !self.blocked.get(target) {
+        if is_obeyed && self.blocked.get(target) == Some(&false) {
             self.robot = target;
         }
         self.moved.clear();
         for block in &mut self.blocks {
-            let is_free = |cell: Cell| cell != self.robot && !self.blocked.get(cell);
+            let is_free = |cell: Cell| cell != self.robot && self.blocked.get(cell) == Some(&false);
             if let Some((from, to)) = block.step(is_free) {
                 self.blocked.set(from, false);
                 self.blocked.set(to, true);
@@ -109,6 +108,68 @@ impl World for GridWorld {
             }
         }
         self.step += 1;
-        self.truth.update(&self.moved, |cell| self.blocked.get(cell));
+        self.truth.update(&self.moved, |cell| self.blocked.get(cell) == Some(&true));
+    }
+}
+
+/// A block and its state.
+#[derive(Clone, Debug)]
+pub(super) struct Block {
+    spec: BlockSpec,
+    /// The index of its cell in `path`.
+    at: usize,
+    /// Whether the index counts down. Never on a loop.
+    is_returning: bool,
+    /// Steps on this cell, up to `dwell`.
+    stood: u32,
+    /// The probability that a due move happens in a step.
+    probability: f64,
+    random: RandomStream,
+}
+
+impl Block {
+    pub(super) fn new(spec: &BlockSpec, index: usize, probability: f64, seed: u64) -> Self {
+        Self {
+            spec: spec.clone(),
+            at: 0,
+            is_returning: false,
+            stood: spec.stood,
+            probability,
+            random: RandomStream::new(seed, Purpose::BlockTransition(index)),
+        }
+    }
+
+    /// The cell of the block now.
+    pub(super) fn cell(&self) -> Cell {
+        self.spec.path[self.at]
+    }
+
+    /// Does one step. The block moves on if the move is due, happens and leads to a free cell. Returns the cells
+    /// before and after a move.
+    #[inline]
+    pub(super) fn step(&mut self, is_free: impl FnOnce(Cell) -> bool) -> Option<(Cell, Cell)> {
+        self.stood = (self.stood + 1).min(self.spec.dwell);
+        if self.stood < self.spec.dwell || !self.random.bernoulli(self.probability) {
+            return None;
+        }
+        let (next, is_returning) = self.next();
+        let (from, to) = (self.cell(), self.spec.path[next]);
+        is_free(to).then(|| {
+            (self.at, self.is_returning, self.stood) = (next, is_returning, 0);
+            (from, to)
+        })
+    }
+
+    /// The index of the next cell, and whether the index counts down from then on.
+    fn next(&self) -> (usize, bool) {
+        let last = self.spec.path.len() - 1;
+        match self.spec.course {
+            Course::Loop if self.at == last => (0, false),
+            Course::Loop => (self.at + 1, false),
+            Course::BackAndForth if self.at == 0 => (1, false),
+            Course::BackAndForth if self.at == last => (last - 1, true),
+            Course::BackAndForth if self.is_returning => (self.at - 1, true),
+            Course::BackAndForth => (self.at + 1, false),
+        }
     }
 }

@@ -39,6 +39,13 @@ pub fn point_segment_m(point: &Point2<f64>, a: &Point2<f64>, b: &Point2<f64>) ->
     (to - along * share).norm()
 }
 
+/// The area of a counter-clockwise polygon, m².
+pub fn area(polygon: &[Point2<f64>]) -> f64 {
+    let Some(first) = polygon.first() else { return 0.0 };
+    // Relative to one of its corners, so that nothing is lost far from the origin.
+    polygon.windows(2).map(|pair| (pair[0] - first).perp(&(pair[1] - first))).sum::<f64>() / 2.0
+}
+
 /// The sides, in order.
 pub fn sides(body: &[Point2<f64>]) -> impl Iterator<Item = (&Point2<f64>, &Point2<f64>)> {
     body.iter().zip(body.iter().cycle().skip(1))

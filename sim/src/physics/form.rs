@@ -76,10 +76,12 @@ impl Form {
                 let reach = Vector2::repeat(*radius_m);
                 (center - reach, center + reach)
             }
-            Self::Convex(corners) => {
-                let low = corners.iter().fold(corners[0], |low, corner| low.inf(corner));
-                (low, corners.iter().fold(corners[0], |high, corner| high.sup(corner)))
-            }
+            Self::Convex(corners) => bounds(corners),
         }
     }
+}
+
+/// The corners of the upright box around points, at least one, m.
+pub(crate) fn bounds(points: &[Point2<f64>]) -> (Point2<f64>, Point2<f64>) {
+    points.iter().fold((points[0], points[0]), |(low, high), point| (low.inf(point), high.sup(point)))
 }

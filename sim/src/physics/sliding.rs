@@ -9,7 +9,7 @@ use nalgebra::{Matrix2, Point2, Vector2};
 
 /// The gap that a motion leaves, m: far above the rounding of positions, far below the limit of contacts.
 const GAP_M: f64 = 1e-4;
-/// What rounding adds to a length of a few metres, m.
+/// What rounding adds to a length of a few meters, m.
 const ROUNDING_M: f64 = 1e-9;
 
 /// A motion along bodies.

@@ -5,7 +5,7 @@
 
 pub(super) use interfaces::{Values, value};
 
-use interfaces::{Value, ValueError, read_value, read_values, write_value, write_values};
+use interfaces::{Value, converted, read_values, write_values};
 use nalgebra::Isometry2;
 use serde::{Deserialize, Serialize};
 
@@ -32,21 +32,14 @@ pub(super) struct SavedPose(#[serde(with = "interfaces::serde_pose")] pub(super)
 
 /// A pose.
 pub(super) fn pose(pose: &mut Isometry2<f64>) -> Box<dyn Value + '_> {
-    struct Pose<'a>(&'a mut Isometry2<f64>);
-
-    impl Value for Pose<'_> {
-        fn write(&self, bytes: &mut Vec<u8>) -> Result<(), ValueError> {
-            write_value(&SavedPose(*self.0), bytes)
-        }
-
-        fn read(&mut self, bytes: &mut &[u8]) -> Result<(), ValueError> {
-            let SavedPose(pose) = read_value(bytes)?;
-            *self.0 = pose;
+    converted(
+        pose,
+        |pose| SavedPose(*pose),
+        |pose, SavedPose(saved)| {
+            *pose = saved;
             Ok(())
-        }
-    }
-
-    Box::new(Pose(pose))
+        },
+    )
 }
 
 /// The snapshot of a fleet with these values. `spec` is the fingerprint of its spec.

@@ -29,7 +29,7 @@ impl WorldSpec {
 
     /// See [`WorldSpec::visible_cells`]. Lines of sight are searched only from the cells in `candidates`, which receives
     /// the states of all cells and whether the robot can reach them.
-    pub(in crate::physics) fn visible_cells_among(
+    pub(crate) fn visible_cells_among(
         &self,
         candidates: impl Fn(&GridFrame, &[TrueState], &[bool]) -> Vec<bool>,
     ) -> Vec<bool> {

@@ -1,11 +1,10 @@
 use super::fleet::Fleet;
 use super::ground_truth::PhysicsGroundTruth;
-use super::report::{Body, Contact, ObstacleEvent, ObstacleView};
-use super::robot::RobotView;
+use super::report::{Body, Contact, ObstacleEvent};
 use super::snapshot::{self, SnapshotError};
 use super::spec::WorldSpec;
 use interfaces::{LaserReading, Twist, Values, World, value};
-use nalgebra::{Isometry2, Point2};
+use nalgebra::Isometry2;
 use std::sync::Arc;
 
 /// A world in which one robot is driven, with the ground truth of every cell.
@@ -98,21 +97,6 @@ impl PhysicsWorld {
     /// All appearances and disappearances of obstacles since the start, in order of time: at most two per obstacle.
     pub fn obstacle_events(&self) -> &[ObstacleEvent] {
         &self.obstacle_events
-    }
-
-    /// All robots, in the order of the spec.
-    pub fn robots(&self) -> impl ExactSizeIterator<Item = RobotView<'_>> {
-        self.fleet.robots()
-    }
-
-    /// The corners of all walls, counter-clockwise, m.
-    pub fn walls(&self) -> impl ExactSizeIterator<Item = [Point2<f64>; 4]> {
-        self.fleet.walls()
-    }
-
-    /// The obstacles that are present now, at their present poses.
-    pub fn obstacles(&self) -> impl Iterator<Item = ObstacleView<'_>> {
-        self.fleet.obstacles()
     }
 
     /// Copies the state.

@@ -6,7 +6,6 @@ mod ground;
 mod panel;
 mod places;
 mod plan;
-mod plate;
 mod trajectory;
 
 pub use film::Film;

@@ -265,9 +265,9 @@ impl Panel {
 /// 600 cells are drawn smaller.
 fn enough_for(frame: &GridFrame) -> u32 {
     const LARGE: usize = 600;
-    const MOST: usize = 1000;
+    const MAX_LINES: usize = 1000;
     let cells = frame.width().max(frame.height());
-    if cells > LARGE { (cells / 2).min(MOST) as u32 } else { 0 }
+    if cells > LARGE { (cells / 2).min(MAX_LINES) as u32 } else { 0 }
 }
 
 /// A number without unneeded digits: 2 and not 2.0.

@@ -2,7 +2,6 @@
 
 use super::ground::{self, fill};
 use super::panel::{Chart, Panel, pair};
-use super::plate::Plate;
 use crate::legend::{self, Legend, Mark};
 use crate::scene::{Robot, Scene, Sector, span};
 use nalgebra::{Isometry2, Point2};
@@ -15,7 +14,7 @@ use std::f64::consts::TAU;
 /// The corners of the polygon that a circle is drawn as.
 const CORNERS: usize = 48;
 /// In a scene with more obstacles and robots than this, names and sensors are not drawn.
-const MOST_NAMES: usize = 40;
+const MAX_NAMES: usize = 40;
 /// The drawn part of the range of a sensor, as a multiple of the robot's radius: all of it would cover the
 /// world.
 const SECTOR_RADII: f64 = 2.5;
@@ -63,7 +62,7 @@ pub(super) fn entries(scene: &Scene) -> Legend {
 }
 
 fn is_crowded(scene: &Scene) -> bool {
-    scene.obstacles.len() + scene.robots.len() > MOST_NAMES
+    scene.obstacles.len() + scene.robots.len() > MAX_NAMES
 }
 
 /// The robots whose sensors are drawn.
@@ -136,4 +135,84 @@ fn names(panel: &Panel, chart: &Chart, scene: &Scene) -> Result<(), String> {
         taken.push(plate);
     }
     Ok(())
+}
+
+/// A rectangle of pixels; rows count from the top.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Plate {
+    left: i32,
+    right: i32,
+    top: i32,
+    bottom: i32,
+}
+
+impl Plate {
+    /// The rectangle around `center` of a width and a height.
+    fn around((x, y): (i32, i32), [width, height]: [i32; 2]) -> Self {
+        let (left, top) = (x - width / 2, y - height / 2);
+        Self { left, right: left + width, top, bottom: top + height }
+    }
+
+    fn width(&self) -> i32 {
+        self.right - self.left
+    }
+
+    fn height(&self) -> i32 {
+        self.bottom - self.top
+    }
+
+    fn center(&self) -> (i32, i32) {
+        ((self.left + self.right) / 2, (self.top + self.bottom) / 2)
+    }
+
+    fn overlaps(&self, other: &Self) -> bool {
+        self.left < other.right
+            && other.left < self.right
+            && self.top < other.bottom
+            && other.top < self.bottom
+    }
+
+    fn contains(&self, other: &Self) -> bool {
+        self.left <= other.left
+            && other.right <= self.right
+            && self.top <= other.top
+            && other.bottom <= self.bottom
+    }
+
+    /// A rectangle of `size` beside this one with a `gap`: below, above, at the right or at the left, the first that
+    /// is inside `area` and overlaps nothing that is `taken`; below if there is none.
+    fn place_beside(&self, size: [i32; 2], gap: i32, area: &Self, taken: &[Self]) -> Self {
+        let ((x, y), [width, height]) = (self.center(), size);
+        let below = Self::around((x, self.bottom + gap + height / 2), size);
+        let others = [
+            (x, self.top - gap - height / 2),
+            (self.right + gap + width / 2, y),
+            (self.left - gap - width / 2, y),
+        ];
+        let is_free = |plate: &Self| area.contains(plate) && !taken.iter().any(|other| plate.overlaps(other));
+        let places = others.map(|center| Self::around(center, size));
+        [below].into_iter().chain(places).find(is_free).unwrap_or(below)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const AREA: Plate = Plate { left: 0, right: 100, top: 0, bottom: 100 };
+
+    #[test]
+    fn names_give_way_to_each_other_and_to_the_border() {
+        let owner = Plate::around((50, 50), [10, 10]);
+        let mut taken = Vec::new();
+        let centers = [(); 5].map(|()| {
+            let plate = owner.place_beside([20, 10], 2, &AREA, &taken);
+            taken.push(plate);
+            plate.center()
+        });
+        // Below, above, right, left; then below again.
+        assert_eq!(centers, [(50, 62), (50, 38), (67, 50), (33, 50), (50, 62)]);
+        let at_the_bottom = Plate::around((50, 92), [10, 10]);
+        assert_eq!(at_the_bottom.place_beside([20, 10], 2, &AREA, &[]).center(), (50, 80));
+    }
 }

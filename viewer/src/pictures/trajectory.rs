@@ -1,8 +1,7 @@
 //! The trajectories of the robots, as the paper's Figure 4.
 
-use super::Trails;
-use super::ground;
 use super::panel::{Chart, Panel, pair};
+use super::{Trails, ground};
 use crate::layers::Layer;
 use crate::legend::{Legend, Mark};
 use crate::scene::{Robot, Scene, extent};
@@ -31,7 +30,7 @@ pub(super) fn draw(
     let mut drawn: Vec<_> = scene.robots.iter().zip(trails.true_poses).zip(colors(scene)).collect();
     drawn.sort_by_key(|((robot, _), _)| !robot.is_driven);
     drawn.iter().try_for_each(|((_, trail), color)| line(panel, &chart, trail.points(), (*color, 3)))?;
-    // Thin and on top, so that the true trail is seen on both sides. A robot that is off by metres leaves the picture.
+    // Thin and on top, so that the true trail is seen on both sides. A robot that is off by meters leaves the picture.
     let (low, size) = extent(&scene.frame);
     let is_inside = |at: &Point2<f64>| at >= &low && at <= &(low + size);
     let believed = trails.believed.points();

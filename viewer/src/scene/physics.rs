@@ -37,12 +37,12 @@ impl Visible for PhysicsWorld {
             pose: robot.pose,
             sight: robot.is_driven.then_some(Sight::Laser(reading)),
         };
-        PhysicsWorld::robots(self).map(state).collect()
+        self.fleet().robots().map(state).collect()
     }
 
     fn obstacles(&self) -> Vec<Option<Outline>> {
         let mut outlines = vec![None; self.spec().obstacles.len()];
-        for obstacle in PhysicsWorld::obstacles(self) {
+        for obstacle in self.fleet().obstacles() {
             outlines[obstacle.index] = Some(obstacle.corners.to_vec());
         }
         outlines

@@ -1,4 +1,4 @@
-use super::picture::{Pixel, Raster};
+use super::picture::{self, Pixel};
 use super::{MAX_CORNERS, PlanError};
 
 /// The blocked pixels of a picture.
@@ -11,20 +11,6 @@ pub struct Bitmap {
 }
 
 impl Bitmap {
-    /// The bitmap of the given rows, the top row first; `#` is blocked. Shorter rows are extended to the longest
-    /// one.
-    ///
-    /// # Errors
-    ///
-    /// When the bitmap is empty or has too many corners.
-    pub fn from_ascii(rows: &str) -> Result<Self, PlanError> {
-        let rows: Vec<&[u8]> = rows.lines().map(str::as_bytes).collect();
-        let width = rows.iter().map(|row| row.len()).max().unwrap_or(0);
-        let blocked =
-            rows.iter().rev().flat_map(|row| (0..width).map(|x| row.get(x) == Some(&b'#'))).collect();
-        Self::new(width as u32, rows.len() as u32, blocked)
-    }
-
     /// Decodes a PNG, PBM, PGM or PPM picture. `is_blocked` decides for each pixel.
     ///
     /// # Errors
@@ -32,13 +18,11 @@ impl Bitmap {
     /// When the picture has another format, is too large by its header, is damaged or empty, or contains only
     /// noise.
     pub fn decode(bytes: &[u8], is_blocked: impl Fn(Pixel) -> bool) -> Result<Self, PlanError> {
-        let raster = Raster::decode(bytes)?;
-        let (width, height) = (raster.width, raster.height);
-        let mut blocked = Vec::with_capacity(width as usize * height as usize);
-        for y in (0..height).rev() {
-            blocked.extend(raster.row(y).map(&is_blocked));
-        }
-        drop(raster);
+        let image = picture::decode(bytes)?;
+        let (width, height) = (image.width(), image.height());
+        let rows = (0..height).rev();
+        let blocked = rows.flat_map(|y| picture::row(&image, y)).map(is_blocked).collect();
+        drop(image);
         Self::new(width, height, blocked)
     }
 

@@ -14,8 +14,8 @@ mod rectangles;
 mod tests;
 
 pub use bitmap::Bitmap;
-pub(crate) use picture::Raster;
 pub use picture::{MAX_DECODED_BYTES, MAX_FILE_BYTES, MAX_PIXELS, Pixel};
+pub(crate) use picture::{decode, row};
 pub use rectangles::PixelRectangle;
 
 use nalgebra::{Isometry2, Point2, Vector2};

@@ -34,7 +34,7 @@ pub(super) fn drawing(file: &File<'_>, map: &str, span: Range<usize>) -> Option<
             let place = row.character(at, character);
             match (character, &start) {
                 ('.', _) => {}
-                ('#', _) => walls.get_mut(cell).into_iter().for_each(|wall| *wall = true),
+                ('#', _) => walls.set(cell, true),
                 ('R', None) => start = Some((cell, place)),
                 ('R', Some((_, first))) => {
                     let others = [(first.clone(), "first here")];

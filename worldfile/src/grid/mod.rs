@@ -24,14 +24,14 @@ mod map;
 mod path;
 #[cfg(test)]
 mod tests;
-mod write;
-
-pub use write::to_toml;
 
 use crate::error::{WorldError, read_text};
 use crate::reader::{self, Kind};
-use sim::grid::GridSpec;
+use crate::toml_value::lines;
+use interfaces::Cell;
+use sim::grid::{Course, GridSpec};
 use std::path::Path;
+use toml::Value;
 
 /// Reads and checks a world file.
 ///
@@ -57,4 +57,40 @@ pub fn is_grid_world(text: &str) -> bool {
 /// one error hides another.
 pub fn parse(file_name: &str, text: &str) -> Result<GridSpec, WorldError> {
     reader::read(file_name, text, Kind::Grid, check::KEYS, check::world)
+}
+
+/// The text of a world file that describes `spec`: [`parse`] reads the same spec from it.
+pub fn to_toml(spec: &GridSpec) -> String {
+    let [name, description] = [&spec.name, &spec.description].map(|text| Value::from(text.as_str()));
+    let mut text =
+        lines([("name", name), ("description", description), ("sensor_radius", spec.sensor_radius.into())]);
+    text += &format!("map = \"\"\"\n{}\"\"\"\n", spec.drawing());
+    let [block, robot] = [spec.block_probability, spec.robot_probability];
+    if block != 1.0 || robot != 1.0 {
+        text += "\n[transitions]\n";
+        text += &lines([("block_chance", block.into()), ("robot_chance", robot.into())]);
+    }
+    for block in &spec.blocks {
+        let stood = (block.stood > 0).then(|| ("stood", Value::from(block.stood)));
+        let course = match block.course {
+            Course::Loop => "loop",
+            Course::BackAndForth => "back-and-forth",
+        };
+        let points: Vec<Value> = way_points(&block.path).map(|cell| vec![cell.x, cell.y].into()).collect();
+        text += "\n[[block]]\n";
+        text += &lines([("name", block.name.as_str().into()), ("dwell", block.dwell.into())]);
+        text += &lines(stood.into_iter().chain([("course", course.into()), ("path", points.into())]));
+    }
+    text
+}
+
+/// The cells where the path begins, turns and ends.
+fn way_points(path: &[Cell]) -> impl Iterator<Item = Cell> {
+    let turns = |at: usize| {
+        let (Some(before), Some(after)) = (at.checked_sub(1).map(|at| path[at]), path.get(at + 1)) else {
+            return true;
+        };
+        before.x + after.x != 2 * path[at].x || before.y + after.y != 2 * path[at].y
+    };
+    (0..path.len()).filter(move |at| turns(*at)).map(|at| path[at])
 }

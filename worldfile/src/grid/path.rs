@@ -21,7 +21,7 @@ pub(super) fn cells(
         .list(|point| point.items()?.iter().map(Value::integer).collect::<Vec<_>>().into_iter().collect());
     let points: Vec<Vec<i64>> = points?;
     let Some(drawing) = drawing else { return Some(Vec::new()) };
-    let path = Path { table, name, drawing };
+    let path = BlockPath { table, name, drawing };
     let ends: Vec<Option<Cell>> = points.iter().enumerate().map(|(i, point)| path.cell(i, point)).collect();
     let ends: Vec<Cell> = ends.into_iter().collect::<Option<_>>()?;
     let mut cells: Vec<Cell> = Vec::new();
@@ -40,13 +40,13 @@ pub(super) fn cells(
 }
 
 /// The path of a block, and the map that it leads through.
-struct Path<'a> {
+struct BlockPath<'a> {
     table: &'a Table<'a>,
     name: &'a str,
     drawing: &'a Drawing,
 }
 
-impl Path<'_> {
+impl BlockPath<'_> {
     fn error<T>(&self, does: &str, mark: Mark<'_>, others: &[Mark<'_>], help: &str) -> Option<T> {
         self.table.error(&format!("the path of the block `{}` {does}", self.name), mark, others, help)
     }

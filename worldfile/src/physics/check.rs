@@ -6,7 +6,7 @@ use super::obstacle::{self, obstacle};
 use super::robot::{self, robot};
 use super::space::{Solid, Solids, Space, inside, upright};
 use crate::files::Files;
-use crate::reader::{Table, unique_names};
+use crate::reader::{Table, unique_names, valid};
 use interfaces::GridFrame;
 use nalgebra::Point2;
 use sim::physics::shape::TOUCH_M;
@@ -35,7 +35,7 @@ pub(super) fn fleet(root: &Table<'_>, files: &dyn Files) -> Option<FleetSpec> {
         root.table("map", "size_m, cell_m, turn_deg").map_or((None, None), |table| map(&table));
     let physics = root.table_or_empty("physics", "step_s, contacts");
     let contacts = physics.as_ref().and_then(|table| table.choice("contacts", &CONTACTS));
-    let step_s = physics.and_then(|table| table.sound(table.number_or("step_s", 0.05, 0.001..=0.1)?));
+    let step_s = physics.and_then(|table| table.sound(table.number_or("step_s", 0.05, 0.001..=0.1)));
     let mut space = Space {
         // If these are invalid, nothing else is invalid because of them: no map is larger, no step shorter.
         size: size.unwrap_or(Point2::from([f64::INFINITY; 2])),
@@ -45,16 +45,7 @@ pub(super) fn fleet(root: &Table<'_>, files: &dyn Files) -> Option<FleetSpec> {
         movers: Solids::default(),
         is_whole: false,
     };
-    let (mut walls, mut glass) = (Vec::new(), Vec::new());
-    for table in root.tables("wall", "from_m, to_m, thickness_m, min_m, max_m, returns_within_deg") {
-        let shape = wall(&table, &space.size);
-        let within_deg = table.number_or("returns_within_deg", 90.0, 0.0..=90.0);
-        let within_rad = within_deg.filter(|deg| *deg < 90.0).map(f64::to_radians);
-        let pane =
-            shape.zip(within_rad).map(|(shape, returns_within_rad)| Glass { shape, returns_within_rad });
-        glass.extend(pane);
-        walls.extend(shape.map(|shape| Solid { shape, span: table.span.clone() }));
-    }
+    let (mut walls, glass) = walls(root, &space.size);
     let mut plans = FloorPlans::new(files);
     for table in root.tables("floor_plan", floor_plan::KEYS) {
         let pieces = plans.walls(&table, &space.size).unwrap_or_default().into_iter();
@@ -98,13 +89,29 @@ pub(super) fn fleet(root: &Table<'_>, files: &dyn Files) -> Option<FleetSpec> {
     Some(spec)
 }
 
+/// The walls that are tables of their own, and those of them that are glass.
+fn walls(root: &Table<'_>, size: &Point2<f64>) -> (Vec<Solid>, Vec<Glass>) {
+    let (mut walls, mut glass) = (Vec::new(), Vec::new());
+    for table in root.tables("wall", "from_m, to_m, thickness_m, min_m, max_m, returns_within_deg") {
+        let shape = wall(&table, size);
+        let within_deg = table.number_or("returns_within_deg", 90.0, 0.0..=90.0);
+        if let Some(shape) = shape.filter(|_| within_deg < 90.0) {
+            glass.push(Glass { shape, returns_within_rad: within_deg.to_radians() });
+        }
+        walls.extend(shape.map(|shape| Solid { shape, span: table.span }));
+    }
+    (walls, glass)
+}
+
 /// The size of the map (m); the cells that cover it after its turn, and that turn (rad).
 fn map(table: &Table<'_>) -> (Option<Point2<f64>>, Option<(GridFrame, f64)>) {
     let size = table.needed("size_m").and_then(|value| value.pair_within(&(0.1..=1000.0)));
     let cell_m = table.number("cell_m", 0.005..=10.0);
     let turn_deg = table.number_or("turn_deg", 0.0, -360.0..=360.0);
-    let (Some(size), Some(cell_m), Some(turn_deg)) = (size, cell_m, turn_deg) else { return (size, None) };
-    let turn_rad = turn_deg.to_radians();
+    let (Some(size), Some(cell_m), Some(turn_rad)) = (size, valid(cell_m), valid(turn_deg.to_radians()))
+    else {
+        return (size, None);
+    };
     let frame = match covering(&size, cell_m, turn_rad) {
         Ok(frame) => Some((frame, turn_rad)),
         Err(cells) => table.error(
@@ -146,7 +153,7 @@ fn wall(table: &Table<'_>, size: &Point2<f64>) -> Option<Rectangle> {
         [true, true, true, false, false] => {
             let [from, to] = ["from_m", "to_m"].map(|key| table.needed(key)?.point(size));
             let thickness_m = table.number("thickness_m", 0.001..=100.0);
-            let (from, to, thickness_m) = (from?, to?, thickness_m?);
+            let (from, to, thickness_m) = (from?, to?, valid(thickness_m)?);
             if (to - from).norm() < 0.001 {
                 let others = [(table.at("from_m"), "from here")];
                 let help = "the two points must be at least 0.001 m apart";

@@ -8,14 +8,7 @@ pub(super) const KEYS: &str = "kind, max_linear_mps, max_angular_degps, max_line
                                max_angular_acceleration_degps2, max_left_mps, max_left_acceleration_mps2, \
                                wheelbase_m, max_steer_deg";
 
-const KINDS: [(&str, Kind); 3] = [("diff", Kind::Diff), ("omni", Kind::Omni), ("car", Kind::Car)];
-
-#[derive(Clone, Copy, PartialEq)]
-enum Kind {
-    Diff,
-    Omni,
-    Car,
-}
+const KINDS: [(&str, &str); 3] = [("diff", "diff"), ("omni", "omni"), ("car", "car")];
 
 /// The limits of a drive. No robot moves by more than its radius in a step: `radius_per_step_mps` is that speed.
 pub(super) fn drive(table: &Table<'_>, radius_per_step_mps: f64) -> Option<DriveLimits> {
@@ -23,45 +16,43 @@ pub(super) fn drive(table: &Table<'_>, radius_per_step_mps: f64) -> Option<Drive
     let fastest_mps = radius_per_step_mps.min(5.0);
     let kind = table.choice("kind", &KINDS);
     let max_linear_mps = table.number("max_linear_mps", 0.001..=fastest_mps);
-    let max_angular_degps = table.number("max_angular_degps", 0.1..=3600.0);
     let max_linear_acceleration_mps2 = table.number("max_linear_acceleration_mps2", 0.001..=100.0);
-    let max_angular_acceleration_degps2 = table.number("max_angular_acceleration_degps2", 0.1..=100_000.0);
-    let of = |owner: Kind, key: &'static str, range: RangeInclusive<f64>| {
+    let of = |owner: &str, key: &'static str, range: RangeInclusive<f64>| {
         if table.has(key) && kind.is_some_and(|kind| kind != owner) {
             let what = format!("this drive has no `{key}`");
-            let owner = if owner == Kind::Car { "car" } else { "omni" };
             let help = format!("leave it out: only a drive of `kind = \"{owner}\"` has one");
-            return table.error(&what, (table.at(key), "not for this drive"), &[], &help);
+            let foreign = table.error(&what, (table.at(key), "not for this drive"), &[], &help);
+            return Some(table.or_invalid(foreign, f64::NAN));
         }
         table.number_if(key, range)
     };
-    let max_left_mps = of(Kind::Omni, "max_left_mps", 0.001..=fastest_mps);
-    let max_left_acceleration_mps2 = of(Kind::Omni, "max_left_acceleration_mps2", 0.001..=100.0);
-    let wheelbase_m = of(Kind::Car, "wheelbase_m", 0.01..=10.0);
-    let max_steer_deg = of(Kind::Car, "max_steer_deg", 1.0..=80.0);
-    if kind == Some(Kind::Car) && !table.has("wheelbase_m") {
+    let max_left_mps = of("omni", "max_left_mps", 0.001..=fastest_mps);
+    let max_left_acceleration_mps2 = of("omni", "max_left_acceleration_mps2", 0.001..=100.0);
+    let wheelbase_m = of("car", "wheelbase_m", 0.01..=10.0);
+    let max_steer_deg = of("car", "max_steer_deg", 1.0..=80.0);
+    if kind == Some("car") && !table.has("wheelbase_m") {
         let help = "add a line `wheelbase_m = …`: from the rear to the front axle";
         table.error::<()>("a car needs a wheelbase", (table.at("kind"), "this car"), &[], help);
     }
-    let (left_mps, left_gain_mps2, steer_deg) = (max_left_mps?, max_left_acceleration_mps2?, max_steer_deg?);
-    let (fast_mps, gain_mps2) = (max_linear_mps?, max_linear_acceleration_mps2?);
-    let kind = match (kind?, wheelbase_m?) {
-        (Kind::Car, wheelbase_m) => DriveKind::Car {
-            wheelbase_m: wheelbase_m?,
-            max_steer_rad: steer_deg.unwrap_or(30.0).to_radians(),
-        },
-        (Kind::Omni, _) => DriveKind::Omni {
-            max_left_mps: left_mps.unwrap_or(fast_mps),
-            max_left_acceleration_mps2: left_gain_mps2.unwrap_or(gain_mps2),
-        },
-        (Kind::Diff, _) => DriveKind::Differential,
-    };
     let limits = DriveLimits {
-        kind,
-        max_linear_mps: fast_mps,
-        max_angular_radps: max_angular_degps?.to_radians(),
-        max_linear_acceleration_mps2: gain_mps2,
-        max_angular_acceleration_radps2: max_angular_acceleration_degps2?.to_radians(),
+        max_linear_mps,
+        max_angular_radps: table.number("max_angular_degps", 0.1..=3600.0).to_radians(),
+        max_linear_acceleration_mps2,
+        max_angular_acceleration_radps2: table
+            .number("max_angular_acceleration_degps2", 0.1..=100_000.0)
+            .to_radians(),
+        kind: match kind? {
+            "car" => DriveKind::Car {
+                wheelbase_m: wheelbase_m?,
+                max_steer_rad: max_steer_deg.unwrap_or(30.0).to_radians(),
+            },
+            "omni" => DriveKind::Omni {
+                max_left_mps: max_left_mps.unwrap_or(max_linear_mps),
+                max_left_acceleration_mps2: max_left_acceleration_mps2
+                    .unwrap_or(max_linear_acceleration_mps2),
+            },
+            _ => DriveKind::Differential,
+        },
     };
     // Forwards and sideways at once must not be too fast either.
     let both_mps = limits.fastest_mps();

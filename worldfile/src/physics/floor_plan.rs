@@ -83,18 +83,15 @@ fn picture(table: &Table<'_>, files: &dyn Files, corner: Option<Point2<f64>>) ->
     let below = table.number_or("blocked_below", 0.5, 0.0..=1.0);
     let image = table.needed("image")?.text()?;
     let bytes = files.read(&table.file.beside(image), MAX_FILE_BYTES).map_err(|error| error.to_string());
-    // An invalid threshold has its own message.
-    let bitmap = bytes.and_then(|bytes| {
-        Bitmap::decode_dark(&bytes, below.unwrap_or(0.5)).map_err(|error| error.to_string())
-    });
+    let bitmap =
+        bytes.and_then(|bytes| Bitmap::decode_dark(&bytes, below).map_err(|error| error.to_string()));
     let bitmap = bitmap.map_err(|error| {
         let what = format!("cannot read the picture `{image}`: {error}");
         let help = "`image` names a PNG or PGM picture, in the folder of this file";
         table.error::<()>(&what, (table.at("image"), "this picture"), &[], help)
     });
-    let (corner, heading_deg, _) = (corner?, heading_deg?, below?);
-    let origin = pose(corner.x, corner.y, heading_deg.to_radians());
-    Some(FloorPlan { bitmap: bitmap.ok()?.into(), pixel_m: Vector2::repeat(pixel_m?), origin })
+    let origin = pose(corner?.x, corner?.y, heading_deg.to_radians());
+    table.sound(FloorPlan { bitmap: bitmap.ok()?.into(), pixel_m: Vector2::repeat(pixel_m), origin })
 }
 
 /// The plan of a ROS `map`. Everything that is invalid in it is noted. A world file has no warnings: what is a

@@ -6,9 +6,8 @@ mod behavior;
 mod check;
 mod drive;
 mod floor_plan;
-mod footprint;
+mod kind;
 mod obstacle;
-mod odometry;
 mod robot;
 mod sensor;
 mod space;
@@ -17,7 +16,7 @@ mod tests;
 mod write;
 
 pub use floor_plan::MAX_PIECES;
-pub use sensor::MOST_OUT_M;
+pub use sensor::MAX_OUT_M;
 pub use write::to_toml;
 
 use crate::error::{WorldError, read_text};

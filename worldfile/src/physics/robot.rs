@@ -2,15 +2,15 @@
 
 use super::behavior::{self, Driver};
 use super::drive::{self, drive};
-use super::footprint::{Footprint, footprint};
-use super::odometry::odometry;
 use super::sensor::{Carrier, bumper};
 use super::space::Space;
-use crate::reader::Table;
+use crate::reader::{Table, Value, valid};
 use interfaces::pose;
-use nalgebra::Isometry2;
+use nalgebra::{Isometry2, Point2};
 use sim::physics::shape::TOUCH_M;
-use sim::physics::{DriveKind, DriveLimits, Form, Rectangle, RobotSpec, convex};
+use sim::physics::{
+    DisplacementSpec, DriveKind, DriveLimits, Form, OdometryError, Rectangle, RobotSpec, convex,
+};
 
 pub(super) const KEYS: &str = "name, radius_m, footprint_m, mass_kg, pose_m, heading_deg, drive, odometry, laser, \
                                bumper, sonar, fiducial, tag, behaviour";
@@ -33,7 +33,6 @@ pub(super) fn robot(table: &Table<'_>, space: &Space) -> Option<RobotSpec> {
         .as_ref()
         .map_or((f64::INFINITY, f64::INFINITY), |footprint| (footprint.radius_m, footprint.inner_m));
     let carrier = Carrier { step_s: space.step_s, radius_m };
-    let mass_kg = table.number_if("mass_kg", 0.001..=100_000.0);
     let body = body(table, called, space, footprint);
     let drive = table.table("drive", drive::KEYS).and_then(|table| drive(&table, inner_m / space.step_s));
     let odometry = odometry(table);
@@ -41,7 +40,7 @@ pub(super) fn robot(table: &Table<'_>, space: &Space) -> Option<RobotSpec> {
     let bumper = bumper(table);
     let sonars = carrier.sonars(table);
     let fiducial = carrier.fiducial(table);
-    let tag = table.tag();
+    let (mass_kg, tag) = (table.number_if("mass_kg", 0.001..=100_000.0), table.tag());
     let driver = Driver {
         robot: table,
         name: called,
@@ -54,7 +53,8 @@ pub(super) fn robot(table: &Table<'_>, space: &Space) -> Option<RobotSpec> {
     table.sound(RobotSpec {
         radius_m: body.radius_m,
         corners: body.corners,
-        mass_kg: mass_kg?,
+        mass_kg,
+        tag,
         pose,
         drive: drive?,
         odometry: odometry?,
@@ -63,7 +63,6 @@ pub(super) fn robot(table: &Table<'_>, space: &Space) -> Option<RobotSpec> {
         bumper: bumper?,
         sonars: sonars?,
         fiducial: fiducial?,
-        tag: tag?,
         behavior: behavior?,
         name: name?,
     })
@@ -78,7 +77,7 @@ fn body(
 ) -> Option<(Footprint, Isometry2<f64>)> {
     let at = table.needed("pose_m").and_then(|value| value.point(&space.size));
     let heading_deg = table.number_or("heading_deg", 0.0, -360.0..=360.0);
-    let (body, at, heading_deg) = (footprint?, at?, heading_deg?);
+    let (body, at, heading_deg) = (footprint?, at?, valid(heading_deg)?);
     let radius_m = body.radius_m;
     let pose = pose(at.x, at.y, heading_deg.to_radians());
     let form = Form::new(&body.corners, radius_m, &pose);
@@ -101,4 +100,98 @@ fn body(
         return table.error(&what, (table.at("pose_m"), "stands here"), &others, &help);
     }
     Some((body, pose))
+}
+
+const MAX_CORNERS: usize = 32;
+
+/// The area of a robot's body.
+pub(super) struct Footprint {
+    /// The radius of the circle about its center that contains the body, m.
+    pub(super) radius_m: f64,
+    /// The radius of the circle about its center that is contained in the body, m.
+    pub(super) inner_m: f64,
+    /// The corners, counter-clockwise, m; empty for a circle.
+    pub(super) corners: Vec<Point2<f64>>,
+}
+
+/// The outline of the robot `name`.
+pub(super) fn footprint(table: &Table<'_>, name: &str) -> Option<Footprint> {
+    match (table.has("radius_m"), table.get("footprint_m")) {
+        (true, None) => {
+            let radius_m = valid(table.number("radius_m", 0.02..=10.0))?;
+            Some(Footprint { radius_m, inner_m: radius_m, corners: Vec::new() })
+        }
+        (false, Some(value)) => polygon(&value),
+        _ => {
+            let what = format!("the robot `{name}` needs one outline");
+            let help = "give either `radius_m` or `footprint_m`";
+            table.error(&what, (table.at("name"), "this robot"), &[], help)
+        }
+    }
+}
+
+fn polygon(value: &Value<'_, '_>) -> Option<Footprint> {
+    let count = value.items()?.len();
+    if !(3..=MAX_CORNERS).contains(&count) {
+        let help = "it must have 3 to 32, as in `[[-0.2, -0.1], [0.3, 0.0], [-0.2, 0.1]]`";
+        return value.invalid(&format!("has {count} corners"), "this footprint", help);
+    }
+    let mut corners = value.list(|corner| corner.pair_within(&(-10.0..=10.0)))?;
+    // Either way around is fine.
+    if convex::area(&corners) < 0.0 {
+        corners.reverse();
+    }
+    let turn = |i: usize| {
+        let [a, b, c] = [0, 1, 2].map(|k| corners[(i + k) % corners.len()]);
+        (b - a).perp(&(c - b))
+    };
+    // Turning left at every corner, it may still go around twice.
+    let turns: Vec<f64> = convex::sides(&corners).map(|(a, b)| libm::atan2((b - a).y, (b - a).x)).collect();
+    let around: f64 =
+        (0..turns.len()).map(|i| interfaces::wrap_rad(turns[(i + 1) % turns.len()] - turns[i])).sum();
+    if (0..corners.len()).any(|i| turn(i) < 1e-6) || around > 7.0 {
+        return value.invalid("is not convex", "this footprint", "every corner must point outwards");
+    }
+    let inner_m = -convex::disc_gap_m(&corners, &Point2::origin(), 0.0);
+    if inner_m < 0.02 {
+        let help = "the point that the robot turns about, [0, 0], must be 0.02 m within it or more";
+        let what = "a robot turns about a point outside of itself";
+        return value.error(what, "this footprint", help);
+    }
+    let radius_m = corners.iter().map(|corner| corner.coords.norm()).fold(0.0, f64::max);
+    Some(Footprint { radius_m, inner_m, corners })
+}
+
+const ODOMETRY_KEYS: &str =
+    "distance_gain, turn_gain, turn_per_m_deg, distance_noise_m, turn_noise_deg, slip, jump, carried";
+const DISPLACEMENT_KEYS: &str = "every_s, distance_m, turn_deg";
+
+pub(super) fn odometry(robot: &Table<'_>) -> Option<OdometryError> {
+    let table = robot.table_or_empty("odometry", ODOMETRY_KEYS)?;
+    let [jump, carried] = ["jump", "carried"].map(|key| displacement(&table, key));
+    table.sound(OdometryError {
+        distance_gain: table.number_or("distance_gain", 0.0, -0.5..=0.5),
+        turn_gain: table.number_or("turn_gain", 0.0, -0.5..=0.5),
+        turn_radpm: table.number_or("turn_per_m_deg", 0.0, -90.0..=90.0).to_radians(),
+        distance_noise_m: table.number_or("distance_noise_m", 0.0, 0.0..=1.0),
+        turn_noise_rad: table.number_or("turn_noise_deg", 0.0, 0.0..=90.0).to_radians(),
+        slip: table.number_or("slip", 0.0, 0.0..=1.0),
+        jump: jump?,
+        carried: carried?,
+    })
+}
+
+/// `Some(None)`: the key is not given.
+fn displacement(odometry: &Table<'_>, key: &'static str) -> Option<Option<DisplacementSpec>> {
+    let Some(value) = odometry.get(key) else { return Some(None) };
+    let table = value.table(DISPLACEMENT_KEYS)?;
+    let every_s = table.number("every_s", 0.1..=1e9);
+    let distance_m = table.number_or("distance_m", 0.0, 0.0..=1000.0);
+    let turn_deg = table.number_or("turn_deg", 0.0, 0.0..=180.0);
+    if distance_m == 0.0 && turn_deg == 0.0 {
+        let what = format!("`{}` displaces by nothing", odometry.path(key));
+        let help = "give `distance_m` or `turn_deg` a value above 0, or leave the table out";
+        return table.error(&what, (table.span.clone(), "no displacement"), &[], help);
+    }
+    table.sound(Some(DisplacementSpec { every_s, distance_m, turn_rad: turn_deg.to_radians() }))
 }

@@ -2,7 +2,7 @@
 
 use super::behavior::REPEATS;
 use super::check::CONTACTS;
-use crate::toml_value::{degrees, heading, number, point};
+use crate::toml_value::{degrees, heading, lines, number, point};
 use nalgebra::{Isometry2, Point2};
 use sim::physics::{
     BehaviorSpec, ContactModel, DoorSpec, DriveKind, FleetSpec, LaserSpec, Leaf, Motion, ObstacleSpec,
@@ -27,7 +27,7 @@ pub fn to_toml(spec: &FleetSpec) -> Option<String> {
     }
     let mut table = |header: &str, keys: Keys| {
         text += header;
-        text.extend(keys.into_iter().map(|(key, value)| format!("{key} = {value}\n")));
+        text += &lines(keys);
     };
     table("", vec![("name", spec.name.as_str().into()), ("description", spec.description.as_str().into())]);
     let size_m = [frame.width(), frame.height()].map(|cells| number(cells as f64 * frame.resolution_m()));

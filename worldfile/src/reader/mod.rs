@@ -14,18 +14,18 @@ mod value;
 use crate::error::WorldError;
 use crate::findings::{Findings, Mark, SourceText};
 use interfaces::is_printable;
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use toml::de::{DeTable, DeValue};
-pub(crate) use value::{Figure, Value, extent};
+pub(crate) use value::{Figure, Value, extent, valid};
 
 /// The number of errors that are shown; further errors are only counted.
-const MOST_SHOWN: usize = 20;
+const MAX_SHOWN: usize = 20;
 
 /// The number of errors after which no key is looked up for an unknown one.
-const MOST_JUDGED: usize = 1000;
+const MAX_JUDGED: usize = 1000;
 
 /// The kinds of files: two kinds of worlds, and tours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -70,7 +70,7 @@ pub(crate) fn read<T>(
         }
         Ok(_) => None,
     };
-    value.filter(|_| file.is_sound()).ok_or_else(|| WorldError::new(file.findings()))
+    value.filter(|_| file.is_sound()).ok_or_else(|| WorldError(file.findings()))
 }
 
 impl File<'_> {
@@ -105,11 +105,11 @@ impl File<'_> {
     fn findings(&self) -> Findings {
         let mut errors = self.errors.take();
         errors.sort_by_key(|error| error.mark.0.start);
-        let shown = errors.iter().take(MOST_SHOWN).map(|FileError { what, mark, others, help }| {
+        let shown = errors.iter().take(MAX_SHOWN).map(|FileError { what, mark, others, help }| {
             let others: Vec<Mark<'_>> = others.iter().map(|(span, label)| (span.clone(), &**label)).collect();
             self.source.error(what, &(mark.0.clone(), &mark.1), &others, help)
         });
-        Findings::of_errors(shown.collect(), errors.len().saturating_sub(MOST_SHOWN))
+        Findings::of_errors(shown.collect(), errors.len().saturating_sub(MAX_SHOWN))
     }
 
     fn syntax_error<T>(&self, error: &toml::de::Error) -> Option<T> {
@@ -149,7 +149,9 @@ pub(crate) struct Table<'a> {
     entries: Option<&'a DeTable<'a>>,
     /// The place in the file; for a table with a header, the place of the header.
     pub(crate) span: Range<usize>,
-    is_sound: bool,
+    has_only_known_keys: bool,
+    /// Whether no number that was read is invalid.
+    is_valid: Cell<bool>,
     /// The keys that unknown keys seem to mean: they are not missing as well.
     meant: Vec<&'static str>,
 }
@@ -163,9 +165,18 @@ impl<'a> Table<'a> {
         entries: Option<&'a DeTable<'a>>,
         span: Range<usize>,
     ) -> Self {
-        let mut table = Self { file, path, keys, entries, span, is_sound: true, meant: Vec::new() };
+        let mut table = Self {
+            file,
+            path,
+            keys,
+            entries,
+            span,
+            has_only_known_keys: true,
+            is_valid: Cell::new(true),
+            meant: Vec::new(),
+        };
         for (key, _) in entries.into_iter().flatten().filter(|(key, _)| !has(keys, key.get_ref())) {
-            let is_judged = file.errors.borrow().len() < MOST_JUDGED;
+            let is_judged = file.errors.borrow().len() < MAX_JUDGED;
             let near = is_judged.then(|| spelling::nearest(key.get_ref(), keys.split(", "))).flatten();
             let hint = near.map(|near| format!("did you mean `{near}`? ")).unwrap_or_default();
             let help = format!("{hint}the keys here are: {keys}");
@@ -175,20 +186,20 @@ impl<'a> Table<'a> {
                 &[],
                 &help,
             );
-            table.is_sound = false;
+            table.has_only_known_keys = false;
             table.meant.extend(near);
         }
         table
     }
 
-    /// The value, unless the table has unknown keys: what they mean is missing in it.
+    /// The value, unless a number is invalid, or the table has unknown keys: what they mean is missing in it.
     pub(crate) fn sound<T>(&self, value: T) -> Option<T> {
-        self.is_sound.then_some(value)
+        (self.has_only_known_keys && self.is_valid.get()).then_some(value)
     }
 
     /// Records an error about the meaning of the table, unless the error could be due to an unknown key.
     pub(crate) fn error<T>(&self, what: &str, mark: Mark<'_>, others: &[Mark<'_>], help: &str) -> Option<T> {
-        self.sound(())?;
+        self.has_only_known_keys.then_some(())?;
         self.file.error(what, mark, others, help)
     }
 

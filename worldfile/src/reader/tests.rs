@@ -31,7 +31,7 @@ fn messages(text: &str) -> Vec<String> {
         true => crate::grid::parse("world.toml", text).err(),
         false => crate::physics::parse_fleet("world.toml", text).err(),
     };
-    error.map(|error| error.messages().to_vec()).unwrap_or_default()
+    error.map(|error| error.messages()).unwrap_or_default()
 }
 
 fn is_grid(text: &str) -> bool {

@@ -17,6 +17,11 @@ impl fmt::Display for Figure {
     }
 }
 
+/// The number, unless it is NaN, as invalid ones are.
+pub(crate) fn valid(number: f64) -> Option<f64> {
+    (!number.is_nan()).then_some(number)
+}
+
 /// From where to where a map of `size` (m) reaches; infinite: its size is invalid.
 pub(crate) fn extent(size: &Point2<f64>) -> String {
     match size.x.is_finite() {
@@ -184,40 +189,42 @@ impl<'t, 'a> Value<'t, 'a> {
     }
 }
 
-/// Keys with one value.
+/// Keys with one value. If a number or a flag is invalid, the table is not [`Table::sound`], and the answer is NaN, 0
+/// or `false`.
 impl Table<'_> {
-    pub(crate) fn number(&self, key: &'static str, range: RangeInclusive<f64>) -> Option<f64> {
-        self.needed(key)?.within(&range)
+    pub(crate) fn number(&self, key: &'static str, range: RangeInclusive<f64>) -> f64 {
+        self.or_invalid(self.needed(key).and_then(|value| value.within(&range)), f64::NAN)
     }
 
     /// The number, or `default` if the key is not given.
-    pub(crate) fn number_or(
-        &self,
-        key: &'static str,
-        default: f64,
-        range: RangeInclusive<f64>,
-    ) -> Option<f64> {
-        self.get(key).map_or(Some(default), |value| value.within(&range))
+    pub(crate) fn number_or(&self, key: &'static str, default: f64, range: RangeInclusive<f64>) -> f64 {
+        self.number_if(key, range).unwrap_or(default)
     }
 
-    /// The number, `Some(None)` if the key is not given.
-    pub(crate) fn number_if(&self, key: &'static str, range: RangeInclusive<f64>) -> Option<Option<f64>> {
-        self.get(key).map_or(Some(None), |value| value.within(&range).map(Some))
+    /// The number, `None` if the key is not given.
+    pub(crate) fn number_if(&self, key: &'static str, range: RangeInclusive<f64>) -> Option<f64> {
+        self.get(key).map(|value| self.or_invalid(value.within(&range), f64::NAN))
     }
 
-    pub(crate) fn count(&self, key: &'static str, range: RangeInclusive<u32>) -> Option<usize> {
-        let value = self.needed(key)?;
-        value.natural()?;
-        Some(value.integer_within(&range)? as usize)
+    pub(crate) fn count(&self, key: &'static str, range: RangeInclusive<u32>) -> usize {
+        let count =
+            self.needed(key).and_then(|value| value.natural().and_then(|_| value.integer_within(&range)));
+        self.or_invalid(count, 0) as usize
     }
 
-    /// The number of a tag, `Some(None)` if it is not given.
-    pub(crate) fn tag(&self) -> Option<Option<u32>> {
-        self.get("tag").map_or(Some(None), |value| value.natural().map(Some))
+    /// The number of a tag, `None` if it is not given.
+    pub(crate) fn tag(&self) -> Option<u32> {
+        self.get("tag").map(|value| self.or_invalid(value.natural(), 0))
     }
 
-    pub(crate) fn flag(&self, key: &'static str) -> Option<bool> {
-        self.get(key).map_or(Some(false), |value| value.flag())
+    pub(crate) fn flag(&self, key: &'static str) -> bool {
+        self.get(key).is_some_and(|value| self.or_invalid(value.flag(), false))
+    }
+
+    /// The value; without one, the table is not sound, and the answer is `instead`.
+    pub(crate) fn or_invalid<T>(&self, value: Option<T>, instead: T) -> T {
+        self.is_valid.set(self.is_valid.get() && value.is_some());
+        value.unwrap_or(instead)
     }
 
     /// The first choice if the key is not given.

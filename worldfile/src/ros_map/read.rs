@@ -3,7 +3,7 @@
 use super::{EXAMPLE, RosMap, syntax};
 use crate::files::Files;
 use crate::findings::{Findings, Severity, SourceText};
-use crate::floor_plan::{MAX_FILE_BYTES, Pixel, Raster};
+use crate::floor_plan::{self, MAX_FILE_BYTES, Pixel};
 use crate::reader::Figure;
 use interfaces::{CellState, Grid, GridFrame, is_printable, pose};
 use nalgebra::Point2;
@@ -158,9 +158,9 @@ impl Keys<'_> {
         let (image, image_place) = image?;
         let path = yaml.parent().unwrap_or(Path::new("")).join(image);
         let bytes = files.read(&path, MAX_FILE_BYTES).map_err(|error| error.to_string());
-        let raster = bytes.and_then(|bytes| Raster::decode(&bytes).map_err(|error| error.to_string()));
-        let raster = match raster {
-            Ok(raster) => raster,
+        let picture = bytes.and_then(|bytes| floor_plan::decode(&bytes).map_err(|error| error.to_string()));
+        let picture = match picture {
+            Ok(picture) => picture,
             Err(error) => {
                 let what = format!("cannot read the picture {}: {error}", path.display());
                 self.error(&what, image_place, "`image` names a PNG or PGM picture, relative to this file");
@@ -170,10 +170,10 @@ impl Keys<'_> {
         is_ordered?;
         let [x, y, yaw] = origin?.0;
         let rule = Rule { negate: negate?.0, occupied: occupied?.0, free: free?.0, mode: mode?.0 };
-        let (width, height) = (raster.width as usize, raster.height as usize);
+        let (width, height) = (picture.width() as usize, picture.height() as usize);
         let frame = GridFrame::new(Point2::origin(), resolution?.0, width, height)?;
-        let rows = (0..raster.height).rev();
-        let states = rows.flat_map(|y| raster.row(y).map(|pixel| rule.state(pixel)).collect::<Vec<_>>());
+        let pixels = (0..picture.height()).rev().flat_map(|y| floor_plan::row(&picture, y));
+        let states = pixels.map(|pixel| rule.state(pixel));
         let cells = Grid::from_cells(frame, states.collect())?;
         Some(RosMap { cells, origin: pose(x, y, yaw) })
     }

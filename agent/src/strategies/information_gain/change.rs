@@ -6,7 +6,7 @@
 //! the cells seen so far (empirical Bayes).
 
 use super::clusters::{Clusters, Position};
-use super::rates::{BINS, Distribution, Gains, RATES, Rates};
+use super::rates::{BINS, Distribution, Gains, RATES, Rates, normalized};
 use interfaces::{CellState, Values, value};
 use mapper::Mapper;
 
@@ -41,22 +41,10 @@ pub(super) struct Change {
     distribution: Distribution,
 }
 
-/// A share that is learned as a mean.
-struct Share([f64; 2]);
-
-impl Share {
-    fn new([share, strength]: [f64; 2]) -> Self {
-        Self([share * strength, strength])
-    }
-
-    fn add(&mut self, probability: f64) {
-        self.0[0] += probability;
-        self.0[1] += 1.0;
-    }
-
-    fn value(&self) -> f64 {
-        self.0[0] / self.0[1]
-    }
+/// A share as a sum of probabilities and the number of its cells.
+fn add([sum, cells]: &mut [f64; 2], probability: f64) {
+    *sum += probability;
+    *cells += 1.0;
 }
 
 impl Change {
@@ -77,9 +65,7 @@ impl Change {
 
     /// Learns the distribution of the rates from the number of changed cells with each rate.
     pub(super) fn learn_rates(&mut self, cells: [u32; RATES]) {
-        let sums = cells.map(|cells| f64::from(cells) + FLAT / RATES as f64);
-        let total: f64 = sums.iter().sum();
-        self.distribution = sums.map(|sum| sum / total);
+        self.distribution = normalized(cells.map(|cells| f64::from(cells) + FLAT / RATES as f64));
     }
 
     /// Calls `take` with each cell that never changed and can be worth a visit, and with the gains of observing it. An
@@ -94,7 +80,7 @@ impl Change {
         mut take: impl FnMut(usize, &Gains),
     ) {
         let table: Vec<(f64, Gains)> = (0..BINS).map(|bin| rates.silent(&self.distribution, bin)).collect();
-        let (mut far, mut middle) = (Share::new(FAR), Share::new(MIDDLE));
+        let [mut far, mut middle] = [FAR, MIDDLE].map(|[share, cells]| [share * cells, cells]);
         let frame = mapper.frame();
         for (cell, state) in mapper.states().cells().iter().enumerate() {
             if !mapper.is_candidate(cell) && *state != CellState::Unknown {
@@ -102,9 +88,9 @@ impl Change {
             }
             let (position, cluster_rate) = clusters.position(frame, cell);
             if clusters.has(cell) {
-                far.add(1.0);
+                add(&mut far, 1.0);
                 if position == Position::Middle {
-                    middle.add(1.0);
+                    add(&mut middle, 1.0);
                 }
                 continue;
             }
@@ -128,13 +114,13 @@ impl Change {
             take(cell, &gains.map(|gain| factor * probability / evidence * gain));
             if *state == CellState::Free {
                 match position {
-                    Position::Far => far.add(probability * silent / evidence),
-                    Position::Middle => middle.add(probability * silent / evidence),
+                    Position::Far => add(&mut far, probability * silent / evidence),
+                    Position::Middle => add(&mut middle, probability * silent / evidence),
                     Position::End => {}
                 }
             }
         }
-        (self.far, self.middle) = (far.value(), middle.value());
+        (self.far, self.middle) = (far[0] / far[1], middle[0] / middle[1]);
     }
 
     fn probability(&self, position: Position) -> f64 {

@@ -2,7 +2,6 @@
 
 mod change;
 mod clusters;
-mod occlusion;
 mod rates;
 mod travel_times;
 mod view_reliability;
@@ -12,10 +11,9 @@ use crate::settings::AgentSettings;
 use crate::situation::Situation;
 use crate::visibility::{Regions, Visibility};
 use change::Change;
-use clusters::{Clusters, Position};
+use clusters::{Clusters, Occlusion, Position};
 use interfaces::{Cell, CellState, Values, value};
 use mapper::Mapper;
-use occlusion::Occlusion;
 use rates::{Gains, RATES, Rates, WATCHES};
 use view_reliability::ViewReliability;
 

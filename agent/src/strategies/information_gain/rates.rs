@@ -85,7 +85,7 @@ impl Rates {
         const SPREAD: f64 = 0.6;
         let middle = libm::log(rate);
         let distance = |log: f64| ((log - middle) / SPREAD).clamp(-20.0, 20.0);
-        normalised(self.logs.map(|log| libm::exp(-0.5 * distance(log) * distance(log))))
+        normalized(self.logs.map(|log| libm::exp(-0.5 * distance(log) * distance(log))))
     }
 
     /// For a cell that changed: the nearest discrete rate, and the gains of an observation. `cycles` is half the number
@@ -116,7 +116,7 @@ fn error_after_first(rate: f64, watch: f64) -> f64 {
     none * LN_10 + (1.0 - none) * libm::sqrt(squared).min(LN_10)
 }
 
-fn normalised(distribution: Distribution) -> Distribution {
+pub(super) fn normalized(distribution: Distribution) -> Distribution {
     let sum: f64 = distribution.iter().sum();
     distribution.map(|probability| probability / sum)
 }

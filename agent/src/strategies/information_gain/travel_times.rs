@@ -18,13 +18,10 @@ pub(super) fn times(situation: &Situation) -> Vec<f64> {
     let mut times: Vec<f64> = (0..frame.len()).map(|cell| situation.travel_to(cell)).collect();
     let mut is_passable: Vec<bool> = states.iter().map(|state| *state == CellState::Free).collect();
     let mut open = VecDeque::new();
-    for cell in mapper.changed() {
-        if states[cell] == CellState::Blocked && !mapper.is_in_view(cell) {
-            is_passable[cell] = true;
-        }
-    }
-    for cell in mapper.changed().filter(|&cell| states[cell] == CellState::Blocked) {
-        if is_passable[cell] && times[cell] == f64::INFINITY {
+    let may_be_gone = |&cell: &usize| states[cell] == CellState::Blocked && !mapper.is_in_view(cell);
+    for cell in mapper.changed().filter(may_be_gone) {
+        is_passable[cell] = true;
+        if times[cell] == f64::INFINITY {
             open.extend(frame.beside(cell).filter(|&near| times[near] < f64::INFINITY));
         }
     }

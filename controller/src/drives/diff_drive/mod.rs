@@ -8,7 +8,7 @@ pub use settings::DiffDriveSettings;
 use super::{Body, Drive, Scene};
 use crate::planner::{Costmap, Moves, Path};
 use collision_monitor::CollisionMonitor;
-use interfaces::{SettingsError, Twist, Values, value};
+use interfaces::{SettingsError, Twist, Values, values};
 use nalgebra::Point2;
 use std::f64::consts::{PI, TAU};
 
@@ -83,12 +83,7 @@ impl Drive for DiffDrive {
     type Command = Twist;
 
     fn values(&mut self) -> Values<'_> {
-        vec![
-            value(&mut self.is_turning),
-            value(&mut self.looked_rad),
-            value(&mut self.last),
-            value(&mut self.last_time_s),
-        ]
+        values![self.is_turning, self.looked_rad, self.last, self.last_time_s]
     }
 
     fn body(&self) -> Body {

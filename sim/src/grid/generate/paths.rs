@@ -29,7 +29,9 @@ pub(super) fn paths(
     let mut paths = Vec::new();
     for _ in 0..wanted {
         let Some(path) = (0..MAX_TRIES).find_map(|_| path(settings, &open, rng)) else { break };
-        path.cells.iter().for_each(|&cell| close_around(&mut open, cell));
+        for &cell in &path.cells {
+            close_around(&mut open, cell);
+        }
         paths.push(path);
     }
     paths
@@ -102,8 +104,6 @@ fn winding(first: Cell, length: u32, open: &Grid<bool>, rng: &mut RandomStream) 
 /// Closes a cell and the eight cells around it.
 fn close_around(open: &mut Grid<bool>, cell: Cell) {
     for near in cell.neighbours8().into_iter().chain([cell]) {
-        if let Some(open) = open.get_mut(near) {
-            *open = false;
-        }
+        open.set(near, false);
     }
 }

@@ -25,7 +25,7 @@ pub(super) fn walls(
     let (right, top) = (frame.width() as i32 - 2, frame.height() as i32 - 2);
     let mut rooms = vec![(Cell::new(1, 1), Cell::new(right, top))];
     for cell in cells(rooms[0]) {
-        set(&mut walls, cell, false);
+        walls.set(cell, false);
     }
     for _ in 0..between(rng, settings.walls, 0..=1000) {
         for _ in 0..MAX_TRIES {
@@ -80,7 +80,7 @@ fn divide(
         }
     }
     for &cell in &wall {
-        set(walls, cell, true);
+        walls.set(cell, true);
     }
     let (left_high, right_low) = if is_upright {
         (Cell::new(at - 1, high.y), Cell::new(at + 1, low.y))
@@ -106,17 +106,11 @@ fn pillar(walls: &mut Grid<bool>, start: Cell, rng: &mut RandomStream) -> bool {
         return false;
     }
     for cell in pillar {
-        set(walls, cell, true);
+        walls.set(cell, true);
     }
     true
 }
 
 fn cells((low, high): Room) -> impl Iterator<Item = Cell> {
     (low.y..=high.y).flat_map(move |y| (low.x..=high.x).map(move |x| Cell::new(x, y)))
-}
-
-fn set(walls: &mut Grid<bool>, cell: Cell, is_wall: bool) {
-    if let Some(wall) = walls.get_mut(cell) {
-        *wall = is_wall;
-    }
 }

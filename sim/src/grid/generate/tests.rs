@@ -53,10 +53,9 @@ fn two_hundred_generated_worlds_are_valid() {
         }
         let truth = world.truth();
         for thing in truth.moving_things().iter() {
-            assert!(
-                thing.iter().all(|&index| truth.block_events(index) + truth.free_events(index) > 0),
-                "{seed}"
-            );
+            // The block has left its first cell, and may not have returned.
+            let never_entered = thing.iter().filter(|&&index| truth.block_events(index) == 0);
+            assert!(never_entered.count() <= 1, "{seed}");
         }
     }
     assert_eq!(worlds.len(), 200);

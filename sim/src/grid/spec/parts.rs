@@ -9,14 +9,14 @@ const MAX_NAMED: usize = 5;
 
 /// For each cell, in row-major order, whether it is connected with `start` over the sides of cells that are not
 /// walls. Blocks are ignored, since they move.
-pub(in crate::grid) fn connected(walls: &Grid<bool>, start: Cell) -> Vec<bool> {
+pub(crate) fn connected(walls: &Grid<bool>, start: Cell) -> Vec<bool> {
     let mut reached = vec![false; walls.frame().len()];
     flood(walls.frame(), start, |index| !walls.cells()[index] && !replace(&mut reached[index], true));
     reached
 }
 
 /// One sentence for every part of the map that the robot cannot reach.
-pub(in crate::grid) fn warnings(walls: &Grid<bool>, start: Cell) -> Vec<String> {
+pub(crate) fn warnings(walls: &Grid<bool>, start: Cell) -> Vec<String> {
     let frame = walls.frame();
     let mut reached = connected(walls, start);
     let mut parts: Vec<(Cell, usize)> = Vec::new();

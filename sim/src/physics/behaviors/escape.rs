@@ -1,10 +1,7 @@
-use super::legs::Legs;
-use super::pace::NARROW_SHARE;
-use super::patience::Patience;
+use super::legs::{Legs, NARROW_SHARE, Patience};
 use crate::physics::rays::Beams;
-use crate::physics::snapshot::{Values, value};
 use crate::physics::spec::RobotSpec;
-use interfaces::{LaserReading, RandomStream, Twist};
+use interfaces::{LaserReading, RandomStream, Twist, Values, values};
 use nalgebra::{Point2, UnitComplex, Vector2};
 use std::f64::consts::{PI, TAU};
 
@@ -73,7 +70,7 @@ impl Escape {
         let twist = self.legs.drive(reading, &along, remaining_m, |legs, lean| {
             (legs.free_m(reading, lean, SIDE_MARGIN_M), 0.0)
         });
-        if remaining_m < CLEARANCE_M || self.scans_left == 0 || self.legs.is_blocked() {
+        if remaining_m < CLEARANCE_M || self.scans_left == 0 || self.legs.blocked {
             self.leg = None;
         }
         Some(twist)
@@ -81,7 +78,7 @@ impl Escape {
 
     /// A random free direction among those of the beams, and the end of the way there.
     fn free_leg(&self, reading: &LaserReading, random: &mut RandomStream) -> Option<[(f64, f64); 2]> {
-        let beams = self.legs.beams();
+        let beams = &self.legs.beams;
         let ways: Vec<(Vector2<f64>, f64)> = beams
             .iter()
             .step_by(beams.len().div_ceil(DIRECTIONS))
@@ -104,9 +101,6 @@ impl Escape {
 
     /// The values that a snapshot holds.
     pub(super) fn values(&mut self) -> Values<'_> {
-        let mut values = vec![value(&mut self.leg), value(&mut self.scans_left)];
-        values.extend(self.patience.values());
-        values.extend(self.legs.values());
-        values
+        values![self.leg, self.scans_left; self.patience, self.legs]
     }
 }

@@ -1,9 +1,17 @@
-use super::pace::{HEADING_GAIN, Pace};
+//! What the behaviors drive with: straight legs, the pace that lets a robot stop, and the end of its patience.
+
 use crate::physics::rays::Beams;
-use crate::physics::snapshot::{Values, value};
+use crate::physics::snapshot::{pose, value};
 use crate::physics::spec::RobotSpec;
-use interfaces::{LaserReading, Twist};
-use nalgebra::{UnitComplex, Vector2};
+use interfaces::{LaserReading, Twist, Values, values};
+use nalgebra::{Isometry2, UnitComplex, Vector2};
+
+/// Steering toward a heading, 1/s.
+const HEADING_GAIN: f64 = 3.0;
+/// The share of the speed and of the turn rate in a narrow place.
+pub(super) const NARROW_SHARE: f64 = 0.25;
+/// The minimum speed of an approach, m/s: with a speed proportional to the distance, the robot would never arrive.
+const CREEP_MPS: f64 = 0.02;
 
 /// The robot turns in place if its heading differs from the leg by more than the first angle, and drives again if
 /// the difference is below the second angle, rad.
@@ -15,6 +23,14 @@ const END_MARGIN_M: f64 = 0.03;
 /// the limit.
 const HYSTERESIS_M: f64 = 0.05;
 
+/// How long a robot waits for a free way, s.
+const PATIENCE_S: f64 = 5.0;
+/// A robot that has moved this far, m, or turned this far, rad, does not wait; a slow robot needs to reach only a
+/// share of the distance or angle that its limits allow in this time.
+const PROGRESS_M: f64 = 0.05;
+const PROGRESS_RAD: f64 = 0.2;
+const PROGRESS_SHARE: f64 = 0.2;
+
 /// Drives along straight legs by odometry: the robot turns in place if the next leg has another direction, and
 /// stops while the laser measures an obstacle ahead.
 #[derive(Clone, Debug)]
@@ -22,10 +38,11 @@ pub(super) struct Legs {
     pub(super) radius_m: f64,
     clearance_m: f64,
     /// The unit vectors of the beams of the laser in the frame of the robot.
-    beams: Vec<Vector2<f64>>,
+    pub(super) beams: Vec<Vector2<f64>>,
     pace: Pace,
     turning: bool,
-    blocked: bool,
+    /// Whether something was in the way at the last reading.
+    pub(super) blocked: bool,
 }
 
 impl Legs {
@@ -46,16 +63,6 @@ impl Legs {
         }
     }
 
-    /// The unit vectors of the beams of the laser in the frame of the robot.
-    pub(super) fn beams(&self) -> &[Vector2<f64>] {
-        &self.beams
-    }
-
-    /// Whether something was in the way at the last reading.
-    pub(super) fn is_blocked(&self) -> bool {
-        self.blocked
-    }
-
     /// The free distance ahead, m, below which the robot stops.
     pub(super) fn needed_m(&self) -> f64 {
         self.clearance_m + self.pace.stopping_m
@@ -68,7 +75,7 @@ impl Legs {
 
     /// The values that a snapshot holds.
     pub(super) fn values(&mut self) -> Values<'_> {
-        vec![value(&mut self.turning), value(&mut self.blocked)]
+        values![self.turning, self.blocked]
     }
 
     /// The velocity on the leg in the direction of the unit vector `along`, `remaining_m` before its end. `look`
@@ -124,5 +131,122 @@ impl Legs {
     pub(super) fn gap_m(&self, point: &Vector2<f64>) -> f64 {
         let nose_m = (self.radius_m * self.radius_m - point.y * point.y).max(0.0).sqrt();
         point.x - nose_m
+    }
+}
+
+/// How fast a robot that receives one command per scan can stop and turn.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pace {
+    speed_mps: f64,
+    /// The stopping distance, m: from the command until the robot stands, the reaction time included.
+    pub(super) stopping_m: f64,
+    /// The time until a command takes effect, s.
+    reaction_s: f64,
+    braking_mps2: f64,
+    turn_braking_radps2: f64,
+    max_turn_radps: f64,
+}
+
+impl Pace {
+    /// The pace of `robot` at `speed_mps`.
+    pub(super) fn new(robot: &RobotSpec, speed_mps: f64, step_s: f64) -> Self {
+        // Commands come with scans: the robot brakes with half of its maximum deceleration, so that a late command
+        // is early enough.
+        let braking_mps2 = robot.drive.max_linear_acceleration_mps2 / 2.0;
+        let reaction_s = (robot.laser.period_steps + 1) as f64 * step_s;
+        Self {
+            speed_mps,
+            stopping_m: speed_mps * (reaction_s + speed_mps / (4.0 * braking_mps2)),
+            reaction_s,
+            braking_mps2,
+            turn_braking_radps2: robot.drive.max_angular_acceleration_radps2 / 2.0,
+            max_turn_radps: robot.drive.max_angular_radps,
+        }
+    }
+
+    /// The highest speed from which the robot can stop within `distance_m`, if the next command comes one reading
+    /// later: the root of v·t + v²/2b = distance. At least the minimum speed of an approach.
+    pub(super) fn approach_mps(&self, distance_m: f64) -> f64 {
+        let (t, b) = (self.reaction_s, self.braking_mps2);
+        let fastest_mps = b * ((t * t + 2.0 * distance_m.max(0.0) / b).sqrt() - t);
+        self.speed_mps.min(fastest_mps).max(CREEP_MPS)
+    }
+
+    /// The highest turn rate from which the robot can stop at `angle_rad`.
+    pub(super) fn turn_radps(&self, angle_rad: f64) -> f64 {
+        let fastest = (2.0 * self.turn_braking_radps2 * angle_rad.abs()).sqrt();
+        // Proportional at the end: the root would overshoot between two readings.
+        let rate = fastest.min(self.max_turn_radps).min(HEADING_GAIN * angle_rad.abs());
+        rate.copysign(angle_rad)
+    }
+}
+
+/// Notices that a robot does not get ahead, for whatever reason.
+#[derive(Clone, Debug)]
+pub(super) struct Patience {
+    readings: u32,
+    period_s: f64,
+    moved_m: f64,
+    /// The cosine of the angle that counts as a turn.
+    turned_cos: f64,
+    /// The pose from which the robot has not got ahead, and the number of readings since.
+    from: Isometry2<f64>,
+    waited: u32,
+}
+
+impl Patience {
+    /// The patience of `robot` that drives at `speed_mps`.
+    pub(super) fn new(robot: &RobotSpec, speed_mps: f64, step_s: f64) -> Self {
+        let turned_rad = PROGRESS_RAD.min(PROGRESS_SHARE * robot.drive.max_angular_radps * PATIENCE_S);
+        Self {
+            turned_cos: libm::cos(turned_rad),
+            ..Self::with_place(robot, speed_mps, step_s, PATIENCE_S, PROGRESS_M)
+        }
+    }
+
+    /// The patience for a time, s, with a robot that does not leave a place of the radius `place_m`, whether it turns
+    /// or not.
+    pub(super) fn with_place(
+        robot: &RobotSpec,
+        speed_mps: f64,
+        step_s: f64,
+        patience_s: f64,
+        place_m: f64,
+    ) -> Self {
+        let period_s = robot.laser.period_steps as f64 * step_s;
+        Self {
+            readings: (patience_s / period_s).ceil() as u32,
+            period_s,
+            moved_m: place_m.min(PROGRESS_SHARE * speed_mps * patience_s),
+            turned_cos: f64::NEG_INFINITY,
+            from: robot.pose,
+            waited: 0,
+        }
+    }
+
+    /// Shortens the wait that has begun anew to a time, s.
+    pub(super) fn wait_again(&mut self, patience_s: f64) {
+        self.waited = self.readings.saturating_sub((patience_s / self.period_s).ceil() as u32);
+    }
+
+    /// Whether the robot has waited too long at its pose. It then begins to wait anew.
+    pub(super) fn is_over(&mut self, pose: &Isometry2<f64>) -> bool {
+        let moved_m = (pose.translation.vector - self.from.translation.vector).norm();
+        let turned = self.from.rotation.inverse() * pose.rotation;
+        if moved_m > self.moved_m || turned.re < self.turned_cos {
+            self.from = *pose;
+            self.waited = 0;
+        }
+        self.waited += 1;
+        let is_over = self.waited > self.readings;
+        if is_over {
+            self.waited = 0;
+        }
+        is_over
+    }
+
+    /// The values that a snapshot holds.
+    pub(super) fn values(&mut self) -> Values<'_> {
+        vec![pose(&mut self.from), value(&mut self.waited)]
     }
 }

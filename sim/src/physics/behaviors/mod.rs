@@ -2,16 +2,13 @@
 
 mod escape;
 mod legs;
-mod pace;
-mod patience;
 mod wall_patrol;
 mod wander;
 mod waypoints;
 
 use super::rays::Beams;
-use super::snapshot::Values;
 use super::spec::{BehaviorSpec, RobotSpec};
-use interfaces::{LaserReading, RandomStream, Twist};
+use interfaces::{LaserReading, RandomStream, Twist, Values};
 use nalgebra::Vector2;
 use wall_patrol::WallPatrol;
 use wander::Wander;

@@ -1,8 +1,7 @@
 use super::legs::Legs;
 use crate::physics::rays::Beams;
-use crate::physics::snapshot::{Values, value};
 use crate::physics::spec::{PatrolSpec, RobotSpec};
-use interfaces::{LaserReading, Twist};
+use interfaces::{LaserReading, Twist, Values, values};
 use nalgebra::{Point2, Vector2};
 
 /// The end of a leg counts as reached at this distance, m.
@@ -19,7 +18,7 @@ const MAX_LEAN_RAD: f64 = 0.25;
 /// its distance to the wall by laser and its heading by odometry, turns in place at the ends, and stops while
 /// anything else is in its way.
 #[derive(Clone, Debug)]
-pub(in crate::physics) struct WallPatrol {
+pub(crate) struct WallPatrol {
     spec: PatrolSpec,
     legs: Legs,
     /// Whether the robot drives toward `to`; otherwise toward `from`.
@@ -59,9 +58,7 @@ impl WallPatrol {
 
     /// The values that a snapshot holds.
     pub(super) fn values(&mut self) -> Values<'_> {
-        let mut values = vec![value(&mut self.outbound)];
-        values.extend(self.legs.values());
-        values
+        values![self.outbound; self.legs]
     }
 }
 

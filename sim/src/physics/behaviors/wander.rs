@@ -1,9 +1,8 @@
 use super::escape::Escape;
-use super::pace::{NARROW_SHARE, Pace};
+use super::legs::{NARROW_SHARE, Pace};
 use crate::physics::rays::Beams;
-use crate::physics::snapshot::{Values, value};
 use crate::physics::spec::{RobotSpec, WanderSpec};
-use interfaces::{LaserReading, RandomStream, Twist};
+use interfaces::{LaserReading, RandomStream, Twist, Values, values};
 use nalgebra::Vector2;
 use std::ops::Range;
 
@@ -26,7 +25,7 @@ const CURVE_SCANS: Range<f64> = 10.0..50.0;
 /// toward the side with more space, until the way is free. If it is not free in any direction, the robot turns and
 /// drives slowly, and keeps less space, until there is more. If it does not leave its place for long, it escapes.
 #[derive(Clone, Debug)]
-pub(in crate::physics) struct Wander {
+pub(crate) struct Wander {
     spec: WanderSpec,
     max_turn_radps: f64,
     wide: Space,
@@ -170,16 +169,8 @@ impl Wander {
 
     /// The values that a snapshot holds.
     pub(super) fn values(&mut self) -> Values<'_> {
-        let mut values = vec![
-            value(&mut self.random),
-            value(&mut self.turning),
-            value(&mut self.curve_radps),
-            value(&mut self.scans_left),
-            value(&mut self.turned_scans),
-            value(&mut self.is_narrow),
-        ];
-        values.extend(self.escape.values());
-        values
+        let Self { random, turning, curve_radps, scans_left, turned_scans, is_narrow, escape, .. } = self;
+        values![*random, *turning, *curve_radps, *scans_left, *turned_scans, *is_narrow; escape]
     }
 }
 

@@ -1,10 +1,8 @@
-use super::legs::Legs;
-use super::patience::Patience;
+use super::legs::{Legs, Patience};
 use super::wander::Wander;
 use crate::physics::rays::Beams;
-use crate::physics::snapshot::{Values, value};
 use crate::physics::spec::{Repeat, RobotSpec, WanderSpec, WaypointsSpec};
-use interfaces::{LaserReading, RandomStream, Twist};
+use interfaces::{LaserReading, RandomStream, Twist, Values, values};
 use nalgebra::Point2;
 use std::ops::Range;
 
@@ -29,7 +27,7 @@ const LONG_DETOUR_S: Range<f64> = 10.0..30.0;
 /// wanders for some seconds, and then tries the next point. If it does not leave its place for long, it escapes, and
 /// then makes a longer detour.
 #[derive(Clone, Debug)]
-pub(in crate::physics) struct Waypoints {
+pub(crate) struct Waypoints {
     spec: WaypointsSpec,
     legs: Legs,
     /// The index of the next point; `None` after the last one.
@@ -142,15 +140,7 @@ impl Waypoints {
 
     /// The values that a snapshot holds.
     pub(super) fn values(&mut self) -> Values<'_> {
-        let mut values = vec![
-            value(&mut self.next),
-            value(&mut self.is_returning),
-            value(&mut self.turned_at),
-            value(&mut self.detour_scans),
-        ];
-        values.extend(self.patience.values());
-        values.extend(self.wander.values());
-        values.extend(self.legs.values());
-        values
+        let Self { next, is_returning, turned_at, detour_scans, patience, wander, legs, .. } = self;
+        values![*next, *is_returning, *turned_at, *detour_scans; patience, wander, legs]
     }
 }

@@ -2,9 +2,9 @@
 
 mod movers;
 mod penetration;
-#[cfg(test)]
-mod probe;
 mod slide;
+#[cfg(test)]
+mod tests;
 mod touch;
 
 pub(super) use movers::Mover;

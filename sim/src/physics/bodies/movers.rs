@@ -15,7 +15,7 @@ const FRICTION_PER_S: f32 = 1e5;
 
 /// The body of an obstacle that moves.
 #[derive(Clone, Copy, Deserialize, Serialize)]
-pub(in crate::physics) struct Mover {
+pub(crate) struct Mover {
     body: rapier::RigidBodyHandle,
     /// The joint that gives a box friction on the floor, and the greatest force of the friction, N.
     friction: Option<(rapier::ImpulseJointHandle, f32)>,
@@ -23,7 +23,7 @@ pub(in crate::physics) struct Mover {
 
 impl Bodies {
     /// Adds a body that follows given poses. Contacts do not stop it.
-    pub(in crate::physics) fn add_driven(&mut self, body: Body, shape: &Rectangle) -> Mover {
+    pub(crate) fn add_driven(&mut self, body: Body, shape: &Rectangle) -> Mover {
         let collider = cuboid(body, shape);
         let body = rapier::RigidBodyBuilder::kinematic_position_based()
             .pose(to_rapier(&shape.pose))
@@ -34,17 +34,12 @@ impl Bodies {
     }
 
     /// Sets the pose of such a body after the next step.
-    pub(in crate::physics) fn drive(&mut self, mover: &Mover, to: &Isometry2<f64>) {
+    pub(crate) fn drive(&mut self, mover: &Mover, to: &Isometry2<f64>) {
         self.world.bodies[mover.body].set_next_kinematic_position(to_rapier(to));
     }
 
     /// Adds a body that can be pushed, with friction on the floor.
-    pub(in crate::physics) fn add_pushed(
-        &mut self,
-        body: Body,
-        shape: &Rectangle,
-        pushed: &PushedSpec,
-    ) -> Mover {
+    pub(crate) fn add_pushed(&mut self, body: Body, shape: &Rectangle, pushed: &PushedSpec) -> Mover {
         let collider = cuboid(body, shape).mass(pushed.mass_kg as f32);
         let body = rapier::RigidBodyBuilder::dynamic().pose(to_rapier(&shape.pose));
         let body = self.world.insert(body, collider).0;
@@ -73,7 +68,7 @@ impl Bodies {
     }
 
     /// The pose of a pushed body after the last step.
-    pub(in crate::physics) fn pushed_pose(&mut self, mover: &Mover) -> Isometry2<f64> {
+    pub(crate) fn pushed_pose(&mut self, mover: &Mover) -> Isometry2<f64> {
         let body = &self.world.bodies[mover.body];
         let velocity = body.linvel();
         let at = from_rapier(body.position());

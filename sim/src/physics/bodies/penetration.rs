@@ -29,7 +29,7 @@ const WEIGHTED_ROUNDS: usize = 4;
 /// The shares of its step that a body keeps, tried in this order until there is room.
 const SHARES: [f32; 4] = [0.5, 0.25, 0.125, 0.0];
 /// The largest number of poses on a path that are looked at.
-const MOST_POSES: f64 = 1000.0;
+const MAX_POSES: f64 = 1000.0;
 /// A distance that no two bodies exceed, m.
 const ANY_DISTANCE_M: f32 = 1e6;
 
@@ -180,7 +180,7 @@ impl Bodies {
         let all_m = motions_m[0] + motions_m[1];
         // No pose between is skipped in which the bodies are too deep in each other: see `allowed_m`.
         let poses =
-            if all_m == 0.0 { 1.0 } else { (all_m / self.inner_m(pair)).ceil().clamp(1.0, MOST_POSES) };
+            if all_m == 0.0 { 1.0 } else { (all_m / self.inner_m(pair)).ceil().clamp(1.0, MAX_POSES) };
         let gaps_m = (1..=poses as usize).map(|pose| self.gap_on_path_m(pair, pose as f64 / poses, step));
         gaps_m.fold(f64::INFINITY, f64::min)
     }

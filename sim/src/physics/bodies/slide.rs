@@ -9,19 +9,19 @@ const REST: f32 = 1e-5;
 
 impl Bodies {
     /// The motion of a robot in the next step if nothing is in its way, m.
-    pub(in crate::physics) fn wanted_m(&self, robot: usize) -> Vector2<f64> {
+    pub(crate) fn wanted_m(&self, robot: usize) -> Vector2<f64> {
         let wanted =
             self.world.bodies[self.robots[robot].body].linvel() * self.world.integration_parameters.dt;
         Vector2::new(f64::from(wanted.x), f64::from(wanted.y))
     }
 
     /// The mass of a robot, kg.
-    pub(in crate::physics) fn mass_kg(&self, robot: usize) -> f64 {
+    pub(crate) fn mass_kg(&self, robot: usize) -> f64 {
         f64::from(self.world.bodies[self.robots[robot].body].mass())
     }
 
     /// Whether no box moves.
-    pub(in crate::physics) fn boxes_rest(&self) -> bool {
+    pub(crate) fn boxes_rest(&self) -> bool {
         // Contacts move robots as well: those are compared by their positions.
         let is_robot = |body| self.robots.iter().any(|robot| robot.body == body);
         let mut boxes = self.free.iter().map(|free| free.body).filter(|body| !is_robot(*body));
@@ -33,7 +33,7 @@ impl Bodies {
 
     /// Moves a robot by the motion of a step (m), and turns it by its velocity. `is_stopped`: the motion is not the wanted
     /// one.
-    pub(in crate::physics) fn slide(&mut self, robot: usize, moved_m: &Vector2<f64>, is_stopped: bool) {
+    pub(crate) fn slide(&mut self, robot: usize, moved_m: &Vector2<f64>, is_stopped: bool) {
         let step_s = self.world.integration_parameters.dt;
         let body = &mut self.world.bodies[self.robots[robot].body];
         if is_stopped {
@@ -47,7 +47,7 @@ impl Bodies {
     }
 
     /// Ends a step without rapier, in which robots (by index) touched bodies.
-    pub(in crate::physics) fn end_slide(&mut self, touches: Vec<(usize, Touch)>) {
+    pub(crate) fn end_slide(&mut self, touches: Vec<(usize, Touch)>) {
         for mover in &self.movers {
             let to = *self.world.bodies[*mover].next_position();
             if *self.world.bodies[*mover].position() != to {

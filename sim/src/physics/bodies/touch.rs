@@ -5,25 +5,25 @@ use rapier2d::prelude as rapier;
 
 /// Bodies that are farther apart than this do not touch any more, m. The distance of a lasting contact varies by
 /// less.
-pub(in crate::physics) const SEPARATE_M: f32 = 0.001;
+pub(crate) const SEPARATE_M: f32 = 0.001;
 
 /// A contact of a robot.
 #[derive(Clone, Copy)]
-pub(in crate::physics) struct Touch {
-    pub(in crate::physics) with: Body,
+pub(crate) struct Touch {
+    pub(crate) with: Body,
     /// The point of the deepest penetration, m.
-    pub(in crate::physics) at: Point2<f64>,
+    pub(crate) at: Point2<f64>,
     /// The direction from the robot to the other body at the contact, a unit vector.
-    pub(in crate::physics) towards: Vector2<f64>,
+    pub(crate) towards: Vector2<f64>,
     /// The ends of the line of contact, m.
-    pub(in crate::physics) ends: [Point2<f64>; 2],
+    pub(crate) ends: [Point2<f64>; 2],
     /// The impulse of the last step, N·s; 0: the bodies have not separated yet.
-    pub(in crate::physics) impulse_ns: f64,
+    pub(crate) impulse_ns: f64,
 }
 
 impl Bodies {
     /// All bodies that a robot presses against, or has not separated from yet.
-    pub(in crate::physics) fn touches(&self, robot: usize) -> impl Iterator<Item = Touch> {
+    pub(crate) fn touches(&self, robot: usize) -> impl Iterator<Item = Touch> {
         let slid = self.slid.iter().flatten().filter(move |(of, _)| *of == robot).map(|(_, touch)| *touch);
         let solved = self.slid.is_none().then(|| self.solved_touches(robot));
         slid.chain(solved.into_iter().flatten())

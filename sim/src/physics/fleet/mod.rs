@@ -2,7 +2,6 @@
 
 mod bulk;
 mod carry;
-mod controller;
 mod slide;
 mod snapshots;
 mod start;
@@ -10,8 +9,8 @@ mod teleport;
 mod time;
 
 pub use bulk::LengthError;
-pub use controller::Controller;
 pub use teleport::TeleportError;
+pub use time::Controller;
 
 use super::bodies::Bodies;
 use super::command::Command;
@@ -125,7 +124,7 @@ impl Fleet {
     }
 
     /// All present bodies with a tag, robots first; none if no robot has a fiducial finder.
-    pub(in crate::physics) fn tagged(&self) -> Vec<Tagged> {
+    pub(crate) fn tagged(&self) -> Vec<Tagged> {
         if !self.start.has_fiducial_finders {
             return Vec::new();
         }

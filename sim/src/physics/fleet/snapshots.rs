@@ -2,8 +2,9 @@
 
 use super::Fleet;
 use super::start::Start;
-use crate::physics::snapshot::{self, SnapshotError, Values, value};
+use crate::physics::snapshot::{self, SnapshotError, value};
 use crate::physics::spec::FleetSpec;
+use interfaces::{Values, values};
 use std::sync::Arc;
 
 impl Fleet {
@@ -62,9 +63,7 @@ impl Fleet {
     }
 
     fn values(&mut self) -> Values<'_> {
-        let mut values = vec![value(&mut self.step)];
-        values.extend(self.bodies.values());
-        values.extend(self.past.values());
+        let mut values = values![self.step; self.bodies, self.past];
         values.extend(self.robots.iter_mut().flat_map(|robot| robot.values()));
         values.extend(self.obstacles.iter_mut().flat_map(|obstacle| obstacle.values()));
         values

@@ -1,15 +1,16 @@
 //! The steps of a fleet.
 
-use super::{Controller, Fleet};
+use super::Fleet;
 use crate::physics::bodies::Touch;
-use crate::physics::command::Velocity;
+use crate::physics::command::{Command, Velocity};
 use crate::physics::form::Form;
 use crate::physics::obstacles::{Blockers, Obstacle};
 use crate::physics::past::Recent;
 use crate::physics::report::Contact;
-use crate::physics::robot::Robot;
+use crate::physics::robot::{Robot, RobotView};
 use crate::physics::sensors::{Surroundings, bumper};
 use crate::physics::shape::Rectangle;
+use interfaces::LaserReading;
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -45,7 +46,7 @@ impl Fleet {
     }
 
     /// Robots for which `is_meant` is true measure with the sensors that are due, and decide.
-    pub(in crate::physics) fn think(&mut self, is_meant: impl Fn(&Robot) -> bool + Sync) {
+    pub(crate) fn think(&mut self, is_meant: impl Fn(&Robot) -> bool + Sync) {
         let (step, time_s) = (self.step, self.time_s());
         let is_due =
             |robot: &Robot| robot.senses(step) && is_meant(robot) && !robot.has_thought(step, time_s);
@@ -82,7 +83,7 @@ impl Fleet {
     }
 
     /// Moves robots and obstacles by one physics step.
-    pub(in crate::physics) fn advance(&mut self) {
+    pub(crate) fn advance(&mut self) {
         let step_s = self.spec().step_s;
         for robot in &mut self.robots {
             robot.start_step(&mut self.bodies, step_s);
@@ -174,7 +175,7 @@ impl Fleet {
 
     /// Makes obstacles appear and disappear. Each time, `report` receives the index of the obstacle, whether it
     /// appeared, and the walls and obstacles that are present now.
-    pub(in crate::physics) fn update_obstacles(&mut self, mut report: impl FnMut(usize, bool, &[Rectangle])) {
+    pub(crate) fn update_obstacles(&mut self, mut report: impl FnMut(usize, bool, &[Rectangle])) {
         let time_s = self.time_s();
         for index in 0..self.obstacles.len() {
             if !self.obstacles[index].is_due(time_s) {
@@ -187,5 +188,34 @@ impl Fleet {
                 report(index, appeared, &self.standing_boxes());
             }
         }
+    }
+}
+
+/// A controller of driven robots: any type, or a closure that takes a robot and the reading of its main laser and
+/// returns a velocity ([`interfaces::Twist`]) or any other [`Command`].
+///
+/// The fleet calls the controller at every scan of the main laser of a driven robot. Sensors that the controller does
+/// not read are not simulated. The controller `&mut ()` gives no commands: the robots keep the command of
+/// [`Fleet::command`](super::Fleet::command).
+pub trait Controller {
+    /// The new command; `None` if the robot keeps its command. The readings of all sensors are in the view of the
+    /// robot. A command that contains NaN stops the robot; a command beyond the limits of the drive is limited to
+    /// them.
+    fn drive(&mut self, robot: &RobotView<'_>) -> Option<Command>;
+}
+
+impl<F, C> Controller for F
+where
+    F: FnMut(&RobotView<'_>, &LaserReading) -> C,
+    C: Into<Command>,
+{
+    fn drive(&mut self, robot: &RobotView<'_>) -> Option<Command> {
+        Some(self(robot, robot.reading()?).into())
+    }
+}
+
+impl Controller for () {
+    fn drive(&mut self, _: &RobotView<'_>) -> Option<Command> {
+        None
     }
 }

@@ -2,8 +2,8 @@
 //! robot fits through; so it does from other pieces. Furniture therefore never divides a room.
 
 use super::draw::{between, cells};
+use super::house_ranges::{self as ranges, Furniture, Placement};
 use super::layout::{Area, Layout};
-use super::ranges::{Furniture, HouseRanges, Place};
 use interfaces::RandomStream;
 use rand::RngExt;
 
@@ -22,15 +22,15 @@ pub(super) struct Piece {
 }
 
 /// The furniture of all rooms.
-pub(super) fn furniture(ranges: &HouseRanges, layout: &Layout, rng: &mut RandomStream) -> Vec<Piece> {
+pub(super) fn furniture(layout: &Layout, rng: &mut RandomStream) -> Vec<Piece> {
     let mut pieces: Vec<Piece> = Vec::new();
-    for (room, (name, list)) in named(ranges, layout, rng) {
+    for (room, (name, list)) in named(layout, rng) {
         let first = pieces.len();
         for kind in list {
-            if !rng.bernoulli(ranges.furniture_probability) {
+            if !rng.bernoulli(ranges::FURNITURE_PROBABILITY) {
                 continue;
             }
-            let clearance = cells(ranges.clearance_m);
+            let clearance = cells(ranges::CLEARANCE_M);
             let mut drawn = (0..MAX_TRIES).map(|_| draw(kind, &layout.spaces[room], clearance, rng));
             let fits = |(area, _): &(Area, _)| {
                 let beside = area.grown(clearance);
@@ -47,18 +47,14 @@ pub(super) fn furniture(ranges: &HouseRanges, layout: &Layout, rng: &mut RandomS
 }
 
 /// The rooms with a name and the kinds of their furniture.
-fn named(
-    ranges: &HouseRanges,
-    layout: &Layout,
-    rng: &mut RandomStream,
-) -> Vec<(usize, (&'static str, &'static [Furniture]))> {
+fn named(layout: &Layout, rng: &mut RandomStream) -> Vec<(usize, (&'static str, &'static [Furniture]))> {
     let size = |room: &usize| layout.spaces[*room].size(0) * layout.spaces[*room].size(1);
     let mut rooms: Vec<usize> = (1..layout.spaces.len()).collect();
     rooms.sort_by_key(|room| -size(room));
     for index in (2..rooms.len()).rev() {
         rooms.swap(index, rng.random_range(1..=index));
     }
-    rooms.into_iter().zip(ranges.rooms_by_name.iter().copied()).collect()
+    rooms.into_iter().zip(ranges::ROOMS_BY_NAME.iter().copied()).collect()
 }
 
 /// A piece of a kind at a random place.
@@ -68,7 +64,7 @@ fn draw(kind: &Furniture, room: &Area, clearance: i32, rng: &mut RandomStream) -
     let (axis, is_high) = (rng.random_range(0..2_usize), rng.random::<bool>());
     let mut size = if axis == 0 { [length, depth] } else { [depth, length] };
     let mut turned = None;
-    if kind.place == Place::Turned {
+    if kind.place == Placement::Turned {
         let heading_deg = ANGLE_DEG * rng.random_range(1..90 / ANGLE_DEG);
         let (sin, cos) = libm::sincos(f64::from(heading_deg).to_radians());
         size = [(f64::from(length) * (sin + cos)).ceil() as i32; 2];
@@ -80,12 +76,12 @@ fn draw(kind: &Furniture, room: &Area, clearance: i32, rng: &mut RandomStream) -
         // Near the corner of the room: into the corner.
         room.low[axis]
             + match kind.place {
-                Place::Wall if at < clearance => 0,
-                Place::Wall if spare - at < clearance => spare,
+                Placement::Wall if at < clearance => 0,
+                Placement::Wall if spare - at < clearance => spare,
                 _ => at,
             }
     });
-    if kind.place == Place::Wall {
+    if kind.place == Placement::Wall {
         let across = 1 - axis;
         low[across] = if is_high { room.high[across] - size[across] } else { room.low[across] };
     }

@@ -2,7 +2,7 @@
 //! 0 runs along the corridor, axis 1 across it.
 
 use super::draw::{between, cells, integer};
-use super::ranges::HouseRanges;
+use super::house_ranges as ranges;
 use interfaces::RandomStream;
 use rand::RngExt;
 
@@ -116,18 +116,18 @@ pub(super) struct Layout {
 }
 
 impl Layout {
-    pub(super) fn new(ranges: &HouseRanges, rng: &mut RandomStream) -> Self {
-        let size = [between(ranges.length_m, rng), between(ranges.width_m, rng)];
-        let min_room = cells(ranges.min_room_m);
+    pub(super) fn new(rng: &mut RandomStream) -> Self {
+        let size = [between(ranges::LENGTH_M, rng), between(ranges::WIDTH_M, rng)];
+        let min_room = cells(ranges::MIN_ROOM_M);
         let [right, top] = size.map(|extent| extent - WALL);
-        let corridor = between(ranges.corridor_m, rng);
+        let corridor = between(ranges::CORRIDOR_M, rng);
         let low = rng.random_range(WALL + min_room..=top - min_room - corridor - 2 * WALL) + WALL;
         let mut house = Self { size, spaces: Vec::new(), doorways: Vec::new(), walls: Vec::new() };
         house.outer_walls();
 
         let mut along = [WALL, right];
-        let end_room = rng.bernoulli(ranges.end_room_probability).then(|| {
-            let (length, is_left) = (between(ranges.end_room_m, rng), rng.random());
+        let end_room = rng.bernoulli(ranges::END_ROOM_PROBABILITY).then(|| {
+            let (length, is_left) = (between(ranges::END_ROOM_M, rng), rng.random());
             if is_left {
                 along[0] += length + WALL;
                 ([WALL, WALL + length], Wall { across: 0, face: WALL + length, ends: [WALL, top] })
@@ -140,10 +140,10 @@ impl Layout {
         house.spaces.push(Area::new(along, across));
         for (depth, face) in [([WALL, low - WALL], low - WALL), ([across[1] + WALL, top], across[1])] {
             let wall = Wall { across: 1, face, ends: along };
-            house.rooms(ranges, depth, wall, rng);
+            house.rooms(depth, wall, rng);
         }
         if let Some((extent, wall)) = end_room {
-            house.end_room(ranges, Area::new(extent, [WALL, top]), wall, rng);
+            house.end_room(Area::new(extent, [WALL, top]), wall, rng);
         }
         house
     }
@@ -159,11 +159,11 @@ impl Layout {
     }
 
     /// The rooms on one side of the corridor, behind `wall`.
-    fn rooms(&mut self, ranges: &HouseRanges, depth: [i32; 2], wall: Wall, rng: &mut RandomStream) {
-        let (min_room, [left, right]) = (cells(ranges.min_room_m), wall.ends);
+    fn rooms(&mut self, depth: [i32; 2], wall: Wall, rng: &mut RandomStream) {
+        let (min_room, [left, right]) = (cells(ranges::MIN_ROOM_M), wall.ends);
         self.walls.push(wall);
         let most = (right - left + WALL) / (min_room + WALL);
-        let count = integer(ranges.rooms, rng).min(most).max(1);
+        let count = integer(ranges::ROOMS, rng).min(most).max(1);
         let spare = right - left + WALL - count * (min_room + WALL);
         let mut cuts: Vec<i32> = (1..count).map(|_| rng.random_range(0..=spare)).collect();
         cuts.sort_unstable();
@@ -181,8 +181,8 @@ impl Layout {
             if let Some(beside) = beside {
                 self.walls.push(beside);
                 is_inner[room - first] = !is_inner[room - first - 1]
-                    && rng.bernoulli(ranges.inner_room_probability)
-                    && self.doorway(ranges, beside, [room - 1, room], rng);
+                    && rng.bernoulli(ranges::INNER_ROOM_PROBABILITY)
+                    && self.doorway(beside, [room - 1, room], rng);
             }
             if !is_inner[room - first] {
                 // Nothing else is at this part of the wall yet.
@@ -192,9 +192,9 @@ impl Layout {
                 } else {
                     [CORRIDOR, room]
                 };
-                self.doorway(ranges, Wall { ends: [low[0], high[0]], ..wall }, spaces, rng);
-                if let Some(beside) = beside.filter(|_| rng.bernoulli(ranges.side_doorway_probability)) {
-                    self.doorway(ranges, beside, [room - 1, room], rng);
+                self.doorway(Wall { ends: [low[0], high[0]], ..wall }, spaces, rng);
+                if let Some(beside) = beside.filter(|_| rng.bernoulli(ranges::SIDE_DOORWAY_PROBABILITY)) {
+                    self.doorway(beside, [room - 1, room], rng);
                 }
             }
         }
@@ -206,7 +206,7 @@ impl Layout {
     }
 
     /// The room at the end of the corridor, which opens into it.
-    fn end_room(&mut self, ranges: &HouseRanges, area: Area, wall: Wall, rng: &mut RandomStream) {
+    fn end_room(&mut self, area: Area, wall: Wall, rng: &mut RandomStream) {
         let room = self.spaces.len();
         let is_left = area.low[0] == WALL;
         let sorted = |other: usize| if is_left { [room, other] } else { [other, room] };
@@ -218,23 +218,17 @@ impl Layout {
         for other in 1..room {
             let Area { low, high } = self.spaces[other];
             let touches = if is_left { low[0] == wall.face + WALL } else { high[0] == wall.face };
-            if touches && rng.bernoulli(ranges.side_doorway_probability) {
+            if touches && rng.bernoulli(ranges::SIDE_DOORWAY_PROBABILITY) {
                 let part = Wall { ends: [low[1], high[1]], ..wall };
-                self.doorway(ranges, part, sorted(other), rng);
+                self.doorway(part, sorted(other), rng);
             }
         }
     }
 
     /// Adds a doorway somewhere in a part of a wall, if there is room.
-    fn doorway(
-        &mut self,
-        ranges: &HouseRanges,
-        part: Wall,
-        spaces: [usize; 2],
-        rng: &mut RandomStream,
-    ) -> bool {
+    fn doorway(&mut self, part: Wall, spaces: [usize; 2], rng: &mut RandomStream) -> bool {
         for _ in 0..MAX_TRIES {
-            let width = between(ranges.doorway_m, rng);
+            let width = between(ranges::DOORWAY_M, rng);
             let [low, high] = [part.ends[0] + CORNER, part.ends[1] - CORNER - width];
             if low > high {
                 continue;

@@ -4,12 +4,10 @@
 mod doors;
 mod draw;
 mod furniture;
+pub mod house_ranges;
 mod layout;
 mod plan;
-mod ranges;
 mod routes;
-
-pub use ranges::{Furniture, HOUSE_RANGES, HouseRanges, Place};
 
 use super::shape::Rectangle;
 use super::spec::{
@@ -18,6 +16,7 @@ use super::spec::{
 };
 use draw::{CELLS_PER_M, integer, value};
 use furniture::Piece;
+use house_ranges as ranges;
 use interfaces::{GridFrame, Purpose, RandomStream, pose};
 use layout::Layout;
 use nalgebra::Point2;
@@ -37,28 +36,28 @@ const APART_M: f64 = 0.8;
 const CLEARANCE_M: f64 = 0.15;
 
 impl WorldSpec {
-    /// A random house, named `house-` and the seed, with the parameters of [`HOUSE_RANGES`]. All rooms are connected
+    /// A random house, named `house-` and the seed, with the parameters of [`house_ranges`]. All rooms are connected
     /// while the doors are open; nothing is inside another thing; every round of a person keeps off walls and
     /// furniture. The same seed gives the same house, on every machine.
     pub fn generate_house(seed: u64) -> Self {
         let mut rng = RandomStream::new(seed, Purpose::HouseGenerator);
-        let mut houses = (0..MAX_HOUSES).filter_map(|_| draw_house(&HOUSE_RANGES, seed, &mut rng));
+        let mut houses = (0..MAX_HOUSES).filter_map(|_| draw_house(seed, &mut rng));
         houses.next().expect("with these ranges, a house fails in less than one of ten draws")
     }
 }
 
 /// A house, unless a robot found no place in it.
-fn draw_house(ranges: &HouseRanges, seed: u64, rng: &mut RandomStream) -> Option<WorldSpec> {
-    let layout = Layout::new(ranges, rng);
+fn draw_house(seed: u64, rng: &mut RandomStream) -> Option<WorldSpec> {
+    let layout = Layout::new(rng);
     let plan = Plan { is_upright: rng.random() };
     let walls: Vec<Rectangle> = layout.solid_walls().iter().map(|wall| plan.rectangle(wall)).collect();
     let mut obstacles: Vec<ObstacleSpec> =
-        furniture::furniture(ranges, &layout, rng).iter().map(|piece| standing(piece, &plan)).collect();
-    obstacles.extend(doors::doors(ranges, &layout, &plan, rng));
+        furniture::furniture(&layout, rng).iter().map(|piece| standing(piece, &plan)).collect();
+    obstacles.extend(doors::doors(&layout, &plan, rng));
     let solids: Vec<Rectangle> =
         walls.iter().copied().chain(obstacles.iter().map(ObstacleSpec::opened)).collect();
-    let routes = Routes::new(ranges, &layout, &solids, &plan, rng);
-    let robots = robots(ranges, &routes, rng)?;
+    let routes = Routes::new(&layout, &solids, &plan, rng);
+    let robots = robots(&routes, rng)?;
     let size = plan.point(layout.size.map(f64::from));
     let frame = GridFrame::covering(Point2::origin(), size.x, size.y, 1.0 / CELLS_PER_M);
     let count =
@@ -82,25 +81,24 @@ fn standing(piece: &Piece, plan: &Plan) -> ObstacleSpec {
         None => plan.rectangle(&piece.area),
         Some((side, heading_deg)) => plan.turned(&piece.area, side, f64::from(heading_deg).to_radians()),
     };
-    let name = piece.name.clone();
-    ObstacleSpec { name, shape, motion: Motion::Fixed, tag: None, appears_s: None, disappears_s: None }
+    ObstacleSpec::new(&piece.name, shape, Motion::Fixed)
 }
 
 /// The explorer, the people, and perhaps a vacuum cleaner.
-fn robots(ranges: &HouseRanges, routes: &Routes, rng: &mut RandomStream) -> Option<Vec<RobotSpec>> {
+fn robots(routes: &Routes, rng: &mut RandomStream) -> Option<Vec<RobotSpec>> {
     let mut robots = vec![robot("curious", routes.place(rng)?, BehaviorSpec::Driven, 0.2, 0.8, rng)];
     robots[0].laser.beams = 720;
-    for number in 1..=integer(ranges.people, rng) {
-        let mut rounds = (0..MAX_PLACES).filter_map(|_| routes.round(ranges, rng));
+    for number in 1..=integer(ranges::PEOPLE, rng) {
+        let mut rounds = (0..MAX_PLACES).filter_map(|_| routes.round(rng));
         let points = rounds.find(|points| is_apart(&robots, &points[0]))?;
-        let speed_mps = value(ranges.person_speed_mps, rng);
+        let speed_mps = value(ranges::PERSON_SPEED_MPS, rng);
         let (start, repeat) = (points[0], Repeat::Loop);
         let behavior =
             BehaviorSpec::Waypoints(WaypointsSpec { points, speed_mps, repeat, clearance_m: CLEARANCE_M });
-        let radius_m = value(ranges.person_radius_m, rng);
+        let radius_m = value(ranges::PERSON_RADIUS_M, rng);
         robots.push(robot(&format!("person {number}"), start, behavior, radius_m, 1.0, rng));
     }
-    if rng.bernoulli(ranges.vacuum_cleaner_probability) {
+    if rng.bernoulli(ranges::VACUUM_CLEANER_PROBABILITY) {
         let start = (0..MAX_PLACES).filter_map(|_| routes.place(rng)).find(|at| is_apart(&robots, at))?;
         let behavior = BehaviorSpec::Wander(WanderSpec { speed_mps: 0.3, clearance_m: CLEARANCE_M });
         robots.push(robot("vacuum cleaner", start, behavior, 0.17, 0.4, rng));

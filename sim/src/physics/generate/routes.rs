@@ -1,9 +1,9 @@
 //! The rounds of people: straight legs between places in rooms, and the two sides of doorways.
 
 use super::draw::integer;
+use super::house_ranges as ranges;
 use super::layout::{CORRIDOR, Layout, WALL};
 use super::plan::Plan;
-use super::ranges::HouseRanges;
 use crate::physics::shape::Rectangle;
 use interfaces::RandomStream;
 use nalgebra::Point2;
@@ -28,14 +28,8 @@ pub(super) struct Routes {
 
 impl Routes {
     /// The places that keep away from `solids`: walls, furniture, open doors.
-    pub(super) fn new(
-        ranges: &HouseRanges,
-        layout: &Layout,
-        solids: &[Rectangle],
-        plan: &Plan,
-        rng: &mut RandomStream,
-    ) -> Self {
-        let keep_m = ranges.person_radius_m[1] + BESIDE_M;
+    pub(super) fn new(layout: &Layout, solids: &[Rectangle], plan: &Plan, rng: &mut RandomStream) -> Self {
+        let keep_m = ranges::PERSON_RADIUS_M[1] + BESIDE_M;
         let mut places = Vec::new();
         for doorway in &layout.doorways {
             let middle = f64::from(doorway.ends[0] + doorway.ends[1]) / 2.0;
@@ -89,10 +83,10 @@ impl Routes {
 
     /// The waypoints of a round through several rooms, from a place in a room, m. `None` if no way leads to other
     /// rooms.
-    pub(super) fn round(&self, ranges: &HouseRanges, rng: &mut RandomStream) -> Option<Vec<Point2<f64>>> {
+    pub(super) fn round(&self, rng: &mut RandomStream) -> Option<Vec<Point2<f64>>> {
         let start = self.draw(rng, |_| true)?;
         let mut round = vec![start];
-        for _ in 1..integer(ranges.person_rooms, rng) {
+        for _ in 1..integer(ranges::PERSON_ROOMS, rng) {
             let room = self.places[round[round.len() - 1]].1;
             let next = self.draw(rng, |other| Some(other) != room)?;
             round.extend(self.way(round[round.len() - 1], next)?);

@@ -1,6 +1,5 @@
 //! The ground truth of every cell.
 
-mod convex_cells;
 pub(super) mod cover;
 mod open_share;
 mod robots;

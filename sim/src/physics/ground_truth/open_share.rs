@@ -1,6 +1,8 @@
 //! The state of a cell under rectangles that may overlap each other.
 
-use crate::physics::shape::{Rectangle, TOUCH_M};
+use super::cover::{BoxTest, Relation};
+use crate::physics::convex::area;
+use crate::physics::shape::Rectangle;
 use interfaces::{Cell, GridFrame, TrueState};
 use nalgebra::{Point2, Vector2};
 
@@ -12,40 +14,14 @@ const SLIVER: f64 = 1e-6;
 /// Most cells are far from all rectangles, or well within one of them. Only for the others the share of the cell
 /// that no rectangle covers is computed.
 pub(super) struct Cover {
-    shapes: Vec<Shape>,
+    shapes: Vec<BoxTest>,
     share: OpenShare,
-}
-
-/// A rectangle with half its extent along the axes of the map, and half the extent of a cell along its own sides, m.
-#[derive(Clone, Copy)]
-struct Shape {
-    shape: Rectangle,
-    reach_m: Vector2<f64>,
-    cell_reach_m: f64,
-    half_cell_m: f64,
-}
-
-/// How a rectangle lies to a cell.
-#[derive(Clone, Copy, PartialEq)]
-enum Relation {
-    /// The rectangle and the cell are apart.
-    Apart,
-    /// The rectangle covers the cell.
-    Covers,
-    /// Anything else, and where rounding could decide.
-    Meets,
 }
 
 impl Cover {
     /// For cells of `frame` under `shapes`.
     pub(super) fn new(frame: &GridFrame, shapes: impl Iterator<Item = Rectangle>) -> Self {
-        let half_cell_m = frame.resolution_m() / 2.0;
-        let shapes = shapes.map(|shape| {
-            let (low, high) = shape.bounds();
-            let turn = shape.pose.rotation;
-            let cell_reach_m = half_cell_m * (turn.re.abs() + turn.im.abs());
-            Shape { shape, reach_m: (high - low) / 2.0, cell_reach_m, half_cell_m }
-        });
+        let shapes = shapes.map(|shape| BoxTest::new(frame, &shape));
         Self { shapes: shapes.collect(), share: OpenShare::default() }
     }
 
@@ -65,24 +41,6 @@ impl Cover {
         }
         let meeting = self.shapes.iter().filter(|shape| shape.relation(&center) == Relation::Meets);
         state_of(self.share.of(frame, cell, meeting.map(|shape| &shape.shape)))
-    }
-}
-
-impl Shape {
-    fn relation(&self, center: &Point2<f64>) -> Relation {
-        let apart = (center - self.shape.pose.translation.vector).coords.abs();
-        if (apart - self.reach_m).max() > self.half_cell_m + TOUCH_M {
-            return Relation::Apart;
-        }
-        let local = self.shape.pose.inverse_transform_point(center).coords.abs();
-        let outside_m = local - self.shape.half_m;
-        if outside_m.max() > self.cell_reach_m + TOUCH_M {
-            Relation::Apart
-        } else if outside_m.max() < -self.cell_reach_m - TOUCH_M {
-            Relation::Covers
-        } else {
-            Relation::Meets
-        }
     }
 }
 
@@ -179,13 +137,6 @@ fn clip(polygon: &[Point2<f64>], p: &Point2<f64>, q: &Point2<f64>, kept: &mut Ve
             kept.push(a + (b - a) * (at_a / (at_a - at_b)));
         }
     }
-}
-
-/// The area of a counter-clockwise polygon, m².
-fn area(polygon: &[Point2<f64>]) -> f64 {
-    let Some(first) = polygon.first() else { return 0.0 };
-    // Relative to one of its corners, so that nothing is lost far from the origin.
-    polygon.windows(2).map(|pair| (pair[0] - first).perp(&(pair[1] - first))).sum::<f64>() / 2.0
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use crate::physics::report::Body;
 
 impl PhysicsGroundTruth {
     /// Puts the robot with an index at its start, or moves the robot.
-    pub(in crate::physics) fn move_robot(&mut self, robot: usize, to: &Form) {
+    pub(crate) fn move_robot(&mut self, robot: usize, to: &Form) {
         let mut after = std::mem::take(&mut self.spare);
         after.clear();
         cover::form_cells(&self.frame, to, |index, whole| after.push((index as u32, whole)));

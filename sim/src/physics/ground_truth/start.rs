@@ -8,7 +8,7 @@ use interfaces::{Cell, GridFrame, TrueState};
 use std::mem::replace;
 
 /// The state that the walls alone give every cell.
-pub(in crate::physics) fn walls_cover(frame: &GridFrame, walls: &[Rectangle]) -> Vec<TrueState> {
+pub(crate) fn walls_cover(frame: &GridFrame, walls: &[Rectangle]) -> Vec<TrueState> {
     let mut states = vec![TrueState::Free; frame.len()];
     // Cells that no wall covers alone, with the walls that may together cover the cell.
     let mut shared = Vec::new();

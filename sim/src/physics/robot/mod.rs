@@ -1,9 +1,7 @@
 //! A robot at work: its sensors, behavior, drive and odometry. Its body belongs to `bodies`.
 
-mod displacements;
 mod odometry;
 mod view;
-mod wheels;
 
 pub use view::RobotView;
 
@@ -14,17 +12,15 @@ use super::drives::Drive;
 use super::form::Form;
 use super::report::Body;
 use super::sensors::{Look, Platform, Sensor, SharedBeams, Surroundings};
-use super::snapshot::{Values, pose, value};
+use super::snapshot::pose;
 use super::spec::RobotSpec;
-use displacements::Displacements;
-use interfaces::{LaserReading, Purpose, RandomStream, Twist};
+use interfaces::{LaserReading, Purpose, RandomStream, Twist, Values, values};
 use nalgebra::{Isometry2, Point2, Vector2};
-use odometry::Odometry;
+use odometry::{Displacements, Odometry, Wheels};
 use std::sync::Arc;
-use wheels::Wheels;
 
 #[derive(Clone)]
-pub(super) struct Robot {
+pub(crate) struct Robot {
     pub(super) spec: RobotSpec,
     /// The index among the robots.
     index: usize,
@@ -96,18 +92,11 @@ impl Robot {
 
     /// The values that a snapshot holds.
     pub(super) fn values(&mut self) -> Values<'_> {
-        let mut values = vec![
-            pose(&mut self.pose),
-            pose(&mut self.previous_pose),
-            value(&mut self.velocity),
-            value(&mut self.driven),
-            value(&mut self.touching),
-            value(&mut self.pressed_bumpers),
-            value(&mut self.command),
-        ];
-        values.extend(self.drive.values());
-        values.extend(self.wheels.values());
-        values.extend(self.odometry.values());
+        let Self { velocity, driven, touching, pressed_bumpers, command, drive, wheels, odometry, .. } = self;
+        let mut values = vec![pose(&mut self.pose), pose(&mut self.previous_pose)];
+        values.extend(
+            values![*velocity, *driven, *touching, *pressed_bumpers, *command; drive, wheels, odometry],
+        );
         let displacements = self.jumps.iter_mut().chain(&mut self.carried);
         values.extend(displacements.flat_map(Displacements::values));
         values.extend(self.behavior.iter_mut().flat_map(Behavior::values));
@@ -226,7 +215,7 @@ impl Robot {
 
     /// The velocity by odometry.
     pub(super) fn odometry_twist(&self) -> Twist {
-        let (velocity, slipping) = (self.velocity.twist(), self.wheels.slipping().twist());
+        let (velocity, slipping) = (self.velocity.twist(), self.wheels.slipping.twist());
         self.odometry.twist(&Twist {
             linear_mps: velocity.linear_mps + slipping.linear_mps,
             angular_radps: velocity.angular_radps + slipping.angular_radps,
@@ -237,14 +226,14 @@ impl Robot {
         Platform {
             robot: self.index,
             pose: self.pose,
-            odometry_pose: *self.odometry.pose(),
+            odometry_pose: self.odometry.pose,
             odometry_twist: self.odometry_twist(),
         }
     }
 
     /// Gives the body the velocity of the next step.
     pub(super) fn start_step(&mut self, bodies: &mut Bodies, step_s: f64) {
-        let at = self.odometry.pose();
+        let at = &self.odometry.pose;
         self.wheels.start_step(&self.drive, &self.command, at, step_s);
         self.velocity = self.drive.step(&self.command, at, step_s);
         self.driven = self.velocity;
@@ -266,7 +255,7 @@ impl Robot {
         let solved = bodies.velocity(self.index);
         self.velocity = self.drive.settle(&solved);
         self.wheels.end_step(&self.drive, &solved);
-        self.odometry.update(&self.previous_pose, &self.pose, self.wheels.slipping(), step_s);
+        self.odometry.update(&self.previous_pose, &self.pose, &self.wheels.slipping, step_s);
         if let Some(jumps) = &mut self.jumps
             && jumps.is_due(time_s)
         {

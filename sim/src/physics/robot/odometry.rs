@@ -1,9 +1,12 @@
-use super::displacements::Displacements;
-use crate::physics::command::Velocity;
-use crate::physics::snapshot::{self, Values, value};
-use crate::physics::spec::{DriveKind, OdometryError, RobotSpec};
-use interfaces::{RandomStream, Twist, pose, wrap_rad};
-use nalgebra::{Isometry2, Vector2};
+//! The odometry of a robot, with wheels that slip, and displacements.
+
+use crate::physics::command::{Command, Velocity};
+use crate::physics::drives::Drive;
+use crate::physics::snapshot::{self, value};
+use crate::physics::spec::{DisplacementSpec, DriveKind, OdometryError, RobotSpec};
+use interfaces::{RandomStream, Twist, Values, pose, rotation, values, wrap_rad};
+use nalgebra::{Isometry2, Point2, Vector2};
+use std::f64::consts::PI;
 
 /// The pose of a robot by odometry: the sum of its measured motions since the start.
 #[derive(Clone, Debug)]
@@ -12,7 +15,7 @@ pub(super) struct Odometry {
     /// Whether the wheels roll in every direction, not only forward and backward.
     is_omni: bool,
     noise: RandomStream,
-    pose: Isometry2<f64>,
+    pub(super) pose: Isometry2<f64>,
     /// The heading of `pose`, rad, without the rounding of repeated rotation.
     heading_rad: f64,
 }
@@ -39,10 +42,6 @@ impl Odometry {
     pub(super) fn restart(&mut self, at: Isometry2<f64>) {
         self.pose = at;
         self.heading_rad = interfaces::heading_rad(&at);
-    }
-
-    pub(super) fn pose(&self) -> &Isometry2<f64> {
-        &self.pose
     }
 
     /// The measured velocity at a true velocity.
@@ -77,7 +76,7 @@ impl Odometry {
         let OdometryError { distance_gain, turn_gain, turn_radpm, distance_noise_m, turn_noise_rad, .. } =
             self.error;
         let turn_rad = wrap_rad(interfaces::heading_rad(after) - interfaces::heading_rad(before));
-        let moved = interfaces::rotation(-interfaces::heading_rad(before) - turn_rad / 2.0)
+        let moved = rotation(-interfaces::heading_rad(before) - turn_rad / 2.0)
             * (after.translation.vector - before.translation.vector);
         // Of the wheels, not of the robot. Without slip not a bit changes.
         let turn_rad = turn_rad + slipping.turn_radps * step_s;
@@ -90,10 +89,101 @@ impl Odometry {
         let along = if self.is_omni && distance_m > 0.0 { moved / distance_m } else { Vector2::x() };
         let measured = moved * (1.0 + distance_gain) + along * noise_m;
         let measured_turn_rad = turn_rad * (1.0 + turn_gain) + moved.x * turn_radpm + swerve_rad;
-        let at = self.pose.translation.vector
-            + interfaces::rotation(self.heading_rad + measured_turn_rad / 2.0) * measured;
+        let at =
+            self.pose.translation.vector + rotation(self.heading_rad + measured_turn_rad / 2.0) * measured;
         self.heading_rad = wrap_rad(self.heading_rad + measured_turn_rad);
         self.pose = pose(at.x, at.y, self.heading_rad);
+    }
+}
+
+/// The wheels of a robot. While a contact changes the velocity of the robot, they slip: they turn like wheels that no
+/// contact stops. They move nothing, but the odometry measures them.
+#[derive(Clone)]
+pub(super) struct Wheels {
+    /// From 0 to 1, see [`OdometryError::slip`].
+    slip: f64,
+    /// A drive that follows the commands without contacts.
+    free: Drive,
+    /// What the odometry measures in addition to the velocity of the robot.
+    pub(super) slipping: Velocity,
+}
+
+impl Wheels {
+    pub(super) fn new(slip: f64, drive: Drive) -> Self {
+        Self { slip, free: drive, slipping: Velocity::STOP }
+    }
+
+    /// The values that a snapshot holds.
+    pub(super) fn values(&mut self) -> Values<'_> {
+        let mut values = self.free.values();
+        values.push(value(&mut self.slipping));
+        values
+    }
+
+    /// Starts a step with a command; `drive` is the drive of the robot before the step, `at` the pose by odometry.
+    pub(super) fn start_step(&mut self, drive: &Drive, command: &Command, at: &Isometry2<f64>, step_s: f64) {
+        if self.slip == 0.0 {
+            return;
+        }
+        if !drive.is_stalled {
+            self.free = *drive;
+        }
+        self.free.step(command, at, step_s);
+    }
+
+    /// Ends a step; `drive` is the drive of the robot after it, `solved` the velocity of the robot after contacts.
+    pub(super) fn end_step(&mut self, drive: &Drive, solved: &Velocity) {
+        self.slipping = Velocity::STOP;
+        if self.slip > 0.0 && drive.is_stalled {
+            let (free, slip) = (self.free.velocity, self.slip);
+            self.slipping = Velocity {
+                forward_mps: slip * (free.forward_mps - solved.forward_mps),
+                left_mps: slip * (free.left_mps - solved.left_mps),
+                turn_radps: slip * (free.turn_radps - solved.turn_radps),
+            };
+        }
+    }
+}
+
+/// Displacements that are due at random times.
+#[derive(Clone)]
+pub(crate) struct Displacements {
+    spec: DisplacementSpec,
+    random: RandomStream,
+    /// The time of the next displacement, s.
+    next_s: f64,
+}
+
+impl Displacements {
+    /// The first displacement is a random time after the start.
+    pub(super) fn new(spec: DisplacementSpec, mut random: RandomStream) -> Self {
+        let next_s = random.exponential(spec.every_s);
+        Self { spec, random, next_s }
+    }
+
+    /// The values that a snapshot holds.
+    pub(super) fn values(&mut self) -> Values<'_> {
+        values![self.random, self.next_s]
+    }
+
+    /// Whether a displacement is due at a time (s). The next one is then a random time later.
+    pub(crate) fn is_due(&mut self, time_s: f64) -> bool {
+        let is_due = time_s >= self.next_s;
+        if is_due {
+            // From now on, and not from the time at which it was due: never twice in one step.
+            self.next_s = time_s + self.random.exponential(self.spec.every_s);
+        }
+        is_due
+    }
+
+    /// A random place (m) and heading (rad) that differ from the given ones by a displacement.
+    pub(crate) fn draw(&mut self, from: &Point2<f64>, heading_rad: f64) -> (Point2<f64>, f64) {
+        let DisplacementSpec { distance_m, turn_rad, .. } = self.spec;
+        let direction_rad = self.random.uniform(-PI..PI);
+        // The square root makes it uniform in the disc.
+        let away_m = distance_m * self.random.uniform(0.0..1.0).sqrt();
+        let turn_rad = self.random.uniform(-turn_rad..turn_rad);
+        (from + rotation(direction_rad) * Vector2::x() * away_m, heading_rad + turn_rad)
     }
 }
 
@@ -118,7 +208,7 @@ mod tests {
                 let at = |step: i32| Isometry2::new(towards * f64::from(step) * 0.1, 0.0);
                 odometry.update(&at(step), &at(step + 1), &Velocity::STOP, 0.05);
             }
-            let error = odometry.pose().translation.vector - towards;
+            let error = odometry.pose.translation.vector - towards;
             [error.dot(&towards), error.perp(&towards)]
         });
         let squares = errors.fold([0.0; 2], |sum, error| [0, 1].map(|i| sum[i] + error[i] * error[i]));

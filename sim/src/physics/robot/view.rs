@@ -35,7 +35,7 @@ pub struct RobotView<'a> {
 impl<'a> RobotView<'a> {
     /// The pose and the velocity by odometry, with its errors, m and rad, m/s and rad/s.
     pub fn odometry(&self) -> (Isometry2<f64>, Twist) {
-        (*self.robot.odometry.pose(), self.robot.odometry_twist())
+        (self.robot.odometry.pose, self.robot.odometry_twist())
     }
 
     /// The latest reading of the main laser scanner; `None` before the first measurement. As with all sensors, the
@@ -83,7 +83,7 @@ impl fmt::Debug for RobotView<'_> {
 
 impl Robot {
     /// The state of the robot, as controllers and viewers read it.
-    pub(in crate::physics) fn view(&self) -> RobotView<'_> {
+    pub(crate) fn view(&self) -> RobotView<'_> {
         RobotView {
             index: self.index,
             name: &self.spec.name,
@@ -93,7 +93,7 @@ impl Robot {
             is_driven: self.is_driven(),
             twist: self.velocity.twist(),
             left_mps: self.velocity.left_mps,
-            is_stalled: self.drive.is_stalled(),
+            is_stalled: self.drive.is_stalled,
             touching: &self.touching,
             robot: self,
         }

@@ -3,7 +3,7 @@ use nalgebra::{Isometry2, Point2};
 use std::f64::consts::TAU;
 
 /// The bumpers, as bits, of a robot at `pose` that a contact presses. `ends` are the ends of the line of contact, m.
-pub(in crate::physics) fn pressed(spec: &BumperSpec, pose: &Isometry2<f64>, ends: &[Point2<f64>; 2]) -> u64 {
+pub(crate) fn pressed(spec: &BumperSpec, pose: &Isometry2<f64>, ends: &[Point2<f64>; 2]) -> u64 {
     let [a, b] = ends.map(|end| pose.inverse_transform_point(&end).coords);
     let turn_rad = libm::atan2(a.perp(&b), a.dot(&b));
     let right = if turn_rad < 0.0 { b } else { a };

@@ -24,17 +24,17 @@ pub struct Fiducial {
 }
 
 /// A body with a tag.
-pub(in crate::physics) struct Tagged {
-    pub(in crate::physics) tag: u32,
-    pub(in crate::physics) body: Body,
+pub(crate) struct Tagged {
+    pub(crate) tag: u32,
+    pub(crate) body: Body,
     /// The center, m.
-    pub(in crate::physics) center: Point2<f64>,
-    pub(in crate::physics) form: Form,
+    pub(crate) center: Point2<f64>,
+    pub(crate) form: Form,
 }
 
 /// A sensor that detects bodies with a tag.
 #[derive(Clone)]
-pub(in crate::physics) struct FiducialFinder {
+pub(crate) struct FiducialFinder {
     pub(super) spec: FiducialSpec,
     /// A single beam straight ahead.
     beam: Beams,

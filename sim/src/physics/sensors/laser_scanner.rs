@@ -13,20 +13,20 @@ const MIN_SHARE: f64 = 0.25;
 
 /// A planar laser scanner.
 #[derive(Clone)]
-pub(in crate::physics) struct LaserScanner {
+pub(crate) struct LaserScanner {
     pub(super) spec: LaserSpec,
     beams: Arc<Beams>,
 }
 
 /// The random streams of a laser scanner.
 #[derive(Clone)]
-pub(in crate::physics) struct LaserStreams {
+pub(crate) struct LaserStreams {
     pub(super) noise: RandomStream,
     pub(super) dropout: RandomStream,
 }
 
 impl LaserScanner {
-    pub(in crate::physics) fn new(spec: &LaserSpec, beams: &mut SharedBeams) -> Self {
+    pub(crate) fn new(spec: &LaserSpec, beams: &mut SharedBeams) -> Self {
         Self { spec: *spec, beams: beams.of_laser(spec) }
     }
 

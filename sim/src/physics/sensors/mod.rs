@@ -39,6 +39,17 @@ pub(super) enum Sensor {
     Fiducials(Box<OnDemand<FiducialFinder>>),
 }
 
+/// The same for every kind of sensor.
+macro_rules! each {
+    ($self:expr, $sensor:ident => $result:expr) => {
+        match $self {
+            Sensor::Laser($sensor) => $result,
+            Sensor::Sonar($sensor) => $result,
+            Sensor::Fiducials($sensor) => $result,
+        }
+    };
+}
+
 impl Sensor {
     /// All sensors of the robot with an index, the main laser scanner first.
     pub(super) fn all(spec: &RobotSpec, beams: &mut SharedBeams, seed: u64, robot: usize) -> Vec<Self> {
@@ -69,11 +80,7 @@ impl Sensor {
 
     /// The number of steps from one measurement to the next.
     pub(super) fn period_steps(&self) -> u64 {
-        match self {
-            Self::Laser(laser) => laser.device.spec.period_steps,
-            Self::Sonar(sonar) => sonar.device.spec.period_steps,
-            Self::Fiducials(finder) => finder.device.spec.period_steps,
-        }
+        each!(self, sensor => sensor.device.spec.period_steps)
     }
 
     /// Whether the sensor measures at a step.
@@ -83,29 +90,17 @@ impl Sensor {
 
     /// Whether the sensor has measured at a time, s.
     pub(super) fn has_measured(&self, time_s: f64) -> bool {
-        match self {
-            Self::Laser(laser) => laser.has_measured(time_s),
-            Self::Sonar(sonar) => sonar.has_measured(time_s),
-            Self::Fiducials(finder) => finder.has_measured(time_s),
-        }
+        each!(self, sensor => sensor.has_measured(time_s))
     }
 
     /// The sensor measures now, but the reading is computed when it is read.
     pub(super) fn request(&mut self, look: &Arc<Look>) {
-        match self {
-            Self::Laser(laser) => laser.request(look),
-            Self::Sonar(sonar) => sonar.request(look),
-            Self::Fiducials(finder) => finder.request(look),
-        }
+        each!(self, sensor => sensor.request(look))
     }
 
     /// The sensor measures now, and the reading will be read: it is computed at once.
     pub(super) fn measure(&mut self, look: &Look) {
-        match self {
-            Self::Laser(laser) => laser.measure(look),
-            Self::Sonar(sonar) => sonar.measure(look),
-            Self::Fiducials(finder) => finder.measure(look),
-        }
+        each!(self, sensor => sensor.measure(look))
     }
 
     /// The latest reading.
@@ -137,11 +132,7 @@ impl Sensor {
 
     /// Removes the latest reading.
     pub(super) fn clear(&mut self) {
-        match self {
-            Self::Laser(laser) => laser.clear(),
-            Self::Sonar(sonar) => sonar.clear(),
-            Self::Fiducials(finder) => finder.clear(),
-        }
+        each!(self, sensor => sensor.clear())
     }
 
     /// The values that a snapshot holds.

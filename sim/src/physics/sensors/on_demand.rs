@@ -6,14 +6,14 @@ use std::sync::{Arc, OnceLock};
 
 /// A robot and its surroundings at the time of a measurement.
 #[derive(Clone)]
-pub(in crate::physics) struct Look {
-    pub(in crate::physics) platform: Platform,
-    pub(in crate::physics) surroundings: Arc<Surroundings>,
+pub(crate) struct Look {
+    pub(crate) platform: Platform,
+    pub(crate) surroundings: Arc<Surroundings>,
     vicinity: OnceLock<Vicinity>,
 }
 
 impl Look {
-    pub(in crate::physics) fn new(platform: Platform, surroundings: Arc<Surroundings>) -> Self {
+    pub(crate) fn new(platform: Platform, surroundings: Arc<Surroundings>) -> Self {
         Self { platform, surroundings, vicinity: OnceLock::new() }
     }
 
@@ -26,7 +26,7 @@ impl Look {
 }
 
 /// A sensor without its readings.
-pub(in crate::physics) trait Device {
+pub(crate) trait Device {
     /// A reading of the sensor.
     type Reading;
     /// The random streams from which a measurement draws.
@@ -50,7 +50,7 @@ pub(in crate::physics) trait Device {
 /// A sensor whose readings are computed when they are first read. A reading has the same bits, whether the readings
 /// before were read or not.
 #[derive(Clone)]
-pub(in crate::physics) struct OnDemand<D: Device> {
+pub(crate) struct OnDemand<D: Device> {
     pub(super) device: D,
     /// Before the draws of the pending measurement, and of those that were skipped.
     streams: D::Streams,

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 /// The beams of all lasers and sonars. Sensors with the same beams share them.
 #[derive(Clone, Default)]
-pub(in crate::physics) struct SharedBeams {
+pub(crate) struct SharedBeams {
     known: Vec<(Key, Arc<Beams>)>,
 }
 
@@ -30,7 +30,7 @@ impl SharedBeams {
     }
 
     /// The beams of a laser.
-    pub(in crate::physics) fn of_laser(&mut self, spec: &LaserSpec) -> Arc<Beams> {
+    pub(crate) fn of_laser(&mut self, spec: &LaserSpec) -> Arc<Beams> {
         self.of(spec.angle_min_rad(), spec.angle_increment_rad(), spec.beams, spec.range_max_m)
     }
 }

@@ -20,7 +20,7 @@ pub struct SonarReading {
 
 /// A sonar or infrared range sensor.
 #[derive(Clone)]
-pub(in crate::physics) struct Sonar {
+pub(crate) struct Sonar {
     pub(super) spec: SonarSpec,
     beams: Arc<Beams>,
     /// Of all sensors of the robot.

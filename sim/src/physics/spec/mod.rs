@@ -54,7 +54,7 @@ pub struct Glass {
 
 impl Glass {
     /// Whether a beam along the unit vector `along` that ends at `end` (m) is swallowed.
-    pub(in crate::physics) fn swallows(&self, end: &Point2<f64>, along: &Vector2<f64>) -> bool {
+    pub(crate) fn swallows(&self, end: &Point2<f64>, along: &Vector2<f64>) -> bool {
         let local = self.shape.pose.inverse_transform_point(end).coords.abs() - self.shape.half_m;
         if local.max().abs() > TOUCH_M {
             return false;

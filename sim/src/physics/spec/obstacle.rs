@@ -21,6 +21,11 @@ pub struct ObstacleSpec {
 }
 
 impl ObstacleSpec {
+    /// An obstacle without a tag that is there from the start to the end.
+    pub fn new(name: &str, shape: Rectangle, motion: Motion) -> Self {
+        Self { name: name.to_owned(), shape, motion, tag: None, appears_s: None, disappears_s: None }
+    }
+
     /// Whether the obstacle ever appears, disappears or moves.
     pub fn is_mover(&self) -> bool {
         self.appears_s.is_some() || self.disappears_s.is_some() || self.motion != Motion::Fixed
@@ -93,7 +98,7 @@ pub struct PathSpec {
 
 impl PathSpec {
     /// The position of the center (m) at a time on the path (s).
-    pub(in crate::physics) fn at(&self, time_s: f64) -> Point2<f64> {
+    pub(crate) fn at(&self, time_s: f64) -> Point2<f64> {
         let (end_s, last) = self.keys[self.keys.len() - 1];
         let time_s = if self.is_loop { time_s % end_s } else { time_s };
         let next = self.keys.partition_point(|(key_s, _)| *key_s <= time_s);

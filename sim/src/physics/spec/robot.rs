@@ -86,7 +86,7 @@ impl RobotSpec {
     }
 
     /// The longest range of a laser scanner, a sonar or the fiducial finder, m.
-    pub(in crate::physics) fn range_m(&self) -> f64 {
+    pub(crate) fn range_m(&self) -> f64 {
         let lasers = self.lasers().map(|laser| laser.range_max_m);
         let sonars = self.sonars.iter().map(|sonar| sonar.range_max_m);
         let finder = self.fiducial.iter().map(|finder| finder.range_max_m);

@@ -16,8 +16,7 @@ pub(super) fn cluttered() -> FleetSpec {
     spec.obstacles.extend(boxes.map(|(x, y, width, height, heading_deg): (f64, f64, f64, f64, f64)| {
         let size_m = Vector2::new(width, height);
         let shape = Rectangle::around(Point2::new(x, y), size_m, heading_deg.to_radians());
-        let (name, motion) = ("box".to_owned(), Motion::Fixed);
-        ObstacleSpec { name, shape, motion, tag: None, appears_s: None, disappears_s: None }
+        ObstacleSpec::new("box", shape, Motion::Fixed)
     }));
     spec.turn(10.0_f64.to_radians(), &Point2::new(6.0, 6.0));
     // As large as the rotated house.

@@ -38,10 +38,10 @@ fn everything_moves_and_is_seen_as_before() {
     let (mut contacts, mut beams, mut other) = (0, 0, 0);
     for _ in 0..60 {
         let (a, b): (LaserReading, LaserReading) = (here.sense(), there.sense());
-        for (a, b) in here.robots().zip(there.robots()) {
+        for (a, b) in here.fleet().robots().zip(there.fleet().robots()) {
             assert!(apart_m(&by.pose(&a.pose), &b.pose) < 2e-3, "{} at {} s", a.index, here.time_s());
         }
-        for (a, b) in here.obstacles().zip(there.obstacles()) {
+        for (a, b) in here.fleet().obstacles().zip(there.fleet().obstacles()) {
             let off = a.corners.iter().zip(&b.corners).map(|(a, b)| (by.point(a) - b).norm());
             assert!(off.fold(0.0, f64::max) < 5e-3, "a thing at {} s", here.time_s());
         }

@@ -7,13 +7,9 @@ use nalgebra::{Point2, Vector2};
 /// Four rooms, turned, with boxes at odd angles; the other robot is far away.
 fn hall(contacts: ContactModel) -> FleetSpec {
     let mut spec = four_rooms();
-    let block = |x: f64, y: f64, heading_deg: f64| ObstacleSpec {
-        name: format!("block {x}"),
-        shape: Rectangle::around(Point2::new(x, y), Vector2::new(0.5, 0.3), heading_deg.to_radians()),
-        motion: Motion::Fixed,
-        tag: None,
-        appears_s: None,
-        disappears_s: None,
+    let block = |x: f64, y: f64, heading_deg: f64| {
+        let shape = Rectangle::around(Point2::new(x, y), Vector2::new(0.5, 0.3), heading_deg.to_radians());
+        ObstacleSpec::new(&format!("block {x}"), shape, Motion::Fixed)
     };
     spec.obstacles.extend([block(1.5, 3.5, 20.0), block(3.5, 1.5, 45.0), block(4.6, 4.4, 80.0)]);
     spec.turn(0.3, &Point2::new(6.0, 6.0));

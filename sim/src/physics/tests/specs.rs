@@ -71,14 +71,10 @@ pub(super) fn crowd() -> FleetSpec {
     house((0..36).map(robot).collect(), Vec::new())
 }
 
-fn obstacle(name: String, shape: Rectangle, motion: Motion) -> ObstacleSpec {
-    ObstacleSpec { name, shape, motion, tag: None, appears_s: None, disappears_s: None }
-}
-
 /// A box of 0.3 m that can be pushed.
 fn pushed(center: Point2<f64>, heading_deg: f64, mass_kg: f64, friction: f64) -> ObstacleSpec {
     let shape = Rectangle::around(center, Vector2::repeat(0.3), heading_deg.to_radians());
-    obstacle("box".into(), shape, Motion::Pushed(PushedSpec { mass_kg, friction }))
+    ObstacleSpec::new("box", shape, Motion::Pushed(PushedSpec { mass_kg, friction }))
 }
 
 /// A heavy robot at [1, 2] that drives along x, and twelve boxes ahead of it.
@@ -100,7 +96,7 @@ fn block(size_m: [f64; 2], points: &[[f64; 2]]) -> ObstacleSpec {
         keys.push((time_s + (at - before).norm() / 0.7, *at));
     }
     let shape = Rectangle::around(points[0], Vector2::from(size_m), 15.0_f64.to_radians());
-    obstacle("block".into(), shape, Motion::Path(PathSpec { keys, is_loop: true }))
+    ObstacleSpec::new("block", shape, Motion::Path(PathSpec { keys, is_loop: true }))
 }
 
 /// The leaf of a door from one point to the other that opens and closes at random.
@@ -112,7 +108,7 @@ fn door(from: [f64; 2], to: [f64; 2], is_hinged: bool) -> ObstacleSpec {
     };
     let opening = Opening::Random { closed_s: 1.0, open_s: 1.5 };
     let door = DoorSpec { leaf, opening, move_s: 1.0, starts_open: false };
-    obstacle("door".into(), Rectangle::along(from, to, 0.04), Motion::Door(door))
+    ObstacleSpec::new("door", Rectangle::along(from, to, 0.04), Motion::Door(door))
 }
 
 /// The four rooms with everything that moves, and robots that push.

@@ -22,14 +22,8 @@ fn house() -> WorldSpec {
     fleet.walls.extend(closet.into_iter().chain(recess).chain(behind_a_door).map(wall));
     let opening = Opening::Periodic { closed_s: 1000.0, open_s: 10.0 };
     let leaf = Leaf::Sliding { by_m: Vector2::new(0.0, -1.0) };
-    fleet.obstacles.push(ObstacleSpec {
-        name: "door".into(),
-        shape: wall([5.975, 2.5, 6.025, 3.5]),
-        motion: Motion::Door(DoorSpec { leaf, opening, move_s: 1.0, starts_open: false }),
-        tag: None,
-        appears_s: None,
-        disappears_s: None,
-    });
+    let motion = Motion::Door(DoorSpec { leaf, opening, move_s: 1.0, starts_open: false });
+    fleet.obstacles.push(ObstacleSpec::new("door", wall([5.975, 2.5, 6.025, 3.5]), motion));
     WorldSpec::new(fleet).unwrap()
 }
 

@@ -6,6 +6,7 @@ use crate::view::View;
 use localizer::PoseState;
 use rerun::{RecordingStreamResult, Scalars, SeriesLines, StateChange, StateConfiguration};
 use results::drawing::palette::{self, Rgb};
+use robot::StrategyState;
 
 /// The strategy that chose the goal.
 pub(in crate::recording) const STRATEGY: &str = "/curves/strategy";
@@ -87,22 +88,24 @@ pub(in crate::recording) fn plots(scene: &Scene, view: &View) -> Vec<Plot> {
     let title = format!("Longest time since a cell was seen ({})", scene.unit.symbol());
     plot(&title, "/curves/longest_unseen", None, vec![oldest]);
     if has_choice(view) {
-        let each = |value: fn(&robot::StrategyState) -> f64| {
-            let curve = |(index, strategy): (usize, &robot::StrategyState)| Curve {
-                part: escape(&strategy.name),
-                name: strategy.name.clone(),
-                color: palette::strategy(&strategy.name),
-                value: Box::new(move |view| view.strategies.get(index).map(value)),
-            };
-            view.strategies.iter().enumerate().map(curve).collect()
-        };
         // A strategy about which nothing was learned has the value 0.
-        let values = each(|strategy| strategy.value.unwrap_or(0.0));
+        let values = of_strategies(view, |strategy| strategy.value.unwrap_or(0.0));
         plot("Strategies: expected map updates per step", "/curves/strategy_value", None, values);
-        let shares = each(|strategy| strategy.share);
+        let shares = of_strategies(view, |strategy| strategy.share);
         plot("Strategies: share of the goals", "/curves/strategy_share", SHARE, shares);
     }
     plots
+}
+
+/// A curve for each strategy.
+fn of_strategies(view: &View, value: fn(&StrategyState) -> f64) -> Vec<Curve> {
+    let curve = |(index, strategy): (usize, &StrategyState)| Curve {
+        part: escape(&strategy.name),
+        name: strategy.name.clone(),
+        color: palette::strategy(&strategy.name),
+        value: Box::new(move |view| view.strategies.get(index).map(value)),
+    };
+    view.strategies.iter().enumerate().map(curve).collect()
 }
 
 /// Whether there are strategies to choose from.

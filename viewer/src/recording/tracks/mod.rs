@@ -6,7 +6,6 @@
 mod curves;
 mod estimate;
 mod field_of_view;
-mod fill;
 mod legend;
 mod maps;
 mod obstacles;

@@ -6,7 +6,10 @@ use nalgebra::{Point2, Vector2};
 use proptest::prelude::*;
 
 fn bitmap(rows: &str) -> Bitmap {
-    Bitmap::from_ascii(rows).unwrap()
+    let rows: Vec<&[u8]> = rows.lines().map(str::as_bytes).collect();
+    let width = rows.iter().map(|row| row.len()).max().unwrap_or(0);
+    let blocked = rows.iter().rev().flat_map(|row| (0..width).map(|x| row.get(x) == Some(&b'#')));
+    Bitmap::new(width as u32, rows.len() as u32, blocked.collect()).unwrap()
 }
 
 /// Two rooms with a door between them, walls one pixel thick.

@@ -217,7 +217,8 @@ fn everything_that_is_wrong_is_reported_at_once() {
     let text = "name = ''\nsensor_radius = 0\nmap = '''\n#####\n#...#\n#####\n'''\n\
                 [[block]]\nname = 'b'\ndwell = 0\ncourse = 'loop'\npath = [[1, 1], [2, 1]]\n";
     let error = crate::grid::parse("many.toml", text).unwrap_err();
-    let firsts: Vec<&str> = error.messages().iter().map(|message| message.lines().next().unwrap()).collect();
+    let messages = error.messages();
+    let firsts: Vec<&str> = messages.iter().map(|message| message.lines().next().unwrap()).collect();
     assert_eq!(
         firsts,
         [

@@ -2,8 +2,9 @@
 
 mod patrol;
 
+use crate::physics::kind::{KindOf, has_only_own_keys, kind_of};
 use crate::physics::space::Space;
-use crate::reader::{Table, has};
+use crate::reader::Table;
 use nalgebra::Point2;
 use sim::physics::shape::TOUCH_M;
 use sim::physics::{
@@ -17,8 +18,7 @@ pub(super) const REPEATS: [(&str, Repeat); 3] =
 pub(super) const KEYS: &str = "kind, from_m, to_m, speed_mps, wall_side, clearance_m, turn_radius_m, direction, \
                                points_m, repeat";
 
-/// Each kind of behavior, its keys, and what it does.
-const KINDS: [(&str, &str, &str); 6] = [
+const KINDS: [KindOf; 6] = [
     ("driven", "", "obeys commands"),
     ("standing", "", "stands"),
     ("circle", "speed_mps, turn_radius_m, direction", "drives a circle"),
@@ -40,36 +40,26 @@ pub(super) struct Driver<'a> {
 impl Driver<'_> {
     pub(super) fn behavior(&self, table: &Table<'_>) -> Option<BehaviorSpec> {
         let kind = table.needed("kind")?.text()?;
-        let mark = |label| (table.at("kind"), label);
-        let Some((_, keys, does)) = KINDS.iter().find(|(name, _, _)| *name == kind) else {
-            let names = KINDS.map(|(name, _, _)| format!("\"{name}\""));
-            let help = format!("it must be one of {}", names.join(", "));
-            return table.error(&format!("`{kind}` is no behaviour"), mark("not known"), &[], &help);
-        };
+        let known = kind_of(table, kind, &KINDS, "behaviour")?;
         if let DriveKind::Car { .. } = self.drive.kind
             && !["driven", "standing", "circle"].contains(&kind)
         {
             let help = "it cannot turn in place: it is \"driven\" or \"standing\", or drives a \"circle\"";
-            return table.error(&format!("a car cannot be `{kind}`"), mark("not for a car"), &[], help);
+            return table.error(
+                &format!("a car cannot be `{kind}`"),
+                (table.at("kind"), "not for a car"),
+                &[],
+                help,
+            );
         }
-        let listed = if keys.is_empty() { String::new() } else { format!("; its keys are {keys}") };
-        let help = format!("leave it out: such a robot {does}{listed}");
-        let foreign = table.given().filter(|(key, _)| *key != "kind" && !has(keys, key));
-        let foreign = foreign.map(|(key, span)| {
-            let what = format!("a robot that is `{kind}` has no `{key}`");
-            table.error::<()>(&what, (span, "not for this robot"), &[], &help)
-        });
-        // If such a key is given, the kind itself may be the mistake: nothing else is checked by the kind.
-        if foreign.count() > 0 {
-            return None;
-        }
+        has_only_own_keys(table, known, "kind", "a robot")?;
         let behavior = match kind {
             "driven" => BehaviorSpec::Driven,
             "standing" => BehaviorSpec::Standing,
             "circle" => self.circle(table)?,
             "wander" => {
-                let (speed_mps, clearance_m) = (self.speed_mps(table), clearance_m(table));
-                BehaviorSpec::Wander(WanderSpec { speed_mps: speed_mps?, clearance_m: clearance_m? })
+                let clearance_m = clearance_m(table);
+                BehaviorSpec::Wander(WanderSpec { speed_mps: self.speed_mps(table)?, clearance_m })
             }
             "waypoints" => self.waypoints(table)?,
             _ => BehaviorSpec::WallPatrol(self.patrol(table)?),
@@ -90,12 +80,12 @@ impl Driver<'_> {
 
     fn speed_mps(&self, table: &Table<'_>) -> Option<f64> {
         self.needs(table, "speed_mps")?;
-        table.number("speed_mps", 0.01..=self.drive.max_linear_mps)
+        Some(table.number("speed_mps", 0.01..=self.drive.max_linear_mps))
     }
 
     fn circle(&self, table: &Table<'_>) -> Option<BehaviorSpec> {
         let radius_m =
-            self.needs(table, "turn_radius_m").and_then(|()| table.number("turn_radius_m", 0.01..=1000.0));
+            self.needs(table, "turn_radius_m").map(|()| table.number("turn_radius_m", 0.01..=1000.0));
         let is_left = table.choice("direction", &[("left", true), ("right", false)]);
         let (speed_mps, radius_m, is_left) = (self.speed_mps(table)?, radius_m?, is_left?);
         let curved_radps = speed_mps * self.drive.max_curvature_radpm();
@@ -128,8 +118,7 @@ impl Driver<'_> {
         let (speed_mps, clearance_m) = (self.speed_mps(table), clearance_m(table));
         let (points, repeat) = (points?, repeat?);
         self.is_path_free(table, &points, repeat)?;
-        let (speed_mps, clearance_m) = (speed_mps?, clearance_m?);
-        Some(BehaviorSpec::Waypoints(WaypointsSpec { points, speed_mps, repeat, clearance_m }))
+        Some(BehaviorSpec::Waypoints(WaypointsSpec { points, speed_mps: speed_mps?, repeat, clearance_m }))
     }
 
     /// Checks that the path from the start through all points is free.
@@ -168,6 +157,6 @@ impl Driver<'_> {
     }
 }
 
-fn clearance_m(table: &Table<'_>) -> Option<f64> {
+fn clearance_m(table: &Table<'_>) -> f64 {
     table.number_or("clearance_m", 0.15, 0.05..=10.0)
 }

@@ -37,20 +37,19 @@ impl Driver<'_> {
         let (from, to, wall_on_left) = (from?, to?, side?);
         let mut wall_distance_m = f64::NAN;
         if let Some((radius_m, start)) = self.start {
-            let path = Path { driver: self, table, radius_m, from, to };
+            let path = PatrolPath { driver: self, table, radius_m, from, to };
             path.is_free(&start)?;
             // Where a wall is invalid, a robot that follows it is not invalid as well.
             if self.space.is_whole {
                 wall_distance_m = path.wall_distance_m(wall_on_left)?;
             }
         }
-        let (speed_mps, clearance_m) = (speed_mps?, clearance_m?);
-        Some(PatrolSpec { from, to, speed_mps, wall_on_left, wall_distance_m, clearance_m })
+        Some(PatrolSpec { from, to, speed_mps: speed_mps?, wall_on_left, wall_distance_m, clearance_m })
     }
 }
 
 /// The path of a patrol.
-struct Path<'a> {
+struct PatrolPath<'a> {
     driver: &'a Driver<'a>,
     table: &'a Table<'a>,
     radius_m: f64,
@@ -58,7 +57,7 @@ struct Path<'a> {
     to: Point2<f64>,
 }
 
-impl Path<'_> {
+impl PatrolPath<'_> {
     fn error<T>(&self, what: &str, others: &[Mark<'_>], help: &str) -> Option<T> {
         let mut marks = vec![(self.table.at("from_m"), "from here")];
         marks.extend_from_slice(others);

@@ -1,14 +1,15 @@
 //! A block that moves along a path: the path must lead through free space, and its times must be possible.
 
-use super::{Obstacle, spec};
+use super::Obstacle;
 use crate::physics::behavior::REPEATS;
 use crate::physics::space::{MAX_TIME_S, inside};
+use crate::reader::valid;
 use nalgebra::{Point2, Vector2};
 use sim::physics::shape::TOUCH_M;
 use sim::physics::{Motion, ObstacleSpec, PathSpec, Rectangle, Repeat, convex};
 use std::ops::Range;
 
-const MOST_POINTS: usize = 1000;
+const MAX_POINTS: usize = 1000;
 /// The fastest block, m/s.
 const FASTEST_MPS: f64 = 5.0;
 
@@ -28,8 +29,8 @@ impl Obstacle<'_> {
         let heading_rad = self.heading_rad();
         let points = self.needed("path_m").and_then(|path| {
             let count = path.items()?.len();
-            if !(1..=MOST_POINTS).contains(&count) {
-                let help = format!("it must have 1 to {MOST_POINTS}, as in `[[1.0, 2.0], [3.0, 2.0]]`");
+            if !(1..=MAX_POINTS).contains(&count) {
+                let help = format!("it must have 1 to {MAX_POINTS}, as in `[[1.0, 2.0], [3.0, 2.0]]`");
                 return path.invalid(&format!("has {count} points"), "these points", &help);
             }
             path.list(|point| point.point(&self.space.size))
@@ -46,7 +47,7 @@ impl Obstacle<'_> {
         let keys = keys?;
         // A block that never moves has no time to begin again at.
         let is_loop = repeat != Repeat::Once && keys[keys.len() - 1].0 > 0.0;
-        Some(spec(shape, Motion::Path(PathSpec { keys, is_loop })))
+        Some(ObstacleSpec::new(self.name, shape, Motion::Path(PathSpec { keys, is_loop })))
     }
 
     /// How fast it moves, as far as that can be judged without its path.
@@ -60,9 +61,9 @@ impl Obstacle<'_> {
             [false, true, _] => {
                 let speed_mps = table.number("speed_mps", 0.001..=FASTEST_MPS);
                 let dwell_s = table.number_or("dwell_s", 0.0, 0.0..=MAX_TIME_S);
-                let speed_mps = speed_mps?;
+                let speed_mps = valid(speed_mps)?;
                 self.is_slow_enough(speed_mps, table.at("speed_mps"))?;
-                Some(Pace::Even { speed_mps, dwell_s: dwell_s? })
+                Some(Pace::Even { speed_mps, dwell_s: valid(dwell_s)? })
             }
             _ => {
                 let help =

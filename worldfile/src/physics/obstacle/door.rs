@@ -1,20 +1,19 @@
 //! A door: its leaf, and the times at which it opens.
 
-use super::{Obstacle, spec};
+use super::Obstacle;
 use crate::physics::space::{MAX_TIME_S, inside};
 use sim::physics::{DoorSpec, Leaf, Motion, ObstacleSpec, Opening, Rectangle};
 
-const MOST_SWITCHES: usize = 100_000;
-/// The kinds of opening.
-const OPENINGS: [(&str, Kind); 3] =
-    [("periodic", Kind::Periodic), ("random", Kind::Random), ("scripted", Kind::Scripted)];
+const MAX_SWITCHES: usize = 100_000;
+/// An opening by the times for which the door is closed and open, s.
+type Stays = fn(f64, f64) -> Opening;
 
-#[derive(Clone, Copy, PartialEq)]
-enum Kind {
-    Periodic,
-    Random,
-    Scripted,
-}
+/// The openings; a scripted door has other times.
+const OPENINGS: [(&str, Option<Stays>); 3] = [
+    ("periodic", Some(|closed_s, open_s| Opening::Periodic { closed_s, open_s })),
+    ("random", Some(|closed_s, open_s| Opening::Random { closed_s, open_s })),
+    ("scripted", None),
+];
 
 impl Obstacle<'_> {
     pub(super) fn door(self, is_hinged: bool) -> Option<ObstacleSpec> {
@@ -26,7 +25,7 @@ impl Obstacle<'_> {
         let move_s = table.number_or("move_s", 1.0, 0.05..=3600.0);
         let starts_open = table.flag("starts_open");
         let opening = self.opening();
-        let (from, to, thickness_m, move_s) = (from?, to?, thickness_m?, move_s?);
+        let (from, to, thickness_m) = (from?, to?, thickness_m?);
         let length_m = (to - from).norm();
         if !(0.1..=10.0).contains(&length_m) {
             let what = format!("the leaf of `{}` is {length_m:.3} m long", self.name);
@@ -37,10 +36,10 @@ impl Obstacle<'_> {
         let what = format!("the leaf of `{}` reaches out of the map", self.name);
         let is_inside = inside(table.file, &what, table.at("name"), &shape, &self.space.size);
         let (leaf, travel_m) = if is_hinged {
-            let open_rad = open_deg?.to_radians();
+            let open_rad = open_deg.to_radians();
             (Leaf::Hinged { hinge: from, open_rad }, open_rad.abs() * length_m)
         } else {
-            let slide_m = slide_m?.unwrap_or(length_m);
+            let slide_m = slide_m.unwrap_or(length_m);
             (Leaf::Sliding { by_m: (from - to) / length_m * slide_m }, slide_m.abs())
         };
         // In one step no point of the leaf moves farther than what the physics keeps apart.
@@ -51,8 +50,8 @@ impl Obstacle<'_> {
             return table.error(&what, (table.at(key), "too fast"), &[], &help);
         }
         is_inside?;
-        let door = DoorSpec { leaf, opening: opening?, move_s, starts_open: starts_open? };
-        Some(spec(shape, Motion::Door(door)))
+        let door = DoorSpec { leaf, opening: opening?, move_s, starts_open };
+        Some(ObstacleSpec::new(self.name, shape, Motion::Door(door)))
     }
 
     fn opening(&self) -> Option<Opening> {
@@ -61,24 +60,18 @@ impl Obstacle<'_> {
             let help = "it needs an `opening`: \"periodic\", \"random\" or \"scripted\"";
             return self.incomplete("door", help);
         };
-        let word = kind.choice(&OPENINGS)?;
-        let is_scripted = word == Kind::Scripted;
-        match ["closed_s", "open_s", "switches_s"].map(|key| table.has(key)) {
-            [true, true, false] if !is_scripted => {
+        let opening = kind.choice(&OPENINGS)?;
+        match (opening, ["closed_s", "open_s", "switches_s"].map(|key| table.has(key))) {
+            (Some(opening), [true, true, false]) => {
                 let times_s = ["closed_s", "open_s"].map(|key| table.number(key, 0.1..=MAX_TIME_S));
-                let [closed_s, open_s] = times_s;
-                let (closed_s, open_s) = (closed_s?, open_s?);
-                Some(match word {
-                    Kind::Random => Opening::Random { closed_s, open_s },
-                    _ => Opening::Periodic { closed_s, open_s },
-                })
+                Some(opening(times_s[0], times_s[1]))
             }
-            [false, false, true] if is_scripted => self.script(),
+            (None, [false, false, true]) => self.script(),
             _ => {
                 let what = format!("the opening of `{}` does not fit its times", self.name);
-                let help = match is_scripted {
-                    true => "a scripted door has `switches_s`: the times at which it opens, closes, opens, …",
-                    false => {
+                let help = match opening {
+                    None => "a scripted door has `switches_s`: the times at which it opens, closes, opens, …",
+                    Some(_) => {
                         "such a door has `closed_s` and `open_s`: how long it stays so, or the means of that"
                     }
                 };
@@ -91,9 +84,9 @@ impl Obstacle<'_> {
     fn script(&self) -> Option<Opening> {
         let table = self.table;
         let switches = table.get("switches_s")?;
-        if switches.items()?.len() > MOST_SWITCHES {
+        if switches.items()?.len() > MAX_SWITCHES {
             let what = format!("the door `{}` switches too often", self.name);
-            let help = format!("{MOST_SWITCHES} times are the most");
+            let help = format!("{MAX_SWITCHES} times are the most");
             return table.error(&what, (switches.span(), "these times"), &[], &help);
         }
         let switches_s = switches.list(|time| time.within(&(0.0..=MAX_TIME_S)))?;

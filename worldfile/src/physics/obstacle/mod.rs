@@ -3,8 +3,9 @@
 mod block;
 mod door;
 
+use crate::physics::kind::{KindOf, has_only_own_keys, kind_of};
 use crate::physics::space::{MAX_TIME_S, Space, inside, upright};
-use crate::reader::{Table, Value, has};
+use crate::reader::{Table, Value, valid};
 use sim::physics::{Motion, ObstacleSpec, PushedSpec, Rectangle};
 
 pub(super) const KEYS: &str = "name, tag, kind, min_m, max_m, center_m, size_m, heading_deg, appears_s, \
@@ -12,8 +13,8 @@ pub(super) const KEYS: &str = "name, tag, kind, min_m, max_m, center_m, size_m, 
                                from_m, to_m, thickness_m, open_deg, slide_m, opening, closed_s, open_s, \
                                switches_s, move_s, starts_open";
 
-/// Each kind of obstacle, its keys beside the name, the tag and the kind, and what it does.
-const KINDS: [(&str, &str, &str); 5] = [
+/// The kinds of obstacles; all have a name, a tag and a kind as well.
+const KINDS: [KindOf; 5] = [
     (
         "fixed",
         "min_m, max_m, center_m, size_m, heading_deg, appears_s, disappears_s",
@@ -42,27 +43,11 @@ struct Obstacle<'a> {
 }
 
 pub(super) fn obstacle(table: &Table<'_>, space: &Space) -> Option<ObstacleSpec> {
-    let name = table.name();
-    let tag = table.tag();
+    let (name, tag) = (table.name(), table.tag());
     let word = table.get("kind").map_or(Some("fixed"), |kind| kind.text())?;
-    let Some((kind, keys, does)) = KINDS.iter().find(|(known, _, _)| *known == word) else {
-        let names = KINDS.map(|(name, _, _)| format!("\"{name}\""));
-        let help = format!("it must be one of {}", names.join(", "));
-        let mark = (table.at("kind"), "not known");
-        return table.error(&format!("`{word}` is no kind of obstacle"), mark, &[], &help);
-    };
-    let help = format!("leave it out: such an obstacle {does}; its keys are {keys}");
-    let is_own = |key: &str| has("name, tag, kind", key) || has(keys, key);
-    let foreign = table.given().filter(|(key, _)| !is_own(key)).map(|(key, span)| {
-        let what = format!("an obstacle that is `{kind}` has no `{key}`");
-        table.error::<()>(&what, (span, "not for this obstacle"), &[], &help)
-    });
-    // Where such a key stands, the kind may be what is invalid, or missing: nothing else is judged by it.
-    let most = if table.has("kind") { usize::MAX } else { 1 };
-    if foreign.take(most).count() > 0 {
-        return None;
-    }
-    let called = name.as_deref().unwrap_or_default();
+    let kind = kind_of(table, word, &KINDS, "kind of obstacle")?;
+    has_only_own_keys(table, kind, "name, tag, kind", "an obstacle")?;
+    let (kind, called) = (&kind.0, name.as_deref().unwrap_or_default());
     let obstacle = Obstacle { table, kind, name: called, space };
     let spec = match *kind {
         "block" => obstacle.block(),
@@ -70,7 +55,7 @@ pub(super) fn obstacle(table: &Table<'_>, space: &Space) -> Option<ObstacleSpec>
         "box" => obstacle.pushed(),
         _ => obstacle.fixed(),
     };
-    table.sound(ObstacleSpec { tag: tag?, name: name?, ..spec? })
+    table.sound(ObstacleSpec { tag, name: name?, ..spec? })
 }
 
 impl Obstacle<'_> {
@@ -92,28 +77,27 @@ impl Obstacle<'_> {
     }
 
     fn heading_rad(&self) -> Option<f64> {
-        Some(self.table.number_or("heading_deg", 0.0, -360.0..=360.0)?.to_radians())
+        valid(self.table.number_or("heading_deg", 0.0, -360.0..=360.0).to_radians())
     }
 
     fn fixed(self) -> Option<ObstacleSpec> {
         let (shape, times_s) = (self.shape(), self.stay_s());
-        let (appears_s, disappears_s) = times_s?;
-        Some(ObstacleSpec { appears_s, disappears_s, ..spec(shape?, Motion::Fixed) })
+        let [appears_s, disappears_s] = times_s?;
+        Some(ObstacleSpec { appears_s, disappears_s, ..ObstacleSpec::new(self.name, shape?, Motion::Fixed) })
     }
 
     /// When the obstacle appears and disappears, s.
-    fn stay_s(&self) -> Option<(Option<f64>, Option<f64>)> {
+    fn stay_s(&self) -> Option<[Option<f64>; 2]> {
         let times_s = ["appears_s", "disappears_s"];
-        let [appears_s, disappears_s] = times_s.map(|key| self.table.number_if(key, 0.001..=MAX_TIME_S));
-        let (appears_s, disappears_s) = (appears_s?, disappears_s?);
-        if let (Some(from), Some(to)) = (appears_s, disappears_s)
+        let times_s = times_s.map(|key| self.table.number_if(key, 0.001..=MAX_TIME_S));
+        if let [Some(from), Some(to)] = times_s
             && to <= from
         {
             let what = format!("the obstacle `{}` disappears before it appears", self.name);
             let help = format!("`disappears_s` must be later than `appears_s`, which is {from}");
             return self.table.error(&what, (self.table.at("disappears_s"), "too early"), &[], &help);
         }
-        Some((appears_s, disappears_s))
+        Some(times_s)
     }
 
     fn pushed(self) -> Option<ObstacleSpec> {
@@ -126,7 +110,7 @@ impl Obstacle<'_> {
             let help = "a box that can be pushed must be 0.02 m wide or more";
             return self.error(&format!("the box `{}` is too thin", self.name), help);
         }
-        Some(spec(shape, Motion::Pushed(PushedSpec { mass_kg: mass_kg?, friction: friction? })))
+        Some(ObstacleSpec::new(self.name, shape, Motion::Pushed(PushedSpec { mass_kg: mass_kg?, friction })))
     }
 
     /// The shape of an obstacle that stands at the start: in the map and in no wall.
@@ -162,9 +146,4 @@ impl Obstacle<'_> {
     fn fastest_mps(&self) -> f64 {
         0.1 / self.space.step_s
     }
-}
-
-/// An obstacle without a name.
-fn spec(shape: Rectangle, motion: Motion) -> ObstacleSpec {
-    ObstacleSpec { name: String::new(), shape, motion, tag: None, appears_s: None, disappears_s: None }
 }

@@ -60,7 +60,7 @@ fn bounds_hold_at_every_reading_whatever_the_command() {
     let mut before = world.sense().twist;
     for (linear_mps, angular_radps) in commands {
         let contacts = drive(&mut world, Twist { linear_mps, angular_radps }, 1.2, |world| {
-            let now = world.robots().next().unwrap().twist;
+            let now = world.fleet().robots().next().unwrap().twist;
             let slack = 1e-4;
             assert!(now.linear_mps.abs() <= limits.max_linear_mps + slack);
             assert!(now.angular_radps.abs() <= limits.max_angular_radps + slack);

@@ -252,7 +252,7 @@ fn one_driven_robot_lives_alike_in_a_fleet_and_in_a_world() {
         assert_eq!(heard.as_ref(), Some(&reading));
         world.act(&wanted(reading.time_s));
     }
-    for (one, other) in world.robots().zip(fleet.robots()) {
+    for (one, other) in world.fleet().robots().zip(fleet.robots()) {
         assert_eq!((one.pose, one.twist, one.name), (other.pose, other.twist, other.name));
     }
 }

@@ -85,7 +85,7 @@ impl Positions {
 #[test]
 fn every_place_where_a_robot_fits_can_be_reached() {
     for house in houses() {
-        let radius_m = HOUSE_RANGES.person_radius_m[1] + 0.03;
+        let radius_m = house_ranges::PERSON_RADIUS_M[1] + 0.03;
         let parts = Positions::new(&house, radius_m, false).parts();
         assert_eq!(parts.len(), 1, "{}", house.name);
         let opened = Positions::new(&house, radius_m, true);
@@ -151,7 +151,7 @@ fn houses_have_what_their_ranges_say() {
                     else {
                         panic!("{opening:?}")
                     };
-                    let [closed, open] = [HOUSE_RANGES.closed_s, HOUSE_RANGES.open_s];
+                    let [closed, open] = [house_ranges::CLOSED_S, house_ranges::OPEN_S];
                     assert!(
                         (closed[0]..=closed[1]).contains(closed_s) && (open[0]..=open[1]).contains(open_s)
                     );

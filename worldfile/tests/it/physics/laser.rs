@@ -24,7 +24,7 @@ fn a_robot_sees_the_other_but_not_itself() {
     assert!((scan.ranges_m[540] - 0.8).abs() < 1e-6, "{}", scan.ranges_m[540]);
     assert!(scan.ranges_m.iter().all(|range| *range > 0.5));
     world.act(&Twist::STOP);
-    let dummy = world.robots().nth(1).and_then(|robot| robot.reading()).map(|reading| &reading.scan);
+    let dummy = world.fleet().robots().nth(1).and_then(|robot| robot.reading()).map(|reading| &reading.scan);
     let down = dummy.map(|scan| scan.ranges_m[45]).unwrap();
     assert!((down - 0.8).abs() < 1e-6, "{down}");
 }

@@ -66,7 +66,7 @@ fn drive(
 
 /// The smallest distance between the bodies of two robots, m.
 fn bodies_apart_m(world: &PhysicsWorld) -> f64 {
-    let robots: Vec<RobotView<'_>> = world.robots().collect();
+    let robots: Vec<RobotView<'_>> = world.fleet().robots().collect();
     let pairs = (0..robots.len()).flat_map(|b| (0..b).map(move |a| (a, b)));
     let gap = |(a, b): (usize, usize)| {
         let between: f64 = (robots[a].pose.translation.vector - robots[b].pose.translation.vector).norm();

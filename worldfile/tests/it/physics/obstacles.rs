@@ -12,7 +12,7 @@ fn it_comes_and_goes_on_time_and_is_solid_meanwhile() {
     for tick in 1..=30 {
         world.act(&Twist::STOP);
         let standing = (10..21).contains(&tick);
-        assert_eq!(world.obstacles().count(), usize::from(standing), "at {} s", world.time_s());
+        assert_eq!(world.fleet().obstacles().count(), usize::from(standing), "at {} s", world.time_s());
         assert!((ahead(&mut world) - if standing { 1.0 } else { 3.95 }).abs() < 1e-5);
         let expected = if standing { TrueState::Blocked } else { TrueState::Free };
         let truth = world.truth();

@@ -6,7 +6,7 @@ const FAR: &str = "pose_m = [2.0, 2.0]";
 
 /// The position of the dummy robot along its path, and the error of its distance to the wall, m.
 fn dummy(world: &PhysicsWorld) -> (f64, f64) {
-    let at = world.robots().nth(1).unwrap().pose.translation.vector;
+    let at = world.fleet().robots().nth(1).unwrap().pose.translation.vector;
     (at.x, at.y - 11.5)
 }
 
@@ -100,8 +100,8 @@ fn it_stops_for_an_obstacle_and_goes_on_when_that_has_gone() {
         );
         let mut world = PhysicsWorld::new(&four_rooms_but(&[], &obstacle), 0);
         drive(&mut world, Twist::STOP, 20.0, |world| {
-            let at = Point2::from(world.robots().nth(1).unwrap().pose.translation.vector);
-            let standing = world.obstacles().count() == 1;
+            let at = Point2::from(world.fleet().robots().nth(1).unwrap().pose.translation.vector);
+            let standing = world.fleet().obstacles().count() == 1;
             let gap_m = world.spec().obstacles[0].shape.distance_m(&at) - 0.2;
             assert!(!standing || gap_m > 0.02, "{gap_m} m from the box at {min}");
         });

@@ -51,7 +51,8 @@ fn truth_is_what_sampled_points_say() {
             world.spec().obstacles.iter().filter(|o| o.appears_s.is_none()).map(|obstacle| &obstacle.shape),
         );
         let boxes: Vec<_> = boxes.collect();
-        let dummy = world.robots().nth(1).map(|robot| Point2::from(robot.pose.translation.vector)).unwrap();
+        let dummy =
+            world.fleet().robots().nth(1).map(|robot| Point2::from(robot.pose.translation.vector)).unwrap();
         let (mut partly, mut blurred) = (0, 0);
         for (index, state) in states(truth).into_iter().enumerate() {
             let solid = |point: &Point2<f64>| {

@@ -1,4 +1,4 @@
-//! Queries that only tests need.
+//! Queries of the tests in `physics/tests`.
 
 use super::Bodies;
 use nalgebra::{Point2, Vector2};
@@ -6,7 +6,7 @@ use rapier2d::prelude as rapier;
 
 impl Bodies {
     /// The kinetic energy of all dynamic bodies, J.
-    pub(in crate::physics) fn kinetic_j(&self) -> f64 {
+    pub(crate) fn kinetic_j(&self) -> f64 {
         let energy = |body: &rapier::RigidBody| {
             let inertia = body.mass_properties().effective_angular_inertia();
             let spin = body.angvel() * body.angvel() * inertia;
@@ -16,12 +16,12 @@ impl Bodies {
     }
 
     /// Updates the positions of colliders for ray casts.
-    pub(in crate::physics) fn find_again(&mut self) {
+    pub(crate) fn find_again(&mut self) {
         self.world.detect_collisions(&(), &());
     }
 
     /// The nearest body that a ray meets, m; the oracle for our own rays.
-    pub(in crate::physics) fn ray_m(
+    pub(crate) fn ray_m(
         &self,
         from: &Point2<f64>,
         along: &Vector2<f64>,
