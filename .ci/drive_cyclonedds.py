@@ -293,7 +293,8 @@ def hear():
     transforms = reader("rt/tf", TFMessage)
     while True:
         for message in transforms.take(100):
-            if any((t.header.frame_id, t.child_frame_id) == ("map", "odom") for t in message.transforms):
+            found = getattr(message, "transforms", [])  # the end of a publisher has none
+            if any((t.header.frame_id, t.child_frame_id) == ("map", "odom") for t in found):
                 print(time.monotonic(), flush=True)
         time.sleep(0.001)
 

@@ -2,7 +2,7 @@
 the longest time between two transforms from then on; CycloneDDS hears them in another program.
 
 Arguments: a folder for files, the program curious_node, the program sim_node (not used), the number of scans of the way around
-(1000: as fast as a robot drives), and parameters as NAME:=VALUE. The scans before the loop are sent faster than a robot
+and of their beams (1000 61: as fast as a robot drives), and parameters as NAME:=VALUE. The scans before the loop are sent faster than a robot
 measures them, those from there on at 10 Hz.
 """
 
@@ -18,6 +18,7 @@ from drive_ros2 import CURIOUS, WORK, Program, Robot, check, parameter
 HERE = os.path.dirname(os.path.abspath(__file__))
 WORLD = os.path.join(HERE, "../ros2/src/node/tests/block.toml")
 LOW, LENGTH, DEPTH, BEND = 8.3, 15.0, 11.0, 0.8
+REACH = 10.0
 FAST_HZ, SLOW_HZ = 100.0, 10.0
 
 
@@ -42,7 +43,7 @@ def rounded(way):
 class Driver(Robot):
     """Drives around the block; its time is that of the scans, not that of the sending."""
 
-    def __init__(self, step_m, beams=61, view=np.pi / 2):
+    def __init__(self, step_m, beams, view=np.pi / 2):
         super().__init__("driver", beams)
         self.angle_min = -view / 2
         walls = tomllib.load(open(WORLD, "rb"))["wall"]
@@ -76,7 +77,7 @@ class Driver(Robot):
         along[~((along > 0) & (at >= 0) & (at <= 1))] = np.inf
         nearest = along.min(axis=1)
         noisy = nearest + self.noise.normal(0, 0.01, len(nearest))
-        return np.where(nearest > 10.0, np.inf, noisy).astype(np.float32)
+        return np.where(nearest > REACH, np.inf, noisy).astype(np.float32)
 
     def step(self):
         super().step()
@@ -90,15 +91,15 @@ def gaps_ms(times, begin):
 
 
 def main():
-    scans = int(sys.argv[4]) if len(sys.argv) > 4 else 1000
+    scans, beams = [int(number) for number in sys.argv[4:6]] or [1000, 61]
     around = 2 * (LENGTH + DEPTH) - 8 * BEND + 2 * np.pi * BEND
-    settings = [part for setting in sys.argv[5:] for part in ("-p", setting)]
+    settings = [part for setting in sys.argv[6:] for part in ("-p", setting)]
     heard = os.path.join(WORK, "transforms.txt")
     hear = subprocess.Popen([sys.executable, os.path.join(HERE, "drive_cyclonedds.py"), *sys.argv[1:4], "hear"],
                             stdout=open(heard, "w"))
     node = Program(CURIOUS, "--ros-args", *parameter("map_update_interval", 0.5), *settings,
                    *parameter("qos_overrides./scan.subscription.reliability", "reliable"))
-    robot = Driver(around / scans)
+    robot = Driver(around / scans, beams)
     check("the node subscribes", robot.spin(10, lambda: robot.scans.get_subscription_count() > 0))
     robot.spin(1)
     robot.drive(1e9, FAST_HZ, until=lambda: robot.way > around - 1.0)
