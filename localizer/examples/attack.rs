@@ -3,7 +3,7 @@
 //! odometry is still right after a time without returns, in rooms that look alike from several sides.
 //!
 //! ```text
-//! cargo run -p localizer --example attack
+//! cargo run -p curious-localizer --example attack
 //! ```
 
 use interfaces::{Cell, CellState, Grid, GridFrame, LaserReading, Purpose, RandomStream, Scan, Twist, pose};
