@@ -1,4 +1,4 @@
-//! Prints the README's results table (Markdown) from the `summary.json` files of `four_rooms` runs.
+//! Prints a table of `docs/results.md` from the `summary.json` files of `four_rooms` runs.
 //!
 //! Runs of the same world are one column; each entry is the mean over these runs and, in brackets, the
 //! worst run.

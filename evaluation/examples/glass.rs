@@ -1,7 +1,7 @@
 //! Beams without a return, in worlds with glass, black furniture, short ranges and large halls on which no limit was tuned.
 //!
 //! ```text
-//! cargo run -p evaluation --example glass -- [FIRST_SEED [SEEDS [MINUTES]]]
+//! cargo run -p curious-evaluation --example glass -- [FIRST_SEED [SEEDS [MINUTES]]]
 //! ```
 //!
 //! A robot that wanders (or stands) in generated houses, whose people and doors move, and in halls larger than the range. A

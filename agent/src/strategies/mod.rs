@@ -1,6 +1,6 @@
 //! To add a strategy: write a file in this folder, add its `mod` line here, and add a line to `BUILT_IN` in `policy.rs`.
 //!
-//! A row in the README's table of strategies is needed as well; a test compares the table with `BUILT_IN`.
+//! A row in the table of `docs/strategies.md` is needed as well; a test compares the table with `BUILT_IN`.
 
 mod frontier;
 mod information_gain;

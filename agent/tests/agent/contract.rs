@@ -285,11 +285,11 @@ fn a_policy_of_one_strategy_has_its_name() {
 }
 
 #[test]
-fn the_readme_lists_every_policy() {
-    let readme = include_str!("../../../README.md");
+fn the_page_of_strategies_lists_every_policy() {
+    let page = include_str!("../../../docs/strategies.md");
     for policy in Policy::built_in() {
         let row = format!("| `{policy}` | {} |", policy.description());
-        assert!(readme.contains(&row), "README.md needs the row {row}");
+        assert!(page.contains(&row), "docs/strategies.md needs the row {row}");
     }
 }
 

@@ -1,6 +1,6 @@
 //! States that earlier versions of the node have written stay readable, and the layout has a version, as for the states of
 //! the other programs (`tests/it/state_examples.rs` of the workspace). The next example:
-//! `cargo test -p ros2 write_the_state -- --ignored`
+//! `cargo test -p curious-ros2 write_the_state -- --ignored`
 
 use super::*;
 use robot::state::{State, read_state};
