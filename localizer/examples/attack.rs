@@ -3,7 +3,7 @@
 //! odometry is still right after a time without returns, in rooms that look alike from several sides.
 //!
 //! ```text
-//! cargo run -p curious-localizer --example attack
+//! cargo run -p curious-localizer --example attack -- [SIDE_M CELL_M RANGE_MAX_M SEED]
 //! ```
 
 use interfaces::{Cell, CellState, Grid, GridFrame, LaserReading, Purpose, RandomStream, Scan, Twist, pose};
@@ -90,7 +90,7 @@ fn search(side_m: f64, cell_m: f64, range_max_m: f64, seed: u64) {
     let ranges_m = cast(&map, &at, range_max_m);
     let mut times_ms = Vec::new();
     let mut estimate = None;
-    for scan in 0..6000 {
+    for scan in 0..2000 {
         let reading = reading(0.1 * f64::from(scan), Isometry2::identity(), range_max_m, ranges_m.clone());
         let begin_ms = cpu_ms();
         let found = localizer.localize(&reading, &map).estimate;
@@ -101,14 +101,17 @@ fn search(side_m: f64, cell_m: f64, range_max_m: f64, seed: u64) {
             break;
         }
     }
-    let off_m = estimate.filter(|found| found.state == PoseState::Tracking);
-    let off_m = off_m.map(|found| (found.pose.translation.vector - at.translation.vector).norm());
+    let (is_found, off_m, spread_m) = estimate.map_or((false, 0.0, 0.0), |found| {
+        let off_m = (found.pose.translation.vector - at.translation.vector).norm();
+        (found.state == PoseState::Tracking, off_m, found.position_std_m())
+    });
+    let off =
+        if is_found { format!("{off_m:.2}") } else { format!("not found ({off_m:.2} ± {spread_m:.0})") };
     let scans = times_ms.len();
     times_ms.sort_by(f64::total_cmp);
     let [median, most] = [times_ms[scans / 2], times_ms[scans - 1]];
     println!(
-        "| {side_m} | {cell_m} | {range_max_m} | {} | {scans} | {median:.0} | {most:.0} | {build_ms:.0} |",
-        off_m.map_or("not found".to_owned(), |off_m| format!("{off_m:.2}"))
+        "| {side_m} | {cell_m} | {range_max_m} | {off} | {scans} | {median:.0} | {most:.0} | {build_ms:.0} |"
     );
 }
 
@@ -156,6 +159,10 @@ fn trip(size_m: [f64; 2], missing_s: f64, range_m: f32) -> String {
 }
 
 fn main() {
+    let arguments: Vec<f64> = std::env::args().skip(1).filter_map(|text| text.parse().ok()).collect();
+    if let [side_m, cell_m, range_max_m, seed] = arguments[..] {
+        return search(side_m, cell_m, range_max_m, seed as u64);
+    }
     println!(
         "| side, m | cell, m | range, m | off, m | scans | CPU per scan, ms: median | most | to build |\n|---|---|---|---|---|---|---|---|"
     );
