@@ -1,7 +1,7 @@
 use super::ground_truth::GridGroundTruth;
 use super::spec::{BlockSpec, Course, GridSpec};
-use super::visibility::LineOfSight;
-use interfaces::{Cell, CellReading, Grid, Purpose, RandomStream, Step, World};
+use super::visibility::{BlockedCells, LineOfSight};
+use interfaces::{Cell, CellReading, Purpose, RandomStream, Step, World};
 use nalgebra::Isometry2;
 
 /// A grid world with one robot.
@@ -17,7 +17,7 @@ pub struct GridWorld {
     random: RandomStream,
     blocks: Vec<Block>,
     /// Walls and blocks as they are now, also in the middle of a step.
-    blocked: Grid<bool>,
+    blocked: BlockedCells,
     line_of_sight: LineOfSight,
     truth: GridGroundTruth,
     /// The moves of the last step.
@@ -29,7 +29,7 @@ impl GridWorld {
     pub fn new(spec: &GridSpec, seed: u64) -> Self {
         let block = |(index, block)| Block::new(block, index, spec.block_probability, seed);
         let blocks: Vec<Block> = spec.blocks.iter().enumerate().map(block).collect();
-        let mut blocked = spec.walls.clone();
+        let mut blocked = BlockedCells::new(&spec.walls, spec.sensor_radius);
         for block in &blocks {
             blocked.set(block.cell(), true);
         }
@@ -40,7 +40,7 @@ impl GridWorld {
             moved: Vec::with_capacity(blocks.len()),
             blocks,
             blocked,
-            line_of_sight: LineOfSight::new(spec.sensor_radius, spec.frame()),
+            line_of_sight: LineOfSight::new(spec.sensor_radius),
             truth: GridGroundTruth::new(spec),
             spec: spec.clone(),
         }
@@ -95,12 +95,12 @@ impl World for GridWorld {
     fn act(&mut self, command: &Step) {
         let target = command.target(self.robot);
         let is_obeyed = self.random.bernoulli(self.spec.robot_probability);
-        if is_obeyed && self.blocked.get(target) == Some(&false) {
+        if is_obeyed && self.spec.frame().contains(target) && !self.blocked.get(target) {
             self.robot = target;
         }
         self.moved.clear();
         for block in &mut self.blocks {
-            let is_free = |cell: Cell| cell != self.robot && self.blocked.get(cell) == Some(&false);
+            let is_free = |cell: Cell| cell != self.robot && !self.blocked.get(cell);
             if let Some((from, to)) = block.step(is_free) {
                 self.blocked.set(from, false);
                 self.blocked.set(to, true);
@@ -108,7 +108,7 @@ impl World for GridWorld {
             }
         }
         self.step += 1;
-        self.truth.update(&self.moved, |cell| self.blocked.get(cell) == Some(&true));
+        self.truth.update(&self.moved, |cell| self.blocked.get(cell));
     }
 }
 
