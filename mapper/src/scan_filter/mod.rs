@@ -158,9 +158,4 @@ impl ScanFilter {
         values.push(value(&mut self.veils));
         values
     }
-
-    /// Whether a filter that goes on has something to remember: beams without a return that are judged, or veils.
-    pub fn has_learned(&self) -> bool {
-        self.learns || self.makes_veils()
-    }
 }

@@ -9,7 +9,7 @@ use mapper::{Mapper, MapperSettings};
 
 const MAPPER: &str = "mapper";
 const LOCALIZATION: &str = "localization";
-/// Missing where the filter of scans has learned nothing.
+/// Missing in the states of earlier versions.
 const FILTER: &str = "filter";
 
 /// The settings that what was learned belongs to.
@@ -49,8 +49,7 @@ impl LearnedFacts {
     /// Copies what was learned. This is short; to turn the copy into bytes takes longer.
     pub fn snapshot<P: Pilot>(&self, robot: &mut Robot<LaserReading, P>) -> LearnedSnapshot {
         let (mapper, localization) = (robot.mapper.clone(), robot.localization_mut().snapshot());
-        let filter = robot.filter_mut().filter(|filter| filter.has_learned());
-        let filter = filter.map(|filter| interfaces::snapshot(filter.values()));
+        let filter = robot.filter_mut().map(|filter| interfaces::snapshot(filter.values()));
         LearnedSnapshot { facts: self.clone(), mapper, localization, filter: filter.unwrap_or_default() }
     }
 
