@@ -203,7 +203,8 @@ mod tests {
                 Purpose::Carried(index),
             ]
         };
-        let once = [Purpose::Agent, Purpose::Controller, Purpose::HouseGenerator, Purpose::Task];
+        let once =
+            [Purpose::Agent, Purpose::Controller, Purpose::HouseGenerator, Purpose::Task, Purpose::MapFrame];
         let physics = (0..1000).flat_map(per_index).chain(once);
         let blocks = (0..1000).map(Purpose::BlockTransition);
         let grid = blocks.chain([Purpose::RobotTransition, Purpose::GridAgent, Purpose::GridController]);

@@ -12,6 +12,7 @@ mod fast;
 mod observed;
 mod prior;
 mod saved;
+mod scan_filter;
 mod skipped;
 mod things;
 mod walls;

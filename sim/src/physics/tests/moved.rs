@@ -39,7 +39,7 @@ fn everything_moves_and_is_seen_as_before() {
     for _ in 0..60 {
         let (a, b): (LaserReading, LaserReading) = (here.sense(), there.sense());
         for (a, b) in here.robots().zip(there.robots()) {
-            assert!(apart_m(&by.pose(a.pose), b.pose) < 2e-3, "{} at {} s", a.index, here.time_s());
+            assert!(apart_m(&by.pose(&a.pose), &b.pose) < 2e-3, "{} at {} s", a.index, here.time_s());
         }
         for (a, b) in here.obstacles().zip(there.obstacles()) {
             let off = a.corners.iter().zip(&b.corners).map(|(a, b)| (by.point(a) - b).norm());
