@@ -1,0 +1,45 @@
+//! What a robot that is localized loses when its map is not aligned with the walls: false changes and errors of poses.
+//!
+//! ```text
+//! cargo run -p evaluation --example own_frame -- worlds/drifting_house.toml [SEEDS [MINUTES]]
+//! ```
+
+use agent::Policy;
+use evaluation::metrics::rate_scores;
+use evaluation::physics_trial::{PhysicsSettings, PhysicsTrial};
+use interfaces::{GroundTruth, LaserReading, TrueState};
+use mapper::{Mapper, ReadingError};
+use std::error::Error;
+use std::ops::ControlFlow;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let number = |index: usize, default| arguments.get(index).map_or(Ok(default), |text| text.parse::<u64>());
+    let spec =
+        worldfile::physics::load_world(arguments.first().ok_or("usage: own_frame WORLD [SEEDS [MINUTES]]")?)?;
+    let (first, seeds, minutes) = (number(3, 0)?, number(1, 10)?, number(2, 20)?);
+    let settings = PhysicsSettings::of(&spec)?;
+    for seed in first..seeds {
+        let pilot = settings.pilot(settings.agent(&Policy::default(), seed)?, seed)?;
+        let mut trial = PhysicsTrial::new(&spec, seed, &settings, None, pilot)?;
+        let mut true_poses = Mapper::new(&settings.mapper, trial.world.spec().frame)?;
+        trial.run_with(|world, reading, _, _, _| -> Result<_, ReadingError> {
+            let exact = LaserReading { pose: *world.true_pose(), ..reading.clone() };
+            true_poses.update(&exact)?;
+            let is_over = reading.time_s >= minutes as f64 * 60.0;
+            Ok(if is_over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
+        })?;
+        let truth = trial.world.truth();
+        let partly =
+            (0..truth.frame().len()).filter(|index| truth.state(*index) == TrueState::PartlyCovered).count();
+        let false_changes =
+            [&trial.mapper, &true_poses].map(|mapper| rate_scores(mapper, truth).false_change_events);
+        let results = trial.results();
+        println!(
+            "seed {seed}: false changes {false_changes:?} (own, true poses), {partly} cells partly covered of {}; {}",
+            truth.frame().len(),
+            serde_json::to_string(&results.pose)?
+        );
+    }
+    Ok(())
+}
