@@ -98,7 +98,7 @@ impl Explore {
 
     /// Senses, and updates the map.
     fn sense(&mut self) {
-        self.reading = self.poses.unswept(self.world.sense());
+        self.reading = self.poses.deskewed(self.world.sense());
         let update = self.mapper.update(&self.reading);
         debug_assert!(update.is_ok(), "a simulated reading is valid: {update:?}");
         let updates = self.mapper.transitions().iter().filter(|transition| transition.event().is_some());

@@ -60,7 +60,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             problem = problem.take().or_else(|| writer.reading(&raw).err());
             let pose = *world.true_pose();
             truth[number].push(pose);
-            exact.update(&given.unswept(LaserReading { pose, ..raw }))?;
+            exact.update(&given.deskewed(LaserReading { pose, ..raw }))?;
             let is_over = world.time_s() >= end_s;
             Ok(if is_over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
         })?;

@@ -38,6 +38,11 @@ impl Calibration {
         }
     }
 
+    /// The largest errors that are expected.
+    pub(crate) fn trust(&self) -> &OdometryTrust {
+        &self.trust
+    }
+
     /// The motion that a measured motion stands for.
     pub(crate) fn correct(&self, measured: &Isometry2<f64>) -> Isometry2<f64> {
         let at = measured.translation.vector * self.distance.0;

@@ -1,7 +1,7 @@
 //! The readings of a robot that maps a place for the first time, and whether they must be read again.
 
 use crate::estimate::{Localized, PoseEstimate, PoseState};
-use crate::localizer::Guide;
+use crate::localizer::PosePrior;
 use crate::openings::has_opening;
 use crate::settings::LocalizerSettings;
 use crate::trajectory::{TrajectoryFinder, TrajectorySettings, covariance, in_frame};
@@ -20,16 +20,16 @@ const KNOWN_STD_M: f64 = 0.05;
 const EXPLAINED: f64 = 0.9;
 /// The number of keyframes of the longer way over which motions are compared: about 5 m.
 const WINDOW: usize = 16;
-/// The first map stands when it has no openings, and the robot has gone as far without new ground as on new ground
+/// The first map is_frozen when it has no openings, and the robot has gone as far without new ground as on new ground
 /// before, and at least this far, m; a turn counts as 0.3 m/rad.
-const STANDS_M: f64 = 60.0;
+const FROZEN_M: f64 = 60.0;
 /// An opening is left alone if the robot has gone this far without new ground, m: it may be too narrow, or behind glass.
 const LEFT_ALONE_M: f64 = 300.0;
-/// The first map also stands after this number of readings, which bounds the memory: half an hour at 10 Hz.
+/// The first map also is_frozen after this number of readings, which bounds the memory: half an hour at 10 Hz.
 const MOST_READINGS: usize = 18_000;
 /// After the readings were read again in vain this often, they are not read again.
 const MOST_REFUSED: u32 = 3;
-/// The first map also stands after this number of consecutive readings that did not agree with those before: the robot was
+/// The first map also is_frozen after this number of consecutive readings that did not agree with those before: the robot was
 /// carried, and how far is not known.
 const BROKEN_READINGS: u32 = 10;
 /// The number of scans at rest before the readings are read again.
@@ -124,7 +124,7 @@ impl FirstMap {
     /// Finds the trajectory to reading `number`.
     fn find(&mut self, reading: &LaserReading, number: usize) {
         self.finder.add(reading.clone());
-        if self.finder.keyframes() > self.keyframes.len() {
+        if self.finder.keyframe_count() > self.keyframes.len() {
             self.keyframes.push(number);
         }
     }
@@ -139,15 +139,15 @@ impl FirstMap {
         self.log.loops
     }
 
-    /// Whether the map stands: its frame does not move any more.
-    pub(crate) fn stands(&self) -> bool {
+    /// Whether the map is_frozen: its frame does not move any more.
+    pub(crate) fn is_frozen(&self) -> bool {
         let is_over = self.log.kept.len() >= MOST_READINGS || self.log.is_broken;
         self.log.rest.is_none() && (self.log.is_whole || is_over)
     }
 
     /// Takes the next reading. The result is where the robot is, from its last certain pose on; `None` if the last reading
     /// was certain, or if a scan since then did not agree with those before.
-    pub(crate) fn guide(&mut self, reading: &LaserReading) -> Option<Guide> {
+    pub(crate) fn pose_prior(&mut self, reading: &LaserReading) -> Option<PosePrior> {
         let number = self.log.kept.len();
         self.find(reading, number);
         self.log.unsupported = if self.finder.is_supported() { 0 } else { self.log.unsupported + 1 };
@@ -156,7 +156,7 @@ impl FirstMap {
         let (motion, spread) = self.finder.motion_since(last)?;
         let at = self.log.kept[last].pose;
         let covariance = in_frame(&spread, &at.inverse()) + covariance(CERTAIN_STD_M, CERTAIN_STD_RAD);
-        Some(Guide { pose: at * motion, covariance })
+        Some(PosePrior { pose: at * motion, covariance })
     }
 
     /// Whether the mapper, whose time is `map_s`, has paused since the last reading.
@@ -184,7 +184,7 @@ impl FirstMap {
         if self.keyframes.last() == Some(&number) {
             self.look_at_keyframe();
             let (new_m, known_m) = self.finder.ways_on_ground_m();
-            let has_returned = known_m >= new_m.max(STANDS_M);
+            let has_returned = known_m >= new_m.max(FROZEN_M);
             self.log.is_whole = has_returned && (known_m >= LEFT_ALONE_M || !has_opening(states));
         }
         if self.finder.loops() != self.log.loops {
@@ -265,7 +265,7 @@ impl FirstMap {
 
     /// The poses of all readings in the map, by the trajectory with all loops. Where the trajectory begins, it is where the
     /// map is.
-    pub(crate) fn corrected(&self) -> Vec<Guide> {
+    pub(crate) fn corrected(&self) -> Vec<PosePrior> {
         let found = self.finder.corrected();
         let last = self.keyframes[FIRST_KEYFRAMES.min(self.keyframes.len() - 1)];
         let first = || {
@@ -282,7 +282,7 @@ impl FirstMap {
         let shift = shift.sum::<Vector2<f64>>() / count;
         let to_map = Isometry2::from_parts(shift.into(), rotation);
         let covariance = covariance(CORRECTED_STD_M, CORRECTED_STD_RAD);
-        found.iter().map(|found| Guide { pose: to_map * found, covariance }).collect()
+        found.iter().map(|found| PosePrior { pose: to_map * found, covariance }).collect()
     }
 }
 

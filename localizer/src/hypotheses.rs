@@ -11,6 +11,8 @@ use nalgebra::{Isometry2, Matrix3, Vector3};
 /// The uncertainty of a pose that a search has found: the size of its cells.
 const FOUND_STD_M: f64 = 0.1;
 const FOUND_STD_RAD: f64 = 0.03;
+/// Two poses are both possible if the score of the second is at least this share of the score of the first.
+pub(crate) const AMBIGUITY_RATIO: f64 = 0.9;
 /// A match starts up to this far from the found pose, m.
 const FIRST_GATE_M: f64 = 0.3;
 /// Poses whose scores differ by less are about equal: a place that looks alike from two sides.
@@ -41,22 +43,17 @@ pub(crate) struct Hypotheses {
 }
 
 impl Hypotheses {
-    /// Refines the poses that a search has found. Poses below `least_score` are dropped.
-    pub(crate) fn start<M: ChangingMap>(
-        scene: &Scene<M>,
-        found: &[Candidate],
-        least_score: f64,
-        ratio: f64,
-    ) -> Self {
+    /// Refines the poses that a search has found. Poses below `min_score` are dropped.
+    pub(crate) fn start<M: ChangingMap>(scene: &Scene<M>, found: &[Candidate], min_score: f64) -> Self {
         let spread = Vector3::new(FOUND_STD_M, FOUND_STD_M, FOUND_STD_RAD);
         let covariance = Matrix3::from_diagonal(&spread.component_mul(&spread));
         let list = found
             .iter()
             .filter_map(|candidate| refine(scene, &candidate.pose, &covariance, FIRST_GATE_M, 0.0))
-            .filter(|hypothesis| hypothesis.score >= least_score)
+            .filter(|hypothesis| hypothesis.score >= min_score)
             .collect();
         let mut hypotheses = Self { list, scans: 0 };
-        hypotheses.sort_out(ratio);
+        hypotheses.sort_out();
         hypotheses
     }
 
@@ -70,9 +67,9 @@ impl Hypotheses {
     }
 
     /// These and others.
-    pub(crate) fn or(mut self, others: Self, ratio: f64) -> Self {
+    pub(crate) fn or(mut self, others: Self) -> Self {
         self.list.extend(others.list);
-        self.sort_out(ratio);
+        self.sort_out();
         self
     }
 
@@ -123,29 +120,23 @@ impl Hypotheses {
         }
     }
 
-    /// Moves all poses and compares them with the next scan. Poses below `least_score` are dropped.
-    pub(crate) fn advance<M: ChangingMap>(
-        &mut self,
-        scene: &Scene<M>,
-        motion: &Motion,
-        least_score: f64,
-        ratio: f64,
-    ) {
+    /// Moves all poses and compares them with the next scan. Poses below `min_score` are dropped.
+    pub(crate) fn advance<M: ChangingMap>(&mut self, scene: &Scene<M>, motion: &Motion, min_score: f64) {
         self.scans += 1;
         let next = |hypothesis: &Hypothesis| {
             let covariance = motion.propagate(&hypothesis.pose, &hypothesis.covariance);
             let pose = motion.apply(&hypothesis.pose);
             refine(scene, &pose, &covariance, 2.0 * scene.gate_m(), MEMORY * hypothesis.score)
-                .filter(|next| next.support.score() >= least_score)
+                .filter(|next| next.support.score() >= min_score)
         };
         self.list = self.list.iter().filter_map(next).collect();
-        self.sort_out(ratio);
+        self.sort_out();
     }
 
     /// Sorts by the score, and drops what is much worse than the best, or the same as a better one.
-    fn sort_out(&mut self, ratio: f64) {
+    fn sort_out(&mut self) {
         self.list.sort_by(|a, b| b.score.total_cmp(&a.score));
-        let least = self.list.first().map_or(0.0, |best| best.score * ratio);
+        let least = self.list.first().map_or(0.0, |best| best.score * AMBIGUITY_RATIO);
         let mut kept: Vec<Hypothesis> = Vec::new();
         for hypothesis in self.list.drain(..).filter(|hypothesis| hypothesis.score >= least) {
             if !kept.iter().any(|better| is_same(&better.pose, &hypothesis.pose)) {

@@ -21,7 +21,7 @@
 
 use crate::estimate::{Localized, PoseEstimate, PoseState};
 use crate::first_map::{FirstMap, Kept, Log};
-use crate::localizer::{Guide, Localizer};
+use crate::localizer::{Localizer, PosePrior};
 use crate::settings::LocalizerSettings;
 use interfaces::{GridFrame, LaserReading, SettingsError, ValueError, read_value, write_value};
 use mapper::Mapper;
@@ -132,7 +132,7 @@ impl LoopClosingLocalizer {
     }
 
     /// Whether the first map stands: no loop will move it any more.
-    pub fn stands(&self) -> bool {
+    pub fn is_frozen(&self) -> bool {
         self.first.is_none() && self.is_settled()
     }
 
@@ -163,10 +163,8 @@ impl LoopClosingLocalizer {
         let Some(first) = &mut self.first else {
             return LoopClosed { localized: self.localizer.localize(reading, map), correction: None };
         };
-        let localized = match first.guide(reading) {
-            Some(guide) => self.localizer.localize_near(reading, map, guide),
-            None => self.localizer.localize(reading, map),
-        };
+        let prior = first.pose_prior(reading);
+        let localized = self.localizer.localize_near(reading, map, prior);
         if self.localizer.much_has_moved() {
             // Keyframes from before and after do not fit together: most of what they show has moved.
             self.first = None;
@@ -174,7 +172,7 @@ impl LoopClosingLocalizer {
         }
         let is_due = first.add(reading, (map.time(), map.states()), &localized);
         let closed = if is_due { self.read_again(map) } else { None };
-        if self.first.as_ref().is_some_and(FirstMap::stands) {
+        if self.first.as_ref().is_some_and(FirstMap::is_frozen) {
             self.first = None;
         }
         closed.unwrap_or(LoopClosed { localized, correction: None })
@@ -220,7 +218,7 @@ impl LoopClosingLocalizer {
     fn change_map(&mut self, map: &mut Mapper) -> Option<LoopClosed> {
         let Background { thread, since } = self.background.take()?;
         let closed = self.take_over(thread.join().ok()?, &since, map);
-        if self.first.as_ref().is_some_and(FirstMap::stands) {
+        if self.first.as_ref().is_some_and(FirstMap::is_frozen) {
             self.first = None;
         }
         closed
@@ -235,7 +233,7 @@ impl LoopClosingLocalizer {
     ) -> Option<LoopClosed> {
         let (mut again, correction) = again.unzip();
         for (reading, map_s, localized) in since {
-            let (near, is_after_pause) = (first.guide(reading), first.is_after_pause(*map_s));
+            let (near, is_after_pause) = (first.pose_prior(reading), first.is_after_pause(*map_s));
             if let Some(again) = &mut again {
                 again.read(reading, is_after_pause, near);
             }
@@ -266,24 +264,27 @@ struct Replay {
 
 impl Replay {
     /// Reads the next reading, near a pose if one is known.
-    fn read(&mut self, reading: &LaserReading, is_after_pause: bool, near: Option<Guide>) -> PoseEstimate {
+    fn read(
+        &mut self,
+        reading: &LaserReading,
+        is_after_pause: bool,
+        near: Option<PosePrior>,
+    ) -> PoseEstimate {
         if let Some(Localized { reading, estimate }) = self.last.take() {
             learn(&mut self.map, &reading, &estimate);
         }
         if is_after_pause {
             self.map.pause(reading.time_s);
         }
-        let localized = match near {
-            Some(near) => self.localizer.localize_near(reading, &self.map, near),
-            None => self.localizer.localize(reading, &self.map),
-        };
+        let localized = self.localizer.localize_near(reading, &self.map, near);
         self.last.insert(localized).estimate.clone()
     }
 
     /// Reads all readings, near their corrected poses.
     fn all(mut self, mut first: FirstMap) -> Replayed {
         let near = first.corrected();
-        let read = |(kept, near): (&Kept, Guide)| self.read(&kept.reading, kept.is_after_pause, Some(near));
+        let read =
+            |(kept, near): (&Kept, PosePrior)| self.read(&kept.reading, kept.is_after_pause, Some(near));
         let estimates: Vec<PoseEstimate> = first.kept().iter().zip(near).map(read).collect();
         let is_certain = |state: PoseState| usize::from(state == PoseState::Tracking);
         let (mut before, mut after, mut largest_m) = (0, 0, 0.0_f64);

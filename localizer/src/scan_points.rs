@@ -64,17 +64,14 @@ pub(crate) struct ScanPoint {
 pub(crate) struct PointRules {
     /// The standard deviation of the range noise, m.
     pub(crate) noise_m: f64,
-    /// Whether points count by the length of surface that they stand for.
-    pub(crate) by_arc_length: bool,
     /// Whether beams that graze a surface make points. The range noise shifts them along the surface, and little off it:
     /// along a corridor they are the best evidence for the heading.
     pub(crate) grazing: bool,
 }
 
-/// The points of one scan. Its buffers are used again for the next scan.
+/// Makes points of scans. Its buffers are used again for the next scan.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ScanPoints {
-    points: Vec<ScanPoint>,
     directions: Directions,
     hits: Vec<Option<Point2<f64>>>,
     /// Whether the end point of a beam lies on the same surface as that of the next beam.
@@ -105,24 +102,14 @@ impl Directions {
 }
 
 impl ScanPoints {
-    /// The points of the scan, in the order of the beams.
-    pub(crate) fn points(&self) -> &[ScanPoint] {
-        &self.points
-    }
-
-    /// Removes all points.
-    pub(crate) fn clear(&mut self) {
-        self.points.clear();
-    }
-
-    /// Replaces the points by those of `reading`. Beams without a return, and points where no straight surface can be
-    /// recognised (edges, single points) are left out. `passed` gives [`ScanPoint::passed`] of a beam.
-    pub(crate) fn update(
+    /// The points of the scan of `reading`, in the order of the beams. Beams without a return, and points where no straight
+    /// surface can be recognized (edges, single points) are left out. `passed` gives [`ScanPoint::passed`] of a beam.
+    pub(crate) fn of(
         &mut self,
         reading: &LaserReading,
         passed: impl Fn(usize) -> f64,
         rules: &PointRules,
-    ) {
+    ) -> Vec<ScanPoint> {
         let LaserReading { scan, mount, .. } = reading;
         self.directions.update(scan, mount);
         let beams = scan.ranges_m.len();
@@ -136,13 +123,10 @@ impl ScanPoints {
         }));
         self.join(scan, rules);
         self.sum();
-        self.points.clear();
         let is_closed = scan.is_full_turn() && beams > 2;
-        for beam in 0..beams {
-            if let Some(point) = self.point(beam, scan, is_closed, rules) {
-                self.points.push(ScanPoint { passed: passed(beam), ..point });
-            }
-        }
+        let point =
+            |beam| Some(ScanPoint { passed: passed(beam), ..self.point(beam, scan, is_closed, rules)? });
+        (0..beams).filter_map(point).collect()
     }
 
     /// Finds neighboring end points on one surface.
@@ -226,7 +210,7 @@ impl ScanPoints {
         let normal = if normal.dot(&toward) < 0.0 { -normal } else { normal };
         let incidence = normal.dot(&toward) / range_m;
         let arc_m = spacing_m / incidence.max(0.2);
-        let weight = if rules.by_arc_length { (arc_m / FULL_WEIGHT_M).min(1.0) } else { 1.0 };
+        let weight = (arc_m / FULL_WEIGHT_M).min(1.0);
         let noise_share = if rules.grazing { incidence.max(LEAST_INCIDENCE) } else { 1.0 };
         Some(ScanPoint { at, normal, weight, noise_share, beam, passed: 1.0 })
     }

@@ -30,14 +30,13 @@ pub(crate) struct Scene<'a, M> {
 impl<M: ChangingMap> Scene<'_, M> {
     /// The distance up to which a point confirms a surfel, m.
     pub(crate) fn gate_m(&self) -> f64 {
-        let noise_m = self.settings.range_noise_std_m;
         let stds = if self.is_tight { GATE_STDS / 2.0 } else { GATE_STDS };
-        stds * (noise_m * noise_m + SURFEL_STD_M * SURFEL_STD_M).sqrt()
+        stds * hit_std_m(self.settings.range_noise_std_m)
     }
 
     /// The distance up to which the mean over some points is exactly in place, m.
     pub(crate) fn exact_m(&self) -> f64 {
-        EXACT_SHARE * self.tight().gate_m()
+        exact_m(self.settings.range_noise_std_m)
     }
 
     /// Matches the scan from `start`; points belong to surfels up to `first_m` away in the first steps.
@@ -73,4 +72,14 @@ impl<M: ChangingMap> Scene<'_, M> {
         support.contradicted += support.blind;
         support
     }
+}
+
+/// The distance up to which the mean over some points of a laser with this noise is exactly in place, m.
+pub(crate) fn exact_m(noise_m: f64) -> f64 {
+    EXACT_SHARE * GATE_STDS / 2.0 * hit_std_m(noise_m)
+}
+
+/// The standard deviation of the distance of a point from its surfel, m.
+pub(crate) fn hit_std_m(noise_m: f64) -> f64 {
+    (noise_m * noise_m + SURFEL_STD_M * SURFEL_STD_M).sqrt()
 }

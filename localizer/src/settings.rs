@@ -24,13 +24,6 @@ pub struct LocalizerSettings {
     /// Learned rates of change lower the weight of a surface in a search by exp(−rate · horizon), s; 0 ignores the
     /// rates.
     pub rate_horizon_s: f64,
-    /// Two poses are both possible if the score of the second is at least this share of the score of the first.
-    pub ambiguity_ratio: f64,
-    /// Whether points count by the length of the surface that they stand for, and not by their number. Without it, a
-    /// near surface with many beams outvotes the room. Only comparisons set it to false.
-    pub weigh_by_arc_length: bool,
-    /// Whether a scan enters the line map only with a certain pose. Only comparisons set it to false.
-    pub gate: bool,
 }
 
 /// The largest errors of the odometry that are expected: systematic errors that can grow by this much per metre
@@ -75,9 +68,6 @@ impl Default for LocalizerSettings {
             scans_to_confirm: 3,
             settle_s: 2.0,
             rate_horizon_s: 1000.0,
-            ambiguity_ratio: 0.9,
-            weigh_by_arc_length: true,
-            gate: true,
         }
     }
 }
@@ -102,8 +92,7 @@ impl LocalizerSettings {
         check.not_negative("lost_after_s", self.lost_after_s)?;
         check.within("scans_to_confirm", self.scans_to_confirm, 1.0..=1000.0, "from 1 to 1000")?;
         check.within("settle_s", self.settle_s, 0.0..=60.0, "from 0 to 60 s")?;
-        check.not_negative("rate_horizon_s", self.rate_horizon_s)?;
-        check.within("ambiguity_ratio", self.ambiguity_ratio, 0.0..=1.0, "from 0 to 1")
+        check.not_negative("rate_horizon_s", self.rate_horizon_s)
     }
 }
 

@@ -174,13 +174,12 @@ impl ClearBeams {
     /// One of this many beams without a return is looked at.
     const STRIDE: usize = 6;
 
-    /// Replaces the beams by those of `scan`.
-    pub(crate) fn update(&mut self, scan: &Scan) {
-        self.range_m = scan.range_max_m.min(FARTHEST_M);
-        self.directions.clear();
+    /// The beams of `scan`.
+    pub(crate) fn of(scan: &Scan) -> Self {
         let beams = (0..scan.ranges_m.len()).step_by(Self::STRIDE);
         let clear = beams.filter(|&beam| scan.ranges_m[beam] == f32::INFINITY);
-        self.directions.extend(clear.map(|beam| interfaces::rotation(scan.angle_rad(beam)) * Vector2::x()));
+        let direction = |beam| interfaces::rotation(scan.angle_rad(beam)) * Vector2::x();
+        Self { directions: clear.map(direction).collect(), range_m: scan.range_max_m.min(FARTHEST_M) }
     }
 
     /// The weight of the beams that pass something blocked.

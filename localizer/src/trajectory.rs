@@ -14,7 +14,6 @@
 //! - In the end, keyframes are matched with all submaps around them, so that every wall is there once.
 
 mod free_space;
-mod front_end;
 mod graph;
 mod keyframe;
 mod line_map;
@@ -28,16 +27,19 @@ mod residual;
 mod settings;
 mod sparse;
 mod submap;
+mod submap_matcher;
 
 pub use line_map::{LineFit, LineMap, LineMatcher};
 pub(crate) use matching::{covariance, in_frame};
 pub use residual::Residual;
 pub use settings::TrajectorySettings;
+pub(crate) use submap_matcher::SubmapMatcher;
 
 use crate::estimate::PoseState;
-use front_end::FrontEnd;
-use graph::PoseGraph;
+use crate::local_trajectory_builder::LocalTrajectoryBuilder;
+use graph::{Edge, EdgeKind, PoseGraph};
 use interfaces::{LaserReading, SettingsError};
+use keyframe::Keyframe;
 use loops::LoopCloser;
 use nalgebra::Isometry2;
 
@@ -78,7 +80,7 @@ struct Attached {
 #[derive(Debug)]
 pub struct TrajectoryFinder {
     settings: TrajectorySettings,
-    front_end: FrontEnd,
+    builder: LocalTrajectoryBuilder<SubmapMatcher>,
     closer: LoopCloser,
     graph: PoseGraph,
     readings: Vec<Attached>,
@@ -94,7 +96,11 @@ impl TrajectoryFinder {
         settings.check()?;
         Ok(Self {
             settings: settings.clone(),
-            front_end: FrontEnd::new(settings),
+            builder: LocalTrajectoryBuilder::new(
+                SubmapMatcher::new(settings),
+                &settings.odometry,
+                settings.point_rules(),
+            ),
             closer: LoopCloser::new(settings.range_noise_std_m),
             graph: PoseGraph::default(),
             readings: Vec::new(),
@@ -103,18 +109,50 @@ impl TrajectoryFinder {
 
     /// Adds the next reading. An invalid reading gets the pose of the odometry.
     pub fn add(&mut self, reading: LaserReading) {
-        let (offset, state) = self.front_end.localize(&reading, &mut self.graph);
-        let keyframe = self.graph.poses.len() - 1;
-        self.readings.push(Attached { time_s: reading.time_s, keyframe, offset, state });
+        let state = match self.builder.add(&reading, ()) {
+            Some((_, found)) if found.is_supported => PoseState::Tracking,
+            Some(_) => PoseState::Uncertain,
+            None => {
+                if self.keyframes().is_empty() {
+                    self.builder.matcher.begin_without_scan(&reading, &self.builder.track);
+                }
+                PoseState::Lost
+            }
+        };
+        self.add_keyframes();
+        let (keyframe, time_s) = (self.graph.poses.len() - 1, reading.time_s);
+        let offset = self.builder.matcher.offset(&self.builder.track);
+        self.readings.push(Attached { time_s, keyframe, offset, state });
         if self.settings.close_loops {
             self.search_loops();
         }
     }
 
+    /// Adds new keyframes to the graph.
+    fn add_keyframes(&mut self) {
+        let PoseGraph { poses, edges } = &mut self.graph;
+        for keyframe in &self.builder.matcher.keyframes()[poses.len()..] {
+            let (motion, information) = keyframe.from_last;
+            let Some(last) = poses.last() else {
+                poses.push(keyframe.local);
+                continue;
+            };
+            let mut pose = last * motion;
+            pose.rotation.renormalize();
+            let (from, to) = (poses.len() - 1, poses.len());
+            edges.push(Edge { from, to, motion, information, kind: EdgeKind::Match });
+            poses.push(pose);
+        }
+    }
+
+    fn keyframes(&self) -> &[Keyframe] {
+        self.builder.matcher.keyframes()
+    }
+
     /// Searches for the submaps that were finished since the last search.
     fn search_loops(&mut self) {
-        while let Some(submap) = self.front_end.next_finished() {
-            self.closer.add(submap, self.front_end.keyframes(), &mut self.graph);
+        while let Some(submap) = self.builder.matcher.next_finished() {
+            self.closer.add(submap, self.builder.matcher.keyframes(), &mut self.graph);
         }
     }
 
@@ -122,11 +160,11 @@ impl TrajectoryFinder {
     pub fn finish(mut self) -> Trajectory {
         let mut residual = None;
         if self.settings.close_loops {
-            self.front_end.end();
+            self.builder.matcher.end();
             self.search_loops();
             self.closer.accept_strong(&mut self.graph);
             self.graph = self.optimized();
-            residual = residual::residual(&self.closer.places, self.front_end.keyframes(), &self.graph);
+            residual = residual::residual(&self.closer.places, self.keyframes(), &self.graph);
         }
         let loops = self.closer.loops();
         Trajectory { poses: self.poses(&self.graph), loops, residual }
@@ -138,7 +176,7 @@ impl TrajectoryFinder {
         graph.optimize();
         graph.remove_outliers();
         graph.optimize();
-        refine::refine(&self.closer.places, self.front_end.keyframes(), &mut graph);
+        refine::refine(&self.closer.places, self.keyframes(), &mut graph);
         graph
     }
 

@@ -86,7 +86,7 @@ impl<R> Localization<R> for ExactPoses {
 
 impl Localization<LaserReading> for GivenPoses {
     fn localize(&mut self, reading: LaserReading, _: &mut Mapper) -> Posed<LaserReading> {
-        Posed::exact(self.unswept(reading))
+        Posed::exact(self.deskewed(reading))
     }
 
     fn snapshot(&mut self) -> Vec<u8> {

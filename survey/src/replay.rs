@@ -118,7 +118,7 @@ impl FoundPoses {
             reading.pose = found.pose;
             found.state
         });
-        (self.given.unswept(reading), state)
+        (self.given.deskewed(reading), state)
     }
 
     /// Passes a reading from which was learned before.

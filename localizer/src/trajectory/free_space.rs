@@ -98,7 +98,13 @@ mod tests {
             ranges_m,
         };
         let (local, mount) = (Isometry2::identity(), Isometry2::identity());
-        let keyframe = Keyframe { local, points: Vec::new(), mount, scan };
+        let keyframe = Keyframe {
+            local,
+            from_last: (local, nalgebra::Matrix3::zeros()),
+            points: Vec::new(),
+            mount,
+            scan,
+        };
         let passed = |beam: f64, distance_m: f64, facing: f64| {
             let along = interfaces::rotation((beam - 90.0).to_radians()) * Vector2::x();
             let point = ScanPoint {

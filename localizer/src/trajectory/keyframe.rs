@@ -1,6 +1,6 @@
 use crate::scan_points::ScanPoint;
 use interfaces::Scan;
-use nalgebra::Isometry2;
+use nalgebra::{Isometry2, Matrix3};
 
 /// Points farther away than this are left out, m: neighboring beams are so far apart that they may be on different
 /// surfaces.
@@ -22,6 +22,8 @@ const KEPT_POINTS: usize = 120;
 pub(super) struct Keyframe {
     /// The pose by matching with local submaps alone, m and rad.
     pub(super) local: Isometry2<f64>,
+    /// The motion from the keyframe before by matching with local submaps alone, and the inverse of its covariance.
+    pub(super) from_last: (Isometry2<f64>, Matrix3<f64>),
     /// The points, in the frame of the robot; see [`Keyframe::thin`].
     pub(super) points: Vec<ScanPoint>,
     /// The pose of the laser in the frame of the robot.

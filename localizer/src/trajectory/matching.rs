@@ -1,8 +1,9 @@
 //! What matches of scans and of submaps share: gates, covariances, and what a match says.
 
 use super::submap::{Agreement, agreement};
-use crate::matcher::{Gates, Match, Prior, SURFEL_STD_M, align, difference};
+use crate::matcher::{Gates, Match, Prior, align, difference};
 use crate::scan_points::ScanPoint;
+use crate::scene::hit_std_m;
 use crate::surfel_map::SurfelMap;
 use nalgebra::{Isometry2, Matrix3, Vector3};
 
@@ -23,7 +24,7 @@ const LOOSE_RAD: f64 = 1.0;
 /// The gates of a match of scans with this noise.
 pub(super) fn gates(noise_m: f64, first_m: f64) -> Gates {
     let noise_m = noise_m.max(LEAST_NOISE_M);
-    let last_m = GATE_STDS * (noise_m * noise_m + SURFEL_STD_M * SURFEL_STD_M).sqrt();
+    let last_m = GATE_STDS * hit_std_m(noise_m);
     Gates { noise_m, first_m: first_m.min(WIDEST_M).max(last_m), last_m, by_rates: false }
 }
 

@@ -30,7 +30,7 @@ pub(crate) struct FoundLoop {
 impl TrajectoryFinder {
     /// The same finder, for an odometry that is there: a robot that rests at the start does not go on as before.
     pub(crate) fn with_odometry(mut self) -> Self {
-        self.front_end.expect_odometry();
+        self.builder.motion_prior.expect_odometry();
         self
     }
 
@@ -77,19 +77,19 @@ impl TrajectoryFinder {
 
     /// Whether the last reading agreed with its submap; invalid readings, and those that show nothing, do not disagree.
     pub(crate) fn is_supported(&self) -> bool {
-        self.front_end.sees_nothing()
+        self.builder.matcher.sees_nothing()
             || self.readings.last().is_some_and(|reading| reading.state != PoseState::Uncertain)
     }
 
     /// The number of keyframes so far.
-    pub(crate) fn keyframes(&self) -> usize {
+    pub(crate) fn keyframe_count(&self) -> usize {
         self.graph.poses.len()
     }
 
     /// The way from a keyframe to a later one, m; turns count as a way.
     fn way_m(&self, from: usize, to: usize) -> f64 {
         let step_m = |keyframe: usize| {
-            let keyframes = self.front_end.keyframes();
+            let keyframes = self.keyframes();
             let motion = keyframes[keyframe].local.inv_mul(&keyframes[keyframe + 1].local);
             motion.translation.vector.norm() + TURN_M * heading_rad(&motion).abs()
         };
@@ -138,6 +138,6 @@ impl TrajectoryFinder {
                 last = submap.last;
             }
         }
-        (new_m, self.way_m(last, self.keyframes().saturating_sub(1)))
+        (new_m, self.way_m(last, self.keyframe_count().saturating_sub(1)))
     }
 }

@@ -37,7 +37,7 @@ impl TrajectorySettings {
     /// The points of the scans of logs: the scans are sparse and their walls less straight, so that grazing beams are no
     /// good evidence.
     pub(super) fn point_rules(&self) -> PointRules {
-        PointRules { noise_m: self.range_noise_std_m, by_arc_length: true, grazing: false }
+        PointRules { noise_m: self.range_noise_std_m, grazing: false }
     }
 
     pub(crate) fn check(&self) -> Result<(), SettingsError> {
