@@ -1,17 +1,12 @@
 //! Deskews scans: a laser that turns measures each beam from a pose of its own. The result is a scan whose beams all start
 //! at the pose of its end.
 
+use crate::constants::{MINOR, THICK_M};
 use crate::path::Path;
 use crate::scan_points::{Directions, PointRules, ScanPoint, ScanPoints};
 use crate::work;
 use interfaces::{LaserReading, Scan, approximate_atan2, wrap_rad};
 use nalgebra::{Isometry2, Point2, Vector2};
-
-/// Neighboring end points nearer than this are joined by a straight surface, m.
-const JOIN_M: f64 = 0.15;
-/// Between two surfaces, a direction that is farther than this from both beams (as a share of the angle between them)
-/// is not measured: the edge lies somewhere between.
-const EDGE_SHARE: f64 = 0.1;
 
 /// Deskews scans, and makes points of them.
 #[derive(Clone, Debug)]
@@ -132,14 +127,14 @@ fn between(along: &Vector2<f64>, from: &End, to: &End, share: f64) -> f32 {
     let nearer = if share < 0.5 { from } else { to };
     let are_hits = from.range_m.is_finite() && to.range_m.is_finite();
     let edge = to.at - from.at;
-    if are_hits && edge.norm_squared() < JOIN_M * JOIN_M {
+    if are_hits && edge.norm_squared() < THICK_M * THICK_M {
         let range_m = from.at.coords.perp(&edge) / along.perp(&edge);
         let middle_m = from.at.coords.norm().midpoint(to.at.coords.norm());
-        if (range_m - middle_m).abs() < JOIN_M {
+        if (range_m - middle_m).abs() < THICK_M {
             return range_m as f32;
         }
     }
-    if share.min(1.0 - share) > EDGE_SHARE && (are_hits || from.range_m != to.range_m) {
+    if share.min(1.0 - share) > MINOR && (are_hits || from.range_m != to.range_m) {
         return f32::NAN;
     }
     if nearer.range_m.is_finite() { nearer.at.coords.norm() as f32 } else { nearer.range_m }
@@ -208,8 +203,8 @@ mod tests {
         let (beams, elapsed_s, acceleration_mps2, acceleration_radps2) = (720, 0.1, 1.0, 4.0);
         // The pose a time before the end, in the frame of the end: from rest at the last reading to full speed.
         let before = |back_s: f64| {
-            let travelled = |acceleration: f64| 0.5 * acceleration * (elapsed_s - back_s).powi(2);
-            let back = |acceleration: f64| travelled(acceleration) - 0.5 * acceleration * elapsed_s.powi(2);
+            let traveled = |acceleration: f64| 0.5 * acceleration * (elapsed_s - back_s).powi(2);
+            let back = |acceleration: f64| traveled(acceleration) - 0.5 * acceleration * elapsed_s.powi(2);
             pose(back(acceleration_mps2), 0.0, back(acceleration_radps2))
         };
         let empty = scan(vec![0.0; beams]);

@@ -1,3 +1,4 @@
+mod estimating;
 mod everywhere;
 mod map_matcher;
 mod pose_prior;
@@ -10,6 +11,7 @@ mod tests;
 pub(crate) use pose_prior::PosePrior;
 
 use crate::changing_map::ChangingMap;
+use crate::constants::{LOST_STD, NEAR_STD};
 use crate::estimate::{Localized, PoseEstimate, Start};
 use crate::local_trajectory_builder::{LocalTrajectoryBuilder, Track};
 use crate::scan_points::PointRules;
@@ -17,11 +19,7 @@ use crate::settings::LocalizerSettings;
 use crate::surfel_map::SurfelMap;
 use interfaces::{CellState, Grid, GridFrame, LaserReading, SettingsError};
 use map_matcher::{Around, MapMatcher};
-use nalgebra::{Isometry2, Matrix3, Vector3};
-
-/// The uncertainty of a pose that is lost, m and rad.
-const LOST_STD_M: f64 = 5.0;
-const LOST_STD_RAD: f64 = 3.0;
+use nalgebra::{Isometry2, Matrix3};
 
 /// Estimates the pose of a robot from odometry and scans. The same readings give the same bits.
 #[derive(Clone, Debug)]
@@ -70,15 +68,12 @@ impl Localizer {
         let rules = PointRules { noise_m: settings.range_noise_std_m, grazing: true };
         let mut builder = LocalTrajectoryBuilder::new(matcher, &settings.odometry, rules);
         builder.motion_prior.expect_odometry();
-        let std = match (start, from_nothing) {
-            (Start::At(_), true) => Vector3::zeros(),
-            (Start::At(_), false) => Vector3::new(0.05, 0.05, 0.02),
-            (Start::Unknown, _) => Vector3::new(LOST_STD_M, LOST_STD_M, LOST_STD_RAD),
+        let (pose, covariance) = match start {
+            Start::At(pose) if from_nothing => (pose, Matrix3::zeros()),
+            Start::At(pose) => (pose, NEAR_STD.covariance()),
+            Start::Unknown => (Isometry2::identity(), LOST_STD.covariance()),
         };
-        if let Start::At(pose) = start {
-            builder.track.pose = pose;
-        }
-        builder.track.covariance = Matrix3::from_diagonal(&std.component_mul(&std));
+        (builder.track.pose, builder.track.covariance) = (pose, covariance);
         Ok(Self { builder, much_has_moved: false })
     }
 

@@ -1,24 +1,25 @@
 //! A robot that maps a place for the first time: its loops are closed while it drives.
 //!
 //! ```text
-//! reading ─▶ trajectory finder ─guide─▶ localizer ─▶ pose ─▶ mapper
+//! reading ─▶ trajectory finder ─pose prior─▶ localizer ─▶ pose ─▶ mapper
 //!                  └─▶ a loop that contradicts the map: all readings again, near the corrected trajectory
 //! ```
 //!
 //! - Where the scans fit the map but do not fix the pose, as in a corridor, the [`TrajectoryFinder`](crate::TrajectoryFinder)
-//!   guides the localizer: its submaps hold what the map does not hold yet. While it does, nothing is searched for in the whole
+//!   gives the localizer a pose prior: its submaps hold what the map does not hold yet. While it does, nothing is searched for in the whole
 //!   map: in a map that is not finished, something always looks like the place.
 //! - After a long way around, the robot comes back beside its own map, and the map is inconsistent where the two meet. When the
-//!   finder recognises the place, the robot reads its own log again: a new localizer and a new mapper get all readings so far,
-//!   guided by the corrected trajectory. So there is one kind of map, and what it knows of changes and rates follows from the
+//!   finder recognizes the place, the robot reads its own log again: a new localizer and a new mapper get all readings so far,
+//!   near the corrected trajectory. So there is one kind of map, and what it knows of changes and rates follows from the
 //!   better poses as well.
 //!
 //! A live robot goes on in the old map while a thread reads its log ([`Switch`]): it catches up with the readings that came
 //! meanwhile, and then changes to the new map.
 //!
-//! The map can move until it *stands*: nothing is left to explore, and the robot has gone as far on known ground as on new
+//! The map can move until it is *frozen*: nothing is left to explore, and the robot has gone as far on known ground as on new
 //! ground before. From then on, its frame stays for ever.
 
+use crate::constants::{FEWER_CERTAIN, NEAR_STD};
 use crate::estimate::{Localized, PoseEstimate, PoseState};
 use crate::first_map::{FirstMap, Kept, Log};
 use crate::localizer::{Localizer, PosePrior};
@@ -29,12 +30,6 @@ use nalgebra::Isometry2;
 use std::fmt;
 use std::thread::JoinHandle;
 
-/// The readings are not read again if this share of those with a certain pose would no longer be certain: then the loop
-/// is not believed.
-const FEWER_CERTAIN: f64 = 0.02;
-/// The same if no certain pose would move by more than this, m: a map with smaller errors is whole.
-const LEAST_M: f64 = 0.05;
-
 /// A localizer that starts from nothing, and that learns the map again when a loop is closed. The same readings give the same
 /// bits.
 #[derive(Debug)]
@@ -43,7 +38,7 @@ pub struct LoopClosingLocalizer {
     frame: GridFrame,
     start: Isometry2<f64>,
     localizer: Localizer,
-    /// `None`: the first map stands, or a thread has it.
+    /// `None`: the first map is frozen, or a thread has it.
     first: Option<FirstMap>,
     switch: Switch,
     background: Option<Background>,
@@ -74,7 +69,7 @@ type Replayed = (FirstMap, Option<(Replay, Correction)>);
 /// What a closed loop has changed.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
 pub struct Correction {
-    /// The number of places that were recognised so far.
+    /// The number of places that were recognized so far.
     pub places: usize,
     /// The number of readings that were read again.
     pub readings: usize,
@@ -87,7 +82,7 @@ impl fmt::Display for Correction {
         let Self { places, readings, largest_m } = self;
         write!(
             f,
-            "a loop was closed: {places} places recognised, {readings} readings read again, poses of the past moved by up \
+            "a loop was closed: {places} places recognized, {readings} readings read again, poses of the past moved by up \
              to {largest_m:.2} m"
         )
     }
@@ -131,7 +126,7 @@ impl LoopClosingLocalizer {
         Self { switch, ..self }
     }
 
-    /// Whether the first map stands: no loop will move it any more.
+    /// Whether the first map is frozen: no loop will move it any more.
     pub fn is_frozen(&self) -> bool {
         self.first.is_none() && self.is_settled()
     }
@@ -295,7 +290,7 @@ impl Replay {
                 largest_m = largest_m.max(moved.norm());
             }
         }
-        if (after as f64) < before as f64 * (1.0 - FEWER_CERTAIN) || largest_m < LEAST_M {
+        if (after as f64) < before as f64 * (1.0 - FEWER_CERTAIN) || largest_m < NEAR_STD.m {
             first.refuse();
             return (first, None);
         }
@@ -336,7 +331,7 @@ impl LoopClosingLocalizer {
         if snapshot.is_empty() { Ok(()) } else { Err(ValueError) }
     }
 
-    /// Begins another session, see [`Localizer::begin_session`]. The map of the first session stands.
+    /// Begins another session, see [`Localizer::begin_session`]. The map of the first session is frozen.
     pub fn begin_session(&mut self) {
         self.localizer.begin_session();
         self.background = None;

@@ -1,16 +1,10 @@
 //! The motion between two readings before the scan is seen: odometry with learned gains, as far as it can be trusted.
 
 use crate::calibration::Calibration;
+use crate::constants::{DISTRUST_SCANS, MIN_MOTION};
 use crate::motion::Motion;
 use crate::settings::OdometryTrust;
-use interfaces::heading_rad;
 use nalgebra::Isometry2;
-
-/// Minimum motion that shows that odometry exists, m and rad.
-const MIN_M: f64 = 0.005;
-const MIN_RAD: f64 = 0.005;
-/// The number of scans for which the odometry is not trusted after an outlier.
-const DISTRUST_SCANS: u32 = 20;
 
 /// The odometry of a robot.
 #[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
@@ -46,8 +40,7 @@ impl MotionPrior {
     /// The motion since the last reading, as the odometry measured it.
     pub(crate) fn measure(&mut self, odometry: &Isometry2<f64>) -> Isometry2<f64> {
         let measured = self.last.replace(*odometry).unwrap_or(*odometry).inv_mul(odometry);
-        let turn_rad = heading_rad(&measured).abs();
-        self.exists |= measured.translation.vector.norm() > MIN_M || turn_rad > MIN_RAD;
+        self.exists |= !MIN_MOTION.contains(&measured);
         measured
     }
 

@@ -1,18 +1,14 @@
 //! All that one scan is compared with.
 
 use crate::changing_map::ChangingMap;
-use crate::matcher::{Gates, Match, Prior, SURFEL_STD_M, align};
+use crate::constants::{GATE_STDS, SURFEL_STD_M};
+use crate::matcher::{Gates, Match, Prior, align};
 use crate::placement::Placement;
 use crate::scan_points::ScanPoint;
 use crate::settings::LocalizerSettings;
 use crate::support::{ClearBeams, Support, judge};
 use crate::surfel_map::SurfelMap;
 use nalgebra::{Isometry2, Point2};
-
-/// Points match a surfel within this many standard deviations of the range noise and of the surfel.
-const GATE_STDS: f64 = 3.5;
-/// The mean over neighboring points on a surface that has stayed is within this share of half of that.
-const EXACT_SHARE: f64 = 0.5;
 
 /// One scan, and the maps.
 pub(crate) struct Scene<'a, M> {
@@ -49,7 +45,7 @@ impl<M: ChangingMap> Scene<'_, M> {
     ) -> Option<Match> {
         let last_m = self.gate_m();
         let gates = Gates {
-            noise_m: self.settings.range_noise_std_m.max(0.002),
+            noise_m: self.settings.range_noise_std_m.max(SURFEL_STD_M),
             first_m: first_m.max(last_m),
             last_m,
             by_rates,
@@ -76,7 +72,7 @@ impl<M: ChangingMap> Scene<'_, M> {
 
 /// The distance up to which the mean over some points of a laser with this noise is exactly in place, m.
 pub(crate) fn exact_m(noise_m: f64) -> f64 {
-    EXACT_SHARE * GATE_STDS / 2.0 * hit_std_m(noise_m)
+    GATE_STDS / 4.0 * hit_std_m(noise_m)
 }
 
 /// The standard deviation of the distance of a point from its surfel, m.

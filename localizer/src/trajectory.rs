@@ -4,12 +4,12 @@
 //! reading ─▶ match with the local submap ─▶ keyframe ─▶ submap is finished ─▶ loops? ─▶ pose graph ─▶ refine
 //! ```
 //!
-//! - A scan is matched with the submap of the last keyframes only: an error of the past bends nothing that follows. The
-//!   sweep of a scan is undone along the motion that its match finds.
+//! - A scan is matched with the submap of the last keyframes only: an error of the past bends nothing that follows. A
+//!   scan is deskewed along the motion that its match finds.
 //! - A finished submap is searched for in earlier submaps by branch and bound, as far as the trajectory since then is
 //!   uncertain (Hess, Kohler, Rapp & Andor 2016).
 //! - A loop counts where most of what both submaps cover agrees, where few beams of one pass the walls of the other
-//!   (`places::MOST_PASSING`), where no other pose fits about as well, and where another loop agrees with it, unless the
+//!   (`constants::MAX_PASSING`), where no other pose fits about as well, and where another loop agrees with it, unless the
 //!   way since then was short.
 //! - In the end, keyframes are matched with all submaps around them, so that every wall is there once.
 
@@ -30,7 +30,7 @@ mod submap;
 mod submap_matcher;
 
 pub use line_map::{LineFit, LineMap, LineMatcher};
-pub(crate) use matching::{covariance, in_frame};
+pub(crate) use matching::in_frame;
 pub use residual::Residual;
 pub use settings::TrajectorySettings;
 pub(crate) use submap_matcher::SubmapMatcher;
@@ -61,9 +61,9 @@ pub struct TrajectoryPose {
 pub struct Trajectory {
     /// One pose per reading, in their order.
     pub poses: Vec<TrajectoryPose>,
-    /// The number of places that were recognised.
+    /// The number of places that were recognized.
     pub loops: usize,
-    /// `None` if no place was seen twice, or if loops are not closed.
+    /// `None` if no place was seen twice.
     pub residual: Option<Residual>,
 }
 
@@ -123,9 +123,7 @@ impl TrajectoryFinder {
         let (keyframe, time_s) = (self.graph.poses.len() - 1, reading.time_s);
         let offset = self.builder.matcher.offset(&self.builder.track);
         self.readings.push(Attached { time_s, keyframe, offset, state });
-        if self.settings.close_loops {
-            self.search_loops();
-        }
+        self.search_loops();
     }
 
     /// Adds new keyframes to the graph.
@@ -145,6 +143,11 @@ impl TrajectoryFinder {
         }
     }
 
+    /// The pose of the last reading by matching with local submaps alone: without loops.
+    pub fn local_pose(&self) -> Isometry2<f64> {
+        self.builder.track.pose
+    }
+
     fn keyframes(&self) -> &[Keyframe] {
         self.builder.matcher.keyframes()
     }
@@ -158,14 +161,11 @@ impl TrajectoryFinder {
 
     /// The trajectory of all readings.
     pub fn finish(mut self) -> Trajectory {
-        let mut residual = None;
-        if self.settings.close_loops {
-            self.builder.matcher.end();
-            self.search_loops();
-            self.closer.accept_strong(&mut self.graph);
-            self.graph = self.optimized();
-            residual = residual::residual(&self.closer.places, self.keyframes(), &self.graph);
-        }
+        self.builder.matcher.end();
+        self.search_loops();
+        self.closer.accept_strong(&mut self.graph);
+        self.graph = self.optimized();
+        let residual = residual::residual(&self.closer.places, self.keyframes(), &self.graph);
         let loops = self.closer.loops();
         Trajectory { poses: self.poses(&self.graph), loops, residual }
     }

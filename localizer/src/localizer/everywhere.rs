@@ -1,22 +1,16 @@
 //! The search for the pose in the whole map. Of a map that is too large for one scan, one part is searched per scan.
 
 use super::map_matcher::{MapMatcher, Step};
-use super::relocalizing::{MIN_FOUND, MIN_SCORE};
 use crate::changing_map::ChangingMap;
-use crate::hypotheses::{AMBIGUITY_RATIO, Hypotheses};
+use crate::constants::{AMBIGUOUS, MAX_EMPTY_PARTS, MAX_REACH_M, MAX_SIDE_M, MIN_FOUND, MIN_SCORE};
+use crate::hypotheses::Hypotheses;
 use crate::scan_points::ScanPoint;
-use crate::score_grid::{MAX_SIDE_M, ScoreGrid};
+use crate::score_grid::ScoreGrid;
 use crate::search::{Candidate, Window, search};
 use crate::surfel_map::SurfelMap;
 use interfaces::GridFrame;
 use nalgebra::{Point2, Vector2};
 use std::f64::consts::PI;
-
-/// In a large map, surfaces that are farther away than this are not looked for, m: the part of the map around a place is as
-/// small as they are near.
-const MAX_REACH_M: f64 = 28.8;
-/// The number of parts without a surface that are left out in one scan.
-const MAX_EMPTY_PARTS: usize = 32;
 
 /// A search that goes on in the next scan.
 #[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
@@ -79,7 +73,7 @@ impl MapMatcher {
                 let near: Vec<ScanPoint> = points.iter().filter(near).copied().collect();
                 let middle = Point2::from(window.pose.translation.vector);
                 let grid = ScoreGrid::around(&self.surfels, states, &middle, reach_m + window.reach_m);
-                search(&grid, &near, Some(window), MIN_FOUND, AMBIGUITY_RATIO)
+                search(&grid, &near, Some(window), MIN_FOUND, AMBIGUOUS)
             }
             _ => {
                 // The scores are made again when the line map has changed.
@@ -87,7 +81,7 @@ impl MapMatcher {
                     Some((known, grid)) if known == self.surfels.revision() => grid,
                     _ => ScoreGrid::new(&self.surfels, states),
                 };
-                let found = search(&grid, points, window, MIN_FOUND, AMBIGUITY_RATIO);
+                let found = search(&grid, points, window, MIN_FOUND, AMBIGUOUS);
                 self.relocalization.scores = Some((self.surfels.revision(), grid));
                 found
             }

@@ -1,11 +1,7 @@
+use crate::constants::{ELSEWHERE, ELSEWHERE_STDS};
 use crate::matcher::difference;
 use crate::motion::Predicted;
 use nalgebra::{Isometry2, Matrix3};
-
-/// A pose is elsewhere if it is farther from the pose prior than this, m and rad, and than this many standard deviations.
-const ELSEWHERE_M: f64 = 0.3;
-const ELSEWHERE_RAD: f64 = 0.3;
-const ELSEWHERE_STDS: f64 = 4.0;
 
 /// Where the robot is by another source, in the frame of the map: a pose with its covariance.
 #[derive(Clone, Copy, Debug)]
@@ -19,7 +15,7 @@ impl PosePrior {
     fn allows(&self, pose: &Isometry2<f64>) -> bool {
         let std_m = (self.covariance[(0, 0)] + self.covariance[(1, 1)]).sqrt();
         let off = difference(pose, &self.pose);
-        off.xy().norm() <= ELSEWHERE_M + ELSEWHERE_STDS * std_m && off.z.abs() <= ELSEWHERE_RAD
+        off.xy().norm() <= ELSEWHERE.m + ELSEWHERE_STDS * std_m && off.z.abs() <= ELSEWHERE.rad
     }
 
     /// The predicted pose, and what the prior says.

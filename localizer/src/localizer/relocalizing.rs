@@ -1,9 +1,12 @@
 //! The search for a pose that tracking has lost, and the choice between several poses.
 
 use super::everywhere::WideSearch;
-use super::map_matcher::{MIN_CONFIRMED, MapMatcher, Step};
+use super::map_matcher::{MapMatcher, Step};
 use super::state::{Event, State};
 use crate::changing_map::ChangingMap;
+use crate::constants::{
+    CARRIED, CONFIRM_SCANS, MAJORITY, MIN_CONFIRMED, MIN_SCORE, MIN_SUPPORT, MINOR, SEARCH_EVERY,
+};
 use crate::hypotheses::Hypotheses;
 use crate::placement::Placement;
 use crate::score_grid::ScoreGrid;
@@ -11,26 +14,6 @@ use crate::search::Window;
 use crate::support::Support;
 use crate::tracking::Tracked;
 use crate::verification::Verification;
-
-/// The window of the first search: a glitch of the odometry, or a robot that was carried a little.
-const WINDOW_M: f64 = 1.3;
-const WINDOW_RAD: f64 = 1.2;
-/// The least score of a pose in a search.
-pub(super) const MIN_FOUND: f64 = 0.55;
-/// The least score of a refined pose: around the predicted pose, and anywhere.
-const MIN_SCORE_NEAR: f64 = 0.5;
-pub(super) const MIN_SCORE: f64 = 0.65;
-/// A pose near the predicted pose with this score makes a search in the whole map needless.
-const CLEAR_SCORE: f64 = 0.85;
-/// By this much the support of another pose is clearly better than that of a pose which a pose prior allows.
-const CLEARLY_BETTER: f64 = 0.1;
-/// A support that a search has confirmed may become less by this.
-const LOWER_SUPPORT: f64 = 0.1;
-/// The number of scans between two searches in the whole map, or beside a pose prior.
-const SEARCH_EVERY: u32 = 5;
-
-/// The minimum support with which a pose that is not certain is followed.
-pub(super) const MIN_FOLLOWED: f64 = 0.5;
 
 /// The search for a pose.
 #[derive(Clone, Debug)]
@@ -67,12 +50,12 @@ impl MapMatcher {
     /// corridor still sees most of its walls. If another pose is clearly better, the prior was wrong.
     pub(super) fn doubt_prior<M: ChangingMap>(&mut self, step: &mut Step<M>, tracked: &Tracked) {
         let share = tracked.support.share();
-        if share >= self.settings.min_support || !self.is_due() {
+        if share >= MIN_SUPPORT || !self.is_due() {
             return;
         }
         self.relocalization.scans = 0;
-        let found = self.search_around(step, CLEAR_SCORE);
-        if found.best().is_some_and(|best| best.support.share() >= share + CLEARLY_BETTER) {
+        let found = self.search_around(step, MIN_SUPPORT);
+        if found.best().is_some_and(|best| best.support.share() >= share + MINOR) {
             self.ignores_prior = true;
             self.take(step, found);
         }
@@ -86,7 +69,7 @@ impl MapMatcher {
 
     /// The poses in a window around the last one.
     fn search_around<M: ChangingMap>(&mut self, step: &Step<M>, min_score: f64) -> Hypotheses {
-        let window = Window { pose: step.track.pose, reach_m: WINDOW_M, reach_rad: WINDOW_RAD };
+        let window = Window { pose: step.track.pose, reach_m: CARRIED.m, reach_rad: CARRIED.rad };
         let candidates = self.candidates(step, Some(&window));
         Hypotheses::start(&self.scene(step), &candidates, min_score)
     }
@@ -97,12 +80,12 @@ impl MapMatcher {
         let is_near = self.state != State::Lost;
         let mut found = Hypotheses::default();
         if is_near {
-            found = self.search_around(step, MIN_SCORE_NEAR);
+            found = self.search_around(step, MAJORITY);
         }
-        let is_clear = found.best().is_some_and(|best| best.support.score() >= CLEAR_SCORE);
+        let is_clear = found.best().is_some_and(|best| best.support.score() >= MIN_SUPPORT);
         // Where most of the scan fits, the map is not finished or the view has changed: far away, something in an
         // unfinished map always fits better.
-        let is_elsewhere = !is_near || tracked.support.share() < MIN_FOLLOWED;
+        let is_elsewhere = !is_near || tracked.support.share() < MAJORITY;
         if !is_clear && is_elsewhere && is_due {
             self.relocalization.scans = 0;
             if let Some(anywhere) = self.search_everywhere(step) {
@@ -115,7 +98,7 @@ impl MapMatcher {
         let is_confirmed = is_near && found.contains(&tracked.placement.pose);
         if is_confirmed && tracked.support.confirmed >= MIN_CONFIRMED {
             // Much has changed here, but no other pose fits better.
-            self.accepted_support = tracked.support.share() - LOWER_SUPPORT;
+            self.accepted_support = tracked.support.share() - MINOR;
             self.accept(step, tracked);
         } else {
             // What a search has found is verified before a pose prior is followed again.
@@ -135,18 +118,17 @@ impl MapMatcher {
 
     /// Compares all hypotheses with the scan; the last one that is left becomes the pose.
     pub(super) fn follow<M: ChangingMap>(&mut self, step: &mut Step<M>) -> Support {
-        let scans = self.settings.scans_to_confirm;
         let mut hypotheses = std::mem::take(&mut self.relocalization.hypotheses);
         hypotheses.advance(&self.scene(step), &step.scan.motion, MIN_SCORE);
         if self.times.certain_s > f64::NEG_INFINITY {
-            hypotheses.prefer(scans, |pose| self.is_where_odometry_says(pose));
+            hypotheses.prefer(CONFIRM_SCANS, |pose| self.is_where_odometry_says(pose));
         }
         self.is_due();
         let support = hypotheses.best().map_or(Support::default(), |best| best.support);
-        if let Some(decided) = hypotheses.decided(scans) {
-            self.accepted_support = self.settings.min_support.min(support.share() - LOWER_SUPPORT);
+        if let Some(decided) = hypotheses.decided(CONFIRM_SCANS) {
+            self.accepted_support = MIN_SUPPORT.min(support.share() - MINOR);
             self.on(Event::Decided);
-            self.verification = Verification::after(scans);
+            self.verification = Verification::after(CONFIRM_SCANS);
             let placement = Placement::rigid(&decided.pose);
             self.accept(step, &Tracked::new(placement, [decided.covariance; 2], support));
             return support;

@@ -242,7 +242,7 @@ fn a_robot_finds_itself_in_a_place_of_any_size_with_bounded_work_per_scan() {
         assert_eq!(localizer.builder.matcher.state, State::Tracking, "{side_m} m: after {scans} scans");
         assert!(off.translation.vector.norm() < 0.05 && heading_rad(&off).abs() < 0.02, "{side_m} m: {off}");
         // All levels of the scores of 76.8 m by 76.8 m, where the robot can be, and the squares of the search.
-        let cells = (1536 + 64) * (1536 + 64) * crate::score_grid::TOP + 1536 * 1536;
+        let cells = (1536 + 64) * (1536 + 64) * crate::constants::TOP + 1536 * 1536;
         assert!(most < cells + 1_000_000, "{side_m} m: {most} steps");
         println!("{side_m} m: found after {scans} scans, at most {most} steps and {longest:?} in one");
     }

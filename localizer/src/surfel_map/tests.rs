@@ -1,5 +1,6 @@
 use super::prior::borders;
 use super::*;
+use crate::constants::FROZEN_SCANS;
 use crate::scan_points::{PointRules, ScanPoint, ScanPoints};
 use crate::work;
 use interfaces::{CellState, Grid, LaserReading, Purpose, RandomStream, Scan, Twist};
@@ -245,7 +246,7 @@ fn cells_are_as_small_as_a_frame_allows() {
     let origin = Point2::new(3.0, -2.0);
     for (resolution_m, cells, expected_m) in [(0.05, 200, 0.1), (1.0, 2000, 0.4), (8.0, 8192, 12.8)] {
         let frame = GridFrame::new(origin, resolution_m, cells, cells).unwrap();
-        let fitted = fitted(&frame, CELL_M, 1);
+        let fitted = fitted(&frame, SURFEL_M, 1);
         let end = frame.origin() + Vector2::repeat(resolution_m * cells as f64);
         assert_eq!(fitted.resolution_m(), expected_m);
         assert!(fitted.contains(fitted.cell_at(&origin)) && fitted.contains(fitted.cell_at(&end)));

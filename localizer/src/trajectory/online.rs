@@ -3,20 +3,13 @@
 use super::TrajectoryFinder;
 use super::graph::{Edge, EdgeKind};
 use super::matching::{fit, in_frame};
+use crate::constants::{FOUND_STD, NEW_GROUND_M, TURN_M};
 use crate::estimate::PoseState;
 use crate::surfel_map::SurfelMap;
 use interfaces::heading_rad;
 use nalgebra::{Isometry2, Matrix3};
 
-/// A submap is on new ground if no earlier one has its middle within this distance, m.
-const KNOWN_M: f64 = 4.0;
-/// A turn counts as this way, m/rad.
-const TURN_M: f64 = 0.3;
-
-/// The uncertainty of a motion that may explain a loop, m and rad.
-const NEAR_STD: (f64, f64) = (0.1, 0.03);
-
-/// A place that was recognised.
+/// A place that was recognized.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FoundLoop {
     /// Two keyframes, and the motion between them.
@@ -120,7 +113,7 @@ impl TrajectoryFinder {
     ) -> Option<(Isometry2<f64>, f64)> {
         let [from, to] = found.submaps.map(|number| &self.closer.places.submaps[number]);
         let map = SurfelMap::of_points(&from.points)?;
-        let fit = |motion| fit(&map, &to.points, motion, NEAR_STD, self.settings.range_noise_std_m);
+        let fit = |motion| fit(&map, &to.points, motion, FOUND_STD, self.settings.range_noise_std_m);
         let ((near, agrees), (_, most)) = (fit(motion)?, fit(&found.motion)?);
         Some((near.placement.pose, agrees.confirmed / most.confirmed.max(f64::MIN_POSITIVE)))
     }
@@ -132,7 +125,7 @@ impl TrajectoryFinder {
         let (mut new_m, mut last) = (0.0, 0);
         for (number, submap) in submaps.iter().enumerate() {
             let mut earlier = submaps[..number].iter().filter(|other| other.last < submap.first);
-            if earlier.all(|other| (at(other.anchor) - at(submap.anchor)).norm() > KNOWN_M) {
+            if earlier.all(|other| (at(other.anchor) - at(submap.anchor)).norm() > NEW_GROUND_M) {
                 // The next submap begins in the middle of this one.
                 new_m += self.way_m(submap.first, submap.anchor);
                 last = submap.last;

@@ -1,9 +1,14 @@
 //! Matches scans with the submap of the last keyframes, and makes keyframes of them.
 
 use super::keyframe::{Keyframe, filled};
-use super::matching::{WIDEST_M, covariance, gates, in_frame, motion_spread};
+use super::matching::{gates, in_frame, motion_spread};
 use super::settings::TrajectorySettings;
 use super::submap::{Agreement, FinishedSubmap, GrowingSubmap, agreement};
+use crate::constants::{
+    CLEARLY, FAIR_SHARE, FOUND_STD, JUDGED_M, KEYFRAME, KEYFRAME_STD, MAJORITY, MIN_AGREEMENT, MIN_OVERLAP,
+    MIN_POINTS, MIN_SHARE, MISSING_STD, OTHER_TURNS_RAD, SCAN_STD, SEARCHED, SEARCHED_STD, SUBMAP_KEYFRAMES,
+    SURFEL_M,
+};
 use crate::faults::Fault;
 use crate::local_trajectory_builder::{IncomingScan, Matched, ScanMatcher, Track};
 use crate::matcher::{Match, Prior, align};
@@ -11,36 +16,10 @@ use crate::motion::Motion;
 use crate::scan_points::ScanPoint;
 use crate::score_grid::ScoreGrid;
 use crate::search::{Window, search};
+use crate::spread::Spread;
 use crate::surfel_map::SurfelMap;
-use interfaces::{LaserReading, heading_rad};
+use interfaces::LaserReading;
 use nalgebra::{Isometry2, Matrix3, Vector3};
-
-/// The uncertainty of a motion between keyframes without odometry, m and rad.
-const MISSING_STD_M: f64 = 0.3;
-const MISSING_STD_RAD: f64 = 0.3;
-/// A pose counts as supported if at least this share of what the submap can judge agrees, and this many points.
-const MIN_AGREEMENT: f64 = 0.7;
-const MIN_POINTS: usize = 12;
-/// The shares of agreeing points below which other headings are tried: of those that the submap can judge, and of all.
-const DOUBTED_AGREEMENT: f64 = 0.75;
-const DOUBTED_SHARE: f64 = 0.5;
-/// These headings, rad. A robot that turns in place while its laser and its odometry are out of step is off by these.
-const OTHER_HEADINGS_RAD: [f64; 6] = [0.08, -0.08, 0.16, -0.16, 0.25, -0.25];
-/// The shares below which the pose is searched for around the prediction.
-const SEARCH_AGREEMENT: f64 = 0.5;
-const SEARCH_SHARE: f64 = 0.3;
-const SEARCH_M: f64 = 0.8;
-const SEARCH_RAD: f64 = 0.4;
-const SEARCH_SCORE: f64 = 0.4;
-/// What is added to the uncertainty of the prediction for other headings and for a search, m and rad. Along a corridor
-/// nothing but the odometry says how far the robot went.
-const WIDE_STD_M: f64 = 0.05;
-const WIDE_STD_RAD: f64 = 0.3;
-/// Another pose must confirm more than the prediction by this factor.
-const BETTER: f64 = 1.15;
-/// The errors of a matched motion that do not average out, m and rad.
-const MODEL_STD_M: f64 = 0.004;
-const MODEL_STD_RAD: f64 = 0.0015;
 
 /// The submaps that grow, and their keyframes.
 #[derive(Debug)]
@@ -97,19 +76,18 @@ impl ScanMatcher<()> for SubmapMatcher {
             let Match { placement, information, .. } = &tracked.found;
             (begin, track.pose) = (placement.begin(), placement.pose);
             track.covariance =
-                information.try_inverse().unwrap_or_else(|| covariance(0.1, 0.05)) + covariance(0.001, 3e-4);
+                information.try_inverse().unwrap_or_else(|| FOUND_STD.covariance()) + SCAN_STD.covariance();
             agreement = tracked.agreement.share();
-            is_reliable = !tracked.is_below(DOUBTED_AGREEMENT, DOUBTED_SHARE);
+            is_reliable = !tracked.is_below(MIN_AGREEMENT, MAJORITY);
         }
-        let is_supported = is_first || agreement >= MIN_AGREEMENT;
+        let is_supported = is_first || agreement >= FAIR_SHARE;
         let found = SubmapFound { tracked, is_supported, is_frozen };
         Matched { begin, is_reliable, is_outlier: None, found }
     }
 
     fn insert(&mut self, scan: &IncomingScan, track: &Track, found: &SubmapFound, (): ()) {
         let offset = self.offset(track);
-        let is_far = offset.translation.vector.norm() >= self.settings.keyframe_m
-            || heading_rad(&offset).abs() >= self.settings.keyframe_rad;
+        let is_far = !KEYFRAME.contains(&offset);
         if self.keyframes.is_empty() || is_far && !found.is_frozen {
             let found = found.tracked.as_ref().map(|tracked| &tracked.found);
             self.add_keyframe(scan, track, found);
@@ -165,22 +143,23 @@ impl SubmapMatcher {
         let (map, points, pose) = (self.growing.first()?.map(), &scan.points, &track.pose);
         let prior = scan.predicted.prior()?;
         let at_range_m = 5.0 * track.covariance[(2, 2)].sqrt();
-        let first_m = 0.1 + 2.0 * (scan.predicted.spread_m() + at_range_m);
+        let first_m = SURFEL_M + 2.0 * (scan.predicted.spread_m() + at_range_m);
         let tracked = self.matched_from(map, points, pose, &prior, first_m)?;
-        if !tracked.is_below(DOUBTED_AGREEMENT, DOUBTED_SHARE) {
+        if !tracked.is_below(MIN_AGREEMENT, MAJORITY) {
             return Some(tracked);
         }
-        let wide = track.covariance + covariance(WIDE_STD_M, WIDE_STD_RAD);
+        let wide = track.covariance + SEARCHED_STD.covariance();
         let wide = Prior { pose: *pose, information: wide.try_inverse()?, begin: None };
-        let turned = OTHER_HEADINGS_RAD.map(|turn_rad| pose * interfaces::pose(0.0, 0.0, turn_rad));
+        let turns_rad = OTHER_TURNS_RAD.into_iter().flat_map(|turn_rad| [turn_rad, -turn_rad]);
+        let turned: Vec<_> = turns_rad.map(|turn_rad| pose * interfaces::pose(0.0, 0.0, turn_rad)).collect();
         let tracked = self.better(map, points, tracked, &turned, &wide);
-        if !tracked.is_below(SEARCH_AGREEMENT, SEARCH_SHARE) {
+        if !tracked.is_below(MAJORITY, MIN_SHARE) {
             return Some(tracked);
         }
         let near = SurfelMap::of_points(&map.points(&Isometry2::identity()))?;
-        let window = Window { pose: *pose, reach_m: SEARCH_M, reach_rad: SEARCH_RAD };
+        let window = Window { pose: *pose, reach_m: SEARCHED.m, reach_rad: SEARCHED.rad };
         let grid = ScoreGrid::anywhere(&near);
-        let found = search(&grid, points, Some(&window), SEARCH_SCORE, BETTER.recip());
+        let found = search(&grid, points, Some(&window), MIN_OVERLAP, CLEARLY.recip());
         let found: Vec<Isometry2<f64>> = found.iter().map(|candidate| candidate.pose).collect();
         Some(self.better(map, points, tracked, &found, &wide))
     }
@@ -194,9 +173,9 @@ impl SubmapMatcher {
         starts: &[Isometry2<f64>],
         prior: &Prior,
     ) -> Tracked {
-        let min_confirmed = BETTER * tracked.agreement.confirmed;
+        let min_confirmed = CLEARLY * tracked.agreement.confirmed;
         let others =
-            starts.iter().filter_map(|start| self.matched_from(map, points, start, prior, WIDEST_M / 2.0));
+            starts.iter().filter_map(|start| self.matched_from(map, points, start, prior, JUDGED_M / 2.0));
         others
             .filter(|other| other.agreement.confirmed > min_confirmed)
             .max_by(|a, b| a.agreement.confirmed.total_cmp(&b.agreement.confirmed))
@@ -223,12 +202,14 @@ impl SubmapMatcher {
             let motion = last.local.inv_mul(&track.pose);
             let odometry = Motion::new(self.since_keyframe, &self.settings.odometry);
             let by_odometry = match scan.has_odometry {
-                true => odometry.propagate(&Isometry2::identity(), &covariance(1e-3, 1e-3)),
-                false => covariance(MISSING_STD_M, MISSING_STD_RAD),
+                true => {
+                    odometry.propagate(&Isometry2::identity(), &Spread::of_motion(SCAN_STD.m).covariance())
+                }
+                false => MISSING_STD.covariance(),
             };
             let scan = found.map(|found| in_frame(&found.scan_information, &last.local));
             let spread = motion_spread(&motion, (&self.since_keyframe, &by_odometry), scan.as_ref());
-            let information = (spread + covariance(MODEL_STD_M, MODEL_STD_RAD)).try_inverse();
+            let information = (spread + KEYFRAME_STD.covariance()).try_inverse();
             (motion, information.unwrap_or_else(Matrix3::identity))
         });
         self.push(&scan.reading, track, filled(&scan.points), from_last);
@@ -251,7 +232,7 @@ impl SubmapMatcher {
     fn grow(&mut self) {
         let number = self.keyframes.len() - 1;
         let keyframe = &self.keyframes[number];
-        let half = self.settings.submap_keyframes / 2;
+        let half = SUBMAP_KEYFRAMES / 2;
         if self.growing.last().is_none_or(|youngest| youngest.len() >= half) {
             self.growing.extend(GrowingSubmap::new(&keyframe.local, self.spare.take()));
         }
@@ -259,7 +240,7 @@ impl SubmapMatcher {
             submap.add(number, keyframe, self.settings.range_noise_std_m);
         }
         self.keyframes[number].thin();
-        if self.growing.len() > 1 && self.growing[0].len() >= self.settings.submap_keyframes {
+        if self.growing.len() > 1 && self.growing[0].len() >= SUBMAP_KEYFRAMES {
             let full = self.growing.remove(0);
             let (finished, spare) = full.finish(&self.keyframes);
             self.finished.push(finished);
