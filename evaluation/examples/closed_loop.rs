@@ -53,7 +53,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             let (raw, pose) = (trial.world.sense(), *trial.world.true_pose());
             writer.reading(&raw)?;
             truth[number].push(pose);
-            exact.update(&given.unswept(LaserReading { pose, ..raw }))?;
+            exact.update(&given.deskewed(LaserReading { pose, ..raw }))?;
         }
         writer.finish()?;
     }

@@ -7,7 +7,7 @@
 //! and the changes of cells where nothing ever changes.
 //!
 //! ```text
-//! cargo run -p evaluation --example veils -- [HOUSES [MINUTES]]
+//! cargo run -p curious-evaluation --example veils -- [HOUSES [MINUTES]]
 //! ```
 
 use evaluation::metrics::rate_scores;

@@ -12,7 +12,7 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 
 /// The version of the layout of `summary.json`; count up when a key is renamed, removed or changes its meaning.
-pub const SCHEMA: u32 = 1;
+pub const SCHEMA: u32 = 2;
 
 /// Coverage and map quality at one time.
 #[derive(Clone, Copy, Debug, Serialize)]

@@ -36,7 +36,7 @@ fn an_undone_sweep_is_the_scan_that_is_measured_at_once() {
         let (swept, expected) = (sweeping.sense(), at_once.sense());
         assert_eq!(swept.pose, expected.pose);
         ignored_m = ignored_m.max(errors(&swept, &expected).0);
-        let (error_m, beams) = errors(&poses.unswept(swept), &expected);
+        let (error_m, beams) = errors(&poses.deskewed(swept), &expected);
         // The robot turns by up to a seventieth of a turn in a scan, and edges are not measured.
         assert!(error_m < 0.01 && beams > 680, "scan {step}: {error_m} m, {beams} beams");
         let command = Twist {

@@ -1,21 +1,13 @@
 //! Learns the systematic errors of odometry from the estimated motions: the gains of distance and turn, and the turn per
-//! metre. A prior with a bias bends the map that grows ahead of the robot.
+//! meter. A prior with a bias bends the map that grows ahead of the robot.
 //!
 //! Recursive least squares with forgetting (Ljung 1999, section 11.2): the errors of wheels change with the floor, the
-//! load and the air in the tyres.
+//! load and the air in the tires.
 
+use crate::constants::{LEARNED_MOTION, LEARNED_MOTIONS, MOTION_STD};
 use crate::settings::OdometryTrust;
 use interfaces::heading_rad;
 use nalgebra::{Isometry2, Matrix2, Vector2};
-
-/// What is remembered of the past per motion: about 300 motions count.
-const MEMORY: f64 = 1.0 - 1.0 / 300.0;
-/// The error of an estimated motion, m and rad: that of two matches.
-const MOTION_STD_M: f64 = 0.004;
-const MOTION_STD_RAD: f64 = 0.002;
-/// Motions below this say nothing about gains, m and rad.
-const LEAST_M: f64 = 0.01;
-const LEAST_RAD: f64 = 0.005;
 
 /// The learned systematic errors.
 #[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
@@ -38,7 +30,12 @@ impl Calibration {
         }
     }
 
-    /// The motion that a measured motion stands for.
+    /// The largest errors that are expected.
+    pub(crate) fn trust(&self) -> &OdometryTrust {
+        &self.trust
+    }
+
+    /// The motion that a measured motion means.
     pub(crate) fn correct(&self, measured: &Isometry2<f64>) -> Isometry2<f64> {
         let at = measured.translation.vector * self.distance.0;
         let turn_rad = self.features(measured).dot(&self.turn.0);
@@ -56,20 +53,21 @@ impl Calibration {
     pub(crate) fn learn(&mut self, measured: &Isometry2<f64>, estimated: &Isometry2<f64>) {
         let square = |x: f64| x * x;
         let (distance_m, turn_rad) = (measured.translation.vector.norm(), heading_rad(measured).abs());
-        if distance_m >= LEAST_M {
-            let noise = square(MOTION_STD_M) + square(self.trust.distance_noise_m) * distance_m;
+        let memory = 1.0 - 1.0 / LEARNED_MOTIONS;
+        if distance_m >= LEARNED_MOTION.m {
+            let noise = square(MOTION_STD.m) + square(self.trust.distance_noise_m) * distance_m;
             let (gain, variance) = &mut self.distance;
-            *variance = (*variance / MEMORY).min(square(self.trust.distance_gain));
+            *variance = (*variance / memory).min(square(self.trust.distance_gain));
             let k = *variance * distance_m / (noise + *variance * square(distance_m));
             let along_m = estimated.translation.vector.dot(&measured.translation.vector) / distance_m;
             *gain += k * (along_m - *gain * distance_m);
             *variance *= 1.0 - k * distance_m;
         }
-        if distance_m >= LEAST_M || turn_rad >= LEAST_RAD {
+        if distance_m >= LEARNED_MOTION.m || turn_rad >= LEARNED_MOTION.rad {
             let x = self.features(measured);
-            let noise = square(MOTION_STD_RAD) + square(self.trust.turn_noise_rad) * turn_rad;
+            let noise = square(MOTION_STD.rad) + square(self.trust.turn_noise_rad) * turn_rad;
             let (gains, covariance) = &mut self.turn;
-            *covariance /= MEMORY;
+            *covariance /= memory;
             // What was never excited must not grow without a limit.
             let spread = [self.trust.turn_gain, self.trust.turn_radpm].map(square);
             for (index, most) in spread.into_iter().enumerate() {

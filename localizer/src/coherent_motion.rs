@@ -9,46 +9,17 @@
 //! tells apart what the noise of a single point hides.
 
 use crate::changing_map::ChangingMap;
+use crate::constants::{
+    APART_M, EXPLAINED_COUNTS, MAJORITY, MARGIN, MIN_LEFT, MIN_MOVED, MIN_MOVED_SHARE, MIN_STAYED, MOVED_M,
+    NEAR_STD, RATIO_COUNTS, ROUNDS, SAME_MATCH, STAYED_COUNTS, SURFEL_STD_M, TURNS_RAD,
+};
 use crate::matcher::{Match, Prior, difference};
 use crate::motion::Predicted;
 use crate::placement::Placement;
 use crate::scan_points::{ScanPoint, means};
 use crate::scene::Scene;
 use crate::support::Support;
-use crate::surfel_map::MOVED_M;
-use nalgebra::{Isometry2, Matrix3, Vector3};
-
-/// Two poses are those of a coherent motion if they are at least this far apart, m.
-const APART_M: f64 = 0.02;
-/// The share of the known surfaces that most of the view leaves over: below, there is nothing to explain.
-const LEAST_LEFT: f64 = 0.04;
-/// The headings from which the pose of what has stayed is looked for, relative to that of most of the view, rad.
-const TURNS_RAD: [f64; 4] = [-0.006, 0.006, -0.012, 0.012];
-/// Matches that start closer to each other than this are the same, m and rad.
-const SAME: f64 = 0.001;
-/// How often the two poses are fitted in turns.
-const ROUNDS: usize = 3;
-/// A point may lie this much farther off its surface than at the other pose, and count for both, m.
-const SHARED_M: f64 = 0.003;
-/// What is left over may not fix a pose. It is near that of most of the view: standard deviations, m and rad.
-const NEAR_STD_M: f64 = 0.05;
-const NEAR_STD_RAD: f64 = 0.02;
-/// The least weight that only the pose of what has stayed explains: about 20 cm of wall.
-const LEAST_STAYED: f64 = 5.0;
-/// The least weight that only the other pose explains, and its least share of the known surfaces: less is no motion of much of
-/// the view.
-const LEAST_MOVED: f64 = 10.0;
-const LEAST_MOVED_SHARE: f64 = 0.15;
-/// The least share of what the map can judge that the two poses explain together. Otherwise the robot is elsewhere.
-const LEAST_EXPLAINED: f64 = 0.5;
-/// What the logarithms of the weights count, beside the squared distance from the odometry over its covariance: of what both
-/// poses together explain, and of what the pose of the things that have stayed explains.
-const EXPLAINED_COUNTS: f64 = 25.0;
-const STAYED_COUNTS: f64 = 2.0;
-/// What the logarithm of the ratio of the weights that only one of the two explains counts: many against few have stayed.
-const RATIO_COUNTS: f64 = 6.0;
-/// By this much the pose of what has stayed must be better.
-const MARGIN: f64 = 4.0;
+use nalgebra::Isometry2;
 
 /// The pose of a robot of which much of the view does not know that it has stayed.
 pub(crate) struct Stayed {
@@ -70,14 +41,14 @@ pub(crate) fn stayed<M: ChangingMap>(
     let offsets = Offsets::new(scene, &most.placement);
     let known = offsets.weight(|_| true);
     let is_left = |at: usize| offsets.is_known(at) && !offsets.is_exact(at);
-    if known <= 0.0 || offsets.weight(is_left) < LEAST_LEFT * known {
+    if known <= 0.0 || offsets.weight(is_left) < MIN_LEFT * known {
         return None;
     }
     let mut pairs: Vec<Pair> = Vec::new();
     let mut tried: Vec<Isometry2<f64>> = Vec::new();
     for start in starts(scene, predicted, &prior, &most, &offsets.choose(scene.points, is_left)) {
         let pose = start.placement.pose;
-        if tried.iter().all(|other| difference(&pose, other).abs().max() >= SAME) {
+        if tried.iter().all(|other| difference(&pose, other).abs().max() >= SAME_MATCH) {
             tried.push(pose);
             pairs.extend(separate(scene, &prior, start, &most));
         }
@@ -91,7 +62,7 @@ pub(crate) fn stayed<M: ChangingMap>(
     let pair = pairs.iter().max_by(|a, b| score(a).total_cmp(&score(b)))?;
     let is_better =
         from_odometry(&pair.stayed) + pair.few_against_many() + MARGIN < from_odometry(&pair.moved);
-    let is_much = pair.only_moved >= LEAST_MOVED.max(LEAST_MOVED_SHARE * known);
+    let is_much = pair.only_moved >= MIN_MOVED.max(MIN_MOVED_SHARE * known);
     (is_better && pair.is_coherent() && pair.explains(&scene.judge(&pair.stayed.placement)))
         .then_some(Stayed { found: pair.stayed, follower: is_much.then_some(pair.moved.placement.pose) })
 }
@@ -111,7 +82,8 @@ fn starts<M: ChangingMap>(
         let rotation = interfaces::rotation(turn_rad) * most.placement.pose.rotation;
         Isometry2::from_parts(predicted.pose.translation, rotation)
     };
-    let poses = std::iter::once(predicted.pose).chain(TURNS_RAD.map(turned));
+    let poses = std::iter::once(predicted.pose)
+        .chain(TURNS_RAD.into_iter().flat_map(|turn_rad| [turned(-turn_rad), turned(turn_rad)]));
     let near = poses.filter_map(|pose| scene.align(&pose, Some(prior), wide_m, false));
     std::iter::once(*most).chain(of_left).chain(near).collect()
 }
@@ -142,21 +114,20 @@ impl Pair {
 
     /// Whether the two poses explain most of a scan with this support.
     fn explains(&self, support: &Support) -> bool {
-        self.in_place + self.only_moved >= LEAST_EXPLAINED * (support.confirmed + support.contradicted)
+        self.in_place + self.only_moved >= MAJORITY * (support.confirmed + support.contradicted)
     }
 
     /// Whether there are two different poses.
     fn is_coherent(&self) -> bool {
         let apart = difference(&self.stayed.placement.pose, &self.moved.placement.pose);
-        (APART_M..=MOVED_M).contains(&apart.xy().norm()) && self.only_stayed >= LEAST_STAYED
+        (APART_M..=MOVED_M).contains(&apart.xy().norm()) && self.only_stayed >= MIN_STAYED
     }
 }
 
 /// Separates what has stayed from what has moved: each pose is that of the points which lie better there. `None` if the
 /// points do not fix the poses.
 fn separate<M: ChangingMap>(scene: &Scene<M>, prior: &Prior, start: Match, most: &Match) -> Option<Pair> {
-    let std = Vector3::new(NEAR_STD_M, NEAR_STD_M, NEAR_STD_RAD);
-    let information = Matrix3::from_diagonal(&std.map(|std| 1.0 / (std * std)));
+    let information = NEAR_STD.information();
     let near_most = Prior { pose: most.placement.pose, information, begin: None };
     let of = |points: &[ScanPoint], at: &Match, prior: &Prior| {
         Scene { points, ..*scene }.align(&at.placement.pose, Some(prior), 0.0, false)
@@ -168,8 +139,9 @@ fn separate<M: ChangingMap>(scene: &Scene<M>, prior: &Prior, start: Match, most:
         moved = of(&in_place.choose(scene.points, is_off), &moved, &near_most)?;
         let followed = Offsets::new(scene, &moved.placement);
         let gate_m = scene.gate_m();
-        let is_nearer =
-            |at: usize| in_place.off_m(at) <= gate_m && in_place.off_m(at) <= followed.off_m(at) + SHARED_M;
+        let is_nearer = |at: usize| {
+            in_place.off_m(at) <= gate_m && in_place.off_m(at) <= followed.off_m(at) + SURFEL_STD_M
+        };
         stayed = of(&in_place.choose(scene.points, is_nearer), &stayed, prior)?;
         in_place = Offsets::new(scene, &stayed.placement);
     }

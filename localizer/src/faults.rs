@@ -1,12 +1,9 @@
 //! Readings that a localizer must not believe.
 
+use crate::constants::FROZEN_MOTION;
 use crate::scan_points::ScanPoint;
-use interfaces::{LaserReading, heading_rad, is_valid_pose};
+use interfaces::{LaserReading, is_valid_pose};
 use nalgebra::Isometry2;
-
-/// A scan that repeats bit by bit while the odometry moves by more than this is frozen, m and rad.
-const FROZEN_M: f64 = 0.01;
-const FROZEN_RAD: f64 = 0.01;
 
 /// A fault of a reading.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,7 +43,7 @@ impl FaultFinder {
             self.odometry = Some(*pose);
         }
         let moved = self.odometry.map_or(Isometry2::identity(), |first| first.inv_mul(pose));
-        let has_moved = moved.translation.vector.norm() > FROZEN_M || heading_rad(&moved).abs() > FROZEN_RAD;
+        let has_moved = !FROZEN_MOTION.contains(&moved);
         if is_same && has_moved && scan.ranges_m.iter().any(|range_m| range_m.is_finite()) {
             Some(Fault::Frozen)
         } else {

@@ -1,49 +1,16 @@
 //! The readings of a robot that maps a place for the first time, and whether they must be read again.
 
+use crate::constants::{
+    AMBIGUOUS, BROKEN_READINGS, CERTAIN_STD, CORRECTED_STD, FROZEN_WAY_M, INCONSISTENT, MAX_READINGS,
+    MAX_REJECTED, NEAR_STD, OPENING_WAY_M, SEARCH_EVERY, STDS, SUBMAP_KEYFRAMES, WINDOW,
+};
 use crate::estimate::{Localized, PoseEstimate, PoseState};
-use crate::localizer::Guide;
+use crate::localizer::PosePrior;
 use crate::openings::has_opening;
 use crate::settings::LocalizerSettings;
-use crate::trajectory::{TrajectoryFinder, TrajectorySettings, covariance, in_frame};
+use crate::trajectory::{TrajectoryFinder, TrajectorySettings, in_frame};
 use interfaces::{CellState, Grid, LaserReading, SettingsError, heading_rad};
 use nalgebra::{Isometry2, Matrix3, Vector2};
-
-/// The map is inconsistent where two motions between the same keyframes differ by more than this, m and rad: the motion in the map,
-/// and that by matching with the surfaces around or by a loop.
-const INCONSISTENT_M: f64 = 0.06;
-const INCONSISTENT_RAD: f64 = 0.02;
-/// The same in standard deviations of the motion by matching.
-const INCONSISTENT_STDS: f64 = 3.0;
-/// Poses with a larger standard deviation are not compared, m.
-const KNOWN_STD_M: f64 = 0.05;
-/// The map is consistent where it explains a recognised place as well as the loop does, up to this share.
-const EXPLAINED: f64 = 0.9;
-/// The number of keyframes of the longer way over which motions are compared: about 5 m.
-const WINDOW: usize = 16;
-/// The first map stands when it has no openings, and the robot has gone as far without new ground as on new ground
-/// before, and at least this far, m; a turn counts as 0.3 m/rad.
-const STANDS_M: f64 = 60.0;
-/// An opening is left alone if the robot has gone this far without new ground, m: it may be too narrow, or behind glass.
-const LEFT_ALONE_M: f64 = 300.0;
-/// The first map also stands after this number of readings, which bounds the memory: half an hour at 10 Hz.
-const MOST_READINGS: usize = 18_000;
-/// After the readings were read again in vain this often, they are not read again.
-const MOST_REFUSED: u32 = 3;
-/// The first map also stands after this number of consecutive readings that did not agree with those before: the robot was
-/// carried, and how far is not known.
-const BROKEN_READINGS: u32 = 10;
-/// The number of scans at rest before the readings are read again.
-const REST_SCANS: u32 = 5;
-/// The frame of the map is that of the readings up to this keyframe.
-const FIRST_KEYFRAMES: usize = 20;
-
-/// The errors of a certain pose, m and rad.
-const CERTAIN_STD_M: f64 = 0.01;
-const CERTAIN_STD_RAD: f64 = 0.003;
-/// The errors of the corrected trajectory, m and rad. They stay the same for many scans: a single scan follows the line map,
-/// and many follow the trajectory.
-const CORRECTED_STD_M: f64 = 0.003;
-const CORRECTED_STD_RAD: f64 = 0.001;
 
 /// A reading, and what the localizer has made of it.
 #[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
@@ -77,7 +44,7 @@ pub(crate) struct Log {
     rest: Option<u32>,
     /// Whether the robot has gone far enough without new ground, and the map has no openings.
     is_whole: bool,
-    /// How often the readings were read again in vain.
+    /// The number of rejected replays.
     refused: u32,
     /// The number of readings since one agreed with its submap, and whether there were too many.
     unsupported: u32,
@@ -99,7 +66,6 @@ impl FirstMap {
         let settings = TrajectorySettings {
             range_noise_std_m: settings.range_noise_std_m.max(logs.range_noise_std_m),
             odometry: settings.odometry,
-            ..logs
         };
         let finder = TrajectoryFinder::new(&settings)?.with_odometry();
         Ok(Self { finder, keyframes: Vec::new(), log: Log::default() })
@@ -124,7 +90,7 @@ impl FirstMap {
     /// Finds the trajectory to reading `number`.
     fn find(&mut self, reading: &LaserReading, number: usize) {
         self.finder.add(reading.clone());
-        if self.finder.keyframes() > self.keyframes.len() {
+        if self.finder.keyframe_count() > self.keyframes.len() {
             self.keyframes.push(number);
         }
     }
@@ -139,15 +105,15 @@ impl FirstMap {
         self.log.loops
     }
 
-    /// Whether the map stands: its frame does not move any more.
-    pub(crate) fn stands(&self) -> bool {
-        let is_over = self.log.kept.len() >= MOST_READINGS || self.log.is_broken;
+    /// Whether the map is_frozen: its frame does not move any more.
+    pub(crate) fn is_frozen(&self) -> bool {
+        let is_over = self.log.kept.len() >= MAX_READINGS || self.log.is_broken;
         self.log.rest.is_none() && (self.log.is_whole || is_over)
     }
 
     /// Takes the next reading. The result is where the robot is, from its last certain pose on; `None` if the last reading
     /// was certain, or if a scan since then did not agree with those before.
-    pub(crate) fn guide(&mut self, reading: &LaserReading) -> Option<Guide> {
+    pub(crate) fn pose_prior(&mut self, reading: &LaserReading) -> Option<PosePrior> {
         let number = self.log.kept.len();
         self.find(reading, number);
         self.log.unsupported = if self.finder.is_supported() { 0 } else { self.log.unsupported + 1 };
@@ -155,8 +121,8 @@ impl FirstMap {
         let last = self.log.last_certain.filter(|last| last + 1 < number)?;
         let (motion, spread) = self.finder.motion_since(last)?;
         let at = self.log.kept[last].pose;
-        let covariance = in_frame(&spread, &at.inverse()) + covariance(CERTAIN_STD_M, CERTAIN_STD_RAD);
-        Some(Guide { pose: at * motion, covariance })
+        let covariance = in_frame(&spread, &at.inverse()) + CERTAIN_STD.covariance();
+        Some(PosePrior { pose: at * motion, covariance })
     }
 
     /// Whether the mapper, whose time is `map_s`, has paused since the last reading.
@@ -185,15 +151,15 @@ impl FirstMap {
         if self.keyframes.last() == Some(&number) {
             self.look_at_keyframe();
             let (new_m, known_m) = self.finder.ways_on_ground_m();
-            let has_returned = known_m >= new_m.max(STANDS_M);
+            let has_returned = known_m >= new_m.max(FROZEN_WAY_M);
             self.log.is_whole = has_returned
-                && (known_m >= LEFT_ALONE_M || states.is_some_and(|states| !has_opening(states)));
+                && (known_m >= OPENING_WAY_M || states.is_some_and(|states| !has_opening(states)));
         }
         if self.finder.loops() != self.log.loops {
             self.look_at_loops();
             let is_wanted = self.log.is_inconsistent || state == PoseState::Lost;
-            if is_wanted && self.log.refused < MOST_REFUSED {
-                self.log.rest.get_or_insert(REST_SCANS);
+            if is_wanted && self.log.refused < MAX_REJECTED {
+                self.log.rest.get_or_insert(SEARCH_EVERY);
             }
         }
         self.log.rest = self.log.rest.map(|rest| rest.saturating_sub(1));
@@ -257,7 +223,7 @@ impl FirstMap {
                 let near = || self.finder.agreement_near(&found, &mapped);
                 let is_inconsistent =
                     |motion: &Isometry2<f64>| is_inconsistent(&mapped, motion, &Matrix3::zeros());
-                let is_explained = |(near, share)| share >= EXPLAINED && !is_inconsistent(&near);
+                let is_explained = |(near, share)| share >= AMBIGUOUS && !is_inconsistent(&near);
                 is_inconsistent(&found.motion) && !near().is_some_and(is_explained)
             })
         });
@@ -267,9 +233,9 @@ impl FirstMap {
 
     /// The poses of all readings in the map, by the trajectory with all loops. Where the trajectory begins, it is where the
     /// map is.
-    pub(crate) fn corrected(&self) -> Vec<Guide> {
+    pub(crate) fn corrected(&self) -> Vec<PosePrior> {
         let found = self.finder.corrected();
-        let last = self.keyframes[FIRST_KEYFRAMES.min(self.keyframes.len() - 1)];
+        let last = self.keyframes[SUBMAP_KEYFRAMES.min(self.keyframes.len() - 1)];
         let first = || {
             self.log.kept[..=last].iter().zip(&found).filter(|(kept, _)| kept.state == PoseState::Tracking)
         };
@@ -283,20 +249,20 @@ impl FirstMap {
             first().map(|(kept, found)| kept.pose.translation.vector - rotation * found.translation.vector);
         let shift = shift.sum::<Vector2<f64>>() / count;
         let to_map = Isometry2::from_parts(shift.into(), rotation);
-        let covariance = covariance(CORRECTED_STD_M, CORRECTED_STD_RAD);
-        found.iter().map(|found| Guide { pose: to_map * found, covariance }).collect()
+        let covariance = CORRECTED_STD.covariance();
+        found.iter().map(|found| PosePrior { pose: to_map * found, covariance }).collect()
     }
 }
 
 /// Whether a pose is known well enough to be compared with a loop.
 fn is_known(estimate: &PoseEstimate) -> bool {
-    estimate.state != PoseState::Lost && estimate.position_std_m() <= KNOWN_STD_M
+    estimate.state != PoseState::Lost && estimate.position_std_m() <= NEAR_STD.m
 }
 
 /// Whether a motion in the map contradicts another one with this covariance.
 fn is_inconsistent(mapped: &Isometry2<f64>, motion: &Isometry2<f64>, spread: &Matrix3<f64>) -> bool {
     let off = mapped.inv_mul(motion);
     let std_m = (spread[(0, 0)] + spread[(1, 1)]).sqrt();
-    off.translation.vector.norm() > INCONSISTENT_M.max(INCONSISTENT_STDS * std_m)
-        || heading_rad(&off).abs() > INCONSISTENT_RAD.max(INCONSISTENT_STDS * spread[(2, 2)].sqrt())
+    off.translation.vector.norm() > INCONSISTENT.m.max(STDS * std_m)
+        || heading_rad(&off).abs() > INCONSISTENT.rad.max(STDS * spread[(2, 2)].sqrt())
 }

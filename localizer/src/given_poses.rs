@@ -1,26 +1,26 @@
+use crate::deskew::deskewed_scan;
 use crate::path::Path;
-use crate::sweep::SweepUndo;
+use crate::scan_points::Directions;
 use interfaces::{LaserReading, ValueError, value};
 use nalgebra::Isometry2;
 
-/// The poses of the source, taken as they are. The sweep of scans is undone with them, that of the first scan with its
-/// velocities.
+/// The poses of the source, taken as they are. Scans are deskewed with them, the first scan with its velocities.
 #[derive(Clone, Debug, Default)]
 pub struct GivenPoses {
     /// The time and the pose of the last reading.
     last: Option<(f64, Isometry2<f64>)>,
-    sweeps: SweepUndo,
+    directions: Directions,
 }
 
 impl GivenPoses {
     /// The reading with a scan whose beams all belong to its pose.
-    pub fn unswept(&mut self, mut reading: LaserReading) -> LaserReading {
+    pub fn deskewed(&mut self, mut reading: LaserReading) -> LaserReading {
         let (motion, elapsed_s) = match self.last.replace((reading.time_s, reading.pose)) {
             Some((last_s, last)) => (last.inv_mul(&reading.pose), reading.time_s - last_s),
             None => Path::by_velocities(&reading),
         };
         if let Some(path) = Path::of_sweep(&reading, &motion, elapsed_s) {
-            reading.scan = self.sweeps.scan(&reading, &path);
+            reading.scan = deskewed_scan(&mut self.directions, &reading, &path);
         }
         reading
     }

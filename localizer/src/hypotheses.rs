@@ -1,25 +1,13 @@
 //! Several poses that the robot may have. Driving on decides between them.
 
 use crate::changing_map::ChangingMap;
+use crate::constants::{AMBIGUOUS, EQUAL, FOUND_STD, SAME_POSE, SCORE_MEMORY, WIDE_GATE_M};
 use crate::matcher::{Prior, difference};
 use crate::motion::Motion;
 use crate::scene::Scene;
 use crate::search::Candidate;
 use crate::support::Support;
-use nalgebra::{Isometry2, Matrix3, Vector3};
-
-/// The uncertainty of a pose that a search has found: the size of its cells.
-const FOUND_STD_M: f64 = 0.1;
-const FOUND_STD_RAD: f64 = 0.03;
-/// A match starts up to this far from the found pose, m.
-const FIRST_GATE_M: f64 = 0.3;
-/// Poses whose scores differ by less are about equal: a place that looks alike from two sides.
-const ABOUT_EQUAL: f64 = 0.95;
-/// What a score counts at the next scan: about five scans decide.
-const MEMORY: f64 = 0.8;
-/// Poses that come closer than this are the same, m and rad.
-const SAME_M: f64 = 0.1;
-const SAME_RAD: f64 = 0.1;
+use nalgebra::{Isometry2, Matrix3};
 
 /// A pose that the robot may have.
 #[derive(Clone, Copy, Debug, serde::Deserialize, serde::Serialize)]
@@ -41,22 +29,16 @@ pub(crate) struct Hypotheses {
 }
 
 impl Hypotheses {
-    /// Refines the poses that a search has found. Poses below `least_score` are dropped.
-    pub(crate) fn start<M: ChangingMap>(
-        scene: &Scene<M>,
-        found: &[Candidate],
-        least_score: f64,
-        ratio: f64,
-    ) -> Self {
-        let spread = Vector3::new(FOUND_STD_M, FOUND_STD_M, FOUND_STD_RAD);
-        let covariance = Matrix3::from_diagonal(&spread.component_mul(&spread));
+    /// Refines the poses that a search has found. Poses below `min_score` are dropped.
+    pub(crate) fn start<M: ChangingMap>(scene: &Scene<M>, found: &[Candidate], min_score: f64) -> Self {
+        let covariance = FOUND_STD.covariance();
         let list = found
             .iter()
-            .filter_map(|candidate| refine(scene, &candidate.pose, &covariance, FIRST_GATE_M, 0.0))
-            .filter(|hypothesis| hypothesis.score >= least_score)
+            .filter_map(|candidate| refine(scene, &candidate.pose, &covariance, WIDE_GATE_M, 0.0))
+            .filter(|hypothesis| hypothesis.score >= min_score)
             .collect();
         let mut hypotheses = Self { list, scans: 0 };
-        hypotheses.sort_out(ratio);
+        hypotheses.sort_out();
         hypotheses
     }
 
@@ -70,9 +52,9 @@ impl Hypotheses {
     }
 
     /// These and others.
-    pub(crate) fn or(mut self, others: Self, ratio: f64) -> Self {
+    pub(crate) fn or(mut self, others: Self) -> Self {
         self.list.extend(others.list);
-        self.sort_out(ratio);
+        self.sort_out();
         self
     }
 
@@ -114,7 +96,7 @@ impl Hypotheses {
 
     /// After this number of scans: of poses with about the same score, the one that is expected is the only one.
     pub(crate) fn prefer(&mut self, scans: u32, is_expected: impl Fn(&Isometry2<f64>) -> bool) {
-        let Some(least) = self.best().map(|best| best.score * ABOUT_EQUAL) else { return };
+        let Some(least) = self.best().map(|best| best.score * EQUAL) else { return };
         let is_one = |hypothesis: &Hypothesis| hypothesis.score >= least && is_expected(&hypothesis.pose);
         if self.scans >= scans
             && let Some(expected) = self.list.iter().copied().find(is_one)
@@ -123,29 +105,23 @@ impl Hypotheses {
         }
     }
 
-    /// Moves all poses and compares them with the next scan. Poses below `least_score` are dropped.
-    pub(crate) fn advance<M: ChangingMap>(
-        &mut self,
-        scene: &Scene<M>,
-        motion: &Motion,
-        least_score: f64,
-        ratio: f64,
-    ) {
+    /// Moves all poses and compares them with the next scan. Poses below `min_score` are dropped.
+    pub(crate) fn advance<M: ChangingMap>(&mut self, scene: &Scene<M>, motion: &Motion, min_score: f64) {
         self.scans += 1;
         let next = |hypothesis: &Hypothesis| {
             let covariance = motion.propagate(&hypothesis.pose, &hypothesis.covariance);
             let pose = motion.apply(&hypothesis.pose);
-            refine(scene, &pose, &covariance, 2.0 * scene.gate_m(), MEMORY * hypothesis.score)
-                .filter(|next| next.support.score() >= least_score)
+            refine(scene, &pose, &covariance, 2.0 * scene.gate_m(), SCORE_MEMORY * hypothesis.score)
+                .filter(|next| next.support.score() >= min_score)
         };
         self.list = self.list.iter().filter_map(next).collect();
-        self.sort_out(ratio);
+        self.sort_out();
     }
 
     /// Sorts by the score, and drops what is much worse than the best, or the same as a better one.
-    fn sort_out(&mut self, ratio: f64) {
+    fn sort_out(&mut self) {
         self.list.sort_by(|a, b| b.score.total_cmp(&a.score));
-        let least = self.list.first().map_or(0.0, |best| best.score * ratio);
+        let least = self.list.first().map_or(0.0, |best| best.score * AMBIGUOUS);
         let mut kept: Vec<Hypothesis> = Vec::new();
         for hypothesis in self.list.drain(..).filter(|hypothesis| hypothesis.score >= least) {
             if !kept.iter().any(|better| is_same(&better.pose, &hypothesis.pose)) {
@@ -157,8 +133,7 @@ impl Hypotheses {
 }
 
 fn is_same(a: &Isometry2<f64>, b: &Isometry2<f64>) -> bool {
-    let between = a.inv_mul(b);
-    between.translation.vector.norm() <= SAME_M && interfaces::heading_rad(&between).abs() <= SAME_RAD
+    SAME_POSE.contains(&a.inv_mul(b))
 }
 
 /// Matches the scan near a pose.

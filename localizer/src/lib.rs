@@ -2,11 +2,12 @@
 //! Of a map it knows states and rates; it must not know worlds, simulators, goals, drives, recordings or files.
 //!
 //! ```text
-//! reading ─▶ undo the sweep ─▶ predict by odometry ─▶ match with the line map ─▶ pose ─▶ learn the line map
-//!                                                      └─ low support: search, hypotheses ─┘
+//! reading ─▶ motion prior ─▶ deskew ─▶ match with the line map ─▶ pose ─▶ calibrate, deskew again ─▶ insert in the line map
+//!                                             └─ low support: search, hypotheses ─┘
 //! ```
 //!
-//! [`Localizer::localize`] is this line. The localizer never mistakes its own error for a change of the place, because
+//! [`Localizer::localize`] is this line, in `local_trajectory_builder.rs`; its states are in `localizer/state.rs`, and all chosen
+//! numbers in `constants.rs`. The localizer never mistakes its own error for a change of the place, because
 //! a scan enters a map only while the state of the estimate is [`PoseState::Tracking`]; all other time counts as not
 //! observed.
 //!
@@ -14,7 +15,7 @@
 //!   point-to-line Gauss-Newton with a prior from odometry: Censi (2008), Segal, Haehnel & Thrun (2009).
 //! - Points count by the length of surface that they stand for, and by how much the range noise moves them off it: beams
 //!   that graze a wall fix the heading best.
-//! - A scan that sweeps is undone along the path that the velocities of the odometry describe, and is matched as an elastic
+//! - A scan that sweeps is deskewed along the path that the velocities of the odometry describe, and is matched as an elastic
 //!   scan: the pose at its begin and the pose at its end are estimated together, and a beam in between follows both
 //!   (as Dellenbach et al. 2022, "CT-ICP", but with the begin tied to the last estimate by its covariance).
 //! - Where the scan does not support the pose, it is searched for: correlative matching in a window (Olson 2009) and
@@ -24,8 +25,7 @@
 //!   like it: a found pose is certain once enough scans from enough viewpoints agree with it.
 //! - If much of the view shifts at once, either the robot moved and its odometry missed it, or the things moved: two rigid
 //!   motions are separated, and the odometry decides which one is that of the robot. What has moved counts little from then on.
-//! - Learned rates of change ([`ChangingMap`]) lower the weight of surfaces in a search; in tracking only where the
-//!   unchanged surfaces alone fix the pose.
+//! - Learned rates of change ([`ChangingMap`]) lower the weight of surfaces in a search; not in tracking.
 //!
 //! [`TrajectoryFinder`] finds the trajectory of a whole log: with submaps that move along with the robot, loops, and a pose
 //! graph. [`LoopClosingLocalizer`] closes loops while the robot maps a place for the first time.
@@ -34,16 +34,20 @@ mod beams;
 mod calibration;
 mod changing_map;
 mod coherent_motion;
+mod constants;
+mod deskew;
 mod estimate;
 mod faults;
 mod first_map;
 mod given_poses;
 mod hypotheses;
+mod local_trajectory_builder;
 mod localizer;
 mod loop_closing;
 mod matcher;
 mod moments;
 mod motion;
+mod motion_prior;
 mod openings;
 mod path;
 mod placement;
@@ -52,9 +56,9 @@ mod scene;
 mod score_grid;
 mod search;
 mod settings;
+mod spread;
 mod support;
 mod surfel_map;
-mod sweep;
 mod tracking;
 mod trajectory;
 mod verification;

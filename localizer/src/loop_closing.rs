@@ -1,27 +1,28 @@
 //! A robot that maps a place for the first time: its loops are closed while it drives.
 //!
 //! ```text
-//! reading ─▶ trajectory finder ─guide─▶ localizer ─▶ pose ─▶ mapper
+//! reading ─▶ trajectory finder ─pose prior─▶ localizer ─▶ pose ─▶ mapper
 //!                  └─▶ a loop that contradicts the map: all readings again, near the corrected trajectory
 //! ```
 //!
 //! - Where the scans fit the map but do not fix the pose, as in a corridor, the [`TrajectoryFinder`](crate::TrajectoryFinder)
-//!   guides the localizer: its submaps hold what the map does not hold yet. While it does, nothing is searched for in the whole
+//!   gives the localizer a pose prior: its submaps hold what the map does not hold yet. While it does, nothing is searched for in the whole
 //!   map: in a map that is not finished, something always looks like the place.
 //! - After a long way around, the robot comes back beside its own map, and the map is inconsistent where the two meet. When the
-//!   finder recognises the place, the robot reads its own log again: a new localizer and a new mapper get all readings so far,
-//!   guided by the corrected trajectory. So there is one kind of map, and what it knows of changes and rates follows from the
+//!   finder recognizes the place, the robot reads its own log again: a new localizer and a new mapper get all readings so far,
+//!   near the corrected trajectory. So there is one kind of map, and what it knows of changes and rates follows from the
 //!   better poses as well.
 //!
 //! A live robot goes on in the old map while a thread reads its log ([`Switch`]), and then the readings that came meanwhile.
 //! When the thread has caught up, the robot changes to the new map.
 //!
-//! The map can move until it *stands*: nothing is left to explore, and the robot has gone as far on known ground as on new
+//! The map can move until it is *frozen*: nothing is left to explore, and the robot has gone as far on known ground as on new
 //! ground before. From then on, its frame stays for ever.
 
+use crate::constants::{FEWER_CERTAIN, NEAR_STD};
 use crate::estimate::{Localized, PoseEstimate, PoseState};
 use crate::first_map::{FirstMap, Kept, Log};
-use crate::localizer::{Guide, Localizer};
+use crate::localizer::{Localizer, PosePrior};
 use crate::settings::LocalizerSettings;
 use interfaces::{GridFrame, LaserReading, SettingsError, ValueError, read_value, write_value};
 use mapper::Mapper;
@@ -32,12 +33,6 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{self, Receiver, Sender};
 use std::thread::JoinHandle;
 
-/// The readings are not read again if this share of those with a certain pose would no longer be certain: then the loop
-/// is not believed.
-const FEWER_CERTAIN: f64 = 0.02;
-/// The same if no certain pose would move by more than this, m: a map with smaller errors is whole.
-const LEAST_M: f64 = 0.05;
-
 /// A localizer that starts from nothing, and that learns the map again when a loop is closed. The same readings give the same
 /// bits.
 #[derive(Debug)]
@@ -46,7 +41,7 @@ pub struct LoopClosingLocalizer {
     frame: GridFrame,
     start: Isometry2<f64>,
     localizer: Localizer,
-    /// `None`: the first map stands, or a thread has it.
+    /// `None`: the first map is frozen, or a thread has it.
     first: Option<FirstMap>,
     switch: Switch,
     switches: Vec<usize>,
@@ -104,7 +99,7 @@ type Replayed = (FirstMap, Option<(Replay, Correction)>);
 /// What a closed loop has changed.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
 pub struct Correction {
-    /// The number of places that were recognised so far.
+    /// The number of places that were recognized so far.
     pub places: usize,
     /// The number of readings that were read again.
     pub readings: usize,
@@ -117,7 +112,7 @@ impl fmt::Display for Correction {
         let Self { places, readings, largest_m } = self;
         write!(
             f,
-            "a loop was closed: {places} places recognised, {readings} readings read again, poses of the past moved by up \
+            "a loop was closed: {places} places recognized, {readings} readings read again, poses of the past moved by up \
              to {largest_m:.2} m"
         )
     }
@@ -162,8 +157,8 @@ impl LoopClosingLocalizer {
         Self { switch, ..self }
     }
 
-    /// Whether the first map stands: no loop will move it any more.
-    pub fn stands(&self) -> bool {
+    /// Whether the first map is frozen: no loop will move it any more.
+    pub fn is_frozen(&self) -> bool {
         self.first.is_none() && self.is_settled()
     }
 
@@ -199,10 +194,8 @@ impl LoopClosingLocalizer {
         let Some(first) = &mut self.first else {
             return LoopClosed { localized: self.localizer.localize(reading, map), correction: None };
         };
-        let localized = match first.guide(reading) {
-            Some(guide) => self.localizer.localize_near(reading, map, guide),
-            None => self.localizer.localize(reading, map),
-        };
+        let prior = first.pose_prior(reading);
+        let localized = self.localizer.localize_near(reading, map, prior);
         if self.localizer.much_has_moved() {
             // Keyframes from before and after do not fit together: most of what they show has moved.
             self.first = None;
@@ -210,7 +203,7 @@ impl LoopClosingLocalizer {
         }
         let is_due = first.add(reading, (map.time(), Some(map.states())), &localized);
         let closed = if is_due { self.read_again(map) } else { None };
-        if self.first.as_ref().is_some_and(FirstMap::stands) {
+        if self.first.as_ref().is_some_and(FirstMap::is_frozen) {
             self.first = None;
         }
         closed.unwrap_or(LoopClosed { localized, correction: None })
@@ -263,7 +256,7 @@ impl LoopClosingLocalizer {
 
     /// Changes to what was learned again. `None` if that was no use.
     fn take_over(&mut self, (first, again): Replayed, map: &mut Mapper) -> Option<LoopClosed> {
-        self.first = Some(first).filter(|first| !first.stands());
+        self.first = Some(first).filter(|first| !first.is_frozen());
         let (Replay { localizer, map: learned, last }, correction) = again?;
         (self.localizer, *map) = (localizer, learned);
         Some(LoopClosed { localized: last?, correction: Some(correction) })
@@ -281,17 +274,19 @@ struct Replay {
 
 impl Replay {
     /// Reads the next reading, near a pose if one is known.
-    fn read(&mut self, reading: &LaserReading, is_after_pause: bool, near: Option<Guide>) -> PoseEstimate {
+    fn read(
+        &mut self,
+        reading: &LaserReading,
+        is_after_pause: bool,
+        near: Option<PosePrior>,
+    ) -> PoseEstimate {
         if let Some(Localized { reading, estimate }) = self.last.take() {
             learn(&mut self.map, &reading, &estimate);
         }
         if is_after_pause {
             self.map.pause(reading.time_s);
         }
-        let localized = match near {
-            Some(near) => self.localizer.localize_near(reading, &self.map, near),
-            None => self.localizer.localize(reading, &self.map),
-        };
+        let localized = self.localizer.localize_near(reading, &self.map, near);
         self.last.insert(localized).estimate.clone()
     }
 
@@ -300,7 +295,7 @@ impl Replay {
         let (mut first, mut again) = self.log(first);
         read.store(first.kept().len(), Ordering::Relaxed);
         for (reading, map_s, localized) in coming {
-            let (near, is_after_pause) = (first.guide(&reading), first.is_after_pause(map_s));
+            let (near, is_after_pause) = (first.pose_prior(&reading), first.is_after_pause(map_s));
             if let Some((again, correction)) = &mut again {
                 again.read(&reading, is_after_pause, near);
                 correction.readings += 1;
@@ -320,7 +315,8 @@ impl Replay {
     /// Reads the readings of a log, near their corrected poses.
     fn log(mut self, mut first: FirstMap) -> Replayed {
         let near = first.corrected();
-        let read = |(kept, near): (&Kept, Guide)| self.read(&kept.reading, kept.is_after_pause, Some(near));
+        let read =
+            |(kept, near): (&Kept, PosePrior)| self.read(&kept.reading, kept.is_after_pause, Some(near));
         let estimates: Vec<PoseEstimate> = first.kept().iter().zip(near).map(read).collect();
         let is_certain = |state: PoseState| usize::from(state == PoseState::Tracking);
         let (mut before, mut after, mut largest_m) = (0, 0, 0.0_f64);
@@ -331,7 +327,7 @@ impl Replay {
                 largest_m = largest_m.max(moved.norm());
             }
         }
-        if (after as f64) < before as f64 * (1.0 - FEWER_CERTAIN) || largest_m < LEAST_M {
+        if (after as f64) < before as f64 * (1.0 - FEWER_CERTAIN) || largest_m < NEAR_STD.m {
             first.refuse();
             return (first, None);
         }
@@ -372,7 +368,7 @@ impl LoopClosingLocalizer {
         if snapshot.is_empty() { Ok(()) } else { Err(ValueError) }
     }
 
-    /// Begins another session, see [`Localizer::begin_session`]. The map of the first session stands.
+    /// Begins another session, see [`Localizer::begin_session`]. The map of the first session is frozen.
     pub fn begin_session(&mut self) {
         self.localizer.begin_session();
         self.background = None;

@@ -4,24 +4,13 @@
 //! a second scan (as Segal, Haehnel & Thrun 2009 use surfaces on both sides), the kernel of Geman & McClure (1987), and
 //! a prior from odometry.
 
+use crate::constants::{MAX_STEPS, MIN_KERNEL, STEP, SURFEL_STD_M};
 use crate::placement::Placement;
 use crate::scan_points::ScanPoint;
+use crate::spread::Spread;
 use crate::surfel_map::SurfelMap;
 use interfaces::heading_rad;
 use nalgebra::{Isometry2, Matrix3, Matrix6, Vector2, Vector3, Vector6};
-
-/// The largest number of steps at one gate.
-const MAX_STEPS: usize = 8;
-/// Steps below these sizes end the iteration: far below the errors of every sensor.
-const STEP_M: f64 = 1e-4;
-const STEP_RAD: f64 = 2e-5;
-/// The error of a surfel beyond the noise of its hits, m: surfaces are not perfectly straight, and were learned at
-/// poses with an error.
-pub(crate) const SURFEL_STD_M: f64 = 0.003;
-
-/// The kernel of a point is as narrow as its noise across the surface, down to this share: a beam that grazes a surface
-/// counts much, and must not pull where it hits another surface.
-const LEAST_KERNEL: f64 = 0.3;
 
 /// A pose with the inverse of its covariance, in the frame of the map.
 #[derive(Clone, Copy, Debug)]
@@ -39,7 +28,7 @@ pub(crate) struct Begin {
     pub(crate) information: Matrix3<f64>,
     /// The inverse of the covariance of both poses: of the begin, then of the end.
     pub(crate) joint: Matrix6<f64>,
-    /// How an error of the begin becomes one of the end.
+    /// Jacobian of the end pose with respect to the begin pose.
     pub(crate) by_heading: Matrix3<f64>,
     /// How far the place of the begin has moved with the expected end, since another source knows the end: x, y (m) and
     /// heading (rad); and how far from this place the begin is expected.
@@ -191,13 +180,11 @@ fn accumulate(
         if surfel.is_suspect() && off_m.abs() > suspect_m {
             continue;
         }
-        let mut weight = point.weight * surfel.weight();
-        if gates.by_rates {
-            weight *= surfel.steadiness;
-        }
+        let rate_weight = if gates.by_rates { surfel.steadiness } else { 1.0 };
+        let weight = point.weight * surfel.weight() * rate_weight;
         let noise_m = gates.noise_m * point.noise_share;
         let variance = noise_m * noise_m + SURFEL_STD_M * SURFEL_STD_M;
-        let kernel = kernel(off_m, scale_m * (variance / largest).sqrt().max(LEAST_KERNEL));
+        let kernel = kernel(off_m, scale_m * (variance / largest).sqrt().max(MIN_KERNEL));
         let certain = weight / variance * kernel;
         let (j, share) = (derivative(&arm, &surfel.normal), placement.share(point));
         let (hessian, gradient) = (j * j.transpose() * certain, j * (off_m * certain));
@@ -231,7 +218,7 @@ pub(crate) fn difference(pose: &Isometry2<f64>, from: &Isometry2<f64>) -> Vector
     Vector3::new(shift.x, shift.y, turn)
 }
 
-/// Matches a scan, from the pose for which its sweep was undone, with an optional prior. `None` if the points do not fix
+/// Matches a scan, from the pose for which it was deskewed, with an optional prior. `None` if the points do not fix
 /// the pose.
 pub(crate) fn align(
     map: &SurfelMap,
@@ -255,8 +242,8 @@ pub(crate) fn align(
         steps += 1;
         // With a wide gate, the pose need only be good enough for the next gate.
         let is_last = gate_m <= gates.last_m;
-        let (step_m, step_rad) = if is_last { (STEP_M, STEP_RAD) } else { (gate_m / 20.0, gate_m / 60.0) };
-        let is_small = step.xy().norm() < step_m && step.z.abs() < step_rad;
+        let limit = if is_last { STEP } else { Spread::of_error(gate_m / 20.0) };
+        let is_small = step.xy().norm() < limit.m && step.z.abs() < limit.rad;
         if !is_small && steps < MAX_STEPS {
             continue;
         }

@@ -1,21 +1,11 @@
 //! The motion between two readings by odometry, and how far it can be trusted.
 
+use crate::constants::{DISTRUSTED_STD, PRIOR_FACTOR, REST_STD, SLIP};
 use crate::matcher::{Begin, Prior, difference};
 use crate::placement::shifted;
 use crate::settings::OdometryTrust;
 use interfaces::heading_rad;
 use nalgebra::{Isometry2, Matrix3, Matrix6, Vector3, Vector6};
-
-/// The uncertainty of a motion of zero length: vibration, and rounding in the odometry.
-const REST_STD_M: f64 = 2e-4;
-const REST_STD_RAD: f64 = 1e-4;
-
-/// The expected errors of odometry count as larger by this factor: the part of an error that stays the same from scan
-/// to scan would bend the map.
-const PRIOR_FACTOR: f64 = 1.5;
-/// The uncertainty of a motion between two scans, of an odometry that did not tell the truth.
-const DISTRUSTED_STD_M: f64 = 0.05;
-const DISTRUSTED_STD_RAD: f64 = 0.1;
 
 /// A motion in the frame of the robot before the motion.
 #[derive(Clone, Copy, Debug)]
@@ -37,19 +27,18 @@ impl Motion {
         // An error of the heading on the way shifts the end of the way to the side.
         let across = heading * square(distance_m) / 3.0;
         // A robot that turns in place slips a little in every direction.
-        let slip = square(REST_STD_M + 0.02 * trust.turn_gain * turn_rad);
+        let slip = square(REST_STD.m + SLIP * trust.turn_gain * turn_rad);
         let covariance = Matrix3::from_diagonal(&Vector3::new(
             along + slip,
-            across + square(0.02 * distance_m) + slip,
-            heading + square(REST_STD_RAD),
+            across + square(SLIP * distance_m) + slip,
+            heading + square(REST_STD.rad),
         ));
         Self { delta, covariance: covariance * (PRIOR_FACTOR * PRIOR_FACTOR) }
     }
 
     /// The same motion, of an odometry that cannot be trusted.
     pub(crate) fn distrusted(mut self) -> Self {
-        let spread = Vector3::new(DISTRUSTED_STD_M, DISTRUSTED_STD_M, DISTRUSTED_STD_RAD);
-        self.covariance += Matrix3::from_diagonal(&spread.component_mul(&spread));
+        self.covariance += DISTRUSTED_STD.covariance();
         self
     }
 
@@ -156,8 +145,7 @@ impl Begin {
 /// What is known about a pose with `covariance` and the pose after a motion with the covariance `own`. `by_heading`: how
 /// an error of the first becomes one of the second.
 fn begin(covariance: &Matrix3<f64>, by_heading: &Matrix3<f64>, own: &Matrix3<f64>) -> Option<Begin> {
-    let least = Vector3::new(REST_STD_M, REST_STD_M, REST_STD_RAD);
-    let information = (covariance + Matrix3::from_diagonal(&least.component_mul(&least))).try_inverse()?;
+    let information = (covariance + REST_STD.covariance()).try_inverse()?;
     let motion = own.try_inverse()?;
     let cross = by_heading.transpose() * motion;
     let mut joint = Matrix6::zeros();

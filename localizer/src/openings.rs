@@ -1,17 +1,13 @@
 //! Whether a map has openings: places where the known space goes on into space that was never seen.
 
+use crate::constants::{OPENING_CELLS, OPENING_M};
 use interfaces::{Cell, CellState, Grid};
 
-/// A narrower gap is no opening, m: between surfaces that few beams hit, some cells are never seen.
-const WIDTH_M: f64 = 0.5;
-/// Cells nearer to a surface than this are a part of it, in cells.
-const BESIDE: i32 = 2;
-
-/// Whether free space goes on into unknown space somewhere, over a width of half a metre: then there is more to explore
+/// Whether free space goes on into unknown space somewhere, over a width of half a meter: then there is more to explore
 /// (frontiers: Yamauchi 1997).
 pub(crate) fn has_opening(states: &Grid<CellState>) -> bool {
     let frame = states.frame();
-    let width = (WIDTH_M / frame.resolution_m()).ceil() as i32;
+    let width = (OPENING_M / frame.resolution_m()).ceil() as i32;
     let mut is_left: Vec<bool> = (0..frame.len()).map(|index| is_frontier(states, index)).collect();
     for index in 0..frame.len() {
         if !std::mem::take(&mut is_left[index]) {
@@ -43,7 +39,7 @@ fn is_frontier(states: &Grid<CellState>, index: usize) -> bool {
     let is_blocked = |cell: Cell| states.get(cell) == Some(&CellState::Blocked);
     cells[index] == CellState::Unknown
         && frame.beside(index).any(|beside| cells[beside] == CellState::Free)
-        && !around(frame.cell(index), BESIDE).any(is_blocked)
+        && !around(frame.cell(index), OPENING_CELLS).any(is_blocked)
 }
 
 /// The cells in a square around a cell.

@@ -1,18 +1,8 @@
 //! The path of a robot while a scan was measured, from odometry.
 
+use crate::constants::{MAX_CHORD_RAD, MAX_MISMATCH, MAX_MPS, RAD_PER_M};
 use interfaces::{LaserReading, Twist, VelocitySample, heading_rad};
 use nalgebra::{Complex, Isometry2, Translation2, UnitComplex, Vector2, Vector3};
-
-/// The largest difference between the motion from scan to scan and the sum of the velocities that is spread over the
-/// path, m and rad. Beyond it, the odometry has jumped, or the robot was carried.
-const MAX_MISMATCH_M: f64 = 0.1;
-const MAX_MISMATCH_RAD: f64 = 0.15;
-/// The turn that takes as long as a way of one metre, rad: what a path is made of, in one number.
-const RAD_PER_M: f64 = 3.0;
-/// A robot is not faster than this, m/s.
-const MOST_M_PER_S: f64 = 50.0;
-/// The largest turn of which the chord stands for the arc, rad.
-const MAX_CHORD_RAD: f64 = 0.1;
 
 /// The path of a robot up to the end of a scan.
 pub(crate) struct Path {
@@ -29,7 +19,7 @@ struct Node {
     at: Vector3<f64>,
     /// The rotation by this heading.
     rotation: Complex<f64>,
-    /// The length of the path from here to the end: metres, and turns as metres.
+    /// The length of the path from here to the end: meters, and turns as meters.
     length: f64,
 }
 
@@ -68,7 +58,7 @@ impl Path {
         let whole = *self.whole();
         let missing = pose(&whole.at).inv_mul(&motion.inverse());
         let (shift_m, turn_rad) = (missing.translation.vector, heading_rad(&missing));
-        let is_jump = shift_m.norm() > MAX_MISMATCH_M || turn_rad.abs() > MAX_MISMATCH_RAD;
+        let is_jump = shift_m.norm() > MAX_MISMATCH.m || turn_rad.abs() > MAX_MISMATCH.rad;
         let (shift_m, turn_rad) = if is_jump { (Vector2::zeros(), 0.0) } else { (shift_m, turn_rad) };
         for node in &mut self.nodes {
             let share =
@@ -100,7 +90,7 @@ impl Path {
         }
         let begin = Self::along(reading, sweep_s).whole().at;
         let motion = pose(&begin).inverse();
-        if motion.translation.vector.norm() < MOST_M_PER_S * sweep_s { (motion, sweep_s) } else { nothing }
+        if motion.translation.vector.norm() < MAX_MPS * sweep_s { (motion, sweep_s) } else { nothing }
     }
 
     /// The share of the path that the robot had gone at a time before the end of the scan.

@@ -6,8 +6,8 @@ use nalgebra::{Isometry2, Point2, Vector2, Vector3};
 pub(crate) struct Placement {
     /// The pose at the end of the scan.
     pub(crate) pose: Isometry2<f64>,
-    /// The pose for which the sweep was undone.
-    undone: Isometry2<f64>,
+    /// The pose for which the scan was deskewed.
+    deskewed: Isometry2<f64>,
     /// How far the robot was from where it was expected at the last scan, where the way begins: x, y (m) and heading
     /// (rad). `None` for a rigid scan, whose points move with the pose.
     begin: Option<Vector3<f64>>,
@@ -16,7 +16,7 @@ pub(crate) struct Placement {
 impl Placement {
     /// A rigid scan.
     pub(crate) fn rigid(pose: &Isometry2<f64>) -> Self {
-        Self { pose: *pose, undone: *pose, begin: None }
+        Self { pose: *pose, deskewed: *pose, begin: None }
     }
 
     /// A scan whose begin and end can move apart.
@@ -42,8 +42,8 @@ impl Placement {
         let end = self.pose * point.at;
         match self.begin {
             Some(begin) if point.passed < 1.0 => {
-                let expected = self.undone * point.at;
-                let arm = expected - Point2::from(self.undone.translation.vector);
+                let expected = self.deskewed * point.at;
+                let arm = expected - Point2::from(self.deskewed.translation.vector);
                 let shift = begin.xy() + Vector2::new(-arm.y, arm.x) * begin.z;
                 (expected + shift).lerp(&end, point.passed)
             }

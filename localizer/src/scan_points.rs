@@ -1,45 +1,19 @@
 //! Scan → points on surfaces, with normals, and weights by arc length.
 //!
-//! A point counts by the length of the surface that it stands for: a door leaf beside the robot fills a third of all
-//! beams, and yet is only one metre of surface.
+//! A point counts by the length of the surface that it represents: a door leaf beside the robot fills a third of all
+//! beams, and yet is only one meter of surface.
 
 #[cfg(test)]
 mod tests;
 
+use crate::constants::{
+    AVERAGED, FULL_WEIGHT_M, GRAZING_M, GRAZING_OFF_M, GRAZING_STDS, JOIN_M, JOIN_SPACINGS, JUDGED_M,
+    MAX_NEIGHBORS, MIN_GRAZING, NORMAL_REACH_M, SAME_SURFACE, STRAIGHT_M, STRAIGHT_STDS,
+};
 use crate::moments::Moments;
 use crate::work;
 use interfaces::{FARTHEST_M, LaserReading, Scan};
 use nalgebra::{Isometry2, Point2, Vector2};
-
-/// A normal is fitted to the points up to this far away on either side, m.
-const NORMAL_REACH_M: f64 = 0.2;
-/// The square of [`NORMAL_REACH_M`], m².
-const REACH_SQUARED: f64 = NORMAL_REACH_M * NORMAL_REACH_M;
-/// The surface length with the weight 1, m. Longer stretches between two beams count the same: a beam that grazes a
-/// wall does not confirm all of it.
-pub(crate) const FULL_WEIGHT_M: f64 = 0.04;
-/// A normal is fitted to at most this number of points on either side: the work of a scan grows with its beams only.
-const MOST_NEIGHBORS: usize = 1000;
-/// Neighboring end points that are farther apart than this, and than the spacing of beams explains, are on different
-/// surfaces, m.
-const JOIN_M: f64 = 0.1;
-/// The number of beam spacings (range · increment) up to which neighboring end points are on one surface: below about 20°
-/// between beam and surface, the beam grazes it, and the end point of a third beam must confirm the surface.
-const JOIN_SPACINGS: f64 = 3.0;
-/// End points of beams that graze one surface may be this far apart, m.
-const GRAZING_M: f64 = 1.0;
-/// The third end point lies off the line by at most this many standard deviations of the range noise across the surface,
-/// and this much more (m); and by no more than the largest distance, m.
-const GRAZING_STDS: f64 = 8.0;
-const GRAZING_MARGIN_M: f64 = 0.002;
-const GRAZING_MOST_M: f64 = 0.03;
-/// The least cosine of the angle of incidence: below it, the surface is rarely straight enough.
-const LEAST_INCIDENCE: f64 = 0.06;
-
-/// Points lie on a straight surface if their mean square distance from the line is below that of this many standard
-/// deviations of the range noise, and this much more, m.
-const STRAIGHT_STDS: f64 = 1.3;
-const STRAIGHT_MARGIN_M: f64 = 0.002;
 
 /// A point on a surface, in the frame of the robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,17 +38,14 @@ pub(crate) struct ScanPoint {
 pub(crate) struct PointRules {
     /// The standard deviation of the range noise, m.
     pub(crate) noise_m: f64,
-    /// Whether points count by the length of surface that they stand for.
-    pub(crate) by_arc_length: bool,
     /// Whether beams that graze a surface make points. The range noise shifts them along the surface, and little off it:
     /// along a corridor they are the best evidence for the heading.
     pub(crate) grazing: bool,
 }
 
-/// The points of one scan. Its buffers are used again for the next scan.
+/// Makes points of scans. Its buffers are used again for the next scan.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ScanPoints {
-    points: Vec<ScanPoint>,
     directions: Directions,
     hits: Vec<Option<Point2<f64>>>,
     /// Whether the end point of a beam lies on the same surface as that of the next beam.
@@ -105,24 +76,14 @@ impl Directions {
 }
 
 impl ScanPoints {
-    /// The points of the scan, in the order of the beams.
-    pub(crate) fn points(&self) -> &[ScanPoint] {
-        &self.points
-    }
-
-    /// Removes all points.
-    pub(crate) fn clear(&mut self) {
-        self.points.clear();
-    }
-
-    /// Replaces the points by those of `reading`. Beams without a return, and points where no straight surface can be
-    /// recognised (edges, single points) are left out. `passed` gives [`ScanPoint::passed`] of a beam.
-    pub(crate) fn update(
+    /// The points of the scan of `reading`, in the order of the beams. Beams without a return, and points where no straight
+    /// surface can be recognized (edges, single points) are left out. `passed` gives [`ScanPoint::passed`] of a beam.
+    pub(crate) fn of(
         &mut self,
         reading: &LaserReading,
         passed: impl Fn(usize) -> f64,
         rules: &PointRules,
-    ) {
+    ) -> Vec<ScanPoint> {
         let LaserReading { scan, mount, .. } = reading;
         self.directions.update(scan, mount);
         let beams = scan.ranges_m.len();
@@ -136,13 +97,10 @@ impl ScanPoints {
         }));
         self.join(scan, rules);
         self.sum();
-        self.points.clear();
         let is_closed = scan.is_full_turn() && beams > 2;
-        for beam in 0..beams {
-            if let Some(point) = self.point(beam, scan, is_closed, rules) {
-                self.points.push(ScanPoint { passed: passed(beam), ..point });
-            }
-        }
+        let point =
+            |beam| Some(ScanPoint { passed: passed(beam), ..self.point(beam, scan, is_closed, rules)? });
+        (0..beams).filter_map(point).collect()
     }
 
     /// Finds neighboring end points on one surface.
@@ -170,8 +128,8 @@ impl ScanPoints {
         let length_m = along.norm();
         let line = along / length_m;
         let incidence = self.directions.units[beam].perp(&line).abs();
-        let tolerance_m = GRAZING_STDS * noise_m * incidence + GRAZING_MARGIN_M;
-        if !(length_m <= GRAZING_M && incidence >= LEAST_INCIDENCE && tolerance_m <= GRAZING_MOST_M) {
+        let tolerance_m = GRAZING_STDS * noise_m * incidence + STRAIGHT_M;
+        if !(length_m <= GRAZING_M && incidence >= MIN_GRAZING && tolerance_m <= GRAZING_OFF_M) {
             return false;
         }
         let last = self.hits.len() - 1;
@@ -206,7 +164,7 @@ impl ScanPoints {
         let beams = self.hits.len();
         let range_m = f64::from(scan.ranges_m[beam]);
         let spacing_m = (range_m * scan.angle_increment_rad.abs()).max(1e-6);
-        let reach = ((NORMAL_REACH_M / spacing_m) as usize).clamp(1, (beams / 4 + 1).min(MOST_NEIGHBORS));
+        let reach = ((NORMAL_REACH_M / spacing_m) as usize).clamp(1, (beams / 4 + 1).min(MAX_NEIGHBORS));
         // How far the surface goes on to both sides. As the beams hit it aslant, the reach in beams is less.
         let before = self.run(beam, reach, is_closed, &at, false);
         let after = self.run(beam, reach, is_closed, &at, true);
@@ -218,7 +176,7 @@ impl ScanPoints {
         let middle = if beam >= before { beam } else { beam + beams };
         let moments = self.sums[middle + after + 1].minus(&self.sums[middle - before]);
         let (normal, mean_square) = moments.line()?;
-        let tolerance_m = STRAIGHT_STDS * rules.noise_m + STRAIGHT_MARGIN_M;
+        let tolerance_m = STRAIGHT_STDS * rules.noise_m + STRAIGHT_M;
         if mean_square > tolerance_m * tolerance_m {
             return None; // a corner, or a curved or rough surface
         }
@@ -226,8 +184,8 @@ impl ScanPoints {
         let normal = if normal.dot(&toward) < 0.0 { -normal } else { normal };
         let incidence = normal.dot(&toward) / range_m;
         let arc_m = spacing_m / incidence.max(0.2);
-        let weight = if rules.by_arc_length { (arc_m / FULL_WEIGHT_M).min(1.0) } else { 1.0 };
-        let noise_share = if rules.grazing { incidence.max(LEAST_INCIDENCE) } else { 1.0 };
+        let weight = (arc_m / FULL_WEIGHT_M).min(1.0);
+        let noise_share = if rules.grazing { incidence.max(MIN_GRAZING) } else { 1.0 };
         Some(ScanPoint { at, normal, weight, noise_share, beam, passed: 1.0 })
     }
 
@@ -248,7 +206,8 @@ impl ScanPoints {
                 _ => return steps,
             };
             let is_joined = self.joined[if forward { here } else { next }];
-            let is_near = self.hits[next].is_some_and(|hit| (hit - at).norm_squared() <= REACH_SQUARED);
+            let is_near = self.hits[next]
+                .is_some_and(|hit| (hit - at).norm_squared() <= NORMAL_REACH_M * NORMAL_REACH_M);
             if !is_joined || steps > 0 && !is_near {
                 return steps;
             }
@@ -258,20 +217,14 @@ impl ScanPoints {
     }
 }
 
-/// The neighbors of a point on the same surface: up to this many to either side, up to this far (m), with this cosine of the
-/// angle between the normals.
-const NEIGHBORS: usize = 4;
-const NEIGHBORS_M: f64 = 0.4;
-const SAME_SURFACE: f64 = 0.95;
-
 /// The values of points, in the mean over the neighbors of each on the same surface.
 pub(crate) fn means(points: &[ScanPoint], values: &[Option<f64>]) -> Vec<Option<f64>> {
     let mean = |at: usize| {
         values[at]?;
         let (mut sum, mut count) = (0.0, 0.0);
-        for other in at.saturating_sub(NEIGHBORS)..(at + NEIGHBORS + 1).min(points.len()) {
+        for other in at.saturating_sub(AVERAGED)..(at + AVERAGED + 1).min(points.len()) {
             let is_same = points[at].normal.dot(&points[other].normal) > SAME_SURFACE
-                && (points[at].at - points[other].at).norm() < NEIGHBORS_M;
+                && (points[at].at - points[other].at).norm() < JUDGED_M;
             if let (true, Some(value)) = (is_same, values[other]) {
                 sum += value;
                 count += 1.0;

@@ -1,18 +1,14 @@
 //! All that one scan is compared with.
 
 use crate::changing_map::ChangingMap;
-use crate::matcher::{Gates, Match, Prior, SURFEL_STD_M, align};
+use crate::constants::{GATE_STDS, SURFEL_STD_M};
+use crate::matcher::{Gates, Match, Prior, align};
 use crate::placement::Placement;
 use crate::scan_points::ScanPoint;
 use crate::settings::LocalizerSettings;
 use crate::support::{ClearBeams, Support, judge};
 use crate::surfel_map::SurfelMap;
 use nalgebra::{Isometry2, Point2};
-
-/// Points match a surfel within this many standard deviations of the range noise and of the surfel.
-const GATE_STDS: f64 = 3.5;
-/// The mean over neighboring points on a surface that has stayed is within this share of half of that.
-const EXACT_SHARE: f64 = 0.5;
 
 /// One scan, and the maps.
 pub(crate) struct Scene<'a, M> {
@@ -30,14 +26,13 @@ pub(crate) struct Scene<'a, M> {
 impl<M: ChangingMap> Scene<'_, M> {
     /// The distance up to which a point confirms a surfel, m.
     pub(crate) fn gate_m(&self) -> f64 {
-        let noise_m = self.settings.range_noise_std_m;
         let stds = if self.is_tight { GATE_STDS / 2.0 } else { GATE_STDS };
-        stds * (noise_m * noise_m + SURFEL_STD_M * SURFEL_STD_M).sqrt()
+        stds * hit_std_m(self.settings.range_noise_std_m)
     }
 
     /// The distance up to which the mean over some points is exactly in place, m.
     pub(crate) fn exact_m(&self) -> f64 {
-        EXACT_SHARE * self.tight().gate_m()
+        exact_m(self.settings.range_noise_std_m)
     }
 
     /// Matches the scan from `start`; points belong to surfels up to `first_m` away in the first steps.
@@ -50,7 +45,7 @@ impl<M: ChangingMap> Scene<'_, M> {
     ) -> Option<Match> {
         let last_m = self.gate_m();
         let gates = Gates {
-            noise_m: self.settings.range_noise_std_m.max(0.002),
+            noise_m: self.settings.range_noise_std_m.max(SURFEL_STD_M),
             first_m: first_m.max(last_m),
             last_m,
             by_rates,
@@ -73,4 +68,14 @@ impl<M: ChangingMap> Scene<'_, M> {
         support.contradicted += support.blind;
         support
     }
+}
+
+/// The distance up to which the mean over some points of a laser with this noise is exactly in place, m.
+pub(crate) fn exact_m(noise_m: f64) -> f64 {
+    GATE_STDS / 4.0 * hit_std_m(noise_m)
+}
+
+/// The standard deviation of the distance of a point from its surfel, m.
+pub(crate) fn hit_std_m(noise_m: f64) -> f64 {
+    (noise_m * noise_m + SURFEL_STD_M * SURFEL_STD_M).sqrt()
 }

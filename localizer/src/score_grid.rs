@@ -1,23 +1,11 @@
 //! How well a point fits at each place of the line map, and the maxima over squares of growing size: the bounds of the
 //! branch and bound of Hess, Kohler, Rapp & Andor (2016), section V.
 
+use crate::constants::{ALONG_M, MAX_SIDE_M, MINOR, SCORE_CELL_M, THICK_M, TOP};
 use crate::surfel_map::{SurfelMap, fitted};
 use crate::work;
 use interfaces::{Cell, CellState, Grid, GridFrame};
 use nalgebra::{Point2, Vector2};
-
-/// The side of the cells, m; larger where a frame cannot have so many.
-pub(crate) const CELL_M: f64 = 0.05;
-/// The largest sides of a grid that is made for one scan, m: two million cells, which with their search take about 50 ms.
-pub(crate) const MAX_SIDE_M: f64 = 76.8;
-/// The largest squares have sides of 2 to this power, in cells.
-pub(crate) const TOP: usize = 6;
-/// A point scores up to this far from a surfel, m.
-const REACH_M: f64 = 0.15;
-/// A surfel reaches this far along its surface, m.
-const ALONG_M: f64 = 0.08;
-/// Even a surface that always changes counts a little.
-const LEAST_WEIGHT: f64 = 0.1;
 
 /// The scores, from 0 to 255, at all levels.
 #[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
@@ -50,14 +38,14 @@ impl ScoreGrid {
         let end = Vector2::new(whole.width() as f64, whole.height() as f64) * whole.resolution_m();
         let (low, high) = ((middle - reach - whole.origin()), (middle + reach - whole.origin()));
         let (low, high) = (low.sup(&Vector2::zeros()), high.inf(&end));
-        let size = (high - low).sup(&Vector2::repeat(CELL_M));
-        let frame = GridFrame::covering(whole.origin() + low, size.x, size.y, CELL_M);
+        let size = (high - low).sup(&Vector2::repeat(SCORE_CELL_M));
+        let frame = GridFrame::covering(whole.origin() + low, size.x, size.y, SCORE_CELL_M);
         Self::of_frame(surfels, frame.unwrap_or(*whole)).only_where_free(states)
     }
 
     /// The scores of the line map, where nothing is known about the places where the robot can be.
     pub(crate) fn anywhere(surfels: &SurfelMap) -> Self {
-        Self::of_frame(surfels, fitted(surfels.frame(), CELL_M, 0))
+        Self::of_frame(surfels, fitted(surfels.frame(), SCORE_CELL_M, 0))
     }
 
     fn only_where_free(self, states: &Grid<CellState>) -> Self {
@@ -82,7 +70,7 @@ impl ScoreGrid {
 
     fn splat(&mut self, surfels: &SurfelMap) {
         let cell_m = self.frame.resolution_m();
-        let (reach, along_most_m) = (Vector2::repeat(REACH_M.max(cell_m)), ALONG_M.max(cell_m / 2.0));
+        let (reach, along_most_m) = (Vector2::repeat(THICK_M.max(cell_m)), ALONG_M.max(cell_m / 2.0));
         let last = Cell::new(self.frame.width() as i32 - 1, self.frame.height() as i32 - 1);
         for surfel in surfels.usable() {
             let (low, high) =
@@ -95,8 +83,8 @@ impl ScoreGrid {
                 if along_m > along_most_m {
                     continue;
                 }
-                let share = (1.0 - (off_m - cell_m / 2.0).max(0.0) / REACH_M).max(0.0);
-                let score = (255.0 * share * surfel.steadiness.max(LEAST_WEIGHT)) as u8;
+                let share = (1.0 - (off_m - cell_m / 2.0).max(0.0) / THICK_M).max(0.0);
+                let score = (255.0 * share * surfel.steadiness.max(MINOR)) as u8;
                 let index = self.padded(x, y);
                 let here = &mut self.levels[0][index];
                 *here = (*here).max(score);

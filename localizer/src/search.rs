@@ -4,29 +4,15 @@
 #[cfg(test)]
 mod tests;
 
+use crate::constants::{FAR_M, MAX_CANDIDATES, MAX_NODES, SAME_PLACE, SEARCH_CHUNK, SEARCH_POINTS, TOP};
 use crate::scan_points::ScanPoint;
-use crate::score_grid::{ScoreGrid, TOP};
+use crate::score_grid::ScoreGrid;
 use crate::work;
 use interfaces::{Cell, GridFrame, heading_rad, wrap_rad};
 use nalgebra::{Isometry2, Point2, Vector2};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 use std::f64::consts::PI;
-
-/// The number of points that are compared with the map.
-const POINTS: usize = 64;
-/// The step of the heading: points at this range move by two cells, m.
-const FAR_M: f64 = 8.0;
-/// Poses closer than this to a better pose are the same, m and rad.
-const SAME_M: f64 = 0.4;
-const SAME_RAD: f64 = 0.35;
-/// The largest number of poses that are returned.
-const MAX_CANDIDATES: usize = 16;
-/// The largest number of squares whose parts are looked at: a bound on the time, about 50 ms.
-const MAX_NODES: usize = 400_000;
-
-/// The number of points after which a square that can no longer reach the least score is left.
-const CHUNK: usize = 8;
 
 /// Where to search.
 #[derive(Clone, Copy, Debug)]
@@ -126,11 +112,11 @@ fn cells(frame: &GridFrame, window: Option<&Window>) -> (Cell, Cell) {
     (Cell::new(low.x.max(0), low.y.max(0)), Cell::new(high.x.min(last.x), high.y.min(last.y)))
 }
 
-/// At most [`POINTS`] points, evenly along the surfaces, each with a whole weight.
+/// At most [`SEARCH_POINTS`] points, evenly along the surfaces, each with a whole weight.
 fn spread(points: &[ScanPoint]) -> Vec<(Point2<f64>, u32)> {
     let total: f64 = points.iter().map(|point| point.weight).sum();
-    let step = (total / POINTS as f64).max(1e-9);
-    let (mut passed, mut chosen) = (0.0, Vec::with_capacity(POINTS));
+    let step = (total / SEARCH_POINTS as f64).max(1e-9);
+    let (mut passed, mut chosen) = (0.0, Vec::with_capacity(SEARCH_POINTS));
     for point in points {
         let before = libm::floor(passed / step);
         passed += point.weight;
@@ -168,7 +154,7 @@ impl Search<'_> {
     /// The upper bound of the scores of a square of positions; at level 0, the score. `None` if it is below `least`.
     fn bound(&self, level: usize, heading: usize, x: i32, y: i32, least: u32) -> Option<u32> {
         let (mut sum, mut left) = (0, self.perfect);
-        for some in self.turned[heading].chunks(CHUNK) {
+        for some in self.turned[heading].chunks(SEARCH_CHUNK) {
             for &(dx, dy, weight) in some {
                 sum += weight * u32::from(self.grid.bound(level, x + dx, y + dy));
                 left -= 255 * weight;
@@ -242,8 +228,8 @@ impl Search<'_> {
     fn is_same(&self, (best, at): &(Node, Point2<f64>), node: &Node) -> bool {
         let turn = wrap_rad(self.headings_rad[node.heading] - self.headings_rad[best.heading]);
         let last = (1 << node.level) - 1;
-        let corner = |x: i32, y: i32| (self.grid.frame().center(Cell::new(x, y)) - at).norm() <= SAME_M;
-        turn.abs() <= SAME_RAD
+        let corner = |x: i32, y: i32| (self.grid.frame().center(Cell::new(x, y)) - at).norm() <= SAME_PLACE.m;
+        turn.abs() <= SAME_PLACE.rad
             && corner(node.x, node.y)
             && corner(node.x + last, node.y)
             && corner(node.x, node.y + last)

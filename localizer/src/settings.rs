@@ -8,41 +8,23 @@ pub struct LocalizerSettings {
     pub range_noise_std_m: f64,
     /// The largest errors of the odometry that are expected.
     pub odometry: OdometryTrust,
-    /// The support below which a pose is not certain, from 0 to 1, see
-    /// [`PoseEstimate::support`](crate::PoseEstimate::support).
-    pub min_support: f64,
-    /// The largest standard deviation of the position with which a scan may enter the map, m.
-    pub max_position_std_m: f64,
-    /// The largest standard deviation of the heading with which a scan may enter the map, rad.
-    pub max_heading_std_rad: f64,
     /// The time without a certain pose after which the robot is lost, s.
     pub lost_after_s: f64,
-    /// The number of consecutive good scans that confirm a pose that was found by a search.
-    pub scans_to_confirm: u32,
-    /// The time of rest at the start from nothing, s. The first scans decide the heading of all that follows.
-    pub settle_s: f64,
     /// Learned rates of change lower the weight of a surface in a search by exp(−rate · horizon), s; 0 ignores the
     /// rates.
     pub rate_horizon_s: f64,
-    /// Two poses are both possible if the score of the second is at least this share of the score of the first.
-    pub ambiguity_ratio: f64,
-    /// Whether points count by the length of the surface that they stand for, and not by their number. Without it, a
-    /// near surface with many beams outvotes the room. Only comparisons set it to false.
-    pub weigh_by_arc_length: bool,
-    /// Whether a scan enters the line map only with a certain pose. Only comparisons set it to false.
-    pub gate: bool,
 }
 
-/// The largest errors of the odometry that are expected: systematic errors that can grow by this much per metre
-/// travelled and per radian turned, and noise whose variance grows with the distance.
+/// The largest errors of the odometry that are expected: systematic errors that can grow by this much per meter
+/// traveled and per radian turned, and noise whose variance grows with the distance.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct OdometryTrust {
-    /// The systematic error of the distance per metre travelled.
+    /// The systematic error of the distance per meter traveled.
     pub distance_gain: f64,
     /// The systematic error of the heading per radian turned.
     pub turn_gain: f64,
-    /// The systematic error of the heading per metre travelled, rad/m.
+    /// The systematic error of the heading per meter traveled, rad/m.
     pub turn_radpm: f64,
     /// The standard deviation of the distance after 1 m, m; it grows with the square root of the distance.
     pub distance_noise_m: f64,
@@ -51,7 +33,7 @@ pub struct OdometryTrust {
 }
 
 impl Default for OdometryTrust {
-    /// Hard drift: gains of 5 %, 3° per metre, and noise of the same size.
+    /// Hard drift: gains of 5 %, 3° per meter, and noise of the same size.
     fn default() -> Self {
         Self {
             distance_gain: 0.05,
@@ -68,16 +50,8 @@ impl Default for LocalizerSettings {
         Self {
             range_noise_std_m: 0.01,
             odometry: OdometryTrust::default(),
-            min_support: 0.85,
-            max_position_std_m: 0.005,
-            max_heading_std_rad: 0.003,
             lost_after_s: 2.0,
-            scans_to_confirm: 3,
-            settle_s: 2.0,
             rate_horizon_s: 1000.0,
-            ambiguity_ratio: 0.9,
-            weigh_by_arc_length: true,
-            gate: true,
         }
     }
 }
@@ -96,14 +70,8 @@ impl LocalizerSettings {
         ] {
             check.within(key, value, 0.0..=10.0, "from 0 to 10")?;
         }
-        check.within("min_support", self.min_support, 0.0..=1.0, "from 0 to 1")?;
-        check.positive("max_position_std_m", self.max_position_std_m)?;
-        check.positive("max_heading_std_rad", self.max_heading_std_rad)?;
         check.not_negative("lost_after_s", self.lost_after_s)?;
-        check.within("scans_to_confirm", self.scans_to_confirm, 1.0..=1000.0, "from 1 to 1000")?;
-        check.within("settle_s", self.settle_s, 0.0..=60.0, "from 0 to 60 s")?;
-        check.not_negative("rate_horizon_s", self.rate_horizon_s)?;
-        check.within("ambiguity_ratio", self.ambiguity_ratio, 0.0..=1.0, "from 0 to 1")
+        check.not_negative("rate_horizon_s", self.rate_horizon_s)
     }
 }
 
@@ -116,11 +84,6 @@ mod tests {
         let refused = |settings: LocalizerSettings| settings.check().unwrap_err().key;
         let defaults = LocalizerSettings::default;
         assert_eq!(defaults().check(), Ok(()));
-        assert_eq!(refused(LocalizerSettings { min_support: 1.5, ..defaults() }), "min_support");
-        assert_eq!(
-            refused(LocalizerSettings { max_position_std_m: 0.0, ..defaults() }),
-            "max_position_std_m"
-        );
         assert_eq!(refused(LocalizerSettings { lost_after_s: f64::NAN, ..defaults() }), "lost_after_s");
         let odometry = OdometryTrust { turn_gain: -0.1, ..OdometryTrust::default() };
         assert_eq!(refused(LocalizerSettings { odometry, ..defaults() }), "odometry.turn_gain");

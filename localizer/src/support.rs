@@ -1,19 +1,15 @@
 //! How well a scan at a pose agrees with the maps.
 
 use crate::changing_map::ChangingMap;
+use crate::constants::{CLEAR_STRIDE, END_M, MOVED_M};
 use crate::matcher::derivative;
 use crate::placement::Placement;
 use crate::scan_points::ScanPoint;
-use crate::surfel_map::{MOVED_M, Surfel, SurfelMap};
+use crate::surfel_map::{Surfel, SurfelMap};
 use crate::work;
 use interfaces::{CellState, FARTHEST_M, Grid, GridFrame, Scan};
 use nalgebra::{Isometry2, Matrix3, Point2, Vector2};
 use std::ops::Range;
-
-/// A beam may pass blocked cells this close to its two ends, m.
-const END_MARGIN_M: f64 = 0.2;
-/// The weight of a beam without a return: about that of a point of a room.
-const CLEAR_WEIGHT: f64 = 0.5;
 
 /// The length of the surface that a scan saw, in weights of points.
 #[derive(Clone, Copy, Debug, Default, serde::Deserialize, serde::Serialize)]
@@ -31,8 +27,6 @@ pub(crate) struct Support {
     pub(crate) displaced: f64,
     /// The information about x, y and heading of the confirmed points (1/m² and 1 per rad², per unit of weight).
     pub(crate) geometry: Matrix3<f64>,
-    /// The same, of surfaces that never changed.
-    pub(crate) steady: Matrix3<f64>,
 }
 
 impl Support {
@@ -66,7 +60,7 @@ impl Support {
     }
 
     /// Whether the confirmed points alone fix x, y and heading: seen from the robot, `least` units of weight stand
-    /// against a shift in every direction, and against a turn at an arm of one metre.
+    /// against a shift in every direction, and against a turn at an arm of one meter.
     pub(crate) fn fixes_pose(&self, least: f64) -> bool {
         self.geometry.symmetric_eigenvalues().min() >= least
     }
@@ -102,9 +96,7 @@ pub(crate) fn judge(
                     false => support.displaced += point.weight,
                 }
                 let j = derivative(&arm, &surfel.normal);
-                let information = j * j.transpose() * point.weight;
-                support.geometry += information;
-                support.steady += information * surfel.steadiness;
+                support.geometry += j * j.transpose() * point.weight;
             }
             Some(_) => support.new += point.weight,
             None => {
@@ -139,9 +131,9 @@ fn passes_blocked(map: &impl ChangingMap, laser: &Point2<f64>, at: &Point2<f64>)
     let way = at - laser;
     let length_m = way.norm();
     let step_m = states.frame().resolution_m();
-    let steps = ((length_m - 2.0 * END_MARGIN_M) / step_m).max(0.0) as usize;
+    let steps = ((length_m - 2.0 * END_M) / step_m).max(0.0) as usize;
     let along = way / length_m;
-    let at = |step: usize| laser + along * (END_MARGIN_M + step as f64 * step_m);
+    let at = |step: usize| laser + along * (END_M + step as f64 * step_m);
     let inside = inside(states.frame(), &at(0), &(along * step_m));
     let steps = inside.start..steps.min(inside.end);
     work::count(steps.len());
@@ -171,16 +163,12 @@ pub(crate) struct ClearBeams {
 }
 
 impl ClearBeams {
-    /// One of this many beams without a return is looked at.
-    const STRIDE: usize = 6;
-
-    /// Replaces the beams by those of `scan`.
-    pub(crate) fn update(&mut self, scan: &Scan) {
-        self.range_m = scan.range_max_m.min(FARTHEST_M);
-        self.directions.clear();
-        let beams = (0..scan.ranges_m.len()).step_by(Self::STRIDE);
+    /// The beams of `scan`.
+    pub(crate) fn of(scan: &Scan) -> Self {
+        let beams = (0..scan.ranges_m.len()).step_by(CLEAR_STRIDE);
         let clear = beams.filter(|&beam| scan.ranges_m[beam] == f32::INFINITY);
-        self.directions.extend(clear.map(|beam| interfaces::rotation(scan.angle_rad(beam)) * Vector2::x()));
+        let direction = |beam| interfaces::rotation(scan.angle_rad(beam)) * Vector2::x();
+        Self { directions: clear.map(direction).collect(), range_m: scan.range_max_m.min(FARTHEST_M) }
     }
 
     /// The weight of the beams that pass something blocked.
@@ -188,6 +176,6 @@ impl ClearBeams {
         let origin = Point2::from(laser.translation.vector);
         let ends = self.directions.iter().map(|along| origin + laser.rotation * along * self.range_m);
         let passing = ends.filter(|end| passes_blocked(map, &origin, end)).count();
-        passing as f64 * Self::STRIDE as f64 * CLEAR_WEIGHT
+        passing as f64 * CLEAR_STRIDE as f64 / 2.0
     }
 }

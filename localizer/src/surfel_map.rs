@@ -12,25 +12,11 @@ mod prior;
 mod tests;
 
 pub(crate) use checking::Checker;
-pub(crate) use moving::MOVED_M;
 
+use crate::constants::{PER_CELL, SAME_NORMAL, SURFEL_M};
 use interfaces::{GridFrame, Values, runs, value};
 use nalgebra::{Point2, Vector2};
 
-/// The side of the cells, m.
-pub(crate) const CELL_M: f64 = 0.1;
-/// The number of surfels in one cell: two sides of a thin wall, and a corner.
-const PER_CELL: usize = 4;
-/// The number of scans after which a surfel never moves again.
-const FROZEN_SCANS: u32 = 400;
-/// The number of scans after which a surfel has its full weight: a new room must not move the robot that maps it.
-const TRUSTED_SCANS: f64 = 50.0;
-/// The number of scans after which a surfel takes part in matching.
-const USABLE_SCANS: u32 = 5;
-/// Points count as hits of a surfel up to this far along the surface, m.
-const REACH_M: f64 = 0.1;
-/// The least cosine of the angle between the normals of a point and of its surfel.
-const SAME_NORMAL: f64 = 0.8;
 /// No surfel at this place in a cell.
 const NONE: u32 = u32::MAX;
 
@@ -80,29 +66,19 @@ pub(crate) struct SurfelMap {
     revision: u64,
     /// The number of scans that were learned.
     scan: u32,
-    /// Whether the learned rates make any surfel count less.
-    knows_rates: bool,
 }
 
 impl SurfelMap {
     /// A map without a surfel, that covers the rectangle of `frame` and a cell around it.
     pub(crate) fn new(frame: &GridFrame) -> Self {
-        let frame = fitted(frame, CELL_M, 1);
+        let frame = fitted(frame, SURFEL_M, 1);
         let cells = vec![[NONE; PER_CELL]; frame.len()];
-        Self {
-            frame,
-            cells,
-            surfels: Vec::new(),
-            removed: Vec::new(),
-            revision: 0,
-            scan: 0,
-            knows_rates: false,
-        }
+        Self { frame, cells, surfels: Vec::new(), removed: Vec::new(), revision: 0, scan: 0 }
     }
 
     /// The map without its surfels, for a frame of the same size: most cells are empty and stay as they are.
     pub(crate) fn emptied(mut self, frame: &GridFrame) -> Self {
-        let cells = fitted(frame, CELL_M, 1);
+        let cells = fitted(frame, SURFEL_M, 1);
         if cells.len() != self.cells.len() {
             return Self::new(frame);
         }
@@ -110,7 +86,7 @@ impl SurfelMap {
             self.cells[surfel.cell as usize] = [NONE; PER_CELL];
         }
         self.removed.clear();
-        Self { frame: cells, revision: 0, scan: 0, knows_rates: false, ..self }
+        Self { frame: cells, revision: 0, scan: 0, ..self }
     }
 
     /// Everything that scans have changed.
@@ -121,7 +97,6 @@ impl SurfelMap {
             value(&mut self.removed),
             value(&mut self.revision),
             value(&mut self.scan),
-            value(&mut self.knows_rates),
         ]
     }
 
@@ -133,11 +108,6 @@ impl SurfelMap {
     /// Changes whenever the surfels that take part in matching change.
     pub(crate) fn revision(&self) -> u64 {
         self.revision
-    }
-
-    /// Whether the learned rates make any surfel count less.
-    pub(crate) fn knows_rates(&self) -> bool {
-        self.knows_rates
     }
 
     /// The surfel at an index from [`SurfelMap::nearest`].
@@ -161,8 +131,8 @@ impl SurfelMap {
     #[inline]
     pub(crate) fn nearest(&self, at: &Point2<f64>, normal: &Vector2<f64>, gate_m: f64) -> Option<(u32, f64)> {
         let mut best: Option<(u32, f64)> = None;
-        let mut best_m = REACH_M;
-        self.around(at, gate_m.max(CELL_M / 2.0), |index, surfel| {
+        let mut best_m = SURFEL_M;
+        self.around(at, gate_m.max(SURFEL_M / 2.0), |index, surfel| {
             if surfel.normal.dot(normal) < SAME_NORMAL {
                 return;
             }

@@ -2,38 +2,15 @@
 
 use crate::changing_map::ChangingMap;
 use crate::coherent_motion::{Stayed, stayed};
+use crate::constants::{
+    BETTER, MAJORITY, MAP_STD, MAX_SLIDE_M, MIN_SUPPORT, MINOR, MODEL_STD, MOVED_SHARE, OUTLIER, WIDE_GATE_M,
+};
 use crate::matcher::{Match, difference};
 use crate::motion::Predicted;
 use crate::placement::Placement;
 use crate::scene::Scene;
 use crate::support::Support;
-use nalgebra::{Isometry2, Matrix3, Vector3};
-
-/// The innovation (squared, over its covariance) above which odometry did not tell the truth: 1 in 10⁵ by chance.
-const SURPRISE: f64 = 26.0;
-/// The farthest that a match may start from the pose, m: robots that slip or stand still against their odometry.
-const WIDE_GATE_M: f64 = 0.3;
-/// A match without the odometry is another pose up to this far from its start, m: points that fix a pose in one direction only
-/// can slide along it; and with this least share of all points that the map confirms: what the map does not know says nothing
-/// against a pose.
-const OTHER_M: f64 = 0.5;
-const OTHER_SCORE: f64 = 0.5;
-/// The least gain of support with which another pose replaces the predicted one.
-const BETTER: f64 = 0.05;
-/// Where the scan fits no other pose, the share of it that lies in place and stands against every motion of the robot, and the
-/// least support, with which the pose is that of the odometry.
-const ONLY_SHARE: f64 = 0.1;
-const ONLY_SUPPORT: f64 = 0.5;
-/// With a larger share of the known surfaces a little off their place, much of the view may have moved.
-const MOVED_SHARE: f64 = 0.12;
-/// Errors of the map, which change where other surfaces come into view.
-const MAP_STD_M: f64 = 0.002;
-const MAP_STD_RAD: f64 = 7e-4;
-/// Errors of the model that do not average out: surfaces that are not straight, surfels that are off. Per scan.
-const MODEL_STD_M: f64 = 5e-4;
-const MODEL_STD_RAD: f64 = 1.5e-4;
-/// The least weight of unchanged surfaces against every motion with which changing surfaces may be weighed down.
-const UNCHANGED_WEIGHT: f64 = 15.0;
+use nalgebra::{Isometry2, Matrix3};
 
 /// The pose of a scan by tracking.
 #[derive(Clone, Copy, Debug)]
@@ -75,7 +52,7 @@ pub(crate) fn track<M: ChangingMap>(
     others: &[Isometry2<f64>],
 ) -> Tracked {
     let (by_odometry, is_surprise) = with_prior(scene, predicted);
-    let is_good = |tracked: &Tracked| tracked.support.share() >= scene.settings.min_support;
+    let is_good = |tracked: &Tracked| tracked.support.share() >= MIN_SUPPORT;
     let is_plain = is_good(&by_odometry) && !is_surprise;
     if is_plain && by_odometry.support.displaced_share() < MOVED_SHARE {
         return by_odometry;
@@ -83,12 +60,12 @@ pub(crate) fn track<M: ChangingMap>(
     let mut best = by_odometry;
     for start in std::iter::once(&predicted.pose).chain(others) {
         let Some(found) = scene.align(start, None, WIDE_GATE_M, false) else { continue };
-        if difference(&found.placement.pose, start).xy().norm() > OTHER_M {
+        if difference(&found.placement.pose, start).xy().norm() > MAX_SLIDE_M {
             continue;
         }
         let candidate = tracked(scene, &found);
         let least = best.support.confirmed + BETTER * by_odometry.support.weight();
-        if candidate.support.score() >= OTHER_SCORE && candidate.support.confirmed > least {
+        if candidate.support.score() >= MAJORITY && candidate.support.confirmed > least {
             best = candidate;
         }
     }
@@ -104,8 +81,7 @@ pub(crate) fn track<M: ChangingMap>(
         return Tracked { is_other: true, ..best };
     }
     let in_place = scene.tight().judge(&by_odometry.placement);
-    let stayed =
-        by_odometry.support.share() >= ONLY_SUPPORT && in_place.fixes_pose(ONLY_SHARE * in_place.weight());
+    let stayed = by_odometry.support.share() >= MAJORITY && in_place.fixes_pose(MINOR * in_place.weight());
     Tracked { stayed: stayed && !is_surprise, ..by_odometry }
 }
 
@@ -120,11 +96,10 @@ fn with_prior<M: ChangingMap>(scene: &Scene<M>, predicted: &Predicted) -> (Track
     let Some(prior) = predicted.prior() else { return stay() };
     // What has moved a little is out of reach from the start.
     let first_m = if scene.is_tight { scene.gate_m() } else { scene.gate_m() + 2.0 * predicted.spread_m() };
-    let by_rates = unchanged_fix_pose(scene, pose);
-    let Some(found) = scene.align(pose, Some(&prior), first_m.min(WIDE_GATE_M), by_rates) else {
+    let Some(found) = scene.align(pose, Some(&prior), first_m.min(WIDE_GATE_M), false) else {
         return stay();
     };
-    (tracked(scene, &found), surprise(&found, pose, covariance) > SURPRISE)
+    (tracked(scene, &found), surprise(&found, pose, covariance) > OUTLIER)
 }
 
 /// How far the pose of the scan alone lies from the predicted pose: squared, over the covariance of both.
@@ -132,8 +107,7 @@ fn surprise(found: &Match, predicted: &Isometry2<f64>, covariance: &Matrix3<f64>
     let Some(scan) = found.scan_information.try_inverse() else { return 0.0 };
     // The match with the prior went only a part of the way that the scan alone would have gone.
     let whole_way = scan * found.information * difference(&found.placement.pose, predicted);
-    let map = Vector3::new(MAP_STD_M, MAP_STD_M, MAP_STD_RAD);
-    let spread = covariance + scan + Matrix3::from_diagonal(&map.component_mul(&map));
+    let spread = covariance + scan + MAP_STD.covariance();
     spread.try_inverse().map_or(0.0, |inverse| (whole_way.transpose() * inverse * whole_way)[0])
 }
 
@@ -141,19 +115,10 @@ fn surprise(found: &Match, predicted: &Isometry2<f64>, covariance: &Matrix3<f64>
 /// errors that all points share.
 fn tracked<M: ChangingMap>(scene: &Scene<M>, found: &Match) -> Tracked {
     let inverse = found.information.try_inverse().unwrap_or_else(|| Matrix3::identity() * 1e3);
-    let model = Vector3::new(MODEL_STD_M, MODEL_STD_M, MODEL_STD_RAD);
-    let honest = |covariance: Matrix3<f64>| {
-        covariance * found.residual_ratio.max(1.0) + Matrix3::from_diagonal(&model.component_mul(&model))
-    };
+    let honest =
+        |covariance: Matrix3<f64>| covariance * found.residual_ratio.max(1.0) + MODEL_STD.covariance();
     let covariances = [inverse, found.beam_covariance].map(honest);
     Tracked::new(found.placement, covariances, scene.judge(&found.placement))
-}
-
-/// Whether changing surfaces may be weighed down: the others alone fix the pose. Otherwise a wrong pose could declare
-/// all that contradicts it as changing.
-fn unchanged_fix_pose<M: ChangingMap>(scene: &Scene<M>, pose: &Isometry2<f64>) -> bool {
-    scene.surfels.knows_rates()
-        && scene.judge(&Placement::rigid(pose)).steady.symmetric_eigenvalues().min() >= UNCHANGED_WEIGHT
 }
 
 #[cfg(test)]
@@ -209,7 +174,7 @@ mod tests {
         let start = pose(0.0, 1.2, 0.0);
         let slid = scene.align(&start, None, WIDE_GATE_M, false).unwrap();
         assert!(slid.placement.pose.translation.x > 1.0, "the walls do not slide: {}", slid.placement.pose);
-        let covariance = Matrix3::from_diagonal(&Vector3::new(1e-6, 1e-6, 1e-6));
+        let covariance = Matrix3::from_diagonal(&nalgebra::Vector3::new(1e-6, 1e-6, 1e-6));
         let tracked = track(&scene, &Predicted::rigid(start, covariance), &[]);
         assert!(!tracked.is_other, "{}", tracked.placement.pose);
         assert!((tracked.placement.pose.translation.vector - start.translation.vector).norm() < 0.3);

@@ -4,17 +4,16 @@
 //! reading ─▶ match with the local submap ─▶ keyframe ─▶ submap is finished ─▶ loops? ─▶ pose graph ─▶ refine
 //! ```
 //!
-//! - A scan is matched with the submap of the last keyframes only: an error of the past bends nothing that follows. The
-//!   sweep of a scan is undone along the motion that its match finds.
+//! - A scan is matched with the submap of the last keyframes only: an error of the past bends nothing that follows. A
+//!   scan is deskewed along the motion that its match finds.
 //! - A finished submap is searched for in earlier submaps by branch and bound, as far as the trajectory since then is
 //!   uncertain (Hess, Kohler, Rapp & Andor 2016).
 //! - A loop counts where most of what both submaps cover agrees, where few beams of one pass the walls of the other
-//!   (`places::MOST_PASSING`), where no other pose fits about as well, and where another loop agrees with it, unless the
+//!   (`constants::MAX_PASSING`), where no other pose fits about as well, and where another loop agrees with it, unless the
 //!   way since then was short.
 //! - In the end, keyframes are matched with all submaps around them, so that every wall is there once.
 
 mod free_space;
-mod front_end;
 mod graph;
 mod keyframe;
 mod line_map;
@@ -28,16 +27,19 @@ mod residual;
 mod settings;
 mod sparse;
 mod submap;
+mod submap_matcher;
 
 pub use line_map::{LineFit, LineMap, LineMatcher};
-pub(crate) use matching::{covariance, in_frame};
+pub(crate) use matching::in_frame;
 pub use residual::Residual;
 pub use settings::TrajectorySettings;
+pub(crate) use submap_matcher::SubmapMatcher;
 
 use crate::estimate::PoseState;
-use front_end::FrontEnd;
-use graph::PoseGraph;
+use crate::local_trajectory_builder::LocalTrajectoryBuilder;
+use graph::{Edge, EdgeKind, PoseGraph};
 use interfaces::{LaserReading, SettingsError};
+use keyframe::Keyframe;
 use loops::LoopCloser;
 use nalgebra::Isometry2;
 
@@ -59,9 +61,9 @@ pub struct TrajectoryPose {
 pub struct Trajectory {
     /// One pose per reading, in their order.
     pub poses: Vec<TrajectoryPose>,
-    /// The number of places that were recognised.
+    /// The number of places that were recognized.
     pub loops: usize,
-    /// `None` if no place was seen twice, or if loops are not closed.
+    /// `None` if no place was seen twice.
     pub residual: Option<Residual>,
 }
 
@@ -78,7 +80,7 @@ struct Attached {
 #[derive(Debug)]
 pub struct TrajectoryFinder {
     settings: TrajectorySettings,
-    front_end: FrontEnd,
+    builder: LocalTrajectoryBuilder<SubmapMatcher>,
     closer: LoopCloser,
     graph: PoseGraph,
     readings: Vec<Attached>,
@@ -94,7 +96,11 @@ impl TrajectoryFinder {
         settings.check()?;
         Ok(Self {
             settings: settings.clone(),
-            front_end: FrontEnd::new(settings),
+            builder: LocalTrajectoryBuilder::new(
+                SubmapMatcher::new(settings),
+                &settings.odometry,
+                settings.point_rules(),
+            ),
             closer: LoopCloser::new(settings.range_noise_std_m),
             graph: PoseGraph::default(),
             readings: Vec::new(),
@@ -103,31 +109,63 @@ impl TrajectoryFinder {
 
     /// Adds the next reading. An invalid reading gets the pose of the odometry.
     pub fn add(&mut self, reading: LaserReading) {
-        let (offset, state) = self.front_end.localize(&reading, &mut self.graph);
-        let keyframe = self.graph.poses.len() - 1;
-        self.readings.push(Attached { time_s: reading.time_s, keyframe, offset, state });
-        if self.settings.close_loops {
-            self.search_loops();
+        let state = match self.builder.add(&reading, ()) {
+            Some((_, found)) if found.is_supported => PoseState::Tracking,
+            Some(_) => PoseState::Uncertain,
+            None => {
+                if self.keyframes().is_empty() {
+                    self.builder.matcher.begin_without_scan(&reading, &self.builder.track);
+                }
+                PoseState::Lost
+            }
+        };
+        self.add_keyframes();
+        let (keyframe, time_s) = (self.graph.poses.len() - 1, reading.time_s);
+        let offset = self.builder.matcher.offset(&self.builder.track);
+        self.readings.push(Attached { time_s, keyframe, offset, state });
+        self.search_loops();
+    }
+
+    /// Adds new keyframes to the graph.
+    fn add_keyframes(&mut self) {
+        let PoseGraph { poses, edges } = &mut self.graph;
+        for keyframe in &self.builder.matcher.keyframes()[poses.len()..] {
+            let (motion, information) = keyframe.from_last;
+            let Some(last) = poses.last() else {
+                poses.push(keyframe.local);
+                continue;
+            };
+            let mut pose = last * motion;
+            pose.rotation.renormalize();
+            let (from, to) = (poses.len() - 1, poses.len());
+            edges.push(Edge { from, to, motion, information, kind: EdgeKind::Match });
+            poses.push(pose);
         }
+    }
+
+    /// The pose of the last reading by matching with local submaps alone: without loops.
+    pub fn local_pose(&self) -> Isometry2<f64> {
+        self.builder.track.pose
+    }
+
+    fn keyframes(&self) -> &[Keyframe] {
+        self.builder.matcher.keyframes()
     }
 
     /// Searches for the submaps that were finished since the last search.
     fn search_loops(&mut self) {
-        while let Some(submap) = self.front_end.next_finished() {
-            self.closer.add(submap, self.front_end.keyframes(), &mut self.graph);
+        while let Some(submap) = self.builder.matcher.next_finished() {
+            self.closer.add(submap, self.builder.matcher.keyframes(), &mut self.graph);
         }
     }
 
     /// The trajectory of all readings.
     pub fn finish(mut self) -> Trajectory {
-        let mut residual = None;
-        if self.settings.close_loops {
-            self.front_end.end();
-            self.search_loops();
-            self.closer.accept_strong(&mut self.graph);
-            self.graph = self.optimized();
-            residual = residual::residual(&self.closer.places, self.front_end.keyframes(), &self.graph);
-        }
+        self.builder.matcher.end();
+        self.search_loops();
+        self.closer.accept_strong(&mut self.graph);
+        self.graph = self.optimized();
+        let residual = residual::residual(&self.closer.places, self.keyframes(), &self.graph);
         let loops = self.closer.loops();
         Trajectory { poses: self.poses(&self.graph), loops, residual }
     }
@@ -138,7 +176,7 @@ impl TrajectoryFinder {
         graph.optimize();
         graph.remove_outliers();
         graph.optimize();
-        refine::refine(&self.closer.places, self.front_end.keyframes(), &mut graph);
+        refine::refine(&self.closer.places, self.keyframes(), &mut graph);
         graph
     }
 

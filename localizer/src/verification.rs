@@ -4,31 +4,10 @@
 //! found pose is certain once enough scans from enough viewpoints agree with the map: those of a wrong pose would contradict
 //! it. Until then no scan enters the map: a wrong pose would soon agree with what it has drawn itself.
 
+use crate::constants::{
+    CONTRADICTION, ENOUGH, FAIR, FAIR_NEAR, FAIR_SHARE, FIRST_VIEWS, GAIN, LOSS, MINOR, VIEW_M,
+};
 use crate::support::Support;
-
-/// The agreement of a scan: the share of it that the map confirms, less this many times the share that it contradicts, less
-/// the share that it does not know. What the map does not know says nothing against a pose near that of the odometry.
-const CONTRADICTION: f64 = 4.0;
-/// The agreement that says nothing for and nothing against a pose: near that of the odometry, and elsewhere. Measured in
-/// generated houses: the agreement of wrong poses elsewhere is at most 0.25.
-const FAIR_NEAR: f64 = 0.2;
-const FAIR: f64 = 0.35;
-/// What a viewpoint counts whose agreement is better by 1.
-const GAIN: f64 = 4.0;
-/// The share of what the map can judge (see [`Support::share`]) below which a viewpoint counts against a pose, and what it
-/// counts with a share of 1 less.
-const FAIR_SHARE: f64 = 0.7;
-const LOSS: f64 = 20.0;
-/// The first viewpoint of a laser that sees all around counts as this many; of one that sees less, as fewer: a corner of a room
-/// looks like many others.
-const FIRST_VIEWS: f64 = 2.0;
-/// The robot has another viewpoint after this distance, m.
-const VIEW_M: f64 = 0.25;
-/// At rest, a scan counts as this many viewpoints against a pose.
-const LEAST_VIEWS: f64 = 0.1;
-/// A pose is certain with this sum for it, and is dropped with this sum against it.
-const ENOUGH: f64 = 3.0;
-const TOO_MUCH: f64 = 3.0;
 
 /// What speaks for and against a pose since it was found.
 #[derive(Clone, Copy, Debug, Default, serde::Deserialize, serde::Serialize)]
@@ -93,9 +72,9 @@ impl Verification {
         let against = CONTRADICTION * support.contradicted + new;
         let agreement = (support.confirmed - against) / support.weight().max(1e-9);
         self.evidence_for = (self.evidence_for + views * GAIN * (agreement - fair)).max(0.0);
-        let against = views.max(LEAST_VIEWS) * LOSS * (FAIR_SHARE - support.share());
+        let against = views.max(MINOR) * LOSS * (FAIR_SHARE - support.share());
         self.evidence_against = (self.evidence_against + against).max(0.0);
-        if self.evidence_against >= TOO_MUCH {
+        if self.evidence_against >= ENOUGH {
             Verdict::Wrong
         } else if self.evidence_for >= ENOUGH && self.scans >= least_scans {
             Verdict::Certain

@@ -59,7 +59,7 @@ impl<R: Reading> Localization<R> for ExactPoses {
 
 impl Localization<LaserReading> for GivenPoses {
     fn localize(&mut self, reading: LaserReading, mapper: &mut Mapper) -> (LaserReading, Belief) {
-        ExactPoses.localize(self.unswept(reading), mapper)
+        ExactPoses.localize(self.deskewed(reading), mapper)
     }
 
     fn snapshot(&mut self) -> Vec<u8> {

@@ -72,7 +72,7 @@ impl FoundPoses {
             reading.pose = found.pose;
             found.state
         });
-        (self.given.unswept(reading), state)
+        (self.given.deskewed(reading), state)
     }
 }
 

@@ -69,7 +69,7 @@ impl<'a> Search<'a> {
     pub fn add(&mut self, reading: LaserReading, found: &TrajectoryPose) {
         let reading = LaserReading { pose: found.pose, ..self.filter.filter(reading) };
         // The motion within a scan follows from the pose before it.
-        let mut reading = self.given.unswept(reading);
+        let mut reading = self.given.deskewed(reading);
         // Else the sweep would be undone again where the scan is matched.
         reading.scan.sweep_s = 0.0;
         if self.readings.is_multiple_of(self.expected.div_ceil(COMPARED).max(1)) {

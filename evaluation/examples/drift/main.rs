@@ -64,7 +64,7 @@ fn run(options: &Options, seed: u64) -> Result<Score, Box<dyn std::error::Error>
     while world.time_s() < options.minutes * 60.0 {
         let reading = options.distort(world.sense());
         let true_pose = *world.true_pose();
-        exact.update(&true_poses.unswept(LaserReading { pose: true_pose, ..reading.clone() }))?;
+        exact.update(&true_poses.deskewed(LaserReading { pose: true_pose, ..reading.clone() }))?;
         let odometry = reading.pose;
         let begin = Instant::now();
         let without_loops = |localized| LoopClosed { localized, correction: None };
@@ -81,7 +81,7 @@ fn run(options: &Options, seed: u64) -> Result<Score, Box<dyn std::error::Error>
             score.learned_again(&estimated);
         }
         let estimate = &localized.estimate;
-        let enters_map = estimate.state == PoseState::Tracking || options.no_gate;
+        let enters_map = estimate.state == PoseState::Tracking;
         match enters_map {
             true => estimated.update(&localized.reading)?,
             false => estimated.skip(&localized.reading),

@@ -40,7 +40,6 @@ pub(crate) struct Options {
     /// One line per scan.
     pub(crate) trace: bool,
     pub(crate) odometry_only: bool,
-    pub(crate) no_gate: bool,
     /// Loops are not closed.
     pub(crate) no_loops: bool,
     /// Unknown starts in the map of the run.
@@ -48,7 +47,6 @@ pub(crate) struct Options {
     /// A third of the furniture was moved since the map of the unknown starts was made.
     pub(crate) moved: bool,
     no_rates: bool,
-    no_arc: bool,
     /// The odometry never moves.
     no_odometry: bool,
 }
@@ -75,12 +73,10 @@ impl Options {
             closed: false,
             trace: false,
             odometry_only: false,
-            no_gate: false,
             no_loops: false,
             relocate: false,
             moved: false,
             no_rates: false,
-            no_arc: false,
             no_odometry: false,
         };
         for argument in arguments {
@@ -111,12 +107,10 @@ impl Options {
                 "closed" => options.closed = is_on,
                 "trace" => options.trace = is_on,
                 "odometry-only" => options.odometry_only = is_on,
-                "no-gate" => options.no_gate = is_on,
                 "no-loops" => options.no_loops = is_on,
                 "relocate" => options.relocate = is_on,
                 "moved" => options.moved = is_on,
                 "no-rates" => options.no_rates = is_on,
-                "no-arc" => options.no_arc = is_on,
                 "no-odometry" => options.no_odometry = is_on,
                 _ => return Err(format!("{key}: no such option").into()),
             }
@@ -179,10 +173,8 @@ impl Options {
     /// The settings of the robot in this world, with the parts of the localizer that are switched off.
     pub(crate) fn settings(&self, spec: &WorldSpec) -> Result<Settings, UnsupportedDrive> {
         let mut settings = physics_trial::settings(spec)?;
-        let localizer = &mut settings.localizer;
-        (localizer.weigh_by_arc_length, localizer.gate) = (!self.no_arc, !self.no_gate);
         if self.no_rates {
-            localizer.rate_horizon_s = 0.0;
+            settings.localizer.rate_horizon_s = 0.0;
         }
         Ok(settings)
     }

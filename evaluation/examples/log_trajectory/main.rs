@@ -28,17 +28,21 @@ fn main() -> Result<(), Box<dyn Error>> {
     let folder = paths.get(1).map_or_else(|| PathBuf::from("."), PathBuf::from);
     let log = Log::open(Path::new(file), &TopicChoice::default())?;
     print_summary(&log);
-    let settings = TrajectorySettings { close_loops: switches.is_empty(), ..TrajectorySettings::default() };
-    let mut finder = TrajectoryFinder::new(&settings)?;
+    let mut finder = TrajectoryFinder::new(&TrajectorySettings::default())?;
     let mut readings = Vec::new();
     for reading in log.readings()? {
         readings.push(reading?);
     }
     let begin = Instant::now();
+    let mut local = Vec::new();
     for reading in &readings {
         finder.add(reading.clone());
+        local.push(finder.local_pose());
     }
-    let trajectory = finder.finish();
+    let mut trajectory = finder.finish();
+    if !switches.is_empty() {
+        trajectory.poses.iter_mut().zip(local).for_each(|(found, local)| found.pose = local);
+    }
     let per_scan_ms = begin.elapsed().as_secs_f64() * 1e3 / readings.len() as f64;
     print_trajectory(&trajectory, per_scan_ms);
     comparison::print(&log, &trajectory, &readings)?;

@@ -1,23 +1,16 @@
 //! The search for the pose in the whole map. Of a map that is too large for one scan, one part is searched per scan.
 
-use super::Localizer;
-use super::relocalizing::{LEAST_FOUND, MIN_SCORE};
+use super::map_matcher::{MapMatcher, Step};
 use crate::changing_map::ChangingMap;
+use crate::constants::{AMBIGUOUS, MAX_EMPTY_PARTS, MAX_REACH_M, MAX_SIDE_M, MIN_FOUND, MIN_SCORE};
 use crate::hypotheses::Hypotheses;
-use crate::motion::Motion;
 use crate::scan_points::ScanPoint;
-use crate::score_grid::{MAX_SIDE_M, ScoreGrid};
+use crate::score_grid::ScoreGrid;
 use crate::search::{Candidate, Window, search};
 use crate::surfel_map::SurfelMap;
-use interfaces::{GridFrame, LaserReading};
+use interfaces::GridFrame;
 use nalgebra::{Point2, Vector2};
 use std::f64::consts::PI;
-
-/// In a large map, surfaces that are farther away than this are not looked for, m: the part of the map around a place is as
-/// small as they are near.
-const MAX_REACH_M: f64 = 28.8;
-/// The number of parts without a surface that are left out in one scan.
-const MAX_EMPTY_PARTS: usize = 32;
 
 /// A search that goes on in the next scan.
 #[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
@@ -65,28 +58,31 @@ fn reach_m(points: &[ScanPoint]) -> f64 {
     farthest_m.min(MAX_REACH_M)
 }
 
-impl Localizer {
+impl MapMatcher {
     /// The poses at which the scan fits: in a window, or in the whole map, which must not be large then.
-    pub(super) fn candidates(&mut self, map: &impl ChangingMap, window: Option<&Window>) -> Vec<Candidate> {
-        let (ratio, points) = (self.settings.ambiguity_ratio, self.points.points());
+    pub(super) fn candidates<M: ChangingMap>(
+        &mut self,
+        step: &Step<M>,
+        window: Option<&Window>,
+    ) -> Vec<Candidate> {
+        let (points, states) = (&step.scan.points, step.map.states());
         match window {
             Some(window) if self.is_large() => {
                 let reach_m = reach_m(points).min(MAX_SIDE_M / 2.0 - window.reach_m);
                 let near = |point: &&ScanPoint| point.at.coords.norm() <= reach_m;
                 let near: Vec<ScanPoint> = points.iter().filter(near).copied().collect();
                 let middle = Point2::from(window.pose.translation.vector);
-                let reach_m = reach_m + window.reach_m;
-                let grid = ScoreGrid::around(&self.surfels, map.states(), &middle, reach_m);
-                search(&grid, &near, Some(window), LEAST_FOUND, ratio)
+                let grid = ScoreGrid::around(&self.surfels, states, &middle, reach_m + window.reach_m);
+                search(&grid, &near, Some(window), MIN_FOUND, AMBIGUOUS)
             }
             _ => {
                 // The scores are made again when the line map has changed.
-                let grid = match self.scores.take() {
+                let grid = match self.relocalization.scores.take() {
                     Some((known, grid)) if known == self.surfels.revision() => grid,
-                    _ => ScoreGrid::new(&self.surfels, map.states()),
+                    _ => ScoreGrid::new(&self.surfels, states),
                 };
-                let found = search(&grid, points, window, LEAST_FOUND, ratio);
-                self.scores = Some((self.surfels.revision(), grid));
+                let found = search(&grid, points, window, MIN_FOUND, AMBIGUOUS);
+                self.relocalization.scores = Some((self.surfels.revision(), grid));
                 found
             }
         }
@@ -100,30 +96,25 @@ impl Localizer {
     }
 
     /// The poses in the whole map. `None` if the search goes on in the next scan.
-    pub(super) fn search_everywhere(
-        &mut self,
-        reading: &LaserReading,
-        motion: &Motion,
-        map: &impl ChangingMap,
-    ) -> Option<Hypotheses> {
-        let ratio = self.settings.ambiguity_ratio;
+    pub(super) fn search_everywhere<M: ChangingMap>(&mut self, step: &Step<M>) -> Option<Hypotheses> {
         if !self.is_large() {
-            let candidates = self.candidates(map, None);
-            return Some(Hypotheses::start(&self.scene(reading, map), &candidates, MIN_SCORE, ratio));
+            let candidates = self.candidates(step, None);
+            return Some(Hypotheses::start(&self.scene(step), &candidates, MIN_SCORE));
         }
-        let is_first = self.wide.is_none();
-        let mut wide = self.wide.take().unwrap_or_else(|| WideSearch::new(self.points.points()));
+        let wide = self.relocalization.wide.take();
+        let is_first = wide.is_none();
+        let mut wide = wide.unwrap_or_else(|| WideSearch::new(&step.scan.points));
         if !is_first {
-            wide.found.advance(&self.scene(reading, map), motion, MIN_SCORE, ratio);
+            wide.found.advance(&self.scene(step), &step.scan.motion, MIN_SCORE);
         }
         let part = wide.next_with_surfaces(&self.surfels);
-        let candidates = part.map_or(Vec::new(), |window| self.candidates(map, Some(&window)));
-        let new = Hypotheses::start(&self.scene(reading, map), &candidates, MIN_SCORE, ratio);
-        wide.found = wide.found.restarted().or(new, ratio);
+        let candidates = part.map_or(Vec::new(), |window| self.candidates(step, Some(&window)));
+        let new = Hypotheses::start(&self.scene(step), &candidates, MIN_SCORE);
+        wide.found = wide.found.restarted().or(new);
         if part.is_none() {
             return Some(wide.found);
         }
-        self.wide = Some(wide);
+        self.relocalization.wide = Some(wide);
         None
     }
 }

@@ -1,7 +1,7 @@
 //! Readings whose numbers cannot be true: no panic, and no more work than a reading that can be true.
 
+use super::state::State;
 use super::*;
-use crate::settings::OdometryTrust;
 use crate::trajectory::{TrajectoryFinder, TrajectorySettings};
 use crate::work;
 use interfaces::{Purpose, RandomStream, Scan, Twist, VelocitySample, heading_rad, pose};
@@ -120,14 +120,21 @@ fn learned(sweep_s: f64) -> (Localizer, Grid<CellState>) {
     for number in 0..30 {
         localizer.localize(&reading(number, sweep_s), &map);
     }
-    assert_eq!(localizer.state, PoseState::Tracking);
+    assert_eq!(localizer.builder.matcher.state, State::Tracking);
     (localizer, map)
+}
+
+/// The robot is lost, and searches at the next reading.
+fn get_lost(localizer: &mut Localizer) {
+    let matcher = &mut localizer.builder.matcher;
+    (matcher.state, matcher.relocalization.scans) = (State::Lost, u32::MAX);
+    matcher.times.supported_s = f64::NEG_INFINITY;
 }
 
 /// The largest number of steps of a reading of a robot that is lost.
 fn most_steps(learned: &Localizer, map: &Grid<CellState>, sweep_s: f64) -> usize {
     let mut localizer = learned.clone();
-    (localizer.state, localizer.supported_s, localizer.since_search) = (PoseState::Lost, None, u32::MAX);
+    get_lost(&mut localizer);
     let steps = (30..40).map(|number| {
         work::take();
         localizer.localize(&reading(number, sweep_s), map);
@@ -214,7 +221,7 @@ fn a_robot_finds_itself_in_a_place_of_any_size_with_bounded_work_per_scan() {
         let map = place(side_m, room);
         let mut localizer = Localizer::in_map(&LocalizerSettings::default(), &map, Start::Unknown).unwrap();
         let (mut most, mut scans, mut longest) = (0, 0, std::time::Duration::ZERO);
-        while localizer.state != PoseState::Tracking && scans < 120 {
+        while localizer.builder.matcher.state != State::Tracking && scans < 120 {
             work::take();
             // A search that goes on is saved with the rest.
             if scans % 4 == 3 {
@@ -231,11 +238,11 @@ fn a_robot_finds_itself_in_a_place_of_any_size_with_bounded_work_per_scan() {
         }
         let mut at = reading(scans - 1, 0.0).pose;
         at.translation.vector += room;
-        let off = at.inv_mul(&localizer.pose);
-        assert_eq!(localizer.state, PoseState::Tracking, "{side_m} m: after {scans} scans");
+        let off = at.inv_mul(&localizer.builder.track.pose);
+        assert_eq!(localizer.builder.matcher.state, State::Tracking, "{side_m} m: after {scans} scans");
         assert!(off.translation.vector.norm() < 0.05 && heading_rad(&off).abs() < 0.02, "{side_m} m: {off}");
         // All levels of the scores of 76.8 m by 76.8 m, where the robot can be, and the squares of the search.
-        let cells = (1536 + 64) * (1536 + 64) * crate::score_grid::TOP + 1536 * 1536;
+        let cells = (1536 + 64) * (1536 + 64) * crate::constants::TOP + 1536 * 1536;
         assert!(most < cells + 1_000_000, "{side_m} m: {most} steps");
         println!("{side_m} m: found after {scans} scans, at most {most} steps and {longest:?} in one");
     }
@@ -244,11 +251,18 @@ fn a_robot_finds_itself_in_a_place_of_any_size_with_bounded_work_per_scan() {
 #[test]
 fn the_covariance_of_a_lost_robot_follows_the_motion_from_where_it_was() {
     let (mut localizer, map) = learned(0.0);
-    (localizer.state, localizer.pose) = (PoseState::Lost, pose(2.0, 1.5, 0.3));
-    localizer.covariance = Matrix3::new(0.02, 0.003, 0.001, 0.003, 0.01, -0.002, 0.001, -0.002, 0.04);
-    let motion = Motion::new(pose(0.3, 0.1, 1.2), &OdometryTrust::default());
-    let expected = motion.propagate(&localizer.pose, &localizer.covariance);
+    get_lost(&mut localizer);
+    localizer.builder.track.pose = pose(2.0, 1.5, 0.3);
+    localizer.builder.track.covariance =
+        Matrix3::new(0.02, 0.003, 0.001, 0.003, 0.01, -0.002, 0.001, -0.002, 0.04);
+    let before = localizer.builder.track.clone();
+    localizer.builder.matcher.state = State::Searching;
+    let reading = reading(30, 0.0);
+    let mut motion_prior = localizer.builder.motion_prior.clone();
+    let measured = motion_prior.measure(&reading.pose);
+    let motion = motion_prior.motion(&measured, &before.last_motion);
+    let expected = motion.propagate(&before.pose, &before.covariance);
     // No hypothesis is left.
-    localizer.follow(&reading(30, 0.0), &motion, &map);
-    assert_eq!(localizer.covariance, expected);
+    localizer.localize(&reading, &map);
+    assert_eq!(localizer.builder.track.covariance, expected);
 }

@@ -25,9 +25,7 @@ fn reading(range_m: impl FnMut(f64) -> f64) -> LaserReading {
 }
 
 fn points(reading: &LaserReading, grazing: bool) -> Vec<ScanPoint> {
-    let mut points = ScanPoints::default();
-    points.update(reading, |_| 1.0, &PointRules { noise_m: NOISE_M, by_arc_length: true, grazing });
-    points.points().to_vec()
+    ScanPoints::default().of(reading, |_| 1.0, &PointRules { noise_m: NOISE_M, grazing })
 }
 
 #[test]

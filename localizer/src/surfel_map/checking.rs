@@ -1,18 +1,12 @@
 //! Surfels that are no longer there are removed.
 
-use super::{CELL_M, SurfelMap};
+use super::SurfelMap;
 use crate::beams::ranges_around;
+use crate::constants::{
+    CHECK_TURNS, CLEARANCE_M, FAR_M, MIN_INCIDENCE, PASSED_COUNTS, SCANS_PER_MISS, SURFEL_M, THICK_M,
+};
 use interfaces::LaserReading;
 use nalgebra::{Isometry2, Point2};
-
-/// One of this many surfels is checked per scan.
-const TURNS: usize = 10;
-/// A beam passes a surfel if it ends at least this far behind, m.
-const PASSED_M: f64 = 0.15;
-/// A surfel whose surface is seen displaced by less than this, m, moved.
-const DISPLACED_M: f64 = 0.25;
-/// Beams that graze a surfel say nothing: the least cosine of the angle of incidence.
-const LEAST_INCIDENCE: f64 = 0.3;
 
 /// Checks the surfels against scans, a few per scan.
 #[derive(Clone, Debug, Default, serde::Deserialize, serde::Serialize)]
@@ -31,14 +25,14 @@ impl Checker {
         if scan.ranges_m.len() < 3 {
             return;
         }
-        self.turn = (self.turn + 1) % TURNS;
-        for index in (self.turn..map.surfels.len()).step_by(TURNS) {
+        self.turn = (self.turn + 1) % CHECK_TURNS;
+        for index in (self.turn..map.surfels.len()).step_by(CHECK_TURNS) {
             let surfel = &map.surfels[index];
             let to = surfel.at - origin;
             let distance_m = to.norm();
             if surfel.is_removed()
-                || distance_m > scan.range_max_m.min(8.0)
-                || -surfel.normal.dot(&to) < LEAST_INCIDENCE * distance_m
+                || distance_m > scan.range_max_m.min(FAR_M)
+                || -surfel.normal.dot(&to) < MIN_INCIDENCE * distance_m
             {
                 continue;
             }
@@ -49,8 +43,9 @@ impl Checker {
             }
             let nearest_m = ranges.iter().fold(f64::INFINITY, |least, range_m| least.min(*range_m));
             let farthest_m = ranges.iter().fold(0.0, |most: f64, range_m| most.max(*range_m));
-            let is_passed = nearest_m > distance_m + PASSED_M;
-            let is_displaced = farthest_m < distance_m - CELL_M / 2.0 && nearest_m > distance_m - DISPLACED_M;
+            let is_passed = nearest_m > distance_m + THICK_M;
+            let is_displaced =
+                farthest_m < distance_m - SURFEL_M / 2.0 && nearest_m > distance_m - CLEARANCE_M;
             map.contradict(index as u32, is_passed, is_displaced);
         }
     }
@@ -60,8 +55,8 @@ impl SurfelMap {
     /// Counts a contradiction: a displaced surface can also be something in front, and counts a quarter.
     fn contradict(&mut self, index: u32, is_passed: bool, is_displaced: bool) {
         let surfel = &mut self.surfels[index as usize];
-        surfel.misses += if is_passed { 4 } else { u32::from(is_displaced) };
-        if surfel.misses > 4 * (2 + surfel.scans / 20) {
+        surfel.misses += if is_passed { PASSED_COUNTS } else { u32::from(is_displaced) };
+        if surfel.misses > PASSED_COUNTS * (2 + surfel.scans / SCANS_PER_MISS) {
             self.remove(index);
         }
     }

@@ -1,21 +1,12 @@
 //! How surfels are learned from scans with a certain pose.
 
-use super::moving::SETTLED_SCANS;
-use super::{CELL_M, FROZEN_SCANS, SurfelMap, USABLE_SCANS};
+use super::SurfelMap;
 use crate::changing_map::ChangingMap;
+use crate::constants::{
+    CLEARANCE_M, FROZEN_SCANS, MIN_NOISE_M, SETTLED_SCANS, STDS, SURFEL_M, TRUSTED_SCANS, USABLE_SCANS,
+};
 use crate::scan_points::ScanPoint;
 use nalgebra::Isometry2;
-
-/// A hit lies within this many standard deviations of the range noise: what moved by a little more must not pull.
-const HIT_STDS: f64 = 3.0;
-/// The least noise: surfaces are not perfectly straight, m.
-const LEAST_NOISE_M: f64 = 0.005;
-/// No new surfel is made nearer to a known one with the same normal than this, m: a copy of a wall beside the wall is
-/// how a wrong pose becomes a wrong map.
-const CLEARANCE_M: f64 = 0.25;
-
-/// A surfel that has moved is the mean of about this many last hits, and does not freeze.
-const MOVING_HITS: u32 = 50;
 
 impl SurfelMap {
     /// Updates the map with a scan at a certain pose: surfels follow surfaces that have moved.
@@ -38,7 +29,7 @@ impl SurfelMap {
         if self.surfels.is_empty() { USABLE_SCANS } else { 1 }
     }
 
-    /// Updates the map with a keyframe: one scan stands for all around it, and takes part in matching at once.
+    /// Updates the map with a keyframe: one scan represents all around it, and takes part in matching at once.
     pub(crate) fn learn_keyframe(
         &mut self,
         points: &[ScanPoint],
@@ -58,7 +49,7 @@ impl SurfelMap {
         scans: u32,
         follows: bool,
     ) {
-        let gate_m = HIT_STDS * range_noise_std_m.max(LEAST_NOISE_M);
+        let gate_m = STDS * range_noise_std_m.max(MIN_NOISE_M);
         self.scan = self.scan.wrapping_add(1);
         for point in points {
             let (at, normal) = (pose * point.at, pose.rotation * point.normal);
@@ -89,7 +80,7 @@ impl SurfelMap {
         surfel.last_scan = self.scan;
         surfel.hits += 1;
         let share =
-            1.0 / f64::from(if surfel.has_moved { surfel.hits.min(MOVING_HITS) } else { surfel.hits });
+            1.0 / f64::from(if surfel.has_moved { surfel.hits.min(TRUSTED_SCANS) } else { surfel.hits });
         surfel.at += (at - surfel.at) * share;
         let mean = surfel.normal + (normal - surfel.normal) * share;
         let length = mean.norm();
@@ -102,14 +93,12 @@ impl SurfelMap {
     /// Takes over the learned rates of change as weights.
     pub(crate) fn weigh_by_rates(&mut self, map: &impl ChangingMap, horizon_s: f64) {
         let states = map.states();
-        self.knows_rates = false;
         for surfel in self.surfels.iter_mut().filter(|surfel| !surfel.is_removed()) {
             // The map counts a hit a little behind the surface.
-            let behind = surfel.at - surfel.normal * (0.2 * CELL_M);
+            let behind = surfel.at - surfel.normal * (0.2 * SURFEL_M);
             let cell = states.frame().index(states.frame().cell_at(&behind));
             let rate = cell.map_or(0.0, |index| map.rate(index));
             surfel.steadiness = libm::exp(-rate * horizon_s).clamp(0.0, 1.0);
-            self.knows_rates |= surfel.steadiness < 1.0;
         }
         self.revision += 1;
     }

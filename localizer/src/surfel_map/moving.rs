@@ -3,22 +3,12 @@
 //! A surface that is seen a little off its place, scan after scan, at certain poses, has moved: its surfel follows it, and
 //! counts little from then on. What has moved once will move again, and must not move the robot with it.
 
-use super::{SAME_NORMAL, Surfel, SurfelMap, TRUSTED_SCANS, USABLE_SCANS};
+use super::{Surfel, SurfelMap};
+use crate::constants::{
+    CONFIRM_SCANS, MOVED_M, SAME_NORMAL, SUSPECT_WEIGHT, THICK_M, TRUSTED_SCANS, USABLE_SCANS,
+};
 use crate::scan_points::{ScanPoint, means};
 use nalgebra::Isometry2;
-
-/// A surface that is seen off its place by less than this has moved, m; beyond, something else stands there.
-pub(crate) const MOVED_M: f64 = 0.12;
-/// The number of consecutive scans that show a surface off its place before its surfel follows it for the first time.
-const MOVED_SCANS: u32 = 3;
-/// The weight of a surfel that has moved, or may have moved: of what is in view, the others decide.
-const SUSPECT_WEIGHT: f64 = 0.03;
-/// The number of scans in one place after which a surfel counts as if it had never moved.
-pub(super) const SETTLED_SCANS: u32 = 6000;
-/// The share of [`TRUSTED_SCANS`] after which a place is known well.
-const KNOWN_SHARE: f64 = 0.5;
-/// When much of the view has moved, a point shows that all surfels of its surface up to this far away have moved, m.
-const MOVED_REACH_M: f64 = 0.15;
 
 impl Surfel {
     /// The weight of the surfel in matching, from 0 to 1. What was seen only a few times may be a passer-by.
@@ -26,7 +16,7 @@ impl Surfel {
         if self.scans < USABLE_SCANS {
             return 0.0;
         }
-        let seen = (f64::from(self.scans) / TRUSTED_SCANS).min(1.0);
+        let seen = (f64::from(self.scans) / f64::from(TRUSTED_SCANS)).min(1.0);
         if self.is_suspect() { SUSPECT_WEIGHT * seen } else { seen }
     }
 
@@ -37,7 +27,7 @@ impl Surfel {
 
     /// Whether the surface is known well, and was never seen to move.
     pub(crate) fn is_permanent(&self) -> bool {
-        !self.is_suspect() && f64::from(self.scans) >= KNOWN_SHARE * TRUSTED_SCANS
+        !self.is_suspect() && self.scans >= TRUSTED_SCANS / 2
     }
 }
 
@@ -52,7 +42,7 @@ impl SurfelMap {
         let is_next = surfel.last_displaced.wrapping_add(1) == scan;
         surfel.displaced = if is_next { surfel.displaced + 1 } else { 1 };
         surfel.last_displaced = scan;
-        if surfel.has_moved || surfel.displaced >= MOVED_SCANS {
+        if surfel.has_moved || surfel.displaced >= CONFIRM_SCANS {
             self.follow(index, off_m);
         }
     }
@@ -81,9 +71,9 @@ impl SurfelMap {
                 continue;
             }
             let (at, normal) = (pose * point.at, pose.rotation * point.normal);
-            self.around(&at, MOVED_REACH_M, |index, surfel| {
+            self.around(&at, THICK_M, |index, surfel| {
                 let to = at - surfel.at;
-                let is_near = to.norm() <= MOVED_REACH_M && surfel.normal.dot(&to).abs() <= MOVED_M;
+                let is_near = to.norm() <= THICK_M && surfel.normal.dot(&to).abs() <= MOVED_M;
                 if is_near && surfel.normal.dot(&normal) >= SAME_NORMAL {
                     moves.push((index, off_m));
                 }

@@ -1,12 +1,10 @@
 //! A line map as a list of points on surfaces, and back: what is kept of a map that is rarely needed.
 
-use super::{CELL_M, SurfelMap, TRUSTED_SCANS};
+use super::SurfelMap;
+use crate::constants::{MAX_PLACE_M, SURFEL_M, TRUSTED_SCANS};
 use crate::scan_points::ScanPoint;
 use interfaces::GridFrame;
 use nalgebra::{Isometry2, Point2, Vector2};
-
-/// Points farther from each other than this are in no map of points, m.
-const LARGEST_M: f64 = 200.0;
 
 impl SurfelMap {
     /// All surfels that take part in matching, in a frame whose pose in the frame of the map is `pose`.
@@ -30,14 +28,14 @@ impl SurfelMap {
             (low.coords.inf(&point.at.coords).into(), high.coords.sup(&point.at.coords).into())
         });
         let size: Vector2<f64> = high - low;
-        if size.max() > LARGEST_M {
+        if size.max() > MAX_PLACE_M {
             return None;
         }
-        let origin: Point2<f64> = low - Vector2::repeat(CELL_M);
-        let frame = GridFrame::covering(origin, size.x + 2.0 * CELL_M, size.y + 2.0 * CELL_M, CELL_M)?;
+        let origin: Point2<f64> = low - Vector2::repeat(SURFEL_M);
+        let frame = GridFrame::covering(origin, size.x + 2.0 * SURFEL_M, size.y + 2.0 * SURFEL_M, SURFEL_M)?;
         let mut map = Self::new(&frame);
         for point in points {
-            map.add(point.at, point.normal, TRUSTED_SCANS as u32);
+            map.add(point.at, point.normal, TRUSTED_SCANS);
         }
         Some(map)
     }

@@ -1,14 +1,10 @@
 //! Surfels from a known occupancy grid.
 
 use super::SurfelMap;
+use crate::constants::{PRIOR_SCANS, SURFEL_M, THICK_M};
 use crate::work;
 use interfaces::{Cell, CellState, Grid};
 use nalgebra::{Point2, Vector2};
-
-/// The number of scans that a surfel of a known map counts as. Scans correct it soon.
-const PRIOR_SCANS: u32 = 20;
-/// A surface is fitted to the borders within this distance, m.
-const FIT_M: f64 = 0.15;
 
 /// The middle of a side between a blocked and a free cell: the blocked cell, the position and the direction to the free side.
 type Border = (Cell, Point2<f64>, Vector2<f64>);
@@ -24,7 +20,7 @@ impl SurfelMap {
         let rows: Vec<usize> =
             (0..=height).map(|row| borders.partition_point(|(cell, ..)| cell.y < row)).collect();
         let resolution_m = grid.frame().resolution_m();
-        let reach = FIT_M.max(1.5 * resolution_m);
+        let reach = THICK_M.max(1.5 * resolution_m);
         let cells = (reach / resolution_m) as i32 + 2;
         for (Cell { x, y }, at, outward) in &borders {
             let (mut sum, mut normal, mut count) = (Vector2::zeros(), Vector2::zeros(), 0.0);
@@ -48,7 +44,7 @@ impl SurfelMap {
             let (middle, normal) = (at + sum / count, normal / length);
             // On the line through the middle, at the foot of the border.
             let foot = at - normal * normal.dot(&(at - middle));
-            if map.nearest(&foot, &normal, 0.05).is_none() {
+            if map.nearest(&foot, &normal, SURFEL_M / 2.0).is_none() {
                 map.add(foot, normal, PRIOR_SCANS);
             }
         }

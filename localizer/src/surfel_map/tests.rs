@@ -1,11 +1,12 @@
 use super::prior::borders;
 use super::*;
+use crate::constants::FROZEN_SCANS;
 use crate::scan_points::{PointRules, ScanPoint, ScanPoints};
 use crate::work;
 use interfaces::{CellState, Grid, LaserReading, Purpose, RandomStream, Scan, Twist};
 use nalgebra::Isometry2;
 
-const RULES: PointRules = PointRules { noise_m: 0.01, by_arc_length: true, grazing: true };
+const RULES: PointRules = PointRules { noise_m: 0.01, grazing: true };
 
 fn frame() -> GridFrame {
     GridFrame::new(Point2::new(-1.0, -5.0), 0.05, 200, 200).unwrap()
@@ -39,8 +40,8 @@ fn surfels_lie_on_the_line_of_the_wall() {
         let mut map = SurfelMap::new(&frame());
         let mut points = ScanPoints::default();
         for _ in 0..100 {
-            points.update(&wall(angle_rad, distance_m, &mut noise), |_| 1.0, &RULES);
-            map.learn(points.points(), &Isometry2::identity(), 0.01);
+            let points = points.of(&wall(angle_rad, distance_m, &mut noise), |_| 1.0, &RULES);
+            map.learn(&points, &Isometry2::identity(), 0.01);
         }
         let normal = interfaces::rotation(angle_rad) * Vector2::x();
         let seen: Vec<&Surfel> = map.usable().filter(|surfel| surfel.scans >= 50).collect();
@@ -160,8 +161,7 @@ fn what_beams_pass_is_removed() {
         (SurfelMap::new(&frame()), ScanPoints::default(), Checker::default());
     let mut see = |map: &mut SurfelMap, distance_m: f64| {
         let reading = wall(0.0, distance_m, &mut noise);
-        points.update(&reading, |_| 1.0, &RULES);
-        map.learn(points.points(), &Isometry2::identity(), 0.01);
+        map.learn(&points.of(&reading, |_| 1.0, &RULES), &Isometry2::identity(), 0.01);
         checker.check(map, &reading, &Isometry2::identity());
     };
     for _ in 0..50 {
@@ -246,7 +246,7 @@ fn cells_are_as_small_as_a_frame_allows() {
     let origin = Point2::new(3.0, -2.0);
     for (resolution_m, cells, expected_m) in [(0.05, 200, 0.1), (1.0, 2000, 0.4), (8.0, 8192, 12.8)] {
         let frame = GridFrame::new(origin, resolution_m, cells, cells).unwrap();
-        let fitted = fitted(&frame, CELL_M, 1);
+        let fitted = fitted(&frame, SURFEL_M, 1);
         let end = frame.origin() + Vector2::repeat(resolution_m * cells as f64);
         assert_eq!(fitted.resolution_m(), expected_m);
         assert!(fitted.contains(fitted.cell_at(&origin)) && fitted.contains(fitted.cell_at(&end)));

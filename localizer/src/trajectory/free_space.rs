@@ -3,19 +3,9 @@
 use super::keyframe::Keyframe;
 use super::submap::FinishedSubmap;
 use crate::beams::ranges_around;
+use crate::constants::{CLEARANCE_M, MIN_SURE_INCIDENCE, NEAR_RANGE_M, PASSED_SHARE, REFINE};
 use crate::scan_points::ScanPoint;
 use nalgebra::{Isometry2, Point2};
-
-/// One of this many keyframes, and one of this many points, is looked at.
-const KEYFRAME_STRIDE: usize = 3;
-const POINT_STRIDE: usize = 2;
-/// A beam passes a surface if it ends at least this far behind: a distance (m) and a share of the range.
-const PASSED_M: f64 = 0.25;
-const PASSED_SHARE: f64 = 0.02;
-/// Surfaces farther away are not looked at, m.
-const FARTHEST_M: f64 = 10.0;
-/// Beams that graze a surface say nothing: the least cosine of the angle of incidence.
-const LEAST_INCIDENCE: f64 = 0.35;
 
 /// The numbers of beams that end at the surfaces, and that pass them.
 #[derive(Clone, Copy, Debug, Default)]
@@ -47,9 +37,9 @@ fn count(
     beams: &mut Beams,
 ) {
     let back = keyframes[seeing.anchor].local.inverse();
-    for keyframe in keyframes[seeing.first..=seeing.last].iter().step_by(KEYFRAME_STRIDE) {
+    for keyframe in keyframes[seeing.first..=seeing.last].iter().step_by(REFINE[1].0) {
         let to_laser = (back * keyframe.local * keyframe.mount).inv_mul(pose);
-        for point in seen.points.iter().step_by(POINT_STRIDE) {
+        for point in seen.points.iter().step_by(2) {
             match is_passed(keyframe, point, &to_laser) {
                 Some(true) => beams.passing += 1,
                 Some(false) => beams.ending += 1,
@@ -65,11 +55,11 @@ fn is_passed(keyframe: &Keyframe, point: &ScanPoint, to_laser: &Isometry2<f64>) 
     let at: Point2<f64> = to_laser * point.at;
     let distance_m = at.coords.norm();
     let incidence = -(to_laser.rotation * point.normal).dot(&at.coords);
-    if distance_m > FARTHEST_M.min(scan.range_max_m) || incidence < LEAST_INCIDENCE * distance_m {
+    if distance_m > NEAR_RANGE_M.min(scan.range_max_m) || incidence < MIN_SURE_INCIDENCE * distance_m {
         return None;
     }
     let ranges = ranges_around(scan, &at.coords)?;
-    let margin_m = PASSED_M + PASSED_SHARE * distance_m;
+    let margin_m = CLEARANCE_M + PASSED_SHARE * distance_m;
     // A missing range says nothing; no return means that the beam passed.
     if ranges.iter().all(|range_m| *range_m > distance_m + margin_m) {
         return Some(true);
@@ -98,7 +88,13 @@ mod tests {
             ranges_m,
         };
         let (local, mount) = (Isometry2::identity(), Isometry2::identity());
-        let keyframe = Keyframe { local, points: Vec::new(), mount, scan };
+        let keyframe = Keyframe {
+            local,
+            from_last: (local, nalgebra::Matrix3::zeros()),
+            points: Vec::new(),
+            mount,
+            scan,
+        };
         let passed = |beam: f64, distance_m: f64, facing: f64| {
             let along = interfaces::rotation((beam - 90.0).to_radians()) * Vector2::x();
             let point = ScanPoint {

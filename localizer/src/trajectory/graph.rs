@@ -1,30 +1,22 @@
 //! The pose graph: keyframes, and measured motions between them. Its optimum is the trajectory.
 //!
 //! Gauss-Newton on the differences between measured and estimated motions (Grisetti, Kümmerle, Stachniss & Burgard
-//! 2010). A recognised place can be wrong: it counts by the kernel of Geman and McClure, whose scale shrinks from step to
+//! 2010). A recognized place can be wrong: it counts by the kernel of Geman and McClure, whose scale shrinks from step to
 //! step (graduated non-convexity: Yang, Antonante, Tzoumas & Carlone 2020), since after a long way a correct loop
 //! contradicts all that is known.
 
 use super::sparse::Equations;
+use crate::constants::{GRAPH_KERNEL, GRAPH_SHRINK, GRAPH_STEPS, STEP};
 use crate::matcher::difference;
 use interfaces::wrap_rad;
 use nalgebra::{Isometry2, Matrix3, Vector3};
-
-/// The largest number of steps.
-const MAX_STEPS: usize = 25;
-/// A step below this ends the iteration, m and rad.
-const STEP: f64 = 1e-4;
-/// The square of the error over its covariance at which a loop counts a quarter.
-const KERNEL: f64 = 16.0;
-/// The factor by which the kernel shrinks from step to step.
-const SHRINK: f64 = 3.0;
 
 /// How a motion was measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum EdgeKind {
     /// From one keyframe to the next, by matching with the submap of the last keyframes.
     Match,
-    /// By recognising a place. It can be wrong.
+    /// By recognizing a place. It can be wrong.
     Loop,
 }
 
@@ -86,8 +78,8 @@ impl PoseGraph {
             return;
         }
         let largest = self.loops().map(|edge| edge.square(&self.poses)).fold(0.0, f64::max);
-        let mut scale = largest.max(KERNEL);
-        for _ in 0..MAX_STEPS {
+        let mut scale = largest.max(GRAPH_KERNEL);
+        for _ in 0..GRAPH_STEPS {
             let Some(step) = self.step(scale) else { return };
             let largest = step.iter().map(|part| part.amax()).fold(0.0, f64::max);
             for (pose, part) in self.poses.iter_mut().zip(&step) {
@@ -95,17 +87,17 @@ impl PoseGraph {
                 pose.rotation = interfaces::rotation(wrap_rad(part.z)) * pose.rotation;
                 pose.rotation.renormalize();
             }
-            if scale <= KERNEL && largest < STEP {
+            if scale <= GRAPH_KERNEL && largest < STEP.m {
                 return;
             }
-            scale = (scale / SHRINK).max(KERNEL);
+            scale = (scale / GRAPH_SHRINK).max(GRAPH_KERNEL);
         }
     }
 
     /// Removes the loops that contradict the optimum.
     pub(super) fn remove_outliers(&mut self) {
         let poses = &self.poses;
-        self.edges.retain(|edge| edge.kind != EdgeKind::Loop || edge.square(poses) <= 2.0 * KERNEL);
+        self.edges.retain(|edge| edge.kind != EdgeKind::Loop || edge.square(poses) <= 2.0 * GRAPH_KERNEL);
     }
 
     fn loops(&self) -> impl Iterator<Item = &Edge> {

@@ -1,27 +1,15 @@
+use crate::constants::{JUDGED_M, KEPT_POINTS, KEYFRAME_RANGE_M, OFF_LINE, SAME_SURFACE, SURFEL_M};
 use crate::scan_points::ScanPoint;
 use interfaces::Scan;
-use nalgebra::Isometry2;
+use nalgebra::{Isometry2, Matrix3};
 
-/// Points farther away than this are left out, m: neighboring beams are so far apart that they may be on different
-/// surfaces.
-const FARTHEST_M: f64 = 25.0;
-/// The distance between points on one surface, m: that of the cells of a line map.
-const SPACING_M: f64 = 0.1;
-/// Neighboring points on one straight surface are at most this far apart, m ...
-const MOST_M: f64 = 0.8;
-/// ... have normals with at least this cosine, and lie on one line up to this share of their distance.
-const SAME_NORMAL: f64 = 0.95;
-const OFF_LINE: f64 = 0.15;
-
-/// The number of points of a keyframe that are kept once its submaps have learned all of them: at the end, these are
-/// compared with the submaps of other passes.
-const KEPT_POINTS: usize = 120;
-
-/// A scan that stands for all scans around it.
+/// A scan that represents all scans around it.
 #[derive(Clone, Debug)]
 pub(super) struct Keyframe {
     /// The pose by matching with local submaps alone, m and rad.
     pub(super) local: Isometry2<f64>,
+    /// The motion from the keyframe before by matching with local submaps alone, and the inverse of its covariance.
+    pub(super) from_last: (Isometry2<f64>, Matrix3<f64>),
     /// The points, in the frame of the robot; see [`Keyframe::thin`].
     pub(super) points: Vec<ScanPoint>,
     /// The pose of the laser in the frame of the robot.
@@ -45,12 +33,12 @@ pub(super) fn thinned(points: &[ScanPoint], most: usize) -> Vec<ScanPoint> {
 /// The near points of a scan, and between neighbors on one surface as many more as a line map needs: far surfaces are
 /// hit by few beams.
 pub(super) fn filled(points: &[ScanPoint]) -> Vec<ScanPoint> {
-    let near = |point: &&ScanPoint| point.at.coords.norm_squared() < FARTHEST_M * FARTHEST_M;
+    let near = |point: &&ScanPoint| point.at.coords.norm_squared() < KEYFRAME_RANGE_M * KEYFRAME_RANGE_M;
     let mut filled: Vec<ScanPoint> = Vec::with_capacity(points.len());
     for point in points.iter().filter(near) {
         if let Some(before) = filled.last().copied().filter(|before| are_joined(before, point)) {
             let way = point.at - before.at;
-            let steps = (way.norm() / SPACING_M) as usize;
+            let steps = (way.norm() / SURFEL_M) as usize;
             for step in 1..steps {
                 let at = before.at + way * (step as f64 / steps as f64);
                 filled.push(ScanPoint { at, ..before });
@@ -65,8 +53,8 @@ fn are_joined(before: &ScanPoint, point: &ScanPoint) -> bool {
     let way = point.at - before.at;
     let distance_m = way.norm();
     point.beam == before.beam + 1
-        && distance_m < MOST_M
-        && before.normal.dot(&point.normal) > SAME_NORMAL
+        && distance_m < 2.0 * JUDGED_M
+        && before.normal.dot(&point.normal) > SAME_SURFACE
         && before.normal.dot(&way).abs() < OFF_LINE * distance_m
 }
 

@@ -3,23 +3,15 @@
 use super::TrajectorySettings;
 use super::keyframe::filled;
 use super::matching::fit;
+use crate::constants::{EXAMINED, KEYFRAME, MIN_AGREEMENT, MIN_OVERLAP, PLACE_STD};
 use crate::given_poses::GivenPoses;
-use crate::scan_points::ScanPoints;
+use crate::scan_points::{ScanPoint, ScanPoints};
 use crate::score_grid::ScoreGrid;
 use crate::search::search;
+use crate::spread::Spread;
 use crate::surfel_map::SurfelMap;
-use interfaces::{GridFrame, LaserReading, SettingsError, ValueError, heading_rad};
+use interfaces::{GridFrame, LaserReading, SettingsError, ValueError};
 use nalgebra::Isometry2;
-
-/// The least shares of a fit: of the points that the map can judge, and of those that agree.
-const LEAST_OVERLAP: f64 = 0.4;
-const LEAST_AGREEMENT: f64 = 0.75;
-
-/// In a search anywhere: the least score of a pose, the share of the best score that other poses are examined with, and the
-/// uncertainty of a pose that is found, m and rad.
-const LEAST_SCORE: f64 = 0.4;
-const EXAMINED: f64 = 0.75;
-const FOUND_STD: (f64, f64) = (0.3, 0.05);
 
 /// The surfaces of a place as short straight lines, from the readings of a log along its trajectory. Unlike a grid, it is
 /// exact to some millimetres.
@@ -56,20 +48,16 @@ impl LineMap {
         if reading.scan.check().is_err() {
             return;
         }
-        let reading = self.given.unswept(reading.clone());
+        let reading = self.given.deskewed(reading.clone());
         let pose = reading.pose;
         let step = self.last.map(|last| last.inv_mul(&pose));
-        let is_near = |step: Isometry2<f64>| {
-            step.translation.vector.norm() < self.settings.keyframe_m
-                && heading_rad(&step).abs() < self.settings.keyframe_rad
-        };
-        if step.is_some_and(is_near) {
+        if step.is_some_and(|step| KEYFRAME.contains(&step)) {
             return;
         }
         self.last = Some(pose);
         let rules = self.settings.point_rules();
-        self.points.update(&reading, |_| 1.0, &rules);
-        self.map.learn_keyframe(&filled(self.points.points()), &pose, rules.noise_m);
+        let points = self.points.of(&reading, |_| 1.0, &rules);
+        self.map.learn_keyframe(&filled(&points), &pose, rules.noise_m);
     }
 
     /// The surfaces, as bytes: what readings of other logs are matched with.
@@ -126,33 +114,31 @@ impl LineMatcher<'_> {
         near: &Isometry2<f64>,
         std: (f64, f64),
     ) -> Option<LineFit> {
-        self.take(reading).then(|| self.fit(near, std)).flatten()
+        let points = self.points(reading);
+        self.fit(&points, near, Spread { m: std.0, rad: std.1 })
     }
 
     /// The fits of the next reading anywhere in the map.
     pub fn anywhere(&mut self, reading: &LaserReading) -> Vec<LineFit> {
-        if !self.take(reading) {
+        let points = self.points(reading);
+        let scores = self.scores.get_or_insert_with(|| ScoreGrid::anywhere(&self.line_map.map));
+        let candidates = search(scores, &points, None, MIN_OVERLAP, EXAMINED);
+        candidates.iter().filter_map(|candidate| self.fit(&points, &candidate.pose, PLACE_STD)).collect()
+    }
+
+    /// The points of a reading; none of an invalid one.
+    fn points(&mut self, reading: &LaserReading) -> Vec<ScanPoint> {
+        if reading.scan.check().is_err() {
             return Vec::new();
         }
-        let scores = self.scores.get_or_insert_with(|| ScoreGrid::anywhere(&self.line_map.map));
-        let candidates = search(scores, self.points.points(), None, LEAST_SCORE, EXAMINED);
-        candidates.iter().filter_map(|candidate| self.fit(&candidate.pose, FOUND_STD)).collect()
+        let reading = self.given.deskewed(reading.clone());
+        self.points.of(&reading, |_| 1.0, &self.line_map.settings.point_rules())
     }
 
-    /// Takes the points of a reading. False if it is not valid.
-    fn take(&mut self, reading: &LaserReading) -> bool {
-        if reading.scan.check().is_err() {
-            return false;
-        }
-        let reading = self.given.unswept(reading.clone());
-        self.points.update(&reading, |_| 1.0, &self.line_map.settings.point_rules());
-        true
-    }
-
-    fn fit(&self, near: &Isometry2<f64>, std: (f64, f64)) -> Option<LineFit> {
+    fn fit(&self, points: &[ScanPoint], near: &Isometry2<f64>, std: Spread) -> Option<LineFit> {
         let noise_m = self.line_map.settings.point_rules().noise_m;
-        let (found, agreement) = fit(&self.line_map.map, self.points.points(), near, std, noise_m)?;
-        let agrees = agreement.overlap() >= LEAST_OVERLAP && agreement.share() >= LEAST_AGREEMENT;
+        let (found, agreement) = fit(&self.line_map.map, points, near, std, noise_m)?;
+        let agrees = agreement.overlap() >= MIN_OVERLAP && agreement.share() >= MIN_AGREEMENT;
         let confirmed = agreement.confirmed / agreement.all;
         agrees.then_some(LineFit { pose: found.placement.pose, confirmed })
     }

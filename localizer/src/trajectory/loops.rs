@@ -1,22 +1,12 @@
-//! Loops: recognised places that other recognised places confirm.
+//! Loops: recognized places that other recognized places confirm.
 
 use super::graph::{Edge, PoseGraph};
 use super::keyframe::Keyframe;
 use super::odometry_drift::reach;
 use super::places::{Place, Places};
 use super::submap::FinishedSubmap;
+use crate::constants::{FOUND_STD, KEYFRAME_WAY_M, NEIGHBORS, SHORT_WAY_M};
 use interfaces::heading_rad;
-
-/// After a way shorter than this, a place needs no other that agrees, m.
-const SHORT_WAY_M: f64 = 20.0;
-/// Two places that agree begin and end at most this many submaps apart, and differ by no more than the trajectory between
-/// them is uncertain.
-const NEIGHBORS: usize = 6;
-/// The way from keyframe to keyframe, for this uncertainty, m.
-const KEYFRAME_M: f64 = 0.35;
-/// The graph is optimised at once if a new loop contradicts it by this, m and rad.
-const URGENT_M: f64 = 0.1;
-const URGENT_RAD: f64 = 0.03;
 
 /// Finds loops and adds them to the graph.
 #[derive(Debug)]
@@ -110,12 +100,12 @@ fn agree(a: &Place, b: &Place, graph: &PoseGraph) -> bool {
     let expected = between(a.edge.from, b.edge.from) * b.edge.motion * between(b.edge.to, a.edge.to);
     let off = expected.inv_mul(&a.edge.motion);
     let keyframes = a.edge.from.abs_diff(b.edge.from) + a.edge.to.abs_diff(b.edge.to);
-    let (most_m, most_rad) = reach(keyframes as f64 * KEYFRAME_M);
+    let (most_m, most_rad) = reach(keyframes as f64 * KEYFRAME_WAY_M);
     off.translation.vector.norm() <= most_m && heading_rad(&off).abs() <= most_rad
 }
 
 /// Whether a loop contradicts the trajectory so much that all later searches profit from it.
 fn is_urgent_in(edge: &Edge, graph: &PoseGraph) -> bool {
     let off = edge.motion.inv_mul(&graph.poses[edge.from].inv_mul(&graph.poses[edge.to]));
-    off.translation.vector.norm() > URGENT_M || heading_rad(&off).abs() > URGENT_RAD
+    !FOUND_STD.contains(&off)
 }

@@ -1,19 +1,9 @@
 //! How far apart two keyframes are along the trajectory, and how far their relative pose can be wrong.
 
 use super::graph::{EdgeKind, PoseGraph};
+use crate::constants::{DRIFT, DRIFT_PER_M, LOOP_M, MAX_DRIFT_M, TURN_M};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
-
-/// A recognised place connects two keyframes as if they were this far apart, m.
-const LOOP_M: f64 = 0.5;
-/// A turn counts as this way, m/rad.
-const TURN_M: f64 = 0.3;
-/// The least error of a relative pose, and its growth with the way, m and rad.
-const LEAST_M: f64 = 0.4;
-const PER_WAY: f64 = 0.03;
-const MOST_M: f64 = 12.0;
-const LEAST_RAD: f64 = 0.08;
-const PER_ROOT_M_RAD: f64 = 0.03;
 
 /// The shortest way from a keyframe to every other keyframe, along the edges of the graph, m.
 pub(super) fn ways_m(graph: &PoseGraph, from: usize) -> Vec<f64> {
@@ -41,5 +31,5 @@ pub(super) fn ways_m(graph: &PoseGraph, from: usize) -> Vec<f64> {
 
 /// The largest error of position (m) and heading (rad) that is expected after a way.
 pub(super) fn reach(way_m: f64) -> (f64, f64) {
-    ((LEAST_M + PER_WAY * way_m).min(MOST_M), LEAST_RAD + PER_ROOT_M_RAD * way_m.sqrt())
+    ((DRIFT.m + DRIFT_PER_M * way_m).min(MAX_DRIFT_M), DRIFT.rad + DRIFT_PER_M * way_m.sqrt())
 }

@@ -3,20 +3,13 @@
 use super::TrajectoryFinder;
 use super::graph::{Edge, EdgeKind};
 use super::matching::{fit, in_frame};
+use crate::constants::{FOUND_STD, NEW_GROUND_M, TURN_M};
 use crate::estimate::PoseState;
 use crate::surfel_map::SurfelMap;
 use interfaces::heading_rad;
 use nalgebra::{Isometry2, Matrix3};
 
-/// A submap is on new ground if no earlier one has its middle within this distance, m.
-const KNOWN_M: f64 = 4.0;
-/// A turn counts as this way, m/rad.
-const TURN_M: f64 = 0.3;
-
-/// The uncertainty of a motion that may explain a loop, m and rad.
-const NEAR_STD: (f64, f64) = (0.1, 0.03);
-
-/// A place that was recognised.
+/// A place that was recognized.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FoundLoop {
     /// Two keyframes, and the motion between them.
@@ -30,7 +23,7 @@ pub(crate) struct FoundLoop {
 impl TrajectoryFinder {
     /// The same finder, for an odometry that is there: a robot that rests at the start does not go on as before.
     pub(crate) fn with_odometry(mut self) -> Self {
-        self.front_end.expect_odometry();
+        self.builder.motion_prior.expect_odometry();
         self
     }
 
@@ -77,19 +70,19 @@ impl TrajectoryFinder {
 
     /// Whether the last reading agreed with its submap; invalid readings, and those that show nothing, do not disagree.
     pub(crate) fn is_supported(&self) -> bool {
-        self.front_end.sees_nothing()
+        self.builder.matcher.sees_nothing()
             || self.readings.last().is_some_and(|reading| reading.state != PoseState::Uncertain)
     }
 
     /// The number of keyframes so far.
-    pub(crate) fn keyframes(&self) -> usize {
+    pub(crate) fn keyframe_count(&self) -> usize {
         self.graph.poses.len()
     }
 
     /// The way from a keyframe to a later one, m; turns count as a way.
     fn way_m(&self, from: usize, to: usize) -> f64 {
         let step_m = |keyframe: usize| {
-            let keyframes = self.front_end.keyframes();
+            let keyframes = self.keyframes();
             let motion = keyframes[keyframe].local.inv_mul(&keyframes[keyframe + 1].local);
             motion.translation.vector.norm() + TURN_M * heading_rad(&motion).abs()
         };
@@ -120,7 +113,7 @@ impl TrajectoryFinder {
     ) -> Option<(Isometry2<f64>, f64)> {
         let [from, to] = found.submaps.map(|number| &self.closer.places.submaps[number]);
         let map = SurfelMap::of_points(&from.points)?;
-        let fit = |motion| fit(&map, &to.points, motion, NEAR_STD, self.settings.range_noise_std_m);
+        let fit = |motion| fit(&map, &to.points, motion, FOUND_STD, self.settings.range_noise_std_m);
         let ((near, agrees), (_, most)) = (fit(motion)?, fit(&found.motion)?);
         Some((near.placement.pose, agrees.confirmed / most.confirmed.max(f64::MIN_POSITIVE)))
     }
@@ -132,12 +125,12 @@ impl TrajectoryFinder {
         let (mut new_m, mut last) = (0.0, 0);
         for (number, submap) in submaps.iter().enumerate() {
             let mut earlier = submaps[..number].iter().filter(|other| other.last < submap.first);
-            if earlier.all(|other| (at(other.anchor) - at(submap.anchor)).norm() > KNOWN_M) {
+            if earlier.all(|other| (at(other.anchor) - at(submap.anchor)).norm() > NEW_GROUND_M) {
                 // The next submap begins in the middle of this one.
                 new_m += self.way_m(submap.first, submap.anchor);
                 last = submap.last;
             }
         }
-        (new_m, self.way_m(last, self.keyframes().saturating_sub(1)))
+        (new_m, self.way_m(last, self.keyframe_count().saturating_sub(1)))
     }
 }

@@ -6,55 +6,19 @@ use super::keyframe::{Keyframe, thinned};
 use super::matching::{fit, information_of};
 use super::odometry_drift::{reach, ways_m};
 use super::submap::{Agreement, FinishedSubmap};
+use crate::constants::{
+    AMBIGUOUS, COMPARED_POINTS, EXAMINED, MAX_PASSING, MAX_SEARCHES, MIN_WAY_M, NEAR_M, NEAR_RANGE_M,
+    NEIGHBORS, PLACE_AGREEMENT, PLACE_MODEL_STD, PLACE_OVERLAP, PLACE_SCORE, PLACE_STD, REFERENCE_M,
+    SAME_SUBMAP, STRONG_AGREEMENT, STRONG_OVERLAP, UNLIKELY,
+};
 use crate::matcher::Match;
 use crate::scan_points::ScanPoint;
 use crate::score_grid::ScoreGrid;
 use crate::search::{Window, search};
 use crate::surfel_map::SurfelMap;
-use interfaces::heading_rad;
 use nalgebra::Isometry2;
 
-/// Submaps that are connected by a shorter way need no loop, m.
-const LEAST_WAY_M: f64 = 8.0;
-/// Two submaps may cover the same place if their middles are this near, beyond the uncertainty, m.
-const NEAR_M: f64 = 6.0;
-/// The number of earlier submaps in which a submap is searched for.
-const MOST_SEARCHES: usize = 3;
-/// Points of a submap farther from its middle than this are not searched for, m: they may lie outside of the other.
-const COMPARED_M: f64 = 10.0;
-/// The number of points that are compared.
-const MOST_POINTS: usize = 300;
-/// The least score of a pose in a search, and the share of the best score that other poses are examined with.
-const LEAST_SCORE: f64 = 0.35;
-const EXAMINED: f64 = 0.75;
-/// The uncertainty of a pose that a search has found, m and rad.
-const FOUND_STD: (f64, f64) = (0.3, 0.05);
-/// The least shares of a recognised place: of the points that the other submap can judge, and of those that agree.
-const LEAST_OVERLAP: f64 = 0.45;
-const LEAST_AGREEMENT: f64 = 0.8;
-/// The largest share of beams that pass surfaces of the other submap.
-const MOST_PASSING: f64 = 0.06;
-/// The same of a place of which little speaks against it.
-const STRONG_OVERLAP: f64 = 0.5;
-const STRONG_AGREEMENT: f64 = 0.88;
-const STRONG_PASSING: f64 = 0.03;
-/// What a pose at the border of the window counts less.
-const UNLIKELY: f64 = 0.3;
-/// A place is ambiguous if another pose counts at least this share of the best.
-const AMBIGUOUS: f64 = 0.9;
-/// Poses nearer than this are the same, m and rad.
-const SAME_M: f64 = 0.5;
-const SAME_RAD: f64 = 0.1;
-/// The errors of a relative pose of submaps that do not average out, m and rad.
-const MODEL_STD_M: f64 = 0.02;
-const MODEL_STD_RAD: f64 = 0.004;
-/// A submap with this many references around it, nearer than this, becomes no reference, m.
-const MOST_REFERENCES: usize = 12;
-const REFERENCE_M: f64 = 3.0;
-/// The number of score grids that are kept.
-const MOST_GRIDS: usize = 6;
-
-/// A recognised place: the pose of submap `to` in submap `from`.
+/// A recognized place: the pose of submap `to` in submap `from`.
 #[derive(Clone, Debug)]
 pub(super) struct Place {
     pub(super) from: usize,
@@ -82,8 +46,7 @@ struct Fit {
 
 impl Fit {
     fn is_same(&self, other: &Self) -> bool {
-        let between = self.at.inv_mul(&other.at);
-        between.translation.vector.norm() < SAME_M && heading_rad(&between).abs() < SAME_RAD
+        SAME_SUBMAP.contains(&self.at.inv_mul(&other.at))
     }
 
     fn holds(&self, overlap: f64, agreement: f64, passing: f64) -> bool {
@@ -113,7 +76,7 @@ impl Places {
         let is_around =
             |other: &&usize| (middle(&self.submaps[**other]) - middle(&submap)).norm() < REFERENCE_M;
         let number = self.submaps.len();
-        if self.references.iter().filter(is_around).count() < MOST_REFERENCES {
+        if self.references.iter().filter(is_around).count() < 2 * NEIGHBORS {
             self.references.push(number);
         }
         self.submaps.push(submap);
@@ -132,13 +95,13 @@ impl Places {
             self.fits(from, to, way_m, graph, &mut fits);
         }
         fits.retain_mut(|fit| {
-            if !fit.holds(LEAST_OVERLAP, LEAST_AGREEMENT, 1.0) {
+            if !fit.holds(PLACE_OVERLAP, PLACE_AGREEMENT, 1.0) {
                 return false;
             }
             let submaps = &self.submaps;
             fit.passing =
                 passing_share(&submaps[fit.from], &submaps[to], &fit.found.placement.pose, keyframes);
-            fit.passing <= MOST_PASSING
+            fit.passing <= MAX_PASSING
         });
         fits.sort_by(|a, b| b.value.total_cmp(&a.value));
         let Some(best) = fits.first() else { return Vec::new() };
@@ -155,11 +118,12 @@ impl Places {
     }
 
     fn place(&self, to: usize, fit: &Fit) -> Option<Place> {
-        let information = information_of(&fit.found, MODEL_STD_M, MODEL_STD_RAD)?;
+        let information = information_of(&fit.found, PLACE_MODEL_STD)?;
         let (from, to_anchor) = (self.submaps[fit.from].anchor, self.submaps[to].anchor);
         let edge =
             Edge { from, to: to_anchor, motion: fit.found.placement.pose, information, kind: EdgeKind::Loop };
-        let is_strong = fit.holds(STRONG_OVERLAP, STRONG_AGREEMENT, STRONG_PASSING);
+        // Half as many beams speak against it.
+        let is_strong = fit.holds(STRONG_OVERLAP, STRONG_AGREEMENT, MAX_PASSING / 2.0);
         Some(Place { from: fit.from, to, way_m: fit.way_m, edge, is_strong })
     }
 
@@ -173,13 +137,13 @@ impl Places {
         let earlier = self.references().filter(|(from, other)| *from < to && other.last < submap.first);
         let mut candidates: Vec<(usize, f64, f64)> = earlier
             .map(|(from, other)| (from, ways_m[other.anchor], distance_m(other)))
-            .filter(|(_, way_m, distance_m)| *way_m >= LEAST_WAY_M && *distance_m <= NEAR_M + reach(*way_m).0)
+            .filter(|(_, way_m, distance_m)| *way_m >= MIN_WAY_M && *distance_m <= NEAR_M + reach(*way_m).0)
             .collect();
         candidates.sort_by(|a, b| a.2.total_cmp(&b.2));
         let mut chosen: Vec<(usize, f64)> = Vec::new();
         for (from, way_m, _) in candidates {
             // Neighbors share half of their keyframes.
-            if chosen.len() < MOST_SEARCHES && chosen.iter().all(|(other, _)| from.abs_diff(*other) > 1) {
+            if chosen.len() < MAX_SEARCHES && chosen.iter().all(|(other, _)| from.abs_diff(*other) > 1) {
                 chosen.push((from, way_m));
             }
         }
@@ -193,12 +157,12 @@ impl Places {
         let (anchor, other) = (self.submaps[from].anchor, self.submaps[to].anchor);
         let pose = graph.poses[anchor].inv_mul(&graph.poses[other]);
         let (reach_m, reach_rad) = reach(way_m);
-        let is_near = |point: &&ScanPoint| point.at.coords.norm() <= COMPARED_M;
+        let is_near = |point: &&ScanPoint| point.at.coords.norm() <= NEAR_RANGE_M;
         let near: Vec<ScanPoint> = self.submaps[to].points.iter().filter(is_near).copied().collect();
-        let points = thinned(&near, MOST_POINTS);
+        let points = thinned(&near, COMPARED_POINTS);
         let window = Window { pose, reach_m, reach_rad };
-        for candidate in search(grid, &points, Some(&window), LEAST_SCORE, EXAMINED) {
-            let Some((found, agreement)) = fit(map, &points, &candidate.pose, FOUND_STD, self.noise_m) else {
+        for candidate in search(grid, &points, Some(&window), PLACE_SCORE, EXAMINED) {
+            let Some((found, agreement)) = fit(map, &points, &candidate.pose, PLACE_STD, self.noise_m) else {
                 continue;
             };
             let off = (found.placement.pose.translation.vector - pose.translation.vector).norm() / reach_m;
@@ -215,7 +179,7 @@ impl Places {
         }
         let Some(map) = SurfelMap::of_points(&self.submaps[number].points) else { return };
         let grid = ScoreGrid::anywhere(&map);
-        if self.grids.len() == MOST_GRIDS {
+        if self.grids.len() == 2 * MAX_SEARCHES {
             self.grids.remove(0);
         }
         self.grids.push((number, map, grid));
@@ -239,14 +203,14 @@ mod tests {
             after.push(places.references.len());
         }
         // Any two points of a square of 2.1 m are nearer to each other: 25 such squares cover the place.
-        assert!(after[11] == 12 && after[1999] <= 25 * MOST_REFERENCES, "{after:?}");
+        assert!(after[11] == 12 && after[1999] <= 25 * 2 * NEIGHBORS, "{after:?}");
         let is_near = |from: usize, to: usize| {
             (graph.poses[from].translation.vector - graph.poses[to].translation.vector).norm() < REFERENCE_M
         };
         for submap in 0..2000 {
             let around = places.references().filter(|(reference, _)| is_near(*reference, submap)).count();
             let is_reference = places.references.contains(&submap);
-            assert!(is_reference || around >= MOST_REFERENCES, "submap {submap}: {around}");
+            assert!(is_reference || around >= 2 * NEIGHBORS, "submap {submap}: {around}");
         }
     }
 }

@@ -5,25 +5,16 @@ use super::keyframe::Keyframe;
 use super::matching::{fit, information_of};
 use super::places::Places;
 use super::submap::{Agreement, FinishedSubmap};
+use crate::constants::{MIN_AGREEMENT, MIN_OVERLAP, NEAR_M, REFINE, SUBMAP_STD};
 use crate::matcher::Match;
+use crate::spread::Spread;
 use crate::surfel_map::SurfelMap;
 
-/// Keyframes farther from the middle of a submap than this are not matched with it, m.
-const NEAR_M: f64 = 6.0;
-/// The rounds: one of this many keyframes is matched with a submap, from a pose that is uncertain by this much, m and rad.
-const ROUNDS: [(usize, (f64, f64)); 2] = [(7, (0.3, 0.05)), (3, (0.15, 0.03))];
-/// The least shares of a match: of the points that the submap can judge, and of those that agree.
-const LEAST_OVERLAP: f64 = 0.4;
-const LEAST_AGREEMENT: f64 = 0.75;
-/// The errors of a match that do not average out, m and rad.
-const MODEL_STD_M: f64 = 0.015;
-const MODEL_STD_RAD: f64 = 0.003;
-
-/// Matches keyframes with all submaps around them of which they are no part, and optimises the graph; once more from the
+/// Matches keyframes with all submaps around them of which they are no part, and optimizes the graph; once more from the
 /// better poses.
 pub(super) fn refine(places: &Places, keyframes: &[Keyframe], graph: &mut PoseGraph) {
     let without = graph.edges.clone();
-    for (stride, std) in ROUNDS {
+    for (stride, std) in REFINE {
         let edges = edges(places, keyframes, stride, std, graph);
         graph.edges.clone_from(&without);
         graph.edges.extend(edges);
@@ -38,7 +29,7 @@ fn edges(
     places: &Places,
     keyframes: &[Keyframe],
     stride: usize,
-    std: (f64, f64),
+    std: Spread,
     graph: &PoseGraph,
 ) -> Vec<Edge> {
     let mut edges = Vec::new();
@@ -69,9 +60,9 @@ pub(super) fn near<'a>(submap: &'a FinishedSubmap, graph: &'a PoseGraph) -> impl
 
 /// The motion from the middle of a submap to a keyframe, if the scan of the keyframe agrees with the submap.
 fn edge(anchor: usize, keyframe: usize, (found, agreement): &(Match, Agreement)) -> Option<Edge> {
-    if agreement.overlap() < LEAST_OVERLAP || agreement.share() < LEAST_AGREEMENT {
+    if agreement.overlap() < MIN_OVERLAP || agreement.share() < MIN_AGREEMENT {
         return None;
     }
-    let information = information_of(found, MODEL_STD_M, MODEL_STD_RAD)?;
+    let information = information_of(found, SUBMAP_STD)?;
     Some(Edge { from: anchor, to: keyframe, motion: found.placement.pose, information, kind: EdgeKind::Loop })
 }

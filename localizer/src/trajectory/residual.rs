@@ -4,18 +4,8 @@ use super::graph::PoseGraph;
 use super::keyframe::Keyframe;
 use super::places::Places;
 use super::refine::near;
+use crate::constants::{CLEARANCE_M, MIN_RESIDUALS, REFINE, STD_PER_MEDIAN, TAIL};
 use crate::surfel_map::SurfelMap;
-
-/// One of this many keyframes is compared with a submap.
-const STRIDE: usize = 7;
-/// A point farther from a surface than this is on another one, m.
-const GATE_M: f64 = 0.25;
-/// The standard deviation of a normal distribution, in medians of the absolute value.
-const STD_PER_MEDIAN: f64 = 1.4826;
-/// The share of the points before the tail.
-const TAIL: f64 = 0.97;
-/// Fewer points say nothing.
-const LEAST_POINTS: usize = 200;
 
 /// The distances of scans from the surfaces that were seen in other passes: the errors of ranges and poses together.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,15 +23,15 @@ pub(super) fn residual(places: &Places, keyframes: &[Keyframe], graph: &PoseGrap
     let mut distances_m = Vec::new();
     for (number, submap) in places.references() {
         let Some(map) = SurfelMap::of_points(&submap.points) else { continue };
-        for keyframe in near(submap, graph).filter(|near| (near + number) % STRIDE == 0) {
+        for keyframe in near(submap, graph).filter(|near| (near + number) % REFINE[0].0 == 0) {
             let pose = graph.poses[submap.anchor].inv_mul(&graph.poses[keyframe]);
             distances_m.extend(keyframes[keyframe].points.iter().filter_map(|point| {
-                let nearest = map.nearest(&(pose * point.at), &(pose.rotation * point.normal), GATE_M);
+                let nearest = map.nearest(&(pose * point.at), &(pose.rotation * point.normal), CLEARANCE_M);
                 nearest.map(|(_, off_m)| off_m.abs())
             }));
         }
     }
-    if distances_m.len() < LEAST_POINTS {
+    if distances_m.len() < MIN_RESIDUALS {
         return None;
     }
     let mut at = |share: f64| {

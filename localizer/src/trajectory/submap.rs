@@ -1,18 +1,12 @@
 //! Submaps: line maps of some consecutive keyframes.
 
 use super::keyframe::Keyframe;
+use crate::constants::{JUDGED_M, SUBMAP_REACH_M, SURFEL_M};
 use crate::placement::Placement;
 use crate::scan_points::ScanPoint;
 use crate::surfel_map::SurfelMap;
 use interfaces::GridFrame;
 use nalgebra::{Isometry2, Point2, Vector2};
-
-/// A growing submap covers this far around its first keyframe, m.
-const REACH_M: f64 = 35.0;
-/// The side of the cells of its frame, m.
-const CELL_M: f64 = 0.1;
-/// A point this near to a surface of the submap must lie on it, m.
-const JUDGED_M: f64 = 0.4;
 
 /// A submap to which keyframes are added, in the frame of the matches with local submaps.
 #[derive(Clone, Debug)]
@@ -37,8 +31,8 @@ pub(super) struct FinishedSubmap {
 impl GrowingSubmap {
     /// An empty submap around a pose, in the memory of a map that is no longer needed.
     pub(super) fn new(around: &Isometry2<f64>, spare: Option<SurfelMap>) -> Option<Self> {
-        let low = Point2::from(around.translation.vector - Vector2::repeat(REACH_M));
-        let frame = GridFrame::covering(low, 2.0 * REACH_M, 2.0 * REACH_M, CELL_M)?;
+        let low = Point2::from(around.translation.vector - Vector2::repeat(SUBMAP_REACH_M));
+        let frame = GridFrame::covering(low, 2.0 * SUBMAP_REACH_M, 2.0 * SUBMAP_REACH_M, SURFEL_M)?;
         let map = spare.map_or_else(|| SurfelMap::new(&frame), |spare| spare.emptied(&frame));
         Some(Self { map, keyframes: Vec::new() })
     }

@@ -115,6 +115,6 @@ fn a_first_map_is_not_broken_by_scans_that_show_nothing() {
         }
         mapped += usize::from(localized.estimate.state == PoseState::Tracking);
     }
-    assert!(!localizer.stands(), "the first map no longer moves");
+    assert!(!localizer.is_frozen(), "the first map no longer moves");
     assert_eq!(mapped, READINGS - MISSING.len());
 }

@@ -39,7 +39,7 @@ impl Odometry {
         Self { pose: start, last: start, random: RandomStream::new(seed, Purpose::OdometryNoise(0)) }
     }
 
-    /// Hard drift: 5 % gains, 3° per metre, and noise of the same size.
+    /// Hard drift: 5 % gains, 3° per meter, and noise of the same size.
     pub(crate) fn moved_to(&mut self, true_pose: &Isometry2<f64>) -> Isometry2<f64> {
         let delta = self.last.inv_mul(true_pose);
         self.last = *true_pose;

@@ -16,7 +16,7 @@ use xxhash_rust::xxh3::xxh3_64_with_seed;
 
 /// Count up when the body, or a snapshot in it, changes; `tests/states` of the workspace holds examples of every version
 /// that is read.
-const VERSION: u32 = 5;
+const VERSION: u32 = 6;
 /// The part with the build.
 const BUILD_PART: &str = "build";
 /// The largest body, bytes: what a mapper with the largest map can take.

@@ -124,7 +124,7 @@ fn trip(corridor: Corridor, rounds: f64, seed: u64, plain: bool) -> Trip {
             }
             _ => trip.not_certain[after] += 1,
         }
-        if run.localizer.stands() {
+        if run.localizer.is_frozen() {
             trip.stands_m.get_or_insert(way_m);
         }
     }
@@ -333,10 +333,10 @@ fn a_session_ends_the_first_map() {
     let mut run =
         Run::new(Corridor::new([8.0, 5.0], Plan::Varied, 102).with_laser(90, std::f64::consts::TAU), 102);
     run.localizer.begin_session();
-    assert!(!run.localizer.stands(), "nothing is known yet");
+    assert!(!run.localizer.is_frozen(), "nothing is known yet");
     run.step();
     run.localizer.begin_session();
-    assert!(run.localizer.stands());
+    assert!(run.localizer.is_frozen());
     let snapshot = run.localizer.snapshot();
     for length in 0..snapshot.len().min(2000) {
         assert!(run.localizer.restore(&snapshot[..length]).is_err(), "{length}");

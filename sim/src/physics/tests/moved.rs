@@ -50,7 +50,9 @@ fn everything_moves_and_is_seen_as_before() {
         contacts += here.contacts().len();
         beams += a.scan.ranges_m.len();
         let pairs = a.scan.ranges_m.iter().zip(&b.scan.ranges_m);
-        other += pairs.filter(|(a, b)| a != b && !((*a - *b).abs() < 0.02)).count();
+        other += pairs
+            .filter(|(a, b)| a != b && (*a - *b).abs().partial_cmp(&0.02) != Some(std::cmp::Ordering::Less))
+            .count();
         let phase = here.time_s();
         let drive =
             interfaces::Twist { linear_mps: 0.5 * libm::cos(phase * 0.7), angular_radps: libm::sin(phase) };

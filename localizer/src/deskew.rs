@@ -1,49 +1,51 @@
-//! Undoes the sweep of a scan: a laser that turns measures each beam from a pose of its own. The result is a scan whose
-//! beams all start at the pose of its end.
+//! Deskews scans: a laser that turns measures each beam from a pose of its own. The result is a scan whose beams all start
+//! at the pose of its end.
 
+use crate::constants::{MINOR, THICK_M};
 use crate::path::Path;
-use crate::scan_points::{Directions, PointRules, ScanPoints};
+use crate::scan_points::{Directions, PointRules, ScanPoint, ScanPoints};
 use crate::work;
 use interfaces::{LaserReading, Scan, approximate_atan2, wrap_rad};
 use nalgebra::{Isometry2, Point2, Vector2};
 
-/// Neighboring end points nearer than this are joined by a straight surface, m.
-const JOIN_M: f64 = 0.15;
-/// Between two surfaces, a direction that is farther than this from both beams (as a share of the angle between them)
-/// is not measured: the edge lies somewhere between.
-const EDGE_SHARE: f64 = 0.1;
-/// Undoes sweeps, with directions that it knows from the last scan.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct SweepUndo {
+/// Deskews scans, and makes points of them.
+#[derive(Clone, Debug)]
+pub(crate) struct Deskew {
+    rules: PointRules,
+    points: ScanPoints,
     directions: Directions,
 }
 
-impl SweepUndo {
-    /// The scan of a reading, with all beams from its pose, after a robot on a path.
-    pub(crate) fn scan(&mut self, reading: &LaserReading, path: &Path) -> Scan {
-        let (scan, mount, to_laser) = (&reading.scan, reading.mount, reading.mount.inverse());
-        self.directions.update(scan, &Isometry2::identity());
-        undo(scan, self.directions.units(), |left| to_laser * path.at(left * scan.sweep_s) * mount)
+impl Deskew {
+    pub(crate) fn new(rules: PointRules) -> Self {
+        Self { rules, points: ScanPoints::default(), directions: Directions::default() }
     }
 
-    /// Replaces the scan of `posed` by that of `reading` with all beams from the pose at its end, after a robot that moved
-    /// by `motion` in the time `elapsed_s`; and the points by those of this scan.
+    /// Replaces the scan of `deskewed` by that of `reading` with all beams from the pose at its end, after a robot that
+    /// moved by `motion` in the time `elapsed_s`. Returns the points of this scan.
     pub(crate) fn update(
         &mut self,
-        posed: &mut LaserReading,
-        points: &mut ScanPoints,
-        rules: &PointRules,
+        deskewed: &mut LaserReading,
         reading: &LaserReading,
-        (motion, elapsed_s): (&Isometry2<f64>, f64),
-    ) {
+        motion: &Isometry2<f64>,
+        elapsed_s: f64,
+    ) -> Vec<ScanPoint> {
         match Path::of_sweep(reading, motion, elapsed_s) {
             Some(path) => {
-                posed.scan = self.scan(reading, &path);
-                points.update(posed, |beam| path.passed(reading.scan.age_s(beam)), rules);
+                deskewed.scan = deskewed_scan(&mut self.directions, reading, &path);
+                let passed = |beam| path.passed(reading.scan.age_s(beam));
+                self.points.of(deskewed, passed, &self.rules)
             }
-            None => points.update(posed, |_| 1.0, rules),
+            None => self.points.of(deskewed, |_| 1.0, &self.rules),
         }
     }
+}
+
+/// The scan of a reading, with all beams from its pose, after a robot on a path.
+pub(crate) fn deskewed_scan(directions: &mut Directions, reading: &LaserReading, path: &Path) -> Scan {
+    let (scan, mount, to_laser) = (&reading.scan, reading.mount, reading.mount.inverse());
+    directions.update(scan, &Isometry2::identity());
+    deskew(scan, directions.units(), |left| to_laser * path.at(left * scan.sweep_s) * mount)
 }
 
 /// The end point of a beam in the frame of the laser at the end of the sweep.
@@ -56,7 +58,7 @@ struct End {
 
 /// The scan as the laser would measure it at once, at the end of the sweep. `laser_before` gives the pose of the laser in
 /// its frame at the end of the sweep, where a share of the sweep is left. Directions that no beam covers are NaN.
-fn undo(scan: &Scan, units: &[Vector2<f64>], laser_before: impl Fn(f64) -> Isometry2<f64>) -> Scan {
+fn deskew(scan: &Scan, units: &[Vector2<f64>], laser_before: impl Fn(f64) -> Isometry2<f64>) -> Scan {
     let beams = scan.ranges_m.len();
     if beams < 3 {
         return scan.clone();
@@ -125,14 +127,14 @@ fn between(along: &Vector2<f64>, from: &End, to: &End, share: f64) -> f32 {
     let nearer = if share < 0.5 { from } else { to };
     let are_hits = from.range_m.is_finite() && to.range_m.is_finite();
     let edge = to.at - from.at;
-    if are_hits && edge.norm_squared() < JOIN_M * JOIN_M {
+    if are_hits && edge.norm_squared() < THICK_M * THICK_M {
         let range_m = from.at.coords.perp(&edge) / along.perp(&edge);
         let middle_m = from.at.coords.norm().midpoint(to.at.coords.norm());
-        if (range_m - middle_m).abs() < JOIN_M {
+        if (range_m - middle_m).abs() < THICK_M {
             return range_m as f32;
         }
     }
-    if share.min(1.0 - share) > EDGE_SHARE && (are_hits || from.range_m != to.range_m) {
+    if share.min(1.0 - share) > MINOR && (are_hits || from.range_m != to.range_m) {
         return f32::NAN;
     }
     if nearer.range_m.is_finite() { nearer.at.coords.norm() as f32 } else { nearer.range_m }
@@ -164,10 +166,10 @@ mod tests {
         }
     }
 
-    fn undone(scan: &Scan, laser_before: impl Fn(f64) -> Isometry2<f64>) -> Scan {
+    fn deskewed(scan: &Scan, laser_before: impl Fn(f64) -> Isometry2<f64>) -> Scan {
         let mut directions = Directions::default();
         directions.update(scan, &Isometry2::identity());
-        undo(scan, directions.units(), laser_before)
+        deskew(scan, directions.units(), laser_before)
     }
 
     #[test]
@@ -180,11 +182,13 @@ mod tests {
             };
             let empty = scan(vec![0.0; beams]);
             let range = |beam: usize| range_m(&at(beam), empty.angle_rad(beam)) as f32;
-            let undone =
-                undone(&scan((0..beams).map(range).collect()), |left| pose(x * left, y * left, turn * left));
-            let missing = undone.ranges_m.iter().filter(|range_m| range_m.is_nan()).count();
+            let deskewed = deskewed(&scan((0..beams).map(range).collect()), |left| {
+                pose(x * left, y * left, turn * left)
+            });
+            let missing = deskewed.ranges_m.iter().filter(|range_m| range_m.is_nan()).count();
             assert!(missing <= (turn.abs() / TAU * beams as f64) as usize + 3, "{missing} missing");
-            for (beam, found_m) in undone.ranges_m.iter().enumerate().filter(|(_, range_m)| !range_m.is_nan())
+            for (beam, found_m) in
+                deskewed.ranges_m.iter().enumerate().filter(|(_, range_m)| !range_m.is_nan())
             {
                 let expected_m = range_m(&Isometry2::identity(), empty.angle_rad(beam));
                 let error_m = (f64::from(*found_m) - expected_m).abs();
@@ -199,8 +203,8 @@ mod tests {
         let (beams, elapsed_s, acceleration_mps2, acceleration_radps2) = (720, 0.1, 1.0, 4.0);
         // The pose a time before the end, in the frame of the end: from rest at the last reading to full speed.
         let before = |back_s: f64| {
-            let travelled = |acceleration: f64| 0.5 * acceleration * (elapsed_s - back_s).powi(2);
-            let back = |acceleration: f64| travelled(acceleration) - 0.5 * acceleration * elapsed_s.powi(2);
+            let traveled = |acceleration: f64| 0.5 * acceleration * (elapsed_s - back_s).powi(2);
+            let back = |acceleration: f64| traveled(acceleration) - 0.5 * acceleration * elapsed_s.powi(2);
             pose(back(acceleration_mps2), 0.0, back(acceleration_radps2))
         };
         let empty = scan(vec![0.0; beams]);
@@ -229,9 +233,10 @@ mod tests {
             scan: scan((0..beams).map(range).collect()),
         };
         let path = Path::of_sweep(&reading, &before(elapsed_s).inverse(), elapsed_s).unwrap();
-        let unswept = SweepUndo::default().scan(&reading, &path);
-        let errors_m = (0..beams).filter(|&beam| !unswept.ranges_m[beam].is_nan()).map(|beam| {
-            (f64::from(unswept.ranges_m[beam]) - range_m(&Isometry2::identity(), empty.angle_rad(beam))).abs()
+        let deskewed = deskewed_scan(&mut Directions::default(), &reading, &path);
+        let errors_m = (0..beams).filter(|&beam| !deskewed.ranges_m[beam].is_nan()).map(|beam| {
+            (f64::from(deskewed.ranges_m[beam]) - range_m(&Isometry2::identity(), empty.angle_rad(beam)))
+                .abs()
         });
         let errors_m: Vec<f64> = errors_m.collect();
         assert!(errors_m.len() > beams - 8, "{} beams", errors_m.len());
@@ -244,8 +249,8 @@ mod tests {
     fn a_robot_at_rest_keeps_its_scan() {
         let ranges_m = [1.0, 2.0, f32::INFINITY, f32::NAN, f32::NEG_INFINITY, 3.0, 3.0, 3.0].to_vec();
         let scan = scan(ranges_m.clone());
-        let undone = undone(&scan, |_| Isometry2::identity());
-        for (before, after) in ranges_m.iter().zip(&undone.ranges_m) {
+        let deskewed = deskewed(&scan, |_| Isometry2::identity());
+        for (before, after) in ranges_m.iter().zip(&deskewed.ranges_m) {
             let is_same = (before - after).abs() < 1e-5 || before.to_bits() == after.to_bits();
             assert!(is_same, "{before} became {after}");
         }

@@ -1,0 +1,28 @@
+use crate::constants::{ELSEWHERE, ELSEWHERE_STDS};
+use crate::matcher::difference;
+use crate::motion::Predicted;
+use nalgebra::{Isometry2, Matrix3};
+
+/// Where the robot is by another source, in the frame of the map: a pose with its covariance.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PosePrior {
+    pub(crate) pose: Isometry2<f64>,
+    pub(crate) covariance: Matrix3<f64>,
+}
+
+impl PosePrior {
+    /// Whether the robot may be at a pose.
+    fn allows(&self, pose: &Isometry2<f64>) -> bool {
+        let std_m = (self.covariance[(0, 0)] + self.covariance[(1, 1)]).sqrt();
+        let off = difference(pose, &self.pose);
+        off.xy().norm() <= ELSEWHERE.m + ELSEWHERE_STDS * std_m && off.z.abs() <= ELSEWHERE.rad
+    }
+
+    /// The predicted pose, and what the prior says.
+    pub(crate) fn with(&self, predicted: Predicted) -> Predicted {
+        match self.allows(&predicted.pose) {
+            true => predicted.and(&self.pose, &self.covariance),
+            false => Predicted::rigid(self.pose, self.covariance),
+        }
+    }
+}

@@ -1,0 +1,66 @@
+//! The motion between two readings before the scan is seen: odometry with learned gains, as far as it can be trusted.
+
+use crate::calibration::Calibration;
+use crate::constants::{DISTRUST_SCANS, MIN_MOTION};
+use crate::motion::Motion;
+use crate::settings::OdometryTrust;
+use nalgebra::Isometry2;
+
+/// The odometry of a robot.
+#[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
+pub(crate) struct MotionPrior {
+    calibration: Calibration,
+    /// The last valid odometry pose.
+    last: Option<Isometry2<f64>>,
+    /// Whether there is an odometry, as far as is known.
+    exists: bool,
+    /// The number of scans for which the odometry is not trusted.
+    distrust: u32,
+}
+
+impl MotionPrior {
+    pub(crate) fn new(trust: &OdometryTrust) -> Self {
+        Self { calibration: Calibration::new(trust), last: None, exists: false, distrust: 0 }
+    }
+
+    /// There is an odometry, though it may not have moved yet.
+    pub(crate) fn expect_odometry(&mut self) {
+        self.exists = true;
+    }
+
+    pub(crate) fn has_odometry(&self) -> bool {
+        self.exists
+    }
+
+    /// Forgets where the odometry was; what was learned about its gains stays.
+    pub(crate) fn begin_session(&mut self) {
+        (self.last, self.distrust) = (None, 0);
+    }
+
+    /// The motion since the last reading, as the odometry measured it.
+    pub(crate) fn measure(&mut self, odometry: &Isometry2<f64>) -> Isometry2<f64> {
+        let measured = self.last.replace(*odometry).unwrap_or(*odometry).inv_mul(odometry);
+        self.exists |= !MIN_MOTION.contains(&measured);
+        measured
+    }
+
+    /// The expected motion. Without odometry, the robot goes on as before.
+    pub(crate) fn motion(&self, measured: &Isometry2<f64>, last_motion: &Isometry2<f64>) -> Motion {
+        let trust = self.calibration.trust();
+        match self.exists {
+            true if self.distrust == 0 => Motion::new(self.calibration.correct(measured), trust),
+            true => Motion::new(self.calibration.correct(measured), trust).distrusted(),
+            false => Motion::new(*last_motion, trust).distrusted(),
+        }
+    }
+
+    /// Learns from a supported scan whether the odometry can be trusted.
+    pub(crate) fn judge(&mut self, is_outlier: bool) {
+        self.distrust = if is_outlier { DISTRUST_SCANS } else { self.distrust.saturating_sub(1) };
+    }
+
+    /// Learns the gains from a measured and a matched motion.
+    pub(crate) fn learn(&mut self, measured: &Isometry2<f64>, matched: &Isometry2<f64>) {
+        self.calibration.learn(measured, matched);
+    }
+}

@@ -1,0 +1,250 @@
+//! Matches scans with the submap of the last keyframes, and makes keyframes of them.
+
+use super::keyframe::{Keyframe, filled};
+use super::matching::{gates, in_frame, motion_spread};
+use super::settings::TrajectorySettings;
+use super::submap::{Agreement, FinishedSubmap, GrowingSubmap, agreement};
+use crate::constants::{
+    CLEARLY, FAIR_SHARE, FOUND_STD, JUDGED_M, KEYFRAME, KEYFRAME_STD, MAJORITY, MIN_AGREEMENT, MIN_OVERLAP,
+    MIN_POINTS, MIN_SHARE, MISSING_STD, OTHER_TURNS_RAD, SCAN_STD, SEARCHED, SEARCHED_STD, SUBMAP_KEYFRAMES,
+    SURFEL_M,
+};
+use crate::faults::Fault;
+use crate::local_trajectory_builder::{IncomingScan, Matched, ScanMatcher, Track};
+use crate::matcher::{Match, Prior, align};
+use crate::motion::Motion;
+use crate::scan_points::ScanPoint;
+use crate::score_grid::ScoreGrid;
+use crate::search::{Window, search};
+use crate::spread::Spread;
+use crate::surfel_map::SurfelMap;
+use interfaces::LaserReading;
+use nalgebra::{Isometry2, Matrix3, Vector3};
+
+/// The submaps that grow, and their keyframes.
+#[derive(Debug)]
+pub(crate) struct SubmapMatcher {
+    settings: TrajectorySettings,
+    /// The motion by odometry since the last keyframe.
+    since_keyframe: Isometry2<f64>,
+    keyframes: Vec<Keyframe>,
+    /// The older one is matched with, the younger one is only filled.
+    growing: Vec<GrowingSubmap>,
+    finished: Vec<FinishedSubmap>,
+    /// The memory of the last submap that was finished.
+    spare: Option<SurfelMap>,
+    /// Whether the last scan shows no surface.
+    sees_nothing: bool,
+}
+
+/// What a match with a submap says beside the pose.
+pub(crate) struct SubmapFound {
+    /// The match; `None` if there is nothing to match with.
+    tracked: Option<Tracked>,
+    /// Whether the submap supports the pose.
+    pub(super) is_supported: bool,
+    is_frozen: bool,
+}
+
+/// The result of a match with a submap.
+struct Tracked {
+    found: Match,
+    agreement: Agreement,
+}
+
+impl Tracked {
+    /// Whether less of the scan agrees: of what the submap can judge, or of all.
+    fn is_below(&self, agreement: f64, share: f64) -> bool {
+        self.agreement.share() < agreement || self.agreement.confirmed < share * self.agreement.all
+    }
+}
+
+impl ScanMatcher<()> for SubmapMatcher {
+    type Found = SubmapFound;
+
+    fn matched(&mut self, scan: &IncomingScan, track: &mut Track, (): ()) -> Matched<SubmapFound> {
+        self.since_keyframe *= scan.motion.delta;
+        self.since_keyframe.rotation.renormalize();
+        self.sees_nothing = scan.points.is_empty();
+        (track.pose, track.covariance) = (scan.predicted.pose, scan.predicted.covariance);
+        // The first scan is right by definition.
+        let is_first = self.keyframes.is_empty();
+        let is_frozen = scan.fault == Some(Fault::Frozen) && !is_first;
+        let tracked = if is_frozen { None } else { self.track(scan, track) };
+        let (mut begin, mut agreement, mut is_reliable) = (Vector3::zeros(), 0.0, false);
+        if let Some(tracked) = &tracked {
+            let Match { placement, information, .. } = &tracked.found;
+            (begin, track.pose) = (placement.begin(), placement.pose);
+            track.covariance =
+                information.try_inverse().unwrap_or_else(|| FOUND_STD.covariance()) + SCAN_STD.covariance();
+            agreement = tracked.agreement.share();
+            is_reliable = !tracked.is_below(MIN_AGREEMENT, MAJORITY);
+        }
+        let is_supported = is_first || agreement >= FAIR_SHARE;
+        let found = SubmapFound { tracked, is_supported, is_frozen };
+        Matched { begin, is_reliable, is_outlier: None, found }
+    }
+
+    fn insert(&mut self, scan: &IncomingScan, track: &Track, found: &SubmapFound, (): ()) {
+        let offset = self.offset(track);
+        let is_far = !KEYFRAME.contains(&offset);
+        if self.keyframes.is_empty() || is_far && !found.is_frozen {
+            let found = found.tracked.as_ref().map(|tracked| &tracked.found);
+            self.add_keyframe(scan, track, found);
+        }
+    }
+}
+
+impl SubmapMatcher {
+    pub(super) fn new(settings: &TrajectorySettings) -> Self {
+        Self {
+            settings: settings.clone(),
+            since_keyframe: Isometry2::identity(),
+            keyframes: Vec::new(),
+            growing: Vec::new(),
+            finished: Vec::new(),
+            spare: None,
+            sees_nothing: true,
+        }
+    }
+
+    /// Whether the last scan shows no surface.
+    pub(super) fn sees_nothing(&self) -> bool {
+        self.sees_nothing
+    }
+
+    pub(super) fn keyframes(&self) -> &[Keyframe] {
+        &self.keyframes
+    }
+
+    /// The next submap that is full.
+    pub(super) fn next_finished(&mut self) -> Option<FinishedSubmap> {
+        if self.finished.is_empty() { None } else { Some(self.finished.remove(0)) }
+    }
+
+    /// The growing submaps as they are: there is no further reading.
+    pub(super) fn end(&mut self) {
+        let growing = self.growing.drain(..);
+        self.finished.extend(growing.map(|submap| submap.finish(&self.keyframes).0));
+    }
+
+    /// The pose relative to the last keyframe.
+    pub(super) fn offset(&self, track: &Track) -> Isometry2<f64> {
+        self.keyframes.last().map_or(Isometry2::identity(), |keyframe| keyframe.local.inv_mul(&track.pose))
+    }
+
+    /// Begins with a keyframe that shows nothing: the first reading is invalid.
+    pub(super) fn begin_without_scan(&mut self, reading: &LaserReading, track: &Track) {
+        self.push(reading, track, Vec::new(), (Isometry2::identity(), Matrix3::zeros()));
+    }
+
+    /// The match of the scan with the submap; `None` if there is nothing to match with.
+    fn track(&self, scan: &IncomingScan, track: &Track) -> Option<Tracked> {
+        let (map, points, pose) = (self.growing.first()?.map(), &scan.points, &track.pose);
+        let prior = scan.predicted.prior()?;
+        let at_range_m = 5.0 * track.covariance[(2, 2)].sqrt();
+        let first_m = SURFEL_M + 2.0 * (scan.predicted.spread_m() + at_range_m);
+        let tracked = self.matched_from(map, points, pose, &prior, first_m)?;
+        if !tracked.is_below(MIN_AGREEMENT, MAJORITY) {
+            return Some(tracked);
+        }
+        let wide = track.covariance + SEARCHED_STD.covariance();
+        let wide = Prior { pose: *pose, information: wide.try_inverse()?, begin: None };
+        let turns_rad = OTHER_TURNS_RAD.into_iter().flat_map(|turn_rad| [turn_rad, -turn_rad]);
+        let turned: Vec<_> = turns_rad.map(|turn_rad| pose * interfaces::pose(0.0, 0.0, turn_rad)).collect();
+        let tracked = self.better(map, points, tracked, &turned, &wide);
+        if !tracked.is_below(MAJORITY, MIN_SHARE) {
+            return Some(tracked);
+        }
+        let near = SurfelMap::of_points(&map.points(&Isometry2::identity()))?;
+        let window = Window { pose: *pose, reach_m: SEARCHED.m, reach_rad: SEARCHED.rad };
+        let grid = ScoreGrid::anywhere(&near);
+        let found = search(&grid, points, Some(&window), MIN_OVERLAP, CLEARLY.recip());
+        let found: Vec<Isometry2<f64>> = found.iter().map(|candidate| candidate.pose).collect();
+        Some(self.better(map, points, tracked, &found, &wide))
+    }
+
+    /// The best of a match and those from other poses.
+    fn better(
+        &self,
+        map: &SurfelMap,
+        points: &[ScanPoint],
+        tracked: Tracked,
+        starts: &[Isometry2<f64>],
+        prior: &Prior,
+    ) -> Tracked {
+        let min_confirmed = CLEARLY * tracked.agreement.confirmed;
+        let others =
+            starts.iter().filter_map(|start| self.matched_from(map, points, start, prior, JUDGED_M / 2.0));
+        others
+            .filter(|other| other.agreement.confirmed > min_confirmed)
+            .max_by(|a, b| a.agreement.confirmed.total_cmp(&b.agreement.confirmed))
+            .unwrap_or(tracked)
+    }
+
+    fn matched_from(
+        &self,
+        map: &SurfelMap,
+        points: &[ScanPoint],
+        start: &Isometry2<f64>,
+        prior: &Prior,
+        first_m: f64,
+    ) -> Option<Tracked> {
+        let gates = gates(self.settings.range_noise_std_m, first_m);
+        let found = align(map, points, start, Some(prior), &gates)?;
+        let agreement = agreement(map, points, &found.placement, gates.last_m);
+        (agreement.confirmed_points >= MIN_POINTS).then_some(Tracked { found, agreement })
+    }
+
+    /// Makes the scan a keyframe.
+    fn add_keyframe(&mut self, scan: &IncomingScan, track: &Track, found: Option<&Match>) {
+        let from_last = self.keyframes.last().map_or((track.pose, Matrix3::zeros()), |last| {
+            let motion = last.local.inv_mul(&track.pose);
+            let odometry = Motion::new(self.since_keyframe, &self.settings.odometry);
+            let by_odometry = match scan.has_odometry {
+                true => {
+                    odometry.propagate(&Isometry2::identity(), &Spread::of_motion(SCAN_STD.m).covariance())
+                }
+                false => MISSING_STD.covariance(),
+            };
+            let scan = found.map(|found| in_frame(&found.scan_information, &last.local));
+            let spread = motion_spread(&motion, (&self.since_keyframe, &by_odometry), scan.as_ref());
+            let information = (spread + KEYFRAME_STD.covariance()).try_inverse();
+            (motion, information.unwrap_or_else(Matrix3::identity))
+        });
+        self.push(&scan.reading, track, filled(&scan.points), from_last);
+    }
+
+    fn push(
+        &mut self,
+        reading: &LaserReading,
+        track: &Track,
+        points: Vec<ScanPoint>,
+        from_last: (Isometry2<f64>, Matrix3<f64>),
+    ) {
+        self.since_keyframe = Isometry2::identity();
+        let (mount, scan) = (reading.mount, reading.scan.clone());
+        self.keyframes.push(Keyframe { local: track.pose, from_last, points, mount, scan });
+        self.grow();
+    }
+
+    /// Adds the last keyframe to the growing submaps.
+    fn grow(&mut self) {
+        let number = self.keyframes.len() - 1;
+        let keyframe = &self.keyframes[number];
+        let half = SUBMAP_KEYFRAMES / 2;
+        if self.growing.last().is_none_or(|youngest| youngest.len() >= half) {
+            self.growing.extend(GrowingSubmap::new(&keyframe.local, self.spare.take()));
+        }
+        for submap in &mut self.growing {
+            submap.add(number, keyframe, self.settings.range_noise_std_m);
+        }
+        self.keyframes[number].thin();
+        if self.growing.len() > 1 && self.growing[0].len() >= SUBMAP_KEYFRAMES {
+            let full = self.growing.remove(0);
+            let (finished, spare) = full.finish(&self.keyframes);
+            self.finished.push(finished);
+            self.spare = Some(spare);
+        }
+    }
+}
