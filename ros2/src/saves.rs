@@ -6,6 +6,7 @@ use crate::parameters::{Navigator, Parameters};
 use crate::pilot::LivePilot;
 use anyhow::{Context, anyhow};
 use interfaces::{GridFrame, LaserReading, PoseMode};
+use localizer::LocalizerSettings;
 use robot::state::{Facts, LearnedFacts, State, StateFile};
 use robot::{Pilot, Robot, Settings};
 use std::path::Path;
@@ -43,8 +44,11 @@ impl Saves {
         frame: &GridFrame,
         parameters: &Parameters,
     ) -> anyhow::Result<Self> {
+        // What was learned does not depend on when the robot counts as lost.
+        let lost_after_s = LocalizerSettings::default().lost_after_s;
+        let localizer = LocalizerSettings { lost_after_s, ..settings.localizer.clone() };
         let (pose, localizer) = match settings.pose {
-            PoseMode::Localized => ("localized", Some(&settings.localizer)),
+            PoseMode::Localized => ("localized", Some(&localizer)),
             PoseMode::Exact | PoseMode::Odometry => ("given", None),
         };
         let pilot = Facts::default().with("strategy", &parameters.strategy);

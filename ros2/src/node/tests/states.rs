@@ -7,7 +7,7 @@ use robot::state::{State, read_state};
 use std::path::PathBuf;
 
 /// The version of the format that this program writes.
-const VERSION: u32 = 5;
+const VERSION: u32 = 6;
 
 fn example(version: u32) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../tests/states/{version}/curious_node.state"))
@@ -26,7 +26,7 @@ fn parts(state: &State) -> Vec<(&str, Vec<u8>)> {
 
 #[test]
 fn states_of_all_versions_are_read_and_the_layout_belongs_to_its_version() {
-    for version in 5..=VERSION {
+    for version in 6..=VERSION {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("curious_node.state");
         std::fs::copy(example(version), &path).unwrap();
