@@ -62,11 +62,10 @@ pub(crate) struct FirstMap {
 
 impl FirstMap {
     pub(crate) fn new(settings: &LocalizerSettings) -> Result<Self, SettingsError> {
-        let logs = TrajectorySettings::default();
+        let of_logs = TrajectorySettings::default().range_noise_std_m;
         let settings = TrajectorySettings {
-            range_noise_std_m: settings.range_noise_std_m.max(logs.range_noise_std_m),
+            range_noise_std_m: settings.range_noise_std_m.max(of_logs),
             odometry: settings.odometry,
-            ..logs
         };
         let finder = TrajectoryFinder::new(&settings)?.with_odometry();
         Ok(Self { finder, keyframes: Vec::new(), log: Log::default() })
