@@ -62,9 +62,9 @@ pub(crate) struct FirstMap {
 
 impl FirstMap {
     pub(crate) fn new(settings: &LocalizerSettings) -> Result<Self, SettingsError> {
-        let logs = TrajectorySettings::default();
+        let of_logs = TrajectorySettings::default().range_noise_std_m;
         let settings = TrajectorySettings {
-            range_noise_std_m: settings.range_noise_std_m.max(logs.range_noise_std_m),
+            range_noise_std_m: settings.range_noise_std_m.max(of_logs),
             odometry: settings.odometry,
         };
         let finder = TrajectoryFinder::new(&settings)?.with_odometry();
