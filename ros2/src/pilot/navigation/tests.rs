@@ -32,18 +32,12 @@ fn navigation(pilot: &mut LivePilot) -> &mut Navigation {
     pilot.explorer.as_mut().unwrap().driver_mut().navigation.as_mut().unwrap()
 }
 
-/// What Nav2 says in a turn in which the controller of the other robot has reached its goal, or has given it up.
-fn news(
-    before: GoalCount,
-    after: GoalCount,
-    is_watching: bool,
-    target: Option<Target>,
-) -> Option<link::Navigation> {
+/// What Nav2 says in a turn in which the controller of the other robot has finished its goal.
+fn news(before: GoalCount, after: GoalCount, target: Option<Target>) -> Option<link::Navigation> {
     let stays = target.is_some_and(|target| target.stay_s > 0.0);
     match () {
         () if after.given_up > before.given_up => Some(link::Navigation::GivenUp),
         () if after != before && !stays => Some(link::Navigation::Reached),
-        () if is_watching && stays => Some(link::Navigation::Reached),
         () => None,
     }
 }
@@ -66,15 +60,19 @@ fn every_strategy_selects_the_same_goals_whoever_drives() {
             let goal = robot.pilot.goal();
             let command = by_velocities.command(&turn.belief, turn.features, &robot.mapper);
             assert_eq!(command, Order::Velocity(turn.command), "{}", policy.name());
-            // Nav2 makes progress, however long the controller explores around its goal.
-            let mut target = navigation(&mut by_nav2).target;
-            target.iter_mut().for_each(|target| target.nearest_s = turn.reading.time_s);
-            navigation(&mut by_nav2).target = target;
-            let is_watching = robot.pilot.driver_mut().status() == Status::Exploring;
-            if let Some(news) = news(before, robot.pilot.goals(), is_watching, target) {
+            let target = navigation(&mut by_nav2).target;
+            if let Some(news) = news(before, robot.pilot.goals(), target) {
                 by_nav2.navigated(news);
             }
             let order = by_nav2.command(&turn.belief, turn.features, &robot.mapper);
+            let is_watching = robot.pilot.driver_mut().status() == Status::Exploring;
+            for target in &mut navigation(&mut by_nav2).target {
+                // Nav2 makes progress, however long the controller explores around its goal, and is there when it is.
+                target.nearest_s = turn.reading.time_s;
+                if is_watching && target.stay_s > 0.0 {
+                    target.reached_s.get_or_insert(turn.reading.time_s);
+                }
+            }
             assert_eq!((by_velocities.goal(), by_nav2.goal()), (goal, goal), "{}", policy.name());
             if goals.last() != Some(&goal) {
                 goals.push(goal);
