@@ -4,8 +4,6 @@ use crate::spread::Spread;
 
 // Poses
 
-/// Distance of the surfaces that a robot typically sees, m: an error of the heading of 1 rad shifts them by this.
-pub(crate) const SEEN_M: f64 = 3.0;
 /// Way equivalent of a turn, m/rad: the arc of the wheels of a robot of 0.6 m.
 pub(crate) const TURN_M: f64 = 0.3;
 /// Rotation equivalent to 1 m of a path within a scan, rad.

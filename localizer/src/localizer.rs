@@ -1,8 +1,6 @@
 mod estimating;
-mod everywhere;
 mod map_matcher;
 mod pose_prior;
-mod relocalizing;
 mod saved;
 mod state;
 #[cfg(test)]

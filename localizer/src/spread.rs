@@ -1,6 +1,8 @@
-use crate::constants::SEEN_M;
 use interfaces::heading_rad;
 use nalgebra::{Isometry2, Matrix3, Vector3};
+
+/// Distance of the surfaces that a robot typically sees, m: an error of the heading of 1 rad shifts them by this.
+const SEEN_M: f64 = 3.0;
 
 /// A size of errors or of motions: a distance, and an angle.
 #[derive(Clone, Copy, Debug, PartialEq)]

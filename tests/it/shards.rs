@@ -114,7 +114,7 @@ fn a_shard_that_was_cut_off_anywhere_goes_on() {
 fn a_killed_shard_goes_on_and_no_other_process_may_have_it() {
     use nix::sys::signal::Signal;
     use std::time::Duration;
-    let long = GRID.replacen("--steps 300", "--steps 20000", 1);
+    let long = GRID.replacen("--steps 300", "--steps 100000", 1);
     let run = Run::grid();
     let path = run.path("shards/shard-1-of-2.jsonl");
     for signal in [Signal::SIGKILL, Signal::SIGTERM] {

@@ -1,7 +1,9 @@
 //! Matches scans with the line map of the place, and inserts them in it.
 
+mod everywhere;
+mod relocalizing;
+
 use super::PosePrior;
-use super::relocalizing::Relocalization;
 use super::state::{Event, State};
 use crate::changing_map::ChangingMap;
 use crate::constants::{LOST_STD, MIN_SUPPORT, RATES_EVERY, SETTLE_S};
@@ -13,6 +15,7 @@ use crate::support::ClearBeams;
 use crate::surfel_map::{Checker, SurfelMap};
 use crate::verification::Verification;
 use nalgebra::{Isometry2, Matrix3, Vector3};
+use relocalizing::Relocalization;
 
 /// What the map of changes and another source know.
 pub(super) struct Around<'a, M> {

@@ -51,7 +51,8 @@ fn a_wide_beam_measures_the_mean_of_two_surfaces_or_what_its_middle_hits() {
             match share {
                 0.37..0.63 => assert!(error_m < (far_m - near_m) / 7.0, "{share} {range_m} {mean_m}"),
                 0.13..0.87 => {}
-                _ => assert_eq!(range_m, middle_m, "{share}"),
+                // The middle of the beam hits one surface, also where the others hit the next part of it.
+                _ => assert!((range_m - middle_m).abs() < 0.2, "{share}: {range_m} {middle_m}"),
             }
             veils += usize::from(range_m != middle_m);
         }

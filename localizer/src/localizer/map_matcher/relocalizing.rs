@@ -1,8 +1,8 @@
 //! The search for a pose that tracking has lost, and the choice between several poses.
 
+use super::super::state::{Event, State};
 use super::everywhere::WideSearch;
-use super::map_matcher::{MapMatcher, Step};
-use super::state::{Event, State};
+use super::{MapMatcher, Step};
 use crate::changing_map::ChangingMap;
 use crate::constants::{
     CARRIED, CONFIRM_SCANS, MAJORITY, MIN_CONFIRMED, MIN_SCORE, MIN_SUPPORT, MINOR, SEARCH_EVERY,
@@ -17,14 +17,14 @@ use crate::verification::Verification;
 
 /// The search for a pose.
 #[derive(Clone, Debug)]
-pub(super) struct Relocalization {
+pub(in crate::localizer) struct Relocalization {
     /// The scores of the line map with a revision.
-    pub(super) scores: Option<(u64, ScoreGrid)>,
-    pub(super) hypotheses: Hypotheses,
+    pub(in crate::localizer) scores: Option<(u64, ScoreGrid)>,
+    pub(in crate::localizer) hypotheses: Hypotheses,
     /// In a large map: the search in the whole of it, while it goes on.
-    pub(super) wide: Option<WideSearch>,
+    pub(in crate::localizer) wide: Option<WideSearch>,
     /// The number of scans since the last search in the whole map.
-    pub(super) scans: u32,
+    pub(in crate::localizer) scans: u32,
 }
 
 impl Default for Relocalization {
@@ -35,12 +35,12 @@ impl Default for Relocalization {
 
 impl Relocalization {
     /// Forgets the found poses.
-    pub(super) fn forget(&mut self) {
+    pub(in crate::localizer) fn forget(&mut self) {
         self.hypotheses = Hypotheses::default();
     }
 
     /// Ends a search in the whole of a large map.
-    pub(super) fn end_wide(&mut self) {
+    pub(in crate::localizer) fn end_wide(&mut self) {
         self.wide = None;
     }
 }
@@ -48,7 +48,11 @@ impl Relocalization {
 impl MapMatcher {
     /// Searches around a pose that the scan contradicts, though a pose prior allows it: a robot that was carried along a
     /// corridor still sees most of its walls. If another pose is clearly better, the prior was wrong.
-    pub(super) fn doubt_prior<M: ChangingMap>(&mut self, step: &mut Step<M>, tracked: &Tracked) {
+    pub(in crate::localizer) fn doubt_prior<M: ChangingMap>(
+        &mut self,
+        step: &mut Step<M>,
+        tracked: &Tracked,
+    ) {
         let share = tracked.support.share();
         if share >= MIN_SUPPORT || !self.is_due() {
             return;
@@ -75,7 +79,7 @@ impl MapMatcher {
     }
 
     /// Searches for the pose: around the predicted pose, and in the whole map.
-    pub(super) fn search<M: ChangingMap>(&mut self, step: &mut Step<M>, tracked: &Tracked) {
+    pub(in crate::localizer) fn search<M: ChangingMap>(&mut self, step: &mut Step<M>, tracked: &Tracked) {
         let is_due = self.is_due() || self.relocalization.wide.is_some();
         let is_near = self.state != State::Lost;
         let mut found = Hypotheses::default();
@@ -117,7 +121,7 @@ impl MapMatcher {
     }
 
     /// Compares all hypotheses with the scan; the last one that is left becomes the pose.
-    pub(super) fn follow<M: ChangingMap>(&mut self, step: &mut Step<M>) -> Support {
+    pub(in crate::localizer) fn follow<M: ChangingMap>(&mut self, step: &mut Step<M>) -> Support {
         let mut hypotheses = std::mem::take(&mut self.relocalization.hypotheses);
         hypotheses.advance(&self.scene(step), &step.scan.motion, MIN_SCORE);
         if self.times.certain_s > f64::NEG_INFINITY {
@@ -147,7 +151,7 @@ impl MapMatcher {
     }
 
     /// Follows the odometry: the scan shows nothing, which says nothing against a pose either.
-    pub(super) fn dead_reckon<M>(&mut self, step: &mut Step<M>) {
+    pub(in crate::localizer) fn dead_reckon<M>(&mut self, step: &mut Step<M>) {
         let (motion, relocalization) = (&step.scan.motion, &mut self.relocalization);
         relocalization.hypotheses.follow_odometry(motion);
         if let Some(wide) = &mut relocalization.wide {

@@ -1,6 +1,6 @@
 //! The search for the pose in the whole map. Of a map that is too large for one scan, one part is searched per scan.
 
-use super::map_matcher::{MapMatcher, Step};
+use super::{MapMatcher, Step};
 use crate::changing_map::ChangingMap;
 use crate::constants::{AMBIGUOUS, MAX_EMPTY_PARTS, MAX_REACH_M, MAX_SIDE_M, MIN_FOUND, MIN_SCORE};
 use crate::hypotheses::Hypotheses;
@@ -14,12 +14,12 @@ use std::f64::consts::PI;
 
 /// A search that goes on in the next scan.
 #[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
-pub(super) struct WideSearch {
+pub(in crate::localizer) struct WideSearch {
     /// How far the points are from the robot at most, m, and the number of the next part.
     reach_m: f64,
     next: usize,
     /// What the parts so far contain. It follows the robot until the last part is searched.
-    pub(super) found: Hypotheses,
+    pub(in crate::localizer) found: Hypotheses,
 }
 
 impl WideSearch {
@@ -60,7 +60,7 @@ fn reach_m(points: &[ScanPoint]) -> f64 {
 
 impl MapMatcher {
     /// The poses at which the scan fits: in a window, or in the whole map, which must not be large then.
-    pub(super) fn candidates<M: ChangingMap>(
+    pub(in crate::localizer) fn candidates<M: ChangingMap>(
         &mut self,
         step: &Step<M>,
         window: Option<&Window>,
@@ -96,7 +96,10 @@ impl MapMatcher {
     }
 
     /// The poses in the whole map. `None` if the search goes on in the next scan.
-    pub(super) fn search_everywhere<M: ChangingMap>(&mut self, step: &Step<M>) -> Option<Hypotheses> {
+    pub(in crate::localizer) fn search_everywhere<M: ChangingMap>(
+        &mut self,
+        step: &Step<M>,
+    ) -> Option<Hypotheses> {
         if !self.is_large() {
             let candidates = self.candidates(step, None);
             return Some(Hypotheses::start(&self.scene(step), &candidates, MIN_SCORE));
