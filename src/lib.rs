@@ -4,6 +4,7 @@
 
 pub mod bag;
 pub mod flags;
+#[cfg(feature = "simulation")]
 pub mod keyboard;
 pub mod program;
 pub mod progress;

@@ -66,7 +66,7 @@ fn every_strategy_selects_the_same_goals_whoever_drives() {
             }
             let order = by_nav2.command(&turn.belief, turn.features, &robot.mapper);
             let is_watching = robot.pilot.driver_mut().status() == Status::Exploring;
-            for target in &mut navigation(&mut by_nav2).target {
+            if let Some(target) = &mut navigation(&mut by_nav2).target {
                 // Nav2 makes progress, however long the controller explores around its goal, and is there when it is.
                 target.nearest_s = turn.reading.time_s;
                 if is_watching && target.stay_s > 0.0 {
