@@ -1,4 +1,4 @@
-//! Whoever drives, our agent selects the same goals; permissions hold.
+//! The agent selects the same goals with every driver; permissions hold.
 
 use super::*;
 use crate::parameters::{Mode, Navigator, Parameters};
