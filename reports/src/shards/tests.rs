@@ -195,7 +195,7 @@ fn shards_of_another_build_are_found() {
         // Whoever allows it has all trials.
         assert!(Shards::read(folder.path()).unwrap().missing().is_empty());
         if !build.is_empty() {
-            // Whoever goes on with it leaves a shard of no build.
+            // A program of another build that goes on with the shard marks it as one of no build.
             drop(ShardFile::open(folder.path(), &header(shard(2, 3), &trials), shard(2, 3)).unwrap());
             let error = check_builds(folder.path()).unwrap_err().to_string();
             assert!(error.contains("is of another build (mixed of several, this program is "), "{error}");

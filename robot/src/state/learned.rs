@@ -75,7 +75,7 @@ impl LearnedFacts {
             (Some(filter), Ok(learned)) => {
                 interfaces::restore(filter.values(), learned).map_err(|_| misfit(FILTER))
             }
-            _ => Ok(()), // an earlier version has not saved it
+            _ => Ok(()), // absent from states of programs that did not save it
         }
     }
 }
