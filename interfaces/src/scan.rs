@@ -33,7 +33,8 @@ impl Scan {
     /// thousandth of the angle between beams, more than the accumulated rounding of an angle in 32 bits.
     pub fn is_full_turn(&self) -> bool {
         let sweep_rad = self.angle_increment_rad.abs() * self.ranges_m.len() as f64;
-        (sweep_rad - std::f64::consts::TAU).abs() < 1e-3 * self.angle_increment_rad.abs()
+        !self.ranges_m.is_empty()
+            && (sweep_rad - std::f64::consts::TAU).abs() < 1e-3 * self.angle_increment_rad.abs()
     }
 
     /// Checks the parameters of the scan: the angles, the number of beams, the range limits and the duration. Single ranges are

@@ -147,3 +147,11 @@ fn a_leg_before_a_wall_changes_the_map() {
         }
     }
 }
+
+#[test]
+fn a_scan_without_beams_stays_as_it_is() {
+    // No beam, and an angle between beams for which that is about a turn.
+    let mut empty = reading(Vec::new());
+    empty.scan.angle_increment_rad = 1e10;
+    assert_eq!(with_veils(0.1).filter(empty.clone()).scan.ranges_m, empty.scan.ranges_m);
+}
