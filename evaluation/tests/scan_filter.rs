@@ -1,5 +1,4 @@
-//! In the shipped worlds no laser makes veils: the scan filter leaves the scans of a robot with exact poses as they are, but for
-//! one beam in 200 at most, where slivers of a surface between two others look like veils.
+//! In the shipped worlds no laser makes veils: the scan filter leaves the scans of a robot with exact poses as they are.
 
 use agent::Policy;
 use evaluation::physics_trial::{self, PhysicsTrial};
@@ -17,15 +16,14 @@ fn scans_without_veils_stay_as_they_are() {
         let mut trial = PhysicsTrial::new(&spec, 0, &settings, None, pilot).unwrap();
         let filter = ScanFilterSettings { no_return: NoReturn::Free, ..ScanFilterSettings::default() };
         let mut filter = ScanFilter::new(&filter).unwrap();
-        let (mut changed, mut beams) = (0, 0);
+        let mut changed = 0;
         while trial.world.time_s() < 60.0 {
             trial.turn().unwrap();
             let reading = trial.world.sense();
             let (before, after) = (&reading.scan, filter.filter(reading.clone()).scan);
             let pairs = before.ranges_m.iter().zip(&after.ranges_m);
-            beams += before.ranges_m.len();
             changed += pairs.filter(|(before, after)| before.to_bits() != after.to_bits()).count();
         }
-        assert!(changed * 200 <= beams, "{name}: {changed} of {beams}");
+        assert_eq!(changed, 0, "{name}");
     }
 }

@@ -38,7 +38,7 @@ fn filter(edge_m: f64) -> ScanFilter {
 /// A filter that has seen a scanner with veils.
 fn with_veils(edge_m: f64) -> ScanFilter {
     let mut filter = filter(edge_m);
-    for _ in 0..120 {
+    for _ in 0..400 {
         filter.filter(reading(room(&[2.0, 2.0, 2.0, 3.0])));
         filter.filter(reading(room(&[2.0, 2.0])));
     }
