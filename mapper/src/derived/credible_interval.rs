@@ -1,6 +1,9 @@
 use super::gamma::Quantile;
 use crate::change::Belief;
 
+/// Minimum of a probability or an information: the product of two of them is still above 0.
+const MIN_VALUE: f64 = 1e-150;
+
 /// Credible intervals that contain a rate with a certain probability, with equal probabilities below and above the
 /// interval.
 pub(super) struct CredibleInterval {
@@ -17,9 +20,9 @@ impl CredibleInterval {
     /// The interval of the cycle rate by the posterior of the two-state chain in steps of `period`. Assumes that the
     /// rate is gamma distributed, which is true if only one of the two probabilities is uncertain.
     pub(super) fn of_cycle_rate(&self, Belief { exposure: all, mixed }: Belief, period: f64) -> (f64, f64) {
-        let [block, free] = all.leave().map(|leave| leave.clamp(f64::MIN_POSITIVE, 1.0));
+        let [block, free] = all.leave().map(|leave| leave.clamp(MIN_VALUE, 1.0));
         let information = [(0, block), (1, free)]
-            .map(|(state, leave)| (all.steps[state] * leave * (1.0 - leave)).max(f64::MIN_POSITIVE));
+            .map(|(state, leave)| (all.steps[state] * leave * (1.0 - leave)).max(MIN_VALUE));
         let most = 0.999 * libm::sqrt(information[0] * information[1]);
         let mixed = mixed.clamp(-most, most);
         let determinant = information[0] * information[1] - mixed * mixed;

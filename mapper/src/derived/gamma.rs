@@ -21,12 +21,8 @@ impl Quantile {
         Self { probability, normal: normal_quantile(probability) }
     }
 
-    /// The quantile of a gamma distribution of mean 1: Newton's method in the logarithm, within bounds that close in. 0, the
-    /// limit of small shapes, for a shape that is none.
+    /// The quantile of a gamma distribution of mean 1: Newton's method in the logarithm, within bounds that close in.
     pub(super) fn of(&self, shape: f64) -> f64 {
-        if shape.is_nan() || shape <= 0.0 {
-            return 0.0;
-        }
         if shape >= NORMAL_FROM {
             let root = self.cube_root(shape);
             return root.max(0.0) * root * root;
