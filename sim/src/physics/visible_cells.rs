@@ -13,6 +13,10 @@ use std::f64::consts::{PI, TAU};
 const DIRECTIONS: usize = 360;
 /// Most lines of sight end within this distance, m. Few walls are that near, so that these lines are searched first.
 const NEAR_M: f64 = 1.0;
+/// The number of points per side of a cell at which a line of sight is looked at.
+const CELL_STEPS: u32 = 2;
+/// The largest distance of a cell, in cells: more than any frame has.
+const MAX_GAP: u32 = 1 << 24;
 /// The distance of the points that see a blocked cell from its sides, as a share of the side.
 const OUTSIDE: f64 = 1e-3;
 
@@ -82,6 +86,8 @@ fn before(frame: &GridFrame, cell: Cell, side: usize) -> Point2<f64> {
 struct Sight<'a> {
     frame: &'a GridFrame,
     reached: &'a [bool],
+    /// See [`gaps`].
+    gaps: Vec<u32>,
     radius_m: f64,
     /// The ranges in which lines are searched, m, each with its beams.
     beams: [(f64, Beams); 2],
@@ -101,7 +107,7 @@ impl<'a> Sight<'a> {
         let scene = Scene::new(corners, solids, Vec::new(), 0, range_m);
         let beams = [NEAR_M.min(range_m), range_m]
             .map(|range_m| (range_m, Beams::new(-PI, TAU / DIRECTIONS as f64, DIRECTIONS, range_m)));
-        Self { frame, reached, radius_m: radius_m.min(range_m), beams, scene }
+        Self { frame, reached, gaps: gaps(frame, reached), radius_m: radius_m.min(range_m), beams, scene }
     }
 
     /// Whether a straight line from a point to a reached cell meets nothing.
@@ -124,15 +130,60 @@ impl<'a> Sight<'a> {
     }
 
     fn finds_a_line(&self, from: Point2<f64>, range_m: f64, beams: &Beams) -> bool {
-        let Self { frame, reached, scene, .. } = self;
-        let step_m = frame.resolution_m() / 2.0;
-        let is_reached = |at: Point2<f64>| frame.index(frame.cell_at(&at)).is_some_and(|cell| reached[cell]);
+        let Self { frame, gaps, scene, .. } = self;
+        let step_m = frame.resolution_m() / f64::from(CELL_STEPS);
         let meets_one = |((x, y), inverse): ((f64, f64), &f64)| {
-            let steps = (range_m.min(1.0 / inverse) / step_m) as usize;
-            (0..steps).any(|step| is_reached(from + Vector2::new(x, y) * (step as f64 * step_m)))
+            let (steps, mut step) = ((range_m.min(1.0 / inverse) / step_m) as u32, 0);
+            while step < steps {
+                let at = from + Vector2::new(x, y) * (f64::from(step) * step_m);
+                match frame.index(frame.cell_at(&at)).map(|index| gaps[index]) {
+                    None => return false,
+                    Some(0) => return true,
+                    // One step less than to the side of the nearest cell that may be one: rounding does not matter.
+                    Some(gap) => step += (CELL_STEPS * (gap - 1)).saturating_sub(1).max(1),
+                }
+            }
+            false
         };
         let laser = Isometry2::from_parts(from.into(), UnitComplex::identity());
         // No robot is left out: there is none.
         scene.cast(beams, &laser, usize::MAX, |inverse| beams.directions().zip(inverse).any(meets_one))
+    }
+}
+
+/// The chessboard distance of each cell to the nearest reached one, in cells.
+fn gaps(frame: &GridFrame, reached: &[bool]) -> Vec<u32> {
+    let mut gaps: Vec<u32> = reached.iter().map(|reached| if *reached { 0 } else { MAX_GAP }).collect();
+    let mut lower = |index: usize| {
+        let near = frame.cell(index).neighbours8().into_iter().filter_map(|cell| frame.index(cell));
+        let nearest = near.map(|near| gaps[near]).min().unwrap_or(MAX_GAP);
+        gaps[index] = gaps[index].min(nearest + 1);
+    };
+    // Every shortest way to a cell comes down in one of the two orders.
+    (0..frame.len()).for_each(&mut lower);
+    (0..frame.len()).rev().for_each(&mut lower);
+    gaps
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn gaps_are_chessboard_distances(
+            (width, height) in (1..12_usize, 1..12_usize),
+            reached in prop::collection::vec(prop::bool::weighted(0.05), 144),
+        ) {
+            let frame = GridFrame::new(Point2::origin(), 0.1, width, height).unwrap();
+            let reached = &reached[..frame.len()];
+            for (index, gap) in gaps(&frame, reached).into_iter().enumerate() {
+                let at = frame.cell(index);
+                let apart = |other: usize| at.x.abs_diff(frame.cell(other).x).max(at.y.abs_diff(frame.cell(other).y));
+                let nearest = (0..frame.len()).filter(|other| reached[*other]).map(apart).min();
+                prop_assert!(nearest.is_none_or(|nearest| u64::from(gap) == u64::from(nearest)), "{index}: {gap}");
+            }
+        }
     }
 }
