@@ -2,11 +2,11 @@
 //! world, log, metric, screen or recording.
 //!
 //! ```text
-//! reading ─▶ filter ─▶ session ─▶ localization ─▶ mapper ─▶ pilot ─▶ command
+//! reading ─▶ session ─▶ scan filter ─▶ localization ─▶ mapper ─▶ pilot ─▶ command
 //! ```
 //!
-//! [`Robot::step`] is this line, and there is no other one: simulators, grid worlds, logs, live robots, Gymnasium and Python
-//! give readings and take commands. [`explore`] is the loop around it for a [`World`]. [`state`] saves what was learned and
+//! [`Robot::step`] is this line: simulators, grid worlds, logs, live robots, Gymnasium and Python give readings and take
+//! commands. [`explore`] is the loop around it for a [`World`]. [`state`] saves what was learned and
 //! where a run stopped, so that another run goes on from there.
 
 mod autonomous;
