@@ -202,9 +202,14 @@ impl<L: Link> CuriousNode<L> {
         };
         self.report.readings += 1;
         self.report.mapped += u64::from(turn.belief.is_certain());
-        if was_settled && !self.robot.is_settled() {
-            self.notes
-                .say("a loop is found: a thread learns the map again, and the robot goes on in the old one");
+        match (was_settled, self.robot.is_settled()) {
+            (true, false) => self
+                .notes
+                .say("a loop is found: a thread learns the map again, and the robot goes on in the old one"),
+            (false, true) if turn.belief.correction.is_none() => {
+                self.notes.say("the map that was learned again is no better: the old one stays");
+            }
+            _ => {}
         }
         self.say_news(&turn.belief);
         if self.is_trusted(&turn.reading) != was_trusted {
