@@ -109,7 +109,7 @@ mod tests {
 
     fn ros(line: &str) -> RosArgs {
         let line = format!("--ros-args {line}");
-        RosArgs::split(line.split_whitespace().map(str::to_owned)).unwrap().1
+        RosArgs::split(line.split_whitespace().map(Into::into)).unwrap().1
     }
 
     #[test]

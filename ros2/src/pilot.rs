@@ -82,7 +82,9 @@ impl Pilot for LivePilot {
     }
 
     fn forget_map(&mut self) {
-        self.explorer.iter_mut().for_each(Pilot::forget_map);
+        if let Some(explorer) = &mut self.explorer {
+            explorer.forget_map();
+        }
     }
 
     fn path(&self) -> &[Point2<f64>] {

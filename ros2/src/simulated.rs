@@ -91,7 +91,9 @@ impl<L: Link> SimulatedRobot<L> {
                 let left = due.saturating_sub(start.elapsed());
                 let event = self.link.receive(left.min(NAP));
                 let is_idle = event.is_none();
-                event.into_iter().for_each(|event| self.take(event));
+                if let Some(event) = event {
+                    self.take(event);
+                }
                 if left.is_zero() && is_idle || stop.load(Ordering::Relaxed) {
                     break;
                 }

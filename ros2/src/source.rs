@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 /// A scan waits this long for a later pose.
 const PATIENCE: Duration = Duration::from_millis(500);
 /// Scans that wait; more are not kept.
-const MOST_WAITING: usize = 64;
+const MAX_WAITING: usize = 64;
 /// A scan that is older than the last one by more than this comes from a clock that has started anew, ns.
 const RESTART_NS: i64 = 1_000_000_000;
 
@@ -192,7 +192,7 @@ impl Source {
         }
         self.last_ns = Some(end_ns);
         let is_restart = std::mem::take(&mut self.is_restart);
-        if self.waiting.len() == MOST_WAITING {
+        if self.waiting.len() == MAX_WAITING {
             self.waiting.pop_front();
             self.count.unplaced += 1;
         }

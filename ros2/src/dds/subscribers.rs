@@ -87,8 +87,8 @@ struct Filter {
     known: BTreeMap<Gid, String>,
 }
 
-/// The most publishers that are remembered: nodes come and go.
-const MOST_KNOWN: usize = 1000;
+/// Maximum number of publishers that are remembered: nodes come and go.
+const MAX_KNOWN: usize = 1000;
 
 impl Filter {
     fn event(&mut self, Received { topic, content }: Received) -> Option<Event> {
@@ -125,7 +125,7 @@ impl Filter {
         let writers = self.context.domain_participant().discovered_writers();
         let is_this = |guid| Gid::from(guid) == publisher;
         let found = writers.into_iter().find(|writer| is_this(writer.writer_proxy.remote_writer_guid))?;
-        if self.known.len() >= MOST_KNOWN {
+        if self.known.len() >= MAX_KNOWN {
             self.known.clear();
         }
         let found = found.publication_topic_data.type_name;
