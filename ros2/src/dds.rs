@@ -1,5 +1,24 @@
 //! The connection by DDS: the only part that knows the client library.
 
+/// Calls a macro with the variant of [`Message`] that a topic carries.
+macro_rules! by_type {
+    ($topic:expr, $open:ident) => {
+        match $topic {
+            Topic::Scan => $open!(Scan),
+            Topic::Odometry | Topic::GroundTruth => $open!(Odometry),
+            Topic::Transforms | Topic::StaticTransforms => $open!(Transforms),
+            Topic::Clock => $open!(Clock),
+            Topic::Velocity => $open!(Twist),
+            Topic::StampedVelocity => $open!(TwistStamped),
+            Topic::Resume => $open!(Bool),
+            Topic::Map | Topic::ChangeMap | Topic::PredictedMap => $open!(Grid),
+            Topic::MapUpdates => $open!(GridUpdate),
+            Topic::Markers => $open!(Markers),
+            Topic::GoalPose => $open!(Pose),
+        }
+    };
+}
+
 mod actions;
 mod discovery;
 mod publishers;

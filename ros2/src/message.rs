@@ -108,6 +108,17 @@ pub struct Markers {
     pub markers: Vec<Marker>,
 }
 
+pub(crate) fn header(stamp: Time, frame: &str) -> Header {
+    Header { stamp, frame_id: frame.to_owned() }
+}
+
+/// A message with the pose of a frame in another one.
+pub(crate) fn transform(stamp: Time, (parent, child): (&str, &str), transform: Pose) -> Message {
+    let header = header(stamp, parent);
+    let transform = TransformStamped { header, child_frame_id: child.to_owned(), transform };
+    Message::Transforms(Transforms { transforms: vec![transform] })
+}
+
 /// A message of any type.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Message {

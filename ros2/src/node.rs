@@ -9,7 +9,7 @@ mod setup;
 mod tests;
 
 use crate::link::{Event, Link};
-use crate::message::{Message, Time, Topic};
+use crate::message::{Message, Time, Topic, header};
 use crate::notes::{Notes, Output};
 use crate::parameters::Parameters;
 use crate::pilot::LivePilot;
@@ -97,7 +97,7 @@ impl<L: Link> CuriousNode<L> {
         let continued = saves.as_ref().map(|saves| saves.restore(&mut robot)).transpose()?.flatten();
         let mut published = Published::new(parameters);
         if let Some(last) = continued {
-            let header = outputs::header(last, &parameters.map_frame);
+            let header = header(last, &parameters.map_frame);
             for (topic, message) in published.maps.after(&robot.mapper, &header, Instant::now()) {
                 link.send(topic, message);
             }

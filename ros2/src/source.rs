@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 const PATIENCE: Duration = Duration::from_millis(500);
 /// Scans that wait; more are not kept.
 const MAX_WAITING: usize = 64;
-/// A scan that is older than the last one by more than this comes from a clock that has started anew, ns.
+/// A scan or a pose that is older than the last one by more than this comes from a clock that has started anew, ns.
 const RESTART_NS: i64 = 1_000_000_000;
 
 /// The names of the frame of a robot.

@@ -2,8 +2,8 @@
 
 use crate::maps::PublishedMaps;
 use crate::message::{
-    Color, Header, Marker, Markers as MarkersMessage, Message, Pose, PoseStamped, Time, Topic,
-    TransformStamped, Transforms, Twist, TwistStamped, Vector,
+    Color, Header, Marker, Markers as MarkersMessage, Message, Pose, Time, Topic, Twist, TwistStamped,
+    Vector, header,
 };
 use crate::parameters::Parameters;
 use nalgebra::{Isometry2, Point2};
@@ -41,21 +41,6 @@ impl Published {
     }
 }
 
-pub(super) fn header(stamp: Time, frame: &str) -> Header {
-    Header { stamp, frame_id: frame.to_owned() }
-}
-
-/// The transform from the map to the odometry, which holds for `ahead_s` after its time.
-pub(super) fn transform(pose: &Isometry2<f64>, stamp: Time, ahead_s: f64, map: &str, odom: &str) -> Message {
-    let stamp = Time::from_ns(stamp.ns().saturating_add((ahead_s * 1e9) as i64));
-    let transform = TransformStamped {
-        header: header(stamp, map),
-        child_frame_id: odom.to_owned(),
-        transform: Pose::in_plane(pose),
-    };
-    Message::Transforms(Transforms { transforms: vec![transform] })
-}
-
 pub(super) fn velocity(
     twist: &interfaces::Twist,
     is_stamped: bool,
@@ -73,10 +58,6 @@ pub(super) fn velocity(
         }
         false => (Topic::Velocity, Message::Twist(twist)),
     }
-}
-
-pub(super) fn goal(pose: &Isometry2<f64>, stamp: Time, map: &str) -> PoseStamped {
-    PoseStamped { header: header(stamp, map), pose: Pose::in_plane(pose) }
 }
 
 /// The goal and the path as they were drawn last.
