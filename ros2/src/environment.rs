@@ -53,17 +53,17 @@ impl Environment {
     /// When a value is not valid.
     pub fn read(variable: impl Fn(&str) -> Option<String>) -> Result<Self, EnvironmentError> {
         let variable = |name: &str| variable(name).filter(|value| !value.is_empty());
-        let domain = parsed(&variable, "ROS_DOMAIN_ID", "a whole number from 0 to 232", |value| {
+        let domain = parsed(variable, "ROS_DOMAIN_ID", "a whole number from 0 to 232", |value| {
             value.parse().ok().filter(|domain| *domain <= MAX_DOMAIN)
         })?;
         let expected = "SUBNET, LOCALHOST, OFF or SYSTEM_DEFAULT";
-        let range = parsed(&variable, "ROS_AUTOMATIC_DISCOVERY_RANGE", expected, |value| match value {
+        let range = parsed(variable, "ROS_AUTOMATIC_DISCOVERY_RANGE", expected, |value| match value {
             "SUBNET" | "SYSTEM_DEFAULT" => Some(Range::Subnet),
             "LOCALHOST" => Some(Range::Localhost),
             "OFF" => Some(Range::Off),
             _ => None,
         })?;
-        let is_local = parsed(&variable, "ROS_LOCALHOST_ONLY", "0 or 1", |value| match value {
+        let is_local = parsed(variable, "ROS_LOCALHOST_ONLY", "0 or 1", |value| match value {
             "0" => Some(false),
             "1" => Some(true),
             _ => None,

@@ -13,7 +13,6 @@ use crate::message::{Message, Time, Topic, header};
 use crate::notes::{Notes, Output};
 use crate::parameters::Parameters;
 use crate::pilot::LivePilot;
-use crate::saves::Asker;
 use crate::saves::Saves;
 use crate::source::{FrameNames, LiveReading, ScanCount, Source};
 use anyhow::anyhow;
@@ -129,7 +128,7 @@ impl<L: Link> CuriousNode<L> {
     pub fn run(&mut self, signals: &Signals) -> anyhow::Result<NodeReport> {
         while !signals.stop.load(Ordering::Relaxed) {
             if signals.save.swap(false, Ordering::Relaxed) {
-                self.save_for(Asker::Signal);
+                self.save_for(None);
             }
             self.turn(self.nap());
         }
@@ -180,7 +179,7 @@ impl<L: Link> CuriousNode<L> {
                 }
             }
             Event::Message(topic, message) => self.source.take(topic, message, now),
-            Event::SaveState(request) => self.save_for(Asker::Request(request)),
+            Event::SaveState(request) => self.save_for(Some(request)),
             Event::Navigation(navigation) => self.robot.pilot.navigated(navigation),
             Event::Problem(text) => self.notes.note(&text, now),
         }

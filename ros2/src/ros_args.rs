@@ -35,22 +35,12 @@ pub enum RosArgsError {
     File(#[from] ParamsFileError),
 }
 
-/// For which nodes a parameter is.
-#[derive(Clone, Debug, PartialEq)]
-enum Nodes {
-    /// `-p name:=value`.
-    All,
-    /// `-p node:name:=value`: the name of a node without its namespace.
-    Named(String),
-    /// In a file: see [`params_file::matches`].
-    Pattern(String),
-}
-
 /// The value of a parameter, and where it is given.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Given {
-    nodes: Nodes,
-    /// The name.
+    /// For which nodes: a full name, in which `*` is any part and `**` any number of parts.
+    pub(crate) nodes: String,
+    /// The name; parameters in a table have the name of the table and a dot before theirs.
     pub name: String,
     /// The value; `None`: a list, or nothing.
     pub value: Option<Value>,
@@ -59,17 +49,9 @@ pub struct Given {
 }
 
 impl Given {
-    fn is_for(&self, full_name: &str) -> bool {
-        match &self.nodes {
-            Nodes::All => true,
-            Nodes::Named(node) => full_name.rsplit('/').next() == Some(node.trim_start_matches('/')),
-            Nodes::Pattern(pattern) => params_file::matches(pattern, full_name),
-        }
-    }
-
     /// Whether other nodes may be meant, so that a node need not know the parameter.
     pub fn is_for_others_too(&self) -> bool {
-        matches!(&self.nodes, Nodes::Pattern(pattern) if pattern.contains('*'))
+        self.place.is_some() && self.nodes.contains('*')
     }
 }
 
@@ -117,16 +99,15 @@ impl RosArgs {
         match flag {
             "-p" | "--param" => {
                 let (node, name, value) = rule(flag, next()?, "name:=value")?;
-                let (nodes, value) = (node.map_or(Nodes::All, Nodes::Named), Some(Value::parse(&value)));
+                // The name of a node without its namespace.
+                let nodes =
+                    node.map_or("/**".to_owned(), |node| format!("/**/{}", node.trim_start_matches('/')));
+                let value = Some(params_file::value_of(&value));
                 self.parameters.push(Given { nodes, name, value, place: None });
             }
             "--params-file" => {
                 let file = next()?.ok_or_else(|| RosArgsError::Missing(flag.to_owned(), "a file"))?;
-                for entry in params_file::read(Path::new(&file))? {
-                    let place = Some(format!("{file}, line {}", entry.line));
-                    let (nodes, name, value) = (Nodes::Pattern(entry.nodes), entry.name, entry.value);
-                    self.parameters.push(Given { nodes, name, value, place });
-                }
+                self.parameters.extend(params_file::read(Path::new(&file))?);
                 self.files.push(file);
             }
             "-r" | "--remap" => {
@@ -145,7 +126,7 @@ impl RosArgs {
 
     /// The values for a node with this name and namespace, in their order: later ones replace earlier ones.
     pub fn parameters_of<'a>(&'a self, full_name: &'a str) -> impl Iterator<Item = &'a Given> {
-        self.parameters.iter().filter(|given| given.is_for(full_name))
+        self.parameters.iter().filter(|given| params_file::matches(&given.nodes, full_name))
     }
 
     /// The files that have no parameter for a node: the name of the node in them is probably wrong.
