@@ -2,8 +2,8 @@
 the longest time between two transforms from then on; CycloneDDS hears them in another program.
 
 Arguments: a folder for files, the program curious_node, the program sim_node (not used), the number of scans of the way around
-and of their beams (1000 61: as fast as a robot drives), and parameters as NAME:=VALUE. The scans before the loop are sent faster than a robot
-measures them, those from there on at 10 Hz.
+and of their beams (1200 61: as fast as a robot drives), and parameters as NAME:=VALUE. The scans before the loop are sent faster
+than a robot measures them, those from there on at 10 Hz.
 """
 
 import os

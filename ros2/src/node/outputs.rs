@@ -1,10 +1,7 @@
 //! The messages that tell other nodes what the robot does.
 
 use crate::maps::PublishedMaps;
-use crate::message::{
-    Color, Header, Marker, Markers as MarkersMessage, Message, Pose, Time, Topic, Twist, TwistStamped,
-    Vector, header,
-};
+use crate::message::{Color, Header, Marker, Markers as MarkersMessage, Message, Pose, Vector};
 use crate::parameters::Parameters;
 use nalgebra::{Isometry2, Point2};
 use std::time::Instant;
@@ -38,25 +35,6 @@ impl Published {
             is_lost: false,
             switches: 0,
         }
-    }
-}
-
-pub(super) fn velocity(
-    twist: &interfaces::Twist,
-    is_stamped: bool,
-    stamp: Time,
-    base: &str,
-) -> (Topic, Message) {
-    let twist = Twist {
-        linear: Vector { x: twist.linear_mps, ..Vector::default() },
-        angular: Vector { z: twist.angular_radps, ..Vector::default() },
-    };
-    match is_stamped {
-        true => {
-            let message = TwistStamped { header: header(stamp, base), twist };
-            (Topic::StampedVelocity, Message::TwistStamped(message))
-        }
-        false => (Topic::Velocity, Message::Twist(twist)),
     }
 }
 

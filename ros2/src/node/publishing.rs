@@ -1,8 +1,10 @@
 //! What other nodes hear of a reading.
 
-use super::{CuriousNode, outputs};
+use super::CuriousNode;
 use crate::link::Link;
-use crate::message::{Message, Pose, PoseStamped, Time, Topic, header, transform};
+use crate::message::{
+    Message, Pose, PoseStamped, Time, Topic, Twist as TwistMessage, TwistStamped, Vector, header, transform,
+};
 use crate::order::Order;
 use crate::parameters::{Navigator, Parameters};
 use interfaces::Twist;
@@ -36,9 +38,16 @@ impl<L: Link> CuriousNode<L> {
             Order::None => {}
             Order::Velocity(twist) => {
                 self.is_stopped = false;
-                let is_stamped = self.parameters.enable_stamped_cmd_vel;
-                let (topic, message) = outputs::velocity(&twist, is_stamped, stamp, self.source.base());
-                self.link.send(topic, message);
+                let linear = Vector { x: twist.linear_mps, ..Vector::default() };
+                let angular = Vector { z: twist.angular_radps, ..Vector::default() };
+                let twist = TwistMessage { linear, angular };
+                if self.parameters.enable_stamped_cmd_vel {
+                    let header = header(stamp, self.source.base());
+                    let message = Message::TwistStamped(TwistStamped { header, twist });
+                    self.link.send(Topic::StampedVelocity, message);
+                } else {
+                    self.link.send(Topic::Velocity, Message::Twist(twist));
+                }
             }
             Order::Goal(pose) => {
                 let header = header(stamp, &self.parameters.map_frame);
