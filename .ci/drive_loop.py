@@ -2,8 +2,8 @@
 the longest time between two transforms from then on; CycloneDDS hears them in another program.
 
 Arguments: a folder for files, the program curious_node, the program sim_node (not used), the number of scans of the way around
-and of their beams (1000 61: as fast as a robot drives), and parameters as NAME:=VALUE. The scans before the loop are sent faster than a robot
-measures them, those from there on at 10 Hz.
+and of their beams (1200 61: as fast as a robot drives), and parameters as NAME:=VALUE. The scans before the loop are sent faster
+than a robot measures them, those from there on at 10 Hz.
 """
 
 import os
@@ -17,8 +17,8 @@ from drive_ros2 import CURIOUS, WORK, Program, Robot, check, parameter
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 WORLD = os.path.join(HERE, "../ros2/src/node/tests/block.toml")
-LOW, LENGTH, DEPTH, BEND = 8.3, 15.0, 11.0, 0.8
-REACH = 10.0
+LOW, LENGTH, DEPTH, BEND = 8.3, 22.0, 14.0, 0.8
+REACH = 8.0
 FAST_HZ, SLOW_HZ = 100.0, 10.0
 
 
@@ -57,12 +57,13 @@ class Driver(Robot):
         return 1_700_000_000 + self.sent // 10, self.sent % 10 * 100_000_000
 
     def pose(self):
-        """The pose by odometry: 5 % off in distance and turn, 3 degrees per metre."""
+        """The pose by odometry: 5 % off in distance and turn, 3 degrees and 5 cm of noise per metre."""
         (x, y, heading), (u, v, turned) = self.at, rounded(self.way)
         way, turn = np.hypot(u - x, v - y), (turned - heading + np.pi) % (2 * np.pi) - np.pi
         a, b, c = self.odometry_pose
         c += 0.95 * turn + np.radians(3) * way
-        self.at, self.odometry_pose = (u, v, turned), (a + 1.05 * way * np.cos(c), b + 1.05 * way * np.sin(c), c)
+        self.at, way = (u, v, turned), 1.05 * way + self.noise.normal(0, 0.05 * np.sqrt(way))
+        self.odometry_pose = (a + way * np.cos(c), b + way * np.sin(c), c)
         return self.odometry_pose
 
     def ranges(self, *_):

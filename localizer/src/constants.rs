@@ -370,8 +370,8 @@ pub(crate) const MAX_READINGS: usize = 18_000;
 pub(crate) const BROKEN_READINGS: u32 = 10;
 /// Maximum number of rejected replays.
 pub(crate) const MAX_REJECTED: u32 = 3;
-/// A replay is rejected if this share fewer poses would be certain.
-pub(crate) const FEWER_CERTAIN: f64 = 0.02;
+/// A replay is rejected if this share fewer poses would be certain; it is accepted if this share more are, or if some move.
+pub(crate) const CHANGED_CERTAIN: f64 = 0.02;
 /// Errors of a certain pose, and of the corrected trajectory, which are the same for many scans.
 pub(crate) const CERTAIN_STD: Spread = Spread { m: 0.01, rad: 0.003 };
 pub(crate) const CORRECTED_STD: Spread = Spread::of_error(0.003);

@@ -19,7 +19,7 @@
 //! The map can move until it is *frozen*: nothing is left to explore, and the robot has gone as far on known ground as on new
 //! ground before. From then on, its frame stays for ever.
 
-use crate::constants::{FEWER_CERTAIN, NEAR_STD};
+use crate::constants::{CHANGED_CERTAIN, NEAR_STD};
 use crate::estimate::{Localized, PoseEstimate, PoseState};
 use crate::first_map::{FirstMap, Kept, Log};
 use crate::localizer::{Localizer, PosePrior};
@@ -327,7 +327,10 @@ impl Replay {
                 largest_m = largest_m.max(moved.norm());
             }
         }
-        if (after as f64) < before as f64 * (1.0 - FEWER_CERTAIN) || largest_m < NEAR_STD.m {
+        let certain = |change: f64| before as f64 * (1.0 + change);
+        // A robot that was lost had few certain poses, which did not move.
+        let is_better = largest_m >= NEAR_STD.m || after as f64 > certain(CHANGED_CERTAIN);
+        if (after as f64) < certain(-CHANGED_CERTAIN) || !is_better {
             first.refuse();
             return (first, None);
         }

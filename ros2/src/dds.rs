@@ -1,5 +1,24 @@
 //! The connection by DDS: the only part that knows the client library.
 
+/// Calls a macro with the variant of [`Message`] that a topic carries.
+macro_rules! by_type {
+    ($topic:expr, $open:ident) => {
+        match $topic {
+            Topic::Scan => $open!(Scan),
+            Topic::Odometry | Topic::GroundTruth => $open!(Odometry),
+            Topic::Transforms | Topic::StaticTransforms => $open!(Transforms),
+            Topic::Clock => $open!(Clock),
+            Topic::Velocity => $open!(Twist),
+            Topic::StampedVelocity => $open!(TwistStamped),
+            Topic::Resume => $open!(Bool),
+            Topic::Map | Topic::ChangeMap | Topic::PredictedMap => $open!(Grid),
+            Topic::MapUpdates => $open!(GridUpdate),
+            Topic::Markers => $open!(Markers),
+            Topic::GoalPose => $open!(Pose),
+        }
+    };
+}
+
 mod actions;
 mod discovery;
 mod publishers;
@@ -32,9 +51,9 @@ const WAIT: Duration = Duration::from_millis(20);
 /// The time between two looks at what Nav2 answers.
 const POLL: Duration = Duration::from_millis(20);
 /// Events that wait for the node. If there are more, messages are lost on the network, as their QoS has it.
-const MOST_EVENTS: usize = 4096;
+const MAX_EVENTS: usize = 4096;
 /// Requests that wait for an answer; more are forgotten.
-const MOST_REQUESTS: usize = 100;
+const MAX_REQUESTS: usize = 100;
 
 /// The request of `std_srvs/Trigger`: a message without a field has this one on the wire.
 #[derive(Clone, Debug, Deserialize, Serialize)]
@@ -86,7 +105,7 @@ impl DdsLink {
         let publishers = Publishers::new(&mut node, wiring)?;
         let navigator = wiring.navigate_to_pose.as_deref();
         let navigator = navigator.map(|name| Navigator::new(&mut node, name, mapping)).transpose()?;
-        let (to, events) = mpsc::sync_channel(MOST_EVENTS);
+        let (to, events) = mpsc::sync_channel(MAX_EVENTS);
         let (requests, coming) = mpsc::channel();
         let save_state = wiring.save_state.as_deref();
         let save_state = save_state.map(|name| save_state_server(&mut node, name, mapping)).transpose()?;
@@ -117,7 +136,7 @@ impl DdsLink {
     fn numbered(&mut self, event: Event) -> Event {
         let Event::SaveState(_) = event else { return event };
         let Ok(id) = self.coming.try_recv() else { return Event::Problem("a request was lost".to_owned()) };
-        while self.requests.len() >= MOST_REQUESTS {
+        while self.requests.len() >= MAX_REQUESTS {
             self.requests.pop_first();
         }
         self.next_request += 1;
@@ -182,32 +201,23 @@ fn context(environment: &Environment) -> anyhow::Result<Context> {
 /// The parameters can be read, and not be changed while the node runs.
 fn options(wiring: &Wiring) -> NodeOptions {
     let mut options = NodeOptions::new().enable_rosout(false);
-    for (name, value) in &wiring.parameters {
-        let value = match value {
-            Value::Bool(value) => ParameterValue::Boolean(*value),
-            Value::Integer(value) => ParameterValue::Integer(*value),
-            Value::Float(value) => ParameterValue::Double(*value),
-            Value::Text(value) => ParameterValue::String(value.clone()),
-        };
-        options = options.declare_parameter(name, value);
+    let declared = wiring.parameters.iter().map(|(name, value)| (name.clone(), on_wire(value)));
+    let declared: BTreeMap<String, ParameterValue> = declared.collect();
+    for (name, value) in &declared {
+        options = options.declare_parameter(name, value.clone());
     }
-    let declared = wiring.parameters.clone();
     options.parameter_validator(Box::new(move |name, value| {
-        let is_declared = |(known, own): &(String, Value)| known == name && is_same(own, value);
-        match declared.iter().any(is_declared) {
-            true => Ok(()),
-            false => Err("the parameters of this node are set when it starts".to_owned()),
-        }
+        let is_same = declared.get(name) == Some(value);
+        is_same.then_some(()).ok_or_else(|| "the parameters of this node are set when it starts".to_owned())
     }))
 }
 
-fn is_same(own: &Value, value: &ParameterValue) -> bool {
-    match (own, value) {
-        (Value::Bool(own), ParameterValue::Boolean(value)) => own == value,
-        (Value::Integer(own), ParameterValue::Integer(value)) => own == value,
-        (Value::Float(own), ParameterValue::Double(value)) => own == value,
-        (Value::Text(own), ParameterValue::String(value)) => own == value,
-        _ => false,
+fn on_wire(value: &Value) -> ParameterValue {
+    match value {
+        Value::Bool(value) => ParameterValue::Boolean(*value),
+        Value::Integer(value) => ParameterValue::Integer(*value),
+        Value::Float(value) => ParameterValue::Double(*value),
+        Value::Text(value) => ParameterValue::String(value.clone()),
     }
 }
 

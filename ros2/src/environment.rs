@@ -41,7 +41,7 @@ const MAX_DOMAIN: u16 = 232;
 #[error("{name} must be {expected}, not `{found}`")]
 pub struct EnvironmentError {
     name: &'static str,
-    expected: String,
+    expected: &'static str,
     found: String,
 }
 
@@ -52,47 +52,41 @@ impl Environment {
     ///
     /// When a value is not valid.
     pub fn read(variable: impl Fn(&str) -> Option<String>) -> Result<Self, EnvironmentError> {
-        let variable = |name| variable(name).filter(|value| !value.is_empty());
-        let name = "ROS_DOMAIN_ID";
-        let domain = match variable(name) {
-            None => 0,
-            Some(found) => match found.parse() {
-                Ok(domain) if domain <= MAX_DOMAIN => domain,
-                _ => {
-                    let expected = format!("a whole number from 0 to {MAX_DOMAIN}");
-                    return Err(EnvironmentError { name, expected, found });
-                }
-            },
-        };
-        let name = "ROS_AUTOMATIC_DISCOVERY_RANGE";
-        let range = match variable(name) {
-            None => Range::Subnet,
-            Some(found) => match found.as_str() {
-                "SUBNET" | "SYSTEM_DEFAULT" => Range::Subnet,
-                "LOCALHOST" => Range::Localhost,
-                "OFF" => Range::Off,
-                _ => {
-                    let expected = "SUBNET, LOCALHOST, OFF or SYSTEM_DEFAULT".to_owned();
-                    return Err(EnvironmentError { name, expected, found });
-                }
-            },
-        };
+        let variable = |name: &str| variable(name).filter(|value| !value.is_empty());
+        let domain = parsed(variable, "ROS_DOMAIN_ID", "a whole number from 0 to 232", |value| {
+            value.parse().ok().filter(|domain| *domain <= MAX_DOMAIN)
+        })?;
+        let expected = "SUBNET, LOCALHOST, OFF or SYSTEM_DEFAULT";
+        let range = parsed(variable, "ROS_AUTOMATIC_DISCOVERY_RANGE", expected, |value| match value {
+            "SUBNET" | "SYSTEM_DEFAULT" => Some(Range::Subnet),
+            "LOCALHOST" => Some(Range::Localhost),
+            "OFF" => Some(Range::Off),
+            _ => None,
+        })?;
+        let is_local = parsed(variable, "ROS_LOCALHOST_ONLY", "0 or 1", |value| match value {
+            "0" => Some(false),
+            "1" => Some(true),
+            _ => None,
+        })?;
         // As in ROS, the older variable wins.
-        let name = "ROS_LOCALHOST_ONLY";
-        let range = match variable(name) {
-            None => range,
-            Some(found) => match found.as_str() {
-                "1" => Range::Localhost,
-                "0" => range,
-                _ => return Err(EnvironmentError { name, expected: "0 or 1".to_owned(), found }),
-            },
-        };
+        let range = if is_local == Some(true) { Range::Localhost } else { range.unwrap_or_default() };
         let services = match variable("RMW_IMPLEMENTATION").as_deref() {
             Some("rmw_cyclonedds_cpp") => Services::Cyclone,
             _ => Services::Enhanced,
         };
-        Ok(Self { domain, range, services })
+        Ok(Self { domain: domain.unwrap_or_default(), range, services })
     }
+}
+
+/// The value of a variable; `None` if it is not set.
+fn parsed<T>(
+    variable: impl Fn(&str) -> Option<String>,
+    name: &'static str,
+    expected: &'static str,
+    parse: impl Fn(&str) -> Option<T>,
+) -> Result<Option<T>, EnvironmentError> {
+    let Some(found) = variable(name) else { return Ok(None) };
+    parse(&found).map(Some).ok_or(EnvironmentError { name, expected, found })
 }
 
 #[cfg(test)]

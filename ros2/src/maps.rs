@@ -18,6 +18,7 @@ const LARGE: Duration = Duration::from_secs(5);
 const CHANGES: Duration = Duration::from_secs(10);
 
 /// What was published, and when.
+#[derive(Default)]
 pub(crate) struct PublishedMaps {
     interval: Duration,
     /// The map as subscribers know it.
@@ -31,13 +32,7 @@ pub(crate) struct PublishedMaps {
 impl PublishedMaps {
     /// Publishes a map once in this time.
     pub(crate) fn new(interval_s: f64) -> Self {
-        Self {
-            interval: Duration::from_secs_f64(interval_s),
-            shown: None,
-            whole: None,
-            changes: None,
-            is_changed: true,
-        }
+        Self { interval: Duration::from_secs_f64(interval_s), is_changed: true, ..Self::default() }
     }
 
     /// The messages after a reading. `header` has the time of the reading and the frame of the map.

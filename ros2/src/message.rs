@@ -108,6 +108,17 @@ pub struct Markers {
     pub markers: Vec<Marker>,
 }
 
+pub(crate) fn header(stamp: Time, frame: &str) -> Header {
+    Header { stamp, frame_id: frame.to_owned() }
+}
+
+/// A message with the pose of a frame in another one.
+pub(crate) fn transform(stamp: Time, (parent, child): (&str, &str), transform: Pose) -> Message {
+    let header = header(stamp, parent);
+    let transform = TransformStamped { header, child_frame_id: child.to_owned(), transform };
+    Message::Transforms(Transforms { transforms: vec![transform] })
+}
+
 /// A message of any type.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Message {
@@ -193,50 +204,39 @@ impl Quality {
 impl Topic {
     /// The name that other nodes expect, relative to the namespace of the node, except for those that are absolute.
     pub fn default_name(self) -> &'static str {
-        match self {
-            Self::Scan => "scan",
-            Self::Odometry => "odom",
-            Self::Transforms => "/tf",
-            Self::StaticTransforms => "/tf_static",
-            Self::Clock => "/clock",
-            Self::Velocity | Self::StampedVelocity => "cmd_vel",
-            Self::Resume => "explore/resume",
-            Self::Map => "map",
-            Self::MapUpdates => "map_updates",
-            Self::ChangeMap => "change_map",
-            Self::PredictedMap => "predicted_map",
-            Self::Markers => "explore/goals",
-            Self::GoalPose => "goal_pose",
-            Self::GroundTruth => "ground_truth",
-        }
+        self.row().0
     }
 
     /// The type of its messages: a package and a name.
     pub fn type_name(self) -> (&'static str, &'static str) {
-        match self {
-            Self::Scan => ("sensor_msgs", "LaserScan"),
-            Self::Odometry | Self::GroundTruth => ("nav_msgs", "Odometry"),
-            Self::Transforms | Self::StaticTransforms => ("tf2_msgs", "TFMessage"),
-            Self::Clock => ("rosgraph_msgs", "Clock"),
-            Self::Velocity => ("geometry_msgs", "Twist"),
-            Self::StampedVelocity => ("geometry_msgs", "TwistStamped"),
-            Self::Resume => ("std_msgs", "Bool"),
-            Self::Map | Self::ChangeMap | Self::PredictedMap => ("nav_msgs", "OccupancyGrid"),
-            Self::MapUpdates => ("map_msgs", "OccupancyGridUpdate"),
-            Self::Markers => ("visualization_msgs", "MarkerArray"),
-            Self::GoalPose => ("geometry_msgs", "PoseStamped"),
-        }
+        (self.row().1, self.row().2)
     }
 
     /// How its messages are delivered, as subscribers and publishers of ROS expect it.
     pub fn quality(self) -> Quality {
+        self.row().3
+    }
+
+    #[rustfmt::skip]
+    fn row(self) -> (&'static str, &'static str, &'static str, Quality) {
+        const DEFAULT: Quality = Quality::DEFAULT;
+        const LATCHED: Quality = Quality::LATCHED;
         match self {
-            Self::Scan => Quality::SENSOR,
-            Self::Transforms => Quality { depth: 100, ..Quality::DEFAULT },
-            Self::StaticTransforms => Quality { depth: 100, ..Quality::LATCHED },
-            Self::Map | Self::ChangeMap | Self::PredictedMap => Quality::LATCHED,
-            Self::Clock => Quality { is_reliable: false, ..Quality::DEFAULT },
-            _ => Quality::DEFAULT,
+            Self::Scan => ("scan", "sensor_msgs", "LaserScan", Quality::SENSOR),
+            Self::Odometry => ("odom", "nav_msgs", "Odometry", DEFAULT),
+            Self::Transforms => ("/tf", "tf2_msgs", "TFMessage", Quality { depth: 100, ..DEFAULT }),
+            Self::StaticTransforms => ("/tf_static", "tf2_msgs", "TFMessage", Quality { depth: 100, ..LATCHED }),
+            Self::Clock => ("/clock", "rosgraph_msgs", "Clock", Quality { is_reliable: false, ..DEFAULT }),
+            Self::Velocity => ("cmd_vel", "geometry_msgs", "Twist", DEFAULT),
+            Self::StampedVelocity => ("cmd_vel", "geometry_msgs", "TwistStamped", DEFAULT),
+            Self::Resume => ("explore/resume", "std_msgs", "Bool", DEFAULT),
+            Self::Map => ("map", "nav_msgs", "OccupancyGrid", LATCHED),
+            Self::MapUpdates => ("map_updates", "map_msgs", "OccupancyGridUpdate", DEFAULT),
+            Self::ChangeMap => ("change_map", "nav_msgs", "OccupancyGrid", LATCHED),
+            Self::PredictedMap => ("predicted_map", "nav_msgs", "OccupancyGrid", LATCHED),
+            Self::Markers => ("explore/goals", "visualization_msgs", "MarkerArray", DEFAULT),
+            Self::GoalPose => ("goal_pose", "geometry_msgs", "PoseStamped", DEFAULT),
+            Self::GroundTruth => ("ground_truth", "nav_msgs", "Odometry", DEFAULT),
         }
     }
 }

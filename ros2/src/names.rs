@@ -84,21 +84,20 @@ impl Names {
 
 /// Checks the parts of a name between slashes.
 fn check(kind: &'static str, name: &str) -> Result<(), NameError> {
-    let invalid = |why| Err(NameError { kind, name: name.to_owned(), why });
     for part in name.strip_prefix('/').unwrap_or(name).split('/') {
         let is_valid = |c: char| c.is_ascii_alphanumeric() || c == '_';
-        if part.is_empty() {
-            return invalid("a part of it is empty");
-        }
-        if !part.chars().all(is_valid) {
-            return invalid("it may contain letters without accents, digits and underscores");
-        }
-        if part.starts_with(|c: char| c.is_ascii_digit()) {
-            return invalid("a part of it begins with a digit");
-        }
-        if part.contains("__") {
-            return invalid("it contains two underscores in a row");
-        }
+        let why = if part.is_empty() {
+            "a part of it is empty"
+        } else if !part.chars().all(is_valid) {
+            "it may contain letters without accents, digits and underscores"
+        } else if part.starts_with(|c: char| c.is_ascii_digit()) {
+            "a part of it begins with a digit"
+        } else if part.contains("__") {
+            "it contains two underscores in a row"
+        } else {
+            continue;
+        };
+        return Err(NameError { kind, name: name.to_owned(), why });
     }
     Ok(())
 }
@@ -109,7 +108,7 @@ mod tests {
 
     fn ros(line: &str) -> RosArgs {
         let line = format!("--ros-args {line}");
-        RosArgs::split(line.split_whitespace().map(str::to_owned)).unwrap().1
+        RosArgs::split(line.split_whitespace().map(Into::into)).unwrap().1
     }
 
     #[test]

@@ -9,11 +9,10 @@ mod setup;
 mod tests;
 
 use crate::link::{Event, Link};
-use crate::message::{Message, Time, Topic};
+use crate::message::{Message, Time, Topic, header};
 use crate::notes::{Notes, Output};
 use crate::parameters::Parameters;
 use crate::pilot::LivePilot;
-use crate::saves::Asker;
 use crate::saves::Saves;
 use crate::source::{FrameNames, LiveReading, ScanCount, Source};
 use anyhow::anyhow;
@@ -97,7 +96,7 @@ impl<L: Link> CuriousNode<L> {
         let continued = saves.as_ref().map(|saves| saves.restore(&mut robot)).transpose()?.flatten();
         let mut published = Published::new(parameters);
         if let Some(last) = continued {
-            let header = outputs::header(last, &parameters.map_frame);
+            let header = header(last, &parameters.map_frame);
             for (topic, message) in published.maps.after(&robot.mapper, &header, Instant::now()) {
                 link.send(topic, message);
             }
@@ -129,7 +128,7 @@ impl<L: Link> CuriousNode<L> {
     pub fn run(&mut self, signals: &Signals) -> anyhow::Result<NodeReport> {
         while !signals.stop.load(Ordering::Relaxed) {
             if signals.save.swap(false, Ordering::Relaxed) {
-                self.save_for(Asker::Signal);
+                self.save_for(None);
             }
             self.turn(self.nap());
         }
@@ -180,7 +179,7 @@ impl<L: Link> CuriousNode<L> {
                 }
             }
             Event::Message(topic, message) => self.source.take(topic, message, now),
-            Event::SaveState(request) => self.save_for(Asker::Request(request)),
+            Event::SaveState(request) => self.save_for(Some(request)),
             Event::Navigation(navigation) => self.robot.pilot.navigated(navigation),
             Event::Problem(text) => self.notes.note(&text, now),
         }
@@ -202,9 +201,14 @@ impl<L: Link> CuriousNode<L> {
         };
         self.report.readings += 1;
         self.report.mapped += u64::from(turn.belief.is_certain());
-        if was_settled && !self.robot.is_settled() {
-            self.notes
-                .say("a loop is found: a thread learns the map again, and the robot goes on in the old one");
+        match (was_settled, self.robot.is_settled()) {
+            (true, false) => self
+                .notes
+                .say("a loop is found: a thread learns the map again, and the robot goes on in the old one"),
+            (false, true) if turn.belief.correction.is_none() => {
+                self.notes.say("the map that was learned again is no better: the old one stays");
+            }
+            _ => {}
         }
         self.say_news(&turn.belief);
         if self.is_trusted(&turn.reading) != was_trusted {

@@ -5,8 +5,8 @@ use std::time::{Duration, Instant};
 
 /// The time until the same sentence is written again.
 const REPEAT: Duration = Duration::from_secs(60);
-/// The most different sentences that are remembered: names come from the network.
-const MOST: usize = 1000;
+/// Maximum number of different sentences that are remembered: names come from the network.
+const MAX_REMEMBERED: usize = 1000;
 
 /// Where sentences go.
 pub type Output = Box<dyn FnMut(&str) + Send>;
@@ -38,7 +38,7 @@ impl Notes {
             Some((_, unwritten)) => *unwritten,
             None => 0,
         };
-        if self.written.len() >= MOST {
+        if self.written.len() >= MAX_REMEMBERED {
             self.written.clear();
         }
         self.written.insert(kind, (now, 0));

@@ -9,6 +9,7 @@
 //!     resolution: 0.05
 //! ```
 
+use crate::ros_args::Given;
 use crate::value::Value;
 use serde::de::{Deserialize, Deserializer, IgnoredAny, MapAccess, SeqAccess, Visitor};
 use serde_saphyr::{NonFiniteFloatPolicy, Spanned, from_str_with_options, options};
@@ -46,24 +47,28 @@ pub enum ParamsFileError {
     },
 }
 
-/// A parameter in a file.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Entry {
-    /// For which nodes: a full name, in which `*` is any part and `**` any number of parts.
-    pub(crate) nodes: String,
-    /// The name; parameters in a table have the name of the table and a dot before theirs.
-    pub(crate) name: String,
-    /// The value; `None`: a list, or nothing.
-    pub(crate) value: Option<Value>,
-    /// The line, from 1.
-    pub(crate) line: u64,
-}
-
 /// All parameters of a file in the order of their lines.
-pub(crate) fn read(path: &Path) -> Result<Vec<Entry>, ParamsFileError> {
+pub(crate) fn read(path: &Path) -> Result<Vec<Given>, ParamsFileError> {
     let file = path.display().to_string();
     let text = text(path).map_err(|why| ParamsFileError::Io { file: file.clone(), why: why.to_string() })?;
-    entries(&text).map_err(|(line, what)| ParamsFileError::Invalid { file, line, what })
+    let place = |line: &u64| Some(format!("{file}, line {line}"));
+    let found = entries(&text);
+    let found =
+        found.map(|found| found.into_iter().map(|(given, line)| Given { place: place(&line), ..given }));
+    found.map(Iterator::collect).map_err(|(line, what)| ParamsFileError::Invalid {
+        file: file.clone(),
+        line,
+        what,
+    })
+}
+
+/// The value of a text on the command line, as YAML has it: `true`, `5`, `0.05`, `"text"`, `text`.
+pub(crate) fn value_of(text: &str) -> Value {
+    match from_str_with_options(text, options! { non_finite_float_policy: NonFiniteFloatPolicy::PassThrough })
+    {
+        Ok(Yaml::Value(value)) => value,
+        _ => Value::Text(text.trim().to_owned()),
+    }
 }
 
 fn text(path: &Path) -> io::Result<String> {
@@ -78,7 +83,7 @@ fn text(path: &Path) -> io::Result<String> {
 /// # Errors
 ///
 /// The line, and what is wrong there.
-fn entries(text: &str) -> Result<Vec<Entry>, (u64, String)> {
+fn entries(text: &str) -> Result<Vec<(Given, u64)>, (u64, String)> {
     // What is no number for a parameter is an error of that parameter.
     let options = options! { non_finite_float_policy: NonFiniteFloatPolicy::PassThrough };
     let root: Spanned<Yaml> = from_str_with_options(text, options).map_err(|error| {
@@ -95,7 +100,7 @@ fn entries(text: &str) -> Result<Vec<Entry>, (u64, String)> {
 }
 
 /// The parameters of all nodes below a namespace.
-fn sections(entries: &mut Vec<Entry>, nodes: &str, part: &Spanned<Yaml>) -> Result<(), (u64, String)> {
+fn sections(entries: &mut Vec<(Given, u64)>, nodes: &str, part: &Spanned<Yaml>) -> Result<(), (u64, String)> {
     let line = part.referenced.line();
     let Yaml::Table(table) = &part.value else {
         let which = if nodes.is_empty() { "this".to_owned() } else { format!("`{nodes}`") };
@@ -113,7 +118,7 @@ fn sections(entries: &mut Vec<Entry>, nodes: &str, part: &Spanned<Yaml>) -> Resu
     Ok(())
 }
 
-fn parameters(entries: &mut Vec<Entry>, nodes: &str, prefix: &str, part: &Spanned<Yaml>) {
+fn parameters(entries: &mut Vec<(Given, u64)>, nodes: &str, prefix: &str, part: &Spanned<Yaml>) {
     let value = match &part.value {
         Yaml::Table(table) => {
             for (key, below) in table {
@@ -127,7 +132,7 @@ fn parameters(entries: &mut Vec<Entry>, nodes: &str, prefix: &str, part: &Spanne
     };
     let (nodes, name) = (nodes.to_owned(), prefix.to_owned());
     if !name.is_empty() {
-        entries.push(Entry { nodes, name, value, line: part.referenced.line() });
+        entries.push((Given { nodes, name, value, place: None }, part.referenced.line()));
     }
 }
 
@@ -143,10 +148,10 @@ pub(crate) fn matches(pattern: &str, node: &str) -> bool {
             _ => false,
         }
     }
-    let parts = |name: &str| name.split('/').filter(|part| !part.is_empty()).map(str::to_owned).collect();
-    let [pattern, node]: [Vec<String>; 2] = [parts(pattern), parts(node)];
-    let [pattern, node] = [&pattern, &node].map(|parts| parts.iter().map(String::as_str).collect::<Vec<_>>());
-    parts_match(&pattern, &node)
+    fn parts(name: &str) -> Vec<&str> {
+        name.split('/').filter(|part| !part.is_empty()).collect()
+    }
+    parts_match(&parts(pattern), &parts(node))
 }
 
 /// What can be in such a file.
@@ -213,7 +218,7 @@ mod tests {
         let found: Vec<_> = entries(text)
             .unwrap()
             .into_iter()
-            .map(|Entry { nodes, name, value, line }| (nodes, name, value, line))
+            .map(|(Given { nodes, name, value, .. }, line)| (nodes, name, value, line))
             .collect();
         let entry = |nodes: &str, name: &str, value, line| (nodes.to_owned(), name.to_owned(), value, line);
         let node = "/robot1/curious_node";
@@ -264,5 +269,18 @@ mod tests {
         let unclosed = "unclosed bracket '['; parameters are written";
         assert_eq!(error("a:\n  b: [1,\nc: 2\n"), (2, format!("{unclosed} {example}")));
         assert_eq!(error("").1, format!("this must be a table with `ros__parameters`, {example}"));
+    }
+
+    #[test]
+    fn values_have_the_types_of_yaml() {
+        assert_eq!(value_of("true"), Value::Bool(true));
+        assert_eq!(value_of("-5"), Value::Integer(-5));
+        assert_eq!(value_of("0.05"), Value::Float(0.05));
+        assert_eq!(value_of("1e-3"), Value::Float(0.001));
+        assert_eq!(value_of("'5'"), Value::Text("5".into()));
+        assert_eq!(value_of("inf"), Value::Text("inf".into()));
+        assert_eq!(value_of("/scan"), Value::Text("/scan".into()));
+        assert_eq!(value_of("\""), Value::Text("\"".into()));
+        assert_eq!(value_of(""), Value::Text(String::new()));
     }
 }

@@ -12,7 +12,7 @@ use interfaces::{CellState, Grid, Values};
 use mapper::Mapper;
 use nalgebra::Point2;
 use navigation::Navigation;
-use robot::{Autonomous, Belief, GoalCount, Message, Pilot, Settings, StrategyState};
+use robot::{Autonomous, Belief, Message, Pilot, Settings};
 
 /// Decides what the robot is asked to do.
 pub(crate) struct LivePilot {
@@ -82,7 +82,9 @@ impl Pilot for LivePilot {
     }
 
     fn forget_map(&mut self) {
-        self.explorer.iter_mut().for_each(Pilot::forget_map);
+        if let Some(explorer) = &mut self.explorer {
+            explorer.forget_map();
+        }
     }
 
     fn path(&self) -> &[Point2<f64>] {
@@ -91,14 +93,6 @@ impl Pilot for LivePilot {
 
     fn goal(&self) -> Option<Point2<f64>> {
         self.explorer.as_ref().and_then(Pilot::goal)
-    }
-
-    fn strategies(&self, features: Features) -> Vec<StrategyState> {
-        self.explorer.as_ref().map(|explorer| explorer.strategies(features)).unwrap_or_default()
-    }
-
-    fn goals(&self) -> GoalCount {
-        self.explorer.as_ref().map(Pilot::goals).unwrap_or_default()
     }
 
     fn take_messages(&mut self) -> Vec<Message> {

@@ -31,7 +31,7 @@ pub fn input(error: impl Into<anyhow::Error>) -> Failure {
 /// Runs a program with its own arguments and those of ROS, and returns its exit code.
 pub fn start<A: Parser>(program: impl FnOnce(A, RosArgs) -> Result<(), Failure>) -> ExitCode {
     let run = || {
-        let (own, ros) = RosArgs::split(std::env::args()).map_err(input)?;
+        let (own, ros) = RosArgs::split(std::env::args_os()).map_err(input)?;
         match A::try_parse_from(own) {
             Ok(args) => program(args, ros),
             Err(message) if message.use_stderr() => message.exit(),

@@ -2,11 +2,15 @@
 
 use crate::params_file::{self, ParamsFileError};
 use crate::value::Value;
+use std::ffi::OsString;
 use std::path::Path;
 
 /// The error for arguments after `--ros-args`.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum RosArgsError {
+    /// An argument is no text.
+    #[error("`{0}` after --ros-args is not valid UTF-8")]
+    NoText(String),
     /// An argument needs another one.
     #[error("{0} needs {1}")]
     Missing(String, &'static str),
@@ -31,22 +35,12 @@ pub enum RosArgsError {
     File(#[from] ParamsFileError),
 }
 
-/// For which nodes a parameter is.
-#[derive(Clone, Debug, PartialEq)]
-enum Nodes {
-    /// `-p name:=value`.
-    All,
-    /// `-p node:name:=value`: the name of a node without its namespace.
-    Named(String),
-    /// In a file: see [`params_file::matches`].
-    Pattern(String),
-}
-
 /// The value of a parameter, and where it is given.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Given {
-    nodes: Nodes,
-    /// The name.
+    /// For which nodes: a full name, in which `*` is any part and `**` any number of parts.
+    pub(crate) nodes: String,
+    /// The name; parameters in a table have the name of the table and a dot before theirs.
     pub name: String,
     /// The value; `None`: a list, or nothing.
     pub value: Option<Value>,
@@ -55,17 +49,9 @@ pub struct Given {
 }
 
 impl Given {
-    fn is_for(&self, full_name: &str) -> bool {
-        match &self.nodes {
-            Nodes::All => true,
-            Nodes::Named(node) => full_name.rsplit('/').next() == Some(node.trim_start_matches('/')),
-            Nodes::Pattern(pattern) => params_file::matches(pattern, full_name),
-        }
-    }
-
     /// Whether other nodes may be meant, so that a node need not know the parameter.
     pub fn is_for_others_too(&self) -> bool {
-        matches!(&self.nodes, Nodes::Pattern(pattern) if pattern.contains('*'))
+        self.place.is_some() && self.nodes.contains('*')
     }
 }
 
@@ -86,7 +72,10 @@ impl RosArgs {
     /// # Errors
     ///
     /// When an argument after `--ros-args` is not valid.
-    pub fn split(all: impl IntoIterator<Item = String>) -> Result<(Vec<String>, Self), RosArgsError> {
+    pub fn split(all: impl IntoIterator<Item = OsString>) -> Result<(Vec<OsString>, Self), RosArgsError> {
+        let text = |argument: OsString| {
+            argument.into_string().map_err(|other| RosArgsError::NoText(other.to_string_lossy().into_owned()))
+        };
         let (mut others, mut ros) = (Vec::new(), Self::default());
         let mut all = all.into_iter();
         while let Some(argument) = all.next() {
@@ -94,39 +83,40 @@ impl RosArgs {
                 others.push(argument);
                 continue;
             }
-            while let Some(flag) = all.next() {
-                if flag == "--" {
-                    break;
-                }
-                ros.take(&flag, || all.next())?;
+            let mut next = || all.next().map(text).transpose();
+            while let Some(flag) = next()?.filter(|flag| flag != "--") {
+                ros.take(&flag, &mut next)?;
             }
         }
         Ok((others, ros))
     }
 
-    fn take(&mut self, flag: &str, next: impl FnOnce() -> Option<String>) -> Result<(), RosArgsError> {
+    fn take(
+        &mut self,
+        flag: &str,
+        next: impl FnOnce() -> Result<Option<String>, RosArgsError>,
+    ) -> Result<(), RosArgsError> {
         match flag {
             "-p" | "--param" => {
-                let (node, name, value) = rule(flag, next(), "name:=value")?;
-                let (nodes, value) = (node.map_or(Nodes::All, Nodes::Named), Some(Value::parse(&value)));
+                let (node, name, value) = rule(flag, next()?, "name:=value")?;
+                // The name of a node without its namespace.
+                let nodes =
+                    node.map_or("/**".to_owned(), |node| format!("/**/{}", node.trim_start_matches('/')));
+                let value = Some(params_file::value_of(&value));
                 self.parameters.push(Given { nodes, name, value, place: None });
             }
             "--params-file" => {
-                let file = next().ok_or_else(|| RosArgsError::Missing(flag.to_owned(), "a file"))?;
-                for entry in params_file::read(Path::new(&file))? {
-                    let place = Some(format!("{file}, line {}", entry.line));
-                    let (nodes, name, value) = (Nodes::Pattern(entry.nodes), entry.name, entry.value);
-                    self.parameters.push(Given { nodes, name, value, place });
-                }
+                let file = next()?.ok_or_else(|| RosArgsError::Missing(flag.to_owned(), "a file"))?;
+                self.parameters.extend(params_file::read(Path::new(&file))?);
                 self.files.push(file);
             }
             "-r" | "--remap" => {
-                let (node, from, to) = rule(flag, next(), "from:=to")?;
+                let (node, from, to) = rule(flag, next()?, "from:=to")?;
                 self.remaps.push((node, from, to));
             }
             // How a node logs is not a matter of this project's nodes: they write sentences to the error output.
             "--log-level" | "--log-config-file" | "-e" | "--enclave" => {
-                next().ok_or_else(|| RosArgsError::Missing(flag.to_owned(), "a value"))?;
+                next()?.ok_or_else(|| RosArgsError::Missing(flag.to_owned(), "a value"))?;
             }
             _ if flag.starts_with("--enable-") || flag.starts_with("--disable-") => {}
             _ => return Err(RosArgsError::Unknown(flag.to_owned())),
@@ -136,7 +126,7 @@ impl RosArgs {
 
     /// The values for a node with this name and namespace, in their order: later ones replace earlier ones.
     pub fn parameters_of<'a>(&'a self, full_name: &'a str) -> impl Iterator<Item = &'a Given> {
-        self.parameters.iter().filter(|given| given.is_for(full_name))
+        self.parameters.iter().filter(|given| params_file::matches(&given.nodes, full_name))
     }
 
     /// The files that have no parameter for a node: the name of the node in them is probably wrong.
@@ -183,8 +173,8 @@ fn rule(
 mod tests {
     use super::*;
 
-    fn split(line: &str) -> Result<(Vec<String>, RosArgs), RosArgsError> {
-        RosArgs::split(line.split_whitespace().map(str::to_owned))
+    fn split(line: &str) -> Result<(Vec<OsString>, RosArgs), RosArgsError> {
+        RosArgs::split(line.split_whitespace().map(OsString::from))
     }
 
     #[test]
@@ -219,5 +209,20 @@ mod tests {
             "`--mode` after --ros-args is not known: there are -p name:=value, -r from:=to, --params-file FILE, and -- at \
              the end"
         );
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn arguments_need_not_be_text() {
+        use std::os::unix::ffi::OsStringExt;
+        let bytes = || OsString::from_vec(b"\xff.state".to_vec());
+        let line = ["node".into(), "--state".into(), bytes()];
+        assert_eq!(RosArgs::split(line.clone()).unwrap().0, line);
+        for before in [vec![], vec!["-p"], vec!["--params-file"], vec!["--"]] {
+            let line = ["--ros-args"].into_iter().chain(before.clone()).map(Into::into).chain([bytes()]);
+            let split = RosArgs::split(line).map(|(own, _)| own).map_err(|error| error.to_string());
+            let refused = Err("`\u{fffd}.state` after --ros-args is not valid UTF-8".to_owned());
+            assert_eq!(split, if before == ["--"] { Ok(vec![bytes()]) } else { refused });
+        }
     }
 }

@@ -25,12 +25,8 @@ pub(crate) struct Saves {
     pub(crate) must_save: bool,
 }
 
-/// Who has asked to save the state.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Asker {
-    Signal,
-    Request(Request),
-}
+/// Who has asked to save the state: a request, or a signal.
+pub(crate) type Asker = Option<Request>;
 
 impl Saves {
     /// The file, and what it belongs to.

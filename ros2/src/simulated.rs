@@ -2,8 +2,8 @@
 
 use crate::link::{Event, Link};
 use crate::message::{
-    Clock, Header, Message, Odometry, Pose, PoseWithCovariance, Time, Topic, TransformStamped, Transforms,
-    TwistWithCovariance, Vector,
+    Clock, Message, Odometry, Pose, PoseWithCovariance, Time, Topic, TwistWithCovariance, Vector, header,
+    transform,
 };
 use interfaces::{LaserReading, Twist};
 use logs::ros::scan_message;
@@ -91,7 +91,9 @@ impl<L: Link> SimulatedRobot<L> {
                 let left = due.saturating_sub(start.elapsed());
                 let event = self.link.receive(left.min(NAP));
                 let is_idle = event.is_none();
-                event.into_iter().for_each(|event| self.take(event));
+                if let Some(event) = event {
+                    self.take(event);
+                }
                 if left.is_zero() && is_idle || stop.load(Ordering::Relaxed) {
                     break;
                 }
@@ -161,7 +163,7 @@ impl<L: Link> SimulatedRobot<L> {
         let robot = self.fleet.robots().nth(self.driven)?;
         let (pose, twist) = robot.odometry();
         let message = |frame: &str, pose: &Isometry2<f64>, twist: &Twist| Odometry {
-            header: Header { stamp: self.stamp(time_s), frame_id: frame.to_owned() },
+            header: header(self.stamp(time_s), frame),
             child_frame_id: BASE.to_owned(),
             pose: PoseWithCovariance { pose: Pose::in_plane(pose), covariance: Default::default() },
             twist: TwistWithCovariance {
@@ -192,12 +194,7 @@ impl<L: Link> SimulatedRobot<L> {
         self.scans += 1;
     }
 
-    fn publish_transform(&mut self, topic: Topic, time_s: f64, (parent, child): (&str, &str), pose: Pose) {
-        let transform = TransformStamped {
-            header: Header { stamp: self.stamp(time_s), frame_id: parent.to_owned() },
-            child_frame_id: child.to_owned(),
-            transform: pose,
-        };
-        self.link.send(topic, Message::Transforms(Transforms { transforms: vec![transform] }));
+    fn publish_transform(&mut self, topic: Topic, time_s: f64, frames: (&str, &str), pose: Pose) {
+        self.link.send(topic, transform(self.stamp(time_s), frames, pose));
     }
 }

@@ -13,8 +13,8 @@ use std::time::{Duration, Instant};
 /// A scan waits this long for a later pose.
 const PATIENCE: Duration = Duration::from_millis(500);
 /// Scans that wait; more are not kept.
-const MOST_WAITING: usize = 64;
-/// A scan that is older than the last one by more than this comes from a clock that has started anew, ns.
+const MAX_WAITING: usize = 64;
+/// A scan or a pose that is older than the last one by more than this comes from a clock that has started anew, ns.
 const RESTART_NS: i64 = 1_000_000_000;
 
 /// The names of the frame of a robot.
@@ -22,7 +22,7 @@ const DEFAULT_BASE: &str = "base_footprint";
 const OTHER_BASE: &str = "base_link";
 
 /// The names of the frames of a robot.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct FrameNames {
     pub(crate) map: String,
     pub(crate) odom: String,
@@ -64,6 +64,7 @@ struct Waiting {
 }
 
 /// The robot as a source of readings.
+#[derive(Default)]
 pub(crate) struct Source {
     names: FrameNames,
     is_localized: bool,
@@ -82,18 +83,7 @@ pub(crate) struct Source {
 impl Source {
     /// A robot without a message. `is_localized`: this node publishes the transform from the map to the odometry.
     pub(crate) fn new(names: FrameNames, is_localized: bool) -> Self {
-        Self {
-            names,
-            is_localized,
-            frames: Frames::default(),
-            motions: Motions::default(),
-            waiting: VecDeque::new(),
-            last_ns: None,
-            is_restart: false,
-            lost_laser: None,
-            count: ScanCount::default(),
-            notes: Vec::new(),
-        }
+        Self { names, is_localized, ..Self::default() }
     }
 
     /// The frame of the robot in use.
@@ -192,7 +182,7 @@ impl Source {
         }
         self.last_ns = Some(end_ns);
         let is_restart = std::mem::take(&mut self.is_restart);
-        if self.waiting.len() == MOST_WAITING {
+        if self.waiting.len() == MAX_WAITING {
             self.waiting.pop_front();
             self.count.unplaced += 1;
         }

@@ -9,31 +9,12 @@ use crate::ros_args::RosArgs;
 /// Scans that wait for the node: a node that saves its state must not lose one.
 const SCANS: usize = 100;
 
-/// A topic with its full name.
-type Named = (Topic, String, Quality);
-
 /// The topics and services of the mapping node.
 ///
 /// # Errors
 ///
 /// When a name is not valid.
 pub fn curious_wiring(parameters: &Parameters, names: &Names, ros: &RosArgs) -> Result<Wiring, NameError> {
-    let named = |topic: Topic| -> Result<Named, NameError> {
-        let name = match topic {
-            Topic::Scan => &parameters.scan_topic,
-            Topic::Odometry => &parameters.odom_topic,
-            _ => topic.default_name(),
-        };
-        let quality = match topic {
-            Topic::Scan => Quality {
-                is_reliable: parameters.scan_reliability == "reliable",
-                depth: SCANS,
-                ..topic.quality()
-            },
-            _ => topic.quality(),
-        };
-        Ok((topic, names.resolved("topic", name, ros)?, quality))
-    };
     let mut subscribed = vec![Topic::Scan, Topic::Odometry, Topic::Transforms, Topic::StaticTransforms];
     let mut published =
         vec![Topic::Transforms, Topic::Map, Topic::MapUpdates, Topic::ChangeMap, Topic::PredictedMap];
@@ -48,14 +29,21 @@ pub fn curious_wiring(parameters: &Parameters, names: &Names, ros: &RosArgs) -> 
             Navigator::Nav2 => navigate_to_pose = Some(names.resolved("action", "navigate_to_pose", ros)?),
         }
     }
+    let scan = Quality {
+        is_reliable: parameters.scan_reliability == "reliable",
+        depth: SCANS,
+        ..Topic::Scan.quality()
+    };
+    let name = |topic: Topic| match topic {
+        Topic::Scan => &parameters.scan_topic,
+        Topic::Odometry => &parameters.odom_topic,
+        _ => topic.default_name(),
+    };
     Ok(Wiring {
-        name: names.node().to_owned(),
-        namespace: names.namespace().to_owned(),
-        subscribed: subscribed.into_iter().map(named).collect::<Result<_, _>>()?,
-        published: published.into_iter().map(named).collect::<Result<_, _>>()?,
         save_state: Some(names.resolved("service", "~/save_state", ros)?),
         navigate_to_pose,
         parameters: parameters.list(),
+        ..wiring(names, ros, [&subscribed, &published], scan, name)?
     })
 }
 
@@ -65,10 +53,7 @@ pub fn curious_wiring(parameters: &Parameters, names: &Names, ros: &RosArgs) -> 
 ///
 /// When a name is not valid.
 pub fn simulation_wiring(names: &Names, ros: &RosArgs) -> Result<Wiring, NameError> {
-    let named = |topic: Topic| -> Result<Named, NameError> {
-        Ok((topic, names.resolved("topic", topic.default_name(), ros)?, topic.quality()))
-    };
-    let scan = Quality { is_reliable: true, ..Quality::SENSOR };
+    let subscribed = [Topic::Velocity, Topic::StampedVelocity];
     let published = [
         Topic::Scan,
         Topic::Odometry,
@@ -77,18 +62,29 @@ pub fn simulation_wiring(names: &Names, ros: &RosArgs) -> Result<Wiring, NameErr
         Topic::Clock,
         Topic::GroundTruth,
     ];
-    let with_scan = |(topic, name, quality)| (topic, name, if topic == Topic::Scan { scan } else { quality });
+    let scan = Quality { is_reliable: true, ..Quality::SENSOR };
+    wiring(names, ros, [&subscribed, &published], scan, Topic::default_name)
+}
+
+/// The wiring of a node that subscribes and publishes these topics.
+fn wiring<'a>(
+    names: &Names,
+    ros: &RosArgs,
+    topics: [&[Topic]; 2],
+    scan: Quality,
+    name: impl Fn(Topic) -> &'a str,
+) -> Result<Wiring, NameError> {
+    let named = |topic: &Topic| -> Result<_, NameError> {
+        let quality = if *topic == Topic::Scan { scan } else { topic.quality() };
+        Ok((*topic, names.resolved("topic", name(*topic), ros)?, quality))
+    };
+    let all = |topics: &[Topic]| topics.iter().map(named).collect::<Result<Vec<_>, NameError>>();
+    let [subscribed, published] = topics.map(all);
     Ok(Wiring {
         name: names.node().to_owned(),
         namespace: names.namespace().to_owned(),
-        subscribed: [Topic::Velocity, Topic::StampedVelocity]
-            .into_iter()
-            .map(named)
-            .collect::<Result<_, _>>()?,
-        published: published
-            .into_iter()
-            .map(|topic| named(topic).map(with_scan))
-            .collect::<Result<_, _>>()?,
+        subscribed: subscribed?,
+        published: published?,
         save_state: None,
         navigate_to_pose: None,
         parameters: Vec::new(),

@@ -115,16 +115,40 @@ fn two_logs_of_one_place_add_up() {
 
 /// A CARMEN log of a laser that stands before a wall, in a room 6 m wide: something is before it for every other 10 s.
 pub(crate) fn standing_log(begin_s: f64, seconds: u32) -> String {
-    let line = |step: u32| {
-        let (time_s, near) = (begin_s + f64::from(step), (step / 10).is_multiple_of(2));
-        let range_m = |beam: u32| match f64::from(beam).to_radians().sin_cos() {
-            _ if near && (70..110).contains(&beam) => 1.0,
-            (ahead, aside) => (4.0 / ahead.max(1e-9)).min(3.0 / aside.abs().max(1e-9)),
-        };
-        let ranges: String = (0..180).map(|beam| format!("{:.2} ", range_m(beam))).collect();
-        format!("ODOM 1 2 0 0 0 0 {time_s} h 0\nFLASER 180 {ranges}0 0 0 0 0 0 {time_s} h 0\n")
-    };
+    let line = |step: u32| standing_line(begin_s + f64::from(step), (step / 10).is_multiple_of(2));
     (0..seconds).map(line).collect()
+}
+
+/// One scan of this log. What is `near` is 0.35 m wide.
+fn standing_line(time_s: f64, near: bool) -> String {
+    let range_m = |beam: u32| match f64::from(beam).to_radians().sin_cos() {
+        _ if near && (80..100).contains(&beam) => 1.0,
+        (ahead, aside) => (4.0 / ahead.max(1e-9)).min(3.0 / aside.abs().max(1e-9)),
+    };
+    let ranges: String = (0..180).map(|beam| format!("{:.2} ", range_m(beam))).collect();
+    format!("ODOM 1 2 0 0 0 0 {time_s} h 0\nFLASER 180 {ranges}0 0 0 0 0 0 {time_s} h 0\n")
+}
+
+#[test]
+fn a_thing_that_comes_and_goes_from_the_first_scan_on_is_a_place_with_its_rate() {
+    let run = Run::new().with_map_log();
+    let (mut lines, mut time_s, mut scans) = (String::new(), 0.0, 0);
+    for stay in 0..180_u32 {
+        // 0.8 to 1.2 s, in an order without a pattern.
+        time_s += 0.8 + f64::from(stay * stay % 41) / 100.0;
+        while f64::from(scans) * 0.1 < time_s {
+            lines += &standing_line(1.7e9 + f64::from(scans) * 0.1, stay.is_multiple_of(2));
+            scans += 1;
+        }
+    }
+    run.write("a.log", &lines);
+    run.goes_well("a.log --no-rrd --quiet");
+    let summary = run.summary();
+    let place = &summary.0["places"][0];
+    let number = |key: &str| place[key].as_f64().unwrap();
+    assert_eq!(summary.0["places"].as_array().unwrap().len(), 1, "{place}");
+    assert!(number("area_m2") < 0.02 && number("changes") > 170.0, "{place}");
+    assert!((number("cycles_per_hour") / (90.0 / time_s * 3600.0) - 1.0).abs() < 0.05, "{place}");
 }
 
 #[test]
@@ -213,7 +237,7 @@ fn logs_that_cannot_be_true_are_refused_before_anything_is_written() {
     run.write("a.log", &scaled_log(100.0));
     let message = refuses(&run, "a.log", &["a.log"]);
     assert!(
-        message.contains("(the first: 331, which would be 3.31 m); ranges are in metres: divide them by 100"),
+        message.contains("(the first: 366, which would be 3.66 m); ranges are in metres: divide them by 100"),
         "{message}"
     );
     run.write("a.log", &scaled_log(0.001));

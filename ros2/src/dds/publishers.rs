@@ -18,37 +18,20 @@ pub(super) struct Publishers {
     problem: Option<String>,
 }
 
-/// The content of a message that holds this variant.
-macro_rules! only {
-    ($variant:ident) => {
-        |message| match message {
-            Message::$variant(content) => Some(content),
-            _ => None,
-        }
-    };
-}
-
 impl Publishers {
     pub(super) fn new(node: &mut Node, wiring: &Wiring) -> anyhow::Result<Self> {
         let (mut by_topic, mut ids) = (BTreeMap::new(), BTreeSet::new());
         for (topic, name, quality) in &wiring.published {
             let at = (*topic, name.as_str(), quality);
-            let (send, id) = match topic {
-                Topic::Scan => open(node, at, only!(Scan)),
-                Topic::Odometry | Topic::GroundTruth => open(node, at, |message| match message {
-                    Message::Odometry(content) => Some(*content),
-                    _ => None,
-                }),
-                Topic::Transforms | Topic::StaticTransforms => open(node, at, only!(Transforms)),
-                Topic::Clock => open(node, at, only!(Clock)),
-                Topic::Velocity => open(node, at, only!(Twist)),
-                Topic::StampedVelocity => open(node, at, only!(TwistStamped)),
-                Topic::Resume => open(node, at, only!(Bool)),
-                Topic::Map | Topic::ChangeMap | Topic::PredictedMap => open(node, at, only!(Grid)),
-                Topic::MapUpdates => open(node, at, only!(GridUpdate)),
-                Topic::Markers => open(node, at, only!(Markers)),
-                Topic::GoalPose => open(node, at, only!(Pose)),
-            }?;
+            macro_rules! publisher {
+                ($variant:ident) => {
+                    open(node, at, |message| match message {
+                        Message::$variant(content) => Some(content),
+                        _ => None,
+                    })
+                };
+            }
+            let (send, id) = by_type!(topic, publisher)?;
             by_topic.insert(*topic, send);
             ids.insert(id);
         }

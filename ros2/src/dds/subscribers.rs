@@ -29,21 +29,12 @@ pub(super) fn start(
     let mut streams = Vec::new();
     for (topic, name, quality) in &wiring.subscribed {
         let at = (*topic, name.as_str(), quality);
-        streams.push(match topic {
-            Topic::Scan => open(node, at, Message::Scan),
-            Topic::Odometry | Topic::GroundTruth => {
-                open(node, at, |odometry| Message::Odometry(Box::new(odometry)))
-            }
-            Topic::Transforms | Topic::StaticTransforms => open(node, at, Message::Transforms),
-            Topic::Clock => open(node, at, Message::Clock),
-            Topic::Velocity => open(node, at, Message::Twist),
-            Topic::StampedVelocity => open(node, at, Message::TwistStamped),
-            Topic::Resume => open(node, at, Message::Bool),
-            Topic::Map | Topic::ChangeMap | Topic::PredictedMap => open(node, at, Message::Grid),
-            Topic::MapUpdates => open(node, at, Message::GridUpdate),
-            Topic::Markers => open(node, at, Message::Markers),
-            Topic::GoalPose => open(node, at, Message::Pose),
-        }?);
+        macro_rules! subscription {
+            ($variant:ident) => {
+                open(node, at, Message::$variant)
+            };
+        }
+        streams.push(by_type!(topic, subscription)?);
     }
     let mut filter = Filter { context: context.clone(), own, known: BTreeMap::new() };
     let to = to.clone();
@@ -87,8 +78,8 @@ struct Filter {
     known: BTreeMap<Gid, String>,
 }
 
-/// The most publishers that are remembered: nodes come and go.
-const MOST_KNOWN: usize = 1000;
+/// Maximum number of publishers that are remembered: nodes come and go.
+const MAX_KNOWN: usize = 1000;
 
 impl Filter {
     fn event(&mut self, Received { topic, content }: Received) -> Option<Event> {
@@ -125,7 +116,7 @@ impl Filter {
         let writers = self.context.domain_participant().discovered_writers();
         let is_this = |guid| Gid::from(guid) == publisher;
         let found = writers.into_iter().find(|writer| is_this(writer.writer_proxy.remote_writer_guid))?;
-        if self.known.len() >= MOST_KNOWN {
+        if self.known.len() >= MAX_KNOWN {
             self.known.clear();
         }
         let found = found.publication_topic_data.type_name;

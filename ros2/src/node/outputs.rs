@@ -1,10 +1,7 @@
 //! The messages that tell other nodes what the robot does.
 
 use crate::maps::PublishedMaps;
-use crate::message::{
-    Color, Header, Marker, Markers as MarkersMessage, Message, Pose, PoseStamped, Time, Topic,
-    TransformStamped, Transforms, Twist, TwistStamped, Vector,
-};
+use crate::message::{Color, Header, Marker, Markers as MarkersMessage, Message, Pose, Vector};
 use crate::parameters::Parameters;
 use nalgebra::{Isometry2, Point2};
 use std::time::Instant;
@@ -39,44 +36,6 @@ impl Published {
             switches: 0,
         }
     }
-}
-
-pub(super) fn header(stamp: Time, frame: &str) -> Header {
-    Header { stamp, frame_id: frame.to_owned() }
-}
-
-/// The transform from the map to the odometry, which holds for `ahead_s` after its time.
-pub(super) fn transform(pose: &Isometry2<f64>, stamp: Time, ahead_s: f64, map: &str, odom: &str) -> Message {
-    let stamp = Time::from_ns(stamp.ns().saturating_add((ahead_s * 1e9) as i64));
-    let transform = TransformStamped {
-        header: header(stamp, map),
-        child_frame_id: odom.to_owned(),
-        transform: Pose::in_plane(pose),
-    };
-    Message::Transforms(Transforms { transforms: vec![transform] })
-}
-
-pub(super) fn velocity(
-    twist: &interfaces::Twist,
-    is_stamped: bool,
-    stamp: Time,
-    base: &str,
-) -> (Topic, Message) {
-    let twist = Twist {
-        linear: Vector { x: twist.linear_mps, ..Vector::default() },
-        angular: Vector { z: twist.angular_radps, ..Vector::default() },
-    };
-    match is_stamped {
-        true => {
-            let message = TwistStamped { header: header(stamp, base), twist };
-            (Topic::StampedVelocity, Message::TwistStamped(message))
-        }
-        false => (Topic::Velocity, Message::Twist(twist)),
-    }
-}
-
-pub(super) fn goal(pose: &Isometry2<f64>, stamp: Time, map: &str) -> PoseStamped {
-    PoseStamped { header: header(stamp, map), pose: Pose::in_plane(pose) }
 }
 
 /// The goal and the path as they were drawn last.

@@ -1,8 +1,10 @@
 //! What other nodes hear of a reading.
 
-use super::{CuriousNode, outputs};
+use super::CuriousNode;
 use crate::link::Link;
-use crate::message::{Message, Time, Topic};
+use crate::message::{
+    Message, Pose, PoseStamped, Time, Topic, Twist as TwistMessage, TwistStamped, Vector, header, transform,
+};
 use crate::order::Order;
 use crate::parameters::{Navigator, Parameters};
 use interfaces::Twist;
@@ -14,7 +16,7 @@ impl<L: Link> CuriousNode<L> {
     pub(super) fn publish_reading(&mut self, stamp: Time, order: Order, now: Instant) {
         self.obey(order, stamp);
         self.publish_transform(now);
-        let header = outputs::header(stamp, &self.parameters.map_frame);
+        let header = header(stamp, &self.parameters.map_frame);
         for (topic, message) in self.published.maps.after(&self.robot.mapper, &header, now) {
             if !self.link.send(topic, message) {
                 self.published.maps.repeat();
@@ -36,12 +38,20 @@ impl<L: Link> CuriousNode<L> {
             Order::None => {}
             Order::Velocity(twist) => {
                 self.is_stopped = false;
-                let is_stamped = self.parameters.enable_stamped_cmd_vel;
-                let (topic, message) = outputs::velocity(&twist, is_stamped, stamp, self.source.base());
-                self.link.send(topic, message);
+                let linear = Vector { x: twist.linear_mps, ..Vector::default() };
+                let angular = Vector { z: twist.angular_radps, ..Vector::default() };
+                let twist = TwistMessage { linear, angular };
+                if self.parameters.enable_stamped_cmd_vel {
+                    let header = header(stamp, self.source.base());
+                    let message = Message::TwistStamped(TwistStamped { header, twist });
+                    self.link.send(Topic::StampedVelocity, message);
+                } else {
+                    self.link.send(Topic::Velocity, Message::Twist(twist));
+                }
             }
             Order::Goal(pose) => {
-                let goal = outputs::goal(&pose, stamp, &self.parameters.map_frame);
+                let header = header(stamp, &self.parameters.map_frame);
+                let goal = PoseStamped { header, pose: Pose::in_plane(&pose) };
                 if self.parameters.navigator == Navigator::Nav2 {
                     self.link.navigate(Some(goal.clone()));
                 } else {
@@ -70,7 +80,9 @@ impl<L: Link> CuriousNode<L> {
         let timeout_s = self.parameters.transform_timeout_s;
         let since_s = now.duration_since(at).as_secs_f64().min(timeout_s);
         let Parameters { map_frame, odom_frame, .. } = &self.parameters;
-        let message = outputs::transform(map_to_odom, stamp, since_s + timeout_s, map_frame, odom_frame);
+        let ahead_ns = ((since_s + timeout_s) * 1e9) as i64;
+        let stamp = Time::from_ns(stamp.ns().saturating_add(ahead_ns));
+        let message = transform(stamp, (map_frame, odom_frame), Pose::in_plane(map_to_odom));
         self.link.send(Topic::Transforms, message);
         self.published.next_transform = now + Duration::from_secs_f64(period_s);
     }

@@ -49,14 +49,16 @@ impl<L: Link> CuriousNode<L> {
             Ok(()) => Answer { is_done: true, text: format!("the state is saved in {name}") },
             Err(why) => refused(&format!("{name}: cannot save the state: {why}")),
         };
-        askers.into_iter().for_each(|asker| self.answer(asker, answer.clone()));
+        for asker in askers {
+            self.answer(asker, answer.clone());
+        }
         answer
     }
 
     fn answer(&mut self, asker: Asker, answer: Answer) {
         match asker {
-            Asker::Signal => self.notes.say(&answer.text),
-            Asker::Request(request) => self.link.answer(request, answer),
+            None => self.notes.say(&answer.text),
+            Some(request) => self.link.answer(request, answer),
         }
     }
 }

@@ -1,5 +1,6 @@
-//! Parameters that are one of a few names.
+//! The types of parameters.
 
+use crate::value::Value;
 use interfaces::PoseMode;
 use mapper::NoReturn;
 
@@ -25,27 +26,60 @@ pub enum Navigator {
     GoalPose,
 }
 
-impl Choice for NoReturn {
-    const EXPECTED: &'static str = "learn, free or ignore";
-    const ALL: &'static [(Self, &'static [&'static str])] =
-        &[(Self::Learn, &["learn"]), (Self::Free, &["free"]), (Self::Ignore, &["ignore"])];
-}
-
 /// A value with a name.
-pub(super) trait Choice: Copy + PartialEq + 'static {
+trait Choice: Copy + PartialEq + 'static {
     /// The names, as an error lists them.
     const EXPECTED: &'static str;
     /// Every value with its names, the first of which is the usual one.
     const ALL: &'static [(Self, &'static [&'static str])];
+}
 
-    fn named(name: &str) -> Option<Self> {
-        Self::ALL.iter().find(|(_, names)| names.contains(&name)).map(|(value, _)| *value)
+/// Where the value of a parameter is.
+pub(super) trait Slot {
+    /// # Errors
+    ///
+    /// The valid values.
+    fn set(&mut self, value: &Value) -> Result<(), &'static str>;
+
+    fn get(&self) -> Value;
+}
+
+impl<C: Choice> Slot for C {
+    fn set(&mut self, value: &Value) -> Result<(), &'static str> {
+        let is_named =
+            |(_, names): &&(C, &[&str])| matches!(value, Value::Text(name) if names.contains(&&**name));
+        *self = Self::ALL.iter().find(is_named).ok_or(C::EXPECTED)?.0;
+        Ok(())
     }
 
-    fn name(self) -> &'static str {
-        Self::ALL.iter().find(|(value, _)| *value == self).map_or("", |(_, names)| names[0])
+    fn get(&self) -> Value {
+        let own = Self::ALL.iter().find(|(value, _)| value == self);
+        Value::Text(own.map_or("", |(_, names)| names[0]).to_owned())
     }
 }
+
+macro_rules! slot {
+    ($kind:ty, $variant:ident, $expected:literal, { $($from:pat => $to:expr),+ }) => {
+        impl Slot for $kind {
+            fn set(&mut self, value: &Value) -> Result<(), &'static str> {
+                *self = match value {
+                    $($from => $to,)+
+                    _ => return Err($expected),
+                };
+                Ok(())
+            }
+
+            fn get(&self) -> Value {
+                Value::$variant(self.clone())
+            }
+        }
+    };
+}
+
+slot!(String, Text, "a text", { Value::Text(text) => text.clone() });
+slot!(f64, Float, "a number", { Value::Float(number) => *number, Value::Integer(number) => *number as f64 });
+slot!(i64, Integer, "a whole number", { Value::Integer(number) => *number });
+slot!(bool, Bool, "true or false", { Value::Bool(value) => *value });
 
 impl Choice for Mode {
     const EXPECTED: &'static str = "map or explore";
@@ -64,4 +98,10 @@ impl Choice for PoseMode {
     const EXPECTED: &'static str = "exact, odometry or localized";
     const ALL: &'static [(Self, &'static [&'static str])] =
         &[(Self::Exact, &["exact"]), (Self::Odometry, &["odometry"]), (Self::Localized, &["localized"])];
+}
+
+impl Choice for NoReturn {
+    const EXPECTED: &'static str = "learn, free or ignore";
+    const ALL: &'static [(Self, &'static [&'static str])] =
+        &[(Self::Learn, &["learn"]), (Self::Free, &["free"]), (Self::Ignore, &["ignore"])];
 }

@@ -40,7 +40,7 @@ mod tests {
         file.write_all(text.as_bytes()).unwrap();
         let path = file.path().to_str().unwrap();
         let line = ["--ros-args", "--params-file", path].into_iter();
-        let (_, ros) = RosArgs::split(line.chain(then.iter().copied()).map(str::to_owned))
+        let (_, ros) = RosArgs::split(line.chain(then.iter().copied()).map(Into::into))
             .map_err(|error| error.to_string())?;
         let mut parameters = Parameters::default();
         let set = parameters.set_all(ros.parameters_of("/robot1/curious_node"));
@@ -80,7 +80,7 @@ mod tests {
         let mut file = tempfile::NamedTempFile::new().unwrap();
         file.write_all(b"other: {ros__parameters: {a: 1}}").unwrap();
         let path = file.path().to_str().unwrap();
-        let line = ["--ros-args", "--params-file", path].map(str::to_owned);
+        let line = ["--ros-args", "--params-file", path].map(Into::into);
         let (_, ros) = RosArgs::split(line).unwrap();
         assert_eq!(ros.files_without("/curious_node"), [path]);
         assert_eq!(ros.files_without("/other"), Vec::<&str>::new());

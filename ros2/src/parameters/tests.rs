@@ -16,7 +16,7 @@ fn every_parameter_has_a_name_a_value_and_a_slot() {
 fn invalid_parameters_are_named() {
     let error = |name, value: &str| {
         let mut parameters = Parameters::default();
-        let set = parameters.set(name, &Value::parse(value));
+        let set = parameters.set(name, &crate::params_file::value_of(value));
         set.and_then(|()| parameters.check()).unwrap_err().to_string()
     };
     assert!(error("resolutoin", "1").starts_with("there is no parameter `resolutoin`; there are mode, "));

@@ -1,12 +1,11 @@
 //! The motion of the robot by odometry, from tf or from a topic.
 
+use super::RESTART_NS;
 use interfaces::{Twist, VelocitySample};
 use logs::Odometry;
 use logs::ros::flat;
 use nalgebra::{Isometry2, Isometry3};
 
-/// A pose that is older than the last one by more than this comes from a clock that has started anew, ns.
-const RESTART_NS: i64 = 1_000_000_000;
 /// A pose that is older than a scan by more than this is not the pose of the scan, s.
 const LATEST_S: f64 = 0.1;
 /// Odometry on a topic is used if no transform has come for this time, ns.

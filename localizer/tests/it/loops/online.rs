@@ -191,6 +191,16 @@ fn a_loop_is_closed_while_the_robot_drives() {
     assert!(trip.wrong_walls() < 0.01);
 }
 
+#[test]
+fn a_robot_that_was_lost_gets_the_map_of_the_corrected_trajectory() {
+    let corridor = Corridor::new([30.0, 20.0], Plan::OneSide, 103).with_laser(61, 90_f64.to_radians());
+    let trip = trip(corridor, 1.5, 103, false);
+    trip.report("100 m, mostly smooth");
+    // Of the few poses that were certain before, none has moved.
+    assert!(trip.corrections[0].1.largest_m < 0.01, "{:?}", trip.corrections);
+    assert!(quantile(&trip.errors_m[1], 1.0) < 0.5 && trip.not_certain[1] < 500);
+}
+
 /// A round of 50 m of the localizer alone, and of one with a guide: the scans without a certain pose, and the error of the
 /// position that 95 % do not exceed, m.
 fn alone_and_guided(corridor: impl Fn() -> Corridor) -> [(usize, f64); 2] {

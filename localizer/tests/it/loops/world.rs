@@ -19,6 +19,8 @@ pub(crate) enum Plan {
     Varied,
     /// The same niche every 4 m, everywhere.
     Repeated,
+    /// Niches and rooms along the first side only: elsewhere the walls are smooth.
+    OneSide,
 }
 
 /// A corridor around a block of `length_m` × `depth_m`, measured in the middle of the corridor, and a laser.
@@ -53,7 +55,10 @@ impl Corridor {
         for (corners, outward) in [(corner(half), 1.0), (corner(-half), -1.0)] {
             for side in 0..4 {
                 let [from, to] = [corners[side], corners[(side + 1) % 4]].map(|(x, y)| Point2::new(x, y));
-                corridor.add_side(from, to, outward, plan);
+                match plan {
+                    Plan::OneSide if side > 0 => corridor.walls.push((from, to)),
+                    _ => corridor.add_side(from, to, outward, plan),
+                }
             }
         }
         corridor
@@ -79,7 +84,7 @@ impl Corridor {
         loop {
             let (gap_m, width_m, depth_m, is_room) = match plan {
                 Plan::Repeated => (3.0, 1.0, 0.3, false),
-                Plan::Varied => {
+                Plan::Varied | Plan::OneSide => {
                     let is_room = self.random.bernoulli(0.3);
                     let depth_m =
                         if is_room { self.random.uniform(2.0..4.0) } else { self.random.uniform(0.1..0.5) };

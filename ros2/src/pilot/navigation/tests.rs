@@ -35,10 +35,10 @@ fn navigation(pilot: &mut LivePilot) -> &mut Navigation {
 /// What Nav2 says in a turn in which the controller of the other robot has finished its goal.
 fn news(before: GoalCount, after: GoalCount, target: Option<Target>) -> Option<link::Navigation> {
     let stays = target.is_some_and(|target| target.stay_s > 0.0);
-    match () {
-        () if after.given_up > before.given_up => Some(link::Navigation::GivenUp),
-        () if after != before && !stays => Some(link::Navigation::Reached),
-        () => None,
+    if after.given_up > before.given_up {
+        Some(link::Navigation::GivenUp)
+    } else {
+        (after != before && !stays).then_some(link::Navigation::Reached)
     }
 }
 
