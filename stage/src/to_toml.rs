@@ -42,7 +42,6 @@ const STAGE_KEYS: [(&str, &str); 10] = [
 ];
 
 /// A world file made of a Stage world.
-#[derive(Default)]
 pub(super) struct Made<'a> {
     pub(super) text: String,
     tables: Vec<Origin<'a>>,
@@ -103,10 +102,10 @@ impl StageWorld {
         let map = self.map();
         let (name, low) = (Value::from(self.name.as_str()), point(&map.low));
         let files = self.files.join(", ");
-        let mut made = Made::default();
-        made.text = format!(
+        let text = format!(
             "# Made from {files}. Lengths in metres, angles in degrees.\n# [0, 0] here is {low} there.\nname = {name}\n"
         );
+        let mut made = Made { text, tables: Vec::new() };
         let size_m = map.size_m.into();
         made.table("[map]", vec![("size_m", point(&size_m)), ("cell_m", number(map.cell_m))]);
         made.table("[physics]", vec![("step_s", number(self.step_s))]);
