@@ -1,6 +1,7 @@
 //! The cells that the driven robot could see, wherever it drives.
 
-use super::free_space::{FreeSpace, solids};
+use super::free_poses::FreePoses;
+use super::free_space::solids;
 use super::ground_truth::start;
 use super::rays::{Beams, Scene};
 use super::shape::Rectangle;
@@ -34,11 +35,11 @@ impl WorldSpec {
         candidates: impl Fn(&GridFrame, &[TrueState], &[bool]) -> Vec<bool>,
     ) -> Vec<bool> {
         let (frame, robot) = (&self.frame, self.driven());
-        let (solids, space) = (solids(self), FreeSpace::new(self, robot.radius_m));
+        let (solids, mut reached) = (solids(self), vec![false; frame.len()]);
         let states = start::walls_cover(frame, &solids);
-        let own = space.region_near(&robot.pose.translation.vector.into(), robot.radius_m);
-        let reached: Vec<bool> =
-            space.regions().iter().map(|region| region.is_some() && *region == own).collect();
+        for cell in FreePoses::reachable(self, self.driven_index()).iter().flat_map(FreePoses::cells) {
+            reached[*cell] = true;
+        }
         let range_m = robot.laser.range_max_m;
         let sight = Sight::new(frame, &solids, range_m, robot.radius_m, &reached);
         let candidates = candidates(frame, &states, &reached);
