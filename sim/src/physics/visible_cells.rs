@@ -1,5 +1,6 @@
 //! The cells that the driven robot could see, wherever it drives.
 
+use super::fleet::corners;
 use super::free_poses::FreePoses;
 use super::free_space::solids;
 use super::ground_truth::start;
@@ -97,9 +98,7 @@ impl<'a> Sight<'a> {
         radius_m: f64,
         reached: &'a [bool],
     ) -> Self {
-        let size = Vector2::new(frame.width() as f64, frame.height() as f64) * frame.resolution_m();
-        let corners = (frame.origin(), frame.origin() + size);
-        let scene = Scene::new(corners, solids, Vec::new(), 0, range_m);
+        let scene = Scene::new(corners(frame), solids, Vec::new(), 0, range_m);
         let beams = [NEAR_M.min(range_m), range_m]
             .map(|range_m| (range_m, Beams::new(-PI, TAU / DIRECTIONS as f64, DIRECTIONS, range_m)));
         Self { frame, reached, radius_m: radius_m.min(range_m), beams, scene }
