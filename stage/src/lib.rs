@@ -63,7 +63,6 @@ use nalgebra::{Isometry2, Point2};
 use sim::physics::{FleetSpec, Form, OdometryError, Rectangle};
 use std::collections::BTreeMap;
 use std::path::Path;
-use worldfile::floor_plan::FloorPlan;
 use worldfile::{Files, Findings};
 
 /// A world as described by a Stage file.
@@ -88,12 +87,8 @@ pub struct StageWorld {
 pub struct StageWall {
     /// The name of the model. If the file has no name, it is generated as in Stage.
     pub name: String,
-    /// The color of the model in Stage.
-    pub color: Option<String>,
     /// The place in the file, for example `cave.world:12`.
     pub place: String,
-    /// The pixels, if the model is a bitmap.
-    pub plan: Option<FloorPlan>,
     /// The pieces of the model, including those of the plan.
     pub rectangles: Vec<Rectangle>,
     /// The tag that fiducial finders detect; a wall with a tag is one rectangle.
@@ -106,8 +101,6 @@ pub struct StageWall {
 pub struct StageRobot {
     /// The name of the robot. If the file has no name, it is generated as in Stage.
     pub name: String,
-    /// The color of the robot in Stage.
-    pub color: Option<String>,
     /// The place in the file, for example `cave.world:12`.
     pub place: String,
     /// The pose at the start, m and rad: the pose of the point that the robot turns about.

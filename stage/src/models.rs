@@ -17,7 +17,6 @@ const NEAR_M: f64 = 1e-6;
 /// A model at its pose.
 pub(super) struct Placed {
     pub(super) name: String,
-    pub(super) color: Option<String>,
     /// Whether robots bump into it or lasers see it.
     pub(super) is_solid: bool,
     /// The tag of the model, and the place of the tag in the file.
@@ -38,10 +37,9 @@ impl Builder<'_, '_> {
         has_box: bool,
     ) -> Placed {
         let name = self.name(model);
-        let color = self.text(model, "color").map(|(color, place)| {
+        if let Some((_, place)) = self.text(model, "color") {
             self.sources.has_no_effect(place, "color");
-            color
-        });
+        }
         let collides = self.flag(model, "obstacle_return").unwrap_or(true);
         let by_rangers = self.number(model, "ranger_return", -1e5..=1e5).is_none_or(|value| value >= 0.0);
         let by_lasers = self.flag(model, "laser_return").unwrap_or(true);
@@ -67,7 +65,7 @@ impl Builder<'_, '_> {
             };
             self.sources.warning(model.place, what, help);
         }
-        Placed { name, color, is_solid: collides || is_seen, tag, at, top, body }
+        Placed { name, is_solid: collides || is_seen, tag, at, top, body }
     }
 
     /// A name that no other model has.
@@ -117,7 +115,7 @@ impl Builder<'_, '_> {
 
     fn wall(&mut self, model: &Entity, on: &Pose) {
         let placed = self.placed(model, on, DEFAULT_SIZE_M, true);
-        let Placed { name, color, tag, at, top, body, .. } = placed;
+        let Placed { name, tag, at, top, body, .. } = placed;
         if let Some((_, place)) = self.text(model, "ctrl") {
             let what = "controllers of Stage cannot be loaded";
             self.sources.warning(place, what, "this thing stands still");
@@ -142,9 +140,9 @@ impl Builder<'_, '_> {
             if let Some((_, place)) = tag {
                 self.tagged.push((self.walls.len(), at.flat.translation.vector.into(), place));
             }
-            let (place, plan, at) = (self.sources.name(place), body.plan, place);
+            let (place, at) = (self.sources.name(place), place);
             let tag = tag.map(|(tag, _)| tag);
-            self.walls.push(StageWall { name, color, place, plan, rectangles, tag, at });
+            self.walls.push(StageWall { name, place, rectangles, tag, at });
         }
         for part in model.carried() {
             self.add(part, &top, false);

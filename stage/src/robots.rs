@@ -16,7 +16,7 @@ impl Builder<'_, '_> {
     /// Adds a robot with all that it carries.
     pub(super) fn robot(&mut self, entity: &Entity) {
         let placed = self.placed(entity, &Pose::default(), DEFAULT_SIZE_M, true);
-        let Placed { name, color, tag, at, top, body, .. } = placed;
+        let Placed { name, tag, at, top, body, .. } = placed;
         if !placed.is_solid {
             let help = "here every robot is solid and seen";
             self.sources.warning(entity.place, "this robot is a ghost in Stage", help);
@@ -24,7 +24,6 @@ impl Builder<'_, '_> {
         let (drive, velocity, acceleration, odometry) = self.motion(entity);
         let mut robot = StageRobot {
             name,
-            color,
             place: self.sources.name(entity.place),
             pose: at.flat,
             footprint: Vec::new(),

@@ -1,5 +1,6 @@
 //! A Stage world written as a world file of this project.
 
+use super::lexer::Span;
 use super::polygon::bounds;
 use super::{Bounds, Drive, StageRobot, StageSensor, StageWall, StageWorld, fastest};
 use nalgebra::{Point2, Vector2};
@@ -26,10 +27,66 @@ const WANDER_MPS: f64 = 0.4;
 /// The keys of a table with their values.
 type Keys = Vec<(&'static str, Value)>;
 
+/// The keys of a world file, and the keys of a Stage robot that they come from.
+const STAGE_KEYS: [(&str, &str); 10] = [
+    ("max_linear_mps", "velocity_bounds"),
+    ("max_left_mps", "velocity_bounds"),
+    ("max_angular_degps", "velocity_bounds"),
+    ("max_linear_acceleration_mps2", "acceleration_bounds"),
+    ("max_left_acceleration_mps2", "acceleration_bounds"),
+    ("max_angular_acceleration_degps2", "acceleration_bounds"),
+    ("wheelbase_m", "wheelbase"),
+    ("mass_kg", "mass"),
+    ("distance_gain", "odom_error"),
+    ("turn_gain", "odom_error"),
+];
+
+/// A world file made of a Stage world.
+pub(super) struct Made<'a> {
+    pub(super) text: String,
+    tables: Vec<Origin<'a>>,
+}
+
+/// Where the table that begins at a byte of the text comes from.
+struct Origin<'a> {
+    start: usize,
+    at: Span,
+    robot: Option<&'a StageRobot>,
+}
+
+impl<'a> Made<'a> {
+    fn table(&mut self, header: &str, keys: Keys) {
+        self.text += &format!("\n{header}\n{}", lines(keys));
+    }
+
+    /// A table that comes from a thing or a robot at a place.
+    fn table_of(
+        &mut self,
+        header: &str,
+        (at, place): (Span, &str),
+        robot: Option<&'a StageRobot>,
+        keys: Keys,
+    ) {
+        self.tables.push(Origin { start: self.text.len(), at, robot });
+        self.table(&format!("{header}  # {place}"), keys);
+    }
+
+    /// What a line comes from; `None` for what holds for the whole world.
+    pub(super) fn origin(&self, line: usize) -> Option<Span> {
+        let mut lines = self.text.split_inclusive('\n');
+        let start: usize = lines.by_ref().take(line - 1).map(str::len).sum();
+        let after = self.tables.partition_point(|table| table.start < start);
+        let Origin { at, robot, .. } = self.tables[..after].last()?;
+        let key = lines.next()?.split(" = ").next()?;
+        let known = STAGE_KEYS.iter().find(|(made, _)| *made == key);
+        Some(known.zip(*robot).map_or(*at, |((_, key), robot)| robot.key(key)))
+    }
+}
+
 /// The map in Stage's coordinates.
 pub(super) struct Map {
     low: Point2<f64>,
-    pub(super) size_m: Vector2<f64>,
+    size_m: Vector2<f64>,
     cell_m: f64,
 }
 
@@ -38,40 +95,45 @@ impl StageWorld {
     /// the map is [0, 0]: what is at p in the Stage file is at p − [`StageWorld::map_origin`] there.
     /// Every table names the line of the Stage file that it comes from.
     pub fn to_toml(&self) -> String {
+        self.made().text
+    }
+
+    pub(super) fn made(&self) -> Made<'_> {
         let map = self.map();
         let (name, low) = (Value::from(self.name.as_str()), point(&map.low));
         let files = self.files.join(", ");
-        let mut text = format!(
+        let text = format!(
             "# Made from {files}. Lengths in metres, angles in degrees.\n# [0, 0] here is {low} there.\nname = {name}\n"
         );
-        let mut table = |header: &str, place: &str, keys: Keys| {
-            let comment = if place.is_empty() { "" } else { "  # " };
-            text += &format!("\n{header}{comment}{place}\n{}", lines(keys));
-        };
+        let mut made = Made { text, tables: Vec::new() };
         let size_m = map.size_m.into();
-        table("[map]", "", vec![("size_m", point(&size_m)), ("cell_m", number(map.cell_m))]);
-        table("[physics]", "", vec![("step_s", number(self.step_s))]);
-        for wall in &self.walls {
-            for rectangle in &wall.rectangles {
-                match wall.tag {
-                    Some(tag) => table("[[obstacle]]", &wall.place, map.tagged(wall, rectangle, tag)),
-                    None => table("[[wall]]", &wall.place, map.wall(rectangle)),
-                }
-            }
+        made.table("[map]", vec![("size_m", point(&size_m)), ("cell_m", number(map.cell_m))]);
+        made.table("[physics]", vec![("step_s", number(self.step_s))]);
+        for (wall, rectangle) in
+            self.walls.iter().flat_map(|wall| wall.rectangles.iter().map(move |r| (wall, r)))
+        {
+            let (header, keys) = match wall.tag {
+                Some(tag) => ("[[obstacle]]", map.tagged(wall, rectangle, tag)),
+                None => ("[[wall]]", map.wall(rectangle)),
+            };
+            made.table_of(header, (wall.at, &wall.place), None, keys);
         }
         for robot in &self.robots {
-            let place = &robot.place;
-            table("[[robot]]", place, map.robot(robot));
-            table("[robot.drive]", place, drive(robot));
+            let mut table = |header: &str, keys| {
+                made.table_of(header, (robot.at, &robot.place), Some(robot), keys);
+            };
+            table("[[robot]]", map.robot(robot));
+            table("[robot.drive]", drive(robot));
             let OdometryError { distance_gain, turn_gain, .. } = robot.odometry;
             if robot.odometry != OdometryError::default() {
                 let keys = vec![("distance_gain", number(distance_gain)), ("turn_gain", number(turn_gain))];
-                table("[robot.odometry]", place, keys);
+                table("[robot.odometry]", keys);
             }
             if robot.lasers.is_empty() {
                 let mut keys = vec![("beams", Value::from(180)), ("fov_deg", number(180.0))];
                 keys.extend([("range_max_m", number(8.0)), ("rate_hz", number(10.0))]);
-                table("[robot.laser]", &format!("{place}: none there"), keys);
+                let place = format!("{}: none there", robot.place);
+                made.table_of("[robot.laser]", (robot.at, &place), None, keys);
             }
             for (kind, sensor) in robot.sensors() {
                 let header = match kind {
@@ -80,11 +142,12 @@ impl StageWorld {
                     "sonar" => "[[robot.sonar]]",
                     _ => "[robot.fiducial]",
                 };
-                table(header, &sensor.place, self::sensor(kind, sensor, robot.radius_m()));
+                let keys = self::sensor(kind, sensor, robot.radius_m());
+                made.table_of(header, (sensor.at, &sensor.place), None, keys);
             }
-            table("[robot.behaviour]", place, behavior(robot));
+            made.table_of("[robot.behaviour]", (robot.at, &robot.place), None, behavior(robot));
         }
-        text
+        made
     }
 
     /// The lower left corner of the map in Stage's coordinates, m: on a whole number of cells.
@@ -92,7 +155,7 @@ impl StageWorld {
         self.map().low
     }
 
-    pub(super) fn map(&self) -> Map {
+    fn map(&self) -> Map {
         let rectangles = self.walls.iter().flat_map(|wall| &wall.rectangles);
         let robots = self.robots.iter().flat_map(|robot| <[Point2<f64>; 2]>::from(robot.form().bounds()));
         let (mut low, mut high) = bounds(rectangles.flat_map(Rectangle::corners).chain(robots));
@@ -217,7 +280,7 @@ fn behavior(robot: &StageRobot) -> Keys {
 }
 
 /// Whether its sides are along the axes.
-pub(super) fn is_upright(rectangle: &Rectangle) -> bool {
+fn is_upright(rectangle: &Rectangle) -> bool {
     let turn = rectangle.pose.rotation;
     turn.re.abs() < 1e-12 || turn.im.abs() < 1e-12
 }

@@ -35,6 +35,11 @@ impl FreePoses {
         &self.cells
     }
 
+    /// Whether a point (m) lies in one of these cells.
+    pub(super) fn contain(&self, at: &Point2<f64>) -> bool {
+        self.frame.index(self.frame.cell_at(at)).is_some_and(|cell| self.cells.binary_search(&cell).is_ok())
+    }
+
     /// A point, m: the center of a cell, each with the same probability. Moving things may be there.
     pub fn draw_point(&self, random: &mut RandomStream) -> Point2<f64> {
         let index = random.uniform(0.0..self.cells.len() as f64) as usize;

@@ -104,11 +104,6 @@ impl Rectangle {
         Self { pose: Translation2::from(by_m) * self.pose, half_m: self.half_m }
     }
 
-    /// The rectangle after a rotation of the world about `middle` (m).
-    pub fn turned(&self, turn: &UnitComplex<f64>, middle: &Point2<f64>) -> Self {
-        self.transformed(&Transform { turn: *turn, from: *middle, to: *middle })
-    }
-
     /// The rectangle after a rigid motion of the world.
     pub fn transformed(&self, by: &Transform) -> Self {
         Self { pose: by.pose(&self.pose), half_m: self.half_m }

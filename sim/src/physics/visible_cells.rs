@@ -1,6 +1,8 @@
 //! The cells that the driven robot could see, wherever it drives.
 
-use super::free_space::{FreeSpace, solids};
+use super::fleet::corners;
+use super::free_poses::FreePoses;
+use super::free_space::solids;
 use super::ground_truth::start;
 use super::rays::{Beams, Scene};
 use super::shape::Rectangle;
@@ -38,11 +40,11 @@ impl WorldSpec {
         candidates: impl Fn(&GridFrame, &[TrueState], &[bool]) -> Vec<bool>,
     ) -> Vec<bool> {
         let (frame, robot) = (&self.frame, self.driven());
-        let (solids, space) = (solids(self), FreeSpace::new(self, robot.radius_m));
+        let (solids, mut reached) = (solids(self), vec![false; frame.len()]);
         let states = start::walls_cover(frame, &solids);
-        let own = space.region_near(&robot.pose.translation.vector.into(), robot.radius_m);
-        let reached: Vec<bool> =
-            space.regions().iter().map(|region| region.is_some() && *region == own).collect();
+        for cell in FreePoses::reachable(self, self.driven_index()).iter().flat_map(FreePoses::cells) {
+            reached[*cell] = true;
+        }
         let range_m = robot.laser.range_max_m;
         let sight = Sight::new(frame, &solids, range_m, robot.radius_m, &reached);
         let candidates = candidates(frame, &states, &reached);
@@ -102,9 +104,7 @@ impl<'a> Sight<'a> {
         radius_m: f64,
         reached: &'a [bool],
     ) -> Self {
-        let size = Vector2::new(frame.width() as f64, frame.height() as f64) * frame.resolution_m();
-        let corners = (frame.origin(), frame.origin() + size);
-        let scene = Scene::new(corners, solids, Vec::new(), 0, range_m);
+        let scene = Scene::new(corners(frame), solids, Vec::new(), 0, range_m);
         let beams = [NEAR_M.min(range_m), range_m]
             .map(|range_m| (range_m, Beams::new(-PI, TAU / DIRECTIONS as f64, DIRECTIONS, range_m)));
         Self { frame, reached, gaps: gaps(frame, reached), radius_m: radius_m.min(range_m), beams, scene }

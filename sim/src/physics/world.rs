@@ -28,15 +28,17 @@ impl PhysicsWorld {
     /// the decisions of robots and doors, each with a separate stream.
     pub fn new(spec: &WorldSpec, seed: u64) -> Self {
         let fleet = Fleet::new(spec.fleet(), seed);
-        let start = fleet.inner(spec.driven_index()).at();
+        let start = fleet.robots[spec.driven_index()].at();
         let mut truth = PhysicsGroundTruth::new(spec.frame, &spec.walls, &start);
         let boxes = fleet.standing_boxes();
-        for (index, obstacle) in spec.obstacles.iter().enumerate().filter(|(i, _)| fleet.is_standing(*i)) {
+        for (index, obstacle) in
+            spec.obstacles.iter().enumerate().filter(|(i, _)| fleet.obstacles[*i].is_standing())
+        {
             let mover = obstacle.is_mover().then_some(Body::Obstacle(index));
             truth.change_box(&obstacle.start(), &boxes, mover);
         }
         for index in others(spec) {
-            truth.move_robot(index, &fleet.inner(index).form());
+            truth.move_robot(index, &fleet.robots[index].form());
         }
         truth.begin();
         Self {
@@ -86,7 +88,7 @@ impl PhysicsWorld {
 
     /// The true pose of the driven robot, for metrics only.
     pub fn true_pose(&self) -> &Isometry2<f64> {
-        &self.fleet.inner(self.spec.driven_index()).pose
+        &self.fleet.robots[self.spec.driven_index()].pose
     }
 
     /// The contacts of the driven robot that began in the last [`act`](World::act), in the order of their beginning.
@@ -125,9 +127,9 @@ impl PhysicsWorld {
         self.fleet.think(|robot| !robot.is_driven());
         self.fleet.advance();
         let time_s = self.time_s();
-        self.truth.set_time(time_s);
+        self.truth.elapsed_s = time_s;
         for index in others(&self.spec) {
-            let robot = self.fleet.inner(index);
+            let robot = &self.fleet.robots[index];
             if robot.has_moved() {
                 self.truth.move_robot(index, &robot.form());
             }
@@ -138,7 +140,7 @@ impl PhysicsWorld {
                 self.truth.move_box(&before, &after, &boxes, Body::Obstacle(index));
             }
         }
-        let contacts = self.fleet.take_contacts().into_iter();
+        let contacts = self.fleet.contacts.drain(..);
         self.contacts.extend(contacts.filter(|contact| contact.robot == self.spec.driven_index()));
         self.fleet.update_obstacles(|obstacle, appeared, standing| {
             let spec = &self.spec.obstacles[obstacle];
@@ -205,7 +207,7 @@ impl World for PhysicsWorld {
     }
 
     fn act(&mut self, command: &Twist) {
-        self.truth.forget_changes();
+        self.truth.changes.clear();
         self.contacts.clear();
         self.fleet.command(self.spec.driven_index(), *command);
         for _ in 0..self.spec.driven().laser.period_steps {

@@ -65,7 +65,7 @@ fn dark_pixels_fill_the_size_and_a_boundary_goes_around() {
 
 #[test]
 fn definitions_are_written_out() {
-    let text = "define slab model( size [1 1 1] color \"grey\" )
+    let text = "define slab model( size [1 1 1] fiducial_return 7 )
         define long slab( size [4 1 1] slab( pose [0 5 0 0] ) )
         long( name \"a\" pose [0 0 0 0] model( name \"on\" pose [0 -5 0 0] ) )
         define slab model( size [9 9 1] )
@@ -74,7 +74,7 @@ fn definitions_are_written_out() {
     let world = good(text);
     let names: Vec<&str> = world.walls.iter().map(|wall| wall.name.as_str()).collect();
     assert_eq!(names, ["a", "model:0", "on", "b"]);
-    assert_eq!(world.walls[0].color.as_deref(), Some("grey"));
+    assert_eq!(world.walls[0].tag, Some(7));
     assert_eq!(world.walls[1].rectangles[0].half_m.x, 0.5);
     // As in Stage, the first definition holds, and one of itself later on does no harm.
     assert_eq!(world.walls[3].rectangles[0].half_m.x, 0.5);

@@ -55,7 +55,7 @@ const PROGRAM: &str = "rerun";
 /// The connection to one viewer. A viewer that was closed, or that accepts nothing, counts as lost: it never delays
 /// a run by more than [`STALL_TIMEOUT`].
 pub(super) struct LiveFeed {
-    address: String,
+    pub(super) address: String,
     state: State,
 }
 
@@ -83,10 +83,6 @@ impl LiveFeed {
         let (report, delivered) = channel();
         thread::spawn(move || report.send(deliver(sink, messages)));
         Ok(Self { address: uri.to_string(), state: State::Open { queue, delivered } })
-    }
-
-    pub(super) fn address(&self) -> &str {
-        &self.address
     }
 
     pub(super) fn send(&mut self, message: &LogMsg) {

@@ -50,7 +50,7 @@ impl Sinks {
     pub(super) fn live_problem(&self) -> Option<String> {
         let outputs = self.outputs();
         let lost = outputs.live.iter().find(|feed| feed.is_lost())?;
-        Some(format!("the viewer at {} went away", lost.address()))
+        Some(format!("the viewer at {} went away", lost.address))
     }
 
     /// Whether everything so far was written to the file. An error is returned once: the file is closed and removed,
@@ -68,7 +68,9 @@ impl Sinks {
     pub(super) fn finish(&self) -> Result<(), RecordingError> {
         let mut outputs = self.outputs();
         outputs.live.iter_mut().for_each(LiveFeed::close);
-        outputs.file.iter_mut().for_each(RrdFile::finish);
+        if let Some(file) = &mut outputs.file {
+            file.finish();
+        }
         drop(outputs);
         self.check()
     }
@@ -81,7 +83,9 @@ impl Sinks {
 impl LogSink for Sinks {
     fn send(&self, message: LogMsg) {
         let mut outputs = self.outputs();
-        outputs.file.iter_mut().for_each(|file| file.send(&message));
+        if let Some(file) = &mut outputs.file {
+            file.send(&message);
+        }
         outputs.live.iter_mut().for_each(|feed| feed.send(&message));
     }
 

@@ -11,6 +11,9 @@ use std::ops::Range;
 /// The keys of a world file.
 pub(super) const KEYS: &str = "name, description, sensor_radius, map, transitions, block";
 
+/// The courses of blocks.
+pub(super) const COURSES: [(&str, Course); 2] =
+    [("loop", Course::Loop), ("back-and-forth", Course::BackAndForth)];
 /// The maximum number of cells of all paths together: they are kept in memory.
 const MAX_PATH_CELLS: usize = 10_000_000;
 
@@ -60,14 +63,7 @@ fn block(table: &Table<'_>, drawing: Option<&Drawing>) -> Option<BlockSpec> {
     let dwell = table.needed("dwell").and_then(|value| value.integer_within(&(1..=BlockSpec::MAX_DWELL)));
     let longest = dwell.unwrap_or(BlockSpec::MAX_DWELL + 1) - 1;
     let stood = table.get("stood").map_or(Some(0), |value| value.integer_within(&(0..=longest)));
-    let course = table.needed("course").and_then(|value| match value.text()? {
-        "loop" => Some(Course::Loop),
-        "back-and-forth" => Some(Course::BackAndForth),
-        other => {
-            let help = "it must be \"loop\" or \"back-and-forth\"";
-            value.invalid(&format!("is `{other}`, which is not known"), "not known", help)
-        }
-    });
+    let course = table.needed("course").and_then(|value| value.choice(&COURSES));
     let called = name.as_deref().unwrap_or_default();
     // Of a path whose course is invalid, only what every path must keep to is checked; without a map, nothing.
     let path = path::cells(table, called, course.unwrap_or(Course::BackAndForth), drawing);

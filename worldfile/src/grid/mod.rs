@@ -29,7 +29,7 @@ use crate::error::{WorldError, read_text};
 use crate::reader::{self, Kind};
 use crate::toml_value::lines;
 use interfaces::Cell;
-use sim::grid::{Course, GridSpec};
+use sim::grid::GridSpec;
 use std::path::Path;
 use toml::Value;
 
@@ -72,10 +72,8 @@ pub fn to_toml(spec: &GridSpec) -> String {
     }
     for block in &spec.blocks {
         let stood = (block.stood > 0).then(|| ("stood", Value::from(block.stood)));
-        let course = match block.course {
-            Course::Loop => "loop",
-            Course::BackAndForth => "back-and-forth",
-        };
+        let word = check::COURSES.iter().find(|(_, course)| *course == block.course);
+        let course = word.map_or("", |(word, _)| *word);
         let points: Vec<Value> = way_points(&block.path).map(|cell| vec![cell.x, cell.y].into()).collect();
         text += "\n[[block]]\n";
         text += &lines([("name", block.name.as_str().into()), ("dwell", block.dwell.into())]);

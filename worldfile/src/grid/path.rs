@@ -17,9 +17,7 @@ pub(super) fn cells(
     drawing: Option<&Drawing>,
 ) -> Option<Vec<Cell>> {
     let value = table.needed("path")?;
-    let points = value
-        .list(|point| point.items()?.iter().map(Value::integer).collect::<Vec<_>>().into_iter().collect());
-    let points: Vec<Vec<i64>> = points?;
+    let points: Vec<Vec<i64>> = value.list(|point| point.list(Value::integer))?;
     let Some(drawing) = drawing else { return Some(Vec::new()) };
     let path = BlockPath { table, name, drawing };
     let ends: Vec<Option<Cell>> = points.iter().enumerate().map(|(i, point)| path.cell(i, point)).collect();

@@ -94,13 +94,6 @@ impl<'t, 'a> Value<'t, 'a> {
         })
     }
 
-    /// A whole number of at least 0.
-    pub(crate) fn natural(&self) -> Option<u32> {
-        let number = self.found.get_ref().as_integer().and_then(integer);
-        let natural = number.and_then(|number| u32::try_from(number).ok());
-        natural.or_else(|| self.mistyped("a whole number of at least 0"))
-    }
-
     pub(crate) fn flag(&self) -> Option<bool> {
         self.found.get_ref().as_bool().or_else(|| self.mistyped("`true` or `false`"))
     }
@@ -207,14 +200,13 @@ impl Table<'_> {
     }
 
     pub(crate) fn count(&self, key: &'static str, range: RangeInclusive<u32>) -> usize {
-        let count =
-            self.needed(key).and_then(|value| value.natural().and_then(|_| value.integer_within(&range)));
+        let count = self.needed(key).and_then(|value| value.integer_within(&range));
         self.or_invalid(count, 0) as usize
     }
 
     /// The number of a tag, `None` if it is not given.
     pub(crate) fn tag(&self) -> Option<u32> {
-        self.get("tag").map(|value| self.or_invalid(value.natural(), 0))
+        self.get("tag").map(|value| self.or_invalid(value.integer_within(&(0..=u32::MAX)), 0))
     }
 
     pub(crate) fn flag(&self, key: &'static str) -> bool {

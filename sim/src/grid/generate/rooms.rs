@@ -28,18 +28,10 @@ pub(super) fn walls(
         walls.set(cell, false);
     }
     for _ in 0..between(rng, settings.walls, 0..=1000) {
-        for _ in 0..MAX_TRIES {
-            if divide(settings, &mut walls, &mut rooms, start, rng) {
-                break;
-            }
-        }
+        (0..MAX_TRIES).any(|_| divide(settings, &mut walls, &mut rooms, start, rng));
     }
     for _ in 0..between(rng, settings.pillars, 0..=1000) {
-        for _ in 0..MAX_TRIES {
-            if pillar(&mut walls, start, rng) {
-                break;
-            }
-        }
+        (0..MAX_TRIES).any(|_| pillar(&mut walls, start, rng));
     }
     walls
 }

@@ -5,8 +5,9 @@ use interfaces::{Cell, Grid};
 /// sensor never leaves the bits.
 #[derive(Clone, Debug)]
 pub(in crate::grid) struct BlockedCells {
-    width: i32,
-    height: i32,
+    /// The number of columns and of rows.
+    pub(super) width: i32,
+    pub(super) height: i32,
     rim: usize,
     /// The number of words of a row. A square may begin in the last but one.
     stride: usize,
@@ -24,16 +25,6 @@ impl BlockedCells {
             blocked.set(walls.frame().cell(index), true);
         }
         blocked
-    }
-
-    /// The number of columns.
-    pub(super) fn width(&self) -> i32 {
-        self.width
-    }
-
-    /// The number of rows.
-    pub(super) fn height(&self) -> i32 {
-        self.height
     }
 
     /// Whether a cell of the grid, or of the rim around it, is blocked.

@@ -121,7 +121,7 @@ impl Shadows {
     /// The sets of cells that lie outside of the grid, seen from `robot`.
     #[inline]
     pub(super) fn outside(&self, blocked: &BlockedCells, robot: Cell) -> impl Iterator<Item = &[u64]> {
-        let room = [blocked.width() - 1 - robot.x, blocked.height() - 1 - robot.y, robot.x, robot.y];
+        let room = [blocked.width - 1 - robot.x, blocked.height - 1 - robot.y, robot.x, robot.y];
         self.beyond.iter().zip(room).filter_map(|(beyond, room)| Some(beyond.get(room as usize)?.as_slice()))
     }
 }

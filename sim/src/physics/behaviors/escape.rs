@@ -28,9 +28,9 @@ const DIRECTIONS: usize = 90;
 #[derive(Clone, Debug)]
 pub(super) struct Escape {
     patience: Patience,
-    legs: Legs,
+    pub(super) legs: Legs,
     /// The direction of the escape, a unit vector, and its end, m, during an escape.
-    leg: Option<[(f64, f64); 2]>,
+    leg: Option<(Vector2<f64>, Point2<f64>)>,
     /// The number of scans until the end of the escape at the latest, and that number at its start.
     scans_left: u32,
     most_scans: u32,
@@ -63,8 +63,7 @@ impl Escape {
             self.scans_left = self.most_scans;
             self.legs.start_turning();
         }
-        let [along, end] = self.leg?;
-        let (along, end) = (Vector2::new(along.0, along.1), Point2::new(end.0, end.1));
+        let (along, end) = self.leg?;
         let remaining_m = along.dot(&(end - Point2::from(reading.pose.translation.vector)));
         self.scans_left = self.scans_left.saturating_sub(1);
         let twist = self.legs.drive(reading, &along, remaining_m, |legs, lean| {
@@ -77,7 +76,11 @@ impl Escape {
     }
 
     /// A random free direction among those of the beams, and the end of the way there.
-    fn free_leg(&self, reading: &LaserReading, random: &mut RandomStream) -> Option<[(f64, f64); 2]> {
+    fn free_leg(
+        &self,
+        reading: &LaserReading,
+        random: &mut RandomStream,
+    ) -> Option<(Vector2<f64>, Point2<f64>)> {
         let beams = &self.legs.beams;
         let ways: Vec<(Vector2<f64>, f64)> = beams
             .iter()
@@ -95,8 +98,7 @@ impl Escape {
             drawn -= way_m * way_m;
             drawn < 0.0
         })?;
-        let end = reading.pose.translation.vector + along * *way_m;
-        Some([(along.x, along.y), (end.x, end.y)])
+        Some((*along, (reading.pose.translation.vector + along * *way_m).into()))
     }
 
     /// The values that a snapshot holds.

@@ -33,9 +33,6 @@ pub(crate) struct Wander {
     period_s: f64,
     /// The number of scans in which the robot has turned in place by a full turn.
     full_turn_scans: u32,
-    /// Which beams point to the left, and which point ahead.
-    left: Vec<bool>,
-    ahead: Vec<bool>,
     random: RandomStream,
     /// The rate of the turn in place, rad/s, while the way is blocked.
     turning: Option<f64>,
@@ -97,8 +94,6 @@ impl Wander {
             period_s,
             full_turn_scans: (std::f64::consts::TAU / turn_rad).ceil() as u32,
             escape,
-            left: beams.iter().map(|beam| beam.y > 0.0).collect(),
-            ahead: beams.iter().map(|beam| beam.x > 0.0).collect(),
             random,
             turning: None,
             curve_radps: 0.0,
@@ -127,11 +122,10 @@ impl Wander {
     fn open_side(&mut self, reading: &LaserReading) -> f64 {
         let max_m = reading.scan.range_max_m as f32;
         let mut more_left_m = 0.0;
-        for ((range_m, left), ahead) in reading.scan.ranges_m.iter().zip(&self.left).zip(&self.ahead) {
-            if *ahead {
-                let range_m = range_m.clamp(0.0, max_m);
-                more_left_m += if *left { range_m } else { -range_m };
-            }
+        let beams = reading.scan.ranges_m.iter().zip(&self.escape.legs.beams);
+        for (range_m, beam) in beams.filter(|(_, beam)| beam.x > 0.0) {
+            let range_m = range_m.clamp(0.0, max_m);
+            more_left_m += if beam.y > 0.0 { range_m } else { -range_m };
         }
         let undecided = self.random.uniform(-1.0..1.0) * f64::from(max_m);
         1.0_f64.copysign(f64::from(more_left_m) + undecided)

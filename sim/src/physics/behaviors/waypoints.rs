@@ -35,7 +35,7 @@ pub(crate) struct Waypoints {
     is_returning: bool,
     patience: Patience,
     /// The x and y at which the robot last turned round, m, until it is out of that place.
-    turned_at: Option<(f64, f64)>,
+    turned_at: Option<Point2<f64>>,
     wander: Wander,
     /// The number of scans until the end of the detour.
     detour_scans: u32,
@@ -86,7 +86,7 @@ impl Waypoints {
     /// Ends a wait on the way to the point `next`.
     fn give_way(&mut self, at: &Point2<f64>, next: usize) {
         if self.turned_at.is_none() {
-            self.turned_at = Some((at.x, at.y));
+            self.turned_at = Some(*at);
             self.turn_round(next);
             return;
         }
@@ -106,7 +106,7 @@ impl Waypoints {
             if (self.spec.points[next] - at).norm() >= ARRIVED_M {
                 return Some(next);
             }
-            self.turned_at = self.turned_at.filter(|(x, y)| (at - Point2::new(*x, *y)).norm() < AWAY_M);
+            self.turned_at = self.turned_at.filter(|turned_at| (at - turned_at).norm() < AWAY_M);
             self.next = self.after(next);
         }
         None

@@ -3,7 +3,6 @@
 use super::Fleet;
 use crate::physics::robot::{Robot, RobotView};
 use interfaces::heading_rad;
-use rayon::prelude::*;
 
 /// The error for a slice of another length than that of the result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -40,11 +39,7 @@ impl Fleet {
     pub fn look_all(&mut self) {
         self.scene.sort();
         let surroundings = &self.surroundings(self.robots.iter().any(Robot::sweeps));
-        if self.parallel_lasers {
-            self.robots.par_iter_mut().for_each(|robot| robot.look(surroundings));
-        } else {
-            self.robots.iter_mut().for_each(|robot| robot.look(surroundings));
-        }
+        self.for_robots(|_| true, |robot| robot.look(surroundings));
     }
 
     /// The number of beams of the main lasers of all robots together: the length of the slice of [`Fleet::copy_scans`].

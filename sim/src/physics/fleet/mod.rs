@@ -40,11 +40,11 @@ pub struct Fleet {
     /// Steps since the start. Time is a multiple of the step, so that it never drifts.
     step: u64,
     bodies: Bodies,
-    robots: Vec<Robot>,
-    obstacles: Vec<Obstacle>,
+    pub(super) robots: Vec<Robot>,
+    pub(super) obstacles: Vec<Obstacle>,
     scene: Scene,
     past: Past,
-    contacts: Vec<Contact>,
+    pub(super) contacts: Vec<Contact>,
     /// The obstacles that moved in the last step, with the shape before the step.
     moved: Vec<(usize, Rectangle)>,
     /// Scratch memory: the shapes of all obstacles before a step.
@@ -113,16 +113,6 @@ impl Fleet {
         driven.map(|robot| robot.command(&wanted.into())).is_some()
     }
 
-    /// The contacts since they were last taken.
-    pub(super) fn take_contacts(&mut self) -> Vec<Contact> {
-        std::mem::take(&mut self.contacts)
-    }
-
-    /// One robot, with everything that only this crate reads.
-    pub(super) fn inner(&self, robot: usize) -> &Robot {
-        &self.robots[robot]
-    }
-
     /// All present bodies with a tag, robots first; none if no robot has a fiducial finder.
     pub(crate) fn tagged(&self) -> Vec<Tagged> {
         if !self.start.has_fiducial_finders {
@@ -148,11 +138,6 @@ impl Fleet {
         self.spec().walls.iter().copied().chain(standing.map(|obstacle| obstacle.shape)).collect()
     }
 
-    /// Whether an obstacle is present now.
-    pub(super) fn is_standing(&self, obstacle: usize) -> bool {
-        self.obstacles[obstacle].is_standing()
-    }
-
     /// The obstacles that moved in the last step, each with the shapes before and after the step.
     pub(super) fn moved(&self) -> impl ExactSizeIterator<Item = (usize, Rectangle, Rectangle)> {
         self.moved.iter().map(|(index, before)| (*index, *before, self.obstacles[*index].shape))
@@ -168,11 +153,6 @@ impl Fleet {
     #[cfg(test)]
     pub(super) fn kinetic_j(&self) -> f64 {
         self.bodies.kinetic_j()
-    }
-
-    /// Updates all obstacles in the scene that lasers see.
-    fn show_obstacles(&mut self) {
-        (0..self.obstacles.len()).for_each(|index| self.show_obstacle(index));
     }
 
     /// Updates a robot in the scene that lasers see.

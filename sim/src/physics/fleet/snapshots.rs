@@ -58,7 +58,7 @@ impl Fleet {
             return Err(SnapshotError::Damaged);
         }
         (0..fleet.robots.len()).for_each(|index| fleet.show_robot(index));
-        fleet.show_obstacles();
+        (0..fleet.obstacles.len()).for_each(|index| fleet.show_obstacle(index));
         Ok(fleet)
     }
 

@@ -1,9 +1,9 @@
 //! A fleet at its start: what is the same for every seed, built once and shared.
 
-use super::carry::Carrying;
 use super::slide::Sliding;
 use super::{Fleet, corners};
 use crate::physics::bodies::Bodies;
+use crate::physics::free_poses::FreePoses;
 use crate::physics::obstacles::Obstacle;
 use crate::physics::past::Past;
 use crate::physics::rays::{Disc, Scene};
@@ -22,7 +22,8 @@ pub(super) struct Start {
     obstacles: Vec<Obstacle>,
     scene: Scene,
     beams: SharedBeams,
-    pub(super) carrying: Carrying,
+    /// Where each robot that is carried away can be set down.
+    pub(super) carried: Vec<Option<FreePoses>>,
     /// The robots that have corners.
     cornered: Vec<usize>,
     /// Whether any robot has a fiducial finder.
@@ -53,13 +54,17 @@ impl Start {
         let polygons = spec.obstacles.len() + cornered.len();
         let mut scene = Scene::new(corners(&spec.frame), &spec.walls, discs.collect(), polygons, range_m);
         obstacles.iter().enumerate().for_each(|(index, obstacle)| show_obstacle(&mut scene, index, obstacle));
+        let carried = spec.robots.iter().enumerate().map(|(index, robot)| {
+            robot.odometry.carried?;
+            FreePoses::reachable(spec, index)
+        });
         let mut start = Self {
             spec: spec.clone(),
             bodies,
             obstacles,
             scene,
             beams: SharedBeams::default(),
-            carrying: Carrying::new(spec),
+            carried: carried.collect(),
             cornered,
             has_fiducial_finders: spec.robots.iter().any(|robot| robot.fiducial.is_some()),
         };

@@ -61,12 +61,19 @@ impl Fleet {
             self.scene.sort();
         }
         let surroundings = &self.surroundings(sweeps);
+        self.for_robots(is_due, |robot| robot.think(surroundings));
+    }
+
+    /// Lets the robots for which `is_meant` is true measure, in parallel if this is set.
+    pub(super) fn for_robots(
+        &mut self,
+        is_meant: impl Fn(&Robot) -> bool + Sync,
+        measure: impl Fn(&mut Robot) + Send + Sync,
+    ) {
         if self.parallel_lasers {
-            let due = self.robots.par_iter_mut().filter(|robot| is_due(robot));
-            due.for_each(|robot| robot.think(surroundings));
+            self.robots.par_iter_mut().filter(|robot| is_meant(robot)).for_each(measure);
         } else {
-            let due = self.robots.iter_mut().filter(|robot| is_due(robot));
-            due.for_each(|robot| robot.think(surroundings));
+            self.robots.iter_mut().filter(|robot| is_meant(robot)).for_each(measure);
         }
     }
 

@@ -27,7 +27,7 @@ use std::collections::BTreeMap;
 #[derive(Clone, Debug)]
 pub struct PhysicsGroundTruth {
     frame: GridFrame,
-    elapsed_s: f64,
+    pub(super) elapsed_s: f64,
     states: Vec<TrueState>,
     /// The states that follow from walls and present obstacles alone.
     fixed: Vec<TrueState>,
@@ -51,7 +51,7 @@ pub struct PhysicsGroundTruth {
     reachable: Vec<bool>,
     /// The cells that are reachable or share a side with a reachable cell. No other cell can be seen.
     may_be_seen: Vec<bool>,
-    changes: Vec<TrueChange>,
+    pub(super) changes: Vec<TrueChange>,
 }
 
 impl PhysicsGroundTruth {
@@ -103,16 +103,6 @@ impl PhysicsGroundTruth {
             runs(&mut self.swept),
             value(&mut self.changes),
         ]
-    }
-
-    /// Starts a new list of changes.
-    pub(super) fn forget_changes(&mut self) {
-        self.changes.clear();
-    }
-
-    /// Sets the time.
-    pub(super) fn set_time(&mut self, time_s: f64) {
-        self.elapsed_s = time_s;
     }
 
     /// Updates the cells of an obstacle that has appeared or disappeared. `boxes` are the walls and obstacles that

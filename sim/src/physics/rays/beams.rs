@@ -137,10 +137,11 @@ struct Bearing {
 
 /// The nearest hit on each beam of a laser.
 pub(super) struct Hits<'a> {
-    beams: &'a Beams,
+    pub(super) beams: &'a Beams,
     /// One over the range, 1/m; 0 where there is no hit.
     inverse: &'a mut [f64],
-    laser: Isometry2<f64>,
+    /// The pose of the laser.
+    pub(super) laser: Isometry2<f64>,
 }
 
 impl<'a> Hits<'a> {
@@ -202,16 +203,6 @@ impl<'a> Hits<'a> {
                 *inverse = if hit > *inverse { hit } else { *inverse };
             }
         }
-    }
-
-    /// The pose of the laser.
-    pub(super) fn laser(&self) -> &Isometry2<f64> {
-        &self.laser
-    }
-
-    /// Bodies beyond this range may be ignored, m.
-    pub(super) fn range_max_m(&self) -> f64 {
-        self.beams.range_max_m
     }
 
     /// Adds a round body with the center `center` (m, in the frame of the laser). Its directions are less than

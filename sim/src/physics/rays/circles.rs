@@ -73,16 +73,16 @@ impl Discs {
     /// Whether the laser is inside of a disc. If it is not, adds the disc if the disc is within range.
     #[inline(always)]
     fn is_around(&mut self, disc: &Disc, polygon: Option<u32>, hits: &Hits<'_>) -> bool {
-        let to = disc.center - hits.laser().translation.vector;
+        let to = disc.center - hits.laser.translation.vector;
         let power = to.coords.norm_squared() - disc.radius_m * disc.radius_m;
-        let reach_m = hits.range_max_m() + disc.radius_m;
+        let reach_m = hits.beams.range_max_m + disc.radius_m;
         if power > reach_m * reach_m {
             return false;
         }
         if power <= 0.0 {
             return true;
         }
-        let center = hits.laser().rotation.inverse() * to.coords;
+        let center = hits.laser.rotation.inverse() * to.coords;
         self.near.push(Near { center, radius_m: disc.radius_m, power, polygon });
         false
     }

@@ -57,12 +57,12 @@ pub(super) fn sectors_of(corners: &[Point2<f64>; 4], edge: &Edge) -> Sectors {
 
 /// Adds the edges of walls that may be seen from the cell of the laser, the nearest first.
 pub(super) fn add_edges(seen: &[SeenEdge], edges: &[Edge], hits: &mut Hits<'_>) {
-    let rotation = hits.laser().rotation;
+    let rotation = hits.laser.rotation;
     let heading_rad = approximate_atan2(rotation.im, rotation.re);
     let mut open = ALL;
     for (round, some) in seen.chunks(EDGES_AT_ONCE).enumerate() {
         let nearest_m = some.first().map_or(0.0, |first| f64::from(first.nearest_m));
-        if nearest_m > hits.range_max_m() {
+        if nearest_m > hits.beams.range_max_m {
             return;
         }
         if round > 0 && nearest_m > 0.0 {

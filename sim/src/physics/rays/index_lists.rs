@@ -3,7 +3,8 @@
 pub(super) struct IndexLists<T = u32> {
     /// The start of each list, and the end of the last one.
     starts: Vec<u32>,
-    items: Vec<T>,
+    /// The items of all lists.
+    pub(super) items: Vec<T>,
 }
 
 impl<T> Default for IndexLists<T> {
@@ -48,10 +49,5 @@ impl<T: Clone + Default> IndexLists<T> {
     /// One of the lists.
     pub(super) fn get(&self, list: usize) -> &[T] {
         &self.items[self.starts[list] as usize..self.starts[list + 1] as usize]
-    }
-
-    /// The items of all lists.
-    pub(super) fn all(&self) -> &[T] {
-        &self.items
     }
 }

@@ -16,7 +16,7 @@ const SAFE: f64 = 1.0 + 1e-5;
 const BESIDE_M: f64 = 1e-6;
 
 /// The number of sides of a body that are compared at a time.
-const MOST_SIDES: usize = 32;
+const MAX_SIDES: usize = 32;
 
 /// The shortest range so far.
 pub(super) struct Nearest<'a> {
@@ -25,9 +25,9 @@ pub(super) struct Nearest<'a> {
     /// The directions of the first and the last beam in the frame of the world, if the beams span less than half a turn.
     borders: Option<[Vector2<f64>; 2]>,
     /// One over the range, 1/m; 0 where there is no hit.
-    inverse: f64,
+    pub(super) inverse: f64,
     /// What is farther away cannot change the result, m.
-    reach_m: f64,
+    pub(super) reach_m: f64,
 }
 
 impl<'a> Nearest<'a> {
@@ -43,16 +43,6 @@ impl<'a> Nearest<'a> {
             inverse: 0.0,
             reach_m: beams.range_max_m * SAFE,
         }
-    }
-
-    /// What is farther away cannot change the result, m.
-    pub(super) fn reach_m(&self) -> f64 {
-        self.reach_m
-    }
-
-    /// One over the shortest range, 1/m; 0 without a hit.
-    pub(super) fn inverse(&self) -> f64 {
-        self.inverse
     }
 
     fn take(&mut self, inverse: f64) {
@@ -97,8 +87,8 @@ impl<'a> Nearest<'a> {
 
     /// Adds the sides of a convex body.
     pub(super) fn add_polygon(&mut self, sides: &[Edge]) {
-        let mut distances2 = [f64::INFINITY; MOST_SIDES];
-        for sides in sides.chunks(MOST_SIDES) {
+        let mut distances2 = [f64::INFINITY; MAX_SIDES];
+        for sides in sides.chunks(MAX_SIDES) {
             let mut nearest = 0;
             for (index, side) in sides.iter().enumerate() {
                 distances2[index] = self.distance2_m2(side).unwrap_or(f64::INFINITY);
@@ -156,7 +146,9 @@ impl<'a> Nearest<'a> {
     /// Adds a round body.
     pub(super) fn add_disc(&mut self, disc: &Disc) {
         let Some((center, distance_m)) = self.place(disc) else { return };
-        let power = center_power(&self.sensor, disc);
+        // As in [`Hits`](super::beams::Hits), to the bit.
+        let to = disc.center - self.sensor.translation.vector;
+        let power = to.coords.norm_squared() - disc.radius_m * disc.radius_m;
         let most_m = self.beams.range_max_m + disc.radius_m;
         if power > most_m * most_m {
             return;
@@ -179,10 +171,4 @@ impl<'a> Nearest<'a> {
         }
         self.take(most);
     }
-}
-
-/// The power of the position of a sensor: distance squared less radius squared, m².
-fn center_power(sensor: &Isometry2<f64>, disc: &Disc) -> f64 {
-    let to = disc.center - sensor.translation.vector;
-    to.coords.norm_squared() - disc.radius_m * disc.radius_m
 }

@@ -5,6 +5,7 @@ use super::disc::Disc;
 use super::edges::Edge;
 use super::index_lists::IndexLists;
 use super::visibility::PotentiallyVisibleSet;
+use crate::physics::form::bounds;
 use nalgebra::Point2;
 use std::ops::Range;
 
@@ -97,10 +98,7 @@ impl SortedPolygons {
         in_cells.clear();
         for Body { corners, robot, .. } in polygons.bodies.iter().filter(|body| !body.corners.is_empty()) {
             let (corners, index) = (&polygons.corners[corners.clone()], bodies.len() as u32);
-            let (mut low, mut high) = (corners[0], corners[0]);
-            for corner in corners {
-                (low, high) = (low.inf(corner), high.sup(corner));
-            }
+            let (low, high) = bounds(corners);
             let center = nalgebra::center(&low, &high);
             let radius2 = corners.iter().map(|corner| (corner - center).norm_squared()).fold(0.0, f64::max);
             let start = edges.len();

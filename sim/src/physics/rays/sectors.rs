@@ -38,7 +38,7 @@ pub(super) struct Sector<'a> {
     borders: Option<[Vector2<f64>; 2]>,
     range_max_m: f64,
     /// What is farther away from all origins is hidden, m.
-    reach_m: f64,
+    pub(super) reach_m: f64,
 }
 
 impl<'a> Sector<'a> {
@@ -56,11 +56,6 @@ impl<'a> Sector<'a> {
         let origins = Disc { center: middle.from, radius_m: radius_m * SAFE };
         let borders = is_narrow.then_some([right, left]);
         Self { rays, inverse, origins, borders, range_max_m, reach_m: range_max_m * SAFE }
-    }
-
-    /// What is farther away from all origins is hidden, m.
-    pub(super) fn reach_m(&self) -> f64 {
-        self.reach_m
     }
 
     /// Rays for which `is_inside` is true begin in a solid: their range is 0.

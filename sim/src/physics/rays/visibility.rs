@@ -33,10 +33,12 @@ pub(super) struct PotentiallyVisibleSet {
     places: Vec<[u16; 2]>,
     /// See [`PotentiallyVisibleSet::apart_m`]: by the difference of the columns and of the rows, like cells.
     apart_m: Vec<f32>,
-    edges: IndexLists<SeenEdge>,
-    cells: IndexLists,
+    /// The edges that may be seen from each cell, the nearest first.
+    pub(super) edges: IndexLists<SeenEdge>,
+    /// The cells in which a robot may be seen from each cell, the nearest first.
+    pub(super) cells: IndexLists,
     /// The rectangles that overlap each cell.
-    boxes: IndexLists,
+    pub(super) boxes: IndexLists,
 }
 
 impl PotentiallyVisibleSet {
@@ -114,16 +116,6 @@ impl PotentiallyVisibleSet {
         }
     }
 
-    /// The edges that may be seen from a cell, the nearest first.
-    pub(super) fn edges(&self, cell: usize) -> &[SeenEdge] {
-        self.edges.get(cell)
-    }
-
-    /// The cells in which a robot may be seen from a cell, the nearest first.
-    pub(super) fn cells(&self, cell: usize) -> &[u32] {
-        self.cells.get(cell)
-    }
-
     /// At most the shortest distance between a point of one cell and a robot with its center in the other one, or a
     /// part of a body that lies in the other one, m.
     pub(super) fn apart_m(&self, cell: usize, other: usize) -> f64 {
@@ -135,11 +127,6 @@ impl PotentiallyVisibleSet {
     /// The column and the row of a cell.
     fn place(&self, cell: usize) -> [usize; 2] {
         [cell % self.columns, cell / self.columns]
-    }
-
-    /// The rectangles that overlap a cell.
-    pub(super) fn boxes(&self, cell: usize) -> &[u32] {
-        self.boxes.get(cell)
     }
 
     /// Whether the upright box between two corners (m) is not wholly within the borders.

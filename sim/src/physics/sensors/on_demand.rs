@@ -119,27 +119,25 @@ impl<D: Device> OnDemand<D> {
         last_s == Some(time_s)
     }
 
-    /// Nothing is pending any more: its result becomes the reading; if it was not read, it is skipped.
-    fn settle(&mut self) {
-        if self.pending.take().is_none() {
-            return;
-        }
-        match self.result.take() {
-            Some((reading, streams)) => {
-                (self.reading, self.streams, self.skipped) = (Some(reading), streams, 0);
-            }
-            None => self.skipped += 1,
-        }
+    /// Nothing is pending any more: a result that was read becomes the reading. Returns a measurement whose result was not
+    /// read.
+    fn take_pending(&mut self) -> Option<Arc<Look>> {
+        let look = self.pending.take()?;
+        let Some((reading, streams)) = self.result.take() else { return Some(look) };
+        (self.reading, self.streams, self.skipped) = (Some(reading), streams, 0);
+        None
     }
 
-    /// Computes what is pending.
+    /// Skips a pending measurement whose result was not read.
+    fn settle(&mut self) {
+        self.skipped += u64::from(self.take_pending().is_some());
+    }
+
+    /// Computes a pending measurement.
     fn finish(&mut self) {
-        let Some(look) = self.pending.take() else { return self.catch_up() };
-        match self.result.take() {
-            Some((reading, streams)) => {
-                (self.reading, self.streams, self.skipped) = (Some(reading), streams, 0);
-            }
-            None => self.compute(&look),
+        match self.take_pending() {
+            Some(look) => self.compute(&look),
+            None => self.catch_up(),
         }
     }
 

@@ -129,7 +129,8 @@ impl DoorSpec {
     pub fn shape(&self, closed: &Rectangle, openness: f64) -> Rectangle {
         match self.leaf {
             Leaf::Hinged { hinge, open_rad } => {
-                closed.turned(&interfaces::rotation(open_rad * openness), &hinge)
+                let turn = interfaces::rotation(open_rad * openness);
+                closed.transformed(&Transform { turn, from: hinge, to: hinge })
             }
             Leaf::Sliding { by_m } => closed.moved(by_m * openness),
         }

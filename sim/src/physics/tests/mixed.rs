@@ -39,8 +39,8 @@ fn a_wide_beam_measures_the_mean_of_two_surfaces_or_what_its_middle_hits() {
                 continue; // One of the eight rays can go there, or none.
             }
             if far_m - near_m < 0.3 {
-                // One surface: at most the mean across a wall that is seen at an angle.
-                assert!((range_m - middle_m).abs() < 0.2, "{range_m} {middle_m}");
+                // One surface, or a small step: the mean across it. The largest difference of these 100,000 beams is 0.062 m.
+                assert!((range_m - middle_m).abs() < 0.07, "{range_m} {middle_m}");
                 continue;
             }
             let mean_m = across.iter().sum::<f64>() / RAYS as f64;
@@ -51,8 +51,20 @@ fn a_wide_beam_measures_the_mean_of_two_surfaces_or_what_its_middle_hits() {
             match share {
                 0.37..0.63 => assert!(error_m < (far_m - near_m) / 7.0, "{share} {range_m} {mean_m}"),
                 0.13..0.87 => {}
-                // The middle of the beam hits one surface, also where the others hit the next part of it.
-                _ => assert!((range_m - middle_m).abs() < 0.2, "{share}: {range_m} {middle_m}"),
+                // At most one of the eight rays hits the other side. If none does, and the side of the middle has a step of
+                // its own, the range is the mean across that step: at most 0.26 of the step off, and 0.18 m in these
+                // 100,000 beams (1 of 80 rays ends at 2.30 m, the others at 5.7 to 6.5 m). Equal to the range of the
+                // middle, as this test had it once, the range need not be.
+                _ => {
+                    let is_near = |range_m: f64| range_m < (near_m + far_m) / 2.0;
+                    let is_beside = |range_m: &&f64| is_near(**range_m) == is_near(f64::from(*middle_m));
+                    let (low_m, high_m) =
+                        across.iter().filter(is_beside).fold((far_m, near_m), |(low_m, high_m), range_m| {
+                            (low_m.min(*range_m), high_m.max(*range_m))
+                        });
+                    let off_m = f64::from((range_m - middle_m).abs());
+                    assert!(off_m <= 0.27 * (high_m - low_m) + 1e-6, "{share}: {range_m} {middle_m}");
+                }
             }
             veils += usize::from(range_m != middle_m);
         }

@@ -180,18 +180,18 @@ impl Scene {
         let Sorted { robots, polygons, are_few } = self.sorted();
         let Scratch { inverse, discs, tested } = scratch;
         let mut hits = Hits::new(beams, laser, inverse);
-        discs.clear(robots.all().len() + polygons.len());
+        discs.clear(robots.items.len() + polygons.len());
         let at = Point2::from(laser.translation.vector);
         let own_cell = visible.cell_at(&at);
         let has_polygons = polygons.len() > 0;
         tested.begin(polygons.len());
         match own_cell {
-            Some(cell) => add_edges(visible.edges(cell), edges, &mut hits),
+            Some(cell) => add_edges(visible.edges.get(cell), edges, &mut hits),
             None => edges.iter().for_each(|edge| hits.add_edge(edge)),
         }
         match own_cell.filter(|_| !are_few) {
             Some(cell) => {
-                let cells = visible.cells(cell).iter().map(|&cell| cell as usize);
+                let cells = visible.cells.get(cell).iter().map(|&cell| cell as usize);
                 for cell in cells.chain([visible.len()]) {
                     add_robots(discs, &mut hits, robots.get(cell), own);
                     if has_polygons {
@@ -202,7 +202,7 @@ impl Scene {
                 }
             }
             None => {
-                add_robots(discs, &mut hits, robots.all(), own);
+                add_robots(discs, &mut hits, &robots.items, own);
                 for index in 0..polygons.len() as u32 {
                     discs.push_polygon(index, polygons, own, &mut hits);
                 }
@@ -226,7 +226,7 @@ fn is_in_wall(
 ) -> bool {
     let contains = |sides: &[Edge; 4]| sides.iter().all(|side| side.gap_m(at) <= 0.0);
     match cell {
-        Some(cell) => visible.boxes(cell).iter().any(|&wall| contains(&solids[wall as usize])),
+        Some(cell) => visible.boxes.get(cell).iter().any(|&wall| contains(&solids[wall as usize])),
         None => solids.iter().any(contains),
     }
 }

@@ -24,17 +24,17 @@ impl Scene {
                 sorted.add_all_to(&mut found, own);
             }
             for cell in visible.around(&low, &high) {
-                for seen in visible.edges(cell) {
+                for seen in visible.edges.get(cell) {
                     found.add_edge(seen.edge as usize, &edges[seen.edge as usize]);
                 }
                 if !sorted.are_few {
-                    let cells = visible.cells(cell).iter().map(|&other| other as usize);
+                    let cells = visible.cells.get(cell).iter().map(|&other| other as usize);
                     cells
                         .take_while(|&other| visible.apart_m(cell, other) <= ring.range_m)
                         .chain([visible.len()])
                         .for_each(|other| sorted.add_to(&mut found, other, own));
                 }
-                found.solids.extend(visible.boxes(cell));
+                found.solids.extend(visible.boxes.get(cell));
             }
         }
         let sensors = found.sensors;
@@ -62,7 +62,7 @@ impl Scene {
         let offset_m = vicinity.sensors.radius_m;
         let mut nearest = Nearest::new(beams, sensor);
         for (distance_m, thing) in vicinity.things() {
-            if distance_m - offset_m > nearest.reach_m() {
+            if distance_m - offset_m > nearest.reach_m {
                 break;
             }
             match thing {
@@ -81,7 +81,7 @@ impl Scene {
                 }
             }
         }
-        nearest.inverse()
+        nearest.inverse
     }
 }
 
@@ -93,7 +93,7 @@ impl Sorted {
 
     /// Adds all bodies.
     fn add_all_to(&self, found: &mut Vicinity, own: usize) {
-        self.add(found, self.robots.all(), 0..self.polygons.len() as u32, own);
+        self.add(found, &self.robots.items, 0..self.polygons.len() as u32, own);
     }
 
     fn add(

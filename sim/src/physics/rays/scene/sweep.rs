@@ -44,9 +44,9 @@ impl Scene {
         let Walls { solids, edges, visible } = &*self.moving.walls;
         sector.add_inside(|at| is_in_wall(solids, visible, cell, at));
         let Some(cell) = cell else { return edges.iter().for_each(|edge| sector.add_edge(edge)) };
-        for seen in visible.edges(cell) {
+        for seen in visible.edges.get(cell) {
             // The nearest edges come first.
-            if f64::from(seen.nearest_m) > sector.reach_m() {
+            if f64::from(seen.nearest_m) > sector.reach_m {
                 return;
             }
             sector.add_edge(&edges[seen.edge as usize]);
