@@ -67,10 +67,12 @@ impl Progress {
     }
 
     fn new(length: u64, template: &str, first: Duration, is_quiet: bool, is_raw: bool) -> Self {
-        let (kind, target) = match () {
-            () if is_quiet => (Kind::Silent, ProgressDrawTarget::hidden()),
-            () if stderr().is_terminal() && !is_raw => (Kind::Bar, ProgressDrawTarget::stderr()),
-            () => (Kind::Lines, ProgressDrawTarget::hidden()),
+        let (kind, target) = if is_quiet {
+            (Kind::Silent, ProgressDrawTarget::hidden())
+        } else if stderr().is_terminal() && !is_raw {
+            (Kind::Bar, ProgressDrawTarget::stderr())
+        } else {
+            (Kind::Lines, ProgressDrawTarget::hidden())
         };
         Self {
             bar: bar(length, template, target),

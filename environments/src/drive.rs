@@ -2,8 +2,8 @@
 
 use crate::picture::Picture;
 use crate::place::DrivePlace;
-use crate::task::{ACTIONS, Part, Results, Task, restored, saved, twist, write_scan, write_state};
-use interfaces::{Purpose, RandomStream, Twist};
+use crate::task::{ACTIONS, Part, Results, Task, twist, write_scan, write_state};
+use interfaces::{Purpose, RandomStream, Twist, from_bytes, to_bytes};
 use nalgebra::{Point2, Vector2};
 use sim::physics::{Fleet, SnapshotError};
 use std::sync::Arc;
@@ -190,11 +190,12 @@ impl Task for Drive {
     }
 
     fn snapshot(&mut self) -> Vec<u8> {
-        saved(&(self.fleet.snapshot(), &self.agents, self.steps))
+        to_bytes(&(self.fleet.snapshot(), &self.agents, self.steps))
     }
 
     fn restore(&mut self, snapshot: &[u8]) -> Result<(), SnapshotError> {
-        let (fleet, agents, steps): (Vec<u8>, Vec<Progress>, u32) = restored(snapshot)?;
+        let (fleet, agents, steps): (Vec<u8>, Vec<Progress>, u32) =
+            from_bytes(snapshot).map_err(|_| SnapshotError::Damaged)?;
         let goals = agents.iter().enumerate().map(|(agent, progress)| (agent, progress.goal));
         let is_known =
             |(agent, goal): (usize, usize)| agent < self.agents.len() && goal < self.place.goals(agent);

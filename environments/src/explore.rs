@@ -4,9 +4,9 @@ use crate::explore_place::ExplorePlace;
 use crate::patches::{LAYERS, Patches};
 use crate::picture::Picture;
 use crate::place::size_m;
-use crate::task::{Part, Results, Task, TaskError, restored, saved, twist, write_scan, write_state};
+use crate::task::{Part, Results, Task, TaskError, twist, write_scan, write_state};
 use evaluation::metrics::{MAX_LOG_ERROR, mean_log_error};
-use interfaces::{CellState, LaserReading, Purpose, RandomStream, World, heading_rad};
+use interfaces::{CellState, LaserReading, Purpose, RandomStream, World, from_bytes, heading_rad, to_bytes};
 use robot::{NoPilot, Robot};
 use sim::physics::{Fleet, PhysicsWorld, SnapshotError};
 use std::sync::Arc;
@@ -198,13 +198,14 @@ impl Task for Explore {
     fn snapshot(&mut self) -> Vec<u8> {
         let learned = (self.robot.mapper.snapshot(), self.robot.localization_mut().snapshot());
         let world = self.world.snapshot().into_bytes();
-        saved(&(self.number, world, learned, &self.reading, self.episode, &self.layers))
+        to_bytes(&(self.number, world, learned, &self.reading, self.episode, &self.layers))
     }
 
     fn restore(&mut self, snapshot: &[u8]) -> Result<(), SnapshotError> {
         type Learned = (Vec<u8>, Vec<u8>);
         type Saved = (usize, Vec<u8>, Learned, LaserReading, Episode, Vec<f32>);
-        let (number, world, (mapper, poses), reading, episode, layers): Saved = restored(snapshot)?;
+        let saved: Saved = from_bytes(snapshot).map_err(|_| SnapshotError::Damaged)?;
+        let (number, world, (mapper, poses), reading, episode, layers) = saved;
         if number >= self.place.worlds.len() || layers.len() != self.layers.len() {
             return Err(SnapshotError::OtherSpec);
         }

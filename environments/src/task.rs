@@ -1,9 +1,8 @@
 //! What all tasks have in common.
 
 use crate::picture::Picture;
-use interfaces::{Twist, read_value, write_value};
+use interfaces::Twist;
 use nalgebra::Point2;
-use serde::{Serialize, de::DeserializeOwned};
 use sim::physics::{DriveLimits, Fleet, SnapshotError};
 
 /// The number of actions of an agent.
@@ -133,22 +132,6 @@ pub(crate) fn write_state(to: &mut [f32], values: impl IntoIterator<Item = f64>)
 pub(crate) fn twist(drive: &DriveLimits, actions: &[f32]) -> Twist {
     let [linear, angular] = [0, 1].map(|index| f64::from(actions.get(index).copied().unwrap_or(0.0)));
     Twist { linear_mps: linear * drive.max_linear_mps, angular_radps: angular * drive.max_angular_radps }
-}
-
-/// The bytes of what changes in a task.
-pub(crate) fn saved(values: &impl Serialize) -> Vec<u8> {
-    let mut bytes = Vec::new();
-    // All our values can be written. If one could not, the snapshot would be refused when it is restored.
-    if write_value(values, &mut bytes).is_err() {
-        bytes.clear();
-    }
-    bytes
-}
-
-/// What changes in a task, from its bytes.
-pub(crate) fn restored<T: DeserializeOwned>(mut bytes: &[u8]) -> Result<T, SnapshotError> {
-    let values = read_value(&mut bytes).map_err(|_| SnapshotError::Damaged)?;
-    if bytes.is_empty() { Ok(values) } else { Err(SnapshotError::Damaged) }
 }
 
 /// A part of an observation.

@@ -22,10 +22,11 @@ use crate::bounds;
 use crate::choice::TopicChoice;
 use crate::content;
 use crate::error::LogError;
+use crate::log;
+use crate::log::{Log, RawReadings as _, Source};
 use crate::standing::Standing;
 use crate::summary::{LogSummary, since_epoch};
 use crate::times::{self, Times};
-use interfaces::LaserReading;
 use inventory::Inventory;
 use message::{Selection, Topic};
 use messages::Messages;
@@ -35,14 +36,12 @@ use readings::{Clock, Counts, RawReadings};
 use std::sync::Arc;
 
 /// A bag.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(crate) struct Bag {
     name: String,
-    files: Arc<[BagFile]>,
+    files: Vec<BagFile>,
     plan: Arc<Plan>,
     clock: Clock,
-    times_s: Arc<[f64]>,
-    summary: LogSummary,
 }
 
 impl Bag {
@@ -52,7 +51,7 @@ impl Bag {
         files: Vec<BagFile>,
         choice: &TopicChoice,
         mut notes: Vec<String>,
-    ) -> Result<Self, LogError> {
+    ) -> Result<Log, LogError> {
         let unusable = |why| LogError::Unusable { file: file.to_owned(), why };
         let inventory = Inventory::of(&files)?;
         notes.extend(inventory.notes.iter().cloned());
@@ -69,7 +68,7 @@ impl Bag {
                 (clock, survey) = (Clock::Recording(log_ns), by_recording);
             }
         }
-        let Survey { raw_begin_s, times, counts, odom_origin, stands } = survey;
+        let Survey { raw_begin_s, times, counts, odom_origin, stands, too_slow } = survey;
         if times.times_s.is_empty() {
             let why = counts.first_invalid.unwrap_or_default();
             return Err(unusable(format!("no scan is valid; the first: {why}")));
@@ -94,27 +93,24 @@ impl Bag {
             odom_origin,
             scan_topics,
             notes,
-            impossible: counts.doubts.impossible(counts.invalid_scans, stands),
+            impossible: too_slow.or_else(|| counts.doubts.impossible(counts.invalid_scans, stands)),
         };
         if stands {
             Arc::make_mut(&mut plan).motion = Motion::Standing;
         }
         let name = file.to_owned();
-        Ok(Self { name, files: files.into(), plan, clock, times_s: times.times_s.into(), summary })
+        Ok(Log::new(Self { name, files, plan, clock }, times.times_s, summary))
+    }
+}
+
+impl Source for Bag {
+    fn raw_readings(&self) -> Result<Box<dyn log::RawReadings + Send>, LogError> {
+        Ok(Box::new(raw_readings(&self.files, &self.plan, self.clock)))
     }
 
-    pub(crate) fn summary(&self) -> &LogSummary {
-        &self.summary
-    }
-
-    pub(crate) fn content_hash(&self) -> Result<u128, LogError> {
+    fn content_hash(&self) -> Result<u128, LogError> {
         let io = |why| LogError::Io { file: self.name.clone(), why };
         content::hash(self.files.iter().map(BagFile::content)).map_err(io)
-    }
-
-    pub(crate) fn readings(&self) -> Readings {
-        let raw = raw_readings(&self.files, &self.plan, self.clock);
-        Readings { raw, times_s: self.times_s.clone(), given: 0, has_failed: false }
     }
 }
 
@@ -134,6 +130,8 @@ struct Survey {
     odom_origin: Isometry2<f64>,
     /// Whether the laser stands.
     stands: bool,
+    /// As [`Odometry::impossible`](crate::Odometry).
+    too_slow: Option<String>,
 }
 
 impl Survey {
@@ -153,7 +151,8 @@ impl Survey {
         let raw_begin_s = raw_s.first().copied().unwrap_or_default();
         let odom_origin = raw.origin();
         let stands = raw.stands() && standing.looks_so();
-        Ok(Self { raw_begin_s, times: times::repaired(&raw_s), counts: raw.counts, odom_origin, stands })
+        let (times, too_slow) = (times::repaired(&raw_s), raw.impossible());
+        Ok(Self { raw_begin_s, times, counts: raw.counts, odom_origin, stands, too_slow })
     }
 }
 
@@ -167,37 +166,5 @@ impl Counts {
             format!("{} poses of odometry or transforms are invalid and left out", self.invalid_poses)
         });
         scans.into_iter().chain(poses)
-    }
-}
-
-/// The readings of a bag, one after the other. After an error, there are no more.
-pub(crate) struct Readings {
-    raw: RawReadings,
-    times_s: Arc<[f64]>,
-    given: usize,
-    has_failed: bool,
-}
-
-impl Iterator for Readings {
-    type Item = Result<LaserReading, LogError>;
-
-    fn next(&mut self) -> Option<Self::Item> {
-        if self.has_failed {
-            return None;
-        }
-        let mut reading = match self.raw.next_reading() {
-            Ok(reading) => reading?,
-            Err(error) => {
-                self.has_failed = true;
-                return Some(Err(error));
-            }
-        };
-        // The file can have grown since the survey.
-        let time_s = *self.times_s.get(self.given)?;
-        self.given += 1;
-        let shift_s = time_s - reading.time_s;
-        reading.velocities.iter_mut().for_each(|sample| sample.time_s += shift_s);
-        reading.time_s = time_s;
-        Some(Ok(reading))
     }
 }

@@ -1,6 +1,6 @@
-use crate::convert::{Numbers, Ranges, pose, pose_array};
+use crate::convert::{Numbers, Ranges, pose, pose_array, pose_values, rows_array};
 use interfaces::{LaserReading, Scan, Twist};
-use numpy::{PyArray1, PyArrayMethods};
+use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 
 /// A laser scan, and the pose of the robot at the same time.
@@ -140,26 +140,13 @@ impl Reading {
     }
 
     /// The end points of the beams that hit something, in the frame of the pose, shape (points, 2), m.
-    fn points<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, numpy::PyArray2<f64>>> {
-        let LaserReading { pose, mount, scan, .. } = &self.reading;
-        let laser = pose * mount;
-        let beams = scan.ranges_m.iter().enumerate().filter(|(_, range_m)| {
-            let range_m = f64::from(**range_m);
-            range_m.is_finite() && (scan.range_min_m..=scan.range_max_m).contains(&range_m)
-        });
-        let hits = beams.flat_map(|(beam, range_m)| {
-            let at = laser
-                * interfaces::rotation(scan.angle_rad(beam))
-                * nalgebra::Point2::new(f64::from(*range_m), 0.0);
-            [at.x, at.y]
-        });
-        let values: Vec<f64> = hits.collect();
-        let count = values.len() / 2;
-        PyArray1::from_vec(py, values).reshape([count, 2])
+    fn points<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let points = self.reading.hits().map(|hit| self.reading.pose * hit);
+        rows_array(py, points.map(|point| [point.x, point.y]))
     }
 
     fn __repr__(&self) -> String {
-        let [x, y, heading] = crate::convert::pose_values(&self.reading.pose);
+        let [x, y, heading] = pose_values(&self.reading.pose);
         let (time, beams) = (self.reading.time_s, self.reading.scan.ranges_m.len());
         format!("<curious.Reading at {time:.3} s: {beams} beams from [{x:.3}, {y:.3}, {heading:.3}]>")
     }

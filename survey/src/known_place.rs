@@ -3,7 +3,7 @@
 use crate::error::SurveyError;
 use crate::route::{Route, frame};
 use crate::settings::SurveySettings;
-use interfaces::{GridFrame, LaserReading, ValueError, read_value, write_value};
+use interfaces::{GridFrame, LaserReading, ValueError, read_value, to_bytes};
 use localizer::{LineMap, PoseState, TrajectoryPose, TrajectorySettings};
 use mapper::ScanFilter;
 use nalgebra::Vector2;
@@ -47,11 +47,8 @@ impl KnownPlace {
 
     /// Everything that the log has left, as bytes; settings are not in it.
     pub(crate) fn snapshot(mut self) -> Vec<u8> {
-        let mut bytes = Vec::new();
-        // A frame can be written. If it could not, the snapshot would be refused when it is restored.
-        if write_value(&self.frame, &mut bytes).is_ok() {
-            bytes.extend(self.lines.snapshot());
-        }
+        let mut bytes = to_bytes(&self.frame);
+        bytes.extend(self.lines.snapshot());
         bytes
     }
 

@@ -11,9 +11,9 @@ use std::collections::BTreeSet;
 /// Cells that change belong to one place if they are at most this far apart, m.
 const APART_M: f64 = 0.3;
 /// A place has at least this area, m²: less is noise of the laser at an edge.
-const LEAST_M2: f64 = 0.02;
+const MIN_M2: f64 = 0.02;
 /// A larger place is divided, m: in a room full of people all changes are connected.
-const MOST_M: f64 = 3.0;
+const MAX_M: f64 = 3.0;
 /// The probability with which the interval contains the rate.
 const MASS: f64 = 0.9;
 const HOUR_S: f64 = 3600.0;
@@ -61,7 +61,7 @@ pub fn places(mapper: &Mapper, log: &ChangeLog) -> Vec<Place> {
     while let Some(first) = left.pop_first() {
         for cells in divided(mapper.frame(), connected_cells(mapper, first, &mut left)) {
             let area_m2 = cells.len() as f64 * mapper.frame().resolution_m().powi(2);
-            if area_m2 >= LEAST_M2 {
+            if area_m2 >= MIN_M2 {
                 found.extend(place(mapper, log, &cells, area_m2));
             }
         }
@@ -91,10 +91,10 @@ fn connected_cells(mapper: &Mapper, first: usize, left: &mut BTreeSet<usize>) ->
     cells
 }
 
-/// Cells in groups that are at most [`MOST_M`] long: a longer group is cut across its longer side, in the middle half of it,
+/// Cells in groups that are at most [`MAX_M`] long: a longer group is cut across its longer side, in the middle half of it,
 /// where the fewest cells are.
 fn divided(frame: &GridFrame, cells: Vec<usize>) -> Vec<Vec<usize>> {
-    let most = (MOST_M / frame.resolution_m()).round().max(1.0) as i32;
+    let most = (MAX_M / frame.resolution_m()).round().max(1.0) as i32;
     let at = |index: usize| frame.cell(index);
     let span = |of: &dyn Fn(Cell) -> i32| {
         let places = || cells.iter().map(|index| of(at(*index)));

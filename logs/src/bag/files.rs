@@ -16,7 +16,7 @@ pub(super) const ZSTD: [u8; 4] = [0x28, 0xb5, 0x2f, 0xfd];
 /// The first bytes of a bag of ROS 1.
 const ROS1: &[u8] = b"#ROSBAG V";
 /// The largest `metadata.yaml`.
-const MOST_METADATA: u64 = 16 << 20;
+const MAX_METADATA: u64 = 16 << 20;
 
 /// A file of a bag.
 #[derive(Clone, Debug)]
@@ -121,7 +121,7 @@ pub(crate) fn in_folder(folder: &Path) -> Result<(Vec<BagFile>, Option<String>),
         Err(error) => return Err(io(error)),
     };
     let mut text = String::new();
-    file.take(MOST_METADATA).read_to_string(&mut text).map_err(io)?;
+    file.take(MAX_METADATA).read_to_string(&mut text).map_err(io)?;
     let unusable = |why: String| LogError::Unusable { file: metadata.display().to_string(), why };
     let Metadata { rosbag2_bagfile_information: information } =
         serde_saphyr::from_str(&text).map_err(|error| {

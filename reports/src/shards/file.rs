@@ -16,9 +16,10 @@ use std::sync::{Mutex, PoisonError};
 #[derive(Debug)]
 pub struct ShardFile {
     path: PathBuf,
-    shard: Shard,
+    pub(super) shard: Shard,
     key: u64,
-    finished: BTreeSet<u64>,
+    /// The numbers of the trials that were finished when the file was opened.
+    pub(super) finished: BTreeSet<u64>,
     file: Mutex<Appended>,
 }
 
@@ -72,16 +73,6 @@ impl ShardFile {
     /// The file.
     pub fn path(&self) -> &Path {
         &self.path
-    }
-
-    /// The shard.
-    pub(super) fn shard(&self) -> Shard {
-        self.shard
-    }
-
-    /// The numbers of the trials that were finished when the file was opened.
-    pub fn finished(&self) -> &BTreeSet<u64> {
-        &self.finished
     }
 
     /// Appends a finished trial, which is then in the hands of the operating system: it survives the end of the

@@ -202,9 +202,7 @@ fn write(
 ) -> anyhow::Result<()> {
     let to = folder.unfinished();
     show.write_pictures(to, mapper, goals, &Layer::ALL)?;
-    let map = mapper.states();
-    write_file(&to.join("map.pgm"), |file| file.write_all(&ros_map::pgm(map)))?;
-    write_file(&to.join("map.yaml"), |file| write!(file, "{}", ros_map::yaml(map.frame(), "map.pgm")))?;
+    ros_map::write(to, "map", mapper.states())?;
     cell_statistics::write(&to.join("cell_statistics.csv"), mapper)?;
     summary.files = folder.results()?;
     let text = serde_json::to_string_pretty(summary)?;

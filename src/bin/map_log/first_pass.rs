@@ -7,7 +7,7 @@ use curious::program::{Failure, input};
 use curious::progress::Progress;
 use interfaces::PoseMode;
 use std::ops::ControlFlow;
-use survey::{PassError, RouteProgress, Stage, Survey};
+use survey::{PassError, Stage, Survey};
 
 /// Finds the routes of all logs of which the survey has none. Returns whether it was not interrupted.
 pub(crate) fn routes(job: &Job, survey: &mut Survey, saves: &mut Saves) -> Result<bool, Failure> {
@@ -19,7 +19,7 @@ pub(crate) fn routes(job: &Job, survey: &mut Survey, saves: &mut Saves) -> Resul
         let can_align = source.entry.stands || job.settings.pose == PoseMode::Localized;
         let is_followed = can_align && (saves.is_kept() || number + 1 < job.sources.len());
         let mut bar = None;
-        let watch = |RouteProgress { stage, readings, .. }: RouteProgress| {
+        let watch = |stage, readings| {
             match readings {
                 0 => bar = begin(job, number, stage, bar.take()),
                 _ => bar.iter().for_each(Progress::step),
@@ -31,7 +31,7 @@ pub(crate) fn routes(job: &Job, survey: &mut Survey, saves: &mut Saves) -> Resul
         match found {
             Ok(()) => saves.save(survey),
             Err(PassError::Interrupted) => return Ok(false),
-            Err(PassError::Alignment { why, .. }) => {
+            Err(PassError::Alignment(why)) => {
                 return Err(input(Error::from(why).context(format!("cannot use {}", source.entry.name))));
             }
             Err(other) => return Err(input(other)),
