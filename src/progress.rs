@@ -2,7 +2,7 @@
 
 use crate::terminal::say;
 use crossterm::terminal;
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressFinish, ProgressState, ProgressStyle};
 use results::numbers::{duration, percent};
 use std::fmt::{self, Display, Formatter};
 use std::io::{IsTerminal, stderr};
@@ -26,7 +26,8 @@ enum Kind {
     Lines,
 }
 
-/// The progress of one run in simulated time, of one log, or of many trials, which may run on any thread.
+/// The progress of one run in simulated time, of one log, or of many trials, which may run on any thread. The bar vanishes
+/// when the value is dropped.
 pub struct Progress {
     /// The position is in milliseconds of simulated time, or in trials.
     bar: ProgressBar,
@@ -133,11 +134,6 @@ impl Progress {
     fn time_left(&self) -> String {
         time_left(self.bar.position(), self.bar.length(), self.bar.elapsed())
     }
-
-    /// Removes the bar.
-    pub fn finish(&self) {
-        self.bar.finish_and_clear();
-    }
 }
 
 /// The state of a run in simulated time.
@@ -198,7 +194,8 @@ fn bar(length: u64, template: &str, target: ProgressDrawTarget) -> ProgressBar {
         let _ = to.write_str(&time_left(state.pos(), state.len(), state.elapsed()));
     };
     let style = style.with_key("done", done).with_key("left", left);
-    ProgressBar::with_draw_target(Some(length), target).with_style(style)
+    let bar = ProgressBar::with_draw_target(Some(length), target).with_style(style);
+    bar.with_finish(ProgressFinish::AndClear)
 }
 
 /// The wall time that remains if the run goes on at its mean speed so far.

@@ -1,11 +1,9 @@
 //! Many tasks, stepped by one call.
 
-use crate::picture::Picture;
 use crate::task::{ACTIONS, Results, Task, TaskError};
 use crate::threads::share;
 use rayon::ThreadPool;
 use sim::physics::SnapshotError;
-use std::sync::Arc;
 
 /// What rounding may add to an action.
 const ROUNDING: f32 = 1e-6;
@@ -14,7 +12,7 @@ const ROUNDING: f32 = 1e-6;
 pub struct Batch {
     slots: Vec<Slot>,
     is_parallel: bool,
-    pool: Option<Arc<ThreadPool>>,
+    pool: Option<ThreadPool>,
     is_autoreset: bool,
 }
 
@@ -57,9 +55,9 @@ impl Batch {
         self.is_parallel = is_parallel;
     }
 
-    /// The pool of threads; `None` (the default): the present rayon pool.
-    pub fn set_pool(&mut self, pool: Option<Arc<ThreadPool>>) {
-        self.pool = pool;
+    /// The pool of threads; by default the present rayon pool.
+    pub fn set_pool(&mut self, pool: ThreadPool) {
+        self.pool = Some(pool);
     }
 
     /// Whether a task that is over is reset in the same step (the default), or stands still until it is reset.
@@ -73,13 +71,8 @@ impl Batch {
     }
 
     /// The number of tasks.
-    pub fn len(&self) -> usize {
+    pub fn count(&self) -> usize {
         self.slots.len()
-    }
-
-    /// Whether there is no task.
-    pub fn is_empty(&self) -> bool {
-        self.slots.is_empty()
     }
 
     /// A task.
@@ -100,7 +93,7 @@ impl Batch {
     pub fn reset(&mut self, seeds: &[u64]) -> Result<Vec<f32>, TaskError> {
         check("seeds", seeds.len(), self.slots.len())?;
         let jobs = self.slots.iter_mut().zip(seeds);
-        share(self.is_parallel, self.pool.as_deref(), jobs, |(slot, seed)| slot.reset(*seed));
+        share(self.is_parallel, self.pool.as_ref(), jobs, |(slot, seed)| slot.reset(*seed));
         Ok(self.slots.iter().flat_map(|slot| &slot.results.observations).copied().collect())
     }
 
@@ -126,15 +119,10 @@ impl Batch {
         }
         let is_autoreset = self.is_autoreset;
         let jobs = self.slots.iter_mut().zip(actions.chunks(of_task)).zip(next_seeds);
-        share(self.is_parallel, self.pool.as_deref(), jobs, |((slot, actions), seed)| {
+        share(self.is_parallel, self.pool.as_ref(), jobs, |((slot, actions), seed)| {
             slot.step(actions, *seed, is_autoreset);
         });
         Ok(Results::joined(self.slots.iter().map(|slot| &slot.results)))
-    }
-
-    /// One task from above, at most `size` pixels wide and high.
-    pub fn picture(&self, index: usize, size: usize) -> Picture {
-        self.task(index).picture(size)
     }
 
     /// The state of one task as bytes.

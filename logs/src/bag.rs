@@ -26,11 +26,10 @@ use crate::log;
 use crate::log::{Log, RawReadings as _, Source};
 use crate::standing::Standing;
 use crate::summary::{LogSummary, since_epoch};
-use crate::times::{self, Times};
+use crate::times;
 use inventory::Inventory;
 use message::{Selection, Topic};
 use messages::Messages;
-use nalgebra::Isometry2;
 use plan::{Motion, Plan};
 use readings::{Clock, Counts, RawReadings};
 use std::sync::Arc;
@@ -58,17 +57,23 @@ impl Bag {
         let mut plan = Arc::new(Plan::new(&inventory, choice, &mut notes).map_err(unusable)?);
         let (stamp_ns, log_ns) = inventory.begin_ns.unwrap_or_default();
         let mut clock = Clock::Stamps(stamp_ns);
-        let mut survey = Survey::of(&files, &plan, clock, unusable)?;
-        if !survey.times.has_times {
-            let by_recording = Survey::of(&files, &plan, Clock::Recording(log_ns), unusable)?;
-            if by_recording.times.has_times {
+        let mut survey = surveyed(&files, &plan, clock, unusable)?;
+        let mut times = times::repaired(&survey.1);
+        if !times.has_times {
+            let by_recording = surveyed(&files, &plan, Clock::Recording(log_ns), unusable)?;
+            let recorded = times::repaired(&by_recording.1);
+            if recorded.has_times {
                 notes.push(
                     "the stamps of the scans are unusable: the times of the recording count".to_owned(),
                 );
-                (clock, survey) = (Clock::Recording(log_ns), by_recording);
+                (clock, survey, times) = (Clock::Recording(log_ns), by_recording, recorded);
             }
         }
-        let Survey { raw_begin_s, times, counts, odom_origin, stands, too_slow } = survey;
+        let (raw, raw_s, standing) = survey;
+        let raw_begin_s = raw_s.first().copied().unwrap_or_default();
+        let stands = raw.stands() && standing.looks_so();
+        let (odom_origin, impossible) = (raw.origin(), raw.impossible());
+        let counts = raw.counts;
         if times.times_s.is_empty() {
             let why = counts.first_invalid.unwrap_or_default();
             return Err(unusable(format!("no scan is valid; the first: {why}")));
@@ -93,7 +98,7 @@ impl Bag {
             odom_origin,
             scan_topics,
             notes,
-            impossible: too_slow.or_else(|| counts.doubts.impossible(counts.invalid_scans, stands)),
+            impossible: impossible.or_else(|| counts.doubts.impossible(counts.invalid_scans, stands)),
         };
         if stands {
             Arc::make_mut(&mut plan).motion = Motion::Standing;
@@ -121,39 +126,21 @@ fn raw_readings(files: &[BagFile], plan: &Arc<Plan>, clock: Clock) -> RawReading
     RawReadings::new(messages, plan, clock)
 }
 
-/// The times of all scans.
-struct Survey {
-    /// The time of the first scan on the clock, s.
-    raw_begin_s: f64,
-    times: Times,
-    counts: Counts,
-    odom_origin: Isometry2<f64>,
-    /// Whether the laser stands.
-    stands: bool,
-    /// As [`Odometry::impossible`](crate::Odometry).
-    too_slow: Option<String>,
-}
-
-impl Survey {
-    fn of(
-        files: &[BagFile],
-        plan: &Arc<Plan>,
-        clock: Clock,
-        unusable: impl Fn(String) -> LogError,
-    ) -> Result<Self, LogError> {
-        let mut raw = raw_readings(files, plan, clock);
-        let (mut raw_s, mut standing) = (Vec::new(), Standing::default());
-        while let Some(reading) = raw.next_reading()? {
-            bounds::one_more(raw_s.len()).map_err(&unusable)?;
-            raw_s.push(reading.time_s);
-            standing.add(&reading.mount, &reading.scan);
-        }
-        let raw_begin_s = raw_s.first().copied().unwrap_or_default();
-        let odom_origin = raw.origin();
-        let stands = raw.stands() && standing.looks_so();
-        let (times, too_slow) = (times::repaired(&raw_s), raw.impossible());
-        Ok(Self { raw_begin_s, times, counts: raw.counts, odom_origin, stands, too_slow })
+/// Reads all scans once: what the readings know at their end, the times of the scans, s, and how the scans look.
+fn surveyed(
+    files: &[BagFile],
+    plan: &Arc<Plan>,
+    clock: Clock,
+    unusable: impl Fn(String) -> LogError,
+) -> Result<(RawReadings, Vec<f64>, Standing), LogError> {
+    let mut raw = raw_readings(files, plan, clock);
+    let (mut raw_s, mut standing) = (Vec::new(), Standing::default());
+    while let Some(reading) = raw.next_reading()? {
+        bounds::one_more(raw_s.len()).map_err(&unusable)?;
+        raw_s.push(reading.time_s);
+        standing.add(&reading.mount, &reading.scan);
     }
+    Ok((raw, raw_s, standing))
 }
 
 impl Counts {

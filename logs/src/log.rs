@@ -91,8 +91,7 @@ impl Log {
         Ok(Readings { raw, times_s, given: 0, has_failed: false })
     }
 
-    /// A number that is another one for another content, and the same for the same content under another name or with another
-    /// compression of the file: XXH3 with 128 bits. The log is read once for it.
+    /// Content hash (XXH3-128): it depends neither on the name nor on the compression of the file. The log is read once for it.
     ///
     /// # Errors
     ///

@@ -47,16 +47,12 @@ pub(crate) fn whole<'py, T>(object: &Bound<'py, PyAny>) -> PyResult<T>
 where
     T: for<'a> FromPyObject<'a, 'py, Error = PyErr>,
 {
-    object.extract().map_err(|error: PyErr| in_range(error, object))
-}
-
-/// A number that an integer of Rust cannot hold is out of range: a `ValueError`, as for any other range.
-pub(crate) fn in_range(error: PyErr, value: &Bound<'_, PyAny>) -> PyErr {
-    if error.is_instance_of::<PyOverflowError>(value.py()) {
-        value_error(format!("a whole number from 0 to 2^64 - 1 is needed, and not {value}"))
-    } else {
-        error
-    }
+    object.extract().map_err(|error: PyErr| {
+        // A number that an integer of Rust cannot hold is out of range, as for any other range.
+        let of_range =
+            || value_error(format!("a whole number from 0 to 2^64 - 1 is needed, and not {object}"));
+        if error.is_instance_of::<PyOverflowError>(object.py()) { of_range() } else { error }
+    })
 }
 
 /// Numbers with one dimension, as a list, a tuple or an array of any type.

@@ -1,7 +1,7 @@
 use crate::convert::{
     Numbers, Ranges, SnapshotError, grid, optional_index, rows_array, value_error, world_error,
 };
-use crate::reading::{Laser, Reading, laser_reading};
+use crate::reading::Reading;
 use crate::snapshots::Kind;
 use crate::spec::{driving, spec_of};
 use evaluation::physics_trial;
@@ -148,10 +148,11 @@ impl Mapper {
         range_max: f64,
         mount: Option<Numbers<'_>>,
     ) -> PyResult<()> {
-        let laser = Laser { angle_min, angle_increment, range_min, range_max, mount, sweep: 0.0 };
-        let reading = laser_reading(time, &ranges, &pose, &laser, [0.0, 0.0])?;
-        let mapper = &mut self.mapper;
-        py.detach(|| mapper.update(&reading)).map_err(value_error)
+        let (increment, at_rest) = (angle_increment, [0.0, 0.0]);
+        let reading = Reading::new(
+            time, ranges, pose, angle_min, increment, range_min, range_max, mount, 0.0, at_rest,
+        )?;
+        self.update_reading(py, &reading)
     }
 
     /// Updates the map with a reading, whose pose is taken as exact.

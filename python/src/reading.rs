@@ -18,44 +18,6 @@ impl Reading {
     }
 }
 
-/// The properties of a laser.
-pub(crate) struct Laser<'py> {
-    pub(crate) angle_min: f64,
-    pub(crate) angle_increment: Option<f64>,
-    pub(crate) range_min: f64,
-    pub(crate) range_max: f64,
-    pub(crate) mount: Option<Numbers<'py>>,
-    pub(crate) sweep: f64,
-}
-
-/// A reading of own numbers. Without an angle between beams they cover a full turn.
-pub(crate) fn laser_reading(
-    time: f64,
-    ranges: &Ranges<'_>,
-    at: &Numbers<'_>,
-    laser: &Laser<'_>,
-    twist: [f64; 2],
-) -> PyResult<LaserReading> {
-    let ranges_m = ranges.to_vec();
-    let angle_increment_rad =
-        laser.angle_increment.unwrap_or(std::f64::consts::TAU / ranges_m.len().max(1) as f64);
-    Ok(LaserReading {
-        time_s: time,
-        pose: pose(at)?,
-        twist: Twist { linear_mps: twist[0], angular_radps: twist[1] },
-        velocities: Vec::new(),
-        mount: laser.mount.as_ref().map(pose).transpose()?.unwrap_or_default(),
-        scan: Scan {
-            angle_min_rad: laser.angle_min,
-            angle_increment_rad,
-            range_min_m: laser.range_min,
-            range_max_m: laser.range_max,
-            sweep_s: laser.sweep,
-            ranges_m,
-        },
-    })
-}
-
 #[pymethods]
 impl Reading {
     /// A reading of your own: see `Mapper.update` for the arguments.
@@ -63,7 +25,7 @@ impl Reading {
     #[pyo3(signature = (time, ranges, pose, *, angle_min = -std::f64::consts::PI, angle_increment = None,
         range_min = 0.0, range_max = 10.0, mount = None, sweep = 0.0, velocity = [0.0, 0.0]))]
     #[allow(clippy::too_many_arguments)]
-    fn new(
+    pub(crate) fn new(
         time: f64,
         ranges: Ranges<'_>,
         pose: Numbers<'_>,
@@ -75,8 +37,25 @@ impl Reading {
         sweep: f64,
         velocity: [f64; 2],
     ) -> PyResult<Self> {
-        let laser = Laser { angle_min, angle_increment, range_min, range_max, mount, sweep };
-        Ok(Self::of(laser_reading(time, &ranges, &pose, &laser, velocity)?))
+        let ranges_m = ranges.to_vec();
+        // By default the beams cover a full turn.
+        let full_turn = || std::f64::consts::TAU / ranges_m.len().max(1) as f64;
+        let [linear_mps, angular_radps] = velocity;
+        Ok(Self::of(LaserReading {
+            time_s: time,
+            pose: self::pose(&pose)?,
+            twist: Twist { linear_mps, angular_radps },
+            velocities: Vec::new(),
+            mount: mount.as_ref().map(self::pose).transpose()?.unwrap_or_default(),
+            scan: Scan {
+                angle_min_rad: angle_min,
+                angle_increment_rad: angle_increment.unwrap_or_else(full_turn),
+                range_min_m: range_min,
+                range_max_m: range_max,
+                sweep_s: sweep,
+                ranges_m,
+            },
+        }))
     }
 
     /// The time, s.

@@ -28,8 +28,7 @@ impl Batch {
             1 => batch.set_parallel(false),
             threads => {
                 let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-                let pool = pool.map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
-                batch.set_pool(Some(Arc::new(pool)));
+                batch.set_pool(pool.map_err(|error| PyRuntimeError::new_err(error.to_string()))?);
             }
         }
         Ok(Self { batch, is_ready: false })
@@ -111,7 +110,7 @@ impl Batch {
     /// The number of environments.
     #[getter]
     fn environments(&self) -> usize {
-        self.batch.len()
+        self.batch.count()
     }
 
     /// The number of agents of an environment.

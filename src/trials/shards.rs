@@ -137,7 +137,7 @@ impl<K: TrialKind> TrialArgs<K> {
         }
         let progress = Progress::of_trials(open.len(), self.quiet);
         let finished = self.pool()?.install(|| file.run(open, is_canceled, || progress.step()));
-        progress.finish();
+        drop(progress);
         let finished = before + finished.map_err(anyhow::Error::from)?;
         file.sync().context("start the shard again")?;
         if finished < all {

@@ -14,8 +14,7 @@ const AROUND_M: f64 = 10.0;
 /// The surfaces along the route of the first log, as later logs need them.
 #[derive(Clone, Debug)]
 pub struct KnownPlace {
-    pub(crate) settings: SurveySettings,
-    filter: ScanFilter,
+    pub(crate) filter: ScanFilter,
     /// The rectangle of the surfaces.
     frame: GridFrame,
     pub(crate) lines: LineMap,
@@ -35,7 +34,7 @@ impl KnownPlace {
         // Around a place of the largest size, there is no space left.
         let frame = GridFrame::new(origin, extent.resolution_m(), sides[0], sides[1]).unwrap_or(extent);
         let lines = LineMap::new(&TrajectorySettings::default(), &frame)?;
-        Ok(Self { settings: settings.clone(), filter: settings.scan_filter(), frame, lines })
+        Ok(Self { filter: settings.scan_filter(), frame, lines })
     }
 
     /// Adds a reading of the first log, with the pose that was found for it; if the pose is not certain, it says nothing.
@@ -57,6 +56,6 @@ impl KnownPlace {
         let frame = read_value(&mut snapshot)?;
         let mut lines = LineMap::new(&TrajectorySettings::default(), &frame).map_err(|_| ValueError)?;
         lines.restore(snapshot)?;
-        Ok(Self { settings: settings.clone(), filter: settings.scan_filter(), frame, lines })
+        Ok(Self { filter: settings.scan_filter(), frame, lines })
     }
 }

@@ -61,7 +61,7 @@ impl<'a> Search<'a> {
     /// is known.
     pub fn new(place: &'a KnownPlace, start: Start, readings: usize) -> Self {
         let (given, compared) = (GivenPoses::default(), Vec::new());
-        let filter = place.settings.scan_filter();
+        let filter = place.filter.clone();
         Self { place, filter, start, expected: readings, readings: 0, given, compared }
     }
 

@@ -47,7 +47,7 @@ impl Clock {
 /// What a pass found.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Counts {
-    /// Scans that are none, and why the first is none.
+    /// Invalid scans, and why the first is invalid.
     pub(super) invalid_scans: usize,
     pub(super) first_invalid: Option<String>,
     pub(super) poses: usize,

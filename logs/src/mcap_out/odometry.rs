@@ -9,7 +9,7 @@ const MIN_STEP_S: f64 = 1e-6;
 /// m and rad. Beyond it, the odometry has jumped.
 const MAX_SPREAD_M: f64 = 0.1;
 const MAX_SPREAD_RAD: f64 = 0.15;
-/// The turn that takes as long as a way of one metre, rad.
+/// Rotation equivalent to 1 m, rad.
 const RAD_PER_M: f64 = 3.0;
 
 /// A pose of the odometry.

@@ -17,6 +17,7 @@ use sim::physics::{Body, Contact, FreePoses, Velocity};
 
 /// A world with any number of robots. The same spec, seed and commands give the same bits as in Rust, on any number
 /// of threads.
+#[derive(Clone)]
 #[pyclass(module = "curious")]
 pub(crate) struct Fleet {
     fleet: sim::physics::Fleet,
@@ -266,8 +267,7 @@ impl Fleet {
 
     /// An independent copy.
     fn copy(&self) -> Self {
-        let (driven, contacts) = (self.driven.clone(), self.contacts.clone());
-        Self { fleet: self.fleet.clone(), driven, beams: self.beams, contacts }
+        self.clone()
     }
 
     fn __repr__(&self) -> String {

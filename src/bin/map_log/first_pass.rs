@@ -9,7 +9,7 @@ use interfaces::PoseMode;
 use std::ops::ControlFlow;
 use survey::{PassError, Stage, Survey};
 
-/// Finds the routes of all logs of which the survey has none. Returns whether it was not interrupted.
+/// Finds the routes of all logs of which the survey has none. Returns false if interrupted.
 pub(crate) fn routes(job: &Job, survey: &mut Survey, saves: &mut Saves) -> Result<bool, Failure> {
     for (number, source) in job.sources.iter().enumerate() {
         let log = job.first_log + number;
@@ -22,12 +22,12 @@ pub(crate) fn routes(job: &Job, survey: &mut Survey, saves: &mut Saves) -> Resul
         let watch = |stage, readings| {
             match readings {
                 0 => bar = begin(job, number, stage, bar.take()),
-                _ => bar.iter().for_each(Progress::step),
+                _ => bar.as_ref().map_or((), Progress::step),
             }
             if job.is_interrupted() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         };
         let found = survey.first_pass(&source.log, source.entry.clone(), is_followed, watch);
-        bar.iter().for_each(Progress::finish);
+        drop(bar);
         match found {
             Ok(()) => saves.save(survey),
             Err(PassError::Interrupted) => return Ok(false),
@@ -42,7 +42,7 @@ pub(crate) fn routes(job: &Job, survey: &mut Survey, saves: &mut Saves) -> Resul
 
 /// Reports that a stage begins, below the finished bar of the stage before. Gives the bar of this stage.
 fn begin(job: &Job, number: usize, stage: Stage, before: Option<Progress>) -> Option<Progress> {
-    before.iter().for_each(Progress::finish);
+    drop(before);
     let what = match stage {
         Stage::Trajectory => "first pass",
         Stage::Loops => "closing loops",

@@ -66,7 +66,9 @@ pub(crate) fn learn(
             break;
         }
     }
-    survey.mapper().into_iter().for_each(|mapper| learned.show.end_in(*mapper.frame()));
+    if let Some(mapper) = survey.mapper() {
+        learned.show.end_in(*mapper.frame());
+    }
     if let Some(Err(problem)) = bag.map(RunBag::finish) {
         learned.is_shown = false;
         say(stderr(), format_args!("error: cannot write the bag: {problem:#}"));
@@ -135,7 +137,6 @@ impl Learned {
                 break;
             }
         }
-        progress.finish();
         Ok(())
     }
 }
