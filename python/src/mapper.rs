@@ -35,6 +35,9 @@ impl Mapper {
     }
 }
 
+/// What was observed of a cell: its name, and its value.
+type Figure<T> = (&'static str, fn(&CellStatistics) -> T);
+
 /// The settings with another estimator, occupancy model, gap and range noise.
 pub(crate) fn settings_of(
     mut settings: MapperSettings,
@@ -271,12 +274,12 @@ impl Mapper {
     /// free_events (changes in view), block_events_after_gap and free_events_after_gap.
     fn statistics<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let statistics = PyDict::new(py);
-        let times: [(_, fn(&CellStatistics) -> f64); 2] =
+        let times: [Figure<f64>; 2] =
             [("watched_free", |of| of.watched_free), ("watched_blocked", |of| of.watched_blocked)];
         for (name, time) in times {
             statistics.set_item(name, self.array(py, |map, cell| time(&map.statistics(cell)))?)?;
         }
-        let counts: [(_, fn(&CellStatistics) -> u32); 4] = [
+        let counts: [Figure<u32>; 4] = [
             ("block_events", |of| of.block_events),
             ("free_events", |of| of.free_events),
             ("block_events_after_gap", |of| of.block_events_after_gap),

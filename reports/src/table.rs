@@ -63,8 +63,11 @@ const DIFFERENCES: [(&str, Measure, usize); 3] = [
     ("map quality, final", Measure::Final(Metric::MapQuality), 4),
 ];
 
+/// A count of a strategy, and what it is.
+type Count = (&'static str, fn(&StrategyResult) -> u64);
+
 /// The counts that are named where a strategy has any.
-const COUNTS: [(&str, fn(&StrategyResult) -> u64); 3] = [
+const COUNTS: [Count; 3] = [
     ("False change events on cells that never change", |strategy| strategy.false_change_events),
     ("False changes of the map on these cells, with corrections", |strategy| strategy.false_map_changes),
     ("Collisions while the robot moved", |strategy| strategy.collisions.unwrap_or(0)),

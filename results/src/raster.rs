@@ -12,8 +12,11 @@ const SCHEMA: u32 = 1;
 /// The probability with which the credible interval contains the rate.
 const CREDIBLE_MASS: f64 = 0.9;
 
-/// The layers, in the order of the array: the name, with the unit, and the value of a cell.
-const LAYERS: [(&str, fn(&Learned, usize) -> f64); 8] = [
+/// A layer: the name, with the unit, and the value of a cell.
+type Layer = (&'static str, fn(&Learned, usize) -> f64);
+
+/// The layers, in the order of the array.
+const LAYERS: [Layer; 8] = [
     ("blocked", |of, index| f64::from(u8::from(of.mapper.states().cells()[index] == CellState::Blocked))),
     ("rate_hz", |of, index| of.mapper.rate(index)),
     ("rate_low_hz", |of, index| (of.interval)(index).0),

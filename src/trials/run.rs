@@ -80,7 +80,7 @@ where
     ) -> anyhow::Result<(Vec<Trial>, Option<RecordingError>)> {
         let pool = self.pool()?;
         let mut jobs = experiment.jobs();
-        let progress = Progress::of_trials(jobs.len(), self.quiet);
+        let progress = Progress::of_count(jobs.len(), "trials", self.quiet);
         let first = match &self.rrd {
             None => None,
             Some(file) => {

@@ -51,5 +51,5 @@ fn begin(job: &Job, number: usize, stage: Stage, before: Option<Progress>) -> Op
     };
     let source = &job.sources[number];
     job.say(format_args!("{}: {what}", source.entry.name));
-    (stage != Stage::Loops).then(|| Progress::of_scans(source.log.summary().scans, job.args.quiet))
+    (stage != Stage::Loops).then(|| Progress::of_count(source.log.summary().scans, "scans", job.args.quiet))
 }

@@ -116,7 +116,8 @@ impl Learned {
             }
             self.no_return.push(scanner);
         }
-        let progress = Progress::of_scans(source.log.summary().scans.saturating_sub(used), job.args.quiet);
+        let progress =
+            Progress::of_count(source.log.summary().scans.saturating_sub(used), "scans", job.args.quiet);
         while let Some(turn) = survey.turn(&mut replay).map_err(input)? {
             progress.step();
             self.is_interrupted = job.is_interrupted();
