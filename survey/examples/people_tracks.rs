@@ -50,7 +50,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let log = Log::open(Path::new(file), &TopicChoice::default())?;
     let entry = LogEntry::of(file.clone(), &log, &TopicChoice::default())?;
     let mut survey = Survey::new(SurveySettings::of(PoseMode::Exact), true);
-    survey.first_pass(&log, entry, false, |_, _| ControlFlow::Continue(()))?;
+    survey.first_pass(&log, entry, false, |_| ControlFlow::Continue(()))?;
     let mut replay = survey.replay(0, &log)?.ok_or("the log has no reading")?;
     let mut events: Vec<(f64, Point2<f64>)> = Vec::new();
     while survey.turn(&mut replay)?.is_some() {

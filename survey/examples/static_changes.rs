@@ -24,7 +24,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let max_range_m = settings.filter.max_range_m;
     let mut survey = Survey::new(settings, true);
     let entry = LogEntry::of(file, &log, &TopicChoice::default())?;
-    survey.first_pass(&log, entry, false, |_, _| ControlFlow::Continue(()))?;
+    survey.first_pass(&log, entry, false, |_| ControlFlow::Continue(()))?;
     let mut replay = survey.replay(0, &log)?.ok_or("the log has no reading")?;
     while survey.turn(&mut replay)?.is_some() {}
     let mapper = survey.mapper().ok_or("the log has no reading")?;

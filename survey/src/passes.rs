@@ -55,7 +55,7 @@ pub(crate) struct RoutePass<'a, W> {
     pub(crate) watch: W,
 }
 
-impl<W: FnMut(Stage, usize) -> ControlFlow<()>> RoutePass<'_, W> {
+impl<W: FnMut((Stage, usize)) -> ControlFlow<()>> RoutePass<'_, W> {
     /// The route of the log, in the frame of its first pose.
     ///
     /// # Errors
@@ -140,7 +140,7 @@ impl<W: FnMut(Stage, usize) -> ControlFlow<()>> RoutePass<'_, W> {
     }
 
     fn report(&mut self, stage: Stage, readings: usize) -> Result<(), PassError> {
-        match (self.watch)(stage, readings) {
+        match (self.watch)((stage, readings)) {
             ControlFlow::Continue(()) => Ok(()),
             ControlFlow::Break(()) => Err(PassError::Interrupted),
         }

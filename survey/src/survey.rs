@@ -110,8 +110,8 @@ impl Survey {
     }
 
     /// The first pass over the next log: its route, in the frame of the first one. `is_followed`: other logs can follow, and
-    /// must find their place. `watch` is called when a stage begins and after each of its readings, with their number, and interrupts the pass
-    /// with a `Break`.
+    /// must find their place. `watch` is called with the stage and the number of its readings, when it begins and after each
+    /// reading, and interrupts the pass with a `Break`.
     ///
     /// # Errors
     ///
@@ -123,7 +123,7 @@ impl Survey {
         log: &Log,
         entry: LogEntry,
         is_followed: bool,
-        watch: impl FnMut(Stage, usize) -> ControlFlow<()>,
+        watch: impl FnMut((Stage, usize)) -> ControlFlow<()>,
     ) -> Result<(), PassError> {
         let all_stand = entry.stands && self.logs.iter().all(|log| log.entry.stands);
         let mut pass = RoutePass { log, settings: &self.settings, watch };

@@ -158,7 +158,7 @@ fn bag(path: &Path, readings: &[LaserReading]) -> Log {
 fn surveyed(
     logs: &[&Log],
     settings: &SurveySettings,
-    mut watch: impl FnMut(Stage, usize) -> ControlFlow<()>,
+    mut watch: impl FnMut((Stage, usize)) -> ControlFlow<()>,
 ) -> Result<Survey, PassError> {
     let mut survey = Survey::new(settings.clone(), true);
     for (number, log) in logs.iter().enumerate() {
@@ -178,7 +178,7 @@ fn the_first_pass_finds_the_routes_of_all_logs_in_one_frame() {
     let logs = parts.each_ref().map(|part| bag(&path(part), &readings[part.clone()]));
     let logs = logs.each_ref();
     let mut stages: Vec<(Stage, usize)> = Vec::new();
-    let found = surveyed(&logs, &settings, |stage, readings| {
+    let found = surveyed(&logs, &settings, |(stage, readings)| {
         match stages.last_mut().filter(|_| readings > 0) {
             Some(last) => *last = (stage, readings),
             None => stages.push((stage, readings)),
@@ -194,7 +194,7 @@ fn the_first_pass_finds_the_routes_of_all_logs_in_one_frame() {
     }
 
     let mut calls = 0;
-    let interrupted = surveyed(&logs, &settings, |_, readings| {
+    let interrupted = surveyed(&logs, &settings, |(_, readings)| {
         calls += 1;
         if readings == 3 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });
@@ -224,7 +224,7 @@ fn lasers_that_stand_are_compared() {
     };
     let first = log("first.mcap", &readings[0], 0.0);
     let route_of = |later: &Log| {
-        let found = surveyed(&[&first, later], &settings, |_, _| ControlFlow::Continue(()));
+        let found = surveyed(&[&first, later], &settings, |_| ControlFlow::Continue(()));
         found.map(|survey| survey.logs()[1].route()[30].pose)
     };
     let same = route_of(&log("same.mcap", &readings[0], 100.0)).unwrap();
@@ -281,7 +281,7 @@ fn the_second_pass_draws_the_house_without_changes() {
     let mut survey = Survey::new(settings, false);
     let entry = LogEntry::of(String::new(), &log, &TopicChoice::default()).unwrap();
     let entry = LogEntry { offset_s: 1000.0, ..entry };
-    survey.first_pass(&log, entry, false, |_, _| ControlFlow::Continue(())).unwrap();
+    survey.first_pass(&log, entry, false, |_| ControlFlow::Continue(())).unwrap();
     let mut replay = survey.replay(0, &log).unwrap().unwrap();
     let mut seen = 0;
     while survey.turn(&mut replay).unwrap().is_some() {
@@ -360,7 +360,7 @@ fn refused(mut change: impl FnMut(usize, &mut LaserReading)) -> Option<String> {
     writer.finish().unwrap();
     let log = Log::open(&path, &TopicChoice::default()).unwrap();
     let settings = SurveySettings::default();
-    let mut pass = RoutePass { log: &log, settings: &settings, watch: |_, _| ControlFlow::Continue(()) };
+    let mut pass = RoutePass { log: &log, settings: &settings, watch: |_| ControlFlow::Continue(()) };
     pass.route().err().map(|error| error.to_string())
 }
 

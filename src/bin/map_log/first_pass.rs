@@ -19,7 +19,7 @@ pub(crate) fn routes(job: &Job, survey: &mut Survey, saves: &mut Saves) -> Resul
         let can_align = source.entry.stands || job.settings.pose == PoseMode::Localized;
         let is_followed = can_align && (saves.is_kept() || number + 1 < job.sources.len());
         let mut bar = None;
-        let watch = |stage, readings| {
+        let watch = |(stage, readings)| {
             match readings {
                 0 => bar = begin(job, number, stage, bar.take()),
                 _ => bar.as_ref().map_or((), Progress::step),

@@ -32,7 +32,7 @@ fn entry(log: &Log, name: &str, days: f64) -> LogEntry {
 }
 
 fn add(survey: &mut Survey, log: &Log, name: &str, days: f64) {
-    survey.first_pass(log, entry(log, name, days), true, |_, _| ControlFlow::Continue(())).unwrap();
+    survey.first_pass(log, entry(log, name, days), true, |_| ControlFlow::Continue(())).unwrap();
 }
 
 /// Learns a log, or some readings of it. Returns whether it is learned to its end.
@@ -113,7 +113,7 @@ fn a_map_that_grows_is_the_map_of_the_large_frame() {
         let mut survey = Survey::new(settings.clone(), true);
         for (number, log) in logs.iter().enumerate() {
             let entry = entry(log, "log", number as f64);
-            survey.first_pass(log, entry, false, |_, _| ControlFlow::Continue(())).unwrap();
+            survey.first_pass(log, entry, false, |_| ControlFlow::Continue(())).unwrap();
         }
         survey
     };
