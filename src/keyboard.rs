@@ -1,6 +1,7 @@
 //! The keyboard pilot: a person drives with the keys of a terminal.
 
 use agent::Features;
+use anyhow::{anyhow, ensure};
 use crossterm::event::{self, Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 use crossterm::terminal;
 use interfaces::Twist;
@@ -8,17 +9,6 @@ use mapper::Mapper;
 use robot::{Belief, Pilot};
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
-
-/// The error for a keyboard that cannot be used.
-#[derive(Debug, thiserror::Error)]
-pub enum KeyboardError {
-    /// The standard input is not a terminal.
-    #[error("--drive keyboard needs a terminal to read keys from; use --drive agent or --drive tour here")]
-    NoTerminal,
-    /// The keys of the terminal cannot be read.
-    #[error("cannot read keys from this terminal: {0}")]
-    Terminal(#[from] std::io::Error),
-}
 
 /// A terminal reports that a key is pressed, but not that it is released: a key counts for this time, which is
 /// longer than the delay before a held key repeats.
@@ -40,12 +30,13 @@ impl Keyboard {
     ///
     /// # Errors
     ///
-    /// When there is no terminal.
-    pub fn new(max: Twist) -> Result<Self, KeyboardError> {
-        if !std::io::stdin().is_terminal() {
-            return Err(KeyboardError::NoTerminal);
-        }
-        terminal::enable_raw_mode()?;
+    /// When there is no terminal, or its keys cannot be read.
+    pub fn new(max: Twist) -> anyhow::Result<Self> {
+        ensure!(
+            std::io::stdin().is_terminal(),
+            "--drive keyboard needs a terminal to read keys from; use --drive agent or --drive tour here"
+        );
+        terminal::enable_raw_mode().map_err(|why| anyhow!("cannot read keys from this terminal: {why}"))?;
         Ok(Self { max, command: Twist::STOP, pressed: None, is_done: false })
     }
 

@@ -1,11 +1,12 @@
 //! Code that the command-line programs share: exit codes, Ctrl-C, the list of worlds, parsers of arguments.
 
 use crate::terminal::{check_printed, print, say};
-use anyhow::Context;
+use anyhow::{Context, anyhow};
 use clap::Parser;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use interfaces::{PoseMode, printable_lines};
 use results::output::{OutputError, RunFolder};
+use robot::state::{State, StateFile};
 use std::error::Error;
 use std::fmt::Display;
 use std::io::stderr;
@@ -14,6 +15,7 @@ use std::process::ExitCode;
 use std::str::FromStr;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
 
 /// The exit code of a run that Ctrl-C or another signal has ended.
 pub const INTERRUPTED: u8 = 130;
@@ -48,6 +50,23 @@ pub fn results_folder(out: &Path) -> Result<RunFolder, Failure> {
     let folder = RunFolder::open(out)?;
     folder.notes().iter().for_each(|note| say(stderr(), format_args!("note: {}", printable_lines(note))));
     Ok(folder)
+}
+
+/// Opens the file of `--state`, which is saved in intervals of wall time, s, and reads the state in it, if there is one.
+///
+/// # Errors
+///
+/// When the file cannot be used or read, or is no state.
+pub fn open_state(path: &Path, every_s: f64) -> Result<(StateFile, Option<State>), Failure> {
+    let file =
+        StateFile::open(path).map_err(|why| state_failure(path, format_args!("cannot use it: {why}")))?;
+    let state = file.load().map_err(|why| state_failure(path, why))?;
+    Ok((file.every(Duration::from_secs_f64(every_s)), state))
+}
+
+/// A state file with something invalid.
+pub fn state_failure(path: &Path, why: impl Display) -> Failure {
+    input(anyhow!("{}: {why}", path.display()))
 }
 
 /// The command line without the name of the program; what is no text in it is replaced.

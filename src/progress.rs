@@ -2,7 +2,7 @@
 
 use crate::terminal::say;
 use crossterm::terminal;
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressFinish, ProgressState, ProgressStyle};
 use results::numbers::{duration, percent};
 use std::fmt::{self, Display, Formatter};
 use std::io::{IsTerminal, stderr};
@@ -26,13 +26,12 @@ enum Kind {
     Lines,
 }
 
-/// The progress of one run in simulated time, of one log, or of many trials, which may run on any thread.
+/// The progress of one run in simulated time, of one log, or of many trials, which may run on any thread. The bar vanishes
+/// when the value is dropped.
 pub struct Progress {
     /// The position is in milliseconds of simulated time, or in trials.
     bar: ProgressBar,
     kind: Kind,
-    /// What [`Progress::step`] counts.
-    what: &'static str,
     /// The time of the next message.
     next: Mutex<Instant>,
     /// The simulated time at which the run began, s.
@@ -52,33 +51,26 @@ impl Progress {
         Self { from_s, ..self }
     }
 
-    /// A number of trials.
-    pub fn of_trials(trials: usize, is_quiet: bool) -> Self {
-        let progress = Self::new(trials as u64, OF_TRIALS, LINE_EVERY, is_quiet, false);
+    /// A number of `what`: trials, or scans of a log.
+    pub fn of_count(count: usize, what: &'static str, is_quiet: bool) -> Self {
+        let progress = Self::new(count as u64, OF_COUNT, LINE_EVERY, is_quiet, false);
+        progress.bar.set_prefix(what);
         if progress.kind == Kind::Bar {
             progress.bar.enable_steady_tick(BAR_EVERY); // The time left changes during long trials.
         }
         progress
     }
 
-    /// A number of scans of a log.
-    pub fn of_scans(scans: usize, is_quiet: bool) -> Self {
-        Self { what: "scans", ..Self::new(scans as u64, OF_SCANS, LINE_EVERY, is_quiet, false) }
-    }
-
     fn new(length: u64, template: &str, first: Duration, is_quiet: bool, is_raw: bool) -> Self {
-        let (kind, target) = match () {
-            () if is_quiet => (Kind::Silent, ProgressDrawTarget::hidden()),
-            () if stderr().is_terminal() && !is_raw => (Kind::Bar, ProgressDrawTarget::stderr()),
-            () => (Kind::Lines, ProgressDrawTarget::hidden()),
+        let (kind, target) = if is_quiet {
+            (Kind::Silent, ProgressDrawTarget::hidden())
+        } else if stderr().is_terminal() && !is_raw {
+            (Kind::Bar, ProgressDrawTarget::stderr())
+        } else {
+            (Kind::Lines, ProgressDrawTarget::hidden())
         };
-        Self {
-            bar: bar(length, template, target),
-            kind,
-            what: "trials",
-            next: Mutex::new(Instant::now() + first),
-            from_s: 0.0,
-        }
+        let (bar, next) = (bar(length, template, target), Mutex::new(Instant::now() + first));
+        Self { bar, kind, next, from_s: 0.0 }
     }
 
     /// Whether a message is due. If it is, the time of the next message is set.
@@ -119,7 +111,7 @@ impl Progress {
         self.bar.inc(1);
         if self.kind == Kind::Lines && self.is_due() {
             let (done, all) = (self.bar.position(), self.bar.length().unwrap_or(0));
-            say(stderr(), format_args!("{done} of {all} {}, {}", self.what, self.time_left()));
+            say(stderr(), format_args!("{done} of {all} {}, {}", self.bar.prefix(), self.time_left()));
         }
     }
 
@@ -130,11 +122,6 @@ impl Progress {
 
     fn time_left(&self) -> String {
         time_left(self.bar.position(), self.bar.length(), self.bar.elapsed())
-    }
-
-    /// Removes the bar.
-    pub fn finish(&self) {
-        self.bar.finish_and_clear();
     }
 }
 
@@ -182,8 +169,7 @@ fn milliseconds(time_s: f64) -> u64 {
 }
 
 const OF_TIME: &str = "{done:>3} % {wide_bar} {msg}, {left}";
-const OF_SCANS: &str = "{done:>3} % {wide_bar} {pos} of {len} scans, {left}";
-const OF_TRIALS: &str = "{done:>3} % {wide_bar} {pos} of {len} trials, {left}";
+const OF_COUNT: &str = "{done:>3} % {wide_bar} {pos} of {len} {prefix}, {left}";
 
 fn bar(length: u64, template: &str, target: ProgressDrawTarget) -> ProgressBar {
     let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
@@ -196,7 +182,8 @@ fn bar(length: u64, template: &str, target: ProgressDrawTarget) -> ProgressBar {
         let _ = to.write_str(&time_left(state.pos(), state.len(), state.elapsed()));
     };
     let style = style.with_key("done", done).with_key("left", left);
-    ProgressBar::with_draw_target(Some(length), target).with_style(style)
+    let bar = ProgressBar::with_draw_target(Some(length), target).with_style(style);
+    bar.with_finish(ProgressFinish::AndClear)
 }
 
 /// The wall time that remains if the run goes on at its mean speed so far.
@@ -256,6 +243,7 @@ mod tests {
         let target = ProgressDrawTarget::term_like(Box::new(terminal.clone()));
         let bar = bar(all, template, target).with_elapsed(Duration::from_secs(30));
         bar.set_message(message.to_owned());
+        bar.set_prefix("trials");
         bar.set_position(done);
         bar.force_draw();
         let text = terminal.1.lock().unwrap();
@@ -267,7 +255,7 @@ mod tests {
         let state = State { time_s: 1199.0, all_s: 1200.0, speed: 412.3, coverage: 0.99999 };
         for columns in [40, 60, 80, 200] {
             let of_time = drawn(columns, OF_TIME, [1_199_000, 1_200_000], &state.beside_bar(columns));
-            let of_trials = drawn(columns, OF_TRIALS, [3, 40], "");
+            let of_trials = drawn(columns, OF_COUNT, [3, 40], "");
             assert!(!of_time.is_empty() && !of_trials.is_empty());
             for line in of_time.iter().chain(&of_trials) {
                 assert!(line.chars().count() <= usize::from(columns), "{columns}: {line:?}");

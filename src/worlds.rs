@@ -1,46 +1,15 @@
 //! The world to run: a shipped world, a world file, or a Stage file.
 
 use crate::program::list;
+use anyhow::{anyhow, bail};
 use interfaces::printable;
-use results::file_name::{self, FileNameError};
+use results::file_name;
 use sim::grid::GridSpec;
 use sim::physics::WorldSpec;
 use std::path::Path;
 use worldfile::{Disk, Severity};
 
 pub use worldfile::shipped::{GRID as SHIPPED_GRID, LoadError, PHYSICS as SHIPPED, TOUR};
-
-/// The error for a name that does not lead to a world.
-#[derive(Debug, thiserror::Error)]
-pub enum WorldError {
-    /// The file is not a world, or not a world of this kind.
-    #[error(transparent)]
-    Load(#[from] LoadError),
-    /// The Stage file is invalid: all of its errors.
-    #[error("{0}")]
-    Stage(String),
-    /// A Stage world in which no robot can explore.
-    #[error("`{name}` has no robot that could explore: it takes a `position` model")]
-    NoRobot {
-        /// The name as given.
-        name: String,
-    },
-    /// A grid world whose results would have no valid file names.
-    #[error(
-        "the world `{world}` in `{name}` needs another name, since files of results contain it: {why}; `{valid}` \
-         would be valid"
-    )]
-    FileName {
-        /// The name as given.
-        name: String,
-        /// The name of the world.
-        world: String,
-        /// What is invalid.
-        why: FileNameError,
-        /// A valid name.
-        valid: String,
-    },
-}
 
 /// A world to run.
 #[derive(Clone, Debug)]
@@ -57,7 +26,7 @@ pub struct Loaded {
 /// # Errors
 ///
 /// When there is no such world or file, or when it is not a world of this kind.
-pub fn load(name: &str) -> Result<Loaded, WorldError> {
+pub fn load(name: &str) -> anyhow::Result<Loaded> {
     let path = Path::new(name);
     if is_of_stage(path) && path.exists() {
         return load_stage(name);
@@ -76,11 +45,15 @@ pub fn is_of_stage(path: &Path) -> bool {
 ///
 /// When there is no such world or file, when it is not a world of this kind, or when the name of the world cannot be
 /// part of the name of a file.
-pub fn load_grid(name: &str) -> Result<GridSpec, WorldError> {
+pub fn load_grid(name: &str) -> anyhow::Result<GridSpec> {
     let spec = worldfile::shipped::load_grid(name)?;
-    let [name, world] = [name, &spec.name].map(|name| printable(name).into_owned());
-    let invalid = |why| WorldError::FileName { name, world, why, valid: file_name::of(&spec.name) };
-    file_name::check(&spec.name).map_err(invalid)?;
+    if let Err(why) = file_name::check(&spec.name) {
+        let [name, world] = [name, &spec.name].map(printable);
+        bail!(
+            "the world `{world}` in `{name}` needs another name, since files of results contain it: {why}; `{}` would be valid",
+            file_name::of(&spec.name)
+        );
+    }
     Ok(spec)
 }
 
@@ -93,17 +66,16 @@ pub fn list_physics_worlds() -> anyhow::Result<()> {
     list(&SHIPPED, 18, |name| load(name).map(|world| world.spec.description.clone()))
 }
 
-fn load_stage(name: &str) -> Result<Loaded, WorldError> {
+fn load_stage(name: &str) -> anyhow::Result<Loaded> {
     let (fleet, findings) = stage::load(Path::new(name), &Disk);
-    let Some(fleet) = fleet else {
-        return Err(WorldError::Stage(findings.error_text()));
-    };
+    let fleet = fleet.ok_or_else(|| anyhow!(findings.error_text()))?;
     let mut warnings =
         [Severity::Warning, Severity::Note].map(|severity| findings.messages(severity)).concat();
     let driven: Vec<usize> = fleet.driven_robots().collect();
     let explorer = driven.first().copied().unwrap_or(0);
-    let spec = WorldSpec::driving(fleet, explorer)
-        .ok_or_else(|| WorldError::NoRobot { name: printable(name).into_owned() })?;
+    let none =
+        || anyhow!("`{}` has no robot that could explore: it takes a `position` model", printable(name));
+    let spec = WorldSpec::driving(fleet, explorer).ok_or_else(none)?;
     if driven.len() != 1 {
         warnings.push(format!(
             "warning: of the robots in `{0}`, `{1}` explores{2}\n  = help: for another one, make a world file with \
@@ -134,7 +106,7 @@ mod tests {
         assert_eq!((spec.driven().name.as_str(), &spec.robots[1].behavior), ("a", &BehaviorSpec::Standing));
         assert!(warnings.last().unwrap().contains("`a` explores, and the others"), "{warnings:?}");
         std::fs::write(path, "model ( size [1 1 1] )\n").unwrap();
-        assert!(matches!(load(path), Err(WorldError::NoRobot { .. })));
+        assert!(load(path).unwrap_err().to_string().contains("has no robot that could explore"));
         std::fs::write(path, "model ( size [1 1 1 )\n").unwrap();
         assert!(load(path).unwrap_err().to_string().contains("two.world:1"));
     }

@@ -60,7 +60,7 @@ fn fleet(path: &str, seconds: usize) -> Result<(), Box<dyn Error>> {
 }
 
 /// Steps with random actions, forward, with resets.
-fn steps<T: Task>(tasks: Vec<T>, threads: usize, steps: usize) -> Result<(), Box<dyn Error>> {
+fn steps<T: Task + 'static>(tasks: Vec<T>, threads: usize, steps: usize) -> Result<(), Box<dyn Error>> {
     rayon::ThreadPoolBuilder::new().num_threads(threads).build_global()?;
     let (count, mut state) = (tasks.len(), 1_u64);
     let mut uniform = || {
@@ -71,12 +71,11 @@ fn steps<T: Task>(tasks: Vec<T>, threads: usize, steps: usize) -> Result<(), Box
     let actions: Vec<Vec<f32>> = (0..100).map(|_| actions()).collect();
     let mut batch = Batch::new(tasks);
     batch.set_parallel(threads > 1);
-    let mut results = batch.results();
     let seeds = |step: usize| (0..count).map(|index| (step * count + index) as u64).collect::<Vec<u64>>();
-    batch.reset(&seeds(0), &mut results.observations)?;
+    batch.reset(&seeds(0))?;
     let begin = Clock::now()?;
     for step in 1..=steps {
-        batch.step(&actions[step % 100], &seeds(step), &mut results)?;
+        batch.step(&actions[step % 100], &seeds(step))?;
     }
     begin.print(count * steps)
 }

@@ -2,8 +2,8 @@
 
 use crate::picture::Picture;
 use crate::place::DrivePlace;
-use crate::task::{Outcome, Part, Task};
-use interfaces::{Purpose, RandomStream, Twist, value};
+use crate::task::{ACTIONS, Part, Results, Task, twist, write_scan, write_state};
+use interfaces::{Purpose, RandomStream, Twist, from_bytes, to_bytes};
 use nalgebra::{Point2, Vector2};
 use sim::physics::{Fleet, SnapshotError};
 use std::sync::Arc;
@@ -46,28 +46,6 @@ impl Drive {
         let agents = vec![Progress::default(); place.robots.len()];
         Self { place: Arc::clone(place), fleet: place.fleet.clone(), agents, steps: 0 }
     }
-
-    /// The simulated world.
-    pub fn fleet(&self) -> &Fleet {
-        &self.fleet
-    }
-
-    /// The position of the goal of an agent, m; `None` if there is no such agent.
-    pub fn goal(&self, agent: usize) -> Option<Point2<f64>> {
-        self.agents.get(agent).map(|progress| self.place.goal(agent, progress.goal))
-    }
-
-    /// The world from above, at most `size` pixels wide and high.
-    pub fn picture(&self, size: usize) -> Picture {
-        let mut picture = Picture::of(&self.fleet, size);
-        for (agent, progress) in self.agents.iter().enumerate() {
-            let goal = self.place.goal(agent, progress.goal);
-            picture.disc(&goal, self.place.settings.goal_radius_m, [60, 170, 80]);
-        }
-        let driven: Vec<usize> = self.place.robots.iter().map(|agent| agent.robot).collect();
-        picture.robots(&self.fleet, &driven);
-        picture
-    }
 }
 
 impl Task for Drive {
@@ -75,8 +53,8 @@ impl Task for Drive {
         self.place.robots.len()
     }
 
-    fn action_len(&self) -> usize {
-        2
+    fn kind(&self) -> &'static str {
+        "driving environment"
     }
 
     fn parts(&self) -> Vec<Part> {
@@ -105,25 +83,19 @@ impl Task for Drive {
         look(place, fleet);
     }
 
-    fn step(&mut self, actions: &[f32], outcome: Outcome<'_>) {
+    fn step(&mut self, actions: &[f32], results: &mut Results) {
         let Self { place, fleet, agents, steps } = self;
         let settings = &place.settings;
-        for ((of, progress), action) in place.robots.iter().zip(&*agents).zip(actions.chunks(2)) {
-            let drive = &fleet.spec().robots[of.robot].drive;
-            let twist = match (progress.is_done, action) {
-                (false, [linear, angular]) => Twist {
-                    linear_mps: f64::from(*linear) * drive.max_linear_mps,
-                    angular_radps: f64::from(*angular) * drive.max_angular_radps,
-                },
-                _ => Twist::STOP,
-            };
+        for ((of, progress), action) in place.robots.iter().zip(&*agents).zip(actions.chunks(ACTIONS)) {
+            let wanted = || twist(&fleet.spec().robots[of.robot].drive, action);
+            let twist = if progress.is_done { Twist::STOP } else { wanted() };
             fleet.command(of.robot, twist);
         }
         let end_s = fleet.time_s() + place.steps as f64 * fleet.spec().step_s;
         fleet.run_until(end_s, &mut ());
         *steps += 1;
         let is_truncated = *steps >= settings.max_steps;
-        let Outcome { rewards, terminated, truncated } = outcome;
+        let Results { rewards, terminated, truncated, .. } = results;
         for ((agent, of), progress) in place.robots.iter().enumerate().zip(agents) {
             let at = at(fleet, of.robot);
             let contacts = fleet.contacts().iter();
@@ -161,13 +133,7 @@ impl Task for Drive {
             let spec = &self.fleet.spec().robots[of.robot];
             let (scan, state) = observation.split_at_mut(beams);
             match robot.reading() {
-                Some(reading) => {
-                    let scale = 1.0 / spec.laser.range_max_m as f32;
-                    for (value, range_m) in scan.iter_mut().zip(&reading.scan.ranges_m) {
-                        // Too close (−∞) becomes 0 as well, no return (+∞) 1.
-                        *value = if range_m.is_nan() { 0.0 } else { (range_m * scale).clamp(0.0, 1.0) };
-                    }
-                }
+                Some(reading) => write_scan(scan, &reading.scan.ranges_m, spec.laser.range_max_m),
                 None => scan.fill(0.0),
             }
             let at: Point2<f64> = robot.pose.translation.vector.into();
@@ -190,9 +156,7 @@ impl Task for Drive {
                 robot.twist.linear_mps / spec.drive.max_linear_mps,
                 robot.twist.angular_radps / spec.drive.max_angular_radps,
             ];
-            for (state, value) in state.iter_mut().zip(values) {
-                *state = value.clamp(-1.0, 1.0) as f32;
-            }
+            write_state(state, values);
         }
     }
 
@@ -206,15 +170,32 @@ impl Task for Drive {
         }
     }
 
+    fn fleet(&self) -> &Fleet {
+        &self.fleet
+    }
+
+    fn goal(&self, agent: usize) -> Option<Point2<f64>> {
+        self.agents.get(agent).map(|progress| self.place.goal(agent, progress.goal))
+    }
+
+    fn picture(&self, size: usize) -> Picture {
+        let mut picture = Picture::of(&self.fleet, size);
+        for (agent, progress) in self.agents.iter().enumerate() {
+            let goal = self.place.goal(agent, progress.goal);
+            picture.disc(&goal, self.place.settings.goal_radius_m, [60, 170, 80]);
+        }
+        let driven: Vec<usize> = self.place.robots.iter().map(|agent| agent.robot).collect();
+        picture.robots(&self.fleet, &driven);
+        picture
+    }
+
     fn snapshot(&mut self) -> Vec<u8> {
-        let (mut fleet, mut agents, mut steps) = (self.fleet.snapshot(), self.agents.clone(), self.steps);
-        interfaces::snapshot(vec![value(&mut fleet), value(&mut agents), value(&mut steps)])
+        to_bytes(&(self.fleet.snapshot(), &self.agents, self.steps))
     }
 
     fn restore(&mut self, snapshot: &[u8]) -> Result<(), SnapshotError> {
-        let (mut fleet, mut agents, mut steps) = (Vec::new(), Vec::<Progress>::new(), 0);
-        interfaces::restore(vec![value(&mut fleet), value(&mut agents), value(&mut steps)], snapshot)
-            .map_err(|_| SnapshotError::Damaged)?;
+        let (fleet, agents, steps): (Vec<u8>, Vec<Progress>, u32) =
+            from_bytes(snapshot).map_err(|_| SnapshotError::Damaged)?;
         let goals = agents.iter().enumerate().map(|(agent, progress)| (agent, progress.goal));
         let is_known =
             |(agent, goal): (usize, usize)| agent < self.agents.len() && goal < self.place.goals(agent);

@@ -4,12 +4,11 @@ use crate::explore_place::ExplorePlace;
 use crate::patches::{LAYERS, Patches};
 use crate::picture::Picture;
 use crate::place::size_m;
-use crate::task::{Outcome, Part, Task, TaskError};
+use crate::task::{Part, Results, Task, TaskError, twist, write_scan, write_state};
 use evaluation::metrics::{MAX_LOG_ERROR, mean_log_error};
-use interfaces::{CellState, LaserReading, Purpose, RandomStream, Twist, Values, World, heading_rad, value};
-use mapper::Mapper;
+use interfaces::{CellState, LaserReading, Purpose, RandomStream, World, from_bytes, heading_rad, to_bytes};
 use robot::{NoPilot, Robot};
-use sim::physics::{PhysicsWorld, SnapshotError};
+use sim::physics::{Fleet, PhysicsWorld, SnapshotError};
 use std::sync::Arc;
 
 /// The numbers of an observation beside scan and map.
@@ -65,35 +64,6 @@ impl Explore {
         Ok(Self { place: Arc::clone(place), number: 0, world, robot, reading, episode, layers })
     }
 
-    /// The simulated world.
-    pub fn world(&self) -> &PhysicsWorld {
-        &self.world
-    }
-
-    /// The map, and what was learned about it.
-    pub fn mapper(&self) -> &Mapper {
-        &self.robot.mapper
-    }
-
-    /// The index of the world of the present episode.
-    pub fn number(&self) -> usize {
-        self.number
-    }
-
-    /// The map as the robot knows it, at most `size` pixels wide and high: free, blocked and changing cells, and the
-    /// robots.
-    pub fn picture(&self, size: usize) -> Picture {
-        let mut picture = Picture::floor(&self.world.spec().frame, size);
-        picture.cells(self.robot.mapper.frame(), |index| match self.robot.mapper.states().cells()[index] {
-            CellState::Unknown => Some([160, 160, 165]),
-            CellState::Blocked => Some([70, 70, 75]),
-            CellState::Free if self.robot.mapper.rate(index) > 0.0 => Some([245, 180, 90]),
-            CellState::Free => None,
-        });
-        picture.robots(self.world.fleet(), &[self.world.spec().driven_index()]);
-        picture
-    }
-
     /// Senses: one turn of the robot.
     fn sense(&mut self) {
         match self.robot.step(self.world.sense()) {
@@ -130,8 +100,8 @@ impl Task for Explore {
         1
     }
 
-    fn action_len(&self) -> usize {
-        2
+    fn kind(&self) -> &'static str {
+        "exploring environment"
     }
 
     fn parts(&self) -> Vec<Part> {
@@ -157,15 +127,10 @@ impl Task for Explore {
         self.place.patches.write(&self.robot.mapper, &mut self.layers);
     }
 
-    fn step(&mut self, actions: &[f32], outcome: Outcome<'_>) {
+    fn step(&mut self, actions: &[f32], results: &mut Results) {
         let place = Arc::clone(&self.place);
         let (settings, one) = (&place.settings, &place.worlds[self.number]);
-        let drive = &self.world.spec().driven().drive;
-        let [linear, angular] = [0, 1].map(|index| f64::from(actions.get(index).copied().unwrap_or(0.0)));
-        let twist = Twist {
-            linear_mps: linear * drive.max_linear_mps,
-            angular_radps: angular * drive.max_angular_radps,
-        };
+        let twist = twist(&self.world.spec().driven().drive, actions);
         self.world.act(&twist);
         let hits = self.world.contacts().iter().filter(|contact| contact.moving).count() as u32;
         self.sense();
@@ -182,7 +147,7 @@ impl Task for Explore {
         if is_over || self.episode.steps.is_multiple_of(settings.map_every) {
             place.patches.write(&self.robot.mapper, &mut self.layers);
         }
-        let Outcome { rewards, terminated, truncated } = outcome;
+        let Results { rewards, terminated, truncated, .. } = results;
         (rewards[0], terminated[0], truncated[0]) = (reward as f32, false, is_over);
     }
 
@@ -190,10 +155,7 @@ impl Task for Explore {
         let place = &*self.place;
         let (scan, rest) = observations.split_at_mut(place.beams);
         let (state, map) = rest.split_at_mut(STATE);
-        let scale = 1.0 / place.worlds[self.number].range_max_m as f32;
-        for (value, range_m) in scan.iter_mut().zip(&self.reading.scan.ranges_m) {
-            *value = if range_m.is_nan() { 0.0 } else { (range_m * scale).clamp(0.0, 1.0) };
-        }
+        write_scan(scan, &self.reading.scan.ranges_m, place.worlds[self.number].range_max_m);
         let (spec, pose) = (self.world.spec(), &self.reading.pose);
         let (drive, (width_m, height_m)) = (&spec.driven().drive, size_m(&spec.frame));
         let at = pose.translation.vector - spec.frame.origin().coords;
@@ -206,9 +168,7 @@ impl Task for Explore {
             self.reading.twist.linear_mps / drive.max_linear_mps,
             self.reading.twist.angular_radps / drive.max_angular_radps,
         ];
-        for (state, value) in state.iter_mut().zip(values) {
-            *state = value.clamp(-1.0, 1.0) as f32;
-        }
+        write_state(state, values);
         map.copy_from_slice(&self.layers);
     }
 
@@ -218,63 +178,42 @@ impl Task for Explore {
         info.copy_from_slice(&values);
     }
 
+    fn fleet(&self) -> &Fleet {
+        self.world.fleet()
+    }
+
+    /// The map as the robot knows it: free, blocked and changing cells, and the robots.
+    fn picture(&self, size: usize) -> Picture {
+        let mut picture = Picture::floor(&self.world.spec().frame, size);
+        picture.cells(self.robot.mapper.frame(), |index| match self.robot.mapper.states().cells()[index] {
+            CellState::Unknown => Some([160, 160, 165]),
+            CellState::Blocked => Some([70, 70, 75]),
+            CellState::Free if self.robot.mapper.rate(index) > 0.0 => Some([245, 180, 90]),
+            CellState::Free => None,
+        });
+        picture.robots(self.world.fleet(), &[self.world.spec().driven_index()]);
+        picture
+    }
+
     fn snapshot(&mut self) -> Vec<u8> {
-        let mut parts = Parts {
-            number: self.number,
-            world: self.world.snapshot().into_bytes(),
-            mapper: self.robot.mapper.snapshot(),
-            poses: self.robot.localization_mut().snapshot(),
-            reading: self.reading.clone(),
-            episode: self.episode,
-            layers: self.layers.clone(),
-        };
-        interfaces::snapshot(parts.values())
+        let learned = (self.robot.mapper.snapshot(), self.robot.localization_mut().snapshot());
+        let world = self.world.snapshot().into_bytes();
+        to_bytes(&(self.number, world, learned, &self.reading, self.episode, &self.layers))
     }
 
     fn restore(&mut self, snapshot: &[u8]) -> Result<(), SnapshotError> {
-        let mut parts = Parts {
-            number: 0,
-            world: Vec::new(),
-            mapper: Vec::new(),
-            poses: Vec::new(),
-            reading: self.reading.clone(),
-            episode: Episode::default(),
-            layers: Vec::new(),
-        };
-        interfaces::restore(parts.values(), snapshot).map_err(|_| SnapshotError::Damaged)?;
-        if parts.number >= self.place.worlds.len() || parts.layers.len() != self.layers.len() {
+        type Learned = (Vec<u8>, Vec<u8>);
+        type Saved = (usize, Vec<u8>, Learned, LaserReading, Episode, Vec<f32>);
+        let saved: Saved = from_bytes(snapshot).map_err(|_| SnapshotError::Damaged)?;
+        let (number, world, (mapper, poses), reading, episode, layers) = saved;
+        if number >= self.place.worlds.len() || layers.len() != self.layers.len() {
             return Err(SnapshotError::OtherSpec);
         }
-        self.take(parts.number);
-        self.world.restore(&parts.world)?;
-        self.robot.mapper.restore(&parts.mapper).map_err(|_| SnapshotError::Damaged)?;
-        self.robot.localization_mut().restore(&parts.poses).map_err(|_| SnapshotError::Damaged)?;
-        (self.reading, self.episode, self.layers) = (parts.reading, parts.episode, parts.layers);
+        self.take(number);
+        self.world.restore(&world)?;
+        self.robot.mapper.restore(&mapper).map_err(|_| SnapshotError::Damaged)?;
+        self.robot.localization_mut().restore(&poses).map_err(|_| SnapshotError::Damaged)?;
+        (self.reading, self.episode, self.layers) = (reading, episode, layers);
         Ok(())
-    }
-}
-
-/// What a snapshot contains, in its order.
-struct Parts {
-    number: usize,
-    world: Vec<u8>,
-    mapper: Vec<u8>,
-    poses: Vec<u8>,
-    reading: LaserReading,
-    episode: Episode,
-    layers: Vec<f32>,
-}
-
-impl Parts {
-    fn values(&mut self) -> Values<'_> {
-        vec![
-            value(&mut self.number),
-            value(&mut self.world),
-            value(&mut self.mapper),
-            value(&mut self.poses),
-            value(&mut self.reading),
-            value(&mut self.episode),
-            value(&mut self.layers),
-        ]
     }
 }

@@ -11,10 +11,9 @@
 //!
 //! let spec = environments::driving_hall();
 //! let place = Arc::new(DrivePlace::new(&spec, DriveSettings::default())?);
-//! let mut batch = Batch::new((0..4).map(|_| Drive::new(&place)).collect());
-//! let mut results = batch.results();
-//! batch.reset(&[1, 2, 3, 4], &mut results.observations)?;
-//! batch.step(&[1.0, 0.0].repeat(4), &[5, 6, 7, 8], &mut results)?;
+//! let mut batch = Batch::new((0..4).map(|_| Drive::new(&place)));
+//! batch.reset(&[1, 2, 3, 4])?;
+//! let results = batch.step(&[1.0, 0.0].repeat(4), &[5, 6, 7, 8])?;
 //! assert_eq!(results.observations.len(), 4 * batch.observation_len());
 //! assert!(results.rewards.iter().all(|reward| reward.is_finite()));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -32,14 +31,14 @@ mod place;
 mod task;
 mod threads;
 
-pub use batch::{Batch, Results, ResultsMut};
+pub use batch::Batch;
 pub use drive::Drive;
 pub use drive_settings::DriveSettings;
 pub use explore::Explore;
 pub use explore_place::{ExplorePlace, ExploreSettings};
 pub use picture::Picture;
 pub use place::DrivePlace;
-pub use task::{Outcome, Part, Task, TaskError};
+pub use task::{ACTIONS, Part, Results, Task, TaskError};
 
 use sim::physics::FleetSpec;
 

@@ -4,6 +4,7 @@ use crate::place::size_m;
 use interfaces::GridFrame;
 use nalgebra::{Point2, Vector2};
 use sim::physics::Fleet;
+use std::ops::Range;
 
 type Rgb = [u8; 3];
 
@@ -15,7 +16,7 @@ const OTHER: Rgb = [200, 70, 60];
 const HEADING: Rgb = [255, 255, 255];
 
 /// A picture: rows from the top, 3 bytes (red, green, blue) per pixel.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug)]
 pub struct Picture {
     /// The number of columns.
     pub width: usize,
@@ -23,23 +24,10 @@ pub struct Picture {
     pub height: usize,
     /// The pixels.
     pub pixels: Vec<u8>,
-    frame: Scale,
-}
-
-/// From meters to pixels.
-#[derive(Clone, Copy, Debug)]
-struct Scale {
+    /// The lower left corner, m.
     low: Point2<f64>,
     pixels_per_m: f64,
 }
-
-impl PartialEq for Scale {
-    fn eq(&self, other: &Self) -> bool {
-        self.low == other.low && self.pixels_per_m.to_bits() == other.pixels_per_m.to_bits()
-    }
-}
-
-impl Eq for Scale {}
 
 impl Picture {
     /// The floor of a frame; the longer side has `size` pixels.
@@ -49,8 +37,7 @@ impl Picture {
         let pixels_per_m = size as f64 / width_m.max(height_m);
         let pixels = |length_m: f64| ((length_m * pixels_per_m).round() as usize).clamp(1, size);
         let (width, height) = (pixels(width_m), pixels(height_m));
-        let scale = Scale { low: frame.origin(), pixels_per_m };
-        Self { width, height, pixels: FLOOR.repeat(width * height), frame: scale }
+        Self { width, height, pixels: FLOOR.repeat(width * height), low: frame.origin(), pixels_per_m }
     }
 
     /// The walls and the obstacles that are present now.
@@ -105,30 +92,30 @@ impl Picture {
         color: Rgb,
         is_inside: impl Fn(&Point2<f64>) -> bool,
     ) {
-        let Scale { low: origin, pixels_per_m } = self.frame;
-        let [low, high] = [low, high].map(|at| (at - origin) * pixels_per_m);
-        for row in (low.y.floor().max(0.0) as usize)..(high.y.ceil().max(0.0) as usize).min(self.height) {
-            for column in (low.x.floor().max(0.0) as usize)..(high.x.ceil().max(0.0) as usize).min(self.width)
-            {
-                let at = origin + Vector2::new(column as f64 + 0.5, row as f64 + 0.5) / pixels_per_m;
-                if is_inside(&at) {
-                    let pixel = ((self.height - 1 - row) * self.width + column) * 3;
-                    self.pixels[pixel..pixel + 3].copy_from_slice(&color);
-                }
-            }
-        }
+        let [low, high] = [low, high].map(|at| (at - self.low) * self.pixels_per_m);
+        let rows = (low.y.floor().max(0.0) as usize)..(high.y.ceil().max(0.0) as usize).min(self.height);
+        let columns = (low.x.floor().max(0.0) as usize)..(high.x.ceil().max(0.0) as usize).min(self.width);
+        self.paint(rows, columns, |at| is_inside(at).then_some(color));
     }
 
     /// Colors the cells of a frame, below everything that is drawn later; `None` leaves a cell as it is.
     pub(crate) fn cells(&mut self, frame: &GridFrame, color: impl Fn(usize) -> Option<Rgb>) {
-        let Scale { low, pixels_per_m } = self.frame;
-        for row in 0..self.height {
-            for column in 0..self.width {
-                let at = low + Vector2::new(column as f64 + 0.5, row as f64 + 0.5) / pixels_per_m;
-                if let Some(color) = frame.index(frame.cell_at(&at)).and_then(&color) {
-                    let pixel = ((self.height - 1 - row) * self.width + column) * 3;
-                    self.pixels[pixel..pixel + 3].copy_from_slice(&color);
-                }
+        let color = |at: &Point2<f64>| frame.index(frame.cell_at(at)).and_then(&color);
+        self.paint(0..self.height, 0..self.width, color);
+    }
+
+    /// Colors pixels by their centers, rows from the bottom; `None` leaves a pixel as it is.
+    fn paint(
+        &mut self,
+        rows: Range<usize>,
+        columns: Range<usize>,
+        color: impl Fn(&Point2<f64>) -> Option<Rgb>,
+    ) {
+        for (row, column) in rows.flat_map(|row| columns.clone().map(move |column| (row, column))) {
+            let at = self.low + Vector2::new(column as f64 + 0.5, row as f64 + 0.5) / self.pixels_per_m;
+            if let Some(color) = color(&at) {
+                let pixel = ((self.height - 1 - row) * self.width + column) * 3;
+                self.pixels[pixel..pixel + 3].copy_from_slice(&color);
             }
         }
     }

@@ -1,16 +1,22 @@
 //! What all tasks have in common.
 
-use sim::physics::SnapshotError;
+use crate::picture::Picture;
+use interfaces::Twist;
+use nalgebra::Point2;
+use sim::physics::{DriveLimits, Fleet, SnapshotError};
+
+/// The number of actions of an agent.
+pub const ACTIONS: usize = 2;
 
 /// A world with a reward, for one or more agents.
 ///
 /// All values for agents are slices with one part per agent, in the order of the agents.
-pub trait Task: Send {
+pub trait Task: Send + Sync {
     /// The number of agents; at least one.
     fn agents(&self) -> usize;
 
-    /// The number of actions of an agent; each is from −1 to 1.
-    fn action_len(&self) -> usize;
+    /// The kind of the task, for messages.
+    fn kind(&self) -> &'static str;
 
     /// The parts of the observation of an agent, one after the other.
     fn parts(&self) -> Vec<Part>;
@@ -22,7 +28,8 @@ pub trait Task: Send {
     fn reset(&mut self, seed: u64);
 
     /// Simulates one step. An agent whose part of the episode is over stands still, and its action is ignored.
-    fn step(&mut self, actions: &[f32], outcome: Outcome<'_>);
+    /// Writes rewards and ends. The [actions](ACTIONS) of an agent are from −1 to 1.
+    fn step(&mut self, actions: &[f32], results: &mut Results);
 
     /// Writes the observations of all agents.
     fn observe(&mut self, observations: &mut [f32]);
@@ -30,6 +37,14 @@ pub trait Task: Send {
     /// Writes what is known about the last step: one value per name and agent.
     fn info(&self, info: &mut [f32]);
 
+    /// The simulated world.
+    fn fleet(&self) -> &Fleet;
+    /// The position of the goal of an agent, m; `None` if there is no such agent, or the task has no goals.
+    fn goal(&self, _agent: usize) -> Option<Point2<f64>> {
+        None
+    }
+    /// The task from above, at most `size` pixels wide and high.
+    fn picture(&self, size: usize) -> Picture;
     /// The state as bytes.
     fn snapshot(&mut self) -> Vec<u8>;
 
@@ -41,21 +56,82 @@ pub trait Task: Send {
     fn restore(&mut self, snapshot: &[u8]) -> Result<(), SnapshotError>;
 }
 
-/// The result of a step, one value per agent.
-pub struct Outcome<'a> {
-    /// The reward of this step.
-    pub rewards: &'a mut [f32],
+/// The results of a step, each with one part per task; in a task, one part per agent.
+#[derive(Clone, Debug, Default)]
+pub struct Results {
+    /// The observations after the step; of a task that was over, after its reset.
+    pub observations: Vec<f32>,
+    /// The rewards of this step.
+    pub rewards: Vec<f32>,
     /// Whether the episode ended by what happened.
-    pub terminated: &'a mut [bool],
+    pub terminated: Vec<bool>,
     /// Whether the episode ended by its length.
-    pub truncated: &'a mut [bool],
+    pub truncated: Vec<bool>,
+    /// The last observations of tasks that were over; those of other tasks stay as they were.
+    pub last_observations: Vec<f32>,
+    /// The values of [`Task::info`] after the step, before a reset.
+    pub info: Vec<f32>,
+    /// Whether the task was over for all of its agents, and was reset; one value per task.
+    pub was_reset: Vec<bool>,
 }
 
-impl Outcome<'_> {
+impl Results {
+    /// Memory for the results of one task.
+    pub(crate) fn of(task: &dyn Task) -> Self {
+        let agents = task.agents();
+        let observations = vec![0.0; agents * task.parts().iter().map(Part::values).sum::<usize>()];
+        Self {
+            last_observations: observations.clone(),
+            observations,
+            rewards: vec![0.0; agents],
+            terminated: vec![false; agents],
+            truncated: vec![false; agents],
+            info: vec![0.0; agents * task.info_names().len()],
+            was_reset: vec![false],
+        }
+    }
+
+    /// The results of several tasks, one after the other.
+    pub(crate) fn joined<'a>(parts: impl Iterator<Item = &'a Self>) -> Self {
+        let mut all = Self::default();
+        for part in parts {
+            all.observations.extend_from_slice(&part.observations);
+            all.rewards.extend_from_slice(&part.rewards);
+            all.terminated.extend_from_slice(&part.terminated);
+            all.truncated.extend_from_slice(&part.truncated);
+            all.last_observations.extend_from_slice(&part.last_observations);
+            all.info.extend_from_slice(&part.info);
+            all.was_reset.extend_from_slice(&part.was_reset);
+        }
+        all
+    }
+
     /// Whether the episode is over for every agent.
     pub fn is_over(&self) -> bool {
-        self.terminated.iter().zip(&*self.truncated).all(|(terminated, truncated)| *terminated || *truncated)
+        self.terminated.iter().zip(&self.truncated).all(|(terminated, truncated)| *terminated || *truncated)
     }
+}
+
+/// Writes ranges as shares of the maximum range: 1 without a return (+∞), 0 where the measurement is invalid or too close
+/// (−∞).
+pub(crate) fn write_scan(to: &mut [f32], ranges_m: &[f32], range_max_m: f64) {
+    let scale = 1.0 / range_max_m as f32;
+    for (value, range_m) in to.iter_mut().zip(ranges_m) {
+        *value = if range_m.is_nan() { 0.0 } else { (range_m * scale).clamp(0.0, 1.0) };
+    }
+}
+
+/// Writes values from −1 to 1.
+pub(crate) fn write_state(to: &mut [f32], values: impl IntoIterator<Item = f64>) {
+    for (state, value) in to.iter_mut().zip(values) {
+        *state = value.clamp(-1.0, 1.0) as f32;
+    }
+}
+
+/// The velocity that an agent wants: its actions are shares of the maximum.
+pub(crate) fn twist(drive: &DriveLimits, actions: &[f32]) -> Twist {
+    let [linear, angular] = [0, 1].map(|index| f64::from(actions.get(index).copied().unwrap_or(0.0)));
+    Twist { linear_mps: linear * drive.max_linear_mps, angular_radps: angular * drive.max_angular_radps }
 }
 
 /// A part of an observation.

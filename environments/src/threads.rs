@@ -6,13 +6,17 @@ use std::sync::{Mutex, PoisonError};
 /// The pieces of the work, per thread: the jobs of a piece take different times, since a reset takes longer than a step.
 const PIECES: usize = 4;
 
-/// Runs all jobs on this thread and on those of a pool, of which one stays idle; `None`: the present pool. This thread works
-/// instead of waiting: on a busy machine, another one may come late.
+/// Runs all jobs on this thread, and if `is_parallel` on those of a pool, of which one stays idle; `None`: the present pool.
+/// This thread works instead of waiting: on a busy machine, another one may come late.
 pub(crate) fn share<J: Send>(
+    is_parallel: bool,
     pool: Option<&ThreadPool>,
     jobs: impl Iterator<Item = J>,
     run: impl Fn(J) + Sync,
 ) {
+    if !is_parallel {
+        return jobs.for_each(run);
+    }
     let threads = pool.map_or_else(rayon::current_num_threads, ThreadPool::current_num_threads);
     let mut jobs: Vec<Option<J>> = jobs.map(Some).collect();
     let piece = jobs.len().div_ceil(PIECES * threads).max(1);

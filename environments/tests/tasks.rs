@@ -30,21 +30,20 @@ fn explore_place(settings: ExploreSettings) -> Arc<ExplorePlace> {
 }
 
 /// The bits of every step of a batch, environment by environment, with episodes that end in between.
-fn run<T: Task>(tasks: Vec<T>, first: usize, threads: usize, steps: usize) -> Vec<Vec<u32>> {
+fn run<T: Task + 'static>(tasks: Vec<T>, first: usize, threads: usize, steps: usize) -> Vec<Vec<u32>> {
     let count = tasks.len();
     let mut batch = Batch::new(tasks);
     batch.set_parallel(threads > 1);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-    let mut results = batch.results();
     let seed =
         |episode: u64| (0..count).map(|index| 1000 * episode + (first + index) as u64).collect::<Vec<u64>>();
-    pool.install(|| batch.reset(&seed(0), &mut results.observations)).unwrap();
+    pool.install(|| batch.reset(&seed(0))).unwrap();
     let (mut rows, values) = (vec![Vec::new(); count], batch.observation_len());
     let mut resets = 0;
     for step in 0..steps {
         let actions: Vec<f32> =
             (first..first + count).flat_map(|environment| action(environment, step)).collect();
-        pool.install(|| batch.step(&actions, &seed(1 + step as u64), &mut results)).unwrap();
+        let results = pool.install(|| batch.step(&actions, &seed(1 + step as u64))).unwrap();
         resets += results.was_reset.iter().filter(|was| **was).count();
         for (index, row) in rows.iter_mut().enumerate() {
             let observation = &results.observations[index * values..(index + 1) * values];
@@ -75,22 +74,21 @@ fn alone_and_in_a_batch_on_any_number_of_threads_the_bits_are_the_same() {
 
 #[test]
 fn a_snapshot_goes_on_bit_by_bit() {
-    fn check<T: Task>(mut here: Batch<T>, mut there: Batch<T>) {
-        let (mut results, mut other) = (here.results(), there.results());
-        here.reset(&[5], &mut results.observations).unwrap();
-        there.reset(&[6], &mut other.observations).unwrap();
+    fn check(mut here: Batch, mut there: Batch) {
+        here.reset(&[5]).unwrap();
+        there.reset(&[6]).unwrap();
         for step in 0..30 {
-            here.step(&action(0, step), &[9], &mut results).unwrap();
+            here.step(&action(0, step), &[9]).unwrap();
         }
-        let snapshot = here.tasks_mut()[0].snapshot();
-        there.tasks_mut()[0].restore(&snapshot).unwrap();
-        assert_eq!(there.tasks_mut()[0].snapshot(), snapshot);
+        let snapshot = here.snapshot(0);
+        there.restore(0, &snapshot).unwrap();
+        assert_eq!(there.snapshot(0), snapshot);
         for step in 30..60 {
-            here.step(&action(0, step), &[9], &mut results).unwrap();
-            there.step(&action(0, step), &[9], &mut other).unwrap();
+            let [results, other] =
+                [&mut here, &mut there].map(|batch| batch.step(&action(0, step), &[9]).unwrap());
             assert_eq!(bits(&results), bits(&other));
         }
-        assert_eq!(there.tasks_mut()[0].restore(&snapshot[1..]), Err(SnapshotError::Damaged));
+        assert_eq!(there.restore(0, &snapshot[1..]), Err(SnapshotError::Damaged));
     }
     let place = drive_place(DriveSettings::default());
     check(Batch::new(vec![Drive::new(&place)]), Batch::new(vec![Drive::new(&place)]));
@@ -113,19 +111,18 @@ fn follow(observation: &[f32]) -> [f32; 2] {
 #[test]
 fn the_goals_of_the_hall_are_far_and_can_be_reached() {
     let place = drive_place(DriveSettings::default());
-    let mut batch = Batch::new((0..100).map(|_| Drive::new(&place)).collect());
+    let mut batch = Batch::new((0..100).map(|_| Drive::new(&place)));
     batch.set_autoreset(false);
-    let mut results = batch.results();
-    batch.reset(&(0..100).collect::<Vec<u64>>(), &mut results.observations).unwrap();
-    for task in batch.tasks() {
+    let first = batch.reset(&(0..100).collect::<Vec<u64>>()).unwrap();
+    for task in (0..100).map(|index| batch.task(index)) {
         let at = task.fleet().robot(0).unwrap().pose.translation.vector;
         assert!((task.goal(0).unwrap().coords - at).norm() >= 3.0);
     }
-    let first = results.observations.clone();
+    let mut results = Results { observations: first.clone(), ..Results::default() };
     for _ in 0..400 {
         let len = batch.observation_len();
         let actions: Vec<f32> = results.observations.chunks(len).flat_map(follow).collect();
-        batch.step(&actions, &[0; 100], &mut results).unwrap();
+        results = batch.step(&actions, &[0; 100]).unwrap();
         assert!(results.observations.iter().all(|value| (-1.0..=1.0).contains(value)));
         assert!(!results.was_reset.contains(&true));
     }
@@ -139,8 +136,7 @@ fn the_goals_of_the_hall_are_far_and_can_be_reached() {
             .all(|(terminated, truncated)| terminated != truncated)
     );
     // The same seeds are the same episodes again.
-    batch.reset(&(0..100).collect::<Vec<u64>>(), &mut results.observations).unwrap();
-    assert_eq!(results.observations, first);
+    assert_eq!(batch.reset(&(0..100).collect::<Vec<u64>>()).unwrap(), first);
 }
 
 #[test]
@@ -149,21 +145,20 @@ fn exploring_earns_map_updates_and_the_fall_of_the_log_error() {
     let place = explore_place(settings.clone());
     let mut batch = Batch::new(vec![Explore::new(&place).unwrap()]);
     batch.set_autoreset(false);
-    let mut results = batch.results();
-    batch.reset(&[4], &mut results.observations).unwrap();
-    let mut sum = 0.0;
+    batch.reset(&[4]).unwrap();
+    let (mut sum, mut results) = (0.0, Results::default());
     for step in 0..600 {
         let turn = if step % 100 < 60 { 0.0 } else { 0.6 };
-        batch.step(&[0.5, turn], &[0], &mut results).unwrap();
+        results = batch.step(&[0.5, turn], &[0]).unwrap();
         assert!(results.observations.iter().all(|value| (-1.0..=1.0).contains(value)), "step {step}");
         sum += f64::from(results.rewards[0]);
     }
     assert_eq!((results.terminated[0], results.truncated[0]), (false, true));
     let [_, updates, log_error, _] = results.info[..] else { panic!("{:?}", results.info) };
-    let task = &batch.tasks()[0];
-    assert!(updates > 0.0 && (task.mapper().time() - 60.0).abs() < 1e-9);
-    let robot = task.world().spec().driven();
-    let cells_wide = 2.0 * robot.radius_m / task.world().spec().frame.resolution_m();
+    let fleet = batch.task(0).fleet();
+    assert!(updates > 0.0 && (fleet.time_s() - 60.0).abs() < 1e-9);
+    let robot = &fleet.spec().robots[fleet.spec().driven_robots().next().unwrap()];
+    let cells_wide = 2.0 * robot.radius_m / fleet.spec().frame.resolution_m();
     let fall = evaluation::metrics::MAX_LOG_ERROR - f64::from(log_error);
     let expected = settings.update_reward * f64::from(updates) / cells_wide + settings.error_reward * fall;
     assert!((sum - expected).abs() < 1e-3 * expected.abs().max(1.0), "{sum} and not {expected}");
@@ -172,18 +167,17 @@ fn exploring_earns_map_updates_and_the_fall_of_the_log_error() {
 #[test]
 fn invalid_input_is_refused_and_changes_nothing() {
     let place = drive_place(DriveSettings::default());
-    let mut batch = Batch::new((0..2).map(|_| Drive::new(&place)).collect());
-    let mut results = batch.results();
-    batch.reset(&[1, 2], &mut results.observations).unwrap();
-    let before = [0, 1].map(|index| batch.tasks_mut()[index].snapshot());
-    let message = |error: Result<(), TaskError>| error.unwrap_err().to_string();
+    let mut batch = Batch::new((0..2).map(|_| Drive::new(&place)));
+    batch.reset(&[1, 2]).unwrap();
+    let before = [0, 1].map(|index| batch.snapshot(index));
+    let message = |error: Result<Results, TaskError>| error.unwrap_err().to_string();
     for (value, printed) in [(f32::NAN, "NaN"), (1.5, "1.5"), (f32::NEG_INFINITY, "-inf")] {
-        let error = message(batch.step(&[0.0, 0.0, 0.0, value], &[3, 4], &mut results));
+        let error = message(batch.step(&[0.0, 0.0, 0.0, value], &[3, 4]));
         assert_eq!(error, format!("action {printed} of environment 1 is not from -1 to 1"));
     }
-    assert_eq!(message(batch.step(&[0.0; 3], &[3, 4], &mut results)), "actions: 3 values, and not 4");
-    assert_eq!(message(batch.step(&[0.0; 4], &[3], &mut results)), "seeds: 1 values, and not 2");
-    assert_eq!([0, 1].map(|index| batch.tasks_mut()[index].snapshot()), before);
+    assert_eq!(message(batch.step(&[0.0; 3], &[3, 4])), "actions: 3 values, and not 4");
+    assert_eq!(message(batch.step(&[0.0; 4], &[3])), "seeds: 1 values, and not 2");
+    assert_eq!([0, 1].map(|index| batch.snapshot(index)), before);
     let refused = |settings| DrivePlace::new(&driving_hall(), settings).err().unwrap().to_string();
     assert_eq!(
         refused(DriveSettings { decision_s: 0.25, ..DriveSettings::default() }),
@@ -202,17 +196,16 @@ fn invalid_input_is_refused_and_changes_nothing() {
 
 /// FNV-1a over all bits of observations and rewards, of actions that are exact in binary. `python/tests/test_envs.py`
 /// has the same steps and the same numbers: Python and Rust give the same bits.
-fn golden<T: Task>(tasks: Vec<T>) -> u64 {
+fn golden<T: Task + 'static>(tasks: Vec<T>) -> u64 {
     let count = tasks.len();
     let mut batch = Batch::new(tasks);
-    let mut results = batch.results();
     let seeds = |first: usize| (first..first + count).map(|seed| seed as u64).collect::<Vec<u64>>();
-    batch.reset(&seeds(0), &mut results.observations).unwrap();
+    batch.reset(&seeds(0)).unwrap();
     let mut hash = 0xcbf2_9ce4_8422_2325_u64;
     for step in 0..60 {
         let action = |index: usize| ((index * 7 + step * 3) % 17) as f32 / 8.0 - 1.0;
         let actions: Vec<f32> = (0..2 * count).map(action).collect();
-        batch.step(&actions, &seeds(100 + step), &mut results).unwrap();
+        let results = batch.step(&actions, &seeds(100 + step)).unwrap();
         for value in results.observations.iter().chain(&results.rewards) {
             hash = (hash ^ u64::from(value.to_bits())).wrapping_mul(0x0100_0000_01b3);
         }

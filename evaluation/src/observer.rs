@@ -3,7 +3,6 @@
 use crate::metrics::{
     ChangingAccuracy, Latency, MapScores, PoseErrors, Prediction, Standstills, Things, TrueChains, map_scores,
 };
-use crate::summary::CurvePoint;
 use interfaces::{GroundTruth, LaserReading, Twist};
 use mapper::Mapper;
 use results::thinned::{Goals, Thinned};
@@ -19,8 +18,8 @@ const SAMPLE_EVERY: usize = 10;
 /// that turns on the spot or passes by has no speed towards what runs into it, but for rounding.
 const OWN_MPS: f64 = 0.005;
 
-/// Coverage and map quality over time: all points of a run of nearly three hours at 10 Hz.
-pub type Curve = Thinned<CurvePoint, 1024>;
+/// Coverage and map quality over time, s: all points of a run of nearly three hours at 10 Hz.
+pub type Curve = Thinned<(f64, MapScores), 1024>;
 
 /// The measurements of a run so far.
 #[derive(Clone, Debug, Default, serde::Deserialize, serde::Serialize)]
@@ -40,7 +39,6 @@ pub struct Observer {
     /// The longest standstill of every robot.
     pub standstills: Standstills,
     /// Coverage and map quality over time.
-    #[serde(with = "saved_curve")]
     pub curve: Curve,
     /// The positions of the goals of the curious robot, m.
     pub goals: Goals,
@@ -51,23 +49,6 @@ pub struct Observer {
     pub own_contacts: usize,
     /// The messages of the last tick.
     pub messages: Vec<Message>,
-}
-
-/// The form of a curve in a state file, which has no names of fields.
-mod saved_curve {
-    use super::{Curve, CurvePoint, MapScores, Thinned};
-    use serde::{Deserialize, Deserializer, Serialize, Serializer};
-
-    type Saved = Thinned<(f64, MapScores), 1024>;
-
-    pub(super) fn serialize<S: Serializer>(curve: &Curve, serializer: S) -> Result<S::Ok, S::Error> {
-        let saved: Saved = curve.clone().map(|CurvePoint { time_s, scores }| (time_s, scores));
-        saved.serialize(serializer)
-    }
-
-    pub(super) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Curve, D::Error> {
-        Ok(Saved::deserialize(deserializer)?.map(|(time_s, scores)| CurvePoint { time_s, scores }))
-    }
 }
 
 impl Observer {
@@ -89,7 +70,7 @@ impl Observer {
 
     /// The latest coverage and map quality.
     pub fn scores(&self) -> Option<MapScores> {
-        self.curve.samples().last().map(|point| point.scores)
+        self.curve.samples().last().map(|(_, scores)| *scores)
     }
 
     fn measure(&mut self, world: &PhysicsWorld, reading: &LaserReading, mapper: &Mapper) {
@@ -106,7 +87,7 @@ impl Observer {
         );
         if mapper.readings() % SCORE_EVERY == 1 {
             self.prediction.sample(mapper, truth, Some(&self.true_chains));
-            self.curve.push(CurvePoint { time_s: reading.time_s, scores: map_scores(mapper, truth) });
+            self.curve.push((reading.time_s, map_scores(mapper, truth)));
         }
     }
 

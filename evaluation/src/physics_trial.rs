@@ -3,7 +3,7 @@
 use crate::map_hash::map_hash;
 use crate::metrics::{age, map_scores, rate_scores, reachable_scores};
 use crate::observer::Observer;
-use crate::summary::{Contacts, Liveliest, RunResults};
+use crate::summary::{Contacts, CurvePoint, Liveliest, RunResults};
 use agent::Features;
 use controller::DiffDriveSettings;
 use interfaces::{
@@ -162,6 +162,7 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
         let [block_latency, free_latency] = observer.latency.delays();
         let [contacts_while_standing, collisions] = observer.contacts;
         let strategies = pilot.strategies(Features::default()).into_iter();
+        let curve = observer.curve.samples().iter();
         RunResults {
             map: map_scores(mapper, truth),
             reachable: reachable_scores(mapper, truth, &world.spec().visible_cells()),
@@ -182,7 +183,7 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
             goals: pilot.goals(),
             strategy_share: strategies.map(|strategy| (strategy.name, strategy.share)).collect(),
             things: observer.things.reports().cloned().collect(),
-            curve: observer.curve.samples().to_vec(),
+            curve: curve.map(|&(time_s, scores)| CurvePoint { time_s, scores }).collect(),
             map_hash: map_hash(mapper),
             liveliest: Liveliest::of(mapper),
         }

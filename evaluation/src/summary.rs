@@ -141,16 +141,11 @@ impl Liveliest {
         let returning = |&index: &usize| mapper.statistics(index).events() > 1 && mapper.rate(index) > 0.0;
         let cells: Vec<usize> = mapper.changed().filter(returning).collect();
         let centers = cells.iter().map(|&index| mapper.frame().center(mapper.frame().cell(index)));
-        let (mut low_m, mut high_m) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-        for center in centers {
-            for axis in 0..2 {
-                low_m[axis] = low_m[axis].min(center[axis]);
-                high_m[axis] = high_m[axis].max(center[axis]);
-            }
-        }
+        let boxes = centers.map(|at| (at, at));
+        let (low, high) = boxes.reduce(|(low, high), (at, _)| (low.inf(&at), high.sup(&at)))?;
         let mut intervals_s: Vec<f64> = cells.iter().map(|&index| mapper.interval(index)).collect();
         intervals_s.sort_unstable_by(f64::total_cmp);
         let median_interval_s = *intervals_s.get(intervals_s.len() / 2)?;
-        Some(Self { low_m, high_m, cells: cells.len(), median_interval_s })
+        Some(Self { low_m: low.into(), high_m: high.into(), cells: cells.len(), median_interval_s })
     }
 }

@@ -61,12 +61,12 @@ pub struct TrialSnapshot {
 impl TrialSnapshot {
     /// The state for a file.
     pub fn into_state(self) -> State {
-        let Self { facts, learned, world, pilot, mut observer } = self;
+        let Self { facts, learned, world, pilot, observer } = self;
         let state = State::default()
             .with(WORLD, facts.world.clone(), world.into_bytes())
             .with(CONTENT, facts.content, Vec::new())
             .with(PILOT, facts.pilot, pilot)
-            .with(MEASUREMENTS, facts.world, interfaces::snapshot(vec![value(&mut observer)]));
+            .with(MEASUREMENTS, facts.world, interfaces::to_bytes(&observer));
         learned.added_to(state).with_build()
     }
 }
@@ -101,7 +101,8 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
         facts.learned.restore(state, &mut self.robot)?;
         self.world.restore(world).map_err(|_| misfit(WORLD))?;
         interfaces::restore(self.pilot_values(), pilot).map_err(|_| misfit(PILOT))?;
-        interfaces::restore(vec![value(&mut self.observer)], observer).map_err(|_| misfit(MEASUREMENTS))
+        self.observer = interfaces::from_bytes(observer).map_err(|_| misfit(MEASUREMENTS))?;
+        Ok(())
     }
 
     /// The values of the pilot and of its last command.

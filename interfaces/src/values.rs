@@ -127,6 +127,21 @@ pub fn snapshot(values: Values<'_>) -> Vec<u8> {
     bytes
 }
 
+/// One value as bytes, for [`from_bytes`]; none if it has no form as bytes.
+pub fn to_bytes(value: &impl Serialize) -> Vec<u8> {
+    postcard::to_stdvec(value).unwrap_or_default()
+}
+
+/// One value from all of its bytes.
+///
+/// # Errors
+///
+/// When the bytes are no such value.
+pub fn from_bytes<T: DeserializeOwned>(mut bytes: &[u8]) -> Result<T, ValueError> {
+    let value = read_value(&mut bytes)?;
+    if bytes.is_empty() { Ok(value) } else { Err(ValueError) }
+}
+
 /// Reads the values of a part from its snapshot.
 ///
 /// # Errors

@@ -22,27 +22,25 @@ use crate::bounds;
 use crate::choice::TopicChoice;
 use crate::content;
 use crate::error::LogError;
+use crate::log;
+use crate::log::{Log, RawReadings as _, Source};
 use crate::standing::Standing;
 use crate::summary::{LogSummary, since_epoch};
-use crate::times::{self, Times};
-use interfaces::LaserReading;
+use crate::times;
 use inventory::Inventory;
 use message::{Selection, Topic};
 use messages::Messages;
-use nalgebra::Isometry2;
 use plan::{Motion, Plan};
 use readings::{Clock, Counts, RawReadings};
 use std::sync::Arc;
 
 /// A bag.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(crate) struct Bag {
     name: String,
-    files: Arc<[BagFile]>,
+    files: Vec<BagFile>,
     plan: Arc<Plan>,
     clock: Clock,
-    times_s: Arc<[f64]>,
-    summary: LogSummary,
 }
 
 impl Bag {
@@ -52,24 +50,30 @@ impl Bag {
         files: Vec<BagFile>,
         choice: &TopicChoice,
         mut notes: Vec<String>,
-    ) -> Result<Self, LogError> {
+    ) -> Result<Log, LogError> {
         let unusable = |why| LogError::Unusable { file: file.to_owned(), why };
         let inventory = Inventory::of(&files)?;
         notes.extend(inventory.notes.iter().cloned());
         let mut plan = Arc::new(Plan::new(&inventory, choice, &mut notes).map_err(unusable)?);
         let (stamp_ns, log_ns) = inventory.begin_ns.unwrap_or_default();
         let mut clock = Clock::Stamps(stamp_ns);
-        let mut survey = Survey::of(&files, &plan, clock, unusable)?;
-        if !survey.times.has_times {
-            let by_recording = Survey::of(&files, &plan, Clock::Recording(log_ns), unusable)?;
-            if by_recording.times.has_times {
+        let mut survey = surveyed(&files, &plan, clock, unusable)?;
+        let mut times = times::repaired(&survey.1);
+        if !times.has_times {
+            let by_recording = surveyed(&files, &plan, Clock::Recording(log_ns), unusable)?;
+            let recorded = times::repaired(&by_recording.1);
+            if recorded.has_times {
                 notes.push(
                     "the stamps of the scans are unusable: the times of the recording count".to_owned(),
                 );
-                (clock, survey) = (Clock::Recording(log_ns), by_recording);
+                (clock, survey, times) = (Clock::Recording(log_ns), by_recording, recorded);
             }
         }
-        let Survey { raw_begin_s, times, counts, odom_origin, stands } = survey;
+        let (raw, raw_s, standing) = survey;
+        let raw_begin_s = raw_s.first().copied().unwrap_or_default();
+        let stands = raw.stands() && standing.looks_so();
+        let (odom_origin, impossible) = (raw.origin(), raw.impossible());
+        let counts = raw.counts;
         if times.times_s.is_empty() {
             let why = counts.first_invalid.unwrap_or_default();
             return Err(unusable(format!("no scan is valid; the first: {why}")));
@@ -94,27 +98,24 @@ impl Bag {
             odom_origin,
             scan_topics,
             notes,
-            impossible: counts.doubts.impossible(counts.invalid_scans, stands),
+            impossible: impossible.or_else(|| counts.doubts.impossible(counts.invalid_scans, stands)),
         };
         if stands {
             Arc::make_mut(&mut plan).motion = Motion::Standing;
         }
         let name = file.to_owned();
-        Ok(Self { name, files: files.into(), plan, clock, times_s: times.times_s.into(), summary })
+        Ok(Log::new(Self { name, files, plan, clock }, times.times_s, summary))
+    }
+}
+
+impl Source for Bag {
+    fn raw_readings(&self) -> Result<Box<dyn log::RawReadings + Send>, LogError> {
+        Ok(Box::new(raw_readings(&self.files, &self.plan, self.clock)))
     }
 
-    pub(crate) fn summary(&self) -> &LogSummary {
-        &self.summary
-    }
-
-    pub(crate) fn content_hash(&self) -> Result<u128, LogError> {
+    fn content_hash(&self) -> Result<u128, LogError> {
         let io = |why| LogError::Io { file: self.name.clone(), why };
         content::hash(self.files.iter().map(BagFile::content)).map_err(io)
-    }
-
-    pub(crate) fn readings(&self) -> Readings {
-        let raw = raw_readings(&self.files, &self.plan, self.clock);
-        Readings { raw, times_s: self.times_s.clone(), given: 0, has_failed: false }
     }
 }
 
@@ -125,36 +126,21 @@ fn raw_readings(files: &[BagFile], plan: &Arc<Plan>, clock: Clock) -> RawReading
     RawReadings::new(messages, plan, clock)
 }
 
-/// The times of all scans.
-struct Survey {
-    /// The time of the first scan on the clock, s.
-    raw_begin_s: f64,
-    times: Times,
-    counts: Counts,
-    odom_origin: Isometry2<f64>,
-    /// Whether the laser stands.
-    stands: bool,
-}
-
-impl Survey {
-    fn of(
-        files: &[BagFile],
-        plan: &Arc<Plan>,
-        clock: Clock,
-        unusable: impl Fn(String) -> LogError,
-    ) -> Result<Self, LogError> {
-        let mut raw = raw_readings(files, plan, clock);
-        let (mut raw_s, mut standing) = (Vec::new(), Standing::default());
-        while let Some(reading) = raw.next_reading()? {
-            bounds::one_more(raw_s.len()).map_err(&unusable)?;
-            raw_s.push(reading.time_s);
-            standing.add(&reading.mount, &reading.scan);
-        }
-        let raw_begin_s = raw_s.first().copied().unwrap_or_default();
-        let odom_origin = raw.origin();
-        let stands = raw.stands() && standing.looks_so();
-        Ok(Self { raw_begin_s, times: times::repaired(&raw_s), counts: raw.counts, odom_origin, stands })
+/// Reads all scans once: what the readings know at their end, the times of the scans, s, and how the scans look.
+fn surveyed(
+    files: &[BagFile],
+    plan: &Arc<Plan>,
+    clock: Clock,
+    unusable: impl Fn(String) -> LogError,
+) -> Result<(RawReadings, Vec<f64>, Standing), LogError> {
+    let mut raw = raw_readings(files, plan, clock);
+    let (mut raw_s, mut standing) = (Vec::new(), Standing::default());
+    while let Some(reading) = raw.next_reading()? {
+        bounds::one_more(raw_s.len()).map_err(&unusable)?;
+        raw_s.push(reading.time_s);
+        standing.add(&reading.mount, &reading.scan);
     }
+    Ok((raw, raw_s, standing))
 }
 
 impl Counts {
@@ -167,37 +153,5 @@ impl Counts {
             format!("{} poses of odometry or transforms are invalid and left out", self.invalid_poses)
         });
         scans.into_iter().chain(poses)
-    }
-}
-
-/// The readings of a bag, one after the other. After an error, there are no more.
-pub(crate) struct Readings {
-    raw: RawReadings,
-    times_s: Arc<[f64]>,
-    given: usize,
-    has_failed: bool,
-}
-
-impl Iterator for Readings {
-    type Item = Result<LaserReading, LogError>;
-
-    fn next(&mut self) -> Option<Self::Item> {
-        if self.has_failed {
-            return None;
-        }
-        let mut reading = match self.raw.next_reading() {
-            Ok(reading) => reading?,
-            Err(error) => {
-                self.has_failed = true;
-                return Some(Err(error));
-            }
-        };
-        // The file can have grown since the survey.
-        let time_s = *self.times_s.get(self.given)?;
-        self.given += 1;
-        let shift_s = time_s - reading.time_s;
-        reading.velocities.iter_mut().for_each(|sample| sample.time_s += shift_s);
-        reading.time_s = time_s;
-        Some(Ok(reading))
     }
 }

@@ -20,23 +20,33 @@ mod survey;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use readings::Readings;
-
 use crate::bytes::Bytes;
 use crate::content;
 use crate::error::LogError;
 use crate::lines::{self, Lines};
-use crate::summary::LogSummary;
-use line::Line;
+use crate::log::{Log, RawReadings, Source};
+use line::{Geometry, Line};
 use nalgebra::Isometry2;
-use survey::Survey;
+use readings::Readings;
 
 /// A CARMEN log.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(crate) struct CarmenLog {
     bytes: Bytes,
     file: String,
-    survey: Survey,
+    rules: Rules,
+}
+
+/// How the lines of a log become readings, by its survey.
+#[derive(Clone, Copy, Debug)]
+struct Rules {
+    geometry: Geometry,
+    /// Whether the times in the log can be compared with each other.
+    has_times: bool,
+    /// Whether an ODOM line without a time is a new origin of the odometry.
+    has_origins: bool,
+    /// Whether the laser stands.
+    stands: bool,
 }
 
 impl CarmenLog {
@@ -45,48 +55,34 @@ impl CarmenLog {
     /// # Errors
     ///
     /// When the file cannot be read, when a line is invalid, or when no line is a scan. A last line that is cut off is
-    /// left out, see [`LogSummary::notes`].
-    pub(crate) fn open(file: &str, bytes: Bytes) -> Result<Self, LogError> {
-        let file = file.to_owned();
-        let survey = Survey::of(&mut Lines::open(&bytes, &file)?)?;
-        Ok(Self { bytes, file, survey })
+    /// left out, see [`LogSummary::notes`](crate::LogSummary::notes).
+    pub(crate) fn open(file: &str, bytes: Bytes) -> Result<Log, LogError> {
+        let (rules, times_s, summary) = survey::of(&mut Lines::open(&bytes, file)?)?;
+        Ok(Log::new(Self { bytes, file: file.to_owned(), rules }, times_s, summary))
+    }
+}
+
+impl Source for CarmenLog {
+    /// The poses are those of the odometry, and begin at the origin.
+    fn raw_readings(&self) -> Result<Box<dyn RawReadings + Send>, LogError> {
+        Ok(Box::new(Readings::new(Lines::open(&self.bytes, &self.file)?, self.rules)))
     }
 
-    /// What the log contains, and what was repaired.
-    pub(crate) fn summary(&self) -> &LogSummary {
-        &self.survey.summary
-    }
-
-    /// As [`Log::content_hash`](crate::Log::content_hash).
-    pub(crate) fn content_hash(&self) -> Result<u128, LogError> {
+    fn content_hash(&self) -> Result<u128, LogError> {
         let io = |why| LogError::Io { file: self.file.clone(), why };
         content::hash([lines::text(&self.bytes)]).map_err(io)
     }
 
-    /// The readings, in the order of the log, from the first on. The poses are those of the odometry, and begin at the
-    /// origin.
-    ///
-    /// # Errors
-    ///
-    /// When the file can no longer be opened.
-    pub(crate) fn readings(&self) -> Result<Readings, LogError> {
-        Ok(Readings::new(Lines::open(&self.bytes, &self.file)?, self.survey.clone()))
-    }
-
-    /// The poses of the laser that the FLASER lines contain, one per reading; `None` for readings of other lines. In a
-    /// corrected log they are the result of an earlier estimation: for comparison only.
-    ///
-    /// # Errors
-    ///
-    /// As for [`CarmenLog::open`].
-    pub(crate) fn reference_poses(&self) -> Result<Vec<Option<Isometry2<f64>>>, LogError> {
+    /// The poses of the laser that the FLASER lines contain; `None` for readings of other lines. In a corrected log they are
+    /// the result of an earlier estimation.
+    fn reference_poses(&self) -> Result<Option<Vec<Option<Isometry2<f64>>>>, LogError> {
         let mut lines = Lines::open(&self.bytes, &self.file)?;
         let mut poses = Vec::new();
-        while let Some(line) = line::next(&mut lines, &self.survey.geometry)? {
+        while let Some(line) = line::next(&mut lines, &self.rules.geometry)? {
             if let Line::Scan(scan) = line {
                 poses.push(scan.reference);
             }
         }
-        Ok(poses)
+        Ok(Some(poses))
     }
 }

@@ -3,24 +3,11 @@
 use std::io::{self, Read};
 use xxhash_rust::xxh3::Xxh3;
 
-/// The bytes that are hashed at once.
-const BLOCK: usize = 1 << 16;
-
 /// The hash of all bytes of some files, and of where one ends: XXH3 with 128 bits.
 pub(crate) fn hash<R: Read>(files: impl IntoIterator<Item = io::Result<R>>) -> io::Result<u128> {
-    let (mut hash, mut block) = (Xxh3::new(), vec![0; BLOCK]);
+    let mut hash = Xxh3::new();
     for file in files {
-        let (mut file, mut length) = (file?, 0_u64);
-        loop {
-            let count = match file.read(&mut block) {
-                Ok(0) => break,
-                Ok(count) => count,
-                Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
-                Err(error) => return Err(error),
-            };
-            hash.update(&block[..count]);
-            length += count as u64;
-        }
+        let length = io::copy(&mut file?, &mut hash)?;
         hash.update(&length.to_le_bytes());
     }
     Ok(hash.digest128())

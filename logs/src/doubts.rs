@@ -69,7 +69,7 @@ impl Doubts {
         }
     }
 
-    /// Why no map can be made of these scans, beside `invalid` ones that are none. `stands`: whether the laser stands.
+    /// Why no map can be made of these scans, beside `invalid` ones. `stands`: whether the laser stands.
     pub(crate) fn impossible(&self, invalid: usize, stands: bool) -> Option<String> {
         let Self { scans, seeing, beyond, repeated, .. } = *self;
         let all = scans + invalid;

@@ -1,25 +1,42 @@
 //! A log of any format.
 
-use crate::bag::{self, Bag, BagFile};
+use crate::bag::{Bag, BagFile, in_folder};
 use crate::bytes::Bytes;
-use crate::carmen::{self, CarmenLog};
+use crate::carmen::CarmenLog;
 use crate::choice::TopicChoice;
 use crate::error::LogError;
 use crate::summary::LogSummary;
 use interfaces::LaserReading;
 use nalgebra::Isometry2;
+use std::fmt::Debug;
 use std::path::Path;
+use std::sync::Arc;
 
 /// A log of any format.
 #[derive(Clone, Debug)]
 pub struct Log {
-    format: Format,
+    source: Arc<dyn Source>,
+    summary: LogSummary,
+    /// The times of the readings, repaired, s.
+    times_s: Arc<[f64]>,
 }
 
-#[derive(Clone, Debug)]
-enum Format {
-    Carmen(CarmenLog),
-    Bag(Bag),
+/// A log of one format, after its survey.
+pub(crate) trait Source: Debug + Send + Sync {
+    /// The readings with their times as written, from the first on.
+    fn raw_readings(&self) -> Result<Box<dyn RawReadings + Send>, LogError>;
+    /// As [`Log::content_hash`].
+    fn content_hash(&self) -> Result<u128, LogError>;
+    /// As [`Log::reference_poses`].
+    fn reference_poses(&self) -> Result<Option<Vec<Option<Isometry2<f64>>>>, LogError> {
+        Ok(None)
+    }
+}
+
+/// Readings with their times as written.
+pub(crate) trait RawReadings {
+    /// The next reading, `None` at the end.
+    fn next_reading(&mut self) -> Result<Option<LaserReading>, LogError>;
 }
 
 impl Log {
@@ -39,9 +56,8 @@ impl Log {
     pub fn open(path: &Path, choice: &TopicChoice) -> Result<Self, LogError> {
         let name = path.display().to_string();
         if path.is_dir() {
-            let (files, note) = bag::in_folder(path)?;
-            let bag = Bag::open(&name, files, choice, note.into_iter().collect())?;
-            return Ok(Self { format: Format::Bag(bag) });
+            let (files, note) = in_folder(path)?;
+            return Bag::open(&name, files, choice, note.into_iter().collect());
         }
         if path.metadata().is_ok_and(|known| !known.is_file()) {
             // A pipe would wait for ever.
@@ -50,23 +66,18 @@ impl Log {
             return Err(LogError::Unusable { file: name, why });
         }
         match BagFile::open(path)? {
-            Some(file) => {
-                let bag = Bag::open(&name, vec![file], choice, Vec::new())?;
-                Ok(Self { format: Format::Bag(bag) })
-            }
-            None => {
-                let log = CarmenLog::open(&name, Bytes::File(path.to_owned()))?;
-                Ok(Self { format: Format::Carmen(log) })
-            }
+            Some(file) => Bag::open(&name, vec![file], choice, Vec::new()),
+            None => CarmenLog::open(&name, Bytes::File(path.to_owned())),
         }
+    }
+
+    pub(crate) fn new(source: impl Source + 'static, times_s: Vec<f64>, summary: LogSummary) -> Self {
+        Self { source: Arc::new(source), summary, times_s: times_s.into() }
     }
 
     /// What the log contains, and what was repaired.
     pub fn summary(&self) -> &LogSummary {
-        match &self.format {
-            Format::Carmen(log) => log.summary(),
-            Format::Bag(bag) => bag.summary(),
-        }
+        &self.summary
     }
 
     /// The readings in the order of their times, from the first on. Times are since the first reading. The poses are those of
@@ -76,24 +87,17 @@ impl Log {
     ///
     /// When the file can no longer be opened.
     pub fn readings(&self) -> Result<Readings, LogError> {
-        let source = match &self.format {
-            Format::Carmen(log) => Source::Carmen(log.readings()?),
-            Format::Bag(bag) => Source::Bag(bag.readings()),
-        };
-        Ok(Readings { source })
+        let (raw, times_s) = (self.source.raw_readings()?, self.times_s.clone());
+        Ok(Readings { raw, times_s, given: 0, has_failed: false })
     }
 
-    /// A number that is another one for another content, and the same for the same content under another name or with another
-    /// compression of the file: XXH3 with 128 bits. The log is read once for it.
+    /// Content hash (XXH3-128): it depends neither on the name nor on the compression of the file. The log is read once for it.
     ///
     /// # Errors
     ///
     /// When the file can no longer be read.
     pub fn content_hash(&self) -> Result<u128, LogError> {
-        match &self.format {
-            Format::Carmen(log) => log.content_hash(),
-            Format::Bag(bag) => bag.content_hash(),
-        }
+        self.source.content_hash()
     }
 
     /// The poses of the laser of an earlier estimation, one per reading, for comparison only: those in the FLASER lines
@@ -103,30 +107,37 @@ impl Log {
     ///
     /// As for [`Log::open`].
     pub fn reference_poses(&self) -> Result<Option<Vec<Option<Isometry2<f64>>>>, LogError> {
-        match &self.format {
-            Format::Carmen(log) => log.reference_poses().map(Some),
-            Format::Bag(_) => Ok(None),
-        }
+        self.source.reference_poses()
     }
 }
 
 /// The readings of a log, one after the other. After an error, there are no more.
 pub struct Readings {
-    source: Source,
-}
-
-enum Source {
-    Carmen(carmen::Readings),
-    Bag(bag::Readings),
+    raw: Box<dyn RawReadings + Send>,
+    times_s: Arc<[f64]>,
+    given: usize,
+    has_failed: bool,
 }
 
 impl Iterator for Readings {
     type Item = Result<LaserReading, LogError>;
 
     fn next(&mut self) -> Option<Self::Item> {
-        match &mut self.source {
-            Source::Carmen(readings) => readings.next(),
-            Source::Bag(readings) => readings.next(),
+        if self.has_failed {
+            return None;
         }
+        let next = self.raw.next_reading();
+        self.has_failed = next.is_err();
+        let mut reading = match next.transpose()? {
+            Ok(reading) => reading,
+            failed => return Some(failed),
+        };
+        // The file can have grown since the survey.
+        let time_s = *self.times_s.get(self.given)?;
+        self.given += 1;
+        let shift_s = time_s - reading.time_s;
+        reading.velocities.iter_mut().for_each(|sample| sample.time_s += shift_s);
+        reading.time_s = time_s;
+        Some(Ok(reading))
     }
 }

@@ -1,13 +1,18 @@
 //! Odometry: the sum of its motions, and its pose at the time of a scan.
 
-use crate::standing::{LEAST_MOTION_M, LEAST_MOTION_RAD};
+use crate::standing::{MIN_MOTION_M, MIN_MOTION_RAD};
 use interfaces::{Twist, VelocitySample, heading_rad, wrap_rad};
 use nalgebra::Isometry2;
 
 /// Between two poses that are farther apart than this, s, the odometry is not interpolated.
 const LONGEST_GAP_S: f64 = 2.0;
 /// Intervals that overlap by less than this do so by rounding, s.
-const LEAST_OVERLAP_S: f64 = 1e-6;
+const MIN_OVERLAP_S: f64 = 1e-6;
+/// A robot that moves slower than this in nearly all of at least this number of steps is none, m/s and rad/s: 0.15 m/s and more
+/// are usual, a thousandth of it with times in milliseconds.
+const MIN_MPS: f64 = 0.002;
+const MIN_RADPS: f64 = 0.005;
+const MIN_STEPS: usize = 100;
 /// The number of poses that are kept: some messages arrive later than others.
 const KEPT: usize = 256;
 
@@ -22,6 +27,9 @@ pub struct Odometry {
     /// The largest distance from the first pose, m, and the largest turn since then, rad.
     farthest_m: f64,
     farthest_rad: f64,
+    /// The number of steps with a motion, and of those at the speed of a robot.
+    moving: usize,
+    fast: usize,
 }
 
 impl Odometry {
@@ -32,6 +40,12 @@ impl Odometry {
         self.written = Some(pose);
         let mut at = self.last() * motion;
         at.rotation.renormalize();
+        let (step_m, step_rad) = (motion.translation.vector.norm(), heading_rad(&motion).abs());
+        let elapsed_s = self.samples.last().map_or(0.0, |(last_s, _)| time_s - last_s);
+        if elapsed_s > 0.0 && (step_m > MIN_MOTION_M || step_rad > MIN_MOTION_RAD) {
+            self.moving += 1;
+            self.fast += usize::from(step_m > MIN_MPS * elapsed_s || step_rad > MIN_RADPS * elapsed_s);
+        }
         self.farthest_m = self.farthest_m.max(at.translation.vector.norm());
         self.farthest_rad = self.farthest_rad.max(heading_rad(&at).abs());
         if self.samples.len() == KEPT {
@@ -47,7 +61,19 @@ impl Odometry {
 
     /// Whether the robot has not moved so far, except for a drift.
     pub(crate) fn stands(&self) -> bool {
-        self.farthest_m < LEAST_MOTION_M && self.farthest_rad < LEAST_MOTION_RAD
+        self.farthest_m < MIN_MOTION_M && self.farthest_rad < MIN_MOTION_RAD
+    }
+
+    /// Why the times cannot be in seconds, if it is sure: the robot moves far slower than any robot.
+    pub(crate) fn impossible(&self) -> Option<String> {
+        let Self { moving, fast, .. } = *self;
+        (moving >= MIN_STEPS && fast * 100 < moving).then(|| {
+            format!(
+                "the times look like milliseconds: in {} of the {moving} steps in which the odometry moves, it is slower than \
+                 {MIN_MPS} m/s and {MIN_RADPS} rad/s; times are in seconds",
+                moving - fast
+            )
+        })
     }
 
     /// Motions are measured from this pose on.
@@ -85,8 +111,8 @@ impl Odometry {
     /// The mean velocities between the poses in an interval, the earliest first; the last one ends with the interval.
     pub fn during(&self, from_s: f64, to_s: f64) -> Vec<VelocitySample> {
         let overlaps = |pair: &&[(f64, Isometry2<f64>)]| {
-            pair[0].0 + LEAST_OVERLAP_S < to_s
-                && from_s + LEAST_OVERLAP_S < pair[1].0
+            pair[0].0 + MIN_OVERLAP_S < to_s
+                && from_s + MIN_OVERLAP_S < pair[1].0
                 && (0.0..=LONGEST_GAP_S).contains(&(pair[1].0 - pair[0].0))
         };
         let pairs = self.samples.windows(2).filter(overlaps);

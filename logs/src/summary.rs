@@ -52,9 +52,9 @@ pub enum PoseSource {
 
 /// Times before this are no times of this epoch but those of a simulation, or of a clock that was never set, s
 /// (1973-03-03).
-const LEAST_EPOCH_S: f64 = 1e8;
+const MIN_EPOCH_S: f64 = 1e8;
 
 /// A time that a log contains, if it can be a time since the epoch, s.
 pub(crate) fn since_epoch(time_s: f64) -> Option<f64> {
-    (LEAST_EPOCH_S..1e11).contains(&time_s).then_some(time_s)
+    (MIN_EPOCH_S..1e11).contains(&time_s).then_some(time_s)
 }

@@ -5,7 +5,7 @@ const LONGEST_PAUSE_S: f64 = 86_400.0;
 /// Times that go back by less than this come from messages that were written in another order, s.
 const DISORDER_S: f64 = 60.0;
 /// The time between scans that have the time of the scan before, or an earlier one, s.
-const LEAST_STEP_S: f64 = 1e-3;
+const MIN_STEP_S: f64 = 1e-3;
 /// The time between scans of a log without usable times, s.
 const STEP_WITHOUT_TIMES_S: f64 = 1.0;
 
@@ -47,17 +47,17 @@ pub(crate) fn repaired(raw_s: &[f64]) -> Times {
         if !(-DISORDER_S..=LONGEST_PAUSE_S).contains(&step_s) {
             jumps += 1;
             offset_s += period_s - step_s;
-        } else if step_s < LEAST_STEP_S {
+        } else if step_s < MIN_STEP_S {
             back += 1;
         }
-        times_s.push((raw + offset_s).max(last_s + LEAST_STEP_S));
+        times_s.push((raw + offset_s).max(last_s + MIN_STEP_S));
     }
     let of_back = match back {
         0 => None,
-        1 => Some(format!("1 scan is not later than the scan before and counts as {LEAST_STEP_S} s later")),
-        _ => Some(format!(
-            "{back} scans are not later than the scan before and count as {LEAST_STEP_S} s later"
-        )),
+        1 => Some(format!("1 scan is not later than the scan before and counts as {MIN_STEP_S} s later")),
+        _ => {
+            Some(format!("{back} scans are not later than the scan before and count as {MIN_STEP_S} s later"))
+        }
     };
     let of_jumps = match jumps {
         0 => None,

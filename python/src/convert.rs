@@ -1,13 +1,16 @@
 //! Errors and arrays.
 
 use interfaces::{GridFrame, heading_rad};
-use nalgebra::{Isometry2, Point2};
+use nalgebra::Isometry2;
 use numpy::{
     AllowTypeChange, Element, IntoPyArray, PyArray1, PyArray2, PyArrayDescrMethods, PyArrayLike1,
     PyArrayLikeDyn, PyArrayMethods, PyReadwriteArrayDyn, PyUntypedArray, PyUntypedArrayMethods,
 };
-use pyo3::exceptions::{PyFileNotFoundError, PyIndexError, PyOverflowError, PyTypeError, PyValueError};
+use pyo3::exceptions::{
+    PyFileNotFoundError, PyIndexError, PyOverflowError, PyTypeError, PyUserWarning, PyValueError,
+};
 use pyo3::prelude::*;
+use std::ffi::CString;
 use std::fmt::Display;
 use worldfile::shipped::LoadError;
 
@@ -44,16 +47,12 @@ pub(crate) fn whole<'py, T>(object: &Bound<'py, PyAny>) -> PyResult<T>
 where
     T: for<'a> FromPyObject<'a, 'py, Error = PyErr>,
 {
-    object.extract().map_err(|error: PyErr| in_range(error, object))
-}
-
-/// A number that an integer of Rust cannot hold is out of range: a `ValueError`, as for any other range.
-pub(crate) fn in_range(error: PyErr, value: &Bound<'_, PyAny>) -> PyErr {
-    if error.is_instance_of::<PyOverflowError>(value.py()) {
-        value_error(format!("a whole number from 0 to 2^64 - 1 is needed, and not {value}"))
-    } else {
-        error
-    }
+    object.extract().map_err(|error: PyErr| {
+        // A number that an integer of Rust cannot hold is out of range, as for any other range.
+        let of_range =
+            || value_error(format!("a whole number from 0 to 2^64 - 1 is needed, and not {object}"));
+        if error.is_instance_of::<PyOverflowError>(object.py()) { of_range() } else { error }
+    })
 }
 
 /// Numbers with one dimension, as a list, a tuple or an array of any type.
@@ -208,13 +207,20 @@ pub(crate) fn pose_array<'py>(py: Python<'py>, pose: &Isometry2<f64>) -> Bound<'
     pose_values(pose).to_vec().into_pyarray(py)
 }
 
-/// Points as an array with two columns.
-pub(crate) fn points_array<'py>(
+/// Rows as an array.
+pub(crate) fn rows_array<'py, T: Element, const COLUMNS: usize>(
     py: Python<'py>,
-    points: &[Point2<f64>],
-) -> PyResult<Bound<'py, PyArray2<f64>>> {
-    let values: Vec<f64> = points.iter().flat_map(|point| [point.x, point.y]).collect();
-    values.into_pyarray(py).reshape([points.len(), 2])
+    rows: impl IntoIterator<Item = [T; COLUMNS]>,
+) -> PyResult<Bound<'py, PyArray2<T>>> {
+    let values: Vec<T> = rows.into_iter().flatten().collect();
+    let count = values.len() / COLUMNS;
+    values.into_pyarray(py).reshape([count, COLUMNS])
+}
+
+/// A warning of Python.
+pub(crate) fn warn(py: Python<'_>, message: &str) -> PyResult<()> {
+    let message = CString::new(message.replace('\0', " "))?;
+    PyErr::warn(py, &py.get_type::<PyUserWarning>(), &message, 2)
 }
 
 /// One value per cell as an array of rows; row 0 has the lowest y.

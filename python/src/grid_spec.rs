@@ -1,10 +1,8 @@
-use crate::convert::{grid, load_error, whole, world_error};
+use crate::convert::{grid, load_error, warn, whole, world_error};
 use numpy::PyArray2;
-use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 use sim::grid::GenerateSettings;
-use std::ffi::CString;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use worldfile::{Disk, Files, MAX_TEXT_BYTES, shipped};
@@ -20,8 +18,7 @@ impl GridSpec {
     /// What is odd about a world is a warning of Python.
     fn new(py: Python<'_>, spec: sim::grid::GridSpec) -> PyResult<Self> {
         for warning in spec.warnings() {
-            let message = CString::new(format!("{}: {warning}", spec.name).replace('\0', " "))?;
-            PyErr::warn(py, &py.get_type::<PyUserWarning>(), &message, 2)?;
+            warn(py, &format!("{}: {warning}", spec.name))?;
         }
         Ok(Self { spec: Arc::new(spec) })
     }

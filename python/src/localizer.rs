@@ -1,9 +1,9 @@
-use crate::convert::{Numbers, SnapshotError, pose_array, value_error};
+use crate::convert::{Numbers, SnapshotError, pose_array, rows_array, value_error};
 use crate::mapper::Mapper;
 use crate::reading::Reading;
 use crate::snapshots::Kind;
-use localizer::{LocalizerSettings, PoseState, Start};
-use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
+use localizer::{Localized, LocalizerSettings, PoseEstimate, PoseState, Start};
+use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
@@ -21,9 +21,20 @@ pub(crate) struct Localizer {
 }
 
 /// A pose with its uncertainty.
-#[pyclass(frozen, module = "curious")]
+#[pyclass(frozen, get_all, module = "curious")]
 pub(crate) struct Estimate {
-    localized: localizer::Localized,
+    /// The pose: x (m), y (m), heading (rad).
+    pose: Py<PyArray1<f64>>,
+    /// The covariance of x, y (m²) and heading (rad²), shape (3, 3).
+    covariance: Py<PyArray2<f64>>,
+    /// "tracking", "uncertain" or "lost".
+    state: &'static str,
+    /// Whether the reading may enter a map.
+    is_certain: bool,
+    /// The share of the seen surface that lies on known surfaces, from 0 to 1.
+    support: f64,
+    /// The reading at this pose; all of its beams belong to the pose.
+    reading: Py<Reading>,
 }
 
 const SNAPSHOT: Kind = Kind("localizer");
@@ -48,9 +59,23 @@ impl Localizer {
 
     /// The pose of a reading, whose own pose is that of the odometry. `mapper` has learned the readings so far whose
     /// pose was certain. An invalid reading is no error: its estimate is the prediction, and not certain.
-    fn localize(&mut self, py: Python<'_>, reading: &Reading, mapper: &Mapper) -> Estimate {
+    fn localize(&mut self, py: Python<'_>, reading: &Reading, mapper: &Mapper) -> PyResult<Estimate> {
         let (localizer, map) = (&mut self.localizer, &mapper.mapper);
-        Estimate { localized: py.detach(|| localizer.localize(&reading.reading, map)) }
+        let Localized { estimate, reading } = py.detach(|| localizer.localize(&reading.reading, map));
+        let PoseEstimate { pose, covariance, support, state } = estimate;
+        let rows: [[f64; 3]; 3] = covariance.transpose().into();
+        Ok(Estimate {
+            pose: pose_array(py, &pose).unbind(),
+            covariance: rows_array(py, rows)?.unbind(),
+            state: match state {
+                PoseState::Tracking => "tracking",
+                PoseState::Uncertain => "uncertain",
+                PoseState::Lost => "lost",
+            },
+            is_certain: state == PoseState::Tracking,
+            support,
+            reading: Py::new(py, Reading::of(reading))?,
+        })
     }
 
     /// Begins another session in the same place, at a pose that is not known.
@@ -77,49 +102,8 @@ impl Localizer {
 
 #[pymethods]
 impl Estimate {
-    /// The pose: x (m), y (m), heading (rad).
-    #[getter]
-    fn pose<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        pose_array(py, &self.localized.estimate.pose)
-    }
-
-    /// The covariance of x, y (m²) and heading (rad²), shape (3, 3).
-    #[getter]
-    fn covariance<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let values: Vec<f64> = self.localized.estimate.covariance.transpose().iter().copied().collect();
-        values.into_pyarray(py).reshape([3, 3])
-    }
-
-    /// "tracking", "uncertain" or "lost".
-    #[getter]
-    fn state(&self) -> &'static str {
-        match self.localized.estimate.state {
-            PoseState::Tracking => "tracking",
-            PoseState::Uncertain => "uncertain",
-            PoseState::Lost => "lost",
-        }
-    }
-
-    /// Whether the reading may enter a map.
-    #[getter]
-    fn is_certain(&self) -> bool {
-        self.localized.estimate.state == PoseState::Tracking
-    }
-
-    /// The share of the seen surface that lies on known surfaces, from 0 to 1.
-    #[getter]
-    fn support(&self) -> f64 {
-        self.localized.estimate.support
-    }
-
-    /// The reading at this pose; all of its beams belong to the pose.
-    #[getter]
-    fn reading(&self) -> Reading {
-        Reading::of(self.localized.reading.clone())
-    }
-
-    fn __repr__(&self) -> String {
-        let [x, y, heading] = crate::convert::pose_values(&self.localized.estimate.pose);
-        format!("<curious.Estimate [{x:.3}, {y:.3}, {heading:.3}] {}>", self.state())
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        let [x, y, heading]: [f64; 3] = self.pose.extract(py)?;
+        Ok(format!("<curious.Estimate [{x:.3}, {y:.3}, {heading:.3}] {}>", self.state))
     }
 }

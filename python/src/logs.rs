@@ -1,10 +1,10 @@
-use crate::convert::{log_error, points_array, pose_values, value_error};
+use crate::convert::{log_error, pose_values, rows_array, value_error};
 use crate::mapper::Mapper;
 use crate::reading::Reading;
-use ::logs::{PoseSource, TopicChoice};
+use ::logs::{LogSummary, PoseSource, TopicChoice};
 use interfaces::PoseMode;
-use localizer::PoseState;
-use numpy::{IntoPyArray, PyArray2, PyArrayMethods};
+use localizer::{PoseState, TrajectoryPose};
+use numpy::PyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::ops::ControlFlow;
@@ -18,6 +18,18 @@ use survey::{LogEntry, SurveySettings};
 #[pyclass(frozen, module = "curious")]
 pub(crate) struct Log {
     log: ::logs::Log,
+    /// The time from the first to the last reading, s.
+    #[pyo3(get)]
+    duration: f64,
+    /// The time of the first reading in seconds since 1970; None if the log does not say it.
+    #[pyo3(get)]
+    begin: Option<f64>,
+    /// What was repaired or left out, each a sentence.
+    #[pyo3(get)]
+    notes: Vec<String>,
+    /// Whether the laser stands: no pose of the log moves.
+    #[pyo3(get)]
+    stands: bool,
 }
 
 /// The readings of a log.
@@ -41,32 +53,10 @@ impl Log {
     ) -> PyResult<Self> {
         let choice = TopicChoice { scan_topics, odom_topic, base_frame };
         let log = py.detach(|| ::logs::Log::open(&path, &choice)).map_err(|error| log_error(&path, error))?;
-        Ok(Self { log })
-    }
-
-    /// The time from the first to the last reading, s.
-    #[getter]
-    fn duration(&self) -> f64 {
-        self.log.summary().duration_s
-    }
-
-    /// The time of the first reading in seconds since 1970; None if the log does not say it.
-    #[getter]
-    fn begin(&self) -> Option<f64> {
-        self.log.summary().begin_s
-    }
-
-    /// What was repaired or left out, each a sentence.
-    #[getter]
-    fn notes(&self) -> Vec<String> {
-        self.log.summary().notes.clone()
-    }
-
-    /// Whether the laser stands: no pose of the log moves.
-    #[getter]
-    fn stands(&self) -> bool {
-        let summary = self.log.summary();
-        summary.pose_source == PoseSource::Standing || summary.odometry_poses == 0
+        let LogSummary { duration_s, begin_s, notes, pose_source, odometry_poses, .. } =
+            log.summary().clone();
+        let stands = pose_source == PoseSource::Standing || odometry_poses == 0;
+        Ok(Self { log, duration: duration_s, begin: begin_s, notes, stands })
     }
 
     fn __len__(&self) -> usize {
@@ -78,11 +68,7 @@ impl Log {
     }
 
     fn __repr__(&self) -> String {
-        format!(
-            "<curious.Log: {} readings in {:.1} s>",
-            self.log.summary().scans,
-            self.log.summary().duration_s
-        )
+        format!("<curious.Log: {} readings in {:.1} s>", self.__len__(), self.duration)
     }
 }
 
@@ -104,7 +90,7 @@ impl Readings {
 pub(crate) struct Survey {
     mapper: mapper::Mapper,
     places: Vec<survey::Place>,
-    poses: Vec<localizer::TrajectoryPose>,
+    poses: Vec<TrajectoryPose>,
     permanent: interfaces::Grid<interfaces::CellState>,
 }
 
@@ -127,7 +113,7 @@ pub(crate) fn map_log(
     let other = |name| value_error(format!("`pose` is localized, odometry or exact, and not {name:?}"));
     let mode = match pose {
         Some(name) => PoseMode::named(name).ok_or_else(|| other(name))?,
-        None if log.stands() => PoseMode::Exact,
+        None if log.stands => PoseMode::Exact,
         None => PoseMode::Localized,
     };
     let mut settings = SurveySettings { resolution_m: cell, ..SurveySettings::of(mode) };
@@ -161,7 +147,7 @@ fn learn(log: &::logs::Log, settings: SurveySettings, learns_noise: bool) -> PyR
     let mut signal = Signal::default();
     let entry = LogEntry::of(String::new(), log, &TopicChoice::default()).map_err(value_error)?;
     let mut survey = survey::Survey::new(settings, learns_noise);
-    let found = survey.first_pass(log, entry, false, |progress| signal.check(progress.readings));
+    let found = survey.first_pass(log, entry, false, |_, readings| signal.check(readings));
     signal.or(found)?;
     let replay = survey.replay(0, log).map_err(value_error)?;
     let changed = || value_error("the log has changed since the first pass");
@@ -189,11 +175,11 @@ impl Survey {
     /// The trajectory, shape (readings, 4): time (s), x (m), y (m), heading (rad).
     #[getter]
     fn trajectory<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let rows = self.poses.iter().flat_map(|found| {
+        let row = |found: &TrajectoryPose| {
             let [x, y, heading] = pose_values(&found.pose);
             [found.time_s, x, y, heading]
-        });
-        rows.collect::<Vec<f64>>().into_pyarray(py).reshape([self.poses.len(), 4])
+        };
+        rows_array(py, self.poses.iter().map(row))
     }
 
     /// Whether each pose of the trajectory is certain.
@@ -235,9 +221,7 @@ impl Survey {
 
     /// The middle of each place, shape (places, 2), m.
     fn points<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let points: Vec<_> =
-            self.places.iter().map(|place| nalgebra::Point2::new(place.x_m, place.y_m)).collect();
-        points_array(py, &points)
+        rows_array(py, self.places.iter().map(|place| [place.x_m, place.y_m]))
     }
 
     fn __repr__(&self) -> String {

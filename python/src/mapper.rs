@@ -1,14 +1,14 @@
 use crate::convert::{
-    Numbers, Ranges, SnapshotError, grid, optional_index, points_array, value_error, world_error,
+    Numbers, Ranges, SnapshotError, grid, optional_index, rows_array, value_error, world_error,
 };
-use crate::reading::{Laser, Reading, laser_reading};
+use crate::reading::Reading;
 use crate::snapshots::Kind;
 use crate::spec::{driving, spec_of};
 use evaluation::physics_trial;
-use interfaces::{CellState, GridFrame};
-use mapper::MapperSettings;
+use interfaces::{CellState, GridFrame, Transition};
+use mapper::{CellStatistics, MapperSettings};
 use nalgebra::Point2;
-use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
+use numpy::{IntoPyArray, PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use sim::physics::WorldSpec;
@@ -34,6 +34,9 @@ impl Mapper {
         grid(py, mapper.frame(), values)
     }
 }
+
+/// What was observed of a cell: its name, and its value.
+type Figure<T> = (&'static str, fn(&CellStatistics) -> T);
 
 /// The settings with another estimator, occupancy model, gap and range noise.
 pub(crate) fn settings_of(
@@ -148,10 +151,11 @@ impl Mapper {
         range_max: f64,
         mount: Option<Numbers<'_>>,
     ) -> PyResult<()> {
-        let laser = Laser { angle_min, angle_increment, range_min, range_max, mount, sweep: 0.0 };
-        let reading = laser_reading(time, &ranges, &pose, &laser, [0.0, 0.0])?;
-        let mapper = &mut self.mapper;
-        py.detach(|| mapper.update(&reading)).map_err(value_error)
+        let (increment, at_rest) = (angle_increment, [0.0, 0.0]);
+        let reading = Reading::new(
+            time, ranges, pose, angle_min, increment, range_min, range_max, mount, 0.0, at_rest,
+        )?;
+        self.update_reading(py, &reading)
     }
 
     /// Updates the map with a reading, whose pose is taken as exact.
@@ -270,32 +274,34 @@ impl Mapper {
     /// free_events (changes in view), block_events_after_gap and free_events_after_gap.
     fn statistics<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let statistics = PyDict::new(py);
-        statistics
-            .set_item("watched_free", self.array(py, |map, cell| map.statistics(cell).watched_free)?)?;
-        statistics
-            .set_item("watched_blocked", self.array(py, |map, cell| map.statistics(cell).watched_blocked)?)?;
-        statistics
-            .set_item("block_events", self.array(py, |map, cell| map.statistics(cell).block_events)?)?;
-        statistics.set_item("free_events", self.array(py, |map, cell| map.statistics(cell).free_events)?)?;
-        let after_gap = self.array(py, |map, cell| map.statistics(cell).block_events_after_gap)?;
-        statistics.set_item("block_events_after_gap", after_gap)?;
-        let after_gap = self.array(py, |map, cell| map.statistics(cell).free_events_after_gap)?;
-        statistics.set_item("free_events_after_gap", after_gap)?;
+        let times: [Figure<f64>; 2] =
+            [("watched_free", |of| of.watched_free), ("watched_blocked", |of| of.watched_blocked)];
+        for (name, time) in times {
+            statistics.set_item(name, self.array(py, |map, cell| time(&map.statistics(cell)))?)?;
+        }
+        let counts: [Figure<u32>; 4] = [
+            ("block_events", |of| of.block_events),
+            ("free_events", |of| of.free_events),
+            ("block_events_after_gap", |of| of.block_events_after_gap),
+            ("free_events_after_gap", |of| of.free_events_after_gap),
+        ];
+        for (name, count) in counts {
+            statistics.set_item(name, self.array(py, |map, cell| count(&map.statistics(cell)))?)?;
+        }
         Ok(statistics)
     }
 
     /// The changes of cells in the last update, shape (changes, 4), int32: row, column, state before, state after.
     fn changes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<i32>>> {
-        let transitions = self.mapper.transitions();
-        let values = transitions.iter().flat_map(|change| {
+        let row = |change: &Transition| {
             [change.cell.y, change.cell.x, i32::from(state(change.before)), i32::from(state(change.after))]
-        });
-        values.collect::<Vec<i32>>().into_pyarray(py).reshape([transitions.len(), 4])
+        };
+        rows_array(py, self.mapper.transitions().iter().map(row))
     }
 
     /// The end points of the last scan, shape (points, 2), m.
     fn points<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        points_array(py, self.mapper.points())
+        rows_array(py, self.mapper.points().iter().map(|point| [point.x, point.y]))
     }
 
     /// Everything that was learned, as bytes.

@@ -1,6 +1,6 @@
-use crate::convert::{Numbers, Ranges, pose, pose_array};
+use crate::convert::{Numbers, Ranges, pose, pose_array, pose_values, rows_array};
 use interfaces::{LaserReading, Scan, Twist};
-use numpy::{PyArray1, PyArrayMethods};
+use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 
 /// A laser scan, and the pose of the robot at the same time.
@@ -18,44 +18,6 @@ impl Reading {
     }
 }
 
-/// The properties of a laser.
-pub(crate) struct Laser<'py> {
-    pub(crate) angle_min: f64,
-    pub(crate) angle_increment: Option<f64>,
-    pub(crate) range_min: f64,
-    pub(crate) range_max: f64,
-    pub(crate) mount: Option<Numbers<'py>>,
-    pub(crate) sweep: f64,
-}
-
-/// A reading of own numbers. Without an angle between beams they cover a full turn.
-pub(crate) fn laser_reading(
-    time: f64,
-    ranges: &Ranges<'_>,
-    at: &Numbers<'_>,
-    laser: &Laser<'_>,
-    twist: [f64; 2],
-) -> PyResult<LaserReading> {
-    let ranges_m = ranges.to_vec();
-    let angle_increment_rad =
-        laser.angle_increment.unwrap_or(std::f64::consts::TAU / ranges_m.len().max(1) as f64);
-    Ok(LaserReading {
-        time_s: time,
-        pose: pose(at)?,
-        twist: Twist { linear_mps: twist[0], angular_radps: twist[1] },
-        velocities: Vec::new(),
-        mount: laser.mount.as_ref().map(pose).transpose()?.unwrap_or_default(),
-        scan: Scan {
-            angle_min_rad: laser.angle_min,
-            angle_increment_rad,
-            range_min_m: laser.range_min,
-            range_max_m: laser.range_max,
-            sweep_s: laser.sweep,
-            ranges_m,
-        },
-    })
-}
-
 #[pymethods]
 impl Reading {
     /// A reading of your own: see `Mapper.update` for the arguments.
@@ -63,7 +25,7 @@ impl Reading {
     #[pyo3(signature = (time, ranges, pose, *, angle_min = -std::f64::consts::PI, angle_increment = None,
         range_min = 0.0, range_max = 10.0, mount = None, sweep = 0.0, velocity = [0.0, 0.0]))]
     #[allow(clippy::too_many_arguments)]
-    fn new(
+    pub(crate) fn new(
         time: f64,
         ranges: Ranges<'_>,
         pose: Numbers<'_>,
@@ -75,8 +37,25 @@ impl Reading {
         sweep: f64,
         velocity: [f64; 2],
     ) -> PyResult<Self> {
-        let laser = Laser { angle_min, angle_increment, range_min, range_max, mount, sweep };
-        Ok(Self::of(laser_reading(time, &ranges, &pose, &laser, velocity)?))
+        let ranges_m = ranges.to_vec();
+        // By default the beams cover a full turn.
+        let full_turn = || std::f64::consts::TAU / ranges_m.len().max(1) as f64;
+        let [linear_mps, angular_radps] = velocity;
+        Ok(Self::of(LaserReading {
+            time_s: time,
+            pose: self::pose(&pose)?,
+            twist: Twist { linear_mps, angular_radps },
+            velocities: Vec::new(),
+            mount: mount.as_ref().map(self::pose).transpose()?.unwrap_or_default(),
+            scan: Scan {
+                angle_min_rad: angle_min,
+                angle_increment_rad: angle_increment.unwrap_or_else(full_turn),
+                range_min_m: range_min,
+                range_max_m: range_max,
+                sweep_s: sweep,
+                ranges_m,
+            },
+        }))
     }
 
     /// The time, s.
@@ -140,26 +119,13 @@ impl Reading {
     }
 
     /// The end points of the beams that hit something, in the frame of the pose, shape (points, 2), m.
-    fn points<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, numpy::PyArray2<f64>>> {
-        let LaserReading { pose, mount, scan, .. } = &self.reading;
-        let laser = pose * mount;
-        let beams = scan.ranges_m.iter().enumerate().filter(|(_, range_m)| {
-            let range_m = f64::from(**range_m);
-            range_m.is_finite() && (scan.range_min_m..=scan.range_max_m).contains(&range_m)
-        });
-        let hits = beams.flat_map(|(beam, range_m)| {
-            let at = laser
-                * interfaces::rotation(scan.angle_rad(beam))
-                * nalgebra::Point2::new(f64::from(*range_m), 0.0);
-            [at.x, at.y]
-        });
-        let values: Vec<f64> = hits.collect();
-        let count = values.len() / 2;
-        PyArray1::from_vec(py, values).reshape([count, 2])
+    fn points<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let points = self.reading.hits().map(|hit| self.reading.pose * hit);
+        rows_array(py, points.map(|point| [point.x, point.y]))
     }
 
     fn __repr__(&self) -> String {
-        let [x, y, heading] = crate::convert::pose_values(&self.reading.pose);
+        let [x, y, heading] = pose_values(&self.reading.pose);
         let (time, beams) = (self.reading.time_s, self.reading.scan.ranges_m.len());
         format!("<curious.Reading at {time:.3} s: {beams} beams from [{x:.3}, {y:.3}, {heading:.3}]>")
     }

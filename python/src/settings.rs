@@ -5,69 +5,72 @@ use pyo3::exceptions::{PyOverflowError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// Settings from the keywords of a call: those of a driving task.
+/// A setting of a task: its keyword, and what sets it.
+type Setting<S> = (&'static str, fn(&mut S, &Bound<'_, PyAny>, &str) -> PyResult<()>);
+
+const DRIVE: [Setting<DriveSettings>; 9] = [
+    ("decision_s", |to, value, key| set(&mut to.decision_s, value, key)),
+    ("max_steps", |to, value, key| set(&mut to.max_steps, value, key)),
+    ("goal_radius", |to, value, key| set(&mut to.goal_radius_m, value, key)),
+    ("min_goal", |to, value, key| set(&mut to.min_goal_m, value, key)),
+    ("shows_path", |to, value, key| set(&mut to.shows_path, value, key)),
+    ("goal_reward", |to, value, key| set(&mut to.goal_reward, value, key)),
+    ("progress_reward", |to, value, key| set(&mut to.progress_reward, value, key)),
+    ("collision_reward", |to, value, key| set(&mut to.collision_reward, value, key)),
+    ("step_reward", |to, value, key| set(&mut to.step_reward, value, key)),
+];
+const EXPLORE: [Setting<ExploreSettings>; 7] = [
+    ("max_steps", |to, value, key| set(&mut to.max_steps, value, key)),
+    ("beams", |to, value, key| set(&mut to.beams, value, key)),
+    ("error_every", |to, value, key| set(&mut to.error_every, value, key)),
+    ("map_every", |to, value, key| set(&mut to.map_every, value, key)),
+    ("update_reward", |to, value, key| set(&mut to.update_reward, value, key)),
+    ("error_reward", |to, value, key| set(&mut to.error_reward, value, key)),
+    ("collision_reward", |to, value, key| set(&mut to.collision_reward, value, key)),
+];
+
+/// The settings of a driving task.
 pub(crate) fn drive_settings(keywords: Option<&Bound<'_, PyDict>>) -> PyResult<DriveSettings> {
-    let mut settings = DriveSettings::default();
-    for (key, value) in keywords.into_iter().flatten() {
-        let key = key.extract::<String>()?;
-        let key = key.as_str();
-        match key {
-            "decision_s" => settings.decision_s = of(&value, key)?,
-            "max_steps" => settings.max_steps = of(&value, key)?,
-            "goal_radius" => settings.goal_radius_m = of(&value, key)?,
-            "min_goal" => settings.min_goal_m = of(&value, key)?,
-            "shows_path" => settings.shows_path = of(&value, key)?,
-            "goal_reward" => settings.goal_reward = of(&value, key)?,
-            "progress_reward" => settings.progress_reward = of(&value, key)?,
-            "collision_reward" => settings.collision_reward = of(&value, key)?,
-            "step_reward" => settings.step_reward = of(&value, key)?,
-            key => return Err(unknown("driving", key, DRIVE_KEYS)),
-        }
-    }
-    Ok(settings)
+    settings("driving", &DRIVE, keywords)
 }
 
-const DRIVE_KEYS: &str = "decision_s, max_steps, goal_radius, min_goal, shows_path, goal_reward, progress_reward, \
-                          collision_reward, step_reward";
-
-/// Settings from the keywords of a call: those of an exploring task.
+/// The settings of an exploring task.
 pub(crate) fn explore_settings(keywords: Option<&Bound<'_, PyDict>>) -> PyResult<ExploreSettings> {
-    let mut settings = ExploreSettings::default();
+    settings("exploring", &EXPLORE, keywords)
+}
+
+fn settings<S: Default>(
+    task: &str,
+    known: &[Setting<S>],
+    keywords: Option<&Bound<'_, PyDict>>,
+) -> PyResult<S> {
+    let mut settings = S::default();
     for (key, value) in keywords.into_iter().flatten() {
-        let key = key.extract::<String>()?;
-        let key = key.as_str();
-        match key {
-            "max_steps" => settings.max_steps = of(&value, key)?,
-            "beams" => settings.beams = of(&value, key)?,
-            "error_every" => settings.error_every = of(&value, key)?,
-            "map_every" => settings.map_every = of(&value, key)?,
-            "update_reward" => settings.update_reward = of(&value, key)?,
-            "error_reward" => settings.error_reward = of(&value, key)?,
-            "collision_reward" => settings.collision_reward = of(&value, key)?,
-            key => return Err(unknown("exploring", key, EXPLORE_KEYS)),
-        }
+        let key: String = key.extract()?;
+        let Some((_, set)) = known.iter().find(|(known, _)| *known == key) else {
+            let known: Vec<&str> = known.iter().map(|(known, _)| *known).collect();
+            let known = known.join(", ");
+            return Err(PyTypeError::new_err(format!(
+                "the {task} task has no setting `{key}`; there are {known}"
+            )));
+        };
+        set(&mut settings, &value, &key)?;
     }
     Ok(settings)
 }
 
-const EXPLORE_KEYS: &str =
-    "max_steps, beams, error_every, map_every, update_reward, error_reward, collision_reward";
-
-/// The value of a setting.
-fn of<'a, 'py, T>(value: &'a Bound<'py, PyAny>, key: &str) -> PyResult<T>
+/// Sets a setting.
+fn set<'a, 'py, T>(to: &mut T, value: &'a Bound<'py, PyAny>, key: &str) -> PyResult<()>
 where
     T: FromPyObject<'a, 'py, Error: Into<PyErr>>,
 {
-    T::extract(value.as_borrowed()).map_err(|error| {
+    *to = T::extract(value.as_borrowed()).map_err(|error| {
         let error: PyErr = error.into();
         if error.is_instance_of::<PyOverflowError>(value.py()) {
             return PyValueError::new_err(format!("the setting `{key}` cannot be {value}: out of range"));
         }
         let (kind, message) = (error.get_type(value.py()), error.value(value.py()).to_string());
         PyErr::from_type(kind, format!("the setting `{key}` cannot be {value}: {message}"))
-    })
-}
-
-fn unknown(task: &str, key: &str, known: &str) -> PyErr {
-    PyTypeError::new_err(format!("the {task} task has no setting `{key}`; there are {known}"))
+    })?;
+    Ok(())
 }

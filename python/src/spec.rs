@@ -1,10 +1,9 @@
-use crate::convert::{load_error, no_robot, whole, world_error};
+use crate::convert::{described, load_error, no_robot, warn, whole, world_error};
 use numpy::{IntoPyArray, PyArray1, PyArray3, PyArrayMethods};
-use pyo3::exceptions::{PyFileNotFoundError, PyTypeError, PyUserWarning};
+use pyo3::exceptions::{PyFileNotFoundError, PyTypeError};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 use sim::physics::{FleetSpec, WorldSpec};
-use std::ffi::CString;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use worldfile::{Disk, Files, Severity};
@@ -64,7 +63,7 @@ pub(crate) fn spec_of(py: Python<'_>, world: &Bound<'_, PyAny>) -> PyResult<Arc<
 /// The name or the path of a world.
 pub(crate) fn world_name(world: &Bound<'_, PyAny>) -> PyResult<PathBuf> {
     world.extract().map_err(|_| {
-        let kind = world.get_type().name().map_or_else(|_| "that".to_owned(), |name| name.to_string());
+        let kind = described(world);
         PyTypeError::new_err(format!(
             "a world is a spec, the name of a shipped world, or a path, and not {kind}"
         ))
@@ -110,8 +109,7 @@ impl Spec {
         let (fleet, findings) = stage::load(Path::new(&path), &Disk);
         let fleet = fleet.ok_or_else(|| world_error(findings.error_text()))?;
         for message in findings.messages(Severity::Warning) {
-            let message = CString::new(message.replace('\0', " "))?;
-            PyErr::warn(py, &py.get_type::<PyUserWarning>(), &message, 2)?;
+            warn(py, &message)?;
         }
         let text = stage::read(&path, &Disk).0.map(|world| world.to_toml()).unwrap_or_default();
         Ok(Self::new(fleet, Source::Text { name: path.with_extension("toml").display().to_string(), text }))

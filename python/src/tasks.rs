@@ -1,15 +1,13 @@
-use crate::convert::{index, snapshot_error, value_error, whole};
+use crate::convert::{index, rows_array, snapshot_error, value_error, whole};
+use crate::fleet::poses_of;
 use crate::settings::{drive_settings, explore_settings};
 use crate::snapshots::{Kind, check_build};
 use crate::spec::{driving, spec_of};
-use environments::{Drive, DrivePlace, Explore, ExplorePlace, Picture, ResultsMut, Task, TaskError};
-use numpy::{
-    IntoPyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2,
-    PyUntypedArrayMethods,
-};
+use environments::{ACTIONS, Drive, DrivePlace, Explore, ExplorePlace, Picture, Results, TaskError};
+use numpy::{IntoPyArray, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::{PyIndexError, PyRuntimeError};
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyDict, PyList};
+use pyo3::types::{PyBytes, PyDict, PyList, PyTuple};
 use std::sync::Arc;
 
 /// A number of tasks that are stepped by one call: the native part of the environments.
@@ -18,83 +16,45 @@ use std::sync::Arc;
 /// Gymnasium and PettingZoo.
 #[pyclass(module = "curious")]
 pub(crate) struct Batch {
-    tasks: Tasks,
-    /// The last observations of episodes that ended in a step.
-    last: Vec<f32>,
-    environments: usize,
-    agents: usize,
+    batch: environments::Batch,
     /// Whether every environment was reset once.
     is_ready: bool,
-    is_autoreset: bool,
 }
-
-enum Tasks {
-    Drive(environments::Batch<Drive>),
-    Explore(environments::Batch<Explore>),
-}
-
-/// Does the same with both kinds of tasks.
-macro_rules! each {
-    ($tasks:expr, $batch:ident => $result:expr) => {
-        match $tasks {
-            Tasks::Drive($batch) => $result,
-            Tasks::Explore($batch) => $result,
-        }
-    };
-}
-
-/// The arrays of a step.
-type Stepped<'py> = (
-    Bound<'py, PyArray2<f32>>,
-    Bound<'py, PyArray1<f32>>,
-    Bound<'py, PyArray1<bool>>,
-    Bound<'py, PyArray1<bool>>,
-    Bound<'py, PyArray2<f32>>,
-    Bound<'py, PyArray1<bool>>,
-    Option<Bound<'py, PyArray2<f32>>>,
-);
 
 impl Batch {
-    fn with(tasks: Tasks, environments: usize, threads: usize) -> PyResult<Self> {
-        let pool = match threads {
-            0 | 1 => None,
+    fn with(mut batch: environments::Batch, threads: usize) -> PyResult<Self> {
+        match threads {
+            0 => {}
+            1 => batch.set_parallel(false),
             threads => {
                 let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-                Some(Arc::new(pool.map_err(|error| PyRuntimeError::new_err(error.to_string()))?))
+                batch.set_pool(pool.map_err(|error| PyRuntimeError::new_err(error.to_string()))?);
             }
-        };
-        let agents = each!(&tasks, batch => batch.tasks().first().map_or(1, Task::agents));
-        let mut batch =
-            Self { tasks, last: Vec::new(), environments, agents, is_ready: false, is_autoreset: true };
-        each!(&mut batch.tasks, batch => {
-            batch.set_pool(pool);
-            if threads == 1 {
-                batch.set_parallel(false);
-            }
-        });
-        batch.last = vec![0.0; environments * agents * batch.observation_len()];
-        Ok(batch)
+        }
+        Ok(Self { batch, is_ready: false })
     }
 
     fn rows(&self) -> usize {
-        self.environments * self.agents
+        self.environments() * self.agents()
     }
 
     fn check(&self, environment: usize) -> PyResult<()> {
-        if environment < self.environments {
+        let count = self.environments();
+        if environment < count {
             return Ok(());
         }
-        let count = self.environments;
         Err(PyIndexError::new_err(format!(
             "there is no environment {environment}: there are {count}, counted from 0"
         )))
     }
 
     fn kind(&self) -> Kind {
-        match &self.tasks {
-            Tasks::Drive(_) => Kind("driving environment"),
-            Tasks::Explore(_) => Kind("exploring environment"),
-        }
+        Kind(self.batch.task(0).kind())
+    }
+
+    /// Observations of one environment as an array.
+    fn rows_of_one<'py>(&self, py: Python<'py>, values: Vec<f32>) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        values.into_pyarray(py).reshape([self.agents(), self.observation_len()])
     }
 
     fn check_count(environments: usize) -> PyResult<()> {
@@ -119,12 +79,11 @@ impl Batch {
     ) -> PyResult<Self> {
         Self::check_count(environments)?;
         let (spec, settings) = (spec_of(py, world)?, drive_settings(settings)?);
-        let tasks: Result<Vec<Drive>, TaskError> = py.detach(|| {
+        let batch = py.detach(|| -> Result<_, TaskError> {
             let place = Arc::new(DrivePlace::new(&spec, settings)?);
-            Ok((0..environments).map(|_| Drive::new(&place)).collect())
+            Ok(environments::Batch::new((0..environments).map(|_| Drive::new(&place))))
         });
-        let tasks = tasks.map_err(value_error)?;
-        Self::with(Tasks::Drive(environments::Batch::new(tasks)), environments, threads)
+        Self::with(batch.map_err(value_error)?, threads)
     }
 
     /// Exploring tasks in some worlds; each episode is in one of them. `threads` as above.
@@ -140,55 +99,53 @@ impl Batch {
         Self::check_count(environments)?;
         let specs = worlds.iter().map(|world| driving(&spec_of(py, &world)?, None));
         let (specs, settings) = (specs.collect::<PyResult<Vec<_>>>()?, explore_settings(settings)?);
-        let tasks: Result<Vec<Explore>, TaskError> = py.detach(|| {
+        let batch = py.detach(|| -> Result<_, TaskError> {
             let place = Arc::new(ExplorePlace::new(&specs, settings)?);
-            (0..environments).map(|_| Explore::new(&place)).collect()
+            let tasks = (0..environments).map(|_| Explore::new(&place)).collect::<Result<Vec<_>, _>>()?;
+            Ok(environments::Batch::new(tasks))
         });
-        let tasks = tasks.map_err(value_error)?;
-        Self::with(Tasks::Explore(environments::Batch::new(tasks)), environments, threads)
+        Self::with(batch.map_err(value_error)?, threads)
     }
 
     /// The number of environments.
     #[getter]
     fn environments(&self) -> usize {
-        self.environments
+        self.batch.count()
     }
 
     /// The number of agents of an environment.
     #[getter]
     fn agents(&self) -> usize {
-        self.agents
+        self.batch.task(0).agents()
     }
 
     /// The number of values of an observation.
     #[getter]
     fn observation_len(&self) -> usize {
-        each!(&self.tasks, batch => batch.observation_len())
+        self.batch.observation_len()
     }
 
     /// The parts of an observation: names and shapes.
     #[getter]
     fn parts(&self) -> Vec<(&'static str, Vec<usize>)> {
-        let parts = each!(&self.tasks, batch => batch.tasks().first().map(Task::parts)).unwrap_or_default();
-        parts.into_iter().map(|part| (part.name, part.shape)).collect()
+        self.batch.task(0).parts().into_iter().map(|part| (part.name, part.shape)).collect()
     }
 
     /// The names of the columns of the information about a step.
     #[getter]
-    fn info_names(&self) -> Vec<&'static str> {
-        each!(&self.tasks, batch => batch.tasks().first().map_or(Vec::new(), |task| task.info_names().to_vec()))
+    fn info_names(&self) -> &'static [&'static str] {
+        self.batch.task(0).info_names()
     }
 
     /// Whether an environment that is over is reset in the same step: set it to False to reset it by `reset_one`.
     #[getter]
     fn autoreset(&self) -> bool {
-        self.is_autoreset
+        self.batch.is_autoreset()
     }
 
     #[setter]
     fn set_autoreset(&mut self, is_autoreset: bool) {
-        self.is_autoreset = is_autoreset;
-        each!(&mut self.tasks, batch => batch.set_autoreset(is_autoreset));
+        self.batch.set_autoreset(is_autoreset);
     }
 
     /// Begins an episode in every environment. `seeds`: uint64, one per environment. Returns the observations, shape
@@ -198,13 +155,10 @@ impl Batch {
         py: Python<'py>,
         seeds: PyReadonlyArray1<'py, u64>,
     ) -> PyResult<Bound<'py, PyArray2<f32>>> {
-        let (rows, values) = (self.rows(), self.observation_len());
-        let seeds = seeds.as_array().to_vec();
-        let tasks = &mut self.tasks;
-        let mut observations = vec![0.0; rows * values];
-        py.detach(|| each!(tasks, batch => batch.reset(&seeds, &mut observations))).map_err(value_error)?;
+        let (batch, seeds) = (&mut self.batch, seeds.as_array().to_vec());
+        let observations = py.detach(|| batch.reset(&seeds)).map_err(value_error)?;
         self.is_ready = true;
-        observations.into_pyarray(py).reshape([rows, values])
+        observations.into_pyarray(py).reshape([self.rows(), self.observation_len()])
     }
 
     /// Begins an episode in one environment, and returns its observations, shape (agents, observation_len).
@@ -215,17 +169,10 @@ impl Batch {
         #[pyo3(from_py_with = whole)] seed: u64,
     ) -> PyResult<Bound<'py, PyArray2<f32>>> {
         self.check(environment)?;
-        self.is_ready |= self.environments == 1;
-        let mut observations = vec![0.0; self.agents * self.observation_len()];
-        let tasks = &mut self.tasks;
-        py.detach(|| {
-            each!(tasks, batch => {
-                let task = &mut batch.tasks_mut()[environment];
-                task.reset(seed);
-                task.observe(&mut observations);
-            });
-        });
-        observations.into_pyarray(py).reshape([self.agents, self.observation_len()])
+        self.is_ready |= self.environments() == 1;
+        let batch = &mut self.batch;
+        let observations = py.detach(|| batch.reset_one(environment, seed).to_vec());
+        self.rows_of_one(py, observations)
     }
 
     /// Simulates one step. `actions`: float32, shape (environments * agents, 2), from -1 to 1. `next_seeds`: uint64,
@@ -238,56 +185,34 @@ impl Batch {
         py: Python<'py>,
         actions: PyReadonlyArray2<'py, f32>,
         next_seeds: PyReadonlyArray1<'py, u64>,
-    ) -> PyResult<Stepped<'py>> {
+    ) -> PyResult<Bound<'py, PyTuple>> {
         if !self.is_ready {
             return Err(PyRuntimeError::new_err("call reset() before step()"));
         }
-        let (rows, values, environments) = (self.rows(), self.observation_len(), self.environments);
+        let (rows, values, infos) = (self.rows(), self.observation_len(), self.info_names().len());
         let shape = actions.as_array().dim();
-        if shape != (rows, 2) {
+        if shape != (rows, ACTIONS) {
             return Err(value_error(format!(
                 "the actions have the shape {shape:?}, and must have ({rows}, 2)"
             )));
         }
-        let copied: Vec<f32>;
-        let actions = match actions.as_slice().ok().filter(|_| actions.is_c_contiguous()) {
-            Some(actions) => actions,
-            None => {
-                copied = actions.as_array().iter().copied().collect();
-                &copied
-            }
-        };
-        let next_seeds = next_seeds.as_array().to_vec();
-        let infos = self.info_names().len();
-        let (mut observations, mut rewards) = (vec![0.0; rows * values], vec![0.0; rows]);
-        let (mut terminated, mut truncated) = (vec![false; rows], vec![false; rows]);
-        let (mut info, mut was_reset) = (vec![0.0; rows * infos], vec![false; environments]);
-        let (tasks, last) = (&mut self.tasks, &mut self.last);
-        let results = ResultsMut {
-            observations: &mut observations,
-            rewards: &mut rewards,
-            terminated: &mut terminated,
-            truncated: &mut truncated,
-            last_observations: last,
-            info: &mut info,
-            was_reset: &mut was_reset,
-        };
-        py.detach(|| each!(tasks, batch => batch.step(actions, &next_seeds, results)))
-            .map_err(value_error)?;
-        let last = if was_reset.contains(&true) {
-            Some(PyArray1::from_slice(py, &self.last).reshape([rows, values])?)
-        } else {
-            None
-        };
-        Ok((
+        let (actions, next_seeds) =
+            (actions.as_array().iter().copied().collect::<Vec<f32>>(), next_seeds.as_array().to_vec());
+        let batch = &mut self.batch;
+        let results = py.detach(|| batch.step(&actions, &next_seeds)).map_err(value_error)?;
+        let Results { observations, rewards, terminated, truncated, last_observations, info, was_reset } =
+            results;
+        let last = was_reset.contains(&true).then(|| last_observations.into_pyarray(py));
+        let arrays = (
             observations.into_pyarray(py).reshape([rows, values])?,
             rewards.into_pyarray(py),
             terminated.into_pyarray(py),
             truncated.into_pyarray(py),
             info.into_pyarray(py).reshape([rows, infos])?,
             was_reset.into_pyarray(py),
-            last,
-        ))
+            last.map(|last| last.reshape([rows, values])).transpose()?,
+        );
+        arrays.into_pyobject(py)
     }
 
     /// One environment from above, shape (rows, columns, 3), uint8; the longer side has `size` pixels.
@@ -299,10 +224,7 @@ impl Batch {
         #[pyo3(from_py_with = whole)] size: usize,
     ) -> PyResult<Bound<'py, PyArray3<u8>>> {
         self.check(environment)?;
-        let Picture { width, height, pixels, .. } = match &self.tasks {
-            Tasks::Drive(batch) => batch.tasks()[environment].picture(size),
-            Tasks::Explore(batch) => batch.tasks()[environment].picture(size),
-        };
+        let Picture { width, height, pixels, .. } = self.batch.task(environment).picture(size);
         pixels.into_pyarray(py).reshape([height, width, 3])
     }
 
@@ -314,8 +236,7 @@ impl Batch {
         #[pyo3(from_py_with = index)] agent: usize,
     ) -> PyResult<Option<(f64, f64)>> {
         self.check(environment)?;
-        let Tasks::Drive(batch) = &self.tasks else { return Ok(None) };
-        Ok(batch.tasks()[environment].goal(agent).map(|goal| (goal.x, goal.y)))
+        Ok(self.batch.task(environment).goal(agent).map(|goal| (goal.x, goal.y)))
     }
 
     /// The true poses of all robots of an environment, shape (robots, 3).
@@ -326,13 +247,7 @@ impl Batch {
         #[pyo3(from_py_with = index)] environment: usize,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         self.check(environment)?;
-        let fleet = match &self.tasks {
-            Tasks::Drive(batch) => batch.tasks()[environment].fleet(),
-            Tasks::Explore(batch) => batch.tasks()[environment].world().fleet(),
-        };
-        let mut poses = vec![[0.0; 3]; fleet.spec().robots.len()];
-        fleet.copy_poses(&mut poses).map_err(value_error)?;
-        poses.concat().into_pyarray(py).reshape([poses.len(), 3])
+        rows_array(py, poses_of(self.batch.task(environment).fleet())?)
     }
 
     /// The state of an environment as bytes.
@@ -343,8 +258,7 @@ impl Batch {
         #[pyo3(from_py_with = index)] environment: usize,
     ) -> PyResult<Bound<'py, PyBytes>> {
         self.check(environment)?;
-        let bytes = each!(&mut self.tasks, batch => batch.tasks_mut()[environment].snapshot());
-        Ok(self.kind().seal(py, &bytes))
+        Ok(self.kind().seal(py, &self.batch.snapshot(environment)))
     }
 
     /// Returns an environment to a snapshot of one with the same settings, and returns its observations.
@@ -361,13 +275,8 @@ impl Batch {
         self.check(environment)?;
         let state = self.kind().open(snapshot)?;
         check_build(snapshot, allow_other_build)?;
-        let mut observations = vec![0.0; self.agents * self.observation_len()];
-        each!(&mut self.tasks, batch => {
-            let task = &mut batch.tasks_mut()[environment];
-            task.restore(state).map_err(snapshot_error)?;
-            task.observe(&mut observations);
-        });
-        self.is_ready |= self.environments == 1;
-        observations.into_pyarray(py).reshape([self.agents, self.observation_len()])
+        let observations = self.batch.restore(environment, state).map_err(snapshot_error)?.to_vec();
+        self.is_ready |= self.environments() == 1;
+        self.rows_of_one(py, observations)
     }
 }

@@ -6,7 +6,7 @@ use crate::mapper::Mapper;
 use crate::spec::{Spec, driving, spec_of, world_name};
 use agent::{Policy, Situation as Inputs, Strategy};
 use evaluation::trials::{
-    Experiment, GridRobot, Metric, PhysicsRobot, Trial, TrialStrategy, TrialWorld, run_trial,
+    Experiment, GridRobot, Metric, PhysicsRobot, Trial, TrialStep, TrialStrategy, TrialWorld, run_trial,
 };
 use interfaces::Values;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
@@ -19,25 +19,17 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// What a strategy of Python knows when it weighs the cells.
 #[pyclass(frozen, module = "curious")]
 pub(crate) struct Situation {
+    /// A copy of the map.
+    #[pyo3(get)]
     mapper: Py<Mapper>,
-    pose: nalgebra::Isometry2<f64>,
+    /// The pose of the robot: x (m), y (m), heading (rad).
+    #[pyo3(get)]
+    pose: Py<PyArray1<f64>>,
     travel: Vec<f64>,
 }
 
 #[pymethods]
 impl Situation {
-    /// A copy of the map.
-    #[getter]
-    fn mapper(&self, py: Python<'_>) -> Py<Mapper> {
-        self.mapper.clone_ref(py)
-    }
-
-    /// The pose of the robot: x (m), y (m), heading (rad).
-    #[getter]
-    fn pose<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        pose_array(py, &self.pose)
-    }
-
     /// The travel time to every cell, s (steps in a grid world), shape (rows, columns); inf where no path is known.
     /// `AttributeError`: the strategy does not have the attribute `needs_travel = True`.
     #[getter]
@@ -56,23 +48,19 @@ impl Situation {
 type FirstError = Arc<Mutex<Option<PyErr>>>;
 
 /// A strategy of Python.
+#[derive(Debug)]
 struct OfPython {
     strategy: Py<PyAny>,
     needs_travel: bool,
     error: FirstError,
 }
 
-impl std::fmt::Debug for OfPython {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str("a strategy of Python")
-    }
-}
-
 impl OfPython {
     fn try_weigh(&self, inputs: &Inputs<'_>, weights: &mut [f64]) -> PyResult<()> {
         Python::attach(|py| {
             let mapper = Py::new(py, Mapper { mapper: inputs.mapper.clone() })?;
-            let situation = Situation { mapper, pose: *inputs.pose, travel: inputs.travel.to_vec() };
+            let pose = pose_array(py, inputs.pose).unbind();
+            let situation = Situation { mapper, pose, travel: inputs.travel.to_vec() };
             let found = self.strategy.bind(py).call_method1("weigh", (situation,))?;
             let Table(found) = found.extract()?;
             let (array, frame) = (found.as_array(), inputs.mapper.frame());
@@ -245,28 +233,20 @@ const STEPS: u64 = 20_000;
 
 /// Runs the only trial of an experiment. Ctrl-C and an error of the strategy end it.
 fn run<W: TrialWorld>(py: Python<'_>, experiment: &Experiment<W>, error: &FirstError) -> PyResult<Trial> {
-    let failed = || error.lock().unwrap_or_else(PoisonError::into_inner).is_some();
-    let interrupted = Mutex::new(None);
+    let error = || error.lock().unwrap_or_else(PoisonError::into_inner);
     let mut readings = 0_u32;
-    let result = py.detach(|| {
-        let job = experiment.jobs().into_iter().next();
-        job.map(|job| {
-            run_trial(&job, |_| {
-                readings = readings.wrapping_add(1);
-                if readings.is_multiple_of(256)
-                    && let Err(signal) = Python::attach(|py| py.check_signals())
-                {
-                    *interrupted.lock().unwrap_or_else(PoisonError::into_inner) = Some(signal);
-                    return false;
-                }
-                !failed()
-            })
-        })
-    });
-    for first in [&interrupted, &**error] {
-        if let Some(error) = first.lock().unwrap_or_else(PoisonError::into_inner).take() {
-            return Err(error);
+    let goes_on = |_: TrialStep<'_, W>| {
+        readings = readings.wrapping_add(1);
+        if readings.is_multiple_of(256)
+            && let Err(signal) = Python::attach(|py| py.check_signals())
+        {
+            *error() = Some(signal);
         }
+        error().is_none()
+    };
+    let result = py.detach(|| experiment.jobs().into_iter().next().map(|job| run_trial(&job, goes_on)));
+    if let Some(error) = error().take() {
+        return Err(error);
     }
     let result = result.ok_or_else(|| value_error("there is no trial"))?.map_err(world_error)?;
     result.ok_or_else(|| value_error("the trial was canceled"))

@@ -15,6 +15,7 @@ pub struct UnequalTimes;
 ///
 /// The memory is that of the report, and a few numbers per trial: single runs and merged shards have the same code and
 /// the same sums.
+#[derive(Default)]
 pub struct ReportBuilder {
     settings: ReportSettings,
     quantiles: Quantiles,
@@ -43,15 +44,7 @@ struct AllWorlds {
 impl ReportBuilder {
     /// A report without trials.
     pub fn new(settings: ReportSettings) -> Self {
-        Self {
-            settings,
-            quantiles: Quantiles::default(),
-            times: Vec::new(),
-            finished: 0,
-            group: None,
-            runs: Vec::new(),
-            all_worlds: Vec::new(),
-        }
+        Self { settings, ..Self::default() }
     }
 
     /// Adds a trial.

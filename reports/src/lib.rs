@@ -197,6 +197,4 @@ fn position(names: &[String], name: &str) -> (usize, String) {
 }
 
 #[cfg(test)]
-pub(crate) mod synthetic;
-#[cfg(test)]
 mod tests;

@@ -5,7 +5,7 @@ use super::statistics::{Estimate, Moments, Quantiles};
 use evaluation::trials::{Metric, Trial};
 
 /// The results of one strategy.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct StrategyResult {
     /// The name of the strategy.
     pub name: String,
@@ -66,14 +66,8 @@ impl StrategyResult {
 /// The results of one strategy while its trials, or its results in single worlds, arrive in the order of their keys. The
 /// memory for a trial is that of a [`Unit`].
 pub(super) struct StrategySums {
-    name: String,
-    times: Vec<u64>,
-    trials: usize,
-    shares: MeanShares,
-    false_change_events: u64,
-    false_map_changes: u64,
-    collisions: Option<u64>,
-    units: Vec<Unit>,
+    /// The results without curves and areas.
+    result: StrategyResult,
     /// One per metric and sample.
     curves: Vec<Vec<Moments>>,
     /// One per metric.
@@ -83,33 +77,26 @@ pub(super) struct StrategySums {
 impl StrategySums {
     /// No trial yet.
     pub(super) fn new(name: &str, times: &[u64]) -> Self {
+        let (name, times) = (name.to_owned(), times.to_vec());
         Self {
-            name: name.to_owned(),
-            times: times.to_vec(),
-            trials: 0,
-            shares: MeanShares::default(),
-            false_change_events: 0,
-            false_map_changes: 0,
-            collisions: Some(0),
-            units: Vec::new(),
             curves: vec![vec![Moments::default(); times.len()]; Metric::ALL.len()],
             areas: vec![Moments::default(); Metric::ALL.len()],
+            result: StrategyResult { name, times, collisions: Some(0), ..StrategyResult::default() },
         }
     }
 
     pub(super) fn name(&self) -> &str {
-        &self.name
+        &self.result.name
     }
 
     /// Adds a trial.
     pub(super) fn add_trial(&mut self, trial: &Trial) {
         let curve = |metric: Metric| trial.samples.iter().map(|sample| metric.of(sample)).collect();
         let curves: Vec<Vec<f64>> = Metric::ALL.map(curve).into();
-        let areas: Vec<f64> = curves.iter().map(|curve| area(&self.times, curve)).collect();
+        let areas: Vec<f64> = curves.iter().map(|curve| area(&self.result.times, curve)).collect();
         self.add_unit(trial.seed, &curves, &areas);
-        self.trials += 1;
-        self.shares.add(&trial.strategy_share);
-        self.add_counts(trial.false_change_events, trial.false_map_changes, trial.collisions);
+        let Trial { strategy_share, false_change_events, false_map_changes, collisions, .. } = trial;
+        self.add_counts(1, strategy_share, [*false_change_events, *false_map_changes], *collisions);
     }
 
     /// Adds the result in the world with a number.
@@ -117,15 +104,8 @@ impl StrategySums {
         let means = |curve: &Vec<Estimate>| curve.iter().map(|at| at.mean).collect();
         let curves: Vec<Vec<f64>> = world.curves.iter().map(means).collect();
         self.add_unit(number, &curves, &world.areas);
-        self.trials += world.trials;
-        self.shares.add(&world.strategy_share);
-        self.add_counts(world.false_change_events, world.false_map_changes, world.collisions);
-    }
-
-    fn add_counts(&mut self, false_change_events: u64, false_map_changes: u64, collisions: Option<u64>) {
-        self.false_change_events += false_change_events;
-        self.false_map_changes += false_map_changes;
-        self.collisions = self.collisions.zip(collisions).map(|(sum, count)| sum + count);
+        let false_changes = [world.false_change_events, world.false_map_changes];
+        self.add_counts(world.trials, &world.strategy_share, false_changes, world.collisions);
     }
 
     fn add_unit(&mut self, key: u64, curves: &[Vec<f64>], areas: &[f64]) {
@@ -137,7 +117,33 @@ impl StrategySums {
             Measure::Final(metric) => curves[metric as usize].last().copied().unwrap_or(f64::NAN),
             Measure::Area(metric) => areas[metric as usize],
         });
-        self.units.push(Unit { key, values });
+        self.result.units.push(Unit { key, values });
+    }
+
+    /// Adds the counts of the newest unit, and takes its shares into their means, in the order of first occurrence; a share
+    /// that a unit lacks is 0 in it.
+    fn add_counts(
+        &mut self,
+        trials: usize,
+        shares: &[(String, f64)],
+        [change_events, map_changes]: [u64; 2],
+        collisions: Option<u64>,
+    ) {
+        let result = &mut self.result;
+        result.trials += trials;
+        result.false_change_events += change_events;
+        result.false_map_changes += map_changes;
+        result.collisions = result.collisions.zip(collisions).map(|(sum, count)| sum + count);
+        let (means, units) = (&mut result.strategy_share, result.units.len());
+        for (name, _) in shares {
+            if !means.iter().any(|(known, _)| known == name) {
+                means.push((name.clone(), 0.0));
+            }
+        }
+        for (name, mean) in means {
+            let share: f64 = shares.iter().filter(|(of, _)| of == name).map(|(_, share)| share).sum();
+            *mean += (share - *mean) / units as f64;
+        }
     }
 
     /// The results of everything that was added.
@@ -146,39 +152,7 @@ impl StrategySums {
             let sums = self.curves[metric as usize].iter();
             sums.map(|values| quantiles.estimate(values).within(metric.range())).collect()
         };
-        StrategyResult {
-            trials: self.trials,
-            strategy_share: self.shares.means,
-            false_change_events: self.false_change_events,
-            false_map_changes: self.false_map_changes,
-            collisions: self.collisions,
-            curves: Metric::ALL.map(curve).into(),
-            areas: self.areas.iter().map(Moments::mean).collect(),
-            name: self.name,
-            times: self.times,
-            units: self.units,
-        }
-    }
-}
-
-/// The mean of every share, in the order of first occurrence; a share that a list lacks is 0 in it.
-#[derive(Default)]
-struct MeanShares {
-    lists: usize,
-    means: Vec<(String, f64)>,
-}
-
-impl MeanShares {
-    fn add(&mut self, list: &[(String, f64)]) {
-        self.lists += 1;
-        for (name, _) in list {
-            if !self.means.iter().any(|(known, _)| known == name) {
-                self.means.push((name.clone(), 0.0));
-            }
-        }
-        for (name, mean) in &mut self.means {
-            let share: f64 = list.iter().filter(|(of, _)| of == name).map(|(_, share)| share).sum();
-            *mean += (share - *mean) / self.lists as f64;
-        }
+        let (curves, areas) = (Metric::ALL.map(curve).into(), self.areas.iter().map(Moments::mean).collect());
+        StrategyResult { curves, areas, ..self.result }
     }
 }

@@ -63,6 +63,16 @@ const DIFFERENCES: [(&str, Measure, usize); 3] = [
     ("map quality, final", Measure::Final(Metric::MapQuality), 4),
 ];
 
+/// A count of a strategy, and what it is.
+type Count = (&'static str, fn(&StrategyResult) -> u64);
+
+/// The counts that are named where a strategy has any.
+const COUNTS: [Count; 3] = [
+    ("False change events on cells that never change", |strategy| strategy.false_change_events),
+    ("False changes of the map on these cells, with corrections", |strategy| strategy.false_map_changes),
+    ("Collisions while the robot moved", |strategy| strategy.collisions.unwrap_or(0)),
+];
+
 /// The tables of all runs; with many worlds, only the runs over all worlds.
 pub(super) fn table(report: &Report) -> String {
     if report.runs.is_empty() {
@@ -79,12 +89,13 @@ pub(super) fn table(report: &Report) -> String {
     }
     for run in report.runs.iter().filter(|run| !is_short || run.worlds > 1) {
         let claim = Claim::of(run).map(|claim| claim.sentence());
-        let conclusions = [false_events(run), collisions(run), winner(run), claim];
+        let counts = COUNTS.iter().filter_map(|(what, count)| counts(run, what, count));
+        let conclusions = counts.chain(winner(run)).chain(claim);
         let paragraphs = [
             format!("{}\n{}", run.world, conditions(run, &report.settings)),
             values(&run.strategies, columns).to_string(),
             differences(run).unwrap_or_default(),
-            conclusions.into_iter().flatten().collect::<Vec<_>>().join("\n"),
+            conclusions.collect::<Vec<_>>().join("\n"),
         ];
         for line in
             paragraphs.iter().filter(|text| !text.is_empty()).flat_map(|text| text.lines().chain([""]))
@@ -182,28 +193,12 @@ fn differences(run: &Run) -> Option<String> {
     ))
 }
 
-/// The false changes, if there are any.
-fn false_events(run: &Run) -> Option<String> {
-    let recorded = counts(run, |strategy| strategy.false_change_events)
-        .map(|counts| format!("False change events on cells that never change: {counts}."));
-    let of_map = counts(run, |strategy| strategy.false_map_changes)
-        .map(|counts| format!("False changes of the map on these cells, with corrections: {counts}."));
-    let lines: Vec<String> = recorded.into_iter().chain(of_map).collect();
-    (!lines.is_empty()).then(|| lines.join("\n"))
-}
-
-/// The collisions, if there are any.
-fn collisions(run: &Run) -> Option<String> {
-    let counts = counts(run, |strategy| strategy.collisions.unwrap_or(0))?;
-    Some(format!("Collisions while the robot moved: {counts}."))
-}
-
-/// The strategies with a count above zero.
-fn counts(run: &Run, count: impl Fn(&StrategyResult) -> u64) -> Option<String> {
+/// A count of the strategies for which it is above zero.
+fn counts(run: &Run, what: &str, count: impl Fn(&StrategyResult) -> u64) -> Option<String> {
     let those = run.strategies.iter().filter(|strategy| count(strategy) > 0);
     let counts: Vec<String> =
         those.map(|strategy| format!("{} {}", strategy.name, count(strategy))).collect();
-    (!counts.is_empty()).then(|| counts.join(", "))
+    (!counts.is_empty()).then(|| format!("{what}: {}.", counts.join(", ")))
 }
 
 /// The strategy with the smallest error of the rates, and whether the next one is significantly worse.

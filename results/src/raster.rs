@@ -12,29 +12,20 @@ const SCHEMA: u32 = 1;
 /// The probability with which the credible interval contains the rate.
 const CREDIBLE_MASS: f64 = 0.9;
 
+/// A layer: the name, with the unit, and the value of a cell.
+type Layer = (&'static str, fn(&Learned, usize) -> f64);
+
 /// The layers, in the order of the array.
-pub const LAYERS: [Layer; 8] = [
-    layer("blocked", |of, index| {
-        f64::from(u8::from(of.mapper.states().cells()[index] == CellState::Blocked))
-    }),
-    layer("rate_hz", |of, index| of.mapper.rate(index)),
-    layer("rate_low_hz", |of, index| (of.interval)(index).0),
-    layer("rate_high_hz", |of, index| (of.interval)(index).1),
-    layer("blocked_probability", |of, index| of.mapper.blocked_probability(index)),
-    layer("change_probability", |of, index| of.mapper.change_probability(index)),
-    layer("recency_s", |of, index| of.mapper.recency(index)),
-    layer("observed_s", |of, index| of.mapper.statistics(index).observed()),
+const LAYERS: [Layer; 8] = [
+    ("blocked", |of, index| f64::from(u8::from(of.mapper.states().cells()[index] == CellState::Blocked))),
+    ("rate_hz", |of, index| of.mapper.rate(index)),
+    ("rate_low_hz", |of, index| (of.interval)(index).0),
+    ("rate_high_hz", |of, index| (of.interval)(index).1),
+    ("blocked_probability", |of, index| of.mapper.blocked_probability(index)),
+    ("change_probability", |of, index| of.mapper.change_probability(index)),
+    ("recency_s", |of, index| of.mapper.recency(index)),
+    ("observed_s", |of, index| of.mapper.statistics(index).observed()),
 ];
-
-/// One value per cell.
-#[derive(Clone, Copy, Debug)]
-pub struct Layer {
-    /// The name, with the unit.
-    pub name: &'static str,
-    value: Value,
-}
-
-type Value = fn(&Learned, usize) -> f64;
 
 /// What the values of the cells follow from.
 struct Learned<'a> {
@@ -43,12 +34,8 @@ struct Learned<'a> {
     interval: &'a dyn Fn(usize) -> (f64, f64),
 }
 
-const fn layer(name: &'static str, value: Value) -> Layer {
-    Layer { name, value }
-}
-
 /// Writes an array of 32-bit numbers with the shape (layers, rows, columns); row 0 has the lowest y. The layers are
-/// [`LAYERS`]: the map (0 free, 1 blocked), the rate and its 90 % credible interval in cycles per second, the probability
+/// the map (0 free, 1 blocked), the rate and its 90 % credible interval in cycles per second, the probability
 /// of being blocked now, the probability of a change since last seen, the time since last seen and the time in view, s.
 /// Cells that were never seen are NaN in all layers. A file beside it with the ending `.json` names the layers, and where the
 /// array lies in the map.
@@ -62,17 +49,16 @@ pub fn write(path: &Path, mapper: &Mapper) -> Result<(), OutputError> {
     let learned = Learned { mapper, interval: &mapper.credible_intervals(CREDIBLE_MASS) };
     let about = json!({
         "schema": SCHEMA,
-        "layers": LAYERS.map(|layer| layer.name),
+        "layers": LAYERS.map(|(name, _)| name),
         "resolution_m": frame.resolution_m(),
         "origin_m": [frame.origin().x, frame.origin().y],
     });
     write_file(&path.with_extension("json"), |file| writeln!(file, "{about:#}"))?;
     write_file(path, |file| {
         file.write_all(&npy_header(shape))?;
-        for layer in LAYERS {
+        for (_, value) in LAYERS {
             for index in 0..frame.len() {
-                let value =
-                    if mapper.was_ever_seen(index) { (layer.value)(&learned, index) } else { f64::NAN };
+                let value = if mapper.was_ever_seen(index) { value(&learned, index) } else { f64::NAN };
                 file.write_all(&(value as f32).to_le_bytes())?;
             }
         }

@@ -1,7 +1,106 @@
-//! Maps as the two files of the ROS `map_server`, a picture and a YAML file. The crate `worldfile` reads them.
+//! Maps as the two files of the ROS `map_server`, a picture (PGM, binary) and a YAML file, and masks for the costmap filters of
+//! Nav2. The crate `worldfile` reads maps.
 
-mod map;
-mod mask;
+use crate::output::{OutputError, write_file};
+use interfaces::{CellState, Grid, GridFrame};
+use std::path::Path;
 
-pub use map::{pgm, yaml};
-pub use mask::{mask_pgm, mask_yaml};
+/// What a map is saved with. 205 is p = 0.19608: with the customary threshold of 0.25 it would
+/// come back as free.
+const FREE_THRESHOLD: f64 = 0.196;
+const OCCUPIED_THRESHOLD: f64 = 0.65;
+const FREE: u8 = 254;
+const UNKNOWN: u8 = 205;
+const BLOCKED: u8 = 0;
+
+/// Writes a map into a folder: the files `NAME.pgm` and `NAME.yaml`.
+///
+/// # Errors
+///
+/// When a file cannot be written.
+pub fn write(folder: &Path, name: &str, map: &Grid<CellState>) -> Result<(), OutputError> {
+    write_both(folder, name, &pgm(map), yaml(map.frame(), &format!("{name}.pgm")))
+}
+
+/// Writes a mask with values from 0 to 100 into a folder, as [`write`].
+///
+/// # Errors
+///
+/// When a file cannot be written.
+pub fn write_mask(folder: &Path, name: &str, mask: &Grid<u8>) -> Result<(), OutputError> {
+    write_both(folder, name, &mask_pgm(mask), mask_yaml(mask.frame(), &format!("{name}.pgm")))
+}
+
+/// The picture of a map.
+pub fn pgm(map: &Grid<CellState>) -> Vec<u8> {
+    picture(map, |state| match state {
+        CellState::Free => FREE,
+        CellState::Unknown => UNKNOWN,
+        CellState::Blocked => BLOCKED,
+    })
+}
+
+/// The YAML file of a map with this frame, whose picture is called `image`.
+pub fn yaml(frame: &GridFrame, image: &str) -> String {
+    description(frame, image, "trinary", [OCCUPIED_THRESHOLD, FREE_THRESHOLD])
+}
+
+/// The picture of a mask; a value above 100 counts as 100.
+///
+/// In the mode `scale` with the thresholds 0 and 1, the map server takes a pixel p as the value
+/// round(100 · (255 − p) / 255): every value comes back as it was.
+fn mask_pgm(mask: &Grid<u8>) -> Vec<u8> {
+    picture(mask, |value| 255 - ((u32::from((*value).min(100)) * 255 + 50) / 100) as u8)
+}
+
+fn mask_yaml(frame: &GridFrame, image: &str) -> String {
+    description(frame, image, "scale", [1.0, 0.0])
+}
+
+fn picture<T>(grid: &Grid<T>, pixel: impl FnMut(&T) -> u8) -> Vec<u8> {
+    let frame = grid.frame();
+    let mut bytes = format!("P5\n{} {}\n255\n", frame.width(), frame.height()).into_bytes();
+    bytes.extend(grid.cells().chunks(frame.width()).rev().flatten().map(pixel));
+    bytes
+}
+
+fn description(frame: &GridFrame, image: &str, mode: &str, [occupied, free]: [f64; 2]) -> String {
+    let (origin, resolution_m) = (frame.origin(), frame.resolution_m());
+    format!(
+        "image: {image}\nmode: {mode}\nresolution: {resolution_m:?}\norigin: [{:?}, {:?}, 0.0]\nnegate: 0\n\
+         occupied_thresh: {occupied:?}\nfree_thresh: {free:?}\n",
+        origin.x, origin.y
+    )
+}
+
+fn write_both(folder: &Path, name: &str, picture: &[u8], yaml: String) -> Result<(), OutputError> {
+    write_file(&folder.join(format!("{name}.pgm")), |file| file.write_all(picture))?;
+    write_file(&folder.join(format!("{name}.yaml")), |file| file.write_all(yaml.as_bytes()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Point2;
+
+    /// The value that the map server of Nav2 gives a pixel, in the mode `scale` (nav2_map_server, map_io.cpp).
+    fn served(pixel: u8, occupied_threshold: f64, free_threshold: f64) -> u8 {
+        let occupied = f64::from(255 - pixel) / 255.0;
+        let share = (occupied - free_threshold) / (occupied_threshold - free_threshold);
+        (share.clamp(0.0, 1.0) * 100.0).round() as u8
+    }
+
+    #[test]
+    fn every_value_is_served_as_it_was() {
+        let values: Vec<u8> = (0..=100).collect();
+        let frame = GridFrame::new(Point2::new(-1.0, 2.0), 0.5, values.len(), 1).unwrap();
+        let mask = Grid::from_cells(frame, values.clone()).unwrap();
+        let picture = mask_pgm(&mask);
+        let pixels = &picture[picture.len() - values.len()..];
+        let back: Vec<u8> = pixels.iter().map(|pixel| served(*pixel, 1.0, 0.0)).collect();
+        assert_eq!(back, values);
+        let expected = "image: m.pgm\nmode: scale\nresolution: 0.5\norigin: [-1.0, 2.0, 0.0]\nnegate: 0\n\
+                        occupied_thresh: 1.0\nfree_thresh: 0.0\n";
+        assert_eq!(mask_yaml(&frame, "m.pgm"), expected);
+    }
+}

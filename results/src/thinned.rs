@@ -5,38 +5,32 @@ use nalgebra::Point2;
 /// The positions of goals, m: all goals of about ten hours.
 pub type Goals = Thinned<Point2<f64>, 2048>;
 
-/// A series of at most `MOST` samples, an even number. When the series is full, every second sample is dropped, and
+/// A series of at most `MAX` samples, an even number. When the series is full, every second sample is dropped, and
 /// from then on half as many samples are kept. The samples that are kept are therefore spread evenly over the whole
 /// run. The first sample and the newest sample are always kept.
 #[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
-pub struct Thinned<T, const MOST: usize> {
+pub struct Thinned<T, const MAX: usize> {
     samples: Vec<T>,
     /// One in this many samples is kept.
     stride: u64,
     count: u64,
 }
 
-impl<T, const MOST: usize> Default for Thinned<T, MOST> {
+impl<T, const MAX: usize> Default for Thinned<T, MAX> {
     fn default() -> Self {
-        const { assert!(MOST >= 2 && MOST.is_multiple_of(2), "half of the samples are dropped at a time") };
+        const { assert!(MAX >= 2 && MAX.is_multiple_of(2), "half of the samples are dropped at a time") };
         Self { samples: Vec::new(), stride: 1, count: 0 }
     }
 }
 
-impl<T, const MOST: usize> Thinned<T, MOST> {
-    /// The same series of other samples, each made of one of these.
-    pub fn map<U>(self, of: impl FnMut(T) -> U) -> Thinned<U, MOST> {
-        let Self { samples, stride, count } = self;
-        Thinned { samples: samples.into_iter().map(of).collect(), stride, count }
-    }
-
+impl<T, const MAX: usize> Thinned<T, MAX> {
     /// Appends the newest sample.
     pub fn push(&mut self, sample: T) {
         // The newest sample so far was kept only as the newest one.
         if self.count > 0 && !(self.count - 1).is_multiple_of(self.stride) {
             self.samples.pop();
         }
-        if self.samples.len() == MOST {
+        if self.samples.len() == MAX {
             let mut is_kept = false;
             self.samples.retain(|_| {
                 is_kept = !is_kept;
@@ -48,7 +42,7 @@ impl<T, const MOST: usize> Thinned<T, MOST> {
         self.count += 1;
     }
 
-    /// The samples that are kept, in order. All of them, as long as there were at most `MOST`.
+    /// The samples that are kept, in order. All of them, as long as there were at most `MAX`.
     pub fn samples(&self) -> &[T] {
         &self.samples
     }
@@ -59,7 +53,7 @@ impl<T, const MOST: usize> Thinned<T, MOST> {
     }
 }
 
-impl<T, const MOST: usize> Extend<T> for Thinned<T, MOST> {
+impl<T, const MAX: usize> Extend<T> for Thinned<T, MAX> {
     fn extend<I: IntoIterator<Item = T>>(&mut self, samples: I) {
         samples.into_iter().for_each(|sample| self.push(sample));
     }

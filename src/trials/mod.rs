@@ -14,8 +14,8 @@ use crate::program::{one_of, strategy_of};
 use crate::terminal::say;
 use agent::Reward;
 use anyhow::bail;
-use clap::builder::TypedValueParser;
-use clap::{Args, Parser, ValueEnum};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::{Args, Parser};
 use evaluation::trials::{Experiment, TrialStrategy, TrialWorld};
 use mapper::EstimatorChoice;
 use reports::shards::Shard;
@@ -123,8 +123,8 @@ pub struct TrialArgs<K: TrialKind> {
     seed: u64,
 
     /// The reward of the learner
-    #[arg(long, value_enum, default_value_t = RewardChoice::Changes, help_heading = "Comparison")]
-    reward: RewardChoice,
+    #[arg(long, default_value = "changes", value_parser = reward(), help_heading = "Comparison")]
+    reward: Reward,
 
     /// The number of threads [default: the number of cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), allow_negative_numbers = true, help_heading = EXECUTION)]
@@ -156,24 +156,6 @@ pub struct TrialArgs<K: TrialKind> {
     quiet: bool,
 }
 
-/// What counts as a map update when the learner is rewarded.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum RewardChoice {
-    /// Cells that changed
-    Changes,
-    /// Cells that changed, and cells that were seen for the first time
-    ChangesAndDiscoveries,
-}
-
-impl From<RewardChoice> for Reward {
-    fn from(choice: RewardChoice) -> Self {
-        match choice {
-            RewardChoice::Changes => Self::Changes,
-            RewardChoice::ChangesAndDiscoveries => Self::ChangesAndDiscoveries,
-        }
-    }
-}
-
 impl<K: TrialKind> TrialArgs<K> {
     /// The experiment that the arguments describe.
     fn experiment(&self) -> anyhow::Result<Experiment<K::Spec>> {
@@ -184,7 +166,7 @@ impl<K: TrialKind> TrialArgs<K> {
             trials: self.trials,
             seed: self.seed,
             length: self.kind.length(),
-            robot: self.kind.robot(self.reward.into(), self.max_steps),
+            robot: self.kind.robot(self.reward, self.max_steps),
         })
     }
 
@@ -218,6 +200,19 @@ impl<K: TrialKind> TrialArgs<K> {
 /// A parser of the name of a strategy, or of a reference.
 fn strategies() -> impl TypedValueParser<Value = TrialStrategy> {
     strategy_of(TrialStrategy::all().collect(), |strategy| (strategy.name(), strategy.description()))
+}
+
+/// A parser of what counts as a map update when the learner is rewarded.
+fn reward() -> impl TypedValueParser<Value = Reward> {
+    let all = [
+        PossibleValue::new("changes").help("Cells that changed"),
+        PossibleValue::new("changes-and-discoveries")
+            .help("Cells that changed, and cells that were seen for the first time"),
+    ];
+    PossibleValuesParser::new(all).map(|name| match name.as_str() {
+        "changes" => Reward::Changes,
+        _ => Reward::ChangesAndDiscoveries,
+    })
 }
 
 /// Every value once, in the order of first occurrence.

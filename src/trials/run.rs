@@ -50,7 +50,7 @@ where
     /// Runs the trials, and writes the results.
     fn run(&self, experiment: &Experiment<K::Spec>, is_canceled: &AtomicBool) -> Result<ExitCode, Failure> {
         let mut folder = results_folder(&self.out)?;
-        self.rrd.iter().try_for_each(|path| folder.adopt(path, "rrd")).map_err(input)?;
+        self.rrd.as_ref().map_or(Ok(()), |path| folder.adopt(path, "rrd")).map_err(input)?;
         let (mut trials, problem) = self.trials(experiment, is_canceled)?;
         let interrupted = is_canceled.load(Ordering::Relaxed);
         if trials.is_empty() {
@@ -80,7 +80,7 @@ where
     ) -> anyhow::Result<(Vec<Trial>, Option<RecordingError>)> {
         let pool = self.pool()?;
         let mut jobs = experiment.jobs();
-        let progress = Progress::of_trials(jobs.len(), self.quiet);
+        let progress = Progress::of_count(jobs.len(), "trials", self.quiet);
         let first = match &self.rrd {
             None => None,
             Some(file) => {
@@ -93,12 +93,11 @@ where
         let record = || -> Result<_, TrialError> {
             let Some((recorder, settings)) = first else { return Ok((None, None)) };
             let Recorded { trial, problem } = record(&settings, recorder, is_canceled)?;
-            trial.iter().for_each(|_| progress.step());
-            Ok((trial, problem))
+            Ok((trial.inspect(|_| progress.step()), problem))
         };
         let run = || experiment.run(jobs, is_canceled, |_| progress.step());
         let (first, others) = pool.install(|| rayon::join(record, run));
-        progress.finish();
+        drop(progress);
         let (first, problem) = first?;
         Ok((first.into_iter().chain(others?).collect(), problem))
     }

@@ -135,9 +135,9 @@ impl<K: TrialKind> TrialArgs<K> {
         if !self.quiet && before > 0 {
             say(stderr(), format_args!("shard {shard}: {before} of {all} trials are finished already"));
         }
-        let progress = Progress::of_trials(open.len(), self.quiet);
+        let progress = Progress::of_count(open.len(), "trials", self.quiet);
         let finished = self.pool()?.install(|| file.run(open, is_canceled, || progress.step()));
-        progress.finish();
+        drop(progress);
         let finished = before + finished.map_err(anyhow::Error::from)?;
         file.sync().context("start the shard again")?;
         if finished < all {

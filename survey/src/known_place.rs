@@ -3,7 +3,7 @@
 use crate::error::SurveyError;
 use crate::route::{Route, frame};
 use crate::settings::SurveySettings;
-use interfaces::{GridFrame, LaserReading, ValueError, read_value, write_value};
+use interfaces::{GridFrame, LaserReading, ValueError, read_value, to_bytes};
 use localizer::{LineMap, PoseState, TrajectoryPose, TrajectorySettings};
 use mapper::ScanFilter;
 use nalgebra::Vector2;
@@ -14,8 +14,7 @@ const AROUND_M: f64 = 10.0;
 /// The surfaces along the route of the first log, as later logs need them.
 #[derive(Clone, Debug)]
 pub struct KnownPlace {
-    pub(crate) settings: SurveySettings,
-    filter: ScanFilter,
+    pub(crate) filter: ScanFilter,
     /// The rectangle of the surfaces.
     frame: GridFrame,
     pub(crate) lines: LineMap,
@@ -35,7 +34,7 @@ impl KnownPlace {
         // Around a place of the largest size, there is no space left.
         let frame = GridFrame::new(origin, extent.resolution_m(), sides[0], sides[1]).unwrap_or(extent);
         let lines = LineMap::new(&TrajectorySettings::default(), &frame)?;
-        Ok(Self { settings: settings.clone(), filter: settings.scan_filter(), frame, lines })
+        Ok(Self { filter: settings.scan_filter(), frame, lines })
     }
 
     /// Adds a reading of the first log, with the pose that was found for it; if the pose is not certain, it says nothing.
@@ -47,11 +46,8 @@ impl KnownPlace {
 
     /// Everything that the log has left, as bytes; settings are not in it.
     pub(crate) fn snapshot(mut self) -> Vec<u8> {
-        let mut bytes = Vec::new();
-        // A frame can be written. If it could not, the snapshot would be refused when it is restored.
-        if write_value(&self.frame, &mut bytes).is_ok() {
-            bytes.extend(self.lines.snapshot());
-        }
+        let mut bytes = to_bytes(&self.frame);
+        bytes.extend(self.lines.snapshot());
         bytes
     }
 
@@ -60,6 +56,6 @@ impl KnownPlace {
         let frame = read_value(&mut snapshot)?;
         let mut lines = LineMap::new(&TrajectorySettings::default(), &frame).map_err(|_| ValueError)?;
         lines.restore(snapshot)?;
-        Ok(Self { settings: settings.clone(), filter: settings.scan_filter(), frame, lines })
+        Ok(Self { filter: settings.scan_filter(), frame, lines })
     }
 }

@@ -40,7 +40,7 @@ pub use change_log::ChangeLog;
 pub use error::SurveyError;
 pub use known_place::KnownPlace;
 pub use masks::{CHANGE_HORIZON_S, keepout_mask, speed_mask};
-pub use passes::{PassError, RouteProgress, Stage};
+pub use passes::{PassError, Stage};
 pub use permanent::permanent;
 pub use places::{Place, PlaceRates, places};
 pub use replay::{FoundPoses, Replay};

@@ -27,13 +27,8 @@ pub enum PassError {
     #[error(transparent)]
     Survey(#[from] SurveyError),
     /// A later log finds no place in the map of the first one.
-    #[error("log {}: {why}", log + 1)]
-    Alignment {
-        /// The number of the log, from 0 on.
-        log: usize,
-        /// The reason.
-        why: SurveyError,
-    },
+    #[error(transparent)]
+    Alignment(SurveyError),
     /// The callback has interrupted the pass.
     #[error("the first pass was interrupted")]
     Interrupted,
@@ -52,28 +47,15 @@ pub enum Stage {
     Search,
 }
 
-/// How far the first pass has come.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct RouteProgress {
-    /// The number of the log, from 0 on.
-    pub log: usize,
-    /// What is done with the log.
-    pub stage: Stage,
-    /// The number of readings that this stage has used; 0 when it begins.
-    pub readings: usize,
-}
-
 /// The first pass over one log.
 pub(crate) struct RoutePass<'a, W> {
     pub(crate) log: &'a Log,
-    /// The number of the log, from 0 on.
-    pub(crate) number: usize,
     pub(crate) settings: &'a SurveySettings,
-    /// What is called when a stage begins and after each of its readings; a `Break` interrupts the pass.
+    /// What is called when a stage begins and after each of its readings, with their number; a `Break` interrupts the pass.
     pub(crate) watch: W,
 }
 
-impl<W: FnMut(RouteProgress) -> ControlFlow<()>> RoutePass<'_, W> {
+impl<W: FnMut((Stage, usize)) -> ControlFlow<()>> RoutePass<'_, W> {
     /// The route of the log, in the frame of its first pose.
     ///
     /// # Errors
@@ -119,8 +101,7 @@ impl<W: FnMut(RouteProgress) -> ControlFlow<()>> RoutePass<'_, W> {
             }
             Ok(())
         })?;
-        let log = self.number;
-        Ok(route.moved(&search.finish().map_err(|why| PassError::Alignment { log, why })?))
+        Ok(route.moved(&search.finish().map_err(PassError::Alignment)?))
     }
 
     /// The place in which later logs find theirs, from the first log along its route.
@@ -159,7 +140,7 @@ impl<W: FnMut(RouteProgress) -> ControlFlow<()>> RoutePass<'_, W> {
     }
 
     fn report(&mut self, stage: Stage, readings: usize) -> Result<(), PassError> {
-        match (self.watch)(RouteProgress { log: self.number, stage, readings }) {
+        match (self.watch)((stage, readings)) {
             ControlFlow::Continue(()) => Ok(()),
             ControlFlow::Break(()) => Err(PassError::Interrupted),
         }

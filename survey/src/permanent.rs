@@ -18,7 +18,7 @@ pub fn permanent(mapper: &Mapper) -> Grid<CellState> {
 }
 
 /// The share of the time that a cell that changed is blocked, from 0 to 1: by its learned rates, or by the time in view
-/// where there are none.
+/// where there are no rates.
 pub(crate) fn share_blocked(mapper: &Mapper, index: usize) -> f64 {
     if let Some((block, free)) = mapper.transition_rates(index).filter(|(block, free)| block + free > 0.0) {
         return block / (block + free);

@@ -5,9 +5,9 @@ use interfaces::{LaserReading, Scan};
 use nalgebra::Isometry2;
 
 /// The number of scans that are kept, at most; at least half of it of a long log, spread over it.
-const MOST_SCANS: usize = 512;
+const MAX_SCANS: usize = 512;
 /// With fewer scans, nothing is said.
-const LEAST_SCANS: usize = 20;
+const MIN_SCANS: usize = 20;
 /// The standard deviation of normal noise with a median absolute deviation of 1.
 const STD_PER_MAD: f64 = 1.4826;
 /// The noise is that of all beams but this share, which end on edges, glass or far away.
@@ -45,7 +45,7 @@ impl RangeNoise {
             self.scans.push(valid(&reading.scan));
         }
         self.passed += 1;
-        if self.scans.len() > MOST_SCANS {
+        if self.scans.len() > MAX_SCANS {
             let mut is_kept = false;
             self.scans.retain(|_| {
                 is_kept = !is_kept;
@@ -59,7 +59,7 @@ impl RangeNoise {
     /// change. `None` if the laser has moved, or if too few beams end on something at rest.
     pub(crate) fn std_m(&self) -> Option<f64> {
         let beams = self.scans.first().filter(|_| !self.has_moved)?.len();
-        if self.scans.len() < LEAST_SCANS {
+        if self.scans.len() < MIN_SCANS {
             return None;
         }
         let mut stds_m: Vec<f64> = (0..beams).filter_map(|beam| self.beam_std_m(beam)).collect();
@@ -111,7 +111,7 @@ mod tests {
         for std_m in [0.0, 0.01, 0.03] {
             let mut noise = RangeNoise::default();
             (0..3000).for_each(|number| noise.add(&reading(number, std_m, &mut stream)));
-            assert!((MOST_SCANS / 2..=MOST_SCANS).contains(&noise.scans.len()), "{}", noise.scans.len());
+            assert!((MAX_SCANS / 2..=MAX_SCANS).contains(&noise.scans.len()), "{}", noise.scans.len());
             // The noisier beams of all, and things in front of them, are a little above it.
             let found_m = noise.std_m().unwrap();
             assert!(found_m >= std_m && found_m <= 1.4 * std_m, "{found_m} of {std_m}");
@@ -122,7 +122,7 @@ mod tests {
     fn a_laser_that_moves_or_sees_too_little_has_no_noise() {
         let mut stream = RandomStream::new(301, Purpose::LaserNoise(0));
         let mut noise = RangeNoise::default();
-        (0..LEAST_SCANS - 1).for_each(|number| noise.add(&reading(number, 0.01, &mut stream)));
+        (0..MIN_SCANS - 1).for_each(|number| noise.add(&reading(number, 0.01, &mut stream)));
         assert_eq!(noise.std_m(), None);
         (0..10).for_each(|number| noise.add(&reading(number, 0.01, &mut stream)));
         assert!(noise.std_m().is_some());

@@ -20,12 +20,12 @@ const ENOUGH: usize = 8;
 /// The number of scans that are compared.
 const COMPARED: usize = 240;
 /// At least this share of them must fit.
-const LEAST_FITTING: f64 = 0.3;
+const MIN_FITTING: f64 = 0.3;
 /// The place is ambiguous if the map confirms as much with another motion, up to this share. In a room that is empty but for a
 /// door, the motion that turns it around has 0.9.
 const AMBIGUOUS: f64 = 0.97;
 /// The number of different motions that are held against the scans.
-const MOST_MOTIONS: usize = 6;
+const MAX_MOTIONS: usize = 6;
 /// Motions that move a pose of the route to poses nearer than this are the same, m and rad.
 const SAME_M: f64 = 0.5;
 const SAME_RAD: f64 = 0.1;
@@ -61,7 +61,7 @@ impl<'a> Search<'a> {
     /// is known.
     pub fn new(place: &'a KnownPlace, start: Start, readings: usize) -> Self {
         let (given, compared) = (GivenPoses::default(), Vec::new());
-        let filter = place.settings.scan_filter();
+        let filter = place.filter.clone();
         Self { place, filter, start, expected: readings, readings: 0, given, compared }
     }
 
@@ -93,10 +93,10 @@ impl<'a> Search<'a> {
             }
         }
         let mut fits: Vec<Motion> =
-            self.proposed().iter().take(MOST_MOTIONS).map(|proposed| self.fitted(&proposed.motion)).collect();
+            self.proposed().iter().take(MAX_MOTIONS).map(|proposed| self.fitted(&proposed.motion)).collect();
         fits.sort_by(|a, b| b.confirmed.total_cmp(&a.confirmed));
         let certain = fits.first().map_or(0, |best| best.scans);
-        let is_enough = |best: &&Motion| certain > 0 && best.scans as f64 >= LEAST_FITTING * compared as f64;
+        let is_enough = |best: &&Motion| certain > 0 && best.scans as f64 >= MIN_FITTING * compared as f64;
         let Some(best) = fits.first().filter(is_enough) else {
             return Err(SurveyError::OtherPlace { certain, compared });
         };

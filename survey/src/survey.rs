@@ -10,7 +10,7 @@ use crate::change_log::ChangeLog;
 use crate::error::SurveyError;
 use crate::extent::union;
 use crate::known_place::KnownPlace;
-use crate::passes::{PassError, RoutePass, RouteProgress};
+use crate::passes::{PassError, RoutePass, Stage};
 use crate::replay::{FoundPoses, Replay, judged};
 use crate::route::frame;
 use crate::settings::SurveySettings;
@@ -110,8 +110,8 @@ impl Survey {
     }
 
     /// The first pass over the next log: its route, in the frame of the first one. `is_followed`: other logs can follow, and
-    /// must find their place. `watch` is called when a stage begins and after each of its readings, and interrupts the pass
-    /// with a `Break`.
+    /// must find their place. `watch` is called with the stage and the number of its readings, when it begins and after each
+    /// reading, and interrupts the pass with a `Break`.
     ///
     /// # Errors
     ///
@@ -123,10 +123,10 @@ impl Survey {
         log: &Log,
         entry: LogEntry,
         is_followed: bool,
-        watch: impl FnMut(RouteProgress) -> ControlFlow<()>,
+        watch: impl FnMut((Stage, usize)) -> ControlFlow<()>,
     ) -> Result<(), PassError> {
         let all_stand = entry.stands && self.logs.iter().all(|log| log.entry.stands);
-        let mut pass = RoutePass { log, number: self.logs.len(), settings: &self.settings, watch };
+        let mut pass = RoutePass { log, settings: &self.settings, watch };
         let route = match &self.place {
             Some(place) => pass.in_place(place, all_stand)?,
             None => pass.route()?,

@@ -14,7 +14,7 @@ const STAY_S: f64 = 30.0;
 /// The duration of a shift, s: one step of the simulation.
 const SHIFT_S: f64 = 0.05;
 /// The shelves shift for this long, min.
-const LARGEST_MINUTES: f64 = 60.0;
+const MAX_MINUTES: f64 = 60.0;
 
 /// A room of random size with shelves along its walls. Every half minute all of them shift by the same 4 to 8 cm, or back.
 /// The robot is that of the generated house of this seed, in the middle of the room.
@@ -31,7 +31,7 @@ pub(crate) fn room(seed: u64) -> Option<WorldSpec> {
         ([size.x - WALL_M, WALL_M], [size.x, size.y - WALL_M]),
     ];
     let walls = walls.map(|(min, max)| Rectangle::between(min.into(), max.into())).to_vec();
-    let shifts: Vec<Vector2<f64>> = (0..(LARGEST_MINUTES * 60.0 / STAY_S) as usize)
+    let shifts: Vec<Vector2<f64>> = (0..(MAX_MINUTES * 60.0 / STAY_S) as usize)
         .map(|number| {
             let shift =
                 interfaces::rotation(random.uniform(-3.0..3.0)) * Vector2::x() * random.uniform(0.04..0.08);

@@ -7,9 +7,9 @@ use localizer::Trajectory;
 use nalgebra::{Point2, Vector2};
 use std::path::Path;
 
-/// The side of a pixel, m; larger where the picture would have more than [`MOST_PIXELS`] along a side.
+/// The side of a pixel, m; larger where the picture would have more than [`MAX_PIXELS`] along a side.
 const PIXEL_M: f64 = 0.05;
-const MOST_PIXELS: f64 = 4000.0;
+const MAX_PIXELS: f64 = 4000.0;
 /// Hits farther away than this are not drawn, m.
 const FARTHEST_M: f64 = 20.0;
 /// The number of hits at which a pixel is black.
@@ -33,7 +33,7 @@ pub(crate) fn write(
         (low.coords.inf(&point.coords).into(), high.coords.sup(&point.coords).into())
     });
     let size: Vector2<f64> = high - low;
-    let pixel_m = PIXEL_M.max(size.max() / MOST_PIXELS);
+    let pixel_m = PIXEL_M.max(size.max() / MAX_PIXELS);
     let (width, height) = ((size.x / pixel_m) as u32 + 1, (size.y / pixel_m) as u32 + 1);
     let pixel = |point: &Point2<f64>| {
         let at = (point - low) / pixel_m;

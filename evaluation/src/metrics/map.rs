@@ -54,8 +54,9 @@ pub fn reachable_scores(mapper: &Mapper, truth: &impl GroundTruth, visible: &[bo
     let (mut seen, mut correct) = (Mean::default(), Mean::default());
     for index in (0..visible.len()).filter(|&index| visible[index]) {
         seen.add_bool(mapper.was_ever_seen(index));
-        let is_correct = is_correct(mapper.states().cells()[index], truth.state(index));
-        is_correct.into_iter().for_each(|is_correct| correct.add_bool(is_correct));
+        if let Some(is_correct) = is_correct(mapper.states().cells()[index], truth.state(index)) {
+            correct.add_bool(is_correct);
+        }
     }
     ReachableScores {
         coverage_reachable: seen.get().unwrap_or(0.0),

@@ -17,7 +17,9 @@ impl Mean {
 
     /// Adds the mean of another `Mean` as one value; adds nothing if the other has no values.
     pub(super) fn add_mean(&mut self, other: &Self) {
-        other.get().into_iter().for_each(|mean| self.add(mean));
+        if let Some(mean) = other.get() {
+            self.add(mean);
+        }
     }
 
     /// The mean; `None` without values.

@@ -41,7 +41,9 @@ impl TrueChain {
 
     /// Adds the time up to `now` to the present state.
     fn pass_to(&mut self, now: f64) {
-        state_index(self.state).into_iter().for_each(|state| self.times[state] += now - self.since);
+        if let Some(state) = state_index(self.state) {
+            self.times[state] += now - self.since;
+        }
         self.since = now;
     }
 

@@ -19,7 +19,7 @@ use sim::physics::WorldSpec;
 const STAYS: [f64; 7] = [1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0];
 
 /// The minimum trust in a patch, so that a patch is visited again if all others are worse.
-const LEAST_TRUST: f64 = 0.01;
+const MIN_TRUST: f64 = 0.01;
 
 /// Goes to the patch from which the log error of the rates is expected to decrease most per unit of time, travel
 /// included, and stays for the best duration. The oracle knows the walls (and the furniture of a physics world) and the
@@ -97,12 +97,12 @@ impl Oracle {
 
     /// The cells of a patch that truly change.
     fn changing(&self, patch: usize) -> impl Iterator<Item = usize> {
-        self.patches.cells(patch).iter().copied().filter(|&cell| self.rates[cell] > 0.0)
+        self.patches.cells[patch].iter().copied().filter(|&cell| self.rates[cell] > 0.0)
     }
 
     /// The weighted error of the cells in view from a patch.
     fn error(&self, mapper: &Mapper, from: usize) -> f64 {
-        let cells = self.patches.in_view(from).iter().flat_map(|&patch| self.changing(patch));
+        let cells = self.patches.in_view[from].iter().flat_map(|&patch| self.changing(patch));
         cells.map(|cell| self.weights[cell] * knowledge(mapper, cell, self.rates[cell]).error()).sum()
     }
 
@@ -112,7 +112,7 @@ impl Oracle {
         if last.fall > 0.0 {
             let share = (last.error - self.error(mapper, last.patch)) / last.fall;
             let trust = &mut self.trust[last.patch];
-            *trust = (0.5 * (*trust + share.clamp(0.0, 1.0))).max(LEAST_TRUST);
+            *trust = (0.5 * (*trust + share.clamp(0.0, 1.0))).max(MIN_TRUST);
         }
     }
 
@@ -132,12 +132,12 @@ impl Oracle {
         let falls: Vec<_> = (0..self.patches.len()).map(|patch| self.falls(mapper, patch)).collect();
         let (mut best, mut most) = (None, 0.0);
         for patch in 0..self.patches.len() {
-            let time = times.get(self.patches.middle(patch)).copied().unwrap_or(f64::INFINITY);
+            let time = times.get(self.patches.middles[patch]).copied().unwrap_or(f64::INFINITY);
             if !time.is_finite() {
                 continue;
             }
             let mut sums = [0.0; STAYS.len()];
-            for falls in self.patches.in_view(patch).iter().filter_map(|&seen| falls[seen]) {
+            for falls in self.patches.in_view[patch].iter().filter_map(|&seen| falls[seen]) {
                 sums.iter_mut().zip(falls).for_each(|(sum, fall)| *sum += fall);
             }
             for (stay, fall) in STAYS.into_iter().zip(sums) {
@@ -175,7 +175,7 @@ impl GoalSelector for Oracle {
         let frame = mapper.frame();
         Some(match &self.last {
             Some(best) => {
-                let cell = frame.cell(self.patches.middle(best.patch));
+                let cell = frame.cell(self.patches.middles[best.patch]);
                 Destination { position: frame.center(cell), stay: Stay::Watch(best.stay) }
             }
             // Nothing has moved yet, or everything is known: wait for one step or second.

@@ -10,11 +10,11 @@ const PATCH_M: f64 = 0.25;
 #[derive(Clone, Debug)]
 pub(super) struct Patches {
     /// The cells of every patch.
-    cells: Vec<Vec<usize>>,
+    pub(super) cells: Vec<Vec<usize>>,
     /// The cell in the middle of every patch.
-    middles: Vec<usize>,
-    /// The patches in view from every patch.
-    in_view: Vec<Vec<usize>>,
+    pub(super) middles: Vec<usize>,
+    /// The patches in view from every patch; none from inside a wall.
+    pub(super) in_view: Vec<Vec<usize>>,
 }
 
 impl Patches {
@@ -75,20 +75,5 @@ impl Patches {
     /// The number of patches.
     pub(super) fn len(&self) -> usize {
         self.cells.len()
-    }
-
-    /// The cells of a patch.
-    pub(super) fn cells(&self, patch: usize) -> &[usize] {
-        &self.cells[patch]
-    }
-
-    /// The cell in the middle of a patch.
-    pub(super) fn middle(&self, patch: usize) -> usize {
-        self.middles[patch]
-    }
-
-    /// The patches in view from a patch; none from inside a wall.
-    pub(super) fn in_view(&self, patch: usize) -> &[usize] {
-        &self.in_view[patch]
     }
 }

@@ -62,7 +62,7 @@ fn it_goes_to_a_cell_with_changing_cells_in_view() {
     let (mut world, mapper, mut oracle) = after(60);
     assert!(mapper.changed().next().is_none(), "nothing of it is seen from the start");
     let (goal, stay) = next_goal(&mut world, &mapper, &mut oracle);
-    let in_view = oracle.patches.in_view(goal).iter().filter(|&&cell| world.truth().is_swept(cell)).count();
+    let in_view = oracle.patches.in_view[goal].iter().filter(|&&cell| world.truth().is_swept(cell)).count();
     assert!(in_view >= 3, "{:?} {in_view}", mapper.frame().cell(goal));
     assert!(matches!(stay, Stay::Watch(steps) if steps > 1.0));
     assert!(oracle.reason().starts_with("oracle: "));
@@ -128,15 +128,15 @@ fn in_a_physics_world_walls_hide_patches() {
     let text = include_str!("../../../worlds/four_rooms.toml");
     let spec = worldfile::physics::parse_world("four_rooms.toml", text).unwrap();
     let patches = patches::Patches::of_physics(&spec);
-    assert_eq!((0..patches.len()).map(|patch| patches.cells(patch).len()).sum::<usize>(), spec.frame.len());
+    assert_eq!((0..patches.len()).map(|patch| patches.cells[patch].len()).sum::<usize>(), spec.frame.len());
     let at = |x_m: f64, y_m: f64| {
         let cell = spec.frame.index(spec.frame.cell_at(&Point2::new(x_m, y_m))).unwrap();
-        (0..patches.len()).find(|&patch| patches.cells(patch).contains(&cell)).unwrap()
+        (0..patches.len()).find(|&patch| patches.cells[patch].contains(&cell)).unwrap()
     };
     // In the lower left room, and from there to the upper right one.
     let (from, same_room, far_room) = (at(2.0, 2.0), at(4.0, 4.0), at(10.0, 10.0));
-    assert!(patches.in_view(from).contains(&same_room));
-    assert!(!patches.in_view(from).contains(&far_room));
-    let middle = spec.frame.cell(patches.middle(from));
+    assert!(patches.in_view[from].contains(&same_room));
+    assert!(!patches.in_view[from].contains(&far_room));
+    let middle = spec.frame.cell(patches.middles[from]);
     assert!((spec.frame.center(middle) - Point2::new(2.0, 2.0)).norm() < 0.25);
 }

@@ -1,11 +1,10 @@
-use super::Length;
-use super::{TrialError, TrialWorld};
+use super::{Length, TrialError, TrialRobot, TrialSettings, TrialWorld};
 use crate::oracle::Oracle;
 use agent::{Agent, AgentSettings, Policy};
 use controller::{CellDrive, Controller};
-use interfaces::{CellReading, Purpose, RandomStream};
-use mapper::{EstimatorChoice, Mapper, MapperSettings};
-use robot::{Autonomous, ExactPoses, GoalSelector, Pilot, Robot};
+use interfaces::{Purpose, RandomStream};
+use mapper::{Mapper, MapperSettings};
+use robot::{Autonomous, ExactPoses, GoalSelector, Robot};
 use sim::grid::{GridGroundTruth, GridSpec, GridWorld};
 
 /// The settings of the robot in grid worlds.
@@ -58,34 +57,25 @@ impl TrialWorld for GridSpec {
         None
     }
 
-    fn agent(&self, robot: &GridRobot, policy: &Policy, seed: u64) -> Result<Agent, TrialError> {
-        let sensor_radius_m = f64::from(self.sensor_radius) * self.frame().resolution_m();
-        let settings = AgentSettings { sensor_radius_m, ..robot.agent.clone() };
-        Ok(Agent::new(&settings, policy, RandomStream::new(seed, Purpose::GridAgent))?)
+    fn agent(trial: &TrialSettings<Self>, policy: &Policy) -> Result<Agent, TrialError> {
+        let sensor_radius_m = f64::from(trial.world.sensor_radius) * trial.world.frame().resolution_m();
+        let settings = AgentSettings { sensor_radius_m, ..trial.experiment.robot.agent.clone() };
+        Ok(Agent::new(&settings, policy, RandomStream::new(trial.seed, Purpose::GridAgent))?)
     }
 
     fn oracle(&self) -> Oracle {
         Oracle::in_grid(self)
     }
 
-    fn pilot<G: GoalSelector>(
-        &self,
-        robot: &GridRobot,
-        selector: G,
-        seed: u64,
-    ) -> Result<Autonomous<G, Controller<CellDrive>>, TrialError> {
-        let stream = RandomStream::new(seed, Purpose::GridController);
-        Ok(Autonomous::new(selector, Controller::new(robot.controller, CellDrive, stream)?))
-    }
-
-    fn robot<P: Pilot>(
-        &self,
-        robot: &GridRobot,
-        estimator: &EstimatorChoice,
+    fn robot<G: GoalSelector>(
+        trial: &TrialSettings<Self>,
         _: &mut GridWorld,
-        pilot: P,
-    ) -> Result<Robot<CellReading, P>, TrialError> {
-        let settings = MapperSettings { estimator: estimator.clone(), ..robot.mapper.clone() };
-        Ok(Robot::new(Box::new(ExactPoses), Mapper::new(&settings, *self.frame())?, pilot))
+        selector: G,
+    ) -> Result<TrialRobot<Self, G>, TrialError> {
+        let GridRobot { mapper, controller, .. } = &trial.experiment.robot;
+        let stream = RandomStream::new(trial.seed, Purpose::GridController);
+        let pilot = Autonomous::new(selector, Controller::new(*controller, CellDrive, stream)?);
+        let settings = MapperSettings { estimator: trial.estimator.clone(), ..mapper.clone() };
+        Ok(Robot::new(Box::new(ExactPoses), Mapper::new(&settings, *trial.world.frame())?, pilot))
     }
 }

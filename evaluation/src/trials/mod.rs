@@ -22,7 +22,7 @@ pub use metric::{Metric, Sample, Trial};
 pub use physics::PhysicsRobot;
 pub use run::{TrialSettings, TrialStep, run_trial};
 pub use strategy::TrialStrategy;
-pub use world::TrialWorld;
+pub use world::{TrialRobot, TrialWorld};
 
 use crate::physics_trial::UnsupportedDrive;
 use interfaces::SettingsError;
@@ -110,8 +110,7 @@ impl<W: TrialWorld> Experiment<W> {
                 return Ok(None);
             }
             let trial = run_trial(&job, |_| goes_on())?;
-            trial.iter().for_each(&observe);
-            Ok(trial)
+            Ok(trial.inspect(&observe))
         };
         let trials: Result<Vec<Option<Trial>>, TrialError> = jobs.into_par_iter().map(run).collect();
         Ok(trials?.into_iter().flatten().collect())

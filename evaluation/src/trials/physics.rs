@@ -1,12 +1,10 @@
-use super::Length;
-use super::{TrialError, TrialWorld};
+use super::{Length, TrialError, TrialRobot, TrialSettings, TrialWorld};
 use crate::oracle::Oracle;
 use crate::physics_trial::{self, UnsupportedDrive};
 use agent::{Agent, Policy, Reward};
-use controller::{Controller, DiffDrive};
-use interfaces::{LaserReading, PoseMode};
-use mapper::EstimatorChoice;
-use robot::{Autonomous, GoalSelector, LOCAL_STEPS, Pilot, Robot, Settings};
+use controller::DiffDrive;
+use interfaces::PoseMode;
+use robot::{GoalSelector, LOCAL_STEPS, Settings};
 use sim::physics::{PhysicsGroundTruth, PhysicsWorld, WorldSpec};
 
 /// The settings of the robot in physics worlds; all others are those of [`physics_trial::settings`].
@@ -73,32 +71,22 @@ impl TrialWorld for WorldSpec {
         Some(world.contacts().iter().filter(|contact| contact.moving).count() as u64)
     }
 
-    fn agent(&self, robot: &PhysicsRobot, policy: &Policy, seed: u64) -> Result<Agent, TrialError> {
-        Ok(robot.settings(self)?.agent(policy, seed)?)
+    fn agent(trial: &TrialSettings<Self>, policy: &Policy) -> Result<Agent, TrialError> {
+        Ok(trial.experiment.robot.settings(trial.world)?.agent(policy, trial.seed)?)
     }
 
     fn oracle(&self) -> Oracle {
         Oracle::in_physics(self)
     }
 
-    fn pilot<G: GoalSelector>(
-        &self,
-        robot: &PhysicsRobot,
-        selector: G,
-        seed: u64,
-    ) -> Result<Autonomous<G, Controller<DiffDrive>>, TrialError> {
-        Ok(robot.settings(self)?.pilot(selector, seed)?)
-    }
-
-    fn robot<P: Pilot>(
-        &self,
-        robot: &PhysicsRobot,
-        estimator: &EstimatorChoice,
+    fn robot<G: GoalSelector>(
+        trial: &TrialSettings<Self>,
         world: &mut PhysicsWorld,
-        pilot: P,
-    ) -> Result<Robot<LaserReading, P>, TrialError> {
-        let mut settings = robot.settings(self)?;
-        settings.mapper.estimator = estimator.clone();
+        selector: G,
+    ) -> Result<TrialRobot<Self, G>, TrialError> {
+        let mut settings = trial.experiment.robot.settings(trial.world)?;
+        settings.mapper.estimator = trial.estimator.clone();
+        let pilot = settings.pilot(selector, trial.seed)?;
         Ok(physics_trial::robot(&settings, world, None, pilot)?)
     }
 }

@@ -1,4 +1,4 @@
-use super::full_observation::FullyObserved;
+use super::full_observation::observed;
 use super::sampler::Sampler;
 use super::{Experiment, Sample, Trial, TrialError, TrialStrategy, TrialWorld};
 use crate::map_hash::map_hash;
@@ -54,44 +54,38 @@ pub fn run_trial<W: TrialWorld>(
     trial: &TrialSettings<W>,
     observe: impl FnMut(TrialStep<W>) -> bool,
 ) -> Result<Option<Trial>, TrialError> {
-    let (seed, robot) = (trial.seed, &trial.experiment.robot);
-    let own = trial.world.in_own_frame(robot, seed);
+    let own = trial.world.in_own_frame(&trial.experiment.robot, trial.seed);
     let world = own.as_ref().unwrap_or(trial.world);
     let trial = &TrialSettings { world, ..*trial };
     match trial.strategy {
-        TrialStrategy::Agent(policy) => {
-            let agent = world.agent(robot, policy, seed)?;
-            run(trial, world.pilot(robot, agent, seed)?, |_, _| (), observe)
-        }
-        TrialStrategy::Oracle => {
-            run(trial, world.pilot(robot, world.oracle(), seed)?, Oracle::learn, observe)
-        }
-        TrialStrategy::FullObservation => {
-            let stands = Tour::new(Vec::new(), false);
-            run(trial, world.pilot(robot, stands, seed)?, |_, _| (), observe)
-        }
+        TrialStrategy::Agent(policy) => run(trial, W::agent(trial, policy)?, |_, _| (), observe),
+        TrialStrategy::Oracle => run(trial, world.oracle(), Oracle::learn, observe),
+        TrialStrategy::FullObservation => run(trial, Tour::new(Vec::new(), false), |_, _| (), observe),
     }
 }
 
 fn run<W: TrialWorld, G: GoalSelector>(
     trial: &TrialSettings<W>,
-    pilot: Autonomous<G, Controller<W::Drive>>,
+    selector: G,
     reveal: impl Fn(&mut G, &W::Truth),
     observe: impl FnMut(TrialStep<W>) -> bool,
 ) -> Result<Option<Trial>, TrialError> {
     let mut world = trial.world.start(trial.seed);
-    let mut robot = trial.world.robot(&trial.experiment.robot, trial.estimator, &mut world, pilot)?;
+    let mut robot = W::robot(trial, &mut world, selector)?;
     let sampler = Sampler::new(trial.experiment.length);
     let mut measured = Measured { sampler, collisions: None, rates: None, reveal, observe };
     if *trial.strategy == TrialStrategy::FullObservation {
         let Robot { mapper, pilot, .. } = robot;
-        let (mut world, mut seeing) =
-            (FullyObserved::<W>(world), Robot::new(Box::new(ExactPoses), mapper, pilot));
-        explore(&mut world, &mut seeing, |world, robot, turn| {
-            let Turn { reading, belief, features, command } = turn.clone();
-            let of_sensors = Turn { reading: reading.of_sensors, belief, features, command };
-            measured.measure(&world.0, robot, &of_sensors)
-        })?;
+        let mut seeing = Robot::new(Box::new(ExactPoses), mapper, pilot);
+        loop {
+            let reading = world.sense();
+            let Turn { belief, features, command, .. } = seeing.step(observed::<W>(&world, &reading))?;
+            let turn = Turn { reading, belief, features, command };
+            if measured.measure(&world, &mut seeing, &turn)?.is_break() {
+                break;
+            }
+            world.act(&turn.command);
+        }
         let Robot { mapper, pilot, .. } = seeing;
         return Ok(measured.result(trial, mapper, &pilot));
     }

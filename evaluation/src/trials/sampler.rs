@@ -1,5 +1,4 @@
-use super::Sample;
-use super::TrialWorld;
+use super::{Sample, TrialWorld};
 use crate::metrics::{ChangingAccuracy, Prediction, RateScores, map_scores, rate_scores};
 use interfaces::GroundTruth;
 use mapper::Mapper;
@@ -10,6 +9,7 @@ const SAMPLES: u64 = 80;
 const SLACK: f64 = 1e-6;
 
 /// Measures a trial at every reading, and samples the metrics.
+#[derive(Default)]
 pub(super) struct Sampler {
     length: u64,
     /// The time of the next sample.
@@ -28,16 +28,7 @@ pub(super) struct Sampler {
 impl Sampler {
     /// A sampler for a trial of a length.
     pub(super) fn new(length: u64) -> Self {
-        Self {
-            length,
-            due: sample_time(0, length),
-            samples: Vec::with_capacity(SAMPLES as usize),
-            readings: 0,
-            views: 0,
-            views_of_changes: 0,
-            accuracy: ChangingAccuracy::default(),
-            prediction: Prediction::default(),
-        }
+        Self { length, due: sample_time(0, length), ..Self::default() }
     }
 
     /// Measures one reading. Returns the sample, if one is due.

@@ -1,11 +1,9 @@
-use super::Length;
-use super::TrialError;
+use super::{Length, TrialError, TrialSettings};
 use crate::oracle::Oracle;
 use agent::{Agent, Policy};
 use controller::{Controller, Drive};
 use interfaces::{GroundTruth, Reading, World};
-use mapper::EstimatorChoice;
-use robot::{Autonomous, GoalSelector, Pilot, Robot};
+use robot::{Autonomous, GoalSelector, Robot};
 
 /// The specification of a world in which trials run, of one kind.
 pub trait TrialWorld: Sized + Sync {
@@ -51,33 +49,21 @@ pub trait TrialWorld: Sized + Sync {
     /// # Errors
     ///
     /// When a setting is out of range.
-    fn agent(&self, robot: &Self::Robot, policy: &Policy, seed: u64) -> Result<Agent, TrialError>;
-
+    fn agent(trial: &TrialSettings<Self>, policy: &Policy) -> Result<Agent, TrialError>;
     /// The oracle of the world.
     fn oracle(&self) -> Oracle;
-
-    /// The pilot that drives to the goals of `selector`.
+    /// The robot at its start in a world, whose pilot drives to the goals of `selector`.
     ///
     /// # Errors
     ///
     /// When a setting is out of range.
-    fn pilot<G: GoalSelector>(
-        &self,
-        robot: &Self::Robot,
-        selector: G,
-        seed: u64,
-    ) -> Result<Autonomous<G, Controller<Self::Drive>>, TrialError>;
-
-    /// The robot at its start in a world.
-    ///
-    /// # Errors
-    ///
-    /// When a setting is out of range.
-    fn robot<P: Pilot>(
-        &self,
-        robot: &Self::Robot,
-        estimator: &EstimatorChoice,
+    fn robot<G: GoalSelector>(
+        trial: &TrialSettings<Self>,
         world: &mut Self::World,
-        pilot: P,
-    ) -> Result<Robot<<Self::World as World>::Reading, P>, TrialError>;
+        selector: G,
+    ) -> Result<TrialRobot<Self, G>, TrialError>;
 }
+
+/// The robot of a trial, with what chooses its goals.
+pub type TrialRobot<W, G> =
+    Robot<<<W as TrialWorld>::World as World>::Reading, Autonomous<G, Controller<<W as TrialWorld>::Drive>>>;

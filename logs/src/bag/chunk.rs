@@ -2,18 +2,19 @@
 //! no memory.
 
 use super::fields::Fields;
+use crate::bytes::Input;
 use flate2::Crc;
-use std::io::{self, BufRead, BufReader, Cursor, ErrorKind, Read};
+use std::io::{self, BufReader, Cursor, ErrorKind, Read};
 
 /// The most bytes of a chunk in the file, and unpacked. The tools of ROS write chunks of some megabytes.
-const MOST_PACKED: u64 = 256 << 20;
-const MOST_UNPACKED: u64 = 1 << 30;
+const MAX_PACKED: u64 = 256 << 20;
+const MAX_UNPACKED: u64 = 1 << 30;
 /// The bytes of a chunk before the name of its compression.
 const BEFORE_NAME: usize = 28;
 
 /// A chunk that is being read.
 pub(super) struct Chunk {
-    records: Box<dyn BufRead + Send>,
+    records: Box<dyn Read + Send>,
     /// The bytes that are still to come.
     pub(super) remaining: u64,
     /// The checksum so far, if it is compared, and the one that is expected.
@@ -31,8 +32,8 @@ impl Chunk {
         available: u64,
         checks_sum: bool,
     ) -> Result<Self, String> {
-        if len.min(available) > MOST_PACKED {
-            return Err(format!("a chunk of {len} bytes; at most {MOST_PACKED} are read"));
+        if len.min(available) > MAX_PACKED {
+            return Err(format!("a chunk of {len} bytes; at most {MAX_PACKED} are read"));
         }
         let mut bytes = Vec::with_capacity(len.min(available) as usize);
         let read = input.take(len).read_to_end(&mut bytes).map_err(|error| error.to_string())?;
@@ -44,8 +45,8 @@ impl Chunk {
         };
         let (unpacked, expected_crc, compression, packed) =
             header().map_err(|why: String| format!("the header of a chunk of {len} bytes {why}"))?;
-        if unpacked > MOST_UNPACKED {
-            return Err(format!("a chunk of {unpacked} bytes, unpacked; at most {MOST_UNPACKED} are read"));
+        if unpacked > MAX_UNPACKED {
+            return Err(format!("a chunk of {unpacked} bytes, unpacked; at most {MAX_UNPACKED} are read"));
         }
         let start = BEFORE_NAME + 4 + compression.len() + 8;
         if !is_cut && packed > (bytes.len() - start) as u64 {
@@ -54,7 +55,7 @@ impl Chunk {
         let mut cursor = Cursor::new(bytes);
         cursor.set_position(start as u64);
         let failed = |error: io::Error| error.to_string();
-        let records: Box<dyn BufRead + Send> = match compression.as_str() {
+        let records: Box<dyn Read + Send> = match compression.as_str() {
             "" => Box::new(cursor),
             "zstd" => {
                 Box::new(BufReader::new(zstd::stream::read::Decoder::with_buffer(cursor).map_err(failed)?))
@@ -79,49 +80,50 @@ impl Chunk {
                 Err(invalid("the checksum of the chunk does not match"))
             };
         }
-        let mut start = [0; 9];
-        self.read_exact(&mut start)?;
-        let [code, length @ ..] = start;
-        let length = u64::from_le_bytes(length);
+        let (code, length) = self.next_start()?;
         if length > self.remaining {
             return Err(invalid("a record is longer than its chunk"));
         }
         Ok(Some((code, length)))
     }
+}
 
-    /// Skips bytes.
-    pub(super) fn skip(&mut self, mut length: u64) -> io::Result<()> {
-        while length > 0 {
-            length -= self.take_some(length, |_| {})? as u64;
-        }
-        Ok(())
-    }
-
-    /// Fills a buffer.
-    pub(super) fn read_exact(&mut self, to: &mut [u8]) -> io::Result<()> {
-        let mut filled = 0;
-        while filled < to.len() {
-            let wanted = (to.len() - filled) as u64;
-            filled +=
-                self.take_some(wanted, |bytes| to[filled..filled + bytes.len()].copy_from_slice(bytes))?;
-        }
-        Ok(())
-    }
-
-    /// Takes at most `most` bytes, at least one, and gives their number.
-    fn take_some(&mut self, most: u64, use_bytes: impl FnOnce(&[u8])) -> io::Result<usize> {
-        let bytes = self.records.fill_buf()?;
-        let count = (bytes.len() as u64).min(most).min(self.remaining) as usize;
-        if count == 0 {
-            return Err(ErrorKind::UnexpectedEof.into());
-        }
+impl Read for Chunk {
+    fn read(&mut self, to: &mut [u8]) -> io::Result<usize> {
+        let most = self.remaining.min(to.len() as u64) as usize;
+        let count = self.records.read(&mut to[..most])?;
         if let Some(crc) = &mut self.crc {
-            crc.update(&bytes[..count]);
+            crc.update(&to[..count]);
         }
-        use_bytes(&bytes[..count]);
-        self.records.consume(count);
         self.remaining -= count as u64;
         Ok(count)
+    }
+}
+
+/// Records one after the other.
+pub(super) trait Records: Read {
+    /// Skips bytes.
+    fn skip(&mut self, length: u64) -> io::Result<()>;
+
+    /// The operation code and the length of the next record.
+    fn next_start(&mut self) -> io::Result<(u8, u64)> {
+        let mut start = [0; 9];
+        self.read_exact(&mut start)?;
+        let [code, length @ ..] = start;
+        Ok((code, u64::from_le_bytes(length)))
+    }
+}
+
+impl Records for Chunk {
+    fn skip(&mut self, length: u64) -> io::Result<()> {
+        let skipped = io::copy(&mut self.take(length), &mut io::sink())?;
+        if skipped == length { Ok(()) } else { Err(ErrorKind::UnexpectedEof.into()) }
+    }
+}
+
+impl Records for BufReader<Box<dyn Input>> {
+    fn skip(&mut self, length: u64) -> io::Result<()> {
+        self.seek_relative(length as i64)
     }
 }
 

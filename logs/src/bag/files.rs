@@ -5,7 +5,7 @@ use crate::bounds::{self, Unpacked};
 use crate::bytes::Bytes;
 use crate::error::LogError;
 use serde::Deserialize;
-use std::fs;
+use std::fs::{self, DirEntry};
 use std::io::{self, Read, Seek, Write};
 use std::path::{Component, Path};
 use std::sync::Arc;
@@ -16,7 +16,7 @@ pub(super) const ZSTD: [u8; 4] = [0x28, 0xb5, 0x2f, 0xfd];
 /// The first bytes of a bag of ROS 1.
 const ROS1: &[u8] = b"#ROSBAG V";
 /// The largest `metadata.yaml`.
-const MOST_METADATA: u64 = 16 << 20;
+const MAX_METADATA: u64 = 16 << 20;
 
 /// A file of a bag.
 #[derive(Clone, Debug)]
@@ -121,7 +121,7 @@ pub(crate) fn in_folder(folder: &Path) -> Result<(Vec<BagFile>, Option<String>),
         Err(error) => return Err(io(error)),
     };
     let mut text = String::new();
-    file.take(MOST_METADATA).read_to_string(&mut text).map_err(io)?;
+    file.take(MAX_METADATA).read_to_string(&mut text).map_err(io)?;
     let unusable = |why: String| LogError::Unusable { file: metadata.display().to_string(), why };
     let Metadata { rosbag2_bagfile_information: information } =
         serde_saphyr::from_str(&text).map_err(|error| {
@@ -154,13 +154,8 @@ pub(crate) fn in_folder(folder: &Path) -> Result<(Vec<BagFile>, Option<String>),
 /// All bag files of a folder without metadata, in the order of the numbers in their names.
 fn by_name(folder: &Path) -> Result<(Vec<BagFile>, Option<String>), LogError> {
     let io = |why| LogError::Io { file: folder.display().to_string(), why };
-    let mut paths = Vec::new();
-    for entry in fs::read_dir(folder).map_err(io)? {
-        let path = entry.map_err(io)?.path();
-        if path.is_file() {
-            paths.push(path);
-        }
-    }
+    let entries = fs::read_dir(folder).and_then(Iterator::collect::<io::Result<Vec<_>>>).map_err(io)?;
+    let mut paths: Vec<_> = entries.iter().map(DirEntry::path).filter(|path| path.is_file()).collect();
     paths.sort_by_key(|path| natural(&path.file_name().unwrap_or_default().to_string_lossy()));
     let mut files = Vec::new();
     for path in paths {

@@ -9,7 +9,6 @@ use crate::choice::bare;
 use crate::error::LogError;
 use crate::ros::{Frames, Header, Odometry, Transforms};
 use serde::Deserialize;
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// What the messages of a topic are to us.
@@ -61,7 +60,6 @@ pub(super) struct OdometryTopic {
     pub(super) topic: String,
     pub(super) odom_frame: String,
     pub(super) child_frame: String,
-    pub(super) poses: usize,
 }
 
 /// What a bag contains.
@@ -78,26 +76,23 @@ pub(super) struct Inventory {
 }
 
 /// The most lasers, or topics of odometry.
-const MOST_SOURCES: usize = 64;
+const MAX_SOURCES: usize = 64;
 
 impl Inventory {
     pub(super) fn of(files: &[BagFile]) -> Result<Self, LogError> {
         let is_wanted = Arc::new(|topic: &Topic| Kind::of_readable(topic).is_some());
         let mut messages = Messages::new(files.to_vec(), Selection { is_wanted, checks_sums: true });
         let mut inventory = Self::default();
-        let mut first = BTreeMap::new();
         while let Some(message) = messages.next_message()? {
             let counted = match Kind::of(&message.topic) {
                 Some(Kind::Scans) => inventory.count_scan(&message),
                 Some(Kind::Odometry) => inventory.count_odometry(&message),
-                Some(Kind::Transforms) => inventory.count_transforms(&message, &mut first),
+                Some(Kind::Transforms) => inventory.count_transforms(&message),
                 None => Ok(()),
             };
             counted.map_err(|what| message.error(what))?;
         }
-        for (index, pose) in first {
-            inventory.frames.rewind(index, pose);
-        }
+        inventory.frames.rewind();
         inventory.topics = messages.topics;
         inventory.notes = messages.notes;
         Ok(inventory)
@@ -107,10 +102,10 @@ impl Inventory {
         let Stamped { header } = cdr::decoded(&message.data)?;
         self.begin_ns.get_or_insert((header.stamp.ns(), message.log_ns));
         let (topic, frame) = (&message.topic.name, bounds::name("a frame", bare(&header.frame_id))?);
-        let is_full = self.lasers.len() == MOST_SOURCES;
+        let is_full = self.lasers.len() == MAX_SOURCES;
         match self.lasers.iter_mut().find(|laser| laser.topic == *topic && laser.frame == frame) {
             Some(laser) => laser.scans += 1,
-            None if is_full => return Err(format!("more than {MOST_SOURCES} lasers")),
+            None if is_full => return Err(format!("more than {MAX_SOURCES} lasers")),
             None => self.lasers.push(LaserTopic { topic: topic.clone(), frame: frame.to_owned(), scans: 1 }),
         }
         Ok(())
@@ -119,31 +114,28 @@ impl Inventory {
     fn count_odometry(&mut self, message: &Message) -> Result<(), String> {
         let Odometry { header, child_frame_id, .. } = cdr::decoded(&message.data)?;
         let topic = &message.topic.name;
-        let is_full = self.odometry.len() == MOST_SOURCES;
-        match self.odometry.iter_mut().find(|odometry| odometry.topic == *topic) {
-            Some(odometry) => odometry.poses += 1,
-            None if is_full => return Err(format!("more than {MOST_SOURCES} topics of odometry")),
-            None => self.odometry.push(OdometryTopic {
-                topic: topic.clone(),
-                odom_frame: bounds::name("a frame", bare(&header.frame_id))?.to_owned(),
-                child_frame: bounds::name("a frame", bare(&child_frame_id))?.to_owned(),
-                poses: 1,
-            }),
+        if self.odometry.iter().any(|odometry| odometry.topic == *topic) {
+            return Ok(());
         }
+        if self.odometry.len() == MAX_SOURCES {
+            return Err(format!("more than {MAX_SOURCES} topics of odometry"));
+        }
+        self.odometry.push(OdometryTopic {
+            topic: topic.clone(),
+            odom_frame: bounds::name("a frame", bare(&header.frame_id))?.to_owned(),
+            child_frame: bounds::name("a frame", bare(&child_frame_id))?.to_owned(),
+        });
         Ok(())
     }
 
-    fn count_transforms(&mut self, message: &Message, first: &mut First) -> Result<(), String> {
+    fn count_transforms(&mut self, message: &Message) -> Result<(), String> {
         let Transforms { transforms } = cdr::decoded(&message.data)?;
         for transform in transforms {
             let (parent, child) = (&transform.header.frame_id, &transform.child_frame_id);
             if let Some(pose) = transform.transform.isometry() {
-                first.entry(self.frames.set(parent, child, pose)?).or_insert(pose);
+                self.frames.set(parent, child, pose)?;
             }
         }
         Ok(())
     }
 }
-
-/// The first pose of each transform.
-type First = BTreeMap<usize, nalgebra::Isometry3<f64>>;

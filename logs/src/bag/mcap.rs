@@ -3,7 +3,7 @@
 //! The crate `mcap` has readers as well, but version 0.25 trusts the lengths within chunks: a hostile file makes it panic or
 //! allocate gigabytes.
 
-use super::chunk::Chunk;
+use super::chunk::{Chunk, Records};
 use super::fields::Fields;
 use super::message::{Message, MessageSource, Selection, Topic};
 use crate::bounds::{MAX_CHUNK_GROWTH, MAX_NAME_BYTES, max_unpacked_bytes};
@@ -25,11 +25,11 @@ const DATA_END: u8 = 15;
 /// The bytes of a message before its data.
 const MESSAGE_HEADER: usize = 22;
 /// The most bytes of a record that is read as a whole.
-const MOST_RECORD: u64 = 64 << 20;
+const MAX_RECORD: u64 = 64 << 20;
 /// The bytes of a schema or a channel that are read: its numbers and names. The rest describes messages that we know.
 const MAX_DEFINITION_BYTES: u64 = 2 * MAX_NAME_BYTES as u64 + 16;
 /// A record that claims more bytes is no record that was cut off, but nonsense.
-const MOST_CLAIMED: u64 = 1 << 40;
+const MAX_CLAIMED: u64 = 1 << 40;
 
 /// A channel: a topic in one file.
 struct Channel {
@@ -41,7 +41,6 @@ struct Channel {
 /// An MCAP file.
 pub(super) struct McapFile {
     input: BufReader<Box<dyn Input>>,
-    file: Arc<str>,
     size: u64,
     /// The offset of the last record outside of chunks, and of the next.
     record: u64,
@@ -49,14 +48,20 @@ pub(super) struct McapFile {
     chunk: Option<Chunk>,
     /// The bytes of all chunks so far, unpacked.
     unpacked: u64,
-    schemas: BTreeMap<u16, String>,
-    channels: BTreeMap<u16, Channel>,
-    selection: Selection,
+    content: Content,
     /// Whether the file ends as its writer ends it: then no record can reach beyond the end.
     is_complete: bool,
     /// Why the file ends too early.
     missing: Option<String>,
     is_over: bool,
+}
+
+/// What the records so far have defined.
+struct Content {
+    file: Arc<str>,
+    schemas: BTreeMap<u16, String>,
+    channels: BTreeMap<u16, Channel>,
+    selection: Selection,
 }
 
 /// What stops the reading of a record.
@@ -83,17 +88,16 @@ impl McapFile {
         let start = MAGIC.len() as u64;
         let is_complete = ends_with_magic(&mut input, size).map_err(io)?;
         input.seek(SeekFrom::Start(start)).map_err(io)?;
+        let (schemas, channels) = (BTreeMap::new(), BTreeMap::new());
+        let content = Content { file: file.clone(), schemas, channels, selection };
         Ok(Self {
             input,
-            file: file.clone(),
             size,
             record: start,
             next: start,
             chunk: None,
             unpacked: 0,
-            schemas: BTreeMap::new(),
-            channels: BTreeMap::new(),
-            selection,
+            content,
             is_complete,
             missing: None,
             is_over: false,
@@ -111,11 +115,8 @@ impl McapFile {
             });
         }
         self.record = self.next;
-        let mut start = [0; 9];
-        self.input.read_exact(&mut start)?;
-        let [code, length @ ..] = start;
-        let length = u64::from_le_bytes(length);
-        if length > MOST_CLAIMED {
+        let (code, length) = self.input.next_start()?;
+        if length > MAX_CLAIMED {
             return Err(Stop::Invalid(format!("a record (code {code}) of {length} bytes")));
         }
         self.next = self.record + 9 + length;
@@ -128,7 +129,8 @@ impl McapFile {
             }
             CHUNK => {
                 let available = self.size - (self.record + 9).min(self.size);
-                let chunk = Chunk::read(&mut self.input, length, available, self.selection.checks_sums);
+                let chunk =
+                    Chunk::read(&mut self.input, length, available, self.content.selection.checks_sums);
                 let chunk = chunk.map_err(|what| match length > available {
                     true => Stop::Cut,
                     false => Stop::Invalid(what),
@@ -146,26 +148,7 @@ impl McapFile {
                 Ok(None)
             }
             _ if self.next > self.size => Err(Stop::Cut),
-            SCHEMA | CHANNEL => {
-                let bytes = self.whole(length.min(MAX_DEFINITION_BYTES))?;
-                self.define(code, &bytes)?;
-                self.skip(length - bytes.len() as u64)
-            }
-            MESSAGE => {
-                let mut header = [0; MESSAGE_HEADER];
-                let Some(data) = length.checked_sub(MESSAGE_HEADER as u64) else {
-                    return Err(Stop::Invalid(format!("a message of {length} bytes")));
-                };
-                self.input.read_exact(&mut header)?;
-                match self.message(&header)? {
-                    Some(mut message) => {
-                        message.data = self.whole(data)?;
-                        Ok(Some(message))
-                    }
-                    None => self.skip(data),
-                }
-            }
-            _ => self.skip(length),
+            _ => self.content.take(&mut self.input, code, length),
         }
     }
 
@@ -173,44 +156,52 @@ impl McapFile {
         let Some((code, length)) = chunk.next_record()? else {
             return if chunk.is_cut { Err(Stop::Cut) } else { Ok(None) };
         };
-        let mut found = None;
+        let found = self.content.take(&mut chunk, code, length)?;
+        self.chunk = Some(chunk);
+        Ok(found)
+    }
+
+    fn invalid(&mut self, what: String) -> LogError {
+        self.is_over = true;
+        LogError::Byte { file: self.content.file.to_string(), byte: self.record, what }
+    }
+
+    fn cut(&mut self) {
+        self.is_over = true;
+        self.missing = Some(format!(
+            "{} has no end, since its recorder was stopped: what is whole before byte {} was read",
+            self.content.file, self.record
+        ));
+    }
+}
+
+impl Content {
+    /// Reads a record after its start. Gives its message, if it is one that is wanted.
+    fn take(&mut self, from: &mut impl Records, code: u8, length: u64) -> Result<Option<Message>, Stop> {
+        let whole = |from: &mut dyn Read, length: u64| {
+            let mut bytes = vec![0; checked(length)?];
+            from.read_exact(&mut bytes)?;
+            Ok::<_, Stop>(bytes)
+        };
         match code {
             SCHEMA | CHANNEL => {
-                let mut bytes = vec![0; length.min(MAX_DEFINITION_BYTES) as usize];
-                chunk.read_exact(&mut bytes)?;
+                let bytes = whole(from, length.min(MAX_DEFINITION_BYTES))?;
                 self.define(code, &bytes)?;
-                chunk.skip(length - bytes.len() as u64)?;
+                from.skip(length - bytes.len() as u64)?;
             }
             MESSAGE => {
                 let mut header = [0; MESSAGE_HEADER];
                 let Some(data) = length.checked_sub(MESSAGE_HEADER as u64) else {
                     return Err(Stop::Invalid(format!("a message of {length} bytes")));
                 };
-                chunk.read_exact(&mut header)?;
-                match self.message(&header)? {
-                    Some(mut message) => {
-                        message.data = vec![0; checked(data)?];
-                        chunk.read_exact(&mut message.data)?;
-                        found = Some(message);
-                    }
-                    None => chunk.skip(data)?,
+                from.read_exact(&mut header)?;
+                if let Some(message) = self.message(&header)? {
+                    return Ok(Some(Message { data: whole(from, data)?, ..message }));
                 }
+                from.skip(data)?;
             }
-            _ => chunk.skip(length)?,
+            _ => from.skip(length)?,
         }
-        self.chunk = Some(chunk);
-        Ok(found)
-    }
-
-    /// The next bytes outside of chunks.
-    fn whole(&mut self, length: u64) -> Result<Vec<u8>, Stop> {
-        let mut bytes = vec![0; checked(length)?];
-        self.input.read_exact(&mut bytes)?;
-        Ok(bytes)
-    }
-
-    fn skip(&mut self, length: u64) -> Result<Option<Message>, Stop> {
-        self.input.seek_relative(length as i64)?;
         Ok(None)
     }
 
@@ -255,19 +246,6 @@ impl McapFile {
             number: channel.messages,
         }))
     }
-
-    fn invalid(&mut self, what: String) -> LogError {
-        self.is_over = true;
-        LogError::Byte { file: self.file.to_string(), byte: self.record, what }
-    }
-
-    fn cut(&mut self) {
-        self.is_over = true;
-        self.missing = Some(format!(
-            "{} has no end, since its recorder was stopped: what is whole before byte {} was read",
-            self.file, self.record
-        ));
-    }
 }
 
 /// Whether a file of `size` bytes has the last bytes of a complete file, after its first ones.
@@ -284,8 +262,8 @@ fn ends_with_magic(input: &mut (impl Read + Seek), size: u64) -> io::Result<bool
 
 /// The length of a record that is read as a whole.
 fn checked(length: u64) -> Result<usize, Stop> {
-    if length > MOST_RECORD {
-        return Err(Stop::Invalid(format!("a record of {length} bytes; at most {MOST_RECORD} are read")));
+    if length > MAX_RECORD {
+        return Err(Stop::Invalid(format!("a record of {length} bytes; at most {MAX_RECORD} are read")));
     }
     Ok(length as usize)
 }
@@ -308,6 +286,6 @@ impl MessageSource for McapFile {
     }
 
     fn report(&self) -> (Vec<Arc<Topic>>, Option<String>) {
-        (self.channels.values().map(|channel| channel.topic.clone()).collect(), self.missing.clone())
+        (self.content.channels.values().map(|channel| channel.topic.clone()).collect(), self.missing.clone())
     }
 }

@@ -240,12 +240,12 @@ fn connected(
 
 /// Names for a sentence, at most ten.
 fn listed<'a>(names: impl Iterator<Item = &'a str>) -> String {
-    const MOST: usize = 10;
+    const MAX: usize = 10;
     let mut names: Vec<String> = names.map(str::to_owned).collect();
     names.sort();
     names.dedup();
-    let more = names.len().saturating_sub(MOST);
-    names.truncate(MOST);
+    let more = names.len().saturating_sub(MAX);
+    names.truncate(MAX);
     let rest = if more > 0 { format!(" and {more} more") } else { String::new() };
     names.join(", ") + &rest
 }

@@ -8,6 +8,7 @@ use crate::cdr;
 use crate::choice::bare;
 use crate::doubts::{self, Doubts};
 use crate::error::LogError;
+use crate::log;
 use crate::odometry::Odometry;
 use crate::ros::{self, Frames, Header, LaserScan, Transforms, flat, mounted, scan_of};
 use interfaces::{LaserReading, Scan};
@@ -16,7 +17,7 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 
 /// Scans that wait for a later pose, or for an earlier scan of another laser; more are not kept.
-const MOST_WAITING: usize = 256;
+const MAX_WAITING: usize = 256;
 /// A scan of another laser arrives at most this much later, s.
 const DISORDER_S: f64 = 0.5;
 /// Scans of two lasers that have the same time, as in simulations, come one after the other, s.
@@ -46,7 +47,7 @@ impl Clock {
 /// What a pass found.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Counts {
-    /// Scans that are none, and why the first is none.
+    /// Invalid scans, and why the first is invalid.
     pub(super) invalid_scans: usize,
     pub(super) first_invalid: Option<String>,
     pub(super) poses: usize,
@@ -100,33 +101,10 @@ impl RawReadings {
         }
     }
 
-    /// The next reading, `None` at the end.
-    pub(super) fn next_reading(&mut self) -> Result<Option<LaserReading>, LogError> {
-        loop {
-            if self.is_ripe() {
-                return Ok(self.waiting.pop_front().map(|scan| self.reading(scan)));
-            }
-            if self.is_over {
-                return Ok(None);
-            }
-            let Some(message) = self.messages.next_message()? else {
-                self.is_over = true;
-                continue;
-            };
-            let taken = match Kind::of(&message.topic) {
-                Some(Kind::Scans) => self.take_scan(&message),
-                Some(Kind::Odometry) => self.take_odometry(&message),
-                Some(Kind::Transforms) => self.take_transforms(&message),
-                None => Ok(()),
-            };
-            taken.map_err(|what| message.error(what))?;
-        }
-    }
-
     /// Whether the first scan that waits has a pose, and no earlier scan can come.
     fn is_ripe(&self) -> bool {
         let Some(first) = self.waiting.front() else { return false };
-        if self.is_over || self.overdue > 0 || self.waiting.len() > MOST_WAITING {
+        if self.is_over || self.overdue > 0 || self.waiting.len() > MAX_WAITING {
             return true;
         }
         let has_come = |laser| self.waiting.iter().any(|scan| scan.laser == laser);
@@ -155,6 +133,11 @@ impl RawReadings {
     /// The first pose of the odometry, in its own frame.
     pub(super) fn origin(&self) -> Isometry2<f64> {
         self.odometry.origin()
+    }
+
+    /// As [`Odometry::impossible`].
+    pub(super) fn impossible(&self) -> Option<String> {
+        self.odometry.impossible()
     }
 
     /// Whether the robot has not moved, except for a drift of its odometry.
@@ -228,5 +211,29 @@ impl RawReadings {
         self.newest_s = self.newest_s.max(time_s);
         self.counts.poses += 1;
         self.odometry.add(time_s, flat(&(pose * self.frames.along(&self.plan.to_base))));
+    }
+}
+
+impl log::RawReadings for RawReadings {
+    fn next_reading(&mut self) -> Result<Option<LaserReading>, LogError> {
+        loop {
+            if self.is_ripe() {
+                return Ok(self.waiting.pop_front().map(|scan| self.reading(scan)));
+            }
+            if self.is_over {
+                return Ok(None);
+            }
+            let Some(message) = self.messages.next_message()? else {
+                self.is_over = true;
+                continue;
+            };
+            let taken = match Kind::of(&message.topic) {
+                Some(Kind::Scans) => self.take_scan(&message),
+                Some(Kind::Odometry) => self.take_odometry(&message),
+                Some(Kind::Transforms) => self.take_transforms(&message),
+                None => Ok(()),
+            };
+            taken.map_err(|what| message.error(what))?;
+        }
     }
 }

@@ -15,9 +15,9 @@ pub(super) const MAGIC: [u8; 16] = *b"SQLite format 3\0";
 const PAGE_ROWS: u32 = 64;
 const PAGE_BYTES: usize = 8 << 20;
 /// A row takes more bytes of a file than this: if there are more rows, the file repeats itself.
-const LEAST_ROW: u64 = 4;
+const MIN_ROW: u64 = 4;
 /// The largest message.
-const MOST_BYTES: i64 = 64 << 20;
+const MAX_BYTES: i64 = 64 << 20;
 
 /// A table that is a table: a view of a hostile file can have rows without end.
 const IS_TABLE: &str =
@@ -90,14 +90,14 @@ impl SqliteFile {
     fn turn_page(&mut self) -> Result<(), LogError> {
         let failed = |error| database_error(&self.file, &error);
         let mut statement = self.database.prepare(MESSAGES).map_err(failed)?;
-        let mut rows = statement.query((self.last_row, PAGE_ROWS, MOST_BYTES)).map_err(failed)?;
+        let mut rows = statement.query((self.last_row, PAGE_ROWS, MAX_BYTES)).map_err(failed)?;
         let (mut count, mut bytes) = (0, 0);
         while bytes < PAGE_BYTES {
             let Some(row) = rows.next().map_err(failed)? else { break };
             count += 1;
             self.rows += 1;
             let row_id: i64 = row.get(0).map_err(failed)?;
-            if row_id <= self.last_row || self.rows > self.size / LEAST_ROW {
+            if row_id <= self.last_row || self.rows > self.size / MIN_ROW {
                 return Err(damaged(&self.file, &format!("row {row_id} of `messages` repeats itself")));
             }
             self.last_row = row_id;

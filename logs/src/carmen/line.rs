@@ -6,10 +6,10 @@ use crate::lines::Lines;
 use interfaces::{Scan, is_valid_pose};
 use nalgebra::Isometry2;
 use std::f64::consts::{FRAC_PI_2, PI};
-use std::str::SplitAsciiWhitespace;
+use std::str::{FromStr, SplitAsciiWhitespace};
 
 /// The largest number of readings of a scan: a line that claims more is invalid.
-const MOST_READINGS: usize = 20_000;
+const MAX_READINGS: usize = 20_000;
 /// The maximum range of a laser without a parameter, m: a SICK LMS 200 reports failures as 81.83 m and above.
 const MAX_RANGE_M: f64 = 80.0;
 
@@ -121,7 +121,7 @@ fn robotlaser(mut words: Words) -> Result<ScanLine, String> {
     let range_max_m = if max_m > 0.1 { max_m } else { MAX_RANGE_M };
     let (ranges_m, typical) = words.ranges(count, range_max_m)?;
     let remissions = words.number("the number of remissions")?;
-    if !(0.0..=MOST_READINGS as f64).contains(&remissions) {
+    if !(0.0..=MAX_READINGS as f64).contains(&remissions) {
         return Err(words.invalid("the number of remissions", &remissions.to_string()));
     }
     // Remissions, the poses of laser and robot, velocities and safety distances.
@@ -153,22 +153,22 @@ impl Words<'_> {
         (0..count).try_for_each(|_| self.next(what).map(|_| ()))
     }
 
-    fn number(&mut self, what: &str) -> Result<f64, String> {
+    fn parsed<T: FromStr>(&mut self, what: &str, is_valid: impl Fn(&T) -> bool) -> Result<T, String> {
         let word = self.next(what)?.to_owned();
-        let number = word.parse::<f64>().ok().filter(|number| number.is_finite());
-        number.ok_or_else(|| self.invalid(what, &word))
+        word.parse().ok().filter(is_valid).ok_or_else(|| self.invalid(what, &word))
+    }
+
+    fn number(&mut self, what: &str) -> Result<f64, String> {
+        self.parsed(what, |number: &f64| number.is_finite())
     }
 
     /// A time; times that are not finite are found with all others that make no sense.
     fn time(&mut self) -> Result<f64, String> {
-        let word = self.next("the time")?.to_owned();
-        word.parse::<f64>().map_err(|_| self.invalid("the time", &word))
+        self.parsed("the time", |_| true)
     }
 
     fn count(&mut self) -> Result<usize, String> {
-        let word = self.next("the number of readings")?.to_owned();
-        let count = word.parse::<usize>().ok().filter(|count| (1..=MOST_READINGS).contains(count));
-        count.ok_or_else(|| self.invalid("the number of readings", &word))
+        self.parsed("the number of readings", |count| (1..=MAX_READINGS).contains(count))
     }
 
     fn pose(&mut self, what: &str) -> Result<Isometry2<f64>, String> {

@@ -1,5 +1,6 @@
 //! The first reading of a log: what it contains, and what makes no sense.
 
+use super::Rules;
 use super::line::{self, Geometry, Line};
 use crate::bounds;
 use crate::doubts::{Doubts, OdometryTimes};
@@ -10,89 +11,76 @@ use crate::standing::Standing;
 use crate::summary::{LogSummary, PoseSource, since_epoch};
 use crate::times::{self, Times};
 use nalgebra::Isometry2;
-use std::sync::Arc;
 
-/// All that the second reading needs.
-#[derive(Clone, Debug)]
-pub(super) struct Survey {
-    pub(super) summary: LogSummary,
-    pub(super) geometry: Geometry,
-    /// The times of the readings from the first on, strictly increasing, s.
-    pub(super) times_s: Arc<[f64]>,
-    /// Whether the times in the log can be compared with each other.
-    pub(super) has_times: bool,
-    /// Whether an ODOM line without a time is a new origin of the odometry.
-    pub(super) has_origins: bool,
-}
-
-impl Survey {
-    pub(super) fn of(lines: &mut Lines) -> Result<Self, LogError> {
-        let mut geometry = Geometry::default();
-        let (mut times_s, mut notes) = (Vec::new(), Vec::new());
-        let (mut with_time, mut without_time) = (0, 0);
-        let mut odom_origin = None;
-        // With and without the lines that have no time: whether these are origins is known at the end.
-        let (mut timed, mut untimed) = (Odometry::default(), Odometry::default());
-        let mut standing = Standing::default();
-        let (mut doubts, mut odometry_times) = (Doubts::default(), OdometryTimes::default());
-        while let Some(line) = line::next(lines, &geometry)? {
-            match line {
-                Line::Odometry { time_s, pose } => {
-                    odom_origin.get_or_insert(pose);
-                    if time_s == 0.0 {
-                        without_time += 1;
-                        timed.set_origin(pose);
-                        untimed.add(0.0, pose);
-                    } else {
-                        with_time += 1;
-                        timed.add(time_s, pose);
-                        times_s.last().iter().for_each(|scan_s| odometry_times.add(time_s, &pose, **scan_s));
+/// Reads a log once: how its lines become readings, the times of the readings from the first on, strictly increasing, s, and
+/// what the log contains.
+pub(super) fn of(lines: &mut Lines) -> Result<(Rules, Vec<f64>, LogSummary), LogError> {
+    let mut geometry = Geometry::default();
+    let (mut times_s, mut notes) = (Vec::new(), Vec::new());
+    let (mut with_time, mut without_time) = (0, 0);
+    let mut odom_origin = None;
+    // With and without the lines that have no time: whether these are origins is known at the end.
+    let (mut timed, mut untimed) = (Odometry::default(), Odometry::default());
+    let mut standing = Standing::default();
+    let (mut doubts, mut odometry_times) = (Doubts::default(), OdometryTimes::default());
+    while let Some(line) = line::next(lines, &geometry)? {
+        match line {
+            Line::Odometry { time_s, pose } => {
+                odom_origin.get_or_insert(pose);
+                if time_s == 0.0 {
+                    without_time += 1;
+                    timed.set_origin(pose);
+                    untimed.add(0.0, pose);
+                } else {
+                    with_time += 1;
+                    timed.add(time_s, pose);
+                    if let Some(scan_s) = times_s.last() {
+                        odometry_times.add(time_s, &pose, *scan_s);
                     }
                 }
-                Line::Scan(scan) => {
-                    bounds::one_more(times_s.len()).map_err(|what| lines.error(what))?;
-                    times_s.push(scan.time_s);
-                    doubts.add(scan.typical, &scan.scan.ranges_m);
-                    standing.add(&Isometry2::identity(), &scan.scan);
-                }
-                Line::LaserOffset(offset_m) => geometry.offset_m = offset_m,
-                Line::MaxRange(range_max_m) => geometry.range_max_m = range_max_m,
-                Line::Other { is_cut_off: true } => {
-                    notes.push(format!("line {}, the last one, is cut off and left out", lines.number));
-                }
-                Line::Other { is_cut_off: false } => {}
             }
+            Line::Scan(scan) => {
+                bounds::one_more(times_s.len()).map_err(|what| lines.error(what))?;
+                times_s.push(scan.time_s);
+                doubts.add(scan.typical, &scan.scan.ranges_m);
+                standing.add(&Isometry2::identity(), &scan.scan);
+            }
+            Line::LaserOffset(offset_m) => geometry.offset_m = offset_m,
+            Line::MaxRange(range_max_m) => geometry.range_max_m = range_max_m,
+            Line::Other { is_cut_off: true } => {
+                notes.push(format!("line {}, the last one, is cut off and left out", lines.number));
+            }
+            Line::Other { is_cut_off: false } => {}
         }
-        if times_s.is_empty() {
-            let why = "no line is a scan (FLASER or ROBOTLASER1): not a CARMEN log".to_owned();
-            return Err(LogError::Unusable { file: lines.file.clone(), why });
-        }
-        let has_origins = with_time > 0;
-        let odometry_poses = if has_origins { with_time } else { without_time };
-        if odometry_poses == 0 {
-            notes.push("no ODOM line: the odometry stands still".to_owned());
-        }
-        let odometry = if has_origins { timed } else { untimed };
-        let begin_s = times_s.first().copied().and_then(since_epoch);
-        let pose_source = if odometry_poses > 0 { PoseSource::OdometryLines } else { PoseSource::Standing };
-        let stands = odometry.stands() && standing.looks_so();
-        let impossible = odometry_times.impossible(&times_s).or_else(|| doubts.impossible(0, stands));
-        let Times { times_s, has_times, note } = times::repaired(&times_s);
-        notes.extend(note);
-        let duration_s = times_s.last().copied().unwrap_or_default();
-        let summary = LogSummary {
-            scans: times_s.len(),
-            duration_s,
-            has_times,
-            begin_s: begin_s.filter(|_| has_times),
-            pose_source,
-            odometry_poses,
-            stands,
-            odom_origin: odom_origin.unwrap_or_default(),
-            scan_topics: Vec::new(),
-            notes,
-            impossible,
-        };
-        Ok(Self { summary, geometry, times_s: times_s.into(), has_times, has_origins })
     }
+    if times_s.is_empty() {
+        let why = "no line is a scan (FLASER or ROBOTLASER1): not a CARMEN log".to_owned();
+        return Err(LogError::Unusable { file: lines.file.clone(), why });
+    }
+    let has_origins = with_time > 0;
+    let odometry_poses = if has_origins { with_time } else { without_time };
+    if odometry_poses == 0 {
+        notes.push("no ODOM line: the odometry stands still".to_owned());
+    }
+    let odometry = if has_origins { timed } else { untimed };
+    let begin_s = times_s.first().copied().and_then(since_epoch);
+    let stands = odometry.stands() && standing.looks_so();
+    let impossible = odometry_times.impossible(&times_s).or_else(|| odometry.impossible());
+    let impossible = impossible.or_else(|| doubts.impossible(0, stands));
+    let Times { times_s, has_times, note } = times::repaired(&times_s);
+    notes.extend(note);
+    let summary = LogSummary {
+        scans: times_s.len(),
+        duration_s: times_s.last().copied().unwrap_or_default(),
+        has_times,
+        begin_s: begin_s.filter(|_| has_times),
+        pose_source: if odometry_poses > 0 { PoseSource::OdometryLines } else { PoseSource::Standing },
+        odometry_poses,
+        stands,
+        odom_origin: odom_origin.unwrap_or_default(),
+        scan_topics: Vec::new(),
+        notes,
+        impossible,
+    };
+    Ok((Rules { geometry, has_times, has_origins, stands }, times_s, summary))
 }

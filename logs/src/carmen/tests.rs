@@ -1,13 +1,14 @@
 use super::CarmenLog;
 use crate::bytes::Bytes;
 use crate::error::LogError;
+use crate::log::Log;
 use flate2::Compression;
 use flate2::write::GzEncoder;
 use interfaces::{LaserReading, heading_rad};
 use proptest::prelude::*;
 use std::io::Write;
 
-fn open(file: &str, bytes: &[u8]) -> Result<CarmenLog, LogError> {
+fn open(file: &str, bytes: &[u8]) -> Result<Log, LogError> {
     CarmenLog::open(file, Bytes::Memory(bytes.into()))
 }
 
@@ -42,7 +43,7 @@ fn only_ranges_and_times_come_from_the_scans_and_poses_from_the_odometry() {
     assert!(scan.ranges_m[0].is_nan() && scan.ranges_m[1] == 1.5 && scan.ranges_m[179] == 0.5);
     assert!((scan.angle_rad(90)).abs() < 1e-9, "the middle beam looks ahead");
     let log = open("test.log", text.as_bytes()).unwrap();
-    assert_eq!(log.reference_poses().unwrap()[0].unwrap().translation.x, 77.0);
+    assert_eq!(log.reference_poses().unwrap().unwrap()[0].unwrap().translation.x, 77.0);
 }
 
 #[test]
@@ -232,6 +233,27 @@ fn room(factor: f64, odometry: impl Fn(f64) -> String) -> String {
 
 fn impossible(text: &str) -> Option<String> {
     open("test.log", text.as_bytes()).unwrap().summary().impossible.clone()
+}
+
+#[test]
+fn times_in_milliseconds_are_named() {
+    // A robot that drives at 0.3 m/s, rests, and turns on the spot.
+    let log = |unit_s: f64, period_s: f64| {
+        let line = |step: u32| {
+            let time_s = 100.0 + period_s * f64::from(step);
+            let x = 0.3 * period_s * f64::from(step.min(120));
+            let theta = 0.4 * period_s * f64::from(step.max(180) - 180);
+            let at = time_s / unit_s;
+            format!("ODOM {x} 0 {theta} 0 0 0 {at} host {at}\n") + &flaser(at, &format!("{x} 0 {theta}"))
+        };
+        (0..300).map(line).collect::<String>()
+    };
+    // Also with a pose a minute.
+    for period_s in [0.1, 1.0, 60.0] {
+        assert_eq!(impossible(&log(1.0, period_s)), None, "{period_s}");
+    }
+    let why = impossible(&log(1e-3, 0.1)).unwrap();
+    assert!(why.starts_with("the times look like milliseconds: in "), "{why}");
 }
 
 #[test]

@@ -8,7 +8,7 @@ use nalgebra::Isometry2;
 const NEAR_M: f64 = 0.25;
 const NEAR_RAD: f64 = 0.8;
 /// A laser that moves faster is not counted again after this number of lasers.
-const MOST_LASERS: usize = 8;
+const MAX_LASERS: usize = 8;
 
 /// A laser: where it is mounted, and the number and the angles of its beams.
 pub(super) struct Laser {
@@ -27,7 +27,7 @@ impl Laser {
     pub(super) fn moved_from(&self, known: &[Self]) -> Option<usize> {
         let step = |laser: &Self| laser.mount.inv_mul(&self.mount);
         let is_same = |laser: &Self| {
-            let (step, is_full) = (step(laser), known.len() >= MOST_LASERS);
+            let (step, is_full) = (step(laser), known.len() >= MAX_LASERS);
             let is_near = step.translation.vector.norm() < NEAR_M && heading_rad(&step).abs() < NEAR_RAD;
             laser.beams == self.beams && (is_near || is_full)
         };

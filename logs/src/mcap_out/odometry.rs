@@ -4,12 +4,12 @@ use interfaces::{LaserReading, Twist, heading_rad};
 use nalgebra::{Isometry2, Vector2};
 
 /// Poses nearer in time than this are one, s.
-const LEAST_STEP_S: f64 = 1e-6;
+const MIN_STEP_S: f64 = 1e-6;
 /// The largest difference between the motion since the last pose and the sum of the velocities that is spread over the path,
 /// m and rad. Beyond it, the odometry has jumped.
-const MOST_SPREAD_M: f64 = 0.1;
-const MOST_SPREAD_RAD: f64 = 0.15;
-/// The turn that takes as long as a way of one metre, rad.
+const MAX_SPREAD_M: f64 = 0.1;
+const MAX_SPREAD_RAD: f64 = 0.15;
+/// Rotation equivalent to 1 m, rad.
 const RAD_PER_M: f64 = 3.0;
 
 /// A pose of the odometry.
@@ -50,7 +50,7 @@ pub(super) fn steps(reading: &LaserReading, last: Option<(f64, Isometry2<f64>)>)
         }
     }
     if let Some((last_s, last)) = last {
-        steps.retain(|step| step.time_s > last_s + LEAST_STEP_S);
+        steps.retain(|step| step.time_s > last_s + MIN_STEP_S);
         if let Some(first) = steps.last().copied() {
             spread(&mut steps, &first.before(&first.twist, last_s), &last);
         }
@@ -63,7 +63,7 @@ pub(super) fn steps(reading: &LaserReading, last: Option<(f64, Isometry2<f64>)>)
 fn spread(steps: &mut [Step], begin: &Step, last: &Isometry2<f64>) {
     let missing = begin.pose.inv_mul(last);
     let (shift_m, turn_rad) = (missing.translation.vector, heading_rad(&missing));
-    if begin.length > 0.0 && shift_m.norm() <= MOST_SPREAD_M && turn_rad.abs() <= MOST_SPREAD_RAD {
+    if begin.length > 0.0 && shift_m.norm() <= MAX_SPREAD_M && turn_rad.abs() <= MAX_SPREAD_RAD {
         for step in steps {
             let share = step.length / begin.length;
             step.pose *= interfaces::pose(shift_m.x * share, shift_m.y * share, turn_rad * share);

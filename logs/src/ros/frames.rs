@@ -6,19 +6,20 @@ use nalgebra::{Isometry2, Isometry3, UnitComplex, Vector3};
 use std::collections::{BTreeMap, VecDeque};
 
 /// The most frames of a robot.
-const MOST_FRAMES: usize = 10_000;
+const MAX_FRAMES: usize = 10_000;
 /// A laser that is tilted by more than this does not measure a plane: the cosine of 15°.
-const LEAST_UPRIGHT: f64 = 0.9659;
+const MIN_UPRIGHT: f64 = 0.9659;
 /// Frames that move against each other are the robot and the world.
-const LEAST_MOTION: f64 = 1e-6;
+const MIN_MOTION: f64 = 1e-6;
 
 /// A transform between two frames.
 #[derive(Clone, Debug)]
 pub(crate) struct Edge {
     pub(crate) parent: String,
     pub(crate) child: String,
-    /// The newest pose of the child in the frame of the parent.
+    /// The newest pose of the child in the frame of the parent, and the first one.
     pub(crate) pose: Isometry3<f64>,
+    first: Isometry3<f64>,
     /// The number of poses, and whether they differ.
     pub(crate) poses: usize,
     pub(crate) moves: bool,
@@ -50,23 +51,23 @@ impl Frames {
         if let Some(index) = self.known.get(&key) {
             let edge = &mut self.edges[*index];
             let step = edge.pose.inv_mul(&pose);
-            edge.moves |= step.translation.vector.norm().max(step.rotation.angle()) > LEAST_MOTION;
+            edge.moves |= step.translation.vector.norm().max(step.rotation.angle()) > MIN_MOTION;
             edge.pose = pose;
             edge.poses += 1;
             return Ok(*index);
         }
-        if self.edges.len() == MOST_FRAMES {
-            return Err(format!("more than {MOST_FRAMES} transforms between frames"));
+        if self.edges.len() == MAX_FRAMES {
+            return Err(format!("more than {MAX_FRAMES} transforms between frames"));
         }
         let (child, parent) = key.clone();
-        self.edges.push(Edge { parent, child, pose, poses: 1, moves: false });
+        self.edges.push(Edge { parent, child, pose, first: pose, poses: 1, moves: false });
         self.known.insert(key, self.edges.len() - 1);
         Ok(self.edges.len() - 1)
     }
 
-    /// Sets a transform back to an earlier pose.
-    pub(crate) fn rewind(&mut self, index: usize, pose: Isometry3<f64>) {
-        self.edges[index].pose = pose;
+    /// Sets all transforms back to their first poses.
+    pub(crate) fn rewind(&mut self) {
+        self.edges.iter_mut().for_each(|edge| edge.pose = edge.first);
     }
 
     pub(crate) fn edge(&self, index: usize) -> &Edge {
@@ -180,7 +181,7 @@ pub fn flat(pose: &Isometry3<f64>) -> Isometry2<f64> {
 /// When it is tilted.
 pub fn mounted(pose: &Isometry3<f64>) -> Result<(Isometry2<f64>, bool), String> {
     let up = (pose.rotation * Vector3::z()).z;
-    if up.abs() < LEAST_UPRIGHT {
+    if up.abs() < MIN_UPRIGHT {
         return Err(format!("is tilted by {:.0}° and does not scan a plane", up.abs().acos().to_degrees()));
     }
     Ok((flat(pose), up < 0.0))

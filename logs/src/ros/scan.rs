@@ -5,7 +5,7 @@ use interfaces::{LaserReading, Scan};
 use std::f64::consts::TAU;
 
 /// The most beams of a scan: a message that claims more is invalid.
-const MOST_BEAMS: usize = 100_000;
+const MAX_BEAMS: usize = 100_000;
 /// No laser reaches farther, m: some simulators write ∞.
 const FARTHEST_M: f64 = 300.0;
 /// A scan never takes longer than this, s.
@@ -20,8 +20,8 @@ const LONGEST_SWEEP_S: f64 = 10.0;
 /// When the fields are no scan.
 pub fn converted(message: LaserScan, is_upside_down: bool) -> Result<Scan, String> {
     let beams = message.ranges.len();
-    if !(1..=MOST_BEAMS).contains(&beams) {
-        return Err(format!("{beams} ranges; a scan has 1 to {MOST_BEAMS}"));
+    if !(1..=MAX_BEAMS).contains(&beams) {
+        return Err(format!("{beams} ranges; a scan has 1 to {MAX_BEAMS}"));
     }
     let side = if is_upside_down { -1.0 } else { 1.0 };
     let mut scan = Scan {

@@ -45,18 +45,22 @@ impl Fleet {
         }
     }
 
+    /// The shape of scans of all robots: a row per robot, if all have the same number of beams.
+    pub(super) fn scans_shape(&self) -> Vec<usize> {
+        self.beams.map_or(vec![self.fleet.beams()], |beams| vec![self.fleet.spec().robots.len(), beams])
+    }
+
     /// The memory of an array for scans of all robots.
     pub(super) fn scans_of<'a>(&self, out: &'a mut PyReadwriteArrayDyn<'_, f32>) -> PyResult<&'a mut [f32]> {
-        let (robots, total) = (self.fleet.spec().robots.len(), self.fleet.beams());
-        let is_right = match self.beams {
-            Some(beams) => out.shape() == [robots, beams],
-            None => out.shape() == [total],
-        };
-        if !is_right {
-            let expected = self.beams.map_or_else(
-                || format!("({total},): the robots have different numbers of beams, one after the other"),
-                |beams| format!("({robots}, {beams}): one row per robot, one column per beam"),
-            );
+        let shape = self.scans_shape();
+        if out.shape() != shape {
+            let expected = match shape[..] {
+                [robots, beams] => format!("({robots}, {beams}): one row per robot, one column per beam"),
+                _ => format!(
+                    "({},): the robots have different numbers of beams, one after the other",
+                    shape[0]
+                ),
+            };
             return Err(value_error(format!(
                 "the array for scans has the shape {:?}, and must have {expected}",
                 out.shape()

@@ -1,14 +1,15 @@
 mod arrays;
 
 use crate::convert::{
-    Numbers, Table, index, no_robot, pose, pose_array, snapshot_error, value_error, whole, writable,
+    Numbers, Table, index, no_robot, pose, pose_array, pose_values, rows_array, snapshot_error, value_error,
+    whole, writable,
 };
 use crate::reading::Reading;
 use crate::snapshots::{Kind, check_build};
 use crate::spec::spec_of;
 use arrays::look_all;
 use interfaces::{LaserReading, Purpose, RandomStream};
-use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
+use numpy::{PyArray1, PyArray2, PyArrayDyn};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
@@ -16,6 +17,7 @@ use sim::physics::{Body, Contact, FreePoses, Velocity};
 
 /// A world with any number of robots. The same spec, seed and commands give the same bits as in Rust, on any number
 /// of threads.
+#[derive(Clone)]
 #[pyclass(module = "curious")]
 pub(crate) struct Fleet {
     fleet: sim::physics::Fleet,
@@ -28,6 +30,13 @@ pub(crate) struct Fleet {
 
 /// A contact: time, robot, what it touched, x, y, whether the robot moved.
 type ContactRow = (f64, usize, (&'static str, usize), f64, f64, bool);
+
+/// The true poses of all robots.
+pub(crate) fn poses_of(fleet: &sim::physics::Fleet) -> PyResult<Vec<[f64; 3]>> {
+    let mut poses = vec![[0.0; 3]; fleet.spec().robots.len()];
+    fleet.copy_poses(&mut poses).map_err(value_error)?;
+    Ok(poses)
+}
 
 impl Fleet {
     fn check_robot(&self, robot: usize) -> PyResult<()> {
@@ -147,44 +156,29 @@ impl Fleet {
     /// allocated.
     #[pyo3(signature = (out = None))]
     fn scans<'py>(&mut self, py: Python<'py>, out: Option<Bound<'py, PyAny>>) -> PyResult<Bound<'py, PyAny>> {
-        if let Some(array) = out {
-            let mut out = writable(&array, "out")?;
-            let ranges_m = self.scans_of(&mut out)?;
-            let fleet = &mut self.fleet;
-            py.detach(|| look_all(fleet, ranges_m))?;
-            return Ok(array);
-        }
-        let fleet = &mut self.fleet;
-        let mut ranges_m = vec![0.0; fleet.beams()];
-        py.detach(|| look_all(fleet, &mut ranges_m))?;
-        let array = ranges_m.into_pyarray(py);
-        match self.beams {
-            Some(beams) => Ok(array.reshape([self.fleet.spec().robots.len(), beams])?.into_any()),
-            None => Ok(array.into_any()),
-        }
+        let array = out.unwrap_or_else(|| PyArrayDyn::<f32>::zeros(py, self.scans_shape(), false).into_any());
+        let mut out = writable(&array, "out")?;
+        let (ranges_m, fleet) = (self.scans_of(&mut out)?, &mut self.fleet);
+        py.detach(|| look_all(fleet, ranges_m))?;
+        Ok(array)
     }
 
     /// The true poses of all robots, shape (robots, 3), float64: x (m), y (m), heading (rad). With `out`, an array of this
     /// shape, nothing is allocated.
     #[pyo3(signature = (out = None))]
     fn poses<'py>(&self, py: Python<'py>, out: Option<Bound<'py, PyAny>>) -> PyResult<Bound<'py, PyAny>> {
-        if let Some(array) = out {
-            self.fleet.copy_poses(self.poses_of(&mut writable(&array, "out")?)?).map_err(value_error)?;
-            return Ok(array);
-        }
-        let mut poses = vec![[0.0; 3]; self.fleet.spec().robots.len()];
-        self.fleet.copy_poses(&mut poses).map_err(value_error)?;
-        Ok(poses.concat().into_pyarray(py).reshape([poses.len(), 3])?.into_any())
+        let Some(array) = out else { return Ok(rows_array(py, poses_of(&self.fleet)?)?.into_any()) };
+        self.fleet.copy_poses(self.poses_of(&mut writable(&array, "out")?)?).map_err(value_error)?;
+        Ok(array)
     }
 
     /// The true velocities of all robots, shape (robots, 3): forward (m/s), left (m/s), angular (rad/s).
     fn velocities<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let robots = self.fleet.robots();
-        let velocities =
-            robots.flat_map(|robot| [robot.twist.linear_mps, robot.left_mps, robot.twist.angular_radps]);
-        let velocities: Vec<f64> = velocities.collect();
-        let count = velocities.len() / 3;
-        velocities.into_pyarray(py).reshape([count, 3])
+        rows_array(
+            py,
+            robots.map(|robot| [robot.twist.linear_mps, robot.left_mps, robot.twist.angular_radps]),
+        )
     }
 
     /// The contacts that began in the last `step` or `run`: (time (s), robot, with, x (m), y (m), moving). `with` is
@@ -211,7 +205,7 @@ impl Fleet {
     /// Puts a robot at a pose (x, y, heading), at rest. `ValueError`: something else is there.
     fn teleport(&mut self, #[pyo3(from_py_with = index)] robot: usize, pose: Numbers<'_>) -> PyResult<()> {
         self.check_robot(robot)?;
-        self.fleet.teleport(robot, &crate::convert::pose(&pose)?).map_err(value_error)
+        self.fleet.teleport(robot, &self::pose(&pose)?).map_err(value_error)
     }
 
     /// Whether a robot fits at a pose now.
@@ -241,8 +235,7 @@ impl Fleet {
             (0..count).map(|_| poses.draw(fleet, robot, &mut random)).collect::<Option<Vec<_>>>()
         });
         let drawn = drawn.ok_or_else(|| value_error(format!("there is no free pose for robot {robot}")))?;
-        let values: Vec<f64> = drawn.iter().flat_map(crate::convert::pose_values).collect();
-        values.into_pyarray(py).reshape([count, 3])
+        rows_array(py, drawn.iter().map(pose_values))
     }
 
     /// The pose of a robot by odometry at its latest scan; None before the first.
@@ -274,8 +267,7 @@ impl Fleet {
 
     /// An independent copy.
     fn copy(&self) -> Self {
-        let (driven, contacts) = (self.driven.clone(), self.contacts.clone());
-        Self { fleet: self.fleet.clone(), driven, beams: self.beams, contacts }
+        self.clone()
     }
 
     fn __repr__(&self) -> String {

@@ -6,7 +6,7 @@ use super::{Header, Shard, ShardError};
 use evaluation::trials::Trial;
 use results::output::{OutputError, lock, make_folder};
 use std::collections::BTreeSet;
-use std::fs::{self, File};
+use std::fs::{self, DirEntry, File};
 use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
@@ -16,9 +16,10 @@ use std::sync::{Mutex, PoisonError};
 #[derive(Debug)]
 pub struct ShardFile {
     path: PathBuf,
-    shard: Shard,
+    pub(super) shard: Shard,
     key: u64,
-    finished: BTreeSet<u64>,
+    /// The numbers of the trials that were finished when the file was opened.
+    pub(super) finished: BTreeSet<u64>,
     file: Mutex<Appended>,
 }
 
@@ -72,16 +73,6 @@ impl ShardFile {
     /// The file.
     pub fn path(&self) -> &Path {
         &self.path
-    }
-
-    /// The shard.
-    pub(super) fn shard(&self) -> Shard {
-        self.shard
-    }
-
-    /// The numbers of the trials that were finished when the file was opened.
-    pub fn finished(&self) -> &BTreeSet<u64> {
-        &self.finished
     }
 
     /// Appends a finished trial, which is then in the hands of the operating system: it survives the end of the
@@ -138,14 +129,11 @@ fn again(error: &io::Error) -> io::Error {
 ///
 /// When the folder cannot be read.
 pub(super) fn shards_in(folder: &Path) -> Result<Vec<(Shard, PathBuf)>, ShardError> {
-    let failed = |why| ShardError::read(folder, why);
-    let mut shards = Vec::new();
-    for entry in fs::read_dir(folder).map_err(failed)? {
-        let entry = entry.map_err(failed)?;
-        if let Some(shard) = entry.file_name().to_str().and_then(Shard::of_file_name) {
-            shards.push((shard, entry.path()));
-        }
-    }
+    let entries = fs::read_dir(folder).and_then(Iterator::collect::<io::Result<Vec<_>>>);
+    let entries = entries.map_err(|why| ShardError::read(folder, why))?;
+    let shard =
+        |entry: &DirEntry| Some((entry.file_name().to_str().and_then(Shard::of_file_name)?, entry.path()));
+    let mut shards: Vec<_> = entries.iter().filter_map(shard).collect();
     shards.sort();
     Ok(shards)
 }

@@ -2,7 +2,8 @@ use super::Shard;
 use super::line::{seal, unseal};
 use robot::{BUILD, other_build};
 use serde::{Deserialize, Serialize};
-use std::fmt::{self, Debug, Write};
+use std::fmt::Debug;
+use std::io::Write;
 use xxhash_rust::xxh3::{Xxh3, xxh3_64};
 
 /// The version of the format of the files of shards.
@@ -44,7 +45,7 @@ impl Header {
         trials: u64,
         shard: Shard,
     ) -> Self {
-        let mut hash = Hash(Xxh3::new());
+        let mut hash = Xxh3::new(); // the text is never in memory as a whole
         let _ = write!(hash, "{settings:?}"); // hashing does not fail
         Self {
             schema: SCHEMA,
@@ -52,7 +53,7 @@ impl Header {
             version: version.to_owned(),
             build: BUILD.to_owned(),
             arguments,
-            settings: format!("{:032x}", hash.0.digest128()),
+            settings: format!("{:032x}", hash.digest128()),
             trials,
             shard: shard.number(),
             shards: shard.count(),
@@ -97,25 +98,19 @@ impl Header {
 
     /// What differs from the experiment of `other`; `None` if it is the same.
     pub(super) fn difference(&self, other: &Self) -> Option<String> {
-        let differing = |what: &str, own: &dyn fmt::Display, other: &dyn fmt::Display| {
-            Some(format!("of {what} {own}, not {other}"))
+        let named = |what: &str, of: fn(&Self) -> String| {
+            let [own, other] = [self, other].map(of);
+            (own != other).then(|| format!("of {what} {own}, not {other}"))
         };
-        match () {
-            () if self.schema != other.schema => differing("format", &self.schema, &other.schema),
-            () if self.program != other.program => differing("the program", &self.program, &other.program),
-            () if self.version != other.version => differing("version", &self.version, &other.version),
-            () if self.arguments != other.arguments => {
-                let [own, other] = [self, other].map(|header| format!("`{}`", header.arguments.join(" ")));
-                differing("the experiment", &own, &other)
-            }
-            () if (&self.settings, self.trials) != (&other.settings, other.trials) => {
-                Some("of an experiment with the same arguments, but other worlds or settings".into())
-            }
-            () if self.shards != other.shards => {
-                Some(format!("one of {} shards, not of {}", self.shards, other.shards))
-            }
-            () => None,
-        }
+        let is_otherwise = (&self.settings, self.trials) != (&other.settings, other.trials);
+        let otherwise = "of an experiment with the same arguments, but other worlds or settings";
+        let shards = || format!("one of {} shards, not of {}", self.shards, other.shards);
+        named("format", |header| header.schema.to_string())
+            .or_else(|| named("the program", |header| header.program.clone()))
+            .or_else(|| named("version", |header| header.version.clone()))
+            .or_else(|| named("the experiment", |header| format!("`{}`", header.arguments.join(" "))))
+            .or_else(|| is_otherwise.then(|| otherwise.to_owned()))
+            .or_else(|| (self.shards != other.shards).then(shards))
     }
 
     /// The header as a line.
@@ -126,15 +121,5 @@ impl Header {
     /// The header in a line without its end; `None` for something else.
     pub(super) fn read(line: &str) -> Option<Self> {
         serde_json::from_str(&format!("{}}}", unseal(line, 0)?)).ok()
-    }
-}
-
-/// A hash of a text that is never in memory as a whole.
-struct Hash(Xxh3);
-
-impl Write for Hash {
-    fn write_str(&mut self, text: &str) -> fmt::Result {
-        self.0.update(text.as_bytes());
-        Ok(())
     }
 }

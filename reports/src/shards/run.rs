@@ -12,7 +12,7 @@ impl ShardFile {
     /// The trials of the shard that were not finished when the file was opened, in the order in which they are merged.
     pub fn open_trials<'a, W: TrialWorld>(&self, experiment: &'a Experiment<W>) -> Vec<TrialSettings<'a, W>> {
         let mut open = experiment.jobs();
-        open.retain(|trial| self.shard().has(trial.number) && !self.finished().contains(&trial.number));
+        open.retain(|trial| self.shard.has(trial.number) && !self.finished.contains(&trial.number));
         open.sort_by_key(|trial| trial.number);
         open
     }

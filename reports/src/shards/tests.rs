@@ -1,5 +1,5 @@
 use super::*;
-use crate::synthetic::{experiment, uniform};
+use crate::tests::synthetic::{experiment, uniform};
 use crate::{ReportSettings, collect};
 use evaluation::trials::Trial;
 use rand_chacha::ChaCha8Rng;
@@ -43,7 +43,7 @@ fn shard(number: u64, count: u64) -> Shard {
 /// Runs a shard: the trials that are not finished are appended in a wild order.
 fn run(folder: &Path, shard: Shard, trials: &[Trial]) -> Result<(), ShardError> {
     let file = ShardFile::open(folder, &header(shard, trials), shard)?;
-    let jobs = (1..).zip(trials).filter(|(job, _)| shard.has(*job) && !file.finished().contains(job));
+    let jobs = (1..).zip(trials).filter(|(job, _)| shard.has(*job) && !file.finished.contains(job));
     let mut jobs: Vec<(u64, &Trial)> = jobs.collect();
     jobs.sort_by_key(|(job, _)| job * 7919 % 101);
     jobs.into_iter().try_for_each(|(job, trial)| file.append(job, COST, trial))?;

@@ -4,12 +4,14 @@ mod files;
 mod runs;
 mod statistics;
 
-use super::synthetic::{HORIZON, experiment, normal, uniform, world};
 use super::*;
 use evaluation::trials::{Metric, Sample};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use sim::grid::GridSpec;
+pub(crate) mod synthetic;
+
+use synthetic::{HORIZON, experiment, normal, uniform, world};
 
 fn report(worlds: usize, estimators: &[&str], strategies: &[&str], seeds: u64) -> Report {
     let (settings, trials) = experiment(worlds, estimators, strategies, seeds);

@@ -6,7 +6,6 @@ mod text;
 use self::parquet::ParquetFile;
 use self::text::CsvFile;
 use super::{Report, ReportBuilder, ReportSettings, UnequalTimes};
-use evaluation::trials::Length;
 use evaluation::trials::Trial;
 use results::output::OutputError;
 use std::io;
@@ -29,16 +28,20 @@ pub fn collect<E: From<OutputError> + From<UnequalTimes>>(
     folder: &Path,
     trials: impl Iterator<Item = Result<Trial, E>>,
 ) -> Result<Report, E> {
-    let mut files = TrialFiles::create(folder, settings.length)?;
+    // Both have the same columns and rows, which do not depend on how many are added at a time.
+    let mut csv = CsvFile::create(&folder.join("trials.csv"), settings.length)?;
+    let mut parquet = ParquetFile::create(&folder.join("trials.parquet"), settings.length)?;
     let mut report = ReportBuilder::new(settings);
     thread::scope(|scope| {
         let (send, receive) = sync_channel::<Trial>(WAITING);
         let writer = scope.spawn(move || {
             while let Ok(first) = receive.recv() {
                 let batch: Vec<Trial> = once(first).chain(receive.try_iter().take(WAITING)).collect();
-                files.add(&batch)?;
+                let (text, typed) = rayon::join(|| csv.add(&batch), || parquet.add(&batch));
+                text.and(typed)?;
             }
-            files.finish()
+            csv.finish()?;
+            parquet.finish()
         });
         for trial in trials {
             let trial = trial?;
@@ -52,32 +55,4 @@ pub fn collect<E: From<OutputError> + From<UnequalTimes>>(
         writer.join().unwrap_or_else(|_| Err(ended()))?;
         Ok(report.finish())
     })
-}
-
-/// `trials.csv` and `trials.parquet`, which have the same columns and rows.
-struct TrialFiles {
-    csv: CsvFile,
-    parquet: ParquetFile,
-}
-
-impl TrialFiles {
-    /// Creates the files in a folder, for trials of a length.
-    fn create(folder: &Path, length: Length) -> Result<Self, OutputError> {
-        Ok(Self {
-            csv: CsvFile::create(&folder.join("trials.csv"), length)?,
-            parquet: ParquetFile::create(&folder.join("trials.parquet"), length)?,
-        })
-    }
-
-    /// Adds trials; the files do not depend on how many are added at a time.
-    fn add(&mut self, trials: &[Trial]) -> Result<(), OutputError> {
-        let (csv, parquet) = rayon::join(|| self.csv.add(trials), || self.parquet.add(trials));
-        csv.and(parquet)
-    }
-
-    /// Completes the files.
-    fn finish(self) -> Result<(), OutputError> {
-        self.csv.finish()?;
-        self.parquet.finish()
-    }
 }

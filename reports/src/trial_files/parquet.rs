@@ -2,11 +2,12 @@
 
 use evaluation::trials::Length;
 use evaluation::trials::{Metric, Trial};
-use parquet::basic::{Compression, Encoding, LogicalType, Repetition, Type as Physical};
+use parquet::basic::{Compression, Encoding};
 use parquet::data_type::{ByteArray, ByteArrayType, DataType, DoubleType, Int64Type};
 use parquet::errors::{ParquetError, Result as ParquetResult};
 use parquet::file::properties::{EnabledStatistics, WriterProperties};
 use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
+use parquet::schema::parser::parse_message_type;
 use parquet::schema::types::{ColumnPath, Type};
 use results::output::OutputError;
 use std::fs::File;
@@ -16,10 +17,6 @@ use std::sync::Arc;
 
 /// The least number of rows of a group, after which the group is written: 12 MB in memory.
 const GROUP_ROWS: usize = 100_000;
-/// The names of text columns, before the numbers and after them.
-const NAMES: [&str; 3] = ["world", "estimator", "strategy"];
-const MAP_HASH: &str = "map_hash";
-
 pub(super) struct ParquetFile {
     path: PathBuf,
     file: SerializedFileWriter<BufWriter<File>>,
@@ -29,7 +26,8 @@ pub(super) struct ParquetFile {
 /// The rows of the group that is not written yet, by column.
 #[derive(Default)]
 struct Rows {
-    names: [Vec<ByteArray>; NAMES.len()],
+    /// World, estimator and strategy.
+    names: [Vec<ByteArray>; 3],
     seeds: Vec<i64>,
     times: Vec<i64>,
     /// The defined values, and for every row 1 if its value is defined, otherwise 0.
@@ -117,21 +115,19 @@ fn write_column<T: DataType>(
 }
 
 fn schema(length: Length) -> ParquetResult<Type> {
-    let column = |name: &str, physical, repetition, logical| -> ParquetResult<Arc<Type>> {
-        let column = Type::primitive_type_builder(name, physical);
-        Ok(Arc::new(column.with_repetition(repetition).with_logical_type(logical).build()?))
-    };
-    let text =
-        |name: &str| column(name, Physical::BYTE_ARRAY, Repetition::REQUIRED, Some(LogicalType::String));
-    let natural = LogicalType::Integer { bit_width: 64, is_signed: false };
-    let number = |name: &str| column(name, Physical::INT64, Repetition::REQUIRED, Some(natural.clone()));
-    let mut columns = NAMES.iter().map(|name| text(name)).collect::<ParquetResult<Vec<_>>>()?;
-    columns.extend([number("seed")?, number(length.column())?]);
-    for metric in Metric::ALL {
-        columns.push(column(metric.name(), Physical::DOUBLE, Repetition::OPTIONAL, None)?);
-    }
-    columns.push(text(MAP_HASH)?);
-    Type::group_type_builder("trials").with_fields(columns).build()
+    let metrics = Metric::ALL.map(|metric| format!("OPTIONAL DOUBLE {};", metric.name())).concat();
+    parse_message_type(&format!(
+        "message trials {{
+             REQUIRED BYTE_ARRAY world (STRING);
+             REQUIRED BYTE_ARRAY estimator (STRING);
+             REQUIRED BYTE_ARRAY strategy (STRING);
+             REQUIRED INT64 seed (INTEGER(64, false));
+             REQUIRED INT64 {} (INTEGER(64, false));
+             {metrics}
+             REQUIRED BYTE_ARRAY map_hash (STRING);
+         }}",
+        length.column()
+    ))
 }
 
 /// Text is kept in dictionaries. Numbers are split into streams of their bytes, since their exponents repeat and their

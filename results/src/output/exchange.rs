@@ -90,8 +90,7 @@ impl Exchange {
     /// by the next run.
     pub(super) fn undo(unfinished: &Path, moves: &Moves) -> Result<(), OutputError> {
         moves.undo()?;
-        disk::remove_folder(&unfinished.join(EARLIER))?;
-        disk::remove(&unfinished.join(JOURNAL))
+        Self::clean_up(unfinished)
     }
 }
 

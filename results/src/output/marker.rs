@@ -4,7 +4,7 @@ use super::{OutputError, disk};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fs::File;
-use std::io::{self, Read};
+use std::io;
 use std::path::Path;
 use xxhash_rust::xxh3::Xxh3;
 
@@ -102,17 +102,9 @@ impl Marker {
 
 impl Content {
     fn of(path: &Path) -> io::Result<Self> {
-        let mut file = File::open(path)?;
-        let (mut hash, mut bytes, mut buffer) = (Xxh3::new(), 0, vec![0; 1 << 16]);
-        loop {
-            match file.read(&mut buffer)? {
-                0 => return Ok(Self { bytes, xxh3: format!("{:032x}", hash.digest128()) }),
-                read => {
-                    hash.update(&buffer[..read]);
-                    bytes += read as u64;
-                }
-            }
-        }
+        let mut hash = Xxh3::new();
+        let bytes = io::copy(&mut File::open(path)?, &mut hash)?;
+        Ok(Self { bytes, xxh3: format!("{:032x}", hash.digest128()) })
     }
 }
 

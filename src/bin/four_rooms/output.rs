@@ -60,14 +60,16 @@ impl<'a> Outputs<'a> {
         began_s: f64,
     ) -> Result<Self, Failure> {
         let mut folder = results_folder(&args.out)?;
-        args.mcap.iter().try_for_each(|path| folder.adopt(path, "mcap")).map_err(input)?;
+        args.mcap.as_ref().map_or(Ok(()), |path| folder.adopt(path, "mcap")).map_err(input)?;
         let bag = args.mcap.as_deref().map(|path| RunBag::create(path, 0.0)).transpose();
         let bag = bag.context("cannot write the bag of --mcap").map_err(input)?;
         let show = show(args, Scene::from(spec.fleet()), &mut folder)?;
         let file = |name| TrajectoryFile::create(&folder.unfinished().join(name));
         let trajectories = ["trajectory.tum", "trajectory_true.tum"].map(file);
         let reported = show.live_problem();
-        reported.iter().for_each(|problem| say(stderr(), format_args!("note: {problem}")));
+        if let Some(problem) = &reported {
+            say(stderr(), format_args!("note: {problem}"));
+        }
         if args.is_keyboard() && !args.quiet {
             say(stderr(), "arrows or WASD drive, space stops, Q ends the run\r");
         }
@@ -133,7 +135,7 @@ impl<'a> Outputs<'a> {
         ended: Ended,
         wall_s: f64,
     ) -> anyhow::Result<bool> {
-        self.progress.finish();
+        drop(self.progress);
         if let Some(problem) =
             self.show.live_problem().filter(|problem| Some(problem) != self.reported.as_ref())
         {
@@ -173,7 +175,7 @@ impl<'a> Outputs<'a> {
 /// Opens everything that shows the run: the recording, viewers, the moving picture.
 fn show(args: &Args, scene: Scene, folder: &mut RunFolder) -> Result<Show, Failure> {
     for (path, ending) in [(&args.rrd, "rrd"), (&args.gif, "gif")] {
-        path.iter().try_for_each(|path| folder.adopt(path, ending)).map_err(input)?;
+        path.as_ref().map_or(Ok(()), |path| folder.adopt(path, ending)).map_err(input)?;
     }
     if let Some(path) = args.gif.as_ref().filter(|path| is_another_kind(path, b"GIF8")) {
         let path = path.display();
@@ -202,9 +204,7 @@ fn write(
 ) -> anyhow::Result<()> {
     let to = folder.unfinished();
     show.write_pictures(to, mapper, goals, &Layer::ALL)?;
-    let map = mapper.states();
-    write_file(&to.join("map.pgm"), |file| file.write_all(&ros_map::pgm(map)))?;
-    write_file(&to.join("map.yaml"), |file| write!(file, "{}", ros_map::yaml(map.frame(), "map.pgm")))?;
+    ros_map::write(to, "map", mapper.states())?;
     cell_statistics::write(&to.join("cell_statistics.csv"), mapper)?;
     summary.files = folder.results()?;
     let text = serde_json::to_string_pretty(summary)?;

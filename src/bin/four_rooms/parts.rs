@@ -39,8 +39,8 @@ impl Parts {
         }
         let Loaded { spec, warnings } =
             worlds::load(&args.world).map_err(|error| input(value_of("--world", error)))?;
-        warnings.iter().for_each(warn);
-        reachability::warnings(spec.fleet()).iter().for_each(warn);
+        warn(warnings);
+        warn(reachability::warnings(spec.fleet()));
         let settings = physics_trial::settings(&spec).with_context(|| format!("cannot run `{}`", args.world));
         let mut settings = settings.map_err(input)?;
         settings.mapper.estimator = args.estimator.clone();
@@ -54,7 +54,7 @@ impl Parts {
             }
             settings.localizer.lost_after_s = lost_after_s;
         }
-        combination::odometry(&spec, settings.pose).iter().for_each(warn);
+        warn(combination::odometry(&spec, settings.pose));
         let prior = args.map.as_deref().map(|path| known_map(path, &spec)).transpose()?;
         Ok(Self { spec, settings, prior })
     }
@@ -80,7 +80,7 @@ impl Parts {
             }
         };
         let TourSpec { mut waypoints, repeat } = tour.map_err(input)?;
-        combination::waypoints(&self.spec, &waypoints).iter().for_each(warn);
+        warn(combination::waypoints(&self.spec, &waypoints));
         let own =
             self.prior.is_none().then(|| physics_trial::in_own_frame(&self.settings, &self.spec, args.seed));
         if let Some((_, to_own)) = own.flatten() {
@@ -110,13 +110,12 @@ impl Parts {
 fn known_map(path: &Path, spec: &WorldSpec) -> Result<Grid<CellState>, Failure> {
     let mut findings = Findings::default();
     let map = ros_map::read(path, &Disk, &mut findings);
-    findings.messages(Severity::Warning).iter().for_each(warn);
+    warn(findings.messages(Severity::Warning));
     let map = map.ok_or_else(|| input(anyhow!(findings.error_text())))?;
-    let warning = combination::map(spec, &map).map_err(|why| input(anyhow!("{}: {why}", path.display())))?;
-    warning.iter().for_each(warn);
+    warn(combination::map(spec, &map).map_err(|why| input(anyhow!("{}: {why}", path.display())))?);
     Ok(map.onto(&spec.frame))
 }
 
-fn warn(warning: &String) {
-    say(stderr(), format_args!("{warning}\n"));
+fn warn(warnings: impl IntoIterator<Item = String>) {
+    warnings.into_iter().for_each(|warning| say(stderr(), format_args!("{warning}\n")));
 }

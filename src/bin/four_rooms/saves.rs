@@ -2,16 +2,13 @@
 
 use crate::args::Args;
 use crate::parts::Parts;
-use anyhow::anyhow;
-use curious::program::{Failure, input};
+use curious::program::{Failure, open_state, state_failure};
 use evaluation::physics_trial::PhysicsTrial;
 use evaluation::trial_state::TrialFacts;
 use interfaces::Twist;
 use robot::Pilot;
 use robot::state::StateFile;
-use std::fmt::Display;
 use std::io;
-use std::time::Duration;
 
 /// The state file of a run.
 pub(crate) struct Saves {
@@ -27,13 +24,11 @@ impl Saves {
         trial: &mut PhysicsTrial<impl Pilot<Command = Twist>>,
     ) -> Result<Option<Self>, Failure> {
         let Some(path) = &args.state else { return Ok(None) };
-        let failed = |why: &dyn Display| input(anyhow!("{}: {why}", path.display()));
-        let file = StateFile::open(path).map_err(|why| failed(&format_args!("cannot use it: {why}")))?;
-        let file = file.every(Duration::from_secs_f64(args.state_every));
+        let (file, state) = open_state(path, args.state_every)?;
         let facts = TrialFacts::new(&parts.spec, args.seed, &parts.settings, parts.pilot_facts(args))
             .allowing_other_build(args.allow_other_build);
-        if let Some(state) = file.load().map_err(|why| failed(&why))? {
-            trial.restore(&state, &facts).map_err(|why| failed(&why))?;
+        if let Some(state) = state {
+            trial.restore(&state, &facts).map_err(|why| state_failure(path, why))?;
         }
         Ok(Some(Self { file, facts }))
     }

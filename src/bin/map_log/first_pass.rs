@@ -7,9 +7,9 @@ use curious::program::{Failure, input};
 use curious::progress::Progress;
 use interfaces::PoseMode;
 use std::ops::ControlFlow;
-use survey::{PassError, RouteProgress, Stage, Survey};
+use survey::{PassError, Stage, Survey};
 
-/// Finds the routes of all logs of which the survey has none. Returns whether it was not interrupted.
+/// Finds the routes of all logs of which the survey has none. Returns false if interrupted.
 pub(crate) fn routes(job: &Job, survey: &mut Survey, saves: &mut Saves) -> Result<bool, Failure> {
     for (number, source) in job.sources.iter().enumerate() {
         let log = job.first_log + number;
@@ -19,19 +19,19 @@ pub(crate) fn routes(job: &Job, survey: &mut Survey, saves: &mut Saves) -> Resul
         let can_align = source.entry.stands || job.settings.pose == PoseMode::Localized;
         let is_followed = can_align && (saves.is_kept() || number + 1 < job.sources.len());
         let mut bar = None;
-        let watch = |RouteProgress { stage, readings, .. }: RouteProgress| {
+        let watch = |(stage, readings)| {
             match readings {
                 0 => bar = begin(job, number, stage, bar.take()),
-                _ => bar.iter().for_each(Progress::step),
+                _ => bar.as_ref().map_or((), Progress::step),
             }
             if job.is_interrupted() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         };
         let found = survey.first_pass(&source.log, source.entry.clone(), is_followed, watch);
-        bar.iter().for_each(Progress::finish);
+        drop(bar);
         match found {
             Ok(()) => saves.save(survey),
             Err(PassError::Interrupted) => return Ok(false),
-            Err(PassError::Alignment { why, .. }) => {
+            Err(PassError::Alignment(why)) => {
                 return Err(input(Error::from(why).context(format!("cannot use {}", source.entry.name))));
             }
             Err(other) => return Err(input(other)),
@@ -42,7 +42,7 @@ pub(crate) fn routes(job: &Job, survey: &mut Survey, saves: &mut Saves) -> Resul
 
 /// Reports that a stage begins, below the finished bar of the stage before. Gives the bar of this stage.
 fn begin(job: &Job, number: usize, stage: Stage, before: Option<Progress>) -> Option<Progress> {
-    before.iter().for_each(Progress::finish);
+    drop(before);
     let what = match stage {
         Stage::Trajectory => "first pass",
         Stage::Loops => "closing loops",
@@ -51,5 +51,5 @@ fn begin(job: &Job, number: usize, stage: Stage, before: Option<Progress>) -> Op
     };
     let source = &job.sources[number];
     job.say(format_args!("{}: {what}", source.entry.name));
-    (stage != Stage::Loops).then(|| Progress::of_scans(source.log.summary().scans, job.args.quiet))
+    (stage != Stage::Loops).then(|| Progress::of_count(source.log.summary().scans, "scans", job.args.quiet))
 }

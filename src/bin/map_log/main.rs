@@ -107,10 +107,12 @@ fn run(args: &Args) -> Result<ExitCode, Failure> {
     if !args.quiet {
         print(format_args!("{summary}\n  files     {}", args.out.display()))?;
     }
-    Ok(match () {
-        () if !learned.is_shown || !saves.is_written => ExitCode::FAILURE,
-        () if learned.is_interrupted => ExitCode::from(INTERRUPTED),
-        () => ExitCode::SUCCESS,
+    Ok(if !learned.is_shown || !saves.is_written {
+        ExitCode::FAILURE
+    } else if learned.is_interrupted {
+        ExitCode::from(INTERRUPTED)
+    } else {
+        ExitCode::SUCCESS
     })
 }
 

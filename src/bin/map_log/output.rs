@@ -32,17 +32,11 @@ pub(crate) fn write(
         summary.places.iter().map(|place| [corner(&place.low_m), corner(&place.high_m)]).collect();
     draw_places(&to.join("places.png"), "Where it changes", mapper, &numbered)?;
     for (name, map) in [("map", mapper.states()), ("permanent", &permanent(mapper))] {
-        let image = format!("{name}.pgm");
-        write_file(&to.join(&image), |file| file.write_all(&ros_map::pgm(map)))?;
-        let yaml = ros_map::yaml(map.frame(), &image);
-        write_file(&to.join(format!("{name}.yaml")), |file| file.write_all(yaml.as_bytes()))?;
+        ros_map::write(to, name, map)?;
     }
     if has_rates {
         for (name, mask) in [("speed_mask", speed_mask(mapper)), ("keepout_mask", keepout_mask(mapper))] {
-            let image = format!("{name}.pgm");
-            write_file(&to.join(&image), |file| file.write_all(&ros_map::mask_pgm(&mask)))?;
-            let yaml = ros_map::mask_yaml(mask.frame(), &image);
-            write_file(&to.join(format!("{name}.yaml")), |file| file.write_all(yaml.as_bytes()))?;
+            ros_map::write_mask(to, name, &mask)?;
         }
         cell_statistics::write(&to.join("cell_statistics.csv"), mapper)?;
         raster::write(&to.join("layers.npy"), mapper)?;

@@ -1,13 +1,10 @@
 //! `--state`: what was learned from earlier logs, and what this run leaves for the next one.
 
 use crate::args::Args;
-use anyhow::anyhow;
-use curious::program::{Failure, input};
+use curious::program::{Failure, open_state, state_failure};
 use curious::terminal::say;
 use robot::state::{Facts, State, StateError, StateFile};
-use std::fmt::Display;
 use std::io::stderr;
-use std::time::Duration;
 use survey::{SavedLogs, Survey, SurveySettings, SurveyedLog};
 
 /// The part of a state with what was learned from logs, beside that with the logs.
@@ -34,11 +31,8 @@ impl Saves {
     pub(crate) fn open(args: &Args) -> Result<(Self, Option<Loaded>), Failure> {
         let mut saves = Self { file: None, learned: None, facts: Facts::default(), is_written: true };
         let Some(path) = &args.state else { return Ok((saves, None)) };
-        let failed = |why: &dyn Display| input(anyhow!("{}: {why}", path.display()));
-        let file = StateFile::open(path).map_err(|why| failed(&format_args!("cannot use it: {why}")))?;
-        let file = file.every(Duration::from_secs_f64(args.state_every));
-        let loaded = file.load().map_err(|why| failed(&why))?.map(Loaded::of).transpose();
-        let loaded = loaded.map_err(|why| failed(&why))?;
+        let (file, state) = open_state(path, args.state_every)?;
+        let loaded = state.map(Loaded::of).transpose().map_err(|why| state_failure(path, why))?;
         if loaded.as_ref().is_some_and(|loaded| loaded.state.check_build().is_err()) {
             let note = "another build of this program has written it, whose results can differ in details";
             say(stderr(), format_args!("note: {}: {note}", path.display()));
@@ -73,7 +67,7 @@ impl Saves {
             let survey = Survey::restored(settings, learns_noise, logs, learned);
             survey.map_err(|_| StateError::OtherContent(SURVEY.to_owned()))
         });
-        learned.map_err(|why| input(anyhow!("{}: {why}", file.path().display())))
+        learned.map_err(|why| state_failure(file.path(), why))
     }
 
     /// Whether it is time to save.

@@ -66,7 +66,9 @@ pub(crate) fn learn(
             break;
         }
     }
-    survey.mapper().into_iter().for_each(|mapper| learned.show.end_in(*mapper.frame()));
+    if let Some(mapper) = survey.mapper() {
+        learned.show.end_in(*mapper.frame());
+    }
     if let Some(Err(problem)) = bag.map(RunBag::finish) {
         learned.is_shown = false;
         say(stderr(), format_args!("error: cannot write the bag: {problem:#}"));
@@ -114,7 +116,8 @@ impl Learned {
             }
             self.no_return.push(scanner);
         }
-        let progress = Progress::of_scans(source.log.summary().scans.saturating_sub(used), job.args.quiet);
+        let progress =
+            Progress::of_count(source.log.summary().scans.saturating_sub(used), "scans", job.args.quiet);
         while let Some(turn) = survey.turn(&mut replay).map_err(input)? {
             progress.step();
             self.is_interrupted = job.is_interrupted();
@@ -135,7 +138,6 @@ impl Learned {
                 break;
             }
         }
-        progress.finish();
         Ok(())
     }
 }

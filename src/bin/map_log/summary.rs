@@ -14,7 +14,7 @@ use std::fmt;
 use survey::{Place, Survey, SurveySettings, places};
 
 /// The number of places in the summary and in the report.
-const MOST_PLACES: usize = 20;
+const MAX_PLACES: usize = 20;
 /// The version of the layout of `summary.json`; count up when a key is renamed, removed or changes its meaning.
 const SCHEMA: u32 = 1;
 
@@ -77,7 +77,7 @@ impl Summary {
         let seen = mapper.states().cells().iter().filter(|state| **state != CellState::Unknown).count();
         let mut places = places(mapper, survey.changes());
         let place_count = places.len();
-        places.truncate(MOST_PLACES);
+        places.truncate(MAX_PLACES);
         let has_times = entries().all(|entry| entry.has_times);
         if !has_times {
             places.iter_mut().for_each(|place| place.rates = None);

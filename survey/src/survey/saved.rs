@@ -6,7 +6,7 @@ use crate::known_place::KnownPlace;
 use crate::replay::FoundPoses;
 use crate::settings::SurveySettings;
 use crate::surveyed_log::SurveyedLog;
-use interfaces::{GridFrame, PoseMode, ValueError, read_value, write_value};
+use interfaces::{GridFrame, PoseMode, ValueError, from_bytes, to_bytes};
 use mapper::Mapper;
 use robot::{NoPilot, Robot};
 use std::sync::Arc;
@@ -28,9 +28,8 @@ impl SavedLogs {
     /// # Errors
     ///
     /// When the bytes are no logs of a survey.
-    pub fn read(mut bytes: &[u8]) -> Result<Self, ValueError> {
-        let (pose, logs) = read_value(&mut bytes)?;
-        if bytes.is_empty() { Ok(Self { pose, logs }) } else { Err(ValueError) }
+    pub fn read(bytes: &[u8]) -> Result<Self, ValueError> {
+        from_bytes(bytes).map(|(pose, logs)| Self { pose, logs })
     }
 
     /// The logs, in the order of their times.
@@ -53,20 +52,9 @@ impl SavedSurvey {
     /// Everything that logs have changed, as bytes: the logs, and what was learned from them; settings are not in it.
     pub fn into_snapshot(self) -> (Vec<u8>, Vec<u8>) {
         let Self { pose, place, mapper, changes, logs } = self;
-        // All of it can be written. What could not would be refused when it is read.
-        let bytes = |write: &dyn Fn(&mut Vec<u8>) -> Result<(), ValueError>| {
-            let mut bytes = Vec::new();
-            if write(&mut bytes).is_err() {
-                bytes.clear();
-            }
-            bytes
-        };
         let place = place.map(|place| Arc::unwrap_or_clone(place).snapshot());
         let mapper = mapper.map(|mut mapper| (*mapper.frame(), mapper.snapshot()));
-        (
-            bytes(&|bytes| write_value(&(pose, &logs), bytes)),
-            bytes(&|bytes| write_value(&(&place, &mapper, &changes), bytes)),
-        )
+        (to_bytes(&(pose, logs)), to_bytes(&(place, mapper, changes)))
     }
 }
 
@@ -91,13 +79,10 @@ impl Survey {
         settings: SurveySettings,
         learns_noise: bool,
         logs: SavedLogs,
-        mut learned: &[u8],
+        learned: &[u8],
     ) -> Result<Self, ValueError> {
         type Learned = (Option<Vec<u8>>, Option<(GridFrame, Vec<u8>)>, ChangeLog);
-        let (place, map, changes): Learned = read_value(&mut learned)?;
-        if !learned.is_empty() {
-            return Err(ValueError);
-        }
+        let (place, map, changes): Learned = from_bytes(learned)?;
         let place = place.map(|bytes| KnownPlace::restored(&settings, &bytes)).transpose()?;
         let mut survey = Self {
             settings,

@@ -5,6 +5,7 @@ use crate::bytes::Bytes;
 use crate::cdr::encoded;
 use crate::choice::TopicChoice;
 use crate::error::LogError;
+use crate::log::Log;
 use crate::ros::{
     Header, LaserScan, Odometry, Pose, PoseWithCovariance, Rotation, Time, TransformStamped, Transforms,
     TwistWithCovariance, Vector,
@@ -142,7 +143,7 @@ impl Builder {
     }
 
     /// The bag as a small MCAP file, opened with a choice.
-    pub(super) fn open(&self, choice: &TopicChoice) -> Result<Bag, LogError> {
+    pub(super) fn open(&self, choice: &TopicChoice) -> Result<Log, LogError> {
         open(&self.mcap(plain()), choice)
     }
 
@@ -162,7 +163,7 @@ pub(super) fn compressed(by: Compression) -> WriteOptions {
 }
 
 /// A bag of one file.
-pub(super) fn open(bytes: &[u8], choice: &TopicChoice) -> Result<Bag, LogError> {
+pub(super) fn open(bytes: &[u8], choice: &TopicChoice) -> Result<Log, LogError> {
     let io = |why| LogError::Io { file: "test".to_owned(), why };
     let bytes = if bytes.starts_with(b"SQLite") {
         let mut file = tempfile::NamedTempFile::new().map_err(io)?;
@@ -177,6 +178,6 @@ pub(super) fn open(bytes: &[u8], choice: &TopicChoice) -> Result<Bag, LogError> 
     Bag::open("test", vec![file], choice, Vec::new())
 }
 
-pub(super) fn readings(bag: &Bag) -> Vec<LaserReading> {
-    bag.readings().map(|reading| reading.expect("a reading that was surveyed")).collect()
+pub(super) fn readings(bag: &Log) -> Vec<LaserReading> {
+    bag.readings().unwrap().map(|reading| reading.expect("a reading that was surveyed")).collect()
 }

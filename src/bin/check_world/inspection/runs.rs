@@ -1,7 +1,7 @@
 //! Which program runs a file, or why none does. The programs' own code decides.
 
 use agent::Policy;
-use curious::worlds::{self, LoadError, WorldError};
+use curious::worlds::{self, LoadError};
 use evaluation::physics_trial;
 use interfaces::printable;
 
@@ -12,7 +12,7 @@ pub(super) fn in_four_rooms(name: &str) -> String {
 
 /// The command that runs a grid world.
 pub(super) fn in_grid_world(name: &str) -> String {
-    command("grid_world", name, worlds::load_grid(name).map(drop).map_err(anyhow::Error::from))
+    command("grid_world", name, worlds::load_grid(name).map(drop))
 }
 
 /// Whether a robot can explore the world.
@@ -32,7 +32,7 @@ fn command(program: &str, name: &str, result: anyhow::Result<()>) -> String {
 /// The error in one line.
 fn reason(error: &anyhow::Error) -> String {
     match error.downcast_ref() {
-        Some(WorldError::Load(LoadError::World(error))) => error
+        Some(LoadError::World(error)) => error
             .findings()
             .iter()
             .next()

@@ -1,6 +1,6 @@
 //! Synthetic trials for tests: errors that fall and qualities that rise, with noise.
 
-use super::ReportSettings;
+use crate::ReportSettings;
 use evaluation::trials::{Length, Sample, Trial};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
