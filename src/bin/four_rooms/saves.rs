@@ -4,6 +4,7 @@ use crate::args::Args;
 use crate::parts::Parts;
 use anyhow::anyhow;
 use curious::program::{Failure, input};
+use curious::terminal::say;
 use evaluation::physics_trial::PhysicsTrial;
 use evaluation::trial_state::TrialFacts;
 use interfaces::Twist;
@@ -33,7 +34,9 @@ impl Saves {
         let facts = TrialFacts::new(&parts.spec, args.seed, &parts.settings, parts.pilot_facts(args))
             .allowing_other_build(args.allow_other_build);
         if let Some(state) = file.load().map_err(|why| failed(&why))? {
-            trial.restore(&state, &facts).map_err(|why| failed(&why))?;
+            if let Some(note) = trial.restore(&state, &facts).map_err(|why| failed(&why))? {
+                say(io::stderr(), format_args!("note: {}: {note}", path.display()));
+            }
         }
         Ok(Some(Self { file, facts }))
     }
