@@ -3,7 +3,7 @@
 //! odometry is still right after a time without returns, in rooms that look alike from several sides.
 //!
 //! ```text
-//! cargo run -p curious-localizer --example attack -- [SIDE_M CELL_M RANGE_MAX_M SEED]
+//! cargo run -p curious-localizer --example attack -- [SIDE_M CELL_M RANGE_MAX_M SEED | trips]
 //! ```
 
 use interfaces::{Cell, CellState, Grid, GridFrame, LaserReading, Purpose, RandomStream, Scan, Twist, pose};
@@ -171,6 +171,13 @@ fn main() {
     if let [side_m, cell_m, range_max_m, seed] = arguments[..] {
         return search(side_m, cell_m, range_max_m, seed as u64);
     }
+    if std::env::args().all(|argument| argument != "trips") {
+        searches();
+    }
+    trips();
+}
+
+fn searches() {
     println!(
         "| side, m | cell, m | range, m | off, m | scans | CPU per scan, ms: median | most | to build |\n|---|---|---|---|---|---|---|---|"
     );
@@ -188,6 +195,9 @@ fn main() {
             search(side_m, cell_m, range_max_m, seed);
         }
     }
+}
+
+fn trips() {
     println!(
         "\n| room, m | no returns for, s | mapped afterwards, worst error of a certain pose, m: NaN | +inf |\n|---|---|---|---|"
     );

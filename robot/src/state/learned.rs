@@ -76,11 +76,9 @@ impl LearnedFacts {
         robot.mapper.restore(learned[0]).map_err(|_| misfit(MAPPER))?;
         let searches = robot.restore_localization(learned[1], state.is_earlier());
         let searches = searches.map_err(|_| misfit(LOCALIZATION))?;
-        match (robot.filter_mut(), state.section(FILTER, &self.filter)) {
-            (Some(filter), Ok(learned)) => {
-                interfaces::restore(filter.values(), learned).map_err(|_| misfit(FILTER))?;
-            }
-            _ => {} // absent from states of programs that did not save it
+        // Absent from states of programs that did not save it.
+        if let (Some(filter), Ok(learned)) = (robot.filter_mut(), state.section(FILTER, &self.filter)) {
+            interfaces::restore(filter.values(), learned).map_err(|_| misfit(FILTER))?;
         }
         Ok(searches.then_some(RELOCALIZES))
     }

@@ -138,8 +138,8 @@ impl MapMatcher {
         };
         let (search, since) = wide.part.get_or_insert_with(begin);
         if search.pass(scores, left) {
-            let place = |found: Candidate| Candidate { pose: found.pose * *since, ..found };
-            let candidates: Vec<_> = search.candidates(scores).into_iter().map(place).collect();
+            let mut candidates = search.candidates(scores);
+            candidates.iter_mut().for_each(|candidate| candidate.pose *= *since);
             let found = Hypotheses::start(&self.scene(step), &candidates, MIN_SCORE);
             wide.best_score = wide.best_score.max(search.best_score());
             wide.found = std::mem::take(&mut wide.found).restarted().or(found);
