@@ -33,10 +33,10 @@ impl Saves {
         let file = file.every(Duration::from_secs_f64(args.state_every));
         let facts = TrialFacts::new(&parts.spec, args.seed, &parts.settings, parts.pilot_facts(args))
             .allowing_other_build(args.allow_other_build);
-        if let Some(state) = file.load().map_err(|why| failed(&why))? {
-            if let Some(note) = trial.restore(&state, &facts).map_err(|why| failed(&why))? {
-                say(io::stderr(), format_args!("note: {}: {note}", path.display()));
-            }
+        if let Some(state) = file.load().map_err(|why| failed(&why))?
+            && let Some(note) = trial.restore(&state, &facts).map_err(|why| failed(&why))?
+        {
+            say(io::stderr(), format_args!("note: {}: {note}", path.display()));
         }
         Ok(Some(Self { file, facts }))
     }
