@@ -64,7 +64,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     for (number, bag) in bags.iter().enumerate() {
         let log = Log::open(bag, &TopicChoice::default())?;
         let entry = LogEntry::of(bag.display().to_string(), &log, &TopicChoice::default())?;
-        survey.first_pass(&log, entry, number + 1 < bags.len(), |_, _| ControlFlow::Continue(()))?;
+        survey.first_pass(&log, entry, number + 1 < bags.len(), |_| ControlFlow::Continue(()))?;
         logs.push(log);
     }
     let mut settings = survey.settings_of(logs.len());

@@ -21,7 +21,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let pose = if log.summary().stands { PoseMode::Exact } else { PoseMode::Localized };
     let mut survey = Survey::new(SurveySettings::of(pose), true);
     let entry = LogEntry::of(file.clone(), &log, &TopicChoice::default())?;
-    survey.first_pass(&log, entry, true, |_, _| ControlFlow::Continue(()))?;
+    survey.first_pass(&log, entry, true, |_| ControlFlow::Continue(()))?;
     let mut replay = survey.replay(0, &log)?.ok_or("the log has no reading")?;
     let readings = log.summary().scans;
     // As in the middle of the log: what was copied before is still shared.

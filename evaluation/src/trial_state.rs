@@ -83,12 +83,12 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
         }
     }
 
-    /// Goes on from a state that a run with the same facts has saved.
+    /// Goes on from a state that a run with the same facts has saved. Returns a note for the user, if there is one.
     ///
     /// # Errors
     ///
     /// When the state is of another run or of another build; the error names what differs. The run must not be used then.
-    pub fn restore(&mut self, state: &State, facts: &TrialFacts) -> Result<(), StateError> {
+    pub fn restore(&mut self, state: &State, facts: &TrialFacts) -> Result<Option<&'static str>, StateError> {
         let misfit = |part: &str| StateError::OtherContent(part.to_owned());
         let world = state.section(WORLD, &facts.world)?;
         let (pilot, observer) =
@@ -98,11 +98,11 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
             Err(_) => {}
             Ok(()) => drop(state.section(CONTENT, &facts.content)?),
         }
-        facts.learned.restore(state, &mut self.robot)?;
+        let note = facts.learned.restore(state, &mut self.robot)?;
         self.world.restore(world).map_err(|_| misfit(WORLD))?;
         interfaces::restore(self.pilot_values(), pilot).map_err(|_| misfit(PILOT))?;
         self.observer = interfaces::from_bytes(observer).map_err(|_| misfit(MEASUREMENTS))?;
-        Ok(())
+        Ok(note)
     }
 
     /// The values of the pilot and of its last command.

@@ -217,20 +217,19 @@ pub(crate) const FOUND_STD: Spread = Spread { m: 0.1, rad: 0.03 };
 pub(crate) const SAME_POSE: Spread = Spread::of_motion(0.1);
 /// The same of poses in a search, and of places of submaps.
 pub(crate) const SAME_PLACE: Spread = Spread { m: 0.4, rad: 0.35 };
-/// Search: number of points, of poses, of squares (50 ms), and of points after which a bad square is left.
+/// Search: number of points, of poses, and of points after which a bad square is left.
 pub(crate) const SEARCH_POINTS: usize = 64;
 pub(crate) const MAX_CANDIDATES: usize = 16;
-pub(crate) const MAX_NODES: usize = 400_000;
 pub(crate) const SEARCH_CHUNK: usize = 8;
-/// Side of the cells of a search, m; maximum side of a part of a map, m: two million cells, 50 ms; sides of the largest
-/// squares, as a power of 2.
+/// Work of a search in one scan, in scores that are looked up: 40 ms; two cells of their tables take as long as one.
+pub(crate) const MAX_WORK: usize = 16_000_000;
+pub(crate) const CELLS_PER_LOOKUP: usize = 2;
+/// Side of the cells of a search, m; maximum side of a part of a map, m; sides of the largest squares, as a power of 2.
 pub(crate) const SCORE_CELL_M: f64 = 0.05;
-pub(crate) const MAX_SIDE_M: f64 = 76.8;
+pub(crate) const MAX_SIDE_M: f64 = 102.4;
 pub(crate) const TOP: usize = 6;
 /// Surfaces farther away are not looked for in parts of a map, m.
 pub(crate) const MAX_REACH_M: f64 = 28.8;
-/// Parts without a surface that are passed in one scan.
-pub(crate) const MAX_EMPTY_PARTS: usize = 32;
 /// A surfel reaches this far along its surface, m: neighbors join.
 pub(crate) const ALONG_M: f64 = 0.08;
 

@@ -86,7 +86,7 @@ impl Hypotheses {
         if self.scans >= scans && self.list.len() == 1 { self.list.first() } else { None }
     }
 
-    /// Moves all poses, without a scan to compare them with.
+    /// Moves all poses.
     pub(crate) fn follow_odometry(&mut self, motion: &Motion) {
         for hypothesis in &mut self.list {
             hypothesis.covariance = motion.propagate(&hypothesis.pose, &hypothesis.covariance);
@@ -105,13 +105,11 @@ impl Hypotheses {
         }
     }
 
-    /// Moves all poses and compares them with the next scan. Poses below `min_score` are dropped.
-    pub(crate) fn advance<M: ChangingMap>(&mut self, scene: &Scene<M>, motion: &Motion, min_score: f64) {
+    /// Compares all poses with a scan. Poses below `min_score` are dropped.
+    pub(crate) fn compare<M: ChangingMap>(&mut self, scene: &Scene<M>, min_score: f64) {
         self.scans += 1;
-        let next = |hypothesis: &Hypothesis| {
-            let covariance = motion.propagate(&hypothesis.pose, &hypothesis.covariance);
-            let pose = motion.apply(&hypothesis.pose);
-            refine(scene, &pose, &covariance, 2.0 * scene.gate_m(), SCORE_MEMORY * hypothesis.score)
+        let next = |Hypothesis { pose, covariance, score, .. }: &Hypothesis| {
+            refine(scene, pose, covariance, 2.0 * scene.gate_m(), SCORE_MEMORY * score)
                 .filter(|next| next.support.score() >= min_score)
         };
         self.list = self.list.iter().filter_map(next).collect();

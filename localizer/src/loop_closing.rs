@@ -24,7 +24,9 @@ use crate::estimate::{Localized, PoseEstimate, PoseState};
 use crate::first_map::{FirstMap, Kept, Log};
 use crate::localizer::{Localizer, PosePrior};
 use crate::settings::LocalizerSettings;
-use interfaces::{GridFrame, LaserReading, SettingsError, ValueError, read_value, write_value};
+use interfaces::{
+    CellState, Grid, GridFrame, LaserReading, SettingsError, ValueError, read_value, write_value,
+};
 use mapper::Mapper;
 use nalgebra::Isometry2;
 use std::fmt;
@@ -369,6 +371,12 @@ impl LoopClosingLocalizer {
             None => None,
         };
         if snapshot.is_empty() { Ok(()) } else { Err(ValueError) }
+    }
+
+    /// Begins anew in a known map, see [`Localizer::begin_in`]. It is frozen.
+    pub fn begin_in(&mut self, map: &Grid<CellState>) {
+        self.localizer.begin_in(map);
+        (self.background, self.first) = (None, None);
     }
 
     /// Begins another session, see [`Localizer::begin_session`]. The map of the first session is frozen.

@@ -1,21 +1,19 @@
 //! The search for a pose: branch and bound over x, y and heading, in a window (Olson 2009) or in the whole map (Hess et
-//! al. 2016).
+//! al. 2016), depth first, so that little must be kept of a search that goes on in the next scan.
 
 #[cfg(test)]
 mod tests;
 
-use crate::constants::{FAR_M, MAX_CANDIDATES, MAX_NODES, SAME_PLACE, SEARCH_CHUNK, SEARCH_POINTS, TOP};
+use crate::constants::{FAR_M, MAX_CANDIDATES, MAX_WORK, SAME_PLACE, SEARCH_CHUNK, SEARCH_POINTS, TOP};
 use crate::scan_points::ScanPoint;
 use crate::score_grid::ScoreGrid;
 use crate::work;
 use interfaces::{Cell, GridFrame, heading_rad, wrap_rad};
 use nalgebra::{Isometry2, Point2, Vector2};
-use std::cmp::Ordering;
-use std::collections::BinaryHeap;
 use std::f64::consts::PI;
 
 /// Where to search.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, serde::Deserialize, serde::Serialize)]
 pub(crate) struct Window {
     /// The middle of the window.
     pub(crate) pose: Isometry2<f64>,
@@ -34,8 +32,8 @@ pub(crate) struct Candidate {
     pub(crate) score: f64,
 }
 
-/// A square of positions at one heading. Ordered by the bound of its score, then by a fixed order.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// A square of positions at one heading. At level 0, the bound is the score.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
 struct Node {
     bound: u32,
     level: usize,
@@ -44,33 +42,20 @@ struct Node {
     y: i32,
 }
 
-impl Ord for Node {
-    fn cmp(&self, other: &Self) -> Ordering {
-        // Of equal bounds, the smaller square first: it is nearer to a result.
-        let place = |node: &Self| (node.heading, node.y, node.x);
-        let by_score = self.bound.cmp(&other.bound).then_with(|| other.level.cmp(&self.level));
-        by_score.then_with(|| place(other).cmp(&place(self)))
-    }
-}
-
-impl PartialOrd for Node {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-/// The points of a scan at one heading, in cells from the robot, with their weights.
-type Turned = Vec<(i32, i32, u32)>;
-
-/// One search.
-struct Search<'a> {
-    grid: &'a ScoreGrid,
-    headings_rad: Vec<f64>,
-    turned: Vec<Turned>,
-    /// The score of a perfect fit.
-    perfect: u32,
-    /// The lower left and the upper right cell of the positions.
-    cells: (Cell, Cell),
+/// One search: the poses of a scan in a window, or without one in a whole map.
+#[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
+pub(crate) struct Search {
+    /// The points of the scan with their weights.
+    points: Vec<(Point2<f64>, u32)>,
+    window: Option<Window>,
+    /// The smallest score, and the smallest share of the best one.
+    min_score: f64,
+    ratio: f64,
+    /// The number of the next of the squares that cover the window, and the squares in the last one that are left.
+    next: usize,
+    nodes: Vec<Node>,
+    /// The best poses so far that differ, the best first.
+    found: Vec<Node>,
 }
 
 /// The poses that fit best, the best first: all that differ and reach `ratio` of the best score, up to a number.
@@ -79,27 +64,211 @@ pub(crate) fn search(
     grid: &ScoreGrid,
     points: &[ScanPoint],
     window: Option<&Window>,
-    least_score: f64,
+    min_score: f64,
     ratio: f64,
 ) -> Vec<Candidate> {
-    let chosen = spread(points);
-    if chosen.is_empty() {
-        return Vec::new();
+    search_within(&mut { MAX_WORK }, grid, points, window, (min_score, ratio))
+}
+
+/// The same, with what is `left` of the work of a scan.
+pub(crate) fn search_within(
+    left: &mut usize,
+    grid: &ScoreGrid,
+    points: &[ScanPoint],
+    window: Option<&Window>,
+    (min_score, ratio): (f64, f64),
+) -> Vec<Candidate> {
+    let mut search = Search::new(points, window.copied(), lower(1.0, min_score), ratio);
+    while search.pass(grid, left) && !search.is_over(min_score) {
+        search.repeat(lower(search.min_score, min_score));
     }
-    let cell_m = grid.frame().resolution_m();
-    let headings_rad = headings(window, cell_m);
-    let turn = |heading: &f64| turned(&chosen, *heading, cell_m);
-    let search = Search {
-        grid,
-        turned: headings_rad.iter().map(turn).collect(),
-        headings_rad,
-        perfect: 255 * chosen.iter().map(|(_, weight)| weight).sum::<u32>(),
-        cells: cells(grid.frame(), window),
-    };
-    // A window is small: large squares would not fit in it.
-    let is_small = window.is_some_and(|window| window.reach_rad < PI);
-    let level = if is_small { TOP - 2 } else { TOP };
-    search.best_first(level, least_score, ratio)
+    search.candidates(grid)
+}
+
+/// The smallest score of the next pass: few squares can reach a high one, and most scans fit well somewhere.
+pub(crate) fn lower(score: f64, min_score: f64) -> f64 {
+    (0.8 * score).max(min_score)
+}
+
+impl Search {
+    pub(crate) fn new(points: &[ScanPoint], window: Option<Window>, min_score: f64, ratio: f64) -> Self {
+        let (points, nodes, found) = (spread(points), Vec::new(), Vec::new());
+        Self { points, window, min_score, ratio, next: 0, nodes, found }
+    }
+
+    /// Begins another pass.
+    fn repeat(&mut self, min_score: f64) {
+        (self.next, self.min_score) = (0, min_score);
+    }
+
+    /// Whether no pass with a smaller score would find more.
+    fn is_over(&self, min_score: f64) -> bool {
+        self.min_score <= min_score || self.best_score() * self.ratio >= self.min_score
+    }
+
+    /// The score of a perfect fit.
+    fn perfect(&self) -> u32 {
+        (255 * self.points.iter().map(|(_, weight)| weight).sum::<u32>()).max(1)
+    }
+
+    /// The best score so far.
+    pub(crate) fn best_score(&self) -> f64 {
+        self.found.first().map_or(0.0, |best| f64::from(best.bound) / f64::from(self.perfect()))
+    }
+
+    /// The poses so far.
+    pub(crate) fn candidates(&self, grid: &ScoreGrid) -> Vec<Candidate> {
+        let headings_rad = headings(self.window.as_ref(), grid);
+        let candidate = |node: &Node| {
+            let at = grid.frame().center(Cell::new(node.x, node.y));
+            let pose = interfaces::pose(at.x, at.y, headings_rad[node.heading]);
+            Candidate {
+                pose,
+                #[cfg(test)]
+                score: f64::from(node.bound) / f64::from(self.perfect()),
+            }
+        };
+        self.found.iter().map(candidate).collect()
+    }
+
+    /// Goes on until all squares with a score are searched, or nothing is `left` of the work; returns whether all are.
+    pub(crate) fn pass(&mut self, grid: &ScoreGrid, left: &mut usize) -> bool {
+        let squares = Squares::new(self, grid);
+        while *left > 0 {
+            match self.nodes.pop() {
+                Some(node) => self.split(&squares, &node, left),
+                None if self.next < squares.len() => {
+                    let (heading, x, y) = squares.at(self.next);
+                    self.next += 1;
+                    self.nodes.extend(squares.node(squares.level, heading, x, y, self.least(), left));
+                }
+                None => return true,
+            }
+        }
+        false
+    }
+
+    /// The smallest score of a pose that would be kept.
+    fn least(&self) -> u32 {
+        let least = (self.min_score * f64::from(self.perfect())) as u32;
+        let best = self.found.first().map_or(0, |best| (self.ratio * f64::from(best.bound)) as u32);
+        let worst = self.found.get(MAX_CANDIDATES - 1).map_or(0, |worst| worst.bound + 1);
+        least.max(best).max(worst).max(1)
+    }
+
+    /// Divides a square in four, of which the best is next; or keeps a pose.
+    fn split(&mut self, squares: &Squares, node: &Node, left: &mut usize) {
+        let least = self.least();
+        let is_better = |best: &Node| best.bound >= node.bound && squares.is_same(best, node);
+        if node.bound < least || self.found.iter().any(is_better) {
+            return;
+        }
+        let Some(level) = node.level.checked_sub(1) else { return self.keep(squares, node) };
+        let (half, first) = (1 << level, self.nodes.len());
+        for (dx, dy) in [(0, 0), (half, 0), (0, half), (half, half)] {
+            self.nodes.extend(squares.node(level, node.heading, node.x + dx, node.y + dy, least, left));
+        }
+        self.nodes[first..].sort_by_key(|node| node.bound);
+    }
+
+    fn keep(&mut self, squares: &Squares, node: &Node) {
+        self.found.retain(|worse| worse.bound >= node.bound || !squares.is_same(node, worse));
+        let rank = self.found.partition_point(|better| better.bound >= node.bound);
+        self.found.insert(rank, *node);
+        self.found.truncate(MAX_CANDIDATES);
+        let least = (self.ratio * f64::from(self.found[0].bound)) as u32;
+        self.found.retain(|node| node.bound >= least);
+    }
+}
+
+/// The points of a scan at one heading, in cells from the robot, with their weights.
+type Turned = Vec<(i32, i32, u32)>;
+
+/// The squares of one search.
+struct Squares<'a> {
+    grid: &'a ScoreGrid,
+    headings_rad: Vec<f64>,
+    turned: Vec<Turned>,
+    perfect: u32,
+    /// The lower left and the upper right cell of the positions.
+    cells: (Cell, Cell),
+    /// The level of the largest squares, and the number of their columns and rows.
+    level: usize,
+    columns: usize,
+    rows: usize,
+}
+
+impl<'a> Squares<'a> {
+    fn new(search: &Search, grid: &'a ScoreGrid) -> Self {
+        let cell_m = grid.frame().resolution_m();
+        let window = search.window.as_ref();
+        let headings_rad = headings(window, grid);
+        let turned = headings_rad.iter().map(|heading| turned(&search.points, *heading, cell_m)).collect();
+        let (low, high) = cells(grid.frame(), window);
+        // A window is small: large squares would not fit in it.
+        let level = if window.is_some_and(|window| window.reach_rad < PI) { TOP - 2 } else { TOP };
+        let count = |low: i32, high: i32| ((high + 1 - low).max(0) as usize).div_ceil(1 << level);
+        let (columns, rows) = (count(low.x, high.x), count(low.y, high.y));
+        let (perfect, cells) = (search.perfect(), (low, high));
+        Self { grid, headings_rad, turned, perfect, cells, level, columns, rows }
+    }
+
+    /// The number of the largest squares.
+    fn len(&self) -> usize {
+        if self.turned[0].is_empty() { 0 } else { self.headings_rad.len() * self.columns * self.rows }
+    }
+
+    /// The heading and the lower left cell of one of the largest squares.
+    fn at(&self, number: usize) -> (usize, i32, i32) {
+        let (place, heading) = (number / self.headings_rad.len(), number % self.headings_rad.len());
+        let (column, row) = ((place % self.columns) as i32, (place / self.columns) as i32);
+        (heading, self.cells.0.x + (column << self.level), self.cells.0.y + (row << self.level))
+    }
+
+    /// A square of positions, if the robot can be in it and the bound of its score reaches `least`.
+    fn node(
+        &self,
+        level: usize,
+        heading: usize,
+        x: i32,
+        y: i32,
+        least: u32,
+        left: &mut usize,
+    ) -> Option<Node> {
+        let (low, high) = self.cells;
+        let side = 1 << level;
+        let is_inside = x <= high.x && y <= high.y && x + side > low.x && y + side > low.y;
+        let is_possible = is_inside && self.grid.has_free(level, x, y);
+        let (points, bounds) = (&self.turned[heading], self.grid.level(level));
+        let (mut bound, mut most, mut seen) = (0, self.perfect, 0);
+        for some in points.chunks(SEARCH_CHUNK).take_while(|_| is_possible) {
+            if most < least {
+                break;
+            }
+            for &(dx, dy, weight) in some {
+                let score = u32::from(bounds.bound(x + dx, y + dy));
+                bound += weight * score;
+                most -= weight * (255 - score);
+            }
+            seen += some.len();
+        }
+        work::count(seen + 1);
+        *left = left.saturating_sub(seen + 1);
+        (is_possible && most >= least).then_some(Node { bound, level, heading, x, y })
+    }
+
+    /// Whether all poses of a square are close to a better pose.
+    fn is_same(&self, best: &Node, node: &Node) -> bool {
+        let turn = wrap_rad(self.headings_rad[node.heading] - self.headings_rad[best.heading]);
+        let (frame, last) = (self.grid.frame(), (1 << node.level) - 1);
+        let at = frame.center(Cell::new(best.x, best.y));
+        let corner = |x: i32, y: i32| (frame.center(Cell::new(x, y)) - at).norm() <= SAME_PLACE.m;
+        turn.abs() <= SAME_PLACE.rad
+            && corner(node.x, node.y)
+            && corner(node.x + last, node.y)
+            && corner(node.x, node.y + last)
+            && corner(node.x + last, node.y + last)
+    }
 }
 
 /// The lower left and the upper right cell of a window, or of the whole map.
@@ -131,8 +300,8 @@ fn spread(points: &[ScanPoint]) -> Vec<(Point2<f64>, u32)> {
     chosen
 }
 
-fn headings(window: Option<&Window>, cell_m: f64) -> Vec<f64> {
-    let step_rad = 2.0 * cell_m / FAR_M;
+fn headings(window: Option<&Window>, grid: &ScoreGrid) -> Vec<f64> {
+    let step_rad = 2.0 * grid.frame().resolution_m() / FAR_M;
     let (middle_rad, reach_rad) =
         window.map_or((0.0, PI), |window| (heading_rad(&window.pose), window.reach_rad.min(PI)));
     let steps = libm::ceil(reach_rad / step_rad) as i32;
@@ -148,91 +317,4 @@ fn turned(points: &[(Point2<f64>, u32)], heading_rad: f64, cell_m: f64) -> Turne
         (cell(arm.x), cell(arm.y), *weight)
     };
     points.iter().map(turn).collect()
-}
-
-impl Search<'_> {
-    /// The upper bound of the scores of a square of positions; at level 0, the score. `None` if it is below `least`.
-    fn bound(&self, level: usize, heading: usize, x: i32, y: i32, least: u32) -> Option<u32> {
-        let (mut sum, mut left) = (0, self.perfect);
-        for some in self.turned[heading].chunks(SEARCH_CHUNK) {
-            for &(dx, dy, weight) in some {
-                sum += weight * u32::from(self.grid.bound(level, x + dx, y + dy));
-                left -= 255 * weight;
-            }
-            if sum + left < least {
-                return None;
-            }
-        }
-        Some(sum)
-    }
-
-    /// A square of positions, if the robot can be in it and the bound of its score reaches `least`.
-    fn node(&self, level: usize, heading: usize, x: i32, y: i32, least: u32) -> Option<Node> {
-        let (low, high) = self.cells;
-        let side = 1 << level;
-        let is_inside = x <= high.x && y <= high.y && x + side > low.x && y + side > low.y;
-        if !is_inside || !self.grid.has_free(x, y, side) {
-            return None;
-        }
-        work::count(1);
-        let bound = self.bound(level, heading, x, y, least)?;
-        Some(Node { bound, level, heading, x, y })
-    }
-
-    /// The squares that cover the window.
-    fn roots(&self, level: usize, least: u32) -> BinaryHeap<Node> {
-        let (low, high) = self.cells;
-        let side = 1_usize << level;
-        let mut roots = BinaryHeap::new();
-        for heading in 0..self.headings_rad.len() {
-            for y in (low.y..=high.y).step_by(side) {
-                for x in (low.x..=high.x).step_by(side) {
-                    roots.extend(self.node(level, heading, x, y, least));
-                }
-            }
-        }
-        roots
-    }
-
-    fn best_first(&self, level: usize, least_score: f64, ratio: f64) -> Vec<Candidate> {
-        let mut found: Vec<(Node, Point2<f64>)> = Vec::new();
-        let mut least = (least_score * f64::from(self.perfect)) as u32;
-        let mut nodes = self.roots(level, least);
-        for _ in 0..MAX_NODES {
-            let Some(node) = nodes.pop().filter(|node| node.bound >= least.max(1)) else { break };
-            if found.len() == MAX_CANDIDATES {
-                break;
-            }
-            if found.iter().any(|best| self.is_same(best, &node)) {
-                continue;
-            }
-            if node.level == 0 {
-                found.push((node, self.grid.frame().center(Cell::new(node.x, node.y))));
-                least = least.max((ratio * f64::from(found[0].0.bound)) as u32);
-                continue;
-            }
-            let half = 1 << (node.level - 1);
-            for (dx, dy) in [(0, 0), (half, 0), (0, half), (half, half)] {
-                nodes.extend(self.node(node.level - 1, node.heading, node.x + dx, node.y + dy, least));
-            }
-        }
-        let candidate = |(node, at): &(Node, Point2<f64>)| Candidate {
-            pose: interfaces::pose(at.x, at.y, self.headings_rad[node.heading]),
-            #[cfg(test)]
-            score: f64::from(node.bound) / f64::from(self.perfect),
-        };
-        found.iter().map(candidate).collect()
-    }
-
-    /// Whether all poses of a square are close to a better pose.
-    fn is_same(&self, (best, at): &(Node, Point2<f64>), node: &Node) -> bool {
-        let turn = wrap_rad(self.headings_rad[node.heading] - self.headings_rad[best.heading]);
-        let last = (1 << node.level) - 1;
-        let corner = |x: i32, y: i32| (self.grid.frame().center(Cell::new(x, y)) - at).norm() <= SAME_PLACE.m;
-        turn.abs() <= SAME_PLACE.rad
-            && corner(node.x, node.y)
-            && corner(node.x + last, node.y)
-            && corner(node.x, node.y + last)
-            && corner(node.x + last, node.y + last)
-    }
 }

@@ -62,8 +62,8 @@ pub(crate) struct SurfelMap {
     surfels: Vec<Surfel>,
     /// Places in `surfels` that can be used again.
     removed: Vec<u32>,
-    /// Counts the surfels that were added, removed or became usable.
-    revision: u64,
+    /// Nothing any more: keeps the layout of states.
+    unused: u64,
     /// The number of scans that were learned.
     scan: u32,
 }
@@ -73,7 +73,7 @@ impl SurfelMap {
     pub(crate) fn new(frame: &GridFrame) -> Self {
         let frame = fitted(frame, SURFEL_M, 1);
         let cells = vec![[NONE; PER_CELL]; frame.len()];
-        Self { frame, cells, surfels: Vec::new(), removed: Vec::new(), revision: 0, scan: 0 }
+        Self { frame, cells, surfels: Vec::new(), removed: Vec::new(), unused: 0, scan: 0 }
     }
 
     /// The map without its surfels, for a frame of the same size: most cells are empty and stay as they are.
@@ -86,7 +86,7 @@ impl SurfelMap {
             self.cells[surfel.cell as usize] = [NONE; PER_CELL];
         }
         self.removed.clear();
-        Self { frame: cells, revision: 0, scan: 0, ..self }
+        Self { frame: cells, scan: 0, ..self }
     }
 
     /// Everything that scans have changed.
@@ -95,7 +95,7 @@ impl SurfelMap {
             runs(&mut self.cells),
             value(&mut self.surfels),
             value(&mut self.removed),
-            value(&mut self.revision),
+            value(&mut self.unused),
             value(&mut self.scan),
         ]
     }
@@ -103,11 +103,6 @@ impl SurfelMap {
     /// The grid of the cells.
     pub(crate) fn frame(&self) -> &GridFrame {
         &self.frame
-    }
-
-    /// Changes whenever the surfels that take part in matching change.
-    pub(crate) fn revision(&self) -> u64 {
-        self.revision
     }
 
     /// The surfel at an index from [`SurfelMap::nearest`].
@@ -147,11 +142,25 @@ impl SurfelMap {
         best
     }
 
+    /// Calls `visit` with every surfel that takes part in matching in the cells of a rectangle.
+    pub(crate) fn within(&self, low: &Point2<f64>, high: &Point2<f64>, mut visit: impl FnMut(&Surfel)) {
+        self.in_cells(low, high, |_, surfel| {
+            if surfel.weight() > 0.0 {
+                visit(surfel);
+            }
+        });
+    }
+
     /// Calls `visit` with every surfel in the cells within `reach_m` of a point.
     #[inline]
-    fn around(&self, at: &Point2<f64>, reach_m: f64, mut visit: impl FnMut(u32, &Surfel)) {
+    fn around(&self, at: &Point2<f64>, reach_m: f64, visit: impl FnMut(u32, &Surfel)) {
         let reach = Vector2::new(reach_m, reach_m);
-        let (low, high) = (self.frame.cell_at(&(at - reach)), self.frame.cell_at(&(at + reach)));
+        self.in_cells(&(at - reach), &(at + reach), visit);
+    }
+
+    #[inline]
+    fn in_cells(&self, low: &Point2<f64>, high: &Point2<f64>, mut visit: impl FnMut(u32, &Surfel)) {
+        let (low, high) = (self.frame.cell_at(low), self.frame.cell_at(high));
         let (width, height) = (self.frame.width() as i32, self.frame.height() as i32);
         let (left, right) = (low.x.max(0), high.x.min(width - 1));
         if left > right {
@@ -196,7 +205,6 @@ impl SurfelMap {
             }
         };
         self.cells[cell][place] = index;
-        self.revision += u64::from(surfel.weight() > 0.0);
         Some(index)
     }
 
@@ -209,7 +217,6 @@ impl SurfelMap {
         }
         self.surfels[index as usize].cell = NONE;
         self.removed.push(index);
-        self.revision += 1;
     }
 }
 

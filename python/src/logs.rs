@@ -147,7 +147,7 @@ fn learn(log: &::logs::Log, settings: SurveySettings, learns_noise: bool) -> PyR
     let mut signal = Signal::default();
     let entry = LogEntry::of(String::new(), log, &TopicChoice::default()).map_err(value_error)?;
     let mut survey = survey::Survey::new(settings, learns_noise);
-    let found = survey.first_pass(log, entry, false, |_, readings| signal.check(readings));
+    let found = survey.first_pass(log, entry, false, |(_, readings)| signal.check(readings));
     signal.or(found)?;
     let replay = survey.replay(0, log).map_err(value_error)?;
     let changed = || value_error("the log has changed since the first pass");

@@ -19,6 +19,16 @@ pub trait Localization<R> {
     /// When the bytes are no such snapshot. The localization must not be used then.
     fn restore(&mut self, snapshot: &[u8]) -> Result<(), ValueError>;
 
+    /// Goes on from the snapshot of an earlier version. Returns whether the robot searches for its pose in the map that was
+    /// learned: what is saved of a localizer has changed.
+    ///
+    /// # Errors
+    ///
+    /// When the bytes are no such snapshot.
+    fn restore_earlier(&mut self, snapshot: &[u8], _: &Mapper) -> Result<bool, ValueError> {
+        self.restore(snapshot).map(|()| false)
+    }
+
     /// Begins another session in the place that was learned, at a pose that is not known.
     fn begin_session(&mut self);
 
@@ -89,6 +99,11 @@ impl Localization<LaserReading> for Localizer {
         Localizer::restore(self, snapshot)
     }
 
+    fn restore_earlier(&mut self, _: &[u8], map: &Mapper) -> Result<bool, ValueError> {
+        self.begin_in(map.states());
+        Ok(true)
+    }
+
     fn begin_session(&mut self) {
         Localizer::begin_session(self);
     }
@@ -106,6 +121,11 @@ impl Localization<LaserReading> for LoopClosingLocalizer {
 
     fn restore(&mut self, snapshot: &[u8]) -> Result<(), ValueError> {
         LoopClosingLocalizer::restore(self, snapshot)
+    }
+
+    fn restore_earlier(&mut self, _: &[u8], map: &Mapper) -> Result<bool, ValueError> {
+        self.begin_in(map.states());
+        Ok(true)
     }
 
     fn begin_session(&mut self) {

@@ -3,7 +3,7 @@ use crate::localization::Localization;
 use crate::pilot::Pilot;
 use crate::session::Session;
 use agent::Features;
-use interfaces::Reading;
+use interfaces::{Reading, ValueError};
 use mapper::{Mapper, ReadingError, ScanFilter};
 
 /// A robot that localizes itself, maps what it sees, and decides where to go. Its source gives readings and takes commands.
@@ -120,6 +120,19 @@ impl<R: Reading, P: Pilot> Robot<R, P> {
     /// What is removed from scans; `None` if nothing is.
     pub fn filter_mut(&mut self) -> Option<&mut ScanFilter> {
         self.filter.as_mut()
+    }
+
+    /// Goes on from a snapshot of the localization, of this version or of an earlier one, after the mapper. Returns whether the
+    /// robot searches for its pose.
+    pub(crate) fn restore_localization(
+        &mut self,
+        snapshot: &[u8],
+        is_earlier: bool,
+    ) -> Result<bool, ValueError> {
+        match is_earlier {
+            true => self.localization.restore_earlier(snapshot, &self.mapper),
+            false => self.localization.restore(snapshot).map(|()| false),
+        }
     }
 
     /// What gives the readings their poses.

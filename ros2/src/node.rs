@@ -93,7 +93,8 @@ impl<L: Link> CuriousNode<L> {
         let mut robot = settings.robot(frame, None, Isometry2::identity(), pilot)?;
         let mut notes = Notes::new(output);
         let saves = state.map(|path| Saves::new(path, &settings, &frame, parameters)).transpose()?;
-        let continued = saves.as_ref().map(|saves| saves.restore(&mut robot)).transpose()?.flatten();
+        let continued =
+            saves.as_ref().map(|saves| saves.restore(&mut robot, &mut notes)).transpose()?.flatten();
         let mut published = Published::new(parameters);
         if let Some(last) = continued {
             let header = header(last, &parameters.map_frame);

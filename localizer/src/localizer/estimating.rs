@@ -44,7 +44,8 @@ impl MapMatcher {
         let others = if step.prior.is_some() { &[] } else { &others[..] };
         let tracked = track(&scene, &predicted, others);
         let is_low = tracked.support.share() < MIN_SUPPORT;
-        let is_mirrored = is_low && is_mirrored(&scene, &predicted.pose);
+        // Of a robot that is lost, the predicted pose says nothing.
+        let is_mirrored = is_low && self.state != State::Lost && is_mirrored(&scene, &predicted.pose);
         match self.is_supported(&tracked) && !is_mirrored {
             true => {
                 step.found.is_outlier = Some(tracked.is_other);

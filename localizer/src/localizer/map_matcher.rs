@@ -201,6 +201,9 @@ impl<'a, M: ChangingMap> ScanMatcher<Around<'a, M>> for MapMatcher {
         self.times.start_s.get_or_insert(scan.now_s);
         self.weigh_by_rates(around.map);
         self.by_odometry = scan.motion.apply(&self.by_odometry);
+        if let Some(wide) = &mut self.relocalization.wide {
+            wide.follow_odometry(&scan.motion);
+        }
         let was_tracking = self.state == State::Tracking;
         let prior = around.prior.filter(|_| !self.ignores_prior);
         if prior.is_some() {

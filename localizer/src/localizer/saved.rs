@@ -1,18 +1,15 @@
 //! A localizer in a state file, and in the next session.
 
 use super::Localizer;
+use crate::estimate::Start;
 use crate::faults::FaultFinder;
 use crate::local_trajectory_builder::LocalTrajectoryBuilder;
-use interfaces::{ValueError, Values, value};
+use interfaces::{CellState, Grid, ValueError, Values, value};
 use nalgebra::Isometry2;
 
 impl Localizer {
     /// Everything that readings have changed, as bytes; settings are not in it.
     pub fn snapshot(&mut self) -> Vec<u8> {
-        // The scores of an earlier line map are never used again.
-        let matcher = &mut self.builder.matcher;
-        let (scores, revision) = (&mut matcher.relocalization.scores, matcher.surfels.revision());
-        *scores = scores.take().filter(|(known, _)| *known == revision);
         interfaces::snapshot(self.values())
     }
 
@@ -38,6 +35,15 @@ impl Localizer {
         }
     }
 
+    /// Begins anew in a known map, at a pose that is not known: what an earlier version has saved of a localizer is not read.
+    pub fn begin_in(&mut self, map: &Grid<CellState>) {
+        let known = Self::in_map(&self.builder.matcher.settings, map, Start::Unknown);
+        // Without a surface in the map, the robot makes its own. The settings were valid before.
+        if let Some(localizer) = known.ok().filter(|known| !known.builder.matcher.surfels.is_empty()) {
+            *self = localizer;
+        }
+    }
+
     fn values(&mut self) -> Values<'_> {
         let LocalTrajectoryBuilder { faults, motion_prior, matcher, track, time_s, .. } = &mut self.builder;
         let mut values = matcher.surfels.values();
@@ -45,7 +51,6 @@ impl Localizer {
             value(&mut matcher.checker),
             value(&mut matcher.state),
             value(&mut matcher.verification),
-            value(&mut matcher.relocalization.scores),
             value(&mut matcher.relocalization.hypotheses),
             value(&mut matcher.relocalization.scans),
             value(&mut matcher.times),

@@ -5,7 +5,7 @@ use interfaces::{CellState, Grid, Purpose, RandomStream};
 /// A map of random walls, and the points that a scan at a pose has of it.
 fn random_room(seed: u64) -> (ScoreGrid, Vec<ScanPoint>) {
     let (surfels, grid, _, points) = room(seed);
-    (ScoreGrid::new(&surfels, &grid), points)
+    (ScoreGrid::around(&surfels, &grid, &Point2::new(2.0, 1.5), 4.0), points)
 }
 
 /// The surfels, the states, the pose, and the points that a scan has there.
@@ -68,12 +68,12 @@ fn exhaustive(grid: &ScoreGrid, points: &[ScanPoint], window: Option<&Window>) -
     let (low, high) = cells(frame, window);
     let is_inside = |cell: Cell| (low.x..=high.x).contains(&cell.x) && (low.y..=high.y).contains(&cell.y);
     let mut best = 0;
-    for heading in headings(window, frame.resolution_m()) {
+    for heading in headings(window, grid) {
         let turned = turned(&chosen, heading, frame.resolution_m());
         for cell in (0..frame.len()).map(|index| frame.cell(index)).filter(|cell| is_inside(*cell)) {
-            if grid.has_free(cell.x, cell.y, 1) {
+            if grid.has_free(0, cell.x, cell.y) {
                 let score = |&(dx, dy, weight): &(i32, i32, u32)| {
-                    weight * u32::from(grid.bound(0, cell.x + dx, cell.y + dy))
+                    weight * u32::from(grid.level(0).bound(cell.x + dx, cell.y + dy))
                 };
                 best = best.max(turned.iter().map(score).sum());
             }
@@ -87,10 +87,29 @@ fn every_bound_is_above_all_scores_in_its_square() {
     let (grid, _) = random_room(210);
     for level in 0..=TOP {
         for (x, y) in [(-40, -30), (0, 0), (3, 17), (41, 29)] {
-            let side = 1 << level;
-            let most = (y..y + side).flat_map(|y| (x..x + side).map(move |x| (x, y)));
-            let most = most.map(|(x, y)| grid.bound(0, x, y)).max();
-            assert_eq!(Some(grid.bound(level, x, y)), most, "level {level} at {x}, {y}");
+            let most = |from: i32, to: i32| {
+                let cells = (from..to).flat_map(|down| (from..to).map(move |right| (x + right, y + down)));
+                cells.map(|(x, y)| grid.level(0).bound(x, y)).max().unwrap()
+            };
+            let (side, beyond) = (1 << level, (1 << level) / 4 - 1);
+            let bound = grid.level(level).bound(x, y);
+            assert!(bound >= most(0, side), "level {level} at {x}, {y}");
+            assert!(bound <= most(-beyond.max(0), side + beyond.max(0)), "level {level} at {x}, {y}");
         }
     }
+}
+
+#[test]
+fn a_search_that_is_interrupted_finds_the_same() {
+    let (grid, points) = random_room(203);
+    let begin = || Search::new(&points, None, 0.5, 0.5);
+    let (mut once, mut search) = (begin(), begin());
+    assert!(once.pass(&grid, &mut { usize::MAX }));
+    let (mut left, mut scans) = (20_000, 1);
+    while !search.pass(&grid, &mut left) {
+        (left, scans) = (20_000, scans + 1);
+    }
+    let poses = |search: &Search| search.candidates(&grid).iter().map(|found| found.pose).collect::<Vec<_>>();
+    assert!(scans > 10 && poses(&once).len() > 1, "{scans} scans");
+    assert_eq!(poses(&search), poses(&once));
 }

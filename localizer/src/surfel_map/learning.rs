@@ -75,7 +75,6 @@ impl SurfelMap {
         if surfel.scans >= FROZEN_SCANS && !surfel.has_moved {
             return;
         }
-        let was_usable = surfel.weight() > 0.0;
         surfel.scans += u32::from(surfel.last_scan != self.scan);
         surfel.last_scan = self.scan;
         surfel.hits += 1;
@@ -87,7 +86,6 @@ impl SurfelMap {
         if length > 0.0 {
             surfel.normal = mean / length;
         }
-        self.revision += u64::from(!was_usable && surfel.weight() > 0.0);
     }
 
     /// Takes over the learned rates of change as weights.
@@ -100,6 +98,5 @@ impl SurfelMap {
             let rate = cell.map_or(0.0, |index| map.rate(index));
             surfel.steadiness = libm::exp(-rate * horizon_s).clamp(0.0, 1.0);
         }
-        self.revision += 1;
     }
 }

@@ -16,7 +16,9 @@ use xxhash_rust::xxh3::xxh3_64_with_seed;
 
 /// Count up when the body, or a snapshot in it, changes; `tests/states` of the workspace holds examples of every version
 /// that is read.
-const VERSION: u32 = 6;
+const VERSION: u32 = 7;
+/// The earliest version that is read. Since then, only what is saved of a localizer has changed.
+const EARLIEST: u32 = 6;
 /// The part with the build.
 const BUILD_PART: &str = "build";
 /// The largest body, bytes: what a mapper with the largest map can take.
@@ -29,7 +31,9 @@ pub enum StateError {
     #[error("this is not a state file")]
     OtherKind,
     /// The state was written by another version.
-    #[error("this state file has version {found} of the format, and this program reads version {VERSION}")]
+    #[error(
+        "this state file has version {found} of the format, and this program reads versions {EARLIEST} to {VERSION}"
+    )]
     OtherVersion {
         /// The version of the bytes.
         found: u32,
@@ -70,6 +74,8 @@ pub enum StateError {
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
 pub struct State {
     sections: Vec<Section>,
+    #[serde(skip)]
+    is_earlier: bool,
 }
 
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
@@ -93,6 +99,11 @@ impl State {
     /// Whether there is a snapshot of a part.
     pub fn has(&self, name: &str) -> bool {
         self.sections.iter().any(|section| section.name == name)
+    }
+
+    /// Whether an earlier version of the format was read.
+    pub(crate) fn is_earlier(&self) -> bool {
+        self.is_earlier
     }
 
     /// The state with the build of this program.
@@ -169,13 +180,14 @@ impl State {
         if u64::from_le_bytes(*checksum) != xxh3_64_with_seed(packed, found.into()) {
             return Err(StateError::Damaged);
         }
-        if found != VERSION {
+        if !(EARLIEST..=VERSION).contains(&found) {
             return Err(StateError::OtherVersion { found });
         }
         let length = packed.first_chunk().ok_or(StateError::Damaged)?;
         check_length(u32::from_le_bytes(*length) as usize)?;
         let body = lz4_flex::decompress_size_prepended(packed).map_err(|_| StateError::Damaged)?;
-        postcard::from_bytes(&body).map_err(|_| StateError::Damaged)
+        let state: Self = postcard::from_bytes(&body).map_err(|_| StateError::Damaged)?;
+        Ok(Self { is_earlier: found < VERSION, ..state })
     }
 }
 

@@ -9,6 +9,9 @@ use mapper::{Mapper, MapperSettings};
 
 const MAPPER: &str = "mapper";
 const LOCALIZATION: &str = "localization";
+/// What is said of a state whose map is used, and not what its localizer knew.
+const RELOCALIZES: &str =
+    "the state is of an earlier version: its map is used, and the robot searches for its pose in it";
 /// Missing in the states of earlier versions.
 const FILTER: &str = "filter";
 
@@ -53,7 +56,8 @@ impl LearnedFacts {
         LearnedSnapshot { facts: self.clone(), mapper, localization, filter: filter.unwrap_or_default() }
     }
 
-    /// Lets a robot that was made with the settings of these facts go on with what was learned.
+    /// Lets a robot that was made with the settings of these facts go on with what was learned. Returns a note for the user if
+    /// the state is of an earlier version, whose localizer is not read.
     ///
     /// # Errors
     ///
@@ -63,20 +67,20 @@ impl LearnedFacts {
         &self,
         state: &State,
         robot: &mut Robot<LaserReading, P>,
-    ) -> Result<(), StateError> {
+    ) -> Result<Option<&'static str>, StateError> {
         let misfit = |part: &str| StateError::OtherContent(part.to_owned());
         let learned = [
             state.section(MAPPER, &self.mapper)?, //
             state.section(LOCALIZATION, &self.localization)?,
         ];
         robot.mapper.restore(learned[0]).map_err(|_| misfit(MAPPER))?;
-        robot.localization_mut().restore(learned[1]).map_err(|_| misfit(LOCALIZATION))?;
-        match (robot.filter_mut(), state.section(FILTER, &self.filter)) {
-            (Some(filter), Ok(learned)) => {
-                interfaces::restore(filter.values(), learned).map_err(|_| misfit(FILTER))
-            }
-            _ => Ok(()), // absent from states of programs that did not save it
+        let searches = robot.restore_localization(learned[1], state.is_earlier());
+        let searches = searches.map_err(|_| misfit(LOCALIZATION))?;
+        // Absent from states of programs that did not save it.
+        if let (Some(filter), Ok(learned)) = (robot.filter_mut(), state.section(FILTER, &self.filter)) {
+            interfaces::restore(filter.values(), learned).map_err(|_| misfit(FILTER))?;
         }
+        Ok(searches.then_some(RELOCALIZES))
     }
 }
 

@@ -1,54 +1,67 @@
-//! The search for the pose in the whole map. Of a map that is too large for one scan, one part is searched per scan.
+//! The search for the pose in the whole map, part by part. The work per scan is bounded; the rest is done in the next scans.
 
 use super::{MapMatcher, Step};
 use crate::changing_map::ChangingMap;
-use crate::constants::{AMBIGUOUS, MAX_EMPTY_PARTS, MAX_REACH_M, MAX_SIDE_M, MIN_FOUND, MIN_SCORE};
+use crate::constants::{
+    AMBIGUOUS, CELLS_PER_LOOKUP, MAX_REACH_M, MAX_SIDE_M, MAX_WORK, MIN_FOUND, MIN_SCORE,
+};
 use crate::hypotheses::Hypotheses;
+use crate::motion::Motion;
 use crate::scan_points::ScanPoint;
 use crate::score_grid::ScoreGrid;
-use crate::search::{Candidate, Window, search};
-use crate::surfel_map::SurfelMap;
+use crate::search::{Candidate, Search, Window, lower, search_within};
 use interfaces::GridFrame;
-use nalgebra::{Point2, Vector2};
+use nalgebra::{Isometry2, Point2, Vector2};
 use std::f64::consts::PI;
 
 /// A search that goes on in the next scan.
 #[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
 pub(in crate::localizer) struct WideSearch {
-    /// How far the points are from the robot at most, m, and the number of the next part.
+    /// How far the points are from the robot at most, m.
     reach_m: f64,
+    /// The score down to which this pass searches, and the best one that it has found.
+    min_score: f64,
+    best_score: f64,
+    /// The number of the next part.
     next: usize,
+    /// The search in the present part, with the scan at its begin, and the motion since that scan.
+    part: Option<(Search, Isometry2<f64>)>,
+    /// The scores of the part with a number.
+    scores: Option<(usize, ScoreGrid)>,
     /// What the parts so far contain. It follows the robot until the last part is searched.
-    pub(in crate::localizer) found: Hypotheses,
+    found: Hypotheses,
 }
 
 impl WideSearch {
     fn new(points: &[ScanPoint]) -> Self {
-        Self { reach_m: reach_m(points), next: 0, found: Hypotheses::default() }
+        let (reach_m, min_score) = (reach_m(points), lower(1.0, MIN_FOUND));
+        let found = Hypotheses::default();
+        Self { reach_m, min_score, best_score: 0.0, next: 0, part: None, scores: None, found }
     }
 
-    /// The next part with a surface; `None` after the last one.
-    fn next_with_surfaces(&mut self, surfels: &SurfelMap) -> Option<Window> {
-        for _ in 0..MAX_EMPTY_PARTS {
-            let part = self.next(surfels.frame())?;
-            let (middle, reach_m) = (part.pose.translation.vector, part.reach_m + self.reach_m);
-            if surfels.usable().any(|surfel| (surfel.at.coords - middle).amax() <= reach_m) {
-                return Some(part);
-            }
+    /// Moves what was found, and the robot from where the present part was begun.
+    pub(super) fn follow_odometry(&mut self, motion: &Motion) {
+        self.found.follow_odometry(motion);
+        if let Some((_, since)) = &mut self.part {
+            *since = motion.apply(since);
         }
-        self.next(surfels.frame())
     }
 
-    /// The next part of a map; `None` after the last one.
-    fn next(&mut self, frame: &GridFrame) -> Option<Window> {
+    /// A part of a map; `None` after the last one.
+    fn window(&self, number: usize, frame: &GridFrame) -> Option<Window> {
         let side_m = MAX_SIDE_M - 2.0 * self.reach_m;
         let parts = |cells: usize| (cells as f64 * frame.resolution_m() / side_m).ceil() as usize;
         let (columns, rows) = (parts(frame.width()), parts(frame.height()));
-        let (column, row) = (self.next % columns, self.next / columns);
-        self.next += 1;
+        let (column, row) = (number % columns, number / columns);
         let middle = frame.origin() + Vector2::new(column as f64 + 0.5, row as f64 + 0.5) * side_m;
         let pose = interfaces::pose(middle.x, middle.y, 0.0);
         (row < rows).then_some(Window { pose, reach_m: side_m / 2.0, reach_rad: PI })
+    }
+
+    /// Whether a pass has found all poses that are nearly as good as the best one.
+    fn is_over(&self) -> bool {
+        let is_found = !self.found.is_empty() && self.best_score * AMBIGUOUS >= self.min_score;
+        is_found || self.min_score <= MIN_FOUND
     }
 }
 
@@ -58,66 +71,81 @@ fn reach_m(points: &[ScanPoint]) -> f64 {
     farthest_m.min(MAX_REACH_M)
 }
 
+fn near(points: &[ScanPoint], reach_m: f64) -> Vec<ScanPoint> {
+    points.iter().filter(|point| point.at.coords.norm() <= reach_m).copied().collect()
+}
+
 impl MapMatcher {
-    /// The poses at which the scan fits: in a window, or in the whole map, which must not be large then.
+    /// The poses in a window at which the scan fits.
     pub(in crate::localizer) fn candidates<M: ChangingMap>(
-        &mut self,
+        &self,
         step: &Step<M>,
-        window: Option<&Window>,
+        window: &Window,
+        left: &mut usize,
     ) -> Vec<Candidate> {
-        let (points, states) = (&step.scan.points, step.map.states());
-        match window {
-            Some(window) if self.is_large() => {
-                let reach_m = reach_m(points).min(MAX_SIDE_M / 2.0 - window.reach_m);
-                let near = |point: &&ScanPoint| point.at.coords.norm() <= reach_m;
-                let near: Vec<ScanPoint> = points.iter().filter(near).copied().collect();
-                let middle = Point2::from(window.pose.translation.vector);
-                let grid = ScoreGrid::around(&self.surfels, states, &middle, reach_m + window.reach_m);
-                search(&grid, &near, Some(window), MIN_FOUND, AMBIGUOUS)
-            }
-            _ => {
-                // The scores are made again when the line map has changed.
-                let grid = match self.relocalization.scores.take() {
-                    Some((known, grid)) if known == self.surfels.revision() => grid,
-                    _ => ScoreGrid::new(&self.surfels, states),
-                };
-                let found = search(&grid, points, window, MIN_FOUND, AMBIGUOUS);
-                self.relocalization.scores = Some((self.surfels.revision(), grid));
-                found
-            }
-        }
+        let reach_m = reach_m(&step.scan.points);
+        let grid = self.scores(step, window, reach_m);
+        *left = left.saturating_sub(grid.cells() / CELLS_PER_LOOKUP);
+        let points = near(&step.scan.points, reach_m);
+        search_within(left, &grid, &points, Some(window), (MIN_FOUND, AMBIGUOUS))
     }
 
-    /// Whether the scores of the whole map are too many for one scan.
-    fn is_large(&self) -> bool {
-        let frame = self.surfels.frame();
-        let cells_m2 = frame.len() as f64 * frame.resolution_m() * frame.resolution_m();
-        cells_m2 > MAX_SIDE_M * MAX_SIDE_M
+    /// The scores of what can be seen from a window.
+    fn scores<M: ChangingMap>(&self, step: &Step<M>, window: &Window, reach_m: f64) -> ScoreGrid {
+        let middle = Point2::from(window.pose.translation.vector);
+        ScoreGrid::around(&self.surfels, step.map.states(), &middle, reach_m + window.reach_m)
     }
 
     /// The poses in the whole map. `None` if the search goes on in the next scan.
     pub(in crate::localizer) fn search_everywhere<M: ChangingMap>(
         &mut self,
         step: &Step<M>,
+        mut left: usize,
     ) -> Option<Hypotheses> {
-        if !self.is_large() {
-            let candidates = self.candidates(step, None);
-            return Some(Hypotheses::start(&self.scene(step), &candidates, MIN_SCORE));
-        }
         let wide = self.relocalization.wide.take();
-        let is_first = wide.is_none();
         let mut wide = wide.unwrap_or_else(|| WideSearch::new(&step.scan.points));
-        if !is_first {
-            wide.found.advance(&self.scene(step), &step.scan.motion, MIN_SCORE);
-        }
-        let part = wide.next_with_surfaces(&self.surfels);
-        let candidates = part.map_or(Vec::new(), |window| self.candidates(step, Some(&window)));
-        let new = Hypotheses::start(&self.scene(step), &candidates, MIN_SCORE);
-        wide.found = wide.found.restarted().or(new);
-        if part.is_none() {
-            return Some(wide.found);
+        wide.found.compare(&self.scene(step), MIN_SCORE);
+        while left > 0 {
+            if self.search_part(step, &mut wide, &mut left) {
+                continue;
+            }
+            if wide.is_over() {
+                return Some(wide.found.restarted());
+            }
+            (wide.next, wide.min_score) = (0, lower(wide.min_score, MIN_FOUND));
         }
         self.relocalization.wide = Some(wide);
         None
+    }
+
+    /// Searches in the present part, or in the next one. Returns false after the last one.
+    fn search_part<M: ChangingMap>(&self, step: &Step<M>, wide: &mut WideSearch, left: &mut usize) -> bool {
+        let Some(window) = wide.window(wide.next, self.surfels.frame()) else { return false };
+        if wide.scores.as_ref().is_none_or(|(number, _)| *number != wide.next) {
+            if *left < MAX_WORK / 2 {
+                *left = 0; // the tables of a large part are made in the next scan
+                return true;
+            }
+            let scores = self.scores(step, &window, wide.reach_m);
+            *left = left.saturating_sub(scores.cells() / CELLS_PER_LOOKUP);
+            wide.scores = Some((wide.next, scores));
+        }
+        let Some((_, scores)) = &wide.scores else { return false };
+        let begin = || {
+            let points = near(&step.scan.points, wide.reach_m);
+            let least = if wide.found.is_empty() { 0.0 } else { AMBIGUOUS * wide.best_score };
+            (Search::new(&points, Some(window), wide.min_score.max(least), AMBIGUOUS), Isometry2::identity())
+        };
+        let (search, since) = wide.part.get_or_insert_with(begin);
+        if search.pass(scores, left) {
+            let mut candidates = search.candidates(scores);
+            candidates.iter_mut().for_each(|candidate| candidate.pose *= *since);
+            let found = Hypotheses::start(&self.scene(step), &candidates, MIN_SCORE);
+            wide.best_score = wide.best_score.max(search.best_score());
+            wide.found = std::mem::take(&mut wide.found).restarted().or(found);
+            wide.part = None;
+            wide.next += 1;
+        }
+        true
     }
 }

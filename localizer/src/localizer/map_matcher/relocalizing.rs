@@ -5,11 +5,10 @@ use super::everywhere::WideSearch;
 use super::{MapMatcher, Step};
 use crate::changing_map::ChangingMap;
 use crate::constants::{
-    CARRIED, CONFIRM_SCANS, MAJORITY, MIN_CONFIRMED, MIN_SCORE, MIN_SUPPORT, MINOR, SEARCH_EVERY,
+    CARRIED, CONFIRM_SCANS, MAJORITY, MAX_WORK, MIN_CONFIRMED, MIN_SCORE, MIN_SUPPORT, MINOR, SEARCH_EVERY,
 };
 use crate::hypotheses::Hypotheses;
 use crate::placement::Placement;
-use crate::score_grid::ScoreGrid;
 use crate::search::Window;
 use crate::support::Support;
 use crate::tracking::Tracked;
@@ -18,10 +17,8 @@ use crate::verification::Verification;
 /// The search for a pose.
 #[derive(Clone, Debug)]
 pub(in crate::localizer) struct Relocalization {
-    /// The scores of the line map with a revision.
-    pub(in crate::localizer) scores: Option<(u64, ScoreGrid)>,
     pub(in crate::localizer) hypotheses: Hypotheses,
-    /// In a large map: the search in the whole of it, while it goes on.
+    /// The search in the whole map, while it goes on.
     pub(in crate::localizer) wide: Option<WideSearch>,
     /// The number of scans since the last search in the whole map.
     pub(in crate::localizer) scans: u32,
@@ -29,7 +26,7 @@ pub(in crate::localizer) struct Relocalization {
 
 impl Default for Relocalization {
     fn default() -> Self {
-        Self { scores: None, hypotheses: Hypotheses::default(), wide: None, scans: u32::MAX }
+        Self { hypotheses: Hypotheses::default(), wide: None, scans: u32::MAX }
     }
 }
 
@@ -39,7 +36,7 @@ impl Relocalization {
         self.hypotheses = Hypotheses::default();
     }
 
-    /// Ends a search in the whole of a large map.
+    /// Ends a search in the whole map.
     pub(in crate::localizer) fn end_wide(&mut self) {
         self.wide = None;
     }
@@ -58,7 +55,7 @@ impl MapMatcher {
             return;
         }
         self.relocalization.scans = 0;
-        let found = self.search_around(step, MIN_SUPPORT);
+        let found = self.search_around(step, MIN_SUPPORT, &mut { MAX_WORK });
         if found.best().is_some_and(|best| best.support.share() >= share + MINOR) {
             self.ignores_prior = true;
             self.take(step, found);
@@ -72,9 +69,9 @@ impl MapMatcher {
     }
 
     /// The poses in a window around the last one.
-    fn search_around<M: ChangingMap>(&mut self, step: &Step<M>, min_score: f64) -> Hypotheses {
+    fn search_around<M: ChangingMap>(&self, step: &Step<M>, min_score: f64, left: &mut usize) -> Hypotheses {
         let window = Window { pose: step.track.pose, reach_m: CARRIED.m, reach_rad: CARRIED.rad };
-        let candidates = self.candidates(step, Some(&window));
+        let candidates = self.candidates(step, &window, left);
         Hypotheses::start(&self.scene(step), &candidates, min_score)
     }
 
@@ -82,9 +79,9 @@ impl MapMatcher {
     pub(in crate::localizer) fn search<M: ChangingMap>(&mut self, step: &mut Step<M>, tracked: &Tracked) {
         let is_due = self.is_due() || self.relocalization.wide.is_some();
         let is_near = self.state != State::Lost;
-        let mut found = Hypotheses::default();
+        let (mut found, mut left) = (Hypotheses::default(), MAX_WORK);
         if is_near {
-            found = self.search_around(step, MAJORITY);
+            found = self.search_around(step, MAJORITY, &mut left);
         }
         let is_clear = found.best().is_some_and(|best| best.support.score() >= MIN_SUPPORT);
         // Where most of the scan fits, the map is not finished or the view has changed: far away, something in an
@@ -92,7 +89,7 @@ impl MapMatcher {
         let is_elsewhere = !is_near || tracked.support.share() < MAJORITY;
         if !is_clear && is_elsewhere && is_due {
             self.relocalization.scans = 0;
-            if let Some(anywhere) = self.search_everywhere(step) {
+            if let Some(anywhere) = self.search_everywhere(step, left) {
                 found = found.or(anywhere);
             }
         }
@@ -123,7 +120,8 @@ impl MapMatcher {
     /// Compares all hypotheses with the scan; the last one that is left becomes the pose.
     pub(in crate::localizer) fn follow<M: ChangingMap>(&mut self, step: &mut Step<M>) -> Support {
         let mut hypotheses = std::mem::take(&mut self.relocalization.hypotheses);
-        hypotheses.advance(&self.scene(step), &step.scan.motion, MIN_SCORE);
+        hypotheses.follow_odometry(&step.scan.motion);
+        hypotheses.compare(&self.scene(step), MIN_SCORE);
         if self.times.certain_s > f64::NEG_INFINITY {
             hypotheses.prefer(CONFIRM_SCANS, |pose| self.is_where_odometry_says(pose));
         }
@@ -152,11 +150,7 @@ impl MapMatcher {
 
     /// Follows the odometry: the scan shows nothing, which says nothing against a pose either.
     pub(in crate::localizer) fn dead_reckon<M>(&mut self, step: &mut Step<M>) {
-        let (motion, relocalization) = (&step.scan.motion, &mut self.relocalization);
-        relocalization.hypotheses.follow_odometry(motion);
-        if let Some(wide) = &mut relocalization.wide {
-            wide.found.follow_odometry(motion);
-        }
+        self.relocalization.hypotheses.follow_odometry(&step.scan.motion);
         self.take_best(step);
         self.times.supported_s += if step.scan.fault.is_none() { step.scan.elapsed_s } else { 0.0 };
         self.on(Event::Unsupported);
