@@ -7,7 +7,7 @@
 //! looks into unseen space before its strategies decide.
 //!
 //! A [`Policy`] names strategies and a chooser. A new policy in this crate is one file under `strategies` or
-//! `choosers`, and one line in the list of [`Policy::built_in`]. A policy of another crate is made with
+//! `choosers`, and a line in the list of [`Policy::built_in`]; `docs/extending.md` lists the rest. A policy of another crate is made with
 //! [`Policy::new`].
 
 mod agent;

@@ -71,7 +71,7 @@ impl Task for Drive {
         *steps = 0;
         let mut random = RandomStream::new(seed, Purpose::Task);
         for ((agent, of), progress) in place.robots.iter().enumerate().zip(agents) {
-            if let Some(pose) = of.starts.draw(fleet, of.robot, &mut random) {
+            if let Some(pose) = fleet.draw_pose(&of.starts, of.robot, &mut random) {
                 // The pose was drawn among those that fit.
                 let _ = fleet.teleport(of.robot, &pose);
             }

@@ -1,30 +1,30 @@
 //! Odometry + scan + line map → pose, with its uncertainty: the part between the source of readings and the mapper.
-//! Of a map it knows states and rates; it must not know worlds, simulators, goals, drives, recordings or files.
+//! It reads the states and the rates of a map; it must not know worlds, simulators, goals, drives, recordings or files.
 //!
 //! ```text
 //! reading ─▶ motion prior ─▶ deskew ─▶ match with the line map ─▶ pose ─▶ calibrate, deskew again ─▶ insert in the line map
 //!                                             └─ low support: search, hypotheses ─┘
 //! ```
 //!
-//! [`Localizer::localize`] is this line, in `local_trajectory_builder.rs`; its states are in `localizer/state.rs`, and all chosen
-//! numbers in `constants.rs`. The localizer never mistakes its own error for a change of the place, because
+//! [`Localizer::localize`] (`localizer.rs`) does this for a reading; the common part is `LocalTrajectoryBuilder::add`. The table of
+//! its states is in `localizer/state.rs`, and all chosen numbers in `constants.rs`. The localizer never mistakes its own error for a change of the place, because
 //! a scan enters a map only while the state of the estimate is [`PoseState::Tracking`]; all other time counts as not
 //! observed.
 //!
-//! - Scans are matched with a map of short straight surfaces (surfels) that stop to move after a number of hits, by
+//! - Scans are matched with a map of short straight surfaces (surfels), which are frozen after a fixed number of hits, by
 //!   point-to-line Gauss-Newton with a prior from odometry: Censi (2008), Segal, Haehnel & Thrun (2009).
-//! - Points count by the length of surface that they stand for, and by how much the range noise moves them off it: beams
+//! - Each point is weighted by the length of surface that it represents, and by its range noise normal to the surface: beams
 //!   that graze a wall fix the heading best.
-//! - A scan that sweeps is deskewed along the path that the velocities of the odometry describe, and is matched as an elastic
-//!   scan: the pose at its begin and the pose at its end are estimated together, and a beam in between follows both
-//!   (as Dellenbach et al. 2022, "CT-ICP", but with the begin tied to the last estimate by its covariance).
+//! - Motion distortion: a scan that is measured while the robot moves is deskewed with the velocities of the odometry. Scan
+//!   matching then estimates its start pose and its end pose together, and interpolates the beams in between
+//!   (as Dellenbach et al. 2022, "CT-ICP", but with the start tied to the last estimate by its covariance).
 //! - Where the scan does not support the pose, it is searched for: correlative matching in a window (Olson 2009) and
 //!   in the whole map are one branch and bound over a pyramid of maxima (Hess, Kohler, Rapp & Andor 2016). Several
 //!   poses that fit about as well are kept as hypotheses, and driving on decides.
 //! - In a map that the robot makes itself, the true place may be missing, and something in the map always looks a little
 //!   like it: a found pose is certain once enough scans from enough viewpoints agree with it.
-//! - If much of the view shifts at once, either the robot moved and its odometry missed it, or the things moved: two rigid
-//!   motions are separated, and the odometry decides which one is that of the robot. What has moved counts little from then on.
+//! - If much of the view shifts at once, two rigid motions are separated, and the odometry selects the one of the robot.
+//!   Surfaces that moved are down-weighted from then on.
 //! - Learned rates of change ([`ChangingMap`]) lower the weight of surfaces in a search; not in tracking.
 //!
 //! [`TrajectoryFinder`] finds the trajectory of a whole log: with submaps that move along with the robot, loops, and a pose

@@ -1,8 +1,8 @@
-//! Logs as sources of readings: a recorded robot is read like a world that ignores commands. It must not know
+//! Logs as sources of readings: commands to a recorded robot have no effect. It must not know
 //! maps, localizers or programs.
 //!
 //! [`Log`] reads CARMEN logs, plain or compressed with gzip, and bags of ROS 2: MCAP files, SQLite databases, and folders of
-//! them. A log is surveyed when it is opened; after this it can be read any number of times, reading by reading.
+//! them. A log is scanned once for its topics and times when it is opened; then it can be read any number of times, reading by reading.
 
 mod bag;
 mod bounds;

@@ -5,7 +5,7 @@
 //! [`Mapper::update`] processes one reading; all other methods return results. The work per reading is proportional
 //! to the number of cells that the reading observes and of cells that ever changed, not to the size of the map.
 //!
-//! - `scan_filter`: what must not enter a map is removed from scans, before a pose is searched for them.
+//! - `scan_filter`: removes ranges that must not enter a map (mixed pixels, hits beside edges, long ranges), before scan matching.
 //! - `occupancy`: from scans to the states of cells. A new model implements [`OccupancyModel`].
 //! - `change`: the change statistics of cells, and the estimators of rates. A new estimator implements
 //!   [`Estimator`].

@@ -2,11 +2,11 @@
 //! nothing depends on it.
 //!
 //! ```text
-//! network ─Event─▶ Link ─▶ Source ─reading─▶ Robot::step ─order─▶ Link ─Message─▶ network
+//! network ─Event─▶ Link ─▶ Source ─reading─▶ Robot::step ─command─▶ Link ─Message─▶ network
 //! ```
 //!
 //! - [`CuriousNode`]: the robot of this project on a live robot. What arrives becomes readings; each reading is one
-//!   [`robot::Robot::step`]; maps, transforms and orders are published.
+//!   [`robot::Robot::step`]; maps, transforms and commands are published.
 //! - [`SimulatedRobot`]: a simulated world as a robot of ROS, as `stage_ros2` is for Stage.
 //! - [`Link`]: what both need of a network. [`DdsLink`] is the only implementation that knows the client library; the tests
 //!   have one without a network.

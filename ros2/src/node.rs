@@ -186,7 +186,7 @@ impl<L: Link> CuriousNode<L> {
         }
     }
 
-    /// One step of the robot: a live scan enters here.
+    /// One step of the robot, for a live scan whose pose by odometry is known.
     fn step(&mut self, live: LiveReading, now: Instant) {
         let LiveReading { mut reading, in_odom, stamp, is_restart } = live;
         if self.parameters.pose != PoseMode::Localized {

@@ -5,7 +5,7 @@
 //!
 //! ```text
 //! first pass:   log ─▶ trajectory and reach                  [`FirstPass`] ─▶ [`Route`]
-//!               later log ─▶ its place in the first one      [`KnownPlace`], [`Search`]
+//!               later log ─▶ its pose in the first one       [`KnownPlace`], [`Search`]
 //! second pass:  log ─▶ robot at the found poses ─▶ changes    [`Replay`], [`FoundPoses`], [`ChangeLog`]
 //! ```
 //!

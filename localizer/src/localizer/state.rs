@@ -1,4 +1,5 @@
-//! What the localizer makes of the pose: one state machine with one table, which `docs/localization.md` shows.
+//! The states of the localizer and their transitions, in one table, which `docs/localization.md` shows. Events are raised in
+//! `map_matcher.rs`, `map_matcher/relocalizing.rs` and `estimating.rs`.
 
 use crate::estimate::PoseState;
 

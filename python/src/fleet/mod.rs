@@ -232,7 +232,7 @@ impl Fleet {
         let drawn = py.detach(|| {
             let poses = FreePoses::reachable(fleet.spec(), robot)?;
             let mut random = RandomStream::new(seed, Purpose::Task);
-            (0..count).map(|_| poses.draw(fleet, robot, &mut random)).collect::<Option<Vec<_>>>()
+            (0..count).map(|_| fleet.draw_pose(&poses, robot, &mut random)).collect::<Option<Vec<_>>>()
         });
         let drawn = drawn.ok_or_else(|| value_error(format!("there is no free pose for robot {robot}")))?;
         rows_array(py, drawn.iter().map(pose_values))

@@ -1,16 +1,11 @@
-//! Random poses at which a robot fits.
+//! Where a robot fits.
 
-use super::fleet::Fleet;
 use super::free_space::FreeSpace;
 use super::spec::FleetSpec;
 use interfaces::{GridFrame, RandomStream};
-use nalgebra::{Isometry2, Point2};
-use std::f64::consts::PI;
+use nalgebra::Point2;
 
-/// The number of poses that are tried where others stand.
-const ATTEMPTS: usize = 100;
-
-/// Draws poses in the free space that is connected with a place.
+/// The free space that is connected with a place; [`Fleet::draw_pose`](super::Fleet::draw_pose) draws poses in it.
 #[derive(Clone, Debug)]
 pub struct FreePoses {
     frame: GridFrame,
@@ -44,15 +39,5 @@ impl FreePoses {
     pub fn draw_point(&self, random: &mut RandomStream) -> Point2<f64> {
         let index = random.uniform(0.0..self.cells.len() as f64) as usize;
         self.frame.center(self.frame.cell(self.cells[index.min(self.cells.len() - 1)]))
-    }
-
-    /// A pose at such a point with any heading, at which the robot (by index) fits in `fleet` as it is now; `None` if
-    /// others stand at each of a hundred such poses, or if there is no such robot.
-    pub fn draw(&self, fleet: &Fleet, robot: usize, random: &mut RandomStream) -> Option<Isometry2<f64>> {
-        let mut poses = (0..ATTEMPTS).map(|_| {
-            let at = self.draw_point(random);
-            interfaces::pose(at.x, at.y, random.uniform(-PI..PI))
-        });
-        poses.find(|pose| fleet.check_fit(robot, pose).is_ok())
     }
 }

@@ -1,13 +1,30 @@
-//! Robots that are carried away and set down elsewhere.
+//! Robots that are set down elsewhere.
 
 use super::Fleet;
-use interfaces::heading_rad;
+use crate::physics::free_poses::FreePoses;
+use interfaces::{RandomStream, heading_rad};
 use nalgebra::Isometry2;
+use std::f64::consts::PI;
 
 /// The number of poses that are tried for a robot.
 const ATTEMPTS: usize = 100;
 
 impl Fleet {
+    /// A pose with any heading in `free`, at which the robot (by index) fits in the fleet as it is now; `None` if others
+    /// stand at each of a hundred such poses, or if there is no such robot.
+    pub fn draw_pose(
+        &self,
+        free: &FreePoses,
+        robot: usize,
+        random: &mut RandomStream,
+    ) -> Option<Isometry2<f64>> {
+        let mut poses = (0..ATTEMPTS).map(|_| {
+            let at = free.draw_point(random);
+            interfaces::pose(at.x, at.y, random.uniform(-PI..PI))
+        });
+        poses.find(|pose| self.check_fit(robot, pose).is_ok())
+    }
+
     /// Carries away the robots for which it is time.
     pub(super) fn carry_robots(&mut self) {
         let time_s = self.time_s();

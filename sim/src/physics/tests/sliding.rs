@@ -25,7 +25,7 @@ fn one_step_ends_where_a_step_of_rigid_bodies_ends() {
     let mut random = RandomStream::new(5, Purpose::Task);
     let (mut held, mut most_m) = (0, 0.0_f64);
     for _ in 0..3000 {
-        let Some(pose) = poses.draw(&sliding, 0, &mut random) else { continue };
+        let Some(pose) = sliding.draw_pose(&poses, 0, &mut random) else { continue };
         let twist = Twist { linear_mps: random.uniform(-0.5..0.5), angular_radps: random.uniform(-1.0..1.0) };
         for fleet in [&mut sliding, &mut rigid] {
             fleet.teleport(0, &pose).unwrap();
