@@ -153,7 +153,7 @@ fn a_robot_fits_at_free_poses() {
     let start = space.region_near(&spec.driven().pose.translation.vector.into(), radius_m);
     let draw = |seed| {
         let mut random = RandomStream::new(seed, Purpose::Task);
-        (0..50).map(|_| poses.draw(&fleet, robot, &mut random).unwrap()).collect::<Vec<_>>()
+        (0..50).map(|_| fleet.draw_pose(&poses, robot, &mut random).unwrap()).collect::<Vec<_>>()
     };
     let drawn = draw(1);
     for pose in &drawn {
