@@ -3,7 +3,7 @@
 use crate::explore_place::ExplorePlace;
 use crate::patches::{LAYERS, Patches};
 use crate::picture::Picture;
-use crate::place::size_m;
+use crate::picture::size_m;
 use crate::task::{Part, Results, Task, TaskError, twist, write_scan, write_state};
 use evaluation::metrics::{MAX_LOG_ERROR, mean_log_error};
 use interfaces::{CellState, LaserReading, Purpose, RandomStream, World, from_bytes, heading_rad, to_bytes};

@@ -1,6 +1,5 @@
 //! The world from above, as pixels.
 
-use crate::place::size_m;
 use interfaces::GridFrame;
 use nalgebra::{Point2, Vector2};
 use sim::physics::Fleet;
@@ -119,4 +118,9 @@ impl Picture {
             }
         }
     }
+}
+
+/// The width and the height of a frame, m.
+pub(crate) fn size_m(frame: &GridFrame) -> (f64, f64) {
+    (frame.width() as f64 * frame.resolution_m(), frame.height() as f64 * frame.resolution_m())
 }

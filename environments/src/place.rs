@@ -2,6 +2,7 @@
 
 use crate::distance::Distances;
 use crate::drive_settings::DriveSettings;
+use crate::picture::size_m;
 use crate::task::TaskError;
 use interfaces::{GridFrame, RandomStream};
 use nalgebra::Point2;
@@ -129,9 +130,4 @@ impl Agent {
         let goals = (0..most).map(goal).collect();
         Some(Self { robot, starts, goals, is_free })
     }
-}
-
-/// The width and the height of a frame, m.
-pub(crate) fn size_m(frame: &GridFrame) -> (f64, f64) {
-    (frame.width() as f64 * frame.resolution_m(), frame.height() as f64 * frame.resolution_m())
 }

@@ -17,6 +17,7 @@ mod lines;
 mod log;
 mod mcap_out;
 mod odometry;
+mod open;
 pub mod ros;
 mod standing;
 mod summary;

@@ -9,8 +9,7 @@
 //!     resolution: 0.05
 //! ```
 
-use crate::ros_args::Given;
-use crate::value::Value;
+use crate::value::{Given, Value};
 use serde::de::{Deserialize, Deserializer, IgnoredAny, MapAccess, SeqAccess, Visitor};
 use serde_saphyr::{NonFiniteFloatPolicy, Spanned, from_str_with_options, options};
 use std::fmt;

@@ -1,7 +1,7 @@
 //! The arguments that every node of ROS has: `--ros-args -p name:=value -r from:=to --params-file FILE`.
 
 use crate::params_file::{self, ParamsFileError};
-use crate::value::Value;
+use crate::value::Given;
 use std::ffi::OsString;
 use std::path::Path;
 
@@ -33,26 +33,6 @@ pub enum RosArgsError {
     /// A file of parameters is not valid.
     #[error(transparent)]
     File(#[from] ParamsFileError),
-}
-
-/// The value of a parameter, and where it is given.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Given {
-    /// For which nodes: a full name, in which `*` is any part and `**` any number of parts.
-    pub(crate) nodes: String,
-    /// The name; parameters in a table have the name of the table and a dot before theirs.
-    pub name: String,
-    /// The value; `None`: a list, or nothing.
-    pub value: Option<Value>,
-    /// The file and the line; `None`: the command line.
-    pub place: Option<String>,
-}
-
-impl Given {
-    /// Whether other nodes may be meant, so that a node need not know the parameter.
-    pub fn is_for_others_too(&self) -> bool {
-        self.place.is_some() && self.nodes.contains('*')
-    }
 }
 
 /// What `--ros-args` says.
@@ -172,6 +152,7 @@ fn rule(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::value::Value;
 
     fn split(line: &str) -> Result<(Vec<OsString>, RosArgs), RosArgsError> {
         RosArgs::split(line.split_whitespace().map(OsString::from))

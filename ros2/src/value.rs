@@ -25,3 +25,23 @@ impl fmt::Display for Value {
         }
     }
 }
+
+/// The value of a parameter, and where it is given.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Given {
+    /// For which nodes: a full name, in which `*` is any part and `**` any number of parts.
+    pub(crate) nodes: String,
+    /// The name; parameters in a table have the name of the table and a dot before theirs.
+    pub name: String,
+    /// The value; `None`: a list, or nothing.
+    pub value: Option<Value>,
+    /// The file and the line; `None`: the command line.
+    pub place: Option<String>,
+}
+
+impl Given {
+    /// Whether other nodes may be meant, so that a node need not know the parameter.
+    pub fn is_for_others_too(&self) -> bool {
+        self.place.is_some() && self.nodes.contains('*')
+    }
+}

@@ -20,9 +20,9 @@ pub use grid::GridRobot;
 pub use length::Length;
 pub use metric::{Metric, Sample, Trial};
 pub use physics::PhysicsRobot;
-pub use run::{TrialSettings, TrialStep, run_trial};
+pub use run::{TrialStep, run_trial};
 pub use strategy::TrialStrategy;
-pub use world::{TrialRobot, TrialWorld};
+pub use world::{TrialRobot, TrialSettings, TrialWorld};
 
 use crate::physics_trial::UnsupportedDrive;
 use interfaces::SettingsError;

@@ -1,32 +1,15 @@
 use super::full_observation::observed;
 use super::sampler::Sampler;
-use super::{Experiment, Sample, Trial, TrialError, TrialStrategy, TrialWorld};
+use super::{Sample, Trial, TrialError, TrialSettings, TrialStrategy, TrialWorld};
 use crate::map_hash::map_hash;
 use crate::metrics::{RateScores, rate_scores};
 use crate::oracle::Oracle;
 use agent::Features;
 use controller::Controller;
 use interfaces::World;
-use mapper::{EstimatorChoice, Mapper};
+use mapper::Mapper;
 use robot::{Autonomous, ExactPoses, GoalSelector, Pilot, Robot, Tour, Turn, explore};
 use std::ops::ControlFlow;
-
-/// Everything that determines a trial.
-pub struct TrialSettings<'a, W: TrialWorld> {
-    /// The number of the trial in the experiment, from 1 on, in the order of a report: by world, estimator, strategy
-    /// and seed.
-    pub number: u64,
-    /// The world.
-    pub world: &'a W,
-    /// The estimator of rates.
-    pub estimator: &'a EstimatorChoice,
-    /// The strategy that chooses goals.
-    pub strategy: &'a TrialStrategy,
-    /// The seed of all random streams.
-    pub seed: u64,
-    /// The other settings.
-    pub experiment: &'a Experiment<W>,
-}
 
 /// One turn of the robot of a trial.
 pub struct TrialStep<'a, W: TrialWorld> {

@@ -1,9 +1,27 @@
-use super::{Length, TrialError, TrialSettings};
+use super::{Experiment, Length, TrialError, TrialStrategy};
 use crate::oracle::Oracle;
 use agent::{Agent, Policy};
 use controller::{Controller, Drive};
 use interfaces::{GroundTruth, Reading, World};
+use mapper::EstimatorChoice;
 use robot::{Autonomous, GoalSelector, Robot};
+
+/// Everything that determines a trial.
+pub struct TrialSettings<'a, W: TrialWorld> {
+    /// The number of the trial in the experiment, from 1 on, in the order of a report: by world, estimator, strategy
+    /// and seed.
+    pub number: u64,
+    /// The world.
+    pub world: &'a W,
+    /// The estimator of rates.
+    pub estimator: &'a EstimatorChoice,
+    /// The strategy that chooses goals.
+    pub strategy: &'a TrialStrategy,
+    /// The seed of all random streams.
+    pub seed: u64,
+    /// The other settings.
+    pub experiment: &'a Experiment<W>,
+}
 
 /// The specification of a world in which trials run, of one kind.
 pub trait TrialWorld: Sized + Sync {

@@ -1,7 +1,7 @@
 use super::CarmenLog;
+use crate::Log;
 use crate::bytes::Bytes;
 use crate::error::LogError;
-use crate::log::Log;
 use flate2::Compression;
 use flate2::write::GzEncoder;
 use interfaces::{LaserReading, heading_rad};

@@ -1,7 +1,7 @@
 //! Parameters as the arguments of ROS and files give them.
 
 use super::{ParameterError, Parameters};
-use crate::ros_args::Given;
+use crate::value::Given;
 
 impl Parameters {
     /// Sets what is given, in its order. What a file gives to many nodes, and this node does not know, is not an error.

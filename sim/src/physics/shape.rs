@@ -2,7 +2,7 @@
 
 use super::convex::gap_m;
 pub use super::convex::point_segment_m;
-use interfaces::rotation;
+use interfaces::{GridFrame, rotation};
 use nalgebra::{Isometry2, Point2, Rotation2, Translation2, UnitComplex, Vector2};
 
 /// Bodies whose overlap is smaller than this only touch, m. The value is far above rounding errors, and far below
@@ -169,4 +169,10 @@ mod tests {
         let (a, b) = (Point2::new(-1.0, 2.5), Point2::new(1.0, 2.5));
         assert!((wall.segment_distance_m(&a, &b) - 0.5).abs() < 1e-12);
     }
+}
+
+/// The lower left and the upper right corner of a grid, m.
+pub(in crate::physics) fn grid_corners(frame: &GridFrame) -> (Point2<f64>, Point2<f64>) {
+    let size = Vector2::new(frame.width() as f64, frame.height() as f64) * frame.resolution_m();
+    (frame.origin(), frame.origin() + size)
 }

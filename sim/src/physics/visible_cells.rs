@@ -1,11 +1,10 @@
 //! The cells that the driven robot could see, wherever it drives.
 
-use super::fleet::corners;
 use super::free_poses::FreePoses;
 use super::free_space::solids;
 use super::ground_truth::start;
 use super::rays::{Beams, Scene};
-use super::shape::Rectangle;
+use super::shape::{Rectangle, grid_corners};
 use super::spec::WorldSpec;
 use interfaces::{Cell, GridFrame, TrueState};
 use nalgebra::{Isometry2, Point2, UnitComplex, Vector2};
@@ -104,7 +103,7 @@ impl<'a> Sight<'a> {
         radius_m: f64,
         reached: &'a [bool],
     ) -> Self {
-        let scene = Scene::new(corners(frame), solids, Vec::new(), 0, range_m);
+        let scene = Scene::new(grid_corners(frame), solids, Vec::new(), 0, range_m);
         let beams = [NEAR_M.min(range_m), range_m]
             .map(|range_m| (range_m, Beams::new(-PI, TAU / DIRECTIONS as f64, DIRECTIONS, range_m)));
         Self { frame, reached, gaps: gaps(frame, reached), radius_m: radius_m.min(range_m), beams, scene }

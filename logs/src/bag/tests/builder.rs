@@ -1,11 +1,11 @@
 //! Bags for tests, written by the crate `mcap` and by SQLite itself.
 
+use crate::Log;
 use crate::bag::{Bag, BagFile};
 use crate::bytes::Bytes;
 use crate::cdr::encoded;
 use crate::choice::TopicChoice;
 use crate::error::LogError;
-use crate::log::Log;
 use crate::ros::{
     Header, LaserScan, Odometry, Pose, PoseWithCovariance, Rotation, Time, TransformStamped, Transforms,
     TwistWithCovariance, Vector,

@@ -23,8 +23,7 @@ use super::robot::{Robot, RobotView};
 use super::sensors::Tagged;
 use super::shape::Rectangle;
 use super::spec::FleetSpec;
-use interfaces::GridFrame;
-use nalgebra::{Point2, Vector2};
+use nalgebra::Point2;
 use slide::Sliding;
 use start::Start;
 use std::sync::Arc;
@@ -164,10 +163,4 @@ impl Fleet {
     fn show_obstacle(&mut self, index: usize) {
         start::show_obstacle(&mut self.scene, index, &self.obstacles[index]);
     }
-}
-
-/// The lower left and the upper right corner of a grid, m.
-pub(super) fn corners(frame: &GridFrame) -> (Point2<f64>, Point2<f64>) {
-    let size = Vector2::new(frame.width() as f64, frame.height() as f64) * frame.resolution_m();
-    (frame.origin(), frame.origin() + size)
 }

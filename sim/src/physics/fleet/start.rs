@@ -1,7 +1,7 @@
 //! A fleet at its start: what is the same for every seed, built once and shared.
 
+use super::Fleet;
 use super::slide::Sliding;
-use super::{Fleet, corners};
 use crate::physics::bodies::Bodies;
 use crate::physics::free_poses::FreePoses;
 use crate::physics::obstacles::Obstacle;
@@ -10,6 +10,7 @@ use crate::physics::rays::{Disc, Scene};
 use crate::physics::report::Body;
 use crate::physics::robot::Robot;
 use crate::physics::sensors::SharedBeams;
+use crate::physics::shape::grid_corners;
 use crate::physics::spec::{FleetSpec, RobotSpec};
 use nalgebra::{Isometry2, Point2};
 use std::sync::Arc;
@@ -52,7 +53,8 @@ impl Start {
         let cornered: Vec<usize> = cornered.map(|(index, _)| index).collect();
         let range_m = spec.robots.iter().map(RobotSpec::range_m).fold(0.0, f64::max);
         let polygons = spec.obstacles.len() + cornered.len();
-        let mut scene = Scene::new(corners(&spec.frame), &spec.walls, discs.collect(), polygons, range_m);
+        let mut scene =
+            Scene::new(grid_corners(&spec.frame), &spec.walls, discs.collect(), polygons, range_m);
         obstacles.iter().enumerate().for_each(|(index, obstacle)| show_obstacle(&mut scene, index, obstacle));
         let carried = spec.robots.iter().enumerate().map(|(index, robot)| {
             robot.odometry.carried?;

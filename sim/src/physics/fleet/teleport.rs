@@ -1,8 +1,8 @@
 //! Putting robots at other poses.
 
-use super::{Fleet, corners};
+use super::Fleet;
 use crate::physics::robot::Robot;
-use crate::physics::shape::{Rectangle, TOUCH_M};
+use crate::physics::shape::{Rectangle, TOUCH_M, grid_corners};
 use interfaces::heading_rad;
 use nalgebra::{Isometry2, Point2};
 
@@ -62,7 +62,7 @@ impl Fleet {
             return Err(TeleportError::NoSuchRobot { robot, robots: self.robots.len() });
         };
         let at = Point2::from(pose.translation.vector);
-        let ((low, high), form) = (corners(&self.spec().frame), spec.form(pose));
+        let ((low, high), form) = (grid_corners(&self.spec().frame), spec.form(pose));
         let (least, most) = form.bounds();
         let inside_m = (least - low).min().min((high - most).min());
         let is_finite = at.x.is_finite() && at.y.is_finite() && heading_rad(pose).is_finite();

@@ -15,8 +15,7 @@ pub use odometry::{DisplacementSpec, OdometryError};
 pub use robot::{DriveKind, DriveLimits, LaserSpec, RobotSpec};
 pub use senses::{BumperSpec, FiducialSpec, SonarSpec};
 
-use super::fleet::corners;
-use super::shape::{Rectangle, TOUCH_M, Transform};
+use super::shape::{Rectangle, TOUCH_M, Transform, grid_corners};
 use interfaces::{GridFrame, rotation};
 use nalgebra::{Point2, Vector2};
 
@@ -165,7 +164,7 @@ impl WorldSpec {
         let (start, frame) = (&self.driven().pose, &self.frame);
         let turn = rotation(heading_rad) * start.rotation.inverse();
         let by = Transform { turn, from: start.translation.vector.into(), to: Point2::origin() };
-        let (low, high) = corners(frame);
+        let (low, high) = grid_corners(frame);
         let place = Rectangle::between(low, high).transformed(&by);
         let ((low, high), cell_m) = (place.bounds(), frame.resolution_m());
         let origin = Point2::from((low.coords / cell_m).map(f64::floor) * cell_m);
