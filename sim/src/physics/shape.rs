@@ -147,6 +147,12 @@ fn crosses(a: &Point2<f64>, b: &Point2<f64>, p: &Point2<f64>, q: &Point2<f64>) -
     side(a, b, p) * side(a, b, q) < 0.0 && side(p, q, a) * side(p, q, b) < 0.0
 }
 
+/// The lower left and the upper right corner of a grid, m.
+pub(in crate::physics) fn grid_corners(frame: &GridFrame) -> (Point2<f64>, Point2<f64>) {
+    let size = Vector2::new(frame.width() as f64, frame.height() as f64) * frame.resolution_m();
+    (frame.origin(), frame.origin() + size)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -169,10 +175,4 @@ mod tests {
         let (a, b) = (Point2::new(-1.0, 2.5), Point2::new(1.0, 2.5));
         assert!((wall.segment_distance_m(&a, &b) - 0.5).abs() < 1e-12);
     }
-}
-
-/// The lower left and the upper right corner of a grid, m.
-pub(in crate::physics) fn grid_corners(frame: &GridFrame) -> (Point2<f64>, Point2<f64>) {
-    let size = Vector2::new(frame.width() as f64, frame.height() as f64) * frame.resolution_m();
-    (frame.origin(), frame.origin() + size)
 }

@@ -2,8 +2,8 @@
 
 use super::oracle::{self, Place, Tally, uniform};
 use super::*;
-use crate::physics::fleet::corners;
 use crate::physics::rays::Scene;
+use crate::physics::shape::grid_corners;
 use interfaces::{GridFrame, pose, rotation};
 use nalgebra::{Point2, Vector2};
 use rand_chacha::ChaCha8Rng;
@@ -138,7 +138,7 @@ fn nothing_is_seen_behind_a_narrow_laser() {
 #[test]
 fn a_laser_inside_of_a_solid_sees_nothing_else() {
     let spec = four_rooms();
-    let scene = Scene::new(corners(&spec.frame), &spec.walls, Vec::new(), 0, 10.0);
+    let scene = Scene::new(grid_corners(&spec.frame), &spec.walls, Vec::new(), 0, 10.0);
     let scan = oracle::scan(&spec.robots[0].laser, &pose(6.0, 1.0, 0.3), &scene, 0);
     assert!(scan.ranges_m.iter().all(|range| *range == 0.0));
 }

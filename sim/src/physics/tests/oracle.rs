@@ -2,10 +2,10 @@
 
 use super::*;
 use crate::physics::bodies::Bodies;
-use crate::physics::fleet::corners;
 use crate::physics::past::Recent;
 use crate::physics::rays::{Disc, Scene};
 use crate::physics::sensors::{Look, Platform, Sensor, SensorReading, SharedBeams, Surroundings};
+use crate::physics::shape::grid_corners;
 use interfaces::{Scan, Twist, rotation};
 use nalgebra::{Isometry2, Point2, Vector2};
 use rand::Rng;
@@ -89,7 +89,7 @@ impl Place {
         bodies.step();
         let round = discs.iter().map(|&(center, radius_m)| Disc { center, radius_m });
         let hulls = spec.obstacles.len();
-        let mut scene = Scene::new(corners(&spec.frame), &spec.walls, round.collect(), hulls, 10.0);
+        let mut scene = Scene::new(grid_corners(&spec.frame), &spec.walls, round.collect(), hulls, 10.0);
         for (place, obstacle) in spec.obstacles.iter().enumerate() {
             scene.set_polygon(place, None, obstacle.shape.corners().into_iter());
         }
