@@ -21,7 +21,7 @@ impl Log {
     ///
     /// When a file cannot be read or is damaged, when it has no usable scan, or when several topics are odometry and
     /// `choice` names no topic of odometry. What can be repaired or left out is no error but a note, see
-    /// [`LogSummary::notes`].
+    /// [`LogSummary::notes`](crate::LogSummary::notes).
     pub fn open(path: &Path, choice: &TopicChoice) -> Result<Self, LogError> {
         let name = path.display().to_string();
         if path.is_dir() {

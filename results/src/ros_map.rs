@@ -22,7 +22,7 @@ pub fn write(folder: &Path, name: &str, map: &Grid<CellState>) -> Result<(), Out
     write_both(folder, name, &pgm(map), yaml(map.frame(), &format!("{name}.pgm")))
 }
 
-/// Writes a mask with values from 0 to 100 into a folder, as [`write`].
+/// Writes a mask with values from 0 to 100 into a folder, as [`write()`].
 ///
 /// # Errors
 ///

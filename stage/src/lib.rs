@@ -17,7 +17,7 @@
 //! | `unit_length`, `unit_angle` | m, cm, mm; degrees, radians |
 //! | `name`, `interval_sim`, `quit_time` | the name, the longest physics step, the length of a run |
 //! | `model`, or a `define` of it | walls |
-//! | `bitmap` | a [`FloorPlan`]; its dark pixels (the first color below 128) are scaled to fill `size` |
+//! | `bitmap` | a floor plan; its dark pixels (the first color below 128) are scaled to fill `size` |
 //! | `block` with `points`, `point[…]`, `z` | polygons, scaled to fill `size` together |
 //! | `pose`, `origin`, `size`, `boundary`, `stack_children` | as in Stage |
 //! | `obstacle_return`, `ranger_return`, `laser_return` | a model that neither collides nor is seen is left out |

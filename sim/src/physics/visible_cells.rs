@@ -22,7 +22,7 @@ const MAX_GAP: u32 = 1 << 24;
 const OUTSIDE: f64 = 1e-3;
 
 impl WorldSpec {
-    /// For every cell of the frame, whether the driven robot could see it from a pose in the [`FreeSpace`] around
+    /// For every cell of the frame, whether the driven robot could see it from a pose in the [`FreeSpace`](super::FreeSpace) around
     /// its start, within the range of its main laser: with doors open, obstacles at their start, and other moving things
     /// away. Cells that are partly covered then are left out.
     ///
