@@ -7,9 +7,9 @@
 //! ```
 //!
 //! [`Localizer::localize`] (`localizer.rs`) does this for a reading; the common part is `LocalTrajectoryBuilder::add`. The table of
-//! its states is in `localizer/state.rs`, and all chosen numbers in `constants.rs`. The localizer never mistakes its own error for a change of the place, because
-//! a scan enters a map only while the state of the estimate is [`PoseState::Tracking`]; all other time counts as not
-//! observed.
+//! its states is in `localizer/state.rs`, and all chosen numbers in `constants.rs`. The localizer never mistakes its own error
+//! for a change of the place, because a scan enters a map only while the state of the estimate is [`PoseState::Tracking`];
+//! all other time counts as not observed.
 //!
 //! - Scans are matched with a map of short straight surfaces (surfels), which are frozen after a fixed number of hits, by
 //!   point-to-line Gauss-Newton with a prior from odometry: Censi (2008), Segal, Haehnel & Thrun (2009).

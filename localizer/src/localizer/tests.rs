@@ -133,7 +133,7 @@ fn get_lost(localizer: &mut Localizer) {
 }
 
 /// The largest number of steps of a reading of a robot that is lost.
-fn most_steps(learned: &Localizer, map: &Grid<CellState>, sweep_s: f64) -> usize {
+fn max_steps(learned: &Localizer, map: &Grid<CellState>, sweep_s: f64) -> usize {
     let mut localizer = learned.clone();
     get_lost(&mut localizer);
     let steps = (30..40).map(|number| {
@@ -150,7 +150,7 @@ fn no_number_of_a_reading_makes_it_take_longer_or_panic() {
     for sweep_s in [0.0, 0.1] {
         let (learned, map) = learned(sweep_s);
         // A search uses up its work, however little the scan shows.
-        let most = (10 * most_steps(&learned, &map, sweep_s)).max(MAX_WORK + MAX_WORK / 8);
+        let most = (10 * max_steps(&learned, &map, sweep_s)).max(MAX_WORK + MAX_WORK / 8);
         for case in 0..PLACES * NUMBERS.len() * 3 {
             let mut localizer = learned.clone();
             let mut what = Vec::new();
