@@ -12,6 +12,7 @@
 //! - `derived`: the maps that follow from both.
 
 mod change;
+mod clock;
 mod derived;
 mod growth;
 mod occupancy;
@@ -22,6 +23,7 @@ pub use change::{
     GapHistogram, GapModel, GapWeights, GapWorth, Imac, Paper, PaperAll, ReadingIndex, Step, TransitionRates,
     TwoState, TwoStateGaps,
 };
+pub use clock::{Calendar, Clock, DAY_S, Look, UnknownZone};
 pub use growth::Growth;
 pub use occupancy::{
     BeamReturn, CloneModel, OccupancyChoice, OccupancyModel, ProjectedScan, SurfaceGridSettings,
