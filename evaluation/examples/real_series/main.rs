@@ -1,115 +1,150 @@
-//! Predictions of recorded doors and rooms.
+//! Recorded doors and rooms: how well the clock, the estimators of the map, and simple baselines predict them.
+//!
+//! ```text
+//! cargo run -p curious-evaluation --example real_series -- [--json FILE] [--time-zone ZONE] FILES
+//! ```
+//!
+//! A file has the lines `time_s,state`, one per change: seconds since 1970-01-01 UTC (or since a midnight), and 1 (blocked,
+//! open, occupied), 0, or `nan` where nothing was recorded. A comment with `split_s=… end_s=…` says which part is learned from
+//! and which part is predicted; without it, the first half. Files whose names agree up to the first `-` are a set (a home);
+//! errors are averaged over the things of a set.
+//!
+//! A robot sees a thing at all minutes, at random ones (5, 2, 1 % of them; three draws), or on patrol: every two hours for five
+//! minutes. Models learn from the looks before the split. After it they take the looks without learning from them, and predict
+//! every five minutes. *Best baseline*: the baseline with the least Brier score in this set, with these looks, at this horizon,
+//! in hindsight.
 
 mod models;
+mod score;
 mod series;
+mod table;
+#[cfg(test)]
+mod tests;
 
-use mapper::{Calendar, Look};
-use models::Model;
+use clap::Parser;
+use indicatif::ProgressBar;
+use mapper::{Calendar, DAY_S};
+use models::Named;
 use rayon::prelude::*;
-use series::{LOOKS, Looks, STEP_S, Series};
-use std::collections::BTreeMap;
+use score::{HORIZONS, Score};
+use series::{LOOKS, Looks, Series};
+use std::io::Write;
+use std::path::PathBuf;
+use table::Table;
 
-const HORIZONS: [(&str, usize); 6] =
-    [("1 min", 1), ("10 min", 10), ("30 min", 30), ("60 min", 60), ("24 h", 1440), ("7 d", 10080)];
-const MIN_PROBABILITY: f64 = 0.001;
+/// How well the clock, the estimators of the map and simple baselines predict recorded doors and rooms.
+#[derive(Parser)]
+struct Options {
+    /// Series of events: CSV files with the lines `time_s,state`
+    #[arg(required = true)]
+    files: Vec<PathBuf>,
+    /// The zone of the times, an IANA name such as Europe/Berlin
+    #[arg(long, default_value = "UTC")]
+    time_zone: String,
+    /// Writes a list of {series, looks, horizon_s, model, brier, log_score, n}
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+    /// Without the learning curve, which takes five times as long as the rest
+    #[arg(long)]
+    no_curve: bool,
+}
 
-/// The scores of one model at one horizon.
-#[derive(Clone, Copy, Default)]
-struct Score {
+/// Days of history of the learning curve.
+const CURVE_DAYS: [f64; 5] = [1.0, 3.0, 7.0, 14.0, 28.0];
+/// The number of draws of random looks.
+const DRAWS: u64 = 3;
+
+/// The scores of all models for one series and one kind of looks.
+struct Case<'a> {
+    series: &'a Series,
+    looks: usize,
+    scores: Vec<[Score; HORIZONS.len()]>,
+}
+
+/// One line of the JSON file.
+#[derive(serde::Serialize)]
+struct Line<'a> {
+    series: &'a str,
+    looks: &'a str,
+    horizon_s: f64,
+    model: &'a str,
     brier: f64,
-    log: f64,
+    log_score: f64,
     n: usize,
 }
 
-fn scores(series: &Series, looks: Looks, seed: u64, history_s: f64, model: &mut dyn Model) -> Vec<Score> {
-    let seen = looks.draw(series.states.len(), seed);
-    let split = ((series.split_s - series.start_s) / STEP_S) as usize;
-    let first = split.saturating_sub((history_s / STEP_S) as usize);
-    let history: Vec<Look> = (first..split).filter(|step| seen[*step]).filter_map(|step| series.look(step)).collect();
-    model.learn(&history);
-    let mut scores = vec![Score::default(); HORIZONS.len()];
-    for step in split..series.states.len() {
-        if let Some(look) = series.look(step).filter(|_| seen[step]) {
-            model.look(look);
-        }
-        for (score, (_, ahead)) in scores.iter_mut().zip(HORIZONS) {
-            let Some(found) = series.look(step + ahead) else { continue };
-            let predicted = model.predict(found.time_s).clamp(MIN_PROBABILITY, 1.0 - MIN_PROBABILITY);
-            let found = f64::from(u8::from(found.is_blocked));
-            score.brier += (predicted - found) * (predicted - found);
-            score.log -= if found > 0.5 { predicted.ln() } else { (1.0 - predicted).ln() };
-            score.n += 1;
-        }
-    }
-    scores
+/// Scores all models on all series, learning from at most `history_s` before the split.
+fn evaluate<'a>(series: &'a [Series], history_s: f64, calendar: &Calendar) -> Vec<Case<'a>> {
+    let cases: Vec<(&Series, usize)> =
+        series.iter().flat_map(|series| (0..LOOKS.len()).map(move |looks| (series, looks))).collect();
+    let progress = ProgressBar::new(cases.len() as u64);
+    let case = |(series, looks): (&'a Series, usize)| {
+        let draws = if matches!(LOOKS[looks].1, Looks::Full) { 1 } else { DRAWS };
+        let scores = models::all(calendar).into_iter().enumerate().map(|(index, mut model)| {
+            let mut sum = score::score(series, LOOKS[looks].1, 0, history_s, &mut model);
+            for seed in 1..draws {
+                let mut model = models::all(calendar).swap_remove(index);
+                let scores = score::score(series, LOOKS[looks].1, seed, history_s, &mut model);
+                sum.iter_mut().zip(&scores).for_each(|(sum, score)| sum.merge(score));
+            }
+            sum
+        });
+        let case = Case { series, looks, scores: scores.collect() };
+        progress.inc(1);
+        case
+    };
+    let cases = cases.into_par_iter().map(case).collect();
+    progress.finish_and_clear();
+    cases
 }
 
-fn main() {
-    let mut files: Vec<String> = std::env::args().skip(1).collect();
-    let days: f64 = std::env::var("DAYS").ok().and_then(|d| d.parse().ok()).unwrap_or(1e6);
-    files.sort();
-    let all: Vec<Series> = files.iter().map(|file| Series::read(file.as_ref()).unwrap()).collect();
-    let calendar = Calendar::UTC;
-    let names: Vec<(String, bool)> = models::all(&calendar).into_iter().map(|(n, b, _)| (n, b)).collect();
-    let quick = std::env::var("QUICK").is_ok();
-    let seeds: u64 = if days > 1e5 {3} else {2};
-    let jobs: Vec<(usize, usize, u64)> = (0..all.len()).flat_map(|s| (0..LOOKS.len()).flat_map(move |l| (0..if l == 0 {1} else {seeds}).map(move |k| (s, l, k)))).collect();
-    let results: Vec<Vec<Vec<Score>>> = jobs
-        .par_iter()
-        .map(|&(s, l, k)| {
-            models::all(&calendar)
-                .into_iter()
-                .take(if quick { 1 } else { usize::MAX })
-                .map(|(_, _, mut model)| scores(&all[s], LOOKS[l].1, k, days * 86400.0, model.as_mut()))
-                .collect()
+fn lines<'a>(cases: &'a [Case<'_>], models: &'a [Named]) -> impl Iterator<Item = Line<'a>> {
+    cases.iter().flat_map(move |case| {
+        let of_models = models.iter().zip(&case.scores);
+        of_models.flat_map(move |(model, scores)| {
+            let of_horizons = scores.iter().zip(HORIZONS).filter(|(score, _)| score.n > 0);
+            of_horizons.map(move |(score, (_, steps))| Line {
+                series: &case.series.name,
+                looks: LOOKS[case.looks].0,
+                horizon_s: steps as f64 * series::STEP_S,
+                model: &model.name,
+                brier: score.brier(),
+                log_score: score.log_score(),
+                n: score.n,
+            })
         })
-        .collect();
-    // set, looks, horizon -> model -> mean brier
-    let mut cases: BTreeMap<(String, usize, usize), Vec<(f64, usize)>> = BTreeMap::new();
-    for (&(s, l, _), by_model) in jobs.iter().zip(&results) {
-        for (m, scores) in by_model.iter().enumerate() {
-            for (h, score) in scores.iter().enumerate() {
-                if score.n == 0 { continue; }
-                if std::env::var("W").is_ok() && l == 0 && h >= 3 { println!("{:28} h{h} model {m:2} {:.4}", all[s].name, score.brier / score.n as f64); }
-                let case = cases.entry((all[s].set().to_owned(), l, h)).or_insert_with(|| vec![(0.0, 0); names.len()]);
-                case[m].0 += score.brier / score.n as f64;
-                case[m].1 += 1;
-            }
+    })
+}
+
+fn run(options: &Options, out: &mut impl Write) -> Result<(), String> {
+    let calendar = Calendar::of_zone(&options.time_zone).map_err(|error| error.to_string())?;
+    let series = options.files.iter().map(|file| Series::read(file)).collect::<Result<Vec<_>, _>>()?;
+    let (cases, models) = (evaluate(&series, f64::INFINITY, &calendar), models::all(&calendar));
+    let table = Table::new(&cases, &models);
+    let say = |error: std::io::Error| error.to_string();
+    table.print(out).map_err(say)?;
+    if !options.no_curve {
+        writeln!(out, "\nLearning curve: clock ÷ best baseline with the same history\n").map_err(say)?;
+        for days in CURVE_DAYS {
+            let cases = evaluate(&series, days * DAY_S, &calendar);
+            let ratio = Table::new(&cases, &models).ratio(0);
+            writeln!(out, "{days:4} days {ratio:.3}").map_err(say)?;
         }
     }
-    let path = format!("/work/w/real_base_{days}.txt");
-    let base: BTreeMap<String, Vec<f64>> = if quick {
-        std::fs::read_to_string(&path).unwrap().lines().map(|l| { let mut w = l.split('|'); let k = w.next().unwrap().to_owned(); (k, w.map(|x| x.parse().unwrap()).collect()) }).collect()
-    } else { BTreeMap::new() };
-    let mut out = String::new();
-    let mut logs = vec![0.0; names.len()];
-    let (mut within2, mut chain2) = (0, 0);
-    let mut by_set: BTreeMap<String, (f64, f64, usize)> = BTreeMap::new();
-    let mut by_h: BTreeMap<String, (f64, f64, usize)> = BTreeMap::new();
-    for ((set, l, h), values) in &cases {
-        let key = format!("{set}/{l}/{h}");
-        let mut briers: Vec<f64> = values.iter().map(|(sum, n)| sum / (*n).max(1) as f64).collect();
-        if quick { let own = briers[0]; briers = base[&key].clone(); briers[0] = own; }
-        else { out += &format!("{key}|{}\n", briers.iter().map(|b| b.to_string()).collect::<Vec<_>>().join("|")); }
-        let (best, _) = names.iter().zip(&briers).filter(|((_, b), _)| *b).map(|((n, _), b)| (*b, n)).fold((f64::INFINITY, &names[0].0), |a, b| if b.0 < a.0 { b } else { a });
-        for (log, b) in logs.iter_mut().zip(&briers) { *log += (b / best).ln(); }
-        if briers[0] <= 1.02 * best { within2 += 1; }
-        if briers[0] <= 1.02 * briers[3] { chain2 += 1; }
-        for (map, key) in [(&mut by_set, set.clone()), (&mut by_h, format!("{} {}", LOOKS[*l].0, HORIZONS[*h].0))] {
-            let e = map.entry(key).or_default();
-            e.0 += (briers[0] / best).ln(); e.1 += (briers[3] / best).ln(); e.2 += 1;
-        }
-        if std::env::var("V").is_ok() || set == "tom" && (*l == 0 || *l == 2) {
-            println!("{set:8} {:7} {:7} clock {:.4} last {:.4} chain {:.4} best {:.4} {}", LOOKS[*l].0, HORIZONS[*h].0, briers[0], briers[2], briers[3], best,
-                names.iter().zip(&briers).filter(|((_, b), x)| *b && **x == best).map(|((n, _), _)| n.as_str()).collect::<String>());
+    if let Some(file) = &options.json {
+        let lines: Vec<Line<'_>> = lines(&cases, &models).collect();
+        let text = serde_json::to_string_pretty(&lines).map_err(|error| error.to_string())?;
+        std::fs::write(file, text).map_err(|error| format!("{}: {error}", file.display()))?;
+    }
+    Ok(())
+}
+
+fn main() -> std::process::ExitCode {
+    match run(&Options::parse(), &mut std::io::stdout().lock()) {
+        Ok(()) => std::process::ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            std::process::ExitCode::from(2)
         }
     }
-    if !quick { std::fs::write(&path, out).unwrap(); }
-    for (map, name) in [(&by_set, "set"), (&by_h, "case")] {
-        println!("-- {name}: clock, chain ÷ best");
-        for (k, (a, b, n)) in map { println!("{k:16} {:.3} {:.3}", (a / *n as f64).exp(), (b / *n as f64).exp()); }
-    }
-    let n = cases.len() as f64;
-    for ((name, _), log) in names.iter().zip(&logs) { println!("{name:24} {:.4}", (log / n).exp()); }
-    println!("cases {n} within 2 % of best {:.3}; at most 2 % worse than chain {:.3}", within2 as f64 / n, chain2 as f64 / n);
 }

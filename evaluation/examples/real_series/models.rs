@@ -1,10 +1,9 @@
 //! Models that predict a thing: the clock, the estimators of the map, and simple baselines.
 
+use crate::series::STEP_S;
 use interfaces::{Cell, CellReading, GridFrame};
 use mapper::{Calendar, Clock, DAY_S, EstimatorChoice, Look, Mapper, MapperSettings};
 use nalgebra::{Isometry2, Point2};
-
-use crate::series::STEP_S;
 
 /// A model of one thing.
 pub trait Model {
@@ -93,7 +92,8 @@ impl Model for Profile {
         let mut at = 0;
         while at < looks.len() {
             let hour = (looks[at].time_s / 3600.0).floor();
-            let end = at + looks[at..].iter().take_while(|look| (look.time_s / 3600.0).floor() == hour).count();
+            let end =
+                at + looks[at..].iter().take_while(|look| (look.time_s / 3600.0).floor() == hour).count();
             let share = looks[at..end].iter().map(|look| state(*look)).sum::<f64>() / (end - at) as f64;
             let sum = &mut sums[self.kind.slot(looks[at].time_s)];
             *sum = [sum[0] + share, sum[1] + 1.0];
@@ -160,8 +160,11 @@ impl Chain {
 
 /// The squared coefficient of variation of the stays in each state that began and ended between looks.
 fn variation(looks: &[Look]) -> [f64; 2] {
-    let changes: Vec<Look> =
-        looks.windows(2).filter(|pair| pair[0].is_blocked != pair[1].is_blocked).map(|pair| pair[1]).collect();
+    let changes: Vec<Look> = looks
+        .windows(2)
+        .filter(|pair| pair[0].is_blocked != pair[1].is_blocked)
+        .map(|pair| pair[1])
+        .collect();
     [false, true].map(|is_blocked| {
         let stays = || {
             let pairs = changes.windows(2).filter(move |pair| pair[0].is_blocked == is_blocked);
@@ -185,10 +188,7 @@ impl Model for Chain {
         for step in 0..=((last.time_s - first.time_s) / STEP_S).round() as usize {
             let time = first.time_s + step as f64 * STEP_S;
             let look = next.next_if(|look| look.time_s < time + 0.5 * STEP_S);
-            let cells = look
-                .map(|look| (Cell { x: 0, y: 0 }, look.is_blocked))
-                .into_iter()
-                .collect();
+            let cells = look.map(|look| (Cell { x: 0, y: 0 }, look.is_blocked)).into_iter().collect();
             mapper
                 .update(&CellReading { time: time - first.time_s, pose: Isometry2::identity(), cells })
                 .expect("time goes on");
@@ -285,29 +285,37 @@ impl Model for Persistence {
     }
 }
 
-/// Every model, by its name, and whether it is a simple baseline.
-pub fn all(calendar: &Calendar) -> Vec<(String, bool, Box<dyn Model>)> {
-    let chain = || Chain::new(EstimatorChoice::default(), false);
-    let mut models: Vec<(String, bool, Box<dyn Model>)> = vec![
-        ("clock".into(), false, Box::new(TheClock(Clock::default(), calendar.clone()))),
-        ("mean".into(), true, Box::new(Profile::new(Kind::Mean, false))),
-        ("last seen".into(), true, Box::new(LastSeen::default())),
-        ("chain".into(), true, Box::new(chain())),
-        ("chain with pace".into(), true, Box::new(Chain::new(EstimatorChoice::default(), true))),
-        ("daily".into(), true, Box::new(Profile::new(Kind::Daily, false))),
-        ("daily with memory".into(), true, Box::new(Profile::new(Kind::Daily, true))),
-        ("weekly".into(), true, Box::new(Profile::new(Kind::Weekly, false))),
-        ("weekly with memory".into(), true, Box::new(Profile::new(Kind::Weekly, true))),
-        ("persistence filter".into(), true, Box::new(Persistence(chain()))),
+/// A model with its name.
+pub struct Named {
+    pub name: String,
+    /// Whether it is a simple baseline.
+    pub is_baseline: bool,
+    pub model: Box<dyn Model>,
+}
+
+/// Every model; the first is the clock.
+pub fn all(calendar: &Calendar) -> Vec<Named> {
+    let named = |name: &str, is_baseline, model| Named { name: name.to_owned(), is_baseline, model };
+    let chain = |is_paced| Chain::new(EstimatorChoice::default(), is_paced);
+    let profile = |kind, fades| Box::new(Profile::new(kind, fades));
+    let mut models = vec![
+        named("clock", false, Box::new(TheClock(Clock::default(), calendar.clone()))),
+        named("mean", true, profile(Kind::Mean, false)),
+        named("last seen", true, Box::new(LastSeen::default())),
+        named("chain", true, Box::new(chain(false))),
+        named("chain with pace", true, Box::new(chain(true))),
+        named("daily", true, profile(Kind::Daily, false)),
+        named("daily with memory", true, profile(Kind::Daily, true)),
+        named("weekly", true, profile(Kind::Weekly, false)),
+        named("weekly with memory", true, profile(Kind::Weekly, true)),
+        named("persistence filter", true, Box::new(Persistence(chain(false)))),
     ];
     for order in 1..=4 {
-        models.push((format!("FreMEn {order}"), true, Box::new(FreMEn::new(order))));
+        models.push(named(&format!("FreMEn {order}"), true, Box::new(FreMEn::new(order))));
     }
-    for estimator in EstimatorChoice::all() {
-        if estimator != EstimatorChoice::default() {
-            let name = format!("chain of {}", estimator.name());
-            models.push((name, false, Box::new(Chain::new(estimator, false))));
-        }
+    for estimator in EstimatorChoice::all().into_iter().filter(|one| *one != EstimatorChoice::default()) {
+        let name = format!("chain of {}", estimator.name());
+        models.push(named(&name, false, Box::new(Chain::new(estimator, false))));
     }
     models
 }

@@ -7,6 +7,9 @@ use std::path::Path;
 /// The step of all series, s.
 pub const STEP_S: f64 = 60.0;
 
+/// No series is longer.
+const MAX_YEARS: f64 = 10.0;
+
 /// The recorded states of one thing.
 pub struct Series {
     pub name: String,
@@ -19,49 +22,34 @@ pub struct Series {
 }
 
 impl Series {
-    /// Reads a file: lines `time_s,state`, one per change, with `# split_s=… end_s=…` before them.
+    /// Reads a file.
     pub fn read(path: &Path) -> Result<Self, String> {
         let at = |what: &str| format!("{}: {what}", path.display());
         let text = std::fs::read_to_string(path).map_err(|error| at(&error.to_string()))?;
-        let head = |key: &str| -> Option<f64> {
-            let comments = text.lines().filter(|line| line.starts_with('#'));
-            comments.flat_map(str::split_whitespace).find_map(|word| word.strip_prefix(key)?.parse().ok())
-        };
-        let mut changes: Vec<(f64, Option<bool>)> = Vec::new();
-        for (index, line) in text.lines().enumerate() {
-            if line.starts_with('#') || line.starts_with("time_s") || line.is_empty() {
-                continue;
-            }
-            let wrong = || at(&format!("line {}: expected `time_s,state` with a state of 0, 1 or nan, found `{line}`", index + 1));
-            let (time, state) = line.split_once(',').ok_or_else(wrong)?;
-            let time_s = time.trim().parse::<f64>().map_err(|_| wrong())?;
-            let state = match state.trim() {
-                "0" => Some(false),
-                "1" => Some(true),
-                "nan" | "NaN" => None,
-                _ => return Err(wrong()),
-            };
-            if changes.last().is_some_and(|(last_s, _)| time_s < *last_s) {
-                return Err(at(&format!("line {}: time goes backwards", index + 1)));
-            }
-            changes.push((time_s, state));
-        }
-        let (Some((start_s, _)), Some((last_s, _))) = (changes.first().copied(), changes.last().copied()) else {
+        let changes = changes(&text).map_err(|error| at(&error))?;
+        let (Some((start_s, _)), Some((last_s, _))) = (changes.first(), changes.last()) else {
             return Err(at("no events"));
         };
-        let end_s = head("end_s=").unwrap_or(last_s + STEP_S);
+        let head = |key: &str| -> Option<f64> {
+            let words = text.lines().filter(|line| line.starts_with('#')).flat_map(str::split_whitespace);
+            words.filter_map(|word| word.strip_prefix(key)).find_map(|value| value.parse().ok())
+        };
+        let limit_s = start_s + MAX_YEARS * 365.25 * DAY_S;
+        let end_s = head("end_s=").unwrap_or(last_s + STEP_S).min(limit_s);
         let split_s = head("split_s=").unwrap_or(0.5 * (start_s + end_s));
-        let mut states = Vec::new();
-        let (mut next, mut state) = (0, None);
-        for step in 0..((end_s - start_s) / STEP_S) as usize {
-            while next < changes.len() && changes[next].0 <= start_s + step as f64 * STEP_S {
-                state = changes[next].1;
-                next += 1;
+        let mut next = changes.iter().peekable();
+        let mut state = None;
+        let states = (0..((end_s - start_s) / STEP_S) as usize).map(|step| {
+            while let Some((_, changed)) =
+                next.next_if(|(time_s, _)| *time_s <= start_s + step as f64 * STEP_S)
+            {
+                state = *changed;
             }
-            states.push(state);
-        }
+            state
+        });
+        let states = states.collect();
         let name = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
-        Ok(Self { name, split_s, start_s, states })
+        Ok(Self { name, split_s, start_s: *start_s, states })
     }
 
     /// The set of a series: its name up to the first `-`.
@@ -69,15 +57,50 @@ impl Series {
         self.name.split('-').next().unwrap_or(&self.name)
     }
 
-    pub fn time_s(&self, step: usize) -> f64 {
-        self.start_s + step as f64 * STEP_S
+    /// The first step after the split.
+    pub fn split(&self) -> usize {
+        (((self.split_s - self.start_s) / STEP_S).max(0.0) as usize).min(self.states.len())
     }
 
-    /// The state at a step that a robot sees, if it looks.
+    /// What a look at a step shows; `None` where nothing was recorded.
     pub fn look(&self, step: usize) -> Option<Look> {
         let is_blocked = (*self.states.get(step)?)?;
-        Some(Look { time_s: self.time_s(step), is_blocked })
+        Some(Look { time_s: self.start_s + step as f64 * STEP_S, is_blocked })
     }
+}
+
+/// The changes in a file, by time.
+fn changes(text: &str) -> Result<Vec<(f64, Option<bool>)>, String> {
+    let mut changes: Vec<(f64, Option<bool>)> = Vec::new();
+    let mut reader = csv::ReaderBuilder::new()
+        .comment(Some(b'#'))
+        .trim(csv::Trim::All)
+        .flexible(true)
+        .from_reader(text.as_bytes());
+    for record in reader.records() {
+        let record = record.map_err(|error| error.to_string())?;
+        let line = record.position().map_or(0, csv::Position::line);
+        let wrong = || {
+            let found = record.iter().collect::<Vec<_>>().join(",");
+            format!("line {line}: expected `time_s,state` with a state of 0, 1 or nan, found `{found}`")
+        };
+        let state = match record.get(1) {
+            Some("0") => Some(false),
+            Some("1") => Some(true),
+            Some("nan") => None,
+            _ => return Err(wrong()),
+        };
+        let time_s = record[0].parse::<f64>().ok().filter(|time_s| time_s.is_finite()).ok_or_else(wrong)?;
+        let first_s = changes.first().map_or(time_s, |first| first.0);
+        if changes.last().is_some_and(|(last_s, _)| time_s < *last_s) {
+            return Err(format!("line {line}: time goes backwards"));
+        }
+        if time_s - first_s > MAX_YEARS * 365.25 * DAY_S {
+            return Err(format!("line {line}: more than ten years after the first line"));
+        }
+        changes.push((time_s, state));
+    }
+    Ok(changes)
 }
 
 /// When a robot looks at a thing.

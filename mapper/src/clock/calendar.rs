@@ -1,9 +1,8 @@
 use jiff::Timestamp;
 use jiff::tz::TimeZone;
 
-/// Seconds of a day, and of a week.
+/// A day, s.
 pub const DAY_S: f64 = 86_400.0;
-pub(super) const WEEK_S: f64 = 7.0 * DAY_S;
 
 /// How the times of looks relate to local civil time, in which people live: the hours of a door move with summer time.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -29,20 +28,36 @@ impl Calendar {
         TimeZone::get(name).map(Self::Zone).map_err(|_| UnknownZone { name: name.to_owned() })
     }
 
-    /// The local civil time, s since the Monday before 1970-01-01, 0:00; `None` without a calendar, or outside of the years
-    /// −9999 to 9999.
-    pub(super) fn civil_s(&self, time_s: f64) -> Option<f64> {
+    /// The local civil time of a moment.
+    pub(super) fn civil(&self, time_s: f64) -> Civil {
         /// 1970-01-01 was a Thursday.
         const MONDAY_TO_EPOCH_S: f64 = 3.0 * DAY_S;
-        let Self::Zone(zone) = self else { return None };
-        let second = Timestamp::from_second(time_s.floor() as i64).ok()?;
-        Some(time_s + f64::from(zone.to_offset(second).seconds()) + MONDAY_TO_EPOCH_S)
+        let second = || Timestamp::from_second(time_s.floor() as i64).ok();
+        match self {
+            Self::Zone(zone) => second().map(|second| {
+                let offset_s = f64::from(zone.to_offset(second).seconds());
+                Civil { time_s: time_s + offset_s + MONDAY_TO_EPOCH_S, has_hours: true }
+            }),
+            Self::Relative => None,
+        }
+        .unwrap_or(Civil { time_s, has_hours: false })
     }
+}
+
+/// A local civil time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Civil {
+    /// The time since the Monday before 1970-01-01, 0:00, s; without hours since an arbitrary moment.
+    pub(super) time_s: f64,
+    /// Whether hour and weekday are known: with a calendar, in the years −9999 to 9999.
+    pub(super) has_hours: bool,
 }
 
 /// No time zone has this name.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("no time zone is called `{name}`; names are those of the IANA, such as Europe/Berlin, America/New_York or UTC")]
+#[error(
+    "no time zone is called `{name}`; names are those of the IANA, such as Europe/Berlin, America/New_York or UTC"
+)]
 pub struct UnknownZone {
     name: String,
 }

@@ -1,87 +1,134 @@
-//! A model of one thing over time: its schedule over day and week, and its memory of all past looks.
+//! A model of one thing over time: its schedule over day and week in local civil time, its memory of all past looks, how long
+//! its long stays last, and a guard that falls back to a Markov chain or to the last look where these were better.
+//!
+//! It starts as the chain, and becomes a clock with data. Work per look and memory are bounded.
 
 mod calendar;
+mod correlations;
 mod guard;
 mod long_stays;
 mod memory;
 mod schedule;
 mod simplex;
+#[cfg(test)]
+mod tests;
 
+use calendar::Civil;
 pub use calendar::{Calendar, DAY_S, UnknownZone};
 use guard::{Forecast, Guard, MODELS};
 use long_stays::LongStays;
-use memory::Memory;
+use memory::{Memory, fading};
 use schedule::Schedule;
 
-/// A look at a thing.
+/// A look at a thing that has two states.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
 pub struct Look {
-    /// The time, s.
+    /// The time, s, as in the [`Calendar`].
     pub time_s: f64,
-    /// Whether the thing was blocked (a door: open, a room: occupied; one of two states).
+    /// Whether the thing was in the second of its states: a place blocked, a door open, a room occupied.
     pub is_blocked: bool,
 }
 
-/// No prediction is more certain than this.
+/// No prediction is nearer to 0 or 1.
 const MIN_PROBABILITY: f64 = 0.001;
 
-/// The model of one thing.
+/// A look that shows the state of the last one within this time says nothing new, s: lasers look ten times per second.
+const MIN_SPACING_S: f64 = 5.0;
+
+/// Predicts the state of one thing from looks at it.
 #[derive(Clone, Debug, Default, PartialEq, serde::Deserialize, serde::Serialize)]
 pub struct Clock {
     schedule: Schedule,
     memory: Memory,
     stays: LongStays,
     guard: Guard,
+    /// The last look that counted, and the time of the last one.
     last: Option<Look>,
+    last_s: f64,
 }
 
 impl Clock {
-    /// Learns from a look, and updates the state.
+    /// Updates the belief with a look, and learns from it. A look with a time before that of the last one, or not finite, is
+    /// ignored.
     pub fn observe(&mut self, look: Look, calendar: &Calendar) {
+        if !self.counts(look) {
+            return;
+        }
         let Look { time_s, is_blocked } = look;
-        let civil_s = calendar.civil_s(time_s);
+        let civil = calendar.civil(time_s);
+        self.schedule.advance(civil);
         let mut guard = std::mem::take(&mut self.guard);
-        guard.test(time_s, is_blocked, |forecast| self.models(forecast, time_s, civil_s));
+        guard.test(time_s, is_blocked, |forecast| self.models(forecast, time_s, civil));
         self.guard = guard;
-        self.schedule.add(civil_s, is_blocked);
-        let residual = f64::from(u8::from(is_blocked)) - self.schedule.probability(civil_s);
-        self.memory.learn(time_s, residual);
-        self.track(look, calendar);
+        self.schedule.add(civil, is_blocked);
+        self.memory.learn(time_s, self.residual(look, civil));
+        self.update(look, civil);
         self.guard.keep(self.forecast(look));
     }
 
-    /// Updates the state with a look from which nothing is learned.
+    /// Updates the belief with a look, and learns nothing from it: to compare what was learned before with what came after.
     pub fn track(&mut self, look: Look, calendar: &Calendar) {
-        let residual =
-            f64::from(u8::from(look.is_blocked)) - self.schedule.probability(calendar.civil_s(look.time_s));
-        self.memory.filter(look.time_s, residual);
+        if self.counts(look) {
+            let civil = calendar.civil(look.time_s);
+            self.schedule.advance(civil);
+            self.update(look, civil);
+        }
+    }
+
+    /// The probability that the thing is blocked at a time, s, not before the last look. Without any look ½.
+    pub fn probability(&self, time_s: f64, calendar: &Calendar) -> f64 {
+        let Some(last) = self.last else { return 0.5 };
+        let from = Forecast { time_s: self.last_s, ..self.forecast(last) };
+        let time_s = time_s.max(self.last_s);
+        let models = self.models(&from, time_s, calendar.civil(time_s));
+        let weights = self.guard.weights(time_s - self.last_s);
+        bounded(weights.iter().zip(models).map(|(weight, model)| weight * model).sum())
+    }
+
+    /// Whether a look is news. The time of one that is not counts nevertheless.
+    fn counts(&mut self, look: Look) -> bool {
+        let Some(last) = self.last else {
+            self.last_s = look.time_s;
+            return look.time_s.is_finite();
+        };
+        if !look.time_s.is_finite() || look.time_s < self.last_s {
+            return false;
+        }
+        self.last_s = look.time_s;
+        look.is_blocked != last.is_blocked || look.time_s - last.time_s >= MIN_SPACING_S
+    }
+
+    fn residual(&self, look: Look, civil: Civil) -> f64 {
+        f64::from(u8::from(look.is_blocked)) - self.schedule.probability(civil)
+    }
+
+    fn update(&mut self, look: Look, civil: Civil) {
+        self.memory.filter(look.time_s, self.residual(look, civil));
         self.stays.add(look);
         self.last = Some(look);
     }
 
-    /// The probability that the thing is blocked at a time that is not before the last look.
-    pub fn probability(&self, time_s: f64, calendar: &Calendar) -> f64 {
-        let Some(last) = self.last else { return 0.5 };
-        let models = self.models(&self.forecast(last), time_s, calendar.civil_s(time_s));
-        let weights = self.guard.weights(time_s - last.time_s);
-        weights.iter().zip(models).map(|(weight, model)| weight * model).sum::<f64>()
-            .clamp(MIN_PROBABILITY, 1.0 - MIN_PROBABILITY)
-    }
-
     fn forecast(&self, Look { time_s, is_blocked }: Look) -> Forecast {
-        Forecast { time_s, since_s: self.stays.begin_s(), is_blocked, parts: *self.memory.parts() }
+        let values = self.memory.values().map(|value| value as f32);
+        Forecast { time_s, since_s: self.stays.since_s(), is_blocked, values }
     }
 
-    /// The probabilities by the models of the guard.
-    fn models(&self, from: &Forecast, time_s: f64, civil_s: Option<f64>) -> [f64; MODELS] {
+    /// The probabilities by the models of the guard: clock, chain, last look.
+    fn models(&self, from: &Forecast, time_s: f64, civil: Civil) -> [f64; MODELS] {
         let ahead_s = time_s - from.time_s;
-        let last = f64::from(u8::from(from.is_blocked));
-        let mut clock = self.schedule.probability(civil_s) + memory::predicted(&from.parts, ahead_s);
-        if let Some(unchanged) = self.stays.unchanged([from.time_s, time_s].map(|time_s| time_s - from.since_s)) {
-            clock = if from.is_blocked { clock.max(unchanged) } else { clock.min(1.0 - unchanged) };
+        let memory =
+            from.values.iter().zip(fading(ahead_s)).map(|(value, fading)| f64::from(*value) * fading);
+        let mut clock = self.schedule.probability(civil) + memory.sum::<f64>();
+        let ages_s = [from.time_s, time_s].map(|time_s| time_s - from.since_s);
+        if let Some(survival) = self.stays.survival(ages_s) {
+            clock = if from.is_blocked { clock.max(survival) } else { clock.min(1.0 - survival) };
         }
-        let mean = self.schedule.mean();
-        let chain = mean + (last - mean) * libm::exp(-ahead_s * self.memory.chain_rate);
-        [clock, chain, last].map(|model| model.clamp(MIN_PROBABILITY, 1.0 - MIN_PROBABILITY))
+        let (mean, last) = (self.schedule.mean(), f64::from(u8::from(from.is_blocked)));
+        let chain = mean + (last - mean) * self.memory.chain_memory(ahead_s);
+        [clock, chain, last].map(bounded)
     }
+}
+
+fn bounded(probability: f64) -> f64 {
+    probability.clamp(MIN_PROBABILITY, 1.0 - MIN_PROBABILITY)
 }

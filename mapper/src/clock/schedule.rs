@@ -1,186 +1,276 @@
-use super::calendar::{DAY_S, WEEK_S};
+use super::calendar::{Civil, DAY_S};
 use super::simplex;
 
 /// Slots of half an hour.
 const SLOTS: usize = 48;
 const DAYS: usize = 7;
+const WEEK_SLOTS: usize = DAYS * SLOTS;
 const SLOT_S: f64 = DAY_S / SLOTS as f64;
 
-/// The kernel over slots with a standard deviation of one hour: people are on time within an hour.
-const DEVIATION_SLOTS: f64 = 2.0;
-const REACH: usize = 6;
+/// Slots are smoothed with a biweight kernel of this half width, slots: a standard deviation of 75 minutes, about as
+/// punctual as people are.
+const HALF_WIDTH: f64 = 6.6;
+const REACH: usize = HALF_WIDTH as usize;
+const KERNEL: [f64; 2 * REACH + 1] = kernel();
 
-/// The weight of the mean against slots of the day, and of the day against slots of the week, in days.
-const MEAN_DAYS: f64 = 2.0;
+/// The weight of the mean against the slots of the day, and of the day against the slots of the week, in days.
+const MEAN_DAYS: f64 = 1.0;
 const DAY_DAYS: f64 = 3.0;
 
-/// The shares of mean, day and week before anything is known, and the number of days that this counts.
+/// The shares of mean, day and week before any day, and the weight of these, in days with a variance of 0.1.
 const PRIOR: [f64; 3] = [0.2, 0.3, 0.5];
-const PRIOR_DAYS: f64 = 0.4;
-/// A day counts k / (k + this) for the shares, where k days are known before.
+const PRIOR_WEIGHT: f64 = 0.04;
+/// Day number k counts k / (k + this) for the shares: the profiles of the first days are still poor.
 const LEARNED_DAYS: f64 = 5.0;
+/// With this many slots seen, a day counts in full.
+const FULL_DAY: f64 = 12.0;
 
-/// The share of the looks in one slot that found the thing blocked, and their weight.
+/// The weights of neighboring slots.
+const fn kernel() -> [f64; 2 * REACH + 1] {
+    let mut kernel = [0.0; 2 * REACH + 1];
+    let mut at = 0;
+    while at < kernel.len() {
+        let apart = (at as f64 - REACH as f64) / HALF_WIDTH;
+        kernel[at] = (1.0 - apart * apart) * (1.0 - apart * apart);
+        at += 1;
+    }
+    kernel
+}
+
+/// The days on which a slot of the week was seen, in four bytes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Deserialize, serde::Serialize)]
 struct Slot {
-    blocked: f32,
-    weight: f32,
+    /// The sum over these days of the share of the looks that found the thing blocked, in units of 1/`UNIT`.
+    blocked: u16,
+    days: u16,
 }
 
 impl Slot {
-    fn mean(self) -> Option<f64> {
-        (self.weight > 0.0).then(|| f64::from(self.blocked) / f64::from(self.weight))
+    const UNIT: f64 = 256.0;
+    const MAX_DAYS: u16 = 255;
+
+    fn add(&mut self, mean: f64) {
+        if self.days == Self::MAX_DAYS {
+            // Five years: the older half counts half.
+            *self = Self { blocked: self.blocked / 2, days: self.days / 2 };
+        }
+        self.blocked += libm::round(mean * Self::UNIT) as u16;
+        self.days += 1;
+    }
+
+    /// Days blocked, and all days.
+    fn days(self) -> [f64; 2] {
+        [f64::from(self.blocked) / Self::UNIT, f64::from(self.days)]
     }
 }
 
-/// How probable it is that a thing is blocked at an hour of the day and of the week: a mixture of the mean over all looks,
-/// of a profile of the day and of a profile of the week, which learns whether days and weeks repeat.
+/// The days on which a slot and its neighbors were seen.
+#[derive(Default)]
+struct Smoothed {
+    blocked: f64,
+    weights: f64,
+    /// The days of the slot that was seen most, the less the farther it is. Neighboring slots of one day say nearly the
+    /// same: together they count one day, however many of them were seen.
+    days: f64,
+}
+
+impl Smoothed {
+    fn add(&mut self, weight: f64, [blocked, days]: [f64; 2]) {
+        self.blocked += weight * blocked;
+        self.weights += weight * days;
+        self.days = self.days.max(weight * days);
+    }
+
+    /// The smoothed mean, shrunk by the weight of `prior_days` towards a prior: a constant, and a factor of the prior.
+    fn shrunk(&self, prior_days: f64) -> (f64, f64) {
+        let share = self.days / (self.days + prior_days);
+        (if self.weights > 0.0 { share * self.blocked / self.weights } else { 0.0 }, 1.0 - share)
+    }
+}
+
+/// The looks in one slot of the present day.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Deserialize, serde::Serialize)]
+struct Looks {
+    blocked: u32,
+    all: u32,
+}
+
+impl Looks {
+    fn mean(self) -> Option<f64> {
+        (self.all > 0).then(|| f64::from(self.blocked) / f64::from(self.all))
+    }
+}
+
+/// Slots that were seen: the sum of their means, and their number.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Deserialize, serde::Serialize)]
+struct Total {
+    blocked: f64,
+    slots: f64,
+}
+
+/// The probability that a thing is blocked by the hour of the day and of the week: a mixture of the mean, of a profile of
+/// the day, and of a profile of the week. Learns from each day how well these predicted it, before it adds the day.
 #[derive(Clone, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
 pub(super) struct Schedule {
-    /// For each weekday and slot, the days at which the slot was seen. Without the present day.
+    /// The slots of the week, from Monday 0:00 on, without the present day.
     week: Vec<Slot>,
-    /// The looks of the present day.
-    today: Vec<Slot>,
+    /// The slots of the present day.
+    today: Vec<Looks>,
     /// The number of the present day.
     day: i64,
-    /// All looks, for the mean: each slot of each day counts once.
-    total: Slot,
+    /// All slots of all days, for the mean: without, and of, the present day.
+    past: Total,
+    present: Total,
+    /// The number of days before the present day.
     days: f64,
     gram: [[f64; 3]; 3],
     right: [f64; 3],
     shares: [f64; 3],
+    /// The last slot for which looks were compared with the profiles, and its [`Profile`].
+    latest: Option<(i64, usize, Profile)>,
 }
+
+/// The profiles of day and week in one slot, each as a factor of the mean and a constant.
+type Profile = [[f64; 2]; 2];
 
 impl Default for Schedule {
     fn default() -> Self {
         Self {
             week: vec![Slot::default(); WEEK_SLOTS],
-            today: vec![Slot::default(); SLOTS],
+            today: vec![Looks::default(); SLOTS],
             day: i64::MIN,
-            total: Slot::default(),
+            past: Total::default(),
+            present: Total::default(),
             days: 0.0,
             gram: [[0.0; 3]; 3],
             right: [0.0; 3],
             shares: PRIOR,
+            latest: None,
         }
     }
 }
 
-fn day_and_slot(civil_s: f64) -> (i64, usize) {
-    let day = (civil_s / DAY_S).floor();
-    (day as i64, (((civil_s - day * DAY_S) / SLOT_S) as usize).min(SLOTS - 1))
+/// The number of a day, and the slot of the day.
+fn day_and_slot(civil: Civil) -> (i64, usize) {
+    let day = (civil.time_s / DAY_S).floor();
+    (day as i64, (((civil.time_s - day * DAY_S) / SLOT_S) as usize).min(SLOTS - 1))
+}
+
+fn weekday(day: i64) -> usize {
+    day.rem_euclid(DAYS as i64) as usize
 }
 
 impl Schedule {
-    /// Adds a look. Looks of a day count from its end on.
-    pub(super) fn add(&mut self, civil_s: Option<f64>, is_blocked: bool) {
-        let (day, slot) = civil_s.map_or((0, 0), day_and_slot);
+    #[cfg(test)]
+    pub(super) fn heap_bytes(&self) -> usize {
+        size_of_val(&*self.week) + size_of_val(&*self.today)
+    }
+
+    /// Goes on to the day of a time. The looks of a day count for its hours as soon as the day has ended.
+    pub(super) fn advance(&mut self, civil: Civil) {
+        let (day, slot) = day_and_slot(civil);
         if day != self.day {
             self.end_day();
             self.day = day;
         }
-        let slot = &mut self.today[slot];
-        slot.blocked += f32::from(u8::from(is_blocked));
-        slot.weight += 1.0;
+        if self.latest.is_none_or(|(of_day, of_slot, _)| (of_day, of_slot) != (day, slot)) {
+            self.latest = Some((day, slot, self.profile(weekday(day), slot)));
+        }
     }
 
-    /// The share of the time that the thing is blocked.
+    /// Adds a look in the present day.
+    pub(super) fn add(&mut self, civil: Civil, is_blocked: bool) {
+        let looks = &mut self.today[day_and_slot(civil).1];
+        let before = looks.mean();
+        looks.blocked += u32::from(is_blocked);
+        looks.all += 1;
+        self.present.blocked += looks.mean().unwrap_or(0.0) - before.unwrap_or(0.0);
+        self.present.slots += f64::from(u8::from(before.is_none()));
+    }
+
+    /// The share of the time that the thing is blocked, with one slot of a half before all looks.
     pub(super) fn mean(&self) -> f64 {
-        let (mut blocked, mut weight) = (f64::from(self.total.blocked) + 0.5, f64::from(self.total.weight) + 1.0);
-        for mean in self.today.iter().filter_map(|slot| slot.mean()) {
-            blocked += mean;
-            weight += 1.0;
-        }
-        blocked / weight
+        let Total { blocked, slots } = self.past;
+        (blocked + self.present.blocked + 0.5) / (slots + self.present.slots + 1.0)
     }
 
-    /// The probability that the thing is blocked at a local civil time; without a time, the mean.
-    pub(super) fn probability(&self, civil_s: Option<f64>) -> f64 {
+    /// The probability that the thing is blocked at a local civil time; without hours, the mean.
+    pub(super) fn probability(&self, civil: Civil) -> f64 {
         let mean = self.mean();
-        let Some(civil_s) = civil_s.filter(|_| self.days > 0.0) else { return mean };
-        let (day, slot) = day_and_slot(civil_s);
-        let parts = self.parts(mean, day.rem_euclid(DAYS as i64) as usize, slot);
-        self.shares.iter().zip(parts).map(|(share, part)| share * part).sum()
-    }
-
-    /// The predictions by the mean, by the day and by the week.
-    fn parts(&self, mean: f64, weekday: usize, slot: usize) -> [f64; 3] {
-        let (mut day, mut week) = ([0.0; 2], [0.0; 2]);
-        for offset in 0..=2 * REACH {
-            let weight = kernel(offset);
-            let at = weekday * SLOTS + slot + WEEK_SLOTS + offset - REACH;
-            let (weekday, slot) = (at / SLOTS % DAYS, at % SLOTS);
-            for (other, slots) in self.week.chunks(SLOTS).enumerate() {
-                let Slot { blocked, weight: days } = slots[slot];
-                let looked = [f64::from(blocked) * weight, f64::from(days) * weight];
-                for (sum, looked) in day.iter_mut().zip(looked) {
-                    *sum += looked;
-                }
-                if other == weekday {
-                    for (sum, looked) in week.iter_mut().zip(looked) {
-                        *sum += looked;
-                    }
-                }
-            }
+        if self.days == 0.0 || !civil.has_hours {
+            return mean;
         }
-        let day = (day[0] + MEAN_DAYS * mean) / (day[1] + MEAN_DAYS);
-        let week = (week[0] + DAY_DAYS * day) / (week[1] + DAY_DAYS);
-        [mean, day, week]
+        let (day, slot) = day_and_slot(civil);
+        let profile = match self.latest {
+            Some((of_day, of_slot, profile)) if (of_day, of_slot) == (day, slot) => profile,
+            _ => self.profile(weekday(day), slot),
+        };
+        self.shares.iter().zip(parts(mean, profile)).map(|(share, part)| share * part).sum()
     }
 
-    /// Learns how well the parts predicted the day that ends, and adds the day.
+    /// The profiles at a slot. With few days, the week is that of the day, and the day is the mean.
+    fn profile(&self, weekday: usize, slot: usize) -> Profile {
+        let (mut day, mut week) = (Smoothed::default(), Smoothed::default());
+        for (offset, weight) in KERNEL.iter().enumerate() {
+            let at = weekday * SLOTS + slot + WEEK_SLOTS + offset - REACH;
+            let of_day = |day: usize| self.week[(at + day * SLOTS) % WEEK_SLOTS].days();
+            week.add(*weight, of_day(0));
+            let all = (0..DAYS).map(of_day);
+            day.add(*weight, all.fold([0.0; 2], |sum, seen| [sum[0] + seen[0], sum[1] + seen[1]]));
+        }
+        let [(day, of_mean), (week, of_day)] = [day.shrunk(MEAN_DAYS), week.shrunk(DAY_DAYS)];
+        [[of_mean, day], [of_day * of_mean, of_day * day + week]]
+    }
+
+    /// Compares the predictions for the present day with what was seen, then adds the day.
     fn end_day(&mut self) {
-        let weekday = self.day.rem_euclid(DAYS as i64) as usize;
-        let means: Vec<(usize, f64)> =
+        let weekday = weekday(self.day);
+        let seen: Vec<(usize, f64)> =
             self.today.iter().enumerate().filter_map(|(slot, looks)| Some((slot, looks.mean()?))).collect();
-        if means.is_empty() {
+        if seen.is_empty() {
             return;
         }
-        let before = self.total.mean().unwrap_or(0.5);
         if self.days > 0.0 {
-            let weight = self.days / (self.days + LEARNED_DAYS) / SLOTS as f64;
-            for &(slot, found) in &means {
-                let parts = self.parts(before, weekday, slot);
-                for (row, part) in parts.iter().enumerate() {
-                    self.right[row] += weight * part * found;
-                    for (column, other) in parts.iter().enumerate() {
-                        self.gram[row][column] += weight * part * other;
-                    }
-                }
+            let mean = self.past.blocked / self.past.slots;
+            // Slots within two hours say nearly the same.
+            let share = (seen.len() as f64 / FULL_DAY).min(1.0) / seen.len() as f64;
+            let weight = share * self.days / (self.days + LEARNED_DAYS);
+            for &(slot, found) in &seen {
+                self.learn(parts(mean, self.profile(weekday, slot)), found, weight);
             }
             self.fit();
         }
-        for (slot, found) in means {
-            for into in [&mut self.week[weekday * SLOTS + slot], &mut self.total] {
-                into.blocked += found as f32;
-                into.weight += 1.0;
-            }
-            self.today[slot] = Slot::default();
+        for (slot, mean) in seen {
+            self.week[weekday * SLOTS + slot].add(mean);
         }
+        self.past.blocked += self.present.blocked;
+        self.past.slots += self.present.slots;
+        self.present = Total::default();
+        self.today.fill(Looks::default());
         self.days += 1.0;
+        self.latest = None;
     }
 
-    /// The shares of the parts by least squares.
+    fn learn(&mut self, parts: [f64; 3], found: f64, weight: f64) {
+        for row in 0..3 {
+            self.right[row] += weight * parts[row] * found;
+            for column in 0..3 {
+                self.gram[row][column] += weight * parts[row] * parts[column];
+            }
+        }
+    }
+
     fn fit(&mut self) {
         let (mut gram, mut right) = (self.gram, self.right);
         for part in 0..3 {
-            gram[part][part] += PRIOR_DAYS * RIDGE;
-            right[part] += PRIOR_DAYS * RIDGE * PRIOR[part];
+            gram[part][part] += PRIOR_WEIGHT;
+            right[part] += PRIOR_WEIGHT * PRIOR[part];
         }
         simplex::minimize(&gram, &right, &mut self.shares);
     }
 }
 
-/// The squared error that a day of the prior costs for shares that are wrong by 1.
-const RIDGE: f64 = 0.1;
-const WEEK_SLOTS: usize = DAYS * SLOTS;
-const _: () = assert!(WEEK_S == WEEK_SLOTS as f64 * SLOT_S);
-
-/// The weight of a slot at an offset from −`REACH`.
-fn kernel(offset: usize) -> f64 {
-    let apart = (offset as f64 - REACH as f64) / DEVIATION_SLOTS;
-    KERNEL_SCALE * libm::exp(-0.5 * apart * apart)
+/// The predictions by the mean, by the day and by the week.
+fn parts(mean: f64, [day, week]: Profile) -> [f64; 3] {
+    [mean, day[0] * mean + day[1], week[0] * mean + week[1]]
 }
-
-/// With this factor the weights have the sum 1: a slot seen at N days, with its neighbors, counts N days.
-const KERNEL_SCALE: f64 = 0.2;

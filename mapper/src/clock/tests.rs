@@ -1,0 +1,184 @@
+//! The clock against things whose law is known.
+
+use super::*;
+use proptest::prelude::*;
+use rand::RngExt;
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+
+const MINUTE_S: f64 = 60.0;
+/// Monday, 2024-01-01, 0:00 UTC.
+const MONDAY_S: f64 = 1_704_067_200.0;
+
+/// A two-state Markov chain in steps of a minute: the probabilities per step of becoming blocked and free.
+struct Chain {
+    leave: [f64; 2],
+    is_blocked: bool,
+    rng: ChaCha8Rng,
+}
+
+impl Chain {
+    fn new(leave: [f64; 2], seed: u64) -> Self {
+        Self { leave, is_blocked: false, rng: ChaCha8Rng::seed_from_u64(seed) }
+    }
+
+    fn step(&mut self) -> bool {
+        let leave = self.leave[usize::from(self.is_blocked)];
+        self.is_blocked ^= self.rng.random_bool(leave);
+        self.is_blocked
+    }
+
+    fn probability(&self, steps: i32) -> f64 {
+        let sum = self.leave[0] + self.leave[1];
+        let share = self.leave[0] / sum;
+        share + (f64::from(u8::from(self.is_blocked)) - share) * (1.0 - sum).powi(steps)
+    }
+}
+
+/// The root mean square difference between the clock and the true probability, over the last tenth of `days`.
+fn error_of_chain(calendar: &Calendar, days: u32, ahead: i32, look_every: u32) -> f64 {
+    let (mut clock, mut chain) = (Clock::default(), Chain::new([0.005, 0.015], 3));
+    let (mut sum, mut n, mut known) = (0.0, 0.0, 0);
+    let steps = days * 1440;
+    for step in 0..steps {
+        let is_blocked = chain.step();
+        let time_s = MONDAY_S + MINUTE_S * f64::from(step);
+        known += 1;
+        if step % look_every == 0 {
+            clock.observe(Look { time_s, is_blocked }, calendar);
+            known = 0;
+            if step > steps / 10 * 9 {
+                let truth = chain.probability(ahead);
+                let found = clock.probability(time_s + MINUTE_S * f64::from(ahead), calendar);
+                sum += (found - truth) * (found - truth);
+                n += 1.0;
+            }
+        }
+    }
+    assert!(known < look_every);
+    libm::sqrt(sum / n)
+}
+
+#[test]
+fn a_markov_chain_is_predicted_as_one() {
+    for calendar in [Calendar::Relative, Calendar::UTC] {
+        // The limits are the errors that were measured, and a half more; far ahead the mean of 40 days is uncertain.
+        for (ahead, look_every, limit) in
+            [(1, 1, 0.008), (30, 1, 0.04), (600, 1, 0.06), (30, 20, 0.04), (600, 20, 0.06)]
+        {
+            let error = error_of_chain(&calendar, 40, ahead, look_every);
+            assert!(error < limit, "{calendar:?}, {ahead} min ahead, a look every {look_every} min: {error}");
+        }
+    }
+}
+
+/// A door that is open from 9 to 17 on working days, in a zone.
+fn is_open(civil_s: f64) -> bool {
+    let (day, hour) = ((civil_s / DAY_S).floor() as i64, civil_s.rem_euclid(DAY_S) / 3600.0);
+    day.rem_euclid(7) < 5 && (9.0..17.0).contains(&hour)
+}
+
+#[test]
+fn opening_hours_are_learned_and_move_with_summer_time() {
+    let berlin = Calendar::of_zone("Europe/Berlin").unwrap();
+    let mut clock = Clock::default();
+    // Six weeks until Friday, 2024-03-29; a look every two hours.
+    let start_s = MONDAY_S + 45.0 * DAY_S;
+    for look in 0..43 * 12 {
+        let time_s = start_s + 7200.0 * f64::from(look);
+        clock.observe(Look { time_s, is_blocked: is_open(berlin.civil(time_s).time_s) }, &berlin);
+    }
+    // Tuesday after the change to summer time on Sunday, 2024-03-31: 12:30 and 20:00 in Berlin are 10:30 and 18:00 UTC.
+    let tuesday_s = MONDAY_S + 92.0 * DAY_S;
+    let at = |day: f64, utc_h: f64| clock.probability(tuesday_s + day * DAY_S + 3600.0 * utc_h, &berlin);
+    assert!(at(0.0, 10.5) > 0.85, "noon: {}", at(0.0, 10.5));
+    assert!(at(0.0, 18.0) < 0.15, "evening: {}", at(0.0, 18.0));
+    assert!(at(4.0, 10.5) < 0.2, "Saturday noon: {}", at(4.0, 10.5));
+    // 7:30 UTC is 9:30 in summer.
+    let [early, late] = [at(0.0, 6.5), at(0.0, 7.5)];
+    assert!(early < late, "{early} before opening, {late} after");
+    assert!(
+        Calendar::of_zone("Mars/Olympus")
+            .unwrap_err()
+            .to_string()
+            .starts_with("no time zone is called `Mars/Olympus`")
+    );
+}
+
+#[test]
+fn without_a_calendar_there_is_no_schedule() {
+    let mut clock = Clock::default();
+    for hour in 0..24 * 30 {
+        let time_s = MONDAY_S + 3600.0 * f64::from(hour);
+        clock.observe(Look { time_s, is_blocked: is_open(time_s - MONDAY_S) }, &Calendar::Relative);
+    }
+    let ahead = |hours: f64| {
+        clock.probability(MONDAY_S + DAY_S * 30.0 + 3600.0 * (12.0 + hours), &Calendar::Relative)
+    };
+    // Two and four weeks later the mean is left.
+    for days in [14.0, 28.0] {
+        assert!((ahead(24.0 * days) - ahead(24.0 * days + 12.0)).abs() < 0.02);
+    }
+}
+
+#[test]
+fn a_stuck_sensor_is_expected_to_stay_stuck() {
+    let (mut clock, mut chain) = (Clock::default(), Chain::new([0.02, 0.02], 5));
+    for step in 0..30 * 1440 {
+        let is_blocked = if step < 20 * 1440 { chain.step() } else { true };
+        clock.observe(Look { time_s: MONDAY_S + MINUTE_S * f64::from(step), is_blocked }, &Calendar::UTC);
+    }
+    let ahead = clock.probability(MONDAY_S + 31.0 * DAY_S, &Calendar::UTC);
+    assert!(ahead > 0.85, "after ten days in one state: {ahead}");
+}
+
+#[test]
+fn a_clock_takes_at_most_5_kb() {
+    let mut clock = Clock::default();
+    let mut chain = Chain::new([0.01, 0.02], 7);
+    for step in 0..20 * 1440 {
+        clock.observe(Look { time_s: MINUTE_S * f64::from(step), is_blocked: chain.step() }, &Calendar::UTC);
+    }
+    let bytes = size_of::<Clock>() + clock.schedule.heap_bytes() + clock.memory.heap_bytes();
+    assert!(bytes <= 5000, "{bytes} bytes");
+}
+
+proptest! {
+    /// Whatever the looks: predictions are probabilities, and a clock that was saved goes on bit for bit.
+    #[test]
+    fn any_looks_give_probabilities(
+        looks in prop::collection::vec((prop_oneof![-1e3..1e7f64, Just(f64::NAN), Just(f64::INFINITY), Just(1e300)], any::<bool>()), 1..200),
+        ahead_s in prop_oneof![0.0..1e7f64, Just(1e30), Just(f64::NAN)],
+        sorted in any::<bool>(),
+    ) {
+        let mut looks = looks;
+        if sorted {
+            looks.sort_by(|a, b| a.0.total_cmp(&b.0));
+        }
+        let mut clock = Clock::default();
+        for (time_s, is_blocked) in looks {
+            clock.observe(Look { time_s, is_blocked }, &Calendar::UTC);
+            for calendar in [Calendar::UTC, Calendar::Relative] {
+                let found = clock.probability(time_s + ahead_s, &calendar);
+                prop_assert!((0.001..=0.999).contains(&found), "{found}");
+            }
+        }
+    }
+
+    /// The statistics of both states are alike: a thing whose states are exchanged has the complementary prediction.
+    #[test]
+    fn states_are_symmetric(stays_s in prop::collection::vec(10.0..100_000.0f64, 1..60), ahead_s in 0.0..1e6f64) {
+        let found = [false, true].map(|inverted| {
+            let (mut clock, mut time_s) = (Clock::default(), MONDAY_S);
+            for (stay, stay_s) in stays_s.iter().enumerate() {
+                for part in 0..3 {
+                    let look = Look { time_s: time_s + 0.3 * f64::from(part) * stay_s, is_blocked: (stay % 2 == 0) ^ inverted };
+                    clock.observe(look, &Calendar::UTC);
+                }
+                time_s += stay_s;
+            }
+            clock.probability(time_s + ahead_s, &Calendar::UTC)
+        });
+        prop_assert!((found[0] + found[1] - 1.0).abs() < 0.02, "{found:?}");
+    }
+}
