@@ -2,9 +2,10 @@ use super::correlations::Correlations;
 
 /// The number of parts.
 pub(super) const PARTS: usize = 9;
-/// The time constant of the fastest part, s; each further part is slower by `RATIO`: one minute to 45 days.
+/// The time constants of the fastest and of the slowest part, s: one minute and 45 days. Each part is four times as slow as
+/// the one before.
 pub(super) const FASTEST_S: f64 = 60.0;
-const RATIO: f64 = 4.0;
+const SLOWEST_S: f64 = FASTEST_S * 65_536.0;
 
 /// The variance of the error of a look, as a share of the variance of the thing.
 const NOISE: f64 = 1e-4;
@@ -56,14 +57,14 @@ impl Default for Memory {
     }
 }
 
-/// The factors by which the parts fade in a time.
+/// The factors by which the parts fade in a time: each is the fourth power of that of the next part.
 pub(super) fn fading(elapsed_s: f64) -> Parts {
-    let mut constant_s = FASTEST_S;
-    std::array::from_fn(|_| {
-        let fading = libm::exp(-elapsed_s / constant_s);
-        constant_s *= RATIO;
-        fading
-    })
+    let mut fading = [libm::exp(-elapsed_s / SLOWEST_S); PARTS];
+    for part in (0..PARTS - 1).rev() {
+        let square = fading[part + 1] * fading[part + 1];
+        fading[part] = square * square;
+    }
+    fading
 }
 
 impl Memory {
@@ -95,12 +96,13 @@ impl Memory {
             self.covariance[row][row] += self.shares[row] * (1.0 - fading[row] * fading[row]);
             gain[row] = self.covariance[row].iter().sum();
         }
-        let variance = gain.iter().sum::<f64>() + NOISE;
+        let precision = 1.0 / (gain.iter().sum::<f64>() + NOISE);
         let innovation = residual - self.values.iter().sum::<f64>();
         for row in 0..PARTS {
-            self.values[row] += gain[row] * innovation / variance;
+            let scaled = precision * gain[row];
+            self.values[row] += scaled * innovation;
             for column in 0..PARTS {
-                self.covariance[row][column] -= gain[row] * gain[column] / variance;
+                self.covariance[row][column] -= scaled * gain[column];
             }
         }
     }
@@ -112,6 +114,24 @@ impl Memory {
             self.due = GROWTH * self.correlations.pairs();
             self.correlations.fit(&mut self.shares);
             self.chain_rate = self.correlations.chain_rate();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parts_fade_with_their_time_constants() {
+        for elapsed_s in [0.0, 0.1, 60.0, 3600.0, 1e6, f64::INFINITY] {
+            for (part, found) in fading(elapsed_s).into_iter().enumerate() {
+                let expected = (-elapsed_s / (FASTEST_S * 4f64.powi(part as i32))).exp();
+                assert!(
+                    (found - expected).abs() < 1e-10,
+                    "part {part}, {elapsed_s} s: {found}, not {expected}"
+                );
+            }
         }
     }
 }
