@@ -38,12 +38,11 @@ const MIN_SPACING_S: f64 = 5.0;
 /// Predicts the state of one thing from looks at it.
 #[derive(Clone, Debug, Default, PartialEq, serde::Deserialize, serde::Serialize)]
 pub struct Clock {
-    schedule: Schedule,
-    memory: Memory,
-    stays: LongStays,
+    models: Models,
     guard: Guard,
-    /// The last look that counted, and the time of the last one.
+    /// The last look that counted.
     last: Option<Look>,
+    /// The time of the last look, whether it counted or not, s.
     last_s: f64,
 }
 
@@ -56,56 +55,69 @@ impl Clock {
         }
         let Look { time_s, is_blocked } = look;
         let civil = calendar.civil(time_s);
-        self.schedule.advance(civil);
-        let mut guard = std::mem::take(&mut self.guard);
-        guard.test(time_s, is_blocked, |forecast| self.models(forecast, time_s, civil));
-        self.guard = guard;
-        self.schedule.add(civil, is_blocked);
-        self.memory.learn(time_s, self.residual(look, civil));
-        self.update(look, civil);
-        self.guard.keep(self.forecast(look));
+        self.models.schedule.advance(civil);
+        self.guard.test(time_s, is_blocked, |forecast| self.models.predict(forecast, time_s, civil));
+        self.models.learn(look, civil);
+        self.models.update(look, civil);
+        self.guard.keep(self.models.forecast(look));
+        self.last = Some(look);
     }
 
     /// Updates the belief with a look, and learns nothing from it: to compare what was learned before with what came after.
     pub fn track(&mut self, look: Look, calendar: &Calendar) {
         if self.counts(look) {
             let civil = calendar.civil(look.time_s);
-            self.schedule.advance(civil);
-            self.update(look, civil);
+            self.models.schedule.advance(civil);
+            self.models.update(look, civil);
+            self.last = Some(look);
         }
     }
 
-    /// The probability that the thing is blocked at a time, s, not before the last look. Without any look ½.
+    /// The probability that the thing is blocked at a time, s; a time before the last look counts as that of the last look.
+    /// ½ without any look.
     pub fn probability(&self, time_s: f64, calendar: &Calendar) -> f64 {
         let Some(last) = self.last else { return 0.5 };
-        let from = Forecast { time_s: self.last_s, ..self.forecast(last) };
         let time_s = time_s.max(self.last_s);
-        let models = self.models(&from, time_s, calendar.civil(time_s));
+        let from = Forecast { time_s: self.last_s, ..self.models.forecast(last) };
+        let predicted = self.models.predict(&from, time_s, calendar.civil(time_s));
         let weights = self.guard.weights(time_s - self.last_s);
-        bounded(weights.iter().zip(models).map(|(weight, model)| weight * model).sum())
+        bounded(weights.iter().zip(predicted).map(|(weight, predicted)| weight * predicted).sum())
     }
 
     /// Whether a look is news. The time of one that is not counts nevertheless.
     fn counts(&mut self, look: Look) -> bool {
-        let Some(last) = self.last else {
-            self.last_s = look.time_s;
-            return look.time_s.is_finite();
-        };
-        if !look.time_s.is_finite() || look.time_s < self.last_s {
+        if !look.time_s.is_finite() || self.last.is_some() && look.time_s < self.last_s {
             return false;
         }
         self.last_s = look.time_s;
-        look.is_blocked != last.is_blocked || look.time_s - last.time_s >= MIN_SPACING_S
+        self.last.is_none_or(|last| {
+            look.is_blocked != last.is_blocked || look.time_s - last.time_s >= MIN_SPACING_S
+        })
     }
+}
 
-    fn residual(&self, look: Look, civil: Civil) -> f64 {
-        f64::from(u8::from(look.is_blocked)) - self.schedule.probability(civil)
+/// What the guard mixes: the clock itself (schedule, memory and long stays), a Markov chain, and the last look.
+#[derive(Clone, Debug, Default, PartialEq, serde::Deserialize, serde::Serialize)]
+struct Models {
+    schedule: Schedule,
+    memory: Memory,
+    stays: LongStays,
+}
+
+impl Models {
+    fn learn(&mut self, look: Look, civil: Civil) {
+        self.schedule.add(civil, look.is_blocked);
+        self.memory.learn(look.time_s, self.residual(look, civil));
     }
 
     fn update(&mut self, look: Look, civil: Civil) {
         self.memory.filter(look.time_s, self.residual(look, civil));
         self.stays.add(look);
-        self.last = Some(look);
+    }
+
+    /// The difference between a look and the schedule.
+    fn residual(&self, look: Look, civil: Civil) -> f64 {
+        f64::from(u8::from(look.is_blocked)) - self.schedule.probability(civil)
     }
 
     fn forecast(&self, Look { time_s, is_blocked }: Look) -> Forecast {
@@ -113,8 +125,8 @@ impl Clock {
         Forecast { time_s, since_s: self.stays.since_s(), is_blocked, values }
     }
 
-    /// The probabilities by the models of the guard: clock, chain, last look.
-    fn models(&self, from: &Forecast, time_s: f64, civil: Civil) -> [f64; MODELS] {
+    /// The probabilities that the thing is blocked at a time: by the clock, the chain, and the last look.
+    fn predict(&self, from: &Forecast, time_s: f64, civil: Civil) -> [f64; MODELS] {
         let ahead_s = time_s - from.time_s;
         let memory =
             from.values.iter().zip(fading(ahead_s)).map(|(value, fading)| f64::from(*value) * fading);

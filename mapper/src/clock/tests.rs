@@ -139,7 +139,7 @@ fn a_clock_takes_at_most_5_kb() {
     for step in 0..20 * 1440 {
         clock.observe(Look { time_s: MINUTE_S * f64::from(step), is_blocked: chain.step() }, &Calendar::UTC);
     }
-    let bytes = size_of::<Clock>() + clock.schedule.heap_bytes() + clock.memory.heap_bytes();
+    let bytes = size_of::<Clock>() + clock.models.schedule.heap_bytes() + clock.models.memory.heap_bytes();
     assert!(bytes <= 5000, "{bytes} bytes");
 }
 
