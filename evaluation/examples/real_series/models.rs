@@ -6,7 +6,7 @@ use mapper::{Calendar, Clock, DAY_S, EstimatorChoice, Look, Mapper, MapperSettin
 use nalgebra::{Isometry2, Point2};
 
 /// A model of one thing.
-pub trait Model {
+pub(crate) trait Model {
     /// Learns from all looks of the first part of a series.
     fn learn(&mut self, looks: &[Look]);
 
@@ -28,7 +28,7 @@ fn state(look: Look) -> f64 {
 }
 
 /// The model of the mapper, with a schedule over local time.
-pub struct TheClock(pub Clock, pub Calendar);
+pub(crate) struct TheClock(Clock, Calendar);
 
 impl Model for TheClock {
     fn learn(&mut self, looks: &[Look]) {
@@ -47,7 +47,7 @@ impl Model for TheClock {
 }
 
 /// A profile of mean states, towards which the last look fades.
-pub struct Profile {
+pub(crate) struct Profile {
     kind: Kind,
     fades: bool,
     chain: Chain,
@@ -56,7 +56,7 @@ pub struct Profile {
 
 /// What a profile knows.
 #[derive(Clone, Copy, PartialEq)]
-pub enum Kind {
+pub(crate) enum Kind {
     /// One mean.
     Mean,
     /// One mean per hour of the day, or of the week.
@@ -79,7 +79,7 @@ impl Kind {
 }
 
 impl Profile {
-    pub fn new(kind: Kind, fades: bool) -> Self {
+    pub(crate) fn new(kind: Kind, fades: bool) -> Self {
         Self { kind, fades, chain: Chain::new(EstimatorChoice::default(), false), slots: Vec::new() }
     }
 }
@@ -123,7 +123,7 @@ impl Model for Profile {
 
 /// The state of the last look.
 #[derive(Default)]
-pub struct LastSeen(Option<Look>);
+pub(crate) struct LastSeen(Option<Look>);
 
 impl Model for LastSeen {
     fn learn(&mut self, looks: &[Look]) {
@@ -140,7 +140,7 @@ impl Model for LastSeen {
 }
 
 /// The two-state chain with the rates of an estimator of the map.
-pub struct Chain {
+pub(crate) struct Chain {
     estimator: EstimatorChoice,
     is_paced: bool,
     last: Option<Look>,
@@ -149,7 +149,7 @@ pub struct Chain {
 }
 
 impl Chain {
-    pub fn new(estimator: EstimatorChoice, is_paced: bool) -> Self {
+    pub(crate) fn new(estimator: EstimatorChoice, is_paced: bool) -> Self {
         Self { estimator, is_paced, last: None, leave: [0.0; 2], pace: 1.0 }
     }
 
@@ -218,7 +218,7 @@ impl Model for Chain {
 }
 
 /// FreMEn (Krajník et al., 2017): the mean and the `order` strongest harmonics of a week, down to one hour.
-pub struct FreMEn {
+pub(crate) struct FreMEn {
     order: usize,
     mean: f64,
     /// Angular frequency, and the cosine and sine amplitudes.
@@ -226,7 +226,7 @@ pub struct FreMEn {
 }
 
 impl FreMEn {
-    pub fn new(order: usize) -> Self {
+    pub(crate) fn new(order: usize) -> Self {
         Self { order, mean: 0.5, harmonics: Vec::new() }
     }
 }
@@ -266,7 +266,7 @@ impl Model for FreMEn {
 
 /// Persistence filter (Rosen, Mason and Leonard, 2016) with an exponential prior of the survival and perfect looks: a
 /// blocked thing survives with its rate; what was seen to have gone does not come back.
-pub struct Persistence(pub Chain);
+pub(crate) struct Persistence(Chain);
 
 impl Model for Persistence {
     fn learn(&mut self, looks: &[Look]) {
@@ -286,22 +286,22 @@ impl Model for Persistence {
 }
 
 /// A model with its name.
-pub struct Named {
-    pub name: String,
+pub(crate) struct Named {
+    pub(crate) name: String,
     /// Whether it is a simple baseline.
-    pub is_baseline: bool,
-    pub model: Box<dyn Model>,
+    pub(crate) is_baseline: bool,
+    pub(crate) model: Box<dyn Model>,
 }
 
 /// Every model; the first is the clock.
-pub fn all(calendar: &Calendar) -> Vec<Named> {
+pub(crate) fn all(calendar: &Calendar) -> Vec<Named> {
     let named = |name: &str, is_baseline, model| Named { name: name.to_owned(), is_baseline, model };
     let chain = |is_paced| Chain::new(EstimatorChoice::default(), is_paced);
     let profile = |kind, fades| Box::new(Profile::new(kind, fades));
     let mut models = vec![
         named("clock", false, Box::new(TheClock(Clock::default(), calendar.clone()))),
         named("mean", true, profile(Kind::Mean, false)),
-        named("last seen", true, Box::new(LastSeen::default())),
+        named("last seen", true, Box::<LastSeen>::default()),
         named("chain", true, Box::new(chain(false))),
         named("chain with pace", true, Box::new(chain(true))),
         named("daily", true, profile(Kind::Daily, false)),

@@ -5,7 +5,7 @@ use crate::series::{Looks, STEP_S, Series};
 use mapper::Look;
 
 /// The times ahead of a prediction, and the steps of the series.
-pub const HORIZONS: [(&str, usize); 6] =
+pub(crate) const HORIZONS: [(&str, usize); 6] =
     [("1 min", 1), ("10 min", 10), ("30 min", 30), ("60 min", 60), ("24 h", 1440), ("7 d", 10080)];
 
 /// Every model predicts at least this and at most one minus this, so that a log score is finite.
@@ -15,16 +15,16 @@ const MIN_PROBABILITY: f64 = 0.001;
 const PREDICT_EVERY: usize = 5;
 
 /// The number of bins of predictions for the calibration.
-pub const BINS: usize = 10;
+pub(crate) const BINS: usize = 10;
 
 /// The scores of one model at one horizon.
 #[derive(Clone, Copy, Default)]
-pub struct Score {
+pub(crate) struct Score {
     brier: f64,
     log: f64,
-    pub n: usize,
+    pub(crate) n: usize,
     /// For each bin of predictions: their number, their sum, and the number of those that came true.
-    pub bins: [[f64; 3]; BINS],
+    pub(crate) bins: [[f64; 3]; BINS],
 }
 
 impl Score {
@@ -39,7 +39,7 @@ impl Score {
     }
 
     /// Adds the scores of other predictions.
-    pub fn merge(&mut self, other: &Self) {
+    pub(crate) fn merge(&mut self, other: &Self) {
         self.brier += other.brier;
         self.log += other.log;
         self.n += other.n;
@@ -49,25 +49,25 @@ impl Score {
     }
 
     /// The mean squared error of the probability.
-    pub fn brier(&self) -> f64 {
+    pub(crate) fn brier(&self) -> f64 {
         self.brier / self.n as f64
     }
 
     /// The mean of −ln P of what happened.
-    pub fn log_score(&self) -> f64 {
+    pub(crate) fn log_score(&self) -> f64 {
         self.log / self.n as f64
     }
 }
 
 /// The expected calibration error: the mean difference between predictions and how often they came true, over bins.
-pub fn calibration_error(bins: &[[f64; 3]; BINS]) -> f64 {
+pub(crate) fn calibration_error(bins: &[[f64; 3]; BINS]) -> f64 {
     let apart: f64 = bins.iter().map(|[_, predicted, found]| (predicted - found).abs()).sum();
     apart / bins.iter().map(|[n, ..]| n).sum::<f64>()
 }
 
 /// Learns from the looks of the last `history_s` before the split; then, for each step after it, takes the look of this step
 /// (without learning), and predicts all horizons.
-pub fn score(
+pub(crate) fn score(
     series: &Series,
     looks: Looks,
     seed: u64,

@@ -5,25 +5,25 @@ use mapper::{DAY_S, Look};
 use std::path::Path;
 
 /// The step of all series, s.
-pub const STEP_S: f64 = 60.0;
+pub(crate) const STEP_S: f64 = 60.0;
 
 /// No series is longer.
 const MAX_YEARS: f64 = 10.0;
 
 /// The recorded states of one thing.
-pub struct Series {
-    pub name: String,
+pub(crate) struct Series {
+    pub(crate) name: String,
     /// The parameters are learned before this time, predictions are scored after it, s.
-    pub split_s: f64,
+    pub(crate) split_s: f64,
     /// The time of the first step, s.
-    pub start_s: f64,
+    pub(crate) start_s: f64,
     /// For each step whether the thing was blocked; `None` where nothing was recorded.
-    pub states: Vec<Option<bool>>,
+    pub(crate) states: Vec<Option<bool>>,
 }
 
 impl Series {
     /// Reads a file.
-    pub fn read(path: &Path) -> Result<Self, String> {
+    pub(crate) fn read(path: &Path) -> Result<Self, String> {
         let at = |what: &str| format!("{}: {what}", path.display());
         let text = std::fs::read_to_string(path).map_err(|error| at(&error.to_string()))?;
         let changes = changes(&text).map_err(|error| at(&error))?;
@@ -53,17 +53,17 @@ impl Series {
     }
 
     /// The set of a series: its name up to the first `-`.
-    pub fn set(&self) -> &str {
+    pub(crate) fn set(&self) -> &str {
         self.name.split('-').next().unwrap_or(&self.name)
     }
 
     /// The first step after the split.
-    pub fn split(&self) -> usize {
+    pub(crate) fn split(&self) -> usize {
         (((self.split_s - self.start_s) / STEP_S).max(0.0) as usize).min(self.states.len())
     }
 
     /// What a look at a step shows; `None` where nothing was recorded.
-    pub fn look(&self, step: usize) -> Option<Look> {
+    pub(crate) fn look(&self, step: usize) -> Option<Look> {
         let is_blocked = (*self.states.get(step)?)?;
         Some(Look { time_s: self.start_s + step as f64 * STEP_S, is_blocked })
     }
@@ -105,7 +105,7 @@ fn changes(text: &str) -> Result<Vec<(f64, Option<bool>)>, String> {
 
 /// When a robot looks at a thing.
 #[derive(Clone, Copy)]
-pub enum Looks {
+pub(crate) enum Looks {
     /// At every step.
     Full,
     /// At random steps, this share of all.
@@ -114,7 +114,7 @@ pub enum Looks {
     Patrol,
 }
 
-pub const LOOKS: [(&str, Looks); 5] = [
+pub(crate) const LOOKS: [(&str, Looks); 5] = [
     ("full", Looks::Full),
     ("5 %", Looks::Share(0.05)),
     ("2 %", Looks::Share(0.02)),
@@ -124,7 +124,7 @@ pub const LOOKS: [(&str, Looks); 5] = [
 
 impl Looks {
     /// For each step whether the robot looks.
-    pub fn draw(self, steps: usize, seed: u64) -> Vec<bool> {
+    pub(crate) fn draw(self, steps: usize, seed: u64) -> Vec<bool> {
         let mut rng = RandomStream::new(seed, Purpose::Task);
         match self {
             Self::Full => vec![true; steps],

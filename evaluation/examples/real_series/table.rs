@@ -11,7 +11,7 @@ use std::io::{self, Write};
 const EQUAL: f64 = 1.02;
 
 /// The Brier scores of all models by set, looks and horizon, averaged over the things of a set.
-pub struct Table<'a> {
+pub(crate) struct Table<'a> {
     models: &'a [Named],
     rows: BTreeMap<(&'a str, usize, usize), Vec<f64>>,
     /// The clock's predictions, and how often they came true.
@@ -19,7 +19,7 @@ pub struct Table<'a> {
 }
 
 impl<'a> Table<'a> {
-    pub fn new(cases: &[Case<'a>], models: &'a [Named]) -> Self {
+    pub(crate) fn new(cases: &[Case<'a>], models: &'a [Named]) -> Self {
         let mut sums: BTreeMap<_, (Vec<f64>, f64)> = BTreeMap::new();
         let mut calibration = [[0.0; 3]; BINS];
         for case in cases {
@@ -48,7 +48,7 @@ impl<'a> Table<'a> {
     }
 
     /// The geometric mean of a model's Brier score ÷ that of the best baseline.
-    pub fn ratio(&self, model: usize) -> f64 {
+    pub(crate) fn ratio(&self, model: usize) -> f64 {
         let logs = self.rows.values().map(|row| (row[model] / self.best(row).1).ln());
         (logs.sum::<f64>() / self.rows.len() as f64).exp()
     }
@@ -63,7 +63,7 @@ impl<'a> Table<'a> {
         self.models.iter().position(|model| model.name == name).expect("the model is in the list")
     }
 
-    pub fn print(&self, out: &mut impl Write) -> io::Result<()> {
+    pub(crate) fn print(&self, out: &mut impl Write) -> io::Result<()> {
         let [last, chain] = ["last seen", "chain"].map(|name| self.index(name));
         writeln!(out, "Brier score\n")?;
         writeln!(out, "set              looks   ahead    clock   chain   last seen   best baseline")?;

@@ -1,4 +1,4 @@
-use super::memory::{FASTEST_S, PARTS, PRIOR, Parts, fading};
+use super::parts::{FASTEST_S, PARTS, PRIOR, Parts, fading};
 use super::simplex;
 
 /// Octaves of lags, from a minute to 45 days; for each octave this many earlier looks; bins of lags, two per octave.

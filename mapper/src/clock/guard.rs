@@ -1,5 +1,6 @@
 use super::calendar::DAY_S;
-use super::memory::PARTS;
+use super::parts::PARTS;
+use std::ops::RangeInclusive;
 
 /// The models that are mixed: the clock, a Markov chain, and the last look.
 pub(super) const MODELS: usize = 3;
@@ -17,7 +18,7 @@ const HORIZONS_S: [f64; 9] =
 /// After a test, the next forecast waits for this part of the horizon, so that the hours of the day are tested in turn.
 const PAUSE: f64 = 0.13;
 /// A forecast is tested by the first look in this part of its horizon.
-const WINDOW: [f64; 2] = [1.0, 1.5];
+const WINDOW: RangeInclusive<f64> = 1.0..=1.5;
 
 /// What is known at a look, and all that the models predict from.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
@@ -67,10 +68,10 @@ impl Guard {
         for (horizon, horizon_s) in self.horizons.iter_mut().zip(HORIZONS_S) {
             let Some(forecast) = horizon.waiting else { continue };
             let age = (time_s - forecast.time_s) / horizon_s;
-            if age >= WINDOW[0] {
+            if age >= *WINDOW.start() {
                 horizon.waiting = None;
             }
-            if age >= WINDOW[0] && age <= WINDOW[1] {
+            if WINDOW.contains(&age) {
                 let fading = libm::exp(-(time_s - horizon.tested_s) / FADING_S);
                 for (loss, predicted) in horizon.losses.iter_mut().zip(predict(&forecast)) {
                     let error = predicted - found;

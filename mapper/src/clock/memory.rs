@@ -1,26 +1,15 @@
 use super::correlations::Correlations;
-
-/// The number of parts.
-pub(super) const PARTS: usize = 9;
-/// The time constants of the fastest and of the slowest part, s: one minute and 45 days. Each part is four times as slow as
-/// the one before.
-pub(super) const FASTEST_S: f64 = 60.0;
-const SLOWEST_S: f64 = FASTEST_S * 65_536.0;
+use super::parts::{PARTS, PRIOR, Parts, fading};
 
 /// The variance of the error of a look, as a share of the variance of the thing.
 const NOISE: f64 = 1e-4;
 
-/// The shares of the parts before any look: about the same for each time constant.
-pub(super) const PRIOR: Parts = [0.10, 0.10, 0.12, 0.15, 0.12, 0.08, 0.08, 0.10, 0.15];
 /// The rate at which the memory of the chain fades before any look, 1/s.
 const PRIOR_RATE: f64 = 1.0 / 3600.0;
 
 /// Shares are fitted again whenever the number of pairs of looks has grown by this factor.
 const GROWTH: f64 = 1.15;
 const FIRST_PAIRS: f64 = 4.0;
-
-/// A value for each part.
-pub(super) type Parts = [f64; PARTS];
 
 /// The memory of a thing beyond its schedule. The difference between state and schedule is the sum of parts that
 /// fade exponentially (Ornstein–Uhlenbeck processes) with time constants from a minute to weeks. The correlations of
@@ -57,16 +46,6 @@ impl Default for Memory {
     }
 }
 
-/// The factors by which the parts fade in a time: each is the fourth power of that of the next part.
-pub(super) fn fading(elapsed_s: f64) -> Parts {
-    let mut fading = [libm::exp(-elapsed_s / SLOWEST_S); PARTS];
-    for part in (0..PARTS - 1).rev() {
-        let square = fading[part + 1] * fading[part + 1];
-        fading[part] = square * square;
-    }
-    fading
-}
-
 impl Memory {
     #[cfg(test)]
     pub(super) fn heap_bytes(&self) -> usize {
@@ -101,8 +80,8 @@ impl Memory {
         for row in 0..PARTS {
             let scaled = precision * gain[row];
             self.values[row] += scaled * innovation;
-            for column in 0..PARTS {
-                self.covariance[row][column] -= scaled * gain[column];
+            for (covariance, gain) in self.covariance[row].iter_mut().zip(gain) {
+                *covariance -= scaled * gain;
             }
         }
     }
@@ -114,24 +93,6 @@ impl Memory {
             self.due = GROWTH * self.correlations.pairs();
             self.correlations.fit(&mut self.shares);
             self.chain_rate = self.correlations.chain_rate();
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn parts_fade_with_their_time_constants() {
-        for elapsed_s in [0.0, 0.1, 60.0, 3600.0, 1e6, f64::INFINITY] {
-            for (part, found) in fading(elapsed_s).into_iter().enumerate() {
-                let expected = (-elapsed_s / (FASTEST_S * 4f64.powi(part as i32))).exp();
-                assert!(
-                    (found - expected).abs() < 1e-10,
-                    "part {part}, {elapsed_s} s: {found}, not {expected}"
-                );
-            }
         }
     }
 }

@@ -8,6 +8,7 @@ mod correlations;
 mod guard;
 mod long_stays;
 mod memory;
+mod parts;
 mod schedule;
 mod simplex;
 #[cfg(test)]
@@ -17,7 +18,8 @@ use calendar::Civil;
 pub use calendar::{Calendar, DAY_S, UnknownZone};
 use guard::{Forecast, Guard, MODELS};
 use long_stays::LongStays;
-use memory::{Memory, fading};
+use memory::Memory;
+use parts::fading;
 use schedule::Schedule;
 
 /// A look at a thing that has two states.

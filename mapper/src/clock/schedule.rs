@@ -17,8 +17,10 @@ const KERNEL: [f64; 2 * REACH + 1] = kernel();
 const MEAN_DAYS: f64 = 1.0;
 const DAY_DAYS: f64 = 3.0;
 
-/// The shares of mean, day and week before any day, and the weight of these, in days with a variance of 0.1.
-const PRIOR: [f64; 3] = [0.2, 0.3, 0.5];
+/// Mean, day, week, and the slot of the week by itself.
+const PARTS: usize = 4;
+/// Their shares before any day, and the weight of these, in days with a variance of 0.1.
+const PRIOR: [f64; PARTS] = [0.2, 0.3, 0.5, 0.0];
 const PRIOR_WEIGHT: f64 = 0.04;
 /// Day number k counts k / (k + this) for the shares: the profiles of the first days are still poor.
 const LEARNED_DAYS: f64 = 5.0;
@@ -81,18 +83,19 @@ impl Smoothed {
         self.days = self.days.max(weight * days);
     }
 
-    /// The smoothed mean, shrunk by the weight of `prior_days` towards a prior: a constant, and a factor of the prior.
-    fn shrunk(&self, prior_days: f64) -> (f64, f64) {
-        let share = self.days / (self.days + prior_days);
-        (if self.weights > 0.0 { share * self.blocked / self.weights } else { 0.0 }, 1.0 - share)
+    /// The smoothed mean, shrunk toward a prior that counts this many days; both are a factor of the mean and a constant.
+    fn shrunk(&self, prior: [f64; 2], prior_days: f64) -> [f64; 2] {
+        let share = prior_days / (self.days + prior_days);
+        let mean = if self.weights > 0.0 { self.blocked / self.weights } else { 0.0 };
+        [share * prior[0], share * prior[1] + (1.0 - share) * mean]
     }
 }
 
 /// The looks in one slot of the present day.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Deserialize, serde::Serialize)]
 struct Looks {
-    blocked: u32,
-    all: u32,
+    blocked: u16,
+    all: u16,
 }
 
 impl Looks {
@@ -123,15 +126,15 @@ pub(super) struct Schedule {
     present: Total,
     /// The number of days before the present day.
     days: f64,
-    gram: [[f64; 3]; 3],
-    right: [f64; 3],
-    shares: [f64; 3],
+    gram: [[f64; PARTS]; PARTS],
+    right: [f64; PARTS],
+    shares: [f64; PARTS],
     /// The last slot for which looks were compared with the profiles, and its [`Profile`].
     latest: Option<(i64, usize, Profile)>,
 }
 
-/// The profiles of day and week in one slot, each as a factor of the mean and a constant.
-type Profile = [[f64; 2]; 2];
+/// The predictions by day, week and slot in one slot, each as a factor of the mean and a constant.
+type Profile = [[f64; 2]; PARTS - 1];
 
 impl Default for Schedule {
     fn default() -> Self {
@@ -142,8 +145,8 @@ impl Default for Schedule {
             past: Total::default(),
             present: Total::default(),
             days: 0.0,
-            gram: [[0.0; 3]; 3],
-            right: [0.0; 3],
+            gram: [[0.0; PARTS]; PARTS],
+            right: [0.0; PARTS],
             shares: PRIOR,
             latest: None,
         }
@@ -182,8 +185,10 @@ impl Schedule {
     pub(super) fn add(&mut self, civil: Civil, is_blocked: bool) {
         let looks = &mut self.today[day_and_slot(civil).1];
         let before = looks.mean();
-        looks.blocked += u32::from(is_blocked);
-        looks.all += 1;
+        if looks.all < u16::MAX {
+            looks.blocked += u16::from(is_blocked);
+            looks.all += 1;
+        }
         self.present.blocked += looks.mean().unwrap_or(0.0) - before.unwrap_or(0.0);
         self.present.slots += f64::from(u8::from(before.is_none()));
     }
@@ -218,8 +223,11 @@ impl Schedule {
             let all = (0..DAYS).map(of_day);
             day.add(*weight, all.fold([0.0; 2], |sum, seen| [sum[0] + seen[0], sum[1] + seen[1]]));
         }
-        let [(day, of_mean), (week, of_day)] = [day.shrunk(MEAN_DAYS), week.shrunk(DAY_DAYS)];
-        [[of_mean, day], [of_day * of_mean, of_day * day + week]]
+        let mut own = Smoothed::default();
+        own.add(1.0, self.week[weekday * SLOTS + slot].days());
+        let day = day.shrunk([1.0, 0.0], MEAN_DAYS);
+        let week = week.shrunk(day, DAY_DAYS);
+        [day, week, own.shrunk(week, DAY_DAYS)]
     }
 
     /// Compares the predictions for the present day with what was seen, then adds the day.
@@ -251,10 +259,10 @@ impl Schedule {
         self.latest = None;
     }
 
-    fn learn(&mut self, parts: [f64; 3], found: f64, weight: f64) {
-        for row in 0..3 {
+    fn learn(&mut self, parts: [f64; PARTS], found: f64, weight: f64) {
+        for row in 0..PARTS {
             self.right[row] += weight * parts[row] * found;
-            for column in 0..3 {
+            for column in 0..PARTS {
                 self.gram[row][column] += weight * parts[row] * parts[column];
             }
         }
@@ -262,7 +270,7 @@ impl Schedule {
 
     fn fit(&mut self) {
         let (mut gram, mut right) = (self.gram, self.right);
-        for part in 0..3 {
+        for part in 0..PARTS {
             gram[part][part] += PRIOR_WEIGHT;
             right[part] += PRIOR_WEIGHT * PRIOR[part];
         }
@@ -270,7 +278,11 @@ impl Schedule {
     }
 }
 
-/// The predictions by the mean, by the day and by the week.
-fn parts(mean: f64, [day, week]: Profile) -> [f64; 3] {
-    [mean, day[0] * mean + day[1], week[0] * mean + week[1]]
+/// The predictions of all parts.
+fn parts(mean: f64, profile: Profile) -> [f64; PARTS] {
+    let mut parts = [mean; PARTS];
+    for (part, [factor, constant]) in parts[1..].iter_mut().zip(profile) {
+        *part = factor * mean + constant;
+    }
+    parts
 }
