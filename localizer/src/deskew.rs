@@ -2,7 +2,7 @@
 //! at the pose of its end.
 
 use crate::constants::{MINOR, THICK_M};
-use crate::path::Path;
+use crate::scan_path::ScanPath;
 use crate::scan_points::{Directions, PointRules, ScanPoint, ScanPoints};
 use crate::work;
 use interfaces::{LaserReading, Scan, approximate_atan2, wrap_rad};
@@ -30,7 +30,7 @@ impl Deskew {
         motion: &Isometry2<f64>,
         elapsed_s: f64,
     ) -> Vec<ScanPoint> {
-        match Path::of_sweep(reading, motion, elapsed_s) {
+        match ScanPath::of_sweep(reading, motion, elapsed_s) {
             Some(path) => {
                 deskewed.scan = deskewed_scan(&mut self.directions, reading, &path);
                 let passed = |beam| path.passed(reading.scan.age_s(beam));
@@ -42,7 +42,7 @@ impl Deskew {
 }
 
 /// The scan of a reading, with all beams from its pose, after a robot on a path.
-pub(crate) fn deskewed_scan(directions: &mut Directions, reading: &LaserReading, path: &Path) -> Scan {
+pub(crate) fn deskewed_scan(directions: &mut Directions, reading: &LaserReading, path: &ScanPath) -> Scan {
     let (scan, mount, to_laser) = (&reading.scan, reading.mount, reading.mount.inverse());
     directions.update(scan, &Isometry2::identity());
     deskew(scan, directions.units(), |left| to_laser * path.at(left * scan.sweep_s) * mount)
@@ -232,7 +232,7 @@ mod tests {
             mount: Isometry2::identity(),
             scan: scan((0..beams).map(range).collect()),
         };
-        let path = Path::of_sweep(&reading, &before(elapsed_s).inverse(), elapsed_s).unwrap();
+        let path = ScanPath::of_sweep(&reading, &before(elapsed_s).inverse(), elapsed_s).unwrap();
         let deskewed = deskewed_scan(&mut Directions::default(), &reading, &path);
         let errors_m = (0..beams).filter(|&beam| !deskewed.ranges_m[beam].is_nan()).map(|beam| {
             (f64::from(deskewed.ranges_m[beam]) - range_m(&Isometry2::identity(), empty.angle_rad(beam)))

@@ -2,9 +2,9 @@
 
 use crate::changing_map::ChangingMap;
 use crate::constants::{AMBIGUOUS, EQUAL, FOUND_STD, SAME_POSE, SCORE_MEMORY, WIDE_GATE_M};
+use crate::match_scene::MatchScene;
 use crate::matcher::{Prior, difference};
 use crate::motion::Motion;
-use crate::scene::Scene;
 use crate::search::Candidate;
 use crate::support::Support;
 use nalgebra::{Isometry2, Matrix3};
@@ -30,7 +30,7 @@ pub(crate) struct Hypotheses {
 
 impl Hypotheses {
     /// Refines the poses that a search has found. Poses below `min_score` are dropped.
-    pub(crate) fn start<M: ChangingMap>(scene: &Scene<M>, found: &[Candidate], min_score: f64) -> Self {
+    pub(crate) fn start<M: ChangingMap>(scene: &MatchScene<M>, found: &[Candidate], min_score: f64) -> Self {
         let covariance = FOUND_STD.covariance();
         let list = found
             .iter()
@@ -106,7 +106,7 @@ impl Hypotheses {
     }
 
     /// Compares all poses with a scan. Poses below `min_score` are dropped.
-    pub(crate) fn compare<M: ChangingMap>(&mut self, scene: &Scene<M>, min_score: f64) {
+    pub(crate) fn compare<M: ChangingMap>(&mut self, scene: &MatchScene<M>, min_score: f64) {
         self.scans += 1;
         let next = |Hypothesis { pose, covariance, score, .. }: &Hypothesis| {
             refine(scene, pose, covariance, 2.0 * scene.gate_m(), SCORE_MEMORY * score)
@@ -136,7 +136,7 @@ fn is_same(a: &Isometry2<f64>, b: &Isometry2<f64>) -> bool {
 
 /// Matches the scan near a pose.
 fn refine<M: ChangingMap>(
-    scene: &Scene<M>,
+    scene: &MatchScene<M>,
     pose: &Isometry2<f64>,
     covariance: &Matrix3<f64>,
     first_m: f64,

@@ -30,7 +30,7 @@ use crate::times;
 use inventory::Inventory;
 use message::{Selection, Topic};
 use messages::Messages;
-use plan::{Motion, Plan};
+use plan::{MotionSource, Plan};
 use readings::{Clock, Counts, RawReadings};
 use std::sync::Arc;
 
@@ -101,7 +101,7 @@ impl Bag {
             impossible: impossible.or_else(|| counts.doubts.impossible(counts.invalid_scans, stands)),
         };
         if stands {
-            Arc::make_mut(&mut plan).motion = Motion::Standing;
+            Arc::make_mut(&mut plan).motion = MotionSource::Standing;
         }
         let name = file.to_owned();
         Ok(Log::new(Self { name, files, plan, clock }, times.times_s, summary))

@@ -3,7 +3,7 @@
 use super::inventory::Kind;
 use super::message::Message;
 use super::messages::Messages;
-use super::plan::{Laser, Motion, Plan};
+use super::plan::{Laser, MotionSource, Plan};
 use crate::cdr;
 use crate::choice::bare;
 use crate::doubts::{self, Doubts};
@@ -186,7 +186,7 @@ impl RawReadings {
                 continue;
             };
             let edge = self.frames.set(&found.header.frame_id, &found.child_frame_id, pose)?;
-            if matches!(self.plan.motion, Motion::Transform(index) if index == edge) {
+            if matches!(self.plan.motion, MotionSource::Transform(index) if index == edge) {
                 self.take_pose(&found.header, message, &found.transform);
             }
         }

@@ -1,4 +1,4 @@
-//! Recordings that cannot be written.
+//! Recordings on disks that are missing, small or large.
 
 use super::*;
 use std::io::{self, Write};
@@ -64,4 +64,23 @@ fn a_full_disk_is_reported_once() {
     // Room for all but the end, which is more than a thousand bytes long.
     let (meanwhile, end, _) = record(AMPLE - left - 1000);
     assert_eq!((meanwhile, end), (Ok(()), full));
+}
+
+#[test]
+fn a_long_recording_has_no_footer() {
+    let (stream, memory) = rerun::RecordingStreamBuilder::new(APPLICATION).memory().unwrap();
+    stream.log("/log", &rerun::TextLog::new("a line")).unwrap();
+    stream.flush_blocking().unwrap();
+    let messages = memory.take();
+    let footer_bytes = |count: usize| {
+        let disk = SmallDisk(Arc::new(usize::MAX.into()));
+        let mut file = file::RrdFile::with_output(Path::new("run.rrd"), Box::new(disk.clone())).unwrap();
+        messages.iter().cycle().take(count).for_each(|message| file.send(message));
+        let before = *disk.0.lock().unwrap();
+        file.finish();
+        file.check().unwrap();
+        before - *disk.0.lock().unwrap()
+    };
+    assert!(footer_bytes(messages.len()) > 1000);
+    assert_eq!(footer_bytes(5000), 0);
 }
