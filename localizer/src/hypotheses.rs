@@ -96,8 +96,8 @@ impl Hypotheses {
 
     /// After this number of scans: of poses with about the same score, the one that is expected is the only one.
     pub(crate) fn prefer(&mut self, scans: u32, is_expected: impl Fn(&Isometry2<f64>) -> bool) {
-        let Some(least) = self.best().map(|best| best.score * EQUAL) else { return };
-        let is_one = |hypothesis: &Hypothesis| hypothesis.score >= least && is_expected(&hypothesis.pose);
+        let Some(min_score) = self.best().map(|best| best.score * EQUAL) else { return };
+        let is_one = |hypothesis: &Hypothesis| hypothesis.score >= min_score && is_expected(&hypothesis.pose);
         if self.scans >= scans
             && let Some(expected) = self.list.iter().copied().find(is_one)
         {
@@ -119,9 +119,9 @@ impl Hypotheses {
     /// Sorts by the score, and drops what is much worse than the best, or the same as a better one.
     fn sort_out(&mut self) {
         self.list.sort_by(|a, b| b.score.total_cmp(&a.score));
-        let least = self.list.first().map_or(0.0, |best| best.score * AMBIGUOUS);
+        let min_score = self.list.first().map_or(0.0, |best| best.score * AMBIGUOUS);
         let mut kept: Vec<Hypothesis> = Vec::new();
-        for hypothesis in self.list.drain(..).filter(|hypothesis| hypothesis.score >= least) {
+        for hypothesis in self.list.drain(..).filter(|hypothesis| hypothesis.score >= min_score) {
             if !kept.iter().any(|better| is_same(&better.pose, &hypothesis.pose)) {
                 kept.push(hypothesis);
             }

@@ -140,7 +140,7 @@ impl Search {
                 None if self.next < squares.len() => {
                     let (heading, corner) = squares.at(self.next);
                     self.next += 1;
-                    self.nodes.extend(squares.node(squares.level, heading, corner, self.least(), left));
+                    self.nodes.extend(squares.node(squares.level, heading, corner, self.min_bound(), left));
                 }
                 None => return true,
             }
@@ -149,25 +149,25 @@ impl Search {
     }
 
     /// The smallest score of a pose that would be kept.
-    fn least(&self) -> u32 {
-        let least = (self.min_score * f64::from(self.perfect())) as u32;
+    fn min_bound(&self) -> u32 {
+        let min_bound = (self.min_score * f64::from(self.perfect())) as u32;
         let best = self.found.first().map_or(0, |best| (self.ratio * f64::from(best.bound)) as u32);
         let worst = self.found.get(MAX_CANDIDATES - 1).map_or(0, |worst| worst.bound + 1);
-        least.max(best).max(worst).max(1)
+        min_bound.max(best).max(worst).max(1)
     }
 
     /// Divides a square in four, of which the best is next; or keeps a pose.
     fn split(&mut self, squares: &Squares, node: &Node, left: &mut usize) {
-        let least = self.least();
+        let min_bound = self.min_bound();
         let is_better = |best: &Node| best.bound >= node.bound && squares.is_same(best, node);
-        if node.bound < least || self.found.iter().any(is_better) {
+        if node.bound < min_bound || self.found.iter().any(is_better) {
             return;
         }
         let Some(level) = node.level.checked_sub(1) else { return self.keep(squares, node) };
         let (half, first) = (1 << level, self.nodes.len());
         for (dx, dy) in [(0, 0), (half, 0), (0, half), (half, half)] {
             let corner = (node.x + dx, node.y + dy);
-            self.nodes.extend(squares.node(level, node.heading, corner, least, left));
+            self.nodes.extend(squares.node(level, node.heading, corner, min_bound, left));
         }
         self.nodes[first..].sort_by_key(|node| node.bound);
     }
@@ -177,8 +177,8 @@ impl Search {
         let rank = self.found.partition_point(|better| better.bound >= node.bound);
         self.found.insert(rank, *node);
         self.found.truncate(MAX_CANDIDATES);
-        let least = (self.ratio * f64::from(self.found[0].bound)) as u32;
-        self.found.retain(|node| node.bound >= least);
+        let min_bound = (self.ratio * f64::from(self.found[0].bound)) as u32;
+        self.found.retain(|node| node.bound >= min_bound);
     }
 }
 

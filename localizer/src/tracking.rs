@@ -64,8 +64,8 @@ pub(crate) fn track<M: ChangingMap>(
             continue;
         }
         let candidate = tracked(scene, &found);
-        let least = best.support.confirmed + BETTER * by_odometry.support.weight();
-        if candidate.support.score() >= MAJORITY && candidate.support.confirmed > least {
+        let min_confirmed = best.support.confirmed + BETTER * by_odometry.support.weight();
+        if candidate.support.score() >= MAJORITY && candidate.support.confirmed > min_confirmed {
             best = candidate;
         }
     }

@@ -53,13 +53,13 @@ impl<'a> Squares<'a> {
     }
 
     /// The square of positions from its lower left cell, if the robot can be in it and the bound of its score reaches
-    /// `least`.
+    /// `min_bound`.
     pub(super) fn node(
         &self,
         level: usize,
         heading: usize,
         (x, y): (i32, i32),
-        least: u32,
+        min_bound: u32,
         left: &mut usize,
     ) -> Option<Node> {
         let (low, high) = self.cells;
@@ -67,21 +67,21 @@ impl<'a> Squares<'a> {
         let is_inside = x <= high.x && y <= high.y && x + side > low.x && y + side > low.y;
         let is_possible = is_inside && self.grid.has_free(level, x, y);
         let (points, bounds) = (&self.turned[heading], self.grid.level(level));
-        let (mut bound, mut most, mut seen) = (0, self.perfect, 0);
+        let (mut bound, mut max_bound, mut seen) = (0, self.perfect, 0);
         for some in points.chunks(SEARCH_CHUNK).take_while(|_| is_possible) {
-            if most < least {
+            if max_bound < min_bound {
                 break;
             }
             for &(dx, dy, weight) in some {
                 let score = u32::from(bounds.bound(x + dx, y + dy));
                 bound += weight * score;
-                most -= weight * (255 - score);
+                max_bound -= weight * (255 - score);
             }
             seen += some.len();
         }
         work::count(seen + 1);
         *left = left.saturating_sub(seen + 1);
-        (is_possible && most >= least).then_some(Node { bound, level, heading, x, y })
+        (is_possible && max_bound >= min_bound).then_some(Node { bound, level, heading, x, y })
     }
 
     /// Whether all poses of a square are close to a better pose.

@@ -101,8 +101,8 @@ fn agree(a: &RecognizedPlace, b: &RecognizedPlace, graph: &PoseGraph) -> bool {
     let expected = between(a.edge.from, b.edge.from) * b.edge.motion * between(b.edge.to, a.edge.to);
     let off = expected.inv_mul(&a.edge.motion);
     let keyframes = a.edge.from.abs_diff(b.edge.from) + a.edge.to.abs_diff(b.edge.to);
-    let (most_m, most_rad) = reach(keyframes as f64 * KEYFRAME_WAY_M);
-    off.translation.vector.norm() <= most_m && heading_rad(&off).abs() <= most_rad
+    let (max_m, max_rad) = reach(keyframes as f64 * KEYFRAME_WAY_M);
+    off.translation.vector.norm() <= max_m && heading_rad(&off).abs() <= max_rad
 }
 
 /// Whether a loop contradicts the trajectory so much that all later searches profit from it.
