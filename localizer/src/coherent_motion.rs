@@ -10,8 +10,8 @@
 
 use crate::changing_map::ChangingMap;
 use crate::constants::{
-    APART_M, EXPLAINED_COUNTS, MAJORITY, MARGIN, MIN_LEFT, MIN_MOVED, MIN_MOVED_SHARE, MIN_STAYED, MOVED_M,
-    NEAR_STD, RATIO_COUNTS, ROUNDS, SAME_MATCH, STAYED_COUNTS, SURFEL_STD_M, TURNS_RAD,
+    APART_M, EXPLAINED_COUNTS, MAJORITY, MARGIN, MIN_LEFT, MIN_MOVED, MIN_MOVED_SHARE, MIN_STAYED,
+    MIN_WEIGHT, MOVED_M, NEAR_STD, RATIO_COUNTS, ROUNDS, SAME_MATCH, STAYED_COUNTS, SURFEL_STD_M, TURNS_RAD,
 };
 use crate::match_scene::MatchScene;
 use crate::matcher::{Match, Prior, difference};
@@ -104,13 +104,13 @@ struct Pair {
 impl Pair {
     /// How well both poses explain the scan.
     fn score(&self) -> f64 {
-        let log = |weight: f64| libm::log(weight.max(1e-3));
+        let log = |weight: f64| libm::log(weight.max(MIN_WEIGHT));
         EXPLAINED_COUNTS * log(self.in_place + self.only_moved) + STAYED_COUNTS * log(self.in_place)
     }
 
     /// What speaks against the first pose: little has stayed, much has moved.
     fn few_against_many(&self) -> f64 {
-        RATIO_COUNTS * libm::log(self.only_moved.max(1e-3) / self.only_stayed.max(1e-3))
+        RATIO_COUNTS * libm::log(self.only_moved.max(MIN_WEIGHT) / self.only_stayed.max(MIN_WEIGHT))
     }
 
     /// Whether the two poses explain most of a scan with this support.

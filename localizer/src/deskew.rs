@@ -106,7 +106,8 @@ fn cover(scan: &Scan, units: &[Vector2<f64>], from: &End, to: &End, ranges_m: &m
     let first = sign * (from.angle_rad - scan.angle_min_rad) / increment.abs();
     let first = first - turns * libm::floor(first / turns);
     // The approximate angle of a beam that did not move may be a little beside its direction.
-    let (low, high) = (libm::ceil(first - 0.02), first + span + 0.02);
+    let beside = 0.02;
+    let (low, high) = (libm::ceil(first - beside), first + span + beside);
     // Beyond two turns of the beams there are none, however small the angle between two of them is said to be.
     let high = high.min(2.0 * beams as f64);
     let mut direction = low;

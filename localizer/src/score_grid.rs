@@ -160,7 +160,7 @@ fn splat(surfels: &SurfelMap, frame: &GridFrame) -> Vec<u8> {
                 continue;
             }
             let share = (1.0 - (off_m - cell_m / 2.0).max(0.0) / THICK_M).max(0.0);
-            let score = (255.0 * share * surfel.steadiness.max(MINOR)) as u8;
+            let score = (f64::from(u8::MAX) * share * surfel.steadiness.max(MINOR)) as u8;
             let here = &mut scores[padded(frame, x as usize, y as usize)];
             *here = (*here).max(score);
         }

@@ -108,7 +108,7 @@ impl Search {
 
     /// The score of a perfect fit.
     fn perfect(&self) -> u32 {
-        (255 * self.points.iter().map(|(_, weight)| weight).sum::<u32>()).max(1)
+        (u32::from(u8::MAX) * self.points.iter().map(|(_, weight)| weight).sum::<u32>()).max(1)
     }
 
     /// The best score so far.
@@ -185,7 +185,7 @@ impl Search {
 /// At most [`SEARCH_POINTS`] points, evenly along the surfaces, each with a whole weight.
 fn spread(points: &[ScanPoint]) -> Vec<(Point2<f64>, u32)> {
     let total: f64 = points.iter().map(|point| point.weight).sum();
-    let step = (total / SEARCH_POINTS as f64).max(1e-9);
+    let step = (total / SEARCH_POINTS as f64).max(f64::MIN_POSITIVE);
     let (mut passed, mut chosen) = (0.0, Vec::with_capacity(SEARCH_POINTS));
     for point in points {
         let before = libm::floor(passed / step);

@@ -40,7 +40,8 @@ pub(crate) const END_M: f64 = 0.2;
 
 // Line map
 
-/// Side of the cells, reach of a surfel along its surface, and spacing of the points of a keyframe, m.
+/// Side of the cells, reach of a surfel along its surface, distance between end points of neighboring beams on one surface, and
+/// spacing of the points of a keyframe, m.
 pub(crate) const SURFEL_M: f64 = 0.1;
 /// Surfels in a cell: two sides of a thin wall, and a corner.
 pub(crate) const PER_CELL: usize = 4;
@@ -99,6 +100,8 @@ pub(crate) const NEAR_STD: Spread = Spread { m: 0.05, rad: 0.02 };
 pub(crate) const EXPLAINED_COUNTS: f64 = 25.0;
 pub(crate) const STAYED_COUNTS: f64 = 2.0;
 pub(crate) const RATIO_COUNTS: f64 = 6.0;
+/// Weights below this are none.
+pub(crate) const MIN_WEIGHT: f64 = 1e-3;
 /// By this log-evidence, what has stayed must be better.
 pub(crate) const MARGIN: f64 = 4.0;
 

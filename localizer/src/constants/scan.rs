@@ -21,9 +21,8 @@ pub(crate) const MAX_MISMATCH: Spread = Spread { m: 0.1, rad: 0.15 };
 pub(crate) const MAX_MPS: f64 = 50.0;
 /// Largest turn of which the chord approximates the arc, rad: wrong by less than 1e-5 rad.
 pub(crate) const MAX_CHORD_RAD: f64 = 0.1;
-/// End points of neighboring beams that are nearer than this are on one surface, m.
-pub(crate) const JOIN_M: f64 = 0.1;
-/// The same in spacings of the beams: below about 20° between beam and surface, a third beam must confirm the surface.
+/// End points of neighboring beams that are nearer than this, in spacings of the beams, are on one surface: below about 20° between
+/// beam and surface, a third beam must confirm the surface.
 pub(crate) const JOIN_SPACINGS: f64 = 3.0;
 /// End points of beams that graze one surface may be this far apart, m.
 pub(crate) const GRAZING_M: f64 = 1.0;
@@ -53,6 +52,10 @@ pub(crate) const AVERAGED: usize = 4;
 
 // Motion prior
 
+/// Hard drift, the largest errors of an odometry that are expected by default: gains, and noise after 1 m and after 1 rad; and
+/// rad per m, which is 3°.
+pub(crate) const HARD_DRIFT: f64 = 0.05;
+pub(crate) const HARD_DRIFT_RADPM: f64 = 0.052;
 /// Errors at rest: vibration, and rounding of the odometry.
 pub(crate) const REST_STD: Spread = Spread { m: 2e-4, rad: 1e-4 };
 /// Share of a motion that slips to the side.

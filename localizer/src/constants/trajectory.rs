@@ -61,10 +61,9 @@ pub(crate) const COMPARED_POINTS: usize = 300;
 /// Errors of a found pose of a submap.
 pub(crate) const PLACE_STD: Spread = Spread { m: 0.3, rad: 0.05 };
 /// A place: minimum overlap and agreement, maximum share of beams that pass its walls. Where little speaks against it, and half as
-/// many beams pass, two others of the same submap suffice.
+/// many beams pass, two others of the same submap suffice, and the minimum overlap is `MAJORITY`.
 pub(crate) const PLACE_OVERLAP: f64 = 0.45;
 pub(crate) const PLACE_AGREEMENT: f64 = 0.8;
-pub(crate) const STRONG_OVERLAP: f64 = 0.5;
 pub(crate) const STRONG_AGREEMENT: f64 = 0.88;
 pub(crate) const MAX_PASSING: f64 = 0.06;
 /// Minimum score of a pose in a search.

@@ -73,9 +73,9 @@ impl<'a> Squares<'a> {
                 break;
             }
             for &(dx, dy, weight) in some {
-                let score = u32::from(bounds.bound(x + dx, y + dy));
-                bound += weight * score;
-                max_bound -= weight * (255 - score);
+                let score = bounds.bound(x + dx, y + dy);
+                bound += weight * u32::from(score);
+                max_bound -= weight * u32::from(u8::MAX - score);
             }
             seen += some.len();
         }

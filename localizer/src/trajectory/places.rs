@@ -7,9 +7,9 @@ use super::matching::{fit, information_of};
 use super::odometry_drift::{reach, ways_m};
 use super::submap::{Agreement, FinishedSubmap};
 use crate::constants::{
-    AMBIGUOUS, COMPARED_POINTS, EXAMINED, MAX_PASSING, MAX_SEARCHES, MIN_WAY_M, NEAR_M, NEAR_RANGE_M,
-    NEIGHBORS, PLACE_AGREEMENT, PLACE_MODEL_STD, PLACE_OVERLAP, PLACE_SCORE, PLACE_STD, REFERENCE_M,
-    SAME_SUBMAP, STRONG_AGREEMENT, STRONG_OVERLAP, UNLIKELY,
+    AMBIGUOUS, COMPARED_POINTS, EXAMINED, MAJORITY, MAX_PASSING, MAX_SEARCHES, MIN_WAY_M, NEAR_M,
+    NEAR_RANGE_M, NEIGHBORS, PLACE_AGREEMENT, PLACE_MODEL_STD, PLACE_OVERLAP, PLACE_SCORE, PLACE_STD,
+    REFERENCE_M, SAME_SUBMAP, STRONG_AGREEMENT, UNLIKELY,
 };
 use crate::matcher::Match;
 use crate::scan_points::ScanPoint;
@@ -128,7 +128,7 @@ impl Places {
         let edge =
             Edge { from, to: to_anchor, motion: fit.found.placement.pose, information, kind: EdgeKind::Loop };
         // Half as many beams speak against it.
-        let is_strong = fit.holds(STRONG_OVERLAP, STRONG_AGREEMENT, MAX_PASSING / 2.0);
+        let is_strong = fit.holds(MAJORITY, STRONG_AGREEMENT, MAX_PASSING / 2.0);
         Some(RecognizedPlace { from: fit.from, to, way_m: fit.way_m, edge, is_strong })
     }
 
