@@ -2,6 +2,8 @@
 
 mod mutations;
 
+use std::ops::Add;
+
 const HOUSE: &str = include_str!("../../../worlds/house.toml");
 const YARD: &str = include_str!("../../../worlds/yard.toml");
 const FOUR_ROOMS: &str = include_str!("../../../worlds/four_rooms.toml");

@@ -2,7 +2,6 @@
 
 use super::*;
 use proptest::prelude::*;
-use std::ops::Add;
 
 /// The lines of a world that hold numbers which are wrong if they are as large as this, each with what comes
 /// before its value.
