@@ -1,10 +1,10 @@
+use crate::control_input::ControlInput;
 use crate::driver::{Driver, Outcome, Status};
 use crate::drives::Drive;
 use crate::dynamic_obstacles::DynamicObstacleFilter;
 use crate::navigation::{LocalExploration, NavigationTask, Progress, Surroundings, Tick, random_step};
 use crate::planner::{Path, Planner};
 use crate::settings::Settings;
-use crate::situation::Situation;
 use interfaces::{CellState, Grid, RandomStream, SettingsError, Values, values};
 use nalgebra::Point2;
 
@@ -102,17 +102,17 @@ impl<D: Drive> Driver for Controller<D> {
         }
     }
 
-    fn drive(&mut self, situation: &Situation) -> D::Command {
-        if let Some(change) = situation.change() {
-            self.last_change = Some((change, situation.time));
+    fn drive(&mut self, input: &ControlInput) -> D::Command {
+        if let Some(change) = input.change() {
+            self.last_change = Some((change, input.time));
         }
-        let mut surroundings = self.update_surroundings(situation);
+        let mut surroundings = self.update_surroundings(input);
         let settings = self.settings.navigation;
-        let tick = &mut Tick { settings: &settings, situation, surroundings: &mut surroundings };
+        let tick = &mut Tick { settings: &settings, input, surroundings: &mut surroundings };
         let command = match std::mem::replace(&mut self.state, State::Idle) {
             State::Idle => self.drive.rest(&tick.scene()),
             State::New { goal, at_goal } => {
-                let task = NavigationTask::new(situation, goal, f64::INFINITY, settings.goal_timeout_s);
+                let task = NavigationTask::new(input, goal, f64::INFINITY, settings.goal_timeout_s);
                 self.travel(tick, task, at_goal)
             }
             State::Travelling { task, at_goal } => self.travel(tick, task, at_goal),
@@ -124,10 +124,10 @@ impl<D: Drive> Driver for Controller<D> {
         command
     }
 
-    fn pause(&mut self, situation: &Situation, looks_around: bool) -> D::Command {
-        let mut surroundings = self.update_surroundings(situation);
+    fn pause(&mut self, input: &ControlInput, looks_around: bool) -> D::Command {
+        let mut surroundings = self.update_surroundings(input);
         let settings = self.settings.navigation;
-        let scene = Tick { settings: &settings, situation, surroundings: &mut surroundings };
+        let scene = Tick { settings: &settings, input, surroundings: &mut surroundings };
         let scene = &scene.scene();
         let command = if looks_around { self.drive.look_around(scene) } else { self.drive.rest(scene) };
         self.surroundings = Some(surroundings);
@@ -143,12 +143,12 @@ impl<D: Drive> Driver for Controller<D> {
         }
     }
 
-    fn travel_times(&mut self, situation: &Situation, times: &mut Vec<f64>) {
+    fn travel_times(&mut self, input: &ControlInput, times: &mut Vec<f64>) {
         let body = self.drive.body();
         times.clear();
-        times.resize(situation.map.frame().len(), f64::INFINITY);
+        times.resize(input.map.frame().len(), f64::INFINITY);
         if let Some(surroundings) = &mut self.surroundings {
-            surroundings.planner.lengths_m(situation.map, &situation.position(), times);
+            surroundings.planner.lengths_m(input.map, &input.position(), times);
             times.iter_mut().for_each(|time| *time /= body.speed_mps);
         }
     }
@@ -180,17 +180,17 @@ impl<D: Drive> Driver for Controller<D> {
 impl<D: Drive> Controller<D> {
     /// Applies the changes of the map. Reads the whole map at the first tick, and when the frame of the map has
     /// changed.
-    fn update_surroundings(&mut self, situation: &Situation) -> Surroundings {
-        let map = situation.map;
+    fn update_surroundings(&mut self, input: &ControlInput) -> Surroundings {
+        let map = input.map;
         let known = self.surroundings.take().filter(|known| known.planner.costmap().frame() == map.frame());
         let mut surroundings = match known {
             Some(mut known) => {
-                known.planner.update(situation.transitions);
+                known.planner.update(input.transitions);
                 known
             }
             None => self.surroundings_of(map),
         };
-        surroundings.dynamic.update(situation);
+        surroundings.dynamic.update(input);
         surroundings
     }
 
@@ -214,12 +214,12 @@ impl<D: Drive> Controller<D> {
         match at_goal {
             _ if outcome == Outcome::GivenUp => self.finish(tick, done),
             AtGoal::Explore => self.step(tick, done, LocalExploration::default()),
-            AtGoal::Watch(duration) => self.watch(tick, done, tick.situation.time + duration),
+            AtGoal::Watch(duration) => self.watch(tick, done, tick.input.time + duration),
         }
     }
 
     fn watch(&mut self, tick: &Tick, done: Done, until: f64) -> D::Command {
-        if tick.situation.time >= until {
+        if tick.input.time >= until {
             return self.finish(tick, done);
         }
         self.state = State::Watching { done, until };
@@ -235,7 +235,7 @@ impl<D: Drive> Controller<D> {
         mut step: NavigationTask,
     ) -> D::Command {
         let progress = step.drive(tick, &mut self.path, &mut self.drive);
-        let has_lasted = step.elapsed_s(tick.situation) >= self.drive.body().step_s;
+        let has_lasted = step.elapsed_s(tick.input) >= self.drive.body().step_s;
         let command = match progress {
             Progress::Underway(command) => command,
             Progress::Arrived(_) if !has_lasted => self.drive.rest(&tick.scene()),
@@ -247,15 +247,15 @@ impl<D: Drive> Controller<D> {
 
     /// Begins the next step of local exploration, or finishes the goal.
     fn step(&mut self, tick: &mut Tick, done: Done, mut exploration: LocalExploration) -> D::Command {
-        let (body, situation) = (self.drive.body(), tick.situation);
-        let is_new = |(_, time): &(_, f64)| situation.time - time < body.step_s;
+        let (body, input) = (self.drive.body(), tick.input);
+        let is_new = |(_, time): &(_, f64)| input.time - time < body.step_s;
         let change = self.last_change.filter(is_new).map(|(change, _)| change);
         let costmap = tick.surroundings.planner.costmap();
-        let random = || random_step(&body, costmap, &situation.position(), &mut self.rng);
+        let random = || random_step(&body, costmap, &input.position(), &mut self.rng);
         let Some(target) = exploration.next(&self.settings.exploration, change, random) else {
             return self.finish(tick, done);
         };
-        let mut step = NavigationTask::new(situation, target, body.step_m, body.step_limit_s);
+        let mut step = NavigationTask::new(input, target, body.step_m, body.step_limit_s);
         let command = match step.drive(tick, &mut self.path, &mut self.drive) {
             Progress::Underway(command) => command,
             _ => self.drive.rest(&tick.scene()),

@@ -1,4 +1,4 @@
-use crate::situation::Situation;
+use crate::control_input::ControlInput;
 use interfaces::{CellState, Grid, Values};
 use nalgebra::Point2;
 
@@ -43,11 +43,11 @@ pub trait Driver {
     fn goal(&self) -> Option<Point2<f64>>;
 
     /// Returns the command for this tick. After a new goal was set, the method may be called again in the same
-    /// tick, with the same situation but without its transitions; the robot then starts without delay.
-    fn drive(&mut self, situation: &Situation) -> Self::Command;
+    /// tick, with the same input but without its transitions; the robot then starts without delay.
+    fn drive(&mut self, input: &ControlInput) -> Self::Command;
 
     /// Returns the command for a tick in which the robot does not drive to its goal: it rests, or looks around.
-    fn pause(&mut self, situation: &Situation, looks_around: bool) -> Self::Command;
+    fn pause(&mut self, input: &ControlInput, looks_around: bool) -> Self::Command;
 
     /// The state after the last tick.
     fn status(&self) -> Status;
@@ -60,7 +60,7 @@ pub trait Driver {
     /// Writes the travel time from the robot to each cell at full speed, in row-major order, s (steps in a grid
     /// world); ∞ where no path is known. Call it after [`drive`](Self::drive), which applies the changes of the
     /// map. The computing time is that of one wave over the whole map.
-    fn travel_times(&mut self, situation: &Situation, times: &mut Vec<f64>);
+    fn travel_times(&mut self, input: &ControlInput, times: &mut Vec<f64>);
 
     /// Forgets the map: the next one is not the last one with some changes. A path to the goal is planned anew; a local
     /// exploration ends.

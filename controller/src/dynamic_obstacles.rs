@@ -1,4 +1,4 @@
-use crate::Situation;
+use crate::ControlInput;
 use interfaces::{Cell, CellState, Grid, Value, ValueError, converted};
 use nalgebra::Point2;
 
@@ -38,20 +38,20 @@ impl DynamicObstacleFilter {
     }
 
     /// Applies the changes of this update.
-    pub fn update(&mut self, situation: &Situation) {
-        for changed in situation.transitions.iter().filter(|transition| transition.event().is_some()) {
+    pub fn update(&mut self, input: &ControlInput) {
+        for changed in input.transitions.iter().filter(|transition| transition.event().is_some()) {
             for cell in around(changed.cell) {
-                self.changed_at.set(cell, situation.time);
+                self.changed_at.set(cell, input.time);
             }
         }
     }
 
     /// Whether the obstacle sensed at `point` may move.
-    pub fn is_dynamic(&self, situation: &Situation, point: &Point2<f64>) -> bool {
-        let cell = situation.map.frame().cell_at(point);
+    pub fn is_dynamic(&self, input: &ControlInput, point: &Point2<f64>) -> bool {
+        let cell = input.map.frame().cell_at(point);
         let changed_at = self.changed_at.get(cell).copied().unwrap_or(f64::NEG_INFINITY);
-        let blocked = |cell| situation.map.get(cell) == Some(&CellState::Blocked);
-        situation.time - changed_at < MEMORY_S || !around(cell).any(blocked)
+        let blocked = |cell| input.map.get(cell) == Some(&CellState::Blocked);
+        input.time - changed_at < MEMORY_S || !around(cell).any(blocked)
     }
 }
 
@@ -77,15 +77,15 @@ mod tests {
         *map.get_mut(transition.cell).unwrap() = transition.after;
         let pose = interfaces::pose(0.0, 0.0, 0.0);
         let mut dynamic = DynamicObstacleFilter::new(&map);
-        let situation =
-            |time, transitions| Situation { time, pose: &pose, map: &map, transitions, points: &[] };
+        let input =
+            |time, transitions| ControlInput { time, pose: &pose, map: &map, transitions, points: &[] };
         let transitions = [transition];
-        let now = situation(1.0, &transitions);
+        let now = input(1.0, &transitions);
         dynamic.update(&now);
         assert!(!dynamic.is_dynamic(&now, &wall));
         assert!(dynamic.is_dynamic(&now, &changed));
         assert!(dynamic.is_dynamic(&now, &new));
-        let later = situation(1.0 + MEMORY_S, &[]);
+        let later = input(1.0 + MEMORY_S, &[]);
         assert!(!dynamic.is_dynamic(&later, &changed));
         assert!(dynamic.is_dynamic(&later, &new));
     }

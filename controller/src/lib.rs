@@ -5,10 +5,11 @@
 //! map ─▶ Inflation ─▶ Costmap ─▶ Wavefront ─▶ Path ─▶ Drive ─▶ command
 //! ```
 //!
-//! A loop needs only the [`Controller`]: set a goal, and pass a [`Situation`] at every tick. A [`Drive`]
+//! A loop needs only the [`Controller`]: set a goal, and pass a [`ControlInput`] at every tick. A [`Drive`]
 //! describes the robot and converts paths into commands: [`DiffDrive`] for a differential drive robot, [`CellDrive`] for
 //! a robot in a grid world.
 
+mod control_input;
 mod controller;
 mod driver;
 mod drives;
@@ -16,17 +17,16 @@ mod dynamic_obstacles;
 mod navigation;
 mod planner;
 mod settings;
-mod situation;
 #[cfg(test)]
 mod tests;
 
+pub use control_input::ControlInput;
 pub use controller::Controller;
 pub use driver::{Driver, Outcome, Status};
-pub use drives::{Body, CellDrive, DiffDrive, DiffDriveSettings, Drive, Scene};
+pub use drives::{Body, CellDrive, DiffDrive, DiffDriveSettings, Drive, DriveScene};
 pub use dynamic_obstacles::DynamicObstacleFilter;
 pub use planner::{
     Costmap, DIAGONAL, FREE, Inflation, InflationSettings, LETHAL, MAX_COST, Moves, Path, PlanEnd, Planner,
     STRAIGHT, Wavefront,
 };
 pub use settings::{ExplorationSettings, NavigationSettings, Settings};
-pub use situation::Situation;

@@ -22,7 +22,7 @@ pub struct DrivePlace {
     pub(crate) settings: DriveSettings,
     pub(crate) fleet: Fleet,
     /// The robots that are driven.
-    pub(crate) robots: Vec<Agent>,
+    pub(crate) robots: Vec<DrivenRobot>,
     /// The number of physics steps from one decision to the next.
     pub(crate) steps: u64,
     /// The length of the diagonal of the world, m.
@@ -32,7 +32,7 @@ pub struct DrivePlace {
 }
 
 /// What a driven robot can reach.
-pub(crate) struct Agent {
+pub(crate) struct DrivenRobot {
     /// The index of the robot.
     pub(crate) robot: usize,
     pub(crate) starts: FreePoses,
@@ -71,7 +71,7 @@ impl DrivePlace {
             if found != expected {
                 return Err(TaskError::OtherBeams { robot: name.clone(), found, expected });
             }
-            Agent::new(&coarse, robot)
+            DrivenRobot::new(&coarse, robot)
                 .ok_or_else(|| TaskError::NoSpace { robot: name.clone(), world: spec.name.clone() })
         };
         let robots = driven.iter().map(agent).collect::<Result<_, _>>()?;
@@ -96,7 +96,7 @@ impl DrivePlace {
 
     /// The distances to a goal of an agent.
     pub(crate) fn distances(&self, agent: usize, goal: usize) -> &Distances {
-        let Agent { goals, is_free, .. } = &self.robots[agent];
+        let DrivenRobot { goals, is_free, .. } = &self.robots[agent];
         let Goal { cell, distances } = &goals[goal];
         distances.get_or_init(|| Distances::new(&self.frame, is_free, *cell))
     }
@@ -118,7 +118,7 @@ impl DrivePlace {
     }
 }
 
-impl Agent {
+impl DrivenRobot {
     fn new(coarse: &FleetSpec, robot: usize) -> Option<Self> {
         let starts = FreePoses::reachable(coarse, robot)?;
         let cells = starts.cells();

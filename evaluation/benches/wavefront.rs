@@ -1,8 +1,8 @@
 //! The time of planning and driving in a house of 12×12 m with four rooms, in cells of 0.05 m.
 
 use controller::{
-    Controller, Costmap, DIAGONAL, DiffDrive, DiffDriveSettings, Driver, Inflation, InflationSettings, Moves,
-    Path, Planner, STRAIGHT, Settings, Situation, Wavefront,
+    ControlInput, Controller, Costmap, DIAGONAL, DiffDrive, DiffDriveSettings, Driver, Inflation,
+    InflationSettings, Moves, Path, Planner, STRAIGHT, Settings, Wavefront,
 };
 use divan::{Bencher, black_box};
 use interfaces::{Cell, CellState, Grid, GridFrame, Purpose, RandomStream, Transition, pose};
@@ -138,17 +138,17 @@ fn drive_tick(bencher: Bencher) {
     let robot = pose(2.0, 0.5, 0.0);
     let points: Vec<_> =
         (0..720).map(|beam| first_hit(&map, robot.translation.vector.into(), beam)).collect();
-    let situation = |time| Situation { time, pose: &robot, map: &map, transitions: &[], points: &points };
+    let input = |time| ControlInput { time, pose: &robot, map: &map, transitions: &[], points: &points };
     let drive = DiffDrive::new(DiffDriveSettings::default()).expect("defaults");
     let rng = RandomStream::new(0, Purpose::Controller);
     let mut controller = Controller::new(Settings::default(), drive, rng).expect("defaults");
     controller.set_goal(Point2::new(5.0, 0.5), Some(0.0));
     (0..10).for_each(|tick| {
-        controller.drive(&situation(0.1 * f64::from(tick)));
+        controller.drive(&input(0.1 * f64::from(tick)));
     });
     bencher
         .with_inputs(|| controller.clone())
-        .bench_local_values(|mut controller| (controller.drive(&situation(1.0)), controller));
+        .bench_local_values(|mut controller| (controller.drive(&input(1.0)), controller));
 }
 
 fn first_hit(map: &Grid<CellState>, from: Point2<f64>, beam: u32) -> Point2<f64> {

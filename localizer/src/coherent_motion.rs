@@ -10,14 +10,14 @@
 
 use crate::changing_map::ChangingMap;
 use crate::constants::{
-    APART_M, EXPLAINED_COUNTS, MAJORITY, MARGIN, MIN_LEFT, MIN_MOVED, MIN_MOVED_SHARE, MIN_STAYED, MOVED_M,
-    NEAR_STD, RATIO_COUNTS, ROUNDS, SAME_MATCH, STAYED_COUNTS, SURFEL_STD_M, TURNS_RAD,
+    APART_M, EXPLAINED_COUNTS, MAJORITY, MARGIN, MIN_LEFT, MIN_MOVED, MIN_MOVED_SHARE, MIN_STAYED,
+    MIN_WEIGHT, MOVED_M, NEAR_STD, RATIO_COUNTS, ROUNDS, SAME_MATCH, STAYED_COUNTS, SURFEL_STD_M, TURNS_RAD,
 };
+use crate::match_scene::MatchScene;
 use crate::matcher::{Match, Prior, difference};
 use crate::motion::Predicted;
 use crate::placement::Placement;
 use crate::scan_points::{ScanPoint, means};
-use crate::scene::Scene;
 use crate::support::Support;
 use nalgebra::Isometry2;
 
@@ -31,7 +31,7 @@ pub(crate) struct Stayed {
 /// Looks for surfaces that have stayed where the odometry says, against the pose `most` of most of the view. `None` if there
 /// are too few. Not of scans that sweep: most of their view does not fix a pose without the odometry.
 pub(crate) fn stayed<M: ChangingMap>(
-    scene: &Scene<M>,
+    scene: &MatchScene<M>,
     predicted: &Predicted,
     most: &Placement,
 ) -> Option<Stayed> {
@@ -70,14 +70,15 @@ pub(crate) fn stayed<M: ChangingMap>(
 /// Matches that may have found what has stayed: most of the view itself, what it leaves over (`left`), and what is near the
 /// odometry, from several headings.
 fn starts<M: ChangingMap>(
-    scene: &Scene<M>,
+    scene: &MatchScene<M>,
     predicted: &Predicted,
     prior: &Prior,
     most: &Match,
     left: &[ScanPoint],
 ) -> Vec<Match> {
     let wide_m = 2.0 * scene.gate_m();
-    let of_left = Scene { points: left, ..*scene }.align(&most.placement.pose, Some(prior), MOVED_M, false);
+    let of_left =
+        MatchScene { points: left, ..*scene }.align(&most.placement.pose, Some(prior), MOVED_M, false);
     let turned = |turn_rad: f64| {
         let rotation = interfaces::rotation(turn_rad) * most.placement.pose.rotation;
         Isometry2::from_parts(predicted.pose.translation, rotation)
@@ -103,13 +104,13 @@ struct Pair {
 impl Pair {
     /// How well both poses explain the scan.
     fn score(&self) -> f64 {
-        let log = |weight: f64| libm::log(weight.max(1e-3));
+        let log = |weight: f64| libm::log(weight.max(MIN_WEIGHT));
         EXPLAINED_COUNTS * log(self.in_place + self.only_moved) + STAYED_COUNTS * log(self.in_place)
     }
 
     /// What speaks against the first pose: little has stayed, much has moved.
     fn few_against_many(&self) -> f64 {
-        RATIO_COUNTS * libm::log(self.only_moved.max(1e-3) / self.only_stayed.max(1e-3))
+        RATIO_COUNTS * libm::log(self.only_moved.max(MIN_WEIGHT) / self.only_stayed.max(MIN_WEIGHT))
     }
 
     /// Whether the two poses explain most of a scan with this support.
@@ -126,11 +127,16 @@ impl Pair {
 
 /// Separates what has stayed from what has moved: each pose is that of the points which lie better there. `None` if the
 /// points do not fix the poses.
-fn separate<M: ChangingMap>(scene: &Scene<M>, prior: &Prior, start: Match, most: &Match) -> Option<Pair> {
+fn separate<M: ChangingMap>(
+    scene: &MatchScene<M>,
+    prior: &Prior,
+    start: Match,
+    most: &Match,
+) -> Option<Pair> {
     let information = NEAR_STD.information();
     let near_most = Prior { pose: most.placement.pose, information, begin: None };
     let of = |points: &[ScanPoint], at: &Match, prior: &Prior| {
-        Scene { points, ..*scene }.align(&at.placement.pose, Some(prior), 0.0, false)
+        MatchScene { points, ..*scene }.align(&at.placement.pose, Some(prior), 0.0, false)
     };
     let (mut stayed, mut moved) = (start, *most);
     let mut in_place = Offsets::new(scene, &stayed.placement);
@@ -163,7 +169,7 @@ struct Offsets {
 }
 
 impl Offsets {
-    fn new<M: ChangingMap>(scene: &Scene<M>, placement: &Placement) -> Self {
+    fn new<M: ChangingMap>(scene: &MatchScene<M>, placement: &Placement) -> Self {
         let rotation = placement.pose.rotation;
         let off_m = |point: &ScanPoint| {
             let normal = rotation * point.normal;

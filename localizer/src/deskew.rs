@@ -2,7 +2,7 @@
 //! at the pose of its end.
 
 use crate::constants::{MINOR, THICK_M};
-use crate::path::Path;
+use crate::scan_path::ScanPath;
 use crate::scan_points::{Directions, PointRules, ScanPoint, ScanPoints};
 use crate::work;
 use interfaces::{LaserReading, Scan, approximate_atan2, wrap_rad};
@@ -30,7 +30,7 @@ impl Deskew {
         motion: &Isometry2<f64>,
         elapsed_s: f64,
     ) -> Vec<ScanPoint> {
-        match Path::of_sweep(reading, motion, elapsed_s) {
+        match ScanPath::of_sweep(reading, motion, elapsed_s) {
             Some(path) => {
                 deskewed.scan = deskewed_scan(&mut self.directions, reading, &path);
                 let passed = |beam| path.passed(reading.scan.age_s(beam));
@@ -42,7 +42,7 @@ impl Deskew {
 }
 
 /// The scan of a reading, with all beams from its pose, after a robot on a path.
-pub(crate) fn deskewed_scan(directions: &mut Directions, reading: &LaserReading, path: &Path) -> Scan {
+pub(crate) fn deskewed_scan(directions: &mut Directions, reading: &LaserReading, path: &ScanPath) -> Scan {
     let (scan, mount, to_laser) = (&reading.scan, reading.mount, reading.mount.inverse());
     directions.update(scan, &Isometry2::identity());
     deskew(scan, directions.units(), |left| to_laser * path.at(left * scan.sweep_s) * mount)
@@ -106,7 +106,8 @@ fn cover(scan: &Scan, units: &[Vector2<f64>], from: &End, to: &End, ranges_m: &m
     let first = sign * (from.angle_rad - scan.angle_min_rad) / increment.abs();
     let first = first - turns * libm::floor(first / turns);
     // The approximate angle of a beam that did not move may be a little beside its direction.
-    let (low, high) = (libm::ceil(first - 0.02), first + span + 0.02);
+    let beside = 0.02;
+    let (low, high) = (libm::ceil(first - beside), first + span + beside);
     // Beyond two turns of the beams there are none, however small the angle between two of them is said to be.
     let high = high.min(2.0 * beams as f64);
     let mut direction = low;
@@ -232,7 +233,7 @@ mod tests {
             mount: Isometry2::identity(),
             scan: scan((0..beams).map(range).collect()),
         };
-        let path = Path::of_sweep(&reading, &before(elapsed_s).inverse(), elapsed_s).unwrap();
+        let path = ScanPath::of_sweep(&reading, &before(elapsed_s).inverse(), elapsed_s).unwrap();
         let deskewed = deskewed_scan(&mut Directions::default(), &reading, &path);
         let errors_m = (0..beams).filter(|&beam| !deskewed.ranges_m[beam].is_nan()).map(|beam| {
             (f64::from(deskewed.ranges_m[beam]) - range_m(&Isometry2::identity(), empty.angle_rad(beam)))

@@ -1,5 +1,5 @@
 use crate::deskew::deskewed_scan;
-use crate::path::Path;
+use crate::scan_path::ScanPath;
 use crate::scan_points::Directions;
 use interfaces::{LaserReading, ValueError, value};
 use nalgebra::Isometry2;
@@ -17,9 +17,9 @@ impl GivenPoses {
     pub fn deskewed(&mut self, mut reading: LaserReading) -> LaserReading {
         let (motion, elapsed_s) = match self.last.replace((reading.time_s, reading.pose)) {
             Some((last_s, last)) => (last.inv_mul(&reading.pose), reading.time_s - last_s),
-            None => Path::by_velocities(&reading),
+            None => ScanPath::by_velocities(&reading),
         };
-        if let Some(path) = Path::of_sweep(&reading, &motion, elapsed_s) {
+        if let Some(path) = ScanPath::of_sweep(&reading, &motion, elapsed_s) {
             reading.scan = deskewed_scan(&mut self.directions, &reading, &path);
         }
         reading

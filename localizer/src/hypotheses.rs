@@ -2,9 +2,9 @@
 
 use crate::changing_map::ChangingMap;
 use crate::constants::{AMBIGUOUS, EQUAL, FOUND_STD, SAME_POSE, SCORE_MEMORY, WIDE_GATE_M};
+use crate::match_scene::MatchScene;
 use crate::matcher::{Prior, difference};
 use crate::motion::Motion;
-use crate::scene::Scene;
 use crate::search::Candidate;
 use crate::support::Support;
 use nalgebra::{Isometry2, Matrix3};
@@ -30,7 +30,7 @@ pub(crate) struct Hypotheses {
 
 impl Hypotheses {
     /// Refines the poses that a search has found. Poses below `min_score` are dropped.
-    pub(crate) fn start<M: ChangingMap>(scene: &Scene<M>, found: &[Candidate], min_score: f64) -> Self {
+    pub(crate) fn start<M: ChangingMap>(scene: &MatchScene<M>, found: &[Candidate], min_score: f64) -> Self {
         let covariance = FOUND_STD.covariance();
         let list = found
             .iter()
@@ -96,8 +96,8 @@ impl Hypotheses {
 
     /// After this number of scans: of poses with about the same score, the one that is expected is the only one.
     pub(crate) fn prefer(&mut self, scans: u32, is_expected: impl Fn(&Isometry2<f64>) -> bool) {
-        let Some(least) = self.best().map(|best| best.score * EQUAL) else { return };
-        let is_one = |hypothesis: &Hypothesis| hypothesis.score >= least && is_expected(&hypothesis.pose);
+        let Some(min_score) = self.best().map(|best| best.score * EQUAL) else { return };
+        let is_one = |hypothesis: &Hypothesis| hypothesis.score >= min_score && is_expected(&hypothesis.pose);
         if self.scans >= scans
             && let Some(expected) = self.list.iter().copied().find(is_one)
         {
@@ -106,7 +106,7 @@ impl Hypotheses {
     }
 
     /// Compares all poses with a scan. Poses below `min_score` are dropped.
-    pub(crate) fn compare<M: ChangingMap>(&mut self, scene: &Scene<M>, min_score: f64) {
+    pub(crate) fn compare<M: ChangingMap>(&mut self, scene: &MatchScene<M>, min_score: f64) {
         self.scans += 1;
         let next = |Hypothesis { pose, covariance, score, .. }: &Hypothesis| {
             refine(scene, pose, covariance, 2.0 * scene.gate_m(), SCORE_MEMORY * score)
@@ -119,9 +119,9 @@ impl Hypotheses {
     /// Sorts by the score, and drops what is much worse than the best, or the same as a better one.
     fn sort_out(&mut self) {
         self.list.sort_by(|a, b| b.score.total_cmp(&a.score));
-        let least = self.list.first().map_or(0.0, |best| best.score * AMBIGUOUS);
+        let min_score = self.list.first().map_or(0.0, |best| best.score * AMBIGUOUS);
         let mut kept: Vec<Hypothesis> = Vec::new();
-        for hypothesis in self.list.drain(..).filter(|hypothesis| hypothesis.score >= least) {
+        for hypothesis in self.list.drain(..).filter(|hypothesis| hypothesis.score >= min_score) {
             if !kept.iter().any(|better| is_same(&better.pose, &hypothesis.pose)) {
                 kept.push(hypothesis);
             }
@@ -136,7 +136,7 @@ fn is_same(a: &Isometry2<f64>, b: &Isometry2<f64>) -> bool {
 
 /// Matches the scan near a pose.
 fn refine<M: ChangingMap>(
-    scene: &Scene<M>,
+    scene: &MatchScene<M>,
     pose: &Isometry2<f64>,
     covariance: &Matrix3<f64>,
     first_m: f64,

@@ -10,8 +10,8 @@ use crate::deskew::Deskew;
 use crate::faults::{Fault, FaultFinder};
 use crate::motion::{Motion, Predicted};
 use crate::motion_prior::MotionPrior;
-use crate::path::Path;
 use crate::placement::shifted;
+use crate::scan_path::ScanPath;
 use crate::scan_points::{PointRules, ScanPoint};
 use crate::settings::OdometryTrust;
 use interfaces::LaserReading;
@@ -137,7 +137,7 @@ impl<M> LocalTrajectoryBuilder<M> {
         let elapsed_s = self.time_s.map_or(0.0, |last_s| reading.time_s - last_s);
         // A log can begin while the robot moves: before its first scan, no pose is known.
         let in_sweep =
-            if self.time_s.is_none() { Path::by_velocities(reading) } else { (motion.delta, elapsed_s) };
+            if self.time_s.is_none() { ScanPath::by_velocities(reading) } else { (motion.delta, elapsed_s) };
         let now_s = if fault.is_none() { reading.time_s } else { self.time_s.unwrap_or(reading.time_s) };
         self.time_s = Some(now_s);
         let mut deskewed = reading.clone();

@@ -19,21 +19,22 @@
 //! The map can move until it is *frozen*: nothing is left to explore, and the robot has gone as far on known ground as on new
 //! ground before. From then on, its frame stays for ever.
 
-use crate::constants::{CHANGED_CERTAIN, NEAR_STD};
-use crate::estimate::{Localized, PoseEstimate, PoseState};
-use crate::first_map::{FirstMap, Kept, Log};
-use crate::localizer::{Localizer, PosePrior};
+mod replay;
+
+use crate::estimate::Localized;
+use crate::first_map::{FirstMap, Log};
+use crate::localizer::Localizer;
 use crate::settings::LocalizerSettings;
 use interfaces::{
     CellState, Grid, GridFrame, LaserReading, SettingsError, ValueError, read_value, write_value,
 };
 use mapper::Mapper;
 use nalgebra::Isometry2;
+use replay::{Background, Replay, Replayed, learn};
 use std::fmt;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::mpsc::{self, Receiver, Sender};
-use std::thread::JoinHandle;
+use std::sync::atomic::AtomicUsize;
+use std::sync::mpsc;
 
 /// A localizer that starts from nothing, and that learns the map again when a loop is closed. The same readings give the same
 /// bits.
@@ -64,39 +65,6 @@ pub enum Switch {
     /// bits as there.
     At(Vec<usize>),
 }
-
-/// A reading that came while others were read again, with the time of the map before it.
-type Meanwhile = (LaserReading, f64, Localized);
-
-/// A thread that reads the readings again.
-#[derive(Debug)]
-struct Background {
-    thread: JoinHandle<Replayed>,
-    meanwhile: Sender<Meanwhile>,
-    /// The number of readings when the thread began, and now.
-    begun: usize,
-    readings: usize,
-    /// The number of readings that the thread has read.
-    read: Arc<AtomicUsize>,
-}
-
-impl Background {
-    /// Passes a reading on. Returns whether the robot changes to the new map with it.
-    fn add(&mut self, meanwhile: Meanwhile, switch: &Switch) -> bool {
-        let is_up_to_date = self.read.load(Ordering::Relaxed) == self.readings || self.thread.is_finished();
-        self.readings += 1;
-        // A thread that has failed is noticed by its result.
-        self.meanwhile.send(meanwhile).ok();
-        match switch {
-            Switch::After(readings) => self.readings - self.begun >= *readings,
-            Switch::At(readings) => readings.contains(&self.readings),
-            Switch::AtOnce | Switch::WhenReady => is_up_to_date,
-        }
-    }
-}
-
-/// The readings, and what reading them again has changed, if anything.
-type Replayed = (FirstMap, Option<(Replay, Correction)>);
 
 /// What a closed loop has changed.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
@@ -265,83 +233,6 @@ impl LoopClosingLocalizer {
     }
 }
 
-/// A localizer and a map that learn all readings again.
-#[derive(Debug)]
-struct Replay {
-    localizer: Localizer,
-    map: Mapper,
-    /// The last reading, from which the map has not learned yet.
-    last: Option<Localized>,
-}
-
-impl Replay {
-    /// Reads the next reading, near a pose if one is known.
-    fn read(
-        &mut self,
-        reading: &LaserReading,
-        is_after_pause: bool,
-        near: Option<PosePrior>,
-    ) -> PoseEstimate {
-        if let Some(Localized { reading, estimate }) = self.last.take() {
-            learn(&mut self.map, &reading, &estimate);
-        }
-        if is_after_pause {
-            self.map.pause(reading.time_s);
-        }
-        let localized = self.localizer.localize_near(reading, &self.map, near);
-        self.last.insert(localized).estimate.clone()
-    }
-
-    /// Reads all readings, near their corrected poses, and those that come meanwhile.
-    fn all(self, first: FirstMap, coming: Receiver<Meanwhile>, read: &AtomicUsize) -> Replayed {
-        let (mut first, mut again) = self.log(first);
-        read.store(first.kept().len(), Ordering::Relaxed);
-        for (reading, map_s, localized) in coming {
-            let (near, is_after_pause) = (first.pose_prior(&reading), first.is_after_pause(map_s));
-            if let Some((again, correction)) = &mut again {
-                again.read(&reading, is_after_pause, near);
-                correction.readings += 1;
-            }
-            let (states, localized) = match &again {
-                Some((Self { map, last: Some(last), .. }, _)) => (Some(map.states()), last),
-                _ => (None, &localized),
-            };
-            if first.add(&reading, (map_s, states), localized) {
-                first.postpone();
-            }
-            read.store(first.kept().len(), Ordering::Relaxed);
-        }
-        (first, again)
-    }
-
-    /// Reads the readings of a log, near their corrected poses.
-    fn log(mut self, mut first: FirstMap) -> Replayed {
-        let near = first.corrected();
-        let read =
-            |(kept, near): (&Kept, PosePrior)| self.read(&kept.reading, kept.is_after_pause, Some(near));
-        let estimates: Vec<PoseEstimate> = first.kept().iter().zip(near).map(read).collect();
-        let is_certain = |state: PoseState| usize::from(state == PoseState::Tracking);
-        let (mut before, mut after, mut largest_m) = (0, 0, 0.0_f64);
-        for (kept, estimate) in first.kept().iter().zip(&estimates) {
-            (before, after) = (before + is_certain(kept.state), after + is_certain(estimate.state));
-            if kept.state == PoseState::Tracking {
-                let moved = estimate.pose.translation.vector - kept.pose.translation.vector;
-                largest_m = largest_m.max(moved.norm());
-            }
-        }
-        let certain = |change: f64| before as f64 * (1.0 + change);
-        // A robot that was lost had few certain poses, which did not move.
-        let is_better = largest_m >= NEAR_STD.m || after as f64 > certain(CHANGED_CERTAIN);
-        if (after as f64) < certain(-CHANGED_CERTAIN) || !is_better {
-            first.refuse();
-            return (first, None);
-        }
-        let correction = Correction { places: first.loops(), readings: estimates.len(), largest_m };
-        first.accept(&estimates);
-        (first, Some((self, correction)))
-    }
-}
-
 impl LoopClosingLocalizer {
     /// Everything that readings have changed, as bytes; settings are not in it. While the first map is young, that is all
     /// readings. A map that is being learned again must be [settled](Self::settle) before.
@@ -386,13 +277,5 @@ impl LoopClosingLocalizer {
         if self.first.as_ref().is_some_and(|first| !first.kept().is_empty()) {
             self.first = None;
         }
-    }
-}
-
-/// What the loop of the robot does with a reading.
-fn learn(map: &mut Mapper, reading: &LaserReading, estimate: &PoseEstimate) {
-    // A reading that the mapper refuses was refused before.
-    if estimate.state != PoseState::Tracking || map.update(reading).is_err() {
-        map.skip(reading);
     }
 }

@@ -7,8 +7,8 @@
 mod tests;
 
 use crate::constants::{
-    AVERAGED, FULL_WEIGHT_M, GRAZING_M, GRAZING_OFF_M, GRAZING_STDS, JOIN_M, JOIN_SPACINGS, JUDGED_M,
-    MAX_NEIGHBORS, MIN_GRAZING, NORMAL_REACH_M, SAME_SURFACE, STRAIGHT_M, STRAIGHT_STDS,
+    AVERAGED, FULL_WEIGHT_M, GRAZING_M, GRAZING_OFF_M, GRAZING_STDS, JOIN_SPACINGS, JUDGED_M, MAX_NEIGHBORS,
+    MIN_GRAZING, NORMAL_REACH_M, SAME_SURFACE, STRAIGHT_M, STRAIGHT_STDS, SURFEL_M,
 };
 use crate::moments::Moments;
 use crate::work;
@@ -113,7 +113,7 @@ impl ScanPoints {
             let next = if beam + 1 == beams { 0 } else { beam + 1 };
             if let (Some(a), Some(b)) = (self.hits[beam], self.hits[next]) {
                 let nearer_m = f64::from(scan.ranges_m[beam].min(scan.ranges_m[next]));
-                let limit_m = JOIN_M.max(JOIN_SPACINGS * nearer_m * scan.angle_increment_rad.abs());
+                let limit_m = SURFEL_M.max(JOIN_SPACINGS * nearer_m * scan.angle_increment_rad.abs());
                 self.joined[beam] = (b - a).norm_squared() <= limit_m * limit_m
                     || rules.grazing && self.grazes([beam, next], last == beams, rules.noise_m);
             }

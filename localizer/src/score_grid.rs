@@ -147,7 +147,7 @@ fn padded(frame: &GridFrame, x: usize, y: usize) -> usize {
 fn splat(surfels: &SurfelMap, frame: &GridFrame) -> Vec<u8> {
     let mut scores = empty(frame);
     let cell_m = frame.resolution_m();
-    let (reach, along_most_m) = (Vector2::repeat(THICK_M.max(cell_m)), ALONG_M.max(cell_m / 2.0));
+    let (reach, max_along_m) = (Vector2::repeat(THICK_M.max(cell_m)), ALONG_M.max(cell_m / 2.0));
     let last = Cell::new(frame.width() as i32 - 1, frame.height() as i32 - 1);
     let end = frame.origin() + Vector2::new(frame.width() as f64, frame.height() as f64) * cell_m;
     surfels.within(&(frame.origin() - reach), &(end + reach), |surfel| {
@@ -156,11 +156,11 @@ fn splat(surfels: &SurfelMap, frame: &GridFrame) -> Vec<u8> {
         for (x, y) in rows.flat_map(|y| columns.clone().map(move |x| (x, y))) {
             let to = frame.center(Cell::new(x, y)) - surfel.at;
             let (off_m, along_m) = (surfel.normal.dot(&to).abs(), surfel.normal.perp(&to).abs());
-            if along_m > along_most_m {
+            if along_m > max_along_m {
                 continue;
             }
             let share = (1.0 - (off_m - cell_m / 2.0).max(0.0) / THICK_M).max(0.0);
-            let score = (255.0 * share * surfel.steadiness.max(MINOR)) as u8;
+            let score = (f64::from(u8::MAX) * share * surfel.steadiness.max(MINOR)) as u8;
             let here = &mut scores[padded(frame, x as usize, y as usize)];
             *here = (*here).max(score);
         }

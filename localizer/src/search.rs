@@ -1,16 +1,16 @@
 //! The search for a pose: branch and bound over x, y and heading, in a window (Olson 2009) or in the whole map (Hess et
 //! al. 2016), depth first, so that little must be kept of a search that goes on in the next scan.
 
+mod squares;
 #[cfg(test)]
 mod tests;
 
-use crate::constants::{FAR_M, MAX_CANDIDATES, MAX_WORK, SAME_PLACE, SEARCH_CHUNK, SEARCH_POINTS, TOP};
+use crate::constants::{MAX_CANDIDATES, MAX_WORK, SEARCH_POINTS};
 use crate::scan_points::ScanPoint;
 use crate::score_grid::ScoreGrid;
-use crate::work;
-use interfaces::{Cell, GridFrame, heading_rad, wrap_rad};
-use nalgebra::{Isometry2, Point2, Vector2};
-use std::f64::consts::PI;
+use interfaces::Cell;
+use nalgebra::{Isometry2, Point2};
+use squares::{Squares, headings};
 
 /// Where to search.
 #[derive(Clone, Copy, Debug, serde::Deserialize, serde::Serialize)]
@@ -108,7 +108,7 @@ impl Search {
 
     /// The score of a perfect fit.
     fn perfect(&self) -> u32 {
-        (255 * self.points.iter().map(|(_, weight)| weight).sum::<u32>()).max(1)
+        (u32::from(u8::MAX) * self.points.iter().map(|(_, weight)| weight).sum::<u32>()).max(1)
     }
 
     /// The best score so far.
@@ -138,9 +138,9 @@ impl Search {
             match self.nodes.pop() {
                 Some(node) => self.split(&squares, &node, left),
                 None if self.next < squares.len() => {
-                    let (heading, x, y) = squares.at(self.next);
+                    let (heading, corner) = squares.at(self.next);
                     self.next += 1;
-                    self.nodes.extend(squares.node(squares.level, heading, x, y, self.least(), left));
+                    self.nodes.extend(squares.node(squares.level, heading, corner, self.min_bound(), left));
                 }
                 None => return true,
             }
@@ -149,24 +149,25 @@ impl Search {
     }
 
     /// The smallest score of a pose that would be kept.
-    fn least(&self) -> u32 {
-        let least = (self.min_score * f64::from(self.perfect())) as u32;
+    fn min_bound(&self) -> u32 {
+        let min_bound = (self.min_score * f64::from(self.perfect())) as u32;
         let best = self.found.first().map_or(0, |best| (self.ratio * f64::from(best.bound)) as u32);
         let worst = self.found.get(MAX_CANDIDATES - 1).map_or(0, |worst| worst.bound + 1);
-        least.max(best).max(worst).max(1)
+        min_bound.max(best).max(worst).max(1)
     }
 
     /// Divides a square in four, of which the best is next; or keeps a pose.
     fn split(&mut self, squares: &Squares, node: &Node, left: &mut usize) {
-        let least = self.least();
+        let min_bound = self.min_bound();
         let is_better = |best: &Node| best.bound >= node.bound && squares.is_same(best, node);
-        if node.bound < least || self.found.iter().any(is_better) {
+        if node.bound < min_bound || self.found.iter().any(is_better) {
             return;
         }
         let Some(level) = node.level.checked_sub(1) else { return self.keep(squares, node) };
         let (half, first) = (1 << level, self.nodes.len());
         for (dx, dy) in [(0, 0), (half, 0), (0, half), (half, half)] {
-            self.nodes.extend(squares.node(level, node.heading, node.x + dx, node.y + dy, least, left));
+            let corner = (node.x + dx, node.y + dy);
+            self.nodes.extend(squares.node(level, node.heading, corner, min_bound, left));
         }
         self.nodes[first..].sort_by_key(|node| node.bound);
     }
@@ -176,115 +177,15 @@ impl Search {
         let rank = self.found.partition_point(|better| better.bound >= node.bound);
         self.found.insert(rank, *node);
         self.found.truncate(MAX_CANDIDATES);
-        let least = (self.ratio * f64::from(self.found[0].bound)) as u32;
-        self.found.retain(|node| node.bound >= least);
+        let min_bound = (self.ratio * f64::from(self.found[0].bound)) as u32;
+        self.found.retain(|node| node.bound >= min_bound);
     }
-}
-
-/// The points of a scan at one heading, in cells from the robot, with their weights.
-type Turned = Vec<(i32, i32, u32)>;
-
-/// The squares of one search.
-struct Squares<'a> {
-    grid: &'a ScoreGrid,
-    headings_rad: Vec<f64>,
-    turned: Vec<Turned>,
-    perfect: u32,
-    /// The lower left and the upper right cell of the positions.
-    cells: (Cell, Cell),
-    /// The level of the largest squares, and the number of their columns and rows.
-    level: usize,
-    columns: usize,
-    rows: usize,
-}
-
-impl<'a> Squares<'a> {
-    fn new(search: &Search, grid: &'a ScoreGrid) -> Self {
-        let cell_m = grid.frame().resolution_m();
-        let window = search.window.as_ref();
-        let headings_rad = headings(window, grid);
-        let turned = headings_rad.iter().map(|heading| turned(&search.points, *heading, cell_m)).collect();
-        let (low, high) = cells(grid.frame(), window);
-        // A window is small: large squares would not fit in it.
-        let level = if window.is_some_and(|window| window.reach_rad < PI) { TOP - 2 } else { TOP };
-        let count = |low: i32, high: i32| ((high + 1 - low).max(0) as usize).div_ceil(1 << level);
-        let (columns, rows) = (count(low.x, high.x), count(low.y, high.y));
-        let (perfect, cells) = (search.perfect(), (low, high));
-        Self { grid, headings_rad, turned, perfect, cells, level, columns, rows }
-    }
-
-    /// The number of the largest squares.
-    fn len(&self) -> usize {
-        if self.turned[0].is_empty() { 0 } else { self.headings_rad.len() * self.columns * self.rows }
-    }
-
-    /// The heading and the lower left cell of one of the largest squares.
-    fn at(&self, number: usize) -> (usize, i32, i32) {
-        let (place, heading) = (number / self.headings_rad.len(), number % self.headings_rad.len());
-        let (column, row) = ((place % self.columns) as i32, (place / self.columns) as i32);
-        (heading, self.cells.0.x + (column << self.level), self.cells.0.y + (row << self.level))
-    }
-
-    /// A square of positions, if the robot can be in it and the bound of its score reaches `least`.
-    fn node(
-        &self,
-        level: usize,
-        heading: usize,
-        x: i32,
-        y: i32,
-        least: u32,
-        left: &mut usize,
-    ) -> Option<Node> {
-        let (low, high) = self.cells;
-        let side = 1 << level;
-        let is_inside = x <= high.x && y <= high.y && x + side > low.x && y + side > low.y;
-        let is_possible = is_inside && self.grid.has_free(level, x, y);
-        let (points, bounds) = (&self.turned[heading], self.grid.level(level));
-        let (mut bound, mut most, mut seen) = (0, self.perfect, 0);
-        for some in points.chunks(SEARCH_CHUNK).take_while(|_| is_possible) {
-            if most < least {
-                break;
-            }
-            for &(dx, dy, weight) in some {
-                let score = u32::from(bounds.bound(x + dx, y + dy));
-                bound += weight * score;
-                most -= weight * (255 - score);
-            }
-            seen += some.len();
-        }
-        work::count(seen + 1);
-        *left = left.saturating_sub(seen + 1);
-        (is_possible && most >= least).then_some(Node { bound, level, heading, x, y })
-    }
-
-    /// Whether all poses of a square are close to a better pose.
-    fn is_same(&self, best: &Node, node: &Node) -> bool {
-        let turn = wrap_rad(self.headings_rad[node.heading] - self.headings_rad[best.heading]);
-        let (frame, last) = (self.grid.frame(), (1 << node.level) - 1);
-        let at = frame.center(Cell::new(best.x, best.y));
-        let corner = |x: i32, y: i32| (frame.center(Cell::new(x, y)) - at).norm() <= SAME_PLACE.m;
-        turn.abs() <= SAME_PLACE.rad
-            && corner(node.x, node.y)
-            && corner(node.x + last, node.y)
-            && corner(node.x, node.y + last)
-            && corner(node.x + last, node.y + last)
-    }
-}
-
-/// The lower left and the upper right cell of a window, or of the whole map.
-fn cells(frame: &GridFrame, window: Option<&Window>) -> (Cell, Cell) {
-    let last = Cell::new(frame.width() as i32 - 1, frame.height() as i32 - 1);
-    let Some(window) = window else { return (Cell::new(0, 0), last) };
-    let middle = Point2::from(window.pose.translation.vector);
-    let reach = Vector2::new(window.reach_m, window.reach_m);
-    let (low, high) = (frame.cell_at(&(middle - reach)), frame.cell_at(&(middle + reach)));
-    (Cell::new(low.x.max(0), low.y.max(0)), Cell::new(high.x.min(last.x), high.y.min(last.y)))
 }
 
 /// At most [`SEARCH_POINTS`] points, evenly along the surfaces, each with a whole weight.
 fn spread(points: &[ScanPoint]) -> Vec<(Point2<f64>, u32)> {
     let total: f64 = points.iter().map(|point| point.weight).sum();
-    let step = (total / SEARCH_POINTS as f64).max(1e-9);
+    let step = (total / SEARCH_POINTS as f64).max(f64::MIN_POSITIVE);
     let (mut passed, mut chosen) = (0.0, Vec::with_capacity(SEARCH_POINTS));
     for point in points {
         let before = libm::floor(passed / step);
@@ -298,23 +199,4 @@ fn spread(points: &[ScanPoint]) -> Vec<(Point2<f64>, u32)> {
     let square = |point: &(Point2<f64>, u32)| point.0.coords.norm_squared();
     chosen.sort_by(|a, b| square(b).total_cmp(&square(a)));
     chosen
-}
-
-fn headings(window: Option<&Window>, grid: &ScoreGrid) -> Vec<f64> {
-    let step_rad = 2.0 * grid.frame().resolution_m() / FAR_M;
-    let (middle_rad, reach_rad) =
-        window.map_or((0.0, PI), |window| (heading_rad(&window.pose), window.reach_rad.min(PI)));
-    let steps = libm::ceil(reach_rad / step_rad) as i32;
-    let last = if reach_rad < PI { steps } else { steps - 1 };
-    (-steps..=last).map(|step| middle_rad + f64::from(step) * reach_rad / f64::from(steps.max(1))).collect()
-}
-
-fn turned(points: &[(Point2<f64>, u32)], heading_rad: f64, cell_m: f64) -> Turned {
-    let rotation = interfaces::rotation(heading_rad);
-    let cell = |x: f64| libm::floor(x / cell_m + 0.5) as i32;
-    let turn = |(at, weight): &(Point2<f64>, u32)| {
-        let arm = rotation * at.coords;
-        (cell(arm.x), cell(arm.y), *weight)
-    };
-    points.iter().map(turn).collect()
 }

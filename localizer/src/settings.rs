@@ -1,3 +1,4 @@
+use crate::constants::{HARD_DRIFT, HARD_DRIFT_RADPM, LIMIT_NOISE_M};
 use interfaces::{SettingsCheck, SettingsError};
 
 /// Settings of a [`Localizer`](crate::Localizer).
@@ -36,11 +37,11 @@ impl Default for OdometryTrust {
     /// Hard drift: gains of 5 %, 3° per meter, and noise of the same size.
     fn default() -> Self {
         Self {
-            distance_gain: 0.05,
-            turn_gain: 0.05,
-            turn_radpm: 0.052,
-            distance_noise_m: 0.05,
-            turn_noise_rad: 0.05,
+            distance_gain: HARD_DRIFT,
+            turn_gain: HARD_DRIFT,
+            turn_radpm: HARD_DRIFT_RADPM,
+            distance_noise_m: HARD_DRIFT,
+            turn_noise_rad: HARD_DRIFT,
         }
     }
 }
@@ -48,7 +49,7 @@ impl Default for OdometryTrust {
 impl Default for LocalizerSettings {
     fn default() -> Self {
         Self {
-            range_noise_std_m: 0.01,
+            range_noise_std_m: LIMIT_NOISE_M,
             odometry: OdometryTrust::default(),
             lost_after_s: 2.0,
             rate_horizon_s: 1000.0,

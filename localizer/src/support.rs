@@ -61,8 +61,8 @@ impl Support {
 
     /// Whether the confirmed points alone fix x, y and heading: seen from the robot, `least` units of weight stand
     /// against a shift in every direction, and against a turn at an arm of one meter.
-    pub(crate) fn fixes_pose(&self, least: f64) -> bool {
-        self.geometry.symmetric_eigenvalues().min() >= least
+    pub(crate) fn fixes_pose(&self, min_information: f64) -> bool {
+        self.geometry.symmetric_eigenvalues().min() >= min_information
     }
 
     /// The distance by which a turn shifts the confirmed surfaces, m per rad: the root of the mean square.

@@ -5,10 +5,10 @@ use crate::coherent_motion::{Stayed, stayed};
 use crate::constants::{
     BETTER, MAJORITY, MAP_STD, MAX_SLIDE_M, MIN_SUPPORT, MINOR, MODEL_STD, MOVED_SHARE, OUTLIER, WIDE_GATE_M,
 };
+use crate::match_scene::MatchScene;
 use crate::matcher::{Match, difference};
 use crate::motion::Predicted;
 use crate::placement::Placement;
-use crate::scene::Scene;
 use crate::support::Support;
 use nalgebra::{Isometry2, Matrix3};
 
@@ -47,7 +47,7 @@ impl Tracked {
 /// Finds the pose of a scan near the predicted pose. `others` are other guesses: the pose at rest, the pose at constant
 /// velocity. If no guess gives a supported pose, the result is the match from the predicted pose.
 pub(crate) fn track<M: ChangingMap>(
-    scene: &Scene<M>,
+    scene: &MatchScene<M>,
     predicted: &Predicted,
     others: &[Isometry2<f64>],
 ) -> Tracked {
@@ -64,8 +64,8 @@ pub(crate) fn track<M: ChangingMap>(
             continue;
         }
         let candidate = tracked(scene, &found);
-        let least = best.support.confirmed + BETTER * by_odometry.support.weight();
-        if candidate.support.score() >= MAJORITY && candidate.support.confirmed > least {
+        let min_confirmed = best.support.confirmed + BETTER * by_odometry.support.weight();
+        if candidate.support.score() >= MAJORITY && candidate.support.confirmed > min_confirmed {
             best = candidate;
         }
     }
@@ -86,7 +86,7 @@ pub(crate) fn track<M: ChangingMap>(
 }
 
 /// The match with the prior of odometry, and whether the motion by odometry was not true.
-fn with_prior<M: ChangingMap>(scene: &Scene<M>, predicted: &Predicted) -> (Tracked, bool) {
+fn with_prior<M: ChangingMap>(scene: &MatchScene<M>, predicted: &Predicted) -> (Tracked, bool) {
     let Predicted { pose, covariance, .. } = predicted;
     let stay = || {
         let placement = Placement::rigid(pose);
@@ -113,7 +113,7 @@ fn surprise(found: &Match, predicted: &Isometry2<f64>, covariance: &Matrix3<f64>
 
 /// The result of a match, with an honest covariance: inflated where the residuals are larger than the noise, and by the
 /// errors that all points share.
-fn tracked<M: ChangingMap>(scene: &Scene<M>, found: &Match) -> Tracked {
+fn tracked<M: ChangingMap>(scene: &MatchScene<M>, found: &Match) -> Tracked {
     let inverse = found.information.try_inverse().unwrap_or_else(|| Matrix3::identity() * 1e3);
     let honest =
         |covariance: Matrix3<f64>| covariance * found.residual_ratio.max(1.0) + MODEL_STD.covariance();
@@ -162,7 +162,7 @@ mod tests {
         let known = map.frame().len() / 2;
         map.cells_mut()[..known].fill(CellState::Free);
         let (settings, clear) = (LocalizerSettings::default(), ClearBeams::default());
-        let scene = Scene {
+        let scene = MatchScene {
             surfels: &surfels,
             map: &map,
             points: &points,

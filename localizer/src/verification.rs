@@ -55,14 +55,14 @@ impl Verification {
         Self { scans, ..Self::default() }
     }
 
-    /// Counts a scan after a motion of the robot. A pose is certain after `least_scans` at the earliest.
+    /// Counts a scan after a motion of the robot. A pose is certain after `min_scans` at the earliest.
     /// `is_near`: the pose is near that which the odometry says.
     pub(crate) fn count(
         &mut self,
         support: &Support,
         moved: &Moved,
         is_near: bool,
-        least_scans: u32,
+        min_scans: u32,
     ) -> Verdict {
         let is_first = !std::mem::replace(&mut self.has_first_view, true);
         self.is_near = if is_first { is_near } else { self.is_near };
@@ -76,7 +76,7 @@ impl Verification {
         self.evidence_against = (self.evidence_against + against).max(0.0);
         if self.evidence_against >= ENOUGH {
             Verdict::Wrong
-        } else if self.evidence_for >= ENOUGH && self.scans >= least_scans {
+        } else if self.evidence_for >= ENOUGH && self.scans >= min_scans {
             Verdict::Certain
         } else {
             Verdict::Open

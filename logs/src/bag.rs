@@ -30,7 +30,7 @@ use crate::times;
 use inventory::Inventory;
 use message::{Selection, Topic};
 use messages::Messages;
-use plan::{Motion, Plan};
+use plan::{MotionSource, Plan};
 use readings::{Clock, Counts, RawReadings};
 use std::sync::Arc;
 
@@ -44,7 +44,7 @@ pub(crate) struct Bag {
 }
 
 impl Bag {
-    /// Opens a bag, and surveys it: its messages are read twice. `file` is its name in messages.
+    /// Opens a bag, and inspects it: its messages are read twice. `file` is its name in messages.
     pub(crate) fn open(
         file: &str,
         files: Vec<BagFile>,
@@ -57,19 +57,19 @@ impl Bag {
         let mut plan = Arc::new(Plan::new(&inventory, choice, &mut notes).map_err(unusable)?);
         let (stamp_ns, log_ns) = inventory.begin_ns.unwrap_or_default();
         let mut clock = Clock::Stamps(stamp_ns);
-        let mut survey = surveyed(&files, &plan, clock, unusable)?;
-        let mut times = times::repaired(&survey.1);
+        let mut inspection = inspected(&files, &plan, clock, unusable)?;
+        let mut times = times::repaired(&inspection.1);
         if !times.has_times {
-            let by_recording = surveyed(&files, &plan, Clock::Recording(log_ns), unusable)?;
+            let by_recording = inspected(&files, &plan, Clock::Recording(log_ns), unusable)?;
             let recorded = times::repaired(&by_recording.1);
             if recorded.has_times {
                 notes.push(
                     "the stamps of the scans are unusable: the times of the recording count".to_owned(),
                 );
-                (clock, survey, times) = (Clock::Recording(log_ns), by_recording, recorded);
+                (clock, inspection, times) = (Clock::Recording(log_ns), by_recording, recorded);
             }
         }
-        let (raw, raw_s, standing) = survey;
+        let (raw, raw_s, standing) = inspection;
         let raw_begin_s = raw_s.first().copied().unwrap_or_default();
         let stands = raw.stands() && standing.looks_so();
         let (odom_origin, impossible) = (raw.origin(), raw.impossible());
@@ -101,7 +101,7 @@ impl Bag {
             impossible: impossible.or_else(|| counts.doubts.impossible(counts.invalid_scans, stands)),
         };
         if stands {
-            Arc::make_mut(&mut plan).motion = Motion::Standing;
+            Arc::make_mut(&mut plan).motion = MotionSource::Standing;
         }
         let name = file.to_owned();
         Ok(Log::new(Self { name, files, plan, clock }, times.times_s, summary))
@@ -127,7 +127,7 @@ fn raw_readings(files: &[BagFile], plan: &Arc<Plan>, clock: Clock) -> RawReading
 }
 
 /// Reads all scans once: what the readings know at their end, the times of the scans, s, and how the scans look.
-fn surveyed(
+fn inspected(
     files: &[BagFile],
     plan: &Arc<Plan>,
     clock: Clock,

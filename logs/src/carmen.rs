@@ -14,9 +14,9 @@
 //! - Corrected logs write a second ODOM line after every scan, without a time, with the corrected pose; the next ODOM
 //!   line continues from there. Such a line is a new origin of the odometry, not a motion.
 
+mod inspection;
 mod line;
 mod readings;
-mod survey;
 #[cfg(test)]
 mod tests;
 
@@ -37,7 +37,7 @@ pub(crate) struct CarmenLog {
     rules: Rules,
 }
 
-/// How the lines of a log become readings, by its survey.
+/// How the lines of a log become readings, by its inspection.
 #[derive(Clone, Copy, Debug)]
 struct Rules {
     geometry: Geometry,
@@ -50,14 +50,14 @@ struct Rules {
 }
 
 impl CarmenLog {
-    /// Opens a log, and surveys it: every line is read once. `file` is its name in messages.
+    /// Opens a log, and inspects it: every line is read once. `file` is its name in messages.
     ///
     /// # Errors
     ///
     /// When the file cannot be read, when a line is invalid, or when no line is a scan. A last line that is cut off is
     /// left out, see [`LogSummary::notes`](crate::LogSummary::notes).
     pub(crate) fn open(file: &str, bytes: Bytes) -> Result<Log, LogError> {
-        let (rules, times_s, summary) = survey::of(&mut Lines::open(&bytes, file)?)?;
+        let (rules, times_s, summary) = inspection::of(&mut Lines::open(&bytes, file)?)?;
         Ok(Log::new(Self { bytes, file: file.to_owned(), rules }, times_s, summary))
     }
 }

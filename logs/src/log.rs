@@ -16,7 +16,7 @@ pub struct Log {
     times_s: Arc<[f64]>,
 }
 
-/// A log of one format, after its survey.
+/// A log of one format, after its inspection.
 pub(crate) trait Source: Debug + Send + Sync {
     /// The readings with their times as written, from the first on.
     fn raw_readings(&self) -> Result<Box<dyn RawReadings + Send>, LogError>;
@@ -96,7 +96,7 @@ impl Iterator for Readings {
             Ok(reading) => reading,
             failed => return Some(failed),
         };
-        // The file can have grown since the survey.
+        // The file can have grown since the inspection.
         let time_s = *self.times_s.get(self.given)?;
         self.given += 1;
         let shift_s = time_s - reading.time_s;

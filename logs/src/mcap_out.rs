@@ -10,8 +10,8 @@ mod tests;
 
 use crate::error::LogError;
 use crate::ros::{
-    Header, Odometry, Path, PointCloud2, PointField, Pose, PoseStamped, PoseWithCovariance, Time,
-    TransformStamped, Transforms, TwistWithCovariance, Vector, scan_message,
+    Header, Odometry, Path, PointCloud2, PointField, Pose, PoseStamped, Time, TransformStamped, Transforms,
+    scan_message,
 };
 use channels::Channels;
 use grids::Grids;
@@ -199,16 +199,7 @@ impl<W: Write + Seek> McapWriter<W> {
     }
 
     fn pose(&mut self, ns: i64, pose: &Isometry2<f64>, twist: &Twist) -> Result<(), LogError> {
-        let odometry = Odometry {
-            header: header(ns, ODOM),
-            child_frame_id: BASE.to_owned(),
-            pose: PoseWithCovariance { pose: Pose::in_plane(pose), covariance: Default::default() },
-            twist: TwistWithCovariance {
-                linear: Vector { x: twist.linear_mps, ..Vector::default() },
-                angular: Vector { z: twist.angular_radps, ..Vector::default() },
-                covariance: Default::default(),
-            },
-        };
+        let odometry = Odometry::in_plane(header(ns, ODOM), BASE, pose, twist);
         self.channels.write("/odom", "nav_msgs/Odometry", ns, &odometry)?;
         self.transforms("/tf", ns, &[(MAP, ODOM, self.map_to_odom), (ODOM, BASE, *pose)])
     }

@@ -1,7 +1,7 @@
 //! Odometry: the sum of its motions, and its pose at the time of a scan.
 
 use crate::standing::{MIN_MOTION_M, MIN_MOTION_RAD};
-use interfaces::{Twist, VelocitySample, heading_rad, wrap_rad};
+use interfaces::{LaserReading, Scan, Twist, VelocitySample, heading_rad, wrap_rad};
 use nalgebra::Isometry2;
 
 /// Between two poses that are farther apart than this, s, the odometry is not interpolated.
@@ -98,7 +98,7 @@ impl Odometry {
     }
 
     /// The pose and the velocity at a time; the newest pose where the time is not between two poses.
-    pub fn at(&self, time_s: f64) -> (Isometry2<f64>, Twist) {
+    fn at(&self, time_s: f64) -> (Isometry2<f64>, Twist) {
         let around = |pair: &&[(f64, Isometry2<f64>)]| pair[0].0 <= time_s && time_s <= pair[1].0;
         match self.samples.windows(2).rev().find(around) {
             Some([from, to]) if to.0 - from.0 <= LONGEST_GAP_S && to.0 > from.0 => {
@@ -108,8 +108,16 @@ impl Odometry {
         }
     }
 
+    /// The reading of a scan that ends at a time.
+    pub fn reading(&self, time_s: f64, mount: Isometry2<f64>, scan: Scan) -> LaserReading {
+        let (pose, twist) = self.at(time_s);
+        let sweeps = scan.sweep_s > 0.0;
+        let velocities = if sweeps { self.during(time_s - scan.sweep_s, time_s) } else { Vec::new() };
+        LaserReading { time_s, pose, twist, velocities, mount, scan }
+    }
+
     /// The mean velocities between the poses in an interval, the earliest first; the last one ends with the interval.
-    pub fn during(&self, from_s: f64, to_s: f64) -> Vec<VelocitySample> {
+    fn during(&self, from_s: f64, to_s: f64) -> Vec<VelocitySample> {
         let overlaps = |pair: &&[(f64, Isometry2<f64>)]| {
             pair[0].0 + MIN_OVERLAP_S < to_s
                 && from_s + MIN_OVERLAP_S < pair[1].0
@@ -124,7 +132,7 @@ impl Odometry {
     }
 
     /// The newest pose and its velocity.
-    pub fn newest(&self) -> (Isometry2<f64>, Twist) {
+    pub(crate) fn newest(&self) -> (Isometry2<f64>, Twist) {
         match self.samples.as_slice() {
             [.., from, to] if to.0 > from.0 && to.0 - from.0 <= LONGEST_GAP_S => between(from, to, 1.0),
             _ => (self.last(), Twist::STOP),

@@ -9,7 +9,7 @@ use crate::log::Log;
 use std::path::Path;
 
 impl Log {
-    /// Opens a log, and surveys it: it is read once or twice as a whole. `path` is
+    /// Opens a log, and inspects it: it is read once or twice as a whole. `path` is
     ///
     /// - a CARMEN log, plain or compressed with gzip,
     /// - a file of a bag of ROS 2: MCAP, an SQLite database, or one of them compressed with zstd,

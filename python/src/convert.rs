@@ -1,6 +1,6 @@
 //! Errors and arrays.
 
-use interfaces::{GridFrame, heading_rad};
+use interfaces::{CellState, GridFrame, heading_rad};
 use nalgebra::Isometry2;
 use numpy::{
     AllowTypeChange, Element, IntoPyArray, PyArray1, PyArray2, PyArrayDescrMethods, PyArrayLike1,
@@ -230,4 +230,13 @@ pub(crate) fn grid<'py, T: numpy::Element>(
     values: Vec<T>,
 ) -> PyResult<Bound<'py, PyArray2<T>>> {
     values.into_pyarray(py).reshape([frame.height(), frame.width()])
+}
+
+/// The state of a cell as a number.
+pub(crate) fn state_number(state: CellState) -> i8 {
+    match state {
+        CellState::Unknown => -1,
+        CellState::Free => 0,
+        CellState::Blocked => 1,
+    }
 }

@@ -1,6 +1,7 @@
-use crate::convert::{log_error, pose_values, rows_array, value_error};
+use crate::convert::{log_error, pose_values, rows_array, state_number, value_error};
 use crate::mapper::Mapper;
 use crate::reading::Reading;
+use crate::settings::mapper_settings;
 use ::logs::{LogSummary, PoseSource, TopicChoice};
 use interfaces::PoseMode;
 use localizer::{PoseState, TrajectoryPose};
@@ -118,7 +119,7 @@ pub(crate) fn map_log(
     };
     let mut settings = SurveySettings { resolution_m: cell, ..SurveySettings::of(mode) };
     settings.filter.max_range_m = max_range;
-    settings.mapper = crate::mapper::settings_of(settings.mapper, estimator, None, None, range_noise)?;
+    settings.mapper = mapper_settings(settings.mapper, estimator, None, None, range_noise)?;
     py.detach(|| learn(&log.log, settings, range_noise.is_none()))
 }
 
@@ -191,7 +192,7 @@ impl Survey {
     /// The map of what is permanent, int8: -1 unknown, 0 free, 1 blocked.
     #[getter]
     fn permanent<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<i8>>> {
-        let states = self.permanent.cells().iter().map(|state| crate::mapper::state(*state)).collect();
+        let states = self.permanent.cells().iter().map(|state| state_number(*state)).collect();
         crate::convert::grid(py, self.permanent.frame(), states)
     }
 

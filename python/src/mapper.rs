@@ -1,11 +1,12 @@
 use crate::convert::{
-    Numbers, Ranges, SnapshotError, grid, optional_index, rows_array, value_error, world_error,
+    Numbers, Ranges, SnapshotError, grid, optional_index, rows_array, state_number, value_error, world_error,
 };
 use crate::reading::Reading;
+use crate::settings::mapper_settings;
 use crate::snapshots::Kind;
 use crate::spec::{driving, spec_of};
 use evaluation::physics_trial;
-use interfaces::{CellState, GridFrame, Transition};
+use interfaces::{GridFrame, Transition};
 use mapper::{CellStatistics, MapperSettings};
 use nalgebra::Point2;
 use numpy::{IntoPyArray, PyArray1, PyArray2};
@@ -38,25 +39,6 @@ impl Mapper {
 /// What was observed of a cell: its name, and its value.
 type Figure<T> = (&'static str, fn(&CellStatistics) -> T);
 
-/// The settings with another estimator, occupancy model, gap and range noise.
-pub(crate) fn settings_of(
-    mut settings: MapperSettings,
-    estimator: Option<&str>,
-    occupancy: Option<&str>,
-    max_gap: Option<f64>,
-    range_noise: Option<f64>,
-) -> PyResult<MapperSettings> {
-    if let Some(name) = estimator {
-        settings.estimator = name.parse().map_err(value_error)?;
-    }
-    if let Some(name) = occupancy {
-        settings.occupancy = name.parse().map_err(value_error)?;
-    }
-    settings.max_gap = max_gap.unwrap_or(settings.max_gap);
-    settings.steady.range_noise_std_m = range_noise.unwrap_or(settings.steady.range_noise_std_m);
-    Ok(settings)
-}
-
 impl Mapper {
     /// An empty map for a world, with the settings that the programs use.
     pub(crate) fn for_world(
@@ -66,7 +48,7 @@ impl Mapper {
         max_gap: Option<f64>,
     ) -> PyResult<Self> {
         let settings = physics_trial::settings(spec).map_err(world_error)?.mapper;
-        let settings = settings_of(settings, estimator, occupancy, max_gap, None)?;
+        let settings = mapper_settings(settings, estimator, occupancy, max_gap, None)?;
         Ok(Self { mapper: mapper::Mapper::new(&settings, spec.frame).map_err(value_error)? })
     }
 
@@ -104,7 +86,8 @@ impl Mapper {
                     "a map of {width:?} m x {height:?} m with cells of {cell:?} m: it must have 1 to 2^26 cells"
                 ))
             })?;
-        let settings = settings_of(MapperSettings::default(), estimator, occupancy, max_gap, range_noise)?;
+        let settings =
+            mapper_settings(MapperSettings::default(), estimator, occupancy, max_gap, range_noise)?;
         Ok(Self { mapper: mapper::Mapper::new(&settings, frame).map_err(value_error)? })
     }
 
@@ -213,7 +196,7 @@ impl Mapper {
 
     /// The map, int8: -1 unknown, 0 free, 1 blocked.
     fn states<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<i8>>> {
-        self.array(py, |mapper, index| state(mapper.states().cells()[index]))
+        self.array(py, |mapper, index| state_number(mapper.states().cells()[index]))
     }
 
     /// The rate of every cell, cycles per second; 0: it never changed.
@@ -294,7 +277,12 @@ impl Mapper {
     /// The changes of cells in the last update, shape (changes, 4), int32: row, column, state before, state after.
     fn changes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<i32>>> {
         let row = |change: &Transition| {
-            [change.cell.y, change.cell.x, i32::from(state(change.before)), i32::from(state(change.after))]
+            [
+                change.cell.y,
+                change.cell.x,
+                i32::from(state_number(change.before)),
+                i32::from(state_number(change.after)),
+            ]
         };
         rows_array(py, self.mapper.transitions().iter().map(row))
     }
@@ -326,14 +314,5 @@ impl Mapper {
         let (rows, columns) = self.size();
         let (cell, readings) = (self.cell(), self.mapper.readings());
         format!("<curious.Mapper: {rows} x {columns} cells of {cell} m, {readings} readings>")
-    }
-}
-
-/// A state as a number.
-pub(crate) fn state(state: CellState) -> i8 {
-    match state {
-        CellState::Unknown => -1,
-        CellState::Free => 0,
-        CellState::Blocked => 1,
     }
 }

@@ -1,6 +1,8 @@
-//! The settings of tasks, from the keywords of a call.
+//! The settings of tasks and of maps, from the keywords of a call.
 
+use crate::convert::value_error;
 use environments::{DriveSettings, ExploreSettings};
+use mapper::MapperSettings;
 use pyo3::exceptions::{PyOverflowError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -73,4 +75,23 @@ where
         PyErr::from_type(kind, format!("the setting `{key}` cannot be {value}: {message}"))
     })?;
     Ok(())
+}
+
+/// The settings with another estimator, occupancy model, gap and range noise.
+pub(crate) fn mapper_settings(
+    mut settings: MapperSettings,
+    estimator: Option<&str>,
+    occupancy: Option<&str>,
+    max_gap: Option<f64>,
+    range_noise: Option<f64>,
+) -> PyResult<MapperSettings> {
+    if let Some(name) = estimator {
+        settings.estimator = name.parse().map_err(value_error)?;
+    }
+    if let Some(name) = occupancy {
+        settings.occupancy = name.parse().map_err(value_error)?;
+    }
+    settings.max_gap = max_gap.unwrap_or(settings.max_gap);
+    settings.steady.range_noise_std_m = range_noise.unwrap_or(settings.steady.range_noise_std_m);
+    Ok(settings)
 }

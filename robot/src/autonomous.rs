@@ -2,7 +2,7 @@ use crate::belief::{Belief, Permission};
 use crate::messages::{Level, Message};
 use crate::pilot::{GoalCount, Pilot, StrategyState};
 use agent::{Agent, Features, Goal, Stay, Travel};
-use controller::{Driver, Outcome, Situation, Status};
+use controller::{ControlInput, Driver, Outcome, Status};
 use interfaces::{Values, value};
 use mapper::Mapper;
 use nalgebra::{Isometry2, Point2};
@@ -113,11 +113,11 @@ impl<G: GoalSelector, D: Driver> Pilot for Autonomous<G, D> {
 
     fn command(&mut self, belief: &Belief, features: Features, mapper: &Mapper) -> D::Command {
         self.selector.observe(features, mapper);
-        let situation = situation(mapper, &belief.pose);
+        let input = input(mapper, &belief.pose);
         if belief.permission != Permission::Drive {
-            return self.driver.pause(&situation, belief.permission == Permission::LookAround);
+            return self.driver.pause(&input, belief.permission == Permission::LookAround);
         }
-        let command = self.driver.drive(&situation);
+        let command = self.driver.drive(&input);
         let last = match self.driver.status() {
             Status::Idle if !self.is_done => None,
             Status::Finished(outcome) => Some(outcome),
@@ -128,7 +128,7 @@ impl<G: GoalSelector, D: Driver> Pilot for Autonomous<G, D> {
         };
         self.start_next(&belief.pose, mapper, last);
         // Drive to the new goal in the same tick. The driver already has the transitions of this reading.
-        self.driver.drive(&Situation { transitions: &[], ..situation })
+        self.driver.drive(&ControlInput { transitions: &[], ..input })
     }
 
     fn forget_map(&mut self) {
@@ -167,8 +167,8 @@ impl<G: GoalSelector, D: Driver> Pilot for Autonomous<G, D> {
     }
 }
 
-fn situation<'a>(mapper: &'a Mapper, pose: &'a Isometry2<f64>) -> Situation<'a> {
-    Situation {
+fn input<'a>(mapper: &'a Mapper, pose: &'a Isometry2<f64>) -> ControlInput<'a> {
+    ControlInput {
         time: mapper.time(),
         pose,
         map: mapper.states(),
@@ -184,7 +184,7 @@ struct TravelTimes<'a, D> {
 
 impl<D: Driver> Travel for TravelTimes<'_, D> {
     fn times(&mut self, mapper: &Mapper, pose: &Isometry2<f64>, times: &mut Vec<f64>) {
-        self.driver.travel_times(&situation(mapper, pose), times);
+        self.driver.travel_times(&input(mapper, pose), times);
     }
 }
 

@@ -268,11 +268,11 @@ impl Driver for Jumping {
         self.goal
     }
 
-    fn drive(&mut self, _: &controller::Situation) {
+    fn drive(&mut self, _: &controller::ControlInput) {
         self.asked.push("drive");
     }
 
-    fn pause(&mut self, _: &controller::Situation, looks_around: bool) {
+    fn pause(&mut self, _: &controller::ControlInput, looks_around: bool) {
         self.asked.push(if looks_around { "look around" } else { "rest" });
     }
 
@@ -283,7 +283,7 @@ impl Driver for Jumping {
         }
     }
 
-    fn travel_times(&mut self, _: &controller::Situation, _: &mut Vec<f64>) {}
+    fn travel_times(&mut self, _: &controller::ControlInput, _: &mut Vec<f64>) {}
 
     fn forget_map(&mut self) {
         self.asked.push("forget map");

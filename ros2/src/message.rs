@@ -1,8 +1,8 @@
 //! What the nodes send and receive: messages, and the topics that carry them.
 
 pub(crate) use logs::ros::{
-    Header, LaserScan, OccupancyGrid, OccupancyGridUpdate, Odometry, Pose, PoseStamped, PoseWithCovariance,
-    Time, TransformStamped, Transforms, TwistWithCovariance, Vector,
+    Header, LaserScan, OccupancyGrid, OccupancyGridUpdate, Odometry, Pose, PoseStamped, Time,
+    TransformStamped, Transforms, Vector,
 };
 
 use serde::{Deserialize, Serialize};

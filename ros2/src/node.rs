@@ -10,10 +10,10 @@ mod tests;
 
 use crate::link::{Event, Link};
 use crate::message::{Message, Time, Topic, header};
+use crate::node_state_file::NodeStateFile;
 use crate::notes::{Notes, Output};
 use crate::parameters::Parameters;
 use crate::pilot::LivePilot;
-use crate::saves::Saves;
 use crate::source::{FrameNames, LiveReading, ScanCount, Source};
 use anyhow::anyhow;
 use interfaces::{LaserReading, PoseMode};
@@ -64,7 +64,7 @@ pub struct CuriousNode<L: Link> {
     source: Source,
     robot: Robot<LaserReading, LivePilot>,
     published: Published,
-    saves: Option<Saves>,
+    state_file: Option<NodeStateFile>,
     /// The time of the last reading of the state that was loaded.
     continued: Option<Time>,
     notes: Notes,
@@ -92,9 +92,10 @@ impl<L: Link> CuriousNode<L> {
         let pilot = LivePilot::new(parameters, &settings)?;
         let mut robot = settings.robot(frame, None, Isometry2::identity(), pilot)?;
         let mut notes = Notes::new(output);
-        let saves = state.map(|path| Saves::new(path, &settings, &frame, parameters)).transpose()?;
+        let state_file =
+            state.map(|path| NodeStateFile::new(path, &settings, &frame, parameters)).transpose()?;
         let continued =
-            saves.as_ref().map(|saves| saves.restore(&mut robot, &mut notes)).transpose()?.flatten();
+            state_file.as_ref().map(|file| file.restore(&mut robot, &mut notes)).transpose()?.flatten();
         let mut published = Published::new(parameters);
         if let Some(last) = continued {
             let header = header(last, &parameters.map_frame);
@@ -111,7 +112,7 @@ impl<L: Link> CuriousNode<L> {
             parameters: parameters.clone(),
             robot,
             published,
-            saves,
+            state_file,
             continued,
             notes,
             last: None,
@@ -258,7 +259,7 @@ impl<L: Link> CuriousNode<L> {
             self.notes.note(&format!("waiting: {why}"), now);
         }
         self.answer_askers();
-        let is_due = self.saves.as_ref().is_some_and(Saves::is_due) && self.report.readings > 0;
+        let is_due = self.state_file.as_ref().is_some_and(NodeStateFile::is_due) && self.report.readings > 0;
         if is_due
             && self.robot.is_settled()
             && let Some(Err(why)) = self.save()

@@ -7,7 +7,7 @@ use crate::order::Order;
 use crate::parameters::{Mode, Navigator, Parameters};
 use agent::{Agent, Features, Policy};
 use anyhow::{Context, anyhow};
-use controller::{Controller, DiffDrive, Driver, Situation, Status};
+use controller::{ControlInput, Controller, DiffDrive, Driver, Status};
 use interfaces::{CellState, Grid, Values};
 use mapper::Mapper;
 use nalgebra::Point2;
@@ -132,21 +132,21 @@ impl Driver for LiveDriver {
         self.navigation.as_ref().map_or_else(|| self.controller.goal(), Navigation::goal)
     }
 
-    fn drive(&mut self, situation: &Situation) -> Order {
+    fn drive(&mut self, input: &ControlInput) -> Order {
         match &mut self.navigation {
-            None => Order::Velocity(self.controller.drive(situation)),
+            None => Order::Velocity(self.controller.drive(input)),
             Some(navigation) => {
-                self.controller.pause(situation, false); // so that it knows the map
-                navigation.drive(situation)
+                self.controller.pause(input, false); // so that it knows the map
+                navigation.drive(input)
             }
         }
     }
 
-    fn pause(&mut self, situation: &Situation, looks_around: bool) -> Order {
-        let twist = self.controller.pause(situation, looks_around);
+    fn pause(&mut self, input: &ControlInput, looks_around: bool) -> Order {
+        let twist = self.controller.pause(input, looks_around);
         match &mut self.navigation {
             None => Order::Velocity(twist),
-            Some(navigation) => navigation.pause(situation, looks_around),
+            Some(navigation) => navigation.pause(input, looks_around),
         }
     }
 
@@ -158,8 +158,8 @@ impl Driver for LiveDriver {
         self.navigation.as_ref().map_or_else(|| self.controller.trouble(), Navigation::trouble)
     }
 
-    fn travel_times(&mut self, situation: &Situation, times: &mut Vec<f64>) {
-        self.controller.travel_times(situation, times);
+    fn travel_times(&mut self, input: &ControlInput, times: &mut Vec<f64>) {
+        self.controller.travel_times(input, times);
     }
 
     fn forget_map(&mut self) {

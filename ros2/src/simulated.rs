@@ -1,10 +1,7 @@
 //! A simulated world as a robot of ROS.
 
 use crate::link::{Event, Link};
-use crate::message::{
-    Clock, Message, Odometry, Pose, PoseWithCovariance, Time, Topic, TwistWithCovariance, Vector, header,
-    transform,
-};
+use crate::message::{Clock, Message, Odometry, Pose, Time, Topic, header, transform};
 use interfaces::{LaserReading, Twist};
 use logs::ros::scan_message;
 use nalgebra::Isometry2;
@@ -162,15 +159,8 @@ impl<L: Link> SimulatedRobot<L> {
     fn view(&self, time_s: f64) -> Option<[Odometry; 2]> {
         let robot = self.fleet.robots().nth(self.driven)?;
         let (pose, twist) = robot.odometry();
-        let message = |frame: &str, pose: &Isometry2<f64>, twist: &Twist| Odometry {
-            header: header(self.stamp(time_s), frame),
-            child_frame_id: BASE.to_owned(),
-            pose: PoseWithCovariance { pose: Pose::in_plane(pose), covariance: Default::default() },
-            twist: TwistWithCovariance {
-                linear: Vector { x: twist.linear_mps, ..Vector::default() },
-                angular: Vector { z: twist.angular_radps, ..Vector::default() },
-                covariance: Default::default(),
-            },
+        let message = |frame: &str, pose: &Isometry2<f64>, twist: &Twist| {
+            Odometry::in_plane(header(self.stamp(time_s), frame), BASE, pose, twist)
         };
         Some([message(ODOM, &pose, &twist), message("world", &robot.pose, &robot.twist)])
     }

@@ -5,7 +5,7 @@ mod motion;
 use crate::message::{Header, LaserScan, Message, Odometry, Time, Topic, Transforms};
 use interfaces::{LaserReading, Scan};
 use logs::ros::{Frames, mounted, scan_of};
-use motion::{Motion, Motions};
+use motion::Motions;
 use nalgebra::{Isometry2, Isometry3};
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
@@ -123,9 +123,7 @@ impl Source {
                 self.notes.push("a scan is left out: there is no pose of the robot at its time".to_owned());
                 continue;
             }
-            let Motion { pose, in_odom, twist, velocities } = self.motions.at(end_ns, scan.sweep_s);
-            let time_s = self.motions.time_s(end_ns);
-            let reading = LaserReading { time_s, pose, twist, velocities, mount, scan };
+            let (reading, in_odom) = self.motions.reading(end_ns, mount, scan);
             return Some(LiveReading { reading, in_odom, stamp: Time::from_ns(end_ns), is_restart });
         }
     }

@@ -47,8 +47,8 @@ pub struct Search<'a> {
     compared: Vec<LaserReading>,
 }
 
-/// A motion: the pose of the frame of the route in the map.
-struct Motion {
+/// An alignment: the pose of the frame of the route in the map.
+struct Alignment {
     motion: Isometry2<f64>,
     /// The number of scans that propose it, or that fit with it.
     scans: usize,
@@ -92,15 +92,15 @@ impl<'a> Search<'a> {
                 return Ok(fitted.motion);
             }
         }
-        let mut fits: Vec<Motion> =
+        let mut fits: Vec<Alignment> =
             self.proposed().iter().take(MAX_MOTIONS).map(|proposed| self.fitted(&proposed.motion)).collect();
         fits.sort_by(|a, b| b.confirmed.total_cmp(&a.confirmed));
         let certain = fits.first().map_or(0, |best| best.scans);
-        let is_enough = |best: &&Motion| certain > 0 && best.scans as f64 >= MIN_FITTING * compared as f64;
+        let is_enough = |best: &&Alignment| certain > 0 && best.scans as f64 >= MIN_FITTING * compared as f64;
         let Some(best) = fits.first().filter(is_enough) else {
             return Err(SurveyError::OtherPlace { certain, compared });
         };
-        let is_other = |other: &&Motion| {
+        let is_other = |other: &&Alignment| {
             self.compared.iter().any(|reading| !is_same(&best.motion, &other.motion, &reading.pose))
         };
         match fits[1..].iter().find(is_other) {
@@ -112,9 +112,9 @@ impl<'a> Search<'a> {
     }
 
     /// The different motions that single scans propose, the most frequent first.
-    fn proposed(&self) -> Vec<Motion> {
+    fn proposed(&self) -> Vec<Alignment> {
         let mut lines = self.place.lines.matcher();
-        let mut proposed: Vec<Motion> = Vec::new();
+        let mut proposed: Vec<Alignment> = Vec::new();
         for reading in self.compared.iter().step_by(self.compared.len().div_ceil(SEARCHED).max(1)) {
             for LineFit { pose, confirmed } in lines.anywhere(reading) {
                 let motion = pose * reading.pose.inverse();
@@ -122,7 +122,7 @@ impl<'a> Search<'a> {
                     Some(known) => {
                         (known.scans, known.confirmed) = (known.scans + 1, known.confirmed + confirmed)
                     }
-                    None => proposed.push(Motion { motion, scans: 1, confirmed }),
+                    None => proposed.push(Alignment { motion, scans: 1, confirmed }),
                 }
             }
             proposed.sort_by_key(|motion| std::cmp::Reverse(motion.scans));
@@ -135,13 +135,13 @@ impl<'a> Search<'a> {
     }
 
     /// A motion that is corrected by the scans, first from a wide neighborhood.
-    fn fitted(&self, motion: &Isometry2<f64>) -> Motion {
+    fn fitted(&self, motion: &Isometry2<f64>) -> Alignment {
         let first = self.corrected(motion, PROPOSED_STD);
         self.corrected(&first.motion, CORRECTED_STD)
     }
 
     /// Matches the scans that are compared, from their poses by a motion: the median of the motions that they say.
-    fn corrected(&self, motion: &Isometry2<f64>, std: (f64, f64)) -> Motion {
+    fn corrected(&self, motion: &Isometry2<f64>, std: (f64, f64)) -> Alignment {
         let mut lines = self.place.lines.matcher();
         let matched = |reading: &LaserReading| {
             let LineFit { pose, confirmed } = lines.matched(reading, &(motion * reading.pose), std)?;
@@ -150,7 +150,7 @@ impl<'a> Search<'a> {
         let (pairs, confirmed): (Vec<[Isometry2<f64>; 2]>, Vec<f64>) =
             self.compared.iter().filter_map(matched).unzip();
         if pairs.is_empty() {
-            return Motion { motion: *motion, scans: 0, confirmed: 0.0 };
+            return Alignment { motion: *motion, scans: 0, confirmed: 0.0 };
         }
         let reference = heading_rad(motion);
         let turns = pairs.iter().map(|[map, own]| wrap_rad(heading_rad(map) - heading_rad(own) - reference));
@@ -160,7 +160,7 @@ impl<'a> Search<'a> {
         let (x, y): (Vec<f64>, Vec<f64>) = pairs.iter().map(offset).map(|at| (at.x, at.y)).unzip();
         let translation = Vector2::new(median(x.into_iter()), median(y.into_iter()));
         let motion = Isometry2::from_parts(translation.into(), rotation);
-        Motion { motion, scans: pairs.len(), confirmed: confirmed.iter().sum() }
+        Alignment { motion, scans: pairs.len(), confirmed: confirmed.iter().sum() }
     }
 }
 

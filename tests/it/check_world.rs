@@ -46,10 +46,9 @@ fn a_description_on_a_full_disk() {
     assert!(["two_blocks.png", "open_hall.png"].iter().all(|name| folder.path().join(name).exists()));
 }
 
-#[test]
-fn robots_are_described_and_the_program_that_runs_the_file_is_named() {
-    let folder = tempfile::tempdir().unwrap();
-    let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+/// Worlds and a map that differ from the shipped ones.
+fn write_variants(folder: &Path) {
+    let write = |name: &str, text: &str| std::fs::write(folder.join(name), text).unwrap();
     let four_rooms = include_str!("../../worlds/four_rooms.toml");
     write("none.toml", &four_rooms.replace("kind = \"driven\"", "kind = \"standing\""));
     write("omni.toml", &four_rooms.replacen("[robot.drive]", "[robot.drive]\nkind = \"omni\"", 1));
@@ -73,6 +72,12 @@ fn robots_are_described_and_the_program_that_runs_the_file_is_named() {
         "image: map.pgm\nresolution: 0.05\norigin: [0, 0, 0]\noccupied_thresh: 0.65\nfree_thresh: 0.2\n",
     );
     write("map.pgm", "P2 2 1 255 0 255\n");
+}
+
+#[test]
+fn robots_are_described_and_the_program_that_runs_the_file_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    write_variants(folder.path());
     let said = |file: &str| {
         let ended = check(folder.path(), &[file]);
         assert_eq!(ended.status.code(), Some(0), "{ended:?}");

@@ -1,7 +1,7 @@
 //! Shared parts of the tests: a simulated run of four rooms, a robot that drives a tour, another that drives back
 //! and forth, and scans from a simple geometry. No physics, no agent.
 
-use crate::scene::{Obstacle, Outline, Robot, RobotState, Scene, Sight, TimeUnit};
+use crate::scene::{Obstacle, Outline, RobotState, Scene, SceneRobot, Sight, TimeUnit};
 use crate::view::{Measured, View};
 use agent::Features;
 use evaluation::metrics::MapScores;
@@ -82,7 +82,7 @@ impl FakeRun {
             next: 1,
             speed_mps,
         };
-        let robot = |name: &str, (x_m, y_m), is_driven| Robot {
+        let robot = |name: &str, (x_m, y_m), is_driven| SceneRobot {
             name: name.into(),
             pose: pose(x_m, y_m, 0.0),
             radius_m: RADIUS_M,

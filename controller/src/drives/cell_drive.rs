@@ -1,4 +1,4 @@
-use super::{Body, Drive, Scene};
+use super::{Body, Drive, DriveScene};
 use crate::planner::{InflationSettings, Moves, Path};
 use crate::settings::{NavigationSettings, Settings};
 use interfaces::Step;
@@ -35,20 +35,20 @@ impl Drive for CellDrive {
         }
     }
 
-    fn follow(&mut self, scene: &Scene, path: &Path) -> Step {
+    fn follow(&mut self, scene: &DriveScene, path: &Path) -> Step {
         let frame = scene.costmap.frame();
-        let here = frame.cell_at(&scene.situation.position());
+        let here = frame.cell_at(&scene.input.position());
         let next = path.ahead().first().map(|next| frame.cell_at(next));
         // The robot waits for a cell that became blocked, until there is another path.
         let free = next.filter(|next| scene.costmap.is_traversable(*next));
         free.and_then(|next| Step::between(here, next)).unwrap_or(Step::Stay)
     }
 
-    fn rest(&mut self, _: &Scene) -> Step {
+    fn rest(&mut self, _: &DriveScene) -> Step {
         Step::Stay
     }
 
-    fn recover(&mut self, _: &Scene, _: f64) -> Option<Step> {
+    fn recover(&mut self, _: &DriveScene, _: f64) -> Option<Step> {
         None
     }
 }

@@ -6,9 +6,9 @@ mod diff_drive;
 pub use cell_drive::CellDrive;
 pub use diff_drive::{DiffDrive, DiffDriveSettings};
 
+use crate::control_input::ControlInput;
 use crate::dynamic_obstacles::DynamicObstacleFilter;
 use crate::planner::{Costmap, Moves, Path};
-use crate::situation::Situation;
 use interfaces::Values;
 
 /// The properties of a robot that planning needs.
@@ -34,9 +34,9 @@ pub struct Body {
 
 /// The inputs of a drive when it chooses a command.
 #[derive(Clone, Copy, Debug)]
-pub struct Scene<'a> {
+pub struct DriveScene<'a> {
     /// The inputs of the controller.
-    pub situation: &'a Situation<'a>,
+    pub input: &'a ControlInput<'a>,
     /// The inflated map.
     pub costmap: &'a Costmap,
     /// The filter that states which obstacles may move.
@@ -54,19 +54,19 @@ pub trait Drive {
 
     /// The next command along `path`; the robot has not reached the end of the path yet. If the way is blocked by a
     /// sensed obstacle, the robot stops.
-    fn follow(&mut self, scene: &Scene, path: &Path) -> Self::Command;
+    fn follow(&mut self, scene: &DriveScene, path: &Path) -> Self::Command;
 
     /// The command to stay at the present position.
-    fn rest(&mut self, scene: &Scene) -> Self::Command;
+    fn rest(&mut self, scene: &DriveScene) -> Self::Command;
 
     /// The command to look around: at the present position first, then from elsewhere.
-    fn look_around(&mut self, scene: &Scene) -> Self::Command {
+    fn look_around(&mut self, scene: &DriveScene) -> Self::Command {
         self.rest(scene)
     }
 
     /// The next command of a recovery that may free a stuck robot, `elapsed_s` after the recovery began;
     /// `None` when the recovery is over.
-    fn recover(&mut self, scene: &Scene, elapsed_s: f64) -> Option<Self::Command>;
+    fn recover(&mut self, scene: &DriveScene, elapsed_s: f64) -> Option<Self::Command>;
 
     /// Everything that a command changes and a later command needs: what a state file holds of the drive. Empty for a
     /// drive that remembers nothing.

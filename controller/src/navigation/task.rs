@@ -1,8 +1,8 @@
-use crate::drives::{Drive, Scene};
+use crate::control_input::ControlInput;
+use crate::drives::{Drive, DriveScene};
 use crate::dynamic_obstacles::DynamicObstacleFilter;
 use crate::planner::{Path, PlanEnd, Planner};
 use crate::settings::NavigationSettings;
-use crate::situation::Situation;
 use nalgebra::Point2;
 
 /// Recoveries farther apart than this are counted separately, m.
@@ -20,14 +20,14 @@ pub(crate) struct Surroundings {
 /// The inputs of one tick.
 pub(crate) struct Tick<'a> {
     pub(crate) settings: &'a NavigationSettings,
-    pub(crate) situation: &'a Situation<'a>,
+    pub(crate) input: &'a ControlInput<'a>,
     pub(crate) surroundings: &'a mut Surroundings,
 }
 
 impl Tick<'_> {
-    pub(crate) fn scene(&self) -> Scene<'_> {
+    pub(crate) fn scene(&self) -> DriveScene<'_> {
         let Surroundings { planner, dynamic } = &*self.surroundings;
-        Scene { situation: self.situation, costmap: planner.costmap(), dynamic }
+        DriveScene { input: self.input, costmap: planner.costmap(), dynamic }
     }
 }
 
@@ -66,8 +66,8 @@ pub(crate) struct NavigationTask {
 impl NavigationTask {
     /// A task that drives from the present position to `goal`, or until the robot is `max_distance_m` from its
     /// start. The task is given up after `timeout_s`.
-    pub(crate) fn new(situation: &Situation, goal: Point2<f64>, max_distance_m: f64, timeout_s: f64) -> Self {
-        let (position, time) = (situation.position(), situation.time);
+    pub(crate) fn new(input: &ControlInput, goal: Point2<f64>, max_distance_m: f64, timeout_s: f64) -> Self {
+        let (position, time) = (input.position(), input.time);
         Self {
             goal,
             start: position,
@@ -91,8 +91,8 @@ impl NavigationTask {
     }
 
     /// The time since the task began, s.
-    pub(crate) fn elapsed_s(&self, situation: &Situation) -> f64 {
-        situation.time - self.began_s
+    pub(crate) fn elapsed_s(&self, input: &ControlInput) -> f64 {
+        input.time - self.began_s
     }
 
     /// One tick: the progress, with the next command.
@@ -102,8 +102,8 @@ impl NavigationTask {
         path: &mut Path,
         drive: &mut D,
     ) -> Progress<D::Command> {
-        let (situation, position) = (tick.situation, tick.situation.position());
-        if self.elapsed_s(situation) >= self.timeout_s {
+        let (input, position) = (tick.input, tick.input.position());
+        if self.elapsed_s(input) >= self.timeout_s {
             return Progress::GivenUp;
         }
         let off_path_m = path.advance(&position);
@@ -111,8 +111,8 @@ impl NavigationTask {
             self.plan(tick, path);
         }
         let scene = tick.scene();
-        if self.waits(situation) {
-            self.anchor = (position, situation.time);
+        if self.waits(input) {
+            self.anchor = (position, input.time);
             let may_stay = scene.costmap.is_traversable(scene.costmap.frame().cell_at(&position));
             let command = if may_stay { drive.rest(&scene) } else { drive.follow(&scene, path) };
             return Progress::Underway(command);
@@ -120,15 +120,15 @@ impl NavigationTask {
         if let Some(end) = self.plan.filter(|_| path.remaining_m(&position) <= drive.body().tolerance_m) {
             return Progress::Arrived(end);
         }
-        if !self.keeps_trying(tick.settings, situation) {
+        if !self.keeps_trying(tick.settings, input) {
             return Progress::GivenUp;
         }
         if let Some(since_s) = self.recovering_since_s {
-            if let Some(command) = drive.recover(&scene, situation.time - since_s) {
+            if let Some(command) = drive.recover(&scene, input.time - since_s) {
                 return Progress::Underway(command);
             }
             self.recovering_since_s = None;
-            self.anchor = (position, situation.time);
+            self.anchor = (position, input.time);
             // A recovery moves the robot off its path: plan from the new position.
             self.planned_at_s = f64::NEG_INFINITY;
             self.plan = None;
@@ -138,8 +138,8 @@ impl NavigationTask {
 
     /// Whether the robot waits for the path to become free. When the wait is over, the robot drives as near to the
     /// goal as possible.
-    fn waits(&mut self, situation: &Situation) -> bool {
-        let waits = self.waits_until_s.is_some_and(|until_s| situation.time < until_s);
+    fn waits(&mut self, input: &ControlInput) -> bool {
+        let waits = self.waits_until_s.is_some_and(|until_s| input.time < until_s);
         if !waits && self.waits_until_s.take().is_some() {
             self.best_distance_m = self.plan.map_or(f64::INFINITY, |end| end.distance_to_goal_m);
         }
@@ -148,17 +148,17 @@ impl NavigationTask {
 
     fn must_plan(&self, tick: &Tick, off_path_m: f64) -> bool {
         let (settings, planner) = (tick.settings, &tick.surroundings.planner);
-        let since_s = tick.situation.time - self.planned_at_s;
+        let since_s = tick.input.time - self.planned_at_s;
         let is_lost = self.plan.is_none() || off_path_m > settings.off_path_m;
         planner.path_blocked() && since_s >= settings.replan_blocked_s
             || (is_lost || planner.goal_cleared()) && since_s >= settings.replan_s
     }
 
     fn plan(&mut self, tick: &mut Tick, path: &mut Path) {
-        let Tick { settings, situation, surroundings } = tick;
-        let position = situation.position();
-        self.planned_at_s = situation.time;
-        self.plan = surroundings.planner.plan(situation.map, &position, &self.goal, path);
+        let Tick { settings, input, surroundings } = tick;
+        let position = input.position();
+        self.planned_at_s = input.time;
+        self.plan = surroundings.planner.plan(input.map, &position, &self.goal, path);
         path.truncate((self.max_distance_m - (position - self.start).norm()).max(0.0));
         let Some(end) = self.plan else { return };
         if end.distance_to_goal_m <= self.best_distance_m + WORSE_M {
@@ -166,17 +166,17 @@ impl NavigationTask {
             self.best_distance_m = self.best_distance_m.min(end.distance_to_goal_m);
         } else if self.waits_until_s.is_none() && self.max_distance_m.is_infinite() {
             // The obstacle may move away again. A step of local exploration is not worth the wait.
-            self.waits_until_s = Some(situation.time + settings.wait_s);
+            self.waits_until_s = Some(input.time + settings.wait_s);
         }
     }
 
     /// Checks the progress, and starts a recovery if the robot is stuck. Returns false after too many recoveries.
-    fn keeps_trying(&mut self, settings: &NavigationSettings, situation: &Situation) -> bool {
-        let position = situation.position();
+    fn keeps_trying(&mut self, settings: &NavigationSettings, input: &ControlInput) -> bool {
+        let position = input.position();
         if (position - self.anchor.0).norm() > settings.required_movement_radius_m {
-            self.anchor = (position, situation.time);
+            self.anchor = (position, input.time);
         }
-        let is_stuck = situation.time - self.anchor.1 >= settings.movement_time_allowance_s;
+        let is_stuck = input.time - self.anchor.1 >= settings.movement_time_allowance_s;
         if self.recovering_since_s.is_some() || !is_stuck {
             return true;
         }
@@ -185,7 +185,7 @@ impl NavigationTask {
         }
         self.recovery_at = position;
         self.recoveries += 1;
-        self.recovering_since_s = Some(situation.time);
+        self.recovering_since_s = Some(input.time);
         self.recoveries <= settings.max_recoveries
     }
 }

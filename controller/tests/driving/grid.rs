@@ -1,6 +1,6 @@
 //! The same controller in a world of cells, where a command is one move to a neighbor.
 
-use controller::{CellDrive, Controller, Driver, Outcome, Situation, Status};
+use controller::{CellDrive, ControlInput, Controller, Driver, Outcome, Status};
 use interfaces::{Cell, CellState, Grid, GridFrame, Purpose, RandomStream, Step, Transition, pose};
 use nalgebra::{Isometry2, Point2};
 
@@ -38,14 +38,14 @@ impl World {
         self.transitions.push(Transition { cell, before, after });
     }
 
-    fn situation<'a>(&'a self, pose: &'a Isometry2<f64>) -> Situation<'a> {
+    fn input<'a>(&'a self, pose: &'a Isometry2<f64>) -> ControlInput<'a> {
         let Self { map, transitions, .. } = self;
-        Situation { time: f64::from(self.step), pose, map, transitions, points: &[] }
+        ControlInput { time: f64::from(self.step), pose, map, transitions, points: &[] }
     }
 
     fn tick(&mut self, controller: &mut Controller<CellDrive>) -> Step {
         let at = self.map.frame().center(self.robot);
-        let step = controller.drive(&self.situation(&pose(at.x, at.y, 0.0)));
+        let step = controller.drive(&self.input(&pose(at.x, at.y, 0.0)));
         let next = step.target(self.robot);
         assert_ne!(self.map.get(next), Some(&CellState::Blocked), "a move into something seen");
         self.robot = next;
@@ -138,6 +138,6 @@ fn it_knows_how_long_it_takes_to_get_anywhere() {
     let mut times = Vec::new();
     let at = world.map.frame().center(world.robot);
     let (pose, infinity) = (pose(at.x, at.y, 0.0), f64::INFINITY);
-    controller.travel_times(&world.situation(&pose), &mut times);
+    controller.travel_times(&world.input(&pose), &mut times);
     assert_eq!(times, [1.0, 2.0, 3.0, 4.0, 0.0, 1.0, infinity, 5.0, 1.0, 2.0, infinity, 6.0]);
 }

@@ -1,7 +1,7 @@
 //! A small kinematic world: walls drawn in ASCII, boxes that move, a differential-drive robot with bounded
 //! accelerations, a laser with exact rays, and a map that lags behind as a real map does.
 
-use controller::{Controller, DiffDrive, DiffDriveSettings, Driver, Settings, Situation, Status};
+use controller::{ControlInput, Controller, DiffDrive, DiffDriveSettings, Driver, Settings, Status};
 use interfaces::{
     Cell, CellState, Grid, GridFrame, Purpose, RandomStream, Transition, Twist, heading_rad, pose,
 };
@@ -210,8 +210,8 @@ impl House {
         }
     }
 
-    pub(crate) fn situation(&self) -> Situation<'_> {
-        Situation {
+    pub(crate) fn input(&self) -> ControlInput<'_> {
+        ControlInput {
             time: self.time_s,
             pose: &self.pose,
             map: &self.map,
@@ -253,7 +253,7 @@ impl House {
     /// One tick of robot and world.
     pub(crate) fn tick(&mut self, controller: &mut Controller<DiffDrive>) {
         self.sense();
-        let command = controller.drive(&self.situation());
+        let command = controller.drive(&self.input());
         self.act(command);
     }
 

@@ -3,7 +3,7 @@
 mod grid;
 mod house;
 
-use controller::{Controller, DiffDrive, Driver, Outcome, Settings, Situation, Status};
+use controller::{ControlInput, Controller, DiffDrive, Driver, Outcome, Settings, Status};
 use house::{House, Mover, controller};
 use interfaces::{CellState, Purpose, RandomStream};
 use nalgebra::Point2;
@@ -257,10 +257,10 @@ fn a_robot_that_looks_around_turns_once_then_looks_from_elsewhere() {
     let start = house.position();
     let looks_for = |house: &mut House, controller: &mut controller::Controller<_>, seconds: f64| {
         let mut farthest_m: f64 = 0.0;
-        let end_s = house.situation().time + seconds;
-        while house.situation().time < end_s {
+        let end_s = house.input().time + seconds;
+        while house.input().time < end_s {
             house.sense();
-            let command = controller.pause(&house.situation(), true);
+            let command = controller.pause(&house.input(), true);
             house.act(command);
             farthest_m = farthest_m.max((house.position() - start).norm());
         }
@@ -313,15 +313,15 @@ fn a_map_that_was_replaced_is_read_again() {
     controller.set_goal(goal, Some(0.0));
     (0..20).for_each(|_| house.tick(&mut controller));
     // In the new map, the door is closed. No transition says so.
-    let mut map = house.situation().map.clone();
+    let mut map = house.input().map.clone();
     let frame = *map.frame();
     let is_in_door = |cell| (House::at(13, 0).x - frame.center(cell).x).abs() < house::CHARACTER_M / 2.0;
     for index in (0..frame.len()).filter(|&index| is_in_door(frame.cell(index))) {
         map.cells_mut()[index] = CellState::Blocked;
     }
-    let situation = Situation { map: &map, transitions: &[], ..house.situation() };
+    let input = ControlInput { map: &map, transitions: &[], ..house.input() };
     let end = |controller: &mut Controller<DiffDrive>| {
-        controller.drive(&situation);
+        controller.drive(&input);
         controller.path().last().copied().unwrap()
     };
     assert!((end(&mut controller) - goal).norm() < 0.1);

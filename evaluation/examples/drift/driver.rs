@@ -1,4 +1,4 @@
-use controller::{Controller, DiffDrive, Driver as _, Situation, Status};
+use controller::{ControlInput, Controller, DiffDrive, Driver as _, Status};
 use interfaces::{Purpose, RandomStream, SettingsError, Twist};
 use mapper::Mapper;
 use nalgebra::Isometry2;
@@ -16,7 +16,7 @@ impl Driver {
     }
 
     pub(crate) fn command(&mut self, map: &Mapper, pose: &Isometry2<f64>, permission: Permission) -> Twist {
-        let situation = Situation {
+        let input = ControlInput {
             time: map.time(),
             pose,
             map: map.states(),
@@ -24,9 +24,9 @@ impl Driver {
             points: map.points(),
         };
         if permission == Permission::LookAround {
-            return self.controller.pause(&situation, true);
+            return self.controller.pause(&input, true);
         }
-        let command = self.controller.drive(&situation);
+        let command = self.controller.drive(&input);
         if matches!(self.controller.status(), Status::Idle | Status::Finished(_)) {
             let cells = map.states().cells().len() as f64;
             let mut draws = (0..1000).map(|_| self.random.uniform(0.0..cells) as usize);

@@ -9,8 +9,8 @@ use crate::constants::{
 };
 use crate::estimate::{PoseEstimate, PoseState};
 use crate::faults::{Fault, mirrored};
+use crate::match_scene::MatchScene;
 use crate::motion::{Motion, Predicted};
-use crate::scene::Scene;
 use crate::support::Support;
 use crate::tracking::{Tracked, track};
 use crate::verification::{Moved, Verdict};
@@ -151,9 +151,9 @@ fn moved(motion: &Motion, scan: &Scan) -> Moved {
 }
 
 /// Whether the scan fits much better upside down: the laser hangs the wrong way around.
-fn is_mirrored<M: ChangingMap>(scene: &Scene<M>, pose: &Isometry2<f64>) -> bool {
+fn is_mirrored<M: ChangingMap>(scene: &MatchScene<M>, pose: &Isometry2<f64>) -> bool {
     let points = mirrored(scene.points, &scene.mount);
-    let scene = Scene { points: &points, ..*scene };
+    let scene = MatchScene { points: &points, ..*scene };
     let found = scene.align(pose, None, END_M, false);
     found.is_some_and(|found| scene.judge(&found.placement).share() >= MIN_SUPPORT)
 }

@@ -9,7 +9,7 @@ use crate::changing_map::ChangingMap;
 use crate::constants::{LOST_STD, MIN_SUPPORT, RATES_EVERY, SETTLE_S};
 use crate::estimate::{PoseState, Start};
 use crate::local_trajectory_builder::{IncomingScan, Matched, ScanMatcher, Track};
-use crate::scene::{Scene, exact_m};
+use crate::match_scene::{MatchScene, exact_m};
 use crate::settings::LocalizerSettings;
 use crate::support::ClearBeams;
 use crate::surfel_map::{Checker, SurfelMap};
@@ -175,8 +175,8 @@ impl MapMatcher {
         self.from_nothing && self.times.certain_s > f64::NEG_INFINITY
     }
 
-    pub(super) fn scene<'a, M: ChangingMap>(&'a self, step: &Step<'a, M>) -> Scene<'a, M> {
-        Scene {
+    pub(super) fn scene<'a, M: ChangingMap>(&'a self, step: &Step<'a, M>) -> MatchScene<'a, M> {
+        MatchScene {
             surfels: &self.surfels,
             map: step.map,
             points: &step.scan.points,

@@ -1,6 +1,10 @@
+use super::squares::{cells, turned};
 use super::*;
+use crate::constants::TOP;
 use crate::surfel_map::SurfelMap;
 use interfaces::{CellState, Grid, Purpose, RandomStream};
+use interfaces::{GridFrame, heading_rad};
+use nalgebra::Vector2;
 
 /// A map of random walls, and the points that a scan at a pose has of it.
 fn random_room(seed: u64) -> (ScoreGrid, Vec<ScanPoint>) {

@@ -48,13 +48,13 @@ impl SurfelMap {
     }
 
     /// Much of the view has moved at once, as the pose `follower` of a robot that follows it shows: surfaces that are seen off
-    /// their place by more than `least_m`, and lie better there, have moved. All others out of view may have moved.
+    /// their place by more than `min_m`, and lie better there, have moved. All others out of view may have moved.
     pub(crate) fn displace_all(
         &mut self,
         points: &[ScanPoint],
         pose: &Isometry2<f64>,
         follower: &Isometry2<f64>,
-        least_m: f64,
+        min_m: f64,
     ) {
         let offsets_m = |pose: &Isometry2<f64>| {
             let off_m = |point: &ScanPoint| {
@@ -67,7 +67,7 @@ impl SurfelMap {
         let mut moves: Vec<(u32, f64)> = Vec::new();
         for (point, offsets_m) in points.iter().zip(offsets_m) {
             let (Some(off_m), Some(follower_m)) = offsets_m else { continue };
-            if off_m.abs() <= least_m || follower_m.abs() >= off_m.abs() {
+            if off_m.abs() <= min_m || follower_m.abs() >= off_m.abs() {
                 continue;
             }
             let (at, normal) = (pose * point.at, pose.rotation * point.normal);

@@ -26,8 +26,8 @@ impl Keyframe {
 }
 
 /// At most a number of points, evenly taken.
-pub(super) fn thinned(points: &[ScanPoint], most: usize) -> Vec<ScanPoint> {
-    points.iter().step_by(points.len().div_ceil(most).max(1)).copied().collect()
+pub(super) fn thinned(points: &[ScanPoint], max_points: usize) -> Vec<ScanPoint> {
+    points.iter().step_by(points.len().div_ceil(max_points).max(1)).copied().collect()
 }
 
 /// The near points of a scan, and between neighbors on one surface as many more as a line map needs: far surfaces are

@@ -3,7 +3,7 @@
 use super::graph::{Edge, PoseGraph};
 use super::keyframe::Keyframe;
 use super::odometry_drift::reach;
-use super::places::{Place, Places};
+use super::places::{Places, RecognizedPlace};
 use super::submap::FinishedSubmap;
 use crate::constants::{FOUND_STD, KEYFRAME_WAY_M, NEIGHBORS, SHORT_WAY_M};
 use interfaces::heading_rad;
@@ -13,8 +13,8 @@ use interfaces::heading_rad;
 pub(super) struct LoopCloser {
     pub(super) places: Places,
     /// Places that no other has confirmed yet.
-    pending: Vec<Place>,
-    accepted: Vec<Place>,
+    pending: Vec<RecognizedPlace>,
+    accepted: Vec<RecognizedPlace>,
 }
 
 impl LoopCloser {
@@ -45,7 +45,7 @@ impl LoopCloser {
     }
 
     /// The loops that were accepted, in the order in which they were accepted.
-    pub(super) fn accepted(&self) -> &[Place] {
+    pub(super) fn accepted(&self) -> &[RecognizedPlace] {
         &self.accepted
     }
 
@@ -62,7 +62,7 @@ impl LoopCloser {
 
     /// Whether other places between the same parts of the trajectory agree: at least one more than contradict. Places
     /// that wait for this are accepted with it.
-    fn is_confirmed(&mut self, found: &Place, graph: &mut PoseGraph) -> bool {
+    fn is_confirmed(&mut self, found: &RecognizedPlace, graph: &mut PoseGraph) -> bool {
         let (mut agreeing, mut contradicting) = (0, 0);
         for other in self.pending.iter().chain(&self.accepted).filter(|other| are_neighbors(found, other)) {
             match agree(found, other, graph) {
@@ -72,9 +72,10 @@ impl LoopCloser {
         }
         let is_confirmed = agreeing > contradicting;
         if is_confirmed {
-            let (confirmed, pending): (Vec<Place>, Vec<Place>) = std::mem::take(&mut self.pending)
-                .into_iter()
-                .partition(|other| are_neighbors(found, other) && agree(found, other, graph));
+            let (confirmed, pending): (Vec<RecognizedPlace>, Vec<RecognizedPlace>) =
+                std::mem::take(&mut self.pending)
+                    .into_iter()
+                    .partition(|other| are_neighbors(found, other) && agree(found, other, graph));
             self.pending = pending;
             for other in confirmed {
                 self.accept(other, graph);
@@ -83,25 +84,25 @@ impl LoopCloser {
         is_confirmed
     }
 
-    fn accept(&mut self, found: Place, graph: &mut PoseGraph) {
+    fn accept(&mut self, found: RecognizedPlace, graph: &mut PoseGraph) {
         graph.edges.push(found.edge.clone());
         self.accepted.push(found);
     }
 }
 
 /// Whether two places connect the same parts of the trajectory, and were not found with the same submap.
-fn are_neighbors(a: &Place, b: &Place) -> bool {
+fn are_neighbors(a: &RecognizedPlace, b: &RecognizedPlace) -> bool {
     a.from.abs_diff(b.from) <= NEIGHBORS && a.to.abs_diff(b.to) <= NEIGHBORS && a.to != b.to
 }
 
 /// Whether two places say the same.
-fn agree(a: &Place, b: &Place, graph: &PoseGraph) -> bool {
+fn agree(a: &RecognizedPlace, b: &RecognizedPlace, graph: &PoseGraph) -> bool {
     let between = |from: usize, to: usize| graph.poses[from].inv_mul(&graph.poses[to]);
     let expected = between(a.edge.from, b.edge.from) * b.edge.motion * between(b.edge.to, a.edge.to);
     let off = expected.inv_mul(&a.edge.motion);
     let keyframes = a.edge.from.abs_diff(b.edge.from) + a.edge.to.abs_diff(b.edge.to);
-    let (most_m, most_rad) = reach(keyframes as f64 * KEYFRAME_WAY_M);
-    off.translation.vector.norm() <= most_m && heading_rad(&off).abs() <= most_rad
+    let (max_m, max_rad) = reach(keyframes as f64 * KEYFRAME_WAY_M);
+    off.translation.vector.norm() <= max_m && heading_rad(&off).abs() <= max_rad
 }
 
 /// Whether a loop contradicts the trajectory so much that all later searches profit from it.

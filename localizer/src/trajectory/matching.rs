@@ -2,9 +2,9 @@
 
 use super::submap::{Agreement, agreement};
 use crate::constants::{EXPECTED, JUDGED_M, LOOSE_STD, MIN_NOISE_M, SPURIOUS, STDS};
+use crate::match_scene::hit_std_m;
 use crate::matcher::{Gates, Match, Prior, align, difference};
 use crate::scan_points::ScanPoint;
-use crate::scene::hit_std_m;
 use crate::spread::Spread;
 use crate::surfel_map::SurfelMap;
 use nalgebra::{Isometry2, Matrix3, Vector3};

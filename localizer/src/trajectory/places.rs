@@ -7,9 +7,9 @@ use super::matching::{fit, information_of};
 use super::odometry_drift::{reach, ways_m};
 use super::submap::{Agreement, FinishedSubmap};
 use crate::constants::{
-    AMBIGUOUS, COMPARED_POINTS, EXAMINED, MAX_PASSING, MAX_SEARCHES, MIN_WAY_M, NEAR_M, NEAR_RANGE_M,
-    NEIGHBORS, PLACE_AGREEMENT, PLACE_MODEL_STD, PLACE_OVERLAP, PLACE_SCORE, PLACE_STD, REFERENCE_M,
-    SAME_SUBMAP, STRONG_AGREEMENT, STRONG_OVERLAP, UNLIKELY,
+    AMBIGUOUS, COMPARED_POINTS, EXAMINED, MAJORITY, MAX_PASSING, MAX_SEARCHES, MIN_WAY_M, NEAR_M,
+    NEAR_RANGE_M, NEIGHBORS, PLACE_AGREEMENT, PLACE_MODEL_STD, PLACE_OVERLAP, PLACE_SCORE, PLACE_STD,
+    REFERENCE_M, SAME_SUBMAP, STRONG_AGREEMENT, UNLIKELY,
 };
 use crate::matcher::Match;
 use crate::scan_points::ScanPoint;
@@ -20,7 +20,7 @@ use nalgebra::Isometry2;
 
 /// A recognized place: the pose of submap `to` in submap `from`.
 #[derive(Clone, Debug)]
-pub(super) struct Place {
+pub(super) struct RecognizedPlace {
     pub(super) from: usize,
     pub(super) to: usize,
     /// The way between the two along the trajectory, m.
@@ -89,7 +89,12 @@ impl Places {
     }
 
     /// The places of a submap in earlier submaps. None, if its pose is ambiguous.
-    pub(super) fn of(&mut self, to: usize, keyframes: &[Keyframe], graph: &PoseGraph) -> Vec<Place> {
+    pub(super) fn of(
+        &mut self,
+        to: usize,
+        keyframes: &[Keyframe],
+        graph: &PoseGraph,
+    ) -> Vec<RecognizedPlace> {
         let mut fits = Vec::new();
         for (from, way_m) in self.candidates(to, graph) {
             self.fits(from, to, way_m, graph, &mut fits);
@@ -108,7 +113,7 @@ impl Places {
         if fits.iter().any(|fit| fit.value >= AMBIGUOUS * best.value && !fit.is_same(best)) {
             return Vec::new();
         }
-        let mut places: Vec<Place> = Vec::new();
+        let mut places: Vec<RecognizedPlace> = Vec::new();
         for fit in fits.iter().filter(|fit| fit.is_same(best)) {
             if places.iter().all(|place| place.from != fit.from) {
                 places.extend(self.place(to, fit));
@@ -117,14 +122,14 @@ impl Places {
         places
     }
 
-    fn place(&self, to: usize, fit: &Fit) -> Option<Place> {
+    fn place(&self, to: usize, fit: &Fit) -> Option<RecognizedPlace> {
         let information = information_of(&fit.found, PLACE_MODEL_STD)?;
         let (from, to_anchor) = (self.submaps[fit.from].anchor, self.submaps[to].anchor);
         let edge =
             Edge { from, to: to_anchor, motion: fit.found.placement.pose, information, kind: EdgeKind::Loop };
         // Half as many beams speak against it.
-        let is_strong = fit.holds(STRONG_OVERLAP, STRONG_AGREEMENT, MAX_PASSING / 2.0);
-        Some(Place { from: fit.from, to, way_m: fit.way_m, edge, is_strong })
+        let is_strong = fit.holds(MAJORITY, STRONG_AGREEMENT, MAX_PASSING / 2.0);
+        Some(RecognizedPlace { from: fit.from, to, way_m: fit.way_m, edge, is_strong })
     }
 
     /// The earlier submaps that may cover the place of a submap, and the ways to them, m: the nearest ones.

@@ -40,19 +40,19 @@ pub(crate) struct SubmapMatcher {
 /// What a match with a submap says beside the pose.
 pub(crate) struct SubmapFound {
     /// The match; `None` if there is nothing to match with.
-    tracked: Option<Tracked>,
+    matched: Option<SubmapMatch>,
     /// Whether the submap supports the pose.
     pub(super) is_supported: bool,
     is_frozen: bool,
 }
 
 /// The result of a match with a submap.
-struct Tracked {
+struct SubmapMatch {
     found: Match,
     agreement: Agreement,
 }
 
-impl Tracked {
+impl SubmapMatch {
     /// Whether less of the scan agrees: of what the submap can judge, or of all.
     fn is_below(&self, agreement: f64, share: f64) -> bool {
         self.agreement.share() < agreement || self.agreement.confirmed < share * self.agreement.all
@@ -70,18 +70,18 @@ impl ScanMatcher<()> for SubmapMatcher {
         // The first scan is right by definition.
         let is_first = self.keyframes.is_empty();
         let is_frozen = scan.fault == Some(Fault::Frozen) && !is_first;
-        let tracked = if is_frozen { None } else { self.track(scan, track) };
+        let matched = if is_frozen { None } else { self.match_submap(scan, track) };
         let (mut begin, mut agreement, mut is_reliable) = (Vector3::zeros(), 0.0, false);
-        if let Some(tracked) = &tracked {
-            let Match { placement, information, .. } = &tracked.found;
+        if let Some(matched) = &matched {
+            let Match { placement, information, .. } = &matched.found;
             (begin, track.pose) = (placement.begin(), placement.pose);
             track.covariance =
                 information.try_inverse().unwrap_or_else(|| FOUND_STD.covariance()) + SCAN_STD.covariance();
-            agreement = tracked.agreement.share();
-            is_reliable = !tracked.is_below(MIN_AGREEMENT, MAJORITY);
+            agreement = matched.agreement.share();
+            is_reliable = !matched.is_below(MIN_AGREEMENT, MAJORITY);
         }
         let is_supported = is_first || agreement >= FAIR_SHARE;
-        let found = SubmapFound { tracked, is_supported, is_frozen };
+        let found = SubmapFound { matched, is_supported, is_frozen };
         Matched { begin, is_reliable, is_outlier: None, found }
     }
 
@@ -89,7 +89,7 @@ impl ScanMatcher<()> for SubmapMatcher {
         let offset = self.offset(track);
         let is_far = !KEYFRAME.contains(&offset);
         if self.keyframes.is_empty() || is_far && !found.is_frozen {
-            let found = found.tracked.as_ref().map(|tracked| &tracked.found);
+            let found = found.matched.as_ref().map(|matched| &matched.found);
             self.add_keyframe(scan, track, found);
         }
     }
@@ -139,29 +139,29 @@ impl SubmapMatcher {
     }
 
     /// The match of the scan with the submap; `None` if there is nothing to match with.
-    fn track(&self, scan: &IncomingScan, track: &Track) -> Option<Tracked> {
+    fn match_submap(&self, scan: &IncomingScan, track: &Track) -> Option<SubmapMatch> {
         let (map, points, pose) = (self.growing.first()?.map(), &scan.points, &track.pose);
         let prior = scan.predicted.prior()?;
         let at_range_m = 5.0 * track.covariance[(2, 2)].sqrt();
         let first_m = SURFEL_M + 2.0 * (scan.predicted.spread_m() + at_range_m);
-        let tracked = self.matched_from(map, points, pose, &prior, first_m)?;
-        if !tracked.is_below(MIN_AGREEMENT, MAJORITY) {
-            return Some(tracked);
+        let matched = self.matched_from(map, points, pose, &prior, first_m)?;
+        if !matched.is_below(MIN_AGREEMENT, MAJORITY) {
+            return Some(matched);
         }
         let wide = track.covariance + SEARCHED_STD.covariance();
         let wide = Prior { pose: *pose, information: wide.try_inverse()?, begin: None };
         let turns_rad = OTHER_TURNS_RAD.into_iter().flat_map(|turn_rad| [turn_rad, -turn_rad]);
         let turned: Vec<_> = turns_rad.map(|turn_rad| pose * interfaces::pose(0.0, 0.0, turn_rad)).collect();
-        let tracked = self.better(map, points, tracked, &turned, &wide);
-        if !tracked.is_below(MAJORITY, MIN_SHARE) {
-            return Some(tracked);
+        let matched = self.better(map, points, matched, &turned, &wide);
+        if !matched.is_below(MAJORITY, MIN_SHARE) {
+            return Some(matched);
         }
         let near = SurfelMap::of_points(&map.points(&Isometry2::identity()))?;
         let window = Window { pose: *pose, reach_m: SEARCHED.m, reach_rad: SEARCHED.rad };
         let grid = ScoreGrid::anywhere(&near);
         let found = search(&grid, points, Some(&window), MIN_OVERLAP, CLEARLY.recip());
         let found: Vec<Isometry2<f64>> = found.iter().map(|candidate| candidate.pose).collect();
-        Some(self.better(map, points, tracked, &found, &wide))
+        Some(self.better(map, points, matched, &found, &wide))
     }
 
     /// The best of a match and those from other poses.
@@ -169,17 +169,17 @@ impl SubmapMatcher {
         &self,
         map: &SurfelMap,
         points: &[ScanPoint],
-        tracked: Tracked,
+        matched: SubmapMatch,
         starts: &[Isometry2<f64>],
         prior: &Prior,
-    ) -> Tracked {
-        let min_confirmed = CLEARLY * tracked.agreement.confirmed;
+    ) -> SubmapMatch {
+        let min_confirmed = CLEARLY * matched.agreement.confirmed;
         let others =
             starts.iter().filter_map(|start| self.matched_from(map, points, start, prior, JUDGED_M / 2.0));
         others
             .filter(|other| other.agreement.confirmed > min_confirmed)
             .max_by(|a, b| a.agreement.confirmed.total_cmp(&b.agreement.confirmed))
-            .unwrap_or(tracked)
+            .unwrap_or(matched)
     }
 
     fn matched_from(
@@ -189,11 +189,11 @@ impl SubmapMatcher {
         start: &Isometry2<f64>,
         prior: &Prior,
         first_m: f64,
-    ) -> Option<Tracked> {
+    ) -> Option<SubmapMatch> {
         let gates = gates(self.settings.range_noise_std_m, first_m);
         let found = align(map, points, start, Some(prior), &gates)?;
         let agreement = agreement(map, points, &found.placement, gates.last_m);
-        (agreement.confirmed_points >= MIN_POINTS).then_some(Tracked { found, agreement })
+        (agreement.confirmed_points >= MIN_POINTS).then_some(SubmapMatch { found, agreement })
     }
 
     /// Makes the scan a keyframe.

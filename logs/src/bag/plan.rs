@@ -17,7 +17,7 @@ pub(super) struct Laser {
 
 /// Where the poses come from.
 #[derive(Clone, Debug)]
-pub(super) enum Motion {
+pub(super) enum MotionSource {
     /// The messages of a topic.
     Topic(String),
     /// A transform, by its number.
@@ -29,7 +29,7 @@ pub(super) enum Motion {
 #[derive(Clone, Debug)]
 pub(super) struct Plan {
     pub(super) lasers: Vec<Laser>,
-    pub(super) motion: Motion,
+    pub(super) motion: MotionSource,
     pub(super) pose_source: PoseSource,
     /// From the frame whose poses are known to that of the robot.
     pub(super) to_base: Chain,
@@ -54,7 +54,7 @@ impl Plan {
         let (motion, pose_source, moving_frame) = match odometry {
             Some(odometry) => {
                 let source = PoseSource::OdometryTopic(odometry.topic.clone());
-                (Motion::Topic(odometry.topic.clone()), source, Some(odometry.child_frame.clone()))
+                (MotionSource::Topic(odometry.topic.clone()), source, Some(odometry.child_frame.clone()))
             }
             None => match moving_edge(frames, &lasers, choice)? {
                 Some(index) => {
@@ -62,9 +62,9 @@ impl Plan {
                     let (odom_frame, base_frame) = (edge.parent.clone(), edge.child.clone());
                     let moving = base_frame.clone();
                     let source = PoseSource::Transforms { odom_frame, base_frame };
-                    (Motion::Transform(index), source, Some(moving))
+                    (MotionSource::Transform(index), source, Some(moving))
                 }
-                None => (Motion::Standing, PoseSource::Standing, None),
+                None => (MotionSource::Standing, PoseSource::Standing, None),
             },
         };
         let base = match (&choice.base_frame, &moving_frame) {
@@ -94,7 +94,7 @@ impl Plan {
         match Kind::of_readable(topic) {
             Some(Kind::Scans) => self.lasers.iter().any(|laser| laser.topic == topic.name),
             Some(Kind::Odometry) => {
-                matches!(&self.motion, Motion::Topic(name) if *name == topic.name)
+                matches!(&self.motion, MotionSource::Topic(name) if *name == topic.name)
             }
             Some(Kind::Transforms) => true,
             None => false,

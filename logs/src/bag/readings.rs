@@ -3,7 +3,7 @@
 use super::inventory::Kind;
 use super::message::Message;
 use super::messages::Messages;
-use super::plan::{Laser, Motion, Plan};
+use super::plan::{Laser, MotionSource, Plan};
 use crate::cdr;
 use crate::choice::bare;
 use crate::doubts::{self, Doubts};
@@ -114,11 +114,7 @@ impl RawReadings {
 
     fn reading(&mut self, Waiting { time_s, laser, mount, scan }: Waiting) -> LaserReading {
         self.overdue = self.overdue.saturating_sub(1);
-        let (pose, twist) = self.odometry.at(time_s);
-        let velocities = match scan.sweep_s > 0.0 {
-            true => self.odometry.during(time_s - scan.sweep_s, time_s),
-            false => Vec::new(),
-        };
+        let reading = self.odometry.reading(time_s, mount, scan);
         // The last one may have been moved by as many turns as there are lasers.
         let same_s = -TURN_S * self.plan.lasers.len() as f64..TURN_S;
         let is_same = |(last_s, last): (f64, usize)| last != laser && same_s.contains(&(time_s - last_s));
@@ -127,7 +123,7 @@ impl RawReadings {
             None => time_s,
         };
         self.last = Some((time_s, laser));
-        LaserReading { time_s, pose, twist, velocities, mount, scan }
+        LaserReading { time_s, ..reading }
     }
 
     /// The first pose of the odometry, in its own frame.
@@ -190,7 +186,7 @@ impl RawReadings {
                 continue;
             };
             let edge = self.frames.set(&found.header.frame_id, &found.child_frame_id, pose)?;
-            if matches!(self.plan.motion, Motion::Transform(index) if index == edge) {
+            if matches!(self.plan.motion, MotionSource::Transform(index) if index == edge) {
                 self.take_pose(&found.header, message, &found.transform);
             }
         }

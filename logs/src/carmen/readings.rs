@@ -34,10 +34,12 @@ impl Readings {
             return None;
         }
         let ScanLine { scan, .. } = self.waiting.pop_front()?;
-        let newest = || (self.odometry.newest().0, Twist::STOP);
-        let (pose, twist) = if has_times { self.odometry.at(time_s) } else { newest() };
         let mount = interfaces::pose(geometry.offset_m, 0.0, 0.0);
-        Some(LaserReading { time_s, pose, twist, velocities: Vec::new(), mount, scan })
+        let reading = self.odometry.reading(time_s, mount, scan);
+        if has_times {
+            return Some(reading);
+        }
+        Some(LaserReading { pose: self.odometry.newest().0, twist: Twist::STOP, ..reading })
     }
 }
 

@@ -1,6 +1,7 @@
 //! The messages. Field by field, they are what CDR encodes.
 #![expect(missing_docs, reason = "the fields have the names, meanings and units of the definitions of ROS")]
 
+use interfaces::Twist;
 use nalgebra::{Isometry2, Isometry3, Quaternion, Translation3, UnitQuaternion};
 use serde::{Deserialize, Serialize};
 
@@ -118,6 +119,20 @@ pub struct Odometry {
     pub child_frame_id: String,
     pub pose: PoseWithCovariance,
     pub twist: TwistWithCovariance,
+}
+
+impl Odometry {
+    /// The pose and the velocity of a robot in the plane.
+    pub fn in_plane(header: Header, robot: &str, pose: &Isometry2<f64>, twist: &Twist) -> Self {
+        let linear = Vector { x: twist.linear_mps, ..Vector::default() };
+        let angular = Vector { z: twist.angular_radps, ..Vector::default() };
+        Self {
+            header,
+            child_frame_id: robot.to_owned(),
+            pose: PoseWithCovariance { pose: Pose::in_plane(pose), covariance: Default::default() },
+            twist: TwistWithCovariance { linear, angular, covariance: Default::default() },
+        }
+    }
 }
 
 /// `geometry_msgs/TransformStamped`.

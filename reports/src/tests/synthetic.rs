@@ -41,20 +41,21 @@ pub(crate) fn trial(world: usize, estimator: &str, strategy: &str, seed: u64) ->
         let learned = 1.0 - libm::exp(-speed * step as f64 / (1500.0 * (1.0 + 0.3 * world as f64)));
         let noise = 0.02 * normal(&mut chance);
         let log_error = 2.303 * (1.0 - learned) + floor * learned * (1.0 + own) + noise * learned;
+        let later = |value: f64| if step < 30 { f64::NAN } else { value };
         Sample {
             time: step,
             rate_error: 1.0 - learned + learned * floor * 1.3 + 3.0 * noise * learned,
             log_error,
             log_error_of_range: 0.8 * log_error,
             map_quality: (quality - (1.0 - learned) * 0.7 + 0.2 * noise).clamp(0.0, 1.0),
-            map_quality_changing: if step < 30 { f64::NAN } else { 0.9 * quality + noise },
+            map_quality_changing: later(0.9 * quality + noise),
             coverage: learned,
             false_rate: 0.0,
             changing_share: 0.1 * speed,
-            brier: if step < 30 { f64::NAN } else { 0.2 + noise },
-            brier_last_seen: if step < 30 { f64::NAN } else { 0.3 + noise },
-            brier_mean: if step < 30 { f64::NAN } else { 0.24 + noise },
-            rate_auc: if step < 30 { f64::NAN } else { 0.9 * quality },
+            brier: later(0.2 + noise),
+            brier_last_seen: later(0.3 + noise),
+            brier_mean: later(0.24 + noise),
+            rate_auc: later(0.9 * quality),
         }
     });
     Trial {

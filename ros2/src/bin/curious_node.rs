@@ -3,7 +3,7 @@
 use anyhow::Context;
 use clap::Parser;
 use clap::builder::{PathBufValueParser, TypedValueParser};
-use ros2::program::{Failure, input, note_unused_files, output, say, start};
+use ros2::node_program::{Failure, input, note_unused_files, output, say, start};
 use ros2::{CuriousNode, DdsLink, Environment, Names, Parameters, RosArgs, Signals, Value, curious_wiring};
 use std::path::PathBuf;
 use std::process::ExitCode;

@@ -2,7 +2,7 @@
 
 use anyhow::{Context, anyhow};
 use clap::Parser;
-use ros2::program::{Failure, input, note_unused_files, say, start};
+use ros2::node_program::{Failure, input, note_unused_files, say, start};
 use ros2::{
     DdsLink, Environment, Given, Names, RosArgs, SimulatedRobot, SimulationSettings, simulation_wiring,
 };

@@ -2,7 +2,7 @@
 
 use super::CuriousNode;
 use crate::link::{Answer, Link};
-use crate::saves::{Asker, Saves};
+use crate::node_state_file::{Asker, NodeStateFile};
 
 fn refused(text: &str) -> Answer {
     Answer { is_done: false, text: text.to_owned() }
@@ -11,41 +11,42 @@ fn refused(text: &str) -> Answer {
 impl<L: Link> CuriousNode<L> {
     /// Begins to save the state; `None` without a file, or before the first reading.
     pub(super) fn save(&mut self) -> Option<std::io::Result<()>> {
-        let (stamp, _) = self.last.filter(|_| self.saves.is_some())?;
+        let (stamp, _) = self.last.filter(|_| self.state_file.is_some())?;
         self.settle();
-        self.saves.as_mut().map(|saves| saves.save(stamp, &mut self.robot))
+        self.state_file.as_mut().map(|file| file.save(stamp, &mut self.robot))
     }
 
     /// Saves the state for someone who has asked for it. The answer comes when the file is written.
     pub(super) fn save_for(&mut self, asker: Asker) {
-        match &mut self.saves {
+        match &mut self.state_file {
             None => {
                 self.answer(asker, refused("there is no state file: start the node with --state FILE"));
             }
             Some(_) if self.last.is_none() => {
                 self.answer(asker, refused("there is nothing to save before the first reading"));
             }
-            Some(saves) => {
+            Some(state_file) => {
                 // While a map is being learned again, the state waits for it, and the robot does not.
-                saves.must_save = true;
-                saves.askers.push(asker);
+                state_file.must_save = true;
+                state_file.askers.push(asker);
             }
         }
     }
 
     /// Answers those who wait for the file, when it is written.
     pub(super) fn answer_askers(&mut self) {
-        let is_written = |saves: &&mut Saves| !saves.must_save && !saves.file.is_writing();
-        if self.saves.as_mut().filter(is_written).is_some_and(|saves| !saves.askers.is_empty()) {
+        let is_written =
+            |state_file: &&mut NodeStateFile| !state_file.must_save && !state_file.file.is_writing();
+        if self.state_file.as_mut().filter(is_written).is_some_and(|file| !file.askers.is_empty()) {
             self.answer_all();
         }
     }
 
     /// Waits until the file is written, and answers those who wait for it.
     pub(super) fn answer_all(&mut self) -> Answer {
-        let Some(saves) = &mut self.saves else { return refused("") };
-        let (name, askers) = (saves.name(), std::mem::take(&mut saves.askers));
-        let answer = match saves.file.wait() {
+        let Some(state_file) = &mut self.state_file else { return refused("") };
+        let (name, askers) = (state_file.name(), std::mem::take(&mut state_file.askers));
+        let answer = match state_file.file.wait() {
             Ok(()) => Answer { is_done: true, text: format!("the state is saved in {name}") },
             Err(why) => refused(&format!("{name}: cannot save the state: {why}")),
         };

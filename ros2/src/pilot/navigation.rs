@@ -2,7 +2,7 @@
 
 use crate::link;
 use crate::order::Order;
-use controller::{Outcome, Situation, Status};
+use controller::{ControlInput, Outcome, Status};
 use interfaces::heading_rad;
 use nalgebra::Point2;
 
@@ -95,13 +95,13 @@ impl Navigation {
     }
 
     /// What the navigation is asked on the way to the goal.
-    pub(super) fn drive(&mut self, situation: &Situation) -> Order {
-        let (news, time_s) = (self.news.take(), situation.time);
+    pub(super) fn drive(&mut self, input: &ControlInput) -> Order {
+        let (news, time_s) = (self.news.take(), input.time);
         let Some(target) = &mut self.target else { return self.withdraw() };
         if target.outcome.is_some() {
             return Order::None;
         }
-        let way = target.at - situation.position();
+        let way = target.at - input.position();
         if !target.is_sent {
             if time_s < self.not_before_s {
                 return Order::None;
@@ -109,7 +109,7 @@ impl Navigation {
             (target.is_sent, self.must_cancel) = (true, false);
             (target.nearest_m, target.nearest_s) = (way.norm(), time_s);
             let heading_rad =
-                if way.norm() > 1e-3 { libm::atan2(way.y, way.x) } else { heading_rad(situation.pose) };
+                if way.norm() > 1e-3 { libm::atan2(way.y, way.x) } else { heading_rad(input.pose) };
             return Order::Goal(interfaces::pose(target.at.x, target.at.y, heading_rad));
         }
         self.watch(way.norm(), time_s, news);
@@ -145,17 +145,17 @@ impl Navigation {
     }
 
     /// What the navigation is asked while the robot must not drive to its goal: a robot that is lost turns in place.
-    pub(super) fn pause(&mut self, situation: &Situation, looks_around: bool) -> Order {
+    pub(super) fn pause(&mut self, input: &ControlInput, looks_around: bool) -> Order {
         if !looks_around {
             return self.withdraw();
         }
-        if situation.time < self.looks_until_s {
+        if input.time < self.looks_until_s {
             return Order::None;
         }
-        self.looks_until_s = situation.time + LOOK_S;
+        self.looks_until_s = input.time + LOOK_S;
         self.withdraw();
         self.must_cancel = true;
-        Order::Goal(situation.pose * interfaces::pose(0.0, 0.0, LOOK_RAD))
+        Order::Goal(input.pose * interfaces::pose(0.0, 0.0, LOOK_RAD))
     }
 
     /// Takes the goal back until the robot may drive again.

@@ -1,6 +1,6 @@
 use super::*;
-use crate::message::{Header, Pose, PoseWithCovariance, TransformStamped, TwistWithCovariance};
-use interfaces::heading_rad;
+use crate::message::{Header, Pose, TransformStamped};
+use interfaces::{Twist, heading_rad};
 
 const SECOND_NS: i64 = 1_000_000_000;
 
@@ -24,12 +24,7 @@ fn transform(time_s: f64, parent: &str, child: &str, pose: Isometry2<f64>) -> Me
 }
 
 fn odometry(time_s: f64, child: &str, pose: Isometry2<f64>) -> Message {
-    Message::Odometry(Box::new(Odometry {
-        header: header(time_s, "odom"),
-        child_frame_id: child.to_owned(),
-        pose: PoseWithCovariance { pose: Pose::in_plane(&pose), covariance: Default::default() },
-        twist: TwistWithCovariance::default(),
-    }))
+    Message::Odometry(Box::new(Odometry::in_plane(header(time_s, "odom"), child, &pose, &Twist::STOP)))
 }
 
 fn scan(time_s: f64, frame: &str) -> Message {

@@ -59,11 +59,6 @@ impl FreeSpace {
         &self.areas_m2
     }
 
-    /// The region of the cell in which a point (m) lies; `None` where the disc does not fit.
-    pub fn region_at(&self, at: &Point2<f64>) -> Option<usize> {
-        self.regions[self.frame.index(self.frame.cell_at(at))?]
-    }
-
     /// The largest region with a cell that overlaps the disc of `radius_m` around `at` (m); `None` without such a cell.
     /// With the radius of a robot this is the region of a robot that stands there: the center of the robot need not be
     /// the center of a cell.

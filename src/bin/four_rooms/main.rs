@@ -4,7 +4,7 @@ mod args;
 mod combination;
 mod output;
 mod parts;
-mod saves;
+mod trial_state_file;
 
 use anyhow::Context;
 use args::{Args, DriveChoice};
@@ -16,10 +16,10 @@ use interfaces::Twist;
 use output::Outputs;
 use parts::Parts;
 use robot::Pilot;
-use saves::Saves;
 use std::process::ExitCode;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
+use trial_state_file::TrialStateFile;
 
 fn main() -> ExitCode {
     start(|args: &Args| {
@@ -56,9 +56,9 @@ fn run(args: &Args) -> Result<ExitCode, Failure> {
 fn explore(args: &Args, parts: &Parts, pilot: impl Pilot<Command = Twist>) -> Result<ExitCode, Failure> {
     let trial = PhysicsTrial::new(&parts.spec, args.seed, &parts.settings, parts.prior.clone(), pilot);
     let mut trial = trial.context("cannot make the mapper").map_err(input)?;
-    let saves = Saves::open(args, parts, &mut trial)?;
+    let state_file = TrialStateFile::open(args, parts, &mut trial)?;
     let is_interrupted = interrupt_flag()?; // before any file is made
-    let mut outputs = Outputs::open(args, trial.world.spec(), saves, trial.robot.mapper.time())?;
+    let mut outputs = Outputs::open(args, trial.world.spec(), state_file, trial.robot.mapper.time())?;
     let start = Instant::now();
     let mut ended = end(args, &trial, false);
     while ended.is_none() {

@@ -2,7 +2,7 @@
 
 use crate::Ended;
 use crate::args::{Args, DriveChoice};
-use crate::saves::Saves;
+use crate::trial_state_file::TrialStateFile;
 use agent::Policy;
 use anyhow::{Context, anyhow};
 use curious::bag::RunBag;
@@ -44,7 +44,7 @@ pub(crate) struct Outputs<'a> {
     show: Show,
     /// The trajectories as the robot knew it and as it was.
     trajectories: [TrajectoryFile; 2],
-    saves: Option<Saves>,
+    state_file: Option<TrialStateFile>,
     progress: Progress,
     /// Why no viewer shows the run, as far as it was reported.
     reported: Option<String>,
@@ -56,7 +56,7 @@ impl<'a> Outputs<'a> {
     pub(crate) fn open(
         args: &'a Args,
         spec: &WorldSpec,
-        saves: Option<Saves>,
+        state_file: Option<TrialStateFile>,
         began_s: f64,
     ) -> Result<Self, Failure> {
         let mut folder = results_folder(&args.out)?;
@@ -78,7 +78,18 @@ impl<'a> Outputs<'a> {
             progress.say(format_args!("the run goes on from {began_s:.1} s"));
         }
         let is_complete = true;
-        Ok(Self { args, began_s, folder, bag, show, trajectories, saves, progress, reported, is_complete })
+        Ok(Self {
+            args,
+            began_s,
+            folder,
+            bag,
+            show,
+            trajectories,
+            state_file,
+            progress,
+            reported,
+            is_complete,
+        })
     }
 
     /// Shows one turn.
@@ -108,8 +119,8 @@ impl<'a> Outputs<'a> {
 
     /// Saves the state, if it is time to.
     pub(crate) fn save(&mut self, trial: &mut PhysicsTrial<impl Pilot<Command = Twist>>) {
-        if let Some(saves) = self.saves.as_mut().filter(|saves| saves.is_due())
-            && let Err(problem) = saves.save(trial)
+        if let Some(state_file) = self.state_file.as_mut().filter(|file| file.is_due())
+            && let Err(problem) = state_file.save(trial)
         {
             self.is_complete = false;
             self.progress.say(format_args!("error: cannot save the state: {problem}; the run goes on"));
@@ -142,7 +153,7 @@ impl<'a> Outputs<'a> {
             say(stderr(), format_args!("note: {problem}"));
         }
         let mut failures = Vec::new();
-        if let Some(Err(problem)) = self.saves.take().map(|saves| saves.finish(&mut trial)) {
+        if let Some(Err(problem)) = self.state_file.take().map(|file| file.finish(&mut trial)) {
             failures.push(format!("cannot save the state: {problem}"));
         }
         if let Some(Err(problem)) = self.bag.take().map(RunBag::finish) {

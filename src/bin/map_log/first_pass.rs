@@ -1,7 +1,7 @@
 //! The first pass: the route of every log, in one frame.
 
 use crate::Job;
-use crate::saves::Saves;
+use crate::survey_state_file::SurveyStateFile;
 use anyhow::Error;
 use curious::program::{Failure, input};
 use curious::progress::Progress;
@@ -10,14 +10,18 @@ use std::ops::ControlFlow;
 use survey::{PassError, Stage, Survey};
 
 /// Finds the routes of all logs of which the survey has none. Returns false if interrupted.
-pub(crate) fn routes(job: &Job, survey: &mut Survey, saves: &mut Saves) -> Result<bool, Failure> {
+pub(crate) fn routes(
+    job: &Job,
+    survey: &mut Survey,
+    state_file: &mut SurveyStateFile,
+) -> Result<bool, Failure> {
     for (number, source) in job.sources.iter().enumerate() {
         let log = job.first_log + number;
         if log < survey.logs().len() {
             continue;
         }
         let can_align = source.entry.stands || job.settings.pose == PoseMode::Localized;
-        let is_followed = can_align && (saves.is_kept() || number + 1 < job.sources.len());
+        let is_followed = can_align && (state_file.is_kept() || number + 1 < job.sources.len());
         let mut bar = None;
         let watch = |(stage, readings)| {
             match readings {
@@ -29,7 +33,7 @@ pub(crate) fn routes(job: &Job, survey: &mut Survey, saves: &mut Saves) -> Resul
         let found = survey.first_pass(&source.log, source.entry.clone(), is_followed, watch);
         drop(bar);
         match found {
-            Ok(()) => saves.save(survey),
+            Ok(()) => state_file.save(survey),
             Err(PassError::Interrupted) => return Ok(false),
             Err(PassError::Alignment(why)) => {
                 return Err(input(Error::from(why).context(format!("cannot use {}", source.entry.name))));

@@ -5,9 +5,9 @@ mod first_pass;
 mod logs_in_order;
 mod output;
 mod report;
-mod saves;
 mod second_pass;
 mod summary;
+mod survey_state_file;
 
 use anyhow::{Context, anyhow};
 use args::Args;
@@ -18,7 +18,6 @@ use curious::terminal::{print, say};
 use curious::words::list;
 use logs_in_order::Source;
 use results::output::RunFolder;
-use saves::Saves;
 use std::io::stderr;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -27,6 +26,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 use summary::Summary;
 use survey::{Survey, SurveySettings};
+use survey_state_file::SurveyStateFile;
 
 fn main() -> ExitCode {
     start(run)
@@ -67,10 +67,10 @@ fn run(args: &Args) -> Result<ExitCode, Failure> {
     let begin = Instant::now();
     let (out, mcap, state) = (Some(args.out.as_path()), args.mcap.as_deref(), args.state.as_deref());
     check_distinct(&[("--out", out), ("--mcap", mcap), ("--state", state)]).map_err(input)?;
-    let (mut saves, loaded) = Saves::open(args)?;
-    let given = logs_in_order::open(&args.files, &args.topics(), saves.is_kept()).map_err(input)?;
+    let (mut state_file, loaded) = SurveyStateFile::open(args)?;
+    let given = logs_in_order::open(&args.files, &args.topics(), state_file.is_kept()).map_err(input)?;
     let settings = args.settings(&given, loaded.as_ref().map(|loaded| &loaded.logs)).map_err(input)?;
-    let mut survey = saves.survey(loaded, &settings, args.noise)?;
+    let mut survey = state_file.survey(loaded, &settings, args.noise)?;
     let first = given.first().cloned().context("no log is given").map_err(input)?;
     let sources = logs_in_order::continued(given, &mut survey, args.leave_rest).map_err(input)?;
     let first_log = survey.logs().iter().take_while(|log| log.is_finished()).count();
@@ -78,10 +78,10 @@ fn run(args: &Args) -> Result<ExitCode, Failure> {
     let mut folder = results_folder(&args.out)?;
     let job = Job { args, sources, first_log, first, settings, is_interrupted };
     let bag = bag(&job, &survey, &mut folder)?;
-    if !first_pass::routes(&job, &mut survey, &mut saves)? {
-        saves.finish(&survey);
+    if !first_pass::routes(&job, &mut survey, &mut state_file)? {
+        state_file.finish(&survey);
         let kept = match &args.state {
-            Some(state) if saves.is_written => {
+            Some(state) if state_file.is_written => {
                 format!(
                     "; {} keeps the logs that are finished, and the same command goes on",
                     state.display()
@@ -92,8 +92,8 @@ fn run(args: &Args) -> Result<ExitCode, Failure> {
         job.say(format_args!("interrupted in the first pass: no results are written{kept}"));
         return Ok(ExitCode::from(INTERRUPTED));
     }
-    let learned = second_pass::learn(&job, &mut survey, &mut saves, bag, folder.unfinished())?;
-    saves.finish(&survey);
+    let learned = second_pass::learn(&job, &mut survey, &mut state_file, bag, folder.unfinished())?;
+    state_file.finish(&survey);
     let mut summary = Summary::new(&survey, &learned)?;
     summary.wall_s = begin.elapsed().as_secs_f64();
     output::write(&folder, &survey, &learned, &mut summary)?;
@@ -102,12 +102,12 @@ fn run(args: &Args) -> Result<ExitCode, Failure> {
     if !learned.is_interrupted {
         // The results are complete: no run goes on from within these logs.
         survey.forget_poses();
-        saves.finish(&survey);
+        state_file.finish(&survey);
     }
     if !args.quiet {
         print(format_args!("{summary}\n  files     {}", args.out.display()))?;
     }
-    Ok(if !learned.is_shown || !saves.is_written {
+    Ok(if !learned.is_shown || !state_file.is_written {
         ExitCode::FAILURE
     } else if learned.is_interrupted {
         ExitCode::from(INTERRUPTED)

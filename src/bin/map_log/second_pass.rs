@@ -1,7 +1,7 @@
 //! The second pass: the map and its changes along the trajectories.
 
 use crate::Job;
-use crate::saves::Saves;
+use crate::survey_state_file::SurveyStateFile;
 use anyhow::{Context, anyhow};
 use curious::bag::RunBag;
 use curious::program::{Failure, input};
@@ -38,7 +38,7 @@ pub(crate) struct Learned {
 pub(crate) fn learn(
     job: &Job,
     survey: &mut Survey,
-    saves: &mut Saves,
+    state_file: &mut SurveyStateFile,
     mut bag: Option<RunBag>,
     folder: &Path,
 ) -> Result<Learned, Failure> {
@@ -61,7 +61,7 @@ pub(crate) fn learn(
         learned.show.pass(&at.pose);
     }
     for number in 0..job.sources.len() {
-        learned.replay(job, number, survey, (saves, &mut trajectory, bag.as_mut()))?;
+        learned.replay(job, number, survey, (state_file, &mut trajectory, bag.as_mut()))?;
         if learned.is_interrupted {
             break;
         }
@@ -98,7 +98,7 @@ impl Learned {
         job: &Job,
         number: usize,
         survey: &mut Survey,
-        (saves, trajectory, mut bag): (&mut Saves, &mut TrajectoryFile, Option<&mut RunBag>),
+        (state_file, trajectory, mut bag): (&mut SurveyStateFile, &mut TrajectoryFile, Option<&mut RunBag>),
     ) -> Result<(), Failure> {
         let (source, is_last_log) = (&job.sources[number], number + 1 == job.sources.len());
         let (name, log) = (&source.entry.name, job.first_log + number);
@@ -131,8 +131,8 @@ impl Learned {
                 self.is_shown = false;
                 progress.say(format_args!("error: {problem}; the run goes on without it"));
             }
-            if replay.is_over() || saves.is_due() {
-                saves.save(survey);
+            if replay.is_over() || state_file.is_due() {
+                state_file.save(survey);
             }
             if self.is_interrupted {
                 break;

@@ -4,6 +4,7 @@ use super::{ran, rows};
 use crate::recording::Recording;
 use curious::worlds::load_grid;
 use interfaces::Cell;
+use sim::grid::GridSpec;
 
 /// The cell that contains a position.
 fn cell([x, y]: [f32; 2]) -> Cell {
@@ -32,19 +33,7 @@ fn a_recording_agrees_with_its_world_and_its_trial() {
         assert!(pair[0].0 < pair[1].0 && is_a_step(cell(pair[0].1), cell(pair[1].1)), "{pair:?}");
     }
 
-    // The blocks also move on their paths, and never faster than their dwell allows.
-    for block in &world.blocks {
-        let outlines = recording.outlines(&format!("/world/obstacles/{}", escaped(&block.name)));
-        let ways: Vec<(i64, Cell)> =
-            outlines.iter().map(|(step, corners)| (*step, middle(corners))).collect();
-        assert_eq!(ways[0], (0, block.path[0]), "{}", block.name);
-        assert!(ways.len() > 10, "{} moved {} times", block.name, ways.len());
-        assert!(ways.iter().all(|(_, at)| block.path.contains(at)), "{}", block.name);
-        for pair in ways.windows(2).skip(1) {
-            assert!(pair[1].0 - pair[0].0 >= i64::from(block.dwell), "{}: {pair:?}", block.name);
-            assert!(is_a_step(pair[0].1, pair[1].1), "{}: {pair:?}", block.name);
-        }
-    }
+    blocks_keep_their_paths_and_dwell(&recording, &world);
 
     // The field of view moves with the robot, and the maps exist.
     let entities = recording.entities();
@@ -78,6 +67,22 @@ fn a_recording_agrees_with_its_world_and_its_trial() {
     assert!(log.len() > 20, "{log:?}");
     assert!(log.iter().any(|(_, line)| line.starts_with("recency ")), "{log:?}");
     assert!(log.iter().any(|(_, line)| line.starts_with("poisson ")), "{log:?}");
+}
+
+/// The blocks move on their paths, and never faster than their dwell allows.
+fn blocks_keep_their_paths_and_dwell(recording: &Recording, world: &GridSpec) {
+    for block in &world.blocks {
+        let outlines = recording.outlines(&format!("/world/obstacles/{}", escaped(&block.name)));
+        let ways: Vec<(i64, Cell)> =
+            outlines.iter().map(|(step, corners)| (*step, middle(corners))).collect();
+        assert_eq!(ways[0], (0, block.path[0]), "{}", block.name);
+        assert!(ways.len() > 10, "{} moved {} times", block.name, ways.len());
+        assert!(ways.iter().all(|(_, at)| block.path.contains(at)), "{}", block.name);
+        for pair in ways.windows(2).skip(1) {
+            assert!(pair[1].0 - pair[0].0 >= i64::from(block.dwell), "{}: {pair:?}", block.name);
+            assert!(is_a_step(pair[0].1, pair[1].1), "{}: {pair:?}", block.name);
+        }
+    }
 }
 
 /// The cell in the middle of four corners, the first of which closes the outline.

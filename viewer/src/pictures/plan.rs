@@ -3,7 +3,7 @@
 use super::ground::{self, fill};
 use super::panel::{Chart, Panel, pair};
 use crate::legend::{self, Legend, Mark};
-use crate::scene::{Robot, Scene, Sector, span};
+use crate::scene::{Scene, SceneRobot, Sector, span};
 use nalgebra::{Isometry2, Point2};
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
@@ -42,7 +42,7 @@ pub(super) fn draw(panel: &Panel, area: &Area, scene: &Scene) -> Result<(), Stri
 pub(super) fn draw_robot(
     panel: &Panel,
     chart: &Chart,
-    robot: &Robot,
+    robot: &SceneRobot,
     pose: &Isometry2<f64>,
     front_m: f64,
 ) -> Result<(), String> {
@@ -66,13 +66,13 @@ fn is_crowded(scene: &Scene) -> bool {
 }
 
 /// The robots whose sensors are drawn.
-fn with_sensors(scene: &Scene) -> impl Iterator<Item = &Robot> {
+fn with_sensors(scene: &Scene) -> impl Iterator<Item = &SceneRobot> {
     let is_shown = !is_crowded(scene);
     scene.robots.iter().filter(move |robot| is_shown && !robot.sectors.is_empty())
 }
 
 /// The outline of a robot at a pose.
-fn body(robot: &Robot, pose: &Isometry2<f64>) -> Vec<Point2<f64>> {
+fn body(robot: &SceneRobot, pose: &Isometry2<f64>) -> Vec<Point2<f64>> {
     if robot.corners.is_empty() {
         return arc(pose, robot.radius_m, TAU);
     }
@@ -80,7 +80,7 @@ fn body(robot: &Robot, pose: &Isometry2<f64>) -> Vec<Point2<f64>> {
 }
 
 /// The drawn part of what a sensor covers.
-fn sector(robot: &Robot, sector: &Sector) -> Vec<Point2<f64>> {
+fn sector(robot: &SceneRobot, sector: &Sector) -> Vec<Point2<f64>> {
     let mount = robot.pose * sector.mount;
     let mut corners = arc(&mount, sector.range_m.min(SECTOR_RADII * robot.radius_m), sector.angle_rad);
     if sector.angle_rad < TAU {

@@ -1,6 +1,6 @@
 use super::*;
 use crate::legend::Mark;
-use crate::scene::Robot;
+use crate::scene::SceneRobot;
 use crate::tests::FakeRun;
 use image::RgbImage;
 use interfaces::CellState;
@@ -115,7 +115,7 @@ fn a_few_robots_have_a_color_each_and_many_share_one() {
     };
     let named = |color: Rgb, text: &str| (color, text.to_owned());
     let curious = named(palette::CURIOUS, "curious");
-    scene.robots.insert(0, Robot { name: "cat".into(), ..scene.robots[1].clone() });
+    scene.robots.insert(0, SceneRobot { name: "cat".into(), ..scene.robots[1].clone() });
     let dummy = palette::other_robots(2)[1];
     assert_eq!(lines(&scene), [curious.clone(), named(palette::OTHER_ROBOT, "cat"), named(dummy, "dummy")]);
     let all = palette::other_robots(5);

@@ -4,7 +4,7 @@ use super::panel::{Chart, Panel, pair};
 use super::{Trails, ground};
 use crate::layers::Layer;
 use crate::legend::{Legend, Mark};
-use crate::scene::{Robot, Scene, extent};
+use crate::scene::{Scene, SceneRobot, extent};
 use crate::view::Trail;
 use mapper::Mapper;
 use nalgebra::Point2;
@@ -56,15 +56,15 @@ pub(super) fn draw(
 fn colors(scene: &Scene) -> Vec<Rgb> {
     let others = scene.robots.iter().filter(|robot| !robot.is_driven).count();
     let mut others = palette::other_robots(others).into_iter();
-    let color = |robot: &Robot| if robot.is_driven { None } else { others.next() };
+    let color = |robot: &SceneRobot| if robot.is_driven { None } else { others.next() };
     scene.robots.iter().map(color).map(|color| color.unwrap_or(palette::CURIOUS)).collect()
 }
 
 /// The entries of the legend.
 pub(super) fn entries(scene: &Scene, believed: &Trail, goals: &Goals) -> Legend {
-    let mut robots: Vec<(&Robot, Rgb)> = scene.robots.iter().zip(colors(scene)).collect();
+    let mut robots: Vec<(&SceneRobot, Rgb)> = scene.robots.iter().zip(colors(scene)).collect();
     robots.sort_by_key(|(robot, _)| !robot.is_driven);
-    let entry = |same: &[(&Robot, Rgb)]| match same {
+    let entry = |same: &[(&SceneRobot, Rgb)]| match same {
         [(robot, color)] => (Mark::Line(*color), robot.name.clone()),
         several => (Mark::Line(several[0].1), format!("{} other robots", several.len())),
     };

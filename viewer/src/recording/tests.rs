@@ -1,3 +1,5 @@
+mod disk;
+
 use super::*;
 use crate::layers::Layer;
 use crate::scene::TimeUnit;
@@ -10,9 +12,7 @@ use rerun::{
     ChunkStore, ChunkStoreConfig, Component, ComponentIdentifier, EntityPath, Scalars, SegmentationImage,
     StoreKind, TextLog, Transform3D,
 };
-use std::io::{self, Write};
 use std::path::Path;
-use std::sync::{Arc, Mutex};
 
 fn to(file: &Path) -> Result<Recorder, RecordingError> {
     Recorder::new(Some(file), &[], FakeRun::new().scene)
@@ -61,6 +61,57 @@ fn rows<C: Component + Clone>(
     rows
 }
 
+/// The entities of a recording.
+const ENTITIES: [&str; 47] = [
+    "/curves/expected_changes/p",
+    "/curves/longest_unseen/r",
+    "/curves/scores/coverage",
+    "/curves/scores/map_quality",
+    "/curves/strategy",
+    "/curves/strategy_share/poisson",
+    "/curves/strategy_share/random",
+    "/curves/strategy_share/recency",
+    "/curves/strategy_value/poisson",
+    "/curves/strategy_value/random",
+    "/curves/strategy_value/recency",
+    "/log",
+    "/world",
+    "/world/field_of_view/cells",
+    "/world/field_of_view/outline",
+    "/world/goal",
+    "/world/legend/lines",
+    "/world/legend/rims",
+    "/world/legend/texts",
+    "/world/maps/change_probability",
+    "/world/maps/change_probability/cells",
+    "/world/maps/change_probability/color_bar",
+    "/world/maps/change_probability/marks",
+    "/world/maps/interval",
+    "/world/maps/interval/cells",
+    "/world/maps/interval/color_bar",
+    "/world/maps/interval/marks",
+    "/world/maps/occupancy",
+    "/world/maps/occupancy/cells",
+    "/world/maps/predicted",
+    "/world/maps/predicted/cells",
+    "/world/maps/predicted/color_bar",
+    "/world/maps/predicted/marks",
+    "/world/maps/recency",
+    "/world/maps/recency/cells",
+    "/world/maps/recency/color_bar",
+    "/world/maps/recency/marks",
+    "/world/obstacles/toy",
+    "/world/obstacles/toy/name",
+    "/world/path",
+    "/world/robots/curious/body",
+    "/world/robots/curious/body/name",
+    "/world/robots/curious/trail",
+    "/world/robots/dummy/body",
+    "/world/robots/dummy/body/name",
+    "/world/robots/dummy/trail",
+    "/world/walls",
+];
+
 #[test]
 fn every_entity_is_there() {
     let folder = tempfile::tempdir().unwrap();
@@ -73,56 +124,7 @@ fn every_entity_is_there() {
         .map(|path| path.to_string())
         .filter(|path| !path.starts_with("/__"))
         .collect();
-    let expected = [
-        "/curves/expected_changes/p",
-        "/curves/longest_unseen/r",
-        "/curves/scores/coverage",
-        "/curves/scores/map_quality",
-        "/curves/strategy",
-        "/curves/strategy_share/poisson",
-        "/curves/strategy_share/random",
-        "/curves/strategy_share/recency",
-        "/curves/strategy_value/poisson",
-        "/curves/strategy_value/random",
-        "/curves/strategy_value/recency",
-        "/log",
-        "/world",
-        "/world/field_of_view/cells",
-        "/world/field_of_view/outline",
-        "/world/goal",
-        "/world/legend/lines",
-        "/world/legend/rims",
-        "/world/legend/texts",
-        "/world/maps/change_probability",
-        "/world/maps/change_probability/cells",
-        "/world/maps/change_probability/color_bar",
-        "/world/maps/change_probability/marks",
-        "/world/maps/interval",
-        "/world/maps/interval/cells",
-        "/world/maps/interval/color_bar",
-        "/world/maps/interval/marks",
-        "/world/maps/occupancy",
-        "/world/maps/occupancy/cells",
-        "/world/maps/predicted",
-        "/world/maps/predicted/cells",
-        "/world/maps/predicted/color_bar",
-        "/world/maps/predicted/marks",
-        "/world/maps/recency",
-        "/world/maps/recency/cells",
-        "/world/maps/recency/color_bar",
-        "/world/maps/recency/marks",
-        "/world/obstacles/toy",
-        "/world/obstacles/toy/name",
-        "/world/path",
-        "/world/robots/curious/body",
-        "/world/robots/curious/body/name",
-        "/world/robots/curious/trail",
-        "/world/robots/dummy/body",
-        "/world/robots/dummy/body/name",
-        "/world/robots/dummy/trail",
-        "/world/walls",
-    ];
-    assert_eq!(entities, expected);
+    assert_eq!(entities, ENTITIES);
     assert_eq!(timelines(&store), ["sim_time", "step"]);
 }
 
@@ -277,7 +279,7 @@ fn a_killed_run_leaves_what_was_sent() {
     let body = rows::<Translation3D>(&whole, &tracks::robot("curious", "body"), position);
     assert_eq!(body.last().unwrap().0, 10_000_000_000);
     let messages = |bytes: &[u8]| {
-        Decoder::<rerun::log::LogMsg>::decode_eager(io::Cursor::new(bytes.to_vec()))
+        Decoder::<rerun::log::LogMsg>::decode_eager(std::io::Cursor::new(bytes.to_vec()))
             .unwrap()
             .take_while(Result::is_ok)
             .count()
@@ -286,87 +288,6 @@ fn a_killed_run_leaves_what_was_sent() {
     assert!(all > 50, "{all}");
     assert_eq!(messages(&killed[..killed.len() - 5]), all - 1);
     drop(recorder);
-}
-
-#[test]
-fn a_file_that_cannot_be_made_is_one_clear_error() {
-    let error = |file: &str| to(Path::new(file)).err().unwrap().to_string();
-    let missing = error("no/such/folder/run.rrd");
-    assert!(missing.starts_with("cannot write the recording no/such/folder/run.rrd: "), "{missing}");
-    if Path::new("/dev/full").exists() {
-        let full = error("/dev/full");
-        assert!(
-            full.starts_with("cannot write the recording /dev/full: ") && full.contains("No space left"),
-            "{full}"
-        );
-    }
-}
-
-/// A disk with room for a number of bytes.
-#[derive(Clone)]
-struct SmallDisk(Arc<Mutex<usize>>);
-
-impl Write for SmallDisk {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        let mut room = self.0.lock().unwrap();
-        *room = room.checked_sub(bytes.len()).ok_or(io::ErrorKind::StorageFull)?;
-        Ok(bytes.len())
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        Ok(())
-    }
-}
-
-#[test]
-fn a_full_disk_is_reported_once() {
-    let mut run = FakeRun::new();
-    run.step();
-    let mut record = |room: usize| {
-        let mut recorder = Recorder::new(None, &[], run.scene.clone()).unwrap();
-        let disk = SmallDisk(Arc::new(room.into()));
-        let file = file::RrdFile::with_output(Path::new("run.rrd"), Box::new(disk.clone())).unwrap();
-        recorder.sinks = Sinks::of_file(file);
-        recorder.stream.set_sink(Box::new(recorder.sinks.clone()));
-        run.with_view(|view| recorder.log(view, false)).unwrap();
-        let early = recorder.flush(); // the SDK writes in its own time
-        recorder.stream.flush_blocking().unwrap();
-        let late = recorder.flush();
-        assert!(early.is_ok() || late.is_ok(), "the error is reported twice");
-        let meanwhile = early.and(late).map_err(|error| error.to_string());
-        let end = run.with_view(|view| recorder.log(view, true)).map_err(|error| error.to_string());
-        (meanwhile, end, *disk.0.lock().unwrap())
-    };
-    let full = Err("cannot write the recording run.rrd: no storage space".to_owned());
-    let (meanwhile, end, _) = record(20_000);
-    assert_eq!((meanwhile, end), (full.clone(), Ok(())));
-
-    const AMPLE: usize = 10_000_000;
-    let (meanwhile, end, left) = record(AMPLE);
-    assert_eq!((meanwhile, end), (Ok(()), Ok(())));
-
-    // Room for all but the end, which is more than a thousand bytes long.
-    let (meanwhile, end, _) = record(AMPLE - left - 1000);
-    assert_eq!((meanwhile, end), (Ok(()), full));
-}
-
-#[test]
-fn a_long_recording_has_no_footer() {
-    let (stream, memory) = rerun::RecordingStreamBuilder::new(APPLICATION).memory().unwrap();
-    stream.log("/log", &rerun::TextLog::new("a line")).unwrap();
-    stream.flush_blocking().unwrap();
-    let messages = memory.take();
-    let footer_bytes = |count: usize| {
-        let disk = SmallDisk(Arc::new(usize::MAX.into()));
-        let mut file = file::RrdFile::with_output(Path::new("run.rrd"), Box::new(disk.clone())).unwrap();
-        messages.iter().cycle().take(count).for_each(|message| file.send(message));
-        let before = *disk.0.lock().unwrap();
-        file.finish();
-        file.check().unwrap();
-        before - *disk.0.lock().unwrap()
-    };
-    assert!(footer_bytes(messages.len()) > 1000);
-    assert_eq!(footer_bytes(5000), 0);
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! The scene of a grid world. Cells are 1 m wide, with `[0, 0]` at the origin.
 
-use super::{Obstacle, Outline, Robot, RobotState, Scene, Sight, TimeUnit, Visible};
+use super::{Obstacle, Outline, RobotState, Scene, SceneRobot, Sight, TimeUnit, Visible};
 use interfaces::{Cell, CellReading, Grid};
 use nalgebra::{Isometry2, Point2};
 use sim::grid::{GridSpec, GridWorld};
@@ -30,7 +30,7 @@ impl From<&GridSpec> for Scene {
                     reach: block.path.iter().map(square).collect(),
                 })
                 .collect(),
-            robots: vec![Robot {
+            robots: vec![SceneRobot {
                 name: ROBOT.to_owned(),
                 pose: Isometry2::translation(start.x, start.y),
                 radius_m: ROBOT_RADIUS_M,

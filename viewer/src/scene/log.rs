@@ -1,6 +1,6 @@
 //! The scene of a log: a place of which nothing is known before.
 
-use super::{Robot, Scene, Sector, TimeUnit};
+use super::{Scene, SceneRobot, Sector, TimeUnit};
 use interfaces::{GridFrame, LaserReading};
 use nalgebra::Isometry2;
 
@@ -14,7 +14,7 @@ impl Scene {
         let angle_rad = scan.angle_increment_rad.abs() * scan.ranges_m.len().saturating_sub(1) as f64;
         let middle = scan.angle_rad(0) + scan.angle_increment_rad.signum() * angle_rad / 2.0;
         let mount = first.mount * interfaces::pose(0.0, 0.0, middle);
-        let robot = Robot {
+        let robot = SceneRobot {
             name: "the robot".to_owned(),
             pose: Isometry2::identity(),
             radius_m: RADIUS_M,

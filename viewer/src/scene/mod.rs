@@ -62,7 +62,7 @@ pub struct Scene {
     /// Everything that is neither a wall nor a robot, in the order of the world file.
     pub obstacles: Vec<Obstacle>,
     /// The robots, in the order of the world file.
-    pub robots: Vec<Robot>,
+    pub robots: Vec<SceneRobot>,
 }
 
 impl Scene {
@@ -113,7 +113,7 @@ impl Obstacle {
 
 /// A robot at its start.
 #[derive(Clone, Debug)]
-pub struct Robot {
+pub struct SceneRobot {
     /// The name of the robot in the world file.
     pub name: String,
     /// The pose in the frame of the world, m and rad.
@@ -128,7 +128,7 @@ pub struct Robot {
     pub is_driven: bool,
 }
 
-impl Robot {
+impl SceneRobot {
     /// The color of the robot.
     pub(crate) fn color(&self) -> Rgb {
         if self.is_driven { palette::CURIOUS } else { palette::OTHER_ROBOT }

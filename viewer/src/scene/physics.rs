@@ -1,6 +1,6 @@
 //! The scene of a physics world.
 
-use super::{Obstacle, Outline, Robot, RobotState, Scene, Sector, Sight, TimeUnit, Visible};
+use super::{Obstacle, Outline, RobotState, Scene, SceneRobot, Sector, Sight, TimeUnit, Visible};
 use interfaces::LaserReading;
 use nalgebra::Isometry2;
 use sim::physics::{
@@ -74,11 +74,11 @@ fn obstacle(spec: &ObstacleSpec) -> Obstacle {
     Obstacle { name: spec.name.clone(), outline, reach }
 }
 
-fn robot(spec: &RobotSpec) -> Robot {
+fn robot(spec: &RobotSpec) -> SceneRobot {
     let lasers = spec.lasers().map(|laser| (laser.mount, laser.fov_rad, laser.range_max_m));
     let sonars = spec.sonars.iter().map(|sonar| (sonar.mount, sonar.cone_rad, sonar.range_max_m));
     let sector = |(mount, angle_rad, range_m)| Sector { mount, angle_rad, range_m };
-    Robot {
+    SceneRobot {
         name: spec.name.clone(),
         pose: spec.pose,
         radius_m: spec.radius_m,

@@ -131,19 +131,25 @@ fn main() -> ExitCode {
         ("load_s", load_s, 4),
         ("cpu_s", cpu_s, 4),
     ];
-    if args.json {
+    print(&figures, args.json);
+    ExitCode::SUCCESS
+}
+
+/// Prints figures, each with a name and a number of decimals.
+fn print(figures: &[(&str, f64, usize)], as_json: bool) {
+    if as_json {
         // JSON has no NaN.
         let value = |value: f64, digits: usize| {
             if value.is_finite() { format!("{value:.digits$}") } else { "null".to_owned() }
         };
-        let pairs = figures.map(|(name, figure, digits)| format!("\"{name}\": {}", value(figure, digits)));
-        println!("{{{}}}", pairs.join(", "));
+        let pairs =
+            figures.iter().map(|(name, figure, digits)| format!("\"{name}\": {}", value(*figure, *digits)));
+        println!("{{{}}}", pairs.collect::<Vec<_>>().join(", "));
     } else {
         for (name, figure, digits) in figures {
             println!("{name:>16}  {figure:.digits$}");
         }
     }
-    ExitCode::SUCCESS
 }
 
 /// Simulates the robots for some seconds.

@@ -1,5 +1,5 @@
 use super::DiffDriveSettings;
-use crate::drives::Scene;
+use crate::drives::DriveScene;
 use interfaces::CellState;
 use nalgebra::{Point2, Vector2};
 
@@ -57,24 +57,24 @@ pub(super) struct CollisionMonitor {
 
 impl CollisionMonitor {
     /// Collects the obstacles that matter at speeds up to `speed_mps`.
-    pub(super) fn update(&mut self, settings: &DiffDriveSettings, scene: &Scene, speed_mps: f64) {
+    pub(super) fn update(&mut self, settings: &DiffDriveSettings, scene: &DriveScene, speed_mps: f64) {
         let reach_m = settings.keep_m(speed_mps)
             + settings.stop_m(speed_mps)
             + settings.max_obstacle_mps * settings.stop_s(speed_mps);
         self.obstacles.clear();
-        let robot = scene.situation.position();
-        for point in scene.situation.points {
+        let robot = scene.input.position();
+        for point in scene.input.points {
             if (point - robot).norm_squared() < reach_m * reach_m {
                 self.add(scene, point);
             }
         }
-        let frame = scene.situation.map.frame();
+        let frame = scene.input.map.frame();
         let corner = Vector2::repeat(reach_m);
         let (first, last) = (frame.cell_at(&(robot - corner)), frame.cell_at(&(robot + corner)));
         for y in first.y.max(0)..=last.y.min(frame.height() as i32 - 1) {
             for x in first.x.max(0)..=last.x.min(frame.width() as i32 - 1) {
                 let cell = interfaces::Cell::new(x, y);
-                if scene.situation.map.get(cell) == Some(&CellState::Blocked) {
+                if scene.input.map.get(cell) == Some(&CellState::Blocked) {
                     let center = frame.center(cell);
                     if (center - robot).norm_squared() < reach_m * reach_m {
                         self.add(scene, &center);
@@ -84,12 +84,12 @@ impl CollisionMonitor {
         }
     }
 
-    fn add(&mut self, scene: &Scene, point: &Point2<f64>) {
-        let at = scene.situation.pose.inverse_transform_point(point).coords;
+    fn add(&mut self, scene: &DriveScene, point: &Point2<f64>) {
+        let at = scene.input.pose.inverse_transform_point(point).coords;
         if self.obstacles.last().is_some_and(|last| (last.at - at).norm_squared() < MERGE_M * MERGE_M) {
             return;
         }
-        let is_dynamic = scene.dynamic.is_dynamic(scene.situation, point);
+        let is_dynamic = scene.dynamic.is_dynamic(scene.input, point);
         self.obstacles.push(Obstacle { at, distance_m: at.norm(), is_dynamic });
     }
 

@@ -5,7 +5,7 @@ mod settings;
 
 pub use settings::DiffDriveSettings;
 
-use super::{Body, Drive, Scene};
+use super::{Body, Drive, DriveScene};
 use crate::planner::{Costmap, Moves, Path};
 use collision_monitor::CollisionMonitor;
 use interfaces::{SettingsError, Twist, Values, values};
@@ -65,8 +65,8 @@ impl DiffDrive {
     }
 
     /// Limits the acceleration within a tick. The robot itself limits the deceleration.
-    fn command(&mut self, scene: &Scene, wish: Twist) -> Twist {
-        let tick_s = (scene.situation.time - self.last_time_s).clamp(0.0, LONGEST_TICK_S);
+    fn command(&mut self, scene: &DriveScene, wish: Twist) -> Twist {
+        let tick_s = (scene.input.time - self.last_time_s).clamp(0.0, LONGEST_TICK_S);
         let faster = self.settings.acceleration_mps2 * tick_s;
         let turns_more = self.settings.angular_acceleration_radps2 * tick_s;
         let (v, w) = (self.last.linear_mps, self.last.angular_radps);
@@ -74,7 +74,7 @@ impl DiffDrive {
             linear_mps: wish.linear_mps.clamp(v.min(0.0) - faster, v.max(0.0) + faster),
             angular_radps: wish.angular_radps.clamp(w.min(0.0) - turns_more, w.max(0.0) + turns_more),
         };
-        self.last_time_s = scene.situation.time;
+        self.last_time_s = scene.input.time;
         self.last
     }
 }
@@ -103,15 +103,15 @@ impl Drive for DiffDrive {
         }
     }
 
-    fn follow(&mut self, scene: &Scene, path: &Path) -> Twist {
+    fn follow(&mut self, scene: &DriveScene, path: &Path) -> Twist {
         let settings = self.settings;
         self.looked_rad = 0.0;
-        let position = scene.situation.position();
+        let position = scene.input.position();
         let Some(target) = visible_lookahead_point(scene.costmap, path, &position, settings.lookahead_m)
         else {
             return self.rest(scene);
         };
-        let towards = scene.situation.pose.inverse_transform_point(&target).coords;
+        let towards = scene.input.pose.inverse_transform_point(&target).coords;
         let off_rad = libm::atan2(towards.y, towards.x);
         let allowed_rad = settings.turn_in_place_rad * if self.is_turning { TURNED } else { 1.0 };
         self.is_turning = off_rad.abs() > allowed_rad;
@@ -135,20 +135,20 @@ impl Drive for DiffDrive {
         self.command(scene, Twist { linear_mps: safe_mps, angular_radps: safe_mps * curvature_radpm })
     }
 
-    fn rest(&mut self, scene: &Scene) -> Twist {
+    fn rest(&mut self, scene: &DriveScene) -> Twist {
         (self.is_turning, self.looked_rad) = (false, 0.0);
         self.command(scene, Twist::STOP)
     }
 
     /// Turns once around. What is seen from here does not tell the pose then: the robot drives ahead where that is safe,
     /// and turns where it is not.
-    fn look_around(&mut self, scene: &Scene) -> Twist {
+    fn look_around(&mut self, scene: &DriveScene) -> Twist {
         self.is_turning = false;
         let settings = self.settings;
         let turn_radps = LOOK_AROUND_RADPS.min(settings.max_angular_radps);
         let turn = Twist { linear_mps: 0.0, angular_radps: turn_radps };
         if self.looked_rad < TAU {
-            let tick_s = (scene.situation.time - self.last_time_s).clamp(0.0, LONGEST_TICK_S);
+            let tick_s = (scene.input.time - self.last_time_s).clamp(0.0, LONGEST_TICK_S);
             self.looked_rad += turn_radps * tick_s;
             return self.command(scene, turn);
         }
@@ -161,7 +161,7 @@ impl Drive for DiffDrive {
     }
 
     /// Drives straight backward while that is safe, otherwise turns in place.
-    fn recover(&mut self, scene: &Scene, elapsed_s: f64) -> Option<Twist> {
+    fn recover(&mut self, scene: &DriveScene, elapsed_s: f64) -> Option<Twist> {
         if elapsed_s >= RECOVERY_S {
             return None;
         }

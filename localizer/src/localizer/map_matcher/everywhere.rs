@@ -133,8 +133,11 @@ impl MapMatcher {
         let Some((_, scores)) = &wide.scores else { return false };
         let begin = || {
             let points = near(&step.scan.points, wide.reach_m);
-            let least = if wide.found.is_empty() { 0.0 } else { AMBIGUOUS * wide.best_score };
-            (Search::new(&points, Some(window), wide.min_score.max(least), AMBIGUOUS), Isometry2::identity())
+            let min_score = if wide.found.is_empty() { 0.0 } else { AMBIGUOUS * wide.best_score };
+            (
+                Search::new(&points, Some(window), wide.min_score.max(min_score), AMBIGUOUS),
+                Isometry2::identity(),
+            )
         };
         let (search, since) = wide.part.get_or_insert_with(begin);
         if search.pass(scores, left) {

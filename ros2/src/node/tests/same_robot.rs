@@ -12,7 +12,7 @@ use logs::ros::{scan_message, scan_of};
 use logs::{Log, McapWriter, TopicChoice};
 use mapper::{Mapper, NoReturn};
 use nalgebra::Isometry2;
-use robot::Pilot;
+use robot::{Pilot, Settings};
 use sim::physics::PhysicsWorld;
 use std::fs::File;
 use std::ops::ControlFlow;
@@ -98,9 +98,12 @@ fn a_simulator_a_bag_and_a_live_robot_make_the_same_of_the_same_readings() {
     }
     assert!(goals > 1 && known(simulated.mapper.states()) > 5000);
     writer.finish().unwrap();
+    a_survey_makes_the_same(&bag, &settings, &scans, simulated.mapper.states());
+}
 
-    // The bag: the same scans in the same map, as far as the frame of the log reaches.
-    let log = Log::open(&bag, &TopicChoice::default()).unwrap();
+/// The survey of a bag has the same scans in the same map, as far as the frame of the log reaches.
+fn a_survey_makes_the_same(bag: &Path, settings: &Settings, scans: &[Scan], expected: &Grid<CellState>) {
+    let log = Log::open(bag, &TopicChoice::default()).unwrap();
     let entry = LogEntry::of(String::new(), &log, &TopicChoice::default()).unwrap();
     let of_log = SurveySettings {
         filter: settings.filter.clone(),
@@ -119,9 +122,9 @@ fn a_simulator_a_bag_and_a_live_robot_make_the_same_of_the_same_readings() {
     let mut compared = 0;
     for index in 0..map.frame().len() {
         let at = map.frame().center(map.frame().cell(index));
-        let same = simulated.mapper.states().get(frame.cell_at(&at)).copied();
+        let same = expected.get(expected.frame().cell_at(&at)).copied();
         assert_eq!(Some(map.cells()[index]), same, "{at}");
         compared += usize::from(map.cells()[index] != CellState::Unknown);
     }
-    assert_eq!(compared, known(simulated.mapper.states()));
+    assert_eq!(compared, known(expected));
 }

@@ -36,10 +36,10 @@ fn states_of_all_versions_are_read_and_the_layout_belongs_to_its_version() {
         let said = said.lock().unwrap().join("\n");
         assert!(said.contains("the map goes on from 10 readings"), "{version}: {said}");
         assert_eq!(said.contains("searches for its pose"), version < VERSION, "{version}: {said}");
-        let CuriousNode { robot, saves, continued, .. } = &mut node;
-        let saves = saves.as_mut().unwrap();
-        saves.save(continued.unwrap(), robot).unwrap();
-        saves.file.wait().unwrap();
+        let CuriousNode { robot, state_file, continued, .. } = &mut node;
+        let state_file = state_file.as_mut().unwrap();
+        state_file.save(continued.unwrap(), robot).unwrap();
+        state_file.file.wait().unwrap();
         let is = read_state(&path).unwrap();
         let kept = parts(&is);
         let names =

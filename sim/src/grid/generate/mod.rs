@@ -120,7 +120,12 @@ fn draw(settings: &GenerateSettings, wanted: usize, seed: u64, rng: &mut RandomS
     }
 }
 
-fn block(settings: &GenerateSettings, number: usize, path: paths::Path, rng: &mut RandomStream) -> BlockSpec {
+fn block(
+    settings: &GenerateSettings,
+    number: usize,
+    path: paths::BlockPath,
+    rng: &mut RandomStream,
+) -> BlockSpec {
     let (low, high) = cut(settings.dwell, 1..=BlockSpec::MAX_DWELL);
     let (log_low, log_high) = (libm::log(f64::from(low)), libm::log(f64::from(high) + 1.0));
     let log_dwell = log_low + rng.random::<f64>() * (log_high - log_low);

@@ -11,7 +11,7 @@ const MAX_TRIES: usize = 400;
 /// The probability that a winding path goes straight on.
 const STRAIGHT_ON: f64 = 0.7;
 
-pub(super) struct Path {
+pub(super) struct BlockPath {
     pub(super) cells: Vec<Cell>,
     pub(super) course: Course,
 }
@@ -23,7 +23,7 @@ pub(super) fn paths(
     start: Cell,
     wanted: usize,
     rng: &mut RandomStream,
-) -> Vec<Path> {
+) -> Vec<BlockPath> {
     let mut open = walls.map(|wall| !wall);
     close_around(&mut open, start);
     let mut paths = Vec::new();
@@ -38,7 +38,7 @@ pub(super) fn paths(
 }
 
 /// A random path, if all of its cells are open.
-fn path(settings: &GenerateSettings, open: &Grid<bool>, rng: &mut RandomStream) -> Option<Path> {
+fn path(settings: &GenerateSettings, open: &Grid<bool>, rng: &mut RandomStream) -> Option<BlockPath> {
     let kinds = if settings.paths.is_empty() { &PathKind::ALL[..] } else { &settings.paths };
     let kind = kinds[rng.random_range(0..kinds.len())];
     let (low, high) = cut(settings.path_cells, 2..=1000);
@@ -49,7 +49,7 @@ fn path(settings: &GenerateSettings, open: &Grid<bool>, rng: &mut RandomStream) 
         PathKind::Winding => winding(first, rng.random_range(low..=high), open, rng)?,
     };
     let course = if kind == PathKind::Ring { Course::Loop } else { Course::BackAndForth };
-    cells.iter().all(|cell| open.get(*cell) == Some(&true)).then_some(Path { cells, course })
+    cells.iter().all(|cell| open.get(*cell) == Some(&true)).then_some(BlockPath { cells, course })
 }
 
 fn line(first: Cell, length: u32, rng: &mut RandomStream) -> Vec<Cell> {

@@ -31,7 +31,7 @@ const ROUNDING_M: f64 = 1e-4;
 /// All bodies: walls, obstacles and robots.
 pub(super) struct Bodies {
     world: rapier::PhysicsWorld,
-    robots: Vec<Robot>,
+    robots: Vec<RobotBody>,
     /// Robots and pushed obstacles.
     free: Vec<Free>,
     /// The body that pushed boxes have friction with.
@@ -58,7 +58,7 @@ struct Free {
 }
 
 #[derive(Clone)]
-struct Robot {
+struct RobotBody {
     body: rapier::RigidBodyHandle,
     collider: rapier::ColliderHandle,
     /// The direction of the wheels in the middle of the last step.
@@ -158,7 +158,7 @@ impl Bodies {
         let (body, collider) = self.world.insert(body, collider);
         let inner_m = if is_round { spec.radius_m } else { convex::inner_m(&spec.corners) };
         self.add_free(body, inner_m, self.predicted_m.unwrap_or(own_motion_m));
-        self.robots.push(Robot { body, collider, forward: Vector2::x() });
+        self.robots.push(RobotBody { body, collider, forward: Vector2::x() });
     }
 
     /// Notes a body that contacts move, around a disc of `inner_m`.

@@ -11,7 +11,7 @@ const HELD_BACK: f64 = 1e-4;
 
 /// The motors of a robot. They follow a command as fast as the limits allow.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Drive {
+pub(super) struct Motors {
     limits: DriveLimits,
     /// The present velocity.
     pub(super) velocity: Velocity,
@@ -19,7 +19,7 @@ pub(super) struct Drive {
     pub(super) is_stalled: bool,
 }
 
-impl Drive {
+impl Motors {
     /// A drive at rest.
     pub(super) fn new(limits: DriveLimits) -> Self {
         Self { limits, velocity: Velocity::STOP, is_stalled: false }

@@ -1,7 +1,7 @@
 //! Fresh measurements, and the scans and poses of all robots in memory of the caller.
 
 use super::Fleet;
-use crate::physics::robot::{Robot, RobotView};
+use crate::physics::robot::{RobotView, SimulatedRobot};
 use interfaces::heading_rad;
 
 /// The error for a slice of another length than that of the result.
@@ -38,7 +38,7 @@ impl Fleet {
     /// [parallel lasers](Fleet::set_parallel_lasers) on all threads.
     pub fn look_all(&mut self) {
         self.scene.sort();
-        let surroundings = &self.surroundings(self.robots.iter().any(Robot::sweeps));
+        let surroundings = &self.surroundings(self.robots.iter().any(SimulatedRobot::sweeps));
         self.for_robots(|_| true, |robot| robot.look(surroundings));
     }
 

@@ -19,7 +19,7 @@ use super::obstacles::Obstacle;
 use super::past::Past;
 use super::rays::Scene;
 use super::report::{Body, Contact, ObstacleView};
-use super::robot::{Robot, RobotView};
+use super::robot::{RobotView, SimulatedRobot};
 use super::sensors::Tagged;
 use super::shape::Rectangle;
 use super::spec::FleetSpec;
@@ -39,7 +39,7 @@ pub struct Fleet {
     /// Steps since the start. Time is a multiple of the step, so that it never drifts.
     step: u64,
     bodies: Bodies,
-    pub(super) robots: Vec<Robot>,
+    pub(super) robots: Vec<SimulatedRobot>,
     pub(super) obstacles: Vec<Obstacle>,
     scene: Scene,
     past: Past,
@@ -74,12 +74,12 @@ impl Fleet {
 
     /// All robots, in the order of the spec.
     pub fn robots(&self) -> impl ExactSizeIterator<Item = RobotView<'_>> {
-        self.robots.iter().map(Robot::view)
+        self.robots.iter().map(SimulatedRobot::view)
     }
 
     /// One robot (by index); `None` if there is no such robot.
     pub fn robot(&self, robot: usize) -> Option<RobotView<'_>> {
-        self.robots.get(robot).map(Robot::view)
+        self.robots.get(robot).map(SimulatedRobot::view)
     }
 
     /// The corners of all walls, counter-clockwise, m.

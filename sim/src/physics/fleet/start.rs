@@ -8,7 +8,7 @@ use crate::physics::obstacles::Obstacle;
 use crate::physics::past::Past;
 use crate::physics::rays::{Disc, Scene};
 use crate::physics::report::Body;
-use crate::physics::robot::Robot;
+use crate::physics::robot::SimulatedRobot;
 use crate::physics::sensors::SharedBeams;
 use crate::physics::shape::grid_corners;
 use crate::physics::spec::{FleetSpec, RobotSpec};
@@ -80,10 +80,10 @@ impl Start {
         start
     }
 
-    fn robots(&self, seed: u64, beams: &mut SharedBeams) -> Vec<Robot> {
+    fn robots(&self, seed: u64, beams: &mut SharedBeams) -> Vec<SimulatedRobot> {
         let robots = self.spec.robots.iter().enumerate();
         let robots = robots.map(|(index, robot)| {
-            Robot::new(robot, index, self.bodies.pose(index), self.spec.step_s, seed, beams)
+            SimulatedRobot::new(robot, index, self.bodies.pose(index), self.spec.step_s, seed, beams)
         });
         robots.collect()
     }

@@ -1,7 +1,7 @@
 //! Putting robots at other poses.
 
 use super::Fleet;
-use crate::physics::robot::Robot;
+use crate::physics::robot::SimulatedRobot;
 use crate::physics::shape::{Rectangle, TOUCH_M, grid_corners};
 use interfaces::heading_rad;
 use nalgebra::{Isometry2, Point2};
@@ -71,7 +71,7 @@ impl Fleet {
         }
         let is_in = |shape: &Rectangle| form.gap_m(&shape.corners()) < -TOUCH_M;
         let mut others = self.robots.iter().enumerate().filter(|(index, _)| *index != robot);
-        let meets = |(_, other): (usize, &Robot)| form.apart_m(&other.form()) < -TOUCH_M;
+        let meets = |(_, other): (usize, &SimulatedRobot)| form.apart_m(&other.form()) < -TOUCH_M;
         if self.standing_boxes().iter().any(is_in) || others.any(meets) {
             return Err(TeleportError::Occupied { x_m: at.x, y_m: at.y });
         }

@@ -7,7 +7,7 @@ use crate::physics::form::Form;
 use crate::physics::obstacles::{Blockers, Obstacle};
 use crate::physics::past::Recent;
 use crate::physics::report::Contact;
-use crate::physics::robot::{Robot, RobotView};
+use crate::physics::robot::{RobotView, SimulatedRobot};
 use crate::physics::sensors::{Surroundings, bumper};
 use crate::physics::shape::Rectangle;
 use interfaces::LaserReading;
@@ -46,10 +46,11 @@ impl Fleet {
     }
 
     /// Robots for which `is_meant` is true measure with the sensors that are due, and decide.
-    pub(crate) fn think(&mut self, is_meant: impl Fn(&Robot) -> bool + Sync) {
+    pub(crate) fn think(&mut self, is_meant: impl Fn(&SimulatedRobot) -> bool + Sync) {
         let (step, time_s) = (self.step, self.time_s());
-        let is_due =
-            |robot: &Robot| robot.senses(step) && is_meant(robot) && !robot.has_thought(step, time_s);
+        let is_due = |robot: &SimulatedRobot| {
+            robot.senses(step) && is_meant(robot) && !robot.has_thought(step, time_s)
+        };
         let (mut any, mut sweeps, mut looks) = (false, false, false);
         for robot in self.robots.iter().filter(|robot| is_due(robot)) {
             (any, sweeps, looks) = (true, sweeps || robot.sweeps(), looks || robot.looks());
@@ -67,8 +68,8 @@ impl Fleet {
     /// Lets the robots for which `is_meant` is true measure, in parallel if this is set.
     pub(super) fn for_robots(
         &mut self,
-        is_meant: impl Fn(&Robot) -> bool + Sync,
-        measure: impl Fn(&mut Robot) + Send + Sync,
+        is_meant: impl Fn(&SimulatedRobot) -> bool + Sync,
+        measure: impl Fn(&mut SimulatedRobot) + Send + Sync,
     ) {
         if self.parallel_lasers {
             self.robots.par_iter_mut().filter(|robot| is_meant(robot)).for_each(measure);

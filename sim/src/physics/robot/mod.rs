@@ -8,7 +8,7 @@ pub use view::RobotView;
 use super::behaviors::Behavior;
 use super::bodies::Bodies;
 use super::command::{Command, Velocity};
-use super::drives::Drive;
+use super::drives::Motors;
 use super::form::Form;
 use super::report::Body;
 use super::sensors::{Look, Platform, Sensor, SharedBeams, Surroundings};
@@ -20,7 +20,7 @@ use odometry::{Displacements, Odometry, Wheels};
 use std::sync::Arc;
 
 #[derive(Clone)]
-pub(crate) struct Robot {
+pub(crate) struct SimulatedRobot {
     pub(super) spec: RobotSpec,
     /// The index among the robots.
     index: usize,
@@ -36,7 +36,7 @@ pub(crate) struct Robot {
     /// The bumpers that touch something, as bits.
     pub(super) pressed_bumpers: u64,
     command: Command,
-    drive: Drive,
+    drive: Motors,
     wheels: Wheels,
     odometry: Odometry,
     /// When the odometry jumps, and when the robot is carried away.
@@ -50,7 +50,7 @@ pub(crate) struct Robot {
     periods: Vec<u64>,
 }
 
-impl Robot {
+impl SimulatedRobot {
     /// The robot with an index, at `pose`. `beams` are those of all robots.
     pub(super) fn new(
         spec: &RobotSpec,
@@ -67,7 +67,7 @@ impl Robot {
         periods.dedup();
         let displacements =
             |spec: Option<_>, purpose| spec.map(|spec| Displacements::new(spec, random(purpose)));
-        let drive = Drive::new(spec.drive);
+        let drive = Motors::new(spec.drive);
         let laser_beams = beams.of_laser(&spec.laser);
         Self {
             index,
@@ -165,7 +165,7 @@ impl Robot {
     pub(super) fn carry(&mut self, pose: Isometry2<f64>) {
         self.pose = pose;
         self.velocity = Velocity::STOP;
-        self.drive = Drive::new(self.spec.drive);
+        self.drive = Motors::new(self.spec.drive);
         self.wheels = Wheels::new(self.spec.odometry.slip, self.drive);
     }
 

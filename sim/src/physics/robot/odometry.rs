@@ -1,7 +1,7 @@
 //! The odometry of a robot, with wheels that slip, and displacements.
 
 use crate::physics::command::{Command, Velocity};
-use crate::physics::drives::Drive;
+use crate::physics::drives::Motors;
 use crate::physics::snapshot::{self, value};
 use crate::physics::spec::{DisplacementSpec, DriveKind, OdometryError, RobotSpec};
 use interfaces::{RandomStream, Twist, Values, pose, rotation, values, wrap_rad};
@@ -103,13 +103,13 @@ pub(super) struct Wheels {
     /// From 0 to 1, see [`OdometryError::slip`].
     slip: f64,
     /// A drive that follows the commands without contacts.
-    free: Drive,
+    free: Motors,
     /// What the odometry measures in addition to the velocity of the robot.
     pub(super) slipping: Velocity,
 }
 
 impl Wheels {
-    pub(super) fn new(slip: f64, drive: Drive) -> Self {
+    pub(super) fn new(slip: f64, drive: Motors) -> Self {
         Self { slip, free: drive, slipping: Velocity::STOP }
     }
 
@@ -121,7 +121,7 @@ impl Wheels {
     }
 
     /// Starts a step with a command; `drive` is the drive of the robot before the step, `at` the pose by odometry.
-    pub(super) fn start_step(&mut self, drive: &Drive, command: &Command, at: &Isometry2<f64>, step_s: f64) {
+    pub(super) fn start_step(&mut self, drive: &Motors, command: &Command, at: &Isometry2<f64>, step_s: f64) {
         if self.slip == 0.0 {
             return;
         }
@@ -132,7 +132,7 @@ impl Wheels {
     }
 
     /// Ends a step; `drive` is the drive of the robot after it, `solved` the velocity of the robot after contacts.
-    pub(super) fn end_step(&mut self, drive: &Drive, solved: &Velocity) {
+    pub(super) fn end_step(&mut self, drive: &Motors, solved: &Velocity) {
         self.slipping = Velocity::STOP;
         if self.slip > 0.0 && drive.is_stalled {
             let (free, slip) = (self.free.velocity, self.slip);

@@ -1,4 +1,4 @@
-use super::Robot;
+use super::SimulatedRobot;
 use crate::physics::report::Body;
 use crate::physics::sensors::{Fiducial, Sensor, SensorReading, SonarReading};
 use interfaces::{LaserReading, Twist};
@@ -29,7 +29,7 @@ pub struct RobotView<'a> {
     pub is_stalled: bool,
     /// The bodies that the robot touches now.
     pub touching: &'a [Body],
-    robot: &'a Robot,
+    robot: &'a SimulatedRobot,
 }
 
 impl<'a> RobotView<'a> {
@@ -81,7 +81,7 @@ impl fmt::Debug for RobotView<'_> {
     }
 }
 
-impl Robot {
+impl SimulatedRobot {
     /// The state of the robot, as controllers and viewers read it.
     pub(crate) fn view(&self) -> RobotView<'_> {
         RobotView {

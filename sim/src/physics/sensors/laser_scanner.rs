@@ -47,6 +47,40 @@ impl LaserScanner {
         rays.collect()
     }
 
+    /// The reading of this time without ranges, in the memory of a spare one.
+    fn empty_reading(&self, look: &Look, spare: Option<LaserReading>) -> LaserReading {
+        let Look { platform, surroundings, .. } = look;
+        let (scan, mut velocities) = spare
+            .map_or_else(|| (self.spec.empty_scan(), Vec::new()), |spare| (spare.scan, spare.velocities));
+        velocities.clear();
+        if self.spec.sweep_s > 0.0 {
+            velocities.extend(surroundings.recent.velocities(platform.robot, surroundings.time_s));
+        }
+        LaserReading {
+            time_s: surroundings.time_s,
+            pose: platform.odometry_pose,
+            twist: platform.odometry_twist,
+            velocities,
+            mount: self.spec.mount,
+            scan,
+        }
+    }
+
+    /// Takes the ranges of beams that end in glass. `exact`: one over the range without noise of each beam, 1/m.
+    fn swallow(&self, look: &Look, rays: &[Ray], exact: &[f64], ranges_m: &mut [f32]) {
+        let laser = look.platform.pose * self.spec.mount;
+        for (beam, (inverse, (x, y))) in exact.iter().zip(self.beams.directions()).enumerate() {
+            let (from, along) = rays.get(beam).map_or_else(
+                || (laser.translation.vector.into(), laser.rotation * Vector2::new(x, y)),
+                |ray| (ray.from, ray.along),
+            );
+            let end: Point2<f64> = from + along / *inverse;
+            if *inverse > 0.0 && look.surroundings.glass.iter().any(|glass| glass.swallows(&end, &along)) {
+                ranges_m[beam] = f32::INFINITY;
+            }
+        }
+    }
+
     /// One over the ranges of beams with a width, 1/m. `rays`: the beams of a scan that sweeps.
     fn mixed(&self, look: &Look, rays: &[Ray]) -> Vec<f64> {
         let Look { platform, surroundings, .. } = look;
@@ -84,20 +118,7 @@ impl Device for LaserScanner {
     fn measure(&self, look: &Look, streams: &mut LaserStreams, spare: Option<LaserReading>) -> LaserReading {
         let Look { platform, surroundings, .. } = look;
         let LaserSpec { range_min_m, range_max_m, noise_std_m, dropout, mount, sweep_s, .. } = self.spec;
-        let (scan, mut velocities) = spare
-            .map_or_else(|| (self.spec.empty_scan(), Vec::new()), |spare| (spare.scan, spare.velocities));
-        velocities.clear();
-        if sweep_s > 0.0 {
-            velocities.extend(surroundings.recent.velocities(platform.robot, surroundings.time_s));
-        }
-        let mut reading = LaserReading {
-            time_s: surroundings.time_s,
-            pose: platform.odometry_pose,
-            twist: platform.odometry_twist,
-            velocities,
-            mount,
-            scan,
-        };
+        let mut reading = self.empty_reading(look, spare);
         let rays = if sweep_s > 0.0 { self.rays(look, &reading.scan) } else { Vec::new() };
         let reported = move |measured_m: f64| reported(measured_m, range_min_m, range_max_m);
         let (glass, mut exact) = (&surroundings.glass, Vec::new());
@@ -132,17 +153,7 @@ impl Device for LaserScanner {
         } else {
             scene.sweep(&rays, &surroundings.recent.bodies, range_max_m, platform.robot, report);
         }
-        let laser = platform.pose * mount;
-        for (beam, (inverse, (x, y))) in exact.iter().zip(self.beams.directions()).enumerate() {
-            let (from, along) = rays.get(beam).map_or_else(
-                || (laser.translation.vector.into(), laser.rotation * Vector2::new(x, y)),
-                |ray| (ray.from, ray.along),
-            );
-            let end: Point2<f64> = from + along / *inverse;
-            if *inverse > 0.0 && glass.iter().any(|glass| glass.swallows(&end, &along)) {
-                reading.scan.ranges_m[beam] = f32::INFINITY;
-            }
-        }
+        self.swallow(look, &rays, &exact, &mut reading.scan.ranges_m);
         if dropout > 0.0 {
             for range_m in &mut reading.scan.ranges_m {
                 // REP-117: a missing measurement is NaN. One draw per beam, as above.

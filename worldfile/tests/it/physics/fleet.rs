@@ -36,11 +36,11 @@ pub(super) fn nobody(robot: &RobotView<'_>, _: &LaserReading) -> Twist {
     panic!("robot {} is not driven", robot.name)
 }
 
-fn pose(fleet: &Fleet, robot: usize) -> Isometry2<f64> {
+pub(super) fn pose(fleet: &Fleet, robot: usize) -> Isometry2<f64> {
     fleet.robots().nth(robot).unwrap().pose
 }
 
-fn at(fleet: &Fleet, robot: usize) -> Point2<f64> {
+pub(super) fn at(fleet: &Fleet, robot: usize) -> Point2<f64> {
     pose(fleet, robot).translation.vector.into()
 }
 
@@ -103,123 +103,6 @@ fn a_crowd_keeps_moving_and_stays_apart_and_in_its_house() {
     let mean_m = driven_m.iter().sum::<f64>() / driven_m.len() as f64;
     assert!(mean_m > 10.0, "they mostly stand: {driven_m:?}");
     assert!(driven_m.iter().all(|&way_m| way_m > 2.0), "{driven_m:?}");
-}
-
-#[test]
-fn alone_a_wanderer_never_touches_anything() {
-    let wander = "kind = \"wander\"\nspeed_mps = 0.5\nclearance_m = 0.2";
-    let mut fleet = Fleet::new(&house(&[robot("one", [2.0, 2.0], 0.0, wander)], ""), 5);
-    let mut rooms = [false; 4];
-    for _ in 0..20 * 600 {
-        fleet.step(&mut nobody);
-        assert_eq!(fleet.contacts(), []);
-        let at = at(&fleet, 0);
-        rooms[usize::from(at.x > 6.0) + 2 * usize::from(at.y > 6.0)] = true;
-    }
-    assert!(rooms.iter().filter(|&&was_there| was_there).count() > 1, "it never left its room");
-}
-
-#[test]
-fn a_circle_is_driven_and_standing_is_not_moving() {
-    let circle = "kind = \"circle\"\nspeed_mps = 0.4\nturn_radius_m = 1.0\ndirection = \"right\"";
-    let robots =
-        [robot("one", [3.0, 3.0], 90.0, circle), robot("two", [9.0, 9.0], 0.0, "kind = \"standing\"")];
-    let mut fleet = Fleet::new(&house(&robots, ""), 0);
-    let stands = pose(&fleet, 1);
-    fleet.run_until(2.0, &mut nobody);
-    let middle = pose(&fleet, 0) * Point2::new(0.0, -1.0);
-    for _ in 0..400 {
-        fleet.step(&mut nobody);
-        assert!(((at(&fleet, 0) - middle).norm() - 1.0).abs() < 1e-3);
-        assert_eq!(pose(&fleet, 1), stands);
-    }
-}
-
-/// The points of a path that the robot came near to, in order.
-fn visits(fleet: &mut Fleet, points: &[[f64; 2]], seconds: f64) -> Vec<usize> {
-    let mut visits = Vec::new();
-    let end_s = fleet.time_s() + seconds;
-    while fleet.time_s() < end_s {
-        fleet.step(&mut nobody);
-        let near = |point: &[f64; 2]| (at(fleet, 0) - Point2::from(*point)).norm() < 0.03;
-        visits.extend(points.iter().position(near));
-    }
-    visits.dedup();
-    visits
-}
-
-#[test]
-fn waypoints_are_visited_in_order() {
-    let points = [[3.0, 1.0], [3.0, 8.0], [1.0, 8.0]];
-    for (repeat, expected) in [
-        ("loop", &[0, 1, 2, 1, 0][..3]),
-        ("back_and_forth", &[0, 1, 2, 1, 0, 1, 2, 1, 0]),
-        ("once", &[0, 1, 2]),
-    ] {
-        // A loop back to the first point would lead through a wall.
-        let points = if repeat == "loop" { [[3.0, 1.0], [4.5, 4.5], [1.0, 4.0]] } else { points };
-        let way =
-            format!("kind = \"waypoints\"\npoints_m = {points:?}\nspeed_mps = 0.5\nrepeat = \"{repeat}\"");
-        let mut fleet = Fleet::new(&house(&[robot("one", [1.0, 1.0], 90.0, &way)], ""), 0);
-        let visits = visits(&mut fleet, &points, 120.0);
-        assert!(visits.starts_with(expected), "{repeat}: {visits:?}");
-        match repeat {
-            "loop" => {
-                assert!(visits.len() > 8 && visits.windows(2).all(|w| w[1] == (w[0] + 1) % 3), "{visits:?}")
-            }
-            "once" => assert_eq!(visits, expected),
-            _ => assert!(visits.len() > 8, "{visits:?}"),
-        }
-        assert_eq!(fleet.contacts(), []);
-    }
-}
-
-#[test]
-fn on_its_way_to_a_waypoint_a_robot_waits_for_what_is_in_its_way() {
-    let way = "kind = \"waypoints\"\npoints_m = [[4.5, 1.0]]\nspeed_mps = 0.5\nrepeat = \"once\"";
-    let toy = "[[obstacle]]\nname = \"toy\"\nmin_m = [3.0, 0.9]\nmax_m = [3.2, 1.1]\nappears_s = 0.5\ndisappears_s = 8.0\n";
-    let mut fleet = Fleet::new(&house(&[robot("one", [1.0, 1.0], 0.0, way)], toy), 0);
-    fleet.run_until(7.5, &mut nobody);
-    let waits_at = at(&fleet, 0);
-    assert!((2.3..2.8).contains(&waits_at.x), "{waits_at}");
-    fleet.run_until(25.0, &mut nobody);
-    assert!((at(&fleet, 0).x - 4.5).abs() < 0.03);
-    assert_eq!(fleet.contacts(), []);
-}
-
-#[test]
-fn a_robot_that_waited_for_long_visits_its_waypoints_in_reverse_order_or_goes_round() {
-    // From the third point on, something stands between the second and the third point.
-    let toy = "[[obstacle]]\nname = \"toy\"\nmin_m = [4.4, 2.4]\nmax_m = [4.6, 2.6]\nappears_s = 16.0\n";
-    let points = [[1.0, 1.0], [4.5, 1.0], [4.5, 4.5], [1.0, 4.5]];
-    let way = format!("kind = \"waypoints\"\npoints_m = {points:?}\nspeed_mps = 0.5");
-    let mut fleet = Fleet::new(&house(&[robot("one", points[0], 0.0, &way)], toy), 0);
-    let seen = visits(&mut fleet, &points, 150.0);
-    assert!(seen.starts_with(&[0, 1, 2, 3, 0, 1, 0, 3, 2, 3, 0, 1]), "{seen:?}");
-    assert_eq!(fleet.contacts(), []);
-    // The only point is behind the toy.
-    let way = "kind = \"waypoints\"\npoints_m = [[4.5, 4.5]]\nspeed_mps = 0.5\nrepeat = \"once\"";
-    let mut fleet = Fleet::new(&house(&[robot("one", points[1], 90.0, way)], &toy.replace("16.0", "0.1")), 0);
-    let seen = visits(&mut fleet, &[[4.5, 4.5]], 300.0);
-    assert_eq!(seen, [0]);
-    assert_eq!(fleet.contacts(), []);
-}
-
-#[test]
-fn a_wandering_robot_finds_its_way_out_of_a_narrow_place() {
-    // A dead end of 0.5 m × 1 m, for a robot of 0.4 m.
-    let walls = "[[wall]]\nmin_m = [1.0, 2.25]\nmax_m = [2.0, 2.35]\n[[wall]]\nmin_m = [1.0, 1.65]\nmax_m = [2.0, 1.75]\n\
-                 [[wall]]\nmin_m = [0.9, 1.65]\nmax_m = [1.0, 2.35]\n";
-    let wander = robot("one", [1.24, 2.0], 180.0, "kind = \"wander\"\nspeed_mps = 0.3");
-    for seed in 0..5 {
-        let mut fleet = Fleet::new(&house(std::slice::from_ref(&wander), walls), seed);
-        let is_out = (0..120).any(|second| {
-            fleet.run_until(f64::from(second), &mut nobody);
-            at(&fleet, 0).x > 2.2
-        });
-        assert!(is_out, "seed {seed}: {}", at(&fleet, 0));
-        assert_eq!(fleet.contacts(), []);
-    }
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! Tests of the physics world as a whole.
 
+mod behaviors;
 mod contacts;
 mod contract;
 mod docs;

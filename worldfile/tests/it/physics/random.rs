@@ -161,6 +161,48 @@ impl Deepest {
     }
 }
 
+/// No obstacle left the world, and nothing that can be pushed passed a wall. Returns the number of those that moved since `stood`.
+fn check_obstacles(
+    spec: &FleetSpec,
+    fleet: &Fleet,
+    seed: u64,
+    stood: Vec<(usize, [Point2<f64>; 4])>,
+) -> usize {
+    let mut things = 0;
+    let now = fleet.obstacles().map(|obstacle| (obstacle.index, obstacle.corners));
+    for ((index, before), (_, after)) in stood.into_iter().zip(now).filter(|(before, now)| before != now) {
+        let spec = &spec.obstacles[index];
+        let place = || format!("obstacle {} of world {seed} at {:.2} s", spec.name, fleet.time_s());
+        let [from, to] = [before, after].map(|corners| nalgebra::center(&corners[0], &corners[2]));
+        assert!(to.coords.iter().all(|value| value.is_finite()), "{}", place());
+        if let Motion::Pushed(_) = spec.motion {
+            assert!(to.coords.min() > 0.0 && to.coords.max() < SIDE_M, "{} left: {to}", place());
+            assert!(!passes(fleet, &from, &to), "{} passed a wall: {from} to {to}", place());
+        }
+        things += 1;
+    }
+    things
+}
+
+/// No robot left the world, passed a wall, or broke the limits of its drive. `before`: the velocities in the last step.
+fn check_robots(spec: &FleetSpec, fleet: &Fleet, seed: u64, from: &[Point2<f64>], before: &mut [Twist]) {
+    for (index, (robot, from)) in fleet.robots().zip(from).enumerate() {
+        let place = || format!("robot {index} of world {seed} at {:.2} s", fleet.time_s());
+        let at = Point2::from(robot.pose.translation.vector);
+        assert!(at.coords.iter().all(|value| value.is_finite()), "{}", place());
+        assert!(at.coords.min() > 0.0 && at.coords.max() < SIDE_M, "{} left: {at}", place());
+        assert!(!passes(fleet, from, &at), "{} passed a wall: {from} to {at}", place());
+        // The limits hold, and the acceleration is limited where nothing pushes the robot.
+        let (limits, now) = (spec.robots[index].drive, robot.twist);
+        assert!(now.linear_mps.abs() <= limits.max_linear_mps + 1e-3, "{}: {now:?}", place());
+        assert!(now.angular_radps.abs() <= limits.max_angular_radps + 1e-3, "{}: {now:?}", place());
+        let gain_mps = limits.max_linear_acceleration_mps2 * spec.step_s;
+        let faster_mps = now.linear_mps.abs() - before[index].linear_mps.abs();
+        assert!(robot.is_stalled || faster_mps <= gain_mps + 1e-3, "{}: {faster_mps} m/s faster", place());
+        before[index] = now;
+    }
+}
+
 #[test]
 fn in_random_worlds_nobody_leaves_enters_or_passes_a_wall() {
     let asked = std::env::var("SIM_RANDOM_WORLDS").ok().and_then(|worlds| worlds.parse().ok());
@@ -194,39 +236,8 @@ fn in_random_worlds_nobody_leaves_enters_or_passes_a_wall() {
                 wanted[robot.index]
             });
             contacts += fleet.contacts().len();
-            let now = fleet.obstacles().map(|obstacle| (obstacle.index, obstacle.corners));
-            for ((index, before), (_, after)) in
-                stood.into_iter().zip(now).filter(|(before, now)| before != now)
-            {
-                let spec = &spec.obstacles[index];
-                let place = || format!("obstacle {} of world {seed} at {:.2} s", spec.name, fleet.time_s());
-                let [from, to] = [before, after].map(|corners| nalgebra::center(&corners[0], &corners[2]));
-                assert!(to.coords.iter().all(|value| value.is_finite()), "{}", place());
-                if let Motion::Pushed(_) = spec.motion {
-                    assert!(to.coords.min() > 0.0 && to.coords.max() < SIDE_M, "{} left: {to}", place());
-                    assert!(!passes(&fleet, &from, &to), "{} passed a wall: {from} to {to}", place());
-                }
-                things += 1;
-            }
-            for (index, (robot, from)) in fleet.robots().zip(&from).enumerate() {
-                let place = || format!("robot {index} of world {seed} at {:.2} s", fleet.time_s());
-                let at = Point2::from(robot.pose.translation.vector);
-                assert!(at.coords.iter().all(|value| value.is_finite()), "{}", place());
-                assert!(at.coords.min() > 0.0 && at.coords.max() < SIDE_M, "{} left: {at}", place());
-                assert!(!passes(&fleet, from, &at), "{} passed a wall: {from} to {at}", place());
-                // The limits hold, and the acceleration is limited where nothing pushes the robot.
-                let (limits, now) = (spec.robots[index].drive, robot.twist);
-                assert!(now.linear_mps.abs() <= limits.max_linear_mps + 1e-3, "{}: {now:?}", place());
-                assert!(now.angular_radps.abs() <= limits.max_angular_radps + 1e-3, "{}: {now:?}", place());
-                let gain_mps = limits.max_linear_acceleration_mps2 * spec.step_s;
-                let faster_mps = now.linear_mps.abs() - before[index].linear_mps.abs();
-                assert!(
-                    robot.is_stalled || faster_mps <= gain_mps + 1e-3,
-                    "{}: {faster_mps} m/s faster",
-                    place()
-                );
-                before[index] = now;
-            }
+            things += check_obstacles(&spec, &fleet, seed, stood);
+            check_robots(&spec, &fleet, seed, &from, &mut before);
             deepest.note(&fleet, seed);
         }
     }

@@ -17,7 +17,7 @@ const CLOCK: &str = "clock";
 const PILOT: &str = "pilot";
 
 /// The state file of a node.
-pub(crate) struct Saves {
+pub(crate) struct NodeStateFile {
     pub(crate) file: StateFile,
     facts: LearnedFacts,
     pilot: Facts,
@@ -29,7 +29,7 @@ pub(crate) struct Saves {
 /// Who has asked to save the state: a request, or a signal.
 pub(crate) type Asker = Option<Request>;
 
-impl Saves {
+impl NodeStateFile {
     /// The file, and what it belongs to.
     ///
     /// # Errors

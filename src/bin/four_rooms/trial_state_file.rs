@@ -12,12 +12,12 @@ use robot::state::StateFile;
 use std::io;
 
 /// The state file of a run.
-pub(crate) struct Saves {
+pub(crate) struct TrialStateFile {
     file: StateFile,
     facts: TrialFacts,
 }
 
-impl Saves {
+impl TrialStateFile {
     /// The file of `--state`. If there is a state in it, the run goes on from there.
     pub(crate) fn open(
         args: &Args,

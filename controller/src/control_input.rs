@@ -3,7 +3,7 @@ use nalgebra::{Isometry2, Point2};
 
 /// The inputs of the controller at every tick.
 #[derive(Clone, Copy, Debug)]
-pub struct Situation<'a> {
+pub struct ControlInput<'a> {
     /// The time, s; steps in a grid world.
     pub time: f64,
     /// The pose of the robot in the frame of the map, m and rad.
@@ -17,7 +17,7 @@ pub struct Situation<'a> {
     pub points: &'a [Point2<f64>],
 }
 
-impl Situation<'_> {
+impl ControlInput<'_> {
     /// The center of the robot, m.
     pub fn position(&self) -> Point2<f64> {
         self.pose.translation.vector.into()

@@ -11,7 +11,7 @@ use survey::{SavedLogs, Survey, SurveySettings, SurveyedLog};
 const SURVEY: &str = "survey";
 
 /// The state file of a run, or none.
-pub(crate) struct Saves {
+pub(crate) struct SurveyStateFile {
     file: Option<StateFile>,
     /// The number of logs in the file, if all are learned: before another one is added, the file is kept.
     learned: Option<usize>,
@@ -26,11 +26,11 @@ pub(crate) struct Loaded {
     pub(crate) logs: SavedLogs,
 }
 
-impl Saves {
+impl SurveyStateFile {
     /// The file of `--state`, and the state in it. Nothing is written yet.
     pub(crate) fn open(args: &Args) -> Result<(Self, Option<Loaded>), Failure> {
-        let mut saves = Self { file: None, learned: None, facts: Facts::default(), is_written: true };
-        let Some(path) = &args.state else { return Ok((saves, None)) };
+        let mut state_file = Self { file: None, learned: None, facts: Facts::default(), is_written: true };
+        let Some(path) = &args.state else { return Ok((state_file, None)) };
         let (file, state) = open_state(path, args.state_every)?;
         let loaded = state.map(Loaded::of).transpose().map_err(|why| state_failure(path, why))?;
         if loaded.as_ref().is_some_and(|loaded| loaded.state.check_build().is_err()) {
@@ -38,9 +38,9 @@ impl Saves {
             say(stderr(), format_args!("note: {}: {note}", path.display()));
         }
         let logs = loaded.as_ref().map(|loaded| loaded.logs.logs());
-        saves.learned = logs.filter(|logs| logs.iter().all(SurveyedLog::is_finished)).map(<[_]>::len);
-        saves.file = Some(file);
-        Ok((saves, loaded))
+        state_file.learned = logs.filter(|logs| logs.iter().all(SurveyedLog::is_finished)).map(<[_]>::len);
+        state_file.file = Some(file);
+        Ok((state_file, loaded))
     }
 
     /// Whether there is a state file.

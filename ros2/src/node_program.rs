@@ -1,4 +1,4 @@
-//! What both programs share: exit codes, messages, signals.
+//! What the programs of both nodes share: exit codes, messages, signals.
 
 use crate::names::Names;
 use crate::notes::Output;

@@ -5,7 +5,7 @@ use interfaces::{LaserReading, Twist, VelocitySample, heading_rad};
 use nalgebra::{Complex, Isometry2, Translation2, UnitComplex, Vector2, Vector3};
 
 /// The path of a robot up to the end of a scan.
-pub(crate) struct Path {
+pub(crate) struct ScanPath {
     /// The earliest last.
     nodes: Vec<Node>,
 }
@@ -23,7 +23,7 @@ struct Node {
     length: f64,
 }
 
-impl Path {
+impl ScanPath {
     /// The path of a robot that moved by `motion` in the time `elapsed_s` up to the end of a scan. The velocities of the
     /// reading give its shape; what they miss of the motion is spread along the path, as the errors of wheels are.
     fn new(reading: &LaserReading, motion: &Isometry2<f64>, elapsed_s: f64) -> Self {
@@ -165,14 +165,14 @@ mod tests {
             mount: Isometry2::identity(),
             scan: Scan { sweep_s: 0.1, ..Scan::default() },
         };
-        let (motion, elapsed_s) = Path::by_velocities(&reading(0.5, 1.0));
+        let (motion, elapsed_s) = ScanPath::by_velocities(&reading(0.5, 1.0));
         assert_eq!(elapsed_s, 0.1);
         assert!((motion.translation.x - 0.05).abs() < 1e-3, "{motion}");
         assert!((heading_rad(&motion) - 0.1).abs() < 1e-9, "{motion}");
         for (linear_mps, angular_radps) in
             [(0.0, 0.0), (f64::NAN, f64::NAN), (f64::INFINITY, 0.0), (1e9, 0.0)]
         {
-            let (motion, elapsed_s) = Path::by_velocities(&reading(linear_mps, angular_radps));
+            let (motion, elapsed_s) = ScanPath::by_velocities(&reading(linear_mps, angular_radps));
             assert!(motion == Isometry2::identity() || elapsed_s == 0.0, "{linear_mps}: {motion}");
         }
     }
@@ -192,7 +192,7 @@ mod tests {
                 mount: Isometry2::identity(),
                 scan: Scan::default(),
             };
-            let path = Path::new(&reading, &pose(0.04, 0.0, 0.1), 0.1);
+            let path = ScanPath::new(&reading, &pose(0.04, 0.0, 0.1), 0.1);
             let [first, middle] = [0.1, 0.05].map(|age_s| path.at(age_s));
             assert!((pose(0.04, 0.0, 0.1) * first).translation.vector.norm() < 1e-12);
             assert!(((-heading_rad(&middle)) - 0.05).abs() < 0.03, "{middle}");

@@ -11,7 +11,7 @@ use crate::surfel_map::SurfelMap;
 use nalgebra::{Isometry2, Point2};
 
 /// One scan, and the maps.
-pub(crate) struct Scene<'a, M> {
+pub(crate) struct MatchScene<'a, M> {
     pub(crate) surfels: &'a SurfelMap,
     pub(crate) map: &'a M,
     pub(crate) points: &'a [ScanPoint],
@@ -23,7 +23,7 @@ pub(crate) struct Scene<'a, M> {
     pub(crate) is_tight: bool,
 }
 
-impl<M: ChangingMap> Scene<'_, M> {
+impl<M: ChangingMap> MatchScene<'_, M> {
     /// The distance up to which a point confirms a surfel, m.
     pub(crate) fn gate_m(&self) -> f64 {
         let stds = if self.is_tight { GATE_STDS / 2.0 } else { GATE_STDS };
@@ -55,7 +55,7 @@ impl<M: ChangingMap> Scene<'_, M> {
 
     /// The same scene, in which only what lies in place counts.
     pub(crate) fn tight(&self) -> Self {
-        Scene { is_tight: true, ..*self }
+        MatchScene { is_tight: true, ..*self }
     }
 
     /// The agreement of the scan with the maps at a pose.

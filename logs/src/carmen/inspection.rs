@@ -1,0 +1,112 @@
+//! The first reading of a log: what it contains, and what makes no sense.
+
+use super::Rules;
+use super::line::{self, Geometry, Line};
+use crate::bounds;
+use crate::doubts::{Doubts, OdometryTimes};
+use crate::error::LogError;
+use crate::lines::Lines;
+use crate::odometry::Odometry;
+use crate::standing::Standing;
+use crate::summary::{LogSummary, PoseSource, since_epoch};
+use crate::times::{self, Times};
+use nalgebra::Isometry2;
+
+/// Reads a log once: how its lines become readings, the times of the readings from the first on, strictly increasing, s, and
+/// what the log contains.
+pub(super) fn of(lines: &mut Lines) -> Result<(Rules, Vec<f64>, LogSummary), LogError> {
+    let mut inspection = Inspection::default();
+    while let Some(line) = line::next(lines, &inspection.geometry)? {
+        inspection.add(line, lines)?;
+    }
+    if inspection.times_s.is_empty() {
+        let why = "no line is a scan (FLASER or ROBOTLASER1): not a CARMEN log".to_owned();
+        return Err(LogError::Unusable { file: lines.file.clone(), why });
+    }
+    Ok(inspection.summarized())
+}
+
+/// The lines of a log so far.
+#[derive(Default)]
+struct Inspection {
+    geometry: Geometry,
+    /// The times of the scans as written, s.
+    times_s: Vec<f64>,
+    /// The number of poses with a time, and of those without.
+    with_time: usize,
+    without_time: usize,
+    odom_origin: Option<Isometry2<f64>>,
+    /// The poses without the lines that have no time, and these alone: whether they are origins is known at the end.
+    timed: Odometry,
+    untimed: Odometry,
+    standing: Standing,
+    doubts: Doubts,
+    odometry_times: OdometryTimes,
+    notes: Vec<String>,
+}
+
+impl Inspection {
+    fn add(&mut self, line: Line, lines: &Lines) -> Result<(), LogError> {
+        match line {
+            Line::Odometry { time_s, pose } => self.add_pose(time_s, pose),
+            Line::Scan(scan) => {
+                bounds::one_more(self.times_s.len()).map_err(|what| lines.error(what))?;
+                self.times_s.push(scan.time_s);
+                self.doubts.add(scan.typical, &scan.scan.ranges_m);
+                self.standing.add(&Isometry2::identity(), &scan.scan);
+            }
+            Line::LaserOffset(offset_m) => self.geometry.offset_m = offset_m,
+            Line::MaxRange(range_max_m) => self.geometry.range_max_m = range_max_m,
+            Line::Other { is_cut_off: true } => {
+                self.notes.push(format!("line {}, the last one, is cut off and left out", lines.number));
+            }
+            Line::Other { is_cut_off: false } => {}
+        }
+        Ok(())
+    }
+
+    fn add_pose(&mut self, time_s: f64, pose: Isometry2<f64>) {
+        self.odom_origin.get_or_insert(pose);
+        if time_s == 0.0 {
+            self.without_time += 1;
+            self.timed.set_origin(pose);
+            self.untimed.add(0.0, pose);
+            return;
+        }
+        self.with_time += 1;
+        self.timed.add(time_s, pose);
+        if let Some(scan_s) = self.times_s.last() {
+            self.odometry_times.add(time_s, &pose, *scan_s);
+        }
+    }
+
+    fn summarized(self) -> (Rules, Vec<f64>, LogSummary) {
+        let Self { geometry, mut notes, .. } = self;
+        let has_origins = self.with_time > 0;
+        let (odometry, odometry_poses) =
+            if has_origins { (self.timed, self.with_time) } else { (self.untimed, self.without_time) };
+        if odometry_poses == 0 {
+            notes.push("no ODOM line: the odometry stands still".to_owned());
+        }
+        let begin_s = self.times_s.first().copied().and_then(since_epoch);
+        let stands = odometry.stands() && self.standing.looks_so();
+        let impossible = self.odometry_times.impossible(&self.times_s).or_else(|| odometry.impossible());
+        let impossible = impossible.or_else(|| self.doubts.impossible(0, stands));
+        let Times { times_s, has_times, note } = times::repaired(&self.times_s);
+        notes.extend(note);
+        let summary = LogSummary {
+            scans: times_s.len(),
+            duration_s: times_s.last().copied().unwrap_or_default(),
+            has_times,
+            begin_s: begin_s.filter(|_| has_times),
+            pose_source: if odometry_poses > 0 { PoseSource::OdometryLines } else { PoseSource::Standing },
+            odometry_poses,
+            stands,
+            odom_origin: self.odom_origin.unwrap_or_default(),
+            scan_topics: Vec::new(),
+            notes,
+            impossible,
+        };
+        (Rules { geometry, has_times, has_origins, stands }, times_s, summary)
+    }
+}
