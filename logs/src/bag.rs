@@ -79,6 +79,10 @@ impl Bag {
             return Err(unusable(format!("no scan is valid; the first: {why}")));
         }
         notes.extend(times.note);
+        if let (Clock::Stamps(_), Some(duration_s)) = (clock, times.times_s.last()) {
+            let recorded_s = inventory.end_ns.saturating_sub(log_ns) as f64 * 1e-9;
+            notes.extend(times::other_pace(*duration_s, recorded_s));
+        }
         notes.extend(counts.notes());
         let begins_s = [stamp_ns, log_ns].map(|ns| since_epoch(ns as f64 * 1e-9 + raw_begin_s));
         let begin_s = match clock {

@@ -146,7 +146,9 @@ impl Localization<LaserReading> for LoopClosingLocalizer {
 /// What is said of a state whose map is used, and not what its localizer knew.
 fn begun(searches: bool) -> &'static str {
     match searches {
-        true => "the state is of an earlier version: its map is used, and the robot searches for its pose in it",
+        true => {
+            "the state is of an earlier version: its map is used, and the robot searches for its pose in it"
+        }
         false => {
             "the state is of an earlier version: its map has no surface, and the robot begins at a known pose, as \
              without a state"

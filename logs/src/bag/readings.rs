@@ -11,8 +11,9 @@ use crate::error::LogError;
 use crate::log;
 use crate::odometry::Odometry;
 use crate::ros::{self, Frames, Header, LaserScan, Transforms, flat, mounted, scan_of};
+use crate::speeds::Speeds;
 use interfaces::{LaserReading, Scan};
-use nalgebra::Isometry2;
+use nalgebra::{Isometry2, Vector2};
 use std::collections::VecDeque;
 use std::sync::Arc;
 
@@ -70,6 +71,7 @@ pub(super) struct RawReadings {
     plan: Arc<Plan>,
     clock: Clock,
     odometry: Odometry,
+    speeds: Speeds,
     /// The time of the last pose, s.
     last_pose_s: Option<f64>,
     frames: Frames,
@@ -90,6 +92,7 @@ impl RawReadings {
             plan: plan.clone(),
             clock,
             odometry: Odometry::default(),
+            speeds: Speeds::default(),
             last_pose_s: None,
             frames: plan.frames.clone(),
             waiting: VecDeque::new(),
@@ -135,9 +138,9 @@ impl RawReadings {
         self.odometry.origin()
     }
 
-    /// As [`Odometry::impossible`].
+    /// As [`Odometry::impossible`] and [`Speeds::impossible`].
     pub(super) fn impossible(&self) -> Option<String> {
-        self.odometry.impossible()
+        self.odometry.impossible().or_else(|| self.speeds.impossible())
     }
 
     /// Whether the robot has not moved, except for a drift of its odometry.
@@ -179,6 +182,10 @@ impl RawReadings {
     fn take_odometry(&mut self, message: &Message) -> Result<(), String> {
         let found: ros::Odometry = cdr::decoded(&message.data)?;
         self.take_pose(&found.header, message, &found.pose.pose);
+        let ros::Vector { x, y, .. } = found.twist.linear;
+        let ros::Vector { x: at_x, y: at_y, .. } = found.pose.pose.position;
+        let time_s = self.clock.time_s(&found.header, message);
+        self.speeds.add(time_s, Vector2::new(at_x, at_y), Vector2::new(x, y).norm());
         Ok(())
     }
 

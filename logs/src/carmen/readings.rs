@@ -54,10 +54,10 @@ impl RawReadings for Readings {
                 None => self.is_over = true,
                 Some(Line::Scan(scan)) => self.waiting.push_back(scan),
                 Some(Line::Odometry { .. }) if self.rules.stands => {}
-                Some(Line::Odometry { time_s, pose }) if time_s == 0.0 && self.rules.has_origins => {
+                Some(Line::Odometry { time_s, pose, .. }) if time_s == 0.0 && self.rules.has_origins => {
                     self.odometry.set_origin(pose);
                 }
-                Some(Line::Odometry { time_s, pose }) => self.odometry.add(time_s, pose),
+                Some(Line::Odometry { time_s, pose, .. }) => self.odometry.add(time_s, pose),
                 Some(_) => {}
             }
         }

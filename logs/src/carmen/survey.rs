@@ -7,6 +7,7 @@ use crate::doubts::{Doubts, OdometryTimes};
 use crate::error::LogError;
 use crate::lines::Lines;
 use crate::odometry::Odometry;
+use crate::speeds::Speeds;
 use crate::standing::Standing;
 use crate::summary::{LogSummary, PoseSource, since_epoch};
 use crate::times::{self, Times};
@@ -16,6 +17,7 @@ use nalgebra::Isometry2;
 /// what the log contains.
 pub(super) fn of(lines: &mut Lines) -> Result<(Rules, Vec<f64>, LogSummary), LogError> {
     let mut geometry = Geometry::default();
+    let mut recorded_s = Vec::new();
     let (mut times_s, mut notes) = (Vec::new(), Vec::new());
     let (mut with_time, mut without_time) = (0, 0);
     let mut odom_origin = None;
@@ -23,9 +25,10 @@ pub(super) fn of(lines: &mut Lines) -> Result<(Rules, Vec<f64>, LogSummary), Log
     let (mut timed, mut untimed) = (Odometry::default(), Odometry::default());
     let mut standing = Standing::default();
     let (mut doubts, mut odometry_times) = (Doubts::default(), OdometryTimes::default());
+    let mut speeds = Speeds::default();
     while let Some(line) = line::next(lines, &geometry)? {
         match line {
-            Line::Odometry { time_s, pose } => {
+            Line::Odometry { time_s, pose, speed_mps } => {
                 odom_origin.get_or_insert(pose);
                 if time_s == 0.0 {
                     without_time += 1;
@@ -34,6 +37,7 @@ pub(super) fn of(lines: &mut Lines) -> Result<(Rules, Vec<f64>, LogSummary), Log
                 } else {
                     with_time += 1;
                     timed.add(time_s, pose);
+                    speeds.add(time_s, pose.translation.vector, speed_mps);
                     if let Some(scan_s) = times_s.last() {
                         odometry_times.add(time_s, &pose, *scan_s);
                     }
@@ -42,6 +46,7 @@ pub(super) fn of(lines: &mut Lines) -> Result<(Rules, Vec<f64>, LogSummary), Log
             Line::Scan(scan) => {
                 bounds::one_more(times_s.len()).map_err(|what| lines.error(what))?;
                 times_s.push(scan.time_s);
+                recorded_s.extend(scan.recorded_s);
                 doubts.add(scan.typical, &scan.scan.ranges_m);
                 standing.add(&Isometry2::identity(), &scan.scan);
             }
@@ -66,9 +71,15 @@ pub(super) fn of(lines: &mut Lines) -> Result<(Rules, Vec<f64>, LogSummary), Log
     let begin_s = times_s.first().copied().and_then(since_epoch);
     let stands = odometry.stands() && standing.looks_so();
     let impossible = odometry_times.impossible(&times_s).or_else(|| odometry.impossible());
-    let impossible = impossible.or_else(|| doubts.impossible(0, stands));
+    let impossible = impossible.or_else(|| speeds.impossible()).or_else(|| doubts.impossible(0, stands));
     let Times { times_s, has_times, note } = times::repaired(&times_s);
     notes.extend(note);
+    // By the same rules, since the clock of the recording can be set as well.
+    let recorded = times::repaired(&recorded_s);
+    if has_times && recorded.has_times && recorded.times_s.len() == times_s.len() {
+        let last_s = |times_s: &[f64]| times_s.last().copied().unwrap_or_default();
+        notes.extend(times::other_pace(last_s(&times_s), last_s(&recorded.times_s)));
+    }
     let summary = LogSummary {
         scans: times_s.len(),
         duration_s: times_s.last().copied().unwrap_or_default(),
