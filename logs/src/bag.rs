@@ -24,7 +24,7 @@ use crate::content;
 use crate::error::LogError;
 use crate::log;
 use crate::log::{Log, RawReadings as _, Source};
-use crate::standing::Standing;
+use crate::standing::{NO_MOTION, Standing};
 use crate::summary::{LogSummary, since_epoch};
 use crate::times;
 use inventory::Inventory;
@@ -73,6 +73,10 @@ impl Bag {
         let raw_begin_s = raw_s.first().copied().unwrap_or_default();
         let stands = raw.stands() && standing.looks_so();
         let (odom_origin, impossible) = (raw.origin(), raw.impossible());
+        notes.extend(raw.holes_note());
+        if raw.stands() && !stands && !matches!(plan.motion, Motion::Standing) {
+            notes.push(NO_MOTION.to_owned());
+        }
         let counts = raw.counts;
         if times.times_s.is_empty() {
             let why = counts.first_invalid.unwrap_or_default();

@@ -112,12 +112,12 @@ impl RawReadings {
         }
         let has_come = |laser| self.waiting.iter().any(|scan| scan.laser == laser);
         let is_first = self.newest_s > first.time_s + DISORDER_S || (0..self.plan.lasers.len()).all(has_come);
-        is_first && !self.odometry.must_wait(first.time_s)
+        is_first && !self.odometry.must_wait(first.time_s, self.newest_s)
     }
 
     fn reading(&mut self, Waiting { time_s, laser, mount, scan }: Waiting) -> LaserReading {
         self.overdue = self.overdue.saturating_sub(1);
-        let (pose, twist) = self.odometry.at(time_s);
+        let (pose, twist) = self.odometry.at_scan(time_s);
         let velocities = match scan.sweep_s > 0.0 {
             true => self.odometry.during(time_s - scan.sweep_s, time_s),
             false => Vec::new(),
@@ -141,6 +141,11 @@ impl RawReadings {
     /// As [`Odometry::impossible`] and [`Speeds::impossible`].
     pub(super) fn impossible(&self) -> Option<String> {
         self.odometry.impossible().or_else(|| self.speeds.impossible())
+    }
+
+    /// As [`Odometry::holes_note`].
+    pub(super) fn holes_note(&self) -> Option<String> {
+        self.odometry.holes_note()
     }
 
     /// Whether the robot has not moved, except for a drift of its odometry.

@@ -30,12 +30,13 @@ impl Readings {
     /// The first waiting scan as a reading, if its pose is known. With `now`, it does not wait any longer.
     fn resolved(&mut self, now: bool) -> Option<LaserReading> {
         let (time_s, Rules { has_times, geometry, .. }) = (self.waiting.front()?.time_s, self.rules);
-        if has_times && !now && self.odometry.must_wait(time_s) {
+        let now_s = self.waiting.back()?.time_s;
+        if has_times && !now && self.odometry.must_wait(time_s, now_s) {
             return None;
         }
         let ScanLine { scan, .. } = self.waiting.pop_front()?;
         let newest = || (self.odometry.newest().0, Twist::STOP);
-        let (pose, twist) = if has_times { self.odometry.at(time_s) } else { newest() };
+        let (pose, twist) = if has_times { self.odometry.at_scan(time_s) } else { newest() };
         let mount = interfaces::pose(geometry.offset_m, 0.0, 0.0);
         Some(LaserReading { time_s, pose, twist, velocities: Vec::new(), mount, scan })
     }

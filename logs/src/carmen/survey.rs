@@ -8,7 +8,7 @@ use crate::error::LogError;
 use crate::lines::Lines;
 use crate::odometry::Odometry;
 use crate::speeds::Speeds;
-use crate::standing::Standing;
+use crate::standing::{NO_MOTION, Standing};
 use crate::summary::{LogSummary, PoseSource, since_epoch};
 use crate::times::{self, Times};
 use nalgebra::Isometry2;
@@ -70,6 +70,9 @@ pub(super) fn of(lines: &mut Lines) -> Result<(Rules, Vec<f64>, LogSummary), Log
     let odometry = if has_origins { timed } else { untimed };
     let begin_s = times_s.first().copied().and_then(since_epoch);
     let stands = odometry.stands() && standing.looks_so();
+    if odometry.stands() && !stands && odometry_poses > 0 {
+        notes.push(NO_MOTION.to_owned());
+    }
     let impossible = odometry_times.impossible(&times_s).or_else(|| odometry.impossible());
     let impossible = impossible.or_else(|| speeds.impossible()).or_else(|| doubts.impossible(0, stands));
     let Times { times_s, has_times, note } = times::repaired(&times_s);
