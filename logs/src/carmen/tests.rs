@@ -263,7 +263,7 @@ fn speeds_that_do_not_fit_poses_and_times_are_named() {
         let mut x = 0.0;
         let mut line = |step: u32| {
             let (time_s, mps) = (100.0 + 0.1 * f64::from(step), if step % 100 < 70 { 0.4 } else { 0.0 });
-            x += mps * 0.1 * if step % 7 == 0 { 0.8 } else { 1.0 };
+            x += mps * 0.1 * if step.is_multiple_of(7) { 0.8 } else { 1.0 };
             let (at, x, tv) = (time_s * times, x * lengths, mps * speeds);
             format!("ODOM {x} 0 0 {tv} 0 0 {at} host {at}\n") + &flaser(at, &format!("{x} 0 0"))
         };

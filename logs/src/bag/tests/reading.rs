@@ -267,7 +267,8 @@ fn a_parked_robot_stands_although_its_odometry_drifts() {
     // A robot that moves by its odometry, and one whose scans change although its odometry does not.
     assert!(!parked(0.1, 0.0).summary().stands);
     assert!(!parked(0.0, 0.1).summary().stands);
-    let notes = &parked(0.0, 0.1).summary().notes;
+    let moved = parked(0.0, 0.1);
+    let notes = &moved.summary().notes;
     assert!(
         notes.iter().any(|note| note.starts_with("the odometry stands still, and the scans do not")),
         "{notes:?}"
