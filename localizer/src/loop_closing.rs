@@ -264,10 +264,13 @@ impl LoopClosingLocalizer {
         if snapshot.is_empty() { Ok(()) } else { Err(ValueError) }
     }
 
-    /// Begins anew in a known map, see [`Localizer::begin_in`]. It is frozen.
-    pub fn begin_in(&mut self, map: &Grid<CellState>) {
-        self.localizer.begin_in(map);
-        (self.background, self.first) = (None, None);
+    /// Begins anew in a known map, see [`Localizer::begin_in`]. A map in which the pose is searched for is frozen.
+    pub fn begin_in(&mut self, map: &Grid<CellState>) -> bool {
+        let searches = self.localizer.begin_in(map);
+        if searches {
+            (self.background, self.first) = (None, None);
+        }
+        searches
     }
 
     /// Begins another session, see [`Localizer::begin_session`]. The map of the first session is frozen.

@@ -62,7 +62,7 @@ pub(crate) struct SurfelMap {
     surfels: Vec<Surfel>,
     /// Places in `surfels` that can be used again.
     removed: Vec<u32>,
-    /// Nothing any more: keeps the layout of states.
+    /// Always 0: without it, the layout of states would be another version, of which 7 loses what its localizer knew.
     unused: u64,
     /// The number of scans that were learned.
     scan: u32,

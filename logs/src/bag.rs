@@ -24,7 +24,7 @@ use crate::content;
 use crate::error::LogError;
 use crate::log;
 use crate::log::{Log, RawReadings as _, Source};
-use crate::standing::Standing;
+use crate::standing::{NO_MOTION, Standing};
 use crate::summary::{LogSummary, since_epoch};
 use crate::times;
 use inventory::Inventory;
@@ -73,12 +73,20 @@ impl Bag {
         let raw_begin_s = raw_s.first().copied().unwrap_or_default();
         let stands = raw.stands() && standing.looks_so();
         let (odom_origin, impossible) = (raw.origin(), raw.impossible());
+        notes.extend(raw.holes_note());
+        if raw.stands() && !stands && !matches!(plan.motion, MotionSource::Standing) {
+            notes.push(NO_MOTION.to_owned());
+        }
         let counts = raw.counts;
         if times.times_s.is_empty() {
             let why = counts.first_invalid.unwrap_or_default();
             return Err(unusable(format!("no scan is valid; the first: {why}")));
         }
         notes.extend(times.note);
+        if let (Clock::Stamps(_), Some(duration_s)) = (clock, times.times_s.last()) {
+            let recorded_s = inventory.end_ns.saturating_sub(log_ns) as f64 * 1e-9;
+            notes.extend(times::other_pace(*duration_s, recorded_s));
+        }
         notes.extend(counts.notes());
         let begins_s = [stamp_ns, log_ns].map(|ns| since_epoch(ns as f64 * 1e-9 + raw_begin_s));
         let begin_s = match clock {

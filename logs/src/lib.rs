@@ -19,6 +19,7 @@ mod mcap_out;
 mod odometry;
 mod open;
 pub mod ros;
+mod speeds;
 mod standing;
 mod summary;
 mod times;

@@ -8,6 +8,8 @@ use nalgebra::Isometry2;
 const LONGEST_GAP_S: f64 = 2.0;
 /// Intervals that overlap by less than this do so by rounding, s.
 const MIN_OVERLAP_S: f64 = 1e-6;
+/// A gap this many times as long as the step before it is a hole: some logs have a pose every few seconds.
+const HOLE: f64 = 10.0;
 /// A robot that moves slower than this in nearly all of at least this number of steps is none, m/s and rad/s: 0.15 m/s and more
 /// are usual, a thousandth of it with times in milliseconds.
 const MIN_MPS: f64 = 0.002;
@@ -30,12 +32,18 @@ pub struct Odometry {
     /// The number of steps with a motion, and of those at the speed of a robot.
     moving: usize,
     fast: usize,
+    /// The time of the last scan without a pose near it, s, and the number of gaps with such scans.
+    unknown_s: Option<f64>,
+    holes: usize,
 }
 
 impl Odometry {
     /// Adds a pose as written.
     pub fn add(&mut self, time_s: f64, pose: Isometry2<f64>) {
-        let motion = self.written.map_or(Isometry2::identity(), |before| before.inv_mul(&pose));
+        let is_hole = self.is_hole(time_s);
+        self.holes += usize::from(is_hole);
+        let before = self.written.filter(|_| !is_hole);
+        let motion = before.map_or(Isometry2::identity(), |before| before.inv_mul(&pose));
         self.first.get_or_insert(pose);
         self.written = Some(pose);
         let mut at = self.last() * motion;
@@ -52,6 +60,15 @@ impl Odometry {
             self.samples.remove(0);
         }
         self.samples.push((time_s, at));
+    }
+
+    /// Whether the poses until now are missing, while there were scans: with the motion of the whole gap in the next step, the
+    /// odometry would contradict these scans twice. They have found the way by themselves.
+    fn is_hole(&self, time_s: f64) -> bool {
+        let [.., (before_s, _), (last_s, _)] = self.samples[..] else { return false };
+        let gap_s = time_s - last_s;
+        let had_scans = self.unknown_s.is_some_and(|unknown_s| unknown_s > last_s);
+        had_scans && gap_s > LONGEST_GAP_S && gap_s > HOLE * (last_s - before_s)
     }
 
     /// The first pose, as written: the origin of all others.
@@ -92,9 +109,9 @@ impl Odometry {
         Some((self.samples.first()?.0, self.samples.last()?.0))
     }
 
-    /// Whether a later pose can be nearer to this time.
-    pub fn must_wait(&self, time_s: f64) -> bool {
-        self.samples.last().is_some_and(|(last_s, _)| *last_s < time_s && time_s - last_s < LONGEST_GAP_S)
+    /// Whether a later pose can be nearer to this time, where the log is read until `now_s`.
+    pub fn must_wait(&self, time_s: f64, now_s: f64) -> bool {
+        self.samples.last().is_some_and(|(last_s, _)| *last_s < time_s && now_s - last_s < LONGEST_GAP_S)
     }
 
     /// The pose and the velocity at a time; the newest pose where the time is not between two poses.
@@ -106,6 +123,24 @@ impl Odometry {
             }
             _ => self.newest(),
         }
+    }
+
+    /// Notes a scan of a log: without a pose near it, the last pose holds on until the odometry returns.
+    pub(crate) fn note_scan(&mut self, time_s: f64) {
+        if self.samples.last().is_some_and(|(last_s, _)| time_s > last_s + LONGEST_GAP_S) {
+            self.unknown_s = Some(time_s);
+        }
+    }
+
+    /// A note if the odometry is missing at times.
+    pub(crate) fn holes_note(&self) -> Option<String> {
+        let holes = self.holes;
+        (holes > 0).then(|| {
+            format!(
+                "the odometry is missing for more than {LONGEST_GAP_S} s while there are scans, in {holes} places: the way \
+                 there is that of the scans alone"
+            )
+        })
     }
 
     /// The reading of a scan that ends at a time.
@@ -151,4 +186,31 @@ fn between(from: &(f64, Isometry2<f64>), to: &(f64, Isometry2<f64>), share: f64)
         angular_radps: turn_rad / elapsed_s,
     };
     (interfaces::pose(at.x, at.y, heading_rad(from) + turn_rad * share), twist)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Drives at 1 m/s, without poses from 2 s to 12 s, with or without scans in between.
+    fn after_hole(has_scans: bool) -> f64 {
+        let mut odometry = Odometry::default();
+        for tenth in (0..20).chain(120..130) {
+            let time_s = 0.1 * f64::from(tenth);
+            if tenth == 120 && has_scans {
+                (20..120).for_each(|tenth| {
+                    odometry.note_scan(0.1 * f64::from(tenth));
+                });
+            }
+            odometry.add(time_s, interfaces::pose(time_s, 0.0, 0.0));
+        }
+        odometry.newest().0.translation.x
+    }
+
+    #[test]
+    fn the_motion_in_a_hole_counts_if_there_were_no_scans() {
+        assert!((after_hole(false) - 12.9).abs() < 1e-9);
+        // The pose that the scans of the hole were given holds on: 1.9 m, and then 0.9 m more.
+        assert!((after_hole(true) - 2.8).abs() < 1e-9);
+    }
 }

@@ -9,6 +9,10 @@ const MIN_STEP_S: f64 = 1e-3;
 /// The time between scans of a log without usable times, s.
 const STEP_WITHOUT_TIMES_S: f64 = 1.0;
 
+/// Times that pass this much faster or slower than those of the recording, over at least this time, s, are noted.
+const OTHER_PACE: f64 = 1.5;
+const MIN_SPAN_S: f64 = 10.0;
+
 /// The times of the readings.
 pub(crate) struct Times {
     /// From the first reading on, strictly increasing, s.
@@ -67,6 +71,18 @@ pub(crate) fn repaired(raw_s: &[f64]) -> Times {
     let notes: Vec<String> = of_back.into_iter().chain(of_jumps).collect();
     let note = (!notes.is_empty()).then(|| notes.join("; "));
     Times { times_s, has_times: true, note }
+}
+
+/// A note if the scans took another time, s, than their recording: a log may be recorded while it is played, so that this is
+/// no error.
+pub(crate) fn other_pace(scans_s: f64, recorded_s: f64) -> Option<String> {
+    let is_other = scans_s.max(recorded_s) > OTHER_PACE * scans_s.min(recorded_s);
+    (is_other && scans_s.min(recorded_s) > MIN_SPAN_S).then(|| {
+        format!(
+            "the scans took {scans_s:.0} s by their own times, which count, and {recorded_s:.0} s by those of the recording: \
+             one of both is wrong, unless the log was recorded while it was played"
+        )
+    })
 }
 
 #[cfg(test)]

@@ -19,14 +19,14 @@ pub trait Localization<R> {
     /// When the bytes are no such snapshot. The localization must not be used then.
     fn restore(&mut self, snapshot: &[u8]) -> Result<(), ValueError>;
 
-    /// Goes on from the snapshot of an earlier version. Returns whether the robot searches for its pose in the map that was
-    /// learned: what is saved of a localizer has changed.
+    /// Goes on from the snapshot of an earlier version. What is saved of a localizer has changed: it begins anew in the map that
+    /// was learned, and a note says how.
     ///
     /// # Errors
     ///
     /// When the bytes are no such snapshot.
-    fn restore_earlier(&mut self, snapshot: &[u8], _: &Mapper) -> Result<bool, ValueError> {
-        self.restore(snapshot).map(|()| false)
+    fn restore_earlier(&mut self, snapshot: &[u8], _: &Mapper) -> Result<Option<&'static str>, ValueError> {
+        self.restore(snapshot).map(|()| None)
     }
 
     /// Begins another session in the place that was learned, at a pose that is not known.
@@ -99,9 +99,8 @@ impl Localization<LaserReading> for Localizer {
         Localizer::restore(self, snapshot)
     }
 
-    fn restore_earlier(&mut self, _: &[u8], map: &Mapper) -> Result<bool, ValueError> {
-        self.begin_in(map.states());
-        Ok(true)
+    fn restore_earlier(&mut self, _: &[u8], map: &Mapper) -> Result<Option<&'static str>, ValueError> {
+        Ok(Some(begun(self.begin_in(map.states()))))
     }
 
     fn begin_session(&mut self) {
@@ -123,9 +122,8 @@ impl Localization<LaserReading> for LoopClosingLocalizer {
         LoopClosingLocalizer::restore(self, snapshot)
     }
 
-    fn restore_earlier(&mut self, _: &[u8], map: &Mapper) -> Result<bool, ValueError> {
-        self.begin_in(map.states());
-        Ok(true)
+    fn restore_earlier(&mut self, _: &[u8], map: &Mapper) -> Result<Option<&'static str>, ValueError> {
+        Ok(Some(begun(self.begin_in(map.states()))))
     }
 
     fn begin_session(&mut self) {
@@ -142,6 +140,19 @@ impl Localization<LaserReading> for LoopClosingLocalizer {
 
     fn switches(&self) -> &[usize] {
         LoopClosingLocalizer::switches(self)
+    }
+}
+
+/// What is said of a state whose map is used, and not what its localizer knew.
+fn begun(searches: bool) -> &'static str {
+    match searches {
+        true => {
+            "the state is of an earlier version: its map is used, and the robot searches for its pose in it"
+        }
+        false => {
+            "the state is of an earlier version: its map has no surface, and the robot begins at a known pose, as \
+             without a state"
+        }
     }
 }
 

@@ -122,16 +122,16 @@ impl<R: Reading, P: Pilot> Robot<R, P> {
         self.filter.as_mut()
     }
 
-    /// Goes on from a snapshot of the localization, of this version or of an earlier one, after the mapper. Returns whether the
-    /// robot searches for its pose.
+    /// Goes on from a snapshot of the localization, of this version or of an earlier one, after the mapper. Returns a note for the
+    /// user if the localization begins anew.
     pub(crate) fn restore_localization(
         &mut self,
         snapshot: &[u8],
         is_earlier: bool,
-    ) -> Result<bool, ValueError> {
+    ) -> Result<Option<&'static str>, ValueError> {
         match is_earlier {
             true => self.localization.restore_earlier(snapshot, &self.mapper),
-            false => self.localization.restore(snapshot).map(|()| false),
+            false => self.localization.restore(snapshot).map(|()| None),
         }
     }
 

@@ -24,7 +24,7 @@ const MAX_DIFFERING: f64 = 0.35;
 /// When many motions differ: scans were put together where they do not belong, or all lengths are wrong.
 pub(crate) fn check(found: &[TrajectoryPose], odometry: &[Isometry2<f64>]) -> Result<(), SurveyError> {
     let (mut last, mut differing, mut ratios) = (None, Vec::new(), Vec::new());
-    let [mut moves, mut turns] = [false; 2];
+    let [mut moved_m, mut turned_rad] = [0.0; 2];
     for (at, pose) in found.iter().zip(odometry) {
         if at.state != PoseState::Tracking {
             last = None;
@@ -43,13 +43,13 @@ pub(crate) fn check(found: &[TrajectoryPose], odometry: &[Isometry2<f64>]) -> Re
         let apart_rad = heading_rad(&motions[0].inv_mul(&motions[1])).abs();
         let differs = |apart: f64, longer: f64| apart > MIN_APART.max(MIN_SHARE * longer);
         differing.push((differs(apart_m, longer_m), differs(apart_rad, longer_rad)));
-        moves |= odometry_m > STEP_M / 2.0;
-        turns |= odometry_rad > STEP_RAD / 2.0;
-        if odometry_m > STEP_M / 2.0 {
+        (moved_m, turned_rad) = (moved_m + odometry_m, turned_rad + odometry_rad);
+        if odometry_m > MIN_APART {
             ratios.push(found_m / odometry_m);
         }
     }
     let steps = differing.len();
+    let (moves, turns) = (moved_m > STEP_M, turned_rad > STEP_RAD);
     let differing = differing.iter().filter(|(place, heading)| moves && *place || turns && *heading).count();
     if steps < MIN_STEPS || (differing as f64) < MAX_DIFFERING * steps as f64 {
         return Ok(());

@@ -36,12 +36,14 @@ impl Localizer {
     }
 
     /// Begins anew in a known map, at a pose that is not known: what an earlier version has saved of a localizer is not read.
-    pub fn begin_in(&mut self, map: &Grid<CellState>) {
+    /// Returns whether the pose is searched for. In a map without a surface it is not: the robot makes its own map.
+    pub fn begin_in(&mut self, map: &Grid<CellState>) -> bool {
         let known = Self::in_map(&self.builder.matcher.settings, map, Start::Unknown);
-        // Without a surface in the map, the robot makes its own. The settings were valid before.
-        if let Some(localizer) = known.ok().filter(|known| !known.builder.matcher.surfels.is_empty()) {
-            *self = localizer;
-        }
+        // The settings were valid before.
+        let known = known.ok().filter(|known| !known.builder.matcher.surfels.is_empty());
+        let searches = known.is_some();
+        *self = known.unwrap_or_else(|| self.clone());
+        searches
     }
 
     fn values(&mut self) -> Values<'_> {

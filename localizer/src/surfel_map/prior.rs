@@ -20,7 +20,12 @@ impl SurfelMap {
         let rows: Vec<usize> =
             (0..=height).map(|row| borders.partition_point(|(cell, ..)| cell.y < row)).collect();
         let resolution_m = grid.frame().resolution_m();
-        let reach = THICK_M.max(1.5 * resolution_m);
+        // Between surfels that are farther apart than SURFEL_M, there would be gaps.
+        let pieces = (resolution_m / SURFEL_M).ceil() as u32;
+        // Small cells are smoothed, for walls at an angle to them. A border of a large cell is a surface of its own: those around a
+        // corner would turn it, and those of the next row would move it.
+        let (around, min_dot, min_count) = if pieces > 2 { (1.0, 0.5, 1.0) } else { (1.5, 0.0, 2.0) };
+        let reach = THICK_M.max(around * resolution_m);
         let cells = (reach / resolution_m) as i32 + 2;
         for (Cell { x, y }, at, outward) in &borders {
             let (mut sum, mut normal, mut count) = (Vector2::zeros(), Vector2::zeros(), 0.0);
@@ -30,7 +35,7 @@ impl SurfelMap {
                 for other in row[first..].iter().take_while(|(cell, ..)| cell.x <= x + cells) {
                     work::count(1);
                     let to = other.1 - at;
-                    if to.norm_squared() <= reach * reach && other.2.dot(outward) >= 0.0 {
+                    if to.norm_squared() <= reach * reach && other.2.dot(outward) >= min_dot {
                         sum += to;
                         normal += other.2;
                         count += 1.0;
@@ -38,14 +43,18 @@ impl SurfelMap {
                 }
             }
             let length = normal.norm();
-            if count < 2.0 || length < 1e-9 {
+            if count < min_count || length < 1e-9 {
                 continue;
             }
             let (middle, normal) = (at + sum / count, normal / length);
             // On the line through the middle, at the foot of the border.
             let foot = at - normal * normal.dot(&(at - middle));
-            if map.nearest(&foot, &normal, SURFEL_M / 2.0).is_none() {
-                map.add(foot, normal, PRIOR_SCANS);
+            let along = Vector2::new(-normal.y, normal.x) * (resolution_m / f64::from(pieces));
+            for piece in 0..pieces {
+                let part = foot + along * (f64::from(piece) - f64::from(pieces - 1) / 2.0);
+                if map.nearest(&part, &normal, SURFEL_M / 2.0).is_none() {
+                    map.add(part, normal, PRIOR_SCANS);
+                }
             }
         }
         map

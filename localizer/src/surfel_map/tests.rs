@@ -3,7 +3,7 @@ use super::*;
 use crate::constants::FROZEN_SCANS;
 use crate::scan_points::{PointRules, ScanPoint, ScanPoints};
 use crate::work;
-use interfaces::{CellState, Grid, LaserReading, Purpose, RandomStream, Scan, Twist};
+use interfaces::{Cell, CellState, Grid, LaserReading, Purpose, RandomStream, Scan, Twist};
 use nalgebra::Isometry2;
 
 const RULES: PointRules = PointRules { noise_m: 0.01, grazing: true };
@@ -193,6 +193,28 @@ fn the_surfels_of_a_known_map_lie_on_its_borders() {
     assert!(close * 10 > offsets.len() * 9, "{close} of {}", offsets.len());
 }
 
+#[test]
+fn the_surfaces_of_a_map_with_large_cells_have_no_gaps() {
+    for resolution_m in [0.05, 0.2, 0.25, 0.5, 1.0] {
+        let frame = GridFrame::new(Point2::origin(), resolution_m, 20, 20).unwrap();
+        let mut grid = Grid::filled(frame, CellState::Free);
+        (0..20).for_each(|x| *grid.get_mut(Cell::new(x, 10)).unwrap() = CellState::Blocked);
+        let map = SurfelMap::from_grid(&grid);
+        for step in 100..1900 {
+            let at = Point2::new((f64::from(step) + 0.37) * 0.01, 10.0) * resolution_m;
+            let found = map.nearest(&at, &-Vector2::y(), 0.01);
+            assert!(found.is_some(), "no surface at {at} with cells of {resolution_m} m");
+        }
+        // At a corner as well, the surfaces are those of the cells.
+        *grid.get_mut(Cell::new(10, 9)).unwrap() = CellState::Blocked;
+        let corner = SurfelMap::from_grid(&grid);
+        let face = Point2::new(10.5, 9.0) * resolution_m;
+        let is_sharp =
+            corner.nearest(&face, &-Vector2::y(), 0.01).is_some_and(|(_, off_m)| off_m.abs() < 1e-9);
+        assert!(is_sharp || resolution_m < 0.25, "the face at {face} with cells of {resolution_m} m");
+    }
+}
+
 /// A map of this side, of which a third of the cells are blocked by chance.
 fn noisy(cells: usize, resolution_m: f64) -> Grid<CellState> {
     let mut random = RandomStream::new(201, Purpose::WorldGenerator);
@@ -203,7 +225,8 @@ fn noisy(cells: usize, resolution_m: f64) -> Grid<CellState> {
 
 #[test]
 fn the_surfaces_of_a_known_map_are_those_of_all_its_borders() {
-    for resolution_m in [0.02, 0.05, 0.3] {
+    // Up to the size at which a border is one surfel.
+    for resolution_m in [0.02, 0.05, 0.1] {
         let grid = noisy(40, resolution_m);
         let (borders, mut simple) = (borders(&grid), SurfelMap::new(grid.frame()));
         let reach = 0.15_f64.max(1.5 * resolution_m);

@@ -71,6 +71,8 @@ pub(super) struct Inventory {
     pub(super) frames: Frames,
     /// The stamp and the time of recording of the first scan, ns.
     pub(super) begin_ns: Option<(i64, i64)>,
+    /// The time of recording of the last scan, ns.
+    pub(super) end_ns: i64,
     pub(super) topics: Vec<Arc<Topic>>,
     pub(super) notes: Vec<String>,
 }
@@ -101,6 +103,7 @@ impl Inventory {
     fn count_scan(&mut self, message: &Message) -> Result<(), String> {
         let Stamped { header } = cdr::decoded(&message.data)?;
         self.begin_ns.get_or_insert((header.stamp.ns(), message.log_ns));
+        self.end_ns = message.log_ns;
         let (topic, frame) = (&message.topic.name, bounds::name("a frame", bare(&header.frame_id))?);
         let is_full = self.lasers.len() == MAX_SOURCES;
         match self.lasers.iter_mut().find(|laser| laser.topic == *topic && laser.frame == frame) {

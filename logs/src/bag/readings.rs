@@ -11,8 +11,9 @@ use crate::error::LogError;
 use crate::log;
 use crate::odometry::Odometry;
 use crate::ros::{self, Frames, Header, LaserScan, Transforms, flat, mounted, scan_of};
+use crate::speeds::Speeds;
 use interfaces::{LaserReading, Scan};
-use nalgebra::Isometry2;
+use nalgebra::{Isometry2, Vector2};
 use std::collections::VecDeque;
 use std::sync::Arc;
 
@@ -70,6 +71,7 @@ pub(super) struct RawReadings {
     plan: Arc<Plan>,
     clock: Clock,
     odometry: Odometry,
+    speeds: Speeds,
     /// The time of the last pose, s.
     last_pose_s: Option<f64>,
     frames: Frames,
@@ -90,6 +92,7 @@ impl RawReadings {
             plan: plan.clone(),
             clock,
             odometry: Odometry::default(),
+            speeds: Speeds::default(),
             last_pose_s: None,
             frames: plan.frames.clone(),
             waiting: VecDeque::new(),
@@ -109,11 +112,12 @@ impl RawReadings {
         }
         let has_come = |laser| self.waiting.iter().any(|scan| scan.laser == laser);
         let is_first = self.newest_s > first.time_s + DISORDER_S || (0..self.plan.lasers.len()).all(has_come);
-        is_first && !self.odometry.must_wait(first.time_s)
+        is_first && !self.odometry.must_wait(first.time_s, self.newest_s)
     }
 
     fn reading(&mut self, Waiting { time_s, laser, mount, scan }: Waiting) -> LaserReading {
         self.overdue = self.overdue.saturating_sub(1);
+        self.odometry.note_scan(time_s);
         let reading = self.odometry.reading(time_s, mount, scan);
         // The last one may have been moved by as many turns as there are lasers.
         let same_s = -TURN_S * self.plan.lasers.len() as f64..TURN_S;
@@ -131,9 +135,14 @@ impl RawReadings {
         self.odometry.origin()
     }
 
-    /// As [`Odometry::impossible`].
+    /// As [`Odometry::impossible`] and [`Speeds::impossible`].
     pub(super) fn impossible(&self) -> Option<String> {
-        self.odometry.impossible()
+        self.odometry.impossible().or_else(|| self.speeds.impossible())
+    }
+
+    /// As [`Odometry::holes_note`].
+    pub(super) fn holes_note(&self) -> Option<String> {
+        self.odometry.holes_note()
     }
 
     /// Whether the robot has not moved, except for a drift of its odometry.
@@ -175,6 +184,10 @@ impl RawReadings {
     fn take_odometry(&mut self, message: &Message) -> Result<(), String> {
         let found: ros::Odometry = cdr::decoded(&message.data)?;
         self.take_pose(&found.header, message, &found.pose.pose);
+        let ros::Vector { x, y, .. } = found.twist.linear;
+        let ros::Vector { x: at_x, y: at_y, .. } = found.pose.pose.position;
+        let time_s = self.clock.time_s(&found.header, message);
+        self.speeds.add(time_s, Vector2::new(at_x, at_y), Vector2::new(x, y).norm());
         Ok(())
     }
 

@@ -7,7 +7,8 @@ use crate::doubts::{Doubts, OdometryTimes};
 use crate::error::LogError;
 use crate::lines::Lines;
 use crate::odometry::Odometry;
-use crate::standing::Standing;
+use crate::speeds::Speeds;
+use crate::standing::{NO_MOTION, Standing};
 use crate::summary::{LogSummary, PoseSource, since_epoch};
 use crate::times::{self, Times};
 use nalgebra::Isometry2;
@@ -32,6 +33,8 @@ struct Inspection {
     geometry: Geometry,
     /// The times of the scans as written, s.
     times_s: Vec<f64>,
+    /// The times of their recording, s.
+    recorded_s: Vec<f64>,
     /// The number of poses with a time, and of those without.
     with_time: usize,
     without_time: usize,
@@ -40,6 +43,7 @@ struct Inspection {
     timed: Odometry,
     untimed: Odometry,
     standing: Standing,
+    speeds: Speeds,
     doubts: Doubts,
     odometry_times: OdometryTimes,
     notes: Vec<String>,
@@ -48,10 +52,11 @@ struct Inspection {
 impl Inspection {
     fn add(&mut self, line: Line, lines: &Lines) -> Result<(), LogError> {
         match line {
-            Line::Odometry { time_s, pose } => self.add_pose(time_s, pose),
+            Line::Odometry { time_s, pose, speed_mps } => self.add_pose(time_s, pose, speed_mps),
             Line::Scan(scan) => {
                 bounds::one_more(self.times_s.len()).map_err(|what| lines.error(what))?;
                 self.times_s.push(scan.time_s);
+                self.recorded_s.extend(scan.recorded_s);
                 self.doubts.add(scan.typical, &scan.scan.ranges_m);
                 self.standing.add(&Isometry2::identity(), &scan.scan);
             }
@@ -65,7 +70,7 @@ impl Inspection {
         Ok(())
     }
 
-    fn add_pose(&mut self, time_s: f64, pose: Isometry2<f64>) {
+    fn add_pose(&mut self, time_s: f64, pose: Isometry2<f64>, speed_mps: f64) {
         self.odom_origin.get_or_insert(pose);
         if time_s == 0.0 {
             self.without_time += 1;
@@ -75,6 +80,7 @@ impl Inspection {
         }
         self.with_time += 1;
         self.timed.add(time_s, pose);
+        self.speeds.add(time_s, pose.translation.vector, speed_mps);
         if let Some(scan_s) = self.times_s.last() {
             self.odometry_times.add(time_s, &pose, *scan_s);
         }
@@ -90,10 +96,15 @@ impl Inspection {
         }
         let begin_s = self.times_s.first().copied().and_then(since_epoch);
         let stands = odometry.stands() && self.standing.looks_so();
+        if odometry.stands() && !stands && odometry_poses > 0 {
+            notes.push(NO_MOTION.to_owned());
+        }
         let impossible = self.odometry_times.impossible(&self.times_s).or_else(|| odometry.impossible());
+        let impossible = impossible.or_else(|| self.speeds.impossible());
         let impossible = impossible.or_else(|| self.doubts.impossible(0, stands));
         let Times { times_s, has_times, note } = times::repaired(&self.times_s);
         notes.extend(note);
+        notes.extend(recorded_pace(&self.recorded_s, has_times, &times_s));
         let summary = LogSummary {
             scans: times_s.len(),
             duration_s: times_s.last().copied().unwrap_or_default(),
@@ -109,4 +120,12 @@ impl Inspection {
         };
         (Rules { geometry, has_times, has_origins, stands }, times_s, summary)
     }
+}
+
+/// A note if the scans took another time than their recording. Both are repaired by the same rules, since the clock of the
+/// recording can be set as well.
+fn recorded_pace(recorded_s: &[f64], has_times: bool, times_s: &[f64]) -> Option<String> {
+    let recorded = times::repaired(recorded_s);
+    let is_complete = has_times && recorded.has_times && recorded.times_s.len() == times_s.len();
+    times::other_pace(*times_s.last()?, *recorded.times_s.last()?).filter(|_| is_complete)
 }

@@ -34,6 +34,8 @@ pub(super) enum Line {
     Odometry {
         time_s: f64,
         pose: Isometry2<f64>,
+        /// The speed ahead (tv), m/s; many logs have 0.
+        speed_mps: f64,
     },
     Scan(ScanLine),
     LaserOffset(f64),
@@ -48,6 +50,8 @@ pub(super) enum Line {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct ScanLine {
     pub(super) time_s: f64,
+    /// The time of the recording, if the line has one.
+    pub(super) recorded_s: Option<f64>,
     pub(super) scan: Scan,
     /// The typical range as written.
     pub(super) typical: Option<f32>,
@@ -72,8 +76,9 @@ fn parse(text: &str, geometry: &Geometry) -> Result<Line, String> {
         Some("ODOM") => {
             let mut words = Words { message: "ODOM", words };
             let pose = words.pose("x, y and theta")?;
-            words.skip(3, "tv, rv and accel")?;
-            Ok(Line::Odometry { time_s: words.time()?, pose })
+            let speed_mps = words.next("tv")?.parse().unwrap_or(0.0);
+            words.skip(2, "rv and accel")?;
+            Ok(Line::Odometry { time_s: words.time()?, pose, speed_mps })
         }
         Some("FLASER") => flaser(Words { message: "FLASER", words }, geometry).map(Line::Scan),
         Some("ROBOTLASER1") => robotlaser(Words { message: "ROBOTLASER1", words }).map(Line::Scan),
@@ -108,7 +113,8 @@ fn flaser(mut words: Words, geometry: &Geometry) -> Result<ScanLine, String> {
         sweep_s: 0.0,
         ranges_m,
     };
-    Ok(ScanLine { time_s: words.time()?, scan, typical, reference: Some(reference) })
+    let (time_s, recorded_s) = words.times()?;
+    Ok(ScanLine { time_s, recorded_s, scan, typical, reference: Some(reference) })
 }
 
 fn robotlaser(mut words: Words) -> Result<ScanLine, String> {
@@ -131,7 +137,8 @@ fn robotlaser(mut words: Words) -> Result<ScanLine, String> {
     let scan =
         Scan { angle_min_rad, angle_increment_rad, range_min_m: 0.0, range_max_m, sweep_s: 0.0, ranges_m };
     scan.check().map_err(|error| format!("ROBOTLASER1: {error}"))?;
-    Ok(ScanLine { time_s: words.time()?, scan, typical, reference: None })
+    let (time_s, recorded_s) = words.times()?;
+    Ok(ScanLine { time_s, recorded_s, scan, typical, reference: None })
 }
 
 /// The words after the name of a message.
@@ -165,6 +172,15 @@ impl Words<'_> {
     /// A time; times that are not finite are found with all others that make no sense.
     fn time(&mut self) -> Result<f64, String> {
         self.parsed("the time", |_| true)
+    }
+
+    /// The time, and the time of the recording after the name of the host.
+    fn times(&mut self) -> Result<(f64, Option<f64>), String> {
+        let time_s = self.time()?;
+        Ok((
+            time_s,
+            self.words.nth(1).and_then(|word| word.parse().ok()).filter(|time_s: &f64| time_s.is_finite()),
+        ))
     }
 
     fn count(&mut self) -> Result<usize, String> {

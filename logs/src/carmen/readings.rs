@@ -30,11 +30,15 @@ impl Readings {
     /// The first waiting scan as a reading, if its pose is known. With `now`, it does not wait any longer.
     fn resolved(&mut self, now: bool) -> Option<LaserReading> {
         let (time_s, Rules { has_times, geometry, .. }) = (self.waiting.front()?.time_s, self.rules);
-        if has_times && !now && self.odometry.must_wait(time_s) {
+        let now_s = self.waiting.back()?.time_s;
+        if has_times && !now && self.odometry.must_wait(time_s, now_s) {
             return None;
         }
         let ScanLine { scan, .. } = self.waiting.pop_front()?;
         let mount = interfaces::pose(geometry.offset_m, 0.0, 0.0);
+        if has_times {
+            self.odometry.note_scan(time_s);
+        }
         let reading = self.odometry.reading(time_s, mount, scan);
         if has_times {
             return Some(reading);
@@ -56,10 +60,10 @@ impl RawReadings for Readings {
                 None => self.is_over = true,
                 Some(Line::Scan(scan)) => self.waiting.push_back(scan),
                 Some(Line::Odometry { .. }) if self.rules.stands => {}
-                Some(Line::Odometry { time_s, pose }) if time_s == 0.0 && self.rules.has_origins => {
+                Some(Line::Odometry { time_s, pose, .. }) if time_s == 0.0 && self.rules.has_origins => {
                     self.odometry.set_origin(pose);
                 }
-                Some(Line::Odometry { time_s, pose }) => self.odometry.add(time_s, pose),
+                Some(Line::Odometry { time_s, pose, .. }) => self.odometry.add(time_s, pose),
                 Some(_) => {}
             }
         }

@@ -257,6 +257,52 @@ fn times_in_milliseconds_are_named() {
 }
 
 #[test]
+fn speeds_that_do_not_fit_poses_and_times_are_named() {
+    // A robot that drives at 0.4 m/s, with rests, and 3 % of slip; its times, lengths and speeds by these factors.
+    let log = |times: f64, lengths: f64, speeds: f64| {
+        let mut x = 0.0;
+        let mut line = |step: u32| {
+            let (time_s, mps) = (100.0 + 0.1 * f64::from(step), if step % 100 < 70 { 0.4 } else { 0.0 });
+            x += mps * 0.1 * if step.is_multiple_of(7) { 0.8 } else { 1.0 };
+            let (at, x, tv) = (time_s * times, x * lengths, mps * speeds);
+            format!("ODOM {x} 0 0 {tv} 0 0 {at} host {at}\n") + &flaser(at, &format!("{x} 0 0"))
+        };
+        (0..400).map(&mut line).collect::<String>()
+    };
+    for good in [log(1.0, 1.0, 1.0), log(1.0, 1.0, -1.0), log(1.2, 1.0, 1.0), log(2.0, 1.0, 0.0)] {
+        assert_eq!(impossible(&good), None);
+    }
+    // Speeds in mm/s are another unit.
+    assert_eq!(impossible(&log(1.0, 1.0, 1000.0)), None);
+    for (wrong, factor) in
+        [(log(2.0, 1.0, 1.0), "2."), (log(0.5, 1.0, 1.0), "0.5"), (log(1.0, 0.5, 1.0), "2.")]
+    {
+        let why = impossible(&wrong).unwrap();
+        assert!(why.starts_with(&format!("the speeds of the odometry are {factor}")), "{why}");
+    }
+}
+
+#[test]
+fn a_recording_at_another_pace_is_noted() {
+    let log = |pace: f64| {
+        let line = |step: u32| {
+            let recorded_s = f64::from(step);
+            let scan = flaser(pace * recorded_s, "0 0 0");
+            let own = scan.find("host ").unwrap();
+            format!("{}host {recorded_s}\n", &scan[..own])
+        };
+        (1..60).map(line).collect::<String>()
+    };
+    let notes = |text: &str| open("test.log", text.as_bytes()).unwrap().summary().notes.join("; ");
+    assert!(!notes(&log(1.0)).contains("recording"), "{}", notes(&log(1.0)));
+    let said = notes(&log(2.0));
+    assert!(
+        said.contains("took 116 s by their own times, which count, and 58 s by those of the recording"),
+        "{said}"
+    );
+}
+
+#[test]
 fn logs_that_cannot_be_true_are_named() {
     let right = |time_s: f64| format!("ODOM {} 0 0 0 0 0 {time_s} host {time_s}\n", (time_s * 0.3).sin());
     assert_eq!(impossible(&room(1.0, right)), None);

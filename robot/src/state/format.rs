@@ -106,6 +106,11 @@ impl State {
         self.is_earlier
     }
 
+    #[cfg(test)]
+    pub(super) fn of_earlier_version(self) -> Self {
+        Self { is_earlier: true, ..self }
+    }
+
     /// The state with the build of this program.
     #[must_use]
     pub fn with_build(self) -> Self {

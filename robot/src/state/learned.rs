@@ -9,9 +9,6 @@ use mapper::{Mapper, MapperSettings};
 
 const MAPPER: &str = "mapper";
 const LOCALIZATION: &str = "localization";
-/// What is said of a state whose map is used, and not what its localizer knew.
-const RELOCALIZES: &str =
-    "the state is of an earlier version: its map is used, and the robot searches for its pose in it";
 /// Missing in the states of earlier versions.
 const FILTER: &str = "filter";
 
@@ -74,13 +71,13 @@ impl LearnedFacts {
             state.section(LOCALIZATION, &self.localization)?,
         ];
         robot.mapper.restore(learned[0]).map_err(|_| misfit(MAPPER))?;
-        let searches = robot.restore_localization(learned[1], state.is_earlier());
-        let searches = searches.map_err(|_| misfit(LOCALIZATION))?;
+        let note = robot.restore_localization(learned[1], state.is_earlier());
+        let note = note.map_err(|_| misfit(LOCALIZATION))?;
         // Absent from states of programs that did not save it.
         if let (Some(filter), Ok(learned)) = (robot.filter_mut(), state.section(FILTER, &self.filter)) {
             interfaces::restore(filter.values(), learned).map_err(|_| misfit(FILTER))?;
         }
-        Ok(searches.then_some(RELOCALIZES))
+        Ok(note)
     }
 }
 
@@ -100,5 +97,58 @@ impl LearnedSnapshot {
         let state = state.with(MAPPER, facts.mapper, mapper.snapshot());
         let state = state.with(LOCALIZATION, facts.localization, localization);
         if filter.is_empty() { state } else { state.with(FILTER, facts.filter, filter) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Localization, NoPilot};
+    use interfaces::{Scan, Twist};
+    use localizer::{Localizer, LoopClosingLocalizer, PoseState};
+    use nalgebra::{Isometry2, Point2};
+
+    /// A scan in a square room of 4 m, or where nothing is near.
+    fn reading(time_s: f64, is_in_room: bool) -> LaserReading {
+        let angle_increment_rad = std::f64::consts::TAU / 360.0;
+        let range = |beam: u32| {
+            let (sin, cos) = (f64::from(beam) * angle_increment_rad).sin_cos();
+            if is_in_room { (2.0 / sin.abs().max(cos.abs())) as f32 } else { f32::NAN }
+        };
+        let ranges_m = (0..360).map(range).collect();
+        let (range_min_m, range_max_m) = (0.1, 5.0);
+        let scan = Scan { angle_increment_rad, range_min_m, range_max_m, ranges_m, ..Scan::default() };
+        let (pose, twist, mount) = (Isometry2::identity(), Twist::STOP, Isometry2::identity());
+        LaserReading { time_s, pose, twist, velocities: Vec::new(), mount, scan }
+    }
+
+    fn robots() -> [Robot<LaserReading, NoPilot>; 2] {
+        let frame = GridFrame::new(Point2::new(-4.0, -4.0), 0.05, 160, 160).unwrap();
+        let settings = LocalizerSettings::default();
+        let plain = Localizer::from_nothing(&settings, &frame, Isometry2::identity()).unwrap();
+        let looping = LoopClosingLocalizer::from_nothing(&settings, &frame, Isometry2::identity()).unwrap();
+        let robot = |localization: Box<dyn Localization<LaserReading> + Send + Sync>| {
+            Robot::new(localization, Mapper::new(&MapperSettings::default(), frame).unwrap(), NoPilot)
+        };
+        [robot(Box::new(plain)), robot(Box::new(looping))]
+    }
+
+    #[test]
+    fn the_note_of_an_earlier_state_is_what_the_robot_does() {
+        for saw_a_room in [false, true] {
+            for (mut robot, mut next) in robots().into_iter().zip(robots()) {
+                let facts = LearnedFacts::new(&MapperSettings::default(), robot.mapper.frame(), "", None);
+                for scan in 0..30 {
+                    robot.step(reading(0.1 * f64::from(scan), saw_a_room)).unwrap();
+                }
+                let state = facts.snapshot(&mut robot).added_to(State::default()).of_earlier_version();
+                let note = facts.restore(&state, &mut next).unwrap().unwrap();
+                assert_eq!(note.contains("searches for its pose"), saw_a_room, "{note}");
+                assert_eq!(note.contains("begins at a known pose"), !saw_a_room, "{note}");
+                let belief = next.step(reading(3.0, true)).unwrap().belief;
+                let is_lost = belief.state() == PoseState::Lost;
+                assert_eq!(is_lost, saw_a_room, "{belief:?}");
+            }
+        }
     }
 }

@@ -72,7 +72,7 @@ impl Motions {
 
     /// Whether a later pose can be nearer to this time.
     pub(super) fn must_wait(&self, ns: i64) -> bool {
-        self.used().poses.must_wait(self.time_s(ns))
+        self.used().poses.must_wait(self.time_s(ns), self.time_s(ns))
     }
 
     /// Whether the pose at a time is known.

@@ -68,6 +68,9 @@ fn an_odometry_of_something_else_is_refused() {
     let lengths =
         refused(|_, reading| reading.scan.ranges_m.iter_mut().for_each(|range_m| *range_m *= 0.3)).unwrap();
     assert!(lengths.contains("(the scans move 0.29 times as far)"), "{lengths}");
+    let feet =
+        refused(|_, reading| reading.scan.ranges_m.iter_mut().for_each(|range_m| *range_m *= 3.28)).unwrap();
+    assert!(feet.contains("(the scans move 3."), "{feet}");
     let exchanged = refused(|_, reading| {
         let at = &mut reading.pose.translation;
         (at.x, at.y) = (at.y, at.x);

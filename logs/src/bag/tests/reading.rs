@@ -267,6 +267,12 @@ fn a_parked_robot_stands_although_its_odometry_drifts() {
     // A robot that moves by its odometry, and one whose scans change although its odometry does not.
     assert!(!parked(0.1, 0.0).summary().stands);
     assert!(!parked(0.0, 0.1).summary().stands);
+    let moved = parked(0.0, 0.1);
+    let notes = &moved.summary().notes;
+    assert!(
+        notes.iter().any(|note| note.starts_with("the odometry stands still, and the scans do not")),
+        "{notes:?}"
+    );
 }
 
 #[test]
@@ -277,4 +283,37 @@ fn unusable_times_are_no_date() {
     }
     let bag = bag.open(&TopicChoice::default()).unwrap();
     assert_eq!((bag.summary().has_times, bag.summary().begin_s), (false, None));
+}
+
+/// 40 s at 0.5 m/s, whose stamps pass at another pace than the recording and the speeds.
+fn at_pace(pace: f64, speed_mps: f64) -> crate::summary::LogSummary {
+    let mut bag = Builder::default();
+    bag.mount();
+    for step in 0..400 {
+        let recorded_s = 0.1 * f64::from(step);
+        bag.odometry("/odom", pace * recorded_s, 0.5 * recorded_s, 0.0);
+        let data = &mut bag.messages.last_mut().unwrap().3;
+        let mut odometry: crate::ros::Odometry = crate::cdr::decoded(data).unwrap();
+        odometry.twist.linear.x = speed_mps;
+        *data = crate::cdr::encoded(&odometry).unwrap();
+        bag.scan("/scan", recorded_s + 0.01, &scan(pace * recorded_s, "laser"));
+    }
+    bag.open(&TopicChoice::default()).unwrap().summary().clone()
+}
+
+#[test]
+fn doubled_stamps_are_refused_where_the_speeds_show_them_and_noted_where_the_recording_does() {
+    assert_eq!((at_pace(1.0, 0.5).impossible, at_pace(1.0, 0.5).notes), (None, vec![]));
+    for pace in [0.5, 2.0] {
+        let why = at_pace(pace, 0.5).impossible.unwrap();
+        assert!(why.starts_with(&format!("the speeds of the odometry are {pace:.2} times those")), "{why}");
+        // A log that was recorded while it was played twice as fast looks the same, and is right.
+        let unknown = at_pace(pace, 0.0);
+        assert!(unknown.impossible.is_none());
+        assert!(
+            unknown.notes[0].ends_with("unless the log was recorded while it was played"),
+            "{:?}",
+            unknown.notes
+        );
+    }
 }
