@@ -20,7 +20,7 @@ fn clock() -> (Clock, f64) {
 }
 
 fn look(time_s: f64, step: u32) -> Look {
-    Look { time_s, is_blocked: step / 10 % 7 % 2 == 0 }
+    Look { time_s, is_blocked: (step / 10 % 7).is_multiple_of(2) }
 }
 
 /// Looks at these intervals, s.
