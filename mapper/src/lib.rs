@@ -19,8 +19,8 @@ mod scan_filter;
 
 pub use change::{
     CellMap, CellStatistics, ChoGarciaMolina, Estimator, EstimatorChoice, Exposure, GapBin, GapEvidence,
-    GapHistogram, GapModel, GapWeights, GapWorth, Imac, Paper, PaperAll, ReadingIndex, Step, TransitionRates,
-    TwoState, TwoStateGaps,
+    GapHistogram, GapModel, GapWeights, GapWorth, Imac, Paper, PaperAll, RateDistribution, ReadingIndex,
+    SharedPrior, Step, TransitionRates, TwoState, TwoStateGaps,
 };
 pub use growth::Growth;
 pub use occupancy::{

@@ -1,5 +1,5 @@
 use super::gamma::Quantile;
-use crate::change::Belief;
+use crate::change::{Belief, RateDistribution};
 
 /// Minimum of a probability or an information: the product of two of them is still above 0.
 const MIN_VALUE: f64 = 1e-150;
@@ -15,6 +15,12 @@ impl CredibleInterval {
     pub(super) fn new(mass: f64) -> Self {
         let mass = mass.clamp(0.0, 1.0);
         Self { ends: [0.5 - 0.5 * mass, 0.5 + 0.5 * mass].map(Quantile::new) }
+    }
+
+    /// The interval of a gamma distribution.
+    pub(super) fn of_rate(&self, rate: RateDistribution) -> (f64, f64) {
+        let [low, high] = self.ends.each_ref().map(|end| rate.mean() * end.of(rate.events));
+        (low, high)
     }
 
     /// The interval of the cycle rate by the posterior of the two-state chain in steps of `period`. Assumes that the

@@ -20,6 +20,7 @@ fn flat(world: &str, strategy: &str, seed: u64, value: f64) -> Trial {
         brier_last_seen: value,
         brier_mean: value,
         rate_auc: value,
+        predictive_deviance: value,
     };
     Trial {
         world: world.into(),

@@ -55,6 +55,7 @@ pub(crate) fn trial(world: usize, estimator: &str, strategy: &str, seed: u64) ->
             brier_last_seen: if step < 30 { f64::NAN } else { 0.3 + noise },
             brier_mean: if step < 30 { f64::NAN } else { 0.24 + noise },
             rate_auc: if step < 30 { f64::NAN } else { 0.9 * quality },
+            predictive_deviance: if step < 30 { f64::NAN } else { learned - 0.2 },
         }
     });
     Trial {
