@@ -12,6 +12,10 @@ use serde::{Deserialize, Serialize};
 /// where an estimate of 0 meets an event.
 const MIN_EXPECTED: f64 = 0.1;
 
+/// The prior of the ceiling counts as this many events: few enough that counts decide, and enough that a cell without an
+/// event is not taken for static. The shape that fits the past best predicts less, since places do not stay the same.
+const FULL_VIEW_EVENTS: f64 = 0.3;
+
 /// The Poisson deviance of pairs of an observed and an expected count: twice the logarithm of the ratio of the likelihoods
 /// of the observed and the expected counts. 0 if all are equal, ∞ if a count with the expectation 0 is observed.
 pub fn poisson_deviance(counts: impl IntoIterator<Item = (f64, f64)>) -> f64 {
@@ -55,8 +59,8 @@ pub struct DevianceScores {
     pub predictive_deviance: Option<f64>,
     /// The same against the constant known at `from`: the mean rate that the robot has observed over traversable cells.
     pub predictive_deviance_known: Option<f64>,
-    /// The ceiling of `predictive_deviance`: the rates of a robot that had every cell in view up to `from`, with the prior of
-    /// the estimator `shared-prior`.
+    /// The ceiling of `predictive_deviance`: the rates of a robot that had every cell in view up to `from`, with a prior of
+    /// 0.3 events at the mean rate.
     pub predictive_deviance_ceiling: Option<f64>,
 }
 
@@ -78,10 +82,12 @@ impl FrozenRates {
             (cycles + f64::from(seen.cycles()), in_view + seen.observed())
         });
         let events = |index: usize| truth.predicted_events(index);
-        let prior = RateDistribution::shared(traversable.iter().map(|&index| (events(index), time)));
+        let all: f64 = traversable.iter().map(|&index| f64::from(events(index))).sum();
+        let mean = (all + 0.5) / (traversable.len().max(1) as f64 * time);
+        let prior = RateDistribution { events: FULL_VIEW_EVENTS, time: FULL_VIEW_EVENTS / mean };
         let cells = traversable.iter().map(|&index| FrozenCell {
             index: index as u32,
-            rates: [rate(index), prior.map_or(0.0, |prior| prior.after(events(index), time).mean())],
+            rates: [rate(index), prior.after(events(index), time).mean()],
             events: events(index),
         });
         Self { time, constant: cycles / in_view, cells: cells.collect() }
@@ -114,5 +120,34 @@ impl FrozenRates {
             predictive_deviance_known: explained(estimate, known),
             predictive_deviance_ceiling: explained(ideal, best),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::RngExt;
+    use rand_chacha::ChaCha8Rng;
+    use rand_chacha::rand_core::SeedableRng;
+
+    #[test]
+    fn the_mean_is_the_best_constant_and_only_the_counts_themselves_are_perfect() {
+        let mut random = ChaCha8Rng::seed_from_u64(1);
+        for _ in 0..200 {
+            let counts: Vec<f64> = (0..10).map(|_| f64::from(random.random_range(0..6_u32))).collect();
+            let mean = counts.iter().sum::<f64>() / 10.0;
+            let of_constant = |constant: f64| poisson_deviance(counts.iter().map(|&count| (count, constant)));
+            let other = mean * random.random_range(0.1..3.0);
+            assert!(of_constant(mean) <= of_constant(other), "{counts:?}: {mean} and {other}");
+            assert_eq!(poisson_deviance(counts.iter().map(|&count| (count, count))), 0.0);
+            let shifted = poisson_deviance(counts.iter().map(|&count| (count, count + 0.1)));
+            assert!(shifted > 0.0, "{counts:?}");
+        }
+    }
+
+    #[test]
+    fn an_event_where_none_can_be_has_an_infinite_deviance() {
+        assert_eq!(poisson_deviance([(1.0, 0.0)]), f64::INFINITY);
+        assert_eq!(poisson_deviance([(0.0, 0.0)]), 0.0);
     }
 }

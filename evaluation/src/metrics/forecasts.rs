@@ -60,13 +60,17 @@ pub struct StateScores {
 impl Forecasts {
     /// Observes one reading.
     pub fn observe(&mut self, mapper: &Mapper, truth: &impl GroundTruth) {
-        let now = truth.elapsed();
-        if now + SLACK >= self.due.unwrap_or(FIRST_FREEZE) {
+        let now = truth.elapsed() + SLACK;
+        let mut due = self.due.unwrap_or(FIRST_FREEZE);
+        if now >= due {
             if self.due.is_some() {
                 self.scores = self.rates.scores(truth);
             }
             self.rates = FrozenRates::of(mapper, truth);
-            self.due = Some(FACTOR * now);
+            while now >= due {
+                due *= FACTOR;
+            }
+            self.due = Some(due);
         }
         for (ahead, horizon) in self.ahead.iter_mut().zip(HORIZONS) {
             ahead.observe(horizon, mapper, truth);

@@ -90,7 +90,8 @@ impl CycleCounts {
         }
         let height = |log_shape: f64| self.log_likelihood(&classes, mean, libm::exp(log_shape));
         let events = libm::exp(maximum(SHAPES.map(libm::log), height));
-        Some(RateDistribution { events, time: prior_time(&classes, mean, events) })
+        let time = prior_time(&classes, mean, events);
+        (time > 0.0 && time.is_finite()).then_some(RateDistribution { events, time })
     }
 
     /// The logarithm of the posterior of a shape, with the best time for it.

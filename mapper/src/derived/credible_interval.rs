@@ -19,7 +19,7 @@ impl CredibleInterval {
 
     /// The interval of a gamma distribution.
     pub(super) fn of_rate(&self, rate: RateDistribution) -> (f64, f64) {
-        let [low, high] = self.ends.each_ref().map(|end| rate.mean() * end.of(rate.events));
+        let [low, high] = self.ends.each_ref().map(|end| rate.mean().min(f64::MAX) * end.of(rate.events));
         (low, high)
     }
 

@@ -5,8 +5,10 @@ use crate::change::RateDistribution;
 use crate::change::shared_prior::CycleCounts;
 use interfaces::CellState;
 
-/// The maximum number of readings that a sweep over the map takes. The first sweeps are shorter.
-const SWEEP_READINGS: u32 = 512;
+/// A sweep over the map takes this share of the readings so far, and at least this many readings: the work per reading is
+/// small, and the prior is about as old.
+const SWEEP_SHARE: usize = 8;
+const SWEEP_READINGS: usize = 8;
 
 /// The prior, and the sweep that renews it.
 #[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
@@ -15,12 +17,14 @@ pub(super) struct SharedPrior {
     counts: CycleCounts,
     /// The next cell, and the number of readings that this sweep takes.
     next: usize,
-    readings: u32,
+    readings: usize,
+    /// Whether the open reading found another prior.
+    is_new: bool,
 }
 
 impl Default for SharedPrior {
     fn default() -> Self {
-        Self { prior: None, counts: CycleCounts::default(), next: 0, readings: 1 }
+        Self { prior: None, counts: CycleCounts::default(), next: 0, readings: SWEEP_READINGS, is_new: false }
     }
 }
 
@@ -43,20 +47,26 @@ impl CellMap {
         is_traversable.then(|| self.statistics(index).posterior()).flatten()
     }
 
+    /// Whether the open reading found another prior: the rates of cells out of view are others then.
+    pub(crate) fn has_new_prior(&self) -> bool {
+        self.shared.as_ref().is_some_and(|shared| shared.is_new)
+    }
+
     /// Goes on with the sweep over the map: a part of the cells per reading.
     pub(super) fn sweep(&mut self) {
         let Some(mut shared) = self.shared.take() else { return };
         let cells = self.records.len();
-        let end = cells.min(shared.next + cells.div_ceil(shared.readings as usize));
+        let end = cells.min(shared.next + cells.div_ceil(shared.readings));
         for index in (shared.next..end).filter(|&index| self.is_traversable(index)) {
             let seen = self.statistics(index);
             shared.counts.add(seen.cycles(), seen.observed());
         }
         shared.next = end;
-        if end == cells {
+        shared.is_new = end == cells;
+        if shared.is_new {
             shared.prior = shared.counts.fit().or(shared.prior);
             shared.counts = CycleCounts::default();
-            (shared.next, shared.readings) = (0, (2 * shared.readings).min(SWEEP_READINGS));
+            (shared.next, shared.readings) = (0, (self.readings() / SWEEP_SHARE).max(SWEEP_READINGS));
         }
         self.shared = Some(shared);
     }
