@@ -1,7 +1,8 @@
 //! Measures a run in the physics world against the ground truth, from outside the loop.
 
 use crate::metrics::{
-    ChangingAccuracy, Latency, MapScores, PoseErrors, Prediction, Standstills, Things, TrueChains, map_scores,
+    ChangingAccuracy, Forecasts, Latency, MapScores, PoseErrors, Prediction, Standstills, Things, TrueChains,
+    map_scores,
 };
 use interfaces::{GroundTruth, LaserReading, Twist};
 use mapper::Mapper;
@@ -32,6 +33,9 @@ pub struct Observer {
     pub changing: ChangingAccuracy,
     /// The quality of the predicted map on swept cells out of view.
     pub prediction: Prediction,
+    /// The forecasts: a part of a state file of its own, since earlier state files have none.
+    #[serde(skip)]
+    pub forecasts: Forecasts,
     /// The true chains of all cells.
     pub true_chains: TrueChains,
     /// The errors of the poses that the robot used.
@@ -78,6 +82,7 @@ impl Observer {
         self.latency.observe(truth, mapper, reading, &laser);
         self.things.observe(world.obstacle_events(), truth.frame(), mapper, reading, &laser);
         self.true_chains.observe(truth);
+        self.forecasts.observe(mapper, truth);
         if mapper.readings().is_multiple_of(SAMPLE_EVERY) {
             self.changing.sample(mapper, truth);
         }

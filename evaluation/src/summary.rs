@@ -3,8 +3,8 @@
 mod words;
 
 use crate::metrics::{
-    Age, ChangingScores, Delays, MapScores, PoseScores, PredictedScores, RateScores, ReachableScores,
-    ThingReport,
+    Age, ChangingScores, Delays, ForecastScores, IntervalScores, MapScores, PoseScores, PredictedScores,
+    RateScores, ReachableScores, ThingReport,
 };
 use mapper::Mapper;
 use robot::GoalCount;
@@ -78,6 +78,10 @@ pub struct RunResults {
     pub changing: ChangingScores,
     /// The quality of the predicted map on swept cells out of view, over the run.
     pub predicted: PredictedScores,
+    /// How well the frozen map predicted what followed.
+    pub forecasts: ForecastScores,
+    /// The credible intervals of the rates.
+    pub intervals: IntervalScores,
     /// The estimated rates compared with the true rates.
     #[serde(flatten)]
     pub rates: RateScores,

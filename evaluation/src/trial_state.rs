@@ -13,6 +13,8 @@ const WORLD: &str = "world";
 const CONTENT: &str = "content";
 const PILOT: &str = "pilot";
 const MEASUREMENTS: &str = "measurements";
+/// Missing in a state of an earlier version, and before the first forecast.
+const FORECASTS: &str = "forecasts";
 
 /// What the state of a run belongs to.
 #[derive(Clone, Debug)]
@@ -66,7 +68,11 @@ impl TrialSnapshot {
             .with(WORLD, facts.world.clone(), world.into_bytes())
             .with(CONTENT, facts.content, Vec::new())
             .with(PILOT, facts.pilot, pilot)
-            .with(MEASUREMENTS, facts.world, interfaces::to_bytes(&observer));
+            .with(MEASUREMENTS, facts.world.clone(), interfaces::to_bytes(&observer));
+        let state = match observer.forecasts {
+            none if none.is_empty() => state,
+            forecasts => state.with(FORECASTS, facts.world, interfaces::to_bytes(&forecasts)),
+        };
         learned.added_to(state).with_build()
     }
 }
@@ -102,6 +108,10 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
         self.world.restore(world).map_err(|_| misfit(WORLD))?;
         interfaces::restore(self.pilot_values(), pilot).map_err(|_| misfit(PILOT))?;
         self.observer = interfaces::from_bytes(observer).map_err(|_| misfit(MEASUREMENTS))?;
+        if state.has(FORECASTS) {
+            let forecasts = state.section(FORECASTS, &facts.world)?;
+            self.observer.forecasts = interfaces::from_bytes(forecasts).map_err(|_| misfit(FORECASTS))?;
+        }
         Ok(note)
     }
 

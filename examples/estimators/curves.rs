@@ -14,13 +14,14 @@ const FROM: f64 = 0.0004;
 const TO: f64 = 0.5;
 
 /// Okabe and Ito's colors, which color-blind readers can tell apart.
-const COLOURS: [RGBColor; 6] = [
+const COLOURS: [RGBColor; 7] = [
     RGBColor(0, 0, 0),
     RGBColor(153, 153, 153),
     RGBColor(204, 121, 167),
     RGBColor(230, 159, 0),
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
+    RGBColor(0, 158, 115),
 ];
 
 /// Draws the log error of every estimator over the true rate, for cells that are blocked half of the time.

@@ -48,7 +48,7 @@ pub(crate) fn blocks(set: Set, judged: &Judged) -> String {
             score.bias.mean(),
             figure(score.dense.mean(), 3),
             figure(score.sparse.mean(), 3),
-            score.false_rate.mean(),
+            static_rate(score.false_rate.mean()),
             score.covered.mean(),
             score.brier.mean(),
         );
@@ -80,7 +80,7 @@ pub(crate) fn room(scores: &[Vec<room::Score>]) -> String {
                 name(&estimator),
                 score.log_error.mean(),
                 score.bias.mean(),
-                score.false_rate.mean(),
+                static_rate(score.false_rate.mean()),
                 score.covered.mean(),
             );
         }
@@ -170,4 +170,9 @@ pub(crate) fn unlike_neighbours(rows: &[[Outcome; 3]]) -> String {
         let _ = writeln!(text, "| {} | {alone} | {faster} | {slower} |", row[0].rate);
     }
     text
+}
+
+/// The mean rate of static cells; 0 under all estimators but those with a shared prior.
+fn static_rate(rate: f64) -> String {
+    if rate > 0.0 { format!("{rate:.1e}") } else { "0".to_owned() }
 }

@@ -65,6 +65,12 @@ pub trait GroundTruth {
         per_time(self.pass_events(index), self.elapsed())
     }
 
+    /// The number of events so far that a rate map predicts: the block events; where an obstacle such as the leaf of a door
+    /// first touched the cell, all passes. A leaf is thinner than the diagonal of a cell, and covers most cells only in part.
+    fn predicted_events(&self, index: usize) -> u32 {
+        self.block_events(index)
+    }
+
     /// Whether any moving thing has touched a cell (physics world) or can enter it (grid world).
     fn is_swept(&self, index: usize) -> bool;
 

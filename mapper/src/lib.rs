@@ -20,8 +20,8 @@ mod scan_filter;
 
 pub use change::{
     CellMap, CellStatistics, ChoGarciaMolina, Estimator, EstimatorChoice, Exposure, GapBin, GapEvidence,
-    GapHistogram, GapModel, GapWeights, GapWorth, Imac, Paper, PaperAll, ReadingIndex, Step, TransitionRates,
-    TwoState, TwoStateGaps,
+    GapHistogram, GapModel, GapWeights, GapWorth, Imac, Paper, PaperAll, RateDistribution, ReadingIndex,
+    SharedPrior, Step, TransitionRates, TwoState, TwoStateGaps,
 };
 pub use clock::{Calendar, Clock, DAY_S, Look, UnknownZone};
 pub use growth::Growth;

@@ -7,6 +7,8 @@
 mod beams;
 mod changing;
 mod counts;
+mod deviance;
+mod forecasts;
 mod latency;
 mod map;
 mod mean;
@@ -18,12 +20,15 @@ mod things;
 mod true_chains;
 
 pub use changing::{ChangingAccuracy, ChangingScores};
+pub use deviance::{DevianceScores, FrozenRates, poisson_deviance};
+pub use forecasts::{ForecastScores, Forecasts, StateScores};
 pub use latency::{Delays, Latency};
 pub use map::{Age, MapScores, ReachableScores, age, map_scores, reachable_scores};
 pub use pose::{PoseErrors, PoseScores};
 pub use prediction::{PredictedScores, Prediction};
 pub use rates::{
-    MAX_LOG_ERROR, RateErrors, RateScores, log_error, mean_log_error, mean_log_error_of_range, rate_scores,
+    IntervalScores, MAX_LOG_ERROR, RateErrors, RateScores, interval_scores, log_error, mean_log_error,
+    mean_log_error_of_range, rate_scores,
 };
 pub use standstill::Standstills;
 pub use things::{ThingReport, Things};

@@ -54,6 +54,32 @@ impl From<&RateScores> for RateErrors {
     }
 }
 
+/// The credible intervals of the rates compared with the true rates so far, over the observed cells that truly changed;
+/// [`GroundTruth::predicted_events`] says which events count. All are `None` without such cells.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct IntervalScores {
+    /// The share of the true rates inside the 50 % interval.
+    pub inside_50: Option<f64>,
+    /// The share of the true rates inside the 90 % interval.
+    pub inside_90: Option<f64>,
+}
+
+/// Compares the credible intervals of `mapper` with the true rates so far.
+pub fn interval_scores(mapper: &Mapper, truth: &impl GroundTruth) -> IntervalScores {
+    let [inside_50, inside_90] = [0.5, 0.9].map(|mass| {
+        let (interval_of, mut inside) = (mapper.credible_intervals(mass), Mean::default());
+        for index in (0..truth.frame().len()).filter(|&index| mapper.was_ever_seen(index)) {
+            let true_rate = f64::from(truth.predicted_events(index)) / truth.elapsed();
+            if true_rate > 0.0 {
+                let (low, high) = interval_of(index);
+                inside.add_bool((low..=high).contains(&true_rate));
+            }
+        }
+        inside.get()
+    });
+    IntervalScores { inside_50, inside_90 }
+}
+
 /// Compares the rates of `mapper` with the true rates so far.
 pub fn rate_scores(mapper: &Mapper, truth: &impl GroundTruth) -> RateScores {
     let (mut in_view, mut all, mut false_rate) = (Mean::default(), Mean::default(), Mean::default());

@@ -181,3 +181,100 @@ fn an_old_map_is_incorrect_where_things_have_moved() {
     assert_eq!(accuracy.scores().all, Some((2.0 / 3.0 + 0.5) / 2.0));
     assert_eq!(prediction.scores().brier_last_seen, Some(2.0 / 5.0));
 }
+
+/// Rates of the three cells of the fast block, frozen after 20 of 60 steps. The oracle counts the events itself and takes the
+/// deviance from the probabilities of the Poisson distribution.
+#[test]
+fn the_deviance_is_that_of_an_independent_computation() {
+    let mut world = grid_world();
+    let mut mapper = mapper(&world);
+    let cells = [1, 2, 3].map(|x| world.truth().frame().index(Cell::new(x, 2)).unwrap());
+    let blocked = |world: &GridWorld| cells.map(|index| world.truth().is_blocked(index));
+    let mut entered = [[0.0; 3]; 2];
+    let mut run = |world: &mut GridWorld, mapper: Option<&mut Mapper>, part: usize, steps: u32| {
+        let mut mapper = mapper;
+        for _ in 0..steps {
+            let before = blocked(world);
+            if let Some(mapper) = &mut mapper {
+                show(world, mapper, |cell| cell.y == 2 && (1..4).contains(&cell.x));
+            }
+            world.act(&Step::Stay);
+            for (cell, is_blocked) in blocked(world).into_iter().enumerate() {
+                entered[part][cell] += f64::from(u8::from(is_blocked && !before[cell]));
+            }
+        }
+    };
+    run(&mut world, Some(&mut mapper), 0, 20);
+    let chosen = [0.2, 0.5, 0.1];
+    let rate_of = |rates: [f64; 3]| {
+        move |index: usize| cells.iter().position(|&cell| cell == index).map_or(0.0, |cell| rates[cell])
+    };
+    let freeze = |rates: [f64; 3]| FrozenRates::estimated(&mapper, world.truth(), rate_of(rates));
+    let frozen = freeze(chosen);
+    let mut later = grid_world();
+    (0..20).for_each(|_| later.act(&Step::Stay));
+    run(&mut later, None, 1, 40);
+    let future = entered[1].map(|count| count / 40.0);
+    let mean = future.iter().sum::<f64>() / 3.0;
+
+    let log_probability = |count: f64, expected: f64| {
+        let log_factorial: f64 = (1..=count as u32).map(|number| f64::from(number).ln()).sum();
+        count * expected.ln() - expected - log_factorial
+    };
+    let log_likelihood = |rates: [f64; 3]| -> f64 {
+        entered[1].iter().zip(rates).map(|(&count, rate)| log_probability(count, 40.0 * rate)).sum()
+    };
+    let explained = |rates: [f64; 3], constant: f64| {
+        let best = log_likelihood(future);
+        1.0 - (best - log_likelihood(rates)) / (best - log_likelihood([constant; 3]))
+    };
+    let scores = frozen.scores(later.truth());
+    assert_eq!((scores.from, scores.to), (Some(20.0), Some(60.0)));
+    let near = |found: Option<f64>, expected: f64| {
+        let found = found.unwrap();
+        assert!((found - expected).abs() < 1e-9, "{found}, not {expected}");
+    };
+    near(scores.predictive_deviance, explained(chosen, mean));
+    // Each cell was in view for 19 steps, up to the reading before the freeze.
+    let cycles = cells.map(|index| f64::from(mapper.statistics(index).cycles()));
+    near(
+        scores.predictive_deviance_known,
+        explained(chosen, (cycles.iter().sum::<f64>() + 0.5) / (3.0 * 19.0)),
+    );
+    let full_mean = (entered[0].iter().sum::<f64>() + 0.5) / 60.0;
+    let full = entered[0].map(|count| (count + 0.3) / (20.0 + 0.3 / full_mean));
+    near(scores.predictive_deviance_ceiling, explained(full, mean));
+    near(freeze(future).scores(later.truth()).predictive_deviance, 1.0);
+    near(freeze([mean; 3]).scores(later.truth()).predictive_deviance, 0.0);
+}
+
+#[test]
+fn a_map_that_sees_everything_forecasts_a_clock() {
+    let mut world = grid_world();
+    let mut mapper = mapper(&world);
+    let mut forecasts = Forecasts::default();
+    for step in 0..=1200 {
+        show(&world, &mut mapper, |_| true);
+        forecasts.observe(&mapper, world.truth());
+        let scores = forecasts.scores();
+        assert_eq!(scores.rates.from.is_some(), step >= 45, "the first forecast is from 15 to 45");
+        assert_eq!(scores.states_1min.brier.is_some(), step >= 120);
+        assert_eq!(scores.states_10min.brier.is_some(), step >= 1200);
+        world.act(&Step::Stay);
+    }
+    let ForecastScores { rates, states_1min, states_10min } = forecasts.scores();
+    assert_eq!((rates.from, rates.to), (Some(400.0), Some(1200.0)));
+    assert!(rates.predictive_deviance.unwrap() > 0.95, "{rates:?}");
+    assert!(
+        rates.predictive_deviance.unwrap() <= rates.predictive_deviance_ceiling.unwrap() + 0.02,
+        "{rates:?}"
+    );
+    for scores in [states_1min, states_10min] {
+        let StateScores { brier, brier_last_seen, log_score, calibration_error } = scores;
+        assert!(
+            (0.0..0.6).contains(&brier.unwrap()) && (0.0..=1.0).contains(&brier_last_seen.unwrap()),
+            "{scores:?}"
+        );
+        assert!(log_score.unwrap() > 0.0 && (0.0..=1.0).contains(&calibration_error.unwrap()), "{scores:?}");
+    }
+}

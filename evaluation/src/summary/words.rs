@@ -1,7 +1,7 @@
 //! The results as a few lines for the terminal.
 
 use super::{Contacts, Liveliest, RunResults, Summary};
-use crate::metrics::{Age, PoseScores, PredictedScores, RateScores, ThingReport};
+use crate::metrics::{Age, DevianceScores, PoseScores, PredictedScores, RateScores, ThingReport};
 use results::numbers::percent;
 use robot::GoalCount;
 use std::fmt;
@@ -127,6 +127,18 @@ impl RunResults {
         ))
     }
 
+    /// The events that the rates predicted; `None` before the end of a forecast, and if nothing happened in it.
+    fn deviance(&self) -> Option<String> {
+        let DevianceScores { from, to, predictive_deviance, predictive_deviance_ceiling, .. } =
+            self.forecasts.rates;
+        let [from_min, to_min] = [from? / 60.0, to? / 60.0];
+        Some(format!(
+            "predictive deviance {:.2} from {from_min:.0} to {to_min:.0} min: 1 is perfect, 0 the best constant, {:.2} \
+             a full view before",
+            predictive_deviance?, predictive_deviance_ceiling?
+        ))
+    }
+
     /// The errors of the estimated rates, in words; empty if nothing changed.
     fn rates(&self) -> Vec<(&'static str, String)> {
         let RateScores {
@@ -154,6 +166,7 @@ impl RunResults {
                 lines.push(("", format!("log error {of_range:.2} where {meaning}")));
             }
         }
+        lines.extend(self.deviance().map(|text| ("", text)));
         if let Some(auc) = rate_auc {
             let meaning =
                 "how well the rates separate changing from static cells, 1 is perfect, 0.5 is chance";
@@ -191,7 +204,9 @@ fn line_of(thing: &ThingReport) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::metrics::{ChangingAccuracy, Delays, MapScores, ReachableScores};
+    use crate::metrics::{
+        ChangingAccuracy, Delays, ForecastScores, IntervalScores, MapScores, ReachableScores,
+    };
     use std::collections::BTreeMap;
 
     fn results(coverage: f64, age: Age, rates: RateScores) -> RunResults {
@@ -200,6 +215,8 @@ mod tests {
             reachable: ReachableScores { coverage_reachable: coverage, map_quality_reachable: 0.9999 },
             changing: ChangingAccuracy::default().scores(),
             predicted: PredictedScores::default(),
+            forecasts: ForecastScores::default(),
+            intervals: IntervalScores::default(),
             rates,
             age,
             block_latency: Delays::default(),
@@ -240,13 +257,22 @@ mod tests {
             brier_mean: Some(0.01612),
             brier_true_chains: Some(0.014),
         };
-        insta::assert_snapshot!(RunResults { predicted, ..results(0.99999, age, rates) }, @"
+        let deviance = DevianceScores {
+            from: Some(400.0),
+            to: Some(1200.0),
+            predictive_deviance: Some(0.62),
+            predictive_deviance_ceiling: Some(0.823),
+            ..DevianceScores::default()
+        };
+        let forecasts = ForecastScores { rates: deviance, ..ForecastScores::default() };
+        insta::assert_snapshot!(RunResults { predicted, forecasts, ..results(0.99999, age, rates) }, @"
           seen      >99.9 % of the cells in sight of reachable places, >99.9 % of free cells and their borders; 2 cells were never seen
           map       >99.9 % correct now; 0 false changes recorded, 0 in the map, on 50000 static cells
           changes   none seen
           rates     mean error 251.0 % over all changing cells, 29.0 % over the 43 in view for 3 cycles or more
                     log error 0.91, mean over moving things: 0 is perfect, 0.69 a factor of 2, 2.30 a factor of 10 or no estimate
                     log error 0.53 where a pass that covers only a part of a cell may count or not
+                    predictive deviance 0.62 from 7 to 20 min: 1 is perfect, 0 the best constant, 0.82 a full view before
                     AUC 0.83: how well the rates separate changing from static cells, 1 is perfect, 0.5 is chance
           predicted Brier score 0.0159 on changing cells out of view; as last seen 0.0270, share of time blocked 0.0161, true chains 0.0140
           stood     longest time without moving 0.1 m: cat 312 s

@@ -56,7 +56,7 @@ macro_rules! metrics {
 }
 
 metrics! {
-    12:
+    13:
     /// Mean relative error of the rates over the cells that truly changed.
     rate_error => RateError in NOT_NEGATIVE,
     /// The log error of the rates: per moving thing, then over the things.
@@ -81,6 +81,8 @@ metrics! {
     brier_mean => BrierMean in SHARE,
     /// How well the estimated rates separate changing cells from static cells: the area under the ROC curve.
     rate_auc => RateAuc in SHARE,
+    /// The explained Poisson deviance of the events that followed, against the best constant, by the last forecast.
+    predictive_deviance => PredictiveDeviance in f64::NEG_INFINITY..=1.0,
 }
 
 /// The result of one trial: a strategy with an estimator in a world.

@@ -1,5 +1,5 @@
 use super::{Sample, TrialWorld};
-use crate::metrics::{ChangingAccuracy, Prediction, RateScores, map_scores, rate_scores};
+use crate::metrics::{ChangingAccuracy, Forecasts, Prediction, RateScores, map_scores, rate_scores};
 use interfaces::GroundTruth;
 use mapper::Mapper;
 
@@ -23,6 +23,7 @@ pub(super) struct Sampler {
     accuracy: ChangingAccuracy,
     /// Since the last sample.
     prediction: Prediction,
+    forecasts: Forecasts,
 }
 
 impl Sampler {
@@ -34,6 +35,7 @@ impl Sampler {
     /// Measures one reading. Returns the sample, if one is due.
     pub(super) fn update<W: TrialWorld>(&mut self, mapper: &Mapper, truth: &W::Truth) -> Option<&Sample> {
         let is_due = has_come(mapper.time(), self.due);
+        self.forecasts.observe(mapper, truth);
         if is_due || self.readings.is_multiple_of(W::COMPARE_EVERY) {
             self.accuracy.sample(mapper, truth);
             self.prediction.sample(mapper, truth, None);
@@ -81,6 +83,7 @@ impl Sampler {
             brier_last_seen: or_nan(brier.brier_last_seen),
             brier_mean: or_nan(brier.brier_mean),
             rate_auc: or_nan(rate_auc),
+            predictive_deviance: or_nan(self.forecasts.scores().rates.predictive_deviance),
         }
     }
 }

@@ -6,16 +6,18 @@ mod exposure;
 mod gaps;
 mod reading_times;
 mod shared_cells;
+mod shared_prior;
 mod statistics;
 mod transition_kernel;
 
 pub use cell_map::CellMap;
 pub use estimators::{
-    ChoGarciaMolina, Estimator, EstimatorChoice, Imac, Paper, PaperAll, TwoState, TwoStateGaps,
+    ChoGarciaMolina, Estimator, EstimatorChoice, Imac, Paper, PaperAll, SharedPrior, TwoState, TwoStateGaps,
 };
 pub use exposure::Exposure;
 pub(crate) use gaps::Belief;
 pub use gaps::{GapBin, GapEvidence, GapHistogram, GapModel, GapWeights};
 pub use reading_times::ReadingIndex;
+pub use shared_prior::RateDistribution;
 pub use statistics::{CellStatistics, GapWorth};
 pub use transition_kernel::{Step, TransitionRates};

@@ -1,3 +1,5 @@
+use super::RateDistribution;
+
 /// The observations of one cell (paper, section 3). Times are in the time unit of the readings: seconds, or steps
 /// in a grid world.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Deserialize, serde::Serialize)]
@@ -30,6 +32,8 @@ pub struct CellStatistics {
     pub gaps_from_blocked: u32,
     /// The information in the gaps, if the estimator has a [model of gaps](crate::GapModel); otherwise 0.
     pub gap_worth: GapWorth,
+    /// The prior of the cycle rate that all traversable cells [share](crate::Estimator::shares_prior), once there is one.
+    pub prior: Option<RateDistribution>,
 }
 
 /// The information in the gaps of a cell, expressed as an observation in view with the same information. All fields
@@ -50,6 +54,16 @@ impl CellStatistics {
     /// The time in view: t_last − t_not obs − t_init.
     pub fn observed(&self) -> f64 {
         self.last_seen - self.first_seen - self.unobserved
+    }
+
+    /// The cycles in view: the larger of the numbers of block events and of free events, as in equation 1.
+    pub fn cycles(&self) -> u32 {
+        self.block_events.max(self.free_events)
+    }
+
+    /// The posterior of the cycle rate: the prior and what was in view; `None` without a prior.
+    pub fn posterior(&self) -> Option<RateDistribution> {
+        Some(self.prior?.after(self.cycles(), self.observed()))
     }
 
     /// All changes of the cell, in view or not.

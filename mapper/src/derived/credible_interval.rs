@@ -1,8 +1,12 @@
 use super::gamma::Quantile;
-use crate::change::Belief;
+use crate::change::{Belief, RateDistribution};
 
 /// Minimum of a probability or an information: the product of two of them is still above 0.
 const MIN_VALUE: f64 = 1e-150;
+
+/// The variance of the number of passages divided by their mean: people go somewhere and come back, so that passages come in
+/// pairs. Chosen on generated houses (seeds 3000 to 3007): 88 % of the true rates are then in the 90 % interval, and 83 % with 1.
+const DISPERSION: f64 = 2.0;
 
 /// Credible intervals that contain a rate with a certain probability, with equal probabilities below and above the
 /// interval.
@@ -15,6 +19,13 @@ impl CredibleInterval {
     pub(super) fn new(mass: f64) -> Self {
         let mass = mass.clamp(0.0, 1.0);
         Self { ends: [0.5 - 0.5 * mass, 0.5 + 0.5 * mass].map(Quantile::new) }
+    }
+
+    /// The interval of a gamma distribution whose variance is [`DISPERSION`] times as large.
+    pub(super) fn of_rate(&self, rate: RateDistribution) -> (f64, f64) {
+        let shape = rate.events / DISPERSION;
+        let [low, high] = self.ends.each_ref().map(|end| rate.mean().min(f64::MAX) * end.of(shape));
+        (low, high)
     }
 
     /// The interval of the cycle rate by the posterior of the two-state chain in steps of `period`. Assumes that the

@@ -16,13 +16,17 @@ use interfaces::CellState;
 
 impl Mapper {
     /// The cycle time T of the cell (equation 1): the mean duration of blocked → free → blocked; ∞ for a cell that
-    /// never changed.
+    /// never changed, unless traversable cells [share a prior](crate::Estimator::shares_prior).
     #[inline]
     pub fn interval(&self, index: usize) -> f64 {
-        self.estimator().interval(&self.statistics(index))
+        if self.cells.has_rate(index) {
+            self.estimator().interval(&self.statistics(index))
+        } else {
+            f64::INFINITY
+        }
     }
 
-    /// The rate of the cell, 1/T, in cycles per unit of time; 0 for a cell that never changed.
+    /// The rate of the cell, 1/T, in cycles per unit of time; 0 where T is ∞.
     #[inline]
     pub fn rate(&self, index: usize) -> f64 {
         self.cells.rate(index)
@@ -38,7 +42,7 @@ impl Mapper {
     /// that never changed.
     #[inline]
     pub fn change_probability_within(&self, index: usize, time: f64) -> f64 {
-        change_probability(time, self.rate(index))
+        if self.cells.has_changed(index) { change_probability(time, self.rate(index)) } else { 0.0 }
     }
 
     /// The time since the cell was last observed. A cell that was never observed counts as last seen at time 0.
@@ -63,7 +67,8 @@ impl Mapper {
     /// the gaps are included if the estimator in use [models a two-state chain](crate::GapModel::is_two_state). The
     /// estimate for a cell without an event is 0, but its interval is not: it follows from the prior and the
     /// observation time, and the longer the cell was observed without an event, the lower is the upper bound.
-    /// Before the second reading the interval is 0 to ∞.
+    /// Before the second reading the interval is 0 to ∞. Where traversable
+    /// cells [share a prior](crate::Estimator::shares_prior), it is the interval of the posterior with this prior.
     pub fn credible_interval(&self, index: usize, mass: f64) -> (f64, f64) {
         self.credible_intervals(mass)(index)
     }
@@ -73,6 +78,9 @@ impl Mapper {
     pub fn credible_intervals(&self, mass: f64) -> impl Fn(usize) -> (f64, f64) {
         let interval = CredibleInterval::new(mass);
         move |index| {
+            if let Some(posterior) = self.cells.rate_posterior(index) {
+                return interval.of_rate(posterior);
+            }
             let belief = self.cells.belief(index);
             belief.map_or((0.0, f64::INFINITY), |(belief, period)| interval.of_cycle_rate(belief, period))
         }
@@ -90,18 +98,24 @@ impl Mapper {
     /// is blocked; the faster, the more regular the stays of the whole map are. A cell that never changed stays as
     /// last observed, and an unknown cell has 0.5.
     pub fn blocked_probability(&self, index: usize) -> f64 {
+        self.blocked_probability_later(index, 0.0)
+    }
+
+    /// The probability that the cell is blocked this much time after the last reading: the map as predicted from now.
+    pub fn blocked_probability_later(&self, index: usize, time: f64) -> f64 {
         let state = self.cells.state(index);
         let last_seen = match state {
             CellState::Unknown => 0.5,
             CellState::Free => 0.0,
             CellState::Blocked => 1.0,
         };
-        if !self.cells.has_changed(index) || self.is_in_view(index) && state != CellState::Unknown {
+        let is_seen_then = time <= 0.0 && self.is_in_view(index);
+        if !self.cells.has_changed(index) || is_seen_then && state != CellState::Unknown {
             return last_seen;
         }
         let seen = self.statistics(index);
         self.estimator().transition_rates(&seen).map_or(last_seen, |rates| {
-            blocked_probability(rates, &seen, self.cells.variation(), state, self.recency(index))
+            blocked_probability(rates, &seen, self.cells.variation(), state, self.recency(index) + time)
         })
     }
 }

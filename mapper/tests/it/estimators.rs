@@ -1,12 +1,16 @@
 //! Properties of estimates for any observations, and how `two-state-gaps` treats cells that are not Markov chains.
 
-use interfaces::{Cell, CellReading, GridFrame};
-use mapper::{EstimatorChoice, Mapper, MapperSettings, TwoState, TwoStateGaps};
+use interfaces::{Cell, CellReading, CellState, GridFrame};
+use mapper::{EstimatorChoice, Mapper, MapperSettings, SharedPrior, TwoState, TwoStateGaps};
 use nalgebra::Point2;
 use proptest::prelude::*;
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
+use rand_distr::{Distribution, Gamma};
+
+/// The estimator under which traversable cells share a prior.
+const SHARED: &str = "shared-prior";
 
 /// A mapper of one row of cells.
 fn mapper(estimator: impl Into<EstimatorChoice>, cells: usize) -> Mapper {
@@ -68,7 +72,8 @@ proptest! {
     /// A cycle blocked → free → blocked counts the same as free → blocked → free.
     #[test]
     fn free_and_blocked_are_alike(stream in streams()) {
-        for estimator in &EstimatorChoice::all() {
+        // Free cells are traversable, blocked ones are walls until they change: a shared prior treats them differently.
+        for estimator in EstimatorChoice::all().iter().filter(|estimator| estimator.name() != SHARED) {
             let [seen, mirrored] = [false, true].map(|mirrored| after(estimator, &stream, 1.0, mirrored));
             for index in 0..3 {
                 assert_near(mirrored.rate(index), seen.rate(index));
@@ -98,7 +103,9 @@ proptest! {
                 let states: Vec<bool> =
                     stream.iter().map(|cells| cells[index]).filter(|cell| cell.0).map(|cell| cell.1).collect();
                 let changed = states.windows(2).any(|pair| pair[0] != pair[1]);
-                prop_assert!(changed || mapper.rate(index) == 0.0);
+                let is_free = mapper.states().cells()[index] == CellState::Free;
+                let shares = estimator.name() == SHARED && is_free;
+                prop_assert!(changed || shares || mapper.rate(index) == 0.0);
                 if estimator.name() == "two-state-gaps" {
                     prop_assert_eq!(changed, mapper.rate(index) > 0.0);
                     let (low, high) = mapper.credible_interval(index, 0.99);
@@ -187,4 +194,34 @@ fn stays_by_the_clock_are_no_chain() {
     let (block, free) = mapper.transition_rates(0).unwrap();
     assert!((free * f64::from(stay as u32) - 1.0).abs() < 0.1, "stays are {} steps", 1.0 / free);
     assert!(block < free);
+}
+
+/// Independent cells with gamma distributed rates, seen for different times: the prior is that distribution, and no cell that
+/// is free has rate 0.
+#[test]
+fn traversable_cells_share_a_prior_and_none_has_rate_0() {
+    const CELLS: usize = 4000;
+    let mut random = ChaCha8Rng::seed_from_u64(3);
+    let (shape, mean) = (0.5, 0.002);
+    let gamma = Gamma::new(shape, mean / shape).unwrap();
+    let rates: Vec<f64> = (0..CELLS).map(|_| gamma.sample(&mut random)).collect();
+    let mut mapper = mapper(SharedPrior, CELLS + 1);
+    for step in 0..3000 {
+        let seen = (0..CELLS).filter(|cell| step < 500 * (1 + cell % 6));
+        let states: Vec<(usize, bool)> =
+            seen.map(|cell| (cell, random.random_bool(rates[cell].min(1.0)))).collect();
+        // Blocked for one step at each event; the last cell is a wall.
+        show(&mut mapper, step as f64, states.into_iter().chain([(CELLS, true)]));
+    }
+    let prior = mapper.statistics(0).prior.unwrap();
+    assert!((prior.events / shape - 1.0).abs() < 0.1, "shape {}", prior.events);
+    assert!((prior.mean() / mean - 1.0).abs() < 0.1, "mean {}", prior.mean());
+    assert!((0..CELLS).all(|cell| mapper.rate(cell) > 0.0) && mapper.rate(CELLS) == 0.0);
+    let inside = (0..CELLS).filter(|&cell| {
+        let (low, high) = mapper.credible_interval(cell, 0.9);
+        (low..=high).contains(&rates[cell])
+    });
+    let share = inside.count() as f64 / CELLS as f64;
+    // Intervals are wider than those of single passages, since passages come in pairs.
+    assert!((0.92..0.99).contains(&share), "{share} of the rates are in the 90 % interval");
 }

@@ -56,6 +56,7 @@ pub(crate) fn trial(world: usize, estimator: &str, strategy: &str, seed: u64) ->
             brier_last_seen: later(0.3 + noise),
             brier_mean: later(0.24 + noise),
             rate_auc: later(0.9 * quality),
+            predictive_deviance: later(learned - 0.2),
         }
     });
     Trial {

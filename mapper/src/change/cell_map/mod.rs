@@ -5,6 +5,7 @@ mod observing;
 mod queries;
 mod record;
 mod saved;
+mod shared;
 mod state_change;
 
 use super::EstimatorChoice;
@@ -14,6 +15,7 @@ use crate::change::shared_cells::SharedCells;
 use interfaces::{CellState, Grid, Transition};
 use last_seen::LastSeenCounts;
 use record::{Flags, Record};
+use shared::SharedPrior;
 
 /// The index of a cell among the cells that ever changed.
 pub(crate) type Slot = u32;
@@ -39,6 +41,8 @@ pub struct CellMap {
     /// The gaps of every cell; empty if the estimator has no model of gaps.
     gaps: SharedCells<CellGaps>,
     regularity: Regularity,
+    /// The prior that all traversable cells share; `None` if the estimator has none.
+    shared: Option<SharedPrior>,
     /// The cells that ever changed, in the order of their first change.
     pub(crate) changed: Vec<u32>,
     /// The cells of `changed` that came back into view with the open reading.
@@ -60,6 +64,7 @@ impl CellMap {
     pub(crate) fn new(prior: Grid<CellState>, estimator: EstimatorChoice, max_gap: f64) -> Self {
         let cells = prior.frame().len();
         let gaps = SharedCells::new(if estimator.gap_model().is_some() { cells } else { 0 });
+        let shared = estimator.shares_prior().then(SharedPrior::default);
         let mut map = Self {
             estimator,
             max_gap,
@@ -70,6 +75,7 @@ impl CellMap {
             records: vec![Record::default(); cells],
             gaps,
             regularity: Regularity::default(),
+            shared,
             changed: Vec::new(),
             returned: Vec::new(),
             transitions: Vec::new(),
@@ -97,6 +103,7 @@ impl CellMap {
         if self.times.is_full() {
             self.forget_times();
         }
+        self.sweep();
         self.last_seen_counts.open();
     }
 

@@ -78,6 +78,7 @@ impl CellMap {
             gaps_from_free: record.gaps[0],
             gaps_from_blocked: record.gaps[1],
             gap_worth: self.gaps.get(index).map_or(GapWorth::default(), |gaps| gaps.worth(period)),
+            prior: self.shared.as_ref().and_then(|shared| shared.prior),
         }
     }
 
@@ -101,7 +102,7 @@ impl CellMap {
     /// The cycle rate of a cell, by the estimator in use.
     #[inline]
     pub(crate) fn rate(&self, index: usize) -> f64 {
-        if self.has_changed(index) { self.estimator.rate(&self.statistics(index)) } else { 0.0 }
+        if self.has_rate(index) { self.estimator.rate(&self.statistics(index)) } else { 0.0 }
     }
 
     /// The transition rates of a cell, if the estimator in use computes them.

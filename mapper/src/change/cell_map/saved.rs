@@ -21,6 +21,7 @@ impl CellMap {
             value(&mut self.last_seen_counts),
         ];
         values.extend(self.gaps.values());
+        values.extend(self.shared.as_mut().map(|shared| value(shared)));
         values
     }
 

@@ -7,6 +7,7 @@
 mod cho_garcia_molina;
 mod imac;
 mod paper;
+mod shared_prior;
 mod two_state;
 mod two_state_gaps;
 
@@ -14,6 +15,7 @@ use super::{CellStatistics, GapModel, TransitionRates};
 pub use cho_garcia_molina::ChoGarciaMolina;
 pub use imac::Imac;
 pub use paper::{Paper, PaperAll};
+pub use shared_prior::SharedPrior;
 use std::fmt;
 use std::sync::Arc;
 pub use two_state::TwoState;
@@ -25,7 +27,8 @@ pub trait Estimator: fmt::Debug + Send + Sync {
     fn name(&self) -> &'static str;
 
     /// The cycle time T (equation 1): the mean duration of blocked → free → blocked, in the time unit of the
-    /// statistics. Called only for cells with an event. A result that is not a positive number means that the
+    /// statistics. Called only for cells with an event, and for all traversable cells if they [share a
+    /// prior](Estimator::shares_prior). A result that is not a positive number means that the
     /// events give no rate.
     fn interval(&self, seen: &CellStatistics) -> f64;
 
@@ -40,6 +43,12 @@ pub trait Estimator: fmt::Debug + Send + Sync {
     /// stays 0.
     fn gap_model(&self) -> Option<&dyn GapModel> {
         None
+    }
+
+    /// Whether all traversable cells (free, or ever changed) share a prior. Only then [`CellStatistics::prior`] is learned,
+    /// and cells without an event have a rate.
+    fn shares_prior(&self) -> bool {
+        false
     }
 }
 
@@ -71,6 +80,7 @@ impl EstimatorChoice {
             Imac.into(),
             TwoState.into(),
             TwoStateGaps.into(),
+            SharedPrior.into(),
         ]
     }
 
@@ -79,14 +89,16 @@ impl EstimatorChoice {
         self.0.name()
     }
 
-    /// The cycle time T; ∞ for a cell without an event, or for a cell that was in view for no time.
+    /// The cycle time T; ∞ for a cell without an event unless cells share a prior, or for a cell that was in view for no
+    /// time.
     pub fn interval(&self, seen: &CellStatistics) -> f64 {
-        let interval = if seen.events() == 0 { f64::INFINITY } else { self.0.interval(seen) };
+        let is_static = seen.events() == 0 && !self.shares_prior();
+        let interval = if is_static { f64::INFINITY } else { self.0.interval(seen) };
         // If the time in view is zero, or so small that it has no inverse, the events give no rate.
         if interval >= f64::MIN_POSITIVE { interval } else { f64::INFINITY }
     }
 
-    /// The cycle rate 1/T, in cycles per unit of time; 0 for a cell without an event.
+    /// The cycle rate 1/T, in cycles per unit of time; 0 where T is ∞.
     pub fn rate(&self, seen: &CellStatistics) -> f64 {
         1.0 / self.interval(seen)
     }
@@ -97,6 +109,10 @@ impl EstimatorChoice {
             return None;
         }
         self.0.transition_rates(seen).map(TransitionRates::bounded)
+    }
+
+    pub(crate) fn shares_prior(&self) -> bool {
+        self.0.shares_prior()
     }
 
     pub(crate) fn gap_model(&self) -> Option<&dyn GapModel> {

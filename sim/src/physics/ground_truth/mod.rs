@@ -248,6 +248,13 @@ impl GroundTruth for PhysicsGroundTruth {
         self.pass_events[index].max(self.block_events[index])
     }
 
+    fn predicted_events(&self, index: usize) -> u32 {
+        match self.movers[index] {
+            Some(Body::Obstacle(_)) => self.pass_events(index),
+            _ => self.block_events(index),
+        }
+    }
+
     fn is_swept(&self, index: usize) -> bool {
         self.movers[index].is_some()
     }

@@ -1,0 +1,159 @@
+//! Forecasts of a run: the map is frozen now and then, and compared with the truth some time later.
+
+use super::deviance::{DevianceScores, FrozenRates};
+use super::mean::Mean;
+use interfaces::{CellState, GroundTruth, TrueState};
+use mapper::Mapper;
+use serde::{Deserialize, Serialize};
+
+/// The first time at which the rates are frozen, s (steps in a grid world), and the factor from one time to the next: 400 s,
+/// 20 minutes and 1 hour are among the times, so that runs of 20 minutes and of 1 hour end with a forecast.
+const FIRST_FREEZE: f64 = 400.0 / 27.0;
+const FACTOR: f64 = 3.0;
+/// How far ahead the states of cells are predicted, s (steps in a grid world): 1 minute and 10 minutes.
+const HORIZONS: [f64; 2] = [60.0, 600.0];
+/// Predictions are limited to probabilities from this to 1 minus this in the log score, which is infinite for a wrong
+/// prediction that was certain.
+const MIN_PROBABILITY: f64 = 1e-3;
+/// The number of classes of equal width in the expected calibration error.
+const CLASSES: usize = 10;
+/// Times are sums of steps of a physics world, s.
+const SLACK: f64 = 1e-6;
+
+/// The forecasts of a run so far.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub struct Forecasts {
+    /// The rates frozen last, and the time at which they are scored and frozen again.
+    rates: FrozenRates,
+    due: Option<f64>,
+    scores: DevianceScores,
+    ahead: [Lookahead; 2],
+}
+
+/// The quality of forecasts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct ForecastScores {
+    /// How well the rates predicted the events between the last two times of 400 s, 20 minutes, 1 hour, and so on (also
+    /// before: a third, a ninth, a 27th of 400 s).
+    pub rates: DevianceScores,
+    /// The predicted map, 1 minute ahead.
+    pub states_1min: StateScores,
+    /// The predicted map, 10 minutes ahead.
+    pub states_10min: StateScores,
+}
+
+/// The quality of the predicted map over swept cells that were known and free, or had changed, when the map was frozen;
+/// cells that are partly covered when the time has come are left out. All are `None` before the end of a forecast.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct StateScores {
+    /// The Brier score of P(blocked): the mean of (prediction − truth)².
+    pub brier: Option<f64>,
+    /// The Brier score of the state that was last seen.
+    pub brier_last_seen: Option<f64>,
+    /// The log score of P(blocked), nat: the mean of −ln of the probability of what was true, from 0.001 on.
+    pub log_score: Option<f64>,
+    /// The expected calibration error of P(blocked): the mean distance of the predicted from the true share of blocked
+    /// cells in ten classes of predictions, by the number of predictions in each.
+    pub calibration_error: Option<f64>,
+}
+
+impl Forecasts {
+    /// Observes one reading.
+    pub fn observe(&mut self, mapper: &Mapper, truth: &impl GroundTruth) {
+        let now = truth.elapsed() + SLACK;
+        let mut due = self.due.unwrap_or(FIRST_FREEZE);
+        if now >= due {
+            if self.due.is_some() {
+                self.scores = self.rates.scores(truth);
+            }
+            self.rates = FrozenRates::of(mapper, truth);
+            while now >= due {
+                due *= FACTOR;
+            }
+            self.due = Some(due);
+        }
+        for (ahead, horizon) in self.ahead.iter_mut().zip(HORIZONS) {
+            ahead.observe(horizon, mapper, truth);
+        }
+    }
+
+    /// The scores so far.
+    pub fn scores(&self) -> ForecastScores {
+        let [states_1min, states_10min] = self.ahead.each_ref().map(Lookahead::scores);
+        ForecastScores { rates: self.scores, states_1min, states_10min }
+    }
+
+    /// Whether nothing was frozen yet.
+    pub fn is_empty(&self) -> bool {
+        self.due.is_none()
+    }
+}
+
+/// The predicted states of cells at a fixed time after the map was frozen, one forecast after the other.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+struct Lookahead {
+    due: Option<f64>,
+    cells: Vec<FrozenState>,
+    brier: Mean,
+    last_seen: Mean,
+    log_score: Mean,
+    /// For each class of predictions the mean prediction, and the share of cells that were blocked.
+    classes: [[Mean; 2]; CLASSES],
+}
+
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+struct FrozenState {
+    index: u32,
+    probability: f32,
+    is_blocked: bool,
+}
+
+impl Lookahead {
+    fn observe(&mut self, horizon: f64, mapper: &Mapper, truth: &impl GroundTruth) {
+        let now = truth.elapsed();
+        if now + SLACK < self.due.unwrap_or(horizon) {
+            return;
+        }
+        for cell in std::mem::take(&mut self.cells) {
+            let index = cell.index as usize;
+            if truth.is_swept(index) && truth.state(index) != TrueState::PartlyCovered {
+                self.score(cell, truth.state(index) == TrueState::Blocked);
+            }
+        }
+        let states = mapper.states().cells().iter().enumerate();
+        let may_change = |&(index, state): &(usize, &CellState)| {
+            *state == CellState::Free || *state == CellState::Blocked && mapper.statistics(index).events() > 0
+        };
+        let frozen = states.filter(may_change).map(|(index, state)| FrozenState {
+            index: index as u32,
+            probability: mapper.blocked_probability_later(index, horizon) as f32,
+            is_blocked: *state == CellState::Blocked,
+        });
+        self.cells = frozen.collect();
+        self.due = Some(now + horizon);
+    }
+
+    fn score(&mut self, cell: FrozenState, is_blocked: bool) {
+        let truth = f64::from(u8::from(is_blocked));
+        let (predicted, last_seen) = (f64::from(cell.probability), f64::from(u8::from(cell.is_blocked)));
+        self.brier.add((predicted - truth).powi(2));
+        self.last_seen.add((last_seen - truth).powi(2));
+        let of_truth = if is_blocked { predicted } else { 1.0 - predicted };
+        self.log_score.add(-libm::log(of_truth.clamp(MIN_PROBABILITY, 1.0 - MIN_PROBABILITY)));
+        let class = ((predicted * CLASSES as f64) as usize).min(CLASSES - 1);
+        self.classes[class][0].add(predicted);
+        self.classes[class][1].add(truth);
+    }
+
+    fn scores(&self) -> StateScores {
+        let apart = self.classes.iter().filter_map(|[predicted, truth]| {
+            Some((predicted.get()? - truth.get()?).abs() * truth.count as f64)
+        });
+        StateScores {
+            brier: self.brier.get(),
+            brier_last_seen: self.last_seen.get(),
+            log_score: self.log_score.get(),
+            calibration_error: self.brier.get().map(|_| apart.sum::<f64>() / self.brier.count as f64),
+        }
+    }
+}

@@ -1,0 +1,30 @@
+use super::{Estimator, TwoStateGaps};
+use crate::change::{CellStatistics, GapModel, TransitionRates};
+
+/// `shared-prior`: the changes in view, as in equation 1, with a prior that all traversable cells share (empirical
+/// Bayes). Few events are shrunk toward the mean rate of all cells, and a cell without an event has a rate above 0, the lower the
+/// longer the cell was in view. The state of a cell out of view is predicted as by `two-state-gaps`.
+#[derive(Clone, Copy, Debug)]
+pub struct SharedPrior;
+
+impl Estimator for SharedPrior {
+    fn name(&self) -> &'static str {
+        "shared-prior"
+    }
+
+    fn interval(&self, seen: &CellStatistics) -> f64 {
+        seen.posterior().map_or(f64::INFINITY, |posterior| posterior.time / posterior.events)
+    }
+
+    fn transition_rates(&self, seen: &CellStatistics) -> Option<TransitionRates> {
+        TwoStateGaps.transition_rates(seen)
+    }
+
+    fn gap_model(&self) -> Option<&dyn GapModel> {
+        TwoStateGaps.gap_model()
+    }
+
+    fn shares_prior(&self) -> bool {
+        true
+    }
+}
