@@ -10,6 +10,7 @@
 //! - `change`: the change statistics of cells, and the estimators of rates. A new estimator implements
 //!   [`Estimator`].
 //! - `derived`: the maps that follow from both.
+//! - `clock`: [`Clock`], a model of one thing over days: hours of the day and of the week, and a memory of all looks.
 
 mod change;
 mod clock;
