@@ -35,7 +35,8 @@ fn states_of_all_versions_are_read_and_the_layout_belongs_to_its_version() {
         let (mut node, _, said) = node(&small(), Some(&path));
         let said = said.lock().unwrap().join("\n");
         assert!(said.contains("the map goes on from 10 readings"), "{version}: {said}");
-        assert_eq!(said.contains("searches for its pose"), version < VERSION, "{version}: {said}");
+        // After ten readings the map has no surface yet.
+        assert_eq!(said.contains("its map has no surface"), version < VERSION, "{version}: {said}");
         let CuriousNode { robot, state_file, continued, .. } = &mut node;
         let state_file = state_file.as_mut().unwrap();
         state_file.save(continued.unwrap(), robot).unwrap();
