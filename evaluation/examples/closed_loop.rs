@@ -1,6 +1,6 @@
 //! From a robot to a map of changes, against the truth: a robot with bad odometry drives in a simulated house, by its
 //! own estimate, and its scans and odometry are written to several bags. From these the trajectories are found and
-//! aligned, and the rates are learned, as `map_log` does it, but in the frame of the world, and with the noise of all bags
+//! aligned, and the rates are learned, as `map_log` does it, but in the frame of the robot, and with the noise of all bags
 //! (or `NOISE_M`, in m). The frame of a survey is that of its first pose; for the comparison, one rigid motion of all routes
 //! brings them as near to the true poses as possible.
 //!
@@ -16,11 +16,11 @@ use agent::Policy;
 use evaluation::metrics::{RateScores, rate_scores};
 use evaluation::physics_trial::{self, PhysicsTrial};
 use interfaces::{GridFrame, LaserReading, PoseMode, World, heading_rad};
-use localizer::{GivenPoses, TrajectoryPose};
+use localizer::TrajectoryPose;
 use logs::{Log, McapWriter, TopicChoice};
 use mapper::{Mapper, NoReturn, ScanFilter, ScanFilterSettings};
 use nalgebra::{Isometry2, Vector2};
-use robot::{NoPilot, Robot};
+use robot::{NoPilot, Robot, Settings};
 use std::error::Error;
 use std::fs::File;
 use std::io::BufWriter;
@@ -42,8 +42,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     let settings = physics_trial::settings(&spec)?;
     let pilot = settings.pilot(settings.agent(&Policy::default(), seed)?, seed)?;
     let mut trial = PhysicsTrial::new(&spec, seed, &settings, None, pilot)?;
-    let mut exact = Mapper::new(&settings.mapper, spec.frame)?;
-    let (mut given, mut truth) = (GivenPoses::default(), vec![Vec::new(); sessions as usize]);
+    // The robot has a frame of its own, and the world is given in it.
+    let frame = *trial.robot.mapper.frame();
+    let same_robot = Settings { pose: PoseMode::Exact, ..settings.clone() };
+    let mut exact = same_robot.robot(frame, None, *trial.world.true_pose(), NoPilot)?;
+    let mut truth = vec![Vec::new(); sessions as usize];
     let bags: Vec<PathBuf> = (0..sessions).map(|bag| folder.path().join(format!("{bag}.mcap"))).collect();
     for (number, bag) in bags.iter().enumerate() {
         let mut writer = McapWriter::new(BufWriter::new(File::create(bag)?), "bag", 1e9)?;
@@ -53,7 +56,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             let (raw, pose) = (trial.world.sense(), *trial.world.true_pose());
             writer.reading(&raw)?;
             truth[number].push(pose);
-            exact.update(&given.deskewed(LaserReading { pose, ..raw }))?;
+            exact.step(LaserReading { pose, ..raw })?;
         }
         writer.finish()?;
     }
@@ -75,18 +78,18 @@ fn main() -> Result<(), Box<dyn Error>> {
     let to_world = alignment(&routes, &truth);
     let turn_rad = heading_rad(&(to_world.inverse() * truth[0][0]));
     routes.iter_mut().flatten().for_each(|at| at.pose = to_world * at.pose);
-    let mapper = learned(&logs, &routes, &settings, spec.frame)?;
+    let mapper = learned(&logs, &routes, &settings, frame)?;
     let mut true_routes = routes.clone();
     for (route, truth) in true_routes.iter_mut().zip(&truth) {
         route.iter_mut().zip(truth).for_each(|(at, truth)| at.pose = *truth);
     }
-    let mapper_of_truth = learned(&logs, &true_routes, &settings, spec.frame)?;
+    let mapper_of_truth = learned(&logs, &true_routes, &settings, frame)?;
 
     println!(
         "{path}, seed {seed}, {sessions} bags of {minutes} min, noise {:.3} m",
         settings.mapper.steady.range_noise_std_m
     );
-    print("same scans, true poses", &rate_scores(&exact, trial.world.truth()));
+    print("same scans, true poses", &rate_scores(&exact.mapper, trial.world.truth()));
     print("live, localized       ", &rate_scores(&trial.robot.mapper, trial.world.truth()));
     print("survey of the bags    ", &rate_scores(&mapper, trial.world.truth()));
     print("survey, true poses    ", &rate_scores(&mapper_of_truth, trial.world.truth()));
