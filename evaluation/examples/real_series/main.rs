@@ -29,7 +29,7 @@ use rayon::prelude::*;
 use score::{HORIZONS, Score};
 use series::{LOOKS, Looks, Series};
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use table::Table;
 
 /// How well the clock, the estimators of the map and simple baselines predict recorded doors and rooms.
@@ -118,9 +118,17 @@ fn lines<'a>(cases: &'a [Case<'_>], models: &'a [Named]) -> impl Iterator<Item =
 
 fn run(options: &Options, out: &mut impl Write) -> Result<(), String> {
     let calendar = Calendar::of_zone(&options.time_zone).map_err(|error| error.to_string())?;
+    let folder =
+        options.json.as_deref().and_then(Path::parent).filter(|folder| !folder.as_os_str().is_empty());
+    if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
+        return Err(format!("--json: no folder is called {}", folder.display()));
+    }
     let series = options.files.iter().map(|file| Series::read(file)).collect::<Result<Vec<_>, _>>()?;
     let (cases, models) = (evaluate(&series, f64::INFINITY, &calendar), models::all(&calendar));
     let table = Table::new(&cases, &models);
+    if table.is_empty() {
+        return Err("nothing can be predicted: the series are over before the shortest time ahead".to_owned());
+    }
     let say = |error: std::io::Error| error.to_string();
     table.print(out).map_err(say)?;
     if !options.no_curve {

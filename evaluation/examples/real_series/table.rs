@@ -41,6 +41,10 @@ impl<'a> Table<'a> {
         Self { models, rows, calibration }
     }
 
+    pub(crate) fn is_empty(&self) -> bool {
+        self.rows.is_empty()
+    }
+
     /// The best baseline of a row.
     fn best(&self, row: &[f64]) -> (usize, f64) {
         let baselines = row.iter().copied().enumerate().filter(|(model, _)| self.models[*model].is_baseline);
