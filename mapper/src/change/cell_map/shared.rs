@@ -15,16 +15,24 @@ const SWEEP_READINGS: usize = 8;
 pub(super) struct SharedPrior {
     pub(super) prior: Option<RateDistribution>,
     counts: CycleCounts,
-    /// The next cell, and the number of readings that this sweep takes.
+    /// The next cell, and the number of readings that this sweep takes and has taken.
     next: usize,
     readings: usize,
+    taken: usize,
     /// Whether the open reading found another prior.
     is_new: bool,
 }
 
 impl Default for SharedPrior {
     fn default() -> Self {
-        Self { prior: None, counts: CycleCounts::default(), next: 0, readings: SWEEP_READINGS, is_new: false }
+        Self {
+            prior: None,
+            counts: CycleCounts::default(),
+            next: 0,
+            readings: SWEEP_READINGS,
+            taken: 0,
+            is_new: false,
+        }
     }
 }
 
@@ -62,11 +70,14 @@ impl CellMap {
             shared.counts.add(seen.cycles(), seen.observed());
         }
         shared.next = end;
-        shared.is_new = end == cells;
+        shared.taken += 1;
+        // A small map is swept at once, but its prior does not change with every reading.
+        shared.is_new = end == cells && 2 * shared.taken >= shared.readings;
         if shared.is_new {
             shared.prior = shared.counts.fit().or(shared.prior);
             shared.counts = CycleCounts::default();
-            (shared.next, shared.readings) = (0, (self.readings() / SWEEP_SHARE).max(SWEEP_READINGS));
+            (shared.next, shared.taken) = (0, 0);
+            shared.readings = (self.readings() / SWEEP_SHARE).max(SWEEP_READINGS);
         }
         self.shared = Some(shared);
     }
