@@ -13,7 +13,7 @@ const WORLD: &str = "world";
 const CONTENT: &str = "content";
 const PILOT: &str = "pilot";
 const MEASUREMENTS: &str = "measurements";
-/// Missing in a state of an earlier version, and before the first forecast.
+/// Absent before the first forecast, and in a state file that was written before forecasts existed.
 const FORECASTS: &str = "forecasts";
 
 /// What the state of a run belongs to.

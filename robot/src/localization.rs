@@ -19,8 +19,8 @@ pub trait Localization<R> {
     /// When the bytes are no such snapshot. The localization must not be used then.
     fn restore(&mut self, snapshot: &[u8]) -> Result<(), ValueError>;
 
-    /// Goes on from the snapshot of an earlier version. What is saved of a localizer has changed: it begins anew in the map that
-    /// was learned, and a note says how.
+    /// Continues after a state file with an older format, whose localizer is not read: the localizer begins anew in the
+    /// learned map, and the note says how.
     ///
     /// # Errors
     ///
@@ -147,10 +147,10 @@ impl Localization<LaserReading> for LoopClosingLocalizer {
 fn begun(searches: bool) -> &'static str {
     match searches {
         true => {
-            "the state is of an earlier version: its map is used, and the robot searches for its pose in it"
+            "the state file has an older format: its map is used, and the robot searches for its pose in it"
         }
         false => {
-            "the state is of an earlier version: its map has no surface, and the robot begins at a known pose, as \
+            "the state file has an older format: its map has no surface, and the robot begins at a known pose, as \
              without a state"
         }
     }

@@ -80,18 +80,15 @@ fn evaluate<'a>(series: &'a [Series], history_s: f64, calendar: &Calendar) -> Ve
     let progress = ProgressBar::new(cases.len() as u64);
     let case = |(series, looks): (&'a Series, usize)| {
         let draws = if matches!(LOOKS[looks].1, Looks::Full) { 1 } else { DRAWS };
-        let scores = models::all(calendar).into_iter().enumerate().map(|(index, mut model)| {
-            let mut sum = score::score(series, LOOKS[looks].1, 0, history_s, &mut model);
-            for seed in 1..draws {
-                let mut model = models::all(calendar).swap_remove(index);
-                let scores = score::score(series, LOOKS[looks].1, seed, history_s, &mut model);
-                sum.iter_mut().zip(&scores).for_each(|(sum, score)| sum.merge(score));
+        let mut scores = vec![[Score::default(); HORIZONS.len()]; models::all(calendar).len()];
+        for seed in 0..draws {
+            for (sum, mut model) in scores.iter_mut().zip(models::all(calendar)) {
+                let of_draw = score::score(series, LOOKS[looks].1, seed, history_s, &mut model);
+                sum.iter_mut().zip(&of_draw).for_each(|(sum, score)| sum.merge(score));
             }
-            sum
-        });
-        let case = Case { series, looks, scores: scores.collect() };
+        }
         progress.inc(1);
-        case
+        Case { series, looks, scores }
     };
     let cases = cases.into_par_iter().map(case).collect();
     progress.finish_and_clear();

@@ -15,7 +15,7 @@ const MIN_PROBABILITY: f64 = 0.001;
 const PREDICT_EVERY: usize = 5;
 
 /// The number of bins of predictions for the calibration.
-pub(crate) const BINS: usize = 10;
+const BINS: usize = 10;
 
 /// The scores of one model at one horizon.
 #[derive(Clone, Copy, Default)]
@@ -24,7 +24,7 @@ pub(crate) struct Score {
     log: f64,
     pub(crate) n: usize,
     /// For each bin of predictions: their number, their sum, and the number of those that came true.
-    pub(crate) bins: [[f64; 3]; BINS],
+    bins: [[f64; 3]; BINS],
 }
 
 impl Score {
@@ -53,16 +53,16 @@ impl Score {
         self.brier / self.n as f64
     }
 
+    /// The expected calibration error: the mean difference between predictions and how often they came true, over bins.
+    pub(crate) fn calibration_error(&self) -> f64 {
+        let apart: f64 = self.bins.iter().map(|[_, predicted, found]| (predicted - found).abs()).sum();
+        apart / self.n as f64
+    }
+
     /// The mean of −ln P of what happened.
     pub(crate) fn log_score(&self) -> f64 {
         self.log / self.n as f64
     }
-}
-
-/// The expected calibration error: the mean difference between predictions and how often they came true, over bins.
-pub(crate) fn calibration_error(bins: &[[f64; 3]; BINS]) -> f64 {
-    let apart: f64 = bins.iter().map(|[_, predicted, found]| (predicted - found).abs()).sum();
-    apart / bins.iter().map(|[n, ..]| n).sum::<f64>()
 }
 
 /// Learns from the looks of the last `history_s` before the split; then, for each step after it, takes the look of this step

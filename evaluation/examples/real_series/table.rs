@@ -2,7 +2,7 @@
 
 use crate::Case;
 use crate::models::Named;
-use crate::score::{BINS, HORIZONS, calibration_error};
+use crate::score::{HORIZONS, Score};
 use crate::series::LOOKS;
 use std::collections::BTreeMap;
 use std::io::{self, Write};
@@ -14,14 +14,14 @@ const EQUAL: f64 = 1.02;
 pub(crate) struct Table<'a> {
     models: &'a [Named],
     rows: BTreeMap<(&'a str, usize, usize), Vec<f64>>,
-    /// The clock's predictions, and how often they came true.
-    calibration: [[f64; 3]; BINS],
+    /// All predictions of the clock.
+    clock: Score,
 }
 
 impl<'a> Table<'a> {
     pub(crate) fn new(cases: &[Case<'a>], models: &'a [Named]) -> Self {
         let mut sums: BTreeMap<_, (Vec<f64>, f64)> = BTreeMap::new();
-        let mut calibration = [[0.0; 3]; BINS];
+        let mut clock = Score::default();
         for case in cases {
             for horizon in (0..HORIZONS.len()).filter(|horizon| case.scores[0][*horizon].n > 0) {
                 let (sum, n) = sums
@@ -31,14 +31,12 @@ impl<'a> Table<'a> {
                     *sum += scores[horizon].brier();
                 }
                 *n += 1.0;
-                for (bin, other) in calibration.iter_mut().zip(case.scores[0][horizon].bins) {
-                    *bin = [bin[0] + other[0], bin[1] + other[1], bin[2] + other[2]];
-                }
+                clock.merge(&case.scores[0][horizon]);
             }
         }
         let mean = |(sums, n): (Vec<f64>, f64)| sums.into_iter().map(|sum| sum / n).collect();
         let rows = sums.into_iter().map(|(key, sums)| (key, mean(sums))).collect();
-        Self { models, rows, calibration }
+        Self { models, rows, clock }
     }
 
     pub(crate) fn is_empty(&self) -> bool {
@@ -93,6 +91,6 @@ impl<'a> Table<'a> {
             out,
             "\nclock: within 2 % of the best baseline in {best:.0} % of the cases, at most 2 % worse than the chain in {chain:.0} %"
         )?;
-        writeln!(out, "clock: expected calibration error {:.3}", calibration_error(&self.calibration))
+        writeln!(out, "clock: expected calibration error {:.3}", self.clock.calibration_error())
     }
 }

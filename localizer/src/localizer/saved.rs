@@ -35,7 +35,7 @@ impl Localizer {
         }
     }
 
-    /// Begins anew in a known map, at a pose that is not known: what an earlier version has saved of a localizer is not read.
+    /// Begins anew in a known map, at an unknown pose: the localizer of a state file with an older format is not read.
     /// Returns whether the pose is searched for. In a map without a surface it is not: the robot makes its own map.
     pub fn begin_in(&mut self, map: &Grid<CellState>) -> bool {
         let known = Self::in_map(&self.builder.matcher.settings, map, Start::Unknown);

@@ -129,7 +129,7 @@ pub(super) struct Schedule {
     gram: [[f64; PARTS]; PARTS],
     right: [f64; PARTS],
     shares: [f64; PARTS],
-    /// The last slot for which looks were compared with the profiles, and its [`Profile`].
+    /// Cache: day, slot and profile of the last look.
     latest: Option<(i64, usize, Profile)>,
 }
 

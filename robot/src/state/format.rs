@@ -101,7 +101,7 @@ impl State {
         self.sections.iter().any(|section| section.name == name)
     }
 
-    /// Whether an earlier version of the format was read.
+    /// Whether the file has an older version of the format.
     pub(crate) fn is_earlier(&self) -> bool {
         self.is_earlier
     }

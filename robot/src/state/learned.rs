@@ -9,7 +9,7 @@ use mapper::{Mapper, MapperSettings};
 
 const MAPPER: &str = "mapper";
 const LOCALIZATION: &str = "localization";
-/// Missing in the states of earlier versions.
+/// Absent in state files with an older format.
 const FILTER: &str = "filter";
 
 /// The settings that what was learned belongs to.
@@ -54,7 +54,7 @@ impl LearnedFacts {
     }
 
     /// Lets a robot that was made with the settings of these facts go on with what was learned. Returns a note for the user if
-    /// the state is of an earlier version, whose localizer is not read.
+    /// the state file has an older format, whose localizer is not read.
     ///
     /// # Errors
     ///
