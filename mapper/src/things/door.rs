@@ -4,6 +4,7 @@ use super::segment::Segment;
 use crate::Growth;
 use crate::change::{CellMap, CellStatistics, RateDistribution};
 use crate::clock::{Calendar, Clock, Look};
+use crate::derived::CredibleInterval;
 use interfaces::{CellState, GridFrame};
 use nalgebra::Point2;
 
@@ -75,11 +76,17 @@ pub struct DoorStatistics {
 }
 
 impl DoorStatistics {
-    /// The distribution of the number of openings per hour. A door closes as often as it opens: both count.
+    /// The distribution of the number of openings per hour; `None` if it was never in view. A door closes as often as it opens:
+    /// both count.
     pub fn openings_per_hour(&self) -> Option<RateDistribution> {
         let events = PRIOR_OPENINGS + 0.5 * f64::from(self.opened + self.closed);
         let time = self.in_view_s / HOUR_S;
         (time > 0.0).then_some(RateDistribution { events, time })
+    }
+
+    /// The interval that contains the number of openings per hour with the probability `mass`.
+    pub fn interval_of_openings_per_hour(&self, mass: f64) -> Option<(f64, f64)> {
+        Some(CredibleInterval::new(mass).of_gamma(self.openings_per_hour()?))
     }
 }
 
