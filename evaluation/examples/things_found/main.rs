@@ -13,6 +13,7 @@
 //! - `hinged`, `hinge`: hinged doors that were found, and those whose open leaf is known
 //! - `false`: doors that are none; `furniture`: reports of furniture
 //! - `closed_m`, `open_m`: the largest error of an end of the closed leaf, and of the end of the open leaf; the means over doors
+//! - `closed_ok`, `open_ok`: the shares of these errors that are at most 0.1 m
 //! - `log`, `log_all`, `cells`: the log error of the openings per hour of doors that opened at least three times per hour: of known
 //!   doors, and of all; and that of the median rate of the cells that the leaf sweeps
 //! - `in_90`: the share of the true openings per hour in the 90 % interval
@@ -31,7 +32,7 @@ use truth::TrueDoor;
 /// A door is found if the ends of its closed leaf are at most this far off, m.
 const FOUND_M: f64 = 0.3;
 
-const COLUMNS: [&str; 14] = [
+const COLUMNS: [&str; 16] = [
     "must",
     "found",
     "all",
@@ -42,6 +43,8 @@ const COLUMNS: [&str; 14] = [
     "furniture",
     "closed_m",
     "open_m",
+    "closed_ok",
+    "open_ok",
     "log",
     "log_all",
     "cells",
@@ -137,6 +140,7 @@ fn scores(doors: &[TrueDoor], mapper: &Mapper, hours: f64) -> Scores {
         }
         if let Some((error_m, door)) = best {
             scores.put("closed_m", error_m);
+            scores.put("closed_ok", is_near(error_m));
             found.retain(|other| !std::ptr::eq(*other, door));
             compare_leaf(truth, door, &mut scores);
         }
@@ -146,6 +150,11 @@ fn scores(doors: &[TrueDoor], mapper: &Mapper, hours: f64) -> Scores {
     scores
 }
 
+/// Whether an error is at most 0.1 m: 1 or 0.
+fn is_near(error_m: f64) -> f64 {
+    f64::from(u8::from(error_m <= 0.1))
+}
+
 /// Compares the open leaf.
 fn compare_leaf(truth: &TrueDoor, door: &Door, scores: &mut Scores) {
     let Some(true_end) = truth.open_end else { return };
@@ -153,7 +162,9 @@ fn compare_leaf(truth: &TrueDoor, door: &Door, scores: &mut Scores) {
     if let Leaf::Hinged { hinge, length_m, open_rad, .. } = door.leaf {
         let end: Point2<f64> = hinge + interfaces::rotation(open_rad) * Vector2::x() * length_m;
         scores.put("hinge", 1.0);
-        scores.put("open_m", (end - true_end).norm());
+        let error_m = (end - true_end).norm();
+        scores.put("open_m", error_m);
+        scores.put("open_ok", is_near(error_m));
     }
 }
 

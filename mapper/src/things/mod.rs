@@ -28,6 +28,9 @@ use line::Line;
 use motions::{Motion, Motions};
 pub use segment::Segment;
 
+/// The largest number of pieces of furniture; then the one that was found first is forgotten. Doors are bounded by the doorways.
+const MAX_FURNITURE: usize = 64;
+
 /// Cells that change together.
 #[derive(Clone, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
 pub struct Thing {
@@ -120,6 +123,12 @@ impl Things {
                 thing.cells = furniture.places().flat_map(|place| place.cells.iter().copied()).collect();
                 return;
             }
+        }
+        let is_furniture = |thing: &Thing| matches!(thing.kind, ThingKind::Furniture(_));
+        if self.things.iter().filter(|thing| is_furniture(thing)).count() >= MAX_FURNITURE
+            && let Some(oldest) = self.things.iter().position(is_furniture)
+        {
+            self.things.remove(oldest);
         }
         let covered = place.cells.clone();
         let (from, to) = if is_blocked { (None, Some(place)) } else { (Some(place), None) };
