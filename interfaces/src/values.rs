@@ -67,6 +67,24 @@ pub fn value<'a, T: Serialize + DeserializeOwned>(value: &'a mut T) -> Box<dyn V
     Box::new(value)
 }
 
+/// A value at the end of a snapshot, which earlier versions did not have: it is the default one if nothing is left.
+pub fn last_value<'a, T: Default + Serialize + DeserializeOwned>(value: &'a mut T) -> Box<dyn Value + 'a> {
+    struct Last<'a, T>(&'a mut T);
+
+    impl<T: Default + Serialize + DeserializeOwned> Value for Last<'_, T> {
+        fn write(&self, bytes: &mut Vec<u8>) -> Result<(), ValueError> {
+            write_value(&*self.0, bytes)
+        }
+
+        fn read(&mut self, bytes: &mut &[u8]) -> Result<(), ValueError> {
+            *self.0 = if bytes.is_empty() { T::default() } else { read_value(bytes)? };
+            Ok(())
+        }
+    }
+
+    Box::new(Last(value))
+}
+
 /// A part that is saved in another form, which `save` makes of it; `load` brings the part into the state of that form.
 pub fn converted<'a, P: ?Sized, T: Serialize + DeserializeOwned + 'a>(
     part: &'a mut P,

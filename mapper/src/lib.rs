@@ -10,6 +10,7 @@
 //! - `change`: the change statistics of cells, and the estimators of rates. A new estimator implements
 //!   [`Estimator`].
 //! - `derived`: the maps that follow from both.
+//! - `things`: [`Thing`]s, cells that change together: doors, and furniture that was moved.
 //! - `clock`: [`Clock`], a model of one thing over days: hours of the day and of the week, and a memory of all looks.
 
 mod change;
@@ -18,6 +19,7 @@ mod derived;
 mod growth;
 mod occupancy;
 mod scan_filter;
+mod things;
 
 pub use change::{
     CellMap, CellStatistics, ChoGarciaMolina, Estimator, EstimatorChoice, Exposure, GapBin, GapEvidence,
@@ -30,13 +32,15 @@ pub use occupancy::{
     BeamReturn, CloneModel, OccupancyChoice, OccupancyModel, ProjectedScan, SurfaceGridSettings,
 };
 pub use scan_filter::{NoReturn, NoReturnEvidence, NoReturns, ScanFilter, ScanFilterSettings};
+pub use things::{Door, DoorStatistics, Furniture, Leaf, Place, Segment, Thing, ThingKind};
 
 use derived::ExpectedChanges;
 use interfaces::{
     CellState, Grid, GridFrame, LaserReading, Observation, Reading, ScanError, SettingsCheck, SettingsError,
-    Transition, ValueError, Values, is_valid_pose, value,
+    Transition, ValueError, Values, is_valid_pose, last_value, value,
 };
 use nalgebra::{Isometry2, Point2};
+use things::Things;
 
 /// Settings of a [`Mapper`].
 #[derive(Clone, Debug, Default, PartialEq, serde::Deserialize, serde::Serialize)]
@@ -98,6 +102,7 @@ pub struct Mapper {
     cells: CellMap,
     occupancy: Box<dyn OccupancyModel>,
     expected_changes: ExpectedChanges,
+    things: Things,
     scan: ProjectedScan,
     points: Vec<Point2<f64>>,
 }
@@ -153,7 +158,8 @@ impl Mapper {
         let mut cells = CellMap::new(prior, settings.estimator.clone(), settings.max_gap);
         let occupancy = settings.occupancy.build(&settings, &mut cells);
         let (expected_changes, scan) = (ExpectedChanges::default(), ProjectedScan::default());
-        Self { settings, cells, occupancy, expected_changes, scan, points: Vec::new() }
+        let things = Things::default();
+        Self { settings, cells, occupancy, expected_changes, things, scan, points: Vec::new() }
     }
 
     /// Makes a mapper with the same settings and the same frame, whose cells are all unknown: when it is called, perhaps in
@@ -184,6 +190,7 @@ impl Mapper {
         let is_larger = *growth.frame() != present;
         if is_larger {
             self.cells.grow(&growth);
+            self.things.grow(&growth);
             self.points.clear();
         }
         self.occupancy.grow(&growth, settings);
@@ -208,6 +215,7 @@ impl Mapper {
                 self.project(laser);
                 self.cells.open(time);
                 self.occupancy.update(&self.scan, &mut self.cells);
+                self.things.update(&self.cells, &Calendar::Relative);
             }
             Observation::Cells(exact) => {
                 self.points.clear();
@@ -265,6 +273,7 @@ impl Mapper {
         let mut values = self.cells.values();
         values.extend(self.occupancy.values());
         values.push(value(&mut self.expected_changes));
+        values.push(last_value(&mut self.things));
         values
     }
 
@@ -272,6 +281,11 @@ impl Mapper {
         self.scan.project(laser);
         self.points.clear();
         self.points.extend((0..self.scan.len()).filter_map(|beam| self.scan.hit(beam)));
+    }
+
+    /// The things that are known, in the order in which they were found.
+    pub fn things(&self) -> &[Thing] {
+        self.things.all()
     }
 
     /// The position and the size of the map.

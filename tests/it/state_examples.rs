@@ -11,7 +11,7 @@ use std::fs;
 use std::path::PathBuf;
 
 /// The version of the format that this program writes.
-const VERSION: u32 = 7;
+const VERSION: u32 = 8;
 /// What the examples are of. With the same duration or log again, a run only reads the state and writes it.
 const RUNS: [(&str, &str); 3] = [
     ("four_rooms.state", "--duration 4"),
@@ -64,9 +64,11 @@ fn states_of_all_versions_are_read() {
             let names =
                 |state: &State| parts(state).iter().map(|(name, _)| name.to_string()).collect::<Vec<_>>();
             assert_eq!(names(&read), names(&was), "{version}/{name}");
-            // What was learned about the place is as it was; the poses of a localizer are searched for.
-            assert!(mapper(&read) == mapper(&was), "{version}/{name}");
-            let searches = name == "drifting_house.state" && version < VERSION;
+            // What was learned about the place is as it was, without things before version 8; the poses of a localizer
+            // before version 7 are searched for.
+            let [read, was] = [&read, &was].map(|state| mapper(state).unwrap_or_default());
+            assert!(read.starts_with(&was) && (version < 8 || read == was), "{version}/{name}");
+            let searches = name == "drifting_house.state" && version < 7;
             assert_eq!(said.contains("searches for its pose"), searches, "{version}/{name}: {said}");
         }
     }

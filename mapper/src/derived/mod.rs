@@ -10,7 +10,7 @@ mod gamma;
 use crate::Mapper;
 use blocked_probability::blocked_probability;
 use change_probability::change_probability;
-use credible_interval::CredibleInterval;
+pub(crate) use credible_interval::CredibleInterval;
 pub(crate) use expected_changes::ExpectedChanges;
 use interfaces::CellState;
 

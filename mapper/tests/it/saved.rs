@@ -44,13 +44,17 @@ fn every_model_and_estimator_goes_on_from_a_snapshot() {
     }
 }
 
+/// The bytes of a mapper that knows no things.
+const NO_THINGS: usize = 8;
+
 #[test]
 fn a_snapshot_that_is_cut_or_of_another_frame_is_refused() {
     let settings = MapperSettings::default();
     let snapshot = mapper(&settings, 100).snapshot();
-    for length in 0..snapshot.len() {
-        assert!(mapper(&settings, 0).restore(&snapshot[..length]).is_err(), "{length}");
-    }
+    // One that ends before the last part, the things, is of an earlier version.
+    let read = |length: &usize| mapper(&settings, 0).restore(&snapshot[..*length]).is_ok();
+    let lengths: Vec<usize> = (0..snapshot.len()).filter(read).collect();
+    assert_eq!(lengths, [snapshot.len() - NO_THINGS]);
     let larger = GridFrame::new(Point2::origin(), 0.1, 4, 2).unwrap();
     assert!(Mapper::new(&settings, larger).unwrap().restore(&snapshot).is_err());
 }

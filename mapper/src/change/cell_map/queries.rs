@@ -1,5 +1,5 @@
 use super::record::state_index;
-use super::{CellMap, PRIOR};
+use super::{CellMap, PRIOR, Slot};
 use crate::change::gaps::MEAN_EVENTS;
 use crate::change::{Belief, CellStatistics, Exposure, GapWorth, ReadingIndex, TransitionRates};
 use interfaces::{CellState, Grid, GridFrame};
@@ -31,6 +31,25 @@ impl CellMap {
     #[inline]
     pub fn time(&self) -> f64 {
         self.times.at(self.times.last())
+    }
+
+    /// The time of a reading, which is about that if it was forgotten.
+    pub(crate) fn time_of(&self, reading: ReadingIndex) -> f64 {
+        self.times.at(reading)
+    }
+
+    /// The last reading that observed a cell before a change, which was found in a reading: that before the last gap in its
+    /// view if the change was found soon after it, and if the estimator keeps gaps.
+    pub(crate) fn seen_before(&self, index: usize, found: ReadingIndex) -> ReadingIndex {
+        /// The largest number of readings until the evidence of a change suffices.
+        const EVIDENCE: ReadingIndex = 20;
+        let gap = self.gaps.get(index).and_then(|gaps| gaps.histogram.last());
+        gap.filter(|gap| gap[1] + EVIDENCE >= found).map_or(found, |gap| gap[0])
+    }
+
+    /// The index of a cell among those that ever changed.
+    pub(crate) fn slot(&self, index: usize) -> Option<Slot> {
+        self.records[index].slot()
     }
 
     /// The number of readings so far.

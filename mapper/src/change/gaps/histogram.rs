@@ -105,6 +105,11 @@ impl GapHistogram {
         self.last = Some(corrected);
     }
 
+    /// The last reading before the last gap, and the first after it.
+    pub(in crate::change) fn last(&self) -> Option<[ReadingIndex; 2]> {
+        self.last.map(|gap| [gap.start, gap.end])
+    }
+
     /// The number of gaps.
     pub fn count(&self) -> u32 {
         self.count

@@ -1,0 +1,103 @@
+//! Changes that last: a person who walks past changes cells for a moment only.
+
+use crate::Growth;
+use crate::change::{CellMap, ReadingIndex};
+use interfaces::CellState;
+use std::collections::VecDeque;
+
+/// A change lasts when the cell has kept its state for this time, s.
+const LASTING_S: f64 = 1.5;
+
+/// A change of a cell that lasted.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
+pub(super) struct Change {
+    pub(super) cell: u32,
+    /// Whether the cell is blocked now; otherwise it is free.
+    pub(super) is_blocked: bool,
+    /// The time at which the cell left its last lasting state, s, and the time of the last look before.
+    pub(super) time_s: f64,
+    pub(super) seen_before_s: f64,
+}
+
+/// A change that may last. All zero: none.
+#[derive(Clone, Copy, Debug, Default, serde::Deserialize, serde::Serialize)]
+struct Pending {
+    /// The reading in which the cell left its last lasting state, and that of its last change.
+    left: ReadingIndex,
+    last: ReadingIndex,
+    was_blocked: bool,
+}
+
+/// Finds the changes that last.
+#[derive(Clone, Debug, Default, serde::Deserialize, serde::Serialize)]
+#[serde(from = "Saved", into = "Saved")]
+pub(super) struct LastingChanges {
+    /// In the order of [`CellMap::changed`].
+    pending: Vec<Pending>,
+    recent: VecDeque<Recent>,
+}
+
+/// A recent change: its position in [`CellMap::changed`], reading and time.
+type Recent = (u32, ReadingIndex, f64);
+
+/// What a state file holds: most cells have no pending change.
+type Saved = (Vec<(u32, Pending)>, VecDeque<Recent>);
+
+impl From<LastingChanges> for Saved {
+    fn from(LastingChanges { pending, recent }: LastingChanges) -> Self {
+        ((0..).zip(pending).filter(|(_, pending)| pending.left > 0).collect(), recent)
+    }
+}
+
+impl From<Saved> for LastingChanges {
+    fn from((saved, recent): Saved) -> Self {
+        let mut pending = vec![Pending::default(); saved.last().map_or(0, |(slot, _)| *slot as usize + 1)];
+        saved.into_iter().for_each(|(slot, saved)| pending[slot as usize] = saved);
+        Self { pending, recent }
+    }
+}
+
+impl LastingChanges {
+    /// Adds the changes of the open reading.
+    pub(super) fn add(&mut self, cells: &CellMap) {
+        let (reading, time_s) = (cells.reading(), cells.time());
+        self.pending.resize(cells.changed.len(), Pending::default());
+        for transition in &cells.transitions {
+            let Some(slot) = cells.frame().index(transition.cell).and_then(|index| cells.slot(index)) else {
+                continue;
+            };
+            let pending = &mut self.pending[slot as usize];
+            if pending.left == 0 {
+                (pending.left, pending.was_blocked) = (reading, transition.before == CellState::Blocked);
+            }
+            pending.last = reading;
+            self.recent.push_back((slot, reading, time_s));
+        }
+    }
+
+    /// The next change that has lasted.
+    pub(super) fn next(&mut self, cells: &CellMap) -> Option<Change> {
+        let is_over = |(_, _, time_s): &mut Recent| *time_s <= cells.time() - LASTING_S;
+        while let Some((slot, reading, _)) = self.recent.pop_front_if(is_over) {
+            let pending = &mut self.pending[slot as usize];
+            if pending.last != reading || pending.left == 0 {
+                continue;
+            }
+            let Pending { left, was_blocked, .. } = std::mem::take(pending);
+            let cell = cells.changed[slot as usize];
+            let is_blocked = cells.state(cell as usize) == CellState::Blocked;
+            if is_blocked != was_blocked {
+                let [time_s, seen_before_s] =
+                    [left, cells.seen_before(cell as usize, left)].map(|reading| cells.time_of(reading));
+                return Some(Change { cell, is_blocked, time_s, seen_before_s });
+            }
+        }
+        None
+    }
+}
+
+impl Change {
+    pub(super) fn grow(&mut self, growth: &Growth) {
+        self.cell = growth.index(self.cell as usize) as u32;
+    }
+}

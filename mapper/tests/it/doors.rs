@@ -1,0 +1,161 @@
+//! Doors are found, measured and counted; people in doorways are no doors.
+
+use crate::house::{House, Thing, rectangle};
+use interfaces::GridFrame;
+use mapper::{Door, Leaf, Mapper, MapperSettings, ThingKind};
+use nalgebra::{Isometry2, Point2};
+use std::f64::consts::FRAC_PI_2;
+
+const PERIOD_S: f64 = 0.1;
+/// The door changes at all multiples of this time.
+const STAY_S: f64 = 15.0;
+const END_S: f64 = 127.0;
+/// The leaf in the upper doorway of the lower left room, closed, and open into this room about a hinge at its left end.
+const CLOSED: [f64; 4] = [2.5, 5.95, 3.5, 6.0];
+const OPEN: [f64; 4] = [2.5, 5.0, 2.55, 6.0];
+
+/// The house in which the closed leaf and the other places of the leaf take turns.
+fn house_with_door(turn_deg: f64, open: Option<[f64; 4]>) -> House {
+    let mut house = House::new(0.1, turn_deg, 0.005, 360, 3);
+    for stay in 0..(END_S / STAY_S) as usize + 1 {
+        let from_s = stay as f64 * STAY_S;
+        let leaf = if stay % 2 == 0 { Some(CLOSED) } else { open };
+        if let Some([x0, y0, x1, y1]) = leaf {
+            house.add(Thing { corners: rectangle(x0, y0, x1, y1), from_s, until_s: from_s + STAY_S });
+        }
+    }
+    house
+}
+
+/// A slow circle in the lower left room.
+fn pose(house: &House, time_s: f64) -> Isometry2<f64> {
+    let angle = 0.1 * time_s;
+    let at = house.turned(Point2::new(3.0 + 0.8 * angle.cos(), 3.0 + 0.8 * angle.sin()));
+    interfaces::pose(at.x, at.y, angle)
+}
+
+/// A person who walks from one room to the other while the door is open, and back when it is open again.
+fn person(house: &House, time_s: f64) -> (Point2<f64>, f64) {
+    let turn_s = time_s % (4.0 * STAY_S);
+    let way_m = if turn_s < 2.0 * STAY_S { turn_s - STAY_S - 2.0 } else { 4.0 * STAY_S - 2.0 - turn_s } * 0.6;
+    let way_m = way_m.clamp(0.0, 6.0);
+    let x = if (1.5..4.5).contains(&way_m) { 3.0 } else { 3.0 - (way_m - 3.0).abs() + 1.5 };
+    (house.turned(Point2::new(x, 4.5 + 0.5 * way_m)), 0.22)
+}
+
+fn new_mapper(house: &House) -> Mapper {
+    Mapper::new(&MapperSettings::default(), house.frame).unwrap()
+}
+
+/// Maps the house from a scan on, until before another one.
+fn watch(mapper: &mut Mapper, house: &mut House, scans: std::ops::Range<u32>, has_person: bool) {
+    for scan in scans {
+        let time_s = f64::from(scan) * PERIOD_S;
+        let discs = if has_person { vec![person(house, time_s)] } else { vec![] };
+        mapper.update(&house.reading(time_s, pose(house, time_s), &discs)).unwrap();
+    }
+}
+
+fn watched(house: &mut House, has_person: bool) -> Mapper {
+    let mut mapper = new_mapper(house);
+    watch(&mut mapper, house, 0..(END_S / PERIOD_S) as u32, has_person);
+    mapper
+}
+
+fn only_door(mapper: &Mapper) -> &Door {
+    match mapper.things() {
+        [thing] => match &thing.kind {
+            ThingKind::Door(door) => door,
+            ThingKind::Furniture(furniture) => panic!("{furniture:?}"),
+        },
+        others => panic!("{} things", others.len()),
+    }
+}
+
+/// Checks the ends of the closed leaf, what was counted, and the state at the end.
+fn check_door(house: &House, door: &Door) {
+    let ends = [(2.5, 5.975), (3.5, 5.975)].map(|(x, y)| house.turned(Point2::new(x, y)));
+    for end in ends {
+        let off_m = door.closed.ends.map(|found| (found - end).norm());
+        assert!(off_m[0].min(off_m[1]) < 0.1, "{end}: {:?}", door.closed);
+    }
+    let counted = door.statistics;
+    let motions = (END_S / STAY_S) as u32;
+    assert!(counted.opened + counted.closed >= motions - 1, "{counted:?}, {motions} motions");
+    assert!(counted.opened <= motions / 2 && counted.closed <= motions / 2, "{counted:?}, {motions} motions");
+    assert!((0.8 * END_S..=END_S).contains(&counted.in_view_s), "{counted:?}");
+    assert_eq!(door.is_open, Some(motions % 2 == 1));
+    let per_hour = counted.openings_per_hour().unwrap().mean();
+    let true_per_hour = 3600.0 / (2.0 * STAY_S);
+    assert!((per_hour / true_per_hour).ln().abs() < 0.25, "{per_hour}, not {true_per_hour}");
+}
+
+#[test]
+fn a_hinged_door_is_found_with_its_hinge() {
+    for (turn_deg, has_person) in [(0.0, false), (20.0, false), (0.0, true)] {
+        let mut house = house_with_door(turn_deg, Some(OPEN));
+        let mapper = watched(&mut house, has_person);
+        println!("{turn_deg}°, person {has_person}");
+        let door = only_door(&mapper);
+        check_door(&house, door);
+        let Leaf::Hinged { hinge, length_m, closed_rad, open_rad } = door.leaf else {
+            panic!("{turn_deg}°, person {has_person}: {:?}", door.closed)
+        };
+        let true_hinge = house.turned(Point2::new(2.5, 5.975));
+        assert!((hinge - true_hinge).norm() < 0.1 && (length_m - 1.0).abs() < 0.1, "{hinge}, {length_m} m");
+        for (found_rad, true_rad) in [(closed_rad, 0.0), (open_rad, -FRAC_PI_2)] {
+            let off_rad = interfaces::wrap_rad(found_rad - true_rad - house.turn_rad);
+            assert!(off_rad.abs() < 0.1, "{turn_deg}°: {found_rad}, not {true_rad}");
+        }
+    }
+}
+
+#[test]
+fn a_sliding_door_is_found_without_a_hinge() {
+    for turn_deg in [0.0, 20.0] {
+        let mut house = house_with_door(turn_deg, None);
+        let mapper = watched(&mut house, false);
+        let door = only_door(&mapper);
+        check_door(&house, door);
+        assert_eq!(door.leaf, Leaf::Sliding);
+        // The clock was told that it is closed.
+        let soon = door.clock.probability(END_S + 1.0, &mapper::Calendar::Relative);
+        assert!(soon < 0.3, "{soon}");
+    }
+}
+
+#[test]
+fn a_person_in_a_doorway_is_no_door() {
+    let mut house = House::new(0.1, 0.0, 0.005, 360, 3);
+    let mapper = watched(&mut house, true);
+    assert!(mapper.changed().count() > 500, "the person was seen");
+    assert!(mapper.things().is_empty());
+}
+
+#[test]
+fn a_door_is_the_same_after_a_snapshot_and_in_a_larger_map() {
+    let scans = (END_S / PERIOD_S) as u32;
+    let mut house = house_with_door(0.0, Some(OPEN));
+    let mut whole = new_mapper(&house);
+    watch(&mut whole, &mut house, 0..scans / 2, true);
+    let snapshot = whole.snapshot();
+    let before = whole.things().to_vec();
+    assert_eq!(before.len(), 1);
+    let (mut restored, mut grown, mut same_house) = (new_mapper(&house), new_mapper(&house), house.clone());
+    restored.restore(&snapshot).unwrap();
+    grown.restore(&snapshot).unwrap();
+    watch(&mut whole, &mut house.clone(), scans / 2..scans, true);
+    watch(&mut restored, &mut same_house, scans / 2..scans, true);
+    assert!(restored.things() == whole.things());
+    assert!(restored.snapshot() == whole.snapshot());
+
+    let frame = GridFrame::covering(Point2::new(-1.0, -2.0), 15.0, 15.0, house.frame.resolution_m()).unwrap();
+    let growth = grown.grow(&MapperSettings::default(), frame).unwrap().unwrap();
+    watch(&mut grown, &mut house, scans / 2..scans, true);
+    let [was, is] = [&whole, &grown].map(|mapper| &mapper.things()[0]);
+    assert_eq!((is.id, grown.things().len()), (before[0].id, 1));
+    let mut cells: Vec<u32> = was.cells.iter().map(|&cell| growth.index(cell as usize) as u32).collect();
+    cells.sort_unstable();
+    assert_eq!(is.cells, cells);
+    check_door(&house, only_door(&grown));
+}
