@@ -11,4 +11,5 @@ pub mod numbers;
 pub mod output;
 pub mod raster;
 pub mod ros_map;
+pub mod things;
 pub mod thinned;

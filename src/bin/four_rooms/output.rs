@@ -16,7 +16,7 @@ use interfaces::{LaserReading, Twist, World};
 use mapper::Mapper;
 use results::output::{RunFolder, TrajectoryFile, UnfinishedFile, is_another_kind, write_file};
 use results::thinned::Goals;
-use results::{cell_statistics, file_name, ros_map};
+use results::{cell_statistics, file_name, ros_map, things};
 use robot::{BUILD, Pilot, Robot, Settings, Turn};
 use sim::physics::WorldSpec;
 use std::io::stderr;
@@ -217,6 +217,7 @@ fn write(
     show.write_pictures(to, mapper, goals, &Layer::ALL)?;
     ros_map::write(to, "map", mapper.states())?;
     cell_statistics::write(&to.join("cell_statistics.csv"), mapper)?;
+    things::write(&to.join("things.json"), mapper)?;
     summary.files = folder.results()?;
     let text = serde_json::to_string_pretty(summary)?;
     write_file(&to.join(SUMMARY), |file| writeln!(file, "{text}"))?;
