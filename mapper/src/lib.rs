@@ -10,6 +10,7 @@
 //! - `change`: the change statistics of cells, and the estimators of rates. A new estimator implements
 //!   [`Estimator`].
 //! - `derived`: the maps that follow from both.
+//! - `tiles`: the places where something changes, each with a clock.
 //! - `clock`: [`Clock`], a model of one thing over days: hours of the day and of the week, and a memory of all looks.
 
 mod change;
@@ -18,6 +19,7 @@ mod derived;
 mod growth;
 mod occupancy;
 mod scan_filter;
+mod tiles;
 
 pub use change::{
     CellMap, CellStatistics, ChoGarciaMolina, Estimator, EstimatorChoice, Exposure, GapBin, GapEvidence,
@@ -31,12 +33,15 @@ pub use occupancy::{
 };
 pub use scan_filter::{NoReturn, NoReturnEvidence, NoReturns, ScanFilter, ScanFilterSettings};
 
+pub use tiles::Tile;
+
 use derived::ExpectedChanges;
 use interfaces::{
     CellState, Grid, GridFrame, LaserReading, Observation, Reading, ScanError, SettingsCheck, SettingsError,
     Transition, ValueError, Values, is_valid_pose, value,
 };
 use nalgebra::{Isometry2, Point2};
+use tiles::Tiles;
 
 /// Settings of a [`Mapper`].
 #[derive(Clone, Debug, Default, PartialEq, serde::Deserialize, serde::Serialize)]
@@ -53,13 +58,29 @@ pub struct MapperSettings {
     pub max_gap: f64,
     /// Settings of the occupancy model `steady`.
     pub steady: SurfaceGridSettings,
+    /// Whether every place where something changes has a [`Clock`], by which the map is predicted for hours and days ahead.
+    pub clocks: bool,
+    /// The zone by whose clocks people live, by its IANA name: a place can then have hours. The times of readings count from the
+    /// [epoch](Mapper::set_epoch). Without a zone, times have no hours.
+    pub time_zone: Option<String>,
 }
 
 impl MapperSettings {
     fn check(&self) -> Result<(), SettingsError> {
         let check = SettingsCheck { part: "mapper" };
         check.not_negative("max_gap", self.max_gap)?;
+        self.calendar().map_err(|_| SettingsError {
+            part: check.part,
+            key: "time_zone",
+            expected: "the IANA name of a time zone, such as Europe/Berlin",
+            found: self.time_zone.clone().unwrap_or_default(),
+        })?;
         self.steady.check(check)
+    }
+
+    /// The calendar of the time zone.
+    fn calendar(&self) -> Result<Calendar, UnknownZone> {
+        self.time_zone.as_deref().map_or(Ok(Calendar::Relative), Calendar::of_zone)
     }
 }
 
@@ -98,6 +119,7 @@ pub struct Mapper {
     cells: CellMap,
     occupancy: Box<dyn OccupancyModel>,
     expected_changes: ExpectedChanges,
+    tiles: Tiles,
     scan: ProjectedScan,
     points: Vec<Point2<f64>>,
 }
@@ -153,7 +175,8 @@ impl Mapper {
         let mut cells = CellMap::new(prior, settings.estimator.clone(), settings.max_gap);
         let occupancy = settings.occupancy.build(&settings, &mut cells);
         let (expected_changes, scan) = (ExpectedChanges::default(), ProjectedScan::default());
-        Self { settings, cells, occupancy, expected_changes, scan, points: Vec::new() }
+        let tiles = Tiles::new(&settings, cells.frame().resolution_m());
+        Self { settings, cells, occupancy, expected_changes, tiles, scan, points: Vec::new() }
     }
 
     /// Makes a mapper with the same settings and the same frame, whose cells are all unknown: when it is called, perhaps in
@@ -184,6 +207,7 @@ impl Mapper {
         let is_larger = *growth.frame() != present;
         if is_larger {
             self.cells.grow(&growth);
+            self.tiles.grow(&growth);
             self.points.clear();
         }
         self.occupancy.grow(&growth, settings);
@@ -216,6 +240,7 @@ impl Mapper {
             }
         }
         self.expected_changes.note(&self.cells);
+        self.tiles.note(&self.cells);
         Ok(())
     }
 
@@ -265,6 +290,7 @@ impl Mapper {
         let mut values = self.cells.values();
         values.extend(self.occupancy.values());
         values.push(value(&mut self.expected_changes));
+        values.extend(self.tiles.value());
         values
     }
 
@@ -272,6 +298,32 @@ impl Mapper {
         self.scan.project(laser);
         self.points.clear();
         self.points.extend((0..self.scan.len()).filter_map(|beam| self.scan.hit(beam)));
+    }
+
+    /// Says when readings have the time 0: in seconds since 1970-01-01 UTC; by default they count from there. `None`: it is not
+    /// known, and what comes has no hours.
+    pub fn set_epoch(&mut self, epoch_s: Option<f64>) {
+        self.tiles.set_epoch(epoch_s);
+    }
+
+    /// The time at which readings have the time 0, in seconds since 1970-01-01 UTC.
+    pub fn epoch_s(&self) -> f64 {
+        self.tiles.epoch_s
+    }
+
+    /// How the times of readings, [since the epoch](Self::epoch_s), relate to local civil time.
+    pub fn calendar(&self) -> &Calendar {
+        &self.tiles.calendar
+    }
+
+    /// The tile at a cell; `None` if nothing ever changed there, or without [`MapperSettings::clocks`].
+    pub fn tile(&self, index: usize) -> Option<&Tile> {
+        self.tiles.at(self.frame().cell(index))
+    }
+
+    /// All tiles in which something ever changed.
+    pub fn tiles(&self) -> impl Iterator<Item = &Tile> {
+        self.tiles.iter()
     }
 
     /// The position and the size of the map.

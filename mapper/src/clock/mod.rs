@@ -86,6 +86,16 @@ impl Clock {
         bounded(weights.iter().zip(predicted).map(|(weight, predicted)| weight * predicted).sum())
     }
 
+    /// The share of the time that the thing is blocked.
+    pub fn mean(&self) -> f64 {
+        self.models.schedule.mean()
+    }
+
+    /// The number of half hours with a look.
+    pub fn half_hours(&self) -> f64 {
+        self.models.schedule.slots()
+    }
+
     /// Whether a look is news. The time of one that is not counts nevertheless.
     fn counts(&mut self, look: Look) -> bool {
         if !look.time_s.is_finite() || self.last.is_some() && look.time_s < self.last_s {

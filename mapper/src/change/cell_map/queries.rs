@@ -93,6 +93,11 @@ impl CellMap {
         self.flags[index].has_changed
     }
 
+    /// The position of a cell in [`changed`](Self::changed), if it ever changed.
+    pub(crate) fn slot(&self, index: usize) -> Option<usize> {
+        self.records[index].slot().map(|slot| slot as usize)
+    }
+
     /// Whether the cell can be a goal.
     #[inline]
     pub(crate) fn is_candidate(&self, index: usize) -> bool {
