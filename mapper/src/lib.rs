@@ -26,7 +26,7 @@ pub use change::{
     GapHistogram, GapModel, GapWeights, GapWorth, Imac, Paper, PaperAll, RateDistribution, ReadingIndex,
     SharedPrior, Step, TransitionRates, TwoState, TwoStateGaps,
 };
-pub use clock::{Calendar, Clock, DAY_S, Look, UnknownZone};
+pub use clock::{Calendar, Clock, DAY_S, Look, UnknownZone, UsualChange, UsualSlot, Week};
 pub use growth::Growth;
 pub use occupancy::{
     BeamReturn, CloneModel, OccupancyChoice, OccupancyModel, ProjectedScan, SurfaceGridSettings,

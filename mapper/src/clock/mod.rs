@@ -13,6 +13,7 @@ mod schedule;
 mod simplex;
 #[cfg(test)]
 mod tests;
+mod week;
 
 use calendar::Civil;
 pub use calendar::{Calendar, DAY_S, UnknownZone};
@@ -21,6 +22,7 @@ use long_stays::LongStays;
 use memory::Memory;
 use parts::fading;
 use schedule::Schedule;
+pub use week::{UsualChange, UsualSlot, Week};
 
 /// A look at a thing that has two states.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
@@ -36,6 +38,12 @@ const MIN_PROBABILITY: f64 = 0.001;
 
 /// A look that shows the state of the last one within this time says nothing new, s: lasers look ten times per second.
 const MIN_SPACING_S: f64 = 5.0;
+
+/// The shortest and the longest time for which a look is worth more than the schedule, s, and the ratio of two of the times
+/// that are tried.
+const MIN_EXPIRY_S: f64 = 10.0;
+const MAX_EXPIRY_S: f64 = 28.0 * DAY_S;
+const EXPIRY_STEP: f64 = 1.1;
 
 /// Predicts the state of one thing from looks at it.
 #[derive(Clone, Debug, Default, PartialEq, serde::Deserialize, serde::Serialize)]
@@ -86,12 +94,29 @@ impl Clock {
         bounded(weights.iter().zip(predicted).map(|(weight, predicted)| weight * predicted).sum())
     }
 
-    /// The share of the time that the thing is blocked.
-    pub fn mean(&self) -> f64 {
-        self.models.schedule.mean()
+    /// What is usual for the thing in every half hour of a week; `None` before the thing was seen on 14 days, and with
+    /// [`Calendar::Relative`].
+    pub fn week(&self, calendar: &Calendar) -> Option<Week> {
+        let has_hours = calendar.civil(self.last_s).has_hours;
+        self.models.schedule.week().filter(|_| has_hours)
     }
 
-    /// The number of half hours with a look.
+    /// For how long after the last look this look says more than the schedule, s: until its expected squared error,
+    /// P(state ≠ last), exceeds that of the schedule, p (1 − p) + (p − s)², where p is the probability by all looks and s
+    /// that of the schedule. `None` without any look, and if this takes longer than four weeks.
+    pub fn expiry_s(&self, calendar: &Calendar) -> Option<f64> {
+        let last = self.last?;
+        let ahead = std::iter::successors(Some(MIN_EXPIRY_S), |ahead_s| Some(ahead_s * EXPIRY_STEP));
+        ahead.take_while(|ahead_s| *ahead_s <= MAX_EXPIRY_S).find(|ahead_s| {
+            let time_s = self.last_s + ahead_s;
+            let p = self.probability(time_s, calendar);
+            let schedule = self.models.schedule.probability(calendar.civil(time_s));
+            let error_of_last = if last.is_blocked { 1.0 - p } else { p };
+            error_of_last > p * (1.0 - p) + (p - schedule) * (p - schedule)
+        })
+    }
+
+    /// The number of half hours, of all days, with a look.
     pub fn half_hours(&self) -> f64 {
         self.models.schedule.slots()
     }

@@ -1,10 +1,12 @@
 use super::calendar::{Civil, DAY_S};
 use super::simplex;
+use super::week::{UsualSlot, Week};
 
 /// Slots of half an hour.
 const SLOTS: usize = 48;
 const DAYS: usize = 7;
-const WEEK_SLOTS: usize = DAYS * SLOTS;
+/// The slots of a week, from Monday 0:00 on.
+pub(super) const SLOTS_OF_WEEK: usize = DAYS * SLOTS;
 const SLOT_S: f64 = DAY_S / SLOTS as f64;
 
 /// Slots are smoothed with a biweight kernel of this half width, slots: a standard deviation of 75 minutes, about as
@@ -26,6 +28,10 @@ const PRIOR_WEIGHT: f64 = 0.04;
 const LEARNED_DAYS: f64 = 5.0;
 /// With this many slots seen, a day counts in full.
 const FULL_DAY: f64 = 12.0;
+
+/// The number of days from which on intervals of the hours of a week contain as many of the true ones as they say: every
+/// weekday was seen twice.
+const MIN_DAYS: f64 = 14.0;
 
 /// The weights of neighboring slots.
 const fn kernel() -> [f64; 2 * REACH + 1] {
@@ -139,7 +145,7 @@ type Profile = [[f64; 2]; PARTS - 1];
 impl Default for Schedule {
     fn default() -> Self {
         Self {
-            week: vec![Slot::default(); WEEK_SLOTS],
+            week: vec![Slot::default(); SLOTS_OF_WEEK],
             today: vec![Looks::default(); SLOTS],
             day: i64::MIN,
             past: Total::default(),
@@ -218,21 +224,44 @@ impl Schedule {
         self.shares.iter().zip(parts(mean, profile)).map(|(share, part)| share * part).sum()
     }
 
+    /// What is usual in every slot of the week; `None` before the thing was seen on [`MIN_DAYS`].
+    pub(super) fn week(&self) -> Option<Week> {
+        (self.days >= MIN_DAYS).then(|| Week::new(|slot| self.usual(slot)))
+    }
+
+    fn usual(&self, slot: usize) -> UsualSlot {
+        let (weekday, of_day) = (slot / SLOTS, slot % SLOTS);
+        let mix = |parts: [f64; PARTS]| parts.iter().zip(self.shares).map(|(part, share)| share * part).sum();
+        let [day, week] = self.smoothed(weekday, of_day).map(|smoothed| smoothed.days);
+        let own = self.week[slot].days;
+        // The errors of the parts come from the same days: their standard deviations add up.
+        let days = [self.days, day + MEAN_DAYS, week + DAY_DAYS, f64::from(own) + DAY_DAYS];
+        let deviation: f64 = mix(days.map(|days| 1.0 / days.sqrt()));
+        let probability = mix(parts(self.mean(), self.profile(weekday, of_day)));
+        UsualSlot::new(probability, own.into(), 1.0 / (deviation * deviation))
+    }
+
     /// The profiles at a slot. With few days, the week is that of the day, and the day is the mean.
     fn profile(&self, weekday: usize, slot: usize) -> Profile {
-        let (mut day, mut week) = (Smoothed::default(), Smoothed::default());
-        for (offset, weight) in KERNEL.iter().enumerate() {
-            let at = weekday * SLOTS + slot + WEEK_SLOTS + offset - REACH;
-            let of_day = |day: usize| self.week[(at + day * SLOTS) % WEEK_SLOTS].days();
-            week.add(*weight, of_day(0));
-            let all = (0..DAYS).map(of_day);
-            day.add(*weight, all.fold([0.0; 2], |sum, seen| [sum[0] + seen[0], sum[1] + seen[1]]));
-        }
+        let [day, week] = self.smoothed(weekday, slot);
         let mut own = Smoothed::default();
         own.add(1.0, self.week[weekday * SLOTS + slot].days());
         let day = day.shrunk([1.0, 0.0], MEAN_DAYS);
         let week = week.shrunk(day, DAY_DAYS);
         [day, week, own.shrunk(week, DAY_DAYS)]
+    }
+
+    /// The days on which the hours around a slot were seen: of all weekdays, and of its own.
+    fn smoothed(&self, weekday: usize, slot: usize) -> [Smoothed; 2] {
+        let (mut day, mut week) = (Smoothed::default(), Smoothed::default());
+        for (offset, weight) in KERNEL.iter().enumerate() {
+            let at = weekday * SLOTS + slot + SLOTS_OF_WEEK + offset - REACH;
+            let of_day = |day: usize| self.week[(at + day * SLOTS) % SLOTS_OF_WEEK].days();
+            week.add(*weight, of_day(0));
+            let all = (0..DAYS).map(of_day);
+            day.add(*weight, all.fold([0.0; 2], |sum, seen| [sum[0] + seen[0], sum[1] + seen[1]]));
+        }
+        [day, week]
     }
 
     /// Compares the predictions for the present day with what was seen, then adds the day.

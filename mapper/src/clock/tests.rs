@@ -5,6 +5,7 @@ use proptest::prelude::*;
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
+use rand_distr::Distribution;
 
 const MINUTE_S: f64 = 60.0;
 /// Monday, 2024-01-01, 0:00 UTC.
@@ -103,6 +104,76 @@ fn opening_hours_are_learned_and_move_with_summer_time() {
             .to_string()
             .starts_with("no time zone is called `Mars/Olympus`")
     );
+}
+
+/// A door that opens and closes on working days at these hours, each day a third of an hour earlier or later.
+fn door_with_hours(hours: [f64; 2], days: u32, looks_per_day: u32, rng: &mut ChaCha8Rng) -> Clock {
+    let mut clock = Clock::default();
+    for day in 0..days {
+        let [open, close] = hours.map(|hour| hour + rand_distr::Normal::new(0.0, 0.33).unwrap().sample(rng));
+        for minute in 0..1440 {
+            if rng.random_ratio(looks_per_day, 1440) {
+                let hour = f64::from(minute) / 60.0;
+                let is_blocked = day % 7 < 5 && (open..close).contains(&hour);
+                let time_s = MONDAY_S + DAY_S * f64::from(day) + 3600.0 * hour;
+                clock.observe(Look { time_s, is_blocked }, &Calendar::UTC);
+            }
+        }
+    }
+    clock
+}
+
+#[test]
+fn the_hours_of_doors_are_inside_their_intervals() {
+    let mut rng = ChaCha8Rng::seed_from_u64(11);
+    for (days, looks_per_day, most_h) in [(15, 200, 2.0), (29, 200, 1.0), (29, 20, 1.7), (57, 20, 1.2)] {
+        let (mut inside, mut all, mut length_h) = (0.0, 0.0, 0.0);
+        for _ in 0..40 {
+            let hours = [rng.random_range(7.0..10.0), rng.random_range(15.0..20.0)];
+            let week = door_with_hours(hours, days, looks_per_day, &mut rng).week(&Calendar::UTC).unwrap();
+            let changes = week.usual_changes();
+            for day in 0..5 {
+                for (hour, becomes_blocked) in hours.into_iter().zip([true, false]) {
+                    let true_hour = 24.0 * f64::from(day) + hour;
+                    let same = changes.iter().filter(|change| change.becomes_blocked == becomes_blocked);
+                    let apart_h = |change: &UsualChange| (change.hour - true_hour).abs();
+                    let found = same.min_by(|a, b| apart_h(a).total_cmp(&apart_h(b))).unwrap();
+                    inside +=
+                        f64::from(u8::from((found.earliest_hour..=found.latest_hour).contains(&true_hour)));
+                    length_h += found.latest_hour - found.earliest_hour;
+                    all += 1.0;
+                }
+            }
+        }
+        let (inside, length_h) = (inside / all, length_h / all);
+        assert!(
+            (0.86..=0.97).contains(&inside),
+            "{days} days, {looks_per_day} looks: {inside} inside, {length_h} h"
+        );
+        assert!(length_h < most_h, "{days} days, {looks_per_day} looks: {length_h} h");
+    }
+}
+
+#[test]
+fn nothing_is_usual_before_two_weeks() {
+    let mut rng = ChaCha8Rng::seed_from_u64(12);
+    let clocks = [14, 15].map(|days| door_with_hours([9.0, 17.0], days, 100, &mut rng));
+    assert_eq!(clocks.each_ref().map(|clock| clock.week(&Calendar::UTC).is_some()), [false, true]);
+    assert_eq!(clocks[1].week(&Calendar::Relative), None);
+}
+
+/// For a Markov chain the last look is worth as much as the mean when half of the memory is left, whatever the mean.
+#[test]
+fn a_look_at_a_chain_expires_after_its_half_life() {
+    let (mut clock, mut chain) = (Clock::default(), Chain::new([0.005, 0.015], 3));
+    assert_eq!(clock.expiry_s(&Calendar::UTC), None);
+    for step in 0..40 * 1440 {
+        let look = Look { time_s: MONDAY_S + MINUTE_S * f64::from(step), is_blocked: chain.step() };
+        clock.observe(look, &Calendar::UTC);
+    }
+    let half_life_s = MINUTE_S * std::f64::consts::LN_2 / 0.02;
+    let ratio = clock.expiry_s(&Calendar::Relative).unwrap() / half_life_s;
+    assert!((0.6..1.6).contains(&ratio), "{ratio}");
 }
 
 #[test]

@@ -1,0 +1,102 @@
+//! What is usual in every half hour of the week, as people read it: probabilities with intervals, and the hours of changes.
+
+use super::schedule::SLOTS_OF_WEEK;
+
+/// Half hours from Monday 0:00 to Sunday 24:00, local civil time.
+const SLOTS: usize = SLOTS_OF_WEEK;
+/// The hours of a slot.
+const SLOT_H: f64 = 168.0 / SLOTS as f64;
+/// The quantile of the normal distribution for an interval of 90 %.
+const NORMAL_90: f64 = 1.645;
+/// The same for the hours of changes. Days of one weekday repeat each other more than draws with a constant probability do, and
+/// within this quantile are 90 to 96 % of the hours of simulated doors (tests).
+const NORMAL_OF_HOURS: f64 = 0.75;
+
+/// What is usual in one half hour of the week.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct UsualSlot {
+    /// The share of the weeks in which the thing is blocked then: a probability, if nothing is known of the present.
+    pub probability: f64,
+    /// The interval that contains the true share with a probability of 90 %.
+    pub interval_90: [f64; 2],
+    /// The number of days on which the thing was seen in this half hour of this weekday.
+    pub days: u32,
+    /// Whether it is clear on which side of one half the probability is.
+    is_clear: bool,
+}
+
+impl UsualSlot {
+    /// A share that was seen on as many days as `effective_days`.
+    pub(super) fn new(probability: f64, days: u32, effective_days: f64) -> Self {
+        let interval = |quantile| wilson(probability, effective_days, quantile);
+        let [low, high] = interval(NORMAL_OF_HOURS);
+        Self { probability, interval_90: interval(NORMAL_90), days, is_clear: low > 0.5 || high < 0.5 }
+    }
+
+    fn is_blocked(&self) -> bool {
+        self.probability > 0.5
+    }
+}
+
+/// The interval of Wilson (1927) for a share that was found in n draws.
+fn wilson(share: f64, n: f64, quantile: f64) -> [f64; 2] {
+    let draws = quantile * quantile / n;
+    let center = (share + draws / 2.0) / (1.0 + draws);
+    let half = quantile / (1.0 + draws) * ((share * (1.0 - share) + draws / 4.0) / n).sqrt();
+    [(center - half).max(0.0), (center + half).min(1.0)]
+}
+
+/// A time of the week at which the usual state of a thing changes. Hours count from Monday 0:00, local civil time.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct UsualChange {
+    /// Whether the thing is usually blocked from then on.
+    pub becomes_blocked: bool,
+    /// The hour of the week, from 0 to 168.
+    pub hour: f64,
+    /// The begin of the interval that contains the true hour with a probability of 90 %; negative in the week before.
+    pub earliest_hour: f64,
+    /// The end of this interval; above 168 in the week after.
+    pub latest_hour: f64,
+}
+
+/// What is usual for a thing in a week.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct Week {
+    slots: Vec<UsualSlot>,
+}
+
+impl Week {
+    pub(super) fn new(slot: impl Fn(usize) -> UsualSlot) -> Self {
+        Self { slots: (0..SLOTS).map(slot).collect() }
+    }
+
+    /// The 336 half hours from Monday 0:00 on.
+    pub fn slots(&self) -> &[UsualSlot] {
+        &self.slots
+    }
+
+    /// The times at which the usual state changes, in order: empty for a thing that is usually in one state all week.
+    pub fn usual_changes(&self) -> Vec<UsualChange> {
+        let at = |slot: usize| &self.slots[slot % SLOTS];
+        let changes = (0..SLOTS).filter(|slot| at(slot + SLOTS - 1).is_blocked() != at(*slot).is_blocked());
+        let change = |slot: usize| {
+            let before = (1..SLOTS).take_while(|back| !at(slot + SLOTS - back).is_clear).count();
+            let after = (0..SLOTS).take_while(|ahead| !at(slot + ahead).is_clear).count();
+            let hour = self.crossing(slot);
+            UsualChange {
+                becomes_blocked: at(slot).is_blocked(),
+                hour: hour.rem_euclid(168.0),
+                // The middle of a slot is what it was fitted for.
+                earliest_hour: hour.min((slot as f64 - before as f64 - 0.5) * SLOT_H),
+                latest_hour: hour.max((slot as f64 + after as f64 + 0.5) * SLOT_H),
+            }
+        };
+        changes.map(change).collect()
+    }
+
+    /// The hour at which the probability, between the middles of two slots, is one half.
+    fn crossing(&self, slot: usize) -> f64 {
+        let [before, after] = [slot + SLOTS - 1, slot].map(|slot| self.slots[slot % SLOTS].probability);
+        (slot as f64 - 0.5 + (0.5 - before) / (after - before)) * SLOT_H
+    }
+}
