@@ -14,6 +14,7 @@
 //! every five minutes. *Best baseline*: the baseline with the least Brier score in this set, with these looks, at this horizon,
 //! in hindsight.
 
+mod hours;
 mod models;
 mod score;
 mod series;
@@ -128,6 +129,7 @@ fn run(options: &Options, out: &mut impl Write) -> Result<(), String> {
     }
     let say = |error: std::io::Error| error.to_string();
     table.print(out).map_err(say)?;
+    hours::print(&series, &calendar, out).map_err(say)?;
     if !options.no_curve {
         writeln!(out, "\nLearning curve: clock ÷ best baseline with the same history\n").map_err(say)?;
         for days in CURVE_DAYS {

@@ -28,6 +28,12 @@ impl Calendar {
         TimeZone::get(name).map(Self::Zone).map_err(|_| UnknownZone { name: name.to_owned() })
     }
 
+    /// The hour of the week, from Monday 0:00 on in local civil time, from 0 to 168; `None` without hours.
+    pub fn hour_of_week(&self, time_s: f64) -> Option<f64> {
+        let civil = self.civil(time_s);
+        civil.has_hours.then(|| civil.time_s.rem_euclid(7.0 * DAY_S) / 3600.0)
+    }
+
     /// The local civil time of a moment.
     pub(super) fn civil(&self, time_s: f64) -> Civil {
         /// 1970-01-01 was a Thursday.

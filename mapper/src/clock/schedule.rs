@@ -33,6 +33,12 @@ const FULL_DAY: f64 = 12.0;
 /// weekday was seen twice.
 const MIN_DAYS: f64 = 14.0;
 
+/// The variance of the mixture, divided by that of parts with one common error: with it, 87 to 99 % of the true probabilities of
+/// simulated things are inside their 90 % intervals.
+const COMMON_VARIANCE: f64 = 0.75;
+/// The weight of a dispersion of one before all days, in days with a variance of 1.
+const DISPERSION_PRIOR: f64 = 0.1;
+
 /// The weights of neighboring slots.
 const fn kernel() -> [f64; 2 * REACH + 1] {
     let mut kernel = [0.0; 2 * REACH + 1];
@@ -135,6 +141,8 @@ pub(super) struct Schedule {
     gram: [[f64; PARTS]; PARTS],
     right: [f64; PARTS],
     shares: [f64; PARTS],
+    /// Sums over the days: the squared errors of predictions, and their expectation for states that last half hours.
+    errors: [f64; 2],
     /// Cache: day, slot and profile of the last look.
     latest: Option<(i64, usize, Profile)>,
 }
@@ -154,6 +162,7 @@ impl Default for Schedule {
             gram: [[0.0; PARTS]; PARTS],
             right: [0.0; PARTS],
             shares: PRIOR,
+            errors: [0.0; 2],
             latest: None,
         }
     }
@@ -221,7 +230,16 @@ impl Schedule {
             Some((of_day, of_slot, profile)) if (of_day, of_slot) == (day, slot) => profile,
             _ => self.profile(weekday(day), slot),
         };
-        self.shares.iter().zip(parts(mean, profile)).map(|(share, part)| share * part).sum()
+        self.mix(parts(mean, profile))
+    }
+
+    fn mix(&self, parts: [f64; PARTS]) -> f64 {
+        self.shares.iter().zip(parts).map(|(share, part)| share * part).sum()
+    }
+
+    /// The variance of what is found in a slot, divided by that of a state that lasts for the whole slot.
+    fn dispersion(&self) -> f64 {
+        ((self.errors[0] + DISPERSION_PRIOR) / (self.errors[1] + DISPERSION_PRIOR)).min(1.0)
     }
 
     /// What is usual in every slot of the week; `None` before the thing was seen on [`MIN_DAYS`].
@@ -231,14 +249,18 @@ impl Schedule {
 
     fn usual(&self, slot: usize) -> UsualSlot {
         let (weekday, of_day) = (slot / SLOTS, slot % SLOTS);
-        let mix = |parts: [f64; PARTS]| parts.iter().zip(self.shares).map(|(part, share)| share * part).sum();
         let [day, week] = self.smoothed(weekday, of_day).map(|smoothed| smoothed.days);
         let own = self.week[slot].days;
-        // The errors of the parts come from the same days: their standard deviations add up.
+        // The errors of the parts come from the same days: their standard deviations nearly add up.
         let days = [self.days, day + MEAN_DAYS, week + DAY_DAYS, f64::from(own) + DAY_DAYS];
-        let deviation: f64 = mix(days.map(|days| 1.0 / days.sqrt()));
-        let probability = mix(parts(self.mean(), self.profile(weekday, of_day)));
-        UsualSlot::new(probability, own.into(), 1.0 / (deviation * deviation))
+        let deviation: f64 = self.mix(days.map(|days| 1.0 / days.sqrt()));
+        let probability = self.mix(parts(self.mean(), self.profile(weekday, of_day)));
+        UsualSlot::new(
+            probability,
+            own.into(),
+            1.0 / (COMMON_VARIANCE * deviation * deviation),
+            self.dispersion(),
+        )
     }
 
     /// The profiles at a slot. With few days, the week is that of the day, and the day is the mean.
@@ -278,7 +300,11 @@ impl Schedule {
             let share = (seen.len() as f64 / FULL_DAY).min(1.0) / seen.len() as f64;
             let weight = share * self.days / (self.days + LEARNED_DAYS);
             for &(slot, found) in &seen {
-                self.learn(parts(mean, self.profile(weekday, slot)), found, weight);
+                let parts = parts(mean, self.profile(weekday, slot));
+                let predicted = self.mix(parts);
+                self.errors[0] += weight * (found - predicted) * (found - predicted);
+                self.errors[1] += weight * predicted * (1.0 - predicted);
+                self.learn(parts, found, weight);
             }
             self.fit();
         }

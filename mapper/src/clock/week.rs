@@ -9,8 +9,8 @@ const SLOT_H: f64 = 168.0 / SLOTS as f64;
 /// The quantile of the normal distribution for an interval of 90 %.
 const NORMAL_90: f64 = 1.645;
 /// The same for the hours of changes. Days of one weekday repeat each other more than draws with a constant probability do, and
-/// within this quantile are 90 to 96 % of the hours of simulated doors (tests).
-const NORMAL_OF_HOURS: f64 = 0.75;
+/// within this quantile are 87 to 97 % of the hours of simulated doors (tests).
+const NORMAL_OF_HOURS: f64 = 1.2;
 
 /// What is usual in one half hour of the week.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
@@ -21,29 +21,47 @@ pub struct UsualSlot {
     pub interval_90: [f64; 2],
     /// The number of days on which the thing was seen in this half hour of this weekday.
     pub days: u32,
-    /// Whether it is clear on which side of one half the probability is.
-    is_clear: bool,
+    /// The share is as certain as if it was found on this many independent days.
+    effective_days: f64,
+    /// The variance of the share of a day, divided by that of a thing that is blocked for all of a half hour or for nothing of it.
+    dispersion: f64,
 }
 
 impl UsualSlot {
-    /// A share that was seen on as many days as `effective_days`.
-    pub(super) fn new(probability: f64, days: u32, effective_days: f64) -> Self {
-        let interval = |quantile| wilson(probability, effective_days, quantile);
-        let [low, high] = interval(NORMAL_OF_HOURS);
-        Self { probability, interval_90: interval(NORMAL_90), days, is_clear: low > 0.5 || high < 0.5 }
+    pub(super) fn new(probability: f64, days: u32, effective_days: f64, dispersion: f64) -> Self {
+        let effective_days = effective_days / dispersion;
+        let interval_90 = interval(probability, effective_days, NORMAL_90);
+        Self { probability, interval_90, days, effective_days, dispersion }
+    }
+
+    /// The interval that contains the share of this many later weeks in which the thing will be blocked then, with a
+    /// probability of 90 %.
+    pub fn interval_90_of_weeks(&self, weeks: f64) -> [f64; 2] {
+        let days = 1.0 / (1.0 / self.effective_days + self.dispersion / weeks);
+        interval(self.probability, days, NORMAL_90)
     }
 
     fn is_blocked(&self) -> bool {
         self.probability > 0.5
     }
+
+    /// Whether it is clear on which side of one half the probability is.
+    fn is_clear(&self) -> bool {
+        let [low, high] = interval(self.probability, self.effective_days, NORMAL_OF_HOURS);
+        low > 0.5 || high < 0.5
+    }
 }
 
-/// The interval of Wilson (1927) for a share that was found in n draws.
-fn wilson(share: f64, n: f64, quantile: f64) -> [f64; 2] {
+/// The interval of Wilson (1927) for a share that was found in n draws. It begins at 0, and ends at 1, where all draws can be
+/// equal with a probability of 5 %.
+fn interval(share: f64, n: f64, quantile: f64) -> [f64; 2] {
     let draws = quantile * quantile / n;
     let center = (share + draws / 2.0) / (1.0 + draws);
     let half = quantile / (1.0 + draws) * ((share * (1.0 - share) + draws / 4.0) / n).sqrt();
-    [(center - half).max(0.0), (center + half).min(1.0)]
+    let can_be_equal = |share: f64| libm::pow(1.0 - share, n) > 0.05;
+    let low = if can_be_equal(share) { 0.0 } else { center - half };
+    let high = if can_be_equal(1.0 - share) { 1.0 } else { center + half };
+    [low.max(0.0), high.min(1.0)]
 }
 
 /// A time of the week at which the usual state of a thing changes. Hours count from Monday 0:00, local civil time.
@@ -80,8 +98,8 @@ impl Week {
         let at = |slot: usize| &self.slots[slot % SLOTS];
         let changes = (0..SLOTS).filter(|slot| at(slot + SLOTS - 1).is_blocked() != at(*slot).is_blocked());
         let change = |slot: usize| {
-            let before = (1..SLOTS).take_while(|back| !at(slot + SLOTS - back).is_clear).count();
-            let after = (0..SLOTS).take_while(|ahead| !at(slot + ahead).is_clear).count();
+            let before = (1..SLOTS).take_while(|back| !at(slot + SLOTS - back).is_clear()).count();
+            let after = (0..SLOTS).take_while(|ahead| !at(slot + ahead).is_clear()).count();
             let hour = self.crossing(slot);
             UsualChange {
                 becomes_blocked: at(slot).is_blocked(),
