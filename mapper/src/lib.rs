@@ -59,9 +59,11 @@ pub struct MapperSettings {
     /// Settings of the occupancy model `steady`.
     pub steady: SurfaceGridSettings,
     /// Whether every place where something changes has a [`Clock`], by which the map is predicted for hours and days ahead.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub clocks: bool,
     /// The zone by whose clocks people live, by its IANA name: a place can then have hours. The times of readings count from the
     /// [epoch](Mapper::set_epoch). Without a zone, times have no hours.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub time_zone: Option<String>,
 }
 
@@ -183,7 +185,12 @@ impl Mapper {
     /// another thread.
     pub fn emptied(&self) -> impl FnOnce() -> Self + Send + use<> {
         let (settings, frame) = (self.settings.clone(), *self.frame());
-        move || Self::build(settings, Grid::filled(frame, CellState::Unknown))
+        let (epoch_s, is_dated) = (self.tiles.epoch_s, self.tiles.is_dated);
+        move || {
+            let mut mapper = Self::build(settings, Grid::filled(frame, CellState::Unknown));
+            mapper.set_epoch(epoch_s, is_dated);
+            mapper
+        }
     }
 
     /// Goes on in a larger map, with the range noise of `settings`; its other settings are those of this mapper. The new
@@ -300,10 +307,10 @@ impl Mapper {
         self.points.extend((0..self.scan.len()).filter_map(|beam| self.scan.hit(beam)));
     }
 
-    /// Says when readings have the time 0: in seconds since 1970-01-01 UTC; by default they count from there. `None`: it is not
-    /// known, and what comes has no hours.
-    pub fn set_epoch(&mut self, epoch_s: Option<f64>) {
-        self.tiles.set_epoch(epoch_s);
+    /// Says when readings have the time 0, in seconds since 1970-01-01 UTC; by default they count from there. `is_dated`: whether
+    /// the readings that follow say when they were made; otherwise they have no hours.
+    pub fn set_epoch(&mut self, epoch_s: f64, is_dated: bool) {
+        self.tiles.set_epoch(epoch_s, is_dated);
     }
 
     /// The time at which readings have the time 0, in seconds since 1970-01-01 UTC.
@@ -313,7 +320,7 @@ impl Mapper {
 
     /// How the times of readings, [since the epoch](Self::epoch_s), relate to local civil time.
     pub fn calendar(&self) -> &Calendar {
-        &self.tiles.calendar
+        self.tiles.calendar()
     }
 
     /// The tile at a cell; `None` if nothing ever changed there, or without [`MapperSettings::clocks`].

@@ -116,6 +116,11 @@ impl Clock {
         })
     }
 
+    /// The number of days with a look.
+    pub fn days(&self) -> u32 {
+        self.models.schedule.days_seen()
+    }
+
     /// The number of half hours, of all days, with a look.
     pub fn half_hours(&self) -> f64 {
         self.models.schedule.slots()

@@ -36,6 +36,11 @@ impl Tile {
         &self.clock
     }
 
+    /// Its cells that ever changed, as positions in [`Mapper::changed`](crate::Mapper::changed).
+    pub fn changed(&self) -> impl Iterator<Item = usize> {
+        self.cells.iter().map(|slot| *slot as usize)
+    }
+
     /// The last look, with the time of the mapper; `None` before the first one.
     pub fn last(&self) -> Option<Look> {
         self.last
@@ -111,8 +116,8 @@ pub(crate) struct Tiles {
     /// The cells along the side of a tile.
     side: i32,
     zone: Calendar,
-    pub(crate) calendar: Calendar,
     pub(crate) epoch_s: f64,
+    pub(crate) is_dated: bool,
     learned: Learned,
 }
 
@@ -120,21 +125,16 @@ impl Tiles {
     pub(crate) fn new(settings: &MapperSettings, resolution_m: f64) -> Self {
         let side = (SIDE_M / resolution_m).round().clamp(1.0, 1000.0) as i32;
         let zone = settings.calendar().unwrap_or_default();
-        Self {
-            is_on: settings.clocks,
-            side,
-            calendar: zone.clone(),
-            zone,
-            epoch_s: 0.0,
-            learned: Learned::default(),
-        }
+        let learned = Learned::default();
+        Self { is_on: settings.clocks, side, zone, epoch_s: 0.0, is_dated: true, learned }
     }
 
-    /// The time at which readings have the time 0, in seconds since the epoch; `None`: it is not known, and there are no
-    /// hours from now on.
-    pub(crate) fn set_epoch(&mut self, epoch_s: Option<f64>) {
-        self.calendar = if epoch_s.is_some() { self.zone.clone() } else { Calendar::Relative };
-        self.epoch_s = epoch_s.unwrap_or(self.epoch_s);
+    pub(crate) fn set_epoch(&mut self, epoch_s: f64, is_dated: bool) {
+        (self.epoch_s, self.is_dated) = (epoch_s, is_dated);
+    }
+
+    pub(crate) fn calendar(&self) -> &Calendar {
+        if self.is_dated { &self.zone } else { &Calendar::Relative }
     }
 
     /// Looks at some of the tiles, each in turn.
@@ -169,11 +169,12 @@ impl Tiles {
     }
 
     fn look(&mut self, number: usize, cells: &CellMap) {
-        let (time_s, learned) = (cells.time(), &mut self.learned);
+        let (time_s, calendar) = (cells.time(), self.calendar().clone());
+        let learned = &mut self.learned;
         let Some(is_blocked) = learned.tiles[number].state(cells) else { return };
         let tile = Arc::make_mut(&mut learned.tiles[number]);
         tile.last = Some(Look { time_s, is_blocked });
-        tile.clock.observe(Look { time_s: self.epoch_s + time_s, is_blocked }, &self.calendar);
+        tile.clock.observe(Look { time_s: self.epoch_s + time_s, is_blocked }, &calendar);
         for slot in tile.cells.iter().map(|slot| *slot as usize).filter(|_| is_blocked) {
             let index = cells.changed[slot] as usize;
             if cells.is_seen_now(index) {

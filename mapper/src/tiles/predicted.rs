@@ -34,7 +34,7 @@ impl Tiles {
         let (tile, of) = (self.at(cell)?, self.learned.cells.get(slot)?);
         let last = tile.last?;
         let share = of.counts.share(tile.counts.share(0.5, 1.0), PRIOR_LOOKS);
-        let later = share * tile.clock.probability(self.epoch_s + time_s, &self.calendar);
+        let later = share * tile.clock.probability(self.epoch_s + time_s, self.calendar());
         let half_hours = tile.clock.half_hours();
         let weight = half_hours / (half_hours + HALF_HOURS);
         Some(ByTile { later, then: share * f64::from(u8::from(last.is_blocked)), weight })

@@ -43,7 +43,7 @@ fn patrol(mapper: &mut Mapper, days: std::ops::Range<u32>) {
 
 fn mapper(settings: &MapperSettings) -> Mapper {
     let mut mapper = Mapper::new(settings, frame()).unwrap();
-    mapper.set_epoch(Some(MONDAY_S));
+    mapper.set_epoch(MONDAY_S, true);
     mapper
 }
 
@@ -71,7 +71,7 @@ fn a_door_is_predicted_by_its_hours() {
 fn without_a_zone_or_a_date_there_are_no_hours() {
     let mut without_zone = mapper(&settings(true, None));
     let mut without_date = mapper(&settings(true, Some("Europe/Berlin")));
-    without_date.set_epoch(None);
+    without_date.set_epoch(MONDAY_S, false);
     for mapper in [&mut without_zone, &mut without_date] {
         patrol(mapper, 0..10);
         assert_eq!(mapper.calendar(), &Calendar::Relative);

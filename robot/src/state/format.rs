@@ -19,6 +19,8 @@ use xxhash_rust::xxh3::xxh3_64_with_seed;
 const VERSION: u32 = 8;
 /// The earliest version that is read. Since then, what is saved of a localizer has changed (7), and a mapper has tiles (8).
 const EARLIEST: u32 = 6;
+/// The first version with what is saved of a localizer now.
+const LOCALIZER_SINCE: u32 = 7;
 /// The part with the build.
 const BUILD_PART: &str = "build";
 /// The largest body, bytes: what a mapper with the largest map can take.
@@ -101,7 +103,12 @@ impl State {
         self.sections.iter().any(|section| section.name == name)
     }
 
-    /// Whether the file has an older version of the format.
+    /// What the snapshot of a part belongs to.
+    pub fn facts(&self, name: &str) -> Option<&Facts> {
+        self.sections.iter().find(|section| section.name == name).map(|section| &section.facts)
+    }
+
+    /// Whether the file has a version of the format in which a localizer was saved otherwise.
     pub(crate) fn is_earlier(&self) -> bool {
         self.is_earlier
     }
@@ -192,7 +199,7 @@ impl State {
         check_length(u32::from_le_bytes(*length) as usize)?;
         let body = lz4_flex::decompress_size_prepended(packed).map_err(|_| StateError::Damaged)?;
         let state: Self = postcard::from_bytes(&body).map_err(|_| StateError::Damaged)?;
-        Ok(Self { is_earlier: found < VERSION, ..state })
+        Ok(Self { is_earlier: found < LOCALIZER_SINCE, ..state })
     }
 }
 
