@@ -7,7 +7,7 @@ use robot::state::{State, read_state};
 use std::path::PathBuf;
 
 /// The version of the format that this program writes.
-const VERSION: u32 = 7;
+const VERSION: u32 = 8;
 
 fn example(version: u32) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../tests/states/{version}/curious_node.state"))
@@ -36,7 +36,7 @@ fn states_of_all_versions_are_read_and_the_layout_belongs_to_its_version() {
         let said = said.lock().unwrap().join("\n");
         assert!(said.contains("the map goes on from 10 readings"), "{version}: {said}");
         // After ten readings the map has no surface yet.
-        assert_eq!(said.contains("its map has no surface"), version < VERSION, "{version}: {said}");
+        assert_eq!(said.contains("its map has no surface"), version < 7, "{version}: {said}");
         let CuriousNode { robot, state_file, continued, .. } = &mut node;
         let state_file = state_file.as_mut().unwrap();
         state_file.save(continued.unwrap(), robot).unwrap();
