@@ -13,6 +13,7 @@ pub mod reachability;
 pub mod terminal;
 #[cfg(feature = "recording")]
 pub mod trials;
+pub mod week;
 pub mod words;
 #[cfg(feature = "simulation")]
 pub mod worlds;

@@ -28,5 +28,6 @@ pub use policy::{Parts, Policy};
 pub use settings::{AgentSettings, CuriousSettings, Reward};
 pub use situation::{Features, Situation, StraightLineTravel, Travel};
 pub use strategies::{
-    Frontier, InformationGain, OptimalRevisiting, Pick, Poisson, Random, Recency, Stay, Strategy,
+    Frontier, InformationGain, OptimalRevisiting, Pick, Poisson, PredictedChange, Random, Recency, Stay,
+    Strategy,
 };

@@ -1,6 +1,8 @@
 use crate::choosers::{Always, Chooser, Coin, Curious, Progress};
 use crate::settings::AgentSettings;
-use crate::strategies::{Frontier, InformationGain, OptimalRevisiting, Poisson, Random, Recency, Strategy};
+use crate::strategies::{
+    Frontier, InformationGain, OptimalRevisiting, Poisson, PredictedChange, Random, Recency, Strategy,
+};
 use interfaces::RandomStream;
 use std::num::NonZeroUsize;
 use std::sync::{Arc, LazyLock};
@@ -57,6 +59,7 @@ static BUILT_IN: LazyLock<Vec<Policy>> = LazyLock::new(|| {
         Policy::new("coin", "recency or poisson by a fair coin: the baseline of learners", coin),
         Policy::single("frontier", "most unknown cells in view per time, then the oldest", Frontier::new),
         Policy::single("optimal-revisiting", "least time with a wrong map, per time", OptimalRevisiting::new),
+        Policy::single("predicted-change", "cells that are probably not as last seen", |_| PredictedChange),
         Policy::single("information-gain", "least error of the rates, per time", InformationGain::new),
         Policy::new("progress", "one of five strategies, chosen by progress in learning", progress),
     ]
@@ -163,7 +166,7 @@ mod tests {
         assert_eq!(
             "Curius".parse::<Policy>().unwrap_err().to_string(),
             "no strategy is called `Curius`; there are curious, recency, poisson, random, coin, frontier, \
-             optimal-revisiting, information-gain, progress"
+             optimal-revisiting, predicted-change, information-gain, progress"
         );
     }
 }

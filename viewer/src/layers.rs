@@ -17,10 +17,45 @@ pub enum Layer {
     ChangeProbability,
     /// The time since the cell was last seen, s or steps.
     Recency,
-    /// The probability that the cell is blocked now, for cells that change: the map as predicted.
-    Predicted,
+    /// The probability that the cell is blocked now or later, for cells that change: the map as predicted.
+    Predicted(Ahead),
     /// For how long a look at the cell says more than its usual hours, h.
     Expiry,
+}
+
+/// The time ahead of a predicted map.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ahead {
+    /// Now.
+    Now,
+    /// In 60 s, or steps.
+    Minute,
+    /// In 600 s, or steps.
+    TenMinutes,
+    /// In 3600 s, or steps.
+    Hour,
+}
+
+impl Ahead {
+    /// The time, s or steps.
+    fn time(self) -> f64 {
+        match self {
+            Self::Now => 0.0,
+            Self::Minute => 60.0,
+            Self::TenMinutes => 600.0,
+            Self::Hour => 3600.0,
+        }
+    }
+
+    fn words(self, unit: TimeUnit) -> String {
+        match (self, unit) {
+            (Self::Now, _) => "now".into(),
+            (_, TimeUnit::Step) => format!("in {} steps", self.time()),
+            (Self::Minute, TimeUnit::Second) => "in 1 min".into(),
+            (Self::TenMinutes, TimeUnit::Second) => "in 10 min".into(),
+            (Self::Hour, TimeUnit::Second) => "in 1 h".into(),
+        }
+    }
 }
 
 /// A cell that was never seen. Class 0 stays unused: the viewer draws nothing for it.
@@ -70,8 +105,23 @@ impl Scale {
 
 impl Layer {
     /// Every layer of a run, in the order in which they are shown.
-    pub const ALL: [Self; 5] =
-        [Self::Occupancy, Self::Interval, Self::ChangeProbability, Self::Recency, Self::Predicted];
+    pub const ALL: [Self; 8] = [
+        Self::Occupancy,
+        Self::Interval,
+        Self::ChangeProbability,
+        Self::Recency,
+        Self::PREDICTED[0],
+        Self::PREDICTED[1],
+        Self::PREDICTED[2],
+        Self::PREDICTED[3],
+    ];
+    /// The predicted maps, now and at three times ahead.
+    pub const PREDICTED: [Self; 4] = [
+        Self::Predicted(Ahead::Now),
+        Self::Predicted(Ahead::Minute),
+        Self::Predicted(Ahead::TenMinutes),
+        Self::Predicted(Ahead::Hour),
+    ];
 
     /// The name in entity paths and file names.
     pub fn name(self) -> &'static str {
@@ -80,7 +130,10 @@ impl Layer {
             Self::Interval => "interval",
             Self::ChangeProbability => "change_probability",
             Self::Recency => "recency",
-            Self::Predicted => "predicted",
+            Self::Predicted(Ahead::Now) => "predicted",
+            Self::Predicted(Ahead::Minute) => "predicted_60",
+            Self::Predicted(Ahead::TenMinutes) => "predicted_600",
+            Self::Predicted(Ahead::Hour) => "predicted_3600",
             Self::Expiry => "expiry",
         }
     }
@@ -92,7 +145,9 @@ impl Layer {
             Self::Interval => format!("Change interval: {} per cycle", unit.plural()),
             Self::ChangeProbability => "Probability of a change since last seen".into(),
             Self::Recency => format!("Recency: {} since last seen", unit.plural()),
-            Self::Predicted => "Predicted: probability of being blocked now".into(),
+            Self::Predicted(ahead) => {
+                format!("Probability of being blocked {}", ahead.words(unit))
+            }
             Self::Expiry => "Expiry: hours for which a look counts".into(),
         }
     }
@@ -105,12 +160,17 @@ impl Layer {
             (Self::Interval, TimeUnit::Second) => (5.0, 500.0, &[5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0]),
             // From a block that moves in every step to a block that stands for hundreds of steps.
             (Self::Interval, TimeUnit::Step) => (5.0, 2000.0, &[5.0, 20.0, 50.0, 200.0, 500.0, 2000.0]),
-            (Self::ChangeProbability | Self::Predicted, _) => (0.0, 1.0, &[0.0, 0.25, 0.5, 0.75, 1.0]),
+            (Self::ChangeProbability | Self::Predicted(_), _) => (0.0, 1.0, &[0.0, 0.25, 0.5, 0.75, 1.0]),
             (Self::Expiry, _) => (0.01, 672.0, &[0.01, 0.1, 1.0, 10.0, 100.0]),
             (Self::Recency, TimeUnit::Second) => (1.0, 1000.0, &[1.0, 10.0, 100.0, 1000.0]),
             (Self::Recency, TimeUnit::Step) => (1.0, 5000.0, &[1.0, 10.0, 100.0, 1000.0]),
         };
-        Some(Scale { low, high, is_log: !matches!(self, Self::ChangeProbability | Self::Predicted), ticks })
+        Some(Scale {
+            low,
+            high,
+            is_log: !matches!(self, Self::ChangeProbability | Self::Predicted(_)),
+            ticks,
+        })
     }
 
     /// The class of every cell of the mapper's frame, in row-major order.
@@ -130,7 +190,7 @@ impl Layer {
             let interval = mapper.interval(index);
             interval.is_finite().then(|| match self {
                 Self::Interval => interval,
-                Self::Predicted => mapper.blocked_probability(index),
+                Self::Predicted(ahead) => mapper.blocked_probability_later(index, ahead.time()),
                 Self::Expiry => f64::NAN,
                 _ => mapper.change_probability(index),
             })
@@ -171,7 +231,7 @@ impl Layer {
             (Self::Interval, _) => gradient(colorous::INFERNO, 0.12 + 0.78 * position),
             // Without the lightest part, which is similar to a free cell, and without grays, as those of a wall.
             (Self::ChangeProbability, _) => gradient(colorous::YELLOW_ORANGE_RED, 0.25 + 0.75 * position),
-            (Self::Predicted, _) => gradient(colorous::RED_PURPLE, 0.3 + 0.7 * position),
+            (Self::Predicted(_), _) => gradient(colorous::RED_PURPLE, 0.3 + 0.7 * position),
             (Self::Recency | Self::Occupancy | Self::Expiry, _) => {
                 gradient(colorous::VIRIDIS, 1.0 - position)
             }
@@ -188,7 +248,7 @@ impl Layer {
         match self {
             Self::Occupancy => vec![(FREE, "free"), (BLOCKED, "blocked"), (UNKNOWN, "never seen")],
             Self::Recency => vec![(UNKNOWN, "never seen")],
-            Self::Interval | Self::ChangeProbability | Self::Predicted | Self::Expiry => {
+            Self::Interval | Self::ChangeProbability | Self::Predicted(_) | Self::Expiry => {
                 vec![(FREE, "free, no change"), (BLOCKED, "blocked, no change"), (UNKNOWN, "never seen")]
             }
         }
@@ -209,7 +269,7 @@ impl Layer {
                 let edge = |step: u8| scale.value(f64::from(step) / f64::from(STEPS));
                 let (from, to) = (edge(step), edge(step + 1));
                 let text = match self {
-                    Self::ChangeProbability | Self::Predicted => {
+                    Self::ChangeProbability | Self::Predicted(_) => {
                         format!("{:.0}–{:.0} %", 100.0 * from, 100.0 * to)
                     }
                     _ if step == STEPS - 1 => format!("{from:.0} {symbol} or more"),

@@ -6,6 +6,7 @@ mod frontier;
 mod information_gain;
 mod optimal_revisiting;
 mod poisson;
+mod predicted_change;
 mod random;
 mod recency;
 
@@ -13,6 +14,7 @@ pub use frontier::Frontier;
 pub use information_gain::InformationGain;
 pub use optimal_revisiting::OptimalRevisiting;
 pub use poisson::Poisson;
+pub use predicted_change::PredictedChange;
 pub use random::Random;
 pub use recency::Recency;
 

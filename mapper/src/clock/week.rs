@@ -93,28 +93,36 @@ impl Week {
         &self.slots
     }
 
-    /// The times at which the usual state changes, in order: empty for a thing that is usually in one state all week.
+    /// The times at which the usual state changes, in order: between two half hours in which it is clear what is usual. Empty for a
+    /// thing that is usually in one state all week, and for one of which this is not clear.
     pub fn usual_changes(&self) -> Vec<UsualChange> {
-        let at = |slot: usize| &self.slots[slot % SLOTS];
-        let changes = (0..SLOTS).filter(|slot| at(slot + SLOTS - 1).is_blocked() != at(*slot).is_blocked());
-        let change = |slot: usize| {
-            let before = (1..SLOTS).take_while(|back| !at(slot + SLOTS - back).is_clear()).count();
-            let after = (0..SLOTS).take_while(|ahead| !at(slot + ahead).is_clear()).count();
-            let hour = self.crossing(slot);
-            UsualChange {
-                becomes_blocked: at(slot).is_blocked(),
-                hour: hour.rem_euclid(168.0),
-                // The middle of a slot is what it was fitted for.
-                earliest_hour: hour.min((slot as f64 - before as f64 - 0.5) * SLOT_H),
-                latest_hour: hour.max((slot as f64 + after as f64 + 0.5) * SLOT_H),
-            }
-        };
-        changes.map(change).collect()
+        let clear: Vec<usize> = (0..SLOTS).filter(|slot| self.slots[*slot].is_clear()).collect();
+        let next = clear.iter().skip(1).copied().chain(clear.first().map(|first| first + SLOTS));
+        clear.iter().zip(next).filter_map(|(before, after)| self.change(*before, after)).collect()
+    }
+
+    /// The change between two clear half hours; the second can be in the next week.
+    fn change(&self, before: usize, after: usize) -> Option<UsualChange> {
+        let is_blocked = |slot: usize| self.slots[slot % SLOTS].is_blocked();
+        if is_blocked(before) == is_blocked(after) {
+            return None;
+        }
+        let crossings: Vec<usize> =
+            (before + 1..=after).filter(|slot| is_blocked(slot - 1) != is_blocked(*slot)).collect();
+        let hour_of = |slot: usize| (slot as f64 + 0.5) * SLOT_H;
+        let hour = self.crossing(*crossings.get(crossings.len() / 2)?);
+        let past_weeks = 168.0 * (hour / 168.0).floor();
+        Some(UsualChange {
+            becomes_blocked: is_blocked(after),
+            hour: hour - past_weeks,
+            earliest_hour: hour_of(before) - past_weeks,
+            latest_hour: hour_of(after) - past_weeks,
+        })
     }
 
     /// The hour at which the probability, between the middles of two slots, is one half.
     fn crossing(&self, slot: usize) -> f64 {
-        let [before, after] = [slot + SLOTS - 1, slot].map(|slot| self.slots[slot % SLOTS].probability);
+        let [before, after] = [slot - 1, slot].map(|slot| self.slots[slot % SLOTS].probability);
         (slot as f64 - 0.5 + (0.5 - before) / (after - before)) * SLOT_H
     }
 }

@@ -152,7 +152,13 @@ fn run(args: &Args) -> Result<ExitCode, Failure> {
         let name =
             if times_s.len() == 1 { "predicted".to_owned() } else { format!("predicted_{}", number + 1) };
         let title = format!("P(blocked), {}", moment::text(*time_s, &forecast));
-        write_map(folder.unfinished(), &name, (Layer::Predicted, &title), &forecast, &forecast.map(*time_s))?;
+        write_map(
+            folder.unfinished(),
+            &name,
+            (Layer::PREDICTED[0], &title),
+            &forecast,
+            &forecast.map(*time_s),
+        )?;
         let mask = |value: &f64| if value.is_nan() { 0 } else { (100.0 * value).round() as u8 };
         ros_map::write_mask(folder.unfinished(), &name, &forecast.map(*time_s).map(mask))?;
     }

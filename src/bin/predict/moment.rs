@@ -80,13 +80,6 @@ pub(crate) fn text(time_s: f64, forecast: &Forecast) -> String {
     }
 }
 
-/// An hour of the week as weekday and time.
-pub(crate) fn hour_of_week(hour: f64) -> String {
-    let minutes = (hour.rem_euclid(168.0) * 60.0).round() as usize % (7 * 24 * 60);
-    let day = WEEKDAYS[minutes / (24 * 60)].0;
-    format!("{}{} {:02}:{:02}", day[..1].to_uppercase(), &day[1..3], minutes / 60 % 24, minutes % 60)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -106,9 +99,5 @@ mod tests {
         assert_eq!(at(Some("Sat"), "17:10"), "2024-04-06 17:10 +02:00");
         assert_eq!(at(Some("tuesday"), "17:10"), "2024-04-02 17:10 +02:00");
         assert!(weekday("Tud").is_none() && weekday("t").is_none());
-        assert_eq!(
-            [hour_of_week(0.0), hour_of_week(-0.5), hour_of_week(41.26)],
-            ["Mon 00:00", "Sun 23:30", "Tue 17:16"]
-        );
     }
 }

@@ -1,6 +1,7 @@
 //! What is known of one place, in sentences and as data.
 
 use crate::moment;
+use curious::week::usual_hours;
 use curious::words::length_of;
 use interfaces::CellState;
 use mapper::{UsualChange, UsualSlot, Week};
@@ -117,15 +118,7 @@ impl Place {
             None => {
                 lines.push(format!("Usual hours: not known yet; they need looks on {DAYS_OF_WEEK} days."))
             }
-            Some(week) if self.usual_changes.is_empty() => {
-                let is_blocked = week.slots().first().is_some_and(|slot| slot.probability > 0.5);
-                lines.push(format!("Usually {} all week.", if is_blocked { "blocked" } else { "free" }));
-            }
-            Some(_) => lines.extend(self.usual_changes.iter().map(|change| {
-                let [from, to] = [change.earliest_hour, change.latest_hour].map(moment::hour_of_week);
-                let state = if change.becomes_blocked { "blocked" } else { "free" };
-                format!("Usually {state} from {} on ({from} to {to}).", moment::hour_of_week(change.hour))
-            })),
+            Some(week) => lines.push(format!("Usually {}.", usual_hours(week, "blocked"))),
         }
         lines
     }

@@ -34,8 +34,8 @@ pub struct Trails<'a> {
 /// The panels of Figure 5, in its order.
 const FIGURE_5: [Layer; 3] = [Layer::Occupancy, Layer::Interval, Layer::ChangeProbability];
 
-/// Writes each of `layers` of the map as `<layer>.png`, `figure5.png` if its layers are among them, and `trajectory.png`
-/// into `folder`, which is created if needed. `goals` are those of the curious robot.
+/// Writes each of `layers` of the map as `<layer>.png`, the predicted maps side by side as `predicted.png`, `figure5.png` if its
+/// layers are among them, and `trajectory.png` into `folder`, which is created if needed. `goals` are those of the curious robot.
 ///
 /// # Errors
 ///
@@ -54,13 +54,17 @@ pub fn write_all(
     let mut panels = Vec::new();
     for &layer in layers {
         let picture = draw(layer.name(), panel.size(), |area| panel.layer(area, mapper, layer, scene.unit))?;
-        picture.write(&file(layer.name()))?;
+        if !Layer::PREDICTED.contains(&layer) {
+            picture.write(&file(layer.name()))?;
+        }
         panels.push((layer, picture));
     }
-    let of_layer = |layer| panels.iter().find(|(of, _)| *of == layer).map(|(_, picture)| picture);
-    let panels: Vec<&Canvas> = FIGURE_5.into_iter().filter_map(of_layer).collect();
-    if panels.len() == FIGURE_5.len() {
-        Canvas::beside(&panels).write(&file("figure5"))?;
+    let of_layer = |layer: &Layer| panels.iter().find(|(of, _)| of == layer).map(|(_, picture)| picture);
+    for (name, layers) in [("figure5", &FIGURE_5[..]), ("predicted", &Layer::PREDICTED)] {
+        let beside: Vec<&Canvas> = layers.iter().filter_map(of_layer).collect();
+        if beside.len() == layers.len() {
+            Canvas::beside(&beside).write(&file(name))?;
+        }
     }
     let panel =
         Panel::of_scene(mapper.frame(), scene.unit, trajectory::entries(scene, trails.believed, goals).len());

@@ -26,7 +26,8 @@ pub(super) fn send(
     layout.set_time_sequence("blueprint", 0);
     let mut layout = Layout { stream: layout, scene, view, count: 0 };
     let left = [layout.scene()?, layout.log()?];
-    let others = [layout.map(Layer::Recency)?, layout.map(Layer::Predicted)?];
+    let others = [Layer::Recency].into_iter().chain(Layer::PREDICTED);
+    let others = others.map(|layer| layout.map(layer)).collect::<Result<Vec<_>, _>>()?;
     let maps = [
         layout.map(Layer::Interval)?,
         layout.map(Layer::ChangeProbability)?,

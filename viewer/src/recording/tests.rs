@@ -62,7 +62,7 @@ fn rows<C: Component + Clone>(
 }
 
 /// The entities of a recording.
-const ENTITIES: [&str; 47] = [
+const ENTITIES: [&str; 59] = [
     "/curves/expected_changes/p",
     "/curves/longest_unseen/r",
     "/curves/scores/coverage",
@@ -96,6 +96,18 @@ const ENTITIES: [&str; 47] = [
     "/world/maps/predicted/cells",
     "/world/maps/predicted/color_bar",
     "/world/maps/predicted/marks",
+    "/world/maps/predicted_60",
+    "/world/maps/predicted_60/cells",
+    "/world/maps/predicted_60/color_bar",
+    "/world/maps/predicted_60/marks",
+    "/world/maps/predicted_600",
+    "/world/maps/predicted_600/cells",
+    "/world/maps/predicted_600/color_bar",
+    "/world/maps/predicted_600/marks",
+    "/world/maps/predicted_3600",
+    "/world/maps/predicted_3600/cells",
+    "/world/maps/predicted_3600/color_bar",
+    "/world/maps/predicted_3600/marks",
     "/world/maps/recency",
     "/world/maps/recency/cells",
     "/world/maps/recency/color_bar",
@@ -239,8 +251,11 @@ fn the_layout_shows_every_view() {
             "Changes expected out of view",
             "Longest time since a cell was seen (s)",
             "Map: coverage and quality",
-            "Predicted: probability of being blocked now",
             "Probability of a change since last seen",
+            "Probability of being blocked in 1 h",
+            "Probability of being blocked in 1 min",
+            "Probability of being blocked in 10 min",
+            "Probability of being blocked now",
             "Recency: seconds since last seen",
             "Strategies: expected map updates per step",
             "Strategies: share of the goals",
