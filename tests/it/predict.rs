@@ -43,8 +43,8 @@ fn hours_routes_and_graphs_are_predicted() {
     for line in [
         "last reading: Mon 2024-01-15 22:10 CET",
         "  Tue 2024-01-16 13:00 CET: blocked with a probability of ",
-        "  Usually blocked from Tue 0",
-        "on 15 days.",
+        "  Usually blocked Mon to Sun ",
+        "Seen in 180 half hours, on 15 days.",
         "  Nothing ever changed within half a meter: it was always free.",
     ] {
         assert!(ended.stdout.contains(line), "{line}: {}", ended.stdout);

@@ -103,8 +103,7 @@ impl Place {
 
     fn sentences(&self, forecast: &Forecast, week: Option<&Week>) -> Vec<String> {
         let mut lines: Vec<String> = self.predictions(forecast).collect();
-        let seen = length_of(1800.0 * self.half_hours);
-        lines.push(format!("Looks in half hours of {seen} in all, on {} days.", self.days));
+        lines.push(format!("Seen in {:.0} half hours, on {} days.", self.half_hours, self.days));
         lines.push(match self.expiry_s {
             Some(expiry_s) => {
                 format!("A look counts for {}; after that the usual hours say more.", length_of(expiry_s))

@@ -116,7 +116,7 @@ impl Graph {
             }
         }
         for (number, ends) in &edges {
-            for end in ends.iter().filter(|end| !nodes.contains_key(end)) {
+            if let Some(end) = ends.iter().find(|end| !nodes.contains_key(end)) {
                 bail!("feature {number} joins node {end}, which is not in the graph");
             }
         }
