@@ -20,6 +20,23 @@ pub fn number(range: RangeInclusive<f64>) -> impl Fn(&str) -> Result<f64, String
     }
 }
 
+/// The IANA name of a time zone.
+///
+/// # Errors
+///
+/// When there is no such zone; the error has the name that was perhaps meant.
+pub fn time_zone(name: &str) -> Result<String, String> {
+    if let Ok(zone) = jiff::tz::db().get(name) {
+        return Ok(zone.iana_name().unwrap_or(name).to_owned());
+    }
+    let lower = name.to_lowercase();
+    let likeness = |zone: &str| strsim::jaro_winkler(&lower, &zone.to_lowercase());
+    let nearest =
+        jiff::tz::db().available().max_by(|a, b| likeness(a.as_str()).total_cmp(&likeness(b.as_str())));
+    let nearest = nearest.map(|zone| format!(", perhaps {zone}")).unwrap_or_default();
+    Err(format!("no time zone is called so{nearest}; names are those of the IANA, as Europe/Berlin or UTC"))
+}
+
 /// A parser of the path of a file that is read: it must be a regular one.
 pub fn input_file() -> impl TypedValueParser<Value = PathBuf> {
     PathBufValueParser::new().try_map(|path| match path.metadata() {

@@ -101,7 +101,7 @@ pub fn picture(week: &Week, name: &str) -> Markup {
                 @for run in steps.chunk_by(|a, b| a == b) {
                     rect x=(LEFT + SLOT * at) y=(ROW * day) width=(SLOT * run.len()) height=(ROW - 1)
                         fill=(color(f64::from(run[0].0) / STEPS)) opacity={ (f64::from(run[0].1) / STEPS) } {}
-                    @let _ = { at += run.len(); };
+                    @let () = at += run.len();
                 }
             }
             @for hour in [0, 6, 12, 18, 24] {

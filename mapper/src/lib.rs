@@ -11,6 +11,7 @@
 //!   [`Estimator`].
 //! - `derived`: the maps that follow from both.
 //! - `things`: [`Thing`]s, cells that change together: doors, and furniture that was moved.
+//! - `tiles`: the places where something changes, each with a clock.
 //! - `clock`: [`Clock`], a model of one thing over days: hours of the day and of the week, and a memory of all looks.
 
 mod change;
@@ -20,6 +21,7 @@ mod growth;
 mod occupancy;
 mod scan_filter;
 mod things;
+mod tiles;
 
 pub use change::{
     CellMap, CellStatistics, ChoGarciaMolina, Estimator, EstimatorChoice, Exposure, GapBin, GapEvidence,
@@ -34,6 +36,8 @@ pub use occupancy::{
 pub use scan_filter::{NoReturn, NoReturnEvidence, NoReturns, ScanFilter, ScanFilterSettings};
 pub use things::{Door, DoorStatistics, Furniture, Leaf, Place, Segment, Thing, ThingKind};
 
+pub use tiles::Tile;
+
 use derived::ExpectedChanges;
 use interfaces::{
     CellState, Grid, GridFrame, LaserReading, Observation, Reading, ScanError, SettingsCheck, SettingsError,
@@ -41,6 +45,7 @@ use interfaces::{
 };
 use nalgebra::{Isometry2, Point2};
 use things::Things;
+use tiles::Tiles;
 
 /// Settings of a [`Mapper`].
 #[derive(Clone, Debug, Default, PartialEq, serde::Deserialize, serde::Serialize)]
@@ -57,13 +62,31 @@ pub struct MapperSettings {
     pub max_gap: f64,
     /// Settings of the occupancy model `steady`.
     pub steady: SurfaceGridSettings,
+    /// Whether every place where something changes has a [`Clock`], by which the map is predicted for hours and days ahead.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub clocks: bool,
+    /// The zone by whose clocks people live, by its IANA name: a place can then have hours. The times of readings count from the
+    /// [epoch](Mapper::set_epoch). Without a zone, times have no hours.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub time_zone: Option<String>,
 }
 
 impl MapperSettings {
     fn check(&self) -> Result<(), SettingsError> {
         let check = SettingsCheck { part: "mapper" };
         check.not_negative("max_gap", self.max_gap)?;
+        self.calendar().map_err(|_| SettingsError {
+            part: check.part,
+            key: "time_zone",
+            expected: "the IANA name of a time zone, such as Europe/Berlin",
+            found: self.time_zone.clone().unwrap_or_default(),
+        })?;
         self.steady.check(check)
+    }
+
+    /// The calendar of the time zone.
+    fn calendar(&self) -> Result<Calendar, UnknownZone> {
+        self.time_zone.as_deref().map_or(Ok(Calendar::Relative), Calendar::of_zone)
     }
 }
 
@@ -103,6 +126,7 @@ pub struct Mapper {
     occupancy: Box<dyn OccupancyModel>,
     expected_changes: ExpectedChanges,
     things: Things,
+    tiles: Tiles,
     scan: ProjectedScan,
     points: Vec<Point2<f64>>,
 }
@@ -158,15 +182,21 @@ impl Mapper {
         let mut cells = CellMap::new(prior, settings.estimator.clone(), settings.max_gap);
         let occupancy = settings.occupancy.build(&settings, &mut cells);
         let (expected_changes, scan) = (ExpectedChanges::default(), ProjectedScan::default());
+        let tiles = Tiles::new(&settings, cells.frame().resolution_m());
         let things = Things::default();
-        Self { settings, cells, occupancy, expected_changes, things, scan, points: Vec::new() }
+        Self { settings, cells, occupancy, expected_changes, tiles, things, scan, points: Vec::new() }
     }
 
     /// Makes a mapper with the same settings and the same frame, whose cells are all unknown: when it is called, perhaps in
     /// another thread.
     pub fn emptied(&self) -> impl FnOnce() -> Self + Send + use<> {
         let (settings, frame) = (self.settings.clone(), *self.frame());
-        move || Self::build(settings, Grid::filled(frame, CellState::Unknown))
+        let (epoch_s, is_dated) = (self.tiles.epoch_s, self.tiles.is_dated);
+        move || {
+            let mut mapper = Self::build(settings, Grid::filled(frame, CellState::Unknown));
+            mapper.set_epoch(epoch_s, is_dated);
+            mapper
+        }
     }
 
     /// Goes on in a larger map, with the range noise of `settings`; its other settings are those of this mapper. The new
@@ -191,6 +221,7 @@ impl Mapper {
         if is_larger {
             self.cells.grow(&growth);
             self.things.grow(&growth);
+            self.tiles.grow(&growth);
             self.points.clear();
         }
         self.occupancy.grow(&growth, settings);
@@ -215,7 +246,7 @@ impl Mapper {
                 self.project(laser);
                 self.cells.open(time);
                 self.occupancy.update(&self.scan, &mut self.cells);
-                self.things.update(&self.cells, &Calendar::Relative);
+                self.things.update(&self.cells, self.tiles.dates());
             }
             Observation::Cells(exact) => {
                 self.points.clear();
@@ -224,6 +255,7 @@ impl Mapper {
             }
         }
         self.expected_changes.note(&self.cells);
+        self.tiles.note(&self.cells);
         Ok(())
     }
 
@@ -273,6 +305,7 @@ impl Mapper {
         let mut values = self.cells.values();
         values.extend(self.occupancy.values());
         values.push(value(&mut self.expected_changes));
+        values.push(self.tiles.value());
         values.push(last_value(&mut self.things));
         values
     }
@@ -286,6 +319,32 @@ impl Mapper {
     /// The things that are known, in the order in which they were found.
     pub fn things(&self) -> &[Thing] {
         self.things.all()
+    }
+
+    /// Says when readings have the time 0, in seconds since 1970-01-01 UTC; by default they count from there. `is_dated`: whether
+    /// the readings that follow say when they were made; otherwise they have no hours.
+    pub fn set_epoch(&mut self, epoch_s: f64, is_dated: bool) {
+        self.tiles.set_epoch(epoch_s, is_dated);
+    }
+
+    /// The time at which readings have the time 0, in seconds since 1970-01-01 UTC.
+    pub fn epoch_s(&self) -> f64 {
+        self.tiles.epoch_s
+    }
+
+    /// How the times of readings, [since the epoch](Self::epoch_s), relate to local civil time.
+    pub fn calendar(&self) -> &Calendar {
+        self.tiles.calendar()
+    }
+
+    /// The tile at a cell; `None` if nothing ever changed there, or without [`MapperSettings::clocks`].
+    pub fn tile(&self, index: usize) -> Option<&Tile> {
+        self.tiles.at(self.frame().cell(index))
+    }
+
+    /// All tiles in which something ever changed.
+    pub fn tiles(&self) -> impl Iterator<Item = &Tile> {
+        self.tiles.iter()
     }
 
     /// The position and the size of the map.

@@ -5,6 +5,7 @@
 
 mod convert;
 mod fleet;
+mod forecast;
 mod grid_spec;
 mod localizer;
 mod logs;
@@ -25,6 +26,8 @@ mod _native {
     use crate::convert::{SnapshotError, WorldError};
     #[pymodule_export]
     use crate::fleet::Fleet;
+    #[pymodule_export]
+    use crate::forecast::Forecast;
     #[pymodule_export]
     use crate::grid_spec::GridSpec;
     #[pymodule_export]

@@ -2,7 +2,7 @@
 //! layers are.
 
 use crate::output::{OutputError, write_file};
-use interfaces::CellState;
+use interfaces::{CellState, Grid};
 use mapper::Mapper;
 use serde_json::json;
 use std::path::Path;
@@ -55,7 +55,7 @@ pub fn write(path: &Path, mapper: &Mapper) -> Result<(), OutputError> {
     });
     write_file(&path.with_extension("json"), |file| writeln!(file, "{about:#}"))?;
     write_file(path, |file| {
-        file.write_all(&npy_header(shape))?;
+        file.write_all(&npy_header(&shape))?;
         for (_, value) in LAYERS {
             for index in 0..frame.len() {
                 let value = if mapper.was_ever_seen(index) { value(&learned, index) } else { f64::NAN };
@@ -66,13 +66,26 @@ pub fn write(path: &Path, mapper: &Mapper) -> Result<(), OutputError> {
     })
 }
 
+/// Writes the values of all cells as an array of 32-bit numbers with the shape (rows, columns); row 0 has the lowest y.
+///
+/// # Errors
+///
+/// When the file cannot be written.
+pub fn write_values(path: &Path, values: &Grid<f64>) -> Result<(), OutputError> {
+    let frame = values.frame();
+    write_file(path, |file| {
+        file.write_all(&npy_header(&[frame.height(), frame.width()]))?;
+        values.cells().iter().try_for_each(|value| file.write_all(&(*value as f32).to_le_bytes()))
+    })
+}
+
 /// What stands before the numbers in a file of NumPy: a magic number, the version 1.0, and a dictionary in the syntax of
 /// Python, filled with spaces to a multiple of 64 bytes (`numpy.lib.format`). The numbers are little-endian and have 32
 /// bits; the last index varies fastest.
-fn npy_header([layers, rows, columns]: [usize; 3]) -> Vec<u8> {
+fn npy_header(shape: &[usize]) -> Vec<u8> {
     const BEFORE: usize = 10;
-    let mut text =
-        format!("{{'descr': '<f4', 'fortran_order': False, 'shape': ({layers}, {rows}, {columns}), }}");
+    let shape = shape.iter().map(usize::to_string).collect::<Vec<_>>().join(", ");
+    let mut text = format!("{{'descr': '<f4', 'fortran_order': False, 'shape': ({shape}), }}");
     // The longest text has 128 bytes: three numbers of 20 digits.
     let length = (BEFORE + text.len() + 1).next_multiple_of(64) - BEFORE;
     text += &" ".repeat(length - 1 - text.len());
@@ -114,7 +127,7 @@ mod tests {
         // Another order or another name is another schema.
         insta::assert_snapshot!(about.replace(char::is_whitespace, ""), @r#"{"layers":["blocked","rate_hz","rate_low_hz","rate_high_hz","blocked_probability","change_probability","recency_s","observed_s"],"origin_m":[0.0,0.0],"resolution_m":1.0,"schema":1}"#);
         for shape in [[8, 1, 1], [8, 600, 12_345], [8, 1_000_000, 1]] {
-            let header = npy_header(shape);
+            let header = npy_header(&shape);
             assert!(header.len().is_multiple_of(64) && header.ends_with(b"\n"), "{shape:?}");
             assert!(split(&header).0.contains(&format!("{shape:?}").replace(['[', ']'], "")), "{shape:?}");
         }

@@ -16,6 +16,7 @@
 mod change_log;
 mod error;
 mod extent;
+mod forecast;
 mod known_place;
 mod masks;
 mod median;
@@ -38,6 +39,7 @@ mod turns;
 
 pub use change_log::ChangeLog;
 pub use error::SurveyError;
+pub use forecast::Forecast;
 pub use known_place::KnownPlace;
 pub use masks::{CHANGE_HORIZON_S, keepout_mask, speed_mask};
 pub use passes::{PassError, Stage};

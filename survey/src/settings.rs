@@ -18,10 +18,11 @@ pub struct SurveySettings {
 }
 
 impl SurveySettings {
-    /// The default settings of a robot whose log says nothing of itself.
+    /// The default settings of a robot whose log says nothing of itself. Hours are those of UTC.
     pub fn of(pose: PoseMode) -> Self {
         let source = Source { pose, ..Source::default() };
-        let Settings { filter, mapper, .. } = Settings::of(&source);
+        let Settings { filter, mut mapper, .. } = Settings::of(&source);
+        (mapper.clocks, mapper.time_zone) = (true, Some("UTC".to_owned()));
         Self { pose, resolution_m: source.cell_m, filter, mapper }
     }
 

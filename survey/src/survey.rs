@@ -167,12 +167,27 @@ impl Survey {
         Ok(Some(replay))
     }
 
+    /// The first log up to this one that does not say when it was recorded; from it on, nothing has hours.
+    pub fn undated(&self, log: usize) -> Option<&LogEntry> {
+        let mut entries = self.logs.iter().take(log + 1).map(|log| &log.entry);
+        entries.find(|entry| entry.begin_s.is_none() || !entry.has_times)
+    }
+
+    /// Tells a mapper the date of the readings of a log.
+    fn date(&self, mapper: &mut Mapper, log: usize) {
+        let begin_s = self.logs.first().and_then(|first| first.entry.begin_s);
+        mapper.set_epoch(begin_s.unwrap_or_default(), self.undated(log).is_none());
+    }
+
     /// The map of the logs before, which grows by what a new one has seen.
     fn mapper_for(&mut self, number: usize, begin_s: f64) -> Result<Mapper, SurveyError> {
         let (settings, frame) = (self.settings_of(number), self.frame_of(number)?);
         let Some(Robot { mut mapper, .. }) = self.robot.take() else {
-            return Ok(Mapper::new(&settings.mapper, frame)?);
+            let mut mapper = Mapper::new(&settings.mapper, frame)?;
+            self.date(&mut mapper, number);
+            return Ok(mapper);
         };
+        self.date(&mut mapper, number);
         if self.logs[number].used == 0 {
             if let Some(growth) = mapper.grow(&settings.mapper, frame)? {
                 self.changes.grow(&growth);

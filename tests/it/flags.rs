@@ -12,7 +12,7 @@ struct Program {
     wrong: &'static [(&'static str, &'static str)],
 }
 
-const PROGRAMS: [Program; 7] = [
+const PROGRAMS: [Program; 8] = [
     Program {
         path: env!("CARGO_BIN_EXE_four_rooms"),
         arguments: "--quiet",
@@ -64,10 +64,25 @@ const PROGRAMS: [Program; 7] = [
             ("--noise", "10"),
             ("--shadow-angle", "90"),
             ("--estimator", "guess"),
+            ("--time-zone", "Mars/Olympus"),
             ("--out", "a.log"),
             ("--mcap", "folder"),
             ("--state", "folder"),
             ("--state-every", "0"),
+        ],
+    },
+    Program {
+        path: env!("CARGO_BIN_EXE_predict"),
+        arguments: concat!(env!("CARGO_MANIFEST_DIR"), "/tests/states/8/map_log.state"),
+        wrong: &[
+            ("--at", "teatime"),
+            ("--place", "here"),
+            ("--route", "folder"),
+            ("--graph", "folder"),
+            ("--from", "there"),
+            ("--speed", "0"),
+            ("--radius", "wide"),
+            ("--out", "a.log"),
         ],
     },
     Program {

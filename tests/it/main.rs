@@ -24,6 +24,7 @@ mod map_log_state;
 mod memory;
 mod output;
 mod pose;
+mod predict;
 mod prior;
 mod schemas;
 mod screen;

@@ -119,7 +119,7 @@ pub(crate) fn standing_log(begin_s: f64, seconds: u32) -> String {
 }
 
 /// One scan of this log. What is `near` is 0.35 m wide.
-fn standing_line(time_s: f64, near: bool) -> String {
+pub(crate) fn standing_line(time_s: f64, near: bool) -> String {
     let range_m = |beam: u32| match f64::from(beam).to_radians().sin_cos() {
         _ if near && (80..100).contains(&beam) => 1.0,
         (ahead, aside) => (4.0 / ahead.max(1e-9)).min(3.0 / aside.abs().max(1e-9)),

@@ -13,6 +13,8 @@ const GRID_WORLD: &str = env!("CARGO_BIN_EXE_grid_world");
 const HOUSE_TRIALS: &str = env!("CARGO_BIN_EXE_house_trials");
 /// The program for logs.
 const MAP_LOG: &str = env!("CARGO_BIN_EXE_map_log");
+/// The program for predictions.
+const PREDICT: &str = env!("CARGO_BIN_EXE_predict");
 /// The program for state files.
 const STATE_FILE: &str = env!("CARGO_BIN_EXE_state_file");
 
@@ -57,6 +59,11 @@ impl Run {
     /// The same folder, for `map_log`.
     pub(crate) fn with_map_log(self) -> Self {
         Self { program: MAP_LOG, ..self }
+    }
+
+    /// The same folder, for `predict`.
+    pub(crate) fn with_predict(self) -> Self {
+        Self { program: PREDICT, ..self }
     }
 
     /// The same folder, for `state_file`.

@@ -11,18 +11,22 @@ use std::fs;
 use std::path::PathBuf;
 
 /// The results whose keys are listed: a name, and the file of a short run.
-fn results() -> [(&'static str, Value); 3] {
+fn results() -> [(&'static str, Value); 4] {
     let robot = Run::new();
     robot.goes_well("--world house --duration 20 --pose localized --quiet --no-rrd");
     let logs = Run::new().with_map_log();
     logs.write("a.log", &standing_log(1.7e9, 120));
-    logs.goes_well("a.log --quiet --no-rrd");
+    logs.goes_well("a.log --quiet --no-rrd --state a.state");
+    let logged = logs.summary().0;
+    let predicted = logs.with_predict();
+    predicted.goes_well("a.state --place 1,0");
     let trials = Run::grid();
     trials.goes_well("--quiet --steps 200 --trials 2 --strategy recency --strategy random --estimator paper");
     let read = |run: &Run, file: &str| serde_json::from_slice(&fs::read(run.out(file)).unwrap()).unwrap();
     [
         ("four_rooms", read(&robot, "summary.json")),
-        ("map_log", read(&logs, "summary.json")),
+        ("map_log", logged),
+        ("predict", predicted.summary().0),
         ("report", read(&trials, "report.json")),
     ]
 }

@@ -19,6 +19,8 @@ pub enum Layer {
     Recency,
     /// The probability that the cell is blocked now or later, for cells that change: the map as predicted.
     Predicted(Ahead),
+    /// For how long a look at the cell says more than its usual hours, h.
+    Expiry,
 }
 
 /// The time ahead of a predicted map.
@@ -102,7 +104,7 @@ impl Scale {
 }
 
 impl Layer {
-    /// Every layer, in the order in which they are shown.
+    /// Every layer of a run, in the order in which they are shown.
     pub const ALL: [Self; 8] = [
         Self::Occupancy,
         Self::Interval,
@@ -132,6 +134,7 @@ impl Layer {
             Self::Predicted(Ahead::Minute) => "predicted_60",
             Self::Predicted(Ahead::TenMinutes) => "predicted_600",
             Self::Predicted(Ahead::Hour) => "predicted_3600",
+            Self::Expiry => "expiry",
         }
     }
 
@@ -145,6 +148,7 @@ impl Layer {
             Self::Predicted(ahead) => {
                 format!("Probability of being blocked {}", ahead.words(unit))
             }
+            Self::Expiry => "Expiry: hours for which a look counts".into(),
         }
     }
 
@@ -157,6 +161,7 @@ impl Layer {
             // From a block that moves in every step to a block that stands for hundreds of steps.
             (Self::Interval, TimeUnit::Step) => (5.0, 2000.0, &[5.0, 20.0, 50.0, 200.0, 500.0, 2000.0]),
             (Self::ChangeProbability | Self::Predicted(_), _) => (0.0, 1.0, &[0.0, 0.25, 0.5, 0.75, 1.0]),
+            (Self::Expiry, _) => (0.01, 672.0, &[0.01, 0.1, 1.0, 10.0, 100.0]),
             (Self::Recency, TimeUnit::Second) => (1.0, 1000.0, &[1.0, 10.0, 100.0, 1000.0]),
             (Self::Recency, TimeUnit::Step) => (1.0, 5000.0, &[1.0, 10.0, 100.0, 1000.0]),
         };
@@ -181,14 +186,29 @@ impl Layer {
             }
             return classes;
         }
-        for index in mapper.changed() {
+        self.classes_of(mapper, unit, |index| {
             let interval = mapper.interval(index);
-            if interval.is_finite() {
-                classes[index] = scale.class(match self {
-                    Self::Interval => interval,
-                    Self::Predicted(ahead) => mapper.blocked_probability_later(index, ahead.time()),
-                    _ => mapper.change_probability(index),
-                });
+            interval.is_finite().then(|| match self {
+                Self::Interval => interval,
+                Self::Predicted(ahead) => mapper.blocked_probability_later(index, ahead.time()),
+                Self::Expiry => f64::NAN,
+                _ => mapper.change_probability(index),
+            })
+        })
+    }
+
+    /// The class of every cell, by the values of those that ever changed.
+    pub fn classes_of(
+        self,
+        mapper: &Mapper,
+        unit: TimeUnit,
+        value: impl Fn(usize) -> Option<f64>,
+    ) -> Vec<u8> {
+        let mut classes: Vec<u8> = mapper.states().cells().iter().map(|&state| plain(state)).collect();
+        let Some(scale) = self.scale(unit) else { return classes };
+        for index in mapper.changed() {
+            if let Some(value) = value(index) {
+                classes[index] = scale.class(value);
             }
         }
         classes
@@ -212,7 +232,9 @@ impl Layer {
             // Without the lightest part, which is similar to a free cell, and without grays, as those of a wall.
             (Self::ChangeProbability, _) => gradient(colorous::YELLOW_ORANGE_RED, 0.25 + 0.75 * position),
             (Self::Predicted(_), _) => gradient(colorous::RED_PURPLE, 0.3 + 0.7 * position),
-            (Self::Recency | Self::Occupancy, _) => gradient(colorous::VIRIDIS, 1.0 - position),
+            (Self::Recency | Self::Occupancy | Self::Expiry, _) => {
+                gradient(colorous::VIRIDIS, 1.0 - position)
+            }
         }
     }
 
@@ -226,7 +248,7 @@ impl Layer {
         match self {
             Self::Occupancy => vec![(FREE, "free"), (BLOCKED, "blocked"), (UNKNOWN, "never seen")],
             Self::Recency => vec![(UNKNOWN, "never seen")],
-            Self::Interval | Self::ChangeProbability | Self::Predicted(_) => {
+            Self::Interval | Self::ChangeProbability | Self::Predicted(_) | Self::Expiry => {
                 vec![(FREE, "free, no change"), (BLOCKED, "blocked, no change"), (UNKNOWN, "never seen")]
             }
         }

@@ -11,6 +11,7 @@ mod statistics;
 mod transition_kernel;
 
 pub use cell_map::CellMap;
+pub(crate) use cell_map::Slot;
 pub use estimators::{
     ChoGarciaMolina, Estimator, EstimatorChoice, Imac, Paper, PaperAll, SharedPrior, TwoState, TwoStateGaps,
 };

@@ -16,6 +16,7 @@ mod tests;
 mod week;
 
 use calendar::Civil;
+pub(crate) use calendar::Dates;
 pub use calendar::{Calendar, DAY_S, UnknownZone};
 use guard::{Forecast, Guard, MODELS};
 use long_stays::LongStays;
@@ -114,6 +115,16 @@ impl Clock {
             let error_of_last = if last.is_blocked { 1.0 - p } else { p };
             error_of_last > p * (1.0 - p) + (p - schedule) * (p - schedule)
         })
+    }
+
+    /// The number of days with a look.
+    pub fn days(&self) -> u32 {
+        self.models.schedule.days_seen()
+    }
+
+    /// The number of half hours, of all days, with a look.
+    pub fn half_hours(&self) -> f64 {
+        self.models.schedule.slots()
     }
 
     /// Whether a look is news. The time of one that is not counts nevertheless.

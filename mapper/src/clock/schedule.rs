@@ -208,6 +208,16 @@ impl Schedule {
         self.present.slots += f64::from(u8::from(before.is_none()));
     }
 
+    /// The number of days with a look.
+    pub(super) fn days_seen(&self) -> u32 {
+        self.days as u32 + u32::from(self.present.slots > 0.0)
+    }
+
+    /// The number of slots with a look, of all days.
+    pub(super) fn slots(&self) -> f64 {
+        self.past.slots + self.present.slots
+    }
+
     /// The share of the time that the thing is blocked, with one slot of a half before all looks.
     pub(super) fn mean(&self) -> f64 {
         let Total { blocked, slots } = self.past;

@@ -1,28 +1,37 @@
 //! The map as predicted: the probability that a cell is blocked now.
 
 use crate::change::{CellStatistics, TransitionRates};
-use interfaces::CellState;
 
-/// The probability that a cell that changes is blocked at a time `elapsed` after it was observed in `state`:
-/// π + (x₀ − π) M, where π is the share of the time that the cell is blocked, x₀ the observed state, and M the memory,
-/// which fades from 1 to 0. `variation` is the squared coefficient of variation CV² of free and of blocked stays.
+/// A cell that changes, as predicted by its own statistics: the probability that it is blocked at a time `elapsed` after it was
+/// observed in a state is π + (x₀ − π) M, where π is the share of the time that the cell is blocked, x₀ the observed state
+/// (0 or 1), and M the memory, which fades from 1 to 0. `variation` is the squared coefficient of variation CV² of free and of
+/// blocked stays.
 ///
 /// Somebody who looks at a random time sees the rest of a stay. In a Markov chain the rest lasts as long on average as a
 /// whole stay, D. For stays of any distribution it lasts D (1 + CV²) / 2 (the inspection paradox): only half a stay where
 /// stays are equal. The memory therefore fades 2 / (1 + CV²) times as fast as that of the chain.
-pub(super) fn blocked_probability(
-    rates: TransitionRates,
-    seen: &CellStatistics,
-    variation: [f64; 2],
-    state: CellState,
-    elapsed: f64,
-) -> f64 {
-    let share = share_blocked(rates, seen);
-    // The state with the shorter stays decides how the memory fades.
-    let variation = variation[0] * share + variation[1] * (1.0 - share);
-    let memory = rates.memory(elapsed, 2.0 / (1.0 + variation));
-    let observed = f64::from(u8::from(state == CellState::Blocked));
-    (share + (observed - share) * memory).clamp(0.0, 1.0)
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Chain {
+    share: f64,
+    pub(super) memory: f64,
+}
+
+impl Chain {
+    pub(super) fn new(
+        rates: TransitionRates,
+        seen: &CellStatistics,
+        variation: [f64; 2],
+        elapsed: f64,
+    ) -> Self {
+        let share = share_blocked(rates, seen);
+        // The state with the shorter stays decides how the memory fades.
+        let variation = variation[0] * share + variation[1] * (1.0 - share);
+        Self { share, memory: rates.memory(elapsed, 2.0 / (1.0 + variation)) }
+    }
+
+    pub(super) fn blocked_probability(self, observed: f64) -> f64 {
+        (self.share + (observed - self.share) * self.memory).clamp(0.0, 1.0)
+    }
 }
 
 /// The share of the time that the cell is blocked: the share of the chain or that of the time in view, whichever is
@@ -40,6 +49,7 @@ fn share_blocked(rates: TransitionRates, seen: &CellStatistics) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use interfaces::CellState;
     use rand_chacha::ChaCha8Rng;
     use rand_chacha::rand_core::SeedableRng;
     use rand_distr::{Distribution, Gamma};
@@ -57,7 +67,8 @@ mod tests {
             block_events: 1 << 30,
             ..Default::default()
         };
-        blocked_probability(RATES, &seen, [variation; 2], state, elapsed_s)
+        let observed = f64::from(u8::from(state == CellState::Blocked));
+        Chain::new(RATES, &seen, [variation; 2], elapsed_s).blocked_probability(observed)
     }
 
     /// The share of the times at which a simulated cell is blocked, `elapsed_s` after it was seen in each state. Stays

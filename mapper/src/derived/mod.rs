@@ -8,7 +8,7 @@ mod expected_changes;
 mod gamma;
 
 use crate::Mapper;
-use blocked_probability::blocked_probability;
+use blocked_probability::Chain;
 use change_probability::change_probability;
 pub(crate) use credible_interval::CredibleInterval;
 pub(crate) use expected_changes::ExpectedChanges;
@@ -101,7 +101,8 @@ impl Mapper {
         self.blocked_probability_later(index, 0.0)
     }
 
-    /// The probability that the cell is blocked this much time after the last reading: the map as predicted from now.
+    /// The probability that the cell is blocked this much time after the last reading: the map as predicted from now. With
+    /// [clocks](crate::MapperSettings::clocks), the hours of its tile count, the more the longer they are known.
     pub fn blocked_probability_later(&self, index: usize, time: f64) -> f64 {
         let state = self.cells.state(index);
         let last_seen = match state {
@@ -113,9 +114,17 @@ impl Mapper {
         if !self.cells.has_changed(index) || is_seen_then && state != CellState::Unknown {
             return last_seen;
         }
+        self.predicted(index, last_seen, time).unwrap_or(last_seen)
+    }
+
+    /// What predicts a cell that changes and was last seen as `observed`, 0 or 1: its chain, and the clock of its tile.
+    fn predicted(&self, index: usize, observed: f64, time: f64) -> Option<f64> {
         let seen = self.statistics(index);
-        self.estimator().transition_rates(&seen).map_or(last_seen, |rates| {
-            blocked_probability(rates, &seen, self.cells.variation(), state, self.recency(index) + time)
-        })
+        let rates = self.estimator().transition_rates(&seen)?;
+        let chain = Chain::new(rates, &seen, self.cells.variation(), self.recency(index) + time);
+        let alone = chain.blocked_probability(observed);
+        let slot = self.cells.slot(index)?;
+        let by_tile = self.tiles.of_cell(self.frame().cell(index), slot, self.time() + time);
+        Some(by_tile.map_or(alone, |tile| tile.blocked_probability(observed, chain.memory, alone)))
     }
 }

@@ -3,7 +3,7 @@
 use super::segment::Segment;
 use crate::Growth;
 use crate::change::{CellMap, CellStatistics, RateDistribution};
-use crate::clock::{Calendar, Clock, Look};
+use crate::clock::{Clock, Dates, Look};
 use crate::derived::CredibleInterval;
 use interfaces::{CellState, GridFrame};
 use nalgebra::Point2;
@@ -157,7 +157,7 @@ impl Door {
     }
 
     /// Counts, from what the open reading shows of the door.
-    pub(super) fn observe(&mut self, cells: &CellMap, calendar: &Calendar) {
+    pub(super) fn observe(&mut self, cells: &CellMap, dates: Dates) {
         let Some(blocked) = blocked_share(&self.watch.closed, cells) else { return };
         let now_s = cells.time();
         self.pass_to(now_s);
@@ -167,12 +167,12 @@ impl Door {
             _ => return,
         };
         if self.is_open.is_none_or(|was_open| was_open == is_open) {
-            self.confirm(now_s, is_open, calendar);
+            self.confirm(now_s, is_open, dates);
         } else {
             let moved_s = *self.watch.moved_s.get_or_insert(now_s);
             if now_s - moved_s >= SURE_S {
                 self.count(is_open);
-                self.tell_clock(moved_s, is_open, calendar);
+                self.tell_clock(moved_s, is_open, dates);
             }
         }
     }
@@ -187,11 +187,11 @@ impl Door {
     }
 
     /// The door is as it was.
-    fn confirm(&mut self, now_s: f64, is_open: bool, calendar: &Calendar) {
+    fn confirm(&mut self, now_s: f64, is_open: bool, dates: Dates) {
         self.is_open = Some(is_open);
         (self.watch.is_unbroken, self.watch.moved_s) = (true, None);
         if self.watch.clock_s.is_none_or(|last_s| now_s - last_s >= LOOK_S) {
-            self.tell_clock(now_s, is_open, calendar);
+            self.tell_clock(now_s, is_open, dates);
         }
     }
 
@@ -199,9 +199,9 @@ impl Door {
         self.watch.closed.iter_mut().for_each(|cell| *cell = growth.index(*cell as usize) as u32);
     }
 
-    fn tell_clock(&mut self, time_s: f64, is_open: bool, calendar: &Calendar) {
+    fn tell_clock(&mut self, time_s: f64, is_open: bool, dates: Dates) {
         self.watch.clock_s = Some(time_s);
-        self.clock.observe(Look { time_s, is_blocked: is_open }, calendar);
+        dates.observe(&mut self.clock, Look { time_s, is_blocked: is_open });
     }
 
     fn count(&mut self, is_open: bool) {

@@ -19,7 +19,7 @@ mod segment;
 
 use crate::Growth;
 use crate::change::CellMap;
-use crate::clock::Calendar;
+use crate::clock::Dates;
 pub use door::{Door, DoorStatistics, Leaf};
 use doorway::Doorway;
 pub use furniture::{Furniture, Place};
@@ -74,7 +74,7 @@ impl Things {
     }
 
     /// Learns from the open reading.
-    pub(crate) fn update(&mut self, cells: &CellMap, calendar: &Calendar) {
+    pub(crate) fn update(&mut self, cells: &CellMap, dates: Dates) {
         let (frame, now_s) = (cells.frame(), cells.time());
         self.changes.add(cells);
         while let Some(change) = self.changes.next(cells) {
@@ -88,7 +88,7 @@ impl Things {
         }
         for thing in &mut self.things {
             if let ThingKind::Door(door) = &mut thing.kind {
-                door.observe(cells, calendar);
+                door.observe(cells, dates);
             }
         }
     }

@@ -17,4 +17,5 @@ mod saved;
 mod scan_filter;
 mod skipped;
 mod things;
+mod tiles;
 mod walls;

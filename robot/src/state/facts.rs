@@ -1,3 +1,4 @@
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -65,6 +66,25 @@ impl Facts {
 
     fn push(&mut self, name: &str, value: String, is_default: bool) {
         self.0.push(Fact { name: name.to_owned(), value, is_default });
+    }
+
+    /// Some settings of which every field was added, with this name; `None` if they are not settings of this program. A field
+    /// that was not added has its default.
+    pub fn settings<S: DeserializeOwned>(&self, name: &str) -> Option<S> {
+        let mut settings = Value::Object(serde_json::Map::new());
+        for (path, text) in self.iter() {
+            let Some(path) = path.strip_prefix(name).and_then(|path| path.strip_prefix('.')) else {
+                continue;
+            };
+            let field = path.split('.').fold(&mut settings, |table, field| &mut table[field]);
+            *field = serde_json::from_str(text).unwrap_or_else(|_| Value::String(text.to_owned()));
+        }
+        serde_json::from_value(settings).ok()
+    }
+
+    /// The value of a fact.
+    pub fn get(&self, name: &str) -> Option<&str> {
+        self.iter().find(|(other, _)| *other == name).map(|(_, value)| value)
     }
 
     /// All names and values.

@@ -17,7 +17,8 @@ use xxhash_rust::xxh3::xxh3_64_with_seed;
 /// Count up when the body, or a snapshot in it, changes; `tests/states` of the workspace holds examples of every version
 /// that is read.
 const VERSION: u32 = 8;
-/// The earliest version that is read. Since then, what is saved of a localizer has changed (7), and a mapper has things (8).
+/// The earliest version that is read. Since then, what is saved of a localizer has changed (7), and a mapper has tiles and
+/// things (8).
 const EARLIEST: u32 = 6;
 /// The first version with what is saved of a localizer now.
 const LOCALIZER_SINCE: u32 = 7;
@@ -101,6 +102,11 @@ impl State {
     /// Whether there is a snapshot of a part.
     pub fn has(&self, name: &str) -> bool {
         self.sections.iter().any(|section| section.name == name)
+    }
+
+    /// What the snapshot of a part belongs to.
+    pub fn facts(&self, name: &str) -> Option<&Facts> {
+        self.sections.iter().find(|section| section.name == name).map(|section| &section.facts)
     }
 
     /// Whether the file has a version of the format in which a localizer was saved otherwise.

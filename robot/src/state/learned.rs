@@ -6,11 +6,35 @@ use crate::{Pilot, Robot};
 use interfaces::{GridFrame, LaserReading};
 use localizer::LocalizerSettings;
 use mapper::{Mapper, MapperSettings};
+use nalgebra::Point2;
 
 const MAPPER: &str = "mapper";
 const LOCALIZATION: &str = "localization";
 /// Absent in state files with an older format.
 const FILTER: &str = "filter";
+
+/// The mapper that a robot has left in a state, whatever its settings are.
+///
+/// # Errors
+///
+/// When the state has none, or one of another program.
+pub fn saved_mapper(state: &State) -> Result<Mapper, StateError> {
+    let facts = state.facts(MAPPER).ok_or_else(|| StateError::NoSection(MAPPER.to_owned()))?;
+    let numbers = |name, separator| -> Option<[f64; 2]> {
+        let (a, b) = facts.get(name)?.trim_matches(['(', ')']).split_once(separator)?;
+        Some([a.parse().ok()?, b.parse().ok()?])
+    };
+    let frame = || {
+        let resolution_m = facts.get("map.resolution_m")?.parse().ok()?;
+        let ([x, y], [width, height]) = (numbers("map.origin_m", ", ")?, numbers("map.cells", " × ")?);
+        GridFrame::new(Point2::new(x, y), resolution_m, width as usize, height as usize)
+    };
+    let misfit = || StateError::OtherContent(MAPPER.to_owned());
+    let settings: MapperSettings = facts.settings("mapper").ok_or_else(misfit)?;
+    let mut mapper = Mapper::new(&settings, frame().ok_or_else(misfit)?).map_err(|_| misfit())?;
+    mapper.restore(state.section(MAPPER, facts)?).map_err(|_| misfit())?;
+    Ok(mapper)
+}
 
 /// The settings that what was learned belongs to.
 #[derive(Clone, Debug, PartialEq)]
@@ -106,7 +130,7 @@ mod tests {
     use crate::{Localization, NoPilot};
     use interfaces::{Scan, Twist};
     use localizer::{Localizer, LoopClosingLocalizer, PoseState};
-    use nalgebra::{Isometry2, Point2};
+    use nalgebra::Isometry2;
 
     /// A scan in a square room of 4 m, or where nothing is near.
     fn reading(time_s: f64, is_in_room: bool) -> LaserReading {

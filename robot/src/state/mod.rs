@@ -16,4 +16,4 @@ mod learned;
 pub use facts::Facts;
 pub use file::{LoadError, StateFile, earlier_name, read_state};
 pub use format::{State, StateError};
-pub use learned::{LearnedFacts, LearnedSnapshot};
+pub use learned::{LearnedFacts, LearnedSnapshot, saved_mapper};

@@ -1,15 +1,16 @@
 //! The command line.
 
 use crate::logs_in_order::Source;
+use crate::survey_state_file::Loaded;
 use anyhow::ensure;
 use clap::Parser;
-use curious::flags::{folder, number, output_file};
+use curious::flags::{folder, number, output_file, time_zone};
 use curious::program::{duration_s, one_of, pose_mode};
 use interfaces::PoseMode;
 use logs::TopicChoice;
 use mapper::{EstimatorChoice, NoReturn};
 use std::path::PathBuf;
-use survey::{LogEntry, SavedLogs, SurveySettings};
+use survey::{LogEntry, SurveySettings};
 
 /// Maps the logs of a robot: where the place changes, how often, and when last.
 ///
@@ -104,6 +105,11 @@ pub(crate) struct Args {
     #[arg(long, default_value = "two-state-gaps", value_parser = one_of(EstimatorChoice::all(), EstimatorChoice::name), help_heading = "Map")]
     pub(crate) estimator: EstimatorChoice,
 
+    /// The time zone of the place, by its IANA name as Europe/Berlin: people and doors have hours by its clocks, with summer time
+    /// [default: that of the state, otherwise UTC]
+    #[arg(long, value_name = "ZONE", value_parser = time_zone, help_heading = "Map")]
+    pub(crate) time_zone: Option<String>,
+
     /// The folder for all results
     #[arg(long, value_name = "DIR", default_value = "map_log_out", value_parser = folder(), help_heading = "Output")]
     pub(crate) out: PathBuf,
@@ -157,15 +163,15 @@ impl Args {
     pub(crate) fn settings(
         &self,
         sources: &[Source],
-        saved: Option<&SavedLogs>,
+        saved: Option<&Loaded>,
     ) -> anyhow::Result<SurveySettings> {
-        let earlier = saved.map(SavedLogs::logs).unwrap_or_default();
+        let earlier = saved.map(|saved| saved.logs.logs()).unwrap_or_default();
         let given = sources.iter().map(|source| &source.entry);
         let mut logs: Vec<&LogEntry> = earlier.iter().map(|log| &log.entry).collect();
         logs.extend(given.filter(|given| earlier.iter().all(|log| log.entry.content != given.content)));
         let stands = logs.iter().all(|log| log.stands);
         let default = match saved {
-            Some(saved) => saved.pose,
+            Some(saved) => saved.logs.pose,
             None if stands => PoseMode::Exact,
             None => PoseMode::Localized,
         };
@@ -179,6 +185,8 @@ impl Args {
         settings.filter.no_return = self.no_return;
         settings.filter.min_shadow_angle_rad = self.shadow_angle.to_radians();
         settings.mapper.estimator = self.estimator.clone();
+        let saved_zone = saved.and_then(Loaded::time_zone);
+        settings.mapper.time_zone = self.time_zone.clone().or(saved_zone).or(settings.mapper.time_zone);
         if let Some(noise_m) = self.noise {
             settings.set_noise(noise_m);
         }

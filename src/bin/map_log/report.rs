@@ -73,7 +73,7 @@ fn overview(summary: &Summary) -> Markup {
             @if let Some(duration_s) = summary.duration_s { " in " (length_of(duration_s)) }
             @if let Some(begin_s) = summary.begin_s { ", from " (date(begin_s)) " on" }
             ", " (format!("{:.0}", summary.trajectory_m)) " m travelled, "
-            (format!("{:.0}", summary.seen_m2)) " m² seen. "
+            (format!("{:.0}", summary.seen_m2)) " m² seen. Hours of people and doors: " (summary.hours) ". "
             (percent(summary.changed_share)) " of this area changed at least once, in " (summary.place_count) " places. "
             @if summary.scans_left_out > 0 {
                 (summary.scans_left_out) " scans were left out, because it is not certain from where they were taken."

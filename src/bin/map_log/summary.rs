@@ -16,7 +16,7 @@ use survey::{Place, Survey, SurveySettings, places};
 /// The number of places in the summary and in the report.
 const MAX_PLACES: usize = 20;
 /// The version of the layout of `summary.json`; count up when a key is renamed, removed or changes its meaning.
-const SCHEMA: u32 = 1;
+const SCHEMA: u32 = 2;
 
 /// The content of `summary.json`.
 #[derive(Clone, Debug, Serialize)]
@@ -44,6 +44,8 @@ pub(crate) struct Summary {
     /// The time of the first scan in seconds since the epoch (1970-01-01 UTC); `null` unless every log says when it was
     /// recorded. Times of changes are relative to this.
     pub(crate) begin_s: Option<f64>,
+    /// Whose hours people and doors have, or why there are none.
+    pub(crate) hours: String,
     /// What beams without a return mean: `learn`, `free` or `ignore`.
     pub(crate) no_return: NoReturn,
     /// The evidence about them, for each scanner of each log that has such beams; empty unless it was learned.
@@ -100,6 +102,7 @@ impl Summary {
             trajectory_m: logs.iter().map(|log| log.travelled.length_m).sum(),
             loops: logs.iter().map(|log| log.loops).sum(),
             begin_s: begin_s(entries()),
+            hours: hours(survey, arguments().iter().any(|argument| argument.starts_with("--time-zone"))),
             no_return: survey.settings_of(logs.len()).filter.no_return,
             no_return_evidence: learned.no_return.clone(),
             scans_left_out: logs.iter().map(|log| log.travelled.uncertain).sum(),
@@ -113,6 +116,16 @@ impl Summary {
             wall_s: 0.0,
             files: Vec::new(),
         })
+    }
+}
+
+/// Whose hours people and doors have.
+fn hours(survey: &Survey, is_chosen: bool) -> String {
+    let (last, zone) = (survey.logs().len(), survey.settings_of(0).mapper.time_zone.unwrap_or_default());
+    match survey.undated(last) {
+        Some(log) => format!("none: {} does not say when it was recorded", log.name),
+        None if zone == "UTC" && !is_chosen => "UTC (--time-zone gives those of the place)".to_owned(),
+        None => zone,
     }
 }
 
@@ -139,6 +152,7 @@ impl fmt::Display for Summary {
             let rate = rate.unwrap_or_default();
             writeln!(f, "    {number}.      at ({:.1}, {:.1}) m{rate}", place.x_m, place.y_m)?;
         }
+        writeln!(f, "  hours     {}", self.hours)?;
         if let Some(why) = &self.rates_withheld {
             writeln!(f, "  rates     withheld: {why}")?;
         }

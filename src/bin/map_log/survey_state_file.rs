@@ -5,10 +5,10 @@ use curious::program::{Failure, open_state, state_failure};
 use curious::terminal::say;
 use robot::state::{Facts, State, StateError, StateFile};
 use std::io::stderr;
-use survey::{SavedLogs, Survey, SurveySettings, SurveyedLog};
+use survey::{SavedLogs, SavedSurvey, Survey, SurveySettings, SurveyedLog};
 
 /// The part of a state with what was learned from logs, beside that with the logs.
-const SURVEY: &str = "survey";
+const SURVEY: &str = SavedSurvey::PART;
 
 /// The state file of a run, or none.
 pub(crate) struct SurveyStateFile {
@@ -56,14 +56,24 @@ impl SurveyStateFile {
         noise_m: Option<f64>,
     ) -> Result<Survey, Failure> {
         let noise = noise_m.map_or_else(|| "learned".to_owned(), |noise_m| noise_m.to_string());
-        let facts = Facts::default().with("--pose", settings.pose.name()).with("--noise", noise);
-        self.facts =
-            facts.with_learned_settings("survey", settings, Some(&SurveySettings::of(settings.pose)));
+        let default = SurveySettings::of(settings.pose);
+        let facts = |settings| {
+            let facts = Facts::default().with("--pose", default.pose.name()).with("--noise", &noise);
+            facts.with_learned_settings("survey", settings, Some(&default))
+        };
+        self.facts = facts(settings);
+        let mut expected = self.facts.clone();
+        if loaded.as_ref().is_some_and(|loaded| loaded.time_zone().is_none()) {
+            // A state of an earlier version knows no hours: they can be those of any zone.
+            let mut without_zone = settings.clone();
+            without_zone.mapper.time_zone.clone_from(&default.mapper.time_zone);
+            expected = facts(&without_zone);
+        }
         let (settings, learns_noise) = (settings.clone(), noise_m.is_none());
         let (Some(Loaded { state, logs }), Some(file)) = (loaded, &self.file) else {
             return Ok(Survey::new(settings, learns_noise));
         };
-        let learned = state.section(SURVEY, &self.facts).and_then(|learned| {
+        let learned = state.section(SURVEY, &expected).and_then(|learned| {
             let survey = Survey::restored(settings, learns_noise, logs, learned);
             survey.map_err(|_| StateError::OtherContent(SURVEY.to_owned()))
         });
@@ -108,6 +118,11 @@ impl SurveyStateFile {
 }
 
 impl Loaded {
+    /// The time zone of the place.
+    pub(crate) fn time_zone(&self) -> Option<String> {
+        Some(self.state.facts(SURVEY)?.get("survey.mapper.time_zone")?.to_owned())
+    }
+
     fn of(state: State) -> Result<Self, StateError> {
         let logs = SavedLogs::read(state.section(SavedLogs::PART, &Facts::default())?);
         Ok(Self { logs: logs.map_err(|_| StateError::OtherContent(SavedLogs::PART.to_owned()))?, state })

@@ -49,6 +49,9 @@ pub struct SavedSurvey {
 }
 
 impl SavedSurvey {
+    /// The name of the part of a state with what was learned from the logs.
+    pub const PART: &'static str = "survey";
+
     /// Everything that logs have changed, as bytes: the logs, and what was learned from them; settings are not in it.
     pub fn into_snapshot(self) -> (Vec<u8>, Vec<u8>) {
         let Self { pose, place, mapper, changes, logs } = self;
@@ -97,6 +100,7 @@ impl Survey {
             let last = survey.logs.iter().rposition(|log| log.used > 0).ok_or(ValueError)?;
             let settings = survey.settings_of(last);
             let mut mapper = Mapper::new(&settings.mapper, frame).map_err(|_| ValueError)?;
+            survey.date(&mut mapper, last);
             mapper.restore(&bytes)?;
             let poses = Box::new(FoundPoses::new(Vec::new()));
             survey.robot = Some(Robot::new(poses, mapper, NoPilot));

@@ -13,6 +13,7 @@ pub use film::Film;
 use crate::layers::Layer;
 use crate::scene::{Scene, TimeUnit};
 use crate::view::Trail;
+use interfaces::Grid;
 use mapper::Mapper;
 use nalgebra::Point2;
 use panel::Panel;
@@ -80,6 +81,26 @@ pub fn write_all(
 pub fn draw_plan(path: &Path, scene: &Scene) -> Result<(), PictureError> {
     let panel = Panel::of_scene(&scene.frame, scene.unit, plan::entries(scene).len());
     let picture = draw(&scene.title, panel.size(), |area| plan::draw(&panel, area, scene))?;
+    Ok(picture.write(path)?)
+}
+
+/// Draws a layer of the map with other values, to the PNG file `path`; NaN is drawn as what does not change.
+///
+/// # Errors
+///
+/// When the picture cannot be drawn or written.
+pub fn draw_values(
+    path: &Path,
+    (layer, title): (Layer, &str),
+    mapper: &Mapper,
+    values: &Grid<f64>,
+) -> Result<(), PictureError> {
+    let unit = TimeUnit::Second;
+    let panel = Panel::of_layer(mapper.frame(), unit);
+    let classes =
+        layer.classes_of(mapper, unit, |index| Some(values.cells()[index]).filter(|value| !value.is_nan()));
+    let picture =
+        draw(layer.name(), panel.size(), |area| panel.classes(area, (layer, title), &classes, unit))?;
     Ok(picture.write(path)?)
 }
 

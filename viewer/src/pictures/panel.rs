@@ -201,8 +201,19 @@ impl Panel {
         layer: Layer,
         unit: TimeUnit,
     ) -> Result<(), String> {
-        let (chart, legend) = self.axes(area, &layer.title(unit))?;
-        self.cells(&chart, layer, &layer.classes(mapper, unit))?;
+        self.classes(area, (layer, &layer.title(unit)), &layer.classes(mapper, unit), unit)
+    }
+
+    /// Draws the classes of the cells, in the colors of a layer, with its legend.
+    pub(super) fn classes(
+        &self,
+        area: &Area,
+        (layer, title): (Layer, &str),
+        classes: &[u8],
+        unit: TimeUnit,
+    ) -> Result<(), String> {
+        let (chart, legend) = self.axes(area, title)?;
+        self.cells(&chart, layer, classes)?;
         self.frame(&chart)?;
         let mut panel = *self;
         if let Some(scale) = layer.scale(unit) {

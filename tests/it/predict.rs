@@ -1,0 +1,159 @@
+//! `predict`: a place at other times, from a state of `map_log`.
+
+use crate::bad_input::refuses;
+use crate::map_log::{standing_line, standing_log};
+use crate::run::{Run, Summary};
+use serde_json::{Value, json};
+use std::fs;
+use std::path::PathBuf;
+
+/// Monday, 2024-01-01, 0:00 in Berlin.
+const MONDAY_S: f64 = 1_704_063_600.0;
+const DAY_S: f64 = 86_400.0;
+const SAVED: &str = "--quiet --no-rrd --state a.state";
+
+/// What stands 1 m before the laser from 8 to 18 o'clock, seen every two hours on 15 days, from a Monday on.
+fn days() -> String {
+    let looks = (0..15 * 12)
+        .flat_map(|look| (0..20).map(move |second| 7200.0 * f64::from(look) + 600.0 + f64::from(second)));
+    let line =
+        |time_s: f64| standing_line(MONDAY_S + time_s, (8.0..18.0).contains(&(time_s % DAY_S / 3600.0)));
+    looks.map(line).collect()
+}
+
+/// A folder with the state `a.state` of these days.
+fn with_state() -> Run {
+    let run = Run::new().with_map_log();
+    run.write("days.log", &days());
+    run.goes_well(&format!("days.log --time-zone europe/berlin {SAVED}"));
+    assert_eq!(run.summary().text("/hours"), "Europe/Berlin");
+    fs::remove_dir_all(run.path("out")).unwrap();
+    fs::remove_file(run.path("days.log")).unwrap();
+    run.with_predict()
+}
+
+fn feature(kind: &str, properties: Value, coordinates: Option<[f64; 2]>) -> Value {
+    json!({"type": "Feature", "properties": properties, "geometry": {"type": kind, "coordinates": coordinates}})
+}
+
+#[test]
+fn hours_routes_and_graphs_are_predicted() {
+    let run = with_state();
+    let ended = run.goes_well("a.state --at 2024-01-16T13:00 --at 2024-01-16T03:00 --place 1,0 --place 3,-2");
+    for line in [
+        "last reading: Mon 2024-01-15 22:10 CET",
+        "  Tue 2024-01-16 13:00 CET: blocked with a probability of ",
+        "  Usually blocked Mon to Sun ",
+        "Seen in 180 half hours, on 15 days.",
+        "  Nothing ever changed within half a meter: it was always free.",
+    ] {
+        assert!(ended.stdout.contains(line), "{line}: {}", ended.stdout);
+    }
+    let blocked = |number: usize| run.summary().number(&format!("/places/0/blocked/{number}/1"));
+    assert!(blocked(0) > 0.8 && blocked(1) < 0.2, "noon {}, night {}", blocked(0), blocked(1));
+    let expected = [
+        "expiry.npy",
+        "expiry.png",
+        "predicted_1.npy",
+        "predicted_1.pgm",
+        "predicted_1.png",
+        "predicted_1.yaml",
+        "predicted_2.npy",
+        "predicted_2.pgm",
+        "predicted_2.png",
+        "predicted_2.yaml",
+    ];
+    assert_eq!(*run.summary().at("/files"), json!(expected));
+
+    // The way through the thing, and the way around it.
+    run.write("way.csv", "x,y\n0.5,0\n1.6,0\n1.6,-1\n");
+    let node = |id: u64, x: f64, y: f64| feature("Point", json!({"id": id, "frame": "map"}), Some([x, y]));
+    let edge = |id: u64, startid: u64, endid: u64| {
+        let metadata = json!({"aisle": 14});
+        let properties = json!({"id": id, "startid": startid, "endid": endid, "cost": 1.0, "overridable": true, "metadata": metadata});
+        feature("MultiLineString", properties, None)
+    };
+    let nodes = [node(0, 0.5, 0.0), node(1, 2.0, 0.0), node(2, 0.5, -1.0), node(3, 2.0, -1.0)];
+    let features = [&nodes[..], &[edge(10, 0, 1), edge(11, 0, 2), edge(12, 2, 3)]].concat();
+    run.write(
+        "g.json",
+        &json!({"type": "FeatureCollection", "name": "graph", "features": features}).to_string(),
+    );
+    run.goes_well("a.state --at 13:00 --route way.csv --graph g.json --from 0");
+    let graph: Value = serde_json::from_slice(&fs::read(run.out("graph.geojson")).unwrap()).unwrap();
+    let [through, first, around] = [4, 5, 6].map(|edge| graph["features"][edge]["properties"].clone());
+    let open = |edge: &Value| edge["metadata"]["open_probability"].as_f64().unwrap();
+    assert!(open(&through) < 0.2 && open(&around) == 1.0, "{through}, {around}");
+    assert!((through["cost"].as_f64().unwrap() - 1.5 / open(&through)).abs() < 1e-9);
+    assert_eq!((&first["cost"], &around["cost"]), (&json!(1.0), &json!(1.5)));
+    assert_eq!((&around["overridable"], &around["metadata"]["aisle"]), (&json!(false), &json!(14)));
+    let after_s =
+        |edge: &Value| edge["metadata"]["arrival_s"].as_f64().unwrap() - run.summary().number("/times_s/0");
+    assert_eq!((after_s(&through), after_s(&around)), (0.0, 2.0));
+    assert_eq!(graph["name"], "graph");
+    // 1.1 m at 0.5 m/s.
+    let summary = run.summary();
+    assert!(summary.number("/route/1/blocked") > 0.8 && summary.number("/route/2/blocked") == 0.0);
+    assert!((summary.number("/route/1/time_s") - summary.number("/times_s/0") - 2.2).abs() < 1e-6);
+}
+
+#[test]
+fn what_cannot_be_predicted_is_refused_with_a_sentence() {
+    let run = with_state();
+    run.write("way.csv", "0,0\n1,up\n");
+    run.write("g.json", "{\"features\": 3}");
+    let files = &["a.state", "g.json", "way.csv"];
+    let refused = |arguments: &str| refuses(&run, arguments, files);
+    let invalid = refused("a.state --at teatime");
+    let expected = "error: --at: `teatime`: must be a time as +10m, 17:10, \"Tue 17:10\", 2024-01-30T17:10 or 2024-01-30T17:10Z\n";
+    assert_eq!(invalid, expected);
+    assert!(refused("a.state --place 99,0").contains("--place 99,0: it is outside of the map, x from "));
+    assert!(refused("way.csv").contains("way.csv: this is not a state file"));
+    assert!(refused("a.state --route way.csv").contains("way.csv, line 2: a point is `x y` or `time x y`"));
+    assert!(
+        refused("a.state --graph g.json")
+            .contains("g.json: this is no graph of nav2_route: it has no list `features`")
+    );
+}
+
+#[test]
+fn a_state_keeps_its_time_zone_and_an_earlier_one_gets_one() {
+    let run = Run::new().with_map_log();
+    run.write("a.log", &standing_log(1.7e9, 60));
+    run.goes_well(&format!("a.log --time-zone Europe/Berlin {SAVED}"));
+    let before = fs::read(run.path("a.state")).unwrap();
+    let refused = run.ends(&format!("a.log --time-zone UTC {SAVED}"));
+    assert_eq!(refused.code, Some(2));
+    let expected = "error: a.state: the state is of another run: `survey.mapper.time_zone` is `Europe/Berlin` there, and `UTC` here\n";
+    assert_eq!(refused.stderr, expected);
+    assert!(fs::read(run.path("a.state")).unwrap() == before);
+    run.goes_well(&format!("a.log {SAVED}"));
+    assert_eq!(run.summary().text("/settings/mapper/time_zone"), "Europe/Berlin");
+    let refused = run.ends("a.log --time-zone Europe/Berlim");
+    assert!(
+        refused.code == Some(2) && refused.stderr.contains("perhaps Europe/Berlin;"),
+        "{}",
+        refused.stderr
+    );
+
+    // A log without a date has no hours, nor has what an earlier version has learned.
+    run.write("b.log", &standing_log(10.0, 60));
+    run.goes_well("b.log --quiet --no-rrd --state b.state");
+    assert_eq!(run.summary().text("/hours"), "none: b.log does not say when it was recorded");
+    let example = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/states/7/map_log.state");
+    fs::copy(example, run.path("c.state")).unwrap();
+    run.write("a.log", &standing_log(1.7e9, 120));
+    run.write("later.log", &standing_log(1.7e9 + DAY_S, 90));
+    run.goes_well("a.log later.log --time-zone Europe/Berlin --quiet --no-rrd --state c.state");
+    let run = run.with_predict();
+    let hours = |state: &str| run.ends(&format!("{state} --at 17:10"));
+    assert!(
+        hours("b.state")
+            .stderr
+            .contains("the state knows no hours (b.log does not say when it was recorded)")
+    );
+    assert_eq!(hours("c.state").code, Some(0));
+    run.goes_well("b.state --at +10m --place 1,0");
+    let Summary(summary) = run.summary();
+    assert_eq!(summary["places"][0]["blocked"].as_array().unwrap().len(), 1);
+}
