@@ -44,7 +44,7 @@ fn hours_routes_and_graphs_are_predicted() {
         "last reading: Mon 2024-01-15 22:10 CET",
         "  Tue 2024-01-16 13:00 CET: blocked with a probability of ",
         "  Usually blocked Mon to Sun ",
-        "Seen in 180 half hours, on 15 days.",
+        " half hours, on 15 days.",
         "  Nothing ever changed within half a meter: it was always free.",
     ] {
         assert!(ended.stdout.contains(line), "{line}: {}", ended.stdout);

@@ -1,7 +1,6 @@
 //! The command line.
 
 use crate::logs_in_order::Source;
-use crate::survey_state_file::Loaded;
 use anyhow::ensure;
 use clap::Parser;
 use curious::flags::{folder, number, output_file, time_zone};
@@ -10,7 +9,7 @@ use interfaces::PoseMode;
 use logs::TopicChoice;
 use mapper::{EstimatorChoice, NoReturn};
 use std::path::PathBuf;
-use survey::{LogEntry, SurveySettings};
+use survey::{LogEntry, SavedLogs, SurveySettings};
 
 /// Maps the logs of a robot: where the place changes, how often, and when last.
 ///
@@ -159,19 +158,20 @@ impl Args {
         }
     }
 
-    /// The settings of the survey of these logs, after the logs of a state.
+    /// The settings of the survey of these logs, after the logs of a state and in its time zone.
     pub(crate) fn settings(
         &self,
         sources: &[Source],
-        saved: Option<&Loaded>,
+        saved: Option<&SavedLogs>,
+        saved_zone: Option<String>,
     ) -> anyhow::Result<SurveySettings> {
-        let earlier = saved.map(|saved| saved.logs.logs()).unwrap_or_default();
+        let earlier = saved.map(SavedLogs::logs).unwrap_or_default();
         let given = sources.iter().map(|source| &source.entry);
         let mut logs: Vec<&LogEntry> = earlier.iter().map(|log| &log.entry).collect();
         logs.extend(given.filter(|given| earlier.iter().all(|log| log.entry.content != given.content)));
         let stands = logs.iter().all(|log| log.stands);
         let default = match saved {
-            Some(saved) => saved.logs.pose,
+            Some(saved) => saved.pose,
             None if stands => PoseMode::Exact,
             None => PoseMode::Localized,
         };
@@ -185,7 +185,6 @@ impl Args {
         settings.filter.no_return = self.no_return;
         settings.filter.min_shadow_angle_rad = self.shadow_angle.to_radians();
         settings.mapper.estimator = self.estimator.clone();
-        let saved_zone = saved.and_then(Loaded::time_zone);
         settings.mapper.time_zone = self.time_zone.clone().or(saved_zone).or(settings.mapper.time_zone);
         if let Some(noise_m) = self.noise {
             settings.set_noise(noise_m);
@@ -203,8 +202,8 @@ mod tests {
     fn the_command_line_is_sound() {
         Args::command().debug_assert();
         let args = Args::parse_from(["map_log", "a.log"]);
-        assert_eq!(args.settings(&[], None).unwrap().pose, PoseMode::Exact);
+        assert_eq!(args.settings(&[], None, None).unwrap().pose, PoseMode::Exact);
         let args = Args::parse_from(["map_log", "a.log", "--pose", "localized"]);
-        assert_eq!(args.settings(&[], None).unwrap(), SurveySettings::default());
+        assert_eq!(args.settings(&[], None, None).unwrap(), SurveySettings::default());
     }
 }

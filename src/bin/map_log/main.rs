@@ -26,7 +26,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 use summary::Summary;
 use survey::{Survey, SurveySettings};
-use survey_state_file::SurveyStateFile;
+use survey_state_file::{Loaded, SurveyStateFile};
 
 fn main() -> ExitCode {
     start(run)
@@ -69,7 +69,9 @@ fn run(args: &Args) -> Result<ExitCode, Failure> {
     check_distinct(&[("--out", out), ("--mcap", mcap), ("--state", state)]).map_err(input)?;
     let (mut state_file, loaded) = SurveyStateFile::open(args)?;
     let given = logs_in_order::open(&args.files, &args.topics(), state_file.is_kept()).map_err(input)?;
-    let settings = args.settings(&given, loaded.as_ref()).map_err(input)?;
+    let (logs, zone) =
+        (loaded.as_ref().map(|loaded| &loaded.logs), loaded.as_ref().and_then(Loaded::time_zone));
+    let settings = args.settings(&given, logs, zone).map_err(input)?;
     let mut survey = state_file.survey(loaded, &settings, args.noise)?;
     let first = given.first().cloned().context("no log is given").map_err(input)?;
     let sources = logs_in_order::continued(given, &mut survey, args.leave_rest).map_err(input)?;
