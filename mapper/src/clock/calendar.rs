@@ -1,4 +1,3 @@
-use super::{Clock, Look};
 use jiff::Timestamp;
 use jiff::tz::TimeZone;
 
@@ -48,21 +47,6 @@ impl Calendar {
             Self::Relative => None,
         }
         .unwrap_or(Civil { time_s, has_hours: false })
-    }
-}
-
-/// How the times of a map relate to local civil time.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Dates<'a> {
-    pub(crate) calendar: &'a Calendar,
-    /// The time of the calendar at which the map has the time 0, s.
-    pub(crate) epoch_s: f64,
-}
-
-impl Dates<'_> {
-    /// A look at the time of the map is one of the clock.
-    pub(crate) fn observe(self, clock: &mut Clock, look: Look) {
-        clock.observe(Look { time_s: self.epoch_s + look.time_s, ..look }, self.calendar);
     }
 }
 

@@ -16,7 +16,6 @@ mod tests;
 mod week;
 
 use calendar::Civil;
-pub(crate) use calendar::Dates;
 pub use calendar::{Calendar, DAY_S, UnknownZone};
 use guard::{Forecast, Guard, MODELS};
 use long_stays::LongStays;
@@ -136,6 +135,21 @@ impl Clock {
         self.last.is_none_or(|last| {
             look.is_blocked != last.is_blocked || look.time_s - last.time_s >= MIN_SPACING_S
         })
+    }
+}
+
+/// How the times of a map relate to local civil time.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Dates<'a> {
+    pub(crate) calendar: &'a Calendar,
+    /// The time of the calendar at which the map has the time 0, s.
+    pub(crate) epoch_s: f64,
+}
+
+impl Dates<'_> {
+    /// A look at the time of the map is one of the clock.
+    pub(crate) fn observe(self, clock: &mut Clock, look: Look) {
+        clock.observe(Look { time_s: self.epoch_s + look.time_s, ..look }, self.calendar);
     }
 }
 

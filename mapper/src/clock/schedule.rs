@@ -1,12 +1,10 @@
 use super::calendar::{Civil, DAY_S};
 use super::simplex;
-use super::week::{UsualSlot, Week};
+use super::week::{SLOTS_OF_WEEK, UsualSlot, Week};
 
 /// Slots of half an hour.
-const SLOTS: usize = 48;
+const SLOTS: usize = SLOTS_OF_WEEK / DAYS;
 const DAYS: usize = 7;
-/// The slots of a week, from Monday 0:00 on.
-pub(super) const SLOTS_OF_WEEK: usize = DAYS * SLOTS;
 const SLOT_S: f64 = DAY_S / SLOTS as f64;
 
 /// Slots are smoothed with a biweight kernel of this half width, slots: a standard deviation of 75 minutes, about as

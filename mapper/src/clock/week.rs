@@ -1,11 +1,9 @@
 //! What is usual in every half hour of the week, as people read it: probabilities with intervals, and the hours of changes.
 
-use super::schedule::SLOTS_OF_WEEK;
-
 /// Half hours from Monday 0:00 to Sunday 24:00, local civil time.
-const SLOTS: usize = SLOTS_OF_WEEK;
+pub(super) const SLOTS_OF_WEEK: usize = 336;
 /// The hours of a slot.
-const SLOT_H: f64 = 168.0 / SLOTS as f64;
+const SLOT_H: f64 = 168.0 / SLOTS_OF_WEEK as f64;
 /// The quantile of the normal distribution for an interval of 90 %.
 const NORMAL_90: f64 = 1.645;
 /// The same for the hours of changes. Days of one weekday repeat each other more than draws with a constant probability do, and
@@ -85,7 +83,7 @@ pub struct Week {
 
 impl Week {
     pub(super) fn new(slot: impl Fn(usize) -> UsualSlot) -> Self {
-        Self { slots: (0..SLOTS).map(slot).collect() }
+        Self { slots: (0..SLOTS_OF_WEEK).map(slot).collect() }
     }
 
     /// The 336 half hours from Monday 0:00 on.
@@ -96,14 +94,14 @@ impl Week {
     /// The times at which the usual state changes, in order: between two half hours in which it is clear what is usual. Empty for a
     /// thing that is usually in one state all week, and for one of which this is not clear.
     pub fn usual_changes(&self) -> Vec<UsualChange> {
-        let clear: Vec<usize> = (0..SLOTS).filter(|slot| self.slots[*slot].is_clear()).collect();
-        let next = clear.iter().skip(1).copied().chain(clear.first().map(|first| first + SLOTS));
+        let clear: Vec<usize> = (0..SLOTS_OF_WEEK).filter(|slot| self.slots[*slot].is_clear()).collect();
+        let next = clear.iter().skip(1).copied().chain(clear.first().map(|first| first + SLOTS_OF_WEEK));
         clear.iter().zip(next).filter_map(|(before, after)| self.change(*before, after)).collect()
     }
 
     /// The change between two clear half hours; the second can be in the next week.
     fn change(&self, before: usize, after: usize) -> Option<UsualChange> {
-        let is_blocked = |slot: usize| self.slots[slot % SLOTS].is_blocked();
+        let is_blocked = |slot: usize| self.slots[slot % SLOTS_OF_WEEK].is_blocked();
         if is_blocked(before) == is_blocked(after) {
             return None;
         }
@@ -122,7 +120,7 @@ impl Week {
 
     /// The hour at which the probability, between the middles of two slots, is one half.
     fn crossing(&self, slot: usize) -> f64 {
-        let [before, after] = [slot - 1, slot].map(|slot| self.slots[slot % SLOTS].probability);
+        let [before, after] = [slot - 1, slot].map(|slot| self.slots[slot % SLOTS_OF_WEEK].probability);
         (slot as f64 - 0.5 + (0.5 - before) / (after - before)) * SLOT_H
     }
 }
