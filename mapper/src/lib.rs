@@ -34,7 +34,7 @@ pub use scan_filter::{NoReturn, NoReturnEvidence, NoReturns, ScanFilter, ScanFil
 use derived::ExpectedChanges;
 use interfaces::{
     CellState, Grid, GridFrame, LaserReading, Observation, Reading, ScanError, SettingsCheck, SettingsError,
-    Transition, ValueError, Values, is_valid_pose, value,
+    Transition, ValueError, Values, if_present, is_valid_pose, value,
 };
 use nalgebra::{Isometry2, Point2};
 
@@ -262,9 +262,10 @@ impl Mapper {
     }
 
     fn values(&mut self) -> Values<'_> {
-        let mut values = self.cells.values();
+        let (mut values, prior) = self.cells.values();
         values.extend(self.occupancy.values());
         values.push(value(&mut self.expected_changes));
+        values.extend(prior.into_iter().map(if_present));
         values
     }
 

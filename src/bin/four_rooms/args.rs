@@ -78,7 +78,7 @@ pub(crate) struct Args {
     pub(crate) speed: Option<f64>,
 
     /// The estimator of the rates of change
-    #[arg(long, default_value = "two-state-gaps", value_parser = one_of(EstimatorChoice::all(), EstimatorChoice::name), help_heading = "Mapper")]
+    #[arg(long, default_value = "shared-prior", value_parser = one_of(EstimatorChoice::all(), EstimatorChoice::name), help_heading = "Mapper")]
     pub(crate) estimator: EstimatorChoice,
 
     /// The occupancy model: steady (static walls rarely change) or naive (every beam counts, as in the paper)

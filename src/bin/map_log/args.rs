@@ -101,7 +101,7 @@ pub(crate) struct Args {
     pub(crate) no_return: NoReturn,
 
     /// The estimator of the rates of change
-    #[arg(long, default_value = "two-state-gaps", value_parser = one_of(EstimatorChoice::all(), EstimatorChoice::name), help_heading = "Map")]
+    #[arg(long, default_value = "shared-prior", value_parser = one_of(EstimatorChoice::all(), EstimatorChoice::name), help_heading = "Map")]
     pub(crate) estimator: EstimatorChoice,
 
     /// The folder for all results
