@@ -24,6 +24,22 @@ impl RateDistribution {
         self.events / self.time
     }
 
+    /// This prior, or for a cell that is too lively for it (a lamp or a fan in a still room) one that says nothing, if that
+    /// explains the cycles better.
+    #[must_use]
+    pub(super) fn or_lively(self, cycles: u32, observed: f64) -> Self {
+        let is_lively = LIVELY.log_evidence(cycles, observed) + libm::log(LIVELY_SHARE)
+            > self.log_evidence(cycles, observed);
+        if cycles > 0 && is_lively { LIVELY } else { self }
+    }
+
+    /// The logarithm of the probability of `cycles` in the time `observed`, but for a term that depends on these alone.
+    fn log_evidence(self, cycles: u32, observed: f64) -> f64 {
+        let (shape, after) = (self.events, self.time + observed);
+        libm::lgamma(shape + f64::from(cycles)) - libm::lgamma(shape) + shape * libm::log(self.time / after)
+            - f64::from(cycles) * libm::log(after)
+    }
+
     /// The distribution after `cycles` more cycles in the time `observed`.
     #[must_use]
     pub fn after(self, cycles: u32, observed: f64) -> Self {
@@ -31,6 +47,10 @@ impl RateDistribution {
     }
 }
 
+/// The share of the cells whose rate the prior of their place says nothing about, and what is known of these: half a cycle per
+/// unit of time, as much as one look says.
+const LIVELY_SHARE: f64 = 1e-3;
+const LIVELY: RateDistribution = RateDistribution { events: 0.5, time: 1.0 };
 /// The number of cycles of all cells together, before any observation: the mean of Jeffreys' posterior of a rate.
 const FIRST_CYCLES: f64 = 0.5;
 /// The width of a class of distances to the nearest wall, m, and the number of classes: the last is that of cells with

@@ -100,7 +100,8 @@ pub(crate) struct Args {
     #[arg(long, default_value = "learn", value_parser = one_of(NoReturn::all(), NoReturn::name), help_heading = "Map")]
     pub(crate) no_return: NoReturn,
 
-    /// The estimator of the rates of change
+    /// The estimator of the rates of change: shared-prior predicts best where doors, people and robots move
+    /// (docs/estimators.md)
     #[arg(long, default_value = "shared-prior", value_parser = one_of(EstimatorChoice::all(), EstimatorChoice::name), help_heading = "Map")]
     pub(crate) estimator: EstimatorChoice,
 
