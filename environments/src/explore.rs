@@ -188,7 +188,7 @@ impl Task for Explore {
         picture.cells(self.robot.mapper.frame(), |index| match self.robot.mapper.states().cells()[index] {
             CellState::Unknown => Some([160, 160, 165]),
             CellState::Blocked => Some([70, 70, 75]),
-            CellState::Free if self.robot.mapper.rate(index) > 0.0 => Some([245, 180, 90]),
+            CellState::Free if self.robot.mapper.acting_rate(index) > 0.0 => Some([245, 180, 90]),
             CellState::Free => None,
         });
         picture.robots(self.world.fleet(), &[self.world.spec().driven_index()]);

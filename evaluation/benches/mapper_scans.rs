@@ -9,7 +9,7 @@ mod house;
 use divan::Bencher;
 use house::House;
 use interfaces::LaserReading;
-use mapper::{Mapper, MapperSettings, OccupancyChoice};
+use mapper::{EstimatorChoice, Mapper, MapperSettings, OccupancyChoice};
 
 /// The number of scans in a round; the next round repeats them at later times.
 const SCANS: u32 = 2000;
@@ -19,16 +19,19 @@ fn main() {
     divan::main();
 }
 
-#[divan::bench(sample_count = 4000, sample_size = 1, args = [("steady", 360, false), ("naive", 360, false),
-    ("steady", 720, false), ("naive", 720, false), ("steady", 360, true), ("steady", 720, true)])]
-fn update(bencher: Bencher, (occupancy, beams, clocks): (&str, usize, bool)) {
+#[divan::bench(sample_count = 4000, sample_size = 1, args = [
+    ("steady", "shared-prior", 360, false), ("steady", "shared-prior", 360, true), ("steady", "two-state-gaps", 360, false),
+    ("naive", "shared-prior", 360, false), ("steady", "shared-prior", 720, false), ("steady", "shared-prior", 720, true),
+    ("steady", "two-state-gaps", 720, false), ("naive", "shared-prior", 720, false)])]
+fn update(bencher: Bencher, (occupancy, estimator, beams, clocks): (&str, &str, usize, bool)) {
     let occupancy = OccupancyChoice::named(occupancy).unwrap();
+    let estimator = EstimatorChoice::named(estimator).unwrap();
     let mut house = House::new(0.1, 0.0, 0.0, beams, 1);
     let mut readings: Vec<LaserReading> = (0..SCANS)
         .map(|scan| f64::from(scan) * PERIOD_S)
         .map(|time_s| house.reading(time_s, house.tour(time_s), &[]))
         .collect();
-    let settings = MapperSettings { occupancy, clocks, ..MapperSettings::default() };
+    let settings = MapperSettings { occupancy, estimator, clocks, ..MapperSettings::default() };
     let mut mapper = Mapper::new(&settings, house.frame).unwrap();
     let mut next = 0;
     bencher.bench_local(|| {

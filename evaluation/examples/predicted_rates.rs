@@ -1,10 +1,10 @@
 //! How well rates predict: explained Poisson deviance of the events after the map was frozen.
 //!
 //! The map of a curious robot is frozen at the given time, and compared with the true events up to three times this time.
-//! Columns: the estimator in use; the shared prior after the same observations; the estimator against the constant known at
-//! the freeze; a full view until then. Then, at the freeze: log error, the same of range, AUC, and the share of the true
-//! rates inside the 50 % and the 90 % interval. Then the predicted map 1 and 10 minutes ahead: Brier score, that of the
-//! state last seen, log score, calibration error.
+//! Columns: explained deviance of the estimator; the same against the constant known at the freeze; a full view until then.
+//! Then, at the freeze: log error, the same of range, AUC, the share of the true rates inside the 50 % and the 90 % interval;
+//! of tiles, the log error of passages per hour and the hits of the busiest tenth. Then the predicted map 1 and 10 minutes ahead:
+//! Brier score, that of the state last seen, of the share of time blocked, of true chains, calibration error.
 //!
 //! ```text
 //! cargo run -p curious-evaluation --example predicted_rates -- MINUTES ESTIMATOR [WORLD.toml:]SEED..
@@ -12,10 +12,9 @@
 //! ```
 
 use agent::Policy;
-use evaluation::metrics::{FrozenRates, StateScores, interval_scores, rate_scores};
+use evaluation::metrics::{FrozenRates, StateScores, interval_scores, passage_scores, rate_scores};
 use evaluation::physics_trial::{self, PhysicsTrial};
-use interfaces::CellState;
-use mapper::{EstimatorChoice, Mapper, RateDistribution};
+use mapper::EstimatorChoice;
 use sim::physics::WorldSpec;
 use std::error::Error;
 
@@ -55,42 +54,30 @@ fn scores(
     let mut trial = PhysicsTrial::new(spec, seed, &settings, None, pilot)?;
     trial.run(freeze_s)?;
     let (mapper, truth) = (&trial.robot.mapper, trial.world.truth());
-    let prior = shared_prior(mapper);
-    let with_prior = |index: usize| {
-        let seen = mapper.statistics(index);
-        prior.map_or(0.0, |prior| prior.after(seen.cycles(), seen.observed()).mean())
-    };
-    let [in_use, shared] =
-        [FrozenRates::of(mapper, truth), FrozenRates::estimated(mapper, truth, with_prior)];
+    let frozen = FrozenRates::of(mapper, truth);
     let (rates, intervals) = (rate_scores(mapper, truth), interval_scores(mapper, truth));
+    let passages = passage_scores(mapper, truth);
     trial.run(3.0 * freeze_s)?;
-    let [in_use, shared] = [in_use, shared].map(|frozen| frozen.scores(trial.world.truth()));
+    let frozen = frozen.scores(trial.world.truth());
     let forecasts = trial.observer.forecasts.scores();
     let mut row = vec![
-        in_use.predictive_deviance,
-        shared.predictive_deviance,
-        in_use.predictive_deviance_known,
-        in_use.predictive_deviance_ceiling,
+        frozen.predictive_deviance,
+        frozen.predictive_deviance_known,
+        frozen.predictive_deviance_ceiling,
         rates.log_error,
         rates.log_error_of_range,
         rates.rate_auc,
         intervals.inside_50,
         intervals.inside_90,
+        passages.log_error_busy,
+        passages.busiest_tenth_hit,
     ];
-    for StateScores { brier, brier_last_seen, log_score, calibration_error } in
-        [forecasts.states_1min, forecasts.states_10min]
+    let states = [forecasts.states_1min, forecasts.states_10min];
+    for StateScores { brier, brier_last_seen, brier_mean, brier_true_chains, calibration_error, .. } in states
     {
-        row.extend([brier, brier_last_seen, log_score, calibration_error]);
+        row.extend([brier, brier_last_seen, brier_mean, brier_true_chains, calibration_error]);
     }
     Ok(row)
-}
-
-/// The prior of all traversable cells, whatever estimator is in use.
-fn shared_prior(mapper: &Mapper) -> Option<RateDistribution> {
-    let states = mapper.states().cells().iter().enumerate();
-    let seen = states.map(|(index, state)| (state, mapper.statistics(index)));
-    let traversable = seen.filter(|(state, seen)| **state == CellState::Free || seen.events() > 0);
-    RateDistribution::shared(traversable.map(|(_, seen)| (seen.cycles(), seen.observed())))
 }
 
 fn print_row(name: &str, row: &[Option<f64>]) {

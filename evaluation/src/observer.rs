@@ -82,7 +82,7 @@ impl Observer {
         self.latency.observe(truth, mapper, reading, &laser);
         self.things.observe(world.obstacle_events(), truth.frame(), mapper, reading, &laser);
         self.true_chains.observe(truth);
-        self.forecasts.observe(mapper, truth);
+        self.forecasts.observe(mapper, truth, Some(&self.true_chains));
         if mapper.readings().is_multiple_of(SAMPLE_EVERY) {
             self.changing.sample(mapper, truth);
         }

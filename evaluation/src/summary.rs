@@ -3,8 +3,8 @@
 mod words;
 
 use crate::metrics::{
-    Age, ChangingScores, Delays, ForecastScores, IntervalScores, MapScores, PoseScores, PredictedScores,
-    RateScores, ReachableScores, ThingReport,
+    Age, ChangingScores, Delays, ForecastScores, IntervalScores, MapScores, PassageScores, PoseScores,
+    PredictedScores, RateScores, ReachableScores, ThingReport,
 };
 use mapper::Mapper;
 use robot::GoalCount;
@@ -82,6 +82,8 @@ pub struct RunResults {
     pub forecasts: ForecastScores,
     /// The credible intervals of the rates.
     pub intervals: IntervalScores,
+    /// The estimated passages per tile compared with the true ones.
+    pub passages: PassageScores,
     /// The estimated rates compared with the true rates.
     #[serde(flatten)]
     pub rates: RateScores,

@@ -13,8 +13,8 @@ const WORLD: &str = "world";
 const CONTENT: &str = "content";
 const PILOT: &str = "pilot";
 const MEASUREMENTS: &str = "measurements";
-/// Absent before the first forecast, and in a state file that was written before forecasts existed.
-const FORECASTS: &str = "forecasts";
+/// Absent before the first forecast, and in a state file that was written before forecasts of three horizons existed.
+const FORECASTS: &str = "forecasts of three horizons";
 
 /// What the state of a run belongs to.
 #[derive(Clone, Debug)]

@@ -41,7 +41,7 @@ pub use scan::{Scan, ScanError};
 pub use settings::{SettingsCheck, SettingsError};
 pub use state::{CellState, Event, Transition};
 pub use values::{
-    Value, ValueError, Values, converted, from_bytes, last_value, read_value, read_values, restore, runs,
-    snapshot, to_bytes, value, write_value, write_values,
+    Value, ValueError, Values, converted, from_bytes, if_present, last_value, read_value, read_values,
+    restore, runs, snapshot, to_bytes, value, write_value, write_values,
 };
 pub use world::World;

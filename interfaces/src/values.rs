@@ -106,6 +106,23 @@ pub fn converted<'a, P: ?Sized, T: Serialize + DeserializeOwned + 'a>(
     Box::new(Converted(part, save, load))
 }
 
+/// A value at the end of a part that snapshots of earlier versions end before: it stays as it is then.
+pub fn if_present<'a>(value: Box<dyn Value + 'a>) -> Box<dyn Value + 'a> {
+    struct IfPresent<'a>(Box<dyn Value + 'a>);
+
+    impl Value for IfPresent<'_> {
+        fn write(&self, bytes: &mut Vec<u8>) -> Result<(), ValueError> {
+            self.0.write(bytes)
+        }
+
+        fn read(&mut self, bytes: &mut &[u8]) -> Result<(), ValueError> {
+            if bytes.is_empty() { Ok(()) } else { self.0.read(bytes) }
+        }
+    }
+
+    Box::new(IfPresent(value))
+}
+
 /// The [`Values`] of fields, and after a semicolon those of parts that list their own.
 #[macro_export]
 macro_rules! values {

@@ -18,7 +18,7 @@ impl ChangingMap for Mapper {
     }
 
     fn rate(&self, index: usize) -> f64 {
-        Mapper::rate(self, index)
+        self.acting_rate(index)
     }
 }
 

@@ -41,7 +41,7 @@ pub use tiles::Tile;
 use derived::ExpectedChanges;
 use interfaces::{
     CellState, Grid, GridFrame, LaserReading, Observation, Reading, ScanError, SettingsCheck, SettingsError,
-    Transition, ValueError, Values, is_valid_pose, last_value, value,
+    Transition, ValueError, Values, if_present, is_valid_pose, last_value, value,
 };
 use nalgebra::{Isometry2, Point2};
 use things::Things;
@@ -302,11 +302,12 @@ impl Mapper {
     }
 
     fn values(&mut self) -> Values<'_> {
-        let mut values = self.cells.values();
+        let (mut values, prior) = self.cells.values();
         values.extend(self.occupancy.values());
         values.push(value(&mut self.expected_changes));
         values.push(self.tiles.value());
         values.push(last_value(&mut self.things));
+        values.extend(prior.into_iter().map(if_present));
         values
     }
 

@@ -9,6 +9,7 @@ use evaluation::trials::{
     Experiment, GridRobot, Metric, PhysicsRobot, Trial, TrialStep, TrialStrategy, TrialWorld, run_trial,
 };
 use interfaces::Values;
+use mapper::{EstimatorChoice, MapperSettings};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -188,20 +189,20 @@ pub(crate) fn trial<'py>(
         Some(strategy) => strategy_of(strategy, &error)?,
         None => TrialStrategy::Agent(Policy::default()),
     }];
-    let estimators = vec![match estimator {
-        Some(name) => name.parse().map_err(value_error)?,
-        None => mapper::MapperSettings::default().estimator,
-    }];
+    let estimator = estimator.map(str::parse::<EstimatorChoice>).transpose().map_err(value_error)?;
+    let estimators = |default: MapperSettings| vec![estimator.unwrap_or(default.estimator)];
     let (seconds, steps) = (("seconds", seconds), ("steps", steps));
     let trial = match World::of(py, world, robot)? {
         World::Physics(spec) => {
             let length = length(seconds, steps, "physics", SECONDS)?;
             let (worlds, robot) = (vec![spec], PhysicsRobot::default());
+            let estimators = estimators(robot::default_mapper());
             run(py, &Experiment { worlds, estimators, strategies, trials: 1, seed, length, robot }, &error)
         }
         World::Grid(spec) => {
             let length = length(steps, seconds, "grid", STEPS)?;
             let (worlds, robot) = (vec![(*spec).clone()], GridRobot::default());
+            let estimators = estimators(MapperSettings::default());
             run(py, &Experiment { worlds, estimators, strategies, trials: 1, seed, length, robot }, &error)
         }
     }?;

@@ -4,7 +4,6 @@ use crate::output::{OutputError, write_file};
 use mapper::{Door, Leaf, Mapper, ThingKind};
 use nalgebra::Point2;
 use serde::Serialize;
-use std::io::Write;
 use std::path::Path;
 
 /// The probability with which the interval contains the number of openings per hour.

@@ -31,7 +31,7 @@ pub use messages::{Level, Message};
 pub use pilot::{GoalCount, NoPilot, Pilot, StrategyState};
 pub use robot::{Robot, Turn};
 pub use session::Session;
-pub use settings::{LOCAL_STEPS, Settings, Source};
+pub use settings::{LOCAL_STEPS, Settings, Source, default_mapper};
 pub use tour::Tour;
 
 use interfaces::{Reading, World};

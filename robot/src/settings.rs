@@ -6,7 +6,7 @@ use agent::{Agent, AgentSettings, Policy};
 use controller::{Controller, DiffDrive, DiffDriveSettings};
 use interfaces::{CellState, Grid, GridFrame, LaserReading, PoseMode, Purpose, RandomStream, SettingsError};
 use localizer::{GivenPoses, Localizer, LocalizerSettings, LoopClosingLocalizer, Start, Switch};
-use mapper::{Mapper, MapperSettings, NoReturn, ScanFilter, ScanFilterSettings};
+use mapper::{Mapper, MapperSettings, NoReturn, ScanFilter, ScanFilterSettings, SharedPrior};
 use nalgebra::Isometry2;
 use serde::Serialize;
 
@@ -85,6 +85,12 @@ pub struct Settings {
     pub max_step_s: f64,
 }
 
+/// The default settings of the mapper of a robot with a laser. Its rates are those of the estimator that predicts best where
+/// doors, people and robots move; the default of a mapper alone, `two-state-gaps`, is best for blocks in a grid world.
+pub fn default_mapper() -> MapperSettings {
+    MapperSettings { estimator: SharedPrior.into(), ..MapperSettings::default() }
+}
+
 impl Settings {
     /// The default settings for a source.
     pub fn of(source: &Source) -> Self {
@@ -92,7 +98,7 @@ impl Settings {
             Some(noise_m) => noise_m.clamp(NOISE_M[0], NOISE_M[1]),
             None => UNKNOWN_NOISE_M[usize::from(source.pose != PoseMode::Exact)],
         };
-        let mut mapper = MapperSettings { max_gap: HIDING_S, ..MapperSettings::default() };
+        let mut mapper = MapperSettings { max_gap: HIDING_S, ..default_mapper() };
         mapper.steady.range_noise_std_m = noise_m;
         let mut agent = AgentSettings {
             patch_cells: (PATCH_M / source.cell_m).round().max(1.0) as _,

@@ -54,7 +54,7 @@ impl TrialKind for Houses {
     const NAMED: &[&str] = &[];
     const GENERATED: u64 = 8;
     const STRATEGIES: [&str; 5] = ["curious", "recency", "poisson", "random", "information-gain"];
-    const ESTIMATORS: &[&str] = &["two-state-gaps"];
+    const ESTIMATORS: &[&str] = &["shared-prior"];
     const TRIALS: &str = "1";
     const MAX_STEPS: &str = "15";
 

@@ -103,7 +103,8 @@ pub struct TrialArgs<K: TrialKind> {
     #[arg(long, default_values = K::STRATEGIES, value_parser = strategies(), help_heading = "Comparison")]
     strategy: Vec<TrialStrategy>,
 
-    /// The estimator of the rates of change. Can be repeated
+    /// The estimator of the rates of change: two-state-gaps is best for blocks, shared-prior for doors, people and robots. Can be
+    /// repeated
     #[arg(long, default_values = K::ESTIMATORS.iter().copied(), value_parser = one_of(EstimatorChoice::all(), EstimatorChoice::name), help_heading = "Comparison")]
     estimator: Vec<EstimatorChoice>,
 
@@ -238,6 +239,6 @@ mod tests {
         TrialArgs::<Houses>::command().debug_assert();
         let args = TrialArgs::<Houses>::parse_from(["house_trials"]);
         assert_eq!(args.max_steps, PhysicsRobot::default().max_steps);
-        assert_eq!(args.estimator, [EstimatorChoice::default()]);
+        assert_eq!(args.estimator, [robot::default_mapper().estimator]);
     }
 }

@@ -167,8 +167,8 @@ fn a_limit_on_the_size_of_files_costs_no_result() {
     let run = Run::new();
     let program = run.command("--duration 20m --quiet");
     let mut limited = std::process::Command::new("sh");
-    // 8 MB: enough for every result, not for the recording.
-    limited.arg("-c").arg("ulimit -f 16000 && exec \"$0\" \"$@\"").arg(program.get_program());
+    // 10 MB: enough for every result (every free cell has a rate), not for the recording.
+    limited.arg("-c").arg("ulimit -f 20000 && exec \"$0\" \"$@\"").arg(program.get_program());
     let ended = Ended::from(limited.args(program.get_args()).current_dir(run.path("")).output().unwrap());
     assert_eq!(ended.code, Some(1), "{ended:?}");
     let expected = "error: cannot write the recording out/unfinished_run/four_rooms.rrd: File too large";

@@ -42,6 +42,7 @@ fn a_bag_becomes_a_page_maps_masks_and_numbers() {
         "speed_mask.pgm",
         "speed_mask.yaml",
         "summary.json",
+        "things.json",
         "trajectory.png",
         "trajectory.tum",
     ];

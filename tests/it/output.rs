@@ -30,6 +30,7 @@ fn the_output_folder_is_complete() {
             "predicted.png",
             "recency.png",
             "summary.json",
+            "things.json",
             "trajectory.png",
             "trajectory.tum",
             "trajectory_true.tum",
@@ -48,7 +49,7 @@ fn the_summary_says_what_was_run_and_how_it_went() {
     let choice = ["world", "drive", "strategy", "estimator", "occupancy", "ended_by"];
     assert_eq!(
         choice.map(|key| summary.text(&format!("/{key}"))),
-        ["four rooms", "agent", "curious", "two-state-gaps", "steady", "duration"]
+        ["four rooms", "agent", "curious", "shared-prior", "steady", "duration"]
     );
     assert_eq!(summary.number("/seed"), 0.0);
     assert!((summary.number("/simulated_s") - 240.0).abs() < 1e-6);

@@ -51,7 +51,7 @@ fn a_state_of_something_else_is_refused_and_stays() {
     insta::assert_snapshot!(refused("--world house"), @"error: a.state: the state is of another run: `world` is `four rooms` there, and `house` here");
     insta::assert_snapshot!(refused("--seed 3"), @"error: a.state: the state is of another run: `seed` is `0` there, and `3` here");
     insta::assert_snapshot!(refused("--strategy recency"), @"error: a.state: the state is of another run: `--strategy` is `curious` there, and `recency` here");
-    insta::assert_snapshot!(refused("--estimator paper"), @"error: a.state: the state is of another run: `mapper.estimator` is `two-state-gaps` there, and `paper` here");
+    insta::assert_snapshot!(refused("--estimator paper"), @"error: a.state: the state is of another run: `mapper.estimator` is `shared-prior` there, and `paper` here");
     insta::assert_snapshot!(refused("--occupancy naive"), @"error: a.state: the state is of another run: `mapper.occupancy` is `steady` there, and `naive` here");
     insta::assert_snapshot!(refused("--pose localized"), @"error: a.state: the state is of another run: `pose` is `exact` there, and `localized` here");
     insta::assert_snapshot!(refused("--drive tour"), @"error: a.state: the state is of another run: `--drive` is `agent` there, and `tour` here");

@@ -23,11 +23,12 @@ mod table;
 mod tests;
 
 use clap::Parser;
+use evaluation::metrics::ProbabilityScores;
 use indicatif::ProgressBar;
 use mapper::{Calendar, DAY_S};
 use models::Named;
 use rayon::prelude::*;
-use score::{HORIZONS, Score};
+use score::HORIZONS;
 use series::{LOOKS, Looks, Series};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -59,7 +60,7 @@ const DRAWS: u64 = 3;
 struct Case<'a> {
     series: &'a Series,
     looks: usize,
-    scores: Vec<[Score; HORIZONS.len()]>,
+    scores: Vec<[ProbabilityScores; HORIZONS.len()]>,
 }
 
 /// One line of the JSON file.
@@ -69,8 +70,8 @@ struct Line<'a> {
     looks: &'a str,
     horizon_s: f64,
     model: &'a str,
-    brier: f64,
-    log_score: f64,
+    brier: Option<f64>,
+    log_score: Option<f64>,
     n: usize,
 }
 
@@ -81,7 +82,7 @@ fn evaluate<'a>(series: &'a [Series], history_s: f64, calendar: &Calendar) -> Ve
     let progress = ProgressBar::new(cases.len() as u64);
     let case = |(series, looks): (&'a Series, usize)| {
         let draws = if matches!(LOOKS[looks].1, Looks::Full) { 1 } else { DRAWS };
-        let mut scores = vec![[Score::default(); HORIZONS.len()]; models::all(calendar).len()];
+        let mut scores = vec![[ProbabilityScores::default(); HORIZONS.len()]; models::all(calendar).len()];
         for seed in 0..draws {
             for (sum, mut model) in scores.iter_mut().zip(models::all(calendar)) {
                 let of_draw = score::score(series, LOOKS[looks].1, seed, history_s, &mut model);
@@ -100,7 +101,7 @@ fn lines<'a>(cases: &'a [Case<'_>], models: &'a [Named]) -> impl Iterator<Item =
     cases.iter().flat_map(move |case| {
         let of_models = models.iter().zip(&case.scores);
         of_models.flat_map(move |(model, scores)| {
-            let of_horizons = scores.iter().zip(HORIZONS).filter(|(score, _)| score.n > 0);
+            let of_horizons = scores.iter().zip(HORIZONS).filter(|(score, _)| score.count() > 0);
             of_horizons.map(move |(score, (_, steps))| Line {
                 series: &case.series.name,
                 looks: LOOKS[case.looks].0,
@@ -108,7 +109,7 @@ fn lines<'a>(cases: &'a [Case<'_>], models: &'a [Named]) -> impl Iterator<Item =
                 model: &model.name,
                 brier: score.brier(),
                 log_score: score.log_score(),
-                n: score.n,
+                n: score.count(),
             })
         })
     })

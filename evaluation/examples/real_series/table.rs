@@ -2,8 +2,9 @@
 
 use crate::Case;
 use crate::models::Named;
-use crate::score::{HORIZONS, Score};
+use crate::score::HORIZONS;
 use crate::series::LOOKS;
+use evaluation::metrics::ProbabilityScores;
 use std::collections::BTreeMap;
 use std::io::{self, Write};
 
@@ -15,20 +16,20 @@ pub(crate) struct Table<'a> {
     models: &'a [Named],
     rows: BTreeMap<(&'a str, usize, usize), Vec<f64>>,
     /// All predictions of the clock.
-    clock: Score,
+    clock: ProbabilityScores,
 }
 
 impl<'a> Table<'a> {
     pub(crate) fn new(cases: &[Case<'a>], models: &'a [Named]) -> Self {
         let mut sums: BTreeMap<_, (Vec<f64>, f64)> = BTreeMap::new();
-        let mut clock = Score::default();
+        let mut clock = ProbabilityScores::default();
         for case in cases {
-            for horizon in (0..HORIZONS.len()).filter(|horizon| case.scores[0][*horizon].n > 0) {
+            for horizon in (0..HORIZONS.len()).filter(|horizon| case.scores[0][*horizon].count() > 0) {
                 let (sum, n) = sums
                     .entry((case.series.set(), case.looks, horizon))
                     .or_insert_with(|| (vec![0.0; models.len()], 0.0));
                 for (sum, scores) in sum.iter_mut().zip(&case.scores) {
-                    *sum += scores[horizon].brier();
+                    *sum += scores[horizon].brier().unwrap_or(f64::NAN);
                 }
                 *n += 1.0;
                 clock.merge(&case.scores[0][horizon]);
@@ -91,6 +92,7 @@ impl<'a> Table<'a> {
             out,
             "\nclock: within 2 % of the best baseline in {best:.0} % of the cases, at most 2 % worse than the chain in {chain:.0} %"
         )?;
-        writeln!(out, "clock: expected calibration error {:.3}", self.clock.calibration_error())
+        let calibration_error = self.clock.calibration_error().unwrap_or(f64::NAN);
+        writeln!(out, "clock: expected calibration error {calibration_error:.3}")
     }
 }

@@ -71,7 +71,7 @@ impl FrozenRates {
     }
 
     /// Other rates of the traversable cells of `mapper`, by the index of the cell.
-    pub fn estimated(mapper: &Mapper, truth: &impl GroundTruth, rate: impl Fn(usize) -> f64) -> Self {
+    pub(super) fn estimated(mapper: &Mapper, truth: &impl GroundTruth, rate: impl Fn(usize) -> f64) -> Self {
         let time = truth.elapsed();
         let is_traversable = |&index: &usize| {
             mapper.states().cells()[index] == CellState::Free || mapper.statistics(index).events() > 0

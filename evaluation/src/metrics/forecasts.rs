@@ -2,6 +2,8 @@
 
 use super::deviance::{DevianceScores, FrozenRates};
 use super::mean::Mean;
+use super::prediction::share_blocked;
+use super::{ProbabilityScores, TrueChains};
 use interfaces::{CellState, GroundTruth, TrueState};
 use mapper::Mapper;
 use serde::{Deserialize, Serialize};
@@ -10,13 +12,8 @@ use serde::{Deserialize, Serialize};
 /// 20 minutes and 1 hour are among the times, so that runs of 20 minutes and of 1 hour end with a forecast.
 const FIRST_FREEZE: f64 = 400.0 / 27.0;
 const FACTOR: f64 = 3.0;
-/// How far ahead the states of cells are predicted, s (steps in a grid world): 1 minute and 10 minutes.
-const HORIZONS: [f64; 2] = [60.0, 600.0];
-/// Predictions are limited to probabilities from this to 1 minus this in the log score, which is infinite for a wrong
-/// prediction that was certain.
-const MIN_PROBABILITY: f64 = 1e-3;
-/// The number of classes of equal width in the expected calibration error.
-const CLASSES: usize = 10;
+/// How far ahead the states of cells are predicted, s (steps in a grid world): 1 minute, 10 minutes, 1 hour.
+const HORIZONS: [f64; 3] = [60.0, 600.0, 3600.0];
 /// Times are sums of steps of a physics world, s.
 const SLACK: f64 = 1e-6;
 
@@ -27,7 +24,7 @@ pub struct Forecasts {
     rates: FrozenRates,
     due: Option<f64>,
     scores: DevianceScores,
-    ahead: [Lookahead; 2],
+    ahead: [Lookahead; 3],
 }
 
 /// The quality of forecasts.
@@ -40,6 +37,8 @@ pub struct ForecastScores {
     pub states_1min: StateScores,
     /// The predicted map, 10 minutes ahead.
     pub states_10min: StateScores,
+    /// The predicted map, 1 hour ahead.
+    pub states_1h: StateScores,
 }
 
 /// The quality of the predicted map over swept cells that were known and free, or had changed, when the map was frozen;
@@ -50,6 +49,12 @@ pub struct StateScores {
     pub brier: Option<f64>,
     /// The Brier score of the state that was last seen.
     pub brier_last_seen: Option<f64>,
+    /// The Brier score of the share of the time in view during which the cell was blocked; of the state that was last
+    /// seen if the cell was not in view for any time.
+    pub brier_mean: Option<f64>,
+    /// The Brier score of a Markov chain with the true rates and the true share of the time that the cell is blocked, up to the
+    /// freeze, after the same observations. `None` where it was not measured.
+    pub brier_true_chains: Option<f64>,
     /// The log score of P(blocked), nat: the mean of −ln of the probability of what was true, from 0.001 on.
     pub log_score: Option<f64>,
     /// The expected calibration error of P(blocked): the mean distance of the predicted from the true share of blocked
@@ -58,8 +63,8 @@ pub struct StateScores {
 }
 
 impl Forecasts {
-    /// Observes one reading.
-    pub fn observe(&mut self, mapper: &Mapper, truth: &impl GroundTruth) {
+    /// Observes one reading. `chains` are the true chains, if they are to be compared.
+    pub fn observe(&mut self, mapper: &Mapper, truth: &impl GroundTruth, chains: Option<&TrueChains>) {
         let now = truth.elapsed() + SLACK;
         let mut due = self.due.unwrap_or(FIRST_FREEZE);
         if now >= due {
@@ -73,14 +78,14 @@ impl Forecasts {
             self.due = Some(due);
         }
         for (ahead, horizon) in self.ahead.iter_mut().zip(HORIZONS) {
-            ahead.observe(horizon, mapper, truth);
+            ahead.observe(horizon, mapper, truth, chains);
         }
     }
 
     /// The scores so far.
     pub fn scores(&self) -> ForecastScores {
-        let [states_1min, states_10min] = self.ahead.each_ref().map(Lookahead::scores);
-        ForecastScores { rates: self.scores, states_1min, states_10min }
+        let [states_1min, states_10min, states_1h] = self.ahead.each_ref().map(Lookahead::scores);
+        ForecastScores { rates: self.scores, states_1min, states_10min, states_1h }
     }
 
     /// Whether nothing was frozen yet.
@@ -94,22 +99,29 @@ impl Forecasts {
 struct Lookahead {
     due: Option<f64>,
     cells: Vec<FrozenState>,
-    brier: Mean,
+    predicted: ProbabilityScores,
     last_seen: Mean,
-    log_score: Mean,
-    /// For each class of predictions the mean prediction, and the share of cells that were blocked.
-    classes: [[Mean; 2]; CLASSES],
+    average: Mean,
+    true_chains: Mean,
 }
 
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct FrozenState {
     index: u32,
-    probability: f32,
     is_blocked: bool,
+    predicted: f32,
+    average: f32,
+    true_chain: Option<f32>,
 }
 
 impl Lookahead {
-    fn observe(&mut self, horizon: f64, mapper: &Mapper, truth: &impl GroundTruth) {
+    fn observe(
+        &mut self,
+        horizon: f64,
+        mapper: &Mapper,
+        truth: &impl GroundTruth,
+        chains: Option<&TrueChains>,
+    ) {
         let now = truth.elapsed();
         if now + SLACK < self.due.unwrap_or(horizon) {
             return;
@@ -124,36 +136,40 @@ impl Lookahead {
         let may_change = |&(index, state): &(usize, &CellState)| {
             *state == CellState::Free || *state == CellState::Blocked && mapper.statistics(index).events() > 0
         };
-        let frozen = states.filter(may_change).map(|(index, state)| FrozenState {
-            index: index as u32,
-            probability: mapper.blocked_probability_later(index, horizon) as f32,
-            is_blocked: *state == CellState::Blocked,
+        let frozen = states.filter(may_change).map(|(index, state)| {
+            let (is_blocked, elapsed) = (*state == CellState::Blocked, mapper.recency(index) + horizon);
+            let last_seen = f64::from(u8::from(is_blocked));
+            FrozenState {
+                index: index as u32,
+                is_blocked,
+                predicted: mapper.blocked_probability_later(index, horizon) as f32,
+                average: share_blocked(mapper, index).unwrap_or(last_seen) as f32,
+                true_chain: chains
+                    .map(|chains| chains.blocked_probability(truth, index, last_seen, elapsed) as f32),
+            }
         });
         self.cells = frozen.collect();
         self.due = Some(now + horizon);
     }
 
     fn score(&mut self, cell: FrozenState, is_blocked: bool) {
-        let truth = f64::from(u8::from(is_blocked));
-        let (predicted, last_seen) = (f64::from(cell.probability), f64::from(u8::from(cell.is_blocked)));
-        self.brier.add((predicted - truth).powi(2));
-        self.last_seen.add((last_seen - truth).powi(2));
-        let of_truth = if is_blocked { predicted } else { 1.0 - predicted };
-        self.log_score.add(-libm::log(of_truth.clamp(MIN_PROBABILITY, 1.0 - MIN_PROBABILITY)));
-        let class = ((predicted * CLASSES as f64) as usize).min(CLASSES - 1);
-        self.classes[class][0].add(predicted);
-        self.classes[class][1].add(truth);
+        let square = |predicted: f64| (predicted - f64::from(u8::from(is_blocked))).powi(2);
+        self.predicted.add(f64::from(cell.predicted), is_blocked);
+        self.last_seen.add(square(f64::from(u8::from(cell.is_blocked))));
+        self.average.add(square(f64::from(cell.average)));
+        if let Some(predicted) = cell.true_chain {
+            self.true_chains.add(square(f64::from(predicted)));
+        }
     }
 
     fn scores(&self) -> StateScores {
-        let apart = self.classes.iter().filter_map(|[predicted, truth]| {
-            Some((predicted.get()? - truth.get()?).abs() * truth.count as f64)
-        });
         StateScores {
-            brier: self.brier.get(),
+            brier: self.predicted.brier(),
             brier_last_seen: self.last_seen.get(),
-            log_score: self.log_score.get(),
-            calibration_error: self.brier.get().map(|_| apart.sum::<f64>() / self.brier.count as f64),
+            brier_mean: self.average.get(),
+            brier_true_chains: self.true_chains.get(),
+            log_score: self.predicted.log_score(),
+            calibration_error: self.predicted.calibration_error(),
         }
     }
 }

@@ -12,8 +12,10 @@ mod forecasts;
 mod latency;
 mod map;
 mod mean;
+mod passages;
 mod pose;
 mod prediction;
+mod probability;
 mod rates;
 mod standstill;
 mod things;
@@ -24,8 +26,10 @@ pub use deviance::{DevianceScores, FrozenRates, poisson_deviance};
 pub use forecasts::{ForecastScores, Forecasts, StateScores};
 pub use latency::{Delays, Latency};
 pub use map::{Age, MapScores, ReachableScores, age, map_scores, reachable_scores};
+pub use passages::{PassageScores, passage_scores};
 pub use pose::{PoseErrors, PoseScores};
 pub use prediction::{PredictedScores, Prediction};
+pub use probability::ProbabilityScores;
 pub use rates::{
     IntervalScores, MAX_LOG_ERROR, RateErrors, RateScores, interval_scores, log_error, mean_log_error,
     mean_log_error_of_range, rate_scores,

@@ -49,9 +49,7 @@ impl Prediction {
                 CellState::Free => 0.0,
                 CellState::Blocked => 1.0,
             };
-            let seen = mapper.statistics(index);
-            let watched = seen.watched_free + seen.watched_blocked;
-            let average = if watched > 0.0 { seen.watched_blocked / watched } else { last_seen };
+            let average = share_blocked(mapper, index).unwrap_or(last_seen);
             let model = mapper.blocked_probability(index);
             let square = |prediction: f64| {
                 let error = prediction - f64::from(u8::from(is_blocked));
@@ -82,4 +80,11 @@ impl Prediction {
             brier_true_chains: self.true_chains.get(),
         }
     }
+}
+
+/// The share of the time in view during which a cell was blocked; `None` if the cell was not in view for any time.
+pub(super) fn share_blocked(mapper: &Mapper, index: usize) -> Option<f64> {
+    let seen = mapper.statistics(index);
+    let watched = seen.watched_free + seen.watched_blocked;
+    (watched > 0.0).then(|| seen.watched_blocked / watched)
 }

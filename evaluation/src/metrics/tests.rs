@@ -255,14 +255,15 @@ fn a_map_that_sees_everything_forecasts_a_clock() {
     let mut forecasts = Forecasts::default();
     for step in 0..=1200 {
         show(&world, &mut mapper, |_| true);
-        forecasts.observe(&mapper, world.truth());
+        forecasts.observe(&mapper, world.truth(), None);
         let scores = forecasts.scores();
         assert_eq!(scores.rates.from.is_some(), step >= 45, "the first forecast is from 15 to 45");
         assert_eq!(scores.states_1min.brier.is_some(), step >= 120);
         assert_eq!(scores.states_10min.brier.is_some(), step >= 1200);
         world.act(&Step::Stay);
     }
-    let ForecastScores { rates, states_1min, states_10min } = forecasts.scores();
+    let ForecastScores { rates, states_1min, states_10min, states_1h } = forecasts.scores();
+    assert_eq!(states_1h, StateScores::default(), "the run is shorter");
     assert_eq!((rates.from, rates.to), (Some(400.0), Some(1200.0)));
     assert!(rates.predictive_deviance.unwrap() > 0.95, "{rates:?}");
     assert!(
@@ -270,7 +271,7 @@ fn a_map_that_sees_everything_forecasts_a_clock() {
         "{rates:?}"
     );
     for scores in [states_1min, states_10min] {
-        let StateScores { brier, brier_last_seen, log_score, calibration_error } = scores;
+        let StateScores { brier, brier_last_seen, log_score, calibration_error, .. } = scores;
         assert!(
             (0.0..0.6).contains(&brier.unwrap()) && (0.0..=1.0).contains(&brier_last_seen.unwrap()),
             "{scores:?}"

@@ -205,7 +205,7 @@ fn line_of(thing: &ThingReport) -> String {
 mod tests {
     use super::*;
     use crate::metrics::{
-        ChangingAccuracy, Delays, ForecastScores, IntervalScores, MapScores, ReachableScores,
+        ChangingAccuracy, Delays, ForecastScores, IntervalScores, MapScores, PassageScores, ReachableScores,
     };
     use std::collections::BTreeMap;
 
@@ -216,6 +216,7 @@ mod tests {
             changing: ChangingAccuracy::default().scores(),
             predicted: PredictedScores::default(),
             forecasts: ForecastScores::default(),
+            passages: PassageScores::default(),
             intervals: IntervalScores::default(),
             rates,
             age,

@@ -35,7 +35,7 @@ impl Sampler {
     /// Measures one reading. Returns the sample, if one is due.
     pub(super) fn update<W: TrialWorld>(&mut self, mapper: &Mapper, truth: &W::Truth) -> Option<&Sample> {
         let is_due = has_come(mapper.time(), self.due);
-        self.forecasts.observe(mapper, truth);
+        self.forecasts.observe(mapper, truth, None);
         if is_due || self.readings.is_multiple_of(W::COMPARE_EVERY) {
             self.accuracy.sample(mapper, truth);
             self.prediction.sample(mapper, truth, None);

@@ -1,11 +1,12 @@
-//! A prior of the rate that all traversable cells share, learned from all of them (empirical Bayes).
+//! The prior of the rates of traversable cells, learned from all of them (empirical Bayes).
 //!
-//! The rates of the cells of a place have a gamma distribution. Given its rate, the number of cycles of a cell in view has a
-//! Poisson distribution, so that the numbers of all cells have negative binomial distributions. The gamma distribution
-//! that makes them most probable is the prior of every cell: it is narrow where people walk everywhere (one event says
-//! little about a cell), and wide where a few doors move and the rest stands still.
+//! The rate of a cell has a gamma distribution. Its mean depends on the place: first on the distance to the nearest wall, by the
+//! mean rate that was observed at this distance (people walk in the middle of a room, and seldom along its walls), then on
+//! what was observed around the cell. Its shape is common to all cells, and follows from how far the numbers of cycles differ
+//! from their expectations: cells are alike where people walk everywhere (one event says little about a cell), and differ where a
+//! few doors move and the rest stands still.
 
-use std::collections::BTreeMap;
+use interfaces::GridFrame;
 
 /// A gamma distribution of a cycle rate: what is known after `events` cycles in the time `time`. Its shape is `events`, its
 /// mean `events / time`.
@@ -23,128 +24,177 @@ impl RateDistribution {
         self.events / self.time
     }
 
+    /// This prior, or for a cell that is too lively for it (a lamp or a fan in a still room) one that says nothing, if that
+    /// explains the cycles better.
+    #[must_use]
+    pub(super) fn or_lively(self, cycles: u32, observed: f64) -> Self {
+        let is_lively = LIVELY.log_evidence(cycles, observed) + libm::log(LIVELY_SHARE)
+            > self.log_evidence(cycles, observed);
+        if cycles > 0 && is_lively { LIVELY } else { self }
+    }
+
+    /// The logarithm of the probability of `cycles` in the time `observed`, but for a term that depends on these alone.
+    fn log_evidence(self, cycles: u32, observed: f64) -> f64 {
+        let (shape, after) = (self.events, self.time + observed);
+        libm::lgamma(shape + f64::from(cycles)) - libm::lgamma(shape) + shape * libm::log(self.time / after)
+            - f64::from(cycles) * libm::log(after)
+    }
+
     /// The distribution after `cycles` more cycles in the time `observed`.
     #[must_use]
     pub fn after(self, cycles: u32, observed: f64) -> Self {
         Self { events: self.events + f64::from(cycles), time: self.time + observed }
     }
-
-    /// The prior that cells share, from the number of cycles and the time in view of every cell; `None` without any time.
-    pub fn shared(cells: impl IntoIterator<Item = (u32, f64)>) -> Option<Self> {
-        let mut counts = CycleCounts::default();
-        cells.into_iter().for_each(|(cycles, observed)| counts.add(cycles, observed));
-        counts.fit()
-    }
 }
 
+/// The share of the cells whose rate the prior of their place says nothing about, and what is known of these: half a cycle per
+/// unit of time, as much as one look says.
+const LIVELY_SHARE: f64 = 1e-3;
+const LIVELY: RateDistribution = RateDistribution { events: 0.5, time: 1.0 };
 /// The number of cycles of all cells together, before any observation: the mean of Jeffreys' posterior of a rate.
 const FIRST_CYCLES: f64 = 0.5;
-/// Without observations, the shape of the prior is this, with an uncertainty of a factor of e: the mean of the shapes in
-/// generated houses.
-const USUAL_SHAPE: f64 = 0.3;
-/// The bounds of the shape.
-const SHAPES: [f64; 2] = [0.02, 50.0];
-/// The number of steps of each search: each divides the remaining range by 2, or by 1.6.
-const SEARCH_STEPS: usize = 40;
-/// The position of the exponent and of the first two binary digits of a number, which are the key of a class.
-const CLASS_BITS: u32 = 50;
+/// The width of a class of distances to the nearest wall, m, and the number of classes: the last is that of cells with
+/// 0.6 m or more, where walls make no difference any more.
+const CLASS_M: f64 = 0.05;
+const CLASSES: usize = 12;
+/// The area that a person covers on the way through a room, m²: 5 m times 0.5 m. The cells of this area change together and
+/// count as one observation.
+const PASSAGE_M2: f64 = 2.5;
+/// Without observations the shape is 1, which counts as this many observations.
+const USUAL_SHAPE_WEIGHT: f64 = 10.0;
+/// The bounds of 1 / shape.
+const DISPERSIONS: [f64; 2] = [0.1, 10.0];
+/// Observations around a cell count less by a factor of e per this distance, m, along rows and columns.
+const REACH_M: f64 = 0.2;
 
-/// The cycles and the times in view of cells, in classes: four classes of time per octave.
-#[derive(Clone, Debug, Default, serde::Deserialize, serde::Serialize)]
-pub(super) struct CycleCounts {
-    /// The number of cells with each number of cycles.
-    by_cycles: BTreeMap<u32, u32>,
-    by_time: BTreeMap<u64, TimeClass>,
+/// What was in view of every cell: 0 for a cell that is not traversable.
+#[derive(Clone, Debug)]
+pub(super) struct InView {
+    pub(super) is_traversable: Vec<bool>,
+    pub(super) cycles: Vec<f32>,
+    pub(super) times: Vec<f32>,
 }
 
-/// The cells with a similar time in view.
-#[derive(Clone, Copy, Debug, Default, serde::Deserialize, serde::Serialize)]
-struct TimeClass {
-    cells: f64,
-    cycles: f64,
-    time: f64,
+/// The prior of all traversable cells; the mean rate of each cell is kept apart.
+#[derive(Clone, Copy, Debug, serde::Deserialize, serde::Serialize)]
+pub(super) struct RatePrior {
+    shape: f64,
+    /// The mean rate of all cells: that of cells which became traversable since.
+    mean: f64,
 }
 
-impl CycleCounts {
-    /// Adds a cell. A cell that was in view for no time says nothing.
-    pub(super) fn add(&mut self, cycles: u32, observed: f64) {
-        if observed <= 0.0 {
-            return;
-        }
-        *self.by_cycles.entry(cycles).or_default() += 1;
-        let class = self.by_time.entry(observed.to_bits() >> CLASS_BITS).or_default();
-        class.cells += 1.0;
-        class.cycles += f64::from(cycles);
-        class.time += observed;
+impl RatePrior {
+    /// The prior of a cell with this mean rate; 0 if the cell was not traversable when the prior was learned.
+    pub(super) fn with_mean(self, mean: f32) -> RateDistribution {
+        let mean = if mean > 0.0 { f64::from(mean) } else { self.mean };
+        RateDistribution { events: self.shape, time: self.shape / mean }
     }
 
-    /// The prior with the largest likelihood.
-    pub(super) fn fit(&self) -> Option<RateDistribution> {
-        let classes: Vec<TimeClass> = self.by_time.values().copied().collect();
-        let (cycles, time) = classes
-            .iter()
-            .fold((FIRST_CYCLES, 0.0), |(cycles, time), class| (cycles + class.cycles, time + class.time));
-        let mean = cycles / time;
+    /// The prior that follows from what was in view, and the mean rate of each cell; `None` without any time.
+    pub(super) fn learned(
+        frame: &GridFrame,
+        InView { is_traversable, cycles, times }: InView,
+    ) -> Option<(Self, Vec<f32>)> {
+        let sum = |values: &[f32]| values.iter().copied().map(f64::from).sum::<f64>();
+        let mean = (FIRST_CYCLES + sum(&cycles)) / sum(&times);
         if !(mean.is_finite() && mean > 0.0) {
             return None;
         }
-        let height = |log_shape: f64| self.log_likelihood(&classes, mean, libm::exp(log_shape));
-        let events = libm::exp(maximum(SHAPES.map(libm::log), height));
-        let time = prior_time(&classes, mean, events);
-        (time > 0.0 && time.is_finite()).then_some(RateDistribution { events, time })
-    }
-
-    /// The logarithm of the posterior of a shape, with the best time for it.
-    fn log_likelihood(&self, classes: &[TimeClass], mean: f64, shape: f64) -> f64 {
-        let (time, of_shape) = (prior_time(classes, mean, shape), libm::lgamma(shape));
-        let of_cycles =
-            self.by_cycles.iter().filter(|&(&cycles, _)| cycles > 0).map(|(&cycles, &cells)| {
-                f64::from(cells) * (libm::lgamma(shape + f64::from(cycles)) - of_shape)
-            });
-        let of_times = classes.iter().map(|class| {
-            let seen = class.time / class.cells;
-            let stays = -shape * class.cells * libm::log1p(seen / time);
-            stays - class.cycles * libm::log(time + seen)
-        });
-        let usual = libm::log(shape / USUAL_SHAPE);
-        of_cycles.sum::<f64>() + of_times.sum::<f64>() - 0.5 * usual * usual
-    }
-}
-
-/// The time of the prior with a shape that makes the observations most probable: the root of the derivative, in which the
-/// terms of all classes grow with the time. `mean` is the mean rate over all cells.
-fn prior_time(classes: &[TimeClass], mean: f64, shape: f64) -> f64 {
-    let cells: f64 = classes.iter().map(|class| class.cells).sum();
-    let excess = |time: f64| {
-        let share = |class: &TimeClass| time / (time + class.time / class.cells);
-        let sum: f64 = classes.iter().map(|class| (shape * class.cells + class.cycles) * share(class)).sum();
-        sum - shape * cells
-    };
-    // The mean rate of the prior is within a factor of 20 of the mean rate of the observations.
-    let [mut low, mut high] = [0.05, 20.0].map(|factor| libm::log(factor * shape / mean));
-    for _ in 0..SEARCH_STEPS {
-        let middle = 0.5 * (low + high);
-        if excess(libm::exp(middle)) < 0.0 { low = middle } else { high = middle }
-    }
-    libm::exp(0.5 * (low + high))
-}
-
-/// The place of the maximum of a function with one maximum, by the golden section.
-fn maximum([mut low, mut high]: [f64; 2], height: impl Fn(f64) -> f64) -> f64 {
-    const GOLDEN: f64 = 0.618_033_988_749_894_9;
-    let at = |low: f64, high: f64, share: f64| low + share * (high - low);
-    let mut inner = [1.0 - GOLDEN, GOLDEN].map(|share| at(low, high, share));
-    let mut heights = inner.map(&height);
-    for _ in 0..SEARCH_STEPS {
-        if heights[0] < heights[1] {
-            low = inner[0];
-            inner = [inner[1], at(low, high, GOLDEN)];
-            heights = [heights[1], height(inner[1])];
-        } else {
-            high = inner[1];
-            inner = [at(low, high, 1.0 - GOLDEN), inner[0]];
-            heights = [height(inner[0]), heights[0]];
+        let mut means = means_by_clearance(frame, mean, &is_traversable, &cycles, &times);
+        let expected: Vec<f32> = means.iter().zip(&times).map(|(mean, time)| mean * time).collect();
+        let shape = shape(frame, &cycles, &expected);
+        let [cycles, expected] = [cycles, expected].map(|values| around(frame, &is_traversable, values));
+        for ((mean, cycles), expected) in means.iter_mut().zip(cycles).zip(expected) {
+            *mean *= (cycles + shape as f32) / (expected + shape as f32);
         }
+        Some((Self { shape, mean }, means))
     }
-    0.5 * (low + high)
+}
+
+/// The mean rate of the cells with the same distance to the nearest wall, shrunk toward the mean of all like one cycle.
+fn means_by_clearance(
+    frame: &GridFrame,
+    mean: f64,
+    is_traversable: &[bool],
+    cycles: &[f32],
+    times: &[f32],
+) -> Vec<f32> {
+    let classes = clearance_classes(frame, is_traversable);
+    let mut sums = [RateDistribution { events: 1.0, time: 1.0 / mean }; CLASSES];
+    for ((&class, &cycles), &time) in classes.iter().zip(cycles).zip(times) {
+        sums[class].events += f64::from(cycles);
+        sums[class].time += f64::from(time);
+    }
+    let rates = sums.map(|sum| sum.mean() as f32);
+    let of_cell = |(class, is_traversable): (usize, &bool)| if *is_traversable { rates[class] } else { 0.0 };
+    classes.into_iter().zip(is_traversable).map(of_cell).collect()
+}
+
+/// The class of the distance of each cell to the nearest cell that is not traversable: a chamfer distance in two passes
+/// (Borgefors, 1986).
+fn clearance_classes(frame: &GridFrame, is_traversable: &[bool]) -> Vec<usize> {
+    const DIAGONAL: f32 = std::f32::consts::SQRT_2;
+    let (width, row) = (frame.width(), frame.width() + 2);
+    // A border of cells that are not traversable: every cell has eight neighbors.
+    let mut distances = vec![0.0_f32; row * (frame.height() + 2)];
+    let bordered = |index: usize| (index / width + 1) * row + index % width + 1;
+    for index in (0..frame.len()).filter(|&index| is_traversable[index]) {
+        let at = bordered(index);
+        let straight = distances[at - 1].min(distances[at - row]) + 1.0;
+        let diagonal = distances[at - row - 1].min(distances[at - row + 1]) + DIAGONAL;
+        distances[at] = straight.min(diagonal);
+    }
+    for index in (0..frame.len()).rev().filter(|&index| is_traversable[index]) {
+        let at = bordered(index);
+        let straight = distances[at + 1].min(distances[at + row]) + 1.0;
+        let diagonal = distances[at + row + 1].min(distances[at + row - 1]) + DIAGONAL;
+        distances[at] = distances[at].min(straight.min(diagonal));
+    }
+    let per_class = (frame.resolution_m() / CLASS_M) as f32;
+    let class = |index| ((distances[bordered(index)] * per_class + 0.5) as usize).clamp(1, CLASSES) - 1;
+    (0..frame.len()).map(class).collect()
+}
+
+/// The shape of the distribution of all rates, from the variance of the numbers of cycles beyond that of a Poisson
+/// distribution, which is expected² / shape. A cell counts by the inverse of the square of its standard deviation for the shape 1.
+fn shape(frame: &GridFrame, cycles: &[f32], expected: &[f32]) -> f64 {
+    let (mut excess, mut square) = (0.0, 0.0);
+    for (&cycles, &expected) in cycles.iter().zip(expected) {
+        let (cycles, expected) = (f64::from(cycles), f64::from(expected));
+        let weight = 1.0 / ((1.0 + expected) * (1.0 + expected));
+        excess += weight * ((cycles - expected) * (cycles - expected) - expected);
+        square += weight * expected * expected;
+    }
+    let observations = frame.resolution_m() * frame.resolution_m() / PASSAGE_M2;
+    let dispersion =
+        (observations * excess + USUAL_SHAPE_WEIGHT) / (observations * square + USUAL_SHAPE_WEIGHT);
+    1.0 / dispersion.clamp(DISPERSIONS[0], DISPERSIONS[1])
+}
+
+/// The weighted mean of the values around each cell, without its own: two-sided exponential filters along rows, then along
+/// columns. Walls end them.
+fn around(frame: &GridFrame, is_traversable: &[bool], mut values: Vec<f32>) -> Vec<f32> {
+    let fade = libm::exp(-frame.resolution_m() / REACH_M) as f32;
+    let own_weight = (1.0 - fade) / (1.0 + fade);
+    let own: Vec<f32> = values.iter().map(|value| own_weight * own_weight * value).collect();
+    let (width, height) = (frame.width(), frame.height());
+    let mut forward = vec![0.0; width.max(height)];
+    let mut filter = |start: usize, step: usize, length: usize| {
+        let at = |position: usize| start + position * step;
+        let mut sum = 0.0;
+        for position in 0..length {
+            sum = if is_traversable[at(position)] { sum * fade + values[at(position)] } else { 0.0 };
+            forward[position] = sum;
+        }
+        sum = 0.0;
+        for position in (0..length).rev() {
+            let value = &mut values[at(position)];
+            sum = if is_traversable[at(position)] { sum * fade + *value } else { 0.0 };
+            *value = (forward[position] + sum - *value) * own_weight;
+        }
+    };
+    (0..height).for_each(|row| filter(row * width, 1, width));
+    (0..width).for_each(|column| filter(column, width, height));
+    values.iter_mut().zip(own).for_each(|(value, own)| *value = (*value - own).max(0.0));
+    values
 }

@@ -63,7 +63,7 @@ impl CellStatistics {
 
     /// The posterior of the cycle rate: the prior and what was in view; `None` without a prior.
     pub fn posterior(&self) -> Option<RateDistribution> {
-        Some(self.prior?.after(self.cycles(), self.observed()))
+        Some(self.prior?.or_lively(self.cycles(), self.observed()).after(self.cycles(), self.observed()))
     }
 
     /// All changes of the cell, in view or not.

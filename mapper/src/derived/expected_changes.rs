@@ -1,6 +1,6 @@
 //! The running sum of the change probabilities of all cells.
 //!
-//! The rate of a cell stays constant while the cell is out of view, unless cells share a prior and there is another one. The probability that the cell did not change is
+//! The rate of a cell stays constant while the cell is out of view. The probability that the cell did not change is
 //! therefore multiplied by the same factor in every step of the same length: one product per cell and reading,
 //! instead of one exponential.
 
@@ -48,14 +48,6 @@ impl ExpectedChanges {
         self.last_seen.resize(after, 0.0);
         self.is_in_view.resize(after, true);
         self.in_view.extend(before..after);
-        if cells.has_new_prior() {
-            for slot in (0..before).filter(|&slot| !self.is_in_view[slot]) {
-                let rate = cells.rate(cells.changed[slot] as usize);
-                self.rate[slot] = rate;
-                self.survival[slot] = 1.0 - change_probability(self.time - self.last_seen[slot], rate);
-            }
-            self.has_factors = false;
-        }
         for &slot in &cells.returned {
             let slot = slot as usize;
             if !std::mem::replace(&mut self.is_in_view[slot], true) {
@@ -78,7 +70,7 @@ impl ExpectedChanges {
                 kept += 1;
                 continue;
             }
-            let (last_seen, rate) = (cells.last_seen(index), cells.rate(index));
+            let (last_seen, rate) = (cells.last_seen(index), cells.acting_rate(index));
             self.is_in_view[slot] = false;
             (self.last_seen[slot], self.rate[slot]) = (last_seen, rate);
             self.survival[slot] = 1.0 - change_probability(now - last_seen, rate);

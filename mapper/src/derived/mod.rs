@@ -32,14 +32,22 @@ impl Mapper {
         self.cells.rate(index)
     }
 
-    /// The probability that the cell changed since it was last observed (equation 2).
+    /// The rate of the cell with which the robot acts, in cycles per unit of time: the rate by which goals are chosen and
+    /// landmarks are trusted; 0 for a cell that never changed. Of estimators whose rates are made to predict, it can differ from
+    /// [`Mapper::rate`] ([why](crate::Estimator::acting_interval)).
     #[inline]
-    pub fn change_probability(&self, index: usize) -> f64 {
-        self.change_probability_within(index, self.recency(index))
+    pub fn acting_rate(&self, index: usize) -> f64 {
+        self.cells.acting_rate(index)
     }
 
-    /// The probability that the cell changes within this time, from 0 to 1 (equation 2 for this time); 0 for a cell
-    /// that never changed.
+    /// The probability that the cell changed since it was last observed (equation 2), by [`Mapper::acting_rate`].
+    #[inline]
+    pub fn change_probability(&self, index: usize) -> f64 {
+        change_probability(self.recency(index), self.acting_rate(index))
+    }
+
+    /// The probability that the cell changes within this time, from 0 to 1, by [`Mapper::rate`]; 0 for a cell that never
+    /// changed.
     #[inline]
     pub fn change_probability_within(&self, index: usize, time: f64) -> f64 {
         if self.cells.has_changed(index) { change_probability(time, self.rate(index)) } else { 0.0 }

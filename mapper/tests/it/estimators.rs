@@ -225,3 +225,27 @@ fn traversable_cells_share_a_prior_and_none_has_rate_0() {
     // Intervals are wider than those of single passages, since passages come in pairs.
     assert!((0.92..0.99).contains(&share), "{share} of the rates are in the 90 % interval");
 }
+
+/// People walk in the middle of a room. A cell without an event has a higher rate there than beside a wall, and another one
+/// in the middle a higher one where something moved around it.
+#[test]
+fn the_prior_of_a_cell_depends_on_its_place() {
+    let frame = GridFrame::new(Point2::origin(), 0.05, 60, 30).unwrap();
+    let mut mapper =
+        Mapper::new(&MapperSettings { estimator: SharedPrior.into(), ..Default::default() }, frame).unwrap();
+    let moves = |x: i32, y: i32, step: i32| {
+        (10..20).contains(&y) && (12..36).contains(&x) && (x, y) != (20, 15) && step % 50 == x
+    };
+    for step in 0..400 {
+        let cells = (0..30).flat_map(|y| (0..60).map(move |x| (Cell::new(x, y), moves(x, y, step))));
+        let reading = CellReading {
+            time: f64::from(step),
+            pose: interfaces::pose(0.5, 0.5, 0.0),
+            cells: cells.collect(),
+        };
+        mapper.update(&reading).unwrap();
+    }
+    let rate = |x, y| mapper.rate(frame.index(Cell::new(x, y)).unwrap());
+    let [busy, quiet, beside_wall] = [rate(20, 15), rate(45, 15), rate(45, 0)];
+    assert!(busy > 1.2 * quiet && quiet > 10.0 * beside_wall, "{busy}, {quiet}, {beside_wall}");
+}

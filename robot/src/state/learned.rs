@@ -2,6 +2,7 @@
 
 use super::facts::Facts;
 use super::format::{State, StateError};
+use crate::settings::default_mapper;
 use crate::{Pilot, Robot};
 use interfaces::{GridFrame, LaserReading};
 use localizer::LocalizerSettings;
@@ -66,7 +67,7 @@ impl LearnedFacts {
             None => poses,
         };
         let filter = map.clone();
-        let mapper = map.with_learned_settings("mapper", mapper, Some(&MapperSettings::default()));
+        let mapper = map.with_learned_settings("mapper", mapper, Some(&default_mapper()));
         Self { mapper, localization, filter }
     }
 

@@ -77,8 +77,9 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FACTOR|max", value_parser = speed, allow_negative_numbers = true, help_heading = "Pilot")]
     pub(crate) speed: Option<f64>,
 
-    /// The estimator of the rates of change
-    #[arg(long, default_value = "two-state-gaps", value_parser = one_of(EstimatorChoice::all(), EstimatorChoice::name), help_heading = "Mapper")]
+    /// The estimator of the rates of change: shared-prior predicts best where doors, people and robots move
+    /// (docs/estimators.md)
+    #[arg(long, default_value = "shared-prior", value_parser = one_of(EstimatorChoice::all(), EstimatorChoice::name), help_heading = "Mapper")]
     pub(crate) estimator: EstimatorChoice,
 
     /// The occupancy model: steady (static walls rarely change) or naive (every beam counts, as in the paper)

@@ -100,8 +100,9 @@ pub(crate) struct Args {
     #[arg(long, default_value = "learn", value_parser = one_of(NoReturn::all(), NoReturn::name), help_heading = "Map")]
     pub(crate) no_return: NoReturn,
 
-    /// The estimator of the rates of change
-    #[arg(long, default_value = "two-state-gaps", value_parser = one_of(EstimatorChoice::all(), EstimatorChoice::name), help_heading = "Map")]
+    /// The estimator of the rates of change: shared-prior predicts best where doors, people and robots move
+    /// (docs/estimators.md)
+    #[arg(long, default_value = "shared-prior", value_parser = one_of(EstimatorChoice::all(), EstimatorChoice::name), help_heading = "Map")]
     pub(crate) estimator: EstimatorChoice,
 
     /// The time zone of the place, by its IANA name as Europe/Berlin: people and doors have hours by its clocks, with summer time

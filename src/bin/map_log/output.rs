@@ -7,7 +7,7 @@ use anyhow::Context;
 use nalgebra::Point2;
 use results::output::{RunFolder, write_file};
 use results::thinned::Thinned;
-use results::{cell_statistics, raster, ros_map};
+use results::{cell_statistics, raster, ros_map, things};
 use survey::{Survey, keepout_mask, permanent, speed_mask};
 use viewer::layers::Layer;
 use viewer::pictures::draw_places;
@@ -40,8 +40,9 @@ pub(crate) fn write(
         }
         cell_statistics::write(&to.join("cell_statistics.csv"), mapper)?;
         raster::write(&to.join("layers.npy"), mapper)?;
+        things::write(&to.join("things.json"), mapper)?;
     }
-    let page = report::page(summary);
+    let page = report::page(summary, mapper);
     write_file(&to.join("report.html"), |file| file.write_all(page.as_bytes()))?;
     summary.files = folder.results()?;
     let text = serde_json::to_string_pretty(summary)?;

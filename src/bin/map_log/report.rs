@@ -1,8 +1,11 @@
 //! `report.html`: a page for people who look after a building.
 
 use crate::summary::Summary;
+use curious::week;
 use curious::words::{date, how_often, length_of, list, range};
+use mapper::{Door, Mapper, ThingKind, Week};
 use maud::{DOCTYPE, Markup, html};
+use nalgebra::Point2;
 use results::numbers::percent;
 use survey::Place;
 
@@ -11,7 +14,7 @@ table{border-collapse:collapse}td,th{padding:.3em .8em;border-bottom:1px solid #
 td:first-child,th:first-child{text-align:left}img{max-width:100%;height:auto}figcaption{color:#555}";
 
 /// The page.
-pub(crate) fn page(summary: &Summary) -> String {
+pub(crate) fn page(summary: &Summary, mapper: &Mapper) -> String {
     let has_rates = summary.rates_withheld.is_none();
     let page = html! {
         (DOCTYPE)
@@ -37,6 +40,8 @@ pub(crate) fn page(summary: &Summary) -> String {
                     p { (summary.place_count - summary.places.len()) " more places with less change are in the pictures." }
                 }
                 @if has_rates {
+                    (doors(mapper))
+                    (weeks(&summary.places, mapper))
                     h2 { "How often" }
                     (picture("interval.png", "The mean time of one cycle: blocked, free, and blocked again. Dark: often."))
                     h2 { "When last seen" }
@@ -113,13 +118,67 @@ fn table(places: &[Place], begin_s: Option<f64>, has_rates: bool) -> Markup {
     }
 }
 
+/// The doors that were found.
+fn doors(mapper: &Mapper) -> Markup {
+    let doors = mapper.things().iter().filter_map(|thing| match &thing.kind {
+        ThingKind::Door(door) => Some((thing.id, &**door)),
+        ThingKind::Furniture(_) => None,
+    });
+    let doors: Vec<(u32, &Door)> = doors.collect();
+    let ends = |door: &Door| door.closed.ends.map(|end| format!("{:.1}, {:.1}", end.x, end.y)).join(" to ");
+    html! {
+        @if !doors.is_empty() {
+            h2 { "Doors" }
+            table {
+                tr { th { "door" } th { "closed, from and to (m)" } th { "openings per hour" } th { "90 % range" } th { "last seen" } }
+                @for (id, door) in &doors {
+                    @let seen = &door.statistics;
+                    tr {
+                        td { (id) }
+                        td { (ends(door)) }
+                        td { (seen.openings_per_hour().map_or_else(String::new, |rate| format!("{:.1}", rate.mean()))) }
+                        td { (seen.interval_of_openings_per_hour(0.9).map_or_else(String::new, |(low, high)| format!("{low:.1} to {high:.1}"))) }
+                        td { (door.is_open.map_or("", |is_open| if is_open { "open" } else { "closed" })) }
+                    }
+                }
+            }
+            @for (id, door) in &doors {
+                @if let Some(week) = door.clock.week(mapper.calendar()) { (week_of(&format!("Door {id}"), &week, "open")) }
+            }
+        }
+    }
+}
+
+/// The usual weeks of the places that are known for two weeks.
+fn weeks(places: &[Place], mapper: &Mapper) -> Markup {
+    let frame = mapper.frame();
+    let week = |place: &Place| {
+        let index = frame.index(frame.cell_at(&Point2::new(place.x_m, place.y_m)))?;
+        mapper.tile(index)?.clock().week(mapper.calendar())
+    };
+    let weeks: Vec<_> = (1..)
+        .zip(places)
+        .filter_map(|(number, place)| Some((number, week(place)?)))
+        .collect::<Vec<(usize, Week)>>();
+    html! {
+        @if !weeks.is_empty() {
+            h2 { "Usual weeks" }
+            @for (number, week) in &weeks { (week_of(&format!("Place {number}"), week, "blocked")) }
+        }
+    }
+}
+
+fn week_of(title: &str, week: &Week, state: &str) -> Markup {
+    html! { figure { (week::picture(week, state)) figcaption { (title) ": usually " (week::usual_hours(week, state)) "." } } }
+}
+
 fn files(has_rates: bool) -> Markup {
     html! {
         ul {
             li { "map.yaml: the map as last seen; permanent.yaml: the map without what moves (ROS map server)" }
             @if has_rates {
                 li { "speed_mask.yaml, keepout_mask.yaml: masks for the speed filter and the keepout filter of Nav2" }
-                li { "cell_statistics.csv, layers.npy: all that was learned about every cell" }
+                li { "cell_statistics.csv, layers.npy: all that was learned about every cell; things.json: doors, and furniture that was moved" }
             }
             li { "trajectory.tum: the route, with times; summary.json: this page as data" }
         }

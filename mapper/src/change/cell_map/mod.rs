@@ -59,12 +59,13 @@ impl CellMap {
         + size_of::<Record>()
         + size_of::<CellGaps>()
         + GapHistogram::FIRST_BYTES
+        + size_of::<f32>() // the mean of its prior
         + size_of::<Flags>();
 
     pub(crate) fn new(prior: Grid<CellState>, estimator: EstimatorChoice, max_gap: f64) -> Self {
         let cells = prior.frame().len();
         let gaps = SharedCells::new(if estimator.gap_model().is_some() { cells } else { 0 });
-        let shared = estimator.shares_prior().then(SharedPrior::default);
+        let shared = estimator.shares_prior().then(|| SharedPrior::new(cells));
         let mut map = Self {
             estimator,
             max_gap,
@@ -103,7 +104,7 @@ impl CellMap {
         if self.times.is_full() {
             self.forget_times();
         }
-        self.sweep();
+        self.renew_prior();
         self.last_seen_counts.open();
     }
 

@@ -97,7 +97,7 @@ impl CellMap {
             gaps_from_free: record.gaps[0],
             gaps_from_blocked: record.gaps[1],
             gap_worth: self.gaps.get(index).map_or(GapWorth::default(), |gaps| gaps.worth(period)),
-            prior: self.shared.as_ref().and_then(|shared| shared.prior),
+            prior: self.rate_prior(index),
         }
     }
 
@@ -122,6 +122,12 @@ impl CellMap {
     #[inline]
     pub(crate) fn rate(&self, index: usize) -> f64 {
         if self.has_rate(index) { self.estimator.rate(&self.statistics(index)) } else { 0.0 }
+    }
+
+    /// The cycle rate of a cell with which the robot acts; 0 if the cell never changed.
+    #[inline]
+    pub(crate) fn acting_rate(&self, index: usize) -> f64 {
+        if self.has_changed(index) { self.estimator.acting_rate(&self.statistics(index)) } else { 0.0 }
     }
 
     /// The transition rates of a cell, if the estimator in use computes them.

@@ -6,8 +6,9 @@ use crate::Growth;
 use interfaces::{CellState, Values, runs, value};
 
 impl CellMap {
-    /// The changing values; those that follow from them are not in the list.
-    pub(crate) fn values(&mut self) -> Values<'_> {
+    /// The changing values, and apart from them those of the prior that cells share: absent from the snapshot of a mapper whose
+    /// cells share none. Values that follow from others are not in the lists.
+    pub(crate) fn values(&mut self) -> (Values<'_>, Values<'_>) {
         let mut values = vec![
             value(&mut self.interrupted),
             runs(self.states.cells_mut()),
@@ -21,8 +22,11 @@ impl CellMap {
             value(&mut self.last_seen_counts),
         ];
         values.extend(self.gaps.values());
-        values.extend(self.shared.as_mut().map(|shared| value(shared)));
-        values
+        let prior = self
+            .shared
+            .as_mut()
+            .map(|shared| vec![value(&mut shared.prior), value(&mut shared.due), runs(&mut shared.means)]);
+        (values, prior.unwrap_or_default())
     }
 
     /// Computes what follows from the values.
@@ -40,6 +44,9 @@ impl CellMap {
         growth.cells(&mut self.records, Record::default());
         growth.cells(&mut self.flags, Flags::default());
         self.gaps.grow(growth);
+        if let Some(shared) = &mut self.shared {
+            growth.cells(&mut shared.means, 0.0);
+        }
         self.changed.iter_mut().for_each(|index| *index = growth.index(*index as usize) as u32);
         self.transitions.clear();
         // A new cell can be beside a free one.

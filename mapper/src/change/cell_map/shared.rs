@@ -1,38 +1,27 @@
-//! The prior that all traversable cells share, kept up to date by a sweep over the map that takes many readings.
+//! The prior that traversable cells share, learned anew now and then.
 
 use super::CellMap;
 use crate::change::RateDistribution;
-use crate::change::shared_prior::CycleCounts;
+use crate::change::shared_prior::{InView, RatePrior};
 use interfaces::CellState;
 
-/// A sweep over the map takes this share of the readings so far, and at least this many readings: the work per reading is
-/// small, and the prior is about as old.
-const SWEEP_SHARE: usize = 8;
-const SWEEP_READINGS: usize = 8;
+/// The prior is learned anew after a quarter more readings, from this many readings on and after at most this many: one
+/// minute at 10 Hz.
+const RENEWAL_READINGS: [usize; 2] = [8, 600];
 
-/// The prior, and the sweep that renews it.
-#[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
+/// The prior, and when it is learned anew.
+#[derive(Clone, Debug)]
 pub(super) struct SharedPrior {
-    pub(super) prior: Option<RateDistribution>,
-    counts: CycleCounts,
-    /// The next cell, and the number of readings that this sweep takes and has taken.
-    next: usize,
-    readings: usize,
-    taken: usize,
-    /// Whether the open reading found another prior.
-    is_new: bool,
+    pub(super) prior: Option<RatePrior>,
+    /// The mean rate of each cell; 0 for a cell that was not traversable when the prior was learned.
+    pub(super) means: Vec<f32>,
+    /// The number of readings at which the prior is learned anew.
+    pub(super) due: usize,
 }
 
-impl Default for SharedPrior {
-    fn default() -> Self {
-        Self {
-            prior: None,
-            counts: CycleCounts::default(),
-            next: 0,
-            readings: SWEEP_READINGS,
-            taken: 0,
-            is_new: false,
-        }
+impl SharedPrior {
+    pub(super) fn new(cells: usize) -> Self {
+        Self { prior: None, means: vec![0.0; cells], due: 0 }
     }
 }
 
@@ -55,30 +44,37 @@ impl CellMap {
         is_traversable.then(|| self.statistics(index).posterior()).flatten()
     }
 
-    /// Whether the open reading found another prior: the rates of cells out of view are others then.
-    pub(crate) fn has_new_prior(&self) -> bool {
-        self.shared.as_ref().is_some_and(|shared| shared.is_new)
+    /// The prior of the rate of a cell, once there is one.
+    pub(super) fn rate_prior(&self, index: usize) -> Option<RateDistribution> {
+        let shared = self.shared.as_ref()?;
+        Some(shared.prior?.with_mean(shared.means[index]))
     }
 
-    /// Goes on with the sweep over the map: a part of the cells per reading.
-    pub(super) fn sweep(&mut self) {
+    /// Learns the prior anew if it is time.
+    pub(super) fn renew_prior(&mut self) {
         let Some(mut shared) = self.shared.take() else { return };
-        let cells = self.records.len();
-        let end = cells.min(shared.next + cells.div_ceil(shared.readings));
-        for index in (shared.next..end).filter(|&index| self.is_traversable(index)) {
-            let seen = self.statistics(index);
-            shared.counts.add(seen.cycles(), seen.observed());
-        }
-        shared.next = end;
-        shared.taken += 1;
-        // A small map is swept at once, but its prior does not change with every reading.
-        shared.is_new = end == cells && 2 * shared.taken >= shared.readings;
-        if shared.is_new {
-            shared.prior = shared.counts.fit().or(shared.prior);
-            shared.counts = CycleCounts::default();
-            (shared.next, shared.taken) = (0, 0);
-            shared.readings = (self.readings() / SWEEP_SHARE).max(SWEEP_READINGS);
+        let readings = self.readings();
+        if readings >= shared.due {
+            let [least, most] = RENEWAL_READINGS;
+            shared.due = readings + (readings / 4).clamp(least, most);
+            if let Some((prior, means)) = RatePrior::learned(self.frame(), self.in_view()) {
+                (shared.prior, shared.means) = (Some(prior), means);
+            }
         }
         self.shared = Some(shared);
+    }
+
+    /// What was in view of every traversable cell.
+    fn in_view(&self) -> InView {
+        let cells = self.records.len();
+        let is_traversable = (0..cells).map(|index| self.is_traversable(index)).collect();
+        let mut seen = InView { is_traversable, cycles: vec![0.0; cells], times: vec![0.0; cells] };
+        for index in (0..cells).filter(|&index| seen.is_traversable[index]) {
+            let record = &self.records[index];
+            let open = self.last_seen(index) - self.times.at(record.since);
+            seen.cycles[index] = record.in_view[0].max(record.in_view[1]) as f32;
+            seen.times[index] = (record.watched.iter().sum::<f64>() + open) as f32;
+        }
+        seen
     }
 }

@@ -32,6 +32,13 @@ pub trait Estimator: fmt::Debug + Send + Sync {
     /// events give no rate.
     fn interval(&self, seen: &CellStatistics) -> f64;
 
+    /// The cycle time T with which the robot acts: that of equation 2, from which goals follow, and of the trust in landmarks. By
+    /// default that of [`Estimator::interval`]. Called only for cells with an event; must not depend on
+    /// [`CellStatistics::prior`].
+    fn acting_interval(&self, seen: &CellStatistics) -> f64 {
+        self.interval(seen)
+    }
+
     /// The rates of both changes, from which the state of a cell out of view is predicted; `None` if they are
     /// unknown. Called only for cells with a cycle time ([`Estimator::interval`]). By default, the cycle is divided
     /// between the states in proportion to the time that the cell was observed in each.
@@ -93,9 +100,12 @@ impl EstimatorChoice {
     /// time.
     pub fn interval(&self, seen: &CellStatistics) -> f64 {
         let is_static = seen.events() == 0 && !self.shares_prior();
-        let interval = if is_static { f64::INFINITY } else { self.0.interval(seen) };
-        // If the time in view is zero, or so small that it has no inverse, the events give no rate.
-        if interval >= f64::MIN_POSITIVE { interval } else { f64::INFINITY }
+        if is_static { f64::INFINITY } else { valid(self.0.interval(seen)) }
+    }
+
+    /// The cycle rate with which the robot acts; 0 for a cell without an event.
+    pub(crate) fn acting_rate(&self, seen: &CellStatistics) -> f64 {
+        if seen.events() == 0 { 0.0 } else { 1.0 / valid(self.0.acting_interval(seen)) }
     }
 
     /// The cycle rate 1/T, in cycles per unit of time; 0 where T is ∞.
@@ -118,6 +128,11 @@ impl EstimatorChoice {
     pub(crate) fn gap_model(&self) -> Option<&dyn GapModel> {
         self.0.gap_model()
     }
+}
+
+/// If the time in view is zero, or so small that it has no inverse, the events give no rate.
+fn valid(interval: f64) -> f64 {
+    if interval >= f64::MIN_POSITIVE { interval } else { f64::INFINITY }
 }
 
 #[cfg(test)]
