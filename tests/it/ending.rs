@@ -83,7 +83,7 @@ fn ends_in_order(signal: Signal) {
         summary.number("/real_time_factor")
     );
     assert!((Recording::read(&run.out("four_rooms.rrd")).end_s() - simulated_s).abs() < 1e-6);
-    assert_eq!(crate::run::names(&run.path("out")).len(), 14);
+    assert_eq!(crate::run::names(&run.path("out")).len(), 15);
 }
 
 #[test]
@@ -108,5 +108,5 @@ fn a_killed_run_leaves_all_but_the_last_seconds() {
     run.goes_well("--quiet --no-rrd --duration 1");
     assert!(!run.path("out/unfinished_run").exists());
     assert_eq!(crate::run::names(&run.path("out/unfinished_run_1")).len(), 3);
-    assert_eq!(crate::run::names(&run.path("out")).len(), 14);
+    assert_eq!(crate::run::names(&run.path("out")).len(), 15);
 }

@@ -13,11 +13,11 @@ fn nothing_of_an_earlier_run_stays() {
     assert!(!run.out("house.rrd").exists() && run.out("own.rrd").exists());
     run.goes_well("--quiet --no-rrd --duration 2");
     let files = names(&run.path("out"));
-    assert_eq!(files.len(), 14, "{files:?}");
+    assert_eq!(files.len(), 15, "{files:?}");
     assert!(files.iter().all(|name| !name.ends_with(".rrd")), "{files:?}");
     assert_eq!(run.summary().text("/world"), "four rooms");
     let listed = run.summary().at("/files").as_array().unwrap().len();
-    assert_eq!(listed, 12, "all but the summary and the notes");
+    assert_eq!(listed, 13, "all but the summary and the notes");
 }
 
 #[test]
