@@ -61,8 +61,9 @@ pub enum KindRecord {
     },
 }
 
+/// To a millimeter.
 fn pair(point: &Point2<f64>) -> [f64; 2] {
-    [point.x, point.y]
+    [point.x, point.y].map(|length_m| libm::round(1e3 * length_m) / 1e3)
 }
 
 /// All things of a map, in the order in which they were found.

@@ -3,7 +3,7 @@
 use super::door::Door;
 use super::doorway::Doorway;
 use super::line::Line;
-use super::{ThingKind, Things};
+use super::{ThingKind, Things, is_mostly_in};
 use crate::change::CellMap;
 
 /// The largest number of lines, and of doorways.
@@ -77,14 +77,21 @@ impl Things {
             None => self.add(new(), Vec::new(), cells.time()),
         };
         let is_new = self.doorways[position].thing.replace(id).is_none();
+        let mut of_door = Vec::new();
         for thing in self.things.iter_mut().filter(|thing| thing.id == id) {
             if let ThingKind::Door(door) = &mut thing.kind {
                 thing.cells = door.place(closed, open, cells.frame());
+                of_door.clone_from(&thing.cells);
                 if is_new {
                     door.count_earlier(lines, cells);
                 }
             }
         }
+        // Its leaf can have passed for furniture before.
+        self.things.retain(|thing| match &thing.kind {
+            ThingKind::Door(_) => true,
+            ThingKind::Furniture(_) => !is_mostly_in(&thing.cells, &of_door),
+        });
         true
     }
 }

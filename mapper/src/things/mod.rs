@@ -108,11 +108,9 @@ impl Things {
 
     /// Whether most of the changes are cells of a door.
     fn is_at_door(&self, changes: &[Change]) -> bool {
-        let doors = self.things.iter().filter(|thing| matches!(thing.kind, ThingKind::Door(_)));
-        let is_at = |thing: &Thing, change: &&Change| thing.cells.binary_search(&change.cell).is_ok();
-        doors
-            .into_iter()
-            .any(|door| 2 * changes.iter().filter(|change| is_at(door, change)).count() > changes.len())
+        let mut doors = self.things.iter().filter(|thing| matches!(thing.kind, ThingKind::Door(_)));
+        let cells: Vec<u32> = changes.iter().map(|change| change.cell).collect();
+        doors.any(|door| is_mostly_in(&cells, &door.cells))
     }
 
     fn add_furniture(&mut self, place: Place, is_blocked: bool, cells: &CellMap) {
@@ -157,4 +155,9 @@ impl Things {
             }
         }
     }
+}
+
+/// Whether more than half of the cells are among others, which are sorted.
+fn is_mostly_in(cells: &[u32], others: &[u32]) -> bool {
+    2 * cells.iter().filter(|cell| others.binary_search(cell).is_ok()).count() > cells.len()
 }
