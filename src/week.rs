@@ -6,7 +6,7 @@ use results::numbers::percent;
 
 const DAYS: [&str; 7] = ["Mon", "Tue", "Wed", "Thu", "Fri", "Sat", "Sun"];
 const WEEK_H: f64 = 168.0;
-/// Stays that begin and end within this time of each other, h, are told together.
+/// Stays whose begins and ends differ by less than this time, h, are one entry of the text.
 const SAME_H: f64 = 0.75;
 
 /// A stay in the blocked state, every week at the same time.

@@ -67,7 +67,7 @@ pub fn value<'a, T: Serialize + DeserializeOwned>(value: &'a mut T) -> Box<dyn V
     Box::new(value)
 }
 
-/// A value at the end of a snapshot, which earlier versions did not have: it is the default one if nothing is left.
+/// A value at the end of a snapshot: the default one if the snapshot ends before it, in an older format.
 pub fn last_value<'a, T: Default + Serialize + DeserializeOwned>(value: &'a mut T) -> Box<dyn Value + 'a> {
     struct Last<'a, T>(&'a mut T);
 
@@ -106,7 +106,7 @@ pub fn converted<'a, P: ?Sized, T: Serialize + DeserializeOwned + 'a>(
     Box::new(Converted(part, save, load))
 }
 
-/// A value at the end of a part that snapshots of earlier versions end before: it stays as it is then.
+/// A value at the end of a snapshot: it stays as it is if the snapshot ends before it, in an older format.
 pub fn if_present<'a>(value: Box<dyn Value + 'a>) -> Box<dyn Value + 'a> {
     struct IfPresent<'a>(Box<dyn Value + 'a>);
 

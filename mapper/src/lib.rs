@@ -19,6 +19,7 @@ mod clock;
 mod derived;
 mod growth;
 mod occupancy;
+mod reading_error;
 mod scan_filter;
 mod things;
 mod tiles;
@@ -33,6 +34,7 @@ pub use growth::Growth;
 pub use occupancy::{
     BeamReturn, CloneModel, OccupancyChoice, OccupancyModel, ProjectedScan, SurfaceGridSettings,
 };
+pub use reading_error::ReadingError;
 pub use scan_filter::{NoReturn, NoReturnEvidence, NoReturns, ScanFilter, ScanFilterSettings};
 pub use things::{Door, DoorStatistics, Furniture, Leaf, Place, Segment, Thing, ThingKind};
 
@@ -40,10 +42,11 @@ pub use tiles::Tile;
 
 use derived::ExpectedChanges;
 use interfaces::{
-    CellState, Grid, GridFrame, LaserReading, Observation, Reading, ScanError, SettingsCheck, SettingsError,
-    Transition, ValueError, Values, if_present, is_valid_pose, last_value, value,
+    CellState, Grid, GridFrame, LaserReading, Observation, Reading, SettingsCheck, SettingsError, Transition,
+    ValueError, Values, if_present, is_valid_pose, last_value, value,
 };
-use nalgebra::{Isometry2, Point2};
+use nalgebra::Point2;
+use reading_error::check_pose;
 use things::Things;
 use tiles::Tiles;
 
@@ -88,33 +91,6 @@ impl MapperSettings {
     fn calendar(&self) -> Result<Calendar, UnknownZone> {
         self.time_zone.as_deref().map_or(Ok(Calendar::Relative), Calendar::of_zone)
     }
-}
-
-/// The error for a reading that the mapper refuses. The maps stay as they were.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum ReadingError {
-    /// The parameters of the scan are invalid.
-    #[error(transparent)]
-    Scan(#[from] ScanError),
-    /// The time is NaN, or before the time of the last reading.
-    #[error("a reading at {time} follows one at {last}: time must not go backwards")]
-    Time {
-        /// The time of the refused reading.
-        time: f64,
-        /// The time of the last accepted reading.
-        last: f64,
-    },
-    /// A pose contains a number that is not finite, or its position is farther away than a million meters.
-    #[error("the pose of the reading at {time} is not a place on the map's plane")]
-    Pose {
-        /// The time of the refused reading.
-        time: f64,
-    },
-}
-
-/// Refuses an invalid pose.
-fn check_pose(pose: &Isometry2<f64>, time: f64) -> Result<(), ReadingError> {
-    if is_valid_pose(pose) { Ok(()) } else { Err(ReadingError::Pose { time }) }
 }
 
 /// A map of a changing environment, with the change statistics of every cell. Cells are addressed by their index in

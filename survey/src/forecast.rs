@@ -37,7 +37,7 @@ impl Forecast {
         let undated = survey.undated(survey.logs().len());
         let why_undated = match undated {
             Some(log) => Some(format!("{} does not say when it was recorded", log.name)),
-            None => (!has_zone).then(|| "an earlier version has written it, which knew no hours".to_owned()),
+            None => (!has_zone).then(|| "its format is older than version 8, which has hours".to_owned()),
         };
         Ok(Self { mapper: survey.mapper().ok_or_else(misfit)?.clone(), why_undated })
     }

@@ -136,7 +136,7 @@ fn a_state_keeps_its_time_zone_and_an_earlier_one_gets_one() {
         refused.stderr
     );
 
-    // A log without a date has no hours, nor has what an earlier version has learned.
+    // A log without a date has no hours, nor has a state with a format before version 8.
     run.write("b.log", &standing_log(10.0, 60));
     run.goes_well("b.log --quiet --no-rrd --state b.state");
     assert_eq!(run.summary().text("/hours"), "none: b.log does not say when it was recorded");

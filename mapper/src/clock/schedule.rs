@@ -27,10 +27,6 @@ const LEARNED_DAYS: f64 = 5.0;
 /// With this many slots seen, a day counts in full.
 const FULL_DAY: f64 = 12.0;
 
-/// The number of days from which on intervals of the hours of a week contain as many of the true ones as they say: every
-/// weekday was seen twice.
-const MIN_DAYS: f64 = 14.0;
-
 /// The variance of the mixture, divided by that of parts with one common error: with it, 87 to 99 % of the true probabilities of
 /// simulated things are inside their 90 % intervals.
 const COMMON_VARIANCE: f64 = 0.75;
@@ -245,9 +241,9 @@ impl Schedule {
         ((self.errors[0] + DISPERSION_PRIOR) / (self.errors[1] + DISPERSION_PRIOR)).min(1.0)
     }
 
-    /// What is usual in every slot of the week; `None` before the thing was seen on [`MIN_DAYS`].
+    /// What is usual in every slot of the week; `None` before the thing was seen on [`Week::MIN_DAYS`].
     pub(super) fn week(&self) -> Option<Week> {
-        (self.days >= MIN_DAYS).then(|| Week::new(|slot| self.usual(slot)))
+        (self.days >= f64::from(Week::MIN_DAYS)).then(|| Week::new(|slot| self.usual(slot)))
     }
 
     fn usual(&self, slot: usize) -> UsualSlot {

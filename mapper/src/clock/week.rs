@@ -82,6 +82,10 @@ pub struct Week {
 }
 
 impl Week {
+    /// The number of days from which on intervals of the hours of a week contain as many of the true ones as they say: every
+    /// weekday was seen twice.
+    pub const MIN_DAYS: u32 = 14;
+
     pub(super) fn new(slot: impl Fn(usize) -> UsualSlot) -> Self {
         Self { slots: (0..SLOTS_OF_WEEK).map(slot).collect() }
     }

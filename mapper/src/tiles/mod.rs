@@ -216,7 +216,7 @@ impl Tiles {
         *corner = (corner.0 + x, corner.1 + y);
     }
 
-    /// The tiles as a value of a snapshot; absent from those of earlier versions.
+    /// The tiles as a value of a snapshot; absent from snapshots with an older format.
     pub(crate) fn value(&mut self) -> Box<dyn Value + '_> {
         last_value(&mut self.learned)
     }

@@ -52,7 +52,7 @@ const NO_THINGS: usize = 8;
 fn a_snapshot_that_is_cut_or_of_another_frame_is_refused() {
     let settings = MapperSettings::default();
     let snapshot = mapper(&settings, 100).snapshot();
-    // One that ends before the tiles, or before the things, is of an earlier version.
+    // A snapshot that ends before the tiles, or before the things, has an older format.
     let read = |length: &usize| mapper(&settings, 0).restore(&snapshot[..*length]).is_ok();
     let lengths: Vec<usize> = (0..snapshot.len()).filter(read).collect();
     let without_things = snapshot.len() - NO_THINGS;

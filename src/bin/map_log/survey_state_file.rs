@@ -64,7 +64,7 @@ impl SurveyStateFile {
         self.facts = facts(settings);
         let mut expected = self.facts.clone();
         if loaded.as_ref().is_some_and(|loaded| loaded.time_zone().is_none()) {
-            // A state of an earlier version knows no hours: they can be those of any zone.
+            // A state with a format before version 8 knows no hours: they can be those of any zone.
             let mut without_zone = settings.clone();
             without_zone.mapper.time_zone.clone_from(&default.mapper.time_zone);
             expected = facts(&without_zone);

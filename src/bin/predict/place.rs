@@ -10,9 +10,6 @@ use results::numbers::percent;
 use serde::Serialize;
 use survey::Forecast;
 
-/// The number of days from which on usual hours are known.
-const DAYS_OF_WEEK: u32 = 14;
-
 /// A place is where something changes at most this far from a point, m.
 const NEAR_M: f64 = 0.5;
 
@@ -115,7 +112,7 @@ impl Place {
                 lines.push(format!("Usual hours: none, as {}.", forecast.why_undated().unwrap_or_default()));
             }
             None => {
-                lines.push(format!("Usual hours: not known yet; they need looks on {DAYS_OF_WEEK} days."))
+                lines.push(format!("Usual hours: not known yet; they need looks on {} days.", Week::MIN_DAYS))
             }
             Some(week) => lines.push(format!("Usually {}.", usual_hours(week, "blocked"))),
         }
