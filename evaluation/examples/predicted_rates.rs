@@ -7,8 +7,8 @@
 //! Brier score, that of the state last seen, of the share of time blocked, of true chains, calibration error.
 //!
 //! ```text
-//! cargo run -p curious-evaluation --example predicted_rates -- MINUTES ESTIMATOR [WORLD.toml:]SEED..
-//! cargo run -p curious-evaluation --example predicted_rates -- 20 shared-prior 4000 4001 worlds/office.toml:100
+//! cargo run -p curious-evaluation --example predicted_rates -- MINUTES ESTIMATOR [WORLD:]SEED..
+//! cargo run -p curious-evaluation --example predicted_rates -- 20 shared-prior 4000 4001 office-7:7 worlds/office.toml:100
 //! ```
 
 use agent::Policy;
@@ -21,13 +21,13 @@ use std::error::Error;
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let [minutes, estimator, worlds @ ..] = &arguments[..] else {
-        return Err("usage: predicted_rates MINUTES ESTIMATOR [WORLD.toml:]SEED..".into());
+        return Err("usage: predicted_rates MINUTES ESTIMATOR [WORLD:]SEED..".into());
     };
     let (freeze_s, estimator) = (60.0 * minutes.parse::<f64>()?, estimator.parse::<EstimatorChoice>()?);
     let mut rows = Vec::new();
     for world in worlds {
         let (spec, seed) = match world.split_once(':') {
-            Some((path, seed)) => (worldfile::physics::load_world(path)?, seed.parse()?),
+            Some((path, seed)) => (worldfile::shipped::load(path)?, seed.parse()?),
             None => (WorldSpec::generate_house(world.parse()?), world.parse()?),
         };
         let row = scores(&spec, seed, freeze_s, &estimator)?;

@@ -21,6 +21,9 @@ use sim::physics::WorldSpec;
 /// Two references show how far a strategy can get: oracle knows the true rates, and full-observation sees every cell
 /// all the time.
 ///
+/// --generate makes houses, or with `--kind office` offices: larger, with more rooms, more people, and doors that stay for
+/// minutes. One of them alone is a world by its name: `--world house-7`, `--world office-7`.
+///
 /// Options that can be repeated multiply: 2 worlds, 2 estimators, 3 strategies and 10 trials are 120 trials in
 /// total.
 #[derive(Clone, Debug, Args)]
@@ -38,6 +41,10 @@ pub struct Houses {
     /// The simulated time of each trial: whole seconds, or with a unit as in 90s, 20m, 1h
     #[arg(long, value_name = "TIME", default_value = "20m", value_parser = whole_s, allow_negative_numbers = true, help_heading = "Comparison")]
     duration: u64,
+
+    /// The kind of the buildings of --generate
+    #[arg(long, value_name = "KIND", default_value = "house", value_parser = ["house", "office"], help_heading = "World")]
+    kind: String,
 
     /// How the robot knows its pose [default: exact where the world's odometry is exact, otherwise localized]
     #[arg(long, value_parser = pose_mode(pose_in_world), help_heading = "Comparison")]
@@ -69,7 +76,10 @@ impl TrialKind for Houses {
     }
 
     fn generate(&self, seed: u64) -> WorldSpec {
-        WorldSpec::generate_house(seed)
+        match self.kind.as_str() {
+            "office" => WorldSpec::generate_office(seed),
+            _ => WorldSpec::generate_house(seed),
+        }
     }
 
     fn length(&self) -> u64 {

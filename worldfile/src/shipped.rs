@@ -85,7 +85,8 @@ pub enum LoadError {
     },
 }
 
-/// The physics world with the name `name`: a shipped world, or otherwise the file with this path.
+/// The physics world with the name `name`: a shipped world, or the file with this path, or a generated building
+/// (`house-7`, `office-7`).
 ///
 /// # Errors
 ///
@@ -98,7 +99,13 @@ pub fn load(name: &str) -> Result<WorldSpec, LoadError> {
         return Err(LoadError::Map { name: printable(name).into_owned() });
     }
     let parse = |name: &str, text: &str| physics::parse_world_with(name, text, &pictures());
-    find(name, &PHYSICS, parse, |path| physics::load_world(path))
+    match find(name, &PHYSICS, parse, |path| physics::load_world(path)) {
+        Err(LoadError::Unknown { name: printed, shipped }) => {
+            let shipped = shipped + "), nor a generated building (house-7, office-7: a kind and a seed";
+            WorldSpec::generated(name).ok_or(LoadError::Unknown { name: printed, shipped })
+        }
+        found => found,
+    }
 }
 
 /// The grid world with the name `name`: a shipped world, or otherwise the file with this path.
@@ -144,6 +151,8 @@ mod tests {
             assert!(world.warnings().is_empty(), "{:?}", world.warnings());
         }
         assert!(matches!(load("map.yaml"), Err(LoadError::Map { .. })));
+        assert_eq!(load("office-3").unwrap(), WorldSpec::generate_office(3));
+        assert!(matches!(load("office-x"), Err(LoadError::Unknown { .. })));
     }
 
     #[test]

@@ -1,8 +1,8 @@
 //! Which doors and furniture a robot finds, and how well it knows them.
 //!
 //! ```text
-//! cargo run -p curious-evaluation --example things_found -- MINUTES SEED.. | WORLD.toml:SEED..
-//! cargo run -p curious-evaluation --example things_found -- 20 5000 5001 worlds/house.toml:1 worlds/cave.toml:1
+//! cargo run -p curious-evaluation --example things_found -- MINUTES [WORLD:]SEED..
+//! cargo run -p curious-evaluation --example things_found -- 20 5000 5001 office-7:7 house:1 cave:1
 //! ```
 //!
 //! A curious robot explores each world. Doors that moved at least three times in view must be found: a motion is the moment at
@@ -56,14 +56,14 @@ const COUNTS: usize = 8;
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let [minutes, worlds @ ..] = &arguments[..] else {
-        return Err("usage: things_found MINUTES [WORLD.toml:]SEED..".into());
+        return Err("usage: things_found MINUTES [WORLD:]SEED..".into());
     };
     let end_s = 60.0 * minutes.parse::<f64>()?;
     print_row("world", &COLUMNS.map(str::to_owned));
     let mut all = Scores::default();
     for world in worlds {
         let (spec, seed) = match world.split_once(':') {
-            Some((path, seed)) => (worldfile::physics::load_world(path)?, seed.parse()?),
+            Some((path, seed)) => (worldfile::shipped::load(path)?, seed.parse()?),
             None => (WorldSpec::generate_house(world.parse()?), world.parse()?),
         };
         let scores = explore(&spec, seed, end_s)?;

@@ -38,7 +38,7 @@ pub use fleet::{Controller, Fleet, LengthError, TeleportError};
 pub use form::Form;
 pub use free_poses::FreePoses;
 pub use free_space::FreeSpace;
-pub use generate::house_ranges;
+pub use generate::building_ranges;
 pub use ground_truth::PhysicsGroundTruth;
 pub use report::{Body, Contact, ObstacleEvent, ObstacleView};
 pub use robot::RobotView;

@@ -1,7 +1,6 @@
 //! The doors of a house.
 
 use super::draw::{time_s, value};
-use super::house_ranges as ranges;
 use super::layout::{CORRIDOR, Doorway, Layout, WALL};
 use super::plan::Plan;
 use crate::physics::shape::Rectangle;
@@ -15,23 +14,24 @@ const LEAF_M: f64 = 0.05;
 
 /// The doors of all doorways that have one.
 pub(super) fn doors(layout: &Layout, plan: &Plan, rng: &mut RandomStream) -> Vec<ObstacleSpec> {
+    let ranges = layout.ranges;
     let mut doors = Vec::new();
     for doorway in layout.doorways.iter().filter(|doorway| doorway.can_have_door) {
-        if !rng.bernoulli(ranges::DOOR_PROBABILITY) {
+        if !rng.bernoulli(ranges.door_probability) {
             continue;
         }
-        let is_sliding = rng.bernoulli(ranges::SLIDING_PROBABILITY);
+        let is_sliding = rng.bernoulli(ranges.sliding_probability);
         let pocket = pocket(layout, doorway).filter(|_| is_sliding);
         let (shape, leaf) = match pocket {
             Some(is_low) => sliding(doorway, is_low, plan),
             None => hinged(doorway, plan, rng),
         };
-        let [closed_s, open_s] = [ranges::CLOSED_S, ranges::OPEN_S].map(|range_s| time_s(range_s, rng));
-        let opening = match rng.bernoulli(ranges::PERIODIC_PROBABILITY) {
+        let [closed_s, open_s] = [ranges.closed_s, ranges.open_s].map(|range_s| time_s(range_s, rng));
+        let opening = match rng.bernoulli(ranges.periodic_probability) {
             true => Opening::Periodic { closed_s, open_s },
             false => Opening::Random { closed_s, open_s },
         };
-        let (move_s, starts_open) = (value(ranges::MOVE_S, rng), rng.random());
+        let (move_s, starts_open) = (value(ranges.move_s, rng), rng.random());
         let motion = Motion::Door(DoorSpec { leaf, opening, move_s, starts_open });
         doors.push(ObstacleSpec::new(&format!("door {}", doors.len() + 1), shape, motion));
     }

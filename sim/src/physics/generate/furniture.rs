@@ -1,8 +1,8 @@
 //! The furniture of a house, and the names of its rooms. A piece touches a wall, or keeps so far away from it that every
 //! robot fits through; so it does from other pieces. Furniture therefore never divides a room.
 
+use super::building_ranges::{Furniture, Placement};
 use super::draw::{between, cells};
-use super::house_ranges::{self as ranges, Furniture, Placement};
 use super::layout::{Area, Layout};
 use interfaces::RandomStream;
 use rand::RngExt;
@@ -23,14 +23,15 @@ pub(super) struct Piece {
 
 /// The furniture of all rooms.
 pub(super) fn furniture(layout: &Layout, rng: &mut RandomStream) -> Vec<Piece> {
+    let ranges = layout.ranges;
     let mut pieces: Vec<Piece> = Vec::new();
     for (room, (name, list)) in named(layout, rng) {
         let first = pieces.len();
         for kind in list {
-            if !rng.bernoulli(ranges::FURNITURE_PROBABILITY) {
+            if !rng.bernoulli(ranges.furniture_probability) {
                 continue;
             }
-            let clearance = cells(ranges::CLEARANCE_M);
+            let clearance = cells(ranges.clearance_m);
             let mut drawn = (0..MAX_TRIES).map(|_| draw(kind, &layout.spaces[room], clearance, rng));
             let fits = |(area, _): &(Area, _)| {
                 let beside = area.grown(clearance);
@@ -47,14 +48,20 @@ pub(super) fn furniture(layout: &Layout, rng: &mut RandomStream) -> Vec<Piece> {
 }
 
 /// The rooms with a name and the kinds of their furniture.
-fn named(layout: &Layout, rng: &mut RandomStream) -> Vec<(usize, (&'static str, &'static [Furniture]))> {
+fn named(layout: &Layout, rng: &mut RandomStream) -> Vec<(usize, (String, &'static [Furniture]))> {
     let size = |room: &usize| layout.spaces[*room].size(0) * layout.spaces[*room].size(1);
     let mut rooms: Vec<usize> = (1..layout.spaces.len()).collect();
     rooms.sort_by_key(|room| -size(room));
     for index in (2..rooms.len()).rev() {
         rooms.swap(index, rng.random_range(1..=index));
     }
-    rooms.into_iter().zip(ranges::ROOMS_BY_NAME.iter().copied()).collect()
+    let kinds = layout.ranges.furnished_rooms;
+    let named = |(number, room): (usize, usize)| {
+        let (name, list) = kinds[number % kinds.len()];
+        let name = if number < kinds.len() { name.to_owned() } else { format!("{name} {}", number + 1) };
+        (room, (name, list))
+    };
+    rooms.into_iter().enumerate().map(named).collect()
 }
 
 /// A piece of a kind at a random place.

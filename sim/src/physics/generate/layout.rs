@@ -1,8 +1,8 @@
 //! The layout of a house: a corridor, rooms on both sides and at one end, walls and doorways. Lengths are in cells; axis
 //! 0 runs along the corridor, axis 1 across it.
 
+use super::building_ranges::BuildingRanges;
 use super::draw::{between, cells, integer};
-use super::house_ranges as ranges;
 use interfaces::RandomStream;
 use rand::RngExt;
 
@@ -106,7 +106,8 @@ impl Doorway {
 }
 
 /// The layout of a house.
-pub(super) struct Layout {
+pub(super) struct Layout<'a> {
+    pub(super) ranges: &'a BuildingRanges,
     /// Length and width, outer walls included.
     pub(super) size: [i32; 2],
     /// The corridor, and then the rooms.
@@ -115,19 +116,19 @@ pub(super) struct Layout {
     walls: Vec<Wall>,
 }
 
-impl Layout {
-    pub(super) fn new(rng: &mut RandomStream) -> Self {
-        let size = [between(ranges::LENGTH_M, rng), between(ranges::WIDTH_M, rng)];
-        let min_room = cells(ranges::MIN_ROOM_M);
+impl<'a> Layout<'a> {
+    pub(super) fn new(ranges: &'a BuildingRanges, rng: &mut RandomStream) -> Self {
+        let size = [between(ranges.length_m, rng), between(ranges.width_m, rng)];
+        let min_room = cells(ranges.min_room_m);
         let [right, top] = size.map(|extent| extent - WALL);
-        let corridor = between(ranges::CORRIDOR_M, rng);
+        let corridor = between(ranges.corridor_m, rng);
         let low = rng.random_range(WALL + min_room..=top - min_room - corridor - 2 * WALL) + WALL;
-        let mut house = Self { size, spaces: Vec::new(), doorways: Vec::new(), walls: Vec::new() };
+        let mut house = Self { ranges, size, spaces: Vec::new(), doorways: Vec::new(), walls: Vec::new() };
         house.outer_walls();
 
         let mut along = [WALL, right];
-        let end_room = rng.bernoulli(ranges::END_ROOM_PROBABILITY).then(|| {
-            let (length, is_left) = (between(ranges::END_ROOM_M, rng), rng.random());
+        let end_room = rng.bernoulli(ranges.end_room_probability).then(|| {
+            let (length, is_left) = (between(ranges.end_room_m, rng), rng.random());
             if is_left {
                 along[0] += length + WALL;
                 ([WALL, WALL + length], Wall { across: 0, face: WALL + length, ends: [WALL, top] })
@@ -160,10 +161,10 @@ impl Layout {
 
     /// The rooms on one side of the corridor, behind `wall`.
     fn rooms(&mut self, depth: [i32; 2], wall: Wall, rng: &mut RandomStream) {
-        let (min_room, [left, right]) = (cells(ranges::MIN_ROOM_M), wall.ends);
+        let (min_room, [left, right]) = (cells(self.ranges.min_room_m), wall.ends);
         self.walls.push(wall);
         let most = (right - left + WALL) / (min_room + WALL);
-        let count = integer(ranges::ROOMS, rng).min(most).max(1);
+        let count = integer(self.ranges.rooms, rng).min(most).max(1);
         let spare = right - left + WALL - count * (min_room + WALL);
         let mut cuts: Vec<i32> = (1..count).map(|_| rng.random_range(0..=spare)).collect();
         cuts.sort_unstable();
@@ -181,7 +182,7 @@ impl Layout {
             if let Some(beside) = beside {
                 self.walls.push(beside);
                 is_inner[room - first] = !is_inner[room - first - 1]
-                    && rng.bernoulli(ranges::INNER_ROOM_PROBABILITY)
+                    && rng.bernoulli(self.ranges.inner_room_probability)
                     && self.doorway(beside, [room - 1, room], rng);
             }
             if !is_inner[room - first] {
@@ -193,7 +194,7 @@ impl Layout {
                     [CORRIDOR, room]
                 };
                 self.doorway(Wall { ends: [low[0], high[0]], ..wall }, spaces, rng);
-                if let Some(beside) = beside.filter(|_| rng.bernoulli(ranges::SIDE_DOORWAY_PROBABILITY)) {
+                if let Some(beside) = beside.filter(|_| rng.bernoulli(self.ranges.side_doorway_probability)) {
                     self.doorway(beside, [room - 1, room], rng);
                 }
             }
@@ -218,7 +219,7 @@ impl Layout {
         for other in 1..room {
             let Area { low, high } = self.spaces[other];
             let touches = if is_left { low[0] == wall.face + WALL } else { high[0] == wall.face };
-            if touches && rng.bernoulli(ranges::SIDE_DOORWAY_PROBABILITY) {
+            if touches && rng.bernoulli(self.ranges.side_doorway_probability) {
                 let part = Wall { ends: [low[1], high[1]], ..wall };
                 self.doorway(part, sorted(other), rng);
             }
@@ -228,7 +229,7 @@ impl Layout {
     /// Adds a doorway somewhere in a part of a wall, if there is room.
     fn doorway(&mut self, part: Wall, spaces: [usize; 2], rng: &mut RandomStream) -> bool {
         for _ in 0..MAX_TRIES {
-            let width = between(ranges::DOORWAY_M, rng);
+            let width = between(self.ranges.doorway_m, rng);
             let [low, high] = [part.ends[0] + CORNER, part.ends[1] - CORNER - width];
             if low > high {
                 continue;

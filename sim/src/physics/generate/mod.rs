@@ -1,10 +1,10 @@
-//! Random houses, each from a seed: rooms at a corridor, furniture, doors, people who walk from room to room, and a
+//! Random buildings, each from a seed: rooms at a corridor, furniture, doors, people who walk from room to room, and a
 //! robot that explores.
 
+pub mod building_ranges;
 mod doors;
 mod draw;
 mod furniture;
-pub mod house_ranges;
 mod layout;
 mod plan;
 mod routes;
@@ -14,9 +14,9 @@ use super::spec::{
     BehaviorSpec, ContactModel, DriveKind, DriveLimits, FleetSpec, Motion, ObstacleSpec, Repeat, RobotSpec,
     WanderSpec, WaypointsSpec, WorldSpec,
 };
+use building_ranges::BuildingRanges;
 use draw::{CELLS_PER_M, integer, value};
 use furniture::Piece;
-use house_ranges as ranges;
 use interfaces::{GridFrame, Purpose, RandomStream, pose};
 use layout::Layout;
 use nalgebra::Point2;
@@ -26,8 +26,8 @@ use routes::Routes;
 
 /// The physics step, s.
 const STEP_S: f64 = 0.05;
-/// The largest number of draws until a house has a place for the explorer and a round for every person.
-const MAX_HOUSES: usize = 100;
+/// The largest number of draws until a building has a place for the explorer and a round for every person.
+const MAX_DRAWS: usize = 100;
 /// The number of draws until a robot has a place away from all others.
 const MAX_PLACES: usize = 50;
 /// The distance between two robots at the start, m.
@@ -36,19 +36,38 @@ const APART_M: f64 = 0.8;
 const CLEARANCE_M: f64 = 0.15;
 
 impl WorldSpec {
-    /// A random house, named `house-` and the seed, with the parameters of [`house_ranges`]. All rooms are connected
-    /// while the doors are open; nothing is inside another thing; every round of a person keeps off walls and
+    /// A random house, named `house-` and the seed, with the parameters of [`building_ranges::HOUSE`]. All rooms are
+    /// connected while the doors are open; nothing is inside another thing; every round of a person keeps off walls and
     /// furniture. The same seed gives the same house, on every machine.
     pub fn generate_house(seed: u64) -> Self {
-        let mut rng = RandomStream::new(seed, Purpose::HouseGenerator);
-        let mut houses = (0..MAX_HOUSES).filter_map(|_| draw_house(seed, &mut rng));
-        houses.next().expect("with these ranges, a house fails in less than one of ten draws")
+        generate(&building_ranges::HOUSE, seed)
+    }
+
+    /// A random office, named `office-` and the seed: as [a house](Self::generate_house), with the parameters of
+    /// [`building_ranges::OFFICE`].
+    pub fn generate_office(seed: u64) -> Self {
+        generate(&building_ranges::OFFICE, seed)
+    }
+
+    /// The generated building with this name, as `house-7` or `office-7`; `None` for other names.
+    pub fn generated(name: &str) -> Option<Self> {
+        let (kind, seed) = name.split_once('-')?;
+        let mut kinds = [&building_ranges::HOUSE, &building_ranges::OFFICE].into_iter();
+        let (ranges, seed) = (kinds.find(|ranges| ranges.kind == kind)?, seed.parse().ok()?);
+        Some(generate(ranges, seed))
     }
 }
 
-/// A house, unless a robot found no place in it.
-fn draw_house(seed: u64, rng: &mut RandomStream) -> Option<WorldSpec> {
-    let layout = Layout::new(rng);
+/// The building of a seed.
+fn generate(ranges: &BuildingRanges, seed: u64) -> WorldSpec {
+    let mut rng = RandomStream::new(seed, Purpose::HouseGenerator);
+    let mut buildings = (0..MAX_DRAWS).filter_map(|_| draw_building(ranges, seed, &mut rng));
+    buildings.next().expect("with these ranges, a building fails in less than one of ten draws")
+}
+
+/// A building, unless a robot found no place in it.
+fn draw_building(ranges: &BuildingRanges, seed: u64, rng: &mut RandomStream) -> Option<WorldSpec> {
+    let layout = Layout::new(ranges, rng);
     let plan = Plan { is_upright: rng.random() };
     let walls: Vec<Rectangle> = layout.solid_walls().iter().map(|wall| plan.rectangle(wall)).collect();
     let mut obstacles: Vec<ObstacleSpec> =
@@ -68,7 +87,7 @@ fn draw_house(seed: u64, rng: &mut RandomStream) -> Option<WorldSpec> {
         "{} rooms at a corridor, doors: {doors}, people: {people}; made at random from the seed {seed}.",
         layout.spaces.len() - 1
     );
-    let name = format!("house-{seed}");
+    let name = format!("{}-{seed}", ranges.kind);
     let contacts = ContactModel::RigidBodies;
     let (frame, step_s, glass) = (frame?, STEP_S, Vec::new());
     let fleet = FleetSpec { name, description, frame, step_s, contacts, walls, glass, obstacles, robots };
@@ -86,19 +105,20 @@ fn standing(piece: &Piece, plan: &Plan) -> ObstacleSpec {
 
 /// The explorer, the people, and perhaps a vacuum cleaner.
 fn robots(routes: &Routes, rng: &mut RandomStream) -> Option<Vec<RobotSpec>> {
+    let ranges = routes.ranges;
     let mut robots = vec![robot("curious", routes.place(rng)?, BehaviorSpec::Driven, 0.2, 0.8, rng)];
     robots[0].laser.beams = 720;
-    for number in 1..=integer(ranges::PEOPLE, rng) {
+    for number in 1..=integer(ranges.people, rng) {
         let mut rounds = (0..MAX_PLACES).filter_map(|_| routes.round(rng));
         let points = rounds.find(|points| is_apart(&robots, &points[0]))?;
-        let speed_mps = value(ranges::PERSON_SPEED_MPS, rng);
+        let speed_mps = value(ranges.person_speed_mps, rng);
         let (start, repeat) = (points[0], Repeat::Loop);
         let behavior =
             BehaviorSpec::Waypoints(WaypointsSpec { points, speed_mps, repeat, clearance_m: CLEARANCE_M });
-        let radius_m = value(ranges::PERSON_RADIUS_M, rng);
+        let radius_m = value(ranges.person_radius_m, rng);
         robots.push(robot(&format!("person {number}"), start, behavior, radius_m, 1.0, rng));
     }
-    if rng.bernoulli(ranges::VACUUM_CLEANER_PROBABILITY) {
+    if rng.bernoulli(ranges.vacuum_cleaner_probability) {
         let start = (0..MAX_PLACES).filter_map(|_| routes.place(rng)).find(|at| is_apart(&robots, at))?;
         let behavior = BehaviorSpec::Wander(WanderSpec { speed_mps: 0.3, clearance_m: CLEARANCE_M });
         robots.push(robot("vacuum cleaner", start, behavior, 0.17, 0.4, rng));

@@ -1,7 +1,7 @@
 //! The rounds of people: straight legs between places in rooms, and the two sides of doorways.
 
+use super::building_ranges::BuildingRanges;
 use super::draw::integer;
-use super::house_ranges as ranges;
 use super::layout::{CORRIDOR, Layout, WALL};
 use super::plan::Plan;
 use crate::physics::shape::Rectangle;
@@ -19,17 +19,24 @@ const PLACES: usize = 3;
 const MAX_TRIES: usize = 60;
 
 /// The places that people and other robots can be at, and the legs between them.
-pub(super) struct Routes {
+pub(super) struct Routes<'a> {
+    pub(super) ranges: &'a BuildingRanges,
     /// All places, m: those in rooms, with the index of the room, and those in front of doorways.
     places: Vec<(Point2<f64>, Option<usize>)>,
     /// For every place, the places at the other ends of free legs.
     legs: Vec<Vec<usize>>,
 }
 
-impl Routes {
+impl<'a> Routes<'a> {
     /// The places that keep away from `solids`: walls, furniture, open doors.
-    pub(super) fn new(layout: &Layout, solids: &[Rectangle], plan: &Plan, rng: &mut RandomStream) -> Self {
-        let keep_m = ranges::PERSON_RADIUS_M[1] + BESIDE_M;
+    pub(super) fn new(
+        layout: &Layout<'a>,
+        solids: &[Rectangle],
+        plan: &Plan,
+        rng: &mut RandomStream,
+    ) -> Self {
+        let ranges = layout.ranges;
+        let keep_m = ranges.person_radius_m[1] + BESIDE_M;
         let mut places = Vec::new();
         for doorway in &layout.doorways {
             let middle = f64::from(doorway.ends[0] + doorway.ends[1]) / 2.0;
@@ -67,7 +74,7 @@ impl Routes {
         };
         let legs = (0..places.len()).map(|a| (0..places.len()).filter(|b| is_leg(a, *b)).collect());
         let legs: Vec<Vec<usize>> = legs.collect();
-        Self { places, legs }
+        Self { ranges, places, legs }
     }
 
     /// A random place in a room; `None` if there is none.
@@ -86,7 +93,7 @@ impl Routes {
     pub(super) fn round(&self, rng: &mut RandomStream) -> Option<Vec<Point2<f64>>> {
         let start = self.draw(rng, |_| true)?;
         let mut round = vec![start];
-        for _ in 1..integer(ranges::PERSON_ROOMS, rng) {
+        for _ in 1..integer(self.ranges.person_rooms, rng) {
             let room = self.places[round[round.len() - 1]].1;
             let next = self.draw(rng, |other| Some(other) != room)?;
             round.extend(self.way(round[round.len() - 1], next)?);

@@ -9,10 +9,11 @@ mod tests;
 use curious::reachability;
 use curious::worlds::is_of_stage;
 use interfaces::printable;
-use sim::physics::FleetSpec;
+use sim::physics::{FleetSpec, WorldSpec};
 use std::path::Path;
 use viewer::scene::Scene;
 use worldfile::floor_plan::FloorPlan;
+use worldfile::physics::to_toml;
 use worldfile::{Disk, Files, Findings, MAX_TEXT_BYTES, Severity, ros_map, shipped};
 
 const GRID_WORLD: &str = "grid world";
@@ -49,13 +50,14 @@ pub(crate) struct Content {
     pub(crate) scene: Scene,
 }
 
-/// Reads a shipped world by its name, or a file by its format: a world file (physics or grid), a Stage file, or
+/// Reads a shipped world or a generated building by its name, or a file by its format: a world file (physics or grid), a Stage file, or
 /// a ROS map.
 pub(crate) fn inspect(name: &str) -> Inspection {
-    let shipped = shipped::text(name);
+    let generated = || WorldSpec::generated(name).and_then(|world| to_toml(world.fleet()));
+    let text = shipped::text(name).map(str::to_owned).or_else(generated);
     let path = Path::new(name);
-    let mut inspection = match (shipped, path.extension().and_then(|ending| ending.to_str())) {
-        (Some(text), _) => world_file(&format!("{name}.toml"), text, &shipped::pictures()),
+    let mut inspection = match (text, path.extension().and_then(|ending| ending.to_str())) {
+        (Some(text), _) => world_file(&format!("{name}.toml"), &text, &shipped::pictures()),
         (None, _) if is_of_stage(path) => stage_file(path),
         (None, Some("yaml" | "yml")) => ros_file(path),
         (None, _) => match Disk.read(path, MAX_TEXT_BYTES) {

@@ -1,15 +1,20 @@
-//! Generated houses: all rooms connected, nothing inside another thing, and the same as ever.
+//! Generated buildings: all rooms connected, nothing inside another thing, and the same as ever.
 
 use nalgebra::Point2;
 use sim::physics::*;
 
-/// The number of houses in each test.
+/// The number of houses, and of offices, in each test.
 const HOUSES: u64 = 300;
+const OFFICES: u64 = 60;
 /// The distance of the positions that are tried for the explorer, m.
 const GRID_M: f64 = 0.05;
 
 fn houses() -> impl Iterator<Item = WorldSpec> {
     (0..HOUSES).map(WorldSpec::generate_house)
+}
+
+fn buildings() -> impl Iterator<Item = WorldSpec> {
+    houses().chain((0..OFFICES).map(WorldSpec::generate_office))
 }
 
 /// Walls and furniture, and the leaves of open doors if they are asked for.
@@ -84,8 +89,8 @@ impl Positions {
 /// Furniture never divides a house; an open door can hide a place behind it, but never a room or a robot.
 #[test]
 fn every_place_where_a_robot_fits_can_be_reached() {
-    for house in houses() {
-        let radius_m = house_ranges::PERSON_RADIUS_M[1] + 0.03;
+    for house in buildings() {
+        let radius_m = building_ranges::HOUSE.person_radius_m[1] + 0.03;
         let parts = Positions::new(&house, radius_m, false).parts();
         assert_eq!(parts.len(), 1, "{}", house.name);
         let opened = Positions::new(&house, radius_m, true);
@@ -107,8 +112,8 @@ fn every_place_where_a_robot_fits_can_be_reached() {
 
 /// The reader of world files checks that robots, rounds, furniture and walls do not overlap.
 #[test]
-fn a_file_has_the_same_house() {
-    for house in houses() {
+fn a_file_has_the_same_building() {
+    for house in buildings() {
         let text = worldfile::physics::to_toml(house.fleet()).unwrap();
         let read =
             worldfile::physics::parse_world("house.toml", &text).unwrap_or_else(|error| panic!("{error}"));
@@ -118,7 +123,7 @@ fn a_file_has_the_same_house() {
 
 #[test]
 fn no_thing_is_inside_another() {
-    for house in houses() {
+    for house in buildings() {
         let (doors, furniture): (Vec<_>, Vec<_>) =
             house.obstacles.iter().partition(|obstacle| leaf(obstacle, 0.0).is_some());
         for (index, piece) in furniture.iter().enumerate() {
@@ -151,7 +156,7 @@ fn houses_have_what_their_ranges_say() {
                     else {
                         panic!("{opening:?}")
                     };
-                    let [closed, open] = [house_ranges::CLOSED_S, house_ranges::OPEN_S];
+                    let [closed, open] = [building_ranges::HOUSE.closed_s, building_ranges::HOUSE.open_s];
                     assert!(
                         (closed[0]..=closed[1]).contains(closed_s) && (open[0]..=open[1]).contains(open_s)
                     );
@@ -184,17 +189,21 @@ fn houses_are_what_they_always_were() {
             (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
         })
     };
-    let line = |seed: u64| {
-        let house = WorldSpec::generate_house(seed);
+    let line = |name: String| {
+        let house = WorldSpec::generated(&name).unwrap();
         let text = worldfile::physics::to_toml(house.fleet()).unwrap();
         format!("{:016x} {}", hash(&text), house.description)
     };
-    let lines: Vec<String> = [0, 1, 2, 3, u64::MAX].map(line).into();
+    let names = (0..4).chain([u64::MAX]).map(|seed| format!("house-{seed}"));
+    let names = names.chain((0..2).map(|seed| format!("office-{seed}")));
+    let lines: Vec<String> = names.map(line).collect();
     insta::assert_snapshot!(lines.join("\n"), @"
     0d71553f8c835f1b 5 rooms at a corridor, doors: 3, people: 1; made at random from the seed 0.
     245b78cfafd21d6f 5 rooms at a corridor, doors: 4, people: 2; made at random from the seed 1.
     ed7c679d6df01d6c 5 rooms at a corridor, doors: 4, people: 1; made at random from the seed 2.
     0fbc156553a5a43b 8 rooms at a corridor, doors: 7, people: 1; made at random from the seed 3.
     85597a21d688b55b 6 rooms at a corridor, doors: 3, people: 1; made at random from the seed 18446744073709551615.
+    89c6235e9e01e9e4 13 rooms at a corridor, doors: 10, people: 5; made at random from the seed 0.
+    40a6566be7512e2d 11 rooms at a corridor, doors: 11, people: 6; made at random from the seed 1.
     ");
 }
