@@ -11,7 +11,7 @@ use pyo3::types::PyDict;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
-use survey::{LogEntry, SurveySettings};
+use survey::{LogEntry, Quality, SurveySettings, Verdict};
 
 /// A log of a robot: a CARMEN log (also with gzip), a bag of ROS 2 (MCAP or SQLite, a file or a folder).
 ///
@@ -93,6 +93,7 @@ pub(crate) struct Survey {
     places: Vec<survey::Place>,
     poses: Vec<TrajectoryPose>,
     permanent: interfaces::Grid<interfaces::CellState>,
+    quality: Quality,
 }
 
 /// Maps a log, and learns where the place changes: the program `map_log` for one log. The log is read twice: the
@@ -159,10 +160,11 @@ fn learn(log: &::logs::Log, settings: SurveySettings, learns_noise: bool) -> PyR
     signal.or(Ok(()))?;
     let mapper = survey.mapper().ok_or_else(changed)?.clone();
     let (mut places, permanent) = (survey::places(&mapper, survey.changes()), survey::permanent(&mapper));
-    if !log.summary().has_times {
+    let quality = survey.logs()[0].quality.clone();
+    if !log.summary().has_times || quality.verdict() == Verdict::NotUsable {
         places.iter_mut().for_each(|place| place.rates = None);
     }
-    Ok(Survey { mapper, places, poses: survey.logs()[0].poses().collect(), permanent })
+    Ok(Survey { mapper, places, poses: survey.logs()[0].poses().collect(), permanent, quality })
 }
 
 #[pymethods]
@@ -183,6 +185,19 @@ impl Survey {
         rows_array(py, self.poses.iter().map(row))
     }
 
+    /// What the map is good for, judged by its own scans: "good", "usable with care" or "not usable". The places of a map that is
+    /// not usable have no rates.
+    #[getter]
+    fn verdict(&self) -> &'static str {
+        self.quality.verdict().name()
+    }
+
+    /// Why the map is not good, in sentences; empty if it is.
+    #[getter]
+    fn reasons(&self) -> Vec<String> {
+        self.quality.reasons()
+    }
+
     /// Whether each pose of the trajectory is certain.
     #[getter]
     fn certain(&self) -> Vec<bool> {
@@ -198,7 +213,7 @@ impl Survey {
 
     /// The places where something changes, those with the most cycles first, each a dict: x, y (m), low, high (m), area
     /// (m²), changes, cycles_per_hour, cycles_per_hour_90, share_blocked, observed (s), last_change (s); the last five are
-    /// None where the times of the log are unusable.
+    /// None where the times of the log, or the map, are unusable.
     #[getter]
     fn places<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
         let dict = |place: &survey::Place| {

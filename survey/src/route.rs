@@ -2,6 +2,7 @@
 
 use crate::error::SurveyError;
 use crate::extent::{self, Reach};
+use crate::quality::{Quality, QualityCheck};
 use crate::range_noise::RangeNoise;
 use crate::settings::SurveySettings;
 use crate::turns::Turns;
@@ -21,6 +22,8 @@ pub struct Route {
     pub residual: Option<Residual>,
     /// The standard deviation of the ranges of a laser that stands, m; `None` where it is not known.
     pub range_std_m: Option<f64>,
+    /// How far the trajectory agrees with its own scans.
+    pub quality: Quality,
     reaches: Vec<Reach>,
 }
 
@@ -29,6 +32,10 @@ impl Route {
     #[must_use]
     pub fn moved(mut self, by: &Isometry2<f64>) -> Self {
         self.poses.iter_mut().for_each(|at| at.pose = by * at.pose);
+        for doubt in &mut self.quality.doubts {
+            let at = by * Point2::new(doubt.x_m, doubt.y_m);
+            (doubt.x_m, doubt.y_m) = (at.x, at.y);
+        }
         self
     }
 }
@@ -64,6 +71,7 @@ pub struct FirstPass {
     finder: Option<TrajectoryFinder>,
     given: Vec<TrajectoryPose>,
     range_noise: RangeNoise,
+    quality: QualityCheck,
     reaches: Vec<Reach>,
     /// The corners of the rectangle that was seen so far.
     seen: Option<(Point2<f64>, Point2<f64>)>,
@@ -91,6 +99,7 @@ impl FirstPass {
             finder,
             given: Vec::new(),
             range_noise: RangeNoise::default(),
+            quality: QualityCheck::default(),
             reaches: Vec::new(),
             seen: None,
             turns: Turns::default(),
@@ -104,7 +113,7 @@ impl FirstPass {
         self.turns.add(&reading);
         let found = match &mut self.finder {
             Some(finder) => {
-                finder.add(reading);
+                finder.add(reading.clone());
                 finder.newest()
             }
             None => {
@@ -114,6 +123,9 @@ impl FirstPass {
                 self.given.last().copied()
             }
         };
+        if let Some(found) = &found {
+            self.quality.add(&reading, &found.pose);
+        }
         let certain = found.filter(|found| found.state == PoseState::Tracking);
         for hit in certain.iter().flat_map(|found| reach.hits().map(|hit| found.pose * hit)) {
             let (low, high) = self.seen.unwrap_or((hit, hit));
@@ -143,7 +155,7 @@ impl FirstPass {
             }
             None => (self.given, 0, None),
         };
-        let range_std_m = self.range_noise.std_m();
-        Route { poses, loops, residual, range_std_m, reaches: self.reaches }
+        let (range_std_m, quality) = (self.range_noise.std_m(), self.quality.finish(&poses));
+        Route { poses, loops, residual, range_std_m, quality, reaches: self.reaches }
     }
 }

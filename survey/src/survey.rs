@@ -11,6 +11,7 @@ use crate::error::SurveyError;
 use crate::extent::union;
 use crate::known_place::KnownPlace;
 use crate::passes::{PassError, RoutePass, Stage};
+use crate::quality::Verdict;
 use crate::replay::{FoundPoses, Replay, judged};
 use crate::route::frame;
 use crate::settings::SurveySettings;
@@ -50,6 +51,11 @@ impl Survey {
     /// The logs, in the order of their times.
     pub fn logs(&self) -> &[SurveyedLog] {
         &self.logs
+    }
+
+    /// What the map is good for: as the worst of its logs.
+    pub fn verdict(&self) -> Verdict {
+        self.logs.iter().map(|log| log.quality.verdict()).max().unwrap_or(Verdict::Good)
     }
 
     /// The map; `None` before the first reading was learned.

@@ -1,6 +1,7 @@
 //! What a survey keeps of a log.
 
 use crate::noise::noise_m;
+use crate::quality::Quality;
 use crate::repeated::{repeats, sketch};
 use crate::route::{Route, distance_m};
 use interfaces::GridFrame;
@@ -103,6 +104,9 @@ pub struct SurveyedLog {
     pub loops: usize,
     /// The part that was used.
     pub travelled: Travelled,
+    /// How far the trajectory agrees with its own scans. It is saved beside the logs: earlier states do not have it.
+    #[serde(skip)]
+    pub quality: Quality,
     /// The noise that the mapper must expect, m.
     pub(crate) noise_m: Option<f64>,
     /// The cells that cover what was seen.
@@ -132,6 +136,7 @@ impl SurveyedLog {
             loops: route.loops,
             travelled: Travelled::default(),
             noise_m: noise_m(&route),
+            quality: route.quality,
             frame,
             poses: Arc::new(route.poses),
         }

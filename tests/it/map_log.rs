@@ -73,6 +73,37 @@ fn a_bag_becomes_a_page_maps_masks_and_numbers() {
     assert!((copied_m2 / seen_m2 - 1.0).abs() < 0.005, "{copied_m2} and {seen_m2} m²");
 }
 
+/// Along the odometry, whose heading drifts, walls are there twice.
+#[test]
+fn a_map_that_is_not_usable_says_so() {
+    let run = with_bag(240);
+    run.goes_well("a.mcap --quiet --no-rrd --state a.state");
+    let (state, summary) = (fs::read(run.path("a.state")).unwrap(), run.summary());
+    assert_eq!(
+        (&summary.0["verdict"], &summary.0["verdict_reasons"]),
+        (&"good".into(), &serde_json::json!([]))
+    );
+    assert!(fs::read_to_string(run.out("report.html")).unwrap().contains("This map is good"));
+
+    let ended = run.ends("a.mcap --pose odometry --no-rrd --state other.state");
+    assert_eq!(ended.code, Some(3), "{}", ended.stderr);
+    assert!(ended.stdout.contains("  map       not usable\n            - "), "{}", ended.stdout);
+    let summary = run.summary();
+    assert_eq!((&summary.0["verdict"], &summary.0["is_refused"]), (&"not-usable".into(), &true.into()));
+    assert!(summary.0["quality"][0]["doubts"].as_array().is_some_and(|doubts| !doubts.is_empty()));
+    let page = fs::read_to_string(run.out("report.html")).unwrap();
+    assert!(
+        page.contains("This map is not usable") && page.contains("doubts.png") && !page.contains("per hour")
+    );
+    let found = names(&run.path("out"));
+    assert!(found.contains(&"doubts.png".to_owned()) && found.contains(&"map.pgm".to_owned()));
+    assert!(!found.iter().any(|name| name.contains("mask") || name.contains("statistics")), "{found:?}");
+    assert!(!run.path("other.state").exists() && fs::read(run.path("a.state")).unwrap() == state);
+
+    run.goes_well("a.mcap --pose odometry --no-rrd --state other.state --accept-map");
+    assert!(run.path("other.state").exists() && run.out("speed_mask.pgm").exists());
+}
+
 #[test]
 fn two_logs_of_one_place_add_up() {
     let run = with_bag(40);

@@ -25,6 +25,9 @@ use survey::{LogEntry, SavedLogs, SurveySettings};
 /// cell (cell_statistics.csv, and layers.npy for NumPy with its names in layers.json), the trajectory (trajectory.tum, in the TUM format), and all
 /// results as JSON (summary.json).
 ///
+/// The map is judged by its own scans: good, usable with care, or not usable, with the reasons and the places (doubts.png). A map
+/// that is not usable is drawn, but has no rates and no masks, does not enter the state, and the exit code is 3.
+///
 /// The results of an earlier run in the folder stay until the new ones are complete; until then the new ones are in its
 /// subfolder unfinished_run. Other files are never removed or replaced: where one has the name of a result, the run is
 /// refused before it begins.
@@ -33,7 +36,8 @@ use survey::{LogEntry, SavedLogs, SurveySettings};
     name = "map_log",
     version,
     max_term_width = 100,
-    after_help = "Exit codes: 0 success, 1 the run failed, 2 invalid arguments or input, 130 interrupted (Ctrl-C, SIGTERM or SIGHUP; \
+    after_help = "Exit codes: 0 success, 1 the run failed, 2 invalid arguments or input, 3 the map is not usable (the \
+                  report says why and where; --accept-map), 130 interrupted (Ctrl-C, SIGTERM or SIGHUP; \
                   in the second pass the results so far are written, with --state the state at any time)."
 )]
 pub(crate) struct Args {
@@ -130,6 +134,11 @@ pub(crate) struct Args {
     /// The wall time between two savings of the state
     #[arg(long, value_name = "TIME", default_value = "1m", value_parser = duration_s, requires = "state", help_heading = "Output")]
     pub(crate) state_every: f64,
+
+    /// Use a map that is judged as not usable as any other: with rates, masks, an entry into --state, and exit code 0. For those
+    /// who have looked at it
+    #[arg(long, help_heading = "Map")]
+    pub(crate) accept_map: bool,
 
     /// Leave out the rest of a log that the state has learned in part and that is not given any more
     #[arg(long, requires = "state", help_heading = "Output")]

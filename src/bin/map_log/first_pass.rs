@@ -7,7 +7,7 @@ use curious::program::{Failure, input};
 use curious::progress::Progress;
 use interfaces::PoseMode;
 use std::ops::ControlFlow;
-use survey::{PassError, Stage, Survey};
+use survey::{PassError, Stage, Survey, Verdict};
 
 /// Finds the routes of all logs of which the survey has none. Returns false if interrupted.
 pub(crate) fn routes(
@@ -33,6 +33,12 @@ pub(crate) fn routes(
         let found = survey.first_pass(&source.log, source.entry.clone(), is_followed, watch);
         drop(bar);
         match found {
+            Ok(()) if survey.verdict() == Verdict::NotUsable && !job.args.accept_map => {
+                if state_file.is_kept() {
+                    job.say(format_args!("the map is not usable: the state stays as it was (--accept-map)"));
+                }
+                state_file.leave();
+            }
             Ok(()) => state_file.save(survey),
             Err(PassError::Interrupted) => return Ok(false),
             Err(PassError::Alignment(why)) => {

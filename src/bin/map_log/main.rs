@@ -28,6 +28,9 @@ use summary::Summary;
 use survey::{Survey, SurveySettings};
 use survey_state_file::{Loaded, SurveyStateFile};
 
+/// The exit code of a run whose map is not usable.
+const NOT_USABLE: u8 = 3;
+
 fn main() -> ExitCode {
     start(run)
 }
@@ -96,7 +99,7 @@ fn run(args: &Args) -> Result<ExitCode, Failure> {
     }
     let learned = second_pass::learn(&job, &mut survey, &mut state_file, bag, folder.unfinished())?;
     state_file.finish(&survey);
-    let mut summary = Summary::new(&survey, &learned)?;
+    let mut summary = Summary::new(&survey, &learned, args.accept_map)?;
     summary.wall_s = begin.elapsed().as_secs_f64();
     output::write(&folder, &survey, &learned, &mut summary)?;
     // A log can be the result of an earlier run.
@@ -106,6 +109,9 @@ fn run(args: &Args) -> Result<ExitCode, Failure> {
         survey.forget_poses();
         state_file.finish(&survey);
     }
+    if summary.is_refused {
+        say(stderr(), format_args!("error: the map is not usable: {}", summary.verdict_reasons.join("; ")));
+    }
     if !args.quiet {
         print(format_args!("{summary}\n  files     {}", args.out.display()))?;
     }
@@ -113,6 +119,8 @@ fn run(args: &Args) -> Result<ExitCode, Failure> {
         ExitCode::FAILURE
     } else if learned.is_interrupted {
         ExitCode::from(INTERRUPTED)
+    } else if summary.is_refused {
+        ExitCode::from(NOT_USABLE)
     } else {
         ExitCode::SUCCESS
     })

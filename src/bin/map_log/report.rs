@@ -7,11 +7,13 @@ use mapper::{Door, Mapper, ThingKind, Week};
 use maud::{DOCTYPE, Markup, html};
 use nalgebra::Point2;
 use results::numbers::percent;
-use survey::Place;
+use survey::{Place, Verdict};
 
 const STYLE: &str = "body{font-family:sans-serif;max-width:60em;margin:2em auto;padding:0 1em;color:#222}\
 table{border-collapse:collapse}td,th{padding:.3em .8em;border-bottom:1px solid #ccc;text-align:right}\
-td:first-child,th:first-child{text-align:left}img{max-width:100%;height:auto}figcaption{color:#555}";
+td:first-child,th:first-child{text-align:left}img{max-width:100%;height:auto}figcaption{color:#555}\
+.good,.care,.bad{padding:.5em 1em;border-left:.5em solid #2a7}.care{border-color:#e90;background:#fff8e8}\
+.bad{border-color:#c00;background:#fdecec}";
 
 /// The page.
 pub(crate) fn page(summary: &Summary, mapper: &Mapper) -> String {
@@ -30,6 +32,7 @@ pub(crate) fn page(summary: &Summary, mapper: &Mapper) -> String {
                 @if summary.is_interrupted {
                     p { strong { "Interrupted: " } "the maps and the numbers are of the part of the logs up to then." }
                 }
+                (verdict(summary))
                 (overview(summary))
                 @if let Some(why) = &summary.rates_withheld { p { strong { "No rates: " } (why) "." } }
                 h2 { "Where" }
@@ -69,6 +72,32 @@ pub(crate) fn page(summary: &Summary, mapper: &Mapper) -> String {
         }
     };
     page.into_string()
+}
+
+/// Whether the map is right, before anything else.
+fn verdict(summary: &Summary) -> Markup {
+    let (class, words) = match (summary.verdict, summary.is_refused) {
+        (Verdict::Good, _) => ("good", "This map is good: its scans agree with each other."),
+        (Verdict::UsableWithCare, _) => {
+            ("care", "This map is usable with care: parts of it are probably wrong.")
+        }
+        (Verdict::NotUsable, true) => {
+            ("bad", "This map is not usable: it is wrong. It has no rates and no masks.")
+        }
+        (Verdict::NotUsable, false) => {
+            ("bad", "This map is not usable: it is wrong. It was accepted all the same.")
+        }
+    };
+    html! {
+        div class=(class) {
+            strong { (words) }
+            @if !summary.verdict_reasons.is_empty() {
+                ul { @for reason in &summary.verdict_reasons { li { (reason) "." } } }
+                p { "The numbers in the picture are the places in doubt, in the order of time." }
+                (picture("doubts.png", "Places in doubt."))
+            }
+        }
+    }
 }
 
 fn overview(summary: &Summary) -> Markup {

@@ -11,12 +11,17 @@ use results::numbers::percent;
 use robot::BUILD;
 use serde::Serialize;
 use std::fmt;
-use survey::{Place, Survey, SurveySettings, places};
+use survey::{Place, Quality, Survey, SurveySettings, Verdict, places};
 
 /// The number of places in the summary and in the report.
 const MAX_PLACES: usize = 20;
 /// The version of the layout of `summary.json`; count up when a key is renamed, removed or changes its meaning.
 const SCHEMA: u32 = 2;
+/// Why there are no rates.
+const NO_TIMES: &str = "the times of the log are unusable, so that no rate, duration or date can be given: the map shows where \
+                        something changed, not how often";
+const NOT_USABLE: &str =
+    "the map is not usable, and what looks like a change can be a wall that is there twice";
 
 /// The content of `summary.json`.
 #[derive(Clone, Debug, Serialize)]
@@ -35,6 +40,12 @@ pub(crate) struct Summary {
     pub(crate) scans: usize,
     /// The duration of what was used of the logs, without the time between them, s; `null` if their times are unusable.
     pub(crate) duration_s: Option<f64>,
+    /// What the map is good for: `good`, `usable-with-care` or `not-usable`, as the worst of the logs.
+    pub(crate) verdict: Verdict,
+    /// Why the map is not good, in sentences.
+    pub(crate) verdict_reasons: Vec<String>,
+    /// The figures of each log behind the verdict.
+    pub(crate) quality: Vec<Quality>,
     /// What was repaired or left out in the log.
     pub(crate) notes: Vec<String>,
     /// The length of the trajectory in this time, m.
@@ -64,6 +75,8 @@ pub(crate) struct Summary {
     pub(crate) place_count: usize,
     /// The places where something changes, those with the most change first.
     pub(crate) places: Vec<Place>,
+    /// Whether the map is not usable, and `--accept-map` was not given.
+    pub(crate) is_refused: bool,
     pub(crate) is_interrupted: bool,
     pub(crate) wall_s: f64,
     /// The names of the other files with results, in the same folder.
@@ -71,7 +84,7 @@ pub(crate) struct Summary {
 }
 
 impl Summary {
-    pub(crate) fn new(survey: &Survey, learned: &Learned) -> anyhow::Result<Self> {
+    pub(crate) fn new(survey: &Survey, learned: &Learned, is_accepted: bool) -> anyhow::Result<Self> {
         let mapper = survey.mapper().context("nothing was learned")?;
         let logs = survey.logs();
         let entries = || logs.iter().map(|log| &log.entry);
@@ -81,11 +94,17 @@ impl Summary {
         let place_count = places.len();
         places.truncate(MAX_PLACES);
         let has_times = entries().all(|entry| entry.has_times);
-        if !has_times {
+        let verdict = survey.verdict();
+        let is_refused = verdict == Verdict::NotUsable && !is_accepted;
+        let rates_withheld = match (has_times, is_refused) {
+            (_, true) => Some(NOT_USABLE),
+            (false, _) => Some(NO_TIMES),
+            _ => None,
+        };
+        if rates_withheld.is_some() {
             places.iter_mut().for_each(|place| place.rates = None);
         }
-        let why = "the times of the log are unusable, so that no rate, duration or date can be given: the map shows where \
-                   something changed, not how often";
+        let qualities = || logs.iter().map(|log| &log.quality);
         Ok(Self {
             schema: SCHEMA,
             build: BUILD,
@@ -95,6 +114,9 @@ impl Summary {
             logs: entries().map(|entry| entry.name.clone()).collect(),
             scans: logs.iter().map(|log| log.used).sum(),
             duration_s: has_times.then(|| logs.iter().map(|log| log.travelled.duration_s).sum()),
+            verdict,
+            verdict_reasons: qualities().flat_map(Quality::reasons).collect(),
+            quality: qualities().cloned().collect(),
             notes: entries()
                 .flat_map(|entry| entry.notes.clone())
                 .chain(learned.no_return.iter().filter_map(ignored))
@@ -109,9 +131,10 @@ impl Summary {
             seen_m2: seen as f64 * cell_m2,
             changed_share: mapper.changed().count() as f64 / seen.max(1) as f64,
             changes: survey.changes().events(),
-            rates_withheld: (!has_times).then(|| why.to_owned()),
+            rates_withheld: rates_withheld.map(str::to_owned),
             place_count,
             places,
+            is_refused,
             is_interrupted: learned.is_interrupted,
             wall_s: 0.0,
             files: Vec::new(),
@@ -135,6 +158,10 @@ impl fmt::Display for Summary {
         let seconds = |duration_s| format!("{duration_s:.0} s");
         let duration = self.duration_s.map_or("an unknown time".to_owned(), seconds);
         writeln!(f, "{}: {} scans in {duration}", list(&self.logs), self.scans)?;
+        writeln!(f, "  map       {}", self.verdict.name())?;
+        for reason in &self.verdict_reasons {
+            writeln!(f, "            - {reason}")?;
+        }
         let pose = match self.settings.pose {
             PoseMode::Exact => "poses of the log",
             PoseMode::Odometry => "odometry, with its drift",

@@ -80,6 +80,11 @@ impl SurveyStateFile {
         learned.map_err(|why| state_failure(file.path(), why))
     }
 
+    /// Leaves the file as it is from now on.
+    pub(crate) fn leave(&mut self) {
+        self.file = None;
+    }
+
     /// Whether it is time to save.
     pub(crate) fn is_due(&self) -> bool {
         self.file.as_ref().is_some_and(StateFile::is_due)

@@ -3,6 +3,7 @@
 use super::Survey;
 use crate::change_log::ChangeLog;
 use crate::known_place::KnownPlace;
+use crate::quality::Quality;
 use crate::replay::FoundPoses;
 use crate::settings::SurveySettings;
 use crate::surveyed_log::SurveyedLog;
@@ -29,7 +30,12 @@ impl SavedLogs {
     ///
     /// When the bytes are no logs of a survey.
     pub fn read(bytes: &[u8]) -> Result<Self, ValueError> {
-        from_bytes(bytes).map(|(pose, logs)| Self { pose, logs })
+        type Saved = (PoseMode, Vec<SurveyedLog>, Vec<Quality>);
+        let Ok((pose, mut logs, qualities)) = from_bytes::<Saved>(bytes) else {
+            return from_bytes(bytes).map(|(pose, logs)| Self { pose, logs }); // an earlier state, without qualities
+        };
+        logs.iter_mut().zip(qualities).for_each(|(log, quality)| log.quality = quality);
+        Ok(Self { pose, logs })
     }
 
     /// The logs, in the order of their times.
@@ -57,7 +63,8 @@ impl SavedSurvey {
         let Self { pose, place, mapper, changes, logs } = self;
         let place = place.map(|place| Arc::unwrap_or_clone(place).snapshot());
         let mapper = mapper.map(|mut mapper| (*mapper.frame(), mapper.snapshot()));
-        (to_bytes(&(pose, logs)), to_bytes(&(place, mapper, changes)))
+        let qualities: Vec<Quality> = logs.iter().map(|log| log.quality.clone()).collect();
+        (to_bytes(&(pose, logs, qualities)), to_bytes(&(place, mapper, changes)))
     }
 }
 

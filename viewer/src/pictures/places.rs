@@ -49,6 +49,6 @@ pub(super) fn entries() -> Legend {
         |(class, meaning): (u8, &str)| (Mark::Area(Layer::Occupancy.color(class)), meaning.to_owned());
     let mut entries: Legend = Layer::Occupancy.plain_legend().into_iter().map(state).collect();
     entries.push((Mark::Area(palette::MOVING), "changed".to_owned()));
-    entries.push((Mark::Line(palette::CURIOUS), "a place in the table".to_owned()));
+    entries.push((Mark::Line(palette::CURIOUS), "a numbered place".to_owned()));
     entries
 }

@@ -1,0 +1,142 @@
+//! Logs of generated buildings with known truth: how right are their trajectories, and does the verdict on the map say so?
+//!
+//! The building (houses and offices with people and doors), the laser (180 to 360 beams), the odometry (drift, glitches), the way (50
+//! to 400 m) and its length between two scans (0.1 to 1.0 m) are drawn from a seed. Each log is judged along the trajectory that is
+//! found, and along its odometry. Columns: distances from the truth after a rigid alignment (median, 95 %, maximum; m), the verdict, and
+//! its figures (`survey::Quality`): contradicting scans, the worst stretch, weak links, scans left out, surfaces seen once. With
+//! FOLDER, every log is written there as a bag of ROS 2, with its true poses in the TUM format.
+//!
+//! ```text
+//! cargo run -p curious-evaluation --example simulated_logs -- FIRST_SEED LOGS [FOLDER]
+//! ```
+
+mod drive;
+
+use drive::{LogSpec, SimulatedLog};
+use interfaces::PoseMode;
+use logs::McapWriter;
+use nalgebra::{Isometry2, Vector2};
+use results::output::TrajectoryFile;
+use std::error::Error;
+use std::fs::{File, create_dir_all};
+use std::path::Path;
+use survey::{FirstPass, Route, SurveySettings, Verdict};
+
+/// A trajectory is right if 95 % of its positions are this near to the truth, m.
+const RIGHT_M: f64 = 0.3;
+/// What is asked of the front end, m.
+const PRECISE_M: f64 = 0.1;
+
+/// What was counted over all logs.
+#[derive(Default)]
+struct Counts {
+    logs: usize,
+    precise: usize,
+    /// Trajectories that are right or wrong, each with those called good among them.
+    right: [usize; 2],
+    wrong: [usize; 2],
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let [first, logs, folder @ ..] = &arguments[..] else {
+        return Err("usage: simulated_logs FIRST_SEED LOGS [FOLDER]".into());
+    };
+    let first: u64 = first.parse()?;
+    let mut counts = Counts::default();
+    for seed in first..first + logs.parse::<u64>()? {
+        let spec = LogSpec::drawn(seed);
+        let log = spec.record(seed)?;
+        if let Some(folder) = folder.first() {
+            write(Path::new(folder), seed, &log)?;
+        }
+        let ours = route(&log, PoseMode::Localized)?;
+        println!(
+            "{seed:4} {:12} a scan per {:.2} m, {:.0} m, {} scans, {:.0} glitches per 100 m, {} loops",
+            spec.building,
+            spec.step_m,
+            log.way_m,
+            log.readings.len(),
+            100.0 * spec.glitches_per_m,
+            ours.loops
+        );
+        let most_m = counts.add("found", &ours, &log);
+        counts.logs += 1;
+        counts.precise += usize::from(most_m <= PRECISE_M);
+        counts.add("odometry", &route(&log, PoseMode::Odometry)?, &log);
+    }
+    let Counts { logs, precise, right, wrong } = counts;
+    println!(
+        "95 % of the positions within {PRECISE_M} m of the truth: {precise} of {logs} trajectories that were found"
+    );
+    println!(
+        "called good: {} of {} trajectories that are right (95 % within {RIGHT_M} m), {} of {} that are wrong",
+        right[1], right[0], wrong[1], wrong[0]
+    );
+    Ok(())
+}
+
+impl Counts {
+    /// Prints and counts a trajectory. Gives the 95 % quantile of its errors, m.
+    fn add(&mut self, name: &str, route: &Route, log: &SimulatedLog) -> f64 {
+        let poses: Vec<Isometry2<f64>> = route.poses.iter().map(|at| at.pose).collect();
+        let ([median_m, most_m, max_m], quality) = (errors_m(&poses, &log.truth), &route.quality);
+        let verdict = quality.verdict();
+        let of = if most_m <= RIGHT_M { &mut self.right } else { &mut self.wrong };
+        of[0] += 1;
+        of[1] += usize::from(verdict == Verdict::Good);
+        println!(
+            "     {name:8} {median_m:6.3} {most_m:6.3} {max_m:6.3}  {:16} {:.3} {:.3} {:2} {:.3} {:.2}",
+            verdict.name(),
+            quality.contradicting,
+            quality.worst_stretch,
+            quality.weak_links,
+            quality.left_out,
+            quality.seen_once
+        );
+        most_m
+    }
+}
+
+fn write(folder: &Path, seed: u64, log: &SimulatedLog) -> Result<(), Box<dyn Error>> {
+    create_dir_all(folder)?;
+    let mut bag = McapWriter::new(File::create(folder.join(format!("{seed}.mcap")))?, "bag", 1e9)?;
+    let mut truth = TrajectoryFile::create(&folder.join(format!("{seed}.tum")));
+    for (reading, pose) in log.readings.iter().zip(&log.truth) {
+        bag.reading(reading)?;
+        truth.add(reading.time_s, pose);
+    }
+    bag.finish()?;
+    truth.finish()?;
+    Ok(())
+}
+
+fn route(log: &SimulatedLog, mode: PoseMode) -> Result<Route, Box<dyn Error>> {
+    let mut pass = FirstPass::new(&SurveySettings::of(mode))?;
+    log.readings.iter().for_each(|reading| pass.add(reading.clone()));
+    Ok(pass.finish())
+}
+
+/// Median, 95 % and maximum of the distances from the truth after a rigid alignment, m.
+fn errors_m(poses: &[Isometry2<f64>], truth: &[Isometry2<f64>]) -> [f64; 3] {
+    let n = poses.len() as f64;
+    let mean =
+        |list: &[Isometry2<f64>]| list.iter().map(|at| at.translation.vector).sum::<Vector2<f64>>() / n;
+    let (from, to) = (mean(poses), mean(truth));
+    let (mut dot, mut cross) = (0.0, 0.0);
+    for (found, truth) in poses.iter().zip(truth) {
+        let (a, b) = (found.translation.vector - from, truth.translation.vector - to);
+        dot += a.dot(&b);
+        cross += a.perp(&b);
+    }
+    let turn = interfaces::rotation(cross.atan2(dot));
+    let mut errors: Vec<f64> = poses
+        .iter()
+        .zip(truth)
+        .map(|(found, truth)| {
+            (turn * (found.translation.vector - from) - (truth.translation.vector - to)).norm()
+        })
+        .collect();
+    errors.sort_by(f64::total_cmp);
+    [0.5, 0.95, 1.0].map(|share| errors[(share * (errors.len() - 1) as f64) as usize])
+}

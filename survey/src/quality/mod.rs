@@ -1,0 +1,244 @@
+//! Whether a map is right, as far as it can be known without the truth: a scan that is out of place hits where other scans saw
+//! free space, and a trajectory that is broken has a scan that fits to none before it.
+
+mod evidence;
+#[cfg(test)]
+mod tests;
+
+use evidence::{Evidence, Judged, PlacedScan};
+use interfaces::{LaserReading, heading_rad};
+use localizer::{PoseState, TrajectoryPose};
+use nalgebra::{Isometry2, Point2};
+use serde::{Deserialize, Serialize};
+
+/// A scan counts after this way or turn since the last one that counted, so that resting does not count more than driving.
+const COUNTED_M: f64 = 0.3;
+const COUNTED_RAD: f64 = 0.3;
+/// Hits beyond this range are not compared, m: an error of the heading moves them too far.
+const COMPARED_RANGE_M: f64 = 20.0;
+/// The number of hits of a scan that are compared.
+const COMPARED_HITS: usize = 120;
+/// A scan contradicts others if more of its hits are on surfaces where they saw free space.
+const CONTRADICTING: f64 = 0.1;
+/// A scan is a weak link if fewer of its hits are near those of the scans before it.
+const WEAK_LINK: f64 = 0.25;
+/// The number of neighboring scans over which the worst stretch is averaged.
+const STRETCH: usize = 10;
+/// Fewer scans than this say nothing.
+const MIN_SCANS: usize = 30;
+
+/// Limits of a verdict.
+struct Limits {
+    /// Share of scans that contradict others.
+    contradicting: f64,
+    /// Share of the hits of the worst stretch that contradict others.
+    worst_stretch: f64,
+    /// Share of scans without a certain pose.
+    left_out: f64,
+    weak_links: usize,
+}
+
+// From corrected and uncorrected trajectories of public logs, and from simulated logs (docs/localization.md).
+const GOOD: Limits = Limits { contradicting: 0.03, worst_stretch: 0.15, left_out: 0.05, weak_links: 0 };
+const USABLE: Limits = Limits { contradicting: 0.05, worst_stretch: 0.25, left_out: 0.2, weak_links: 1 };
+
+/// What a map is good for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Verdict {
+    /// Nothing speaks against it.
+    Good,
+    /// It is probably wrong in places.
+    UsableWithCare,
+    /// It is wrong.
+    NotUsable,
+}
+
+impl Verdict {
+    /// The verdict in words.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Good => "good",
+            Self::UsableWithCare => "usable with care",
+            Self::NotUsable => "not usable",
+        }
+    }
+}
+
+/// Why a part of a trajectory is in doubt.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum DoubtKind {
+    /// Its scans hit where others saw free space.
+    Contradicting,
+    /// Its first scan fits to none before it.
+    WeakLink,
+}
+
+/// A part of a trajectory that is in doubt.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
+pub struct Doubt {
+    /// Why.
+    pub kind: DoubtKind,
+    /// The time of its first scan, s.
+    pub from_s: f64,
+    /// The time of its last scan, s.
+    pub to_s: f64,
+    /// The position of its first scan, m.
+    pub x_m: f64,
+    /// The position of its first scan, m.
+    pub y_m: f64,
+}
+
+/// The figures by which a map is judged.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
+pub struct Quality {
+    /// The number of scans that were compared: one per 0.3 m or 0.3 rad.
+    pub scans: usize,
+    /// The share of scans of which more than a tenth of the hits is on surfaces where other scans saw free space.
+    pub contradicting: f64,
+    /// The share of such hits in the worst stretch of ten scans.
+    pub worst_stretch: f64,
+    /// The number of scans that fit to none of the fifteen before: the trajectory can be broken there.
+    pub weak_links: usize,
+    /// The share of readings without a certain pose.
+    pub left_out: f64,
+    /// The share of hits on surfaces that were seen on one pass only: nothing confirms them.
+    pub seen_once: f64,
+    /// Where the trajectory is in doubt, in the order of time.
+    pub doubts: Vec<Doubt>,
+}
+
+impl Quality {
+    /// What the map is good for.
+    pub fn verdict(&self) -> Verdict {
+        let within = |limits: &Limits| self.over(limits).is_empty();
+        match (within(&GOOD), within(&USABLE)) {
+            (true, _) => Verdict::Good,
+            (_, true) => Verdict::UsableWithCare,
+            _ => Verdict::NotUsable,
+        }
+    }
+
+    /// Why the map is not good, in sentences; empty if it is.
+    pub fn reasons(&self) -> Vec<String> {
+        self.over(&GOOD)
+    }
+
+    fn over(&self, limits: &Limits) -> Vec<String> {
+        let percent = |share: f64| format!("{:.1} %", 100.0 * share);
+        let mut reasons = Vec::new();
+        if self.contradicting > limits.contradicting {
+            let share = percent(self.contradicting);
+            reasons.push(format!(
+                "{share} of the scans hit where other scans saw free space: walls are there twice"
+            ));
+        }
+        if self.worst_stretch > limits.worst_stretch {
+            let share = percent(self.worst_stretch);
+            reasons.push(format!(
+                "in the worst stretch of the route, {share} of the hits are where other scans saw free space"
+            ));
+        }
+        if self.weak_links > limits.weak_links {
+            let places = match self.weak_links {
+                1 => "one place".to_owned(),
+                links => format!("{links} places"),
+            };
+            reasons.push(format!(
+                "the route can be broken in {places}, where a scan fits to none of those before it"
+            ));
+        }
+        if self.left_out > limits.left_out {
+            reasons.push(format!("{} of the scans have no certain pose", percent(self.left_out)));
+        }
+        reasons
+    }
+}
+
+/// Collects the scans of a log while its trajectory is found.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct QualityCheck {
+    counted: Vec<CountedScan>,
+    readings: usize,
+    last: Option<Isometry2<f64>>,
+}
+
+/// A scan that counts, in the frame of the robot.
+#[derive(Clone, Debug)]
+struct CountedScan {
+    reading: usize,
+    laser: Point2<f64>,
+    hits: Vec<Point2<f64>>,
+}
+
+impl QualityCheck {
+    /// Adds the next reading; `pose` is what is known of its pose so far.
+    pub(crate) fn add(&mut self, reading: &LaserReading, pose: &Isometry2<f64>) {
+        self.readings += 1;
+        if let Some(last) = &self.last {
+            let since = last.inv_mul(pose);
+            if since.translation.vector.norm() < COUNTED_M && heading_rad(&since).abs() < COUNTED_RAD {
+                return;
+            }
+        }
+        self.last = Some(*pose);
+        let hits: Vec<Point2<f64>> =
+            reading.hits().filter(|hit| hit.coords.norm() < COMPARED_RANGE_M).collect();
+        let every = hits.len().div_ceil(COMPARED_HITS).max(1);
+        let hits = hits.into_iter().step_by(every).collect();
+        let laser = reading.mount * Point2::origin();
+        self.counted.push(CountedScan { reading: self.readings - 1, laser, hits });
+    }
+
+    /// The figures, along the trajectory that was found.
+    pub(crate) fn finish(self, poses: &[TrajectoryPose]) -> Quality {
+        let left_out = poses.iter().filter(|at| at.state != PoseState::Tracking).count();
+        let left_out = left_out as f64 / poses.len().max(1) as f64;
+        let certain = |scan: &CountedScan| poses[scan.reading].state == PoseState::Tracking;
+        let counted: Vec<CountedScan> = self.counted.into_iter().filter(certain).collect();
+        if counted.len() < MIN_SCANS {
+            return Quality { scans: counted.len(), left_out, ..Quality::default() };
+        }
+        let placed = |scan: &CountedScan| PlacedScan::new(&poses[scan.reading].pose, &scan.laser, &scan.hits);
+        let judged = Evidence::judge(&counted.iter().map(placed).collect::<Vec<_>>());
+        let at = |scan: usize| poses[counted[scan].reading];
+        let share = |of: fn(&Judged) -> bool| {
+            judged.iter().filter(|scan| of(scan)).count() as f64 / judged.len() as f64
+        };
+        let mean = |part: &[Judged]| part.iter().map(|scan| scan.in_free).sum::<f64>() / part.len() as f64;
+        Quality {
+            scans: judged.len(),
+            contradicting: share(|scan| scan.in_free > CONTRADICTING),
+            worst_stretch: judged.windows(STRETCH).map(mean).fold(0.0, f64::max),
+            weak_links: judged.iter().filter(|scan| scan.link < WEAK_LINK).count(),
+            left_out,
+            seen_once: judged.iter().map(|scan| scan.seen_once).sum::<f64>() / judged.len() as f64,
+            doubts: doubts(&judged, at),
+        }
+    }
+}
+
+/// The stretches of scans in doubt.
+fn doubts(judged: &[Judged], at: impl Fn(usize) -> TrajectoryPose) -> Vec<Doubt> {
+    let mut doubts: Vec<Doubt> = Vec::new();
+    let mut last = None;
+    for (number, scan) in judged.iter().enumerate() {
+        let kind = match (scan.link < WEAK_LINK, scan.in_free > CONTRADICTING) {
+            (true, _) => DoubtKind::WeakLink,
+            (_, true) => DoubtKind::Contradicting,
+            _ => continue,
+        };
+        let TrajectoryPose { time_s, pose, .. } = at(number);
+        let goes_on = last.is_some_and(|last| number - last <= STRETCH) && kind == DoubtKind::Contradicting;
+        last = Some(number);
+        match doubts.last_mut().filter(|_| goes_on) {
+            Some(doubt) => doubt.to_s = time_s,
+            None => {
+                let at = pose.translation.vector;
+                doubts.push(Doubt { kind, from_s: time_s, to_s: time_s, x_m: at.x, y_m: at.y });
+            }
+        }
+    }
+    doubts
+}

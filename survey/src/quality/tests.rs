@@ -1,0 +1,75 @@
+use super::*;
+use interfaces::pose;
+
+fn along(truth: &[Isometry2<f64>]) -> Vec<TrajectoryPose> {
+    let placed = |(number, pose): (usize, &Isometry2<f64>)| TrajectoryPose {
+        time_s: number as f64,
+        pose: *pose,
+        state: PoseState::Tracking,
+    };
+    truth.iter().enumerate().map(placed).collect()
+}
+
+fn quality(readings: &[LaserReading], poses: &[Isometry2<f64>]) -> Quality {
+    let mut check = QualityCheck::default();
+    readings.iter().zip(poses).for_each(|(reading, pose)| check.add(reading, pose));
+    check.finish(&along(poses))
+}
+
+/// Along its true poses, a map is good.
+#[test]
+fn true_poses_are_good() {
+    let (readings, truth) = crate::tests::drive(2, 180.0);
+    let found = quality(&readings, &truth);
+    assert_eq!(
+        (found.verdict(), &found.reasons()[..], &found.doubts[..]),
+        (Verdict::Good, &[][..], &[][..]),
+        "{found:?}"
+    );
+    assert!(found.scans > 50 && found.seen_once < 0.3, "{found:?}");
+}
+
+/// A route that turns too much with every meter has walls twice.
+#[test]
+fn a_bent_route_is_not_usable() {
+    let (readings, truth) = crate::tests::drive(2, 180.0);
+    let mut bent = vec![truth[0]];
+    for pair in truth.windows(2) {
+        let motion = pair[0].inv_mul(&pair[1]);
+        let bend_rad = 0.03 * motion.translation.vector.norm();
+        bent.push(bent[bent.len() - 1] * motion * pose(0.0, 0.0, bend_rad));
+    }
+    let found = quality(&readings, &bent);
+    assert_eq!(found.verdict(), Verdict::NotUsable, "{found:?}");
+    assert!(found.doubts.iter().all(|doubt| doubt.from_s <= doubt.to_s) && !found.doubts.is_empty());
+}
+
+/// A turn that is missing breaks the route at one place.
+#[test]
+fn a_missing_turn_is_a_weak_link() {
+    let (readings, truth) = crate::tests::drive(2, 180.0);
+    let half = truth.len() / 2;
+    let swing = truth[half] * pose(0.0, 0.0, 1.4) * truth[half].inverse();
+    let broken: Vec<Isometry2<f64>> = truth
+        .iter()
+        .enumerate()
+        .map(|(index, pose)| if index < half { *pose } else { swing * pose })
+        .collect();
+    let found = quality(&readings, &broken);
+    assert!(found.weak_links >= 1 && found.verdict() > Verdict::Good, "{found:?}");
+    let weak: Vec<f64> = found
+        .doubts
+        .iter()
+        .filter(|doubt| doubt.kind == DoubtKind::WeakLink)
+        .map(|doubt| doubt.from_s)
+        .collect();
+    assert!(weak.iter().all(|time_s| (half as f64..half as f64 + 60.0).contains(time_s)), "{weak:?}");
+}
+
+/// Too few scans say nothing.
+#[test]
+fn a_robot_that_rests_is_not_judged() {
+    let (readings, truth) = crate::tests::drive(2, 1.0);
+    let found = quality(&readings, &truth);
+    assert_eq!((found.verdict(), found.contradicting), (Verdict::Good, 0.0));
+}
