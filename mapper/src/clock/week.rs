@@ -95,6 +95,11 @@ impl Week {
         &self.slots
     }
 
+    /// The half hour at an hour of the week, from 0 to 168.
+    pub fn at(&self, hour_of_week: f64) -> &UsualSlot {
+        &self.slots[(hour_of_week / SLOT_H) as usize % SLOTS_OF_WEEK]
+    }
+
     /// The times at which the usual state changes, in order: between two half hours in which it is clear what is usual. Empty for a
     /// thing that is usually in one state all week, and for one of which this is not clear.
     pub fn usual_changes(&self) -> Vec<UsualChange> {
