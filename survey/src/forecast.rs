@@ -1,8 +1,8 @@
 //! A place as it will be: P(blocked) at any time, from what was learned.
 
+use crate::masks::{keepout_mask, speed_mask};
 use crate::settings::SurveySettings;
 use crate::survey::{SavedLogs, SavedSurvey, Survey};
-use crate::masks::{keepout_mask, speed_mask};
 use interfaces::{Cell, CellState, Grid};
 use mapper::{Calendar, Door, Mapper, Segment, ThingKind};
 use nalgebra::{Point2, Vector2};
@@ -135,7 +135,8 @@ impl Forecast {
         let (frame, way) = (self.mapper.frame(), to - from);
         let (cell_m, length_m) = (frame.resolution_m(), way.norm());
         let (steps, reach) = ((length_m / cell_m).ceil().max(1.0), (radius_m / cell_m).round() as i32);
-        let doors: Vec<&Door> = self.doors().map(|(_, door)| door).filter(|door| door.is_open.is_some()).collect();
+        let doors: Vec<&Door> =
+            self.doors().map(|(_, door)| door).filter(|door| door.is_open.is_some()).collect();
         let mut largest: Option<f64> = None;
         for step in 0..=steps as usize {
             let share = step as f64 / steps;
@@ -144,7 +145,8 @@ impl Forecast {
                 if offset.dot(&offset) <= reach * reach {
                     let Cell { x, y } = frame.cell_at(&at);
                     let cell = Cell::new(x + offset.x, y + offset.y);
-                    let is_leaf = |door: &&&Door| distance_m(&door.closed, frame.center(cell)) <= LEAF * cell_m;
+                    let is_leaf =
+                        |door: &&&Door| distance_m(&door.closed, frame.center(cell)) <= LEAF * cell_m;
                     let found = match doors.iter().find(is_leaf) {
                         Some(door) => Some(1.0 - door.clock.probability(time_s, self.calendar())),
                         None => self.blocked(cell, time_s),

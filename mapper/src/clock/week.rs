@@ -67,7 +67,8 @@ pub(super) fn interval_90(probability: f64, variance: f64) -> [f64; 2] {
     let can_be_equal = |share: f64| libm::pow(1.0 - share, 1.0 / variance) > TAIL;
     let low = if can_be_equal(probability) { 0.0 } else { beta_quantile(distribution, TAIL) };
     let high = if can_be_equal(1.0 - probability) { 1.0 } else { beta_quantile(distribution, 1.0 - TAIL) };
-    [low, high]
+    // Nearly all of a very skewed distribution is on one side of its mean.
+    [low.min(probability), high.max(probability)]
 }
 
 /// A time of the week at which the usual state of a thing changes. Hours count from Monday 0:00, local civil time.

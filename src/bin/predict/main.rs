@@ -31,6 +31,10 @@ const SCHEMA: u32 = 2;
 
 /// Predicts a place from what was learned about it: is that door open at ten past five?
 ///
+/// Says when its doors are usually open, how often they are opened, and with which probability they are open at the times of
+/// --at; of a place (--place) with which probability it is blocked. Behind a probability is the interval that contains the true one
+/// with 90 %; it needs looks on 14 days.
+///
 /// STATE is a file of `map_log --state` (or of four_rooms or curious_node, which know no hours). A time is
 ///   +10m                after the last reading of the state: s, m or h
 ///   17:10, "Tue 17:10"  the next such time after the last reading, in the time zone of the state
@@ -38,11 +42,12 @@ const SCHEMA: u32 = 2;
 ///
 /// For each time of --at, the folder predict_out has the map of the probability that a cell is blocked, as a picture
 /// (predicted.png), for the map server of Nav2 (predicted.yaml, in the mode `scale`: 100 is certainly blocked) and as an array
-/// for NumPy (predicted.npy, rows from the lowest y on, NaN where never seen). With several times, the files are numbered. Also
-/// in the folder: for how long a look at a place counts before its usual hours say more (expiry.png, expiry.npy, in hours), and all
-/// that is printed, as data (summary.json).
+/// for NumPy (predicted.npy, rows from the lowest y on, NaN where never seen); and masks for the filters of Nav2: keepout_mask.yaml
+/// (100 where a cell that changes is probably blocked then) and speed_mask.yaml (slower where changes are usual at that hour).
+/// With several times, the files are numbered. Also in the folder: for how long a look at a place counts before its usual hours
+/// say more (expiry.png, expiry.npy, in hours), and all that is printed, as data (summary.json).
 ///
-/// Hours and weekdays are learned per square of half a meter, and count the more the longer they were seen.
+/// Hours and weekdays are learned per door and per square of half a meter, and count the more the longer they were seen.
 #[derive(Clone, Debug, Parser)]
 #[command(
     name = "predict",
@@ -50,9 +55,11 @@ const SCHEMA: u32 = 2;
     max_term_width = 100,
     verbatim_doc_comment,
     after_help = "Examples:\n  \
-        predict office.state --at \"Tue 17:10\"                        the map on Tuesday at ten past five\n  \
+        predict office.state                                         all doors: their hours, and now\n  \
+        predict office.state --at \"Tue 17:10\"                        the doors, map and masks on Tuesday at ten past five\n  \
         predict office.state --at +10m --at +1h                      two maps\n  \
-        predict office.state --at 17:10 --place 3.2,-1.5             a door: P(blocked), its usual hours\n  \
+        predict office.state --at 17:10 --place 3.2,-1.5             a place or a door: its usual hours\n  \
+        predict office.state --at 17:10 --door 0                     the door with this number\n  \
         predict office.state --at 17:10 --route way.csv              a route, at the times of arrival\n  \
         predict office.state --at 17:10 --graph g.geojson --from 0   a graph of nav2_route with P(open)\n\n\
         Exit codes: 0 success, 1 a file cannot be written, 2 invalid arguments or input."
@@ -194,7 +201,8 @@ fn doors(args: &Args, forecast: &Forecast, times_s: &[f64]) -> anyhow::Result<Ve
             if numbers.is_empty() { "is none".to_owned() } else { format!("are {}", numbers.join(", ")) }
         );
     }
-    let is_all = args.door.is_empty() && args.place.is_empty() && args.route.is_none() && args.graph.is_none();
+    let is_all =
+        args.door.is_empty() && args.place.is_empty() && args.route.is_none() && args.graph.is_none();
     let asked = known.into_iter().filter(|(id, _)| is_all || args.door.contains(id));
     Ok(asked.map(|(id, door)| Place::of_door(forecast, id, door, times_s)).collect())
 }
@@ -243,6 +251,9 @@ fn say(summary: &Summary, forecast: &Forecast) -> anyhow::Result<()> {
     for place in &summary.places {
         print(format_args!("{}", place.title))?;
         place.text.iter().try_for_each(|line| print(format_args!("  {line}")))?;
+    }
+    if summary.places.is_empty() && summary.route.is_empty() {
+        print(format_args!("no door is known; --place X,Y asks for a place"))?;
     }
     let begin_s = summary.times_s[0];
     for Stop { x_m, y_m, time_s, blocked } in &summary.route {

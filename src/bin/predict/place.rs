@@ -111,7 +111,8 @@ impl Place {
             openings_per_hour_90: seen.interval_of_openings_per_hour(0.9),
         };
         let title = format!("door {id} at ({:.2}, {:.2}) m, {width_m:.2} m wide, {last}", at.x, at.y);
-        let place = Self { x_m: at.x, y_m: at.y, state: "open", title, door: Some(record), ..Self::default() };
+        let place =
+            Self { x_m: at.x, y_m: at.y, state: "open", title, door: Some(record), ..Self::default() };
         place.of_clock(forecast, &door.clock, times_s)
     }
 
@@ -161,7 +162,9 @@ impl Place {
         lines.push(format!("Seen in {:.0} half hours, on {} days.", self.half_hours, self.days));
         let rate = self.door.as_ref().and_then(|door| door.openings_per_hour.zip(door.openings_per_hour_90));
         lines.extend(
-            rate.map(|(rate, (low, high))| format!("Opens {rate:.2} times per hour ({low:.2} to {high:.2}).")),
+            rate.map(|(rate, (low, high))| {
+                format!("Opens {rate:.2} times per hour ({low:.2} to {high:.2}).")
+            }),
         );
         lines.push(match self.expiry_s {
             Some(expiry_s) => {
