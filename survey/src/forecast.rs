@@ -4,7 +4,7 @@ use crate::masks::{keepout_mask, speed_mask};
 use crate::settings::SurveySettings;
 use crate::survey::{SavedLogs, SavedSurvey, Survey};
 use interfaces::{Cell, CellState, Grid};
-use mapper::{Calendar, Door, Mapper, Segment, ThingKind};
+use mapper::{Calendar, Clock, Door, Mapper, Segment, ThingKind};
 use nalgebra::{Point2, Vector2};
 use robot::state::{Facts, State, StateError, saved_mapper};
 
@@ -93,11 +93,16 @@ impl Forecast {
     /// For how long a look at a cell says more than the usual hours, s; NaN where nothing ever changed, and where it is longer
     /// than four weeks.
     pub fn expiry(&self) -> Grid<f64> {
-        let mut grid = Grid::filled(*self.mapper.frame(), f64::NAN);
+        self.by_tile(f64::NAN, |clock| clock.expiry_s(self.calendar()).unwrap_or(f64::NAN))
+    }
+
+    /// A value of each cell that ever changed, by the clock of its tile; of other cells, `other`.
+    fn by_tile(&self, other: f64, value: impl Fn(&Clock) -> f64) -> Grid<f64> {
+        let mut grid = Grid::filled(*self.mapper.frame(), other);
         let changed: Vec<usize> = self.mapper.changed().collect();
         for tile in self.mapper.tiles() {
-            let expiry_s = tile.clock().expiry_s(self.mapper.calendar()).unwrap_or(f64::NAN);
-            tile.changed().for_each(|cell| grid.cells_mut()[changed[cell]] = expiry_s);
+            let value = value(tile.clock());
+            tile.changed().for_each(|cell| grid.cells_mut()[changed[cell]] = value);
         }
         grid
     }
@@ -115,12 +120,9 @@ impl Forecast {
     /// The speed mask and the keepout mask at a time, s: cells are kept out of that are probably blocked then, and the robot slows
     /// down where changes are usual then.
     pub fn masks(&self, time_s: f64) -> [Grid<u8>; 2] {
-        let pace = |index: usize| {
-            let tile = self.mapper.tile(index);
-            tile.map_or(1.0, |tile| tile.clock().pace(time_s, self.calendar()))
-        };
+        let pace = self.by_tile(1.0, |clock| clock.pace(time_s, self.calendar()));
         let blocked = |index: usize| self.blocked(self.mapper.frame().cell(index), time_s).unwrap_or(0.0);
-        [speed_mask(&self.mapper, pace), keepout_mask(&self.mapper, blocked)]
+        [speed_mask(&self.mapper, |index| pace.cells()[index]), keepout_mask(&self.mapper, blocked)]
     }
 
     /// The probability that a body with this radius, m, is stopped on its straight way between two points, m: that of the cell on
