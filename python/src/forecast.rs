@@ -17,6 +17,8 @@ pub(crate) struct Forecast {
     forecast: survey::Forecast,
 }
 
+type Mask<'py> = Bound<'py, PyArray2<u8>>;
+
 /// A time as seconds: a number, or an object with the method `timestamp`, as a `datetime`.
 fn seconds(time: &Bound<'_, PyAny>) -> PyResult<f64> {
     match time.extract() {
@@ -115,11 +117,7 @@ impl Forecast {
     }
 
     /// The speed mask and the keepout mask of Nav2 at a time, 0 to 100, shape (rows, columns).
-    fn masks<'py>(
-        &self,
-        py: Python<'py>,
-        time: &Bound<'py, PyAny>,
-    ) -> PyResult<(Bound<'py, PyArray2<u8>>, Bound<'py, PyArray2<u8>>)> {
+    fn masks<'py>(&self, py: Python<'py>, time: &Bound<'py, PyAny>) -> PyResult<(Mask<'py>, Mask<'py>)> {
         let time_s = seconds(time)?;
         let [speed, keepout] = py.detach(|| self.forecast.masks(time_s));
         let [speed, keepout] = [speed, keepout].map(|mask| grid(py, mask.frame(), mask.cells().to_vec()));
