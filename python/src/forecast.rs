@@ -4,6 +4,7 @@ use nalgebra::Point2;
 use numpy::PyArray2;
 use pyo3::exceptions::PyOSError;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 use robot::state::{LoadError, read_state};
 use std::path::PathBuf;
 
@@ -15,6 +16,8 @@ use std::path::PathBuf;
 pub(crate) struct Forecast {
     forecast: survey::Forecast,
 }
+
+type Mask<'py> = Bound<'py, PyArray2<u8>>;
 
 /// A time as seconds: a number, or an object with the method `timestamp`, as a `datetime`.
 fn seconds(time: &Bound<'_, PyAny>) -> PyResult<f64> {
@@ -77,6 +80,48 @@ impl Forecast {
     fn at(&self, x: f64, y: f64, time: &Bound<'_, PyAny>) -> PyResult<Option<f64>> {
         let cell = self.forecast.mapper().frame().cell_at(&Point2::new(x, y));
         Ok(self.forecast.blocked(cell, seconds(time)?))
+    }
+
+    /// The doors that were found, a dict for each, with the number `id`, the ends of the `closed` leaf (m), `is_open` when last seen,
+    /// at `last_seen` (s); `open_probability` at a time (that of the last reading by default) and the interval
+    /// `open_probability_90` that contains the true one with 90 % (None before it was seen on 14 days); `openings_per_hour` in view and
+    /// `openings_per_hour_90`; and `usual_hours`, tuples of the hour of the week (0 to 168), the 90 % interval of it, and whether
+    /// the door is usually open from then on.
+    #[pyo3(signature = (time=None))]
+    fn doors<'py>(
+        &self,
+        py: Python<'py>,
+        time: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Vec<Bound<'py, PyDict>>> {
+        let time_s = time.map_or(Ok(self.forecast.now_s()), seconds)?;
+        let (calendar, epoch_s) = (self.forecast.calendar(), self.forecast.mapper().epoch_s());
+        let dict = |(id, door): (u32, &mapper::Door)| {
+            let (dict, seen) = (PyDict::new(py), &door.statistics);
+            let week = door.clock.week(calendar);
+            let changes = week.map(|week| week.usual_changes()).unwrap_or_default();
+            let usual =
+                changes.iter().map(|to| (to.hour, (to.earliest_hour, to.latest_hour), to.becomes_blocked));
+            dict.set_item("id", id)?;
+            dict.set_item("closed", door.closed.ends.map(|end| (end.x, end.y)))?;
+            dict.set_item("is_open", door.is_open)?;
+            dict.set_item("last_seen", epoch_s + door.last_seen_s)?;
+            dict.set_item("open_probability", door.clock.probability(time_s, calendar))?;
+            let interval = door.clock.interval_90(time_s, calendar);
+            dict.set_item("open_probability_90", interval.map(|[low, high]| (low, high)))?;
+            dict.set_item("openings_per_hour", seen.openings_per_hour().map(|rate| rate.mean()))?;
+            dict.set_item("openings_per_hour_90", seen.interval_of_openings_per_hour(0.9))?;
+            dict.set_item("usual_hours", usual.collect::<Vec<_>>())?;
+            Ok(dict)
+        };
+        self.forecast.doors().map(dict).collect()
+    }
+
+    /// The speed mask and the keepout mask of Nav2 at a time, 0 to 100, shape (rows, columns).
+    fn masks<'py>(&self, py: Python<'py>, time: &Bound<'py, PyAny>) -> PyResult<(Mask<'py>, Mask<'py>)> {
+        let time_s = seconds(time)?;
+        let [speed, keepout] = py.detach(|| self.forecast.masks(time_s));
+        let [speed, keepout] = [speed, keepout].map(|mask| grid(py, mask.frame(), mask.cells().to_vec()));
+        Ok((speed?, keepout?))
     }
 
     /// For how long a look at each cell says more than its usual hours, s, shape (rows, columns); NaN where nothing ever

@@ -27,6 +27,10 @@ def test_the_map_at_a_time():
     origin, cell = forecast.mapper.origin, forecast.mapper.cell
     at = forecast.at(origin[0] + (column + 0.5) * cell, origin[1] + (row + 0.5) * cell, now + timedelta(hours=1))
     assert at == maps[2][row, column] and forecast.at(99.0, 99.0, now) is None
+    speed, keepout = forecast.masks(now)
+    assert speed.shape == keepout.shape == shape and set(np.unique(keepout)) <= {0, 100}
+    assert speed[row, column] > 0 and speed.max() <= 80
+    assert forecast.doors() == forecast.doors(now) == []  # what comes and goes there is no door
 
 
 def test_what_is_no_state_is_an_error(tmp_path):

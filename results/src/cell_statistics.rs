@@ -1,5 +1,6 @@
 //! `cell_statistics.csv`: what was learned about every cell.
 
+use crate::numbers::rounded;
 use crate::output::{OutputError, write_file};
 use interfaces::CellState;
 use mapper::Mapper;
@@ -94,9 +95,8 @@ fn row(mapper: &Mapper, index: usize, (rate_low_hz, rate_high_hz): (f64, f64)) -
     }
 }
 
-/// Rounds to millionths: a sum of tenths of a second is 31.4, not 31.400000000000002.
 fn micro(value: f64) -> Number {
-    Number((value * 1e6).round() / 1e6)
+    Number(rounded(value))
 }
 
 #[cfg(test)]

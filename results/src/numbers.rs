@@ -10,6 +10,11 @@ pub fn percent(share: f64) -> String {
     }
 }
 
+/// Rounds to millionths: a sum of tenths of a second is 31.4, not 31.400000000000002.
+pub fn rounded(value: f64) -> f64 {
+    libm::round(1e6 * value) / 1e6
+}
+
 /// `12345` as `12,345`.
 pub fn thousands(number: u64) -> String {
     let digits = number.to_string();

@@ -1,5 +1,6 @@
 //! `things.json`: the doors that were found, and the furniture that was moved.
 
+use crate::numbers::rounded;
 use crate::output::{OutputError, write_file};
 use mapper::{Door, Leaf, Mapper, ThingKind};
 use nalgebra::Point2;
@@ -74,10 +75,10 @@ pub fn records(mapper: &Mapper) -> Vec<ThingRecord> {
             ThingKind::Furniture(furniture) => KindRecord::Furniture {
                 from_m: furniture.from.as_ref().map(|place| pair(&place.center)),
                 to_m: furniture.to.as_ref().map(|place| pair(&place.center)),
-                moved_between_s: furniture.places().next().map(|place| place.between_s),
+                moved_between_s: furniture.places().next().map(|place| place.between_s.map(rounded)),
             },
         };
-        ThingRecord { id: thing.id, found_s: thing.found_s, kind }
+        ThingRecord { id: thing.id, found_s: rounded(thing.found_s), kind }
     };
     mapper.things().iter().map(record).collect()
 }
@@ -96,13 +97,15 @@ fn of_door(door: &Door) -> KindRecord {
         hinge_m: hinged.map(|(hinge, _)| hinge),
         open_end_m: hinged.map(|(_, end)| end),
         is_open: door.is_open,
-        last_seen_s: door.last_seen_s,
+        last_seen_s: rounded(door.last_seen_s),
         opened: seen.opened,
         closed: seen.closed,
         moved_after_gap: seen.opened_after_gap + seen.closed_after_gap,
-        in_view_s: seen.in_view_s,
-        openings_per_hour: seen.openings_per_hour().map(|rate| rate.mean()),
-        openings_per_hour_90: seen.interval_of_openings_per_hour(MASS),
+        in_view_s: rounded(seen.in_view_s),
+        openings_per_hour: seen.openings_per_hour().map(|rate| rounded(rate.mean())),
+        openings_per_hour_90: seen
+            .interval_of_openings_per_hour(MASS)
+            .map(|(low, high)| (rounded(low), rounded(high))),
     }
 }
 

@@ -40,9 +40,9 @@ mod turns;
 
 pub use change_log::ChangeLog;
 pub use error::SurveyError;
-pub use forecast::Forecast;
+pub use forecast::{Forecast, NEAR_M, doors};
 pub use known_place::KnownPlace;
-pub use masks::{CHANGE_HORIZON_S, keepout_mask, speed_mask};
+pub use masks::{CHANGE_HORIZON_S, MASKS, masks};
 pub use passes::{PassError, Stage};
 pub use permanent::permanent;
 pub use places::{Place, PlaceRates, places};

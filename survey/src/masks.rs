@@ -12,18 +12,22 @@ const SLOWEST: f64 = 80.0;
 pub const CHANGE_HORIZON_S: f64 = 600.0;
 /// The robot slows down at this distance from what changes, m.
 const DISTANCE_M: f64 = 0.5;
-/// A cell that changes is kept out of if it is blocked for at least this share of the time.
-const USUALLY: f64 = 0.5;
+/// A cell that changes is kept out of if it is blocked with at least this probability.
+const PROBABLY: f64 = 0.5;
+/// The names of the masks, in the order of [`masks`] and of [`Forecast::masks`](crate::Forecast::masks).
+pub const MASKS: [&str; 2] = ["speed_mask", "keepout_mask"];
 /// The value of a cell that must not be entered.
 const KEEP_OUT: u8 = 100;
 
-/// The speed mask: 80 · (1 − e^(−rate · 600 s)), the largest value within 0.5 m; 0 where nothing changes.
-pub fn speed_mask(mapper: &Mapper) -> Grid<u8> {
+/// The speed mask: 80 · (1 − e^(−pace · rate · 600 s)), the largest value within 0.5 m; 0 where nothing changes. The pace of a cell
+/// is its rate at a time of the week, divided by its mean rate.
+pub(crate) fn speed_mask(mapper: &Mapper, pace: impl Fn(usize) -> f64) -> Grid<u8> {
     let frame = *mapper.frame();
     let mut mask = Grid::filled(frame, 0);
     let reach = (DISTANCE_M / frame.resolution_m()).round() as i32;
     for index in mapper.changed() {
-        let value = (SLOWEST * mapper.change_probability_within(index, CHANGE_HORIZON_S)).round() as u8;
+        let change = mapper.change_probability_within(index, CHANGE_HORIZON_S * pace(index));
+        let value = (SLOWEST * change).round() as u8;
         let center = frame.cell(index);
         for y in -reach..=reach {
             for x in (-reach..=reach).filter(|x| x * x + y * y <= reach * reach) {
@@ -36,12 +40,17 @@ pub fn speed_mask(mapper: &Mapper) -> Grid<u8> {
     mask
 }
 
-/// The keepout mask: 100 for a cell that changes and is usually blocked, otherwise 0. Cells that never change are in the
-/// static map.
-pub fn keepout_mask(mapper: &Mapper) -> Grid<u8> {
+/// The keepout mask: 100 for a cell that changes and is probably blocked, by its index, otherwise 0. Cells that never change are
+/// in the static map.
+pub(crate) fn keepout_mask(mapper: &Mapper, blocked: impl Fn(usize) -> f64) -> Grid<u8> {
     let mut mask = Grid::filled(*mapper.frame(), 0);
-    for index in mapper.changed().filter(|index| share_blocked(mapper, *index) >= USUALLY) {
+    for index in mapper.changed().filter(|index| blocked(*index) >= PROBABLY) {
         mask.cells_mut()[index] = KEEP_OUT;
     }
     mask
+}
+
+/// The speed mask and the keepout mask for any time: with mean rates, and the share of the time that a cell is blocked.
+pub fn masks(mapper: &Mapper) -> [Grid<u8>; 2] {
+    [speed_mask(mapper, |_| 1.0), keepout_mask(mapper, |index| share_blocked(mapper, index))]
 }

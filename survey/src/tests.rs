@@ -5,7 +5,7 @@ mod refused;
 use crate::route::frame;
 use crate::{
     ChangeLog, FirstPass, KnownPlace, LogEntry, PassError, Route, Search, Stage, Survey, SurveyError,
-    SurveySettings, keepout_mask, permanent, places, speed_mask,
+    SurveySettings, masks, permanent, places,
 };
 use interfaces::{
     CellReading, CellState, Grid, GridFrame, LaserReading, PoseMode, Scan, Twist, World, heading_rad,
@@ -68,11 +68,10 @@ fn movers_are_not_permanent_and_masks_say_where_they_are() {
         let map = permanent(&mapper);
         assert_eq!(map.cells()[3], CellState::Free);
         assert_eq!(map.cells()[9], CellState::Blocked);
-        let keepout = keepout_mask(&mapper);
+        let [slow, keepout] = masks(&mapper);
         assert_eq!(keepout.cells()[3], if is_usually { 100 } else { 0 });
         assert_eq!(keepout.cells()[9], 0);
         // A cycle in 10 s is far more than one in 10 minutes: the slowest. The value reaches 0.5 m far.
-        let slow = speed_mask(&mapper);
         assert_eq!((slow.cells()[3], slow.cells()[9]), (80, 80));
     }
 }

@@ -36,6 +36,16 @@ fn feature(kind: &str, properties: Value, coordinates: Option<[f64; 2]>) -> Valu
     json!({"type": "Feature", "properties": properties, "geometry": {"type": kind, "coordinates": coordinates}})
 }
 
+fn node(id: u64, x: f64, y: f64) -> Value {
+    feature("Point", json!({"id": id, "frame": "map"}), Some([x, y]))
+}
+
+fn edge(id: u64, startid: u64, endid: u64) -> Value {
+    let metadata = json!({"aisle": 14});
+    let properties = json!({"id": id, "startid": startid, "endid": endid, "cost": 1.0, "overridable": true, "metadata": metadata});
+    feature("MultiLineString", properties, None)
+}
+
 #[test]
 fn hours_routes_and_graphs_are_predicted() {
     let run = with_state();
@@ -43,17 +53,22 @@ fn hours_routes_and_graphs_are_predicted() {
     for line in [
         "last reading: Mon 2024-01-15 22:10 CET",
         "  Tue 2024-01-16 13:00 CET: blocked with a probability of ",
+        " %, from the hours and days around it)",
         "  Usually blocked Mon to Sun ",
         " half hours, on 15 days.",
         "  Nothing ever changed within half a meter: it was always free.",
     ] {
         assert!(ended.stdout.contains(line), "{line}: {}", ended.stdout);
     }
-    let blocked = |number: usize| run.summary().number(&format!("/places/0/blocked/{number}/1"));
+    let blocked = |number: usize| run.summary().number(&format!("/places/0/expected/{number}/probability"));
     assert!(blocked(0) > 0.8 && blocked(1) < 0.2, "noon {}, night {}", blocked(0), blocked(1));
     let expected = [
         "expiry.npy",
         "expiry.png",
+        "keepout_mask_1.pgm",
+        "keepout_mask_1.yaml",
+        "keepout_mask_2.pgm",
+        "keepout_mask_2.yaml",
         "predicted_1.npy",
         "predicted_1.pgm",
         "predicted_1.png",
@@ -62,17 +77,15 @@ fn hours_routes_and_graphs_are_predicted() {
         "predicted_2.pgm",
         "predicted_2.png",
         "predicted_2.yaml",
+        "speed_mask_1.pgm",
+        "speed_mask_1.yaml",
+        "speed_mask_2.pgm",
+        "speed_mask_2.yaml",
     ];
     assert_eq!(*run.summary().at("/files"), json!(expected));
 
     // The way through the thing, and the way around it.
     run.write("way.csv", "x,y\n0.5,0\n1.6,0\n1.6,-1\n");
-    let node = |id: u64, x: f64, y: f64| feature("Point", json!({"id": id, "frame": "map"}), Some([x, y]));
-    let edge = |id: u64, startid: u64, endid: u64| {
-        let metadata = json!({"aisle": 14});
-        let properties = json!({"id": id, "startid": startid, "endid": endid, "cost": 1.0, "overridable": true, "metadata": metadata});
-        feature("MultiLineString", properties, None)
-    };
     let nodes = [node(0, 0.5, 0.0), node(1, 2.0, 0.0), node(2, 0.5, -1.0), node(3, 2.0, -1.0)];
     let features = [&nodes[..], &[edge(10, 0, 1), edge(11, 0, 2), edge(12, 2, 3)]].concat();
     run.write(
@@ -95,6 +108,79 @@ fn hours_routes_and_graphs_are_predicted() {
     let summary = run.summary();
     assert!(summary.number("/route/1/blocked") > 0.8 && summary.number("/route/2/blocked") == 0.0);
     assert!((summary.number("/route/1/time_s") - summary.number("/times_s/0") - 2.2).abs() < 1e-6);
+}
+
+/// A scan before a wall that is 2 m away and has a door of 0.9 m; the room behind it ends at 4 m.
+fn door_line(time_s: f64, is_open: bool) -> String {
+    let range_m = |beam: u32| {
+        let (ahead, aside) = f64::from(beam).to_radians().sin_cos();
+        let wall_m = if is_open && (2.0 * aside / ahead).abs() < 0.45 { 4.0 } else { 2.0 };
+        (wall_m / ahead.max(1e-9)).min(3.0 / aside.abs().max(1e-9))
+    };
+    let ranges: String = (0..180).map(|beam| format!("{:.2} ", range_m(beam))).collect();
+    format!("ODOM 1 2 0 0 0 0 {time_s} h 0\nFLASER 180 {ranges}0 0 0 0 0 0 {time_s} h 0\n")
+}
+
+/// A door that is open from 8 to 18 o'clock, seen for 20 s in every half hour of 15 days, and when it opens and closes.
+fn door_days() -> String {
+    let scan = |time_s: f64| {
+        let is_open = (8.0..18.0).contains(&(time_s % DAY_S / 3600.0));
+        door_line(MONDAY_S + time_s, is_open)
+    };
+    let halves = (0..15 * 48).map(|half| 1800.0 * f64::from(half));
+    let of_half = |begin_s: f64| {
+        (-10..10).map(move |second| begin_s + f64::from(second)).filter(|time_s| *time_s >= 0.0)
+    };
+    halves.flat_map(of_half).map(scan).collect()
+}
+
+#[test]
+fn doors_have_hours_and_so_have_masks_and_edges() {
+    let run = Run::new().with_map_log();
+    run.write("days.log", &door_days());
+    run.goes_well(&format!("days.log --time-zone Europe/Berlin {SAVED}"));
+    fs::remove_dir_all(run.path("out")).unwrap();
+    let run = run.with_predict();
+    let ended = run.goes_well("a.state --at 2024-01-16T13:00 --at 2024-01-16T03:00");
+    for line in [
+        "door 0 at (2.0",
+        " m wide, closed when it was last seen, Mon 2024-01-15 23:30 CET",
+        "  Tue 2024-01-16 13:00 CET: open with a probability of ",
+        "  Opens ",
+        "  Usually open Mon to Sun ",
+    ] {
+        assert!(ended.stdout.contains(line), "{line}: {}", ended.stdout);
+    }
+    let expected = |summary: &Summary, number: usize| {
+        let of = |key: &str| summary.number(&format!("/places/0/expected/{number}/{key}"));
+        [of("interval_90/0"), of("probability"), of("interval_90/1")]
+    };
+    let [noon, night] = [0, 1].map(|number| expected(&run.summary(), number));
+    assert!(noon[0] > 0.5 && night[2] < 0.3, "{noon:?}, {night:?}");
+    assert!([noon, night].iter().all(|found| found.is_sorted()), "{noon:?}, {night:?}");
+    // The closed leaf is kept out of at night only. The robot slows down for changes when the door opens.
+    let darkest = |mask: &str| {
+        let picture = fs::read(run.out(&format!("{mask}.pgm"))).unwrap();
+        *picture.iter().skip(20).min().unwrap()
+    };
+    assert_eq!(["keepout_mask_1", "keepout_mask_2"].map(darkest), [255, 0]);
+    run.goes_well("a.state --at 2024-01-16T08:00 --at 2024-01-16T03:00");
+    let [opening, night] = ["speed_mask_1", "speed_mask_2"].map(darkest);
+    assert!(opening < night, "{opening}, {night}");
+
+    // A place at the door and an edge through it are predicted as the door.
+    let features = [node(0, 1.0, 0.1), node(1, 3.0, 0.1), edge(10, 0, 1)];
+    run.write("g.json", &json!({"type": "FeatureCollection", "features": features}).to_string());
+    run.goes_well("a.state --at 2024-01-16T13:00 --place 1.8,0.3 --graph g.json --speed 100");
+    assert_eq!(expected(&run.summary(), 0), noon);
+    let graph: Value = serde_json::from_slice(&fs::read(run.out("graph.geojson")).unwrap()).unwrap();
+    let open = graph["features"][2]["properties"]["metadata"]["open_probability"].as_f64().unwrap();
+    assert!((open - noon[1]).abs() < 1e-3, "{open}, {noon:?}");
+    let refused = run.ends("a.state --door 0 --door 7");
+    assert_eq!(
+        (refused.code, refused.stderr.as_str()),
+        (Some(2), "error: --door 7: there is no such door; known are 0\n")
+    );
 }
 
 #[test]
@@ -155,5 +241,5 @@ fn a_state_keeps_its_time_zone_and_an_earlier_one_gets_one() {
     assert_eq!(hours("c.state").code, Some(0));
     run.goes_well("b.state --at +10m --place 1,0");
     let Summary(summary) = run.summary();
-    assert_eq!(summary["places"][0]["blocked"].as_array().unwrap().len(), 1);
+    assert_eq!(summary["places"][0]["expected"].as_array().unwrap().len(), 1);
 }

@@ -100,6 +100,13 @@ impl Correlations {
         })
     }
 
+    /// The number of independent pairs of looks that are about this time apart, s, or the least longer time of which there are any.
+    pub(super) fn pairs_at(&self, lag_s: f64) -> f64 {
+        let quarter_octave = libm::exp2(0.25);
+        let mut longer = self.iter().filter(|(of_bin_s, ..)| of_bin_s * quarter_octave >= lag_s);
+        longer.next().map_or(0.0, |(_, _, pairs)| pairs)
+    }
+
     /// The shares of the parts that explain the correlations, by least squares; `shares` are the start of the search.
     pub(super) fn fit(&self, shares: &mut Parts) {
         let mut gram: [Parts; PARTS] = Default::default();

@@ -57,6 +57,16 @@ impl Memory {
         &self.values
     }
 
+    /// The correlation of differences from the schedule that are a time apart.
+    pub(super) fn correlation(&self, lag_s: f64) -> f64 {
+        self.shares.iter().zip(fading(lag_s)).map(|(share, fading)| share * fading).sum()
+    }
+
+    /// The number of independent pairs of looks that are about this time apart, s.
+    pub(super) fn pairs(&self, lag_s: f64) -> f64 {
+        self.correlations.pairs_at(lag_s)
+    }
+
     /// The part of a chain's memory that is left after a time.
     pub(super) fn chain_memory(&self, elapsed_s: f64) -> f64 {
         libm::exp(-self.chain_rate * elapsed_s)

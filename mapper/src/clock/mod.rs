@@ -3,7 +3,10 @@
 //!
 //! It starts as the chain, and becomes a clock with data. Work per look and memory are bounded.
 
+mod beta;
 mod calendar;
+#[cfg(test)]
+mod calibration;
 mod correlations;
 mod guard;
 mod long_stays;
@@ -35,6 +38,9 @@ pub struct Look {
 
 /// No prediction is nearer to 0 or 1.
 const MIN_PROBABILITY: f64 = 0.001;
+
+/// The least number of pairs of looks from which it is known how a state goes on.
+const MIN_PAIRS: f64 = 0.5;
 
 /// A look that shows the state of the last one within this time says nothing new, s: lasers look ten times per second.
 const MIN_SPACING_S: f64 = 5.0;
@@ -88,17 +94,32 @@ impl Clock {
     pub fn probability(&self, time_s: f64, calendar: &Calendar) -> f64 {
         let Some(last) = self.last else { return 0.5 };
         let time_s = time_s.max(self.last_s);
-        let from = Forecast { time_s: self.last_s, ..self.models.forecast(last) };
-        let predicted = self.models.predict(&from, time_s, calendar.civil(time_s));
-        let weights = self.guard.weights(time_s - self.last_s);
+        let (weights, predicted) = self.models_at(last, time_s, calendar);
         bounded(weights.iter().zip(predicted).map(|(weight, predicted)| weight * predicted).sum())
+    }
+
+    /// The interval that contains the true probability that the thing is blocked at a time, s, with 90 %; `None` before the thing
+    /// was seen on 14 days.
+    pub fn interval_90(&self, time_s: f64, calendar: &Calendar) -> Option<[f64; 2]> {
+        let (last, time_s) = (self.last?, time_s.max(self.last_s));
+        let (civil, ahead_s, memory) = (calendar.civil(time_s), time_s - self.last_s, &self.models.memory);
+        let of_schedule = self.models.schedule.variance(civil, |lag_s| memory.correlation(lag_s))?;
+        // How a state goes on is known from the pairs of looks that began with it.
+        let share =
+            if last.is_blocked { self.models.schedule.mean() } else { 1.0 - self.models.schedule.mean() };
+        let of_memory = 1.0 / (share * memory.pairs(ahead_s)).max(MIN_PAIRS);
+        let left = memory.correlation(ahead_s);
+        let (weights, predicted) = self.models_at(last, time_s, calendar);
+        let variance =
+            left * of_memory + (1.0 - left) * of_schedule + schedule::disagreement(weights, predicted);
+        Some(week::interval_90(self.probability(time_s, calendar), variance))
     }
 
     /// What is usual for the thing in every half hour of a week; `None` before the thing was seen on 14 days, and with
     /// [`Calendar::Relative`].
     pub fn week(&self, calendar: &Calendar) -> Option<Week> {
         let has_hours = calendar.civil(self.last_s).has_hours;
-        self.models.schedule.week().filter(|_| has_hours)
+        self.models.schedule.week(|lag_s| self.models.memory.correlation(lag_s)).filter(|_| has_hours)
     }
 
     /// For how long after the last look this look says more than the schedule, s: until its expected squared error,
@@ -116,6 +137,11 @@ impl Clock {
         })
     }
 
+    /// The rate of changes at a time, s, divided by the mean rate, by what is usual then; 1 without hours.
+    pub fn pace(&self, time_s: f64, calendar: &Calendar) -> f64 {
+        self.models.schedule.pace(calendar.civil(time_s))
+    }
+
     /// The number of days with a look.
     pub fn days(&self) -> u32 {
         self.models.schedule.days_seen()
@@ -124,6 +150,13 @@ impl Clock {
     /// The number of half hours, of all days, with a look.
     pub fn half_hours(&self) -> f64 {
         self.models.schedule.slots()
+    }
+
+    /// The weights and the probabilities of the models at a time.
+    fn models_at(&self, last: Look, time_s: f64, calendar: &Calendar) -> ([f64; MODELS], [f64; MODELS]) {
+        let from = Forecast { time_s: self.last_s, ..self.models.forecast(last) };
+        let predicted = self.models.predict(&from, time_s, calendar.civil(time_s));
+        (self.guard.weights(time_s - self.last_s), predicted)
     }
 
     /// Whether a look is news. The time of one that is not counts nevertheless.

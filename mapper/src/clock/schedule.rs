@@ -1,6 +1,9 @@
+mod certainty;
+
 use super::calendar::{Civil, DAY_S};
 use super::simplex;
-use super::week::{SLOTS_OF_WEEK, UsualSlot, Week};
+use super::week::SLOTS_OF_WEEK;
+pub(super) use certainty::disagreement;
 
 /// Slots of half an hour.
 const SLOTS: usize = SLOTS_OF_WEEK / DAYS;
@@ -27,9 +30,6 @@ const LEARNED_DAYS: f64 = 5.0;
 /// With this many slots seen, a day counts in full.
 const FULL_DAY: f64 = 12.0;
 
-/// The variance of the mixture, divided by that of parts with one common error: with it, 87 to 99 % of the true probabilities of
-/// simulated things are inside their 90 % intervals.
-const COMMON_VARIANCE: f64 = 0.75;
 /// The weight of a dispersion of one before all days, in days with a variance of 1.
 const DISPERSION_PRIOR: f64 = 0.1;
 
@@ -168,6 +168,11 @@ fn day_and_slot(civil: Civil) -> (i64, usize) {
     (day as i64, (((civil.time_s - day * DAY_S) / SLOT_S) as usize).min(SLOTS - 1))
 }
 
+fn slot_of_week(civil: Civil) -> usize {
+    let (day, slot) = day_and_slot(civil);
+    weekday(day) * SLOTS + slot
+}
+
 fn weekday(day: i64) -> usize {
     day.rem_euclid(DAYS as i64) as usize
 }
@@ -232,6 +237,25 @@ impl Schedule {
         self.mix(parts(mean, profile))
     }
 
+    /// The rate of changes at a local civil time, divided by the mean rate: they are divided over the week in proportion to
+    /// p (1 − p), as those of a chain whose memory fades as fast at all hours.
+    pub(super) fn pace(&self, civil: Civil) -> f64 {
+        if self.days == 0.0 || !civil.has_hours {
+            return 1.0;
+        }
+        let changes = |slot: usize| {
+            let probability = self.of_slot(slot);
+            probability * (1.0 - probability)
+        };
+        let mean = (0..SLOTS_OF_WEEK).map(changes).sum::<f64>() / SLOTS_OF_WEEK as f64;
+        changes(slot_of_week(civil)) / mean.max(f64::MIN_POSITIVE)
+    }
+
+    /// The probability that the thing is blocked in a slot of the week.
+    fn of_slot(&self, slot: usize) -> f64 {
+        self.mix(parts(self.mean(), self.profile(slot / SLOTS, slot % SLOTS)))
+    }
+
     fn mix(&self, parts: [f64; PARTS]) -> f64 {
         self.shares.iter().zip(parts).map(|(share, part)| share * part).sum()
     }
@@ -239,27 +263,6 @@ impl Schedule {
     /// The variance of what is found in a slot, divided by that of a state that lasts for the whole slot.
     fn dispersion(&self) -> f64 {
         ((self.errors[0] + DISPERSION_PRIOR) / (self.errors[1] + DISPERSION_PRIOR)).min(1.0)
-    }
-
-    /// What is usual in every slot of the week; `None` before the thing was seen on [`Week::MIN_DAYS`].
-    pub(super) fn week(&self) -> Option<Week> {
-        (self.days >= f64::from(Week::MIN_DAYS)).then(|| Week::new(|slot| self.usual(slot)))
-    }
-
-    fn usual(&self, slot: usize) -> UsualSlot {
-        let (weekday, of_day) = (slot / SLOTS, slot % SLOTS);
-        let [day, week] = self.smoothed(weekday, of_day).map(|smoothed| smoothed.days);
-        let own = self.week[slot].days;
-        // The errors of the parts come from the same days: their standard deviations nearly add up.
-        let days = [self.days, day + MEAN_DAYS, week + DAY_DAYS, f64::from(own) + DAY_DAYS];
-        let deviation: f64 = self.mix(days.map(|days| 1.0 / days.sqrt()));
-        let probability = self.mix(parts(self.mean(), self.profile(weekday, of_day)));
-        UsualSlot::new(
-            probability,
-            own.into(),
-            1.0 / (COMMON_VARIANCE * deviation * deviation),
-            self.dispersion(),
-        )
     }
 
     /// The profiles at a slot. With few days, the week is that of the day, and the day is the mean.

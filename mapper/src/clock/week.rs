@@ -1,14 +1,16 @@
 //! What is usual in every half hour of the week, as people read it: probabilities with intervals, and the hours of changes.
 
+use super::beta::{beta_cdf, beta_quantile};
+
 /// Half hours from Monday 0:00 to Sunday 24:00, local civil time.
 pub(super) const SLOTS_OF_WEEK: usize = 336;
 /// The hours of a slot.
 const SLOT_H: f64 = 168.0 / SLOTS_OF_WEEK as f64;
-/// The quantile of the normal distribution for an interval of 90 %.
-const NORMAL_90: f64 = 1.645;
-/// The same for the hours of changes. Days of one weekday repeat each other more than draws with a constant probability do, and
-/// within this quantile are 87 to 97 % of the hours of simulated doors (tests).
-const NORMAL_OF_HOURS: f64 = 1.2;
+/// The probability on each side of an interval of 90 %.
+const TAIL: f64 = 0.05;
+/// It is clear on which side of one half a share is if it is on the other one with this probability. Days of one weekday repeat
+/// each other more than draws with a constant probability do, so that TAIL would be too strict.
+const UNCLEAR: f64 = 0.15;
 
 /// What is usual in one half hour of the week.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
@@ -19,24 +21,24 @@ pub struct UsualSlot {
     pub interval_90: [f64; 2],
     /// The number of days on which the thing was seen in this half hour of this weekday.
     pub days: u32,
-    /// The share is as certain as if it was found on this many independent days.
-    effective_days: f64,
+    /// The variance of the probability, divided by that of the state.
+    #[serde(skip)]
+    variance: f64,
     /// The variance of the share of a day, divided by that of a thing that is blocked for all of a half hour or for nothing of it.
+    #[serde(skip)]
     dispersion: f64,
 }
 
 impl UsualSlot {
-    pub(super) fn new(probability: f64, days: u32, effective_days: f64, dispersion: f64) -> Self {
-        let effective_days = effective_days / dispersion;
-        let interval_90 = interval(probability, effective_days, NORMAL_90);
-        Self { probability, interval_90, days, effective_days, dispersion }
+    pub(super) fn new(probability: f64, days: u32, variance: f64, dispersion: f64) -> Self {
+        let interval_90 = interval_90(probability, variance);
+        Self { probability, interval_90, days, variance, dispersion }
     }
 
     /// The interval that contains the share of this many later weeks in which the thing will be blocked then, with a
     /// probability of 90 %.
     pub fn interval_90_of_weeks(&self, weeks: f64) -> [f64; 2] {
-        let days = 1.0 / (1.0 / self.effective_days + self.dispersion / weeks);
-        interval(self.probability, days, NORMAL_90)
+        interval_90(self.probability, self.variance + self.dispersion / weeks)
     }
 
     fn is_blocked(&self) -> bool {
@@ -45,21 +47,28 @@ impl UsualSlot {
 
     /// Whether it is clear on which side of one half the probability is.
     fn is_clear(&self) -> bool {
-        let [low, high] = interval(self.probability, self.effective_days, NORMAL_OF_HOURS);
-        low > 0.5 || high < 0.5
+        let below = beta_cdf(distribution(self.probability, self.variance), 0.5);
+        below.min(1.0 - below) < UNCLEAR
     }
 }
 
-/// The interval of Wilson (1927) for a share that was found in n draws. It begins at 0, and ends at 1, where all draws can be
-/// equal with a probability of 5 %.
-fn interval(share: f64, n: f64, quantile: f64) -> [f64; 2] {
-    let draws = quantile * quantile / n;
-    let center = (share + draws / 2.0) / (1.0 + draws);
-    let half = quantile / (1.0 + draws) * ((share * (1.0 - share) + draws / 4.0) / n).sqrt();
-    let can_be_equal = |share: f64| libm::pow(1.0 - share, n) > 0.05;
-    let low = if can_be_equal(share) { 0.0 } else { center - half };
-    let high = if can_be_equal(1.0 - share) { 1.0 } else { center + half };
-    [low.max(0.0), high.min(1.0)]
+/// The parameters of the beta distribution of a probability, whose variance is this share of that of the state. (The interval of
+/// Wilson would shrink it toward one half, and it was shrunk toward the mean already.)
+fn distribution(probability: f64, variance: f64) -> [f64; 2] {
+    /// Keeps the parameters apart from 0.
+    const MIN: f64 = 1e-3;
+    [probability, 1.0 - probability].map(|share| (share / variance).max(MIN))
+}
+
+/// The interval that contains this probability with 90 %. It begins at 0, and ends at 1, where all draws can be equal with a
+/// probability of 5 %.
+pub(super) fn interval_90(probability: f64, variance: f64) -> [f64; 2] {
+    let distribution = distribution(probability, variance);
+    let can_be_equal = |share: f64| libm::pow(1.0 - share, 1.0 / variance) > TAIL;
+    let low = if can_be_equal(probability) { 0.0 } else { beta_quantile(distribution, TAIL) };
+    let high = if can_be_equal(1.0 - probability) { 1.0 } else { beta_quantile(distribution, 1.0 - TAIL) };
+    // Nearly all of a very skewed distribution is on one side of its mean.
+    [low.min(probability), high.max(probability)]
 }
 
 /// A time of the week at which the usual state of a thing changes. Hours count from Monday 0:00, local civil time.
@@ -93,6 +102,11 @@ impl Week {
     /// The 336 half hours from Monday 0:00 on.
     pub fn slots(&self) -> &[UsualSlot] {
         &self.slots
+    }
+
+    /// The half hour at an hour of the week, from 0 to 168.
+    pub fn at(&self, hour_of_week: f64) -> &UsualSlot {
+        &self.slots[(hour_of_week / SLOT_H) as usize % SLOTS_OF_WEEK]
     }
 
     /// The times at which the usual state changes, in order: between two half hours in which it is clear what is usual. Empty for a

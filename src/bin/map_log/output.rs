@@ -8,7 +8,7 @@ use nalgebra::{Point2, Vector2};
 use results::output::{RunFolder, write_file};
 use results::thinned::Thinned;
 use results::{cell_statistics, raster, ros_map, things};
-use survey::{Survey, Verdict, keepout_mask, permanent, speed_mask};
+use survey::{MASKS, Survey, Verdict, masks, permanent};
 use viewer::layers::Layer;
 use viewer::pictures::draw_places;
 
@@ -45,7 +45,7 @@ pub(crate) fn write(
         ros_map::write(to, name, map)?;
     }
     if has_rates {
-        for (name, mask) in [("speed_mask", speed_mask(mapper)), ("keepout_mask", keepout_mask(mapper))] {
+        for (name, mask) in MASKS.iter().zip(masks(mapper)) {
             ros_map::write_mask(to, name, &mask)?;
         }
         cell_statistics::write(&to.join("cell_statistics.csv"), mapper)?;

@@ -3,7 +3,7 @@
 use crate::summary::Summary;
 use curious::week;
 use curious::words::{date, how_often, length_of, list, range};
-use mapper::{Door, Mapper, ThingKind, Week};
+use mapper::{Door, Mapper, Week};
 use maud::{DOCTYPE, Markup, html};
 use nalgebra::Point2;
 use results::numbers::percent;
@@ -149,11 +149,7 @@ fn table(places: &[Place], begin_s: Option<f64>, has_rates: bool) -> Markup {
 
 /// The doors that were found.
 fn doors(mapper: &Mapper) -> Markup {
-    let doors = mapper.things().iter().filter_map(|thing| match &thing.kind {
-        ThingKind::Door(door) => Some((thing.id, &**door)),
-        ThingKind::Furniture(_) => None,
-    });
-    let doors: Vec<(u32, &Door)> = doors.collect();
+    let doors: Vec<(u32, &Door)> = survey::doors(mapper).collect();
     let ends = |door: &Door| door.closed.ends.map(|end| format!("{:.1}, {:.1}", end.x, end.y)).join(" to ");
     html! {
         @if !doors.is_empty() {

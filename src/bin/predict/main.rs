@@ -4,7 +4,7 @@ mod moment;
 mod place;
 mod route;
 
-use anyhow::{Context, anyhow};
+use anyhow::{Context, anyhow, bail};
 use clap::Parser;
 use curious::flags::{folder, input_file, number, value_of};
 use curious::program::{Failure, arguments, input, results_folder, start, state_failure};
@@ -22,14 +22,18 @@ use route::{Graph, Stop, Travel, route};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use survey::Forecast;
+use survey::{Forecast, MASKS};
 use viewer::layers::Layer;
 use viewer::pictures::draw_values;
 
 /// The version of the layout of `summary.json`; count up when a key is renamed, removed or changes its meaning.
-const SCHEMA: u32 = 1;
+const SCHEMA: u32 = 2;
 
 /// Predicts a place from what was learned about it: is that door open at ten past five?
+///
+/// Says when its doors are usually open, how often they are opened, and with which probability they are open at the times of
+/// --at; of a place (--place) with which probability it is blocked. Behind a probability is the interval that contains the true one
+/// with 90 %; it needs looks on 14 days.
 ///
 /// STATE is a file of `map_log --state` (or of four_rooms or curious_node, which know no hours). A time is
 ///   +10m                after the last reading of the state: s, m or h
@@ -38,11 +42,12 @@ const SCHEMA: u32 = 1;
 ///
 /// For each time of --at, the folder predict_out has the map of the probability that a cell is blocked, as a picture
 /// (predicted.png), for the map server of Nav2 (predicted.yaml, in the mode `scale`: 100 is certainly blocked) and as an array
-/// for NumPy (predicted.npy, rows from the lowest y on, NaN where never seen). With several times, the files are numbered. Also
-/// in the folder: for how long a look at a place counts before its usual hours say more (expiry.png, expiry.npy, in hours), and all
-/// that is printed, as data (summary.json).
+/// for NumPy (predicted.npy, rows from the lowest y on, NaN where never seen); and masks for the filters of Nav2: keepout_mask.yaml
+/// (100 where a cell that changes is probably blocked then) and speed_mask.yaml (slower where changes are usual at that hour).
+/// With several times, the files are numbered. Also in the folder: for how long a look at a place counts before its usual hours
+/// say more (expiry.png, expiry.npy, in hours), and all that is printed, as data (summary.json).
 ///
-/// Hours and weekdays are learned per square of half a meter, and count the more the longer they were seen.
+/// Hours and weekdays are learned per door and per square of half a meter, and count the more the longer they were seen.
 #[derive(Clone, Debug, Parser)]
 #[command(
     name = "predict",
@@ -50,9 +55,11 @@ const SCHEMA: u32 = 1;
     max_term_width = 100,
     verbatim_doc_comment,
     after_help = "Examples:\n  \
-        predict office.state --at \"Tue 17:10\"                        the map on Tuesday at ten past five\n  \
+        predict office.state                                         all doors: their hours, and now\n  \
+        predict office.state --at \"Tue 17:10\"                        the doors, map and masks on Tuesday at ten past five\n  \
         predict office.state --at +10m --at +1h                      two maps\n  \
-        predict office.state --at 17:10 --place 3.2,-1.5             a door: P(blocked), its usual hours\n  \
+        predict office.state --at 17:10 --place 3.2,-1.5             a place or a door: its usual hours\n  \
+        predict office.state --at 17:10 --door 0                     the door with this number\n  \
         predict office.state --at 17:10 --route way.csv              a route, at the times of arrival\n  \
         predict office.state --at 17:10 --graph g.geojson --from 0   a graph of nav2_route with P(open)\n\n\
         Exit codes: 0 success, 1 a file cannot be written, 2 invalid arguments or input."
@@ -69,6 +76,10 @@ struct Args {
     /// A place in the map, m: say what is known of it; several are possible
     #[arg(long, value_name = "X,Y", value_parser = point, allow_hyphen_values = true)]
     place: Vec<Point2<f64>>,
+
+    /// A door: say what is known of it; several are possible [default: all doors, without --place, --route and --graph]
+    #[arg(long, value_name = "NUMBER")]
+    door: Vec<u32>,
 
     /// A route: lines of `x y` (m) or `time x y` (s, m; as a TUM trajectory). Departure is at the first time of --at
     #[arg(long, value_name = "FILE", value_parser = input_file())]
@@ -142,25 +153,16 @@ fn run(args: &Args) -> Result<ExitCode, Failure> {
             format!("--place {},{}: it is outside of the map, {}", at.x, at.y, extent(&forecast))
         })
     };
-    let places = args.place.iter().map(place).collect::<anyhow::Result<Vec<_>>>().map_err(input)?;
+    let mut places = args.place.iter().map(place).collect::<anyhow::Result<Vec<_>>>().map_err(input)?;
+    places.extend(doors(args, &forecast, &times_s).map_err(input)?);
     let stops =
         args.route.iter().map(|path| route(path, &forecast, travel)).collect::<anyhow::Result<Vec<_>>>();
     let graph = args.graph.as_ref().map(|path| Graph::read(path)?.predicted(&forecast, travel, args.from));
     let (route, graph) = (stops.map_err(input)?.concat(), graph.transpose().map_err(input)?);
     let folder = results_folder(&args.out)?;
     for (number, time_s) in times_s.iter().enumerate() {
-        let name =
-            if times_s.len() == 1 { "predicted".to_owned() } else { format!("predicted_{}", number + 1) };
-        let title = format!("P(blocked), {}", moment::text(*time_s, &forecast));
-        write_map(
-            folder.unfinished(),
-            &name,
-            (Layer::PREDICTED[0], &title),
-            &forecast,
-            &forecast.map(*time_s),
-        )?;
-        let mask = |value: &f64| if value.is_nan() { 0 } else { (100.0 * value).round() as u8 };
-        ros_map::write_mask(folder.unfinished(), &name, &forecast.map(*time_s).map(mask))?;
+        let suffix = if times_s.len() == 1 { String::new() } else { format!("_{}", number + 1) };
+        write_time(folder.unfinished(), &suffix, &forecast, *time_s)?;
     }
     let expiry_h = forecast.expiry().map(|expiry_s| expiry_s / 3600.0);
     let title = "Hours for which a look counts";
@@ -189,12 +191,41 @@ fn run(args: &Args) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
+/// The doors that are asked for; all of them if nothing is.
+fn doors(args: &Args, forecast: &Forecast, times_s: &[f64]) -> anyhow::Result<Vec<Place>> {
+    let known: Vec<_> = forecast.doors().collect();
+    let numbers: Vec<String> = known.iter().map(|(id, _)| id.to_string()).collect();
+    if let Some(door) = args.door.iter().find(|door| known.iter().all(|(id, _)| id != *door)) {
+        bail!(
+            "--door {door}: there is no such door; known {}",
+            if numbers.is_empty() { "is none".to_owned() } else { format!("are {}", numbers.join(", ")) }
+        );
+    }
+    let is_all =
+        args.door.is_empty() && args.place.is_empty() && args.route.is_none() && args.graph.is_none();
+    let asked = known.into_iter().filter(|(id, _)| is_all || args.door.contains(id));
+    Ok(asked.map(|(id, door)| Place::of_door(forecast, id, door, times_s)).collect())
+}
+
 /// The extent of the map in words.
 fn extent(forecast: &Forecast) -> String {
     let frame = forecast.mapper().frame();
     let (from, cell_m) = (frame.origin(), frame.resolution_m());
     let to = [from.x + frame.width() as f64 * cell_m, from.y + frame.height() as f64 * cell_m];
     format!("x from {:.1} to {:.1} m, y from {:.1} to {:.1} m", from.x, to[0], from.y, to[1])
+}
+
+/// Writes the map and the masks at a time.
+fn write_time(folder: &Path, suffix: &str, forecast: &Forecast, time_s: f64) -> Result<(), Failure> {
+    let (name, map) = (format!("predicted{suffix}"), forecast.map(time_s));
+    let title = format!("P(blocked), {}", moment::text(time_s, forecast));
+    write_map(folder, &name, (Layer::PREDICTED[0], &title), forecast, &map)?;
+    let percents = map.map(|value| if value.is_nan() { 0 } else { (100.0 * value).round() as u8 });
+    ros_map::write_mask(folder, &name, &percents)?;
+    for (name, mask) in MASKS.iter().zip(forecast.masks(time_s)) {
+        ros_map::write_mask(folder, &format!("{name}{suffix}"), &mask)?;
+    }
+    Ok(())
 }
 
 /// Writes a picture and an array.
@@ -218,8 +249,11 @@ fn say(summary: &Summary, forecast: &Forecast) -> anyhow::Result<()> {
         Some(why) => print(format_args!("no hours and no dates: {why}"))?,
     }
     for place in &summary.places {
-        print(format_args!("the place at ({:.2}, {:.2}) m", place.x_m, place.y_m))?;
+        print(format_args!("{}", place.title))?;
         place.text.iter().try_for_each(|line| print(format_args!("  {line}")))?;
+    }
+    if summary.places.is_empty() && summary.route.is_empty() {
+        print(format_args!("no door is known; --place X,Y asks for a place"))?;
     }
     let begin_s = summary.times_s[0];
     for Stop { x_m, y_m, time_s, blocked } in &summary.route {

@@ -23,10 +23,10 @@ pub(crate) fn parse(text: &str, forecast: &Forecast) -> Result<f64, String> {
     if let Some(ahead) = text.strip_prefix('+') {
         return duration_s(ahead).map(|ahead_s| forecast.now_s() + ahead_s);
     }
-    let zone = match (forecast.mapper().calendar(), forecast.why_undated()) {
-        (Calendar::Zone(zone), None) => zone,
-        (_, why) => {
-            let why = why.unwrap_or("it has no time zone");
+    let zone = match forecast.calendar() {
+        Calendar::Zone(zone) => zone,
+        Calendar::Relative => {
+            let why = forecast.why_undated().unwrap_or("it has no time zone");
             return Err(format!(
                 "the state knows no hours ({why}): give a time after its last reading, as +10m"
             ));
@@ -73,10 +73,12 @@ fn zoned(time_s: f64, zone: &TimeZone) -> Option<Zoned> {
 
 /// A time in words: in local civil time, or after the last reading.
 pub(crate) fn text(time_s: f64, forecast: &Forecast) -> String {
-    match (forecast.mapper().calendar(), forecast.why_undated()) {
-        (Calendar::Zone(zone), None) => zoned(time_s, zone)
+    match forecast.calendar() {
+        Calendar::Zone(zone) => zoned(time_s, zone)
             .map_or_else(|| format!("{time_s:.0} s"), |at| at.strftime("%a %Y-%m-%d %H:%M %Z").to_string()),
-        _ => format!("{} after the last reading", curious::words::length_of(time_s - forecast.now_s())),
+        Calendar::Relative => {
+            format!("{} after the last reading", curious::words::length_of(time_s - forecast.now_s()))
+        }
     }
 }
 

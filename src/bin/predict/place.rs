@@ -1,25 +1,26 @@
-//! What is known of one place, in sentences and as data.
+//! What is known of one place or door, in sentences and as data.
 
 use crate::moment;
 use curious::week::usual_hours;
 use curious::words::length_of;
 use interfaces::CellState;
-use mapper::{UsualChange, UsualSlot, Week};
+use mapper::{Clock, Door, UsualChange, UsualSlot, Week};
 use nalgebra::Point2;
 use results::numbers::percent;
 use serde::Serialize;
-use survey::Forecast;
+use survey::{Forecast, NEAR_M};
 
-/// A place is where something changes at most this far from a point, m.
-const NEAR_M: f64 = 0.5;
-
-/// A place: the tile of half a meter at, or beside, a point.
-#[derive(Clone, Debug, Serialize)]
+/// A place: a door, or the tile of half a meter at, or beside, a point.
+#[derive(Clone, Debug, Default, Serialize)]
 pub(crate) struct Place {
     pub(crate) x_m: f64,
     pub(crate) y_m: f64,
-    /// The probability that something is there, by time; `None` if the place was never seen.
-    pub(crate) blocked: Vec<(f64, Option<f64>)>,
+    /// The door that is there; `None` if none is known.
+    pub(crate) door: Option<DoorRecord>,
+    /// The state whose probabilities and hours follow: `open` of a door, `blocked` of another place.
+    pub(crate) state: &'static str,
+    /// The probabilities, by time.
+    pub(crate) expected: Vec<Expected>,
     /// The days and the half hours with a look at the place while it was known to change.
     pub(crate) days: u32,
     pub(crate) half_hours: f64,
@@ -27,10 +28,32 @@ pub(crate) struct Place {
     pub(crate) expiry_s: Option<f64>,
     /// What is usual at these times; empty unless usual hours are known.
     pub(crate) usual: Vec<UsualSlot>,
-    /// The times of the week at which it usually becomes blocked or free.
+    /// The times of the week at which it usually changes.
     pub(crate) usual_changes: Vec<UsualChange>,
-    /// The same in sentences.
+    /// The same in sentences: what it is, then what is known of it.
+    pub(crate) title: String,
     pub(crate) text: Vec<String>,
+}
+
+/// A door.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct DoorRecord {
+    /// Its number, as in `things.json`.
+    pub(crate) id: u32,
+    pub(crate) width_m: f64,
+    /// Openings per hour in view, and their 90 % interval; `None` if it was never in view.
+    pub(crate) openings_per_hour: Option<f64>,
+    pub(crate) openings_per_hour_90: Option<(f64, f64)>,
+}
+
+/// The probability of a state at a time.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub(crate) struct Expected {
+    pub(crate) time_s: f64,
+    /// `None` if the place was never seen.
+    pub(crate) probability: Option<f64>,
+    /// The interval that contains the true probability with 90 %; `None` with too few looks for it.
+    pub(crate) interval_90: Option<[f64; 2]>,
 }
 
 impl Place {
@@ -39,89 +62,134 @@ impl Place {
         let mapper = forecast.mapper();
         let frame = mapper.frame();
         let own = frame.index(frame.cell_at(&at))?;
+        if let Some((id, door)) = forecast.door_at(at) {
+            return Some(Self::of_door(forecast, id, door, times_s));
+        }
         // The place that changes is perhaps beside the point.
         let far_m = |index: &usize| (frame.center(frame.cell(*index)) - at).norm();
         let near = mapper.changed().filter(|index| far_m(index) <= NEAR_M);
         let index = near.min_by(|a, b| far_m(a).total_cmp(&far_m(b))).unwrap_or(own);
-        let cell = frame.cell(index);
-        let tile = mapper.tile(index).filter(|tile| tile.last().is_some());
-        let probability = |time_s: f64| match tile {
-            Some(tile) => Some(tile.clock().probability(time_s, mapper.calendar())),
-            None => forecast.blocked(cell, time_s),
-        };
-        let week = tile.and_then(|tile| tile.clock().week(mapper.calendar()));
-        let usual = |week: &Week| {
-            let slot = |time_s: &f64| usual_at(week, forecast, *time_s);
-            times_s.iter().filter_map(slot).collect()
-        };
-        let mut place = Self {
-            x_m: at.x,
-            y_m: at.y,
-            blocked: times_s.iter().map(|time_s| (*time_s, probability(*time_s))).collect(),
-            days: tile.map_or(0, |tile| tile.clock().days()),
-            half_hours: tile.map_or(0.0, |tile| tile.clock().half_hours()),
-            expiry_s: tile.and_then(|tile| tile.clock().expiry_s(mapper.calendar())),
-            usual: week.as_ref().map(usual).unwrap_or_default(),
-            usual_changes: week.as_ref().map(Week::usual_changes).unwrap_or_default(),
-            text: Vec::new(),
-        };
-        let state = mapper.states().cells()[index];
-        place.text = match tile {
-            _ if state == CellState::Unknown && tile.is_none() => vec!["It was never seen.".to_owned()],
-            None if mapper.map_changes(index) > 0 => place
-                .predictions(forecast)
-                .chain(["Of this cell alone: its place has no clock yet.".to_owned()])
-                .collect(),
-            None => {
+        let title = format!("the place at ({:.2}, {:.2}) m", at.x, at.y);
+        let place = Self { x_m: at.x, y_m: at.y, state: "blocked", title, ..Self::default() };
+        if let Some(tile) = mapper.tile(index).filter(|tile| tile.last().is_some()) {
+            return Some(place.of_clock(forecast, tile.clock(), times_s));
+        }
+        let probability = |time_s| forecast.blocked(frame.cell(index), time_s);
+        let expected =
+            |time_s: &f64| Expected { time_s: *time_s, probability: probability(*time_s), interval_90: None };
+        let mut place = Self { expected: times_s.iter().map(expected).collect(), ..place };
+        place.text = match mapper.states().cells()[index] {
+            CellState::Unknown => vec!["It was never seen.".to_owned()],
+            _ if mapper.map_changes(index) > 0 => {
+                let of_cell = "Of this cell alone: its place has no clock yet.".to_owned();
+                place.predictions(forecast).chain([of_cell]).collect()
+            }
+            state => {
                 let state = if state == CellState::Blocked { "blocked" } else { "free" };
                 vec![format!("Nothing ever changed within half a meter: it was always {state}.")]
             }
-            Some(_) => place.sentences(forecast, week.as_ref()),
         };
         Some(place)
     }
 
+    /// A door, at times in seconds.
+    pub(crate) fn of_door(forecast: &Forecast, id: u32, door: &Door, times_s: &[f64]) -> Self {
+        let at = nalgebra::center(&door.closed.ends[0], &door.closed.ends[1]);
+        let (width_m, seen) = (door.closed.length_m(), &door.statistics);
+        let last = match door.is_open {
+            Some(is_open) => format!(
+                "{} when it was last seen, {}",
+                if is_open { "open" } else { "closed" },
+                moment::text(forecast.mapper().epoch_s() + door.last_seen_s, forecast)
+            ),
+            None => "not seen yet".to_owned(),
+        };
+        let record = DoorRecord {
+            id,
+            width_m,
+            openings_per_hour: seen.openings_per_hour().map(|rate| rate.mean()),
+            openings_per_hour_90: seen.interval_of_openings_per_hour(0.9),
+        };
+        let title = format!("door {id} at ({:.2}, {:.2}) m, {width_m:.2} m wide, {last}", at.x, at.y);
+        let place =
+            Self { x_m: at.x, y_m: at.y, state: "open", title, door: Some(record), ..Self::default() };
+        place.of_clock(forecast, &door.clock, times_s)
+    }
+
+    /// Adds what a clock says.
+    fn of_clock(mut self, forecast: &Forecast, clock: &Clock, times_s: &[f64]) -> Self {
+        let calendar = forecast.calendar();
+        let week = clock.week(calendar);
+        let expected = |time_s: &f64| Expected {
+            time_s: *time_s,
+            probability: Some(clock.probability(*time_s, calendar)),
+            interval_90: clock.interval_90(*time_s, calendar),
+        };
+        self.expected = times_s.iter().map(expected).collect();
+        (self.days, self.half_hours) = (clock.days(), clock.half_hours());
+        self.expiry_s = clock.expiry_s(calendar);
+        if let Some(week) = &week {
+            let hours = times_s.iter().filter_map(|time_s| calendar.hour_of_week(*time_s));
+            self.usual = hours.map(|hour| *week.at(hour)).collect();
+            self.usual_changes = week.usual_changes();
+        }
+        self.text = self.sentences(forecast, week.as_ref());
+        self
+    }
+
     /// What is predicted, a sentence for each time.
     fn predictions(&self, forecast: &Forecast) -> impl Iterator<Item = String> {
-        self.blocked.iter().enumerate().map(|(number, (time_s, probability))| {
-            let probability = percent(probability.unwrap_or(0.5));
-            let when = moment::text(*time_s, forecast);
-            let usual = self.usual.get(number).map(|slot| {
-                let [low, high] = slot.interval_90.map(percent);
-                format!(
-                    "; usual then: {} ({low} to {high}, seen on {} such days)",
-                    percent(slot.probability),
-                    slot.days
-                )
-            });
-            format!("{when}: blocked with a probability of {probability}{}", usual.unwrap_or_default())
+        self.expected.iter().enumerate().map(|(number, expected)| {
+            let probability = expected.probability.unwrap_or(0.5);
+            let range = match expected.interval_90 {
+                Some([low, high]) => format!("{} to {}", percent(low), percent(high)),
+                None => "few data".to_owned(),
+            };
+            let closed = self.door.as_ref().map(|_| format!(", closed with {}", percent(1.0 - probability)));
+            let usual = self.usual.get(number).map(usual).unwrap_or_default();
+            format!(
+                "{}: {} with a probability of {} ({range}){}{usual}",
+                moment::text(expected.time_s, forecast),
+                self.state,
+                percent(probability),
+                closed.unwrap_or_default()
+            )
         })
     }
 
     fn sentences(&self, forecast: &Forecast, week: Option<&Week>) -> Vec<String> {
         let mut lines: Vec<String> = self.predictions(forecast).collect();
         lines.push(format!("Seen in {:.0} half hours, on {} days.", self.half_hours, self.days));
+        let rate = self.door.as_ref().and_then(|door| door.openings_per_hour.zip(door.openings_per_hour_90));
+        lines.extend(
+            rate.map(|(rate, (low, high))| {
+                format!("Opens {rate:.2} times per hour ({low:.2} to {high:.2}).")
+            }),
+        );
         lines.push(match self.expiry_s {
             Some(expiry_s) => {
                 format!("A look counts for {}; after that the usual hours say more.", length_of(expiry_s))
             }
             None => "A look says more than the usual hours for four weeks and longer.".to_owned(),
         });
-        match week {
-            None if forecast.why_undated().is_some() => {
-                lines.push(format!("Usual hours: none, as {}.", forecast.why_undated().unwrap_or_default()));
+        lines.push(match (week, forecast.why_undated()) {
+            (Some(week), _) => format!("Usually {}.", usual_hours(week, self.state)),
+            (None, Some(why)) => format!("Usual hours: none, as {why}."),
+            (None, None) => {
+                format!("Usual hours: not known yet; they need looks on {} days.", Week::MIN_DAYS)
             }
-            None => {
-                lines.push(format!("Usual hours: not known yet; they need looks on {} days.", Week::MIN_DAYS))
-            }
-            Some(week) => lines.push(format!("Usually {}.", usual_hours(week, "blocked"))),
-        }
+        });
         lines
     }
 }
 
-/// The half hour of the week at a time.
-fn usual_at(week: &Week, forecast: &Forecast, time_s: f64) -> Option<UsualSlot> {
-    let hour = forecast.mapper().calendar().hour_of_week(time_s)?;
-    week.slots().get((hour * week.slots().len() as f64 / 168.0) as usize).copied()
+/// What is usual in a half hour of the week.
+fn usual(slot: &UsualSlot) -> String {
+    let [low, high] = slot.interval_90.map(percent);
+    let seen = match slot.days {
+        0 => "from the hours and days around it".to_owned(),
+        1 => "seen on 1 such day".to_owned(),
+        days => format!("seen on {days} such days"),
+    };
+    format!("; usual then: {} ({low} to {high}, {seen})", percent(slot.probability))
 }
