@@ -6,6 +6,7 @@
 //! - `doorway`, `doors`: lines that come and go between two walls are the closed leaf of a door; a line that changes the other
 //!   way at the same time, and shares an end with it, is the open leaf.
 //! - `door`: a door and its statistics.
+//! - `leaf_cells`: what doors say of their cells.
 //! - `furniture`: what stood for long and is gone, or has come and stays.
 
 mod door;
@@ -13,6 +14,7 @@ mod doors;
 mod doorway;
 mod furniture;
 mod lasting;
+mod leaf_cells;
 mod line;
 mod motions;
 mod segment;
@@ -24,6 +26,7 @@ pub use door::{Door, DoorStatistics, Leaf};
 use doorway::Doorway;
 pub use furniture::{Furniture, Place};
 use lasting::{Change, LastingChanges};
+pub(crate) use leaf_cells::LeafCells;
 use line::Line;
 use motions::{Motion, Motions};
 pub use segment::Segment;
