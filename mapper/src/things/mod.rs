@@ -86,8 +86,8 @@ impl Things {
         while let Some(motion) = self.motions.next(now_s) {
             self.learn(&motion, cells);
         }
-        if let Some((place, is_blocked)) = self.places.next(cells) {
-            self.add_furniture(place, is_blocked, cells);
+        if cells.reading().is_multiple_of(furniture::READINGS) {
+            self.check_furniture(cells);
         }
         for thing in &mut self.things {
             if let ThingKind::Door(door) = &mut thing.kind {
@@ -114,6 +114,16 @@ impl Things {
         let mut doors = self.things.iter().filter(|thing| matches!(thing.kind, ThingKind::Door(_)));
         let cells: Vec<u32> = changes.iter().map(|change| change.cell).collect();
         doors.any(|door| is_mostly_in(&cells, &door.cells))
+    }
+
+    fn check_furniture(&mut self, cells: &CellMap) {
+        if let Some((place, is_blocked)) = self.places.next(cells) {
+            self.add_furniture(place, is_blocked, cells);
+        }
+        self.things.retain(|thing| match &thing.kind {
+            ThingKind::Door(_) => true,
+            ThingKind::Furniture(furniture) => !furniture.was_passing(cells),
+        });
     }
 
     fn add_furniture(&mut self, place: Place, is_blocked: bool, cells: &CellMap) {
