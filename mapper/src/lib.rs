@@ -18,6 +18,7 @@ mod change;
 mod clock;
 mod derived;
 mod growth;
+mod look_counts;
 mod occupancy;
 mod reading_error;
 mod scan_filter;
@@ -47,7 +48,7 @@ use interfaces::{
 };
 use nalgebra::Point2;
 use reading_error::check_pose;
-use things::Things;
+use things::{LeafCells, Things};
 use tiles::Tiles;
 
 /// Settings of a [`Mapper`].
@@ -102,6 +103,7 @@ pub struct Mapper {
     occupancy: Box<dyn OccupancyModel>,
     expected_changes: ExpectedChanges,
     things: Things,
+    leaf_cells: LeafCells,
     tiles: Tiles,
     scan: ProjectedScan,
     points: Vec<Point2<f64>>,
@@ -159,8 +161,8 @@ impl Mapper {
         let occupancy = settings.occupancy.build(&settings, &mut cells);
         let (expected_changes, scan) = (ExpectedChanges::default(), ProjectedScan::default());
         let tiles = Tiles::new(&settings, cells.frame().resolution_m());
-        let things = Things::default();
-        Self { settings, cells, occupancy, expected_changes, tiles, things, scan, points: Vec::new() }
+        let (things, leaf_cells, points) = (Things::default(), LeafCells::default(), Vec::new());
+        Self { settings, cells, occupancy, expected_changes, tiles, things, leaf_cells, scan, points }
     }
 
     /// Makes a mapper with the same settings and the same frame, whose cells are all unknown: when it is called, perhaps in
@@ -197,6 +199,7 @@ impl Mapper {
         if is_larger {
             self.cells.grow(&growth);
             self.things.grow(&growth);
+            self.leaf_cells.grow(&growth);
             self.tiles.grow(&growth);
             self.points.clear();
         }
@@ -223,6 +226,7 @@ impl Mapper {
                 self.cells.open(time);
                 self.occupancy.update(&self.scan, &mut self.cells);
                 self.things.update(&self.cells, self.tiles.dates());
+                self.leaf_cells.note(self.things.all(), &self.cells);
             }
             Observation::Cells(exact) => {
                 self.points.clear();
@@ -284,6 +288,7 @@ impl Mapper {
         values.push(self.tiles.value());
         values.push(last_value(&mut self.things));
         values.extend(prior.into_iter().map(if_present));
+        values.push(last_value(&mut self.leaf_cells));
         values
     }
 
@@ -359,10 +364,12 @@ impl Mapper {
         &self.cells.estimator
     }
 
-    /// The change statistics of a cell.
+    /// The change statistics of a cell. The prior of its rate is that of its door, if it has one.
     #[inline]
     pub fn statistics(&self, index: usize) -> CellStatistics {
-        self.cells.statistics(index)
+        let seen = self.cells.statistics(index);
+        let of_door = seen.prior.and_then(|_| self.leaf_cells.rate_prior(index, self.things()));
+        CellStatistics { prior: of_door.or(seen.prior), ..seen }
     }
 
     /// How often the known state of a cell changed in the map: the changes in its [statistics](Self::statistics), and the

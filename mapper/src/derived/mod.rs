@@ -29,7 +29,7 @@ impl Mapper {
     /// The rate of the cell, 1/T, in cycles per unit of time; 0 where T is ∞.
     #[inline]
     pub fn rate(&self, index: usize) -> f64 {
-        self.cells.rate(index)
+        1.0 / self.interval(index)
     }
 
     /// The rate of the cell with which the robot acts, in cycles per unit of time: the rate by which goals are chosen and
@@ -86,7 +86,9 @@ impl Mapper {
     pub fn credible_intervals(&self, mass: f64) -> impl Fn(usize) -> (f64, f64) {
         let interval = CredibleInterval::new(mass);
         move |index| {
-            if let Some(posterior) = self.cells.rate_posterior(index) {
+            if self.cells.has_rate(index)
+                && let Some(posterior) = self.statistics(index).posterior()
+            {
                 return interval.of_rate(posterior);
             }
             let belief = self.cells.belief(index);
@@ -125,11 +127,14 @@ impl Mapper {
         self.predicted(index, last_seen, time).unwrap_or(last_seen)
     }
 
-    /// What predicts a cell that changes and was last seen as `observed`, 0 or 1: its chain, and the clock of its tile.
+    /// What predicts a cell that changes and was last seen as `observed`, 0 or 1: the last look at it or at its door, its chain,
+    /// and the clock of its tile.
     fn predicted(&self, index: usize, observed: f64, time: f64) -> Option<f64> {
         let seen = self.statistics(index);
         let rates = self.estimator().transition_rates(&seen)?;
-        let chain = Chain::new(rates, &seen, self.cells.variation(), self.recency(index) + time);
+        let door = self.leaf_cells.look(index, self.things()).filter(|look| look.time_s > seen.last_seen);
+        let (observed, last_s) = door.map_or((observed, seen.last_seen), |look| (look.blocked, look.time_s));
+        let chain = Chain::new(rates, &seen, self.cells.variation(), self.time() - last_s + time);
         let alone = chain.blocked_probability(observed);
         let slot = self.cells.slot(index)?;
         let by_tile = self.tiles.of_cell(self.frame().cell(index), slot, self.time() + time);

@@ -84,6 +84,11 @@ impl DoorStatistics {
         (time > 0.0).then_some(RateDistribution { events, time })
     }
 
+    /// The mean number of openings per second.
+    pub(super) fn openings_per_s(&self) -> Option<f64> {
+        Some(self.openings_per_hour()?.mean() / HOUR_S)
+    }
+
     /// The interval that contains the number of openings per hour with the probability `mass`.
     pub fn interval_of_openings_per_hour(&self, mass: f64) -> Option<(f64, f64)> {
         Some(CredibleInterval::new(mass).of_gamma(self.openings_per_hour()?))
@@ -193,6 +198,11 @@ impl Door {
         if self.watch.clock_s.is_none_or(|last_s| now_s - last_s >= LOOK_S) {
             self.tell_clock(now_s, is_open, dates);
         }
+    }
+
+    /// The time of the last look that showed whether the door was open, and whether it was, to [`LOOK_S`].
+    pub(super) fn last_look(&self) -> Option<(f64, bool)> {
+        self.watch.clock_s.zip(self.is_open)
     }
 
     pub(super) fn grow(&mut self, growth: &Growth) {

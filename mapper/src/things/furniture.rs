@@ -26,9 +26,10 @@ const SAME_S: f64 = 300.0;
 const CARRIED_S: f64 = 120.0;
 /// A piece is as large as before up to this factor: it is seen from other sides.
 const SAME_SIZE: f64 = 1.7;
-/// The largest number of places that may turn out to be furniture, and the number of readings after which one is checked.
+/// The largest number of places that may turn out to be furniture.
 const MAX_PENDING: usize = 32;
-const READINGS: u32 = 8;
+/// One of them is checked after this number of readings: a piece of furniture has time.
+pub(super) const READINGS: u32 = 8;
 
 /// A place where furniture stood or stands.
 #[derive(Clone, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
@@ -82,6 +83,15 @@ impl Furniture {
             _ => return false,
         }
         true
+    }
+
+    /// Whether it came from nowhere, and has gone: somebody stood there, or the leaf of a door that is not known yet.
+    pub(super) fn was_passing(&self, cells: &CellMap) -> bool {
+        self.from.is_none()
+            && self.to.as_ref().is_some_and(|to| {
+                let [agree, differ] = to.looks(true, cells);
+                differ > agree
+            })
     }
 
     pub(super) fn grow(&mut self, growth: &Growth) {
@@ -144,9 +154,12 @@ impl Pending {
     pub(super) fn add(&mut self, changes: &[Change], cells: &CellMap) {
         let stood = |change: &&Change| {
             let seen = cells.statistics(change.cell as usize);
+            let has_come = seen.block_events + seen.block_events_after_gap > 0;
+            // People stop for some time: what has stood for long was there at two looks that are far apart.
+            let stood_s =
+                if has_come { seen.watched_blocked } else { change.seen_before_s - seen.first_seen };
             seen.events() <= MAX_CHANGES
-                && (change.is_blocked
-                    || seen.watched_blocked >= MIN_WATCHED_S && change.time_s - seen.first_seen >= STANDS_S)
+                && (change.is_blocked || seen.watched_blocked >= MIN_WATCHED_S && stood_s >= STANDS_S)
         };
         let changes: Vec<&Change> = changes.iter().filter(stood).collect();
         let frame = cells.frame();
@@ -176,12 +189,8 @@ impl Pending {
         self.0.push_back((place, changes[0].is_blocked));
     }
 
-    /// The place that is checked with this reading, if it has turned out to be one of furniture; with whether it is blocked.
+    /// The place that is checked next, if it has turned out to be one of furniture; with whether it is blocked.
     pub(super) fn next(&mut self, cells: &CellMap) -> Option<(Place, bool)> {
-        // One place now and then: a piece of furniture has time.
-        if !cells.reading().is_multiple_of(READINGS) {
-            return None;
-        }
         let (place, is_blocked) = self.0.pop_front()?;
         let [agree, differ] = place.looks(is_blocked, cells).map(|looks| looks / place.cells.len() as f64);
         if agree < SEEN && differ < SEEN {

@@ -6,6 +6,7 @@
 //! - `doorway`, `doors`: lines that come and go between two walls are the closed leaf of a door; a line that changes the other
 //!   way at the same time, and shares an end with it, is the open leaf.
 //! - `door`: a door and its statistics.
+//! - `leaf_cells`: what doors say of their cells.
 //! - `furniture`: what stood for long and is gone, or has come and stays.
 
 mod door;
@@ -13,6 +14,7 @@ mod doors;
 mod doorway;
 mod furniture;
 mod lasting;
+mod leaf_cells;
 mod line;
 mod motions;
 mod segment;
@@ -24,6 +26,7 @@ pub use door::{Door, DoorStatistics, Leaf};
 use doorway::Doorway;
 pub use furniture::{Furniture, Place};
 use lasting::{Change, LastingChanges};
+pub(crate) use leaf_cells::LeafCells;
 use line::Line;
 use motions::{Motion, Motions};
 pub use segment::Segment;
@@ -83,8 +86,8 @@ impl Things {
         while let Some(motion) = self.motions.next(now_s) {
             self.learn(&motion, cells);
         }
-        if let Some((place, is_blocked)) = self.places.next(cells) {
-            self.add_furniture(place, is_blocked, cells);
+        if cells.reading().is_multiple_of(furniture::READINGS) {
+            self.check_furniture(cells);
         }
         for thing in &mut self.things {
             if let ThingKind::Door(door) = &mut thing.kind {
@@ -111,6 +114,16 @@ impl Things {
         let mut doors = self.things.iter().filter(|thing| matches!(thing.kind, ThingKind::Door(_)));
         let cells: Vec<u32> = changes.iter().map(|change| change.cell).collect();
         doors.any(|door| is_mostly_in(&cells, &door.cells))
+    }
+
+    fn check_furniture(&mut self, cells: &CellMap) {
+        if let Some((place, is_blocked)) = self.places.next(cells) {
+            self.add_furniture(place, is_blocked, cells);
+        }
+        self.things.retain(|thing| match &thing.kind {
+            ThingKind::Door(_) => true,
+            ThingKind::Furniture(furniture) => !furniture.was_passing(cells),
+        });
     }
 
     fn add_furniture(&mut self, place: Place, is_blocked: bool, cells: &CellMap) {

@@ -7,6 +7,7 @@ mod predicted;
 
 use crate::change::{CellMap, Slot};
 use crate::clock::Dates;
+use crate::look_counts::LookCounts;
 use crate::{Calendar, Clock, Growth, Look, MapperSettings};
 use interfaces::{Cell, CellState, Value, last_value};
 use std::collections::BTreeMap;
@@ -28,7 +29,7 @@ pub struct Tile {
     cells: Vec<Slot>,
     last: Option<Look>,
     /// The looks at all of these cells.
-    counts: Counts,
+    counts: LookCounts,
 }
 
 impl Tile {
@@ -63,34 +64,11 @@ impl Tile {
     }
 }
 
-/// Looks at cells while their tile was blocked.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Deserialize, serde::Serialize)]
-struct Counts {
-    blocked: u16,
-    looks: u16,
-}
-
-impl Counts {
-    fn add(&mut self, is_blocked: bool) {
-        if self.looks == u16::MAX {
-            // The older half counts half.
-            (self.blocked, self.looks) = (self.blocked / 2, self.looks / 2);
-        }
-        self.blocked += u16::from(is_blocked);
-        self.looks += 1;
-    }
-
-    /// The share of the looks that found a cell blocked; `prior` counts as this number of looks.
-    fn share(self, prior: f64, looks: f64) -> f64 {
-        (f64::from(self.blocked) + looks * prior) / (f64::from(self.looks) + looks)
-    }
-}
-
 /// A cell that ever changed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Deserialize, serde::Serialize)]
 struct TileCell {
     tile: u32,
-    counts: Counts,
+    counts: LookCounts,
 }
 
 /// What readings change.

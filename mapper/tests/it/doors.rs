@@ -1,7 +1,7 @@
 //! Doors are found, measured and counted; people in doorways are no doors.
 
 use crate::house::{House, Thing, rectangle};
-use interfaces::GridFrame;
+use interfaces::{CellState, GridFrame};
 use mapper::{Door, Leaf, Mapper, MapperSettings, ThingKind};
 use nalgebra::{Isometry2, Point2};
 use std::f64::consts::FRAC_PI_2;
@@ -108,6 +108,34 @@ fn a_hinged_door_is_found_with_its_hinge() {
             assert!(off_rad.abs() < 0.1, "{turn_deg}°: {found_rad}, not {true_rad}");
         }
     }
+}
+
+#[test]
+fn a_look_at_a_part_of_a_door_says_what_its_other_cells_are() {
+    let mut house = house_with_door(0.0, Some(OPEN));
+    let mut mapper = new_mapper(&house);
+    // Until the door is open; then the robot sees nothing but the closed leaf.
+    watch(&mut mapper, &mut house, 0..1190, false);
+    let open_leaf = mapper.frame().index(mapper.frame().cell_at(&Point2::new(2.525, 5.35))).unwrap();
+    let unseen = mapper.blocked_probability_later(open_leaf, 5.0);
+    assert!(unseen > 0.5, "{unseen}");
+    for scan in 1210..1240 {
+        let time_s = f64::from(scan) * PERIOD_S;
+        let mut reading = house.reading(time_s, pose(&house, time_s), &[]);
+        for beam in 0..reading.scan.ranges_m.len() {
+            let bearing_rad = reading.scan.angle_min_rad + beam as f64 * reading.scan.angle_increment_rad;
+            let along = reading.pose.rotation * interfaces::rotation(bearing_rad) * nalgebra::Vector2::x();
+            let range_m = &mut reading.scan.ranges_m[beam];
+            let end = Point2::from(reading.pose.translation.vector) + along * f64::from(*range_m);
+            if !(end.y > 5.9 && (2.7..3.4).contains(&end.x)) {
+                *range_m = f32::NAN;
+            }
+        }
+        mapper.update(&reading).unwrap();
+    }
+    assert!(mapper.recency(open_leaf) > 4.0 && mapper.states().cells()[open_leaf] == CellState::Blocked);
+    let predicted = mapper.blocked_probability(open_leaf);
+    assert!(predicted < 0.5 * unseen, "{predicted}, and {unseen} without the look");
 }
 
 #[test]

@@ -118,12 +118,6 @@ impl CellMap {
         self.flags[index].is_candidate
     }
 
-    /// The cycle rate of a cell, by the estimator in use.
-    #[inline]
-    pub(crate) fn rate(&self, index: usize) -> f64 {
-        if self.has_rate(index) { self.estimator.rate(&self.statistics(index)) } else { 0.0 }
-    }
-
     /// The cycle rate of a cell with which the robot acts; 0 if the cell never changed.
     #[inline]
     pub(crate) fn acting_rate(&self, index: usize) -> f64 {

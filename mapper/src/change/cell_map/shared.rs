@@ -38,12 +38,6 @@ impl CellMap {
         self.has_changed(index) || self.shared.is_some() && self.is_traversable(index)
     }
 
-    /// The posterior of the rate of a traversable cell, if cells share a prior; `None` before the first prior.
-    pub(crate) fn rate_posterior(&self, index: usize) -> Option<RateDistribution> {
-        let is_traversable = self.shared.is_some() && self.is_traversable(index);
-        is_traversable.then(|| self.statistics(index).posterior()).flatten()
-    }
-
     /// The prior of the rate of a cell, once there is one.
     pub(super) fn rate_prior(&self, index: usize) -> Option<RateDistribution> {
         let shared = self.shared.as_ref()?;
