@@ -13,6 +13,9 @@ use crate::summary::{LogSummary, PoseSource, since_epoch};
 use crate::times::{self, Times};
 use nalgebra::Isometry2;
 
+/// A pose that the odometry measures right after a scan is at most this far from it in time, s.
+const SAME_TIME_S: f64 = 1.0;
+
 /// Reads a log once: how its lines become readings, the times of the readings from the first on, strictly increasing, s, and
 /// what the log contains.
 pub(super) fn of(lines: &mut Lines) -> Result<(Rules, Vec<f64>, LogSummary), LogError> {
@@ -38,6 +41,10 @@ struct Inspection {
     /// The number of poses with a time, and of those without.
     with_time: usize,
     without_time: usize,
+    /// The time and the pose in the last line, if it is a scan.
+    scan: Option<(f64, Isometry2<f64>)>,
+    /// The number of poses right after a scan that repeat its pose, at about its time, and at another one.
+    repeated: [usize; 2],
     odom_origin: Option<Isometry2<f64>>,
     /// The poses without the lines that have no time, and these alone: whether they are origins is known at the end.
     timed: Odometry,
@@ -51,9 +58,16 @@ struct Inspection {
 
 impl Inspection {
     fn add(&mut self, line: Line, lines: &Lines) -> Result<(), LogError> {
+        let before = self.scan.take();
         match line {
-            Line::Odometry { time_s, pose, speed_mps } => self.add_pose(time_s, pose, speed_mps),
+            Line::Odometry { time_s, pose, speed_mps } => {
+                let scan_s = before.filter(|(_, reference)| *reference == pose).map(|(scan_s, _)| scan_s);
+                let is_origin = scan_s.is_some_and(|scan_s| (time_s - scan_s).abs() > SAME_TIME_S);
+                self.repeated[usize::from(is_origin)] += usize::from(scan_s.is_some());
+                self.add_pose(if is_origin { 0.0 } else { time_s }, pose, speed_mps);
+            }
             Line::Scan(scan) => {
+                self.scan = scan.reference.map(|pose| (scan.time_s, pose));
                 bounds::one_more(self.times_s.len()).map_err(|what| lines.error(what))?;
                 self.times_s.push(scan.time_s);
                 self.recorded_s.extend(scan.recorded_s);
@@ -89,6 +103,7 @@ impl Inspection {
     fn summarized(self) -> (Rules, Vec<f64>, LogSummary) {
         let Self { geometry, mut notes, .. } = self;
         let has_origins = self.with_time > 0;
+        let is_corrected = has_origins && self.repeated[1] > self.repeated[0];
         let (odometry, odometry_poses) =
             if has_origins { (self.timed, self.with_time) } else { (self.untimed, self.without_time) };
         if odometry_poses == 0 {
@@ -118,7 +133,7 @@ impl Inspection {
             notes,
             impossible,
         };
-        (Rules { geometry, has_times, has_origins, stands }, times_s, summary)
+        (Rules { geometry, has_times, has_origins, is_corrected, stands }, times_s, summary)
     }
 }
 
