@@ -53,12 +53,12 @@ pub(crate) const LOOSE_STD: Spread = Spread { m: 10.0, rad: 1.0 };
 /// A motion between two scans after which the robot has another viewpoint.
 pub(crate) const FAR_SCAN: Spread = Spread { m: 0.3, rad: 0.2 };
 /// A scan is compared with at most this number of keyframes before it within this distance, m; beams up to this range, m.
-pub(crate) const CORRELATED_KEYFRAMES: usize = 25;
+pub(crate) const CORRELATED_KEYFRAMES: usize = 40;
 pub(crate) const CORRELATED_M: f64 = 20.0;
 pub(crate) const CORRELATION_RANGE_M: f64 = 30.0;
 /// The window around the prediction; what a pose at its border counts less.
 pub(crate) const CORRELATED: Spread = Spread { m: 0.3, rad: 0.35 };
-pub(crate) const CORRELATION_PENALTY: f64 = 0.2;
+pub(crate) const CORRELATION_PENALTY: f64 = 0.4;
 /// Cells, m, steps of the heading, rad, and the standard deviation of end points, m.
 pub(crate) const CORRELATION_CELL_M: f64 = 0.02;
 pub(crate) const CORRELATION_STEP_RAD: f64 = 0.0044;

@@ -35,7 +35,7 @@ impl<'a> FarScan<'a> {
     ) -> Option<Correlated> {
         keyframes.first()?;
         let best = |count: usize, window| {
-            Correlation::of(keyframes, count, predicted).best(self.scan, self.mount, predicted, window)
+            Correlation::of(keyframes, count, predicted).best(self.scan, self.mount, window)
         };
         let near = best(CORRELATED_KEYFRAMES, CORRELATED);
         if near.response >= MIN_RESPONSE {
