@@ -11,8 +11,8 @@
 //!   earlier estimation. Poses come from ODOM lines, interpolated to the time of the scan.
 //! - A FLASER line does not name the field of view: it is 180°, in steps of 1° (180 or 181 readings) or 0.5° (360 or
 //!   361 readings), from right to left.
-//! - Corrected logs write a second ODOM line after every scan, without a time, with the corrected pose; the next ODOM
-//!   line continues from there. Such a line is a new origin of the odometry, not a motion.
+//! - Corrected logs write a second ODOM line after every scan, with the corrected pose of the scan, and with no time or a
+//!   meaningless one; the next ODOM line continues from there. Such a line is a new origin of the odometry, not a motion.
 
 mod inspection;
 mod line;
@@ -45,6 +45,8 @@ struct Rules {
     has_times: bool,
     /// Whether an ODOM line without a time is a new origin of the odometry.
     has_origins: bool,
+    /// Whether an ODOM line right after a scan, with its pose, is one as well, whatever its time.
+    is_corrected: bool,
     /// Whether the laser stands.
     stands: bool,
 }

@@ -48,6 +48,29 @@ pub(crate) const SPURIOUS: f64 = 0.03;
 /// Errors of a direction that no surface fixes.
 pub(crate) const LOOSE_STD: Spread = Spread { m: 10.0, rad: 1.0 };
 
+// Trajectories: scans that are far from the one before
+
+/// A motion between two scans after which the robot has another viewpoint.
+pub(crate) const FAR_SCAN: Spread = Spread { m: 0.3, rad: 0.2 };
+/// A scan is compared with at most this number of keyframes before it within this distance, m; beams up to this range, m.
+pub(crate) const CORRELATED_KEYFRAMES: usize = 40;
+pub(crate) const CORRELATED_M: f64 = 20.0;
+pub(crate) const CORRELATION_RANGE_M: f64 = 30.0;
+/// The window around the prediction; what a pose at its border counts less.
+pub(crate) const CORRELATED: Spread = Spread { m: 0.3, rad: 0.35 };
+pub(crate) const CORRELATION_PENALTY: f64 = 0.4;
+/// Cells, m, steps of the heading, rad, and the standard deviation of end points, m.
+pub(crate) const CORRELATION_CELL_M: f64 = 0.02;
+pub(crate) const CORRELATION_STEP_RAD: f64 = 0.0044;
+pub(crate) const CORRELATION_STD_M: f64 = 0.05;
+/// Below the first response, all headings are searched among this number of keyframes: the odometry has missed a turn. Such a
+/// pose counts from the second response on, and if it is better by this factor.
+pub(crate) const MIN_RESPONSE: f64 = 0.35;
+pub(crate) const SURE_RESPONSE: f64 = 0.6;
+pub(crate) const SURE_FACTOR: f64 = 1.5;
+pub(crate) const RECENT_KEYFRAMES: usize = 8;
+pub(crate) const ALL_HEADINGS: Spread = Spread { m: 0.8, rad: std::f64::consts::PI };
+
 // Trajectories: loops
 
 /// Ways between submaps that need no loop, and that need no second one, m.

@@ -77,6 +77,11 @@ pub(super) struct Agreement {
 }
 
 impl Agreement {
+    /// The agreement of a scan whose end points fit by this share.
+    pub(super) fn of_response(response: f64) -> Self {
+        Self { confirmed: response, beside: 1.0 - response, all: 1.0, confirmed_points: 0 }
+    }
+
     /// The share of what is confirmed, of all that the submap can judge.
     pub(super) fn share(&self) -> f64 {
         let judged = self.confirmed + self.beside;

@@ -1,13 +1,14 @@
 //! Matches scans with the submap of the last keyframes, and makes keyframes of them.
 
+use super::far_scan::FarScan;
 use super::keyframe::{Keyframe, filled};
 use super::matching::{gates, in_frame, motion_spread};
 use super::settings::TrajectorySettings;
 use super::submap::{Agreement, FinishedSubmap, GrowingSubmap, agreement};
 use crate::constants::{
     CLEARLY, FAIR_SHARE, FOUND_STD, JUDGED_M, KEYFRAME, KEYFRAME_STD, MAJORITY, MIN_AGREEMENT, MIN_OVERLAP,
-    MIN_POINTS, MIN_SHARE, MISSING_STD, OTHER_TURNS_RAD, SCAN_STD, SEARCHED, SEARCHED_STD, SUBMAP_KEYFRAMES,
-    SURFEL_M,
+    MIN_POINTS, MIN_RESPONSE, MIN_SHARE, MISSING_STD, OTHER_TURNS_RAD, SCAN_STD, SEARCHED, SEARCHED_STD,
+    SUBMAP_KEYFRAMES, SURFEL_M,
 };
 use crate::faults::Fault;
 use crate::local_trajectory_builder::{IncomingScan, Matched, ScanMatcher, Track};
@@ -70,7 +71,13 @@ impl ScanMatcher<()> for SubmapMatcher {
         // The first scan is right by definition.
         let is_first = self.keyframes.is_empty();
         let is_frozen = scan.fault == Some(Fault::Frozen) && !is_first;
-        let matched = if is_frozen { None } else { self.match_submap(scan, track) };
+        let far = if is_frozen { None } else { FarScan::of(scan) };
+        let matched = match &far {
+            _ if is_frozen => None,
+            Some(far) => self.match_far(far, scan),
+            None => self.match_submap(scan, track),
+        };
+        let min_share = if far.is_some() { MIN_RESPONSE } else { FAIR_SHARE };
         let (mut begin, mut agreement, mut is_reliable) = (Vector3::zeros(), 0.0, false);
         if let Some(matched) = &matched {
             let Match { placement, information, .. } = &matched.found;
@@ -80,7 +87,7 @@ impl ScanMatcher<()> for SubmapMatcher {
             agreement = matched.agreement.share();
             is_reliable = !matched.is_below(MIN_AGREEMENT, MAJORITY);
         }
-        let is_supported = is_first || agreement >= FAIR_SHARE;
+        let is_supported = is_first || agreement >= min_share;
         let found = SubmapFound { matched, is_supported, is_frozen };
         Matched { begin, is_reliable, is_outlier: None, found }
     }
@@ -136,6 +143,13 @@ impl SubmapMatcher {
     /// Begins with a keyframe that shows nothing: the first reading is invalid.
     pub(super) fn begin_without_scan(&mut self, reading: &LaserReading, track: &Track) {
         self.push(reading, track, Vec::new(), (Isometry2::identity(), Matrix3::zeros()));
+    }
+
+    /// The match of a far scan; `None` if there is nothing to match with.
+    fn match_far(&self, far: &FarScan, scan: &IncomingScan) -> Option<SubmapMatch> {
+        let found = far.correlated(&self.keyframes, &scan.predicted.pose)?;
+        let agreement = Agreement::of_response(found.response);
+        Some(SubmapMatch { found: far.matched(&found.pose, &scan.points)?, agreement })
     }
 
     /// The match of the scan with the submap; `None` if there is nothing to match with.

@@ -1,6 +1,7 @@
 //! Trajectories around loops, with a known truth and hard drift.
 
 mod online;
+mod sparse;
 mod world;
 
 use crate::robot::{Odometry, PERIOD_S};

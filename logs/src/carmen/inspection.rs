@@ -12,6 +12,12 @@ use crate::standing::{NO_MOTION, Standing};
 use crate::summary::{LogSummary, PoseSource, since_epoch};
 use crate::times::{self, Times};
 use nalgebra::Isometry2;
+use std::collections::BTreeSet;
+
+/// A laser that measures this number of different ranges beyond a stated maximum has another one: failures have few values.
+const MIN_BEYOND: usize = 20;
+/// A pose that the odometry measures right after a scan is at most this far from it in time, s.
+const SAME_TIME_S: f64 = 1.0;
 
 /// Reads a log once: how its lines become readings, the times of the readings from the first on, strictly increasing, s, and
 /// what the log contains.
@@ -38,6 +44,13 @@ struct Inspection {
     /// The number of poses with a time, and of those without.
     with_time: usize,
     without_time: usize,
+    /// The time and the pose in the last line, if it is a scan.
+    scan: Option<(f64, Isometry2<f64>)>,
+    /// The number of poses right after a scan that repeat its pose, at about its time, and at another one.
+    repeated: [usize; 2],
+    /// The maximum range that a parameter states, m, and different ranges beyond it, as bits; at most [`MIN_BEYOND`].
+    stated_max_m: Option<f64>,
+    beyond: BTreeSet<u32>,
     odom_origin: Option<Isometry2<f64>>,
     /// The poses without the lines that have no time, and these alone: whether they are origins is known at the end.
     timed: Odometry,
@@ -51,9 +64,17 @@ struct Inspection {
 
 impl Inspection {
     fn add(&mut self, line: Line, lines: &Lines) -> Result<(), LogError> {
+        let before = self.scan.take();
         match line {
-            Line::Odometry { time_s, pose, speed_mps } => self.add_pose(time_s, pose, speed_mps),
-            Line::Scan(scan) => {
+            Line::Odometry { time_s, pose, speed_mps } => {
+                let scan_s = before.filter(|(_, reference)| *reference == pose).map(|(scan_s, _)| scan_s);
+                let is_origin = scan_s.is_some_and(|scan_s| (time_s - scan_s).abs() > SAME_TIME_S);
+                self.repeated[usize::from(is_origin)] += usize::from(scan_s.is_some());
+                self.add_pose(if is_origin { 0.0 } else { time_s }, pose, speed_mps);
+            }
+            Line::Scan(mut scan) => {
+                self.check_range(&mut scan.scan.ranges_m);
+                self.scan = scan.reference.map(|pose| (scan.time_s, pose));
                 bounds::one_more(self.times_s.len()).map_err(|what| lines.error(what))?;
                 self.times_s.push(scan.time_s);
                 self.recorded_s.extend(scan.recorded_s);
@@ -61,13 +82,27 @@ impl Inspection {
                 self.standing.add(&Isometry2::identity(), &scan.scan);
             }
             Line::LaserOffset(offset_m) => self.geometry.offset_m = offset_m,
-            Line::MaxRange(range_max_m) => self.geometry.range_max_m = range_max_m,
+            Line::MaxRange(stated_m) => {
+                self.stated_max_m = Some(stated_m);
+                self.geometry.range_max_m = stated_m.max(Geometry::default().range_max_m);
+            }
             Line::Other { is_cut_off: true } => {
                 self.notes.push(format!("line {}, the last one, is cut off and left out", lines.number));
             }
             Line::Other { is_cut_off: false } => {}
         }
         Ok(())
+    }
+
+    /// Removes ranges beyond the stated maximum, and counts how many different ones there are.
+    fn check_range(&mut self, ranges_m: &mut [f32]) {
+        let Some(max_m) = self.stated_max_m else { return };
+        for range_m in ranges_m.iter_mut().filter(|range_m| f64::from(**range_m) >= max_m) {
+            if self.beyond.len() < MIN_BEYOND {
+                self.beyond.insert(range_m.to_bits());
+            }
+            *range_m = f32::NAN;
+        }
     }
 
     fn add_pose(&mut self, time_s: f64, pose: Isometry2<f64>, speed_mps: f64) {
@@ -87,8 +122,16 @@ impl Inspection {
     }
 
     fn summarized(self) -> (Rules, Vec<f64>, LogSummary) {
-        let Self { geometry, mut notes, .. } = self;
+        let Self { mut geometry, mut notes, .. } = self;
+        match self.stated_max_m {
+            Some(max_m) if self.beyond.len() == MIN_BEYOND => notes.push(format!(
+                "a parameter states a maximum range of {max_m} m, but beams measure more: it is ignored"
+            )),
+            Some(max_m) => geometry.range_max_m = max_m,
+            None => {}
+        }
         let has_origins = self.with_time > 0;
+        let is_corrected = has_origins && self.repeated[1] > self.repeated[0];
         let (odometry, odometry_poses) =
             if has_origins { (self.timed, self.with_time) } else { (self.untimed, self.without_time) };
         if odometry_poses == 0 {
@@ -118,7 +161,7 @@ impl Inspection {
             notes,
             impossible,
         };
-        (Rules { geometry, has_times, has_origins, stands }, times_s, summary)
+        (Rules { geometry, has_times, has_origins, is_corrected, stands }, times_s, summary)
     }
 }
 

@@ -7,6 +7,7 @@ use crate::lines::Lines;
 use crate::log::RawReadings;
 use crate::odometry::Odometry;
 use interfaces::{LaserReading, Twist};
+use nalgebra::Isometry2;
 use std::collections::VecDeque;
 
 /// Scans that wait for a later pose; more are not kept.
@@ -19,12 +20,15 @@ pub(super) struct Readings {
     odometry: Odometry,
     /// Scans whose pose may be between the last pose and the next.
     waiting: VecDeque<ScanLine>,
+    /// The pose in the last line, if it is a scan.
+    scan_pose: Option<Isometry2<f64>>,
     is_over: bool,
 }
 
 impl Readings {
     pub(super) fn new(lines: Lines, rules: Rules) -> Self {
-        Self { lines, rules, odometry: Odometry::default(), waiting: VecDeque::new(), is_over: false }
+        let (odometry, waiting) = (Odometry::default(), VecDeque::new());
+        Self { lines, rules, odometry, waiting, scan_pose: None, is_over: false }
     }
 
     /// The first waiting scan as a reading, if its pose is known. With `now`, it does not wait any longer.
@@ -56,14 +60,21 @@ impl RawReadings for Readings {
             if self.is_over {
                 return Ok(None);
             }
+            let scan_pose = self.scan_pose.take();
             match line::next(&mut self.lines, &self.rules.geometry)? {
                 None => self.is_over = true,
-                Some(Line::Scan(scan)) => self.waiting.push_back(scan),
-                Some(Line::Odometry { .. }) if self.rules.stands => {}
-                Some(Line::Odometry { time_s, pose, .. }) if time_s == 0.0 && self.rules.has_origins => {
-                    self.odometry.set_origin(pose);
+                Some(Line::Scan(scan)) => {
+                    self.scan_pose = scan.reference;
+                    self.waiting.push_back(scan);
                 }
-                Some(Line::Odometry { time_s, pose, .. }) => self.odometry.add(time_s, pose),
+                Some(Line::Odometry { .. }) if self.rules.stands => {}
+                Some(Line::Odometry { time_s, pose, .. }) => {
+                    let repeats_scan = self.rules.is_corrected && scan_pose == Some(pose);
+                    match repeats_scan || time_s == 0.0 && self.rules.has_origins {
+                        true => self.odometry.set_origin(pose),
+                        false => self.odometry.add(time_s, pose),
+                    }
+                }
                 Some(_) => {}
             }
         }

@@ -58,16 +58,46 @@ fn the_field_of_view_follows_from_the_number_of_readings() {
 
 #[test]
 fn the_corrected_pose_after_a_scan_is_an_origin_and_no_motion() {
-    let text = "ODOM 0 0 0 0 0 0 1 h 1\nODOM 1 0 0 0 0 0 2 h 2\n".to_owned()
-        + &flaser(2.0, "5 5 1")
-        + "ODOM 5 5 1.5707963267948966 0 0 0 0 h 0\nODOM 5 7 1.5707963267948966 0 0 0 3 h 3\n"
-        + &flaser(3.0, "9 9 1");
-    let readings = readings(&text);
-    let x = readings.iter().map(|reading| reading.pose.translation.x);
-    for (found, expected) in x.zip([1.0, 3.0]) {
-        assert!((found - expected).abs() < 1e-9, "{found} instead of {expected}");
+    let turned = "1.5707963267948966";
+    // Without a time, or with the pose of the scan and any time.
+    for (scan, time_s) in
+        [("5 5 1", "0"), ("5 5 1.5707963267948966", "4e9"), ("5 5 1.5707963267948966", "-7")]
+    {
+        let text = "ODOM 0 0 0 0 0 0 1 h 1\nODOM 1 0 0 0 0 0 2 h 2\n".to_owned()
+            + &flaser(2.0, scan)
+            + &format!("ODOM 5 5 {turned} 0 0 0 {time_s} h 0\nODOM 5 7 {turned} 0 0 0 3 h 3\n")
+            + &flaser(3.0, "9 9 1");
+        let readings = readings(&text);
+        let x = readings.iter().map(|reading| reading.pose.translation.x);
+        for (found, expected) in x.zip([1.0, 3.0]) {
+            assert!((found - expected).abs() < 1e-9, "{found} instead of {expected}");
+        }
+        assert!(readings[1].pose.translation.y.abs() < 1e-9);
     }
-    assert!(readings[1].pose.translation.y.abs() < 1e-9);
+}
+
+#[test]
+fn a_pose_of_the_odometry_right_after_a_scan_is_a_motion() {
+    // The scan has the pose of the odometry, which is written after it, at about the same time.
+    let text = "ODOM 0 0 0 0 0 0 1 h 1\n".to_owned()
+        + &flaser(2.0, "1 0 0")
+        + "ODOM 1 0 0 0 0 0 2.1 h 2\nODOM 2 0 0 0 0 0 3 h 3\n"
+        + &flaser(3.0, "2 0 0");
+    assert!((readings(&text)[1].pose.translation.x - 2.0).abs() < 1e-9);
+}
+
+#[test]
+fn a_stated_maximum_range_is_ignored_if_beams_measure_more() {
+    let scan =
+        |step: u32, far: &str| format!("FLASER 180 {} {far} 0 0 0 0 0 0 {step} h {step}\n", "2 ".repeat(179));
+    let log = |far: &dyn Fn(u32) -> String| {
+        let scans: String = (1..41).map(|step| scan(step, &far(step))).collect();
+        "PARAM robot_front_laser_max 10 h 0\n".to_owned() + &scans
+    };
+    let far_m = |text: &str| readings(text)[7].scan.ranges_m[179];
+    assert_eq!(far_m(&log(&|step| format!("{}", 20.0 + f64::from(step)))), 28.0);
+    // A number for failures is no measurement.
+    assert!(far_m(&log(&|_| "50.0".to_owned())).is_nan());
 }
 
 #[test]

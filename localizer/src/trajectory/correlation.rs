@@ -1,0 +1,266 @@
+//! Correlative scan matching (Olson 2009): the best of all poses in a window, by the end points of a scan among those of
+//! keyframes. Coarse cells bound the scores of blocks of shifts, so that few blocks are searched.
+
+use super::keyframe::Keyframe;
+use crate::constants::{
+    CORRELATED_M, CORRELATION_CELL_M, CORRELATION_PENALTY, CORRELATION_RANGE_M, CORRELATION_STD_M,
+    CORRELATION_STEP_RAD,
+};
+use crate::spread::Spread;
+use interfaces::Scan;
+use nalgebra::{Isometry2, Point2, Vector2};
+use std::ops::{Range, RangeInclusive};
+
+/// Fine cells along the side of a block of shifts.
+const BLOCK: i32 = 1 << BLOCK_BITS;
+const BLOCK_BITS: u32 = 2;
+/// Half the side of the grid, m: beams of the largest range, and shifts.
+const HALF_SIDE_M: f64 = CORRELATION_RANGE_M + 2.0;
+/// The score of an end point on another one.
+const TOP_SCORE: f64 = 255.0;
+/// The pattern search for the pose ends with this share of a cell.
+const MIN_STEP: f64 = 0.05;
+
+/// How well an end point fits at each place: fine cells, and maxima over two blocks of them. The grid is a square around the
+/// predicted pose and turns with it, so that the heading of the frame of the trajectory does not matter.
+pub(super) struct Correlation {
+    predicted: Isometry2<f64>,
+    side: i32,
+    fine: Vec<u8>,
+    coarse: Vec<u8>,
+}
+
+/// A pose, and the mean score of the end points there, from 0 to 1.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Correlated {
+    pub(super) pose: Isometry2<f64>,
+    pub(super) response: f64,
+}
+
+/// The end points of a scan at one heading.
+struct Turned {
+    turn_rad: f64,
+    cells: Vec<[i32; 2]>,
+}
+
+/// A heading and a block of shifts, with an upper bound of the score.
+struct Candidate {
+    bound: f64,
+    heading: usize,
+    block: [i32; 2],
+}
+
+impl Correlation {
+    /// The scores around a predicted pose, from at most `count` of the last keyframes.
+    pub(super) fn of(keyframes: &[Keyframe], count: usize, predicted: &Isometry2<f64>) -> Self {
+        let blocks = (2.0 * HALF_SIDE_M / CORRELATION_CELL_M) as i32 / BLOCK;
+        let cells = |side: i32| vec![0; (side * side) as usize];
+        let (side, predicted) = (blocks * BLOCK, *predicted);
+        let mut scores = Self { predicted, side, fine: cells(side), coarse: cells(blocks) };
+        let is_near = |keyframe: &&Keyframe| {
+            (keyframe.local.translation.vector - predicted.translation.vector).norm() <= CORRELATED_M
+        };
+        let kernel = kernel();
+        for keyframe in keyframes.iter().rev().take(count).take_while(is_near) {
+            let laser = predicted.inv_mul(&keyframe.local) * keyframe.mount;
+            hits(&keyframe.scan).for_each(|hit| scores.add(&(laser * hit), &kernel));
+        }
+        scores
+    }
+
+    fn add(&mut self, at: &Point2<f64>, kernel: &[([i32; 2], u8)]) {
+        let [x, y] = cell(&at.coords);
+        if index([x, y], self.side).is_some_and(|here| f64::from(self.fine[here]) == TOP_SCORE) {
+            return; // another end point lies in this cell
+        }
+        for ([dx, dy], score) in kernel {
+            let Some(here) = index([x + dx, y + dy], self.side) else { continue };
+            if self.fine[here] >= *score {
+                continue;
+            }
+            self.fine[here] = *score;
+            for row in blocks_of(y + dy) {
+                for column in blocks_of(x + dx) {
+                    let bound = &mut self.coarse[(row * (self.side / BLOCK) + column) as usize];
+                    *bound = (*bound).max(*score);
+                }
+            }
+        }
+    }
+
+    /// The best pose of a scan in a window around the predicted one; poses far from it count less.
+    pub(super) fn best(&self, scan: &Scan, mount: &Isometry2<f64>, window: Spread) -> Correlated {
+        let points: Vec<Point2<f64>> = hits(scan).map(|hit| mount * hit).collect();
+        let headings = headings(&points, &window);
+        let mut best = (0.0, 0.0, [0, 0]);
+        for Candidate { bound, heading, block } in self.candidates(&headings, &window) {
+            if bound <= best.0 {
+                break;
+            }
+            let Turned { turn_rad, cells } = &headings[heading];
+            for [x, y] in squares(0..BLOCK) {
+                let shift = [block[0] * BLOCK + x, block[1] * BLOCK + y];
+                let score =
+                    sum(&self.fine, self.side, 0, cells, shift) * likelihood(*turn_rad, shift, &window);
+                if score > best.0 {
+                    best = (score, *turn_rad, shift);
+                }
+            }
+        }
+        let (_, turn_rad, shift) = best;
+        let shift_m = Vector2::from(shift.map(f64::from)) * CORRELATION_CELL_M;
+        self.polished(&points, interfaces::pose(shift_m.x, shift_m.y, turn_rad))
+    }
+
+    /// The blocks of a window at all headings, the best bound first.
+    fn candidates(&self, headings: &[Turned], window: &Spread) -> Vec<Candidate> {
+        let blocks = libm::ceil(window.m / (f64::from(BLOCK) * CORRELATION_CELL_M)) as i32;
+        let mut candidates = Vec::new();
+        for (heading, Turned { turn_rad, cells }) in headings.iter().enumerate() {
+            for block in squares(-blocks..blocks) {
+                let corner = block.map(|block| block * BLOCK);
+                let nearest = corner.map(|low| low.max(0) + (low + BLOCK - 1).min(0));
+                let most = sum(&self.coarse, self.side / BLOCK, BLOCK_BITS, cells, corner);
+                let bound = most * likelihood(*turn_rad, nearest, window);
+                candidates.push(Candidate { bound, heading, block });
+            }
+        }
+        candidates.sort_by(|a, b| b.bound.total_cmp(&a.bound));
+        candidates
+    }
+
+    /// The best pose near one of a cell and a heading of the search, by smaller and smaller steps.
+    fn polished(&self, points: &[Point2<f64>], mut pose: Isometry2<f64>) -> Correlated {
+        let (mut score, mut share) = (self.score(points, &pose), 1.0);
+        while share > MIN_STEP {
+            let (step_m, step_rad) = (share * CORRELATION_CELL_M, share * CORRELATION_STEP_RAD);
+            let mut is_better = false;
+            for (x, y, turn_rad) in [(step_m, 0.0, 0.0), (0.0, step_m, 0.0), (0.0, 0.0, step_rad)] {
+                for step in [interfaces::pose(x, y, turn_rad), interfaces::pose(-x, -y, -turn_rad)] {
+                    let other = self.score(points, &(pose * step));
+                    if other > score {
+                        (pose, score, is_better) = (pose * step, other, true);
+                    }
+                }
+            }
+            if !is_better {
+                share /= 2.0;
+            }
+        }
+        let mut pose = self.predicted * pose;
+        pose.rotation.renormalize();
+        Correlated { pose, response: score / (TOP_SCORE * points.len().max(1) as f64) }
+    }
+
+    /// The sum of the scores of points, interpolated between the middles of cells.
+    fn score(&self, points: &[Point2<f64>], pose: &Isometry2<f64>) -> f64 {
+        let score = |point: &Point2<f64>| {
+            let at = ((pose * point).coords + Vector2::repeat(HALF_SIDE_M)) / CORRELATION_CELL_M
+                - Vector2::repeat(0.5);
+            let low = [libm::floor(at.x), libm::floor(at.y)];
+            let (right, up) = (at.x - low[0], at.y - low[1]);
+            let [x, y] = low.map(|low| low as i32);
+            let here =
+                |dx, dy| index([x + dx, y + dy], self.side).map_or(0.0, |here| f64::from(self.fine[here]));
+            let below = here(0, 0) * (1.0 - right) + here(1, 0) * right;
+            let above = here(0, 1) * (1.0 - right) + here(1, 1) * right;
+            below * (1.0 - up) + above * up
+        };
+        points.iter().map(score).sum()
+    }
+}
+
+/// The points at all headings of a window.
+fn headings(points: &[Point2<f64>], window: &Spread) -> Vec<Turned> {
+    let steps = libm::ceil(window.rad / CORRELATION_STEP_RAD) as i32;
+    let turned = |step: i32| {
+        let turn_rad = f64::from(step) * window.rad / f64::from(steps);
+        let rotation = interfaces::rotation(turn_rad);
+        let cells = points.iter().map(|point| cell(&(rotation * point.coords))).collect();
+        Turned { turn_rad, cells }
+    };
+    (-steps..=steps).map(turned).collect()
+}
+
+fn cell(at: &Vector2<f64>) -> [i32; 2] {
+    [at.x, at.y].map(|at| libm::floor((at + HALF_SIDE_M) / CORRELATION_CELL_M) as i32)
+}
+
+fn index([x, y]: [i32; 2], side: i32) -> Option<usize> {
+    ((0..side).contains(&x) && (0..side).contains(&y)).then(|| (y * side + x) as usize)
+}
+
+/// The sum of the scores of shifted fine cells, in a grid whose cells have 2^`bits` fine cells per side.
+fn sum(scores: &[u8], side: i32, bits: u32, cells: &[[i32; 2]], shift: [i32; 2]) -> f64 {
+    let score = |[x, y]: &[i32; 2]| {
+        let at = [(x + shift[0]) >> bits, (y + shift[1]) >> bits];
+        index(at, side).map_or(0, |at| u32::from(scores[at]))
+    };
+    f64::from(cells.iter().map(score).sum::<u32>())
+}
+
+/// What a pose counts by its distance from the prediction: 1 there, and never less than a quarter.
+fn likelihood(turn_rad: f64, shift: [i32; 2], window: &Spread) -> f64 {
+    let share = |x: f64| (1.0 - CORRELATION_PENALTY * x * x).max(0.5);
+    let shift = Vector2::from(shift.map(f64::from)) * CORRELATION_CELL_M;
+    share(shift.norm() / window.m) * share(turn_rad / window.rad)
+}
+
+/// The coarse cells that cover a fine one: each covers two blocks, less one cell.
+fn blocks_of(cell: i32) -> RangeInclusive<i32> {
+    (cell - BLOCK + 1).max(0) / BLOCK..=cell / BLOCK
+}
+
+fn squares(range: Range<i32>) -> impl Iterator<Item = [i32; 2]> {
+    range.clone().flat_map(move |y| range.clone().map(move |x| [x, y]))
+}
+
+/// The scores around an end point.
+fn kernel() -> Vec<([i32; 2], u8)> {
+    let reach = (2.5 * CORRELATION_STD_M / CORRELATION_CELL_M) as i32;
+    let score = |[x, y]: [i32; 2]| {
+        let off = f64::from(x * x + y * y).sqrt() * CORRELATION_CELL_M / CORRELATION_STD_M;
+        ([x, y], (TOP_SCORE * libm::exp(-0.5 * off * off)) as u8)
+    };
+    squares(-reach..reach + 1).map(score).collect()
+}
+
+/// The end points of the beams of a scan, in the frame of the laser.
+fn hits(scan: &Scan) -> impl Iterator<Item = Point2<f64>> {
+    let farthest_m = CORRELATION_RANGE_M.min(scan.range_max_m);
+    scan.ranges_m.iter().enumerate().filter_map(move |(beam, range_m)| {
+        let range_m = f64::from(*range_m);
+        let is_hit = range_m > scan.range_min_m && range_m < farthest_m;
+        is_hit.then(|| interfaces::rotation(scan.angle_rad(beam)) * Point2::new(range_m, 0.0))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::constants::CORRELATED;
+    use interfaces::{heading_rad, pose};
+    use nalgebra::Matrix3;
+
+    #[test]
+    fn a_scan_is_found_where_it_was_taken() {
+        let (local, mount) = (pose(3.0, -2.0, 0.7), pose(0.1, 0.0, 0.0));
+        let scan = Scan {
+            angle_min_rad: -1.5,
+            angle_increment_rad: 0.02,
+            range_min_m: 0.0,
+            range_max_m: 80.0,
+            sweep_s: 0.0,
+            ranges_m: (0_u8..150).map(|beam| 2.0 + 0.02 * f32::from(beam)).collect(),
+        };
+        let from_last = (local, Matrix3::zeros());
+        let keyframe = Keyframe { local, from_last, points: Vec::new(), mount, scan: scan.clone() };
+        for predicted in [local * pose(0.21, -0.13, 0.3), local * pose(-0.1, 0.25, -0.2)] {
+            let scores = Correlation::of(std::slice::from_ref(&keyframe), 1, &predicted);
+            let found = scores.best(&scan, &mount, CORRELATED);
+            let off = local.inv_mul(&found.pose);
+            assert!(off.translation.vector.norm() < 0.01 && heading_rad(&off).abs() < 0.003, "{off}");
+            assert!(found.response > 0.9, "{}", found.response);
+        }
+    }
+}
