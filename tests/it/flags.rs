@@ -77,6 +77,7 @@ const PROGRAMS: [Program; 8] = [
         wrong: &[
             ("--at", "teatime"),
             ("--place", "here"),
+            ("--door", "front"),
             ("--route", "folder"),
             ("--graph", "folder"),
             ("--from", "there"),
@@ -110,9 +111,10 @@ const GRID_WORLD: [(&str, &str); 15] = [
     ("--shard", "3/2"),
 ];
 
-const HOUSE_TRIALS: [(&str, &str); 14] = [
+const HOUSE_TRIALS: [(&str, &str); 15] = [
     ("--world", "nowhere"),
     ("--generate", "0"),
+    ("--kind", "palace"),
     ("--strategy", "clever"),
     ("--estimator", "guess"),
     ("--trials", "0"),

@@ -3,7 +3,8 @@
 //! Writes `trajectory.tum` (the TUM format) and `trajectory.png` (all points that the laser hit, drawn along the
 //! trajectory) beside each other in a folder, and prints the time per scan. Where the FLASER lines of a CARMEN log contain
 //! the result of an earlier estimation, its difference to ours is printed, after a rigid alignment, and the sharpness of
-//! both maps. The estimation never sees these poses.
+//! both maps. The estimation never sees these poses. Last is the verdict on the map along the trajectory, along the odometry, and along
+//! these poses.
 //!
 //! ```text
 //! cargo run -p curious-evaluation --example log_trajectory -- LOG [FOLDER] [no-loops]
@@ -11,6 +12,7 @@
 
 mod comparison;
 mod picture;
+mod verdict;
 
 use localizer::{PoseState, Trajectory, TrajectoryFinder, TrajectorySettings};
 use logs::{Log, TopicChoice};
@@ -46,6 +48,16 @@ fn main() -> Result<(), Box<dyn Error>> {
     let per_scan_ms = begin.elapsed().as_secs_f64() * 1e3 / readings.len() as f64;
     print_trajectory(&trajectory, per_scan_ms);
     comparison::print(&log, &trajectory, &readings)?;
+    verdict::print("the trajectory", &readings, trajectory.poses.iter().map(|found| Some(found.pose)))?;
+    verdict::print("the odometry", &readings, readings.iter().map(|reading| Some(reading.pose)))?;
+    if let Some(reference) = log.reference_poses()? {
+        let poses = reference.into_iter().zip(&readings);
+        verdict::print(
+            "the FLASER lines",
+            &readings,
+            poses.map(|(laser, reading)| Some(laser? * reading.mount.inverse())),
+        )?;
+    }
     std::fs::create_dir_all(&folder)?;
     let mut file = TrajectoryFile::create(&folder.join("trajectory.tum"));
     trajectory.poses.iter().for_each(|pose| file.add(pose.time_s, &pose.pose));

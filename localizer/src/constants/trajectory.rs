@@ -51,7 +51,7 @@ pub(crate) const LOOSE_STD: Spread = Spread { m: 10.0, rad: 1.0 };
 // Trajectories: scans that are far from the one before
 
 /// A motion between two scans after which the robot has another viewpoint.
-pub(crate) const FAR_SCAN: Spread = Spread { m: 0.3, rad: 0.2 };
+pub(crate) const FAR_SCAN: Spread = Spread { m: 0.3, rad: 0.3 };
 /// A scan is compared with at most this number of keyframes before it within this distance, m; beams up to this range, m.
 pub(crate) const CORRELATED_KEYFRAMES: usize = 40;
 pub(crate) const CORRELATED_M: f64 = 20.0;

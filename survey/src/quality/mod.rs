@@ -39,7 +39,7 @@ struct Limits {
 }
 
 // From corrected and uncorrected trajectories of public logs, and from simulated logs (docs/localization.md).
-const GOOD: Limits = Limits { contradicting: 0.03, worst_stretch: 0.15, left_out: 0.05, weak_links: 0 };
+const GOOD: Limits = Limits { contradicting: 0.02, worst_stretch: 0.15, left_out: 0.05, weak_links: 0 };
 const USABLE: Limits = Limits { contradicting: 0.05, worst_stretch: 0.25, left_out: 0.2, weak_links: 1 };
 
 /// What a map is good for.

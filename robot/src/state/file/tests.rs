@@ -152,7 +152,7 @@ fn other_facts_and_files_are_refused_with_a_sentence() {
     later[8] = 9;
     let checksum = xxhash_rust::xxh3::xxh3_64_with_seed(&later[20..], 9);
     later[12..20].copy_from_slice(&checksum.to_le_bytes());
-    insta::assert_snapshot!(read(&later), @"this state file has version 9 of the format, and this program reads versions 6 to 8");
+    insta::assert_snapshot!(read(&later), @"this state file has version 10 of the format, and this program reads versions 6 to 9");
 }
 
 proptest! {
