@@ -5,6 +5,7 @@ mod evidence;
 #[cfg(test)]
 mod tests;
 
+use crate::median::median;
 use evidence::{Evidence, Judged, PlacedScan};
 use interfaces::{LaserReading, heading_rad};
 use localizer::{PoseState, TrajectoryPose};
@@ -36,11 +37,15 @@ struct Limits {
     /// Share of scans without a certain pose.
     left_out: f64,
     weak_links: usize,
+    /// Factor between the way of the scans and that of the odometry, in either direction.
+    scale: f64,
 }
 
 // From corrected and uncorrected trajectories of public logs, and from simulated logs (docs/localization.md).
-const GOOD: Limits = Limits { contradicting: 0.02, worst_stretch: 0.15, left_out: 0.05, weak_links: 0 };
-const USABLE: Limits = Limits { contradicting: 0.05, worst_stretch: 0.25, left_out: 0.2, weak_links: 1 };
+const GOOD: Limits =
+    Limits { contradicting: 0.02, worst_stretch: 0.15, left_out: 0.05, weak_links: 0, scale: 1.12 };
+const USABLE: Limits =
+    Limits { contradicting: 0.05, worst_stretch: 0.25, left_out: 0.2, weak_links: 1, scale: 1.2 };
 
 /// What a map is good for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize, Serialize)]
@@ -105,6 +110,9 @@ pub struct Quality {
     pub left_out: f64,
     /// The share of hits on surfaces that were seen on one pass only: nothing confirms them.
     pub seen_once: f64,
+    /// The way by the scans per way by the odometry, the median over steps; `None` without an odometry that moves. All lengths are
+    /// wrong by this factor, or the odometry is.
+    pub scale: Option<f64>,
     /// Where the trajectory is in doubt, in the order of time.
     pub doubts: Vec<Doubt>,
 }
@@ -152,6 +160,9 @@ impl Quality {
         if self.left_out > limits.left_out {
             reasons.push(format!("{} of the scans have no certain pose", percent(self.left_out)));
         }
+        if let Some(scale) = self.scale.filter(|scale| scale.max(scale.recip()) > limits.scale) {
+            reasons.push(format!("by its scans, the robot moves {scale:.2} times as far as by its odometry: one of both has wrong lengths"));
+        }
         reasons
     }
 }
@@ -168,6 +179,8 @@ pub(crate) struct QualityCheck {
 #[derive(Clone, Debug)]
 struct CountedScan {
     reading: usize,
+    /// The pose by the odometry.
+    odometry: Isometry2<f64>,
     laser: Point2<f64>,
     hits: Vec<Point2<f64>>,
 }
@@ -188,7 +201,8 @@ impl QualityCheck {
         let every = hits.len().div_ceil(COMPARED_HITS).max(1);
         let hits = hits.into_iter().step_by(every).collect();
         let laser = reading.mount * Point2::origin();
-        self.counted.push(CountedScan { reading: self.readings - 1, laser, hits });
+        let (reading, odometry) = (self.readings - 1, reading.pose);
+        self.counted.push(CountedScan { reading, odometry, laser, hits });
     }
 
     /// The figures, along the trajectory that was found.
@@ -214,9 +228,22 @@ impl QualityCheck {
             weak_links: judged.iter().filter(|scan| scan.link < WEAK_LINK).count(),
             left_out,
             seen_once: judged.iter().map(|scan| scan.seen_once).sum::<f64>() / judged.len() as f64,
+            scale: scale(&counted, poses),
             doubts: doubts(&judged, at),
         }
     }
+}
+
+/// The median of the way that was found per way by the odometry.
+fn scale(counted: &[CountedScan], poses: &[TrajectoryPose]) -> Option<f64> {
+    let step = |pair: &[CountedScan]| {
+        let found = poses[pair[0].reading].pose.inv_mul(&poses[pair[1].reading].pose);
+        let odometry = pair[0].odometry.inv_mul(&pair[1].odometry);
+        let odometry_m = odometry.translation.vector.norm();
+        (odometry_m > 0.5 * COUNTED_M).then(|| found.translation.vector.norm() / odometry_m)
+    };
+    let ratios: Vec<f64> = counted.windows(2).filter_map(step).collect();
+    (ratios.len() >= MIN_SCANS / 2).then(|| median(ratios.into_iter())).filter(|scale| *scale > 0.0)
 }
 
 /// The stretches of scans in doubt.

@@ -36,7 +36,7 @@ fn a_bent_route_is_not_usable() {
     let mut bent = vec![truth[0]];
     for pair in truth.windows(2) {
         let motion = pair[0].inv_mul(&pair[1]);
-        let bend_rad = 0.03 * motion.translation.vector.norm();
+        let bend_rad = 0.1 * motion.translation.vector.norm();
         bent.push(bent[bent.len() - 1] * motion * pose(0.0, 0.0, bend_rad));
     }
     let found = quality(&readings, &bent);
