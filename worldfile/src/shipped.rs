@@ -58,7 +58,7 @@ pub enum LoadError {
     Unknown {
         /// The name as given.
         name: String,
-        /// The names of the shipped worlds.
+        /// The names of the shipped worlds, and what other names there are.
         shipped: String,
     },
     /// A shipped world, but not one for this program.
@@ -101,7 +101,7 @@ pub fn load(name: &str) -> Result<WorldSpec, LoadError> {
     let parse = |name: &str, text: &str| physics::parse_world_with(name, text, &pictures());
     match find(name, &PHYSICS, parse, |path| physics::load_world(path)) {
         Err(LoadError::Unknown { name: printed, shipped }) => {
-            let shipped = shipped + "), nor a generated building (house-7, office-7: a kind and a seed";
+            let shipped = shipped + "; or a generated building: house-7, office-7 and so on";
             WorldSpec::generated(name).ok_or(LoadError::Unknown { name: printed, shipped })
         }
         found => found,
