@@ -13,13 +13,12 @@
 //! ```
 
 use agent::Policy;
-use evaluation::metrics::{RateScores, rate_scores};
+use evaluation::metrics::{RateScores, alignment, rate_scores};
 use evaluation::physics_trial::{self, PhysicsTrial};
 use interfaces::{GridFrame, LaserReading, PoseMode, World, heading_rad};
 use localizer::TrajectoryPose;
 use logs::{Log, McapWriter, TopicChoice};
 use mapper::{Mapper, NoReturn, ScanFilter, ScanFilterSettings};
-use nalgebra::{Isometry2, Vector2};
 use robot::{NoPilot, Robot, Settings};
 use std::error::Error;
 use std::fs::File;
@@ -75,7 +74,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         settings.set_noise(noise_m.parse()?);
     }
     let mut routes: Vec<Route> = survey.logs().iter().map(|log| log.route().to_vec()).collect();
-    let to_world = alignment(&routes, &truth);
+    let found = routes.iter().flatten().map(|at| at.pose.translation.vector);
+    let true_positions = truth.iter().flatten().map(|at| at.translation.vector);
+    let to_world = alignment(&found.zip(true_positions).collect::<Vec<_>>());
     let turn_rad = heading_rad(&(to_world.inverse() * truth[0][0]));
     routes.iter_mut().flatten().for_each(|at| at.pose = to_world * at.pose);
     let mapper = learned(&logs, &routes, &settings, frame)?;
@@ -110,22 +111,6 @@ fn main() -> Result<(), Box<dyn Error>> {
         );
     }
     Ok(())
-}
-
-/// The rigid motion of all routes together that brings their positions nearest to the true ones.
-fn alignment(routes: &[Route], truth: &[Vec<Isometry2<f64>>]) -> Isometry2<f64> {
-    let found = routes.iter().flatten().map(|at| at.pose.translation.vector);
-    let pairs: Vec<[Vector2<f64>; 2]> =
-        found.zip(truth.iter().flatten()).map(|(found, truth)| [found, truth.translation.vector]).collect();
-    let middle =
-        |which: usize| pairs.iter().map(|pair| pair[which]).sum::<Vector2<f64>>() / pairs.len() as f64;
-    let [from, to] = [0, 1].map(middle);
-    let (cos, sin) = pairs.iter().fold((0.0, 0.0), |(cos, sin), [found, truth]| {
-        let (found, truth) = (found - from, truth - to);
-        (cos + found.dot(&truth), sin + found.perp(&truth))
-    });
-    let rotation = interfaces::rotation(f64::atan2(sin, cos));
-    Isometry2::from_parts((to - rotation * from).into(), rotation)
 }
 
 /// What a robot learns from bags along these routes.

@@ -1,9 +1,10 @@
 //! The difference to poses of an earlier estimation, and which of both trajectories makes the sharper map.
 
+use evaluation::metrics::alignment;
 use interfaces::{LaserReading, heading_rad, wrap_rad};
 use localizer::Trajectory;
 use logs::{Log, LogError};
-use nalgebra::{Isometry2, Vector2};
+use nalgebra::Isometry2;
 use std::collections::BTreeSet;
 
 /// A pose of ours and that of the earlier estimation.
@@ -26,7 +27,10 @@ pub(crate) fn print(log: &Log, trajectory: &Trajectory, readings: &[LaserReading
     if pairs.is_empty() {
         return Ok(());
     }
-    let align = alignment(&pairs);
+    let position = |at: &Isometry2<f64>| at.translation.vector;
+    let positions: Vec<_> =
+        pairs.iter().map(|(found, reference)| (position(found), position(reference))).collect();
+    let align = alignment(&positions);
     let errors = pairs.iter().map(|(found, reference)| {
         let found = align * found;
         let turn_rad = wrap_rad(heading_rad(&found) - heading_rad(reference));
@@ -37,13 +41,13 @@ pub(crate) fn print(log: &Log, trajectory: &Trajectory, readings: &[LaserReading
         sorted.sort_by(f64::total_cmp);
         [0.5, 0.95, 1.0].map(|share| sorted[(share * (sorted.len() - 1) as f64) as usize])
     };
-    let ([median_m, most_m, max_m], [median_deg, most_deg, max_deg]) =
+    let ([median_m, p95_m, max_m], [median_deg, p95_deg, max_deg]) =
         (by_poses(&mut positions_m), by_poses(&mut headings_deg));
     println!(
-        "against the poses in the FLASER lines, median / 95 % / max: {:.1} / {:.1} / {:.1} cm, {median_deg:.2} / {most_deg:.2} / \
+        "against the poses in the FLASER lines, median / 95 % / max: {:.1} / {:.1} / {:.1} cm, {median_deg:.2} / {p95_deg:.2} / \
          {max_deg:.2}°",
         median_m * 100.0,
-        most_m * 100.0,
+        p95_m * 100.0,
         max_m * 100.0
     );
     if pairs.len() == readings.len() {
@@ -68,20 +72,4 @@ fn cells(poses: impl Iterator<Item = Isometry2<f64>>, readings: &[LaserReading])
         }));
     }
     cells.len()
-}
-
-/// The motion that lays the first poses on the second with the least squares of distances (Umeyama 1991, without
-/// scale).
-fn alignment(pairs: &[Pair]) -> Isometry2<f64> {
-    let count = pairs.len() as f64;
-    let mean = |of: fn(&Pair) -> Vector2<f64>| pairs.iter().map(of).sum::<Vector2<f64>>() / count;
-    let (from, to) = (mean(|pair| pair.0.translation.vector), mean(|pair| pair.1.translation.vector));
-    let (mut dot, mut cross) = (0.0, 0.0);
-    for (found, reference) in pairs {
-        let (a, b) = (found.translation.vector - from, reference.translation.vector - to);
-        dot += a.dot(&b);
-        cross += a.perp(&b);
-    }
-    let rotation = interfaces::rotation(cross.atan2(dot));
-    Isometry2::from_parts((to - rotation * from).into(), rotation)
 }

@@ -13,9 +13,10 @@
 mod drive;
 
 use drive::{LogSpec, SimulatedLog};
+use evaluation::metrics::alignment;
 use interfaces::PoseMode;
 use logs::McapWriter;
-use nalgebra::{Isometry2, Vector2};
+use nalgebra::{Isometry2, Point2};
 use results::output::TrajectoryFile;
 use std::error::Error;
 use std::fs::{File, create_dir_all};
@@ -60,9 +61,9 @@ fn main() -> Result<(), Box<dyn Error>> {
             100.0 * spec.glitches_per_m,
             ours.loops
         );
-        let most_m = counts.add("found", &ours, &log);
+        let p95_m = counts.add("found", &ours, &log);
         counts.logs += 1;
-        counts.precise += usize::from(most_m <= PRECISE_M);
+        counts.precise += usize::from(p95_m <= PRECISE_M);
         counts.add("odometry", &route(&log, PoseMode::Odometry)?, &log);
     }
     let Counts { logs, precise, right, wrong } = counts;
@@ -80,13 +81,13 @@ impl Counts {
     /// Prints and counts a trajectory. Gives the 95 % quantile of its errors, m.
     fn add(&mut self, name: &str, route: &Route, log: &SimulatedLog) -> f64 {
         let poses: Vec<Isometry2<f64>> = route.poses.iter().map(|at| at.pose).collect();
-        let ([median_m, most_m, max_m], quality) = (errors_m(&poses, &log.truth), &route.quality);
+        let ([median_m, p95_m, max_m], quality) = (errors_m(&poses, &log.truth), &route.quality);
         let verdict = quality.verdict();
-        let of = if most_m <= RIGHT_M { &mut self.right } else { &mut self.wrong };
+        let of = if p95_m <= RIGHT_M { &mut self.right } else { &mut self.wrong };
         of[0] += 1;
         of[1] += usize::from(verdict == Verdict::Good);
         println!(
-            "     {name:8} {median_m:6.3} {most_m:6.3} {max_m:6.3}  {:16} {:.3} {:.3} {:2} {:.3} {:.2}",
+            "     {name:8} {median_m:6.3} {p95_m:6.3} {max_m:6.3}  {:16} {:.3} {:.3} {:2} {:.3} {:.2}",
             verdict.name(),
             quality.contradicting,
             quality.worst_stretch,
@@ -94,7 +95,7 @@ impl Counts {
             quality.left_out,
             quality.seen_once
         );
-        most_m
+        p95_m
     }
 }
 
@@ -119,24 +120,12 @@ fn route(log: &SimulatedLog, mode: PoseMode) -> Result<Route, Box<dyn Error>> {
 
 /// Median, 95 % and maximum of the distances from the truth after a rigid alignment, m.
 fn errors_m(poses: &[Isometry2<f64>], truth: &[Isometry2<f64>]) -> [f64; 3] {
-    let n = poses.len() as f64;
-    let mean =
-        |list: &[Isometry2<f64>]| list.iter().map(|at| at.translation.vector).sum::<Vector2<f64>>() / n;
-    let (from, to) = (mean(poses), mean(truth));
-    let (mut dot, mut cross) = (0.0, 0.0);
-    for (found, truth) in poses.iter().zip(truth) {
-        let (a, b) = (found.translation.vector - from, truth.translation.vector - to);
-        dot += a.dot(&b);
-        cross += a.perp(&b);
-    }
-    let turn = interfaces::rotation(cross.atan2(dot));
-    let mut errors: Vec<f64> = poses
-        .iter()
-        .zip(truth)
-        .map(|(found, truth)| {
-            (turn * (found.translation.vector - from) - (truth.translation.vector - to)).norm()
-        })
-        .collect();
+    let position = |at: &Isometry2<f64>| at.translation.vector;
+    let pairs: Vec<_> =
+        poses.iter().zip(truth).map(|(found, truth)| (position(found), position(truth))).collect();
+    let to_truth = alignment(&pairs);
+    let mut errors: Vec<f64> =
+        pairs.iter().map(|(found, truth)| (to_truth * Point2::from(*found) - truth).coords.norm()).collect();
     errors.sort_by(f64::total_cmp);
     [0.5, 0.95, 1.0].map(|share| errors[(share * (errors.len() - 1) as f64) as usize])
 }

@@ -4,6 +4,7 @@
 //! A cell that solid bodies cover only partly is neither correct nor incorrect, and is ignored as long as it is
 //! partly covered.
 
+mod alignment;
 mod beams;
 mod changing;
 mod counts;
@@ -21,6 +22,7 @@ mod standstill;
 mod things;
 mod true_chains;
 
+pub use alignment::alignment;
 pub use changing::{ChangingAccuracy, ChangingScores};
 pub use deviance::{DevianceScores, FrozenRates, poisson_deviance};
 pub use forecasts::{ForecastScores, Forecasts, StateScores};

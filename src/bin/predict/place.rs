@@ -15,7 +15,7 @@ use survey::{Forecast, NEAR_M};
 pub(crate) struct Place {
     pub(crate) x_m: f64,
     pub(crate) y_m: f64,
-    /// The door that is there; `None` if none is known.
+    /// The known door at this place; `None` where there is no door.
     pub(crate) door: Option<DoorRecord>,
     /// The state whose probabilities and hours follow: `open` of a door, `blocked` of another place.
     pub(crate) state: &'static str,

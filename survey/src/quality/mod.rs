@@ -161,7 +161,9 @@ impl Quality {
             reasons.push(format!("{} of the scans have no certain pose", percent(self.left_out)));
         }
         if let Some(scale) = self.scale.filter(|scale| scale.max(scale.recip()) > limits.scale) {
-            reasons.push(format!("by its scans, the robot moves {scale:.2} times as far as by its odometry: one of both has wrong lengths"));
+            reasons.push(format!(
+                "by its scans, the robot moves {scale:.2} times as far as by its odometry: one of both has wrong lengths"
+            ));
         }
         reasons
     }
