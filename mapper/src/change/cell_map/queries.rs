@@ -27,6 +27,11 @@ impl CellMap {
         self.times.last()
     }
 
+    /// The mean time between consecutive readings, s; 0 before the second one.
+    pub(crate) fn period(&self) -> f64 {
+        self.times.period(self.reading())
+    }
+
     /// The time of the open reading.
     #[inline]
     pub fn time(&self) -> f64 {

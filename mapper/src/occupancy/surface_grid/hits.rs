@@ -1,6 +1,6 @@
 //! Hits: the evidence that a cell is blocked.
 
-use super::{SURFACE_MEMORY, SurfaceGrid, SurfaceGridSettings};
+use super::{SURFACE_MEMORY, Surface, SurfaceGrid, SurfaceGridSettings};
 use crate::change::CellMap;
 use crate::occupancy::footprint::cells_along;
 use crate::occupancy::inverse_sensor_model::{NOISE_STDS, hit_point};
@@ -10,6 +10,9 @@ use nalgebra::{Point2, Vector2};
 
 /// A hit farther than this from every standing surface, m, counts as a hit on a new obstacle.
 const OPEN_M: f64 = 0.1;
+/// A surface of a cell that was never free is permanent after the hits of this time, s, where scans are rare: in a log with a
+/// scan per meter, few cells are hit as often as the settings ask for.
+const STAND_S: f64 = 4.0;
 
 impl SurfaceGrid {
     /// Finds for each beam the cell right behind its hit, and loads what [`hit`](Self::hit) reads of the cell, for the reason
@@ -68,16 +71,15 @@ impl SurfaceGrid {
 
     /// Counts a hit for a cell that is not blocked.
     fn hit_open(&mut self, index: usize, end: &Point2<f64>, point: Point2<f64>, cells: &mut CellMap) {
-        let SurfaceGridSettings { hits_to_stand, hits_to_block, hits_to_block_in_open, .. } = self.settings;
+        let SurfaceGridSettings { hits_to_block, hits_to_block_in_open, .. } = self.settings;
         let noise_m = NOISE_STDS * self.settings.range_noise_std_m;
         let is_free = cells.state(index) == CellState::Free;
         let frame = *cells.frame();
         let is_inside = |point: Point2<f64>| frame.index(frame.cell_at(&point)) == Some(index);
         // An unknown cell near a blocked one takes more hits. Noise that is larger than a cell must not delay the cells
         // that are farther along the same wall: for an unknown cell, at most one cell away is near.
-        let (reach_m, min_hits) =
-            if is_free { (noise_m, hits_to_stand) } else { (noise_m.min(frame.resolution_m()), 0) };
-        let near = self.surface_near(end, reach_m, min_hits, cells);
+        let reach_m = if is_free { noise_m } else { noise_m.min(frame.resolution_m()) };
+        let near = self.surface_near(end, reach_m, is_free, cells);
         if let Some(near) = near {
             self.support(near, None, cells);
         }
@@ -85,10 +87,10 @@ impl SurfaceGrid {
             // A free cell beside a standing surface stays free. An unknown cell can be part of the
             // surface, but that takes more hits.
             Some(_) if is_free => return,
-            Some(_) => hits_to_stand,
+            Some(_) => self.few_hits_to_stand(cells),
             // Far from known surfaces one hit is enough, unless noise could put the hit into this cell.
             None if is_free
-                && self.surface_near(end, OPEN_M, hits_to_stand, cells).is_none()
+                && self.surface_near(end, OPEN_M, true, cells).is_none()
                 && is_inside(end + (point - end).normalize() * noise_m) =>
             {
                 u16::from(hits_to_block_in_open)
@@ -98,17 +100,34 @@ impl SurfaceGrid {
         self.add_hit(index, point, hits_to_block, cells);
     }
 
-    /// The nearest of the blocked cells with `min_hits` within `reach_m` along both axes:
-    /// within the noise, the surface that the hit comes from (rule 3).
-    fn surface_near(&self, end: &Point2<f64>, reach_m: f64, min_hits: u16, cells: &CellMap) -> Option<usize> {
-        let frame = cells.frame();
+    /// The number of hits after which the surface of a cell that was never free is permanent.
+    fn few_hits_to_stand(&self, cells: &CellMap) -> u16 {
+        let SurfaceGridSettings { hits_to_stand, hits_to_block, .. } = self.settings;
+        let hits = (STAND_S / cells.period()).ceil().max(f64::from(hits_to_block));
+        hits_to_stand.min(hits as u16)
+    }
+
+    /// The nearest of the blocked cells within `reach_m` along both axes, `is_permanent`: of those with a permanent surface.
+    /// Within the noise, the surface that the hit comes from (rule 3).
+    fn surface_near(
+        &self,
+        end: &Point2<f64>,
+        reach_m: f64,
+        is_permanent: bool,
+        cells: &CellMap,
+    ) -> Option<usize> {
+        let (frame, few_hits) = (cells.frame(), self.few_hits_to_stand(cells));
+        let stands = |surface: &Surface| {
+            let hits_to_stand = if surface.came { self.settings.hits_to_stand } else { few_hits };
+            !is_permanent || surface.hits >= hits_to_stand
+        };
         let reach = Vector2::repeat(reach_m);
         let (low, high) = (frame.cell_at(&(end - reach)), frame.cell_at(&(end + reach)));
         let near = (low.y..=high.y).flat_map(|y| (low.x..=high.x).map(move |x| Cell::new(x, y)));
         near.filter_map(|cell| {
             let index = frame.index(cell)?;
-            let stands = cells.state(index) == CellState::Blocked && self.surfaces[index].hits >= min_hits;
-            stands.then(|| ((frame.center(cell) - end).norm_squared(), index))
+            let is_near = cells.state(index) == CellState::Blocked && stands(&self.surfaces[index]);
+            is_near.then(|| ((frame.center(cell) - end).norm_squared(), index))
         })
         .min_by(|(a, _), (b, _)| a.total_cmp(b))
         .map(|(_, index)| index)
@@ -170,10 +189,11 @@ impl SurfaceGrid {
             }
         }
         self.remember(index, point, cells);
-        let surface = &mut self.surfaces[index];
-        if surface.hits >= hits_to_block {
+        if self.surfaces[index].hits >= hits_to_block {
+            let is_wrong = self.is_unconfirmed(index, cells);
+            let surface = &mut self.surfaces[index];
             surface.evidence = self.settings.misses_to_free_fresh as i8;
-            if cells.is_unconfirmed(index, self.settings.confirm_s) {
+            if is_wrong {
                 cells.correct(index, CellState::Blocked);
             } else {
                 surface.came = cells.state(index) == CellState::Free;

@@ -70,7 +70,7 @@ impl SurfaceGrid {
                 if surface.evidence <= 0 {
                     let Surface { doubted_since, doubted_in_view, .. } = std::mem::take(surface);
                     cells.set_settled(index, true);
-                    if cells.is_unconfirmed(index, self.settings.confirm_s) {
+                    if self.is_unconfirmed(index, cells) {
                         cells.correct(index, CellState::Free);
                     } else {
                         cells.set_state(index, CellState::Free, doubted_since, doubted_in_view);

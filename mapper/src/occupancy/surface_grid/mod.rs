@@ -40,6 +40,8 @@ pub use settings::SurfaceGridSettings;
 
 /// The mean of the hit points is taken over about this number of hits.
 const SURFACE_MEMORY: u16 = 32;
+/// A first observation needs at least this number of readings to be confirmed, however long they take.
+const MIN_CONFIRMING: f64 = 5.0;
 
 /// The hits in a cell.
 #[derive(Clone, Copy, Debug, Default, serde::Deserialize, serde::Serialize)]
@@ -113,6 +115,13 @@ impl SurfaceGrid {
             body_hits: Vec::new(),
             body: Body::default(),
         }
+    }
+}
+
+impl SurfaceGrid {
+    /// Whether the first observation of a cell can still be wrong.
+    fn is_unconfirmed(&self, index: usize, cells: &CellMap) -> bool {
+        cells.is_unconfirmed(index, self.settings.confirm_s.max(MIN_CONFIRMING * cells.period()))
     }
 }
 

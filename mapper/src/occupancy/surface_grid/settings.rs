@@ -30,10 +30,11 @@ pub struct SurfaceGridSettings {
     pub misses_to_free_fresh: u8,
     /// The number of scans that must pass a blocked cell until the cell becomes free, if the cell was hit often.
     pub misses_to_free: u8,
-    /// The number of hits after which a surface counts as standing: noise around it is then not a new obstacle.
+    /// The number of hits after which a surface counts as permanent: noise around it is then not a new obstacle. The surface
+    /// of a cell that was never free needs at most the hits of 4 s, at least `hits_to_block`.
     pub hits_to_stand: u16,
     /// The confirmation time, s: a first observation that is contradicted after less than this time in view was
-    /// wrong. The state is corrected, which does not count as a change.
+    /// wrong. The state is corrected, which does not count as a change. It is at least the time of five readings.
     pub confirm_s: f64,
 }
 
