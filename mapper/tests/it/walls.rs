@@ -1,9 +1,13 @@
 //! A static environment never changes in the map, however long it is observed.
 
-use crate::house::House;
+use crate::house::{House, Thing, rectangle};
 use crate::observed::{Observed, assert_sound, changes};
 use interfaces::{CellState, LaserReading};
 use mapper::{Mapper, MapperSettings, OccupancyChoice};
+use nalgebra::Vector2;
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+use rand_distr::{Distribution, Normal};
 
 const SCANS: u32 = 1500;
 
@@ -95,4 +99,34 @@ fn the_same_readings_make_the_same_mapper() {
     let [first, second] = [readings, others]
         .map(|readings| Observed::of(&learn(&house, readings, OccupancyChoice::steady()).0));
     assert!(first != second, "other noise, other map, or this tests nothing");
+}
+
+/// Poses of rare scans are off by centimeters, and few cells are hit often.
+#[test]
+fn rare_scans_with_inexact_poses_make_hardly_any_change_of_walls_and_show_a_new_thing() {
+    const PERIOD_S: f64 = 2.5;
+    let mut house = House::new(0.1, 10.0, 0.01, 180, 3);
+    let thing = rectangle(4.0, 1.5, 4.5, 2.0);
+    house.add(Thing { corners: thing, from_s: 250.0, until_s: f64::INFINITY });
+    let (mut rng, offset) = (ChaCha8Rng::seed_from_u64(5), Normal::new(0.0, 0.04).unwrap());
+    let mut settings = MapperSettings { occupancy: OccupancyChoice::steady(), ..MapperSettings::default() };
+    settings.steady.range_noise_std_m = 0.04;
+    let mut mapper = Mapper::new(&settings, house.frame).unwrap();
+    let (mut on_walls, mut on_thing) = (0, 0);
+    for time_s in (0..200).map(|scan| f64::from(scan) * PERIOD_S) {
+        let mut reading = house.reading(time_s, house.tour(time_s), &[]);
+        let by = Vector2::new(offset.sample(&mut rng), offset.sample(&mut rng));
+        reading.pose.translation.vector += by;
+        mapper.update(&reading).unwrap();
+        for cell in changes(&mapper) {
+            let at = house.frame.center(cell);
+            let is_thing = house.things.last().is_some_and(|thing| {
+                let center = thing.corners[0].coords.lerp(&thing.corners[2].coords, 0.5);
+                (at.coords - center).norm() < 0.6
+            });
+            *(if is_thing { &mut on_thing } else { &mut on_walls }) += 1;
+        }
+    }
+    assert!(on_walls <= 10, "{on_walls} changes of walls");
+    assert!(on_thing >= 10, "{on_thing} changes of cells of the new thing");
 }
