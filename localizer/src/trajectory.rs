@@ -16,6 +16,7 @@
 //!   way since then was short.
 //! - In the end, keyframes are matched with all submaps around them, so that every wall is there once.
 
+mod chains;
 mod correlation;
 mod far_scan;
 mod free_space;
@@ -181,7 +182,10 @@ impl TrajectoryFinder {
         graph.optimize();
         graph.remove_outliers();
         graph.optimize();
-        refine::refine(&self.closer.places, self.keyframes(), &mut graph);
+        match chains::are_sparse(self.keyframes()) {
+            true => chains::correlate(self.keyframes(), &mut graph),
+            false => refine::refine(&self.closer.places, self.keyframes(), &mut graph),
+        }
         graph
     }
 

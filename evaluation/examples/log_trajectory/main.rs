@@ -1,5 +1,7 @@
 //! The trajectory of a robot from a log, a CARMEN log or a bag of ROS 2: matching, loops, pose graph.
 //!
+//! `turned=RAD` turns the frame of the odometry: the result must not depend on it.
+//!
 //! Writes `trajectory.tum` (the TUM format) and `trajectory.png` (all points that the laser hit, drawn along the
 //! trajectory) beside each other in a folder, and prints the time per scan. Where the FLASER lines of a CARMEN log contain
 //! the result of an earlier estimation, its difference to ours is printed, after a rigid alignment, and the sharpness of
@@ -7,7 +9,7 @@
 //! these poses.
 //!
 //! ```text
-//! cargo run -p curious-evaluation --example log_trajectory -- LOG [FOLDER] [no-loops]
+//! cargo run -p curious-evaluation --example log_trajectory -- LOG [FOLDER] [no-loops] [turned=RAD]
 //! ```
 
 mod comparison;
@@ -23,9 +25,13 @@ use std::time::Instant;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let (switches, paths): (Vec<_>, Vec<_>) = arguments.iter().partition(|argument| *argument == "no-loops");
+    let (switches, paths): (Vec<_>, Vec<_>) =
+        arguments.iter().partition(|argument| *argument == "no-loops" || argument.starts_with("turned="));
+    let no_loops = switches.iter().any(|switch| *switch == "no-loops");
+    let turned_rad = switches.iter().find_map(|switch| switch.strip_prefix("turned="));
+    let turn = nalgebra::Isometry2::rotation(turned_rad.map_or(Ok(0.0), str::parse::<f64>)?);
     let Some(file) = paths.first() else {
-        return Err("usage: log_trajectory LOG [FOLDER] [no-loops]".into());
+        return Err("usage: log_trajectory LOG [FOLDER] [no-loops] [turned=RAD]".into());
     };
     let folder = paths.get(1).map_or_else(|| PathBuf::from("."), PathBuf::from);
     let log = Log::open(Path::new(file), &TopicChoice::default())?;
@@ -33,7 +39,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut finder = TrajectoryFinder::new(&TrajectorySettings::default())?;
     let mut readings = Vec::new();
     for reading in log.readings()? {
-        readings.push(reading?);
+        let mut reading = reading?;
+        reading.pose = turn * reading.pose;
+        readings.push(reading);
     }
     let begin = Instant::now();
     let mut local = Vec::new();
@@ -42,7 +50,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         local.push(finder.local_pose());
     }
     let mut trajectory = finder.finish();
-    if !switches.is_empty() {
+    if no_loops {
         trajectory.poses.iter_mut().zip(local).for_each(|(found, local)| found.pose = local);
     }
     let per_scan_ms = begin.elapsed().as_secs_f64() * 1e3 / readings.len() as f64;

@@ -71,6 +71,18 @@ pub(crate) const SURE_FACTOR: f64 = 1.5;
 pub(crate) const RECENT_KEYFRAMES: usize = 8;
 pub(crate) const ALL_HEADINGS: Spread = Spread { m: 0.8, rad: std::f64::consts::PI };
 
+// Trajectories: chains of keyframes that are far from each other
+
+/// A keyframe is far from the one before after this motion.
+pub(crate) const SPARSE: Spread = Spread { m: 0.5, rad: 0.4 };
+/// A chain: keyframes in a row within this distance, m; minimum number; keyframes before and after them that are compared as well.
+pub(crate) const CHAIN_M: f64 = 4.0;
+pub(crate) const MIN_CHAIN: usize = 4;
+pub(crate) const CHAIN_KEYFRAMES: usize = 8;
+/// Minimum response of a keyframe in a chain, and number of rounds.
+pub(crate) const CHAIN_RESPONSE: f64 = 0.45;
+pub(crate) const CHAIN_ROUNDS: usize = 3;
+
 // Trajectories: loops
 
 /// Ways between submaps that need no loop, and that need no second one, m.

@@ -3,7 +3,7 @@
 
 use super::keyframe::Keyframe;
 use crate::constants::{
-    CORRELATED_M, CORRELATION_CELL_M, CORRELATION_PENALTY, CORRELATION_RANGE_M, CORRELATION_STD_M,
+    CORRELATION_CELL_M, CORRELATION_PENALTY, CORRELATION_RANGE_M, CORRELATION_STD_M,
     CORRELATION_STEP_RAD,
 };
 use crate::spread::Spread;
@@ -51,18 +51,18 @@ struct Candidate {
 }
 
 impl Correlation {
-    /// The scores around a predicted pose, from at most `count` of the last keyframes.
-    pub(super) fn of(keyframes: &[Keyframe], count: usize, predicted: &Isometry2<f64>) -> Self {
+    /// The scores around a predicted pose, from keyframes at these poses.
+    pub(super) fn of<'a>(
+        keyframes: impl Iterator<Item = (&'a Isometry2<f64>, &'a Keyframe)>,
+        predicted: &Isometry2<f64>,
+    ) -> Self {
         let blocks = (2.0 * HALF_SIDE_M / CORRELATION_CELL_M) as i32 / BLOCK;
         let cells = |side: i32| vec![0; (side * side) as usize];
         let (side, predicted) = (blocks * BLOCK, *predicted);
         let mut scores = Self { predicted, side, fine: cells(side), coarse: cells(blocks) };
-        let is_near = |keyframe: &&Keyframe| {
-            (keyframe.local.translation.vector - predicted.translation.vector).norm() <= CORRELATED_M
-        };
         let kernel = kernel();
-        for keyframe in keyframes.iter().rev().take(count).take_while(is_near) {
-            let laser = predicted.inv_mul(&keyframe.local) * keyframe.mount;
+        for (pose, keyframe) in keyframes {
+            let laser = predicted.inv_mul(pose) * keyframe.mount;
             hits(&keyframe.scan).for_each(|hit| scores.add(&(laser * hit), &kernel));
         }
         scores
@@ -262,7 +262,7 @@ mod tests {
         let from_last = (local, Matrix3::zeros());
         let keyframe = Keyframe { local, from_last, points: Vec::new(), mount, scan: scan.clone() };
         for predicted in [local * pose(0.21, -0.13, 0.3), local * pose(-0.1, 0.25, -0.2)] {
-            let scores = Correlation::of(std::slice::from_ref(&keyframe), 1, &predicted);
+            let scores = Correlation::of(std::iter::once((&local, &keyframe)), &predicted);
             let found = scores.best(&scan, &mount, CORRELATED);
             let off = local.inv_mul(&found.pose);
             // Half a cell in each direction, and a little toward the prediction.

@@ -4,7 +4,7 @@ use super::correlation::{Correlated, Correlation};
 use super::keyframe::Keyframe;
 use super::matching::information_of;
 use crate::constants::{
-    ALL_HEADINGS, CORRELATED, CORRELATED_KEYFRAMES, CORRELATION_STD_M, FAR_SCAN, MIN_RESPONSE,
+    ALL_HEADINGS, CORRELATED, CORRELATED_KEYFRAMES, CORRELATED_M, CORRELATION_STD_M, FAR_SCAN, MIN_RESPONSE,
     RECENT_KEYFRAMES, SUBMAP_STD, SURE_FACTOR, SURE_RESPONSE,
 };
 use crate::local_trajectory_builder::IncomingScan;
@@ -34,8 +34,13 @@ impl<'a> FarScan<'a> {
         predicted: &Isometry2<f64>,
     ) -> Option<Correlated> {
         keyframes.first()?;
+        let is_near = |keyframe: &&Keyframe| {
+            (keyframe.local.translation.vector - predicted.translation.vector).norm() <= CORRELATED_M
+        };
         let best = |count: usize, window| {
-            Correlation::of(keyframes, count, predicted).best(self.scan, self.mount, window)
+            let last = keyframes.iter().rev().take(count).take_while(is_near);
+            Correlation::of(last.map(|keyframe| (&keyframe.local, keyframe)), predicted)
+                .best(self.scan, self.mount, window)
         };
         let near = best(CORRELATED_KEYFRAMES, CORRELATED);
         if near.response >= MIN_RESPONSE {
@@ -46,19 +51,29 @@ impl<'a> FarScan<'a> {
         Some(if is_sure { other } else { near })
     }
 
-    /// The match at a pose. Straight surfaces say how well it is known: a direction that none of them fixes stays free.
+    /// The match at a pose.
     pub(super) fn matched(&self, pose: &Isometry2<f64>, points: &[ScanPoint]) -> Option<Match> {
-        let mut found = Match {
-            placement: Placement::rigid(pose),
-            scan_information: points.iter().map(|point| information(point, pose)).sum(),
-            information: Matrix3::zeros(),
-            beam_covariance: Matrix3::zeros(),
-            residual_ratio: 1.0,
-        };
-        found.scan_information = information_of(&found, SUBMAP_STD)?;
-        found.information = found.scan_information;
-        Some(found)
+        Some(Match { information: information_at(pose, points)?, ..match_at(pose, points) }).map(|found| Match {
+            scan_information: found.information,
+            ..found
+        })
     }
+}
+
+fn match_at(pose: &Isometry2<f64>, points: &[ScanPoint]) -> Match {
+    Match {
+        placement: Placement::rigid(pose),
+        scan_information: points.iter().map(|point| information(point, pose)).sum(),
+        information: Matrix3::zeros(),
+        beam_covariance: Matrix3::zeros(),
+        residual_ratio: 1.0,
+    }
+}
+
+/// The information of a correlated pose. Straight surfaces say how well it is known: a direction that none of them fixes stays
+/// free.
+pub(super) fn information_at(pose: &Isometry2<f64>, points: &[ScanPoint]) -> Option<Matrix3<f64>> {
+    information_of(&match_at(pose, points), SUBMAP_STD)
 }
 
 fn information(point: &ScanPoint, pose: &Isometry2<f64>) -> Matrix3<f64> {
