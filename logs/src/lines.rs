@@ -18,7 +18,7 @@ type Gzip = WholePart<Unpacked<MultiGzDecoder<BufReader<Box<dyn Input>>>>>;
 pub(crate) enum Text {
     Plain(BufReader<Box<dyn Input>>),
     Gzip {
-        reader: BufReader<Gzip>,
+        reader: Box<BufReader<Gzip>>,
         /// The bytes of the file.
         packed: u64,
     },
@@ -34,13 +34,13 @@ impl Text {
         let packed = reader.seek(SeekFrom::End(0))?;
         reader.rewind()?;
         let unpacked = WholePart::of(Unpacked::new(MultiGzDecoder::new(reader), packed, "gzip -d FILE"));
-        Ok(Self::Gzip { reader: BufReader::new(unpacked), packed })
+        Ok(Self::Gzip { reader: Box::new(BufReader::new(unpacked)), packed })
     }
 
     fn buffer(&mut self) -> &mut dyn BufRead {
         match self {
             Self::Plain(reader) => reader,
-            Self::Gzip { reader, .. } => reader,
+            Self::Gzip { reader, .. } => &mut **reader,
         }
     }
 }

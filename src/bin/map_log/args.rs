@@ -13,8 +13,10 @@ use survey::{LogEntry, SavedLogs, SurveySettings};
 
 /// Maps the logs of a robot: where the place changes, how often, and when last.
 ///
-/// A log is a CARMEN log, plain or compressed with gzip, or a bag of ROS 2: a folder, an MCAP file or an SQLite file. Its
-/// trajectory is found from the scans and the odometry; a laser that stands needs neither. Several logs are those of one
+/// A log is a CARMEN log, plain or compressed with gzip, or a bag of ROS 2: a folder, an MCAP file or an SQLite file. Of a file
+/// that is cut off, what is whole is read. Its
+/// trajectory is found from the scans and the odometry; a laser that stands needs neither, and the poses of another SLAM can be used
+/// (--pose corrected). Several logs are those of one
 /// place: they are read in the order of their times, and later ones find their place in the map of the first. With --state,
 /// later logs can follow in a later run, which gives the same maps and rates as one run with all logs.
 ///
