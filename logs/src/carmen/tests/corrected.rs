@@ -29,7 +29,7 @@ fn poses_of_scans_are_used_on_request_only() {
         let expected = [3.0, 0.22 * step as f64 - 0.2];
         let at = reading.pose.translation;
         assert!((at.x - expected[0]).abs() < 1e-9 && (at.y - expected[1]).abs() < 1e-9, "{at} at {step}");
-        assert!((heading_rad(&reading.pose) - 1.570_796_326_794_896_6).abs() < 1e-12);
+        assert!((heading_rad(&reading.pose) - std::f64::consts::FRAC_PI_2).abs() < 1e-12);
         assert_eq!(reading.mount.translation.x, 0.2);
     }
     let summary = log.summary();
