@@ -15,7 +15,7 @@ const LARGE_RAD: f64 = 0.05;
 pub(crate) struct Jumps {
     count: usize,
     large: usize,
-    /// The largest one by its distance: m, rad, and its time, s.
+    /// The largest one, as a multiple of the limits of large ones: m, rad, and its time, s.
     largest: Option<(f64, f64, f64)>,
 }
 
@@ -28,7 +28,8 @@ impl Jumps {
         }
         self.count += 1;
         self.large += usize::from(step_m > LARGE_M || step_rad > LARGE_RAD);
-        if self.largest.is_none_or(|(largest_m, ..)| step_m > largest_m) {
+        let size = |step_m: f64, step_rad: f64| (step_m / LARGE_M).max(step_rad / LARGE_RAD);
+        if self.largest.is_none_or(|(by_m, by_rad, _)| size(step_m, step_rad) > size(by_m, by_rad)) {
             self.largest = Some((step_m, step_rad, time_s));
         }
     }

@@ -18,6 +18,8 @@ const MIN_RADPS: f64 = 0.005;
 const MIN_STEPS: usize = 100;
 /// The number of poses that are kept: some messages arrive later than others.
 const KEPT: usize = 256;
+/// The same of poses as written: scans wait for corrections up to half a second, and there are 1000 poses per second and more.
+const KEPT_AS_WRITTEN: usize = 1024;
 
 /// Poses of another SLAM that demand a higher speed than this have been corrected in between, m/s and rad/s: robots indoors drive
 /// at most 2 m/s.
@@ -87,7 +89,7 @@ impl Odometry {
     }
 
     fn keep(&mut self, time_s: f64, pose: Isometry2<f64>) {
-        if self.samples.len() == KEPT {
+        if self.samples.len() == if self.is_as_written { KEPT_AS_WRITTEN } else { KEPT } {
             self.samples.remove(0);
         }
         self.samples.push((time_s, pose));
@@ -100,7 +102,7 @@ impl Odometry {
 
     /// Whether there is a pose at a time, or at most 2 s before it.
     pub(crate) fn knows(&self, time_s: f64) -> bool {
-        self.samples.iter().any(|(sample_s, _)| (0.0..=LONGEST_GAP_S).contains(&(time_s - sample_s)))
+        self.samples.iter().rev().any(|(sample_s, _)| (0.0..=LONGEST_GAP_S).contains(&(time_s - sample_s)))
     }
 
     /// Whether the poses until now are missing, while there were scans: with the motion of the whole gap in the next step, the

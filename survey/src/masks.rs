@@ -1,6 +1,6 @@
 //! Masks for the costmap filters of Nav2, values from 0 to 100.
 
-use crate::patches::{opened, patches};
+use crate::patches::{areas, fronts};
 use crate::permanent::share_blocked;
 use interfaces::{Cell, Grid};
 use mapper::{Mapper, ThingKind};
@@ -38,36 +38,40 @@ fn slowness(rate_hz: f64) -> u8 {
 }
 
 /// The cells of doors and furniture.
-fn is_of_thing(mapper: &Mapper, is_wanted: impl Fn(&ThingKind) -> bool) -> Vec<u32> {
+fn cells_of_things(mapper: &Mapper, is_wanted: impl Fn(&ThingKind) -> bool) -> Vec<u32> {
     let things = mapper.things().iter().filter(|thing| is_wanted(&thing.kind));
     let mut cells: Vec<u32> = things.flat_map(|thing| thing.cells.iter().copied()).collect();
     cells.sort_unstable();
     cells
 }
 
-/// The cells that are in `patches`, or belong to a thing; all are in ascending order.
-fn solid(cells: Vec<usize>, patches: &[usize], of_things: &[u32]) -> Vec<usize> {
-    let is_of_thing = |cell: &usize| of_things.binary_search(&(*cell as u32)).is_ok();
-    cells.into_iter().filter(|cell| patches.binary_search(cell).is_ok() || is_of_thing(cell)).collect()
-}
-
-/// The speed mask: [`slowness`], the largest value within 0.5 m. Only what came and went counts, as a patch of the size of a thing
-/// that is nowhere one cell deep or as a door, with the rate that was earned. The pace of a cell is its rate at a time of the week, divided by its mean rate.
-pub(crate) fn speed_mask(mapper: &Mapper, pace: impl Fn(usize) -> f64) -> Grid<u8> {
-    let frame = *mapper.frame();
-    let mut came_and_went: Vec<usize> = mapper.changed().collect();
-    came_and_went.retain(|index| {
+/// The cells that came and went at least this often, in ascending order.
+fn came_and_went(mapper: &Mapper, times: u32) -> Vec<usize> {
+    let mut cells: Vec<usize> = mapper.changed().collect();
+    cells.retain(|index| {
         let seen = mapper.statistics(*index);
         let came = seen.block_events + seen.block_events_after_gap;
-        came.min(seen.free_events + seen.free_events_after_gap) > 0
+        came.min(seen.free_events + seen.free_events_after_gap) >= times
     });
-    came_and_went.sort_unstable();
-    let doors = is_of_thing(mapper, |kind| matches!(kind, ThingKind::Door(_)));
+    cells.sort_unstable();
+    cells
+}
+
+/// The speed mask: [`slowness`], the largest value within 0.5 m. Only what came and went counts, as a patch of the size of a thing, as
+/// the front of a thing that came and went twice, or as a door, with the rate that was earned. The pace of a cell is its rate at a
+/// time of the week, divided by its mean rate.
+pub(crate) fn speed_mask(mapper: &Mapper, pace: impl Fn(usize) -> f64) -> Grid<u8> {
+    let frame = *mapper.frame();
+    let [once, twice] = [1, 2].map(|times| came_and_went(mapper, times));
+    let doors = cells_of_things(mapper, |kind| matches!(kind, ThingKind::Door(_)));
+    let (areas, fronts) = (areas(&frame, &once), fronts(&frame, &twice));
+    let is_in = |cells: &[usize], cell: &usize| cells.binary_search(cell).is_ok();
+    let is_door = |cell: &usize| doors.binary_search(&(*cell as u32)).is_ok();
+    let counted = once.iter().filter(|cell| is_in(&areas, cell) || is_in(&fronts, cell) || is_door(cell));
     let interval = mapper.credible_intervals(MASS);
     let mut mask = Grid::filled(frame, 0);
     let reach = (DISTANCE_M / frame.resolution_m()).round() as i32;
-    let patches = patches(&frame, &opened(&frame, &came_and_went));
-    for index in solid(came_and_went, &patches, &doors) {
+    for &index in counted {
         let value = slowness(interval(index).0 * pace(index));
         if value == 0 {
             continue;
@@ -90,9 +94,12 @@ pub(crate) fn keepout_mask(mapper: &Mapper, blocked: impl Fn(usize) -> f64) -> G
     let mut mask = Grid::filled(*mapper.frame(), 0);
     let mut probable: Vec<usize> = mapper.changed().filter(|index| blocked(*index) >= PROBABLY).collect();
     probable.sort_unstable();
-    let things = is_of_thing(mapper, |_| true);
-    let patches = patches(mapper.frame(), &probable);
-    solid(probable, &patches, &things).into_iter().for_each(|index| mask.cells_mut()[index] = KEEP_OUT);
+    let (areas, things) = (areas(mapper.frame(), &probable), cells_of_things(mapper, |_| true));
+    for index in probable {
+        if areas.binary_search(&index).is_ok() || things.binary_search(&(index as u32)).is_ok() {
+            mask.cells_mut()[index] = KEEP_OUT;
+        }
+    }
     mask
 }
 
@@ -145,8 +152,9 @@ mod tests {
         // Within 0.5 m alone.
         let at = |x: i32| slow.cells()[(4 * 40 + x) as usize];
         assert!(at(17) > 0 && at(18) == 0, "{} and {}", at(17), at(18));
-        // Noise at a surface, one cell deep or alone.
-        for size in [[1, 1], [20, 1], [2, 2]] {
+        // The front of a thing, and noise.
+        assert!(most(&masks(&passing([7, 1]))[0]) > 0);
+        for size in [[1, 1], [5, 1], [3, 3]] {
             assert_eq!(masks(&passing(size)).map(|mask| most(&mask)), [0, 0], "{size:?}");
         }
         // At hours in which little happens.

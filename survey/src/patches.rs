@@ -1,37 +1,40 @@
 //! Cells that are together as large as a thing, out of cells that change.
 //!
-//! The noise of a laser makes cells change one by one, and along the surface of a wall in lines that are one cell deep. What a
-//! robot can meet is larger: the two legs of a person, a chair, the leaf of a door.
+//! The noise of a laser makes cells change one by one or a few together. What a robot can meet is larger: the two legs of a person, a
+//! chair, the leaf of a door.
 
 use interfaces::{Cell, GridFrame};
 use std::collections::BTreeSet;
 
-/// What passes is at least this deep everywhere, m: noise at a surface is one cell of 0.05 m deep.
-const DEPTH_M: f64 = 0.1;
-/// A patch is at least this wide and long, m, or has this area in another form: as the legs of a person who stands.
-const PATCH_M: [f64; 2] = [0.1, 0.3];
+/// A patch has at least this length and width, m, or this area in another form: as the legs of a person who stands.
+const PATCH_M: [f64; 2] = [0.3, 0.1];
 
-/// The cells of all squares of 0.1 m that are filled (a morphological opening), in ascending order as `cells`: lines that are one cell
-/// deep are none.
-pub(crate) fn opened(frame: &GridFrame, cells: &[usize]) -> Vec<usize> {
-    let side = (DEPTH_M / frame.resolution_m()).round().max(1.0) as i32;
-    let square = |corner: Cell| {
-        (0..side).flat_map(move |y| (0..side).map(move |x| Cell::new(corner.x + x, corner.y + y)))
-    };
-    let is_in = |cell: Cell| frame.index(cell).is_some_and(|index| cells.binary_search(&index).is_ok());
-    let corners = cells.iter().map(|index| frame.cell(*index)).filter(|corner| square(*corner).all(is_in));
-    let kept: BTreeSet<usize> = corners.flat_map(square).filter_map(|cell| frame.index(cell)).collect();
-    kept.into_iter().collect()
+/// The cells that are connected to an area of at least 0.1 m × 0.3 m; `cells` and the result are in ascending order.
+pub(crate) fn areas(frame: &GridFrame, cells: &[usize]) -> Vec<usize> {
+    let least = (PATCH_M[0] * PATCH_M[1] / frame.resolution_m().powi(2)).round().max(1.0) as usize;
+    connected_where(frame, cells, |patch| patch.len() >= least)
 }
 
-/// The cells that are connected to a patch of at least 0.1 m × 0.3 m, in ascending order.
-pub(crate) fn patches(frame: &GridFrame, cells: &[usize]) -> Vec<usize> {
+/// The cells that are connected over at least 0.3 m along an axis of the grid, in ascending order as `cells`: of a thing that is seen
+/// from one side, only the front changes, which is one cell deep.
+pub(crate) fn fronts(frame: &GridFrame, cells: &[usize]) -> Vec<usize> {
+    let least = (PATCH_M[0] / frame.resolution_m()).round().max(1.0) as i32;
+    let length = |patch: &[usize], along: fn(Cell) -> i32| {
+        let places = || patch.iter().map(|index| along(frame.cell(*index)));
+        places().max().unwrap_or_default() - places().min().unwrap_or_default() + 1
+    };
+    connected_where(frame, cells, |patch| {
+        length(patch, |cell| cell.x).max(length(patch, |cell| cell.y)) >= least
+    })
+}
+
+/// The cells of all connected patches that are kept, in ascending order as `cells`.
+fn connected_where(frame: &GridFrame, cells: &[usize], is_kept: impl Fn(&[usize]) -> bool) -> Vec<usize> {
     let mut left: BTreeSet<usize> = cells.iter().copied().collect();
-    let least = (PATCH_M[0] * PATCH_M[1] / frame.resolution_m().powi(2)).round().max(1.0) as usize;
     let mut found = Vec::new();
     while let Some(first) = left.pop_first() {
         let patch = connected(frame, first, &mut left);
-        if patch.len() >= least {
+        if is_kept(&patch) {
             found.extend(patch);
         }
     }
@@ -86,12 +89,15 @@ mod tests {
             "....................",
             "############........",
         ];
-        assert_eq!(left(patches, drawing), expected);
+        assert_eq!(left(areas, drawing), expected);
     }
 
     #[test]
-    fn what_is_one_cell_deep_does_not_pass() {
-        let drawing = ["####....", "########", "####...#", "..#.....", ".....##."];
-        assert_eq!(left(opened, drawing), ["####....", "####....", "####....", "........", "........"]);
+    fn fronts_are_wide() {
+        let drawing =
+            ["######.#####", "............", "#...........", ".#..........", "..#.###.....", "...#...##..."];
+        let expected =
+            ["######......", "............", "#...........", ".#..........", "..#.###.....", "...#...##..."];
+        assert_eq!(left(fronts, drawing), expected);
     }
 }

@@ -106,7 +106,10 @@ fn corrected_poses_must_be_there() {
     insta::assert_snapshot!(refuses(&run, "a.log --pose corrected", &["a.log"]), @"error: a.log: no corrected poses: those of the FLASER lines are those of the odometry (within 0.1 m and 0.05 rad), which --pose odometry uses; without --pose corrected, the poses are found from the scans");
     insta::assert_snapshot!(refuses(&run, "a.log --map-frame map", &["a.log"]), @"error: --map-frame names the map of another SLAM, whose poses are used with --pose corrected alone: add that, or leave it out");
     run.write("a.log", &standing_log(1.7e9, 40));
-    insta::assert_snapshot!(refuses(&run, "a.log --pose corrected --map-frame map", &["a.log"]), @"error: --map-frame is for bags, but a.log is a CARMEN log, which has no topics and frames: leave it out");
+    insta::assert_snapshot!(refuses(&run, "a.log --pose corrected --map-frame map", &["a.log"]), @"
+    note: a.log: the poses are those of the FLASER lines, which another SLAM has corrected
+    error: --map-frame is for bags, but a.log is a CARMEN log, which has no topics and frames: leave it out
+    ");
 }
 
 #[test]

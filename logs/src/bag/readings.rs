@@ -67,8 +67,6 @@ struct Waiting {
     laser: usize,
     mount: Isometry2<f64>,
     scan: Scan,
-    /// The pose of the odometry in the map of another SLAM, as it was known when the scan was recorded.
-    correction: Option<Isometry2<f64>>,
 }
 
 /// The readings of a bag, with times as the bag has them, since its first scan.
@@ -123,15 +121,15 @@ impl RawReadings {
         }
         let has_come = |laser| self.waiting.iter().any(|scan| scan.laser == laser);
         let is_first = self.newest_s > first.time_s + DISORDER_S || (0..self.plan.lasers.len()).all(has_come);
-        is_first && !self.odometry.must_wait(first.time_s, self.newest_s)
+        // A SLAM corrects itself by a scan after it.
+        let is_corrected = self.corrections.is_none() || self.newest_s > first.time_s + DISORDER_S;
+        is_first && is_corrected && !self.odometry.must_wait(first.time_s, self.newest_s)
     }
 
     /// The reading of a scan; `None` if its pose should be that of another SLAM, and is not known.
-    fn reading(
-        &mut self,
-        Waiting { time_s, laser, mount, scan, correction }: Waiting,
-    ) -> Option<LaserReading> {
+    fn reading(&mut self, Waiting { time_s, laser, mount, scan }: Waiting) -> Option<LaserReading> {
         self.overdue = self.overdue.saturating_sub(1);
+        let correction = self.corrections.as_ref().and_then(|corrections| corrections.at(time_s));
         if self.corrections.is_some() && (correction.is_none() || !self.odometry.knows(time_s)) {
             self.counts.without_pose += 1;
             return None;
@@ -203,8 +201,7 @@ impl RawReadings {
         }
         let is_earlier = |scan: &Waiting| scan.time_s <= time_s;
         let at = self.waiting.iter().skip(self.overdue).take_while(|scan| is_earlier(scan)).count();
-        let correction = self.corrections.as_ref().and_then(|corrections| corrections.now(&self.frames));
-        self.waiting.insert(self.overdue + at, Waiting { time_s, laser, mount, scan, correction });
+        self.waiting.insert(self.overdue + at, Waiting { time_s, laser, mount, scan });
         self.newest_s = self.newest_s.max(time_s);
         Ok(())
     }
@@ -228,8 +225,8 @@ impl RawReadings {
             };
             let edge = self.frames.set(&found.header.frame_id, &found.child_frame_id, pose)?;
             if let Some(corrections) = &mut self.corrections {
-                let time_s = self.clock.time_s(&found.header, message);
-                corrections.note(edge, &self.frames, time_s, &self.odometry.newest().0);
+                let times_s = [self.clock.time_s(&found.header, message), self.newest_s];
+                corrections.note(edge, &self.frames, times_s, &self.odometry.newest().0);
             }
             if matches!(self.plan.motion, MotionSource::Transform(index) if index == edge) {
                 self.take_pose(&found.header, message, &found.transform);
