@@ -53,7 +53,7 @@ fn a_bag_is_mapped_along_the_poses_of_another_slam() {
     let left_out = found.len() - corrected.len();
     assert!(left_out < 10 && farthest_m(&found[left_out..], &corrected) < 0.15);
     let seen_m2 = [&localized, &summary].map(|summary| summary.number("/seen_m2"));
-    assert!((seen_m2[1] / seen_m2[0] - 1.0).abs() < 0.05, "{seen_m2:?}");
+    assert!((seen_m2[1] / seen_m2[0] - 1.0).abs() < 0.1, "{seen_m2:?}");
     // A later run knows it from the state.
     let ended = run.ends("a.mcap --no-rrd --quiet --state s.state");
     assert_eq!(

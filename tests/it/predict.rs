@@ -182,28 +182,6 @@ fn doors_have_hours_and_so_have_masks_and_edges() {
     );
 }
 
-/// People pass from 8 to 18 o'clock, twice in each 20 s that are seen, and the robot slows down for them then.
-#[test]
-fn robots_slow_down_at_the_hours_of_people() {
-    let scan = |time_s: f64| {
-        let is_day = (8.0..18.0).contains(&(time_s % DAY_S / 3600.0));
-        standing_line(MONDAY_S + time_s, is_day && time_s.rem_euclid(10.0) < 5.0)
-    };
-    let seen = |begin: u32| (0..20).map(move |second| f64::from(1800 * begin + second));
-    let run = Run::new().with_map_log();
-    run.write("days.log", &(0..15 * 48).flat_map(seen).map(scan).collect::<String>());
-    run.goes_well(&format!("days.log --time-zone Europe/Berlin {SAVED}"));
-    fs::remove_dir_all(run.path("out")).unwrap();
-    let run = run.with_predict();
-    run.goes_well("a.state --at 2024-01-16T12:00 --at 2024-01-16T03:00");
-    let slowest = |number: usize| {
-        let picture = fs::read(run.out(&format!("speed_mask_{number}.pgm"))).unwrap();
-        255 - *picture.iter().skip(20).min().unwrap()
-    };
-    let [noon, night] = [1, 2].map(slowest);
-    assert!(noon > 100 && night < noon / 2, "{noon}, {night}");
-}
-
 #[test]
 fn what_cannot_be_predicted_is_refused_with_a_sentence() {
     let run = with_state();
