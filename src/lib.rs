@@ -3,6 +3,7 @@
 //! or is measured: the other crates do.
 
 pub mod bag;
+pub mod busy;
 pub mod flags;
 #[cfg(feature = "simulation")]
 pub mod keyboard;

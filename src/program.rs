@@ -167,9 +167,12 @@ where
     })
 }
 
-/// A parser of how the pose is known. `describe` says what a mode means.
-pub fn pose_mode(describe: fn(PoseMode) -> &'static str) -> impl TypedValueParser<Value = PoseMode> {
-    let named = PoseMode::ALL.map(|mode| PossibleValue::new(mode.name()).help(describe(mode)));
+/// A parser of how the pose is known, one of `modes`. `describe` says what a mode means.
+pub fn pose_mode(
+    modes: &[PoseMode],
+    describe: fn(PoseMode) -> &'static str,
+) -> impl TypedValueParser<Value = PoseMode> {
+    let named = modes.iter().map(|mode| PossibleValue::new(mode.name()).help(describe(*mode)));
     PossibleValuesParser::new(named).map(|name| PoseMode::named(&name).unwrap_or_default())
 }
 
@@ -179,6 +182,7 @@ pub fn pose_in_world(mode: PoseMode) -> &'static str {
         PoseMode::Exact => "The true pose",
         PoseMode::Odometry => "The pose by odometry, with its drift: the map becomes wrong",
         PoseMode::Localized => "The pose that fits the scan to the map",
+        PoseMode::Corrected => "The poses of another SLAM: of logs only",
     }
 }
 

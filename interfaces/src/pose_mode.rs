@@ -9,11 +9,15 @@ pub enum PoseMode {
     /// The pose that fits the scans.
     #[default]
     Localized,
+    /// The poses of another SLAM that a log contains.
+    Corrected,
 }
 
 impl PoseMode {
     /// All modes.
-    pub const ALL: [Self; 3] = [Self::Exact, Self::Odometry, Self::Localized];
+    pub const ALL: [Self; 4] = [Self::Exact, Self::Odometry, Self::Localized, Self::Corrected];
+    /// The modes of a robot that is simulated or live.
+    pub const LIVE: [Self; 3] = [Self::Exact, Self::Odometry, Self::Localized];
 
     /// The name on the command line and in files.
     pub fn name(self) -> &'static str {
@@ -21,7 +25,13 @@ impl PoseMode {
             Self::Exact => "exact",
             Self::Odometry => "odometry",
             Self::Localized => "localized",
+            Self::Corrected => "corrected",
         }
+    }
+
+    /// Whether the poses of a whole log fit to each other: then another log finds its place among its scans.
+    pub fn is_consistent(self) -> bool {
+        matches!(self, Self::Localized | Self::Corrected)
     }
 
     /// The mode with a name.

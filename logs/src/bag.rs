@@ -10,8 +10,11 @@ mod inventory;
 mod mcap;
 mod message;
 mod messages;
+mod motion;
+mod no_scans;
 mod plan;
 mod readings;
+mod slam;
 mod sqlite;
 #[cfg(test)]
 mod tests;
@@ -30,7 +33,9 @@ use crate::times;
 use inventory::Inventory;
 use message::{Selection, Topic};
 use messages::Messages;
-use plan::{MotionSource, Plan};
+use motion::MotionSource;
+use nalgebra::Isometry2;
+use plan::Plan;
 use readings::{Clock, Counts, RawReadings};
 use std::sync::Arc;
 
@@ -52,9 +57,19 @@ impl Bag {
         mut notes: Vec<String>,
     ) -> Result<Log, LogError> {
         let unusable = |why| LogError::Unusable { file: file.to_owned(), why };
-        let inventory = Inventory::of(&files)?;
-        notes.extend(inventory.notes.iter().cloned());
-        let mut plan = Arc::new(Plan::new(&inventory, choice, &mut notes).map_err(unusable)?);
+        // What is missing, because files are cut off.
+        let mut missing: Vec<String> = files.iter().filter_map(|file| file.missing.clone()).collect();
+        let in_cut_file = |why: String, missing: &[String]| match missing {
+            [] => why,
+            missing => format!("{why}; {}", missing.join("; ")),
+        };
+        let inventory = Inventory::of(&files).map_err(|error| match error {
+            LogError::Unusable { file, why } => LogError::Unusable { file, why: in_cut_file(why, &missing) },
+            other => other,
+        })?;
+        missing.extend(inventory.notes.iter().cloned());
+        let plan = Plan::new(&inventory, choice, &mut notes).map_err(|why| in_cut_file(why, &missing));
+        let mut plan = Arc::new(plan.map_err(unusable)?);
         let (stamp_ns, log_ns) = inventory.begin_ns.unwrap_or_default();
         let mut clock = Clock::Stamps(stamp_ns);
         let mut inspection = inspected(&files, &plan, clock, unusable)?;
@@ -71,16 +86,26 @@ impl Bag {
         }
         let (raw, raw_s, standing) = inspection;
         let raw_begin_s = raw_s.first().copied().unwrap_or_default();
-        let stands = raw.stands() && standing.looks_so();
-        let (odom_origin, impossible) = (raw.origin(), raw.impossible());
+        let is_corrected = plan.correction.is_some();
+        let stands = raw.stands() && standing.looks_so() && !is_corrected;
+        let odom_origin = if is_corrected { Isometry2::identity() } else { raw.origin() };
+        let impossible = raw.impossible();
         notes.extend(raw.holes_note());
+        notes.extend(
+            raw.corrections(raw_begin_s).map(|what| format!("the poses are those of another SLAM: {what}")),
+        );
         if raw.stands() && !stands && !matches!(plan.motion, MotionSource::Standing) {
             notes.push(NO_MOTION.to_owned());
         }
         let counts = raw.counts;
         if times.times_s.is_empty() {
-            let why = counts.first_invalid.unwrap_or_default();
-            return Err(unusable(format!("no scan is valid; the first: {why}")));
+            let why = match (counts.without_pose, counts.first_invalid) {
+                (0, first) => format!("no scan is valid; the first: {}", first.unwrap_or_default()),
+                (scans, _) => {
+                    format!("at none of the times of {scans} scans there is a pose of another SLAM")
+                }
+            };
+            return Err(unusable(in_cut_file(why, &missing)));
         }
         notes.extend(times.note);
         if let (Clock::Stamps(_), Some(duration_s)) = (clock, times.times_s.last()) {
@@ -88,6 +113,10 @@ impl Bag {
             notes.extend(times::other_pace(*duration_s, recorded_s));
         }
         notes.extend(counts.notes());
+        if let Some(duration_s) = times.times_s.last().filter(|_| !missing.is_empty()) {
+            missing.push(format!("what could be read ends {duration_s:.1} s after the first scan"));
+        }
+        notes.splice(0..0, missing);
         let begins_s = [stamp_ns, log_ns].map(|ns| since_epoch(ns as f64 * 1e-9 + raw_begin_s));
         let begin_s = match clock {
             Clock::Stamps(_) => begins_s[0].or(begins_s[1]),
@@ -160,6 +189,12 @@ impl Counts {
         let poses = (self.invalid_poses > 0).then(|| {
             format!("{} poses of odometry or transforms are invalid and left out", self.invalid_poses)
         });
-        scans.into_iter().chain(poses)
+        let unknown = (self.without_pose > 0).then(|| {
+            format!(
+                "{} scans are left out, since another SLAM gives no pose at their times (or in the 2 s before)",
+                self.without_pose
+            )
+        });
+        scans.into_iter().chain(poses).chain(unknown)
     }
 }

@@ -8,12 +8,14 @@
 //! ```
 //!
 //! - From a FLASER line come the ranges and the time alone: in *corrected* logs its two poses are both the result of an
-//!   earlier estimation. Poses come from ODOM lines, interpolated to the time of the scan.
+//!   earlier estimation. Poses come from ODOM lines, interpolated to the time of the scan. Only on request
+//!   ([`TopicChoice::is_corrected`]) they are those of the FLASER lines.
 //! - A FLASER line does not name the field of view: it is 180°, in steps of 1° (180 or 181 readings) or 0.5° (360 or
 //!   361 readings), from right to left.
 //! - Corrected logs write a second ODOM line after every scan, with the corrected pose of the scan, and with no time or a
 //!   meaningless one; the next ODOM line continues from there. Such a line is a new origin of the odometry, not a motion.
 
+mod corrected;
 mod inspection;
 mod line;
 mod readings;
@@ -21,9 +23,10 @@ mod readings;
 mod tests;
 
 use crate::bytes::Bytes;
+use crate::choice::TopicChoice;
 use crate::content;
 use crate::error::LogError;
-use crate::lines::{self, Lines};
+use crate::lines::{Lines, Text};
 use crate::log::{Log, RawReadings, Source};
 use line::{Geometry, Line};
 use nalgebra::Isometry2;
@@ -49,6 +52,8 @@ struct Rules {
     is_corrected: bool,
     /// Whether the laser stands.
     stands: bool,
+    /// Whether the poses are those of the FLASER lines.
+    takes_scan_poses: bool,
 }
 
 impl CarmenLog {
@@ -56,11 +61,17 @@ impl CarmenLog {
     ///
     /// # Errors
     ///
-    /// When the file cannot be read, when a line is invalid, or when no line is a scan. A last line that is cut off is
-    /// left out, see [`LogSummary::notes`](crate::LogSummary::notes).
-    pub(crate) fn open(file: &str, bytes: Bytes) -> Result<Log, LogError> {
-        let (rules, times_s, summary) = inspection::of(&mut Lines::open(&bytes, file)?)?;
-        Ok(Log::new(Self { bytes, file: file.to_owned(), rules }, times_s, summary))
+    /// When the file cannot be read, when a line is invalid, when no line is a scan, or when `choice` demands corrected poses and
+    /// the log has none. A last line that is cut off is left out, see [`LogSummary::notes`](crate::LogSummary::notes).
+    pub(crate) fn open(file: &str, bytes: Bytes, choice: &TopicChoice) -> Result<Log, LogError> {
+        let (rules, times_s, mut summary) = inspection::of(&mut Lines::open(&bytes, file)?)?;
+        let mut log = Self { bytes, file: file.to_owned(), rules };
+        if choice.is_corrected {
+            corrected::check(&log, &summary)?;
+            log.rules.takes_scan_poses = true;
+            corrected::note(&mut summary);
+        }
+        Ok(Log::new(log, times_s, summary))
     }
 }
 
@@ -72,7 +83,7 @@ impl Source for CarmenLog {
 
     fn content_hash(&self) -> Result<u128, LogError> {
         let io = |why| LogError::Io { file: self.file.clone(), why };
-        content::hash([lines::text(&self.bytes)]).map_err(io)
+        content::hash([Text::open(&self.bytes)]).map_err(io)
     }
 
     /// The poses of the laser that the FLASER lines contain; `None` for readings of other lines. In a corrected log they are

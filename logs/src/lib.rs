@@ -4,6 +4,7 @@
 //! [`Log`] reads CARMEN logs, plain or compressed with gzip, and bags of ROS 2: MCAP files, SQLite databases, and folders of
 //! them. A log is scanned once for its topics and times when it is opened; then it can be read any number of times, reading by reading.
 
+mod archive;
 mod bag;
 mod bounds;
 mod bytes;
@@ -13,8 +14,10 @@ mod choice;
 mod content;
 mod doubts;
 mod error;
+mod jumps;
 mod lines;
 mod log;
+mod magic;
 mod mcap_out;
 mod odometry;
 mod open;
@@ -23,6 +26,7 @@ mod speeds;
 mod standing;
 mod summary;
 mod times;
+mod whole_part;
 
 pub use choice::TopicChoice;
 pub use error::LogError;

@@ -1,30 +1,69 @@
 //! A file as lines of text, plain or compressed.
 
 use crate::bounds::Unpacked;
-use crate::bytes::Bytes;
+use crate::bytes::{Bytes, Input};
 use crate::error::LogError;
+use crate::magic::GZIP;
+use crate::whole_part::WholePart;
 use flate2::bufread::MultiGzDecoder;
 use std::io::{self, BufRead, BufReader, Error, ErrorKind, Read, Seek, SeekFrom};
 
 /// The longest line, in bytes: a file that never ends a line must not fill the memory.
 const LONGEST: u64 = 1 << 20;
-/// The first bytes of a file that is compressed with gzip.
-const GZIP: [u8; 2] = [0x1f, 0x8b];
+
+/// Bytes that are unpacked from a file with gzip.
+type Gzip = WholePart<Unpacked<MultiGzDecoder<BufReader<Box<dyn Input>>>>>;
 
 /// The text of a log; its compression is undone.
-pub(crate) fn text(bytes: &Bytes) -> io::Result<Box<dyn BufRead + Send>> {
-    let mut reader = BufReader::new(bytes.open()?);
-    if !reader.fill_buf()?.starts_with(&GZIP) {
-        return Ok(Box::new(reader));
+pub(crate) enum Text {
+    Plain(BufReader<Box<dyn Input>>),
+    Gzip {
+        reader: Box<BufReader<Gzip>>,
+        /// The bytes of the file.
+        packed: u64,
+    },
+}
+
+impl Text {
+    /// Opens a log. The compression is recognised by the content.
+    pub(crate) fn open(bytes: &Bytes) -> io::Result<Self> {
+        let mut reader = BufReader::new(bytes.open()?);
+        if !reader.fill_buf()?.starts_with(&GZIP) {
+            return Ok(Self::Plain(reader));
+        }
+        let packed = reader.seek(SeekFrom::End(0))?;
+        reader.rewind()?;
+        let unpacked = WholePart::of(Unpacked::new(MultiGzDecoder::new(reader), packed, "gzip -d FILE"));
+        Ok(Self::Gzip { reader: Box::new(BufReader::new(unpacked)), packed })
     }
-    let packed = reader.seek(SeekFrom::End(0))?;
-    reader.rewind()?;
-    Ok(Box::new(BufReader::new(Unpacked::new(MultiGzDecoder::new(reader), packed, "gzip -d FILE"))))
+
+    fn buffer(&mut self) -> &mut dyn BufRead {
+        match self {
+            Self::Plain(reader) => reader,
+            Self::Gzip { reader, .. } => &mut **reader,
+        }
+    }
+}
+
+impl Read for Text {
+    fn read(&mut self, to: &mut [u8]) -> io::Result<usize> {
+        self.buffer().read(to)
+    }
+}
+
+impl BufRead for Text {
+    fn fill_buf(&mut self) -> io::Result<&[u8]> {
+        self.buffer().fill_buf()
+    }
+
+    fn consume(&mut self, count: usize) {
+        self.buffer().consume(count);
+    }
 }
 
 /// The lines of a log, one after the other.
 pub(crate) struct Lines {
-    reader: Box<dyn BufRead + Send>,
+    reader: Text,
     pub(crate) file: String,
     /// The number of the last line, from 1.
     pub(crate) number: u64,
@@ -36,7 +75,7 @@ pub(crate) struct Lines {
 impl Lines {
     /// Opens a log. The compression is recognised by the content.
     pub(crate) fn open(bytes: &Bytes, file: &str) -> Result<Self, LogError> {
-        let reader = text(bytes).map_err(|why| LogError::Io { file: file.to_owned(), why })?;
+        let reader = Text::open(bytes).map_err(|why| LogError::Io { file: file.to_owned(), why })?;
         Ok(Self { reader, file: file.to_owned(), number: 0, is_complete: true, line: Vec::new() })
     }
 
@@ -56,6 +95,16 @@ impl Lines {
             return Err(LogError::Io { file: self.file.clone(), why });
         }
         Ok(Some(String::from_utf8_lossy(&self.line).into_owned()))
+    }
+
+    /// The bytes of a compressed file that is cut off, and the bytes of text that could be unpacked; `None` if it is whole so far.
+    pub(crate) fn cut(&self) -> Option<(u64, u64)> {
+        match &self.reader {
+            Text::Gzip { reader, packed } if reader.get_ref().is_cut() => {
+                Some((*packed, reader.get_ref().count()))
+            }
+            _ => None,
+        }
     }
 
     /// The error for the last line.

@@ -1,5 +1,6 @@
 //! Odometry: the sum of its motions, and its pose at the time of a scan.
 
+use crate::jumps::Jumps;
 use crate::standing::{MIN_MOTION_M, MIN_MOTION_RAD};
 use interfaces::{LaserReading, Scan, Twist, VelocitySample, heading_rad, wrap_rad};
 use nalgebra::Isometry2;
@@ -17,6 +18,13 @@ const MIN_RADPS: f64 = 0.005;
 const MIN_STEPS: usize = 100;
 /// The number of poses that are kept: some messages arrive later than others.
 const KEPT: usize = 256;
+/// The same of poses as written: scans wait for corrections up to half a second, and there are 1000 poses per second and more.
+const KEPT_AS_WRITTEN: usize = 1024;
+
+/// Poses of another SLAM that demand a higher speed than this have been corrected in between, m/s and rad/s: robots indoors drive
+/// at most 2 m/s.
+const MAX_MPS: f64 = 3.0;
+const MAX_RADPS: f64 = 4.0;
 
 /// The recent poses of a robot by odometry, as the sum of its motions since the first one: the first pose is the origin.
 #[derive(Debug, Default)]
@@ -35,9 +43,18 @@ pub struct Odometry {
     /// The time of the last scan without a pose near it, s, and the number of gaps with such scans.
     unknown_s: Option<f64>,
     holes: usize,
+    /// Whether the poses are kept as written, with their jumps.
+    is_as_written: bool,
+    jumps: Jumps,
 }
 
 impl Odometry {
+    /// Keeps poses as they are written, in a frame in which another SLAM has them. A jump is no motion: the motion before it goes on
+    /// until then.
+    pub(crate) fn as_written() -> Self {
+        Self { is_as_written: true, ..Self::default() }
+    }
+
     /// Adds a pose as written.
     pub fn add(&mut self, time_s: f64, pose: Isometry2<f64>) {
         let is_hole = self.is_hole(time_s);
@@ -48,24 +65,53 @@ impl Odometry {
         self.written = Some(pose);
         let mut at = self.last() * motion;
         at.rotation.renormalize();
+        if self.is_as_written {
+            at = pose;
+        }
         let (step_m, step_rad) = (motion.translation.vector.norm(), heading_rad(&motion).abs());
         let elapsed_s = self.samples.last().map_or(0.0, |(last_s, _)| time_s - last_s);
         if elapsed_s > 0.0 && (step_m > MIN_MOTION_M || step_rad > MIN_MOTION_RAD) {
             self.moving += 1;
             self.fast += usize::from(step_m > MIN_MPS * elapsed_s || step_rad > MIN_RADPS * elapsed_s);
         }
-        self.farthest_m = self.farthest_m.max(at.translation.vector.norm());
-        self.farthest_rad = self.farthest_rad.max(heading_rad(&at).abs());
-        if self.samples.len() == KEPT {
+        let since_first = if self.is_as_written { self.origin().inv_mul(&at) } else { at };
+        self.farthest_m = self.farthest_m.max(since_first.translation.vector.norm());
+        self.farthest_rad = self.farthest_rad.max(heading_rad(&since_first).abs());
+        let is_too_fast = step_m > MAX_MPS * elapsed_s || step_rad > MAX_RADPS * elapsed_s;
+        if self.is_as_written && elapsed_s > 0.0 && is_too_fast {
+            let (last, Twist { linear_mps, angular_radps }) = self.newest();
+            let on_s = elapsed_s.min(LONGEST_GAP_S);
+            let unjumped = last * interfaces::pose(linear_mps * on_s, 0.0, angular_radps * on_s);
+            self.jumps.add(time_s, &unjumped.inv_mul(&pose));
+            self.keep(time_s, unjumped);
+        }
+        self.keep(time_s, at);
+    }
+
+    fn keep(&mut self, time_s: f64, pose: Isometry2<f64>) {
+        if self.samples.len() == if self.is_as_written { KEPT_AS_WRITTEN } else { KEPT } {
             self.samples.remove(0);
         }
-        self.samples.push((time_s, at));
+        self.samples.push((time_s, pose));
+    }
+
+    /// The jumps of poses that are kept as written.
+    pub(crate) fn jumps(&self) -> &Jumps {
+        &self.jumps
+    }
+
+    /// Whether there is a pose at a time, or at most 2 s before it.
+    pub(crate) fn knows(&self, time_s: f64) -> bool {
+        self.samples.iter().rev().any(|(sample_s, _)| (0.0..=LONGEST_GAP_S).contains(&(time_s - sample_s)))
     }
 
     /// Whether the poses until now are missing, while there were scans: with the motion of the whole gap in the next step, the
     /// odometry would contradict these scans twice. They have found the way by themselves.
     fn is_hole(&self, time_s: f64) -> bool {
         let [.., (before_s, _), (last_s, _)] = self.samples[..] else { return false };
+        if self.is_as_written {
+            return false;
+        }
         let gap_s = time_s - last_s;
         let had_scans = self.unknown_s.is_some_and(|unknown_s| unknown_s > last_s);
         had_scans && gap_s > LONGEST_GAP_S && gap_s > HOLE * (last_s - before_s)
@@ -156,7 +202,8 @@ impl Odometry {
         let overlaps = |pair: &&[(f64, Isometry2<f64>)]| {
             pair[0].0 + MIN_OVERLAP_S < to_s
                 && from_s + MIN_OVERLAP_S < pair[1].0
-                && (0.0..=LONGEST_GAP_S).contains(&(pair[1].0 - pair[0].0))
+                && pair[1].0 > pair[0].0
+                && pair[1].0 - pair[0].0 <= LONGEST_GAP_S
         };
         let pairs = self.samples.windows(2).filter(overlaps);
         let sample = |pair: &[(f64, Isometry2<f64>)]| {

@@ -15,11 +15,12 @@ impl Log {
     /// - a file of a bag of ROS 2: MCAP, an SQLite database, or one of them compressed with zstd,
     /// - a folder with such files, in the order of its `metadata.yaml`, or of their names where it is missing.
     ///
-    /// The format follows from the content, not from the name. `choice` is for bags; see [`TopicChoice`].
+    /// The format follows from the content, not from the name. See [`TopicChoice`] for `choice`. Of a
+    /// compressed file or an MCAP file that is cut off, what is whole is read.
     ///
     /// # Errors
     ///
-    /// When a file cannot be read or is damaged, when it has no usable scan, or when several topics are odometry and
+    /// When a file cannot be read or is damaged, when it has no usable scan, when corrected poses are chosen and it has none, or when several topics are odometry and
     /// `choice` names no topic of odometry. What can be repaired or left out is no error but a note, see
     /// [`LogSummary::notes`](crate::LogSummary::notes).
     pub fn open(path: &Path, choice: &TopicChoice) -> Result<Self, LogError> {
@@ -36,7 +37,7 @@ impl Log {
         }
         match BagFile::open(path)? {
             Some(file) => Bag::open(&name, vec![file], choice, Vec::new()),
-            None => CarmenLog::open(&name, Bytes::File(path.to_owned())),
+            None => CarmenLog::open(&name, Bytes::File(path.to_owned()), choice),
         }
     }
 }

@@ -46,6 +46,15 @@ pub enum PoseSource {
         /// The frame of the robot.
         base_frame: String,
     },
+    /// The FLASER lines of a corrected CARMEN log.
+    ScanLines,
+    /// The transforms of another SLAM from its map to the robot.
+    Corrected {
+        /// The frame of the map.
+        map_frame: String,
+        /// The frame of the robot.
+        base_frame: String,
+    },
     /// No odometry and no transform moves: all poses are the same.
     Standing,
 }

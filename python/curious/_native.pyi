@@ -272,6 +272,8 @@ class Log:
         scan_topics: Sequence[str] = (),
         odom_topic: str | None = None,
         base_frame: str | None = None,
+        corrected: bool = False,
+        map_frame: str | None = None,
     ) -> None: ...
     def __len__(self) -> int: ...
     def __iter__(self) -> Iterator[Reading]: ...
@@ -283,6 +285,8 @@ class Log:
     def notes(self) -> list[str]: ...
     @property
     def stands(self) -> bool: ...
+    @property
+    def corrected(self) -> bool: ...
 
 @final
 class Forecast:
@@ -320,7 +324,7 @@ class Survey:
 def map_log(
     log: Log,
     *,
-    pose: Literal["localized", "odometry", "exact"] | None = None,
+    pose: Literal["localized", "odometry", "exact", "corrected"] | None = None,
     cell: float = 0.05,
     max_range: float = 20.0,
     estimator: str | None = None,

@@ -19,6 +19,9 @@ use survey::{LogEntry, Quality, SurveySettings, Verdict};
 #[pyclass(frozen, module = "curious")]
 pub(crate) struct Log {
     log: ::logs::Log,
+    /// Whether the poses are those of another SLAM.
+    #[pyo3(get, name = "corrected")]
+    is_corrected: bool,
     /// The time from the first to the last reading, s.
     #[pyo3(get)]
     duration: f64,
@@ -41,23 +44,29 @@ pub(crate) struct Readings {
 
 #[pymethods]
 impl Log {
-    /// Opens a log. `scan_topics`, `odom_topic`, `base_frame`: for bags; by default all of them are found. `OSError`:
-    /// it cannot be read; `ValueError`: it is damaged or has no usable scan.
+    /// Opens a log. `scan_topics`, `odom_topic`, `base_frame`: for bags; by default all of them are found. `corrected`: the poses of
+    /// the readings are those of another SLAM, in a bag those of tf from `map_frame` ("map") to the robot, in a CARMEN log those of
+    /// the FLASER lines. `OSError`: it cannot be read; `ValueError`: it is damaged, or has no usable scan or no corrected poses.
     #[new]
-    #[pyo3(signature = (path, *, scan_topics = Vec::new(), odom_topic = None, base_frame = None))]
+    #[pyo3(signature = (path, *, scan_topics = Vec::new(), odom_topic = None, base_frame = None, corrected = false, map_frame = None))]
     fn new(
         py: Python<'_>,
         path: PathBuf,
         scan_topics: Vec<String>,
         odom_topic: Option<String>,
         base_frame: Option<String>,
+        corrected: bool,
+        map_frame: Option<String>,
     ) -> PyResult<Self> {
-        let choice = TopicChoice { scan_topics, odom_topic, base_frame };
+        if map_frame.is_some() && !corrected {
+            return Err(value_error("`map_frame` names the map of another SLAM: it needs `corrected`"));
+        }
+        let choice = TopicChoice { scan_topics, odom_topic, base_frame, is_corrected: corrected, map_frame };
         let log = py.detach(|| ::logs::Log::open(&path, &choice)).map_err(|error| log_error(&path, error))?;
         let LogSummary { duration_s, begin_s, notes, pose_source, odometry_poses, .. } =
             log.summary().clone();
-        let stands = pose_source == PoseSource::Standing || odometry_poses == 0;
-        Ok(Self { log, duration: duration_s, begin: begin_s, notes, stands })
+        let stands = !corrected && (pose_source == PoseSource::Standing || odometry_poses == 0);
+        Ok(Self { log, is_corrected: corrected, duration: duration_s, begin: begin_s, notes, stands })
     }
 
     fn __len__(&self) -> usize {
@@ -99,8 +108,8 @@ pub(crate) struct Survey {
 /// Maps a log, and learns where the place changes: the program `map_log` for one log. The log is read twice: the
 /// first pass finds the trajectory, the second one learns the changes.
 ///
-/// `pose`: "localized" (the trajectory is found from scans and odometry), "odometry", "exact"; by default
-/// "localized", or "exact" where the laser stands. `cell`: m. `max_range`: longer ranges are not used, m.
+/// `pose`: "localized" (the trajectory is found from scans and odometry), "odometry", "exact", "corrected" (of a log that was opened
+/// with `corrected = True`); by default "corrected" for such a log, "exact" where the laser stands, otherwise "localized". `cell`: m. `max_range`: longer ranges are not used, m.
 #[pyfunction]
 #[pyo3(signature = (log, *, pose = None, cell = 0.05, max_range = 20.0, estimator = None, range_noise = None))]
 pub(crate) fn map_log(
@@ -112,12 +121,25 @@ pub(crate) fn map_log(
     estimator: Option<&str>,
     range_noise: Option<f64>,
 ) -> PyResult<Survey> {
-    let other = |name| value_error(format!("`pose` is localized, odometry or exact, and not {name:?}"));
+    let other =
+        |name| value_error(format!("`pose` is localized, odometry, exact or corrected, and not {name:?}"));
     let mode = match pose {
         Some(name) => PoseMode::named(name).ok_or_else(|| other(name))?,
+        None if log.is_corrected => PoseMode::Corrected,
         None if log.stands => PoseMode::Exact,
         None => PoseMode::Localized,
     };
+    if log.is_corrected && matches!(mode, PoseMode::Exact | PoseMode::Odometry) {
+        return Err(value_error(format!(
+            "the log has corrected poses: `pose` = {:?} needs those of the odometry",
+            mode.name()
+        )));
+    }
+    if mode == PoseMode::Corrected && !log.is_corrected {
+        return Err(value_error(
+            "`pose` = \"corrected\" needs a log that was opened with `corrected = True`",
+        ));
+    }
     let mut settings = SurveySettings { resolution_m: cell, ..SurveySettings::of(mode) };
     settings.filter.max_range_m = max_range;
     settings.mapper = mapper_settings(settings.mapper, estimator, None, None, range_noise)?;

@@ -175,7 +175,9 @@ impl Settings {
         pilot: P,
     ) -> Result<Robot<LaserReading, P>, SettingsError> {
         let localization: Box<dyn Localization<LaserReading> + Send + Sync> = match (self.pose, &prior) {
-            (PoseMode::Exact | PoseMode::Odometry, _) => Box::new(GivenPoses::default()),
+            (PoseMode::Exact | PoseMode::Odometry | PoseMode::Corrected, _) => {
+                Box::new(GivenPoses::default())
+            }
             (PoseMode::Localized, Some(map)) => {
                 Box::new(Localizer::in_map(&self.localizer, map, Start::Unknown)?)
             }

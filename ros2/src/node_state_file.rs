@@ -46,7 +46,7 @@ impl NodeStateFile {
         let localizer = LocalizerSettings { lost_after_s, ..settings.localizer.clone() };
         let (pose, localizer) = match settings.pose {
             PoseMode::Localized => ("localized", Some(&localizer)),
-            PoseMode::Exact | PoseMode::Odometry => ("given", None),
+            PoseMode::Exact | PoseMode::Odometry | PoseMode::Corrected => ("given", None),
         };
         let pilot = Facts::default().with("strategy", &parameters.strategy);
         let pilot = match parameters.navigator {

@@ -47,7 +47,7 @@ pub struct Houses {
     kind: String,
 
     /// How the robot knows its pose [default: exact where the world's odometry is exact, otherwise localized]
-    #[arg(long, value_parser = pose_mode(pose_in_world), help_heading = "Comparison")]
+    #[arg(long, value_parser = pose_mode(&PoseMode::LIVE, pose_in_world), help_heading = "Comparison")]
     pose: Option<PoseMode>,
 }
 

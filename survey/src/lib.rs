@@ -23,6 +23,7 @@ mod median;
 mod noise;
 mod odometry_check;
 mod passes;
+mod patches;
 mod permanent;
 mod places;
 mod quality;

@@ -1,33 +1,81 @@
 //! Masks for the costmap filters of Nav2, values from 0 to 100.
 
+use crate::patches::{areas, fronts};
 use crate::permanent::share_blocked;
 use interfaces::{Cell, Grid};
-use mapper::Mapper;
+use mapper::{Mapper, ThingKind};
 
-/// The value where a cell changes all the time. The speed filter takes the mask value v as a limit of 100 − v percent
-/// of the full speed, and a limit of 0 % as no limit: the value stays below 100.
-const SLOWEST: f64 = 80.0;
 /// The time in which a change matters to a robot on its route, s: maps of changes show the probability of a change
 /// [within](Mapper::change_probability_within) this time. It is 0.63 where a cycle takes this long on average.
 pub const CHANGE_HORIZON_S: f64 = 600.0;
-/// The robot slows down at this distance from what changes, m.
-const DISTANCE_M: f64 = 0.5;
-/// A cell that changes is kept out of if it is blocked with at least this probability.
-const PROBABLY: f64 = 0.5;
 /// The names of the masks, in the order of [`masks`] and of [`Forecast::masks`](crate::Forecast::masks).
 pub const MASKS: [&str; 2] = ["speed_mask", "keepout_mask"];
+
+/// The largest value of the speed mask. The speed filter takes the mask value v as a limit of 100 − v percent of the full speed,
+/// and a limit of 0 % as no limit: the value stays below 100.
+const SLOWEST: f64 = 80.0;
+/// The robot slows down at this distance from what changes, m: it stops from 1 m/s within 0.5 m at 1 m/s².
+const DISTANCE_M: f64 = 0.5;
+/// The time that a robot takes to pass a place, s: 1 m, the distance before and behind it, at 0.25 m/s.
+const PASSING_S: f64 = 4.0;
+/// Robots slow down where something comes into the way of at least one in 40 that pass (23 times per hour)…
+const RARELY: f64 = 1.0 / 40.0;
+/// …and most where it comes into the way of one in 10 (95 times per hour).
+const OFTEN: f64 = 1.0 / 10.0;
+/// The mass of the credible interval whose lower end is the rate that was earned: the true rate is higher with a probability of 95 %.
+const MASS: f64 = 0.9;
+/// A cell that changes is kept out of if it is blocked with at least this probability.
+const PROBABLY: f64 = 0.5;
 /// The value of a cell that must not be entered.
 const KEEP_OUT: u8 = 100;
 
-/// The speed mask: 80 · (1 − e^(−pace · rate · 600 s)), the largest value within 0.5 m; 0 where nothing changes. The pace of a cell
-/// is its rate at a time of the week, divided by its mean rate.
+/// The value of the speed mask for the number of times per second that something comes into the way: 0 up to one in 40 passing
+/// robots, 80 from one in 10 on, in proportion to the logarithm of this share in between.
+fn slowness(rate_hz: f64) -> u8 {
+    let share = -libm::expm1(-rate_hz * PASSING_S);
+    let part = libm::log(share / RARELY) / libm::log(OFTEN / RARELY);
+    (SLOWEST * part.clamp(0.0, 1.0)).round() as u8 // the logarithm of 0 is below all limits
+}
+
+/// The cells of doors and furniture.
+fn cells_of_things(mapper: &Mapper, is_wanted: impl Fn(&ThingKind) -> bool) -> Vec<u32> {
+    let things = mapper.things().iter().filter(|thing| is_wanted(&thing.kind));
+    let mut cells: Vec<u32> = things.flat_map(|thing| thing.cells.iter().copied()).collect();
+    cells.sort_unstable();
+    cells
+}
+
+/// The cells that came and went at least this often, in ascending order.
+fn came_and_went(mapper: &Mapper, times: u32) -> Vec<usize> {
+    let mut cells: Vec<usize> = mapper.changed().collect();
+    cells.retain(|index| {
+        let seen = mapper.statistics(*index);
+        let came = seen.block_events + seen.block_events_after_gap;
+        came.min(seen.free_events + seen.free_events_after_gap) >= times
+    });
+    cells.sort_unstable();
+    cells
+}
+
+/// The speed mask: [`slowness`], the largest value within 0.5 m. Only what came and went counts, as a patch of the size of a thing, as
+/// the front of a thing that came and went twice, or as a door, with the rate that was earned. The pace of a cell is its rate at a
+/// time of the week, divided by its mean rate.
 pub(crate) fn speed_mask(mapper: &Mapper, pace: impl Fn(usize) -> f64) -> Grid<u8> {
     let frame = *mapper.frame();
+    let [once, twice] = [1, 2].map(|times| came_and_went(mapper, times));
+    let doors = cells_of_things(mapper, |kind| matches!(kind, ThingKind::Door(_)));
+    let (areas, fronts) = (areas(&frame, &once), fronts(&frame, &twice));
+    let is_in = |cells: &[usize], cell: &usize| cells.binary_search(cell).is_ok();
+    let is_door = |cell: &usize| doors.binary_search(&(*cell as u32)).is_ok();
+    let counted = once.iter().filter(|cell| is_in(&areas, cell) || is_in(&fronts, cell) || is_door(cell));
+    let interval = mapper.credible_intervals(MASS);
     let mut mask = Grid::filled(frame, 0);
     let reach = (DISTANCE_M / frame.resolution_m()).round() as i32;
-    for index in mapper.changed() {
-        let change = mapper.change_probability_within(index, CHANGE_HORIZON_S * pace(index));
-        let value = (SLOWEST * change).round() as u8;
+    for &index in counted {
+        let value = slowness(interval(index).0 * pace(index));
+        if value == 0 {
+            continue;
+        }
         let center = frame.cell(index);
         for y in -reach..=reach {
             for x in (-reach..=reach).filter(|x| x * x + y * y <= reach * reach) {
@@ -40,12 +88,17 @@ pub(crate) fn speed_mask(mapper: &Mapper, pace: impl Fn(usize) -> f64) -> Grid<u
     mask
 }
 
-/// The keepout mask: 100 for a cell that changes and is probably blocked, by its index, otherwise 0. Cells that never change are
-/// in the static map.
+/// The keepout mask: 100 for a cell that changes and is probably blocked, by its index, otherwise 0. Such cells count where they
+/// are a patch of the size of a thing, or belong to a door or to furniture. Cells that never change are in the static map.
 pub(crate) fn keepout_mask(mapper: &Mapper, blocked: impl Fn(usize) -> f64) -> Grid<u8> {
     let mut mask = Grid::filled(*mapper.frame(), 0);
-    for index in mapper.changed().filter(|index| blocked(*index) >= PROBABLY) {
-        mask.cells_mut()[index] = KEEP_OUT;
+    let mut probable: Vec<usize> = mapper.changed().filter(|index| blocked(*index) >= PROBABLY).collect();
+    probable.sort_unstable();
+    let (areas, things) = (areas(mapper.frame(), &probable), cells_of_things(mapper, |_| true));
+    for index in probable {
+        if areas.binary_search(&index).is_ok() || things.binary_search(&(index as u32)).is_ok() {
+            mask.cells_mut()[index] = KEEP_OUT;
+        }
     }
     mask
 }
@@ -53,4 +106,66 @@ pub(crate) fn keepout_mask(mapper: &Mapper, blocked: impl Fn(usize) -> f64) -> G
 /// The speed mask and the keepout mask for any time: with mean rates, and the share of the time that a cell is blocked.
 pub fn masks(mapper: &Mapper) -> [Grid<u8>; 2] {
     [speed_mask(mapper, |_| 1.0), keepout_mask(mapper, |index| share_blocked(mapper, index))]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use interfaces::{CellReading, GridFrame};
+    use mapper::MapperSettings;
+    use nalgebra::{Isometry2, Point2};
+
+    #[test]
+    fn the_value_grows_with_the_logarithm_of_the_share_of_robots_that_meet_something() {
+        let per_hour = |rate: f64| slowness(rate / 3600.0);
+        assert_eq!([0.0, 1.0, 22.0, 47.0, 95.0, 1e9].map(per_hour), [0, 0, 0, 41, 80, 80]);
+        assert!(per_hour(23.5) > 0 && (0..200).map(|rate| per_hour(f64::from(rate))).is_sorted());
+    }
+
+    /// A map of 2 m × 2 m in cells of 0.05 m after 10 min: per cell, whether it is blocked at a time, s.
+    fn watched(is_blocked: impl Fn(Cell, u32) -> bool) -> Mapper {
+        let frame = GridFrame::new(Point2::origin(), 0.05, 40, 40).unwrap();
+        let mut mapper = Mapper::new(&MapperSettings::default(), frame).unwrap();
+        for time in 0..600 {
+            let cells = (0..frame.len()).map(|index| frame.cell(index));
+            let cells = cells.map(|cell| (cell, is_blocked(cell, time))).collect();
+            let reading = CellReading { time: f64::from(time), pose: Isometry2::identity(), cells };
+            mapper.update(&reading).unwrap();
+        }
+        mapper
+    }
+
+    fn most(mask: &Grid<u8>) -> u8 {
+        mask.cells().iter().copied().max().unwrap_or_default()
+    }
+
+    fn is_in(cell: Cell, [width, height]: [i32; 2]) -> bool {
+        (2..2 + width).contains(&cell.x) && (2..2 + height).contains(&cell.y)
+    }
+
+    #[test]
+    fn only_what_came_and_went_as_a_thing_slows_a_robot() {
+        let passing = |size: [i32; 2]| watched(move |cell, time| is_in(cell, size) && time % 60 < 6);
+        // Once per minute, which 10 min of looking earn 25 times per hour or more of.
+        let [slow, keepout] = masks(&passing([6, 6]));
+        assert!((1..80).contains(&most(&slow)) && most(&keepout) == 0, "{}", most(&slow));
+        // Within 0.5 m alone.
+        let at = |x: i32| slow.cells()[(4 * 40 + x) as usize];
+        assert!(at(17) > 0 && at(18) == 0, "{} and {}", at(17), at(18));
+        // The front of a thing, and noise.
+        assert!(most(&masks(&passing([7, 1]))[0]) > 0);
+        for size in [[1, 1], [5, 1], [3, 3]] {
+            assert_eq!(masks(&passing(size)).map(|mask| most(&mask)), [0, 0], "{size:?}");
+        }
+        // At hours in which little happens.
+        assert_eq!(most(&speed_mask(&passing([6, 6]), |_| 0.1)), 0);
+    }
+
+    #[test]
+    fn what_came_to_stay_is_kept_out_of_and_slows_nobody() {
+        let came = |size: [i32; 2]| watched(move |cell, time| is_in(cell, size) && time > 100);
+        for (size, keepout) in [([6, 6], 100), ([6, 2], 100), ([20, 1], 100), ([1, 1], 0), ([11, 1], 0)] {
+            assert_eq!(masks(&came(size)).map(|mask| most(&mask)), [0, keepout], "{size:?}");
+        }
+    }
 }

@@ -91,7 +91,7 @@ impl FirstPass {
         settings.check()?;
         let finder = match settings.pose {
             PoseMode::Localized => Some(TrajectoryFinder::new(&TrajectorySettings::default())?),
-            PoseMode::Exact | PoseMode::Odometry => None,
+            PoseMode::Exact | PoseMode::Odometry | PoseMode::Corrected => None,
         };
         Ok(Self {
             settings: settings.clone(),

@@ -19,7 +19,8 @@ pub struct LogEntry {
     pub content: u128,
     /// Hashes of some of its scans, by which a part of it is recognised.
     pub(crate) scans: Vec<u64>,
-    /// What was used of it: the topics of scans and of odometry, and the frame of the robot.
+    /// What was used of it: the topics of scans, the topic of odometry and the frame of the map of another SLAM, and the frame of
+    /// the robot.
     pub choice: (Vec<String>, Option<String>, Option<String>),
     /// The time of its first reading, s after that of the first log.
     pub offset_s: f64,
@@ -51,12 +52,13 @@ impl LogEntry {
             let view_deg = (step_rad * beams.saturating_sub(1) as f64).to_degrees();
             format!("{beams} beams over {view_deg:.0}°")
         });
-        let TopicChoice { scan_topics, odom_topic, base_frame } = choice.clone();
+        let TopicChoice { scan_topics, odom_topic, base_frame, map_frame, .. } = choice.clone();
+        let poses = odom_topic.into_iter().chain(map_frame).reduce(|topic, frame| format!("{topic} {frame}"));
         Ok(Self {
             name,
             content: 0,
             scans: Vec::new(),
-            choice: (scan_topics, odom_topic, base_frame),
+            choice: (scan_topics, poses, base_frame),
             offset_s: 0.0,
             begin_s: summary.begin_s,
             duration_s: summary.duration_s,

@@ -57,6 +57,7 @@ const PROGRAMS: [Program; 8] = [
             ("--scan-topic", "/scan"),
             ("--odom-topic", "/odom"),
             ("--base-frame", "base_link"),
+            ("--map-frame", "map"),
             ("--pose", "guessed"),
             ("--resolution", "0"),
             ("--max-range", "nan"),

@@ -19,6 +19,7 @@ mod grid;
 mod houses;
 mod keyboard;
 mod map_log;
+mod map_log_poses;
 mod map_log_refusals;
 mod map_log_state;
 mod memory;

@@ -5,7 +5,7 @@ use crate::run::{Run, names};
 use std::fs;
 
 /// A folder with `a.mcap`: a robot with drifting odometry in a house, for this long.
-fn with_bag(seconds: u32) -> Run {
+pub(crate) fn with_bag(seconds: u32) -> Run {
     with_bag_of(100, seconds)
 }
 

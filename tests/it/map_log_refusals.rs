@@ -98,6 +98,20 @@ fn names_that_are_no_text() {
     assert_eq!(run.summary().at("/logs"), &serde_json::json!(["a b\n.log"]));
 }
 
+/// Poses of another SLAM, where there are none.
+#[test]
+fn corrected_poses_must_be_there() {
+    let run = Run::new().with_map_log();
+    run.write("a.log", &moving_log(120));
+    insta::assert_snapshot!(refuses(&run, "a.log --pose corrected", &["a.log"]), @"error: a.log: no corrected poses: those of the FLASER lines are those of the odometry (within 0.1 m and 0.05 rad), which --pose odometry uses; without --pose corrected, the poses are found from the scans");
+    insta::assert_snapshot!(refuses(&run, "a.log --map-frame map", &["a.log"]), @"error: --map-frame names the map of another SLAM, whose poses are used with --pose corrected alone: add that, or leave it out");
+    run.write("a.log", &standing_log(1.7e9, 40));
+    insta::assert_snapshot!(refuses(&run, "a.log --pose corrected --map-frame map", &["a.log"]), @"
+    note: a.log: the poses are those of the FLASER lines, which another SLAM has corrected
+    error: --map-frame is for bags, but a.log is a CARMEN log, which has no topics and frames: leave it out
+    ");
+}
+
 #[test]
 fn topics_are_for_bags() {
     let run = Run::new().with_map_log();
@@ -127,7 +141,7 @@ fn what_is_no_log_is_refused_and_nothing_is_written() {
     insta::assert_snapshot!(refuses(&run(), "gone.log", &[]), @"error: gone.log: No such file or directory (os error 2)");
     insta::assert_snapshot!(refused("a.log", b"hello\n", "a.log"), @"error: a.log: no line is a scan (FLASER or ROBOTLASER1): not a CARMEN log");
     insta::assert_snapshot!(refused("a.bag", b"#ROSBAG V2.0\n", "a.bag"), @"error: a.bag: a bag of ROS 1; convert it with `rosbags-convert --src FILE.bag --dst FOLDER` (from PyPI: pip install rosbags)");
-    insta::assert_snapshot!(refused("a.mcap", b"\x89MCAP0\r\n", "a.mcap"), @"error: a.mcap: no message: the bag is empty");
+    insta::assert_snapshot!(refused("a.mcap", b"\x89MCAP0\r\n", "a.mcap"), @"error: a.mcap: no message: the bag is empty; a.mcap has no end, since it is cut off or its recorder was stopped: what is whole before byte 8 of 8 was read");
     let scans = "FLASER 3 1.0 1.0 1.0 0 0 0 0 0 0 1.0 host 1.0\n";
     insta::assert_snapshot!(refused("a.log", scans.as_bytes(), "a.log --resolution 0"), @"
     error: invalid value '0' for '--resolution <METRES>': must be a number from 0.005 to 10

@@ -158,15 +158,14 @@ fn doors_have_hours_and_so_have_masks_and_edges() {
     let [noon, night] = [0, 1].map(|number| expected(&run.summary(), number));
     assert!(noon[0] > 0.5 && night[2] < 0.3, "{noon:?}, {night:?}");
     assert!([noon, night].iter().all(|found| found.is_sorted()), "{noon:?}, {night:?}");
-    // The closed leaf is kept out of at night only. The robot slows down for changes when the door opens.
+    // The closed leaf is kept out of at night only. A door that opens once a day slows no robot.
     let darkest = |mask: &str| {
         let picture = fs::read(run.out(&format!("{mask}.pgm"))).unwrap();
         *picture.iter().skip(20).min().unwrap()
     };
     assert_eq!(["keepout_mask_1", "keepout_mask_2"].map(darkest), [255, 0]);
     run.goes_well("a.state --at 2024-01-16T08:00 --at 2024-01-16T03:00");
-    let [opening, night] = ["speed_mask_1", "speed_mask_2"].map(darkest);
-    assert!(opening < night, "{opening}, {night}");
+    assert_eq!(["speed_mask_1", "speed_mask_2"].map(darkest), [255, 255]);
 
     // A place at the door and an edge through it are predicted as the door.
     let features = [node(0, 1.0, 0.1), node(1, 3.0, 0.1), edge(10, 0, 1)];

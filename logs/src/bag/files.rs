@@ -1,9 +1,11 @@
 //! The files of a bag: found out by content, put in order, unpacked.
 
-use super::{mcap, sqlite};
+use crate::archive;
 use crate::bounds::{self, Unpacked};
 use crate::bytes::Bytes;
 use crate::error::LogError;
+use crate::magic::{self, ZSTD};
+use crate::whole_part::WholePart;
 use serde::Deserialize;
 use std::fs::{self, DirEntry};
 use std::io::{self, Read, Seek, Write};
@@ -11,10 +13,6 @@ use std::path::{Component, Path};
 use std::sync::Arc;
 use tempfile::NamedTempFile;
 
-/// The first bytes of a file that is compressed with zstd.
-pub(super) const ZSTD: [u8; 4] = [0x28, 0xb5, 0x2f, 0xfd];
-/// The first bytes of a bag of ROS 1.
-const ROS1: &[u8] = b"#ROSBAG V";
 /// The largest `metadata.yaml`.
 const MAX_METADATA: u64 = 16 << 20;
 
@@ -25,6 +23,8 @@ pub(crate) struct BagFile {
     pub(crate) name: Arc<str>,
     pub(super) format: Format,
     pub(super) bytes: Bytes,
+    /// What is missing, if the file was compressed and is cut off.
+    pub(super) missing: Option<String>,
 }
 
 /// How a file stores messages.
@@ -38,8 +38,8 @@ impl Format {
     /// The format of a file that begins with these bytes.
     fn of(start: &[u8]) -> Option<Self> {
         match start {
-            _ if start.starts_with(&mcap::MAGIC) => Some(Self::Mcap),
-            _ if start.starts_with(&sqlite::MAGIC) => Some(Self::Sqlite),
+            _ if start.starts_with(&magic::MCAP) => Some(Self::Mcap),
+            _ if start.starts_with(&magic::SQLITE) => Some(Self::Sqlite),
             _ => None,
         }
     }
@@ -64,40 +64,50 @@ impl BagFile {
 
     pub(crate) fn recognised(name: Arc<str>, bytes: Bytes) -> io::Result<Option<Self>> {
         let start = bytes.start()?;
-        if start.starts_with(ROS1) {
-            let what = "a bag of ROS 1; convert it with `rosbags-convert --src FILE.bag --dst FOLDER` (from PyPI: pip install \
-                        rosbags)";
-            return Err(io::Error::new(io::ErrorKind::Unsupported, what));
-        }
         if let Some(format) = Format::of(&start) {
-            return Ok(Some(Self { name, format, bytes }));
+            return Ok(Some(Self { name, format, bytes, missing: None }));
+        }
+        if let Some(what) = archive::named(&bytes)? {
+            return Err(io::Error::new(io::ErrorKind::Unsupported, what));
         }
         if !start.starts_with(&ZSTD) {
             return Ok(None);
         }
-        let (format, file) = unpacked(&bytes)?;
-        Ok(Some(Self { name, format, bytes: Bytes::Unpacked(Arc::new(file)) }))
+        let (format, file, missing) = unpacked(&name, &bytes)?;
+        Ok(Some(Self { name, format, bytes: Bytes::Unpacked(Arc::new(file)), missing }))
     }
 }
 
-/// A temporary file with the bag that is in a compressed file.
-fn unpacked(bytes: &Bytes) -> io::Result<(Format, NamedTempFile)> {
+/// A temporary file with the bag that is in a compressed file, and what is missing if that is cut off.
+fn unpacked(name: &str, bytes: &Bytes) -> io::Result<(Format, NamedTempFile, Option<String>)> {
     let invalid = |what: String| io::Error::new(io::ErrorKind::InvalidData, what);
     let mut input = bytes.open()?;
     let packed = input.seek(io::SeekFrom::End(0))?;
     input.rewind()?;
     let folder = std::env::temp_dir();
     let decoder = Unpacked::new(zstd::stream::read::Decoder::new(input)?, packed, "zstd -d FILE");
-    let mut decoder = decoder.into_folder(&folder, bounds::free_bytes(&folder));
+    let mut decoder = WholePart::of(decoder.into_folder(&folder, bounds::free_bytes(&folder)));
     let mut start = Vec::new();
     decoder.by_ref().take(16).read_to_end(&mut start)?;
-    let format = Format::of(&start)
-        .ok_or_else(|| invalid("compressed with zstd, but what is in it is no bag".to_owned()))?;
+    let format = Format::of(&start).ok_or_else(|| {
+        invalid(match decoder.is_cut() {
+            true => format!("the zstd file is cut off after {packed} bytes, before a bag could be unpacked"),
+            false => "compressed with zstd, but what is in it is no bag".to_owned(),
+        })
+    })?;
     let mut file = NamedTempFile::new()?;
     file.write_all(&start)?;
     io::copy(&mut decoder, &mut file)?;
     file.flush()?;
-    Ok((format, file))
+    let missing = decoder.is_cut().then(|| {
+        let all = zstd::zstd_safe::get_frame_content_size(&bytes.start().unwrap_or_default()).ok().flatten();
+        let of = all.map(|all| format!(" of {all}")).unwrap_or_default();
+        format!(
+            "the zstd file {name} is cut off after {packed} bytes: the first {}{of} bytes could be unpacked",
+            decoder.count()
+        )
+    });
+    Ok((format, file, missing))
 }
 
 /// What we need of `metadata.yaml`.

@@ -9,12 +9,11 @@ use super::message::{Message, MessageSource, Selection, Topic};
 use crate::bounds::{MAX_CHUNK_GROWTH, MAX_NAME_BYTES, max_unpacked_bytes};
 use crate::bytes::{Bytes, Input};
 use crate::error::LogError;
+use crate::magic::MCAP as MAGIC;
 use std::collections::BTreeMap;
 use std::io::{self, BufReader, ErrorKind, Read, Seek, SeekFrom};
 use std::sync::Arc;
 
-/// The first bytes of a file.
-pub(super) const MAGIC: [u8; 8] = *b"\x89MCAP0\r\n";
 /// The codes of records.
 const FOOTER: u8 = 2;
 const SCHEMA: u8 = 3;
@@ -169,8 +168,8 @@ impl McapFile {
     fn cut(&mut self) {
         self.is_over = true;
         self.missing = Some(format!(
-            "{} has no end, since its recorder was stopped: what is whole before byte {} was read",
-            self.content.file, self.record
+            "{} has no end, since it is cut off or its recorder was stopped: what is whole before byte {} of {} was read",
+            self.content.file, self.record, self.size
         ));
     }
 }

@@ -1,10 +1,11 @@
 //! The messages of a bag, file by file.
 
-use super::files::{BagFile, Format, ZSTD};
+use super::files::{BagFile, Format};
 use super::mcap::McapFile;
 use super::message::{Message, MessageSource, Selection, Topic};
 use super::sqlite::SqliteFile;
 use crate::error::LogError;
+use crate::magic::ZSTD;
 use std::io::Read;
 use std::sync::Arc;
 use std::vec::IntoIter;

@@ -1,8 +1,11 @@
 //! What to use of a bag: which lasers, where they are mounted, and where the poses come from.
 
-use super::inventory::{Inventory, Kind, LaserTopic, OdometryTopic};
+use super::inventory::{Inventory, Kind, LaserTopic};
 use super::message::Topic;
-use crate::choice::{TopicChoice, bare};
+use super::motion::{self, Motion, MotionSource};
+use super::no_scans::no_scans;
+use super::slam;
+use crate::choice::{TopicChoice, bare, listed};
 use crate::ros::{Chain, Frames, is_odom, is_world, mounted};
 use crate::summary::PoseSource;
 
@@ -15,22 +18,14 @@ pub(super) struct Laser {
     pub(super) chain: Chain,
 }
 
-/// Where the poses come from.
-#[derive(Clone, Debug)]
-pub(super) enum MotionSource {
-    /// The messages of a topic.
-    Topic(String),
-    /// A transform, by its number.
-    Transform(usize),
-    Standing,
-}
-
 /// What to use of a bag.
 #[derive(Clone, Debug)]
 pub(super) struct Plan {
     pub(super) lasers: Vec<Laser>,
     pub(super) motion: MotionSource,
     pub(super) pose_source: PoseSource,
+    /// With poses of another SLAM, from the frame of its map to the one in which the motions are given.
+    pub(super) correction: Option<Chain>,
     /// From the frame whose poses are known to that of the robot.
     pub(super) to_base: Chain,
     /// With the first poses.
@@ -49,24 +44,13 @@ impl Plan {
         notes: &mut Vec<String>,
     ) -> Result<Self, String> {
         let lasers = chosen_lasers(found, choice, notes)?;
-        let odometry = chosen_odometry(found, choice)?;
         let frames = &found.frames;
-        let (motion, pose_source, moving_frame) = match odometry {
-            Some(odometry) => {
-                let source = PoseSource::OdometryTopic(odometry.topic.clone());
-                (MotionSource::Topic(odometry.topic.clone()), source, Some(odometry.child_frame.clone()))
-            }
-            None => match moving_edge(frames, &lasers, choice)? {
-                Some(index) => {
-                    let edge = frames.edge(index);
-                    let (odom_frame, base_frame) = (edge.parent.clone(), edge.child.clone());
-                    let moving = base_frame.clone();
-                    let source = PoseSource::Transforms { odom_frame, base_frame };
-                    (MotionSource::Transform(index), source, Some(moving))
-                }
-                None => (MotionSource::Standing, PoseSource::Standing, None),
-            },
-        };
+        let Motion { source: motion, pose_source, moving: moving_frame, correction, fixed } =
+            if choice.is_corrected {
+                slam::poses(found, &lasers, choice)?
+            } else {
+                motion::by_odometry(found, &lasers, choice)?
+            };
         let base = match (&choice.base_frame, &moving_frame) {
             (Some(base), _) => bare(base).to_owned(),
             (None, Some(moving)) if !moving.is_empty() => moving.clone(),
@@ -75,7 +59,7 @@ impl Plan {
         };
         let mut world: Vec<&str> =
             frames.names().into_iter().filter(|name| is_odom(name) || is_world(name)).collect();
-        world.extend(odometry.map(|odometry| odometry.odom_frame.as_str()));
+        world.extend(fixed.iter().map(String::as_str));
         let to_base = match &moving_frame {
             Some(moving) if !moving.is_empty() => frames.chain(moving, &base, &world).unwrap_or_else(|| {
                 notes.push(format!(
@@ -86,7 +70,7 @@ impl Plan {
             _ => Chain::new(),
         };
         let lasers = connected(frames, lasers, &base, &world, notes)?;
-        Ok(Self { lasers, motion, pose_source, to_base, frames: frames.clone() })
+        Ok(Self { lasers, motion, pose_source, correction, to_base, frames: frames.clone() })
     }
 
     /// Whether the messages of a topic are needed.
@@ -110,7 +94,7 @@ fn chosen_lasers<'a>(
 ) -> Result<Vec<&'a LaserTopic>, String> {
     let mut lasers: Vec<&LaserTopic> = found.lasers.iter().collect();
     if lasers.is_empty() {
-        return Err(no_scans(found));
+        return Err(no_scans(&found.topics));
     }
     if !choice.scan_topics.is_empty() {
         let is = |laser: &LaserTopic, name: &String| bare(&laser.topic) == bare(name);
@@ -137,61 +121,6 @@ fn chosen_lasers<'a>(
         }
     }
     Ok(kept)
-}
-
-fn no_scans(found: &Inventory) -> String {
-    let types = listed(found.topics.iter().map(|topic| match Kind::of(topic) {
-        Some(Kind::Scans) => topic.encoding.as_str(),
-        _ => topic.type_name.as_str(),
-    }));
-    match found.topics.iter().any(|topic| Kind::of(topic) == Some(Kind::Scans) && topic.encoding != "cdr") {
-        true => format!("the scans are not encoded as cdr, which is what is read; there are {types}"),
-        false if types.is_empty() => "no message: the bag is empty".to_owned(),
-        false => format!("no message of sensor_msgs/msg/LaserScan; there are {types}"),
-    }
-}
-
-/// The topic of odometry, if there is one.
-fn chosen_odometry<'a>(
-    found: &'a Inventory,
-    choice: &TopicChoice,
-) -> Result<Option<&'a OdometryTopic>, String> {
-    let topics = || listed(found.odometry.iter().map(|odometry| odometry.topic.as_str()));
-    match &choice.odom_topic {
-        Some(name) => {
-            let chosen = found.odometry.iter().find(|odometry| bare(&odometry.topic) == bare(name));
-            let missing = || {
-                let known = if found.odometry.is_empty() { "none".to_owned() } else { topics() };
-                format!("no odometry on the topic `{name}` of --odom-topic; there is {known}")
-            };
-            chosen.map(Some).ok_or_else(missing)
-        }
-        None if found.odometry.len() > 1 => Err(format!(
-            "several topics of odometry: {}; choose one with --odom-topic (other choices: --scan-topic, --base-frame)",
-            topics()
-        )),
-        None => Ok(found.odometry.first()),
-    }
-}
-
-/// The transform that is the odometry: from a frame of odometry, or of the world, to the robot.
-fn moving_edge(
-    frames: &Frames,
-    lasers: &[&LaserTopic],
-    choice: &TopicChoice,
-) -> Result<Option<usize>, String> {
-    let starts = choice.base_frame.iter().map(|base| bare(base));
-    for start in starts.chain(lasers.iter().map(|laser| laser.frame.as_str())) {
-        let above = frames.above(start)?;
-        let by_name = |is: fn(&str) -> bool| {
-            above.iter().find(|index| is(&frames.edge(**index).parent) && frames.edge(**index).poses > 1)
-        };
-        let moving = || above.iter().rev().find(|index| frames.edge(**index).moves);
-        if let Some(index) = by_name(is_odom).or_else(|| by_name(is_world)).or_else(moving) {
-            return Ok(Some(*index));
-        }
-    }
-    Ok(None)
 }
 
 /// The frame of a robot that is not named: one above its first laser with the usual name, or what all lasers are mounted on.
@@ -236,16 +165,4 @@ fn connected(
     }
     notes.extend(refused.into_iter().map(|why| format!("{why}: left out")));
     Ok(kept)
-}
-
-/// Names for a sentence, at most ten.
-fn listed<'a>(names: impl Iterator<Item = &'a str>) -> String {
-    const MAX: usize = 10;
-    let mut names: Vec<String> = names.map(str::to_owned).collect();
-    names.sort();
-    names.dedup();
-    let more = names.len().saturating_sub(MAX);
-    names.truncate(MAX);
-    let rest = if more > 0 { format!(" and {more} more") } else { String::new() };
-    names.join(", ") + &rest
 }

@@ -3,7 +3,9 @@
 use super::inventory::Kind;
 use super::message::Message;
 use super::messages::Messages;
-use super::plan::{Laser, MotionSource, Plan};
+use super::motion::MotionSource;
+use super::plan::{Laser, Plan};
+use super::slam::Corrections;
 use crate::cdr;
 use crate::choice::bare;
 use crate::doubts::{self, Doubts};
@@ -53,6 +55,8 @@ pub(super) struct Counts {
     pub(super) first_invalid: Option<String>,
     pub(super) poses: usize,
     pub(super) invalid_poses: usize,
+    /// Scans at times at which another SLAM gives no pose.
+    pub(super) without_pose: usize,
     pub(super) doubts: Doubts,
 }
 
@@ -75,6 +79,8 @@ pub(super) struct RawReadings {
     /// The time of the last pose, s.
     last_pose_s: Option<f64>,
     frames: Frames,
+    /// `None`: the poses are those of the odometry.
+    corrections: Option<Corrections>,
     waiting: VecDeque<Waiting>,
     /// The number of scans before the clock was set: they do not wait any longer.
     overdue: usize,
@@ -87,14 +93,17 @@ pub(super) struct RawReadings {
 
 impl RawReadings {
     pub(super) fn new(messages: Messages, plan: &Arc<Plan>, clock: Clock) -> Self {
+        let corrections = plan.correction.as_ref().map(|chain| Corrections::new(chain, &plan.frames));
+        let odometry = if corrections.is_some() { Odometry::as_written() } else { Odometry::default() };
         Self {
             messages,
             plan: plan.clone(),
             clock,
-            odometry: Odometry::default(),
+            odometry,
             speeds: Speeds::default(),
             last_pose_s: None,
             frames: plan.frames.clone(),
+            corrections,
             waiting: VecDeque::new(),
             overdue: 0,
             newest_s: f64::NEG_INFINITY,
@@ -112,13 +121,24 @@ impl RawReadings {
         }
         let has_come = |laser| self.waiting.iter().any(|scan| scan.laser == laser);
         let is_first = self.newest_s > first.time_s + DISORDER_S || (0..self.plan.lasers.len()).all(has_come);
-        is_first && !self.odometry.must_wait(first.time_s, self.newest_s)
+        // A SLAM corrects itself by a scan after it.
+        let is_corrected = self.corrections.is_none() || self.newest_s > first.time_s + DISORDER_S;
+        is_first && is_corrected && !self.odometry.must_wait(first.time_s, self.newest_s)
     }
 
-    fn reading(&mut self, Waiting { time_s, laser, mount, scan }: Waiting) -> LaserReading {
+    /// The reading of a scan; `None` if its pose should be that of another SLAM, and is not known.
+    fn reading(&mut self, Waiting { time_s, laser, mount, scan }: Waiting) -> Option<LaserReading> {
         self.overdue = self.overdue.saturating_sub(1);
+        let correction = self.corrections.as_ref().and_then(|corrections| corrections.at(time_s));
+        if self.corrections.is_some() && (correction.is_none() || !self.odometry.knows(time_s)) {
+            self.counts.without_pose += 1;
+            return None;
+        }
         self.odometry.note_scan(time_s);
-        let reading = self.odometry.reading(time_s, mount, scan);
+        let mut reading = self.odometry.reading(time_s, mount, scan);
+        if let Some(correction) = correction {
+            reading.pose = correction * reading.pose;
+        }
         // The last one may have been moved by as many turns as there are lasers.
         let same_s = -TURN_S * self.plan.lasers.len() as f64..TURN_S;
         let is_same = |(last_s, last): (f64, usize)| last != laser && same_s.contains(&(time_s - last_s));
@@ -127,12 +147,17 @@ impl RawReadings {
             None => time_s,
         };
         self.last = Some((time_s, laser));
-        LaserReading { time_s, ..reading }
+        Some(LaserReading { time_s, ..reading })
     }
 
     /// The first pose of the odometry, in its own frame.
     pub(super) fn origin(&self) -> Isometry2<f64> {
         self.odometry.origin()
+    }
+
+    /// The corrections of another SLAM in words, with times after `begin_s`; `None` if the poses are those of the odometry.
+    pub(super) fn corrections(&self, begin_s: f64) -> Option<String> {
+        Some(self.corrections.as_ref()?.described(self.odometry.jumps(), begin_s))
     }
 
     /// As [`Odometry::impossible`] and [`Speeds::impossible`].
@@ -199,6 +224,10 @@ impl RawReadings {
                 continue;
             };
             let edge = self.frames.set(&found.header.frame_id, &found.child_frame_id, pose)?;
+            if let Some(corrections) = &mut self.corrections {
+                let times_s = [self.clock.time_s(&found.header, message), self.newest_s];
+                corrections.note(edge, &self.frames, times_s, &self.odometry.newest().0);
+            }
             if matches!(self.plan.motion, MotionSource::Transform(index) if index == edge) {
                 self.take_pose(&found.header, message, &found.transform);
             }
@@ -227,7 +256,11 @@ impl log::RawReadings for RawReadings {
     fn next_reading(&mut self) -> Result<Option<LaserReading>, LogError> {
         loop {
             if self.is_ripe() {
-                return Ok(self.waiting.pop_front().map(|scan| self.reading(scan)));
+                let reading = self.waiting.pop_front().and_then(|scan| self.reading(scan));
+                if reading.is_some() {
+                    return Ok(reading);
+                }
+                continue;
             }
             if self.is_over {
                 return Ok(None);

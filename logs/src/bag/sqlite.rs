@@ -9,8 +9,6 @@ use std::collections::{BTreeMap, VecDeque};
 use std::io;
 use std::sync::Arc;
 
-/// The first bytes of a file.
-pub(super) const MAGIC: [u8; 16] = *b"SQLite format 3\0";
 /// Messages that are read at once, and their bytes.
 const PAGE_ROWS: u32 = 64;
 const PAGE_BYTES: usize = 8 << 20;

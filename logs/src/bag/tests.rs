@@ -1,6 +1,7 @@
 mod bounds;
 mod builder;
 mod choices;
+mod corrected;
 mod faults;
 mod fuzz;
 mod reading;

@@ -27,10 +27,25 @@ pub(super) fn of(lines: &mut Lines) -> Result<(Rules, Vec<f64>, LogSummary), Log
         inspection.add(line, lines)?;
     }
     if inspection.times_s.is_empty() {
-        let why = "no line is a scan (FLASER or ROBOTLASER1): not a CARMEN log".to_owned();
+        let why = match lines.cut() {
+            Some((packed, unpacked)) => format!(
+                "the gzip file is cut off after {packed} bytes, and the {unpacked} bytes of text that could be unpacked have no \
+                 whole scan (FLASER or ROBOTLASER1)"
+            ),
+            None => "no line is a scan (FLASER or ROBOTLASER1): not a CARMEN log".to_owned(),
+        };
         return Err(LogError::Unusable { file: lines.file.clone(), why });
     }
-    Ok(inspection.summarized())
+    let (rules, times_s, mut summary) = inspection.summarized();
+    if let Some((packed, unpacked)) = lines.cut() {
+        let note = format!(
+            "the gzip file is cut off after {packed} bytes, and the rest is missing: {} lines ({unpacked} bytes of text) could be \
+             read, up to {:.1} s after the first scan",
+            lines.number, summary.duration_s
+        );
+        summary.notes.insert(0, note);
+    }
+    Ok((rules, times_s, summary))
 }
 
 /// The lines of a log so far.
@@ -161,7 +176,8 @@ impl Inspection {
             notes,
             impossible,
         };
-        (Rules { geometry, has_times, has_origins, is_corrected, stands }, times_s, summary)
+        let rules = Rules { geometry, has_times, has_origins, is_corrected, stands, takes_scan_poses: false };
+        (rules, times_s, summary)
     }
 }
 

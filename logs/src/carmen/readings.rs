@@ -38,16 +38,19 @@ impl Readings {
         if has_times && !now && self.odometry.must_wait(time_s, now_s) {
             return None;
         }
-        let ScanLine { scan, .. } = self.waiting.pop_front()?;
+        let ScanLine { scan, reference, .. } = self.waiting.pop_front()?;
         let mount = interfaces::pose(geometry.offset_m, 0.0, 0.0);
         if has_times {
             self.odometry.note_scan(time_s);
         }
-        let reading = self.odometry.reading(time_s, mount, scan);
-        if has_times {
-            return Some(reading);
+        let mut reading = self.odometry.reading(time_s, mount, scan);
+        if !has_times {
+            reading = LaserReading { pose: self.odometry.newest().0, twist: Twist::STOP, ..reading };
         }
-        Some(LaserReading { pose: self.odometry.newest().0, twist: Twist::STOP, ..reading })
+        if let Some(laser) = reference.filter(|_| self.rules.takes_scan_poses) {
+            reading.pose = laser * mount.inverse();
+        }
+        Some(reading)
     }
 }
 

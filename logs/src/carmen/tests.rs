@@ -1,6 +1,9 @@
+mod corrected;
+
 use super::CarmenLog;
 use crate::Log;
 use crate::bytes::Bytes;
+use crate::choice::TopicChoice;
 use crate::error::LogError;
 use flate2::Compression;
 use flate2::write::GzEncoder;
@@ -9,7 +12,7 @@ use proptest::prelude::*;
 use std::io::Write;
 
 fn open(file: &str, bytes: &[u8]) -> Result<Log, LogError> {
-    CarmenLog::open(file, Bytes::Memory(bytes.into()))
+    CarmenLog::open(file, Bytes::Memory(bytes.into()), &TopicChoice::default())
 }
 
 /// A log of 180 readings per scan.
@@ -137,7 +140,9 @@ fn errors_name_the_file_and_the_line() {
         error("ODOM 1 nan 0 0 0 0 1 h 1\n"),
         "test.log:1: ODOM: `nan` is no valid value for x, y and theta"
     );
-    let missing = CarmenLog::open("no/such.log", Bytes::File("no/such.log".into())).unwrap_err().to_string();
+    let missing = CarmenLog::open("no/such.log", Bytes::File("no/such.log".into()), &TopicChoice::default())
+        .unwrap_err()
+        .to_string();
     assert!(missing.starts_with("no/such.log: "), "{missing}");
 }
 

@@ -61,7 +61,7 @@ pub(crate) struct Args {
     pub(crate) tour: Option<PathBuf>,
 
     /// How the robot knows its pose [default: exact where the world's odometry is exact, otherwise localized]
-    #[arg(long, value_parser = pose_mode(pose_in_world), help_heading = "Robot")]
+    #[arg(long, value_parser = pose_mode(&PoseMode::LIVE, pose_in_world), help_heading = "Robot")]
     pub(crate) pose: Option<PoseMode>,
 
     /// With a localized pose: the time without an agreeing scan after which the robot is lost, and looks around and searches for

@@ -13,8 +13,10 @@ use survey::{LogEntry, SavedLogs, SurveySettings};
 
 /// Maps the logs of a robot: where the place changes, how often, and when last.
 ///
-/// A log is a CARMEN log, plain or compressed with gzip, or a bag of ROS 2: a folder, an MCAP file or an SQLite file. Its
-/// trajectory is found from the scans and the odometry; a laser that stands needs neither. Several logs are those of one
+/// A log is a CARMEN log, plain or compressed with gzip, or a bag of ROS 2: a folder, an MCAP file or an SQLite file. Of a file
+/// that is cut off, what is whole is read. Its
+/// trajectory is found from the scans and the odometry; a laser that stands needs neither, and the poses of another SLAM can be used
+/// (--pose corrected). Several logs are those of one
 /// place: they are read in the order of their times, and later ones find their place in the map of the first. With --state,
 /// later logs can follow in a later run, which gives the same maps and rates as one run with all logs.
 ///
@@ -57,8 +59,12 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FRAME", help_heading = "Bags")]
     pub(crate) base_frame: Option<String>,
 
+    /// With --pose corrected, the frame of the map of the other SLAM in a bag [default: map]
+    #[arg(long, value_name = "FRAME", help_heading = "Bags")]
+    pub(crate) map_frame: Option<String>,
+
     /// How the poses are known [default: exact for a laser that stands, otherwise localized]
-    #[arg(long, value_parser = pose_mode(pose_in_log), help_heading = "Poses")]
+    #[arg(long, value_parser = pose_mode(&PoseMode::ALL, pose_in_log), help_heading = "Poses")]
     pub(crate) pose: Option<PoseMode>,
 
     /// The side of a cell, m
@@ -155,17 +161,36 @@ fn pose_in_log(mode: PoseMode) -> &'static str {
         PoseMode::Exact => "The poses of the log, which are exact",
         PoseMode::Odometry => "The poses of the odometry, with their drift: the map becomes wrong",
         PoseMode::Localized => "The trajectory is found from the scans",
+        PoseMode::Corrected => {
+            "The poses of another SLAM: of the FLASER lines of a corrected CARMEN log, or of tf from --map-frame to the robot"
+        }
     }
 }
 
 impl Args {
-    /// What to use of bags.
-    pub(crate) fn topics(&self) -> TopicChoice {
-        TopicChoice {
+    /// How the poses are known, as this run or the one before says it.
+    fn pose(&self, saved: Option<&SavedLogs>) -> Option<PoseMode> {
+        self.pose.or(saved.map(|saved| saved.pose))
+    }
+
+    /// What to use of logs, after those of a state.
+    ///
+    /// # Errors
+    ///
+    /// When a map is named whose poses are not used.
+    pub(crate) fn topics(&self, saved: Option<&SavedLogs>) -> anyhow::Result<TopicChoice> {
+        let is_corrected = self.pose(saved) == Some(PoseMode::Corrected);
+        ensure!(
+            is_corrected || self.map_frame.is_none(),
+            "--map-frame names the map of another SLAM, whose poses are used with --pose corrected alone: add that, or leave it out"
+        );
+        Ok(TopicChoice {
             scan_topics: self.scan_topic.clone(),
             odom_topic: self.odom_topic.clone(),
             base_frame: self.base_frame.clone(),
-        }
+            is_corrected,
+            map_frame: self.map_frame.clone(),
+        })
     }
 
     /// The settings of the survey of these logs, after the logs of a state and in its time zone.
@@ -180,15 +205,12 @@ impl Args {
         let mut logs: Vec<&LogEntry> = earlier.iter().map(|log| &log.entry).collect();
         logs.extend(given.filter(|given| earlier.iter().all(|log| log.entry.content != given.content)));
         let stands = logs.iter().all(|log| log.stands);
-        let default = match saved {
-            Some(saved) => saved.pose,
-            None if stands => PoseMode::Exact,
-            None => PoseMode::Localized,
-        };
-        let mut settings = SurveySettings::of(self.pose.unwrap_or(default));
+        let default = if stands { PoseMode::Exact } else { PoseMode::Localized };
+        let mut settings = SurveySettings::of(self.pose(saved).unwrap_or(default));
         ensure!(
-            stands || logs.len() == 1 || settings.pose == PoseMode::Localized,
-            "the poses of each log begin at its own origin: several logs of a robot that moves need --pose localized"
+            stands || logs.len() == 1 || settings.pose.is_consistent(),
+            "the poses of each log begin at its own origin: several logs of a robot that moves need --pose localized, or \
+             corrected"
         );
         settings.resolution_m = self.resolution;
         settings.filter.max_range_m = self.max_range;

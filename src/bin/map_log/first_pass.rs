@@ -3,9 +3,9 @@
 use crate::Job;
 use crate::survey_state_file::SurveyStateFile;
 use anyhow::Error;
+use curious::busy::Busy;
 use curious::program::{Failure, input};
 use curious::progress::Progress;
-use interfaces::PoseMode;
 use std::ops::ControlFlow;
 use survey::{PassError, Stage, Survey, Verdict};
 
@@ -20,18 +20,22 @@ pub(crate) fn routes(
         if log < survey.logs().len() {
             continue;
         }
-        let can_align = source.entry.stands || job.settings.pose == PoseMode::Localized;
+        let can_align = source.entry.stands || job.settings.pose.is_consistent();
         let is_followed = can_align && (state_file.is_kept() || number + 1 < job.sources.len());
-        let mut bar = None;
+        let mut shown = Shown::Nothing;
         let watch = |(stage, readings)| {
-            match readings {
-                0 => bar = begin(job, number, stage, bar.take()),
-                _ => bar.as_ref().map_or((), Progress::step),
+            match (readings, &shown) {
+                (0, _) => {
+                    drop(std::mem::replace(&mut shown, Shown::Nothing)); // below the finished bar of the stage before
+                    shown = begin(job, number, stage);
+                }
+                (_, Shown::Readings(bar)) => bar.step(),
+                _ => {}
             }
             if job.is_interrupted() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         };
         let found = survey.first_pass(&source.log, source.entry.clone(), is_followed, watch);
-        drop(bar);
+        drop(shown);
         match found {
             Ok(()) if survey.verdict() == Verdict::NotUsable && !job.args.accept_map => {
                 if state_file.is_kept() {
@@ -50,9 +54,15 @@ pub(crate) fn routes(
     Ok(true)
 }
 
-/// Reports that a stage begins, below the finished bar of the stage before. Gives the bar of this stage.
-fn begin(job: &Job, number: usize, stage: Stage, before: Option<Progress>) -> Option<Progress> {
-    drop(before);
+/// What is shown of a stage.
+enum Shown {
+    Nothing,
+    Readings(Progress),
+    Work { _busy: Busy },
+}
+
+/// Reports that a stage begins, and shows it.
+fn begin(job: &Job, number: usize, stage: Stage) -> Shown {
     let what = match stage {
         Stage::Trajectory => "first pass",
         Stage::Loops => "closing loops",
@@ -61,5 +71,10 @@ fn begin(job: &Job, number: usize, stage: Stage, before: Option<Progress>) -> Op
     };
     let source = &job.sources[number];
     job.say(format_args!("{}: {what}", source.entry.name));
-    (stage != Stage::Loops).then(|| Progress::of_count(source.log.summary().scans, "scans", job.args.quiet))
+    match stage {
+        Stage::Loops => {
+            Shown::Work { _busy: Busy::with(format!("{}: {what}", source.entry.name), job.args.quiet) }
+        }
+        _ => Shown::Readings(Progress::of_count(source.log.summary().scans, "scans", job.args.quiet)),
+    }
 }

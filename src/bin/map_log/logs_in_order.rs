@@ -1,6 +1,7 @@
 //! The logs of one place, in the order of their times.
 
 use anyhow::{bail, ensure};
+use curious::busy::Busy;
 use curious::terminal::say;
 use logs::{Log, TopicChoice};
 use std::io::stderr;
@@ -19,9 +20,18 @@ pub(crate) struct Source {
 
 /// Opens all logs, and puts them in the order of their times. Notes go to the error output. `is_kept`: whether a log must
 /// be recognised in a later run.
-pub(crate) fn open(files: &[PathBuf], choice: &TopicChoice, is_kept: bool) -> anyhow::Result<Vec<Source>> {
+pub(crate) fn open(
+    files: &[PathBuf],
+    choice: &TopicChoice,
+    is_kept: bool,
+    is_quiet: bool,
+) -> anyhow::Result<Vec<Source>> {
     let open = |file: &PathBuf| {
-        let log = Log::open(file, choice)?;
+        let busy = || Busy::with(format!("reading {}", file.display()), is_quiet);
+        let reading = busy();
+        let log = Log::open(file, choice);
+        drop(reading);
+        let log = log?;
         log.summary()
             .notes
             .iter()
@@ -31,6 +41,7 @@ pub(crate) fn open(files: &[PathBuf], choice: &TopicChoice, is_kept: bool) -> an
         }
         let mut entry = LogEntry::of(short_name(file), &log, choice)?;
         if is_kept || files.len() > 1 {
+            let _reading = busy();
             entry.recognise(&log)?;
         }
         Ok(Source { log, entry })
@@ -50,6 +61,7 @@ fn check_choice(sources: &[Source], choice: &TopicChoice) -> anyhow::Result<()> 
         ("--scan-topic", !choice.scan_topics.is_empty()),
         ("--odom-topic", choice.odom_topic.is_some()),
         ("--base-frame", choice.base_frame.is_some()),
+        ("--map-frame", choice.map_frame.is_some()),
     ];
     let given = flags.iter().find(|(_, is_given)| *is_given);
     for Source { entry, .. } in sources.iter().filter(|source| source.log.summary().scan_topics.is_empty()) {
@@ -100,7 +112,7 @@ pub(crate) fn continued(
             _ if log.is_finished() || used == 0 => {}
             Some(source) => ensure!(
                 source.entry.choice == log.entry.choice,
-                "{name}: {used} of its {all} scans are learned with other --scan-topic, --odom-topic or --base-frame"
+                "{name}: {used} of its {all} scans are learned with other --scan-topic, --odom-topic, --base-frame or --map-frame"
             ),
             None if leaves_rest => survey.leave_rest(number),
             None => bail!(

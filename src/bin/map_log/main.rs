@@ -71,9 +71,10 @@ fn run(args: &Args) -> Result<ExitCode, Failure> {
     let (out, mcap, state) = (Some(args.out.as_path()), args.mcap.as_deref(), args.state.as_deref());
     check_distinct(&[("--out", out), ("--mcap", mcap), ("--state", state)]).map_err(input)?;
     let (mut state_file, loaded) = SurveyStateFile::open(args)?;
-    let given = logs_in_order::open(&args.files, &args.topics(), state_file.is_kept()).map_err(input)?;
     let (logs, zone) =
         (loaded.as_ref().map(|loaded| &loaded.logs), loaded.as_ref().and_then(Loaded::time_zone));
+    let choice = args.topics(logs).map_err(input)?;
+    let given = logs_in_order::open(&args.files, &choice, state_file.is_kept(), args.quiet).map_err(input)?;
     let settings = args.settings(&given, logs, zone).map_err(input)?;
     let mut survey = state_file.survey(loaded, &settings, args.noise)?;
     let first = given.first().cloned().context("no log is given").map_err(input)?;

@@ -4,6 +4,7 @@ use crate::Job;
 use crate::survey_state_file::SurveyStateFile;
 use anyhow::{Context, anyhow};
 use curious::bag::RunBag;
+use curious::busy::Busy;
 use curious::program::{Failure, input};
 use curious::progress::Progress;
 use curious::terminal::say;
@@ -107,7 +108,10 @@ impl Learned {
             0 => job.say(format_args!("{name}: learning what changes")),
             _ => job.say(format_args!("{name}: learning what changes, from scan {} on", used + 1)),
         }
-        let replay = survey.replay(log, &source.log).map_err(input)?;
+        let busy = Busy::with(format!("{name}: what beams without a return mean"), job.args.quiet);
+        let replay = survey.replay(log, &source.log).map_err(input);
+        drop(busy);
+        let replay = replay?;
         let changed = || input(anyhow!("{name}: the log has changed since the first pass"));
         let mut replay = replay.ok_or_else(changed)?;
         for scanner in survey.no_returns().into_iter().filter(|scanner| scanner.silent > 0) {

@@ -166,6 +166,7 @@ impl fmt::Display for Summary {
             PoseMode::Exact => "poses of the log",
             PoseMode::Odometry => "odometry, with its drift",
             PoseMode::Localized => "localized",
+            PoseMode::Corrected => "corrected by another SLAM",
         };
         writeln!(
             f,

@@ -104,6 +104,20 @@ fn what_is_there_instead_of_scans_is_said() {
         bag.refused(),
         "test: no message of sensor_msgs/msg/LaserScan; there are tf2_msgs/msg/TFMessage"
     );
+    let mut points = bag.clone();
+    points.messages.push(("/velodyne_points".into(), "sensor_msgs/msg/PointCloud2".into(), 0, Vec::new()));
+    let expected = "test: no scan of a plane (sensor_msgs/msg/LaserScan), but points in 3D (sensor_msgs/msg/PointCloud2 on \
+                    /velodyne_points), which are not read: play the bag through `ros2 run pointcloud_to_laserscan \
+                    pointcloud_to_laserscan_node --ros-args -r cloud_in:=/velodyne_points -p target_frame:=base_link -p \
+                    min_height:=0.1 -p max_height:=0.5`, and record /scan, /tf, /tf_static and the odometry (`ros2 bag record`)";
+    assert_eq!(points.refused(), expected);
+    let mut echoes = bag.clone();
+    echoes.messages.push(("/echoes".into(), "sensor_msgs/msg/MultiEchoLaserScan".into(), 0, Vec::new()));
+    assert!(
+        echoes.refused().contains("(sensor_msgs/msg/MultiEchoLaserScan on /echoes)"),
+        "{}",
+        echoes.refused()
+    );
     bag.scan("/scan", 0.0, &scan(0.0, "laser"));
     bag.encoding = Some("ros1".to_owned());
     let expected = "test: the scans are not encoded as cdr, which is what is read; there are ros1, \

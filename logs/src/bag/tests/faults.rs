@@ -34,9 +34,11 @@ fn what_is_whole_of_a_file_without_its_end_is_read() {
         let bag = open(&bytes[..data_end], &TopicChoice::default()).unwrap();
         assert_eq!(readings(&bag).len(), 20);
         let note = format!(
-            "test has no end, since its recorder was stopped: what is whole before byte {data_end} was read"
+            "test has no end, since it is cut off or its recorder was stopped: what is whole before byte {data_end} of {data_end} \
+             was read"
         );
-        assert_eq!(bag.summary().notes, [note]);
+        let end = "what could be read ends 1.9 s after the first scan";
+        assert_eq!(bag.summary().notes, [&note[..], end]);
         let mut zeros = bytes[..data_end].to_vec();
         zeros.resize(data_end + 4096, 0);
         assert_eq!(open(&zeros, &TopicChoice::default()).unwrap().summary().scans, 20);
@@ -46,6 +48,42 @@ fn what_is_whole_of_a_file_without_its_end_is_read() {
     let bag = open(&bytes[..chunk + 1500], &TopicChoice::default()).unwrap();
     let scans = readings(&bag).len();
     assert!((5..20).contains(&scans), "{scans} scans");
+    let expected = "test: no message: the bag is empty; test has no end, since it is cut off or its recorder was stopped: what is \
+                    whole before byte 8 of 10 was read";
+    assert_eq!(refused(&bytes[..10]), expected);
+}
+
+#[test]
+fn what_is_whole_of_a_file_that_is_cut_off_while_it_is_compressed_is_read() {
+    let mut bag = standing();
+    for step in 20..3000 {
+        let time_s = f64::from(step) * 0.1;
+        let ranges =
+            (0..50).map(|beam| 1.0 + ((step * 7919 + beam * 104_729) % 4001) as f32 * 1e-3).collect();
+        bag.scan("/scan", time_s, &LaserScan { ranges, ..scan(time_s, "laser") });
+    }
+    let whole = bag.mcap(plain().chunk_size(Some(10_000)));
+    let packed = zstd::encode_all(&whole[..], 0).unwrap();
+    let half = &packed[..packed.len() / 2];
+    let found = open(half, &TopicChoice::default()).unwrap();
+    let scans = readings(&found).len();
+    assert!((100..2900).contains(&scans), "{scans} scans");
+    let [zstd, mcap, end] = &found.summary().notes[..] else { panic!("{:?}", found.summary().notes) };
+    let expected = format!("the zstd file test is cut off after {} bytes: the first ", half.len());
+    assert!(zstd.starts_with(&expected) && zstd.ends_with(" bytes could be unpacked"), "{zstd}");
+    assert!(mcap.starts_with("test has no end, since it is cut off or"), "{mcap}");
+    let duration_s = found.summary().duration_s;
+    assert_eq!(*end, format!("what could be read ends {duration_s:.1} s after the first scan"));
+    assert!(duration_s > 9.0);
+    let expected = "test: the zstd file is cut off after 12 bytes, before a bag could be unpacked";
+    assert_eq!(refused(&packed[..12]), expected);
+    let database = zstd::encode_all(&bag.sqlite()[..], 0).unwrap();
+    let error = refused(&database[..database.len() / 2]);
+    assert!(
+        error.contains("the database is damaged: ")
+            && error.contains("; the zstd file test is cut off after "),
+        "{error}"
+    );
 }
 
 #[test]

@@ -1,0 +1,98 @@
+//! Where the motions of the robot of a bag come from: the odometry.
+
+use super::inventory::{Inventory, LaserTopic, OdometryTopic};
+use crate::choice::{TopicChoice, bare, listed};
+use crate::ros::{Chain, Frames, is_odom, is_world};
+use crate::summary::PoseSource;
+
+/// Where the motions come from.
+#[derive(Clone, Debug)]
+pub(super) enum MotionSource {
+    /// The messages of a topic.
+    Topic(String),
+    /// A transform, by its number.
+    Transform(usize),
+    Standing,
+}
+
+/// How the pose of a frame of the robot is known.
+pub(super) struct Motion {
+    pub(super) source: MotionSource,
+    pub(super) pose_source: PoseSource,
+    /// The frame whose pose is known.
+    pub(super) moving: Option<String>,
+    /// From the frame of the map of another SLAM to the one in which the motions are given; `None`: odometry alone.
+    pub(super) correction: Option<Chain>,
+    /// Frames that do not move with the robot.
+    pub(super) fixed: Vec<String>,
+}
+
+/// The motions by odometry: of its topic, or of a transform.
+pub(super) fn by_odometry(
+    found: &Inventory,
+    lasers: &[&LaserTopic],
+    choice: &TopicChoice,
+) -> Result<Motion, String> {
+    let of =
+        |source, pose_source, moving, fixed| Motion { source, pose_source, moving, correction: None, fixed };
+    if let Some(OdometryTopic { topic, odom_frame, child_frame }) = chosen_odometry(found, choice)? {
+        let pose_source = PoseSource::OdometryTopic(topic.clone());
+        let (moving, fixed) = (Some(child_frame.clone()), vec![odom_frame.clone()]);
+        return Ok(of(MotionSource::Topic(topic.clone()), pose_source, moving, fixed));
+    }
+    let Some(index) = moving_edge(&found.frames, lasers, choice)? else {
+        return Ok(of(MotionSource::Standing, PoseSource::Standing, None, Vec::new()));
+    };
+    let edge = found.frames.edge(index);
+    let (odom_frame, base_frame) = (edge.parent.clone(), edge.child.clone());
+    let moving = Some(base_frame.clone());
+    Ok(of(
+        MotionSource::Transform(index),
+        PoseSource::Transforms { odom_frame, base_frame },
+        moving,
+        Vec::new(),
+    ))
+}
+
+/// The topic of odometry, if there is one.
+pub(super) fn chosen_odometry<'a>(
+    found: &'a Inventory,
+    choice: &TopicChoice,
+) -> Result<Option<&'a OdometryTopic>, String> {
+    let topics = || listed(found.odometry.iter().map(|odometry| odometry.topic.as_str()));
+    match &choice.odom_topic {
+        Some(name) => {
+            let chosen = found.odometry.iter().find(|odometry| bare(&odometry.topic) == bare(name));
+            let missing = || {
+                let known = if found.odometry.is_empty() { "none".to_owned() } else { topics() };
+                format!("no odometry on the topic `{name}` of --odom-topic; there is {known}")
+            };
+            chosen.map(Some).ok_or_else(missing)
+        }
+        None if found.odometry.len() > 1 => Err(format!(
+            "several topics of odometry: {}; choose one with --odom-topic (other choices: --scan-topic, --base-frame)",
+            topics()
+        )),
+        None => Ok(found.odometry.first()),
+    }
+}
+
+/// The transform that is the odometry: from a frame of odometry, or of the world, to the robot.
+fn moving_edge(
+    frames: &Frames,
+    lasers: &[&LaserTopic],
+    choice: &TopicChoice,
+) -> Result<Option<usize>, String> {
+    let starts = choice.base_frame.iter().map(|base| bare(base));
+    for start in starts.chain(lasers.iter().map(|laser| laser.frame.as_str())) {
+        let above = frames.above(start)?;
+        let by_name = |is: fn(&str) -> bool| {
+            above.iter().find(|index| is(&frames.edge(**index).parent) && frames.edge(**index).poses > 1)
+        };
+        let moving = || above.iter().rev().find(|index| frames.edge(**index).moves);
+        if let Some(index) = by_name(is_odom).or_else(|| by_name(is_world)).or_else(moving) {
+            return Ok(Some(*index));
+        }
+    }
+    Ok(None)
+}

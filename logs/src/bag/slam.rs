@@ -1,0 +1,149 @@
+//! The poses of another SLAM in the transforms of a bag (REP-105): from the frame of its map to that of the odometry, which jumps
+//! where the SLAM corrects itself, and from there to the robot, which is smooth.
+
+use super::inventory::{Inventory, LaserTopic};
+use super::motion::{Motion, MotionSource, chosen_odometry};
+use crate::choice::{TopicChoice, bare, listed};
+use crate::jumps::Jumps;
+use crate::ros::{Chain, Frames, flat, is_odom};
+use crate::summary::PoseSource;
+use nalgebra::Isometry2;
+use std::collections::{BTreeSet, VecDeque};
+
+/// The frame of a map, if none is named.
+const MAP: &str = "map";
+
+/// The poses of the robot of the first laser in the map of another SLAM.
+///
+/// # Errors
+///
+/// When no transforms lead from the map to the laser, and when none of them moves.
+pub(super) fn poses(
+    found: &Inventory,
+    lasers: &[&LaserTopic],
+    choice: &TopicChoice,
+) -> Result<Motion, String> {
+    let frames = &found.frames;
+    let map = bare(choice.map_frame.as_deref().unwrap_or(MAP));
+    if frames.is_empty() {
+        return Err(
+            "the bag has no transforms (tf), which would have the corrected poses of another SLAM".to_owned()
+        );
+    }
+    let names = listed(frames.names().into_iter());
+    if !frames.names().contains(&map) {
+        return Err(format!(
+            "no transform (tf) has the frame `{map}`, in which another SLAM would have corrected the poses; --map-frame names it; \
+             the frames are {names}"
+        ));
+    }
+    let laser = lasers.first().map_or("", |laser| laser.frame.as_str());
+    let robot = choice.base_frame.as_deref().map_or(laser, bare);
+    let of = |source, correction: Chain, moving: String, parent: &str| {
+        let base_frame = choice.base_frame.clone().unwrap_or_else(|| moving.clone());
+        let pose_source = PoseSource::Corrected { map_frame: map.to_owned(), base_frame };
+        let fixed = vec![map.to_owned(), parent.to_owned()];
+        Motion { source, pose_source, moving: Some(moving), correction: Some(correction), fixed }
+    };
+    if let Some(chain) = frames.chain(map, robot, &[]) {
+        let Some(at) = moving_part(frames, &chain) else {
+            return Err(format!(
+                "no transform between `{map}` and `{robot}` moves: another SLAM gives no poses there"
+            ));
+        };
+        let edge = frames.edge(chain[at].0);
+        let source = MotionSource::Transform(chain[at].0);
+        return Ok(of(source, chain[..at].to_vec(), edge.child.clone(), &edge.parent));
+    }
+    // The odometry can be in messages alone.
+    if let Some(odometry) = chosen_odometry(found, choice)?
+        && let Some(correction) = frames.chain(map, &odometry.odom_frame, &[])
+    {
+        let source = MotionSource::Topic(odometry.topic.clone());
+        return Ok(of(source, correction, odometry.child_frame.clone(), &odometry.odom_frame));
+    }
+    Err(format!(
+        "no transforms (tf) lead from the map of another SLAM, `{map}`, to `{robot}`; the frames are {names} (--map-frame and \
+         --base-frame name those of the map and of the robot)"
+    ))
+}
+
+/// The part of a chain from a map to a robot that is the odometry: below a frame of odometry by its name, otherwise the one of
+/// which there are most poses.
+fn moving_part(frames: &Frames, chain: &Chain) -> Option<usize> {
+    let down = || chain.iter().enumerate().filter(|(_, (_, is_down))| *is_down);
+    let named =
+        down().find(|(_, (index, _))| is_odom(&frames.edge(*index).parent) && frames.edge(*index).poses > 1);
+    let moving = down().filter(|(_, (index, _))| frames.edge(*index).moves);
+    let most = || moving.max_by_key(|(at, (index, _))| (frames.edge(*index).poses, usize::MAX - at));
+    named.or_else(most).map(|(at, _)| at)
+}
+
+/// The corrections that are kept: scans wait for later poses.
+const KEPT: usize = 512;
+/// Times that differ by less are the same, s: they are rounded.
+const SAME_S: f64 = 1e-3;
+
+/// The corrections so far.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Corrections {
+    chain: Chain,
+    /// The transforms of the chain that are not known yet.
+    missing: BTreeSet<usize>,
+    /// The poses of the odometry in the map, and since when each of them was known, s; the newest last.
+    known: VecDeque<(f64, Isometry2<f64>)>,
+    jumps: Jumps,
+}
+
+impl Corrections {
+    /// Those along a chain. Transforms that never move are known from the begin on.
+    pub(super) fn new(chain: &Chain, frames: &Frames) -> Self {
+        let missing =
+            chain.iter().map(|(index, _)| *index).filter(|index| frames.edge(*index).moves).collect();
+        let mut corrections = Self { chain: chain.clone(), missing, ..Self::default() };
+        corrections.learn(f64::NEG_INFINITY, frames, &Isometry2::identity());
+        corrections
+    }
+
+    /// Notes that a transform was set by a message with this time, s, while the odometry has the robot at a pose. Some SLAMs write
+    /// later times, until which the transform shall hold: it is known since `newest_s`, the newest time in the bag so far.
+    pub(super) fn note(
+        &mut self,
+        edge: usize,
+        frames: &Frames,
+        [time_s, newest_s]: [f64; 2],
+        robot: &Isometry2<f64>,
+    ) {
+        if self.chain.iter().any(|(index, _)| *index == edge) {
+            self.missing.remove(&edge);
+            self.learn(time_s.min(newest_s), frames, robot);
+        }
+    }
+
+    fn learn(&mut self, time_s: f64, frames: &Frames, robot: &Isometry2<f64>) {
+        let now = flat(&frames.along(&self.chain));
+        let before = self.known.back().map(|(_, before)| *before);
+        if !self.missing.is_empty() || before == Some(now) {
+            return;
+        }
+        if let Some(before) = before {
+            self.jumps.add(time_s, &(before * robot).inv_mul(&(now * robot)));
+        }
+        if self.known.len() == KEPT {
+            self.known.pop_front();
+        }
+        self.known.push_back((time_s, now));
+    }
+
+    /// The pose of the odometry in the map, as it was known at a time, s; `None` before the first one.
+    pub(super) fn at(&self, time_s: f64) -> Option<Isometry2<f64>> {
+        let is_known = |(since_s, _): &&(f64, Isometry2<f64>)| *since_s <= time_s + SAME_S;
+        self.known.iter().rev().find(is_known).map(|(_, pose)| *pose)
+    }
+
+    /// The corrections; without a frame of odometry, they are jumps of the poses themselves.
+    pub(super) fn described(&self, of_poses: &Jumps, begin_s: f64) -> String {
+        let jumps = if self.chain.is_empty() { of_poses } else { &self.jumps };
+        jumps.described(begin_s)
+    }
+}
