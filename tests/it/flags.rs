@@ -32,6 +32,7 @@ const PROGRAMS: [Program; 8] = [
             ("--out", "a.log"),
             ("--rrd", "folder"),
             ("--state", "folder"),
+            ("--places", "folder"),
             ("--state-every", "0"),
             ("--gif", "run.png"),
             ("--connect", "viewer:here"),

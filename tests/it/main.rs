@@ -20,6 +20,7 @@ mod houses;
 mod keyboard;
 mod map_log;
 mod map_log_refusals;
+mod map_log_report;
 mod map_log_state;
 mod memory;
 mod output;

@@ -1,0 +1,50 @@
+use super::passages::{Key, cell_key, spot_key};
+use interfaces::Event;
+use mapper::Mapper;
+use serde::{Deserialize, Serialize};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// What is known of the present session.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
+pub(super) struct Session {
+    /// Its first log.
+    pub(super) log: usize,
+    /// The largest number of a place before it.
+    pub(super) last: u32,
+    /// The things before it.
+    pub(super) things: BTreeSet<u32>,
+    /// For how long each spot was in view before it, s.
+    pub(super) looked: BTreeMap<Key, f32>,
+    /// The cells that changed in it: whether each was blocked before.
+    pub(super) touched: BTreeMap<Key, bool>,
+}
+
+impl Session {
+    pub(super) fn begin(mapper: &Mapper, log: usize, last: u32) -> Self {
+        let mut sums: BTreeMap<Key, (f64, f64)> = BTreeMap::new();
+        for index in (0..mapper.frame().len()).filter(|index| mapper.was_ever_seen(*index)) {
+            let (sum_s, cells) = sums.entry(spot_key(mapper.frame(), index)).or_default();
+            *sum_s += mapper.statistics(index).observed();
+            *cells += 1.0;
+        }
+        Self {
+            log,
+            last,
+            things: mapper.things().iter().map(|thing| thing.id).collect(),
+            looked: sums.into_iter().map(|(key, (sum_s, cells))| (key, (sum_s / cells) as f32)).collect(),
+            touched: BTreeMap::new(),
+        }
+    }
+
+    pub(super) fn note(&mut self, mapper: &Mapper) {
+        if self.log == 0 {
+            return; // there is nothing to compare with
+        }
+        for transition in mapper.transitions() {
+            let event = transition.event();
+            let Some((event, index)) = event.zip(mapper.frame().index(transition.cell)) else { continue };
+            let entry = self.touched.entry(cell_key(mapper.frame(), index));
+            entry.or_insert(event == Event::Free);
+        }
+    }
+}
