@@ -19,19 +19,23 @@ pub(super) struct Session {
     pub(super) touched: BTreeMap<Key, bool>,
 }
 
+/// For how long each spot was in view: its cell that was in view for the longest time, s.
+pub(super) fn looked(mapper: &Mapper) -> BTreeMap<Key, f32> {
+    let mut looked: BTreeMap<Key, f32> = BTreeMap::new();
+    for index in (0..mapper.frame().len()).filter(|index| mapper.was_ever_seen(*index)) {
+        let longest_s = looked.entry(spot_key(mapper.frame(), index)).or_default();
+        *longest_s = longest_s.max(mapper.statistics(index).observed() as f32);
+    }
+    looked
+}
+
 impl Session {
     pub(super) fn begin(mapper: &Mapper, log: usize, last: u32) -> Self {
-        let mut sums: BTreeMap<Key, (f64, f64)> = BTreeMap::new();
-        for index in (0..mapper.frame().len()).filter(|index| mapper.was_ever_seen(*index)) {
-            let (sum_s, cells) = sums.entry(spot_key(mapper.frame(), index)).or_default();
-            *sum_s += mapper.statistics(index).observed();
-            *cells += 1.0;
-        }
         Self {
             log,
             last,
             things: mapper.things().iter().map(|thing| thing.id).collect(),
-            looked: sums.into_iter().map(|(key, (sum_s, cells))| (key, (sum_s / cells) as f32)).collect(),
+            looked: looked(mapper),
             touched: BTreeMap::new(),
         }
     }

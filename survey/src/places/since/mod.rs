@@ -11,6 +11,8 @@ mod lasting;
 pub use lasting::Lasting;
 
 use super::book::PlaceBook;
+use super::passages::Key;
+use super::session::looked;
 use super::{Place, PlaceKind};
 use crate::ChangeLog;
 use compared::{Compared, significant};
@@ -95,7 +97,10 @@ pub(crate) fn since(book: &PlaceBook, mapper: &Mapper, log: &ChangeLog, places: 
 }
 
 fn trends(book: &PlaceBook, mapper: &Mapper, places: &[Place]) -> Vec<PlaceSince> {
-    let compared: Vec<Compared> = places.iter().map(|place| compared(book, mapper, place)).collect();
+    let looked = looked(mapper);
+    let looked_s = |key| f64::from(looked.get(&key).copied().unwrap_or_default());
+    let compared: Vec<Compared> =
+        places.iter().map(|place| compared(book, mapper, place, looked_s)).collect();
     let p_values: Vec<f64> = compared.iter().map(Compared::p_value).collect();
     let is_found = significant(&p_values, FALSE_FINDINGS);
     let since = |((place, compared), is_found): ((&Place, &Compared), bool)| PlaceSince {
@@ -122,13 +127,13 @@ fn trend(is_new: bool, compared: &Compared, is_found: bool) -> Trend {
     }
 }
 
-fn compared(book: &PlaceBook, mapper: &Mapper, place: &Place) -> Compared {
+/// `looked_s`: for how long a spot was in view.
+fn compared(book: &PlaceBook, mapper: &Mapper, place: &Place, looked_s: impl Fn(Key) -> f64) -> Compared {
     let spot = book.spot(mapper, &place.cells);
     let before_s = f64::from(book.session.looked.get(&spot.key).copied().unwrap_or_default());
-    let before_s = before_s.min(spot.observed_s);
     Compared {
         is_first: spot.before_in_all == 0,
         passages: [spot.count.before, spot.count.since],
-        observed_s: [before_s, spot.observed_s - before_s],
+        observed_s: [before_s, (looked_s(spot.key) - before_s).max(0.0)],
     }
 }
