@@ -12,7 +12,7 @@ const DIRECTIONS: u32 = 24;
 const DISTANCES: [f64; 12] = [8.0, 14.0, 22.0, 32.0, 44.0, 58.0, 76.0, 100.0, 130.0, 170.0, 220.0, 290.0];
 /// What a unit of distance costs, against a share of the label that covers walls, and against a crossing of leader lines.
 const PER_UNIT: f64 = 1.0;
-const COVERS_ALL: f64 = 400.0;
+const COVERS_ALL: f64 = 900.0;
 const CROSSES: f64 = 120.0;
 
 /// A label: the middle of its circle, and where its leader line ends.

@@ -86,7 +86,7 @@ impl Page<'_> {
                 (doors.len()) " doors were found: "
                 @for (number, door) in doors.iter().enumerate() {
                     @if number > 0 { (if number + 1 == doors.len() { " and " } else { ", " }) }
-                    (self.link(door))
+                    (self.link(door)) " " (self.plan.words(&middle(door)))
                 }
                 "."
             },

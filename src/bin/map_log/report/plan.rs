@@ -258,7 +258,7 @@ impl<'a> Plan<'a> {
                 if is_full || self.mapper.rate(index) > 0.0 {
                     1.0
                 } else if self.mapper.was_ever_seen(index) {
-                    0.15
+                    0.05
                 } else {
                     0.0
                 }
