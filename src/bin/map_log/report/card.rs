@@ -1,8 +1,9 @@
 //! A card for each place.
 
 use super::advice::advice;
-use super::plan::{Mark, MarkKind, Plan, Shown, number};
-use super::{Page, middle};
+use super::marks::{Mark, MarkKind};
+use super::plan::{Plan, Shown};
+use super::{Page, middle, number};
 use curious::week;
 use curious::words::{Seen, changed, date, length_of, range, rate, short, times};
 use mapper::{Door, Furniture, Leaf, ThingKind, Week};

@@ -3,6 +3,7 @@
 mod advice;
 mod card;
 mod labels;
+mod marks;
 mod opening;
 mod plan;
 mod raster;
@@ -13,7 +14,7 @@ use curious::words::{date, length_of, list};
 use mapper::Mapper;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use nalgebra::Point2;
-use plan::{Plan, Shown, number};
+use plan::{Plan, Shown};
 use results::drawing::palette::{self, Rgb};
 use results::numbers::percent;
 use survey::{Place, StillName};
@@ -235,4 +236,9 @@ fn files(has_rates: bool) -> Markup {
             li { "trajectory.tum: the route, with times; summary.json: this page as data" }
         }
     }
+}
+
+/// A number of a drawing.
+fn number(value: f64) -> String {
+    format!("{}", (10.0 * value).round() / 10.0)
 }

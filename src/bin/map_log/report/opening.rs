@@ -1,6 +1,7 @@
 //! The first lines of the page: is the map good, where is it liveliest, how many doors.
 
-use super::plan::{Mark, MarkKind, Shown};
+use super::marks::{Mark, MarkKind};
+use super::plan::Shown;
 use super::{Page, middle};
 use curious::words::{Seen, changed, range};
 use maud::{Markup, html};

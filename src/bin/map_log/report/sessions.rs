@@ -1,7 +1,7 @@
 //! What is different since the last visit of the robot.
 
 use super::Page;
-use super::plan::{Mark, MarkKind};
+use super::marks::{Mark, MarkKind};
 use curious::words::{date, length_of, list, rate, times};
 use maud::{Markup, html};
 use nalgebra::{Point2, Vector2};
