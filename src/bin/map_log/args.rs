@@ -135,7 +135,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "TIME", default_value = "1m", value_parser = duration_s, requires = "state", help_heading = "Output")]
     pub(crate) state_every: f64,
 
-    /// Names for places and doors, a TOML file: [[place]] with name, x_m, y_m, and radius_m (1 without it). With --state, later
+    /// Names for places and doors, a TOML file: tables `place` with name, x_m, y_m, and radius_m (1 without it). With --state, later
     /// runs know the names; a file replaces all names given before
     #[arg(long, value_name = "FILE", value_parser = input_file(), help_heading = "Output")]
     pub(crate) places: Option<PathBuf>,

@@ -157,8 +157,11 @@ pub(crate) fn places(mapper: &Mapper, log: &ChangeLog, book: &PlaceBook) -> Vec<
 /// How lively a place is: the lower end of the interval of the openings of a door, or of the passages, so that places that were
 /// seen for seconds do not come first. What is smaller than a body can be noise, and counts for less.
 fn liveliness(mapper: &Mapper, place: &Place) -> f64 {
-    let door = crate::doors(mapper).find(|(id, _)| place.kind == PlaceKind::Door { thing: *id });
-    let openings = door.and_then(|(_, door)| door.statistics.interval_of_openings_per_hour(MASS));
+    let thing = mapper.things().iter().find(|thing| place.kind.thing() == Some(thing.id));
+    let openings = thing.and_then(|thing| match &thing.kind {
+        ThingKind::Door(door) => door.statistics.interval_of_openings_per_hour(MASS),
+        ThingKind::Furniture(_) => None,
+    });
     let passages = || place.rates.as_ref()?.passages_per_hour_90;
     let least_per_hour = openings.map(|(low, _)| low).or_else(|| passages().map(|[low, _]| low));
     (place.area_m2 / BODY_M2).min(1.0) * least_per_hour.unwrap_or_default()
