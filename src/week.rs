@@ -89,7 +89,7 @@ pub fn picture(week: &Week, name: &str) -> Markup {
     let slots_of_day = slots.len() / DAYS.len();
     let (width, height) = (LEFT + SLOT * slots_of_day + 4, ROW * (DAYS.len() + 1));
     html! {
-        svg xmlns="http://www.w3.org/2000/svg" viewBox={ "0 0 " (width) " " (height) } width=(width) height=(height)
+        svg.week xmlns="http://www.w3.org/2000/svg" viewBox={ "0 0 " (width) " " (height) } width=(width) height=(height)
             role="img" aria-label=(usual_hours(week, name)) font-size="9" font-family="sans-serif" {
             @for (day, slots) in slots.chunks(slots_of_day).enumerate() {
                 text x="0" y=(ROW * day + 9) { (DAYS[day]) }

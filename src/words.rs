@@ -1,33 +1,126 @@
 //! Times and rates in words.
 
-use survey::PlaceRates;
+use mapper::DoorStatistics;
+use survey::{Place, PlaceRates};
 
-/// With fewer changes, or where the ends of the interval are farther apart than this factor, a single figure says too much.
-const FEW: u32 = 3;
+/// Where the ends of the interval are farther apart than this factor, a single figure says too much.
 const WIDE: f64 = 10.0;
+/// From this number per hour on, it is given per minute.
+const PER_MINUTE_FROM: f64 = 60.0;
+const MASS: f64 = 0.9;
 
-/// How often something changes at a place with this number of changes, in words: the estimate, or the range where little
-/// was seen.
-pub fn how_often(changes: u32, rates: &PlaceRates) -> String {
-    let [low, high] = rates.cycles_per_hour_90.map(Option::unwrap_or_default);
-    match rates.cycles_per_hour {
-        // Few observations: the estimate is mostly the prior.
-        rate if rate <= 0.0 || changes < FEW || high > WIDE * low => {
-            format!("once in {}", range(rates))
+/// What was seen of something that happens again and again.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Seen {
+    /// How often it happened in view.
+    pub times: u32,
+    /// The time in view, s.
+    pub observed_s: f64,
+    /// How often it was found to have happened out of view.
+    pub after_gap: u32,
+    /// How often it happens per hour, and the ends of the 90 % credible interval; `None` if it was never in view.
+    pub per_hour: Option<(f64, [f64; 2])>,
+}
+
+impl Seen {
+    /// What came to a place.
+    pub fn of_place(rates: &PlaceRates) -> Self {
+        Self {
+            times: rates.passages,
+            observed_s: rates.spot_observed_s,
+            after_gap: rates.changes_after_gap,
+            per_hour: rates.passages_per_hour.zip(rates.passages_per_hour_90),
         }
-        rate => format!("once in {}", length_of(3600.0 / rate)),
+    }
+
+    /// The openings of a door.
+    pub fn of_door(seen: &DoorStatistics) -> Self {
+        let interval = seen.interval_of_openings_per_hour(MASS);
+        Self {
+            times: seen.opened.max(seen.closed),
+            observed_s: seen.in_view_s,
+            after_gap: seen.opened_after_gap + seen.closed_after_gap,
+            per_hour: seen.openings_per_hour().map(|rate| rate.mean()).zip(interval.map(<[f64; 2]>::from)),
+        }
+    }
+
+    /// Whether a full cycle was seen: it happened, was over, and happened again. Less says nothing about how often it happens.
+    pub fn has_cycle(&self) -> bool {
+        self.times >= 2
+    }
+
+    /// How often it happens, in words; `None` unless a full cycle was seen. Where the range is wide, the words say only what was
+    /// seen.
+    pub fn how_often(&self) -> Option<String> {
+        let (per_hour, _) = self.per_hour.filter(|_| self.has_cycle())?;
+        Some(if self.is_known() { format!("about {}", rate(per_hour)) } else { self.seen() })
+    }
+
+    /// Whether a figure can be given: a full cycle was seen, and the range is not wide.
+    pub fn is_known(&self) -> bool {
+        self.has_cycle() && self.per_hour.is_some_and(|(_, [low, high])| high <= WIDE * low)
+    }
+
+    /// What was seen, in words.
+    pub fn seen(&self) -> String {
+        format!("{} in {} of looking", times(self.times), length_of(self.observed_s))
+    }
+
+    /// How sure the rate is, in a word.
+    pub fn sureness(&self) -> &'static str {
+        match self.per_hour.filter(|_| self.has_cycle()) {
+            Some((_, [low, high])) if high <= 2.0 * low => "sure",
+            Some((_, [low, high])) if high <= 4.0 * low => "fairly sure",
+            Some((_, [low, high])) if high <= WIDE * low => "roughly known",
+            _ => "a first impression only",
+        }
     }
 }
 
-/// The range of the time of one cycle that contains the true one with 90 % probability, in words.
-pub fn range(rates: &PlaceRates) -> String {
-    let time = |rate: Option<f64>| rate.filter(|rate| *rate > 0.0).map(|rate| length_of(3600.0 / rate));
-    let [slow, fast] = rates.cycles_per_hour_90.map(time);
-    match (fast, slow) {
-        (Some(fast), Some(slow)) => format!("{fast} to {slow}"),
-        (Some(fast), None) => format!("{fast} or more"),
-        (None, Some(slow)) => format!("{slow} or less"),
-        (None, None) => "an unknown time".to_owned(),
+/// How often something changes at a place, in words.
+pub fn how_often(place: &Place) -> Option<String> {
+    let seen = Seen::of_place(place.rates.as_ref()?);
+    Some(seen.how_often().unwrap_or_else(|| changed(place.changes, &seen)))
+}
+
+/// Changes without a full cycle, in words.
+pub fn changed(changes: u32, seen: &Seen) -> String {
+    let looked = length_of(seen.observed_s);
+    match seen.times {
+        0 if seen.after_gap > 0 => {
+            format!("changed while the robot was not looking, found {}", times(seen.after_gap))
+        }
+        _ => format!("changed {} in {looked} of looking", times(changes)),
+    }
+}
+
+/// Once, twice, 3 times.
+pub fn times(count: u32) -> String {
+    match count {
+        1 => "once".to_owned(),
+        2 => "twice".to_owned(),
+        count => format!("{count} times"),
+    }
+}
+
+/// A rate per hour, in words: 12 times per hour, once in 3 h.
+pub fn rate(per_hour: f64) -> String {
+    match per_hour {
+        rate if rate >= PER_MINUTE_FROM => format!("{} times per minute", short(rate / 60.0)),
+        rate if rate >= 1.5 => format!("{rate:.0} times per hour"),
+        rate if rate > 0.0 => format!("once in {}", length_of(3600.0 / rate)),
+        _ => "never".to_owned(),
+    }
+}
+
+/// The range around a rate per hour, in words and in the unit of the rate: 3.0 to 12 times per hour, once in 2.0 h to 8.0 h.
+pub fn range(per_hour: f64, [low, high]: [f64; 2]) -> String {
+    match per_hour {
+        rate if rate >= PER_MINUTE_FROM => {
+            format!("{} to {} times per minute", short(low / 60.0), short(high / 60.0))
+        }
+        rate if rate >= 1.5 => format!("{} to {} times per hour", short(low), short(high)),
+        _ => format!("once in {} to {}", length_of(3600.0 / high), length_of(3600.0 / low)),
     }
 }
 
@@ -40,7 +133,7 @@ pub fn list(names: &[String]) -> String {
 }
 
 /// A number with two digits that matter.
-fn short(value: f64) -> String {
+pub fn short(value: f64) -> String {
     match value {
         value if value >= 10.0 => format!("{value:.0}"),
         value if value >= 1.0 => format!("{value:.1}"),
@@ -83,6 +176,34 @@ mod tests {
     fn times_are_in_the_unit_that_a_person_would_choose() {
         let texts = [5.0, 89.0, 90.0, 5399.0, 5400.0, 170_000.0, 172_800.0].map(length_of);
         assert_eq!(texts, ["5 s", "89 s", "2 min", "90 min", "1.5 h", "47 h", "2.0 days"]);
+    }
+
+    fn seen(times: u32, low: f64, high: f64) -> Seen {
+        let per_hour = Some(((low * high).sqrt(), [low, high]));
+        Seen { times, observed_s: 1320.0, after_gap: 0, per_hour }
+    }
+
+    #[test]
+    fn a_rate_needs_a_full_cycle() {
+        assert_eq!(seen(20, 15.0, 26.7).how_often().unwrap(), "about 20 times per hour");
+        assert_eq!(seen(2, 0.5, 9.0).how_often().unwrap(), "twice in 22 min of looking");
+        assert_eq!(seen(4, 0.05, 0.2).how_often().unwrap(), "about once in 10 h");
+        assert_eq!(seen(1, 15.0, 26.7).how_often(), None);
+        assert_eq!(changed(1, &seen(1, 0.1, 9.0)), "changed once in 22 min of looking");
+        let gap = Seen { after_gap: 2, ..seen(0, 0.1, 9.0) };
+        assert_eq!(changed(2, &gap), "changed while the robot was not looking, found twice");
+        let words = [(20, 15.0), (20, 8.0), (20, 4.0), (20, 1.0), (1, 15.0)];
+        let words = words.map(|(times, low)| seen(times, low, 26.7).sureness());
+        let expected =
+            ["sure", "fairly sure", "roughly known", "a first impression only", "a first impression only"];
+        assert_eq!(words, expected);
+    }
+
+    #[test]
+    fn a_range_is_in_the_unit_of_its_rate() {
+        let ranges = [range(120.0, [30.0, 600.0]), range(6.0, [3.0, 12.0]), range(0.2, [0.1, 0.5])];
+        let expected = ["0.50 to 10 times per minute", "3.0 to 12 times per hour", "once in 2.0 h to 10 h"];
+        assert_eq!(ranges, expected);
     }
 
     #[test]

@@ -181,7 +181,7 @@ fn learn(log: &::logs::Log, settings: SurveySettings, learns_noise: bool) -> PyR
     {}
     signal.or(Ok(()))?;
     let mapper = survey.mapper().ok_or_else(changed)?.clone();
-    let (mut places, permanent) = (survey::places(&mapper, survey.changes()), survey::permanent(&mapper));
+    let (mut places, permanent) = (survey.places(), survey::permanent(&mapper));
     let quality = survey.logs()[0].quality.clone();
     if !log.summary().has_times || quality.verdict() == Verdict::NotUsable {
         places.iter_mut().for_each(|place| place.rates = None);
@@ -233,13 +233,17 @@ impl Survey {
         crate::convert::grid(py, self.permanent.frame(), states)
     }
 
-    /// The places where something changes, those with the most cycles first, each a dict: x, y (m), low, high (m), area
-    /// (m²), changes, cycles_per_hour, cycles_per_hour_90, share_blocked, observed (s), last_change (s); the last five are
-    /// None where the times of the log, or the map, are unusable.
+    /// The places where something changes, the liveliest first, each a dict: number, kind (door, furniture, traffic or
+    /// unknown), thing (its number, or None), x, y (m), low, high (m), area (m²), changes, cycles_per_hour,
+    /// cycles_per_hour_90, passages, passages_per_hour, passages_per_hour_90, share_blocked, observed (s), last_change (s);
+    /// from cycles_per_hour on, they are None where the times of the log, or the map, are unusable.
     #[getter]
     fn places<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
         let dict = |place: &survey::Place| {
             let dict = PyDict::new(py);
+            dict.set_item("number", place.number)?;
+            dict.set_item("kind", place.kind.name())?;
+            dict.set_item("thing", place.kind.thing())?;
             dict.set_item("x", place.x_m)?;
             dict.set_item("y", place.y_m)?;
             dict.set_item("low", place.low_m)?;
@@ -249,6 +253,9 @@ impl Survey {
             let rates = place.rates.as_ref();
             dict.set_item("cycles_per_hour", rates.map(|rates| rates.cycles_per_hour))?;
             dict.set_item("cycles_per_hour_90", rates.map(|rates| rates.cycles_per_hour_90))?;
+            dict.set_item("passages", rates.map(|rates| rates.passages))?;
+            dict.set_item("passages_per_hour", rates.and_then(|rates| rates.passages_per_hour))?;
+            dict.set_item("passages_per_hour_90", rates.and_then(|rates| rates.passages_per_hour_90))?;
             dict.set_item("share_blocked", rates.map(|rates| rates.share_blocked))?;
             dict.set_item("observed", rates.map(|rates| rates.observed_s))?;
             dict.set_item("last_change", rates.map(|rates| rates.last_change_s))?;

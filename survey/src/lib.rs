@@ -10,7 +10,7 @@
 //! ```
 //!
 //! [`Survey`] does both, log after log; it can be saved, and go on with another log later. In the second pass, a robot without a
-//! pilot reads the log: each reading is one [`robot::Robot::step`]. From its map follow the [places](places()) where something
+//! pilot reads the log: each reading is one [`robot::Robot::step`]. From its map follow the [places](Survey::places) where something
 //! changes, and the [map](permanent()) of what is permanent.
 
 mod change_log;
@@ -38,6 +38,7 @@ mod surveyed_log;
 #[cfg(test)]
 mod tests;
 mod turns;
+mod upright;
 
 pub use change_log::ChangeLog;
 pub use error::SurveyError;
@@ -46,7 +47,7 @@ pub use known_place::KnownPlace;
 pub use masks::{CHANGE_HORIZON_S, MASKS, masks};
 pub use passes::{PassError, Stage};
 pub use permanent::permanent;
-pub use places::{Place, PlaceRates, places};
+pub use places::{Lasting, Place, PlaceKind, PlaceName, PlaceRates, PlaceSince, Since, StillName, Trend};
 pub use quality::{Doubt, DoubtKind, Quality, Verdict};
 pub use replay::{FoundPoses, Replay};
 pub use route::{FirstPass, Route};
@@ -54,3 +55,4 @@ pub use search::Search;
 pub use settings::SurveySettings;
 pub use survey::{SavedLogs, SavedSurvey, Survey};
 pub use surveyed_log::{LogEntry, SurveyedLog, Travelled};
+pub use upright::upright_rad;

@@ -11,6 +11,7 @@ use crate::error::SurveyError;
 use crate::extent::union;
 use crate::known_place::KnownPlace;
 use crate::passes::{PassError, RoutePass, Stage};
+use crate::places::{Place, PlaceBook, PlaceName, Since, StillName, places, since, still_names};
 use crate::quality::Verdict;
 use crate::replay::{FoundPoses, Replay, judged};
 use crate::route::frame;
@@ -38,14 +39,18 @@ pub struct Survey {
     /// The robot that reads the logs; `None` before the first reading was learned.
     robot: Option<Robot<LaserReading, NoPilot>>,
     changes: ChangeLog,
+    book: PlaceBook,
     logs: Vec<SurveyedLog>,
 }
+
+/// Logs are those of one session, one visit of the robot, if they begin earlier than this after the end of the log before, s.
+const SESSION_GAP_S: f64 = 6.0 * 3600.0;
 
 impl Survey {
     /// A survey without a log. `learns_noise`: the noise in the settings is replaced by what the routes say about it.
     pub fn new(settings: SurveySettings, learns_noise: bool) -> Self {
-        let changes = ChangeLog::default();
-        Self { settings, learns_noise, place: None, robot: None, changes, logs: Vec::new() }
+        let (changes, book) = (ChangeLog::default(), PlaceBook::default());
+        Self { settings, learns_noise, place: None, robot: None, changes, book, logs: Vec::new() }
     }
 
     /// The logs, in the order of their times.
@@ -72,6 +77,27 @@ impl Survey {
     /// When the cells changed last.
     pub fn changes(&self) -> &ChangeLog {
         &self.changes
+    }
+
+    /// The places where something changes, those with the most change first; none before the first reading was learned.
+    pub fn places(&self) -> Vec<Place> {
+        self.mapper().map(|mapper| places(mapper, &self.changes, &self.book)).unwrap_or_default()
+    }
+
+    /// Gives names to places, in this session and all later ones, instead of those given before.
+    pub fn name_places(&mut self, names: Vec<PlaceName>) {
+        self.book.set_names(names);
+    }
+
+    /// The names that none of these places has: nothing changes there, as far as it was seen.
+    pub fn still_names(&self, places: &[Place]) -> Vec<StillName> {
+        self.mapper().map(|mapper| still_names(mapper, &self.book, places)).unwrap_or_default()
+    }
+
+    /// What is different at these places since the last session; `None` in the first one. A session is one visit of the
+    /// robot: logs that follow each other within six hours; a log without a date is one of its own.
+    pub fn since(&self, places: &[Place]) -> Option<Since> {
+        since(&self.book, self.mapper()?, &self.changes, places)
     }
 
     /// The settings, with the noise for the logs up to this one.
@@ -108,6 +134,28 @@ impl Survey {
         if let Some(log) = self.logs.get_mut(log) {
             log.readings = log.used;
         }
+        self.keep_numbers();
+    }
+
+    /// Keeps the numbers of the places.
+    fn keep_numbers(&mut self) {
+        let places = self.places();
+        if let Some(robot) = &self.robot {
+            self.book.keep(&robot.mapper, &places);
+        }
+    }
+
+    /// Whether a session begins with a log: not with the first one.
+    fn begins_session(&self, log: usize) -> bool {
+        let [Some(before), Some(entry)] = [log.wrapping_sub(1), log].map(|log| self.logs.get(log)) else {
+            return false;
+        };
+        let gap_s = entry
+            .entry
+            .begin_s
+            .zip(before.entry.begin_s)
+            .map(|(begin_s, before_s)| begin_s - before_s - before.entry.duration_s);
+        gap_s.is_none_or(|gap_s| gap_s >= SESSION_GAP_S)
     }
 
     /// Forgets the poses of the logs that were learned: no [`replay`](Self::replay) needs them any more.
@@ -198,6 +246,9 @@ impl Survey {
             if let Some(growth) = mapper.grow(&settings.mapper, frame)? {
                 self.changes.grow(&growth);
             }
+            if self.begins_session(number) {
+                self.book.begin_session(&mapper, number);
+            }
             mapper.pause(begin_s);
         }
         Ok(mapper)
@@ -209,15 +260,17 @@ impl Survey {
     ///
     /// When the log cannot be read to its end, and when the mapper refuses a reading.
     pub fn turn(&mut self, replay: &mut Replay) -> Result<Option<Turn<LaserReading, ()>>, PassError> {
-        let Self { robot: Some(robot), changes, logs, .. } = self else { return Ok(None) };
+        let Self { robot: Some(robot), changes, book, logs, .. } = self else { return Ok(None) };
         let (Some(reading), Some(log)) = (replay.next()?, logs.get_mut(replay.number)) else {
             return Ok(None);
         };
         let turn = robot.step(reading)?;
         log.pass();
         changes.note(&robot.mapper);
+        book.note(&robot.mapper);
         if replay.is_over() {
             log.readings = log.used;
+            self.keep_numbers();
         }
         Ok(Some(turn))
     }

@@ -5,7 +5,7 @@ mod refused;
 use crate::route::frame;
 use crate::{
     ChangeLog, FirstPass, KnownPlace, LogEntry, PassError, Route, Search, Stage, Survey, SurveyError,
-    SurveySettings, masks, permanent, places,
+    SurveySettings, masks, permanent,
 };
 use interfaces::{
     CellReading, CellState, Grid, GridFrame, LaserReading, PoseMode, Scan, Twist, World, heading_rad,
@@ -29,6 +29,11 @@ fn scan(ranges_m: Vec<f32>) -> Scan {
         sweep_s: 0.0,
         ranges_m,
     }
+}
+
+/// The places of a map whose passages were not counted.
+fn places(mapper: &Mapper, log: &ChangeLog) -> Vec<crate::Place> {
+    crate::places::places(mapper, log, &crate::places::PlaceBook::of_map(mapper))
 }
 
 /// A map of 10 × 1 cells in which the cells from 2 to 4 are blocked for `blocked` of 10 readings, 100 times.

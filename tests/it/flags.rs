@@ -69,6 +69,7 @@ const PROGRAMS: [Program; 8] = [
             ("--out", "a.log"),
             ("--mcap", "folder"),
             ("--state", "folder"),
+            ("--places", "folder"),
             ("--state-every", "0"),
         ],
     },

@@ -21,6 +21,7 @@ mod keyboard;
 mod map_log;
 mod map_log_poses;
 mod map_log_refusals;
+mod map_log_report;
 mod map_log_state;
 mod memory;
 mod output;

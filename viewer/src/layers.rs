@@ -59,11 +59,11 @@ impl Ahead {
 }
 
 /// A cell that was never seen. Class 0 stays unused: the viewer draws nothing for it.
-pub(crate) const UNKNOWN: u8 = 1;
+pub const UNKNOWN: u8 = 1;
 /// A free cell without a value in the layer.
-const FREE: u8 = 2;
+pub const FREE: u8 = 2;
 /// A blocked cell without a value in the layer.
-const BLOCKED: u8 = 3;
+pub const BLOCKED: u8 = 3;
 /// The class of the lowest value on the scale of a layer.
 const FIRST: u8 = 4;
 /// The number of classes of a scale: enough that the eye does not distinguish neighboring classes.

@@ -55,3 +55,11 @@ impl CredibleInterval {
         (low, high)
     }
 }
+
+impl RateDistribution {
+    /// The interval that contains the rate with the probability `mass`, if events come in pairs: people go somewhere and come
+    /// back.
+    pub fn interval(self, mass: f64) -> (f64, f64) {
+        CredibleInterval::new(mass).of_rate(self)
+    }
+}

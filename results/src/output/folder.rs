@@ -20,7 +20,7 @@ const LOCK_CONTENT: &[u8] =
 const RESULTS: &str = "\
     map_log.rrd summary.json report.json report.html trials.csv trials.parquet map.pgm map.yaml \
     permanent.pgm permanent.yaml speed_mask.pgm speed_mask.yaml keepout_mask.pgm keepout_mask.yaml \
-    cell_statistics.csv things.json layers.npy layers.json places.png trajectory.tum trajectory_true.tum \
+    cell_statistics.csv things.json layers.npy layers.json trajectory.tum trajectory_true.tum \
     trajectory.png figure3.png figure3.svg curves.png curves.svg figure5.png occupancy.png \
     interval.png change_probability.png recency.png predicted.png";
 

@@ -3,7 +3,7 @@
 use crate::logs_in_order::Source;
 use anyhow::ensure;
 use clap::Parser;
-use curious::flags::{folder, number, output_file, time_zone};
+use curious::flags::{folder, input_file, number, output_file, time_zone};
 use curious::program::{duration_s, one_of, pose_mode};
 use interfaces::PoseMode;
 use logs::TopicChoice;
@@ -20,14 +20,14 @@ use survey::{LogEntry, SavedLogs, SurveySettings};
 /// place: they are read in the order of their times, and later ones find their place in the map of the first. With --state,
 /// later logs can follow in a later run, which gives the same maps and rates as one run with all logs.
 ///
-/// The folder map_log_out contains the results: a page to read (report.html) with a map of the places where something
-/// changes (places.png), pictures of the maps (figure5.png) and of the trajectory (trajectory.png), a recording
+/// The folder map_log_out contains the results: a page to read (report.html, one file with its pictures inside, for a telephone
+/// or on paper) with the places where something changes, pictures of the maps (figure5.png) and of the trajectory (trajectory.png), a recording
 /// (map_log.rrd; open it with `rerun FILE`), the map in ROS format (map.yaml) and the map of what is permanent
 /// (permanent.yaml), masks for the costmap filters of Nav2 (speed_mask.yaml, keepout_mask.yaml), the statistics of every
 /// cell (cell_statistics.csv, and layers.npy for NumPy with its names in layers.json), the trajectory (trajectory.tum, in the TUM format), and all
 /// results as JSON (summary.json).
 ///
-/// The map is judged by its own scans: good, usable with care, or not usable, with the reasons and the places (doubts.png). A map
+/// The map is judged by its own scans: good, usable with care, or not usable, with the reasons and the places in doubt. A map
 /// that is not usable is drawn, but has no rates and no masks, does not enter the state, and the exit code is 3.
 ///
 /// The results of an earlier run in the folder stay until the new ones are complete; until then the new ones are in its
@@ -140,6 +140,11 @@ pub(crate) struct Args {
     /// The wall time between two savings of the state
     #[arg(long, value_name = "TIME", default_value = "1m", value_parser = duration_s, requires = "state", help_heading = "Output")]
     pub(crate) state_every: f64,
+
+    /// Names for places and doors, a TOML file: tables `place` with name, x_m, y_m, and radius_m (1 without it). With --state, later
+    /// runs know the names; a file replaces all names given before
+    #[arg(long, value_name = "FILE", value_parser = input_file(), help_heading = "Output")]
+    pub(crate) places: Option<PathBuf>,
 
     /// Use a map that is judged as not usable as any other: with rates, masks, an entry into --state, and exit code 0. For those
     /// who have looked at it

@@ -4,6 +4,7 @@ mod args;
 mod first_pass;
 mod logs_in_order;
 mod output;
+mod place_names;
 mod report;
 mod second_pass;
 mod summary;
@@ -69,7 +70,10 @@ impl Job<'_> {
 fn run(args: &Args) -> Result<ExitCode, Failure> {
     let begin = Instant::now();
     let (out, mcap, state) = (Some(args.out.as_path()), args.mcap.as_deref(), args.state.as_deref());
-    check_distinct(&[("--out", out), ("--mcap", mcap), ("--state", state)]).map_err(input)?;
+    let places = args.places.as_deref();
+    check_distinct(&[("--out", out), ("--mcap", mcap), ("--state", state), ("--places", places)])
+        .map_err(input)?;
+    let names = places.map(place_names::read).transpose().map_err(input)?;
     let (mut state_file, loaded) = SurveyStateFile::open(args)?;
     let (logs, zone) =
         (loaded.as_ref().map(|loaded| &loaded.logs), loaded.as_ref().and_then(Loaded::time_zone));
@@ -77,6 +81,9 @@ fn run(args: &Args) -> Result<ExitCode, Failure> {
     let given = logs_in_order::open(&args.files, &choice, state_file.is_kept(), args.quiet).map_err(input)?;
     let settings = args.settings(&given, logs, zone).map_err(input)?;
     let mut survey = state_file.survey(loaded, &settings, args.noise)?;
+    if let Some(names) = names {
+        survey.name_places(names);
+    }
     let first = given.first().cloned().context("no log is given").map_err(input)?;
     let sources = logs_in_order::continued(given, &mut survey, args.leave_rest).map_err(input)?;
     let first_log = survey.logs().iter().take_while(|log| log.is_finished()).count();

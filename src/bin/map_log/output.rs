@@ -4,21 +4,14 @@ use crate::report;
 use crate::second_pass::Learned;
 use crate::summary::Summary;
 use anyhow::Context;
-use nalgebra::{Point2, Vector2};
 use results::output::{RunFolder, write_file};
 use results::thinned::Thinned;
 use results::{cell_statistics, raster, ros_map, things};
-use survey::{MASKS, Survey, Verdict, masks, permanent};
+use survey::{MASKS, Survey, masks, permanent};
 use viewer::layers::Layer;
-use viewer::pictures::draw_places;
 
 /// The file that ends a run.
 const SUMMARY: &str = "summary.json";
-
-/// The box that marks a place in doubt.
-fn around(at: &Point2<f64>) -> [Point2<f64>; 2] {
-    [-0.5, 0.5].map(|by_m| at + Vector2::new(by_m, by_m))
-}
 
 /// Writes everything except the recording and the trajectory.
 pub(crate) fn write(
@@ -32,15 +25,6 @@ pub(crate) fn write(
     let has_rates = summary.rates_withheld.is_none();
     let layers: &[Layer] = if has_rates { &Layer::ALL } else { &[Layer::Occupancy] };
     learned.show.write_pictures(to, mapper, &Thinned::default(), layers)?;
-    let corner = |at: &[f64; 2]| Point2::new(at[0], at[1]);
-    let numbered: Vec<_> =
-        summary.places.iter().map(|place| [corner(&place.low_m), corner(&place.high_m)]).collect();
-    draw_places(&to.join("places.png"), "Where it changes", mapper, &numbered)?;
-    let doubts = survey.logs().iter().flat_map(|log| &log.quality.doubts);
-    let in_doubt: Vec<_> = doubts.map(|doubt| around(&Point2::new(doubt.x_m, doubt.y_m))).collect();
-    if summary.verdict != Verdict::Good {
-        draw_places(&to.join("doubts.png"), "Where the map is in doubt", mapper, &in_doubt)?;
-    }
     for (name, map) in [("map", mapper.states()), ("permanent", &permanent(mapper))] {
         ros_map::write(to, name, map)?;
     }

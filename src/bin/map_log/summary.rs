@@ -6,14 +6,14 @@ use anyhow::Context;
 use curious::program::arguments;
 use curious::words::{how_often, list};
 use interfaces::{CellState, PoseMode};
-use mapper::{NoReturn, NoReturnEvidence};
+use mapper::{Mapper, NoReturn, NoReturnEvidence};
 use results::numbers::percent;
 use robot::BUILD;
 use serde::Serialize;
 use std::fmt;
-use survey::{Place, Quality, Survey, SurveySettings, Verdict, places};
+use survey::{Place, PlaceKind, Quality, Since, StillName, Survey, SurveySettings, SurveyedLog, Verdict};
 
-/// The number of places in the summary and in the report.
+/// The number of places in the summary and in the report, beside those with names, doors, and furniture that was moved.
 const MAX_PLACES: usize = 20;
 /// The version of the layout of `summary.json`; count up when a key is renamed, removed or changes its meaning.
 const SCHEMA: u32 = 2;
@@ -73,8 +73,16 @@ pub(crate) struct Summary {
     pub(crate) rates_withheld: Option<String>,
     /// The number of places where something changes; the first of them are in `places`.
     pub(crate) place_count: usize,
-    /// The places where something changes, those with the most change first.
+    /// The places where something changes, the liveliest first.
     pub(crate) places: Vec<Place>,
+    /// The names of the user for what was not seen to change.
+    pub(crate) names_without_change: Vec<StillName>,
+    /// The median time in view of the cells that did not change, s; `null` if there are none.
+    pub(crate) still_observed_s: Option<f64>,
+    /// The time of the first scan of this session, in seconds since the epoch; `null` in the first session, and without dates.
+    pub(crate) session_begin_s: Option<f64>,
+    /// What is different since the last session; `null` in the first one.
+    pub(crate) since_last_session: Option<Since>,
     /// Whether the map is not usable, and `--accept-map` was not given.
     pub(crate) is_refused: bool,
     pub(crate) is_interrupted: bool,
@@ -90,9 +98,10 @@ impl Summary {
         let entries = || logs.iter().map(|log| &log.entry);
         let cell_m2 = mapper.frame().resolution_m().powi(2);
         let seen = mapper.states().cells().iter().filter(|state| **state != CellState::Unknown).count();
-        let mut places = places(mapper, survey.changes());
+        let mut places = survey.places();
         let place_count = places.len();
-        places.truncate(MAX_PLACES);
+        let names_without_change = survey.still_names(&places);
+        let mut since_last_session = survey.since(&places);
         let has_times = entries().all(|entry| entry.has_times);
         let verdict = survey.verdict();
         let is_refused = verdict == Verdict::NotUsable && !is_accepted;
@@ -103,7 +112,16 @@ impl Summary {
         };
         if rates_withheld.is_some() {
             places.iter_mut().for_each(|place| place.rates = None);
+            since_last_session = None;
         }
+        let first_log = since_last_session.as_ref().and_then(|since| logs.get(since.first_log));
+        let session_begin_s = first_log.and_then(|log| log.entry.begin_s);
+        let is_different =
+            |place: &Place| since_last_session.as_ref().is_some_and(|since| since.is_different(place.number));
+        let mut rank = 0..;
+        places.retain(|place| {
+            rank.next().is_some_and(|rank| rank < MAX_PLACES) || is_always_shown(place) || is_different(place)
+        });
         let qualities = || logs.iter().map(|log| &log.quality);
         Ok(Self {
             schema: SCHEMA,
@@ -115,7 +133,7 @@ impl Summary {
             scans: logs.iter().map(|log| log.used).sum(),
             duration_s: has_times.then(|| logs.iter().map(|log| log.travelled.duration_s).sum()),
             verdict,
-            verdict_reasons: qualities().flat_map(Quality::reasons).collect(),
+            verdict_reasons: reasons(survey),
             quality: qualities().cloned().collect(),
             notes: entries()
                 .flat_map(|entry| entry.notes.clone())
@@ -134,12 +152,43 @@ impl Summary {
             rates_withheld: rates_withheld.map(str::to_owned),
             place_count,
             places,
+            names_without_change,
+            still_observed_s: still_observed_s(mapper),
+            session_begin_s,
+            since_last_session,
             is_refused,
             is_interrupted: learned.is_interrupted,
             wall_s: 0.0,
             files: Vec::new(),
         })
     }
+}
+
+/// Why the map is not good, with the log if there are several.
+fn reasons(survey: &Survey) -> Vec<String> {
+    let several = survey.logs().len() > 1;
+    let of = |log: &SurveyedLog| {
+        let name = log.entry.name.clone();
+        let reasons = log.quality.reasons().into_iter();
+        reasons
+            .map(move |reason| if several { format!("{name}: {reason}") } else { reason })
+            .collect::<Vec<_>>()
+    };
+    survey.logs().iter().flat_map(of).collect()
+}
+
+/// Whether a place is in the summary however little changes there.
+fn is_always_shown(place: &Place) -> bool {
+    place.name.is_some() || matches!(place.kind, PlaceKind::Door { .. } | PlaceKind::Furniture { .. })
+}
+
+/// The median time in view of the cells that never changed, s.
+fn still_observed_s(mapper: &Mapper) -> Option<f64> {
+    let is_still = |index: &usize| mapper.was_ever_seen(*index) && mapper.statistics(*index).events() == 0;
+    let still = (0..mapper.frame().len()).filter(is_still);
+    let mut times_s: Vec<f64> = still.map(|index| mapper.statistics(index).observed()).collect();
+    times_s.sort_by(f64::total_cmp);
+    times_s.get(times_s.len() / 2).copied()
 }
 
 /// Whose hours people and doors have.
@@ -175,10 +224,10 @@ impl fmt::Display for Summary {
         )?;
         writeln!(f, "  seen      {:.0} m², {} of it changed", self.seen_m2, percent(self.changed_share))?;
         writeln!(f, "  changes   {} of cells, in {} places", self.changes, self.place_count)?;
-        for (number, place) in (1..).zip(self.places.iter().take(3)) {
-            let rate = place.rates.as_ref().map(|rates| format!(", {}", how_often(place.changes, rates)));
-            let rate = rate.unwrap_or_default();
-            writeln!(f, "    {number}.      at ({:.1}, {:.1}) m{rate}", place.x_m, place.y_m)?;
+        for place in self.places.iter().take(3) {
+            let rate = how_often(place).map(|rate| format!(", {rate}")).unwrap_or_default();
+            let name = place.name.as_ref().map(|name| format!("{name}, ")).unwrap_or_default();
+            writeln!(f, "    {}.      {name}at ({:.1}, {:.1}) m{rate}", place.number, place.x_m, place.y_m)?;
         }
         writeln!(f, "  hours     {}", self.hours)?;
         if let Some(why) = &self.rates_withheld {

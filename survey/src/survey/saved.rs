@@ -3,6 +3,7 @@
 use super::Survey;
 use crate::change_log::ChangeLog;
 use crate::known_place::KnownPlace;
+use crate::places::PlaceBook;
 use crate::quality::Quality;
 use crate::replay::FoundPoses;
 use crate::settings::SurveySettings;
@@ -51,6 +52,7 @@ pub struct SavedSurvey {
     place: Option<Arc<KnownPlace>>,
     mapper: Option<Mapper>,
     changes: ChangeLog,
+    book: PlaceBook,
     logs: Vec<SurveyedLog>,
 }
 
@@ -60,11 +62,11 @@ impl SavedSurvey {
 
     /// Everything that logs have changed, as bytes: the logs, and what was learned from them; settings are not in it.
     pub fn into_snapshot(self) -> (Vec<u8>, Vec<u8>) {
-        let Self { pose, place, mapper, changes, logs } = self;
+        let Self { pose, place, mapper, changes, book, logs } = self;
         let place = place.map(|place| Arc::unwrap_or_clone(place).snapshot());
         let mapper = mapper.map(|mut mapper| (*mapper.frame(), mapper.snapshot()));
         let qualities: Vec<Quality> = logs.iter().map(|log| log.quality.clone()).collect();
-        (to_bytes(&(pose, logs, qualities)), to_bytes(&(place, mapper, changes)))
+        (to_bytes(&(pose, logs, qualities)), to_bytes(&(place, mapper, changes, book)))
     }
 }
 
@@ -76,6 +78,7 @@ impl Survey {
             place: self.place.clone(),
             mapper: self.mapper().cloned(),
             changes: self.changes.clone(),
+            book: self.book.clone(),
             logs: self.logs.clone(),
         }
     }
@@ -91,8 +94,15 @@ impl Survey {
         logs: SavedLogs,
         learned: &[u8],
     ) -> Result<Self, ValueError> {
-        type Learned = (Option<Vec<u8>>, Option<(GridFrame, Vec<u8>)>, ChangeLog);
-        let (place, map, changes): Learned = from_bytes(learned)?;
+        type Earlier = (Option<Vec<u8>>, Option<(GridFrame, Vec<u8>)>, ChangeLog);
+        type Learned = (Option<Vec<u8>>, Option<(GridFrame, Vec<u8>)>, ChangeLog, PlaceBook);
+        let (place, map, changes, book) = match from_bytes::<Learned>(learned) {
+            Ok((place, map, changes, book)) => (place, map, changes, Some(book)),
+            Err(_) => {
+                from_bytes::<Earlier>(learned).map(|(place, map, changes)| (place, map, changes, None))?
+            }
+        };
+        let is_earlier = book.is_none();
         let place = place.map(|bytes| KnownPlace::restored(&settings, &bytes)).transpose()?;
         let mut survey = Self {
             settings,
@@ -100,6 +110,7 @@ impl Survey {
             place: place.map(Arc::new),
             robot: None,
             changes,
+            book: book.unwrap_or_default(),
             logs: logs.logs,
         };
         if let Some((frame, bytes)) = map {
@@ -109,6 +120,9 @@ impl Survey {
             let mut mapper = Mapper::new(&settings.mapper, frame).map_err(|_| ValueError)?;
             survey.date(&mut mapper, last);
             mapper.restore(&bytes)?;
+            if is_earlier {
+                survey.book = PlaceBook::of_map(&mapper); // a state of a version before 10 has none
+            }
             let poses = Box::new(FoundPoses::new(Vec::new()));
             survey.robot = Some(Robot::new(poses, mapper, NoPilot));
         }

@@ -4,7 +4,6 @@
 mod film;
 mod ground;
 mod panel;
-mod places;
 mod plan;
 mod trajectory;
 
@@ -15,7 +14,6 @@ use crate::scene::{Scene, TimeUnit};
 use crate::view::Trail;
 use interfaces::Grid;
 use mapper::Mapper;
-use nalgebra::Point2;
 use panel::Panel;
 use results::drawing::{Area, Canvas, PictureError};
 use results::output::make_folder;
@@ -101,23 +99,6 @@ pub fn draw_values(
         layer.classes_of(mapper, unit, |index| Some(values.cells()[index]).filter(|value| !value.is_nan()));
     let picture =
         draw(layer.name(), panel.size(), |area| panel.classes(area, (layer, title), &classes, unit))?;
-    Ok(picture.write(path)?)
-}
-
-/// Draws the map with what changed, and numbers places, to the PNG file `path`. A place is the rectangle between two
-/// corners, m.
-///
-/// # Errors
-///
-/// When the picture cannot be drawn or written.
-pub fn draw_places(
-    path: &Path,
-    title: &str,
-    mapper: &Mapper,
-    places: &[[Point2<f64>; 2]],
-) -> Result<(), PictureError> {
-    let panel = Panel::of_scene(mapper.frame(), TimeUnit::Second, places::entries().len());
-    let picture = draw("places", panel.size(), |area| places::draw(&panel, area, mapper, title, places))?;
     Ok(picture.write(path)?)
 }
 

@@ -188,21 +188,3 @@ fn pictures_for_inspection() {
     let folder = drawn(6000).folder.keep();
     println!("{} in {:?}", folder.display(), start.elapsed());
 }
-
-#[test]
-fn places_are_numbered_on_the_map_with_what_changed() {
-    let drawn = drawn(600);
-    let mapper = &drawn.run.mapper;
-    let changed = mapper.changed().find(|index| mapper.rate(*index) > 0.0).unwrap();
-    let center = mapper.frame().center(mapper.frame().cell(changed));
-    let corner = nalgebra::Vector2::new(0.5, 0.5);
-    let path = drawn.folder.path().join("places.png");
-    draw_places(&path, "Where it changes", mapper, &[[center - corner, center + corner]]).unwrap();
-    let picture = drawn.picture("places");
-    let panel = Panel::of_scene(mapper.frame(), TimeUnit::Second, places::entries().len());
-    let [x, y] = panel.pixel(&center);
-    assert_eq!(picture.get_pixel(x, y).0, palette::MOVING);
-    // The outline of the place, and its number, which stays legible on a wall.
-    let is_near = |color: Rgb| picture.pixels().filter(|pixel| pixel.0 == color).count();
-    assert!(is_near(palette::CURIOUS) > 50, "{}", is_near(palette::CURIOUS));
-}

@@ -1,0 +1,131 @@
+//! Cells that change, in groups: those of a door, those of a piece of furniture, and neighboring ones.
+
+use interfaces::{Cell, GridFrame};
+use mapper::{Mapper, ThingKind};
+use std::collections::BTreeSet;
+
+/// Cells that change belong to one place if they are at most this far apart, m.
+const APART_M: f64 = 0.3;
+/// A place has at least this area, m²: less is noise of the laser at an edge.
+const MIN_M2: f64 = 0.02;
+/// Of a thing that is seen from one side, only the front changes, one cell deep: it is a place from this width on, m, if it
+/// was seen to come and go twice.
+const MIN_FRONT_M: f64 = 0.25;
+const MIN_FRONT_CHANGES: u32 = 4;
+/// A larger place is divided, m: in a room full of people all changes are connected.
+const MAX_M: f64 = 3.0;
+
+/// Cells that belong to one place, by their index.
+pub(super) struct Group {
+    pub(super) cells: Vec<usize>,
+    /// The thing that they are; `None` if they are none.
+    pub(super) thing: Option<u32>,
+}
+
+impl Group {
+    /// Whether the group is a place, if its cell with the most changes has this number of them.
+    pub(super) fn counts(&self, mapper: &Mapper, changes: u32) -> bool {
+        let (cell_m, cells) = (mapper.frame().resolution_m(), self.cells.len() as f64);
+        let is_front = cells * cell_m >= MIN_FRONT_M && changes >= MIN_FRONT_CHANGES;
+        self.thing.is_some() || cells * cell_m.powi(2) >= MIN_M2 || is_front
+    }
+}
+
+/// All groups of cells that changed: things, in the order in which they were found, and then the others.
+pub(super) fn groups(mapper: &Mapper) -> Vec<Group> {
+    let mut left: BTreeSet<usize> = mapper.changed().collect();
+    let mut found = Vec::new();
+    let is_door = |thing: &&mapper::Thing| matches!(thing.kind, ThingKind::Door(_));
+    let (doors, furniture): (Vec<_>, Vec<_>) = mapper.things().iter().partition(is_door);
+    for thing in doors.into_iter().chain(furniture) {
+        let cells = cells_of(&thing.kind, &thing.cells);
+        let cells: Vec<usize> =
+            cells.iter().map(|cell| *cell as usize).filter(|cell| left.remove(cell)).collect();
+        if !cells.is_empty() {
+            found.push(Group { cells, thing: Some(thing.id) });
+        }
+    }
+    while let Some(first) = left.pop_first() {
+        let cells = connected_cells(mapper, first, &mut left);
+        found.extend(divided(mapper.frame(), cells).into_iter().map(|cells| Group { cells, thing: None }));
+    }
+    found
+}
+
+/// The cells of a thing where it is: of furniture, where it is now.
+fn cells_of<'a>(kind: &'a ThingKind, all: &'a [u32]) -> &'a [u32] {
+    match kind {
+        ThingKind::Door(_) => all,
+        ThingKind::Furniture(furniture) => {
+            furniture.to.as_ref().or(furniture.from.as_ref()).map_or(all, |place| &place.cells)
+        }
+    }
+}
+
+/// The cells of `left` that are connected with `first`; they are removed from `left`.
+fn connected_cells(mapper: &Mapper, first: usize, left: &mut BTreeSet<usize>) -> Vec<usize> {
+    let frame = mapper.frame();
+    let reach = (APART_M / frame.resolution_m()).round().max(1.0) as i32;
+    let (mut cells, mut next) = (vec![first], 0);
+    while let Some(cell) = cells.get(next).map(|index| frame.cell(*index)) {
+        next += 1;
+        for y in -reach..=reach {
+            for x in -reach..=reach {
+                let beside = Cell { x: cell.x + x, y: cell.y + y };
+                cells.extend(frame.index(beside).filter(|index| left.remove(index)));
+            }
+        }
+    }
+    cells
+}
+
+/// Cells in groups that are at most [`MAX_M`] long: a longer group is cut across its longer side, in the middle half of it,
+/// where the fewest cells are.
+fn divided(frame: &GridFrame, cells: Vec<usize>) -> Vec<Vec<usize>> {
+    let most = (MAX_M / frame.resolution_m()).round().max(1.0) as i32;
+    let at = |index: usize| frame.cell(index);
+    let span = |of: &dyn Fn(Cell) -> i32| {
+        let places = || cells.iter().map(|index| of(at(*index)));
+        (places().min().unwrap_or_default(), places().max().unwrap_or_default())
+    };
+    let [x, y]: [&dyn Fn(Cell) -> i32; 2] = [&|cell| cell.x, &|cell| cell.y];
+    let length = |(low, high): (i32, i32)| high - low + 1;
+    let along = if length(span(x)) >= length(span(y)) { x } else { y };
+    let (low, high) = span(along);
+    if length((low, high)) <= most {
+        return vec![cells];
+    }
+    let mut counts = vec![0_usize; length((low, high)) as usize];
+    cells.iter().for_each(|index| counts[(along(at(*index)) - low) as usize] += 1);
+    let quarter = counts.len() / 4;
+    let middle = quarter.max(1)..(counts.len() - quarter);
+    let half = counts.len() / 2;
+    // Of two equal ones, the one nearer to the middle.
+    let cut = middle.min_by_key(|line| (counts[*line], line.abs_diff(half))).unwrap_or(half) as i32 + low;
+    let (before, after): (Vec<usize>, Vec<usize>) =
+        cells.iter().copied().partition(|index| along(at(*index)) < cut);
+    [before, after].into_iter().flat_map(|part| divided(frame, part)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Point2;
+
+    #[test]
+    fn a_long_place_is_cut_where_little_changes() {
+        let frame = GridFrame::new(Point2::origin(), 0.1, 80, 10).unwrap();
+        // Two areas, and a line between them.
+        let is_in = |cell: Cell| !(35..40).contains(&cell.x) || cell.y == 4;
+        let cells: Vec<usize> = (0..frame.len()).filter(|index| is_in(frame.cell(*index))).collect();
+        let groups = divided(&frame, cells.clone());
+        assert_eq!(groups.iter().map(Vec::len).sum::<usize>(), cells.len());
+        for group in &groups {
+            let columns: BTreeSet<i32> = group.iter().map(|index| frame.cell(*index).x).collect();
+            let (first, last) = (*columns.first().unwrap(), *columns.last().unwrap());
+            assert!(last - first < 30 && (last < 40 || first >= 35), "{first} to {last}");
+        }
+        let small: Vec<usize> = cells.into_iter().filter(|index| frame.cell(*index).x < 30).collect();
+        assert_eq!(divided(&frame, small.clone()), [small]);
+    }
+}

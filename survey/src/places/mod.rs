@@ -1,0 +1,234 @@
+//! Places: what a person would point at, with its number, its name, what it looks like, and how often it changes.
+//!
+//! - `groups`: neighboring cells that change, and the cells of doors and of furniture.
+//! - `passages`: how often something came into each spot of half a meter.
+//! - `book`: the numbers and the names of places, which they keep over all sessions.
+//! - `session`, `since`: what is different since the last session.
+
+mod book;
+mod groups;
+mod names;
+mod passages;
+mod session;
+mod since;
+#[cfg(test)]
+mod tests;
+
+pub(crate) use book::PlaceBook;
+pub use names::{PlaceName, StillName};
+pub(crate) use since::since;
+pub use since::{Lasting, PlaceSince, Since, Trend};
+
+use crate::ChangeLog;
+use crate::permanent::share_blocked;
+use groups::{Group, groups};
+use mapper::{Mapper, RateDistribution, ThingKind};
+use nalgebra::Point2;
+use passages::Spot;
+use serde::Serialize;
+
+/// The probability with which an interval contains the rate.
+const MASS: f64 = 0.9;
+const HOUR_S: f64 = 3600.0;
+/// What passes is gone after this time, s.
+const PASSING_S: f64 = 30.0;
+/// The area of a body that passes, m².
+const BODY_M2: f64 = 0.25;
+/// The number of passages before any look: Jeffreys' prior of a rate.
+const PRIOR_PASSAGES: f64 = 0.5;
+
+/// A place where something changes.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Place {
+    /// Its number, which it keeps over all sessions.
+    pub number: u32,
+    /// The name that the user has given; `None` without one.
+    pub name: Option<String>,
+    /// What it looks like.
+    #[serde(flatten)]
+    pub kind: PlaceKind,
+    /// The middle of the cells, m.
+    pub x_m: f64,
+    /// The middle of the cells, m.
+    pub y_m: f64,
+    /// The lower left corner of the rectangle around the cells, m.
+    pub low_m: [f64; 2],
+    /// The upper right corner of this rectangle, m.
+    pub high_m: [f64; 2],
+    /// The area of the cells that changed, m².
+    pub area_m2: f64,
+    /// The number of changes that were seen in the cell with the most changes.
+    pub changes: u32,
+    /// How often it changes; `None` where the times of the log are unusable.
+    #[serde(flatten)]
+    pub rates: Option<PlaceRates>,
+    /// Its cells, by their index.
+    #[serde(skip)]
+    pub cells: Vec<usize>,
+}
+
+/// What a place looks like.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(tag = "kind", rename_all = "snake_case")]
+pub enum PlaceKind {
+    /// A line that sweeps or slides.
+    Door {
+        /// The number of the [`mapper::Thing`].
+        thing: u32,
+    },
+    /// A piece of furniture that is elsewhere since.
+    Furniture {
+        /// The number of the [`mapper::Thing`].
+        thing: u32,
+    },
+    /// Something comes again and again, and is gone soon: people, carts, robots.
+    Traffic,
+    /// Something changed; what it is, is not known.
+    Unknown,
+}
+
+impl PlaceKind {
+    /// Its name, as in `summary.json`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Door { .. } => "door",
+            Self::Furniture { .. } => "furniture",
+            Self::Traffic => "traffic",
+            Self::Unknown => "unknown",
+        }
+    }
+
+    /// The number of its thing; `None` for what is none.
+    pub fn thing(self) -> Option<u32> {
+        match self {
+            Self::Door { thing } | Self::Furniture { thing } => Some(thing),
+            Self::Traffic | Self::Unknown => None,
+        }
+    }
+}
+
+/// How often a place changes, and when: it follows from the times of the readings.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PlaceRates {
+    /// The cycles per hour (blocked, free, blocked again) of the cell with the median rate.
+    pub cycles_per_hour: f64,
+    /// The ends of the 90 % credible interval of this rate, 1/h; the upper one is `null` without an upper bound.
+    pub cycles_per_hour_90: [Option<f64>; 2],
+    /// The number of times that something came in view, in the spot of half a meter where this happened most often.
+    pub passages: u32,
+    /// The number of times that this spot was found blocked or free otherwise than before, after a time out of view.
+    pub changes_after_gap: u32,
+    /// The time in view of this spot, s.
+    pub spot_observed_s: f64,
+    /// The passages per hour in view; `null` if the spot was never in view between two readings.
+    pub passages_per_hour: Option<f64>,
+    /// The ends of the 90 % credible interval of this rate, 1/h.
+    pub passages_per_hour_90: Option<[f64; 2]>,
+    /// The mean share of the time that the cells are blocked, from 0 to 1.
+    pub share_blocked: f64,
+    /// The time in view of the cells, mean, s.
+    pub observed_s: f64,
+    /// The time of the last change, s.
+    pub last_change_s: f64,
+}
+
+impl PlaceRates {
+    /// Whether a full cycle was seen: something came, was gone, and came again. Less says nothing about the time of a cycle.
+    pub fn has_cycle(&self) -> bool {
+        self.passages >= 2
+    }
+}
+
+/// The places where something changes, the liveliest first. Their numbers and names are those of the book.
+pub(crate) fn places(mapper: &Mapper, log: &ChangeLog, book: &PlaceBook) -> Vec<Place> {
+    let mut found: Vec<(Place, Group)> = Vec::new();
+    for group in groups(mapper) {
+        let place = place(mapper, log, &group, book.spot(mapper, &group.cells));
+        found.extend(place.filter(|place| group.counts(mapper, place.changes)).map(|place| (place, group)));
+    }
+    found.sort_by(|(a, _), (b, _)| liveliness(mapper, b).total_cmp(&liveliness(mapper, a)));
+    let (mut places, groups): (Vec<Place>, Vec<Group>) = found.into_iter().unzip();
+    let numbers = book.numbers(mapper, &groups);
+    places.iter_mut().zip(&numbers).for_each(|(place, number)| place.number = *number);
+    names::give(&mut places, book.names());
+    places
+}
+
+/// How lively a place is: the lower end of the interval of the openings of a door, or of the passages, so that places that were
+/// seen for seconds do not come first. What is smaller than a body can be noise, and counts for less.
+fn liveliness(mapper: &Mapper, place: &Place) -> f64 {
+    let thing = mapper.things().iter().find(|thing| place.kind.thing() == Some(thing.id));
+    let openings = thing.and_then(|thing| match &thing.kind {
+        ThingKind::Door(door) => door.statistics.interval_of_openings_per_hour(MASS),
+        ThingKind::Furniture(_) => None,
+    });
+    let passages = || place.rates.as_ref()?.passages_per_hour_90;
+    let least_per_hour = openings.map(|(low, _)| low).or_else(|| passages().map(|[low, _]| low));
+    (place.area_m2 / BODY_M2).min(1.0) * least_per_hour.unwrap_or_default()
+}
+
+/// The names that none of the places has.
+pub(crate) fn still_names(mapper: &Mapper, book: &PlaceBook, places: &[Place]) -> Vec<StillName> {
+    names::still(mapper, places, book.names())
+}
+
+fn place(mapper: &Mapper, log: &ChangeLog, group: &Group, spot: Spot) -> Option<Place> {
+    let (frame, cells) = (mapper.frame(), &group.cells);
+    let mean =
+        |of: &dyn Fn(usize) -> f64| cells.iter().map(|index| of(*index)).sum::<f64>() / cells.len() as f64;
+    let centers: Vec<Point2<f64>> = cells.iter().map(|index| frame.center(frame.cell(*index))).collect();
+    let half_m = frame.resolution_m() / 2.0;
+    let spans = centers.iter().map(|at| (*at, *at));
+    let (low, high) = spans.reduce(|(low, high), (at, _)| (low.inf(&at), high.sup(&at)))?;
+    let mut by_rate = cells.clone();
+    by_rate.sort_by(|a, b| mapper.rate(*a).total_cmp(&mapper.rate(*b)));
+    let median = by_rate[by_rate.len() / 2];
+    let interval = mapper.credible_interval(median, MASS);
+    let bound = |rate_hz: f64| Some(rate_hz * HOUR_S).filter(|rate| rate.is_finite());
+    let passages = spot.passages();
+    let events = PRIOR_PASSAGES + f64::from(passages);
+    let rate = RateDistribution { events, time: spot.observed_s / HOUR_S };
+    let rate = Some(rate).filter(|rate| rate.time > 0.0);
+    let rates = PlaceRates {
+        cycles_per_hour: mapper.rate(median) * HOUR_S,
+        cycles_per_hour_90: [bound(interval.0), bound(interval.1)],
+        passages,
+        changes_after_gap: spot.after_gap,
+        spot_observed_s: spot.observed_s,
+        passages_per_hour: rate.map(|rate| f64::from(passages) / rate.time),
+        passages_per_hour_90: rate.map(|rate| rate.interval(MASS).into()),
+        share_blocked: mean(&|index| share_blocked(mapper, index)),
+        observed_s: mean(&|index| mapper.statistics(index).observed()),
+        last_change_s: cells.iter().filter_map(|index| log.last_s(*index)).reduce(f64::max)?,
+    };
+    Some(Place {
+        number: 0,
+        name: None,
+        kind: kind(mapper, group, &rates),
+        x_m: centers.iter().map(|at| at.x).sum::<f64>() / centers.len() as f64,
+        y_m: centers.iter().map(|at| at.y).sum::<f64>() / centers.len() as f64,
+        low_m: [low.x - half_m, low.y - half_m],
+        high_m: [high.x + half_m, high.y + half_m],
+        area_m2: cells.len() as f64 * frame.resolution_m().powi(2),
+        changes: cells.iter().map(|index| mapper.statistics(*index).events()).max()?,
+        rates: Some(rates),
+        cells: cells.clone(),
+    })
+}
+
+fn kind(mapper: &Mapper, group: &Group, rates: &PlaceRates) -> PlaceKind {
+    if let Some(thing) = group.thing {
+        let is_door = |found: &mapper::Thing| found.id == thing && matches!(found.kind, ThingKind::Door(_));
+        let is_door = mapper.things().iter().any(is_door);
+        return if is_door { PlaceKind::Door { thing } } else { PlaceKind::Furniture { thing } };
+    }
+    let stays = |index: &usize| {
+        let seen = mapper.statistics(*index);
+        (seen.free_events > 0).then(|| seen.watched_blocked / f64::from(seen.free_events))
+    };
+    let mut stays_s: Vec<f64> = group.cells.iter().filter_map(stays).collect();
+    stays_s.sort_by(f64::total_cmp);
+    let is_short = stays_s.get(stays_s.len() / 2).is_some_and(|stay_s| *stay_s <= PASSING_S);
+    let is_mostly_free = rates.share_blocked <= 0.5;
+    if is_short && is_mostly_free && rates.has_cycle() { PlaceKind::Traffic } else { PlaceKind::Unknown }
+}

@@ -1,0 +1,154 @@
+//! `map_log`: the page, names of places, and what changed since the last visit.
+
+use crate::bad_input::refuses;
+use crate::map_log::{standing_line, standing_log};
+use crate::run::Run;
+use std::fs;
+
+const SAVED: &str = "--quiet --no-rrd --state a.state";
+const MONDAY_S: f64 = 1.7e9;
+const TUESDAY_S: f64 = MONDAY_S + 86_400.0;
+/// The laser of the logs is at the origin, and what comes and goes is 1 m before it.
+const LAMP: &str = "[[place]]\nname = \"Lamp & chair\"\nx_m = 1.2\ny_m = 0.1\n";
+
+fn page(run: &Run) -> String {
+    fs::read_to_string(run.out("report.html")).unwrap()
+}
+
+/// A log of the same laser in which nothing comes.
+fn quiet_log(begin_s: f64, seconds: u32) -> String {
+    (0..seconds).map(|second| standing_line(begin_s + f64::from(second), false)).collect()
+}
+
+#[test]
+fn the_page_is_one_file_for_people() {
+    let run = Run::new().with_map_log();
+    run.write("a.log", &standing_log(MONDAY_S, 600));
+    run.goes_well("a.log --no-rrd --quiet");
+    let page = page(&run);
+    assert!(page.len() < 200_000, "{} bytes", page.len());
+    // Pictures are inside, and nothing else is loaded or run.
+    assert!(page.contains("href=\"data:image/png;base64,"));
+    for outside in ["<script", "<link", "<img", "src=", "url(", "@import"] {
+        assert!(!page.contains(outside), "{outside}");
+    }
+    for link in page.split("href=\"").skip(1) {
+        assert!(
+            link.starts_with('#') || link.starts_with("data:image/png;base64,"),
+            "{}",
+            &link[..40.min(link.len())]
+        );
+    }
+    // The first lines: is the map good, where is it liveliest, how many doors.
+    let body = &page[page.find("<body>").unwrap()..];
+    let order = [
+        "This map is good",
+        "It is liveliest at ",
+        "place 1",
+        "No door was seen",
+        "Where it changes",
+        "The places",
+    ];
+    let found: Vec<usize> =
+        order.iter().map(|text| body.find(text).unwrap_or_else(|| panic!("{text}"))).collect();
+    assert!(found.is_sorted(), "{found:?}");
+    // It comes every 20 s: 29 times in 10 minutes, since it was there at first.
+    assert!(body.contains("Something passes about 2.9 times per minute"), "{body}");
+}
+
+#[test]
+fn a_rate_needs_a_full_cycle() {
+    let run = Run::new().with_map_log();
+    // Something 1.4 m wide comes, and stays.
+    let ranges = |is_here: bool| -> String {
+        let range_m = |beam: u32| if is_here && (55..125).contains(&beam) { 1.0 } else { 4.0 };
+        (0..180).map(|beam| format!("{:.2} ", range_m(beam))).collect()
+    };
+    let line = |second: u32| {
+        let (time_s, ranges) = (MONDAY_S + f64::from(second), ranges(second >= 200));
+        format!("FLASER 180 {ranges}0 0 0 0 0 0 {time_s} h 0\n")
+    };
+    run.write("a.log", &(0..600).map(line).collect::<String>());
+    run.goes_well("a.log --no-rrd --quiet");
+    let place = &run.summary().0["places"][0];
+    assert_eq!((&place["kind"], &place["passages"]), (&"furniture".into(), &1.into()), "{place}");
+    let page = page(&run);
+    assert!(
+        page.contains("It changed once in 10 min of looking") && !page.contains("about once in"),
+        "{page}"
+    );
+}
+
+#[test]
+fn names_and_numbers_stay_in_the_state() {
+    let run = Run::new().with_map_log();
+    run.write("a.log", &standing_log(MONDAY_S, 120));
+    run.write("b.log", &standing_log(TUESDAY_S, 120));
+    run.write(
+        "lamp.toml",
+        &format!("{LAMP}[[place]]\nname = \"Window\"\nx_m = 2\ny_m = 2\nradius_m = 0.3\n"),
+    );
+    run.goes_well(&format!("a.log {SAVED} --places lamp.toml"));
+    let first = run.summary().0["places"][0].clone();
+    assert_eq!((&first["name"], &first["number"]), (&"Lamp & chair".into(), &1.into()), "{first}");
+    let page_of_a = page(&run);
+    assert!(
+        page_of_a.contains("Lamp &amp; chair")
+            && page_of_a.contains("Window: not seen to change in 2 min of looking.")
+    );
+
+    let ended = run.goes_well("b.log --no-rrd --state a.state");
+    let second = run.summary().0["places"][0].clone();
+    assert_eq!((&second["name"], &second["number"]), (&first["name"], &first["number"]), "{second}");
+    assert!(ended.stdout.contains("    1.      Lamp & chair, at "), "{}", ended.stdout);
+    assert_eq!(run.summary().0["names_without_change"][0]["name"], "Window");
+
+    // Another file replaces the names, also for logs that are learned already.
+    run.write("other.toml", "[[place]]\nname = \"Chair\"\nx_m = 1\ny_m = 0\n");
+    run.goes_well(&format!("b.log {SAVED} --places other.toml"));
+    run.goes_well(&format!("b.log {SAVED}"));
+    assert_eq!(run.summary().0["places"][0]["name"], "Chair");
+}
+
+#[test]
+fn an_invalid_file_of_names_is_refused() {
+    let run = Run::new().with_map_log();
+    run.write("a.log", &standing_log(MONDAY_S, 30));
+    run.write("names.toml", &LAMP.replace("y_m", "y"));
+    let refused = refuses(&run, "a.log --quiet --no-rrd --places names.toml", &["a.log", "names.toml"]);
+    insta::assert_snapshot!(refused, @"error: names.toml, line 4, `y`: unknown field `y`, expected one of `name`, `x_m`, `y_m`, `radius_m`");
+}
+
+#[test]
+fn the_second_visit_says_what_changed() {
+    let run = Run::new().with_map_log();
+    run.write("a.log", &standing_log(MONDAY_S, 240));
+    // The same visit goes on: within six hours.
+    run.write("b.log", &standing_log(MONDAY_S + 3600.0, 120));
+    run.write("c.log", &quiet_log(TUESDAY_S, 1200));
+    run.goes_well(&format!("a.log {SAVED}"));
+    assert!(run.summary().0["since_last_session"].is_null() && !page(&run).contains("last visit"));
+    run.goes_well(&format!("b.log {SAVED}"));
+    assert!(run.summary().0["since_last_session"].is_null() && !page(&run).contains("last visit"));
+    run.goes_well(&format!("c.log {SAVED}"));
+    let summary = run.summary();
+    let since = &summary.0["since_last_session"];
+    assert_eq!((&since["first_log"], &summary.0["session_begin_s"]), (&2.into(), &TUESDAY_S.into()));
+    let place = &since["places"][0];
+    assert_eq!(
+        (&place["number"], &place["trend"], &place["passages"][1]),
+        (&1.into(), &"gone".into(), &0.into())
+    );
+    let page = page(&run);
+    for text in [
+        "What changed since the last visit",
+        "This visit: c.log, from 2023-11-15 22:13 UTC on. Before: a.log, b.log.",
+        "did not change in 20 min of looking",
+    ] {
+        assert!(page.contains(text), "{text}: {page}");
+    }
+
+    // And one run with all logs writes the same page.
+    run.goes_well("a.log b.log c.log --quiet --no-rrd --out whole");
+    assert!(fs::read_to_string(run.path("whole").join("report.html")).unwrap() == page);
+}
