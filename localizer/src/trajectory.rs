@@ -14,7 +14,8 @@
 //! - A loop counts where most of what both submaps cover agrees, where few beams of one pass the walls of the other
 //!   (`constants::MAX_PASSING`), where no other pose fits about as well, and where another loop agrees with it, unless the
 //!   way since then was short.
-//! - In the end, keyframes are matched with all submaps around them, so that every wall is there once.
+//! - In the end, keyframes are matched with all submaps around them, so that every wall is there once; keyframes that are far from
+//!   each other are correlated with the chains of earlier keyframes around them as well.
 
 mod chains;
 mod correlation;
@@ -182,10 +183,10 @@ impl TrajectoryFinder {
         graph.optimize();
         graph.remove_outliers();
         graph.optimize();
-        match chains::are_sparse(self.keyframes()) {
-            true => chains::correlate(self.keyframes(), &mut graph),
-            false => refine::refine(&self.closer.places, self.keyframes(), &mut graph),
+        if chains::are_sparse(self.keyframes()) {
+            chains::correlate(self.keyframes(), &mut graph);
         }
+        refine::refine(&self.closer.places, self.keyframes(), &mut graph);
         graph
     }
 

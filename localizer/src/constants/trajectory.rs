@@ -75,13 +75,15 @@ pub(crate) const ALL_HEADINGS: Spread = Spread { m: 0.8, rad: std::f64::consts::
 
 /// A keyframe is far from the one before after this motion.
 pub(crate) const SPARSE: Spread = Spread { m: 0.5, rad: 0.4 };
-/// A chain: keyframes in a row within this distance, m; minimum number; keyframes before and after them that are compared as well.
+/// A chain: keyframes in a row within this distance, m; minimum length; number of chains that are tried, the nearest first; keyframes
+/// before and after them that are compared as well.
 pub(crate) const CHAIN_M: f64 = 4.0;
 pub(crate) const MIN_CHAIN: usize = 4;
+pub(crate) const MAX_CHAINS: usize = 2;
 pub(crate) const CHAIN_KEYFRAMES: usize = 8;
 /// Minimum response of a keyframe in a chain, and number of rounds.
 pub(crate) const CHAIN_RESPONSE: f64 = 0.45;
-pub(crate) const CHAIN_ROUNDS: usize = 3;
+pub(crate) const CHAIN_ROUNDS: usize = 2;
 
 // Trajectories: loops
 

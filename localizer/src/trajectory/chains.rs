@@ -7,7 +7,7 @@ use super::graph::{Edge, EdgeKind, PoseGraph};
 use super::keyframe::Keyframe;
 use super::matching::in_frame;
 use crate::constants::{
-    CHAIN_KEYFRAMES, CHAIN_M, CHAIN_RESPONSE, CHAIN_ROUNDS, CORRELATED, CORRELATED_KEYFRAMES, MIN_CHAIN,
+    CHAIN_KEYFRAMES, CHAIN_M, CHAIN_RESPONSE, CHAIN_ROUNDS, CORRELATED, CORRELATED_KEYFRAMES, MAX_CHAINS, MIN_CHAIN,
     SPARSE,
 };
 use std::ops::Range;
@@ -62,6 +62,11 @@ fn chains(number: usize, graph: &PoseGraph) -> Vec<Range<usize>> {
         }
     }
     chains.retain(|chain| chain.len() >= MIN_CHAIN);
+    let distance_m = |chain: &Range<usize>| {
+        nearest(chain.clone(), number, graph).map_or(f64::INFINITY, |near| distance_m(near, number, graph))
+    };
+    chains.sort_by(|a, b| distance_m(a).total_cmp(&distance_m(b)));
+    chains.truncate(MAX_CHAINS);
     chains
 }
 
