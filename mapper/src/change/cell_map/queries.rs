@@ -21,6 +21,17 @@ impl CellMap {
         self.states.cells()[index]
     }
 
+    /// The memory of the cells, bytes; what the gaps of cells that changed own is estimated.
+    pub(crate) fn bytes(&self) -> usize {
+        self.states.cells().bytes()
+            + self.observed.bytes()
+            + self.records.bytes()
+            + self.gaps.bytes()
+            + self.gap_bytes
+            + self.flags.bytes()
+            + self.shared.as_ref().map_or(0, |shared| shared.means.bytes())
+    }
+
     /// The number of the open reading.
     #[inline]
     pub fn reading(&self) -> ReadingIndex {
@@ -49,7 +60,7 @@ impl CellMap {
 
     /// The index of a cell among those that ever changed.
     pub(crate) fn slot(&self, index: usize) -> Option<Slot> {
-        self.records[index].slot()
+        self.records.get(index).slot()
     }
 
     /// The number of readings so far.
@@ -73,7 +84,7 @@ impl CellMap {
 
     /// The change statistics of a cell.
     pub fn statistics(&self, index: usize) -> CellStatistics {
-        let record = &self.records[index];
+        let record = self.records.get(index);
         if !record.is_known() {
             return CellStatistics::default();
         }
@@ -103,7 +114,7 @@ impl CellMap {
 
     /// How often the state of the cell changed in the map: its changes, and the correction of a wrong first observation.
     pub(crate) fn map_changes(&self, index: usize) -> u32 {
-        self.statistics(index).events() + u32::from(self.records[index].was_corrected())
+        self.statistics(index).events() + u32::from(self.records.get(index).was_corrected())
     }
 
     /// Whether the cell ever changed. Most cells did not: their rates need no statistics.
