@@ -131,8 +131,6 @@ impl RunBag {
 /// A value from 0 to 1 for every cell that was seen.
 fn layer(mapper: &Mapper, value: impl Fn(usize) -> f64) -> Grid<Option<f64>> {
     let mut grid = Grid::filled(*mapper.frame(), None);
-    for (index, cell) in grid.cells_mut().iter_mut().enumerate() {
-        *cell = mapper.was_ever_seen(index).then(|| value(index));
-    }
+    mapper.seen().for_each(|index| grid.cells_mut()[index] = Some(value(index)));
     grid
 }

@@ -173,14 +173,14 @@ impl<T: Clone> Grid<T> {
             *own = value;
         }
     }
+}
 
+impl<T> Grid<T> {
     /// A grid of the same frame, with `f` applied to every value: once for all cells that never got a value of their own.
     pub fn map<U: Clone>(&self, f: impl FnMut(&T) -> U) -> Grid<U> {
         Grid { frame: self.frame, cells: self.cells.map(f) }
     }
-}
 
-impl<T> Grid<T> {
     /// The position and the size of the grid.
     #[inline]
     pub fn frame(&self) -> &GridFrame {

@@ -44,11 +44,32 @@ impl<T: Clone> SparseCells<T> {
         }
     }
 
+    /// The value of a cell, to be changed; `None` outside of the grid.
+    #[inline]
+    pub fn get_mut(&mut self, index: usize) -> Option<&mut T> {
+        (index < self.len()).then(|| &mut self[index])
+    }
+
     /// The values of all cells.
     pub fn to_vec(&self) -> Vec<T> {
         self.iter().cloned().collect()
     }
 
+    /// Adds the block at a place of the table; returns its number.
+    #[cold]
+    fn add(&mut self, place: usize) -> usize {
+        let block = self.values.len() / BLOCK;
+        if self.values.len() == self.values.capacity() {
+            // Twice as much at a time would leave up to half of the memory unused.
+            self.values.reserve_exact((self.values.len() / 8).next_multiple_of(BLOCK).max(BLOCK));
+        }
+        self.values.extend_from_within(..BLOCK);
+        self.table[place] = block as u32;
+        block
+    }
+}
+
+impl<T> SparseCells<T> {
     /// The same cells with other values: `f` is called once for all cells without a block, and for every other cell.
     pub fn map<U: Clone>(&self, f: impl FnMut(&T) -> U) -> SparseCells<U> {
         SparseCells {
@@ -68,21 +89,6 @@ impl<T: Clone> SparseCells<T> {
         values
     }
 
-    /// Adds the block at a place of the table; returns its number.
-    #[cold]
-    fn add(&mut self, place: usize) -> usize {
-        let block = self.values.len() / BLOCK;
-        if self.values.len() == self.values.capacity() {
-            // Twice as much at a time would leave up to half of the memory unused.
-            self.values.reserve_exact((self.values.len() / 8).next_multiple_of(BLOCK).max(BLOCK));
-        }
-        self.values.extend_from_within(..BLOCK);
-        self.table[place] = block as u32;
-        block
-    }
-}
-
-impl<T> SparseCells<T> {
     /// The number of cells.
     #[inline]
     pub fn len(&self) -> usize {

@@ -410,6 +410,11 @@ impl Mapper {
         self.cells.was_ever_seen(index)
     }
 
+    /// The cells that a reading ever observed, by ascending index.
+    pub fn seen(&self) -> impl Iterator<Item = usize> {
+        self.cells.seen()
+    }
+
     /// Whether the last reading observed the cell.
     #[inline]
     pub fn is_in_view(&self, index: usize) -> bool {

@@ -60,7 +60,7 @@ fn mask_yaml(frame: &GridFrame, image: &str) -> String {
 fn picture<T>(grid: &Grid<T>, pixel: impl FnMut(&T) -> u8) -> Vec<u8> {
     let frame = grid.frame();
     let mut bytes = format!("P5\n{} {}\n255\n", frame.width(), frame.height()).into_bytes();
-    bytes.extend(grid.cells().chunks(frame.width()).rev().flatten().map(pixel));
+    bytes.extend(grid.rows().rev().flatten().map(pixel));
     bytes
 }
 

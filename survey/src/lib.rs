@@ -31,6 +31,7 @@ mod repeated;
 mod replay;
 mod route;
 mod search;
+mod seen_area;
 mod settings;
 mod survey;
 mod surveyed_log;

@@ -14,6 +14,7 @@ use crate::passes::{PassError, RoutePass, Stage};
 use crate::quality::Verdict;
 use crate::replay::{FoundPoses, Replay, judged};
 use crate::route::frame;
+use crate::seen_area::too_much;
 use crate::settings::SurveySettings;
 use crate::surveyed_log::{LogEntry, SurveyedLog};
 use interfaces::{GridFrame, LaserReading};
@@ -39,13 +40,15 @@ pub struct Survey {
     robot: Option<Robot<LaserReading, NoPilot>>,
     changes: ChangeLog,
     logs: Vec<SurveyedLog>,
+    /// The area that was seen in the first passes of this run, m².
+    seen_m2: f64,
 }
 
 impl Survey {
     /// A survey without a log. `learns_noise`: the noise in the settings is replaced by what the routes say about it.
     pub fn new(settings: SurveySettings, learns_noise: bool) -> Self {
         let changes = ChangeLog::default();
-        Self { settings, learns_noise, place: None, robot: None, changes, logs: Vec::new() }
+        Self { settings, learns_noise, place: None, robot: None, changes, logs: Vec::new(), seen_m2: 0.0 }
     }
 
     /// The logs, in the order of their times.
@@ -141,6 +144,7 @@ impl Survey {
         if is_followed && self.place.is_none() {
             self.place = Some(Arc::new(pass.place(&route)?));
         }
+        self.seen_m2 += route.seen_m2;
         self.logs.push(SurveyedLog::new(entry, route, frame));
         Ok(())
     }
@@ -207,7 +211,7 @@ impl Survey {
     ///
     /// # Errors
     ///
-    /// When the log cannot be read to its end, and when the mapper refuses a reading.
+    /// When the log cannot be read to its end, when the mapper refuses a reading, and when the map has taken all of its memory.
     pub fn turn(&mut self, replay: &mut Replay) -> Result<Option<Turn<LaserReading, ()>>, PassError> {
         let Self { robot: Some(robot), changes, logs, .. } = self else { return Ok(None) };
         let (Some(reading), Some(log)) = (replay.next()?, logs.get_mut(replay.number)) else {
@@ -216,6 +220,9 @@ impl Survey {
         let turn = robot.step(reading)?;
         log.pass();
         changes.note(&robot.mapper);
+        if robot.mapper.is_full() {
+            return Err(too_much(self.seen_m2, robot.mapper.bytes(), &self.settings).into());
+        }
         if replay.is_over() {
             log.readings = log.used;
         }

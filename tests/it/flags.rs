@@ -59,6 +59,7 @@ const PROGRAMS: [Program; 8] = [
             ("--base-frame", "base_link"),
             ("--pose", "guessed"),
             ("--resolution", "0"),
+            ("--map-memory", "0"),
             ("--max-range", "nan"),
             ("--no-return", "perhaps"),
             ("--noise", "10"),

@@ -44,7 +44,7 @@ impl OccupancyGridUpdate {
 
 /// The corners of the rectangle in which two maps differ, both inclusive.
 fn difference(before: &Grid<i8>, after: &Grid<i8>) -> Option<(Cell, Cell)> {
-    let pairs = before.cells().iter().zip(after.cells()).enumerate();
+    let pairs = before.cells().iter().zip(after.cells().iter()).enumerate();
     let changed = pairs.filter(|(_, (before, after))| before != after).map(|(index, _)| index);
     changed.map(|index| after.frame().cell(index)).map(|cell| (cell, cell)).reduce(
         |(low, high), (cell, _)| {

@@ -101,6 +101,7 @@ impl Survey {
             robot: None,
             changes,
             logs: logs.logs,
+            seen_m2: 0.0,
         };
         if let Some((frame, bytes)) = map {
             // The last log of which something was learned has set the noise.

@@ -77,6 +77,14 @@ impl CellMap {
         self.last_reading(index) != super::NEVER
     }
 
+    /// The cells that a reading ever observed, by ascending index.
+    pub(crate) fn seen(&self) -> impl Iterator<Item = usize> {
+        let stored = self.observed.stored();
+        stored
+            .filter(|(_, last)| **last & !super::observing::UNSETTLED != super::NEVER)
+            .map(|(index, _)| index)
+    }
+
     /// The time of the last observation of the candidate that has not been observed for longest.
     pub(crate) fn oldest_candidate(&mut self) -> Option<f64> {
         self.last_seen_counts.oldest().map(|reading| self.times.at(reading))
