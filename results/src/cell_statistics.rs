@@ -56,7 +56,7 @@ pub fn write(path: &Path, mapper: &Mapper) -> Result<(), OutputError> {
     write_file(path, |file| {
         let mut table = csv::Writer::from_writer(file);
         let interval = mapper.credible_intervals(CREDIBLE_MASS);
-        for index in (0..mapper.frame().len()).filter(|&index| mapper.was_ever_seen(index)) {
+        for index in mapper.seen() {
             table.serialize(row(mapper, index, interval(index))).map_err(io::Error::other)?;
         }
         table.flush()

@@ -1,5 +1,5 @@
 use crate::Growth;
-use interfaces::{CellList, GridFrame, SparseCells, ValueError, write_value};
+use interfaces::{CellList, GridFrame, Place, SparseCells, ValueError, write_value};
 use serde::{Serialize, de::DeserializeOwned};
 use std::ops::Index;
 use std::sync::Arc;
@@ -33,7 +33,13 @@ impl<T: Clone + Default + PartialEq> SharedCells<T> {
     /// The value of a cell; `None` if there is no cell.
     #[inline]
     pub(super) fn get(&self, index: usize) -> Option<&T> {
-        Some(match self.numbers.as_ref()?[index] {
+        self.at(self.numbers.as_ref()?.place(index))
+    }
+
+    /// The value at a place; `None` if there is no cell.
+    #[inline]
+    pub(super) fn at(&self, place: Place) -> Option<&T> {
+        Some(match *self.numbers.as_ref()?.at_place(place) {
             0 => &self.default,
             number => self.numbered(number as usize - 1),
         })

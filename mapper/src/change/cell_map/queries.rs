@@ -92,14 +92,15 @@ impl CellMap {
 
     /// The change statistics of a cell.
     pub fn statistics(&self, index: usize) -> CellStatistics {
-        let record = self.records.get(index);
+        let place = self.observed.place(index);
+        let record = self.records.at(place);
         if !record.is_known() {
             return CellStatistics::default();
         }
-        let last = self.last_reading(index);
+        let last = self.observed.at_place(place) & !super::observing::UNSETTLED;
         let (first_seen, last_seen) = (self.times.at(record.first), self.times.at(last));
         let mut watched = record.watched;
-        watched[state_index(self.state(index))] += last_seen - self.times.at(record.since);
+        watched[state_index(*self.states.cells().at_place(place))] += last_seen - self.times.at(record.since);
         let [watched_free, watched_blocked] = watched;
         let period = self.times.period(last);
         CellStatistics {
@@ -115,8 +116,8 @@ impl CellMap {
             free_events_after_gap: record.after_gap[1],
             gaps_from_free: record.gaps[0],
             gaps_from_blocked: record.gaps[1],
-            gap_worth: self.gaps.get(index).map_or(GapWorth::default(), |gaps| gaps.worth(period)),
-            prior: self.rate_prior(index),
+            gap_worth: self.gaps.at(place).map_or(GapWorth::default(), |gaps| gaps.worth(period)),
+            prior: self.rate_prior(place),
         }
     }
 

@@ -3,7 +3,7 @@
 use super::record::{Marks, Record};
 use super::{NEVER, ReadingIndex};
 use crate::Growth;
-use interfaces::{CellList, GridFrame, SparseCells, ValueError, write_value};
+use interfaces::{CellList, GridFrame, Place, SparseCells, ValueError, write_value};
 
 /// The record of a cell that was in view in one state only, or a reference to a long one.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -45,7 +45,13 @@ impl Records {
     /// The record of a cell.
     #[inline]
     pub(super) fn get(&self, index: usize) -> Record {
-        let Short { first, since, watched, count, marks, kind } = self.short[index];
+        self.at(self.short.place(index))
+    }
+
+    /// The record at a place.
+    #[inline]
+    pub(super) fn at(&self, place: Place) -> Record {
+        let Short { first, since, watched, count, marks, kind } = *self.short.at_place(place);
         let record = Record { first, since, marks, ..Record::default() };
         match kind {
             Kind::Free => Record { watched: [watched, 0.0], gaps: [count, 0], ..record },

@@ -3,7 +3,7 @@
 use super::CellMap;
 use crate::change::RateDistribution;
 use crate::change::shared_prior::{InView, Learned, RatePrior};
-use interfaces::{CellState, GridFrame, SparseCells};
+use interfaces::{CellState, GridFrame, Place, SparseCells};
 
 /// The prior is learned anew after a quarter more readings, from this many readings on and after at most this many: one
 /// minute at 10 Hz.
@@ -39,9 +39,9 @@ impl CellMap {
     }
 
     /// The prior of the rate of a cell, once there is one.
-    pub(super) fn rate_prior(&self, index: usize) -> Option<RateDistribution> {
+    pub(super) fn rate_prior(&self, place: Place) -> Option<RateDistribution> {
         let shared = self.shared.as_ref()?;
-        Some(shared.prior?.with_mean(shared.means[index]))
+        Some(shared.prior?.with_mean(*shared.means.at_place(place)))
     }
 
     /// Learns the prior anew if it is time.

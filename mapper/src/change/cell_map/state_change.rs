@@ -70,8 +70,9 @@ impl CellMap {
     /// for less than `confirm` (in the time unit of the readings). A corrected state counts as confirmed: otherwise
     /// every change of a cell that changes faster than `confirm` would be a correction.
     pub fn is_unconfirmed(&self, index: usize, confirm: f64) -> bool {
-        let (record, seen) = (self.records.get(index), self.statistics(index));
-        record.first > PRIOR && !record.was_corrected() && seen.events() == 0 && seen.observed() < confirm
+        let record = self.records.get(index);
+        let may_be = record.first > PRIOR && !record.was_corrected() && !self.has_changed(index);
+        may_be && self.statistics(index).observed() < confirm
     }
 
     /// Corrects a wrong first observation: nothing changed; the state of the cell was `after` from the start.

@@ -82,7 +82,7 @@ type Saved = (Vec<GapBin>, Option<Gap>, u32);
 
 impl From<Saved> for GapHistogram {
     fn from((bins, last, _): Saved) -> Self {
-        Self { bins: bins.into(), last }
+        Self { bins: SmallVec::from_slice(&bins), last }
     }
 }
 
