@@ -135,7 +135,7 @@ impl<T> SparseCells<T> {
     fn at(&self, index: usize) -> (usize, usize) {
         let row = ((u128::from(index as u64) * u128::from(self.inverse)) >> 63) as usize;
         let column = index - row * self.width;
-        ((row >> SHIFT) * self.columns + (column >> SHIFT), (row % SIDE) << SHIFT | column % SIDE)
+        ((row >> SHIFT) * self.columns + (column >> SHIFT), ((row % SIDE) << SHIFT) + column % SIDE)
     }
 
     /// The value of a cell; `None` outside of the grid.
@@ -172,7 +172,7 @@ impl<T> SparseCells<T> {
     #[inline]
     fn piece(&self, row: usize, column: usize) -> (&[T], bool) {
         let block = self.table[(row >> SHIFT) * self.columns + (column >> SHIFT)] as usize;
-        let start = block * BLOCK + ((row % SIDE) << SHIFT | column % SIDE);
+        let start = block * BLOCK + (((row % SIDE) << SHIFT) + column % SIDE);
         let length = (SIDE - column % SIDE).min(self.width - column);
         (&self.values[start..start + length], block != 0)
     }

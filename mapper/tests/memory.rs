@@ -55,7 +55,10 @@ fn a_large_place_takes_the_memory_of_what_was_seen() {
 fn two_rooms_a_kilometer_apart_take_the_memory_of_two_rooms() {
     let before = resident();
     let frame = GridFrame::new(Point2::origin(), 0.05, 20_000, 20_000).unwrap();
-    let settings = MapperSettings { estimator: EstimatorChoice::named("shared-prior").unwrap(), ..MapperSettings::default() };
+    let settings = MapperSettings {
+        estimator: EstimatorChoice::named("shared-prior").unwrap(),
+        ..MapperSettings::default()
+    };
     let mut mapper = Mapper::new(&settings, frame).unwrap();
     let outline = mapper.bytes();
     assert!(outline < 80 << 20, "the outline alone takes {outline} bytes");
