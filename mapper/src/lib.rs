@@ -137,7 +137,7 @@ impl Mapper {
     }
 
     /// Whether the map takes [as much memory as it may](MapperSettings::max_bytes). Where nothing was seen yet, readings then
-    /// change nothing, as outside of the frame; the rest of the map goes on.
+    /// change nothing, as outside of the frame; the rest of the map goes on, and what its cells record takes some more memory.
     pub fn is_full(&self) -> bool {
         self.bytes() >= self.settings.max_bytes
     }
@@ -155,7 +155,7 @@ impl Mapper {
             key: "prior",
             expected: "a map that fits into the memory that the mapper may take (max_bytes)",
             found: format!(
-                "{known} known cells, which need {:.1} GiB of {:.1} GiB",
+                "{known} known cells, which need {:.4} GiB of {:.4} GiB",
                 gib(bytes),
                 gib(settings.max_bytes)
             ),

@@ -78,9 +78,16 @@ fn two_rooms_a_kilometer_apart_take_the_memory_of_two_rooms() {
     println!("{per_cell:.1} bytes per cell by Mapper::bytes");
     assert!(per_cell <= Mapper::BYTES_PER_SEEN_CELL as f64, "{per_cell} bytes per cell");
     if let Some((before, after)) = before.zip(resident()) {
-        let resident = (after - before) as f64 / seen as f64;
-        println!("{resident:.1} bytes per cell resident, with the outline");
-        assert!(resident <= Mapper::BYTES_PER_SEEN_CELL as f64, "{resident} bytes per cell");
+        let (resident, counted) = (after - before, mapper.bytes());
+        println!(
+            "{} MB resident, {} MB by Mapper::bytes with the outline",
+            resident / 1_000_000,
+            counted / 1_000_000
+        );
+        assert!(
+            resident as f64 <= 1.1 * counted as f64,
+            "{resident} bytes are resident, {counted} are counted"
+        );
     }
 }
 
@@ -102,7 +109,8 @@ fn a_full_map_goes_on_where_it_is() {
     // The other room is not seen; the first one still is.
     assert_eq!(see(ROOMS_M[1], 10, &mut mapper), of_one);
     assert!(see(ROOMS_M[0], 20, &mut mapper) >= of_one);
-    assert!((mapper.bytes() as f64) < 1.5 * full as f64, "{} bytes, {full} before", mapper.bytes());
+    // Its cells have a gap each now.
+    assert!(mapper.bytes() < full + 70 * of_one, "{} bytes, {full} before", mapper.bytes());
     let index = frame.index(frame.cell_at(&Point2::new(21.0, 21.0))).unwrap();
     assert!(mapper.is_in_view(index) && mapper.statistics(index).gaps_from_free == 1);
 }

@@ -254,7 +254,7 @@ fn a_prior_map_that_needs_too_much_memory_is_refused_before_it_is_allocated() {
     assert!(Mapper::with_prior(&settings(1 << 20), prior.clone()).is_ok());
     let error = Mapper::with_prior(&settings(1 << 18), prior).unwrap_err().to_string();
     let expected = "mapper setting `prior` must be a map that fits into the memory that the mapper may take (max_bytes), not 10000 known \
-                    cells, which need 0.0 GiB of 0.0 GiB";
+                    cells, which need 0.0003 GiB of 0.0002 GiB";
     assert_eq!(error, expected);
 }
 
