@@ -158,7 +158,7 @@ mod tests {
             data.chunks(4).map(|bytes| f32::from_le_bytes(bytes.try_into().unwrap())).collect();
         assert_eq!(numbers[..6], [0.0, 2.0, 0.0, 1.0, 0.0, 1.0]);
         let about = std::fs::read_to_string(folder.path().join("layers.json")).unwrap();
-        insta::assert_snapshot!(about.replace(char::is_whitespace, ""), @"");
+        insta::assert_snapshot!(about.replace(char::is_whitespace, ""), @r#"{"columns_and_rows":[3,2],"layers":["column","row","blocked","rate_hz","rate_low_hz","rate_high_hz","blocked_probability","change_probability","recency_s","observed_s"],"origin_m":[0.0,0.0],"resolution_m":1.0,"schema":1}"#);
         for shape in [[8, 1, 1], [8, 600, 12_345], [8, 1_000_000, 1]] {
             let header = npy_header(&shape);
             assert!(header.len().is_multiple_of(64) && header.ends_with(b"\n"), "{shape:?}");
