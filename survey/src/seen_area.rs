@@ -61,7 +61,7 @@ impl SeenArea {
 pub(crate) fn check(seen_m2: f64, share: f64, settings: &SurveySettings) -> Result<(), SurveyError> {
     match bytes(seen_m2 * share, settings) <= settings.mapper.max_bytes as f64 {
         true => Ok(()),
-        false => Err(too_much(seen_m2, 0, settings)),
+        false => Err(too_much(seen_m2, 0.0, settings)),
     }
 }
 
@@ -69,9 +69,19 @@ fn bytes(seen_m2: f64, settings: &SurveySettings) -> f64 {
     seen_m2 / settings.resolution_m.powi(2) * Mapper::BYTES_PER_SEEN_CELL as f64
 }
 
-/// The error for an area whose map does not fit; `taken`: what the map has taken so far, bytes.
-pub(crate) fn too_much(seen_m2: f64, taken: usize, settings: &SurveySettings) -> SurveyError {
+/// The error for a log of which a part, up to 1, has seen too much: the rest sees as much again.
+pub(crate) fn of_part(error: SurveyError, part: f64, settings: &SurveySettings) -> SurveyError {
+    match error {
+        SurveyError::TooMuchSeen { seen_m2, .. } => too_much(seen_m2 / part, 0.0, settings),
+        other => other,
+    }
+}
+
+/// The error for an area whose map does not fit; `taken`: what the map takes, as far as that is known, bytes.
+pub(crate) fn too_much(seen_m2: f64, taken: f64, settings: &SurveySettings) -> SurveyError {
+    /// Cells that changed take more, and larger blocks follow the border of what was seen less closely.
+    const MARGIN: f64 = 1.3;
     let (resolution_m, max_bytes) = (settings.resolution_m, settings.mapper.max_bytes);
-    let share = bytes(seen_m2, settings).max(taken as f64) / max_bytes as f64;
+    let share = MARGIN * bytes(seen_m2, settings).max(taken) / max_bytes as f64;
     SurveyError::TooMuchSeen { seen_m2, resolution_m, max_bytes, enough_m: enough_m(resolution_m, share) }
 }

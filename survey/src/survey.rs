@@ -221,7 +221,8 @@ impl Survey {
         log.pass();
         changes.note(&robot.mapper);
         if robot.mapper.is_full() {
-            return Err(too_much(self.seen_m2, robot.mapper.bytes(), &self.settings).into());
+            let part = log.used as f64 / log.route().len().max(log.used) as f64;
+            return Err(too_much(self.seen_m2, robot.mapper.bytes() as f64 / part, &self.settings).into());
         }
         if replay.is_over() {
             log.readings = log.used;
