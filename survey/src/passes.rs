@@ -6,7 +6,6 @@ use crate::odometry_check;
 use crate::replay::judged;
 use crate::route::{FirstPass, Route, uncertain};
 use crate::search::Search;
-use crate::seen_area::of_part;
 use crate::settings::SurveySettings;
 use interfaces::{LaserReading, PoseMode};
 use localizer::Start;
@@ -67,12 +66,10 @@ impl<W: FnMut((Stage, usize)) -> ControlFlow<()>> RoutePass<'_, W> {
     pub(crate) fn route(&mut self) -> Result<Route, PassError> {
         let mut pass = FirstPass::new(self.settings)?;
         let mut odometry = Vec::new();
-        let (scans, settings) = (self.log.summary().scans, self.settings);
-        self.each_reading(Stage::Trajectory, |index, reading| {
+        self.each_reading(Stage::Trajectory, |_, reading| {
             odometry.push(reading.pose);
             pass.add(reading);
-            let part = (index + 1) as f64 / scans.max(index + 1) as f64;
-            pass.check().map_err(|error| of_part(error, part, settings))
+            pass.check()
         })?;
         if self.settings.pose != PoseMode::Localized {
             return Ok(pass.finish());

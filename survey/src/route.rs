@@ -4,7 +4,7 @@ use crate::error::SurveyError;
 use crate::extent::{self, Reach};
 use crate::quality::{Quality, QualityCheck};
 use crate::range_noise::RangeNoise;
-use crate::seen_area::{self, SeenArea};
+use crate::seen_area::SeenArea;
 use crate::settings::SurveySettings;
 use crate::turns::Turns;
 use interfaces::{GridFrame, LaserReading, PoseMode};
@@ -82,9 +82,8 @@ pub struct FirstPass {
     turns: Turns,
 }
 
-/// Before its loops are closed, a trajectory can be longer than the place: this share of its sides counts, and this of its area.
+/// Before its loops are closed, a trajectory can be longer than the place: this share of its sides counts.
 const SURE_SHARE: f64 = 0.8;
-const SURE_AREA: f64 = 0.5;
 
 impl FirstPass {
     /// A pass without a reading.
@@ -153,8 +152,7 @@ impl FirstPass {
         self.turns.check()?;
         let Some((low, high)) = self.seen else { return Ok(()) };
         let share = if self.finder.is_some() { SURE_SHARE } else { 1.0 };
-        extent::around(low, low + (high - low) * share, self.settings.resolution_m)?;
-        seen_area::check(self.area.m2(), SURE_AREA, &self.settings)
+        extent::around(low, low + (high - low) * share, self.settings.resolution_m).map(drop)
     }
 
     /// The log along its trajectory, in the frame of its first pose.

@@ -57,9 +57,12 @@ impl SeenArea {
     }
 }
 
-/// Checks whether the map of an area, of which this share is certain, fits into the memory.
-pub(crate) fn check(seen_m2: f64, share: f64, settings: &SurveySettings) -> Result<(), SurveyError> {
-    match bytes(seen_m2 * share, settings) <= settings.mapper.max_bytes as f64 {
+/// While a trajectory drifts, it sees places twice: this share of the area counts.
+const SURE_SHARE: f64 = 0.5;
+
+/// Checks whether the map of an area fits into the memory.
+pub(crate) fn check(seen_m2: f64, settings: &SurveySettings) -> Result<(), SurveyError> {
+    match bytes(seen_m2 * SURE_SHARE, settings) <= settings.mapper.max_bytes as f64 {
         true => Ok(()),
         false => Err(too_much(seen_m2, 0.0, settings)),
     }
@@ -67,14 +70,6 @@ pub(crate) fn check(seen_m2: f64, share: f64, settings: &SurveySettings) -> Resu
 
 fn bytes(seen_m2: f64, settings: &SurveySettings) -> f64 {
     seen_m2 / settings.resolution_m.powi(2) * Mapper::BYTES_PER_SEEN_CELL as f64
-}
-
-/// The error for a log of which a part, up to 1, has seen too much: the rest sees as much again.
-pub(crate) fn of_part(error: SurveyError, part: f64, settings: &SurveySettings) -> SurveyError {
-    match error {
-        SurveyError::TooMuchSeen { seen_m2, .. } => too_much(seen_m2 / part, 0.0, settings),
-        other => other,
-    }
 }
 
 /// The error for an area whose map does not fit; `taken`: what the map takes, as far as that is known, bytes.

@@ -14,7 +14,7 @@ use crate::passes::{PassError, RoutePass, Stage};
 use crate::quality::Verdict;
 use crate::replay::{FoundPoses, Replay, judged};
 use crate::route::frame;
-use crate::seen_area::too_much;
+use crate::seen_area::{self, too_much};
 use crate::settings::SurveySettings;
 use crate::surveyed_log::{LogEntry, SurveyedLog};
 use interfaces::{GridFrame, LaserReading};
@@ -144,6 +144,7 @@ impl Survey {
         if is_followed && self.place.is_none() {
             self.place = Some(Arc::new(pass.place(&route)?));
         }
+        seen_area::check(self.seen_m2 + route.seen_m2, &self.settings)?;
         self.seen_m2 += route.seen_m2;
         self.logs.push(SurveyedLog::new(entry, route, frame));
         Ok(())

@@ -286,7 +286,7 @@ fn a_place_of_which_too_much_is_seen_names_a_resolution_that_is_enough() {
         Ok::<usize, PassError>(survey.mapper().unwrap().bytes())
     };
     let needed = mapped(0.05, usize::MAX).unwrap();
-    // Known in the first pass, and only found out in the second one.
+    // Known after the first pass, and only found out in the second one.
     for max_bytes in [needed / 3, needed - 1] {
         let error = mapped(0.05, max_bytes).unwrap_err();
         let PassError::Survey(SurveyError::TooMuchSeen { seen_m2, enough_m, .. }) = error else {
