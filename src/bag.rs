@@ -15,6 +15,8 @@ use survey::CHANGE_HORIZON_S;
 /// The time between two maps, and between two maps of changes and predictions, s.
 const MAP_S: f64 = 1.0;
 const CHANGES_S: f64 = 10.0;
+/// Maps of changes and predictions of more cells than this are written less often.
+const MANY_CELLS: f64 = 1e6;
 
 /// A bag that is being written. It has its name when it is complete. The first error ends the bag, not the run;
 /// [`finish`](Self::finish) reports it.
@@ -108,7 +110,7 @@ impl RunBag {
             })?;
         }
         if time_s >= self.next_changes_s {
-            self.next_changes_s = time_s + CHANGES_S;
+            self.next_changes_s = time_s + CHANGES_S * (frame.len() as f64 / MANY_CELLS).max(1.0);
             let change = |index: usize| mapper.change_probability_within(index, CHANGE_HORIZON_S);
             writer.grid("/change_map", time_s, &layer(mapper, change), |share| *share)?;
             let predicted = layer(mapper, |index| mapper.blocked_probability(index));
@@ -131,8 +133,6 @@ impl RunBag {
 /// A value from 0 to 1 for every cell that was seen.
 fn layer(mapper: &Mapper, value: impl Fn(usize) -> f64) -> Grid<Option<f64>> {
     let mut grid = Grid::filled(*mapper.frame(), None);
-    for (index, cell) in grid.cells_mut().iter_mut().enumerate() {
-        *cell = mapper.was_ever_seen(index).then(|| value(index));
-    }
+    mapper.seen().for_each(|index| grid.cells_mut()[index] = Some(value(index)));
     grid
 }

@@ -1,5 +1,5 @@
 use crate::ControlInput;
-use interfaces::{Cell, CellState, Grid, Value, ValueError, converted};
+use interfaces::{Cell, CellState, Grid, SparseCells, Value, ValueError, converted};
 use nalgebra::Point2;
 
 /// The time for which a cell counts as dynamic after a change in or beside it, s.
@@ -23,13 +23,13 @@ impl DynamicObstacleFilter {
 
     /// The times of the changes. A change longer ago than [`MEMORY_S`] counts no more.
     pub(crate) fn value(&mut self) -> Box<dyn Value + '_> {
-        let recent = |times: &[f64]| -> Vec<(usize, f64)> {
-            let last = times.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let recent = |times: &SparseCells<f64>| -> Vec<(usize, f64)> {
+            let last = times.stored_values().copied().fold(f64::NEG_INFINITY, f64::max);
             let is_recent = |(_, time): &(usize, f64)| time.is_finite() && last - time <= MEMORY_S;
-            times.iter().copied().enumerate().filter(is_recent).collect()
+            times.stored().map(|(index, time)| (index, *time)).filter(is_recent).collect()
         };
         converted(self.changed_at.cells_mut(), recent, |times, recent| {
-            times.fill(f64::NEG_INFINITY);
+            times.stored_values_mut().for_each(|time| *time = f64::NEG_INFINITY);
             for (index, time) in recent {
                 *times.get_mut(index).ok_or(ValueError)? = time;
             }

@@ -63,7 +63,7 @@ fn maps() -> (NamedTempFile, BytesCount) {
     bag(|writer| {
         for reading in readings().iter().take(20) {
             writer.reading(reading).expect("a reading");
-            grid.cells_mut().iter_mut().for_each(|cell| *cell = random.normal().abs() * 0.3);
+            (0..frame.len()).for_each(|index| grid.cells_mut()[index] = random.normal().abs() * 0.3);
             let time_s = reading.time_s * 300.0;
             writer.grid("/map", time_s, &grid, |value| Some(*value)).expect("a map");
         }

@@ -76,10 +76,8 @@ fn map(bencher: Bencher, beams: usize) {
 fn find_anywhere(bencher: Bencher) {
     let mut house = House::new(0.1, 7.0, 0.01, 360, 1);
     let mut map = Grid::filled(house.frame, CellState::Free);
-    for (index, state) in map.cells_mut().iter_mut().enumerate() {
-        if house.truth(index, 0.0) != CellState::Free {
-            *state = CellState::Blocked;
-        }
+    for index in (0..house.frame.len()).filter(|index| house.truth(*index, 0.0) != CellState::Free) {
+        map.cells_mut()[index] = CellState::Blocked;
     }
     let reading = house.reading(0.0, house.tour(30.0), &[]);
     bencher

@@ -1,4 +1,4 @@
-use crate::Cell;
+use crate::{Cell, SparseCells};
 use nalgebra::Point2;
 
 /// The position and the size of a grid: square cells, row-major, row 0 at the lowest y.
@@ -29,13 +29,17 @@ impl TryFrom<FrameParts> for GridFrame {
 }
 
 impl GridFrame {
+    /// The maximum number of cells: more than two square kilometers with cells of 0.05 m. It bounds what one value per cell
+    /// takes even where every cell has a value of its own.
+    pub const MAX_CELLS: usize = 1 << 30;
+
     /// A frame of `width` × `height` cells with sides of `resolution_m` (m), whose lower left corner is at `origin`
-    /// (m). `None` unless every number is finite, the resolution is positive, and the grid has between one and 2²⁶
-    /// cells.
+    /// (m). `None` unless every number is finite, the resolution is positive, and the grid has between one cell and
+    /// [`MAX_CELLS`](Self::MAX_CELLS).
     pub fn new(origin: Point2<f64>, resolution_m: f64, width: usize, height: usize) -> Option<Self> {
         let cells = width.checked_mul(height)?;
         let finite = origin.x.is_finite() && origin.y.is_finite() && resolution_m.is_finite();
-        (finite && resolution_m > 0.0 && (1..=1 << 26).contains(&cells)).then_some(Self {
+        (finite && resolution_m > 0.0 && (1..=Self::MAX_CELLS).contains(&cells)).then_some(Self {
             origin,
             resolution_m,
             width,
@@ -114,7 +118,7 @@ impl GridFrame {
     /// The cell of an index in row-major order.
     #[inline]
     pub fn cell(&self, index: usize) -> Cell {
-        // Grids have at most 2^26 cells, and a division of 32 bits takes less time.
+        // Grids have at most 2^30 cells, and a division of 32 bits takes less time.
         let (index, width) = (index as u32, self.width as u32);
         Cell::new((index % width) as i32, (index / width) as i32)
     }
@@ -135,48 +139,26 @@ fn floor(x: f64) -> i32 {
     toward_zero.saturating_sub(i32::from(x < f64::from(toward_zero)))
 }
 
-/// One value for every cell of a frame.
+/// One value for every cell of a frame, in memory that grows with the number of cells that differ from the others.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grid<T> {
     frame: GridFrame,
-    cells: Vec<T>,
+    cells: SparseCells<T>,
 }
 
 impl<T: Clone> Grid<T> {
     /// A grid that holds `value` everywhere.
     pub fn filled(frame: GridFrame, value: T) -> Self {
-        Self { frame, cells: vec![value; frame.len()] }
+        Self { frame, cells: SparseCells::new(frame.width(), frame.height(), value) }
     }
-}
 
-impl<T> Grid<T> {
     /// A grid of `cells` in row-major order; `None` if the number of cells is not that of the frame.
-    pub fn from_cells(frame: GridFrame, cells: Vec<T>) -> Option<Self> {
-        (cells.len() == frame.len()).then_some(Self { frame, cells })
-    }
-
-    /// The position and the size of the grid.
-    #[inline]
-    pub fn frame(&self) -> &GridFrame {
-        &self.frame
-    }
-
-    /// The values in row-major order, row 0 at the lowest y.
-    #[inline]
-    pub fn cells(&self) -> &[T] {
-        &self.cells
-    }
-
-    /// The mutable values in row-major order, row 0 at the lowest y.
-    #[inline]
-    pub fn cells_mut(&mut self) -> &mut [T] {
-        &mut self.cells
-    }
-
-    /// The value of a cell; `None` outside of the grid.
-    #[inline]
-    pub fn get(&self, cell: Cell) -> Option<&T> {
-        Some(&self.cells[self.frame.index(cell)?])
+    pub fn from_cells(frame: GridFrame, cells: Vec<T>) -> Option<Self>
+    where
+        T: PartialEq,
+    {
+        let is_complete = cells.len() == frame.len();
+        is_complete.then(|| Self { frame, cells: SparseCells::from_vec(frame.width(), cells) })
     }
 
     /// The mutable value of a cell; `None` outside of the grid.
@@ -191,10 +173,41 @@ impl<T> Grid<T> {
             *own = value;
         }
     }
+}
 
-    /// A grid of the same frame, with `f` applied to every value.
-    pub fn map<U>(&self, f: impl FnMut(&T) -> U) -> Grid<U> {
-        Grid { frame: self.frame, cells: self.cells.iter().map(f).collect() }
+impl<T> Grid<T> {
+    /// A grid of the same frame, with `f` applied to every value: once for all cells that never got a value of their own.
+    pub fn map<U: Clone>(&self, f: impl FnMut(&T) -> U) -> Grid<U> {
+        Grid { frame: self.frame, cells: self.cells.map(f) }
+    }
+
+    /// The position and the size of the grid.
+    #[inline]
+    pub fn frame(&self) -> &GridFrame {
+        &self.frame
+    }
+
+    /// The values in row-major order, row 0 at the lowest y.
+    #[inline]
+    pub fn cells(&self) -> &SparseCells<T> {
+        &self.cells
+    }
+
+    /// The mutable values in row-major order, row 0 at the lowest y.
+    #[inline]
+    pub fn cells_mut(&mut self) -> &mut SparseCells<T> {
+        &mut self.cells
+    }
+
+    /// The rows, from the lowest y on.
+    pub fn rows(&self) -> impl DoubleEndedIterator<Item = impl DoubleEndedIterator<Item = &T>> {
+        (0..self.frame.height()).map(|row| self.cells.row(row))
+    }
+
+    /// The value of a cell; `None` outside of the grid.
+    #[inline]
+    pub fn get(&self, cell: Cell) -> Option<&T> {
+        Some(&self.cells[self.frame.index(cell)?])
     }
 }
 
@@ -247,7 +260,7 @@ mod tests {
         assert_eq!(GridFrame::new(origin, f64::NAN, 1, 1), None);
         assert_eq!(GridFrame::new(origin, 1.0, 0, 1), None);
         assert_eq!(GridFrame::new(origin, 1.0, usize::MAX, 2), None);
-        assert_eq!(GridFrame::new(origin, 1.0, (1 << 13) + 1, 1 << 13), None);
+        assert_eq!(GridFrame::new(origin, 1.0, (1 << 15) + 1, 1 << 15), None);
         assert_eq!(GridFrame::covering(origin, 1e9, 1e9, 1e-3), None);
     }
 }

@@ -20,6 +20,7 @@ mod scan;
 pub mod serde_pose;
 pub mod serde_time;
 mod settings;
+mod sparse_cells;
 mod state;
 mod values;
 mod world;
@@ -39,9 +40,10 @@ pub use random::{Purpose, RandomStream};
 pub use reading::{CellReading, LaserReading, Observation, Reading, VelocitySample};
 pub use scan::{Scan, ScanError};
 pub use settings::{SettingsCheck, SettingsError};
+pub use sparse_cells::{Place, SparseCells};
 pub use state::{CellState, Event, Transition};
 pub use values::{
-    Value, ValueError, Values, converted, from_bytes, if_present, last_value, read_value, read_values,
-    restore, runs, snapshot, to_bytes, value, write_value, write_values,
+    CellList, Value, ValueError, Values, cell_runs, converted, from_bytes, if_present, last_value,
+    read_value, read_values, restore, runs, snapshot, to_bytes, value, write_value, write_values,
 };
 pub use world::World;

@@ -187,46 +187,105 @@ pub fn restore(values: Values<'_>, mut snapshot: &[u8]) -> Result<(), ValueError
     if snapshot.is_empty() { Ok(()) } else { Err(ValueError) }
 }
 
+/// One value per cell of a grid, as [`cell_runs`] reads and writes them.
+pub trait CellList {
+    /// The value of a cell.
+    type Item: DeserializeOwned;
+
+    /// The number of cells.
+    fn len(&self) -> usize;
+
+    /// Whether there is no cell.
+    fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Appends the value of a cell to `bytes`.
+    ///
+    /// # Errors
+    ///
+    /// When the value has no form as bytes.
+    fn write(&self, index: usize, bytes: &mut Vec<u8>) -> Result<(), ValueError>;
+
+    /// The number of cells from this one on that certainly have equal values.
+    fn alike(&self, _index: usize) -> usize {
+        1
+    }
+
+    /// Sets the value of a cell.
+    fn set(&mut self, index: usize, value: &Self::Item);
+}
+
+impl<T: Clone + Serialize + DeserializeOwned> CellList for &mut [T] {
+    type Item = T;
+
+    fn len(&self) -> usize {
+        <[T]>::len(self)
+    }
+
+    fn write(&self, index: usize, bytes: &mut Vec<u8>) -> Result<(), ValueError> {
+        write_value(&self[index], bytes)
+    }
+
+    fn set(&mut self, index: usize, value: &T) {
+        self[index] = value.clone();
+    }
+}
+
 /// One value per cell of a grid, of which many that follow each other are equal: each is written once, with the number of
 /// cells that have it. Reading needs a list of the same length.
 pub fn runs<'a, T: Clone + Serialize + DeserializeOwned>(list: &'a mut [T]) -> Box<dyn Value + 'a> {
-    struct Runs<'a, T>(&'a mut [T]);
+    cell_runs(list, usize::MAX)
+}
 
-    impl<T: Clone + Serialize + DeserializeOwned> Value for Runs<'_, T> {
+/// The same for any list. A run ends at each multiple of `longest`.
+pub fn cell_runs<'a>(list: impl CellList + 'a, longest: usize) -> Box<dyn Value + 'a> {
+    struct Runs<L>(L, usize);
+
+    impl<L: CellList> Runs<L> {
+        /// The number of cells from this one on that can be in one run.
+        fn rest(&self, index: usize) -> usize {
+            (self.1 - index % self.1).min(self.0.len() - index)
+        }
+    }
+
+    impl<L: CellList> Value for Runs<L> {
         fn write(&self, bytes: &mut Vec<u8>) -> Result<(), ValueError> {
             // Compared by their bytes: 0 and -0 are equal numbers, and differ.
-            let (mut run, mut next, mut length) = (Vec::new(), Vec::new(), 0usize);
-            let end = |run: &[u8], length: usize, bytes: &mut Vec<u8>| {
-                write_value(&length, bytes)?;
-                bytes.extend_from_slice(run);
-                Ok(())
-            };
-            for item in &*self.0 {
+            let (mut run, mut next, mut length, mut index) = (Vec::new(), Vec::new(), 0usize, 0);
+            while index < self.0.len() {
                 next.clear();
-                write_value(item, &mut next)?;
-                if length > 0 && run != next {
-                    end(&run, std::mem::take(&mut length), bytes)?;
+                self.0.write(index, &mut next)?;
+                if length > 0 && (run != next || index % self.1 == 0) {
+                    write_value(&std::mem::take(&mut length), bytes)?;
+                    bytes.extend_from_slice(&run);
                 }
-                length += 1;
+                let alike = self.0.alike(index).min(self.rest(index));
+                (length, index) = (length + alike, index + alike);
                 std::mem::swap(&mut run, &mut next);
             }
-            if length > 0 { end(&run, length, bytes) } else { Ok(()) }
+            if length > 0 {
+                write_value(&length, bytes)?;
+                bytes.extend_from_slice(&run);
+            }
+            Ok(())
         }
 
         fn read(&mut self, bytes: &mut &[u8]) -> Result<(), ValueError> {
-            let mut rest = &mut *self.0;
-            while !rest.is_empty() {
-                let (length, value): (usize, T) = read_value(bytes)?;
-                let is_run = (1..=rest.len()).contains(&length);
-                let (run, others) = rest.split_at_mut(if is_run { length } else { return Err(ValueError) });
-                run.fill(value);
-                rest = others;
+            let mut index = 0;
+            while index < self.0.len() {
+                let (length, value): (usize, L::Item) = read_value(bytes)?;
+                if !(1..=self.rest(index)).contains(&length) {
+                    return Err(ValueError);
+                }
+                (index..index + length).for_each(|index| self.0.set(index, &value));
+                index += length;
             }
             Ok(())
         }
     }
 
-    Box::new(Runs(list))
+    Box::new(Runs(list, longest))
 }
 
 #[cfg(test)]

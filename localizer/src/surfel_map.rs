@@ -17,6 +17,8 @@ use crate::constants::{PER_CELL, SAME_NORMAL, SURFEL_M};
 use interfaces::{GridFrame, Values, runs, value};
 use nalgebra::{Point2, Vector2};
 
+/// The maximum number of cells of a grid of the localizer: they are stored one by one, seen or not.
+const MAX_CELLS: usize = 1 << 26;
 /// No surfel at this place in a cell.
 const NONE: u32 = u32::MAX;
 
@@ -220,8 +222,8 @@ impl SurfelMap {
     }
 }
 
-/// The frame of cells of `cell_m` that covers a frame and a border of some cells around it. Where these are more cells than a
-/// frame can have, they are twice as large, four times, and so on: a place of any size is covered as a whole.
+/// The frame of cells of `cell_m` that covers a frame and a border of some cells around it. Where these are more than
+/// [`MAX_CELLS`], they are twice as large, four times, and so on: a place of any size is covered as a whole.
 pub(crate) fn fitted(frame: &GridFrame, cell_m: f64, border: usize) -> GridFrame {
     let fitted = |doublings: i32| {
         let cell_m = cell_m * 2_f64.powi(doublings);
@@ -230,7 +232,9 @@ pub(crate) fn fitted(frame: &GridFrame, cell_m: f64, border: usize) -> GridFrame
             cells.saturating_add(2 * border)
         };
         let beside = Vector2::repeat(cell_m * border as f64);
-        GridFrame::new(frame.origin() - beside, cell_m, cells(frame.width()), cells(frame.height()))
+        let fitted =
+            GridFrame::new(frame.origin() - beside, cell_m, cells(frame.width()), cells(frame.height()));
+        fitted.filter(|fitted| fitted.len() <= MAX_CELLS)
     };
     (0..64).find_map(fitted).unwrap_or(*frame)
 }

@@ -160,7 +160,7 @@ mod tests {
         // The map knows the corridor as free, and nothing beyond it.
         let mut map = Grid::filled(frame, CellState::Unknown);
         let known = map.frame().len() / 2;
-        map.cells_mut()[..known].fill(CellState::Free);
+        (0..known).for_each(|index| map.cells_mut()[index] = CellState::Free);
         let (settings, clear) = (LocalizerSettings::default(), ClearBeams::default());
         let scene = MatchScene {
             surfels: &surfels,

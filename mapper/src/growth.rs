@@ -1,6 +1,6 @@
 //! A map in a larger frame.
 
-use interfaces::{Cell, Grid, GridFrame};
+use interfaces::{Cell, Grid, GridFrame, SparseCells};
 use nalgebra::Vector2;
 
 /// How the cells of a map move when its frame grows.
@@ -52,13 +52,22 @@ impl Growth {
         *cells = moved;
     }
 
-    /// Moves the cells of a grid.
-    pub(crate) fn grid<T: Clone>(&self, grid: &mut Grid<T>, new: T) {
-        let mut moved = Grid::filled(self.to, new);
-        for (index, value) in grid.cells().iter().enumerate() {
-            moved.cells_mut()[self.index(index)] = value.clone();
-        }
+    /// Moves the cells of a grid; the new cells have the value of those that never got another one.
+    pub(crate) fn grid<T: Clone + PartialEq>(&self, grid: &mut Grid<T>) {
+        let mut moved = Grid::filled(self.to, grid.cells().fill().clone());
+        self.move_to(moved.cells_mut(), grid.cells());
         *grid = moved;
+    }
+
+    /// The same for cells without a frame.
+    pub(crate) fn sparse<T: Clone + PartialEq>(&self, cells: &mut SparseCells<T>) {
+        let mut moved = SparseCells::new(self.to.width(), self.to.height(), cells.fill().clone());
+        self.move_to(&mut moved, cells);
+        *cells = moved;
+    }
+
+    fn move_to<T: Clone + PartialEq>(&self, moved: &mut SparseCells<T>, cells: &SparseCells<T>) {
+        cells.stored().for_each(|(index, value)| moved.set(self.index(index), value.clone()));
     }
 }
 
@@ -75,11 +84,14 @@ mod tests {
     fn values_stay_at_their_places() {
         let (small, large) = (frame(0.3, -0.2, 2, 3), frame(0.1, -0.5, 5, 7));
         let growth = Growth::new(small, large).unwrap();
+        let mut sparse = SparseCells::from_vec(2, vec![0, 2, 3, 4, 5, 6]);
+        growth.sparse(&mut sparse);
         let mut cells: Vec<usize> = (1..=6).collect();
         growth.cells(&mut cells, 0);
         assert_eq!(cells.iter().filter(|value| **value > 0).count(), 6);
         for index in 0..small.len() {
             assert_eq!(cells[growth.index(index)], index + 1);
+            assert_eq!(sparse[growth.index(index)], if index == 0 { 0 } else { index + 1 });
             let off = large.center(large.cell(growth.index(index))) - small.center(small.cell(index));
             assert!(off.norm() < 1e-9, "{off}");
         }

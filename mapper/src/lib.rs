@@ -52,7 +52,7 @@ use things::{LeafCells, Things};
 use tiles::Tiles;
 
 /// Settings of a [`Mapper`].
-#[derive(Clone, Debug, Default, PartialEq, serde::Deserialize, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct MapperSettings {
     /// The estimator of rates.
@@ -73,6 +73,24 @@ pub struct MapperSettings {
     /// [epoch](Mapper::set_epoch). Without a zone, times have no hours.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub time_zone: Option<String>,
+    /// The maximum of [`Mapper::bytes`]; 2 GiB by default. What was learned does not depend on it: it is no part of what a state is
+    /// compared by.
+    #[serde(skip)]
+    pub max_bytes: usize,
+}
+
+impl Default for MapperSettings {
+    fn default() -> Self {
+        Self {
+            estimator: EstimatorChoice::default(),
+            occupancy: OccupancyChoice::default(),
+            max_gap: 0.0,
+            steady: SurfaceGridSettings::default(),
+            clocks: false,
+            time_zone: None,
+            max_bytes: 2 << 30,
+        }
+    }
 }
 
 impl MapperSettings {
@@ -110,28 +128,37 @@ pub struct Mapper {
 }
 
 impl Mapper {
-    /// The maximum of [`Mapper::bytes`].
-    pub const MAX_BYTES: usize = 2 << 30;
+    /// What a cell takes that was seen and never changed, bytes, at most on average over a place.
+    pub const BYTES_PER_SEEN_CELL: usize = 130;
 
-    /// The memory that a mapper takes when every cell was seen, bytes; known before anything is allocated. Cells that
-    /// change take some hundred bytes more. An occupancy model of another crate counts as much as the largest built-in
-    /// model.
-    pub fn bytes(frame: &GridFrame) -> usize {
-        frame.len() * (CellMap::BYTES_PER_CELL + occupancy::BYTES_PER_CELL)
+    /// The memory of the map, bytes: it grows with what is seen, not with the frame.
+    pub fn bytes(&self) -> usize {
+        self.cells.bytes() + self.occupancy.bytes()
     }
 
-    fn check_bytes(frame: &GridFrame) -> Result<(), SettingsError> {
-        let bytes = Self::bytes(frame);
-        if bytes <= Self::MAX_BYTES {
+    /// Whether the map takes [as much memory as it may](MapperSettings::max_bytes). Where nothing was seen yet, readings then
+    /// change nothing, as outside of the frame; the rest of the map goes on, and what its cells record takes some more memory.
+    pub fn is_full(&self) -> bool {
+        self.bytes() >= self.settings.max_bytes
+    }
+
+    /// Checks whether a prior map fits, before its cells get their records.
+    fn check_prior(settings: &MapperSettings, prior: &Grid<CellState>) -> Result<(), SettingsError> {
+        let known = prior.cells().other_than(CellState::Unknown).count();
+        let bytes = known * CellMap::BYTES_PER_KNOWN_CELL;
+        if bytes <= settings.max_bytes {
             return Ok(());
         }
-        let (width, height, gib) = (frame.width(), frame.height(), bytes as f64 / f64::from(1 << 30));
-        let found = format!("{width} × {height} cells, which need {gib:.1} GiB");
+        let gib = |bytes: usize| bytes as f64 / f64::from(1 << 30);
         Err(SettingsError {
             part: "mapper",
-            key: "frame",
-            expected: "a frame that needs at most 2 GiB",
-            found,
+            key: "prior",
+            expected: "a map that fits into the memory that the mapper may take (max_bytes)",
+            found: format!(
+                "{known} known cells, which need {:.4} GiB of {:.4} GiB",
+                gib(bytes),
+                gib(settings.max_bytes)
+            ),
         })
     }
 
@@ -139,9 +166,8 @@ impl Mapper {
     ///
     /// # Errors
     ///
-    /// When a setting is out of range or contradicts another, and when the cells need more than 2 GiB.
+    /// When a setting is out of range or contradicts another.
     pub fn new(settings: &MapperSettings, frame: GridFrame) -> Result<Self, SettingsError> {
-        Self::check_bytes(&frame)?;
         Self::with_prior(settings, Grid::filled(frame, CellState::Unknown))
     }
 
@@ -149,10 +175,11 @@ impl Mapper {
     ///
     /// # Errors
     ///
-    /// When a setting is out of range or contradicts another, and when the cells need more than 2 GiB.
+    /// When a setting is out of range or contradicts another, and when the known cells need more than
+    /// [`MapperSettings::max_bytes`].
     pub fn with_prior(settings: &MapperSettings, prior: Grid<CellState>) -> Result<Self, SettingsError> {
         settings.check()?;
-        Self::check_bytes(prior.frame())?;
+        Self::check_prior(settings, &prior)?;
         Ok(Self::build(settings.clone(), prior))
     }
 
@@ -183,14 +210,13 @@ impl Mapper {
     ///
     /// # Errors
     ///
-    /// When a setting is out of range, and when the cells need more than 2 GiB.
+    /// When a setting is out of range.
     pub fn grow(
         &mut self,
         settings: &MapperSettings,
         frame: GridFrame,
     ) -> Result<Option<Growth>, SettingsError> {
         settings.check()?;
-        Self::check_bytes(&frame)?;
         let present = *self.frame();
         let Some(growth) = Growth::new(present, frame).or_else(|| Growth::new(present, present)) else {
             return Ok(None);
@@ -218,6 +244,7 @@ impl Mapper {
             return Err(ReadingError::Time { time, last });
         }
         check_pose(reading.pose(), time)?;
+        self.cells.is_full = self.is_full();
         match reading.observation() {
             Observation::Scan(laser) => {
                 check_pose(&laser.mount, time)?;
@@ -381,6 +408,11 @@ impl Mapper {
     /// Whether a reading ever observed the cell.
     pub fn was_ever_seen(&self, index: usize) -> bool {
         self.cells.was_ever_seen(index)
+    }
+
+    /// The cells that a reading ever observed, by ascending index.
+    pub fn seen(&self) -> impl Iterator<Item = usize> {
+        self.cells.seen()
     }
 
     /// Whether the last reading observed the cell.

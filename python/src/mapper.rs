@@ -83,7 +83,7 @@ impl Mapper {
         let frame =
             GridFrame::covering(Point2::new(origin.0, origin.1), width, height, cell).ok_or_else(|| {
                 value_error(format!(
-                    "a map of {width:?} m x {height:?} m with cells of {cell:?} m: it must have 1 to 2^26 cells"
+                    "a map of {width:?} m x {height:?} m with cells of {cell:?} m: it must have 1 to 2^30 cells"
                 ))
             })?;
         let settings =

@@ -1,14 +1,12 @@
 //! `cell_statistics.csv`: what was learned about every cell.
 
+use crate::intervals::Intervals;
 use crate::numbers::rounded;
 use crate::output::{OutputError, write_file};
 use interfaces::CellState;
 use mapper::Mapper;
 use std::io;
 use std::path::Path;
-
-/// The probability with which the credible interval contains the rate.
-const CREDIBLE_MASS: f64 = 0.9;
 
 /// One row: a cell that was seen at least once. Times are in seconds.
 #[derive(serde::Serialize)]
@@ -52,12 +50,11 @@ impl serde::Serialize for Number {
 /// # Errors
 ///
 /// When the file cannot be written.
-pub fn write(path: &Path, mapper: &Mapper) -> Result<(), OutputError> {
+pub fn write(path: &Path, mapper: &Mapper, intervals: &Intervals) -> Result<(), OutputError> {
     write_file(path, |file| {
         let mut table = csv::Writer::from_writer(file);
-        let interval = mapper.credible_intervals(CREDIBLE_MASS);
-        for index in (0..mapper.frame().len()).filter(|&index| mapper.was_ever_seen(index)) {
-            table.serialize(row(mapper, index, interval(index))).map_err(io::Error::other)?;
+        for (index, interval) in intervals.of_cells(mapper) {
+            table.serialize(row(mapper, index, interval)).map_err(io::Error::other)?;
         }
         table.flush()
     })
@@ -125,7 +122,7 @@ mod tests {
         let mapper = mapper();
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("cell_statistics.csv");
-        write(&path, &mapper).unwrap();
+        write(&path, &mapper, &Intervals::of(&mapper)).unwrap();
 
         let mut table = csv::Reader::from_path(&path).unwrap();
         let header = table.headers().unwrap().clone();

@@ -7,6 +7,7 @@ pub mod cell_statistics;
 #[cfg(feature = "drawing")]
 pub mod drawing;
 pub mod file_name;
+pub mod intervals;
 pub mod numbers;
 pub mod output;
 pub mod raster;

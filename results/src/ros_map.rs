@@ -19,7 +19,7 @@ const BLOCKED: u8 = 0;
 ///
 /// When a file cannot be written.
 pub fn write(folder: &Path, name: &str, map: &Grid<CellState>) -> Result<(), OutputError> {
-    write_both(folder, name, &pgm(map), yaml(map.frame(), &format!("{name}.pgm")))
+    write_both(folder, name, (map, map_pixel), yaml(map.frame(), &format!("{name}.pgm")))
 }
 
 /// Writes a mask with values from 0 to 100 into a folder, as [`write()`].
@@ -28,16 +28,20 @@ pub fn write(folder: &Path, name: &str, map: &Grid<CellState>) -> Result<(), Out
 ///
 /// When a file cannot be written.
 pub fn write_mask(folder: &Path, name: &str, mask: &Grid<u8>) -> Result<(), OutputError> {
-    write_both(folder, name, &mask_pgm(mask), mask_yaml(mask.frame(), &format!("{name}.pgm")))
+    write_both(folder, name, (mask, mask_pixel), mask_yaml(mask.frame(), &format!("{name}.pgm")))
 }
 
 /// The picture of a map.
 pub fn pgm(map: &Grid<CellState>) -> Vec<u8> {
-    picture(map, |state| match state {
+    picture(map, map_pixel)
+}
+
+fn map_pixel(state: &CellState) -> u8 {
+    match state {
         CellState::Free => FREE,
         CellState::Unknown => UNKNOWN,
         CellState::Blocked => BLOCKED,
-    })
+    }
 }
 
 /// The YAML file of a map with this frame, whose picture is called `image`.
@@ -45,23 +49,26 @@ pub fn yaml(frame: &GridFrame, image: &str) -> String {
     description(frame, image, "trinary", [OCCUPIED_THRESHOLD, FREE_THRESHOLD])
 }
 
-/// The picture of a mask; a value above 100 counts as 100.
+/// The pixel of a mask; a value above 100 counts as 100.
 ///
 /// In the mode `scale` with the thresholds 0 and 1, the map server takes a pixel p as the value
 /// round(100 · (255 − p) / 255): every value comes back as it was.
-fn mask_pgm(mask: &Grid<u8>) -> Vec<u8> {
-    picture(mask, |value| 255 - ((u32::from((*value).min(100)) * 255 + 50) / 100) as u8)
+fn mask_pixel(value: &u8) -> u8 {
+    255 - ((u32::from((*value).min(100)) * 255 + 50) / 100) as u8
 }
 
 fn mask_yaml(frame: &GridFrame, image: &str) -> String {
     description(frame, image, "scale", [1.0, 0.0])
 }
 
-fn picture<T>(grid: &Grid<T>, pixel: impl FnMut(&T) -> u8) -> Vec<u8> {
-    let frame = grid.frame();
-    let mut bytes = format!("P5\n{} {}\n255\n", frame.width(), frame.height()).into_bytes();
-    bytes.extend(grid.cells().chunks(frame.width()).rev().flatten().map(pixel));
+fn picture<T>(grid: &Grid<T>, pixel: fn(&T) -> u8) -> Vec<u8> {
+    let mut bytes = header(grid.frame());
+    bytes.extend(grid.rows().rev().flatten().map(pixel));
     bytes
+}
+
+fn header(frame: &GridFrame) -> Vec<u8> {
+    format!("P5\n{} {}\n255\n", frame.width(), frame.height()).into_bytes()
 }
 
 fn description(frame: &GridFrame, image: &str, mode: &str, [occupied, free]: [f64; 2]) -> String {
@@ -73,8 +80,17 @@ fn description(frame: &GridFrame, image: &str, mode: &str, [occupied, free]: [f6
     )
 }
 
-fn write_both(folder: &Path, name: &str, picture: &[u8], yaml: String) -> Result<(), OutputError> {
-    write_file(&folder.join(format!("{name}.pgm")), |file| file.write_all(picture))?;
+fn write_both<T>(
+    folder: &Path,
+    name: &str,
+    (grid, pixel): (&Grid<T>, fn(&T) -> u8),
+    yaml: String,
+) -> Result<(), OutputError> {
+    // Row by row: the picture of a large place is larger than its map in memory.
+    write_file(&folder.join(format!("{name}.pgm")), |file| {
+        file.write_all(&header(grid.frame()))?;
+        grid.rows().rev().try_for_each(|row| file.write_all(&row.map(pixel).collect::<Vec<_>>()))
+    })?;
     write_file(&folder.join(format!("{name}.yaml")), |file| file.write_all(yaml.as_bytes()))
 }
 
@@ -95,7 +111,7 @@ mod tests {
         let values: Vec<u8> = (0..=100).collect();
         let frame = GridFrame::new(Point2::new(-1.0, 2.0), 0.5, values.len(), 1).unwrap();
         let mask = Grid::from_cells(frame, values.clone()).unwrap();
-        let picture = mask_pgm(&mask);
+        let picture = picture(&mask, mask_pixel);
         let pixels = &picture[picture.len() - values.len()..];
         let back: Vec<u8> = pixels.iter().map(|pixel| served(*pixel, 1.0, 0.0)).collect();
         assert_eq!(back, values);

@@ -118,19 +118,11 @@ fn percent(state: CellState) -> i8 {
 /// The frame of the known cells, with borders on multiples of [`BLOCK`]; `None` if nothing is known.
 fn known_part(map: &Grid<CellState>) -> Option<GridFrame> {
     let frame = map.frame();
-    let rows = map.cells().chunks(frame.width()).zip(0..);
-    let mut known: Option<(Cell, Cell)> = None;
-    for (row, y) in rows {
-        let is_known = |state: &CellState| *state != CellState::Unknown;
-        let Some(left) = row.iter().position(is_known) else { continue };
-        let right = row.iter().rposition(is_known).unwrap_or(left);
-        let (left, right) = (left as i32, right as i32);
-        known = Some(match known {
-            None => (Cell::new(left, y), Cell::new(right, y)),
-            Some((low, high)) => (Cell::new(low.x.min(left), low.y), Cell::new(high.x.max(right), y)),
-        });
-    }
-    let (low, high) = known?;
+    let known = map.cells().other_than(CellState::Unknown).map(|(index, _)| frame.cell(index));
+    let (low, high) = known.map(|cell| (cell, cell)).reduce(|(low, high), (cell, _)| {
+        let low = Cell::new(low.x.min(cell.x), low.y.min(cell.y));
+        (low, Cell::new(high.x.max(cell.x), high.y.max(cell.y)))
+    })?;
     let begin = |at: i32| at / BLOCK * BLOCK;
     let end = |at: i32, size: usize| ((at / BLOCK + 1) * BLOCK).min(size as i32);
     let (x, y) = (begin(low.x), begin(low.y));
@@ -143,12 +135,10 @@ fn known_part(map: &Grid<CellState>) -> Option<GridFrame> {
 fn cut(map: &Grid<CellState>, frame: GridFrame, value: impl Fn(&CellState, usize) -> i8) -> Grid<i8> {
     let offset = offset(&frame, map.frame());
     let mut part = Grid::filled(frame, -1);
-    let width = frame.width();
-    for (row, y) in part.cells_mut().chunks_mut(width).zip(offset.y..) {
-        for (cell, x) in row.iter_mut().zip(offset.x..) {
-            if let Some(index) = map.frame().index(Cell::new(x, y)) {
-                *cell = value(&map.cells()[index], index);
-            }
+    for at in 0..frame.len() {
+        let cell = frame.cell(at);
+        if let Some(index) = map.frame().index(Cell::new(cell.x + offset.x, cell.y + offset.y)) {
+            part.cells_mut().set(at, value(&map.cells()[index], index));
         }
     }
     part

@@ -1,6 +1,5 @@
 use crate::error::SurveyError;
 use interfaces::{GridFrame, LaserReading};
-use mapper::Mapper;
 use nalgebra::{Isometry2, Point2, Vector2};
 
 /// The number of directions in which the reach of a reading is kept. In another direction it is too short by at most
@@ -54,20 +53,21 @@ fn of_cells(low: Point2<f64>, high: Point2<f64>, resolution_m: f64) -> Result<Gr
     let cells = high - low;
     let too_large = || {
         let (width_m, height_m) = (cells.x * resolution_m, cells.y * resolution_m);
-        // With the space that rounding takes, in two digits.
-        let enough_m = resolution_m * (1.1 * cells.x * cells.y / most_cells()).sqrt().max(1.0);
-        let digit = 10_f64.powf(enough_m.log10().floor() - 1.0);
-        SurveyError::TooLarge { width_m, height_m, resolution_m, enough_m: (enough_m / digit).ceil() * digit }
+        let share = cells.x * cells.y / GridFrame::MAX_CELLS as f64;
+        SurveyError::TooLarge { width_m, height_m, resolution_m, enough_m: enough_m(resolution_m, share) }
     };
     // Numbers that are too large become the largest ones.
     let frame = GridFrame::new(low * resolution_m, resolution_m, cells.x as usize, cells.y as usize);
-    frame.filter(|frame| Mapper::bytes(frame) <= Mapper::MAX_BYTES).ok_or_else(too_large)
+    frame.ok_or_else(too_large)
 }
 
-/// The number of cells that a mapper can have.
-fn most_cells() -> f64 {
-    let one = GridFrame::new(Point2::origin(), 1.0, 1, 1);
-    one.map_or(1.0, |one| Mapper::MAX_BYTES as f64 / Mapper::bytes(&one) as f64)
+/// The side of the cells of which a place has at most as many as it may, in two digits; `share`: how many it has with this side,
+/// relative to that.
+pub(crate) fn enough_m(resolution_m: f64, share: f64) -> f64 {
+    // With the space that rounding takes.
+    let enough_m = resolution_m * (1.1 * share).sqrt().max(1.0);
+    let digit = 10_f64.powf(enough_m.log10().floor() - 1.0);
+    (enough_m / digit).ceil() * digit
 }
 
 /// The cells that cover what was hit from these poses. The cells lie on multiples of their side, so that two surveys of

@@ -111,8 +111,10 @@ impl Forecast {
     pub fn map(&self, time_s: f64) -> Grid<f64> {
         let frame = *self.mapper.frame();
         let mut grid = Grid::filled(frame, f64::NAN);
-        for (index, value) in grid.cells_mut().iter_mut().enumerate() {
-            *value = self.blocked(frame.cell(index), time_s).unwrap_or(f64::NAN);
+        for (index, _) in self.mapper.states().cells().other_than(CellState::Unknown) {
+            if let Some(blocked) = self.blocked(frame.cell(index), time_s) {
+                grid.cells_mut()[index] = blocked;
+            }
         }
         grid
     }

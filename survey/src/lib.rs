@@ -32,6 +32,7 @@ mod repeated;
 mod replay;
 mod route;
 mod search;
+mod seen_area;
 mod settings;
 mod survey;
 mod surveyed_log;

@@ -4,6 +4,7 @@ use crate::error::SurveyError;
 use crate::extent::{self, Reach};
 use crate::quality::{Quality, QualityCheck};
 use crate::range_noise::RangeNoise;
+use crate::seen_area::SeenArea;
 use crate::settings::SurveySettings;
 use crate::turns::Turns;
 use interfaces::{GridFrame, LaserReading, PoseMode};
@@ -25,6 +26,8 @@ pub struct Route {
     /// How far the trajectory agrees with its own scans.
     pub quality: Quality,
     reaches: Vec<Reach>,
+    /// The area that was seen, m²: more where the route was corrected later.
+    pub(crate) seen_m2: f64,
 }
 
 impl Route {
@@ -75,6 +78,7 @@ pub struct FirstPass {
     reaches: Vec<Reach>,
     /// The corners of the rectangle that was seen so far.
     seen: Option<(Point2<f64>, Point2<f64>)>,
+    area: SeenArea,
     turns: Turns,
 }
 
@@ -102,13 +106,15 @@ impl FirstPass {
             quality: QualityCheck::default(),
             reaches: Vec::new(),
             seen: None,
+            area: SeenArea::default(),
             turns: Turns::default(),
         })
     }
 
     /// Adds the next reading.
     pub fn add(&mut self, reading: LaserReading) {
-        let reach = Reach::of(&self.filter.filter(reading.clone()));
+        let filtered = self.filter.filter(reading.clone());
+        let reach = Reach::of(&filtered);
         self.reaches.push(reach);
         self.turns.add(&reading);
         let found = match &mut self.finder {
@@ -127,6 +133,9 @@ impl FirstPass {
             self.quality.add(&reading, &found.pose);
         }
         let certain = found.filter(|found| found.state == PoseState::Tracking);
+        if let Some(found) = &certain {
+            self.area.add(&filtered, &found.pose);
+        }
         for hit in certain.iter().flat_map(|found| reach.hits().map(|hit| found.pose * hit)) {
             let (low, high) = self.seen.unwrap_or((hit, hit));
             self.seen = Some((low.inf(&hit), high.sup(&hit)));
@@ -156,6 +165,7 @@ impl FirstPass {
             None => (self.given, 0, None),
         };
         let (range_std_m, quality) = (self.range_noise.std_m(), self.quality.finish(&poses));
-        Route { poses, loops, residual, range_std_m, quality, reaches: self.reaches }
+        let seen_m2 = self.area.m2();
+        Route { poses, loops, residual, range_std_m, quality, reaches: self.reaches, seen_m2 }
     }
 }

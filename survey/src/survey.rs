@@ -15,6 +15,7 @@ use crate::places::{Place, PlaceBook, PlaceName, Since, StillName, places, since
 use crate::quality::Verdict;
 use crate::replay::{FoundPoses, Replay, judged};
 use crate::route::frame;
+use crate::seen_area::{self, too_much};
 use crate::settings::SurveySettings;
 use crate::surveyed_log::{LogEntry, SurveyedLog};
 use interfaces::{GridFrame, LaserReading};
@@ -41,6 +42,8 @@ pub struct Survey {
     changes: ChangeLog,
     book: PlaceBook,
     logs: Vec<SurveyedLog>,
+    /// The area that was seen in the first passes of this run, m².
+    seen_m2: f64,
 }
 
 /// Logs are those of one session, one visit of the robot, if they begin earlier than this after the end of the log before, s.
@@ -50,7 +53,8 @@ impl Survey {
     /// A survey without a log. `learns_noise`: the noise in the settings is replaced by what the routes say about it.
     pub fn new(settings: SurveySettings, learns_noise: bool) -> Self {
         let (changes, book) = (ChangeLog::default(), PlaceBook::default());
-        Self { settings, learns_noise, place: None, robot: None, changes, book, logs: Vec::new() }
+        let (place, robot, logs) = (None, None, Vec::new());
+        Self { settings, learns_noise, place, robot, changes, book, logs, seen_m2: 0.0 }
     }
 
     /// The logs, in the order of their times.
@@ -189,6 +193,8 @@ impl Survey {
         if is_followed && self.place.is_none() {
             self.place = Some(Arc::new(pass.place(&route)?));
         }
+        seen_area::check(self.seen_m2 + route.seen_m2, &self.settings)?;
+        self.seen_m2 += route.seen_m2;
         self.logs.push(SurveyedLog::new(entry, route, frame));
         Ok(())
     }
@@ -258,7 +264,7 @@ impl Survey {
     ///
     /// # Errors
     ///
-    /// When the log cannot be read to its end, and when the mapper refuses a reading.
+    /// When the log cannot be read to its end, when the mapper refuses a reading, and when the map has taken all of its memory.
     pub fn turn(&mut self, replay: &mut Replay) -> Result<Option<Turn<LaserReading, ()>>, PassError> {
         let Self { robot: Some(robot), changes, book, logs, .. } = self else { return Ok(None) };
         let (Some(reading), Some(log)) = (replay.next()?, logs.get_mut(replay.number)) else {
@@ -268,6 +274,10 @@ impl Survey {
         log.pass();
         changes.note(&robot.mapper);
         book.note(&robot.mapper);
+        if robot.mapper.is_full() {
+            let part = log.used as f64 / log.route().len().max(log.used) as f64;
+            return Err(too_much(self.seen_m2, robot.mapper.bytes() as f64 / part, &self.settings).into());
+        }
         if replay.is_over() {
             log.readings = log.used;
             self.keep_numbers();

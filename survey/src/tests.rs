@@ -255,7 +255,7 @@ fn lasers_that_stand_are_compared() {
 fn a_place_too_large_for_a_map_is_named() {
     let settings = SurveySettings { resolution_m: 0.005, ..SurveySettings::of(PoseMode::Exact) };
     let (mut readings, _) = drive(2, 0.2);
-    readings[1].pose = interfaces::pose(100.0, 100.0, 0.0);
+    readings[1].pose = interfaces::pose(300.0, 300.0, 0.0);
     let mut pass = FirstPass::new(&settings).unwrap();
     readings.drain(..2).for_each(|reading| pass.add(reading));
     // Known before the pass is over.
@@ -263,16 +263,44 @@ fn a_place_too_large_for_a_map_is_named() {
     let error = frame(&[pass.finish()], &settings).unwrap_err();
     assert!(matches!(error, SurveyError::TooLarge { .. }), "{error}");
     let says =
-        ["the place is too large for a map: at least 1", "(--resolution, at least 0.0", "(--max-range)"];
+        ["the place is too large for a map: at least 3", "(--resolution, at least 0.0", "(--max-range)"];
     assert!(says.iter().all(|says| error.to_string().contains(says)), "{error}");
     // What the error advises is enough.
     let SurveyError::TooLarge { enough_m, .. } = error else { return };
     let settings = SurveySettings { resolution_m: enough_m, ..settings };
     let (mut readings, _) = drive(2, 0.2);
-    readings[1].pose = interfaces::pose(100.0, 100.0, 0.0);
+    readings[1].pose = interfaces::pose(300.0, 300.0, 0.0);
     let mut pass = FirstPass::new(&settings).unwrap();
     readings.drain(..2).for_each(|reading| pass.add(reading));
     assert!(frame(&[pass.finish()], &settings).is_ok());
+}
+
+#[test]
+fn a_place_of_which_too_much_is_seen_names_a_resolution_that_is_enough() {
+    let (readings, _) = drive(3, 60.0);
+    let folder = tempfile::tempdir().unwrap();
+    let log = bag(&folder.path().join("a.mcap"), &readings);
+    let mapped = |resolution_m: f64, max_bytes: usize| {
+        let mut settings = SurveySettings { resolution_m, ..SurveySettings::of(PoseMode::Localized) };
+        settings.mapper.max_bytes = max_bytes;
+        let mut survey = Survey::new(settings, false);
+        let entry = LogEntry::of(String::new(), &log, &TopicChoice::default()).unwrap();
+        survey.first_pass(&log, entry, false, |_| ControlFlow::Continue(()))?;
+        let mut replay = survey.replay(0, &log)?.unwrap();
+        while survey.turn(&mut replay)?.is_some() {}
+        Ok::<usize, PassError>(survey.mapper().unwrap().bytes())
+    };
+    let needed = mapped(0.05, usize::MAX).unwrap();
+    // Known after the first pass, and only found out in the second one.
+    for max_bytes in [needed / 3, needed - 1] {
+        let error = mapped(0.05, max_bytes).unwrap_err();
+        let PassError::Survey(SurveyError::TooMuchSeen { seen_m2, enough_m, .. }) = error else {
+            panic!("{error}")
+        };
+        assert!((20.0..200.0).contains(&seen_m2) && enough_m > 0.05, "{seen_m2} m², {enough_m} m");
+        let used = mapped(enough_m, max_bytes).unwrap();
+        assert!(used < max_bytes, "{used} of {max_bytes} bytes with cells of {enough_m} m");
+    }
 }
 
 #[test]

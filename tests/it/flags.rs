@@ -60,6 +60,7 @@ const PROGRAMS: [Program; 8] = [
             ("--map-frame", "map"),
             ("--pose", "guessed"),
             ("--resolution", "0"),
+            ("--map-memory", "0"),
             ("--max-range", "nan"),
             ("--no-return", "perhaps"),
             ("--noise", "10"),

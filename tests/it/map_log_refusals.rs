@@ -119,15 +119,26 @@ fn topics_are_for_bags() {
     insta::assert_snapshot!(refuses(&run, "a.log --odom-topic /odom", &["a.log"]), @"error: --odom-topic is for bags, but a.log is a CARMEN log, which has no topics and frames: leave it out");
 }
 
-/// Beyond 2 GiB: a room of 6 m in cells of 5 mm fits, and one that is seen 100 m away does not.
+/// The resolution that an error names.
+fn enough(message: &str) -> &str {
+    let (_, rest) = message.split_once("--resolution, at least ").unwrap();
+    rest.split_once(')').unwrap().0
+}
+
+/// The resolution that the error names is enough.
 #[test]
 fn a_place_that_is_too_large_names_ways_out() {
     let run = Run::new().with_map_log();
     run.write("a.log", &scaled_log(10.0));
-    let message = refuses(&run, "a.log --resolution 0.005 --max-range 70", &["a.log"]);
-    let says =
-        ["error: the place is too large for a map: at least ", "--resolution, at least 0.0", "--max-range"];
+    let message = refuses(&run, "a.log --resolution 0.01 --map-memory 0.02", &["a.log"]);
+    let says = [
+        "error: the place is too large for a map: about ",
+        "more than 0.020 GiB",
+        "--max-range",
+        "--map-memory",
+    ];
     assert!(says.iter().all(|says| message.contains(says)), "{message}");
+    run.goes_well(&format!("a.log --no-rrd --map-memory 0.02 --resolution {}", enough(&message)));
 }
 
 #[test]

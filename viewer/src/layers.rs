@@ -2,7 +2,7 @@
 //! recording and the pictures use the same layers, so that a color has the same meaning in both.
 
 use crate::scene::TimeUnit;
-use interfaces::CellState;
+use interfaces::{CellState, Grid};
 use mapper::Mapper;
 use results::drawing::palette::{self, Rgb};
 
@@ -173,16 +173,13 @@ impl Layer {
         })
     }
 
-    /// The class of every cell of the mapper's frame, in row-major order.
-    pub fn classes(self, mapper: &Mapper, unit: TimeUnit) -> Vec<u8> {
-        let states = mapper.states().cells().iter();
-        let mut classes: Vec<u8> = states.map(|&state| plain(state)).collect();
-        let Some(scale) = self.scale(unit) else { return classes };
-        if self == Self::Recency {
+    /// The class of every cell of the map.
+    pub fn classes(self, mapper: &Mapper, unit: TimeUnit) -> Grid<u8> {
+        if let Some(scale) = self.scale(unit).filter(|_| self == Self::Recency) {
             // Every cell that was seen has a value.
-            for (index, class) in classes.iter_mut().enumerate() {
-                let was_seen = mapper.was_ever_seen(index);
-                *class = if was_seen { scale.class(mapper.recency(index)) } else { UNKNOWN };
+            let mut classes = Grid::filled(*mapper.frame(), UNKNOWN);
+            for index in mapper.seen() {
+                classes.cells_mut()[index] = scale.class(mapper.recency(index));
             }
             return classes;
         }
@@ -203,12 +200,12 @@ impl Layer {
         mapper: &Mapper,
         unit: TimeUnit,
         value: impl Fn(usize) -> Option<f64>,
-    ) -> Vec<u8> {
-        let mut classes: Vec<u8> = mapper.states().cells().iter().map(|&state| plain(state)).collect();
+    ) -> Grid<u8> {
+        let mut classes = mapper.states().map(|state| plain(*state));
         let Some(scale) = self.scale(unit) else { return classes };
         for index in mapper.changed() {
             if let Some(value) = value(index) {
-                classes[index] = scale.class(value);
+                classes.cells_mut()[index] = scale.class(value);
             }
         }
         classes
@@ -368,7 +365,7 @@ mod tests {
             let mut classes: Vec<u8> = layer.legend(unit).iter().map(|(class, _)| *class).collect();
             classes.sort_unstable();
             assert!(classes.windows(2).all(|pair| pair[0] < pair[1]));
-            assert!(layer.classes(&run.mapper, unit).iter().all(|class| classes.contains(class)));
+            assert!(layer.classes(&run.mapper, unit).cells().iter().all(|class| classes.contains(class)));
         }
     }
 

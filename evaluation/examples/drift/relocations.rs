@@ -114,10 +114,8 @@ fn rearranged(spec: &WorldSpec, seed: u64) -> WorldSpec {
 fn true_map(world: &PhysicsWorld) -> Grid<CellState> {
     let truth = world.truth();
     let mut map = Grid::filled(*truth.frame(), CellState::Free);
-    for (index, state) in map.cells_mut().iter_mut().enumerate() {
-        if truth.state(index) != TrueState::Free {
-            *state = CellState::Blocked;
-        }
+    for index in (0..truth.frame().len()).filter(|index| truth.state(*index) != TrueState::Free) {
+        map.cells_mut()[index] = CellState::Blocked;
     }
     map
 }

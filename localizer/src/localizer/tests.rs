@@ -117,7 +117,7 @@ fn learned(sweep_s: f64) -> (Localizer, Grid<CellState>) {
     let mut localizer = Localizer::from_nothing(&LocalizerSettings::default(), &frame, start).unwrap();
     let mut map = Grid::filled(frame, CellState::Free);
     // Something that beams without a return pass.
-    map.cells_mut()[3000..3040].fill(CellState::Blocked);
+    (3000..3040).for_each(|index| map.cells_mut()[index] = CellState::Blocked);
     for number in 0..30 {
         localizer.localize(&reading(number, sweep_s), &map);
     }

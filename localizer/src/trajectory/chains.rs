@@ -7,8 +7,8 @@ use super::graph::{Edge, EdgeKind, PoseGraph};
 use super::keyframe::Keyframe;
 use super::matching::in_frame;
 use crate::constants::{
-    CHAIN_KEYFRAMES, CHAIN_M, CHAIN_RESPONSE, CHAIN_ROUNDS, CORRELATED, CORRELATED_KEYFRAMES, MAX_CHAINS, MIN_CHAIN,
-    SPARSE,
+    CHAIN_KEYFRAMES, CHAIN_M, CHAIN_RESPONSE, CHAIN_ROUNDS, CORRELATED, CORRELATED_KEYFRAMES, MAX_CHAINS,
+    MIN_CHAIN, SPARSE,
 };
 use std::ops::Range;
 
@@ -42,8 +42,7 @@ fn edges_of(number: usize, keyframes: &[Keyframe], graph: &PoseGraph) -> Vec<Edg
         let posed = near.map(|other| (&graph.poses[other], &keyframes[other]));
         let scores = Correlation::of(posed, &predicted);
         let Correlated { pose, response } = scores.best(&keyframe.scan, &keyframe.mount, CORRELATED);
-        let information =
-            information_at(&pose, &keyframe.points).filter(|_| response >= CHAIN_RESPONSE)?;
+        let information = information_at(&pose, &keyframe.points).filter(|_| response >= CHAIN_RESPONSE)?;
         let motion = graph.poses[from].inv_mul(&pose);
         let information = in_frame(&information, &graph.poses[from]);
         Some(Edge { from, to: number, motion, information, kind: EdgeKind::Loop })

@@ -3,8 +3,7 @@
 
 use super::keyframe::Keyframe;
 use crate::constants::{
-    CORRELATION_CELL_M, CORRELATION_PENALTY, CORRELATION_RANGE_M, CORRELATION_STD_M,
-    CORRELATION_STEP_RAD,
+    CORRELATION_CELL_M, CORRELATION_PENALTY, CORRELATION_RANGE_M, CORRELATION_STD_M, CORRELATION_STEP_RAD,
 };
 use crate::spread::Spread;
 use interfaces::Scan;

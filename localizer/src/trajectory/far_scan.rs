@@ -53,10 +53,8 @@ impl<'a> FarScan<'a> {
 
     /// The match at a pose.
     pub(super) fn matched(&self, pose: &Isometry2<f64>, points: &[ScanPoint]) -> Option<Match> {
-        Some(Match { information: information_at(pose, points)?, ..match_at(pose, points) }).map(|found| Match {
-            scan_information: found.information,
-            ..found
-        })
+        Some(Match { information: information_at(pose, points)?, ..match_at(pose, points) })
+            .map(|found| Match { scan_information: found.information, ..found })
     }
 }
 

@@ -7,11 +7,8 @@ use nalgebra::{Isometry2, Point2};
 /// The true map of a house.
 fn map_of(house: &House) -> Grid<CellState> {
     let mut map = Grid::filled(house.frame, CellState::Free);
-    for (index, state) in map.cells_mut().iter_mut().enumerate() {
-        *state = match house.truth(index, 0.0) {
-            CellState::Free => CellState::Free,
-            _ => CellState::Blocked,
-        };
+    for index in (0..house.frame.len()).filter(|index| house.truth(*index, 0.0) != CellState::Free) {
+        map.cells_mut()[index] = CellState::Blocked;
     }
     map
 }

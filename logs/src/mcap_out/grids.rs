@@ -10,6 +10,8 @@ use std::io::{Seek, Write};
 /// A map that changes is written as a whole when the last whole one is older than this, ns: a viewer that shows no updates,
 /// or jumps in time, is at most this late.
 const WHOLE_PERIOD_NS: i64 = 5_000_000_000;
+/// A map of n times as many cells has a period n times as long.
+const MANY_CELLS: usize = 1 << 20;
 
 /// What was written last, by topic.
 #[derive(Default)]
@@ -31,7 +33,8 @@ impl Grids {
         if let Some((whole_ns, last)) = known {
             let update = OccupancyGridUpdate::between(last, grid, header.clone());
             let Some(update) = update else { return Ok(()) };
-            if ns - *whole_ns < WHOLE_PERIOD_NS {
+            let periods = grid.frame().len().div_ceil(MANY_CELLS) as i64;
+            if ns - *whole_ns < periods * WHOLE_PERIOD_NS {
                 *last = grid.clone();
                 let topic = format!("{topic}_updates");
                 return channels.write(&topic, "map_msgs/OccupancyGridUpdate", ns, &update);

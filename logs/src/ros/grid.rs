@@ -44,8 +44,14 @@ impl OccupancyGridUpdate {
 
 /// The corners of the rectangle in which two maps differ, both inclusive.
 fn difference(before: &Grid<i8>, after: &Grid<i8>) -> Option<(Cell, Cell)> {
-    let pairs = before.cells().iter().zip(after.cells()).enumerate();
-    let changed = pairs.filter(|(_, (before, after))| before != after).map(|(index, _)| index);
+    let (before, cells) = (before.cells(), after.cells());
+    let changed = cells.stored().filter(|(index, value)| before[*index] != **value);
+    // What has no block any more has the value of all other cells.
+    let gone = before.stored().filter(|(index, value)| !cells.is_stored(*index) && cells[*index] != **value);
+    let is_other_fill = before.fill() != cells.fill();
+    let all =
+        (0..if is_other_fill { cells.len() } else { 0 }).filter(|index| before[*index] != cells[*index]);
+    let changed = changed.chain(gone).map(|(index, _)| index).chain(all);
     changed.map(|index| after.frame().cell(index)).map(|cell| (cell, cell)).reduce(
         |(low, high), (cell, _)| {
             let low = Cell::new(low.x.min(cell.x), low.y.min(cell.y));

@@ -1,86 +1,147 @@
 use crate::Growth;
-use interfaces::{Values, runs};
+use interfaces::{CellList, GridFrame, Place, SparseCells, ValueError, write_value};
 use serde::{Serialize, de::DeserializeOwned};
 use std::ops::Index;
 use std::sync::Arc;
 
-/// The number of cells that are copied at once.
+/// The number of values that are copied at once.
 const CHUNK: usize = 64;
 
 /// One value per cell that copies share until one of them changes it: a copy of a large map must not stop the loop of a
-/// robot for longer than a few milliseconds.
+/// robot for longer than a few milliseconds. A value takes memory from the first time that it differs from the default.
 #[derive(Clone, Debug)]
-pub(super) struct SharedCells<T>(Vec<Arc<Vec<T>>>);
+pub(super) struct SharedCells<T> {
+    /// The number of the value of each cell, plus one; 0 for the default. `None` without any cell.
+    numbers: Option<SparseCells<u32>>,
+    /// All values but the default, in the order in which they were made.
+    chunks: Vec<Arc<Vec<T>>>,
+    default: T,
+}
 
-impl<T: Clone + Default> SharedCells<T> {
-    /// The default value for each of this number of cells.
-    pub(super) fn new(cells: usize) -> Self {
-        let chunk = |first| Arc::new(vec![T::default(); CHUNK.min(cells - first)]);
-        Self((0..cells).step_by(CHUNK).map(chunk).collect())
+impl<T: Clone + Default + PartialEq> SharedCells<T> {
+    /// The default value for each cell of a frame; no cell without a frame.
+    pub(super) fn new(frame: Option<&GridFrame>) -> Self {
+        let numbers = frame.map(|frame| SparseCells::new(frame.width(), frame.height(), 0));
+        Self { numbers, chunks: Vec::new(), default: T::default() }
     }
 
     /// Whether there is no cell.
     pub(super) fn is_empty(&self) -> bool {
-        self.0.is_empty()
+        self.numbers.is_none()
     }
 
-    /// The value of a cell; `None` if there is no such cell.
+    /// The value of a cell; `None` if there is no cell.
     #[inline]
     pub(super) fn get(&self, index: usize) -> Option<&T> {
-        self.0.get(index / CHUNK).and_then(|chunk| chunk.get(index % CHUNK))
+        self.at(self.numbers.as_ref()?.place(index))
     }
 
-    /// The value of a cell, to be changed; `None` if there is no such cell.
+    /// The value at a place; `None` if there is no cell.
     #[inline]
+    pub(super) fn at(&self, place: Place) -> Option<&T> {
+        Some(match *self.numbers.as_ref()?.at_place(place) {
+            0 => &self.default,
+            number => self.numbered(number as usize - 1),
+        })
+    }
+
+    fn numbered(&self, number: usize) -> &T {
+        &self.chunks[number / CHUNK][number % CHUNK]
+    }
+
+    /// The value of a cell, to be changed, if it was ever changed.
+    pub(super) fn changed_mut(&mut self, index: usize) -> Option<&mut T> {
+        let number = self.numbers.as_ref()?[index].checked_sub(1)? as usize;
+        Arc::make_mut(self.chunks.get_mut(number / CHUNK)?).get_mut(number % CHUNK)
+    }
+
+    /// The value of a cell, to be changed; `None` if there is no cell.
     pub(super) fn get_mut(&mut self, index: usize) -> Option<&mut T> {
-        self.0.get_mut(index / CHUNK).and_then(|chunk| Arc::make_mut(chunk).get_mut(index % CHUNK))
+        let numbers = self.numbers.as_mut()?;
+        if numbers[index] == 0 {
+            if self.chunks.last().is_none_or(|chunk| chunk.len() == CHUNK) {
+                self.chunks.push(Arc::new(Vec::with_capacity(CHUNK)));
+            }
+            let before = (self.chunks.len() - 1) * CHUNK;
+            let chunk = Arc::make_mut(self.chunks.last_mut()?);
+            chunk.push(T::default());
+            numbers[index] = (before + chunk.len()) as u32;
+        }
+        self.changed_mut(index)
     }
 
     /// Moves all values into a larger map.
     pub(super) fn grow(&mut self, growth: &Growth) {
-        if self.is_empty() {
-            return;
+        if let Some(numbers) = &mut self.numbers {
+            growth.sparse(numbers);
         }
-        let mut moved = Self::new(growth.frame().len());
-        for (index, value) in self.0.iter().flat_map(|chunk| chunk.iter()).enumerate() {
-            if let Some(to) = moved.get_mut(growth.index(index)) {
-                *to = value.clone();
-            }
-        }
-        *self = moved;
     }
 
-    /// All values, as runs.
-    pub(super) fn values(&mut self) -> Values<'_>
-    where
-        T: Serialize + DeserializeOwned,
-    {
-        self.0.iter_mut().map(|chunk| runs(Arc::make_mut(chunk).as_mut_slice())).collect()
+    /// The memory of all values, bytes, without what they own elsewhere.
+    pub(super) fn bytes(&self) -> usize {
+        self.numbers.as_ref().map_or(0, SparseCells::bytes) + self.chunks.len() * CHUNK * size_of::<T>()
+    }
+
+    /// The values that were ever changed.
+    pub(super) fn changed(&self) -> impl Iterator<Item = &T> {
+        self.chunks.iter().flat_map(|chunk| chunk.iter())
     }
 }
 
-impl<T> Index<usize> for SharedCells<T> {
+/// In a state file, runs end after this number of cells.
+pub(super) const RUN: usize = CHUNK;
+
+impl<T: Clone + Default + PartialEq + Serialize + DeserializeOwned> CellList for &mut SharedCells<T> {
+    type Item = T;
+
+    fn len(&self) -> usize {
+        self.numbers.as_ref().map_or(0, SparseCells::len)
+    }
+
+    fn write(&self, index: usize, bytes: &mut Vec<u8>) -> Result<(), ValueError> {
+        write_value(self.get(index).unwrap_or(&self.default), bytes)
+    }
+
+    fn alike(&self, index: usize) -> usize {
+        self.numbers.as_ref().map_or(1, |numbers| numbers.alike(index))
+    }
+
+    fn set(&mut self, index: usize, value: &T) {
+        if self[index] != *value
+            && let Some(own) = self.get_mut(index)
+        {
+            *own = value.clone();
+        }
+    }
+}
+
+impl<T: Clone + Default + PartialEq> Index<usize> for SharedCells<T> {
     type Output = T;
 
     #[inline]
     fn index(&self, index: usize) -> &T {
-        &self.0[index / CHUNK][index % CHUNK]
+        self.get(index).unwrap_or(&self.default)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use nalgebra::Point2;
 
     #[test]
     fn a_change_does_not_reach_a_copy() {
-        let mut cells = SharedCells::new(130);
+        let frame = GridFrame::new(Point2::origin(), 0.1, 13, 10).unwrap();
+        let mut cells = SharedCells::new(Some(&frame));
         *cells.get_mut(129).unwrap() = 1;
         let copy = cells.clone();
         *cells.get_mut(129).unwrap() = 2;
         *cells.get_mut(63).unwrap() = 3;
         assert_eq!([cells[129], cells[63], cells[64]], [2, 3, 0]);
         assert_eq!([copy[129], copy[63], copy[64]], [1, 0, 0]);
-        assert!(cells.get_mut(130).is_none() && SharedCells::<u8>::new(0).is_empty());
+        assert_eq!((cells.changed_mut(63), copy.chunks.len()), (Some(&mut 3), 1));
+        assert!(cells.changed_mut(64).is_none());
+        let mut none = SharedCells::<u8>::new(None);
+        assert!(none.is_empty() && none.get_mut(0).is_none());
     }
 }

@@ -67,10 +67,11 @@ const DISPERSIONS: [f64; 2] = [0.1, 10.0];
 /// Observations around a cell count less by a factor of e per this distance, m, along rows and columns.
 const REACH_M: f64 = 0.2;
 
-/// What was in view of every cell: 0 for a cell that is not traversable.
-#[derive(Clone, Debug)]
+/// What was in view of every traversable cell.
+#[derive(Clone, Debug, Default)]
 pub(super) struct InView {
-    pub(super) is_traversable: Vec<bool>,
+    /// The indices of the cells, in ascending order.
+    pub(super) cells: Vec<u32>,
     pub(super) cycles: Vec<f32>,
     pub(super) times: Vec<f32>,
 }
@@ -90,24 +91,78 @@ impl RatePrior {
         RateDistribution { events: self.shape, time: self.shape / mean }
     }
 
-    /// The prior that follows from what was in view, and the mean rate of each cell; `None` without any time.
-    pub(super) fn learned(
-        frame: &GridFrame,
-        InView { is_traversable, cycles, times }: InView,
-    ) -> Option<(Self, Vec<f32>)> {
+    /// The prior that follows from what was in view, and the mean rate of each traversable cell; `None` without any time.
+    pub(super) fn learned(frame: &GridFrame, seen: InView) -> Option<Learned> {
+        let InView { cells, cycles, times } = seen;
         let sum = |values: &[f32]| values.iter().copied().map(f64::from).sum::<f64>();
         let mean = (FIRST_CYCLES + sum(&cycles)) / sum(&times);
         if !(mean.is_finite() && mean > 0.0) {
             return None;
         }
-        let mut means = means_by_clearance(frame, mean, &is_traversable, &cycles, &times);
-        let expected: Vec<f32> = means.iter().zip(&times).map(|(mean, time)| mean * time).collect();
+        let beside = Beside::new(frame, &cells);
+        let mut means = means_by_clearance(frame, mean, &beside, &cycles, &times);
+        let mut expected = times;
+        expected.iter_mut().zip(&means).for_each(|(time, mean)| *time *= mean);
         let shape = shape(frame, &cycles, &expected);
-        let [cycles, expected] = [cycles, expected].map(|values| around(frame, &is_traversable, values));
+        let [cycles, expected] = [cycles, expected].map(|values| around(frame, &beside, values));
         for ((mean, cycles), expected) in means.iter_mut().zip(cycles).zip(expected) {
             *mean *= (cycles + shape as f32) / (expected + shape as f32);
         }
-        Some((Self { shape, mean }, means))
+        Some(Learned { prior: Self { shape, mean }, cells, means })
+    }
+}
+
+/// What [`RatePrior::learned`] finds.
+pub(super) struct Learned {
+    pub(super) prior: RatePrior,
+    /// The traversable cells, and the mean rate of each.
+    pub(super) cells: Vec<u32>,
+    pub(super) means: Vec<f32>,
+}
+
+/// Which traversable cells lie beside each other. A cell is known by its position in the list of all of them.
+struct Beside<'a> {
+    cells: &'a [u32],
+    width: u32,
+    /// For each cell, the first one that is not before the place below and to the left.
+    below: Vec<u32>,
+}
+
+impl<'a> Beside<'a> {
+    fn new(frame: &GridFrame, cells: &'a [u32]) -> Self {
+        let width = frame.width() as u32;
+        let mut first = 0;
+        let below = cells.iter().map(|index| {
+            while cells[first] + width + 1 < *index {
+                first += 1;
+            }
+            first as u32
+        });
+        let below = below.collect();
+        Self { cells, width, below }
+    }
+
+    /// The cell before a cell in its row.
+    fn before(&self, position: usize) -> Option<usize> {
+        let before = position.checked_sub(1)?;
+        let index = self.cells[position];
+        (self.cells[before] + 1 == index && !index.is_multiple_of(self.width)).then_some(before)
+    }
+
+    /// The cells below and to the left, below, and below and to the right.
+    fn below(&self, position: usize) -> [Option<usize>; 3] {
+        let (first, index) = (self.below[position] as usize, self.cells[position]);
+        let column = index % self.width;
+        let mut found = [None; 3];
+        for (at, cell) in self.cells[first..position].iter().enumerate().take(3) {
+            // 0 for the place to the left, 1 below, 2 to the right.
+            let side = (cell + self.width + 1).wrapping_sub(index) as usize;
+            let is_in_row = (side > 0 || column > 0) && (side < 2 || column + 1 < self.width);
+            if side < 3 && is_in_row {
+                found[side] = Some(first + at);
+            }
+        }
+        found
     }
 }
 
@@ -115,44 +170,56 @@ impl RatePrior {
 fn means_by_clearance(
     frame: &GridFrame,
     mean: f64,
-    is_traversable: &[bool],
+    beside: &Beside<'_>,
     cycles: &[f32],
     times: &[f32],
 ) -> Vec<f32> {
-    let classes = clearance_classes(frame, is_traversable);
+    let classes = clearance_classes(frame, beside);
     let mut sums = [RateDistribution { events: 1.0, time: 1.0 / mean }; CLASSES];
     for ((&class, &cycles), &time) in classes.iter().zip(cycles).zip(times) {
-        sums[class].events += f64::from(cycles);
-        sums[class].time += f64::from(time);
+        sums[class as usize].events += f64::from(cycles);
+        sums[class as usize].time += f64::from(time);
     }
     let rates = sums.map(|sum| sum.mean() as f32);
-    let of_cell = |(class, is_traversable): (usize, &bool)| if *is_traversable { rates[class] } else { 0.0 };
-    classes.into_iter().zip(is_traversable).map(of_cell).collect()
+    classes.into_iter().map(|class| rates[class as usize]).collect()
 }
 
-/// The class of the distance of each cell to the nearest cell that is not traversable: a chamfer distance in two passes
+/// The class of the distance of each traversable cell to the nearest cell that is not: a chamfer distance in two passes
 /// (Borgefors, 1986).
-fn clearance_classes(frame: &GridFrame, is_traversable: &[bool]) -> Vec<usize> {
+fn clearance_classes(frame: &GridFrame, beside: &Beside<'_>) -> Vec<u8> {
     const DIAGONAL: f32 = std::f32::consts::SQRT_2;
-    let (width, row) = (frame.width(), frame.width() + 2);
-    // A border of cells that are not traversable: every cell has eight neighbors.
-    let mut distances = vec![0.0_f32; row * (frame.height() + 2)];
-    let bordered = |index: usize| (index / width + 1) * row + index % width + 1;
-    for index in (0..frame.len()).filter(|&index| is_traversable[index]) {
-        let at = bordered(index);
-        let straight = distances[at - 1].min(distances[at - row]) + 1.0;
-        let diagonal = distances[at - row - 1].min(distances[at - row + 1]) + DIAGONAL;
-        distances[at] = straight.min(diagonal);
+    /// The cells above and after a cell: bit 0 for the two along rows and columns, bit 1 for the two diagonal ones.
+    const BOTH: [u8; 2] = [0b0011, 0b1100];
+    const STEPS: [(f32, u8); 3] = [(DIAGONAL, 0b1000), (1.0, 0b0010), (DIAGONAL, 0b0100)];
+    let count = beside.cells.len();
+    let mut distances = vec![0.0_f32; count];
+    let of = |distances: &[f32], cell: Option<usize>| cell.map_or(0.0, |cell| distances[cell]);
+    for position in 0..count {
+        let [left, below, right] = beside.below(position).map(|cell| of(&distances, cell));
+        let before = of(&distances, beside.before(position));
+        distances[position] = (before.min(below) + 1.0).min(left.min(right) + DIAGONAL);
     }
-    for index in (0..frame.len()).rev().filter(|&index| is_traversable[index]) {
-        let at = bordered(index);
-        let straight = distances[at + 1].min(distances[at + row]) + 1.0;
-        let diagonal = distances[at + row + 1].min(distances[at + row - 1]) + DIAGONAL;
-        distances[at] = distances[at].min(straight.min(diagonal));
+    // Each cell passes its distance on to those below and before, which come later in this order.
+    let mut passed_on = vec![0_u8; count];
+    for position in (0..count).rev() {
+        let mut distance = distances[position];
+        for (both, step) in BOTH.into_iter().zip([1.0, DIAGONAL]) {
+            if passed_on[position] & both != both {
+                distance = distance.min(step);
+            }
+        }
+        distances[position] = distance;
+        let before = beside.before(position).map(|cell| (cell, (1.0, 0b0001)));
+        let below =
+            beside.below(position).into_iter().zip(STEPS).filter_map(|(cell, step)| Some((cell?, step)));
+        for (cell, (step, bit)) in before.into_iter().chain(below) {
+            distances[cell] = distances[cell].min(distance + step);
+            passed_on[cell] |= bit;
+        }
     }
     let per_class = (frame.resolution_m() / CLASS_M) as f32;
-    let class = |index| ((distances[bordered(index)] * per_class + 0.5) as usize).clamp(1, CLASSES) - 1;
-    (0..frame.len()).map(class).collect()
+    let class = |distance: f32| ((distance * per_class + 0.5) as usize).clamp(1, CLASSES) as u8 - 1;
+    distances.into_iter().map(class).collect()
 }
 
 /// The shape of the distribution of all rates, from the variance of the numbers of cycles beyond that of a Poisson
@@ -173,28 +240,31 @@ fn shape(frame: &GridFrame, cycles: &[f32], expected: &[f32]) -> f64 {
 
 /// The weighted mean of the values around each cell, without its own: two-sided exponential filters along rows, then along
 /// columns. Walls end them.
-fn around(frame: &GridFrame, is_traversable: &[bool], mut values: Vec<f32>) -> Vec<f32> {
+fn around(frame: &GridFrame, beside: &Beside<'_>, mut values: Vec<f32>) -> Vec<f32> {
     let fade = libm::exp(-frame.resolution_m() / REACH_M) as f32;
     let own_weight = (1.0 - fade) / (1.0 + fade);
     let own: Vec<f32> = values.iter().map(|value| own_weight * own_weight * value).collect();
-    let (width, height) = (frame.width(), frame.height());
-    let mut forward = vec![0.0; width.max(height)];
-    let mut filter = |start: usize, step: usize, length: usize| {
-        let at = |position: usize| start + position * step;
-        let mut sum = 0.0;
-        for position in 0..length {
-            sum = if is_traversable[at(position)] { sum * fade + values[at(position)] } else { 0.0 };
-            forward[position] = sum;
-        }
-        sum = 0.0;
-        for position in (0..length).rev() {
-            let value = &mut values[at(position)];
-            sum = if is_traversable[at(position)] { sum * fade + *value } else { 0.0 };
-            *value = (forward[position] + sum - *value) * own_weight;
-        }
-    };
-    (0..height).for_each(|row| filter(row * width, 1, width));
-    (0..width).for_each(|column| filter(column, width, height));
+    filter(&mut values, fade, own_weight, |position| beside.before(position));
+    filter(&mut values, fade, own_weight, |position| beside.below(position)[1]);
     values.iter_mut().zip(own).for_each(|(value, own)| *value = (*value - own).max(0.0));
     values
+}
+
+/// A two-sided exponential filter; `before` is the cell before a cell, along a row or a column.
+fn filter(values: &mut [f32], fade: f32, own_weight: f32, before: impl Fn(usize) -> Option<usize>) {
+    let mut forward = vec![0.0; values.len()];
+    for position in 0..values.len() {
+        let sum = before(position).map_or(0.0, |before| forward[before]);
+        forward[position] = sum * fade + values[position];
+    }
+    // The sums of the cells after each cell.
+    let mut backward = vec![0.0; values.len()];
+    for position in (0..values.len()).rev() {
+        let value = &mut values[position];
+        let sum = backward[position] * fade + *value;
+        if let Some(before) = before(position) {
+            backward[before] = sum;
+        }
+        *value = (forward[position] + sum - *value) * own_weight;
+    }
 }

@@ -8,14 +8,14 @@ use super::inverse_sensor_model::{HIT_LOG_ODDS, MISS_LOG_ODDS};
 use super::projection::{BeamReturn, ProjectedScan};
 use crate::change::CellMap;
 use crate::{Growth, MapperSettings};
-use interfaces::{CellState, Values, runs};
+use interfaces::{CellState, SparseCells, Values, cell_runs};
 
 /// The bounds of the sum of log-odds.
 const BOUNDS: (f32, f32) = (-2.0, 3.5);
 
 #[derive(Clone, Debug)]
 pub(super) struct LogOddsGrid {
-    log_odds: Vec<f32>,
+    log_odds: SparseCells<f32>,
 }
 
 impl LogOddsGrid {
@@ -25,10 +25,13 @@ impl LogOddsGrid {
             CellState::Free => BOUNDS.0,
             CellState::Blocked => BOUNDS.1,
         };
-        Self { log_odds: cells.states().cells().iter().map(start).collect() }
+        Self { log_odds: cells.states().cells().map(start) }
     }
 
     fn add(&mut self, index: usize, evidence: f32, cells: &mut CellMap) {
+        if !cells.covers(index) {
+            return;
+        }
         let was_in_view = cells.is_in_view(index);
         let log_odds = &mut self.log_odds[index];
         *log_odds = (*log_odds + evidence).clamp(BOUNDS.0, BOUNDS.1);
@@ -58,10 +61,14 @@ impl OccupancyModel for LogOddsGrid {
     }
 
     fn values(&mut self) -> Values<'_> {
-        vec![runs(&mut self.log_odds)]
+        vec![cell_runs(&mut self.log_odds, usize::MAX)]
+    }
+
+    fn bytes(&self) -> usize {
+        self.log_odds.bytes()
     }
 
     fn grow(&mut self, growth: &Growth, _: &MapperSettings) {
-        growth.cells(&mut self.log_odds, 0.0);
+        growth.sparse(&mut self.log_odds);
     }
 }

@@ -40,6 +40,9 @@ pub trait OccupancyModel: CloneModel + fmt::Debug + Send + Sync {
     /// file holds of the model.
     fn values(&mut self) -> Values<'_>;
 
+    /// The memory of the evidence about all cells, bytes.
+    fn bytes(&self) -> usize;
+
     /// Goes on in a larger map, which can be as large as before, with the range noise of `settings`.
     fn grow(&mut self, growth: &Growth, settings: &MapperSettings);
 }
@@ -61,9 +64,6 @@ impl Clone for Box<dyn OccupancyModel> {
         (**self).clone_box()
     }
 }
-
-/// The memory of the largest built-in model, bytes per cell.
-pub(crate) const BYTES_PER_CELL: usize = SurfaceGrid::BYTES_PER_CELL;
 
 type Build = dyn Fn(&MapperSettings, &mut CellMap) -> Box<dyn OccupancyModel> + Send + Sync;
 

@@ -243,23 +243,22 @@ fn settings_that_contradict_are_refused() {
     );
 }
 
-/// Every setting at its limits, in a house where a box appears and disappears.
 #[test]
-fn a_map_that_needs_too_much_memory_is_refused_before_it_is_allocated() {
+fn a_prior_map_that_needs_too_much_memory_is_refused_before_it_is_allocated() {
     let frame = |side| GridFrame::new(Point2::origin(), 0.05, side, side).unwrap();
-    assert_eq!(Mapper::bytes(&frame(100)), 10_000 * Mapper::bytes(&frame(1)));
-    // As large as a world file can be.
-    assert!(Mapper::new(&MapperSettings::default(), frame(2000)).is_ok());
-    let error = Mapper::new(&MapperSettings::default(), frame(8192)).unwrap_err().to_string();
-    let gib = Mapper::bytes(&frame(8192)) as f64 / 2.0_f64.powi(30);
-    let expected =
-        "mapper setting `frame` must be a frame that needs at most 2 GiB, not 8192 × 8192 cells, which need";
-    assert_eq!(error, format!("{expected} {gib:.1} GiB"));
-    let prior = Grid::filled(frame(4096), CellState::Free);
-    let error = Mapper::with_prior(&MapperSettings::default(), prior).unwrap_err().to_string();
-    assert!(error.contains("not 4096 × 4096 cells"), "{error}");
+    // A frame alone needs little: 1 km².
+    let mapper = Mapper::new(&MapperSettings::default(), frame(20_000)).unwrap();
+    assert!(mapper.bytes() < 70 << 20, "{} bytes", mapper.bytes());
+    let prior = Grid::filled(frame(100), CellState::Free);
+    let settings = |max_bytes| MapperSettings { max_bytes, ..MapperSettings::default() };
+    assert!(Mapper::with_prior(&settings(1 << 20), prior.clone()).is_ok());
+    let error = Mapper::with_prior(&settings(1 << 18), prior).unwrap_err().to_string();
+    let expected = "mapper setting `prior` must be a map that fits into the memory that the mapper may take (max_bytes), not 10000 known \
+                    cells, which need 0.0003 GiB of 0.0002 GiB";
+    assert_eq!(error, expected);
 }
 
+/// Every setting at its limits, in a house where a box appears and disappears.
 #[test]
 fn lawful_settings_are_lived_with() {
     let edits: [fn(&mut SurfaceGridSettings); 8] = [

@@ -14,6 +14,7 @@ use evaluation::physics_trial::PhysicsTrial;
 use evaluation::summary::{SCHEMA, Summary};
 use interfaces::{LaserReading, Twist, World};
 use mapper::Mapper;
+use results::intervals::Intervals;
 use results::output::{RunFolder, TrajectoryFile, UnfinishedFile, is_another_kind, write_file};
 use results::thinned::Goals;
 use results::{cell_statistics, file_name, ros_map, things};
@@ -216,7 +217,7 @@ fn write(
     let to = folder.unfinished();
     show.write_pictures(to, mapper, goals, &Layer::ALL)?;
     ros_map::write(to, "map", mapper.states())?;
-    cell_statistics::write(&to.join("cell_statistics.csv"), mapper)?;
+    cell_statistics::write(&to.join("cell_statistics.csv"), mapper, &Intervals::of(mapper))?;
     things::write(&to.join("things.json"), mapper)?;
     summary.files = folder.results()?;
     let text = serde_json::to_string_pretty(summary)?;

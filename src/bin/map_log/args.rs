@@ -89,6 +89,17 @@ pub(crate) struct Args {
     )]
     pub(crate) max_range: f64,
 
+    /// The memory that the map may take, GiB: about 130 bytes per cell that was seen
+    #[arg(
+        long,
+        value_name = "GIB",
+        default_value_t = 2.0,
+        value_parser = number(0.001..=1024.0),
+        allow_negative_numbers = true,
+        help_heading = "Map"
+    )]
+    pub(crate) map_memory: f64,
+
     /// The errors of ranges and poses together: what a change must stand out from, m [default: 5 times the distance of scans
     /// from the surfaces of other passes, from 0.02 to 0.1; 0.06 if no place was passed twice; with exact poses 0.03]
     #[arg(long, value_name = "METRES", value_parser = number(0.0..=0.5), allow_negative_numbers = true, help_heading = "Map")]
@@ -221,6 +232,7 @@ impl Args {
         settings.filter.max_range_m = self.max_range;
         settings.filter.no_return = self.no_return;
         settings.filter.min_shadow_angle_rad = self.shadow_angle.to_radians();
+        settings.mapper.max_bytes = (self.map_memory * f64::from(1 << 30)) as usize;
         settings.mapper.estimator = self.estimator.clone();
         settings.mapper.time_zone = self.time_zone.clone().or(saved_zone).or(settings.mapper.time_zone);
         if let Some(noise_m) = self.noise {

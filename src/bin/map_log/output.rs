@@ -4,6 +4,7 @@ use crate::report;
 use crate::second_pass::Learned;
 use crate::summary::Summary;
 use anyhow::Context;
+use results::intervals::Intervals;
 use results::output::{RunFolder, write_file};
 use results::thinned::Thinned;
 use results::{cell_statistics, raster, ros_map, things};
@@ -32,8 +33,9 @@ pub(crate) fn write(
         for (name, mask) in MASKS.iter().zip(masks(mapper)) {
             ros_map::write_mask(to, name, &mask)?;
         }
-        cell_statistics::write(&to.join("cell_statistics.csv"), mapper)?;
-        raster::write(&to.join("layers.npy"), mapper)?;
+        let intervals = Intervals::of(mapper);
+        cell_statistics::write(&to.join("cell_statistics.csv"), mapper, &intervals)?;
+        raster::write(&to.join("layers.npy"), mapper, &intervals)?;
         things::write(&to.join("things.json"), mapper)?;
     }
     let page = report::page(summary, mapper);

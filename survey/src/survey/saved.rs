@@ -112,6 +112,7 @@ impl Survey {
             changes,
             book: book.unwrap_or_default(),
             logs: logs.logs,
+            seen_m2: 0.0,
         };
         if let Some((frame, bytes)) = map {
             // The last log of which something was learned has set the noise.

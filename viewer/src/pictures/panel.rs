@@ -3,7 +3,7 @@
 use crate::layers::Layer;
 use crate::legend::Mark;
 use crate::scene::{TimeUnit, extent};
-use interfaces::GridFrame;
+use interfaces::{Grid, GridFrame};
 use mapper::Mapper;
 use nalgebra::Point2;
 use plotters::chart::ChartContext;
@@ -209,7 +209,7 @@ impl Panel {
         &self,
         area: &Area,
         (layer, title): (Layer, &str),
-        classes: &[u8],
+        classes: &Grid<u8>,
         unit: TimeUnit,
     ) -> Result<(), String> {
         let (chart, legend) = self.axes(area, title)?;
@@ -245,12 +245,15 @@ impl Panel {
     }
 
     /// Draws the cells, as few rectangles as the rows allow.
-    pub(super) fn cells(&self, chart: &Chart, layer: Layer, classes: &[u8]) -> Result<(), String> {
+    pub(super) fn cells(&self, chart: &Chart, layer: Layer, classes: &Grid<u8>) -> Result<(), String> {
         let (from, cell_m) = (self.frame.origin(), self.frame.resolution_m());
-        for (row, classes) in classes.chunks(self.frame.width()).enumerate() {
+        let mut of_row: Vec<u8> = Vec::new();
+        for (row, classes) in classes.rows().enumerate() {
+            of_row.clear();
+            of_row.extend(classes);
             let y_m = [row, row + 1].map(|row| from.y + row as f64 * cell_m);
             let mut column = 0;
-            for run in classes.chunk_by(|a, b| a == b) {
+            for run in of_row.chunk_by(|a, b| a == b) {
                 let x_m = [column, column + run.len()].map(|column| from.x + column as f64 * cell_m);
                 let corners = [(x_m[0], y_m[0]), (x_m[1], y_m[1])];
                 let cells = Rectangle::new(corners, ink(layer.color(run[0])).filled());

@@ -204,7 +204,11 @@ fn what_is_read_back_is_what_happened() {
         let most = if layer == Layer::Occupancy { 32 } else { 5 };
         assert!((2..=most).contains(&maps.len()), "{layer:?}: {}", maps.len());
         let last = maps.last().unwrap().1[0].0.to_vec();
-        assert_eq!(last, layer.classes(&run.mapper, TimeUnit::Second), "{layer:?} at the end");
+        assert_eq!(
+            last,
+            layer.classes(&run.mapper, TimeUnit::Second).cells().to_vec(),
+            "{layer:?} at the end"
+        );
     }
     let coverage = rows::<Scalar>(&store, "/curves/scores/coverage", Scalars::descriptor_scalars().component);
     assert_eq!(coverage.len(), 32); // once a second, and at the end

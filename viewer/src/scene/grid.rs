@@ -66,7 +66,8 @@ fn rectangle(low: Cell, high: Cell, inset_m: f64) -> Outline {
 fn rectangles(cells: &Grid<bool>) -> Vec<Outline> {
     let mut done: Vec<(Cell, Cell)> = Vec::new();
     let mut open: Vec<(Cell, Cell)> = Vec::new();
-    for (row, y) in cells.cells().chunks(cells.frame().width()).zip(0..) {
+    for (row, y) in cells.rows().zip(0..) {
+        let row: Vec<bool> = row.copied().collect();
         let mut x = 0;
         let mut still_open = Vec::new();
         for run in row.chunk_by(|a, b| a == b) {

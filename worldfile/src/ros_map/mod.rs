@@ -47,12 +47,12 @@ impl RosMap {
     /// map may have another size and another orientation.
     pub fn onto(&self, frame: &GridFrame) -> Grid<CellState> {
         let to_map = self.origin.inverse();
-        let states = (0..frame.len()).map(|index| {
-            let at = to_map * frame.center(frame.cell(index));
-            self.cells.get(self.cells.frame().cell_at(&at)).copied().unwrap_or_default()
-        });
         let mut grid = Grid::filled(*frame, CellState::Unknown);
-        grid.cells_mut().iter_mut().zip(states).for_each(|(cell, state)| *cell = state);
+        for index in 0..frame.len() {
+            let at = to_map * frame.center(frame.cell(index));
+            let state = self.cells.get(self.cells.frame().cell_at(&at)).copied();
+            grid.cells_mut().set(index, state.unwrap_or_default());
+        }
         grid
     }
 }

@@ -35,7 +35,7 @@ fn draw(map: &Grid<CellState>) -> Vec<String> {
         CellState::Blocked => '#',
         CellState::Unknown => ' ',
     };
-    map.cells().chunks(map.frame().width()).rev().map(|row| row.iter().map(symbol).collect()).collect()
+    map.rows().rev().map(|row| row.map(symbol).collect()).collect()
 }
 
 const YAML: &str = "image: map.pgm\nresolution: 0.5\norigin: [1.0, -2.0, 0.0]\nnegate: 0\n\

@@ -4,17 +4,19 @@ mod last_seen;
 mod observing;
 mod queries;
 mod record;
+mod records;
 mod saved;
 mod shared;
 mod state_change;
 
 use super::EstimatorChoice;
-use super::gaps::{CellGaps, GapHistogram, Regularity};
+use super::gaps::{CellGaps, Regularity};
 use super::reading_times::{NEVER, PRIOR, ReadingIndex, ReadingTimes};
 use crate::change::shared_cells::SharedCells;
-use interfaces::{CellState, Grid, Transition};
+use interfaces::{CellState, Grid, SparseCells, Transition};
 use last_seen::LastSeenCounts;
 use record::{Flags, Record};
+use records::Records;
 use shared::SharedPrior;
 
 /// The index of a cell among the cells that ever changed.
@@ -36,10 +38,12 @@ pub struct CellMap {
     states: Grid<CellState>,
     times: ReadingTimes,
     /// For each cell the last reading that observed it, with the mark [`observing::UNSETTLED`].
-    observed: Vec<ReadingIndex>,
-    records: Vec<Record>,
+    observed: SparseCells<ReadingIndex>,
+    records: Records,
     /// The gaps of every cell; empty if the estimator has no model of gaps.
     gaps: SharedCells<CellGaps>,
+    /// The memory that gaps own elsewhere, bytes.
+    gap_bytes: usize,
     regularity: Regularity,
     /// The prior that all traversable cells share; `None` if the estimator has none.
     shared: Option<SharedPrior>,
@@ -48,46 +52,45 @@ pub struct CellMap {
     /// The cells of `changed` that came back into view with the open reading.
     pub(crate) returned: Vec<Slot>,
     pub(crate) transitions: Vec<Transition>,
-    flags: Vec<Flags>,
+    flags: SparseCells<Flags>,
     last_seen_counts: LastSeenCounts,
+    /// Whether only cells near those that were seen can be seen: the memory is used up.
+    pub(crate) is_full: bool,
 }
 
 impl CellMap {
-    /// The memory of a cell that was seen, bytes; a cell that changed takes some hundred bytes more.
-    pub(crate) const BYTES_PER_CELL: usize = size_of::<CellState>()
-        + size_of::<ReadingIndex>()
-        + size_of::<Record>()
-        + size_of::<CellGaps>()
-        + GapHistogram::FIRST_BYTES
-        + size_of::<f32>() // the mean of its prior
-        + size_of::<Flags>();
+    /// What a known cell of a prior map takes, bytes.
+    pub(crate) const BYTES_PER_KNOWN_CELL: usize =
+        records::BYTES_PER_CELL + size_of::<ReadingIndex>() + size_of::<Flags>() + size_of::<CellState>();
 
     pub(crate) fn new(prior: Grid<CellState>, estimator: EstimatorChoice, max_gap: f64) -> Self {
-        let cells = prior.frame().len();
-        let gaps = SharedCells::new(if estimator.gap_model().is_some() { cells } else { 0 });
-        let shared = estimator.shares_prior().then(|| SharedPrior::new(cells));
+        let frame = *prior.frame();
+        let gaps = SharedCells::new(estimator.gap_model().map(|_| &frame));
+        let shared = estimator.shares_prior().then(|| SharedPrior::new(&frame));
+        let known: Vec<usize> =
+            prior.cells().other_than(CellState::Unknown).map(|(index, _)| index).collect();
         let mut map = Self {
             estimator,
             max_gap,
             interrupted: NEVER,
             states: prior,
             times: ReadingTimes::default(),
-            observed: vec![NEVER | observing::UNSETTLED; cells],
-            records: vec![Record::default(); cells],
+            observed: SparseCells::new(frame.width(), frame.height(), NEVER | observing::UNSETTLED),
+            records: Records::new(&frame),
             gaps,
+            gap_bytes: 0,
             regularity: Regularity::default(),
             shared,
             changed: Vec::new(),
             returned: Vec::new(),
             transitions: Vec::new(),
-            flags: vec![Flags::default(); cells],
+            flags: SparseCells::new(frame.width(), frame.height(), Flags::default()),
             last_seen_counts: LastSeenCounts::default(),
+            is_full: false,
         };
-        for index in 0..cells {
-            if map.state(index) != CellState::Unknown {
-                map.records[index] = Record::since(PRIOR);
-            }
-            map.update_candidate(index);
+        for index in known {
+            map.records.set(index, Record::since(PRIOR));
+            map.update_candidates_around(index);
         }
         map
     }
@@ -124,9 +127,8 @@ impl CellMap {
 
     /// Forgets the times of readings that no cell refers to any more.
     fn forget_times(&mut self) {
-        let seen = self.observed.iter().map(|last| last & !observing::UNSETTLED);
-        let known = self.records.iter().flat_map(|record| [record.first, record.since]);
-        self.times.forget(seen.chain(known));
+        let seen = self.observed.stored_values().map(|last| last & !observing::UNSETTLED);
+        self.times.forget(seen.chain(self.records.readings()));
     }
 
     /// A cell is a candidate if it is free, or shares a side with a free cell (a frontier cell or a surface). The
@@ -136,6 +138,14 @@ impl CellMap {
         if is != self.flags[index].is_candidate {
             self.flags[index].is_candidate = is;
             self.last_seen_counts.count(self.last_reading(index), is);
+        }
+    }
+
+    /// The same for a cell and those beside it.
+    fn update_candidates_around(&mut self, index: usize) {
+        self.update_candidate(index);
+        for neighbor in self.frame().beside(index) {
+            self.update_candidate(neighbor);
         }
     }
 }

@@ -7,7 +7,7 @@ use interfaces::{Cell, CellState};
 
 /// Set in the last reading of a cell that is not settled; see [`CellMap::observe_run`].
 pub(super) const UNSETTLED: ReadingIndex = 1 << 31;
-/// The number of cells that [`CellMap::observe_run`] processes at once.
+/// The number of cells that [`CellMap::observe_run`] processes at once: those of a row in a block of [`interfaces::SparseCells`].
 const BLOCK: usize = 16;
 
 impl CellMap {
@@ -36,7 +36,7 @@ impl CellMap {
     pub fn is_in_view(&self, index: usize) -> bool {
         let (now, last) = (self.reading(), self.last_reading(index));
         if last == now {
-            return self.records[index].since < now; // its view did not begin just now
+            return self.records.since(index) < now; // its view did not begin just now
         }
         last + 1 == now
             || self.max_gap > 0.0
@@ -55,12 +55,19 @@ impl CellMap {
         std::hint::black_box(cells.fold(0, |loaded, index| loaded ^ load(index)));
     }
 
+    /// Whether a cell can be seen. When the [memory is used up](crate::Mapper::is_full), cells far from those that were seen cannot: an
+    /// occupancy model treats them as cells outside of the map.
+    #[inline]
+    pub fn covers(&self, index: usize) -> bool {
+        !self.is_full || self.observed.is_stored(index)
+    }
+
     /// Marks a free cell as settled: [`observe_run`](Self::observe_run) then updates it at once. A cell that becomes
     /// blocked is no longer settled.
     #[inline]
     pub fn set_settled(&mut self, index: usize, is_settled: bool) {
         let last = self.last_reading(index);
-        self.observed[index] = if is_settled { last } else { last | UNSETTLED };
+        self.observed.set(index, if is_settled { last } else { last | UNSETTLED });
     }
 
     /// The open reading observed the cell in the same state as before. After a gap, the time up to the gap is
@@ -88,7 +95,7 @@ impl CellMap {
         }
         if flags.has_changed
             && last + 1 < now
-            && let Some(slot) = self.records[index].slot()
+            && let Some(slot) = self.slot(index)
         {
             self.returned.push(slot);
         }
@@ -100,10 +107,13 @@ impl CellMap {
     /// branch per cell.
     #[inline]
     pub fn observe_run(&mut self, start: usize, end: usize, closer: &mut Vec<u32>) {
-        let now = self.reading();
+        let (now, is_full) = (self.reading(), self.is_full);
         let mut again = 0;
-        let mut block_start = start;
-        for block in self.observed[start..end].chunks_mut(BLOCK) {
+        self.observed.each_piece_mut(start, end, |from, until, block| {
+            let Some(block) = block else {
+                let unseen = if is_full { 0..0 } else { from as u32..until as u32 };
+                return closer.extend(unseen);
+            };
             // No early exit: the comparison of a whole block vectorizes.
             if block.len() == BLOCK && block.iter().fold(true, |all, &last| all & (last == now - 1)) {
                 block.fill(now);
@@ -114,12 +124,11 @@ impl CellMap {
                         *last = now;
                         again += 1;
                     } else if *last != now {
-                        closer.push((block_start + offset) as u32);
+                        closer.push((from + offset) as u32);
                     }
                 }
             }
-            block_start += BLOCK;
-        }
+        });
         // A settled cell is free, and a free cell is a candidate.
         self.last_seen_counts.observed_again(again);
     }
@@ -130,7 +139,7 @@ impl CellMap {
         let now = self.reading();
         let mut again = 0;
         for &(cell, is_blocked) in cells {
-            let Some(index) = frame.index(cell) else { continue };
+            let Some(index) = frame.index(cell).filter(|index| self.covers(*index)) else { continue };
             let state = if is_blocked { CellState::Blocked } else { CellState::Free };
             let is_as_before = self.state(index) == state;
             // Most cells were in view before and have the same state as before.
@@ -152,19 +161,22 @@ impl CellMap {
     /// The cell is observed again after a gap, or for the first time: records the time before.
     pub(super) fn end_gap(&mut self, index: usize, after: CellState) {
         let (before, last, now) = (self.state(index), self.last_reading(index), self.reading());
-        let record = &mut self.records[index];
+        let mut record = self.records.get(index);
         if record.is_known() {
             let length = self.times.at(now) - self.times.at(last);
             record.watched[state_index(before)] += self.times.at(last) - self.times.at(record.since);
             record.gaps[state_index(before)] += 1;
             if let Some(gaps) = self.gaps.get_mut(index) {
                 let [before, after] = [before, after].map(|state| state == CellState::Blocked);
+                let owned = gaps.histogram.owned_bytes();
                 gaps.histogram.add(Gap { start: last, end: now, length, before, after });
+                self.gap_bytes += gaps.histogram.owned_bytes() - owned;
             }
         } else {
             record.first = now;
         }
         record.since = now;
         record.set_whole(false);
+        self.records.set(index, record);
     }
 }

@@ -21,6 +21,17 @@ impl CellMap {
         self.states.cells()[index]
     }
 
+    /// The memory of the cells, bytes; what the gaps of cells that changed own is estimated.
+    pub(crate) fn bytes(&self) -> usize {
+        self.states.cells().bytes()
+            + self.observed.bytes()
+            + self.records.bytes()
+            + self.gaps.bytes()
+            + self.gap_bytes
+            + self.flags.bytes()
+            + self.shared.as_ref().map_or(0, |shared| shared.means.bytes())
+    }
+
     /// The number of the open reading.
     #[inline]
     pub fn reading(&self) -> ReadingIndex {
@@ -54,7 +65,7 @@ impl CellMap {
 
     /// The index of a cell among those that ever changed.
     pub(crate) fn slot(&self, index: usize) -> Option<Slot> {
-        self.records[index].slot()
+        self.records.get(index).slot()
     }
 
     /// The number of readings so far.
@@ -71,6 +82,14 @@ impl CellMap {
         self.last_reading(index) != super::NEVER
     }
 
+    /// The cells that a reading ever observed, by ascending index.
+    pub(crate) fn seen(&self) -> impl Iterator<Item = usize> {
+        let stored = self.observed.stored();
+        stored
+            .filter(|(_, last)| **last & !super::observing::UNSETTLED != super::NEVER)
+            .map(|(index, _)| index)
+    }
+
     /// The time of the last observation of the candidate that has not been observed for longest.
     pub(crate) fn oldest_candidate(&mut self) -> Option<f64> {
         self.last_seen_counts.oldest().map(|reading| self.times.at(reading))
@@ -78,14 +97,15 @@ impl CellMap {
 
     /// The change statistics of a cell.
     pub fn statistics(&self, index: usize) -> CellStatistics {
-        let record = &self.records[index];
+        let place = self.observed.place(index);
+        let record = self.records.at(place);
         if !record.is_known() {
             return CellStatistics::default();
         }
-        let last = self.last_reading(index);
+        let last = self.observed.at_place(place) & !super::observing::UNSETTLED;
         let (first_seen, last_seen) = (self.times.at(record.first), self.times.at(last));
         let mut watched = record.watched;
-        watched[state_index(self.state(index))] += last_seen - self.times.at(record.since);
+        watched[state_index(*self.states.cells().at_place(place))] += last_seen - self.times.at(record.since);
         let [watched_free, watched_blocked] = watched;
         let period = self.times.period(last);
         CellStatistics {
@@ -101,14 +121,14 @@ impl CellMap {
             free_events_after_gap: record.after_gap[1],
             gaps_from_free: record.gaps[0],
             gaps_from_blocked: record.gaps[1],
-            gap_worth: self.gaps.get(index).map_or(GapWorth::default(), |gaps| gaps.worth(period)),
-            prior: self.rate_prior(index),
+            gap_worth: self.gaps.at(place).map_or(GapWorth::default(), |gaps| gaps.worth(period)),
+            prior: self.rate_prior(place),
         }
     }
 
     /// How often the state of the cell changed in the map: its changes, and the correction of a wrong first observation.
     pub(crate) fn map_changes(&self, index: usize) -> u32 {
-        self.statistics(index).events() + u32::from(self.records[index].was_corrected())
+        self.statistics(index).events() + u32::from(self.records.get(index).was_corrected())
     }
 
     /// Whether the cell ever changed. Most cells did not: their rates need no statistics.

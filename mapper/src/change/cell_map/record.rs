@@ -3,7 +3,7 @@ use interfaces::CellState;
 use std::num::NonZeroU32;
 
 /// The change record of one cell. The last observation changes with every reading and is stored separately.
-#[derive(Clone, Copy, Debug, Default, serde::Deserialize, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Deserialize, serde::Serialize)]
 pub(super) struct Record {
     /// The first observation.
     pub(super) first: ReadingIndex,
@@ -20,13 +20,13 @@ pub(super) struct Record {
     /// Gaps that began while the cell was free, and while it was blocked.
     pub(super) gaps: [u32; 2],
     /// The index among the cells that ever changed, plus one.
-    slot: Option<NonZeroU32>,
-    marks: Marks,
+    pub(super) slot: Option<NonZeroU32>,
+    pub(super) marks: Marks,
 }
 
 /// Two marks of a cell in one byte of a state file: the first alone is the byte of earlier versions.
-#[derive(Clone, Copy, Debug, Default, serde::Deserialize, serde::Serialize)]
-struct Marks(u8);
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Deserialize, serde::Serialize)]
+pub(super) struct Marks(u8);
 
 impl Marks {
     const WHOLE: u8 = 1;
@@ -34,7 +34,7 @@ impl Marks {
 }
 
 /// What every observation of a cell asks: many cells are in one line of the processor's cache, of whole records only one.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Flags {
     /// Whether the cell can be a goal: free cells can, and the surfaces and frontiers beside free cells.
     pub(super) is_candidate: bool,
@@ -89,5 +89,13 @@ impl Record {
 
     pub(super) fn set_slot(&mut self, slot: Slot) {
         self.slot = NonZeroU32::new(slot + 1);
+    }
+
+    /// The only state in which the cell was ever in view; `None` if it was in both, or ever changed.
+    pub(super) fn only_state(&self) -> Option<usize> {
+        let is_unused = |state: usize| self.watched[state].to_bits() == 0 && self.gaps[state] == 0;
+        let has_events = self.in_view != [0; 2] || self.after_gap != [0; 2] || self.slot.is_some();
+        let other = [1, 0].into_iter().find(|other| is_unused(*other)).filter(|_| !has_events);
+        other.map(|other| 1 - other)
     }
 }

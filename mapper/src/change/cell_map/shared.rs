@@ -2,8 +2,8 @@
 
 use super::CellMap;
 use crate::change::RateDistribution;
-use crate::change::shared_prior::{InView, RatePrior};
-use interfaces::CellState;
+use crate::change::shared_prior::{InView, Learned, RatePrior};
+use interfaces::{CellState, GridFrame, Place, SparseCells};
 
 /// The prior is learned anew after a quarter more readings, from this many readings on and after at most this many: one
 /// minute at 10 Hz.
@@ -14,14 +14,14 @@ const RENEWAL_READINGS: [usize; 2] = [8, 600];
 pub(super) struct SharedPrior {
     pub(super) prior: Option<RatePrior>,
     /// The mean rate of each cell; 0 for a cell that was not traversable when the prior was learned.
-    pub(super) means: Vec<f32>,
+    pub(super) means: SparseCells<f32>,
     /// The number of readings at which the prior is learned anew.
     pub(super) due: usize,
 }
 
 impl SharedPrior {
-    pub(super) fn new(cells: usize) -> Self {
-        Self { prior: None, means: vec![0.0; cells], due: 0 }
+    pub(super) fn new(frame: &GridFrame) -> Self {
+        Self { prior: None, means: SparseCells::new(frame.width(), frame.height(), 0.0), due: 0 }
     }
 }
 
@@ -39,9 +39,9 @@ impl CellMap {
     }
 
     /// The prior of the rate of a cell, once there is one.
-    pub(super) fn rate_prior(&self, index: usize) -> Option<RateDistribution> {
+    pub(super) fn rate_prior(&self, place: Place) -> Option<RateDistribution> {
         let shared = self.shared.as_ref()?;
-        Some(shared.prior?.with_mean(shared.means[index]))
+        Some(shared.prior?.with_mean(*shared.means.at_place(place)))
     }
 
     /// Learns the prior anew if it is time.
@@ -51,8 +51,10 @@ impl CellMap {
         if readings >= shared.due {
             let [least, most] = RENEWAL_READINGS;
             shared.due = readings + (readings / 4).clamp(least, most);
-            if let Some((prior, means)) = RatePrior::learned(self.frame(), self.in_view()) {
-                (shared.prior, shared.means) = (Some(prior), means);
+            if let Some(Learned { prior, cells, means }) = RatePrior::learned(self.frame(), self.in_view()) {
+                shared.prior = Some(prior);
+                shared.means.stored_values_mut().for_each(|mean| *mean = 0.0);
+                cells.iter().zip(means).for_each(|(index, mean)| shared.means[*index as usize] = mean);
             }
         }
         self.shared = Some(shared);
@@ -60,14 +62,14 @@ impl CellMap {
 
     /// What was in view of every traversable cell.
     fn in_view(&self) -> InView {
-        let cells = self.records.len();
-        let is_traversable = (0..cells).map(|index| self.is_traversable(index)).collect();
-        let mut seen = InView { is_traversable, cycles: vec![0.0; cells], times: vec![0.0; cells] };
-        for index in (0..cells).filter(|&index| seen.is_traversable[index]) {
-            let record = &self.records[index];
+        let known = self.states.cells().other_than(CellState::Unknown).map(|(index, _)| index);
+        let mut seen = InView::default();
+        for index in known.filter(|index| self.is_traversable(*index)) {
+            let record = self.records.get(index);
             let open = self.last_seen(index) - self.times.at(record.since);
-            seen.cycles[index] = record.in_view[0].max(record.in_view[1]) as f32;
-            seen.times[index] = (record.watched.iter().sum::<f64>() + open) as f32;
+            seen.cells.push(index as u32);
+            seen.cycles.push(record.in_view[0].max(record.in_view[1]) as f32);
+            seen.times.push((record.watched.iter().sum::<f64>() + open) as f32);
         }
         seen
     }

@@ -15,11 +15,11 @@ impl CellMap {
     /// after a gap.
     pub fn set_state(&mut self, index: usize, after: CellState, since: ReadingIndex, in_view: bool) {
         let before = self.state(index);
-        let is_event = before != CellState::Unknown && self.records[index].is_known();
+        let is_event = before != CellState::Unknown && self.records.is_known(index);
         if !self.is_seen_now(index) && !self.is_in_view(index) {
             self.end_gap(index, after);
             self.mark(index);
-        } else if is_event && let Some(gaps) = self.gaps.get_mut(index) {
+        } else if is_event && let Some(gaps) = self.gaps.changed_mut(index) {
             gaps.histogram.correct_last(since, after == CellState::Blocked);
         }
         if is_event {
@@ -33,17 +33,14 @@ impl CellMap {
         }
         self.observe(index);
         self.weigh_gaps(index);
-        self.update_candidate(index);
-        for neighbor in self.frame().beside(index) {
-            self.update_candidate(neighbor);
-        }
+        self.update_candidates_around(index);
     }
 
     /// Records the time in the state that the cell leaves, and the event.
     fn record_event(&mut self, index: usize, before: CellState, since: ReadingIndex, in_view: bool) {
         let last = self.last_reading(index);
         let period = self.times.period(last);
-        let record = &mut self.records[index];
+        let mut record = self.records.get(index);
         if record.slot().is_none() {
             record.set_slot(self.changed.len() as Slot);
             self.changed.push(index as u32);
@@ -61,23 +58,29 @@ impl CellMap {
         }
         record.set_whole(in_view);
         record.since = until;
-        if in_view { record.in_view[event] += 1 } else { record.after_gap[event] += 1 }
+        if in_view {
+            record.in_view[event] += 1
+        } else {
+            record.after_gap[event] += 1
+        }
+        self.records.set(index, record);
     }
 
     /// Whether the cell still has the state of its first observation (not the state of a prior map) and was in view
     /// for less than `confirm` (in the time unit of the readings). A corrected state counts as confirmed: otherwise
     /// every change of a cell that changes faster than `confirm` would be a correction.
     pub fn is_unconfirmed(&self, index: usize, confirm: f64) -> bool {
-        let (record, seen) = (&self.records[index], self.statistics(index));
-        record.first > PRIOR && !record.was_corrected() && seen.events() == 0 && seen.observed() < confirm
+        let record = self.records.get(index);
+        let may_be = record.first > PRIOR && !record.was_corrected() && !self.has_changed(index);
+        may_be && self.statistics(index).observed() < confirm
     }
 
     /// Corrects a wrong first observation: nothing changed; the state of the cell was `after` from the start.
     pub fn correct(&mut self, index: usize, after: CellState) {
         let now = self.reading();
         self.observe(index);
-        self.records[index] = Record::corrected(now);
-        if let Some(gaps) = self.gaps.get_mut(index) {
+        self.records.set(index, Record::corrected(now));
+        if let Some(gaps) = self.gaps.changed_mut(index) {
             *gaps = CellGaps::default();
         }
         let (cell, before) = (self.frame().cell(index), self.state(index));

@@ -1,6 +1,7 @@
 //! The gaps in the view of one cell, in bounded memory.
 
 use crate::change::reading_times::ReadingIndex;
+use smallvec::SmallVec;
 
 /// Lengths outside of this range are limited to its ends, so that a histogram stays small: 2^-20 to 2^40 units of
 /// time.
@@ -23,9 +24,9 @@ pub struct GapBin {
 /// gaps of two steps and gaps of three steps have separate bins.
 const DIGITS: u32 = 1;
 
-/// The number of bins that are allocated for the first gap of a cell, and whenever these are full.
-const FIRST_BINS: usize = 16;
-const MORE_BINS: usize = 4;
+/// The number of bins that are allocated for the second bin of a cell, and whenever these are full: many cells have gaps of one
+/// length only.
+const MORE_BINS: usize = 3;
 
 impl GapBin {
     /// Whether the cell was blocked before these gaps.
@@ -45,7 +46,7 @@ impl GapBin {
 }
 
 /// A gap in the view of a cell.
-#[derive(Clone, Copy, Debug, serde::Deserialize, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
 pub(in crate::change) struct Gap {
     /// The last reading before the gap, and the first after it.
     pub(in crate::change) start: ReadingIndex,
@@ -67,24 +68,41 @@ impl Gap {
 }
 
 /// All gaps of one cell, by length and by the states before and after.
-#[derive(Clone, Debug, Default, serde::Deserialize, serde::Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, serde::Deserialize, serde::Serialize)]
+#[serde(from = "Saved", into = "Saved")]
 pub struct GapHistogram {
     /// In the order of their keys.
-    bins: Vec<GapBin>,
+    bins: SmallVec<[GapBin; 1]>,
     /// The last gap: later readings can correct its states.
     last: Option<Gap>,
-    count: u32,
+}
+
+/// The layout in a state file: the bins, the last gap, and the number of gaps.
+type Saved = (Vec<GapBin>, Option<Gap>, u32);
+
+impl From<Saved> for GapHistogram {
+    fn from((bins, last, _): Saved) -> Self {
+        Self { bins: SmallVec::from_slice(&bins), last }
+    }
+}
+
+impl From<GapHistogram> for Saved {
+    fn from(gaps: GapHistogram) -> Self {
+        let count = gaps.count();
+        (gaps.bins.into_vec(), gaps.last, count)
+    }
 }
 
 impl GapHistogram {
-    /// The memory of the bins of a cell after its first gap, bytes.
-    pub(in crate::change) const FIRST_BYTES: usize = FIRST_BINS * size_of::<GapBin>();
+    /// The memory that the bins own elsewhere, bytes: with that for the allocation itself.
+    pub(in crate::change) fn owned_bytes(&self) -> usize {
+        if self.bins.spilled() { self.bins.capacity() * size_of::<GapBin>() + size_of::<usize>() } else { 0 }
+    }
 
     /// Adds a gap.
     pub(in crate::change) fn add(&mut self, gap: Gap) {
         self.put(&gap);
         self.last = Some(gap);
-        self.count += 1;
     }
 
     /// The cell has had another state, `after`, since the reading `since`. If `since` is before the end of the last
@@ -112,7 +130,7 @@ impl GapHistogram {
 
     /// The number of gaps.
     pub fn count(&self) -> u32 {
-        self.count
+        self.bins.iter().map(|bin| bin.count).sum()
     }
 
     /// The bins that hold a gap, by ascending length.
@@ -128,10 +146,8 @@ impl GapHistogram {
                 self.bins[at].total += gap.length;
             }
             Err(at) => {
-                // Most cells get as many bins as this in some hours. With all of them at once, the memory of a long run
-                // is that of a short one.
                 if self.bins.len() == self.bins.capacity() {
-                    self.bins.reserve_exact(if self.bins.is_empty() { FIRST_BINS } else { MORE_BINS });
+                    self.bins.reserve_exact(MORE_BINS);
                 }
                 self.bins.insert(at, GapBin { key, count: 1, total: gap.length });
             }

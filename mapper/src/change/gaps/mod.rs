@@ -84,7 +84,7 @@ pub(crate) struct Belief {
 }
 
 /// The gaps of one cell, and their weights.
-#[derive(Clone, Debug, Default, serde::Deserialize, serde::Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, serde::Deserialize, serde::Serialize)]
 pub(super) struct CellGaps {
     pub(super) histogram: GapHistogram,
     /// Only of a cell that changed.
@@ -92,7 +92,7 @@ pub(super) struct CellGaps {
 }
 
 /// The weights of the gaps when they were last weighed, and when that was.
-#[derive(Clone, Debug, Default, serde::Deserialize, serde::Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, serde::Deserialize, serde::Serialize)]
 struct Weighed {
     weights: GapWeights,
     /// The number of gaps and events, and the time in view, at which the gaps are weighed again.

@@ -199,11 +199,11 @@ impl SurfaceGrid {
                     let in_view = cells.is_in_view(index);
                     self.surfaces[index] = Surface {
                         hit_at: cells.reading(),
-                        evidence: self.settings.misses_to_free_fresh as i8,
                         came: true,
                         doubted_since: cells.reading(),
                         ..Surface::default()
                     };
+                    self.evidence[index] = self.settings.misses_to_free_fresh as i8;
                     self.remember(index, center, cells);
                     cells.set_state(index, CellState::Blocked, cells.reading(), in_view);
                 }

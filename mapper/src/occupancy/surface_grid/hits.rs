@@ -21,7 +21,10 @@ impl SurfaceGrid {
         let frame = cells.frame();
         let depth_m = self.settings.surface_depth_m / 4.0;
         let ends = self.segmentation.ends.iter().zip(&scan.directions);
-        let ahead = ends.map(|(end, direction)| frame.index(frame.cell_at(&((*end)? + direction * depth_m))));
+        let ahead = ends.map(|(end, direction)| {
+            let index = frame.index(frame.cell_at(&((*end)? + direction * depth_m)));
+            index.filter(|index| cells.covers(*index))
+        });
         self.ahead.clear();
         self.ahead.extend(ahead);
         let found = || self.ahead.iter().flatten().copied();
@@ -33,7 +36,9 @@ impl SurfaceGrid {
     pub(super) fn hit(&mut self, beam: usize, scan: &ProjectedScan, cells: &mut CellMap) {
         let Some(end) = self.segmentation.ends[beam] else { return };
         let frame = *cells.frame();
-        let index_at = |point: Point2<f64>| frame.index(frame.cell_at(&point));
+        let index_at = |point: Point2<f64>, cells: &CellMap| {
+            frame.index(frame.cell_at(&point)).filter(|index| cells.covers(*index))
+        };
         // Most beams end on known walls: in a cell with a settled surface, or right before it. Then no normal is
         // needed.
         let ahead = end + scan.directions[beam] * (self.settings.surface_depth_m / 4.0);
@@ -48,10 +53,10 @@ impl SurfaceGrid {
         let point = hit_point(beam, &end, self.settings.surface_depth_m, &self.segmentation, scan);
         // A surface in a cell is an observation of the cell, even if the hit counts for the cell behind: a cell
         // that an obstacle enters stays in view.
-        if let Some(index) = index_at(end).filter(|&index| cells.state(index) != CellState::Unknown) {
+        if let Some(index) = index_at(end, cells).filter(|&index| cells.state(index) != CellState::Unknown) {
             cells.observe(index);
         }
-        let Some(index) = index_at(point) else { return };
+        let Some(index) = index_at(point, cells) else { return };
         if cells.state(index) == CellState::Blocked {
             self.support(index, Some(point), cells);
         } else {
@@ -140,7 +145,7 @@ impl SurfaceGrid {
         if surface.hit_at != now {
             surface.hit_at = now;
             surface.hits = surface.hits.saturating_add(1);
-            surface.evidence = self.settings.misses_to_free_after(surface.hits);
+            self.evidence[index] = self.settings.misses_to_free_after(surface.hits);
             cells.observe(index);
         }
         if let Some(point) = point {
@@ -162,6 +167,7 @@ impl SurfaceGrid {
         }
         cells_along(&frame, &from, &to, |index| match cells.state(index) {
             CellState::Blocked => self.support(index, None, cells),
+            CellState::Unknown if !cells.covers(index) => {}
             CellState::Unknown => self.surfaces[index].surface_at = cells.reading(),
             CellState::Free => cells.observe(index),
         });
@@ -174,14 +180,15 @@ impl SurfaceGrid {
             let in_view = cells.is_in_view(index);
             let surface = &mut self.surfaces[index];
             surface.hit_at = now;
-            if surface.evidence <= 0 {
-                surface.evidence = 0;
+            let evidence = &mut self.evidence[index];
+            if *evidence <= 0 {
+                *evidence = 0;
                 (surface.doubted_since, surface.doubted_in_view) = (now, in_view);
                 if cells.state(index) == CellState::Free {
                     surface.hits = 0; // In an unknown cell hits accumulate, with or without misses between them.
                 }
             }
-            surface.evidence += 1;
+            *evidence += 1;
             surface.hits = surface.hits.saturating_add(1);
             cells.set_settled(index, false);
             if cells.state(index) == CellState::Free {
@@ -190,9 +197,9 @@ impl SurfaceGrid {
         }
         self.remember(index, point, cells);
         if self.surfaces[index].hits >= hits_to_block {
+            self.evidence[index] = self.settings.misses_to_free_fresh as i8;
             let is_wrong = self.is_unconfirmed(index, cells);
             let surface = &mut self.surfaces[index];
-            surface.evidence = self.settings.misses_to_free_fresh as i8;
             if is_wrong {
                 cells.correct(index, CellState::Blocked);
             } else {

@@ -40,10 +40,12 @@ impl SurfaceGrid {
         match cells.state(index) {
             CellState::Free => {
                 cells.observe(index);
-                let surface = &mut self.surfaces[index];
-                surface.evidence = (surface.evidence - 1).max(0);
-                surface.hits = surface.evidence as u16;
-                cells.set_settled(index, surface.evidence == 0);
+                let evidence = (self.evidence[index] - 1).max(0);
+                self.evidence.set(index, evidence);
+                if let Some(surface) = self.surfaces.stored_mut(index) {
+                    surface.hits = evidence as u16;
+                }
+                cells.set_settled(index, evidence == 0);
             }
             CellState::Unknown if self.surfaces[index].surface_at != now => {
                 let misses = if self.is_beside_surface(index, cells.frame()) {
@@ -51,10 +53,10 @@ impl SurfaceGrid {
                 } else {
                     self.settings.misses_to_discover
                 };
-                let surface = &mut self.surfaces[index];
-                surface.evidence = surface.evidence.min(0) - 1;
-                if surface.evidence <= -(misses as i8) {
-                    surface.evidence = 0;
+                let evidence = &mut self.evidence[index];
+                *evidence = (*evidence).min(0) - 1;
+                if *evidence <= -(misses as i8) {
+                    *evidence = 0;
                     cells.set_settled(index, true);
                     cells.set_state(index, CellState::Free, now, false);
                 }
@@ -66,8 +68,10 @@ impl SurfaceGrid {
                 if surface.doubted_since <= surface.hit_at {
                     (surface.doubted_since, surface.doubted_in_view) = (now, in_view);
                 }
-                surface.evidence -= 1;
-                if surface.evidence <= 0 {
+                let evidence = &mut self.evidence[index];
+                *evidence -= 1;
+                if *evidence <= 0 {
+                    *evidence = 0;
                     let Surface { doubted_since, doubted_in_view, .. } = std::mem::take(surface);
                     cells.set_settled(index, true);
                     if self.is_unconfirmed(index, cells) {

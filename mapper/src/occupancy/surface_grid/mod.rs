@@ -25,6 +25,7 @@
 mod bodies;
 mod hits;
 mod misses;
+mod saved;
 mod settings;
 
 use super::OccupancyModel;
@@ -34,7 +35,7 @@ use super::segmentation::Segmentation;
 use crate::change::{CellMap, ReadingIndex};
 use crate::{Growth, MapperSettings};
 use bodies::{Body, NewHit};
-use interfaces::{CellState, Values, runs};
+use interfaces::{CellState, SparseCells, Values, cell_runs};
 use nalgebra::Point2;
 pub use settings::SurfaceGridSettings;
 
@@ -44,15 +45,12 @@ const SURFACE_MEMORY: u16 = 32;
 const MIN_CONFIRMING: f64 = 5.0;
 
 /// The hits in a cell.
-#[derive(Clone, Copy, Debug, Default, serde::Deserialize, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Surface {
     /// The mean of the points that were hit, relative to the lower left corner of the grid, m.
     point_m: [f32; 2],
     /// The number of scans with a hit in this cell since the cell was last free.
     hits: u16,
-    /// For an unknown or free cell: the number of consecutive hits (above 0) or misses (below 0). For a blocked
-    /// cell: the number of misses left until the cell becomes free.
-    evidence: i8,
     /// The reading of the last hit.
     hit_at: ReadingIndex,
     /// The last reading in which a surface between two hits went through the cell.
@@ -68,7 +66,11 @@ struct Surface {
 #[derive(Clone, Debug)]
 pub(super) struct SurfaceGrid {
     settings: SurfaceGridSettings,
-    surfaces: Vec<Surface>,
+    surfaces: SparseCells<Surface>,
+    /// For an unknown or free cell: the number of consecutive hits (above 0) or misses (below 0). For a blocked
+    /// cell: the number of misses left until the cell becomes free. Apart from the surfaces, because every cell that was seen has
+    /// evidence, and most have no surface.
+    evidence: SparseCells<i8>,
     footprint: Footprint,
     segmentation: Segmentation,
     /// Scratch memory: for each beam the cell right behind its hit, see [`Self::find_ahead`].
@@ -83,29 +85,24 @@ pub(super) struct SurfaceGrid {
 }
 
 impl SurfaceGrid {
-    /// The memory of the model, bytes per cell.
-    pub(super) const BYTES_PER_CELL: usize = size_of::<Surface>();
-
     pub(super) fn new(settings: SurfaceGridSettings, cells: &mut CellMap) -> Self {
-        for index in 0..cells.frame().len() {
-            cells.set_settled(index, cells.state(index) == CellState::Free);
-        }
-        let frame = cells.frame();
-        let surface = |(index, &state): (usize, &CellState)| match state {
-            CellState::Blocked => {
+        let frame = *cells.frame();
+        let mut surfaces = SparseCells::new(frame.width(), frame.height(), Surface::default());
+        let mut evidence = SparseCells::new(frame.width(), frame.height(), 0);
+        let known = cells.states().cells().other_than(CellState::Unknown);
+        let known: Vec<(usize, CellState)> = known.map(|(index, state)| (index, *state)).collect();
+        for (index, state) in known {
+            cells.set_settled(index, state == CellState::Free);
+            if state == CellState::Blocked {
                 let center = frame.center(frame.cell(index)) - frame.origin();
-                Surface {
-                    point_m: [center.x as f32, center.y as f32],
-                    hits: settings.hits_to_stand,
-                    evidence: settings.misses_to_free as i8,
-                    ..Surface::default()
-                }
+                let point_m = [center.x as f32, center.y as f32];
+                surfaces[index] = Surface { point_m, hits: settings.hits_to_stand, ..Surface::default() };
+                evidence[index] = settings.misses_to_free as i8;
             }
-            _ => Surface::default(),
-        };
-        let states = cells.states().cells();
+        }
         Self {
-            surfaces: states.iter().enumerate().map(surface).collect(),
+            surfaces,
+            evidence,
             settings,
             footprint: Footprint::default(),
             segmentation: Segmentation::default(),
@@ -138,17 +135,22 @@ impl OccupancyModel for SurfaceGrid {
     }
 
     fn values(&mut self) -> Values<'_> {
-        vec![runs(&mut self.surfaces)]
+        vec![cell_runs(self.saved(), usize::MAX)]
+    }
+
+    fn bytes(&self) -> usize {
+        self.surfaces.bytes() + self.evidence.bytes()
     }
 
     fn grow(&mut self, growth: &Growth, settings: &MapperSettings) {
         self.settings = settings.steady.clone();
         let shift_m = growth.shift_m();
-        for surface in self.surfaces.iter_mut().filter(|surface| surface.point_m != [0.0; 2]) {
+        for surface in self.surfaces.stored_values_mut().filter(|surface| surface.point_m != [0.0; 2]) {
             for (at, shift_m) in surface.point_m.iter_mut().zip(shift_m.iter()) {
                 *at = (f64::from(*at) + shift_m) as f32;
             }
         }
-        growth.cells(&mut self.surfaces, Surface::default());
+        growth.sparse(&mut self.surfaces);
+        growth.sparse(&mut self.evidence);
     }
 }

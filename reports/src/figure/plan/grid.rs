@@ -58,7 +58,8 @@ pub(super) fn draw<DB: DrawingBackend>(
         let thin = pen.line(GRID, 1);
         upright.chain(level).try_for_each(|line| sheet.draw(&PathElement::new(line, thin)).map_err(why))?;
     }
-    for (row, cells) in world.walls.cells().chunks(columns).enumerate() {
+    for (row, cells) in world.walls.rows().enumerate() {
+        let cells: Vec<bool> = cells.copied().collect();
         let mut end = 0;
         for run in cells.chunk_by(|a, b| a == b) {
             end += run.len();

@@ -146,14 +146,14 @@ impl<'a> Plan<'a> {
         [2.0 * self.margin + self.scale * self.size.x, 2.0 * self.margin + self.scale * self.size.y + below]
     }
 
-    fn cells(&self, shown: Shown) -> Cells<'a> {
+    fn cells(&self, shown: Shown) -> Cells {
         let layer = if shown == Shown::Places { Layer::Occupancy } else { Layer::Interval };
         let mut classes = layer.classes(self.mapper, TimeUnit::Second);
         let mut colors: Vec<palette::Rgb> = (0..CHANGED).map(|class| layer.color(class)).collect();
         colors.push(palette::MOVING);
         if shown == Shown::Places {
             let changed = self.mapper.changed().filter(|index| self.mapper.rate(*index) > 0.0);
-            changed.for_each(|index| classes[index] = CHANGED);
+            changed.for_each(|index| classes.cells_mut()[index] = CHANGED);
         }
         let rank = |class: u8| match class {
             ..=UNKNOWN => 0,
@@ -161,7 +161,7 @@ impl<'a> Plan<'a> {
             BLOCKED => 2,
             class => u8::MAX - class, // short intervals first
         };
-        Cells { frame: self.mapper.frame(), classes, colors, rank, outside: UNKNOWN }
+        Cells { classes, colors, rank, outside: UNKNOWN }
     }
 
     /// The cells as an element of a drawing.

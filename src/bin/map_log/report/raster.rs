@@ -2,7 +2,7 @@
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use interfaces::GridFrame;
+use interfaces::Grid;
 use nalgebra::Point2;
 use results::drawing::palette::Rgb;
 
@@ -10,9 +10,8 @@ use results::drawing::palette::Rgb;
 const MAX_SAMPLES: usize = 6;
 
 /// A class for every cell of a map, the color of each class, and which class is shown where several meet in one pixel.
-pub(super) struct Cells<'a> {
-    pub(super) frame: &'a GridFrame,
-    pub(super) classes: Vec<u8>,
+pub(super) struct Cells {
+    pub(super) classes: Grid<u8>,
     pub(super) colors: Vec<Rgb>,
     /// The class with the highest rank is shown.
     pub(super) rank: fn(u8) -> u8,
@@ -20,7 +19,7 @@ pub(super) struct Cells<'a> {
     pub(super) outside: u8,
 }
 
-impl Cells<'_> {
+impl Cells {
     /// The picture with this number of pixels, as a PNG file in a `data:` address. `at` gives the point of the map, m, at a
     /// position in pixels from the upper left; `pixel_m`: the side of a pixel.
     pub(super) fn address(
@@ -29,12 +28,11 @@ impl Cells<'_> {
         pixel_m: f64,
         at: impl Fn(f64, f64) -> Point2<f64>,
     ) -> String {
-        let samples = (1.5 * pixel_m / self.frame.resolution_m()).ceil().max(1.0) as usize;
+        let samples = (1.5 * pixel_m / self.classes.frame().resolution_m()).ceil().max(1.0) as usize;
         let samples = samples.min(MAX_SAMPLES);
         let offsets: Vec<f64> = (0..samples).map(|sample| (sample as f64 + 0.5) / samples as f64).collect();
         let class_at = |x: f64, y: f64| {
-            let index = self.frame.index(self.frame.cell_at(&at(x, y)));
-            index.map_or(self.outside, |index| self.classes[index])
+            self.classes.get(self.classes.frame().cell_at(&at(x, y))).copied().unwrap_or(self.outside)
         };
         let pixel = |x: u32, y: u32| {
             let samples = offsets.iter().flat_map(|dy| offsets.iter().map(move |dx| (dx, dy)));

@@ -1,5 +1,6 @@
 //! What the curious robot sees: the field of view of a laser, or cells around the robot.
 
+use super::coarse::Coarse;
 use super::maps::{Picture, images};
 use super::{Tracks, WORLD, class, color, line, order, position, strips};
 use crate::outline::field_of_view;
@@ -57,8 +58,9 @@ fn frame(sight: Sight, map: &GridFrame) -> GridFrame {
     let cell_m = map.resolution_m();
     let frame = match sight {
         Sight::Laser(_) => {
+            let map = Coarse::new(map).frame;
             let (width, height) = (map.width().div_ceil(2), map.height().div_ceil(2));
-            GridFrame::new(map.origin(), 2.0 * cell_m, width, height)
+            GridFrame::new(map.origin(), 2.0 * map.resolution_m(), width, height)
         }
         Sight::Cells { radius, .. } => {
             let side = 2 * radius as usize + 1;

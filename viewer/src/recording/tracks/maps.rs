@@ -1,11 +1,11 @@
 //! The layers of the map, each with its color bar.
 
+use super::coarse::Coarse;
 use super::{Tracks, WORLD, class, color, labels, order};
-use crate::layers::{Layer, UNKNOWN};
+use crate::layers::Layer;
 use crate::scene::{TimeUnit, extent};
 use crate::view::View;
 use interfaces::GridFrame;
-use mapper::Growth;
 use nalgebra::{Point2, Vector2};
 use rerun::components::ImageBuffer;
 use rerun::{
@@ -28,24 +28,19 @@ pub(super) fn add(tracks: &mut Tracks) -> RecordingStreamResult<()> {
         let classes = layer.legend(unit).into_iter();
         let classes = classes.map(|(id, meaning)| class(id, &meaning, color(layer.color(id), 255)));
         tracks.always(&map(layer), &AnnotationContext::new(classes))?;
-        Picture::of_frame(frame).log(tracks, &cells, order::MAP, 1.0)?;
+        let coarse = Coarse::new(frame);
+        Picture::of_frame(&coarse.frame).log(tracks, &cells, order::MAP, 1.0)?;
         color_bar(tracks, layer, frame)?;
         let [seconds, steps] = if layer == Layer::Occupancy { [1.0, 1.0] } else { [10.0, 20.0] };
-        let when = tracks.images(frame, seconds, steps);
-        tracks.add(cells, when, classes_of(layer, unit, *frame), images);
+        let when = tracks.images(&coarse.frame, seconds, steps);
+        tracks.add(cells, when, classes_of(layer, unit, coarse), images);
     }
     Ok(())
 }
 
-/// The classes of all cells of `frame`; the map can still be smaller.
-fn classes_of(layer: Layer, unit: TimeUnit, frame: GridFrame) -> impl FnMut(&View) -> Vec<Vec<u8>> {
-    move |view| {
-        let mut classes = layer.classes(view.mapper, unit);
-        if let Some(growth) = Growth::new(*view.mapper.frame(), frame) {
-            growth.cells(&mut classes, UNKNOWN);
-        }
-        vec![classes]
-    }
+/// The classes of all cells of an image; the map can still be smaller.
+fn classes_of(layer: Layer, unit: TimeUnit, coarse: Coarse) -> impl FnMut(&View) -> Vec<Vec<u8>> {
+    move |view| vec![coarse.classes(&layer.classes(view.mapper, unit))]
 }
 
 /// Logs the color bar below a map, if the layer has one.

@@ -3,6 +3,7 @@
 //! To add an entity: write a function that logs the style with `Tracks::always` and calls `Tracks::add`, and add a
 //! line to [`start`].
 
+mod coarse;
 mod curves;
 mod estimate;
 mod field_of_view;

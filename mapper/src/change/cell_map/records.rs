@@ -1,0 +1,163 @@
+//! The records of all cells. That of a cell that never changed is short.
+
+use super::record::{Marks, Record};
+use super::{NEVER, ReadingIndex};
+use crate::Growth;
+use interfaces::{CellList, GridFrame, Place, SparseCells, ValueError, write_value};
+
+/// The record of a cell that was in view in one state only, or a reference to a long one.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Short {
+    first: ReadingIndex,
+    since: ReadingIndex,
+    /// The time in view in the only state.
+    watched: f64,
+    /// The gaps in the only state, or the number of the long record.
+    count: u32,
+    marks: Marks,
+    kind: Kind,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+enum Kind {
+    #[default]
+    Free,
+    Blocked,
+    Long,
+}
+
+/// The memory of the record of a cell that never changed, bytes.
+pub(super) const BYTES_PER_CELL: usize = size_of::<Short>();
+
+/// One record per cell.
+#[derive(Clone, Debug)]
+pub(super) struct Records {
+    short: SparseCells<Short>,
+    /// Those of cells that changed.
+    long: Vec<Record>,
+}
+
+impl Records {
+    pub(super) fn new(frame: &GridFrame) -> Self {
+        Self { short: SparseCells::new(frame.width(), frame.height(), Short::default()), long: Vec::new() }
+    }
+
+    /// The record of a cell.
+    #[inline]
+    pub(super) fn get(&self, index: usize) -> Record {
+        self.at(self.short.place(index))
+    }
+
+    /// The record at a place.
+    #[inline]
+    pub(super) fn at(&self, place: Place) -> Record {
+        let Short { first, since, watched, count, marks, kind } = *self.short.at_place(place);
+        let record = Record { first, since, marks, ..Record::default() };
+        match kind {
+            Kind::Free => Record { watched: [watched, 0.0], gaps: [count, 0], ..record },
+            Kind::Blocked => Record { watched: [0.0, watched], gaps: [0, count], ..record },
+            Kind::Long => self.long[count as usize],
+        }
+    }
+
+    /// [`Record::since`] of a cell.
+    #[inline]
+    pub(super) fn since(&self, index: usize) -> ReadingIndex {
+        self.short[index].since
+    }
+
+    /// Whether the state of a cell is known.
+    #[inline]
+    pub(super) fn is_known(&self, index: usize) -> bool {
+        self.short[index].first != NEVER
+    }
+
+    /// Replaces the record of a cell.
+    pub(super) fn set(&mut self, index: usize, record: Record) {
+        let Record { first, since, watched, gaps, marks, .. } = record;
+        let short = Short { first, since, marks, ..Short::default() };
+        let present = self.short[index];
+        if present.kind == Kind::Long {
+            self.long[present.count as usize] = record;
+            self.short[index] = Short { count: present.count, kind: Kind::Long, ..short };
+        } else if let Some(state) = record.only_state() {
+            let kind = if state == 0 { Kind::Free } else { Kind::Blocked };
+            self.short.set(index, Short { watched: watched[state], count: gaps[state], kind, ..short });
+        } else {
+            self.short[index] = Short { count: self.long.len() as u32, kind: Kind::Long, ..short };
+            self.long.push(record);
+        }
+    }
+
+    /// The readings to which the records refer.
+    pub(super) fn readings(&self) -> impl Iterator<Item = ReadingIndex> {
+        self.short.stored_values().flat_map(|record| [record.first, record.since])
+    }
+
+    /// Moves all cells into a larger map.
+    pub(super) fn grow(&mut self, growth: &Growth) {
+        growth.sparse(&mut self.short);
+    }
+
+    /// The memory of all records, bytes.
+    pub(super) fn bytes(&self) -> usize {
+        self.short.bytes() + self.long.capacity() * size_of::<Record>()
+    }
+}
+
+impl CellList for &mut Records {
+    type Item = Record;
+
+    fn len(&self) -> usize {
+        self.short.len()
+    }
+
+    fn write(&self, index: usize, bytes: &mut Vec<u8>) -> Result<(), ValueError> {
+        write_value(&self.get(index), bytes)
+    }
+
+    fn alike(&self, index: usize) -> usize {
+        self.short.alike(index)
+    }
+
+    fn set(&mut self, index: usize, value: &Record) {
+        Records::set(self, index, *value);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Point2;
+
+    #[test]
+    fn every_record_comes_back() {
+        let frame = GridFrame::new(Point2::origin(), 0.05, 20, 20).unwrap();
+        let mut records = Records::new(&frame);
+        let seen = Record { watched: [0.0, 3.5], gaps: [0, 7], ..Record::since(4) };
+        let both = Record { watched: [1.0, 3.5], ..Record::since(4) };
+        let negative = Record { watched: [-0.0, 0.0], gaps: [0, 1], ..Record::since(2) };
+        let event = Record { in_view: [1, 0], ..Record::since(4) };
+        let mut changed = Record { watched: [1.0, 0.0], ..Record::corrected(9) };
+        changed.set_slot(0);
+        changed.set_whole(true);
+        let all =
+            [Record::default(), Record::since(3), Record::corrected(5), seen, both, negative, event, changed];
+        for (index, record) in all.into_iter().enumerate() {
+            records.set(index * 40, record);
+        }
+        for (index, record) in all.into_iter().enumerate() {
+            let found = records.get(index * 40);
+            assert_eq!(found, record);
+            assert_eq!(found.watched.map(f64::to_bits), record.watched.map(f64::to_bits));
+            assert_eq!(
+                (records.since(index * 40), records.is_known(index * 40)),
+                (record.since, record.is_known())
+            );
+        }
+        // A long record stays long, and shows the new values.
+        records.set(7 * 40, Record::corrected(11));
+        assert_eq!((records.get(7 * 40), records.since(7 * 40)), (Record::corrected(11), 11));
+        assert_eq!(size_of::<Short>(), 24);
+    }
+}

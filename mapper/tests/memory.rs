@@ -1,0 +1,116 @@
+//! The memory of the map of a large place, as the operating system counts it. One test, in a process of its own.
+
+use interfaces::{GridFrame, LaserReading, Scan, Twist};
+use mapper::{EstimatorChoice, Mapper, MapperSettings};
+use nalgebra::{Isometry2, Point2};
+use std::f64::consts::TAU;
+
+/// The corners of two rooms, m: in the outline of 1 km², almost nothing else is seen.
+const ROOMS_M: [f64; 2] = [1.0, 959.0];
+const SIDE_M: f64 = 40.0;
+const SCANS: u32 = 30;
+
+/// A reading in an empty square room; `offset` is the position from the middle of the room, m.
+fn reading(room_m: f64, offset: [f64; 2], time_s: f64) -> LaserReading {
+    const BEAMS: usize = 3000;
+    let half = SIDE_M / 2.0;
+    let range_m = |beam: usize| {
+        let angle = TAU * beam as f64 / BEAMS as f64;
+        let (sin, cos) = (libm::sin(angle), libm::cos(angle));
+        let along =
+            |at: f64, step: f64| if step == 0.0 { f64::INFINITY } else { (half * step.signum() - at) / step };
+        along(offset[0], cos).min(along(offset[1], sin)) as f32
+    };
+    let middle = room_m + half;
+    LaserReading {
+        time_s,
+        pose: interfaces::pose(middle + offset[0], middle + offset[1], 0.0),
+        mount: Isometry2::identity(),
+        scan: Scan {
+            angle_min_rad: 0.0,
+            angle_increment_rad: TAU / BEAMS as f64,
+            range_min_m: 0.1,
+            range_max_m: 60.0,
+            sweep_s: 0.0,
+            ranges_m: (0..BEAMS).map(range_m).collect(),
+        },
+        twist: Twist::STOP,
+        velocities: Vec::new(),
+    }
+}
+
+/// The resident memory of this process, bytes; `None` where the operating system does not say it.
+fn resident() -> Option<usize> {
+    let pages = std::fs::read_to_string("/proc/self/statm").ok()?;
+    Some(pages.split(' ').nth(1)?.parse::<usize>().ok()? * 4096)
+}
+
+/// One after the other: the memory is that of the process.
+#[test]
+fn a_large_place_takes_the_memory_of_what_was_seen() {
+    two_rooms_a_kilometer_apart_take_the_memory_of_two_rooms();
+    a_full_map_goes_on_where_it_is();
+}
+
+fn two_rooms_a_kilometer_apart_take_the_memory_of_two_rooms() {
+    let before = resident();
+    let frame = GridFrame::new(Point2::origin(), 0.05, 20_000, 20_000).unwrap();
+    let settings = MapperSettings {
+        estimator: EstimatorChoice::named("shared-prior").unwrap(),
+        ..MapperSettings::default()
+    };
+    let mut mapper = Mapper::new(&settings, frame).unwrap();
+    let outline = mapper.bytes();
+    assert!(outline < 80 << 20, "the outline alone takes {outline} bytes");
+    let mut time_s = 0.0;
+    // Every cell is seen, is out of view while the robot is in the other room, and is seen again.
+    for room_m in ROOMS_M.repeat(2) {
+        for scan in 0..SCANS {
+            time_s += 0.5;
+            let angle = TAU * f64::from(scan) / f64::from(SCANS);
+            let offset = [5.0 * libm::cos(angle), 5.0 * libm::sin(angle)];
+            mapper.update(&reading(room_m, offset, time_s)).unwrap();
+        }
+    }
+    let (seen, changed) = (mapper.seen().count(), mapper.changed().count());
+    assert!(seen > 1_250_000 && changed == 0, "{seen} cells seen, {changed} changed");
+    let per_cell = (mapper.bytes() - outline) as f64 / seen as f64;
+    println!("{per_cell:.1} bytes per cell by Mapper::bytes");
+    assert!(per_cell <= Mapper::BYTES_PER_SEEN_CELL as f64, "{per_cell} bytes per cell");
+    if let Some((before, after)) = before.zip(resident()) {
+        let (resident, counted) = (after - before, mapper.bytes());
+        println!(
+            "{} MB resident, {} MB by Mapper::bytes with the outline",
+            resident / 1_000_000,
+            counted / 1_000_000
+        );
+        assert!(
+            resident as f64 <= 1.1 * counted as f64,
+            "{resident} bytes are resident, {counted} are counted"
+        );
+    }
+}
+
+fn a_full_map_goes_on_where_it_is() {
+    let frame = GridFrame::new(Point2::origin(), 0.05, 20_000, 20_000).unwrap();
+    let mut settings = MapperSettings::default();
+    let mut mapper = Mapper::new(&settings, frame).unwrap();
+    settings.max_bytes = mapper.bytes() + (20 << 20);
+    mapper = Mapper::new(&settings, frame).unwrap();
+    let see = |room_m: f64, first: u32, mapper: &mut Mapper| {
+        for scan in first..first + 10 {
+            mapper.update(&reading(room_m, [0.1 * f64::from(scan), 0.0], f64::from(scan))).unwrap();
+        }
+        mapper.seen().count()
+    };
+    let of_one = see(ROOMS_M[0], 0, &mut mapper);
+    assert!(of_one > 600_000 && mapper.is_full(), "{of_one} cells, {} bytes", mapper.bytes());
+    let full = mapper.bytes();
+    // The other room is not seen; the first one still is.
+    assert_eq!(see(ROOMS_M[1], 10, &mut mapper), of_one);
+    assert!(see(ROOMS_M[0], 20, &mut mapper) >= of_one);
+    // Its cells have a gap each now.
+    assert!(mapper.bytes() < full + 70 * of_one, "{} bytes, {full} before", mapper.bytes());
+    let index = frame.index(frame.cell_at(&Point2::new(21.0, 21.0))).unwrap();
+    assert!(mapper.is_in_view(index) && mapper.statistics(index).gaps_from_free == 1);
+}
