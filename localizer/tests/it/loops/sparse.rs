@@ -7,6 +7,17 @@ const STRIDE: usize = 20;
 
 /// A trip with a scan per meter, and a turn that the odometry misses halfway, rad.
 fn sparse_trip(corridor: &mut Corridor, rounds: f64, seed: u64, missed_rad: f64) -> Trip {
+    sparse_trip_in(&Isometry2::identity(), corridor, rounds, seed, missed_rad)
+}
+
+/// The same, with the odometry in a frame with this pose, rounded to micrometers as in a CARMEN log.
+fn sparse_trip_in(
+    frame: &Isometry2<f64>,
+    corridor: &mut Corridor,
+    rounds: f64,
+    seed: u64,
+    missed_rad: f64,
+) -> Trip {
     let start = corridor.at(0.0);
     let mut odometry = Odometry::new(start, seed);
     let mut finder = TrajectoryFinder::new(&TrajectorySettings::default()).unwrap();
@@ -20,7 +31,7 @@ fn sparse_trip(corridor: &mut Corridor, rounds: f64, seed: u64, missed_rad: f64)
         }
         if step % STRIDE == 0 {
             let mut reading = corridor.reading(step as f64 * PERIOD_S, pose);
-            reading.pose = by_odometry;
+            reading.pose = rounded(&(frame * by_odometry));
             finder.add(reading);
             truth.push(start.inv_mul(&pose));
             local.push(finder.local_pose());
@@ -28,6 +39,30 @@ fn sparse_trip(corridor: &mut Corridor, rounds: f64, seed: u64, missed_rad: f64)
     }
     let drift_m = (odometry.pose.translation.vector - corridor.at(0.0).translation.vector).norm();
     Trip { trajectory: finder.finish(), local, truth, drift_m, per_scan_ms: 0.0 }
+}
+
+fn rounded(pose: &Isometry2<f64>) -> Isometry2<f64> {
+    let round = |value: f64| (value * 1e6).round() / 1e6;
+    let at = pose.translation.vector;
+    interfaces::pose(round(at.x), round(at.y), round(interfaces::heading_rad(pose)))
+}
+
+#[test]
+fn the_heading_of_the_frame_does_not_matter() {
+    let trips = [0.0, 0.2, 0.4, 0.8].map(|heading_rad| {
+        let mut corridor = ahead(Corridor::new([15.0, 11.0], Plan::Varied, 110));
+        let frame = interfaces::pose(30.0, -20.0, heading_rad);
+        sparse_trip_in(&frame, &mut corridor, 2.2, 110, 0.0)
+    });
+    let errors_m = trips.each_ref().map(|trip| trip.report("100 m, a scan per meter, a turned frame"));
+    assert!(errors_m.iter().all(|error_m| *error_m < 0.1), "{errors_m:?}");
+    for other in &trips[1..] {
+        assert_eq!(other.trajectory.loops, trips[0].trajectory.loops);
+        for (a, b) in trips[0].trajectory.poses.iter().zip(&other.trajectory.poses) {
+            let off_m = (a.pose.translation.vector - b.pose.translation.vector).norm();
+            assert!(off_m < 0.01, "{off_m} m");
+        }
+    }
 }
 
 #[test]
