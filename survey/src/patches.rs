@@ -6,7 +6,7 @@
 use interfaces::{Cell, GridFrame};
 use std::collections::BTreeSet;
 
-/// A patch has at least this length and width, m, or this area in another form: as the legs of a person who stands.
+/// A patch has at least this length and width, m, or this area in another form: as the legs of a person.
 const PATCH_M: [f64; 2] = [0.3, 0.1];
 
 /// The cells that are connected to an area of at least 0.1 m × 0.3 m; `cells` and the result are in ascending order.

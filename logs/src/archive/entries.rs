@@ -4,7 +4,7 @@ use super::content::{Content, head};
 use crate::bytes::Input;
 use std::io::{self, Read};
 
-/// The most files that are looked at, and those whose names are told.
+/// The most files that are looked at, and the number of those that are named.
 const MAX_FILES: usize = 10_000;
 pub(super) const NAMED: usize = 5;
 
