@@ -96,7 +96,7 @@ def test_invalid_scans_are_refused_and_change_nothing(arguments, keywords, messa
 
 
 def test_invalid_settings():
-    with pytest.raises(ValueError, match="1 to 2\\^26 cells"):
+    with pytest.raises(ValueError, match="1 to 2\\^30 cells"):
         curious.Mapper(1e9, 1.0)
     with pytest.raises(ValueError, match="no estimator is called `best`"):
         curious.Mapper(1.0, 1.0, estimator="best")
