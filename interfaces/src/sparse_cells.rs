@@ -10,6 +10,8 @@ const SIDE: usize = 1 << SHIFT;
 const SHIFT: usize = 4;
 /// The number of cells of a block.
 const BLOCK: usize = SIDE * SIDE;
+/// A grid of at most this number of cells has no blocks: its values are in the order of their indices, which is faster to read.
+const SMALL: usize = 1 << 17;
 
 /// Where a cell of a grid is stored, in all lists of this grid.
 #[derive(Clone, Copy, Debug)]
@@ -22,33 +24,44 @@ pub struct Place {
 ///
 /// The grid is divided into square blocks of 16 × 16 cells. A block exists from the first time that one of its cells gets a value;
 /// all other cells have the value of [`fill`](Self::fill). Memory: 4 bytes per 256 cells of the outline, and all cells of the blocks
-/// that exist.
+/// that exist. A grid of at most 2¹⁷ cells (328 m² with cells of 0.05 m) is one block in row-major order, which always exists.
 #[derive(Clone, Debug)]
 pub struct SparseCells<T> {
     width: usize,
     height: usize,
     /// For the quotient of an index and the width: 2⁶³ / width, rounded up.
     inverse: u64,
-    /// The number of blocks beside each other.
+    /// The number of blocks beside each other; 0 for a small grid, which has no blocks.
     columns: usize,
     /// The number of each block, or 0 for a block that does not exist.
     table: Vec<u32>,
-    /// The values of all blocks. Block 0 is that of all places without a block.
+    /// The values of all blocks. Block 0 is that of all places without a block. Of a small grid: the values of all cells, and that
+    /// of [`fill`](Self::fill).
     values: Vec<T>,
 }
 
 impl<T: Clone> SparseCells<T> {
     /// The value `fill` for each cell of a grid with this width, at least 1, and height.
     pub fn new(width: usize, height: usize, fill: T) -> Self {
-        let columns = width.div_ceil(SIDE);
-        Self {
-            width,
-            height,
-            inverse: (1 << 63) / (width as u64) + 1,
-            columns,
-            table: vec![0; columns * height.div_ceil(SIDE)],
-            values: vec![fill; BLOCK],
+        Self::small_up_to(SMALL, width, height, fill)
+    }
+
+    /// The same, small up to this number of cells.
+    fn small_up_to(small: usize, width: usize, height: usize, fill: T) -> Self {
+        let (cells, inverse) = (width * height, (1 << 63) / (width as u64) + 1);
+        if cells <= small {
+            return Self {
+                width,
+                height,
+                inverse,
+                columns: 0,
+                table: vec![0],
+                values: vec![fill; cells + 1],
+            };
         }
+        let columns = width.div_ceil(SIDE);
+        let table = vec![0; columns * height.div_ceil(SIDE)];
+        Self { width, height, inverse, columns, table, values: vec![fill; BLOCK] }
     }
 
     /// The value of a cell, to be changed; `None` outside of the grid.
@@ -90,6 +103,9 @@ impl<T> SparseCells<T> {
     }
 
     fn mapped<U: Clone>(&self, mut f: impl FnMut(&T) -> U) -> Vec<U> {
+        if self.is_small() {
+            return self.values.iter().map(f).collect();
+        }
         let mut values = Vec::with_capacity(self.values.len());
         values.resize(BLOCK, f(&self.values[0]));
         values.extend(self.values[BLOCK..].iter().map(f));
@@ -109,7 +125,13 @@ impl<T> SparseCells<T> {
 
     /// The value of all cells without a block.
     pub fn fill(&self) -> &T {
-        &self.values[0]
+        &self.values[if self.is_small() { self.len() } else { 0 }]
+    }
+
+    /// Whether there are no blocks.
+    #[inline(always)]
+    fn is_small(&self) -> bool {
+        self.columns == 0
     }
 
     /// The memory of all values, bytes, without what they own elsewhere.
@@ -133,6 +155,9 @@ impl<T> SparseCells<T> {
     /// The place of a cell in the table, and in its block.
     #[inline(always)]
     fn at(&self, index: usize) -> (usize, usize) {
+        if self.is_small() {
+            return (0, index);
+        }
         let row = ((u128::from(index as u64) * u128::from(self.inverse)) >> 63) as usize;
         let column = index - row * self.width;
         ((row >> SHIFT) * self.columns + (column >> SHIFT), ((row % SIDE) << SHIFT) + column % SIDE)
@@ -147,7 +172,7 @@ impl<T> SparseCells<T> {
     /// Whether the block of a cell exists.
     #[inline]
     pub fn is_stored(&self, index: usize) -> bool {
-        self.table[self.at(index).0] != 0
+        self.is_small() || self.table[self.at(index).0] != 0
     }
 
     /// The value of a cell, if its block exists.
@@ -155,22 +180,27 @@ impl<T> SparseCells<T> {
     pub fn stored_mut(&mut self, index: usize) -> Option<&mut T> {
         let (place, offset) = self.at(index);
         let block = self.table[place] as usize;
-        (block != 0).then(|| &mut self.values[block * BLOCK + offset])
+        (block != 0 || self.is_small()).then(|| &mut self.values[block * BLOCK + offset])
     }
 
     /// The values of all blocks that exist, in no particular order, and with some that belong to no cell.
     pub fn stored_values(&self) -> impl Iterator<Item = &T> {
-        self.values[BLOCK..].iter()
+        let stored = if self.is_small() { 0..self.len() } else { BLOCK..self.values.len() };
+        self.values[stored].iter()
     }
 
     /// The same, to be changed.
     pub fn stored_values_mut(&mut self) -> impl Iterator<Item = &mut T> {
-        self.values[BLOCK..].iter_mut()
+        let stored = if self.is_small() { 0..self.len() } else { BLOCK..self.values.len() };
+        self.values[stored].iter_mut()
     }
 
     /// The cells of a row that lie in one block: those from `column` on. Also whether the block exists.
     #[inline]
     fn piece(&self, row: usize, column: usize) -> (&[T], bool) {
+        if self.is_small() {
+            return (&self.values[row * self.width + column..(row + 1) * self.width], true);
+        }
         let block = self.table[(row >> SHIFT) * self.columns + (column >> SHIFT)] as usize;
         let start = block * BLOCK + (((row % SIDE) << SHIFT) + column % SIDE);
         let length = (SIDE - column % SIDE).min(self.width - column);
@@ -179,7 +209,7 @@ impl<T> SparseCells<T> {
 
     /// The pieces of a row: the index of their first cell, their values, and whether their block exists.
     fn pieces(&self, row: usize) -> impl DoubleEndedIterator<Item = (usize, &[T], bool)> {
-        (0..self.columns).map(move |block| {
+        (0..self.columns.max(1)).map(move |block| {
             let column = block << SHIFT;
             let (values, is_stored) = self.piece(row, column);
             (row * self.width + column, values, is_stored)
@@ -223,6 +253,9 @@ impl<T> SparseCells<T> {
         end: usize,
         mut f: impl FnMut(usize, usize, Option<&mut [T]>),
     ) {
+        if self.is_small() {
+            return f(start, end, Some(&mut self.values[start..end]));
+        }
         let (mut place, mut offset) = self.at(start);
         let mut from = start;
         while from < end {
@@ -236,6 +269,9 @@ impl<T> SparseCells<T> {
 
     /// The number of cells from this one on that certainly have equal values.
     pub fn alike(&self, index: usize) -> usize {
+        if self.is_small() {
+            return 1;
+        }
         let (mut place, offset) = self.at(index);
         let (mut until, row_end) = (index, (index / self.width + 1) * self.width);
         let mut length = SIDE - offset % SIDE;
@@ -274,6 +310,9 @@ impl<T> Index<usize> for SparseCells<T> {
 
     #[inline(always)] // Otherwise the compiler calls it in the loops over the cells of a scan.
     fn index(&self, index: usize) -> &T {
+        if self.is_small() {
+            return &self.values[index];
+        }
         let (place, offset) = self.at(index);
         &self.values[self.table[place] as usize * BLOCK + offset]
     }
@@ -282,6 +321,9 @@ impl<T> Index<usize> for SparseCells<T> {
 impl<T: Clone> IndexMut<usize> for SparseCells<T> {
     #[inline(always)]
     fn index_mut(&mut self, index: usize) -> &mut T {
+        if self.is_small() {
+            return &mut self.values[index];
+        }
         let (place, offset) = self.at(index);
         let block = match self.table[place] as usize {
             0 => self.add(place),

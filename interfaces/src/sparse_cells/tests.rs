@@ -6,10 +6,12 @@ use crate::{Purpose, RandomStream};
 const SHAPES: [(usize, usize); 9] =
     [(1, 1), (1, 40), (40, 1), (15, 17), (16, 16), (17, 33), (48, 31), (100, 7), (333, 65)];
 
-/// Both a sparse and a dense list after the same random changes, most of them near each other.
+/// Both a sparse and a dense list after the same random changes, most of them near each other. Every second one has blocks.
 fn changed(width: usize, height: usize, seed: u64) -> (SparseCells<i32>, Vec<i32>) {
     let mut random = RandomStream::new(seed, Purpose::Task);
-    let (mut sparse, mut dense) = (SparseCells::new(width, height, -1), vec![-1; width * height]);
+    let small = if seed.is_multiple_of(2) { 0 } else { SMALL };
+    let (mut sparse, mut dense) =
+        (SparseCells::small_up_to(small, width, height, -1), vec![-1; width * height]);
     let mut below = |count: usize| random.uniform(0.0..count as f64) as usize;
     for change in 0..60 {
         let index = below(dense.len());
