@@ -40,7 +40,7 @@ pub use random::{Purpose, RandomStream};
 pub use reading::{CellReading, LaserReading, Observation, Reading, VelocitySample};
 pub use scan::{Scan, ScanError};
 pub use settings::{SettingsCheck, SettingsError};
-pub use sparse_cells::{Place, SparseCells};
+pub use sparse_cells::{Place, SMALL_GRID, SparseCells};
 pub use state::{CellState, Event, Transition};
 pub use values::{
     CellList, Value, ValueError, Values, cell_runs, converted, from_bytes, if_present, last_value,

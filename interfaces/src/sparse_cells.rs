@@ -11,7 +11,7 @@ const SHIFT: usize = 4;
 /// The number of cells of a block.
 const BLOCK: usize = SIDE * SIDE;
 /// A grid of at most this number of cells has no blocks: its values are in the order of their indices, which is faster to read.
-const SMALL: usize = 1 << 17;
+pub const SMALL_GRID: usize = 1 << 17;
 
 /// Where a cell of a grid is stored, in all lists of this grid.
 #[derive(Clone, Copy, Debug)]
@@ -43,7 +43,7 @@ pub struct SparseCells<T> {
 impl<T: Clone> SparseCells<T> {
     /// The value `fill` for each cell of a grid with this width, at least 1, and height.
     pub fn new(width: usize, height: usize, fill: T) -> Self {
-        Self::small_up_to(SMALL, width, height, fill)
+        Self::small_up_to(SMALL_GRID, width, height, fill)
     }
 
     /// The same, small up to this number of cells.

@@ -43,8 +43,8 @@ pub use tiles::Tile;
 
 use derived::ExpectedChanges;
 use interfaces::{
-    CellState, Grid, GridFrame, LaserReading, Observation, Reading, SettingsCheck, SettingsError, Transition,
-    ValueError, Values, if_present, is_valid_pose, last_value, value,
+    CellState, Grid, GridFrame, LaserReading, Observation, Reading, SMALL_GRID, SettingsCheck, SettingsError,
+    Transition, ValueError, Values, if_present, is_valid_pose, last_value, value,
 };
 use nalgebra::Point2;
 use reading_error::check_pose;
@@ -137,9 +137,10 @@ impl Mapper {
     }
 
     /// Whether the map takes [as much memory as it may](MapperSettings::max_bytes). Where nothing was seen yet, readings then
-    /// change nothing, as outside of the frame; the rest of the map goes on, and what its cells record takes some more memory.
+    /// change nothing, as outside of the frame; the rest of the map goes on, and what its cells record takes some more memory. A
+    /// map of at most [`SMALL_GRID`] cells, some 10 MB, is never full: it has its memory from the start.
     pub fn is_full(&self) -> bool {
-        self.bytes() >= self.settings.max_bytes
+        self.frame().len() > SMALL_GRID && self.bytes() >= self.settings.max_bytes
     }
 
     /// Checks whether a prior map fits, before its cells get their records.

@@ -9,7 +9,7 @@ const SHAPES: [(usize, usize); 9] =
 /// Both a sparse and a dense list after the same random changes, most of them near each other. Every second one has blocks.
 fn changed(width: usize, height: usize, seed: u64) -> (SparseCells<i32>, Vec<i32>) {
     let mut random = RandomStream::new(seed, Purpose::Task);
-    let small = if seed.is_multiple_of(2) { 0 } else { SMALL };
+    let small = if seed.is_multiple_of(2) { 0 } else { SMALL_GRID };
     let (mut sparse, mut dense) =
         (SparseCells::small_up_to(small, width, height, -1), vec![-1; width * height]);
     let mut below = |count: usize| random.uniform(0.0..count as f64) as usize;
