@@ -2,7 +2,7 @@
 //! (Konolige, Grisetti, Kümmerle, Burgard, Limketkai & Vincent 2010).
 
 use super::correlation::{Correlated, Correlation};
-use super::far_scan::information_at;
+use super::far_scan::matched_at;
 use super::graph::{Edge, EdgeKind, PoseGraph};
 use super::keyframe::Keyframe;
 use super::matching::in_frame;
@@ -42,9 +42,9 @@ fn edges_of(number: usize, keyframes: &[Keyframe], graph: &PoseGraph) -> Vec<Edg
         let posed = near.map(|other| (&graph.poses[other], &keyframes[other]));
         let scores = Correlation::of(posed, &predicted);
         let Correlated { pose, response } = scores.best(&keyframe.scan, &keyframe.mount, CORRELATED);
-        let information = information_at(&pose, &keyframe.points).filter(|_| response >= CHAIN_RESPONSE)?;
+        let found = matched_at(&pose, &keyframe.points).filter(|_| response >= CHAIN_RESPONSE)?;
         let motion = graph.poses[from].inv_mul(&pose);
-        let information = in_frame(&information, &graph.poses[from]);
+        let information = in_frame(&found.information, &graph.poses[from]);
         Some(Edge { from, to: number, motion, information, kind: EdgeKind::Loop })
     };
     chains(number, graph).into_iter().filter_map(edge).collect()

@@ -50,28 +50,20 @@ impl<'a> FarScan<'a> {
         let is_sure = other.response >= SURE_RESPONSE && other.response > SURE_FACTOR * near.response;
         Some(if is_sure { other } else { near })
     }
-
-    /// The match at a pose.
-    pub(super) fn matched(&self, pose: &Isometry2<f64>, points: &[ScanPoint]) -> Option<Match> {
-        Some(Match { information: information_at(pose, points)?, ..match_at(pose, points) })
-            .map(|found| Match { scan_information: found.information, ..found })
-    }
 }
 
-fn match_at(pose: &Isometry2<f64>, points: &[ScanPoint]) -> Match {
-    Match {
+/// The match at a correlated pose. Straight surfaces say how well it is known: a direction that none of them fixes stays free.
+pub(super) fn matched_at(pose: &Isometry2<f64>, points: &[ScanPoint]) -> Option<Match> {
+    let mut found = Match {
         placement: Placement::rigid(pose),
         scan_information: points.iter().map(|point| information(point, pose)).sum(),
         information: Matrix3::zeros(),
         beam_covariance: Matrix3::zeros(),
         residual_ratio: 1.0,
-    }
-}
-
-/// The information of a correlated pose. Straight surfaces say how well it is known: a direction that none of them fixes stays
-/// free.
-pub(super) fn information_at(pose: &Isometry2<f64>, points: &[ScanPoint]) -> Option<Matrix3<f64>> {
-    information_of(&match_at(pose, points), SUBMAP_STD)
+    };
+    found.scan_information = information_of(&found, SUBMAP_STD)?;
+    found.information = found.scan_information;
+    Some(found)
 }
 
 fn information(point: &ScanPoint, pose: &Isometry2<f64>) -> Matrix3<f64> {

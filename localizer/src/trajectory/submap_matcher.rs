@@ -1,6 +1,6 @@
 //! Matches scans with the submap of the last keyframes, and makes keyframes of them.
 
-use super::far_scan::FarScan;
+use super::far_scan::{FarScan, matched_at};
 use super::keyframe::{Keyframe, filled};
 use super::matching::{gates, in_frame, motion_spread};
 use super::settings::TrajectorySettings;
@@ -149,7 +149,7 @@ impl SubmapMatcher {
     fn match_far(&self, far: &FarScan, scan: &IncomingScan) -> Option<SubmapMatch> {
         let found = far.correlated(&self.keyframes, &scan.predicted.pose)?;
         let agreement = Agreement::of_response(found.response);
-        Some(SubmapMatch { found: far.matched(&found.pose, &scan.points)?, agreement })
+        Some(SubmapMatch { found: matched_at(&found.pose, &scan.points)?, agreement })
     }
 
     /// The match of the scan with the submap; `None` if there is nothing to match with.

@@ -10,7 +10,7 @@ use crate::summary::PoseSource;
 use nalgebra::Isometry2;
 use std::collections::{BTreeSet, VecDeque};
 
-/// The frame of a map, if none is named.
+/// The frame of the map by default.
 const MAP: &str = "map";
 
 /// The poses of the robot of the first laser in the map of another SLAM.

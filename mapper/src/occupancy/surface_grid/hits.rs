@@ -122,7 +122,7 @@ impl SurfaceGrid {
         cells: &CellMap,
     ) -> Option<usize> {
         let (frame, few_hits) = (cells.frame(), self.few_hits_to_stand(cells));
-        let stands = |surface: &Surface| {
+        let counts = |surface: &Surface| {
             let hits_to_stand = if surface.came { self.settings.hits_to_stand } else { few_hits };
             !is_permanent || surface.hits >= hits_to_stand
         };
@@ -131,7 +131,7 @@ impl SurfaceGrid {
         let near = (low.y..=high.y).flat_map(|y| (low.x..=high.x).map(move |x| Cell::new(x, y)));
         near.filter_map(|cell| {
             let index = frame.index(cell)?;
-            let is_near = cells.state(index) == CellState::Blocked && stands(&self.surfaces[index]);
+            let is_near = cells.state(index) == CellState::Blocked && counts(&self.surfaces[index]);
             is_near.then(|| ((frame.center(cell) - end).norm_squared(), index))
         })
         .min_by(|(a, _), (b, _)| a.total_cmp(b))
