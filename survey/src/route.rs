@@ -2,7 +2,7 @@
 
 use crate::error::SurveyError;
 use crate::extent::{self, Reach};
-use crate::quality::{Quality, QualityCheck};
+use crate::quality::{Quality, QualityCheck, Verdict};
 use crate::range_noise::RangeNoise;
 use crate::seen_area::SeenArea;
 use crate::settings::SurveySettings;
@@ -11,6 +11,7 @@ use interfaces::{GridFrame, LaserReading, PoseMode};
 use localizer::{PoseState, Residual, TrajectoryFinder, TrajectoryPose, TrajectorySettings};
 use mapper::ScanFilter;
 use nalgebra::{Isometry2, Point2};
+use std::ops::Range;
 
 /// A log along its trajectory.
 #[derive(Clone, Debug)]
@@ -25,12 +26,30 @@ pub struct Route {
     pub range_std_m: Option<f64>,
     /// How far the trajectory agrees with its own scans.
     pub quality: Quality,
+    /// The readings whose poses are in doubt.
+    in_doubt: Vec<Range<usize>>,
     reaches: Vec<Reach>,
     /// The area that was seen, m²: more where the route was corrected later.
     pub(crate) seen_m2: f64,
 }
 
 impl Route {
+    /// The route without certain poses where they are in doubt, if the map is usable with care: what only such scans show is no
+    /// change. In a good map, what contradicts other scans is one, and a map that is not usable is used as it is, or not at all.
+    #[must_use]
+    pub(crate) fn without_doubts(mut self) -> Self {
+        if self.quality.verdict() == Verdict::UsableWithCare {
+            let poses = &mut self.poses;
+            let in_doubt = self.in_doubt.iter().flat_map(Range::clone);
+            for reading in in_doubt {
+                if poses[reading].state == PoseState::Tracking {
+                    poses[reading].state = PoseState::Uncertain;
+                }
+            }
+        }
+        self
+    }
+
     /// The route in another frame, whose pose of this frame is `by`.
     #[must_use]
     pub fn moved(mut self, by: &Isometry2<f64>) -> Self {
@@ -164,8 +183,8 @@ impl FirstPass {
             }
             None => (self.given, 0, None),
         };
-        let (range_std_m, quality) = (self.range_noise.std_m(), self.quality.finish(&poses));
-        let seen_m2 = self.area.m2();
-        Route { poses, loops, residual, range_std_m, quality, reaches: self.reaches, seen_m2 }
+        let (quality, in_doubt) = self.quality.finish(&poses);
+        let (range_std_m, seen_m2) = (self.range_noise.std_m(), self.area.m2());
+        Route { poses, loops, residual, range_std_m, quality, in_doubt, reaches: self.reaches, seen_m2 }
     }
 }

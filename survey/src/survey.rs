@@ -188,7 +188,8 @@ impl Survey {
         let route = match &self.place {
             Some(place) => pass.in_place(place, all_stand)?,
             None => pass.route()?,
-        };
+        }
+        .without_doubts();
         let frame = frame(std::slice::from_ref(&route), &self.settings)?;
         if is_followed && self.place.is_none() {
             self.place = Some(Arc::new(pass.place(&route)?));

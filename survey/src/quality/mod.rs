@@ -11,6 +11,7 @@ use interfaces::{LaserReading, heading_rad};
 use localizer::{PoseState, TrajectoryPose};
 use nalgebra::{Isometry2, Point2};
 use serde::{Deserialize, Serialize};
+use std::ops::Range;
 
 /// A scan counts after this way or turn since the last one that counted, so that resting does not count more than driving.
 const COUNTED_M: f64 = 0.3;
@@ -207,14 +208,14 @@ impl QualityCheck {
         self.counted.push(CountedScan { reading, odometry, laser, hits });
     }
 
-    /// The figures, along the trajectory that was found.
-    pub(crate) fn finish(self, poses: &[TrajectoryPose]) -> Quality {
+    /// The figures, along the trajectory that was found, and the readings whose poses are in doubt.
+    pub(crate) fn finish(self, poses: &[TrajectoryPose]) -> (Quality, Vec<Range<usize>>) {
         let left_out = poses.iter().filter(|at| at.state != PoseState::Tracking).count();
         let left_out = left_out as f64 / poses.len().max(1) as f64;
         let certain = |scan: &CountedScan| poses[scan.reading].state == PoseState::Tracking;
         let counted: Vec<CountedScan> = self.counted.into_iter().filter(certain).collect();
         if counted.len() < MIN_SCANS {
-            return Quality { scans: counted.len(), left_out, ..Quality::default() };
+            return (Quality { scans: counted.len(), left_out, ..Quality::default() }, Vec::new());
         }
         let placed = |scan: &CountedScan| PlacedScan::new(&poses[scan.reading].pose, &scan.laser, &scan.hits);
         let judged = Evidence::judge(&counted.iter().map(placed).collect::<Vec<_>>());
@@ -223,7 +224,9 @@ impl QualityCheck {
             judged.iter().filter(|scan| of(scan)).count() as f64 / judged.len() as f64
         };
         let mean = |part: &[Judged]| part.iter().map(|scan| scan.in_free).sum::<f64>() / part.len() as f64;
-        Quality {
+        let (doubts, scans_in_doubt): (Vec<Doubt>, Vec<Range<usize>>) =
+            doubts(&judged, at).into_iter().unzip();
+        let quality = Quality {
             scans: judged.len(),
             contradicting: share(|scan| scan.in_free > CONTRADICTING),
             worst_stretch: judged.windows(STRETCH).map(mean).fold(0.0, f64::max),
@@ -231,8 +234,14 @@ impl QualityCheck {
             left_out,
             seen_once: judged.iter().map(|scan| scan.seen_once).sum::<f64>() / judged.len() as f64,
             scale: scale(&counted, poses),
-            doubts: doubts(&judged, at),
-        }
+            doubts,
+        };
+        // Readings between two scans that are compared are as doubtful as either of them.
+        let readings = |scans: Range<usize>| {
+            let begin = scans.start.checked_sub(1).map_or(0, |before| counted[before].reading + 1);
+            begin..counted.get(scans.end).map_or(poses.len(), |after| after.reading)
+        };
+        (quality, scans_in_doubt.into_iter().map(readings).collect())
     }
 }
 
@@ -248,9 +257,9 @@ fn scale(counted: &[CountedScan], poses: &[TrajectoryPose]) -> Option<f64> {
     (ratios.len() >= MIN_SCANS / 2).then(|| median(ratios.into_iter())).filter(|scale| *scale > 0.0)
 }
 
-/// The stretches of scans in doubt.
-fn doubts(judged: &[Judged], at: impl Fn(usize) -> TrajectoryPose) -> Vec<Doubt> {
-    let mut doubts: Vec<Doubt> = Vec::new();
+/// The stretches of scans in doubt, with the numbers of these scans.
+fn doubts(judged: &[Judged], at: impl Fn(usize) -> TrajectoryPose) -> Vec<(Doubt, Range<usize>)> {
+    let mut doubts: Vec<(Doubt, Range<usize>)> = Vec::new();
     let mut last = None;
     for (number, scan) in judged.iter().enumerate() {
         let kind = match (scan.link < WEAK_LINK, scan.in_free > CONTRADICTING) {
@@ -262,10 +271,11 @@ fn doubts(judged: &[Judged], at: impl Fn(usize) -> TrajectoryPose) -> Vec<Doubt>
         let goes_on = last.is_some_and(|last| number - last <= STRETCH) && kind == DoubtKind::Contradicting;
         last = Some(number);
         match doubts.last_mut().filter(|_| goes_on) {
-            Some(doubt) => doubt.to_s = time_s,
+            Some((doubt, scans)) => (doubt.to_s, scans.end) = (time_s, number + 1),
             None => {
                 let at = pose.translation.vector;
-                doubts.push(Doubt { kind, from_s: time_s, to_s: time_s, x_m: at.x, y_m: at.y });
+                let doubt = Doubt { kind, from_s: time_s, to_s: time_s, x_m: at.x, y_m: at.y };
+                doubts.push((doubt, number..number + 1));
             }
         }
     }

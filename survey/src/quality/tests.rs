@@ -13,7 +13,7 @@ fn along(truth: &[Isometry2<f64>]) -> Vec<TrajectoryPose> {
 fn quality(readings: &[LaserReading], poses: &[Isometry2<f64>]) -> Quality {
     let mut check = QualityCheck::default();
     readings.iter().zip(poses).for_each(|(reading, pose)| check.add(reading, pose));
-    check.finish(&along(poses))
+    check.finish(&along(poses)).0
 }
 
 /// Along its true poses, a map is good.

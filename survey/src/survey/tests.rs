@@ -1,5 +1,7 @@
 //! Surveys that are saved and go on, against those that were never interrupted.
 
+mod doubts;
+
 use super::{SavedLogs, Survey};
 use crate::settings::SurveySettings;
 use crate::surveyed_log::LogEntry;
