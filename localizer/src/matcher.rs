@@ -4,7 +4,7 @@
 //! a second scan (as Segal, Haehnel & Thrun 2009 use surfaces on both sides), the kernel of Geman & McClure (1987), and
 //! a prior from odometry.
 
-use crate::constants::{MAX_STEPS, MIN_KERNEL, STEP, SURFEL_STD_M};
+use crate::constants::{MAX_STEPS, MIN_KERNEL, SURFEL_STD_M};
 use crate::placement::Placement;
 use crate::scan_points::ScanPoint;
 use crate::spread::Spread;
@@ -47,6 +47,8 @@ pub(crate) struct Gates {
     pub(crate) last_m: f64,
     /// Whether surfaces that often change count less.
     pub(crate) by_rates: bool,
+    /// A step below this is the last one.
+    pub(crate) step: Spread,
 }
 
 /// The result of a match.
@@ -160,18 +162,58 @@ fn kernel(residual: f64, scale: f64) -> f64 {
     root * root
 }
 
+/// The products of three values with each other: the upper half of a symmetric matrix, row by row.
+#[derive(Clone, Copy, Debug, Default)]
+struct Products([f64; 6]);
+
+impl Products {
+    fn of(j: &Vector3<f64>, factor: f64) -> Self {
+        Self(
+            [j.x * j.x, j.x * j.y, j.x * j.z, j.y * j.y, j.y * j.z, j.z * j.z]
+                .map(|product| product * factor),
+        )
+    }
+
+    #[inline]
+    fn add(&mut self, other: &Self, factor: f64) {
+        self.0.iter_mut().zip(other.0).for_each(|(sum, product)| *sum += product * factor);
+    }
+
+    fn matrix(&self) -> Matrix3<f64> {
+        let [xx, xy, xz, yy, yz, zz] = self.0;
+        Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)
+    }
+}
+
+/// How uncertain the distance of a point from its surface is: the same at all steps of a match.
+#[derive(Clone, Copy, Debug)]
+struct Noise {
+    variance: f64,
+    /// The scale of the kernel of the point, as a share of that of a point with the largest noise.
+    kernel_share: f64,
+}
+
+impl Noise {
+    fn of(point: &ScanPoint, gates: &Gates) -> Self {
+        let variance = |noise_m: f64| noise_m * noise_m + SURFEL_STD_M * SURFEL_STD_M;
+        let (own, largest) = (variance(gates.noise_m * point.noise_share), variance(gates.noise_m));
+        Self { variance: own, kernel_share: (own / largest).sqrt().max(MIN_KERNEL) }
+    }
+}
+
 fn accumulate(
     map: &SurfelMap,
     points: &[ScanPoint],
+    noises: &[Noise],
     placement: &Placement,
     [gate_m, suspect_m]: [f64; 2],
     gates: &Gates,
 ) -> NormalEquations {
     let mut sums = NormalEquations::default();
-    let largest = gates.noise_m * gates.noise_m + SURFEL_STD_M * SURFEL_STD_M;
+    let [mut end, mut begin, mut cross] = [Products::default(); 3];
     // Well inside of the gate: what moved by a little more than the noise must not pull.
     let scale_m = gate_m / 2.0;
-    for point in points {
+    for (point, noise) in points.iter().zip(noises) {
         let at = placement.place(point);
         let arm = at.coords - placement.pose.translation.vector;
         let normal = placement.pose.rotation * point.normal;
@@ -182,24 +224,26 @@ fn accumulate(
         }
         let rate_weight = if gates.by_rates { surfel.steadiness } else { 1.0 };
         let weight = point.weight * surfel.weight() * rate_weight;
-        let noise_m = gates.noise_m * point.noise_share;
-        let variance = noise_m * noise_m + SURFEL_STD_M * SURFEL_STD_M;
-        let kernel = kernel(off_m, scale_m * (variance / largest).sqrt().max(MIN_KERNEL));
-        let certain = weight / variance * kernel;
+        let kernel = kernel(off_m, scale_m * noise.kernel_share);
+        let certain = weight / noise.variance * kernel;
         let (j, share) = (derivative(&arm, &surfel.normal), placement.share(point));
-        let (hessian, gradient) = (j * j.transpose() * certain, j * (off_m * certain));
-        sums.hessian += hessian * (share * share);
-        sums.gradient += gradient * share;
+        let (hessian, gradient) = (Products::of(&j, certain), j * (off_m * certain));
         if share < 1.0 {
             let rest = 1.0 - share;
-            sums.begin_hessian += hessian * (rest * rest);
-            sums.cross_hessian += hessian * (rest * share);
+            end.add(&hessian, share * share);
+            begin.add(&hessian, rest * rest);
+            cross.add(&hessian, rest * share);
+            sums.gradient += gradient * share;
             sums.begin_gradient += gradient * rest;
+        } else {
+            end.add(&hessian, 1.0);
+            sums.gradient += gradient;
         }
         sums.squares += off_m * off_m * certain;
         sums.weight += weight * kernel;
         sums.points += point.weight * kernel;
     }
+    (sums.hessian, sums.begin_hessian, sums.cross_hessian) = (end.matrix(), begin.matrix(), cross.matrix());
     // Trust decides between surfels; it does not make a scan worth less than the odometry.
     if sums.weight > 0.0 {
         sums.scale(sums.points / sums.weight);
@@ -229,11 +273,12 @@ pub(crate) fn align(
 ) -> Option<Match> {
     let is_elastic = prior.is_some_and(|prior| prior.begin.is_some());
     let mut placement = if is_elastic { Placement::elastic(start) } else { Placement::rigid(start) };
+    let noises: Vec<Noise> = points.iter().map(|point| Noise::of(point, gates)).collect();
     let (mut gate_m, mut steps) = (gates.first_m, 0);
     let sums = loop {
         // What has moved before must not pull from afar, where the odometry knows better.
         let suspect_m = if prior.is_some() { gates.last_m } else { gate_m };
-        let sums = accumulate(map, points, &placement, [gate_m, suspect_m], gates);
+        let sums = accumulate(map, points, &noises, &placement, [gate_m, suspect_m], gates);
         let [step, begin] = sums.step(&placement, prior)?;
         if !step.iter().chain(&begin).all(|value| value.is_finite()) {
             return None;
@@ -242,7 +287,7 @@ pub(crate) fn align(
         steps += 1;
         // With a wide gate, the pose need only be good enough for the next gate.
         let is_last = gate_m <= gates.last_m;
-        let limit = if is_last { STEP } else { Spread::of_error(gate_m / 20.0) };
+        let limit = if is_last { gates.step } else { Spread::of_error(gate_m / 20.0) };
         let is_small = step.xy().norm() < limit.m && step.z.abs() < limit.rad;
         if !is_small && steps < MAX_STEPS {
             continue;

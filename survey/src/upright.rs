@@ -3,7 +3,6 @@
 use interfaces::CellState;
 use mapper::Mapper;
 use nalgebra::Point2;
-use std::collections::BTreeMap;
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
 /// Turns are searched in steps of half a degree.
@@ -39,14 +38,13 @@ pub fn upright_rad(mapper: &Mapper) -> f64 {
 
 fn sharpness(points: &[Point2<f64>], angle_rad: f64, bin_m: f64) -> f64 {
     let (sin, cos) = libm::sincos(angle_rad);
-    let mut bins: [BTreeMap<i64, f64>; 2] = Default::default();
-    for point in points {
-        let turned = [cos * point.x - sin * point.y, sin * point.x + cos * point.y];
-        for (bins, at_m) in bins.iter_mut().zip(turned) {
-            *bins.entry((at_m / bin_m).floor() as i64).or_default() += 1.0;
-        }
-    }
-    bins.iter().flat_map(BTreeMap::values).map(|count| count * count).sum()
+    let along = |axis: [f64; 2]| {
+        let bin = |point: &Point2<f64>| ((axis[0] * point.x + axis[1] * point.y) / bin_m).floor() as i64;
+        let mut bins: Vec<i64> = points.iter().map(bin).collect();
+        bins.sort_unstable();
+        bins.chunk_by(|a, b| a == b).map(|same| (same.len() * same.len()) as f64).sum::<f64>()
+    };
+    along([cos, -sin]) + along([sin, cos])
 }
 
 #[cfg(test)]

@@ -50,7 +50,7 @@ impl Cells {
         let mut encoder = png::Encoder::new(&mut file, width, height);
         encoder.set_color(png::ColorType::Indexed);
         encoder.set_palette(self.colors.concat());
-        encoder.set_compression(png::Compression::High);
+        encoder.set_compression(png::Compression::Balanced);
         encoder.set_filter(png::Filter::NoFilter);
         // Into memory, with as many pixels as the header says: nothing can fail.
         let written = encoder.write_header().and_then(|mut writer| writer.write_image_data(pixels));
