@@ -1,7 +1,7 @@
 //! All that one scan is compared with.
 
 use crate::changing_map::ChangingMap;
-use crate::constants::{GATE_STDS, STEP, SURFEL_STD_M};
+use crate::constants::{GATE_STDS, SURFEL_STD_M};
 use crate::matcher::{Gates, Match, Prior, align};
 use crate::placement::Placement;
 use crate::scan_points::ScanPoint;
@@ -49,7 +49,6 @@ impl<M: ChangingMap> MatchScene<'_, M> {
             first_m: first_m.max(last_m),
             last_m,
             by_rates,
-            step: STEP,
         };
         align(self.surfels, self.points, start, prior, &gates)
     }

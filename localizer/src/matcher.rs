@@ -4,7 +4,7 @@
 //! a second scan (as Segal, Haehnel & Thrun 2009 use surfaces on both sides), the kernel of Geman & McClure (1987), and
 //! a prior from odometry.
 
-use crate::constants::{MAX_STEPS, MIN_KERNEL, SURFEL_STD_M};
+use crate::constants::{MAX_STEPS, MIN_KERNEL, STEP, SURFEL_STD_M};
 use crate::placement::Placement;
 use crate::scan_points::ScanPoint;
 use crate::spread::Spread;
@@ -47,8 +47,6 @@ pub(crate) struct Gates {
     pub(crate) last_m: f64,
     /// Whether surfaces that often change count less.
     pub(crate) by_rates: bool,
-    /// A step below this is the last one.
-    pub(crate) step: Spread,
 }
 
 /// The result of a match.
@@ -287,7 +285,7 @@ pub(crate) fn align(
         steps += 1;
         // With a wide gate, the pose need only be good enough for the next gate.
         let is_last = gate_m <= gates.last_m;
-        let limit = if is_last { gates.step } else { Spread::of_error(gate_m / 20.0) };
+        let limit = if is_last { STEP } else { Spread::of_error(gate_m / 20.0) };
         let is_small = step.xy().norm() < limit.m && step.z.abs() < limit.rad;
         if !is_small && steps < MAX_STEPS {
             continue;

@@ -8,7 +8,7 @@
 //!   scan is deskewed along the motion that its match finds.
 //! - A scan that is far from the one before is searched for around the prediction among the end points of the last
 //!   keyframes (Olson 2009), and where it fits nowhere, at all headings. Its points are too few for the normals and the
-//!   nearest optimum that a match with the submap needs, and the odometry learns nothing from it.
+//!   nearest optimum that a match with the submap needs, and the odometry learns only from matches with a high response (`constants::MIN_AGREEMENT`).
 //! - A finished submap is searched for in earlier submaps by branch and bound, as far as the trajectory since then is
 //!   uncertain (Hess, Kohler, Rapp & Andor 2016).
 //! - A loop counts where most of what both submaps cover agrees, where few beams of one pass the walls of the other

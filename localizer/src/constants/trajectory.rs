@@ -18,8 +18,6 @@ pub(crate) const KEPT_POINTS: usize = 120;
 /// Points this near to a surface must lie on it, points twice as far apart may be on one, and a match starts at most this far
 /// from the prediction, m.
 pub(crate) const JUDGED_M: f64 = 0.4;
-/// A step of a match below this is the last one: what it leaves is a tenth of the errors of submaps.
-pub(crate) const TRAJECTORY_STEP: Spread = Spread { m: 1e-3, rad: 3e-4 };
 /// Minimum number of points on a submap.
 pub(crate) const MIN_POINTS: usize = 12;
 /// Minimum share of what can be judged that agrees; of the points that can be judged, and of those that a search finds.

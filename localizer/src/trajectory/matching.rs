@@ -1,7 +1,7 @@
 //! What matches of scans and of submaps share: gates, covariances, and what a match says.
 
 use super::submap::{Agreement, agreement};
-use crate::constants::{EXPECTED, JUDGED_M, LOOSE_STD, MIN_NOISE_M, SPURIOUS, STDS, TRAJECTORY_STEP};
+use crate::constants::{EXPECTED, JUDGED_M, LOOSE_STD, MIN_NOISE_M, SPURIOUS, STDS};
 use crate::match_scene::hit_std_m;
 use crate::matcher::{Gates, Match, Prior, align, difference};
 use crate::scan_points::ScanPoint;
@@ -13,13 +13,7 @@ use nalgebra::{Isometry2, Matrix3, Vector3};
 pub(super) fn gates(noise_m: f64, first_m: f64) -> Gates {
     let noise_m = noise_m.max(MIN_NOISE_M);
     let last_m = STDS * hit_std_m(noise_m);
-    Gates {
-        noise_m,
-        first_m: first_m.min(JUDGED_M).max(last_m),
-        last_m,
-        by_rates: false,
-        step: TRAJECTORY_STEP,
-    }
+    Gates { noise_m, first_m: first_m.min(JUDGED_M).max(last_m), last_m, by_rates: false }
 }
 
 /// An information matrix of shifts along the axes of a map, as one along the axes of a frame with this pose.
