@@ -36,6 +36,7 @@ pub(super) fn advice(
         PlaceKind::Furniture { .. } => Some("check that it should be here.".to_owned()),
         PlaceKind::Unknown if is_known => Some("check what it is, and give the place a name.".to_owned()),
         PlaceKind::Unknown => Some("check whether something was left here, or taken away.".to_owned()),
+        PlaceKind::Traffic if is_known => Some("keep this way clear.".to_owned()),
         PlaceKind::Door { .. } | PlaceKind::Traffic => None,
     };
     [("Robot", Some(robot)), ("Owner", owner)]

@@ -71,6 +71,11 @@ impl Page<'_> {
         }
     }
 
+    /// Whether a place is a door.
+    pub(super) fn is_door(&self, place: &Place) -> bool {
+        matches!(place.kind, PlaceKind::Door { .. })
+    }
+
     /// The door of a place, if it is one.
     pub(super) fn door(&self, place: &Place) -> Option<&Door> {
         let PlaceKind::Door { thing } = place.kind else { return None };
@@ -149,7 +154,7 @@ impl Page<'_> {
 
     /// A time of the map, in words.
     pub(super) fn time(&self, time_s: f64) -> String {
-        let after = || format!("{} after the start", length_of(time_s));
+        let after = || format!("{} after the first scan", length_of(time_s));
         self.summary.begin_s.map_or_else(after, |begin_s| date(begin_s + time_s))
     }
 
@@ -180,7 +185,7 @@ impl Page<'_> {
             label: place.number.to_string(),
             link: Some(format!("#place-{}", place.number)),
             points: self.cells(place),
-            kind: if matches!(place.kind, PlaceKind::Door { .. }) { MarkKind::Door } else { MarkKind::Place },
+            kind: if self.is_door(place) { MarkKind::Door } else { MarkKind::Place },
         };
         self.summary.places.iter().map(mark).collect()
     }
@@ -191,7 +196,7 @@ fn sure(seen: &Seen) -> String {
     let first = word[..1].to_uppercase() + &word[1..];
     match seen.per_hour {
         Some((rate, ends)) if seen.has_cycle() => {
-            format!("{first}: with 90 % probability {}. Seen {}.", range(rate, ends), seen.seen())
+            format!("{first}: {} (90 % range). Seen {}.", range(rate, ends), seen.seen())
         }
         Some((_, [_, high])) if seen.observed_s >= LONG_S => {
             format!(

@@ -72,11 +72,15 @@ impl Page<'_> {
                 (self.plan.draw(Shown::Places, &marks, "The plan, with the places where something changes"))
                 ul.key {
                     (key(palette::BLOCKED, "wall or thing"))
-                    (key(palette::MOVING, "changed"))
+                    (key(palette::MOVING, "something was here at times"))
                     (key(palette::FREE, "free"))
                     (key(palette::UNKNOWN, "never seen"))
-                    li { span.number { "1" } " place, described below" }
-                    @if self.summary.places.iter().any(|place| self.door(place).is_some()) { li { span.number.door { "2" } " door" } }
+                    @if let Some(place) = self.summary.places.iter().find(|place| !self.is_door(place)) {
+                        li { span.number { (place.number) } " number of a place, described below; the rectangle is around it" }
+                    }
+                    @if let Some(door) = self.summary.places.iter().find(|place| self.is_door(place)) {
+                        li { span.number.door { (door.number) } " number of a door" }
+                    }
                     @if !self.lasting_marks().is_empty() { li { span.number.new { "A" } " came or went since the last visit" } }
                 }
                 figcaption { (self.turned()) }
@@ -105,7 +109,7 @@ impl Page<'_> {
         let share = percent(1.0 - self.summary.changed_share);
         match self.summary.still_observed_s.filter(|_| self.has_rates()) {
             Some(median_s) => format!(
-                "Elsewhere, nothing was seen to change: {share} of the area seen, half of it in {} or more of looking.",
+                "Elsewhere, nothing was seen to change: {share} of the area seen. Half of that area was in view for {} or more.",
                 length_of(median_s)
             ),
             None => format!("Elsewhere, nothing was seen to change: {share} of the area seen."),
@@ -117,11 +121,24 @@ impl Page<'_> {
         html! {
             @if !self.summary.places.is_empty() {
                 h2 { "The places" }
-                p { "The liveliest come first. The numbers stay the same on later visits. Usual hours follow once a place is known for two \
-                    weeks." }
+                p {
+                    "The liveliest come first, by the lower end of their range. The numbers stay the same on later visits. Time of looking is \
+                     the time for which the robot had the place in view; the robot itself is not counted. "
+                    (self.clock())
+                }
                 div.cards { @for place in &self.summary.places { (self.card(place)) } }
             }
-            @if more > 0 { p { (more) " more places with less change have no card. They are in the pictures." } }
+            @if more > 0 { p { (more) " more places with less change have no card and no number on the plan." } }
+        }
+    }
+
+    /// What times count from.
+    fn clock(&self) -> &'static str {
+        match self.summary.begin_s {
+            Some(_) => "Usual hours follow once a place is known for two weeks.",
+            None => {
+                "The logs have no date: times count from the first scan, and the notes below say what is not known between visits."
+            }
         }
     }
 
@@ -166,8 +183,8 @@ impl Page<'_> {
             }
             @if self.has_rates() {
                 p {
-                    "Passages count how often something came into the spot of half a meter where this happened most often. A range contains \
-                     the true rate with 90 % probability, if changes come at random. A rate is given once something came, was gone, and \
+                    "Passages count how often something came into the spot of half a meter where this happened most often. A 90 % range \
+                     contains the true rate in 9 of 10 cases, if changes come at random. A rate is given once something came, was gone, and \
                      came again in view; before, only what was seen."
                 }
             }

@@ -15,7 +15,7 @@ impl Page<'_> {
     /// What everyone should read.
     pub(super) fn opening(&self) -> Markup {
         let (class, words) = match (self.summary.verdict, self.summary.is_refused) {
-            (Verdict::Good, _) => ("", "This map is good: its scans agree with each other."),
+            (Verdict::Good, _) => ("", "This map is good: what the laser saw from different places agrees."),
             (Verdict::UsableWithCare, _) => {
                 ("care", "This map is usable with care: parts of it are probably wrong.")
             }
@@ -75,8 +75,7 @@ impl Page<'_> {
     }
 
     fn doors(&self) -> Markup {
-        let is_door = |place: &&Place| matches!(place.kind, PlaceKind::Door { .. });
-        let mut doors: Vec<&Place> = self.summary.places.iter().filter(is_door).collect();
+        let mut doors: Vec<&Place> = self.summary.places.iter().filter(|place| self.is_door(place)).collect();
         doors.sort_by_key(|door| door.number);
         match &doors[..] {
             [] => html! { "No door was seen to open or close." },

@@ -29,7 +29,7 @@ impl Page<'_> {
         html! {
             h2 #since { "What changed since the last visit" }
             p { (self.visits(since)) }
-            @if is_same { p { "Nothing changed that could not be chance." } }
+            @if is_same { p { "Nothing for certain: nothing came or went for good, and no place is livelier or quieter by more than chance explains." } }
             ul {
                 @for (number, lasting) in since.lasting.iter().enumerate() { li { (self.lasting(number, lasting)) } }
                 @for (trend, found) in trends.iter().flat_map(|trend| of(*trend).into_iter().map(move |found| (trend, found))) {
