@@ -151,9 +151,9 @@ fn values(strategies: &[StrategyResult], columns: &[Column]) -> Table {
         rows[2..].iter_mut().zip(cells).for_each(|(row, cell)| row.push(cell));
     }
     let mut table = aligned(rows);
-    for (column, _) in
-        columns.iter().enumerate().filter(|(_, (_, name, ..))| ["final", "all cells", "of best", "log error", "predicted"].contains(name))
-    {
+    for (column, _) in columns.iter().enumerate().filter(|(_, (_, name, ..))| {
+        ["final", "all cells", "of best", "log error", "predicted"].contains(name)
+    }) {
         table.modify((0, column + 1), Span::column(2)).modify((0, column + 1), Alignment::center());
     }
     table

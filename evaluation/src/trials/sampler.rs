@@ -1,7 +1,7 @@
 use super::{Sample, TrialWorld};
 use crate::metrics::{
-    ChangingAccuracy, DevianceScores, Forecasts, PassageScores, Prediction, RateScores, map_scores, passage_scores,
-    rate_scores,
+    ChangingAccuracy, DevianceScores, Forecasts, PassageScores, Prediction, RateScores, map_scores,
+    passage_scores, rate_scores,
 };
 use interfaces::GroundTruth;
 use mapper::Mapper;
