@@ -6,7 +6,7 @@ use crate::Growth;
 use crate::change::{CellMap, RateDistribution};
 use crate::clock::Dates;
 use crate::look_counts::LookCounts;
-use crate::tiles::ByClock;
+use crate::tiles::{ByClock, HALF_HOURS};
 use interfaces::CellState;
 use std::collections::BTreeMap;
 
@@ -92,11 +92,8 @@ impl LeafCells {
         let [closed, open] = cell.shares();
         let is_open = door.clock.probability(dates.epoch_s + time_s, dates.calendar);
         let later = closed + (open - closed) * is_open;
-        let weight = match std::env::var("DOOR_WEIGHT") {
-            Ok(text) if text == "h" => door.clock.half_hours() / (door.clock.half_hours() + 24.0),
-            Ok(text) => text.parse().unwrap(),
-            Err(_) => 0.0,
-        };
+        let weight = door.clock.half_hours();
+        let weight = weight / (weight + HALF_HOURS);
         Some(ByClock { later, then: if was_open { open } else { closed }, weight })
     }
 

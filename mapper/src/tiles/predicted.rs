@@ -6,9 +6,9 @@ use interfaces::Cell;
 
 /// The share of a cell in its blocked tile is that of all cells of the tile before this number of looks.
 const PRIOR_LOOKS: f64 = 30.0;
-/// A tile that was seen in this number of half hours counts as much as the chain of the cell. Houses of people without hours
+/// A tile or a door that was seen in this number of half hours counts as much as the chain of the cell. Houses of people without hours
 /// (seeds 5000 to 5005) are then predicted as well as by the chains alone, after 20 minutes and after 8 hours.
-const HALF_HOURS: f64 = 24.0;
+pub(crate) const HALF_HOURS: f64 = 24.0;
 
 /// What the clock of a tile or of a door says of one of its cells.
 #[derive(Clone, Copy, Debug)]
