@@ -83,6 +83,6 @@ fn scores(
 fn print_row(name: &str, row: &[Option<f64>]) {
     print!("{name:<24}");
     row.iter()
-        .for_each(|value| print!(" {:>7}", value.map_or("–".to_owned(), |value| format!("{value:.3}"))));
+        .for_each(|value| print!(" {:>7}", value.map_or("–".to_owned(), |value| format!("{value:.4}"))));
     println!();
 }

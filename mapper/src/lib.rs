@@ -30,7 +30,7 @@ pub use change::{
     GapHistogram, GapModel, GapWeights, GapWorth, Imac, Paper, PaperAll, RateDistribution, ReadingIndex,
     SharedPrior, Step, TransitionRates, TwoState, TwoStateGaps,
 };
-pub use clock::{Calendar, Clock, DAY_S, Look, UnknownZone, UsualChange, UsualSlot, Week};
+pub use clock::{Calendar, Clock, DAY_S, Look, UnknownZone, UsualChange, UsualSlot, Week, share_interval};
 pub use growth::Growth;
 pub use occupancy::{
     BeamReturn, CloneModel, OccupancyChoice, OccupancyModel, ProjectedScan, SurfaceGridSettings,

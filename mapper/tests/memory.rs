@@ -39,6 +39,13 @@ fn reading(room_m: f64, offset: [f64; 2], time_s: f64) -> LaserReading {
     }
 }
 
+/// A reading in the middle of a round room, m.
+fn round(radius_m: f64, time_s: f64) -> LaserReading {
+    let mut reading = reading(0.0, [0.0; 2], time_s);
+    reading.scan.ranges_m.fill(radius_m as f32);
+    reading
+}
+
 /// The resident memory of this process, bytes; `None` where the operating system does not say it.
 fn resident() -> Option<usize> {
     let pages = std::fs::read_to_string("/proc/self/statm").ok()?;
@@ -48,6 +55,7 @@ fn resident() -> Option<usize> {
 /// One after the other: the memory is that of the process.
 #[test]
 fn a_large_place_takes_the_memory_of_what_was_seen() {
+    cells_that_change_take_little_more_memory();
     two_rooms_a_kilometer_apart_take_the_memory_of_two_rooms();
     a_full_map_goes_on_where_it_is();
 }
@@ -113,4 +121,52 @@ fn a_full_map_goes_on_where_it_is() {
     assert!(mapper.bytes() < full + 70 * of_one, "{} bytes, {full} before", mapper.bytes());
     let index = frame.index(frame.cell_at(&Point2::new(21.0, 21.0))).unwrap();
     assert!(mapper.is_in_view(index) && mapper.statistics(index).gaps_from_free == 1);
+}
+
+/// A round wall that comes near and goes away again, cell by cell, three times: each of its cells becomes blocked and free, and is
+/// hidden in between.
+fn cells_that_change_take_little_more_memory() {
+    const FAR_M: f64 = 9.0;
+    const NEAR_M: f64 = 5.0;
+    const STEPS: u32 = 80;
+    const SCANS_PER_STEP: u32 = 4;
+    let frame = GridFrame::new(Point2::origin(), 0.05, 800, 800).unwrap();
+    let settings = MapperSettings {
+        estimator: EstimatorChoice::named("shared-prior").unwrap(),
+        ..MapperSettings::default()
+    };
+    let mut mapper = Mapper::new(&settings, frame).unwrap();
+    let mut time_s = 0.0;
+    let mut look = |mapper: &mut Mapper, radius_m: f64, scans: u32| {
+        for _ in 0..scans {
+            time_s += 0.1;
+            mapper.update(&round(radius_m, time_s)).unwrap();
+        }
+    };
+    let mut come_and_go = |mapper: &mut Mapper, steps: u32, cycles: u32| {
+        for step in (0..steps).chain((0..steps).rev()).cycle().take((2 * steps * cycles) as usize) {
+            let share = f64::from(step) / f64::from(STEPS);
+            look(mapper, FAR_M + (NEAR_M - FAR_M) * share, SCANS_PER_STEP);
+        }
+    };
+    // What a map with changes takes whatever their number, as the prior of the rates, is there after a few of them.
+    come_and_go(&mut mapper, STEPS / 8, 3);
+    let (still, resident_before, few) = (mapper.bytes(), resident(), mapper.changed().count());
+    come_and_go(&mut mapper, STEPS, 3);
+    let changed: Vec<usize> = mapper.changed().collect();
+    let cycles: u32 = changed.iter().map(|&index| mapper.statistics(index).cycles()).sum();
+    let count = (changed.len() - few) as f64;
+    assert!(count > 50_000.0 && f64::from(cycles) > 2.0 * count, "{count} changed cells, {cycles} cycles");
+    let per_cell = (mapper.bytes() - still) as f64 / count;
+    println!("{per_cell:.0} bytes per changed cell by Mapper::bytes, {count} cells, {cycles} cycles");
+    let seen = Mapper::BYTES_PER_SEEN_CELL as f64;
+    assert!(
+        seen + per_cell <= 410.0,
+        "{per_cell} bytes per changed cell beside {seen} of a cell that was seen"
+    );
+    if let Some((before, after)) = resident_before.zip(resident()) {
+        let resident = (after - before) as f64 / count;
+        println!("{resident:.0} bytes per changed cell are resident");
+        assert!(resident <= 470.0, "{resident} bytes per changed cell are resident");
+    }
 }

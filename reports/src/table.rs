@@ -21,7 +21,10 @@ const HOW_TO_READ_PHYSICS: &str = "\
 How to read it: errors are 0, map quality and AUC are 1 at best; final is the
 value at the end, area the mean over the run, * the best; AUC tells how well the
 rates separate changing cells from static cells, seen is the share of the cells
-that can be seen.
+that can be seen. Predictions: deviance is 1 for rates that predict the events
+to come, 0 for the best constant, or for the known one; passages are those per
+hour in squares of half a meter, busiest the share of their busiest tenth that
+is found; Brier scores of cells out of view, 0 at best.
 ";
 
 /// Longer names are broken at their hyphens beside the differences.
@@ -54,6 +57,15 @@ const PHYSICS_COLUMNS: [Column; 6] = [
     ("map quality", "all cells", Measure::Final(Metric::MapQuality), Kind::Quality),
     ("", "changing", Measure::Final(Metric::MapQualityChanging), Kind::Quality),
     ("cells", "seen", Measure::Final(Metric::Coverage), Kind::Share),
+];
+/// How well the rates and the map predict.
+const PREDICTION_COLUMNS: [Column; 6] = [
+    ("deviance", "of best", Measure::Final(Metric::PredictiveDeviance), Kind::Quality),
+    ("", "of known", Measure::Final(Metric::PredictiveDevianceKnown), Kind::Quality),
+    ("passages", "log error", Measure::Final(Metric::PassagesLogError), Kind::Error),
+    ("", "busiest", Measure::Final(Metric::BusiestTenthHit), Kind::Quality),
+    ("Brier score", "predicted", Measure::Area(Metric::Brier), Kind::Error),
+    ("", "last seen", Measure::Area(Metric::BrierLastSeen), Kind::Error),
 ];
 
 /// The columns of the differences, with their decimals.
@@ -94,6 +106,7 @@ pub(super) fn table(report: &Report) -> String {
         let paragraphs = [
             format!("{}\n{}", run.world, conditions(run, &report.settings)),
             values(&run.strategies, columns).to_string(),
+            predictions(&run.strategies, length.choose(&[][..], &PREDICTION_COLUMNS)),
             differences(run).unwrap_or_default(),
             conclusions.collect::<Vec<_>>().join("\n"),
         ];
@@ -118,6 +131,11 @@ fn aligned(rows: Vec<Vec<String>>) -> Table {
     table
 }
 
+/// A row per strategy, if there are columns.
+fn predictions(strategies: &[StrategyResult], columns: &[Column]) -> String {
+    if columns.is_empty() { String::new() } else { values(strategies, columns).to_string() }
+}
+
 /// A row per strategy.
 fn values(strategies: &[StrategyResult], columns: &[Column]) -> Table {
     let head = |name: &str, of: fn(&Column) -> String| {
@@ -133,9 +151,9 @@ fn values(strategies: &[StrategyResult], columns: &[Column]) -> Table {
         rows[2..].iter_mut().zip(cells).for_each(|(row, cell)| row.push(cell));
     }
     let mut table = aligned(rows);
-    for (column, _) in
-        columns.iter().enumerate().filter(|(_, (_, name, ..))| ["final", "all cells"].contains(name))
-    {
+    for (column, _) in columns.iter().enumerate().filter(|(_, (_, name, ..))| {
+        ["final", "all cells", "of best", "log error", "predicted"].contains(name)
+    }) {
         table.modify((0, column + 1), Span::column(2)).modify((0, column + 1), Alignment::center());
     }
     table

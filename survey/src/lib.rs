@@ -48,7 +48,10 @@ pub use known_place::KnownPlace;
 pub use masks::{CHANGE_HORIZON_S, MASKS, masks};
 pub use passes::{PassError, Stage};
 pub use permanent::permanent;
-pub use places::{Lasting, Place, PlaceKind, PlaceName, PlaceRates, PlaceSince, Since, StillName, Trend};
+pub use places::{
+    Direction, Lasting, Place, PlaceKind, PlaceName, PlaceRates, PlaceSince, Since, StillName, TrafficTile,
+    Trend,
+};
 pub use quality::{Doubt, DoubtKind, Quality, Verdict};
 pub use replay::{FoundPoses, Replay};
 pub use route::{FirstPass, Route};

@@ -56,7 +56,7 @@ macro_rules! metrics {
 }
 
 metrics! {
-    13:
+    16:
     /// Mean relative error of the rates over the cells that truly changed.
     rate_error => RateError in NOT_NEGATIVE,
     /// The log error of the rates: per moving thing, then over the things.
@@ -83,6 +83,12 @@ metrics! {
     rate_auc => RateAuc in SHARE,
     /// The explained Poisson deviance of the events that followed, against the best constant, by the last forecast.
     predictive_deviance => PredictiveDeviance in f64::NEG_INFINITY..=1.0,
+    /// The same, against the constant that the robot knew when it made the forecast.
+    predictive_deviance_known => PredictiveDevianceKnown in f64::NEG_INFINITY..=1.0,
+    /// The log error of passages per hour over busy tiles of 0.5 m.
+    passages_log_error => PassagesLogError in 0.0..=MAX_LOG_ERROR,
+    /// The share of the truly busiest tenth of these tiles that is in the busiest tenth by the estimates.
+    busiest_tenth_hit => BusiestTenthHit in SHARE,
 }
 
 /// The result of one trial: a strategy with an estimator in a world.

@@ -1,5 +1,8 @@
 use super::{Sample, TrialWorld};
-use crate::metrics::{ChangingAccuracy, Forecasts, Prediction, RateScores, map_scores, rate_scores};
+use crate::metrics::{
+    ChangingAccuracy, DevianceScores, Forecasts, PassageScores, Prediction, RateScores, map_scores,
+    passage_scores, rate_scores,
+};
 use interfaces::GroundTruth;
 use mapper::Mapper;
 
@@ -67,6 +70,9 @@ impl Sampler {
     fn sample(&mut self, mapper: &Mapper, truth: &impl GroundTruth) -> Sample {
         let (rates, map) = (rate_scores(mapper, truth), map_scores(mapper, truth));
         let RateScores { rate_error_all, log_error, log_error_of_range, rate_auc, false_rate_hz, .. } = rates;
+        let PassageScores { log_error_busy, busiest_tenth_hit } = passage_scores(mapper, truth);
+        let DevianceScores { predictive_deviance, predictive_deviance_known, .. } =
+            self.forecasts.scores().rates;
         let brier = std::mem::take(&mut self.prediction).scores();
         let or_nan = |value: Option<f64>| value.unwrap_or(f64::NAN);
         Sample {
@@ -83,7 +89,10 @@ impl Sampler {
             brier_last_seen: or_nan(brier.brier_last_seen),
             brier_mean: or_nan(brier.brier_mean),
             rate_auc: or_nan(rate_auc),
-            predictive_deviance: or_nan(self.forecasts.scores().rates.predictive_deviance),
+            predictive_deviance: or_nan(predictive_deviance),
+            predictive_deviance_known: or_nan(predictive_deviance_known),
+            passages_log_error: or_nan(log_error_busy),
+            busiest_tenth_hit: or_nan(busiest_tenth_hit),
         }
     }
 }

@@ -138,6 +138,8 @@ impl Mapper {
         let alone = chain.blocked_probability(observed);
         let slot = self.cells.slot(index)?;
         let by_tile = self.tiles.of_cell(self.frame().cell(index), slot, self.time() + time);
-        Some(by_tile.map_or(alone, |tile| tile.blocked_probability(observed, chain.memory, alone)))
+        let by_door = self.leaf_cells.forecast(index, self.things(), self.time() + time, self.tiles.dates());
+        let predicted = by_tile.map_or(alone, |tile| tile.blocked_probability(observed, chain.memory, alone));
+        Some(by_door.map_or(predicted, |door| door.blocked_probability(observed, chain.memory, predicted)))
     }
 }

@@ -4,7 +4,9 @@
 use super::{Door, Thing, ThingKind};
 use crate::Growth;
 use crate::change::{CellMap, RateDistribution};
+use crate::clock::Dates;
 use crate::look_counts::LookCounts;
+use crate::tiles::{ByClock, HALF_HOURS};
 use interfaces::CellState;
 use std::collections::BTreeMap;
 
@@ -71,6 +73,28 @@ impl LeafCells {
         let (time_s, is_open) = door.last_look()?;
         let state = usize::from(is_open);
         (!cell.counts[state].is_empty()).then(|| LeafLook { time_s, blocked: cell.shares()[state] })
+    }
+
+    /// What the clock of the door of a cell says of it at a time, s; `None` if the cell was never seen with the door closed, or
+    /// never with the door open.
+    pub(crate) fn forecast(
+        &self,
+        index: usize,
+        things: &[Thing],
+        time_s: f64,
+        dates: Dates,
+    ) -> Option<ByClock> {
+        let (cell, door) = self.find(index, things)?;
+        let (_, was_open) = door.last_look()?;
+        if cell.counts.iter().any(|counts| counts.is_empty()) {
+            return None;
+        }
+        let [closed, open] = cell.shares();
+        let is_open = door.clock.probability(dates.epoch_s + time_s, dates.calendar);
+        let later = closed + (open - closed) * is_open;
+        let weight = door.clock.half_hours();
+        let weight = weight / (weight + HALF_HOURS);
+        Some(ByClock { later, then: if was_open { open } else { closed }, weight })
     }
 
     /// The rate of a cell by the motions of its door, as a prior: the leaf passes over it when the door opens and when it closes,

@@ -5,6 +5,8 @@
 
 mod predicted;
 
+pub(crate) use predicted::{ByClock, HALF_HOURS};
+
 use crate::change::{CellMap, Slot};
 use crate::clock::Dates;
 use crate::look_counts::LookCounts;

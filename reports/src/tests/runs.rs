@@ -21,6 +21,9 @@ fn flat(world: &str, strategy: &str, seed: u64, value: f64) -> Trial {
         brier_mean: value,
         rate_auc: value,
         predictive_deviance: value,
+        predictive_deviance_known: value,
+        passages_log_error: value,
+        busiest_tenth_hit: value,
     };
     Trial {
         world: world.into(),

@@ -57,6 +57,9 @@ pub(crate) fn trial(world: usize, estimator: &str, strategy: &str, seed: u64) ->
             brier_mean: later(0.24 + noise),
             rate_auc: later(0.9 * quality),
             predictive_deviance: later(learned - 0.2),
+            predictive_deviance_known: later(learned - 0.1),
+            passages_log_error: later(0.7 * log_error),
+            busiest_tenth_hit: later(learned),
         }
     });
     Trial {

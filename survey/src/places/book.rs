@@ -1,10 +1,11 @@
 //! What is kept of places over all sessions: their numbers, their names, and what is needed to compare sessions.
 
-use super::Place;
+use super::directions::{Direction, Directions};
 use super::groups::Group;
 use super::names::PlaceName;
 use super::passages::{Key, Passages, Spot, cell_key};
 use super::session::Session;
+use super::{HOUR_S, Place, TrafficTile};
 use mapper::Mapper;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
@@ -19,6 +20,9 @@ pub(crate) struct PlaceBook {
     names: Vec<PlaceName>,
     pub(super) passages: Passages,
     pub(super) session: Session,
+    /// Saved behind the book, as states with an older format have none.
+    #[serde(skip)]
+    pub(crate) directions: Directions,
 }
 
 impl PlaceBook {
@@ -40,18 +44,41 @@ impl PlaceBook {
     /// Counts the changes of the last reading.
     pub(crate) fn note(&mut self, mapper: &Mapper) {
         self.passages.note(mapper);
+        self.directions.note(mapper);
         self.session.note(mapper);
     }
 
     /// A new session begins with this log.
     pub(crate) fn begin_session(&mut self, mapper: &Mapper, log: usize) {
         self.passages.begin_session();
+        self.directions.begin_session();
         self.session = Session::begin(mapper, log, self.last);
     }
 
     /// The busiest spot of some cells.
     pub(super) fn spot(&self, mapper: &Mapper, cells: &[usize]) -> Spot {
         self.passages.busiest(mapper, cells)
+    }
+
+    /// The squares of half a meter of a place with traffic.
+    pub(super) fn tiles(&self, mapper: &Mapper, cells: &[usize]) -> Vec<TrafficTile> {
+        let tile = |spot: Spot| {
+            let [x_m, y_m] = spot.middle(mapper.frame());
+            let hours = Some(spot.observed_s / HOUR_S).filter(|hours| *hours > 0.0);
+            TrafficTile {
+                x_m,
+                y_m,
+                passages: spot.passages(),
+                passages_per_hour: hours.map(|hours| f64::from(spot.passages()) / hours),
+                direction: self.directions.of(spot.key),
+            }
+        };
+        self.passages.spots(mapper, cells).into_iter().map(tile).collect()
+    }
+
+    /// Where most of what passes a spot goes.
+    pub(super) fn direction(&self, spot: &Spot) -> Option<Direction> {
+        self.directions.of(spot.key)
     }
 
     /// The numbers of places. A place has the number of most of its cells, if no other place has more cells of this number; a

@@ -2,10 +2,12 @@
 //!
 //! - `groups`: neighboring cells that change, and the cells of doors and of furniture.
 //! - `passages`: how often something came into each spot of half a meter.
+//! - `directions`: where what passes a spot goes.
 //! - `book`: the numbers and the names of places, which they keep over all sessions.
 //! - `session`, `since`: what is different since the last session.
 
 mod book;
+mod directions;
 mod groups;
 mod names;
 mod passages;
@@ -15,6 +17,8 @@ mod since;
 mod tests;
 
 pub(crate) use book::PlaceBook;
+pub use directions::Direction;
+pub(crate) use directions::Directions;
 pub use names::{PlaceName, StillName};
 pub(crate) use since::since;
 pub use since::{Lasting, PlaceSince, Since, Trend};
@@ -62,9 +66,29 @@ pub struct Place {
     /// How often it changes; `None` where the times of the log are unusable.
     #[serde(flatten)]
     pub rates: Option<PlaceRates>,
+    /// Of traffic: where most of what passes the spot with the most passages goes. `None` for other places, where too few
+    /// passages were seen, and where they have no common axis.
+    pub direction: Option<Direction>,
+    /// Of traffic: its squares of half a meter; empty for other places.
+    pub tiles: Vec<TrafficTile>,
     /// Its cells, by their index.
     #[serde(skip)]
     pub cells: Vec<usize>,
+}
+
+/// A square of half a meter through which something passes.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct TrafficTile {
+    /// Its middle, m.
+    pub x_m: f64,
+    /// Its middle, m.
+    pub y_m: f64,
+    /// The number of times that something came in view.
+    pub passages: u32,
+    /// The passages per hour in view; `null` if it was never in view between two readings.
+    pub passages_per_hour: Option<f64>,
+    /// Where most of what passes goes; `null` where too few passages were seen, and where they have no common axis.
+    pub direction: Option<Direction>,
 }
 
 /// What a place looks like.
@@ -143,8 +167,14 @@ impl PlaceRates {
 pub(crate) fn places(mapper: &Mapper, log: &ChangeLog, book: &PlaceBook) -> Vec<Place> {
     let mut found: Vec<(Place, Group)> = Vec::new();
     for group in groups(mapper) {
-        let place = place(mapper, log, &group, book.spot(mapper, &group.cells));
-        found.extend(place.filter(|place| group.counts(mapper, place.changes)).map(|place| (place, group)));
+        let spot = book.spot(mapper, &group.cells);
+        let place = place(mapper, log, &group, spot).filter(|place| group.counts(mapper, place.changes));
+        let Some(mut place) = place else { continue };
+        if place.kind == PlaceKind::Traffic {
+            place.direction = book.direction(&spot);
+            place.tiles = book.tiles(mapper, &group.cells);
+        }
+        found.push((place, group));
     }
     found.sort_by(|(a, _), (b, _)| liveliness(mapper, b).total_cmp(&liveliness(mapper, a)));
     let (mut places, groups): (Vec<Place>, Vec<Group>) = found.into_iter().unzip();
@@ -212,6 +242,8 @@ fn place(mapper: &Mapper, log: &ChangeLog, group: &Group, spot: Spot) -> Option<
         area_m2: cells.len() as f64 * frame.resolution_m().powi(2),
         changes: cells.iter().map(|index| mapper.statistics(*index).events()).max()?,
         rates: Some(rates),
+        direction: None,
+        tiles: Vec::new(),
         cells: cells.clone(),
     })
 }

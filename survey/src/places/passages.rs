@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// The side of a spot, m.
-const SIDE_M: f64 = 0.5;
+pub(super) const SIDE_M: f64 = 0.5;
 /// What blocks a spot without a change for this time, s, is no longer the body that came.
 const FORGOTTEN_S: f64 = 30.0;
 
@@ -71,6 +71,12 @@ impl Spot {
     pub(super) fn passages(&self) -> u32 {
         self.count.all()
     }
+
+    /// Its middle, m.
+    pub(super) fn middle(&self, frame: &GridFrame) -> [f64; 2] {
+        let side = (SIDE_M / frame.resolution_m()).round().max(1.0);
+        [self.key.0, self.key.1].map(|number| (f64::from(number) + 0.5) * side * frame.resolution_m())
+    }
 }
 
 /// The passages of every spot.
@@ -129,8 +135,8 @@ impl Passages {
         }
     }
 
-    /// The spot of some cells where the most passages were counted; of equal ones, the one that was in view for longer.
-    pub(super) fn busiest(&self, mapper: &Mapper, cells: &[usize]) -> Spot {
+    /// The spots of some cells, by their keys.
+    pub(super) fn spots(&self, mapper: &Mapper, cells: &[usize]) -> Vec<Spot> {
         let mut spots: BTreeMap<Key, (f64, f64)> = BTreeMap::new();
         for index in cells {
             let (sum_s, count) = spots.entry(spot_key(mapper.frame(), *index)).or_default();
@@ -142,9 +148,14 @@ impl Passages {
             let before_in_all = passages.before;
             Spot { key, count: passages, before_in_all, after_gap, observed_s: sum_s / count }
         };
+        spots.into_iter().map(spot).collect()
+    }
+
+    /// The spot of some cells where the most passages were counted; of equal ones, the one that was in view for longer.
+    pub(super) fn busiest(&self, mapper: &Mapper, cells: &[usize]) -> Spot {
         let order =
             |a: &Spot, b: &Spot| a.passages().cmp(&b.passages()).then(a.observed_s.total_cmp(&b.observed_s));
-        let spots: Vec<Spot> = spots.into_iter().map(spot).collect();
+        let spots = self.spots(mapper, cells);
         let before_in_all = spots.iter().map(|spot| spot.before_in_all).sum();
         let busiest = spots.into_iter().max_by(order);
         busiest.map(|spot| Spot { before_in_all, ..spot }).unwrap_or_default()

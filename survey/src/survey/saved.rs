@@ -3,7 +3,7 @@
 use super::Survey;
 use crate::change_log::ChangeLog;
 use crate::known_place::KnownPlace;
-use crate::places::PlaceBook;
+use crate::places::{Directions, PlaceBook};
 use crate::quality::Quality;
 use crate::replay::FoundPoses;
 use crate::settings::SurveySettings;
@@ -66,7 +66,13 @@ impl SavedSurvey {
         let place = place.map(|place| Arc::unwrap_or_clone(place).snapshot());
         let mapper = mapper.map(|mut mapper| (*mapper.frame(), mapper.snapshot()));
         let qualities: Vec<Quality> = logs.iter().map(|log| log.quality.clone()).collect();
-        (to_bytes(&(pose, logs, qualities)), to_bytes(&(place, mapper, changes, book)))
+        let logs = to_bytes(&(pose, logs, qualities));
+        // Without directions, the bytes are those of an earlier state, which has none.
+        let learned = match book.directions.is_empty() {
+            true => to_bytes(&(place, mapper, changes, book)),
+            false => to_bytes(&(place, mapper, changes, &book, &book.directions)),
+        };
+        (logs, learned)
     }
 }
 
@@ -95,13 +101,17 @@ impl Survey {
         learned: &[u8],
     ) -> Result<Self, ValueError> {
         type Earlier = (Option<Vec<u8>>, Option<(GridFrame, Vec<u8>)>, ChangeLog);
-        type Learned = (Option<Vec<u8>>, Option<(GridFrame, Vec<u8>)>, ChangeLog, PlaceBook);
-        let (place, map, changes, book) = match from_bytes::<Learned>(learned) {
-            Ok((place, map, changes, book)) => (place, map, changes, Some(book)),
-            Err(_) => {
+        type Undirected = (Option<Vec<u8>>, Option<(GridFrame, Vec<u8>)>, ChangeLog, PlaceBook);
+        type Learned = (Option<Vec<u8>>, Option<(GridFrame, Vec<u8>)>, ChangeLog, PlaceBook, Directions);
+        let (place, map, changes, book) =
+            if let Ok((place, map, changes, mut book, directions)) = from_bytes::<Learned>(learned) {
+                book.directions = directions;
+                (place, map, changes, Some(book))
+            } else if let Ok((place, map, changes, book)) = from_bytes::<Undirected>(learned) {
+                (place, map, changes, Some(book))
+            } else {
                 from_bytes::<Earlier>(learned).map(|(place, map, changes)| (place, map, changes, None))?
-            }
-        };
+            };
         let is_earlier = book.is_none();
         let place = place.map(|bytes| KnownPlace::restored(&settings, &bytes)).transpose()?;
         let mut survey = Self {

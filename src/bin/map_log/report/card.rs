@@ -8,13 +8,16 @@ use curious::week;
 use curious::words::{Seen, changed, date, length_of, range, rate, short, times};
 use mapper::{Door, Furniture, Leaf, ThingKind, Week};
 use maud::{Markup, html};
-use nalgebra::Point2;
-use survey::{Place, PlaceKind};
+use nalgebra::{Point2, Vector2};
+use std::f64::consts::PI;
+use survey::{Direction, Place, PlaceKind};
 
 /// The side of the picture of a place, m.
 const SIDE_M: f64 = 6.0;
 /// What was looked at for this time, s, has an upper bound that says something.
 const LONG_S: f64 = 600.0;
+/// Where a smaller share of the passages has the heading of most, they go both ways.
+const BOTH_WAYS: f64 = 0.75;
 
 impl Page<'_> {
     /// The card of a place.
@@ -28,7 +31,7 @@ impl Page<'_> {
                     dt { "What it looks like" } dd { (self.looks(place)) }
                     @if let Some(rates) = &place.rates {
                         @let seen = self.seen(place).unwrap_or_else(|| Seen::of_place(rates));
-                        dt { "How often" } dd { (self.often(place, &seen)) }
+                        dt { "How often" } dd { (self.often(place, &seen)) (self.ways(place)) }
                         dt { "When" } dd {
                             p { "Last change: " (self.time(rates.last_change_s)) "." }
                             @if let Some(week) = &week { (week_of(week, if self.door(place).is_some() { "open" } else { "blocked" })) }
@@ -152,6 +155,19 @@ impl Page<'_> {
         }
     }
 
+    /// Where what passes goes, in words.
+    fn ways(&self, place: &Place) -> String {
+        let Some(direction) = &place.direction else { return String::new() };
+        let (heading, back) =
+            (self.plan.towards(direction.heading_rad), self.plan.towards(direction.heading_rad + PI));
+        let share = 100.0 * direction.share;
+        format!(
+            " Of those whose way was seen, {share:.0} % go {heading} in the picture, {:.0} % {back} ({}, arrows).",
+            100.0 - share,
+            times(direction.passages)
+        )
+    }
+
     /// A time of the map, in words.
     pub(super) fn time(&self, time_s: f64) -> String {
         let after = || format!("{} after the first scan", length_of(time_s));
@@ -166,6 +182,7 @@ impl Page<'_> {
             svg.plan viewBox={ "0 0 " (number(width)) " " (number(height)) } role="img" aria-label={ "Surroundings of place " (place.number) } font-family="sans-serif" {
                 (plan.image(Shown::Places))
                 @if let Some(door) = self.door(place) { (leaf(&plan, door)) } @else { (outline(&plan, &self.cells(place))) }
+                @for tile in &place.tiles { @if let Some(direction) = &tile.direction { (arrow(&plan, [tile.x_m, tile.y_m].into(), direction)) } }
                 @if let Some(Furniture { from: Some(from), to: Some(to) }) = self.furniture(place) { (line(&plan, [from.center, to.center], "6 4")) }
                 rect x="0" y=(number(height - 28.0)) width="106" height="28" fill="#fff" opacity="0.85" {}
                 (plan.scale_bar([8.0, height - 8.0]))
@@ -222,6 +239,23 @@ fn leaf(plan: &Plan, door: &Door) -> Markup {
 fn line(plan: &Plan, ends: [Point2<f64>; 2], dashes: &str) -> Markup {
     let [[x1, y1], [x2, y2]] = ends.map(|end| plan.unit(&end).map(number));
     html! { line x1=(x1) y1=(y1) x2=(x2) y2=(y2) stroke="#0072b2" stroke-width="4" stroke-dasharray=(dashes) {} }
+}
+
+/// An arrow along the heading of most passages of a tile; with two heads if at least a quarter goes the opposite way.
+fn arrow(plan: &Plan, at: Point2<f64>, direction: &Direction) -> Markup {
+    let point = |along_m: f64, beside_m: f64| {
+        let [x, y] =
+            plan.unit(&(at + interfaces::rotation(direction.heading_rad) * Vector2::new(along_m, beside_m)));
+        format!("{},{}", number(x), number(y))
+    };
+    let head =
+        |way: f64| [point(way * 0.08, 0.08), point(way * 0.2, 0.0), point(way * 0.08, -0.08)].join(" ");
+    let is_both = direction.share < BOTH_WAYS;
+    html! {
+        polyline points={ (point(-0.2, 0.0)) " " (point(0.2, 0.0)) } fill="none" stroke="#0072b2" stroke-width="2" {}
+        polyline points=(head(1.0)) fill="none" stroke="#0072b2" stroke-width="2" {}
+        @if is_both { polyline points=(head(-1.0)) fill="none" stroke="#0072b2" stroke-width="2" {} }
+    }
 }
 
 /// A rectangle around points.

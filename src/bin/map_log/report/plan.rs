@@ -8,7 +8,7 @@ use mapper::Mapper;
 use maud::{Markup, html};
 use nalgebra::{Point2, Vector2};
 use results::drawing::palette;
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 use survey::upright_rad;
 use viewer::layers::{BLOCKED, FREE, Layer, UNKNOWN};
 use viewer::scene::TimeUnit;
@@ -138,6 +138,22 @@ impl<'a> Plan<'a> {
             _ => "at the upper right",
         };
         words.to_owned()
+    }
+
+    /// A heading on the plan, in words.
+    pub(super) fn towards(&self, heading_rad: f64) -> &'static str {
+        const WORDS: [&str; 8] = [
+            "right",
+            "up to the right",
+            "up",
+            "up to the left",
+            "left",
+            "down to the left",
+            "down",
+            "down to the right",
+        ];
+        let eighths = ((heading_rad + self.turn_rad) / FRAC_PI_4).round();
+        WORDS[eighths.rem_euclid(8.0) as usize]
     }
 
     /// The size of the drawing, in units.
