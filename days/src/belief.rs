@@ -54,10 +54,13 @@ impl Model {
         }
         let mut laws = [false, true].map(|is_blocked| belief.after(is_blocked).phases);
         let (mut ahead, mut square, mut sum) = (0, 1.0, 0.0);
+        let mut switch = 0;
         while ahead < horizon && square > 1e-6 {
             let at = step + ahead;
-            let switch = self.hours.next_switch_s(at as f64 * STEP_S) / STEP_S;
-            let longest = (horizon - ahead).min((ahead / 2).max(1)).min((switch as usize).saturating_sub(at).max(1));
+            if switch <= at {
+                switch = (self.hours.next_switch_s(at as f64 * STEP_S) / STEP_S) as usize;
+            }
+            let longest = (horizon - ahead).min((ahead / 2).max(1)).min(switch.saturating_sub(at).max(1));
             let power = (longest.ilog2() as usize).min(POWERS - 1);
             laws = laws.map(|law| advanced(&law, &self.regime(at)[power]));
             let rho = blocked_probability(&laws[1]) - blocked_probability(&laws[0]);

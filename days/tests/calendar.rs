@@ -21,7 +21,9 @@ fn timeline(seed: u64) -> Timeline {
 
 fn changes(timeline: &mut Timeline, times_s: impl IntoIterator<Item = f64>) -> Vec<(f64, bool)> {
     let mut changes = Vec::new();
-    times_s.into_iter().for_each(|time_s| timeline.advance(time_s, |at_s, state| changes.push((at_s, state))));
+    times_s
+        .into_iter()
+        .for_each(|time_s| timeline.advance(time_s, |at_s, state| changes.push((at_s, state))));
     changes
 }
 

@@ -64,7 +64,9 @@ fn main() {
     let mut plans = vec![("no looks".to_owned(), Plan::Never)];
     for minutes in &options.length {
         let length = (60.0 * minutes / STEP_S) as usize;
-        let name = |name: &str| if options.length.len() == 1 { name.to_owned() } else { format!("{name} {minutes}") };
+        let name = |name: &str| {
+            if options.length.len() == 1 { name.to_owned() } else { format!("{name} {minutes}") }
+        };
         plans.push((name("curious"), Plan::Curious(length)));
         plans.push((name("round"), Plan::Round(length)));
         plans.push((name("coverage"), Plan::Coverage(length)));

@@ -1,5 +1,6 @@
 use super::ranges::{
-    BEFORE_REST_S, HALL_SPACING_M, LONG_SHARE, LOOK_S, REST_S, Range, Ranges, SEEN_ALSO, SPEED_MPS, ranges, stays,
+    BEFORE_REST_S, HALL_SPACING_M, LONG_SHARE, LOOK_S, REST_S, Range, Ranges, SEEN_ALSO, SPEED_MPS, ranges,
+    stays,
 };
 use super::{Building, Kind, Room, Thing, ThingKind, Viewpoint};
 use crate::calendar::{Habit, Hours, Stays};
@@ -43,8 +44,13 @@ impl Draw {
         // Rooms lie in pairs on both sides of the hall.
         let length_m: f64 = widths.iter().step_by(2).sum();
         let halls = (length_m / HALL_SPACING_M).ceil().max(1.0) as usize;
-        let mut building =
-            Building { things: Vec::new(), rooms: Vec::new(), viewpoints: Vec::new(), dock: 0, steps: Vec::new() };
+        let mut building = Building {
+            things: Vec::new(),
+            rooms: Vec::new(),
+            viewpoints: Vec::new(),
+            dock: 0,
+            steps: Vec::new(),
+        };
         let mut spots = Vec::new();
         for hall in 0..halls {
             let along_m = (hall as f64 + 0.5) * length_m / halls as f64;
@@ -63,12 +69,21 @@ impl Draw {
             }
             begin_m += pair[0];
         }
-        building.steps =
-            spots.iter().map(|from| spots.iter().map(|to| Building::steps_of(travel_s(from, to) + LOOK_S)).collect()).collect();
+        building.steps = spots
+            .iter()
+            .map(|from| spots.iter().map(|to| Building::steps_of(travel_s(from, to) + LOOK_S)).collect())
+            .collect();
         building
     }
 
-    fn room(&mut self, building: &mut Building, spots: &mut Vec<Spot>, hours: &Hours, [begin_m, end_m]: Range, side: f64) {
+    fn room(
+        &mut self,
+        building: &mut Building,
+        spots: &mut Vec<Spot>,
+        hours: &Hours,
+        [begin_m, end_m]: Range,
+        side: f64,
+    ) {
         let door_m = self.rng.uniform(begin_m..end_m);
         let halls = building.viewpoints.iter().take_while(|viewpoint| viewpoint.room.is_none()).count();
         let distance = |hall: &usize| (spots[*hall].along_m - door_m).abs();
@@ -86,7 +101,11 @@ impl Draw {
         let viewpoints = self.count(self.ranges.viewpoints_per_room);
         for _ in 0..viewpoints {
             let along_m = self.rng.uniform(begin_m..end_m);
-            spots.push(Spot { along_m, across_m: side * (1.0 + self.rng.uniform(0.3..1.0) * depth_m), door_m });
+            spots.push(Spot {
+                along_m,
+                across_m: side * (1.0 + self.rng.uniform(0.3..1.0) * depth_m),
+                door_m,
+            });
             building.viewpoints.push(Viewpoint { room: Some(room), sees: door.into_iter().collect() });
         }
         for _ in 0..self.count(self.ranges.things_per_room) {
@@ -118,7 +137,8 @@ impl Draw {
         };
         let active = [stays(0), stays(2)];
         let factor = self.log_uniform(self.ranges.quiet_factor);
-        let slower = |stays: Stays| Stays { short_s: factor * stays.short_s, long_s: factor * stays.long_s, ..stays };
+        let slower =
+            |stays: Stays| Stays { short_s: factor * stays.short_s, long_s: factor * stays.long_s, ..stays };
         let mut quiet = active.map(slower);
         if self.rng.bernoulli(self.ranges.rest_share) {
             // Doors rest closed, all else rests away.
@@ -163,12 +183,16 @@ mod tests {
                 assert_eq!(building, Building::generate(kind, seed));
                 let things = building.things.len();
                 assert!((5..128).contains(&things), "{kind:?} {seed}: {things} things");
-                let is_seen = |thing| building.viewpoints.iter().any(|viewpoint| viewpoint.sees.contains(&thing));
+                let is_seen =
+                    |thing| building.viewpoints.iter().any(|viewpoint| viewpoint.sees.contains(&thing));
                 assert!((0..things).all(is_seen));
                 assert!(building.viewpoints[building.dock].room.is_none());
                 for room in &building.rooms {
                     let threshold = &building.viewpoints[room.threshold];
-                    assert!(threshold.room.is_none() && room.door.is_none_or(|door| threshold.sees.contains(&door)));
+                    assert!(
+                        threshold.room.is_none()
+                            && room.door.is_none_or(|door| threshold.sees.contains(&door))
+                    );
                 }
                 // Times are symmetric, and obey the triangle inequality up to the rounding and the look at the stop.
                 let all = 0..building.viewpoints.len();

@@ -92,12 +92,18 @@ pub(super) fn stays(kind: ThingKind) -> [Range; 4] {
         ThingKind::Door => {
             [[MIN_S, 20.0 * MIN_S], [HOUR_S, 12.0 * HOUR_S], [MIN_S, 20.0 * MIN_S], [HOUR_S, 12.0 * HOUR_S]]
         }
-        ThingKind::Person => {
-            [[2.0 * MIN_S, 30.0 * MIN_S], [HOUR_S, 6.0 * HOUR_S], [MIN_S, 20.0 * MIN_S], [0.5 * HOUR_S, 4.0 * HOUR_S]]
-        }
-        ThingKind::Box => {
-            [[0.5 * HOUR_S, 4.0 * HOUR_S], [6.0 * HOUR_S, 3.0 * DAY_S], [10.0 * MIN_S, 2.0 * HOUR_S], [3.0 * HOUR_S, 2.0 * DAY_S]]
-        }
+        ThingKind::Person => [
+            [2.0 * MIN_S, 30.0 * MIN_S],
+            [HOUR_S, 6.0 * HOUR_S],
+            [MIN_S, 20.0 * MIN_S],
+            [0.5 * HOUR_S, 4.0 * HOUR_S],
+        ],
+        ThingKind::Box => [
+            [0.5 * HOUR_S, 4.0 * HOUR_S],
+            [6.0 * HOUR_S, 3.0 * DAY_S],
+            [10.0 * MIN_S, 2.0 * HOUR_S],
+            [3.0 * HOUR_S, 2.0 * DAY_S],
+        ],
         ThingKind::ParkedRobot => {
             [[10.0 * MIN_S, HOUR_S], [HOUR_S, 5.0 * HOUR_S], [5.0 * MIN_S, HOUR_S], [HOUR_S, 8.0 * HOUR_S]]
         }

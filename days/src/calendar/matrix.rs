@@ -22,7 +22,8 @@ pub(super) fn exponential(rates: &Matrix, time_s: f64) -> Matrix {
     let norm = rates.iter().flatten().fold(0.0_f64, |norm, rate| norm.max((rate * time_s).abs()));
     let squarings = (0..64).find(|power| norm <= 2.0_f64.powi(power - 6)).unwrap_or(64);
     let scaled = rates.map(|row| row.map(|rate| rate * time_s * 2.0_f64.powi(-squarings)));
-    let identity: Matrix = std::array::from_fn(|row| std::array::from_fn(|at| f64::from(u8::from(row == at))));
+    let identity: Matrix =
+        std::array::from_fn(|row| std::array::from_fn(|at| f64::from(u8::from(row == at))));
     // Terms fall by 1/16 at least (four entries of at most 2⁻⁶): the tenth is below the precision of f64.
     let mut sum = (1..=10).rev().fold(identity, |sum, term| {
         let mut next = product(&scaled, &sum);

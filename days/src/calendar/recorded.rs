@@ -69,7 +69,8 @@ impl Recording {
 
     /// The changes with times that begin at 0, s. Where nothing was recorded, the last state stays.
     pub fn known_changes(&self) -> Vec<(f64, bool)> {
-        let known = self.changes.iter().filter_map(|(time_s, state)| Some((time_s - self.start_s(), (*state)?)));
+        let known =
+            self.changes.iter().filter_map(|(time_s, state)| Some((time_s - self.start_s(), (*state)?)));
         let mut changes: Vec<(f64, bool)> = Vec::new();
         for (time_s, is_blocked) in known {
             if changes.last().map_or(is_blocked, |(_, before)| *before != is_blocked) {

@@ -11,7 +11,11 @@ pub struct Timeline {
 
 #[derive(Clone, Debug)]
 enum Source {
-    Habit { habit: Habit, phase: usize, rng: RandomStream },
+    Habit {
+        habit: Habit,
+        phase: usize,
+        rng: RandomStream,
+    },
     /// The changes that are still to come, the next one last.
     Recorded(Vec<(f64, bool)>),
 }

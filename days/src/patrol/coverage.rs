@@ -11,7 +11,7 @@ impl NextViewpoint for Coverage {
             let ages = view.building.viewpoints[viewpoint].sees.iter().map(|thing| view.age(*thing));
             ages.sum::<usize>() as f64 / view.building.steps[view.at][viewpoint] as f64
         };
-        let allowed = (0..view.building.viewpoints.len()).filter(|viewpoint| view.is_allowed(*viewpoint));
+        let allowed = (0..view.building.viewpoints.len()).filter(|viewpoint| view.is_open(*viewpoint));
         // At the beginning no age differs: the nearest one.
         allowed.max_by(|a, b| worth(*a).total_cmp(&worth(*b)).then(b.cmp(a)))
     }

@@ -47,7 +47,7 @@ impl NextViewpoint for CuriousViewpoints {
             weights.sum::<f64>() / sees.len().max(1) as f64
         };
         let allowed: Vec<usize> =
-            (0..view.building.viewpoints.len()).filter(|viewpoint| view.is_allowed(*viewpoint)).collect();
+            (0..view.building.viewpoints.len()).filter(|viewpoint| view.is_open(*viewpoint)).collect();
         let weights: Vec<f64> = allowed.iter().map(|viewpoint| weight(*viewpoint)).collect();
         let sum: f64 = weights.iter().sum();
         if sum <= 0.0 {

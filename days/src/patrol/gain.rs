@@ -14,8 +14,10 @@ const INTERVAL_WEIGHT: f64 = 0.2;
 /// The longest patrol that is planned from the dock, viewpoints.
 const LONGEST: usize = 40;
 
-/// The price of a step of patrol changes by this factor, in the logarithm, in the time of a full charge at full or empty
-/// battery.
+/// The charge around which the price stays, as a share of the full one.
+const TARGET_CHARGE: f64 = 0.25;
+/// The price of a step of patrol changes by this factor, in the logarithm, in the time of a full charge, times the difference from
+/// the target.
 const PRICE_GAIN: f64 = 4.0;
 
 /// Goes where the expected integral of the Brier score falls most, by looks, until the next look at each thing, per time
@@ -61,7 +63,7 @@ impl Gain {
 
     fn worth<'a>(&self, view: &'a View<'a>) -> Worth<'a> {
         let gain = |thing: usize| {
-            let horizon = self.intervals[thing].max(1.0) as usize;
+            let horizon = self.intervals[thing].max(view.age(thing) as f64).max(1.0) as usize;
             view.models[thing].gain(&view.beliefs[thing], view.step, horizon)
         };
         let bits = |sees: &Vec<usize>| sees.iter().fold(0, |bits, thing| bits | 1 << thing);
@@ -78,7 +80,7 @@ impl Gain {
         let passed = (view.step - self.priced_at) as f64 * view.duty.charge_per_step() / full;
         self.priced_at = view.step;
         if let Some(price) = &mut self.price {
-            *price *= libm::exp(PRICE_GAIN * passed * (0.5 - view.charge_steps / full));
+            *price *= libm::exp(PRICE_GAIN * passed * (TARGET_CHARGE - view.charge_steps / full));
         }
     }
 }
@@ -121,9 +123,8 @@ impl Worth<'_> {
     fn best(&self, measure: impl Fn(&Draft) -> f64) -> Option<Draft> {
         let viewpoints = 0..self.view.building.viewpoints.len();
         let here = Draft { first: 0, last: self.view.at, steps: 0, gain: 0.0, sees: 0 };
-        let starts = viewpoints.clone().filter(|to| self.view.is_allowed(*to));
-        let mut beam: Vec<Draft> =
-            starts.map(|to| Draft { first: to, ..self.extended(&here, to) }).collect();
+        let starts = viewpoints.clone().filter(|to| self.view.is_open(*to));
+        let mut beam: Vec<Draft> = starts.map(|to| Draft { first: to, ..self.extended(&here, to) }).collect();
         let mut best: Option<(f64, Draft)> = None;
         for depth in 0..LOOKAHEAD {
             let mut measured: Vec<(f64, Draft)> = beam.iter().map(|draft| (measure(draft), *draft)).collect();
@@ -176,7 +177,7 @@ impl Strategy for Gain {
         if view.is_docked {
             let (gain, steps) = worth.patrol();
             let rate = gain / steps as f64;
-            if self.price.is_none() && view.charge_steps >= 0.5 * view.duty.full_steps() {
+            if self.price.is_none() && view.charge_steps >= 0.1 * view.duty.full_steps() {
                 self.price = Some(rate);
             }
             if gain <= 0.0 || self.price.is_none_or(|price| rate < price) {

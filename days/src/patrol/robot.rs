@@ -135,6 +135,7 @@ impl<'a> Patrol<'a> {
             building: self.building,
             models: &self.models,
             beliefs: &self.beliefs,
+            last_states: &self.last_states,
             seen: &self.seen,
         };
         let choice = match strategy.choose(&view, &mut self.rng) {
@@ -144,7 +145,9 @@ impl<'a> Patrol<'a> {
         let begin = self.step;
         let goal = match choice {
             Choice::Go(goal) => goal,
-            Choice::Rest(steps) if is_docked => return Errand { begin, end: begin + steps.max(1), way: None },
+            Choice::Rest(steps) if is_docked => {
+                return Errand { begin, end: begin + steps.max(1), way: None };
+            }
             Choice::Rest(_) => self.building.dock,
         };
         let reached = self.building.reached(self.at, goal, is_blocked);

@@ -3,7 +3,8 @@ use super::view::View;
 use crate::building::Building;
 use interfaces::RandomStream;
 
-/// Goes round all viewpoints, always in the same order, and goes on where the last patrol ended.
+/// Goes round all viewpoints, always in the same order, and goes on where the last patrol ended. Rooms whose door was just
+/// seen closed are skipped.
 pub(super) struct Round {
     tour: Vec<usize>,
     next: usize,
@@ -38,11 +39,14 @@ impl Round {
 
 impl NextViewpoint for Round {
     fn next(&mut self, view: &View<'_>, _: &mut RandomStream) -> Option<usize> {
-        let viewpoint = self.tour[self.next];
+        let count = self.tour.len();
+        let open = (0..count).map(|skipped| (self.next + skipped) % count).find(|at| {
+            let viewpoint = self.tour[*at];
+            view.is_open(viewpoint) || !view.is_allowed(viewpoint)
+        })?;
+        let viewpoint = self.tour[open];
         let is_allowed = view.is_allowed(viewpoint);
-        if is_allowed {
-            self.next = (self.next + 1) % self.tour.len();
-        }
+        self.next = if is_allowed { (open + 1) % count } else { open };
         is_allowed.then_some(viewpoint)
     }
 }

@@ -3,6 +3,9 @@ use crate::belief::{Belief, Model};
 use crate::building::Building;
 use interfaces::RandomStream;
 
+/// A door that was closed is tried again after this time, steps: ten minutes.
+const RETRY_STEPS: usize = 60;
+
 /// What a robot does next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Choice {
@@ -30,6 +33,8 @@ pub struct View<'a> {
     pub models: &'a [Model],
     /// What the robot believes about the things.
     pub beliefs: &'a [Belief],
+    /// The state of each thing at the last look at it; free before the first one.
+    pub last_states: &'a [bool],
     /// The step of the last look at each thing; `None` before the first one.
     pub seen: &'a [Option<usize>],
 }
@@ -41,6 +46,13 @@ impl View<'_> {
         let charge = |by: usize| (steps[self.at][by] + steps[by][*dock]) as f64;
         let threshold = viewpoints[viewpoint].room.map_or(viewpoint, |room| rooms[room].threshold);
         charge(viewpoint).max(charge(threshold)) <= self.charge_steps
+    }
+
+    /// Whether a visit is allowed and no closed door is known to be on the way: none was seen closed in the last ten minutes.
+    pub fn is_open(&self, viewpoint: usize) -> bool {
+        let door = self.building.door_between(self.at, viewpoint);
+        let is_closed = door.is_some_and(|door| self.last_states[door] && self.age(door) < RETRY_STEPS);
+        self.is_allowed(viewpoint) && !is_closed
     }
 
     /// The time since a thing was last seen, steps; since the beginning where it was not.
