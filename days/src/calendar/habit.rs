@@ -1,8 +1,5 @@
 use super::hours::Hours;
-use super::matrix::{Matrix, exponential};
-
-/// The number of phases: each of the two states with a short and with a long stay.
-pub const PHASES: usize = 4;
+use super::matrix::{Matrix, PHASES, exponential};
 
 /// A law over the phases: free for a short stay, free for a long one, blocked for a short stay, blocked for a long one.
 /// The phase is not visible, only the state is.

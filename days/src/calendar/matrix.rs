@@ -1,4 +1,5 @@
-use super::PHASES;
+/// The number of phases: each of the two states with a short and with a long stay.
+pub const PHASES: usize = 4;
 
 /// A matrix over the phases of a [`Habit`](super::Habit): rates of transitions, or their probabilities in a time.
 pub type Matrix = [[f64; PHASES]; PHASES];

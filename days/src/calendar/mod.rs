@@ -8,8 +8,8 @@ mod matrix;
 mod recorded;
 mod timeline;
 
-pub use habit::{Habit, PHASES, Phases, Stays, blocked_probability};
+pub use habit::{Habit, Phases, Stays, blocked_probability};
 pub use hours::{DAY_S, HOUR_S, Hours, SLOT_S, WEEK_S};
-pub use matrix::{Matrix, advanced};
+pub use matrix::{Matrix, PHASES, advanced};
 pub use recorded::{Change, RecordedError, Recording};
 pub use timeline::Timeline;
