@@ -50,6 +50,12 @@ pub enum Purpose {
     Task,
     /// The heading at the start of a robot whose map has a frame of its own. Stream `5 << 48`.
     MapFrame,
+    /// Generator of buildings with a calendar. Stream `6 << 48`.
+    DayGenerator,
+    /// The strategy of a robot in a building with a calendar. Stream `7 << 48`.
+    Patrol,
+    /// What a thing in a building with a calendar does. Stream `8 << 48 | index`.
+    Thing(usize),
 }
 
 impl Purpose {
@@ -74,6 +80,9 @@ impl Purpose {
             Self::HouseGenerator => 3 << 48,
             Self::Task => 4 << 48,
             Self::MapFrame => 5 << 48,
+            Self::DayGenerator => 6 << 48,
+            Self::Patrol => 7 << 48,
+            Self::Thing(index) => 8 << 48 | index as u64,
         }
     }
 }

@@ -27,7 +27,7 @@ pub use comparison::Comparison;
 pub use figure::Plan;
 pub use measure::Measure;
 pub use run::Run;
-pub use statistics::Estimate;
+pub use statistics::{Estimate, PairedTest, paired_test};
 pub use strategy::StrategyResult;
 pub use trial_files::collect;
 

@@ -29,12 +29,18 @@ impl Estimate {
 
 /// A mean difference of pairs, with the paired t test of the hypothesis that it is zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct PairedTest {
-    pub(super) difference: Estimate,
+pub struct PairedTest {
+    /// The mean difference.
+    pub difference: Estimate,
     /// Two-sided; NaN for fewer than two pairs.
-    pub(super) p_value: f64,
+    pub p_value: f64,
     /// Cohen's d of pairs: the mean difference in standard deviations of the differences.
-    pub(super) effect_size: f64,
+    pub effect_size: f64,
+}
+
+/// Tests whether the mean of the `differences` within pairs is zero.
+pub fn paired_test(differences: impl Iterator<Item = f64>) -> PairedTest {
+    Quantiles::default().paired_test(differences)
 }
 
 /// Count, mean and deviation of values that arrive one by one (Welford, 1962). NaN is left out.

@@ -25,6 +25,13 @@ pub struct Trajectory<'a> {
     pub progress: f64,
 }
 
+impl<'a> Trajectory<'a> {
+    /// A trajectory without a measure of progress in learning.
+    pub fn of_reward(strategy: usize, features: &'a [Features], reward: f64) -> Self {
+        Self { strategy, features, reward, progress: 0.0 }
+    }
+}
+
 /// Selects the strategy that selects the next goal. A strategy is identified by its index in the agent's list.
 pub trait Chooser: std::fmt::Debug + Send {
     /// The index of the strategy for the next goal.

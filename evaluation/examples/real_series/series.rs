@@ -1,14 +1,12 @@
 //! Series of events: what a thing did, and what a robot saw of it.
 
+use days::calendar::Recording;
 use interfaces::{Purpose, RandomStream};
 use mapper::{DAY_S, Look};
 use std::path::Path;
 
 /// The step of all series, s.
 pub(crate) const STEP_S: f64 = 60.0;
-
-/// No series is longer.
-const MAX_YEARS: f64 = 10.0;
 
 /// The recorded states of one thing.
 pub(crate) struct Series {
@@ -26,18 +24,11 @@ impl Series {
     pub(crate) fn read(path: &Path) -> Result<Self, String> {
         let at = |what: &str| format!("{}: {what}", path.display());
         let text = std::fs::read_to_string(path).map_err(|error| at(&error.to_string()))?;
-        let changes = changes(&text).map_err(|error| at(&error))?;
-        let (Some((start_s, _)), Some((last_s, _))) = (changes.first(), changes.last()) else {
-            return Err(at("no events"));
-        };
-        let head = |key: &str| -> Option<f64> {
-            let words = text.lines().filter(|line| line.starts_with('#')).flat_map(str::split_whitespace);
-            words.filter_map(|word| word.strip_prefix(key)).find_map(|value| value.parse().ok())
-        };
-        let limit_s = start_s + MAX_YEARS * 365.25 * DAY_S;
-        let end_s = head("end_s=").unwrap_or(last_s + STEP_S).min(limit_s);
-        let split_s = head("split_s=").unwrap_or(0.5 * (start_s + end_s));
-        let mut next = changes.iter().peekable();
+        let recording = Recording::parse(&text).map_err(|error| at(&error.to_string()))?;
+        let start_s = recording.start_s();
+        let end_s = recording.end_s.unwrap_or(recording.last_s() + STEP_S).min(recording.limit_s());
+        let split_s = recording.split_s.unwrap_or(0.5 * (start_s + end_s));
+        let mut next = recording.changes.iter().peekable();
         let mut state = None;
         let states = (0..((end_s - start_s) / STEP_S) as usize).map(|step| {
             while let Some((_, changed)) =
@@ -49,7 +40,7 @@ impl Series {
         });
         let states = states.collect();
         let name = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
-        Ok(Self { name, split_s, start_s: *start_s, states })
+        Ok(Self { name, split_s, start_s, states })
     }
 
     /// The set of a series: its name up to the first `-`.
@@ -67,40 +58,6 @@ impl Series {
         let is_blocked = (*self.states.get(step)?)?;
         Some(Look { time_s: self.start_s + step as f64 * STEP_S, is_blocked })
     }
-}
-
-/// The changes in a file, by time.
-fn changes(text: &str) -> Result<Vec<(f64, Option<bool>)>, String> {
-    let mut changes: Vec<(f64, Option<bool>)> = Vec::new();
-    let mut reader = csv::ReaderBuilder::new()
-        .comment(Some(b'#'))
-        .trim(csv::Trim::All)
-        .flexible(true)
-        .from_reader(text.as_bytes());
-    for record in reader.records() {
-        let record = record.map_err(|error| error.to_string())?;
-        let line = record.position().map_or(0, csv::Position::line);
-        let wrong = || {
-            let found = record.iter().collect::<Vec<_>>().join(",");
-            format!("line {line}: expected `time_s,state` with a state of 0, 1 or nan, found `{found}`")
-        };
-        let state = match record.get(1) {
-            Some("0") => Some(false),
-            Some("1") => Some(true),
-            Some("nan") => None,
-            _ => return Err(wrong()),
-        };
-        let time_s = record[0].parse::<f64>().ok().filter(|time_s| time_s.is_finite()).ok_or_else(wrong)?;
-        let first_s = changes.first().map_or(time_s, |first| first.0);
-        if changes.last().is_some_and(|(last_s, _)| time_s < *last_s) {
-            return Err(format!("line {line}: time goes backwards"));
-        }
-        if time_s - first_s > MAX_YEARS * 365.25 * DAY_S {
-            return Err(format!("line {line}: more than ten years after the first line"));
-        }
-        changes.push((time_s, state));
-    }
-    Ok(changes)
 }
 
 /// When a robot looks at a thing.

@@ -16,8 +16,12 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("robot", &["interfaces", "mapper", "localizer", "agent", "controller"]),
     ("survey", &["interfaces", "mapper", "localizer", "logs", "robot"]),
     ("results", &["interfaces", "mapper"]),
-    ("evaluation", &["interfaces", "sim", "mapper", "localizer", "agent", "controller", "robot", "results"]),
-    ("reports", &["interfaces", "sim", "robot", "results", "evaluation"]),
+    ("days", &["interfaces", "agent"]),
+    (
+        "evaluation",
+        &["interfaces", "sim", "mapper", "localizer", "agent", "controller", "robot", "results", "days"],
+    ),
+    ("reports", &["interfaces", "sim", "robot", "results", "days", "evaluation"]),
     ("environments", &["interfaces", "sim", "worldfile", "mapper", "robot", "evaluation"]),
     (
         "python",
@@ -105,6 +109,7 @@ const WITHOUT_RERUN: &[&str] = &[
     "robot",
     "survey",
     "results",
+    "days",
     "evaluation",
     "reports",
     "ros2",

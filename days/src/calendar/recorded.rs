@@ -1,0 +1,116 @@
+use std::fmt::Display;
+
+/// No recording is longer, years.
+const MAX_YEARS: f64 = 10.0;
+const YEAR_S: f64 = 365.25 * 86_400.0;
+
+/// The time of a change, s, and the new state: blocked (open, occupied) or not, `None` while nothing was recorded.
+pub type Change = (f64, Option<bool>);
+
+/// What a real thing did: a file of comma-separated values `time_s,state`, one line per change, after a line of titles.
+///
+/// A state is 0, 1 or nan (not recorded). Lines that begin with `#` are comments, in which `end_s=` and `split_s=` may state
+/// when the recording ended, and where its part for learning ends.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Recording {
+    /// The changes in the order of time; at least one.
+    pub changes: Vec<Change>,
+    /// When the recording ended, s, if the file states it.
+    pub end_s: Option<f64>,
+    /// Where the part for learning ends, s, if the file states it.
+    pub split_s: Option<f64>,
+}
+
+/// Why a recording is invalid.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RecordedError(String);
+
+impl Display for RecordedError {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        formatter.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for RecordedError {}
+
+impl Recording {
+    /// Reads the text of a file.
+    ///
+    /// # Errors
+    ///
+    /// When a line is not `time_s,state`, time goes backwards, the recording is longer than ten years or has no change. The
+    /// message names the line, and what is valid.
+    pub fn parse(text: &str) -> Result<Self, RecordedError> {
+        let changes = changes(text).map_err(RecordedError)?;
+        if changes.is_empty() {
+            return Err(RecordedError("no events".to_owned()));
+        }
+        let head = |key: &str| -> Option<f64> {
+            let words = text.lines().filter(|line| line.starts_with('#')).flat_map(str::split_whitespace);
+            words.filter_map(|word| word.strip_prefix(key)).find_map(|value| value.parse().ok())
+        };
+        Ok(Self { end_s: head("end_s="), split_s: head("split_s="), changes })
+    }
+
+    /// When the recording began, s.
+    pub fn start_s(&self) -> f64 {
+        self.changes[0].0
+    }
+
+    /// When the last change happened, s.
+    pub fn last_s(&self) -> f64 {
+        self.changes[self.changes.len() - 1].0
+    }
+
+    /// The latest time at which a recording that began with this one can end, s.
+    pub fn limit_s(&self) -> f64 {
+        self.start_s() + MAX_YEARS * YEAR_S
+    }
+
+    /// The changes with times that begin at 0, s. Where nothing was recorded, the last state stays.
+    pub fn known_changes(&self) -> Vec<(f64, bool)> {
+        let known =
+            self.changes.iter().filter_map(|(time_s, state)| Some((time_s - self.start_s(), (*state)?)));
+        let mut changes: Vec<(f64, bool)> = Vec::new();
+        for (time_s, is_blocked) in known {
+            if changes.last().map_or(is_blocked, |(_, before)| *before != is_blocked) {
+                changes.push((time_s, is_blocked));
+            }
+        }
+        changes
+    }
+}
+
+/// The changes in a file, by time.
+fn changes(text: &str) -> Result<Vec<Change>, String> {
+    let mut changes: Vec<Change> = Vec::new();
+    let mut reader = csv::ReaderBuilder::new()
+        .comment(Some(b'#'))
+        .trim(csv::Trim::All)
+        .flexible(true)
+        .from_reader(text.as_bytes());
+    for record in reader.records() {
+        let record = record.map_err(|error| error.to_string())?;
+        let line = record.position().map_or(0, csv::Position::line);
+        let wrong = || {
+            let found = record.iter().collect::<Vec<_>>().join(",");
+            format!("line {line}: expected `time_s,state` with a state of 0, 1 or nan, found `{found}`")
+        };
+        let state = match record.get(1) {
+            Some("0") => Some(false),
+            Some("1") => Some(true),
+            Some("nan") => None,
+            _ => return Err(wrong()),
+        };
+        let time_s = record[0].parse::<f64>().ok().filter(|time_s| time_s.is_finite()).ok_or_else(wrong)?;
+        let first_s = changes.first().map_or(time_s, |first| first.0);
+        if changes.last().is_some_and(|(last_s, _)| time_s < *last_s) {
+            return Err(format!("line {line}: time goes backwards"));
+        }
+        if time_s - first_s > MAX_YEARS * YEAR_S {
+            return Err(format!("line {line}: more than ten years after the first line"));
+        }
+        changes.push((time_s, state));
+    }
+    Ok(changes)
+}

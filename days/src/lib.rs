@@ -1,0 +1,33 @@
+//! Places with a calendar, and robots that patrol them: buildings of rooms and viewpoints in which things with two states
+//! (doors, boxes, seats, parked robots) change by hour and weekday; a robot with a battery; strategies that choose where to
+//! look next. It must not know how a strategy is scored.
+//!
+//! There are no cells here: from a viewpoint a robot sees the state of a set of things, and a closed door keeps it from
+//! the viewpoints of a room. So a week takes a fraction of a second, and strategies can be compared over hundreds of
+//! buildings.
+//!
+//! ```
+//! use days::{Building, Duty, Kind, Patrol, Plan};
+//!
+//! let building = Building::generate(Kind::Office, 7);
+//! let mut strategy = Plan::Gain.strategy(&building, Duty::share(0.05));
+//! let mut errors = 0.0;
+//! let mut patrol = Patrol::new(&building, Duty::share(0.05), 1);
+//! patrol.run(strategy.as_mut(), 8640, |beliefs, is_blocked| {
+//!     let error = |(p, x): (&f64, &bool)| (p - f64::from(u8::from(*x))).powi(2);
+//!     errors += beliefs.iter().zip(is_blocked).map(error).sum::<f64>();
+//! });
+//! assert!(errors / (8640 * building.things.len()) as f64 <= 0.25);
+//! ```
+
+mod belief;
+mod building;
+pub mod calendar;
+mod patrol;
+
+pub use belief::{Belief, Model};
+pub use building::{Building, Kind, Room, Thing, ThingKind, Viewpoint};
+pub use patrol::{Choice, Duty, Patrol, Plan, Seen, Strategy, Totals, View};
+
+/// The step of beliefs, looks and scores, s. Things change at any time between.
+pub const STEP_S: f64 = 10.0;

@@ -1,0 +1,16 @@
+//! A robot on its rounds: a battery, a dock, looks, and what it believes.
+
+mod coverage;
+mod curious;
+mod duty;
+mod fixed_length;
+mod gain;
+mod plan;
+mod robot;
+mod round;
+mod view;
+
+pub use duty::Duty;
+pub use plan::Plan;
+pub use robot::{Patrol, Totals};
+pub use view::{Choice, Seen, Strategy, View};
