@@ -70,6 +70,7 @@ pub use given_poses::GivenPoses;
 pub use localizer::Localizer;
 pub use loop_closing::{Correction, LoopClosed, LoopClosingLocalizer, Switch};
 pub use settings::{LocalizerSettings, OdometryTrust};
-pub use trajectory::{DistanceScale, 
-    LineFit, LineMap, LineMatcher, Residual, Trajectory, TrajectoryFinder, TrajectoryPose, TrajectorySettings,
+pub use trajectory::{
+    DistanceScale, LineFit, LineMap, LineMatcher, Residual, Trajectory, TrajectoryFinder, TrajectoryPose,
+    TrajectorySettings,
 };

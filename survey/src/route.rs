@@ -35,16 +35,10 @@ pub struct Route {
     pub(crate) seen_m2: f64,
 }
 
-/// Distances of the odometry that are off by a smaller share than this, or by fewer standard deviations, need no second pass.
-const MIN_SCALE: f64 = 0.005;
-const MIN_SCALE_STDS: f64 = 4.0;
-
 impl Route {
     /// The scale of the distances of the odometry, if it is so far from 1 that a pass with it is better.
     pub fn significant_scale(&self) -> Option<DistanceScale> {
-        let off = |scale: &DistanceScale| (scale.scale - 1.0).abs();
-        self.distance_scale
-            .filter(|scale| off(scale) > MIN_SCALE.max(MIN_SCALE_STDS * scale.std))
+        self.distance_scale.filter(DistanceScale::is_significant)
     }
 
     /// The route without certain poses where they are in doubt, if the map is usable with care: what only such scans show is no

@@ -117,12 +117,16 @@ fn route(log: &SimulatedLog, mode: PoseMode) -> Result<Route, Box<dyn Error>> {
     let mut pass = FirstPass::new(&SurveySettings::of(mode))?;
     log.readings.iter().for_each(|reading| pass.add(reading.clone()));
     let mut route = pass.finish();
-    if let Some(scale) = route.distance_scale { println!("     scale {:.4} +- {:.4}", scale.scale, scale.std); }
+    if let Some(scale) = route.distance_scale {
+        println!("     scale {:.4} +- {:.4}", scale.scale, scale.std);
+    }
     if let Some(scale) = route.significant_scale() {
         let mut pass = FirstPass::new(&SurveySettings::of(mode))?.with_distance_scale(&scale);
         log.readings.iter().for_each(|reading| pass.add(reading.clone()));
         route = pass.finish();
-        if let Some(scale) = route.distance_scale { println!("     again {:.4} +- {:.4}", scale.scale, scale.std); }
+        if let Some(scale) = route.distance_scale {
+            println!("     again {:.4} +- {:.4}", scale.scale, scale.std);
+        }
     }
     Ok(route)
 }

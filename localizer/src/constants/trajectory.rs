@@ -93,6 +93,9 @@ pub(crate) const SCALED_M: f64 = 0.2;
 pub(crate) const SCALED_STD_M: f64 = 0.03;
 pub(crate) const SCALED_MOTIONS: usize = 30;
 pub(crate) const SCALE_NOISE_M: f64 = 0.04;
+/// A scale that is off by a smaller share than this, or by fewer standard deviations, needs no second pass.
+pub(crate) const MIN_SCALE: f64 = 0.005;
+pub(crate) const MIN_SCALE_STDS: f64 = 4.0;
 
 // Trajectories: loops
 

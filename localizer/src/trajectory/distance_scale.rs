@@ -5,7 +5,7 @@
 //! corridor is too long by the same share.
 
 use super::graph::PoseGraph;
-use crate::constants::{SCALED_M, SCALED_MOTIONS, SCALED_STD_M, SCALE_NOISE_M};
+use crate::constants::{MIN_SCALE, MIN_SCALE_STDS, SCALE_NOISE_M, SCALED_M, SCALED_MOTIONS, SCALED_STD_M};
 use nalgebra::{Isometry2, Matrix3, Vector2};
 
 /// A motion between two keyframes in a row, as the odometry measured it.
@@ -25,6 +25,13 @@ pub struct DistanceScale {
     pub scale: f64,
     /// Its standard deviation.
     pub std: f64,
+}
+
+impl DistanceScale {
+    /// Whether the scale is so far from 1 that another pass, with this scale, is better.
+    pub fn is_significant(&self) -> bool {
+        (self.scale - 1.0).abs() > MIN_SCALE.max(MIN_SCALE_STDS * self.std)
+    }
 }
 
 impl MeasuredMotion {
