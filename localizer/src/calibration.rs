@@ -30,6 +30,11 @@ impl Calibration {
         }
     }
 
+    /// The true distance per measured distance is known with a standard deviation.
+    pub(crate) fn expect_distance(&mut self, scale: f64, std: f64) {
+        self.distance = (scale, std * std);
+    }
+
     /// The largest errors that are expected.
     pub(crate) fn trust(&self) -> &OdometryTrust {
         &self.trust

@@ -71,5 +71,6 @@ pub use localizer::Localizer;
 pub use loop_closing::{Correction, LoopClosed, LoopClosingLocalizer, Switch};
 pub use settings::{LocalizerSettings, OdometryTrust};
 pub use trajectory::{
-    LineFit, LineMap, LineMatcher, Residual, Trajectory, TrajectoryFinder, TrajectoryPose, TrajectorySettings,
+    DistanceScale, LineFit, LineMap, LineMatcher, Residual, Trajectory, TrajectoryFinder, TrajectoryPose,
+    TrajectorySettings,
 };

@@ -61,7 +61,7 @@ pub(crate) struct IncomingScan {
     pub(crate) motion: Motion,
     pub(crate) predicted: Predicted,
     /// The motion as the odometry measured it.
-    measured: Isometry2<f64>,
+    pub(crate) measured: Isometry2<f64>,
     /// Whether there is an odometry, as far as is known.
     pub(crate) has_odometry: bool,
     /// The time since the last reading, s.

@@ -4,6 +4,7 @@ use crate::calibration::Calibration;
 use crate::constants::{DISTRUST_SCANS, MIN_MOTION};
 use crate::motion::Motion;
 use crate::settings::OdometryTrust;
+use crate::trajectory::DistanceScale;
 use nalgebra::Isometry2;
 
 /// The odometry of a robot.
@@ -26,6 +27,11 @@ impl MotionPrior {
     /// There is an odometry, though it may not have moved yet.
     pub(crate) fn expect_odometry(&mut self) {
         self.exists = true;
+    }
+
+    /// The scale of the distances is known.
+    pub(crate) fn expect_distance_scale(&mut self, scale: &DistanceScale) {
+        self.calibration.expect_distance(scale.scale, scale.std);
     }
 
     pub(crate) fn has_odometry(&self) -> bool {

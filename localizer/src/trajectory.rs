@@ -19,6 +19,7 @@
 
 mod chains;
 mod correlation;
+mod distance_scale;
 mod far_scan;
 mod free_space;
 mod graph;
@@ -36,6 +37,7 @@ mod sparse;
 mod submap;
 mod submap_matcher;
 
+pub use distance_scale::DistanceScale;
 pub use line_map::{LineFit, LineMap, LineMatcher};
 pub(crate) use matching::in_frame;
 pub use residual::Residual;
@@ -72,6 +74,8 @@ pub struct Trajectory {
     pub loops: usize,
     /// `None` if no place was seen twice.
     pub residual: Option<Residual>,
+    /// The scale of the distances of the odometry; `None` where too few scans fix them.
+    pub distance_scale: Option<DistanceScale>,
 }
 
 /// A reading, and its pose relative to a keyframe.
@@ -112,6 +116,13 @@ impl TrajectoryFinder {
             graph: PoseGraph::default(),
             readings: Vec::new(),
         })
+    }
+
+    /// The same finder, for an odometry whose distances are known to have a scale.
+    #[must_use]
+    pub fn with_distance_scale(mut self, scale: &DistanceScale) -> Self {
+        self.builder.motion_prior.expect_distance_scale(scale);
+        self
     }
 
     /// Adds the next reading. An invalid reading gets the pose of the odometry.
@@ -174,7 +185,9 @@ impl TrajectoryFinder {
         self.graph = self.optimized();
         let residual = residual::residual(&self.closer.places, self.keyframes(), &self.graph);
         let loops = self.closer.loops();
-        Trajectory { poses: self.poses(&self.graph), loops, residual }
+        let distance_scale =
+            distance_scale::distance_scale(self.builder.matcher.measured_motions(), &self.graph);
+        Trajectory { poses: self.poses(&self.graph), loops, residual, distance_scale }
     }
 
     /// The graph with all loops, where every wall is there once.

@@ -64,7 +64,23 @@ impl<W: FnMut((Stage, usize)) -> ControlFlow<()>> RoutePass<'_, W> {
     /// have no certain pose, when they move otherwise than its odometry, when the place is too large for a map, and when the pass
     /// is interrupted.
     pub(crate) fn route(&mut self) -> Result<Route, PassError> {
-        let mut pass = FirstPass::new(self.settings)?;
+        let (mut route, odometry) = self.trajectory(FirstPass::new(self.settings)?)?;
+        if self.settings.pose != PoseMode::Localized {
+            return Ok(route);
+        }
+        if let Some(scale) = route.significant_scale() {
+            route = self.trajectory(FirstPass::new(self.settings)?.with_distance_scale(&scale))?.0;
+        }
+        let (left_out, scans) = (uncertain(&route.poses), route.poses.len());
+        if left_out * 2 > scans {
+            return Err(SurveyError::MostLeftOut { left_out, scans }.into());
+        }
+        odometry_check::check(&route.poses, &odometry)?;
+        Ok(route)
+    }
+
+    /// One pass over the log: its route, and the poses of the odometry.
+    fn trajectory(&mut self, mut pass: FirstPass) -> Result<(Route, Vec<Isometry2<f64>>), PassError> {
         let mut odometry = Vec::new();
         self.each_reading(Stage::Trajectory, |_, reading| {
             odometry.push(reading.pose);
@@ -72,17 +88,12 @@ impl<W: FnMut((Stage, usize)) -> ControlFlow<()>> RoutePass<'_, W> {
             pass.check()
         })?;
         if self.settings.pose != PoseMode::Localized {
-            return Ok(pass.finish());
+            return Ok((pass.finish(), odometry));
         }
         self.report(Stage::Loops, 0)?;
         let route = pass.finish();
         self.report(Stage::Loops, route.poses.len())?;
-        let (left_out, scans) = (uncertain(&route.poses), route.poses.len());
-        if left_out * 2 > scans {
-            return Err(SurveyError::MostLeftOut { left_out, scans }.into());
-        }
-        odometry_check::check(&route.poses, &odometry)?;
-        Ok(route)
+        Ok((route, odometry))
     }
 
     /// The route of a later log, in the frame of the first one. `all_stand`: the lasers of this log and of those before stand,

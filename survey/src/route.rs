@@ -8,7 +8,7 @@ use crate::seen_area::SeenArea;
 use crate::settings::SurveySettings;
 use crate::turns::Turns;
 use interfaces::{GridFrame, LaserReading, PoseMode};
-use localizer::{PoseState, Residual, TrajectoryFinder, TrajectoryPose, TrajectorySettings};
+use localizer::{DistanceScale, PoseState, Residual, TrajectoryFinder, TrajectoryPose, TrajectorySettings};
 use mapper::ScanFilter;
 use nalgebra::{Isometry2, Point2};
 use std::ops::Range;
@@ -26,6 +26,8 @@ pub struct Route {
     pub range_std_m: Option<f64>,
     /// How far the trajectory agrees with its own scans.
     pub quality: Quality,
+    /// The scale of the distances of the odometry, as the trajectory shows it; `None` where it is not known.
+    pub distance_scale: Option<DistanceScale>,
     /// The readings whose poses are in doubt.
     in_doubt: Vec<Range<usize>>,
     reaches: Vec<Reach>,
@@ -34,6 +36,11 @@ pub struct Route {
 }
 
 impl Route {
+    /// The scale of the distances of the odometry, if it is so far from 1 that a pass with it is better.
+    pub fn significant_scale(&self) -> Option<DistanceScale> {
+        self.distance_scale.filter(DistanceScale::is_significant)
+    }
+
     /// The route without certain poses where they are in doubt, if the map is usable with care: what only such scans show is no
     /// change. In a good map, what contradicts other scans is one, and a map that is not usable is used as it is, or not at all.
     #[must_use]
@@ -130,6 +137,13 @@ impl FirstPass {
         })
     }
 
+    /// The same pass, for an odometry whose distances have a scale.
+    #[must_use]
+    pub fn with_distance_scale(mut self, scale: &DistanceScale) -> Self {
+        self.finder = self.finder.map(|finder| finder.with_distance_scale(scale));
+        self
+    }
+
     /// Adds the next reading.
     pub fn add(&mut self, reading: LaserReading) {
         let filtered = self.filter.filter(reading.clone());
@@ -176,15 +190,25 @@ impl FirstPass {
 
     /// The log along its trajectory, in the frame of its first pose.
     pub fn finish(self) -> Route {
-        let (poses, loops, residual) = match self.finder {
+        let (poses, loops, residual, distance_scale) = match self.finder {
             Some(finder) => {
                 let trajectory = finder.finish();
-                (trajectory.poses, trajectory.loops, trajectory.residual)
+                (trajectory.poses, trajectory.loops, trajectory.residual, trajectory.distance_scale)
             }
-            None => (self.given, 0, None),
+            None => (self.given, 0, None, None),
         };
         let (quality, in_doubt) = self.quality.finish(&poses);
         let (range_std_m, seen_m2) = (self.range_noise.std_m(), self.area.m2());
-        Route { poses, loops, residual, range_std_m, quality, in_doubt, reaches: self.reaches, seen_m2 }
+        Route {
+            poses,
+            loops,
+            residual,
+            range_std_m,
+            quality,
+            distance_scale,
+            in_doubt,
+            reaches: self.reaches,
+            seen_m2,
+        }
     }
 }

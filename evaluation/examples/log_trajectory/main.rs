@@ -16,7 +16,7 @@ mod comparison;
 mod picture;
 mod verdict;
 
-use localizer::{PoseState, Trajectory, TrajectoryFinder, TrajectorySettings};
+use localizer::{DistanceScale, PoseState, Trajectory, TrajectoryFinder, TrajectorySettings};
 use logs::{Log, TopicChoice};
 use results::output::TrajectoryFile;
 use std::error::Error;
@@ -50,6 +50,18 @@ fn main() -> Result<(), Box<dyn Error>> {
         local.push(finder.local_pose());
     }
     let mut trajectory = finder.finish();
+    if let Some(scale) = trajectory.distance_scale {
+        println!("true distance per distance of the odometry: {:.4} +- {:.4}", scale.scale, scale.std);
+    }
+    if let Some(scale) = trajectory.distance_scale.filter(DistanceScale::is_significant) {
+        let mut finder = TrajectoryFinder::new(&TrajectorySettings::default())?.with_distance_scale(&scale);
+        local.clear();
+        for reading in &readings {
+            finder.add(reading.clone());
+            local.push(finder.local_pose());
+        }
+        trajectory = finder.finish();
+    }
     if no_loops {
         trajectory.poses.iter_mut().zip(local).for_each(|(found, local)| found.pose = local);
     }

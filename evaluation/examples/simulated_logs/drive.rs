@@ -27,7 +27,7 @@ pub(crate) struct LogSpec {
     noise_std_m: f64,
     /// Errors of the odometry: of the distance and of turns, per meter or radian; of the heading per meter, rad; and the standard
     /// deviations of the distance (m) and of the heading (rad) after 1 m or 1 rad.
-    gains: [f64; 2],
+    pub(crate) gains: [f64; 2],
     bend_radpm: f64,
     noise: [f64; 2],
     /// Glitches of the odometry per meter: a motion of up to 0.5 m and 0.6 rad that was none.

@@ -52,6 +52,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             write(Path::new(folder), seed, &log)?;
         }
         let ours = route(&log, PoseMode::Localized)?;
+        println!("     true scale {:.4}", 1.0 / (1.0 + spec.gains[0]));
         println!(
             "{seed:4} {:12} a scan per {:.2} m, {:.0} m, {} scans, {:.0} glitches per 100 m, {} loops",
             spec.building,
@@ -115,7 +116,19 @@ fn write(folder: &Path, seed: u64, log: &SimulatedLog) -> Result<(), Box<dyn Err
 fn route(log: &SimulatedLog, mode: PoseMode) -> Result<Route, Box<dyn Error>> {
     let mut pass = FirstPass::new(&SurveySettings::of(mode))?;
     log.readings.iter().for_each(|reading| pass.add(reading.clone()));
-    Ok(pass.finish())
+    let mut route = pass.finish();
+    if let Some(scale) = route.distance_scale {
+        println!("     scale {:.4} +- {:.4}", scale.scale, scale.std);
+    }
+    if let Some(scale) = route.significant_scale() {
+        let mut pass = FirstPass::new(&SurveySettings::of(mode))?.with_distance_scale(&scale);
+        log.readings.iter().for_each(|reading| pass.add(reading.clone()));
+        route = pass.finish();
+        if let Some(scale) = route.distance_scale {
+            println!("     again {:.4} +- {:.4}", scale.scale, scale.std);
+        }
+    }
+    Ok(route)
 }
 
 /// Median, 95 % and maximum of the distances from the truth after a rigid alignment, m.

@@ -85,6 +85,18 @@ pub(crate) const CHAIN_KEYFRAMES: usize = 8;
 pub(crate) const CHAIN_RESPONSE: f64 = 0.45;
 pub(crate) const CHAIN_ROUNDS: usize = 2;
 
+// Trajectories: the scale of the distances of the odometry
+
+/// Motions of at least this length, m, whose distance the scan fixes with at most this standard deviation, m, at least this many;
+/// the noise of the odometry after 1 m, m.
+pub(crate) const SCALED_M: f64 = 0.2;
+pub(crate) const SCALED_STD_M: f64 = 0.03;
+pub(crate) const SCALED_MOTIONS: usize = 30;
+pub(crate) const SCALE_NOISE_M: f64 = 0.04;
+/// A scale that is off by a smaller share than this, or by fewer standard deviations, needs no second pass.
+pub(crate) const MIN_SCALE: f64 = 0.005;
+pub(crate) const MIN_SCALE_STDS: f64 = 4.0;
+
 // Trajectories: loops
 
 /// Ways between submaps that need no loop, and that need no second one, m.

@@ -1,5 +1,6 @@
 //! Matches scans with the submap of the last keyframes, and makes keyframes of them.
 
+use super::distance_scale::MeasuredMotion;
 use super::far_scan::{FarScan, matched_at};
 use super::keyframe::{Keyframe, filled};
 use super::matching::{gates, in_frame, motion_spread};
@@ -28,6 +29,9 @@ pub(crate) struct SubmapMatcher {
     settings: TrajectorySettings,
     /// The motion by odometry since the last keyframe.
     since_keyframe: Isometry2<f64>,
+    /// The same motion as it was measured, without what was learned of the odometry.
+    measured: Isometry2<f64>,
+    measured_motions: Vec<MeasuredMotion>,
     keyframes: Vec<Keyframe>,
     /// The older one is matched with, the younger one is only filled.
     growing: Vec<GrowingSubmap>,
@@ -65,6 +69,8 @@ impl ScanMatcher<()> for SubmapMatcher {
 
     fn matched(&mut self, scan: &IncomingScan, track: &mut Track, (): ()) -> Matched<SubmapFound> {
         self.since_keyframe *= scan.motion.delta;
+        self.measured *= scan.measured;
+        self.measured.rotation.renormalize();
         self.since_keyframe.rotation.renormalize();
         self.sees_nothing = scan.points.is_empty();
         (track.pose, track.covariance) = (scan.predicted.pose, scan.predicted.covariance);
@@ -107,6 +113,8 @@ impl SubmapMatcher {
         Self {
             settings: settings.clone(),
             since_keyframe: Isometry2::identity(),
+            measured: Isometry2::identity(),
+            measured_motions: Vec::new(),
             keyframes: Vec::new(),
             growing: Vec::new(),
             finished: Vec::new(),
@@ -122,6 +130,11 @@ impl SubmapMatcher {
 
     pub(super) fn keyframes(&self) -> &[Keyframe] {
         &self.keyframes
+    }
+
+    /// The motions between keyframes that the odometry measured, and scans.
+    pub(super) fn measured_motions(&self) -> &[MeasuredMotion] {
+        &self.measured_motions
     }
 
     /// The next submap that is full.
@@ -226,6 +239,11 @@ impl SubmapMatcher {
             let information = (spread + KEYFRAME_STD.covariance()).try_inverse();
             (motion, information.unwrap_or_else(Matrix3::identity))
         });
+        if let Some((found, last)) = found.zip(self.keyframes.last()).filter(|_| scan.has_odometry) {
+            let information = in_frame(&found.scan_information, &last.local);
+            let (to, motion) = (self.keyframes.len(), self.measured);
+            self.measured_motions.push(MeasuredMotion { to, motion, information });
+        }
         self.push(&scan.reading, track, filled(&scan.points), from_last);
     }
 
@@ -236,7 +254,7 @@ impl SubmapMatcher {
         points: Vec<ScanPoint>,
         from_last: (Isometry2<f64>, Matrix3<f64>),
     ) {
-        self.since_keyframe = Isometry2::identity();
+        (self.since_keyframe, self.measured) = (Isometry2::identity(), Isometry2::identity());
         let (mount, scan) = (reading.mount, reading.scan.clone());
         self.keyframes.push(Keyframe { local: track.pose, from_last, points, mount, scan });
         self.grow();
