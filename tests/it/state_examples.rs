@@ -11,7 +11,7 @@ use std::fs;
 use std::path::PathBuf;
 
 /// The version of the format that this program writes.
-const VERSION: u32 = 10;
+const VERSION: u32 = 11;
 /// What the examples are of. With the same duration or log again, a run only reads the state and writes it.
 const RUNS: [(&str, &str); 3] = [
     ("four_rooms.state", "--duration 4"),

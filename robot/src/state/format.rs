@@ -16,9 +16,9 @@ use xxhash_rust::xxh3::xxh3_64_with_seed;
 
 /// Count up when the body, or a snapshot in it, changes; `tests/states` of the workspace holds examples of every version
 /// that is read.
-const VERSION: u32 = 10;
+const VERSION: u32 = 11;
 /// The earliest version that is read. Since then, what is saved of a localizer has changed (7), and a mapper has tiles and
-/// things (8), logs have the quality of their maps (9), and places have numbers and names (10).
+/// things (8), logs have the quality of their maps (9), places have numbers and names (10), and places of traffic directions (11).
 const EARLIEST: u32 = 6;
 /// The first version with what is saved of a localizer now.
 const LOCALIZER_SINCE: u32 = 7;

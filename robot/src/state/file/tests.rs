@@ -149,10 +149,10 @@ fn other_facts_and_files_are_refused_with_a_sentence() {
     insta::assert_snapshot!(read(&state().to_bytes().unwrap()[..20]), @"the state file is damaged: its checksum does not fit");
     // A later version of the format, with a checksum as this version has it.
     let mut later = state().to_bytes().unwrap();
-    later[8] = 11;
-    let checksum = xxhash_rust::xxh3::xxh3_64_with_seed(&later[20..], 11);
+    later[8] = 12;
+    let checksum = xxhash_rust::xxh3::xxh3_64_with_seed(&later[20..], 12);
     later[12..20].copy_from_slice(&checksum.to_le_bytes());
-    insta::assert_snapshot!(read(&later), @"this state file has version 11 of the format, and this program reads versions 6 to 10");
+    insta::assert_snapshot!(read(&later), @"this state file has version 12 of the format, and this program reads versions 6 to 11");
 }
 
 proptest! {

@@ -7,7 +7,7 @@ use robot::state::{State, read_state};
 use std::path::PathBuf;
 
 /// The version of the format that this program writes.
-const VERSION: u32 = 10;
+const VERSION: u32 = 11;
 
 fn example(version: u32) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../tests/states/{version}/curious_node.state"))

@@ -123,7 +123,8 @@ impl Page<'_> {
                 h2 { "The places" }
                 p {
                     "The liveliest come first, by the lower end of their range. The numbers stay the same on later visits. Time of looking is \
-                     the time for which the robot had the place in view; the robot itself is not counted. "
+                     the time for which the robot had the place in view; the robot itself is not counted. On the pictures, a blue line is a \
+                     closed door, a dashed one is where it opens to, and a rectangle is around any other place. "
                     (self.clock())
                 }
                 div.cards { @for place in &self.summary.places { (self.card(place)) } }
@@ -149,7 +150,7 @@ impl Page<'_> {
                 (self.plan.draw(Shown::Interval, &[], "The mean time of one cycle of every cell"))
                 (interval_key())
                 figcaption {
-                    "The mean time of one cycle of each cell: blocked, free, and blocked again. It is an estimate, also where less than \
+                    "The mean time of one cycle of each cell: blocked, free, and blocked again. Dark is often, light is rarely. It is an estimate, also where less than \
                      a full cycle was seen; the file cell_statistics.csv has the 90 % range of every cell."
                 }
             }
@@ -174,8 +175,8 @@ impl Page<'_> {
                 "Made from " (list(&summary.logs)) ": " (summary.scans) " scans"
                 @if let Some(duration_s) = summary.duration_s { " in " (length_of(duration_s)) }
                 @if let Some(begin_s) = summary.begin_s { ", from " (date(begin_s)) " on" }
-                ", " (format!("{:.0}", summary.trajectory_m)) " m travelled, " (format!("{:.0}", summary.seen_m2)) " m² seen. Hours of people and doors: "
-                (summary.hours) ". "
+                ", " (format!("{:.0}", summary.trajectory_m)) " m travelled, " (format!("{:.0}", summary.seen_m2)) " m² seen. "
+                @if summary.begin_s.is_some() { "Hours of people and doors: " (summary.hours) ". " }
                 (percent(summary.changed_share)) " of the area changed at least once, in " (summary.place_count) " places. "
                 @if summary.scans_left_out > 0 {
                     (summary.scans_left_out) " scans were left out, because it is not certain from where they were taken."

@@ -13,6 +13,8 @@ use survey::upright_rad;
 use viewer::layers::{BLOCKED, FREE, Layer, UNKNOWN};
 use viewer::scene::TimeUnit;
 
+/// The share of the plan from which on a point is beside its middle.
+const BESIDE: f64 = 0.05;
 /// The width of a whole plan in units of its drawing: labels are legible on a telephone.
 const WIDTH: f64 = 720.0;
 /// The space around the map, for labels, and that below it, for the scale.
@@ -117,27 +119,7 @@ impl<'a> Plan<'a> {
     /// Where a point is on the plan, in words.
     pub(super) fn words(&self, at: &Point2<f64>) -> String {
         let from = self.turned(at) - self.low;
-        let third = |share: f64| {
-            if share < 1.0 / 3.0 {
-                0
-            } else if share < 2.0 / 3.0 {
-                1
-            } else {
-                2
-            }
-        };
-        let words = match (third(from.x / self.size.x), third(from.y / self.size.y)) {
-            (1, 1) => "in the middle",
-            (1, 0) => "at the bottom",
-            (1, _) => "at the top",
-            (0, 1) => "at the left",
-            (_, 1) => "at the right",
-            (0, 0) => "at the lower left",
-            (_, 0) => "at the lower right",
-            (0, _) => "at the upper left",
-            _ => "at the upper right",
-        };
-        words.to_owned()
+        words([from.x / self.size.x, from.y / self.size.y])
     }
 
     /// A heading on the plan, in words.
@@ -276,5 +258,49 @@ impl<'a> Plan<'a> {
             }
         };
         html! { (arrow("x", 0.0)) (arrow("y", FRAC_PI_2)) }
+    }
+}
+/// A point in words: in which third of the plan it lies in both directions and, in a middle third, on which side of the middle.
+fn words(shares: [f64; 2]) -> String {
+    let third = |share: f64| [1.0 / 3.0, 2.0 / 3.0].iter().filter(|limit| share >= **limit).count();
+    let side = |share: f64, below: &'static str, above: &'static str| match share - 0.5 {
+        off if off < -BESIDE => Some(below),
+        off if off > BESIDE => Some(above),
+        _ => None,
+    };
+    let (column, row) = (side(shares[0], "left of", "right of"), side(shares[1], "below", "above"));
+    let (edge, side) = match shares.map(third) {
+        [1, 1] => return format!("{} the middle", column.or(row).unwrap_or("in")),
+        [0, 0] => ("at the lower left", None),
+        [2, 0] => ("at the lower right", None),
+        [0, 2] => ("at the upper left", None),
+        [2, 2] => ("at the upper right", None),
+        [_, 0] => ("at the bottom", column),
+        [_, 2] => ("at the top", column),
+        [0, _] => ("at the left", row),
+        _ => ("at the right", row),
+    };
+    side.map_or_else(|| edge.to_owned(), |side| format!("{edge} ({side} the middle)"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::words;
+
+    #[test]
+    fn two_doors_across_a_hall_are_not_at_the_same_place() {
+        let is = |x: f64, y: f64, expected: &str| assert_eq!(words([x, y]), expected);
+        is(0.5, 0.52, "in the middle");
+        is(0.42, 0.45, "left of the middle");
+        is(0.58, 0.45, "right of the middle");
+        is(0.5, 0.6, "above the middle");
+        is(0.42, 0.1, "at the bottom (left of the middle)");
+        is(0.5, 0.9, "at the top");
+        is(0.1, 0.4, "at the left (below the middle)");
+        is(0.9, 0.5, "at the right");
+        is(0.1, 0.1, "at the lower left");
+        is(0.9, 0.1, "at the lower right");
+        is(0.1, 0.9, "at the upper left");
+        is(0.9, 0.9, "at the upper right");
     }
 }
