@@ -18,9 +18,9 @@ use rayon::prelude::*;
 
 /// Cells of the grid of probabilities.
 const CELLS: usize = 256;
-/// Search for the best prices: rounds over all classes, and halvings (in the ratio of the golden section) of each interval.
-const ROUNDS: usize = 3;
-const SECTIONS: usize = 20;
+/// Search for the best prices: rounds over all classes, and golden sections of each interval.
+const ROUNDS: usize = 2;
+const SECTIONS: usize = 16;
 /// The lowest price that is tried, apart from 0: the sum of Brier scores over steps that a look must take away.
 const LOWEST_PRICE: f64 = 1e-4;
 
@@ -77,7 +77,7 @@ fn best_prices(limits: &LookLimits, values: impl Fn(&[f64]) -> f64) -> f64 {
     let mut bound = dual(&best);
     for _ in 0..ROUNDS {
         for class in 0..best.len() {
-            let mut at = |logarithm: f64| {
+            let at = |logarithm: f64| {
                 let mut prices = best.clone();
                 prices[class] = libm::exp(logarithm);
                 let value = dual(&prices);
