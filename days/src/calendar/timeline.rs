@@ -12,7 +12,7 @@ pub struct Timeline {
 #[derive(Clone, Debug)]
 enum Source {
     Habit {
-        habit: Habit,
+        habit: Box<Habit>,
         phase: usize,
         rng: RandomStream,
     },
@@ -29,7 +29,7 @@ impl Timeline {
             left < 0.0
         });
         let phase = drawn.unwrap_or(PHASES - 1);
-        let mut source = Source::Habit { habit: habit.clone(), phase, rng };
+        let mut source = Source::Habit { habit: Box::new(habit.clone()), phase, rng };
         let next_s = source.end_of_stay_s(start_s);
         Self { is_blocked: phase >= PHASES / 2, source, next_s }
     }
