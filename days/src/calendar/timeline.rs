@@ -14,7 +14,7 @@ enum Source {
     Habit {
         habit: Box<Habit>,
         phase: usize,
-        rng: RandomStream,
+        rng: Box<RandomStream>,
     },
     /// The changes that are still to come, the next one last.
     Recorded(Vec<(f64, bool)>),
@@ -29,7 +29,7 @@ impl Timeline {
             left < 0.0
         });
         let phase = drawn.unwrap_or(PHASES - 1);
-        let mut source = Source::Habit { habit: Box::new(habit.clone()), phase, rng };
+        let mut source = Source::Habit { habit: Box::new(habit.clone()), phase, rng: Box::new(rng) };
         let next_s = source.end_of_stay_s(start_s);
         Self { is_blocked: phase >= PHASES / 2, source, next_s }
     }
