@@ -1,6 +1,8 @@
 //! Tests of the parts, and of two logs of one simulated place.
 
+mod corrected;
 mod refused;
+mod scaled;
 
 use crate::route::frame;
 use crate::{
