@@ -37,7 +37,7 @@ pub enum PassError {
 /// What the first pass does with a log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
-    /// It finds the trajectory.
+    /// It finds the trajectory. If the distances of the odometry have a scale, this stage and the next come twice.
     Trajectory,
     /// It closes the loops of the trajectory. Nothing is read.
     Loops,
