@@ -37,7 +37,7 @@ pub enum PassError {
 /// What the first pass does with a log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
-    /// It finds the trajectory.
+    /// It finds the trajectory. If the distances of the odometry have a scale, this stage and the next come twice.
     Trajectory,
     /// It closes the loops of the trajectory. Nothing is read.
     Loops,
@@ -64,12 +64,11 @@ impl<W: FnMut((Stage, usize)) -> ControlFlow<()>> RoutePass<'_, W> {
     /// have no certain pose, when they move otherwise than its odometry, when the place is too large for a map, and when the pass
     /// is interrupted.
     pub(crate) fn route(&mut self) -> Result<Route, PassError> {
-        let (mut route, odometry) = self.trajectory(FirstPass::new(self.settings)?)?;
-        if self.settings.pose != PoseMode::Localized {
+        let mut odometry = Vec::new();
+        let settings = self.settings;
+        let route = Route::of_passes(settings, |pass| self.trajectory(pass, &mut odometry))?;
+        if settings.pose != PoseMode::Localized {
             return Ok(route);
-        }
-        if let Some(scale) = route.significant_scale() {
-            route = self.trajectory(FirstPass::new(self.settings)?.with_distance_scale(&scale))?.0;
         }
         let (left_out, scans) = (uncertain(&route.poses), route.poses.len());
         if left_out * 2 > scans {
@@ -79,21 +78,25 @@ impl<W: FnMut((Stage, usize)) -> ControlFlow<()>> RoutePass<'_, W> {
         Ok(route)
     }
 
-    /// One pass over the log: its route, and the poses of the odometry.
-    fn trajectory(&mut self, mut pass: FirstPass) -> Result<(Route, Vec<Isometry2<f64>>), PassError> {
-        let mut odometry = Vec::new();
+    /// The route of one pass over the log. `odometry` gets the poses of the readings.
+    fn trajectory(
+        &mut self,
+        mut pass: FirstPass,
+        odometry: &mut Vec<Isometry2<f64>>,
+    ) -> Result<Route, PassError> {
+        odometry.clear();
         self.each_reading(Stage::Trajectory, |_, reading| {
             odometry.push(reading.pose);
             pass.add(reading);
             pass.check()
         })?;
         if self.settings.pose != PoseMode::Localized {
-            return Ok((pass.finish(), odometry));
+            return Ok(pass.finish());
         }
         self.report(Stage::Loops, 0)?;
         let route = pass.finish();
         self.report(Stage::Loops, route.poses.len())?;
-        Ok((route, odometry))
+        Ok(route)
     }
 
     /// The route of a later log, in the frame of the first one. `all_stand`: the lasers of this log and of those before stand,

@@ -36,9 +36,21 @@ pub struct Route {
 }
 
 impl Route {
-    /// The scale of the distances of the odometry, if it is so far from 1 that a pass with it is better.
-    pub fn significant_scale(&self) -> Option<DistanceScale> {
-        self.distance_scale.filter(DistanceScale::is_significant)
+    /// The route of a log, in the frame of its first pose. `pass_over` adds all readings to the pass that it gets; it is called
+    /// again if the distances of the odometry have a scale.
+    ///
+    /// # Errors
+    ///
+    /// When a setting is out of range, and those of `pass_over`.
+    pub fn of_passes<E: From<SurveyError>>(
+        settings: &SurveySettings,
+        mut pass_over: impl FnMut(FirstPass) -> Result<Self, E>,
+    ) -> Result<Self, E> {
+        let route = pass_over(FirstPass::new(settings)?)?;
+        match route.distance_scale.filter(DistanceScale::is_significant) {
+            Some(scale) => pass_over(FirstPass::new(settings)?.with_distance_scale(&scale)),
+            None => Ok(route),
+        }
     }
 
     /// The route without certain poses where they are in doubt, if the map is usable with care: what only such scans show is no
@@ -138,8 +150,7 @@ impl FirstPass {
     }
 
     /// The same pass, for an odometry whose distances have a scale.
-    #[must_use]
-    pub fn with_distance_scale(mut self, scale: &DistanceScale) -> Self {
+    fn with_distance_scale(mut self, scale: &DistanceScale) -> Self {
         self.finder = self.finder.map(|finder| finder.with_distance_scale(scale));
         self
     }

@@ -36,7 +36,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let folder = paths.get(1).map_or_else(|| PathBuf::from("."), PathBuf::from);
     let log = Log::open(Path::new(file), &TopicChoice::default())?;
     print_summary(&log);
-    let mut finder = TrajectoryFinder::new(&TrajectorySettings::default())?;
+    let finder = || TrajectoryFinder::new(&TrajectorySettings::default());
     let mut readings = Vec::new();
     for reading in log.readings()? {
         let mut reading = reading?;
@@ -45,22 +45,20 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     let begin = Instant::now();
     let mut local = Vec::new();
-    for reading in &readings {
-        finder.add(reading.clone());
-        local.push(finder.local_pose());
-    }
-    let mut trajectory = finder.finish();
-    if let Some(scale) = trajectory.distance_scale {
-        println!("true distance per distance of the odometry: {:.4} +- {:.4}", scale.scale, scale.std);
-    }
-    if let Some(scale) = trajectory.distance_scale.filter(DistanceScale::is_significant) {
-        let mut finder = TrajectoryFinder::new(&TrajectorySettings::default())?.with_distance_scale(&scale);
+    let mut pass_over = |mut finder: TrajectoryFinder| {
         local.clear();
         for reading in &readings {
             finder.add(reading.clone());
             local.push(finder.local_pose());
         }
-        trajectory = finder.finish();
+        finder.finish()
+    };
+    let mut trajectory = pass_over(finder()?);
+    if let Some(scale) = trajectory.distance_scale {
+        println!("true distance per distance of the odometry: {:.4} +- {:.4}", scale.scale, scale.std);
+    }
+    if let Some(scale) = trajectory.distance_scale.filter(DistanceScale::is_significant) {
+        trajectory = pass_over(finder()?.with_distance_scale(&scale));
     }
     if no_loops {
         trajectory.poses.iter_mut().zip(local).for_each(|(found, local)| found.pose = local);

@@ -21,7 +21,7 @@ use results::output::TrajectoryFile;
 use std::error::Error;
 use std::fs::{File, create_dir_all};
 use std::path::Path;
-use survey::{FirstPass, Route, SurveySettings, Verdict};
+use survey::{Route, SurveyError, SurveySettings, Verdict};
 
 /// A trajectory is right if 95 % of its positions are this near to the truth, m.
 const RIGHT_M: f64 = 0.3;
@@ -113,22 +113,15 @@ fn write(folder: &Path, seed: u64, log: &SimulatedLog) -> Result<(), Box<dyn Err
     Ok(())
 }
 
-fn route(log: &SimulatedLog, mode: PoseMode) -> Result<Route, Box<dyn Error>> {
-    let mut pass = FirstPass::new(&SurveySettings::of(mode))?;
-    log.readings.iter().for_each(|reading| pass.add(reading.clone()));
-    let mut route = pass.finish();
-    if let Some(scale) = route.distance_scale {
-        println!("     scale {:.4} +- {:.4}", scale.scale, scale.std);
-    }
-    if let Some(scale) = route.significant_scale() {
-        let mut pass = FirstPass::new(&SurveySettings::of(mode))?.with_distance_scale(&scale);
+fn route(log: &SimulatedLog, mode: PoseMode) -> Result<Route, SurveyError> {
+    Route::of_passes(&SurveySettings::of(mode), |mut pass| {
         log.readings.iter().for_each(|reading| pass.add(reading.clone()));
-        route = pass.finish();
+        let route = pass.finish();
         if let Some(scale) = route.distance_scale {
-            println!("     again {:.4} +- {:.4}", scale.scale, scale.std);
+            println!("     scale {:.4} +- {:.4}", scale.scale, scale.std);
         }
-    }
-    Ok(route)
+        Ok(route)
+    })
 }
 
 /// Median, 95 % and maximum of the distances from the truth after a rigid alignment, m.

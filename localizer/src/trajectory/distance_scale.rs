@@ -70,3 +70,54 @@ pub(super) fn distance_scale(motions: &[MeasuredMotion], graph: &PoseGraph) -> O
     let std = (middle[middle.len() - 1].0 - middle[0].0) / 1.35 / (ratios.len() as f64).sqrt();
     Some(DistanceScale { scale, std })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use interfaces::pose;
+    use rand_chacha::ChaCha8Rng;
+    use rand_chacha::rand_core::SeedableRng;
+    use rand_distr::{Distribution, Normal};
+
+    /// Steps of 0.5 m along a bent way, which the odometry measures too long by `error`, with noise; every tenth pose is wrong.
+    /// The scans fix a position with these standard deviations along and across the motion, m.
+    fn measured(error: f64, steps: usize, stds_m: [f64; 2]) -> (Vec<MeasuredMotion>, PoseGraph) {
+        let mut rng = ChaCha8Rng::seed_from_u64(1);
+        let noise = Normal::new(0.0, 0.01).unwrap();
+        let mut graph = PoseGraph { poses: vec![Isometry2::identity()], edges: Vec::new() };
+        let information =
+            Matrix3::from_diagonal(&[stds_m[0], stds_m[1], 0.01].map(|std| 1.0 / (std * std)).into());
+        let mut motions = Vec::new();
+        for to in 1..=steps {
+            let true_m = if to % 10 == 0 { 0.9 } else { 0.5 };
+            let measured_m = 0.5 * (1.0 + error) + noise.sample(&mut rng);
+            graph.poses.push(graph.poses[to - 1] * pose(true_m, 0.0, 0.1));
+            motions.push(MeasuredMotion { to, motion: pose(measured_m, 0.0, 0.1), information });
+        }
+        (motions, graph)
+    }
+
+    #[test]
+    fn the_scale_is_that_of_most_motions() {
+        for error in [-0.05, 0.03, 0.0] {
+            let (motions, graph) = measured(error, 500, [0.01, 0.01]);
+            let found = distance_scale(&motions, &graph).unwrap();
+            let off = found.scale - 1.0 / (1.0 + error);
+            assert!(off.abs() < 3.5 * found.std && found.std < 0.003, "{off} of {found:?}");
+            assert_eq!(found.is_significant(), error != 0.0, "{found:?}");
+        }
+    }
+
+    #[test]
+    fn a_scale_needs_scans_that_fix_the_position_along_the_motion() {
+        let is_known = |steps, stds_m| {
+            let (motions, graph) = measured(0.03, steps, stds_m);
+            distance_scale(&motions, &graph).is_some()
+        };
+        assert!(is_known(SCALED_MOTIONS, [0.01, 0.01]) && is_known(500, [0.01, 1.0]));
+        // Along a bare corridor; where nothing at all is seen along it; too few motions.
+        assert!(!is_known(500, [1.0, 0.01]));
+        assert!(!is_known(500, [f64::INFINITY, 0.01]));
+        assert!(!is_known(SCALED_MOTIONS - 1, [0.01, 0.01]));
+    }
+}

@@ -1,6 +1,7 @@
 //! Trajectories around loops, with a known truth and hard drift.
 
 mod online;
+mod scaled;
 mod sparse;
 mod world;
 
