@@ -4,7 +4,6 @@ use crate::calibration::Calibration;
 use crate::constants::{DISTRUST_SCANS, MIN_MOTION};
 use crate::motion::Motion;
 use crate::settings::OdometryTrust;
-use crate::trajectory::DistanceScale;
 use nalgebra::Isometry2;
 
 /// The odometry of a robot.
@@ -29,9 +28,9 @@ impl MotionPrior {
         self.exists = true;
     }
 
-    /// The scale of the distances is known.
-    pub(crate) fn expect_distance_scale(&mut self, scale: &DistanceScale) {
-        self.calibration.expect_distance(scale.scale, scale.std);
+    /// The true distance per distance that the odometry measures is known, with its standard deviation.
+    pub(crate) fn expect_distance_scale(&mut self, scale: f64, std: f64) {
+        self.calibration.expect_distance(scale, std);
     }
 
     pub(crate) fn has_odometry(&self) -> bool {

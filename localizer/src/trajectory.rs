@@ -121,7 +121,7 @@ impl TrajectoryFinder {
     /// The same finder, for an odometry whose distances are known to have a scale.
     #[must_use]
     pub fn with_distance_scale(mut self, scale: &DistanceScale) -> Self {
-        self.builder.motion_prior.expect_distance_scale(scale);
+        self.builder.motion_prior.expect_distance_scale(scale.scale, scale.std);
         self
     }
 
