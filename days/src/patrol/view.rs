@@ -40,7 +40,7 @@ pub struct View<'a> {
 }
 
 impl View<'_> {
-    /// Whether the battery is enough for a visit to a viewpoint, and for the way from there to the dock.
+    /// Whether the battery is enough for a visit to a viewpoint and the return to the dock.
     pub fn is_allowed(&self, viewpoint: usize) -> bool {
         let Building { steps, dock, rooms, viewpoints, .. } = self.building;
         let charge = |by: usize| (steps[self.at][by] + steps[by][*dock]) as f64;
