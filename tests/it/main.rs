@@ -25,6 +25,7 @@ mod map_log_report;
 mod map_log_state;
 mod memory;
 mod output;
+mod pages;
 mod pose;
 mod predict;
 mod prior;
