@@ -189,14 +189,74 @@ class GetResultResponse(IdlStruct, typename="nav2_msgs::action::dds_::NavigateTo
     error_code: uint16
     error_msg: str
 
+
+@dataclass
+class MapMetaData(IdlStruct, typename="nav_msgs::msg::dds_::MapMetaData_"):
+    map_load_time: Time
+    resolution: float32
+    width: uint32
+    height: uint32
+    origin: Pose
+
+
+@dataclass
+class OccupancyGrid(IdlStruct, typename="nav_msgs::msg::dds_::OccupancyGrid_"):
+    header: Header
+    info: MapMetaData
+    data: sequence[int8]
+
+
+@dataclass
+class CostmapFilterInfo(IdlStruct, typename="nav2_msgs::msg::dds_::CostmapFilterInfo_"):
+    header: Header
+    type: uint8
+    filter_mask_topic: str
+    base: float32
+    multiplier: float32
+
+
+@dataclass
+class PoseWithCovariance(IdlStruct, typename="geometry_msgs::msg::dds_::PoseWithCovariance_"):
+    pose: Pose
+    covariance: array[float64, 36]
+
+
+@dataclass
+class PoseWithCovarianceStamped(IdlStruct, typename="geometry_msgs::msg::dds_::PoseWithCovarianceStamped_"):
+    header: Header
+    pose: PoseWithCovariance
+
+
+@dataclass
+class KeyValue(IdlStruct, typename="diagnostic_msgs::msg::dds_::KeyValue_"):
+    key: str
+    value: str
+
+
+@dataclass
+class DiagnosticStatus(IdlStruct, typename="diagnostic_msgs::msg::dds_::DiagnosticStatus_"):
+    level: uint8
+    name: str
+    message: str
+    hardware_id: str
+    values: sequence[KeyValue]
+
+
+@dataclass
+class DiagnosticArray(IdlStruct, typename="diagnostic_msgs::msg::dds_::DiagnosticArray_"):
+    header: Header
+    status: sequence[DiagnosticStatus]
+
+
+LATCHED = Qos(Policy.Reliability.Reliable(duration(seconds=1)), Policy.Durability.TransientLocal, Policy.History.KeepLast(1))
 RELIABLE = Qos(Policy.Reliability.Reliable(duration(seconds=1)), Policy.History.KeepLast(100))
 WORK, CURIOUS, SIM = sys.argv[1:4]
 LOG = os.path.join(WORK, "cyclonedds.log")
 participant = DomainParticipant(DOMAIN)
 
 
-def reader(name, kind):
-    return DataReader(participant, Topic(participant, name, kind), qos=RELIABLE)
+def reader(name, kind, qos=RELIABLE):
+    return DataReader(participant, Topic(participant, name, kind), qos=qos)
 
 
 def writer(name, kind):
@@ -260,6 +320,42 @@ def test_messages():
     end(node)
 
 
+def test_stack():
+    """What Nav2's costmap filters and those who watch a robot read, by their definitions."""
+    readers = {
+        "speed": reader("rt/fleet/speed_mask", OccupancyGrid, LATCHED),
+        "keepout": reader("rt/fleet/keepout_mask", OccupancyGrid, LATCHED),
+        "speed info": reader("rt/fleet/speed_filter_info", CostmapFilterInfo, LATCHED),
+        "keepout info": reader("rt/fleet/keepout_filter_info", CostmapFilterInfo, LATCHED),
+        "pose": reader("rt/fleet/pose", PoseWithCovarianceStamped),
+        "diagnostics": reader("rt/diagnostics", DiagnosticArray),
+    }
+    node = explore("-r", "__ns:=/fleet", "-r", "odom:=/odom", "-r", "cmd_vel:=/cmd_vel", "-p", "mask_update_interval:=1.0")
+    heard = {name: [] for name in readers}
+
+    def turn():
+        for name, messages in heard.items():
+            messages += readers[name].take(100)
+
+    def is_complete():
+        said = {status.message for array in heard["diagnostics"] for status in array.status}
+        return all(heard.values()) and len(heard["keepout"]) > 1 and "tracking: the pose is certain" in said
+
+    check("masks, poses and diagnostics come", spin(40, turn, is_complete), {n: len(m) for n, m in heard.items()})
+    speed, keepout = heard["speed info"][-1], heard["keepout info"][-1]
+    check("a filter finds the speed mask", (speed.type, speed.filter_mask_topic) == (1, "/fleet/speed_mask"))
+    check("its value is a limit", (speed.base, speed.multiplier) == (100.0, -1.0))
+    check("a filter finds the keepout mask", (keepout.type, keepout.filter_mask_topic) == (0, "/fleet/keepout_mask"))
+    masks = heard["speed"] + heard["keepout"]
+    is_whole = all(len(m.data) == m.info.width * m.info.height and 0 <= min(m.data) <= max(m.data) <= 100 for m in masks)
+    check("the masks are maps", is_whole and {m.header.frame_id for m in masks} == {"map"})
+    certain = heard["pose"][-1].pose.covariance
+    check("the pose has a covariance", all(0 < certain[at] < 0.1 for at in (0, 7, 35)), [certain[at] for at in (0, 7, 35)])
+    names = {status.name for array in heard["diagnostics"] for status in array.status}
+    check("the parts of the node", names == {"curious_node: localization", "curious_node: scans"}, sorted(names))
+    end(node)
+
+
 def test_action():
     goals = reader("rq/navigate_to_pose/_action/send_goalRequest", SendGoalRequest)
     answers = writer("rr/navigate_to_pose/_action/send_goalReply", SendGoalResponse)
@@ -303,6 +399,7 @@ def main():
     simulation = subprocess.Popen([SIM, "house"], stderr=subprocess.DEVNULL)
     try:
         test_messages()
+        test_stack()
         test_action()
     finally:
         simulation.kill()

@@ -11,7 +11,11 @@ macro_rules! by_type {
             Topic::Velocity => $open!(Twist),
             Topic::StampedVelocity => $open!(TwistStamped),
             Topic::Resume => $open!(Bool),
-            Topic::Map | Topic::ChangeMap | Topic::PredictedMap => $open!(Grid),
+            Topic::Map | Topic::ChangeMap | Topic::PredictedMap | Topic::RateMap => $open!(Grid),
+            Topic::SpeedMask | Topic::KeepoutMask => $open!(Grid),
+            Topic::SpeedFilterInfo | Topic::KeepoutFilterInfo => $open!(FilterInfo),
+            Topic::EstimatedPose => $open!(PoseWithCovariance),
+            Topic::Diagnostics => $open!(Diagnostics),
             Topic::MapUpdates => $open!(GridUpdate),
             Topic::Markers => $open!(Markers),
             Topic::GoalPose => $open!(Pose),
@@ -76,6 +80,7 @@ type SaveState = Server<TriggerRequest, TriggerResponse>;
 /// A node on the network.
 pub struct DdsLink {
     events: Receiver<Event>,
+    names: BTreeMap<Topic, String>,
     publishers: Publishers,
     discovery: Discovery,
     problems: VecDeque<String>,
@@ -120,6 +125,7 @@ impl DdsLink {
         })?;
         Ok(Self {
             events,
+            names: wiring.published.iter().map(|(topic, name, _)| (*topic, name.clone())).collect(),
             publishers,
             discovery: Discovery::new(context, wiring),
             problems: VecDeque::new(),
@@ -148,6 +154,10 @@ impl DdsLink {
 impl Link for DdsLink {
     fn send(&mut self, topic: Topic, message: Message) -> bool {
         self.publishers.send(topic, message)
+    }
+
+    fn name(&self, topic: Topic) -> &str {
+        self.names.get(&topic).map_or(topic.default_name(), String::as_str)
     }
 
     fn receive(&mut self, patience: Duration) -> Option<Event> {

@@ -49,6 +49,10 @@ impl Link for FakeLink {
         })
     }
 
+    fn name(&self, topic: Topic) -> &str {
+        topic.default_name()
+    }
+
     fn receive(&mut self, _: Duration) -> Option<Event> {
         self.others(|others| others.events.pop_front())
     }

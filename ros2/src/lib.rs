@@ -30,6 +30,7 @@ mod pilot;
 mod ros_args;
 mod simulated;
 mod source;
+mod topic;
 mod value;
 mod wiring;
 
@@ -37,8 +38,8 @@ pub use dds::DdsLink;
 pub use environment::{Environment, EnvironmentError, Range, Services};
 pub use link::{Answer, Event, Link, Navigation, Request, Wiring};
 pub use message::{
-    Bool, Clock, Color, Marker, Markers, Message, Quality, Texture, Topic, Twist as TwistMessage,
-    TwistStamped,
+    Bool, Clock, Color, CostmapFilterInfo, DiagnosticStatus, Diagnostics, Marker, Markers, Message,
+    PoseWithCovarianceStamped, Quality, Texture, Topic, Twist as TwistMessage, TwistStamped,
 };
 pub use names::{NameError, Names};
 pub use node::{CuriousNode, NodeReport, Signals};

@@ -8,6 +8,9 @@ pub trait Link {
     /// Sends a message. `false`: it was not sent, since a subscriber does not keep up.
     fn send(&mut self, topic: Topic, message: Message) -> bool;
 
+    /// The full name of a topic that the node publishes.
+    fn name(&self, topic: Topic) -> &str;
+
     /// The next event. Waits for it at most this long.
     fn receive(&mut self, patience: Duration) -> Option<Event>;
 

@@ -1,11 +1,14 @@
 //! The maps that are published: only the part that is known, rarely as a whole, and what changes at once.
 
+mod masks;
+
 use crate::message::{Header, Message, OccupancyGrid, OccupancyGridUpdate, Topic};
+use crate::parameters::Parameters;
 use interfaces::{Cell, CellState, Grid, GridFrame};
 use mapper::Mapper;
 use nalgebra::{Point2, Vector2};
 use std::time::{Duration, Instant};
-use survey::CHANGE_HORIZON_S;
+pub(crate) use masks::PublishedMasks;
 
 /// The border of a published map lies on multiples of this number of cells, so that its frame rarely changes.
 const BLOCK: i32 = 64;
@@ -14,13 +17,19 @@ const BLOCK: i32 = 64;
 const MANY_CELLS: f64 = 600.0 * 600.0;
 /// The time between two maps of that size, at least.
 const LARGE: Duration = Duration::from_secs(5);
-/// The time between two maps of changes and predictions, at least.
+/// The time between two maps of changes, predictions and rates, at least.
 const CHANGES: Duration = Duration::from_secs(10);
+
+/// The map of rates has cycles per hour, at most 100.
+const HOUR_S: f64 = 3600.0;
 
 /// What was published, and when.
 #[derive(Default)]
 pub(crate) struct PublishedMaps {
     interval: Duration,
+    /// How far ahead the maps of changes and of predictions look, s.
+    change_horizon_s: f64,
+    prediction_horizon_s: f64,
     /// The map as subscribers know it.
     shown: Option<Grid<i8>>,
     whole: Option<Instant>,
@@ -30,9 +39,15 @@ pub(crate) struct PublishedMaps {
 }
 
 impl PublishedMaps {
-    /// Publishes a map once in this time.
-    pub(crate) fn new(interval_s: f64) -> Self {
-        Self { interval: Duration::from_secs_f64(interval_s), is_changed: true, ..Self::default() }
+    /// Publishes maps as these parameters say.
+    pub(crate) fn new(parameters: &Parameters) -> Self {
+        Self {
+            interval: Duration::from_secs_f64(parameters.map_update_interval_s),
+            change_horizon_s: parameters.change_horizon_s,
+            prediction_horizon_s: parameters.prediction_horizon_s,
+            is_changed: true,
+            ..Self::default()
+        }
     }
 
     /// The messages after a reading. `header` has the time of the reading and the frame of the map.
@@ -75,16 +90,20 @@ impl PublishedMaps {
         self.is_changed = false;
         if self.changes.is_none_or(|last| now.duration_since(last) >= CHANGES) {
             self.changes = Some(now);
+            let (change_s, ahead_s) = (self.change_horizon_s, self.prediction_horizon_s);
             let share = |index, share: f64| match mapper.was_ever_seen(index) {
                 true => (share.clamp(0.0, 1.0) * 100.0).round() as i8,
                 false => -1,
             };
-            let change = |index| share(index, mapper.change_probability_within(index, CHANGE_HORIZON_S));
-            let predicted = |index| share(index, mapper.blocked_probability(index));
-            messages
-                .push((Topic::ChangeMap, message(&cut(mapper.states(), frame, |_, index| change(index)))));
-            let predicted = cut(mapper.states(), frame, |_, index| predicted(index));
-            messages.push((Topic::PredictedMap, message(&predicted)));
+            let change = |index| share(index, mapper.change_probability_within(index, change_s));
+            let predicted = |index| share(index, mapper.blocked_probability_later(index, ahead_s));
+            let rate = |index| share(index, mapper.rate(index) * HOUR_S / 100.0);
+            let mut show = |topic, value: &dyn Fn(usize) -> i8| {
+                messages.push((topic, message(&cut(mapper.states(), frame, |_, index| value(index)))));
+            };
+            show(Topic::ChangeMap, &change);
+            show(Topic::PredictedMap, &predicted);
+            show(Topic::RateMap, &rate);
         }
     }
 

@@ -1,10 +1,14 @@
-//! What the nodes send and receive: messages, and the topics that carry them.
+//! The messages that the nodes send and receive.
 
 pub(crate) use logs::ros::{
     Header, LaserScan, OccupancyGrid, OccupancyGridUpdate, Odometry, Pose, PoseStamped, Time,
     TransformStamped, Transforms, Vector,
 };
 
+pub use crate::topic::{Quality, Topic};
+
+use logs::ros::{Covariance, PoseWithCovariance};
+use nalgebra::{Isometry2, Matrix3};
 use serde::{Deserialize, Serialize};
 
 /// `rosgraph_msgs/Clock`.
@@ -108,6 +112,78 @@ pub struct Markers {
     pub markers: Vec<Marker>,
 }
 
+/// `nav2_msgs/CostmapFilterInfo`: what the values of a mask mean.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+pub struct CostmapFilterInfo {
+    /// The time, and the frame of the mask.
+    pub header: Header,
+    /// What the filter does, one of the constants of this type.
+    pub kind: u8,
+    /// The topic of the mask.
+    pub filter_mask_topic: String,
+    /// The filter uses `base + multiplier × value`.
+    pub base: f32,
+    /// See [`base`](Self::base).
+    pub multiplier: f32,
+}
+
+impl CostmapFilterInfo {
+    /// The filter keeps out of cells.
+    pub const KEEPOUT: u8 = 0;
+    /// The filter limits the speed to a percentage.
+    pub const SPEED_PERCENT: u8 = 1;
+}
+
+/// `geometry_msgs/PoseWithCovarianceStamped`.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+pub struct PoseWithCovarianceStamped {
+    /// The time, and the frame in which the pose is.
+    pub header: Header,
+    /// The pose, and the covariance of x, y, z (m²) and the angles about them (rad²).
+    pub pose: PoseWithCovariance,
+}
+
+impl PoseWithCovarianceStamped {
+    /// A pose in the plane with the covariance of x, y and heading.
+    pub fn in_plane(header: Header, pose: &Isometry2<f64>, covariance: &Matrix3<f64>) -> Self {
+        /// The places of x, y and the heading among the six figures.
+        const PLACES: [usize; 3] = [0, 1, 5];
+        let mut all = Covariance::default();
+        for (row, at) in PLACES.into_iter().enumerate() {
+            for (column, beside) in PLACES.into_iter().enumerate() {
+                let place = 6 * at + beside;
+                let half = if place < 18 { &mut all.0 } else { &mut all.1 };
+                half[place % 18] = covariance[(row, column)];
+            }
+        }
+        Self { header, pose: PoseWithCovariance { pose: Pose::in_plane(pose), covariance: all } }
+    }
+}
+
+/// `diagnostic_msgs/DiagnosticArray`.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+pub struct Diagnostics {
+    /// The time.
+    pub header: Header,
+    /// One per part of the robot.
+    pub status: Vec<DiagnosticStatus>,
+}
+
+/// `diagnostic_msgs/DiagnosticStatus`.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+pub struct DiagnosticStatus {
+    /// 0: as it should be, 1: warning, 2: error.
+    pub level: u8,
+    /// The part of the robot.
+    pub name: String,
+    /// One sentence.
+    pub message: String,
+    /// The device; empty for a program.
+    pub hardware_id: String,
+    /// Names and values.
+    pub values: Vec<(String, String)>,
+}
+
 pub(crate) fn header(stamp: Time, frame: &str) -> Header {
     Header { stamp, frame_id: frame.to_owned() }
 }
@@ -144,99 +220,10 @@ pub enum Message {
     Markers(Markers),
     /// A pose.
     Pose(PoseStamped),
-}
-
-/// What a topic is for. Its name is a setting of the node.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Topic {
-    /// The scans of the laser.
-    Scan,
-    /// The odometry.
-    Odometry,
-    /// Transforms that change.
-    Transforms,
-    /// Transforms that never change.
-    StaticTransforms,
-    /// The time of a simulation.
-    Clock,
-    /// Velocities for the robot, without a time.
-    Velocity,
-    /// Velocities for the robot, with a time. Its name is the same as that of [`Topic::Velocity`].
-    StampedVelocity,
-    /// Whether the robot explores, or waits.
-    Resume,
-    /// The map.
-    Map,
-    /// The parts of the map that changed since it was sent as a whole.
-    MapUpdates,
-    /// Where the place changes.
-    ChangeMap,
-    /// Where the place is probably blocked now.
-    PredictedMap,
-    /// The goal and the path of the robot, to be drawn.
-    Markers,
-    /// The pose to which Nav2 drives.
-    GoalPose,
-    /// The true pose of a simulated robot.
-    GroundTruth,
-}
-
-/// How messages are delivered.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Quality {
-    /// Whether lost messages are sent again.
-    pub is_reliable: bool,
-    /// Whether a later subscriber gets the last messages ("transient local").
-    pub is_latched: bool,
-    /// The number of messages that are kept.
-    pub depth: usize,
-}
-
-impl Quality {
-    /// The sensor-data profile of ROS.
-    pub const SENSOR: Self = Self { is_reliable: false, is_latched: false, depth: 5 };
-    /// The default profile of ROS.
-    pub const DEFAULT: Self = Self { is_reliable: true, is_latched: false, depth: 10 };
-    /// The profile of maps.
-    pub const LATCHED: Self = Self { is_reliable: true, is_latched: true, depth: 1 };
-}
-
-impl Topic {
-    /// The name that other nodes expect, relative to the namespace of the node, except for those that are absolute.
-    pub fn default_name(self) -> &'static str {
-        self.row().0
-    }
-
-    /// The type of its messages: a package and a name.
-    pub fn type_name(self) -> (&'static str, &'static str) {
-        (self.row().1, self.row().2)
-    }
-
-    /// How its messages are delivered, as subscribers and publishers of ROS expect it.
-    pub fn quality(self) -> Quality {
-        self.row().3
-    }
-
-    #[rustfmt::skip]
-    fn row(self) -> (&'static str, &'static str, &'static str, Quality) {
-        const DEFAULT: Quality = Quality::DEFAULT;
-        const LATCHED: Quality = Quality::LATCHED;
-        match self {
-            Self::Scan => ("scan", "sensor_msgs", "LaserScan", Quality::SENSOR),
-            Self::Odometry => ("odom", "nav_msgs", "Odometry", DEFAULT),
-            Self::Transforms => ("/tf", "tf2_msgs", "TFMessage", Quality { depth: 100, ..DEFAULT }),
-            Self::StaticTransforms => ("/tf_static", "tf2_msgs", "TFMessage", Quality { depth: 100, ..LATCHED }),
-            Self::Clock => ("/clock", "rosgraph_msgs", "Clock", Quality { is_reliable: false, ..DEFAULT }),
-            Self::Velocity => ("cmd_vel", "geometry_msgs", "Twist", DEFAULT),
-            Self::StampedVelocity => ("cmd_vel", "geometry_msgs", "TwistStamped", DEFAULT),
-            Self::Resume => ("explore/resume", "std_msgs", "Bool", DEFAULT),
-            Self::Map => ("map", "nav_msgs", "OccupancyGrid", LATCHED),
-            Self::MapUpdates => ("map_updates", "map_msgs", "OccupancyGridUpdate", DEFAULT),
-            Self::ChangeMap => ("change_map", "nav_msgs", "OccupancyGrid", LATCHED),
-            Self::PredictedMap => ("predicted_map", "nav_msgs", "OccupancyGrid", LATCHED),
-            Self::Markers => ("explore/goals", "visualization_msgs", "MarkerArray", DEFAULT),
-            Self::GoalPose => ("goal_pose", "geometry_msgs", "PoseStamped", DEFAULT),
-            Self::GroundTruth => ("ground_truth", "nav_msgs", "Odometry", DEFAULT),
-        }
-    }
+    /// A pose with its covariance.
+    PoseWithCovariance(Box<PoseWithCovarianceStamped>),
+    /// What the values of a mask mean.
+    FilterInfo(CostmapFilterInfo),
+    /// How a node is.
+    Diagnostics(Diagnostics),
 }

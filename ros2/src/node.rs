@@ -1,5 +1,6 @@
 //! The mapping node: the loop of every robot, once per reading that arrives, and what other nodes hear of it.
 
+mod diagnostics;
 mod outputs;
 mod publishing;
 mod saving;
@@ -73,6 +74,7 @@ pub struct CuriousNode<L: Link> {
     next_silence: Instant,
     is_stopped: bool,
     report: NodeReport,
+    pose_state: PoseState,
 }
 
 impl<L: Link> CuriousNode<L> {
@@ -119,6 +121,7 @@ impl<L: Link> CuriousNode<L> {
             next_silence: Instant::now() + SILENCE,
             is_stopped: true,
             report: NodeReport::default(),
+            pose_state: PoseState::default(),
         })
     }
 
@@ -202,6 +205,7 @@ impl<L: Link> CuriousNode<L> {
             Err(why) => return self.notes.note(&format!("a scan is left out: {why}"), now),
         };
         self.report.readings += 1;
+        self.pose_state = turn.belief.state();
         self.report.mapped += u64::from(turn.belief.is_certain());
         match (was_settled, self.robot.is_settled()) {
             (true, false) => self
@@ -221,7 +225,7 @@ impl<L: Link> CuriousNode<L> {
         if turn.belief.state() != PoseState::Lost {
             self.published.map_to_odom = Some(turn.belief.pose * in_odom.inverse());
         }
-        self.publish_reading(stamp, turn.command, now);
+        self.publish_reading(stamp, &turn, now);
     }
 
     /// What a user should know of the pose.
@@ -252,6 +256,7 @@ impl<L: Link> CuriousNode<L> {
         if self.last.is_some_and(|(_, at)| now.duration_since(at) >= BLIND) {
             self.stop_robot();
         }
+        self.publish_diagnostics(now);
         if now >= self.next_silence {
             self.next_silence = now + SILENCE;
             let topic = &self.parameters.scan_topic;

@@ -117,6 +117,12 @@ parameters! {
     "range_noise", range_noise_m: f64 = 0.02;
     /// The time between two maps, s.
     "map_update_interval", map_update_interval_s: f64 = 5.0;
+    /// How far ahead the map of changes looks, s.
+    "change_horizon", change_horizon_s: f64 = 60.0;
+    /// How far ahead the predicted map and the keepout mask look, s; 0: now.
+    "prediction_horizon", prediction_horizon_s: f64 = 0.0;
+    /// The time between two masks for Nav2, s; 0: none.
+    "mask_update_interval", mask_update_interval_s: f64 = 30.0;
     /// The time between two transforms from map to odometry, s; 0: none.
     "transform_publish_period", transform_publish_period_s: f64 = 0.02;
     /// How long a transform holds after the last reading, s.
@@ -145,6 +151,9 @@ parameters! {
     /// `best_effort` or `reliable`.
     "qos_overrides./scan.subscription.reliability", scan_reliability: String = "best_effort".to_owned();
 }
+
+/// The longest horizon, s.
+const DAY_S: f64 = 86400.0;
 
 impl Parameters {
     /// Sets a parameter.
@@ -177,6 +186,11 @@ impl Parameters {
         check.within("max_laser_range", self.max_laser_range_m, 0.1..=1000.0, "from 0.1 to 1000")?;
         check.within("range_noise", self.range_noise_m, 0.0..=0.5, "from 0 to 0.5")?;
         check.within("map_update_interval", self.map_update_interval_s, 0.1..=3600.0, "from 0.1 to 3600")?;
+        check.within("change_horizon", self.change_horizon_s, 0.1..=DAY_S, "from 0.1 to 86400")?;
+        check.within("prediction_horizon", self.prediction_horizon_s, 0.0..=DAY_S, "from 0 to 86400")?;
+        let interval = self.mask_update_interval_s;
+        let is_interval = interval == 0.0 || (1.0..=3600.0).contains(&interval);
+        check.valid("mask_update_interval", interval, "0, or from 1 to 3600", is_interval)?;
         let period = self.transform_publish_period_s;
         let is_period = period == 0.0 || (0.005..=10.0).contains(&period);
         check.valid("transform_publish_period", period, "0, or from 0.005 to 10", is_period)?;

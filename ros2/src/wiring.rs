@@ -16,8 +16,21 @@ const SCANS: usize = 100;
 /// When a name is not valid.
 pub fn curious_wiring(parameters: &Parameters, names: &Names, ros: &RosArgs) -> Result<Wiring, NameError> {
     let mut subscribed = vec![Topic::Scan, Topic::Odometry, Topic::Transforms, Topic::StaticTransforms];
-    let mut published =
-        vec![Topic::Transforms, Topic::Map, Topic::MapUpdates, Topic::ChangeMap, Topic::PredictedMap];
+    let mut published = vec![
+        Topic::Transforms,
+        Topic::Map,
+        Topic::MapUpdates,
+        Topic::ChangeMap,
+        Topic::PredictedMap,
+        Topic::RateMap,
+        Topic::EstimatedPose,
+        Topic::Diagnostics,
+    ];
+    if parameters.mask_update_interval_s > 0.0 {
+        let masks =
+            [Topic::SpeedMask, Topic::KeepoutMask, Topic::SpeedFilterInfo, Topic::KeepoutFilterInfo];
+        published.extend(masks);
+    }
     let mut navigate_to_pose = None;
     if parameters.mode == Mode::Explore {
         subscribed.push(Topic::Resume);

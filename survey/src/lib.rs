@@ -45,7 +45,7 @@ pub use change_log::ChangeLog;
 pub use error::SurveyError;
 pub use forecast::{Forecast, NEAR_M, doors};
 pub use known_place::KnownPlace;
-pub use masks::{CHANGE_HORIZON_S, MASKS, masks};
+pub use masks::{CHANGE_HORIZON_S, MASKS, masks, masks_ahead};
 pub use passes::{PassError, Stage};
 pub use permanent::permanent;
 pub use places::{

@@ -108,6 +108,12 @@ pub fn masks(mapper: &Mapper) -> [Grid<u8>; 2] {
     [speed_mask(mapper, |_| 1.0), keepout_mask(mapper, |index| share_blocked(mapper, index))]
 }
 
+/// The speed mask for any time, and the keepout mask of what is probably blocked this time after the last reading, s.
+pub fn masks_ahead(mapper: &Mapper, ahead_s: f64) -> [Grid<u8>; 2] {
+    let blocked = |index| mapper.blocked_probability_later(index, ahead_s);
+    [speed_mask(mapper, |_| 1.0), keepout_mask(mapper, blocked)]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

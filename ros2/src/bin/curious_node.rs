@@ -46,8 +46,15 @@ SUBSCRIBES
 PUBLISHES
   map                     nav_msgs/OccupancyGrid: -1, 0, 100; reliable, transient local
   map_updates             map_msgs/OccupancyGridUpdate: what changed, at once
-  change_map              nav_msgs/OccupancyGrid: 0 to 100, where the place changes within ten minutes
-  predicted_map           nav_msgs/OccupancyGrid: 0 to 100, where it is probably blocked now
+  change_map              nav_msgs/OccupancyGrid: 0 to 100, where the place changes within change_horizon
+  predicted_map           nav_msgs/OccupancyGrid: 0 to 100, where it is probably blocked after prediction_horizon
+  rate_map                nav_msgs/OccupancyGrid: cycles per hour, at most 100
+  speed_mask, keepout_mask
+                          nav_msgs/OccupancyGrid: for the costmap filters of Nav2, every mask_update_interval
+  speed_filter_info, keepout_filter_info
+                          nav2_msgs/CostmapFilterInfo: what the values of the masks mean
+  pose                    geometry_msgs/PoseWithCovarianceStamped: the robot in the map
+  /diagnostics            diagnostic_msgs/DiagnosticArray: tracking, uncertain or lost; scans left out; once per second
   /tf                     tf2_msgs/TFMessage: map_frame to odom_frame
   cmd_vel                 geometry_msgs/TwistStamped, or Twist with enable_stamped_cmd_vel:=false
   goal_pose               geometry_msgs/PoseStamped, with navigator:=goal_pose
@@ -70,6 +77,9 @@ PARAMETERS (--ros-args -p name:=value, or --params-file FILE)
   no_return               what a beam without a return means: learn, free or ignore [learn]
   range_noise             standard deviation of ranges, m [0.02]
   map_update_interval     time between two whole maps, s; longer for large maps [5.0]
+  change_horizon          how far ahead change_map looks, s [60.0]
+  prediction_horizon      how far ahead predicted_map and keepout_mask look, s; 0: now [0.0]
+  mask_update_interval    time between two masks, s; 0: no masks [30.0]
   transform_publish_period
                           time between two transforms, s; 0: none [0.02]
   transform_timeout       how long a transform holds after a scan, s [0.2]

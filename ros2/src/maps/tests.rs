@@ -3,6 +3,10 @@ use interfaces::{CellReading, Event};
 use mapper::MapperSettings;
 use nalgebra::Isometry2;
 
+fn published(map_update_interval_s: f64) -> PublishedMaps {
+    PublishedMaps::new(&Parameters { map_update_interval_s, ..Parameters::default() })
+}
+
 /// A mapper of 300 × 200 cells that has seen some cells.
 fn mapper() -> Mapper {
     let frame = GridFrame::new(Point2::new(-15.0, -10.0), 0.1, 300, 200).unwrap();
@@ -21,12 +25,12 @@ fn grid(message: &(Topic, Message)) -> (Topic, &OccupancyGrid) {
 
 #[test]
 fn only_the_known_part_is_published() {
-    let (mut mapper, mut maps, start) = (mapper(), PublishedMaps::new(5.0), Instant::now());
+    let (mut mapper, mut maps, start) = (mapper(), published(5.0), Instant::now());
     assert_eq!(maps.after(&mapper, &Header::default(), start), []);
     see(&mut mapper, 1.0, &[(70, 130, false), (71, 130, true)]);
     let messages = maps.after(&mapper, &Header::default(), start);
     let topics: Vec<Topic> = messages.iter().map(|message| grid(message).0).collect();
-    assert_eq!(topics, [Topic::Map, Topic::ChangeMap, Topic::PredictedMap]);
+    assert_eq!(topics, [Topic::Map, Topic::ChangeMap, Topic::PredictedMap, Topic::RateMap]);
     let (_, map) = grid(&messages[0]);
     // From 64 to 128 across, and from 128 to 192 up.
     assert_eq!((map.width, map.height), (64, 64));
@@ -44,7 +48,7 @@ fn only_the_known_part_is_published() {
 
 #[test]
 fn changes_are_published_at_once_and_maps_rarely() {
-    let (mut mapper, mut maps, start) = (mapper(), PublishedMaps::new(5.0), Instant::now());
+    let (mut mapper, mut maps, start) = (mapper(), published(5.0), Instant::now());
     see(&mut mapper, 0.0, &[(70, 130, false), (71, 130, true)]);
     maps.after(&mapper, &Header::default(), start);
     // Nothing new.
@@ -66,19 +70,46 @@ fn changes_are_published_at_once_and_maps_rarely() {
     assert_eq!(grid(&messages[0]).1.width, 128);
     see(&mut mapper, 0.4, &[(70, 130, true)]);
     let messages = maps.after(&mapper, &Header::default(), start + Duration::from_secs(12));
-    assert_eq!(messages.len(), 3);
+    assert_eq!(messages.len(), 4);
 }
 
 #[test]
 fn large_maps_are_published_less_often() {
     let frame = GridFrame::new(Point2::origin(), 0.1, 1200, 600).unwrap();
     let mut mapper = Mapper::new(&MapperSettings::default(), frame).unwrap();
-    let (mut maps, start) = (PublishedMaps::new(1.0), Instant::now());
+    let (mut maps, start) = (published(1.0), Instant::now());
     see(&mut mapper, 0.0, &[(0, 0, true), (1199, 599, true)]);
-    assert_eq!(maps.after(&mapper, &Header::default(), start).len(), 3);
+    assert_eq!(maps.after(&mapper, &Header::default(), start).len(), 4);
     see(&mut mapper, 1.0, &[(5, 5, true)]);
     // 720,000 cells: twice the interval of a large map.
     let messages = maps.after(&mapper, &Header::default(), start + Duration::from_secs(9));
     assert!(matches!(messages[..], [(Topic::MapUpdates, _)]));
-    assert_eq!(maps.after(&mapper, &Header::default(), start + Duration::from_secs(10)).len(), 3);
+    assert_eq!(maps.after(&mapper, &Header::default(), start + Duration::from_secs(10)).len(), 4);
+}
+
+#[test]
+fn masks_are_published_rarely_and_their_meaning_once() {
+    let (mut mapper, start) = (mapper(), Instant::now());
+    let mut masks = PublishedMasks::new(&Parameters::default());
+    let mut due = |mapper: &Mapper, after_s: u64| {
+        let now = start + Duration::from_secs(after_s);
+        masks.due(mapper, &Header::default(), now, Topic::default_name)
+    };
+    assert_eq!(due(&mapper, 0), []);
+    // A box of 0.5 m comes to stay where it was free.
+    let cells = |is_blocked| (0..25).map(|at| (70 + at % 5, 130 + at / 5, is_blocked)).collect::<Vec<_>>();
+    see(&mut mapper, 0.0, &cells(false));
+    (1..20).for_each(|time| see(&mut mapper, f64::from(time), &cells(true)));
+    let messages = due(&mapper, 1);
+    let topics: Vec<Topic> = messages.iter().map(|message| message.0).collect();
+    let expected =
+        [Topic::SpeedMask, Topic::KeepoutMask, Topic::SpeedFilterInfo, Topic::KeepoutFilterInfo];
+    assert_eq!(topics, expected);
+    let (_, keepout) = grid(&messages[1]);
+    assert_eq!((keepout.width, keepout.height), (64, 64));
+    assert_eq!(keepout.data.iter().filter(|value| **value == 100).count(), 25);
+    let (_, Message::FilterInfo(info)) = &messages[3] else { panic!("{messages:?}") };
+    assert_eq!((info.kind, info.filter_mask_topic.as_str(), info.multiplier), (0, "keepout_mask", 1.0));
+    assert_eq!(due(&mapper, 30), []);
+    assert_eq!(due(&mapper, 31).len(), 2);
 }

@@ -1,6 +1,6 @@
 //! The messages that tell other nodes what the robot does.
 
-use crate::maps::PublishedMaps;
+use crate::maps::{PublishedMaps, PublishedMasks};
 use crate::message::{Color, Header, Marker, Markers as MarkersMessage, Message, Pose, Vector};
 use crate::parameters::Parameters;
 use nalgebra::{Isometry2, Point2};
@@ -15,6 +15,8 @@ const LINE_M: f64 = 0.05;
 /// What other nodes have heard.
 pub(super) struct Published {
     pub(super) maps: PublishedMaps,
+    pub(super) masks: PublishedMasks,
+    pub(super) next_diagnostics: Instant,
     pub(super) markers: Markers,
     /// The pose of the frame of the odometry in the frame of the map.
     pub(super) map_to_odom: Option<Isometry2<f64>>,
@@ -28,7 +30,9 @@ impl Published {
     /// Nothing.
     pub(super) fn new(parameters: &Parameters) -> Self {
         Self {
-            maps: PublishedMaps::new(parameters.map_update_interval_s),
+            maps: PublishedMaps::new(parameters),
+            masks: PublishedMasks::new(parameters),
+            next_diagnostics: Instant::now(),
             markers: Markers::default(),
             map_to_odom: None,
             next_transform: Instant::now(),

@@ -3,24 +3,31 @@
 use super::CuriousNode;
 use crate::link::Link;
 use crate::message::{
-    Message, Pose, PoseStamped, Time, Topic, Twist as TwistMessage, TwistStamped, Vector, header, transform,
+    Message, Pose, PoseStamped, PoseWithCovarianceStamped, Time, Topic, Twist as TwistMessage, TwistStamped,
+    Vector, header, transform,
 };
 use crate::order::Order;
 use crate::parameters::{Navigator, Parameters};
-use interfaces::Twist;
+use interfaces::{LaserReading, Twist};
 use nalgebra::Point2;
-use robot::{Level, Pilot};
+use robot::{Belief, Level, Pilot, Turn};
 use std::time::{Duration, Instant};
 
 impl<L: Link> CuriousNode<L> {
-    pub(super) fn publish_reading(&mut self, stamp: Time, order: Order, now: Instant) {
-        self.obey(order, stamp);
+    pub(super) fn publish_reading(&mut self, stamp: Time, turn: &Turn<LaserReading, Order>, now: Instant) {
+        self.obey(turn.command, stamp);
         self.publish_transform(now);
+        self.publish_pose(stamp, &turn.belief);
         let header = header(stamp, &self.parameters.map_frame);
         for (topic, message) in self.published.maps.after(&self.robot.mapper, &header, now) {
             if !self.link.send(topic, message) {
                 self.published.maps.repeat();
             }
+        }
+        let name = |topic| self.link.name(topic);
+        let masks = self.published.masks.due(&self.robot.mapper, &header, now, name);
+        for (topic, message) in masks {
+            self.link.send(topic, message);
         }
         let path: Vec<Point2<f64>> = self.robot.pilot.path().to_vec();
         if let Some(message) = self.published.markers.changed(self.robot.pilot.goal(), &path, &header) {
@@ -60,6 +67,13 @@ impl<L: Link> CuriousNode<L> {
             }
             Order::Cancel => self.link.navigate(None),
         }
+    }
+
+    fn publish_pose(&mut self, stamp: Time, belief: &Belief) {
+        let Some(estimate) = &belief.estimate else { return };
+        let header = header(stamp, &self.parameters.map_frame);
+        let pose = PoseWithCovarianceStamped::in_plane(header, &belief.pose, &estimate.covariance);
+        self.link.send(Topic::EstimatedPose, Message::PoseWithCovariance(Box::new(pose)));
     }
 
     pub(super) fn stop_robot(&mut self) {

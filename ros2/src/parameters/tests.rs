@@ -3,7 +3,7 @@ use super::*;
 #[test]
 fn every_parameter_has_a_name_a_value_and_a_slot() {
     let list = Parameters::default().list();
-    assert_eq!(list.len(), 27);
+    assert_eq!(list.len(), 30);
     let mut set = Parameters { seed: 5, mode: Mode::Explore, ..Parameters::default() };
     for (name, value) in &list {
         set.set(name, value).unwrap();
@@ -32,4 +32,20 @@ fn invalid_parameters_are_named() {
         error("transform_publish_period", "0.001"),
         "node setting `transform_publish_period` must be 0, or from 0.005 to 10, not 0.001"
     );
+}
+
+/// The file that launch files pass has every parameter, with its default.
+#[test]
+fn the_shipped_file_has_all_parameters_with_their_defaults() {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("config/params.yaml");
+    let given = crate::params_file::read(&path).unwrap();
+    let mut names: Vec<&str> = given.iter().map(|given| given.name.as_str()).collect();
+    let list = Parameters::default().list();
+    let mut known: Vec<&str> = list.iter().map(|(name, _)| name.as_str()).collect();
+    names.sort_unstable();
+    known.sort_unstable();
+    assert_eq!(names, known);
+    let mut parameters = Parameters { seed: 5, resolution_m: 0.2, ..Parameters::default() };
+    parameters.set_all(&given).unwrap();
+    assert_eq!(parameters, Parameters::default());
 }
