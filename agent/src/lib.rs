@@ -24,10 +24,10 @@ mod visibility;
 pub use agent::Agent;
 pub use choosers::{Always, Chooser, Coin, Curious, Progress, TileCoder, Trajectory};
 pub use goal_sampler::Goal;
-pub use policy::{Parts, Policy};
+pub use policy::{Parts, Policy, RobotPurpose};
 pub use settings::{AgentSettings, CuriousSettings, Reward};
 pub use situation::{Features, Situation, StraightLineTravel, Travel};
 pub use strategies::{
-    Frontier, InformationGain, OptimalRevisiting, Pick, Poisson, PredictedChange, Random, Recency, Stay,
-    Strategy,
+    FreshMap, Frontier, InformationGain, OptimalRevisiting, Pick, Poisson, PredictedChange, Random, Recency,
+    Stay, Strategy,
 };

@@ -1,7 +1,8 @@
 use crate::choosers::{Always, Chooser, Coin, Curious, Progress};
 use crate::settings::AgentSettings;
 use crate::strategies::{
-    Frontier, InformationGain, OptimalRevisiting, Poisson, PredictedChange, Random, Recency, Strategy,
+    FreshMap, Frontier, InformationGain, OptimalRevisiting, Poisson, PredictedChange, Random, Recency,
+    Strategy,
 };
 use interfaces::RandomStream;
 use std::num::NonZeroUsize;
@@ -60,6 +61,7 @@ static BUILT_IN: LazyLock<Vec<Policy>> = LazyLock::new(|| {
         Policy::single("frontier", "most unknown cells in view per time, then the oldest", Frontier::new),
         Policy::single("optimal-revisiting", "least time with a wrong map, per time", OptimalRevisiting::new),
         Policy::single("predicted-change", "cells that are probably not as last seen", |_| PredictedChange),
+        Policy::single("fresh-map", "least error of the predicted map, per time", FreshMap::new),
         Policy::single("information-gain", "least error of the rates, per time", InformationGain::new),
         Policy::new("progress", "one of five strategies, chosen by progress in learning", progress),
     ]
@@ -132,6 +134,39 @@ impl Policy {
     }
 }
 
+/// What a robot explores for: each purpose names the policy that was best for it in our trials, see `docs/strategies.md`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum RobotPurpose {
+    /// To know at any time what is blocked.
+    FreshMap,
+    /// To learn how often every cell changes.
+    LearnRates,
+    /// What the paper's robot does.
+    #[default]
+    Paper,
+}
+
+impl RobotPurpose {
+    /// All, with their names.
+    pub const ALL: [(&'static str, Self); 3] =
+        [("fresh-map", Self::FreshMap), ("learn-rates", Self::LearnRates), ("paper", Self::Paper)];
+
+    /// The name of the policy for this purpose.
+    pub fn policy_name(self) -> &'static str {
+        match self {
+            Self::FreshMap => "fresh-map",
+            Self::LearnRates => "information-gain",
+            Self::Paper => "curious",
+        }
+    }
+
+    /// The policy for this purpose.
+    pub fn policy(self) -> Policy {
+        let found = Policy::built_in().iter().find(|policy| policy.name() == self.policy_name());
+        found.cloned().unwrap_or_default()
+    }
+}
+
 impl Default for Policy {
     fn default() -> Self {
         BUILT_IN[0].clone()
@@ -162,11 +197,18 @@ mod tests {
     }
 
     #[test]
+    fn every_purpose_has_a_policy() {
+        for (_, purpose) in RobotPurpose::ALL {
+            assert_eq!(purpose.policy().name(), purpose.policy_name());
+        }
+    }
+
+    #[test]
     fn an_unknown_name_lists_the_known_ones() {
         assert_eq!(
             "Curius".parse::<Policy>().unwrap_err().to_string(),
             "no strategy is called `Curius`; there are curious, recency, poisson, random, coin, frontier, \
-             optimal-revisiting, predicted-change, information-gain, progress"
+             optimal-revisiting, predicted-change, fresh-map, information-gain, progress"
         );
     }
 }

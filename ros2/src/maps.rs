@@ -6,9 +6,9 @@ use crate::message::{Header, Message, OccupancyGrid, OccupancyGridUpdate, Topic}
 use crate::parameters::Parameters;
 use interfaces::{Cell, CellState, Grid, GridFrame};
 use mapper::Mapper;
+pub(crate) use masks::PublishedMasks;
 use nalgebra::{Point2, Vector2};
 use std::time::{Duration, Instant};
-pub(crate) use masks::PublishedMasks;
 
 /// The border of a published map lies on multiples of this number of cells, so that its frame rarely changes.
 const BLOCK: i32 = 64;

@@ -145,19 +145,25 @@ pub struct PoseWithCovarianceStamped {
 
 impl PoseWithCovarianceStamped {
     /// A pose in the plane with the covariance of x, y and heading.
-    pub fn in_plane(header: Header, pose: &Isometry2<f64>, covariance: &Matrix3<f64>) -> Self {
-        /// The places of x, y and the heading among the six figures.
-        const PLACES: [usize; 3] = [0, 1, 5];
-        let mut all = Covariance::default();
-        for (row, at) in PLACES.into_iter().enumerate() {
-            for (column, beside) in PLACES.into_iter().enumerate() {
-                let place = 6 * at + beside;
-                let half = if place < 18 { &mut all.0 } else { &mut all.1 };
-                half[place % 18] = covariance[(row, column)];
-            }
-        }
-        Self { header, pose: PoseWithCovariance { pose: Pose::in_plane(pose), covariance: all } }
+    pub fn in_plane(header: Header, pose: &Isometry2<f64>, of_plane: &Matrix3<f64>) -> Self {
+        let pose = PoseWithCovariance { pose: Pose::in_plane(pose), covariance: covariance(of_plane) };
+        Self { header, pose }
     }
+}
+
+/// The covariance of x, y, z and the angles about them, from that of x, y and heading.
+pub(crate) fn covariance(of_plane: &Matrix3<f64>) -> Covariance {
+    /// The places of x, y and the heading among the six figures.
+    const PLACES: [usize; 3] = [0, 1, 5];
+    let mut all = Covariance::default();
+    for (row, at) in PLACES.into_iter().enumerate() {
+        for (column, beside) in PLACES.into_iter().enumerate() {
+            let place = 6 * at + beside;
+            let half = if place < 18 { &mut all.0 } else { &mut all.1 };
+            half[place % 18] = of_plane[(row, column)];
+        }
+    }
+    all
 }
 
 /// `diagnostic_msgs/DiagnosticArray`.

@@ -27,8 +27,7 @@ pub fn curious_wiring(parameters: &Parameters, names: &Names, ros: &RosArgs) -> 
         Topic::Diagnostics,
     ];
     if parameters.mask_update_interval_s > 0.0 {
-        let masks =
-            [Topic::SpeedMask, Topic::KeepoutMask, Topic::SpeedFilterInfo, Topic::KeepoutFilterInfo];
+        let masks = [Topic::SpeedMask, Topic::KeepoutMask, Topic::SpeedFilterInfo, Topic::KeepoutFilterInfo];
         published.extend(masks);
     }
     let mut navigate_to_pose = None;

@@ -25,6 +25,7 @@ const PROGRAMS: [Program; 8] = [
             ("--drive", "train"),
             ("--tour", "gone.toml"),
             ("--strategy", "clever"),
+            ("--purpose", "fame"),
             ("--speed", "0"),
             ("--pose", "guessed"),
             ("--estimator", "guess"),

@@ -60,7 +60,9 @@ fn links(text: &str) -> Vec<String> {
             _ => None,
         })
         .collect();
-    links.extend(text.split("<img src=\"").skip(1).filter_map(|rest| Some(rest.split_once('"')?.0.to_owned())));
+    links.extend(
+        text.split("<img src=\"").skip(1).filter_map(|rest| Some(rest.split_once('"')?.0.to_owned())),
+    );
     links
 }
 
@@ -73,14 +75,15 @@ fn anchors(text: &str) -> BTreeSet<String> {
             (Event::Start(Tag::Heading { .. }), _) => heading = Some(String::new()),
             (Event::Text(text) | Event::Code(text), Some(heading)) => heading.push_str(&text),
             (Event::End(TagEnd::Heading(_)), Some(title)) => {
-                let kept = title.to_lowercase().chars().filter_map(|letter| match letter {
+                let kept = |letter: char| match letter {
                     ' ' => Some('-'),
                     '-' | '_' => Some(letter),
                     _ => letter.is_alphanumeric().then_some(letter),
-                });
-                let anchor: String = kept.collect();
+                };
+                let anchor: String = title.to_lowercase().chars().filter_map(kept).collect();
                 let numbered = (1..).map(|number| format!("{anchor}-{number}"));
-                let free = std::iter::once(anchor.clone()).chain(numbered).find(|name| !anchors.contains(name));
+                let free =
+                    std::iter::once(anchor.clone()).chain(numbered).find(|name| !anchors.contains(name));
                 anchors.extend(free);
                 heading = None;
             }
@@ -98,7 +101,8 @@ fn every_link_leads_somewhere() {
             if link.contains("://") || link.starts_with("mailto:") {
                 continue;
             }
-            let (file, anchor) = link.split_once('#').map_or((link.as_str(), None), |(file, at)| (file, Some(at)));
+            let (file, anchor) =
+                link.split_once('#').map_or((link.as_str(), None), |(file, at)| (file, Some(at)));
             let target = if file.is_empty() {
                 root().join(&path)
             } else {
@@ -121,7 +125,8 @@ fn commands(text: &str) -> Vec<String> {
     for event in Parser::new(text) {
         match event {
             Event::Start(Tag::CodeBlock(kind)) => {
-                is_shell = matches!(kind, pulldown_cmark::CodeBlockKind::Fenced(language) if &*language == "sh");
+                is_shell =
+                    matches!(kind, pulldown_cmark::CodeBlockKind::Fenced(language) if &*language == "sh");
             }
             Event::Text(block) if is_shell => {
                 let block = block.replace("\\\n", " ");

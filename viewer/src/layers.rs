@@ -142,7 +142,7 @@ impl Layer {
     pub fn title(self, unit: TimeUnit) -> String {
         match self {
             Self::Occupancy => "Occupancy".into(),
-            Self::Interval => format!("Change interval: {} per cycle", unit.plural()),
+            Self::Interval => format!("Cycle time: {} per cycle", unit.plural()),
             Self::ChangeProbability => "Probability of a change since last seen".into(),
             Self::Recency => format!("Recency: {} since last seen", unit.plural()),
             Self::Predicted(ahead) => {

@@ -2,6 +2,7 @@
 //!
 //! A row in the table of `docs/strategies.md` is needed as well; a test compares the table with `BUILT_IN`.
 
+mod fresh_map;
 mod frontier;
 mod information_gain;
 mod optimal_revisiting;
@@ -10,6 +11,7 @@ mod predicted_change;
 mod random;
 mod recency;
 
+pub use fresh_map::FreshMap;
 pub use frontier::Frontier;
 pub use information_gain::InformationGain;
 pub use optimal_revisiting::OptimalRevisiting;

@@ -32,7 +32,7 @@ pub use latency::{Delays, Latency};
 pub use map::{Age, MapScores, ReachableScores, age, map_scores, reachable_scores};
 pub use passages::{PassageScores, passage_scores};
 pub use pose::{PoseErrors, PoseScores};
-pub use prediction::{PredictedScores, Prediction};
+pub use prediction::{BrierOfAll, PredictedScores, Prediction};
 pub use probability::ProbabilityScores;
 pub use rates::{
     IntervalScores, MAX_LOG_ERROR, RateErrors, RateScores, interval_scores, log_error, mean_log_error,

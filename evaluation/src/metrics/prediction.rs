@@ -82,6 +82,29 @@ impl Prediction {
     }
 }
 
+/// The Brier score of the predicted map over all swept cells, in view or not, sampled over a part of a run: how fresh the map is.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct BrierOfAll(Mean);
+
+impl BrierOfAll {
+    /// Compares the prediction for every swept cell with the ground truth now. Partly covered cells are ignored.
+    pub fn sample(&mut self, mapper: &Mapper, truth: &impl GroundTruth) {
+        for &index in truth.swept().iter() {
+            let is_blocked = match truth.state(index) {
+                TrueState::PartlyCovered => continue,
+                state => state == TrueState::Blocked,
+            };
+            let error = mapper.blocked_probability(index) - f64::from(u8::from(is_blocked));
+            self.0.add(error * error);
+        }
+    }
+
+    /// The score over all samples; `None` without a swept cell.
+    pub fn get(&self) -> Option<f64> {
+        self.0.get()
+    }
+}
+
 /// The share of the time in view during which a cell was blocked; `None` if the cell was not in view for any time.
 pub(super) fn share_blocked(mapper: &Mapper, index: usize) -> Option<f64> {
     let seen = mapper.statistics(index);

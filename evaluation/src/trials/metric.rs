@@ -56,7 +56,7 @@ macro_rules! metrics {
 }
 
 metrics! {
-    16:
+    17:
     /// Mean relative error of the rates over the cells that truly changed.
     rate_error => RateError in NOT_NEGATIVE,
     /// The log error of the rates: per moving thing, then over the things.
@@ -75,6 +75,8 @@ metrics! {
     changing_share => ChangingShare in SHARE,
     /// Brier score of the two-state model for swept cells out of view.
     brier => Brier in SHARE,
+    /// Brier score of the same for all swept cells, in view or not: how fresh the map is.
+    brier_of_all => BrierOfAll in SHARE,
     /// Brier score of the state that was last seen, for swept cells out of view.
     brier_last_seen => BrierLastSeen in SHARE,
     /// Brier score of the share of the time in view during which the cell was blocked, for swept cells out of view.

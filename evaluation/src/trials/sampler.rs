@@ -1,7 +1,7 @@
 use super::{Sample, TrialWorld};
 use crate::metrics::{
-    ChangingAccuracy, DevianceScores, Forecasts, PassageScores, Prediction, RateScores, map_scores,
-    passage_scores, rate_scores,
+    BrierOfAll, ChangingAccuracy, DevianceScores, Forecasts, PassageScores, Prediction, RateScores,
+    map_scores, passage_scores, rate_scores,
 };
 use interfaces::GroundTruth;
 use mapper::Mapper;
@@ -26,6 +26,8 @@ pub(super) struct Sampler {
     accuracy: ChangingAccuracy,
     /// Since the last sample.
     prediction: Prediction,
+    /// Since the last sample.
+    brier_of_all: BrierOfAll,
     forecasts: Forecasts,
 }
 
@@ -42,6 +44,7 @@ impl Sampler {
         if is_due || self.readings.is_multiple_of(W::COMPARE_EVERY) {
             self.accuracy.sample(mapper, truth);
             self.prediction.sample(mapper, truth, None);
+            self.brier_of_all.sample(mapper, truth);
         }
         if self.readings.is_multiple_of(W::VIEW_EVERY) {
             self.views += 1;
@@ -86,6 +89,7 @@ impl Sampler {
             false_rate: false_rate_hz,
             changing_share: self.views_of_changes as f64 / self.views as f64,
             brier: or_nan(brier.brier),
+            brier_of_all: or_nan(std::mem::take(&mut self.brier_of_all).get()),
             brier_last_seen: or_nan(brier.brier_last_seen),
             brier_mean: or_nan(brier.brier_mean),
             rate_auc: or_nan(rate_auc),

@@ -17,6 +17,7 @@ fn flat(world: &str, strategy: &str, seed: u64, value: f64) -> Trial {
         false_rate: value,
         changing_share: value,
         brier: value,
+        brier_of_all: value,
         brier_last_seen: value,
         brier_mean: value,
         rate_auc: value,

@@ -53,6 +53,7 @@ pub(crate) fn trial(world: usize, estimator: &str, strategy: &str, seed: u64) ->
             false_rate: 0.0,
             changing_share: 0.1 * speed,
             brier: later(0.2 + noise),
+            brier_of_all: later(0.1 + noise),
             brier_last_seen: later(0.3 + noise),
             brier_mean: later(0.24 + noise),
             rate_auc: later(0.9 * quality),

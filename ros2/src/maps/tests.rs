@@ -102,8 +102,7 @@ fn masks_are_published_rarely_and_their_meaning_once() {
     (1..20).for_each(|time| see(&mut mapper, f64::from(time), &cells(true)));
     let messages = due(&mapper, 1);
     let topics: Vec<Topic> = messages.iter().map(|message| message.0).collect();
-    let expected =
-        [Topic::SpeedMask, Topic::KeepoutMask, Topic::SpeedFilterInfo, Topic::KeepoutFilterInfo];
+    let expected = [Topic::SpeedMask, Topic::KeepoutMask, Topic::SpeedFilterInfo, Topic::KeepoutFilterInfo];
     assert_eq!(topics, expected);
     let (_, keepout) = grid(&messages[1]);
     assert_eq!((keepout.width, keepout.height), (64, 64));

@@ -1,7 +1,7 @@
 //! The command line.
 
-use agent::Policy;
-use clap::builder::TypedValueParser;
+use agent::{Policy, RobotPurpose};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Parser, ValueEnum};
 use curious::flags::{folder, input_file, output_file};
 use curious::program::{duration_s, one_of, pose_in_world, pose_mode, strategy_of};
@@ -73,6 +73,10 @@ pub(crate) struct Args {
     #[arg(long, value_parser = strategies(), help_heading = "Pilot")]
     pub(crate) strategy: Option<Policy>,
 
+    /// What the robot explores for; names the strategy that was best for it in our trials (docs/strategies.md)
+    #[arg(long, value_parser = purpose(), conflicts_with = "strategy", help_heading = "Pilot")]
+    pub(crate) purpose: Option<RobotPurpose>,
+
     /// The speed as a multiple of real time, or max for full speed [default: max, with --drive keyboard 1]
     #[arg(long, value_name = "FACTOR|max", value_parser = speed, allow_negative_numbers = true, help_heading = "Pilot")]
     pub(crate) speed: Option<f64>,
@@ -136,7 +140,8 @@ pub(crate) struct Args {
 impl Args {
     /// The strategy of the agent.
     pub(crate) fn strategy(&self) -> Policy {
-        self.strategy.clone().unwrap_or_default()
+        let by_purpose = || self.purpose.unwrap_or_default().policy();
+        self.strategy.clone().unwrap_or_else(by_purpose)
     }
 
     /// Whether a person drives.
@@ -172,6 +177,22 @@ pub(crate) enum DriveChoice {
     Tour,
 }
 
+/// A parser of the purpose of a robot.
+fn purpose() -> impl TypedValueParser<Value = RobotPurpose> {
+    let named = |(name, purpose): (&'static str, RobotPurpose)| {
+        let help = match purpose {
+            RobotPurpose::FreshMap => "To know at any time what is blocked",
+            RobotPurpose::LearnRates => "To learn how often every cell changes",
+            RobotPurpose::Paper => "What the paper's robot does",
+        };
+        PossibleValue::new(name).help(format!("{help}: --strategy {}", purpose.policy_name()))
+    };
+    PossibleValuesParser::new(RobotPurpose::ALL.map(named)).map(|name| {
+        let found = RobotPurpose::ALL.into_iter().find(|(known, _)| *known == name);
+        found.map_or_else(RobotPurpose::default, |(_, purpose)| purpose)
+    })
+}
+
 fn strategies() -> impl TypedValueParser<Value = Policy> {
     strategy_of(Policy::built_in().to_vec(), |policy| (policy.name(), policy.description()))
 }
@@ -201,6 +222,12 @@ mod tests {
         assert_eq!(Args::parse_from(["four_rooms"]).strategy().name(), "curious");
         let best = Args::parse_from(["four_rooms", "--strategy", "best"]);
         assert_eq!(best.strategy().name(), "information-gain");
+        for (name, purpose) in RobotPurpose::ALL {
+            let args = Args::parse_from(["four_rooms", "--purpose", name]);
+            assert_eq!(args.strategy(), purpose.policy());
+        }
+        let both = ["four_rooms", "--purpose", "paper", "--strategy", "recency"];
+        assert!(Args::try_parse_from(both).is_err());
     }
 
     #[test]

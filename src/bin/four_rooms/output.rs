@@ -6,7 +6,7 @@ use crate::trial_state_file::TrialStateFile;
 use agent::Policy;
 use anyhow::{Context, anyhow};
 use curious::bag::RunBag;
-use curious::program::{BEST_STRATEGY_GAIN, Failure, arguments, input, results_folder};
+use curious::program::{Failure, PURPOSE_GAIN, arguments, input, results_folder};
 use curious::progress::Progress;
 use curious::terminal::{print, say};
 use evaluation::metrics::map_scores;
@@ -177,7 +177,7 @@ impl<'a> Outputs<'a> {
         self.folder.finish(&[])?;
         if !args.quiet {
             let is_default = args.drive == DriveChoice::Agent && args.strategy() == Policy::default();
-            let hint = if is_default { format!("\n  hint      {BEST_STRATEGY_GAIN}") } else { String::new() };
+            let hint = if is_default { format!("\n  hint      {PURPOSE_GAIN}") } else { String::new() };
             print(format_args!("{summary}{hint}\n  files     {}", args.out.display()))?;
         }
         Ok(self.is_complete && failures.is_empty())

@@ -9,7 +9,9 @@ use crate::outline::field_of_view;
 use crate::scene::{Scene, Sight, TimeUnit};
 use crate::view::{Trail, View};
 use gif::{DisposalMethod, Encoder, Frame, Repeat};
+use mapper::{Mapper, ThingKind};
 use plotters::prelude::*;
+use plotters::style::text_anchor::HPos;
 use results::drawing::palette::{self, Rgb};
 use results::drawing::{Area, Canvas, PictureError, ink, px, why};
 use results::output::UnfinishedFile;
@@ -100,7 +102,8 @@ impl Film {
         self.robots(left, &chart, view, trails)?;
         left.frame(&chart)?;
         left.legend(&legend, &legend::of_run(&self.scene, view))?;
-        right.layer(&second, view.mapper, Layer::Interval, self.scene.unit)
+        let chart = right.layer(&second, view.mapper, Layer::Interval, self.scene.unit)?;
+        doors(right, &chart, view.mapper)
     }
 
     /// Draws what is on the map: the field of view, what moves, the plan, and the robots with their trails.
@@ -128,6 +131,34 @@ impl Film {
         }
         Ok(())
     }
+}
+
+/// Writes beside every door that opened twice in view how often it opens.
+fn doors(panel: &Panel, chart: &Chart, mapper: &Mapper) -> Result<(), String> {
+    let plot = chart.plotting_area();
+    let (area, rows) = (plot.use_screen_coord(), plot.get_pixel_range().1);
+    for thing in mapper.things() {
+        let ThingKind::Door(door) = &thing.kind else { continue };
+        let Some(rate) = door.statistics.openings_per_hour().filter(|_| door.statistics.opened >= 2) else {
+            continue;
+        };
+        let every = format!("door: every {}", period(3600.0 / rate.mean()));
+        let [from, to] = door.closed.ends;
+        let (x, y) = plot.map_coordinate(&pair(&nalgebra::center(&from, &to)));
+        let [width, height] = panel.text_size(&area, &every)?;
+        // Above the door where there is room, otherwise below.
+        let beside = panel.px(14);
+        let y = if y - 2 * beside > rows.start { y - beside } else { y + beside };
+        let around = [(x - width / 2 - 3, y - height / 2 - 1), (x + width / 2 + 3, y + height / 2 + 1)];
+        area.draw(&Rectangle::new(around, WHITE.mix(0.8).filled())).map_err(why)?;
+        panel.write(&area, (x, y), HPos::Center, &every)?;
+    }
+    Ok(())
+}
+
+/// A time in the largest unit that keeps two digits: 40 s, 12 min.
+fn period(time_s: f64) -> String {
+    if time_s < 100.0 { format!("{time_s:.0} s") } else { format!("{:.0} min", time_s / 60.0) }
 }
 
 /// A duration as text: 3 min 20 s, 150 steps.

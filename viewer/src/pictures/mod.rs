@@ -51,7 +51,8 @@ pub fn write_all(
     let panel = Panel::of_layer(mapper.frame(), scene.unit);
     let mut panels = Vec::new();
     for &layer in layers {
-        let picture = draw(layer.name(), panel.size(), |area| panel.layer(area, mapper, layer, scene.unit))?;
+        let picture =
+            draw(layer.name(), panel.size(), |area| panel.layer(area, mapper, layer, scene.unit).map(drop))?;
         if !Layer::PREDICTED.contains(&layer) {
             picture.write(&file(layer.name()))?;
         }
@@ -97,8 +98,9 @@ pub fn draw_values(
     let panel = Panel::of_layer(mapper.frame(), unit);
     let classes =
         layer.classes_of(mapper, unit, |index| Some(values.cells()[index]).filter(|value| !value.is_nan()));
-    let picture =
-        draw(layer.name(), panel.size(), |area| panel.classes(area, (layer, title), &classes, unit))?;
+    let picture = draw(layer.name(), panel.size(), |area| {
+        panel.classes(area, (layer, title), &classes, unit).map(drop)
+    })?;
     Ok(picture.write(path)?)
 }
 

@@ -193,25 +193,25 @@ impl Panel {
         Ok([width as i32, height as i32])
     }
 
-    /// Draws a layer of the map with its legend.
-    pub(super) fn layer(
+    /// Draws a layer of the map with its legend. Returns the chart of the map.
+    pub(super) fn layer<'a, 'b>(
         &self,
-        area: &Area,
+        area: &'a Area<'b>,
         mapper: &Mapper,
         layer: Layer,
         unit: TimeUnit,
-    ) -> Result<(), String> {
+    ) -> Result<Chart<'a, 'b>, String> {
         self.classes(area, (layer, &layer.title(unit)), &layer.classes(mapper, unit), unit)
     }
 
-    /// Draws the classes of the cells, in the colors of a layer, with its legend.
-    pub(super) fn classes(
+    /// Draws the classes of the cells, in the colors of a layer, with its legend. Returns the chart of the map.
+    pub(super) fn classes<'a, 'b>(
         &self,
-        area: &Area,
+        area: &'a Area<'b>,
         (layer, title): (Layer, &str),
         classes: &Grid<u8>,
         unit: TimeUnit,
-    ) -> Result<(), String> {
+    ) -> Result<Chart<'a, 'b>, String> {
         let (chart, legend) = self.axes(area, title)?;
         self.cells(&chart, layer, classes)?;
         self.frame(&chart)?;
@@ -239,9 +239,11 @@ impl Panel {
         let entries: Vec<(Mark, String)> =
             entries.map(|(class, text)| (Mark::Area(layer.color(class)), text.to_owned())).collect();
         panel.legend(&legend, &entries)?;
-        let Some(note) = layer.note() else { return Ok(()) };
-        let row = (entries.len() as u32).div_ceil(self.columns);
-        self.write(&legend, (0, self.px(BAR + row * ROW + ROW / 2)), HPos::Left, note)
+        if let Some(note) = layer.note() {
+            let row = (entries.len() as u32).div_ceil(self.columns);
+            self.write(&legend, (0, self.px(BAR + row * ROW + ROW / 2)), HPos::Left, note)?;
+        }
+        Ok(chart)
     }
 
     /// Draws the cells, as few rectangles as the rows allow.

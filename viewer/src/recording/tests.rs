@@ -173,7 +173,7 @@ fn where_time_is_counted_in_steps_nothing_speaks_of_seconds() {
     let titles = titles(&file);
     for title in [
         "The map so far: fake rooms",
-        "Change interval: steps per cycle",
+        "Cycle time: steps per cycle",
         "Longest time since a cell was seen (steps)",
         "Recency: steps since last seen",
     ] {
@@ -251,7 +251,7 @@ fn the_layout_shows_every_view() {
     assert_eq!(
         titles(&file),
         [
-            "Change interval: seconds per cycle",
+            "Cycle time: seconds per cycle",
             "Changes expected out of view",
             "Longest time since a cell was seen (s)",
             "Map: coverage and quality",
