@@ -20,6 +20,8 @@ use std::io::{self, Write};
 
 /// The number of frames.
 const FRAMES: u32 = 130;
+/// The share of the run before the first frame, which sites show as a preview: a room is known then.
+const BEGIN: f64 = 0.02;
 /// The duration of a frame, and of the last frame, 1/100 s.
 const DELAY: u16 = 10;
 const LAST_DELAY: u16 = 250;
@@ -54,7 +56,8 @@ impl Film {
     /// When a frame cannot be drawn.
     pub fn add(&mut self, view: &View, trails: &[Trail]) -> Result<(), PictureError> {
         let part = self.frames.len() as f64 / f64::from(FRAMES - 1);
-        if view.time < self.duration * part * part.sqrt() || self.frames.len() >= FRAMES as usize {
+        let due = BEGIN + (1.0 - BEGIN) * part * part.sqrt();
+        if view.time < self.duration * due || self.frames.len() >= FRAMES as usize {
             return Ok(());
         }
         let size = self.size();
