@@ -159,6 +159,30 @@ pub const OFFICE: BuildingRanges = BuildingRanges {
     ],
 };
 
+/// A warehouse, for buildings with a calendar: few large halls, hardly a door.
+pub const WAREHOUSE: BuildingRanges = BuildingRanges {
+    kind: "warehouse",
+    length_m: [24.0, 36.0],
+    width_m: [18.0, 26.0],
+    corridor_m: [2.4, 3.2],
+    min_room_m: 5.0,
+    rooms: [2, 4],
+    doorway_m: [1.1, 1.8],
+    door_probability: 0.2,
+    furnished_rooms: &[("hall", &[SHELF, CUPBOARD, SHELF, CUPBOARD])],
+    ..OFFICE
+};
+
+/// A clinic, for buildings with a calendar: many rooms, all of them with doors.
+pub const CLINIC: BuildingRanges = BuildingRanges {
+    kind: "clinic",
+    length_m: [26.0, 36.0],
+    rooms: [6, 9],
+    door_probability: 1.0,
+    furnished_rooms: &[("ward", &[BED, CHEST, CHAIR]), ("office", &[DESK, SHELF, CHAIR])],
+    ..OFFICE
+};
+
 /// A kind of furniture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Furniture {
