@@ -102,9 +102,11 @@ fn recorded(table: &Table<'_>, name: &str, files: &dyn Files) -> Option<Schedule
     let text = bytes.and_then(|bytes| String::from_utf8(bytes).map_err(|_| "it is no text".to_owned()));
     let recording = text.and_then(|text| Recording::parse(&text).map_err(|error| error.to_string()));
     match recording {
-        Ok(recording) => {
-            let known = recording.known_changes().into_iter();
-            Some(Schedule::recorded(known.map(|(time_s, one)| (time_s, one == is_one_blocked)).collect()))
+        Ok(mut recording) => {
+            if !is_one_blocked {
+                recording.changes.iter_mut().for_each(|(_, state)| *state = state.map(|is_one| !is_one));
+            }
+            Some(Schedule::recorded(recording.known_changes()))
         }
         Err(why) => {
             let what = format!("cannot read the events `{file}`: {why}");

@@ -169,7 +169,7 @@ pub const WAREHOUSE: BuildingRanges = BuildingRanges {
     rooms: [2, 4],
     doorway_m: [1.1, 1.8],
     door_probability: 0.2,
-    furnished_rooms: &[("hall", &[SHELF, CUPBOARD, SHELF, CUPBOARD])],
+    furnished_rooms: &[("hall", &[SHELF, SECOND_SHELF, CUPBOARD])],
     ..OFFICE
 };
 
@@ -212,6 +212,7 @@ const fn piece(name: &'static str, length_m: [f64; 2], depth_m: [f64; 2], place:
 }
 
 const SHELF: Furniture = piece("shelf", [0.8, 1.6], [0.3, 0.4], Placement::Wall);
+const SECOND_SHELF: Furniture = piece("second shelf", SHELF.length_m, SHELF.depth_m, Placement::Wall);
 const WARDROBE: Furniture = piece("wardrobe", [1.0, 2.0], [0.6, 0.6], Placement::Wall);
 const DESK: Furniture = piece("desk", [1.0, 1.6], [0.6, 0.8], Placement::Wall);
 const SECOND_DESK: Furniture = piece("second desk", DESK.length_m, DESK.depth_m, Placement::Wall);

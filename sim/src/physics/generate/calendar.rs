@@ -5,7 +5,7 @@ use super::plan::Plan;
 use super::routes::Routes;
 use crate::physics::shape::Rectangle;
 use crate::physics::spec::{Motion, ObstacleSpec, Opening};
-use calendar::{Changes, Habit, Hours, Kind, PHASES, Schedule, ThingKind, Timeline, WEEK_S};
+use calendar::{Changes, Habit, Hours, Kind, PHASES, Schedule, Stays, ThingKind, Timeline, WEEK_S};
 use interfaces::{Purpose, RandomStream};
 use nalgebra::{Point2, Vector2};
 use rand::RngExt;
@@ -58,7 +58,9 @@ impl Calendar {
                 let schedule = self.draw(kind);
                 let sides_m =
                     if plan.is_upright { Vector2::new(sides_m[1], sides_m[0]) } else { sides_m.into() };
-                let shape = Rectangle::between(at - sides_m / 2.0, at + sides_m / 2.0);
+                let corner =
+                    |offset: Vector2<f64>| (at + offset).map(|at_m| (at_m * 1000.0).round() / 1000.0);
+                let shape = Rectangle::between(corner(-sides_m / 2.0), corner(sides_m / 2.0));
                 let name = format!("{name} {}", things.len() + 1);
                 things.push(ObstacleSpec::new(&name, shape, Motion::Scheduled(Box::new(schedule))));
             }
@@ -68,7 +70,13 @@ impl Calendar {
 
     /// A schedule whose state at the start, Monday 0:00, is that of a thing that has done so for weeks.
     fn draw(&mut self, kind: ThingKind) -> Schedule {
-        let habit = self.kind.draw_habit(kind, &self.hours, &mut self.rng);
+        let mut habit = self.kind.draw_habit(kind, &self.hours, &mut self.rng);
+        // A world file has short numbers.
+        for stays in habit.active.iter_mut().chain(&mut habit.quiet) {
+            let Stays { short_s, long_s, long_share } = *stays;
+            let [short_s, long_s] = [short_s, long_s].map(|mean_s| (mean_s * 10.0).round() / 10.0);
+            *stays = Stays { short_s, long_s, long_share: (long_share * 1000.0).round() / 1000.0 };
+        }
         let starts_blocked = self.is_blocked_at_start(&habit);
         Schedule { changes: Changes::Habit(habit), starts_blocked }
     }
