@@ -2,7 +2,6 @@
 
 use crate::files::Files;
 use crate::reader::{Table, Value};
-use crate::toml_value::number;
 use calendar::{Changes, Habit, Hours, Recording, Schedule, Stays, time_of_week_s};
 use toml::Value as Toml;
 
@@ -134,7 +133,7 @@ pub(crate) fn write_schedule(schedule: &Schedule) -> Option<Vec<(&'static str, T
 
 fn stays_value(stays: &Stays) -> Toml {
     if *stays == Stays::of_mean(stays.short_s) {
-        return number(stays.short_s);
+        return stays.short_s.into();
     }
-    [stays.short_s, stays.long_s, stays.long_share].map(number).to_vec().into()
+    [stays.short_s, stays.long_s, stays.long_share].map(Toml::from).to_vec().into()
 }
