@@ -5,8 +5,9 @@ use std::{env, fs, io};
 use xxhash_rust::xxh3::Xxh3;
 
 /// The crates with algorithms. What only writes, draws or talks does not change a result.
-const ALGORITHMS: [&str; 12] = [
+const ALGORITHMS: [&str; 13] = [
     "agent",
+    "calendar",
     "controller",
     "evaluation",
     "interfaces",

@@ -213,6 +213,7 @@ pub fn duration_s(text: &str) -> Result<f64, String> {
         Some((at, 's')) => (&text[..at], 1.0),
         Some((at, 'm')) => (&text[..at], 60.0),
         Some((at, 'h')) => (&text[..at], 3600.0),
+        Some((at, 'd')) => (&text[..at], 86_400.0),
         _ => (text, 1.0),
     };
     let time_s = number.trim().parse::<f64>().unwrap_or(f64::NAN) * unit_s;
@@ -232,6 +233,7 @@ mod tests {
         assert_eq!(duration_s("1200"), Ok(1200.0));
         assert_eq!(duration_s("20m"), Ok(1200.0));
         assert_eq!(duration_s("0.5h"), Ok(1800.0));
+        assert_eq!(duration_s("7d"), Ok(604_800.0));
         for wrong in ["", "m", "-1", "0", "nan", "inf", "1001h", "ten"] {
             assert!(duration_s(wrong).is_err(), "{wrong}");
         }

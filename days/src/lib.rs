@@ -22,8 +22,9 @@
 
 mod belief;
 mod building;
-pub mod calendar;
 mod patrol;
+
+pub use calendar;
 
 pub use belief::{Belief, Model};
 pub use building::{Building, Kind, Room, Thing, ThingKind, Viewpoint};

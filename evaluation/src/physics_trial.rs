@@ -10,11 +10,14 @@ use interfaces::{
     CellState, Grid, LaserReading, PoseMode, Purpose, RandomStream, SettingsError, Twist, World,
 };
 use mapper::{NoReturn, ReadingError};
-use robot::{Pilot, Robot, Settings, Source, Turn};
+use robot::{DaySettings, Pilot, Robot, Settings, Source, Turn};
 use sim::physics::shape::Transform;
-use sim::physics::{BehaviorSpec, DriveKind, PhysicsWorld, WorldSpec};
+use sim::physics::{BehaviorSpec, DriveKind, PatrolDaySpec, PhysicsWorld, WorldSpec};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
+
+/// The Monday on which a week of a world with a calendar begins: 2024-01-01, s since 1970-01-01 UTC.
+const MONDAY_S: f64 = 1_704_067_200.0;
 
 /// The error for a driven robot that the controller cannot drive.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -68,7 +71,12 @@ pub fn source(spec: &WorldSpec) -> Result<Source, UnsupportedDrive> {
 ///
 /// When the robot has no differential drive.
 pub fn settings(spec: &WorldSpec) -> Result<Settings, UnsupportedDrive> {
-    source(spec).map(|source| Settings::of(&source))
+    let mut settings = Settings::of(&source(spec)?);
+    if spec.starts_s.is_some() {
+        settings.mapper.clocks = true;
+        settings.mapper.time_zone = Some("UTC".to_owned());
+    }
+    Ok(settings)
 }
 
 /// The world in the frame of the map of a robot that is localized and knows no map, and the motion to it: the robot starts
@@ -93,7 +101,18 @@ pub fn robot<P: Pilot>(
     if settings.pose == PoseMode::Exact {
         world.correct_odometry();
     }
-    settings.robot(world.spec().frame, prior, *world.true_pose(), pilot)
+    let mut robot = settings.robot(world.spec().frame, prior, *world.true_pose(), pilot)?;
+    if let Some(starts_s) = world.spec().starts_s {
+        robot.mapper.set_epoch(MONDAY_S + starts_s, true);
+    }
+    Ok(robot)
+}
+
+/// A robot's day by a world: `None` for a robot that is always free to drive. `spec` is the world in the frame of the map.
+pub fn day(spec: &WorldSpec) -> Option<DaySettings> {
+    let PatrolDaySpec { dock, battery_s, share, busy } = spec.driven().patrol.clone()?;
+    let dock = dock.unwrap_or(spec.driven().pose.translation.vector.into());
+    Some(DaySettings { dock, battery_s, share, busy, starts_s: spec.starts_s.unwrap_or_default() })
 }
 
 /// A run in a physics world: the world, the robot, and the measurements.
@@ -129,15 +148,18 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
         Ok(Self { world, pose: settings.pose, robot, observer: Observer::default(), command: None })
     }
 
-    /// One turn: the world executes the last command, the robot makes of the next reading another one, and the observer
-    /// measures. Between two turns, the run can be saved.
+    /// One turn: the world executes the last command, or passes the time for which the robot rests;
+    /// the robot makes of the next reading another command, and the observer measures. Between two turns, the run can be saved.
     ///
     /// # Errors
     ///
     /// When the mapper refuses the reading.
     pub fn turn(&mut self) -> Result<Turn<LaserReading, Twist>, ReadingError> {
         if let Some(command) = self.command.take() {
-            self.world.act(&command);
+            match self.robot.pilot.rests_until_s() {
+                Some(until_s) => self.world.rest(until_s),
+                None => self.world.act(&command),
+            }
         }
         let turn = self.robot.step(self.world.sense())?;
         self.observer.observe(&self.world, &mut self.robot, &turn);
@@ -184,6 +206,7 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
             longest_standstill_s: longest_standstill_s(world, observer),
             pose: observer.poses.scores(pose.name()),
             goals: pilot.goals(),
+            day: pilot.day(),
             strategy_share: strategies.map(|strategy| (strategy.name, strategy.share)).collect(),
             things: observer.things.reports().cloned().collect(),
             curve: curve.map(|&(time_s, scores)| CurvePoint { time_s, scores }).collect(),

@@ -7,7 +7,7 @@ use crate::metrics::{
     PredictedScores, RateScores, ReachableScores, ThingReport,
 };
 use mapper::Mapper;
-use robot::GoalCount;
+use robot::{DayTotals, GoalCount};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -106,6 +106,9 @@ pub struct RunResults {
     pub pose: PoseScores,
     /// The goals by outcome.
     pub goals: GoalCount,
+    /// What a robot with a battery, or with orders by others, did with its time.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub day: Option<DayTotals>,
     /// For each strategy, the share of the goals that it selected.
     pub strategy_share: BTreeMap<String, f64>,
     /// The detection of the things that appeared or disappeared: at most two entries per thing, since a thing

@@ -1,4 +1,5 @@
 use crate::belief::{Belief, Permission};
+use crate::day::DayTotals;
 use crate::messages::{Level, Message};
 use crate::pilot::{GoalCount, Pilot, StrategyState};
 use agent::{Agent, Features, Goal, Stay, Travel};
@@ -35,6 +36,16 @@ pub trait GoalSelector {
     /// Called at every reading.
     fn observe(&mut self, _: Features, _: &Mapper) {}
 
+    /// Until when the robot, at `pose`, is to rest where it is, s; `None` if it is to drive. Called at every reading.
+    fn rests_until_s(&mut self, _pose: &Isometry2<f64>, _: &Mapper) -> Option<f64> {
+        None
+    }
+
+    /// What the robot did with its time; `None` if it is always on patrol.
+    fn day(&self) -> Option<DayTotals> {
+        None
+    }
+
     /// The reason for the last goal, in a few words.
     fn reason(&self) -> String;
 
@@ -57,12 +68,15 @@ pub struct Autonomous<G, D> {
     goals: GoalCount,
     messages: Vec<Message>,
     is_done: bool,
+    /// Until when the robot rests, as of the last reading, s.
+    rests_until_s: Option<f64>,
 }
 
 impl<G: GoalSelector, D: Driver> Autonomous<G, D> {
     /// A pilot that has no goal yet.
     pub fn new(selector: G, driver: D) -> Self {
-        Self { selector, driver, goals: GoalCount::default(), messages: Vec::new(), is_done: false }
+        let (goals, messages) = (GoalCount::default(), Vec::new());
+        Self { selector, driver, goals, messages, is_done: false, rests_until_s: None }
     }
 
     /// The goal selector.
@@ -114,8 +128,13 @@ impl<G: GoalSelector, D: Driver> Pilot for Autonomous<G, D> {
     fn command(&mut self, belief: &Belief, features: Features, mapper: &Mapper) -> D::Command {
         self.selector.observe(features, mapper);
         let input = input(mapper, &belief.pose);
+        self.rests_until_s = None;
         if belief.permission != Permission::Drive {
             return self.driver.pause(&input, belief.permission == Permission::LookAround);
+        }
+        self.rests_until_s = self.selector.rests_until_s(&belief.pose, mapper);
+        if self.rests_until_s.is_some() {
+            return self.driver.pause(&input, false);
         }
         let command = self.driver.drive(&input);
         let last = match self.driver.status() {
@@ -151,6 +170,14 @@ impl<G: GoalSelector, D: Driver> Pilot for Autonomous<G, D> {
         self.goals
     }
 
+    fn rests_until_s(&self) -> Option<f64> {
+        self.rests_until_s
+    }
+
+    fn day(&self) -> Option<DayTotals> {
+        self.selector.day()
+    }
+
     fn take_messages(&mut self) -> Vec<Message> {
         std::mem::take(&mut self.messages)
     }
@@ -160,8 +187,10 @@ impl<G: GoalSelector, D: Driver> Pilot for Autonomous<G, D> {
     }
 
     fn values(&mut self, mapper: &Mapper) -> Values<'_> {
+        let has_day = self.selector.day().is_some();
         let mut values = self.selector.values(mapper);
         values.extend(self.driver.values(mapper.states()));
+        values.extend(has_day.then(|| value(&mut self.rests_until_s)));
         values.extend([value(&mut self.goals), value(&mut self.messages), value(&mut self.is_done)]);
         values
     }

@@ -12,6 +12,7 @@
 mod autonomous;
 mod belief;
 mod build;
+mod day;
 mod localization;
 mod messages;
 mod pilot;
@@ -26,6 +27,7 @@ mod tour;
 pub use autonomous::{Autonomous, Destination, GoalSelector};
 pub use belief::{Belief, Permission};
 pub use build::{BUILD, other_build};
+pub use day::{DaySettings, DayTotals, PatrolDay};
 pub use localization::{ExactPoses, Localization};
 pub use messages::{Level, Message};
 pub use pilot::{GoalCount, NoPilot, Pilot, StrategyState};

@@ -26,6 +26,7 @@
 //!     glass: Vec::new(),
 //!     obstacles: Vec::new(),
 //!     robots: vec![robot],
+//!     starts_s: None,
 //! };
 //! let mut world = PhysicsWorld::new(&WorldSpec::new(fleet)?, 7);
 //! let before = world.sense();
@@ -40,3 +41,4 @@
 mod flood;
 pub mod grid;
 pub mod physics;
+mod routine;

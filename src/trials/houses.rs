@@ -5,7 +5,9 @@ use crate::program::{duration_s, pose_in_world, pose_mode};
 use crate::worlds::{Loaded, list_physics_worlds, load};
 use agent::Reward;
 use anyhow::Context;
+use calendar::Kind;
 use clap::Args;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use evaluation::physics_trial;
 use evaluation::trials::PhysicsRobot;
 use interfaces::PoseMode;
@@ -46,6 +48,11 @@ pub struct Houses {
     #[arg(long, value_name = "KIND", default_value = "house", value_parser = ["house", "office"], help_heading = "World")]
     kind: String,
 
+    /// Give the buildings of --generate a calendar of this kind: doors and boxes by hours and weekdays, from Monday 0:00 on.
+    /// One of them alone is a world by its name: `--world calendar-office-7`
+    #[arg(long, value_name = "KIND", value_parser = one_of_kinds(), conflicts_with = "kind", help_heading = "World")]
+    calendar: Option<Kind>,
+
     /// How the robot knows its pose [default: exact where the world's odometry is exact, otherwise localized]
     #[arg(long, value_parser = pose_mode(&PoseMode::LIVE, pose_in_world), help_heading = "Comparison")]
     pose: Option<PoseMode>,
@@ -76,6 +83,9 @@ impl TrialKind for Houses {
     }
 
     fn generate(&self, seed: u64) -> WorldSpec {
+        if let Some(kind) = self.calendar {
+            return WorldSpec::generate_calendar(kind, seed);
+        }
         match self.kind.as_str() {
             "office" => WorldSpec::generate_office(seed),
             _ => WorldSpec::generate_house(seed),
@@ -93,6 +103,11 @@ impl TrialKind for Houses {
     fn to_toml(world: &WorldSpec) -> Option<String> {
         worldfile::physics::to_toml(world.fleet())
     }
+}
+
+/// The kinds of calendars.
+fn one_of_kinds() -> impl TypedValueParser<Value = Kind> {
+    PossibleValuesParser::new(Kind::ALL.map(|(name, _)| name)).try_map(|name| name.parse::<Kind>())
 }
 
 /// A time in whole seconds.

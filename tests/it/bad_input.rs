@@ -44,7 +44,7 @@ fn refused_world(right: &str, wrong: &str) -> String {
 
 #[test]
 fn worlds() {
-    insta::assert_snapshot!(refused("--world nowhere"), @"error: --world: there is no world `nowhere`: it is neither a file nor one of those that ship (four_rooms, toy_on_the_floor, turned_house, house, drifting_house, office, warehouse, cave, yard; or a generated building: house-7, office-7 and so on)");
+    insta::assert_snapshot!(refused("--world nowhere"), @"error: --world: there is no world `nowhere`: it is neither a file nor one of those that ship (four_rooms, toy_on_the_floor, turned_house, house, drifting_house, office, warehouse, cave, yard, office_week; or a generated building: house-7, office-7, calendar-office-7 and so on)");
     insta::assert_snapshot!(refused_world("cell_m = 0.05", "cell_m = = 0.05"), @"
     error: one `=` too many
      --> house.toml:9:10

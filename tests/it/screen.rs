@@ -48,6 +48,7 @@ fn worlds_are_listed() {
     warehouse          Long shelves with aisles of about 2 m. Thirty-two carriers drive around the shelves, eight wander.
     cave               A cave with pillars and dead ends; the walls come from a picture. Three robots wander.
     yard               Two tugs that drive in circles push boxes, a shuttle moves back and forth through a gate, three carriers wander.
+    office_week        Six rooms at a corridor, with a calendar: doors by hours and weekdays, a cart, a delivery robot; the robot patrols for 5 % of the time.
     ");
 }
 

@@ -30,6 +30,7 @@ pub mod grid;
 pub mod physics;
 mod reader;
 pub mod ros_map;
+mod schedule;
 pub mod shipped;
 pub mod toml_value;
 mod tour;

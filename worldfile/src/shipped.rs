@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// The name and the text of every shipped physics world; the first is the default.
-pub const PHYSICS: [(&str, &str); 9] = [
+pub const PHYSICS: [(&str, &str); 10] = [
     ("four_rooms", include_str!("../../worlds/four_rooms.toml")),
     ("toy_on_the_floor", include_str!("../../worlds/toy_on_the_floor.toml")),
     ("turned_house", include_str!("../../worlds/turned_house.toml")),
@@ -18,6 +18,7 @@ pub const PHYSICS: [(&str, &str); 9] = [
     ("warehouse", include_str!("../../worlds/warehouse.toml")),
     ("cave", include_str!("../../worlds/cave.toml")),
     ("yard", include_str!("../../worlds/yard.toml")),
+    ("office_week", include_str!("../../worlds/office_week.toml")),
 ];
 
 /// The name and the text of every shipped grid world; the first is the default.
@@ -86,7 +87,7 @@ pub enum LoadError {
 }
 
 /// The physics world with the name `name`: a shipped world, or the file with this path, or a generated building
-/// (`house-7`, `office-7`).
+/// (`house-7`, `office-7`, `calendar-office-7`).
 ///
 /// # Errors
 ///
@@ -101,7 +102,8 @@ pub fn load(name: &str) -> Result<WorldSpec, LoadError> {
     let parse = |name: &str, text: &str| physics::parse_world_with(name, text, &pictures());
     match find(name, &PHYSICS, parse, |path| physics::load_world(path)) {
         Err(LoadError::Unknown { name: printed, shipped }) => {
-            let shipped = shipped + "; or a generated building: house-7, office-7 and so on";
+            let shipped =
+                shipped + "; or a generated building: house-7, office-7, calendar-office-7 and so on";
             WorldSpec::generated(name).ok_or(LoadError::Unknown { name: printed, shipped })
         }
         found => found,

@@ -1,9 +1,6 @@
-use super::ranges::{
-    BEFORE_REST_S, HALL_SPACING_M, LONG_SHARE, LOOK_S, REST_S, Range, Ranges, SEEN_ALSO, SPEED_MPS, ranges,
-    stays,
-};
+use super::ranges::{HALL_SPACING_M, LOOK_S, Ranges, SEEN_ALSO, SPEED_MPS, ranges};
 use super::{Building, Kind, Room, Thing, ThingKind, Viewpoint};
-use crate::calendar::{Habit, Hours, Stays};
+use crate::calendar::{Habit, Hours, Range, log_uniform};
 use interfaces::{Purpose, RandomStream};
 
 impl Building {
@@ -11,13 +8,15 @@ impl Building {
     pub fn generate(kind: Kind, seed: u64) -> Self {
         let index = Kind::ALL.iter().position(|(_, other)| *other == kind).unwrap_or(0);
         let seed = seed.wrapping_mul(Kind::ALL.len() as u64).wrapping_add(index as u64);
-        let mut draw = Draw { rng: RandomStream::new(seed, Purpose::DayGenerator), ranges: ranges(kind) };
+        let mut draw =
+            Draw { rng: RandomStream::new(seed, Purpose::DayGenerator), kind, ranges: ranges(kind) };
         draw.building()
     }
 }
 
 struct Draw {
     rng: RandomStream,
+    kind: Kind,
     ranges: Ranges,
 }
 
@@ -33,12 +32,12 @@ impl Draw {
         self.rng.uniform(low..high).floor() as usize
     }
 
-    fn log_uniform(&mut self, [low, high]: Range) -> f64 {
-        low * libm::exp(self.rng.uniform(0.0..1.0) * libm::log(high / low))
+    fn log_uniform(&mut self, range: Range) -> f64 {
+        log_uniform(range, &mut self.rng)
     }
 
     fn building(&mut self) -> Building {
-        let hours = self.hours();
+        let hours = self.kind.draw_hours(&mut self.rng);
         let rooms = self.count(self.ranges.rooms);
         let widths: Vec<f64> = (0..rooms).map(|_| self.log_uniform(self.ranges.width_m)).collect();
         // Rooms lie in pairs on both sides of the hall.
@@ -128,34 +127,8 @@ impl Draw {
         building.things.len() - 1
     }
 
-    fn habit(&mut self, kind: ThingKind, hours: &Hours) -> Habit {
-        let means = stays(kind).map(|range| self.log_uniform(range));
-        let mut stays = |first: usize| Stays {
-            short_s: means[first],
-            long_s: means[first + 1],
-            long_share: self.rng.uniform(LONG_SHARE[0]..LONG_SHARE[1]),
-        };
-        let active = [stays(0), stays(2)];
-        let factor = self.log_uniform(self.ranges.quiet_factor);
-        let slower =
-            |stays: Stays| Stays { short_s: factor * stays.short_s, long_s: factor * stays.long_s, ..stays };
-        let mut quiet = active.map(slower);
-        if self.rng.bernoulli(self.ranges.rest_share) {
-            // Doors rest closed, all else rests away.
-            let at_rest = usize::from(kind == ThingKind::Door);
-            quiet[at_rest] = Stays::of_mean(self.log_uniform(REST_S));
-            quiet[1 - at_rest] = Stays::of_mean(self.log_uniform(BEFORE_REST_S));
-        }
-        Habit { hours: hours.clone(), active, quiet }
-    }
-
-    fn hours(&mut self) -> Hours {
-        let mut hours = Hours::daily(&[], 0.0, 0.0);
-        for (days, begin_h, end_h) in self.ranges.active {
-            let [begin_h, end_h] = [begin_h, end_h].map(|hour| hour + self.rng.uniform(-1.0..1.0));
-            days.iter().for_each(|day| hours.set(*day, begin_h, end_h.min(24.0), true));
-        }
-        hours
+    fn habit(&mut self, thing: ThingKind, hours: &Hours) -> Habit {
+        self.kind.draw_habit(thing, hours, &mut self.rng)
     }
 }
 

@@ -5,52 +5,7 @@ mod ranges;
 
 use crate::STEP_S;
 use crate::calendar::Habit;
-
-/// The kind of a building.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
-    /// People are there in the morning, in the evening and on the weekend.
-    Home,
-    /// People are there in the hours of work; closed at night and on the weekend.
-    Office,
-    /// Large halls without doors between them, in two shifts from Monday to Saturday.
-    Warehouse,
-    /// Many rooms, busy during the day on all days, never quite still.
-    Clinic,
-}
-
-impl Kind {
-    /// All kinds, with their names.
-    pub const ALL: [(&'static str, Self); 4] = [
-        ("home", Self::Home),
-        ("office", Self::Office),
-        ("warehouse", Self::Warehouse),
-        ("clinic", Self::Clinic),
-    ];
-}
-
-impl std::str::FromStr for Kind {
-    type Err = String;
-
-    fn from_str(word: &str) -> Result<Self, String> {
-        let found = Self::ALL.iter().find(|(name, _)| *name == word);
-        let names = || Self::ALL.map(|(name, _)| name).join(", ");
-        found.map(|(_, kind)| *kind).ok_or_else(|| format!("expected one of {}, found `{word}`", names()))
-    }
-}
-
-/// What a thing is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ThingKind {
-    /// The door of a room; blocked: closed.
-    Door,
-    /// A place where a box or a cart often stands.
-    Box,
-    /// A place where a person often is.
-    Person,
-    /// A place where another robot parks.
-    ParkedRobot,
-}
+pub use crate::calendar::{Kind, ThingKind};
 
 /// A thing with two states.
 #[derive(Clone, Debug, PartialEq)]

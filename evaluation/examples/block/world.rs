@@ -121,6 +121,7 @@ pub(crate) fn block(sides_m: [f64; 2], laser: Laser, seed: u64) -> Option<WorldS
         glass: Vec::new(),
         obstacles: Vec::new(),
         robots: vec![robot],
+        starts_s: None,
     };
     WorldSpec::new(fleet).ok()
 }

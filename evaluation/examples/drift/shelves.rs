@@ -49,6 +49,7 @@ pub(crate) fn room(seed: u64) -> Option<WorldSpec> {
         glass: Vec::new(),
         obstacles,
         robots: vec![robot],
+        starts_s: None,
     };
     WorldSpec::new(fleet).ok()
 }

@@ -68,6 +68,7 @@ impl Patches {
             sensor_radius: range.clamp(1, GridSpec::MAX_SENSOR_RADIUS),
             block_probability: 1.0,
             robot_probability: 1.0,
+            calendar: None,
         };
         Self { cells, middles, in_view: in_grid.sights() }
     }

@@ -20,7 +20,8 @@ impl fmt::Display for Summary {
         };
         let simulated = match simulated_s {
             short if *short < 60.0 => format!("{short:.1} simulated seconds"),
-            long => format!("{:.1} simulated minutes", long / 60.0),
+            long if *long < 86_400.0 => format!("{:.1} simulated minutes", long / 60.0),
+            days => format!("{:.1} simulated days", days / 86_400.0),
         };
         writeln!(
             f,
@@ -57,6 +58,7 @@ impl fmt::Display for RunResults {
                 format!("{all} finished: {reached} reached, {approached} approached, {given_up} given up");
             lines.push(("goals", text));
         }
+        lines.extend(self.day().map(|text| ("patrol", text)));
         if !self.strategy_share.is_empty() {
             let share = |(name, share): (&String, &f64)| format!("{name} {}", percent(*share));
             let shares: Vec<String> = self.strategy_share.iter().map(share).collect();
@@ -73,6 +75,18 @@ impl fmt::Display for RunResults {
 }
 
 impl RunResults {
+    /// What the robot did with its time; `None` if it was always on patrol.
+    fn day(&self) -> Option<String> {
+        let day = self.day.as_ref()?;
+        let share = day.patrol_share()?;
+        let [patrol, rest] = [share, 1.0 - share].map(percent);
+        let flat = match day.flat {
+            0 => "always back in time".to_owned(),
+            times => format!("{times} times with a flat battery before it was back"),
+        };
+        Some(format!("{patrol} of the time on patrol, {rest} at rest; {} patrols, {flat}", day.patrols))
+    }
+
     /// The seen part of the map, and its age.
     fn seen(&self) -> String {
         let Age { max_s, never_seen, .. } = self.age;

@@ -38,7 +38,7 @@ impl GridGroundTruth {
         let index = |cell: &Cell| frame.index(*cell);
         let mut things = Vec::new();
         for block in &spec.blocks {
-            if let Some(start) = block.path.first().and_then(index) {
+            if let Some(start) = block.path.get(block.start()).and_then(index) {
                 cells[start].is_blocked = true;
             }
             things.push(sorted(block.path.iter().filter_map(index).collect()));

@@ -27,5 +27,5 @@ mod world;
 
 pub use generate::{GenerateSettings, PathKind};
 pub use ground_truth::GridGroundTruth;
-pub use spec::{BlockSpec, Course, GridSpec};
+pub use spec::{BlockSpec, Course, GridCalendar, GridSpec};
 pub use world::GridWorld;

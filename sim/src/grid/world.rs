@@ -1,6 +1,7 @@
 use super::ground_truth::GridGroundTruth;
-use super::spec::{BlockSpec, Course, GridSpec};
+use super::spec::{BlockSpec, Course, GridCalendar, GridSpec};
 use super::visibility::{BlockedCells, LineOfSight};
+use crate::routine::Routine;
 use interfaces::{Cell, CellReading, Purpose, RandomStream, Step, World};
 use nalgebra::Isometry2;
 
@@ -27,7 +28,8 @@ pub struct GridWorld {
 impl GridWorld {
     /// The world of `spec` at its start. `seed` seeds a random stream for every block and one for the robot.
     pub fn new(spec: &GridSpec, seed: u64) -> Self {
-        let block = |(index, block)| Block::new(block, index, spec.block_probability, seed);
+        let block =
+            |(index, block)| Block::new(block, index, spec.block_probability, spec.calendar.as_ref(), seed);
         let blocks: Vec<Block> = spec.blocks.iter().enumerate().map(block).collect();
         let mut blocked = BlockedCells::new(&spec.walls, spec.sensor_radius);
         for block in &blocks {
@@ -99,9 +101,10 @@ impl World for GridWorld {
             self.robot = target;
         }
         self.moved.clear();
+        let time_s = self.spec.calendar.map_or(0.0, |calendar| (self.step + 1) as f64 * calendar.step_s);
         for block in &mut self.blocks {
             let is_free = |cell: Cell| cell != self.robot && !self.blocked.get(cell);
-            if let Some((from, to)) = block.step(is_free) {
+            if let Some((from, to)) = block.step(time_s, is_free) {
                 self.blocked.set(from, false);
                 self.blocked.set(to, true);
                 self.moved.push((from, to));
@@ -125,13 +128,24 @@ pub(super) struct Block {
     /// The probability that a due move happens in a step.
     probability: f64,
     random: RandomStream,
+    /// What it does by its schedule, if it has one.
+    routine: Option<Box<Routine>>,
 }
 
 impl Block {
-    pub(super) fn new(spec: &BlockSpec, index: usize, probability: f64, seed: u64) -> Self {
+    pub(super) fn new(
+        spec: &BlockSpec,
+        index: usize,
+        probability: f64,
+        calendar: Option<&GridCalendar>,
+        seed: u64,
+    ) -> Self {
+        let starts_s = calendar.map_or(0.0, |calendar| calendar.starts_s);
+        let routine = spec.schedule.as_ref().map(|schedule| Routine::new(schedule, starts_s, index, seed));
         Self {
+            routine: routine.map(Box::new),
             spec: spec.clone(),
-            at: 0,
+            at: spec.start(),
             is_returning: false,
             stood: spec.stood,
             probability,
@@ -144,10 +158,20 @@ impl Block {
         self.spec.path[self.at]
     }
 
-    /// Does one step. The block moves on if the move is due, happens and leads to a free cell. Returns the cells
+    /// Does one step, which ends at `time_s`, s in a world with a calendar. The block moves on if the move is due, happens and leads to a free cell. Returns the cells
     /// before and after a move.
     #[inline]
-    pub(super) fn step(&mut self, is_free: impl FnOnce(Cell) -> bool) -> Option<(Cell, Cell)> {
+    pub(super) fn step(&mut self, time_s: f64, is_free: impl FnOnce(Cell) -> bool) -> Option<(Cell, Cell)> {
+        if let Some(routine) = &mut self.routine {
+            let last = self.spec.path.len() - 1;
+            let next =
+                if routine.is_blocked(time_s) { self.at.saturating_sub(1) } else { (self.at + 1).min(last) };
+            let (from, to) = (self.cell(), self.spec.path[next]);
+            return (to != from && is_free(to)).then(|| {
+                self.at = next;
+                (from, to)
+            });
+        }
         self.stood = (self.stood + 1).min(self.spec.dwell);
         if self.stood < self.spec.dwell || !self.random.bernoulli(self.probability) {
             return None;

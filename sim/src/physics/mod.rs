@@ -48,7 +48,7 @@ pub use snapshot::SnapshotError;
 pub use spec::{
     BehaviorSpec, BumperSpec, CircleSpec, ContactModel, DisplacementSpec, DoorSpec, DriveKind, DriveLimits,
     DrivenError, FiducialSpec, FleetSpec, Glass, LaserSpec, Leaf, Motion, ObstacleSpec, OdometryError,
-    Opening, PathSpec, PatrolSpec, PushedSpec, Repeat, RobotSpec, SonarSpec, WanderSpec, WaypointsSpec,
-    WorldSpec,
+    Opening, PathSpec, PatrolDaySpec, PatrolSpec, PushedSpec, Repeat, RobotSpec, SonarSpec, WanderSpec,
+    WaypointsSpec, WorldSpec,
 };
 pub use world::{PhysicsWorld, WorldSnapshot};

@@ -42,6 +42,11 @@ impl Past {
         Self { kept: (longest_s / spec.step_s - ROUNDING).ceil() as usize, steps: VecDeque::new() }
     }
 
+    /// The number of steps that are kept.
+    pub(super) fn kept(&self) -> usize {
+        self.kept
+    }
+
     /// The values that a snapshot holds.
     pub(super) fn values(&mut self) -> Values<'_> {
         vec![value(&mut self.steps)]

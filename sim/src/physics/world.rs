@@ -96,7 +96,8 @@ impl PhysicsWorld {
         &self.contacts
     }
 
-    /// All appearances and disappearances of obstacles since the start, in order of time: at most two per obstacle.
+    /// All appearances and disappearances of obstacles since the start, in order of time: at most two per obstacle. Those by a
+    /// schedule are not among them.
     pub fn obstacle_events(&self) -> &[ObstacleEvent] {
         &self.obstacle_events
     }
@@ -122,8 +123,26 @@ impl PhysicsWorld {
         interfaces::restore(values, snapshot).map_err(|_| SnapshotError::Damaged)
     }
 
-    /// Does one physics step.
-    fn advance(&mut self) {
+    /// Lets time pass until `until_s`, s, while the driven robot rests: it stops, and nobody reads its sensors. In a world
+    /// with a calendar, steps in which nothing happens take no time to compute.
+    pub fn rest(&mut self, until_s: f64) {
+        self.truth.changes.clear();
+        self.contacts.clear();
+        self.fleet.command(self.spec.driven_index(), Twist::STOP);
+        let mut left = ((until_s - self.time_s()) / self.spec.step_s - 1e-6).ceil().max(0.0) as u64;
+        while left > 0 {
+            left -= self.advance(left);
+        }
+    }
+
+    /// Does one physics step, or up to `most` steps in which nothing happens. Returns their number.
+    fn advance(&mut self, most: u64) -> u64 {
+        let at_rest = self.fleet.steps_at_rest(most);
+        if at_rest > 0 {
+            self.fleet.pass(at_rest);
+            self.truth.elapsed_s = self.time_s();
+            return at_rest;
+        }
         self.fleet.think(|robot| !robot.is_driven());
         self.fleet.advance();
         let time_s = self.time_s();
@@ -145,9 +164,13 @@ impl PhysicsWorld {
         self.fleet.update_obstacles(|obstacle, appeared, standing| {
             let spec = &self.spec.obstacles[obstacle];
             let cells = self.truth.change_box(&spec.shape, standing, Some(Body::Obstacle(obstacle)));
+            if spec.schedule().is_some() {
+                return;
+            }
             let name = spec.name.clone();
             self.obstacle_events.push(ObstacleEvent { time_s, obstacle, name, appeared, cells });
         });
+        1
     }
 }
 
@@ -211,7 +234,7 @@ impl World for PhysicsWorld {
         self.contacts.clear();
         self.fleet.command(self.spec.driven_index(), *command);
         for _ in 0..self.spec.driven().laser.period_steps {
-            self.advance();
+            self.advance(1);
         }
     }
 }

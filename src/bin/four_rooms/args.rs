@@ -81,6 +81,15 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FACTOR|max", value_parser = speed, allow_negative_numbers = true, help_heading = "Pilot")]
     pub(crate) speed: Option<f64>,
 
+    /// The share of the time that the robot can be on patrol, as 0.05: it has a battery and a dock where it starts, rests there,
+    /// and goes back in time [default: as in the world file, otherwise always]
+    #[arg(long, value_name = "SHARE", value_parser = share, allow_negative_numbers = true, help_heading = "Pilot")]
+    pub(crate) patrol: Option<f64>,
+
+    /// With --patrol: how long a full battery lasts on patrol [default: as in the world file, otherwise 30m]
+    #[arg(long, value_name = "TIME", value_parser = duration_s, requires = "patrol", allow_negative_numbers = true, help_heading = "Pilot")]
+    pub(crate) battery: Option<f64>,
+
     /// The estimator of the rates of change: shared-prior predicts best where doors, people and robots move
     /// (docs/estimators.md)
     #[arg(long, default_value = "shared-prior", value_parser = one_of(EstimatorChoice::all(), EstimatorChoice::name), help_heading = "Mapper")]
@@ -195,6 +204,11 @@ fn purpose() -> impl TypedValueParser<Value = RobotPurpose> {
 
 fn strategies() -> impl TypedValueParser<Value = Policy> {
     strategy_of(Policy::built_in().to_vec(), |policy| (policy.name(), policy.description()))
+}
+
+fn share(text: &str) -> Result<f64, String> {
+    let share = text.parse::<f64>().ok().filter(|share| (1e-4..=1.0).contains(share));
+    share.ok_or_else(|| "must be a share of the time from 0.0001 to 1".into())
 }
 
 fn gif(text: &str) -> Result<PathBuf, String> {

@@ -46,6 +46,9 @@ fn run(args: &Args) -> Result<ExitCode, Failure> {
     check_distinct(&[&files[..], &[("--out", Some(args.out.as_path()))]].concat()).map_err(input)?;
     let parts = Parts::new(args)?;
     match args.drive {
+        DriveChoice::Agent if parts.spec.driven().patrol.is_some() => {
+            explore(args, &parts, parts.agent_with_day(args)?)
+        }
         DriveChoice::Agent => explore(args, &parts, parts.agent(args)?),
         DriveChoice::Tour => explore(args, &parts, parts.tour(args)?),
         DriveChoice::Keyboard => explore(args, &parts, parts.keyboard()?),

@@ -14,8 +14,9 @@ use curious::worlds::{self, Loaded};
 use evaluation::physics_trial;
 use interfaces::{CellState, Grid, PoseMode, Twist};
 use robot::state::Facts;
-use robot::{Autonomous, Settings, Tour};
-use sim::physics::WorldSpec;
+use robot::{Autonomous, PatrolDay, Settings, Tour};
+use sim::physics::shape::Transform;
+use sim::physics::{PatrolDaySpec, WorldSpec};
 use std::io::stderr;
 use std::path::Path;
 use worldfile::ros_map;
@@ -43,6 +44,7 @@ impl Parts {
             worlds::load(&args.world).map_err(|error| input(value_of("--world", error)))?;
         warn(warnings);
         warn(reachability::warnings(spec.fleet()));
+        let spec = with_patrol(args, spec)?;
         let settings = physics_trial::settings(&spec).with_context(|| format!("cannot run `{}`", args.world));
         let mut settings = settings.map_err(input)?;
         settings.mapper.estimator = args.estimator.clone();
@@ -66,6 +68,23 @@ impl Parts {
         self.settings.pilot(agent, args.seed).map_err(input)
     }
 
+    /// The agent of a robot with a battery, or with orders by others.
+    pub(crate) fn agent_with_day(
+        &self,
+        args: &Args,
+    ) -> Result<Autonomous<PatrolDay<Agent>, Controller<DiffDrive>>, Failure> {
+        let agent = self.settings.agent(&args.strategy(), args.seed).map_err(input)?;
+        let own = self.own_frame(args);
+        let day = physics_trial::day(own.as_ref().map_or(&self.spec, |(spec, _)| spec));
+        let day = day.context("the robot has no patrol").map_err(input)?;
+        self.settings.pilot(PatrolDay::new(agent, day), args.seed).map_err(input)
+    }
+
+    /// The world in the frame of the map, and the motion to it, if this is another frame.
+    fn own_frame(&self, args: &Args) -> Option<(WorldSpec, Transform)> {
+        self.prior.is_none().then(|| physics_trial::in_own_frame(&self.settings, &self.spec, args.seed))?
+    }
+
     pub(crate) fn tour(&self, args: &Args) -> Result<Autonomous<Tour, Controller<DiffDrive>>, Failure> {
         let (name, text) = worlds::TOUR;
         let home = worlds::SHIPPED[0].0;
@@ -83,9 +102,7 @@ impl Parts {
         };
         let TourSpec { mut waypoints, repeat } = tour.map_err(input)?;
         warn(combination::waypoints(&self.spec, &waypoints));
-        let own =
-            self.prior.is_none().then(|| physics_trial::in_own_frame(&self.settings, &self.spec, args.seed));
-        if let Some((_, to_own)) = own.flatten() {
+        if let Some((_, to_own)) = self.own_frame(args) {
             waypoints.iter_mut().for_each(|at| *at = to_own.point(at));
         }
         self.settings.pilot(Tour::new(waypoints, repeat), args.seed).map_err(input)
@@ -94,6 +111,12 @@ impl Parts {
     /// What the state of a pilot belongs to, beside the settings.
     pub(crate) fn pilot_facts(&self, args: &Args) -> Facts {
         let facts = Facts::default().with("--drive", args.drive.name());
+        let facts = match &self.spec.driven().patrol {
+            Some(day) if args.drive == DriveChoice::Agent => {
+                facts.with("--patrol", day.share).with("--battery", day.battery_s)
+            }
+            _ => facts,
+        };
         match (args.drive, &args.tour) {
             (DriveChoice::Agent, _) => facts.with("--strategy", args.strategy().name()),
             (DriveChoice::Tour, Some(tour)) => facts.with("--tour", tour.display()),
@@ -106,6 +129,19 @@ impl Parts {
         let max = Twist { linear_mps: drive.max_linear_mps, angular_radps: drive.max_angular_radps };
         Keyboard::new(max).map_err(input)
     }
+}
+
+/// The world with the patrol of the command line, if one is given.
+fn with_patrol(args: &Args, spec: WorldSpec) -> Result<WorldSpec, Failure> {
+    let Some(share) = args.patrol else { return Ok(spec) };
+    if args.drive != DriveChoice::Agent {
+        return Err(input(anyhow!("--patrol is for the agent: leave out --drive, or --patrol")));
+    }
+    let of_file = spec.driven().patrol.clone();
+    let mut day = of_file.unwrap_or_else(|| PatrolDaySpec::of_share(share));
+    day.share = share;
+    day.battery_s = args.battery.unwrap_or(day.battery_s);
+    Ok(spec.with_patrol(day))
 }
 
 /// Reads a ROS map as the knowledge of the robot in a world; warnings go to the error output.

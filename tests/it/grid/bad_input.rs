@@ -30,7 +30,7 @@ fn worlds() {
     10 | sensor_radios = 4       # cells, from the center of the robot's cell to the center of another cell
        | ^^^^^^^^^^^^^ not known here
        |
-       = help: did you mean `sensor_radius`? the keys here are: name, description, sensor_radius, map, transitions, block
+       = help: did you mean `sensor_radius`? the keys here are: name, description, starts, step_s, sensor_radius, map, transitions, block
     ");
     insta::assert_snapshot!(refused_world("sensor_radius = 4", "sensor_radius = 4.5"), @"
     error: `sensor_radius` has the wrong type

@@ -54,6 +54,7 @@ fn obstacle(spec: &ObstacleSpec) -> Obstacle {
     let start = corners(spec.start());
     let mut reach: Vec<Outline> = match &spec.motion {
         Motion::Fixed => Vec::new(),
+        Motion::Scheduled(_) => vec![start.clone()],
         Motion::Pushed(_) => vec![start.clone()],
         Motion::Path(path) => path
             .keys
@@ -70,7 +71,7 @@ fn obstacle(spec: &ObstacleSpec) -> Obstacle {
     if spec.appears_s.is_some() || spec.disappears_s.is_some() {
         reach.push(start.clone());
     }
-    let outline = if spec.appears_s.is_none() { start } else { Vec::new() };
+    let outline = if spec.starts_present() { start } else { Vec::new() };
     Obstacle { name: spec.name.clone(), outline, reach }
 }
 

@@ -9,6 +9,8 @@
 //! |---|---|---|
 //! | `name` | required | not empty |
 //! | `description` | `""` | |
+//! | `starts` | Monday 0:00 if a block has a schedule | the time of the week, local civil time, at which the world starts, as in `"Mon 7:00"` |
+//! | `step_s` | 10 | 0.001 to 86 400: the time of a step of a world with a calendar, s |
 //! | `sensor_radius` | required | 1 to 100 cells |
 //! | `map` | required | rows of equal length, the top row first: `#` wall, `.` free, `R` where the robot starts (free; without one it starts in the center, column width / 2 and row height / 2, rounded down); 3 × 3 to 4 million cells |
 //! | `transitions.block_chance` | 1 | above 0, at most 1: the probability per step that a block which is due moves |
@@ -18,6 +20,7 @@
 //! | `block.stood` | 0 | 0 to `dwell` − 1: steps that it has stood on its first cell when time begins |
 //! | `block.course` | required | `"loop"`: from the last cell on to the first; `"back-and-forth"` |
 //! | `block.path` | required | way points, joined by straight lines along rows and columns, clear of walls; two cells or more, of all blocks together at most 10 million |
+//! | `block.schedule` | none | a table with [the keys of physics worlds](crate::physics), in place of `dwell`, `stood` and `course`: when the block is on the first cell of its path (blocked) and when on the last (free); it moves there one cell per step |
 
 mod check;
 mod map;
@@ -26,11 +29,14 @@ mod path;
 mod tests;
 
 use crate::error::{WorldError, read_text};
+use crate::files::{Disk, Files};
 use crate::reader::{self, Kind};
+use crate::schedule::write_schedule;
 use crate::toml_value::lines;
 use interfaces::Cell;
 use sim::grid::GridSpec;
-use std::path::Path;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 use toml::Value;
 
 /// Reads and checks a world file.
@@ -40,7 +46,7 @@ use toml::Value;
 /// When the file cannot be read, and the errors of [`parse`].
 pub fn load(path: impl AsRef<Path>) -> Result<GridSpec, WorldError> {
     let (name, text) = read_text("world file", path.as_ref())?;
-    parse(&name, &text)
+    parse_with(&name, &text, &Disk)
 }
 
 /// Whether a text in TOML is the file of a grid world: its `map` is a drawing. That of a physics world is a table.
@@ -56,14 +62,29 @@ pub fn is_grid_world(text: &str) -> bool {
 /// contradict each other. The messages state the place and a valid value, for everything that is invalid, unless
 /// one error hides another.
 pub fn parse(file_name: &str, text: &str) -> Result<GridSpec, WorldError> {
-    reader::read(file_name, text, Kind::Grid, check::KEYS, check::world)
+    parse_with(file_name, text, &BTreeMap::<PathBuf, Vec<u8>>::new())
 }
 
-/// The text of a world file that describes `spec`: [`parse`] reads the same spec from it.
+/// Checks the text of a world file as [`parse`] does, with recorded events. They are read from the folder of the path
+/// `file_name`.
+///
+/// # Errors
+///
+/// The errors of [`parse`], and when a file of events cannot be read.
+pub fn parse_with(file_name: &str, text: &str, files: &dyn Files) -> Result<GridSpec, WorldError> {
+    reader::read(file_name, text, Kind::Grid, check::KEYS, |root| check::world(root, files))
+}
+
+/// The text of a world file that describes `spec`: [`parse`] reads the same spec from it. Recorded events are left out: their
+/// file is not known.
 pub fn to_toml(spec: &GridSpec) -> String {
     let [name, description] = [&spec.name, &spec.description].map(|text| Value::from(text.as_str()));
-    let mut text =
-        lines([("name", name), ("description", description), ("sensor_radius", spec.sensor_radius.into())]);
+    let calendar = spec.calendar.map(|steps| {
+        [("starts", Value::from(calendar::moment(steps.starts_s))), ("step_s", steps.step_s.into())]
+    });
+    let head = [("name", name), ("description", description)];
+    let sensor_radius = ("sensor_radius", Value::from(spec.sensor_radius));
+    let mut text = lines(head.into_iter().chain(calendar.into_iter().flatten()).chain([sensor_radius]));
     text += &format!("map = \"\"\"\n{}\"\"\"\n", spec.drawing());
     let [block, robot] = [spec.block_probability, spec.robot_probability];
     if block != 1.0 || robot != 1.0 {
@@ -76,6 +97,12 @@ pub fn to_toml(spec: &GridSpec) -> String {
         let course = word.map_or("", |(word, _)| *word);
         let points: Vec<Value> = way_points(&block.path).map(|cell| vec![cell.x, cell.y].into()).collect();
         text += "\n[[block]]\n";
+        if let Some(schedule) = block.schedule.as_ref().and_then(|schedule| write_schedule(schedule)) {
+            text += &lines([("name", block.name.as_str().into()), ("path", points.into())]);
+            text += "\n[block.schedule]\n";
+            text += &lines(schedule);
+            continue;
+        }
         text += &lines([("name", block.name.as_str().into()), ("dwell", block.dwell.into())]);
         text += &lines(stood.into_iter().chain([("course", course.into()), ("path", points.into())]));
     }

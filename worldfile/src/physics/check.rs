@@ -7,6 +7,7 @@ use super::robot::{self, robot};
 use super::space::{Solid, Solids, Space, inside, upright};
 use crate::files::Files;
 use crate::reader::{Table, unique_names, valid};
+use crate::schedule::starts_s;
 use interfaces::GridFrame;
 use nalgebra::Point2;
 use sim::physics::shape::TOUCH_M;
@@ -20,7 +21,7 @@ pub(super) const CONTACTS: [(&str, ContactModel); 2] =
     [("rigid_bodies", ContactModel::RigidBodies), ("sliding", ContactModel::Sliding)];
 
 /// The keys of a world file.
-pub(super) const KEYS: &str = "name, description, map, physics, wall, floor_plan, obstacle, robot";
+pub(super) const KEYS: &str = "name, description, starts, map, physics, wall, floor_plan, obstacle, robot";
 
 /// The maximum number of cells; more cells are refused before memory is allocated.
 const MAX_CELLS: f64 = 4e6;
@@ -55,12 +56,14 @@ pub(super) fn fleet(root: &Table<'_>, files: &dyn Files) -> Option<FleetSpec> {
     let obstacle_tables = root.tables("obstacle", obstacle::KEYS);
     let (mut obstacles, mut fixed, mut movers) = (Vec::new(), Vec::new(), Vec::new());
     for table in &obstacle_tables {
-        let Some(obstacle) = obstacle(table, &space) else { continue };
+        let Some(obstacle) = obstacle(table, &space, files) else { continue };
         let solid = |shape| Solid { shape, span: table.span.clone() };
         match &obstacle.motion {
-            Motion::Fixed if obstacle.appears_s.is_some() => {}
+            Motion::Fixed | Motion::Scheduled(_) if !obstacle.starts_present() => {}
             Motion::Fixed => fixed.push(solid(obstacle.shape)),
-            Motion::Pushed(_) | Motion::Path(_) | Motion::Door(_) => movers.push(solid(obstacle.start())),
+            Motion::Pushed(_) | Motion::Path(_) | Motion::Door(_) | Motion::Scheduled(_) => {
+                movers.push(solid(obstacle.start()))
+            }
         }
         obstacles.push((table, obstacle));
     }
@@ -72,6 +75,9 @@ pub(super) fn fleet(root: &Table<'_>, files: &dyn Files) -> Option<FleetSpec> {
     unique_names("obstacle", &obstacle_tables);
     unique_names("robot", &robot_tables);
     boxes_apart(&obstacles);
+    let has_calendar = obstacles.iter().any(|(_, obstacle)| obstacle.schedule().is_some())
+        || robots.iter().any(|(_, robot)| robot.patrol.is_some());
+    let starts_s = starts_s(root, has_calendar);
     apart(&robots);
     let (frame, turn_rad) = frame.filter(|_| root.file.is_sound())?;
     let mut spec = FleetSpec {
@@ -84,6 +90,7 @@ pub(super) fn fleet(root: &Table<'_>, files: &dyn Files) -> Option<FleetSpec> {
         glass,
         obstacles: obstacles.into_iter().map(|(_, obstacle)| obstacle).collect(),
         robots: robots.into_iter().map(|(_, robot)| robot).collect(),
+        starts_s: starts_s?,
     };
     spec.turn(turn_rad, &(space.size / 2.0));
     Some(spec)

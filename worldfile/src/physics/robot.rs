@@ -5,15 +5,18 @@ use super::drive::{self, drive};
 use super::sensor::{Carrier, bumper};
 use super::space::Space;
 use crate::reader::{Table, Value, valid};
+use crate::schedule::hours;
+use calendar::Hours;
 use interfaces::pose;
 use nalgebra::{Isometry2, Point2};
 use sim::physics::shape::TOUCH_M;
 use sim::physics::{
-    DisplacementSpec, DriveKind, DriveLimits, Form, OdometryError, Rectangle, RobotSpec, convex,
+    BehaviorSpec, DisplacementSpec, DriveKind, DriveLimits, Form, OdometryError, PatrolDaySpec, Rectangle,
+    RobotSpec, convex,
 };
 
 pub(super) const KEYS: &str = "name, radius_m, footprint_m, mass_kg, pose_m, heading_deg, drive, odometry, laser, \
-                               bumper, sonar, fiducial, tag, behaviour";
+                               bumper, sonar, fiducial, tag, behaviour, patrol";
 
 /// The limits by which a behavior is judged if those of the drive are invalid: nothing is too fast for them.
 const BOUNDLESS: DriveLimits = DriveLimits {
@@ -49,6 +52,7 @@ pub(super) fn robot(table: &Table<'_>, space: &Space) -> Option<RobotSpec> {
         space,
     };
     let behavior = table.table("behaviour", behavior::KEYS).and_then(|table| driver.behavior(&table));
+    let patrol = patrol(table, called, space, &behavior);
     let ((body, pose), (laser, more_lasers)) = (body?, lasers?);
     table.sound(RobotSpec {
         radius_m: body.radius_m,
@@ -64,8 +68,32 @@ pub(super) fn robot(table: &Table<'_>, space: &Space) -> Option<RobotSpec> {
         sonars: sonars?,
         fiducial: fiducial?,
         behavior: behavior?,
+        patrol: patrol?,
         name: name?,
     })
+}
+
+const PATROL_KEYS: &str = "share, battery_s, dock_m, busy";
+
+/// The day of the robot `name`, which must be driven. `Some(None)`: it has none.
+fn patrol(
+    robot: &Table<'_>,
+    name: &str,
+    space: &Space,
+    behavior: &Option<BehaviorSpec>,
+) -> Option<Option<PatrolDaySpec>> {
+    let Some(value) = robot.get("patrol") else { return Some(None) };
+    let table = value.table(PATROL_KEYS)?;
+    let share = table.number_or("share", 1.0, 0.0001..=1.0);
+    let battery_s = table.number_or("battery_s", PatrolDaySpec::BATTERY_S, 60.0..=1e6);
+    let dock = table.get("dock_m").map_or(Some(None), |value| value.point(&space.size).map(Some));
+    let busy = table.get("busy").map_or(Some(Hours::never()), |value| hours(&value));
+    if behavior.as_ref().is_some_and(|behavior| *behavior != BehaviorSpec::Driven) {
+        let what = format!("the robot `{name}` has a patrol, and is not driven");
+        let help = "leave `patrol` out, or give the robot `kind = \"driven\"`";
+        return robot.error(&what, (value.span(), "this patrol"), &[], help);
+    }
+    table.sound(Some(PatrolDaySpec { dock: dock?, battery_s, share, busy: busy? }))
 }
 
 /// The body of the robot and its pose at the start: in the map, and clear of everything.

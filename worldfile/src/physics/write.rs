@@ -2,11 +2,12 @@
 
 use super::behavior::REPEATS;
 use super::check::CONTACTS;
+use crate::schedule::write_schedule;
 use crate::toml_value::{degrees, heading, lines, number, point};
 use nalgebra::{Isometry2, Point2};
 use sim::physics::{
     BehaviorSpec, ContactModel, DoorSpec, DriveKind, FleetSpec, LaserSpec, Leaf, Motion, ObstacleSpec,
-    Opening, Rectangle, RobotSpec,
+    Opening, PatrolDaySpec, Rectangle, RobotSpec,
 };
 use toml::Value;
 
@@ -29,7 +30,10 @@ pub fn to_toml(spec: &FleetSpec) -> Option<String> {
         text += header;
         text += &lines(keys);
     };
-    table("", vec![("name", spec.name.as_str().into()), ("description", spec.description.as_str().into())]);
+    let mut head =
+        vec![("name", spec.name.as_str().into()), ("description", spec.description.as_str().into())];
+    head.extend(spec.starts_s.map(|starts_s| ("starts", Value::from(calendar::moment(starts_s)))));
+    table("", head);
     let size_m = [frame.width(), frame.height()].map(|cells| number(cells as f64 * frame.resolution_m()));
     table("\n[map]\n", vec![("size_m", size_m.to_vec().into()), ("cell_m", number(frame.resolution_m()))]);
     let mut physics = vec![("step_s", number(spec.step_s))];
@@ -43,12 +47,18 @@ pub fn to_toml(spec: &FleetSpec) -> Option<String> {
     }
     for obstacle in &spec.obstacles {
         table("\n[[obstacle]]\n", self::obstacle(obstacle)?);
+        if let Some(schedule) = obstacle.schedule() {
+            table("\n[obstacle.schedule]\n", write_schedule(schedule)?);
+        }
     }
     for robot in &spec.robots {
         table("\n[[robot]]\n", body(robot)?);
         table("\n[robot.drive]\n", drive(robot)?);
         table("\n[robot.laser]\n", laser(&robot.laser)?);
         table("\n[robot.behaviour]\n", behavior(&robot.behavior)?);
+        if let Some(day) = &robot.patrol {
+            table("\n[robot.patrol]\n", patrol(day));
+        }
     }
     Some(text)
 }
@@ -60,7 +70,7 @@ fn obstacle(obstacle: &ObstacleSpec) -> Option<Keys> {
     };
     let mut keys: Keys = vec![("name", name.as_str().into())];
     keys.extend(match motion {
-        Motion::Fixed => upright(shape).unwrap_or_else(|| turned(shape)),
+        Motion::Fixed | Motion::Scheduled(_) => upright(shape).unwrap_or_else(|| turned(shape)),
         Motion::Door(spec) => door(shape, spec)?,
         Motion::Pushed(_) | Motion::Path(_) => return None,
     });
@@ -97,13 +107,15 @@ fn door(shape: &Rectangle, spec: &DoorSpec) -> Option<Keys> {
         Leaf::Sliding { by_m } if (by_m.norm() - 2.0 * shape.half_m.x).abs() < 1e-9 => {}
         Leaf::Sliding { .. } => return None,
     }
+    keys.push(("move_s", number(spec.move_s)));
     let (opening, [closed_s, open_s]) = match spec.opening {
+        Opening::Scheduled(_) => return Some(keys),
         Opening::Periodic { closed_s, open_s } => ("periodic", [closed_s, open_s]),
         Opening::Random { closed_s, open_s } => ("random", [closed_s, open_s]),
         Opening::Scripted { .. } => return None,
     };
     keys.extend([("opening", opening.into()), ("closed_s", number(closed_s)), ("open_s", number(open_s))]);
-    keys.extend([("move_s", number(spec.move_s)), ("starts_open", spec.starts_open.into())]);
+    keys.push(("starts_open", spec.starts_open.into()));
     Some(keys)
 }
 
@@ -122,6 +134,16 @@ fn body(robot: &RobotSpec) -> Option<Keys> {
         ]
     };
     is_plain.then(keys)
+}
+
+fn patrol(day: &PatrolDaySpec) -> Keys {
+    let mut keys = vec![("share", number(day.share)), ("battery_s", number(day.battery_s))];
+    keys.extend(day.dock.map(|dock| ("dock_m", point(&dock))));
+    let busy = day.busy.texts();
+    if !busy.is_empty() {
+        keys.push(("busy", busy.into()));
+    }
+    keys
 }
 
 fn drive(robot: &RobotSpec) -> Option<Keys> {

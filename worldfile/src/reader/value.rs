@@ -148,12 +148,18 @@ impl<'t, 'a> Value<'t, 'a> {
         self.invalid(&is, "outside of the map", &format!("the map reaches from {}", extent(size)))
     }
 
+    /// Whether the value is a list.
+    pub(crate) fn is_list(&self) -> bool {
+        matches!(self.found.get_ref(), DeValue::Array(_))
+    }
+
     /// The items of a list.
     pub(crate) fn items(&self) -> Option<Vec<Self>> {
         if let DeValue::Array(list) = self.found.get_ref() {
             return Some(list.iter().map(|found| Self { found, ..*self }).collect());
         }
         self.mistyped(&match self.key {
+            "hours" | "busy" => "a list of texts, as in `[\"Mon-Fri 8:00-18:00\"]`".to_owned(),
             "path" => "a list of cells, as in `[[1, 2], [5, 2]]`".to_owned(),
             key if key.ends_with("_m") => "a list of points, as in `[[1.0, 2.0], [3.0, 2.0]]`".to_owned(),
             key if key.ends_with("_s") => "a list of numbers, as in `[1.0, 2.0]`".to_owned(),

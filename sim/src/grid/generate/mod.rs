@@ -117,6 +117,7 @@ fn draw(settings: &GenerateSettings, wanted: usize, seed: u64, rng: &mut RandomS
         sensor_radius: settings.sensor_radius.clamp(1, GridSpec::MAX_SENSOR_RADIUS),
         block_probability: 1.0,
         robot_probability: 1.0,
+        calendar: None,
     }
 }
 
@@ -131,7 +132,8 @@ fn block(
     let log_dwell = log_low + rng.random::<f64>() * (log_high - log_low);
     let dwell = (libm::exp(log_dwell) as u32).clamp(low, high);
     let name = format!("block {number}");
-    BlockSpec { name, dwell, stood: rng.random_range(0..dwell), course: path.course, path: path.cells }
+    let stood = rng.random_range(0..dwell);
+    BlockSpec { name, dwell, stood, course: path.course, path: path.cells, schedule: None }
 }
 
 /// A random number between the two of a setting.

@@ -5,6 +5,7 @@
 
 pub(super) mod parts;
 
+use calendar::Schedule;
 use interfaces::{Cell, Grid, GridFrame};
 
 /// The specification of a grid world.
@@ -27,10 +28,21 @@ pub struct GridSpec {
     pub block_probability: f64,
     /// The probability that an action of the robot happens; above 0, at most 1.
     pub robot_probability: f64,
+    /// The calendar of the world; `None` without one. Blocks with a schedule need it.
+    pub calendar: Option<GridCalendar>,
+}
+
+/// How the steps of a grid world relate to local civil time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GridCalendar {
+    /// The time of the week at the start, s since Monday 0:00.
+    pub starts_s: f64,
+    /// The time of a step, s.
+    pub step_s: f64,
 }
 
 /// A block that moves from cell to cell along its path.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct BlockSpec {
     /// The name of the block.
     pub name: String,
@@ -43,6 +55,9 @@ pub struct BlockSpec {
     /// The cells of the path, at least two, none of them a wall; the block starts on the first. Consecutive cells
     /// share a side, and so do the last and the first of a loop.
     pub path: Vec<Cell>,
+    /// When the block is on its first cell (blocked), or on the last one (free), in place of `dwell` and `course`: it moves
+    /// there one cell per step.
+    pub schedule: Option<Box<Schedule>>,
 }
 
 /// How a block continues at the end of its path.
@@ -57,6 +72,14 @@ pub enum Course {
 impl BlockSpec {
     /// The maximum dwell, steps: a block with a longer dwell would not move in any practical run.
     pub const MAX_DWELL: u32 = 1_000_000;
+
+    /// The index of the cell of its path on which the block starts.
+    pub fn start(&self) -> usize {
+        match &self.schedule {
+            Some(schedule) if !schedule.starts_blocked => self.path.len().saturating_sub(1),
+            _ => 0,
+        }
+    }
 }
 
 impl GridSpec {

@@ -224,7 +224,8 @@ impl Bodies {
 /// enough. It is not enough where obstacles move (a pushed box moves as robots drive) or robots have corners
 /// (which move as the robot turns).
 fn predicted_m(spec: &FleetSpec) -> Option<f64> {
-    let has_movers = spec.obstacles.iter().any(|obstacle| !matches!(obstacle.motion, Motion::Fixed));
+    let stays = |motion: &Motion| matches!(motion, Motion::Fixed | Motion::Scheduled(_));
+    let has_movers = spec.obstacles.iter().any(|obstacle| !stays(&obstacle.motion));
     if !has_movers && spec.robots.iter().all(|robot| robot.corners.is_empty()) {
         return None;
     }

@@ -2,6 +2,7 @@
 
 mod bulk;
 mod carry;
+mod rest;
 mod slide;
 mod snapshots;
 mod start;

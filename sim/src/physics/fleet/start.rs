@@ -42,7 +42,8 @@ impl Start {
         }
         let poses: Vec<_> = (0..spec.robots.len()).map(|index| bodies.pose(index)).collect();
         let obstacles = spec.obstacles.iter().enumerate();
-        let obstacles = obstacles.map(|(index, obstacle)| Obstacle::new(obstacle, index, 0, &mut bodies));
+        let obstacles =
+            obstacles.map(|(index, obstacle)| Obstacle::new(obstacle, index, spec.starts_s, &mut bodies));
         let obstacles: Vec<Obstacle> = obstacles.collect();
         // A robot with corners is a disc of radius 0, and a polygon after those of the obstacles.
         let discs = spec.robots.iter().zip(&poses).map(|(robot, pose)| Disc {
@@ -114,7 +115,9 @@ impl Fleet {
             step: 0,
             bodies: start.bodies.clone(),
             robots: start.robots(seed, &mut start.beams.clone()),
-            obstacles: obstacles.map(|(index, obstacle)| obstacle.reseeded(index, seed)).collect(),
+            obstacles: obstacles
+                .map(|(index, obstacle)| obstacle.reseeded(index, start.spec.starts_s, seed))
+                .collect(),
             scene: start.scene.clone(),
             past: Past::new(&start.spec),
             contacts: Vec::new(),

@@ -159,6 +159,30 @@ pub const OFFICE: BuildingRanges = BuildingRanges {
     ],
 };
 
+/// A warehouse, for buildings with a calendar: few large halls, hardly a door.
+pub const WAREHOUSE: BuildingRanges = BuildingRanges {
+    kind: "warehouse",
+    length_m: [24.0, 36.0],
+    width_m: [18.0, 26.0],
+    corridor_m: [2.4, 3.2],
+    min_room_m: 5.0,
+    rooms: [2, 4],
+    doorway_m: [1.1, 1.8],
+    door_probability: 0.2,
+    furnished_rooms: &[("hall", &[SHELF, SECOND_SHELF, CUPBOARD])],
+    ..OFFICE
+};
+
+/// A clinic, for buildings with a calendar: many rooms, all of them with doors.
+pub const CLINIC: BuildingRanges = BuildingRanges {
+    kind: "clinic",
+    length_m: [26.0, 36.0],
+    rooms: [6, 9],
+    door_probability: 1.0,
+    furnished_rooms: &[("ward", &[BED, CHEST, CHAIR]), ("office", &[DESK, SHELF, CHAIR])],
+    ..OFFICE
+};
+
 /// A kind of furniture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Furniture {
@@ -188,6 +212,7 @@ const fn piece(name: &'static str, length_m: [f64; 2], depth_m: [f64; 2], place:
 }
 
 const SHELF: Furniture = piece("shelf", [0.8, 1.6], [0.3, 0.4], Placement::Wall);
+const SECOND_SHELF: Furniture = piece("second shelf", SHELF.length_m, SHELF.depth_m, Placement::Wall);
 const WARDROBE: Furniture = piece("wardrobe", [1.0, 2.0], [0.6, 0.6], Placement::Wall);
 const DESK: Furniture = piece("desk", [1.0, 1.6], [0.6, 0.8], Placement::Wall);
 const SECOND_DESK: Furniture = piece("second desk", DESK.length_m, DESK.depth_m, Placement::Wall);

@@ -2,6 +2,7 @@
 //! robot that explores.
 
 pub mod building_ranges;
+mod calendar;
 mod doors;
 mod draw;
 mod furniture;
@@ -14,7 +15,9 @@ use super::spec::{
     BehaviorSpec, ContactModel, DriveKind, DriveLimits, FleetSpec, Motion, ObstacleSpec, Repeat, RobotSpec,
     WanderSpec, WaypointsSpec, WorldSpec,
 };
+use ::calendar::Kind;
 use building_ranges::BuildingRanges;
+use calendar::Calendar;
 use draw::{CELLS_PER_M, integer, value};
 use furniture::Piece;
 use interfaces::{GridFrame, Purpose, RandomStream, pose};
@@ -40,33 +43,55 @@ impl WorldSpec {
     /// connected while the doors are open; nothing is inside another thing; every round of a person keeps off walls and
     /// furniture. The same seed gives the same house, on every machine.
     pub fn generate_house(seed: u64) -> Self {
-        generate(&building_ranges::HOUSE, seed)
+        generate(&building_ranges::HOUSE, seed, None)
     }
 
     /// A random office, named `office-` and the seed: as [a house](Self::generate_house), with the parameters of
     /// [`building_ranges::OFFICE`].
     pub fn generate_office(seed: u64) -> Self {
-        generate(&building_ranges::OFFICE, seed)
+        generate(&building_ranges::OFFICE, seed, None)
     }
 
-    /// The generated building with this name, as `house-7` or `office-7`; `None` for other names.
+    /// A random building with a calendar, named `calendar-`, its kind and the seed, from Monday 0:00 on: doors, and boxes,
+    /// people and parked robots that are in their places or not, have schedules drawn from frozen ranges. Nobody walks. Homes
+    /// have the walls of [houses](Self::generate_house), the others those of [offices](Self::generate_office), larger ones.
+    pub fn generate_calendar(kind: Kind, seed: u64) -> Self {
+        let ranges = match kind {
+            Kind::Home => &building_ranges::HOUSE,
+            Kind::Office => &building_ranges::OFFICE,
+            Kind::Warehouse => &building_ranges::WAREHOUSE,
+            Kind::Clinic => &building_ranges::CLINIC,
+        };
+        generate(ranges, seed, Some(kind))
+    }
+
+    /// The generated building with this name, as `house-7`, `office-7` or `calendar-office-7`; `None` for other names.
     pub fn generated(name: &str) -> Option<Self> {
         let (kind, seed) = name.split_once('-')?;
+        if kind == "calendar" {
+            let (kind, seed) = seed.split_once('-')?;
+            return Some(Self::generate_calendar(kind.parse().ok()?, seed.parse().ok()?));
+        }
         let mut kinds = [&building_ranges::HOUSE, &building_ranges::OFFICE].into_iter();
         let (ranges, seed) = (kinds.find(|ranges| ranges.kind == kind)?, seed.parse().ok()?);
-        Some(generate(ranges, seed))
+        Some(generate(ranges, seed, None))
     }
 }
 
-/// The building of a seed.
-fn generate(ranges: &BuildingRanges, seed: u64) -> WorldSpec {
+/// The building of a seed, with the calendar of a kind if one is given.
+fn generate(ranges: &BuildingRanges, seed: u64, kind: Option<Kind>) -> WorldSpec {
     let mut rng = RandomStream::new(seed, Purpose::HouseGenerator);
-    let mut buildings = (0..MAX_DRAWS).filter_map(|_| draw_building(ranges, seed, &mut rng));
+    let mut buildings = (0..MAX_DRAWS).filter_map(|_| draw_building(ranges, seed, kind, &mut rng));
     buildings.next().expect("with these ranges, a building fails in less than one of ten draws")
 }
 
 /// A building, unless a robot found no place in it.
-fn draw_building(ranges: &BuildingRanges, seed: u64, rng: &mut RandomStream) -> Option<WorldSpec> {
+fn draw_building(
+    ranges: &BuildingRanges,
+    seed: u64,
+    kind: Option<Kind>,
+    rng: &mut RandomStream,
+) -> Option<WorldSpec> {
     let layout = Layout::new(ranges, rng);
     let plan = Plan { is_upright: rng.random() };
     let walls: Vec<Rectangle> = layout.solid_walls().iter().map(|wall| plan.rectangle(wall)).collect();
@@ -76,7 +101,13 @@ fn draw_building(ranges: &BuildingRanges, seed: u64, rng: &mut RandomStream) -> 
     let solids: Vec<Rectangle> =
         walls.iter().copied().chain(obstacles.iter().map(ObstacleSpec::opened)).collect();
     let routes = Routes::new(&layout, &solids, &plan, rng);
-    let robots = robots(&routes, rng)?;
+    let mut robots = robots(&routes, rng)?;
+    if let Some(kind) = kind {
+        robots.truncate(1); // the explorer
+        let mut calendar = Calendar::new(kind, seed);
+        calendar.schedule_doors(&mut obstacles);
+        obstacles.extend(calendar.things(&routes, &plan, &robots[0].pose.translation.vector.into()));
+    }
     let size = plan.point(layout.size.map(f64::from));
     let frame = GridFrame::covering(Point2::origin(), size.x, size.y, 1.0 / CELLS_PER_M);
     let count =
@@ -87,10 +118,14 @@ fn draw_building(ranges: &BuildingRanges, seed: u64, rng: &mut RandomStream) -> 
         "{} rooms at a corridor, doors: {doors}, people: {people}; made at random from the seed {seed}.",
         layout.spaces.len() - 1
     );
-    let name = format!("{}-{seed}", ranges.kind);
+    let name = match kind {
+        Some(kind) => format!("calendar-{}-{seed}", kind.name()),
+        None => format!("{}-{seed}", ranges.kind),
+    };
     let contacts = ContactModel::RigidBodies;
-    let (frame, step_s, glass) = (frame?, STEP_S, Vec::new());
-    let fleet = FleetSpec { name, description, frame, step_s, contacts, walls, glass, obstacles, robots };
+    let (frame, step_s, glass, starts_s) = (frame?, STEP_S, Vec::new(), kind.map(|_| 0.0));
+    let fleet =
+        FleetSpec { name, description, frame, step_s, contacts, walls, glass, obstacles, robots, starts_s };
     WorldSpec::new(fleet).ok()
 }
 

@@ -82,6 +82,13 @@ impl<'a> Routes<'a> {
         self.draw(rng, |_| true).map(|place| self.places[place].0)
     }
 
+    /// The places in each room that has any, m.
+    pub(super) fn places_by_room(&self) -> Vec<Vec<Point2<f64>>> {
+        let in_rooms: Vec<_> = self.places.iter().filter(|(_, room)| room.is_some()).collect();
+        let rooms = in_rooms.chunk_by(|(_, a), (_, b)| a == b);
+        rooms.map(|places| places.iter().map(|(at, _)| *at).collect()).collect()
+    }
+
     fn draw(&self, rng: &mut RandomStream, is_valid: impl Fn(usize) -> bool) -> Option<usize> {
         let in_room = |place: &usize| self.places[*place].1.is_some_and(&is_valid);
         let all: Vec<usize> = (0..self.places.len()).filter(in_room).collect();

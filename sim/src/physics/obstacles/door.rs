@@ -1,4 +1,5 @@
 use crate::physics::spec::{DoorSpec, Opening};
+use crate::routine::Routine;
 use interfaces::{Purpose, RandomStream};
 use serde::{Deserialize, Serialize};
 
@@ -49,9 +50,15 @@ impl Door {
 
     /// The openness after a step that ends at `time_s`, if nothing is in the way. The direction of the motion
     /// changes at the exact time of a change, also within the step.
-    pub(super) fn next(&mut self, spec: &DoorSpec, time_s: f64, step_s: f64) -> f64 {
+    pub(super) fn next(
+        &mut self,
+        spec: &DoorSpec,
+        mut routine: Option<&mut Routine>,
+        time_s: f64,
+        step_s: f64,
+    ) -> f64 {
         if let Some(retreat) = self.retreat {
-            let (is_to_open, _) = self.target(spec, time_s - step_s);
+            let (is_to_open, _) = self.target(spec, routine.as_deref_mut(), time_s - step_s);
             if is_to_open != retreat.is_to_open && retreat.pause_s > SLACK_S {
                 return self.back(spec, retreat, step_s);
             }
@@ -59,13 +66,25 @@ impl Door {
         }
         let (mut openness, mut left_s) = (self.openness, step_s);
         while left_s > SLACK_S {
-            let (is_to_open, until_s) = self.target(spec, time_s - left_s);
+            let (is_to_open, until_s) = self.target(spec, routine.as_deref_mut(), time_s - left_s);
             let for_s = left_s.min(until_s - (time_s - left_s));
             let by = for_s / spec.move_s;
             openness = (openness + if is_to_open { by } else { -by }).clamp(0.0, 1.0);
             left_s -= for_s;
         }
         openness
+    }
+
+    /// The time until which the door does not move, s, from `time_s` on; `None` if it moves now.
+    pub(super) fn rests_until_s(
+        &mut self,
+        spec: &DoorSpec,
+        routine: Option<&mut Routine>,
+        time_s: f64,
+    ) -> Option<f64> {
+        let (is_to_open, until_s) = self.target(spec, routine, time_s);
+        let is_there = self.openness == f64::from(u8::from(is_to_open));
+        (is_there && self.retreat.is_none() && self.blocked_s == 0.0).then_some(until_s)
     }
 
     /// The openness after a step of a retreat, if nothing is in the way.
@@ -95,7 +114,7 @@ impl Door {
 
     /// Whether the door must be open from a time on, and the time of the next change, s. The time must not decrease
     /// between calls.
-    fn target(&mut self, spec: &DoorSpec, time_s: f64) -> (bool, f64) {
+    fn target(&mut self, spec: &DoorSpec, routine: Option<&mut Routine>, time_s: f64) -> (bool, f64) {
         let time_s = time_s + SLACK_S;
         match &spec.opening {
             Opening::Periodic { closed_s, open_s } => {
@@ -110,6 +129,10 @@ impl Door {
                 let until_s = switches_s.get(switches).copied().unwrap_or(f64::INFINITY);
                 (spec.starts_open != (switches % 2 == 1), until_s)
             }
+            Opening::Scheduled(_) => match routine {
+                Some(routine) => (!routine.is_blocked(time_s), routine.next_s()),
+                None => (spec.starts_open, f64::INFINITY),
+            },
             Opening::Random { .. } => {
                 while time_s >= self.next_s {
                     self.is_to_open = !self.is_to_open;
@@ -127,7 +150,7 @@ impl Door {
                 let mean_s = if self.is_to_open { open_s } else { closed_s };
                 self.random.exponential(mean_s)
             }
-            Opening::Periodic { .. } | Opening::Scripted { .. } => f64::INFINITY,
+            Opening::Periodic { .. } | Opening::Scripted { .. } | Opening::Scheduled(_) => f64::INFINITY,
         }
     }
 }
@@ -148,7 +171,7 @@ mod tests {
             while time_s < until_s - SLACK_S {
                 steps += 1.0;
                 time_s = steps * 0.05;
-                door.openness = door.next(&spec, time_s, 0.05);
+                door.openness = door.next(&spec, None, time_s, 0.05);
             }
             (door.openness * 1e9).round() / 1e9
         });

@@ -8,6 +8,7 @@ use super::report::Body;
 use super::shape::Rectangle;
 use super::snapshot::{Values, pose, value};
 use super::spec::{Motion, ObstacleSpec};
+use crate::routine::Routine;
 use door::Door;
 use nalgebra::Point2;
 use serde::{Deserialize, Serialize};
@@ -19,11 +20,13 @@ pub(super) struct Obstacle {
     /// The present shape; before the obstacle appears, the shape that it will have.
     pub(super) shape: Rectangle,
     state: State,
+    /// What it does by its schedule, if it has one.
+    routine: Option<Box<Routine>>,
 }
 
 #[derive(Clone, Deserialize, Serialize)]
 enum State {
-    /// The obstacle has not appeared yet.
+    /// The obstacle has not appeared yet, or is away by its schedule.
     Due,
     Standing(Handle),
     Gone,
@@ -34,24 +37,25 @@ enum State {
 }
 
 impl Obstacle {
-    /// The obstacle with an index, at the start.
-    pub(super) fn new(spec: &ObstacleSpec, index: usize, seed: u64, bodies: &mut Bodies) -> Self {
+    /// The obstacle with an index, at the start, with random streams of the seed 0. `starts_s` is the time of the week then.
+    pub(super) fn new(spec: &ObstacleSpec, index: usize, starts_s: Option<f64>, bodies: &mut Bodies) -> Self {
         let (shape, body) = (spec.start(), Body::Obstacle(index));
         let state = match &spec.motion {
-            Motion::Fixed if spec.appears_s.is_some() => State::Due,
-            Motion::Fixed => State::Standing(bodies.add_box(body, &shape)),
+            Motion::Fixed | Motion::Scheduled(_) if !spec.starts_present() => State::Due,
+            Motion::Fixed | Motion::Scheduled(_) => State::Standing(bodies.add_box(body, &shape)),
             Motion::Pushed(pushed) => State::Pushed(bodies.add_pushed(body, &shape, pushed)),
             Motion::Path(_) => State::Path(bodies.add_driven(body, &shape), 0),
             Motion::Door(door) => {
-                State::Door(bodies.add_driven(body, &shape), Box::new(Door::new(door, index, seed)))
+                State::Door(bodies.add_driven(body, &shape), Box::new(Door::new(door, index, 0)))
             }
         };
-        Self { spec: spec.clone(), shape, state }
+        let routine = routine(spec, index, starts_s, 0);
+        Self { spec: spec.clone(), shape, state, routine }
     }
 
     /// The obstacle with an index at the start, with random streams of another seed. This one must be at the start.
-    pub(super) fn reseeded(&self, index: usize, seed: u64) -> Self {
-        let mut obstacle = self.clone();
+    pub(super) fn reseeded(&self, index: usize, starts_s: Option<f64>, seed: u64) -> Self {
+        let mut obstacle = Self { routine: routine(&self.spec, index, starts_s, seed), ..self.clone() };
         if let (State::Door(_, door), Motion::Door(spec)) = (&mut obstacle.state, &self.spec.motion) {
             **door = Door::new(spec, index, seed);
         }
@@ -60,7 +64,9 @@ impl Obstacle {
 
     /// The values that a snapshot holds.
     pub(super) fn values(&mut self) -> Values<'_> {
-        vec![pose(&mut self.shape.pose), value(&mut self.state)]
+        let mut values = vec![pose(&mut self.shape.pose), value(&mut self.state)];
+        values.extend(self.routine.iter_mut().flat_map(|routine| routine.values()));
+        values
     }
 
     /// Whether the obstacle is present.
@@ -96,7 +102,7 @@ impl Obstacle {
                 }
             }
             (State::Door(mover, door), Motion::Door(spec)) => {
-                let openness = door.next(spec, time_s, step_s);
+                let openness = door.next(spec, self.routine.as_deref_mut(), time_s, step_s);
                 let is_free = go(&mut self.shape, mover, spec.shape(&self.spec.shape, openness));
                 door.end_step(openness, is_free, step_s);
             }
@@ -111,13 +117,43 @@ impl Obstacle {
         }
     }
 
+    /// The time until which nothing happens to the obstacle while all other bodies rest, s, from `time_s` on; `None` if it
+    /// moves now.
+    pub(super) fn rests_until_s(&mut self, time_s: f64) -> Option<f64> {
+        let still_to_come =
+            |due_s: Option<f64>| due_s.filter(|due_s| *due_s > time_s).unwrap_or(f64::INFINITY);
+        match (&mut self.state, &self.spec.motion) {
+            (State::Door(_, door), Motion::Door(spec)) => {
+                door.rests_until_s(spec, self.routine.as_deref_mut(), time_s)
+            }
+            (State::Path(..), _) => None,
+            (State::Due | State::Standing(_), Motion::Scheduled(_)) => {
+                self.routine.as_ref().map(|routine| routine.next_s())
+            }
+            (State::Due, _) => {
+                Some(still_to_come(self.spec.appears_s).min(still_to_come(self.spec.disappears_s)))
+            }
+            (State::Standing(_), _) => Some(still_to_come(self.spec.disappears_s)),
+            _ => Some(f64::INFINITY),
+        }
+    }
+
     /// Whether it is time to appear or to disappear.
-    pub(super) fn is_due(&self, time_s: f64) -> bool {
+    pub(super) fn is_due(&mut self, time_s: f64) -> bool {
+        if let Some(is_wanted) = self.is_wanted(time_s) {
+            return is_wanted != self.is_standing();
+        }
         match self.state {
             State::Due => is_past(time_s, self.spec.appears_s),
             State::Standing(_) => is_past(time_s, self.spec.disappears_s),
             _ => false,
         }
+    }
+
+    /// Whether an obstacle that comes and goes by a schedule is to be present at a time, s; `None` for others.
+    fn is_wanted(&mut self, time_s: f64) -> Option<bool> {
+        let routine = self.routine.as_mut().filter(|_| matches!(self.spec.motion, Motion::Scheduled(_)))?;
+        Some(routine.is_blocked(time_s + SLACK_S))
     }
 
     /// Makes the obstacle appear or disappear, if it is time: `Some(true)` or `Some(false)`. If a body is in the
@@ -131,17 +167,23 @@ impl Obstacle {
         blockers: &Blockers,
     ) -> Option<bool> {
         let is_past = |due_s| is_past(time_s, due_s);
+        let is_wanted = self.is_wanted(time_s);
         match self.state {
             State::Due if is_past(self.spec.disappears_s) => {
                 self.state = State::Gone;
                 None
             }
-            State::Due if is_past(self.spec.appears_s) => {
+            State::Due if is_wanted.unwrap_or_else(|| is_past(self.spec.appears_s)) => {
                 if !blockers.has_room(&self.shape) {
                     return None;
                 }
                 self.state = State::Standing(bodies.add_box(Body::Obstacle(index), &self.shape));
                 Some(true)
+            }
+            State::Standing(handle) if is_wanted == Some(false) => {
+                bodies.remove_box(handle);
+                self.state = State::Due;
+                Some(false)
             }
             State::Standing(handle) if is_past(self.spec.disappears_s) => {
                 bodies.remove_box(handle);
@@ -153,9 +195,18 @@ impl Obstacle {
     }
 }
 
-/// Whether `time_s` is not before `due_s`, with half a microsecond of slack: times are sums of steps.
+/// Times are sums of steps: a time within this of an event counts as the time of the event, s.
+const SLACK_S: f64 = 5e-7;
+
+/// Whether `time_s` is not before `due_s`.
 fn is_past(time_s: f64, due_s: Option<f64>) -> bool {
-    due_s.is_some_and(|due_s| time_s >= due_s - 5e-7)
+    due_s.is_some_and(|due_s| time_s >= due_s - SLACK_S)
+}
+
+/// What an obstacle does by its schedule, if it has one.
+fn routine(spec: &ObstacleSpec, index: usize, starts_s: Option<f64>, seed: u64) -> Option<Box<Routine>> {
+    let schedule = spec.schedule()?;
+    Some(Box::new(Routine::new(schedule, starts_s.unwrap_or_default(), index, seed)))
 }
 
 /// An obstacle may move to a pose if every other moving body is at least this far away, m: far enough that the

@@ -13,7 +13,7 @@ use super::form::Form;
 use super::report::Body;
 use super::sensors::{Look, Platform, Sensor, SharedBeams, Surroundings};
 use super::snapshot::pose;
-use super::spec::RobotSpec;
+use super::spec::{BehaviorSpec, RobotSpec};
 use interfaces::{LaserReading, Purpose, RandomStream, Twist, Values, values};
 use nalgebra::{Isometry2, Point2, Vector2};
 use odometry::{Displacements, Odometry, Wheels};
@@ -122,6 +122,15 @@ impl SimulatedRobot {
     /// Whether the robot obeys commands.
     pub(super) fn is_driven(&self) -> bool {
         self.behavior.is_none()
+    }
+
+    /// The time until which the robot rests if no other body moves, s; `None` if it moves, or decides by itself.
+    pub(super) fn rests_until_s(&self) -> Option<f64> {
+        let is_still = !self.has_moved()
+            && [self.velocity, self.driven, self.wheels.slipping].iter().all(|own| *own == Velocity::STOP);
+        let obeys = matches!(self.spec.behavior, BehaviorSpec::Driven | BehaviorSpec::Standing);
+        let displaced = self.jumps.iter().chain(&self.carried).map(Displacements::next_s);
+        (is_still && obeys && self.command == Command::STOP).then(|| displaced.fold(f64::INFINITY, f64::min))
     }
 
     /// Whether the main laser scanner measures at a step. The robot then decides.

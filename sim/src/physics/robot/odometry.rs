@@ -166,6 +166,11 @@ impl Displacements {
         values![self.random, self.next_s]
     }
 
+    /// The time of the next displacement, s.
+    pub(crate) fn next_s(&self) -> f64 {
+        self.next_s
+    }
+
     /// Whether a displacement is due at a time (s). The next one is then a random time later.
     pub(crate) fn is_due(&mut self, time_s: f64) -> bool {
         let is_due = time_s >= self.next_s;

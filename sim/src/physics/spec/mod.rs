@@ -12,7 +12,7 @@ mod senses;
 pub use behavior::{BehaviorSpec, CircleSpec, PatrolSpec, Repeat, WanderSpec, WaypointsSpec};
 pub use obstacle::{DoorSpec, Leaf, Motion, ObstacleSpec, Opening, PathSpec, PushedSpec};
 pub use odometry::{DisplacementSpec, OdometryError};
-pub use robot::{DriveKind, DriveLimits, LaserSpec, RobotSpec};
+pub use robot::{DriveKind, DriveLimits, LaserSpec, PatrolDaySpec, RobotSpec};
 pub use senses::{BumperSpec, FiducialSpec, SonarSpec};
 
 use super::shape::{Rectangle, TOUCH_M, Transform, grid_corners};
@@ -40,6 +40,9 @@ pub struct FleetSpec {
     pub obstacles: Vec<ObstacleSpec>,
     /// The robots. At the start no robot overlaps another robot, a wall or an obstacle.
     pub robots: Vec<RobotSpec>,
+    /// The time of the week at the start, s since Monday 0:00 in local civil time; `None` if the world has no calendar.
+    /// Things with a schedule need one. Where nothing moves, time in a world with a calendar passes in large steps.
+    pub starts_s: Option<f64>,
 }
 
 /// A wall that returns a beam of a laser only if the beam comes nearly along the normal of its surface: glass, or
@@ -85,6 +88,9 @@ impl FleetSpec {
         for robot in &mut self.robots {
             robot.pose = by.pose(&robot.pose);
             robot.behavior.transform(by);
+            if let Some(dock) = robot.patrol.as_mut().and_then(|patrol| patrol.dock.as_mut()) {
+                *dock = by.point(dock);
+            }
         }
     }
 
@@ -155,6 +161,14 @@ impl WorldSpec {
         }
         fleet.robots.get_mut(driven)?.behavior = BehaviorSpec::Driven;
         Some(Self { fleet, driven })
+    }
+
+    /// The same world, whose driven robot has this day; a world without a calendar starts on Monday, 0:00.
+    #[must_use]
+    pub fn with_patrol(mut self, patrol: PatrolDaySpec) -> Self {
+        self.fleet.robots[self.driven].patrol = Some(patrol);
+        self.fleet.starts_s.get_or_insert(0.0);
+        self
     }
 
     /// The same world in another frame, in which the driven robot starts at the origin with the heading `heading_rad`;

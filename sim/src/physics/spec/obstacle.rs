@@ -1,6 +1,7 @@
 //! Obstacles: boxes, moving blocks and doors.
 
 use crate::physics::shape::{Rectangle, Transform};
+use calendar::Schedule;
 use nalgebra::{Point2, Vector2};
 
 /// A box, a moving block or a door.
@@ -31,11 +32,28 @@ impl ObstacleSpec {
         self.appears_s.is_some() || self.disappears_s.is_some() || self.motion != Motion::Fixed
     }
 
+    /// When the obstacle comes and goes, or opens and closes, if it does so by a schedule.
+    pub fn schedule(&self) -> Option<&Schedule> {
+        match &self.motion {
+            Motion::Scheduled(schedule)
+            | Motion::Door(DoorSpec { opening: Opening::Scheduled(schedule), .. }) => Some(schedule),
+            _ => None,
+        }
+    }
+
+    /// Whether the obstacle is present at the start.
+    pub fn starts_present(&self) -> bool {
+        match &self.motion {
+            Motion::Scheduled(schedule) => schedule.starts_blocked,
+            _ => self.appears_s.is_none(),
+        }
+    }
+
     /// The shape at the start; for a door, open or closed.
     pub fn start(&self) -> Rectangle {
         match &self.motion {
             Motion::Door(door) => door.shape(&self.shape, f64::from(u8::from(door.starts_open))),
-            Motion::Fixed | Motion::Pushed(_) | Motion::Path(_) => self.shape,
+            Motion::Fixed | Motion::Pushed(_) | Motion::Path(_) | Motion::Scheduled(_) => self.shape,
         }
     }
 
@@ -43,7 +61,7 @@ impl ObstacleSpec {
     pub fn opened(&self) -> Rectangle {
         match &self.motion {
             Motion::Door(door) => door.shape(&self.shape, 1.0),
-            Motion::Fixed | Motion::Pushed(_) | Motion::Path(_) => self.shape,
+            Motion::Fixed | Motion::Pushed(_) | Motion::Path(_) | Motion::Scheduled(_) => self.shape,
         }
     }
 
@@ -51,7 +69,7 @@ impl ObstacleSpec {
     pub(super) fn transform(&mut self, by: &Transform) {
         self.shape = self.shape.transformed(by);
         match &mut self.motion {
-            Motion::Fixed | Motion::Pushed(_) => {}
+            Motion::Fixed | Motion::Pushed(_) | Motion::Scheduled(_) => {}
             Motion::Path(path) => {
                 path.keys.iter_mut().for_each(|(_, at)| *at = by.point(at));
             }
@@ -74,6 +92,9 @@ pub enum Motion {
     Path(PathSpec),
     /// The obstacle is a door: it opens and closes.
     Door(DoorSpec),
+    /// The obstacle does not move, but comes and goes by a schedule: a parked robot, a box, a person in a place. It comes as
+    /// soon as nothing is in its place.
+    Scheduled(Box<Schedule>),
 }
 
 /// Settings of a box that can be pushed.
@@ -176,4 +197,6 @@ pub enum Opening {
         /// The times of the changes, in ascending order, s.
         switches_s: Vec<f64>,
     },
+    /// The door opens (free) and closes (blocked) by a schedule.
+    Scheduled(Box<Schedule>),
 }

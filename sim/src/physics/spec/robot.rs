@@ -2,6 +2,7 @@
 
 use super::{BehaviorSpec, BumperSpec, FiducialSpec, OdometryError, SonarSpec};
 use crate::physics::form::Form;
+use calendar::Hours;
 use interfaces::Scan;
 use nalgebra::{Isometry2, Point2};
 use std::f64::consts::{PI, TAU};
@@ -38,6 +39,31 @@ pub struct RobotSpec {
     pub tag: Option<u32>,
     /// The behavior of the robot.
     pub behavior: BehaviorSpec,
+    /// The day of a driven robot: its dock, its battery and the orders of others; `None` if it is always free to drive.
+    pub patrol: Option<PatrolDaySpec>,
+}
+
+/// The day of a robot that patrols, charges at its dock, and has orders by others.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PatrolDaySpec {
+    /// The position of the dock, m; `None`: where the robot starts.
+    pub dock: Option<Point2<f64>>,
+    /// How long the robot can be on patrol with a full battery, s.
+    pub battery_s: f64,
+    /// The share of the time that it can be on patrol: it charges for the rest. From 1 on it need not charge.
+    pub share: f64,
+    /// The hours in which it has other orders, and stays at its dock.
+    pub busy: Hours,
+}
+
+impl PatrolDaySpec {
+    /// The longest patrol on a full battery unless another one is given, s: half an hour.
+    pub const BATTERY_S: f64 = 1800.0;
+
+    /// A robot that is on patrol for a share of the time, with a dock where it starts.
+    pub fn of_share(share: f64) -> Self {
+        Self { dock: None, battery_s: Self::BATTERY_S, share, busy: Hours::never() }
+    }
 }
 
 impl RobotSpec {
@@ -77,6 +103,7 @@ impl RobotSpec {
             fiducial: None,
             tag: None,
             behavior,
+            patrol: None,
         }
     }
 

@@ -46,6 +46,7 @@ fn house(robots: Vec<RobotSpec>, obstacles: Vec<ObstacleSpec>) -> FleetSpec {
         glass: Vec::new(),
         obstacles,
         robots,
+        starts_s: None,
     }
 }
 

@@ -1,6 +1,6 @@
 //! The description of a grid world.
 
-use super::{Content, GRID_WORLD};
+use super::{Content, GRID_WORLD, calendar};
 use sim::grid::{BlockSpec, Course, GridSpec};
 
 pub(super) fn content(world: &GridSpec) -> Content {
@@ -21,6 +21,10 @@ pub(super) fn content(world: &GridSpec) -> Content {
         let both = [moves("a block", world.block_probability), moves("the robot", world.robot_probability)];
         lines.push(("chance", both.join(", ")));
     }
+    lines.extend(world.calendar.map(|steps| {
+        let starts = calendar::of_world(steps.starts_s);
+        ("calendar", format!("{starts}, steps of {} s", steps.step_s))
+    }));
     lines.extend(world.blocks.iter().map(|block| ("block", describe(block))));
     Content {
         kind: GRID_WORLD,
@@ -33,6 +37,14 @@ pub(super) fn content(world: &GridSpec) -> Content {
 
 /// The name, the path and the dwell time of a block.
 fn describe(block: &BlockSpec) -> String {
+    if let Some(schedule) = &block.schedule {
+        let (first, last) = (block.path[0], block.path[block.path.len() - 1]);
+        let when = calendar::of_thing(schedule);
+        return format!(
+            "`{}` is at [{}, {}], else at [{}, {}], {when}",
+            block.name, first.x, first.y, last.x, last.y
+        );
+    }
     let course = match block.course {
         Course::Loop => "in a loop",
         Course::BackAndForth => "back and forth",

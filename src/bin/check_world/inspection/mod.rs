@@ -1,5 +1,6 @@
 //! The content of a world file of any format, as text and as a scene.
 
+mod calendar;
 mod grid;
 mod physics;
 mod runs;
@@ -97,7 +98,7 @@ fn invalid(error: String) -> Inspection {
 /// A TOML world file: a grid world if `map` is a drawing.
 fn world_file(name: &str, text: &str, files: &dyn Files) -> Inspection {
     let outcome = if worldfile::grid::is_grid_world(text) {
-        worldfile::grid::parse(name, text).map(|world| {
+        worldfile::grid::parse_with(name, text, files).map(|world| {
             (
                 grid::content(&world),
                 world.warnings().iter().map(|warning| format!("warning: {warning}")).collect(),

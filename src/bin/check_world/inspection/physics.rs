@@ -1,6 +1,6 @@
 //! The description of physics worlds and floor plans.
 
-use super::{Content, FLOOR_PLAN};
+use super::{Content, FLOOR_PLAN, calendar};
 use interfaces::{GridFrame, printable};
 use nalgebra::Point2;
 use sim::physics::{
@@ -34,6 +34,7 @@ pub(super) fn content(kind: &'static str, world: &FleetSpec) -> Content {
         ("time", format!("physics steps of {} s", world.step_s)),
         ("walls", format!("{}", world.walls.len())),
     ];
+    lines.extend(world.starts_s.map(|starts_s| ("calendar", calendar::of_world(starts_s))));
     lines.extend(world.obstacles.iter().map(|obstacle| ("thing", thing_line(obstacle))));
     lines.extend(robot_lines(&world.robots));
     Content {
@@ -82,6 +83,7 @@ fn thing_line(obstacle: &ObstacleSpec) -> String {
     let size = obstacle.shape.half_m * 2.0;
     let what = match &obstacle.motion {
         Motion::Fixed => "a fixed box".to_owned(),
+        Motion::Scheduled(schedule) => format!("a box that is there {}", calendar::of_thing(schedule)),
         Motion::Pushed(pushed) => format!("a box of {} kg that can be pushed", short(pushed.mass_kg)),
         Motion::Path(path) => {
             let (last_s, _) = path.keys.last().copied().unwrap_or_default();
@@ -97,6 +99,7 @@ fn thing_line(obstacle: &ObstacleSpec) -> String {
                 Opening::Random { closed_s, open_s } => {
                     format!("at random closed {} s, open {} s in the mean", short(*closed_s), short(*open_s))
                 }
+                Opening::Scheduled(schedule) => format!("closed {}", calendar::of_thing(schedule)),
                 Opening::Scripted { switches_s } => format!("moved {} times, as written", switches_s.len()),
             };
             format!("a {leaf} door, {opening}")
@@ -173,6 +176,7 @@ fn robot_line(robot: &RobotSpec) -> String {
         others.into_iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{what} × {count}")),
     );
     parts.extend(robot.tag.map(|tag| format!("tag {tag}")));
+    parts.extend(robot.patrol.as_ref().map(calendar::of_robot));
     parts.join("; ")
 }
 

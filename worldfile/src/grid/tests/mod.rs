@@ -2,7 +2,7 @@ mod messages;
 
 use super::*;
 use interfaces::Cell;
-use sim::grid::Course;
+use sim::grid::{Course, GridCalendar};
 
 /// A small world in which every line can be made wrong.
 const GOOD: &str = r#"name = "yard"
@@ -159,4 +159,15 @@ fn run(spec: &GridSpec) {
         interfaces::World::act(&mut world, &step);
         interfaces::World::sense(&mut world);
     }
+}
+
+#[test]
+fn a_block_with_a_schedule_is_read_and_written() {
+    let of_steps = "dwell = 7\nstood = 2\ncourse = \"back-and-forth\"\n";
+    let schedule = "[6, 4]]\n[block.schedule]\nhours = [\"Mon-Fri 8:00-18:00\"]\nfree_s = 100.0\nblocked_s = [50.0, 900.0, 0.25]\n";
+    let text = GOOD.replacen(of_steps, "", 1).replacen("[6, 4]]\n", schedule, 1);
+    let spec = crate::grid::parse("yard.toml", &format!("starts = \"Tue 6:30\"\n{text}")).unwrap();
+    assert_eq!(spec.calendar, Some(GridCalendar { starts_s: 30.5 * 3600.0, step_s: 10.0 }));
+    assert!(spec.blocks[0].schedule.is_some() && spec.blocks[1].schedule.is_none());
+    assert_eq!(crate::grid::parse("again.toml", &to_toml(&spec)).unwrap(), spec);
 }

@@ -23,8 +23,11 @@ impl Obstacle<'_> {
         let open_deg = table.number_or("open_deg", 90.0, -180.0..=180.0);
         let slide_m = table.number_if("slide_m", -10.0..=10.0);
         let move_s = table.number_or("move_s", 1.0, 0.05..=3600.0);
-        let starts_open = table.flag("starts_open");
         let opening = self.opening();
+        let starts_open = match &opening {
+            Some(Opening::Scheduled(schedule)) => !schedule.starts_blocked,
+            _ => table.flag("starts_open"),
+        };
         let (from, to, thickness_m) = (from?, to?, thickness_m?);
         let length_m = (to - from).norm();
         if !(0.1..=10.0).contains(&length_m) {
@@ -56,8 +59,13 @@ impl Obstacle<'_> {
 
     fn opening(&self) -> Option<Opening> {
         let table = self.table;
+        if let Some(schedule) =
+            self.schedule(&["opening", "closed_s", "open_s", "switches_s", "starts_open"])?
+        {
+            return Some(Opening::Scheduled(Box::new(schedule)));
+        }
         let Some(kind) = table.get("opening") else {
-            let help = "it needs an `opening`: \"periodic\", \"random\" or \"scripted\"";
+            let help = "it needs an `opening`, \"periodic\", \"random\" or \"scripted\", or a `schedule`";
             return self.incomplete("door", help);
         };
         let opening = kind.choice(&OPENINGS)?;

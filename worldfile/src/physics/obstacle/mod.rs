@@ -3,33 +3,36 @@
 mod block;
 mod door;
 
+use crate::files::Files;
 use crate::physics::kind::{KindOf, has_only_own_keys, kind_of};
 use crate::physics::space::{MAX_TIME_S, Space, inside, upright};
 use crate::reader::{Table, Value, valid};
+use crate::schedule::schedule;
+use calendar::Schedule;
 use sim::physics::{Motion, ObstacleSpec, PushedSpec, Rectangle};
 
 pub(super) const KEYS: &str = "name, tag, kind, min_m, max_m, center_m, size_m, heading_deg, appears_s, \
                                disappears_s, mass_kg, friction, path_m, dwell_s, speed_mps, times_s, repeat, \
                                from_m, to_m, thickness_m, open_deg, slide_m, opening, closed_s, open_s, \
-                               switches_s, move_s, starts_open";
+                               switches_s, move_s, starts_open, schedule";
 
 /// The kinds of obstacles; all have a name, a tag and a kind as well.
 const KINDS: [KindOf; 5] = [
     (
         "fixed",
-        "min_m, max_m, center_m, size_m, heading_deg, appears_s, disappears_s",
+        "min_m, max_m, center_m, size_m, heading_deg, appears_s, disappears_s, schedule",
         "stands, and may come and go",
     ),
     ("box", "min_m, max_m, center_m, size_m, heading_deg, mass_kg, friction", "can be pushed"),
     ("block", "size_m, heading_deg, path_m, dwell_s, speed_mps, times_s, repeat", "moves along a path"),
     (
         "hinged_door",
-        "from_m, to_m, thickness_m, open_deg, opening, closed_s, open_s, switches_s, move_s, starts_open",
+        "from_m, to_m, thickness_m, open_deg, opening, closed_s, open_s, switches_s, move_s, starts_open, schedule",
         "turns about `from_m`",
     ),
     (
         "sliding_door",
-        "from_m, to_m, thickness_m, slide_m, opening, closed_s, open_s, switches_s, move_s, starts_open",
+        "from_m, to_m, thickness_m, slide_m, opening, closed_s, open_s, switches_s, move_s, starts_open, schedule",
         "slides from `to_m` towards `from_m`",
     ),
 ];
@@ -40,15 +43,17 @@ struct Obstacle<'a> {
     kind: &'static str,
     name: &'a str,
     space: &'a Space,
+    /// The files beside the file.
+    files: &'a dyn Files,
 }
 
-pub(super) fn obstacle(table: &Table<'_>, space: &Space) -> Option<ObstacleSpec> {
+pub(super) fn obstacle(table: &Table<'_>, space: &Space, files: &dyn Files) -> Option<ObstacleSpec> {
     let (name, tag) = (table.name(), table.tag());
     let word = table.get("kind").map_or(Some("fixed"), |kind| kind.text())?;
     let kind = kind_of(table, word, &KINDS, "kind of obstacle")?;
     has_only_own_keys(table, kind, "name, tag, kind", "an obstacle")?;
     let (kind, called) = (&kind.0, name.as_deref().unwrap_or_default());
-    let obstacle = Obstacle { table, kind, name: called, space };
+    let obstacle = Obstacle { table, kind, name: called, space, files };
     let spec = match *kind {
         "block" => obstacle.block(),
         "hinged_door" | "sliding_door" => obstacle.door(*kind == "hinged_door"),
@@ -82,8 +87,26 @@ impl Obstacle<'_> {
 
     fn fixed(self) -> Option<ObstacleSpec> {
         let (shape, times_s) = (self.shape(), self.stay_s());
+        let schedule = self.schedule(&["appears_s", "disappears_s"])?;
         let [appears_s, disappears_s] = times_s?;
+        if let Some(schedule) = schedule {
+            return Some(ObstacleSpec::new(self.name, shape?, Motion::Scheduled(Box::new(schedule))));
+        }
         Some(ObstacleSpec { appears_s, disappears_s, ..ObstacleSpec::new(self.name, shape?, Motion::Fixed) })
+    }
+
+    /// The schedule of the obstacle, `Some(None)` if it has none. `others` are the keys that a schedule replaces.
+    fn schedule(&self, others: &[&'static str]) -> Option<Option<Schedule>> {
+        let table = self.table;
+        let schedule = schedule(table, self.name, self.files)?;
+        if schedule.is_some()
+            && let Some(other) = others.iter().find(|key| table.has(key))
+        {
+            let what = format!("the obstacle `{}` has both a schedule and `{other}`", self.name);
+            let marks = [(table.at("schedule"), "this schedule")];
+            return table.error(&what, (table.at(other), "and this"), &marks, "leave one of them out");
+        }
+        Some(schedule)
     }
 
     /// When the obstacle appears and disappears, s.

@@ -113,7 +113,10 @@ fn every_place_where_a_robot_fits_can_be_reached() {
 /// The reader of world files checks that robots, rounds, furniture and walls do not overlap.
 #[test]
 fn a_file_has_the_same_building() {
-    for house in buildings() {
+    let kinds = calendar::Kind::ALL.into_iter();
+    let calendars =
+        kinds.flat_map(|(_, kind)| (0..20).map(move |seed| WorldSpec::generate_calendar(kind, seed)));
+    for house in buildings().chain(calendars) {
         let text = worldfile::physics::to_toml(house.fleet()).unwrap();
         let read =
             worldfile::physics::parse_world("house.toml", &text).unwrap_or_else(|error| panic!("{error}"));

@@ -54,6 +54,7 @@ const GOOD: &[(&str, &str, &str)] = &[
         "name = \"o\"\nkind = \"hinged_door\"\nfrom_m = [3.0, 2.0]\nto_m = [3.8, 2.0]\nthickness_m = 0.05\n\
          opening = \"random\"\nclosed_s = 1.0\nopen_s = 1.0",
     ),
+    ("`obstacle.schedule`", "obstacle.schedule", "free_s = 100.0\nblocked_s = 200.0"),
     ("`robot`", "robot", "name = \"r\"\nradius_m = 0.3\npose_m = [1.0, 2.0]"),
     (
         "`robot.drive`",
@@ -61,6 +62,7 @@ const GOOD: &[(&str, &str, &str)] = &[
         "max_linear_mps = 0.5\nmax_angular_degps = 90.0\nmax_linear_acceleration_mps2 = 1.0\n\
          max_angular_acceleration_degps2 = 360.0",
     ),
+    ("`robot.patrol`", "robot.patrol", ""),
     ("`robot.odometry`", "robot.odometry", ""),
     (
         "`robot.odometry.jump` and `robot.odometry.carried`",
@@ -84,6 +86,7 @@ fn fit(heading: &str, key: &str, good: &str) -> String {
         (_, "max_left_mps" | "max_left_acceleration_mps2") => format!("kind = \"omni\"\n{good}"),
         (_, "wheelbase_m" | "max_steer_deg") => format!("kind = \"car\"\nwheelbase_m = 1.0\n{good}"),
         (_, "slide_m") => good.replace("hinged", "sliding"),
+        ("`obstacle.schedule`", "one_means") => "events = \"events.csv\"".to_owned(),
         (_, "switches_s") => good.replace("random", "scripted").replace("closed_s = 1.0\nopen_s = 1.0", ""),
         (_, "times_s") => good.replace("speed_mps = 1.0", ""),
         _ => good.to_owned(),
@@ -100,12 +103,15 @@ fn world(heading: &str, changed: &str) -> String {
             *table,
             "floor_plan"
                 | "obstacle"
+                | "obstacle.schedule"
+                | "robot.patrol"
                 | "robot.odometry.jump"
                 | "robot.bumper"
                 | "robot.sonar"
                 | "robot.fiducial"
         );
-        if (is_optional || table_of(heading) == *table) && *known != heading {
+        let holds_it = *known == "`obstacle`" && heading == "`obstacle.schedule`";
+        if (is_optional || table_of(heading) == *table) && *known != heading && !holds_it {
             continue;
         }
         let keys = if *known == heading { changed } else { good };
@@ -122,7 +128,8 @@ fn world(heading: &str, changed: &str) -> String {
 
 fn parse(text: &str) -> Result<String, String> {
     let dot = (PathBuf::from("dot.pgm"), b"P2 1 1 255 0".to_vec());
-    let spec = worldfile::physics::parse_fleet_with("w.toml", text, &BTreeMap::from([dot]));
+    let events = (PathBuf::from("events.csv"), b"time_s,state\n0,1\n5,0\n".to_vec());
+    let spec = worldfile::physics::parse_fleet_with("w.toml", text, &BTreeMap::from([dot, events]));
     spec.map(|spec| format!("{spec:?}")).map_err(|error| error.to_string())
 }
 
@@ -183,6 +190,8 @@ fn the_defaults_are_those_that_are_taken() {
                 "never",
                 "none",
                 "stands from the start",
+                "its start",
+                "those of active hours",
                 "1 kg per m² of its circle",
             ];
             assert!(known.contains(&row.default), "{:?}: {}", row.keys, row.default);

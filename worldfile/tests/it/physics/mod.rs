@@ -1,6 +1,7 @@
 //! Tests of the physics world as a whole.
 
 mod behaviors;
+mod calendar;
 mod contacts;
 mod contract;
 mod docs;

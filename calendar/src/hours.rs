@@ -20,9 +20,14 @@ impl Hours {
         Self { active: vec![true; SLOTS] }
     }
 
+    /// Never active.
+    pub fn never() -> Self {
+        Self { active: vec![false; SLOTS] }
+    }
+
     /// Active on these days (0 is Monday) from `begin_h` to `end_h` (hours of the day, rounded to half hours).
     pub fn daily(days: &[usize], begin_h: f64, end_h: f64) -> Self {
-        let mut hours = Self { active: vec![false; SLOTS] };
+        let mut hours = Self::never();
         days.iter().for_each(|day| hours.set(*day, begin_h, end_h, true));
         hours
     }

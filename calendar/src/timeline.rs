@@ -1,5 +1,5 @@
-use super::{Habit, PHASES};
-use interfaces::RandomStream;
+use crate::{Habit, PHASES};
+use interfaces::{RandomStream, Values, converted, value};
 
 /// What a thing really does, from event to event. It is the same however large the steps are in which time passes.
 #[derive(Clone, Debug)]
@@ -39,6 +39,19 @@ impl Timeline {
         let source = Source::Recorded(changes.iter().rev().copied().collect());
         let next_s = source.recorded_s();
         Self { source, is_blocked: false, next_s }
+    }
+
+    /// The values that change, for a snapshot: they are read into a timeline of the same thing.
+    pub fn values(&mut self) -> Values<'_> {
+        let mut values = vec![value(&mut self.is_blocked), value(&mut self.next_s)];
+        match &mut self.source {
+            Source::Habit { phase, rng, .. } => values.extend([value(phase), value(rng.as_mut())]),
+            Source::Recorded(changes) => values.push(converted(changes, Vec::len, |changes, left| {
+                changes.truncate(left);
+                Ok(())
+            })),
+        }
+        values
     }
 
     /// The state.

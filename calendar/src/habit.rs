@@ -1,5 +1,5 @@
-use super::hours::Hours;
-use super::matrix::{Matrix, PHASES, exponential};
+use crate::hours::Hours;
+use crate::matrix::{Matrix, PHASES, exponential};
 
 /// A law over the phases: free for a short stay, free for a long one, blocked for a short stay, blocked for a long one.
 /// The phase is not visible, only the state is.
@@ -95,7 +95,7 @@ impl Habit {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::calendar::advanced;
+    use crate::advanced;
 
     #[test]
     fn a_chain_is_the_closed_form() {

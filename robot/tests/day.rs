@@ -1,0 +1,91 @@
+//! A robot with a battery is back at its dock in time, wherever its goals are.
+
+use agent::{Features, Stay, Travel};
+use calendar::{DAY_S, Hours, WEEK_S};
+use interfaces::{CellReading, GridFrame};
+use mapper::{Mapper, MapperSettings};
+use nalgebra::{Isometry2, Point2};
+use robot::{DaySettings, DayTotals, Destination, GoalSelector, PatrolDay};
+
+const FULL_SPEED_MPS: f64 = 0.8;
+/// A robot that turns, waits and goes round others.
+const SPEED_MPS: f64 = 0.5;
+
+/// The corners of a place of 30 m × 20 m, one after the other.
+struct Corners(usize);
+
+impl GoalSelector for Corners {
+    fn next_goal(&mut self, _: &Isometry2<f64>, _: &Mapper, _: &mut impl Travel) -> Option<Destination> {
+        self.0 += 1;
+        let position = [[29.0, 1.0], [29.0, 19.0], [1.0, 19.0], [1.0, 1.0]][self.0 % 4].into();
+        Some(Destination { position, stay: Stay::Watch(0.0) })
+    }
+
+    fn reason(&self) -> String {
+        "a corner".to_owned()
+    }
+}
+
+/// Straight ways.
+struct Straight;
+
+impl Travel for Straight {
+    fn times(&mut self, mapper: &Mapper, pose: &Isometry2<f64>, times: &mut Vec<f64>) {
+        let frame = mapper.frame();
+        let way_m = |index| (frame.center(frame.cell(index)).coords - pose.translation.vector).norm();
+        *times = (0..frame.len()).map(|index| way_m(index) / FULL_SPEED_MPS).collect();
+    }
+}
+
+/// What a robot with a day does in a week, and the time out in its busy hours, s.
+fn week(share: f64, battery_s: f64, busy: &str) -> (DayTotals, f64) {
+    let mut hours = Hours::never();
+    hours.add(busy).unwrap();
+    let dock = Point2::new(2.0, 10.0);
+    let settings = DaySettings { dock, battery_s, share, busy: hours.clone(), starts_s: 0.0 };
+    let mut day = PatrolDay::new(Corners(0), settings);
+    let frame = GridFrame::new(Point2::origin(), 1.0, 30, 20).unwrap();
+    let mut mapper = Mapper::new(&MapperSettings::default(), frame).unwrap();
+    let (mut time_s, mut at, mut goal, mut busy_s) = (0.0, dock, dock, 0.0);
+    while time_s < WEEK_S {
+        let pose = Isometry2::translation(at.x, at.y);
+        mapper.update(&CellReading { time: time_s, pose, cells: Vec::new() }).unwrap();
+        let features = Features::of(&mut mapper);
+        day.observe(features, &mapper);
+        if let Some(until_s) = day.rests_until_s(&pose, &mapper) {
+            assert!(until_s > time_s && until_s <= time_s + DAY_S);
+            assert!((at - dock).norm() <= 0.5, "it rests at {at}");
+            time_s = until_s;
+            continue;
+        }
+        busy_s += f64::from(u8::from(hours.is_active(time_s)));
+        if (goal - at).norm() < SPEED_MPS || day.is_obsolete(&mapper) {
+            goal = day.next_goal(&pose, &mapper, &mut Straight).unwrap().position;
+        }
+        at += (goal - at).cap_magnitude(SPEED_MPS);
+        time_s += 1.0;
+    }
+    (day.day().unwrap(), busy_s)
+}
+
+#[test]
+fn a_robot_is_back_in_time() {
+    for (share, battery_s) in [(0.05, 300.0), (0.05, 1800.0), (0.01, 600.0), (0.5, 240.0)] {
+        let (totals, _) = week(share, battery_s, "Mon 0:00-0:30");
+        assert_eq!(totals.flat, 0, "{share}, {battery_s} s: {totals:?}");
+        let on_patrol = totals.patrol_share().unwrap();
+        assert!(
+            (0.5 * share..1.01 * share + 0.003).contains(&on_patrol),
+            "{share}, {battery_s} s: {totals:?}"
+        );
+    }
+}
+
+#[test]
+fn a_robot_rests_while_others_use_it() {
+    let (totals, busy_s) = week(1.0, 1800.0, "Mon-Fri 9:00-17:00");
+    // On each of the five days the way back, at most 30 m at this speed.
+    assert!(busy_s <= 5.0 * 62.0, "{busy_s} s");
+    let free = 1.0 - 5.0 * 8.0 / 168.0;
+    assert!((totals.patrol_share().unwrap() - free).abs() < 0.01, "{totals:?}");
+}

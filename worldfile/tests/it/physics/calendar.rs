@@ -1,0 +1,103 @@
+//! Worlds with a calendar: time passes in large steps, with the results of small ones.
+
+use interfaces::{GroundTruth, Twist, World};
+use proptest::prelude::*;
+use sim::physics::{PhysicsWorld, WorldSpec};
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+const HOUR_S: f64 = 3600.0;
+
+fn office() -> WorldSpec {
+    worldfile::shipped::load("office_week").unwrap()
+}
+
+/// Lets the robot drive for some steps, so that it is elsewhere and has a velocity.
+fn drive(world: &mut PhysicsWorld, seed: u64) {
+    let angular_radps = (seed % 7) as f64 / 3.0 - 1.0;
+    (0..40).for_each(|_| world.act(&Twist { linear_mps: 0.4, angular_radps }));
+}
+
+/// Lets time pass in steps of the laser, a scan at each.
+fn small_steps(world: &mut PhysicsWorld, until_s: f64) {
+    while world.time_s() < until_s - 1e-6 {
+        world.act(&Twist::STOP);
+    }
+}
+
+fn block_events(world: &PhysicsWorld) -> u64 {
+    (0..world.spec().frame.len()).map(|index| u64::from(world.truth().block_events(index))).sum()
+}
+
+/// The state after a step, so that the changes of both are those of this step.
+fn state(mut world: PhysicsWorld) -> Vec<u8> {
+    world.act(&Twist::STOP);
+    world.snapshot().into_bytes()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(12))]
+    #[test]
+    fn a_large_step_is_many_small_ones(
+        seed in any::<u64>(),
+        // Nights are long; in the hours of work, doors move.
+        start_h in prop_oneof![Just(0.0), 7.0_f64..18.0],
+        lengths_s in prop::collection::vec(0.1_f64..2500.0, 1..5),
+    ) {
+        let spec = office();
+        let mut large = PhysicsWorld::new(&spec, seed);
+        large.rest(start_h * HOUR_S);
+        drive(&mut large, seed);
+        let mut small = large.clone();
+        for length_s in lengths_s {
+            let until_s = large.time_s() + (length_s * 10.0).round() / 10.0;
+            large.rest(until_s);
+            small_steps(&mut small, until_s);
+            prop_assert_eq!(large.time_s(), small.time_s());
+            prop_assert_eq!(block_events(&large), block_events(&small));
+            // What the robot sees then.
+            prop_assert_eq!(large.clone().sense().scan, small.clone().sense().scan);
+        }
+        prop_assert!(state(large) == state(small));
+    }
+}
+
+#[test]
+fn a_week_goes_on_from_a_snapshot() {
+    let spec = office();
+    let mut world = PhysicsWorld::new(&spec, 3);
+    world.rest(33.0 * HOUR_S);
+    let bytes = world.snapshot().into_bytes();
+    let mut restored = PhysicsWorld::new(&spec, 3);
+    restored.restore(&bytes).unwrap();
+    for world in [&mut world, &mut restored] {
+        world.rest(90.0 * HOUR_S);
+    }
+    assert!(block_events(&world) > 1000);
+    assert!(state(world) == state(restored));
+}
+
+#[test]
+fn things_repeat_recorded_events() {
+    let text = include_str!("../../../../worlds/office_week.toml");
+    let (before, rest) = text.split_once("[obstacle.schedule]").unwrap();
+    let (_, after) = rest.split_once("# The door").unwrap();
+    let recorded = |more: &str| {
+        let text = format!("{before}[obstacle.schedule]\nevents = \"door.csv\"\n{more}\n# The door{after}");
+        let events = (PathBuf::from("door.csv"), b"time_s,state\n1000,0\n1060,1\n1180,0\n".to_vec());
+        worldfile::physics::parse_world_with("office.toml", &text, &BTreeMap::from([events])).unwrap()
+    };
+    for (more, expected) in [("", [false, true, false]), ("one_means = \"free\"\n", [true, false, true])] {
+        let mut world = PhysicsWorld::new(&recorded(more), 0);
+        let is_closed = |world: &PhysicsWorld| {
+            let middle = nalgebra::Point2::new(1.95, 3.15);
+            let frame = world.spec().frame;
+            world.truth().state(frame.index(frame.cell_at(&middle)).unwrap()) != interfaces::TrueState::Free
+        };
+        let states = [59.0, 70.0, 190.0].map(|time_s| {
+            world.rest(time_s);
+            is_closed(&world)
+        });
+        assert_eq!(states, expected, "{more}");
+    }
+}
