@@ -138,7 +138,8 @@ fn to_truth(poses: &[Isometry2<f64>], truth: &[Isometry2<f64>]) -> Isometry2<f64
 /// Median, 95 % and maximum of the distances from the truth after a rigid alignment, m.
 fn errors_m(to_truth: &Isometry2<f64>, poses: &[Isometry2<f64>], truth: &[Isometry2<f64>]) -> [f64; 3] {
     let at = |pose: &Isometry2<f64>| Point2::from(pose.translation.vector);
-    let error = |(found, truth): (&Isometry2<f64>, &Isometry2<f64>)| (to_truth * at(found) - at(truth)).norm();
+    let error =
+        |(found, truth): (&Isometry2<f64>, &Isometry2<f64>)| (to_truth * at(found) - at(truth)).norm();
     let mut errors: Vec<f64> = poses.iter().zip(truth).map(error).collect();
     errors.sort_by(f64::total_cmp);
     [0.5, 0.95, 1.0].map(|share| errors[(share * (errors.len() - 1) as f64) as usize])

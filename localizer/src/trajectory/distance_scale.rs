@@ -5,7 +5,9 @@
 //! corridor is too long by the same share.
 
 use super::graph::PoseGraph;
-use crate::constants::{MAX_SCALE, MIN_SCALE, MIN_SCALE_STDS, SCALE_NOISE_M, SCALED_M, SCALED_MOTIONS, SCALED_STD_M};
+use crate::constants::{
+    MAX_SCALE, MIN_SCALE, MIN_SCALE_STDS, SCALE_NOISE_M, SCALED_M, SCALED_MOTIONS, SCALED_STD_M,
+};
 use nalgebra::{Isometry2, Matrix3, Vector2};
 
 /// A motion between two keyframes in a row, as the odometry measured it.

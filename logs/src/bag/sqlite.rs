@@ -174,7 +174,8 @@ fn topics(
 fn whole_size(bytes: &Bytes) -> io::Result<Option<u64>> {
     let mut header = Vec::new();
     bytes.open()?.take(100).read_to_end(&mut header)?;
-    let number = |at: usize| header.get(at..at + 4).and_then(|bytes| bytes.try_into().ok()).map(u32::from_be_bytes);
+    let number =
+        |at: usize| header.get(at..at + 4).and_then(|bytes| bytes.try_into().ok()).map(u32::from_be_bytes);
     // The number of pages is valid if it was written by the last change (SQLite, Database File Format, section 1.3.7).
     let [Some(changes), Some(pages), Some(valid_for)] = [24, 28, 92].map(number) else { return Ok(None) };
     let page_bytes = match u16::from_be_bytes([header[16], header[17]]) {

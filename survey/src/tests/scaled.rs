@@ -25,7 +25,8 @@ fn the_pass_is_repeated_if_the_distances_have_a_scale() {
     assert!((scale.scale * 1.02 * 1.04 - 1.0).abs() < 0.01, "{scale:?}");
     assert!(largest_error_m(&scaled.poses, &truth[0], &truth) < 0.015);
     let note = scaled.scale_note().unwrap();
-    let [percent, words] = note.strip_prefix("the odometry measures distances ").unwrap().split_once(" % ").unwrap().into();
+    let [percent, words] =
+        note.strip_prefix("the odometry measures distances ").unwrap().split_once(" % ").unwrap().into();
     assert!((percent.parse::<f64>().unwrap() - 6.1).abs() < 1.0, "{note}");
     assert_eq!(words, "too long: the route was found once more with this scale");
     // By the true poses, once.

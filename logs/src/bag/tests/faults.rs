@@ -209,9 +209,16 @@ fn what_is_before_the_cut_of_a_database_that_is_cut_off_is_read() {
         let scans = readings(&found);
         assert_eq!(scans, whole[..scans.len()]);
         let share = cut as f64 / bytes.len() as f64;
-        assert!(scans.len() as f64 > (share - 0.15) * whole.len() as f64 && scans.len() < whole.len(), "{}", scans.len());
+        assert!(
+            scans.len() as f64 > (share - 0.15) * whole.len() as f64 && scans.len() < whole.len(),
+            "{}",
+            scans.len()
+        );
         let [note, end] = &found.summary().notes[..] else { panic!("{:?}", found.summary().notes) };
-        let expected = format!("the database test is cut off after {cut} of {} bytes: the messages before the cut were read", bytes.len());
+        let expected = format!(
+            "the database test is cut off after {cut} of {} bytes: the messages before the cut were read",
+            bytes.len()
+        );
         assert_eq!(*note, expected);
         assert!(end.starts_with("what could be read ends "), "{end}");
     }

@@ -103,7 +103,10 @@ impl Page<'_> {
         let days = self.clock_of(place)?.days();
         let seen = if days == 1 { "one day".to_owned() } else { format!("{days} days") };
         (1..Week::MIN_DAYS).contains(&days).then(|| {
-            format!("Usual hours are not known yet: the robot looked on {seen}, and {} are needed.", Week::MIN_DAYS)
+            format!(
+                "Usual hours are not known yet: the robot looked on {seen}, and {} are needed.",
+                Week::MIN_DAYS
+            )
         })
     }
 
