@@ -1,4 +1,4 @@
-//! The scores around an end point, in the fine and in the coarse cells of a [`super::correlation::Correlation`]. An end point raises
+//! The scores around an end point, in the fine and in the coarse cells of a correlation. An end point raises
 //! rows of cells, so that many cells are raised at once.
 
 use crate::constants::{CORRELATION_CELL_M, CORRELATION_STD_M};
