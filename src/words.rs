@@ -5,8 +5,6 @@ use survey::{Place, PlaceRates};
 
 /// Where the ends of the interval are farther apart than this factor, a single figure says too much.
 const WIDE: f64 = 10.0;
-/// From this number per hour on, it is given per minute.
-const PER_MINUTE_FROM: f64 = 60.0;
 const MASS: f64 = 0.9;
 
 /// What was seen of something that happens again and again.
@@ -103,10 +101,9 @@ pub fn times(count: u32) -> String {
     }
 }
 
-/// A rate per hour, in words: 12 times per hour, once in 3 h.
+/// A rate per hour, in words: 12 times per hour, once in 3 h. Never per minute: places are compared with each other.
 pub fn rate(per_hour: f64) -> String {
     match per_hour {
-        rate if rate >= PER_MINUTE_FROM => format!("{} times per minute", short(rate / 60.0)),
         rate if rate >= 1.5 => format!("{rate:.0} times per hour"),
         rate if rate > 0.0 => format!("once in {}", length_of(3600.0 / rate)),
         _ => "never".to_owned(),
@@ -116,9 +113,6 @@ pub fn rate(per_hour: f64) -> String {
 /// The range around a rate per hour, in words and in the unit of the rate: 3.0 to 12 times per hour, once in 2.0 h to 8.0 h.
 pub fn range(per_hour: f64, [low, high]: [f64; 2]) -> String {
     match per_hour {
-        rate if rate >= PER_MINUTE_FROM => {
-            format!("{} to {} times per minute", short(low / 60.0), short(high / 60.0))
-        }
         rate if rate >= 1.5 => format!("{} to {} times per hour", short(low), short(high)),
         _ => format!("once in {} to {}", length_of(3600.0 / high), length_of(3600.0 / low)),
     }
@@ -202,7 +196,7 @@ mod tests {
     #[test]
     fn a_range_is_in_the_unit_of_its_rate() {
         let ranges = [range(120.0, [30.0, 600.0]), range(6.0, [3.0, 12.0]), range(0.2, [0.1, 0.5])];
-        let expected = ["0.50 to 10 times per minute", "3.0 to 12 times per hour", "once in 2.0 h to 10 h"];
+        let expected = ["30 to 600 times per hour", "3.0 to 12 times per hour", "once in 2.0 h to 10 h"];
         assert_eq!(ranges, expected);
     }
 

@@ -32,6 +32,7 @@ mod online;
 mod places;
 mod refine;
 mod residual;
+mod score_kernel;
 mod settings;
 mod sparse;
 mod submap;

@@ -1,6 +1,7 @@
 //! A log of any format.
 
 use crate::error::LogError;
+use crate::read_ahead::ReadAhead;
 use crate::summary::LogSummary;
 use interfaces::LaserReading;
 use nalgebra::Isometry2;
@@ -51,7 +52,11 @@ impl Log {
     ///
     /// When the file can no longer be opened.
     pub fn readings(&self) -> Result<Readings, LogError> {
-        let (raw, times_s) = (self.source.raw_readings()?, self.times_s.clone());
+        let times_s = self.times_s.clone();
+        let raw: Box<dyn RawReadings + Send> = match ReadAhead::of(self.source.raw_readings()?) {
+            Ok(ahead) => Box::new(ahead),
+            Err(_) => self.source.raw_readings()?,
+        };
         Ok(Readings { raw, times_s, given: 0, has_failed: false })
     }
 

@@ -1,7 +1,7 @@
 //! The route of a log, and the cells that cover several of them.
 
 use crate::error::SurveyError;
-use crate::extent::{self, Reach};
+use crate::extent::{self, Reach, Reaches};
 use crate::quality::{Quality, QualityCheck, Verdict};
 use crate::range_noise::RangeNoise;
 use crate::seen_area::SeenArea;
@@ -28,6 +28,8 @@ pub struct Route {
     pub quality: Quality,
     /// The scale of the distances of the odometry, as the trajectory shows it; `None` where it is not known.
     pub distance_scale: Option<DistanceScale>,
+    /// The scale with which the pass was repeated; `None` if it was not.
+    pub scaled: Option<DistanceScale>,
     /// The readings whose poses are in doubt.
     in_doubt: Vec<Range<usize>>,
     reaches: Vec<Reach>,
@@ -37,7 +39,7 @@ pub struct Route {
 
 impl Route {
     /// The route of a log, in the frame of its first pose. `pass_over` adds all readings to the pass that it gets; it is called
-    /// again if the distances of the odometry have a scale.
+    /// again if the distances of the odometry have a scale that wheels can explain.
     ///
     /// # Errors
     ///
@@ -47,10 +49,30 @@ impl Route {
         mut pass_over: impl FnMut(FirstPass) -> Result<Self, E>,
     ) -> Result<Self, E> {
         let route = pass_over(FirstPass::new(settings)?)?;
-        match route.distance_scale.filter(DistanceScale::is_significant) {
-            Some(scale) => pass_over(FirstPass::new(settings)?.with_distance_scale(&scale)),
+        match route.distance_scale.filter(|scale| scale.is_significant() && scale.is_plausible()) {
+            Some(scale) => {
+                let scaled = pass_over(FirstPass::new(settings)?.with_distance_scale(&scale))?;
+                Ok(Self { scaled: Some(scale), ..scaled })
+            }
             None => Ok(route),
         }
+    }
+
+    /// What users should know about the scale of the distances of the odometry, in a sentence.
+    pub(crate) fn scale_note(&self) -> Option<String> {
+        if let Some(DistanceScale { scale, .. }) = self.scaled {
+            let percent = 100.0 * (scale.recip() - 1.0);
+            let direction = if percent < 0.0 { "short" } else { "long" };
+            return Some(format!(
+                "the odometry measures distances {:.1} % too {direction}: the route was found once more with this scale",
+                percent.abs()
+            ));
+        }
+        let DistanceScale { scale, .. } = self.distance_scale.filter(|scale| !scale.is_plausible())?;
+        Some(format!(
+            "by its scans, the robot moves {scale:.2} times as far as by its odometry, which wheels do not explain: the odometry was \
+             used as it is; check its units, and whether it is of this robot"
+        ))
     }
 
     /// The route without certain poses where they are in doubt, if the map is usable with care: what only such scans show is no
@@ -114,6 +136,7 @@ pub struct FirstPass {
     range_noise: RangeNoise,
     quality: QualityCheck,
     reaches: Vec<Reach>,
+    reach: Reaches,
     /// The corners of the rectangle that was seen so far.
     seen: Option<(Point2<f64>, Point2<f64>)>,
     area: SeenArea,
@@ -143,6 +166,7 @@ impl FirstPass {
             range_noise: RangeNoise::default(),
             quality: QualityCheck::default(),
             reaches: Vec::new(),
+            reach: Reaches::default(),
             seen: None,
             area: SeenArea::default(),
             turns: Turns::default(),
@@ -158,7 +182,7 @@ impl FirstPass {
     /// Adds the next reading.
     pub fn add(&mut self, reading: LaserReading) {
         let filtered = self.filter.filter(reading.clone());
-        let reach = Reach::of(&filtered);
+        let reach = self.reach.of(&filtered);
         self.reaches.push(reach);
         self.turns.add(&reading);
         let found = match &mut self.finder {
@@ -217,6 +241,7 @@ impl FirstPass {
             range_std_m,
             quality,
             distance_scale,
+            scaled: None,
             in_doubt,
             reaches: self.reaches,
             seen_m2,

@@ -130,7 +130,8 @@ pub struct Travelled {
 }
 
 impl SurveyedLog {
-    pub(crate) fn new(entry: LogEntry, route: Route, frame: GridFrame) -> Self {
+    pub(crate) fn new(mut entry: LogEntry, route: Route, frame: GridFrame) -> Self {
+        entry.notes.extend(route.scale_note());
         Self {
             entry,
             readings: route.poses.len(),

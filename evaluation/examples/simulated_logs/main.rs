@@ -3,14 +3,16 @@
 //! The building (houses and offices with people and doors), the laser (180 to 360 beams), the odometry (drift, glitches), the way (50
 //! to 400 m) and its length between two scans (0.1 to 1.0 m) are drawn from a seed. Each log is judged along the trajectory that is
 //! found, and along its odometry. Columns: distances from the truth after a rigid alignment (median, 95 %, maximum; m), the verdict, and
-//! its figures (`survey::Quality`): contradicting scans, the worst stretch, weak links, scans left out, surfaces seen once. With
-//! FOLDER, every log is written there as a bag of ROS 2, with its true poses in the TUM format.
+//! its figures (`survey::Quality`): contradicting scans, the worst stretch, weak links, scans left out, surfaces seen once; and the share
+//! of the surfaces that are ghosts (`ghosts`). With FOLDER, every log is written there as a bag of ROS 2, with its true poses in the TUM
+//! format.
 //!
 //! ```text
 //! cargo run -p curious-evaluation --example simulated_logs -- FIRST_SEED LOGS [FOLDER]
 //! ```
 
 mod drive;
+mod ghosts;
 
 use drive::{LogSpec, SimulatedLog};
 use evaluation::metrics::alignment;
@@ -82,13 +84,14 @@ impl Counts {
     /// Prints and counts a trajectory. Gives the 95 % quantile of its errors, m.
     fn add(&mut self, name: &str, route: &Route, log: &SimulatedLog) -> f64 {
         let poses: Vec<Isometry2<f64>> = route.poses.iter().map(|at| at.pose).collect();
-        let ([median_m, p95_m, max_m], quality) = (errors_m(&poses, &log.truth), &route.quality);
-        let verdict = quality.verdict();
+        let to_truth = to_truth(&poses, &log.truth);
+        let ([median_m, p95_m, max_m], quality) = (errors_m(&to_truth, &poses, &log.truth), &route.quality);
+        let (verdict, ghosts) = (quality.verdict(), ghosts::share(&to_truth, &poses, log));
         let of = if p95_m <= RIGHT_M { &mut self.right } else { &mut self.wrong };
         of[0] += 1;
         of[1] += usize::from(verdict == Verdict::Good);
         println!(
-            "     {name:8} {median_m:6.3} {p95_m:6.3} {max_m:6.3}  {:16} {:.3} {:.3} {:2} {:.3} {:.2}",
+            "     {name:8} {median_m:6.3} {p95_m:6.3} {max_m:6.3}  {:16} {:.3} {:.3} {:2} {:.3} {:.2} {ghosts:.4}",
             verdict.name(),
             quality.contradicting,
             quality.worst_stretch,
@@ -124,14 +127,20 @@ fn route(log: &SimulatedLog, mode: PoseMode) -> Result<Route, SurveyError> {
     })
 }
 
-/// Median, 95 % and maximum of the distances from the truth after a rigid alignment, m.
-fn errors_m(poses: &[Isometry2<f64>], truth: &[Isometry2<f64>]) -> [f64; 3] {
+/// The rigid motion that brings the positions nearest to the true ones.
+fn to_truth(poses: &[Isometry2<f64>], truth: &[Isometry2<f64>]) -> Isometry2<f64> {
     let position = |at: &Isometry2<f64>| at.translation.vector;
     let pairs: Vec<_> =
         poses.iter().zip(truth).map(|(found, truth)| (position(found), position(truth))).collect();
-    let to_truth = alignment(&pairs);
-    let mut errors: Vec<f64> =
-        pairs.iter().map(|(found, truth)| (to_truth * Point2::from(*found) - truth).coords.norm()).collect();
+    alignment(&pairs)
+}
+
+/// Median, 95 % and maximum of the distances from the truth after a rigid alignment, m.
+fn errors_m(to_truth: &Isometry2<f64>, poses: &[Isometry2<f64>], truth: &[Isometry2<f64>]) -> [f64; 3] {
+    let at = |pose: &Isometry2<f64>| Point2::from(pose.translation.vector);
+    let error =
+        |(found, truth): (&Isometry2<f64>, &Isometry2<f64>)| (to_truth * at(found) - at(truth)).norm();
+    let mut errors: Vec<f64> = poses.iter().zip(truth).map(error).collect();
     errors.sort_by(f64::total_cmp);
     [0.5, 0.95, 1.0].map(|share| errors[(share * (errors.len() - 1) as f64) as usize])
 }

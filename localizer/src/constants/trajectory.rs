@@ -96,6 +96,8 @@ pub(crate) const SCALE_NOISE_M: f64 = 0.04;
 /// A scale that is off by a smaller share than this, or by fewer standard deviations, needs no second pass.
 pub(crate) const MIN_SCALE: f64 = 0.005;
 pub(crate) const MIN_SCALE_STDS: f64 = 4.0;
+/// A scale beyond this factor, in either direction, is no error of wheels.
+pub(crate) const MAX_SCALE: f64 = 2.0;
 
 // Trajectories: loops
 

@@ -10,6 +10,7 @@ use crate::constants::{
     CHAIN_KEYFRAMES, CHAIN_M, CHAIN_RESPONSE, CHAIN_ROUNDS, CORRELATED, CORRELATED_KEYFRAMES, MAX_CHAINS,
     MIN_CHAIN, SPARSE,
 };
+use rayon::prelude::*;
 use std::ops::Range;
 
 /// Whether most keyframes are far from the one before.
@@ -22,8 +23,10 @@ pub(super) fn are_sparse(keyframes: &[Keyframe]) -> bool {
 pub(super) fn correlate(keyframes: &[Keyframe], graph: &mut PoseGraph) {
     let without = graph.edges.clone();
     for _ in 0..CHAIN_ROUNDS {
-        let edges: Vec<Edge> =
-            (0..keyframes.len()).flat_map(|number| edges_of(number, keyframes, graph)).collect();
+        let edges: Vec<Edge> = (0..keyframes.len())
+            .into_par_iter()
+            .flat_map_iter(|number| edges_of(number, keyframes, graph))
+            .collect();
         graph.edges.clone_from(&without);
         graph.edges.extend(edges);
         graph.optimize();

@@ -2,21 +2,17 @@
 //! keyframes. Coarse cells bound the scores of blocks of shifts, so that few blocks are searched.
 
 use super::keyframe::Keyframe;
-use crate::constants::{
-    CORRELATION_CELL_M, CORRELATION_PENALTY, CORRELATION_RANGE_M, CORRELATION_STD_M, CORRELATION_STEP_RAD,
-};
+use super::score_kernel::{BLOCK, BLOCK_BITS, Scores, TOP_SCORE, index, sums};
+use crate::constants::{CORRELATION_CELL_M, CORRELATION_PENALTY, CORRELATION_RANGE_M, CORRELATION_STEP_RAD};
 use crate::spread::Spread;
 use interfaces::Scan;
 use nalgebra::{Isometry2, Point2, Vector2};
-use std::ops::{Range, RangeInclusive};
+use std::ops::Range;
 
-/// Fine cells along the side of a block of shifts.
-const BLOCK: i32 = 1 << BLOCK_BITS;
-const BLOCK_BITS: u32 = 2;
 /// Half the side of the grid, m: beams of the largest range, and shifts.
 const HALF_SIDE_M: f64 = CORRELATION_RANGE_M + 2.0;
-/// The score of an end point on another one.
-const TOP_SCORE: f64 = 255.0;
+/// Bounds of blocks are summed up for squares of this number of blocks along a side.
+const TILE: usize = 8;
 /// The pattern search for the pose ends with this share of a cell.
 const MIN_STEP: f64 = 0.05;
 
@@ -24,9 +20,7 @@ const MIN_STEP: f64 = 0.05;
 /// predicted pose and turns with it, so that the heading of the frame of the trajectory does not matter.
 pub(super) struct Correlation {
     predicted: Isometry2<f64>,
-    side: i32,
-    fine: Vec<u8>,
-    coarse: Vec<u8>,
+    scores: Scores,
 }
 
 /// A pose, and the mean score of the end points there, from 0 to 1.
@@ -56,76 +50,91 @@ impl Correlation {
         predicted: &Isometry2<f64>,
     ) -> Self {
         let blocks = (2.0 * HALF_SIDE_M / CORRELATION_CELL_M) as i32 / BLOCK;
-        let cells = |side: i32| vec![0; (side * side) as usize];
-        let (side, predicted) = (blocks * BLOCK, *predicted);
-        let mut scores = Self { predicted, side, fine: cells(side), coarse: cells(blocks) };
-        let kernel = kernel();
+        let (mut scores, predicted) = (Scores::new(blocks), *predicted);
         for (pose, keyframe) in keyframes {
             let laser = predicted.inv_mul(pose) * keyframe.mount;
-            hits(&keyframe.scan).for_each(|hit| scores.add(&(laser * hit), &kernel));
+            hits(&keyframe.scan).for_each(|hit| scores.add(cell(&(laser * hit).coords)));
         }
-        scores
-    }
-
-    fn add(&mut self, at: &Point2<f64>, kernel: &[([i32; 2], u8)]) {
-        let [x, y] = cell(&at.coords);
-        if index([x, y], self.side).is_some_and(|here| f64::from(self.fine[here]) == TOP_SCORE) {
-            return; // another end point lies in this cell
-        }
-        for ([dx, dy], score) in kernel {
-            let Some(here) = index([x + dx, y + dy], self.side) else { continue };
-            if self.fine[here] >= *score {
-                continue;
-            }
-            self.fine[here] = *score;
-            for row in blocks_of(y + dy) {
-                for column in blocks_of(x + dx) {
-                    let bound = &mut self.coarse[(row * (self.side / BLOCK) + column) as usize];
-                    *bound = (*bound).max(*score);
-                }
-            }
-        }
+        Self { predicted, scores }
     }
 
     /// The best pose of a scan in a window around the predicted one; poses far from it count less.
     pub(super) fn best(&self, scan: &Scan, mount: &Isometry2<f64>, window: Spread) -> Correlated {
         let points: Vec<Point2<f64>> = hits(scan).map(|hit| mount * hit).collect();
         let headings = headings(&points, &window);
+        let mut candidates = self.candidates(&headings, &window);
         let mut best = (0.0, 0.0, [0, 0]);
-        for Candidate { bound, heading, block } in self.candidates(&headings, &window) {
-            if bound <= best.0 {
+        // The most promising block leaves few others, which are put in order.
+        let first =
+            candidates.iter().reduce(|best, other| if other.bound > best.bound { other } else { best });
+        first.into_iter().for_each(|first| self.search(first, &headings, &window, &mut best));
+        candidates.retain(|candidate| candidate.bound > best.0);
+        candidates.sort_by(|a, b| b.bound.total_cmp(&a.bound));
+        for candidate in &candidates {
+            if candidate.bound <= best.0 {
                 break;
             }
-            let Turned { turn_rad, cells } = &headings[heading];
-            for [x, y] in squares(0..BLOCK) {
-                let shift = [block[0] * BLOCK + x, block[1] * BLOCK + y];
-                let score =
-                    sum(&self.fine, self.side, 0, cells, shift) * likelihood(*turn_rad, shift, &window);
-                if score > best.0 {
-                    best = (score, *turn_rad, shift);
-                }
-            }
+            self.search(candidate, &headings, &window, &mut best);
         }
         let (_, turn_rad, shift) = best;
         let shift_m = Vector2::from(shift.map(f64::from)) * CORRELATION_CELL_M;
         self.polished(&points, interfaces::pose(shift_m.x, shift_m.y, turn_rad))
     }
 
-    /// The blocks of a window at all headings, the best bound first.
+    /// Searches the shifts of a block; `best` is the best score so far with its heading and its shift.
+    fn search(
+        &self,
+        candidate: &Candidate,
+        headings: &[Turned],
+        window: &Spread,
+        best: &mut (f64, f64, [i32; 2]),
+    ) {
+        let Turned { turn_rad, cells } = &headings[candidate.heading];
+        let first = candidate.block.map(|block| block * BLOCK);
+        let scores: [[u32; BLOCK as usize]; BLOCK as usize] =
+            sums(&self.scores.fine, self.scores.side, cells.iter().copied(), first);
+        for [x, y] in squares(0..BLOCK) {
+            let shift = [first[0] + x, first[1] + y];
+            let score = f64::from(scores[y as usize][x as usize]) * likelihood(*turn_rad, shift, window);
+            if score > best.0 {
+                *best = (score, *turn_rad, shift);
+            }
+        }
+    }
+
+    /// The blocks of a window at all headings.
     fn candidates(&self, headings: &[Turned], window: &Spread) -> Vec<Candidate> {
         let blocks = libm::ceil(window.m / (f64::from(BLOCK) * CORRELATION_CELL_M)) as i32;
-        let mut candidates = Vec::new();
+        let mut candidates = Vec::with_capacity(headings.len() * (4 * blocks * blocks) as usize);
         for (heading, Turned { turn_rad, cells }) in headings.iter().enumerate() {
-            for block in squares(-blocks..blocks) {
+            let bounds = self.bounds(cells, blocks);
+            for ([x, y], most) in squares(-blocks..blocks).zip(bounds) {
+                let block = [x, y];
                 let corner = block.map(|block| block * BLOCK);
                 let nearest = corner.map(|low| low.max(0) + (low + BLOCK - 1).min(0));
-                let most = sum(&self.coarse, self.side / BLOCK, BLOCK_BITS, cells, corner);
-                let bound = most * likelihood(*turn_rad, nearest, window);
+                let bound = f64::from(most) * likelihood(*turn_rad, nearest, window);
                 candidates.push(Candidate { bound, heading, block });
             }
         }
-        candidates.sort_by(|a, b| b.bound.total_cmp(&a.bound));
         candidates
+    }
+
+    /// Upper bounds of the sums of scores in the blocks of a window, row by row.
+    fn bounds(&self, cells: &[[i32; 2]], blocks: i32) -> Vec<u32> {
+        let (columns, side) = (2 * blocks as usize, self.scores.side / BLOCK);
+        let mut bounds = vec![0; columns * columns];
+        let coarse = || cells.iter().map(|cell| cell.map(|at| at >> BLOCK_BITS));
+        for row in (0..columns).step_by(TILE) {
+            for column in (0..columns).step_by(TILE) {
+                let first = [column, row].map(|at| at as i32 - blocks);
+                let sums: [[u32; TILE]; TILE] = sums(&self.scores.coarse, side, coarse(), first);
+                for (row, sums) in (row..columns).zip(&sums) {
+                    let here = &mut bounds[row * columns..][column..columns.min(column + TILE)];
+                    here.copy_from_slice(&sums[..here.len()]);
+                }
+            }
+        }
+        bounds
     }
 
     /// The best pose near one of a cell and a heading of the search, by smaller and smaller steps.
@@ -148,19 +157,21 @@ impl Correlation {
         }
         let mut pose = self.predicted * pose;
         pose.rotation.renormalize();
-        Correlated { pose, response: score / (TOP_SCORE * points.len().max(1) as f64) }
+        Correlated { pose, response: score / (f64::from(TOP_SCORE) * points.len().max(1) as f64) }
     }
 
     /// The sum of the scores of points, interpolated between the middles of cells.
     fn score(&self, points: &[Point2<f64>], pose: &Isometry2<f64>) -> f64 {
+        let scores = &self.scores;
         let score = |point: &Point2<f64>| {
             let at = ((pose * point).coords + Vector2::repeat(HALF_SIDE_M)) / CORRELATION_CELL_M
                 - Vector2::repeat(0.5);
             let low = [libm::floor(at.x), libm::floor(at.y)];
             let (right, up) = (at.x - low[0], at.y - low[1]);
             let [x, y] = low.map(|low| low as i32);
-            let here =
-                |dx, dy| index([x + dx, y + dy], self.side).map_or(0.0, |here| f64::from(self.fine[here]));
+            let here = |dx, dy| {
+                index([x + dx, y + dy], scores.side).map_or(0.0, |here| f64::from(scores.fine[here]))
+            };
             let below = here(0, 0) * (1.0 - right) + here(1, 0) * right;
             let above = here(0, 1) * (1.0 - right) + here(1, 1) * right;
             below * (1.0 - up) + above * up
@@ -185,19 +196,6 @@ fn cell(at: &Vector2<f64>) -> [i32; 2] {
     [at.x, at.y].map(|at| libm::floor((at + HALF_SIDE_M) / CORRELATION_CELL_M) as i32)
 }
 
-fn index([x, y]: [i32; 2], side: i32) -> Option<usize> {
-    ((0..side).contains(&x) && (0..side).contains(&y)).then(|| (y * side + x) as usize)
-}
-
-/// The sum of the scores of shifted fine cells, in a grid whose cells have 2^`bits` fine cells per side.
-fn sum(scores: &[u8], side: i32, bits: u32, cells: &[[i32; 2]], shift: [i32; 2]) -> f64 {
-    let score = |[x, y]: &[i32; 2]| {
-        let at = [(x + shift[0]) >> bits, (y + shift[1]) >> bits];
-        index(at, side).map_or(0, |at| u32::from(scores[at]))
-    };
-    f64::from(cells.iter().map(score).sum::<u32>())
-}
-
 /// What a pose counts by its distance from the prediction: 1 there, and never less than a quarter.
 fn likelihood(turn_rad: f64, shift: [i32; 2], window: &Spread) -> f64 {
     let share = |x: f64| (1.0 - CORRELATION_PENALTY * x * x).max(0.5);
@@ -205,23 +203,8 @@ fn likelihood(turn_rad: f64, shift: [i32; 2], window: &Spread) -> f64 {
     share(shift.norm() / window.m) * share(turn_rad / window.rad)
 }
 
-/// The coarse cells that cover a fine one: each covers two blocks, less one cell.
-fn blocks_of(cell: i32) -> RangeInclusive<i32> {
-    (cell - BLOCK + 1).max(0) / BLOCK..=cell / BLOCK
-}
-
 fn squares(range: Range<i32>) -> impl Iterator<Item = [i32; 2]> {
     range.clone().flat_map(move |y| range.clone().map(move |x| [x, y]))
-}
-
-/// The scores around an end point.
-fn kernel() -> Vec<([i32; 2], u8)> {
-    let reach = (2.5 * CORRELATION_STD_M / CORRELATION_CELL_M) as i32;
-    let score = |[x, y]: [i32; 2]| {
-        let off = f64::from(x * x + y * y).sqrt() * CORRELATION_CELL_M / CORRELATION_STD_M;
-        ([x, y], (TOP_SCORE * libm::exp(-0.5 * off * off)) as u8)
-    };
-    squares(-reach..reach + 1).map(score).collect()
 }
 
 /// The end points of the beams of a scan, in the frame of the laser.

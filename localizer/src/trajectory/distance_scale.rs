@@ -5,7 +5,9 @@
 //! corridor is too long by the same share.
 
 use super::graph::PoseGraph;
-use crate::constants::{MIN_SCALE, MIN_SCALE_STDS, SCALE_NOISE_M, SCALED_M, SCALED_MOTIONS, SCALED_STD_M};
+use crate::constants::{
+    MAX_SCALE, MIN_SCALE, MIN_SCALE_STDS, SCALE_NOISE_M, SCALED_M, SCALED_MOTIONS, SCALED_STD_M,
+};
 use nalgebra::{Isometry2, Matrix3, Vector2};
 
 /// A motion between two keyframes in a row, as the odometry measured it.
@@ -31,6 +33,11 @@ impl DistanceScale {
     /// Whether the scale is so far from 1 that another pass, with this scale, is better.
     pub fn is_significant(&self) -> bool {
         (self.scale - 1.0).abs() > MIN_SCALE.max(MIN_SCALE_STDS * self.std)
+    }
+
+    /// Whether wheels can explain the scale. Other units, or the odometry of another robot, cannot be scaled away.
+    pub fn is_plausible(&self) -> bool {
+        (MAX_SCALE.recip()..=MAX_SCALE).contains(&self.scale)
     }
 }
 
@@ -106,6 +113,12 @@ mod tests {
             assert!(off.abs() < 3.5 * found.std && found.std < 0.003, "{off} of {found:?}");
             assert_eq!(found.is_significant(), error != 0.0, "{found:?}");
         }
+    }
+
+    #[test]
+    fn a_scale_beyond_a_factor_of_two_is_no_error_of_wheels() {
+        let is_plausible = |scale| DistanceScale { scale, std: 0.001 }.is_plausible();
+        assert_eq!([0.49, 0.51, 1.9, 2.1].map(is_plausible), [false, true, true, false]);
     }
 
     #[test]

@@ -9,6 +9,7 @@ use crate::constants::{MIN_AGREEMENT, MIN_OVERLAP, NEAR_M, REFINE, SUBMAP_STD};
 use crate::matcher::Match;
 use crate::spread::Spread;
 use crate::surfel_map::SurfelMap;
+use rayon::prelude::*;
 
 /// Matches keyframes with all submaps around them of which they are no part, and optimizes the graph; once more from the
 /// better poses.
@@ -32,20 +33,20 @@ fn edges(
     std: Spread,
     graph: &PoseGraph,
 ) -> Vec<Edge> {
-    let mut edges = Vec::new();
-    for (number, submap) in places.references() {
+    let of_submap = |(number, submap): (usize, &FinishedSubmap)| {
         let near: Vec<usize> = near(submap, graph).filter(|near| (near + number) % stride == 0).collect();
-        if near.is_empty() {
-            continue;
-        }
-        let Some(map) = SurfelMap::of_points(&submap.points) else { continue };
-        for keyframe in near {
+        let map = if near.is_empty() { None } else { SurfelMap::of_points(&submap.points) };
+        let edge = |(map, keyframe): (&SurfelMap, usize)| {
             let pose = graph.poses[submap.anchor].inv_mul(&graph.poses[keyframe]);
-            let found = fit(&map, &keyframes[keyframe].points, &pose, std, places.noise_m);
-            edges.extend(found.and_then(|found| edge(submap.anchor, keyframe, &found)));
-        }
-    }
-    edges
+            let found = fit(map, &keyframes[keyframe].points, &pose, std, places.noise_m)?;
+            edge(submap.anchor, keyframe, &found)
+        };
+        let pairs = map.iter().flat_map(|map| near.iter().map(move |keyframe| (map, *keyframe)));
+        pairs.filter_map(edge).collect::<Vec<Edge>>()
+    };
+    // In the order of the submaps, however many threads there are.
+    let submaps: Vec<(usize, &FinishedSubmap)> = places.references().collect();
+    submaps.into_par_iter().flat_map_iter(of_submap).collect()
 }
 
 /// The keyframes around a submap of which they are no part.

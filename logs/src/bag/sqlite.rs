@@ -1,4 +1,4 @@
-//! SQLite databases of rosbag2: the tables `topics` and `messages`.
+//! SQLite databases of rosbag2: the tables `topics` and `messages`. Of a file that is cut off, the messages before the cut are read.
 
 use super::message::{Message, MessageSource, Selection, Topic};
 use crate::bounds::MAX_NAME_BYTES;
@@ -6,7 +6,7 @@ use crate::bytes::Bytes;
 use crate::error::LogError;
 use rusqlite::{Connection, ErrorCode, OpenFlags, Row};
 use std::collections::{BTreeMap, VecDeque};
-use std::io;
+use std::io::{self, Read as _};
 use std::sync::Arc;
 
 /// Messages that are read at once, and their bytes.
@@ -29,11 +29,20 @@ const MESSAGES: &str = "SELECT rowid, topic_id, timestamp, CASE WHEN length(data
 /// A database of rosbag2.
 pub(super) struct SqliteFile {
     database: Connection,
+    table: MessageTable,
+}
+
+/// The table of the messages, as far as it was read.
+struct MessageTable {
     file: Arc<str>,
     size: u64,
+    /// The bytes that the file had before it was cut off; `None` if it is whole.
+    whole: Option<u64>,
     /// The topics by their keys, whether they are wanted, and the number of their messages.
     topics: BTreeMap<i64, (Arc<Topic>, bool, u64)>,
     page: VecDeque<Message>,
+    /// Of a file that is cut off, the last message: its bytes can end with the file.
+    last: Option<Message>,
     last_row: i64,
     rows: u64,
     is_over: bool,
@@ -49,6 +58,11 @@ impl SqliteFile {
         let database = Connection::open_with_flags(path, flags).map_err(failed)?;
         // Nothing that a schema contains is run, and cells of a page are checked before they are used.
         database.execute_batch("PRAGMA trusted_schema = OFF; PRAGMA cell_size_check = ON").map_err(failed)?;
+        let whole = whole_size(bytes).map_err(io)?.filter(|whole| *whole > size);
+        if whole.is_some() {
+            // With this, SQLite opens a database without its last pages. It is open for reading only: nothing is written.
+            database.execute_batch("PRAGMA writable_schema = ON").map_err(failed)?;
+        }
         for name in ["topics", "messages"] {
             let count: i64 = database.query_row(IS_TABLE, [name], |row| row.get(0)).map_err(failed)?;
             if count != 1 {
@@ -56,66 +70,123 @@ impl SqliteFile {
                 return Err(LogError::Unusable { file: file.to_string(), why });
             }
         }
-        let mut found = BTreeMap::new();
-        {
-            let mut statement = database.prepare(TOPICS).map_err(failed)?;
-            let mut rows = statement.query([]).map_err(failed)?;
-            while let Some(row) = rows.next().map_err(failed)? {
-                let longest: i64 = row.get(1).map_err(failed)?;
-                if longest > MAX_NAME_BYTES as i64 {
-                    let what =
-                        format!("a name in `topics` has {longest} bytes; at most {MAX_NAME_BYTES} are read");
-                    return Err(damaged(file, &what));
-                }
-                let (id, topic) = topic(row).map_err(failed)?;
-                let is_wanted = (selection.is_wanted)(&topic);
-                found.insert(id, (Arc::new(topic), is_wanted, 0));
-            }
-        }
-        Ok(Self {
-            database,
+        let table = MessageTable {
             file: file.clone(),
             size,
-            topics: found,
+            whole,
+            topics: topics(&database, file, &selection)?,
             page: VecDeque::new(),
+            last: None,
             last_row: i64::MIN,
             rows: 0,
             is_over: false,
-        })
+        };
+        Ok(Self { database, table })
     }
 
     /// Reads the next messages. The data of topics that are not wanted is skipped.
     fn turn_page(&mut self) -> Result<(), LogError> {
-        let failed = |error| database_error(&self.file, &error);
-        let mut statement = self.database.prepare(MESSAGES).map_err(failed)?;
-        let mut rows = statement.query((self.last_row, PAGE_ROWS, MAX_BYTES)).map_err(failed)?;
+        let Self { database, table } = self;
+        let file = table.file.clone();
+        let failed = |error| database_error(&file, &error);
+        let mut statement = database.prepare(MESSAGES).map_err(failed)?;
+        let mut rows = statement.query((table.last_row, PAGE_ROWS, MAX_BYTES)).map_err(failed)?;
         let (mut count, mut bytes) = (0, 0);
         while bytes < PAGE_BYTES {
-            let Some(row) = rows.next().map_err(failed)? else { break };
-            count += 1;
-            self.rows += 1;
-            let row_id: i64 = row.get(0).map_err(failed)?;
-            if row_id <= self.last_row || self.rows > self.size / MIN_ROW {
-                return Err(damaged(&self.file, &format!("row {row_id} of `messages` repeats itself")));
-            }
-            self.last_row = row_id;
-            let invalid = |what: &str| damaged(&self.file, &format!("row {row_id} of `messages`: {what}"));
-            let key: i64 = row.get(1).map_err(|_| invalid("no topic"))?;
-            let Some((topic, is_wanted, number)) = self.topics.get_mut(&key) else {
-                return Err(invalid(&format!("topic {key} is not in `topics`")));
+            let row = match rows.next() {
+                Err(error) if table.whole.is_some() && is_corrupt(&error) => {
+                    table.is_over = true; // here, the file is cut off
+                    return Ok(());
+                }
+                row => row.map_err(failed)?,
             };
-            *number += 1;
-            if *is_wanted {
-                let log_ns = row.get(2).map_err(|_| invalid("no timestamp"))?;
-                let data: Vec<u8> = row.get(3).map_err(|_| invalid("no data, or too long"))?;
-                bytes += data.len();
-                let (topic, file) = (topic.clone(), self.file.clone());
-                self.page.push_back(Message { topic, log_ns, data, file, number: *number });
+            let Some(row) = row else { break };
+            match table.add(row) {
+                Ok(added) => (count, bytes) = (count + 1, bytes + added),
+                Err(_) if table.whole.is_some() => {
+                    table.is_over = true; // zeros in place of what is cut off
+                    return Ok(());
+                }
+                Err(what) => return Err(damaged(&file, &what)),
             }
         }
-        self.is_over = count == 0;
+        table.is_over = count == 0;
         Ok(())
     }
+}
+
+impl MessageTable {
+    /// Adds the message of a row, and returns the number of its bytes.
+    fn add(&mut self, row: &Row<'_>) -> Result<usize, String> {
+        self.rows += 1;
+        let row_id: i64 = row.get(0).map_err(|_| "a row of `messages` without a number".to_owned())?;
+        if row_id <= self.last_row || self.rows > self.size / MIN_ROW {
+            return Err(format!("row {row_id} of `messages` repeats itself"));
+        }
+        self.last_row = row_id;
+        let invalid = |what: &str| format!("row {row_id} of `messages`: {what}");
+        let key: i64 = row.get(1).map_err(|_| invalid("no topic"))?;
+        let Some((topic, is_wanted, number)) = self.topics.get_mut(&key) else {
+            return Err(invalid(&format!("topic {key} is not in `topics`")));
+        };
+        *number += 1;
+        self.page.extend(self.last.take());
+        if !*is_wanted {
+            return Ok(0);
+        }
+        let log_ns = row.get(2).map_err(|_| invalid("no timestamp"))?;
+        let data: Vec<u8> = row.get(3).map_err(|_| invalid("no data, or too long"))?;
+        let bytes = data.len();
+        let message =
+            Message { topic: topic.clone(), log_ns, data, file: self.file.clone(), number: *number };
+        match self.whole {
+            Some(_) => self.last = Some(message),
+            None => self.page.push_back(message),
+        }
+        Ok(bytes)
+    }
+}
+
+/// The topics by their keys, whether they are wanted, and no message of them yet.
+fn topics(
+    database: &Connection,
+    file: &Arc<str>,
+    selection: &Selection,
+) -> Result<BTreeMap<i64, (Arc<Topic>, bool, u64)>, LogError> {
+    let failed = |error| database_error(file, &error);
+    let mut found = BTreeMap::new();
+    let mut statement = database.prepare(TOPICS).map_err(failed)?;
+    let mut rows = statement.query([]).map_err(failed)?;
+    while let Some(row) = rows.next().map_err(failed)? {
+        let longest: i64 = row.get(1).map_err(failed)?;
+        if longest > MAX_NAME_BYTES as i64 {
+            let what = format!("a name in `topics` has {longest} bytes; at most {MAX_NAME_BYTES} are read");
+            return Err(damaged(file, &what));
+        }
+        let (id, topic) = topic(row).map_err(failed)?;
+        let is_wanted = (selection.is_wanted)(&topic);
+        found.insert(id, (Arc::new(topic), is_wanted, 0));
+    }
+    Ok(found)
+}
+
+/// The size of a database by its header, in bytes; `None` if the header does not say it.
+fn whole_size(bytes: &Bytes) -> io::Result<Option<u64>> {
+    let mut header = Vec::new();
+    bytes.open()?.take(100).read_to_end(&mut header)?;
+    let number =
+        |at: usize| header.get(at..at + 4).and_then(|bytes| bytes.try_into().ok()).map(u32::from_be_bytes);
+    // The number of pages is valid if it was written by the last change (SQLite, Database File Format, section 1.3.7).
+    let [Some(changes), Some(pages), Some(valid_for)] = [24, 28, 92].map(number) else { return Ok(None) };
+    let page_bytes = match u16::from_be_bytes([header[16], header[17]]) {
+        1 => 65_536,
+        bytes => u64::from(bytes),
+    };
+    Ok((changes == valid_for).then_some(u64::from(pages) * page_bytes))
+}
+
+fn is_corrupt(error: &rusqlite::Error) -> bool {
+    error.sqlite_error_code() == Some(ErrorCode::DatabaseCorrupt)
 }
 
 fn topic(row: &Row<'_>) -> rusqlite::Result<(i64, Topic)> {
@@ -140,17 +211,21 @@ fn damaged(file: &Arc<str>, what: &str) -> LogError {
 
 impl MessageSource for SqliteFile {
     fn next_message(&mut self) -> Result<Option<Message>, LogError> {
-        while self.page.is_empty() && !self.is_over {
+        while self.table.page.is_empty() && !self.table.is_over {
             if let Err(error) = self.turn_page() {
-                self.is_over = true;
-                self.page.clear();
+                self.table.is_over = true;
+                self.table.page.clear();
                 return Err(error);
             }
         }
-        Ok(self.page.pop_front())
+        Ok(self.table.page.pop_front())
     }
 
     fn report(&self) -> (Vec<Arc<Topic>>, Option<String>) {
-        (self.topics.values().map(|(topic, ..)| topic.clone()).collect(), None)
+        let MessageTable { file, size, whole, topics, .. } = &self.table;
+        let missing = whole.map(|whole| {
+            format!("the database {file} is cut off after {size} of {whole} bytes: the messages before the cut were read")
+        });
+        (topics.values().map(|(topic, ..)| topic.clone()).collect(), missing)
     }
 }

@@ -6,6 +6,8 @@ use anyhow::Error;
 use curious::busy::Busy;
 use curious::program::{Failure, input};
 use curious::progress::Progress;
+use curious::terminal::say;
+use std::io::stderr;
 use std::ops::ControlFlow;
 use survey::{PassError, Stage, Survey, Verdict};
 
@@ -36,6 +38,10 @@ pub(crate) fn routes(
         };
         let found = survey.first_pass(&source.log, source.entry.clone(), is_followed, watch);
         drop(shown);
+        let notes = survey.logs().get(log).map(|log| &log.entry.notes[source.entry.notes.len()..]);
+        for note in notes.iter().flat_map(|notes| notes.iter()) {
+            say(stderr(), format_args!("note: {}: {note}", source.entry.name));
+        }
         match found {
             Ok(()) if survey.verdict() == Verdict::NotUsable && !job.args.accept_map => {
                 if state_file.is_kept() {

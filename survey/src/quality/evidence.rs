@@ -2,6 +2,7 @@
 
 use nalgebra::{Isometry2, Point2};
 use std::collections::HashMap;
+use std::hash::{BuildHasherDefault, Hasher};
 
 /// The side of a cell, m.
 const CELL_M: f64 = 0.1;
@@ -21,6 +22,25 @@ const ONE_SURFACE: f64 = 0.1;
 const SAME_PASS: usize = 15;
 
 type CellKey = (i32, i32);
+
+/// A hash of the two numbers of a cell, by multiplication (Knuth 1998, section 6.4). They come from the scans of one log, and are looked up
+/// at every step of every beam: a hash that withstands chosen keys took most of the time.
+#[derive(Clone, Copy, Debug, Default)]
+struct CellHasher(u64);
+
+impl Hasher for CellHasher {
+    fn finish(&self) -> u64 {
+        self.0 ^ (self.0 >> 32)
+    }
+
+    fn write(&mut self, bytes: &[u8]) {
+        bytes.iter().for_each(|byte| self.write_i32(i32::from(*byte)));
+    }
+
+    fn write_i32(&mut self, number: i32) {
+        self.0 = (self.0.rotate_left(32) ^ u64::from(number as u32)).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    }
+}
 
 /// A scan in the frame of the map.
 #[derive(Clone, Debug)]
@@ -82,7 +102,7 @@ struct Seen {
 
 /// The cells that were hit. They are only looked up, so that their order is without meaning.
 #[derive(Debug, Default)]
-pub(super) struct Evidence(HashMap<CellKey, Seen>);
+pub(super) struct Evidence(HashMap<CellKey, Seen, BuildHasherDefault<CellHasher>>);
 
 impl Evidence {
     /// Every scan against all others, in their order.
@@ -126,9 +146,13 @@ impl Evidence {
             let range_m = beam.norm();
             let free_m = range_m * (1.0 - BEFORE_END) - BEFORE_END_M;
             let steps = (free_m / CELL_M).max(0.0) as usize;
+            let mut last = None;
             for step in 1..=steps {
-                let at = scan.laser + beam * (step as f64 * CELL_M / range_m);
-                if let Some(seen) = self.0.get_mut(&key(&at)).filter(|seen| seen.passed_by != number) {
+                let at = key(&(scan.laser + beam * (step as f64 * CELL_M / range_m)));
+                if last.replace(at) == Some(at) {
+                    continue;
+                }
+                if let Some(seen) = self.0.get_mut(&at).filter(|seen| seen.passed_by != number) {
                     (seen.passed_by, seen.passes) = (number, seen.passes + 1);
                 }
             }

@@ -1,6 +1,7 @@
 //! A log whose odometry measures distances with a scale.
 
 use super::*;
+use crate::Verdict;
 
 #[test]
 fn the_pass_is_repeated_if_the_distances_have_a_scale() {
@@ -23,6 +24,11 @@ fn the_pass_is_repeated_if_the_distances_have_a_scale() {
     let scale = scaled.distance_scale.unwrap();
     assert!((scale.scale * 1.02 * 1.04 - 1.0).abs() < 0.01, "{scale:?}");
     assert!(largest_error_m(&scaled.poses, &truth[0], &truth) < 0.015);
+    let note = scaled.scale_note().unwrap();
+    let [percent, words] =
+        note.strip_prefix("the odometry measures distances ").unwrap().split_once(" % ").unwrap().into();
+    assert!((percent.parse::<f64>().unwrap() - 6.1).abs() < 1.0, "{note}");
+    assert_eq!(words, "too long: the route was found once more with this scale");
     // By the true poses, once.
     for (reading, truth) in readings.iter_mut().zip(&truth) {
         reading.pose = *truth;
@@ -30,4 +36,25 @@ fn the_pass_is_repeated_if_the_distances_have_a_scale() {
     let exact = route(&readings);
     assert!(exact.distance_scale.is_none_or(|scale| !scale.is_significant()), "{:?}", exact.distance_scale);
     assert_eq!(passes, 3);
+    assert_eq!(exact.scale_note(), None);
+}
+
+#[test]
+fn a_scale_that_wheels_do_not_explain_is_reported_and_not_used() {
+    // An odometry that counts three times as much.
+    let (mut readings, _) = drive(2, 90.0);
+    for reading in &mut readings {
+        reading.pose.translation.vector *= 3.0;
+    }
+    let mut passes = 0;
+    let route = Route::of_passes(&SurveySettings::of(PoseMode::Localized), |mut pass| {
+        passes += 1;
+        readings.iter().for_each(|reading| pass.add(reading.clone()));
+        Ok::<_, SurveyError>(pass.finish())
+    })
+    .unwrap();
+    assert_eq!(passes, 1);
+    let note = route.scale_note().unwrap();
+    assert!(note.starts_with("by its scans, the robot moves 0.33 times as far as by its odometry"), "{note}");
+    assert!(route.quality.verdict() != Verdict::Good, "{:?}", route.quality);
 }

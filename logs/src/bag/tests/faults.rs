@@ -78,12 +78,12 @@ fn what_is_whole_of_a_file_that_is_cut_off_while_it_is_compressed_is_read() {
     let expected = "test: the zstd file is cut off after 12 bytes, before a bag could be unpacked";
     assert_eq!(refused(&packed[..12]), expected);
     let database = zstd::encode_all(&bag.sqlite()[..], 0).unwrap();
-    let error = refused(&database[..database.len() / 2]);
-    assert!(
-        error.contains("the database is damaged: ")
-            && error.contains("; the zstd file test is cut off after "),
-        "{error}"
-    );
+    let found = open(&database[..database.len() / 2], &TopicChoice::default()).unwrap();
+    let scans = readings(&found).len();
+    assert!((100..2900).contains(&scans), "{scans} scans");
+    let [zstd, sqlite, _] = &found.summary().notes[..] else { panic!("{:?}", found.summary().notes) };
+    assert!(zstd.starts_with("the zstd file test is cut off after "), "{zstd}");
+    assert!(sqlite.starts_with("the database test is cut off after "), "{sqlite}");
 }
 
 #[test]
@@ -195,15 +195,37 @@ fn other_formats_are_named() {
 }
 
 #[test]
-fn a_database_that_is_cut_off_is_refused() {
+fn what_is_before_the_cut_of_a_database_that_is_cut_off_is_read() {
     let mut bag = standing();
     for step in 0..400 {
         bag.scan("/scan", 2.0, &scan(2.0 + f64::from(step), "laser"));
     }
     let bytes = bag.sqlite();
+    let whole = readings(&open(&bytes, &TopicChoice::default()).unwrap());
+    // Between two pages, and at all kinds of places within one.
+    let half = bytes.len() / 8192 * 4096;
+    for cut in (half..half + 8192).step_by(512).chain([bytes.len() * 2 / 3, bytes.len() - 4096]) {
+        let found = open(&bytes[..cut], &TopicChoice::default()).unwrap();
+        let scans = readings(&found);
+        assert_eq!(scans, whole[..scans.len()]);
+        let share = cut as f64 / bytes.len() as f64;
+        assert!(
+            scans.len() as f64 > (share - 0.15) * whole.len() as f64 && scans.len() < whole.len(),
+            "{}",
+            scans.len()
+        );
+        let [note, end] = &found.summary().notes[..] else { panic!("{:?}", found.summary().notes) };
+        let expected = format!(
+            "the database test is cut off after {cut} of {} bytes: the messages before the cut were read",
+            bytes.len()
+        );
+        assert_eq!(*note, expected);
+        assert!(end.starts_with("what could be read ends "), "{end}");
+    }
+    // Without the table of the topics nothing is left.
     let expected = "test: the database is damaged: database disk image is malformed; `sqlite3 FILE .recover` prints what can \
                     be saved";
-    assert_eq!(refused(&bytes[..bytes.len() / 2]), expected);
+    assert_eq!(refused(&bytes[..4096]), expected);
 }
 
 #[test]

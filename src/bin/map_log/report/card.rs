@@ -6,7 +6,7 @@ use super::plan::{Plan, Shown};
 use super::{Page, middle, number};
 use curious::week;
 use curious::words::{Seen, changed, date, length_of, range, rate, short, times};
-use mapper::{Door, Furniture, Leaf, ThingKind, Week};
+use mapper::{Clock, Door, Furniture, Leaf, ThingKind, Week};
 use maud::{Markup, html};
 use nalgebra::{Point2, Vector2};
 use std::f64::consts::PI;
@@ -35,6 +35,7 @@ impl Page<'_> {
                         dt { "When" } dd {
                             p { "Last change: " (self.time(rates.last_change_s)) "." }
                             @if let Some(week) = &week { (week_of(week, if self.door(place).is_some() { "open" } else { "blocked" })) }
+                            @else if let Some(days) = self.few_days(place) { p { (days) } }
                         }
                         dt { "How sure" } dd { (sure(&seen)) }
                         dt { "What to do" } dd {
@@ -93,12 +94,29 @@ impl Page<'_> {
 
     /// What is usual in a week, once it is known.
     fn week(&self, place: &Place) -> Option<Week> {
-        let calendar = self.mapper.calendar();
+        self.clock_of(place)?.week(self.mapper.calendar())
+    }
+
+    /// Why there are no usual hours yet; `None` where nothing has hours, or where they are known.
+    fn few_days(&self, place: &Place) -> Option<String> {
+        self.summary.begin_s?;
+        let days = self.clock_of(place)?.days();
+        let seen = if days == 1 { "one day".to_owned() } else { format!("{days} days") };
+        (1..Week::MIN_DAYS).contains(&days).then(|| {
+            format!(
+                "Usual hours are not known yet: the robot looked on {seen}, and {} are needed.",
+                Week::MIN_DAYS
+            )
+        })
+    }
+
+    /// The clock of a door, or of the tile in the middle of another place.
+    fn clock_of(&self, place: &Place) -> Option<&Clock> {
         if let Some(door) = self.door(place) {
-            return door.clock.week(calendar);
+            return Some(&door.clock);
         }
         let frame = self.mapper.frame();
-        self.mapper.tile(frame.index(frame.cell_at(&middle(place)))?)?.clock().week(calendar)
+        Some(self.mapper.tile(frame.index(frame.cell_at(&middle(place)))?)?.clock())
     }
 
     fn looks(&self, place: &Place) -> String {
