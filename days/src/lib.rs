@@ -23,6 +23,7 @@
 mod belief;
 mod building;
 pub mod calendar;
+mod learner;
 mod patrol;
 
 pub use belief::{Belief, Model};

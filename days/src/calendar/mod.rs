@@ -10,6 +10,10 @@ mod timeline;
 
 pub use habit::{Habit, Phases, Stays, blocked_probability};
 pub use hours::{DAY_S, HOUR_S, Hours, SLOT_S, WEEK_S};
+pub(crate) use matrix::product;
 pub use matrix::{Matrix, PHASES, advanced};
 pub use recorded::{Change, RecordedError, Recording};
 pub use timeline::Timeline;
+
+/// The number of steps of a slot.
+pub(crate) const SLOT_STEPS: usize = (SLOT_S / crate::STEP_S) as usize;
