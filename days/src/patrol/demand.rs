@@ -9,7 +9,7 @@ const SLOTS: usize = (WEEK_S / SLOT_S) as usize;
 const STRIDE: usize = 3;
 /// Intervals between two looks at a thing that are tried, steps: from five minutes to more than two days, in factors of 2.
 const INTERVALS: usize = 11;
-const SHORTEST: f64 = 30.0;
+const SHORTEST: usize = 30;
 /// Prices that are tried, each this factor above the one before.
 const PRICES: usize = 40;
 const PRICE_RATIO: f64 = 1.3;
@@ -20,12 +20,12 @@ const PRICE_RATIO: f64 = 1.3;
 pub(super) struct Demand {
     /// The lowest price, gain per step.
     lowest: f64,
-    /// For each slot of the week and each price, the share of the time on patrol.
+    /// For each group of slots and each price, the share of the time on patrol.
     shares: Vec<[f64; PRICES]>,
 }
 
 fn interval(index: usize) -> usize {
-    (SHORTEST * libm::pow(2.0, index as f64)) as usize
+    SHORTEST << index
 }
 
 impl Demand {
@@ -34,14 +34,11 @@ impl Demand {
         let gains: Vec<Vec<[f64; INTERVALS]>> = models.iter().map(gains).collect();
         let highest = gains.iter().flatten().flatten().fold(0.0_f64, |highest, gain| highest.max(*gain));
         let lowest = (highest / look_steps).max(1e-9) * libm::pow(PRICE_RATIO, 1.0 - PRICES as f64);
-        let share = |slot: usize, price: f64| {
-            gains
-                .iter()
-                .map(|gains| look_steps / interval_of(&gains[slot / STRIDE], price * look_steps))
-                .sum()
+        let share = |group: usize, price: f64| {
+            gains.iter().map(|gains| look_steps / interval_of(&gains[group], price * look_steps)).sum()
         };
-        let shares = (0..SLOTS).map(|slot| {
-            std::array::from_fn(|index| share(slot, lowest * libm::pow(PRICE_RATIO, index as f64)))
+        let shares = (0..SLOTS / STRIDE).map(|group| {
+            std::array::from_fn(|index| share(group, lowest * libm::pow(PRICE_RATIO, index as f64)))
         });
         Self { lowest, shares: shares.collect() }
     }
@@ -66,7 +63,7 @@ impl Demand {
 
     /// The same, where the price is given by its number, with linear interpolation.
     fn share_at(&self, step: usize, index: f64) -> f64 {
-        let shares = &self.shares[step / SLOT_STEPS % SLOTS];
+        let shares = &self.shares[step / SLOT_STEPS % SLOTS / STRIDE];
         let below = (index as usize).min(PRICES - 2);
         let part = index - below as f64;
         shares[below] + part * (shares[below + 1] - shares[below])

@@ -21,6 +21,11 @@ const FORECAST_STEPS: f64 = 40.0;
 /// While the models of the things change, the demand is forecast again after this time, steps: a day.
 const FORECAST_AGAIN_STEPS: usize = 8640;
 
+/// A robot that learns goes out with this share of a full battery to see what it has not seen for longest, and returns with the
+/// second one: what does not fit into the battery is lost.
+const EXPLORE_FROM: f64 = 0.98;
+const EXPLORE_TO: f64 = 0.8;
+
 /// Goes where the expected integral of the Brier score falls most, by looks, until the next look at each thing, per time
 /// of travel and look.
 ///
@@ -39,6 +44,8 @@ pub(super) struct Gain {
     /// The steps on patrol, as they were and as they were forecast.
     spent_steps: f64,
     forecast_steps: f64,
+    /// Whether the robot is on a patrol to learn, which a full battery gives it for nothing.
+    is_exploring: bool,
 }
 
 /// A sequence of viewpoints.
@@ -74,11 +81,15 @@ impl Gain {
             priced_at: 0,
             spent_steps: FORECAST_STEPS,
             forecast_steps: FORECAST_STEPS,
+            is_exploring: false,
         }
     }
 
     fn worth<'a>(&self, view: &'a View<'a>) -> Worth<'a> {
         let gain = |thing: usize| {
+            if self.is_exploring {
+                return view.age(thing) as f64;
+            }
             let horizon = self.intervals[thing].max(view.age(thing) as f64).max(1.0) as usize;
             view.models[thing].gain(&view.beliefs[thing], view.step, horizon)
         };
@@ -189,8 +200,11 @@ impl Worth<'_> {
 
 impl Strategy for Gain {
     fn choose(&mut self, view: &View<'_>, _: &mut RandomStream) -> Choice {
+        let charge = view.charge_steps / view.duty.full_steps();
+        self.is_exploring =
+            view.is_learning && (charge >= EXPLORE_FROM || self.is_exploring && charge >= EXPLORE_TO);
         let worth = self.worth(view);
-        if view.duty.is_always() {
+        if view.duty.is_always() || self.is_exploring {
             let best = worth.best(|draft| draft.gain / draft.steps as f64);
             return best.map_or(Choice::Rest(1), |draft| Choice::Go(draft.first));
         }
