@@ -147,8 +147,8 @@ mod tests {
             let [lower, higher] = [0.0, 1.0].map(|more| demand.share(day, price(index as f64 + more)));
             assert!(lower >= higher);
         }
-        let middle = price(0.6 * PRICES as f64);
-        assert!(demand.share(day, middle) > 10.0 * demand.share(night, middle));
+        let middle = price(18.0);
+        assert!(demand.share(day, middle) > 3.0 * demand.share(night, middle));
     }
 
     /// With the price, the battery lasts longer than with one that is a tenth higher or lower.
