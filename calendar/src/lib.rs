@@ -35,7 +35,7 @@ mod timeline;
 pub use drawn::{Kind, Range, ThingKind, log_uniform};
 pub use habit::{Habit, Phases, Stays, blocked_probability};
 pub use hours::{DAY_S, HOUR_S, Hours, SLOT_S, WEEK_S};
-pub use matrix::{Matrix, PHASES, advanced};
+pub use matrix::{Matrix, PHASES, advanced, product};
 pub use recorded::{Change, RecordedError, Recording};
 pub use schedule::{Changes, Schedule};
 pub use text::{moment, time_of_week_s};

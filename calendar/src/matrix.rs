@@ -14,7 +14,8 @@ pub fn advanced(law: &[f64; PHASES], transitions: &Matrix) -> [f64; PHASES] {
     after
 }
 
-pub(super) fn product(left: &Matrix, right: &Matrix) -> Matrix {
+/// The transitions in one time, then another one.
+pub fn product(left: &Matrix, right: &Matrix) -> Matrix {
     left.map(|row| advanced(&row, right))
 }
 

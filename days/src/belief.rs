@@ -1,10 +1,12 @@
 //! What a robot believes about a thing: the law of its phase, after all looks, by a model of its habit.
 
-use crate::STEP_S;
-use crate::calendar::{Habit, Hours, Matrix, PHASES, Phases, SLOT_S, WEEK_S, advanced, blocked_probability};
+use crate::calendar::{
+    Habit, Hours, Matrix, PHASES, Phases, SLOT_S, WEEK_S, advanced, blocked_probability, product,
+};
+use crate::{SLOT_STEPS, STEP_S};
 
 /// Transitions in 2⁰ to 2¹⁶ steps: the longest is more than a week.
-const POWERS: usize = 17;
+pub(crate) const POWERS: usize = 17;
 /// Weeks after which the law of a thing repeats from week to week, for all stays of up to about a week.
 const WEEKS_TO_REPEAT: usize = 20;
 
@@ -15,6 +17,7 @@ pub struct Model {
     /// Transitions in 2ⁿ steps, while the place is quiet and while it is active.
     powers: [Vec<Matrix>; 2],
     start: Phases,
+    cycle_s: f64,
 }
 
 impl Model {
@@ -24,12 +27,23 @@ impl Model {
             let times = (0..POWERS).map(|power| STEP_S * (1_u64 << power) as f64);
             times.map(|time_s| habit.transitions(is_active, time_s)).collect()
         });
-        Self { powers, start: week_start(habit), hours: habit.hours.clone() }
+        Self::new(habit.hours.clone(), powers, habit.cycle_s())
+    }
+
+    /// A model with these hours, the transitions in 2ⁿ steps (quiet, active), and the mean time of a cycle, s.
+    pub(crate) fn new(hours: Hours, powers: [Vec<Matrix>; 2], cycle_s: f64) -> Self {
+        let start = week_start(&hours, &powers);
+        Self { hours, powers, start, cycle_s }
     }
 
     /// The law of the phase at the beginning of a week, without any look.
     pub fn start(&self) -> &Phases {
         &self.start
+    }
+
+    /// The mean time of a cycle (free and blocked), s.
+    pub fn cycle_s(&self) -> f64 {
+        self.cycle_s
     }
 
     /// The transitions in the step that begins with `step`.
@@ -49,35 +63,79 @@ impl Model {
     pub fn gain(&self, belief: &Belief, step: usize, horizon: usize) -> f64 {
         let p = belief.probability();
         let variance = p * (1.0 - p);
-        if variance <= 1e-12 {
-            return 0.0;
-        }
+        if variance <= 1e-12 { 0.0 } else { variance * self.memory(belief, step, horizon) }
+    }
+
+    /// The sum of ρ² over the next `horizon` steps.
+    fn memory(&self, belief: &Belief, step: usize, horizon: usize) -> f64 {
+        self.memories(belief, step, [horizon])[0]
+    }
+
+    /// The sums of ρ² over the next steps, up to each of these horizons, which increase.
+    pub(crate) fn memories<const N: usize>(
+        &self,
+        belief: &Belief,
+        step: usize,
+        horizons: [usize; N],
+    ) -> [f64; N] {
         let mut laws = [false, true].map(|is_blocked| belief.after(is_blocked).phases);
         let (mut ahead, mut square, mut sum) = (0, 1.0, 0.0);
         let mut switch = 0;
-        while ahead < horizon && square > 1e-6 {
-            let at = step + ahead;
-            if switch <= at {
-                switch = (self.hours.next_switch_s(at as f64 * STEP_S) / STEP_S) as usize;
+        horizons.map(|horizon| {
+            while ahead < horizon && square > 1e-6 {
+                let at = step + ahead;
+                if switch <= at {
+                    switch = self.next_switch(at);
+                }
+                let longest = (horizon - ahead).min((ahead / 2).max(1)).min(switch.saturating_sub(at).max(1));
+                let power = (longest.ilog2() as usize).min(POWERS - 1);
+                laws = laws.map(|law| advanced(&law, &self.regime(at)[power]));
+                let rho = blocked_probability(&laws[1]) - blocked_probability(&laws[0]);
+                sum += 0.5 * (square + rho * rho) * (1_u64 << power) as f64;
+                square = rho * rho;
+                ahead += 1 << power;
             }
-            let longest = (horizon - ahead).min((ahead / 2).max(1)).min(switch.saturating_sub(at).max(1));
+            sum
+        })
+    }
+
+    /// The first step after `step` at which the place becomes active or quiet.
+    fn next_switch(&self, step: usize) -> usize {
+        // Infinite becomes the largest number.
+        (self.hours.next_switch_s(step as f64 * STEP_S) / STEP_S) as usize
+    }
+
+    /// The law of the phases after `count` steps from `step` on.
+    fn later(&self, law: &Phases, step: usize, count: usize) -> Phases {
+        let (mut law, mut at, end) = (*law, step, step + count);
+        let mut switch = step;
+        while at < end {
+            if switch <= at {
+                switch = self.next_switch(at);
+            }
+            let longest = (end - at).min(switch.saturating_sub(at).max(1));
             let power = (longest.ilog2() as usize).min(POWERS - 1);
-            laws = laws.map(|law| advanced(&law, &self.regime(at)[power]));
-            let rho = blocked_probability(&laws[1]) - blocked_probability(&laws[0]);
-            sum += 0.5 * (square + rho * rho) * (1_u64 << power) as f64;
-            square = rho * rho;
-            ahead += 1 << power;
+            law = advanced(&law, &self.regime(at)[power]);
+            at += 1 << power;
         }
-        variance * sum
+        law
     }
 }
 
 /// The law of the phase at the beginning of a week that the habit comes back to.
-fn week_start(habit: &Habit) -> Phases {
-    let slots = [false, true].map(|is_active| habit.transitions(is_active, SLOT_S));
-    (0..WEEKS_TO_REPEAT * (WEEK_S / SLOT_S) as usize).fold([0.25; PHASES], |law, slot| {
-        advanced(&law, &slots[usize::from(habit.hours.is_active(slot as f64 * SLOT_S))])
-    })
+fn week_start(hours: &Hours, powers: &[Vec<Matrix>; 2]) -> Phases {
+    let slots = [0, 1].map(|regime| {
+        let identity: Matrix =
+            std::array::from_fn(|row| std::array::from_fn(|at| f64::from(u8::from(row == at))));
+        let bits = (0..POWERS).filter(|power| SLOT_STEPS >> power & 1 == 1);
+        bits.fold(identity, |all, power| product(&all, &powers[regime][power]))
+    });
+    let week = (0..(WEEK_S / SLOT_S) as usize).map(|slot| usize::from(hours.is_active(slot as f64 * SLOT_S)));
+    let mut law = [1.0 / PHASES as f64; PHASES];
+    for _ in 0..WEEKS_TO_REPEAT {
+        law = week.clone().fold(law, |law, regime| advanced(&law, &slots[regime]));
+    }
+    law
 }
 
 /// The law of the phase of a thing after all looks.
@@ -92,6 +150,11 @@ impl Belief {
         Self { phases: model.start }
     }
 
+    /// The belief that is this law of the phases.
+    pub(crate) fn of_phases(phases: Phases) -> Self {
+        Self { phases }
+    }
+
     /// The probability that the thing is blocked.
     pub fn probability(&self) -> f64 {
         blocked_probability(&self.phases).clamp(0.0, 1.0)
@@ -102,13 +165,18 @@ impl Belief {
         self.phases = advanced(&self.phases, model.step(step));
     }
 
+    /// The belief after `count` steps from `step` on.
+    pub(crate) fn later(&self, model: &Model, step: usize, count: usize) -> Self {
+        Self { phases: model.later(&self.phases, step, count) }
+    }
+
     /// A look shows the state.
     pub fn look(&mut self, is_blocked: bool) {
         *self = self.after(is_blocked);
     }
 
     /// The belief after a look that shows this state. A state that was impossible: both phases are as probable.
-    fn after(&self, is_blocked: bool) -> Self {
+    pub(crate) fn after(&self, is_blocked: bool) -> Self {
         let first = 2 * usize::from(is_blocked);
         let [short, long] = [self.phases[first], self.phases[first + 1]];
         let long = if short + long > 1e-300 { long / (short + long) } else { 0.5 };

@@ -22,6 +22,7 @@
 
 mod belief;
 mod building;
+mod learner;
 mod patrol;
 
 pub use calendar;
@@ -32,3 +33,6 @@ pub use patrol::{Choice, Duty, Patrol, Plan, Seen, Strategy, Totals, View};
 
 /// The step of beliefs, looks and scores, s. Things change at any time between.
 pub const STEP_S: f64 = 10.0;
+
+/// The number of steps of a slot of the calendar.
+const SLOT_STEPS: usize = (calendar::SLOT_S / STEP_S) as usize;

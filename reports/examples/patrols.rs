@@ -36,6 +36,9 @@ struct Options {
     /// The length of a patrol of the strategies that do not choose it, min: at most 30. The mean is printed for each length
     #[arg(long, default_values_t = [30.0], value_parser = minutes)]
     length: Vec<f64>,
+    /// The robot does not know the habits of the things, and learns them from its looks
+    #[arg(long)]
+    learned: bool,
 }
 
 fn share(word: &str) -> Result<f64, String> {
@@ -87,18 +90,19 @@ fn table(kind: Kind, duty: Duty, share: f64, plans: &[(String, Plan)], options: 
         .par_iter()
         .map(|seed| {
             let building = Building::generate(kind, *seed);
-            plans.iter().map(|(_, plan)| run(&building, duty, *plan, *seed, steps)).collect()
+            plans.iter().map(|(_, plan)| run(&building, duty, *plan, *seed, steps, options.learned)).collect()
         })
         .collect();
     let real = began.elapsed().as_secs_f64();
     let simulated = (seeds.len() * plans.len() * steps) as f64 * STEP_S;
     let name = Kind::ALL.iter().find(|(_, other)| *other == kind).map_or("", |(name, _)| name);
     println!(
-        "\n{name}, {} buildings from seed {}, {} days, patrol {} % of the time, {:.0} × real time",
+        "\n{name}, {} buildings from seed {}, {} days, patrol {} % of the time, habits {}, {:.0} × real time",
         seeds.len(),
         options.seed,
         options.days,
         100.0 * share,
+        if options.learned { "learned" } else { "known" },
         simulated / real
     );
     println!(
@@ -135,10 +139,11 @@ fn table(kind: Kind, duty: Duty, share: f64, plans: &[(String, Plan)], options: 
     }
 }
 
-fn run(building: &Building, duty: Duty, plan: Plan, seed: u64, steps: usize) -> Run {
+fn run(building: &Building, duty: Duty, plan: Plan, seed: u64, steps: usize, learned: bool) -> Run {
+    let start = if learned { Patrol::learning } else { Patrol::new };
     let mut strategy = plan.strategy(building, duty);
     let mut freshness = Freshness::new(STEP_S);
-    let totals = Patrol::new(building, duty, seed)
+    let totals = start(building, duty, seed)
         .run(strategy.as_mut(), steps, |predicted, is_blocked| freshness.add(predicted, is_blocked));
     Run { scores: freshness.scores(), totals }
 }

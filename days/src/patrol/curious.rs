@@ -25,7 +25,7 @@ impl CuriousViewpoints {
 /// Eq. 2 with the mean time T of a cycle: 1 − e^(−age/T).
 fn change_probability(view: &View<'_>, thing: usize) -> f64 {
     let age_s = view.age(thing) as f64 * STEP_S;
-    1.0 - libm::exp(-age_s / view.building.things[thing].habit.cycle_s())
+    1.0 - libm::exp(-age_s / view.models[thing].cycle_s())
 }
 
 impl NextViewpoint for CuriousViewpoints {

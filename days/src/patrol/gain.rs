@@ -1,4 +1,6 @@
+use super::demand::Demand;
 use super::duty::Duty;
+use super::round::Round;
 use super::view::{Choice, Seen, Strategy, View};
 use crate::building::Building;
 use interfaces::RandomStream;
@@ -14,24 +16,36 @@ const INTERVAL_WEIGHT: f64 = 0.2;
 /// The longest patrol that is planned from the dock, viewpoints.
 const LONGEST: usize = 40;
 
-/// The charge around which the price stays, as a share of the full one.
-const TARGET_CHARGE: f64 = 0.25;
-/// The price of a step of patrol changes by this factor, in the logarithm, in the time of a full charge, times the difference from
-/// the target.
-const PRICE_GAIN: f64 = 4.0;
+/// The patrols that the forecast of the time on patrol is trusted for before it is compared with what happened, steps.
+const FORECAST_STEPS: f64 = 40.0;
+/// While the models of the things change, the demand is forecast again after this time, steps: a day.
+const FORECAST_AGAIN_STEPS: usize = 8640;
+
+/// A robot that learns goes out with this share of a full battery to see what it has not seen for longest, and returns with the
+/// second one: what does not fit into the battery is lost.
+const EXPLORE_FROM: f64 = 0.98;
+const EXPLORE_TO: f64 = 0.8;
 
 /// Goes where the expected integral of the Brier score falls most, by looks, until the next look at each thing, per time
 /// of travel and look.
 ///
-/// With a battery there is a price for every step of patrol, which rises while the battery is rather empty and falls while
-/// it is rather full: the robot leaves the dock for a patrol that gains more than its price, and stays out as long as
-/// what follows does.
+/// With a battery there is a price for every step of patrol, with which the battery is expected to last ([`Demand`]): the robot
+/// leaves the dock for a patrol that gains more than its price, and stays out as long as what follows does.
 pub(super) struct Gain {
     /// The mean interval between two looks at each thing, steps.
     intervals: Vec<f64>,
-    /// The gain that a step of patrol must have; `None` before the first patrol.
-    price: Option<f64>,
+    /// The share of one thing of a round of all viewpoints, steps.
+    look_steps: f64,
+    demand: Option<Demand>,
+    demanded_at: usize,
+    /// The gain that a step of patrol must have.
+    price: f64,
     priced_at: usize,
+    /// The steps on patrol, as they were and as they were forecast.
+    spent_steps: f64,
+    forecast_steps: f64,
+    /// Whether the robot is on a patrol to learn, which a full battery gives it for nothing.
+    is_exploring: bool,
 }
 
 /// A sequence of viewpoints.
@@ -58,11 +72,24 @@ impl Gain {
         let viewpoints = building.viewpoints.len();
         let mean = building.steps.iter().flatten().sum::<usize>() as f64 / (viewpoints * viewpoints) as f64;
         let interval = 0.5 * mean * viewpoints as f64 * duty.spread();
-        Self { intervals: vec![interval; building.things.len()], price: None, priced_at: 0 }
+        Self {
+            intervals: vec![interval; building.things.len()],
+            look_steps: Round::new(building).steps(building) as f64 / building.things.len().max(1) as f64,
+            demand: None,
+            demanded_at: 0,
+            price: 0.0,
+            priced_at: 0,
+            spent_steps: FORECAST_STEPS,
+            forecast_steps: FORECAST_STEPS,
+            is_exploring: false,
+        }
     }
 
     fn worth<'a>(&self, view: &'a View<'a>) -> Worth<'a> {
         let gain = |thing: usize| {
+            if self.is_exploring {
+                return view.age(thing) as f64;
+            }
             let horizon = self.intervals[thing].max(view.age(thing) as f64).max(1.0) as usize;
             view.models[thing].gain(&view.beliefs[thing], view.step, horizon)
         };
@@ -74,14 +101,19 @@ impl Gain {
         }
     }
 
-    /// The price of a step follows the battery.
+    /// The price with which the battery lasts, by the forecast; where more or less was spent than forecast, the same is
+    /// expected of the future.
     fn update_price(&mut self, view: &View<'_>) {
-        let full = view.duty.full_steps();
-        let passed = (view.step - self.priced_at) as f64 * view.duty.charge_per_step() / full;
-        self.priced_at = view.step;
-        if let Some(price) = &mut self.price {
-            *price *= libm::exp(PRICE_GAIN * passed * (TARGET_CHARGE - view.charge_steps / full));
+        if view.is_learning && view.step >= self.demanded_at + FORECAST_AGAIN_STEPS {
+            self.demand = None;
+            self.demanded_at = view.step;
         }
+        let demand = self.demand.get_or_insert_with(|| Demand::new(view.models, self.look_steps));
+        let passed = (view.step - self.priced_at) as f64;
+        self.forecast_steps += demand.share(self.priced_at, self.price) * passed;
+        self.priced_at = view.step;
+        let scale = self.spent_steps / self.forecast_steps;
+        self.price = demand.price(view.step, view.charge_steps, view.duty, scale);
     }
 }
 
@@ -168,8 +200,11 @@ impl Worth<'_> {
 
 impl Strategy for Gain {
     fn choose(&mut self, view: &View<'_>, _: &mut RandomStream) -> Choice {
+        let charge = view.charge_steps / view.duty.full_steps();
+        self.is_exploring =
+            view.is_learning && (charge >= EXPLORE_FROM || self.is_exploring && charge >= EXPLORE_TO);
         let worth = self.worth(view);
-        if view.duty.is_always() {
+        if view.duty.is_always() || self.is_exploring {
             let best = worth.best(|draft| draft.gain / draft.steps as f64);
             return best.map_or(Choice::Rest(1), |draft| Choice::Go(draft.first));
         }
@@ -177,14 +212,11 @@ impl Strategy for Gain {
         if view.is_docked {
             let (gain, steps) = worth.patrol();
             let rate = gain / steps as f64;
-            if self.price.is_none() && view.charge_steps >= 0.1 * view.duty.full_steps() {
-                self.price = Some(rate);
-            }
-            if gain <= 0.0 || self.price.is_none_or(|price| rate < price) {
+            if gain <= 0.0 || rate < self.price {
                 return Choice::Rest(REST_STEPS);
             }
         }
-        let price = self.price.unwrap_or(0.0);
+        let price = self.price;
         let home = view.building.steps[view.at][view.building.dock];
         // What is left after paying for the steps; the way home is due now or later.
         let left = |draft: &Draft| {
@@ -199,6 +231,7 @@ impl Strategy for Gain {
     }
 
     fn learn(&mut self, seen: &Seen<'_>) {
+        self.spent_steps += seen.steps as f64;
         for (thing, before) in seen.things {
             let interval = (seen.step - before.unwrap_or(0)) as f64;
             self.intervals[*thing] += INTERVAL_WEIGHT * (interval - self.intervals[*thing]);

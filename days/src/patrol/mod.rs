@@ -2,6 +2,7 @@
 
 mod coverage;
 mod curious;
+mod demand;
 mod duty;
 mod fixed_length;
 mod gain;

@@ -2,9 +2,13 @@ use super::duty::Duty;
 use super::view::{Choice, Seen, Strategy, View};
 use crate::STEP_S;
 use crate::belief::{Belief, Model};
-use crate::building::Building;
+use crate::building::{Building, ThingKind};
 use crate::calendar::Timeline;
+use crate::learner::Learner;
 use interfaces::{Purpose, RandomStream};
+
+/// The models for planning are learned again after this time, steps: three hours.
+const MODEL_STEPS: usize = 1080;
 
 /// What a robot did, in steps and in looks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -25,10 +29,14 @@ pub struct Patrol<'a> {
     duty: Duty,
     models: Vec<Model>,
     beliefs: Vec<Belief>,
+    /// What the robot has learned, if it does not know the habits.
+    learner: Option<Learner>,
     timelines: Vec<Timeline>,
     /// The state of each thing at the last look at it, and its step.
     last_states: Vec<bool>,
     seen: Vec<Option<usize>>,
+    /// The step at which the models were last learned.
+    modeled_at: usize,
     step: usize,
     at: usize,
     charge_steps: f64,
@@ -60,12 +68,31 @@ impl<'a> Patrol<'a> {
             last_states: vec![false; models.len()],
             seen: vec![None; models.len()],
             models,
+            learner: None,
+            modeled_at: 0,
             step: 0,
             at: building.dock,
             charge_steps: duty.full_steps().min(if duty.is_always() { f64::INFINITY } else { 0.0 }),
             rng: RandomStream::new(seed, Purpose::Patrol),
             totals: Totals::default(),
         }
+    }
+
+    /// A robot that knows no habit, and learns the habits of all things from its looks. The things do the same.
+    pub fn learning(building: &'a Building, duty: Duty, seed: u64) -> Self {
+        let mut patrol = Self::new(building, duty, seed);
+        patrol.learner =
+            Some(Learner::new(building.things.iter().map(|thing| thing.kind == ThingKind::Door).collect()));
+        patrol.update_models();
+        patrol
+    }
+
+    /// The models for planning are those of the mean habits.
+    fn update_models(&mut self) {
+        let Some(learner) = &mut self.learner else { return };
+        learner.learn_priors();
+        let hours = learner.hours();
+        self.models = (0..self.models.len()).map(|thing| learner.model(thing, hours.clone())).collect();
     }
 
     /// Lets a strategy drive the robot for a number of steps. After every step, `score` gets the probability of being blocked and
@@ -88,8 +115,11 @@ impl<'a> Patrol<'a> {
                 }
                 errand = Some(self.begin(strategy, &is_blocked));
             }
-            for (predicted, belief) in predicted.iter_mut().zip(&self.beliefs) {
-                *predicted = belief.probability();
+            for (thing, predicted) in predicted.iter_mut().enumerate() {
+                *predicted = match &self.learner {
+                    Some(learner) => learner.probability(thing),
+                    None => self.beliefs[thing].probability(),
+                };
             }
             score(&predicted, &is_blocked);
             self.totals.steps += 1;
@@ -111,8 +141,12 @@ impl<'a> Patrol<'a> {
 
     /// A step passes.
     fn pass(&mut self, errand: &Option<Errand>) {
-        for (belief, model) in self.beliefs.iter_mut().zip(&self.models) {
-            belief.advance(model, self.step);
+        match &mut self.learner {
+            Some(learner) => learner.advance(),
+            None => {
+                let pairs = self.beliefs.iter_mut().zip(&self.models);
+                pairs.for_each(|(belief, model)| belief.advance(model, self.step));
+            }
         }
         if errand.as_ref().is_some_and(|errand| errand.way.is_some()) {
             self.charge_steps -= 1.0;
@@ -126,6 +160,15 @@ impl<'a> Patrol<'a> {
     /// What the robot does next; a way that doors close before the robot leaves ends in front of them.
     fn begin(&mut self, strategy: &mut dyn Strategy, is_blocked: &[bool]) -> Errand {
         let is_docked = self.at == self.building.dock;
+        if let Some(learner) = &self.learner {
+            for (thing, belief) in self.beliefs.iter_mut().enumerate() {
+                *belief = Belief::of_phases(learner.phases(thing));
+            }
+            if self.step >= self.modeled_at + MODEL_STEPS {
+                self.modeled_at = self.step;
+                self.update_models();
+            }
+        }
         let view = View {
             step: self.step,
             at: self.at,
@@ -134,6 +177,7 @@ impl<'a> Patrol<'a> {
             duty: self.duty,
             building: self.building,
             models: &self.models,
+            is_learning: self.learner.is_some(),
             beliefs: &self.beliefs,
             last_states: &self.last_states,
             seen: &self.seen,
@@ -167,6 +211,9 @@ impl<'a> Patrol<'a> {
             let state = is_blocked[thing];
             changes += usize::from(self.seen[thing].is_some() && self.last_states[thing] != state);
             self.beliefs[thing].look(state);
+            if let Some(learner) = &mut self.learner {
+                learner.look(thing, state);
+            }
             self.last_states[thing] = state;
             self.seen[thing] = Some(self.step);
         }

@@ -35,6 +35,12 @@ impl Round {
         }
         Self { tour, next: 0 }
     }
+
+    /// The length of the tour, steps.
+    pub(super) fn steps(&self, building: &Building) -> usize {
+        let next = self.tour.iter().cycle().skip(1);
+        self.tour.iter().zip(next).map(|(from, to)| building.steps[*from][*to]).sum()
+    }
 }
 
 impl NextViewpoint for Round {

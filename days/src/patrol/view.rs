@@ -31,6 +31,8 @@ pub struct View<'a> {
     pub building: &'a Building,
     /// The models of the habits of the things.
     pub models: &'a [Model],
+    /// Whether the models change, as the robot learns.
+    pub is_learning: bool,
     /// What the robot believes about the things.
     pub beliefs: &'a [Belief],
     /// The state of each thing at the last look at it; free before the first one.
