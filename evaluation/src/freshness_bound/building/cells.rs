@@ -77,7 +77,8 @@ impl Cells {
         for level in (0..usize::BITS as usize).take_while(|level| count >> level > 0) {
             let blocks = (0..count >> level).map(|block| {
                 let cells = block << level..(block + 1) << level;
-                let has = [false, true].map(|active| cells.clone().any(|cell| self.is_active[cell] == active));
+                let has =
+                    [false, true].map(|active| cells.clone().any(|cell| self.is_active[cell] == active));
                 Block { runs: self.runs_of(cells).into_iter().map(&mut index).collect(), has }
             });
             self.blocks.push(blocks.collect());

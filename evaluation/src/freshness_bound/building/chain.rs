@@ -150,7 +150,9 @@ impl Passage {
         let lists = values.len() / BELIEFS;
         before.fill(0.0);
         for (row, before) in self.watched.chunks_exact(BELIEFS).zip(before.chunks_exact_mut(lists)) {
-            for (share, values) in row.iter().zip(values.chunks_exact(lists)).filter(|(share, _)| **share > 0.0) {
+            for (share, values) in
+                row.iter().zip(values.chunks_exact(lists)).filter(|(share, _)| **share > 0.0)
+            {
                 before.iter_mut().zip(values).for_each(|(before, value)| *before += share * value);
             }
         }
@@ -194,7 +196,9 @@ fn watched_nothing() -> Vec<f64> {
 fn product(left: &[f64], right: &[f64]) -> Vec<f64> {
     let mut product = vec![0.0; BELIEFS * BELIEFS];
     for (left, row) in left.chunks_exact(BELIEFS).zip(product.chunks_exact_mut(BELIEFS)) {
-        for (factor, right) in left.iter().zip(right.chunks_exact(BELIEFS)).filter(|(factor, _)| **factor > 0.0) {
+        for (factor, right) in
+            left.iter().zip(right.chunks_exact(BELIEFS)).filter(|(factor, _)| **factor > 0.0)
+        {
             row.iter_mut().zip(right).for_each(|(value, right)| *value += factor * right);
         }
     }
@@ -228,7 +232,8 @@ mod tests {
             assert!((sums.variance(0.25) - variance).abs() < 1e-10, "{steps}");
             assert!(laws.iter().flatten().zip(slow.iter().flatten()).all(|(a, b)| (a - b).abs() < 1e-12));
             // Watching only tells more: the probability of each state at the end is that of the law.
-            let blocked: Vec<f64> = (0..BELIEFS).map(|belief| f64::from(u8::from(belief >= POINTS))).collect();
+            let blocked: Vec<f64> =
+                (0..BELIEFS).map(|belief| f64::from(u8::from(belief >= POINTS))).collect();
             let mut before = vec![0.0; BELIEFS];
             chain.runs[0].watch(&blocked, &mut before);
             let mut law = [0.0, 1.0, 0.0, 0.0];

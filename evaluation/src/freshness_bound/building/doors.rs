@@ -66,8 +66,11 @@ impl Access {
 
 /// The room, and its door, that a thing can only be seen in.
 fn only_door(building: &Building, thing: usize) -> Option<(usize, usize)> {
-    let mut rooms =
-        building.viewpoints.iter().filter(|viewpoint| viewpoint.sees.contains(&thing)).map(|viewpoint| viewpoint.room);
+    let mut rooms = building
+        .viewpoints
+        .iter()
+        .filter(|viewpoint| viewpoint.sees.contains(&thing))
+        .map(|viewpoint| viewpoint.room);
     let room = rooms.next()??;
     rooms.all(|other| other == Some(room)).then_some((room, building.rooms[room].door?))
 }
@@ -78,9 +81,11 @@ fn open_cells(building: &Building, is_closed: &[bool], cells: &Cells, room: usiz
     let (inside, outside): (Vec<usize>, Vec<usize>) =
         viewpoints.partition(|viewpoint| building.viewpoints[*viewpoint].room == Some(room));
     let ways = outside.iter().flat_map(|from| inside.iter().map(|to| building.steps[*from][*to]));
-    let (shortest, longest) = ways.fold((usize::MAX, 0), |(low, high), steps| (low.min(steps), high.max(steps)));
+    let (shortest, longest) =
+        ways.fold((usize::MAX, 0), |(low, high), steps| (low.min(steps), high.max(steps)));
     let is_open = |cell: usize| {
-        let [first, end] = [cells.begins[cell].saturating_sub(longest), cells.begins[cell + 1].saturating_sub(shortest)];
+        let [first, end] =
+            [cells.begins[cell].saturating_sub(longest), cells.begins[cell + 1].saturating_sub(shortest)];
         is_closed[first.min(end)..end].iter().any(|is_closed| !is_closed)
     };
     (0..cells.count()).map(is_open).collect()

@@ -1,5 +1,5 @@
-use super::plan::Prices;
 use super::doors::Doors;
+use super::plan::Prices;
 use days::Building;
 use std::ops::Range;
 
@@ -74,8 +74,8 @@ impl Clock {
 /// What limits a trip.
 #[derive(Clone, Copy)]
 pub(super) struct Rules {
-    /// The price of a step outside the dock, in quiet and in active hours.
-    pub(super) step: Prices,
+    /// The price of a step outside the dock.
+    pub(super) step_price: f64,
     /// The share of a price that is due in the cell after a look.
     pub(super) again: f64,
 }
@@ -96,8 +96,10 @@ impl Roads {
     pub(super) fn new(building: &Building) -> Self {
         let viewpoints = 0..building.viewpoints.len();
         let from = viewpoints.clone().map(|from| {
-            let mut roads: Vec<Road> =
-                viewpoints.clone().map(|to| road(building, from, to, building.door_between(from, to), false)).collect();
+            let mut roads: Vec<Road> = viewpoints
+                .clone()
+                .map(|to| road(building, from, to, building.door_between(from, to), false))
+                .collect();
             for room in &building.rooms {
                 let leads_there = |to: &usize| {
                     building.viewpoints[*to].room.is_some_and(|other| building.rooms[other] == *room)
@@ -114,7 +116,13 @@ impl Roads {
     }
 
     /// The trip from the dock that collects the most prices of looks, less those of steps.
-    pub(super) fn best_trip(&self, prices: &[Prices], clock: Stretch<'_>, rules: Rules, with_looks: bool) -> Trip {
+    pub(super) fn best_trip(
+        &self,
+        prices: &[Prices],
+        clock: Stretch<'_>,
+        rules: Rules,
+        with_looks: bool,
+    ) -> Trip {
         let tolls: Vec<Vec<Toll>> =
             self.from.iter().map(|roads| roads.iter().map(|road| road.toll(prices)).collect()).collect();
         let mut search = Search::new(self, &tolls, clock, rules, with_looks);
@@ -152,7 +160,8 @@ fn sees(building: &Building, viewpoint: usize) -> Vec<usize> {
     let has_door = room.is_some_and(|room| building.rooms[room].door.is_some());
     let same = |other: &usize| *other == viewpoint || (has_door && building.viewpoints[*other].room == room);
     let viewpoints = (0..building.viewpoints.len()).filter(same);
-    let mut things: Vec<usize> = viewpoints.flat_map(|other| building.viewpoints[other].sees.clone()).collect();
+    let mut things: Vec<usize> =
+        viewpoints.flat_map(|other| building.viewpoints[other].sees.clone()).collect();
     things.sort_unstable();
     things.dedup();
     things
@@ -160,7 +169,8 @@ fn sees(building: &Building, viewpoint: usize) -> Vec<usize> {
 
 impl Road {
     fn toll(&self, prices: &[Prices]) -> Toll {
-        let sum = |things: &[usize]| [0, 1].map(|class| things.iter().map(|thing| prices[*thing][class]).sum());
+        let sum =
+            |things: &[usize]| [0, 1].map(|class| things.iter().map(|thing| prices[*thing][class]).sum());
         let door = self.door.map_or([0.0; 2], |door| prices[door]);
         Toll {
             to: self.to,
@@ -198,24 +208,24 @@ struct Search<'a> {
     tolls: &'a [Vec<Toll>],
     clock: Stretch<'a>,
     rules: Rules,
-    /// The cost of all steps before each step.
-    spent: Vec<f64>,
     /// What can be collected from a step on, in each state; steps follow each other.
     values: Vec<f64>,
     moves: Vec<Move>,
 }
 
 impl<'a> Search<'a> {
-    fn new(roads: &'a Roads, tolls: &'a [Vec<Toll>], clock: Stretch<'a>, rules: Rules, with_looks: bool) -> Self {
+    fn new(
+        roads: &'a Roads,
+        tolls: &'a [Vec<Toll>],
+        clock: Stretch<'a>,
+        rules: Rules,
+        with_looks: bool,
+    ) -> Self {
         let states = roads.from.len() + STATES_OF_REST;
         let steps = clock.cell.len();
-        let mut spent = vec![0.0];
-        for is_active in clock.is_active {
-            spent.push(spent[spent.len() - 1] + rules.step[usize::from(*is_active)]);
-        }
         let values = vec![0.0; (steps + 1) * states];
         let moves = vec![Move::End; if with_looks { (steps + 1) * states } else { 0 }];
-        Self { roads, tolls, clock, rules, spent, values, moves }
+        Self { roads, tolls, clock, rules, values, moves }
     }
 
     fn states(&self) -> usize {
@@ -273,7 +283,7 @@ impl<'a> Search<'a> {
                 + toll.new[after]
                 + due.shared * toll.shared[after]
                 + due.door * toll.door[after]
-                - (self.spent[end] - self.spent[step]),
+                - toll.steps as f64 * self.rules.step_price,
         )
     }
 
