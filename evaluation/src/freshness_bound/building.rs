@@ -51,6 +51,8 @@ use roads::{Clock, Roads, Rules};
 const SEED_OF_PRICES: u64 = 1 << 40;
 /// How often things are planned anew around the prices that were found.
 const REFINEMENTS: usize = 2;
+/// By which all prices are scaled at last. At prices of 0 the bound is 0.
+const FACTORS: [f64; 6] = [0.0, 0.5, 0.75, 1.0, 1.35, 2.0];
 /// Multiples of the price of a step that are tried.
 const STEP_PRICE_FACTORS: [f64; 4] = [0.93, 0.98, 1.02, 1.07];
 
@@ -150,7 +152,20 @@ impl<'a> BuildingBound<'a> {
             bound.prices = flow.prices;
             bound.step_price = flow.step_price;
         }
+        bound.scale(&doors);
         bound
+    }
+
+    /// Scales all prices by the best of some factors; what the robot collects is in proportion to them.
+    fn scale(&mut self, doors: &Doors) {
+        let collected = self.collected(doors);
+        let values = self.values(doors, |thing| {
+            FACTORS.map(|factor| self.prices[thing].map(|price| price * factor)).to_vec()
+        });
+        let bound = |at: usize| values.iter().map(|values| values[at]).sum::<f64>() - FACTORS[at] * collected;
+        let best = (0..FACTORS.len()).max_by(|a, b| bound(*a).total_cmp(&bound(*b))).unwrap_or(0);
+        self.prices.iter_mut().flatten().for_each(|price| *price *= FACTORS[best]);
+        self.step_price *= FACTORS[best];
     }
 
     /// The bound in the week of a seed: the doors do in it what they do in a [`days::Patrol`] of this seed. Over many seeds, no

@@ -161,17 +161,29 @@ mod tests {
                 assert_eq!(cells.is_active[cell], hours.is_active(step as f64 * STEP_S), "{step}");
             }
         }
-        for first in [0, 5, 700, cells.count() - 1] {
+        // Seen in all cells, and not in some hundreds of them.
+        let count = cells.count();
+        let some = (0..count).map(|cell| cell % 500 < 230).collect();
+        for (access, first) in [Access::of(vec![true; count]), Access::of(some)]
+            .iter()
+            .flat_map(|access| [0, 5, 700, count - 1].map(|first| (access, first)))
+        {
             let mut next = first;
-            for window in cells.windows(first, 8) {
+            for window in cells.windows(first, 8, access, true) {
                 assert_eq!((window.cell, window.block() << window.level), (next, next));
-                assert!(window.level == 0 || 8 << window.level <= next - first);
                 let block = &cells.blocks[window.level][window.block()];
                 let steps: usize = block.runs.iter().map(|run| cells.runs[*run].steps).sum();
                 next += 1 << window.level;
                 assert_eq!(steps, cells.begins[next] - cells.begins[window.cell]);
+                if window.has_look {
+                    assert!(window.level == 0 || 8 << window.level <= window.cell - first);
+                    let ends = [window.cell, next - 1];
+                    assert!(window.cell == first || ends.iter().all(|cell| access.is_open(*cell)));
+                } else {
+                    assert!((window.cell..next).all(|cell| !access.is_open(cell)));
+                }
             }
-            assert_eq!(next, cells.count());
+            assert_eq!(next, count);
         }
     }
 }

@@ -46,9 +46,13 @@ impl Access {
             None => vec![true; cells.count()],
             Some((room, door)) => open_cells(building, &doors.is_closed[door], cells, room),
         };
-        let mut next_open = vec![cells.count(); cells.count()];
-        let mut next = cells.count();
-        for cell in (0..cells.count()).rev() {
+        Self::of(is_open)
+    }
+
+    pub(super) fn of(is_open: Vec<bool>) -> Self {
+        let mut next_open = vec![is_open.len(); is_open.len()];
+        let mut next = is_open.len();
+        for cell in (0..is_open.len()).rev() {
             next = if is_open[cell] { cell } else { next };
             next_open[cell] = next;
         }

@@ -10,6 +10,8 @@ const MULTIPLES: [f64; 4] = [0.25, 0.7, 1.5, 4.0];
 const MIDDLE: f64 = 25.0;
 /// The search for prices goes through the whole time this often, in trips of at most some steps, without and with a battery.
 const PASSES: usize = 3;
+/// It is at least this long.
+const ROUNDS: usize = 100;
 const TRIPS: [usize; 2] = [360, 1800];
 /// A trip with too many steps raises the price of a step by at most this factor, in the logarithm.
 const STEP_PRICE_GAIN: f64 = 0.2;
@@ -104,14 +106,15 @@ impl Flow {
         let demands: Vec<Vec<Demand>> = tables.iter().map(|(table, values)| table.demands(values)).collect();
         let steps = clock.cell.len();
         let trips = steps.div_ceil(TRIPS[usize::from(!budget.is_always)]);
-        let first = if start.is_some() { trips } else { 0 };
+        let rounds = (PASSES * trips).max(ROUNDS);
+        let first = if start.is_some() { rounds / PASSES } else { 0 };
         let guess = || Self {
             prices: Vec::new(),
             looks: vec![[1.0; 2]; tables.len()],
             step_price: if budget.is_always { 0.0 } else { STEP_PRICE },
         };
         let Self { mut prices, mut looks, mut step_price } = start.unwrap_or_else(guess);
-        for round in first..PASSES * trips {
+        for round in first..rounds {
             prices = demands.iter().zip(&looks).map(|(demands, looks)| prices_of(demands, looks)).collect();
             let trip = order(round, trips);
             let range = trip * steps / trips..(trip + 1) * steps / trips;

@@ -80,7 +80,7 @@ fn the_bound_is_at_most_the_optimum_and_near() {
         let best = optimum(&building, &models, &beliefs, 0, steps) / (2 * steps) as f64;
         let bound = BuildingBound::new(&building, Duty::ALWAYS, steps, FINE).brier(1);
         println!("{best:.5}: {:.4}", bound / best);
-        assert!(bound <= best && bound > 0.6 * best, "{bound} {best}");
+        assert!(bound <= best && bound > 0.4 * best, "{bound} {best}");
     }
 }
 
@@ -100,11 +100,13 @@ fn it_is_near_the_bound_without_travel() {
     assert!(bound < 1.001 * other && bound > 0.8 * other, "{bound} {other}");
 }
 
-/// The mean over 100 seeds of the difference between score and bound, and its standard error.
+const SEEDS: u64 = 100;
+
+/// The mean over the seeds of the difference between score and bound, and its standard error.
 fn margins(building: &Building, duty: Duty, steps: usize, settings: BoundSettings) {
     let of = BuildingBound::new(building, duty, steps, settings);
-    let bounds: Vec<f64> = (0..100).into_par_iter().map(|seed| of.brier(seed)).collect();
-    let mean_bound = bounds.iter().sum::<f64>() / 100.0;
+    let bounds: Vec<f64> = (0..SEEDS).into_par_iter().map(|seed| of.brier(seed)).collect();
+    let mean_bound = bounds.iter().sum::<f64>() / SEEDS as f64;
     assert!(mean_bound > 0.0, "{mean_bound}");
     for plan in [Plan::Never, Plan::Curious(15), Plan::Round(15), Plan::Coverage(15), Plan::Gain] {
         let margin = |(seed, bound): (u64, &f64)| {
@@ -115,9 +117,11 @@ fn margins(building: &Building, duty: Duty, steps: usize, settings: BoundSetting
             });
             freshness.scores().brier - bound
         };
-        let margins: Vec<f64> = (0..100_u64).zip(&bounds).map(margin).collect();
-        let mean = margins.iter().sum::<f64>() / 100.0;
-        let error = (margins.iter().map(|margin| (margin - mean).powi(2)).sum::<f64>() / 99.0 / 100.0).sqrt();
+        let margins: Vec<f64> = (0..SEEDS).zip(&bounds).map(margin).collect();
+        let mean = margins.iter().sum::<f64>() / SEEDS as f64;
+        let error = (margins.iter().map(|margin| (margin - mean).powi(2)).sum::<f64>()
+            / (SEEDS * (SEEDS - 1)) as f64)
+            .sqrt();
         println!("{plan:?}: {:.3} of the bound, {mean:.5} ± {error:.5}", (mean + mean_bound) / mean_bound);
         assert!(mean + 3.0 * error > 0.0, "{plan:?}: {mean} ± {error}");
     }
@@ -135,18 +139,18 @@ fn no_strategy_is_below_the_bound_in_two_rooms() {
     let travel = vec![vec![1, 3, 4], vec![3, 1, 6], vec![4, 6, 1]];
     let building = building(habits, viewpoints, rooms, travel);
     let settings = BoundSettings { cell_steps: [2, 2], fineness: 12, longest_steps: 360, again: 0.6 };
-    margins(&building, Duty::ALWAYS, 720, settings);
-    margins(&building, Duty::share(0.1), 720, settings);
+    margins(&building, Duty::ALWAYS, 360, settings);
+    margins(&building, Duty::share(0.1), 360, settings);
 }
 
 #[test]
 fn no_strategy_is_below_the_bound_in_generated_buildings() {
     // Into the first active hours of Monday.
-    for (kind, share, hours) in [(Kind::Home, 1.0, 9), (Kind::Office, 0.05, 12)] {
+    for (kind, share, hours) in [(Kind::Home, 1.0, 8), (Kind::Office, 0.1, 11)] {
         let building = Building::generate(kind, 100_000);
         let duty = Duty::share(share);
         let settings =
-            BoundSettings { cell_steps: [180, 12], fineness: 4, ..BoundSettings::of(&building, duty) };
+            BoundSettings { cell_steps: [180, 30], fineness: 4, ..BoundSettings::of(&building, duty) };
         margins(&building, duty, hours * 360, settings);
     }
 }
