@@ -30,22 +30,25 @@
 //!
 //! Source: Whittle, *Restless bandits: activity allocation in a changing world*, 1988 (relaxation by prices).
 
+mod access;
 mod cells;
 mod chain;
 mod doors;
 mod plan;
 mod prices;
 mod roads;
+mod trips;
 
 use cells::Cells;
 use chain::Chain;
 use days::calendar::Hours;
 use days::{Building, Duty};
-use doors::{Access, Doors};
+use doors::Doors;
 use plan::{Planner, Prices};
 use prices::{Budget, Flow, Table};
 use rayon::prelude::*;
-use roads::{Clock, Roads, Rules};
+use roads::Roads;
+use trips::{Clock, Rules, best_trip};
 
 /// Far from the seeds of any study.
 const SEED_OF_PRICES: u64 = 1 << 40;
@@ -183,7 +186,7 @@ impl<'a> BuildingBound<'a> {
             let planner = Planner {
                 cells: &self.cells,
                 chain: &self.chains[thing],
-                access: &Access::new(self.building, doors, &self.cells, thing),
+                access: &doors.access(self.building, &self.cells, thing),
                 fineness: self.settings.fineness,
                 longest: self.settings.longest_steps,
                 again: self.settings.again,
@@ -199,7 +202,7 @@ impl<'a> BuildingBound<'a> {
         let stretch = self.clock.stretch(0..self.clock.cell.len(), doors);
         let collected = |factor: &f64| {
             let rules = Rules { step_price: self.step_price * factor, again: self.settings.again };
-            let trip = self.roads.best_trip(&self.prices, stretch, rules, false);
+            let trip = best_trip(&self.roads, &self.prices, stretch, rules, false);
             trip.collected + rules.step_price * self.budget.total
         };
         let factors: &[f64] = if self.budget.is_always { &[0.0] } else { &STEP_PRICE_FACTORS };

@@ -1,4 +1,4 @@
-use super::doors::Access;
+use super::access::Access;
 use days::STEP_S;
 use days::calendar::Hours;
 use std::collections::BTreeMap;

@@ -1,3 +1,4 @@
+use super::access::Access;
 use super::cells::Cells;
 use days::calendar::Timeline;
 use days::{Building, Model};
@@ -28,43 +29,13 @@ impl Doors {
         });
         Self { is_closed: states.collect() }
     }
-}
 
-/// In which cells a thing in a room can be seen by a robot that comes in.
-///
-/// A robot that is inside when the door closes goes on looking. The bound lets it see all things of the room in every
-/// cell from then on, at the price of a look in the cell after a look.
-pub(super) struct Access {
-    is_open: Vec<bool>,
-    /// The first open cell from each cell on; the number of cells if there is none.
-    next_open: Vec<usize>,
-}
-
-impl Access {
-    pub(super) fn new(building: &Building, doors: &Doors, cells: &Cells, thing: usize) -> Self {
-        let is_open = match only_door(building, thing) {
+    /// In which cells a thing can be seen by a robot that comes in.
+    pub(super) fn access(&self, building: &Building, cells: &Cells, thing: usize) -> Access {
+        Access::of(match only_door(building, thing) {
             None => vec![true; cells.count()],
-            Some((room, door)) => open_cells(building, &doors.is_closed[door], cells, room),
-        };
-        Self::of(is_open)
-    }
-
-    pub(super) fn of(is_open: Vec<bool>) -> Self {
-        let mut next_open = vec![is_open.len(); is_open.len()];
-        let mut next = is_open.len();
-        for cell in (0..is_open.len()).rev() {
-            next = if is_open[cell] { cell } else { next };
-            next_open[cell] = next;
-        }
-        Self { is_open, next_open }
-    }
-
-    pub(super) fn is_open(&self, cell: usize) -> bool {
-        self.is_open[cell]
-    }
-
-    pub(super) fn next_open(&self, cell: usize) -> usize {
-        self.next_open[cell]
+            Some((room, door)) => open_cells(building, &self.is_closed[door], cells, room),
+        })
     }
 }
 

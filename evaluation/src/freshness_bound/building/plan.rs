@@ -1,6 +1,6 @@
+use super::access::Access;
 use super::cells::{Cells, Window};
 use super::chain::{BELIEFS, Chain, POINTS, long_share, seen};
-use super::doors::Access;
 use days::calendar::Phases;
 
 /// The price of a look in quiet and in active hours.

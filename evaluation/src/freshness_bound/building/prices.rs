@@ -1,6 +1,7 @@
 use super::doors::Doors;
 use super::plan::Prices;
-use super::roads::{Clock, Roads, Rules};
+use super::roads::Roads;
+use super::trips::{Clock, Rules, best_trip};
 use days::Duty;
 
 /// The prices at which things are planned at first, and multiples of the prices that were found, at which they are planned
@@ -121,7 +122,7 @@ impl Flow {
             let weight = 2.0 / (round as f64 + 2.0);
             let share = range.len() as f64 / steps as f64;
             let rules = Rules { step_price, again };
-            let trip = roads.best_trip(&prices, clock.stretch(range, doors), rules, true);
+            let trip = best_trip(roads, &prices, clock.stretch(range, doors), rules, true);
             let excess = trip.steps as f64 / (budget.total * share) - 1.0;
             step_price *= libm::exp(STEP_PRICE_GAIN * weight.sqrt() * excess.min(3.0));
             for (looks, more) in looks.iter_mut().zip(&trip.looks) {
