@@ -118,15 +118,19 @@ fn margins(plans: &[Plan], building: &Building, duty: Duty, steps: usize, settin
     let mean_bound = bounds.iter().sum::<f64>() / SEEDS as f64;
     assert!(mean_bound > 0.0, "{mean_bound}");
     for plan in plans {
-        let margin = |(seed, bound): (u64, &f64)| {
+        let margin = |(seed, bound): (usize, &f64)| {
             let mut freshness = Freshness::new(STEP_S);
             let mut strategy = plan.strategy(building, duty);
-            Patrol::new(building, duty, seed).run(strategy.as_mut(), steps, |predicted, is_blocked| {
-                freshness.add(predicted, is_blocked);
-            });
+            Patrol::new(building, duty, seed as u64).run(
+                strategy.as_mut(),
+                steps,
+                |predicted, is_blocked| {
+                    freshness.add(predicted, is_blocked);
+                },
+            );
             freshness.scores().brier - bound
         };
-        let margins: Vec<f64> = (0..SEEDS).zip(&bounds).map(margin).collect();
+        let margins: Vec<f64> = bounds.par_iter().enumerate().map(margin).collect();
         let mean = margins.iter().sum::<f64>() / SEEDS as f64;
         let error = (margins.iter().map(|margin| (margin - mean).powi(2)).sum::<f64>()
             / (SEEDS * (SEEDS - 1)) as f64)
