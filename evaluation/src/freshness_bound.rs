@@ -12,6 +12,8 @@
 //!
 //! Source: Whittle, *Restless bandits: activity allocation in a changing world*, 1988 (relaxation by prices).
 
+pub mod building;
+
 use days::calendar::{Habit, blocked_probability};
 use days::{Model, STEP_S};
 use rayon::prelude::*;
