@@ -1,5 +1,5 @@
 use crate::belief::{Belief, Permission};
-use crate::day::DayTotals;
+use crate::day_totals::DayTotals;
 use crate::messages::{Level, Message};
 use crate::pilot::{GoalCount, Pilot, StrategyState};
 use agent::{Agent, Features, Goal, Stay, Travel};

@@ -1,6 +1,7 @@
 //! The day of a robot: patrols on a battery, rests at its dock, and orders by others.
 
 use crate::autonomous::{Destination, GoalSelector};
+use crate::day_totals::DayTotals;
 use crate::pilot::StrategyState;
 use agent::{Features, Stay, Travel};
 use calendar::{DAY_S, Hours};
@@ -31,27 +32,6 @@ pub struct DaySettings {
     pub busy: Hours,
     /// The time of the week at which the map has the time 0, s since Monday 0:00.
     pub starts_s: f64,
-}
-
-/// What a robot did with its time.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct DayTotals {
-    /// The time on patrol, s.
-    pub patrol_s: f64,
-    /// The time at rest, s.
-    pub rest_s: f64,
-    /// The number of patrols.
-    pub patrols: u32,
-    /// How often the battery was flat before the robot was back.
-    pub flat: u32,
-}
-
-impl DayTotals {
-    /// The share of the time on patrol; `None` before any time has passed.
-    pub fn patrol_share(&self) -> Option<f64> {
-        let all_s = self.patrol_s + self.rest_s;
-        (all_s > 0.0).then(|| self.patrol_s / all_s)
-    }
 }
 
 /// Selects goals while the robot is on patrol, and sends it to its dock in time.

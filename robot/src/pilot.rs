@@ -1,5 +1,5 @@
 use crate::belief::Belief;
-use crate::day::DayTotals;
+use crate::day_totals::DayTotals;
 use crate::messages::Message;
 use agent::Features;
 use interfaces::Values;
