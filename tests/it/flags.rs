@@ -26,6 +26,8 @@ const PROGRAMS: [Program; 8] = [
             ("--tour", "gone.toml"),
             ("--strategy", "clever"),
             ("--purpose", "fame"),
+            ("--patrol", "0"),
+            ("--battery", "0"),
             ("--speed", "0"),
             ("--pose", "guessed"),
             ("--estimator", "guess"),
@@ -115,9 +117,10 @@ const GRID_WORLD: [(&str, &str); 15] = [
     ("--shard", "3/2"),
 ];
 
-const HOUSE_TRIALS: [(&str, &str); 15] = [
+const HOUSE_TRIALS: [(&str, &str); 16] = [
     ("--world", "nowhere"),
     ("--generate", "0"),
+    ("--calendar", "moon"),
     ("--kind", "palace"),
     ("--strategy", "clever"),
     ("--estimator", "guess"),

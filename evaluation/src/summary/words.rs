@@ -225,6 +225,7 @@ mod tests {
 
     fn results(coverage: f64, age: Age, rates: RateScores) -> RunResults {
         RunResults {
+            day: None,
             map: MapScores { coverage, map_quality: 0.9999 },
             reachable: ReachableScores { coverage_reachable: coverage, map_quality_reachable: 0.9999 },
             changing: ChangingAccuracy::default().scores(),

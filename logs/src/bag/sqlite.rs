@@ -26,6 +26,9 @@ const TOPICS: &str = "SELECT id, max(octet_length(name), octet_length(type), oct
 const MESSAGES: &str = "SELECT rowid, topic_id, timestamp, CASE WHEN length(data) <= ?3 THEN data END FROM messages \
                         WHERE rowid > ?1 ORDER BY rowid LIMIT ?2";
 
+/// The topics by their keys, whether they are wanted, and the number of their messages.
+type Topics = BTreeMap<i64, (Arc<Topic>, bool, u64)>;
+
 /// A database of rosbag2.
 pub(super) struct SqliteFile {
     database: Connection,
@@ -38,8 +41,7 @@ struct MessageTable {
     size: u64,
     /// The bytes that the file had before it was cut off; `None` if it is whole.
     whole: Option<u64>,
-    /// The topics by their keys, whether they are wanted, and the number of their messages.
-    topics: BTreeMap<i64, (Arc<Topic>, bool, u64)>,
+    topics: Topics,
     page: VecDeque<Message>,
     /// Of a file that is cut off, the last message: its bytes can end with the file.
     last: Option<Message>,
@@ -152,7 +154,7 @@ fn topics(
     database: &Connection,
     file: &Arc<str>,
     selection: &Selection,
-) -> Result<BTreeMap<i64, (Arc<Topic>, bool, u64)>, LogError> {
+) -> Result<Topics, LogError> {
     let failed = |error| database_error(file, &error);
     let mut found = BTreeMap::new();
     let mut statement = database.prepare(TOPICS).map_err(failed)?;

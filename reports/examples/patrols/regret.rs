@@ -8,21 +8,21 @@ use std::io::Write;
 use std::path::Path;
 
 /// The Brier scores of all strategies in the buildings of a kind.
-pub struct Scores {
-    pub place: String,
+pub(crate) struct Scores {
+    pub(crate) place: String,
     /// The share of the time that the robot can be on patrol.
-    pub share: f64,
-    pub seeds: Vec<u64>,
+    pub(crate) share: f64,
+    pub(crate) seeds: Vec<u64>,
     /// The names of the strategies; the first one never looks.
-    pub plans: Vec<String>,
+    pub(crate) plans: Vec<String>,
     /// By strategy, then by building.
-    pub briers: Vec<Vec<f64>>,
+    pub(crate) briers: Vec<Vec<f64>>,
     /// By building; empty if they were not computed.
-    pub bounds: Vec<f64>,
+    pub(crate) bounds: Vec<f64>,
 }
 
 /// The lower bound in the week of each seed.
-pub fn bounds(kind: Kind, duty: Duty, seeds: &[u64], steps: usize) -> Vec<f64> {
+pub(crate) fn bounds(kind: Kind, duty: Duty, seeds: &[u64], steps: usize) -> Vec<f64> {
     let bound = |seed: &u64| {
         let building = Building::generate(kind, *seed);
         BuildingBound::new(&building, duty, steps, BoundSettings::of(&building, duty)).brier(*seed)
@@ -43,7 +43,7 @@ impl Scores {
     }
 
     /// Prints bound and regrets, against two strategies.
-    pub fn print(&self, [curious, round]: [usize; 2]) {
+    pub(crate) fn print(&self, [curious, round]: [usize; 2]) {
         if self.bounds.is_empty() {
             return;
         }
@@ -75,7 +75,7 @@ impl Scores {
 }
 
 /// Writes a line for each building, share of the time and strategy.
-pub fn write(path: &Path, all: &[Scores]) -> std::io::Result<()> {
+pub(crate) fn write(path: &Path, all: &[Scores]) -> std::io::Result<()> {
     let mut file = std::io::BufWriter::new(std::fs::File::create(path)?);
     writeln!(file, "place,share,seed,strategy,brier,bound")?;
     for scores in all {
