@@ -25,8 +25,8 @@ use crate::bounds;
 use crate::choice::TopicChoice;
 use crate::content;
 use crate::error::LogError;
-use crate::log;
-use crate::log::{Log, RawReadings as _, Source};
+use crate::log::{Log, Source};
+use crate::raw_readings::{self, RawReadings as _};
 use crate::standing::{NO_MOTION, Standing};
 use crate::summary::{LogSummary, since_epoch};
 use crate::times;
@@ -146,7 +146,7 @@ impl Bag {
 }
 
 impl Source for Bag {
-    fn raw_readings(&self) -> Result<Box<dyn log::RawReadings + Send>, LogError> {
+    fn raw_readings(&self) -> Result<Box<dyn raw_readings::RawReadings + Send>, LogError> {
         Ok(Box::new(raw_readings(&self.files, &self.plan, self.clock)))
     }
 

@@ -21,6 +21,7 @@ mod magic;
 mod mcap_out;
 mod odometry;
 mod open;
+mod raw_readings;
 mod read_ahead;
 pub mod ros;
 mod speeds;

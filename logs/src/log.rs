@@ -1,6 +1,7 @@
 //! A log of any format.
 
 use crate::error::LogError;
+use crate::raw_readings::RawReadings;
 use crate::read_ahead::ReadAhead;
 use crate::summary::LogSummary;
 use interfaces::LaserReading;
@@ -27,12 +28,6 @@ pub(crate) trait Source: Debug + Send + Sync {
     fn reference_poses(&self) -> Result<Option<Vec<Option<Isometry2<f64>>>>, LogError> {
         Ok(None)
     }
-}
-
-/// Readings with their times as written.
-pub(crate) trait RawReadings {
-    /// The next reading, `None` at the end.
-    fn next_reading(&mut self) -> Result<Option<LaserReading>, LogError>;
 }
 
 impl Log {

@@ -126,7 +126,7 @@ fn strategy_of(strategy: &Bound<'_, PyAny>, error: &FirstError) -> PyResult<Tria
 
 /// The world of a trial.
 enum World {
-    Physics(WorldSpec),
+    Physics(Box<WorldSpec>),
     Grid(Arc<sim::grid::GridSpec>),
 }
 
@@ -142,7 +142,7 @@ impl World {
                 return Ok(Self::Grid(GridSpec::load(py, name)?.spec));
             }
         }
-        Ok(Self::Physics(driving(&spec_of(py, world)?, robot)?))
+        Ok(Self::Physics(Box::new(driving(&spec_of(py, world)?, robot)?)))
     }
 }
 
@@ -195,7 +195,7 @@ pub(crate) fn trial<'py>(
     let trial = match World::of(py, world, robot)? {
         World::Physics(spec) => {
             let length = length(seconds, steps, "physics", SECONDS)?;
-            let (worlds, robot) = (vec![spec], PhysicsRobot::default());
+            let (worlds, robot) = (vec![*spec], PhysicsRobot::default());
             let estimators = estimators(robot::default_mapper());
             run(py, &Experiment { worlds, estimators, strategies, trials: 1, seed, length, robot }, &error)
         }

@@ -10,8 +10,8 @@ use crate::cdr;
 use crate::choice::bare;
 use crate::doubts::{self, Doubts};
 use crate::error::LogError;
-use crate::log;
 use crate::odometry::Odometry;
+use crate::raw_readings;
 use crate::ros::{self, Frames, Header, LaserScan, Transforms, flat, mounted, scan_of};
 use crate::speeds::Speeds;
 use interfaces::{LaserReading, Scan};
@@ -252,7 +252,7 @@ impl RawReadings {
     }
 }
 
-impl log::RawReadings for RawReadings {
+impl raw_readings::RawReadings for RawReadings {
     fn next_reading(&mut self) -> Result<Option<LaserReading>, LogError> {
         loop {
             if self.is_ripe() {

@@ -150,11 +150,7 @@ impl MessageTable {
 }
 
 /// The topics by their keys, whether they are wanted, and no message of them yet.
-fn topics(
-    database: &Connection,
-    file: &Arc<str>,
-    selection: &Selection,
-) -> Result<Topics, LogError> {
+fn topics(database: &Connection, file: &Arc<str>, selection: &Selection) -> Result<Topics, LogError> {
     let failed = |error| database_error(file, &error);
     let mut found = BTreeMap::new();
     let mut statement = database.prepare(TOPICS).map_err(failed)?;

@@ -111,8 +111,8 @@ fn the_csv_has_a_row_per_trial_and_sample_and_gives_the_report_again() {
     let mut reader = csv::Reader::from_reader(bytes.as_slice());
     let head: Vec<String> = reader.headers().unwrap().iter().map(String::from).collect();
     assert_eq!(head[..5], ["world", "estimator", "strategy", "seed", "step"]);
-    assert_eq!(head[5..21], Metric::ALL.map(Metric::name));
-    assert_eq!(head[21..], ["map_hash"]);
+    assert_eq!(head[5..22], Metric::ALL.map(Metric::name));
+    assert_eq!(head[22..], ["map_hash"]);
     let rows: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
     assert_eq!(rows.len(), 2 * 2 * 2 * 3 * 81);
 
@@ -184,7 +184,7 @@ fn the_parquet_file_has_the_values_of_the_trials_with_their_types() {
     for trial in &trials {
         for sample in &trial.samples {
             let row = rows.next().unwrap();
-            let text = [0, 1, 2, 21].map(|column| row.get_string(column).unwrap().as_str());
+            let text = [0, 1, 2, 22].map(|column| row.get_string(column).unwrap().as_str());
             assert_eq!(text, [&trial.world, &trial.estimator, &trial.strategy, &trial.map_hash]);
             assert_eq!([row.get_ulong(3).unwrap(), row.get_ulong(4).unwrap()], [trial.seed, sample.time]);
             for (metric, column) in Metric::ALL.into_iter().zip(5..) {
