@@ -251,8 +251,8 @@ fn the_layout_shows_every_view() {
     assert_eq!(
         titles(&file),
         [
-            "Cycle time: seconds per cycle",
             "Changes expected out of view",
+            "Cycle time: seconds per cycle",
             "Longest time since a cell was seen (s)",
             "Map: coverage and quality",
             "Probability of a change since last seen",

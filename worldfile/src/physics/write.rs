@@ -107,15 +107,19 @@ fn door(shape: &Rectangle, spec: &DoorSpec) -> Option<Keys> {
         Leaf::Sliding { by_m } if (by_m.norm() - 2.0 * shape.half_m.x).abs() < 1e-9 => {}
         Leaf::Sliding { .. } => return None,
     }
-    keys.push(("move_s", number(spec.move_s)));
-    let (opening, [closed_s, open_s]) = match spec.opening {
-        Opening::Scheduled(_) => return Some(keys),
-        Opening::Periodic { closed_s, open_s } => ("periodic", [closed_s, open_s]),
-        Opening::Random { closed_s, open_s } => ("random", [closed_s, open_s]),
-        Opening::Scripted { .. } => return None,
+    let times = |opening: &str, [closed_s, open_s]: [f64; 2]| {
+        [("opening", opening.into()), ("closed_s", number(closed_s)), ("open_s", number(open_s))]
     };
-    keys.extend([("opening", opening.into()), ("closed_s", number(closed_s)), ("open_s", number(open_s))]);
-    keys.push(("starts_open", spec.starts_open.into()));
+    match spec.opening {
+        Opening::Scheduled(_) => {}
+        Opening::Periodic { closed_s, open_s } => keys.extend(times("periodic", [closed_s, open_s])),
+        Opening::Random { closed_s, open_s } => keys.extend(times("random", [closed_s, open_s])),
+        Opening::Scripted { .. } => return None,
+    }
+    keys.push(("move_s", number(spec.move_s)));
+    if !matches!(spec.opening, Opening::Scheduled(_)) {
+        keys.push(("starts_open", spec.starts_open.into()));
+    }
     Some(keys)
 }
 
