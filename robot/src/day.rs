@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 const AT_DOCK_M: f64 = 0.5;
 /// The way back may take this many times as long as at full speed: a robot turns, waits and goes round people.
 const MARGIN: f64 = 2.0;
-/// The time that is left for the way back beside that, s: the longest wait in front of a body that may leave.
+/// The reserve of battery on top of the return path, s: the longest wait in front of a body that may leave.
 const RESERVE_S: f64 = 30.0;
 /// A robot that cannot get nearer to its dock waits for this time before it plans again, s.
 const WAIT_S: f64 = 5.0;

@@ -1,3 +1,4 @@
+use super::unchanged::UnchangedCells;
 use super::{Pick, Stay, Strategy};
 use crate::settings::AgentSettings;
 use crate::situation::Situation;
@@ -8,10 +9,6 @@ use mapper::Mapper;
 /// The duration of the stop at a goal, in the time unit of the readings: one look, or a watch over what changes too fast for a look.
 const LOOK: f64 = 1.0;
 const WATCH: f64 = 5.0;
-
-/// The number of events that is assumed for a cell that never changed: one half, as in the Jeffreys posterior of a
-/// Poisson rate.
-const UNSEEN_EVENTS: f64 = 0.5;
 
 /// Keeps the predicted map right: goes where a look takes most away from its Brier score, per time.
 ///
@@ -63,13 +60,11 @@ impl Strategy for FreshMap {
     fn weigh(&mut self, situation: &Situation, weights: &mut [f64]) {
         let mapper = situation.mapper;
         let regions = self.history.update(mapper);
-        let candidates = || (0..weights.len()).filter(|&cell| mapper.is_candidate(cell));
         let states = mapper.states().cells();
-        let known = candidates().filter(|&cell| states[cell] != CellState::Unknown).count();
-        let share = (mapper.changed().count() as f64 + UNSEEN_EVENTS) / (known as f64 + 1.0);
+        let unchanged = UnchangedCells::of(mapper);
         // What a look is worth, and what each unit of time in view.
         let (mut looks, mut views) = (vec![0.0; regions.count()], vec![0.0; regions.count()]);
-        for cell in candidates() {
+        for cell in (0..weights.len()).filter(|&cell| mapper.is_candidate(cell)) {
             let elapsed = self.history.elapsed(mapper, cell);
             let (look, view) = match (states[cell], mapper.transition_rates(cell)) {
                 (CellState::Unknown, _) => (gain(0.25, 0.0, elapsed), 0.0),
@@ -79,9 +74,7 @@ impl Strategy for FreshMap {
                     (gain(blocked * (1.0 - blocked), sum, elapsed), view)
                 }
                 (_, None) => {
-                    let seen = mapper.statistics(cell);
-                    let rate = UNSEEN_EVENTS / (seen.watched_free + seen.watched_blocked + 1.0);
-                    let probability = if seen.events() > 0 { 1.0 } else { share.min(1.0) };
+                    let (probability, rate) = unchanged.rate(mapper, cell);
                     let changed = probability * -0.5 * libm::expm1(-2.0 * rate * elapsed);
                     (gain(changed * (1.0 - changed), 2.0 * rate, elapsed), 0.0)
                 }

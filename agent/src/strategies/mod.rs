@@ -10,6 +10,7 @@ mod poisson;
 mod predicted_change;
 mod random;
 mod recency;
+mod unchanged;
 
 pub use fresh_map::FreshMap;
 pub use frontier::Frontier;

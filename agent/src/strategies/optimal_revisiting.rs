@@ -1,3 +1,4 @@
+use super::unchanged::UnchangedCells;
 use super::{Pick, Stay, Strategy};
 use crate::settings::AgentSettings;
 use crate::situation::Situation;
@@ -7,10 +8,6 @@ use mapper::Mapper;
 
 /// The duration of the stop at a goal, in the time unit of the readings. The stop is part of the time of a visit.
 const WATCH: f64 = 8.0;
-
-/// The number of events that is assumed for a cell that never changed: one half, as in the Jeffreys posterior of a
-/// Poisson rate.
-const UNSEEN_EVENTS: f64 = 0.5;
 
 /// Revisits every cell at the interval that is best for its rates of change.
 ///
@@ -61,21 +58,17 @@ impl Strategy for OptimalRevisiting {
     fn weigh(&mut self, situation: &Situation, weights: &mut [f64]) {
         let mapper = situation.mapper;
         let regions = self.history.update(mapper);
-        let candidates = || (0..weights.len()).filter(|&cell| mapper.is_candidate(cell));
         let states = mapper.states().cells();
-        let known = candidates().filter(|&cell| states[cell] != CellState::Unknown).count();
-        let share = (mapper.changed().count() as f64 + UNSEEN_EVENTS) / (known as f64 + 1.0);
+        let unchanged = UnchangedCells::of(mapper);
         let mut due = vec![0.0; regions.count()];
-        for cell in candidates() {
+        for cell in (0..weights.len()).filter(|&cell| mapper.is_candidate(cell)) {
             let elapsed = self.history.elapsed(mapper, cell);
             due[regions.of(cell)] += match (states[cell], mapper.transition_rates(cell)) {
                 (CellState::Unknown, _) => elapsed,
                 (CellState::Free, Some((block, free))) => worth(block, free, elapsed),
                 (CellState::Blocked, Some((block, free))) => worth(free, block, elapsed),
                 (_, None) => {
-                    let seen = mapper.statistics(cell);
-                    let rate = UNSEEN_EVENTS / (seen.watched_free + seen.watched_blocked + 1.0);
-                    let probability = if seen.events() > 0 { 1.0 } else { share.min(1.0) };
+                    let (probability, rate) = unchanged.rate(mapper, cell);
                     probability * worth(rate, rate, elapsed)
                 }
             };

@@ -3,7 +3,7 @@ use crate::SLOT_STEPS;
 use crate::calendar::{PHASES, Phases};
 
 /// The least share of its prior probability that a candidate has after an update of the prior.
-const LEAST_SHARE: f64 = 0.01;
+const MIN_SHARE: f64 = 0.01;
 
 /// What is known about one thing, given that the building is now quiet or active.
 ///
@@ -129,7 +129,7 @@ impl Track {
         let before = self.weights(active);
         let after = normalized(std::array::from_fn(|index| before[index] * to[index] / from[index]));
         let factors: [f64; CANDIDATES] = std::array::from_fn(|index| {
-            ((1.0 - LEAST_SHARE) * after[index] + LEAST_SHARE * to[index]) / before[index].max(1e-30)
+            ((1.0 - MIN_SHARE) * after[index] + MIN_SHARE * to[index]) / before[index].max(1e-30)
         });
         let mut laws = *self.begin.laws;
         for law in &mut laws {

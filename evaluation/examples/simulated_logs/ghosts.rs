@@ -1,4 +1,4 @@
-//! Surfaces that are drawn where none is.
+//! Ghost surfaces: blocked cells of the map where the true world is free.
 
 use crate::drive::SimulatedLog;
 use nalgebra::{Isometry2, Point2};

@@ -1,4 +1,4 @@
-//! What the node says of itself once per second, for `rqt_robot_monitor` and whoever watches a fleet.
+//! What the node says of itself once per second, for `rqt_robot_monitor` and monitors of fleets.
 
 use super::{BLIND, CuriousNode, NodeReport};
 use crate::link::Link;
