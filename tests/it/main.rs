@@ -29,6 +29,7 @@ mod pages;
 mod pose;
 mod predict;
 mod prior;
+mod programs;
 mod schemas;
 mod screen;
 mod shards;

@@ -42,7 +42,7 @@ struct Limits {
     scale: f64,
 }
 
-// From corrected and uncorrected trajectories of public logs, and from simulated logs (docs/localization.md).
+// From corrected and uncorrected trajectories of public logs, and from simulated logs (docs/trajectories.md).
 const GOOD: Limits =
     Limits { contradicting: 0.02, worst_stretch: 0.15, left_out: 0.05, weak_links: 0, scale: 1.12 };
 const USABLE: Limits =

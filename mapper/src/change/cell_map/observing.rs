@@ -108,19 +108,19 @@ impl CellMap {
     #[inline]
     pub fn observe_run(&mut self, start: usize, end: usize, closer: &mut Vec<u32>) {
         let (now, is_full) = (self.reading(), self.is_full);
-        let mut again = 0;
+        let (before, mut again) = (now - 1, 0);
         self.observed.each_piece_mut(start, end, |from, until, block| {
             let Some(block) = block else {
                 let unseen = if is_full { 0..0 } else { from as u32..until as u32 };
                 return closer.extend(unseen);
             };
             // No early exit: the comparison of a whole block vectorizes.
-            if block.len() == BLOCK && block.iter().fold(true, |all, &last| all & (last == now - 1)) {
+            if block.len() == BLOCK && block.iter().fold(true, |all, &last| all & (last == before)) {
                 block.fill(now);
                 again += BLOCK as u32;
             } else {
                 for (offset, last) in block.iter_mut().enumerate() {
-                    if *last == now - 1 {
+                    if *last == before {
                         *last = now;
                         again += 1;
                     } else if *last != now {

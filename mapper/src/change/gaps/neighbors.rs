@@ -4,7 +4,7 @@
 use super::MEAN_EVENTS;
 use crate::change::Exposure;
 
-// The next four were chosen on generated block worlds; `docs/estimators.md` lists the alternatives.
+// The next four were chosen on generated block worlds; `docs/notebook/estimators.md` lists the alternatives.
 
 /// The maximum number of events that all neighbors together count as.
 const NEAR_EVENTS: f64 = 120.0;

@@ -1,0 +1,47 @@
+//! `docs/programs.md` is what the programs say with `--help`.
+
+use std::path::Path;
+use std::process::Command;
+
+const PROGRAMS: [(&str, &str); 7] = [
+    ("four_rooms", env!("CARGO_BIN_EXE_four_rooms")),
+    ("map_log", env!("CARGO_BIN_EXE_map_log")),
+    ("predict", env!("CARGO_BIN_EXE_predict")),
+    ("grid_world", env!("CARGO_BIN_EXE_grid_world")),
+    ("house_trials", env!("CARGO_BIN_EXE_house_trials")),
+    ("check_world", env!("CARGO_BIN_EXE_check_world")),
+    ("state_file", env!("CARGO_BIN_EXE_state_file")),
+];
+const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/programs.md");
+const HEAD: &str = "# Programs
+
+What every program says with `--help`; `-h` says it shorter. They start with `cargo run --bin NAME -- OPTIONS`, or, once
+installed, with their names. The live nodes `curious_node` and `sim_node` take ROS arguments: [robots.md](robots.md#live).
+";
+
+fn page() -> String {
+    let mut page = HEAD.to_owned();
+    for (name, program) in PROGRAMS {
+        let output = Command::new(program).arg("--help").output().unwrap();
+        assert!(output.status.success(), "{name} --help");
+        let help = String::from_utf8(output.stdout).unwrap();
+        let lines: Vec<&str> = help.trim().lines().map(str::trim_end).collect();
+        page += &format!("\n## {name}\n\n```text\n{}\n```\n", lines.join("\n"));
+    }
+    page
+}
+
+#[test]
+fn the_page_is_what_the_programs_say() {
+    let written = std::fs::read_to_string(Path::new(PAGE)).unwrap();
+    assert!(
+        written == page(),
+        "the options changed: cargo test --test it -- --ignored write_the_page_of_programs"
+    );
+}
+
+#[test]
+#[ignore = "writes docs/programs.md anew"]
+fn write_the_page_of_programs() {
+    std::fs::write(PAGE, page()).unwrap();
+}
