@@ -66,6 +66,8 @@ struct Waiting {
 /// The robot as a source of readings.
 #[derive(Default)]
 pub(crate) struct Source {
+    /// The names as given, and those in use.
+    given: FrameNames,
     names: FrameNames,
     is_localized: bool,
     frames: Frames,
@@ -83,7 +85,17 @@ pub(crate) struct Source {
 impl Source {
     /// A robot without a message. `is_localized`: this node publishes the transform from the map to the odometry.
     pub(crate) fn new(names: FrameNames, is_localized: bool) -> Self {
-        Self { names, is_localized, ..Self::default() }
+        Self { given: names.clone(), names, is_localized, ..Self::default() }
+    }
+
+    /// Takes over parameters that have changed. The transforms stay: those that never change are sent once.
+    pub(crate) fn configure(&mut self, names: FrameNames, is_localized: bool) {
+        self.is_localized = is_localized;
+        if names != self.given {
+            (self.given, self.names) = (names.clone(), names);
+            self.motions = Motions::default();
+            self.waiting.clear();
+        }
     }
 
     /// The frame of the robot in use.

@@ -21,7 +21,16 @@ impl<L: Link> CuriousNode<L> {
         let report = self.report();
         let stamp = self.last.map_or(Time::default(), |(stamp, _)| stamp);
         let is_blind = self.last.is_none_or(|(_, at)| now.duration_since(at) >= BLIND);
-        let status = vec![localization(self.pose_state, is_blind), scans(&report, is_blind)];
+        let status = match self.is_active() {
+            true => vec![localization(self.pose_state, is_blind), scans(&report, is_blind)],
+            false => {
+                let message = format!("{}: scans are not used", self.state.labelled().label);
+                vec![
+                    status("localization", OK, &message, Vec::new()),
+                    status("scans", OK, &message, Vec::new()),
+                ]
+            }
+        };
         let message = Diagnostics { header: header(stamp, ""), status };
         self.link.send(Topic::Diagnostics, Message::Diagnostics(message));
     }
