@@ -34,6 +34,7 @@ mod matched;
 mod publishers;
 mod services;
 mod subscribers;
+mod typed;
 
 use crate::environment::{self, Environment, Range};
 use crate::link::{Event, Link, Request, Wiring};
@@ -52,6 +53,7 @@ use std::collections::{BTreeMap, VecDeque};
 use std::net::{IpAddr, Ipv4Addr};
 use std::sync::mpsc::{self, Receiver};
 use std::time::{Duration, Instant};
+use typed::Typed;
 
 /// How long a message that must not be lost waits if a subscriber does not keep up.
 const WAIT: Duration = Duration::from_millis(20);
@@ -71,8 +73,9 @@ pub struct DdsLink {
     services: Services,
     /// The full name of the node.
     name: String,
+    typed: Typed,
     /// Ends the node when it is dropped.
-    _node: Node,
+    node: Node,
 }
 
 impl DdsLink {
@@ -100,7 +103,9 @@ impl DdsLink {
         let edges = edges.map(|name| EdgesClient::new(&mut node, name, mapping)).transpose()?;
         let (to, events) = mpsc::sync_channel(MAX_EVENTS);
         let services = Services::open(&mut node, &context, &wiring.services, mapping, &to)?;
-        subscribers::start(&mut node, &context, wiring, publishers.ids(), &to)?;
+        let (typed, subscribed) =
+            Typed::new(wiring.subscribed.clone(), context.clone(), publishers.ids(), to.clone());
+        subscribers::start(&mut node, &context, &subscribed, publishers.ids(), &to)?;
         Ok(Self {
             events,
             names: wiring.published.iter().map(|(topic, name, _)| (*topic, name.clone())).collect(),
@@ -111,7 +116,8 @@ impl DdsLink {
             edges,
             services,
             name: full_name,
-            _node: node,
+            typed,
+            node,
         })
     }
 
@@ -138,6 +144,7 @@ impl Link for DdsLink {
     fn receive(&mut self, patience: Duration) -> Option<Event> {
         self.problems.extend(self.publishers.take_problem());
         self.problems.extend(self.discovery.problems());
+        self.problems.extend(self.typed.open(&mut self.node));
         if let Some(problem) = self.problems.pop_front() {
             return Some(Event::Problem(problem));
         }

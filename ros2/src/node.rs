@@ -61,8 +61,8 @@ pub struct NodeReport {
     pub readings: u64,
     /// Readings that entered the map: those whose pose was certain.
     pub mapped: u64,
-    /// Scans that are not valid, that have no place or no pose, and that came too late.
-    pub unused: [u64; 3],
+    /// Scans that are not valid, that have no place or no pose, that came too late, and that are of another laser.
+    pub unused: [u64; 4],
     /// The longest time from the arrival of an event to the end of its processing, µs.
     pub longest_us: u64,
 }
@@ -176,8 +176,8 @@ impl<L: Link> CuriousNode<L> {
 
     /// What the node has done so far.
     pub fn report(&self) -> NodeReport {
-        let ScanCount { received, invalid, unplaced, late } = self.source.count;
-        NodeReport { received, unused: [invalid, unplaced, late], ..self.report }
+        let ScanCount { received, invalid, unplaced, late, other } = self.source.count;
+        NodeReport { received, unused: [invalid, unplaced, late, other], ..self.report }
     }
 
     /// The map.

@@ -111,6 +111,8 @@ parameters! {
     "odom_frame", odom_frame: String = "odom".to_owned();
     /// The frame of the robot.
     "base_frame", base_frame: String = "base_footprint".to_owned();
+    /// The frame of the laser in use, where more than one sends; empty: the first one.
+    "laser_frame", laser_frame: String = String::new();
     /// The topic of the scans.
     "scan_topic", scan_topic: String = "/scan".to_owned();
     /// For a robot whose odometry is not in tf.

@@ -7,11 +7,14 @@ use ros2_client::{Context, Gid};
 use std::collections::BTreeSet;
 use std::net::{SocketAddr, UdpSocket};
 use std::sync::{Arc, Mutex};
+use std::time::Duration;
 
 /// The bytes of an identity that say of which participant it is, in the headers of all vendors.
 const PARTICIPANT: usize = 8;
 /// The first bytes of the identities of Fast DDS.
 const FAST_DDS: [u8; 2] = [0x01, 0x0f];
+/// The times before the messages that ask for a request again.
+const WAITS: [Duration; 2] = [Duration::from_millis(20), Duration::from_millis(150)];
 /// Topics of requests begin with this.
 const REQUESTS: &str = "rq/";
 
@@ -64,10 +67,11 @@ impl MatchedReaders {
     }
 }
 
-/// Asks a client of Fast DDS for the requests that it has sent before this node knew it, and which this node has therefore dropped.
+/// Asks a client of Fast DDS for the request that it has sent before this node knew it, and which this node has therefore dropped.
 ///
 /// The library does ask (a preemptive ACKNACK), but numbers its first message with 0. Fast DDS takes only numbers above the last one,
-/// which is 0 at the begin, so that the request comes with its next heartbeat, after three seconds. This message has the number 1.
+/// which is 0 at the begin, so that the request comes with its next heartbeat, after three seconds. These messages have the numbers
+/// 1 and 2. A sample that is on its way is not sent again, so that they wait a little.
 fn ask_again(context: &Context, socket: &UdpSocket, reader: &GUID, writer: &GUID) {
     if writer.to_bytes()[..2] != FAST_DDS {
         return;
@@ -79,18 +83,25 @@ fn ask_again(context: &Context, socket: &UdpSocket, reader: &GUID, writer: &GUID
     else {
         return;
     };
-    let message = acknack(&participant.guid().to_bytes(), &reader.to_bytes(), &writer.to_bytes());
-    for locator in &found.writer_proxy.unicast_locator_list {
-        if locator.is_udp() {
-            // If it is lost, the request comes with the heartbeat.
-            socket.send_to(&message, SocketAddr::from(*locator)).ok();
+    let locators = found.writer_proxy.unicast_locator_list.iter().filter(|locator| locator.is_udp());
+    let to: Vec<SocketAddr> = locators.map(|locator| SocketAddr::from(*locator)).collect();
+    let ids = [participant.guid(), *reader, *writer].map(|guid| guid.to_bytes());
+    let Ok(socket) = socket.try_clone() else { return };
+    let ask = move || {
+        for (wait, count) in WAITS.into_iter().zip(1..) {
+            std::thread::sleep(wait);
+            for to in &to {
+                // If it is lost, the request comes with the heartbeat.
+                socket.send_to(&acknack(&ids, count), to).ok();
+            }
         }
-    }
+    };
+    std::thread::Builder::new().name("ask_again".to_owned()).spawn(ask).ok();
 }
 
 /// The message of RTPS by which a reader asks a writer for its first sample (RTPS 2.5, 8.3.8.1 and 9.4.5.3). Fast DDS ignores a
 /// message that asks for more than the writer has written.
-fn acknack(own: &[u8; 16], reader: &[u8; 16], writer: &[u8; 16]) -> Vec<u8> {
+fn acknack([own, reader, writer]: &[[u8; 16]; 3], count: u32) -> Vec<u8> {
     const VERSION_AND_VENDOR: [u8; 4] = [2, 4, 0x01, 0x12];
     const LITTLE_ENDIAN: u8 = 1;
     const FINAL: u8 = 2;
@@ -102,7 +113,7 @@ fn acknack(own: &[u8; 16], reader: &[u8; 16], writer: &[u8; 16]) -> Vec<u8> {
     message.extend([0x06, LITTLE_ENDIAN | FINAL, 28, 0]); // ACKNACK
     message.extend(&reader[12..]);
     message.extend(&writer[12..]);
-    let (base_high, base_low, bits, bitmap, count) = (0_u32, 1_u32, 1_u32, 1_u32 << 31, 1_u32);
+    let (base_high, base_low, bits, bitmap) = (0_u32, 1_u32, 1_u32, 1_u32 << 31);
     for word in [base_high, base_low, bits, bitmap, count] {
         message.extend(word.to_le_bytes());
     }
@@ -115,8 +126,7 @@ mod tests {
 
     #[test]
     fn the_message_has_the_layout_of_rtps() {
-        let (own, reader, writer) = ([1; 16], [2; 16], [3; 16]);
-        let message = acknack(&own, &reader, &writer);
+        let message = acknack(&[[1; 16], [2; 16], [3; 16]], 1);
         // Header 20, INFO_DST 4 + 12, ACKNACK 4 + 28.
         assert_eq!(message.len(), 68);
         assert_eq!(message[36..40], [6, 3, 28, 0]);

@@ -52,8 +52,8 @@ fn localization(state: PoseState, is_blind: bool) -> DiagnosticStatus {
 }
 
 fn scans(report: &NodeReport, is_blind: bool) -> DiagnosticStatus {
-    let [invalid, unplaced, late] = report.unused;
-    let left_out = invalid + unplaced + late;
+    let [invalid, unplaced, late, other] = report.unused;
+    let left_out = invalid + unplaced + late + other;
     let (level, message) = match left_out {
         _ if is_blind => (ERROR, "no scans arrive".to_owned()),
         0 => (OK, "all scans are used".to_owned()),
@@ -66,6 +66,7 @@ fn scans(report: &NodeReport, is_blind: bool) -> DiagnosticStatus {
         ("not valid", invalid),
         ("without a pose", unplaced),
         ("late", late),
+        ("of another laser", other),
         ("longest turn (us)", report.longest_us),
     ];
     let values = values.map(|(name, value)| (name.to_owned(), value.to_string())).to_vec();

@@ -98,7 +98,7 @@ fn a_robot_that_someone_else_drives_is_mapped() {
     let report = pair.node.report();
     // The last scan waits for a later pose.
     assert!(report.received - report.readings <= 1, "{report:?}");
-    assert_eq!((report.unused, report.readings), ([0; 3], report.mapped));
+    assert_eq!((report.unused, report.readings), ([0; 4], report.mapped));
     assert!(report.readings >= 48, "{report:?}");
     assert!(known(pair.node.mapper().states()) > 1000);
     assert_eq!(pair.others.heard(Topic::StampedVelocity), []);
