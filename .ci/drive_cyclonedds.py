@@ -248,6 +248,42 @@ class DiagnosticArray(IdlStruct, typename="diagnostic_msgs::msg::dds_::Diagnosti
     status: sequence[DiagnosticStatus]
 
 
+@dataclass
+class EdgeCost(IdlStruct, typename="nav2_msgs::msg::dds_::EdgeCost_"):
+    edgeid: uint16
+    cost: float32
+
+
+@dataclass
+class EdgesRequest(IdlStruct, typename="nav2_msgs::srv::dds_::DynamicEdges_Request_"):
+    guid: uint64
+    seq: int64
+    closed_edges: sequence[uint16]
+    opened_edges: sequence[uint16]
+    adjust_edges: sequence[EdgeCost]
+
+
+@dataclass
+class EdgesResponse(IdlStruct, typename="nav2_msgs::srv::dds_::DynamicEdges_Response_"):
+    guid: uint64
+    seq: int64
+    success: bool
+
+
+@dataclass
+class SaveMapRequest(IdlStruct, typename="slam_toolbox::srv::dds_::SaveMap_Request_"):
+    guid: uint64
+    seq: int64
+    name: str
+
+
+@dataclass
+class CodeResponse(IdlStruct, typename="slam_toolbox::srv::dds_::SaveMap_Response_"):
+    guid: uint64
+    seq: int64
+    result: uint8
+
+
 LATCHED = Qos(Policy.Reliability.Reliable(duration(seconds=1)), Policy.Durability.TransientLocal, Policy.History.KeepLast(1))
 RELIABLE = Qos(Policy.Reliability.Reliable(duration(seconds=1)), Policy.History.KeepLast(100))
 WORK, CURIOUS, SIM = sys.argv[1:4]
@@ -356,6 +392,51 @@ def test_stack():
     end(node)
 
 
+GRAPH = """{"type": "FeatureCollection", "features": [
+  {"properties": {"id": 0, "frame": "map"}, "geometry": {"type": "Point", "coordinates": [0, 0]}},
+  {"properties": {"id": 1, "frame": "map"}, "geometry": {"type": "Point", "coordinates": [0.5, 0]}},
+  {"properties": {"id": 2, "startid": 0, "endid": 1}, "geometry": {"type": "MultiLineString"}},
+  {"properties": {"id": 3, "startid": 1, "endid": 0}, "geometry": {"type": "MultiLineString"}}]}"""
+
+
+def test_services():
+    """A stand-in for nav2_route, and a client of slam_toolbox's services; a call and its answer, timed."""
+    graph = os.path.join(WORK, "graph.geojson")
+    with open(graph, "w") as file:
+        file.write(GRAPH)
+    service = "route_server/DynamicEdgesScorer/adjust_edges"
+    requests = reader(f"rq/{service}Request", EdgesRequest)
+    answers = writer(f"rr/{service}Reply", EdgesResponse)
+    saved = reader("rr/curious_node/save_mapReply", CodeResponse)
+    save = writer("rq/curious_node/save_mapRequest", SaveMapRequest)
+    expiry = reader("rt/expiry_map", OccupancyGrid, LATCHED)
+    node = explore("-p", f"route_graph:={graph}", "-p", "route_update_interval:=1.0")
+    asked, maps, codes = [], [], []
+
+    def turn():
+        for request in requests.take(10):
+            if getattr(request, "opened_edges", None) is not None:
+                asked.append(request)
+                # The first request is not answered.
+                if len(asked) > 1:
+                    answers.write(EdgesResponse(request.guid, request.seq, True))
+        maps.extend(expiry.take(10))
+        codes.extend(code for code in saved.take(10) if getattr(code, "guid", 0) == 7)
+
+    check("edges are adjusted again and again", spin(40, turn, lambda: len(asked) > 4), len(asked))
+    known = {edge for request in asked for edge in list(request.closed_edges) + list(request.opened_edges)}
+    check("they are those of the graph", known <= {2, 3} and known, sorted(known))
+    costs = [edge.cost for request in asked for edge in request.adjust_edges]
+    check("each has a cost", costs and all(0 <= cost <= 50 for cost in costs), max(costs))
+    check("a server without an answer is said once", open(LOG).read().count("does not answer") == 1)
+    check("the map of expiry is a map", maps and all(-1 <= min(m.data) <= max(m.data) <= 100 for m in maps), len(maps))
+    begin = time.monotonic()
+    save.write(SaveMapRequest(7, 1, os.path.join(WORK, "saved")))
+    check("a map is saved", spin(10, turn, lambda: codes) and codes[0].result == 0, f"{time.monotonic() - begin:.3f} s")
+    check("for the map server", "image: saved.pgm" in open(os.path.join(WORK, "saved.yaml")).read())
+    end(node)
+
+
 def test_action():
     goals = reader("rq/navigate_to_pose/_action/send_goalRequest", SendGoalRequest)
     answers = writer("rr/navigate_to_pose/_action/send_goalReply", SendGoalResponse)
@@ -400,6 +481,7 @@ def main():
     try:
         test_messages()
         test_stack()
+        test_services()
         test_action()
     finally:
         simulation.kill()

@@ -29,7 +29,7 @@ use interfaces::{
     CellState, Grid, GridFrame, LaserReading, SettingsError, ValueError, read_value, write_value,
 };
 use mapper::Mapper;
-use nalgebra::Isometry2;
+use nalgebra::{Isometry2, Matrix3};
 use replay::{Background, Replay, Replayed, learn};
 use std::fmt;
 use std::sync::Arc;
@@ -271,6 +271,12 @@ impl LoopClosingLocalizer {
             (self.background, self.first) = (None, None);
         }
         searches
+    }
+
+    /// Puts the robot elsewhere, see [`Localizer::seat`]. The map is frozen: its readings so far are of another way.
+    pub fn seat(&mut self, pose: Isometry2<f64>, covariance: &Matrix3<f64>) {
+        self.localizer.seat(pose, covariance);
+        (self.background, self.first) = (None, None);
     }
 
     /// Begins another session, see [`Localizer::begin_session`]. The map of the first session is frozen.

@@ -2,6 +2,7 @@ use crate::belief::{Belief, Permission};
 use interfaces::{LaserReading, Reading, ValueError};
 use localizer::{Correction, GivenPoses, Localized, Localizer, LoopClosed, LoopClosingLocalizer, PoseState};
 use mapper::Mapper;
+use nalgebra::{Isometry2, Matrix3};
 
 /// Gives every reading its pose: the part between the filter and the mapper.
 pub trait Localization<R> {
@@ -31,6 +32,9 @@ pub trait Localization<R> {
 
     /// Begins another session in the place that was learned, at a pose that is not known.
     fn begin_session(&mut self);
+
+    /// Puts the robot at a pose with a covariance, by the word of a person or of another program. Poses that the source gives stay.
+    fn seat(&mut self, _: Isometry2<f64>, _: &Matrix3<f64>) {}
 
     /// Whether nothing is being learned again in another thread.
     fn is_settled(&self) -> bool {
@@ -106,6 +110,10 @@ impl Localization<LaserReading> for Localizer {
     fn begin_session(&mut self) {
         Localizer::begin_session(self);
     }
+
+    fn seat(&mut self, pose: Isometry2<f64>, covariance: &Matrix3<f64>) {
+        Localizer::seat(self, pose, covariance);
+    }
 }
 
 impl Localization<LaserReading> for LoopClosingLocalizer {
@@ -128,6 +136,10 @@ impl Localization<LaserReading> for LoopClosingLocalizer {
 
     fn begin_session(&mut self) {
         LoopClosingLocalizer::begin_session(self);
+    }
+
+    fn seat(&mut self, pose: Isometry2<f64>, covariance: &Matrix3<f64>) {
+        LoopClosingLocalizer::seat(self, pose, covariance);
     }
 
     fn is_settled(&self) -> bool {

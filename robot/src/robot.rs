@@ -5,6 +5,7 @@ use crate::session::Session;
 use agent::Features;
 use interfaces::{Reading, ValueError};
 use mapper::{Mapper, ReadingError, ScanFilter};
+use nalgebra::{Isometry2, Matrix3};
 
 /// A robot that localizes itself, maps what it sees, and decides where to go. Its source gives readings and takes commands.
 pub struct Robot<R, P> {
@@ -95,6 +96,14 @@ impl<R: Reading, P: Pilot> Robot<R, P> {
         self.session = self.session.after(self.mapper.time(), first_s, gap_s);
         self.mapper.pause(first_s + self.session.offset_s);
         self.localization.begin_session();
+    }
+
+    /// Puts the robot at a pose in the map, with its covariance (x and y in m, heading in rad), by the word of a person or of another
+    /// program. Scans must agree before they enter the map.
+    pub fn seat(&mut self, pose: Isometry2<f64>, covariance: &Matrix3<f64>) {
+        self.settle();
+        self.localization.seat(pose, covariance);
+        self.pilot.forget_map();
     }
 
     /// Whether nothing is being learned again in another thread.

@@ -11,10 +11,14 @@ macro_rules! by_type {
             Topic::Velocity => $open!(Twist),
             Topic::StampedVelocity => $open!(TwistStamped),
             Topic::Resume => $open!(Bool),
-            Topic::Map | Topic::ChangeMap | Topic::PredictedMap | Topic::RateMap => $open!(Grid),
+            Topic::Map | Topic::ChangeMap | Topic::PredictedMap => $open!(Grid),
+            Topic::RateMap | Topic::ExpiryMap => $open!(Grid),
             Topic::SpeedMask | Topic::KeepoutMask => $open!(Grid),
             Topic::SpeedFilterInfo | Topic::KeepoutFilterInfo => $open!(FilterInfo),
-            Topic::EstimatedPose => $open!(PoseWithCovariance),
+            Topic::EstimatedPose | Topic::InitialPose => $open!(PoseWithCovariance),
+            Topic::Log => $open!(Log),
+            Topic::ParameterEvents => $open!(ParameterEvent),
+            Topic::TransitionEvents => $open!(TransitionEvent),
             Topic::Diagnostics => $open!(Diagnostics),
             Topic::MapUpdates => $open!(GridUpdate),
             Topic::Markers => $open!(Markers),
@@ -25,30 +29,31 @@ macro_rules! by_type {
 
 mod actions;
 mod discovery;
+mod edges;
+mod matched;
 mod publishers;
+mod services;
 mod subscribers;
+mod typed;
 
-use crate::environment::{Environment, Range, Services};
-use crate::link::{Answer, Event, Link, Request, Wiring};
-use crate::message::{Message, PoseStamped, Quality, Topic};
-use crate::value::Value;
+use crate::environment::{self, Environment, Range};
+use crate::link::{Event, Link, Request, Wiring};
+use crate::message::{DynamicEdges, Message, PoseStamped, Quality, Topic};
+use crate::service::Reply;
 use actions::Navigator;
-use anyhow::{Context as _, anyhow};
+use anyhow::Context as _;
 use discovery::Discovery;
-use futures::executor::block_on;
+use edges::EdgesClient;
 use publishers::Publishers;
 use ros2_client::dds::rustdds::DomainParticipantBuilder;
 use ros2_client::qos::{Durability, History, QosProfile, Reliability, WhenFull};
-use ros2_client::{
-    Context, Name, Node, NodeName, NodeOptions, ParameterValue, RmwRequestId, Server, ServiceMapping,
-    ServiceTypeName,
-};
-use serde::{Deserialize, Serialize};
+use ros2_client::{Context, Node, NodeName, NodeOptions, ServiceMapping};
+use services::Services;
 use std::collections::{BTreeMap, VecDeque};
 use std::net::{IpAddr, Ipv4Addr};
-use std::sync::Arc;
-use std::sync::mpsc::{self, Receiver, Sender, SyncSender};
+use std::sync::mpsc::{self, Receiver};
 use std::time::{Duration, Instant};
+use typed::Typed;
 
 /// How long a message that must not be lost waits if a subscriber does not keep up.
 const WAIT: Duration = Duration::from_millis(20);
@@ -56,27 +61,6 @@ const WAIT: Duration = Duration::from_millis(20);
 const POLL: Duration = Duration::from_millis(20);
 /// Events that wait for the node. If there are more, messages are lost on the network, as their QoS has it.
 const MAX_EVENTS: usize = 4096;
-/// Requests that wait for an answer; more are forgotten.
-const MAX_REQUESTS: usize = 100;
-
-/// The request of `std_srvs/Trigger`: a message without a field has this one on the wire.
-#[derive(Clone, Debug, Deserialize, Serialize)]
-struct TriggerRequest {
-    structure_needs_at_least_one_member: u8,
-}
-
-/// The response of `std_srvs/Trigger`.
-#[derive(Clone, Debug, Deserialize, Serialize)]
-struct TriggerResponse {
-    success: bool,
-    message: String,
-}
-
-impl ros2_client::Message for TriggerRequest {}
-impl ros2_client::Message for TriggerResponse {}
-
-type SaveState = Server<TriggerRequest, TriggerResponse>;
-
 /// A node on the network.
 pub struct DdsLink {
     events: Receiver<Event>,
@@ -85,12 +69,13 @@ pub struct DdsLink {
     discovery: Discovery,
     problems: VecDeque<String>,
     navigator: Option<Navigator>,
-    save_state: Option<Arc<SaveState>>,
-    requests: BTreeMap<u64, RmwRequestId>,
-    coming: Receiver<RmwRequestId>,
-    next_request: u64,
+    edges: Option<EdgesClient>,
+    services: Services,
+    /// The full name of the node.
+    name: String,
+    typed: Typed,
     /// Ends the node when it is dropped.
-    _node: Node,
+    node: Node,
 }
 
 impl DdsLink {
@@ -102,27 +87,25 @@ impl DdsLink {
     pub fn open(wiring: &Wiring, environment: &Environment) -> anyhow::Result<Self> {
         let context = context(environment).context("cannot open the network")?;
         let name = NodeName::new(&wiring.namespace, &wiring.name)?;
-        let mut node = context.new_node(name, options(wiring))?;
+        let full_name = format!("{}/{}", wiring.namespace.trim_end_matches('/'), wiring.name);
+        // The node answers for its parameters and its log itself: the library does so for one vendor only, and subscribes `/clock`
+        // with a type of its own.
+        let options = NodeOptions::new().enable_rosout(false).start_parameter_services(false);
+        let mut node = context.new_node(name, options)?;
         let mapping = match environment.services {
-            Services::Enhanced => ServiceMapping::Enhanced,
-            Services::Cyclone => ServiceMapping::Cyclone,
+            environment::Services::Enhanced => ServiceMapping::Enhanced,
+            environment::Services::Cyclone => ServiceMapping::Cyclone,
         };
         let publishers = Publishers::new(&mut node, wiring)?;
         let navigator = wiring.navigate_to_pose.as_deref();
         let navigator = navigator.map(|name| Navigator::new(&mut node, name, mapping)).transpose()?;
+        let edges = wiring.adjust_edges.as_deref();
+        let edges = edges.map(|name| EdgesClient::new(&mut node, name, mapping)).transpose()?;
         let (to, events) = mpsc::sync_channel(MAX_EVENTS);
-        let (requests, coming) = mpsc::channel();
-        let save_state = wiring.save_state.as_deref();
-        let save_state = save_state.map(|name| save_state_server(&mut node, name, mapping)).transpose()?;
-        subscribers::start(&mut node, &context, wiring, publishers.ids(), &to)?;
-        if let Some(server) = &save_state {
-            listen(server.clone(), requests, to)?;
-        }
-        let spinner = node.spinner()?;
-        std::thread::Builder::new().name("parameters".to_owned()).spawn(move || {
-            // It ends with the node; parameters are then not answered any longer.
-            block_on(spinner.spin()).ok();
-        })?;
+        let services = Services::open(&mut node, &context, &wiring.services, mapping, &to)?;
+        let (typed, subscribed) =
+            Typed::new(wiring.subscribed.clone(), context.clone(), publishers.ids(), to.clone());
+        subscribers::start(&mut node, &context, &subscribed, publishers.ids(), &to)?;
         Ok(Self {
             events,
             names: wiring.published.iter().map(|(topic, name, _)| (*topic, name.clone())).collect(),
@@ -130,24 +113,18 @@ impl DdsLink {
             discovery: Discovery::new(context, wiring),
             problems: VecDeque::new(),
             navigator,
-            save_state,
-            requests: BTreeMap::new(),
-            coming,
-            next_request: 0,
-            _node: node,
+            edges,
+            services,
+            name: full_name,
+            typed,
+            node,
         })
     }
 
-    /// Gives a request a number, for the one who answers it.
-    fn numbered(&mut self, event: Event) -> Event {
-        let Event::SaveState(_) = event else { return event };
-        let Ok(id) = self.coming.try_recv() else { return Event::Problem("a request was lost".to_owned()) };
-        while self.requests.len() >= MAX_REQUESTS {
-            self.requests.pop_first();
-        }
-        self.next_request += 1;
-        self.requests.insert(self.next_request, id);
-        Event::SaveState(Request(self.next_request))
+    /// Whether an answer of Nav2 is expected.
+    fn is_busy(&self) -> bool {
+        self.navigator.as_ref().is_some_and(Navigator::is_busy)
+            || self.edges.as_ref().is_some_and(EdgesClient::is_busy)
     }
 }
 
@@ -160,22 +137,29 @@ impl Link for DdsLink {
         self.names.get(&topic).map_or(topic.default_name(), String::as_str)
     }
 
+    fn node(&self) -> &str {
+        &self.name
+    }
+
     fn receive(&mut self, patience: Duration) -> Option<Event> {
         self.problems.extend(self.publishers.take_problem());
         self.problems.extend(self.discovery.problems());
+        self.problems.extend(self.typed.open(&mut self.node));
         if let Some(problem) = self.problems.pop_front() {
             return Some(Event::Problem(problem));
         }
         let end = Instant::now() + patience;
         loop {
             let left = end.saturating_duration_since(Instant::now());
-            let nap =
-                if self.navigator.as_ref().is_some_and(Navigator::is_busy) { left.min(POLL) } else { left };
+            let nap = if self.is_busy() { left.min(POLL) } else { left };
             if let Ok(event) = self.events.recv_timeout(nap) {
-                return Some(self.numbered(event));
+                return Some(event);
             }
             if let Some(navigation) = self.navigator.as_mut().and_then(Navigator::poll) {
                 return Some(Event::Navigation(navigation));
+            }
+            if let Some(are_adjusted) = self.edges.as_mut().and_then(EdgesClient::poll) {
+                return Some(Event::EdgesAdjusted(are_adjusted));
             }
             if left.is_zero() {
                 return None;
@@ -183,10 +167,8 @@ impl Link for DdsLink {
         }
     }
 
-    fn answer(&mut self, Request(number): Request, Answer { is_done, text }: Answer) {
-        let Some((server, id)) = self.save_state.as_ref().zip(self.requests.remove(&number)) else { return };
-        // The one who asked may be gone.
-        server.send_response(id, TriggerResponse { success: is_done, message: text }).ok();
+    fn answer(&mut self, request: Request, reply: Reply) {
+        self.services.answer(request, reply);
     }
 
     fn navigate(&mut self, goal: Option<PoseStamped>) {
@@ -194,6 +176,12 @@ impl Link for DdsLink {
             (Some(navigator), Some(goal)) => navigator.send(goal),
             (Some(navigator), None) => navigator.cancel(),
             (None, _) => {}
+        }
+    }
+
+    fn adjust_edges(&mut self, edges: DynamicEdges) {
+        if let Some(client) = &mut self.edges {
+            client.send(edges);
         }
     }
 }
@@ -208,29 +196,6 @@ fn context(environment: &Environment) -> anyhow::Result<Context> {
     Ok(Context::from_domain_participant(builder.build()?)?)
 }
 
-/// The parameters can be read, and not be changed while the node runs.
-fn options(wiring: &Wiring) -> NodeOptions {
-    let mut options = NodeOptions::new().enable_rosout(false);
-    let declared = wiring.parameters.iter().map(|(name, value)| (name.clone(), on_wire(value)));
-    let declared: BTreeMap<String, ParameterValue> = declared.collect();
-    for (name, value) in &declared {
-        options = options.declare_parameter(name, value.clone());
-    }
-    options.parameter_validator(Box::new(move |name, value| {
-        let is_same = declared.get(name) == Some(value);
-        is_same.then_some(()).ok_or_else(|| "the parameters of this node are set when it starts".to_owned())
-    }))
-}
-
-fn on_wire(value: &Value) -> ParameterValue {
-    match value {
-        Value::Bool(value) => ParameterValue::Boolean(*value),
-        Value::Integer(value) => ParameterValue::Integer(*value),
-        Value::Float(value) => ParameterValue::Double(*value),
-        Value::Text(value) => ParameterValue::String(value.clone()),
-    }
-}
-
 fn profile(quality: &Quality, when_full: WhenFull) -> QosProfile {
     QosProfile {
         reliability: match quality.is_reliable {
@@ -241,33 +206,4 @@ fn profile(quality: &Quality, when_full: WhenFull) -> QosProfile {
         history: History::KeepLast { depth: quality.depth },
         ..QosProfile::subscription_default()
     }
-}
-
-fn save_state_server(node: &mut Node, name: &str, mapping: ServiceMapping) -> anyhow::Result<Arc<SaveState>> {
-    let (service, quality) =
-        (ServiceTypeName::new("std_srvs", "Trigger"), profile(&Quality::DEFAULT, WhenFull::Wait(WAIT)));
-    let name = Name::parse(name)?;
-    Ok(Arc::new(node.create_server(mapping, &name, &service, quality.clone(), quality)?))
-}
-
-/// Waits for requests in a thread of its own, which ends with the program.
-fn listen(
-    server: Arc<SaveState>,
-    requests: Sender<RmwRequestId>,
-    to: SyncSender<Event>,
-) -> anyhow::Result<()> {
-    let wait = move || {
-        loop {
-            let event = match block_on(server.async_receive_request()) {
-                Ok((id, _)) if requests.send(id).is_ok() => Event::SaveState(Request(0)),
-                Ok(_) => return,
-                Err(why) => Event::Problem(format!("a request to save the state is damaged: {why}")),
-            };
-            if to.send(event).is_err() {
-                return;
-            }
-        }
-    };
-    let thread = std::thread::Builder::new().name("save_state".to_owned()).spawn(wait);
-    thread.map(drop).map_err(|why| anyhow!("cannot start a thread: {why}"))
 }

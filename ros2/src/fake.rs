@@ -1,7 +1,8 @@
 //! A link without a network, for tests.
 
-use crate::link::{Answer, Event, Link, Request};
-use crate::message::{Message, PoseStamped, Topic};
+use crate::link::{Event, Link, Request};
+use crate::message::{DynamicEdges, Message, PoseStamped, Topic};
+use crate::service::{Call, Reply, Service};
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -13,8 +14,9 @@ pub(crate) struct Others {
     /// Whether they do not keep up.
     pub(crate) is_slow: bool,
     pub(crate) heard: Vec<(Topic, Message)>,
-    pub(crate) answers: Vec<(Request, Answer)>,
+    pub(crate) answers: Vec<(Request, Reply)>,
     pub(crate) goals: Vec<Option<PoseStamped>>,
+    pub(crate) edges: Vec<DynamicEdges>,
 }
 
 /// A link to [`Others`].
@@ -28,6 +30,16 @@ impl FakeLink {
 
     pub(crate) fn sends(&self, topic: Topic, message: Message) {
         self.others(|others| others.events.push_back(Event::Message(topic, message)));
+    }
+
+    /// Calls a service.
+    pub(crate) fn calls(&self, number: u64, service: Service, call: Call) {
+        self.others(|others| others.events.push_back(Event::Call(Request(number), service, call)));
+    }
+
+    /// The last answer, which is taken.
+    pub(crate) fn answer(&self) -> Option<(u64, Reply)> {
+        self.others(|others| others.answers.pop()).map(|(Request(number), reply)| (number, reply))
     }
 
     /// The messages on a topic so far.
@@ -53,15 +65,23 @@ impl Link for FakeLink {
         topic.default_name()
     }
 
+    fn node(&self) -> &str {
+        "/curious_node"
+    }
+
     fn receive(&mut self, _: Duration) -> Option<Event> {
         self.others(|others| others.events.pop_front())
     }
 
-    fn answer(&mut self, request: Request, answer: Answer) {
-        self.others(|others| others.answers.push((request, answer)));
+    fn answer(&mut self, request: Request, reply: Reply) {
+        self.others(|others| others.answers.push((request, reply)));
     }
 
     fn navigate(&mut self, goal: Option<PoseStamped>) {
         self.others(|others| others.goals.push(goal));
+    }
+
+    fn adjust_edges(&mut self, edges: DynamicEdges) {
+        self.others(|others| others.edges.push(edges));
     }
 }

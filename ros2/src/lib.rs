@@ -15,6 +15,7 @@ mod dds;
 mod environment;
 #[cfg(test)]
 mod fake;
+mod lifecycle;
 mod link;
 mod maps;
 mod message;
@@ -24,10 +25,12 @@ pub mod node_program;
 mod node_state_file;
 mod notes;
 mod order;
+mod parameter_services;
 mod parameters;
 mod params_file;
 mod pilot;
 mod ros_args;
+mod service;
 mod simulated;
 mod source;
 mod topic;
@@ -36,10 +39,10 @@ mod wiring;
 
 pub use dds::DdsLink;
 pub use environment::{Environment, EnvironmentError, Range, Services};
-pub use link::{Answer, Event, Link, Navigation, Request, Wiring};
+pub use link::{Event, Link, Navigation, Request, Wiring};
 pub use message::{
-    Bool, Clock, Color, CostmapFilterInfo, DiagnosticStatus, Diagnostics, Marker, Markers, Message,
-    PoseWithCovarianceStamped, Quality, Texture, Topic, Twist as TwistMessage, TwistStamped,
+    Bool, Clock, Color, CostmapFilterInfo, DiagnosticStatus, Diagnostics, Log, Marker, Markers, Message,
+    PoseWithCovarianceStamped, Quality, Texture, Topic, TransitionEvent, Twist as TwistMessage, TwistStamped,
 };
 pub use names::{NameError, Names};
 pub use node::{CuriousNode, NodeReport, Signals};
@@ -47,6 +50,7 @@ pub use notes::Output;
 pub use parameters::{Mode, Navigator, ParameterError, Parameters};
 pub use params_file::ParamsFileError;
 pub use ros_args::{RosArgs, RosArgsError};
+pub use service::{Call, Reply, Service, wire};
 pub use simulated::{SimulatedRobot, SimulationSettings};
 pub use value::{Given, Value};
 pub use wiring::{curious_wiring, simulation_wiring};

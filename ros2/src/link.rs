@@ -1,6 +1,7 @@
 //! What a node needs of ROS: to send, to receive, and to answer. One implementation speaks DDS; tests have another one.
 
-use crate::message::{Message, PoseStamped, Quality, Topic};
+use crate::message::{DynamicEdges, Message, PoseStamped, Quality, Topic};
+use crate::service::{Call, Reply, Service};
 use std::time::Duration;
 
 /// The connection of a node with other nodes. No method fails: what goes wrong is an [`Event::Problem`].
@@ -11,38 +12,37 @@ pub trait Link {
     /// The full name of a topic that the node publishes.
     fn name(&self, topic: Topic) -> &str;
 
+    /// The full name of the node.
+    fn node(&self) -> &str;
+
     /// The next event. Waits for it at most this long.
     fn receive(&mut self, patience: Duration) -> Option<Event>;
 
     /// Answers a request.
-    fn answer(&mut self, request: Request, answer: Answer);
+    fn answer(&mut self, request: Request, reply: Reply);
 
     /// Asks Nav2 to drive to a pose; `None` cancels the goal. What becomes of the goal are events.
     fn navigate(&mut self, goal: Option<PoseStamped>);
+
+    /// Asks `nav2_route` to adjust edges. Whether it has is an event.
+    fn adjust_edges(&mut self, edges: DynamicEdges);
 }
 
-/// A request of the service that saves the state; the link knows who has asked.
+/// A request of a service; the link knows who has asked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Request(pub u64);
-
-/// The answer to a request, as `std_srvs/Trigger` has it.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Answer {
-    /// Whether it is done.
-    pub is_done: bool,
-    /// One sentence.
-    pub text: String,
-}
 
 /// What comes from other nodes.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Event {
     /// A message.
     Message(Topic, Message),
-    /// A request to save the state.
-    SaveState(Request),
+    /// A service is called, and must be answered.
+    Call(Request, Service, Call),
     /// The state of the goal that Nav2 has.
     Navigation(Navigation),
+    /// Whether `nav2_route` has adjusted the edges.
+    EdgesAdjusted(bool),
     /// Something that cannot be used, in one sentence.
     Problem(String),
 }
@@ -71,10 +71,10 @@ pub struct Wiring {
     pub subscribed: Vec<(Topic, String, Quality)>,
     /// The topics that it publishes, each with its full name.
     pub published: Vec<(Topic, String, Quality)>,
-    /// The full name of the service that saves the state.
-    pub save_state: Option<String>,
+    /// The services that it offers, each with its full name.
+    pub services: Vec<(Service, String)>,
     /// The full name of the action of Nav2 that drives to a pose.
     pub navigate_to_pose: Option<String>,
-    /// The parameters that other nodes can read.
-    pub parameters: Vec<(String, crate::value::Value)>,
+    /// The full name of the service of `nav2_route` that adjusts edges.
+    pub adjust_edges: Option<String>,
 }

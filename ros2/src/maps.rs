@@ -9,6 +9,7 @@ use mapper::Mapper;
 pub(crate) use masks::PublishedMasks;
 use nalgebra::{Point2, Vector2};
 use std::time::{Duration, Instant};
+use survey::Outlook;
 
 /// The border of a published map lies on multiples of this number of cells, so that its frame rarely changes.
 const BLOCK: i32 = 64;
@@ -22,6 +23,8 @@ const CHANGES: Duration = Duration::from_secs(10);
 
 /// The map of rates has cycles per hour, at most 100.
 const HOUR_S: f64 = 3600.0;
+/// The map of expiry has minutes, at most 100.
+const MINUTE_S: f64 = 60.0;
 
 /// What was published, and when.
 #[derive(Default)]
@@ -41,13 +44,17 @@ pub(crate) struct PublishedMaps {
 impl PublishedMaps {
     /// Publishes maps as these parameters say.
     pub(crate) fn new(parameters: &Parameters) -> Self {
-        Self {
-            interval: Duration::from_secs_f64(parameters.map_update_interval_s),
-            change_horizon_s: parameters.change_horizon_s,
-            prediction_horizon_s: parameters.prediction_horizon_s,
-            is_changed: true,
-            ..Self::default()
-        }
+        let mut maps = Self { is_changed: true, ..Self::default() };
+        maps.set(parameters);
+        maps
+    }
+
+    /// Takes over parameters that have changed; the maps are published anew as soon as it is time.
+    pub(crate) fn set(&mut self, parameters: &Parameters) {
+        self.interval = Duration::from_secs_f64(parameters.map_update_interval_s);
+        self.change_horizon_s = parameters.change_horizon_s;
+        self.prediction_horizon_s = parameters.prediction_horizon_s;
+        (self.is_changed, self.changes) = (true, None);
     }
 
     /// The messages after a reading. `header` has the time of the reading and the frame of the map.
@@ -104,6 +111,12 @@ impl PublishedMaps {
             show(Topic::ChangeMap, &change);
             show(Topic::PredictedMap, &predicted);
             show(Topic::RateMap, &rate);
+            let worth = Outlook::live(mapper).worth();
+            let minutes = |index: usize| match worth.cells()[index] {
+                worth_s if worth_s.is_nan() => -1,
+                worth_s => (worth_s / MINUTE_S).round().min(100.0) as i8,
+            };
+            show(Topic::ExpiryMap, &minutes);
         }
     }
 
@@ -170,4 +183,4 @@ fn offset(part: &GridFrame, whole: &GridFrame) -> Cell {
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

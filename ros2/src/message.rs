@@ -5,7 +5,10 @@ pub(crate) use logs::ros::{
     TransformStamped, Transforms, Vector,
 };
 
+pub(crate) use crate::service::wire::ParameterEvent;
 pub use crate::topic::{Quality, Topic};
+
+use crate::service::wire::Labelled;
 
 use logs::ros::{Covariance, PoseWithCovariance};
 use nalgebra::{Isometry2, Matrix3};
@@ -151,10 +154,11 @@ impl PoseWithCovarianceStamped {
     }
 }
 
+/// The places of x, y and the heading among x, y, z and the angles about them.
+const PLACES: [usize; 3] = [0, 1, 5];
+
 /// The covariance of x, y, z and the angles about them, from that of x, y and heading.
 pub(crate) fn covariance(of_plane: &Matrix3<f64>) -> Covariance {
-    /// The places of x, y and the heading among the six figures.
-    const PLACES: [usize; 3] = [0, 1, 5];
     let mut all = Covariance::default();
     for (row, at) in PLACES.into_iter().enumerate() {
         for (column, beside) in PLACES.into_iter().enumerate() {
@@ -164,6 +168,65 @@ pub(crate) fn covariance(of_plane: &Matrix3<f64>) -> Covariance {
         }
     }
     all
+}
+
+/// The covariance of x, y and heading, from that of x, y, z and the angles about them.
+pub(crate) fn of_plane(all: &Covariance) -> Matrix3<f64> {
+    Matrix3::from_fn(|row, column| {
+        let place = 6 * PLACES[row] + PLACES[column];
+        let half = if place < 18 { &all.0 } else { &all.1 };
+        half[place % 18]
+    })
+}
+
+/// `rcl_interfaces/Log`: a sentence for the log of all nodes.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+pub struct Log {
+    /// The time.
+    pub stamp: Time,
+    /// How bad it is, one of the constants of this type.
+    pub level: u8,
+    /// The name of the logger: that of the node.
+    pub name: String,
+    /// The sentence.
+    pub msg: String,
+    /// Where the program says it: the file, the function, the line. Not used.
+    pub file: String,
+    /// See [`file`](Self::file).
+    pub function: String,
+    /// See [`file`](Self::file).
+    pub line: u32,
+}
+
+impl Log {
+    /// Something that happens as it should.
+    pub const INFO: u8 = 20;
+    /// Something that a user should look at.
+    pub const WARNING: u8 = 30;
+}
+
+/// The request of `nav2_msgs/DynamicEdges`, as in Kilted: numbers of edges have 16 bits.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
+pub struct DynamicEdges {
+    /// Edges that cannot be used.
+    pub closed: Vec<u16>,
+    /// Edges that can be used again.
+    pub opened: Vec<u16>,
+    /// Edges with what is added to their costs.
+    pub adjusted: Vec<(u16, f32)>,
+}
+
+/// `lifecycle_msgs/TransitionEvent`.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+pub struct TransitionEvent {
+    /// The time, ns.
+    pub timestamp: u64,
+    /// The transition.
+    pub transition: Labelled,
+    /// The state before it.
+    pub start_state: Labelled,
+    /// The state after it.
+    pub goal_state: Labelled,
 }
 
 /// `diagnostic_msgs/DiagnosticArray`.
@@ -232,4 +295,10 @@ pub enum Message {
     FilterInfo(CostmapFilterInfo),
     /// How a node is.
     Diagnostics(Diagnostics),
+    /// A sentence for the log.
+    Log(Log),
+    /// Parameters that have changed.
+    ParameterEvent(ParameterEvent),
+    /// A transition of the managed lifecycle.
+    TransitionEvent(TransitionEvent),
 }

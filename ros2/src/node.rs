@@ -1,29 +1,38 @@
 //! The mapping node: the loop of every robot, once per reading that arrives, and what other nodes hear of it.
 
+mod calls;
 mod diagnostics;
+mod lifecycle;
+mod logging;
 mod outputs;
 mod publishing;
+mod routes;
 mod saving;
+mod seating;
 mod session;
 mod setup;
+mod slam_services;
 #[cfg(test)]
 mod tests;
 
+use crate::lifecycle::State;
 use crate::link::{Event, Link};
-use crate::message::{Message, Time, Topic, header};
+use crate::message::{Message, Time, Topic};
 use crate::node_state_file::NodeStateFile;
 use crate::notes::{Notes, Output};
 use crate::parameters::Parameters;
 use crate::pilot::LivePilot;
-use crate::source::{FrameNames, LiveReading, ScanCount, Source};
-use anyhow::anyhow;
+use crate::source::{LiveReading, ScanCount, Source};
 use interfaces::{LaserReading, PoseMode};
 use localizer::PoseState;
 use mapper::Mapper;
-use nalgebra::Isometry2;
 use outputs::Published;
 use robot::{Belief, Robot};
-use std::path::Path;
+use routes::Routes;
+use seating::Seat;
+use setup::Parts;
+use slam_services::Serializing;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -52,8 +61,8 @@ pub struct NodeReport {
     pub readings: u64,
     /// Readings that entered the map: those whose pose was certain.
     pub mapped: u64,
-    /// Scans that are not valid, that have no place or no pose, and that came too late.
-    pub unused: [u64; 3],
+    /// Scans that are not valid, that have no place or no pose, that came too late, and that are of another laser.
+    pub unused: [u64; 4],
     /// The longest time from the arrival of an event to the end of its processing, µs.
     pub longest_us: u64,
 }
@@ -65,9 +74,17 @@ pub struct CuriousNode<L: Link> {
     source: Source,
     robot: Robot<LaserReading, LivePilot>,
     published: Published,
+    routes: Option<Routes>,
+    /// What the node does at all.
+    state: State,
+    /// `--state`, as given.
+    state_path: Option<PathBuf>,
     state_file: Option<NodeStateFile>,
-    /// The time of the last reading of the state that was loaded.
+    serializing: Serializing,
+    /// The time of the last reading before this session: of the state that was loaded, or before the node was deactivated.
     continued: Option<Time>,
+    /// Where the robot is at its next reading, as somebody says.
+    seat: Option<Seat>,
     notes: Notes,
     /// The last reading that was used: its time, and when it came.
     last: Option<(Time, Instant)>,
@@ -84,45 +101,42 @@ impl<L: Link> CuriousNode<L> {
     ///
     /// When a parameter is out of range, or when the state cannot be used.
     pub fn new(
-        mut link: L,
+        link: L,
         parameters: &Parameters,
         state: Option<&Path>,
         output: Output,
     ) -> anyhow::Result<Self> {
-        parameters.check()?;
-        let (settings, frame) = (setup::settings(parameters), setup::frame(parameters)?);
-        let pilot = LivePilot::new(parameters, &settings)?;
-        let mut robot = settings.robot(frame, None, Isometry2::identity(), pilot)?;
         let mut notes = Notes::new(output);
-        let state_file =
-            state.map(|path| NodeStateFile::new(path, &settings, &frame, parameters)).transpose()?;
-        let continued =
-            state_file.as_ref().map(|file| file.restore(&mut robot, &mut notes)).transpose()?.flatten();
-        let mut published = Published::new(parameters);
-        if let Some(last) = continued {
-            let header = header(last, &parameters.map_frame);
-            for (topic, message) in published.maps.after(&robot.mapper, &header, Instant::now()) {
-                link.send(topic, message);
-            }
-            notes.say(&format!("the map goes on from {} readings", robot.mapper.readings()));
-        }
-        let Parameters { map_frame, odom_frame, base_frame, .. } = parameters.clone();
-        let names = FrameNames { map: map_frame, odom: odom_frame, base: base_frame };
-        Ok(Self {
+        let loaded = state.filter(|_| parameters.autostart);
+        let Parts { robot, state_file, continued } = Parts::new(parameters, loaded, &mut notes)?;
+        let (names, is_localized) = setup::frames(parameters);
+        let mut node = Self {
             link,
-            source: Source::new(names, parameters.transform_publish_period_s > 0.0),
+            source: Source::new(names, is_localized),
             parameters: parameters.clone(),
             robot,
-            published,
+            published: Published::new(parameters),
+            routes: Routes::new(parameters)?,
+            state: State::Unconfigured,
+            state_path: state.map(Path::to_owned),
             state_file,
+            serializing: Serializing::default(),
             continued,
+            seat: None,
             notes,
             last: None,
             next_silence: Instant::now() + SILENCE,
             is_stopped: true,
             report: NodeReport::default(),
             pose_state: PoseState::default(),
-        })
+        };
+        if parameters.autostart {
+            node.state = State::Active;
+            node.activate();
+        } else {
+            node.notes.say("the node is unconfigured, and waits for a lifecycle manager");
+        }
+        Ok(node)
     }
 
     /// Runs until a signal ends the node. The state is saved at the end.
@@ -148,7 +162,9 @@ impl<L: Link> CuriousNode<L> {
             self.take(event, now);
         }
         while let Some(reading) = self.source.next(now) {
-            self.step(reading, now);
+            if self.is_active() {
+                self.step(reading, now);
+            }
         }
         for note in self.source.take_notes() {
             self.notes.note(&note, now);
@@ -160,8 +176,8 @@ impl<L: Link> CuriousNode<L> {
 
     /// What the node has done so far.
     pub fn report(&self) -> NodeReport {
-        let ScanCount { received, invalid, unplaced, late } = self.source.count;
-        NodeReport { received, unused: [invalid, unplaced, late], ..self.report }
+        let ScanCount { received, invalid, unplaced, late, other } = self.source.count;
+        NodeReport { received, unused: [invalid, unplaced, late, other], ..self.report }
     }
 
     /// The map.
@@ -171,7 +187,8 @@ impl<L: Link> CuriousNode<L> {
 
     fn nap(&self) -> Duration {
         let transform = self.published.next_transform.saturating_duration_since(Instant::now());
-        if self.parameters.transform_publish_period_s > 0.0 { transform.min(NAP) } else { NAP }
+        let has_transforms = self.parameters.transform_publish_period_s > 0.0 && self.is_active();
+        if has_transforms { transform.min(NAP) } else { NAP }
     }
 
     fn take(&mut self, event: Event, now: Instant) {
@@ -183,8 +200,12 @@ impl<L: Link> CuriousNode<L> {
                     self.stop_robot();
                 }
             }
+            Event::Message(Topic::InitialPose, Message::PoseWithCovariance(pose)) => {
+                self.take_initial_pose(&pose, now);
+            }
             Event::Message(topic, message) => self.source.take(topic, message, now),
-            Event::SaveState(request) => self.save_for(Some(request)),
+            Event::Call(request, service, call) => self.call(request, service, call),
+            Event::EdgesAdjusted(are_adjusted) => self.note_edges(are_adjusted, now),
             Event::Navigation(navigation) => self.robot.pilot.navigated(navigation),
             Event::Problem(text) => self.notes.note(&text, now),
         }
@@ -197,6 +218,7 @@ impl<L: Link> CuriousNode<L> {
             reading.pose = in_odom;
         }
         self.begin_session(&reading, stamp, is_restart);
+        self.take_seat();
         let (was_trusted, was_settled) = (self.is_trusted(&reading), self.robot.is_settled());
         let turn = self.robot.step(reading);
         (self.last, self.next_silence) = (Some((stamp, now)), now + SILENCE);
@@ -237,9 +259,10 @@ impl<L: Link> CuriousNode<L> {
         self.say_switches();
         let is_lost = belief.state() == PoseState::Lost;
         if std::mem::replace(&mut self.published.is_lost, is_lost) != is_lost {
-            let known =
-                if is_lost { "the pose of the robot is not known" } else { "the pose is known again" };
-            self.notes.say(known);
+            match is_lost {
+                true => self.notes.warn("the pose of the robot is not known"),
+                false => self.notes.say("the pose is known again"),
+            }
         }
     }
 
@@ -249,6 +272,23 @@ impl<L: Link> CuriousNode<L> {
     }
 
     fn tick(&mut self, now: Instant) {
+        if self.is_active() {
+            self.tick_active(now);
+        }
+        self.publish_diagnostics(now);
+        self.answer_askers();
+        self.go_on_serializing();
+        let is_due = self.state_file.as_ref().is_some_and(NodeStateFile::is_due) && self.last.is_some();
+        if is_due
+            && self.robot.is_settled()
+            && let Some(Err(why)) = self.save()
+        {
+            self.notes.note(&format!("the state cannot be saved: {why}"), now);
+        }
+        self.publish_log(now);
+    }
+
+    fn tick_active(&mut self, now: Instant) {
         let period_s = self.parameters.transform_publish_period_s;
         if period_s > 0.0 && now >= self.published.next_transform {
             self.publish_transform(now);
@@ -256,32 +296,19 @@ impl<L: Link> CuriousNode<L> {
         if self.last.is_some_and(|(_, at)| now.duration_since(at) >= BLIND) {
             self.stop_robot();
         }
-        self.publish_diagnostics(now);
         if now >= self.next_silence {
             self.next_silence = now + SILENCE;
             let topic = &self.parameters.scan_topic;
             let why = self.source.obstacle().unwrap_or_else(|| format!("no scans on {topic}"));
             self.notes.note(&format!("waiting: {why}"), now);
         }
-        self.answer_askers();
-        let is_due = self.state_file.as_ref().is_some_and(NodeStateFile::is_due) && self.report.readings > 0;
-        if is_due
-            && self.robot.is_settled()
-            && let Some(Err(why)) = self.save()
-        {
-            self.notes.note(&format!("the state cannot be saved: {why}"), now);
-        }
     }
 
     fn finish(&mut self) -> anyhow::Result<NodeReport> {
         self.stop_robot();
         self.link.navigate(None);
-        if self.save().is_some() {
-            let answer = self.answer_all();
-            if !answer.is_done {
-                return Err(anyhow!(answer.text));
-            }
-        }
+        self.save_at_end()?;
+        self.publish_log(Instant::now());
         Ok(self.report())
     }
 }

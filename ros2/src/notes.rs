@@ -1,6 +1,6 @@
 //! Sentences for the error output, each one once in a while.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, VecDeque};
 use std::time::{Duration, Instant};
 
 /// The time until the same sentence is written again.
@@ -11,20 +11,52 @@ const MAX_REMEMBERED: usize = 1000;
 /// Where sentences go.
 pub type Output = Box<dyn FnMut(&str) + Send>;
 
+/// How bad a sentence is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Severity {
+    /// Something that happens as it should.
+    Info,
+    /// Something that a user should look at.
+    Warning,
+}
+
+/// Sentences that wait for the log of all nodes; of more, the oldest are dropped.
+const MAX_UNSENT: usize = 100;
+
 /// Writes sentences. A sentence that differs from an earlier one only in numbers is written once a minute.
 pub(crate) struct Notes {
     output: Output,
     written: BTreeMap<String, (Instant, u64)>,
+    unsent: VecDeque<(Severity, String)>,
 }
 
 impl Notes {
     pub(crate) fn new(output: Output) -> Self {
-        Self { output, written: BTreeMap::new() }
+        Self { output, written: BTreeMap::new(), unsent: VecDeque::new() }
     }
 
     /// Writes a sentence that is said once.
     pub(crate) fn say(&mut self, text: &str) {
-        (self.output)(&interfaces::printable(text));
+        self.write(Severity::Info, text);
+    }
+
+    /// Writes a sentence that is said once, and at which a user should look.
+    pub(crate) fn warn(&mut self, text: &str) {
+        self.write(Severity::Warning, text);
+    }
+
+    /// The sentences since the last call, for the log of all nodes.
+    pub(crate) fn take_unsent(&mut self) -> VecDeque<(Severity, String)> {
+        std::mem::take(&mut self.unsent)
+    }
+
+    fn write(&mut self, severity: Severity, text: &str) {
+        let text = interfaces::printable(text);
+        (self.output)(&text);
+        if self.unsent.len() >= MAX_UNSENT {
+            self.unsent.pop_front();
+        }
+        self.unsent.push_back((severity, text.to_string()));
     }
 
     /// Writes a sentence that may be said often.
@@ -43,8 +75,8 @@ impl Notes {
         }
         self.written.insert(kind, (now, 0));
         match again {
-            0 => self.say(text),
-            again => self.say(&format!("{text} ({again} times more since the last time)")),
+            0 => self.warn(text),
+            again => self.warn(&format!("{text} ({again} times more since the last time)")),
         }
     }
 }
@@ -72,5 +104,8 @@ mod tests {
         let written = written.lock().unwrap();
         assert_eq!(written[..3], expected);
         assert!(!written[3].contains('\x1b'));
+        let unsent = notes.take_unsent();
+        assert_eq!(unsent.len(), 4);
+        assert_eq!(unsent[0], (Severity::Warning, expected[0].to_owned()));
     }
 }

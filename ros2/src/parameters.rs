@@ -2,8 +2,10 @@
 
 mod choices;
 mod given;
+mod runtime;
 
 pub use choices::{Mode, Navigator};
+pub(crate) use runtime::When;
 
 use crate::value::Value;
 use choices::Slot;
@@ -80,6 +82,14 @@ macro_rules! parameters {
         }
 
         impl Parameters {
+            /// What a parameter means; empty if there is no such parameter.
+            pub fn about(name: &str) -> &'static str {
+                match name {
+                    $($name => concat!($($doc),*).trim_ascii_start(),)*
+                    _ => "",
+                }
+            }
+
             /// The parameters by name.
             fn slots(&mut self) -> Vec<(&'static str, &mut dyn Slot)> {
                 vec![$(($name, &mut self.$field),)*]
@@ -95,12 +105,14 @@ parameters! {
     "navigator", navigator: Navigator = Navigator::CmdVel;
     /// How the pose is known.
     "pose", pose: PoseMode = PoseMode::Localized;
-    /// The frames of REP-105.
+    /// The frame of the map.
     "map_frame", map_frame: String = "map".to_owned();
-    /// See [`Parameters::map_frame`].
+    /// The frame of the odometry.
     "odom_frame", odom_frame: String = "odom".to_owned();
-    /// See [`Parameters::map_frame`].
+    /// The frame of the robot.
     "base_frame", base_frame: String = "base_footprint".to_owned();
+    /// The frame of the laser in use, where more than one sends; empty: the first one.
+    "laser_frame", laser_frame: String = String::new();
     /// The topic of the scans.
     "scan_topic", scan_topic: String = "/scan".to_owned();
     /// For a robot whose odometry is not in tf.
@@ -123,6 +135,12 @@ parameters! {
     "prediction_horizon", prediction_horizon_s: f64 = 0.0;
     /// The time between two masks for Nav2, s; 0: none.
     "mask_update_interval", mask_update_interval_s: f64 = 30.0;
+    /// A graph of routes in the GeoJSON of `nav2_route`, whose edges are adjusted; empty: none.
+    "route_graph", route_graph: String = String::new();
+    /// The service of `nav2_route` that adjusts edges: its node, its scorer, `adjust_edges`.
+    "route_edges_service", route_edges_service: String = "route_server/DynamicEdgesScorer/adjust_edges".to_owned();
+    /// The time between two requests with all edges, s.
+    "route_update_interval", route_update_interval_s: f64 = 10.0;
     /// The time between two transforms from map to odometry, s; 0: none.
     "transform_publish_period", transform_publish_period_s: f64 = 0.02;
     /// How long a transform holds after the last reading, s.
@@ -143,6 +161,8 @@ parameters! {
     "acc_lim_theta", acc_lim_theta_radps2: f64 = 3.2;
     /// How goals are selected.
     "strategy", strategy: String = "curious".to_owned();
+    /// Whether the node begins to work when it starts; otherwise it waits for a lifecycle manager, unconfigured.
+    "autostart", autostart: bool = true;
     /// The seed of the random decisions.
     "seed", seed: i64 = 1;
     /// Whether the clock is simulated: then a corrected map replaces the old one after a fixed number of readings, and not
@@ -191,6 +211,12 @@ impl Parameters {
         let interval = self.mask_update_interval_s;
         let is_interval = interval == 0.0 || (1.0..=3600.0).contains(&interval);
         check.valid("mask_update_interval", interval, "0, or from 1 to 3600", is_interval)?;
+        check.within(
+            "route_update_interval",
+            self.route_update_interval_s,
+            1.0..=3600.0,
+            "from 1 to 3600",
+        )?;
         let period = self.transform_publish_period_s;
         let is_period = period == 0.0 || (0.005..=10.0).contains(&period);
         check.valid("transform_publish_period", period, "0, or from 0.005 to 10", is_period)?;

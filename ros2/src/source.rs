@@ -17,6 +17,9 @@ const MAX_WAITING: usize = 64;
 /// A scan or a pose that is older than the last one by more than this comes from a clock that has started anew, ns.
 const RESTART_NS: i64 = 1_000_000_000;
 
+/// A laser that sends nothing for this time makes way for another one.
+const SILENT: Duration = Duration::from_secs(2);
+
 /// The names of the frame of a robot.
 const DEFAULT_BASE: &str = "base_footprint";
 const OTHER_BASE: &str = "base_link";
@@ -27,6 +30,8 @@ pub(crate) struct FrameNames {
     pub(crate) map: String,
     pub(crate) odom: String,
     pub(crate) base: String,
+    /// The laser in use; empty: the first one.
+    pub(crate) laser: String,
 }
 
 /// A reading of the robot, with what it takes to publish transforms.
@@ -53,6 +58,8 @@ pub(crate) struct ScanCount {
     pub(crate) unplaced: u64,
     /// Scans that are not later than the one before.
     pub(crate) late: u64,
+    /// Scans of another laser than the one in use.
+    pub(crate) other: u64,
 }
 
 struct Waiting {
@@ -66,6 +73,8 @@ struct Waiting {
 /// The robot as a source of readings.
 #[derive(Default)]
 pub(crate) struct Source {
+    /// The names as given, and those in use.
+    given: FrameNames,
     names: FrameNames,
     is_localized: bool,
     frames: Frames,
@@ -74,6 +83,8 @@ pub(crate) struct Source {
     /// The end of the last scan that was taken, ns.
     last_ns: Option<i64>,
     is_restart: bool,
+    /// The frame of the laser in use, and when its last scan came.
+    laser: Option<(String, Instant)>,
     /// The frame of a laser without a place on the robot.
     lost_laser: Option<String>,
     pub(crate) count: ScanCount,
@@ -83,7 +94,17 @@ pub(crate) struct Source {
 impl Source {
     /// A robot without a message. `is_localized`: this node publishes the transform from the map to the odometry.
     pub(crate) fn new(names: FrameNames, is_localized: bool) -> Self {
-        Self { names, is_localized, ..Self::default() }
+        Self { given: names.clone(), names, is_localized, ..Self::default() }
+    }
+
+    /// Takes over parameters that have changed. The transforms stay: those that never change are sent once.
+    pub(crate) fn configure(&mut self, names: FrameNames, is_localized: bool) {
+        self.is_localized = is_localized;
+        if names != self.given {
+            (self.given, self.names) = (names.clone(), names);
+            self.motions = Motions::default();
+            self.waiting.clear();
+        }
     }
 
     /// The frame of the robot in use.
@@ -151,6 +172,10 @@ impl Source {
             self.count.unplaced += 1;
             return;
         };
+        if self.is_other_laser(&message.header.frame_id, now) {
+            self.count.other += 1;
+            return;
+        }
         let scan = mounted(&mount).and_then(|(mount, is_upside_down)| {
             Ok((mount, scan_of(message, is_upside_down).map_err(|why| format!("is not valid: {why}"))?))
         });
@@ -185,6 +210,27 @@ impl Source {
             self.count.unplaced += 1;
         }
         self.waiting.push_back(Waiting { end_ns, since: now, mount, scan, is_restart });
+    }
+
+    /// Whether a scan is of another laser than the one in use. A map of changes needs to know from where each cell was seen, so that the
+    /// scans of two lasers are not put together.
+    fn is_other_laser(&mut self, frame: &str, now: Instant) -> bool {
+        let wanted = &self.names.laser;
+        let is_in_use =
+            |(laser, last): &(String, Instant)| laser != frame && now.duration_since(*last) < SILENT;
+        let used = match (wanted.is_empty(), self.laser.as_ref().filter(|laser| is_in_use(laser))) {
+            (false, _) if frame != wanted => wanted.clone(),
+            (true, Some((laser, _))) => laser.clone(),
+            _ => {
+                self.laser = Some((frame.to_owned(), now));
+                return false;
+            }
+        };
+        self.notes.push(format!(
+            "scans come from more than one laser: those of `{used}` are used, and those of `{frame}` are left out; the parameter \
+             `laser_frame` chooses another one"
+        ));
+        true
     }
 
     /// Forgets what another clock has stamped.

@@ -29,6 +29,8 @@ pub enum Topic {
     PredictedMap,
     /// How often the place changes.
     RateMap,
+    /// For how long a look is worth more than what is usual.
+    ExpiryMap,
     /// Where Nav2 should drive slowly.
     SpeedMask,
     /// Where Nav2 should not drive.
@@ -39,8 +41,16 @@ pub enum Topic {
     KeepoutFilterInfo,
     /// The pose of the robot in the map, with its covariance.
     EstimatedPose,
+    /// Where the robot is, as a person says.
+    InitialPose,
     /// How the node is.
     Diagnostics,
+    /// What the node says.
+    Log,
+    /// Parameters that have changed.
+    ParameterEvents,
+    /// Transitions of the managed lifecycle.
+    TransitionEvents,
     /// The goal and the path of the robot, to be drawn.
     Markers,
     /// The pose to which Nav2 drives.
@@ -67,6 +77,8 @@ impl Quality {
     pub const DEFAULT: Self = Self { is_reliable: true, is_latched: false, depth: 10 };
     /// The profile of maps.
     pub const LATCHED: Self = Self { is_reliable: true, is_latched: true, depth: 1 };
+    /// The profile of the log of all nodes.
+    pub const LOG: Self = Self { is_reliable: true, is_latched: true, depth: 1000 };
 }
 
 impl Topic {
@@ -103,12 +115,17 @@ impl Topic {
             Self::ChangeMap => ("change_map", "nav_msgs", "OccupancyGrid", LATCHED),
             Self::PredictedMap => ("predicted_map", "nav_msgs", "OccupancyGrid", LATCHED),
             Self::RateMap => ("rate_map", "nav_msgs", "OccupancyGrid", LATCHED),
+            Self::ExpiryMap => ("expiry_map", "nav_msgs", "OccupancyGrid", LATCHED),
             Self::SpeedMask => ("speed_mask", "nav_msgs", "OccupancyGrid", LATCHED),
             Self::KeepoutMask => ("keepout_mask", "nav_msgs", "OccupancyGrid", LATCHED),
             Self::SpeedFilterInfo => ("speed_filter_info", "nav2_msgs", "CostmapFilterInfo", LATCHED),
             Self::KeepoutFilterInfo => ("keepout_filter_info", "nav2_msgs", "CostmapFilterInfo", LATCHED),
             Self::EstimatedPose => ("pose", "geometry_msgs", "PoseWithCovarianceStamped", DEFAULT),
             Self::Diagnostics => ("/diagnostics", "diagnostic_msgs", "DiagnosticArray", DEFAULT),
+            Self::InitialPose => ("initialpose", "geometry_msgs", "PoseWithCovarianceStamped", DEFAULT),
+            Self::Log => ("/rosout", "rcl_interfaces", "Log", Quality::LOG),
+            Self::ParameterEvents => ("/parameter_events", "rcl_interfaces", "ParameterEvent", Quality { depth: 1000, ..DEFAULT }),
+            Self::TransitionEvents => ("~/transition_event", "lifecycle_msgs", "TransitionEvent", DEFAULT),
             Self::Markers => ("explore/goals", "visualization_msgs", "MarkerArray", DEFAULT),
             Self::GoalPose => ("goal_pose", "geometry_msgs", "PoseStamped", DEFAULT),
             Self::GroundTruth => ("ground_truth", "nav_msgs", "Odometry", DEFAULT),

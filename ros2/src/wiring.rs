@@ -5,6 +5,7 @@ use crate::message::{Quality, Topic};
 use crate::names::{NameError, Names};
 use crate::parameters::{Mode, Navigator, Parameters};
 use crate::ros_args::RosArgs;
+use crate::service::Service;
 
 /// Scans that wait for the node: a node that saves its state must not lose one.
 const SCANS: usize = 100;
@@ -15,7 +16,8 @@ const SCANS: usize = 100;
 ///
 /// When a name is not valid.
 pub fn curious_wiring(parameters: &Parameters, names: &Names, ros: &RosArgs) -> Result<Wiring, NameError> {
-    let mut subscribed = vec![Topic::Scan, Topic::Odometry, Topic::Transforms, Topic::StaticTransforms];
+    let mut subscribed =
+        vec![Topic::Scan, Topic::Odometry, Topic::Transforms, Topic::StaticTransforms, Topic::InitialPose];
     let mut published = vec![
         Topic::Transforms,
         Topic::Map,
@@ -23,8 +25,12 @@ pub fn curious_wiring(parameters: &Parameters, names: &Names, ros: &RosArgs) -> 
         Topic::ChangeMap,
         Topic::PredictedMap,
         Topic::RateMap,
+        Topic::ExpiryMap,
         Topic::EstimatedPose,
         Topic::Diagnostics,
+        Topic::Log,
+        Topic::ParameterEvents,
+        Topic::TransitionEvents,
     ];
     if parameters.mask_update_interval_s > 0.0 {
         let masks = [Topic::SpeedMask, Topic::KeepoutMask, Topic::SpeedFilterInfo, Topic::KeepoutFilterInfo];
@@ -41,6 +47,10 @@ pub fn curious_wiring(parameters: &Parameters, names: &Names, ros: &RosArgs) -> 
             Navigator::Nav2 => navigate_to_pose = Some(names.resolved("action", "navigate_to_pose", ros)?),
         }
     }
+    let adjust_edges = match parameters.route_graph.is_empty() {
+        true => None,
+        false => Some(names.resolved("service", &parameters.route_edges_service, ros)?),
+    };
     let scan = Quality {
         is_reliable: parameters.scan_reliability == "reliable",
         depth: SCANS,
@@ -52,9 +62,9 @@ pub fn curious_wiring(parameters: &Parameters, names: &Names, ros: &RosArgs) -> 
         _ => topic.default_name(),
     };
     Ok(Wiring {
-        save_state: Some(names.resolved("service", "~/save_state", ros)?),
+        services: services(names, ros, &[&Service::MAPPING[..], &Service::PARAMETERS].concat())?,
         navigate_to_pose,
-        parameters: parameters.list(),
+        adjust_edges,
         ..wiring(names, ros, [&subscribed, &published], scan, name)?
     })
 }
@@ -73,9 +83,17 @@ pub fn simulation_wiring(names: &Names, ros: &RosArgs) -> Result<Wiring, NameErr
         Topic::StaticTransforms,
         Topic::Clock,
         Topic::GroundTruth,
+        Topic::ParameterEvents,
     ];
     let scan = Quality { is_reliable: true, ..Quality::SENSOR };
-    wiring(names, ros, [&subscribed, &published], scan, Topic::default_name)
+    let services = services(names, ros, &Service::PARAMETERS)?;
+    Ok(Wiring { services, ..wiring(names, ros, [&subscribed, &published], scan, Topic::default_name)? })
+}
+
+/// The services with their full names.
+fn services(names: &Names, ros: &RosArgs, all: &[Service]) -> Result<Vec<(Service, String)>, NameError> {
+    let named = |service: &Service| Ok((*service, names.resolved("service", service.default_name(), ros)?));
+    all.iter().map(named).collect()
 }
 
 /// The wiring of a node that subscribes and publishes these topics.
@@ -97,8 +115,8 @@ fn wiring<'a>(
         namespace: names.namespace().to_owned(),
         subscribed: subscribed?,
         published: published?,
-        save_state: None,
+        services: Vec::new(),
         navigate_to_pose: None,
-        parameters: Vec::new(),
+        adjust_edges: None,
     })
 }

@@ -22,6 +22,7 @@ mod masks;
 mod median;
 mod noise;
 mod odometry_check;
+mod outlook;
 mod passes;
 mod patches;
 mod permanent;
@@ -31,6 +32,7 @@ mod range_noise;
 mod repeated;
 mod replay;
 mod route;
+mod route_graph;
 mod search;
 mod seen_area;
 mod settings;
@@ -43,9 +45,10 @@ mod upright;
 
 pub use change_log::ChangeLog;
 pub use error::SurveyError;
-pub use forecast::{Forecast, NEAR_M, doors};
+pub use forecast::{Forecast, NEAR_M};
 pub use known_place::KnownPlace;
 pub use masks::{CHANGE_HORIZON_S, MASKS, masks, masks_ahead};
+pub use outlook::{Outlook, doors};
 pub use passes::{PassError, Stage};
 pub use permanent::permanent;
 pub use places::{
@@ -55,6 +58,7 @@ pub use places::{
 pub use quality::{Doubt, DoubtKind, Quality, Verdict};
 pub use replay::{FoundPoses, Replay};
 pub use route::{FirstPass, Route};
+pub use route_graph::{EdgeOutlook, RouteGraph, RouteGraphError, Travel};
 pub use search::Search;
 pub use settings::SurveySettings;
 pub use survey::{SavedLogs, SavedSurvey, Survey};

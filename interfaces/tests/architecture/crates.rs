@@ -99,6 +99,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "agent",
             "controller",
             "robot",
+            "results",
             "survey",
         ],
     ),

@@ -135,6 +135,15 @@ impl MapMatcher {
         Some(LOST_STD.covariance())
     }
 
+    /// Follows a pose that another source has given, and that is not certain yet.
+    pub(super) fn seat(&mut self, pose: Isometry2<f64>) {
+        self.relocalization = Relocalization::default();
+        self.verification = Verification::default();
+        (self.ignores_prior, self.accepted_support) = (false, MIN_SUPPORT);
+        (self.by_odometry, self.times.supported_s) = (pose, self.times.now_s);
+        self.state = State::Uncertain;
+    }
+
     pub(super) fn wants_rest(&self) -> bool {
         let elapsed_s = self.times.start_s.map_or(0.0, |start_s| self.times.now_s - start_s);
         self.from_nothing && elapsed_s < SETTLE_S

@@ -1,11 +1,12 @@
 //! A localizer in a state file, and in the next session.
 
 use super::Localizer;
+use crate::constants::NEAR_STD;
 use crate::estimate::Start;
 use crate::faults::FaultFinder;
 use crate::local_trajectory_builder::LocalTrajectoryBuilder;
 use interfaces::{CellState, Grid, ValueError, Values, value};
-use nalgebra::Isometry2;
+use nalgebra::{Isometry2, Matrix3};
 
 impl Localizer {
     /// Everything that readings have changed, as bytes; settings are not in it.
@@ -33,6 +34,16 @@ impl Localizer {
         if let Some(covariance) = builder.matcher.begin_session() {
             builder.track.covariance = covariance;
         }
+    }
+
+    /// Puts the robot where another source says that it is, in the map that was learned: the next scans confirm the pose, correct it
+    /// from scans around it, or refuse it, and then the pose is searched for.
+    pub fn seat(&mut self, pose: Isometry2<f64>, covariance: &Matrix3<f64>) {
+        let track = &mut self.builder.track;
+        (track.pose, track.covariance) = (pose, covariance + NEAR_STD.covariance());
+        track.last_motion = Isometry2::identity();
+        self.builder.matcher.seat(pose);
+        self.much_has_moved = false;
     }
 
     /// Begins anew in a known map, at an unknown pose: the localizer of a state file with an older format is not read.

@@ -129,10 +129,10 @@ fn run(args: Args, ros: RosArgs) -> Result<(), Failure> {
     let mut node = node.map_err(input)?;
     say(&format!("[{}] waiting for scans on {}", names.node(), parameters.scan_topic));
     let report = node.run(&signals)?;
-    let [invalid, unplaced, late] = report.unused;
+    let [invalid, unplaced, late, other] = report.unused;
     say(&format!(
-        "[{}] {} scans: {} readings, {} in the map; {invalid} not valid, {unplaced} without a pose, {late} late; longest \
-         turn {:.1} ms",
+        "[{}] {} scans: {} readings, {} in the map; {invalid} not valid, {unplaced} without a pose, {late} late, {other} of \
+         another laser; longest turn {:.1} ms",
         names.node(),
         report.received,
         report.readings,

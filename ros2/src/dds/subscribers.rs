@@ -2,7 +2,7 @@
 
 use super::discovery::{dds_type, ros_type};
 use super::profile;
-use crate::link::{Event, Wiring};
+use crate::link::Event;
 use crate::message::{Message, Quality, Topic};
 use futures::executor::block_on_stream;
 use futures::stream::{BoxStream, StreamExt, select_all, unfold};
@@ -18,16 +18,19 @@ struct Received {
     content: Result<(Message, MessageInfo), ReadError>,
 }
 
-/// Subscribes all topics, and sends what comes to `to`. `own` are the publishers of this node.
+/// A topic with its full name.
+pub(super) type Named = (Topic, String, Quality);
+
+/// Subscribes topics, and sends what comes to `to`. `own` are the publishers of this node.
 pub(super) fn start(
     node: &mut Node,
     context: &Context,
-    wiring: &Wiring,
+    topics: &[Named],
     own: BTreeSet<Gid>,
     to: &SyncSender<Event>,
 ) -> anyhow::Result<()> {
     let mut streams = Vec::new();
-    for (topic, name, quality) in &wiring.subscribed {
+    for (topic, name, quality) in topics {
         let at = (*topic, name.as_str(), quality);
         macro_rules! subscription {
             ($variant:ident) => {

@@ -19,8 +19,15 @@ pub(crate) struct PublishedMasks {
 impl PublishedMasks {
     /// Publishes masks as these parameters say.
     pub(crate) fn new(parameters: &Parameters) -> Self {
-        let interval = Duration::from_secs_f64(parameters.mask_update_interval_s);
-        Self { interval, ahead_s: parameters.prediction_horizon_s, last: None }
+        let mut masks = Self { interval: Duration::ZERO, ahead_s: 0.0, last: None };
+        masks.set(parameters);
+        masks
+    }
+
+    /// Takes over parameters that have changed.
+    pub(crate) fn set(&mut self, parameters: &Parameters) {
+        self.interval = Duration::from_secs_f64(parameters.mask_update_interval_s);
+        self.ahead_s = parameters.prediction_horizon_s;
     }
 
     /// The messages that are due. `name` is the full name of a topic, which the filters subscribe.

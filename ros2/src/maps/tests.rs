@@ -30,7 +30,7 @@ fn only_the_known_part_is_published() {
     see(&mut mapper, 1.0, &[(70, 130, false), (71, 130, true)]);
     let messages = maps.after(&mapper, &Header::default(), start);
     let topics: Vec<Topic> = messages.iter().map(|message| grid(message).0).collect();
-    assert_eq!(topics, [Topic::Map, Topic::ChangeMap, Topic::PredictedMap, Topic::RateMap]);
+    assert_eq!(topics, [Topic::Map, Topic::ChangeMap, Topic::PredictedMap, Topic::RateMap, Topic::ExpiryMap]);
     let (_, map) = grid(&messages[0]);
     // From 64 to 128 across, and from 128 to 192 up.
     assert_eq!((map.width, map.height), (64, 64));
@@ -70,7 +70,7 @@ fn changes_are_published_at_once_and_maps_rarely() {
     assert_eq!(grid(&messages[0]).1.width, 128);
     see(&mut mapper, 0.4, &[(70, 130, true)]);
     let messages = maps.after(&mapper, &Header::default(), start + Duration::from_secs(12));
-    assert_eq!(messages.len(), 4);
+    assert_eq!(messages.len(), 5);
 }
 
 #[test]
@@ -79,12 +79,12 @@ fn large_maps_are_published_less_often() {
     let mut mapper = Mapper::new(&MapperSettings::default(), frame).unwrap();
     let (mut maps, start) = (published(1.0), Instant::now());
     see(&mut mapper, 0.0, &[(0, 0, true), (1199, 599, true)]);
-    assert_eq!(maps.after(&mapper, &Header::default(), start).len(), 4);
+    assert_eq!(maps.after(&mapper, &Header::default(), start).len(), 5);
     see(&mut mapper, 1.0, &[(5, 5, true)]);
     // 720,000 cells: twice the interval of a large map.
     let messages = maps.after(&mapper, &Header::default(), start + Duration::from_secs(9));
     assert!(matches!(messages[..], [(Topic::MapUpdates, _)]));
-    assert_eq!(maps.after(&mapper, &Header::default(), start + Duration::from_secs(10)).len(), 4);
+    assert_eq!(maps.after(&mapper, &Header::default(), start + Duration::from_secs(10)).len(), 5);
 }
 
 #[test]
@@ -111,4 +111,31 @@ fn masks_are_published_rarely_and_their_meaning_once() {
     assert_eq!((info.kind, info.filter_mask_topic.as_str(), info.multiplier), (0, "keepout_mask", 1.0));
     assert_eq!(due(&mapper, 30), []);
     assert_eq!(due(&mapper, 31).len(), 2);
+}
+
+/// A corridor along x from 0 to 2 m whose middle was blocked now and then.
+pub(crate) fn corridor() -> Mapper {
+    let mut mapper = mapper();
+    let cells = |is_blocked: bool| {
+        let cell = |x: i32, y: i32| (150 + x, 100 + y, is_blocked && x == 10);
+        (-3..=3).flat_map(|y| (-3..24).map(move |x| cell(x, y))).collect::<Vec<_>>()
+    };
+    for step in 0..40 {
+        see(&mut mapper, f64::from(step), &cells(step / 5 % 2 == 1));
+    }
+    mapper
+}
+
+#[test]
+fn a_look_expires_where_something_changes() {
+    let (mapper, mut maps) = (corridor(), published(5.0));
+    let messages = maps.after(&mapper, &Header::default(), Instant::now());
+    let (topic, expiry) = grid(messages.last().unwrap());
+    assert_eq!(topic, Topic::ExpiryMap);
+    let known: Vec<i8> = expiry.data.iter().copied().filter(|value| *value != -1).collect();
+    // Seven cells changed every five seconds: a look is worth less than half a minute. Nothing is known of the others.
+    assert_eq!(known, [0; 7]);
+    let worth = survey::Outlook::live(&mapper).worth();
+    let seconds: Vec<f64> = worth.cells().iter().copied().filter(|worth_s| !worth_s.is_nan()).collect();
+    assert!(seconds.iter().all(|worth_s| (0.5..10.0).contains(worth_s)), "{seconds:?}");
 }

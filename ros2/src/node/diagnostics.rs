@@ -21,7 +21,16 @@ impl<L: Link> CuriousNode<L> {
         let report = self.report();
         let stamp = self.last.map_or(Time::default(), |(stamp, _)| stamp);
         let is_blind = self.last.is_none_or(|(_, at)| now.duration_since(at) >= BLIND);
-        let status = vec![localization(self.pose_state, is_blind), scans(&report, is_blind)];
+        let status = match self.is_active() {
+            true => vec![localization(self.pose_state, is_blind), scans(&report, is_blind)],
+            false => {
+                let message = format!("{}: scans are not used", self.state.labelled().label);
+                vec![
+                    status("localization", OK, &message, Vec::new()),
+                    status("scans", OK, &message, Vec::new()),
+                ]
+            }
+        };
         let message = Diagnostics { header: header(stamp, ""), status };
         self.link.send(Topic::Diagnostics, Message::Diagnostics(message));
     }
@@ -43,8 +52,8 @@ fn localization(state: PoseState, is_blind: bool) -> DiagnosticStatus {
 }
 
 fn scans(report: &NodeReport, is_blind: bool) -> DiagnosticStatus {
-    let [invalid, unplaced, late] = report.unused;
-    let left_out = invalid + unplaced + late;
+    let [invalid, unplaced, late, other] = report.unused;
+    let left_out = invalid + unplaced + late + other;
     let (level, message) = match left_out {
         _ if is_blind => (ERROR, "no scans arrive".to_owned()),
         0 => (OK, "all scans are used".to_owned()),
@@ -57,6 +66,7 @@ fn scans(report: &NodeReport, is_blind: bool) -> DiagnosticStatus {
         ("not valid", invalid),
         ("without a pose", unplaced),
         ("late", late),
+        ("of another laser", other),
         ("longest turn (us)", report.longest_us),
     ];
     let values = values.map(|(name, value)| (name.to_owned(), value.to_string())).to_vec();

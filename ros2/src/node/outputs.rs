@@ -42,6 +42,14 @@ impl Published {
     }
 }
 
+impl Published {
+    /// Takes over parameters that have changed.
+    pub(super) fn set(&mut self, parameters: &Parameters) {
+        self.maps.set(parameters);
+        self.masks.set(parameters);
+    }
+}
+
 /// The goal and the path as they were drawn last.
 #[derive(Debug, Default)]
 pub(super) struct Markers {

@@ -29,6 +29,7 @@ impl<L: Link> CuriousNode<L> {
         for (topic, message) in masks {
             self.link.send(topic, message);
         }
+        self.publish_edges(now);
         let path: Vec<Point2<f64>> = self.robot.pilot.path().to_vec();
         if let Some(message) = self.published.markers.changed(self.robot.pilot.goal(), &path, &header) {
             self.link.send(Topic::Markers, message);

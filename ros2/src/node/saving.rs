@@ -1,11 +1,14 @@
 //! The state of the node, and those who ask for it to be saved.
 
 use super::CuriousNode;
-use crate::link::{Answer, Link};
+use crate::link::Link;
 use crate::node_state_file::{Asker, NodeStateFile};
+use crate::service::Reply;
+use crate::service::wire::Trigger;
+use anyhow::bail;
 
-fn refused(text: &str) -> Answer {
-    Answer { is_done: false, text: text.to_owned() }
+fn refused(text: &str) -> Trigger {
+    Trigger { is_done: false, text: text.to_owned() }
 }
 
 impl<L: Link> CuriousNode<L> {
@@ -43,11 +46,11 @@ impl<L: Link> CuriousNode<L> {
     }
 
     /// Waits until the file is written, and answers those who wait for it.
-    pub(super) fn answer_all(&mut self) -> Answer {
+    pub(super) fn answer_all(&mut self) -> Trigger {
         let Some(state_file) = &mut self.state_file else { return refused("") };
         let (name, askers) = (state_file.name(), std::mem::take(&mut state_file.askers));
         let answer = match state_file.file.wait() {
-            Ok(()) => Answer { is_done: true, text: format!("the state is saved in {name}") },
+            Ok(()) => Trigger { is_done: true, text: format!("the state is saved in {name}") },
             Err(why) => refused(&format!("{name}: cannot save the state: {why}")),
         };
         for asker in askers {
@@ -56,10 +59,25 @@ impl<L: Link> CuriousNode<L> {
         answer
     }
 
-    fn answer(&mut self, asker: Asker, answer: Answer) {
+    /// Saves the state, and waits until it is written.
+    ///
+    /// # Errors
+    ///
+    /// When it cannot be written.
+    pub(super) fn save_at_end(&mut self) -> anyhow::Result<()> {
+        if self.save().is_some() {
+            let answer = self.answer_all();
+            if !answer.is_done {
+                bail!(answer.text);
+            }
+        }
+        Ok(())
+    }
+
+    fn answer(&mut self, asker: Asker, answer: Trigger) {
         match asker {
             None => self.notes.say(&answer.text),
-            Some(request) => self.link.answer(request, answer),
+            Some(request) => self.link.answer(request, Reply::Trigger(answer)),
         }
     }
 }

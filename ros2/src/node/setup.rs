@@ -1,15 +1,64 @@
-//! The parameters as the settings of a robot.
+//! From the parameters to the parts of the node.
 
+use crate::message::Time;
+use crate::node_state_file::NodeStateFile;
+use crate::notes::Notes;
 use crate::parameters::Parameters;
+use crate::pilot::LivePilot;
+use crate::source::FrameNames;
 use anyhow::Context;
 use controller::DiffDriveSettings;
-use interfaces::GridFrame;
+use interfaces::{GridFrame, LaserReading};
 use localizer::Switch;
-use nalgebra::Point2;
-use robot::{Settings, Source};
+use nalgebra::{Isometry2, Point2};
+use robot::{Robot, Settings, Source};
+use std::path::Path;
 
 /// With a simulated clock, the map that a closed loop has corrected replaces the old one after this number of readings.
 const SWITCH_READINGS: usize = 50;
+
+/// What the parameters say, and what was learned in earlier runs.
+pub(super) struct Parts {
+    pub(super) robot: Robot<LaserReading, LivePilot>,
+    pub(super) state_file: Option<NodeStateFile>,
+    /// The time of the last reading of the state that was loaded.
+    pub(super) continued: Option<Time>,
+}
+
+impl Parts {
+    /// The parts; what was learned is loaded from `state`.
+    ///
+    /// # Errors
+    ///
+    /// When a parameter is out of range, or when the state cannot be used.
+    pub(super) fn new(
+        parameters: &Parameters,
+        state: Option<&Path>,
+        notes: &mut Notes,
+    ) -> anyhow::Result<Self> {
+        parameters.check()?;
+        let (settings, frame) = of(parameters)?;
+        let pilot = LivePilot::new(parameters, &settings)?;
+        let mut robot = settings.robot(frame, None, Isometry2::identity(), pilot)?;
+        let state_file =
+            state.map(|path| NodeStateFile::new(path, &settings, &frame, parameters)).transpose()?;
+        let continued =
+            state_file.as_ref().map(|file| file.restore(&mut robot, notes)).transpose()?.flatten();
+        Ok(Self { robot, state_file, continued })
+    }
+}
+
+/// The names of the frames, and whether the node publishes the transform from the map to the odometry.
+pub(super) fn frames(parameters: &Parameters) -> (FrameNames, bool) {
+    let Parameters { map_frame, odom_frame, base_frame, laser_frame, .. } = parameters.clone();
+    let names = FrameNames { map: map_frame, odom: odom_frame, base: base_frame, laser: laser_frame };
+    (names, parameters.transform_publish_period_s > 0.0)
+}
+
+/// The settings of the robot, and the frame of its map.
+pub(super) fn of(parameters: &Parameters) -> anyhow::Result<(Settings, GridFrame)> {
+    Ok((settings(parameters), frame(parameters)?))
+}
 
 /// The settings of the robot, from what the parameters say of it.
 pub(crate) fn settings(parameters: &Parameters) -> Settings {

@@ -1,16 +1,20 @@
 mod glass;
+mod lifecycle;
 mod loops;
 mod same_robot;
+mod seating;
 mod states;
 
 use super::*;
 use crate::fake::FakeLink;
-use crate::link::{Navigation, Request};
+use crate::link::Navigation;
 use crate::message::{Bool, Message, Twist as TwistMessage, TwistStamped, Vector};
 use crate::parameters::{Mode, Navigator};
+use crate::service::wire::Trigger;
+use crate::service::{Call, Reply, Service};
 use crate::simulated::{SimulatedRobot, SimulationSettings};
 use interfaces::{CellState, Grid};
-use nalgebra::Point2;
+use nalgebra::{Isometry2, Point2};
 use sim::physics::WorldSpec;
 use std::sync::{Arc, Mutex};
 
@@ -77,6 +81,12 @@ impl Pair {
     }
 }
 
+/// The last answer of the service that saves the state.
+fn saved(others: &FakeLink) -> (u64, Trigger) {
+    let Some((number, Reply::Trigger(answer))) = others.answer() else { panic!("no answer") };
+    (number, answer)
+}
+
 fn known(map: &Grid<CellState>) -> usize {
     map.cells().iter().filter(|state| **state != CellState::Unknown).count()
 }
@@ -88,7 +98,7 @@ fn a_robot_that_someone_else_drives_is_mapped() {
     let report = pair.node.report();
     // The last scan waits for a later pose.
     assert!(report.received - report.readings <= 1, "{report:?}");
-    assert_eq!((report.unused, report.readings), ([0; 3], report.mapped));
+    assert_eq!((report.unused, report.readings), ([0; 4], report.mapped));
     assert!(report.readings >= 48, "{report:?}");
     assert!(known(pair.node.mapper().states()) > 1000);
     assert_eq!(pair.others.heard(Topic::StampedVelocity), []);
@@ -146,20 +156,19 @@ fn what_was_learned_survives_a_restart() {
     let path = folder.path().join("house.state");
     let map = parameters(Mode::Map);
     let mut pair = Pair::new(&map, 1_700_000_000, Some(&path));
-    pair.others.others(|others| others.events.push_back(Event::SaveState(Request(7))));
+    pair.others.calls(7, Service::SaveState, Call::Nothing);
     pair.node.turn(Duration::ZERO);
-    let answer = |pair: &Pair| pair.others.others(|others| others.answers.pop()).unwrap();
-    let (request, early) = answer(&pair);
-    assert_eq!((request, early.is_done), (Request(7), false));
+    let (request, early) = saved(&pair.others);
+    assert_eq!((request, early.is_done), (7, false));
     assert_eq!(early.text, "there is nothing to save before the first reading");
     pair.run(5.0);
-    pair.others.others(|others| others.events.push_back(Event::SaveState(Request(8))));
+    pair.others.calls(8, Service::SaveState, Call::Nothing);
     pair.node.turn(Duration::ZERO);
     while pair.others.others(|others| others.answers.is_empty()) {
         pair.node.turn(Duration::ZERO);
     }
-    let (request, saved) = answer(&pair);
-    assert_eq!((request, saved.is_done), (Request(8), true), "{}", saved.text);
+    let (request, answer) = saved(&pair.others);
+    assert_eq!((request, answer.is_done), (8, true), "{}", answer.text);
     let learned = pair.node.mapper().clone();
     let refused = |parameters: &Parameters| {
         let node = CuriousNode::new(FakeLink::default(), parameters, Some(&path), Box::new(|_| ()));
@@ -188,9 +197,9 @@ fn what_was_learned_survives_a_restart() {
 #[test]
 fn without_a_file_nothing_is_saved() {
     let (mut node, others, _) = node(&parameters(Mode::Map), None);
-    others.others(|others| others.events.push_back(Event::SaveState(Request(1))));
+    others.calls(1, Service::SaveState, Call::Nothing);
     node.turn(Duration::ZERO);
-    let (_, answer) = others.others(|others| others.answers.pop()).unwrap();
+    let (_, answer) = saved(&others);
     assert_eq!(answer.text, "there is no state file: start the node with --state FILE");
 }
 

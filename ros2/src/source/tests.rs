@@ -6,7 +6,7 @@ const SECOND_NS: i64 = 1_000_000_000;
 
 fn source() -> Source {
     let [map, odom, base] = ["map", "odom", "base_footprint"].map(str::to_owned);
-    Source::new(FrameNames { map, odom, base }, true)
+    Source::new(FrameNames { map, odom, base, laser: String::new() }, true)
 }
 
 fn header(time_s: f64, frame: &str) -> Header {
@@ -216,4 +216,37 @@ fn another_localization_is_noticed() {
     source.is_localized = false;
     source.take(Topic::Transforms, transform(0.1, "map", "odom", at(0.0)), now);
     assert_eq!(source.take_notes(), [""; 0]);
+}
+
+#[test]
+fn of_two_lasers_one_is_used_and_a_sentence_says_which() {
+    let scans = |source: &mut Source, begin_s: f64, now: Instant| {
+        for step in 0..4 {
+            let time_s = begin_s + 0.1 * f64::from(step);
+            source.take(Topic::Scan, scan(time_s, "laser"), now);
+            source.take(Topic::Scan, scan(time_s + 0.02, "base_link"), now);
+        }
+    };
+    let (mut first, now) = (source(), Instant::now());
+    robot(&mut first, now);
+    scans(&mut first, 0.2, now);
+    assert_eq!((first.count.received, first.count.other, first.count.late), (8, 4, 0));
+    assert_eq!(first.waiting.iter().filter(|waiting| waiting.mount.translation.x > 0.1).count(), 4);
+    let expected = "scans come from more than one laser: those of `laser` are used, and those of `base_link` are left out; the \
+                    parameter `laser_frame` chooses another one";
+    assert_eq!(first.take_notes()[0], expected);
+    // A laser that falls silent makes way for the other one.
+    source_takes_over(&mut first, now + SILENT);
+
+    let [map, odom, base, laser] = ["map", "odom", "base_footprint", "base_link"].map(str::to_owned);
+    let mut chosen = Source::new(FrameNames { map, odom, base, laser }, true);
+    robot(&mut chosen, now);
+    scans(&mut chosen, 0.2, now);
+    assert_eq!(chosen.count.other, 4);
+    assert!(chosen.waiting.iter().all(|waiting| waiting.mount.translation.x.abs() < 1e-9));
+}
+
+fn source_takes_over(source: &mut Source, now: Instant) {
+    source.take(Topic::Scan, scan(0.9, "base_link"), now);
+    assert_eq!((source.count.received, source.count.other), (9, 4));
 }

@@ -18,7 +18,7 @@ use results::output::write_file;
 use results::{raster, ros_map};
 use robot::BUILD;
 use robot::state::read_state;
-use route::{Graph, Stop, Travel, route};
+use route::{Stop, graph, route};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -157,7 +157,7 @@ fn run(args: &Args) -> Result<ExitCode, Failure> {
     places.extend(doors(args, &forecast, &times_s).map_err(input)?);
     let stops =
         args.route.iter().map(|path| route(path, &forecast, travel)).collect::<anyhow::Result<Vec<_>>>();
-    let graph = args.graph.as_ref().map(|path| Graph::read(path)?.predicted(&forecast, travel, args.from));
+    let graph = args.graph.as_ref().map(|path| graph(path, &forecast, travel, args.from));
     let (route, graph) = (stops.map_err(input)?.concat(), graph.transpose().map_err(input)?);
     let folder = results_folder(&args.out)?;
     for (number, time_s) in times_s.iter().enumerate() {

@@ -1,0 +1,137 @@
+//! What happens when a reader or a writer of another participant matches with one of this node: the first call of a service
+//! depends on it.
+
+use futures::executor::block_on_stream;
+use ros2_client::dds::rustdds::{DomainParticipantStatusEvent, GUID, RTPSEntity, StatusEvented};
+use ros2_client::{Context, Gid};
+use std::collections::BTreeSet;
+use std::net::{SocketAddr, UdpSocket};
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+
+/// The bytes of an identity that say of which participant it is, in the headers of all vendors.
+const PARTICIPANT: usize = 8;
+/// The first bytes of the identities of Fast DDS.
+const FAST_DDS: [u8; 2] = [0x01, 0x0f];
+/// The times before the messages that ask for a request again.
+const WAITS: [Duration; 2] = [Duration::from_millis(20), Duration::from_millis(150)];
+/// Topics of requests begin with this.
+const REQUESTS: &str = "rq/";
+
+/// The readers of others that a writer of this node is matched with.
+pub(super) struct MatchedReaders {
+    context: Context,
+    matched: Arc<Mutex<BTreeSet<GUID>>>,
+}
+
+impl MatchedReaders {
+    /// Follows what matches, in a thread of its own.
+    pub(super) fn follow(context: &Context) -> std::io::Result<Self> {
+        let matched = Arc::new(Mutex::new(BTreeSet::new()));
+        let (to, of) = (matched.clone(), context.clone());
+        let socket = UdpSocket::bind(("0.0.0.0", 0)).ok();
+        std::thread::Builder::new().name("matches".to_owned()).spawn(move || {
+            let news = of.domain_participant().status_listener();
+            for event in block_on_stream(news.as_async_status_stream()) {
+                let Ok(mut matched) = to.lock() else { return };
+                match event {
+                    DomainParticipantStatusEvent::RemoteReaderMatched { remote_reader, .. } => {
+                        matched.insert(remote_reader);
+                    }
+                    DomainParticipantStatusEvent::ReaderLost { guid, .. } => {
+                        matched.remove(&guid);
+                    }
+                    DomainParticipantStatusEvent::RemoteWriterMatched { local_reader, remote_writer } => {
+                        if let Some(socket) = &socket {
+                            ask_again(&of, socket, &local_reader, &remote_writer);
+                        }
+                    }
+                    _ => {}
+                }
+            }
+        })?;
+        Ok(Self { context: context.clone(), matched })
+    }
+
+    /// Whether a participant has a matched reader of a topic.
+    pub(super) fn has(&self, topic: &str, of: &Gid) -> bool {
+        let Ok(matched) = self.matched.lock() else { return true };
+        let participant = &of.to_bytes16()[..PARTICIPANT];
+        let readers = self.context.domain_participant().discovered_readers();
+        readers.iter().any(|reader| {
+            let guid = reader.reader_proxy.remote_reader_guid;
+            matched.contains(&guid)
+                && guid.to_bytes()[..PARTICIPANT] == *participant
+                && reader.subscription_topic_data.topic_name() == topic
+        })
+    }
+}
+
+/// Asks a client of Fast DDS for the request that it has sent before this node knew it, and which this node has therefore dropped.
+///
+/// The library does ask (a preemptive ACKNACK), but numbers its first message with 0. Fast DDS takes only numbers above the last one,
+/// which is 0 at the begin, so that the request comes with its next heartbeat, after three seconds. These messages have the numbers
+/// 1 and 2. A sample that is on its way is not sent again, so that they wait a little.
+fn ask_again(context: &Context, socket: &UdpSocket, reader: &GUID, writer: &GUID) {
+    if writer.to_bytes()[..2] != FAST_DDS {
+        return;
+    }
+    let participant = context.domain_participant();
+    let writers = participant.discovered_writers();
+    let found = writers.iter().find(|found| found.writer_proxy.remote_writer_guid == *writer);
+    let Some(found) = found.filter(|found| found.publication_topic_data.topic_name.starts_with(REQUESTS))
+    else {
+        return;
+    };
+    let locators = found.writer_proxy.unicast_locator_list.iter().filter(|locator| locator.is_udp());
+    let to: Vec<SocketAddr> = locators.map(|locator| SocketAddr::from(*locator)).collect();
+    let ids = [participant.guid(), *reader, *writer].map(|guid| guid.to_bytes());
+    let Ok(socket) = socket.try_clone() else { return };
+    let ask = move || {
+        for (wait, count) in WAITS.into_iter().zip(1..) {
+            std::thread::sleep(wait);
+            for to in &to {
+                // If it is lost, the request comes with the heartbeat.
+                socket.send_to(&acknack(&ids, count), to).ok();
+            }
+        }
+    };
+    std::thread::Builder::new().name("ask_again".to_owned()).spawn(ask).ok();
+}
+
+/// The message of RTPS by which a reader asks a writer for its first sample (RTPS 2.5, 8.3.8.1 and 9.4.5.3). Fast DDS ignores a
+/// message that asks for more than the writer has written.
+fn acknack([own, reader, writer]: &[[u8; 16]; 3], count: u32) -> Vec<u8> {
+    const VERSION_AND_VENDOR: [u8; 4] = [2, 4, 0x01, 0x12];
+    const LITTLE_ENDIAN: u8 = 1;
+    const FINAL: u8 = 2;
+    let mut message = b"RTPS".to_vec();
+    message.extend(VERSION_AND_VENDOR);
+    message.extend(&own[..12]);
+    message.extend([0x0e, LITTLE_ENDIAN, 12, 0]); // INFO_DST
+    message.extend(&writer[..12]);
+    message.extend([0x06, LITTLE_ENDIAN | FINAL, 28, 0]); // ACKNACK
+    message.extend(&reader[12..]);
+    message.extend(&writer[12..]);
+    let (base_high, base_low, bits, bitmap) = (0_u32, 1_u32, 1_u32, 1_u32 << 31);
+    for word in [base_high, base_low, bits, bitmap, count] {
+        message.extend(word.to_le_bytes());
+    }
+    message
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_message_has_the_layout_of_rtps() {
+        let message = acknack(&[[1; 16], [2; 16], [3; 16]], 1);
+        // Header 20, INFO_DST 4 + 12, ACKNACK 4 + 28.
+        assert_eq!(message.len(), 68);
+        assert_eq!(message[36..40], [6, 3, 28, 0]);
+        assert_eq!(message[40..48], [2, 2, 2, 2, 3, 3, 3, 3]);
+        assert_eq!(message[48..60], [0, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0]);
+        assert_eq!(message[60..], [0, 0, 0, 128, 1, 0, 0, 0]);
+    }
+}

@@ -1,0 +1,254 @@
+//! The services of the node: a thread waits for all requests, and another one sends the answers.
+
+use super::matched::MatchedReaders;
+use super::{WAIT, profile};
+use crate::link::{Event, Request};
+use crate::message::Quality;
+use crate::service::wire;
+use crate::service::{Call, Reply, Service};
+use futures::executor::block_on_stream;
+use futures::stream::{BoxStream, StreamExt, select_all, unfold};
+use ros2_client::qos::WhenFull;
+use ros2_client::{
+    Context, Message, Name, Node, ReadError, RmwRequestId, Server, ServiceMapping, ServiceTypeName,
+};
+use std::collections::BTreeMap;
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender, SyncSender};
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
+
+/// An answer waits at most this long until the client can hear it.
+const PATIENCE: Duration = Duration::from_secs(2);
+/// The time between two looks at who can hear an answer, while one waits.
+const POLL: Duration = Duration::from_millis(2);
+/// Requests that wait for an answer; more are forgotten.
+const MAX_REQUESTS: usize = 100;
+
+macro_rules! messages {
+    ($($kind:ty),* $(,)?) => { $(impl Message for $kind {})* };
+}
+
+messages!(
+    wire::Nothing,
+    wire::Trigger,
+    wire::Deserialize,
+    wire::Labelled,
+    wire::Transition,
+    wire::Prefixes,
+    wire::Listed,
+    wire::Parameter,
+    wire::ParameterValue,
+    wire::SetResult,
+    wire::Description,
+    Flag,
+);
+
+/// A yes or no in a message.
+#[derive(Clone, Copy, Debug, serde::Deserialize, serde::Serialize)]
+pub(super) struct Flag(pub(super) bool);
+
+/// A request, or why it is none.
+struct Received {
+    service: Service,
+    content: Result<(RmwRequestId, Call), ReadError>,
+}
+
+/// Sends an answer of one type.
+type Send = Box<dyn Fn(RmwRequestId, Reply) + std::marker::Send>;
+
+/// The requests that are not answered yet.
+#[derive(Default)]
+struct Asked {
+    next: u64,
+    by_number: BTreeMap<u64, (Service, RmwRequestId)>,
+}
+
+impl Asked {
+    fn number(&mut self, service: Service, id: RmwRequestId) -> Request {
+        while self.by_number.len() >= MAX_REQUESTS {
+            self.by_number.pop_first();
+        }
+        self.next += 1;
+        self.by_number.insert(self.next, (service, id));
+        Request(self.next)
+    }
+}
+
+/// The services of a node.
+pub(super) struct Services {
+    asked: Arc<Mutex<Asked>>,
+    answers: Sender<(Service, RmwRequestId, Reply)>,
+}
+
+impl Services {
+    /// Opens the services; requests become events.
+    pub(super) fn open(
+        node: &mut Node,
+        context: &Context,
+        services: &[(Service, String)],
+        mapping: ServiceMapping,
+        to: &SyncSender<Event>,
+    ) -> anyhow::Result<Self> {
+        let (mut streams, mut senders) = (Vec::new(), BTreeMap::new());
+        for (service, name) in services {
+            let (stream, send) = server(node, *service, name, mapping)?;
+            streams.push(stream);
+            senders.insert(*service, (format!("rr{name}Reply"), send));
+        }
+        let asked = Arc::new(Mutex::new(Asked::default()));
+        let (answers, coming) = mpsc::channel();
+        let (numbers, to) = (asked.clone(), to.clone());
+        std::thread::Builder::new().name("requests".to_owned()).spawn(move || {
+            for received in block_on_stream(select_all(streams)) {
+                if to.send(event(received, &numbers)).is_err() {
+                    return; // The node has ended.
+                }
+            }
+        })?;
+        let readers = MatchedReaders::follow(context)?;
+        std::thread::Builder::new().name("answers".to_owned()).spawn(move || {
+            answer_all(&coming, &senders, &readers);
+        })?;
+        Ok(Self { asked, answers })
+    }
+
+    /// Answers a request as soon as the client can hear it.
+    pub(super) fn answer(&self, Request(number): Request, reply: Reply) {
+        let asked = self.asked.lock().ok().and_then(|mut asked| asked.by_number.remove(&number));
+        if let Some((service, id)) = asked {
+            // The thread ends with the program.
+            self.answers.send((service, id, reply)).ok();
+        }
+    }
+}
+
+fn event(Received { service, content }: Received, asked: &Mutex<Asked>) -> Event {
+    match content {
+        Ok((id, call)) => match asked.lock() {
+            Ok(mut asked) => Event::Call(asked.number(service, id), service, call),
+            Err(_) => Event::Problem("a request was lost".to_owned()),
+        },
+        Err(why) => {
+            Event::Problem(format!("a request of the service `{}` is damaged: {why}", service.default_name()))
+        }
+    }
+}
+
+/// An answer that its client cannot hear yet.
+struct Waiting {
+    service: Service,
+    id: RmwRequestId,
+    reply: Reply,
+    until: Instant,
+}
+
+/// Sends answers. The reader of a client that has just come is often discovered after its request: an answer that is sent before is
+/// not for this reader, since answers are volatile, and the client waits until it gives up.
+fn answer_all(
+    coming: &Receiver<(Service, RmwRequestId, Reply)>,
+    senders: &BTreeMap<Service, (String, Send)>,
+    readers: &MatchedReaders,
+) {
+    let mut waiting: Vec<Waiting> = Vec::new();
+    loop {
+        let came = match waiting.is_empty() {
+            true => coming.recv().map_err(RecvTimeoutError::from),
+            false => coming.recv_timeout(POLL),
+        };
+        match came {
+            Ok((service, id, reply)) => {
+                waiting.push(Waiting { service, id, reply, until: Instant::now() + PATIENCE });
+            }
+            Err(RecvTimeoutError::Timeout) => {}
+            Err(RecvTimeoutError::Disconnected) => return,
+        }
+        waiting.retain(|Waiting { service, id, reply, until }| {
+            let Some((topic, send)) = senders.get(service) else { return false };
+            let is_due = readers.has(topic, &id.writer_gid) || Instant::now() >= *until;
+            if is_due {
+                send(*id, reply.clone());
+            }
+            !is_due
+        });
+    }
+}
+
+/// The requests of a service, and what sends its answers.
+fn server(
+    node: &mut Node,
+    service: Service,
+    name: &str,
+    mapping: ServiceMapping,
+) -> anyhow::Result<(BoxStream<'static, Received>, Send)> {
+    let at = (service, name, mapping);
+    macro_rules! serve {
+        ($request:ty => $call:expr, $answer:ty = $variant:ident) => {
+            serve!($request => $call, $answer, |reply| match reply {
+                Reply::$variant(content) => Some(content),
+                _ => None,
+            })
+        };
+        ($request:ty => $call:expr, $answer:ty, $content:expr) => {
+            serve::<$request, $answer>(node, at, $call, $content)
+        };
+    }
+    let flag = |reply| match reply {
+        Reply::Success(is_done) => Some(Flag(is_done)),
+        _ => None,
+    };
+    match service {
+        Service::SaveState => serve!(wire::Nothing => |_| Call::Nothing, wire::Trigger = Trigger),
+        Service::SaveMap | Service::SerializeMap => serve!(String => Call::Name, u8 = Code),
+        Service::DeserializeMap => serve!(wire::Deserialize => Call::Deserialize, u8 = Code),
+        Service::ChangeState => serve!(wire::Labelled => Call::Transition, Flag, flag),
+        Service::GetState => serve!(wire::Nothing => |_| Call::Nothing, wire::Labelled = State),
+        Service::GetAvailableStates => {
+            serve!(wire::Nothing => |_| Call::Nothing, Vec<wire::Labelled> = States)
+        }
+        Service::GetAvailableTransitions | Service::GetTransitionGraph => {
+            serve!(wire::Nothing => |_| Call::Nothing, Vec<wire::Transition> = Transitions)
+        }
+        Service::GetParameters => serve!(Vec<String> => Call::Names, Vec<wire::ParameterValue> = Values),
+        Service::GetParameterTypes => serve!(Vec<String> => Call::Names, Vec<u8> = Types),
+        Service::SetParameters => {
+            serve!(Vec<wire::Parameter> => Call::Parameters, Vec<wire::SetResult> = Results)
+        }
+        Service::SetParametersAtomically => {
+            serve!(Vec<wire::Parameter> => Call::Parameters, wire::SetResult = Result)
+        }
+        Service::ListParameters => serve!(wire::Prefixes => Call::Prefixes, wire::Listed = Listed),
+        Service::DescribeParameters => {
+            serve!(Vec<String> => Call::Names, Vec<wire::Description> = Descriptions)
+        }
+    }
+}
+
+fn serve<Q, A>(
+    node: &mut Node,
+    (service, name, mapping): (Service, &str, ServiceMapping),
+    call: fn(Q) -> Call,
+    content: fn(Reply) -> Option<A>,
+) -> anyhow::Result<(BoxStream<'static, Received>, Send)>
+where
+    Q: Message + Clone + std::marker::Send + Sync + 'static,
+    A: Message + std::marker::Send + Sync + 'static,
+{
+    let quality = profile(&Quality::DEFAULT, WhenFull::Wait(WAIT));
+    let (package, kind) = service.type_name();
+    let (kind, name) = (ServiceTypeName::new(package, kind), Name::parse(name)?);
+    let server: Arc<Server<Q, A>> =
+        Arc::new(node.create_server(mapping, &name, &kind, quality.clone(), quality)?);
+    let sender = server.clone();
+    let stream = unfold(server, move |server| async move {
+        let taken = server.async_receive_request().await;
+        let content = taken.map(|(id, request)| (id, call(request)));
+        Some((Received { service, content }, server))
+    });
+    let send = move |id, reply| {
+        if let Some(content) = content(reply) {
+            // The one who asked may be gone.
+            sender.send_response(id, content).ok();
+        }
+    };
+    Ok((stream.boxed(), Box::new(send)))
+}

@@ -1,0 +1,128 @@
+//! Doors for `nav2_route`: the edges of a graph of routes, with the probability that each is open.
+
+use super::CuriousNode;
+use crate::link::Link;
+use crate::message::DynamicEdges;
+use crate::parameters::Parameters;
+use anyhow::{Context, bail};
+use std::time::{Duration, Instant};
+use survey::{EdgeOutlook, Outlook, RouteGraph, Travel};
+
+/// An edge that is open with a smaller probability is closed: its cost would be more than ten times its length.
+const CLOSED_BELOW: f64 = 0.1;
+
+/// The graph, and what is known of its edges.
+pub(super) struct Routes {
+    graph: RouteGraph,
+    interval: Duration,
+    next_round: Instant,
+    /// The number of the edge that is looked at next. One edge per reading bounds the time of a turn.
+    next_edge: usize,
+    found: Vec<EdgeOutlook>,
+}
+
+impl Routes {
+    /// The graph that the parameters name; `None` if they name none.
+    ///
+    /// # Errors
+    ///
+    /// When it cannot be read, or cannot be sent to `nav2_route`.
+    pub(super) fn new(parameters: &Parameters) -> anyhow::Result<Option<Self>> {
+        let name = &parameters.route_graph;
+        if name.is_empty() {
+            return Ok(None);
+        }
+        let text = std::fs::read_to_string(name).with_context(|| format!("{name}: cannot read it"))?;
+        let graph =
+            RouteGraph::parse(&text).with_context(|| format!("{name}: this is no graph of nav2_route"))?;
+        if let Some(id) = graph.edges().find(|id| u16::try_from(*id).is_err()) {
+            bail!("{name}: edge {id}: the service DynamicEdges has numbers up to 65535");
+        }
+        let interval = Duration::from_secs_f64(parameters.route_update_interval_s);
+        Ok(Some(Self { graph, interval, next_round: Instant::now(), next_edge: 0, found: Vec::new() }))
+    }
+
+    pub(super) fn set(&mut self, parameters: &Parameters) {
+        self.interval = Duration::from_secs_f64(parameters.route_update_interval_s);
+    }
+
+    /// Looks at the next edge. After the last one, a request with all edges that were ever seen.
+    fn next(&mut self, outlook: &Outlook<'_>, travel: Travel, now: Instant) -> Option<DynamicEdges> {
+        if now < self.next_round {
+            return None;
+        }
+        self.found.extend(self.graph.edge_outlook(self.next_edge, outlook, travel));
+        self.next_edge += 1;
+        if self.next_edge < self.graph.edges().count() {
+            return None;
+        }
+        self.next_edge = 0;
+        let found = std::mem::take(&mut self.found);
+        if found.is_empty() {
+            return None; // nothing is known of the place yet
+        }
+        self.next_round = now + self.interval;
+        Some(request(&found))
+    }
+}
+
+/// All of it at once, so that a server that has started anew knows it as well.
+fn request(found: &[EdgeOutlook]) -> DynamicEdges {
+    let is_closed = |edge: &&EdgeOutlook| edge.open < CLOSED_BELOW;
+    let id = |edge: &EdgeOutlook| edge.id as u16;
+    DynamicEdges {
+        closed: found.iter().filter(is_closed).map(id).collect(),
+        opened: found.iter().filter(|edge| !is_closed(edge)).map(id).collect(),
+        // `nav2_route` adds this to what its other scorers say, of which one is the length.
+        adjusted: found.iter().map(|edge| (id(edge), (edge.cost_m() - edge.length_m) as f32)).collect(),
+    }
+}
+
+impl<L: Link> CuriousNode<L> {
+    /// Tells `nav2_route` which edges are open, now and then.
+    pub(super) fn publish_edges(&mut self, now: Instant) {
+        let Some(routes) = &mut self.routes else { return };
+        let outlook = Outlook::live(&self.robot.mapper);
+        let travel = Travel {
+            departure_s: outlook.now_s() + self.parameters.prediction_horizon_s,
+            speed_m_s: self.parameters.max_vel_x_mps,
+            radius_m: self.parameters.robot_radius_m,
+        };
+        if let Some(edges) = routes.next(&outlook, travel, now) {
+            self.link.adjust_edges(edges);
+        }
+    }
+
+    /// Says once in a while that the edges are not adjusted.
+    pub(super) fn note_edges(&mut self, are_adjusted: bool, now: Instant) {
+        if !are_adjusted {
+            let service = &self.parameters.route_edges_service;
+            self.notes
+                .note(&format!("the edges of the routes are not adjusted: `{service}` does not answer"), now);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_door_that_is_closed_closes_its_edge() {
+        let graph = r#"{"features": [
+            {"properties": {"id": 0}, "geometry": {"type": "Point", "coordinates": [0, 0]}},
+            {"properties": {"id": 1}, "geometry": {"type": "Point", "coordinates": [2, 0]}},
+            {"properties": {"id": 7, "startid": 0, "endid": 1}, "geometry": {"type": "LineString"}}]}"#;
+        let graph = RouteGraph::parse(graph).unwrap();
+        let mapper = crate::maps::tests::corridor();
+        let outlook = Outlook::live(&mapper);
+        let travel = Travel { departure_s: outlook.now_s(), speed_m_s: 0.5, radius_m: 0.1 };
+        let open = graph.edge_outlook(0, &outlook, travel).unwrap();
+        assert!(open.open < 1.0, "{open:?}");
+        let (mut closed, mut half) = (open, open);
+        (closed.open, half.open, half.id) = (0.05, 0.5, 8);
+        let sent = request(&[closed, half]);
+        assert_eq!((sent.closed, sent.opened), (vec![7], vec![8]));
+        assert_eq!(sent.adjusted, [(7, 38.0), (8, 2.0)]);
+    }
+}

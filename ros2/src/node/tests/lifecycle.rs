@@ -1,0 +1,157 @@
+//! The managed lifecycle, parameters at run time, and the services of `slam_toolbox`.
+
+use super::*;
+use crate::message::Log;
+use crate::service::wire::{Deserialize, Labelled, Parameter};
+use crate::value::Value;
+
+/// Calls a service, and waits for its answer.
+fn call(node: &mut CuriousNode<FakeLink>, others: &FakeLink, service: Service, call: Call) -> Reply {
+    others.calls(1, service, call);
+    node.turn(Duration::ZERO);
+    loop {
+        if let Some((_, reply)) = others.answer() {
+            return reply;
+        }
+        node.turn(Duration::ZERO);
+    }
+}
+
+fn change(pair: &mut Pair, id: u8, label: &str) -> Reply {
+    let asked = Labelled { id, label: label.to_owned() };
+    call(&mut pair.node, &pair.others, Service::ChangeState, Call::Transition(asked))
+}
+
+fn state(pair: &mut Pair) -> String {
+    let reply = call(&mut pair.node, &pair.others, Service::GetState, Call::Nothing);
+    let Reply::State(state) = reply else { panic!("{reply:?}") };
+    state.label
+}
+
+fn set(pair: &mut Pair, name: &str, value: Value) -> (bool, String) {
+    let parameter = Parameter { name: name.to_owned(), value: (&value).into() };
+    let reply = call(&mut pair.node, &pair.others, Service::SetParameters, Call::Parameters(vec![parameter]));
+    let Reply::Results(results) = reply else { panic!("{reply:?}") };
+    (results[0].successful, results[0].reason.clone())
+}
+
+#[test]
+fn a_manager_configures_activates_deactivates_and_cleans_up() {
+    let waiting = Parameters { autostart: false, ..parameters(Mode::Map) };
+    let mut pair = Pair::new(&waiting, 0, None);
+    assert_eq!(state(&mut pair), "unconfigured");
+    pair.run(2.0);
+    assert_eq!((pair.node.report().readings, pair.others.heard(Topic::Map).len()), (0, 0));
+    assert_eq!(change(&mut pair, 3, ""), Reply::Success(false), "an unconfigured node cannot be activated");
+    assert!(set(&mut pair, "resolution", Value::Float(0.1)).0);
+    assert_eq!(change(&mut pair, 1, ""), Reply::Success(true));
+    assert_eq!(state(&mut pair), "inactive");
+    pair.run(2.0);
+    assert_eq!(pair.node.report().readings, 0);
+    assert_eq!(change(&mut pair, 3, ""), Reply::Success(true));
+    pair.run(4.0);
+    let readings = pair.node.report().readings;
+    assert!(readings >= 38, "{readings}");
+    assert_eq!(pair.node.mapper().frame().resolution_m(), 0.1);
+    // A name goes before a number.
+    assert_eq!(change(&mut pair, 0, "deactivate"), Reply::Success(true));
+    pair.others.others(|others| others.heard.clear());
+    pair.run(5.0);
+    assert_eq!(pair.node.report().readings, readings);
+    assert_eq!(pair.others.heard(Topic::Transforms), []);
+    assert_eq!(change(&mut pair, 3, ""), Reply::Success(true));
+    pair.run(4.0);
+    assert!(pair.node.report().readings > readings + 30);
+    assert_eq!(pair.node.pose_state, PoseState::Tracking, "the robot finds its place again");
+    assert_eq!(change(&mut pair, 4, ""), Reply::Success(true));
+    assert_eq!(change(&mut pair, 2, ""), Reply::Success(true));
+    assert_eq!((state(&mut pair).as_str(), pair.node.mapper().readings()), ("unconfigured", 0));
+    assert_eq!(change(&mut pair, 5, "shutdown"), Reply::Success(true));
+    assert_eq!(state(&mut pair), "finalized");
+    let events = pair.others.heard(Topic::TransitionEvents);
+    let Some(Message::TransitionEvent(last)) = events.last() else { panic!("{events:?}") };
+    assert_eq!((last.transition.id, last.goal_state.id), (5, 4));
+}
+
+#[test]
+fn parameters_are_set_where_that_is_safe() {
+    let mut pair = Pair::new(&parameters(Mode::Map), 0, None);
+    pair.run(3.0);
+    assert_eq!(set(&mut pair, "change_horizon", Value::Float(600.0)), (true, String::new()));
+    assert_eq!(pair.node.parameters.change_horizon_s, 600.0);
+    let refused = |pair: &mut Pair, name, value| {
+        let (successful, reason) = set(pair, name, value);
+        assert!(!successful, "{name}");
+        reason
+    };
+    let out = refused(&mut pair, "change_horizon", Value::Float(0.0));
+    assert_eq!(out, "node setting `change_horizon` must be from 0.1 to 86400, not 0");
+    let map = refused(&mut pair, "resolution", Value::Float(0.1));
+    assert!(map.starts_with("the parameter `resolution` can be set while the node is unconfigured"), "{map}");
+    let mode = refused(&mut pair, "mode", Value::Text("explore".to_owned()));
+    assert_eq!(mode, "the parameter `mode` can be set when the node starts");
+    let off = refused(&mut pair, "mask_update_interval", Value::Float(0.0));
+    assert!(off.starts_with("the parameter `mask_update_interval` is 30.0: a value of 0"), "{off}");
+    assert_eq!(pair.node.parameters.mask_update_interval_s, 30.0);
+    let events = pair.others.heard(Topic::ParameterEvents);
+    let [Message::ParameterEvent(event)] = events.as_slice() else { panic!("{events:?}") };
+    assert_eq!((event.node.as_str(), event.changed[0].name.as_str()), ("/curious_node", "change_horizon"));
+    // Every parameter is described, and can be read.
+    let names: Vec<String> = pair.node.parameters.list().into_iter().map(|(name, _)| name).collect();
+    let asked = Call::Names(names.clone());
+    let reply = call(&mut pair.node, &pair.others, Service::DescribeParameters, asked);
+    let Reply::Descriptions(all) = reply else { panic!("{reply:?}") };
+    assert_eq!(all.len(), names.len());
+    assert!(all.iter().all(|one| one.description.len() > 5), "{all:?}");
+    assert_eq!(all.iter().filter(|one| one.read_only).count(), 10);
+    let reply = call(&mut pair.node, &pair.others, Service::GetParameters, Call::Names(names));
+    let Reply::Values(values) = reply else { panic!("{reply:?}") };
+    assert!(values.iter().all(|value| value.value().is_some()));
+}
+
+#[test]
+fn what_the_node_says_is_in_the_log() {
+    let mut pair = Pair::new(&parameters(Mode::Map), 0, None);
+    pair.run(2.0);
+    let asked = Labelled { id: 99, label: String::new() };
+    call(&mut pair.node, &pair.others, Service::ChangeState, Call::Transition(asked));
+    let log = pair.others.heard(Topic::Log);
+    let Some(Message::Log(last)) = log.last() else { panic!("{log:?}") };
+    assert_eq!((last.level, last.name.as_str()), (Log::WARNING, "curious_node"));
+    assert_eq!(last.msg, "the node is active: the transition 99  is refused");
+    assert!(last.stamp.ns() > 1_900_000_000, "{:?}", last.stamp);
+    assert_eq!(log.len(), pair.said.lock().unwrap().len());
+}
+
+#[test]
+fn a_map_is_saved_and_loaded_as_by_slam_toolbox() {
+    let folder = tempfile::tempdir().unwrap();
+    let name = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let mut pair = Pair::new(&parameters(Mode::Map), 0, None);
+    let none = call(&mut pair.node, &pair.others, Service::SaveMap, Call::Name(name("early")));
+    assert_eq!(none, Reply::Code(2));
+    pair.run(5.0);
+    let code = |pair: &mut Pair, service, asked| call(&mut pair.node, &pair.others, service, asked);
+    assert_eq!(code(&mut pair, Service::SaveMap, Call::Name(name("house"))), Reply::Code(0));
+    let yaml = std::fs::read_to_string(name("house.yaml")).unwrap();
+    assert!(yaml.contains("image: house.pgm") && folder.path().join("house.pgm").is_file(), "{yaml}");
+    assert_eq!(code(&mut pair, Service::SerializeMap, Call::Name(name("house"))), Reply::Code(0));
+    let learned = pair.node.mapper().states().clone();
+
+    let mut again = Pair::new(&parameters(Mode::Map), 1000, None);
+    let load = |filename: String, match_type, pose: Isometry2<f64>| {
+        let initial_pose = crate::message::Pose::in_plane(&pose);
+        Call::Deserialize(Deserialize { filename, match_type, initial_pose })
+    };
+    let start = Isometry2::identity();
+    assert_eq!(code(&mut again, Service::DeserializeMap, load(name("none"), 1, start)), Reply::Code(1));
+    std::fs::write(name("bad.state"), b"nothing").unwrap();
+    assert_eq!(code(&mut again, Service::DeserializeMap, load(name("bad"), 1, start)), Reply::Code(3));
+    assert_eq!(code(&mut again, Service::DeserializeMap, load(name("house"), 1, start)), Reply::Code(0));
+    assert_eq!(again.node.mapper().states(), &learned);
+    assert_eq!(again.others.heard(Topic::Map).len(), 1);
+    again.run(2.0);
+    assert_eq!(again.node.pose_state, PoseState::Tracking);
+    let readings = again.node.mapper().readings();
+    assert!(readings > 55, "the map grows from what was loaded: {readings}");
+}

@@ -1,0 +1,147 @@
+//! The services that a node offers: their names, what they are asked, and what they answer.
+
+pub mod wire;
+
+use wire::{
+    Description, Deserialize, Labelled, Listed, Parameter, ParameterValue, Prefixes, SetResult, Transition,
+    Trigger,
+};
+
+/// What a service is for. Its name is a setting of the node.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Service {
+    /// Saves the state to the file of the node.
+    SaveState,
+    /// Writes the map as an image, as `slam_toolbox` does.
+    SaveMap,
+    /// Writes the state to any file, as `slam_toolbox` does with its graph.
+    SerializeMap,
+    /// Goes on from a state in any file.
+    DeserializeMap,
+    /// A transition of the managed lifecycle.
+    ChangeState,
+    /// The state of the managed lifecycle.
+    GetState,
+    /// The states of the managed lifecycle.
+    GetAvailableStates,
+    /// The transitions from the present state.
+    GetAvailableTransitions,
+    /// All transitions.
+    GetTransitionGraph,
+    /// Values of parameters.
+    GetParameters,
+    /// Types of parameters.
+    GetParameterTypes,
+    /// Sets parameters, each for itself.
+    SetParameters,
+    /// Sets all parameters or none.
+    SetParametersAtomically,
+    /// Names of parameters.
+    ListParameters,
+    /// Descriptions of parameters.
+    DescribeParameters,
+}
+
+impl Service {
+    /// The services of parameters, which every node of ROS has.
+    pub const PARAMETERS: [Self; 6] = [
+        Self::GetParameters,
+        Self::GetParameterTypes,
+        Self::SetParameters,
+        Self::SetParametersAtomically,
+        Self::ListParameters,
+        Self::DescribeParameters,
+    ];
+
+    /// The services of the mapping node, beside those of parameters.
+    pub const MAPPING: [Self; 9] = [
+        Self::SaveState,
+        Self::SaveMap,
+        Self::SerializeMap,
+        Self::DeserializeMap,
+        Self::ChangeState,
+        Self::GetState,
+        Self::GetAvailableStates,
+        Self::GetAvailableTransitions,
+        Self::GetTransitionGraph,
+    ];
+
+    /// The name, below that of the node.
+    pub fn default_name(self) -> &'static str {
+        self.row().0
+    }
+
+    /// The type: a package and a name.
+    pub fn type_name(self) -> (&'static str, &'static str) {
+        (self.row().1, self.row().2)
+    }
+
+    #[rustfmt::skip]
+    fn row(self) -> (&'static str, &'static str, &'static str) {
+        match self {
+            Self::SaveState => ("~/save_state", "std_srvs", "Trigger"),
+            Self::SaveMap => ("~/save_map", "slam_toolbox", "SaveMap"),
+            Self::SerializeMap => ("~/serialize_map", "slam_toolbox", "SerializePoseGraph"),
+            Self::DeserializeMap => ("~/deserialize_map", "slam_toolbox", "DeserializePoseGraph"),
+            Self::ChangeState => ("~/change_state", "lifecycle_msgs", "ChangeState"),
+            Self::GetState => ("~/get_state", "lifecycle_msgs", "GetState"),
+            Self::GetAvailableStates => ("~/get_available_states", "lifecycle_msgs", "GetAvailableStates"),
+            Self::GetAvailableTransitions => ("~/get_available_transitions", "lifecycle_msgs", "GetAvailableTransitions"),
+            Self::GetTransitionGraph => ("~/get_transition_graph", "lifecycle_msgs", "GetAvailableTransitions"),
+            Self::GetParameters => ("~/get_parameters", "rcl_interfaces", "GetParameters"),
+            Self::GetParameterTypes => ("~/get_parameter_types", "rcl_interfaces", "GetParameterTypes"),
+            Self::SetParameters => ("~/set_parameters", "rcl_interfaces", "SetParameters"),
+            Self::SetParametersAtomically => ("~/set_parameters_atomically", "rcl_interfaces", "SetParametersAtomically"),
+            Self::ListParameters => ("~/list_parameters", "rcl_interfaces", "ListParameters"),
+            Self::DescribeParameters => ("~/describe_parameters", "rcl_interfaces", "DescribeParameters"),
+        }
+    }
+}
+
+/// What a service is asked. Services with the same fields have the same variant.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Call {
+    /// Nothing beside the call itself.
+    Nothing,
+    /// The name of a file.
+    Name(String),
+    /// A file, and where the robot is in it.
+    Deserialize(Deserialize),
+    /// A transition.
+    Transition(Labelled),
+    /// Names of parameters.
+    Names(Vec<String>),
+    /// Which parameters are listed.
+    Prefixes(Prefixes),
+    /// Parameters with their new values.
+    Parameters(Vec<Parameter>),
+}
+
+/// What a service answers. Services with the same fields have the same variant.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Reply {
+    /// Whether it is done, and one sentence.
+    Trigger(Trigger),
+    /// A code of `slam_toolbox`; 0 is success.
+    Code(u8),
+    /// Whether it is done.
+    Success(bool),
+    /// A state.
+    State(Labelled),
+    /// States.
+    States(Vec<Labelled>),
+    /// Transitions.
+    Transitions(Vec<Transition>),
+    /// Values of parameters.
+    Values(Vec<ParameterValue>),
+    /// Types of parameters.
+    Types(Vec<u8>),
+    /// What became of each parameter.
+    Results(Vec<SetResult>),
+    /// What became of all parameters.
+    Result(SetResult),
+    /// Names of parameters.
+    Listed(Listed),
+    /// Descriptions of parameters.
+    Descriptions(Vec<Description>),
+}
