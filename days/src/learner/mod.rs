@@ -61,6 +61,11 @@ impl Learner {
         }
     }
 
+    /// The number of things.
+    pub(crate) fn things(&self) -> usize {
+        self.tracks.len()
+    }
+
     /// Lets a step pass.
     pub(crate) fn advance(&mut self) {
         self.step += 1;
