@@ -19,6 +19,31 @@ pub enum Habits {
     KnownToPredict,
 }
 
+impl Habits {
+    /// All of them, with their names.
+    pub const ALL: [(&'static str, Self); 4] = [
+        ("known", Self::Known),
+        ("learned", Self::Learned),
+        ("known-to-plan", Self::KnownToPlan),
+        ("known-to-predict", Self::KnownToPredict),
+    ];
+
+    /// The name.
+    pub fn name(self) -> &'static str {
+        Self::ALL.iter().find(|(_, habits)| *habits == self).map_or("", |(name, _)| *name)
+    }
+}
+
+impl std::str::FromStr for Habits {
+    type Err = String;
+
+    fn from_str(word: &str) -> Result<Self, String> {
+        let found = Self::ALL.iter().find(|(name, _)| *name == word);
+        let names = || Self::ALL.map(|(name, _)| name).join(", ");
+        found.map(|(_, habits)| *habits).ok_or_else(|| format!("expected one of {}, found `{word}`", names()))
+    }
+}
+
 /// What a robot knows about the habits of the things, and believes about their states.
 pub(super) struct Knowledge {
     habits: Habits,
