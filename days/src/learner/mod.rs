@@ -17,7 +17,7 @@ use candidates::{CANDIDATES, Candidates, Weights, normalized};
 use track::Track;
 
 /// The weight of what is plausible anywhere against what was learned in the building, in things.
-const PRIOR_THINGS: f64 = 1.0;
+const PRIOR_THINGS: f64 = 0.3;
 
 /// What a robot has learned about all things of a building.
 pub(crate) struct Learner {
