@@ -79,6 +79,9 @@ impl Model {
         horizons: [usize; N],
     ) -> [f64; N] {
         let mut laws = [false, true].map(|is_blocked| belief.after(is_blocked).phases);
+        // The laws at the last switch, and the time then. What was learned of a thing is a mixture of many habits, which
+        // is no chain: in place of one transition after the other, the longest ones from the switch on.
+        let (mut at_switch, mut since) = (laws, 0);
         let (mut ahead, mut square, mut sum) = (0, 1.0, 0.0);
         let mut switch = 0;
         horizons.map(|horizon| {
@@ -86,10 +89,12 @@ impl Model {
                 let at = step + ahead;
                 if switch <= at {
                     switch = self.next_switch(at);
+                    (at_switch, since) = (laws, ahead);
                 }
                 let longest = (horizon - ahead).min((ahead / 2).max(1)).min(switch.saturating_sub(at).max(1));
                 let power = (longest.ilog2() as usize).min(POWERS - 1);
-                laws = laws.map(|law| advanced(&law, &self.regime(at)[power]));
+                let passed = ahead + (1 << power) - since;
+                laws = at_switch.map(|law| longest_first(law, self.regime(at), passed));
                 let rho = blocked_probability(&laws[1]) - blocked_probability(&laws[0]);
                 sum += 0.5 * (square + rho * rho) * (1_u64 << power) as f64;
                 square = rho * rho;
@@ -120,6 +125,12 @@ impl Model {
         }
         law
     }
+}
+
+/// The law after a number of steps with these transitions in 2ⁿ steps, the longest ones first.
+fn longest_first(law: Phases, powers: &[Matrix], steps: usize) -> Phases {
+    let bits = (0..POWERS).rev().filter(|power| steps >> power & 1 == 1);
+    bits.fold(law, |law, power| advanced(&law, &powers[power]))
 }
 
 /// The law of the phase at the beginning of a week that the habit comes back to.

@@ -29,7 +29,7 @@ pub use calendar;
 
 pub use belief::{Belief, Model};
 pub use building::{Building, Kind, Room, Thing, ThingKind, Viewpoint};
-pub use patrol::{Choice, Duty, Patrol, Plan, Seen, Strategy, Totals, View};
+pub use patrol::{Choice, Duty, Habits, Patrol, Plan, Seen, Strategy, Totals, View};
 
 /// The step of beliefs, looks and scores, s. Things change at any time between.
 pub const STEP_S: f64 = 10.0;

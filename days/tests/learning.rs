@@ -1,7 +1,9 @@
 //! A robot that learns the habits of the things from its looks.
 
 use days::calendar::{HOUR_S, Habit, Hours, Stays};
-use days::{Building, Choice, Duty, Kind, Patrol, Plan, STEP_S, Strategy, Thing, ThingKind, View, Viewpoint};
+use days::{
+    Building, Choice, Duty, Habits, Kind, Patrol, Plan, STEP_S, Strategy, Thing, ThingKind, View, Viewpoint,
+};
 use interfaces::RandomStream;
 
 const DAY_STEPS: usize = 8640;
@@ -67,7 +69,10 @@ fn habits_are_learned() {
             sum.iter_mut().zip(scores).for_each(|(sum, score)| *sum += score);
         };
         add(&mut known, daily(Patrol::new(&building, Duty::ALWAYS, seed), &mut every(), 4));
-        add(&mut learned, daily(Patrol::learning(&building, Duty::ALWAYS, seed), &mut every(), 4));
+        add(
+            &mut learned,
+            daily(Patrol::with(&building, Duty::ALWAYS, Habits::Learned, seed), &mut every(), 4),
+        );
     }
     println!("known {known:?}, learned {learned:?}");
     let ratio = |days: std::ops::Range<usize>| {
@@ -86,7 +91,7 @@ fn hours_are_learned() {
         quiet: [Stays::of_mean(4e5), Stays::of_mean(4e5)],
     };
     let building = places(&vec![habit; 8]);
-    let mut patrol = Patrol::learning(&building, Duty::ALWAYS, 5);
+    let mut patrol = Patrol::with(&building, Duty::ALWAYS, Habits::Learned, 5);
     let mut every = Every { steps: 711, next: 0 };
     patrol.run(&mut every, 5 * DAY_STEPS, |_, _| ());
     // In how many steps the prediction is nearer to what was seen than to one half, by hour.
@@ -115,7 +120,7 @@ fn learned_predictions_are_calibrated() {
         let duty = Duty::share(0.05);
         let mut strategy = Plan::Round(18).strategy(&building, duty);
         let mut step = 0;
-        Patrol::learning(&building, duty, seed).run(
+        Patrol::with(&building, duty, Habits::Learned, seed).run(
             strategy.as_mut(),
             7 * DAY_STEPS,
             |predicted, is_blocked| {

@@ -1,36 +1,47 @@
 //! Where should a robot look, to keep its map fresh? Strategies in generated buildings with a calendar.
 //!
 //! ```text
-//! cargo run -p curious-reports --example patrols -- --kind home --kind office --buildings 100 --duty 1 --duty 0.05 --duty 0.01
+//! cargo run -p curious-reports --example patrols -- --kind home --kind office --buildings 50 --csv study.csv
+//! cargo run -p curious-reports --example patrols -- --buildings 50 --shard 1/3 --csv shard-1.csv       # and 2/3, 3/3
+//! cargo run -p curious-reports --example patrols -- --merge shard-1.csv shard-2.csv shard-3.csv
 //! ```
 //!
 //! Every strategy has the same buildings, and the same changes in them. A column `÷ X` is the Brier score divided by that of
 //! X (ratio of the means), with the p-value of the paired t test of the differences. Delays are those of changes that last an
 //! hour or more, by belief: median and 95 % point, each the mean over the buildings, and the share that was missed.
 //!
-//! A second table has the lower bound of the Brier score of all strategies (B ÷ bound: ratio of the means), and the freshness
-//! regret of each building: (B − bound) ÷ (B without looks − bound), 0 at the bound and 1 without any use of looks. Its columns
-//! `÷ X` are ratios of mean regrets, with the p-value of the paired t test. `--csv FILE` writes all runs: a study can be
-//! computed in parts by `--seed` and `--buildings`.
+//! With `--strategy bound`, a second table has the lower bound of the Brier score of all strategies (B ÷ bound: ratio of the
+//! means), and the freshness regret of each building: (B − bound) ÷ (B without looks − bound), 0 at the bound and 1 without any
+//! use of looks. B without looks is that of a robot that knows the habits. Its columns `÷ X` are ratios of mean regrets, with the
+//! p-value of the paired t test.
+//!
+//! A file of `--csv` gets a line per run as soon as it ends. A study that was stopped goes on where it was: what the file has is
+//! not computed again. The order is by buildings, so that a study that is not complete still has all strategies.
 
-#[path = "patrols/regret.rs"]
-mod regret;
+#[path = "patrols/rows.rs"]
+mod rows;
+#[path = "patrols/runs.rs"]
+mod runs;
+#[path = "patrols/tables.rs"]
+mod tables;
 
+use anyhow::{Context, ensure};
 use clap::Parser;
-use days::{Building, Duty, Kind, Patrol, Plan, STEP_S, Totals};
-use evaluation::metrics::{Freshness, FreshnessScores};
+use days::{Habits, Kind};
 use rayon::prelude::*;
-use regret::{Scores, bounds};
+use rows::{Row, RowFile};
+use runs::{Run, STRATEGIES};
 use std::path::PathBuf;
-use std::time::Instant;
-
-const DAY_STEPS: f64 = 86_400.0 / STEP_S;
 
 #[derive(Parser)]
 struct Options {
     /// Kinds of buildings: home, office, warehouse, clinic
     #[arg(long, default_values = ["home", "office"])]
     kind: Vec<Kind>,
+    /// Whether the robot knows the habits of the things: known, learned (from its looks), or, to see what learning costs,
+    /// known-to-plan (only the predictions are learned) and known-to-predict (only the plans are)
+    #[arg(long, default_values = ["known"])]
+    habits: Vec<Habits>,
     /// The number of buildings of each kind
     #[arg(long, default_value_t = 100)]
     buildings: u64,
@@ -40,21 +51,25 @@ struct Options {
     /// The share of the time that the robot can be on patrol, above 0, at most 1
     #[arg(long, default_values_t = [1.0, 0.05, 0.01], value_parser = share)]
     duty: Vec<f64>,
+    /// no-looks, curious, round, coverage, gain, bound: all but the bound, which takes most of the time
+    #[arg(long, default_values = &STRATEGIES[..5], value_parser = STRATEGIES)]
+    strategy: Vec<String>,
     /// Simulated days
     #[arg(long, default_value_t = 7.0, value_parser = positive)]
     days: f64,
-    /// The length of a patrol of the strategies that do not choose it, min: at most 30. The mean is printed for each length
-    #[arg(long, default_values_t = [30.0], value_parser = minutes)]
+    /// The length of a patrol of the strategies that do not choose it, min: at most 30 [default: 2.5 in homes, otherwise 3.5].
+    /// With several of them, each has its rows
+    #[arg(long, value_parser = minutes)]
     length: Vec<f64>,
-    /// The robot does not know the habits of the things, and learns them from its looks
-    #[arg(long)]
-    learned: bool,
-    /// Leaves out the lower bound of all strategies, which takes most of the time
-    #[arg(long)]
-    without_bound: bool,
-    /// A table of all runs: a line per building, share of the time and strategy
+    /// Computes a part: K/N has the buildings whose number, from 1 on, is K, K + N, …
+    #[arg(long, value_parser = shard)]
+    shard: Option<[u64; 2]>,
+    /// A table of all runs, which is completed
     #[arg(long)]
     csv: Option<PathBuf>,
+    /// Computes nothing: prints the tables of these files
+    #[arg(long, num_args = 1.., conflicts_with = "csv")]
+    merge: Vec<PathBuf>,
 }
 
 fn share(word: &str) -> Result<f64, String> {
@@ -72,109 +87,66 @@ fn minutes(word: &str) -> Result<f64, String> {
     value.ok_or_else(|| "expected a number from 1 to 30".to_owned())
 }
 
-/// A run of a strategy in a building.
-struct Run {
-    scores: FreshnessScores,
-    totals: Totals,
+fn shard(word: &str) -> Result<[u64; 2], String> {
+    let numbers = word.split_once('/').map(|(shard, of)| (shard.parse::<u64>(), of.parse::<u64>()));
+    match numbers {
+        Some((Ok(shard), Ok(of))) if (1..=of).contains(&shard) => Ok([shard, of]),
+        _ => Err("expected a shard as in 2/5".to_owned()),
+    }
 }
 
-fn main() -> std::io::Result<()> {
-    let options = Options::parse();
-    let mut plans = vec![("no looks".to_owned(), Plan::Never)];
-    for minutes in &options.length {
-        let length = (60.0 * minutes / STEP_S) as usize;
-        let name = |name: &str| {
-            if options.length.len() == 1 { name.to_owned() } else { format!("{name} {minutes}") }
-        };
-        plans.push((name("curious"), Plan::Curious(length)));
-        plans.push((name("round"), Plan::Round(length)));
-        plans.push((name("coverage"), Plan::Coverage(length)));
-    }
-    plans.push(("gain".to_owned(), Plan::Gain));
-    let mut all = Vec::new();
-    for kind in &options.kind {
-        for duty in &options.duty {
-            all.push(table(*kind, Duty::share(*duty), *duty, &plans, &options));
+impl Options {
+    /// All runs of the study, or of its shard, building by building.
+    fn runs(&self) -> Vec<Run> {
+        let mut runs = Vec::new();
+        let [shard, of] = self.shard.unwrap_or([1, 1]);
+        for seed in (self.seed..self.seed + self.buildings).skip(shard as usize - 1).step_by(of as usize) {
+            for (kind, habits) in
+                self.kind.iter().flat_map(|kind| self.habits.iter().map(move |habits| (kind, habits)))
+            {
+                for (share, strategy) in self
+                    .duty
+                    .iter()
+                    .flat_map(|share| self.strategy.iter().map(move |strategy| (share, strategy)))
+                {
+                    runs.extend(Run::all(*kind, *habits, *share, seed, self.days, strategy, &self.length));
+                }
+            }
         }
+        runs
     }
-    if let Some(path) = &options.csv {
-        regret::write(path, &all)?;
+}
+
+fn main() -> anyhow::Result<()> {
+    let options = Options::parse();
+    if !options.merge.is_empty() {
+        let mut rows = Vec::new();
+        for path in &options.merge {
+            rows.extend(RowFile::read(path).with_context(|| format!("cannot read {}", path.display()))?);
+        }
+        tables::print(rows);
+        return Ok(());
     }
+    let runs = options.runs();
+    ensure!(!runs.is_empty(), "there is nothing to compute");
+    let mut file =
+        options.csv.as_deref().map(RowFile::open).transpose().context("cannot use the file of --csv")?;
+    let known: Vec<Row> = file.as_ref().map_or_else(Vec::new, |file| file.rows.clone());
+    let is_missing = |run: &&Run| !known.iter().any(|row| row.run == **run);
+    let missing: Vec<&Run> = runs.iter().filter(is_missing).collect();
+    let file = std::sync::Mutex::new(&mut file);
+    let new = missing.par_iter().map(|run| {
+        let row = run.row();
+        if let Ok(mut file) = file.lock()
+            && let Some(file) = file.as_mut()
+        {
+            file.append(&row)?;
+        }
+        Ok(row)
+    });
+    let new: anyhow::Result<Vec<Row>> = new.collect();
+    let mut rows: Vec<Row> = known.into_iter().filter(|row| runs.contains(&row.run)).collect();
+    rows.extend(new?);
+    tables::print(rows);
     Ok(())
-}
-
-fn table(kind: Kind, duty: Duty, share: f64, plans: &[(String, Plan)], options: &Options) -> Scores {
-    let began = Instant::now();
-    let seeds: Vec<u64> = (options.seed..options.seed + options.buildings).collect();
-    let steps = (options.days * DAY_STEPS) as usize;
-    let runs: Vec<Vec<Run>> = seeds
-        .par_iter()
-        .map(|seed| {
-            let building = Building::generate(kind, *seed);
-            plans.iter().map(|(_, plan)| run(&building, duty, *plan, *seed, steps, options.learned)).collect()
-        })
-        .collect();
-    let real = began.elapsed().as_secs_f64();
-    let simulated = (seeds.len() * plans.len() * steps) as f64 * STEP_S;
-    let name = Kind::ALL.iter().find(|(_, other)| *other == kind).map_or("", |(name, _)| name);
-    println!(
-        "\n{name}, {} buildings from seed {}, {} days, patrol {} % of the time, habits {}, {:.0} × real time",
-        seeds.len(),
-        options.seed,
-        options.days,
-        100.0 * share,
-        if options.learned { "learned" } else { "known" },
-        simulated / real
-    );
-    println!(
-        "{:<14} {:>8} {:>8} {:>9} {:>8} {:>9} {:>7} {:>7} {:>7} {:>8} {:>7}",
-        "strategy", "Brier", "÷curious", "p", "÷round", "p", "median", "95 %", "missed", "driving", "closed"
-    );
-    let column = |plan: usize, value: fn(&Run) -> f64| {
-        let values = runs.iter().map(move |runs| value(&runs[plan])).filter(|value| value.is_finite());
-        let (sum, count) = values.fold((0.0, 0), |(sum, count), value| (sum + value, count + 1));
-        sum / f64::from(count)
-    };
-    let brier = |run: &Run| run.scores.brier;
-    let best = |word: &str| {
-        let named = (0..plans.len()).filter(|plan| plans[*plan].0.starts_with(word));
-        named.min_by(|a, b| column(*a, brier).total_cmp(&column(*b, brier))).unwrap_or(0)
-    };
-    let (curious, round) = (best("curious"), best("round"));
-    for (plan, (name, _)) in plans.iter().enumerate() {
-        let against = |other: usize| {
-            let ratio = column(plan, brier) / column(other, brier);
-            let differences = runs.iter().map(|runs| brier(&runs[plan]) - brier(&runs[other]));
-            (ratio, reports::paired_test(differences).p_value)
-        };
-        let ((to_curious, p_curious), (to_round, p_round)) = (against(curious), against(round));
-        println!(
-            "{name:<14} {:>8.4} {to_curious:>8.3} {p_curious:>9.1e} {to_round:>8.3} {p_round:>9.1e} {:>6.0}m {:>6.0}m {:>6.1}% {:>7.2}% {:>6.1}%",
-            column(plan, brier),
-            column(plan, |run| run.scores.detection_delay_s[0]) / 60.0,
-            column(plan, |run| run.scores.detection_delay_s[1]) / 60.0,
-            100.0 * column(plan, |run| run.scores.missed),
-            100.0 * column(plan, |run| run.totals.patrol_steps as f64 / run.totals.steps as f64),
-            100.0 * column(plan, |run| run.totals.closed as f64 / run.totals.looks.max(1) as f64),
-        );
-    }
-    let scores = Scores {
-        place: name.to_owned(),
-        share,
-        bounds: if options.without_bound { Vec::new() } else { bounds(kind, duty, &seeds, steps) },
-        briers: (0..plans.len()).map(|plan| runs.iter().map(|runs| brier(&runs[plan])).collect()).collect(),
-        plans: plans.iter().map(|plan| plan.0.clone()).collect(),
-        seeds,
-    };
-    scores.print([curious, round]);
-    scores
-}
-
-fn run(building: &Building, duty: Duty, plan: Plan, seed: u64, steps: usize, learned: bool) -> Run {
-    let start = if learned { Patrol::learning } else { Patrol::new };
-    let mut strategy = plan.strategy(building, duty);
-    let mut freshness = Freshness::new(STEP_S);
-    let totals = start(building, duty, seed)
-        .run(strategy.as_mut(), steps, |predicted, is_blocked| freshness.add(predicted, is_blocked));
-    Run { scores: freshness.scores(), totals }
 }

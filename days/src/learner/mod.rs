@@ -17,7 +17,7 @@ use candidates::{CANDIDATES, Candidates, Weights, normalized};
 use track::Track;
 
 /// The weight of what is plausible anywhere against what was learned in the building, in things.
-const PRIOR_THINGS: f64 = 1.0;
+const PRIOR_THINGS: f64 = 0.3;
 
 /// What a robot has learned about all things of a building.
 pub(crate) struct Learner {
@@ -59,6 +59,11 @@ impl Learner {
             *prior = after;
             self.tracks[thing].change_prior(&self.candidates, &before, &after, active);
         }
+    }
+
+    /// The number of things.
+    pub(crate) fn things(&self) -> usize {
+        self.tracks.len()
     }
 
     /// Lets a step pass.

@@ -3,7 +3,7 @@ use crate::SLOT_STEPS;
 use crate::calendar::{PHASES, Phases};
 
 /// The least share of its prior probability that a candidate has after an update of the prior.
-const MIN_SHARE: f64 = 0.01;
+const MIN_SHARE: f64 = 0.001;
 
 /// What is known about one thing, given that the building is now quiet or active.
 ///

@@ -8,9 +8,9 @@ use crate::calendar::{SLOT_S, WEEK_S};
 const SLOTS: usize = (WEEK_S / SLOT_S) as usize;
 /// Slots share the demand of the first one of this number.
 const STRIDE: usize = 3;
-/// Intervals between two looks at a thing that are tried, steps: from five minutes to more than two days, in factors of 2.
+/// Intervals between two looks at a thing that are tried, steps: from five minutes to nearly four days, powers of 2.
 const INTERVALS: usize = 11;
-const SHORTEST: usize = 30;
+const SHORTEST: usize = 32;
 /// Prices that are tried, each this factor above the one before.
 const PRICES: usize = 40;
 const PRICE_RATIO: f64 = 1.3;

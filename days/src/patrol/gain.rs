@@ -25,6 +25,10 @@ const FORECAST_AGAIN_STEPS: usize = 8640;
 /// second one: what does not fit into the battery is lost.
 const EXPLORE_FROM: f64 = 0.98;
 const EXPLORE_TO: f64 = 0.8;
+/// Below this charge, a robot that learns raises its price, up to a multiple at an empty battery: the forecast with learned
+/// habits is uncertain, and a robot with an empty battery sees nothing in the hours in which most happens.
+const SCARCE: f64 = 0.2;
+const SCARCE_PRICE: f64 = 3.0;
 
 /// Goes where the expected integral of the Brier score falls most, by looks, until the next look at each thing, per time
 /// of travel and look.
@@ -114,6 +118,11 @@ impl Gain {
         self.priced_at = view.step;
         let scale = self.spent_steps / self.forecast_steps;
         self.price = demand.price(view.step, view.charge_steps, view.duty, scale);
+        // On the first day nothing is known, and every look teaches.
+        if view.is_learning && view.step >= FORECAST_AGAIN_STEPS {
+            let missing = (1.0 - view.charge_steps / view.duty.full_steps() / SCARCE).max(0.0);
+            self.price *= 1.0 + (SCARCE_PRICE - 1.0) * missing;
+        }
     }
 }
 

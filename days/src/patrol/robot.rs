@@ -1,14 +1,11 @@
 use super::duty::Duty;
+use super::knowledge::{Habits, Knowledge};
 use super::view::{Choice, Seen, Strategy, View};
 use crate::STEP_S;
-use crate::belief::{Belief, Model};
-use crate::building::{Building, ThingKind};
+use crate::belief::Model;
+use crate::building::Building;
 use crate::calendar::Timeline;
-use crate::learner::Learner;
 use interfaces::{Purpose, RandomStream};
-
-/// The models for planning are learned again after this time, steps: three hours.
-const MODEL_STEPS: usize = 1080;
 
 /// What a robot did, in steps and in looks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -27,16 +24,11 @@ pub struct Totals {
 pub struct Patrol<'a> {
     building: &'a Building,
     duty: Duty,
-    models: Vec<Model>,
-    beliefs: Vec<Belief>,
-    /// What the robot has learned, if it does not know the habits.
-    learner: Option<Learner>,
+    knowledge: Knowledge,
     timelines: Vec<Timeline>,
     /// The state of each thing at the last look at it, and its step.
     last_states: Vec<bool>,
     seen: Vec<Option<usize>>,
-    /// The step at which the models were last learned.
-    modeled_at: usize,
     step: usize,
     at: usize,
     charge_steps: f64,
@@ -55,6 +47,11 @@ struct Errand {
 impl<'a> Patrol<'a> {
     /// A robot that knows the habits of all things. What the things do depends on the seed alone, not on the robot.
     pub fn new(building: &'a Building, duty: Duty, seed: u64) -> Self {
+        Self::with(building, duty, Habits::Known, seed)
+    }
+
+    /// A robot that knows or learns the habits of all things. The things do the same.
+    pub fn with(building: &'a Building, duty: Duty, habits: Habits, seed: u64) -> Self {
         let models: Vec<Model> = building.things.iter().map(|thing| Model::of(&thing.habit)).collect();
         let timelines = building.things.iter().zip(&models).enumerate().map(|(index, (thing, model))| {
             let rng = RandomStream::new(seed, Purpose::Thing(index));
@@ -64,35 +61,15 @@ impl<'a> Patrol<'a> {
             building,
             duty,
             timelines: timelines.collect(),
-            beliefs: models.iter().map(Belief::new).collect(),
             last_states: vec![false; models.len()],
             seen: vec![None; models.len()],
-            models,
-            learner: None,
-            modeled_at: 0,
+            knowledge: Knowledge::new(building, habits, models),
             step: 0,
             at: building.dock,
             charge_steps: duty.full_steps().min(if duty.is_always() { f64::INFINITY } else { 0.0 }),
             rng: RandomStream::new(seed, Purpose::Patrol),
             totals: Totals::default(),
         }
-    }
-
-    /// A robot that knows no habit, and learns the habits of all things from its looks. The things do the same.
-    pub fn learning(building: &'a Building, duty: Duty, seed: u64) -> Self {
-        let mut patrol = Self::new(building, duty, seed);
-        patrol.learner =
-            Some(Learner::new(building.things.iter().map(|thing| thing.kind == ThingKind::Door).collect()));
-        patrol.update_models();
-        patrol
-    }
-
-    /// The models for planning are those of the mean habits.
-    fn update_models(&mut self) {
-        let Some(learner) = &mut self.learner else { return };
-        learner.learn_priors();
-        let hours = learner.hours();
-        self.models = (0..self.models.len()).map(|thing| learner.model(thing, hours.clone())).collect();
     }
 
     /// Lets a strategy drive the robot for a number of steps. After every step, `score` gets the probability of being blocked and
@@ -116,10 +93,7 @@ impl<'a> Patrol<'a> {
                 errand = Some(self.begin(strategy, &is_blocked));
             }
             for (thing, predicted) in predicted.iter_mut().enumerate() {
-                *predicted = match &self.learner {
-                    Some(learner) => learner.probability(thing),
-                    None => self.beliefs[thing].probability(),
-                };
+                *predicted = self.knowledge.probability(thing);
             }
             score(&predicted, &is_blocked);
             self.totals.steps += 1;
@@ -141,13 +115,7 @@ impl<'a> Patrol<'a> {
 
     /// A step passes.
     fn pass(&mut self, errand: &Option<Errand>) {
-        match &mut self.learner {
-            Some(learner) => learner.advance(),
-            None => {
-                let pairs = self.beliefs.iter_mut().zip(&self.models);
-                pairs.for_each(|(belief, model)| belief.advance(model, self.step));
-            }
-        }
+        self.knowledge.advance(self.step);
         if errand.as_ref().is_some_and(|errand| errand.way.is_some()) {
             self.charge_steps -= 1.0;
             self.totals.patrol_steps += 1;
@@ -160,15 +128,8 @@ impl<'a> Patrol<'a> {
     /// What the robot does next; a way that doors close before the robot leaves ends in front of them.
     fn begin(&mut self, strategy: &mut dyn Strategy, is_blocked: &[bool]) -> Errand {
         let is_docked = self.at == self.building.dock;
-        if let Some(learner) = &self.learner {
-            for (thing, belief) in self.beliefs.iter_mut().enumerate() {
-                *belief = Belief::of_phases(learner.phases(thing));
-            }
-            if self.step >= self.modeled_at + MODEL_STEPS {
-                self.modeled_at = self.step;
-                self.update_models();
-            }
-        }
+        self.knowledge.prepare(self.step);
+        let (models, beliefs) = self.knowledge.plans();
         let view = View {
             step: self.step,
             at: self.at,
@@ -176,9 +137,9 @@ impl<'a> Patrol<'a> {
             charge_steps: self.charge_steps,
             duty: self.duty,
             building: self.building,
-            models: &self.models,
-            is_learning: self.learner.is_some(),
-            beliefs: &self.beliefs,
+            models,
+            is_learning: self.knowledge.is_learning(),
+            beliefs,
             last_states: &self.last_states,
             seen: &self.seen,
         };
@@ -210,10 +171,7 @@ impl<'a> Patrol<'a> {
         for &thing in sees {
             let state = is_blocked[thing];
             changes += usize::from(self.seen[thing].is_some() && self.last_states[thing] != state);
-            self.beliefs[thing].look(state);
-            if let Some(learner) = &mut self.learner {
-                learner.look(thing, state);
-            }
+            self.knowledge.look(thing, state);
             self.last_states[thing] = state;
             self.seen[thing] = Some(self.step);
         }

@@ -111,13 +111,14 @@ fn door(shape: &Rectangle, spec: &DoorSpec) -> Option<Keys> {
         [("opening", opening.into()), ("closed_s", number(closed_s)), ("open_s", number(open_s))]
     };
     match spec.opening {
-        Opening::Scheduled(_) => {}
+        Opening::Scheduled { waits_for_robots: true, .. } => keys.push(("waits_for_robots", true.into())),
+        Opening::Scheduled { .. } => {}
         Opening::Periodic { closed_s, open_s } => keys.extend(times("periodic", [closed_s, open_s])),
         Opening::Random { closed_s, open_s } => keys.extend(times("random", [closed_s, open_s])),
         Opening::Scripted { .. } => return None,
     }
     keys.push(("move_s", number(spec.move_s)));
-    if !matches!(spec.opening, Opening::Scheduled(_)) {
+    if !matches!(spec.opening, Opening::Scheduled { .. }) {
         keys.push(("starts_open", spec.starts_open.into()));
     }
     Some(keys)

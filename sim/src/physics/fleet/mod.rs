@@ -3,6 +3,7 @@
 mod bulk;
 mod carry;
 mod rest;
+mod rooms;
 mod slide;
 mod snapshots;
 mod start;

@@ -19,8 +19,9 @@ impl Fleet {
                 None => return 0,
             }
         }
-        for obstacle in &mut self.obstacles {
-            match obstacle.rests_until_s(time_s) {
+        for (index, obstacle) in self.obstacles.iter_mut().enumerate() {
+            let is_occupied = self.start.rooms.is_occupied(index, &self.robots);
+            match obstacle.rests_until_s(time_s, is_occupied) {
                 Some(obstacle_s) => until_s = until_s.min(obstacle_s),
                 None => return 0,
             }

@@ -1,6 +1,7 @@
 //! A fleet at its start: what is the same for every seed, built once and shared.
 
 use super::Fleet;
+use super::rooms::Rooms;
 use super::slide::Sliding;
 use crate::physics::bodies::Bodies;
 use crate::physics::free_poses::FreePoses;
@@ -23,6 +24,8 @@ pub(super) struct Start {
     obstacles: Vec<Obstacle>,
     scene: Scene,
     beams: SharedBeams,
+    /// The rooms whose doors wait for robots.
+    pub(super) rooms: Rooms,
     /// Where each robot that is carried away can be set down.
     pub(super) carried: Vec<Option<FreePoses>>,
     /// The robots that have corners.
@@ -67,6 +70,7 @@ impl Start {
             obstacles,
             scene,
             beams: SharedBeams::default(),
+            rooms: Rooms::new(spec),
             carried: carried.collect(),
             cornered,
             has_fiducial_finders: spec.robots.iter().any(|robot| robot.fiducial.is_some()),

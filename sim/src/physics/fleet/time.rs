@@ -136,8 +136,9 @@ impl Fleet {
             return;
         }
         let (time_s, step_s, blockers) = (self.time_s(), self.spec().step_s, self.blockers());
-        for obstacle in &mut self.obstacles {
-            obstacle.start_step(time_s, step_s, &mut self.bodies, &blockers);
+        for (index, obstacle) in self.obstacles.iter_mut().enumerate() {
+            let is_occupied = self.start.rooms.is_occupied(index, &self.robots);
+            obstacle.start_step([time_s, step_s], is_occupied, &mut self.bodies, &blockers);
         }
     }
 

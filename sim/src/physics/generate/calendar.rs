@@ -43,7 +43,7 @@ impl Calendar {
             if let Motion::Door(door) = &mut obstacle.motion {
                 let schedule = self.draw(ThingKind::Door);
                 door.starts_open = !schedule.starts_blocked;
-                door.opening = Opening::Scheduled(Box::new(schedule));
+                door.opening = Opening::Scheduled { schedule: Box::new(schedule), waits_for_robots: true };
             }
         }
     }

@@ -33,6 +33,13 @@ struct Retreat {
     pause_s: f64,
 }
 
+/// What opens and closes a door with a schedule.
+pub(super) struct Calls<'a> {
+    pub(super) routine: Option<&'a mut Routine>,
+    /// Whether a robot is behind the door, which waits for it.
+    pub(super) is_occupied: bool,
+}
+
 impl Door {
     /// The obstacle with an index, a door, at the start.
     pub(super) fn new(spec: &DoorSpec, index: usize, seed: u64) -> Self {
@@ -50,15 +57,9 @@ impl Door {
 
     /// The openness after a step that ends at `time_s`, if nothing is in the way. The direction of the motion
     /// changes at the exact time of a change, also within the step.
-    pub(super) fn next(
-        &mut self,
-        spec: &DoorSpec,
-        mut routine: Option<&mut Routine>,
-        time_s: f64,
-        step_s: f64,
-    ) -> f64 {
+    pub(super) fn next(&mut self, spec: &DoorSpec, mut calls: Calls<'_>, time_s: f64, step_s: f64) -> f64 {
         if let Some(retreat) = self.retreat {
-            let (is_to_open, _) = self.target(spec, routine.as_deref_mut(), time_s - step_s);
+            let (is_to_open, _) = self.target(spec, &mut calls, time_s - step_s);
             if is_to_open != retreat.is_to_open && retreat.pause_s > SLACK_S {
                 return self.back(spec, retreat, step_s);
             }
@@ -66,7 +67,7 @@ impl Door {
         }
         let (mut openness, mut left_s) = (self.openness, step_s);
         while left_s > SLACK_S {
-            let (is_to_open, until_s) = self.target(spec, routine.as_deref_mut(), time_s - left_s);
+            let (is_to_open, until_s) = self.target(spec, &mut calls, time_s - left_s);
             let for_s = left_s.min(until_s - (time_s - left_s));
             let by = for_s / spec.move_s;
             openness = (openness + if is_to_open { by } else { -by }).clamp(0.0, 1.0);
@@ -79,10 +80,10 @@ impl Door {
     pub(super) fn rests_until_s(
         &mut self,
         spec: &DoorSpec,
-        routine: Option<&mut Routine>,
+        mut calls: Calls<'_>,
         time_s: f64,
     ) -> Option<f64> {
-        let (is_to_open, until_s) = self.target(spec, routine, time_s);
+        let (is_to_open, until_s) = self.target(spec, &mut calls, time_s);
         let is_there = self.openness == f64::from(u8::from(is_to_open));
         (is_there && self.retreat.is_none() && self.blocked_s == 0.0).then_some(until_s)
     }
@@ -114,7 +115,7 @@ impl Door {
 
     /// Whether the door must be open from a time on, and the time of the next change, s. The time must not decrease
     /// between calls.
-    fn target(&mut self, spec: &DoorSpec, routine: Option<&mut Routine>, time_s: f64) -> (bool, f64) {
+    fn target(&mut self, spec: &DoorSpec, calls: &mut Calls<'_>, time_s: f64) -> (bool, f64) {
         let time_s = time_s + SLACK_S;
         match &spec.opening {
             Opening::Periodic { closed_s, open_s } => {
@@ -129,8 +130,8 @@ impl Door {
                 let until_s = switches_s.get(switches).copied().unwrap_or(f64::INFINITY);
                 (spec.starts_open != (switches % 2 == 1), until_s)
             }
-            Opening::Scheduled(_) => match routine {
-                Some(routine) => (!routine.is_blocked(time_s), routine.next_s()),
+            Opening::Scheduled { .. } => match &mut calls.routine {
+                Some(routine) => (!routine.is_blocked(time_s) || calls.is_occupied, routine.next_s()),
                 None => (spec.starts_open, f64::INFINITY),
             },
             Opening::Random { .. } => {
@@ -150,7 +151,7 @@ impl Door {
                 let mean_s = if self.is_to_open { open_s } else { closed_s };
                 self.random.exponential(mean_s)
             }
-            Opening::Periodic { .. } | Opening::Scripted { .. } | Opening::Scheduled(_) => f64::INFINITY,
+            Opening::Periodic { .. } | Opening::Scripted { .. } | Opening::Scheduled { .. } => f64::INFINITY,
         }
     }
 }
@@ -171,7 +172,7 @@ mod tests {
             while time_s < until_s - SLACK_S {
                 steps += 1.0;
                 time_s = steps * 0.05;
-                door.openness = door.next(&spec, None, time_s, 0.05);
+                door.openness = door.next(&spec, Calls { routine: None, is_occupied: false }, time_s, 0.05);
             }
             (door.openness * 1e9).round() / 1e9
         });

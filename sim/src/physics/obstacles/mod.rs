@@ -9,7 +9,7 @@ use super::shape::Rectangle;
 use super::snapshot::{Values, pose, value};
 use super::spec::{Motion, ObstacleSpec};
 use crate::routine::Routine;
-use door::Door;
+use door::{Calls, Door};
 use nalgebra::Point2;
 use serde::{Deserialize, Serialize};
 
@@ -84,8 +84,15 @@ impl Obstacle {
         matches!(self.state, State::Path(..) | State::Door(..))
     }
 
-    /// Starts the motion in the next physics step, which ends at `time_s`, if nothing is in the way.
-    pub(super) fn start_step(&mut self, time_s: f64, step_s: f64, bodies: &mut Bodies, blockers: &Blockers) {
+    /// Starts the motion in the next physics step, which ends at `time_s`, if nothing is in the way. `is_occupied`: a robot that a
+    /// door waits for is behind it.
+    pub(super) fn start_step(
+        &mut self,
+        [time_s, step_s]: [f64; 2],
+        is_occupied: bool,
+        bodies: &mut Bodies,
+        blockers: &Blockers,
+    ) {
         let mut go = |shape: &mut Rectangle, mover: &Mover, next: Rectangle| {
             let is_free = next == *shape || blockers.is_free(shape, &next);
             if is_free && next != *shape {
@@ -102,7 +109,12 @@ impl Obstacle {
                 }
             }
             (State::Door(mover, door), Motion::Door(spec)) => {
-                let openness = door.next(spec, self.routine.as_deref_mut(), time_s, step_s);
+                let openness = door.next(
+                    spec,
+                    Calls { routine: self.routine.as_deref_mut(), is_occupied },
+                    time_s,
+                    step_s,
+                );
                 let is_free = go(&mut self.shape, mover, spec.shape(&self.spec.shape, openness));
                 door.end_step(openness, is_free, step_s);
             }
@@ -119,12 +131,12 @@ impl Obstacle {
 
     /// The time until which nothing happens to the obstacle while all other bodies rest, s, from `time_s` on; `None` if it
     /// moves now.
-    pub(super) fn rests_until_s(&mut self, time_s: f64) -> Option<f64> {
+    pub(super) fn rests_until_s(&mut self, time_s: f64, is_occupied: bool) -> Option<f64> {
         let still_to_come =
             |due_s: Option<f64>| due_s.filter(|due_s| *due_s > time_s).unwrap_or(f64::INFINITY);
         match (&mut self.state, &self.spec.motion) {
             (State::Door(_, door), Motion::Door(spec)) => {
-                door.rests_until_s(spec, self.routine.as_deref_mut(), time_s)
+                door.rests_until_s(spec, Calls { routine: self.routine.as_deref_mut(), is_occupied }, time_s)
             }
             (State::Path(..), _) => None,
             (State::Due | State::Standing(_), Motion::Scheduled(_)) => {

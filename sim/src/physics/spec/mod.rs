@@ -94,6 +94,15 @@ impl FleetSpec {
         }
     }
 
+    /// The robots that execute commands, each with the position of its dock, m: where it starts unless it has another one.
+    pub(crate) fn docks(&self) -> impl Iterator<Item = (usize, Point2<f64>)> {
+        self.driven_robots().map(|index| {
+            let robot = &self.robots[index];
+            let dock = robot.patrol.as_ref().and_then(|patrol| patrol.dock);
+            (index, dock.unwrap_or_else(|| robot.pose.translation.vector.into()))
+        })
+    }
+
     /// The indices of the robots that execute commands.
     pub fn driven_robots(&self) -> impl Iterator<Item = usize> {
         let is_driven = |(_, robot): &(usize, &RobotSpec)| robot.behavior == BehaviorSpec::Driven;

@@ -36,9 +36,17 @@ impl ObstacleSpec {
     pub fn schedule(&self) -> Option<&Schedule> {
         match &self.motion {
             Motion::Scheduled(schedule)
-            | Motion::Door(DoorSpec { opening: Opening::Scheduled(schedule), .. }) => Some(schedule),
+            | Motion::Door(DoorSpec { opening: Opening::Scheduled { schedule, .. }, .. }) => Some(schedule),
             _ => None,
         }
+    }
+
+    /// Whether the obstacle is a door that is not closed while a robot is behind it.
+    pub(crate) fn waits_for_robots(&self) -> bool {
+        matches!(
+            &self.motion,
+            Motion::Door(DoorSpec { opening: Opening::Scheduled { waits_for_robots: true, .. }, .. })
+        )
     }
 
     /// Whether the obstacle is present at the start.
@@ -198,5 +206,11 @@ pub enum Opening {
         switches_s: Vec<f64>,
     },
     /// The door opens (free) and closes (blocked) by a schedule.
-    Scheduled(Box<Schedule>),
+    Scheduled {
+        /// The schedule.
+        schedule: Box<Schedule>,
+        /// Whether people let robots out before they close the door: it is open, against its schedule, while a driven robot
+        /// is where the closed door cuts it off from its dock.
+        waits_for_robots: bool,
+    },
 }

@@ -99,7 +99,10 @@ fn thing_line(obstacle: &ObstacleSpec) -> String {
                 Opening::Random { closed_s, open_s } => {
                     format!("at random closed {} s, open {} s in the mean", short(*closed_s), short(*open_s))
                 }
-                Opening::Scheduled(schedule) => format!("closed {}", calendar::of_thing(schedule)),
+                Opening::Scheduled { schedule, waits_for_robots } => {
+                    let waits = if *waits_for_robots { "; open while a robot is behind it" } else { "" };
+                    format!("closed {}{waits}", calendar::of_thing(schedule))
+                }
                 Opening::Scripted { switches_s } => format!("moved {} times, as written", switches_s.len()),
             };
             format!("a {leaf} door, {opening}")

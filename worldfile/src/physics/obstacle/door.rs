@@ -25,7 +25,7 @@ impl Obstacle<'_> {
         let move_s = table.number_or("move_s", 1.0, 0.05..=3600.0);
         let opening = self.opening();
         let starts_open = match &opening {
-            Some(Opening::Scheduled(schedule)) => !schedule.starts_blocked,
+            Some(Opening::Scheduled { schedule, .. }) => !schedule.starts_blocked,
             _ => table.flag("starts_open"),
         };
         let (from, to, thickness_m) = (from?, to?, thickness_m?);
@@ -62,7 +62,13 @@ impl Obstacle<'_> {
         if let Some(schedule) =
             self.schedule(&["opening", "closed_s", "open_s", "switches_s", "starts_open"])?
         {
-            return Some(Opening::Scheduled(Box::new(schedule)));
+            let waits_for_robots = table.flag("waits_for_robots");
+            return Some(Opening::Scheduled { schedule: Box::new(schedule), waits_for_robots });
+        }
+        if table.flag("waits_for_robots") {
+            let what = format!("the door `{}` has no schedule", self.name);
+            let help = "only a door with a `schedule` waits for robots";
+            return table.error(&what, (table.at("waits_for_robots"), "this door"), &[], help);
         }
         let Some(kind) = table.get("opening") else {
             let help = "it needs an `opening`, \"periodic\", \"random\" or \"scripted\", or a `schedule`";

@@ -14,7 +14,7 @@ use sim::physics::{Motion, ObstacleSpec, PushedSpec, Rectangle};
 pub(super) const KEYS: &str = "name, tag, kind, min_m, max_m, center_m, size_m, heading_deg, appears_s, \
                                disappears_s, mass_kg, friction, path_m, dwell_s, speed_mps, times_s, repeat, \
                                from_m, to_m, thickness_m, open_deg, slide_m, opening, closed_s, open_s, \
-                               switches_s, move_s, starts_open, schedule";
+                               switches_s, move_s, starts_open, schedule, waits_for_robots";
 
 /// The kinds of obstacles; all have a name, a tag and a kind as well.
 const KINDS: [KindOf; 5] = [
@@ -27,12 +27,14 @@ const KINDS: [KindOf; 5] = [
     ("block", "size_m, heading_deg, path_m, dwell_s, speed_mps, times_s, repeat", "moves along a path"),
     (
         "hinged_door",
-        "from_m, to_m, thickness_m, open_deg, opening, closed_s, open_s, switches_s, move_s, starts_open, schedule",
+        "from_m, to_m, thickness_m, open_deg, opening, closed_s, open_s, switches_s, move_s, starts_open, schedule, \
+         waits_for_robots",
         "turns about `from_m`",
     ),
     (
         "sliding_door",
-        "from_m, to_m, thickness_m, slide_m, opening, closed_s, open_s, switches_s, move_s, starts_open, schedule",
+        "from_m, to_m, thickness_m, slide_m, opening, closed_s, open_s, switches_s, move_s, starts_open, schedule, \
+         waits_for_robots",
         "slides from `to_m` towards `from_m`",
     ),
 ];

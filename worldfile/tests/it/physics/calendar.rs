@@ -12,6 +12,17 @@ fn office() -> WorldSpec {
     worldfile::shipped::load("office_week").unwrap()
 }
 
+/// The office, with a robot that starts in the workshop; its dock is in the corridor. People let it out, or not.
+fn office_with_robot_in_room(is_let_out: bool) -> WorldSpec {
+    let text = include_str!("../../../../worlds/office_week.toml");
+    let inside = text.replace("pose_m = [0.6, 4.2]", "pose_m = [2.0, 1.8]");
+    let inside = inside.replace("battery_s = 300.0", "dock_m = [0.6, 4.2]\nbattery_s = 300.0");
+    assert_ne!(inside, text);
+    let inside = if is_let_out { inside } else { inside.replace("waits_for_robots = true", "") };
+    worldfile::physics::parse_world_with("office.toml", &inside, &BTreeMap::<PathBuf, Vec<u8>>::new())
+        .unwrap()
+}
+
 /// Lets the robot drive for some steps, so that it is elsewhere and has a velocity.
 fn drive(world: &mut PhysicsWorld, seed: u64) {
     let angular_radps = (seed % 7) as f64 / 3.0 - 1.0;
@@ -43,8 +54,9 @@ proptest! {
         // Nights are long; in the hours of work, doors move.
         start_h in prop_oneof![Just(0.0), 7.0_f64..18.0],
         lengths_s in prop::collection::vec(0.1_f64..2500.0, 1..5),
+        is_in_room in any::<bool>(),
     ) {
-        let spec = office();
+        let spec = if is_in_room { office_with_robot_in_room(true) } else { office() };
         let mut large = PhysicsWorld::new(&spec, seed);
         large.rest(start_h * HOUR_S);
         drive(&mut large, seed);
@@ -60,6 +72,36 @@ proptest! {
         }
         prop_assert!(state(large) == state(small));
     }
+}
+
+/// The door of the workshop is open at noon and closed at night, but for a robot that is still in the room.
+#[test]
+fn people_let_a_robot_out_before_they_close() {
+    let is_closed = |world: &PhysicsWorld| {
+        let middle = nalgebra::Point2::new(1.95, 3.15);
+        let frame = world.spec().frame;
+        world.truth().state(frame.index(frame.cell_at(&middle)).unwrap()) != interfaces::TrueState::Free
+    };
+    let at_night = |spec: &WorldSpec| {
+        let closed = (0..8).filter(|seed| {
+            let mut world = PhysicsWorld::new(spec, *seed);
+            world.rest(23.0 * HOUR_S);
+            is_closed(&world)
+        });
+        closed.count()
+    };
+    assert_eq!(at_night(&office_with_robot_in_room(true)), 0);
+    assert_eq!(at_night(&office_with_robot_in_room(false)), 8);
+    // A robot in the corridor keeps no door open; one that leaves the room does not either.
+    assert_eq!(at_night(&office()), 8);
+    let mut world = PhysicsWorld::new(&office_with_robot_in_room(true), 0);
+    world.rest(22.0 * HOUR_S);
+    assert!(!is_closed(&world));
+    (0..19).for_each(|_| world.act(&Twist { linear_mps: 0.0, angular_radps: 0.8 }));
+    (0..60).for_each(|_| world.act(&Twist { linear_mps: 0.4, angular_radps: 0.0 }));
+    assert!(world.true_pose().translation.y > 3.4, "{}", world.true_pose());
+    world.rest(23.0 * HOUR_S);
+    assert!(is_closed(&world));
 }
 
 #[test]
