@@ -66,7 +66,7 @@ pub(crate) const CORRELATION_STD_M: f64 = 0.05;
 /// Below the first response, all headings are searched among this number of keyframes: the odometry has missed a turn. Such a
 /// pose counts from the second response on, and if it is better by this factor.
 pub(crate) const MIN_RESPONSE: f64 = 0.35;
-pub(crate) const SURE_RESPONSE: f64 = 0.6;
+pub(crate) const SURE_RESPONSE: f64 = 0.72;
 pub(crate) const SURE_FACTOR: f64 = 1.5;
 pub(crate) const RECENT_KEYFRAMES: usize = 8;
 pub(crate) const ALL_HEADINGS: Spread = Spread { m: 0.8, rad: std::f64::consts::PI };

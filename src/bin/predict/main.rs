@@ -22,7 +22,7 @@ use route::{Stop, graph, route};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use survey::{Forecast, MASKS};
+use survey::{Forecast, MASKS, Travel};
 use viewer::layers::Layer;
 use viewer::pictures::draw_values;
 

@@ -68,7 +68,8 @@ pub(crate) fn graph(
 ) -> anyhow::Result<Value> {
     let name = path.display();
     let text = std::fs::read_to_string(path).with_context(|| format!("{name}: cannot read it"))?;
-    let graph = RouteGraph::parse(&text).with_context(|| format!("{name}: this is no graph of nav2_route"))?;
+    let graph =
+        RouteGraph::parse(&text).with_context(|| format!("{name}: this is no graph of nav2_route"))?;
     let edges = graph.outlook(&forecast.outlook(), travel, from)?;
     Ok(graph.with(&edges))
 }

@@ -24,6 +24,12 @@ const COMPARED_HITS: usize = 120;
 const CONTRADICTING: f64 = 0.1;
 /// A scan is a weak link if fewer of its hits are near those of the scans before it.
 const WEAK_LINK: f64 = 0.25;
+/// So is a scan that turned from the one before by this much otherwise than by the odometry, rad, if more of its hits than this were seen
+/// on one pass only, so that nothing confirms the turn...
+const TURNED_RAD: f64 = 0.35;
+const UNCONFIRMED: f64 = 0.5;
+/// ... and if the odometry holds elsewhere: at most this share of the scans turned otherwise.
+const MISSED_TURNS: f64 = 0.02;
 /// The number of neighboring scans over which the worst stretch is averaged.
 const STRETCH: usize = 10;
 /// Fewer scans than this say nothing.
@@ -77,7 +83,7 @@ impl Verdict {
 pub enum DoubtKind {
     /// Its scans hit where others saw free space.
     Contradicting,
-    /// Its first scan fits to none before it.
+    /// Its first scan fits to none before it, or the odometry contradicts the turn to it and no other pass confirms it.
     WeakLink,
 }
 
@@ -105,7 +111,8 @@ pub struct Quality {
     pub contradicting: f64,
     /// The share of such hits in the worst stretch of ten scans.
     pub worst_stretch: f64,
-    /// The number of scans that fit to none of the fifteen before: the trajectory can be broken there.
+    /// The number of scans that fit to none of the fifteen before, or after a turn that only they show: the trajectory can be broken
+    /// there.
     pub weak_links: usize,
     /// The share of readings without a certain pose.
     pub left_out: f64,
@@ -155,7 +162,8 @@ impl Quality {
                 links => format!("{links} places"),
             };
             reasons.push(format!(
-                "the route can be broken in {places}, where a scan fits to none of those before it"
+                "the route can be broken in {places}, where a scan fits to none of those before it or shows a turn that \
+                 nothing confirms"
             ));
         }
         if self.left_out > limits.left_out {
@@ -224,13 +232,14 @@ impl QualityCheck {
             judged.iter().filter(|scan| of(scan)).count() as f64 / judged.len() as f64
         };
         let mean = |part: &[Judged]| part.iter().map(|scan| scan.in_free).sum::<f64>() / part.len() as f64;
+        let weak = weak_links(&judged, &turned(&counted, poses));
         let (doubts, scans_in_doubt): (Vec<Doubt>, Vec<Range<usize>>) =
-            doubts(&judged, at).into_iter().unzip();
+            doubts(&judged, &weak, at).into_iter().unzip();
         let quality = Quality {
             scans: judged.len(),
             contradicting: share(|scan| scan.in_free > CONTRADICTING),
             worst_stretch: judged.windows(STRETCH).map(mean).fold(0.0, f64::max),
-            weak_links: judged.iter().filter(|scan| scan.link < WEAK_LINK).count(),
+            weak_links: weak.iter().filter(|is_weak| **is_weak).count(),
             left_out,
             seen_once: judged.iter().map(|scan| scan.seen_once).sum::<f64>() / judged.len() as f64,
             scale: scale(&counted, poses),
@@ -257,12 +266,35 @@ fn scale(counted: &[CountedScan], poses: &[TrajectoryPose]) -> Option<f64> {
     (ratios.len() >= MIN_SCANS / 2).then(|| median(ratios.into_iter())).filter(|scale| *scale > 0.0)
 }
 
+/// How much each scan turned from the one before otherwise than by the odometry, rad.
+fn turned(counted: &[CountedScan], poses: &[TrajectoryPose]) -> Vec<f64> {
+    let step = |pair: &[CountedScan]| {
+        let found = poses[pair[0].reading].pose.inv_mul(&poses[pair[1].reading].pose);
+        heading_rad(&pair[0].odometry.inv_mul(&pair[1].odometry).inv_mul(&found)).abs()
+    };
+    std::iter::once(0.0).chain(counted.windows(2).map(step)).collect()
+}
+
+/// Whether the trajectory can be broken before each scan.
+fn weak_links(judged: &[Judged], turned: &[f64]) -> Vec<bool> {
+    let missed = turned.iter().filter(|turn| **turn > TURNED_RAD).count();
+    let holds = missed as f64 <= MISSED_TURNS * turned.len() as f64;
+    let is_weak = |(scan, turn): (&Judged, &f64)| {
+        scan.link < WEAK_LINK || holds && *turn > TURNED_RAD && scan.seen_once > UNCONFIRMED
+    };
+    judged.iter().zip(turned).map(is_weak).collect()
+}
+
 /// The stretches of scans in doubt, with the numbers of these scans.
-fn doubts(judged: &[Judged], at: impl Fn(usize) -> TrajectoryPose) -> Vec<(Doubt, Range<usize>)> {
+fn doubts(
+    judged: &[Judged],
+    weak: &[bool],
+    at: impl Fn(usize) -> TrajectoryPose,
+) -> Vec<(Doubt, Range<usize>)> {
     let mut doubts: Vec<(Doubt, Range<usize>)> = Vec::new();
     let mut last = None;
-    for (number, scan) in judged.iter().enumerate() {
-        let kind = match (scan.link < WEAK_LINK, scan.in_free > CONTRADICTING) {
+    for (number, (scan, is_weak)) in judged.iter().zip(weak).enumerate() {
+        let kind = match (*is_weak, scan.in_free > CONTRADICTING) {
             (true, _) => DoubtKind::WeakLink,
             (_, true) => DoubtKind::Contradicting,
             _ => continue,

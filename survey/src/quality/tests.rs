@@ -66,6 +66,25 @@ fn a_missing_turn_is_a_weak_link() {
     assert!(weak.iter().all(|time_s| (half as f64..half as f64 + 60.0).contains(time_s)), "{weak:?}");
 }
 
+/// A turn that the odometry contradicts is in doubt until another pass confirms it; without an odometry that holds, nothing is said.
+#[test]
+fn a_turn_against_the_odometry_needs_another_pass() {
+    let scan = |seen_once: f64| Judged { in_free: 0.0, link: 0.7, seen_once };
+    let mut judged = vec![scan(0.9); 100];
+    let mut turned = vec![0.01; 100];
+    (turned[40], turned[70]) = (0.8, 0.6);
+    judged[70] = scan(0.1);
+    let weak = |judged: &[Judged], turned: &[f64]| -> Vec<usize> {
+        let weak = weak_links(judged, turned);
+        (0..weak.len()).filter(|number| weak[*number]).collect()
+    };
+    assert_eq!(weak(&judged, &turned), [40]);
+    turned.iter_mut().step_by(10).for_each(|turn| *turn = 0.5);
+    assert_eq!(weak(&judged, &turned), Vec::<usize>::new());
+    judged[5].link = 0.1;
+    assert_eq!(weak(&judged, &turned), [5]);
+}
+
 /// Too few scans say nothing.
 #[test]
 fn a_robot_that_rests_is_not_judged() {
