@@ -32,6 +32,7 @@ mod discovery;
 mod edges;
 mod matched;
 mod publishers;
+mod reply_size;
 mod services;
 mod subscribers;
 mod typed;

@@ -41,6 +41,7 @@ SUBSCRIBES
   scan_topic (/scan)      sensor_msgs/LaserScan, sensor-data QoS
   /tf, /tf_static         tf2_msgs/TFMessage: odom_frame to base_frame, base_frame to the laser
   odom_topic (odom)       nav_msgs/Odometry: used if /tf has no odometry
+  initialpose             geometry_msgs/PoseWithCovarianceStamped in map_frame: where the robot is
   explore/resume          std_msgs/Bool: false pauses exploring, true resumes it
 
 PUBLISHES
@@ -49,12 +50,16 @@ PUBLISHES
   change_map              nav_msgs/OccupancyGrid: 0 to 100, where the place changes within change_horizon
   predicted_map           nav_msgs/OccupancyGrid: 0 to 100, where it is probably blocked after prediction_horizon
   rate_map                nav_msgs/OccupancyGrid: cycles per hour, at most 100
+  expiry_map              nav_msgs/OccupancyGrid: for how long a look is worth something, minutes, at most 100
   speed_mask, keepout_mask
                           nav_msgs/OccupancyGrid: for the costmap filters of Nav2, every mask_update_interval
   speed_filter_info, keepout_filter_info
                           nav2_msgs/CostmapFilterInfo: what the values of the masks mean
   pose                    geometry_msgs/PoseWithCovarianceStamped: the robot in the map
   /diagnostics            diagnostic_msgs/DiagnosticArray: tracking, uncertain or lost; scans left out; once per second
+  /rosout                 rcl_interfaces/Log: what the node prints
+  /parameter_events       rcl_interfaces/ParameterEvent
+  ~/transition_event      lifecycle_msgs/TransitionEvent
   /tf                     tf2_msgs/TFMessage: map_frame to odom_frame
   cmd_vel                 geometry_msgs/TwistStamped, or Twist with enable_stamped_cmd_vel:=false
   goal_pose               geometry_msgs/PoseStamped, with navigator:=goal_pose
@@ -62,6 +67,14 @@ PUBLISHES
 
 SERVICES AND ACTIONS
   ~/save_state            std_srvs/Trigger: saves the state
+  ~/save_map              slam_toolbox/SaveMap: NAME.pgm and NAME.yaml for the map server
+  ~/serialize_map, ~/deserialize_map
+                          slam_toolbox/SerializePoseGraph, DeserializePoseGraph: writes and loads a state
+  ~/change_state, ~/get_state, ~/get_available_states, ~/get_available_transitions, ~/get_transition_graph
+                          lifecycle_msgs: the managed lifecycle
+  ~/get_parameters, ~/set_parameters, ~/set_parameters_atomically, ~/list_parameters, ~/describe_parameters,
+  ~/get_parameter_types   rcl_interfaces
+  route_edges_service     nav2_msgs/DynamicEdges, with route_graph: a client
   navigate_to_pose        nav2_msgs/NavigateToPose, with navigator:=nav2: a client
 
 PARAMETERS (--ros-args -p name:=value, or --params-file FILE)
@@ -70,6 +83,7 @@ PARAMETERS (--ros-args -p name:=value, or --params-file FILE)
   pose                    localized | odometry | exact: how the pose is known [localized]
   map_frame, odom_frame, base_frame
                           frames of REP-105 [map, odom, base_footprint; base_link if there is no other]
+  laser_frame             the laser in use, where more than one sends; empty: the first one []
   scan_topic, odom_topic  [/scan, odom]
   resolution              side of a cell, m [0.05]
   map_size                side of the map around the start, m [40.0]
@@ -80,6 +94,9 @@ PARAMETERS (--ros-args -p name:=value, or --params-file FILE)
   change_horizon          how far ahead change_map looks, s [60.0]
   prediction_horizon      how far ahead predicted_map and keepout_mask look, s; 0: now [0.0]
   mask_update_interval    time between two masks, s; 0: no masks [30.0]
+  route_graph             a graph of nav2_route (GeoJSON), whose edges are adjusted; empty: none []
+  route_edges_service     [route_server/DynamicEdgesScorer/adjust_edges]
+  route_update_interval   time between two requests with all edges, s [10.0]
   transform_publish_period
                           time between two transforms, s; 0: none [0.02]
   transform_timeout       how long a transform holds after a scan, s [0.2]
@@ -88,6 +105,7 @@ PARAMETERS (--ros-args -p name:=value, or --params-file FILE)
   max_vel_x, max_vel_theta, acc_lim_x, acc_lim_theta
                           limits, m/s, rad/s, m/s^2, rad/s^2 [0.26, 1.0, 2.5, 3.2]
   enable_stamped_cmd_vel  [true]
+  autostart               false: the node waits for a lifecycle manager, unconfigured [true]
   strategy, seed          how goals are selected [curious, 1]
   qos_overrides./scan.subscription.reliability
                           best_effort | reliable [best_effort]

@@ -37,7 +37,7 @@ struct Args {
 
 const MANUAL: &str = "\
 SUBSCRIBES
-  cmd_vel       geometry_msgs/TwistStamped and geometry_msgs/Twist; the robot stops 0.5 s after the last one
+  cmd_vel       geometry_msgs/TwistStamped or geometry_msgs/Twist, as others publish it; the robot stops 0.5 s after the last one
 
 PUBLISHES
   scan          sensor_msgs/LaserScan in the frame laser

@@ -31,9 +31,10 @@ impl EdgesClient {
         self.asked.is_some()
     }
 
-    /// Sends a request; an earlier one is forgotten.
+    /// Sends a request; an earlier one is forgotten, but for how long there was no answer.
     pub(super) fn send(&mut self, edges: DynamicEdges) {
-        self.asked = Some((self.client.send_request(edges).ok(), Instant::now()));
+        let since = self.asked.map_or_else(Instant::now, |(_, since)| since);
+        self.asked = Some((self.client.send_request(edges).ok(), since));
     }
 
     /// What has become of the request since the last call: whether the edges are adjusted.

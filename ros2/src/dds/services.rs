@@ -1,7 +1,7 @@
 //! The services of the node: a thread waits for all requests, and another one sends the answers.
 
 use super::matched::MatchedReaders;
-use super::{WAIT, profile};
+use super::{WAIT, profile, reply_size};
 use crate::link::{Event, Request};
 use crate::message::Quality;
 use crate::service::wire;
@@ -78,6 +78,7 @@ impl Asked {
 pub(super) struct Services {
     asked: Arc<Mutex<Asked>>,
     answers: Sender<(Service, RmwRequestId, Reply)>,
+    to: SyncSender<Event>,
 }
 
 impl Services {
@@ -97,7 +98,8 @@ impl Services {
         }
         let asked = Arc::new(Mutex::new(Asked::default()));
         let (answers, coming) = mpsc::channel();
-        let (numbers, to) = (asked.clone(), to.clone());
+        let (numbers, problems) = (asked.clone(), to.clone());
+        let to = to.clone();
         std::thread::Builder::new().name("requests".to_owned()).spawn(move || {
             for received in block_on_stream(select_all(streams)) {
                 if to.send(event(received, &numbers)).is_err() {
@@ -109,13 +111,21 @@ impl Services {
         std::thread::Builder::new().name("answers".to_owned()).spawn(move || {
             answer_all(&coming, &senders, &readers);
         })?;
-        Ok(Self { asked, answers })
+        Ok(Self { asked, answers, to: problems })
     }
 
     /// Answers a request as soon as the client can hear it.
     pub(super) fn answer(&self, Request(number): Request, reply: Reply) {
         let asked = self.asked.lock().ok().and_then(|mut asked| asked.by_number.remove(&number));
         if let Some((service, id)) = asked {
+            let (reply, is_cut) = reply_size::fitting(reply);
+            if is_cut {
+                let name = service.default_name();
+                let text = format!(
+                    "an answer of `{name}` is too long for one datagram: ask for fewer parameters at once"
+                );
+                self.to.try_send(Event::Problem(text)).ok();
+            }
             // The thread ends with the program.
             self.answers.send((service, id, reply)).ok();
         }
