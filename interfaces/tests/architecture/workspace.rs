@@ -4,9 +4,12 @@ use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+/// Libraries whose packages have another name than `curious-` and theirs: that name was taken, or is that of the programs.
+const RENAMED: [(&str, &str); 2] = [("curious", "curious-robot"), ("robot", "curious-robot-loop")];
+
 /// A crate of the workspace.
 pub(crate) struct Package {
-    /// The name of the package without `curious-`.
+    /// The name of the library.
     pub(crate) name: String,
     /// Normal and build dependencies, by the name of the package.
     pub(crate) dependencies: Vec<String>,
@@ -44,14 +47,16 @@ pub(crate) fn needs_without_features(package: &str) -> Vec<String> {
 }
 
 fn tree(package: &str, features: &str) -> Vec<String> {
-    let package = if package == "curious" { package.to_owned() } else { format!("curious-{package}") };
+    let renamed = RENAMED.iter().find(|(short, _)| *short == package);
+    let package = renamed.map_or_else(|| format!("curious-{package}"), |(_, name)| (*name).to_owned());
     let tree = cargo(&["tree", "-p", &package, "-e", "normal,build", "--prefix", "none", features]);
     tree.lines().filter_map(|line| line.split_whitespace().next()).map(short).collect()
 }
 
 /// The name of a package of the workspace as its folder and its library have it; of another package, its name.
 fn short(name: &str) -> String {
-    name.strip_prefix("curious-").unwrap_or(name).to_owned()
+    let renamed = RENAMED.iter().find(|(_, package)| *package == name);
+    renamed.map_or(name.strip_prefix("curious-").unwrap_or(name), |(short, _)| short).to_owned()
 }
 
 fn cargo(arguments: &[&str]) -> String {
