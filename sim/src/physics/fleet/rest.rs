@@ -20,8 +20,8 @@ impl Fleet {
             }
         }
         for (index, obstacle) in self.obstacles.iter_mut().enumerate() {
-            let is_occupied = self.start.rooms.is_occupied(index, &self.robots);
-            match obstacle.rests_until_s(time_s, is_occupied) {
+            let is_needed = self.start.rooms.is_needed(index, &self.robots);
+            match obstacle.rests_until_s(time_s, is_needed) {
                 Some(obstacle_s) => until_s = until_s.min(obstacle_s),
                 None => return 0,
             }

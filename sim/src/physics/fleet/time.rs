@@ -137,8 +137,8 @@ impl Fleet {
         }
         let (time_s, step_s, blockers) = (self.time_s(), self.spec().step_s, self.blockers());
         for (index, obstacle) in self.obstacles.iter_mut().enumerate() {
-            let is_occupied = self.start.rooms.is_occupied(index, &self.robots);
-            obstacle.start_step([time_s, step_s], is_occupied, &mut self.bodies, &blockers);
+            let is_needed = self.start.rooms.is_needed(index, &self.robots);
+            obstacle.start_step([time_s, step_s], is_needed, &mut self.bodies, &blockers);
         }
     }
 

@@ -36,8 +36,8 @@ struct Retreat {
 /// What opens and closes a door with a schedule.
 pub(super) struct Calls<'a> {
     pub(super) routine: Option<&'a mut Routine>,
-    /// Whether a robot is behind the door, which waits for it.
-    pub(super) is_occupied: bool,
+    /// Whether a robot needs the door, which waits for it, to get to its dock.
+    pub(super) is_needed: bool,
 }
 
 impl Door {
@@ -131,7 +131,7 @@ impl Door {
                 (spec.starts_open != (switches % 2 == 1), until_s)
             }
             Opening::Scheduled { .. } => match &mut calls.routine {
-                Some(routine) => (!routine.is_blocked(time_s) || calls.is_occupied, routine.next_s()),
+                Some(routine) => (!routine.is_blocked(time_s) || calls.is_needed, routine.next_s()),
                 None => (spec.starts_open, f64::INFINITY),
             },
             Opening::Random { .. } => {
@@ -172,7 +172,7 @@ mod tests {
             while time_s < until_s - SLACK_S {
                 steps += 1.0;
                 time_s = steps * 0.05;
-                door.openness = door.next(&spec, Calls { routine: None, is_occupied: false }, time_s, 0.05);
+                door.openness = door.next(&spec, Calls { routine: None, is_needed: false }, time_s, 0.05);
             }
             (door.openness * 1e9).round() / 1e9
         });

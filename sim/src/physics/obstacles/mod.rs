@@ -84,12 +84,12 @@ impl Obstacle {
         matches!(self.state, State::Path(..) | State::Door(..))
     }
 
-    /// Starts the motion in the next physics step, which ends at `time_s`, if nothing is in the way. `is_occupied`: a robot that a
-    /// door waits for is behind it.
+    /// Starts the motion in the next physics step, which ends at `time_s`, if nothing is in the way. `is_needed`: a robot
+    /// that a door waits for needs it to get to its dock.
     pub(super) fn start_step(
         &mut self,
         [time_s, step_s]: [f64; 2],
-        is_occupied: bool,
+        is_needed: bool,
         bodies: &mut Bodies,
         blockers: &Blockers,
     ) {
@@ -111,7 +111,7 @@ impl Obstacle {
             (State::Door(mover, door), Motion::Door(spec)) => {
                 let openness = door.next(
                     spec,
-                    Calls { routine: self.routine.as_deref_mut(), is_occupied },
+                    Calls { routine: self.routine.as_deref_mut(), is_needed },
                     time_s,
                     step_s,
                 );
@@ -131,12 +131,12 @@ impl Obstacle {
 
     /// The time until which nothing happens to the obstacle while all other bodies rest, s, from `time_s` on; `None` if it
     /// moves now.
-    pub(super) fn rests_until_s(&mut self, time_s: f64, is_occupied: bool) -> Option<f64> {
+    pub(super) fn rests_until_s(&mut self, time_s: f64, is_needed: bool) -> Option<f64> {
         let still_to_come =
             |due_s: Option<f64>| due_s.filter(|due_s| *due_s > time_s).unwrap_or(f64::INFINITY);
         match (&mut self.state, &self.spec.motion) {
             (State::Door(_, door), Motion::Door(spec)) => {
-                door.rests_until_s(spec, Calls { routine: self.routine.as_deref_mut(), is_occupied }, time_s)
+                door.rests_until_s(spec, Calls { routine: self.routine.as_deref_mut(), is_needed }, time_s)
             }
             (State::Path(..), _) => None,
             (State::Due | State::Standing(_), Motion::Scheduled(_)) => {

@@ -41,7 +41,7 @@ impl ObstacleSpec {
         }
     }
 
-    /// Whether the obstacle is a door that is not closed while a robot is behind it.
+    /// Whether the obstacle is a door that is open for robots that need it.
     pub(crate) fn waits_for_robots(&self) -> bool {
         matches!(
             &self.motion,
@@ -209,8 +209,8 @@ pub enum Opening {
     Scheduled {
         /// The schedule.
         schedule: Box<Schedule>,
-        /// Whether people let robots out before they close the door: it is open, against its schedule, while a driven robot
-        /// is where the closed door cuts it off from its dock.
+        /// Whether people open the door for robots: it is open, against its schedule, while it is on the way with the fewest
+        /// such doors from the room of a driven robot to its dock.
         waits_for_robots: bool,
     },
 }

@@ -100,7 +100,11 @@ fn thing_line(obstacle: &ObstacleSpec) -> String {
                     format!("at random closed {} s, open {} s in the mean", short(*closed_s), short(*open_s))
                 }
                 Opening::Scheduled { schedule, waits_for_robots } => {
-                    let waits = if *waits_for_robots { "; open while a robot is behind it" } else { "" };
+                    let waits = if *waits_for_robots {
+                        "; open while a robot needs it to get to its dock"
+                    } else {
+                        ""
+                    };
                     format!("closed {}{waits}", calendar::of_thing(schedule))
                 }
                 Opening::Scripted { switches_s } => format!("moved {} times, as written", switches_s.len()),
