@@ -51,7 +51,13 @@ impl Candidate {
     }
 
     /// The candidate for a goal; the robot is at `from` and needs `travel_s`. `last` is the goal of the last choice.
-    pub(crate) fn new(mapper: &Mapper, goal: &Goal, from: &Point2<f64>, travel_s: f64, last: Option<[f64; 2]>) -> Self {
+    pub(crate) fn new(
+        mapper: &Mapper,
+        goal: &Goal,
+        from: &Point2<f64>,
+        travel_s: f64,
+        last: Option<[f64; 2]>,
+    ) -> Self {
         let at = mapper.frame().center(goal.cell);
         let view = View::from(mapper, &at);
         let is_in_view = mapper.frame().index(goal.cell).is_some_and(|index| mapper.is_in_view(index));

@@ -7,7 +7,9 @@ use crate::picture::Picture;
 use crate::task::{Actions, Part, Results, Task, TaskError, write_state};
 use agent::{Agent, AgentSettings, Policy, Travel};
 use controller::{ControlInput, Controller, DiffDrive, Driver, Status};
-use interfaces::{Purpose, RandomStream, SettingsCheck, SettingsError, Transition, Values, from_bytes, to_bytes};
+use interfaces::{
+    Purpose, RandomStream, SettingsCheck, SettingsError, Transition, Values, from_bytes, to_bytes,
+};
 use mapper::Mapper;
 use nalgebra::{Isometry2, Point2};
 use sim::physics::{Fleet, SnapshotError};
@@ -61,7 +63,12 @@ impl GoalSettings {
         if self.strategies.is_empty() {
             return Err(TaskError::NoStrategy);
         }
-        Ok(SettingsCheck { part: "exploring task" }.within("max_goal_s", self.max_goal_s, 1.0..=1e6, "from 1 to 1000000")?)
+        Ok(SettingsCheck { part: "exploring task" }.within(
+            "max_goal_s",
+            self.max_goal_s,
+            1.0..=1e6,
+            "from 1 to 1000000",
+        )?)
     }
 }
 
@@ -83,6 +90,8 @@ pub struct ExploreGoals {
     candidates: Vec<Candidate>,
     last_goal: Option<[f64; 2]>,
     last_reward_per_s: f64,
+    /// The points of the last scan, m: a mapper that was restored does not have them until the next reading.
+    points: Vec<Point2<f64>>,
 }
 
 impl ExploreGoals {
@@ -98,7 +107,8 @@ impl ExploreGoals {
         let driver = explorer.one.settings.controller(0)?;
         let candidates = vec![Candidate::default(); settings.strategies.len()];
         let settings = Arc::clone(settings);
-        Ok(Self { settings, explorer, agents, driver, candidates, last_goal: None, last_reward_per_s: 0.0 })
+        let (last_goal, last_reward_per_s, points) = (None, 0.0, Vec::new());
+        Ok(Self { settings, explorer, agents, driver, candidates, last_goal, last_reward_per_s, points })
     }
 
     /// New strategies and a new controller for an episode.
@@ -114,6 +124,7 @@ impl ExploreGoals {
 
     /// Lets every strategy propose a goal.
     fn propose(&mut self) {
+        self.points = self.explorer.robot.mapper.points().to_vec();
         let Self { explorer, agents, driver, candidates, last_goal, .. } = self;
         let mapper = &explorer.robot.mapper;
         let pose = explorer.reading.pose;
@@ -131,14 +142,19 @@ impl ExploreGoals {
 
     /// Drives to the goal of a candidate. Returns the reward.
     fn drive(&mut self, choice: usize) -> f64 {
-        let Self { settings, explorer, agents, driver, candidates, .. } = self;
+        let Self { settings, explorer, agents, driver, candidates, points, .. } = self;
         let agents = agents.get_mut().unwrap_or_else(PoisonError::into_inner);
-        agents.iter_mut().enumerate().filter(|(index, _)| *index != choice).for_each(|(_, agent)| agent.decline());
+        agents
+            .iter_mut()
+            .enumerate()
+            .filter(|(index, _)| *index != choice)
+            .for_each(|(_, agent)| agent.decline());
         driver.set_goal(candidates[choice].position(), candidates[choice].watch);
         let until_s = explorer.world.time_s() + settings.max_goal_s;
         let mut reward = 0.0;
         // The controller already has the transitions of this reading.
-        let mut command = driver.drive(&input(&explorer.robot.mapper, &explorer.reading.pose, &[]));
+        let now = input(&explorer.robot.mapper, &explorer.reading.pose, &[]);
+        let mut command = driver.drive(&ControlInput { points, ..now });
         loop {
             reward += explorer.advance(&command);
             let (mapper, features) = (&explorer.robot.mapper, explorer.features);
@@ -174,7 +190,11 @@ fn agents(settings: &GoalSettings, explorer: &Explorer, seed: u64) -> Result<Vec
     settings.strategies.iter().enumerate().map(agent).collect()
 }
 
-fn input<'a>(mapper: &'a Mapper, pose: &'a Isometry2<f64>, transitions: &'a [Transition]) -> ControlInput<'a> {
+fn input<'a>(
+    mapper: &'a Mapper,
+    pose: &'a Isometry2<f64>,
+    transitions: &'a [Transition],
+) -> ControlInput<'a> {
     ControlInput { time: mapper.time(), pose, map: mapper.states(), transitions, points: mapper.points() }
 }
 
@@ -204,10 +224,7 @@ impl Task for ExploreGoals {
     fn parts(&self) -> Vec<Part> {
         let candidates = Part::new("candidates", vec![self.candidates.len(), FEATURES.len()]);
         let state = Part::new("state", vec![STATE_LEN]);
-        vec![
-            Part { slices: FEATURES.to_vec(), ..candidates },
-            Part { slices: STATE.to_vec(), ..state },
-        ]
+        vec![Part { slices: FEATURES.to_vec(), ..candidates }, Part { slices: STATE.to_vec(), ..state }]
     }
 
     fn info_names(&self) -> &'static [&'static str] {
@@ -281,12 +298,14 @@ impl Task for ExploreGoals {
     fn snapshot(&mut self) -> Vec<u8> {
         let explorer = self.explorer.snapshot();
         let learned = interfaces::snapshot(self.values());
-        to_bytes(&(explorer, learned, &self.candidates, self.last_goal, self.last_reward_per_s))
+        let last = (self.last_goal, self.last_reward_per_s, &self.points);
+        to_bytes(&(explorer, learned, &self.candidates, last))
     }
 
     fn restore(&mut self, snapshot: &[u8]) -> Result<(), SnapshotError> {
-        type Saved = (Vec<u8>, Vec<u8>, Vec<Candidate>, Option<[f64; 2]>, f64);
-        let (explorer, learned, candidates, last_goal, last_reward_per_s): Saved =
+        type Last = (Option<[f64; 2]>, f64, Vec<Point2<f64>>);
+        type Saved = (Vec<u8>, Vec<u8>, Vec<Candidate>, Last);
+        let (explorer, learned, candidates, last): Saved =
             from_bytes(snapshot).map_err(|_| SnapshotError::Damaged)?;
         if candidates.len() != self.candidates.len() {
             return Err(SnapshotError::OtherSpec);
@@ -294,8 +313,8 @@ impl Task for ExploreGoals {
         self.explorer.restore(&explorer)?;
         self.begin(0);
         interfaces::restore(self.values(), &learned).map_err(|_| SnapshotError::Damaged)?;
-        (self.candidates, self.last_goal, self.last_reward_per_s) = (candidates, last_goal, last_reward_per_s);
+        self.candidates = candidates;
+        (self.last_goal, self.last_reward_per_s, self.points) = last;
         Ok(())
     }
 }
-

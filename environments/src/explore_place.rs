@@ -3,8 +3,8 @@
 use crate::patches::Patches;
 use crate::task::TaskError;
 use evaluation::physics_trial;
-use interfaces::{LaserReading, PoseMode, SettingsCheck, SettingsError};
 use interfaces::GridFrame;
+use interfaces::{LaserReading, PoseMode, SettingsCheck, SettingsError};
 use nalgebra::{Isometry2, Point2};
 use robot::{NoPilot, Robot, Settings};
 use sim::physics::building_ranges::HOUSE;
@@ -172,7 +172,8 @@ impl ExplorePlace {
     /// When there is no house, or a setting is out of range.
     pub fn of_houses(seeds: Vec<u64>, settings: ExploreSettings) -> Result<Self, TaskError> {
         settings.check()?;
-        let first = One::new(&WorldSpec::generate_house(*seeds.first().ok_or(TaskError::NoWorld)?), &settings)?;
+        let first =
+            One::new(&WorldSpec::generate_house(*seeds.first().ok_or(TaskError::NoWorld)?), &settings)?;
         let cell_m = first.world.spec().frame.resolution_m();
         let largest = GridFrame::covering(Point2::origin(), HOUSE.length_m[1], HOUSE.width_m[1], cell_m);
         let patches = Patches::covering(largest.iter());

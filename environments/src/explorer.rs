@@ -238,7 +238,12 @@ impl Explorer {
 
     /// The state as bytes.
     pub(crate) fn snapshot(&mut self) -> Vec<u8> {
-        let learned = (self.robot.mapper.snapshot(), self.robot.localization_mut().snapshot());
+        let filter = self.robot.filter_mut().map(|filter| interfaces::snapshot(filter.values()));
+        let learned = (
+            self.robot.mapper.snapshot(),
+            self.robot.localization_mut().snapshot(),
+            filter.unwrap_or_default(),
+        );
         let world = self.world.snapshot().into_bytes();
         let views = (&self.seen_at, &self.path);
         to_bytes(&(self.number, world, learned, &self.reading, self.features, self.episode, views))
@@ -246,22 +251,27 @@ impl Explorer {
 
     /// Returns to the state of a snapshot.
     pub(crate) fn restore(&mut self, snapshot: &[u8]) -> Result<(), SnapshotError> {
-        type Learned = (Vec<u8>, Vec<u8>);
+        type Learned = (Vec<u8>, Vec<u8>, Vec<u8>);
         type Views = (Vec<u32>, Vec<[f64; 2]>);
         type Saved = (usize, Vec<u8>, Learned, LaserReading, Features, Episode, Views);
         let saved: Saved = from_bytes(snapshot).map_err(|_| SnapshotError::Damaged)?;
-        let (number, world, (mapper, poses), reading, features, episode, (seen_at, path)) = saved;
+        let (number, world, (mapper, poses, filter), reading, features, episode, (seen_at, path)) = saved;
         if number >= self.place.count() {
             return Err(SnapshotError::OtherSpec);
         }
         self.take(number);
-        if seen_at.len() != self.seen_at.len() || seen_at.iter().any(|&reading| reading as usize >= path.len()) {
+        if seen_at.len() != self.seen_at.len()
+            || seen_at.iter().any(|&reading| reading as usize >= path.len())
+        {
             return Err(SnapshotError::Damaged);
         }
         (self.seen_at, self.path) = (seen_at, path);
         self.world.restore(&world)?;
         self.robot.mapper.restore(&mapper).map_err(|_| SnapshotError::Damaged)?;
         self.robot.localization_mut().restore(&poses).map_err(|_| SnapshotError::Damaged)?;
+        if let Some(own) = self.robot.filter_mut() {
+            interfaces::restore(own.values(), &filter).map_err(|_| SnapshotError::Damaged)?;
+        }
         (self.reading, self.features, self.episode) = (reading, features, episode);
         self.count_found();
         Ok(())

@@ -139,35 +139,38 @@ NEAR = 0.6 / 10.0
 FIELDS = ("reward", "found_changes", "seen_m2", "collisions")
 
 
-def episode(make: Callable[[], Any], act: Callable[[Any, int], Any], seed: int) -> list[float]:
+def episode(env: Any, act: Callable[[Any, int], Any], seed: int) -> list[float]:
     """One episode in the house, at the place and with the doors and people of a seed."""
-    env = make()
     observation, _ = env.reset(options={"world_seed": seed})
     reward, step, truncated, info = 0.0, 0, False, {}
     while not truncated:
         observation, earned, _, truncated, info = env.step(act(observation, step))
         reward, step = reward + earned, step + 1
-    env.close()
     return [reward, *(info[name] for name in FIELDS[1:])]
 
 
 def measure(name: str, policy: Choose | None, houses: int, threads: int) -> np.ndarray:
     """One episode per seed, from 1 on, in houses of `TEST_HOUSES`: shape (houses, FIELDS)."""
+    is_single = policy is None and name != "any strategy"
 
-    def one(seed: int) -> list[float]:
+    def some(first: int) -> list[list[float]]:
+        if name in DRIVERS:
+            env: Any = ExploreEnv(houses=TEST_HOUSES)
+        else:
+            env = ExploreGoalsEnv(houses=TEST_HOUSES, strategies=[name] if is_single else STRATEGIES)
+        return [one(env, seed) for seed in range(first, houses + 1, threads)]
+
+    def one(env: Any, seed: int) -> list[float]:
         random = np.random.default_rng(seed)
         if name in DRIVERS:
-            drive = DRIVERS[name]
-            return episode(lambda: ExploreEnv(houses=TEST_HOUSES), lambda seen, step: drive(seen, step, random), seed)
+            return episode(env, lambda seen, step: DRIVERS[name](seen, step, random), seed)
         if policy is not None:
-            batch = lambda seen: {key: value[None] for key, value in seen.items()}  # noqa: E731
-            return episode(lambda: ExploreGoalsEnv(houses=TEST_HOUSES, strategies=STRATEGIES), lambda seen, _: policy(batch(seen))[0], seed)
-        if name == "any strategy":
-            return episode(lambda: ExploreGoalsEnv(houses=TEST_HOUSES, strategies=STRATEGIES), lambda *_: random.integers(0, len(STRATEGIES)), seed)
-        return episode(lambda: ExploreGoalsEnv(houses=TEST_HOUSES, strategies=[name]), lambda *_: 0, seed)
+            return episode(env, lambda seen, _: policy({key: part[None] for key, part in seen.items()})[0], seed)
+        return episode(env, lambda *_: 0 if is_single else random.integers(0, len(STRATEGIES)), seed)
 
     with ThreadPoolExecutor(threads) as pool:
-        return np.array(list(pool.map(one, range(1, houses + 1))))
+        parts = list(pool.map(some, range(1, threads + 1)))
+    return np.array([parts[index % threads][index // threads] for index in range(houses)])
 
 
 def p_value(differences: np.ndarray) -> float:

@@ -69,7 +69,10 @@ fn named<T: Copy>(to: &mut T, all: &[(&str, T)], value: &Bound<'_, PyAny>, key: 
     set(&mut name, value, key)?;
     let Some((_, found)) = all.iter().find(|(known, _)| *known == name) else {
         let known: Vec<&str> = all.iter().map(|(known, _)| *known).collect();
-        return Err(value_error(format!("the setting `{key}` is one of {}, and not {name}", known.join(", "))));
+        return Err(value_error(format!(
+            "the setting `{key}` is one of {}, and not {name}",
+            known.join(", ")
+        )));
     };
     *to = *found;
     Ok(())

@@ -4,7 +4,8 @@ use crate::settings::{drive_settings, explore_settings, goal_settings};
 use crate::snapshots::{Kind, check_build};
 use crate::spec::{driving, spec_of};
 use environments::{
-    Actions, Drive, DrivePlace, Explore, ExploreGoals, ExplorePlace, ExploreSettings, Picture, Results, TaskError,
+    Actions, Drive, DrivePlace, Explore, ExploreGoals, ExplorePlace, ExploreSettings, Picture, Results,
+    TaskError,
 };
 use numpy::{IntoPyArray, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::{PyIndexError, PyRuntimeError};

@@ -19,7 +19,7 @@ SMALL = {
     "curious/Drive-v0": {"max_steps": 25},
     "curious/Explore-v0": {"worlds": [curious.Spec.house(1), curious.Spec.house(4)], "max_steps": 25, "beams": 60},
     "curious/Explore-v1": {"houses": range(3), "max_steps": 25, "beams": 60},
-    GOALS: {"houses": range(3), "max_steps": 150, "beams": 60},
+    GOALS: {"houses": range(3), "max_steps": 150, "beams": 60, "max_goal_s": 3.0},
 }
 
 
@@ -44,7 +44,7 @@ def test_check_env_has_no_warning(name):
 
 @pytest.mark.parametrize("name", NAMES)
 def test_a_vector_environment_has_the_bits_of_single_ones(name):
-    count, steps = 5, 12 if name == GOALS else 70
+    count, steps = 5, 16 if name == GOALS else 70
     vector = gymnasium.make_vec(name, num_envs=count, vectorization_mode="vector_entry_point", **SMALL[name])
     assert vector.metadata["autoreset_mode"] == AutoresetMode.SAME_STEP
     alone = type(vector.unwrapped)(num_envs=count, threads=1, **SMALL[name])
