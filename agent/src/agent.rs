@@ -126,6 +126,20 @@ impl Agent {
         sample(self.patch_cells, &mut *self.strategies[strategy], &situation, &mut self.rng)
     }
 
+    /// The robot does not go to the goal that [`next_goal`](Self::next_goal) gave last, since something else decided: nothing
+    /// is learned from what it sees until the next goal.
+    pub fn decline(&mut self) {
+        if let Some(strategy) = self.current.take() {
+            self.goal_counts[strategy] -= 1;
+            self.strategies[strategy].decline();
+        }
+        if let Some(unseen) = &mut self.unseen {
+            unseen.decline();
+        }
+        self.trajectory.clear();
+        self.updates = 0;
+    }
+
     /// Whether the present goal has served its purpose before the robot is there: a look into unseen space whose
     /// target is in view already.
     pub fn is_goal_obsolete(&self, mapper: &Mapper) -> bool {

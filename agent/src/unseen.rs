@@ -77,6 +77,11 @@ impl UnseenSpace {
         vec![value(&mut self.looks), value(&mut self.target)]
     }
 
+    /// The last look does not take place.
+    pub(crate) fn decline(&mut self) {
+        self.target = None;
+    }
+
     /// Ends the last look. Returns whether any frontier is due for a look now.
     pub(crate) fn update(&mut self, mapper: &Mapper) -> bool {
         let regions = self.regions(mapper);

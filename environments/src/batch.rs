@@ -1,12 +1,9 @@
 //! Many tasks, stepped by one call.
 
-use crate::task::{ACTIONS, Results, Task, TaskError};
+use crate::task::{Actions, Results, Task, TaskError};
 use crate::threads::share;
 use rayon::ThreadPool;
 use sim::physics::SnapshotError;
-
-/// What rounding may add to an action.
-const ROUNDING: f32 = 1e-6;
 
 /// A number of tasks of the same kind.
 pub struct Batch {
@@ -111,11 +108,16 @@ impl Batch {
     /// When an action is out of range, or a slice has the wrong length. Nothing is changed then.
     pub fn step(&mut self, actions: &[f32], next_seeds: &[u64]) -> Result<Results, TaskError> {
         let tasks = self.slots.len();
-        let of_task = self.slots.first().map_or(1, |first| first.task.agents()) * ACTIONS;
+        let kind = self.slots.first().map_or(Actions::Velocities, |first| first.task.actions());
+        let of_task = self.slots.first().map_or(1, |first| first.task.agents()) * kind.values();
         check("actions", actions.len(), tasks * of_task)?;
         check("seeds", next_seeds.len(), tasks)?;
-        if let Some(at) = actions.iter().position(|action| action.is_nan() || action.abs() > 1.0 + ROUNDING) {
-            return Err(TaskError::Action { environment: at / of_task, value: actions[at] });
+        if let Some(at) = actions.iter().position(|action| !kind.allow(*action)) {
+            let (environment, value) = (at / of_task, actions[at]);
+            return Err(match kind {
+                Actions::Velocities => TaskError::Action { environment, value },
+                Actions::Choice(count) => TaskError::Choice { environment, value, last: count - 1 },
+            });
         }
         let is_autoreset = self.is_autoreset;
         let jobs = self.slots.iter_mut().zip(actions.chunks(of_task)).zip(next_seeds);

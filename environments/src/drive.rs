@@ -58,7 +58,15 @@ impl Task for Drive {
     }
 
     fn parts(&self) -> Vec<Part> {
-        vec![Part { name: "observation", shape: vec![self.place.beams() + STATE] }]
+        let beams = self.place.beams();
+        let slices = vec![
+            ("scan", beams),
+            ("goal_distance", 1),
+            ("goal_direction", 2),
+            ("path_direction", 2),
+            ("velocity", 2),
+        ];
+        vec![Part { slices, ..Part::new("observation", vec![beams + STATE]) }]
     }
 
     fn info_names(&self) -> &'static [&'static str] {

@@ -3,10 +3,48 @@
 use crate::patches::Patches;
 use crate::task::TaskError;
 use evaluation::physics_trial;
+use interfaces::GridFrame;
 use interfaces::{LaserReading, PoseMode, SettingsCheck, SettingsError};
-use nalgebra::Isometry2;
+use nalgebra::{Isometry2, Point2};
 use robot::{NoPilot, Robot, Settings};
-use sim::physics::{ContactModel, FleetSpec, PhysicsWorld, WorldSpec};
+use sim::physics::building_ranges::HOUSE;
+use sim::physics::{ContactModel, FleetSpec, FreePoses, PhysicsWorld, WorldSpec};
+use std::sync::Arc;
+
+/// What an exploring robot earns.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Deserialize, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Reward {
+    /// What the map did not have and a move of the robot has shown: the changes that are found in cells that were out of view
+    /// for eight seconds or more and were last seen from a place at least two meters away, and the area that becomes known.
+    /// A robot that stands still earns next to nothing.
+    #[default]
+    Found,
+    /// All map updates, as the paper's agent earns them, and the fall of the log error of the rates. A robot that stays beside
+    /// a door earns as much as one that drives about at random.
+    Updates,
+}
+
+/// Where an episode begins.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Deserialize, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Start {
+    /// Anywhere in the free space that the robot can reach.
+    #[default]
+    Anywhere,
+    /// At the pose of the world.
+    Spec,
+}
+
+impl Reward {
+    /// All, with their names.
+    pub const ALL: [(&'static str, Self); 2] = [("found", Self::Found), ("updates", Self::Updates)];
+}
+
+impl Start {
+    /// All, with their names.
+    pub const ALL: [(&'static str, Self); 2] = [("anywhere", Self::Anywhere), ("spec", Self::Spec)];
+}
 
 /// Settings of [`Explore`](crate::Explore).
 #[derive(Clone, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
@@ -20,11 +58,17 @@ pub struct ExploreSettings {
     pub error_every: u32,
     /// The number of readings from one refresh of the map in the observation to the next.
     pub map_every: u32,
+    /// What earns a reward.
+    pub reward: Reward,
+    /// Where an episode begins.
+    pub starts: Start,
     /// The reward per map update (a known cell that is found changed), divided by the number of cells in the width of
-    /// the robot.
+    /// the robot. With [`Reward::Found`], only the changes that a move has shown count.
     pub update_reward: f64,
-    /// The reward per fall of the log error of the rates by 1.
+    /// The reward per fall of the log error of the rates by 1; not with [`Reward::Found`].
     pub error_reward: f64,
+    /// The reward per square meter that becomes known; only with [`Reward::Found`].
+    pub seen_reward: f64,
     /// The reward (below 0) of a collision of the moving robot.
     pub collision_reward: f64,
 }
@@ -36,14 +80,22 @@ impl Default for ExploreSettings {
             beams: Some(180),
             error_every: 50,
             map_every: 10,
+            reward: Reward::Found,
+            starts: Start::Anywhere,
             update_reward: 1.0,
             error_reward: 10.0,
+            seen_reward: 0.2,
             collision_reward: -0.5,
         }
     }
 }
 
 impl ExploreSettings {
+    /// The settings of the task `Explore-v0`: all map updates count, and the robot starts at the pose of the world.
+    pub fn version_0() -> Self {
+        Self { reward: Reward::Updates, starts: Start::Spec, ..Self::default() }
+    }
+
     fn check(&self) -> Result<(), SettingsError> {
         let check = SettingsCheck { part: "exploring task" };
         check.within("max_steps", self.max_steps, 1.0..=1e9, "from 1 to 1000000000")?;
@@ -55,6 +107,7 @@ impl ExploreSettings {
         for (key, reward) in [
             ("update_reward", self.update_reward),
             ("error_reward", self.error_reward),
+            ("seen_reward", self.seen_reward),
             ("collision_reward", self.collision_reward),
         ] {
             check.within(key, reward, -1e6..=1e6, "from -1000000 to 1000000")?;
@@ -66,18 +119,28 @@ impl ExploreSettings {
 /// The worlds of exploring tasks; every episode is in one of them.
 pub struct ExplorePlace {
     pub(crate) settings: ExploreSettings,
-    pub(crate) worlds: Vec<One>,
+    worlds: Worlds,
     pub(crate) patches: Patches,
     pub(crate) beams: usize,
+}
+
+/// Worlds that are kept, or seeds of houses that are built when an episode begins in them.
+enum Worlds {
+    Kept(Vec<Arc<One>>),
+    Houses(Vec<u64>),
 }
 
 /// A world at its start, and the settings of its robot.
 pub(crate) struct One {
     pub(crate) world: PhysicsWorld,
-    settings: Settings,
+    pub(crate) settings: Settings,
     pub(crate) range_max_m: f64,
+    /// The number of readings per second.
+    pub(crate) rate_hz: f64,
     /// The number of cells in the width of the robot.
     pub(crate) cells_wide: f64,
+    /// Where an episode can begin.
+    pub(crate) free: Option<FreePoses>,
 }
 
 impl ExplorePlace {
@@ -97,23 +160,61 @@ impl ExplorePlace {
             return Err(TaskError::OtherExplorer { world, found, expected });
         }
         let patches = Patches::covering(worlds.iter().map(|one| &one.world.spec().frame));
+        let worlds = Worlds::Kept(worlds.into_iter().map(Arc::new).collect());
         Ok(Self { settings, worlds, patches, beams: expected })
+    }
+
+    /// The place for generated houses, by their seeds. A house is built when an episode begins in it: any number of houses
+    /// takes no memory. The map of the observation has the size of the largest house that can be generated.
+    ///
+    /// # Errors
+    ///
+    /// When there is no house, or a setting is out of range.
+    pub fn of_houses(seeds: Vec<u64>, settings: ExploreSettings) -> Result<Self, TaskError> {
+        settings.check()?;
+        let first =
+            One::new(&WorldSpec::generate_house(*seeds.first().ok_or(TaskError::NoWorld)?), &settings)?;
+        let cell_m = first.world.spec().frame.resolution_m();
+        let largest = GridFrame::covering(Point2::origin(), HOUSE.length_m[1], HOUSE.width_m[1], cell_m);
+        let patches = Patches::covering(largest.iter());
+        Ok(Self { settings, worlds: Worlds::Houses(seeds), patches, beams: first.beams() })
+    }
+
+    /// The number of worlds.
+    pub(crate) fn count(&self) -> usize {
+        match &self.worlds {
+            Worlds::Kept(worlds) => worlds.len(),
+            Worlds::Houses(seeds) => seeds.len(),
+        }
+    }
+
+    /// The world with an index.
+    pub(crate) fn one(&self, number: usize) -> Result<Arc<One>, TaskError> {
+        match &self.worlds {
+            Worlds::Kept(worlds) => Ok(Arc::clone(&worlds[number])),
+            Worlds::Houses(seeds) => {
+                Ok(Arc::new(One::new(&WorldSpec::generate_house(seeds[number]), &self.settings)?))
+            }
+        }
     }
 }
 
 impl One {
-    fn new(spec: &WorldSpec, settings: &ExploreSettings) -> Result<Self, TaskError> {
+    fn new(spec: &WorldSpec, task: &ExploreSettings) -> Result<Self, TaskError> {
         let mut fleet = FleetSpec { contacts: ContactModel::Sliding, ..spec.fleet().clone() };
         let driven = spec.driven_index();
         let laser = &mut fleet.robots[driven].laser;
-        laser.beams = settings.beams.unwrap_or(laser.beams);
+        laser.beams = task.beams.unwrap_or(laser.beams);
         let spec = WorldSpec::driving(fleet, driven).unwrap_or_else(|| spec.clone());
         let settings = Settings { pose: PoseMode::Exact, ..physics_trial::settings(&spec)? };
         let robot = spec.driven();
         let cells_wide = (2.0 * robot.radius_m / spec.frame.resolution_m()).max(1.0);
-        let (range_max_m, mut world) = (robot.laser.range_max_m, PhysicsWorld::new(&spec, 0));
+        let (range_max_m, rate_hz) = (robot.laser.range_max_m, robot.laser.rate_hz);
+        let mut world = PhysicsWorld::new(&spec, 0);
         world.correct_odometry();
-        let one = Self { world, settings, range_max_m, cells_wide };
+        let is_anywhere = task.starts == Start::Anywhere;
+        let free = is_anywhere.then(|| FreePoses::reachable(spec.fleet(), spec.driven_index())).flatten();
+        let one = Self { world, settings, range_max_m, rate_hz, cells_wide, free };
         // Errors of the settings and of the size of the map are found here, and not in an episode.
         one.robot()?;
         Ok(one)

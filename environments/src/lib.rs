@@ -20,11 +20,14 @@
 //! ```
 
 mod batch;
+mod candidates;
 mod distance;
 mod drive;
 mod drive_settings;
 mod explore;
+mod explore_goals;
 mod explore_place;
+mod explorer;
 mod patches;
 mod picture;
 mod place;
@@ -35,10 +38,11 @@ pub use batch::Batch;
 pub use drive::Drive;
 pub use drive_settings::DriveSettings;
 pub use explore::Explore;
-pub use explore_place::{ExplorePlace, ExploreSettings};
+pub use explore_goals::{ExploreGoals, GoalSettings};
+pub use explore_place::{ExplorePlace, ExploreSettings, Reward, Start};
 pub use picture::Picture;
 pub use place::DrivePlace;
-pub use task::{ACTIONS, Part, Results, Task, TaskError};
+pub use task::{ACTIONS, Actions, Part, Results, Task, TaskError};
 
 use sim::physics::FleetSpec;
 

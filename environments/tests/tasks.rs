@@ -1,8 +1,8 @@
 //! The tasks as a learner uses them.
 
 use environments::{
-    Batch, Drive, DrivePlace, DriveSettings, Explore, ExplorePlace, ExploreSettings, Results, Task,
-    TaskError, driving_hall,
+    Batch, Drive, DrivePlace, DriveSettings, Explore, ExploreGoals, ExplorePlace, ExploreSettings,
+    GoalSettings, Results, Task, TaskError, driving_hall,
 };
 use sim::physics::{SnapshotError, WorldSpec};
 use std::sync::Arc;
@@ -141,7 +141,7 @@ fn the_goals_of_the_hall_are_far_and_can_be_reached() {
 
 #[test]
 fn exploring_earns_map_updates_and_the_fall_of_the_log_error() {
-    let settings = ExploreSettings { max_steps: 600, collision_reward: 0.0, ..ExploreSettings::default() };
+    let settings = ExploreSettings { max_steps: 600, collision_reward: 0.0, ..ExploreSettings::version_0() };
     let place = explore_place(settings.clone());
     let mut batch = Batch::new(vec![Explore::new(&place).unwrap()]);
     batch.set_autoreset(false);
@@ -154,7 +154,7 @@ fn exploring_earns_map_updates_and_the_fall_of_the_log_error() {
         sum += f64::from(results.rewards[0]);
     }
     assert_eq!((results.terminated[0], results.truncated[0]), (false, true));
-    let [_, updates, log_error, _] = results.info[..] else { panic!("{:?}", results.info) };
+    let [_, updates, log_error, ..] = results.info[..] else { panic!("{:?}", results.info) };
     let fleet = batch.task(0).fleet();
     assert!(updates > 0.0 && (fleet.time_s() - 60.0).abs() < 1e-9);
     let robot = &fleet.spec().robots[fleet.spec().driven_robots().next().unwrap()];
@@ -218,7 +218,102 @@ fn golden_hashes() {
     let place = drive_place(DriveSettings { max_steps: 40, ..DriveSettings::default() });
     let driving = golden((0..3).map(|_| Drive::new(&place)).collect());
     let place =
-        explore_place(ExploreSettings { max_steps: 40, beams: Some(20), ..ExploreSettings::default() });
+        explore_place(ExploreSettings { max_steps: 40, beams: Some(20), ..ExploreSettings::version_0() });
     let exploring = golden((0..2).map(|_| Explore::new(&place).unwrap()).collect());
     assert_eq!([driving, exploring], [6_763_501_705_012_223_895, 17_686_607_519_096_061_081]);
+}
+
+fn goal_tasks(count: usize, max_steps: u32) -> Vec<ExploreGoals> {
+    let settings = ExploreSettings { max_steps, beams: Some(60), ..ExploreSettings::default() };
+    let place = Arc::new(ExplorePlace::of_houses((100..120).collect(), settings).unwrap());
+    let goals = Arc::new(GoalSettings::default());
+    (0..count).map(|_| ExploreGoals::new(&place, &goals).unwrap()).collect()
+}
+
+/// The bits of some steps with goals; episodes end in between.
+fn run_goals(first: usize, count: usize, is_parallel: bool) -> Vec<Vec<u32>> {
+    let mut batch = Batch::new(goal_tasks(count, 300));
+    batch.set_parallel(is_parallel);
+    batch.reset(&(first..first + count).map(|seed| seed as u64).collect::<Vec<_>>()).unwrap();
+    let (mut rows, values) = (vec![Vec::new(); count], batch.observation_len());
+    let mut resets = 0;
+    for step in 0..6 {
+        let actions: Vec<f32> = (first..first + count).map(|index| ((index + step) % 8) as f32).collect();
+        let next: Vec<u64> = (first..first + count).map(|index| (100 * step + index) as u64).collect();
+        let results = batch.step(&actions, &next).unwrap();
+        assert!(results.observations.iter().all(|value| (-1.0..=1.0).contains(value)));
+        resets += results.was_reset.iter().filter(|was| **was).count();
+        for (index, row) in rows.iter_mut().enumerate() {
+            let observation = &results.observations[index * values..(index + 1) * values];
+            row.extend(observation.iter().chain([&results.rewards[index]]).map(|value| value.to_bits()));
+        }
+    }
+    assert!(resets > 0, "no episode ended");
+    rows
+}
+
+#[test]
+fn goals_have_the_same_bits_alone_and_in_a_batch() {
+    let together = run_goals(0, 3, true);
+    assert_eq!(run_goals(0, 3, false), together);
+    assert_eq!(run_goals(1, 1, false)[0], together[1]);
+}
+
+#[test]
+fn a_snapshot_of_goals_goes_on_bit_by_bit() {
+    let [mut here, mut there] = [5, 6].map(|seed| {
+        let mut batch = Batch::new(goal_tasks(1, 3000));
+        batch.reset(&[seed]).unwrap();
+        batch
+    });
+    (0..4).for_each(|step| drop(here.step(&[(step % 8) as f32], &[9]).unwrap()));
+    let snapshot = here.snapshot(0);
+    there.restore(0, &snapshot).unwrap();
+    assert_eq!(there.snapshot(0), snapshot);
+    for step in 4..10 {
+        let [results, other] =
+            [&mut here, &mut there].map(|batch| batch.step(&[(step % 8) as f32], &[9]).unwrap());
+        assert_eq!(bits(&results), bits(&other), "step {step}");
+    }
+    assert_eq!(there.restore(0, &snapshot[1..]), Err(SnapshotError::Damaged));
+}
+
+#[test]
+fn choices_are_whole_numbers() {
+    let mut batch = Batch::new(goal_tasks(2, 3000));
+    batch.reset(&[1, 2]).unwrap();
+    for (value, printed) in [(8.0, "8"), (0.5, "0.5"), (-1.0, "-1"), (f32::NAN, "NaN")] {
+        let error = batch.step(&[0.0, value], &[3, 4]).unwrap_err().to_string();
+        assert_eq!(error, format!("action {printed} of environment 1 is not a whole number from 0 to 7"));
+    }
+}
+
+/// In a minute, a robot that stands still earns the area of its first view alone.
+#[test]
+fn standing_still_earns_next_to_nothing() {
+    let settings = ExploreSettings { max_steps: 600, beams: Some(90), ..ExploreSettings::default() };
+    let place = Arc::new(ExplorePlace::of_houses((0..8).collect(), settings).unwrap());
+    let goals = Arc::new(GoalSettings::default());
+    let total = |tasks: Vec<Box<dyn Task>>, action: &[f32]| {
+        let mut sum = 0.0;
+        for (seed, mut task) in tasks.into_iter().enumerate() {
+            task.reset(seed as u64);
+            let mut results = Results {
+                rewards: vec![0.0],
+                terminated: vec![false],
+                truncated: vec![false],
+                ..Results::default()
+            };
+            while !results.truncated[0] {
+                task.step(action, &mut results);
+                sum += f64::from(results.rewards[0]);
+            }
+        }
+        sum
+    };
+    let standing = (0..6).map(|_| Box::new(Explore::new(&place).unwrap()) as Box<dyn Task>).collect();
+    let exploring =
+        (0..6).map(|_| Box::new(ExploreGoals::new(&place, &goals).unwrap()) as Box<dyn Task>).collect();
+    let (standing, exploring) = (total(standing, &[0.0, 0.0]), total(exploring, &[0.0]));
+    assert!(exploring > 6.0 * 5.0 && standing < 0.25 * exploring, "{standing} and {exploring}");
 }

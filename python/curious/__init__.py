@@ -62,11 +62,12 @@ def _register() -> None:
         import gymnasium
     except ImportError:
         return
-    for name in ("Drive", "Explore"):
+    names = {"Drive-v0": "Drive", "Explore-v0": "Explore0", "Explore-v1": "Explore", "ExploreGoals-v0": "ExploreGoals"}
+    for name, of_class in names.items():
         gymnasium.register(
-            id=f"curious/{name}-v0",
-            entry_point=f"curious.envs:{name}Env",
-            vector_entry_point=f"curious.envs:{name}VectorEnv",
+            id=f"curious/{name}",
+            entry_point=f"curious.envs:{of_class}Env",
+            vector_entry_point=f"curious.envs:{of_class}VectorEnv",
         )
 
 

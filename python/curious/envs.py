@@ -13,9 +13,17 @@
     shape (6,): position (shares of the size of the world), cosine and sine of the heading, linear and angular velocity
     (shares of the maximum); ``map``, shape (4, rows, columns), patches of 0.5 m, row 0 at the lowest y: share that was
     seen, share that is blocked, how long ago it was seen, probability of a change since then. The map is refreshed at
-    every tenth step. Action as above. Reward: the map updates of the reading, per cell of the robot's width, and 10
-    times the fall of the log error of the rates (measured at every fiftieth step), -0.5 per collision. The episode is
-    truncated after 3000 steps of 0.1 s.
+    every tenth step. Action as above. Reward: the changes that are found in cells that were out of view for 8 s or more,
+    per cell of the robot's width, 0.2 per square meter that becomes known, -0.5 per collision: who stands still earns
+    next to nothing. The episode is truncated after 3000 steps of 0.1 s. It begins anywhere in one of ``houses``.
+
+``ExploreGoalsEnv`` and ``ExploreGoalsVectorEnv``
+    The same robot, which drives by itself: the action, ``Discrete``, is the number of the strategy whose goal is taken.
+    Observation, a dict: ``candidates``, shape (strategies, 9), from 0 to 1: what the goal of each strategy promises;
+    ``state``, shape (9,). A step ends when the goal is finished, or after 45 s; the reward is that of its readings.
+
+``slices`` of an environment names the values of an observation: ``observation[env.slices["goal_direction"]]`` in Drive,
+``observation["state"][env.slices["state"]["heading"]]`` in the other ones.
 
 Everything random comes from ``np_random``: ``reset`` draws the seed of the world from it, and ``info["world_seed"]`` has
 it, so that Rust can repeat the episode. The vector environments reset an environment in the same step in which its
@@ -26,6 +34,7 @@ single environment with seed ``s + i``.
 
 from __future__ import annotations
 
+import copy
 import operator
 from os import PathLike
 from typing import Any, Iterable, Sequence
@@ -39,10 +48,20 @@ from gymnasium.vector.utils import batch_space
 
 from ._native import Batch, Spec
 
-__all__ = ["DriveEnv", "DriveVectorEnv", "ExploreEnv", "ExploreVectorEnv"]
+__all__ = [
+    "TEST_HOUSES",
+    "TRAIN_HOUSES",
+    "DriveEnv",
+    "DriveVectorEnv",
+    "ExploreEnv",
+    "ExploreGoalsEnv",
+    "ExploreGoalsVectorEnv",
+    "ExploreVectorEnv",
+]
 
-#: The generated houses in which a robot explores by default.
-HOUSES = range(8)
+#: The generated houses in which a robot explores by default, and houses for tests: no seed is in both.
+TRAIN_HOUSES = range(100_000, 110_000)
+TEST_HOUSES = range(1_000)
 
 
 def _draw(random: np.random.Generator) -> int:
@@ -60,7 +79,7 @@ def _world_seed(value: Any) -> int:
 
 def _observation_space(parts: list[tuple[str, list[int]]]) -> spaces.Space:
     def box(name: str, shape: list[int]) -> spaces.Box:
-        low = 0.0 if name in ("scan", "map") else -1.0
+        low = 0.0 if name in ("scan", "map", "candidates") else -1.0
         return spaces.Box(low, 1.0, tuple(shape), np.float32)
 
     if len(parts) == 1:
@@ -84,13 +103,60 @@ def _drive(num_envs: int, threads: int, world: Any = None, **settings: Any) -> B
     return Batch.drive(Spec.driving_hall() if world is None else world, num_envs, threads, **settings)
 
 
-def _explore(num_envs: int, threads: int, worlds: Any = None, **settings: Any) -> Batch:
+def _worlds(worlds: Any, houses: Any) -> tuple[list[Any], list[int] | None]:
+    """The worlds of an exploring task: worlds, or the seeds of generated houses."""
+    if worlds is None:
+        seeds = [operator.index(seed) for seed in (TRAIN_HOUSES if houses is None else houses)]
+        return [], [_world_seed(seed) for seed in seeds]
+    if houses is not None:
+        raise TypeError("an exploring task is in `worlds` or in `houses`, not in both")
     if isinstance(worlds, (str, PathLike, Spec)):
         worlds = [worlds]
-    if worlds is not None and not isinstance(worlds, Iterable):
+    if not isinstance(worlds, Iterable):
         raise TypeError(f"`worlds` is a list of worlds or one world, and not {type(worlds).__name__}")
-    specs = [Spec.house(seed) for seed in HOUSES] if worlds is None else list(worlds)
-    return Batch.explore(specs, num_envs, threads, **settings)
+    return list(worlds), None
+
+
+def _explore(num_envs: int, threads: int, worlds: Any = None, houses: Any = None, **settings: Any) -> Batch:
+    specs, seeds = _worlds(worlds, houses)
+    return Batch.explore(specs, num_envs, threads, houses=seeds, **settings)
+
+
+def _explore_goals(num_envs: int, threads: int, worlds: Any = None, houses: Any = None, **settings: Any) -> Batch:
+    specs, seeds = _worlds(worlds, houses)
+    return Batch.explore_goals(specs, num_envs, threads, houses=seeds, **settings)
+
+
+def _explore_0(num_envs: int, threads: int, worlds: Any = None, **settings: Any) -> Batch:
+    """``Explore-v0``: eight houses, the pose of the world, all map updates."""
+    if worlds is None and "houses" not in settings:
+        worlds = [Spec.house(seed) for seed in range(8)]
+    return _explore(num_envs, threads, worlds, **{"reward": "updates", "starts": "spec", **settings})
+
+
+def _action_space(batch: Batch) -> spaces.Space:
+    if batch.choices is not None:
+        return spaces.Discrete(batch.choices)
+    return spaces.Box(-1.0, 1.0, (2,), np.float32)
+
+
+def _slices(batch: Batch) -> dict[str, Any]:
+    """The named slices of the last axis, per part of the observation; of the only part alone."""
+    found: dict[str, dict[str, slice]] = {}
+    for part, lengths in batch.slices:
+        begin, found[part] = 0, {}
+        for name, length in lengths:
+            found[part][name] = slice(begin, begin + length)
+            begin += length
+    return dict(next(iter(found.values()))) if len(found) == 1 else dict(found)
+
+
+def _no_pickle(environment: Any, protocol: Any) -> Any:
+    """For `pickle`, and for `copy.copy`, whose result would share the world."""
+    raise TypeError(
+        f"{type(environment).__name__} cannot be pickled: make another one with the same settings, and give it `snapshot()` "
+        "by `restore()`, as `copy.deepcopy` does"
+    )
 
 
 class _Single(gymnasium.Env):
@@ -106,13 +172,16 @@ class _Single(gymnasium.Env):
             raise TypeError(f"`{name}` is for many environments: make them with `gymnasium.make_vec`")
         self.render_mode = render_mode
         self.render_size = render_size
+        self._settings = settings
         self._batch: Batch | None = type(self)._make(1, 1, **settings)
         self._batch.autoreset = False
         self._parts = self._batch.parts
         self._names = self._batch.info_names
         self.observation_space = _observation_space(self._parts)
-        self.action_space = spaces.Box(-1.0, 1.0, (2,), np.float32)
+        self.action_space = _action_space(self._batch)
+        self.slices = _slices(self._batch)
         self._world_seed = 0
+        self._was_reset = False
         self._screen: Any = None
         self._no_seeds = np.zeros(1, np.uint64)
 
@@ -131,13 +200,14 @@ class _Single(gymnasium.Env):
         if options and "world_seed" in options:
             self._world_seed = _world_seed(options["world_seed"])
         rows = batch.reset_one(0, self._world_seed)
+        self._was_reset = True
         if self.render_mode == "human":
             self.render()
         return _split(self._parts, rows[0]), {"world_seed": self._world_seed}
 
     def step(self, action: Any) -> tuple[Any, float, bool, bool, dict[str, Any]]:
         """Simulate one step. ``ValueError``: the action has the wrong shape, is NaN or out of range."""
-        actions = _actions(action, 1)
+        actions = _actions(action, 1, self.batch.choices)
         rows, rewards, terminated, truncated, values, _, _ = self.batch.step(actions, self._no_seeds)
         info: dict[str, Any] = dict(zip(self._names, values[0].tolist()))
         info["world_seed"] = self._world_seed
@@ -168,7 +238,8 @@ class _Single(gymnasium.Env):
         except ImportError as error:
             raise gymnasium.error.DependencyNotInstalled("render_mode='human' needs `pip install pygame`") from error
         if self._screen is None:
-            pygame.init()
+            # Not `pygame.init()`: it opens the audio device as well.
+            pygame.display.init()
             self._screen = pygame.display.set_mode((picture.shape[1], picture.shape[0]))
             pygame.display.set_caption(str(type(self).__name__))
         pygame.event.pump()
@@ -182,7 +253,20 @@ class _Single(gymnasium.Env):
     def restore(self, snapshot: bytes, *, allow_other_build: bool = False) -> Any:
         """Return to a snapshot of an environment with the same settings; returns the observation."""
         restored = self.batch.restore(0, snapshot, allow_other_build=allow_other_build)
+        self._was_reset = True
         return _split(self._parts, restored[0])
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Any:
+        """Another environment in the same state, which goes on with the same bits; without the window."""
+        snapshot = self.batch.snapshot(0) if self._was_reset else None
+        other = type(self)(self.render_mode, self.render_size, **self._settings)
+        memo[id(self)] = other
+        other.spec = self.spec
+        other._np_random, other._np_random_seed = copy.deepcopy(self._np_random, memo), self._np_random_seed
+        other._world_seed = self._world_seed
+        if snapshot is not None:
+            other.restore(snapshot)
+        return other
 
     def close(self) -> None:
         """Free everything. A closed environment cannot be used."""
@@ -190,16 +274,23 @@ class _Single(gymnasium.Env):
         if self._screen is not None:
             import pygame
 
-            pygame.quit()
+            pygame.display.quit()
             self._screen = None
 
+    __reduce_ex__ = _no_pickle
 
-def _actions(actions: Any, rows: int) -> np.ndarray:
-    """The actions as float32 of shape (rows, 2)."""
+
+def _actions(actions: Any, rows: int, choices: int | None = None) -> np.ndarray:
+    """The actions as float32 of shape (rows, 2); of choices (rows, 1)."""
     array = np.asarray(actions)
     if array.dtype.kind not in "biuf":
         raise TypeError(f"actions are real numbers, and not {array.dtype} ({type(actions).__name__})")
     array = array.astype(np.float32, copy=False)
+    if choices is not None:
+        if array.size != rows or array.ndim > 1:
+            expected = "()" if rows == 1 else f"({rows},)"
+            raise ValueError(f"the actions have the shape {array.shape}, and must have {expected}")
+        return array.reshape(rows, 1)
     if array.size != rows * 2 or array.shape[-1:] != (2,):
         expected = "(2,)" if rows == 1 else f"({rows}, 2)"
         raise ValueError(f"the actions have the shape {array.shape}, and must have {expected}")
@@ -225,11 +316,14 @@ class _Vector(gymnasium.vector.VectorEnv):
         self.num_envs = num_envs
         self.render_mode = render_mode
         self.render_size = render_size
+        self._settings = {"threads": threads, **settings}
+        self._was_reset = False
         self._batch: Batch | None = type(self)._make(num_envs, threads, **settings)
         self._parts = self._batch.parts
         self._names = self._batch.info_names
         self.single_observation_space = _observation_space(self._parts)
-        self.single_action_space = spaces.Box(-1.0, 1.0, (2,), np.float32)
+        self.single_action_space = _action_space(self._batch)
+        self.slices = _slices(self._batch)
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self.action_space = batch_space(self.single_action_space, num_envs)
         self._randoms = [seeding.np_random(None)[0] for _ in range(num_envs)]
@@ -272,12 +366,13 @@ class _Vector(gymnasium.vector.VectorEnv):
                 raise ValueError(f"there are {len(chosen)} seeds of worlds for {self.num_envs} environments")
             self._world_seeds = np.array([_world_seed(value) for value in chosen], np.uint64)
         rows = batch.reset(self._world_seeds)
+        self._was_reset = True
         return _split(self._parts, rows), {"world_seed": self._world_seeds.copy(), "_world_seed": self._all.copy()}
 
     def step(self, actions: Any) -> tuple[Any, np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]:
         """Simulate one step of every environment. ``ValueError``: an action is NaN or out of range."""
         rows, rewards, terminated, truncated, values, was_reset, last = self.batch.step(
-            _actions(actions, self.num_envs), self._next_seeds
+            _actions(actions, self.num_envs, self.batch.choices), self._next_seeds
         )
         info: dict[str, Any] = {name: values[:, column] for column, name in enumerate(self._names)}
         if last is not None:
@@ -300,6 +395,7 @@ class _Vector(gymnasium.vector.VectorEnv):
     def render(self) -> tuple[np.ndarray, ...] | None:
         """The environments from above, one array each."""
         if self.render_mode is None:
+            gymnasium.logger.warn("render() needs render_mode='rgb_array' when the environments are made")
             return None
         return tuple(self.batch.picture(index, self.render_size) for index in range(self.num_envs))
 
@@ -312,9 +408,26 @@ class _Vector(gymnasium.vector.VectorEnv):
         restored = self.batch.restore(index, snapshot, allow_other_build=allow_other_build)
         return _split(self._parts, restored[0])
 
+    def __deepcopy__(self, memo: dict[int, Any]) -> Any:
+        """Other environments in the same states, which go on with the same bits."""
+        snapshots = [self.batch.snapshot(index) for index in range(self.num_envs)] if self._was_reset else []
+        keywords = {"render_mode": self.render_mode, "render_size": self.render_size, **self._settings}
+        other = type(self)(self.num_envs, **keywords)
+        memo[id(self)] = other
+        other._randoms = copy.deepcopy(self._randoms, memo)
+        other._world_seeds, other._next_seeds = self._world_seeds.copy(), self._next_seeds.copy()
+        if snapshots:
+            other.batch.reset(other._world_seeds)
+            other._was_reset = True
+        for index, snapshot in enumerate(snapshots):
+            other.batch.restore(index, snapshot)
+        return other
+
     def close_extras(self, **kwargs: Any) -> None:
         """Free everything."""
         self._batch = None
+
+    __reduce_ex__ = _no_pickle
 
 
 class DriveEnv(_Single):
@@ -336,8 +449,11 @@ class DriveVectorEnv(_Vector):
 class ExploreEnv(_Single):
     """Exploring houses that change; see the module.
 
-    ``worlds``: a list of ``Spec``, names or paths; each episode is in one of them. Settings: ``max_steps``, ``beams``,
-    ``error_every``, ``map_every``, ``update_reward``, ``error_reward``, ``collision_reward``.
+    ``houses``: the seeds of generated houses, as ``TRAIN_HOUSES`` (the default) and ``TEST_HOUSES``; or ``worlds``: a list of
+    ``Spec``, names or paths. Each episode is in one of them, ``info["world"]`` is its index. Settings: ``max_steps``,
+    ``beams``, ``reward`` (``"found"``, or ``"updates"`` as in ``Explore-v0``), ``starts`` (``"anywhere"``, or ``"spec"``: at
+    the pose of the world), ``error_every``, ``map_every``, ``update_reward``, ``seen_reward``, ``error_reward``,
+    ``collision_reward``.
     """
 
     _make = staticmethod(_explore)
@@ -347,3 +463,31 @@ class ExploreVectorEnv(_Vector):
     """Many of ``ExploreEnv``. ``threads``: 0 for all, 1 for none beside the caller."""
 
     _make = staticmethod(_explore)
+
+
+class ExploreGoalsEnv(_Single):
+    """Exploring by the choice of goals; see the module.
+
+    Settings: those of ``ExploreEnv``, ``strategies`` (names of ``curious.strategies()``: each proposes a goal at every step),
+    ``max_goal_s`` (the longest time of a step, s).
+    """
+
+    _make = staticmethod(_explore_goals)
+
+
+class ExploreGoalsVectorEnv(_Vector):
+    """Many of ``ExploreGoalsEnv``. ``threads``: 0 for all, 1 for none beside the caller."""
+
+    _make = staticmethod(_explore_goals)
+
+
+class Explore0Env(_Single):
+    """``curious/Explore-v0``: ``ExploreEnv`` with ``reward="updates"``, ``starts="spec"`` and eight houses."""
+
+    _make = staticmethod(_explore_0)
+
+
+class Explore0VectorEnv(_Vector):
+    """Many of ``Explore0Env``."""
+
+    _make = staticmethod(_explore_0)

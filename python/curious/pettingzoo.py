@@ -87,6 +87,10 @@ class DriveParallelEnv(ParallelEnv):
                     array[row] = _actions(actions[agent], 1)[0]
                 except (ValueError, TypeError) as error:
                     raise type(error)(f"{agent}: {error}") from None
+                for value in array[row]:
+                    # Not NaN, and rounding may add a little.
+                    if not abs(value) <= 1.0 + 1e-6:
+                        raise ValueError(f"{agent}: action {value} is not from -1 to 1")
         rows, rewards, terminated, truncated, values, _, _ = self.batch.step(array, self._no_seeds)
         results: tuple[dict, dict, dict, dict, dict] = ({}, {}, {}, {}, {})
         for row, agent in enumerate(self.possible_agents):
@@ -100,7 +104,10 @@ class DriveParallelEnv(ParallelEnv):
 
     def render(self) -> np.ndarray | None:
         """The world from above, shape (rows, columns, 3), uint8."""
-        return None if self.render_mode is None else self.batch.picture(0, self.render_size)
+        if self.render_mode is None:
+            gymnasium.logger.warn("render() needs render_mode='rgb_array' when the environment is made")
+            return None
+        return self.batch.picture(0, self.render_size)
 
     def close(self) -> None:
         """Free everything. A closed environment cannot be used."""

@@ -1,11 +1,13 @@
 """A robot learns to drive to goals through doorways: PPO (Schulman et al., 2017) in NumPy alone.
 
 `python train_ppo.py --minutes 5` trains in all worlds of a vector environment, then drives 500 episodes with seeds that it
-has never seen, and prints the share of goals that it reached.
+has never seen, and prints the share of goals that it reached, the collisions and the time, beside those of a rule of three
+lines. `--minutes 0` measures the rule alone.
 """
 
 import argparse
 import time
+from typing import Callable
 
 import numpy as np
 from curious.envs import DriveVectorEnv
@@ -159,7 +161,14 @@ def update(
     adam.step([*gradients, of_log_std.astype(np.float32)], rate)
 
 
-def evaluate(policy: Policy, episodes: int, first_seed: int) -> None:
+def rule(rows: np.ndarray) -> np.ndarray:
+    """Follows the shortest path, and slows down where the scan is near ahead."""
+    cos, sin, near = rows[:, -4], rows[:, -3], rows[:, 28:37].min(axis=1)
+    speed = np.where(cos < 0.5, 0.0, np.clip(4.0 * near - 0.2, 0.1, 1.0) * cos)
+    return np.stack([speed, 1.2 * np.arctan2(sin, cos)], axis=1).clip(-1.0, 1.0)
+
+
+def evaluate(name: str, policy: Callable[[np.ndarray], np.ndarray], episodes: int, first_seed: int) -> None:
     """Drives episodes with other seeds, one per world."""
     env = DriveVectorEnv(num_envs=episodes)
     observation, _ = env.reset(seed=[first_seed + episode for episode in range(episodes)])
@@ -169,15 +178,19 @@ def evaluate(policy: Policy, episodes: int, first_seed: int) -> None:
     # The doorways are in the walls at x = 4 m and y = 4 m.
     through = ((starts > 3.95) != (goals > 3.95)).any(axis=1)
     success, is_over, collisions = np.zeros(episodes, bool), np.zeros(episodes, bool), np.zeros(episodes)
+    steps = np.zeros(episodes)
     while not is_over.all():
-        observation, _, terminated, truncated, info = env.step(policy.best(observation))
+        observation, _, terminated, truncated, info = env.step(policy(observation))
         ended = (terminated | truncated) & ~is_over
         success |= ended & terminated
+        steps += ~is_over
         if "final_info" in info:
             collisions[ended] = info["final_info"]["collisions"][ended]
         is_over |= ended
-    print(f"{episodes} episodes with other seeds: {success.mean():.1%} of all goals reached")
-    print(f"{through.sum()} goals through a doorway: {success[through].mean():.1%}; collisions per episode {collisions.mean():.2f}")
+    print(f"{name}, {episodes} episodes with other seeds: {success.mean():.1%} of all goals reached")
+    print(f"  {through.sum()} goals through a doorway: {success[through].mean():.1%}")
+    print(f"  collisions per episode {collisions.mean():.2f}, without any {(collisions == 0).mean():.1%}")
+    print(f"  time to the goal {0.1 * steps[success].mean():.1f} s")
 
 
 if __name__ == "__main__":
@@ -185,4 +198,7 @@ if __name__ == "__main__":
     parser.add_argument("--minutes", type=float, default=5.0)
     parser.add_argument("--seed", type=int, default=0)
     arguments = parser.parse_args()
-    evaluate(train(arguments.minutes, arguments.seed), episodes=500, first_seed=1_000_000)
+    evaluate("rule", rule, episodes=500, first_seed=1_000_000)
+    if arguments.minutes > 0.0:
+        learned = train(arguments.minutes, arguments.seed)
+        evaluate("PPO", learned.best, episodes=500, first_seed=1_000_000)

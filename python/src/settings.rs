@@ -1,7 +1,8 @@
 //! The settings of tasks and of maps, from the keywords of a call.
 
 use crate::convert::value_error;
-use environments::{DriveSettings, ExploreSettings};
+use agent::Policy;
+use environments::{DriveSettings, ExploreSettings, GoalSettings, Reward, Start};
 use mapper::MapperSettings;
 use pyo3::exceptions::{PyOverflowError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -21,7 +22,10 @@ const DRIVE: [Setting<DriveSettings>; 9] = [
     ("collision_reward", |to, value, key| set(&mut to.collision_reward, value, key)),
     ("step_reward", |to, value, key| set(&mut to.step_reward, value, key)),
 ];
-const EXPLORE: [Setting<ExploreSettings>; 7] = [
+const EXPLORE: [Setting<ExploreSettings>; 10] = [
+    ("reward", |to, value, key| named(&mut to.reward, &Reward::ALL, value, key)),
+    ("starts", |to, value, key| named(&mut to.starts, &Start::ALL, value, key)),
+    ("seen_reward", |to, value, key| set(&mut to.seen_reward, value, key)),
     ("max_steps", |to, value, key| set(&mut to.max_steps, value, key)),
     ("beams", |to, value, key| set(&mut to.beams, value, key)),
     ("error_every", |to, value, key| set(&mut to.error_every, value, key)),
@@ -39,6 +43,39 @@ pub(crate) fn drive_settings(keywords: Option<&Bound<'_, PyDict>>) -> PyResult<D
 /// The settings of an exploring task.
 pub(crate) fn explore_settings(keywords: Option<&Bound<'_, PyDict>>) -> PyResult<ExploreSettings> {
     settings("exploring", &EXPLORE, keywords)
+}
+
+/// Takes the settings of the choice of goals from the keywords.
+pub(crate) fn goal_settings(keywords: Option<&Bound<'_, PyDict>>) -> PyResult<GoalSettings> {
+    let mut settings = GoalSettings::default();
+    let Some(keywords) = keywords else { return Ok(settings) };
+    if let Some(value) = keywords.get_item("max_goal_s")? {
+        set(&mut settings.max_goal_s, &value, "max_goal_s")?;
+        keywords.del_item("max_goal_s")?;
+    }
+    if let Some(value) = keywords.get_item("strategies")? {
+        let mut names: Vec<String> = Vec::new();
+        set(&mut names, &value, "strategies")?;
+        let policies = names.iter().map(|name| name.parse::<Policy>().map_err(value_error));
+        settings.strategies = policies.collect::<PyResult<_>>()?;
+        keywords.del_item("strategies")?;
+    }
+    Ok(settings)
+}
+
+/// Sets a setting to one of some named values.
+fn named<T: Copy>(to: &mut T, all: &[(&str, T)], value: &Bound<'_, PyAny>, key: &str) -> PyResult<()> {
+    let mut name = String::new();
+    set(&mut name, value, key)?;
+    let Some((_, found)) = all.iter().find(|(known, _)| *known == name) else {
+        let known: Vec<&str> = all.iter().map(|(known, _)| *known).collect();
+        return Err(value_error(format!(
+            "the setting `{key}` is one of {}, and not {name}",
+            known.join(", ")
+        )));
+    };
+    *to = *found;
+    Ok(())
 }
 
 fn settings<S: Default>(

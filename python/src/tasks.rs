@@ -1,13 +1,17 @@
 use crate::convert::{index, rows_array, snapshot_error, value_error, whole};
 use crate::fleet::poses_of;
-use crate::settings::{drive_settings, explore_settings};
+use crate::settings::{drive_settings, explore_settings, goal_settings};
 use crate::snapshots::{Kind, check_build};
 use crate::spec::{driving, spec_of};
-use environments::{ACTIONS, Drive, DrivePlace, Explore, ExplorePlace, Picture, Results, TaskError};
+use environments::{
+    Actions, Drive, DrivePlace, Explore, ExploreGoals, ExplorePlace, ExploreSettings, Picture, Results,
+    TaskError,
+};
 use numpy::{IntoPyArray, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::{PyIndexError, PyRuntimeError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyList, PyTuple};
+use sim::physics::WorldSpec;
 use std::sync::Arc;
 
 /// A number of tasks that are stepped by one call: the native part of the environments.
@@ -86,23 +90,48 @@ impl Batch {
         Self::with(batch.map_err(value_error)?, threads)
     }
 
-    /// Exploring tasks in some worlds; each episode is in one of them. `threads` as above.
+    /// Exploring tasks in some worlds, or in houses that are generated from seeds; each episode is in one of them. `threads` as
+    /// above.
     #[staticmethod]
-    #[pyo3(signature = (worlds, environments, threads = 0, **settings))]
+    #[pyo3(signature = (worlds, environments, threads = 0, *, houses = None, **settings))]
     fn explore(
         py: Python<'_>,
         worlds: &Bound<'_, PyList>,
         #[pyo3(from_py_with = whole)] environments: usize,
         #[pyo3(from_py_with = whole)] threads: usize,
+        houses: Option<Vec<u64>>,
         settings: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
         Self::check_count(environments)?;
-        let specs = worlds.iter().map(|world| driving(&spec_of(py, &world)?, None));
-        let (specs, settings) = (specs.collect::<PyResult<Vec<_>>>()?, explore_settings(settings)?);
+        let worlds = Worlds::of(py, worlds, houses)?;
+        let settings = explore_settings(settings)?;
         let batch = py.detach(|| -> Result<_, TaskError> {
-            let place = Arc::new(ExplorePlace::new(&specs, settings)?);
+            let place = worlds.place(settings)?;
             let tasks = (0..environments).map(|_| Explore::new(&place)).collect::<Result<Vec<_>, _>>()?;
             Ok(environments::Batch::new(tasks))
+        });
+        Self::with(batch.map_err(value_error)?, threads)
+    }
+
+    /// Exploring tasks whose actions are goals: those of `explore`, with the settings `strategies` (names) and `max_goal_s`.
+    #[staticmethod]
+    #[pyo3(signature = (worlds, environments, threads = 0, *, houses = None, **settings))]
+    fn explore_goals(
+        py: Python<'_>,
+        worlds: &Bound<'_, PyList>,
+        #[pyo3(from_py_with = whole)] environments: usize,
+        #[pyo3(from_py_with = whole)] threads: usize,
+        houses: Option<Vec<u64>>,
+        settings: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<Self> {
+        Self::check_count(environments)?;
+        let worlds = Worlds::of(py, worlds, houses)?;
+        let goals = Arc::new(goal_settings(settings)?);
+        let settings = explore_settings(settings)?;
+        let batch = py.detach(|| -> Result<_, TaskError> {
+            let place = worlds.place(settings)?;
+            let task = |_| ExploreGoals::new(&place, &goals);
+            Ok(environments::Batch::new((0..environments).map(task).collect::<Result<Vec<_>, _>>()?))
         });
         Self::with(batch.map_err(value_error)?, threads)
     }
@@ -129,6 +158,21 @@ impl Batch {
     #[getter]
     fn parts(&self) -> Vec<(&'static str, Vec<usize>)> {
         self.batch.task(0).parts().into_iter().map(|part| (part.name, part.shape)).collect()
+    }
+
+    /// Names and lengths of slices along the last axis of each part, in their order; empty where the axis has no names.
+    #[getter]
+    fn slices(&self) -> Vec<(&'static str, Vec<(&'static str, usize)>)> {
+        self.batch.task(0).parts().into_iter().map(|part| (part.name, part.slices)).collect()
+    }
+
+    /// The number of choices of an action; None if an action is two velocities.
+    #[getter]
+    fn choices(&self) -> Option<usize> {
+        match self.batch.task(0).actions() {
+            Actions::Velocities => None,
+            Actions::Choice(count) => Some(count),
+        }
     }
 
     /// The names of the columns of the information about a step.
@@ -175,7 +219,8 @@ impl Batch {
         self.rows_of_one(py, observations)
     }
 
-    /// Simulates one step. `actions`: float32, shape (environments * agents, 2), from -1 to 1. `next_seeds`: uint64,
+    /// Simulates one step. `actions`: float32, shape (environments * agents, 2), from -1 to 1; of a choice, its number in an
+    /// array of shape (environments, 1). `next_seeds`: uint64,
     /// one per environment, for the episodes that begin in this step.
     ///
     /// Returns observations, rewards, terminated, truncated, information, whether each environment was reset, and the
@@ -191,9 +236,10 @@ impl Batch {
         }
         let (rows, values, infos) = (self.rows(), self.observation_len(), self.info_names().len());
         let shape = actions.as_array().dim();
-        if shape != (rows, ACTIONS) {
+        let of_one = self.batch.task(0).actions().values();
+        if shape != (rows, of_one) {
             return Err(value_error(format!(
-                "the actions have the shape {shape:?}, and must have ({rows}, 2)"
+                "the actions have the shape {shape:?}, and must have ({rows}, {of_one})"
             )));
         }
         let (actions, next_seeds) =
@@ -278,5 +324,28 @@ impl Batch {
         let observations = self.batch.restore(environment, state).map_err(snapshot_error)?.to_vec();
         self.is_ready |= self.environments() == 1;
         self.rows_of_one(py, observations)
+    }
+}
+
+/// The worlds of exploring tasks.
+enum Worlds {
+    Specs(Vec<WorldSpec>),
+    Houses(Vec<u64>),
+}
+
+impl Worlds {
+    fn of(py: Python<'_>, worlds: &Bound<'_, PyList>, houses: Option<Vec<u64>>) -> PyResult<Self> {
+        if let Some(seeds) = houses {
+            return Ok(Self::Houses(seeds));
+        }
+        let specs = worlds.iter().map(|world| driving(&spec_of(py, &world)?, None));
+        Ok(Self::Specs(specs.collect::<PyResult<_>>()?))
+    }
+
+    fn place(self, settings: ExploreSettings) -> Result<Arc<ExplorePlace>, TaskError> {
+        Ok(Arc::new(match self {
+            Self::Specs(specs) => ExplorePlace::new(&specs, settings)?,
+            Self::Houses(seeds) => ExplorePlace::of_houses(seeds, settings)?,
+        }))
     }
 }

@@ -1,5 +1,7 @@
 """The environments."""
 
+import copy
+import pickle
 import warnings
 
 import curious
@@ -10,10 +12,14 @@ gymnasium = pytest.importorskip("gymnasium")
 from gymnasium.utils.env_checker import check_env  # noqa: E402
 from gymnasium.vector import AutoresetMode  # noqa: E402
 
-NAMES = ["curious/Drive-v0", "curious/Explore-v0"]
+GOALS = "curious/ExploreGoals-v0"
+VELOCITIES = ["curious/Drive-v0", "curious/Explore-v0", "curious/Explore-v1"]
+NAMES = [*VELOCITIES, GOALS]
 SMALL = {
     "curious/Drive-v0": {"max_steps": 25},
     "curious/Explore-v0": {"worlds": [curious.Spec.house(1), curious.Spec.house(4)], "max_steps": 25, "beams": 60},
+    "curious/Explore-v1": {"houses": range(3), "max_steps": 25, "beams": 60},
+    GOALS: {"houses": range(3), "max_steps": 150, "beams": 60, "max_goal_s": 3.0},
 }
 
 
@@ -22,7 +28,9 @@ def flat(observation) -> np.ndarray:
     return np.concatenate([np.asarray(part).ravel() for part in parts])
 
 
-def action(environment: int, step: int) -> np.ndarray:
+def action(environment: int, step: int, name: str = "") -> np.ndarray:
+    if name == GOALS:
+        return np.int64((environment + step) % 8)
     return np.array([np.cos(environment + 0.1 * step), np.sin(environment * 1.7 + 0.3 * step)], np.float32)
 
 
@@ -36,7 +44,7 @@ def test_check_env_has_no_warning(name):
 
 @pytest.mark.parametrize("name", NAMES)
 def test_a_vector_environment_has_the_bits_of_single_ones(name):
-    count, steps = 5, 70
+    count, steps = 5, 16 if name == GOALS else 70
     vector = gymnasium.make_vec(name, num_envs=count, vectorization_mode="vector_entry_point", **SMALL[name])
     assert vector.metadata["autoreset_mode"] == AutoresetMode.SAME_STEP
     alone = type(vector.unwrapped)(num_envs=count, threads=1, **SMALL[name])
@@ -47,7 +55,7 @@ def test_a_vector_environment_has_the_bits_of_single_ones(name):
     recorded, ends = [], 0
     seeds = [int(info["world_seed"][2])]
     for step in range(steps):
-        actions = np.stack([action(index, step) for index in range(count)])
+        actions = np.stack([action(index, step, name) for index in range(count)])
         rows, rewards, terminated, truncated, info = vector.step(actions)
         rows_alone, rewards_alone, *_ = alone.step(actions)
         np.testing.assert_array_equal(flat(rows), flat(rows_alone))
@@ -66,7 +74,7 @@ def test_a_vector_environment_has_the_bits_of_single_ones(name):
     episode = 0
     for step in range(steps):
         assert info["world_seed"] == seeds[episode]
-        observation, reward, terminated, truncated, info = single.step(action(2, step))
+        observation, reward, terminated, truncated, info = single.step(action(2, step, name))
         expected = recorded[step]
         np.testing.assert_array_equal(flat(observation), expected[0])
         assert (np.float32(reward), terminated, truncated) == (np.float32(expected[1]), expected[2], expected[3])
@@ -84,21 +92,21 @@ def test_snapshots_and_pictures(name):
     env = gymnasium.make(name, render_mode="rgb_array", **SMALL[name]).unwrapped
     env.reset(seed=1)
     for step in range(5):
-        env.step(action(0, step))
+        env.step(action(0, step, name))
     snapshot, picture = env.snapshot(), env.render()
     assert picture.dtype == np.uint8 and picture.shape[2] == 3 and max(picture.shape) == 480
-    expected = [flat(env.step(action(0, step))[0]) for step in range(5, 10)]
+    expected = [flat(env.step(action(0, step, name))[0]) for step in range(5, 10)]
     assert not np.array_equal(env.render(), picture)
     env.reset(seed=2)
     env.restore(snapshot)
     np.testing.assert_array_equal(env.render(), picture)
     for step in range(5, 10):
-        np.testing.assert_array_equal(flat(env.step(action(0, step))[0]), expected[step - 5])
+        np.testing.assert_array_equal(flat(env.step(action(0, step, name))[0]), expected[step - 5])
     with pytest.raises(curious.SnapshotError):
         env.restore(snapshot[:-3])
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", VELOCITIES)
 def test_invalid_actions_are_refused(name):
     env = gymnasium.make(name, **SMALL[name]).unwrapped
     with pytest.raises(RuntimeError, match="call reset"):
@@ -144,8 +152,8 @@ def test_worlds_are_repeated_by_their_seeds(name):
     def run(**keywords) -> tuple[np.ndarray, np.ndarray]:
         observation, info = vector.reset(**keywords)
         rows = [flat(observation)]
-        for step in range(15):
-            rows.append(flat(vector.step(np.stack([action(0, step), action(1, step)]))[0]))
+        for step in range(4 if name == GOALS else 15):
+            rows.append(flat(vector.step(np.stack([action(0, step, name), action(1, step, name)]))[0]))
         return info["world_seed"], np.concatenate(rows)
 
     seeds, first = run(seed=7)
@@ -159,6 +167,107 @@ def test_worlds_are_repeated_by_their_seeds(name):
     for seed, error in ((-1, ValueError), (1 << 64, ValueError), (1.5, TypeError), ("x", TypeError)):
         with pytest.raises(error):
             env.reset(options={"world_seed": seed})
+
+
+def test_invalid_choices_are_refused():
+    env = gymnasium.make(GOALS, **SMALL[GOALS]).unwrapped
+    assert env.action_space == gymnasium.spaces.Discrete(8)
+    env.reset(seed=1)
+    before = env.snapshot()
+    for invalid, message in [
+        (8, "action 8 of environment 0 is not a whole number from 0 to 7"),
+        (0.5, "action 0.5 of environment 0 is not a whole number"),
+        ([0, 1], "shape"),
+        ("frontier", "actions are real numbers"),
+    ]:
+        with pytest.raises((ValueError, TypeError), match=message):
+            env.step(invalid)
+    assert env.snapshot() == before
+    with pytest.raises(ValueError, match="no strategy is called `east`"):
+        gymnasium.make(GOALS, strategies=["east"])
+    with pytest.raises(ValueError, match="at least one strategy"):
+        gymnasium.make(GOALS, strategies=[])
+    with pytest.raises(ValueError, match="max_goal_s"):
+        gymnasium.make(GOALS, max_goal_s=0.0)
+
+
+def test_episodes_begin_anywhere_in_many_houses():
+    env = gymnasium.make("curious/Explore-v1", beams=20, max_steps=1)
+    starts = {tuple(env.reset(seed=seed)[0]["state"].tolist()) for seed in range(20)}
+    houses = {int(env.reset(seed=seed)[1]["world_seed"]) for seed in range(20)}
+    assert len(starts) == 20 and len(houses) == 20
+    assert not set(curious.envs.TRAIN_HOUSES) & set(curious.envs.TEST_HOUSES)
+    numbers = set()
+    for seed in range(12):
+        env = gymnasium.make("curious/Explore-v1", houses=range(2, 5), beams=20, max_steps=1)
+        env.reset(seed=seed)
+        numbers.add(env.step(np.zeros(2, np.float32))[4]["world"])
+    assert numbers == {0.0, 1.0, 2.0}
+    with pytest.raises(TypeError, match="in `worlds` or in `houses`, not in both"):
+        gymnasium.make("curious/Explore-v1", houses=range(2), worlds="house")
+    with pytest.raises(ValueError, match="the setting `reward` is one of found, updates, and not more"):
+        gymnasium.make("curious/Explore-v1", houses=range(2), reward="more")
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_deep_copy_goes_on_with_the_same_bits(name):
+    env = gymnasium.make(name, **SMALL[name])
+    env.reset(seed=3)
+    env.step(action(0, 0, name))
+    other = copy.deepcopy(env)
+    for step in range(1, 4):
+        one, two = (each.step(action(0, step, name)) for each in (env, other))
+        np.testing.assert_array_equal(flat(one[0]), flat(two[0]))
+        assert one[1] == two[1]
+    np.testing.assert_array_equal(flat(env.reset()[0]), flat(other.reset()[0]))
+    for refused in (copy.copy, pickle.dumps):
+        with pytest.raises(TypeError, match="cannot be pickled: make another one"):
+            refused(env.unwrapped)
+    vector = gymnasium.make_vec(name, num_envs=2, vectorization_mode="vector_entry_point", **SMALL[name]).unwrapped
+    vector.reset(seed=3)
+    actions = np.stack([action(0, 0, name), action(1, 0, name)])
+    vector.step(actions)
+    again = copy.deepcopy(vector)
+    np.testing.assert_array_equal(flat(vector.step(actions)[0]), flat(again.step(actions)[0]))
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_values_of_observations_have_names(name):
+    env = gymnasium.make(name, **SMALL[name]).unwrapped
+    observation, _ = env.reset(seed=1)
+    if name == "curious/Drive-v0":
+        assert env.slices["scan"] == slice(0, 64) and env.slices["velocity"] == slice(69, 71)
+        parts = [(observation, env.slices, ("goal_direction", "path_direction"))]
+    else:
+        parts = [(observation["state"], env.slices["state"], ("heading",))]
+    for values, slices, directions in parts:
+        assert sum(values[of].size for of in slices.values()) == values.size
+        for direction in directions:
+            assert np.hypot(*values[slices[direction]]) == pytest.approx(1.0, abs=1e-5)
+    if name == GOALS:
+        assert sum(of.stop - of.start for of in env.slices["candidates"].values()) == 9
+        # A robot at the start has its surroundings in view, and the rest is unseen.
+        assert observation["candidates"][0, env.slices["candidates"]["unseen"]] > 0.0
+
+
+def test_render_without_a_mode_says_so():
+    env = gymnasium.make("curious/Drive-v0").unwrapped
+    env.reset(seed=1)
+    with pytest.warns(UserWarning, match="render.. needs render_mode"):
+        assert env.render() is None
+    vector = gymnasium.make_vec("curious/Drive-v0", num_envs=2, vectorization_mode="vector_entry_point").unwrapped
+    with pytest.warns(UserWarning, match="render.. needs render_mode"):
+        assert vector.render() is None
+
+
+def test_a_window_opens_no_audio_device(monkeypatch):
+    pygame = pytest.importorskip("pygame")
+    monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
+    env = gymnasium.make("curious/Drive-v0", render_mode="human").unwrapped
+    env.reset(seed=1)
+    assert pygame.display.get_init() and pygame.mixer.get_init() is None
+    env.close()
+    assert not pygame.display.get_init()
 
 
 def test_settings():
@@ -228,6 +337,9 @@ def test_pettingzoo(fleet_toml):
         env.step({"a": [0.0, 0.0]})
     with pytest.raises(ValueError, match="a: the actions have the shape"):
         env.step({"a": [0.0], "b": [0.0, 0.0]})
+    for value in (2.0, np.nan):
+        with pytest.raises(ValueError, match="b: action .* is not from -1 to 1"):
+            env.step({"a": [0.0, 0.0], "b": [value, 0.0]})
 
 
 @pytest.mark.parametrize("name", ["Drive", "Explore"])
@@ -274,7 +386,7 @@ def test_python_and_rust_give_the_same_bits(kind, threads):
         batch = curious.Batch.drive(curious.Spec.driving_hall(), 3, threads, max_steps=40)
     else:
         houses = [curious.Spec.house(3), curious.Spec.house(5)]
-        batch = curious.Batch.explore(houses, 2, threads, max_steps=40, beams=20)
+        batch = curious.Batch.explore(houses, 2, threads, max_steps=40, beams=20, reward="updates", starts="spec")
     count, value = batch.environments, 0xCBF29CE484222325
     batch.reset(np.arange(count, dtype=np.uint64))
     for step in range(60):

@@ -53,6 +53,10 @@ impl Strategy for FreshMap {
         "fresh-map"
     }
 
+    fn decline(&mut self) {
+        self.history.decline();
+    }
+
     fn values(&mut self, mapper: &Mapper) -> Values<'_> {
         self.history.values(mapper)
     }

@@ -36,6 +36,10 @@ impl Strategy for Frontier {
         "frontier"
     }
 
+    fn decline(&mut self) {
+        self.history.decline();
+    }
+
     fn values(&mut self, mapper: &Mapper) -> Values<'_> {
         self.history.values(mapper)
     }

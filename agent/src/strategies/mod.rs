@@ -73,6 +73,9 @@ pub trait Strategy: std::fmt::Debug + Send {
         Stay::Explore
     }
 
+    /// The robot does not go to the goal that was selected last. A strategy that remembers its goals forgets it.
+    fn decline(&mut self) {}
+
     /// Everything that a goal changes and a later goal needs: what a state file holds of the strategy. `mapper` is that of
     /// the same state; what follows from it is not in the list. Empty for a strategy that remembers nothing.
     fn values(&mut self, _mapper: &Mapper) -> Values<'_> {

@@ -51,6 +51,10 @@ impl Strategy for OptimalRevisiting {
         "optimal-revisiting"
     }
 
+    fn decline(&mut self) {
+        self.history.decline();
+    }
+
     fn values(&mut self, mapper: &Mapper) -> Values<'_> {
         self.history.values(mapper)
     }

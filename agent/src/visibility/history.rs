@@ -65,6 +65,11 @@ impl ViewHistory {
         self.goal = self.frame.and_then(|frame| frame.index(goal));
     }
 
+    /// The last goal is not visited.
+    pub(crate) fn decline(&mut self) {
+        self.goal = None;
+    }
+
     /// The number of visits from which the cell should have been in view, up to 255.
     #[inline]
     pub(crate) fn visits(&self, cell: usize) -> u8 {

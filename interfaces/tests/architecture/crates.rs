@@ -34,7 +34,10 @@ const ALLOWED: &[(&str, &[&str])] = &[
         ],
     ),
     ("reports", &["interfaces", "sim", "robot", "results", "days", "evaluation"]),
-    ("environments", &["interfaces", "sim", "worldfile", "mapper", "robot", "evaluation"]),
+    (
+        "environments",
+        &["interfaces", "sim", "worldfile", "mapper", "agent", "controller", "robot", "evaluation"],
+    ),
     (
         "python",
         &[

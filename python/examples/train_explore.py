@@ -1,0 +1,242 @@
+"""A robot learns where to go in houses that change: NumPy alone, by the choice of goals (`curious/ExploreGoals-v0`).
+
+At every step eight strategies propose a goal each. A small network predicts from what each goal promises the reward R that its
+choice will earn, and the time T that it will take; the robot takes the goal with the largest R - rho T, where rho is the mean
+reward per second so far (the average-reward criterion: Schwartz, 1993; Mahadevan, 1996). It learns from its own steps in
+houses of `TRAIN_HOUSES`, and is measured in `TEST_HOUSES`, where every policy begins at the same place of the same house.
+
+    python train_explore.py --minutes 10 --houses 200 --picture curve.png
+"""
+
+import argparse
+import json
+import time
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any, Callable
+
+import numpy as np
+from curious.envs import TEST_HOUSES, ExploreEnv, ExploreGoalsEnv, ExploreGoalsVectorEnv
+
+ENVS, HIDDEN, BATCH, RATE = 8, 32, 256, 2e-3
+#: Strategies that draw their goals are there twice: what a goal promises says which one is better.
+STRATEGIES = ["frontier", *2 * ["recency"], *2 * ["poisson"], *2 * ["predicted-change"], "random"]
+#: The scales of reward and time (s) in the output of the network.
+SCALES = np.array([10.0, 20.0], np.float32)
+Choose = Callable[[dict[str, np.ndarray]], np.ndarray]
+
+
+def inputs(observation: dict[str, np.ndarray]) -> np.ndarray:
+    """One row per candidate: its features, which strategy it is of, and the state of the map; shape (envs, strategies, n)."""
+    candidates, state = observation["candidates"], observation["state"]
+    envs, strategies, _ = candidates.shape
+    names = np.broadcast_to(np.eye(strategies, dtype=np.float32), (envs, strategies, strategies))
+    # Time left, known share, expected changes, longest unseen, last reward: not the place, which is of one house.
+    state = np.broadcast_to(state[:, None, 4:], (envs, strategies, state.shape[1] - 4))
+    return np.concatenate([candidates, names, state], axis=2)
+
+
+class Net:
+    """Predicts reward and time: one hidden layer, trained by Adam on the squared error."""
+
+    def __init__(self, size: int, random: np.random.Generator) -> None:
+        self.parts = [
+            (random.normal(size=(size, HIDDEN)) / np.sqrt(size)).astype(np.float32),
+            np.zeros(HIDDEN, np.float32),
+            np.zeros((HIDDEN, 2), np.float32),
+            np.zeros(2, np.float32),
+        ]
+        self.means, self.squares = ([np.zeros_like(part) for part in self.parts] for _ in range(2))
+        self.steps = 0
+
+    def predict(self, x: np.ndarray) -> np.ndarray:
+        weights, biases, out, bias = self.parts
+        return np.tanh(x @ weights + biases) @ out + bias
+
+    def learn(self, x: np.ndarray, target: np.ndarray) -> None:
+        weights, biases, out, bias = self.parts
+        hidden = np.tanh(x @ weights + biases)
+        error = 2.0 * (hidden @ out + bias - target) / len(x)
+        inner = (error @ out.T) * (1.0 - hidden**2)
+        self.steps += 1
+        for part, mean, square, gradient in zip(
+            self.parts, self.means, self.squares, [x.T @ inner, inner.sum(0), hidden.T @ error, error.sum(0)]
+        ):
+            mean += 0.1 * (gradient - mean)
+            square += 0.001 * (gradient**2 - square)
+            part -= RATE * (mean / (1 - 0.9**self.steps)) / (np.sqrt(square / (1 - 0.999**self.steps)) + 1e-8)
+
+
+def train(minutes: float, seed: int) -> tuple[Choose, list[tuple[float, float]]]:
+    """Learns for some minutes. Returns the policy, and (minutes, reward) of every episode."""
+    env = ExploreGoalsVectorEnv(num_envs=ENVS, strategies=STRATEGIES)
+    random = np.random.default_rng(seed)
+    observation, _ = env.reset(seed=seed)
+    x = inputs(observation)
+    net = Net(x.shape[2], random)
+    seen: list[np.ndarray] = []
+    targets: list[np.ndarray] = []
+    returns, times = np.zeros(ENVS), np.zeros(ENVS)
+    earned, spent_s = 0.0, 1e-9
+    curve: list[tuple[float, float]] = []
+    begin, shown = time.perf_counter(), 0
+    while (spent := (time.perf_counter() - begin) / 60.0) < minutes:
+        predicted = net.predict(x) * SCALES
+        choice = (predicted[..., 0] - earned / spent_s * predicted[..., 1]).argmax(axis=1)
+        # Tries something else: always at first, in one of twenty steps at last.
+        tries = random.random(ENVS) < max(0.05, 1.0 - 2.5 * spent / minutes)
+        choice = np.where(tries, random.integers(0, x.shape[1], ENVS), choice)
+        observation, rewards, _, truncated, info = env.step(choice)
+        # The values of `info` are those before a reset.
+        ends = info["time"]
+        seen += list(x[np.arange(ENVS), choice])
+        targets += list(np.stack([rewards, ends - times], axis=1).astype(np.float32) / SCALES)
+        # The mean reward per second forgets the first, worse choices.
+        earned, spent_s = 0.998 * earned + rewards.sum(), 0.998 * spent_s + (ends - times).sum()
+        returns += rewards
+        curve += [(spent, float(total)) for total in returns[truncated]]
+        returns, times = np.where(truncated, 0.0, returns), np.where(truncated, 0.0, info["time"])
+        x = inputs(observation)
+        if len(seen) >= BATCH:
+            all_seen, all_targets = np.stack(seen[-20_000:]), np.stack(targets[-20_000:])
+            for _ in range(8):
+                batch = random.integers(0, len(all_seen), BATCH)
+                net.learn(all_seen[batch], all_targets[batch])
+        if len(curve) >= shown + 40:
+            shown = len(curve)
+            mean = np.mean([total for _, total in curve[-40:]])
+            print(f"{spent:4.1f} min {len(curve):>5} episodes {len(seen):>6} goals, reward {mean:.1f}", flush=True)
+    env.close()
+    rate = earned / spent_s
+
+    def choose(observation: dict[str, np.ndarray]) -> np.ndarray:
+        predicted = net.predict(inputs(observation)) * SCALES
+        return (predicted[..., 0] - rate * predicted[..., 1]).argmax(axis=1)
+
+    return choose, curve
+
+
+def stand(observation: Any, step: int, random: np.random.Generator) -> list[float]:
+    return [0.0, 0.0]
+
+
+def drive_at_random(observation: Any, step: int, random: np.random.Generator) -> Any:
+    return random.uniform(-1.0, 1.0, 2)
+
+
+def wander(observation: Any, step: int, random: np.random.Generator) -> list[float]:
+    """Ahead while nothing is near; else a turn, which changes its side every four seconds."""
+    scan = observation["scan"]
+    middle, side = len(scan) // 2, len(scan) // 10
+    if scan[middle - side : middle + side].min() < NEAR:
+        return [0.0, 1.0 if (step // 40) % 2 else -1.0]
+    return [1.0, 0.3 * float(np.sin(0.02 * step))]
+
+
+#: The policies that steer, and those that choose goals, with their strategies.
+DRIVERS = {"standing": stand, "random driving": drive_at_random, "wandering": wander}
+#: 0.6 m, as a share of the range of the laser of a house.
+NEAR = 0.6 / 10.0
+FIELDS = ("reward", "found_changes", "seen_m2", "collisions")
+
+
+def episode(env: Any, act: Callable[[Any, int], Any], seed: int) -> list[float]:
+    """One episode in the house, at the place and with the doors and people of a seed."""
+    observation, _ = env.reset(options={"world_seed": seed})
+    reward, step, truncated, info = 0.0, 0, False, {}
+    while not truncated:
+        observation, earned, _, truncated, info = env.step(act(observation, step))
+        reward, step = reward + earned, step + 1
+    return [reward, *(info[name] for name in FIELDS[1:])]
+
+
+def measure(name: str, policy: Choose | None, houses: int, threads: int) -> np.ndarray:
+    """One episode per seed, from 1 on, in houses of `TEST_HOUSES`: shape (houses, FIELDS)."""
+    is_single = policy is None and name != "any strategy"
+
+    def some(first: int) -> list[list[float]]:
+        if name in DRIVERS:
+            env: Any = ExploreEnv(houses=TEST_HOUSES)
+        else:
+            env = ExploreGoalsEnv(houses=TEST_HOUSES, strategies=[name] if is_single else STRATEGIES)
+        return [one(env, seed) for seed in range(first, houses + 1, threads)]
+
+    def one(env: Any, seed: int) -> list[float]:
+        random = np.random.default_rng(seed)
+        if name in DRIVERS:
+            return episode(env, lambda seen, step: DRIVERS[name](seen, step, random), seed)
+        if policy is not None:
+            return episode(env, lambda seen, _: policy({key: part[None] for key, part in seen.items()})[0], seed)
+        return episode(env, lambda *_: 0 if is_single else random.integers(0, len(STRATEGIES)), seed)
+
+    with ThreadPoolExecutor(threads) as pool:
+        parts = list(pool.map(some, range(1, threads + 1)))
+    return np.array([parts[index % threads][index // threads] for index in range(houses)])
+
+
+def p_value(differences: np.ndarray) -> float:
+    """Two-sided p of a paired test that changes signs at random (Fisher, 1935), 100,000 times."""
+    random, more, draws = np.random.default_rng(0), 0, 100_000
+    for _ in range(draws // 1000):
+        signs = random.choice([-1.0, 1.0], (1000, len(differences)))
+        more += int((np.abs(signs @ differences) >= abs(differences.sum()) - 1e-9).sum())
+    return (more + 1) / (draws + 1)
+
+
+def draw(curve: list[tuple[float, float]], means: dict[str, float], path: str) -> None:
+    """The learning curve, and the means of the others as lines."""
+    try:
+        import matplotlib
+    except ImportError:
+        print("no picture: it needs `pip install matplotlib`")
+        return
+    matplotlib.use("Agg")
+    from matplotlib import pyplot
+
+    figure, axes = pyplot.subplots(figsize=(7, 4), layout="constrained")
+    minutes, rewards = np.array(curve).T
+    width = min(40, len(rewards))
+    smooth = np.convolve(rewards, np.ones(width) / width, "valid")
+    axes.plot(minutes, rewards, ".", color="0.8", label="one episode in a training house")
+    axes.plot(minutes[width - 1 :], smooth, color="C0", label=f"mean of {width} episodes")
+    for number, (name, mean) in enumerate(means.items()):
+        axes.axhline(mean, color=f"C{number + 1}", linestyle="--", linewidth=1, label=f"{name}, test houses")
+    axes.set(xlabel="minutes of training", ylabel="reward of an episode of 300 s", ylim=(0, None))
+    axes.legend(fontsize=7, ncols=2)
+    figure.savefig(path, dpi=120)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--minutes", type=float, default=10.0)
+    parser.add_argument("--houses", type=int, default=200, help="test houses")
+    parser.add_argument("--threads", type=int, default=2, help="for the test houses")
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--others", default=",".join(OTHERS), help="policies to compare with")
+    parser.add_argument("--picture", help="a PNG file for the learning curve")
+    parser.add_argument("--json", help="a file for all numbers")
+    arguments = parser.parse_args()
+    results: dict[str, np.ndarray] = {}
+    curve: list[tuple[float, float]] = []
+    if arguments.minutes > 0.0:
+        policy, curve = train(arguments.minutes, arguments.seed)
+        results["learned"] = measure("learned", policy, arguments.houses, arguments.threads)
+    print(f"\n{arguments.houses} test houses   reward ± s.e.   found    seen m²  collisions   p against learned")
+    for name in [*results, *filter(None, arguments.others.split(","))]:
+        if name not in results:
+            results[name] = measure(name, None, arguments.houses, arguments.threads)
+        mean, error = results[name].mean(axis=0), results[name].std(axis=0, ddof=1) / np.sqrt(arguments.houses)
+        p = ""
+        if "learned" in results and name != "learned":
+            p = f"{p_value(results['learned'][:, 0] - results[name][:, 0]):.5f}"
+        print(f"{name:<20} {mean[0]:6.1f} ± {error[0]:4.1f} {mean[1]:10.0f} {mean[2]:8.1f} {mean[3]:8.2f}       {p}", flush=True)
+    if arguments.json:
+        with open(arguments.json, "w") as file:
+            json.dump({"curve": curve, **{name: values.tolist() for name, values in results.items()}}, file)
+    if arguments.picture and curve:
+        draw(curve, {name: float(values[:, 0].mean()) for name, values in results.items()}, arguments.picture)
+
+
+OTHERS = [*DRIVERS, "any strategy", "random", "frontier", "curious", "recency", "poisson", "predicted-change", "optimal-revisiting"]
+
+if __name__ == "__main__":
+    main()
