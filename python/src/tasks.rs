@@ -4,7 +4,7 @@ use crate::settings::{drive_settings, explore_settings, goal_settings};
 use crate::snapshots::{Kind, check_build};
 use crate::spec::{driving, spec_of};
 use environments::{
-    Actions, Drive, DrivePlace, Explore, ExploreGoals, ExplorePlace, ExploreSettings, Picture, Results,
+    Actions, Drive, DrivePlace, Explore, ExploreGoals, ExplorePlace, ExploreSettings, Picture, Results, Task,
     TaskError,
 };
 use numpy::{IntoPyArray, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
@@ -105,11 +105,7 @@ impl Batch {
         Self::check_count(environments)?;
         let worlds = Worlds::of(py, worlds, houses)?;
         let settings = explore_settings(settings)?;
-        let batch = py.detach(|| -> Result<_, TaskError> {
-            let place = worlds.place(settings)?;
-            let tasks = (0..environments).map(|_| Explore::new(&place)).collect::<Result<Vec<_>, _>>()?;
-            Ok(environments::Batch::new(tasks))
-        });
+        let batch = py.detach(|| worlds.tasks(environments, settings, Explore::new));
         Self::with(batch.map_err(value_error)?, threads)
     }
 
@@ -128,11 +124,8 @@ impl Batch {
         let worlds = Worlds::of(py, worlds, houses)?;
         let goals = Arc::new(goal_settings(settings)?);
         let settings = explore_settings(settings)?;
-        let batch = py.detach(|| -> Result<_, TaskError> {
-            let place = worlds.place(settings)?;
-            let task = |_| ExploreGoals::new(&place, &goals);
-            Ok(environments::Batch::new((0..environments).map(task).collect::<Result<Vec<_>, _>>()?))
-        });
+        let task = |place: &Arc<ExplorePlace>| ExploreGoals::new(place, &goals);
+        let batch = py.detach(|| worlds.tasks(environments, settings, task));
         Self::with(batch.map_err(value_error)?, threads)
     }
 
@@ -340,6 +333,18 @@ impl Worlds {
         }
         let specs = worlds.iter().map(|world| driving(&spec_of(py, &world)?, None));
         Ok(Self::Specs(specs.collect::<PyResult<_>>()?))
+    }
+
+    /// A number of tasks that share the place.
+    fn tasks<T: Task + 'static>(
+        self,
+        count: usize,
+        settings: ExploreSettings,
+        task: impl Fn(&Arc<ExplorePlace>) -> Result<T, TaskError>,
+    ) -> Result<environments::Batch, TaskError> {
+        let place = self.place(settings)?;
+        let tasks = (0..count).map(|_| task(&place)).collect::<Result<Vec<_>, _>>()?;
+        Ok(environments::Batch::new(tasks))
     }
 
     fn place(self, settings: ExploreSettings) -> Result<Arc<ExplorePlace>, TaskError> {

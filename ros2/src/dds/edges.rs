@@ -37,7 +37,7 @@ impl EdgesClient {
         self.asked = Some((self.client.send_request(edges).ok(), since));
     }
 
-    /// What has become of the request since the last call: whether the edges are adjusted.
+    /// Whether the edges are adjusted; `None` while nothing was asked, or an answer can still come.
     pub(super) fn poll(&mut self) -> Option<bool> {
         let (asked, since) = self.asked?;
         while let Ok(Some((answered, Flag(is_done)))) = self.client.receive_response() {
