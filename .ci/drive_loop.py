@@ -13,7 +13,7 @@ import time
 import tomllib
 
 import numpy as np
-from drive_ros2 import CURIOUS, WORK, Program, Robot, check, parameter
+from drive_ros2 import CURIOUS, DISCOVERY_S, WORK, Program, Robot, check, parameter
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 WORLD = os.path.join(HERE, "../ros2/src/node/tests/block.toml")
@@ -101,7 +101,7 @@ def main():
     node = Program(CURIOUS, "--ros-args", *parameter("map_update_interval", 0.5), *settings,
                    *parameter("qos_overrides./scan.subscription.reliability", "reliable"))
     robot = Driver(around / scans, beams)
-    check("the node subscribes", robot.spin(10, lambda: robot.scans.get_subscription_count() > 0))
+    check("the node subscribes", robot.spin(DISCOVERY_S, lambda: robot.scans.get_subscription_count() > 0))
     robot.spin(1)
     robot.drive(1e9, FAST_HZ, until=lambda: robot.way > around - 1.0)
     robot.spin(2)

@@ -11,7 +11,7 @@ import subprocess
 import sys
 import time
 
-from drive_ros2 import CURIOUS, LATCHED, RELIABLE, SIM, WORK, Peer, Program, check, parameter
+from drive_ros2 import CURIOUS, DISCOVERY_S, LATCHED, RELIABLE, SIM, WORK, Peer, Program, check, parameter
 
 from geometry_msgs.msg import PoseWithCovarianceStamped, Twist
 from lifecycle_msgs.msg import TransitionEvent
@@ -31,7 +31,7 @@ def call_once():
     """Prints how long a fresh process waits for its first answer, s."""
     peer = Peer(f"client_{os.getpid()}")
     client = peer.node.create_client(Trigger, "curious_node/save_state")
-    client.wait_for_service(10)
+    client.wait_for_service(DISCOVERY_S)
     begin = time.monotonic()
     answer = client.call_async(Trigger.Request())
     peer.spin(15, answer.done)
@@ -41,7 +41,7 @@ def call_once():
 
 def ask(peer, kind, name, request):
     client = peer.node.create_client(kind, name)
-    check(f"there is a service {name}", client.wait_for_service(10))
+    check(f"there is a service {name}", client.wait_for_service(DISCOVERY_S))
     answer = client.call_async(request)
     check(f"{name} answers", peer.spin(10, answer.done))
     return answer.result()
@@ -84,7 +84,7 @@ def test_lifecycle():
     labels = [description.transition.label for description in available.available_transitions]
     check("it says what is next", labels == ["cleanup", "activate", "shutdown"], labels)
     check("it is activated", change(peer, 3) and state(peer) == "active")
-    check("it maps", peer.spin(10, lambda: {"map", "expiry_map"} <= set(peer.last)), sorted(peer.last))
+    check("it maps", peer.spin(DISCOVERY_S, lambda: {"map", "expiry_map"} <= set(peer.last)), sorted(peer.last))
     event = peer.last["curious_node/transition_event"]
     check("it says so", (event.start_state.label, event.goal_state.label) == ("inactive", "active"))
     test_parameters(peer)
@@ -102,7 +102,7 @@ def test_lifecycle():
 
 def test_parameters(peer):
     client = AsyncParameterClient(peer.node, "curious_node")
-    check("the services of parameters are there", client.wait_for_services(10))
+    check("the services of parameters are there", client.wait_for_services(DISCOVERY_S))
 
     def done(future):
         peer.spin(10, future.done)
@@ -125,7 +125,7 @@ def test_parameters(peer):
 
 def test_initial_pose(peer, node):
     publisher = peer.node.create_publisher(PoseWithCovarianceStamped, "initialpose", 10)
-    check("the node hears an initial pose", peer.spin(10, lambda: publisher.get_subscription_count() > 0))
+    check("the node hears an initial pose", peer.spin(DISCOVERY_S, lambda: publisher.get_subscription_count() > 0))
     message = PoseWithCovarianceStamped()
     message.header.frame_id = "odom"
     message.pose.pose.orientation.w = 1.0
@@ -144,7 +144,7 @@ def test_initial_pose(peer, node):
 
 def test_types(peer):
     publisher = peer.node.create_publisher(Twist, "cmd_vel", 10)
-    check("the simulator hears a Twist", peer.spin(10, lambda: publisher.get_subscription_count() > 0))
+    check("the simulator hears a Twist", peer.spin(DISCOVERY_S, lambda: publisher.get_subscription_count() > 0))
     topics = dict(peer.node.get_topic_names_and_types())
     several = {name: kinds for name, kinds in topics.items() if len(kinds) != 1}
     check("every topic has one type", not several and {"/clock", "/cmd_vel"} <= set(topics), several or len(topics))
