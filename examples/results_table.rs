@@ -18,6 +18,7 @@
 
 use anyhow::{Context, bail, ensure};
 use clap::Parser;
+use reports::pages::with_tables;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use std::fs::{read_to_string, write};
@@ -67,9 +68,6 @@ const OF_RANGE: &str = "/log_error_of_range";
 const QUALITY_REACHABLE: &str = "/map_quality_reachable";
 const PREDICTED: &str = "/predicted/balanced_accuracy_out_of_view";
 const OUT_OF_VIEW: &str = "/map_quality_changing_out_of_view";
-
-const BEGIN: &str = "<!-- results_table ";
-const END: &str = "<!-- end -->";
 
 /// Tables of runs of `four_rooms`.
 #[derive(Parser)]
@@ -148,14 +146,8 @@ fn table(runs: &[Map<String, Value>]) -> String {
 
 /// A page with all its tables made anew.
 fn rewritten(page: &str) -> anyhow::Result<String> {
-    let (mut text, mut rest) = (String::new(), page);
-    while let Some((before, after)) = rest.split_once(BEGIN) {
-        let (source, after) = after.split_once(" -->").context("a comment without an end")?;
-        let (_, after) = after.split_once(END).with_context(|| format!("{BEGIN}{source} has no `{END}`"))?;
-        text += &format!("{before}{BEGIN}{source} -->\n{}{END}", table_of(source)?);
-        rest = after;
-    }
-    Ok(text + rest)
+    let made = |source: &str| table_of(source).map_err(|why| format!("{why:#}"));
+    Ok(with_tables(page, "results_table", made)?)
 }
 
 /// The table of a file with the worlds that are named after it, and where the runs are from.
@@ -169,7 +161,7 @@ fn table_of(source: &str) -> anyhow::Result<String> {
         .flat_map(|world| kept.runs.iter().filter(move |run| run["/world"].as_str() == Some(world)).cloned())
         .collect();
     ensure!(!runs.is_empty(), "{file} has no runs of {worlds}");
-    Ok(format!("\n{}\nMade {}.\n\n", table(&runs), kept.made))
+    Ok(format!("{}\nMade {}.", table(&runs), kept.made))
 }
 
 /// The mean over the runs that have a value, and the worst of them in brackets.
@@ -196,7 +188,7 @@ mod tests {
 
     #[test]
     fn the_page_has_what_its_files_say() {
-        assert!(PAGE.matches(BEGIN).count() >= 2);
+        assert!(PAGE.matches("<!-- results_table ").count() >= 2);
         assert!(
             rewritten(PAGE).unwrap() == PAGE,
             "cargo run --example results_table -- --page docs/results.md"

@@ -15,9 +15,15 @@
 //! use of looks. B without looks is that of a robot that knows the habits. Its columns `÷ X` are ratios of mean regrets, with the
 //! p-value of the paired t test.
 //!
+//! `--merge … --page docs/strategies.md` writes the tables of that page anew.
+//!
 //! A file of `--csv` gets a line per run as soon as it ends. A study that was stopped goes on where it was: what the file has is
 //! not computed again. The order is by buildings, so that a study that is not complete still has all strategies.
 
+#[path = "patrols/cells.rs"]
+mod cells;
+#[path = "patrols/page.rs"]
+mod page;
 #[path = "patrols/rows.rs"]
 mod rows;
 #[path = "patrols/runs.rs"]
@@ -70,6 +76,9 @@ struct Options {
     /// Computes nothing: prints the tables of these files
     #[arg(long, num_args = 1.., conflicts_with = "csv")]
     merge: Vec<PathBuf>,
+    /// Writes the tables of this page anew, from the files of --merge
+    #[arg(long, value_name = "PAGE", requires = "merge")]
+    page: Option<PathBuf>,
 }
 
 fn share(word: &str) -> Result<f64, String> {
@@ -124,8 +133,15 @@ fn main() -> anyhow::Result<()> {
         for path in &options.merge {
             rows.extend(RowFile::read(path).with_context(|| format!("cannot read {}", path.display()))?);
         }
-        tables::print(rows);
-        return Ok(());
+        cells::sort(&mut rows);
+        let Some(path) = &options.page else {
+            tables::print(&rows);
+            return Ok(());
+        };
+        let text =
+            std::fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
+        let text = page::rewritten(&text, &rows).with_context(|| format!("in {}", path.display()))?;
+        return std::fs::write(path, text).with_context(|| format!("cannot write {}", path.display()));
     }
     let runs = options.runs();
     ensure!(!runs.is_empty(), "there is nothing to compute");
@@ -147,6 +163,7 @@ fn main() -> anyhow::Result<()> {
     let new: anyhow::Result<Vec<Row>> = new.collect();
     let mut rows: Vec<Row> = known.into_iter().filter(|row| runs.contains(&row.run)).collect();
     rows.extend(new?);
-    tables::print(rows);
+    cells::sort(&mut rows);
+    tables::print(&rows);
     Ok(())
 }

@@ -13,6 +13,7 @@ mod comparison;
 mod figure;
 mod files;
 mod measure;
+pub mod pages;
 mod run;
 pub mod shards;
 mod statistics;
