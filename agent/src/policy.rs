@@ -151,6 +151,20 @@ impl RobotPurpose {
     pub const ALL: [(&'static str, Self); 3] =
         [("fresh-map", Self::FreshMap), ("learn-rates", Self::LearnRates), ("paper", Self::Paper)];
 
+    /// The purpose with this name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|(known, _)| *known == name).map(|(_, purpose)| purpose)
+    }
+
+    /// The description in lists, in one line.
+    pub fn description(self) -> &'static str {
+        match self {
+            Self::FreshMap => "To know at any time what is blocked",
+            Self::LearnRates => "To learn how often every cell changes",
+            Self::Paper => "What the paper's robot does",
+        }
+    }
+
     /// The name of the policy for this purpose.
     pub fn policy_name(self) -> &'static str {
         match self {
@@ -201,6 +215,10 @@ mod tests {
         for (_, purpose) in RobotPurpose::ALL {
             assert_eq!(purpose.policy().name(), purpose.policy_name());
         }
+        for (name, purpose) in RobotPurpose::ALL {
+            assert_eq!(RobotPurpose::named(name), Some(purpose));
+        }
+        assert_eq!(RobotPurpose::named("fame"), None);
     }
 
     #[test]

@@ -7,6 +7,7 @@ pub mod metrics;
 pub mod observer;
 pub mod oracle;
 pub mod physics_trial;
+pub mod scheduled_things;
 pub mod summary;
 pub mod trial_state;
 pub mod trials;

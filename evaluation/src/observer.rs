@@ -4,6 +4,7 @@ use crate::metrics::{
     ChangingAccuracy, Forecasts, Latency, MapScores, PoseErrors, Prediction, Standstills, Things, TrueChains,
     map_scores,
 };
+use crate::scheduled_things::ScheduledThings;
 use interfaces::{GroundTruth, LaserReading, Twist};
 use mapper::Mapper;
 use results::thinned::{Goals, Thinned};
@@ -36,6 +37,9 @@ pub struct Observer {
     /// The forecasts: a part of a state file of its own, since earlier state files have none.
     #[serde(skip)]
     pub forecasts: Forecasts,
+    /// The comparison with the things of a calendar, also at rest: a part of a state file of its own.
+    #[serde(skip)]
+    pub scheduled: ScheduledThings,
     /// The true chains of all cells.
     pub true_chains: TrueChains,
     /// The errors of the poses that the robot used.
@@ -83,6 +87,7 @@ impl Observer {
         self.things.observe(world.obstacle_events(), truth.frame(), mapper, reading, &laser);
         self.true_chains.observe(truth);
         self.forecasts.observe(mapper, truth, Some(&self.true_chains));
+        self.scheduled.sample(world, mapper);
         if mapper.readings().is_multiple_of(SAMPLE_EVERY) {
             self.changing.sample(mapper, truth);
         }

@@ -3,6 +3,7 @@
 use crate::map_hash::map_hash;
 use crate::metrics::{age, interval_scores, map_scores, passage_scores, rate_scores, reachable_scores};
 use crate::observer::Observer;
+use crate::scheduled_things::ScheduledThings;
 use crate::summary::{Contacts, CurvePoint, Liveliest, RunResults};
 use agent::Features;
 use controller::DiffDriveSettings;
@@ -157,7 +158,10 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
     pub fn turn(&mut self) -> Result<Turn<LaserReading, Twist>, ReadingError> {
         if let Some(command) = self.command.take() {
             match self.robot.pilot.rests_until_s() {
-                Some(until_s) => self.world.rest(until_s),
+                // The map is compared with the world also while the robot does not look.
+                Some(until_s) => self.world.rest_watched(until_s, ScheduledThings::EVERY_S, |world| {
+                    self.observer.scheduled.sample(world, &self.robot.mapper);
+                }),
                 None => self.world.act(&command),
             }
         }
@@ -207,6 +211,7 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
             pose: observer.poses.scores(pose.name()),
             goals: pilot.goals(),
             day: pilot.day(),
+            scheduled: observer.scheduled.scores(),
             strategy_share: strategies.map(|strategy| (strategy.name, strategy.share)).collect(),
             things: observer.things.reports().cloned().collect(),
             curve: curve.map(|&(time_s, scores)| CurvePoint { time_s, scores }).collect(),

@@ -6,6 +6,7 @@ use crate::metrics::{
     Age, ChangingScores, Delays, ForecastScores, IntervalScores, MapScores, PassageScores, PoseScores,
     PredictedScores, RateScores, ReachableScores, ThingReport,
 };
+use crate::scheduled_things::ScheduledScores;
 use mapper::Mapper;
 use robot::{DayTotals, GoalCount};
 use serde::Serialize;
@@ -109,6 +110,9 @@ pub struct RunResults {
     /// What a robot with a battery, or with orders by others, did with its time.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub day: Option<DayTotals>,
+    /// How well the predicted map knew the things with a schedule, at all times, rests included; only in worlds with a calendar.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub scheduled: Option<ScheduledScores>,
     /// For each strategy, the share of the goals that it selected.
     pub strategy_share: BTreeMap<String, f64>,
     /// The detection of the things that appeared or disappeared: at most two entries per thing, since a thing

@@ -15,6 +15,8 @@ const PILOT: &str = "pilot";
 const MEASUREMENTS: &str = "measurements";
 /// Absent before the first forecast, and in a state file that was written before forecasts of three horizons existed.
 const FORECASTS: &str = "forecasts of three horizons";
+/// Absent in worlds without a calendar, and in a state file that was written before these scores existed.
+const SCHEDULED: &str = "scheduled things";
 
 /// What the state of a run belongs to.
 #[derive(Clone, Debug)]
@@ -71,7 +73,11 @@ impl TrialSnapshot {
             .with(MEASUREMENTS, facts.world.clone(), interfaces::to_bytes(&observer));
         let state = match observer.forecasts {
             none if none.is_empty() => state,
-            forecasts => state.with(FORECASTS, facts.world, interfaces::to_bytes(&forecasts)),
+            forecasts => state.with(FORECASTS, facts.world.clone(), interfaces::to_bytes(&forecasts)),
+        };
+        let state = match observer.scheduled {
+            none if none.is_empty() => state,
+            scheduled => state.with(SCHEDULED, facts.world, interfaces::to_bytes(&scheduled)),
         };
         learned.added_to(state).with_build()
     }
@@ -111,6 +117,10 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
         if state.has(FORECASTS) {
             let forecasts = state.section(FORECASTS, &facts.world)?;
             self.observer.forecasts = interfaces::from_bytes(forecasts).map_err(|_| misfit(FORECASTS))?;
+        }
+        if state.has(SCHEDULED) {
+            let scheduled = state.section(SCHEDULED, &facts.world)?;
+            self.observer.scheduled = interfaces::from_bytes(scheduled).map_err(|_| misfit(SCHEDULED))?;
         }
         Ok(note)
     }

@@ -8,7 +8,9 @@
 //!
 //! Every strategy has the same buildings, and the same changes in them. A column `÷ X` is the Brier score divided by that of
 //! X (ratio of the means), with the p-value of the paired t test of the differences. Delays are those of changes that last an
-//! hour or more, by belief: median and 95 % point, each the mean over the buildings, and the share that was missed.
+//! hour or more, by belief: median and 95 % point, each the mean over the buildings, and the share that was missed. *Lost* is the
+//! time that users lose per trip between two places, since doors that the map believed open are closed, and *not made* the share of
+//! the possible trips for which the map showed no open way. Files from before these two columns are read; there, both are NaN.
 //!
 //! With `--strategy bound`, a second table has the lower bound of the Brier score of all strategies (B ÷ bound: ratio of the
 //! means), and the freshness regret of each building: (B − bound) ÷ (B without looks − bound), 0 at the bound and 1 without any

@@ -48,7 +48,7 @@ impl NodeStateFile {
             PoseMode::Localized => ("localized", Some(&localizer)),
             PoseMode::Exact | PoseMode::Odometry | PoseMode::Corrected => ("given", None),
         };
-        let pilot = Facts::default().with("strategy", &parameters.strategy);
+        let pilot = Facts::default().with("strategy", parameters.policy()?.name());
         let pilot = match parameters.navigator {
             Navigator::CmdVel => pilot,
             Navigator::Nav2 | Navigator::GoalPose => pilot.with("navigator", "another"),

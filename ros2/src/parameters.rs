@@ -3,6 +3,7 @@
 mod choices;
 mod given;
 mod runtime;
+mod strategy;
 
 pub use choices::{Mode, Navigator};
 pub(crate) use runtime::When;
@@ -46,6 +47,26 @@ pub enum ParameterError {
         place: String,
         /// What is wrong.
         error: Box<ParameterError>,
+    },
+    /// There is no strategy, or no purpose, with this name.
+    #[error("the parameter `{name}` must be one of {known}, not `{found}`")]
+    Name {
+        /// The name of the parameter.
+        name: &'static str,
+        /// The valid names.
+        known: String,
+        /// The name as given.
+        found: String,
+    },
+    /// A strategy and a purpose, which names another one.
+    #[error(
+        "the parameters `strategy` (`{strategy}`) and `purpose` (`{purpose}`) both name a strategy: leave one of them empty"
+    )]
+    Both {
+        /// The strategy as given.
+        strategy: String,
+        /// The purpose as given.
+        purpose: String,
     },
     /// The value is out of range.
     #[error(transparent)]
@@ -159,8 +180,10 @@ parameters! {
     "acc_lim_x", acc_lim_x_mps2: f64 = 2.5;
     /// Maximum angular acceleration, rad/s².
     "acc_lim_theta", acc_lim_theta_radps2: f64 = 3.2;
-    /// How goals are selected.
-    "strategy", strategy: String = "curious".to_owned();
+    /// How goals are selected; empty: as is best for `purpose`.
+    "strategy", strategy: String = String::new();
+    /// What the robot explores for: `fresh-map`, `learn-rates` or `paper`; empty: `paper`. Not together with `strategy`.
+    "purpose", purpose: String = String::new();
     /// Whether the node begins to work when it starts; otherwise it waits for a lifecycle manager, unconfigured.
     "autostart", autostart: bool = true;
     /// The seed of the random decisions.
@@ -236,7 +259,7 @@ impl Parameters {
             let found = Value::Text(self.scan_reliability.clone());
             return Err(ParameterError::value(name, "best_effort or reliable", found));
         }
-        Ok(())
+        self.policy().map(drop)
     }
 
     fn slot(&mut self, name: &str) -> Option<&mut dyn Slot> {

@@ -5,8 +5,8 @@ mod navigation;
 use crate::link;
 use crate::order::Order;
 use crate::parameters::{Mode, Navigator, Parameters};
-use agent::{Agent, Features, Policy};
-use anyhow::{Context, anyhow};
+use agent::{Agent, Features};
+use anyhow::Context;
 use controller::{ControlInput, Controller, DiffDrive, Driver, Status};
 use interfaces::{CellState, Grid, Values};
 use mapper::Mapper;
@@ -33,7 +33,7 @@ impl LivePilot {
             return Ok(Self { explorer: None, is_paused: false });
         }
         let seed = parameters.seed as u64;
-        let agent = settings.agent(&policy(&parameters.strategy)?, seed)?;
+        let agent = settings.agent(&parameters.policy()?, seed)?;
         let controller = settings.controller(seed).context("cannot drive this robot")?;
         let navigation = match parameters.navigator {
             Navigator::CmdVel => None,
@@ -57,14 +57,6 @@ impl LivePilot {
             navigation.navigated(news);
         }
     }
-}
-
-fn policy(name: &str) -> anyhow::Result<Policy> {
-    let known = Policy::built_in();
-    known.iter().find(|policy| policy.name() == name).cloned().ok_or_else(|| {
-        let names: Vec<&str> = known.iter().map(Policy::name).collect();
-        anyhow!("the parameter `strategy` must be one of {}, not `{name}`", names.join(", "))
-    })
 }
 
 impl Pilot for LivePilot {

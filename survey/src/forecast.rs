@@ -28,8 +28,10 @@ impl Forecast {
     /// When the state holds neither, or was written by another program.
     pub fn of_state(state: &State) -> Result<Self, StateError> {
         let Some(facts) = state.facts(SavedSurvey::PART) else {
-            let why = "it is of a robot that does not know the date".to_owned();
-            return Ok(Self { mapper: saved_mapper(state)?, why_undated: Some(why) });
+            let mapper = saved_mapper(state)?;
+            let is_dated = *mapper.calendar() != Calendar::Relative;
+            let why = (!is_dated).then(|| "it is of a robot that does not know the date".to_owned());
+            return Ok(Self { mapper, why_undated: why });
         };
         let misfit = || StateError::OtherContent(SavedSurvey::PART.to_owned());
         let logs =

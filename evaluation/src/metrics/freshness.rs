@@ -5,7 +5,7 @@
 const LASTING_S: f64 = 3600.0;
 
 /// Scores the predicted states of things step by step.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
 pub struct Freshness {
     step_s: f64,
     squares: f64,
@@ -17,7 +17,7 @@ pub struct Freshness {
 }
 
 /// The state of a thing since it last changed.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, serde::Deserialize, serde::Serialize)]
 struct Stay {
     is_blocked: bool,
     /// The step of the change; `None` where the beginning was not seen.
@@ -46,6 +46,11 @@ impl Freshness {
     pub fn new(step_s: f64) -> Self {
         let (stays, changes) = (Vec::new(), Vec::new());
         Self { step_s, squares: 0.0, predictions: 0, steps: 0, stays, changes }
+    }
+
+    /// The number of things.
+    pub fn things(&self) -> usize {
+        self.stays.len()
     }
 
     /// A step: the predicted probability of being blocked and the true state of every thing, in the same order at every step.

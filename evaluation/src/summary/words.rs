@@ -2,6 +2,7 @@
 
 use super::{Contacts, Liveliest, RunResults, Summary};
 use crate::metrics::{Age, DevianceScores, PoseScores, PredictedScores, RateScores, ThingReport};
+use crate::scheduled_things::ScheduledScores;
 use results::numbers::percent;
 use robot::GoalCount;
 use std::fmt;
@@ -59,6 +60,7 @@ impl fmt::Display for RunResults {
             lines.push(("goals", text));
         }
         lines.extend(self.day().map(|text| ("patrol", text)));
+        lines.extend(self.scheduled.iter().flat_map(of_calendar));
         if !self.strategy_share.is_empty() {
             let share = |(name, share): (&String, &f64)| format!("{name} {}", percent(*share));
             let shares: Vec<String> = self.strategy_share.iter().map(share).collect();
@@ -72,6 +74,35 @@ impl fmt::Display for RunResults {
         let Contacts { own_motion, run_into } = self.contacts;
         write!(f, "  contacts  {own_motion} by its own motion, {run_into} in which something ran into it")
     }
+}
+
+/// How well the map knew the things with a schedule.
+fn of_calendar(scores: &ScheduledScores) -> Vec<(&'static str, String)> {
+    let ScheduledScores { things, brier, lasting_changes, missed, user_lost_s, trips_not_made, .. } = scores;
+    let mut lines = vec![(
+        "calendar",
+        format!("Brier score {brier:.4} over {things} things with a schedule, at all times"),
+    )];
+    if *lasting_changes > 0 {
+        let [median, late] = scores.detection_delay_s.map(length_of);
+        let missed = percent(*missed);
+        let text = format!(
+            "{lasting_changes} changes that last an hour or more: on the map after {median} in the median, {late} for 95 %, {missed} missed"
+        );
+        lines.push(("", text));
+    }
+    if user_lost_s.is_finite() {
+        let not_made = if trips_not_made.is_finite() { percent(*trips_not_made) } else { "none".into() };
+        let text = format!(
+            "a user of the map loses {user_lost_s:.1} s per trip at closed doors, and does not make {not_made} of the possible trips"
+        );
+        lines.push(("", text));
+    }
+    lines
+}
+
+fn length_of(time_s: f64) -> String {
+    if time_s < 7200.0 { format!("{:.0} min", time_s / 60.0) } else { format!("{:.1} h", time_s / 3600.0) }
 }
 
 impl RunResults {
@@ -226,6 +257,7 @@ mod tests {
     fn results(coverage: f64, age: Age, rates: RateScores) -> RunResults {
         RunResults {
             day: None,
+            scheduled: None,
             map: MapScores { coverage, map_quality: 0.9999 },
             reachable: ReachableScores { coverage_reachable: coverage, map_quality_reachable: 0.9999 },
             changing: ChangingAccuracy::default().scores(),

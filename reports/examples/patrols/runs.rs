@@ -3,7 +3,7 @@
 use crate::rows::Row;
 use days::{Building, Duty, Habits, Kind, Patrol, Plan, STEP_S};
 use evaluation::freshness_bound::building::{BoundSettings, BuildingBound};
-use evaluation::metrics::Freshness;
+use evaluation::metrics::{Freshness, Routes, UserRegret};
 
 /// The names of the strategies, and of the lower bound of all of them.
 pub(crate) const STRATEGIES: [&str; 6] = ["no-looks", "curious", "round", "coverage", "gain", BOUND];
@@ -12,6 +12,8 @@ pub(crate) const BOUND: &str = "bound";
 pub(crate) const NO_LOOKS: &str = STRATEGIES[0];
 
 const DAY_STEPS: f64 = 86_400.0 / STEP_S;
+/// Users want to go somewhere every 50 minutes: at all times of the day in turn.
+const TRIP_STEPS: usize = 300;
 
 /// What is computed, and what a row of the table begins with.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,6 +40,9 @@ pub(crate) struct Outcome {
     pub(crate) patrol: f64,
     /// The share of looks that ended in front of a closed door.
     pub(crate) closed: f64,
+    /// The time that users lose per trip, s, and the share of the possible trips that are not made: see [`UserRegret`].
+    pub(crate) lost_s: f64,
+    pub(crate) not_made: f64,
 }
 
 impl Run {
@@ -88,10 +93,17 @@ impl Run {
         let duty = Duty::share(self.share);
         let mut strategy = self.plan().strategy(building, duty);
         let mut freshness = Freshness::new(STEP_S);
+        let (routes, mut users, mut step) = (Routes::of_building(building), UserRegret::default(), 0);
         let totals = Patrol::with(building, duty, self.habits, self.seed).run(
             strategy.as_mut(),
             self.steps(),
-            |predicted, is_blocked| freshness.add(predicted, is_blocked),
+            |predicted, is_blocked| {
+                freshness.add(predicted, is_blocked);
+                step += 1;
+                if step % TRIP_STEPS == 0 {
+                    users.add(&routes, predicted, is_blocked);
+                }
+            },
         );
         let scores = freshness.scores();
         Outcome {
@@ -100,6 +112,8 @@ impl Run {
             missed: scores.missed,
             patrol: totals.patrol_steps as f64 / totals.steps as f64,
             closed: totals.closed as f64 / totals.looks.max(1) as f64,
+            lost_s: users.lost_s(),
+            not_made: users.not_made(),
         }
     }
 
@@ -107,6 +121,7 @@ impl Run {
         let duty = Duty::share(self.share);
         let settings = BoundSettings::of(building, duty);
         let brier = BuildingBound::new(building, duty, self.steps(), settings).brier(self.seed);
-        Outcome { brier, delays_min: [f64::NAN; 2], missed: f64::NAN, patrol: f64::NAN, closed: f64::NAN }
+        let [missed, patrol, closed, lost_s, not_made] = [f64::NAN; 5];
+        Outcome { brier, delays_min: [f64::NAN; 2], missed, patrol, closed, lost_s, not_made }
     }
 }

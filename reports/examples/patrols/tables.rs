@@ -28,7 +28,7 @@ impl Cell<'_> {
             seeds.len()
         );
         println!(
-            "{:<14} {:>8} {:>21} {:>21} {:>21} {:>7} {:>7} {:>7} {:>8} {:>7}",
+            "{:<14} {:>8} {:>21} {:>21} {:>21} {:>7} {:>7} {:>7} {:>8} {:>7} {:>7} {:>9}",
             "strategy",
             "Brier",
             "÷curious",
@@ -38,7 +38,9 @@ impl Cell<'_> {
             "95 %",
             "missed",
             "driving",
-            "closed"
+            "closed",
+            "lost",
+            "not made"
         );
         let others = ["curious", "round", "coverage"].map(|name| self.best(name, &strategies, &seeds));
         for named in &strategies {
@@ -47,7 +49,7 @@ impl Cell<'_> {
                 .map(|other| other.map_or(String::new(), |other| compared(&brier(named), &brier(other))));
             let column = |value: fn(&Outcome) -> f64| mean(&self.values(named, &seeds, value));
             println!(
-                "{:<14} {:>8.4} {to_curious:>21} {to_round:>21} {to_coverage:>21} {:>6.0}m {:>6.0}m {:>6.1}% {:>7.2}% {:>6.1}%",
+                "{:<14} {:>8.4} {to_curious:>21} {to_round:>21} {to_coverage:>21} {:>6.0}m {:>6.0}m {:>6.1}% {:>7.2}% {:>6.1}% {:>6.2}s {:>8.2}%",
                 self.name(named, &strategies),
                 mean(&brier(named)),
                 column(|outcome| outcome.delays_min[0]),
@@ -55,6 +57,8 @@ impl Cell<'_> {
                 100.0 * column(|outcome| outcome.missed),
                 100.0 * column(|outcome| outcome.patrol),
                 100.0 * column(|outcome| outcome.closed),
+                column(|outcome| outcome.lost_s),
+                100.0 * column(|outcome| outcome.not_made),
             );
         }
     }

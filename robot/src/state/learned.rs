@@ -6,15 +6,18 @@ use crate::settings::default_mapper;
 use crate::{Pilot, Robot};
 use interfaces::{GridFrame, LaserReading};
 use localizer::LocalizerSettings;
-use mapper::{Mapper, MapperSettings};
+use mapper::{Calendar, Mapper, MapperSettings};
 use nalgebra::Point2;
 
 const MAPPER: &str = "mapper";
 const LOCALIZATION: &str = "localization";
 /// Absent in state files with an older format.
 const FILTER: &str = "filter";
+/// The time at which readings have the time 0, in seconds since 1970-01-01 UTC. Absent where readings have no dates, and in
+/// state files that were written before dates were saved.
+const DATES: &str = "dates";
 
-/// The mapper that a robot has left in a state, whatever its settings are.
+/// The mapper that a robot has left in a state, whatever its settings are. It has the dates of its readings if the robot knew them.
 ///
 /// # Errors
 ///
@@ -34,6 +37,14 @@ pub fn saved_mapper(state: &State) -> Result<Mapper, StateError> {
     let settings: MapperSettings = facts.settings("mapper").ok_or_else(misfit)?;
     let mut mapper = Mapper::new(&settings, frame().ok_or_else(misfit)?).map_err(|_| misfit())?;
     mapper.restore(state.section(MAPPER, facts)?).map_err(|_| misfit())?;
+    match state.has(DATES) {
+        true => {
+            let bytes = state.section(DATES, &Facts::default())?.try_into();
+            let epoch_s = f64::from_le_bytes(bytes.map_err(|_| StateError::OtherContent(DATES.to_owned()))?);
+            mapper.set_epoch(epoch_s, true);
+        }
+        false => mapper.set_epoch(0.0, false),
+    }
     Ok(mapper)
 }
 
@@ -119,7 +130,10 @@ impl LearnedSnapshot {
     /// Adds what was learned to a state.
     pub fn added_to(self, state: State) -> State {
         let Self { facts, mut mapper, localization, filter } = self;
+        let is_dated = *mapper.calendar() != Calendar::Relative;
+        let epoch_s = mapper.epoch_s().to_le_bytes().to_vec();
         let state = state.with(MAPPER, facts.mapper, mapper.snapshot());
+        let state = if is_dated { state.with(DATES, Facts::default(), epoch_s) } else { state };
         let state = state.with(LOCALIZATION, facts.localization, localization);
         if filter.is_empty() { state } else { state.with(FILTER, facts.filter, filter) }
     }

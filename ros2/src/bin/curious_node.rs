@@ -1,8 +1,9 @@
 //! Maps what a live robot sees, and where the place changes; can explore.
 
+use agent::RobotPurpose;
 use anyhow::Context;
 use clap::Parser;
-use clap::builder::{PathBufValueParser, TypedValueParser};
+use clap::builder::{PathBufValueParser, PossibleValue, PossibleValuesParser, TypedValueParser};
 use ros2::node_program::{Failure, input, note_unused_files, output, say, start};
 use ros2::{CuriousNode, DdsLink, Environment, Names, Parameters, RosArgs, Signals, Value, curious_wiring};
 use std::path::PathBuf;
@@ -22,6 +23,11 @@ struct Args {
     /// map: only maps, while someone else drives; explore: drives to where looking is worth most
     #[arg(long, value_parser = ["map", "explore"])]
     mode: Option<String>,
+    /// With the mode explore, what the robot explores for; the same as `--ros-args -p purpose:=PURPOSE`
+    ///
+    /// It names the strategy that was best for it in our trials, where no parameter `strategy` is given.
+    #[arg(long, value_parser = purposes())]
+    purpose: Option<String>,
     /// Goes on from this file if it exists, and saves to it: every minute, at the end, at the signal USR1, and when the
     /// service `~/save_state` is called
     #[arg(long, value_name = "FILE", value_parser = PathBufValueParser::new().try_map(no_folder))]
@@ -30,6 +36,12 @@ struct Args {
     /// that run
     #[arg(long, value_name = "READINGS", value_delimiter = ',')]
     switch_at: Vec<usize>,
+}
+
+fn purposes() -> PossibleValuesParser {
+    PossibleValuesParser::new(RobotPurpose::ALL.map(|(name, purpose)| {
+        PossibleValue::new(name).help(format!("{}: {}", purpose.description(), purpose.policy_name()))
+    }))
 }
 
 fn no_folder(path: PathBuf) -> Result<PathBuf, &'static str> {
@@ -106,7 +118,9 @@ PARAMETERS (--ros-args -p name:=value, or --params-file FILE)
                           limits, m/s, rad/s, m/s^2, rad/s^2 [0.26, 1.0, 2.5, 3.2]
   enable_stamped_cmd_vel  [true]
   autostart               false: the node waits for a lifecycle manager, unconfigured [true]
-  strategy, seed          how goals are selected [curious, 1]
+  purpose                 fresh-map | learn-rates | paper: what the robot explores for [paper]
+  strategy                how goals are selected [as is best for purpose]
+  seed                    of random decisions [1]
   qos_overrides./scan.subscription.reliability
                           best_effort | reliable [best_effort]
   use_sim_time            a corrected map replaces the old one after 50 scans, so that a run repeats, and not when
@@ -118,6 +132,7 @@ ENVIRONMENT
 
 EXAMPLES
   curious_node --state office.state
+  curious_node --mode explore --purpose fresh-map --state office.state
   curious_node --mode explore --ros-args -p robot_radius:=0.18 -p max_vel_x:=0.5 -r scan:=/front/scan
   curious_node --mode explore --ros-args -p navigator:=nav2 -r __ns:=/robot1
   curious_node --ros-args --params-file mapping.yaml
@@ -136,6 +151,9 @@ fn run(args: Args, ros: RosArgs) -> Result<(), Failure> {
     note_unused_files(&names, &ros);
     if let Some(mode) = args.mode {
         parameters.set("mode", &Value::Text(mode)).map_err(input)?;
+    }
+    if let Some(purpose) = args.purpose {
+        parameters.set("purpose", &Value::Text(purpose)).map_err(input)?;
     }
     parameters.switch_at = args.switch_at;
     parameters.check().map_err(input)?;
@@ -178,7 +196,7 @@ mod tests {
 
     #[test]
     fn every_flag_refuses_a_wrong_value_by_its_name() {
-        let wrong = [("mode", "sleep"), ("state", "/"), ("switch-at", "-")];
+        let wrong = [("mode", "sleep"), ("purpose", "fame"), ("state", "/"), ("switch-at", "-")];
         for argument in
             Args::command().get_arguments().filter(|argument| argument.get_action().takes_values())
         {

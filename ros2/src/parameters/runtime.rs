@@ -30,7 +30,7 @@ impl Parameters {
             "pose" | "laser_frame" | "map_frame" | "odom_frame" | "base_frame" | "resolution"
             | "map_size" | "max_laser_range" | "no_return" | "range_noise" | "lost_after"
             | "robot_radius" | "max_vel_x" | "max_vel_theta" | "acc_lim_x" | "acc_lim_theta" | "strategy"
-            | "seed" => When::Unconfigured,
+            | "purpose" | "seed" => When::Unconfigured,
             _ => When::Start,
         }
     }

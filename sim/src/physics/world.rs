@@ -137,12 +137,25 @@ impl PhysicsWorld {
     /// Lets time pass until `until_s`, s, while the driven robot rests: it stops, and nobody reads its sensors. In a world
     /// with a calendar, steps in which nothing happens take no time to compute.
     pub fn rest(&mut self, until_s: f64) {
+        self.rest_watched(until_s, f64::INFINITY, |_| ());
+    }
+
+    /// The same; shows the world at each multiple of `every_s`, s.
+    pub fn rest_watched(&mut self, until_s: f64, every_s: f64, mut watch: impl FnMut(&Self)) {
+        const ROUNDING_S: f64 = 1e-6;
         self.truth.changes.clear();
         self.contacts.clear();
         self.fleet.command(self.spec.driven_index(), Twist::STOP);
-        let mut left = ((until_s - self.time_s()) / self.spec.step_s - 1e-6).ceil().max(0.0) as u64;
+        let step_s = self.spec.step_s;
+        let steps_to = |now_s: f64, time_s: f64| ((time_s - now_s) / step_s - 1e-6).ceil().max(0.0) as u64;
+        let mut left = steps_to(self.time_s(), until_s);
         while left > 0 {
-            left -= self.advance(left);
+            let number = ((self.time_s() + ROUNDING_S) / every_s).floor();
+            let due = steps_to(self.time_s(), (number + 1.0) * every_s).max(1);
+            left -= self.advance(left.min(due));
+            if ((self.time_s() + ROUNDING_S) / every_s).floor() > number {
+                watch(self);
+            }
         }
     }
 

@@ -189,17 +189,11 @@ pub(crate) enum DriveChoice {
 /// A parser of the purpose of a robot.
 fn purpose() -> impl TypedValueParser<Value = RobotPurpose> {
     let named = |(name, purpose): (&'static str, RobotPurpose)| {
-        let help = match purpose {
-            RobotPurpose::FreshMap => "To know at any time what is blocked",
-            RobotPurpose::LearnRates => "To learn how often every cell changes",
-            RobotPurpose::Paper => "What the paper's robot does",
-        };
-        PossibleValue::new(name).help(format!("{help}: --strategy {}", purpose.policy_name()))
+        let help = format!("{}: --strategy {}", purpose.description(), purpose.policy_name());
+        PossibleValue::new(name).help(help)
     };
-    PossibleValuesParser::new(RobotPurpose::ALL.map(named)).map(|name| {
-        let found = RobotPurpose::ALL.into_iter().find(|(known, _)| *known == name);
-        found.map_or_else(RobotPurpose::default, |(_, purpose)| purpose)
-    })
+    PossibleValuesParser::new(RobotPurpose::ALL.map(named))
+        .map(|name| RobotPurpose::named(&name).unwrap_or_default())
 }
 
 fn strategies() -> impl TypedValueParser<Value = Policy> {

@@ -35,7 +35,8 @@ const SCHEMA: u32 = 2;
 /// --at; of a place (--place) with which probability it is blocked. Behind a probability is the interval that contains the true one
 /// with 90 %; it needs looks on 14 days.
 ///
-/// STATE is a file of `map_log --state` (or of four_rooms or curious_node, which know no hours). A time is
+/// STATE is a file of `map_log --state`, or of four_rooms in a world with a calendar, whose first week begins on Monday, 2024-01-01,
+/// in UTC. (Other states of four_rooms, and those of curious_node, know no hours.) A time is
 ///   +10m                after the last reading of the state: s, m or h
 ///   17:10, "Tue 17:10"  the next such time after the last reading, in the time zone of the state
 ///   2024-01-30T17:10    a date in this zone; with Z or an offset as +01:00 in that one

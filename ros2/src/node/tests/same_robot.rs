@@ -66,7 +66,7 @@ fn a_simulator_a_bag_and_a_live_robot_make_the_same_of_the_same_readings() {
         ..parameters(Mode::Explore)
     };
     let settings = setup::settings(&parameters);
-    let policy: Policy = parameters.strategy.parse().unwrap();
+    let policy = parameters.policy().unwrap();
     let seed = parameters.seed as u64;
     let pilot = settings.pilot(settings.agent(&policy, seed).unwrap(), seed).unwrap();
     let frame = setup::frame(&parameters).unwrap();

@@ -104,6 +104,58 @@ fn people_let_a_robot_out_before_they_close() {
     assert!(is_closed(&world));
 }
 
+/// A robot beside a room with its dock, from which two doors lead to it: the one on the way with fewer doors stays open, and only this one.
+/// The second door may close, since the robot does not need it.
+#[test]
+fn a_dock_in_a_room_with_two_doors_is_reached_through_one_of_them() {
+    let wall = |min: [f64; 2], max: [f64; 2]| format!("[[wall]]\nmin_m = {min:?}\nmax_m = {max:?}\n");
+    // The dock is in the lower room, 0 to 8 m; above it are two rooms, with a door to the dock's each, and one between them.
+    let walls = [
+        ([0.0, 0.0], [8.0, 0.1]),
+        ([0.0, 5.9], [8.0, 6.0]),
+        ([0.0, 0.1], [0.1, 5.9]),
+        ([7.9, 0.1], [8.0, 5.9]),
+        ([0.1, 3.0], [1.5, 3.1]),
+        ([2.4, 3.0], [5.5, 3.1]),
+        ([6.4, 3.0], [7.9, 3.1]),
+        ([4.0, 3.1], [4.1, 4.0]),
+        ([4.0, 4.9], [4.1, 5.9]),
+    ];
+    let walls: String = walls.map(|(min, max)| wall(min, max)).concat();
+    let door = |name: &str, from: [f64; 2], to: [f64; 2]| {
+        format!(
+            "[[obstacle]]\nname = \"{name}\"\nkind = \"hinged_door\"\nfrom_m = {from:?}\nto_m = {to:?}\nthickness_m = 0.05\n\
+             waits_for_robots = true\n[obstacle.schedule]\nevents = \"door.csv\"\n"
+        )
+    };
+    let doors = door("left", [1.5, 3.05], [2.4, 3.05])
+        + &door("right", [5.5, 3.05], [6.4, 3.05])
+        + &door("between", [4.05, 4.0], [4.05, 4.9]);
+    let world = |at: [f64; 2]| {
+        let text = format!(
+            "name = \"two doors\"\nstarts = \"Mon 0:00\"\n[map]\nsize_m = [8.0, 6.0]\ncell_m = 0.05\n{walls}{doors}\
+             [[robot]]\nname = \"curious\"\nradius_m = 0.2\npose_m = {at:?}\n[robot.drive]\nmax_linear_mps = 0.8\n\
+             max_angular_degps = 150.0\nmax_linear_acceleration_mps2 = 1.5\nmax_angular_acceleration_degps2 = 600.0\n\
+             [robot.laser]\nbeams = 90\nrange_max_m = 10.0\nrate_hz = 10.0\n[robot.behaviour]\nkind = \"driven\"\n\
+             [robot.patrol]\nshare = 0.05\nbattery_s = 300.0\ndock_m = [4.0, 1.5]\n"
+        );
+        let events = (PathBuf::from("door.csv"), b"time_s,state\n0,0\n600,1\n".to_vec());
+        let spec =
+            worldfile::physics::parse_world_with("two.toml", &text, &BTreeMap::from([events])).unwrap();
+        let mut world = PhysicsWorld::new(&spec, 0);
+        world.rest(900.0);
+        [[1.95, 3.05], [5.95, 3.05], [4.05, 4.45]].map(|[x, y]| {
+            let frame = world.spec().frame;
+            let cell = frame.index(frame.cell_at(&nalgebra::Point2::new(x, y))).unwrap();
+            world.truth().state(cell) == interfaces::TrueState::Free
+        })
+    };
+    // Left, right, between.
+    assert_eq!(world([4.0, 1.5]), [false; 3], "at the dock");
+    assert_eq!(world([2.0, 4.5]), [true, false, false], "in the left room");
+    assert_eq!(world([6.0, 4.5]), [false, true, false], "in the right room");
+}
+
 #[test]
 fn a_week_goes_on_from_a_snapshot() {
     let spec = office();

@@ -1,0 +1,111 @@
+//! The predicted map is compared with the things of a calendar at all times: also while the robot rests.
+
+use agent::Policy;
+use evaluation::physics_trial::{self, PhysicsTrial};
+use evaluation::scheduled_things::ScheduledThings;
+use interfaces::{CellState, GroundTruth};
+use mapper::Mapper;
+use robot::PatrolDay;
+use sim::physics::{PhysicsWorld, WorldSpec};
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+/// The hours at which the door closes and opens: each stay lasts.
+const EVENTS: &str = "time_s,state\n0,0\n7200,1\n14400,0\n28800,1\n";
+/// The minutes of 10 hours, from 0:00 on, and those in which the door is open.
+const MINUTES: usize = 601;
+
+/// Two rooms of the same size, and a door between them that repeats these events; the robot is on patrol for a twentieth of the time.
+fn world() -> WorldSpec {
+    let page = include_str!("../../docs/worlds.md");
+    let begin = page.find("name = \"two rooms\"").unwrap();
+    let text = &page[begin..begin + page[begin..].find("```").unwrap()];
+    let (before, rest) = text.split_once("[obstacle.schedule]").unwrap();
+    let (_, robot) = rest.split_once("[[robot]]").unwrap();
+    let robot = robot.replace("beams = 360", "beams = 90").replace("Wed", "Sun");
+    let text = format!("{before}[obstacle.schedule]\nevents = \"door.csv\"\n[[robot]]{robot}");
+    let files = BTreeMap::from([(PathBuf::from("door.csv"), EVENTS.as_bytes().to_vec())]);
+    worldfile::physics::parse_world_with("rooms.toml", &text, &files).unwrap()
+}
+
+/// A map that was never updated predicts ½ for the door: the scores follow from the events alone. The large steps of a rest are not
+/// changed by the comparison.
+#[test]
+fn an_empty_map_has_the_scores_that_follow_from_the_events() {
+    let spec = world();
+    let mapper = Mapper::new(&physics_trial::settings(&spec).unwrap().mapper, spec.frame).unwrap();
+    let mut world = PhysicsWorld::new(&spec, 1);
+    let mut unwatched = world.clone();
+    let mut things = ScheduledThings::default();
+    things.sample(&world, &mapper);
+    let mut times_s = Vec::new();
+    world.rest_watched(36_000.0, ScheduledThings::EVERY_S, |world| {
+        times_s.push(world.time_s());
+        things.sample(world, &mapper);
+    });
+    assert_eq!(times_s.len(), MINUTES - 1);
+    assert!(times_s.iter().zip(1..).all(|(time_s, minute)| (time_s - 60.0 * f64::from(minute)).abs() < 1e-6));
+    unwatched.rest(36_000.0);
+    assert!(world.snapshot().into_bytes() == unwatched.snapshot().into_bytes());
+    let scores = things.scores().unwrap();
+    assert_eq!((scores.things, scores.samples as usize), (1, MINUTES));
+    assert_eq!(scores.brier, 0.25);
+    // Nobody knows: each of the three changes is missed, after 120, 240 and 120 minutes.
+    assert_eq!((scores.lasting_changes, scores.missed), (3, 1.0));
+    let minutes = scores.detection_delay_s.map(|delay_s| delay_s / 60.0);
+    assert!((minutes[0] - 120.0).abs() <= 1.0 && (minutes[1] - 240.0).abs() <= 1.0, "{minutes:?}");
+    // A door that is probably closed with ½ is not believed open: no trip is lost, and none to the other room is made while the door is
+    // open (6 of 10 hours). Of 12 places, 6 are in each room: 72 of 132 trips lead to the other room, 60 do not.
+    assert_eq!(scores.user_lost_s, 0.0);
+    let possible = 0.6 * 72.0 + 60.0;
+    assert!((scores.trips_not_made - 0.6 * 72.0 / possible).abs() < 0.01, "{}", scores.trips_not_made);
+}
+
+/// A map in which everything is free, and never changes: users go to the door in vain while it is closed.
+#[test]
+fn a_map_without_the_door_costs_the_way_to_it_and_back() {
+    let spec = world();
+    let free = interfaces::Grid::filled(spec.frame, CellState::Free);
+    let settings = physics_trial::settings(&spec).unwrap();
+    let mapper = Mapper::with_prior(&settings.mapper, free).unwrap();
+    let mut world = PhysicsWorld::new(&spec, 1);
+    let mut things = ScheduledThings::default();
+    world.rest_watched(7190.0, 60.0, |world| things.sample(world, &mapper));
+    assert_eq!(things.scores().unwrap().user_lost_s, 0.0);
+    world.rest_watched(14_000.0, 60.0, |world| things.sample(world, &mapper));
+    let lost_s = things.scores().unwrap().user_lost_s;
+    // About half of the time, in 72 of 132 trips: from a place in a room of 4 m × 4 m to the door in the middle of a side, 2.3 m in the
+    // mean, and back, at 0.8 m/s.
+    let expected_s = 0.5 * 72.0 / 132.0 * 2.0 * 2.3 / 0.8;
+    assert!((lost_s / expected_s - 1.0).abs() < 0.25, "{lost_s} s, {expected_s} s");
+}
+
+/// A robot that rests for most of the time is compared as often as one that never rests.
+#[test]
+fn a_resting_robot_is_scored_every_minute() {
+    let spec = world();
+    let settings = physics_trial::settings(&spec).unwrap();
+    let agent = settings.agent(&Policy::default(), 1).unwrap();
+    let day = PatrolDay::new(agent, physics_trial::day(&spec).unwrap());
+    let pilot = settings.pilot(day, 1).unwrap();
+    let mut trial = PhysicsTrial::new(&spec, 1, &settings, None, pilot).unwrap();
+    let (mut readings, mut door_s) = (0, Vec::new());
+    while trial.turn().unwrap().reading.time_s < 36_000.0 {
+        readings += 1;
+        door_s.push(trial.world.time_s());
+    }
+    let results = trial.results();
+    let scores = results.scheduled.unwrap();
+    let minutes = (trial.world.time_s() / 60.0) as u64 + 1;
+    assert_eq!(scores.samples, minutes);
+    // Minutes with a reading are few.
+    let with_reading =
+        door_s.iter().map(|time_s| (time_s / 60.0) as u64).collect::<std::collections::BTreeSet<_>>();
+    assert!(
+        with_reading.len() < minutes as usize / 4,
+        "{readings} readings in {} minutes",
+        with_reading.len()
+    );
+    assert!(scores.brier < 0.25 && scores.brier > 0.0, "{scores:?}");
+    assert!(trial.world.truth().swept().iter().count() > 0);
+}
