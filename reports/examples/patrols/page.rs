@@ -32,7 +32,11 @@ fn table(which: &str, rows: &[Row]) -> Result<String, String> {
             "buildings | bound | B ÷ bound: `curious` / round / coverage / gain | regret: `curious` / round / coverage / gain | regret, gain ÷ `curious` | gain ÷ round | gain ÷ coverage",
             regrets,
         ),
-        _ => return Err("the measures are scores, delays and regrets".to_owned()),
+        "users" => (
+            "lost per trip, s: no looks | `curious` / round / coverage / gain | gain ÷ `curious` | gain ÷ round | not made, %: `curious` / round / coverage / gain",
+            users,
+        ),
+        _ => return Err("the measures are scores, delays, regrets and users".to_owned()),
     };
     let lines: Vec<String> = cells(rows)
         .filter(|cell| cell.habits.name() == habits)
@@ -77,6 +81,20 @@ fn delays(cell: &Cell) -> Option<Vec<String>> {
     let (late, missed) = (of(|outcome| outcome.delays_min[1]), of(|outcome| 100.0 * outcome.missed));
     let ratio = format!("{:.2}", late[3] / late[0]);
     Some(vec![listed(&late, 0), ratio, listed(&missed, 1)])
+}
+
+fn users(cell: &Cell) -> Option<Vec<String>> {
+    let all = cell.strategies();
+    let (seeds, shown) = (cell.seeds(&all), shown(cell, &all)?);
+    let lost = |named: &Named| cell.values(named, &seeds, |outcome| outcome.lost_s);
+    let none = format!("{:.2}", mean(&lost(cell.best("no-looks", &all, &seeds)?)));
+    let own = shown.each_ref().map(lost);
+    let means = own.each_ref().map(|values| mean(values));
+    let not_made =
+        shown.each_ref().map(|named| mean(&cell.values(named, &seeds, |outcome| 100.0 * outcome.not_made)));
+    let ratios = [0, 1].map(|other| compared(&own[3], &own[other]));
+    let [to_curious, to_round] = ratios;
+    Some(vec![none, listed(&means, 2), to_curious, to_round, listed(&not_made, 1)])
 }
 
 fn regrets(cell: &Cell) -> Option<Vec<String>> {
