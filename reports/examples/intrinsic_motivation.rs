@@ -43,6 +43,7 @@ use anyhow::{Context, ensure};
 use cells::CellSettings;
 use clap::Parser;
 use goals::{GoalSettings, Learned};
+use motives::RANDOM;
 use rayon::prelude::*;
 use rows::{Row, RowFile};
 use runs::{GOALS, Run, Tuned, learners, train};
@@ -63,13 +64,13 @@ struct Options {
     #[arg(long, default_value_t = 0)]
     seed: u64,
     /// The length of a life, steps; lives of learners that were trained elsewhere end at 20,000
-    #[arg(long, default_value_t = 100_000, value_parser = clap::value_parser!(u64).range(1..=100_000_000))]
+    #[arg(long, default_value_t = 20_000, value_parser = clap::value_parser!(u64).range(1..=100_000_000))]
     steps: u64,
     /// A strategy or a learner [default: all]
     #[arg(long, value_parser = learner)]
     learner: Vec<String>,
     /// The steps of training in other worlds, of learners over goals
-    #[arg(long, default_values_t = [0, 10_000, 100_000, 1_000_000], value_parser = clap::value_parser!(u64).range(0..=100_000_000))]
+    #[arg(long, default_values_t = [0, 10_000, 100_000], value_parser = clap::value_parser!(u64).range(0..=100_000_000))]
     experience: Vec<u64>,
     /// The number of independent training runs: world i is that of training run i modulo this number
     #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u64).range(1..=1000))]
@@ -77,11 +78,11 @@ struct Options {
     /// The estimator of the rates
     #[arg(long, default_values = ["two-state-gaps"], value_parser = ["two-state-gaps", "paper"])]
     estimator: Vec<String>,
-    /// Step size, discount and random share of learners over cells, and the steps that they learn again at every step
-    #[arg(long, num_args = 4)]
+    /// Step size, discount, random share and first value of learners over cells, and the number of steps that they learn again at every step
+    #[arg(long, num_args = 5)]
     cells: Option<Vec<f64>>,
-    /// Step size, discount and random share of learners over goals
-    #[arg(long, num_args = 3)]
+    /// Step size, discount, random share and first value of learners over goals
+    #[arg(long, num_args = 4)]
     goals: Option<Vec<f64>>,
     /// Computes a part: K/N has the worlds whose number, from 1 on, is K, K + N, …
     #[arg(long, value_parser = shard)]
@@ -117,11 +118,11 @@ type Training = (String, u64, String);
 impl Options {
     fn tuned(&self) -> Tuned {
         let mut tuned = Tuned::default();
-        if let Some(&[alpha, gamma, epsilon, replays]) = self.cells.as_deref() {
-            tuned.cells = CellSettings { alpha, gamma, epsilon, replays: replays as usize };
+        if let Some(&[alpha, gamma, epsilon, optimism, replays]) = self.cells.as_deref() {
+            tuned.cells = CellSettings { alpha, gamma, epsilon, optimism, replays: replays as usize };
         }
-        if let Some(&[alpha, gamma, epsilon]) = self.goals.as_deref() {
-            tuned.goals = GoalSettings { alpha, gamma, epsilon };
+        if let Some(&[alpha, gamma, epsilon, optimism]) = self.goals.as_deref() {
+            tuned.goals = GoalSettings { alpha, gamma, epsilon, optimism };
         }
         tuned
     }
@@ -135,7 +136,7 @@ impl Options {
             for (estimator, learner) in
                 self.estimator.iter().flat_map(|name| all.iter().map(move |learner| (name, learner)))
             {
-                let can_be_trained = learner.starts_with(GOALS);
+                let can_be_trained = learner.starts_with(GOALS) && !learner.ends_with(RANDOM);
                 for &experience in self.experience.iter().filter(|steps| can_be_trained || **steps == 0) {
                     let steps = if experience > 0 { self.steps.min(TRAINED_STEPS) } else { self.steps };
                     let (learner, estimator) = (learner.clone(), estimator.clone());

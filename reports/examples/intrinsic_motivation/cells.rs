@@ -16,13 +16,15 @@ pub(crate) struct CellSettings {
     pub(crate) gamma: f64,
     /// The probability of a random action.
     pub(crate) epsilon: f64,
+    /// The value of an action that was never tried, in root mean squares of the reward.
+    pub(crate) optimism: f64,
     /// The earlier steps that are learned again at every step (Dyna-Q, Sutton 1990), from the last reward of each.
     pub(crate) replays: usize,
 }
 
 impl Default for CellSettings {
     fn default() -> Self {
-        Self { alpha: 0.3, gamma: 0.95, epsilon: 0.05, replays: 20 }
+        Self { alpha: 0.3, gamma: 0.95, epsilon: 0.05, optimism: 100.0, replays: 0 }
     }
 }
 
@@ -43,7 +45,7 @@ pub(crate) struct Table {
 
 impl Table {
     pub(crate) fn new(states: usize, settings: CellSettings, rng: RandomStream) -> Self {
-        let (values, model) = (vec![[0.0; ACTIONS]; states], vec![[None; ACTIONS]; states]);
+        let (values, model) = (vec![[settings.optimism; ACTIONS]; states], vec![[None; ACTIONS]; states]);
         Self { settings, values, model, known: Vec::new(), last: None, rng }
     }
 

@@ -24,11 +24,13 @@ pub(crate) struct GoalSettings {
     pub(crate) gamma: f64,
     /// The probability of a random patch and stay.
     pub(crate) epsilon: f64,
+    /// The value of every goal at first, in root mean squares of the reward.
+    pub(crate) optimism: f64,
 }
 
 impl Default for GoalSettings {
     fn default() -> Self {
-        Self { alpha: 0.1, gamma: 0.99, epsilon: 0.1 }
+        Self { alpha: 0.03, gamma: 0.8, epsilon: 0.02, optimism: 10.0 }
     }
 }
 
@@ -41,8 +43,8 @@ pub(crate) struct Learned {
 
 impl Learned {
     /// Nothing.
-    pub(crate) fn new() -> Self {
-        Self { tiles: Tiles::new(STAYS.len()), scale: Scale::default() }
+    pub(crate) fn new(settings: GoalSettings) -> Self {
+        Self { tiles: Tiles::new(STAYS.len(), settings.optimism), scale: Scale::default() }
     }
 }
 

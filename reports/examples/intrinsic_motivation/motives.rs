@@ -11,9 +11,14 @@ pub(crate) const REGION_CELLS: usize = 5;
 /// The readings of a region in each of the two windows whose mean errors learning progress compares.
 const WINDOW: usize = 25;
 
-/// The names of all motives. The last two are references: the reward of the paper's learner, and a reward that no robot has.
-pub(crate) const MOTIVES: [&str; 7] =
-    ["visits", "views", "distillation", "surprise", "progress", "updates", "error"];
+/// The names of all motives. The others after the first [`INTRINSIC`] are references: the reward of the paper's learner, a reward
+/// that no robot has, no reward, and (without any learning) random choices.
+pub(crate) const MOTIVES: [&str; 9] =
+    ["visits", "views", "distillation", "surprise", "progress", "updates", "error", "nothing", RANDOM];
+/// The number of intrinsic motives.
+pub(crate) const INTRINSIC: usize = 5;
+/// The learner over goals that chooses at random.
+pub(crate) const RANDOM: &str = "random";
 
 /// An intrinsic reward. It begins anew in every world.
 pub(crate) trait Motive: std::fmt::Debug + Send {

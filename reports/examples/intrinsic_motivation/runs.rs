@@ -3,7 +3,7 @@
 use crate::cells::{CellPilot, CellSettings, Table};
 use crate::goals::{GoalLearner, GoalPilot, GoalSettings, Learned};
 use crate::life::{Outcome, live, run};
-use crate::motives::{MOTIVES, Scale, motive};
+use crate::motives::{INTRINSIC, MOTIVES, RANDOM, Scale, motive};
 use agent::{Agent, AgentSettings, Policy};
 use anyhow::Context;
 use controller::{CellDrive, Controller};
@@ -30,7 +30,7 @@ const TRAINING_SEEDS: u64 = 100_000;
 /// The names of all learners and strategies. Learners over cells have no references.
 pub(crate) fn learners() -> Vec<String> {
     let strategies = STRATEGIES.iter().map(ToString::to_string).chain([WALK.to_owned()]);
-    let cells = MOTIVES[..5].iter().map(|motive| format!("{CELLS}{motive}"));
+    let cells = MOTIVES[..INTRINSIC].iter().map(|motive| format!("{CELLS}{motive}"));
     strategies.chain(cells).chain(MOTIVES.iter().map(|motive| format!("{GOALS}{motive}"))).collect()
 }
 
@@ -65,7 +65,7 @@ impl Run {
         let estimator = estimator(&self.estimator)?;
         let (seed, steps, reach) = (self.seed, self.steps, spec.sensor_radius as i32);
         if let Some(name) = self.goal_motive() {
-            let nothing = Learned::new();
+            let nothing = Learned::new(tuned.goals);
             let pilot = goal_pilot(name, &spec, seed, tuned.goals, learned.unwrap_or(&nothing))?;
             let is_paid_by_truth = name == "error";
             return live(&spec, seed, steps, &estimator, pilot, |pilot, mapper, truth| {
@@ -110,6 +110,8 @@ fn goal_pilot(
 ) -> anyhow::Result<GoalPilot> {
     let mut rng = RandomStream::new(seed, Purpose::GridAgent);
     let motive = motive(name, *spec.frame(), &mut rng);
+    let epsilon = if name == RANDOM { 1.0 } else { settings.epsilon };
+    let settings = GoalSettings { epsilon, ..settings };
     let learner = GoalLearner::new(settings, learned.tiles.clone(), rng);
     let pilot = Autonomous::new(learner, controller(seed)?);
     let reach = spec.sensor_radius as i32;
@@ -125,7 +127,7 @@ pub(crate) fn train(
     settings: GoalSettings,
 ) -> anyhow::Result<Vec<(u64, Learned)>> {
     let estimator = estimator(estimator_name)?;
-    let mut learned = Learned::new();
+    let mut learned = Learned::new(settings);
     let (mut done, mut kept) = (0, Vec::new());
     let first = TRAINING_SEED + training_run * TRAINING_SEEDS;
     for seed in first..first + TRAINING_SEEDS {

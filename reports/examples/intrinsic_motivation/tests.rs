@@ -45,10 +45,10 @@ fn counts_lead_to_where_the_robot_was_not() {
     let counts = |seed| steps_to_the_end(&mut Visits(vec![0.0; 20]), CellSettings::default(), seed);
     let walk = CellSettings { epsilon: 1.0, replays: 0, ..CellSettings::default() };
     let random = |seed| steps_to_the_end(&mut *motive("", frame(20, 1), &mut rng(0)), walk, seed);
-    // A random walk over n cells with two of five actions per direction takes n (n − 1) · 5/4 steps: 475.
+    // A walk that moves to either side with a probability of 1/5 takes 19 · 20 · 5/2 = 950 steps on average.
     let mean = |steps: &dyn Fn(u64) -> usize| (0..40).map(steps).sum::<usize>() as f64 / 40.0;
     let (counts, random) = (mean(&counts), mean(&random));
-    assert!((350.0..620.0).contains(&random), "{random}");
+    assert!((550.0..1450.0).contains(&random), "{random}");
     assert!(counts < random / 3.0, "{counts} steps with counts, {random} at random");
 }
 
@@ -147,7 +147,7 @@ fn the_forward_model_predicts_through_gaps_as_its_chain() {
 
 #[test]
 fn tiles_learn_a_function_of_two_features() {
-    let (mut tiles, mut random) = (Tiles::new(2), rng(5));
+    let (mut tiles, mut random) = (Tiles::new(2, 0.0), rng(5));
     let wanted = |features: &[f64; 6], action: usize| features[0] * features[3] + action as f64;
     let mut point = || ([0; 6].map(|_| random.uniform(0.0..1.0)), draw(&mut random, 2));
     for _ in 0..40_000 {

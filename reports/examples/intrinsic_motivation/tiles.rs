@@ -18,9 +18,9 @@ pub(crate) type Active = [u32; ACTIVE];
 pub(crate) struct Tiles(Vec<f64>);
 
 impl Tiles {
-    /// Value 0 everywhere, for a number of actions that share no weight.
-    pub(crate) fn new(actions: usize) -> Self {
-        Self(vec![0.0; actions * ACTIVE * ROW * ROW])
+    /// The same value everywhere, for a number of actions that share no weight.
+    pub(crate) fn new(actions: usize, value: f64) -> Self {
+        Self(vec![value / ACTIVE as f64; actions * ACTIVE * ROW * ROW])
     }
 
     /// The tiles that contain `features`, each from 0 to 1, for an action.
