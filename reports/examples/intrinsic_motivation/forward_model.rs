@@ -26,7 +26,7 @@ impl ForwardModel {
         // The Krichevsky–Trofimov estimate: ½ before the first step.
         let [block, free] = [0, 1].map(|from| (chain.changes[from] + 0.5) / (chain.steps[from] + 1.0));
         let stationary = block / (block + free);
-        let steps = (time - last).max(0.0).min(1e6) as i32;
+        let steps = (time - last).clamp(0.0, 1e6) as i32;
         stationary + (f64::from(u8::from(is_blocked)) - stationary) * (1.0 - block - free).powi(steps)
     }
 
