@@ -11,15 +11,15 @@ log = curious.Log(parser.parse_args().log)
 print(f"{len(log)} scans in {log.duration:.0f} s", *log.notes, sep="\n")
 survey = curious.map_log(log)
 rates = survey.mapper.rates()
-print(f"{np.count_nonzero(survey.permanent == 1)} cells are permanent walls, {np.count_nonzero(rates)} cells change")
+# Rates are above 0 almost everywhere: a cell may have changed unseen.
+statistics = survey.mapper.statistics()
+changed = np.count_nonzero(statistics["block_events"] + statistics["free_events"])
+print(f"{np.count_nonzero(survey.permanent == 1)} cells are permanent walls, {changed} cells changed")
 for place in survey.places[:10]:
-    at = f"({place['x']:6.2f}, {place['y']:6.2f}) m"
-    if place["cycles_per_hour"] is None:  # the times of the log are unusable
+    at = f"{place['kind']} at ({place['x']:6.2f}, {place['y']:6.2f}) m"
+    if place["passages_per_hour"] is None:  # the times of the log are unusable
         print(f"{at}: {place['changes']} changes")
         continue
-    low, high = ("?" if bound is None else f"{bound:.1f}" for bound in place["cycles_per_hour_90"])
-    print(
-        f"{at}: {place['cycles_per_hour']:6.1f} cycles per hour ({low} to {high}), "
-        f"blocked {place['share_blocked']:4.0%} of the time"
-    )
+    low, high = ("?" if bound is None else f"{bound:.0f}" for bound in place["passages_per_hour_90"])
+    print(f"{at}: {place['passages']} times in {place['observed']:.0f} s of looking: {low} to {high} times per hour")
 np.savez("map.npz", states=survey.mapper.states(), rates=rates, permanent=survey.permanent, path=survey.trajectory)
