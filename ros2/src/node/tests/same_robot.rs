@@ -6,7 +6,6 @@
 
 use super::*;
 use crate::message::{Header, Pose, TransformStamped, Transforms};
-use agent::Policy;
 use interfaces::{LaserReading, PoseMode, Scan, World};
 use logs::ros::{scan_message, scan_of};
 use logs::{Log, McapWriter, TopicChoice};
