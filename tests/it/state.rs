@@ -129,9 +129,10 @@ fn a_killed_run_goes_on() {
         // The first line says where it began.
         let began = ended.stderr.lines().find_map(|line| line.strip_prefix("the run goes on from "));
         let began_s: f64 = began.map_or(0.0, |text| text.trim_end_matches(" s").parse().unwrap());
-        assert!(began_s > last_s || round == 0, "{began_s} after {last_s}");
+        // On a busy machine a round can be killed before it gets anywhere.
+        assert!(began_s >= last_s, "{began_s} after {last_s}");
         last_s = began_s;
     }
-    assert!(run.summary().number("/simulated_s") > last_s);
+    assert!(last_s > 0.0 && run.summary().number("/simulated_s") > last_s);
     assert_eq!(run.names(), ["a.state", "out"]);
 }
