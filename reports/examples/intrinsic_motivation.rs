@@ -29,6 +29,8 @@ mod motives;
 mod rows;
 #[path = "intrinsic_motivation/runs.rs"]
 mod runs;
+#[path = "study/rows.rs"]
+mod study;
 #[path = "intrinsic_motivation/tables.rs"]
 mod tables;
 #[cfg(test)]
@@ -39,17 +41,18 @@ mod tiles;
 #[path = "intrinsic_motivation/view.rs"]
 mod view;
 
-use anyhow::{Context, ensure};
+use anyhow::ensure;
 use cells::CellSettings;
 use clap::Parser;
 use goals::{GoalSettings, Learned};
 use motives::RANDOM;
 use rayon::prelude::*;
-use rows::{Row, RowFile};
+use reports::shards::Shard;
+use rows::Row;
 use runs::{GOALS, Run, Tuned, learners, train};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
-use std::sync::Mutex;
+use study::Study;
 
 /// A learner that was trained elsewhere is measured in lives of at most this number of steps.
 const TRAINED_STEPS: u64 = 20_000;
@@ -85,8 +88,8 @@ struct Options {
     #[arg(long, num_args = 4)]
     goals: Option<Vec<f64>>,
     /// Computes a part: K/N has the worlds whose number, from 1 on, is K, K + N, …
-    #[arg(long, value_parser = shard)]
-    shard: Option<[u64; 2]>,
+    #[arg(long)]
+    shard: Option<Shard>,
     /// A table of all runs, which is completed
     #[arg(long)]
     csv: Option<PathBuf>,
@@ -101,14 +104,6 @@ fn learner(word: &str) -> Result<String, String> {
         Ok(word.to_owned())
     } else {
         Err(format!("there are {}", all.join(", ")))
-    }
-}
-
-fn shard(word: &str) -> Result<[u64; 2], String> {
-    let numbers = word.split_once('/').map(|(shard, of)| (shard.parse::<u64>(), of.parse::<u64>()));
-    match numbers {
-        Some((Ok(shard), Ok(of))) if (1..=of).contains(&shard) => Ok([shard, of]),
-        _ => Err("expected a shard as in 2/5".to_owned()),
     }
 }
 
@@ -129,10 +124,12 @@ impl Options {
 
     /// All runs of the study, or of its shard, world by world.
     fn runs(&self) -> Vec<Run> {
-        let [shard, of] = self.shard.unwrap_or([1, 1]);
+        let is_of_shard = |number: u64| self.shard.is_none_or(|shard| shard.has(number));
         let all = if self.learner.is_empty() { learners() } else { self.learner.clone() };
         let mut runs = Vec::new();
-        for seed in (self.seed..self.seed + self.worlds).skip(shard as usize - 1).step_by(of as usize) {
+        for seed in
+            (1..=self.worlds).filter(|number| is_of_shard(*number)).map(|number| self.seed + number - 1)
+        {
             for (estimator, learner) in
                 self.estimator.iter().flat_map(|name| all.iter().map(move |learner| (name, learner)))
             {
@@ -173,37 +170,19 @@ impl Options {
 fn main() -> anyhow::Result<()> {
     let options = Options::parse();
     if !options.merge.is_empty() {
-        let mut rows = Vec::new();
-        for path in &options.merge {
-            rows.extend(RowFile::read(path).with_context(|| format!("cannot read {}", path.display()))?);
-        }
-        tables::print(rows);
+        tables::print(study::merged(&options.merge)?);
         return Ok(());
     }
     let runs = options.runs();
     ensure!(!runs.is_empty(), "there is nothing to compute");
-    let file =
-        options.csv.as_deref().map(RowFile::open).transpose().context("cannot use the file of --csv")?;
-    let known: Vec<Row> = file.as_ref().map_or_else(Vec::new, |file| file.rows.clone());
-    let is_missing = |run: &&Run| !known.iter().any(|row| row.run == **run);
-    let missing: Vec<&Run> = runs.iter().filter(is_missing).collect();
-    let trained = options.train(&missing)?;
-    let file = Mutex::new(file);
-    let new = missing.par_iter().map(|run| {
+    let study = Study::open(options.csv.as_deref())?;
+    let trained = options.train(&study.missing(&runs))?;
+    let rows = study.complete(&runs, |run| {
         let learned = options.training(run).and_then(|training| trained.get(&training));
         let learned = learned.and_then(|all| all.iter().find(|(steps, _)| *steps == run.experience));
         let outcome = run.outcome(options.tuned(), learned.map(|(_, learned)| learned))?;
-        let row = Row { run: (*run).clone(), outcome };
-        if let Ok(mut file) = file.lock()
-            && let Some(file) = file.as_mut()
-        {
-            file.append(&row)?;
-        }
-        Ok(row)
-    });
-    let new: anyhow::Result<Vec<Row>> = new.collect();
-    let mut rows: Vec<Row> = known.into_iter().filter(|row| runs.contains(&row.run)).collect();
-    rows.extend(new?);
+        Ok(Row { run: run.clone(), outcome })
+    })?;
     tables::print(rows);
     Ok(())
 }

@@ -30,16 +30,18 @@ mod page;
 mod rows;
 #[path = "patrols/runs.rs"]
 mod runs;
+#[path = "study/rows.rs"]
+mod study;
 #[path = "patrols/tables.rs"]
 mod tables;
 
 use anyhow::{Context, ensure};
 use clap::Parser;
 use days::{Habits, Kind};
-use rayon::prelude::*;
-use rows::{Row, RowFile};
+use reports::shards::Shard;
 use runs::{Run, STRATEGIES};
 use std::path::PathBuf;
+use study::Study;
 
 #[derive(Parser)]
 struct Options {
@@ -70,8 +72,8 @@ struct Options {
     #[arg(long, value_parser = minutes)]
     length: Vec<f64>,
     /// Computes a part: K/N has the buildings whose number, from 1 on, is K, K + N, …
-    #[arg(long, value_parser = shard)]
-    shard: Option<[u64; 2]>,
+    #[arg(long)]
+    shard: Option<Shard>,
     /// A table of all runs, which is completed
     #[arg(long)]
     csv: Option<PathBuf>,
@@ -98,20 +100,14 @@ fn minutes(word: &str) -> Result<f64, String> {
     value.ok_or_else(|| "expected a number from 1 to 30".to_owned())
 }
 
-fn shard(word: &str) -> Result<[u64; 2], String> {
-    let numbers = word.split_once('/').map(|(shard, of)| (shard.parse::<u64>(), of.parse::<u64>()));
-    match numbers {
-        Some((Ok(shard), Ok(of))) if (1..=of).contains(&shard) => Ok([shard, of]),
-        _ => Err("expected a shard as in 2/5".to_owned()),
-    }
-}
-
 impl Options {
     /// All runs of the study, or of its shard, building by building.
     fn runs(&self) -> Vec<Run> {
         let mut runs = Vec::new();
-        let [shard, of] = self.shard.unwrap_or([1, 1]);
-        for seed in (self.seed..self.seed + self.buildings).skip(shard as usize - 1).step_by(of as usize) {
+        let is_of_shard = |number: u64| self.shard.is_none_or(|shard| shard.has(number));
+        for seed in
+            (1..=self.buildings).filter(|number| is_of_shard(*number)).map(|number| self.seed + number - 1)
+        {
             for (kind, habits) in
                 self.kind.iter().flat_map(|kind| self.habits.iter().map(move |habits| (kind, habits)))
             {
@@ -131,10 +127,7 @@ impl Options {
 fn main() -> anyhow::Result<()> {
     let options = Options::parse();
     if !options.merge.is_empty() {
-        let mut rows = Vec::new();
-        for path in &options.merge {
-            rows.extend(RowFile::read(path).with_context(|| format!("cannot read {}", path.display()))?);
-        }
+        let mut rows = study::merged(&options.merge)?;
         cells::sort(&mut rows);
         let Some(path) = &options.page else {
             tables::print(&rows);
@@ -147,24 +140,8 @@ fn main() -> anyhow::Result<()> {
     }
     let runs = options.runs();
     ensure!(!runs.is_empty(), "there is nothing to compute");
-    let mut file =
-        options.csv.as_deref().map(RowFile::open).transpose().context("cannot use the file of --csv")?;
-    let known: Vec<Row> = file.as_ref().map_or_else(Vec::new, |file| file.rows.clone());
-    let is_missing = |run: &&Run| !known.iter().any(|row| row.run == **run);
-    let missing: Vec<&Run> = runs.iter().filter(is_missing).collect();
-    let file = std::sync::Mutex::new(&mut file);
-    let new = missing.par_iter().map(|run| {
-        let row = run.row();
-        if let Ok(mut file) = file.lock()
-            && let Some(file) = file.as_mut()
-        {
-            file.append(&row)?;
-        }
-        Ok(row)
-    });
-    let new: anyhow::Result<Vec<Row>> = new.collect();
-    let mut rows: Vec<Row> = known.into_iter().filter(|row| runs.contains(&row.run)).collect();
-    rows.extend(new?);
+    let study = Study::open(options.csv.as_deref())?;
+    let mut rows = study.complete(&runs, |run: &Run| Ok(run.row()))?;
     cells::sort(&mut rows);
     tables::print(&rows);
     Ok(())

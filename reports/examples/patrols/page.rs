@@ -133,7 +133,7 @@ fn compared(values: &[f64], others: &[f64]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{cells::sort, rows::RowFile};
+    use crate::{cells::sort, study::RowFile};
     use std::path::Path;
 
     /// A page with tables that were not made from the rows of the study is stale.
