@@ -86,9 +86,9 @@ impl Tree {
 }
 
 /// What users lose. At each of some times, a user wants to go from every end to every other one, knows the predicted map of that
-/// time, and plans the quickest route through doors that are [believed open](OPEN). Doors stay as they are during a trip. In front of
-/// a door that is closed, the user plans again without it; if no route is left, the user goes back. A user who knows no route does
-/// not go.
+/// time, and plans the quickest route through doors that are closed with a probability below 0.5. Doors stay as they are during a
+/// trip. In front of a door that is closed, the user plans again without it; if no route is left, the user goes back. A user who
+/// knows no route does not go.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct UserRegret {
     trips: usize,
