@@ -45,6 +45,9 @@ struct Options {
     /// The share of the time that the robot can be on patrol, above 0, at most 1
     #[arg(long, default_values_t = [0.05, 0.01], value_parser = share)]
     duty: Vec<f64>,
+    /// How long the robot can be on patrol with a full battery, s: a robot that charges for hours looks rarely
+    #[arg(long, default_value_t = 300.0, value_parser = battery_s)]
+    battery: f64,
     /// Strategies, as of `four_rooms`
     #[arg(long, default_values = ["curious", "recency", "fresh-map"])]
     strategy: Vec<Policy>,
@@ -70,18 +73,24 @@ fn share(word: &str) -> Result<f64, String> {
     value.ok_or_else(|| "expected a number above 0 and at most 1".to_owned())
 }
 
+fn battery_s(word: &str) -> Result<f64, String> {
+    let value = word.parse::<f64>().ok().filter(|value| (60.0..=1e6).contains(value));
+    value.ok_or_else(|| "expected a number from 60 to 1000000".to_owned())
+}
+
 impl Options {
     /// All runs of the study, or of its shard, building by building.
     fn runs(&self) -> Vec<Run> {
         let mut runs = Vec::new();
         let of_shard =
             (1..=self.buildings).filter(|number| self.shard.is_none_or(|shard| shard.has(*number)));
-        for (seed, kind) in of_shard.flat_map(|number| self.kind.iter().map(move |kind| (number - 1, *kind))) {
+        for (seed, kind) in of_shard.flat_map(|number| self.kind.iter().map(move |kind| (number - 1, *kind)))
+        {
             for (share, strategy) in
                 self.duty.iter().flat_map(|share| self.strategy.iter().map(move |strategy| (share, strategy)))
             {
-                let strategy = strategy.clone();
-                runs.push(Run { kind, share: *share, days: self.days, seed: self.seed + seed, strategy });
+                let (share, strategy, seed) = (*share, strategy.clone(), self.seed + seed);
+                runs.push(Run { kind, share, battery_s: self.battery, days: self.days, seed, strategy });
             }
         }
         runs

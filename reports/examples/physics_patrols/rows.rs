@@ -14,6 +14,8 @@ pub(crate) struct Run {
     pub(crate) kind: Kind,
     /// The share of the time that the robot can be on patrol.
     pub(crate) share: f64,
+    /// How long it can be on patrol with a full battery, s.
+    pub(crate) battery_s: f64,
     pub(crate) days: u32,
     pub(crate) seed: u64,
     pub(crate) strategy: Policy,
@@ -36,7 +38,8 @@ impl Run {
     /// Computes the row.
     pub(crate) fn row(&self) -> anyhow::Result<Row> {
         let spec = WorldSpec::generate_calendar(self.kind, self.seed);
-        let spec = spec.with_patrol(PatrolDaySpec::of_share(self.share));
+        let spec = spec
+            .with_patrol(PatrolDaySpec { battery_s: self.battery_s, ..PatrolDaySpec::of_share(self.share) });
         let settings = settings(&spec)?;
         let own = in_own_frame(&settings, &spec, self.seed);
         let day = day(own.as_ref().map_or(&spec, |(spec, _)| spec)).context("the robot has no patrol")?;
@@ -69,7 +72,7 @@ impl Line for Row {
     type Run = Run;
 
     fn titles() -> String {
-        format!("kind,share,days,seed,strategy,{}", VALUES.join(","))
+        format!("kind,share,battery_s,days,seed,strategy,{}", VALUES.join(","))
     }
 
     fn run(&self) -> &Run {
@@ -77,19 +80,20 @@ impl Line for Row {
     }
 
     fn line(&self) -> String {
-        let Run { kind, share, days, seed, strategy } = &self.run;
+        let Run { kind, share, battery_s, days, seed, strategy } = &self.run;
         let values = self.values.map(|value| value.to_string()).join(",");
-        format!("{},{share},{days},{seed},{},{values}", kind.name(), strategy.name())
+        format!("{},{share},{battery_s},{days},{seed},{},{values}", kind.name(), strategy.name())
     }
 
     fn parse(line: &str) -> anyhow::Result<Self> {
         let fields: Vec<&str> = line.split(',').collect();
-        let ([kind, share, days, seed, strategy], numbers) =
-            fields.split_first_chunk().context("it has less than 6 fields")?;
+        let ([kind, share, battery_s, days, seed, strategy], numbers) =
+            fields.split_first_chunk().context("it has less than 7 fields")?;
         let numbers: Vec<f64> = numbers.iter().map(|text| text.parse()).collect::<Result<_, _>>()?;
         let run = Run {
             kind: kind.parse().map_err(anyhow::Error::msg)?,
             share: share.parse()?,
+            battery_s: battery_s.parse()?,
             days: days.parse()?,
             seed: seed.parse()?,
             strategy: strategy.parse()?,

@@ -32,7 +32,7 @@ pub(crate) fn table(rows: &[Row]) -> Result<String, String> {
 }
 
 fn is_of(cell: &Run, run: &Run) -> bool {
-    (cell.kind, cell.share, cell.days) == (run.kind, run.share, run.days)
+    (cell.kind, cell.share, cell.battery_s, cell.days) == (run.kind, run.share, run.battery_s, run.days)
 }
 
 /// The lines of a kind of building and a share of the time, over the buildings in which every strategy was run.
