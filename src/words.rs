@@ -81,13 +81,12 @@ pub fn how_often(place: &Place) -> Option<String> {
     Some(seen.how_often().unwrap_or_else(|| changed(place.changes, &seen)))
 }
 
-/// Changes without a full cycle, in words.
+/// What was seen where nothing came twice, as a sentence without its end. `changes` are those of the cell with the most of them.
 pub fn changed(changes: u32, seen: &Seen) -> String {
     let looked = length_of(seen.observed_s);
-    match seen.times {
-        0 if seen.after_gap > 0 => {
-            format!("changed while the robot was not looking, found {}", times(seen.after_gap))
-        }
+    match (seen.times, seen.after_gap) {
+        (0, 1..) => format!("changed while the robot was not looking, found {}", times(seen.after_gap)),
+        _ if changes > 2 => format!("single cells changed up to {} in {looked} of looking", times(changes)),
         _ => format!("changed {} in {looked} of looking", times(changes)),
     }
 }
@@ -104,6 +103,7 @@ pub fn times(count: u32) -> String {
 /// A rate per hour, in words: 12 times per hour, once in 3 h. Never per minute: places are compared with each other.
 pub fn rate(per_hour: f64) -> String {
     match per_hour {
+        rate if rate >= 10.0 => format!("{} times per hour", short(rate)),
         rate if rate >= 1.5 => format!("{rate:.0} times per hour"),
         rate if rate > 0.0 => format!("once in {}", length_of(3600.0 / rate)),
         _ => "never".to_owned(),
@@ -129,6 +129,10 @@ pub fn list(names: &[String]) -> String {
 /// A number with two digits that matter.
 pub fn short(value: f64) -> String {
     match value {
+        value if value >= 100.0 => {
+            let unit = libm::pow(10.0, libm::log10(value).floor() - 1.0);
+            format!("{:.0}", (value / unit).round() * unit)
+        }
         value if value >= 10.0 => format!("{value:.0}"),
         value if value >= 1.0 => format!("{value:.1}"),
         value => format!("{value:.2}"),

@@ -81,7 +81,8 @@ pub trait TrialKind: Args + Clone + Debug {
     fn to_toml(world: &Self::Spec) -> Option<String>;
 }
 
-/// The command line.
+// The command line. A doc comment would be the first line of --help, instead of that of the kind.
+#[expect(missing_docs)]
 #[derive(Clone, Debug, Parser)]
 #[command(name = K::NAME, version, max_term_width = 100, args_conflicts_with_subcommands = true)]
 pub struct TrialArgs<K: TrialKind> {

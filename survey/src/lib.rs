@@ -53,7 +53,7 @@ pub use passes::{PassError, Stage};
 pub use permanent::permanent;
 pub use places::{
     Direction, Lasting, Place, PlaceKind, PlaceName, PlaceRates, PlaceSince, Since, StillName, TrafficTile,
-    Trend,
+    Trend, is_line,
 };
 pub use quality::{Doubt, DoubtKind, Quality, Verdict};
 pub use replay::{FoundPoses, Replay};

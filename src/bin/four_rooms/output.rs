@@ -24,7 +24,7 @@ use std::io::stderr;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 use viewer::layers::Layer;
-use viewer::pictures::Film;
+use viewer::pictures::{FIGURE_5_FILE, Film};
 use viewer::recording::{Live, Recorder};
 use viewer::scene::Scene;
 use viewer::show::Show;
@@ -178,7 +178,8 @@ impl<'a> Outputs<'a> {
         if !args.quiet {
             let is_default = args.drive == DriveChoice::Agent && args.strategy() == Policy::default();
             let hint = if is_default { format!("\n  hint      {PURPOSE_GAIN}") } else { String::new() };
-            print(format_args!("{summary}{hint}\n  files     {}", args.out.display()))?;
+            let (out, picture) = (args.out.display(), args.out.join(FIGURE_5_FILE));
+            print(format_args!("{summary}{hint}\n  files     {out}: open {}", picture.display()))?;
         }
         Ok(self.is_complete && failures.is_empty())
     }

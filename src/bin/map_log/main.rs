@@ -121,7 +121,8 @@ fn run(args: &Args) -> Result<ExitCode, Failure> {
         say(stderr(), format_args!("error: the map is not usable: {}", summary.verdict_reasons.join("; ")));
     }
     if !args.quiet {
-        print(format_args!("{summary}\n  files     {}", args.out.display()))?;
+        let out = args.out.display();
+        print(format_args!("{summary}\n  files     {out}: open {}", args.out.join(output::PAGE).display()))?;
     }
     Ok(if !learned.is_shown || !state_file.is_written {
         ExitCode::FAILURE

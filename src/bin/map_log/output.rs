@@ -11,6 +11,8 @@ use results::{cell_statistics, raster, ros_map, things};
 use survey::{MASKS, Survey, masks, permanent};
 use viewer::layers::Layer;
 
+/// The page for people.
+pub(crate) const PAGE: &str = "report.html";
 /// The file that ends a run.
 const SUMMARY: &str = "summary.json";
 
@@ -39,7 +41,7 @@ pub(crate) fn write(
         things::write(&to.join("things.json"), mapper)?;
     }
     let page = report::page(summary, mapper);
-    write_file(&to.join("report.html"), |file| file.write_all(page.as_bytes()))?;
+    write_file(&to.join(PAGE), |file| file.write_all(page.as_bytes()))?;
     summary.files = folder.results()?;
     let text = serde_json::to_string_pretty(summary)?;
     write_file(&to.join(SUMMARY), |file| writeln!(file, "{text}"))?;

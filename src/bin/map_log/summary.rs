@@ -223,7 +223,7 @@ impl fmt::Display for Summary {
             self.trajectory_m, self.loops, self.scans_left_out
         )?;
         writeln!(f, "  seen      {:.0} m², {} of it changed", self.seen_m2, percent(self.changed_share))?;
-        writeln!(f, "  changes   {} of cells, in {} places", self.changes, self.place_count)?;
+        writeln!(f, "  changes   {}, counted cell by cell, in {} places", self.changes, self.place_count)?;
         for place in self.places.iter().take(3) {
             let rate = how_often(place).map(|rate| format!(", {rate}")).unwrap_or_default();
             let name = place.name.as_ref().map(|name| format!("{name}, ")).unwrap_or_default();

@@ -9,6 +9,7 @@
 mod book;
 mod directions;
 mod groups;
+mod line;
 mod names;
 mod passages;
 mod session;
@@ -19,6 +20,7 @@ mod tests;
 pub(crate) use book::PlaceBook;
 pub use directions::Direction;
 pub(crate) use directions::Directions;
+pub use line::is_line;
 pub use names::{PlaceName, StillName};
 pub(crate) use since::since;
 pub use since::{Lasting, PlaceSince, Since, Trend};
@@ -105,7 +107,7 @@ pub enum PlaceKind {
         /// The number of the [`mapper::Thing`].
         thing: u32,
     },
-    /// Something comes again and again, and is gone soon: people, carts, robots.
+    /// Something wider than a [line](is_line) comes again and again, and is gone soon: people, carts, robots.
     Traffic,
     /// Something changed; what it is, is not known.
     Unknown,
@@ -262,5 +264,9 @@ fn kind(mapper: &Mapper, group: &Group, rates: &PlaceRates) -> PlaceKind {
     stays_s.sort_by(f64::total_cmp);
     let is_short = stays_s.get(stays_s.len() / 2).is_some_and(|stay_s| *stay_s <= PASSING_S);
     let is_mostly_free = rates.share_blocked <= 0.5;
-    if is_short && is_mostly_free && rates.has_cycle() { PlaceKind::Traffic } else { PlaceKind::Unknown }
+    if is_short && is_mostly_free && rates.has_cycle() && !is_line(mapper, &group.cells) {
+        PlaceKind::Traffic
+    } else {
+        PlaceKind::Unknown
+    }
 }

@@ -32,6 +32,9 @@ pub struct Trails<'a> {
 /// The panels of Figure 5, in its order.
 const FIGURE_5: [Layer; 3] = [Layer::Occupancy, Layer::Interval, Layer::ChangeProbability];
 
+/// The name of the file with the panels of Figure 5.
+pub const FIGURE_5_FILE: &str = "figure5.png";
+
 /// Writes each of `layers` of the map as `<layer>.png`, the predicted maps side by side as `predicted.png`, `figure5.png` if its
 /// layers are among them, and `trajectory.png` into `folder`, which is created if needed. `goals` are those of the curious robot.
 ///
@@ -59,10 +62,10 @@ pub fn write_all(
         panels.push((layer, picture));
     }
     let of_layer = |layer: &Layer| panels.iter().find(|(of, _)| of == layer).map(|(_, picture)| picture);
-    for (name, layers) in [("figure5", &FIGURE_5[..]), ("predicted", &Layer::PREDICTED)] {
+    for (name, layers) in [(FIGURE_5_FILE, &FIGURE_5[..]), ("predicted.png", &Layer::PREDICTED)] {
         let beside: Vec<&Canvas> = layers.iter().filter_map(of_layer).collect();
         if beside.len() == layers.len() {
-            Canvas::beside(&beside).write(&file(name))?;
+            Canvas::beside(&beside).write(&folder.join(name))?;
         }
     }
     let panel =

@@ -10,7 +10,7 @@ use mapper::{Clock, Door, Furniture, Leaf, ThingKind, Week};
 use maud::{Markup, html};
 use nalgebra::{Point2, Vector2};
 use std::f64::consts::PI;
-use survey::{Direction, Place, PlaceKind};
+use survey::{Direction, Place, PlaceKind, is_line};
 
 /// The side of the picture of a place, m.
 const SIDE_M: f64 = 6.0;
@@ -139,6 +139,9 @@ impl Page<'_> {
             None if place.kind == PlaceKind::Traffic => {
                 "Traffic: something comes again and again, and is gone within half a minute. People, carts or robots.".to_owned()
             }
+            None if is_line(self.mapper, &place.cells) => "Not known: a thin line that was there at times. It can be a door that moved too rarely \
+                 to be recognized, or a part of a wall that was seen a few centimeters beside its place."
+                .to_owned(),
             None => "Not known: something came or went here, and it is neither a door nor traffic.".to_owned(),
         }
     }
@@ -169,7 +172,7 @@ impl Page<'_> {
             None if self.door(place).is_some() && seen.times > 0 => {
                 format!("It opened or closed {}.", seen.seen())
             }
-            None => format!("It {}.", changed(place.changes, seen)),
+            None => format!("{}.", sentence(&changed(place.changes, seen))),
         }
     }
 
@@ -226,20 +229,27 @@ impl Page<'_> {
     }
 }
 
+/// Words with a capital letter at their begin.
+fn sentence(words: &str) -> String {
+    let mut letters = words.chars();
+    letters
+        .next()
+        .map_or_else(String::new, |first| first.to_uppercase().collect::<String>() + letters.as_str())
+}
+
 fn sure(seen: &Seen) -> String {
-    let word = seen.sureness();
-    let first = word[..1].to_uppercase() + &word[1..];
+    let first = sentence(seen.sureness());
     match seen.per_hour {
         Some((rate, ends)) if seen.has_cycle() => {
             format!("{first}: {} (90 % range). Seen {}.", range(rate, ends), seen.seen())
         }
         Some((_, [_, high])) if seen.observed_s >= LONG_S => {
             format!(
-                "{first}: less than one full cycle was seen. With 95 % probability not more than {}.",
+                "{first}: nothing was seen to come, go, and come again. With 95 % probability it comes not more than {}.",
                 rate(high)
             )
         }
-        _ => format!("{first}: less than one full cycle was seen."),
+        _ => format!("{first}: nothing was seen to come, go, and come again."),
     }
 }
 

@@ -10,10 +10,13 @@ const GAP: f64 = 3.0;
 /// Directions and distances at which a label is tried.
 const DIRECTIONS: u32 = 24;
 const DISTANCES: [f64; 12] = [8.0, 14.0, 22.0, 32.0, 44.0, 58.0, 76.0, 100.0, 130.0, 170.0, 220.0, 290.0];
-/// What a unit of distance costs, against a share of the label that covers walls, and against a crossing of leader lines.
+/// What a unit of distance costs, against a share of the label that covers walls, and against a crossing of its line with
+/// another one or with another mark.
 const PER_UNIT: f64 = 1.0;
 const COVERS_ALL: f64 = 900.0;
 const CROSSES: f64 = 120.0;
+/// How often each label is placed.
+const ROUNDS: usize = 3;
 
 /// A label: the middle of its circle, and where its leader line ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,33 +29,52 @@ pub(super) struct Label {
 /// around a point that would hide something.
 pub(super) fn labels(
     marks: &[Box4],
-    [width, height]: [f64; 2],
+    size: [f64; 2],
     covered: impl Fn([f64; 2], f64) -> f64,
 ) -> Vec<Option<Label>> {
-    let mut placed: Vec<Option<Label>> = Vec::new();
-    for mark in marks {
-        let to = [(mark[0] + mark[2]) / 2.0, (mark[1] + mark[3]) / 2.0];
-        let mut best: Option<(f64, Label)> = None;
-        for (distance, direction) in DISTANCES.iter().flat_map(|d| (0..DIRECTIONS).map(move |n| (d, n))) {
-            let at = beside(mark, f64::from(direction) / f64::from(DIRECTIONS), RADIUS + distance);
-            let label = Label { at, to: edge(mark, at, to) };
-            let is_inside =
-                (RADIUS..=width - RADIUS).contains(&at[0]) && (RADIUS..=height - RADIUS).contains(&at[1]);
-            let is_free = marks.iter().all(|mark| distance_to(mark, at) >= RADIUS + GAP)
-                && placed.iter().flatten().all(|other| far(other.at, at) >= 2.0 * RADIUS + GAP)
-                && placed.iter().flatten().all(|other| is_clear(other, &label));
-            if !is_inside || !is_free {
-                continue;
-            }
-            let crossings = placed.iter().flatten().filter(|other| cross(other, &label)).count();
-            let cost = PER_UNIT * distance + COVERS_ALL * covered(at, RADIUS) + CROSSES * crossings as f64;
-            if best.is_none_or(|(least, _)| cost < least) {
-                best = Some((cost, label));
-            }
+    let mut placed: Vec<Option<Label>> = vec![None; marks.len()];
+    // The first round places them one after the other; later ones move each to where it is best, now that all others are known.
+    for _ in 0..ROUNDS {
+        for number in 0..marks.len() {
+            placed[number] = None;
+            placed[number] = best(marks, number, &placed, size, &covered);
         }
-        placed.push(best.map(|(_, label)| label));
     }
     placed
+}
+
+/// The best label of a mark, beside those that are placed.
+fn best(
+    marks: &[Box4],
+    number: usize,
+    placed: &[Option<Label>],
+    [width, height]: [f64; 2],
+    covered: &impl Fn([f64; 2], f64) -> f64,
+) -> Option<Label> {
+    let mark = &marks[number];
+    let to = [(mark[0] + mark[2]) / 2.0, (mark[1] + mark[3]) / 2.0];
+    let mut best: Option<(f64, Label)> = None;
+    for (distance, direction) in DISTANCES.iter().flat_map(|d| (0..DIRECTIONS).map(move |n| (d, n))) {
+        let at = beside(mark, f64::from(direction) / f64::from(DIRECTIONS), RADIUS + distance);
+        let label = Label { at, to: edge(mark, at, to) };
+        let is_inside =
+            (RADIUS..=width - RADIUS).contains(&at[0]) && (RADIUS..=height - RADIUS).contains(&at[1]);
+        let is_free = marks.iter().all(|mark| distance_to(mark, at) >= RADIUS + GAP)
+            && placed.iter().flatten().all(|other| far(other.at, at) >= 2.0 * RADIUS + GAP)
+            && placed.iter().flatten().all(|other| is_clear(other, &label));
+        if !is_inside || !is_free {
+            continue;
+        }
+        let crossings = placed.iter().flatten().filter(|other| cross(other, &label)).count();
+        let over = marks.iter().enumerate().filter(|(other, mark)| *other != number && passes(&label, mark));
+        let cost = PER_UNIT * distance
+            + COVERS_ALL * covered(at, RADIUS)
+            + CROSSES * (crossings + over.count()) as f64;
+        if best.is_none_or(|(least, _)| cost < least) {
+            best = Some((cost, label));
+        }
+    }
+    best.map(|(_, label)| label)
 }
 
 /// The point at this distance from a rectangle, in a direction from 0 to 1 around its middle.
@@ -93,6 +115,15 @@ fn is_clear(a: &Label, b: &Label) -> bool {
         let squared = (along[0] * along[0] + along[1] * along[1]).max(1e-9);
         let share = ((along[0] * from[0] + along[1] * from[1]) / squared).clamp(0.0, 1.0);
         far([along[0] * share, along[1] * share], from) >= RADIUS + GAP
+    })
+}
+
+/// Whether the leader line of a label passes over a rectangle.
+fn passes(label: &Label, mark: &Box4) -> bool {
+    const STEPS: u32 = 16;
+    (0..=STEPS).map(|step| f64::from(step) / f64::from(STEPS)).any(|share| {
+        let at = [0, 1].map(|axis| label.at[axis] + share * (label.to[axis] - label.at[axis]));
+        distance_to(mark, at) == 0.0
     })
 }
 

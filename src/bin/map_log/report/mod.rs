@@ -137,9 +137,7 @@ impl Page<'_> {
     fn clock(&self) -> &'static str {
         match self.summary.begin_s {
             Some(_) => "Usual hours follow once a place is known for two weeks.",
-            None => {
-                "The logs have no date: times count from the first scan, and the notes below say what is not known between visits."
-            }
+            None => "The logs have no date: times count from the first scan.",
         }
     }
 

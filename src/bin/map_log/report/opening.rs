@@ -47,12 +47,18 @@ impl Page<'_> {
         let Some(place) = self.summary.places.first() else {
             return html! { "Nothing of 0.02 m² or more was seen to change." };
         };
-        let begin = if self.has_rates() { "It is liveliest at " } else { "Most cells changed at " };
         let is_known = |place: &Place| self.seen(place).is_none_or(|seen| seen.is_known());
-        let is_first_impression = self.has_rates() && !self.summary.places.iter().any(is_known);
+        let is_any_known = self.summary.places.iter().any(is_known);
+        let begin = match (self.has_rates(), is_any_known) {
+            (false, _) => "Most cells changed at ",
+            (true, true) => "It is liveliest at ",
+            (true, false) => "Most was seen at ",
+        };
         html! {
             (begin) (self.link(place)) ", " (self.plan.words(&middle(place))) " of the plan" (self.with_rate(place)) "."
-            @if is_first_impression { " This is a first impression: no place was looked at for long enough to say how often." }
+            @if self.has_rates() && !is_any_known {
+                " This is a first impression: no place was looked at for long enough to say how often, or which one is the liveliest."
+            }
         }
     }
 
@@ -70,7 +76,7 @@ impl Page<'_> {
                 format!(": {does} {often} (90 % range: {})", range(rate, ends))
             }
             (Some(often), _) => format!(": {did} {often}"),
-            (None, _) => format!(": it {}", changed(place.changes, &seen)),
+            (None, _) => format!(": {}", changed(place.changes, &seen)),
         }
     }
 

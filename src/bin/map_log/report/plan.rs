@@ -28,6 +28,8 @@ const WIDE: f64 = 1.5;
 const TAIL: f64 = 0.002;
 /// The space around what was seen, m.
 const AROUND_M: f64 = 0.5;
+/// The least side of a rectangle on the plan, m: the front of a wall is a cell wide.
+const LEAST_SIDE_M: f64 = 0.3;
 /// The class of a cell that changed.
 const CHANGED: u8 = 68;
 /// The lengths of the scale, m.
@@ -177,7 +179,8 @@ impl<'a> Plan<'a> {
     /// A drawing of the cells, with marks, their labels, the scale, and the axes of the map where it is turned.
     pub(super) fn draw(&self, shown: Shown, marks: &[Mark], what: &str) -> Markup {
         let [width, height] = self.drawing();
-        let boxes: Vec<Box4> = marks.iter().map(|mark| self.rectangle(&mark.points)).collect();
+        let boxes: Vec<Box4> =
+            marks.iter().map(|mark| visible(self.rectangle(&mark.points), self.scale)).collect();
         let found = labels(&boxes, [width, height - BELOW], |at, radius| self.covered(at, radius));
         html! {
             svg.plan viewBox={ "0 0 " (number(width)) " " (number(height)) } role="img" aria-label=(what) font-family="sans-serif" {
@@ -260,6 +263,13 @@ impl<'a> Plan<'a> {
         html! { (arrow("x", 0.0)) (arrow("y", FRAC_PI_2)) }
     }
 }
+
+/// A rectangle that is wide and high enough to be seen, around the same middle.
+fn visible([left, top, right, bottom]: Box4, scale: f64) -> Box4 {
+    let [x, y] = [right - left, bottom - top].map(|side| ((LEAST_SIDE_M * scale - side) / 2.0).max(0.0));
+    [left - x, top - y, right + x, bottom + y]
+}
+
 /// A point in words: in which third of the plan it lies in both directions and, in a middle third, on which side of the middle.
 fn words(shares: [f64; 2]) -> String {
     let third = |share: f64| [1.0 / 3.0, 2.0 / 3.0].iter().filter(|limit| share >= **limit).count();
