@@ -133,7 +133,7 @@ def wander(observation: Any, step: int, random: np.random.Generator) -> list[flo
 
 
 #: The policies that steer, and those that choose goals, with their strategies.
-DRIVERS = {"standing": stand, "random driving": drive_at_random, "wandering": wander}
+DRIVERS = {"standing still": stand, "driving at random": drive_at_random, "wandering": wander}
 #: 0.6 m, as a share of the range of the laser of a house.
 NEAR = 0.6 / 10.0
 FIELDS = ("reward", "found_changes", "seen_m2", "collisions")
@@ -151,7 +151,7 @@ def episode(env: Any, act: Callable[[Any, int], Any], seed: int) -> list[float]:
 
 def measure(name: str, policy: Choose | None, houses: int, threads: int) -> np.ndarray:
     """One episode per seed, from 1 on, in houses of `TEST_HOUSES`: shape (houses, FIELDS)."""
-    is_single = policy is None and name != "any strategy"
+    is_single = policy is None and name != "any goal"
 
     def some(first: int) -> list[list[float]]:
         if name in DRIVERS:
@@ -236,7 +236,7 @@ def main() -> None:
         draw(curve, {name: float(values[:, 0].mean()) for name, values in results.items()}, arguments.picture)
 
 
-OTHERS = [*DRIVERS, "any strategy", "random", "frontier", "curious", "recency", "poisson", "predicted-change", "optimal-revisiting"]
+OTHERS = [*DRIVERS, "any goal", "random", "frontier", "curious", "recency", "poisson", "predicted-change", "optimal-revisiting"]
 
 if __name__ == "__main__":
     main()

@@ -49,7 +49,8 @@ pub struct Houses {
     kind: String,
 
     /// Give the buildings of --generate a calendar of this kind: doors and boxes by hours and weekdays, from Monday 0:00 on.
-    /// One of them alone is a world by its name: `--world calendar-office-7`
+    /// One of them alone is a world by its name: `--world calendar-office-7`. In trials the robot has no battery: it drives all the
+    /// time
     #[arg(long, value_name = "KIND", value_parser = one_of_kinds(), conflicts_with = "kind", help_heading = "World")]
     calendar: Option<Kind>,
 
@@ -79,7 +80,13 @@ impl TrialKind for Houses {
     fn load(&self, name: &str) -> anyhow::Result<(WorldSpec, Vec<String>)> {
         let Loaded { spec, warnings } = load(name)?;
         physics_trial::source(&spec).with_context(|| format!("cannot run `{name}`"))?;
-        Ok((spec, warnings.into_iter().map(|warning| warning + "\n").collect()))
+        let patrol = spec.driven().patrol.is_some().then(|| {
+            format!(
+                "note: the robot of `{}` has a battery and a dock, which trials leave out: it drives all the time. `four_rooms` keeps them",
+                spec.name
+            )
+        });
+        Ok((spec, warnings.into_iter().chain(patrol).map(|warning| warning + "\n").collect()))
     }
 
     fn generate(&self, seed: u64) -> WorldSpec {
