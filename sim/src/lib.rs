@@ -38,6 +38,7 @@
 //! # Ok::<(), DrivenError>(())
 //! ```
 
+mod building_calendar;
 mod flood;
 pub mod grid;
 pub mod physics;

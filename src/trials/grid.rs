@@ -1,9 +1,10 @@
 //! Trials in grid worlds: `grid_world`.
 
-use super::TrialKind;
+use super::{TrialKind, one_of_kinds};
 use crate::program::list;
 use crate::worlds::{SHIPPED_GRID, load_grid};
 use agent::{AgentSettings, Reward};
+use calendar::Kind;
 use clap::Args;
 use controller::CellDrive;
 use evaluation::trials::GridRobot;
@@ -24,6 +25,7 @@ use sim::grid::{GenerateSettings, GridSpec};
 #[command(after_help = "Examples:\n  \
         grid_world --trials 100                                  more trials, smaller intervals\n  \
         grid_world --generate 50 --trials 2 --strategy curious --strategy progress\n  \
+        grid_world --generate 10 --calendar office --steps 60480 --strategy curious --strategy fresh-map\n  \
         grid_world --world my_world.toml --sensor-radius 6 --rrd one_trial.rrd\n\n\
         Large experiments run in shards, on one machine or on many (docs/clusters.md):\n  \
         grid_world --trials 1000 --shard 1/3 --out big     # and 2/3 and 3/3, anywhere, at any time\n  \
@@ -32,6 +34,11 @@ use sim::grid::{GenerateSettings, GridSpec};
         Exit codes: 0 success, 1 the run failed, 2 invalid arguments or input, 130 interrupted (Ctrl-C; the \
         finished trials are reported).")]
 pub struct GridWorlds {
+    /// Give the worlds of --generate a calendar of this kind: doors, boxes and people by hours and weekdays, from Monday 0:00 on. A step
+    /// is 10 s: a week has 60,480 steps
+    #[arg(long, value_name = "KIND", value_parser = one_of_kinds(), requires = "generate", help_heading = "World")]
+    calendar: Option<Kind>,
+
     /// The range of the sensor, in cells, instead of the range in the world file
     #[arg(long, value_name = "CELLS", value_parser = clap::value_parser!(u32).range(1..=100), allow_negative_numbers = true, help_heading = "World")]
     sensor_radius: Option<u32>,
@@ -72,7 +79,10 @@ impl TrialKind for GridWorlds {
     }
 
     fn generate(&self, seed: u64) -> GridSpec {
-        self.changed(GridSpec::generate(&GenerateSettings::default(), seed))
+        self.changed(match self.calendar {
+            Some(kind) => GridSpec::generate_calendar(kind, seed),
+            None => GridSpec::generate(&GenerateSettings::default(), seed),
+        })
     }
 
     fn length(&self) -> u64 {

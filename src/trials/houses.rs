@@ -1,13 +1,12 @@
 //! Trials in houses and other physics worlds: `house_trials`.
 
-use super::TrialKind;
+use super::{TrialKind, one_of_kinds};
 use crate::program::{duration_s, pose_in_world, pose_mode};
 use crate::worlds::{Loaded, list_physics_worlds, load};
 use agent::Reward;
 use anyhow::Context;
 use calendar::Kind;
 use clap::Args;
-use clap::builder::{PossibleValuesParser, TypedValueParser};
 use evaluation::physics_trial;
 use evaluation::trials::PhysicsRobot;
 use interfaces::PoseMode;
@@ -110,11 +109,6 @@ impl TrialKind for Houses {
     fn to_toml(world: &WorldSpec) -> Option<String> {
         worldfile::physics::to_toml(world.fleet())
     }
-}
-
-/// The kinds of calendars.
-fn one_of_kinds() -> impl TypedValueParser<Value = Kind> {
-    PossibleValuesParser::new(Kind::ALL.map(|(name, _)| name)).try_map(|name| name.parse::<Kind>())
 }
 
 /// A time in whole seconds.

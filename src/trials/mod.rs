@@ -14,6 +14,7 @@ use crate::program::{one_of, strategy_of};
 use crate::terminal::say;
 use agent::Reward;
 use anyhow::bail;
+use calendar::Kind;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser};
 use evaluation::trials::{Experiment, TrialStrategy, TrialWorld};
@@ -226,6 +227,11 @@ fn distinct<T: PartialEq + Clone>(values: &[T]) -> Vec<T> {
         }
     }
     distinct
+}
+
+/// The kinds of calendars.
+fn one_of_kinds() -> impl TypedValueParser<Value = Kind> {
+    PossibleValuesParser::new(Kind::ALL.map(|(name, _)| name)).try_map(|name| name.parse::<Kind>())
 }
 
 #[cfg(test)]

@@ -99,8 +99,9 @@ const PROGRAMS: [Program; 8] = [
     },
 ];
 
-const GRID_WORLD: [(&str, &str); 15] = [
+const GRID_WORLD: [(&str, &str); 16] = [
     ("--world", "nowhere"),
+    ("--calendar", "moon"),
     ("--sensor-radius", "-1"),
     ("--stochastic", "2"),
     ("--generate", "0"),

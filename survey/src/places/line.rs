@@ -5,10 +5,10 @@ use nalgebra::{Matrix2, Vector2};
 
 /// What is at most this wide across its line, in cells, is no body.
 const THIN_CELLS: f64 = 1.5;
-/// A line is at least this many times as long as it is wide.
-const LONG: f64 = 4.0;
+/// A line is at least this long, m: the front of a person is shorter.
+const LONG_M: f64 = 0.6;
 
-/// Whether cells, by their indices, are a thin line. People, carts and boxes are wider.
+/// Whether cells, by their indices, are a thin line, as long as a narrow door or longer. People, carts and boxes are wider.
 pub fn is_line(mapper: &Mapper, cells: &[usize]) -> bool {
     let at = |index: &usize| {
         let cell = mapper.frame().cell(*index);
@@ -20,8 +20,8 @@ pub fn is_line(mapper: &Mapper, cells: &[usize]) -> bool {
     let variances = (cells.iter().map(spread).sum::<Matrix2<f64>>() / count).symmetric_eigenvalues();
     // The variance of a row of cells that is n cells long is (n² − 1) / 12.
     let cells_of = |variance: f64| (12.0 * variance.max(0.0) + 1.0).sqrt();
-    let (width, length) = (cells_of(variances.min()), cells_of(variances.max()));
-    width <= THIN_CELLS && length >= LONG * width
+    let length_m = cells_of(variances.max()) * mapper.frame().resolution_m();
+    cells_of(variances.min()) <= THIN_CELLS && length_m >= LONG_M
 }
 
 #[cfg(test)]
@@ -44,6 +44,6 @@ mod tests {
         let slanted: Vec<(i32, i32)> = (5..25).map(|x| (x, x / 2)).collect();
         let body: Vec<(i32, i32)> = (5..11).flat_map(|x| (5..9).map(move |y| (x, y))).collect();
         assert!(is(&row) && is(&slanted) && !is(&body));
-        assert!(!is(&[(3, 3), (4, 3)]) && !is(&[]), "too short");
+        assert!(!is(&row[..8]) && !is(&[]), "too short");
     }
 }

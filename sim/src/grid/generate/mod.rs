@@ -1,5 +1,6 @@
 //! Random worlds, each from a seed.
 
+mod calendar;
 mod paths;
 mod rooms;
 #[cfg(test)]
