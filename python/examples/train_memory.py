@@ -23,6 +23,8 @@ from train_ppo import ENVS, Policy, toward, train
 #: The columns of an observation where the directions of the goal and of the shortest path begin.
 GOAL, PATH = 65, 67
 BEAMS, MAX_STEPS = 64, 600
+#: While learning. With the default of -0.5 per contact, a robot that stands still more and more earns most.
+REWARDS = {"goal_reward": 20.0, "collision_reward": -0.2}
 
 
 def house(seed: int) -> curious.Spec:
@@ -115,11 +117,11 @@ def draw(curves: dict[str, list[tuple[float, int, float, float]]], lines: dict[s
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--minutes", type=float, default=15.0, help="of training, per learned policy")
-    parser.add_argument("--train-houses", type=int, default=32)
+    parser.add_argument("--train-houses", type=int, default=64)
     parser.add_argument("--houses", type=int, default=50, help="test houses")
     parser.add_argument("--episodes", type=int, default=8, help="per test house")
     parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--without-memory", action="store_true", help="trains a policy without a memory as well")
+    parser.add_argument("--memory", choices=["yes", "no"], default="yes", help="whether the policy has a memory")
     parser.add_argument("--picture", help="a PNG file for the learning curve")
     parser.add_argument("--json", help="a file for all numbers")
     arguments = parser.parse_args()
@@ -127,9 +129,9 @@ def main() -> None:
         "driving at random": {"shows_path": False},
         "rule toward the goal": {"shows_path": False},
         "rule with the path": {"shows_path": True},
-        "PPO without memory": {"shows_path": False},
-        "PPO with memory": {"shows_path": False, "shows_memory": True},
     }
+    learned = "PPO with memory" if arguments.memory == "yes" else "PPO without memory"
+    settings[learned] = {"shows_path": False, "shows_memory": arguments.memory == "yes"}
     random = np.random.default_rng(1)
     policies: dict[str, Callable[[np.ndarray], np.ndarray]] = {
         "driving at random": lambda rows: random.uniform(-1.0, 1.0, (len(rows), 2)),
@@ -137,25 +139,24 @@ def main() -> None:
         "rule with the path": lambda rows: toward(rows, PATH),
     }
     curves: dict[str, list[tuple[float, int, float, float]]] = {}
-    learned: list[str] = ["PPO with memory"] if arguments.minutes > 0.0 else []
-    for name in learned + (["PPO without memory"] if learned and arguments.without_memory else []):
+    if arguments.minutes > 0.0:
         seeds = list(TRAIN_HOUSES)[: arguments.train_houses]
-        env = Houses(seeds, ENVS // len(seeds), **settings[name])
-        policy, curves[name] = train(env, arguments.minutes, arguments.seed)
-        policies[name] = noisy(policy, np.random.default_rng(2))
-    results = {}
+        env = Houses(seeds, ENVS // len(seeds), **settings[learned], **REWARDS)
+        policy, curves[learned] = train(env, arguments.minutes, arguments.seed)
+        policies[learned] = noisy(policy, np.random.default_rng(2))
+    results: dict[str, np.ndarray] = {}
     print(f"{arguments.houses} test houses, {arguments.episodes} episodes each")
     for name, act in policies.items():
         results[name] = found = evaluate(act, arguments.houses, arguments.episodes, **settings[name])
         shares, contacts = found[..., 0].mean(axis=1), found[..., 1]
         error = shares.std(ddof=1) / np.sqrt(len(shares))
         p = ""
-        if name in learned or "PPO with memory" not in results:
-            compared = results.get("rule toward the goal") if name in learned else None
-            p = f", p {p_value(shares - compared[..., 0].mean(axis=1)):.5f} against the rule" if compared is not None else ""
+        if name == learned:
+            differences = shares - results["rule toward the goal"][..., 0].mean(axis=1)
+            p = f", p {p_value(differences):.5f} against the rule toward the goal"
         print(
             f"{name:<22} {shares.mean():6.1%} ± {error:.1%} of the goals, {contacts.mean():5.2f} contacts, "
-            f"{(contacts == 0).mean():4.0%} without, {found[found[..., 0] > 0][:, 2].mean():5.1f} s{p}",
+            f"{(contacts == 0).mean():4.0%} without any{p}",
             flush=True,
         )
     if arguments.json:
