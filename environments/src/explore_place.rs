@@ -251,3 +251,20 @@ impl One {
         self.world.spec().driven().laser.beams
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn episodes_in_one_house_share_it_while_they_last() {
+        let place = ExplorePlace::of_houses(vec![7, 8], ExploreSettings::default()).unwrap();
+        let (one, other) = (place.one(0).unwrap(), place.one(1).unwrap());
+        assert!(Arc::ptr_eq(&one, &place.one(0).unwrap()) && !Arc::ptr_eq(&one, &other));
+        let Worlds::Houses(houses) = &place.worlds else { panic!("these are houses") };
+        drop((one, other));
+        let _again = place.one(1).unwrap();
+        let built = houses.built.lock().unwrap();
+        assert_eq!(built.keys().copied().collect::<Vec<_>>(), [1]);
+    }
+}
