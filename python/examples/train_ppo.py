@@ -129,7 +129,7 @@ def train(env: Any, minutes: float, seed: int) -> tuple[Policy, list[tuple[float
             for batch in random.permutation(STEPS * ENVS).reshape(-1, BATCH):
                 update(policy, adam, rate, *(part[batch] for part in (*flat, returns, gains)))
         steps += STEPS * ENVS
-        if time.perf_counter() - shown > 10.0 and recent:
+        if time.perf_counter() - shown > 10.0 and len(recent) >= 100:
             shown, recent, contacts = time.perf_counter(), recent[-500:], contacts[-500:]
             curve.append((spent, steps, float(np.mean(recent)), float(np.mean(contacts))))
             print(f"{spent:4.1f} min {steps:>10,} steps, success {np.mean(recent):4.0%}, σ {np.exp(policy.log_std)}", flush=True)
