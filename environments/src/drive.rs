@@ -1,5 +1,6 @@
 //! Driving to goals among moving things.
 
+use crate::memory::{LAYER, Memory};
 use crate::picture::Picture;
 use crate::place::DrivePlace;
 use crate::task::{ACTIONS, Part, Results, Task, twist, write_scan, write_state};
@@ -21,11 +22,17 @@ const STATE: usize = 7;
 /// (shares of the maximum). Directions are in the frame of the robot. An agent at its goal stands still until all
 /// others are there.
 ///
+/// With [`shows_memory`](crate::DriveSettings::shows_memory), two more parts follow, each at 0.5, 1, 1.75 and 3 m from the robot in 16
+/// directions, counter-clockwise from behind: how long the robot was there in this episode (n / (n + 20) decisions), and which share of it
+/// the robot saw, up to 4 m away.
+///
 /// The two actions are the wanted linear and angular velocity, as shares of the maximum.
 pub struct Drive {
     place: Arc<DrivePlace>,
     fleet: Fleet,
     agents: Vec<Progress>,
+    /// One per agent; none without [`shows_memory`](crate::DriveSettings::shows_memory).
+    memories: Vec<Memory>,
     steps: u32,
 }
 
@@ -44,7 +51,27 @@ impl Drive {
     /// The task in a place. It must be reset before the first step.
     pub fn new(place: &Arc<DrivePlace>) -> Self {
         let agents = vec![Progress::default(); place.robots.len()];
-        Self { place: Arc::clone(place), fleet: place.fleet.clone(), agents, steps: 0 }
+        let remembering = if place.settings.shows_memory { agents.len() } else { 0 };
+        let memories = vec![Memory::new(&place.frame); remembering];
+        Self { place: Arc::clone(place), fleet: place.fleet.clone(), agents, memories, steps: 0 }
+    }
+
+    /// The agents measure, so that scans and poses are of the same instant, and remember it.
+    fn look(&mut self) {
+        let Self { place, fleet, memories, .. } = self;
+        for agent in &place.robots {
+            fleet.look(agent.robot);
+        }
+        for (agent, memory) in place.robots.iter().zip(memories) {
+            if let Some(robot) = fleet.robot(agent.robot) {
+                memory.note(&robot.pose.translation.vector.into(), robot.reading(), &robot.pose);
+            }
+        }
+    }
+
+    /// The numbers of the observation of an agent.
+    fn observation_len(&self) -> usize {
+        self.place.beams() + STATE + if self.memories.is_empty() { 0 } else { 2 * LAYER }
     }
 }
 
@@ -59,14 +86,17 @@ impl Task for Drive {
 
     fn parts(&self) -> Vec<Part> {
         let beams = self.place.beams();
-        let slices = vec![
+        let mut slices = vec![
             ("scan", beams),
             ("goal_distance", 1),
             ("goal_direction", 2),
             ("path_direction", 2),
             ("velocity", 2),
         ];
-        vec![Part { slices, ..Part::new("observation", vec![beams + STATE]) }]
+        if !self.memories.is_empty() {
+            slices.extend([("visited", LAYER), ("seen", LAYER)]);
+        }
+        vec![Part { slices, ..Part::new("observation", vec![self.observation_len()]) }]
     }
 
     fn info_names(&self) -> &'static [&'static str] {
@@ -74,7 +104,8 @@ impl Task for Drive {
     }
 
     fn reset(&mut self, seed: u64) {
-        let Self { place, fleet, agents, steps } = self;
+        let Self { place, fleet, agents, memories, steps } = self;
+        memories.iter_mut().for_each(Memory::clear);
         fleet.reset(seed);
         *steps = 0;
         let mut random = RandomStream::new(seed, Purpose::Task);
@@ -88,11 +119,11 @@ impl Task for Drive {
             let left_m = place.distances(agent, goal).at_m(&place.frame, &at).unwrap_or(place.diagonal_m);
             *progress = Progress { goal, left_m, ..Progress::default() };
         }
-        look(place, fleet);
+        self.look();
     }
 
     fn step(&mut self, actions: &[f32], results: &mut Results) {
-        let Self { place, fleet, agents, steps } = self;
+        let Self { place, fleet, agents, steps, .. } = self;
         let settings = &place.settings;
         for ((of, progress), action) in place.robots.iter().zip(&*agents).zip(actions.chunks(ACTIONS)) {
             let wanted = || twist(&fleet.spec().robots[of.robot].drive, action);
@@ -129,17 +160,22 @@ impl Task for Drive {
             terminated[agent] = progress.is_at_goal;
             truncated[agent] = is_truncated && !progress.is_at_goal;
         }
-        look(place, fleet);
+        self.look();
     }
 
     fn observe(&mut self, observations: &mut [f32]) {
         let place = &*self.place;
         let beams = place.beams();
-        let parts = observations.chunks_mut(beams + STATE).zip(&place.robots).zip(&self.agents);
+        let parts = observations.chunks_mut(self.observation_len()).zip(&place.robots).zip(&self.agents);
         for (agent, ((observation, of), progress)) in parts.enumerate() {
             let Some(robot) = self.fleet.robot(of.robot) else { continue };
             let spec = &self.fleet.spec().robots[of.robot];
             let (scan, state) = observation.split_at_mut(beams);
+            let (state, memory) = state.split_at_mut(STATE);
+            if let Some(own) = self.memories.get(agent) {
+                let (visited, seen) = memory.split_at_mut(LAYER);
+                own.write(visited, seen, &robot.pose);
+            }
             match robot.reading() {
                 Some(reading) => write_scan(scan, &reading.scan.ranges_m, spec.laser.range_max_m),
                 None => scan.fill(0.0),
@@ -198,20 +234,23 @@ impl Task for Drive {
     }
 
     fn snapshot(&mut self) -> Vec<u8> {
-        to_bytes(&(self.fleet.snapshot(), &self.agents, self.steps))
+        to_bytes(&(self.fleet.snapshot(), &self.agents, &self.memories, self.steps))
     }
 
     fn restore(&mut self, snapshot: &[u8]) -> Result<(), SnapshotError> {
-        let (fleet, agents, steps): (Vec<u8>, Vec<Progress>, u32) =
+        type Saved = (Vec<u8>, Vec<Progress>, Vec<Memory>, u32);
+        let (fleet, agents, memories, steps): Saved =
             from_bytes(snapshot).map_err(|_| SnapshotError::Damaged)?;
         let goals = agents.iter().enumerate().map(|(agent, progress)| (agent, progress.goal));
         let is_known =
             |(agent, goal): (usize, usize)| agent < self.agents.len() && goal < self.place.goals(agent);
-        if agents.len() != self.agents.len() || !goals.into_iter().all(is_known) {
+        let is_memory = memories.len() == self.memories.len()
+            && memories.iter().zip(&self.memories).all(|(saved, own)| saved.is_like(own));
+        if agents.len() != self.agents.len() || !is_memory || !goals.into_iter().all(is_known) {
             return Err(SnapshotError::OtherSpec);
         }
         self.fleet.restore(&fleet)?;
-        (self.agents, self.steps) = (agents, steps);
+        (self.agents, self.memories, self.steps) = (agents, memories, steps);
         Ok(())
     }
 }
@@ -219,11 +258,4 @@ impl Task for Drive {
 /// The position of a robot, m.
 fn at(fleet: &Fleet, robot: usize) -> Point2<f64> {
     fleet.robot(robot).map_or(Point2::origin(), |robot| robot.pose.translation.vector.into())
-}
-
-/// The agents measure, so that scans and poses are of the same instant.
-fn look(place: &DrivePlace, fleet: &mut Fleet) {
-    for agent in &place.robots {
-        fleet.look(agent.robot);
-    }
 }

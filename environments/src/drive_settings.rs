@@ -17,6 +17,9 @@ pub struct DriveSettings {
     /// Whether the observation has the direction of the shortest path, as a global planner with a map would give it.
     /// Without it both numbers are 0.
     pub shows_path: bool,
+    /// Whether the observation has a memory: where the robot was in this episode, and what it saw. With it, a robot without the
+    /// direction of the path can come out of dead ends.
+    pub shows_memory: bool,
     /// The reward at the goal.
     pub goal_reward: f64,
     /// The reward per metre that the shortest path becomes shorter.
@@ -35,6 +38,7 @@ impl Default for DriveSettings {
             goal_radius_m: 0.3,
             min_goal_m: 3.0,
             shows_path: true,
+            shows_memory: false,
             goal_reward: 10.0,
             progress_reward: 1.0,
             collision_reward: -0.5,

@@ -9,7 +9,8 @@ use nalgebra::{Isometry2, Point2};
 use robot::{NoPilot, Robot, Settings};
 use sim::physics::building_ranges::HOUSE;
 use sim::physics::{ContactModel, FleetSpec, FreePoses, PhysicsWorld, WorldSpec};
-use std::sync::Arc;
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, PoisonError, Weak};
 
 /// What an exploring robot earns.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Deserialize, serde::Serialize)]
@@ -127,7 +128,29 @@ pub struct ExplorePlace {
 /// Worlds that are kept, or seeds of houses that are built when an episode begins in them.
 enum Worlds {
     Kept(Vec<Arc<One>>),
-    Houses(Vec<u64>),
+    Houses(Houses),
+}
+
+/// Houses that are built when an episode begins in them, and are shared by the episodes in them.
+struct Houses {
+    seeds: Vec<u64>,
+    /// Those that were built, by index: some are gone.
+    built: Mutex<BTreeMap<usize, Weak<One>>>,
+}
+
+impl Houses {
+    fn one(&self, number: usize, settings: &ExploreSettings) -> Result<Arc<One>, TaskError> {
+        let built = || self.built.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(one) = built().get(&number).and_then(Weak::upgrade) {
+            return Ok(one);
+        }
+        // Not while others wait: to build a house takes a hundredth of a second.
+        let one = Arc::new(One::new(&WorldSpec::generate_house(self.seeds[number]), settings)?);
+        let mut built = built();
+        built.retain(|_, one| one.strong_count() > 0);
+        built.insert(number, Arc::downgrade(&one));
+        Ok(one)
+    }
 }
 
 /// A world at its start, and the settings of its robot.
@@ -177,14 +200,15 @@ impl ExplorePlace {
         let cell_m = first.world.spec().frame.resolution_m();
         let largest = GridFrame::covering(Point2::origin(), HOUSE.length_m[1], HOUSE.width_m[1], cell_m);
         let patches = Patches::covering(largest.iter());
-        Ok(Self { settings, worlds: Worlds::Houses(seeds), patches, beams: first.beams() })
+        let houses = Houses { seeds, built: Mutex::default() };
+        Ok(Self { settings, worlds: Worlds::Houses(houses), patches, beams: first.beams() })
     }
 
     /// The number of worlds.
     pub(crate) fn count(&self) -> usize {
         match &self.worlds {
             Worlds::Kept(worlds) => worlds.len(),
-            Worlds::Houses(seeds) => seeds.len(),
+            Worlds::Houses(houses) => houses.seeds.len(),
         }
     }
 
@@ -192,9 +216,7 @@ impl ExplorePlace {
     pub(crate) fn one(&self, number: usize) -> Result<Arc<One>, TaskError> {
         match &self.worlds {
             Worlds::Kept(worlds) => Ok(Arc::clone(&worlds[number])),
-            Worlds::Houses(seeds) => {
-                Ok(Arc::new(One::new(&WorldSpec::generate_house(seeds[number]), &self.settings)?))
-            }
+            Worlds::Houses(houses) => houses.one(number, &self.settings),
         }
     }
 }
@@ -227,5 +249,22 @@ impl One {
 
     fn beams(&self) -> usize {
         self.world.spec().driven().laser.beams
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn episodes_in_one_house_share_it_while_they_last() {
+        let place = ExplorePlace::of_houses(vec![7, 8], ExploreSettings::default()).unwrap();
+        let (one, other) = (place.one(0).unwrap(), place.one(1).unwrap());
+        assert!(Arc::ptr_eq(&one, &place.one(0).unwrap()) && !Arc::ptr_eq(&one, &other));
+        let Worlds::Houses(houses) = &place.worlds else { panic!("these are houses") };
+        drop((one, other));
+        let _again = place.one(1).unwrap();
+        let built = houses.built.lock().unwrap();
+        assert_eq!(built.keys().copied().collect::<Vec<_>>(), [1]);
     }
 }

@@ -6,7 +6,8 @@ use crate::task::TaskError;
 use agent::Features;
 use evaluation::metrics::{MAX_LOG_ERROR, mean_log_error};
 use interfaces::{
-    CellState, LaserReading, Purpose, RandomStream, Twist, World, from_bytes, heading_rad, to_bytes,
+    CellState, LaserReading, Purpose, RandomStream, SparseCells, Twist, World, from_bytes, heading_rad,
+    to_bytes,
 };
 use mapper::Mapper;
 use robot::{NoPilot, Robot};
@@ -35,9 +36,9 @@ pub(crate) struct Explorer {
     pub(crate) features: Features,
     pub(crate) episode: Episode,
     /// Per cell the changes that were found after a gap in its view.
-    found: Vec<u32>,
+    found: SparseCells<u32>,
     /// Per cell the number of the reading that had last seen it, at the last note.
-    seen_at: Vec<u32>,
+    seen_at: SparseCells<u32>,
     /// The position at every reading, m.
     path: Vec<[f64; 2]>,
 }
@@ -63,8 +64,7 @@ impl Explorer {
         let one = place.one(0)?;
         let mut world = one.world.clone();
         let (robot, reading, episode) = (one.robot()?, world.sense(), Episode::default());
-        let found = vec![0; robot.mapper.frame().len()];
-        let (seen_at, path) = (found.clone(), Vec::new());
+        let (found, seen_at, path) = (none(&robot.mapper), none(&robot.mapper), Vec::new());
         let (place, features) = (Arc::clone(place), Features::default());
         Ok(Self { place, number: 0, one, world, robot, reading, features, episode, found, seen_at, path })
     }
@@ -83,8 +83,7 @@ impl Explorer {
         }
         self.episode = Episode::default();
         self.path.clear();
-        self.seen_at.clear();
-        self.seen_at.resize(self.robot.mapper.frame().len(), 0);
+        self.seen_at = none(&self.robot.mapper);
         self.count_found();
     }
 
@@ -154,13 +153,13 @@ impl Explorer {
                 let from = self.path[self.seen_at[index] as usize];
                 found += i64::from((at.x - from[0]).hypot(at.y - from[1]) >= MOVE_M);
             }
-            self.found[index] = after_gaps;
+            self.found.set(index, after_gaps);
         }
         let number = self.path.len() - 1;
         if number.is_multiple_of(NOTE_EVERY) {
-            for (index, seen_at) in self.seen_at.iter_mut().enumerate() {
+            for index in mapper.seen() {
                 let ago = mapper.recency(index) * self.one.rate_hz;
-                *seen_at = number.saturating_sub(ago.round() as usize) as u32;
+                self.seen_at.set(index, number.saturating_sub(ago.round() as usize) as u32);
             }
         }
         self.episode.last = [updates, found, seen];
@@ -172,10 +171,9 @@ impl Explorer {
     /// Counts the found changes of all cells anew.
     fn count_found(&mut self) {
         let mapper = &self.robot.mapper;
-        self.found.clear();
-        self.found.resize(mapper.frame().len(), 0);
+        self.found = none(mapper);
         for index in mapper.changed() {
-            self.found[index] = found_changes(mapper, index);
+            self.found.set(index, found_changes(mapper, index));
         }
     }
 
@@ -245,7 +243,7 @@ impl Explorer {
             filter.unwrap_or_default(),
         );
         let world = self.world.snapshot().into_bytes();
-        let views = (&self.seen_at, &self.path);
+        let views = (self.seen_at.to_vec(), &self.path);
         to_bytes(&(self.number, world, learned, &self.reading, self.features, self.episode, views))
     }
 
@@ -265,7 +263,8 @@ impl Explorer {
         {
             return Err(SnapshotError::Damaged);
         }
-        (self.seen_at, self.path) = (seen_at, path);
+        self.path = path;
+        seen_at.into_iter().enumerate().for_each(|(index, reading)| self.seen_at.set(index, reading));
         self.world.restore(&world)?;
         self.robot.mapper.restore(&mapper).map_err(|_| SnapshotError::Damaged)?;
         self.robot.localization_mut().restore(&poses).map_err(|_| SnapshotError::Damaged)?;
@@ -276,6 +275,11 @@ impl Explorer {
         self.count_found();
         Ok(())
     }
+}
+
+/// A number per cell that is 0 for most of them.
+fn none(mapper: &Mapper) -> SparseCells<u32> {
+    SparseCells::in_blocks(mapper.frame().width(), mapper.frame().height(), 0)
 }
 
 /// The changes of a cell that were found at the end of a gap in its view: the mapper counts a cell that was hidden for less

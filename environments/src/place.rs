@@ -121,12 +121,13 @@ impl DrivePlace {
 impl DrivenRobot {
     fn new(coarse: &FleetSpec, robot: usize) -> Option<Self> {
         let starts = FreePoses::reachable(coarse, robot)?;
-        let cells = starts.cells();
         let mut is_free = vec![false; coarse.frame.len()];
-        cells.iter().for_each(|&cell| is_free[cell] = true);
-        let most = MAX_GOALS.min(MAX_DISTANCES / coarse.frame.len()).clamp(1, cells.len());
-        let goal =
-            |number: usize| Goal { cell: cells[number * cells.len() / most], distances: OnceLock::new() };
+        starts.cells().for_each(|cell| is_free[cell] = true);
+        let most = MAX_GOALS.min(MAX_DISTANCES / coarse.frame.len()).clamp(1, starts.len());
+        let goal = |number: usize| Goal {
+            cell: starts.cell(number * starts.len() / most),
+            distances: OnceLock::new(),
+        };
         let goals = (0..most).map(goal).collect();
         Some(Self { robot, starts, goals, is_free })
     }

@@ -90,11 +90,39 @@ fn a_snapshot_goes_on_bit_by_bit() {
         }
         assert_eq!(there.restore(0, &snapshot[1..]), Err(SnapshotError::Damaged));
     }
-    let place = drive_place(DriveSettings::default());
-    check(Batch::new(vec![Drive::new(&place)]), Batch::new(vec![Drive::new(&place)]));
+    for shows_memory in [false, true] {
+        let place = drive_place(DriveSettings { shows_memory, ..DriveSettings::default() });
+        check(Batch::new(vec![Drive::new(&place)]), Batch::new(vec![Drive::new(&place)]));
+    }
     let place = explore_place(ExploreSettings { beams: Some(60), ..ExploreSettings::default() });
     let one = || Batch::new(vec![Explore::new(&place).unwrap()]);
     check(one(), one());
+}
+
+#[test]
+fn a_memory_shows_where_the_robot_was_and_forgets_it_with_the_episode() {
+    let settings = DriveSettings { shows_memory: true, shows_path: false, ..DriveSettings::default() };
+    let mut task = Drive::new(&drive_place(settings));
+    let mut results =
+        Results { rewards: vec![0.0], terminated: vec![false], truncated: vec![false], ..Results::default() };
+    let len = task.parts()[0].values();
+    assert_eq!(len, 64 + 7 + 2 * 64);
+    let layers = |task: &mut Drive| {
+        let mut observation = vec![0.0; len];
+        task.observe(&mut observation);
+        assert_eq!(observation[67..69], [0.0; 2], "no path");
+        observation.split_off(71)
+    };
+    // In the cells at 0.5 m the robot never was, or they are beyond the world.
+    let is_visited = |share: &f32| *share > 0.0 && *share < 1.0;
+    task.reset(3);
+    let first = layers(&mut task);
+    assert!(!first[..16].iter().any(is_visited) && first[64..].iter().sum::<f32>() > 5.0, "{first:?}");
+    (0..60).for_each(|_| task.step(&[1.0, 0.4], &mut results));
+    let then = layers(&mut task);
+    assert!(then[..16].iter().any(is_visited) && then[64..] != first[64..], "{then:?}");
+    task.reset(3);
+    assert_eq!(layers(&mut task), first);
 }
 
 /// Follows the direction of the shortest path, and slows down where the scan is near ahead.

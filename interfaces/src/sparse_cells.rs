@@ -46,6 +46,11 @@ impl<T: Clone> SparseCells<T> {
         Self::small_up_to(SMALL_GRID, width, height, fill)
     }
 
+    /// The same in blocks, however small the grid is: for values that most cells of most grids do not have.
+    pub fn in_blocks(width: usize, height: usize, fill: T) -> Self {
+        Self::small_up_to(0, width, height, fill)
+    }
+
     /// The same, small up to this number of cells.
     fn small_up_to(small: usize, width: usize, height: usize, fill: T) -> Self {
         let (cells, inverse) = (width * height, (1 << 63) / (width as u64) + 1);
@@ -130,7 +135,7 @@ impl<T> SparseCells<T> {
 
     /// Whether there are no blocks.
     #[inline(always)]
-    fn is_small(&self) -> bool {
+    pub fn is_small(&self) -> bool {
         self.columns == 0
     }
 

@@ -61,7 +61,9 @@ impl Growth {
 
     /// The same for cells without a frame.
     pub(crate) fn sparse<T: Clone + PartialEq>(&self, cells: &mut SparseCells<T>) {
-        let mut moved = SparseCells::new(self.to.width(), self.to.height(), cells.fill().clone());
+        let (width, height) = (self.to.width(), self.to.height());
+        let new = if cells.is_small() { SparseCells::new } else { SparseCells::in_blocks };
+        let mut moved = new(width, height, cells.fill().clone());
         self.move_to(&mut moved, cells);
         *cells = moved;
     }

@@ -6,7 +6,9 @@
     sine of its direction, cosine and sine of the direction of the shortest path (as a global planner would give it),
     linear and angular velocity (shares of the maximum). Action, shape (2,), float32, from -1 to 1: linear and angular
     velocity as shares of the maximum. Reward: metres of the shortest path, 10 at the goal, -0.5 per collision, -0.01
-    per step. The episode terminates at the goal, and is truncated after 400 steps of 0.1 s.
+    per step. The episode terminates at the goal, and is truncated after 400 steps of 0.1 s. With ``shows_memory=True``, 128
+    more numbers follow, from 0 to 1: ``visited`` (64), how long the robot was in places around it in this episode, and ``seen``
+    (64), which share of them it saw: at 0.5, 1, 1.75 and 3 m, in 16 directions each, counter-clockwise from behind.
 
 ``ExploreEnv`` and ``ExploreVectorEnv``
     A robot maps houses in which doors open and people walk. Observation, a dict: ``scan``, shape (180,); ``state``,
@@ -433,8 +435,8 @@ class _Vector(gymnasium.vector.VectorEnv):
 class DriveEnv(_Single):
     """Driving to goals among moving things; see the module.
 
-    ``world``: a ``Spec``, a name or a path, with one driven robot. Settings: ``decision_s``, ``max_steps``, ``goal_radius`` (m), ``min_goal`` (m), ``shows_path``, ``goal_reward``,
-    ``progress_reward``, ``collision_reward``, ``step_reward``.
+    ``world``: a ``Spec``, a name or a path, with one driven robot. Settings: ``decision_s``, ``max_steps``, ``goal_radius`` (m), ``min_goal`` (m), ``shows_path``,
+    ``shows_memory``, ``goal_reward``, ``progress_reward``, ``collision_reward``, ``step_reward``.
     """
 
     _make = staticmethod(_drive)

@@ -23,6 +23,9 @@ STRATEGIES = ["frontier", *2 * ["recency"], *2 * ["poisson"], *2 * ["predicted-c
 #: The scales of reward and time (s) in the output of the network.
 SCALES = np.array([10.0, 20.0], np.float32)
 Choose = Callable[[dict[str, np.ndarray]], np.ndarray]
+#: Rewards in place of those of the task: from the observations before, the choices, the observations after, and whether an
+#: episode ended.
+Pay = Callable[[dict[str, np.ndarray], np.ndarray, dict[str, np.ndarray], np.ndarray], np.ndarray]
 
 
 def inputs(observation: dict[str, np.ndarray]) -> np.ndarray:
@@ -66,8 +69,8 @@ class Net:
             part -= RATE * (mean / (1 - 0.9**self.steps)) / (np.sqrt(square / (1 - 0.999**self.steps)) + 1e-8)
 
 
-def train(minutes: float, seed: int) -> tuple[Choose, list[tuple[float, float]]]:
-    """Learns for some minutes. Returns the policy, and (minutes, reward) of every episode."""
+def train(minutes: float, seed: int, pay: Pay | None = None) -> tuple[Choose, list[tuple[float, float]]]:
+    """Learns for some minutes. Returns the policy, and (minutes, reward of the task) of every episode."""
     env = ExploreGoalsVectorEnv(num_envs=ENVS, strategies=STRATEGIES)
     random = np.random.default_rng(seed)
     observation, _ = env.reset(seed=seed)
@@ -85,14 +88,16 @@ def train(minutes: float, seed: int) -> tuple[Choose, list[tuple[float, float]]]
         # Tries something else: always at first, in one of twenty steps at last.
         tries = random.random(ENVS) < max(0.05, 1.0 - 2.5 * spent / minutes)
         choice = np.where(tries, random.integers(0, x.shape[1], ENVS), choice)
-        observation, rewards, _, truncated, info = env.step(choice)
+        before = observation
+        observation, earned_now, _, truncated, info = env.step(choice)
+        rewards = earned_now if pay is None else pay(before, choice, observation, truncated)
         # The values of `info` are those before a reset.
         ends = info["time"]
         seen += list(x[np.arange(ENVS), choice])
         targets += list(np.stack([rewards, ends - times], axis=1).astype(np.float32) / SCALES)
         # The mean reward per second forgets the first, worse choices.
         earned, spent_s = 0.998 * earned + rewards.sum(), 0.998 * spent_s + (ends - times).sum()
-        returns += rewards
+        returns += earned_now
         curve += [(spent, float(total)) for total in returns[truncated]]
         returns, times = np.where(truncated, 0.0, returns), np.where(truncated, 0.0, info["time"])
         x = inputs(observation)

@@ -7,7 +7,7 @@ lines. `--minutes 0` measures the rule alone.
 
 import argparse
 import time
-from typing import Callable
+from typing import Any, Callable
 
 import numpy as np
 from curious.envs import DriveVectorEnv
@@ -85,9 +85,8 @@ class Policy:
         return log_probability
 
 
-def train(minutes: float, seed: int) -> Policy:
-    """Learns for some minutes."""
-    env = DriveVectorEnv(num_envs=ENVS)
+def train(env: Any, minutes: float, seed: int) -> tuple[Policy, list[tuple[float, int, float, float]]]:
+    """Learns for some minutes. Returns the policy, and (minutes, steps, share of goals, contacts) every ten seconds."""
     random = np.random.default_rng(seed)
     observation, _ = env.reset(seed=seed)
     policy = Policy(observation.shape[1], random)
@@ -95,6 +94,8 @@ def train(minutes: float, seed: int) -> Policy:
     adam = Adam(parameters)
     begin, steps, shown = time.perf_counter(), 0, 0.0
     recent: list[float] = []
+    contacts: list[float] = []
+    curve: list[tuple[float, int, float, float]] = []
     while (spent := (time.perf_counter() - begin) / 60.0) < minutes:
         observations = np.empty((STEPS, ENVS, observation.shape[1]), np.float32)
         actions, log_probabilities = np.empty((STEPS, ENVS, 2), np.float32), np.empty((STEPS, ENVS), np.float32)
@@ -114,6 +115,7 @@ def train(minutes: float, seed: int) -> Policy:
             goes_on[step] = ~(terminated | truncated)
             if "final_info" in info:
                 recent += info["final_info"]["is_success"][info["_final_info"]].tolist()
+                contacts += info["final_info"]["collisions"][info["_final_info"]].tolist()
         advantages, advantage = np.empty_like(rewards), np.zeros(ENVS, np.float32)
         following = policy.critic.forward(observation)[-1][:, 0]
         for step in reversed(range(STEPS)):
@@ -127,11 +129,12 @@ def train(minutes: float, seed: int) -> Policy:
             for batch in random.permutation(STEPS * ENVS).reshape(-1, BATCH):
                 update(policy, adam, rate, *(part[batch] for part in (*flat, returns, gains)))
         steps += STEPS * ENVS
-        if time.perf_counter() - shown > 10.0 and recent:
-            shown, recent = time.perf_counter(), recent[-500:]
+        if time.perf_counter() - shown > 10.0 and len(recent) >= 100:
+            shown, recent, contacts = time.perf_counter(), recent[-500:], contacts[-500:]
+            curve.append((spent, steps, float(np.mean(recent)), float(np.mean(contacts))))
             print(f"{spent:4.1f} min {steps:>10,} steps, success {np.mean(recent):4.0%}, σ {np.exp(policy.log_std)}", flush=True)
     env.close()
-    return policy
+    return policy, curve
 
 
 def update(
@@ -163,7 +166,12 @@ def update(
 
 def rule(rows: np.ndarray) -> np.ndarray:
     """Follows the shortest path, and slows down where the scan is near ahead."""
-    cos, sin, near = rows[:, -4], rows[:, -3], rows[:, 28:37].min(axis=1)
+    return toward(rows, 67)
+
+
+def toward(rows: np.ndarray, column: int) -> np.ndarray:
+    """Follows the direction at a column of the observation."""
+    cos, sin, near = rows[:, column], rows[:, column + 1], rows[:, 28:37].min(axis=1)
     speed = np.where(cos < 0.5, 0.0, np.clip(4.0 * near - 0.2, 0.1, 1.0) * cos)
     return np.stack([speed, 1.2 * np.arctan2(sin, cos)], axis=1).clip(-1.0, 1.0)
 
@@ -200,5 +208,5 @@ if __name__ == "__main__":
     arguments = parser.parse_args()
     evaluate("rule", rule, episodes=500, first_seed=1_000_000)
     if arguments.minutes > 0.0:
-        learned = train(arguments.minutes, arguments.seed)
+        learned, _ = train(DriveVectorEnv(num_envs=ENVS), arguments.minutes, arguments.seed)
         evaluate("PPO", learned.best, episodes=500, first_seed=1_000_000)

@@ -11,12 +11,13 @@ use pyo3::types::PyDict;
 /// A setting of a task: its keyword, and what sets it.
 type Setting<S> = (&'static str, fn(&mut S, &Bound<'_, PyAny>, &str) -> PyResult<()>);
 
-const DRIVE: [Setting<DriveSettings>; 9] = [
+const DRIVE: [Setting<DriveSettings>; 10] = [
     ("decision_s", |to, value, key| set(&mut to.decision_s, value, key)),
     ("max_steps", |to, value, key| set(&mut to.max_steps, value, key)),
     ("goal_radius", |to, value, key| set(&mut to.goal_radius_m, value, key)),
     ("min_goal", |to, value, key| set(&mut to.min_goal_m, value, key)),
     ("shows_path", |to, value, key| set(&mut to.shows_path, value, key)),
+    ("shows_memory", |to, value, key| set(&mut to.shows_memory, value, key)),
     ("goal_reward", |to, value, key| set(&mut to.goal_reward, value, key)),
     ("progress_reward", |to, value, key| set(&mut to.progress_reward, value, key)),
     ("collision_reward", |to, value, key| set(&mut to.collision_reward, value, key)),

@@ -396,3 +396,19 @@ def test_python_and_rust_give_the_same_bits(kind, threads):
         for bits in np.concatenate([observations.ravel(), rewards]).view(np.uint32).tolist():
             value = ((value ^ bits) * 0x100000001B3) & 0xFFFFFFFFFFFFFFFF
     assert value == GOLDEN[kind]
+
+
+def test_drive_has_a_memory_with_names():
+    env = gymnasium.make("curious/Drive-v0", shows_path=False, shows_memory=True).unwrapped
+    observation, _ = env.reset(seed=4)
+    assert observation.shape == (64 + 7 + 128,) == env.observation_space.shape
+    visited, seen = (observation[env.slices[name]] for name in ("visited", "seen"))
+    assert visited.shape == seen.shape == (64,)
+    assert (observation[env.slices["path_direction"]] == 0.0).all()
+    # At first the robot was nowhere but where it is; beyond the world both are 1.
+    assert visited[:16].max() < 0.1 and seen.mean() > 0.1
+    for _ in range(30):
+        observation, *_ = env.step(np.array([0.0, 0.0], np.float32))
+    other = copy.deepcopy(env)
+    action_of = np.array([1.0, 0.2], np.float32)
+    np.testing.assert_array_equal(env.step(action_of)[0], other.step(action_of)[0])

@@ -21,7 +21,7 @@ pub(super) struct SharedCells<T> {
 impl<T: Clone + Default + PartialEq> SharedCells<T> {
     /// The default value for each cell of a frame; no cell without a frame.
     pub(super) fn new(frame: Option<&GridFrame>) -> Self {
-        let numbers = frame.map(|frame| SparseCells::new(frame.width(), frame.height(), 0));
+        let numbers = frame.map(|frame| SparseCells::in_blocks(frame.width(), frame.height(), 0));
         Self { numbers, chunks: Vec::new(), default: T::default() }
     }
 
@@ -36,7 +36,7 @@ impl<T: Clone + Default + PartialEq> SharedCells<T> {
         self.at(self.numbers.as_ref()?.place(index))
     }
 
-    /// The value at a place; `None` if there is no cell.
+    /// The value at a place of a grid in blocks; `None` if there is no cell.
     #[inline]
     pub(super) fn at(&self, place: Place) -> Option<&T> {
         Some(match *self.numbers.as_ref()?.at_place(place) {

@@ -42,7 +42,7 @@ impl WorldSpec {
         let (solids, mut reached) = (solids(self), vec![false; frame.len()]);
         let states = start::walls_cover(frame, &solids);
         for cell in FreePoses::reachable(self, self.driven_index()).iter().flat_map(FreePoses::cells) {
-            reached[*cell] = true;
+            reached[cell] = true;
         }
         let range_m = robot.laser.range_max_m;
         let sight = Sight::new(frame, &solids, range_m, robot.radius_m, &reached);

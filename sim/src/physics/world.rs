@@ -15,7 +15,8 @@ use std::sync::Arc;
 pub struct PhysicsWorld {
     spec: Arc<WorldSpec>,
     fleet: Fleet,
-    truth: PhysicsGroundTruth,
+    /// Shared with that at the start until the first step.
+    truth: Arc<PhysicsGroundTruth>,
     /// The ground truth at the start, which is the same for every seed.
     start: Arc<PhysicsGroundTruth>,
     contacts: Vec<Contact>,
@@ -42,10 +43,11 @@ impl PhysicsWorld {
             truth.move_robot(index, &fleet.robots[index].form());
         }
         truth.begin();
+        let truth = Arc::new(truth);
         Self {
             spec: Arc::new(spec.clone()),
             fleet,
-            start: Arc::new(truth.clone()),
+            start: Arc::clone(&truth),
             truth,
             contacts: Vec::new(),
             obstacle_events: Vec::new(),
@@ -57,7 +59,7 @@ impl PhysicsWorld {
     /// for bit. Corrected odometry stays so. The place is kept: a reset takes a small part of the time.
     pub fn reset(&mut self, seed: u64) {
         self.fleet.reset(seed);
-        self.truth.clone_from(&self.start);
+        self.truth = Arc::clone(&self.start);
         self.contacts.clear();
         self.obstacle_events.clear();
     }
@@ -117,7 +119,7 @@ impl PhysicsWorld {
     pub fn snapshot(&self) -> WorldSnapshot {
         let Self { fleet, truth, contacts, obstacle_events, .. } = self;
         let (contacts, obstacle_events) = (contacts.clone(), obstacle_events.clone());
-        WorldSnapshot { fleet: fleet.snapshot(), truth: truth.clone(), contacts, obstacle_events }
+        WorldSnapshot { fleet: fleet.snapshot(), truth: Arc::clone(truth), contacts, obstacle_events }
     }
 
     /// Goes on from the bytes of a snapshot of a world with the same spec, bit for bit.
@@ -130,7 +132,8 @@ impl PhysicsWorld {
         let mut fleet = Vec::new();
         snapshot::read(&mut snapshot, vec![value(&mut fleet)])?;
         self.fleet.restore(&fleet)?;
-        let values = values(&mut self.truth, &mut self.contacts, &mut self.obstacle_events);
+        let truth = Arc::make_mut(&mut self.truth);
+        let values = values(truth, &mut self.contacts, &mut self.obstacle_events);
         interfaces::restore(values, snapshot).map_err(|_| SnapshotError::Damaged)
     }
 
@@ -143,7 +146,7 @@ impl PhysicsWorld {
     /// The same; shows the world at each multiple of `every_s`, s.
     pub fn rest_watched(&mut self, until_s: f64, every_s: f64, mut watch: impl FnMut(&Self)) {
         const ROUNDING_S: f64 = 1e-6;
-        self.truth.changes.clear();
+        Arc::make_mut(&mut self.truth).changes.clear();
         self.contacts.clear();
         self.fleet.command(self.spec.driven_index(), Twist::STOP);
         let step_s = self.spec.step_s;
@@ -164,30 +167,31 @@ impl PhysicsWorld {
         let at_rest = self.fleet.steps_at_rest(most);
         if at_rest > 0 {
             self.fleet.pass(at_rest);
-            self.truth.elapsed_s = self.time_s();
+            Arc::make_mut(&mut self.truth).elapsed_s = self.fleet.time_s();
             return at_rest;
         }
         self.fleet.think(|robot| !robot.is_driven());
         self.fleet.advance();
         let time_s = self.time_s();
-        self.truth.elapsed_s = time_s;
+        let truth = Arc::make_mut(&mut self.truth);
+        truth.elapsed_s = time_s;
         for index in others(&self.spec) {
             let robot = &self.fleet.robots[index];
             if robot.has_moved() {
-                self.truth.move_robot(index, &robot.form());
+                truth.move_robot(index, &robot.form());
             }
         }
         if self.fleet.moved().len() > 0 {
             let boxes = self.fleet.standing_boxes();
             for (index, before, after) in self.fleet.moved() {
-                self.truth.move_box(&before, &after, &boxes, Body::Obstacle(index));
+                truth.move_box(&before, &after, &boxes, Body::Obstacle(index));
             }
         }
         let contacts = self.fleet.contacts.drain(..);
         self.contacts.extend(contacts.filter(|contact| contact.robot == self.spec.driven_index()));
         self.fleet.update_obstacles(|obstacle, appeared, standing| {
             let spec = &self.spec.obstacles[obstacle];
-            let cells = self.truth.change_box(&spec.shape, standing, Some(Body::Obstacle(obstacle)));
+            let cells = truth.change_box(&spec.shape, standing, Some(Body::Obstacle(obstacle)));
             if spec.schedule().is_some() {
                 return;
             }
@@ -202,7 +206,7 @@ impl PhysicsWorld {
 #[derive(Clone, Debug)]
 pub struct WorldSnapshot {
     fleet: Vec<u8>,
-    truth: PhysicsGroundTruth,
+    truth: Arc<PhysicsGroundTruth>,
     contacts: Vec<Contact>,
     obstacle_events: Vec<ObstacleEvent>,
 }
@@ -211,7 +215,8 @@ impl WorldSnapshot {
     /// The state as bytes: that of the [fleet](Fleet::snapshot), and the ground truth.
     pub fn into_bytes(mut self) -> Vec<u8> {
         let mut all = vec![value(&mut self.fleet)];
-        all.extend(values(&mut self.truth, &mut self.contacts, &mut self.obstacle_events));
+        let truth = Arc::make_mut(&mut self.truth);
+        all.extend(values(truth, &mut self.contacts, &mut self.obstacle_events));
         interfaces::snapshot(all)
     }
 }
@@ -254,7 +259,7 @@ impl World for PhysicsWorld {
     }
 
     fn act(&mut self, command: &Twist) {
-        self.truth.changes.clear();
+        Arc::make_mut(&mut self.truth).changes.clear();
         self.contacts.clear();
         self.fleet.command(self.spec.driven_index(), *command);
         for _ in 0..self.spec.driven().laser.period_steps {

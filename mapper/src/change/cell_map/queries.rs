@@ -97,15 +97,17 @@ impl CellMap {
 
     /// The change statistics of a cell.
     pub fn statistics(&self, index: usize) -> CellStatistics {
-        let place = self.observed.place(index);
+        let place = self.records.place(index);
         let record = self.records.at(place);
         if !record.is_known() {
             return CellStatistics::default();
         }
-        let last = self.observed.at_place(place) & !super::observing::UNSETTLED;
+        // The lists that every reading reads have no blocks in a small map.
+        let dense = if self.observed.is_small() { self.observed.place(index) } else { place };
+        let last = self.observed.at_place(dense) & !super::observing::UNSETTLED;
         let (first_seen, last_seen) = (self.times.at(record.first), self.times.at(last));
         let mut watched = record.watched;
-        watched[state_index(*self.states.cells().at_place(place))] += last_seen - self.times.at(record.since);
+        watched[state_index(*self.states.cells().at_place(dense))] += last_seen - self.times.at(record.since);
         let [watched_free, watched_blocked] = watched;
         let period = self.times.period(last);
         CellStatistics {

@@ -39,13 +39,20 @@ pub(super) struct Records {
 
 impl Records {
     pub(super) fn new(frame: &GridFrame) -> Self {
-        Self { short: SparseCells::new(frame.width(), frame.height(), Short::default()), long: Vec::new() }
+        let short = SparseCells::in_blocks(frame.width(), frame.height(), Short::default());
+        Self { short, long: Vec::new() }
     }
 
     /// The record of a cell.
     #[inline]
     pub(super) fn get(&self, index: usize) -> Record {
         self.at(self.short.place(index))
+    }
+
+    /// Where the record of a cell is stored: in blocks, as all values that cells have only once they were seen.
+    #[inline]
+    pub(super) fn place(&self, index: usize) -> Place {
+        self.short.place(index)
     }
 
     /// The record at a place.

@@ -21,7 +21,7 @@ pub(super) struct SharedPrior {
 
 impl SharedPrior {
     pub(super) fn new(frame: &GridFrame) -> Self {
-        Self { prior: None, means: SparseCells::new(frame.width(), frame.height(), 0.0), due: 0 }
+        Self { prior: None, means: SparseCells::in_blocks(frame.width(), frame.height(), 0.0), due: 0 }
     }
 }
 

@@ -27,6 +27,7 @@ mod hits;
 mod misses;
 mod saved;
 mod settings;
+mod surfaces;
 
 use super::OccupancyModel;
 use super::footprint::Footprint;
@@ -38,6 +39,7 @@ use bodies::{Body, NewHit};
 use interfaces::{CellState, SparseCells, Values, cell_runs};
 use nalgebra::Point2;
 pub use settings::SurfaceGridSettings;
+use surfaces::Surfaces;
 
 /// The mean of the hit points is taken over about this number of hits.
 const SURFACE_MEMORY: u16 = 32;
@@ -66,7 +68,7 @@ struct Surface {
 #[derive(Clone, Debug)]
 pub(super) struct SurfaceGrid {
     settings: SurfaceGridSettings,
-    surfaces: SparseCells<Surface>,
+    surfaces: Surfaces,
     /// For an unknown or free cell: the number of consecutive hits (above 0) or misses (below 0). For a blocked
     /// cell: the number of misses left until the cell becomes free. Apart from the surfaces, because every cell that was seen has
     /// evidence, and most have no surface.
@@ -87,7 +89,7 @@ pub(super) struct SurfaceGrid {
 impl SurfaceGrid {
     pub(super) fn new(settings: SurfaceGridSettings, cells: &mut CellMap) -> Self {
         let frame = *cells.frame();
-        let mut surfaces = SparseCells::new(frame.width(), frame.height(), Surface::default());
+        let mut surfaces = Surfaces::new(&frame);
         let mut evidence = SparseCells::new(frame.width(), frame.height(), 0);
         let known = cells.states().cells().other_than(CellState::Unknown);
         let known: Vec<(usize, CellState)> = known.map(|(index, state)| (index, *state)).collect();
@@ -145,12 +147,12 @@ impl OccupancyModel for SurfaceGrid {
     fn grow(&mut self, growth: &Growth, settings: &MapperSettings) {
         self.settings = settings.steady.clone();
         let shift_m = growth.shift_m();
-        for surface in self.surfaces.stored_values_mut().filter(|surface| surface.point_m != [0.0; 2]) {
+        for surface in self.surfaces.all_mut().filter(|surface| surface.point_m != [0.0; 2]) {
             for (at, shift_m) in surface.point_m.iter_mut().zip(shift_m.iter()) {
                 *at = (f64::from(*at) + shift_m) as f32;
             }
         }
-        growth.sparse(&mut self.surfaces);
+        self.surfaces.grow(growth);
         growth.sparse(&mut self.evidence);
     }
 }

@@ -1,5 +1,6 @@
 //! The surfaces in a state file.
 
+use super::surfaces::Surfaces;
 use super::{Surface, SurfaceGrid};
 use crate::change::ReadingIndex;
 use interfaces::{CellList, SparseCells, ValueError, write_value};
@@ -19,7 +20,7 @@ pub(super) struct SavedSurface {
 
 /// The surfaces of all cells, with the evidence.
 pub(super) struct SavedSurfaces<'a> {
-    surfaces: &'a mut SparseCells<Surface>,
+    surfaces: &'a mut Surfaces,
     evidence: &'a mut SparseCells<i8>,
 }
 

@@ -2,6 +2,7 @@
 
 pub(super) mod cover;
 mod open_share;
+mod passages;
 mod robots;
 pub(super) mod start;
 #[cfg(test)]
@@ -9,12 +10,16 @@ mod tests;
 
 use super::report::Body;
 use super::shape::Rectangle;
-use interfaces::{Cell, GridFrame, GroundTruth, TrueChange, TrueState, Values, runs, value};
+use interfaces::{
+    Cell, GridFrame, GroundTruth, SparseCells, TrueChange, TrueState, Values, cell_runs, runs, value,
+};
 use nalgebra::Point2;
 use open_share::Cover;
+use passages::{Mover, Passages};
 use robots::UnderChange;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// The ground truth of a physics world.
 ///
@@ -31,9 +36,8 @@ pub struct PhysicsGroundTruth {
     states: Vec<TrueState>,
     /// The states that follow from walls and present obstacles alone.
     fixed: Vec<TrueState>,
-    /// The number of robots that overlap a cell, and the number of robots that cover all of the cell.
-    overlapped: Vec<u16>,
-    covered: Vec<u16>,
+    /// What moving things did to each cell: nothing to most of them.
+    passages: SparseCells<Passages>,
     /// The cells under each robot, by index, and whether the robot covers all of the cell.
     under: Vec<Vec<(u32, bool)>>,
     /// Scratch memory for such a list, and for the differences of two.
@@ -41,17 +45,19 @@ pub struct PhysicsGroundTruth {
     under_changes: Vec<UnderChange>,
     /// Whether the cell has been free since it was last blocked, so that the next time is a new event.
     armed: Vec<bool>,
-    block_events: Vec<u32>,
-    /// How often each cell was free and then overlapped.
-    pass_events: Vec<u32>,
-    movers: Vec<Option<Body>>,
     /// The cells that have a mover, one bit each.
     swept: Vec<u64>,
+    reach: Arc<Reach>,
+    pub(super) changes: Vec<TrueChange>,
+}
+
+/// What the driven robot can reach and see: the same at all times, and shared by all copies.
+#[derive(Debug)]
+struct Reach {
     /// The cells that are connected with the start of the driven robot. Walls separate cells, obstacles do not.
     reachable: Vec<bool>,
     /// The cells that are reachable or share a side with a reachable cell. No other cell can be seen.
     may_be_seen: Vec<bool>,
-    pub(super) changes: Vec<TrueChange>,
 }
 
 impl PhysicsGroundTruth {
@@ -64,27 +70,22 @@ impl PhysicsGroundTruth {
             frame,
             elapsed_s: 0.0,
             states: fixed.clone(),
-            overlapped: vec![0; frame.len()],
-            covered: vec![0; frame.len()],
+            passages: SparseCells::in_blocks(frame.width(), frame.height(), Passages::default()),
             under: Vec::new(),
             spare: Vec::new(),
             under_changes: Vec::new(),
             armed: fixed.iter().map(|state| *state != TrueState::Blocked).collect(),
-            block_events: vec![0; frame.len()],
-            pass_events: vec![0; frame.len()],
-            movers: vec![None; frame.len()],
             swept: vec![0; frame.len().div_ceil(64)],
-            may_be_seen: (0..frame.len()).map(may_be_seen).collect(),
-            reachable,
+            reach: Arc::new(Reach { may_be_seen: (0..frame.len()).map(may_be_seen).collect(), reachable }),
             changes: Vec::new(),
             fixed,
         }
     }
 
-    /// For each cell the first moving thing that touched it: another robot, or an obstacle that moves, appears or
-    /// disappears. `None` for static cells.
-    pub fn movers(&self) -> &[Option<Body>] {
-        &self.movers
+    /// The first moving thing that touched a cell: another robot, or an obstacle that moves, appears or disappears.
+    /// `None` for a static cell.
+    pub fn mover(&self, index: usize) -> Option<Body> {
+        self.passages[index].mover.body()
     }
 
     /// The values that a snapshot holds; walls and the reachable cells follow from the spec.
@@ -93,13 +94,9 @@ impl PhysicsGroundTruth {
             value(&mut self.elapsed_s),
             runs(&mut self.states),
             runs(&mut self.fixed),
-            runs(&mut self.overlapped),
-            runs(&mut self.covered),
+            cell_runs(&mut self.passages, usize::MAX),
             value(&mut self.under),
             runs(&mut self.armed),
-            runs(&mut self.block_events),
-            runs(&mut self.pass_events),
-            runs(&mut self.movers),
             runs(&mut self.swept),
             value(&mut self.changes),
         ]
@@ -171,15 +168,18 @@ impl PhysicsGroundTruth {
         let (word, bit) = (&mut self.swept[index / 64], 1 << (index % 64));
         if *word & bit == 0 {
             *word |= bit;
-            self.movers[index] = Some(body);
+            self.passages[index].mover = Mover::of(body);
         }
     }
 
     /// Ends the setup: the states at the start are not events.
     pub(super) fn begin(&mut self) {
-        self.changes.clear();
-        self.block_events.fill(0);
-        self.pass_events.fill(0);
+        self.changes = Vec::new();
+        let (width, height) = (self.frame.width(), self.frame.height());
+        let before =
+            std::mem::replace(&mut self.passages, SparseCells::in_blocks(width, height, Passages::default()));
+        // Without the blocks in which only the setup counted something.
+        before.stored().for_each(|(index, passages)| self.passages.set(index, passages.without_events()));
         for (armed, state) in self.armed.iter_mut().zip(&self.states) {
             *armed = *state != TrueState::Blocked;
         }
@@ -188,22 +188,25 @@ impl PhysicsGroundTruth {
     /// Updates the state of a cell, and counts the event if the state has changed.
     fn settle(&mut self, index: usize) {
         let before = self.states[index];
+        let Passages { overlapped, covered, .. } = self.passages[index];
         let after = match self.fixed[index] {
             TrueState::Blocked => TrueState::Blocked,
-            _ if self.covered[index] > 0 => TrueState::Blocked,
-            TrueState::Free if self.overlapped[index] == 0 => TrueState::Free,
+            _ if covered > 0 => TrueState::Blocked,
+            TrueState::Free if overlapped == 0 => TrueState::Free,
             _ => TrueState::PartlyCovered,
         };
         if before == after {
             return;
         }
         self.states[index] = after;
-        self.pass_events[index] += u32::from(before == TrueState::Free);
+        if before == TrueState::Free {
+            self.passages[index].pass_events += 1;
+        }
         match after {
             TrueState::Free => self.armed[index] = true,
             TrueState::Blocked if self.armed[index] => {
                 self.armed[index] = false;
-                self.block_events[index] += 1;
+                self.passages[index].block_events += 1;
             }
             TrueState::Blocked | TrueState::PartlyCovered => {}
         }
@@ -227,11 +230,12 @@ impl GroundTruth for PhysicsGroundTruth {
 
     fn can_be_seen(&self, index: usize) -> bool {
         match self.states[index] {
-            _ if !self.may_be_seen[index] => false,
-            TrueState::Free => self.reachable[index],
+            _ if !self.reach.may_be_seen[index] => false,
+            TrueState::Free => self.reach.reachable[index],
             TrueState::PartlyCovered => false,
             TrueState::Blocked => {
-                let is_open = |side: usize| self.states[side] != TrueState::Blocked && self.reachable[side];
+                let is_open =
+                    |side: usize| self.states[side] != TrueState::Blocked && self.reach.reachable[side];
                 self.frame.beside(index).any(is_open)
             }
         }
@@ -240,23 +244,24 @@ impl GroundTruth for PhysicsGroundTruth {
     /// A cell that is blocked, becomes partly covered and is blocked again without being free in between counts as
     /// blocked once.
     fn block_events(&self, index: usize) -> u32 {
-        self.block_events[index]
+        self.passages[index].block_events
     }
 
     fn pass_events(&self, index: usize) -> u32 {
         // A cell that was partly covered at the start can be blocked without having been free.
-        self.pass_events[index].max(self.block_events[index])
+        let Passages { pass_events, block_events, .. } = self.passages[index];
+        pass_events.max(block_events)
     }
 
     fn predicted_events(&self, index: usize) -> u32 {
-        match self.movers[index] {
+        match self.mover(index) {
             Some(Body::Obstacle(_)) => self.pass_events(index),
             _ => self.block_events(index),
         }
     }
 
     fn is_swept(&self, index: usize) -> bool {
-        self.movers[index].is_some()
+        self.swept[index / 64] >> (index % 64) & 1 == 1
     }
 
     fn swept(&self) -> Cow<'_, [usize]> {
@@ -272,13 +277,12 @@ impl GroundTruth for PhysicsGroundTruth {
         cells.into()
     }
 
-    /// Obstacles first, then robots, each in the order of the world file. The computing time is that of a pass over
-    /// all cells.
+    /// Obstacles first, then robots, each in the order of the world file.
     fn moving_things(&self) -> Cow<'_, [Vec<usize>]> {
         let mut things: BTreeMap<Body, Vec<usize>> = BTreeMap::new();
-        for (index, mover) in self.movers.iter().enumerate() {
-            if let Some(body) = mover {
-                things.entry(*body).or_default().push(index);
+        for &index in &*self.swept() {
+            if let Some(body) = self.mover(index) {
+                things.entry(body).or_default().push(index);
             }
         }
         things.into_values().collect()

@@ -18,8 +18,9 @@ impl PhysicsGroundTruth {
         differences(&before, &self.under[robot], &mut changes);
         for &UnderChange { index, before, after } in &changes {
             if let Some(whole) = after {
-                self.overlapped[index] += 1;
-                self.covered[index] += u16::from(whole);
+                let passages = &mut self.passages[index];
+                passages.overlapped += 1;
+                passages.covered += u16::from(whole);
                 if before.is_none() {
                     self.sweep(index, Body::Robot(robot));
                 }
@@ -28,8 +29,9 @@ impl PhysicsGroundTruth {
         // First the cells that the robot was on.
         for &UnderChange { index, before, .. } in &changes {
             if let Some(whole) = before {
-                self.overlapped[index] -= 1;
-                self.covered[index] -= u16::from(whole);
+                let passages = &mut self.passages[index];
+                passages.overlapped -= 1;
+                passages.covered -= u16::from(whole);
                 self.settle(index);
             }
         }

@@ -72,7 +72,7 @@ fn a_disc_that_passes_blocks_every_cell_once() {
     assert_eq!(truth.block_events(index(0, 3)), 1);
     assert_eq!(truth.block_events(index(3, 3)), 1);
     assert_eq!([truth.block_events(index(3, 4)), truth.pass_events(index(3, 4))], [0, 2]);
-    assert_eq!(truth.movers()[index(3, 3)], Some(robot));
-    assert_eq!(truth.movers()[index(7, 3)], None);
+    assert_eq!(truth.mover(index(3, 3)), Some(robot));
+    assert_eq!(truth.mover(index(7, 3)), None);
     assert_eq!(truth.state(index(3, 3)), TrueState::Free);
 }
