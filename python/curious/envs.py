@@ -153,6 +153,16 @@ def _slices(batch: Batch) -> dict[str, Any]:
     return dict(next(iter(found.values()))) if len(found) == 1 else dict(found)
 
 
+#: What is counted, or is the number of a house.
+_COUNTS = {"world", "map_updates", "found_changes", "collisions"}
+
+
+def _infos(names: Sequence[str], values: np.ndarray) -> dict[str, np.ndarray]:
+    """The columns of the native information by name: counts as whole numbers."""
+    columns: dict[str, np.ndarray] = {name: values[:, column] for column, name in enumerate(names)}
+    return {name: column.astype(np.int64) if name in _COUNTS else column for name, column in columns.items()}
+
+
 def _no_pickle(environment: Any, protocol: Any) -> Any:
     """For `pickle`, and for `copy.copy`, whose result would share the world."""
     raise TypeError(
@@ -205,14 +215,13 @@ class _Single(gymnasium.Env):
         self._was_reset = True
         if self.render_mode == "human":
             self.render()
-        return _split(self._parts, rows[0]), {"world_seed": self._world_seed}
+        return _split(self._parts, rows[0]), self._info(batch.info())
 
     def step(self, action: Any) -> tuple[Any, float, bool, bool, dict[str, Any]]:
         """Simulate one step. ``ValueError``: the action has the wrong shape, is NaN or out of range."""
         actions = _actions(action, 1, self.batch.choices)
         rows, rewards, terminated, truncated, values, _, _ = self.batch.step(actions, self._no_seeds)
-        info: dict[str, Any] = dict(zip(self._names, values[0].tolist()))
-        info["world_seed"] = self._world_seed
+        info = self._info(values)
         if self.render_mode == "human":
             self.render()
         return (
@@ -222,6 +231,11 @@ class _Single(gymnasium.Env):
             bool(truncated[0]),
             info,
         )
+
+    def _info(self, values: np.ndarray) -> dict[str, Any]:
+        info: dict[str, Any] = {name: column[0].item() for name, column in _infos(self._names, values).items()}
+        info["world_seed"] = self._world_seed
+        return info
 
     def render(self) -> np.ndarray | None:
         """The world from above: an array (``rgb_array``), or a window (``human``; needs ``pygame``)."""
@@ -369,14 +383,15 @@ class _Vector(gymnasium.vector.VectorEnv):
             self._world_seeds = np.array([_world_seed(value) for value in chosen], np.uint64)
         rows = batch.reset(self._world_seeds)
         self._was_reset = True
-        return _split(self._parts, rows), {"world_seed": self._world_seeds.copy(), "_world_seed": self._all.copy()}
+        info: dict[str, Any] = {**_infos(self._names, batch.info()), "world_seed": self._world_seeds.copy(), **self._masks}
+        return _split(self._parts, rows), info
 
     def step(self, actions: Any) -> tuple[Any, np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]:
         """Simulate one step of every environment. ``ValueError``: an action is NaN or out of range."""
         rows, rewards, terminated, truncated, values, was_reset, last = self.batch.step(
             _actions(actions, self.num_envs, self.batch.choices), self._next_seeds
         )
-        info: dict[str, Any] = {name: values[:, column] for column, name in enumerate(self._names)}
+        info: dict[str, Any] = dict(_infos(self._names, values))
         if last is not None:
             ended = np.flatnonzero(was_reset)
             final_obs = np.empty(self.num_envs, object)

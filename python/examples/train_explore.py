@@ -216,7 +216,7 @@ def main() -> None:
     parser.add_argument("--houses", type=int, default=200, help="test houses")
     parser.add_argument("--threads", type=int, default=2, help="for the test houses")
     parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--others", default=",".join(OTHERS), help="policies to compare with")
+    parser.add_argument("--others", default=",".join(OTHERS), help="policies to compare with, separated by commas: %(default)s")
     parser.add_argument("--picture", help="a PNG file for the learning curve")
     parser.add_argument("--json", help="a file for all numbers")
     arguments = parser.parse_args()

@@ -174,6 +174,17 @@ impl Batch {
         self.batch.task(0).info_names()
     }
 
+    /// The information about every environment as it is now, shape (environments * agents, info_names).
+    fn info<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        let (rows, names) = (self.rows(), self.info_names().len());
+        let mut values = vec![0.0; rows * names];
+        let of_one = values.len() / self.environments();
+        for (environment, values) in values.chunks_mut(of_one).enumerate() {
+            self.batch.task(environment).info(values);
+        }
+        values.into_pyarray(py).reshape([rows, names])
+    }
+
     /// Whether an environment that is over is reset in the same step: set it to False to reset it by `reset_one`.
     #[getter]
     fn autoreset(&self) -> bool {

@@ -11,6 +11,7 @@ use curious::program::{Failure, arguments, input, results_folder, start, state_f
 use curious::terminal::print;
 use curious::words::length_of;
 use interfaces::Grid;
+use mapper::Door;
 use nalgebra::Point2;
 use place::Place;
 use results::numbers::percent;
@@ -195,11 +196,16 @@ fn run(args: &Args) -> Result<ExitCode, Failure> {
 /// The doors that are asked for; all of them if nothing is.
 fn doors(args: &Args, forecast: &Forecast, times_s: &[f64]) -> anyhow::Result<Vec<Place>> {
     let known: Vec<_> = forecast.doors().collect();
-    let numbers: Vec<String> = known.iter().map(|(id, _)| id.to_string()).collect();
     if let Some(door) = args.door.iter().find(|door| known.iter().all(|(id, _)| id != *door)) {
+        let named = |(id, door): &(u32, &Door)| {
+            let at = nalgebra::center(&door.closed.ends[0], &door.closed.ends[1]);
+            format!("{id} at {:.1},{:.1}", at.x, at.y)
+        };
+        let doors: Vec<String> = known.iter().map(named).collect();
         bail!(
-            "--door {door}: there is no such door; known {}",
-            if numbers.is_empty() { "is none".to_owned() } else { format!("are {}", numbers.join(", ")) }
+            "--door {door}: there is no such door; known {}. (The numbers in the report of map_log are those of places: give \
+             `--place X,Y` with the coordinates of the card)",
+            if doors.is_empty() { "is none".to_owned() } else { format!("are {}", doors.join("; ")) }
         );
     }
     let is_all =

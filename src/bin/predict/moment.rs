@@ -77,7 +77,9 @@ pub(crate) fn text(time_s: f64, forecast: &Forecast) -> String {
         Calendar::Zone(zone) => zoned(time_s, zone)
             .map_or_else(|| format!("{time_s:.0} s"), |at| at.strftime("%a %Y-%m-%d %H:%M %Z").to_string()),
         Calendar::Relative => {
-            format!("{} after the last reading", curious::words::length_of(time_s - forecast.now_s()))
+            let ahead_s = time_s - forecast.now_s();
+            let side = if ahead_s < 0.0 { "before" } else { "after" };
+            format!("{} {side} the last reading", curious::words::length_of(ahead_s.abs()))
         }
     }
 }

@@ -159,18 +159,24 @@ impl Place {
 
     fn sentences(&self, forecast: &Forecast, week: Option<&Week>) -> Vec<String> {
         let mut lines: Vec<String> = self.predictions(forecast).collect();
-        lines.push(format!("Seen in {:.0} half hours, on {} days.", self.half_hours, self.days));
+        let days = if self.days == 1 { "one day".to_owned() } else { format!("{} days", self.days) };
+        let half_hours = match self.half_hours {
+            one if one < 1.5 => "one interval".to_owned(),
+            many => format!("{many:.0} intervals"),
+        };
+        lines.push(format!("Observed on {days}, in {half_hours} of 30 minutes."));
         let rate = self.door.as_ref().and_then(|door| door.openings_per_hour.zip(door.openings_per_hour_90));
         lines.extend(
             rate.map(|(rate, (low, high))| {
                 format!("Opens {rate:.2} times per hour ({low:.2} to {high:.2}).")
             }),
         );
+        let usual = if week.is_some() { "usual hours" } else { "average" };
         lines.push(match self.expiry_s {
             Some(expiry_s) => {
-                format!("A look counts for {}; after that the usual hours say more.", length_of(expiry_s))
+                format!("The last observation tells more than the {usual} for {}.", length_of(expiry_s))
             }
-            None => "A look says more than the usual hours for four weeks and longer.".to_owned(),
+            None => format!("The last observation tells more than the {usual} for four weeks and longer."),
         });
         lines.push(match (week, forecast.why_undated()) {
             (Some(week), _) => format!("Usually {}.", usual_hours(week, self.state)),

@@ -288,7 +288,7 @@ fn arrow(plan: &Plan, at: Point2<f64>, direction: &Direction) -> Markup {
 
 /// A rectangle around points.
 fn outline(plan: &Plan, points: &[Point2<f64>]) -> Markup {
-    let [left, top, right, bottom] = plan.rectangle(points);
+    let [left, top, right, bottom] = plan.visible(points);
     html! {
         rect x=(number(left)) y=(number(top)) width=(number(right - left)) height=(number(bottom - top)) fill="none" stroke="#0072b2" stroke-width="2" {}
     }

@@ -122,7 +122,7 @@ impl Page<'_> {
             @if !self.summary.places.is_empty() {
                 h2 { "The places" }
                 p {
-                    "The liveliest come first, by the lower end of their range. The numbers stay the same on later visits. Time of looking is \
+                    "They are sorted by the lower end of the 90 % range of their rate. The numbers stay the same on later visits. Time of looking is \
                      the time for which the robot had the place in view; the robot itself is not counted. On the pictures, a blue line is a \
                      closed door, a dashed one is where it opens to, and a rectangle is around any other place. "
                     (self.clock())
@@ -148,8 +148,9 @@ impl Page<'_> {
                 (self.plan.draw(Shown::Interval, &[], "The mean time of one cycle of every cell"))
                 (interval_key())
                 figcaption {
-                    "The mean time of one cycle of each cell: blocked, free, and blocked again. Dark is often, light is rarely. It is an estimate, also where less than \
-                     a full cycle was seen; the file cell_statistics.csv has the 90 % range of every cell."
+                    "The mean time of one cycle of each cell: blocked, free, and blocked again. Dark is often, light is rarely. Each cell counts alone, and not \
+                     the place: who passes rarely covers the same cell twice, so that traffic is light here even where its card says often. It is an \
+                     estimate, also where less than a full cycle was seen; the file cell_statistics.csv has the 90 % range of every cell."
                 }
             }
         }

@@ -179,8 +179,7 @@ impl<'a> Plan<'a> {
     /// A drawing of the cells, with marks, their labels, the scale, and the axes of the map where it is turned.
     pub(super) fn draw(&self, shown: Shown, marks: &[Mark], what: &str) -> Markup {
         let [width, height] = self.drawing();
-        let boxes: Vec<Box4> =
-            marks.iter().map(|mark| visible(self.rectangle(&mark.points), self.scale)).collect();
+        let boxes: Vec<Box4> = marks.iter().map(|mark| self.visible(&mark.points)).collect();
         let found = labels(&boxes, [width, height - BELOW], |at, radius| self.covered(at, radius));
         html! {
             svg.plan viewBox={ "0 0 " (number(width)) " " (number(height)) } role="img" aria-label=(what) font-family="sans-serif" {
@@ -205,6 +204,14 @@ impl<'a> Plan<'a> {
             ];
         }
         around
+    }
+
+    /// The rectangle around points, wide and high enough to be seen.
+    pub(super) fn visible(&self, points: &[Point2<f64>]) -> Box4 {
+        let [left, top, right, bottom] = self.rectangle(points);
+        let missing = |side: f64| ((LEAST_SIDE_M * self.scale - side) / 2.0).max(0.0);
+        let [x, y] = [missing(right - left), missing(bottom - top)];
+        [left - x, top - y, right + x, bottom + y]
     }
 
     /// The share of a circle of the drawing under which something blocks or changes.
@@ -262,12 +269,6 @@ impl<'a> Plan<'a> {
         };
         html! { (arrow("x", 0.0)) (arrow("y", FRAC_PI_2)) }
     }
-}
-
-/// A rectangle that is wide and high enough to be seen, around the same middle.
-fn visible([left, top, right, bottom]: Box4, scale: f64) -> Box4 {
-    let [x, y] = [right - left, bottom - top].map(|side| ((LEAST_SIDE_M * scale - side) / 2.0).max(0.0));
-    [left - x, top - y, right + x, bottom + y]
 }
 
 /// A point in words: in which third of the plan it lies in both directions and, in a middle third, on which side of the middle.
