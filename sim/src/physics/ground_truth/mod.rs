@@ -10,12 +10,10 @@ mod tests;
 
 use super::report::Body;
 use super::shape::Rectangle;
-use interfaces::{
-    Cell, GridFrame, GroundTruth, SparseCells, TrueChange, TrueState, Values, cell_runs, runs, value,
-};
+use interfaces::{Cell, GridFrame, GroundTruth, SparseCells, TrueChange, TrueState, Values, runs, value};
 use nalgebra::Point2;
 use open_share::Cover;
-use passages::{Mover, Passages};
+use passages::{Mover, Passages, SavedPassages};
 use robots::UnderChange;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -94,9 +92,11 @@ impl PhysicsGroundTruth {
             value(&mut self.elapsed_s),
             runs(&mut self.states),
             runs(&mut self.fixed),
-            cell_runs(&mut self.passages, usize::MAX),
-            value(&mut self.under),
-            runs(&mut self.armed),
+            Box::new(SavedPassages {
+                passages: &mut self.passages,
+                under: &mut self.under,
+                armed: &mut self.armed,
+            }),
             runs(&mut self.swept),
             value(&mut self.changes),
         ]
