@@ -3,6 +3,7 @@
 use crate::life::TIMES;
 use crate::rows::Row;
 use crate::runs::learners;
+use reports::pages::mean;
 
 /// What the others are compared with.
 const REFERENCES: [&str; 2] = ["curious", "information-gain"];
@@ -28,11 +29,6 @@ impl Named<'_> {
         let test = reports::paired_test(pairs.iter().map(|(value, other)| value - other));
         format!("{:.2}, p = {:.1e}", sum / others, test.p_value)
     }
-}
-
-fn mean(values: &[f64]) -> f64 {
-    let known: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
-    known.iter().sum::<f64>() / known.len() as f64
 }
 
 /// Prints the tables of all rows, for each estimator.

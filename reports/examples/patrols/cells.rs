@@ -4,6 +4,7 @@ use crate::rows::Row;
 use crate::runs::{BOUND, NO_LOOKS, Outcome, STRATEGIES};
 use days::{Habits, Kind};
 use evaluation::metrics::freshness_regret;
+use reports::pages::mean;
 use std::collections::BTreeSet;
 
 /// All rows of a kind of building, of a robot that knows the habits or not, and of a share of the time.
@@ -63,12 +64,6 @@ pub(crate) fn cells(rows: &[Row]) -> impl Iterator<Item = Cell<'_>> {
             all: rows,
         }
     })
-}
-
-/// The mean of the values that are numbers.
-pub(crate) fn mean(values: &[f64]) -> f64 {
-    let finite: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
-    finite.iter().sum::<f64>() / finite.len() as f64
 }
 
 impl Cell<'_> {

@@ -1,9 +1,9 @@
 //! The tables of the page, from the rows of the study.
 
-use crate::cells::{Bounded, Cell, Named, cells, mean};
+use crate::cells::{Bounded, Cell, Named, cells};
 use crate::rows::Row;
 use crate::runs::Outcome;
-use reports::pages::{PageError, with_tables};
+use reports::pages::{PageError, mean, ratio, with_tables};
 
 /// The strategies of the tables; the last one is compared with the others.
 const SHOWN: [&str; 4] = ["curious", "round", "coverage", "gain"];
@@ -69,7 +69,7 @@ fn scores(cell: &Cell) -> Option<Vec<String>> {
     let own = shown.each_ref().map(brier);
     let mut line = vec![seeds.len().to_string(), none];
     line.extend(own.iter().map(|values| score(values)));
-    line.extend(own[..3].iter().map(|other| compared(&own[3], other)));
+    line.extend(own[..3].iter().map(|other| ratio(&own[3], other)));
     Some(line)
 }
 
@@ -92,7 +92,7 @@ fn users(cell: &Cell) -> Option<Vec<String>> {
     let means = own.each_ref().map(|values| mean(values));
     let not_made =
         shown.each_ref().map(|named| mean(&cell.values(named, &seeds, |outcome| 100.0 * outcome.not_made)));
-    let ratios = [0, 1].map(|other| compared(&own[3], &own[other]));
+    let ratios = [0, 1].map(|other| ratio(&own[3], &own[other]));
     let [to_curious, to_round] = ratios;
     Some(vec![none, listed(&means, 2), to_curious, to_round, listed(&not_made, 1)])
 }
@@ -107,7 +107,7 @@ fn regrets(cell: &Cell) -> Option<Vec<String>> {
     let means = own.each_ref().map(|values| mean(values));
     let (count, bound) = (bounded.seeds.len().to_string(), format!("{:.4}", bounded.bound()));
     let mut line = vec![count, bound, listed(&over, 2), listed(&means, 3)];
-    line.extend(own[..3].iter().map(|other| compared(&own[3], other)));
+    line.extend(own[..3].iter().map(|other| ratio(&own[3], other)));
     Some(line)
 }
 
@@ -117,17 +117,6 @@ fn score(values: &[f64]) -> String {
 
 fn listed(values: &[f64], decimals: usize) -> String {
     values.iter().map(|value| format!("{value:.decimals$}")).collect::<Vec<_>>().join(" / ")
-}
-
-/// The ratio of two means, with the p-value of the paired t test.
-fn compared(values: &[f64], others: &[f64]) -> String {
-    let p = reports::paired_test(values.iter().zip(others).map(|(value, other)| value - other)).p_value;
-    let p = match p {
-        p if p < 1e-3 => format!("{p:.1e}"),
-        p if p < 0.01 => format!("{p:.4}"),
-        p => format!("{p:.2}"),
-    };
-    format!("{:.3}, p = {p}", mean(values) / mean(others))
 }
 
 #[cfg(test)]

@@ -1,8 +1,9 @@
 //! The tables of a study as text: scores and delays, and how far from the lower bound.
 
-use crate::cells::{Cell, Named, cells, mean};
+use crate::cells::{Cell, Named, cells};
 use crate::rows::Row;
 use crate::runs::Outcome;
+use reports::pages::mean;
 
 /// Prints the tables of sorted rows.
 pub(crate) fn print(rows: &[Row]) {

@@ -2,7 +2,7 @@
 
 use crate::rows::{Row, Run, VALUES};
 use agent::Policy;
-use reports::pages::{PageError, with_tables};
+use reports::pages::{PageError, mean, ratio, with_tables};
 
 const HEAD: &str = "building | time on patrol | buildings | strategy | Brier | ÷ first | delay, min: median / 95 % | missed | \
                     lost per trip, s | not made | flat battery | contacts";
@@ -54,7 +54,7 @@ fn lines(rows: &[Row], cell: &Run, strategies: &[Policy]) -> Vec<String> {
         let to_first = if *strategy == strategies[0] {
             "1".to_owned()
         } else {
-            compared(&values(strategy, "brier"), &values(&strategies[0], "brier"))
+            ratio(&values(strategy, "brier"), &values(&strategies[0], "brier"))
         };
         format!(
             "| {} | {} % | {} | `{}` | {:.3} | {to_first} | {:.0} / {:.0} | {:.0} % | {:.2} | {:.1} % | {} | {} |\n",
@@ -73,16 +73,4 @@ fn lines(rows: &[Row], cell: &Run, strategies: &[Policy]) -> Vec<String> {
         )
     };
     if seeds.is_empty() { Vec::new() } else { strategies.iter().map(line).collect() }
-}
-
-/// The mean of the values that are numbers.
-fn mean(values: &[f64]) -> f64 {
-    let finite: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
-    finite.iter().sum::<f64>() / finite.len() as f64
-}
-
-/// The ratio of two means, with the p-value of the paired t test.
-fn compared(values: &[f64], others: &[f64]) -> String {
-    let test = reports::paired_test(values.iter().zip(others).map(|(value, other)| value - other));
-    format!("{:.3}, p = {:.2}", mean(values) / mean(others), test.p_value)
 }

@@ -1,11 +1,10 @@
 //! Random worlds with a calendar: rooms with doors, and things that come and go.
 
-use super::{GenerateSettings, between, rooms, stands_free};
+use super::{GenerateSettings, between, frame, rooms, stands_free};
 use crate::building_calendar::BuildingCalendar;
 use crate::grid::spec::{BlockSpec, Course, GridCalendar, GridSpec};
 use calendar::{Kind, Schedule, ThingKind};
-use interfaces::{Cell, Grid, GridFrame, Purpose, RandomStream};
-use nalgebra::Point2;
+use interfaces::{Cell, Grid, Purpose, RandomStream};
 use rand::RngExt;
 use rand::seq::IndexedRandom;
 use std::collections::BTreeSet;
@@ -46,8 +45,7 @@ impl GridSpec {
         let ranges = ranges(kind);
         let mut rng = RandomStream::new(seed, Purpose::WorldGenerator);
         let [width, height] = ranges.size.map(|size| between(&mut rng, size, 9..=1000));
-        let frame = GridFrame::new(Point2::origin(), 1.0, width as usize, height as usize);
-        let frame = frame.expect("at most a million cells of 1 m make a frame");
+        let frame = frame(width, height);
         let start = Cell::new(width / 2, height / 2);
         let settings =
             GenerateSettings { walls: ranges.walls, opening: [1, 1], pillars: [0, 0], ..Default::default() };

@@ -102,8 +102,7 @@ impl GridSpec {
 /// A world with the `wanted` number of blocks, or with as many as there is room for.
 fn draw(settings: &GenerateSettings, wanted: usize, seed: u64, rng: &mut RandomStream) -> GridSpec {
     let (width, height) = (between(rng, settings.width, 9..=1000), between(rng, settings.height, 9..=1000));
-    let frame = GridFrame::new(Point2::origin(), 1.0, width as usize, height as usize);
-    let frame = frame.expect("at most a million cells of 1 m make a frame");
+    let frame = frame(width, height);
     let start = Cell::new(width / 2, height / 2);
     let walls = rooms::walls(settings, frame, start, rng);
     let paths = paths::paths(settings, &walls, start, wanted, rng);
@@ -135,6 +134,12 @@ fn block(
     let name = format!("block {number}");
     let stood = rng.random_range(0..dwell);
     BlockSpec { name, dwell, stood, course: path.course, path: path.cells, schedule: None }
+}
+
+/// The frame of at most 1000 × 1000 cells of 1 m.
+fn frame(width: i32, height: i32) -> GridFrame {
+    let frame = GridFrame::new(Point2::origin(), 1.0, width as usize, height as usize);
+    frame.expect("at most a million cells of 1 m make a frame")
 }
 
 /// A random number between the two of a setting.
