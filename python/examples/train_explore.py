@@ -266,7 +266,7 @@ def main() -> None:
     if arguments.minutes > 0.0:
         (policy,), curve = train(arguments.minutes, arguments.seed)
         results["learned"] = measure("learned", policy, arguments.houses, arguments.threads)
-    print(f"\n{arguments.houses} test houses   reward ± s.e.   found    seen m²  collisions   p against learned")
+    print(f"\n{arguments.houses} test houses   reward ± s.e.   found    seen m²    contacts   p against learned")
     for name in [*results, *filter(None, arguments.others.split(","))]:
         if name not in results:
             results[name] = measure(name, None, arguments.houses, arguments.threads)

@@ -31,7 +31,7 @@ SQUARES, MAX_STEPS = 12, 6000
 #: The strategy alone with the least area in other runs.
 BEST = "predicted-change"
 SINGLE = ["curious", "information-gain", "fresh-map", "frontier", "recency", "poisson", BEST, "random", "any goal"]
-FIELDS = ("area", "log error", "reward", "found", "seen m2", "collisions")
+FIELDS = ("area", "log error", "reward", "found", "seen m2", "contacts")
 Observation = dict[str, np.ndarray]
 
 
