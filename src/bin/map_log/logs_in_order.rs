@@ -129,6 +129,9 @@ pub(crate) fn continued(
         }
         !is_learned
     });
+    if sources.is_empty() {
+        say(stderr(), format_args!("note: nothing is added; the results show what was learned before"));
+    }
     // Routes that were found hold for the same logs in the same order.
     let begun = survey.logs().iter().take_while(|log| log.used > 0).count();
     let learned = survey.logs().iter().take_while(|log| log.is_finished()).count();
