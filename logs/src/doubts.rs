@@ -8,7 +8,7 @@ use xxhash_rust::xxh3::{xxh3_64, xxh3_64_with_seed};
 const FARTHEST_M: f32 = 100.0;
 const NEAREST_M: f32 = 0.05;
 /// Larger numbers are millimeters, others centimeters.
-const MIN_MILLIMETRES: f32 = 1000.0;
+const MIN_MILLIMETERS: f32 = 1000.0;
 /// A log contains a part twice if this number of scans, and this share, come twice after the same scan. Scans that are as one
 /// of the last ones are those of a robot that stands.
 const MIN_REPEATED: usize = 20;
@@ -99,7 +99,7 @@ impl Doubts {
         let Self { scans, beyond, first_beyond: first, .. } = *self;
         let (unit, median, in_meters, what) = match first {
             _ if first < NEAREST_M => ("kilometers", "below 0.05 m", first * 1000.0, "multiply them by 1000"),
-            _ if first < MIN_MILLIMETRES => {
+            _ if first < MIN_MILLIMETERS => {
                 ("centimeters", "beyond 100 m", first / 100.0, "divide them by 100")
             }
             _ => ("millimeters", "beyond 100 m", first / 1000.0, "divide them by 1000"),

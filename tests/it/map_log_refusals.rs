@@ -160,7 +160,7 @@ fn what_is_no_log_is_refused_and_nothing_is_written() {
     For more information, try '--help'.
     ");
     insta::assert_snapshot!(refused("a.log", scans.as_bytes(), "a.log --noise -1"), @"
-    error: invalid value '-1' for '--noise <METRES>': must be a number from 0 to 0.5
+    error: invalid value '-1' for '--noise <METERS>': must be a number from 0 to 0.5
 
     For more information, try '--help'.
     ");
