@@ -48,8 +48,8 @@ fn every_strategy_the_world_and_the_words_are_drawn() {
     let (_, pictures, texts) = figures(&report(1, &["two-state"], &FIVE, 5));
     let (picture, text) = (&pictures[0], &texts[0]);
     let count = |colour: [u8; 3]| picture.pixels().filter(|pixel| pixel.0 == colour).count();
-    let colours = [[0, 114, 178], [0, 158, 115], [230, 159, 0], [150, 150, 150], [86, 180, 233]];
-    for (name, colour) in FIVE.into_iter().zip(colours) {
+    let colors = [[0, 114, 178], [0, 158, 115], [230, 159, 0], [150, 150, 150], [86, 180, 233]];
+    for (name, colour) in FIVE.into_iter().zip(colors) {
         assert!(count(colour) > 300, "{name}: {}", count(colour));
         let [red, green, blue] = colour;
         assert!(text.contains(&format!("stroke=\"#{red:02X}{green:02X}{blue:02X}\"")), "{name}");

@@ -19,7 +19,7 @@ pub(crate) struct Source {
 }
 
 /// Opens all logs, and puts them in the order of their times. Notes go to the error output. `is_kept`: whether a log must
-/// be recognised in a later run.
+/// be recognized in a later run.
 pub(crate) fn open(
     files: &[PathBuf],
     choice: &TopicChoice,
@@ -42,7 +42,7 @@ pub(crate) fn open(
         let mut entry = LogEntry::of(short_name(file), &log, choice)?;
         if is_kept || files.len() > 1 {
             let _reading = busy();
-            entry.recognise(&log)?;
+            entry.recognize(&log)?;
         }
         Ok(Source { log, entry })
     };

@@ -33,12 +33,12 @@ const SCHEMA: u32 = 2;
 
 /// Predicts a place from what was learned about it: is that door open at ten past five?
 ///
-/// Says when its doors are usually open, how often they are opened, and with which probability they are open at the times of
-/// --at; of a place (--place) with which probability it is blocked. Behind a probability is the interval that contains the true one
-/// with 90 %; it needs looks on 14 days.
+/// Prints when the doors are usually open, how often they open, and the probability that they are open at the times of --at; for a
+/// place (--place), the probability that it is blocked. A 90 % interval follows each probability;
+/// it needs observations on 14 days.
 ///
 /// STATE is a file of `map_log --state`, or of four_rooms in a world with a calendar, whose first week begins on Monday, 2024-01-01,
-/// in UTC. (Other states of four_rooms, and those of curious_node, know no hours.) A time is
+/// in UTC. (Other states of four_rooms, and those of curious_node, have no hours.) A time is
 ///   +10m                after the last reading of the state: s, m or h
 ///   17:10, "Tue 17:10"  the next such time after the last reading, in the time zone of the state
 ///   2024-01-30T17:10    a date in this zone; with Z or an offset as +01:00 in that one
@@ -50,7 +50,7 @@ const SCHEMA: u32 = 2;
 /// With several times, the files are numbered. Also in the folder: for how long a look at a place counts before its usual hours
 /// say more (expiry.png, expiry.npy, in hours), and all that is printed, as data (summary.json).
 ///
-/// Hours and weekdays are learned per door and per square of half a meter, and count the more the longer they were seen.
+/// Hours and weekdays are learned per door and per square of half a meter, and have more weight the longer they were observed.
 #[derive(Clone, Debug, Parser)]
 #[command(
     name = "predict",
@@ -103,7 +103,7 @@ struct Args {
     speed: f64,
 
     /// The radius of the robot on routes, m
-    #[arg(long, value_name = "METRES", default_value_t = 0.2, value_parser = number(0.0..=5.0))]
+    #[arg(long, value_name = "METERS", default_value_t = 0.2, value_parser = number(0.0..=5.0))]
     radius: f64,
 
     /// The folder for all results

@@ -155,8 +155,8 @@ impl Page<'_> {
             (Some(from), Some(to)) => {
                 format!("Furniture: it was moved by {} m{when}.", short((to.center - from.center).norm()))
             }
-            (Some(_), None) => format!("Furniture: it has gone{when}. Where to, was not seen."),
-            (None, _) => format!("Furniture: it has come{when}. Where from, was not seen."),
+            (Some(_), None) => format!("Furniture: it was removed{when}. Its new position was not seen."),
+            (None, _) => format!("Furniture: it appeared{when}. Its old position was not seen."),
         }
     }
 
