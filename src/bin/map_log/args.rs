@@ -88,7 +88,7 @@ pub(crate) struct Args {
     )]
     pub(crate) max_range: f64,
 
-    /// The memory that the map may take, GiB: about 130 bytes per cell that was seen
+    /// The memory that the map may take, GiB: 130 bytes are counted per cell that was seen
     #[arg(
         long,
         value_name = "GIB",

@@ -28,6 +28,8 @@ use survey::{Forecast, MASKS, Travel};
 use viewer::layers::Layer;
 use viewer::pictures::draw_values;
 
+/// The graph of `--graph` with its probabilities.
+const GRAPH: &str = "graph.geojson";
 /// The version of the layout of `summary.json`; count up when a key is renamed, removed or changes its meaning.
 const SCHEMA: u32 = 2;
 
@@ -161,7 +163,7 @@ fn run(args: &Args) -> Result<ExitCode, Failure> {
     let title = "Hours for which a look counts";
     write_map(folder.unfinished(), "expiry", (Layer::Expiry, title), &forecast, &expiry_h)?;
     if let Some(graph) = graph {
-        write_file(&folder.unfinished().join("graph.geojson"), |file| writeln!(file, "{graph:#}"))?;
+        write_file(&folder.unfinished().join(GRAPH), |file| writeln!(file, "{graph:#}"))?;
     }
     let summary = Summary {
         schema: SCHEMA,
@@ -241,7 +243,8 @@ fn say(summary: &Summary, forecast: &Forecast) -> anyhow::Result<()> {
         print(format_args!("{}", place.title))?;
         place.text.iter().try_for_each(|line| print(format_args!("  {line}")))?;
     }
-    if summary.places.is_empty() && summary.route.is_empty() {
+    let is_graph = summary.files.iter().any(|file| file == GRAPH);
+    if summary.places.is_empty() && summary.route.is_empty() && !is_graph {
         print(format_args!("no door is known; --place NUMBER asks for a place of the report of map_log"))?;
     }
     let begin_s = summary.times_s[0];
