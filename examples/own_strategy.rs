@@ -53,7 +53,7 @@ fn main() -> anyhow::Result<()> {
     // More houses and longer trials tell more: 20 minutes in 100 houses take about an hour on two cores.
     let houses = Experiment {
         worlds: (0..4).map(WorldSpec::generate_house).collect(),
-        estimators: grid.estimators,
+        estimators: vec![settings.mapper.estimator], // as house_trials
         strategies,
         trials: 1,
         seed: 0,

@@ -27,7 +27,7 @@ impl Forecast {
     ///
     /// # Errors
     ///
-    /// When the state holds neither, or was written by another program.
+    /// When the state holds neither, or was written by another program, and when nothing was learned yet.
     pub fn of_state(state: &State) -> Result<Self, StateError> {
         let Some(facts) = state.facts(SavedSurvey::PART) else {
             let mapper = saved_mapper(state)?;
@@ -48,7 +48,7 @@ impl Forecast {
             Some(log) => Some(format!("{} does not say when it was recorded", log.name)),
             None => (!has_zone).then(|| "its format is older than version 8, which has hours".to_owned()),
         };
-        let mapper = survey.mapper().ok_or_else(misfit)?.clone();
+        let mapper = survey.mapper().ok_or(StateError::NothingLearned)?.clone();
         Ok(Self { mapper, places: survey.places(), why_undated })
     }
 

@@ -57,7 +57,7 @@ fn a_log_of_the_next_day_adds_to_the_state() {
     let ended = run.goes_well(&format!("b.log other.log {SAVED}"));
     assert_eq!(
         ended.stderr,
-        "note: other.log is learned already\nnote: b.log is learned already\nnote: nothing is added; the results show what was learned before\n"
+        "note: other.log is learned already\nnote: b.log is learned already\nnote: nothing is added; the results show what was learned before, without a trajectory\n"
     );
     assert_eq!(differing(&results(&run), &whole), ["trajectory.png", "trajectory.tum"]);
     assert_eq!(run.names(), ["a.state", "a.state.earlier", "b.log", "other.log", "out"]);

@@ -130,7 +130,8 @@ pub(crate) fn continued(
         !is_learned
     });
     if sources.is_empty() {
-        say(stderr(), format_args!("note: nothing is added; the results show what was learned before"));
+        let shown = "the results show what was learned before, without a trajectory";
+        say(stderr(), format_args!("note: nothing is added; {shown}"));
     }
     // Routes that were found hold for the same logs in the same order.
     let begun = survey.logs().iter().take_while(|log| log.used > 0).count();
@@ -146,6 +147,18 @@ pub(crate) fn continued(
     if kept < begun {
         let name = &survey.logs()[kept].entry.name;
         bail!("{name} is learned in part: no log can begin before it");
+    }
+    for log in survey.logs().iter().skip(kept) {
+        // Its run ended between both passes. A log that is given again finds its place anew.
+        if !sources.iter().any(|source| source.entry.content == log.entry.content) {
+            let name = &log.entry.name;
+            say(
+                stderr(),
+                format_args!(
+                    "note: {name} is left out: its run ended before anything was learned of it; give it again"
+                ),
+            );
+        }
     }
     survey.forget_from(kept);
     let mut before: Vec<LogEntry> = survey.logs().iter().map(|log| log.entry.clone()).collect();

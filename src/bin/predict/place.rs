@@ -10,6 +10,9 @@ use results::numbers::percent;
 use serde::Serialize;
 use survey::{Forecast, NEAR_M};
 
+/// The looks at a place are counted by half hours, s.
+const HALF_HOUR_S: f64 = 1800.0;
+
 /// A place: a door, or the tile of half a meter at, or beside, a point.
 #[derive(Clone, Debug, Default, Serialize)]
 pub(crate) struct Place {
@@ -84,7 +87,7 @@ impl Place {
         place.text = match mapper.states().cells()[index] {
             CellState::Unknown => vec!["It was never seen.".to_owned()],
             _ if mapper.map_changes(index) > 0 => {
-                let of_cell = "Of this cell alone: its place has no clock yet.".to_owned();
+                let of_cell = "From what was seen of this cell alone, without hours.".to_owned();
                 place.predictions(forecast).chain([of_cell]).collect()
             }
             state => {
@@ -196,11 +199,13 @@ impl Place {
         };
         lines.push(format!("Observed on {days}, in {half_hours} of 30 minutes."));
         let usual = if week.is_some() { "usual hours" } else { "average" };
+        // No longer than it was observed in all: a longer time would be a guess.
+        let seen_s = HALF_HOUR_S * self.half_hours;
         lines.push(match self.expiry_s {
-            Some(expiry_s) => {
+            Some(expiry_s) if expiry_s <= seen_s => {
                 format!("The last observation tells more than the {usual} for {}.", length_of(expiry_s))
             }
-            None => format!("The last observation tells more than the {usual} for four weeks and longer."),
+            _ => format!("How long the last observation tells more than the {usual} is not known yet."),
         });
         lines.push(match (week, forecast.why_undated()) {
             (Some(week), _) => format!("Usually {}.", usual_hours(week, self.state)),

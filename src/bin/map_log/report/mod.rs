@@ -122,7 +122,7 @@ impl Page<'_> {
             @if !self.summary.places.is_empty() {
                 h2 { "The places" }
                 p {
-                    "They are sorted by the lower end of the 90 % range of their rate. The numbers stay the same on later visits. Time of observation is \
+                    "They are sorted by the lower end of the 90 % range of their rate; what is smaller than a person counts less. The numbers stay the same on later visits. Time of observation is \
                      the time for which the robot had the place in view; the robot itself is not counted. On the pictures, a blue line is a \
                      closed door, a dashed one is where it opens to, and a rectangle is around any other place. "
                     (self.clock())
