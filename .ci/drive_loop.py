@@ -57,7 +57,7 @@ class Driver(Robot):
         return 1_700_000_000 + self.sent // 10, self.sent % 10 * 100_000_000
 
     def pose(self):
-        """The pose by odometry: 5 % off in distance and turn, 3 degrees and 5 cm of noise per metre."""
+        """The pose by odometry: 5 % off in distance and turn, 3 degrees and 5 cm of noise per meter."""
         (x, y, heading), (u, v, turned) = self.at, rounded(self.way)
         way, turn = np.hypot(u - x, v - y), (turned - heading + np.pi) % (2 * np.pi) - np.pi
         a, b, c = self.odometry_pose

@@ -45,7 +45,7 @@ pub fn usual_hours(week: &Week, name: &str) -> String {
         begins.map(|(at, from)| Stay { from: *from, until: changes[(at + 1) % changes.len()] }).collect();
     if stays.is_empty() {
         let mean = week.slots().iter().map(|slot| slot.probability).sum::<f64>() / week.slots().len() as f64;
-        return format!("{name} {} of the time, without usual hours", percent(mean));
+        return format!("{name} {} of the time, at no hours in particular", percent(mean));
     }
     let groups = stays.chunk_by(|a, b| a.is_like(b) && b.day() == a.day() + 1);
     let texts: Vec<String> = groups.map(in_words).collect();
@@ -143,8 +143,8 @@ mod tests {
         assert!(market.contains("Wed") && market.contains("Sat"), "{market}");
         let night = text(|_, hour| !(6.0..22.0).contains(&hour));
         assert!(night.contains("to 6:"), "{night}");
-        assert_eq!(text(|_, _| true), "open >99.9 % of the time, without usual hours");
-        assert_eq!(text(|_, _| false), "open <0.1 % of the time, without usual hours");
+        assert_eq!(text(|_, _| true), "open >99.9 % of the time, at no hours in particular");
+        assert_eq!(text(|_, _| false), "open <0.1 % of the time, at no hours in particular");
     }
 
     #[test]

@@ -61,7 +61,7 @@ impl Seen {
 
     /// What was seen, in words.
     pub fn seen(&self) -> String {
-        format!("{} in {} of looking", times(self.times), length_of(self.observed_s))
+        format!("{} in {} of observation", times(self.times), length_of(self.observed_s))
     }
 
     /// How sure the rate is, in a word.
@@ -86,8 +86,10 @@ pub fn changed(changes: u32, seen: &Seen) -> String {
     let looked = length_of(seen.observed_s);
     match (seen.times, seen.after_gap) {
         (0, 1..) => format!("changed while the robot was not looking, found {}", times(seen.after_gap)),
-        _ if changes > 2 => format!("single cells changed up to {} in {looked} of looking", times(changes)),
-        _ => format!("changed {} in {looked} of looking", times(changes)),
+        _ if changes > 2 => {
+            format!("single cells changed up to {} in {looked} of observation", times(changes))
+        }
+        _ => format!("changed {} in {looked} of observation", times(changes)),
     }
 }
 
@@ -184,10 +186,10 @@ mod tests {
     #[test]
     fn a_rate_needs_a_full_cycle() {
         assert_eq!(seen(20, 15.0, 26.7).how_often().unwrap(), "about 20 times per hour");
-        assert_eq!(seen(2, 0.5, 9.0).how_often().unwrap(), "twice in 22 min of looking");
+        assert_eq!(seen(2, 0.5, 9.0).how_often().unwrap(), "twice in 22 min of observation");
         assert_eq!(seen(4, 0.05, 0.2).how_often().unwrap(), "about once in 10 h");
         assert_eq!(seen(1, 15.0, 26.7).how_often(), None);
-        assert_eq!(changed(1, &seen(1, 0.1, 9.0)), "changed once in 22 min of looking");
+        assert_eq!(changed(1, &seen(1, 0.1, 9.0)), "changed once in 22 min of observation");
         let gap = Seen { after_gap: 2, ..seen(0, 0.1, 9.0) };
         assert_eq!(changed(2, &gap), "changed while the robot was not looking, found twice");
         let words = [(20, 15.0), (20, 8.0), (20, 4.0), (20, 1.0), (1, 15.0)];

@@ -22,7 +22,7 @@ pub struct DriveSettings {
     pub shows_memory: bool,
     /// The reward at the goal.
     pub goal_reward: f64,
-    /// The reward per metre that the shortest path becomes shorter.
+    /// The reward per meter that the shortest path becomes shorter.
     pub progress_reward: f64,
     /// The reward (below 0) of a contact that begins while the robot moves.
     pub collision_reward: f64,

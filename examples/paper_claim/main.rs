@@ -69,7 +69,7 @@ fn figures(findings: &[Finding], folder: &Path) -> anyhow::Result<()> {
         let run = RunFolder::open(out.path())?;
         report.write(&run, &condition::shipped())?;
         run.finish(&[])?;
-        let figure = if name == "generated" { "figure3-all-worlds.svg" } else { "figure3.svg" };
+        let figure = "figure3.svg";
         let from = out.path().join(figure);
         let text = std::fs::read(&from).with_context(|| format!("there is no {}", from.display()))?;
         write_file(&folder.join(format!("{name}.svg")), |file| file.write_all(&text))?;

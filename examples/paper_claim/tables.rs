@@ -11,7 +11,7 @@ pub(crate) fn markdown(findings: &[Finding], seeds: u64) -> String {
          Made by `cargo run --example paper_claim`, {seeds} seeds in each shipped world and {seeds} generated worlds, \
          each with its own seed. [figure3.md](../figure3.md) explains the results.\n\n\
          Differences are curious minus the other strategy, over the run (area under the curve) for errors and \
-         at the end for map quality, each with its 95 % interval, the ratio of the means, Cohen's d of the pairs \
+         at the end for map correct, each with its 95 % interval, the ratio of the means, Cohen's d of the pairs \
          and the p-value of the paired t test. For errors, lower is better.\n"
     );
     text.push_str(&overview(findings));
@@ -50,7 +50,7 @@ fn overview(findings: &[Finding]) -> String {
 /// The share of time with changing cells in view, and the quality of the map.
 fn shares(finding: &Finding) -> String {
     let mut text = String::from(
-        "| world | strategy | log error, area | log error, end | time at changes | map quality | changing cells | coverage |\n\
+        "| world | strategy | log error, area | log error, end | time at changes | map correct | changing cells | coverage |\n\
          |---|---|---|---|---|---|---|---|\n",
     );
     for run in finding.runs() {

@@ -116,7 +116,7 @@ mod tests {
     }
 
     #[test]
-    fn a_full_turn_is_recognised() {
+    fn a_full_turn_is_recognized() {
         assert!(scan(720, TAU / 720.0).is_full_turn());
         assert!(!scan(181, TAU / 360.0).is_full_turn());
     }

@@ -4,11 +4,11 @@ use nalgebra::Isometry2;
 use std::collections::{HashSet, VecDeque};
 use xxhash_rust::xxh3::{xxh3_64, xxh3_64_with_seed};
 
-/// Ranges whose median is beyond these are no metres: no laser of a robot is so far from what it sees, or so near.
+/// Ranges whose median is beyond these are no meters: no laser of a robot is so far from what it sees, or so near.
 const FARTHEST_M: f32 = 100.0;
 const NEAREST_M: f32 = 0.05;
-/// Larger numbers are millimetres, others centimetres.
-const MIN_MILLIMETRES: f32 = 1000.0;
+/// Larger numbers are millimeters, others centimeters.
+const MIN_MILLIMETERS: f32 = 1000.0;
 /// A log contains a part twice if this number of scans, and this share, come twice after the same scan. Scans that are as one
 /// of the last ones are those of a robot that stands.
 const MIN_REPEATED: usize = 20;
@@ -30,7 +30,7 @@ pub(crate) struct Doubts {
     scans: usize,
     /// Scans with a range.
     seeing: usize,
-    /// Scans whose ranges are no metres, and the median range of the first one.
+    /// Scans whose ranges are no meters, and the median range of the first one.
     beyond: usize,
     first_beyond: f32,
     /// The hashes of the last scans, and of all that came after another scan; the number of those that came twice.
@@ -94,19 +94,19 @@ impl Doubts {
         (scans == 1).then(|| "one scan: what changes is found by comparing scans, at least 2".to_owned())
     }
 
-    /// That most ranges are not in metres.
+    /// That most ranges are not in meters.
     fn other_unit(&self) -> String {
         let Self { scans, beyond, first_beyond: first, .. } = *self;
-        let (unit, median, in_metres, what) = match first {
-            _ if first < NEAREST_M => ("kilometres", "below 0.05 m", first * 1000.0, "multiply them by 1000"),
-            _ if first < MIN_MILLIMETRES => {
-                ("centimetres", "beyond 100 m", first / 100.0, "divide them by 100")
+        let (unit, median, in_meters, what) = match first {
+            _ if first < NEAREST_M => ("kilometers", "below 0.05 m", first * 1000.0, "multiply them by 1000"),
+            _ if first < MIN_MILLIMETERS => {
+                ("centimeters", "beyond 100 m", first / 100.0, "divide them by 100")
             }
-            _ => ("millimetres", "beyond 100 m", first / 1000.0, "divide them by 1000"),
+            _ => ("millimeters", "beyond 100 m", first / 1000.0, "divide them by 1000"),
         };
         format!(
             "the ranges look like {unit}: in {beyond} of {scans} scans, their median is {median} (the first: {first}, which \
-             would be {in_metres} m); ranges are in metres: {what}"
+             would be {in_meters} m); ranges are in meters: {what}"
         )
     }
 }

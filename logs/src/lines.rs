@@ -25,7 +25,7 @@ pub(crate) enum Text {
 }
 
 impl Text {
-    /// Opens a log. The compression is recognised by the content.
+    /// Opens a log. The compression is recognized by the content.
     pub(crate) fn open(bytes: &Bytes) -> io::Result<Self> {
         let mut reader = BufReader::new(bytes.open()?);
         if !reader.fill_buf()?.starts_with(&GZIP) {
@@ -73,7 +73,7 @@ pub(crate) struct Lines {
 }
 
 impl Lines {
-    /// Opens a log. The compression is recognised by the content.
+    /// Opens a log. The compression is recognized by the content.
     pub(crate) fn open(bytes: &Bytes, file: &str) -> Result<Self, LogError> {
         let reader = Text::open(bytes).map_err(|why| LogError::Io { file: file.to_owned(), why })?;
         Ok(Self { reader, file: file.to_owned(), number: 0, is_complete: true, line: Vec::new() })

@@ -27,7 +27,7 @@ pub struct LogSummary {
     pub scan_topics: Vec<String>,
     /// What was repaired or left out, each a sentence.
     pub notes: Vec<String>,
-    /// Why the log cannot be true, or is too little for a map: ranges in millimetres, scans that see nothing, a single scan.
+    /// Why the log cannot be true, or is too little for a map: ranges in millimeters, scans that see nothing, a single scan.
     /// `None` for a log that can be mapped.
     pub impossible: Option<String>,
 }

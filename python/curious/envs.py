@@ -5,7 +5,7 @@
     the maximum range; 1 without a return), then distance to the goal (share of the diagonal of the world), cosine and
     sine of its direction, cosine and sine of the direction of the shortest path (as a global planner would give it),
     linear and angular velocity (shares of the maximum). Action, shape (2,), float32, from -1 to 1: linear and angular
-    velocity as shares of the maximum. Reward: metres of the shortest path, 10 at the goal, -0.5 per collision, -0.01
+    velocity as shares of the maximum. Reward: meters of the shortest path, 10 at the goal, -0.5 per collision, -0.01
     per step. The episode terminates at the goal, and is truncated after 400 steps of 0.1 s. With ``shows_memory=True``, 128
     more numbers follow, from 0 to 1: ``visited`` (64), how long the robot was in places around it in this episode, and ``seen``
     (64), which share of them it saw: at 0.5, 1, 1.75 and 3 m, in 16 directions each, counter-clockwise from behind.

@@ -144,7 +144,7 @@ impl Claim {
     /// The two head lines of a Markdown table of claims.
     pub fn markdown_head() -> &'static str {
         "| world | estimator | verdict | log error to recency | log error to poisson \
-         | rate error to recency | rate error to poisson | map quality to recency |\n\
+         | rate error to recency | rate error to poisson | map correct to recency |\n\
          |---|---|---|---|---|---|---|---|"
     }
 

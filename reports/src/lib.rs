@@ -170,8 +170,9 @@ impl Report {
     /// Writes the figures, and `report.json`, which lists all files of the run, into the folder of the unfinished run.
     /// Returns the names of the files.
     ///
-    /// `figure3` (in physics worlds: `curves`) shows the first run; the other figures are `figure3-<world>-<estimator>`,
-    /// without the estimator if there is only one. With more than eight worlds, only the first world and all worlds together are drawn.
+    /// `figure3` (in physics worlds: `curves`) shows the run over all worlds, or the only one, with the first estimator; the other figures
+    /// are `figure3-<world>-<estimator>`, without the estimator if there is only one. With more than eight worlds, only all worlds
+    /// together are drawn.
     /// The plans of `worlds`, in any order, are drawn beside the curves; the plan of a world that is not given is
     /// left out.
     ///

@@ -3,7 +3,7 @@
 use super::claim::Claim;
 use super::measure::Measure;
 use super::run::{Run, conditions};
-use super::strategy::StrategyResult;
+use super::strategy::{StrategyResult, Unit};
 use super::wording::{difference, p_value, value};
 use super::{ONE_BY_ONE, Report, is_reference};
 use evaluation::trials::Metric;
@@ -13,12 +13,12 @@ use tabled::settings::object::Columns;
 use tabled::settings::{Alignment, Padding, Span, Style};
 
 const HOW_TO_READ_GRID: &str = "\
-How to read it: errors are 0 and map quality is 1 at best; final is the value at
+How to read it: errors are 0 and map correct is 1 at best; final is the value at
 the end, area the mean over the run, * the best; time at changes is the share of
 steps with a changing cell in view.
 ";
 const HOW_TO_READ_PHYSICS: &str = "\
-How to read it: errors are 0, map quality and AUC are 1 at best; final is the
+How to read it: errors are 0, map correct and AUC are 1 at best; final is the
 value at the end, area the mean over the run, * the best; AUC tells how well the
 rates separate changing cells from static cells, seen is the share of the cells
 that can be seen. Predictions: deviance is 1 for rates that predict the events
@@ -46,7 +46,7 @@ const GRID_COLUMNS: [Column; 7] = [
     ("", "area", Measure::Area(Metric::LogError), Kind::Error),
     ("rate error", "final", Measure::Final(Metric::RateError), Kind::Error),
     ("", "area", Measure::Area(Metric::RateError), Kind::Error),
-    ("map quality", "all cells", Measure::Final(Metric::MapQuality), Kind::Quality),
+    ("map correct", "all cells", Measure::Final(Metric::MapQuality), Kind::Quality),
     ("", "changing", Measure::Final(Metric::MapQualityChanging), Kind::Quality),
     ("time at", "changes", Measure::Final(Metric::ChangingShare), Kind::Share),
 ];
@@ -54,7 +54,7 @@ const PHYSICS_COLUMNS: [Column; 6] = [
     ("log error", "final", Measure::Final(Metric::LogError), Kind::Error),
     ("", "area", Measure::Area(Metric::LogError), Kind::Error),
     ("rate", "AUC", Measure::Final(Metric::RateAuc), Kind::Quality),
-    ("map quality", "all cells", Measure::Final(Metric::MapQuality), Kind::Quality),
+    ("map correct", "all cells", Measure::Final(Metric::MapQuality), Kind::Quality),
     ("", "changing", Measure::Final(Metric::MapQualityChanging), Kind::Quality),
     ("cells", "seen", Measure::Final(Metric::Coverage), Kind::Share),
 ];
@@ -72,7 +72,7 @@ const PREDICTION_COLUMNS: [Column; 6] = [
 const DIFFERENCES: [(&str, Measure, usize); 3] = [
     ("log error, area", Measure::Area(Metric::LogError), 3),
     ("log error, final", Measure::Final(Metric::LogError), 3),
-    ("map quality, final", Measure::Final(Metric::MapQuality), 4),
+    ("map correct, final", Measure::Final(Metric::MapQuality), 4),
 ];
 
 /// A count of a strategy, and what it is.
@@ -82,17 +82,20 @@ type Count = (&'static str, fn(&StrategyResult) -> u64);
 const COUNTS: [Count; 3] = [
     ("False change events on cells that never change", |strategy| strategy.false_change_events),
     ("False changes of the map on these cells, with corrections", |strategy| strategy.false_map_changes),
-    ("Collisions while the robot moved", |strategy| strategy.collisions.unwrap_or(0)),
+    ("Contacts of the robot by its own motion", |strategy| strategy.collisions.unwrap_or(0)),
 ];
 
-/// The tables of all runs; with many worlds, only the runs over all worlds.
+/// The tables of all runs; with many worlds, and with worlds of one trial each, only the runs over all worlds.
 pub(super) fn table(report: &Report) -> String {
     if report.runs.is_empty() {
         return "No trial was finished.\n".into();
     }
     let length = report.settings.length;
     let columns = length.choose(&GRID_COLUMNS[..], &PHYSICS_COLUMNS);
-    let is_short = report.runs.iter().any(|run| run.worlds > ONE_BY_ONE);
+    let is_short = report
+        .runs
+        .iter()
+        .any(|run| run.worlds > ONE_BY_ONE || run.worlds > 1 && report.settings.trials == 1);
     let mut text = String::new();
     if report.settings.interrupted {
         let finished = report.finished;
@@ -102,7 +105,7 @@ pub(super) fn table(report: &Report) -> String {
     for run in report.runs.iter().filter(|run| !is_short || run.worlds > 1) {
         let claim = Claim::of(run).map(|claim| claim.sentence());
         let counts = COUNTS.iter().filter_map(|(what, count)| counts(run, what, count));
-        let conclusions = counts.chain(winner(run)).chain(claim);
+        let conclusions = counts.chain(same(run)).chain(winner(run)).chain(claim);
         let paragraphs = [
             format!("{}\n{}", run.world, conditions(run, &report.settings)),
             values(&run.strategies, columns).to_string(),
@@ -168,13 +171,17 @@ fn cells(strategies: &[StrategyResult], measure: Measure, kind: Kind) -> impl It
         Kind::Share => percent(number),
     };
     let rivals = strategies.iter().filter(|strategy| !is_reference(&strategy.name));
-    let numbers = rivals.map(|strategy| strategy.value(measure));
+    let numbers = rivals.clone().map(|strategy| strategy.value(measure));
     let best = match kind {
         Kind::Error => numbers.fold(f64::NAN, f64::min),
         Kind::Quality => numbers.fold(f64::NAN, f64::max),
         Kind::Share => f64::NAN,
     };
-    let best = (!best.is_nan()).then(|| text(best));
+    // What is the same for all has no best.
+    let mut texts = rivals.map(|strategy| text(strategy.value(measure)));
+    let first = texts.next();
+    let differs = texts.any(|text| first.as_ref() != Some(&text));
+    let best = (!best.is_nan() && differs).then(|| text(best));
     strategies.iter().map(move |strategy| {
         let text = text(strategy.value(measure));
         let is_best = best.as_ref() == Some(&text) && !is_reference(&strategy.name);
@@ -203,12 +210,40 @@ fn differences(run: &Run) -> Option<String> {
         rows.push(row);
     }
     let over = if run.worlds > 1 { "worlds" } else { "seeds" };
-    Some(format!(
-        "Paired differences over {over}, {} minus the other: mean ± half of its\n\
-         95 % interval, p-value of the t test\n{}",
-        first.name,
-        aligned(rows)
-    ))
+    let head = match first.trials {
+        1 => format!("Differences, {} minus the other; one trial has no interval and no test", first.name),
+        _ => format!(
+            "Paired differences over {over}, {} minus the other: mean ± half of its\n\
+             95 % interval, p-value of the t test",
+            first.name
+        ),
+    };
+    Some(format!("{head}\n{}", aligned(rows)))
+}
+
+/// In how many worlds or trials another strategy did what the first one did: too few decisions differ to compare them there.
+fn same(run: &Run) -> Option<String> {
+    let (first, others) = run.strategies.split_first()?;
+    let is_same = |other: &StrategyResult, unit: &Unit| {
+        let partner = other.units.iter().find(|partner| partner.key == unit.key);
+        partner.is_some_and(|partner| {
+            let values = |unit: &Unit| DIFFERENCES.map(|(_, measure, _)| unit.value(measure).to_bits());
+            values(unit) == values(partner)
+        })
+    };
+    let counted = |other: &StrategyResult| {
+        let count = first.units.iter().filter(|unit| is_same(other, unit)).count();
+        (count > 0).then(|| format!("{} {count}", other.name))
+    };
+    let counts: Vec<String> = others.iter().filter_map(counted).collect();
+    let units = if run.worlds > 1 { "worlds" } else { "trials" };
+    let (name, all) = (&first.name, first.units.len());
+    (!counts.is_empty()).then(|| {
+        format!(
+            "The same results as {name}, of {all} {units}: {}; a longer time can tell them apart.",
+            counts.join(", ")
+        )
+    })
 }
 
 /// A count of the strategies for which it is above zero.

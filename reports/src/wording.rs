@@ -5,9 +5,11 @@ pub(super) fn value(value: f64, decimals: usize) -> String {
     if value.is_finite() { format!("{value:.decimals$}") } else { "-".into() }
 }
 
-/// A difference, with its sign.
+/// A difference, with its sign; zero has none.
 pub(super) fn difference(value: f64, decimals: usize) -> String {
-    if value.is_finite() { format!("{value:+.decimals$}") } else { "-".into() }
+    let text = if value.is_finite() { format!("{value:+.decimals$}") } else { return "-".into() };
+    let is_zero = !text.contains(|letter: char| ('1'..='9').contains(&letter));
+    if is_zero { text.replace(['+', '-'], " ") } else { text }
 }
 
 /// `p = 0.012`, `p < 0.001`, or `no test` for a single pair.

@@ -15,9 +15,11 @@ use sim::physics::WorldSpec;
 /// Compares exploration strategies in houses with doors, people and furniture: physics worlds, with statistics.
 ///
 /// Without options, five strategies are compared in eight generated houses, for 20 simulated minutes each: about four
-/// minutes on two cores. The folder house_trials_out contains the results: the curves (curves.svg, curves.png, and with
-/// several worlds curves-all-worlds.svg and .png), every number (report.json), and every trial (trials.csv, trials.parquet). The table
-/// at the end shows which strategy learned the rates of change best, and whether the difference is significant.
+/// minutes on two cores. The folder house_trials_out contains the results: the curves of all worlds together (curves.svg, curves.png)
+/// and of each (curves-house-0.svg, ...; at most eight), every number (report.json), and every trial (trials.csv, trials.parquet). The
+/// table at the end shows which strategy learned the rates of change best, and whether the difference is significant. With
+/// one trial per house, the houses are the sample: over 200 of them, the 95 % interval of a difference was ± 2 % of the error, so
+/// that it is about ± 3 % over 100, and ± 12 % over eight.
 ///
 /// Two references show how far a strategy can get: oracle knows the true rates, and full-observation sees every cell
 /// all the time.

@@ -134,11 +134,11 @@ pub struct TrialArgs<K: TrialKind> {
     threads: Option<u16>,
 
     /// Run shard I of N: every N-th trial, into a file of its own in --out. Run shards 1/N to N/N on any machines, then
-    /// `merge`. A shard that is started again goes on where it ended
+    /// `merge`. A shard that is started again continues where it stopped
     #[arg(long, value_name = "I/N", conflicts_with_all = ["rrd", "save_worlds"], help_heading = EXECUTION)]
     shard: Option<Shard>,
 
-    /// Go on in a folder with shards of another build of this program; the results are those of neither build
+    /// Continue in a folder with shards of another build of this program; the results may differ from those of both builds
     #[arg(long, requires = "shard", help_heading = EXECUTION)]
     allow_other_build: bool,
 

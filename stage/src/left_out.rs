@@ -3,7 +3,7 @@
 /// Kinds of entities that are left out, and why.
 const KINDS: [(&str, &str); 9] = [
     ("camera", "there are no cameras here"),
-    ("blobfinder", "nothing here sees colours"),
+    ("blobfinder", "nothing here sees colors"),
     (
         "bumper",
         "Stage's are short beams that may lie anywhere; `[robot.bumper]` is a ring that feels touches",

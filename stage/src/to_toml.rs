@@ -103,7 +103,7 @@ impl StageWorld {
         let (name, low) = (Value::from(self.name.as_str()), point(&map.low));
         let files = self.files.join(", ");
         let text = format!(
-            "# Made from {files}. Lengths in metres, angles in degrees.\n# [0, 0] here is {low} there.\nname = {name}\n"
+            "# Made from {files}. Lengths in meters, angles in degrees.\n# [0, 0] here is {low} there.\nname = {name}\n"
         );
         let mut made = Made { text, tables: Vec::new() };
         let size_m = map.size_m.into();

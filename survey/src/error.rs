@@ -78,7 +78,7 @@ pub enum SurveyError {
     },
     /// The place of a log is not that of the first one.
     #[error(
-        "the place is not recognised in the map of the first log: {certain} of {compared} scans fit there"
+        "the place is not recognized in the map of the first log: {certain} of {compared} scans fit there"
     )]
     OtherPlace {
         /// The number of scans that fit in the map of the first log, at the pose with the most.

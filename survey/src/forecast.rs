@@ -2,6 +2,7 @@
 
 use crate::masks::{keepout_mask, speed_mask};
 use crate::outlook::{Outlook, distance_m, doors};
+use crate::places::Place;
 use crate::settings::SurveySettings;
 use crate::survey::{SavedLogs, SavedSurvey, Survey};
 use interfaces::{Cell, CellState, Grid};
@@ -17,6 +18,7 @@ pub const NEAR_M: f64 = 0.5;
 #[derive(Clone, Debug)]
 pub struct Forecast {
     mapper: Mapper,
+    places: Vec<Place>,
     why_undated: Option<String>,
 }
 
@@ -25,13 +27,13 @@ impl Forecast {
     ///
     /// # Errors
     ///
-    /// When the state holds neither, or was written by another program.
+    /// When the state holds neither, or was written by another program, and when nothing was learned yet.
     pub fn of_state(state: &State) -> Result<Self, StateError> {
         let Some(facts) = state.facts(SavedSurvey::PART) else {
             let mapper = saved_mapper(state)?;
             let is_dated = *mapper.calendar() != Calendar::Relative;
             let why = (!is_dated).then(|| "it is of a robot that does not know the date".to_owned());
-            return Ok(Self { mapper, why_undated: why });
+            return Ok(Self { mapper, places: Vec::new(), why_undated: why });
         };
         let misfit = || StateError::OtherContent(SavedSurvey::PART.to_owned());
         let logs =
@@ -46,7 +48,8 @@ impl Forecast {
             Some(log) => Some(format!("{} does not say when it was recorded", log.name)),
             None => (!has_zone).then(|| "its format is older than version 8, which has hours".to_owned()),
         };
-        Ok(Self { mapper: survey.mapper().ok_or_else(misfit)?.clone(), why_undated })
+        let mapper = survey.mapper().ok_or(StateError::NothingLearned)?.clone();
+        Ok(Self { mapper, places: survey.places(), why_undated })
     }
 
     /// The map.
@@ -67,6 +70,12 @@ impl Forecast {
     /// The doors that were found, with their numbers, which they keep.
     pub fn doors(&self) -> impl Iterator<Item = (u32, &Door)> {
         doors(&self.mapper)
+    }
+
+    /// The places where something changes, with the numbers and the names that they have in the report of `map_log`; none in the
+    /// state of a robot.
+    pub fn places(&self) -> &[Place] {
+        &self.places
     }
 
     /// The door at a point: its closed leaf is at most half a meter away, m.

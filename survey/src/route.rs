@@ -18,7 +18,7 @@ use std::ops::Range;
 pub struct Route {
     /// One pose per reading, in the frame of the map.
     pub poses: Vec<TrajectoryPose>,
-    /// The number of places that were recognised; 0 where no trajectory was searched.
+    /// The number of places that were recognized; 0 where no trajectory was searched.
     pub loops: usize,
     /// The distances of scans from the surfaces of other passes; `None` where they are not known.
     pub residual: Option<Residual>,

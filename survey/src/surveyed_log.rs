@@ -17,7 +17,7 @@ pub struct LogEntry {
     pub name: String,
     /// The [hash](Log::content_hash) of its content; 0 where it is not needed.
     pub content: u128,
-    /// Hashes of some of its scans, by which a part of it is recognised.
+    /// Hashes of some of its scans, by which a part of it is recognized.
     pub(crate) scans: Vec<u64>,
     /// What was used of it: the topics of scans, the topic of odometry and the frame of the map of another SLAM, and the frame of
     /// the robot.
@@ -69,12 +69,12 @@ impl LogEntry {
         })
     }
 
-    /// Reads the log once more, so that it is recognised in other logs, and they in it.
+    /// Reads the log once more, so that it is recognized in other logs, and they in it.
     ///
     /// # Errors
     ///
     /// When the log can no longer be read.
-    pub fn recognise(&mut self, log: &Log) -> Result<(), LogError> {
+    pub fn recognize(&mut self, log: &Log) -> Result<(), LogError> {
         self.content = log.content_hash()?;
         if !self.stands {
             self.scans = sketch(log)?; // a laser that stands can see the same every day
@@ -102,7 +102,7 @@ pub struct SurveyedLog {
     pub readings: usize,
     /// The number of readings from which the survey has learned.
     pub used: usize,
-    /// The number of places that the robot recognised.
+    /// The number of places that the robot recognized.
     pub loops: usize,
     /// The part that was used.
     pub travelled: Travelled,

@@ -157,7 +157,7 @@ fn maps() {
     2 | resolution: -1
       |             ^^
       |
-      = help: it must be the side of a pixel in metres, from 0.0001 to 100
+      = help: it must be the side of a pixel in meters, from 0.0001 to 100
     ");
     insta::assert_snapshot!(picture(MAP, "P5\n1000000 1000000\n255\n"), @"
     error: cannot read the picture gone.pgm: 1000000 × 1000000 pixels are too many: at most 67108864

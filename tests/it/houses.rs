@@ -60,7 +60,7 @@ fn the_report_has_every_key_and_every_trial() {
     let mut table = csv::Reader::from_path(run.out("trials.csv")).unwrap();
     assert_eq!(table.headers().unwrap().iter().nth(4), Some("time_s"));
     assert_eq!(table.records().count() % (2 * 3), 0);
-    assert!(run.out("curves.svg").exists() && run.out("curves-all-worlds.png").exists());
+    assert!(run.out("curves.svg").exists() && run.out("curves-house-3.png").exists());
 }
 
 #[test]

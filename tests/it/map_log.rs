@@ -97,7 +97,7 @@ fn a_map_that_is_not_usable_says_so() {
     let page = fs::read_to_string(run.out("report.html")).unwrap();
     assert!(
         page.contains("This map is not usable")
-            && page.contains("Where the map is in doubt")
+            && page.contains("Uncertain places of the map")
             && !page.contains("per hour")
     );
     let found = names(&run.path("out"));

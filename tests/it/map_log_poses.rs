@@ -40,7 +40,7 @@ fn a_bag_is_mapped_along_the_poses_of_another_slam() {
     run.goes_well("a.mcap --quiet --no-rrd");
     let (found, localized) = (positions(&run), run.summary());
     let ended = run.goes_well("a.mcap --pose corrected --no-rrd --state s.state");
-    assert!(ended.stdout.contains("m, corrected by another SLAM, 0 places recognised, "), "{}", ended.stdout);
+    assert!(ended.stdout.contains("m, corrected by another SLAM, 0 places recognized, "), "{}", ended.stdout);
     let summary = run.summary();
     assert_eq!((summary.text("/verdict"), summary.text("/settings/pose")), ("good", "corrected"));
     let note = summary.text("/notes/0");

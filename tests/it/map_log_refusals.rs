@@ -27,19 +27,19 @@ fn logs_that_cannot_be_true_are_refused_before_anything_is_written() {
     run.write("a.log", &scaled_log(1000.0));
     let message = refuses(&run, "a.log", &["a.log"]);
     assert!(
-        message.contains("error: a.log: the ranges look like millimetres: in 40 of 40 scans"),
+        message.contains("error: a.log: the ranges look like millimeters: in 40 of 40 scans"),
         "{message}"
     );
     run.write("a.log", &scaled_log(100.0));
     let message = refuses(&run, "a.log", &["a.log"]);
     assert!(
-        message.contains("(the first: 366, which would be 3.66 m); ranges are in metres: divide them by 100"),
+        message.contains("(the first: 366, which would be 3.66 m); ranges are in meters: divide them by 100"),
         "{message}"
     );
     run.write("a.log", &scaled_log(0.001));
     let message = refuses(&run, "a.log", &["a.log"]);
     assert!(
-        message.contains("error: a.log: the ranges look like kilometres: in 40 of 40 scans"),
+        message.contains("error: a.log: the ranges look like kilometers: in 40 of 40 scans"),
         "{message}"
     );
     run.write("a.log", &moving_log(120).repeat(2));
@@ -155,12 +155,12 @@ fn what_is_no_log_is_refused_and_nothing_is_written() {
     insta::assert_snapshot!(refused("a.mcap", b"\x89MCAP0\r\n", "a.mcap"), @"error: a.mcap: no message: the bag is empty; a.mcap has no end, since it is cut off or its recorder was stopped: what is whole before byte 8 of 8 was read");
     let scans = "FLASER 3 1.0 1.0 1.0 0 0 0 0 0 0 1.0 host 1.0\n";
     insta::assert_snapshot!(refused("a.log", scans.as_bytes(), "a.log --resolution 0"), @"
-    error: invalid value '0' for '--resolution <METRES>': must be a number from 0.005 to 10
+    error: invalid value '0' for '--resolution <METERS>': must be a number from 0.005 to 10
 
     For more information, try '--help'.
     ");
     insta::assert_snapshot!(refused("a.log", scans.as_bytes(), "a.log --noise -1"), @"
-    error: invalid value '-1' for '--noise <METRES>': must be a number from 0 to 0.5
+    error: invalid value '-1' for '--noise <METERS>': must be a number from 0 to 0.5
 
     For more information, try '--help'.
     ");

@@ -43,7 +43,7 @@ fn the_page_is_one_file_for_people() {
     let body = &page[page.find("<body>").unwrap()..];
     let order = [
         "This map is good",
-        "It is liveliest at ",
+        "Most often it changes at ",
         "place 1",
         "No door was seen",
         "Where it changes",
@@ -73,7 +73,10 @@ fn a_rate_needs_a_full_cycle() {
     let place = &run.summary().0["places"][0];
     assert_eq!((&place["kind"], &place["passages"]), (&"furniture".into(), &1.into()), "{place}");
     let page = page(&run);
-    assert!(page.contains("Changed once in 10 min of looking") && !page.contains("about once in"), "{page}");
+    assert!(
+        page.contains("Changed once in 10 min of observation") && !page.contains("about once in"),
+        "{page}"
+    );
 }
 
 #[test]
@@ -91,7 +94,7 @@ fn names_and_numbers_stay_in_the_state() {
     let page_of_a = page(&run);
     assert!(
         page_of_a.contains("Lamp &amp; chair")
-            && page_of_a.contains("Window: not seen to change in 2 min of looking.")
+            && page_of_a.contains("Window: not seen to change in 2 min of observation.")
     );
 
     let ended = run.goes_well("b.log --no-rrd --state a.state");
@@ -140,7 +143,7 @@ fn the_second_visit_says_what_changed() {
     for text in [
         "What changed since the last visit",
         "This visit: c.log, from 2023-11-15 22:13 UTC on. Before: a.log, b.log.",
-        "did not change in 20 min of looking",
+        "did not change in 20 min of observation",
     ] {
         assert!(page.contains(text), "{text}: {page}");
     }

@@ -55,7 +55,10 @@ fn a_log_of_the_next_day_adds_to_the_state() {
     // What is learned already only writes the results again, whatever its name is, and with whatever logs it comes.
     fs::rename(run.path("a.log"), run.path("other.log")).unwrap();
     let ended = run.goes_well(&format!("b.log other.log {SAVED}"));
-    assert_eq!(ended.stderr, "note: other.log is learned already\nnote: b.log is learned already\n");
+    assert_eq!(
+        ended.stderr,
+        "note: other.log is learned already\nnote: b.log is learned already\nnote: nothing is added; the results show what was learned before, without a trajectory\n"
+    );
     assert_eq!(differing(&results(&run), &whole), ["trajectory.png", "trajectory.tum"]);
     assert_eq!(run.names(), ["a.state", "a.state.earlier", "b.log", "other.log", "out"]);
 }
@@ -288,7 +291,7 @@ fn the_last_log_can_be_removed_and_another_one_cannot() {
     let files = ["a.log", "a.state", "a.state.earlier", "b.log"];
     insta::assert_snapshot!(refuses(&run, "remove a.state a.log", &files), @"error: a.log cannot be removed: what was learned from all logs is one map, and only b.log was added last; map the other logs into a new file by map_log --state");
     insta::assert_snapshot!(refuses(&run, "remove a.state c.log", &files), @"error: a.state holds no log c.log, but a.log, b.log");
-    insta::assert_snapshot!(run.goes_well("remove a.state b.log").stdout, @"b.log is removed: a.state is as it was before");
+    insta::assert_snapshot!(run.goes_well("remove a.state logs/b.log").stdout, @"b.log is removed: a.state is as it was before");
     assert!(fs::read(run.path("a.state")).unwrap() == before);
     insta::assert_snapshot!(refuses(&run, "remove a.state a.log", &["a.log", "a.state", "b.log"]), @"error: a.log is the only log in a.state: remove the file");
     let run = run.with_map_log();

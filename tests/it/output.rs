@@ -146,7 +146,7 @@ fn the_pictures_are_pictures() {
     {
         let picture = image::open(RUN.out(&format!("{name}.png"))).unwrap().into_rgb8();
         assert!(picture.width() >= 400 && picture.height() >= 400, "{name}");
-        let colours: std::collections::BTreeSet<_> = picture.pixels().map(|pixel| pixel.0).collect();
-        assert!(colours.len() > 10, "{name} has {} colours", colours.len());
+        let colors: std::collections::BTreeSet<_> = picture.pixels().map(|pixel| pixel.0).collect();
+        assert!(colors.len() > 10, "{name} has {} colors", colors.len());
     }
 }

@@ -139,12 +139,13 @@ fn door_days() -> String {
 fn doors_have_hours_and_so_have_masks_and_edges() {
     let run = Run::new().with_map_log();
     run.write("days.log", &door_days());
-    run.goes_well(&format!("days.log --time-zone Europe/Berlin {SAVED}"));
+    run.write("names.toml", "[[place]]\nname = \"front\"\nx_m = 2.0\ny_m = 0.0\n");
+    run.goes_well(&format!("days.log --time-zone Europe/Berlin --places names.toml {SAVED}"));
     fs::remove_dir_all(run.path("out")).unwrap();
     let run = run.with_predict();
     let ended = run.goes_well("a.state --at 2024-01-16T13:00 --at 2024-01-16T03:00");
     for line in [
-        "door 0 at (2.0",
+        "door 0, place 1 (front), at (2.0",
         " m wide, closed when it was last seen, Mon 2024-01-15 23:30 CET",
         "  Tue 2024-01-16 13:00 CET: open with a probability of ",
         "  Opens ",
@@ -176,11 +177,31 @@ fn doors_have_hours_and_so_have_masks_and_edges() {
     let graph: Value = serde_json::from_slice(&fs::read(run.out("graph.geojson")).unwrap()).unwrap();
     let open = graph["features"][2]["properties"]["metadata"]["open_probability"].as_f64().unwrap();
     assert!((open - noon[1]).abs() < 1e-3, "{open}, {noon:?}");
+    // So is its place in the report, by number and by name.
+    for asked in ["1", "front"] {
+        run.goes_well(&format!("a.state --at 2024-01-16T13:00 --place {asked}"));
+        let summary = run.summary();
+        assert_eq!(expected(&summary, 0), noon);
+        assert_eq!(
+            [summary.0.pointer("/places/0/number"), summary.0.pointer("/places/0/name")].map(Option::unwrap),
+            [&json!(1), &json!("front")]
+        );
+        assert!(
+            summary.text("/places/0/title").starts_with("door 0, place 1 (front), at "),
+            "{}",
+            summary.text("/places/0/title")
+        );
+    }
+    let refused = run.ends("a.state --place 9");
+    assert_eq!(
+        (refused.code, refused.stderr.as_str()),
+        (Some(2), "error: --place 9: there is no such place; known are 1 (front)\n")
+    );
     let refused = run.ends("a.state --door 0 --door 7");
     assert_eq!(refused.code, Some(2));
     assert!(
         refused.stderr.starts_with("error: --door 7: there is no such door; known are 0 at ")
-            && refused.stderr.contains("give `--place X,Y`"),
+            && refused.stderr.contains("are those of places: --place"),
         "{}",
         refused.stderr
     );

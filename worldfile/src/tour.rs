@@ -46,11 +46,11 @@ impl TourSpec {
             if x.abs() <= MAX_M && y.abs() <= MAX_M {
                 return Some(Point2::new(x, y));
             }
-            let help = "both must be numbers of metres within the map";
+            let help = "both must be numbers of meters within the map";
             waypoint.error(&format!("`waypoints_m` has [{x}, {y}]"), "no place", help)
         })?;
         if waypoints.is_empty() {
-            return value.invalid("is empty", "", "a tour needs at least one `[x, y]` in metres");
+            return value.invalid("is empty", "", "a tour needs at least one `[x, y]` in meters");
         }
         table.sound(Self { waypoints, repeat })
     }
@@ -79,7 +79,7 @@ mod tests {
         1 | waypoints_m = []
           |               ^^
           |
-          = help: a tour needs at least one `[x, y]` in metres
+          = help: a tour needs at least one `[x, y]` in meters
         ");
         insta::assert_snapshot!(error("repeat = true\nwaypoints_m = [\n  [1.0, 2.0],\n  [nan, 0.0],\n]"), @"
         `waypoints_m` has [NaN, 0]
@@ -88,7 +88,7 @@ mod tests {
         4 |   [nan, 0.0],
           |   ^^^^^^^^^^ no place
           |
-          = help: both must be numbers of metres within the map
+          = help: both must be numbers of meters within the map
         ");
         insta::assert_snapshot!(error("waypoint = [[1, 2]]"), @"
         unknown key `waypoint`

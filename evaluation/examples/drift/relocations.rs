@@ -97,7 +97,7 @@ impl ChangingMap for KnownMap {
     }
 }
 
-/// The house after every third piece of furniture was moved by up to a metre and turned.
+/// The house after every third piece of furniture was moved by up to a meter and turned.
 fn rearranged(spec: &WorldSpec, seed: u64) -> WorldSpec {
     let mut random = RandomStream::new(seed, Purpose::HouseGenerator);
     let mut fleet = spec.fleet().clone();

@@ -103,7 +103,7 @@ fn print_trajectory(trajectory: &Trajectory, per_scan_ms: f64) {
     let length_m: f64 = poses.windows(2).map(step_m).sum();
     let uncertain = poses.iter().filter(|pose| pose.state != PoseState::Tracking).count();
     println!(
-        "trajectory: {length_m:.0} m, {} places recognised, {uncertain} scans without support, {per_scan_ms:.2} ms per scan",
+        "trajectory: {length_m:.0} m, {} places recognized, {uncertain} scans without support, {per_scan_ms:.2} ms per scan",
         trajectory.loops
     );
     if let Some(residual) = trajectory.residual {

@@ -31,10 +31,8 @@ impl TrialStrategy {
     pub fn description(&self) -> &'static str {
         match self {
             Self::Agent(policy) => policy.description(),
-            Self::Oracle => "what the true rates promise most of: the reference, no robot knows them",
-            Self::FullObservation => {
-                "nowhere, but it sees every cell all the time: the bound of the estimator"
-            }
+            Self::Oracle => "where the true rates promise most: a reference, no robot knows them",
+            Self::FullObservation => "nowhere: it sees every cell all the time, the bound of the estimator",
         }
     }
 }

@@ -14,7 +14,7 @@ use interfaces::{GridFrame, LaserReading, SettingsError, ValueError};
 use nalgebra::Isometry2;
 
 /// The surfaces of a place as short straight lines, from the readings of a log along its trajectory. Unlike a grid, it is
-/// exact to some millimetres.
+/// exact to some millimeters.
 #[derive(Clone, Debug)]
 pub struct LineMap {
     settings: TrajectorySettings,

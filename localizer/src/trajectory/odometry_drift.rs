@@ -12,7 +12,7 @@ pub(super) fn ways_m(graph: &PoseGraph, from: usize) -> Vec<f64> {
         let turn_m = interfaces::heading_rad(&edge.motion).abs() * TURN_M;
         let way_m =
             if edge.kind == EdgeKind::Loop { LOOP_M } else { edge.motion.translation.vector.norm() + turn_m };
-        // Whole millimetres can be sorted.
+        // Whole millimeters can be sorted.
         let way_mm = (way_m * 1e3) as u64;
         neighbors[edge.from].push((edge.to, way_mm));
         neighbors[edge.to].push((edge.from, way_mm));

@@ -53,7 +53,7 @@ impl BagFile {
     /// When it cannot be read, or is of ROS 1.
     pub(crate) fn open(path: &Path) -> Result<Option<Self>, LogError> {
         let name: Arc<str> = path.display().to_string().into();
-        Self::recognised(name.clone(), Bytes::File(path.to_owned()))
+        Self::recognized(name.clone(), Bytes::File(path.to_owned()))
             .map_err(|why| LogError::Io { file: name.to_string(), why })
     }
 
@@ -62,7 +62,7 @@ impl BagFile {
         self.bytes.open()
     }
 
-    pub(crate) fn recognised(name: Arc<str>, bytes: Bytes) -> io::Result<Option<Self>> {
+    pub(crate) fn recognized(name: Arc<str>, bytes: Bytes) -> io::Result<Option<Self>> {
         let start = bytes.start()?;
         if let Some(format) = Format::of(&start) {
             return Ok(Some(Self { name, format, bytes, missing: None }));

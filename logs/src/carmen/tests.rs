@@ -113,7 +113,7 @@ fn robotlaser_lines_name_their_field_of_view() {
 }
 
 #[test]
-fn compressed_logs_are_recognised_by_their_content() {
+fn compressed_logs_are_recognized_by_their_content() {
     let text = "ODOM 0 0 0 0 0 0 1 h 1\n".to_owned() + &flaser(1.0, "0 0 0") + &flaser(2.0, "0 0 0");
     let mut encoder = GzEncoder::new(Vec::new(), Compression::fast());
     encoder.write_all(text.as_bytes()).unwrap();
@@ -341,14 +341,14 @@ fn a_recording_at_another_pace_is_noted() {
 fn logs_that_cannot_be_true_are_named() {
     let right = |time_s: f64| format!("ODOM {} 0 0 0 0 0 {time_s} host {time_s}\n", (time_s * 0.3).sin());
     assert_eq!(impossible(&room(1.0, right)), None);
-    let expected = "the ranges look like millimetres: in 40 of 40 scans, their median is beyond 100 m (the first: 2580, which \
-                    would be 2.58 m); ranges are in metres: divide them by 1000";
+    let expected = "the ranges look like millimeters: in 40 of 40 scans, their median is beyond 100 m (the first: 2580, which \
+                    would be 2.58 m); ranges are in meters: divide them by 1000";
     assert_eq!(impossible(&room(1000.0, right)).unwrap(), expected);
     assert!(
-        impossible(&room(100.0, right)).unwrap().starts_with("the ranges look like centimetres: in 40 of")
+        impossible(&room(100.0, right)).unwrap().starts_with("the ranges look like centimeters: in 40 of")
     );
     assert!(
-        impossible(&room(0.001, right)).unwrap().starts_with("the ranges look like kilometres: in 40 of")
+        impossible(&room(0.001, right)).unwrap().starts_with("the ranges look like kilometers: in 40 of")
     );
     let swapped =
         |time_s: f64| format!("ODOM {time_s} 0 0 0 0 0 {} host {time_s}\n", 5.0 + (time_s * 0.3).sin());

@@ -19,7 +19,7 @@ pub(super) struct Step {
     pub(super) pose: Isometry2<f64>,
     /// The velocity up to this pose.
     pub(super) twist: Twist,
-    /// The length of the path from here to the end of the scan: metres, and turns as metres.
+    /// The length of the path from here to the end of the scan: meters, and turns as meters.
     length: f64,
 }
 

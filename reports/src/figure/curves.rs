@@ -129,13 +129,13 @@ fn heading(metric: Metric) -> &'static str {
     match metric {
         Metric::RateError => "Relative error of the rates",
         Metric::LogError => "Log error of the rates: 0.69 is a factor of 2",
-        Metric::MapQuality => "Map quality: share of cells that are correct",
+        Metric::MapQuality => "Map correct: share of cells",
         Metric::RateAuc => "AUC of the rates: changing cells against static cells",
         other => other.name(),
     }
 }
 
-/// What the axis spans: errors from 0, map quality up to 1.
+/// What the axis spans: errors from 0, map correct up to 1.
 fn range<'a>(metric: Metric, settled: impl Iterator<Item = &'a Estimate>) -> Range<f64> {
     let means = settled.map(|at| at.mean).filter(|mean| mean.is_finite());
     let (low, high) =

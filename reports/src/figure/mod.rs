@@ -1,5 +1,5 @@
 //! Figure 3 of the paper, in grid worlds and in physics worlds: the plan of the world, and the curves of the errors of the
-//! rates and of the map quality, one per strategy, with bands of 95 % confidence.
+//! rates and of the share of the map that is correct, one per strategy, with bands of 95 % confidence.
 
 mod curves;
 mod pen;
@@ -39,21 +39,24 @@ pub(super) fn write_all(folder: &Path, report: &Report, worlds: &[Plan]) -> Resu
     Ok(())
 }
 
-/// The runs that are drawn, each with the name of its file: the first, and the others, unless
-/// there are many worlds: then only all of them together.
+/// The runs that are drawn, each with the name of its file: the run over all worlds, or the only one, has no ending. With many worlds,
+/// only all of them together are drawn.
 fn chosen(report: &Report) -> Vec<(String, &Run)> {
     let runs = &report.runs;
     let worlds = runs.iter().map(|run| run.worlds).max().unwrap_or(1);
+    let main = runs.iter().position(|run| run.worlds == worlds);
     let has_one_estimator = runs.iter().all(|run| run.estimator == runs[0].estimator);
     let mut names = BTreeSet::new();
     let mut chosen = Vec::new();
     for (index, run) in runs.iter().enumerate() {
-        if index > 0 && run.worlds == 1 && worlds > ONE_BY_ONE {
+        if run.worlds == 1 && worlds > ONE_BY_ONE {
             continue;
         }
         let mut name = String::from(report.settings.length.choose("figure3", "curves"));
-        if index > 0 {
-            name += &format!("-{}", in_file_name(if run.worlds > 1 { "all worlds" } else { &run.world }));
+        if Some(index) != main {
+            if run.worlds == 1 {
+                name += &format!("-{}", in_file_name(&run.world));
+            }
             if !has_one_estimator {
                 name += &format!("-{}", in_file_name(&run.estimator));
             }

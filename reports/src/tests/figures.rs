@@ -16,7 +16,7 @@ fn figures(report: &Report) -> (Vec<String>, Vec<RgbImage>, Vec<String>) {
 }
 
 #[test]
-fn the_first_run_is_figure_3_and_the_others_are_named() {
+fn the_run_over_all_worlds_is_figure_3_and_the_others_are_named() {
     let names = |worlds, estimators: &[&str]| {
         let (names, ..) = figures(&report(worlds, estimators, &["curious"], 1));
         let svg = names.iter().filter_map(|name| name.strip_suffix(".svg"));
@@ -25,8 +25,8 @@ fn the_first_run_is_figure_3_and_the_others_are_named() {
     assert_eq!(names(1, &["paper"]), ["figure3"]);
     // By name.
     assert_eq!(names(1, &["paper", "two-state"]), ["figure3-two-blocks-two-state", "figure3"]);
-    assert_eq!(names(2, &["paper"]), ["figure3-all-worlds", "figure3-generated-1", "figure3"]);
-    assert_eq!(names(9, &["paper"]), ["figure3-all-worlds", "figure3"]);
+    assert_eq!(names(2, &["paper"]), ["figure3-generated-1", "figure3-two-blocks", "figure3"]);
+    assert_eq!(names(9, &["paper"]), ["figure3"]);
 }
 
 #[test]
@@ -39,7 +39,7 @@ fn names_that_look_alike_in_a_file_s_name_stay_apart() {
     let (names, ..) = figures(&Report::new(settings, renamed.collect()));
     assert_eq!(
         names.iter().filter(|name| name.ends_with("svg")).collect::<Vec<_>>(),
-        ["figure3-a-b-2.svg", "figure3-a-b.svg", "figure3-all-worlds.svg", "figure3.svg"]
+        ["figure3-a-b-2.svg", "figure3-a-b.svg", "figure3-two-blocks.svg", "figure3.svg"]
     );
 }
 
@@ -48,8 +48,8 @@ fn every_strategy_the_world_and_the_words_are_drawn() {
     let (_, pictures, texts) = figures(&report(1, &["two-state"], &FIVE, 5));
     let (picture, text) = (&pictures[0], &texts[0]);
     let count = |colour: [u8; 3]| picture.pixels().filter(|pixel| pixel.0 == colour).count();
-    let colours = [[0, 114, 178], [0, 158, 115], [230, 159, 0], [150, 150, 150], [86, 180, 233]];
-    for (name, colour) in FIVE.into_iter().zip(colours) {
+    let colors = [[0, 114, 178], [0, 158, 115], [230, 159, 0], [150, 150, 150], [86, 180, 233]];
+    for (name, colour) in FIVE.into_iter().zip(colors) {
         assert!(count(colour) > 300, "{name}: {}", count(colour));
         let [red, green, blue] = colour;
         assert!(text.contains(&format!("stroke=\"#{red:02X}{green:02X}{blue:02X}\"")), "{name}");
@@ -62,7 +62,7 @@ fn every_strategy_the_world_and_the_words_are_drawn() {
         "two_blocks: 5 trials of 20,000 steps, estimator two-state, sensor radius 4",
         "top block",
         "range of its sensor: 4",
-        "Map quality: share of cells that are correct",
+        "Map correct: share of cells",
         "15,000",
     ] {
         assert!(text.contains(&format!(">\n{words}\n</text>")), "{words}");

@@ -68,6 +68,11 @@ pub enum StateError {
         /// The value of this run.
         expected: String,
     },
+    /// A run was interrupted or refused before it learned anything.
+    #[error(
+        "nothing is learned in this state yet: its run ended in the first pass; run map_log again, with logs of this place"
+    )]
+    NothingLearned,
     /// The facts are those of this run, but the bytes are not a snapshot of this part.
     #[error("the part `{0}` of the state does not fit this program")]
     OtherContent(String),

@@ -16,8 +16,8 @@ use viewer::recording::Live;
 /// Without options, the curious agent explores the paper's four rooms for 20 simulated minutes. The folder
 /// four_rooms_out contains the results: pictures of the maps (figure5.png) and of the trajectories
 /// (trajectory.png), a recording (four_rooms.rrd, named after the world; open it with `rerun FILE`), the map in ROS
-/// format (map.yaml, map.pgm), the statistics of every cell (cell_statistics.csv), doors and moved furniture (things.json), the trajectory as the robot
-/// knew it and as it was (trajectory.tum, trajectory_true.tum, in the TUM format), and all results as JSON
+/// format (map.yaml, map.pgm), the statistics of every cell (cell_statistics.csv), doors and moved furniture (things.json), the estimated and the true
+/// trajectory (trajectory.tum, trajectory_true.tum, in the TUM format), and all results as JSON
 /// (summary.json).
 ///
 /// The results of an earlier run in the folder stay until the new ones are complete; until then the new ones are in its
@@ -81,8 +81,8 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FACTOR|max", value_parser = speed, allow_negative_numbers = true, help_heading = "Pilot")]
     pub(crate) speed: Option<f64>,
 
-    /// The share of the time that the robot can be on patrol, as 0.05: it has a battery and a dock where it starts, rests there,
-    /// and goes back in time [default: as in the world file, otherwise always]
+    /// The share of the time that the robot can be on patrol, for example 0.05: it has a battery, and a dock where it starts and
+    /// rests, and returns before the battery is empty [default: as in the world file, otherwise always]
     #[arg(long, value_name = "SHARE", value_parser = share, allow_negative_numbers = true, help_heading = "Pilot")]
     pub(crate) patrol: Option<f64>,
 
@@ -111,9 +111,9 @@ pub(crate) struct Args {
     #[arg(long, help_heading = "Output")]
     pub(crate) no_rrd: bool,
 
-    /// Save the state of the run in a file, at the end and every minute. If the file exists, the run goes on from there,
-    /// bit for bit as if it had never ended: give the same world, seed and settings. --duration is the simulated time
-    /// in all; the recording, the moving picture and the trajectories cover what is run now
+    /// Save the state of the run in a file, at the end and every minute. If the file exists, the run continues,
+    /// with the same results as an uninterrupted run: give the same world, seed and settings. --duration is the total
+    /// simulated time; the recording, the animation and the trajectories cover only this command
     #[arg(long, value_name = "FILE", value_parser = output_file(), help_heading = "Output")]
     pub(crate) state: Option<PathBuf>,
 
@@ -121,11 +121,11 @@ pub(crate) struct Args {
     #[arg(long, value_name = "TIME", default_value = "1m", value_parser = duration_s, requires = "state", help_heading = "Output")]
     pub(crate) state_every: f64,
 
-    /// Go on from the state of another build of this program; the results are those of neither build
+    /// Continue from the state of another build of this program; the results may differ from those of both builds
     #[arg(long, requires = "state", help_heading = "Output")]
     pub(crate) allow_other_build: bool,
 
-    /// Write a moving picture of the run, a GIF file; the run takes some seconds more
+    /// Write an animation of the run, a GIF file; the run takes some seconds more
     #[arg(long, value_name = "FILE", value_parser = gif, help_heading = "Output")]
     pub(crate) gif: Option<PathBuf>,
 

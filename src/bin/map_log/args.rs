@@ -13,22 +13,21 @@ use survey::{LogEntry, SavedLogs, SurveySettings};
 
 /// Maps the logs of a robot: where the place changes, how often, and when last.
 ///
-/// A log is a CARMEN log, plain or compressed with gzip, or a bag of ROS 2: a folder, an MCAP file or an SQLite file. Of a file
-/// that is cut off, what is whole is read. Its
-/// trajectory is found from the scans and the odometry; a laser that stands needs neither, and the poses of another SLAM can be used
-/// (--pose corrected). Several logs are those of one
-/// place: they are read in the order of their times, and later ones find their place in the map of the first. With --state,
-/// later logs can follow in a later run, which gives the same maps and rates as one run with all logs.
+/// A log is a CARMEN log, plain or compressed with gzip, or a bag of ROS 2: a folder, an MCAP file or an SQLite file. If a
+/// file is cut off, its undamaged beginning is read. The trajectory is estimated from the scans and the odometry; a stationary laser
+/// needs no odometry, and the poses of another SLAM can be used (--pose corrected). Several logs must be of the same place: they
+/// are read in the order of their times, and later logs are located in the map of the first. With --state, more logs can be added
+/// in later runs, with the same maps and rates as in one run with all logs.
 ///
-/// The folder map_log_out contains the results: a page to read (report.html, one file with its pictures inside, for a telephone
-/// or on paper) with the places where something changes, pictures of the maps (figure5.png) and of the trajectory (trajectory.png), a recording
+/// The folder map_log_out contains the results: a page to read (report.html, one file with its pictures inside, for a phone or
+/// for printing) with the places where something changes, pictures of the maps (figure5.png) and of the trajectory (trajectory.png), a recording
 /// (map_log.rrd; open it with `rerun FILE`), the map in ROS format (map.yaml) and the map of what is permanent
 /// (permanent.yaml), masks for the costmap filters of Nav2 (speed_mask.yaml, keepout_mask.yaml), the statistics of every
 /// cell (cell_statistics.csv, and layers.npy for NumPy with its names in layers.json), the trajectory (trajectory.tum, in the TUM format), and all
 /// results as JSON (summary.json).
 ///
-/// The map is judged by its own scans: good, usable with care, or not usable, with the reasons and the places in doubt. A map
-/// that is not usable is drawn, but has no rates and no masks, does not enter the state, and the exit code is 3.
+/// The map is evaluated with its own scans: good, usable with care, or not usable, with the reasons and the uncertain places. A map
+/// that is not usable is drawn, but has no rates and no masks, is not saved in the state, and the exit code is 3.
 ///
 /// The results of an earlier run in the folder stay until the new ones are complete; until then the new ones are in its
 /// subfolder unfinished_run. Other files are never removed or replaced: where one has the name of a result, the run is
@@ -63,14 +62,14 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FRAME", help_heading = "Bags")]
     pub(crate) map_frame: Option<String>,
 
-    /// How the poses are known [default: exact for a laser that stands, otherwise localized]
+    /// How the poses are known [default: exact for a stationary laser, otherwise localized]
     #[arg(long, value_parser = pose_mode(&PoseMode::ALL, pose_in_log), help_heading = "Poses")]
     pub(crate) pose: Option<PoseMode>,
 
     /// The side of a cell, m
     #[arg(
         long,
-        value_name = "METRES",
+        value_name = "METERS",
         default_value_t = 0.05,
         value_parser = number(0.005..=10.0),
         allow_negative_numbers = true,
@@ -78,10 +77,10 @@ pub(crate) struct Args {
     )]
     pub(crate) resolution: f64,
 
-    /// Ranges beyond this one are not used, m
+    /// The maximum range, m: longer ranges are ignored
     #[arg(
         long,
-        value_name = "METRES",
+        value_name = "METERS",
         default_value_t = 20.0,
         value_parser = number(0.1..=1000.0),
         allow_negative_numbers = true,
@@ -89,7 +88,7 @@ pub(crate) struct Args {
     )]
     pub(crate) max_range: f64,
 
-    /// The memory that the map may take, GiB: about 130 bytes per cell that was seen
+    /// The memory that the map may take, GiB: 130 bytes are counted per cell that was seen
     #[arg(
         long,
         value_name = "GIB",
@@ -100,12 +99,12 @@ pub(crate) struct Args {
     )]
     pub(crate) map_memory: f64,
 
-    /// The errors of ranges and poses together: what a change must stand out from, m [default: 5 times the distance of scans
-    /// from the surfaces of other passes, from 0.02 to 0.1; 0.06 if no place was passed twice; with exact poses 0.03]
-    #[arg(long, value_name = "METRES", value_parser = number(0.0..=0.5), allow_negative_numbers = true, help_heading = "Map")]
+    /// The error of ranges and poses together, m: smaller differences are no change [default: learned from the distances between
+    /// scans and the surfaces of other passes, 0.02 to 0.1; 0.06 if no place was passed twice; with exact poses 0.03]
+    #[arg(long, value_name = "METERS", value_parser = number(0.0..=0.5), allow_negative_numbers = true, help_heading = "Map")]
     pub(crate) noise: Option<f64>,
 
-    /// Hits whose line to the next hit has a smaller angle to the beam lie between two surfaces and are left out; 0 keeps
+    /// Hits whose line to the next hit has a smaller angle to the beam are removed: they lie between two surfaces; 0 keeps
     /// all
     #[arg(
         long,
@@ -143,8 +142,8 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE", value_parser = output_file(), help_heading = "Output")]
     pub(crate) mcap: Option<PathBuf>,
 
-    /// Keep what is learned in a file. If it exists, the logs add to it: logs of the same place, later than those before. It is
-    /// saved at the end and every minute; a run that was interrupted or killed goes on with the same command
+    /// Store the learned data in a file. If it exists, the logs are added to it: they must be of the same place, and later than those
+    /// before. It is saved at the end and every minute; after an interruption, the same command continues
     #[arg(long, value_name = "FILE", value_parser = output_file(), help_heading = "Output")]
     pub(crate) state: Option<PathBuf>,
 
@@ -157,8 +156,8 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE", value_parser = input_file(), help_heading = "Output")]
     pub(crate) places: Option<PathBuf>,
 
-    /// Use a map that is judged as not usable as any other: with rates, masks, an entry into --state, and exit code 0. For those
-    /// who have looked at it
+    /// Use a map that is not usable as if it were: with rates, masks, an entry in --state, and exit code 0. Check the map
+    /// first
     #[arg(long, help_heading = "Map")]
     pub(crate) accept_map: bool,
 

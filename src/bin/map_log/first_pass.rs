@@ -52,7 +52,12 @@ pub(crate) fn routes(
             Ok(()) => state_file.save(survey),
             Err(PassError::Interrupted) => return Ok(false),
             Err(PassError::Alignment(why)) => {
-                return Err(input(Error::from(why).context(format!("cannot use {}", source.entry.name))));
+                let why = Error::from(why).context(format!("cannot use {}", source.entry.name));
+                if state_file.is_kept() {
+                    let way_out = "if it is of another place, it needs a --state of its own";
+                    job.say(format_args!("{} is not added to the state: {way_out}", source.entry.name));
+                }
+                return Err(input(why));
             }
             Err(other) => return Err(input(other)),
         }

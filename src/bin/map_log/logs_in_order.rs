@@ -19,7 +19,7 @@ pub(crate) struct Source {
 }
 
 /// Opens all logs, and puts them in the order of their times. Notes go to the error output. `is_kept`: whether a log must
-/// be recognised in a later run.
+/// be recognized in a later run.
 pub(crate) fn open(
     files: &[PathBuf],
     choice: &TopicChoice,
@@ -42,7 +42,7 @@ pub(crate) fn open(
         let mut entry = LogEntry::of(short_name(file), &log, choice)?;
         if is_kept || files.len() > 1 {
             let _reading = busy();
-            entry.recognise(&log)?;
+            entry.recognize(&log)?;
         }
         Ok(Source { log, entry })
     };
@@ -129,6 +129,10 @@ pub(crate) fn continued(
         }
         !is_learned
     });
+    if sources.is_empty() {
+        let shown = "the results show what was learned before, without a trajectory";
+        say(stderr(), format_args!("note: nothing is added; {shown}"));
+    }
     // Routes that were found hold for the same logs in the same order.
     let begun = survey.logs().iter().take_while(|log| log.used > 0).count();
     let learned = survey.logs().iter().take_while(|log| log.is_finished()).count();
@@ -143,6 +147,18 @@ pub(crate) fn continued(
     if kept < begun {
         let name = &survey.logs()[kept].entry.name;
         bail!("{name} is learned in part: no log can begin before it");
+    }
+    for log in survey.logs().iter().skip(kept) {
+        // Its run ended between both passes. A log that is given again finds its place anew.
+        if !sources.iter().any(|source| source.entry.content == log.entry.content) {
+            let name = &log.entry.name;
+            say(
+                stderr(),
+                format_args!(
+                    "note: {name} is left out: its run ended before anything was learned of it; give it again"
+                ),
+            );
+        }
     }
     survey.forget_from(kept);
     let mut before: Vec<LogEntry> = survey.logs().iter().map(|log| log.entry.clone()).collect();

@@ -50,7 +50,7 @@ pub(crate) struct Summary {
     pub(crate) notes: Vec<String>,
     /// The length of the trajectory in this time, m.
     pub(crate) trajectory_m: f64,
-    /// The number of places that the robot recognised, in the whole logs.
+    /// The number of places that the robot recognized, in the whole logs.
     pub(crate) loops: usize,
     /// The time of the first scan in seconds since the epoch (1970-01-01 UTC); `null` unless every log says when it was
     /// recorded. Times of changes are relative to this.
@@ -219,7 +219,7 @@ impl fmt::Display for Summary {
         };
         writeln!(
             f,
-            "  route     {:.0} m, {pose}, {} places recognised, {} scans left out",
+            "  route     {:.0} m, {pose}, {} places recognized, {} scans left out",
             self.trajectory_m, self.loops, self.scans_left_out
         )?;
         writeln!(f, "  seen      {:.0} m², {} of it changed", self.seen_m2, percent(self.changed_share))?;

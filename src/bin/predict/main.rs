@@ -1,10 +1,12 @@
 //! A place as it will be: what is blocked at a time, from a state file.
 
+mod asked;
 mod moment;
 mod place;
 mod route;
 
 use anyhow::{Context, anyhow, bail};
+use asked::Asked;
 use clap::Parser;
 use curious::flags::{folder, input_file, number, value_of};
 use curious::program::{Failure, arguments, input, results_folder, start, state_failure};
@@ -12,7 +14,6 @@ use curious::terminal::print;
 use curious::words::length_of;
 use interfaces::Grid;
 use mapper::Door;
-use nalgebra::Point2;
 use place::Place;
 use results::numbers::percent;
 use results::output::write_file;
@@ -27,17 +28,19 @@ use survey::{Forecast, MASKS, Travel};
 use viewer::layers::Layer;
 use viewer::pictures::draw_values;
 
+/// The graph of `--graph` with its probabilities.
+const GRAPH: &str = "graph.geojson";
 /// The version of the layout of `summary.json`; count up when a key is renamed, removed or changes its meaning.
 const SCHEMA: u32 = 2;
 
 /// Predicts a place from what was learned about it: is that door open at ten past five?
 ///
-/// Says when its doors are usually open, how often they are opened, and with which probability they are open at the times of
-/// --at; of a place (--place) with which probability it is blocked. Behind a probability is the interval that contains the true one
-/// with 90 %; it needs looks on 14 days.
+/// Prints when the doors are usually open, how often they open, and the probability that they are open at the times of --at; for a
+/// place (--place), the probability that it is blocked. A 90 % interval follows each probability;
+/// it needs observations on 14 days.
 ///
 /// STATE is a file of `map_log --state`, or of four_rooms in a world with a calendar, whose first week begins on Monday, 2024-01-01,
-/// in UTC. (Other states of four_rooms, and those of curious_node, know no hours.) A time is
+/// in UTC. (Other states of four_rooms, and those of curious_node, have no hours.) A time is
 ///   +10m                after the last reading of the state: s, m or h
 ///   17:10, "Tue 17:10"  the next such time after the last reading, in the time zone of the state
 ///   2024-01-30T17:10    a date in this zone; with Z or an offset as +01:00 in that one
@@ -49,7 +52,7 @@ const SCHEMA: u32 = 2;
 /// With several times, the files are numbered. Also in the folder: for how long a look at a place counts before its usual hours
 /// say more (expiry.png, expiry.npy, in hours), and all that is printed, as data (summary.json).
 ///
-/// Hours and weekdays are learned per door and per square of half a meter, and count the more the longer they were seen.
+/// Hours and weekdays are learned per door and per square of half a meter, and have more weight the longer they were observed.
 #[derive(Clone, Debug, Parser)]
 #[command(
     name = "predict",
@@ -60,8 +63,9 @@ const SCHEMA: u32 = 2;
         predict office.state                                         all doors: their hours, and now\n  \
         predict office.state --at \"Tue 17:10\"                        the doors, map and masks on Tuesday at ten past five\n  \
         predict office.state --at +10m --at +1h                      two maps\n  \
-        predict office.state --at 17:10 --place 3.2,-1.5             a place or a door: its usual hours\n  \
-        predict office.state --at 17:10 --door 0                     the door with this number\n  \
+        predict office.state --at 17:10 --place 3                    place 3 of the report of map_log\n  \
+        predict office.state --at 17:10 --place \"kitchen door\"       the place with this name\n  \
+        predict office.state --at 17:10 --place 3.2,-1.5             a point of the map, or the door there\n  \
         predict office.state --at 17:10 --route way.csv              a route, at the times of arrival\n  \
         predict office.state --at 17:10 --graph g.geojson --from 0   a graph of nav2_route with P(open)\n\n\
         Exit codes: 0 success, 1 a file cannot be written, 2 invalid arguments or input."
@@ -75,11 +79,11 @@ struct Args {
     #[arg(long, value_name = "TIME", allow_hyphen_values = true)]
     at: Vec<String>,
 
-    /// A place in the map, m: say what is known of it; several are possible
-    #[arg(long, value_name = "X,Y", value_parser = point, allow_hyphen_values = true)]
-    place: Vec<Point2<f64>>,
+    /// A place: its number or its name in the report of map_log, or a point of the map, m; several are possible
+    #[arg(long, value_name = "NUMBER|NAME|X,Y", value_parser = Asked::parse, allow_hyphen_values = true)]
+    place: Vec<Asked>,
 
-    /// A door: say what is known of it; several are possible [default: all doors, without --place, --route and --graph]
+    /// A door by its number in things.json; several are possible [default: all doors, without --place, --route and --graph]
     #[arg(long, value_name = "NUMBER")]
     door: Vec<u32>,
 
@@ -101,18 +105,12 @@ struct Args {
     speed: f64,
 
     /// The radius of the robot on routes, m
-    #[arg(long, value_name = "METRES", default_value_t = 0.2, value_parser = number(0.0..=5.0))]
+    #[arg(long, value_name = "METERS", default_value_t = 0.2, value_parser = number(0.0..=5.0))]
     radius: f64,
 
     /// The folder for all results
     #[arg(long, value_name = "DIR", default_value = "predict_out", value_parser = folder())]
     out: PathBuf,
-}
-
-fn point(text: &str) -> Result<Point2<f64>, String> {
-    let number = |text: &str| text.trim().parse().ok().filter(|number: &f64| number.is_finite());
-    let point = text.split_once(',').and_then(|(x, y)| Some(Point2::new(number(x)?, number(y)?)));
-    point.ok_or_else(|| "must be two numbers, as 3.2,-1.5".to_owned())
 }
 
 /// The content of `summary.json`.
@@ -149,12 +147,7 @@ fn run(args: &Args) -> Result<ExitCode, Failure> {
         times_s.push(forecast.now_s());
     }
     let travel = Travel { departure_s: times_s[0], speed_m_s: args.speed, radius_m: args.radius };
-    let place = |at: &Point2<f64>| {
-        let place = Place::new(&forecast, *at, &times_s);
-        place.with_context(|| {
-            format!("--place {},{}: it is outside of the map, {}", at.x, at.y, extent(&forecast))
-        })
-    };
+    let place = |asked: &Asked| asked.find(&forecast, &times_s);
     let mut places = args.place.iter().map(place).collect::<anyhow::Result<Vec<_>>>().map_err(input)?;
     places.extend(doors(args, &forecast, &times_s).map_err(input)?);
     let stops =
@@ -170,7 +163,7 @@ fn run(args: &Args) -> Result<ExitCode, Failure> {
     let title = "Hours for which a look counts";
     write_map(folder.unfinished(), "expiry", (Layer::Expiry, title), &forecast, &expiry_h)?;
     if let Some(graph) = graph {
-        write_file(&folder.unfinished().join("graph.geojson"), |file| writeln!(file, "{graph:#}"))?;
+        write_file(&folder.unfinished().join(GRAPH), |file| writeln!(file, "{graph:#}"))?;
     }
     let summary = Summary {
         schema: SCHEMA,
@@ -203,8 +196,7 @@ fn doors(args: &Args, forecast: &Forecast, times_s: &[f64]) -> anyhow::Result<Ve
         };
         let doors: Vec<String> = known.iter().map(named).collect();
         bail!(
-            "--door {door}: there is no such door; known {}. (The numbers in the report of map_log are those of places: give \
-             `--place X,Y` with the coordinates of the card)",
+            "--door {door}: there is no such door; known {}. (The numbers in the report of map_log are those of places: --place)",
             if doors.is_empty() { "is none".to_owned() } else { format!("are {}", doors.join("; ")) }
         );
     }
@@ -212,14 +204,6 @@ fn doors(args: &Args, forecast: &Forecast, times_s: &[f64]) -> anyhow::Result<Ve
         args.door.is_empty() && args.place.is_empty() && args.route.is_none() && args.graph.is_none();
     let asked = known.into_iter().filter(|(id, _)| is_all || args.door.contains(id));
     Ok(asked.map(|(id, door)| Place::of_door(forecast, id, door, times_s)).collect())
-}
-
-/// The extent of the map in words.
-fn extent(forecast: &Forecast) -> String {
-    let frame = forecast.mapper().frame();
-    let (from, cell_m) = (frame.origin(), frame.resolution_m());
-    let to = [from.x + frame.width() as f64 * cell_m, from.y + frame.height() as f64 * cell_m];
-    format!("x from {:.1} to {:.1} m, y from {:.1} to {:.1} m", from.x, to[0], from.y, to[1])
 }
 
 /// Writes the map and the masks at a time.
@@ -259,8 +243,9 @@ fn say(summary: &Summary, forecast: &Forecast) -> anyhow::Result<()> {
         print(format_args!("{}", place.title))?;
         place.text.iter().try_for_each(|line| print(format_args!("  {line}")))?;
     }
-    if summary.places.is_empty() && summary.route.is_empty() {
-        print(format_args!("no door is known; --place X,Y asks for a place"))?;
+    let is_graph = summary.files.iter().any(|file| file == GRAPH);
+    if summary.places.is_empty() && summary.route.is_empty() && !is_graph {
+        print(format_args!("no door is known; --place NUMBER asks for a place of the report of map_log"))?;
     }
     let begin_s = summary.times_s[0];
     for Stop { x_m, y_m, time_s, blocked } in &summary.route {
@@ -279,7 +264,5 @@ mod tests {
     #[test]
     fn the_command_line_is_sound() {
         Args::command().debug_assert();
-        assert_eq!(point("3.2, -1.5"), Ok(Point2::new(3.2, -1.5)));
-        assert!(["", "1", "1;2", "1,nan", "1,2,3"].iter().all(|text| point(text).is_err()));
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::moment;
 use curious::week::usual_hours;
-use curious::words::length_of;
+use curious::words::{Seen, changed, length_of, range, rate};
 use interfaces::CellState;
 use mapper::{Clock, Door, UsualChange, UsualSlot, Week};
 use nalgebra::Point2;
@@ -10,11 +10,17 @@ use results::numbers::percent;
 use serde::Serialize;
 use survey::{Forecast, NEAR_M};
 
+/// The looks at a place are counted by half hours, s.
+const HALF_HOUR_S: f64 = 1800.0;
+
 /// A place: a door, or the tile of half a meter at, or beside, a point.
 #[derive(Clone, Debug, Default, Serialize)]
 pub(crate) struct Place {
     pub(crate) x_m: f64,
     pub(crate) y_m: f64,
+    /// Its number and its name in the report of `map_log`, if it has them.
+    pub(crate) number: Option<u32>,
+    pub(crate) name: Option<String>,
     /// The known door at this place; `None` where there is no door.
     pub(crate) door: Option<DoorRecord>,
     /// The state whose probabilities and hours follow: `open` of a door, `blocked` of another place.
@@ -81,7 +87,7 @@ impl Place {
         place.text = match mapper.states().cells()[index] {
             CellState::Unknown => vec!["It was never seen.".to_owned()],
             _ if mapper.map_changes(index) > 0 => {
-                let of_cell = "Of this cell alone: its place has no clock yet.".to_owned();
+                let of_cell = "From what was seen of this cell alone, without hours.".to_owned();
                 place.predictions(forecast).chain([of_cell]).collect()
             }
             state => {
@@ -110,10 +116,37 @@ impl Place {
             openings_per_hour: seen.openings_per_hour().map(|rate| rate.mean()),
             openings_per_hour_90: seen.interval_of_openings_per_hour(0.9),
         };
-        let title = format!("door {id} at ({:.2}, {:.2}) m, {width_m:.2} m wide, {last}", at.x, at.y);
+        let reported = forecast.places().iter().find(|place| place.kind.thing() == Some(id));
+        let called = reported.map(|place| format!(", {},", called(place))).unwrap_or_default();
+        let title = format!("door {id}{called} at ({:.2}, {:.2}) m, {width_m:.2} m wide, {last}", at.x, at.y);
         let place =
             Self { x_m: at.x, y_m: at.y, state: "open", title, door: Some(record), ..Self::default() };
-        place.of_clock(forecast, &door.clock, times_s)
+        let mut place = place.reported(reported).of_clock(forecast, &door.clock, times_s);
+        place.text.insert(times_s.len() + 1, openings(&Seen::of_door(&door.statistics)));
+        place
+    }
+
+    /// A place of the report, at times in seconds.
+    pub(crate) fn of_report(forecast: &Forecast, reported: &survey::Place, times_s: &[f64]) -> Option<Self> {
+        let door = forecast.doors().find(|(id, _)| reported.kind.thing() == Some(*id));
+        if let Some((id, door)) = door {
+            return Some(Self::of_door(forecast, id, door, times_s));
+        }
+        let mapper = forecast.mapper();
+        let centers = reported.cells.iter().map(|cell| mapper.frame().center(mapper.frame().cell(*cell)));
+        // The middle of a ring or an arc is not in it.
+        let middle = Point2::new(reported.x_m, reported.y_m);
+        let far_m = |at: &Point2<f64>| (at - middle).norm();
+        let at = centers.min_by(|a, b| far_m(a).total_cmp(&far_m(b)))?;
+        let mut place = Self::new(forecast, at, times_s)?.reported(Some(reported));
+        place.title = format!("{} at ({:.2}, {:.2}) m", called(reported), at.x, at.y);
+        Some(place)
+    }
+
+    /// Adds what the report calls it.
+    fn reported(self, reported: Option<&survey::Place>) -> Self {
+        let number = reported.map(|place| place.number);
+        Self { number, name: reported.and_then(|place| place.name.clone()), ..self }
     }
 
     /// Adds what a clock says.
@@ -165,18 +198,14 @@ impl Place {
             many => format!("{many:.0} intervals"),
         };
         lines.push(format!("Observed on {days}, in {half_hours} of 30 minutes."));
-        let rate = self.door.as_ref().and_then(|door| door.openings_per_hour.zip(door.openings_per_hour_90));
-        lines.extend(
-            rate.map(|(rate, (low, high))| {
-                format!("Opens {rate:.2} times per hour ({low:.2} to {high:.2}).")
-            }),
-        );
         let usual = if week.is_some() { "usual hours" } else { "average" };
+        // No longer than it was observed in all: a longer time would be a guess.
+        let seen_s = HALF_HOUR_S * self.half_hours;
         lines.push(match self.expiry_s {
-            Some(expiry_s) => {
+            Some(expiry_s) if expiry_s <= seen_s => {
                 format!("The last observation tells more than the {usual} for {}.", length_of(expiry_s))
             }
-            None => format!("The last observation tells more than the {usual} for four weeks and longer."),
+            _ => format!("How long the last observation tells more than the {usual} is not known yet."),
         });
         lines.push(match (week, forecast.why_undated()) {
             (Some(week), _) => format!("Usually {}.", usual_hours(week, self.state)),
@@ -186,6 +215,22 @@ impl Place {
             }
         });
         lines
+    }
+}
+
+/// A place as it is called in the report.
+fn called(place: &survey::Place) -> String {
+    let name = place.name.as_ref().map(|name| format!(" ({name})")).unwrap_or_default();
+    format!("place {}{name}", place.number)
+}
+
+/// How often a door opens: as the card of the report, a rate only where it opened twice.
+fn openings(seen: &Seen) -> String {
+    match seen.per_hour {
+        Some((per_hour, ends)) if seen.has_cycle() => {
+            format!("Opens {} ({}, 90 % interval).", rate(per_hour), range(per_hour, ends))
+        }
+        _ => format!("How often it opens is not known yet: {}.", changed(seen.times, seen)),
     }
 }
 

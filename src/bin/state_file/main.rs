@@ -41,8 +41,8 @@ enum Command {
         /// The state file
         file: PathBuf,
 
-        /// The name of the log, as `show` prints it
-        log: String,
+        /// The name of the log, as `show` prints it; a path counts as the name at its end
+        log: PathBuf,
     },
 }
 
@@ -76,7 +76,9 @@ fn show(file: &Path) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn remove(file: &Path, log: &str) -> Result<ExitCode, Failure> {
+fn remove(file: &Path, log: &Path) -> Result<ExitCode, Failure> {
+    // As map_log names logs.
+    let log = &*log.file_name().unwrap_or(log.as_os_str()).to_string_lossy();
     let locked = StateFile::open(file).with_context(|| format!("{}: cannot use it", file.display()));
     let locked = locked.map_err(input)?; // before it is read
     let state = read(file).map_err(input)?;

@@ -96,9 +96,9 @@ fn maps() {
       --> grid.toml:28:13
        |
     28 | #.....#.....#.....#.....#
-       |             ^ the centre of the map
+       |             ^ the center of the map
        |
-       = help: without an `R` the robot starts in the centre of the map, [12, 12]: draw an `R`, or a `.` there
+       = help: without an `R` the robot starts in the center of the map, [12, 12]: draw an `R`, or a `.` there
     ");
 }
 

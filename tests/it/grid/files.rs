@@ -21,8 +21,8 @@ fn the_output_folder_is_complete() {
 
     let picture = image::open(run.out("figure3.png")).unwrap().into_rgb8();
     assert!(picture.width() >= 800 && picture.height() >= 400, "{:?}", picture.dimensions());
-    let colours: std::collections::BTreeSet<_> = picture.pixels().map(|pixel| pixel.0).collect();
-    assert!(colours.len() > 10, "{} colours", colours.len());
+    let colors: std::collections::BTreeSet<_> = picture.pixels().map(|pixel| pixel.0).collect();
+    assert!(colors.len() > 10, "{} colors", colors.len());
     let drawing = std::fs::read_to_string(run.out("figure3.svg")).unwrap();
     assert!(drawing.contains("<svg") && drawing.trim_end().ends_with("</svg>"));
 }

@@ -56,7 +56,7 @@ pub(super) fn entries(scene: &Scene) -> Legend {
     let robots = legend::entries([
         (scene.has_robot(true), Mark::Area(palette::CURIOUS), "driven robot"),
         (scene.has_robot(false), Mark::Area(palette::OTHER_ROBOT), "other robot"),
-        (with_sensors(scene).next().is_some(), Mark::Area(palette::SENSOR_AREA), "field of view"),
+        (with_sensors(scene).next().is_some(), Mark::Area(palette::SENSOR_AREA), "field of view (not range)"),
     ]);
     [ground::entries(scene), robots].concat()
 }

@@ -38,7 +38,7 @@ pub(super) fn drawing(file: &File<'_>, map: &str, span: Range<usize>) -> Option<
                 ('R', None) => start = Some((cell, place)),
                 ('R', Some((_, first))) => {
                     let others = [(first.clone(), "first here")];
-                    let help = "there is one robot: draw one `R`, or none for the centre of the map";
+                    let help = "there is one robot: draw one `R`, or none for the center of the map";
                     return file.error("the robot starts twice", (place, "again here"), &others, help);
                 }
                 _ => {
@@ -70,10 +70,10 @@ fn center(file: &File<'_>, walls: &Grid<bool>, rows: &[Row<'_>]) -> Option<Cell>
     // All characters are known by now, so that columns are bytes.
     let place = row.character(center.x as usize, '#');
     let help = format!(
-        "without an `R` the robot starts in the centre of the map, [{}, {}]: draw an `R`, or a `.` there",
+        "without an `R` the robot starts in the center of the map, [{}, {}]: draw an `R`, or a `.` there",
         center.x, center.y
     );
-    file.error("the robot starts in a wall", (place, "the centre of the map"), &[], &help)
+    file.error("the robot starts in a wall", (place, "the center of the map"), &[], &help)
 }
 
 /// The cells of the drawing, of 1 m each.

@@ -128,7 +128,7 @@ impl Keys<'_> {
             Value::Text(text) if !text.is_empty() && text.chars().all(is_printable) => Some(text.clone()),
             _ => None,
         });
-        let side = "the side of a pixel in metres, from 0.0001 to 100";
+        let side = "the side of a pixel in meters, from 0.0001 to 100";
         let resolution = self.number("resolution", 1e-4..=100.0, side);
         let origin = "[x, y, yaw] in m and rad, at most 1000 km away, as in `[-6.0, -6.0, 0.0]`";
         let origin = self.value("origin", None, origin, |value| match value {

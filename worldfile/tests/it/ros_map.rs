@@ -139,15 +139,15 @@ fn a_turned_map_is_turned_back() {
 #[test]
 fn an_invalid_value_is_named_with_a_valid_one() {
     let cases = [
-        ("resolution: 0.5", "resolution: 0", "`resolution` is 0", "the side of a pixel in metres"),
-        ("resolution: 0.5", "resolution: .inf", "`resolution` is inf", "the side of a pixel in metres"),
+        ("resolution: 0.5", "resolution: 0", "`resolution` is 0", "the side of a pixel in meters"),
+        ("resolution: 0.5", "resolution: .inf", "`resolution` is inf", "the side of a pixel in meters"),
         ("-2.0, 0.0]", "-2.0, .nan]", "`origin` is [1, -2, NaN]", "[x, y, yaw] in m and rad"),
         ("negate: 0", "negate: 2", "`negate` is 2", "it must be 0 or 1"),
         ("free_thresh: 0.196", "free_thresh: 0.7", "`free_thresh` is 0.7", "above `occupied_thresh`"),
         ("occupied_thresh: 0.65", "occupied_thresh: 65", "`occupied_thresh` is 65", "a number from 0 to 1"),
         ("negate: 0", "mode: fancy", "`mode` is \"fancy\"", "`trinary`, `scale` or `raw`"),
-        ("resolution: 0.5", "resolution: abc", "`resolution` is \"abc\"", "the side of a pixel in metres"),
-        ("resolution: 0.5\n", "", "the key `resolution` is missing", "the side of a pixel in metres"),
+        ("resolution: 0.5", "resolution: abc", "`resolution` is \"abc\"", "the side of a pixel in meters"),
+        ("resolution: 0.5\n", "", "the key `resolution` is missing", "the side of a pixel in meters"),
         ("1.0, -2.0, 0.0", "1.0, -2.0", "`origin` is [1, -2]", "[x, y, yaw] in m and rad"),
     ];
     for (from, to, invalid, valid) in cases {

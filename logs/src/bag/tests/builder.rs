@@ -172,7 +172,7 @@ pub(super) fn open(bytes: &[u8], choice: &TopicChoice) -> Result<Log, LogError> 
     } else {
         Bytes::Memory(bytes.into())
     };
-    let Some(file) = BagFile::recognised("test".into(), bytes).map_err(io)? else {
+    let Some(file) = BagFile::recognized("test".into(), bytes).map_err(io)? else {
         return Err(LogError::Unusable { file: "test".to_owned(), why: "not a bag".to_owned() });
     };
     Bag::open("test", vec![file], choice, Vec::new())

@@ -266,9 +266,9 @@ fn bags_that_cannot_be_true_are_named() {
     let ranges: Vec<f32> = (0..60).map(|beam| 2.0 + 0.01 * beam as f32).collect();
     assert_eq!(impossible(&bag(ranges.clone(), 10.0)), None);
     for range_max in [10.0, 10_000.0] {
-        let millimetres = ranges.iter().map(|range_m| 1000.0 * range_m).collect();
-        let why = impossible(&bag(millimetres, range_max)).unwrap();
-        assert!(why.starts_with("the ranges look like millimetres: in 20 of 20 scans"), "{why}");
+        let millimeters = ranges.iter().map(|range_m| 1000.0 * range_m).collect();
+        let why = impossible(&bag(millimeters, range_max)).unwrap();
+        assert!(why.starts_with("the ranges look like millimeters: in 20 of 20 scans"), "{why}");
     }
     let why = impossible(&bag(vec![f32::INFINITY; 60], 10.0)).unwrap();
     assert!(why.starts_with("none of 20 scans has a range"), "{why}");

@@ -113,7 +113,7 @@ impl FleetSpec {
 /// How contacts change the motion of robots.
 ///
 /// In both models no body passes another one, nothing has friction with walls or robots, and a robot slides along what
-/// stops it. They differ in the last bits, and where several bodies meet by fractions of a millimetre.
+/// stops it. They differ in the last bits, and where several bodies meet by fractions of a millimeter.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ContactModel {
     /// A solver of rigid bodies (rapier) simulates all bodies in every step.

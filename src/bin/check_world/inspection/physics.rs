@@ -207,7 +207,7 @@ fn odometry_errors(error: &OdometryError) -> String {
     let errors = [
         (100.0 * error.distance_gain, " % of the distance"),
         (100.0 * error.turn_gain, " % of the turns"),
-        (error.turn_radpm.to_degrees(), "° per metre"),
+        (error.turn_radpm.to_degrees(), "° per meter"),
         (error.distance_noise_m, " m of noise after 1 m"),
         (error.turn_noise_rad.to_degrees(), "° of noise after a turn of 1 rad"),
         (100.0 * error.slip, " % slip in contacts"),

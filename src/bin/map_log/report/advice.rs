@@ -14,6 +14,7 @@ pub(super) fn advice(
     seen: &Seen,
     share_blocked: f64,
     has_hours: bool,
+    is_line: bool,
 ) -> Vec<(&'static str, String)> {
     let is_known = seen.is_known();
     let is_busy = seen.has_cycle() && seen.per_hour.is_some_and(|(rate, _)| rate >= BUSY_PER_HOUR);
@@ -35,6 +36,9 @@ pub(super) fn advice(
     let owner = match kind {
         PlaceKind::Furniture { .. } => Some("check that it should be here.".to_owned()),
         PlaceKind::Unknown if is_known => Some("check what it is, and give the place a name.".to_owned()),
+        PlaceKind::Unknown if is_line => {
+            Some("check whether there is a door, or a wall that is drawn twice.".to_owned())
+        }
         PlaceKind::Unknown => Some("check whether something was left here, or taken away.".to_owned()),
         PlaceKind::Traffic if is_known => Some("keep this way clear.".to_owned()),
         PlaceKind::Door { .. } | PlaceKind::Traffic => None,

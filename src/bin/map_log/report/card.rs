@@ -39,7 +39,7 @@ impl Page<'_> {
                         }
                         dt { "How sure" } dd { (sure(&seen)) }
                         dt { "What to do" } dd {
-                            @for (who, what) in advice(place.kind, &seen, rates.share_blocked, week.is_some()) { p { em { (who) ": " } (what) } }
+                            @for (who, what) in advice(place.kind, &seen, rates.share_blocked, week.is_some(), is_line(self.mapper, &place.cells)) { p { em { (who) ": " } (what) } }
                         }
                     } @else {
                         dt { "How often" } dd { "A cell changed " (times(place.changes)) ". No rate can be given." }
@@ -155,8 +155,8 @@ impl Page<'_> {
             (Some(from), Some(to)) => {
                 format!("Furniture: it was moved by {} m{when}.", short((to.center - from.center).norm()))
             }
-            (Some(_), None) => format!("Furniture: it has gone{when}. Where to, was not seen."),
-            (None, _) => format!("Furniture: it has come{when}. Where from, was not seen."),
+            (Some(_), None) => format!("Furniture: it was removed{when}. Its new position was not seen."),
+            (None, _) => format!("Furniture: it appeared{when}. Its old position was not seen."),
         }
     }
 
@@ -191,7 +191,14 @@ impl Page<'_> {
 
     /// A time of the map, in words.
     pub(super) fn time(&self, time_s: f64) -> String {
-        let after = || format!("{} after the first scan", length_of(time_s));
+        let after = || match time_s {
+            time_s if time_s < 3600.0 => format!(
+                "{:.0} min {:02.0} s after the first scan",
+                (time_s / 60.0).floor(),
+                (time_s % 60.0).floor()
+            ),
+            time_s => format!("{} after the first scan", length_of(time_s)),
+        };
         self.summary.begin_s.map_or_else(after, |begin_s| date(begin_s + time_s))
     }
 

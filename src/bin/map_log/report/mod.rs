@@ -96,7 +96,7 @@ impl Page<'_> {
             turn_deg => {
                 let direction = if turn_deg > 0.0 { "to the left" } else { "to the right" };
                 format!(
-                    "The plan is turned {direction} by {:.0}°, so that walls are upright. x and y are the directions of the \
+                    "The plan is rotated {direction} by {:.0}°, so that walls are upright. x and y are the directions of the \
                      coordinates in the files.",
                     turn_deg.abs()
                 )
@@ -122,7 +122,7 @@ impl Page<'_> {
             @if !self.summary.places.is_empty() {
                 h2 { "The places" }
                 p {
-                    "They are sorted by the lower end of the 90 % range of their rate. The numbers stay the same on later visits. Time of looking is \
+                    "They are sorted by the lower end of the 90 % range of their rate; what is smaller than a person counts less. The numbers stay the same on later visits. Time of observation is \
                      the time for which the robot had the place in view; the robot itself is not counted. On the pictures, a blue line is a \
                      closed door, a dashed one is where it opens to, and a rectangle is around any other place. "
                     (self.clock())
@@ -148,7 +148,7 @@ impl Page<'_> {
                 (self.plan.draw(Shown::Interval, &[], "The mean time of one cycle of every cell"))
                 (interval_key())
                 figcaption {
-                    "The mean time of one cycle of each cell: blocked, free, and blocked again. Dark is often, light is rarely. Each cell counts alone, and not \
+                    "The mean time of one cycle of each cell: blocked, free, and blocked again. Dark: often; light: rarely. Each cell counts alone, and not \
                      the place: who passes rarely covers the same cell twice, so that traffic is light here even where its card says often. It is an \
                      estimate, also where less than a full cycle was seen; the file cell_statistics.csv has the 90 % range of every cell."
                 }
@@ -178,7 +178,7 @@ impl Page<'_> {
                 @if summary.begin_s.is_some() { "Hours of people and doors: " (summary.hours) ". " }
                 (percent(summary.changed_share)) " of the area changed at least once, in " (summary.place_count) " places. "
                 @if summary.scans_left_out > 0 {
-                    (summary.scans_left_out) " scans were left out, because it is not certain from where they were taken."
+                    (summary.scans_left_out) " scans were left out, because their poses are uncertain."
                 }
             }
             @if self.has_rates() {
@@ -207,7 +207,7 @@ fn middle(place: &Place) -> Point2<f64> {
 fn still(StillName { name, observed_s }: &StillName) -> String {
     match observed_s {
         Some(observed_s) => {
-            format!("{}: not seen to change in {} of looking.", name.name, length_of(*observed_s))
+            format!("{}: not seen to change in {} of observation.", name.name, length_of(*observed_s))
         }
         None => format!("{}: never seen.", name.name),
     }

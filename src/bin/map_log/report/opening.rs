@@ -23,7 +23,7 @@ impl Page<'_> {
                 ("bad", "This map is not usable: it is wrong. It has no rates and no masks.")
             }
             (Verdict::NotUsable, false) => {
-                ("bad", "This map is not usable: it is wrong. It was accepted all the same.")
+                ("bad", "This map is not usable: it is wrong. It was accepted anyway.")
             }
         };
         html! {
@@ -31,7 +31,7 @@ impl Page<'_> {
                 h1 { (words) }
                 @if !self.summary.verdict_reasons.is_empty() {
                     ul { @for reason in &self.summary.verdict_reasons { li { (reason) "." } } }
-                    p { a href="#doubts" { "Where the map is in doubt" } }
+                    p { a href="#doubts" { "Uncertain places of the map" } }
                 }
                 p { (self.liveliest()) }
                 p { (self.doors()) }
@@ -51,13 +51,13 @@ impl Page<'_> {
         let is_any_known = self.summary.places.iter().any(is_known);
         let begin = match (self.has_rates(), is_any_known) {
             (false, _) => "Most cells changed at ",
-            (true, true) => "It is liveliest at ",
+            (true, true) => "Most often it changes at ",
             (true, false) => "Most was seen at ",
         };
         html! {
             (begin) (self.link(place)) ", " (self.plan.words(&middle(place))) " of the plan" (self.with_rate(place)) "."
             @if self.has_rates() && !is_any_known {
-                " This is a first impression: no place was looked at for long enough to say how often, or which one is the liveliest."
+                " This is a first impression: no place was observed for long enough to say how often it changes, or where it changes most."
             }
         }
     }
@@ -99,7 +99,7 @@ impl Page<'_> {
         }
     }
 
-    /// Where the map is in doubt.
+    /// The uncertain places of the map.
     pub(super) fn doubts(&self) -> Markup {
         if self.summary.verdict == Verdict::Good {
             return html! {};
@@ -117,9 +117,9 @@ impl Page<'_> {
         };
         let marks: Vec<Mark> = (1..).zip(doubts).map(mark).collect();
         html! {
-            h2 #doubts { "Where the map is in doubt" }
-            p { "The numbers are the places in doubt, in the order of time. There, walls can be drawn twice, or in the wrong place." }
-            figure { (self.plan.draw(Shown::Places, &marks, "Places in doubt")) }
+            h2 #doubts { "Uncertain places of the map" }
+            p { "The numbers are the uncertain places, in the order of time. There, walls can be drawn twice, or in the wrong place." }
+            figure { (self.plan.draw(Shown::Places, &marks, "Uncertain places")) }
         }
     }
 }

@@ -86,15 +86,16 @@ impl Page<'_> {
                 count => rate(f64::from(count) / hours),
             }
         });
-        let compared = format!("now {} in {now_s} of looking, before {} in {before_s}", rates[1], rates[0]);
+        let compared =
+            format!("now {} in {now_s} of observation, before {} in {before_s}", rates[1], rates[0]);
         let door = if since.doors.contains(&place.number) { " It is a door." } else { "" };
         html! {
             @match trend {
-                Trend::New => { "New: " (self.link(place)) " changed for the first time. It was looked at for " (before_s) " before." (door) }
+                Trend::New => { "New: " (self.link(place)) " changed for the first time. It was observed for " (before_s) " before." (door) }
                 Trend::FirstSeen => { "Seen for the first time: " (self.link(place)) ", where the robot did not look before." (door) }
-                Trend::Gone => { "No longer lively: " (self.link(place)) " did not change in " (now_s) " of looking. Before, it changed " (times(found.passages[0])) " in " (before_s) "." }
-                Trend::Livelier => { "Livelier: " (self.link(place)) ", " (compared) "." }
-                Trend::Quieter => { "Quieter: " (self.link(place)) ", " (compared) "." }
+                Trend::Gone => { "No more changes: " (self.link(place)) " did not change in " (now_s) " of observation. Before, it changed " (times(found.passages[0])) " in " (before_s) "." }
+                Trend::Livelier => { "More changes: " (self.link(place)) ", " (compared) "." }
+                Trend::Quieter => { "Fewer changes: " (self.link(place)) ", " (compared) "." }
                 Trend::FirstChange | Trend::NotSeen | Trend::Same => {}
             }
         }

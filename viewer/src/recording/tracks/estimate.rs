@@ -12,7 +12,7 @@ use std::f64::consts::TAU;
 
 /// The ellipse of the uncertainty is drawn at this many standard deviations, ...
 const STDS: f64 = 2.0;
-/// ... and larger than it is: an uncertainty of millimetres could not be seen beside a robot.
+/// ... and larger than it is: an uncertainty of millimeters could not be seen beside a robot.
 const ENLARGED: f64 = 20.0;
 /// The corners of a round outline.
 const CORNERS: u32 = 32;

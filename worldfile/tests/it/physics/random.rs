@@ -153,7 +153,7 @@ impl Deepest {
         }
     }
 
-    /// Half a centimetre, and what rounding adds, whatever meets whatever at whatever speed.
+    /// Half a centimeter, and what rounding adds, whatever meets whatever at whatever speed.
     pub(super) fn check(&self) {
         for ((a, b), (depth_m, place)) in &self.0 {
             assert!(*depth_m < 0.0051, "{a} is {depth_m} m deep in {b}: {place}");
