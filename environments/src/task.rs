@@ -102,7 +102,8 @@ pub struct Results {
     pub terminated: Vec<bool>,
     /// Whether the episode ended by its length.
     pub truncated: Vec<bool>,
-    /// The last observations of tasks that were over; those of other tasks stay as they were.
+    /// The last observations of tasks that were over; those of other tasks stay as they were. Of several tasks: nothing if none was
+    /// reset.
     pub last_observations: Vec<f32>,
     /// The values of [`Task::info`] after the step, before a reset.
     pub info: Vec<f32>,
@@ -127,14 +128,18 @@ impl Results {
     }
 
     /// The results of several tasks, one after the other.
-    pub(crate) fn joined<'a>(parts: impl Iterator<Item = &'a Self>) -> Self {
+    pub(crate) fn joined<'a>(parts: impl Iterator<Item = &'a Self> + Clone) -> Self {
         let mut all = Self::default();
+        // As large as half of all values, and seldom needed.
+        let has_last = parts.clone().any(|part| part.was_reset.contains(&true));
         for part in parts {
             all.observations.extend_from_slice(&part.observations);
             all.rewards.extend_from_slice(&part.rewards);
             all.terminated.extend_from_slice(&part.terminated);
             all.truncated.extend_from_slice(&part.truncated);
-            all.last_observations.extend_from_slice(&part.last_observations);
+            if has_last {
+                all.last_observations.extend_from_slice(&part.last_observations);
+            }
             all.info.extend_from_slice(&part.info);
             all.was_reset.extend_from_slice(&part.was_reset);
         }

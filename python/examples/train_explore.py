@@ -9,10 +9,11 @@ houses of `TRAIN_HOUSES`, and is measured in `TEST_HOUSES`, where every policy b
 """
 
 import argparse
+import copy
 import json
 import time
 from concurrent.futures import ThreadPoolExecutor
-from typing import Any, Callable
+from typing import Any, Callable, Sequence
 
 import numpy as np
 from curious.envs import TEST_HOUSES, ExploreEnv, ExploreGoalsEnv, ExploreGoalsVectorEnv
@@ -69,8 +70,43 @@ class Net:
             part -= RATE * (mean / (1 - 0.9**self.steps)) / (np.sqrt(square / (1 - 0.999**self.steps)) + 1e-8)
 
 
-def train(minutes: float, seed: int, pay: Pay | None = None) -> tuple[Choose, list[tuple[float, float]]]:
-    """Learns for some minutes. Returns the policy, and (minutes, reward of the task) of every episode."""
+class Greedy:
+    """Takes the goal with the largest R - rho T that a network predicts."""
+
+    def __init__(self, net: Net, rate: float) -> None:
+        self.net, self.rate = net, rate
+
+    def __call__(self, observation: dict[str, np.ndarray]) -> np.ndarray:
+        predicted = self.net.predict(inputs(observation)) * SCALES
+        return (predicted[..., 0] - self.rate * predicted[..., 1]).argmax(axis=1)
+
+
+class Progress:
+    """Prints a line every ten seconds: the mean reward of the task per 300 s, over the last goals."""
+
+    def __init__(self) -> None:
+        self.begin = self.shown = time.perf_counter()
+        self.last: list[tuple[float, float]] = []
+        print("minutes   goals chosen   episodes   reward per 300 s, last 200 goals (more is better)", flush=True)
+
+    def minutes(self) -> float:
+        return (time.perf_counter() - self.begin) / 60.0
+
+    def note(self, rewards: np.ndarray, times: np.ndarray, goals: int, episodes: int) -> None:
+        self.last = [*self.last, *zip(rewards, times)][-200:]
+        if time.perf_counter() - self.shown > 10.0:
+            self.shown = time.perf_counter()
+            reward, spent_s = np.sum(self.last, axis=0)
+            print(f"{self.minutes():7.1f} {goals:>14,} {episodes:>10} {300.0 * reward / spent_s:>18.1f}", flush=True)
+
+
+def train(
+    minutes: float, seed: int, pay: Pay | None = None, goals: Sequence[int] = ()
+) -> tuple[list[Greedy], list[tuple[float, float]]]:
+    """Learns for some minutes, or, with `goals`, until so many goals were chosen: the same policy on every machine.
+
+    Returns the policies after each number of `goals` (or at the end), and (minutes, reward of the task) of every episode.
+    """
     env = ExploreGoalsVectorEnv(num_envs=ENVS, strategies=STRATEGIES)
     random = np.random.default_rng(seed)
     observation, _ = env.reset(seed=seed)
@@ -81,24 +117,24 @@ def train(minutes: float, seed: int, pay: Pay | None = None) -> tuple[Choose, li
     returns, times = np.zeros(ENVS), np.zeros(ENVS)
     earned, spent_s = 0.0, 1e-9
     curve: list[tuple[float, float]] = []
-    begin, shown = time.perf_counter(), 0
-    while (spent := (time.perf_counter() - begin) / 60.0) < minutes:
-        predicted = net.predict(x) * SCALES
-        choice = (predicted[..., 0] - earned / spent_s * predicted[..., 1]).argmax(axis=1)
+    policies: list[Greedy] = []
+    progress = Progress()
+    while (done := len(seen) / goals[-1] if goals else progress.minutes() / minutes) < 1.0:
+        choice = Greedy(net, earned / spent_s)(observation)
         # Tries something else: always at first, in one of twenty steps at last.
-        tries = random.random(ENVS) < max(0.05, 1.0 - 2.5 * spent / minutes)
+        tries = random.random(ENVS) < max(0.05, 1.0 - 2.5 * done)
         choice = np.where(tries, random.integers(0, x.shape[1], ENVS), choice)
         before = observation
         observation, earned_now, _, truncated, info = env.step(choice)
-        rewards = earned_now if pay is None else pay(before, choice, observation, truncated)
+        rewards = earned_now if pay is None else pay(before, choice, ends_of(observation, info), truncated)
         # The values of `info` are those before a reset.
-        ends = info["time"]
+        lasted = info["time"] - times
         seen += list(x[np.arange(ENVS), choice])
-        targets += list(np.stack([rewards, ends - times], axis=1).astype(np.float32) / SCALES)
+        targets += list(np.stack([rewards, lasted], axis=1).astype(np.float32) / SCALES)
         # The mean reward per second forgets the first, worse choices.
-        earned, spent_s = 0.998 * earned + rewards.sum(), 0.998 * spent_s + (ends - times).sum()
+        earned, spent_s = 0.998 * earned + rewards.sum(), 0.998 * spent_s + lasted.sum()
         returns += earned_now
-        curve += [(spent, float(total)) for total in returns[truncated]]
+        curve += [(progress.minutes(), float(total)) for total in returns[truncated]]
         returns, times = np.where(truncated, 0.0, returns), np.where(truncated, 0.0, info["time"])
         x = inputs(observation)
         if len(seen) >= BATCH:
@@ -106,18 +142,23 @@ def train(minutes: float, seed: int, pay: Pay | None = None) -> tuple[Choose, li
             for _ in range(8):
                 batch = random.integers(0, len(all_seen), BATCH)
                 net.learn(all_seen[batch], all_targets[batch])
-        if len(curve) >= shown + 40:
-            shown = len(curve)
-            mean = np.mean([total for _, total in curve[-40:]])
-            print(f"{spent:4.1f} min {len(curve):>5} episodes {len(seen):>6} goals, reward {mean:.1f}", flush=True)
+        if len(policies) < len(goals) and len(seen) >= goals[len(policies)]:
+            policies.append(Greedy(copy.deepcopy(net), earned / spent_s))
+        progress.note(earned_now, lasted, len(seen), len(curve))
     env.close()
-    rate = earned / spent_s
+    return policies or [Greedy(net, earned / spent_s)], curve
 
-    def choose(observation: dict[str, np.ndarray]) -> np.ndarray:
-        predicted = net.predict(inputs(observation)) * SCALES
-        return (predicted[..., 0] - rate * predicted[..., 1]).argmax(axis=1)
 
-    return choose, curve
+def ends_of(observation: dict[str, np.ndarray], info: dict[str, Any]) -> dict[str, np.ndarray]:
+    """The observations at the end of the step: of an episode that ended, the last one in place of the first of the next."""
+    if "final_obs" not in info:
+        return observation
+    found = {key: part.copy() for key, part in observation.items()}
+    for index, last in enumerate(info["final_obs"]):
+        if last is not None:
+            for key, part in found.items():
+                part[index] = last[key]
+    return found
 
 
 def stand(observation: Any, step: int, random: np.random.Generator) -> list[float]:
@@ -223,9 +264,9 @@ def main() -> None:
     results: dict[str, np.ndarray] = {}
     curve: list[tuple[float, float]] = []
     if arguments.minutes > 0.0:
-        policy, curve = train(arguments.minutes, arguments.seed)
+        (policy,), curve = train(arguments.minutes, arguments.seed)
         results["learned"] = measure("learned", policy, arguments.houses, arguments.threads)
-    print(f"\n{arguments.houses} test houses   reward ± s.e.   found    seen m²  collisions   p against learned")
+    print(f"\n{arguments.houses} test houses   reward ± s.e.   found    seen m²    contacts   p against learned")
     for name in [*results, *filter(None, arguments.others.split(","))]:
         if name not in results:
             results[name] = measure(name, None, arguments.houses, arguments.threads)

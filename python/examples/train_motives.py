@@ -10,9 +10,11 @@ these, after each goal:
 - progress: how much the error of that model has fallen for goals of the same strategy (Oudeyer et al., 2007).
 
 References: the reward of the task, any of the goals at random (no reward), and strategies of this package alone. The measure is that of
-`docs/strategies.md`: the log error of the learned rates of change, as its mean over the episode (area) and at its end.
+`docs/strategies.md`: the log error of the learned rates of change, as its mean over the episode (area) and at its end: less is better.
+A learner is measured after each number of `--goals`, the goals that it has chosen in houses of `TRAIN_HOUSES`; several independent
+trainings share the test houses.
 
-    python train_motives.py --minutes 2 --houses 40 --json numbers.json
+    python train_motives.py --goals 500,2000 --trainings 2 --houses 40 --json numbers.json
 """
 
 import argparse
@@ -22,12 +24,14 @@ from typing import Any
 
 import numpy as np
 from curious.envs import TEST_HOUSES, ExploreGoalsEnv
-from train_explore import ENVS, STRATEGIES, Choose, p_value, train
+from train_explore import ENVS, STRATEGIES, p_value, train
 
 #: The squares of the episode counts, per axis, and the length of an episode in the test houses, in steps of 0.1 s.
 SQUARES, MAX_STEPS = 12, 6000
-SINGLE = ["curious", "information-gain", "fresh-map", "frontier", "recency", "poisson", "predicted-change", "random"]
-FIELDS = ("area", "log error", "reward", "found", "seen m2", "collisions")
+#: The strategy alone with the least area in other runs.
+BEST = "predicted-change"
+SINGLE = ["curious", "information-gain", "fresh-map", "frontier", "recency", "poisson", BEST, "random", "any goal"]
+FIELDS = ("area", "log error", "reward", "found", "seen m2", "contacts")
 Observation = dict[str, np.ndarray]
 
 
@@ -84,7 +88,7 @@ class Surprise:
         promised = before["candidates"][np.arange(len(choice)), choice]
         x = np.concatenate([promised, np.ones((len(promised), 1))], axis=1)
         seen = np.concatenate([after["state"][:, 4:], after["candidates"].mean(axis=1)], axis=1)
-        error = np.where(ended[:, None], 0.0, x @ self.weights - seen)
+        error = x @ self.weights - seen
         self.weights -= 0.05 * x.T @ error / len(x)
         return (error**2).sum(axis=1)
 
@@ -121,11 +125,12 @@ class Scaled:
         return scaled
 
 
-MOTIVES = {"visits": Visits, "distillation": Distillation, "surprise": Surprise, "progress": Progress}
+#: The reward of the task, and the intrinsic ones.
+MOTIVES: dict[str, Any] = {"task": None, "visits": Visits, "distillation": Distillation, "surprise": Surprise, "progress": Progress}
 
 
-def measure(strategies: list[str], choose: Choose, houses: int, threads: int) -> np.ndarray:
-    """One episode per seed, from 1 on, in houses of `TEST_HOUSES`: shape (houses, FIELDS)."""
+def measure(strategies: list[str], choosers: list[Any], houses: int, threads: int) -> np.ndarray:
+    """One episode per seed, from 1 on, in houses of `TEST_HOUSES`, with the choosers in turn: shape (houses, FIELDS)."""
 
     def some(first: int) -> list[list[float]]:
         env: Any = ExploreGoalsEnv(houses=TEST_HOUSES, strategies=strategies, max_steps=MAX_STEPS)
@@ -133,10 +138,12 @@ def measure(strategies: list[str], choose: Choose, houses: int, threads: int) ->
 
     def episode(env: Any, seed: int) -> list[float]:
         observation, _ = env.reset(options={"world_seed": seed})
+        random, choose = np.random.default_rng(seed), choosers[seed % len(choosers)]
         reward, area, last_s, truncated, info = 0.0, 0.0, 0.0, False, {}
         while not truncated:
             one = {key: part[None] for key, part in observation.items()}
-            observation, earned, _, truncated, info = env.step(int(choose(one)[0]))
+            choice = random.integers(len(strategies)) if choose is None else choose(one)[0]
+            observation, earned, _, truncated, info = env.step(int(choice))
             reward += earned
             area += info["log_error"] * (info["time"] - last_s)
             last_s = info["time"]
@@ -147,35 +154,53 @@ def measure(strategies: list[str], choose: Choose, houses: int, threads: int) ->
     return np.array([parts[index % threads][index // threads] for index in range(houses)])
 
 
+class Table:
+    """The rows of all policies, beside `curious` and the strategy with the least area."""
+
+    def __init__(self, houses: int, path: str | None) -> None:
+        self.rows: dict[str, np.ndarray] = {}
+        self.path = path
+        print(f"{houses} test houses{'':<17}{'  '.join(FIELDS)}   reward p   area / curious, p   / {BEST}, p")
+
+    def add(self, name: str, found: np.ndarray) -> None:
+        self.rows[name] = found
+        numbers = " ".join(f"{value:9.3f}" for value in found.mean(axis=0))
+        compared = f"{p_value(found[:, 2] - self.rows['curious'][:, 2]):.4f}" if "curious" in self.rows else ""
+        for other in ("curious", BEST):
+            if other in self.rows:
+                areas, others = found[:, 0], self.rows[other][:, 0]
+                compared += f"   {areas.mean() / others.mean():.3f}, {p_value(areas - others):.4f}"
+        print(f"{name:<29} {numbers}    {compared}", flush=True)
+        if self.path:
+            with open(self.path, "w") as file:
+                json.dump({name: values.tolist() for name, values in self.rows.items()}, file)
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--minutes", type=float, default=2.0, help="of training, per reward")
+    parser.add_argument("--goals", default="500,2000", help="experience before a measurement, ascending: %(default)s")
+    parser.add_argument("--trainings", type=int, default=2, help="independent trainings per reward")
     parser.add_argument("--houses", type=int, default=40, help="test houses")
+    parser.add_argument("--strategies", default=",".join(SINGLE), help="strategies to measure alone: %(default)s")
+    parser.add_argument("--rewards", default=",".join(MOTIVES), help="rewards to learn from: %(default)s")
     parser.add_argument("--threads", type=int, default=2, help="for the test houses")
     parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--json", help="a file for all numbers")
+    parser.add_argument("--json", help="a file for all numbers, written anew after every row")
     arguments = parser.parse_args()
-    results: dict[str, np.ndarray] = {}
-    random = np.random.default_rng(3)
-    print(f"{arguments.houses} test houses{'':<12}{'  '.join(FIELDS)}   area / curious, p   reward p")
-    policies: list[tuple[str, list[str], Any]] = [(name, [name], None) for name in SINGLE]
-    policies.append(("any goal", STRATEGIES, lambda seen: random.integers(0, len(STRATEGIES), 1)))
-    policies += [(f"learned: {name}", STRATEGIES, name) for name in ("task", *MOTIVES) if arguments.minutes > 0.0]
-    for name, strategies, choose in policies:
-        if choose is None:
-            choose = lambda seen: np.zeros(1, int)  # noqa: E731
-        elif isinstance(choose, str):
-            motive = None if choose == "task" else Scaled(MOTIVES[choose](np.random.default_rng(arguments.seed)))
-            choose, _ = train(arguments.minutes, arguments.seed, motive)
-        results[name] = found = measure(strategies, choose, arguments.houses, arguments.threads)
-        compared = results["curious"]
-        ps = [p_value(found[:, column] - compared[:, column]) for column in (0, 2)]
-        ratio = found[:, 0].mean() / compared[:, 0].mean()
-        numbers = " ".join(f"{value:9.3f}" for value in found.mean(axis=0))
-        print(f"{name:<24} {numbers}    {ratio:.3f}, {ps[0]:.4f}   {ps[1]:.4f}", flush=True)
-    if arguments.json:
-        with open(arguments.json, "w") as file:
-            json.dump({name: values.tolist() for name, values in results.items()}, file)
+    marks = [int(goals) for goals in arguments.goals.split(",")]
+    table = Table(arguments.houses, arguments.json)
+    for name in filter(None, arguments.strategies.split(",")):
+        strategies = STRATEGIES if name == "any goal" else [name]
+        table.add(name, measure(strategies, [None], arguments.houses, arguments.threads))
+    for name in filter(None, arguments.rewards.split(",")):
+        trained = []
+        for seed in range(arguments.seed, arguments.seed + arguments.trainings):
+            motive = MOTIVES[name]
+            pay = motive and Scaled(motive(np.random.default_rng(seed)))
+            trained.append(train(0.0, seed, pay, marks)[0])
+        for mark, policies in zip(marks, zip(*trained)):
+            found = measure(STRATEGIES, list(policies), arguments.houses, arguments.threads)
+            table.add(f"{name}, {mark:,} goals", found)
 
 
 if __name__ == "__main__":

@@ -7,7 +7,8 @@ use interfaces::{Cell, CellState};
 
 /// Set in the last reading of a cell that is not settled; see [`CellMap::observe_run`].
 pub(super) const UNSETTLED: ReadingIndex = 1 << 31;
-/// The number of cells that [`CellMap::observe_run`] processes at once: those of a row in a block of [`interfaces::SparseCells`].
+/// The number of cells that [`CellMap::observe_run`] processes at once: at most those of a row in a block of
+/// [`interfaces::SparseCells`].
 const BLOCK: usize = 16;
 
 impl CellMap {
@@ -74,7 +75,16 @@ impl CellMap {
     /// recorded.
     #[inline]
     pub fn observe(&mut self, index: usize) {
-        if self.is_seen_now(index) {
+        let (now, stored) = (self.reading(), self.observed[index]);
+        let last = stored & !UNSETTLED;
+        if last == now {
+            return;
+        }
+        if last + 1 == now {
+            // Most cells: only the reading changes.
+            self.observed[index] = stored + 1;
+            let again = u32::from(self.flags[index].is_candidate);
+            self.last_seen_counts.observed_again(again);
             return;
         }
         if !self.is_in_view(index) {
@@ -82,6 +92,25 @@ impl CellMap {
             self.weigh_gaps(index);
         }
         self.mark(index);
+    }
+
+    /// Observes a [settled](Self::set_settled) cell that never changed and was in view: only its last reading changes. Returns
+    /// false, and changes nothing, if the cell is not one of these.
+    #[inline]
+    pub(crate) fn observe_settled(&mut self, index: usize) -> bool {
+        let (now, last) = (self.reading(), self.observed[index]);
+        if last == now {
+            return true;
+        }
+        let Flags { is_candidate, has_changed } = self.flags[index];
+        if last & UNSETTLED != 0 || has_changed || !self.is_in_view(index) {
+            return false;
+        }
+        self.observed[index] = now;
+        if is_candidate {
+            self.last_seen_counts.moved(last, now);
+        }
+        true
     }
 
     /// Records that the open reading observed the cell for the first time.
@@ -114,11 +143,14 @@ impl CellMap {
                 let unseen = if is_full { 0..0 } else { from as u32..until as u32 };
                 return closer.extend(unseen);
             };
-            // No early exit: the comparison of a whole block vectorizes.
-            if block.len() == BLOCK && block.iter().fold(true, |all, &last| all & (last == before)) {
-                block.fill(now);
-                again += BLOCK as u32;
-            } else {
+            for (number, block) in block.chunks_mut(BLOCK).enumerate() {
+                // No early exit: the comparison of a whole block vectorizes.
+                if block.len() == BLOCK && block.iter().fold(true, |all, &last| all & (last == before)) {
+                    block.fill(now);
+                    again += BLOCK as u32;
+                    continue;
+                }
+                let from = from + number * BLOCK;
                 for (offset, last) in block.iter_mut().enumerate() {
                     if *last == before {
                         *last = now;

@@ -25,9 +25,14 @@ impl SurfaceGrid {
         beyond_fan(scan, &frame, self.settings.max_gap_m, |index| {
             cells.observe_run(index, index + 1, &mut unsettled);
         });
-        // A cell that was hit receives no miss. In a loop of its own for the reason of `CellMap::load`.
+        // A cell that was hit receives no miss. A miss changes nothing else in a settled cell without a surface. In a loop of its
+        // own for the reason of `CellMap::load`.
         let now = cells.reading();
-        unsettled.retain(|&index| self.surfaces[index as usize].hit_at != now);
+        unsettled.retain(|&index| {
+            let index = index as usize;
+            let is_done = self.surfaces.is_none(index) && cells.observe_settled(index);
+            !is_done && self.surfaces[index].hit_at != now
+        });
         cells.load(unsettled.iter().map(|&index| index as usize));
         for &index in &unsettled {
             self.miss(index as usize, scan, cells);

@@ -25,6 +25,12 @@ impl Surfaces {
         self.numbers.len()
     }
 
+    /// Whether the surface of a cell was never changed.
+    #[inline]
+    pub(super) fn is_none(&self, index: usize) -> bool {
+        self.numbers[index] == 0
+    }
+
     /// The surface of a cell, to be changed, if it was ever changed.
     #[inline]
     pub(super) fn stored_mut(&mut self, index: usize) -> Option<&mut Surface> {

@@ -6,6 +6,9 @@
 //! from their expectations: cells are alike where people walk everywhere (one event says little about a cell), and differ where a
 //! few doors move and the rest stands still.
 
+mod beside;
+
+use beside::Links;
 use interfaces::GridFrame;
 
 /// A gamma distribution of a cycle rate: what is known after `events` cycles in the time `time`. Its shape is `events`, its
@@ -99,13 +102,15 @@ impl RatePrior {
         if !(mean.is_finite() && mean > 0.0) {
             return None;
         }
-        let beside = Beside::new(frame, &cells);
-        let mut means = means_by_clearance(frame, mean, &beside, &cycles, &times);
+        let links = beside::links(frame, &cells);
+        let mut means = means_by_clearance(frame, mean, &links, &cycles, &times);
         let mut expected = times;
         expected.iter_mut().zip(&means).for_each(|(time, mean)| *time *= mean);
         let shape = shape(frame, &cycles, &expected);
-        let [cycles, expected] = [cycles, expected].map(|values| around(frame, &beside, values));
-        for ((mean, cycles), expected) in means.iter_mut().zip(cycles).zip(expected) {
+        let pairs = cycles.into_iter().zip(expected).map(|(cycles, expected)| [cycles, expected]);
+        let mut near: Vec<[f32; 2]> = std::iter::once([0.0; 2]).chain(pairs).collect();
+        around(frame, &links, &mut near);
+        for (mean, [cycles, expected]) in means.iter_mut().zip(&near[1..]) {
             *mean *= (cycles + shape as f32) / (expected + shape as f32);
         }
         Some(Learned { prior: Self { shape, mean }, cells, means })
@@ -120,61 +125,15 @@ pub(super) struct Learned {
     pub(super) means: Vec<f32>,
 }
 
-/// Which traversable cells lie beside each other. A cell is known by its position in the list of all of them.
-struct Beside<'a> {
-    cells: &'a [u32],
-    width: u32,
-    /// For each cell, the first one that is not before the place below and to the left.
-    below: Vec<u32>,
-}
-
-impl<'a> Beside<'a> {
-    fn new(frame: &GridFrame, cells: &'a [u32]) -> Self {
-        let width = frame.width() as u32;
-        let mut first = 0;
-        let below = cells.iter().map(|index| {
-            while cells[first] + width + 1 < *index {
-                first += 1;
-            }
-            first as u32
-        });
-        let below = below.collect();
-        Self { cells, width, below }
-    }
-
-    /// The cell before a cell in its row.
-    fn before(&self, position: usize) -> Option<usize> {
-        let before = position.checked_sub(1)?;
-        let index = self.cells[position];
-        (self.cells[before] + 1 == index && !index.is_multiple_of(self.width)).then_some(before)
-    }
-
-    /// The cells below and to the left, below, and below and to the right.
-    fn below(&self, position: usize) -> [Option<usize>; 3] {
-        let (first, index) = (self.below[position] as usize, self.cells[position]);
-        let column = index % self.width;
-        let mut found = [None; 3];
-        for (at, cell) in self.cells[first..position].iter().enumerate().take(3) {
-            // 0 for the place to the left, 1 below, 2 to the right.
-            let side = (cell + self.width + 1).wrapping_sub(index) as usize;
-            let is_in_row = (side > 0 || column > 0) && (side < 2 || column + 1 < self.width);
-            if side < 3 && is_in_row {
-                found[side] = Some(first + at);
-            }
-        }
-        found
-    }
-}
-
 /// The mean rate of the cells with the same distance to the nearest wall, shrunk toward the mean of all like one cycle.
 fn means_by_clearance(
     frame: &GridFrame,
     mean: f64,
-    beside: &Beside<'_>,
+    links: &[Links],
     cycles: &[f32],
     times: &[f32],
 ) -> Vec<f32> {
-    let classes = clearance_classes(frame, beside);
+    let classes = clearance_classes(frame, links);
     let mut sums = [RateDistribution { events: 1.0, time: 1.0 / mean }; CLASSES];
     for ((&class, &cycles), &time) in classes.iter().zip(cycles).zip(times) {
         sums[class as usize].events += f64::from(cycles);
@@ -186,40 +145,36 @@ fn means_by_clearance(
 
 /// The class of the distance of each traversable cell to the nearest cell that is not: a chamfer distance in two passes
 /// (Borgefors, 1986).
-fn clearance_classes(frame: &GridFrame, beside: &Beside<'_>) -> Vec<u8> {
+fn clearance_classes(frame: &GridFrame, links: &[Links]) -> Vec<u8> {
     const DIAGONAL: f32 = std::f32::consts::SQRT_2;
     /// The cells above and after a cell: bit 0 for the two along rows and columns, bit 1 for the two diagonal ones.
     const BOTH: [u8; 2] = [0b0011, 0b1100];
-    const STEPS: [(f32, u8); 3] = [(DIAGONAL, 0b1000), (1.0, 0b0010), (DIAGONAL, 0b0100)];
-    let count = beside.cells.len();
-    let mut distances = vec![0.0_f32; count];
-    let of = |distances: &[f32], cell: Option<usize>| cell.map_or(0.0, |cell| distances[cell]);
-    for position in 0..count {
-        let [left, below, right] = beside.below(position).map(|cell| of(&distances, cell));
-        let before = of(&distances, beside.before(position));
-        distances[position] = (before.min(below) + 1.0).min(left.min(right) + DIAGONAL);
+    let mut distances = vec![0.0_f32; links.len()];
+    for (cell, Links { before, below: [left, below, right] }) in links.iter().enumerate().skip(1) {
+        let of = |cell: &u32| distances[*cell as usize];
+        distances[cell] = (of(before).min(of(below)) + 1.0).min(of(left).min(of(right)) + DIAGONAL);
     }
     // Each cell passes its distance on to those below and before, which come later in this order.
-    let mut passed_on = vec![0_u8; count];
-    for position in (0..count).rev() {
-        let mut distance = distances[position];
+    let mut passed_on = vec![0_u8; links.len()];
+    for (cell, Links { before, below: [left, below, right] }) in links.iter().enumerate().skip(1).rev() {
+        let mut distance = distances[cell];
         for (both, step) in BOTH.into_iter().zip([1.0, DIAGONAL]) {
-            if passed_on[position] & both != both {
+            if passed_on[cell] & both != both {
                 distance = distance.min(step);
             }
         }
-        distances[position] = distance;
-        let before = beside.before(position).map(|cell| (cell, (1.0, 0b0001)));
-        let below =
-            beside.below(position).into_iter().zip(STEPS).filter_map(|(cell, step)| Some((cell?, step)));
-        for (cell, (step, bit)) in before.into_iter().chain(below) {
-            distances[cell] = distances[cell].min(distance + step);
-            passed_on[cell] |= bit;
+        distances[cell] = distance;
+        for (cell, step, bit) in
+            [(before, 1.0, 0b0001), (left, DIAGONAL, 0b1000), (below, 1.0, 0b0010), (right, DIAGONAL, 0b0100)]
+        {
+            let passed = &mut distances[*cell as usize];
+            *passed = passed.min(distance + step);
+            passed_on[*cell as usize] |= bit;
         }
     }
     let per_class = (frame.resolution_m() / CLASS_M) as f32;
-    let class = |distance: f32| ((distance * per_class + 0.5) as usize).clamp(1, CLASSES) as u8 - 1;
-    distances.into_iter().map(class).collect()
+    let class = |distance: &f32| ((distance * per_class + 0.5) as usize).clamp(1, CLASSES) as u8 - 1;
+    distances[1..].iter().map(class).collect()
 }
 
 /// The shape of the distribution of all rates, from the variance of the numbers of cycles beyond that of a Poisson
@@ -238,33 +193,43 @@ fn shape(frame: &GridFrame, cycles: &[f32], expected: &[f32]) -> f64 {
     1.0 / dispersion.clamp(DISPERSIONS[0], DISPERSIONS[1])
 }
 
-/// The weighted mean of the values around each cell, without its own: two-sided exponential filters along rows, then along
-/// columns. Walls end them.
-fn around(frame: &GridFrame, beside: &Beside<'_>, mut values: Vec<f32>) -> Vec<f32> {
+/// The weighted means of two values around each cell, without its own: two-sided exponential filters along rows, then along
+/// columns. Walls end them. The first values are those of no cell, 0.
+fn around(frame: &GridFrame, links: &[Links], values: &mut [[f32; 2]]) {
     let fade = libm::exp(-frame.resolution_m() / REACH_M) as f32;
     let own_weight = (1.0 - fade) / (1.0 + fade);
-    let own: Vec<f32> = values.iter().map(|value| own_weight * own_weight * value).collect();
-    filter(&mut values, fade, own_weight, |position| beside.before(position));
-    filter(&mut values, fade, own_weight, |position| beside.below(position)[1]);
-    values.iter_mut().zip(own).for_each(|(value, own)| *value = (*value - own).max(0.0));
-    values
+    let own: Vec<[f32; 2]> =
+        values.iter().map(|both| both.map(|value| own_weight * own_weight * value)).collect();
+    let mut sums = [vec![[0.0; 2]; values.len()], vec![[0.0; 2]; values.len()]];
+    filter(values, fade, own_weight, links, |links| links.before, &mut sums);
+    filter(values, fade, own_weight, links, |links| links.below[1], &mut sums);
+    for (both, own) in values.iter_mut().zip(own) {
+        *both = [0, 1].map(|side| (both[side] - own[side]).max(0.0));
+    }
 }
 
-/// A two-sided exponential filter; `before` is the cell before a cell, along a row or a column.
-fn filter(values: &mut [f32], fade: f32, own_weight: f32, before: impl Fn(usize) -> Option<usize>) {
-    let mut forward = vec![0.0; values.len()];
-    for position in 0..values.len() {
-        let sum = before(position).map_or(0.0, |before| forward[before]);
-        forward[position] = sum * fade + values[position];
+/// A two-sided exponential filter; `before` is the cell before a cell, along a row or a column. `sums` is scratch memory.
+fn filter(
+    values: &mut [[f32; 2]],
+    fade: f32,
+    own_weight: f32,
+    links: &[Links],
+    before: impl Fn(&Links) -> u32,
+    [forward, backward]: &mut [Vec<[f32; 2]>; 2],
+) {
+    for (cell, links) in links.iter().enumerate().skip(1) {
+        let (sum, value) = (forward[before(links) as usize], values[cell]);
+        forward[cell] = [0, 1].map(|side| sum[side] * fade + value[side]);
     }
     // The sums of the cells after each cell.
-    let mut backward = vec![0.0; values.len()];
-    for position in (0..values.len()).rev() {
-        let value = &mut values[position];
-        let sum = backward[position] * fade + *value;
-        if let Some(before) = before(position) {
-            backward[before] = sum;
-        }
-        *value = (forward[position] + sum - *value) * own_weight;
+    backward.fill([0.0; 2]);
+    for (cell, links) in links.iter().enumerate().skip(1).rev() {
+        let (value, after) = (values[cell], backward[cell]);
+        let sum = [0, 1].map(|side| after[side] * fade + value[side]);
+        backward[before(links) as usize] = sum;
+        values[cell] = [0, 1].map(|side| (forward[cell][side] + sum[side] - value[side]) * own_weight);
     }
 }
+
+#[cfg(test)]
+mod tests;
