@@ -240,7 +240,7 @@ fn same(run: &Run) -> Option<String> {
     let (name, all) = (&first.name, first.units.len());
     (!counts.is_empty()).then(|| {
         format!(
-            "The same results as {name}, of {all} {units}: {}; a longer time can tell them apart.",
+            "Of {all} {units}, the same results as {name}:\n{}; a longer time can tell them apart.",
             counts.join(", ")
         )
     })
