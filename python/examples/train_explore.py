@@ -103,7 +103,7 @@ class Progress:
 def train(
     minutes: float, seed: int, pay: Pay | None = None, goals: Sequence[int] = ()
 ) -> tuple[list[Greedy], list[tuple[float, float]]]:
-    """Learns for some minutes, or, with `goals`, until so many goals were chosen: the same policy on every machine.
+    """Learns for some minutes, or, with `goals`, until this number of goals was chosen: the same policy on every machine.
 
     Returns the policies after each number of `goals` (or at the end), and (minutes, reward of the task) of every episode.
     """

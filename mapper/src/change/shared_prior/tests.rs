@@ -31,7 +31,7 @@ struct Beside<'a> {
 }
 
 impl Beside<'_> {
-    /// The cell so many columns to the right and rows above a cell.
+    /// The cell that is this number of columns to the right of a cell, and rows above it.
     fn at(&self, position: usize, right: i64, above: i64) -> Option<usize> {
         let (index, width) = (i64::from(self.cells[position]), i64::from(self.width));
         let column = index % width + right;
