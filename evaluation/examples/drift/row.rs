@@ -81,7 +81,7 @@ mod tests {
     /// Rows with other columns are older than this program.
     #[test]
     fn the_rows_of_the_page_are_those_of_this_program() {
-        let file = include_str!("../../../docs/results/localization.csv");
+        let file = include_str!("../../../docs/results/localization_houses.csv");
         let mut writer = csv::Writer::from_writer(Vec::new());
         writer.serialize(Row::default()).unwrap();
         let text = String::from_utf8(writer.into_inner().unwrap()).unwrap();
