@@ -11,7 +11,6 @@
 //! cargo run -p curious-evaluation --example drift -- world=worlds/house.toml closed=1
 //! cargo run -p curious-evaluation --example drift -- carried_m=3 carried_deg=180
 //! cargo run -p curious-evaluation --example drift -- shelves=1
-//! cargo run -p curious-evaluation --example drift -- trials=4 minutes=4 rows=drift.csv table=houses variant="360 beams"
 //! ```
 
 mod corners;
@@ -19,7 +18,6 @@ mod driver;
 mod options;
 mod recovery;
 mod relocations;
-mod row;
 mod score;
 mod shelves;
 
@@ -45,10 +43,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     if options.trials > 1 {
         total.print("all");
     }
-    match &options.rows {
-        Some(path) => row::append(path, &row::Row::of(&options, &total)),
-        None => Ok(()),
-    }
+    Ok(())
 }
 
 /// One run.

@@ -9,7 +9,7 @@ const BY_HAND: [(&str, usize); 17] = [
     ("figure3.md", 4),
     ("flicker.md", 1),
     ("houses.md", 4),
-    ("localization.md", 7),
+    ("localization.md", 8),
     ("loops.md", 4),
     ("performance.md", 7),
     ("python.md", 6),
