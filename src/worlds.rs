@@ -79,7 +79,7 @@ fn load_stage(name: &str) -> anyhow::Result<Loaded> {
     if driven.len() != 1 {
         warnings.push(format!(
             "warning: of the robots in `{0}`, `{1}` explores{2}\n  = help: for another one, make a world file with \
-             `check_world --toml {0}`, and change the behaviours there",
+             `check_world --toml {0}`, and change the behaviors there",
             printable(name),
             spec.driven().name,
             if driven.is_empty() { "" } else { ", and the others that obey commands stand still" },

@@ -202,7 +202,7 @@ impl Part {
 pub enum TaskError {
     /// No robot of the world executes commands.
     #[error(
-        "no robot of the world `{world}` is driven: give one of them `behaviour = {{ kind = \"driven\" }}`"
+        "no robot of the world `{world}` is driven: give one of them `behavior = {{ kind = \"driven\" }}`"
     )]
     NoDrivenRobot {
         /// The name of the world.

@@ -65,7 +65,7 @@ fn fleet_of_1000_by_1000(bencher: Bencher<'_, '_>, kind: &str) {
          [robot.drive]\nmax_linear_mps = 0.5\nmax_angular_degps = 90.0\n\
          max_linear_acceleration_mps2 = 1.0\nmax_angular_acceleration_degps2 = 90.0\n\
          [robot.laser]\nbeams = 360\nrange_max_m = 10.0\nrate_hz = 10.0\n\
-         [robot.behaviour]\nkind = \"driven\"\n",
+         [robot.behavior]\nkind = \"driven\"\n",
         at.unwrap_or_default()
     );
     let files = BTreeMap::from([(PathBuf::from("plan.png"), bytes)]);

@@ -89,7 +89,7 @@ fn rooms(
     robots: usize,
     (first_m, apart_m): (f64, f64),
     keys: &str,
-    behaviour: &str,
+    behavior: &str,
     tables: &str,
 ) -> FleetSpec {
     let text = include_str!("../../worlds/four_rooms.toml");
@@ -100,7 +100,7 @@ fn rooms(
         text += &format!(
             "[[robot]]\nname = \"{robot}\"\npose_m = {at:?}\nheading_deg = {}\n{keys}\n\
              drive = {{ max_linear_mps = 0.5, max_angular_degps = 120.0, max_linear_acceleration_mps2 = 1.0, \
-             max_angular_acceleration_degps2 = 360.0 }}\nbehaviour = {{ {behaviour} }}\n{tables}",
+             max_angular_acceleration_degps2 = 360.0 }}\nbehavior = {{ {behavior} }}\n{tables}",
             robot * 77 % 360
         );
     }

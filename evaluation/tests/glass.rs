@@ -16,7 +16,7 @@ fn hall(upper_wall: &str) -> WorldSpec {
          [robot.drive]\nmax_linear_mps = 0.5\nmax_angular_degps = 120.0\n\
          max_linear_acceleration_mps2 = 1.0\nmax_angular_acceleration_degps2 = 360.0\n\
          [robot.laser]\nbeams = 720\nrange_max_m = 8.0\nrate_hz = 10.0\n\
-         [robot.behaviour]\nkind = \"driven\"\n"
+         [robot.behavior]\nkind = \"driven\"\n"
     );
     worldfile::physics::parse_world("hall.toml", &text).unwrap_or_else(|error| panic!("{error}"))
 }

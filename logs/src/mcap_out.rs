@@ -5,6 +5,7 @@ mod grids;
 mod lasers;
 mod odometry;
 mod schemas;
+mod sorted;
 #[cfg(test)]
 mod tests;
 
@@ -42,7 +43,7 @@ const POINT_BYTES: u32 = 16;
 /// Poses of a reading are given in the frame `odom`, all others in the frame `map`. Times are those of the readings, after
 /// the begin that is given first.
 ///
-/// The same run gives the same messages, bit by bit; the order of the topics in the index differs.
+/// The same run gives the same file, byte by byte.
 ///
 /// A file that is not finished can be read up to its last chunk. For a file that appears when it is complete, give the writer
 /// one with a temporary name, and rename it after [`finish`](Self::finish).

@@ -1,12 +1,14 @@
 //! Things that change fast, before a laser that stands: the cycle rate that the mapper finds, divided by the true one.
 //!
 //! ```text
-//! cargo run -p curious-mapper --example fast_cells
+//! (echo "# $(git show -s --format='commit %h of %cs'), cargo run -p curious-mapper --example fast_cells";
+//!  cargo run -p curious-mapper --example fast_cells) > docs/results/fast_changes.csv
+//! cargo run -p curious-reports --example page_tables -- docs/flicker.md
 //! ```
 //!
 //! A box comes and goes; the leaf of a door swings between closed and open within 0.2 s; a row of round bodies, 0.4 m wide and
-//! 0.8 m from center to center, passes. Each is away (open) and there (closed) for the dwell, from the first scan on. An entry
-//! is the mean over cells and phases and, in brackets, the lowest and the highest phase.
+//! 0.8 m from center to center, passes. Each is away (open) and there (closed) for the dwell, from the first scan on. A row
+//! has the mean over cells and phases, and the means of the lowest and of the highest phase.
 
 #[path = "../tests/house/mod.rs"]
 mod house;
@@ -34,8 +36,8 @@ struct Kind {
 }
 
 const KINDS: [Kind; 4] = [
-    Kind { name: "box, sides that are seen", cells: [[30, 60], [37, 60]], place: blink },
-    Kind { name: "box, hidden inside", cells: [[31, 63], [35, 66]], place: blink },
+    Kind { name: "box sides", cells: [[30, 60], [37, 60]], place: blink },
+    Kind { name: "box inside", cells: [[31, 63], [35, 66]], place: blink },
     Kind { name: "door leaf", cells: [[53, 68], [66, 68]], place: swing },
     Kind { name: "bodies that pass", cells: [[50, 59], [68, 61]], place: pass },
 ];
@@ -82,19 +84,17 @@ fn found(kind: &Kind, rate_hz: f64, dwell_s: f64, phase: u32) -> f64 {
 }
 
 fn main() {
+    println!("kind,dwell_s,rate_hz,mean,low,high");
     for kind in &KINDS {
-        println!("\n| {}: dwell, s | {} |", kind.name, RATES_HZ.map(|rate| format!("{rate} Hz")).join(" | "));
-        println!("|---{}|", "|---".repeat(RATES_HZ.len()));
         for dwell_s in DWELLS_S {
-            let entry = |rate_hz| {
+            for rate_hz in RATES_HZ {
                 let phases: Vec<f64> =
                     (0..PHASES).map(|phase| found(kind, rate_hz, dwell_s, phase)).collect();
                 let mean = phases.iter().sum::<f64>() / phases.len() as f64;
                 let (low, high) =
                     phases.iter().fold((f64::MAX, 0.0_f64), |(low, high), &p| (low.min(p), high.max(p)));
-                format!("{mean:.2} ({low:.2} – {high:.2})")
-            };
-            println!("| {dwell_s} | {} |", RATES_HZ.map(entry).join(" | "));
+                println!("{},{dwell_s},{rate_hz},{mean:.4},{low:.4},{high:.4}", kind.name);
+            }
         }
     }
 }

@@ -54,7 +54,7 @@ pose_m = [{x!r}, {y!r}]
 heading_deg = {np.degrees(heading):.6f}
 drive = {{ max_linear_mps = 0.5, max_angular_degps = 120.0, max_linear_acceleration_mps2 = 1.0, max_angular_acceleration_degps2 = 360.0 }}
 laser = {{ beams = {self.beams}, range_max_m = {RANGE_M}, rate_hz = 10.0 }}
-behaviour = {{ kind = "driven" }}
+behavior = {{ kind = "driven" }}
 """
         return text
 

@@ -55,7 +55,7 @@ pose_m = [{x:.3f}, {y:.3f}]
 heading_deg = {robot * 77 % 360}.0
 drive = {{ max_linear_mps = 0.5, max_angular_degps = 120.0, max_linear_acceleration_mps2 = 1.0, max_angular_acceleration_degps2 = 360.0 }}
 laser = {{ beams = 360, range_max_m = 10.0, rate_hz = 10.0 }}
-behaviour = {{ kind = "driven" }}
+behavior = {{ kind = "driven" }}
 """
     return curious.Spec.from_toml(text)
 

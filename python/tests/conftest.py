@@ -36,7 +36,7 @@ beams = 32
 range_max_m = 5.0
 rate_hz = 10.0
 noise_std_m = 0.01
-[robot.behaviour]
+[robot.behavior]
 kind = "{kind}"
 """
 

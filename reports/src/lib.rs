@@ -167,6 +167,11 @@ impl Report {
         table::table(self)
     }
 
+    /// Whether the table leaves out the single worlds; `report.json` has them.
+    pub fn leaves_out_worlds(&self) -> bool {
+        table::leaves_out_worlds(self)
+    }
+
     /// Writes the figures, and `report.json`, which lists all files of the run, into the folder of the unfinished run.
     /// Returns the names of the files.
     ///

@@ -92,10 +92,7 @@ pub(super) fn table(report: &Report) -> String {
     }
     let length = report.settings.length;
     let columns = length.choose(&GRID_COLUMNS[..], &PHYSICS_COLUMNS);
-    let is_short = report
-        .runs
-        .iter()
-        .any(|run| run.worlds > ONE_BY_ONE || run.worlds > 1 && report.settings.trials == 1);
+    let is_short = leaves_out_worlds(report);
     let mut text = String::new();
     if report.settings.interrupted {
         let finished = report.finished;
@@ -120,10 +117,13 @@ pub(super) fn table(report: &Report) -> String {
         }
     }
     text.push_str(length.choose(HOW_TO_READ_GRID, HOW_TO_READ_PHYSICS));
-    if is_short {
-        text.push_str("The worlds one by one are in report.json.\n");
-    }
     text
+}
+
+/// Whether the tables are those over all worlds only.
+pub(super) fn leaves_out_worlds(report: &Report) -> bool {
+    let is_one_of_many = |run: &Run| run.worlds > ONE_BY_ONE || run.worlds > 1 && report.settings.trials == 1;
+    report.runs.iter().any(is_one_of_many)
 }
 
 /// Columns of numbers beside the names.

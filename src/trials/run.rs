@@ -9,7 +9,7 @@ use clap::CommandFactory;
 use clap::parser::ValueSource;
 use evaluation::trials::{Experiment, Trial, TrialError, TrialWorld};
 use rayon::ThreadPool;
-use reports::{Plan, ReportSettings, collect};
+use reports::{Plan, REPORT, ReportSettings, collect};
 use results::output::{RunFolder, write_file};
 use std::io::stderr;
 use std::path::Path;
@@ -179,6 +179,9 @@ impl Results<'_> {
         self.folder.finish(&inputs)?;
         if !self.quiet {
             print(report.table())?;
+            if report.leaves_out_worlds() {
+                print(format_args!("The worlds one by one are in {REPORT}.\n"))?;
+            }
             print(format_args!("written to {}: {}", self.out.display(), written.join(", ")))?;
         }
         Ok(())

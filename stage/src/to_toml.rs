@@ -145,7 +145,7 @@ impl StageWorld {
                 let keys = self::sensor(kind, sensor, robot.radius_m());
                 made.table_of(header, (sensor.at, &sensor.place), None, keys);
             }
-            made.table_of("[robot.behaviour]", (robot.at, &robot.place), None, behavior(robot));
+            made.table_of("[robot.behavior]", (robot.at, &robot.place), None, behavior(robot));
         }
         made
     }

@@ -130,7 +130,7 @@ fn of_many_robots_the_first_are_described() {
              [robot.drive]\nmax_linear_mps = 0.5\nmax_angular_degps = 90.0\n\
              max_linear_acceleration_mps2 = 1.0\nmax_angular_acceleration_degps2 = 360.0\n\
              [robot.laser]\nbeams = 360\nrange_max_m = 10.0\nrate_hz = 10.0\n\
-             [robot.behaviour]\nkind = \"standing\"\n",
+             [robot.behavior]\nkind = \"standing\"\n",
             200 + i,
             i % 10,
             i / 10

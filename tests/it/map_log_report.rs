@@ -152,3 +152,17 @@ fn the_second_visit_says_what_changed() {
     run.goes_well("a.log b.log c.log --quiet --no-rrd --out whole");
     assert!(fs::read_to_string(run.path("whole").join("report.html")).unwrap() == page);
 }
+
+/// The time between logs without a date is not known: no time on the page counts across it.
+#[test]
+fn times_of_logs_without_a_date_count_from_their_own_first_scan() {
+    let run = Run::new().with_map_log();
+    run.write("a.log", &standing_log(0.0, 300));
+    run.write("b.log", &standing_log(5.0, 200));
+    run.goes_well("a.log b.log --no-rrd --quiet");
+    let page = page(&run);
+    assert!(page.contains("the time between them is not known"), "{page}");
+    // It came or went at 190 s, of 200.
+    let last = page.split("Last change: 3 min 1").nth(1).unwrap_or_else(|| panic!("{page}"));
+    assert!(last[1..].starts_with(" s after the first scan of b.log."), "{last}");
+}

@@ -30,7 +30,7 @@ max_angular_acceleration_degps2 = 600.0
 beams = 90
 range_max_m = 5.0
 rate_hz = 10.0
-[robot.behaviour]
+[robot.behavior]
 kind = "driven"
 
 [[robot]]
@@ -46,7 +46,7 @@ max_angular_acceleration_degps2 = 360.0
 beams = 30
 range_max_m = 3.0
 rate_hz = 10.0
-[robot.behaviour]
+[robot.behavior]
 kind = "wander"
 speed_mps = 0.3
 "#;

@@ -60,3 +60,19 @@ fn a_world_file_runs_as_the_shipped_world_does() {
         .map(|world| Run::quiet(&format!("--duration 20 --world {world}")).summary().hash().to_owned());
     assert_eq!(by_name, by_path);
 }
+
+/// The example of docs/worlds.md: the map can show a thing with the very scan that shows it first, and the report knows it.
+#[test]
+fn the_world_of_the_page_runs_and_its_parcel_is_seen() {
+    let page = include_str!("../../docs/worlds.md");
+    let world = page.split("```toml\n").nth(1).unwrap().split("```").next().unwrap();
+    let run = Run::new();
+    run.write("room.toml", world);
+    run.goes_well("--world room.toml --duration 40s --seed 1 --no-rrd --quiet");
+    let summary = run.summary();
+    for thing in summary.at("/things").as_array().unwrap() {
+        assert!(thing["in_view_s"].as_f64() >= thing["happened_s"].as_f64(), "{thing}");
+        assert!(thing["right_s"].as_f64() >= thing["in_view_s"].as_f64(), "{thing}");
+    }
+    assert_eq!(summary.at("/things").as_array().unwrap().len(), 2);
+}

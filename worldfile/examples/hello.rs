@@ -19,14 +19,14 @@ cell_m = 0.05
 [[robot]]
 name = "driven"
 pose_m = [1.0, 2.0]
-behaviour = { kind = "driven" }
+behavior = { kind = "driven" }
 radius_m = 0.2
 drive = { max_linear_mps = 0.5, max_angular_degps = 90.0, max_linear_acceleration_mps2 = 1.0, max_angular_acceleration_degps2 = 360.0 }
 laser = { beams = 181, fov_deg = 180.0, range_max_m = 5.0, rate_hz = 10.0 }
 [[robot]]
 name = "wanderer"
 pose_m = [5.0, 2.0]
-behaviour = { kind = "wander", speed_mps = 0.3 }
+behavior = { kind = "wander", speed_mps = 0.3 }
 radius_m = 0.2
 drive = { max_linear_mps = 0.5, max_angular_degps = 90.0, max_linear_acceleration_mps2 = 1.0, max_angular_acceleration_degps2 = 360.0 }
 laser = { beams = 180, range_max_m = 5.0, rate_hz = 10.0 }

@@ -4,6 +4,7 @@ use mapper::Mapper;
 use nalgebra::Isometry2;
 use serde::Serialize;
 use sim::physics::ObstacleEvent;
+use std::collections::BTreeSet;
 
 /// A cell counts for [`ThingReport::right_s`] if a beam shows it at most this long after the first cell, s: the
 /// side that the robot sees first.
@@ -35,7 +36,7 @@ struct Thing {
     cells: Vec<ThingCell>,
 }
 
-/// A cell of a thing whose mapped state was the old one at the event.
+/// A cell of a thing that the map had to change at the event.
 #[derive(Clone, Copy, Debug, serde::Deserialize, serde::Serialize)]
 struct ThingCell {
     index: usize,
@@ -67,9 +68,6 @@ impl Things {
                 event.name,
                 if event.appeared { "appeared" } else { "disappeared" }
             ));
-            let old = if event.appeared { CellState::Free } else { CellState::Blocked };
-            let cells = event.cells.iter().filter_map(|&cell| frame.index(cell));
-            let has_old = |index: &usize| mapper.states().cells()[*index] == old;
             self.things.push(Thing {
                 report: ThingReport {
                     name: event.name.clone(),
@@ -79,10 +77,7 @@ impl Things {
                     noticed_s: None,
                     right_s: None,
                 },
-                cells: cells
-                    .filter(has_old)
-                    .map(|index| ThingCell { index, shown_s: None, correct_s: None })
-                    .collect(),
+                cells: changing_cells(event, frame, mapper),
             });
         }
         self.events_taken = events.len();
@@ -91,11 +86,7 @@ impl Things {
             if report.right_s.is_some() {
                 continue;
             }
-            let (event, new) = if report.appeared {
-                (Event::Block, CellState::Blocked)
-            } else {
-                (Event::Free, CellState::Free)
-            };
+            let (event, new) = kind(report.appeared);
             for ThingCell { index, shown_s, correct_s } in cells.iter_mut() {
                 let still_counts = report.in_view_s.is_none_or(|first_s| now_s <= first_s + SHOWN_TOGETHER_S);
                 if shown_s.is_none() && still_counts && beams.shows(&frame.center(frame.cell(*index)), event)
@@ -127,6 +118,27 @@ impl Things {
     pub fn reports(&self) -> impl Iterator<Item = &ThingReport> {
         self.things.iter().map(|thing| &thing.report)
     }
+}
+
+/// The event of the cells of a thing, and their state after it.
+fn kind(appeared: bool) -> (Event, CellState) {
+    if appeared { (Event::Block, CellState::Blocked) } else { (Event::Free, CellState::Free) }
+}
+
+/// The cells of an event that the map has to change. The map can have changed some of them in this very update, whose scan shows
+/// the event already. Where none of them was known, they are the unknown ones: the first look shows the event.
+fn changing_cells(event: &ObstacleEvent, frame: &GridFrame, mapper: &Mapper) -> Vec<ThingCell> {
+    let (change, new) = kind(event.appeared);
+    let just_now = mapper.transitions().iter().filter(|transition| transition.event() == Some(change));
+    let just_now: BTreeSet<usize> = just_now.filter_map(|transition| frame.index(transition.cell)).collect();
+    let state = |index: &usize| mapper.states().cells()[*index];
+    let indices: Vec<usize> = event.cells.iter().filter_map(|&cell| frame.index(cell)).collect();
+    let (unknown, known): (Vec<usize>, Vec<usize>) =
+        indices.into_iter().partition(|index| state(index) == CellState::Unknown);
+    let known: Vec<usize> =
+        known.into_iter().filter(|index| state(index) != new || just_now.contains(index)).collect();
+    let chosen = if known.is_empty() { unknown } else { known };
+    chosen.into_iter().map(|index| ThingCell { index, shown_s: None, correct_s: None }).collect()
 }
 
 /// The time when enough of the shown cells were correct; `None` while the set of shown cells can still grow.

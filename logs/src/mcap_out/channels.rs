@@ -1,6 +1,7 @@
 //! The channels of an MCAP file: a topic with its schema, made when its first message comes.
 
 use super::schemas;
+use super::sorted::HeldBack;
 use crate::cdr;
 use crate::error::LogError;
 use mcap::records::MessageHeader;
@@ -8,6 +9,8 @@ use mcap::{Compression, WriteOptions, Writer};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::io::{Error, Seek, Write};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// The quality of service of topics that hold until the next message, in the form of rosbag2: reliable, transient local, and
 /// no limits of time.
@@ -25,7 +28,9 @@ const LATCHED: &str = "\
 
 /// The channels of a file that is being written.
 pub(super) struct Channels<W: Write + Seek> {
-    writer: Writer<W>,
+    writer: Writer<HeldBack<W>>,
+    /// Holds back what is written from now on.
+    is_end: Arc<AtomicBool>,
     name: String,
     /// The number of each topic, and of its messages.
     known: BTreeMap<String, (u16, u32)>,
@@ -35,8 +40,9 @@ impl<W: Write + Seek> Channels<W> {
     pub(super) fn new(to: W, name: &str) -> Result<Self, LogError> {
         let options = WriteOptions::library(WriteOptions::new().profile("ros2"), "curious")
             .compression(Some(Compression::Zstd));
+        let (to, is_end) = HeldBack::new(to);
         let writer = options.create(to).map_err(|error| failed(name, error))?;
-        Ok(Self { writer, name: name.to_owned(), known: BTreeMap::new() })
+        Ok(Self { writer, is_end, name: name.to_owned(), known: BTreeMap::new() })
     }
 
     /// Writes a message of a type like `nav_msgs/Path`.
@@ -79,8 +85,10 @@ impl<W: Write + Seek> Channels<W> {
     }
 
     pub(super) fn finish(mut self) -> Result<W, LogError> {
+        self.writer.flush().map_err(|error| failed(&self.name, error))?;
+        self.is_end.store(true, Ordering::Relaxed);
         self.writer.finish().map_err(|error| failed(&self.name, error))?;
-        Ok(self.writer.into_inner())
+        self.writer.into_inner().finish().map_err(|error| failed(&self.name, error.into()))
     }
 }
 

@@ -3,7 +3,6 @@
 use crate::Ended;
 use crate::args::{Args, DriveChoice};
 use crate::trial_state_file::TrialStateFile;
-use agent::Policy;
 use anyhow::{Context, anyhow};
 use curious::bag::RunBag;
 use curious::program::{Failure, PURPOSE_GAIN, arguments, input, results_folder};
@@ -176,8 +175,13 @@ impl<'a> Outputs<'a> {
         }
         self.folder.finish(&[])?;
         if !args.quiet {
-            let is_default = args.drive == DriveChoice::Agent && args.strategy() == Policy::default();
-            let hint = if is_default { format!("\n  hint      {PURPOSE_GAIN}") } else { String::new() };
+            // For those who did not choose: others know what they want.
+            let has_chosen = args.strategy.is_some() || args.purpose.is_some();
+            let hint = if args.drive == DriveChoice::Agent && !has_chosen {
+                format!("\n  hint      {PURPOSE_GAIN}")
+            } else {
+                String::new()
+            };
             let (out, picture) = (args.out.display(), args.out.join(FIGURE_5_FILE));
             print(format_args!("{summary}{hint}\n  files     {out}: open {}", picture.display()))?;
         }

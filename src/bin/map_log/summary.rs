@@ -55,6 +55,9 @@ pub(crate) struct Summary {
     /// The time of the first scan in seconds since the epoch (1970-01-01 UTC); `null` unless every log says when it was
     /// recorded. Times of changes are relative to this.
     pub(crate) begin_s: Option<f64>,
+    /// The time of the first scan of each log on the clock of the map, s: of logs without a date it is made up.
+    #[serde(skip)]
+    pub(crate) log_begins_s: Vec<f64>,
     /// Whose hours people and doors have, or why there are none.
     pub(crate) hours: String,
     /// What beams without a return mean: `learn`, `free` or `ignore`.
@@ -142,6 +145,7 @@ impl Summary {
             trajectory_m: logs.iter().map(|log| log.travelled.length_m).sum(),
             loops: logs.iter().map(|log| log.loops).sum(),
             begin_s: begin_s(entries()),
+            log_begins_s: entries().map(|entry| entry.offset_s).collect(),
             hours: hours(survey, arguments().iter().any(|argument| argument.starts_with("--time-zone"))),
             no_return: survey.settings_of(logs.len()).filter.no_return,
             no_return_evidence: learned.no_return.clone(),

@@ -26,39 +26,42 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use survey::{Forecast, MASKS, Travel};
 use viewer::layers::Layer;
-use viewer::pictures::draw_values;
+use viewer::pictures::{NamedLine, draw_values};
 
 /// The graph of `--graph` with its probabilities.
 const GRAPH: &str = "graph.geojson";
 /// The version of the layout of `summary.json`; count up when a key is renamed, removed or changes its meaning.
 const SCHEMA: u32 = 2;
 
-/// Predicts a place from what was learned about it: is that door open at ten past five?
-///
-/// Prints when the doors are usually open, how often they open, and the probability that they are open at the times of --at; for a
-/// place (--place), the probability that it is blocked. A 90 % interval follows each probability;
-/// it needs observations on 14 days.
-///
-/// STATE is a file of `map_log --state`, or of four_rooms in a world with a calendar, whose first week begins on Monday, 2024-01-01,
-/// in UTC. (Other states of four_rooms, and those of curious_node, have no hours.) A time is
-///   +10m                after the last reading of the state: s, m or h
-///   17:10, "Tue 17:10"  the next such time after the last reading, in the time zone of the state
-///   2024-01-30T17:10    a date in this zone; with Z or an offset as +01:00 in that one
-///
-/// For each time of --at, the folder predict_out has the map of the probability that a cell is blocked, as a picture
-/// (predicted.png), for the map server of Nav2 (predicted.yaml, in the mode `scale`: 100 is certainly blocked) and as an array
-/// for NumPy (predicted.npy, rows from the lowest y on, NaN where never seen); and masks for the filters of Nav2: keepout_mask.yaml
-/// (100 where a cell that changes is probably blocked then) and speed_mask.yaml (slower where changes are usual at that hour).
-/// With several times, the files are numbered. Also in the folder: for how long a look at a place counts before its usual hours
-/// say more (expiry.png, expiry.npy, in hours), and all that is printed, as data (summary.json).
-///
-/// Hours and weekdays are learned per door and per square of half a meter, and have more weight the longer they were observed.
+/// What the program does, in paragraphs that the terminal breaks.
+const ABOUT: &str = "Predicts a place from what was learned about it: is that door open at ten past five?
+
+Prints when the doors are usually open, how often they open, and the probability that they are open at the times of --at; for \
+a place (--place), the probability that it is blocked. A 90 % interval follows each probability; it needs observations on 14 days.
+
+STATE is a file of `map_log --state`, or of four_rooms in a world with a calendar, whose first week begins on Monday, 2024-01-01, \
+in UTC. (Other states of four_rooms, and those of curious_node, have no hours.) A time is
+  +10m                after the last reading of the state: s, m or h
+  17:10, \"Tue 17:10\"  the next such time after the last reading, in the time zone of the state
+  2024-01-30T17:10    a date in this zone; with Z or an offset as +01:00 in that one
+
+For each time of --at, the folder predict_out has the map of the probability that a cell is blocked, as a picture with the doors \
+(predicted.png), for the map server of Nav2 (predicted.yaml, in the mode `scale`: 100 is certainly blocked) and as an array for NumPy \
+(predicted.npy, rows from the lowest y on, NaN where never seen); and masks for the filters of Nav2: keepout_mask.yaml (100 where a \
+cell that changes is probably blocked then) and speed_mask.yaml (slower where changes are usual at that hour). With several times, the \
+files are numbered. Also in the folder: for how long a look at a place counts before its usual hours say more (expiry.png, expiry.npy, \
+in hours), and all that is printed, as data (summary.json).
+
+Hours and weekdays are learned per door and per square of half a meter, and have more weight the longer they were observed.";
+
+/// A place as it will be.
 #[derive(Clone, Debug, Parser)]
 #[command(
     name = "predict",
     version,
     max_term_width = 100,
-    verbatim_doc_comment,
+    about = ABOUT.split_once('\n').map(|(first, _)| first),
+    long_about = ABOUT,
     after_help = "Examples:\n  \
         predict office.state                                         all doors: their hours, and now\n  \
         predict office.state --at \"Tue 17:10\"                        the doors, map and masks on Tuesday at ten past five\n  \
@@ -161,7 +164,7 @@ fn run(args: &Args) -> Result<ExitCode, Failure> {
     }
     let expiry_h = forecast.expiry().map(|expiry_s| expiry_s / 3600.0);
     let title = "Hours for which a look counts";
-    write_map(folder.unfinished(), "expiry", (Layer::Expiry, title), &forecast, &expiry_h)?;
+    write_map(folder.unfinished(), "expiry", (Layer::Expiry, title), &forecast, &expiry_h, &[])?;
     if let Some(graph) = graph {
         write_file(&folder.unfinished().join(GRAPH), |file| writeln!(file, "{graph:#}"))?;
     }
@@ -210,7 +213,7 @@ fn doors(args: &Args, forecast: &Forecast, times_s: &[f64]) -> anyhow::Result<Ve
 fn write_time(folder: &Path, suffix: &str, forecast: &Forecast, time_s: f64) -> Result<(), Failure> {
     let (name, map) = (format!("predicted{suffix}"), forecast.map(time_s));
     let title = format!("P(blocked), {}", moment::text(time_s, forecast));
-    write_map(folder, &name, (Layer::PREDICTED[0], &title), forecast, &map)?;
+    write_map(folder, &name, (Layer::PREDICTED[0], &title), forecast, &map, &place::door_lines(forecast))?;
     let percents = map.map(|value| if value.is_nan() { 0 } else { (100.0 * value).round() as u8 });
     ros_map::write_mask(folder, &name, &percents)?;
     for (name, mask) in MASKS.iter().zip(forecast.masks(time_s)) {
@@ -226,9 +229,10 @@ fn write_map(
     (layer, title): (Layer, &str),
     forecast: &Forecast,
     values: &Grid<f64>,
+    doors: &[NamedLine],
 ) -> Result<(), Failure> {
     let picture = folder.join(format!("{name}.png"));
-    draw_values(&picture, (layer, title), forecast.mapper(), values).context("cannot draw the map")?;
+    draw_values(&picture, (layer, title), forecast.mapper(), values, doors).context("cannot draw the map")?;
     raster::write_values(&folder.join(format!("{name}.npy")), values)?;
     Ok(())
 }

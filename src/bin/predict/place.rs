@@ -9,6 +9,7 @@ use nalgebra::Point2;
 use results::numbers::percent;
 use serde::Serialize;
 use survey::{Forecast, NEAR_M};
+use viewer::pictures::NamedLine;
 
 /// The looks at a place are counted by half hours, s.
 const HALF_HOUR_S: f64 = 1800.0;
@@ -216,6 +217,19 @@ impl Place {
         });
         lines
     }
+}
+
+/// The closed leaves of the doors, each with its name, the number of its place, or its own number.
+pub(crate) fn door_lines(forecast: &Forecast) -> Vec<NamedLine> {
+    let line = |(id, door): (u32, &Door)| {
+        let reported = forecast.places().iter().find(|place| place.kind.thing() == Some(id));
+        let name = match reported {
+            Some(place) => place.name.clone().unwrap_or_else(|| format!("place {}", place.number)),
+            None => format!("door {id}"),
+        };
+        NamedLine { ends: door.closed.ends, name }
+    };
+    forecast.doors().map(line).collect()
 }
 
 /// A place as it is called in the report.

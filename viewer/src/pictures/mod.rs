@@ -3,6 +3,7 @@
 
 mod film;
 mod ground;
+mod names;
 mod panel;
 mod plan;
 mod trajectory;
@@ -14,6 +15,7 @@ use crate::scene::{Scene, TimeUnit};
 use crate::view::Trail;
 use interfaces::Grid;
 use mapper::Mapper;
+use nalgebra::Point2;
 use panel::Panel;
 use results::drawing::{Area, Canvas, PictureError};
 use results::output::make_folder;
@@ -86,7 +88,16 @@ pub fn draw_plan(path: &Path, scene: &Scene) -> Result<(), PictureError> {
     Ok(picture.write(path)?)
 }
 
-/// Draws a layer of the map with other values, to the PNG file `path`; NaN is drawn as what does not change.
+/// A line on a map with a name beside it, as the leaf of a door.
+#[derive(Clone, Debug)]
+pub struct NamedLine {
+    /// Its ends, m.
+    pub ends: [Point2<f64>; 2],
+    /// The name.
+    pub name: String,
+}
+
+/// Draws a layer of the map with other values, and named lines on it, to the PNG file `path`; NaN is drawn as what does not change.
 ///
 /// # Errors
 ///
@@ -96,13 +107,15 @@ pub fn draw_values(
     (layer, title): (Layer, &str),
     mapper: &Mapper,
     values: &Grid<f64>,
+    lines: &[NamedLine],
 ) -> Result<(), PictureError> {
     let unit = TimeUnit::Second;
     let panel = Panel::of_layer(mapper.frame(), unit);
     let classes =
         layer.classes_of(mapper, unit, |index| Some(values.cells()[index]).filter(|value| !value.is_nan()));
     let picture = draw(layer.name(), panel.size(), |area| {
-        panel.classes(area, (layer, title), &classes, unit).map(drop)
+        let chart = panel.classes(area, (layer, title), &classes, unit)?;
+        names::draw(&panel, area, &chart, lines)
     })?;
     Ok(picture.write(path)?)
 }

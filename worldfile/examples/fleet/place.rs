@@ -76,7 +76,7 @@ fn text(wish: &Wish) -> String {
     }
     for (robot, [x, y, heading_deg]) in starts(wish).into_iter().enumerate() {
         // Robot 1 drives a circle, the others wander.
-        let behaviour = if wish.sonars > 0 {
+        let behavior = if wish.sonars > 0 {
             "kind = \"driven\""
         } else if robot == 1 {
             "kind = \"circle\"\nspeed_mps = 0.4\nturn_radius_m = 0.8"
@@ -88,7 +88,7 @@ fn text(wish: &Wish) -> String {
             "\n[[robot]]\nname = \"robot {robot}\"\n{}\npose_m = [{x:?}, {y:?}]\nheading_deg = {heading_deg:?}\n\n\
              [robot.drive]\nmax_linear_mps = 0.5\nmax_angular_degps = 120.0\n\
              max_linear_acceleration_mps2 = 1.0\nmax_angular_acceleration_degps2 = 360.0\n\n\
-             [robot.laser]\nbeams = {}\nrange_max_m = 10.0\nrate_hz = 10.0\n\n{}[robot.behaviour]\n{behaviour}\n",
+             [robot.laser]\nbeams = {}\nrange_max_m = 10.0\nrate_hz = 10.0\n\n{}[robot.behavior]\n{behavior}\n",
             body(wish.corners),
             wish.rays,
             ring(wish.sonars)

@@ -225,7 +225,7 @@ fn apart(robots: &[(&Table<'_>, RobotSpec)]) {
 /// The world of a fleet in which exactly one robot is driven; `root` is the table that describes the fleet.
 pub(super) fn world(root: &Table<'_>, fleet: FleetSpec) -> Option<WorldSpec> {
     let robots = root.tables("robot", robot::KEYS);
-    let kind = |robot: &Table<'_>| Some(robot.table("behaviour", behavior::KEYS)?.at("kind"));
+    let kind = |robot: &Table<'_>| Some(robot.table("behavior", behavior::KEYS)?.at("kind"));
     let kinds: Vec<_> = robots.iter().filter_map(kind).collect();
     let help = "exactly one robot has `kind = \"driven\"`: the one that explores";
     let world = WorldSpec::new(fleet).map_err(|error| match error {

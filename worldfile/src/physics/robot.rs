@@ -16,7 +16,7 @@ use sim::physics::{
 };
 
 pub(super) const KEYS: &str = "name, radius_m, footprint_m, mass_kg, pose_m, heading_deg, drive, odometry, laser, \
-                               bumper, sonar, fiducial, tag, behaviour, patrol";
+                               bumper, sonar, fiducial, tag, behavior, patrol";
 
 /// The limits by which a behavior is judged if those of the drive are invalid: nothing is too fast for them.
 const BOUNDLESS: DriveLimits = DriveLimits {
@@ -51,7 +51,7 @@ pub(super) fn robot(table: &Table<'_>, space: &Space) -> Option<RobotSpec> {
         drive: drive.as_ref().unwrap_or(&BOUNDLESS),
         space,
     };
-    let behavior = table.table("behaviour", behavior::KEYS).and_then(|table| driver.behavior(&table));
+    let behavior = table.table("behavior", behavior::KEYS).and_then(|table| driver.behavior(&table));
     let patrol = patrol(table, called, space, &behavior);
     let ((body, pose), (laser, more_lasers)) = (body?, lasers?);
     table.sound(RobotSpec {

@@ -55,7 +55,7 @@ pub fn to_toml(spec: &FleetSpec) -> Option<String> {
         table("\n[[robot]]\n", body(robot)?);
         table("\n[robot.drive]\n", drive(robot)?);
         table("\n[robot.laser]\n", laser(&robot.laser)?);
-        table("\n[robot.behaviour]\n", behavior(&robot.behavior)?);
+        table("\n[robot.behavior]\n", behavior(&robot.behavior)?);
         if let Some(day) = &robot.patrol {
             table("\n[robot.patrol]\n", patrol(day));
         }

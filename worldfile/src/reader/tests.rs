@@ -16,7 +16,7 @@ fn robot(name: &str, keys: &str) -> String {
          [robot.drive]\nmax_linear_mps = 0.5\nmax_angular_degps = 90.0\n\
          max_linear_acceleration_mps2 = 1.0\nmax_angular_acceleration_degps2 = 360.0\n\
          [robot.laser]\nbeams = 360\nrange_max_m = 10.0\nrate_hz = 10.0\n\
-         [robot.behaviour]\nkind = \"standing\"\n"
+         [robot.behavior]\nkind = \"standing\"\n"
     )
 }
 
@@ -215,7 +215,7 @@ name = "a"
 radius_m = 100.0
 pose_m = [1.0, 1.0]
 heading_deg = 1000.0
-behaviour = { kind = "wander", speed_mps = 100.0 }
+behavior = { kind = "wander", speed_mps = 100.0 }
 drive = { max_linear_mps = -0.5, max_angular_degps = 90.0, max_linear_acceleration_mps2 = -1.0, max_angular_acceleration_degps2 = 360.0 }
 laser = { beams = 0, range_max_m = -5.0, rate_hz = 0.0 }
 bumper = { sectors = 0 }

@@ -14,6 +14,9 @@ use sim::physics::WorldSpec;
 /// The width of the legend beside a plan, in pixels of the finished picture.
 const LEGEND: i32 = 190;
 const ROW: i32 = 24;
+/// The entries of the legend below several plans in a row, and the width of one.
+const ENTRIES: i32 = 3;
+const ENTRY: i32 = 190;
 /// The maximum number of drawn worlds.
 const WORLDS: usize = 12;
 
@@ -82,24 +85,47 @@ pub(super) fn one<DB: DrawingBackend>(sheet: &Sheet<DB>, pen: &Pen, world: &Plan
     let (left, _) = below.split_horizontally(width as i32 - pen.px(LEGEND + 16));
     let right = world.draw(&left, pen)?;
     let (_, legend) = below.split_horizontally(right + pen.px(14));
-    let mut middle = 12;
-    for (mark, text) in world.legend() {
-        let center = (pen.px(11), pen.px(middle));
-        match mark {
-            Mark::Square(color) => pen.bar(&legend, [4, middle - 7], [14, 14], &color)?,
-            Mark::Dot => dot(&legend, pen, center, 5)?,
-            Mark::Ring => {
-                legend.draw(&Circle::new(center, pen.px(7), pen.line(ink(CURIOUS), 2))).map_err(why)?;
-            }
-            Mark::Nothing => {}
-        }
-        pen.write(&legend, (26, middle), HPos::Left, 15, &text)?;
-        middle += ROW;
+    for (row, entry) in (0..).zip(world.legend()) {
+        draw_entry(&legend, pen, (0, 12 + row * ROW), &entry)?;
     }
     Ok(())
 }
 
-/// Draws worlds side by side, as many as fit.
+/// Draws an entry of a legend; `at` is the middle of its left side.
+fn draw_entry<DB: DrawingBackend>(
+    sheet: &Sheet<DB>,
+    pen: &Pen,
+    (left, middle): (i32, i32),
+    (mark, text): &Entry,
+) -> Result<(), String> {
+    let center = (pen.px(left + 11), pen.px(middle));
+    match mark {
+        Mark::Square(color) => pen.bar(sheet, [left + 4, middle - 7], [14, 14], color)?,
+        Mark::Dot => dot(sheet, pen, center, 5)?,
+        Mark::Ring => sheet.draw(&Circle::new(center, pen.px(7), pen.line(ink(CURIOUS), 2))).map_err(why)?,
+        Mark::Nothing => {}
+    }
+    pen.write(sheet, (left + 26, middle), HPos::Left, 15, text)
+}
+
+/// The entries of a legend for several worlds: what is drawn in any of them.
+fn common_legend(worlds: &[Plan]) -> Vec<Entry> {
+    let mut entries: Vec<Entry> = Vec::new();
+    for world in worlds {
+        let own = match world {
+            Plan::Grid(world) => grid::short_legend(world),
+            Plan::Physics(world) => physics::legend(world),
+        };
+        for (place, entry) in own.into_iter().enumerate() {
+            if !entries.iter().any(|(_, known)| *known == entry.1) {
+                entries.insert(place.min(entries.len()), entry);
+            }
+        }
+    }
+    entries
+}
+
+/// Draws worlds side by side, as many as fit, with a legend below.
 pub(super) fn many<DB: DrawingBackend>(sheet: &Sheet<DB>, pen: &Pen, worlds: &[Plan]) -> Result<(), String> {
     let title = match worlds.len() {
         0 => return Ok(()),
@@ -107,8 +133,16 @@ pub(super) fn many<DB: DrawingBackend>(sheet: &Sheet<DB>, pen: &Pen, worlds: &[P
         _ => "The worlds".into(),
     };
     pen.write(sheet, (16, 18), HPos::Left, 17, &title)?;
-    let below = sheet.margin(pen.px(34), pen.px(8), pen.px(12), 0);
     let shown = worlds.len().min(WORLDS);
+    let entries = common_legend(&worlds[..shown]);
+    let height = ROW * ((entries.len() as i32 + ENTRIES - 1) / ENTRIES);
+    let (_, sheet_height) = sheet.dim_in_pixel();
+    let (plans, legend) = sheet.split_vertically(sheet_height as i32 - pen.px(height + 6));
+    for (number, entry) in (0..).zip(&entries) {
+        let at = (12 + number % ENTRIES * ENTRY, ROW / 2 + number / ENTRIES * ROW);
+        draw_entry(&legend, pen, at, entry)?;
+    }
+    let below = plans.margin(pen.px(34), pen.px(4), pen.px(12), 0);
     let columns = match shown {
         ..=2 => shown,
         3..=6 => 3,

@@ -189,17 +189,25 @@ impl Page<'_> {
         )
     }
 
-    /// A time of the map, in words.
+    /// A time of the map, in words. Between logs without a date, an unknown time has passed: their times count each from its own
+    /// first scan.
     pub(super) fn time(&self, time_s: f64) -> String {
-        let after = || match time_s {
-            time_s if time_s < 3600.0 => format!(
-                "{:.0} min {:02.0} s after the first scan",
-                (time_s / 60.0).floor(),
-                (time_s % 60.0).floor()
-            ),
-            time_s => format!("{} after the first scan", length_of(time_s)),
+        if let Some(begin_s) = self.summary.begin_s {
+            return date(begin_s + time_s);
+        }
+        let begins_s = &self.summary.log_begins_s;
+        let log = begins_s.partition_point(|begin_s| *begin_s <= time_s).saturating_sub(1);
+        let of_log = match begins_s.len() {
+            ..=1 => String::new(),
+            _ => format!(" of {}", self.summary.logs[log]),
         };
-        self.summary.begin_s.map_or_else(after, |begin_s| date(begin_s + time_s))
+        let after = match time_s - begins_s.get(log).copied().unwrap_or_default() {
+            since_s if since_s < 3600.0 => {
+                format!("{:.0} min {:02.0} s", (since_s / 60.0).floor(), (since_s % 60.0).floor())
+            }
+            since_s => length_of(since_s),
+        };
+        format!("{after} after the first scan{of_log}")
     }
 
     /// The picture of a place.

@@ -137,7 +137,10 @@ impl Page<'_> {
     fn clock(&self) -> &'static str {
         match self.summary.begin_s {
             Some(_) => "Usual hours follow once a place is known for two weeks.",
-            None => "The logs have no date: times count from the first scan.",
+            None if self.summary.logs.len() > 1 => {
+                "The logs have no date, and the time between them is not known: times count from the first scan of each log."
+            }
+            None => "The log has no date: times count from the first scan.",
         }
     }
 

@@ -40,7 +40,7 @@ pub(super) struct Driver<'a> {
 impl Driver<'_> {
     pub(super) fn behavior(&self, table: &Table<'_>) -> Option<BehaviorSpec> {
         let kind = table.needed("kind")?.text()?;
-        let known = kind_of(table, kind, &KINDS, "behaviour")?;
+        let known = kind_of(table, kind, &KINDS, "behavior")?;
         if let DriveKind::Car { .. } = self.drive.kind
             && !["driven", "standing", "circle"].contains(&kind)
         {
@@ -73,9 +73,9 @@ impl Driver<'_> {
             return Some(());
         }
         let kind = table.get("kind")?;
-        let what = format!("the behaviour of `{}` has no `{key}`", self.name);
+        let what = format!("the behavior of `{}` has no `{key}`", self.name);
         let help = format!("a robot that is `{}` needs a line `{key} = …`", kind.text()?);
-        table.error(&what, (kind.span(), "this behaviour"), &[], &help)
+        table.error(&what, (kind.span(), "this behavior"), &[], &help)
     }
 
     fn speed_mps(&self, table: &Table<'_>) -> Option<f64> {

@@ -34,7 +34,7 @@ beams = 360
 range_max_m = 10.0
 rate_hz = 10.0
 
-[robot.behaviour]
+[robot.behavior]
 kind = "driven"
 
 [[robot]]
@@ -53,7 +53,7 @@ beams = 180
 range_max_m = 5.0
 rate_hz = 10.0
 
-[robot.behaviour]
+[robot.behavior]
 kind = "wall_patrol"
 from_m = [2.5, 0.5]
 to_m = [2.5, 2.5]
@@ -193,7 +193,7 @@ fn robots() {
                 "kind = \"driven\"",
             ),
             ("driven robot with a patrol", "kind = \"driven\"", "kind = \"driven\"\nspeed_mps = 0.3"),
-            ("unknown behaviour", "kind = \"driven\"", "kind = \"dance\""),
+            ("unknown behavior", "kind = \"driven\"", "kind = \"dance\""),
             ("no robots", all_robots, ""),
         ],
     );
@@ -218,7 +218,7 @@ fn patrols() {
 }
 
 #[test]
-fn behaviours() {
+fn behaviors() {
     let kind = "kind = \"driven\"";
     let drives = |keys: &str| format!("kind = {keys}");
     let waypoints = |keys: &str| format!("kind = \"waypoints\"\nspeed_mps = 0.3\n{keys}");
@@ -237,7 +237,7 @@ fn behaviours() {
         ("waypoints repeated oddly", waypoints("points_m = [[1.0, 2.0]]\nrepeat = \"often\"")),
     ];
     let cases: Vec<_> = cases.iter().map(|(case, to)| (*case, kind, to.as_str())).collect();
-    compare("behaviours", &cases);
+    compare("behaviors", &cases);
 }
 
 #[test]

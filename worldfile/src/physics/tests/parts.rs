@@ -138,7 +138,7 @@ fn footprints() {
 
 #[test]
 fn senses() {
-    let at = "[robot.behaviour]\nkind = \"driven\"";
+    let at = "[robot.behavior]\nkind = \"driven\"";
     let with = |keys: &str| format!("{keys}\n\n{at}");
     let sonar = "[[robot.sonar]]\ncone_deg = 30.0\nrange_max_m = 3.0\nrate_hz = 10.0";
     let cases = [
@@ -151,7 +151,7 @@ fn senses() {
             "finder off the robot",
             with("[robot.fiducial]\nrange_max_m = 3.0\nrate_hz = 10.0\nmount_m = [2.0, 0.0]"),
         ),
-        ("wrong tag", with("").replacen("[robot.behaviour]", "[robot.behaviour]\ntag = 3", 1)),
+        ("wrong tag", with("").replacen("[robot.behavior]", "[robot.behavior]\ntag = 3", 1)),
     ];
     let cases: Vec<_> = cases.iter().map(|(case, to)| (*case, at, to.as_str())).collect();
     compare("senses", &cases);

@@ -136,7 +136,7 @@ fn a_dock_in_a_room_with_two_doors_is_reached_through_one_of_them() {
             "name = \"two doors\"\nstarts = \"Mon 0:00\"\n[map]\nsize_m = [8.0, 6.0]\ncell_m = 0.05\n{walls}{doors}\
              [[robot]]\nname = \"curious\"\nradius_m = 0.2\npose_m = {at:?}\n[robot.drive]\nmax_linear_mps = 0.8\n\
              max_angular_degps = 150.0\nmax_linear_acceleration_mps2 = 1.5\nmax_angular_acceleration_degps2 = 600.0\n\
-             [robot.laser]\nbeams = 90\nrange_max_m = 10.0\nrate_hz = 10.0\n[robot.behaviour]\nkind = \"driven\"\n\
+             [robot.laser]\nbeams = 90\nrange_max_m = 10.0\nrate_hz = 10.0\n[robot.behavior]\nkind = \"driven\"\n\
              [robot.patrol]\nshare = 0.05\nbattery_s = 300.0\ndock_m = [4.0, 1.5]\n"
         );
         let events = (PathBuf::from("door.csv"), b"time_s,state\n0,0\n600,1\n".to_vec());

@@ -155,8 +155,8 @@ fn lasers_look_each_at_its_rate_and_from_its_place() {
     let with = |lasers: &str| {
         let text = robot("one", [3.0, 3.0], 0.0, "kind = \"driven\"");
         let (start, rest) = text.split_once("[robot.laser]").unwrap();
-        let (_, end) = rest.split_once("[robot.behaviour]").unwrap();
-        house(&[format!("{start}{lasers}[robot.behaviour]{end}")], "")
+        let (_, end) = rest.split_once("[robot.behavior]").unwrap();
+        house(&[format!("{start}{lasers}[robot.behavior]{end}")], "")
     };
     let mut fleet = Fleet::new(&with(&format!("{laser}{more}")), 7);
     let mut times: Vec<Vec<f64>> = vec![Vec::new(); 3];

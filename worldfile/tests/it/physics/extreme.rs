@@ -48,7 +48,7 @@ fn robot(name: usize, step_s: f64, chance: &mut Chance) -> String {
         "[[robot]]\nname = \"{name}\"\n{outline}\nmass_kg = {:?}\npose_m = {:?}\nheading_deg = {:?}\n\
          [robot.drive]\n{drive}\nmax_linear_mps = {fastest_mps:?}\nmax_angular_degps = {:?}\n\
          max_linear_acceleration_mps2 = 100.0\nmax_angular_acceleration_degps2 = 5000.0\n\
-         [robot.laser]\nbeams = 2\nrange_max_m = 5.0\nrate_hz = 10.0\n[robot.behaviour]\nkind = \"driven\"\n",
+         [robot.laser]\nbeams = 2\nrange_max_m = 5.0\nrate_hz = 10.0\n[robot.behavior]\nkind = \"driven\"\n",
         chance.scale(0.001, 1e5),
         chance.at(),
         chance.between(0.0, 360.0),
@@ -159,7 +159,7 @@ fn a_light_robot_stays_on_its_side_of_a_thin_wall() {
     let robot = |name: &str, radius_m: f64, mass_kg: f64, x_m: f64| {
         format!(
             "[[robot]]\nname = \"{name}\"\nradius_m = {radius_m:?}\nmass_kg = {mass_kg:?}\npose_m = [{x_m:?}, 2.0]\n\
-             behaviour = {{ kind = \"driven\" }}\n\
+             behavior = {{ kind = \"driven\" }}\n\
              drive = {{ max_linear_mps = {:?}, max_angular_degps = 90.0, max_linear_acceleration_mps2 = 5.0, max_angular_acceleration_degps2 = 360.0 }}\n\
              laser = {{ beams = 2, range_max_m = 5.0, rate_hz = 10.0 }}\n",
             if name == "a" { 0.8 } else { 0.3 },

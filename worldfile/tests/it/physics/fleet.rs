@@ -9,9 +9,9 @@ const ROBOT: &str = "radius_m = 0.2\n[robot.drive]\nmax_linear_mps = 0.5\nmax_an
     [robot.laser]\nbeams = 90\nrange_max_m = 10.0\nrate_hz = 10.0\nnoise_std_m = 0.005\n";
 
 /// A robot of the file.
-pub(super) fn robot(name: &str, pose_m: [f64; 2], heading_deg: f64, behaviour: &str) -> String {
+pub(super) fn robot(name: &str, pose_m: [f64; 2], heading_deg: f64, behavior: &str) -> String {
     let place = format!("pose_m = {pose_m:?}\nheading_deg = {heading_deg:?}\n");
-    format!("[[robot]]\nname = \"{name}\"\n{place}{ROBOT}[robot.behaviour]\n{behaviour}\n")
+    format!("[[robot]]\nname = \"{name}\"\n{place}{ROBOT}[robot.behavior]\n{behavior}\n")
 }
 
 /// The house of the four rooms with these robots and no others.

@@ -43,7 +43,7 @@ beams = 4
 range_max_m = 10.0
 rate_hz = 10.0
 
-[robot.behaviour]
+[robot.behavior]
 kind = "driven"
 "#;
 

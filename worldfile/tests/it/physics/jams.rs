@@ -18,7 +18,7 @@ fn hall(step_s: f64, things: &str) -> Fleet {
 /// A fast robot with its heading along x.
 fn robot(name: &str, body: &str, mass_kg: f64, at: [f64; 2]) -> String {
     format!(
-        "[[robot]]\nname = \"{name}\"\n{body}\nmass_kg = {mass_kg:?}\npose_m = {at:?}\nbehaviour = {{ kind = \"driven\" }}\n\
+        "[[robot]]\nname = \"{name}\"\n{body}\nmass_kg = {mass_kg:?}\npose_m = {at:?}\nbehavior = {{ kind = \"driven\" }}\n\
          drive = {{ max_linear_mps = 1.0, max_angular_degps = 180.0, max_linear_acceleration_mps2 = 5.0, max_angular_acceleration_degps2 = 720.0 }}\n\
          laser = {{ beams = 2, range_max_m = 5.0, rate_hz = 10.0 }}\n"
     )

@@ -70,7 +70,7 @@ const GOOD: &[(&str, &str, &str)] = &[
         "every_s = 10.0\ndistance_m = 1.0\nturn_deg = 10.0",
     ),
     ("`robot.laser`", "robot.laser", "beams = 10\nrange_max_m = 5.0\nrate_hz = 10.0"),
-    ("`robot.behaviour`", "robot.behaviour", "kind = \"driven\""),
+    ("`robot.behavior`", "robot.behavior", "kind = \"driven\""),
     ("`robot.bumper`", "robot.bumper", "sectors = 4"),
     ("`robot.sonar`", "robot.sonar", "cone_deg = 30.0\nrange_max_m = 5.0\nrate_hz = 10.0"),
     ("`robot.fiducial`", "robot.fiducial", "range_max_m = 5.0\nrate_hz = 10.0"),
@@ -80,9 +80,9 @@ const GOOD: &[(&str, &str, &str)] = &[
 fn fit(heading: &str, key: &str, good: &str) -> String {
     let kind = |kind: &str| format!("kind = \"{kind}\"\nspeed_mps = 0.3");
     match (heading, key) {
-        ("`robot.behaviour`", "clearance_m") => kind("wander"),
-        ("`robot.behaviour`", "turn_radius_m" | "direction") => kind("circle") + "\nturn_radius_m = 1.0",
-        ("`robot.behaviour`", "repeat") => kind("waypoints") + "\npoints_m = [[2.0, 2.0]]",
+        ("`robot.behavior`", "clearance_m") => kind("wander"),
+        ("`robot.behavior`", "turn_radius_m" | "direction") => kind("circle") + "\nturn_radius_m = 1.0",
+        ("`robot.behavior`", "repeat") => kind("waypoints") + "\npoints_m = [[2.0, 2.0]]",
         (_, "max_left_mps" | "max_left_acceleration_mps2") => format!("kind = \"omni\"\n{good}"),
         (_, "wheelbase_m" | "max_steer_deg") => format!("kind = \"car\"\nwheelbase_m = 1.0\n{good}"),
         (_, "slide_m") => good.replace("hinged", "sliding"),

@@ -69,7 +69,7 @@ pub(super) fn world(seed: u64) -> FleetSpec {
                 "[[robot]]\nname = \"{thing}\"\n{outline}\nmass_kg = {:?}\npose_m = {at:?}\nheading_deg = {:?}\n\
                  [robot.drive]\nkind = \"{drive}\nmax_linear_mps = {fastest_mps:?}\nmax_angular_degps = {:?}\n\
                  max_linear_acceleration_mps2 = {:?}\nmax_angular_acceleration_degps2 = {:?}\n\
-                 [robot.laser]\nbeams = 24\nrange_max_m = 5.0\nrate_hz = 10.0\n[robot.behaviour]\n{}\n",
+                 [robot.laser]\nbeams = 24\nrange_max_m = 5.0\nrate_hz = 10.0\n[robot.behavior]\n{}\n",
                 chance.between(0.1, 20.0),
                 chance.between(0.0, 360.0),
                 chance.between(10.0, 400.0),

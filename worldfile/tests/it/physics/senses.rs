@@ -7,11 +7,11 @@ use interfaces::LaserReading;
 const SENSES: &str = "[robot.bumper]\nsectors = 4\nfov_deg = 180.0\n\
     [[robot.sonar]]\ncone_deg = 30.0\nrange_max_m = 5.0\nrate_hz = 10.0\n\
     [[robot.sonar]]\ncone_deg = 30.0\nrange_max_m = 5.0\nrate_hz = 5.0\nmount_deg = 90.0\nnoise_std_m = 0.02\n\
-    [robot.fiducial]\nfov_deg = 180.0\nrange_max_m = 5.0\nrate_hz = 10.0\n[robot.behaviour]";
+    [robot.fiducial]\nfov_deg = 180.0\nrange_max_m = 5.0\nrate_hz = 10.0\n[robot.behavior]";
 
 /// A robot at [1, 2] with all sensors, and further keys.
 fn place(more: &[String], things: &str) -> FleetSpec {
-    let one = robot("one", [1.0, 2.0], 0.0, "kind = \"driven\"").replace("[robot.behaviour]", SENSES);
+    let one = robot("one", [1.0, 2.0], 0.0, "kind = \"driven\"").replace("[robot.behavior]", SENSES);
     let robots: Vec<String> = [one].into_iter().chain(more.iter().cloned()).collect();
     house(&robots, things)
 }
@@ -93,8 +93,8 @@ fn a_flat_touch_presses_every_bumper_along_it_until_they_part() {
             .replace("[robot.drive]", "[robot.drive]\nkind = \"omni\"\nmax_left_mps = 0.5")
             .replace("radius_m = 0.2", "footprint_m = [[-0.2, -0.2], [0.2, -0.2], [0.2, 0.2], [-0.2, 0.2]]");
         // Three sectors of 32° each, right, middle and left; the front is nearly as wide as all of them.
-        let bumper = "[robot.bumper]\nsectors = 3\nfov_deg = 96.0\n[robot.behaviour]";
-        house(&[robot.replace("[robot.behaviour]", bumper)], "")
+        let bumper = "[robot.bumper]\nsectors = 3\nfov_deg = 96.0\n[robot.behavior]";
+        house(&[robot.replace("[robot.behavior]", bumper)], "")
     };
     let drive =
         |linear_mps| move |_: &RobotView<'_>, _: &LaserReading| Twist { linear_mps, angular_radps: 0.0 };
@@ -168,7 +168,7 @@ fn a_snapshot_knows_what_was_sensed() {
 /// A reading is computed when it is first read, if at all: this never shows.
 #[test]
 fn readings_do_not_depend_on_which_readings_were_read() {
-    let driven = robot("one", [1.0, 2.0], 0.0, "kind = \"driven\"").replace("[robot.behaviour]", SENSES);
+    let driven = robot("one", [1.0, 2.0], 0.0, "kind = \"driven\"").replace("[robot.behavior]", SENSES);
     let free = robot("free", [4.0, 2.0], 1.0, "kind = \"wander\"\nspeed_mps = 0.3");
     let robots = [driven, tagged("other", [2.0, 2.0], 1), free];
     let robots =

@@ -15,7 +15,7 @@ fn room(parts: &str, at_m: [f64; 2], heading_deg: f64, behavior: &str) -> FleetS
          radius_m = 0.2\nmass_kg = 15.0\npose_m = {at_m:?}\nheading_deg = {heading_deg:?}\n[robot.drive]\n\
          max_linear_mps = 0.8\nmax_angular_degps = 120.0\nmax_linear_acceleration_mps2 = 1.0\n\
          max_angular_acceleration_degps2 = 360.0\n[robot.laser]\nbeams = 90\nrange_max_m = 4.0\nrate_hz = 10.0\n\
-         [robot.behaviour]\nspeed_mps = 0.3\n{behavior}\n"
+         [robot.behavior]\nspeed_mps = 0.3\n{behavior}\n"
     );
     worldfile::physics::parse_fleet("room.toml", &text).unwrap_or_else(|error| panic!("{error}"))
 }

@@ -153,7 +153,7 @@ impl House {
             "[[robot]]\nname = \"{name}\"\nradius_m = {radius_m:?}\nmass_kg = 15.0\npose_m = {at:?}\n\
              heading_deg = {heading_deg:?}\n[robot.drive]\nmax_linear_mps = 0.8\nmax_angular_degps = 120.0\n\
              max_linear_acceleration_mps2 = 1.0\nmax_angular_acceleration_degps2 = 360.0\n\
-             [robot.laser]\nbeams = 90\nrange_max_m = 4.0\nrate_hz = 10.0\n[robot.behaviour]\nkind = {kind}\n"
+             [robot.laser]\nbeams = 90\nrange_max_m = 4.0\nrate_hz = 10.0\n[robot.behavior]\nkind = {kind}\n"
         )
     }
 

@@ -2,7 +2,11 @@
 //!
 //! A table is what is between `<!-- NAME WHICH -->` and `<!-- end -->`: the name is that of the program that makes it.
 
+pub mod layout;
+mod rows;
+
 use crate::paired_test;
+pub use rows::{Rows, columns_of, commit, write_rows};
 
 const END: &str = "<!-- end -->";
 
