@@ -77,7 +77,7 @@ impl GoalSettings {
 /// or after [`GoalSettings::max_goal_s`].
 ///
 /// The observation has two parts. `candidates`: one row of features per strategy. `state`: position, heading, time left, what
-/// is known, and the features of the paper's agent. The reward is that of [`Explore`](crate::Explore), summed over the step.
+/// is known, and the features of the paper's agent. `local_map` as in [`Explore`](crate::Explore), if it is shown. The reward is that of [`Explore`](crate::Explore), summed over the step.
 ///
 /// A strategy whose goal is not taken forgets it, and learns nothing from what the robot sees meanwhile. A policy whose
 /// index is always chosen therefore does what it does alone.
@@ -224,7 +224,10 @@ impl Task for ExploreGoals {
     fn parts(&self) -> Vec<Part> {
         let candidates = Part::new("candidates", vec![self.candidates.len(), FEATURES.len()]);
         let state = Part::new("state", vec![STATE_LEN]);
-        vec![Part { slices: FEATURES.to_vec(), ..candidates }, Part { slices: STATE.to_vec(), ..state }]
+        let mut parts =
+            vec![Part { slices: FEATURES.to_vec(), ..candidates }, Part { slices: STATE.to_vec(), ..state }];
+        parts.extend(self.explorer.place.local_map().map(|local| local.part()));
+        parts
     }
 
     fn info_names(&self) -> &'static [&'static str] {
@@ -253,7 +256,8 @@ impl Task for ExploreGoals {
     }
 
     fn observe(&mut self, observations: &mut [f32]) {
-        let (candidates, state) = observations.split_at_mut(self.candidates.len() * FEATURES.len());
+        let (candidates, rest) = observations.split_at_mut(self.candidates.len() * FEATURES.len());
+        let (state, local_map) = rest.split_at_mut(STATE_LEN);
         for (row, candidate) in candidates.chunks_mut(FEATURES.len()).zip(&self.candidates) {
             row.copy_from_slice(&candidate.features);
         }
@@ -275,6 +279,7 @@ impl Task for ExploreGoals {
             share(self.last_reward_per_s, 1.0),
         ];
         write_state(state, values);
+        explorer.write_local_map(local_map);
     }
 
     fn info(&self, info: &mut [f32]) {

@@ -1,5 +1,6 @@
 //! The worlds of exploring tasks, built once and shared.
 
+use crate::local_map::LocalMap;
 use crate::patches::Patches;
 use crate::task::TaskError;
 use evaluation::physics_trial;
@@ -59,6 +60,12 @@ pub struct ExploreSettings {
     pub error_every: u32,
     /// The number of readings from one refresh of the map in the observation to the next.
     pub map_every: u32,
+    /// Whether the observation has the part `local_map`: the map around the robot, in the robot's own frame.
+    pub shows_local_map: bool,
+    /// The cells of the local map, along each side.
+    pub local_map_cells: usize,
+    /// The side of a cell of the local map, m.
+    pub local_map_cell_m: f64,
     /// What earns a reward.
     pub reward: Reward,
     /// Where an episode begins.
@@ -81,6 +88,9 @@ impl Default for ExploreSettings {
             beams: Some(180),
             error_every: 50,
             map_every: 10,
+            shows_local_map: false,
+            local_map_cells: 32,
+            local_map_cell_m: 0.25,
             reward: Reward::Found,
             starts: Start::Anywhere,
             update_reward: 1.0,
@@ -102,6 +112,8 @@ impl ExploreSettings {
         check.within("max_steps", self.max_steps, 1.0..=1e9, "from 1 to 1000000000")?;
         check.within("error_every", self.error_every, 1.0..=1e9, "from 1 to 1000000000")?;
         check.within("map_every", self.map_every, 1.0..=1e9, "from 1 to 1000000000")?;
+        check.within("local_map_cells", self.local_map_cells as f64, 2.0..=256.0, "from 2 to 256")?;
+        check.within("local_map_cell_m", self.local_map_cell_m, 0.05..=2.0, "from 0.05 to 2")?;
         if let Some(beams) = self.beams {
             check.within("beams", beams as f64, 2.0..=1e4, "from 2 to 10000")?;
         }
@@ -202,6 +214,12 @@ impl ExplorePlace {
         let patches = Patches::covering(largest.iter());
         let houses = Houses { seeds, built: Mutex::default() };
         Ok(Self { settings, worlds: Worlds::Houses(houses), patches, beams: first.beams() })
+    }
+
+    /// The local map of the observation, if it has one.
+    pub(crate) fn local_map(&self) -> Option<LocalMap> {
+        let ExploreSettings { local_map_cells: cells, local_map_cell_m: cell_m, .. } = self.settings;
+        self.settings.shows_local_map.then_some(LocalMap { cells, cell_m })
     }
 
     /// The number of worlds.

@@ -201,6 +201,13 @@ impl Explorer {
         ]
     }
 
+    /// Writes the local map, the last part of an observation; nothing if it is not shown.
+    pub(crate) fn write_local_map(&self, layers: &mut [f32]) {
+        if let Some(local) = self.place.local_map() {
+            local.write(&self.robot.mapper, &self.reading.pose, layers);
+        }
+    }
+
     /// The area that is known, m².
     pub(crate) fn seen_m2(&self) -> f64 {
         self.episode.known as f64 * self.cell_m2()

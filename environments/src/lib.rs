@@ -28,6 +28,7 @@ mod explore;
 mod explore_goals;
 mod explore_place;
 mod explorer;
+mod local_map;
 mod memory;
 mod patches;
 mod picture;

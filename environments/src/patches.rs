@@ -11,7 +11,7 @@ const SAMPLES: usize = 2;
 const RECENCY_S: f64 = 60.0;
 
 /// The layers of [`Patches::write`].
-pub(crate) const LAYERS: usize = 4;
+pub(crate) const LAYERS: [(&str, usize); 4] = [("seen", 1), ("blocked", 1), ("age", 1), ("changed", 1)];
 
 /// A grid of patches that covers the largest of several maps.
 #[derive(Clone, Debug)]
@@ -33,7 +33,7 @@ impl Patches {
 
     /// The number of values of all layers.
     pub(crate) fn len(&self) -> usize {
-        LAYERS * self.rows * self.columns
+        LAYERS.len() * self.rows * self.columns
     }
 
     /// Writes four layers, row 0 at the lowest y, each with values from 0 to 1: the share of the patch that was seen,

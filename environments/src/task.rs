@@ -181,7 +181,8 @@ pub struct Part {
     pub name: &'static str,
     /// The shape, row-major.
     pub shape: Vec<usize>,
-    /// Names and lengths of slices along the last axis, one after the other; empty if the axis has no names.
+    /// Names and lengths of slices along the last axis, or along the first axis of a part with layers (three axes), one after
+    /// the other; empty if the axis has no names.
     pub slices: Vec<(&'static str, usize)>,
 }
 

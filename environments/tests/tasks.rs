@@ -64,12 +64,49 @@ fn alone_and_in_a_batch_on_any_number_of_threads_the_bits_are_the_same() {
     for (index, row) in together.iter().enumerate() {
         assert_eq!(run(tasks(1), index, 1, 150)[0], *row, "environment {index}");
     }
-    let place =
-        explore_place(ExploreSettings { max_steps: 25, beams: Some(60), ..ExploreSettings::default() });
-    let tasks = |count| (0..count).map(|_| Explore::new(&place).unwrap()).collect::<Vec<_>>();
-    let together = run(tasks(4), 0, 1, 60);
-    assert_eq!(run(tasks(4), 0, 2, 60), together);
-    assert_eq!(run(tasks(1), 2, 1, 60)[0], together[2]);
+    let mut lengths = Vec::new();
+    for shows_local_map in [false, true] {
+        let place = explore_place(ExploreSettings {
+            max_steps: 25,
+            beams: Some(60),
+            shows_local_map,
+            ..ExploreSettings::default()
+        });
+        let tasks = |count| (0..count).map(|_| Explore::new(&place).unwrap()).collect::<Vec<_>>();
+        let together = run(tasks(4), 0, 1, 60);
+        assert_eq!(run(tasks(4), 0, 2, 60), together);
+        assert_eq!(run(tasks(1), 2, 1, 60)[0], together[2]);
+        lengths.push(together[0].len() / 60);
+    }
+    assert_eq!(lengths[1] - lengths[0], 7 * 32 * 32);
+}
+
+#[test]
+fn a_local_map_changes_nothing_else() {
+    let results = [false, true].map(|shows_local_map| {
+        let settings = ExploreSettings { beams: Some(60), shows_local_map, ..ExploreSettings::default() };
+        let mut batch = Batch::new(vec![Explore::new(&explore_place(settings)).unwrap()]);
+        batch.reset(&[5]).unwrap();
+        (0..40).map(|step| batch.step(&action(0, step), &[9]).unwrap()).collect::<Vec<_>>()
+    });
+    let [without, with] = results;
+    for (without, with) in without.iter().zip(&with) {
+        let (same, local) = with.observations.split_at(without.observations.len());
+        assert_eq!(
+            (same, &with.rewards, &with.info),
+            (&without.observations[..], &without.rewards, &without.info)
+        );
+        assert!(local.iter().all(|value| (0.0..=1.0).contains(value)) && local.iter().sum::<f32>() > 100.0);
+    }
+    let refused = |settings| ExplorePlace::of_houses(vec![1], settings).err().unwrap().to_string();
+    assert_eq!(
+        refused(ExploreSettings { local_map_cells: 1, ..ExploreSettings::default() }),
+        "exploring task setting `local_map_cells` must be from 2 to 256, not 1"
+    );
+    assert_eq!(
+        refused(ExploreSettings { local_map_cell_m: 0.01, ..ExploreSettings::default() }),
+        "exploring task setting `local_map_cell_m` must be from 0.05 to 2, not 0.01"
+    );
 }
 
 #[test]
@@ -94,7 +131,8 @@ fn a_snapshot_goes_on_bit_by_bit() {
         let place = drive_place(DriveSettings { shows_memory, ..DriveSettings::default() });
         check(Batch::new(vec![Drive::new(&place)]), Batch::new(vec![Drive::new(&place)]));
     }
-    let place = explore_place(ExploreSettings { beams: Some(60), ..ExploreSettings::default() });
+    let settings = ExploreSettings { beams: Some(60), shows_local_map: true, ..ExploreSettings::default() };
+    let place = explore_place(settings);
     let one = || Batch::new(vec![Explore::new(&place).unwrap()]);
     check(one(), one());
 }
@@ -252,7 +290,13 @@ fn golden_hashes() {
 }
 
 fn goal_tasks(count: usize, max_steps: u32) -> Vec<ExploreGoals> {
-    let settings = ExploreSettings { max_steps, beams: Some(60), ..ExploreSettings::default() };
+    let settings = ExploreSettings {
+        max_steps,
+        beams: Some(60),
+        shows_local_map: true,
+        local_map_cells: 16,
+        ..ExploreSettings::default()
+    };
     let place = Arc::new(ExplorePlace::of_houses((100..120).collect(), settings).unwrap());
     let goals = Arc::new(GoalSettings::default());
     (0..count).map(|_| ExploreGoals::new(&place, &goals).unwrap()).collect()

@@ -15,17 +15,25 @@
     shape (6,): position (shares of the size of the world), cosine and sine of the heading, linear and angular velocity
     (shares of the maximum); ``map``, shape (4, rows, columns), patches of 0.5 m, row 0 at the lowest y: share that was
     seen, share that is blocked, how long ago it was seen, probability of a change since then. The map is refreshed at
-    every tenth step. Action as above. Reward: the changes that are found in cells that were out of view for 8 s or more,
+    every tenth step. With ``shows_local_map=True``, ``local_map``, shape (7, 32, 32), from 0 to 1, of every step: the map around
+    the robot in its own frame, 32 x 32 cells (``local_map_cells``) of 0.25 m (``local_map_cell``). Columns go ahead, rows go to
+    the left: row 0 is at the right, column 0 behind, and the robot is in the middle. Layers: share that is free, blocked,
+    unknown, and frontier (unknown beside a free cell of the map); how long ago it was seen (1 - e^(-time / 60 s); 1 where never
+    seen); probability of a change since then; learned rate of change r, as r / (r + 0.01 Hz). Beyond the map all are 0.
+    Action as above. Reward: the changes that are found in cells that were out of view for 8 s or more,
     per cell of the robot's width, 0.2 per square meter that becomes known, -0.5 per collision: who stands still earns
     next to nothing. The episode is truncated after 3000 steps of 0.1 s. It begins anywhere in one of ``houses``.
 
 ``ExploreGoalsEnv`` and ``ExploreGoalsVectorEnv``
     The same robot, which drives by itself: the action, ``Discrete``, is the number of the strategy whose goal is taken.
     Observation, a dict: ``candidates``, shape (strategies, 9), from 0 to 1: what the goal of each strategy promises;
-    ``state``, shape (9,). A step ends when the goal is finished, or after 45 s; the reward is that of its readings.
+    ``state``, shape (9,); ``local_map`` as above, if ``shows_local_map=True``. A step ends when the goal is finished, or after 45 s; the reward is that of its readings.
 
 ``slices`` of an environment names the values of an observation: ``observation[env.slices["goal_direction"]]`` in Drive,
-``observation["state"][env.slices["state"]["heading"]]`` in the other ones.
+``observation["state"][env.slices["state"]["heading"]]`` in the other ones. Of parts with layers it names the layers:
+``observation["local_map"][env.slices["local_map"]["frontier"]]`` has the shape (1, 32, 32).
+
+``info["collisions"]`` of every task counts the contacts of the episode that began while the robot moved.
 
 Everything random comes from ``np_random``: ``reset`` draws the seed of the world from it, and ``info["world_seed"]`` has
 it, so that Rust can repeat the episode. The vector environments reset an environment in the same step in which its
@@ -81,7 +89,7 @@ def _world_seed(value: Any) -> int:
 
 def _observation_space(parts: list[tuple[str, list[int]]]) -> spaces.Space:
     def box(name: str, shape: list[int]) -> spaces.Box:
-        low = 0.0 if name in ("scan", "map", "candidates") else -1.0
+        low = 0.0 if name in ("scan", "map", "candidates", "local_map") else -1.0
         return spaces.Box(low, 1.0, tuple(shape), np.float32)
 
     if len(parts) == 1:
@@ -143,7 +151,7 @@ def _action_space(batch: Batch) -> spaces.Space:
 
 
 def _slices(batch: Batch) -> dict[str, Any]:
-    """The named slices of the last axis, per part of the observation; of the only part alone."""
+    """The named slices of the last axis, or of the layers, per part of the observation; of the only part alone."""
     found: dict[str, dict[str, slice]] = {}
     for part, lengths in batch.slices:
         begin, found[part] = 0, {}
@@ -469,7 +477,8 @@ class ExploreEnv(_Single):
     ``houses``: the seeds of generated houses, as ``TRAIN_HOUSES`` (the default) and ``TEST_HOUSES``; or ``worlds``: a list of
     ``Spec``, names or paths. Each episode is in one of them, ``info["world"]`` is its index. Settings: ``max_steps``,
     ``beams``, ``reward`` (``"found"``, or ``"updates"`` as in ``Explore-v0``), ``starts`` (``"anywhere"``, or ``"spec"``: at
-    the pose of the world), ``error_every``, ``map_every``, ``update_reward``, ``seen_reward``, ``error_reward``,
+    the pose of the world), ``error_every``, ``map_every``, ``shows_local_map``, ``local_map_cells`` (along each side, 32),
+    ``local_map_cell`` (m, 0.25), ``update_reward``, ``seen_reward``, ``error_reward``,
     ``collision_reward``.
     """
 

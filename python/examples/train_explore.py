@@ -251,20 +251,20 @@ def draw(curve: list[tuple[float, float]], means: dict[str, float], path: str) -
     figure.savefig(path, dpi=120)
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--minutes", type=float, default=10.0)
-    parser.add_argument("--houses", type=int, default=200, help="test houses")
+def add_arguments(parser: argparse.ArgumentParser, houses: int) -> None:
+    """The arguments of `report`."""
+    parser.add_argument("--houses", type=int, default=houses, help="test houses: %(default)s")
     parser.add_argument("--threads", type=int, default=2, help="for the test houses")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--others", default=",".join(OTHERS), help="policies to compare with, separated by commas: %(default)s")
     parser.add_argument("--picture", help="a PNG file for the learning curve")
     parser.add_argument("--json", help="a file for all numbers")
-    arguments = parser.parse_args()
+
+
+def report(policy: Choose | None, curve: list[tuple[float, float]], arguments: argparse.Namespace) -> None:
+    """Measures the learned policy, if there is one, and the others in the test houses."""
     results: dict[str, np.ndarray] = {}
-    curve: list[tuple[float, float]] = []
-    if arguments.minutes > 0.0:
-        (policy,), curve = train(arguments.minutes, arguments.seed)
+    if policy is not None:
         results["learned"] = measure("learned", policy, arguments.houses, arguments.threads)
     print(f"\n{arguments.houses} test houses   reward ± s.e.   found    seen m²    contacts   p against learned")
     for name in [*results, *filter(None, arguments.others.split(","))]:
@@ -275,11 +275,23 @@ def main() -> None:
         if "learned" in results and name != "learned":
             p = f"{p_value(results['learned'][:, 0] - results[name][:, 0]):.5f}"
         print(f"{name:<20} {mean[0]:6.1f} ± {error[0]:4.1f} {mean[1]:10.0f} {mean[2]:8.1f} {mean[3]:8.2f}       {p}", flush=True)
-    if arguments.json:
-        with open(arguments.json, "w") as file:
-            json.dump({"curve": curve, **{name: values.tolist() for name, values in results.items()}}, file)
+        if arguments.json:
+            with open(arguments.json, "w") as file:
+                json.dump({"curve": curve, **{name: values.tolist() for name, values in results.items()}}, file)
     if arguments.picture and curve:
         draw(curve, {name: float(values[:, 0].mean()) for name, values in results.items()}, arguments.picture)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--minutes", type=float, default=10.0)
+    add_arguments(parser, houses=200)
+    arguments = parser.parse_args()
+    if arguments.minutes > 0.0:
+        (policy,), curve = train(arguments.minutes, arguments.seed)
+        report(policy, curve, arguments)
+    else:
+        report(None, [], arguments)
 
 
 OTHERS = [*DRIVERS, "any goal", "random", "frontier", "curious", "recency", "poisson", "predicted-change", "optimal-revisiting"]

@@ -23,7 +23,7 @@ const DRIVE: [Setting<DriveSettings>; 10] = [
     ("collision_reward", |to, value, key| set(&mut to.collision_reward, value, key)),
     ("step_reward", |to, value, key| set(&mut to.step_reward, value, key)),
 ];
-const EXPLORE: [Setting<ExploreSettings>; 10] = [
+const EXPLORE: [Setting<ExploreSettings>; 13] = [
     ("reward", |to, value, key| named(&mut to.reward, &Reward::ALL, value, key)),
     ("starts", |to, value, key| named(&mut to.starts, &Start::ALL, value, key)),
     ("seen_reward", |to, value, key| set(&mut to.seen_reward, value, key)),
@@ -31,6 +31,9 @@ const EXPLORE: [Setting<ExploreSettings>; 10] = [
     ("beams", |to, value, key| set(&mut to.beams, value, key)),
     ("error_every", |to, value, key| set(&mut to.error_every, value, key)),
     ("map_every", |to, value, key| set(&mut to.map_every, value, key)),
+    ("shows_local_map", |to, value, key| set(&mut to.shows_local_map, value, key)),
+    ("local_map_cells", |to, value, key| set(&mut to.local_map_cells, value, key)),
+    ("local_map_cell", |to, value, key| set(&mut to.local_map_cell_m, value, key)),
     ("update_reward", |to, value, key| set(&mut to.update_reward, value, key)),
     ("error_reward", |to, value, key| set(&mut to.error_reward, value, key)),
     ("collision_reward", |to, value, key| set(&mut to.collision_reward, value, key)),

@@ -153,7 +153,8 @@ impl Batch {
         self.batch.task(0).parts().into_iter().map(|part| (part.name, part.shape)).collect()
     }
 
-    /// Names and lengths of slices along the last axis of each part, in their order; empty where the axis has no names.
+    /// Names and lengths of slices along the last axis of each part, or along the first axis of a part with layers (three
+    /// axes), in their order; empty where the axis has no names.
     #[getter]
     fn slices(&self) -> Vec<(&'static str, Vec<(&'static str, usize)>)> {
         self.batch.task(0).parts().into_iter().map(|part| (part.name, part.slices)).collect()

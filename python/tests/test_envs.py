@@ -18,8 +18,8 @@ NAMES = [*VELOCITIES, GOALS]
 SMALL = {
     "curious/Drive-v0": {"max_steps": 25},
     "curious/Explore-v0": {"worlds": [curious.Spec.house(1), curious.Spec.house(4)], "max_steps": 25, "beams": 60},
-    "curious/Explore-v1": {"houses": range(3), "max_steps": 25, "beams": 60},
-    GOALS: {"houses": range(3), "max_steps": 150, "beams": 60, "max_goal_s": 3.0},
+    "curious/Explore-v1": {"houses": range(3), "max_steps": 25, "beams": 60, "shows_local_map": True, "local_map_cells": 12},
+    GOALS: {"houses": range(3), "max_steps": 150, "beams": 60, "max_goal_s": 3.0, "shows_local_map": True},
 }
 
 
@@ -248,6 +248,54 @@ def test_the_values_of_observations_have_names(name):
         assert sum(of.stop - of.start for of in env.slices["candidates"].values()) == 9
         # A robot at the start has its surroundings in view, and the rest is unseen.
         assert observation["candidates"][0, env.slices["candidates"]["unseen"]] > 0.0
+
+
+@pytest.mark.parametrize("name", ["curious/Explore-v1", GOALS])
+def test_a_local_map_is_an_option_with_named_layers(name):
+    settings = {"houses": range(3), "max_steps": 300, "beams": 60}
+    plain = gymnasium.make(name, **settings).unwrapped
+    env = gymnasium.make(name, shows_local_map=True, local_map_cells=20, local_map_cell=0.5, **settings).unwrapped
+    steps = 3 if name == GOALS else 60
+    for each in (plain, env):
+        each.reset(seed=5)
+    for step in range(steps):
+        without, with_map = (each.step(action(0, step, name))[0] for each in (plain, env))
+        for part, values in without.items():
+            np.testing.assert_array_equal(values, with_map[part])
+    assert "local_map" not in without and with_map["local_map"].shape == (7, 20, 20)
+    assert env.observation_space["local_map"].contains(with_map["local_map"])
+    layers = {layer: with_map["local_map"][of][0] for layer, of in env.slices["local_map"].items()}
+    assert list(layers) == ["free", "blocked", "unknown", "frontier", "age", "changed", "rate"]
+    # In each of the middle cells one point of four is under the robot. Every point is in one state, and unknown points beside
+    # free ones are the frontier.
+    assert layers["free"][9:11, 9:11].min() >= 0.25
+    states = layers["free"] + layers["blocked"] + layers["unknown"]
+    assert set(np.unique(states)) <= {0.0, 0.25, 0.5, 0.75, 1.0} and states.max() == 1.0
+    assert (layers["frontier"] <= layers["unknown"]).all() and layers["frontier"].any()
+    assert (layers["age"][layers["unknown"] == 1.0] == 1.0).all() and layers["age"][10, 10] < 0.1
+    with pytest.raises(ValueError, match="local_map_cells"):
+        gymnasium.make(name, local_map_cells=1)
+
+
+def test_every_task_counts_contacts():
+    for name in NAMES:
+        env = gymnasium.make(name, **SMALL[name]).unwrapped
+        _, info = env.reset(seed=1)
+        assert info["collisions"] == 0 and isinstance(info["collisions"], int), name
+        info = env.step(action(0, 0, name))[4]
+        assert info["collisions"] >= 0 and isinstance(info["collisions"], int), name
+    for name in ("curious/Drive-v0", "curious/Explore-v1"):
+        # A robot that always drives straight on meets a wall, and stays there: one contact, not one per step.
+        env = gymnasium.make(name, collision_reward=-100.0, max_steps=200).unwrapped
+        env.reset(seed=2)
+        counts, rewards = [0], []
+        for _ in range(200):
+            _, reward, terminated, truncated, info = env.step(np.array([1.0, 0.0], np.float32))
+            counts.append(info["collisions"])
+            rewards.append(reward)
+        new = np.diff(counts)
+        assert counts[-1] > 0 and (new >= 0).all() and counts[-1] < 100
+        np.testing.assert_array_equal(new, np.round(np.minimum(rewards, 0.0) / -100.0))
 
 
 def test_render_without_a_mode_says_so():
