@@ -7,7 +7,7 @@ const BY_HAND: [(&str, usize); 17] = [
     ("compatibility.md", 1),
     ("estimators.md", 4),
     ("figure3.md", 4),
-    ("flicker.md", 1),
+    ("flicker.md", 3),
     ("houses.md", 4),
     ("localization.md", 8),
     ("loops.md", 4),
@@ -42,7 +42,7 @@ fn the_pages_have_what_their_files_say() {
         let made = rewritten(&page).unwrap_or_else(|why| panic!("docs/{name}: {why}"));
         assert!(made == page, "cargo run -p curious-reports --example page_tables -- docs/{name}");
     }
-    assert!(tables >= 10, "{tables}");
+    assert!(tables >= 7, "{tables}");
 }
 
 /// The number of tables with numbers of results outside of generated tables.
