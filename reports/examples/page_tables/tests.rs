@@ -45,6 +45,16 @@ fn the_pages_have_what_their_files_say() {
     assert!(tables >= 7, "{tables}");
 }
 
+/// A program of a crate without the reports prints its rows: with other columns, they are older than the program.
+#[test]
+fn printed_rows_have_the_columns_of_their_program() {
+    let columns = read("docs/results/fast_changes.csv").unwrap()[0].columns.join(",");
+    assert!(
+        include_str!("../../../mapper/examples/fast_cells.rs").contains(&format!("\"{columns}\"")),
+        "{columns}"
+    );
+}
+
 /// The number of tables with numbers of results outside of generated tables.
 fn by_hand(page: &str) -> usize {
     let mut outside = String::new();
