@@ -6,7 +6,7 @@ use crate::Growth;
 use crate::change::{CellMap, RateDistribution};
 use crate::clock::Dates;
 use crate::look_counts::LookCounts;
-use crate::tiles::{self, ByClock};
+use crate::tiles::{ByClock, HALF_HOURS};
 use interfaces::CellState;
 use std::collections::BTreeMap;
 
@@ -85,14 +85,15 @@ impl LeafCells {
         dates: Dates,
     ) -> Option<ByClock> {
         let (cell, door) = self.find(index, things)?;
-        let (last_s, was_open) = door.last_look()?;
+        let (_, was_open) = door.last_look()?;
         if cell.counts.iter().any(|counts| counts.is_empty()) {
             return None;
         }
         let [closed, open] = cell.shares();
         let is_open = door.clock.probability(dates.epoch_s + time_s, dates.calendar);
         let later = closed + (open - closed) * is_open;
-        let weight = tiles::weight(door.clock.half_hours(), time_s - last_s);
+        let weight = door.clock.half_hours();
+        let weight = weight / (weight + HALF_HOURS);
         Some(ByClock { later, then: if was_open { open } else { closed }, weight })
     }
 

@@ -8,15 +8,7 @@ use interfaces::Cell;
 const PRIOR_LOOKS: f64 = 30.0;
 /// A tile or a door that was seen in this number of half hours counts as much as the chain of the cell. Houses of people without hours
 /// (seeds 5000 to 5005) are then predicted as well as by the chains alone, after 20 minutes and after 8 hours.
-const HALF_HOURS: f64 = 24.0;
-/// A chain learns its rates in view, from one reading to the next. Farther ahead than this, s, it counts the less.
-const AHEAD_S: f64 = 1800.0;
-
-/// The weight of a clock that was looked at in this number of half hours, against the chain of the cell. A robot that looks for
-/// minutes in a day has watched too little for rates, but its clocks have a look from each of its visits.
-pub(crate) fn weight(half_hours: f64, ahead_s: f64) -> f64 {
-    half_hours / (half_hours + HALF_HOURS * AHEAD_S / ahead_s.max(AHEAD_S))
-}
+pub(crate) const HALF_HOURS: f64 = 24.0;
 
 /// What the clock of a tile or of a door says of one of its cells.
 #[derive(Clone, Copy, Debug)]
@@ -44,21 +36,8 @@ impl Tiles {
         let last = tile.last?;
         let share = of.counts.share(tile.counts.share(0.5, 1.0), PRIOR_LOOKS);
         let later = share * tile.clock.probability(self.epoch_s + time_s, self.calendar());
-        let weight = weight(tile.clock.half_hours(), time_s - last.time_s);
+        let half_hours = tile.clock.half_hours();
+        let weight = half_hours / (half_hours + HALF_HOURS);
         Some(ByClock { later, then: share * f64::from(u8::from(last.is_blocked)), weight })
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_clock_counts_the_more_the_longer_it_is_known_and_the_farther_ahead_it_predicts() {
-        let hour_s = 3600.0;
-        assert_eq!([0.0, 60.0, 0.5 * hour_s].map(|ahead_s| weight(HALF_HOURS, ahead_s)), [0.5; 3]);
-        assert_eq!([0.0, 9.0 * hour_s].map(|ahead_s| weight(0.0, ahead_s)), [0.0; 2]);
-        let visits = [1.0, 2.0, 8.0].map(|visits| weight(visits, 8.0 * hour_s));
-        assert_eq!(visits, [0.4, 4.0 / 7.0, 16.0 / 19.0]);
     }
 }
