@@ -90,21 +90,21 @@ pub(crate) fn room(scores: &[Vec<room::Score>]) -> String {
 
 /// The scores of one estimator for all kinds of chains under one pattern of observations.
 #[derive(Default)]
-struct Row {
-    identified: u32,
+pub(crate) struct Row {
+    pub(crate) identified: u32,
     /// The largest bias among the identified rates, with its sign.
-    bias: f64,
+    pub(crate) bias: f64,
     /// Root mean square error over the least possible.
-    over_least: Mean,
+    pub(crate) over_least: Mean,
     log_error: Mean,
-    covered: Mean,
+    pub(crate) covered: Mean,
     elsewhere: Mean,
     /// The most by which the log error is above that of `paper`.
-    worse: f64,
+    pub(crate) worse: f64,
 }
 
 impl Row {
-    fn of(outcomes: &[Outcome], pattern: Pattern, at: usize) -> Self {
+    pub(crate) fn of(outcomes: &[Outcome], pattern: Pattern, at: usize) -> Self {
         let mut row = Self { worse: f64::NEG_INFINITY, ..Self::default() };
         for outcome in outcomes.iter().filter(|outcome| outcome.pattern == pattern) {
             let (score, paper) = (outcome.scores[at], outcome.scores[0]);
