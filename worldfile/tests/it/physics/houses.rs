@@ -201,12 +201,12 @@ fn houses_are_what_they_always_were() {
     let names = names.chain((0..2).map(|seed| format!("office-{seed}")));
     let lines: Vec<String> = names.map(line).collect();
     insta::assert_snapshot!(lines.join("\n"), @"
-    0d71553f8c835f1b 5 rooms at a corridor, doors: 3, people: 1; made at random from the seed 0.
-    245b78cfafd21d6f 5 rooms at a corridor, doors: 4, people: 2; made at random from the seed 1.
-    ed7c679d6df01d6c 5 rooms at a corridor, doors: 4, people: 1; made at random from the seed 2.
-    0fbc156553a5a43b 8 rooms at a corridor, doors: 7, people: 1; made at random from the seed 3.
-    85597a21d688b55b 6 rooms at a corridor, doors: 3, people: 1; made at random from the seed 18446744073709551615.
-    89c6235e9e01e9e4 13 rooms at a corridor, doors: 10, people: 5; made at random from the seed 0.
-    40a6566be7512e2d 11 rooms at a corridor, doors: 11, people: 6; made at random from the seed 1.
+    4a6acc224a820235 5 rooms at a corridor, doors: 3, people: 1; made at random from the seed 0.
+    623c028a48dfd156 5 rooms at a corridor, doors: 4, people: 2; made at random from the seed 1.
+    c7efbdc2bfb7bacb 5 rooms at a corridor, doors: 4, people: 1; made at random from the seed 2.
+    b6e9a7065e488320 8 rooms at a corridor, doors: 7, people: 1; made at random from the seed 3.
+    d0c92e7d66d505fd 6 rooms at a corridor, doors: 3, people: 1; made at random from the seed 18446744073709551615.
+    0179d7028a9bd438 13 rooms at a corridor, doors: 10, people: 5; made at random from the seed 0.
+    1a04b80498095062 11 rooms at a corridor, doors: 11, people: 6; made at random from the seed 1.
     ");
 }
