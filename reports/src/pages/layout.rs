@@ -97,14 +97,17 @@ impl<'t> Part<'t> {
 
 /// A value of the rows of a line.
 struct Reference<'t> {
-    fold: Option<fn(&[f64]) -> f64>,
+    fold: Option<Fold>,
     column: &'t str,
     factor: f64,
     conditions: Vec<Condition<'t>>,
     format: &'t str,
 }
 
-const FOLDS: [(&str, fn(&[f64]) -> f64); 4] = [
+/// One value for those of several rows.
+type Fold = fn(&[f64]) -> f64;
+
+const FOLDS: [(&str, Fold); 4] = [
     ("mean ", |values| values.iter().sum::<f64>() / values.len() as f64),
     ("min ", |values| values.iter().copied().fold(f64::INFINITY, f64::min)),
     ("max ", |values| values.iter().copied().fold(f64::NEG_INFINITY, f64::max)),

@@ -57,20 +57,31 @@ pub fn mean(values: &[f64]) -> f64 {
     finite.iter().sum::<f64>() / finite.len() as f64
 }
 
-/// The ratio of two means, with the p-value of the paired t test of the differences: `0.751, p = 2.1e-7`.
+/// The ratio of two means, with the p-value of the paired t test of the differences: `0.751, p = 2.1e-7`. One
+/// pair has no p-value.
 pub fn ratio(values: &[f64], others: &[f64]) -> String {
+    let ratio = mean(values) / mean(others);
+    if values.len() < 2 {
+        return format!("{ratio:.3}");
+    }
     let p = paired_test(values.iter().zip(others).map(|(value, other)| value - other)).p_value;
     let p = match p {
         p if p < 1e-3 => format!("{p:.1e}"),
         p if p < 0.01 => format!("{p:.4}"),
         p => format!("{p:.2}"),
     };
-    format!("{:.3}, p = {p}", mean(values) / mean(others))
+    format!("{ratio:.3}, p = {p}")
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn one_pair_has_a_ratio_and_no_p_value() {
+        assert_eq!(ratio(&[1.0], &[4.0]), "0.250");
+        assert_eq!(ratio(&[1.0, 2.0, 4.0], &[2.0, 4.0, 5.0]), "0.636, p = 0.06");
+    }
 
     #[test]
     fn tables_are_made_anew_and_all_else_stays() {
