@@ -90,6 +90,6 @@ mod tests {
         let file = include_str!("../../docs/figure3/results.md");
         assert_eq!(file.lines().filter(|line| *line == SHARES).count(), crate::conditions().len());
         assert_eq!(file.lines().filter(|line| line.ends_with(RATIOS)).count(), 1);
-        assert!(file.contains(&Claim::markdown_head()));
+        assert!(file.contains(Claim::markdown_head()));
     }
 }
