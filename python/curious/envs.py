@@ -27,7 +27,8 @@
 ``ExploreGoalsEnv`` and ``ExploreGoalsVectorEnv``
     The same robot, which drives by itself: the action, ``Discrete``, is the number of the strategy whose goal is taken.
     Observation, a dict: ``candidates``, shape (strategies, 9), from 0 to 1: what the goal of each strategy promises;
-    ``state``, shape (9,); ``local_map`` as above, if ``shows_local_map=True``. A step ends when the goal is finished, or after 45 s; the reward is that of its readings.
+    ``state``, shape (9,); ``local_map`` as above, if ``shows_local_map=True``. A step ends when the goal is finished, or after
+    45 s; the reward is that of its readings.
 
 ``slices`` of an environment names the values of an observation: ``observation[env.slices["goal_direction"]]`` in Drive,
 ``observation["state"][env.slices["state"]["heading"]]`` in the other ones. Of parts with layers it names the layers:

@@ -35,7 +35,9 @@ impl<W: Write + Seek> HeldBack<W> {
         self.to.write_all(&sorted(&self.end))?;
         Ok(self.to)
     }
+}
 
+impl<W> HeldBack<W> {
     fn is_end(&self) -> bool {
         self.is_end.load(Ordering::Relaxed)
     }
@@ -43,7 +45,7 @@ impl<W: Write + Seek> HeldBack<W> {
 
 impl<W: Write> Write for HeldBack<W> {
     fn write(&mut self, bytes: &[u8]) -> Result<usize> {
-        if self.is_end.load(Ordering::Relaxed) { self.end.write(bytes) } else { self.to.write(bytes) }
+        if self.is_end() { self.end.write(bytes) } else { self.to.write(bytes) }
     }
 
     fn flush(&mut self) -> Result<()> {

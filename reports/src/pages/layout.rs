@@ -9,8 +9,8 @@
 //! ```
 //!
 //! Rows with the same text in the first column are one line of the table; with `by COLUMN, COLUMN` after the source, those with the
-//! same values in these columns. A reference in braces is a column, after the word `mean`,
-//! `min`, `max` or `sum` if the rows of a line differ in it; `*100` multiplies it; `if COLUMN=VALUE` chooses rows, as `where` does; `!=` leaves them out. Formats: `.2`
+//! same values in these columns. A reference in braces is a column, after the word `mean`, `min`, `max` or `sum` if the rows of a
+//! line differ in it. `*100` multiplies it. `if COLUMN=VALUE` chooses rows, as `where` does; `!=` leaves them out. Formats: `.2`
 //! decimals, `+.2` with the sign, `t` thousands separated, `p` a p-value.
 
 use super::rows::Rows;

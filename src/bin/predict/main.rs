@@ -54,7 +54,7 @@ in hours), and all that is printed, as data (summary.json).
 
 Hours and weekdays are learned per door and per square of half a meter, and have more weight the longer they were observed.";
 
-/// A place as it will be.
+/// The command line.
 #[derive(Clone, Debug, Parser)]
 #[command(
     name = "predict",
