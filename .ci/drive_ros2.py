@@ -107,6 +107,11 @@ class Peer:
             self.executor.spin_once(timeout_sec=min(left, 0.05))
         return until()
 
+    def sees(self):
+        """What this participant has discovered, in one line."""
+        topics, services = self.node.get_topic_names_and_types(), self.node.get_service_names_and_types()
+        return f"nodes {sorted(self.node.get_node_names())}, topics {len(topics)}, services {sorted(name for name, _ in services)}"
+
     def close(self):
         self.executor.shutdown()
         self.node.destroy_node()

@@ -30,7 +30,8 @@ macro_rules! by_type {
 mod actions;
 mod discovery;
 mod edges;
-mod matched;
+mod endpoints;
+mod others;
 mod publishers;
 mod reply_size;
 mod services;
@@ -45,10 +46,12 @@ use actions::Navigator;
 use anyhow::Context as _;
 use discovery::Discovery;
 use edges::EdgesClient;
+use endpoints::Endpoints;
+use others::Others;
 use publishers::Publishers;
 use ros2_client::dds::rustdds::DomainParticipantBuilder;
 use ros2_client::qos::{Durability, History, QosProfile, Reliability, WhenFull};
-use ros2_client::{Context, Node, NodeName, NodeOptions, ServiceMapping};
+use ros2_client::{Context, NodeName, NodeOptions, ServiceMapping};
 use services::Services;
 use std::collections::{BTreeMap, VecDeque};
 use std::net::{IpAddr, Ipv4Addr};
@@ -76,7 +79,7 @@ pub struct DdsLink {
     name: String,
     typed: Typed,
     /// Ends the node when it is dropped.
-    node: Node,
+    endpoints: Endpoints,
 }
 
 impl DdsLink {
@@ -92,21 +95,22 @@ impl DdsLink {
         // The node answers for its parameters and its log itself: the library does so for one vendor only, and subscribes `/clock`
         // with a type of its own.
         let options = NodeOptions::new().enable_rosout(false).start_parameter_services(false);
-        let mut node = context.new_node(name, options)?;
+        let others = Others::follow(&context)?;
+        let mut endpoints = Endpoints::new(context.new_node(name, options)?, others.clone());
         let mapping = match environment.services {
             environment::Services::Enhanced => ServiceMapping::Enhanced,
             environment::Services::Cyclone => ServiceMapping::Cyclone,
         };
-        let publishers = Publishers::new(&mut node, wiring)?;
+        let publishers = Publishers::new(&mut endpoints, wiring)?;
         let navigator = wiring.navigate_to_pose.as_deref();
-        let navigator = navigator.map(|name| Navigator::new(&mut node, name, mapping)).transpose()?;
+        let navigator = navigator.map(|name| Navigator::new(endpoints.node(), name, mapping)).transpose()?;
         let edges = wiring.adjust_edges.as_deref();
-        let edges = edges.map(|name| EdgesClient::new(&mut node, name, mapping)).transpose()?;
+        let edges = edges.map(|name| EdgesClient::new(endpoints.node(), name, mapping)).transpose()?;
         let (to, events) = mpsc::sync_channel(MAX_EVENTS);
-        let services = Services::open(&mut node, &context, &wiring.services, mapping, &to)?;
+        let services = Services::open(&mut endpoints, others, &wiring.services, mapping, &to)?;
         let (typed, subscribed) =
             Typed::new(wiring.subscribed.clone(), context.clone(), publishers.ids(), to.clone());
-        subscribers::start(&mut node, &context, &subscribed, publishers.ids(), &to)?;
+        subscribers::start(&mut endpoints, &context, &subscribed, publishers.ids(), &to)?;
         Ok(Self {
             events,
             names: wiring.published.iter().map(|(topic, name, _)| (*topic, name.clone())).collect(),
@@ -118,7 +122,7 @@ impl DdsLink {
             services,
             name: full_name,
             typed,
-            node,
+            endpoints,
         })
     }
 
@@ -145,7 +149,7 @@ impl Link for DdsLink {
     fn receive(&mut self, patience: Duration) -> Option<Event> {
         self.problems.extend(self.publishers.take_problem());
         self.problems.extend(self.discovery.problems());
-        self.problems.extend(self.typed.open(&mut self.node));
+        self.problems.extend(self.typed.open(&mut self.endpoints));
         if let Some(problem) = self.problems.pop_front() {
             return Some(Event::Problem(problem));
         }

@@ -1,5 +1,6 @@
 //! What the node sends.
 
+use super::endpoints::Endpoints;
 use super::{WAIT, profile};
 use crate::link::Wiring;
 use crate::message::{Message, Quality, Topic};
@@ -19,13 +20,13 @@ pub(super) struct Publishers {
 }
 
 impl Publishers {
-    pub(super) fn new(node: &mut Node, wiring: &Wiring) -> anyhow::Result<Self> {
+    pub(super) fn new(endpoints: &mut Endpoints, wiring: &Wiring) -> anyhow::Result<Self> {
         let (mut by_topic, mut ids) = (BTreeMap::new(), BTreeSet::new());
         for (topic, name, quality) in &wiring.published {
             let at = (*topic, name.as_str(), quality);
             macro_rules! publisher {
                 ($variant:ident) => {
-                    open(node, at, |message| match message {
+                    open(endpoints.node(), at, |message| match message {
                         Message::$variant(content) => Some(content),
                         _ => None,
                     })

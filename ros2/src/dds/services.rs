@@ -1,6 +1,7 @@
 //! The services of the node: a thread waits for all requests, and another one sends the answers.
 
-use super::matched::MatchedReaders;
+use super::endpoints::Endpoints;
+use super::others::Others;
 use super::{WAIT, profile, reply_size};
 use crate::link::{Event, Request};
 use crate::message::Quality;
@@ -9,9 +10,7 @@ use crate::service::{Call, Reply, Service};
 use futures::executor::block_on_stream;
 use futures::stream::{BoxStream, StreamExt, select_all, unfold};
 use ros2_client::qos::WhenFull;
-use ros2_client::{
-    Context, Message, Name, Node, ReadError, RmwRequestId, Server, ServiceMapping, ServiceTypeName,
-};
+use ros2_client::{Message, Name, Node, ReadError, RmwRequestId, Server, ServiceMapping, ServiceTypeName};
 use std::collections::BTreeMap;
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender, SyncSender};
 use std::sync::{Arc, Mutex};
@@ -84,15 +83,15 @@ pub(super) struct Services {
 impl Services {
     /// Opens the services; requests become events.
     pub(super) fn open(
-        node: &mut Node,
-        context: &Context,
+        endpoints: &mut Endpoints,
+        others: Others,
         services: &[(Service, String)],
         mapping: ServiceMapping,
         to: &SyncSender<Event>,
     ) -> anyhow::Result<Self> {
         let (mut streams, mut senders) = (Vec::new(), BTreeMap::new());
         for (service, name) in services {
-            let (stream, send) = server(node, *service, name, mapping)?;
+            let (stream, send) = server(endpoints.node(), *service, name, mapping)?;
             streams.push(stream);
             senders.insert(*service, (format!("rr{name}Reply"), send));
         }
@@ -107,9 +106,8 @@ impl Services {
                 }
             }
         })?;
-        let readers = MatchedReaders::follow(context)?;
         std::thread::Builder::new().name("answers".to_owned()).spawn(move || {
-            answer_all(&coming, &senders, &readers);
+            answer_all(&coming, &senders, &others);
         })?;
         Ok(Self { asked, answers, to: problems })
     }
@@ -157,7 +155,7 @@ struct Waiting {
 fn answer_all(
     coming: &Receiver<(Service, RmwRequestId, Reply)>,
     senders: &BTreeMap<Service, (String, Send)>,
-    readers: &MatchedReaders,
+    others: &Others,
 ) {
     let mut waiting: Vec<Waiting> = Vec::new();
     loop {
@@ -174,7 +172,7 @@ fn answer_all(
         }
         waiting.retain(|Waiting { service, id, reply, until }| {
             let Some((topic, send)) = senders.get(service) else { return false };
-            let is_due = readers.has(topic, &id.writer_gid) || Instant::now() >= *until;
+            let is_due = others.has(topic, &id.writer_gid) || Instant::now() >= *until;
             if is_due {
                 send(*id, reply.clone());
             }

@@ -1,6 +1,7 @@
 //! What the node receives: a thread that waits for all topics at once.
 
 use super::discovery::{dds_type, ros_type};
+use super::endpoints::Endpoints;
 use super::profile;
 use crate::link::Event;
 use crate::message::{Message, Quality, Topic};
@@ -23,7 +24,7 @@ pub(super) type Named = (Topic, String, Quality);
 
 /// Subscribes topics, and sends what comes to `to`. `own` are the publishers of this node.
 pub(super) fn start(
-    node: &mut Node,
+    endpoints: &mut Endpoints,
     context: &Context,
     topics: &[Named],
     own: BTreeSet<Gid>,
@@ -34,7 +35,7 @@ pub(super) fn start(
         let at = (*topic, name.as_str(), quality);
         macro_rules! subscription {
             ($variant:ident) => {
-                open(node, at, Message::$variant)
+                open(endpoints.node(), at, Message::$variant)
             };
         }
         streams.push(by_type!(topic, subscription)?);

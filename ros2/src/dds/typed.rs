@@ -2,9 +2,10 @@
 //! the topic has one type.
 
 use super::discovery::dds_type;
+use super::endpoints::Endpoints;
 use super::subscribers::{self, Named};
 use crate::link::Event;
-use ros2_client::{Context, Gid, Node};
+use ros2_client::{Context, Gid};
 use std::collections::BTreeSet;
 use std::sync::mpsc::SyncSender;
 use std::time::{Duration, Instant};
@@ -35,7 +36,7 @@ impl Typed {
     }
 
     /// Subscribes topics that somebody publishes with their type. An error is one sentence.
-    pub(super) fn open(&mut self, node: &mut Node) -> Option<String> {
+    pub(super) fn open(&mut self, endpoints: &mut Endpoints) -> Option<String> {
         if self.waiting.is_empty() || Instant::now() < self.next {
             return None;
         }
@@ -51,7 +52,7 @@ impl Typed {
         if published.is_empty() {
             return None;
         }
-        let opened = subscribers::start(node, &self.context, &published, self.own.clone(), &self.to);
+        let opened = subscribers::start(endpoints, &self.context, &published, self.own.clone(), &self.to);
         opened.err().map(|why| format!("a topic cannot be subscribed: {why:#}"))
     }
 }

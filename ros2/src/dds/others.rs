@@ -1,5 +1,5 @@
-//! What happens when a reader or a writer of another participant matches with one of this node: the first call of a service
-//! depends on it.
+//! What this node hears of other participants: when one is discovered, and when its readers and writers match with those of this
+//! node. The first call of a service depends on it.
 
 use futures::executor::block_on_stream;
 use ros2_client::dds::rustdds::{DomainParticipantStatusEvent, GUID, RTPSEntity, StatusEvented};
@@ -7,7 +7,7 @@ use ros2_client::{Context, Gid};
 use std::collections::BTreeSet;
 use std::net::{SocketAddr, UdpSocket};
 use std::sync::{Arc, Mutex};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// The bytes of an identity that say of which participant it is, in the headers of all vendors.
 const PARTICIPANT: usize = 8;
@@ -18,28 +18,40 @@ const WAITS: [Duration; 2] = [Duration::from_millis(20), Duration::from_millis(1
 /// Topics of requests begin with this.
 const REQUESTS: &str = "rq/";
 
-/// The readers of others that a writer of this node is matched with.
-pub(super) struct MatchedReaders {
+/// The other participants.
+#[derive(Clone)]
+pub(super) struct Others {
     context: Context,
-    matched: Arc<Mutex<BTreeSet<GUID>>>,
+    known: Arc<Mutex<Known>>,
 }
 
-impl MatchedReaders {
-    /// Follows what matches, in a thread of its own.
+struct Known {
+    /// When the last participant was discovered.
+    newest: Instant,
+    /// The readers of others that a writer of this node is matched with.
+    matched: BTreeSet<GUID>,
+}
+
+impl Others {
+    /// Follows what is heard, in a thread of its own. The participant of this node has just been opened: all that are there discover
+    /// it now.
     pub(super) fn follow(context: &Context) -> std::io::Result<Self> {
-        let matched = Arc::new(Mutex::new(BTreeSet::new()));
-        let (to, of) = (matched.clone(), context.clone());
+        let known = Arc::new(Mutex::new(Known { newest: Instant::now(), matched: BTreeSet::new() }));
+        let (to, of) = (known.clone(), context.clone());
         let socket = UdpSocket::bind(("0.0.0.0", 0)).ok();
         std::thread::Builder::new().name("matches".to_owned()).spawn(move || {
             let news = of.domain_participant().status_listener();
             for event in block_on_stream(news.as_async_status_stream()) {
-                let Ok(mut matched) = to.lock() else { return };
+                let Ok(mut known) = to.lock() else { return };
                 match event {
+                    DomainParticipantStatusEvent::ParticipantDiscovered { .. } => {
+                        known.newest = Instant::now();
+                    }
                     DomainParticipantStatusEvent::RemoteReaderMatched { remote_reader, .. } => {
-                        matched.insert(remote_reader);
+                        known.matched.insert(remote_reader);
                     }
                     DomainParticipantStatusEvent::ReaderLost { guid, .. } => {
-                        matched.remove(&guid);
+                        known.matched.remove(&guid);
                     }
                     DomainParticipantStatusEvent::RemoteWriterMatched { local_reader, remote_writer } => {
                         if let Some(socket) = &socket {
@@ -50,17 +62,22 @@ impl MatchedReaders {
                 }
             }
         })?;
-        Ok(Self { context: context.clone(), matched })
+        Ok(Self { context: context.clone(), known })
+    }
+
+    /// The time since the last participant was discovered.
+    pub(super) fn quiet(&self) -> Duration {
+        self.known.lock().map_or(Duration::MAX, |known| known.newest.elapsed())
     }
 
     /// Whether a participant has a matched reader of a topic.
     pub(super) fn has(&self, topic: &str, of: &Gid) -> bool {
-        let Ok(matched) = self.matched.lock() else { return true };
+        let Ok(known) = self.known.lock() else { return true };
         let participant = &of.to_bytes16()[..PARTICIPANT];
         let readers = self.context.domain_participant().discovered_readers();
         readers.iter().any(|reader| {
             let guid = reader.reader_proxy.remote_reader_guid;
-            matched.contains(&guid)
+            known.matched.contains(&guid)
                 && guid.to_bytes()[..PARTICIPANT] == *participant
                 && reader.subscription_topic_data.topic_name() == topic
         })
