@@ -5,6 +5,7 @@ use crate::{TURNED, false_changes};
 use mapper::OccupancyChoice;
 use plotters::prelude::*;
 use plotters::style::{FontStyle, register_font};
+use serde::Serialize;
 
 /// The numbers of consecutive misses after which a surface is cleared.
 const MISSES: [u8; 11] = [1, 2, 3, 4, 5, 6, 8, 10, 12, 16, 20];
@@ -14,6 +15,7 @@ const SEEDS: u64 = 5;
 const FLOOR: f64 = 0.1;
 
 /// One setting, averaged over the seeds.
+#[derive(Debug, Default, Serialize)]
 pub(crate) struct Point {
     pub(crate) misses_to_free: u8,
     pub(crate) false_changes: f64,

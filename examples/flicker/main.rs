@@ -1,8 +1,9 @@
-//! The flicker study: how often does a static wall change in the map, and what does it cost to prevent this? Prints
-//! the table of `docs/flicker.md` and draws `docs/flicker.svg`.
+//! The flicker study: how often does a static wall change in the map, and what does it cost to prevent this? Writes
+//! the rows of the tables of `docs/flicker.md`, and draws `docs/flicker.svg`.
 //!
 //! ```text
 //! cargo run --release --example flicker
+//! cargo run -p curious-reports --example page_tables -- docs/flicker.md
 //! ```
 //!
 //! Every house is toured for ten minutes (6000 scans) while nothing moves: each change in the map is false. Then
@@ -17,14 +18,35 @@ mod things;
 use house::House;
 use interfaces::LaserReading;
 use mapper::{Mapper, MapperSettings, OccupancyChoice, SurfaceGridSettings};
-use std::fmt::Write as _;
+use reports::pages::write_rows;
+use serde::Serialize;
+use std::path::Path;
 use things::{cleared_after, latencies, median};
 
 const SCANS: u32 = 6000;
 const PERIOD_S: f64 = 0.1;
 
-const HEADER: &str = "| house | map | false changes | repeated | box in the open: half, 90 % free | \
-                      box at a wall | free event | missed % |";
+const ROWS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/results/flicker.csv");
+const CURVE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/results/flicker_curve.csv");
+const COMMAND: &str = "cargo run --release --example flicker";
+
+/// The results of an occupancy model in a house.
+#[derive(Debug, Default, Serialize)]
+struct Row {
+    house: &'static str,
+    map: &'static str,
+    false_changes: usize,
+    /// The false changes that were not the first one of their cell.
+    repeated: usize,
+    /// The times until half and nine tenths of the cells of a removed box are free: in the open, and at a wall.
+    open_half_s: f64,
+    open_most_s: f64,
+    wall_half_s: f64,
+    wall_most_s: f64,
+    /// The median time from the first beam that shows a cell as free to the change of the map.
+    free_s: f64,
+    missed: f64,
+}
 
 /// A house to tour.
 #[derive(Clone, Copy)]
@@ -108,32 +130,54 @@ fn false_changes(
     Ok((changes, changes - cells.len()))
 }
 
-fn row(bench: Bench, occupancy: OccupancyChoice) -> anyhow::Result<String> {
+fn row(bench: Bench, occupancy: &OccupancyChoice) -> anyhow::Result<Row> {
     let settings = bench.settings(occupancy.clone());
     let (house, readings) = bench.tour(1);
-    let (changes, repeated) = false_changes(&house, &readings, &settings)?;
-    let mut row = format!("| {} | {} | {changes} | {repeated} |", bench.name, occupancy.name());
-    for corner in things::BOXES {
-        let (half_s, most_s) = cleared_after(bench.house(2), &settings, corner)?;
-        write!(row, " {half_s:.1}, {most_s:.1} |")?;
-    }
+    let (false_changes, repeated) = false_changes(&house, &readings, &settings)?;
+    let cleared = |corner| cleared_after(bench.house(2), &settings, corner);
+    let [(open_half_s, open_most_s), (wall_half_s, wall_most_s)] =
+        [cleared(things::BOXES[0])?, cleared(things::BOXES[1])?];
     let mut latency = latencies(bench.house(3), &settings)?;
-    write!(row, " {:.1} | {:.1} |", median(&mut latency.free_s), 100.0 * latency.missed_share())?;
-    Ok(row)
+    let (house, map) = (bench.name, occupancy.name());
+    let (free_s, missed) = (median(&mut latency.free_s), latency.missed_share());
+    Ok(Row {
+        house,
+        map,
+        false_changes,
+        repeated,
+        open_half_s,
+        open_most_s,
+        wall_half_s,
+        wall_most_s,
+        free_s,
+        missed,
+    })
 }
 
 fn main() -> anyhow::Result<()> {
-    println!("{HEADER}\n|---|---|---|---|---|---|---|---|");
+    let mut rows = Vec::new();
     for bench in BENCHES {
         for occupancy in [OccupancyChoice::steady(), OccupancyChoice::naive()] {
-            println!("{}", row(bench, occupancy)?);
+            rows.push(row(bench, &occupancy)?);
+            println!("{:?}", rows.last());
         }
     }
-    println!();
+    write_rows(Path::new(ROWS), COMMAND, &rows)?;
     let points = curve::sweep()?;
-    println!("| misses to free | false changes | half cleared |\n|---|---|---|");
-    for point in &points {
-        println!("| {} | {:.1} | {:.2} |", point.misses_to_free, point.false_changes, point.half_cleared_s);
-    }
+    write_rows(Path::new(CURVE), COMMAND, &points)?;
     curve::draw(&points, concat!(env!("CARGO_MANIFEST_DIR"), "/docs/flicker.svg"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use reports::pages::{Rows, columns_of};
+
+    /// Rows with other columns are older than this program.
+    #[test]
+    fn the_rows_of_the_page_are_those_of_this_program() {
+        let columns = |path| Rows::of_csv(&std::fs::read_to_string(path).unwrap()).unwrap().columns;
+        assert_eq!(columns(ROWS), columns_of(&Row::default()));
+        assert_eq!(columns(CURVE), columns_of(&curve::Point::default()));
+    }
 }

@@ -22,7 +22,8 @@ const MIN_EXCESS: f64 = 60.0;
 #[derive(Clone, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ScanFilterSettings {
-    /// Ranges beyond this one are not used, m: there the error of the heading is larger than a cell.
+    /// A beam with a longer range shows free space up to this range, m, and nothing behind: there the error of the heading is larger
+    /// than a cell.
     pub max_range_m: f64,
     /// The range jumps between two hits whose line has a smaller angle to the beam than this, rad; the customary angle
     /// is that of the shadow filter of the ROS package `laser_filters`. 0: no jumps, every hit is kept.

@@ -77,7 +77,7 @@ pub(crate) struct Args {
     )]
     pub(crate) resolution: f64,
 
-    /// The maximum range, m: longer ranges are ignored
+    /// The maximum range, m: a beam with a longer range shows free space up to it, and nothing behind
     #[arg(
         long,
         value_name = "METERS",
