@@ -11,6 +11,7 @@
 //! cargo run -p curious-evaluation --example drift -- world=worlds/house.toml closed=1
 //! cargo run -p curious-evaluation --example drift -- carried_m=3 carried_deg=180
 //! cargo run -p curious-evaluation --example drift -- shelves=1
+//! cargo run -p curious-evaluation --example drift -- trials=4 minutes=4 rows=drift.csv table=houses variant="360 beams"
 //! ```
 
 mod corners;
@@ -18,6 +19,7 @@ mod driver;
 mod options;
 mod recovery;
 mod relocations;
+mod row;
 mod score;
 mod shelves;
 
@@ -43,7 +45,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     if options.trials > 1 {
         total.print("all");
     }
-    Ok(())
+    match &options.rows {
+        Some(path) => row::append(path, &row::Row::of(&options, &total)),
+        None => Ok(()),
+    }
 }
 
 /// One run.

@@ -49,6 +49,10 @@ pub(crate) struct Options {
     no_rates: bool,
     /// The odometry never moves.
     no_odometry: bool,
+    /// The file that gets a row with the results, and what the row is called.
+    pub(crate) rows: Option<String>,
+    pub(crate) table: String,
+    pub(crate) variant: String,
 }
 
 impl Options {
@@ -78,6 +82,9 @@ impl Options {
             moved: false,
             no_rates: false,
             no_odometry: false,
+            rows: None,
+            table: String::new(),
+            variant: String::new(),
         };
         for argument in arguments {
             let (key, value) = argument.split_once('=').ok_or("arguments have the form key=value")?;
@@ -85,6 +92,9 @@ impl Options {
             let is_on = value == "1";
             match key {
                 "world" => options.world = Some(value.to_owned()),
+                "rows" => options.rows = Some(value.to_owned()),
+                "table" => value.clone_into(&mut options.table),
+                "variant" => value.clone_into(&mut options.variant),
                 "generate" => options.generate = number()? as u64,
                 "seed" => options.seed = number()? as u64,
                 "trials" => options.trials = number()? as u64,

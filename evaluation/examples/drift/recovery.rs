@@ -21,11 +21,11 @@ pub(crate) struct Recovery {
     /// The last true pose and its odometry.
     last: Option<[Isometry2<f64>; 2]>,
     displaced_s: Option<f64>,
-    times_s: Vec<f64>,
+    pub(crate) times_s: Vec<f64>,
     /// The number of displacements after which the next one came first.
-    overtaken: usize,
+    pub(crate) overtaken: usize,
     /// The number of scans with a certain pose that is wrong.
-    wrong: usize,
+    pub(crate) wrong: usize,
 }
 
 impl Recovery {

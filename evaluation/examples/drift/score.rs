@@ -8,18 +8,18 @@ use std::time::Duration;
 /// The measurements of a run.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Score {
-    errors_m: Vec<f64>,
-    headings_rad: Vec<f64>,
+    pub(crate) errors_m: Vec<f64>,
+    pub(crate) headings_rad: Vec<f64>,
     /// Errors of the position over their standard deviation.
     ratios: Vec<f64>,
-    uncertain: usize,
-    lost: usize,
-    scans: usize,
+    pub(crate) uncertain: usize,
+    pub(crate) lost: usize,
+    pub(crate) scans: usize,
     elapsed: Duration,
     slowest: Duration,
     /// Changes per cell in the map with exact poses, and in that with estimated poses.
     changes: [Vec<u32>; 2],
-    false_changes: [u32; 2],
+    pub(crate) false_changes: [u32; 2],
     all_changes: [u32; 2],
     pub(crate) recovery: Recovery,
 }
