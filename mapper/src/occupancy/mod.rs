@@ -92,7 +92,7 @@ impl OccupancyChoice {
     }
 
     /// `steady`: stores the position of surfaces within cells, and clears a cell only by beams that pass through
-    /// its surface. Static walls then rarely change: 0 to 30 false changes on a tour of a static world, more where
+    /// its surface. Static walls then rarely change: 0 to 81 false changes on a tour of a static world, more where
     /// things move (`docs/flicker.md`, `docs/results.md`).
     pub fn steady() -> Self {
         Self::new("steady", |settings, cells| Box::new(SurfaceGrid::new(settings.steady.clone(), cells)))
