@@ -204,26 +204,32 @@ mod tests {
     use interfaces::{Grid, GridFrame};
     use mapper::MapperSettings;
 
-    /// Two rooms, a door between them, and unknown space behind the right one; the lowest row is the last one.
+    /// Two rooms, a door between them, and unknown space behind the right one; the lowest row is the last one. A sign is a square of
+    /// 0.5 m, which is counted once.
     const MAP: [&str; 5] = ["###########", "#...#....??", "#........??", "#...#....??", "###########"];
     /// The side of a cell, m.
-    const CELL_M: f64 = 0.5;
+    const CELL_M: f64 = 0.125;
+    /// The columns and rows of the map, and the row of the robot.
+    const SIZE: [usize; 2] = [44, 20];
+    const ROW: usize = 10;
 
     fn map() -> Mapper {
-        let frame = GridFrame::new(Point2::origin(), CELL_M, 11, 5).unwrap();
+        let frame = GridFrame::new(Point2::origin(), CELL_M, SIZE[0], SIZE[1]).unwrap();
         let state = |cell: char| match cell {
             '.' => CellState::Free,
             '#' => CellState::Blocked,
             _ => CellState::Unknown,
         };
-        let cells = MAP.iter().rev().flat_map(|row| row.chars()).map(state).collect();
+        let side = TILE as usize;
+        let sign = |index: usize| MAP[4 - index / SIZE[0] / side].as_bytes()[index % SIZE[0] / side] as char;
+        let cells = (0..SIZE[0] * SIZE[1]).map(|index| state(sign(index))).collect();
         Mapper::with_prior(&MapperSettings::default(), Grid::from_cells(frame, cells).unwrap()).unwrap()
     }
 
-    /// Travel times along the middle row, 1 s per cell from the robot in column 1; nothing else is reachable.
+    /// Travel times along the row of the robot, which is in column 4, in steps of 0.25 s; nothing else is reachable.
     fn times() -> Vec<f64> {
-        let mut times = vec![f64::INFINITY; 55];
-        (1..9).for_each(|column| times[2 * 11 + column] = column as f64 - 1.0);
+        let mut times = vec![f64::INFINITY; SIZE[0] * SIZE[1]];
+        (4..36).for_each(|column| times[ROW * SIZE[0] + column] = 0.25 * (column as f64 - 4.0));
         times
     }
 
@@ -234,9 +240,9 @@ mod tests {
 
     #[test]
     fn a_goal_without_a_path_has_the_time_to_the_nearest_reachable_cell() {
-        let (here, above) = (route(Cell { x: 7, y: 2 }), route(Cell { x: 7, y: 3 }));
+        let (here, above) = (route(Cell { x: 28, y: 10 }), route(Cell { x: 28, y: 14 }));
         assert_eq!((here[0], here[1]), (6.0 / 60.0, 0.0));
-        // One cell of 0.5 m above: d / (d + 1 m).
+        // 0.5 m above: d / (d + 1 m).
         assert_eq!((above[0], above[1]), (6.0 / 60.0, 1.0 / 3.0));
         assert_eq!(above[2..], here[2..]);
     }
@@ -246,20 +252,20 @@ mod tests {
         let (mapper, times) = (map(), times());
         let routes = Routes::new(&mapper, &times, |_| Point2::origin());
         let columns: Vec<f64> =
-            routes.places(2 * 11 + 7).iter().map(|place| place.x / CELL_M - 0.5).collect();
-        assert_eq!(columns, [1.0, 3.0, 5.0, 7.0]);
+            routes.places(ROW * SIZE[0] + 28).iter().map(|place| place.x / CELL_M - 0.5).collect();
+        assert_eq!(columns, [4.0, 12.0, 20.0, 28.0]);
     }
 
     #[test]
-    fn the_way_through_the_door_shows_unknown_space_and_the_way_in_the_room_less_of_it() {
-        let (far, near) = (route(Cell { x: 8, y: 2 }), route(Cell { x: 2, y: 2 }));
-        assert!(far[2] > near[2] + 0.05, "{far:?} {near:?}");
-        assert!(far[0] > near[0]);
+    fn unknown_squares_in_view_from_several_places_count_once() {
+        let far = route(Cell { x: 34, y: 10 });
+        // Six squares of 0.25 m²: u / (u + 5 m²).
+        assert_eq!(far[2], (1.5 / 6.5) as f32);
     }
 
     #[test]
     fn nothing_is_promised_where_nothing_is_reachable() {
-        let (mapper, times) = (map(), vec![f64::INFINITY; 55]);
+        let (mapper, times) = (map(), vec![f64::INFINITY; SIZE[0] * SIZE[1]]);
         let mut routes = Routes::new(&mapper, &times, |_| Point2::origin());
         assert_eq!(routes.to(Cell { x: 2, y: 2 }), [1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
     }
