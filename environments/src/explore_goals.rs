@@ -4,6 +4,7 @@ use crate::candidates::{Candidate, FEATURES};
 use crate::explore_place::ExplorePlace;
 use crate::explorer::{Explorer, INFO};
 use crate::picture::Picture;
+use crate::routes::{self, Route, Routes};
 use crate::task::{Actions, Part, Results, Task, TaskError, write_state};
 use agent::{Agent, AgentSettings, Policy, Travel};
 use controller::{ControlInput, Controller, DiffDrive, Driver, Status};
@@ -40,6 +41,10 @@ pub struct GoalSettings {
     pub strategies: Vec<Policy>,
     /// The longest time of a step, s: a goal that takes longer is left for the next one.
     pub max_goal_s: f64,
+    /// Whether the robot explores around a goal, or stops there, as its strategy wishes. If not, a step ends on arrival.
+    pub stays_at_goals: bool,
+    /// Whether the observation has the part `routes`: what the whole way to each goal promises.
+    pub shows_routes: bool,
 }
 
 impl Default for GoalSettings {
@@ -54,7 +59,12 @@ impl Default for GoalSettings {
             "predicted-change",
             "random",
         ];
-        Self { strategies: names.into_iter().filter_map(Policy::named).collect(), max_goal_s: 45.0 }
+        Self {
+            strategies: names.into_iter().filter_map(Policy::named).collect(),
+            max_goal_s: 45.0,
+            stays_at_goals: true,
+            shows_routes: false,
+        }
     }
 }
 
@@ -78,7 +88,7 @@ impl GoalSettings {
 ///
 /// The observation has two parts. `candidates`: one row of features per strategy. `state`: position, heading, time left, what
 /// is known, and the features of the paper's agent. `local_map` is as in
-/// [`Explore`](crate::Explore), if it is shown. The reward is that of [`Explore`](crate::Explore), summed over the step.
+/// [`Explore`](crate::Explore), if it is shown, and `routes`, if they are shown, have one row of features per strategy. The reward is that of [`Explore`](crate::Explore), summed over the step.
 ///
 /// A strategy whose goal is not taken forgets it, and learns nothing from what the robot sees meanwhile. A policy whose
 /// index is always chosen therefore does what it does alone.
@@ -89,6 +99,8 @@ pub struct ExploreGoals {
     agents: Mutex<Vec<Agent>>,
     driver: Controller<DiffDrive>,
     candidates: Vec<Candidate>,
+    /// The routes to the candidates, if they are shown.
+    routes: Vec<Route>,
     last_goal: Option<[f64; 2]>,
     last_reward_per_s: f64,
     /// The points of the last scan, m: a mapper that was restored does not have them until the next reading.
@@ -108,8 +120,20 @@ impl ExploreGoals {
         let driver = explorer.one.settings.controller(0)?;
         let candidates = vec![Candidate::default(); settings.strategies.len()];
         let settings = Arc::clone(settings);
-        let (last_goal, last_reward_per_s, points) = (None, 0.0, Vec::new());
-        Ok(Self { settings, explorer, agents, driver, candidates, last_goal, last_reward_per_s, points })
+        let shown = if settings.shows_routes { candidates.len() } else { 0 };
+        let (routes, points) = (vec![Route::default(); shown], Vec::new());
+        let (last_goal, last_reward_per_s) = (None, 0.0);
+        Ok(Self {
+            settings,
+            explorer,
+            agents,
+            driver,
+            candidates,
+            routes,
+            last_goal,
+            last_reward_per_s,
+            points,
+        })
     }
 
     /// New strategies and a new controller for an episode.
@@ -126,7 +150,7 @@ impl ExploreGoals {
     /// Lets every strategy propose a goal.
     fn propose(&mut self) {
         self.points = self.explorer.robot.mapper.points().to_vec();
-        let Self { explorer, agents, driver, candidates, last_goal, .. } = self;
+        let Self { settings, explorer, agents, driver, candidates, last_goal, routes, .. } = self;
         let mapper = &explorer.robot.mapper;
         let pose = explorer.reading.pose;
         let from = Point2::from(pose.translation.vector);
@@ -134,10 +158,14 @@ impl ExploreGoals {
         driver.travel_times(&input(mapper, &pose, &[]), &mut times);
         let mut travel = Times(&times);
         let agents = agents.get_mut().unwrap_or_else(PoisonError::into_inner);
-        for (agent, candidate) in agents.iter_mut().zip(candidates) {
+        for (agent, candidate) in agents.iter_mut().zip(&mut *candidates) {
             let goal = agent.next_goal(mapper, &pose, &mut travel);
             let travel_s = mapper.frame().index(goal.cell).map_or(f64::INFINITY, |index| times[index]);
             *candidate = Candidate::new(mapper, &goal, &from, travel_s, *last_goal);
+        }
+        if settings.shows_routes {
+            let mut to = Routes::new(mapper, &times, |index| explorer.seen_from(index));
+            *routes = candidates.iter().map(|goal| to.to(mapper.frame().cell_at(&goal.position()))).collect();
         }
     }
 
@@ -150,7 +178,8 @@ impl ExploreGoals {
             .enumerate()
             .filter(|(index, _)| *index != choice)
             .for_each(|(_, agent)| agent.decline());
-        driver.set_goal(candidates[choice].position(), candidates[choice].watch);
+        let stay = if settings.stays_at_goals { candidates[choice].watch } else { Some(0.0) };
+        driver.set_goal(candidates[choice].position(), stay);
         let until_s = explorer.world.time_s() + settings.max_goal_s;
         let mut reward = 0.0;
         // The controller already has the transitions of this reading.
@@ -228,6 +257,7 @@ impl Task for ExploreGoals {
         let mut parts =
             vec![Part { slices: FEATURES.to_vec(), ..candidates }, Part { slices: STATE.to_vec(), ..state }];
         parts.extend(self.explorer.place.local_map().map(|local| local.part()));
+        parts.extend(self.settings.shows_routes.then(|| routes::part(self.candidates.len())));
         parts
     }
 
@@ -258,7 +288,9 @@ impl Task for ExploreGoals {
 
     fn observe(&mut self, observations: &mut [f32]) {
         let (candidates, rest) = observations.split_at_mut(self.candidates.len() * FEATURES.len());
-        let (state, local_map) = rest.split_at_mut(STATE_LEN);
+        let (state, rest) = rest.split_at_mut(STATE_LEN);
+        let (local_map, routes) = rest.split_at_mut(rest.len() - self.routes.as_flattened().len());
+        routes.copy_from_slice(self.routes.as_flattened());
         for (row, candidate) in candidates.chunks_mut(FEATURES.len()).zip(&self.candidates) {
             row.copy_from_slice(&candidate.features);
         }
@@ -304,23 +336,24 @@ impl Task for ExploreGoals {
     fn snapshot(&mut self) -> Vec<u8> {
         let explorer = self.explorer.snapshot();
         let learned = interfaces::snapshot(self.values());
-        let last = (self.last_goal, self.last_reward_per_s, &self.points);
+        let last = (self.last_goal, self.last_reward_per_s, &self.points, &self.routes);
         to_bytes(&(explorer, learned, &self.candidates, last))
     }
 
     fn restore(&mut self, snapshot: &[u8]) -> Result<(), SnapshotError> {
-        type Last = (Option<[f64; 2]>, f64, Vec<Point2<f64>>);
+        type Last = (Option<[f64; 2]>, f64, Vec<Point2<f64>>, Vec<Route>);
         type Saved = (Vec<u8>, Vec<u8>, Vec<Candidate>, Last);
         let (explorer, learned, candidates, last): Saved =
             from_bytes(snapshot).map_err(|_| SnapshotError::Damaged)?;
-        if candidates.len() != self.candidates.len() {
+        let routes = if self.settings.shows_routes { candidates.len() } else { 0 };
+        if candidates.len() != self.candidates.len() || last.3.len() != routes {
             return Err(SnapshotError::OtherSpec);
         }
         self.explorer.restore(&explorer)?;
         self.begin(0);
         interfaces::restore(self.values(), &learned).map_err(|_| SnapshotError::Damaged)?;
         self.candidates = candidates;
-        (self.last_goal, self.last_reward_per_s, self.points) = last;
+        (self.last_goal, self.last_reward_per_s, self.points, self.routes) = last;
         Ok(())
     }
 }

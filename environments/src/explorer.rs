@@ -10,6 +10,7 @@ use interfaces::{
     to_bytes,
 };
 use mapper::Mapper;
+use nalgebra::Point2;
 use robot::{NoPilot, Robot};
 use sim::physics::{PhysicsWorld, SnapshotError};
 use std::sync::Arc;
@@ -206,6 +207,11 @@ impl Explorer {
         if let Some(local) = self.place.local_map() {
             local.write(&self.robot.mapper, &self.reading.pose, layers);
         }
+    }
+
+    /// From where the robot last saw a cell, m.
+    pub(crate) fn seen_from(&self, index: usize) -> Point2<f64> {
+        self.path[self.seen_at[index] as usize].into()
     }
 
     /// The area that is known, m².

@@ -33,6 +33,7 @@ mod memory;
 mod patches;
 mod picture;
 mod place;
+mod routes;
 mod task;
 mod threads;
 

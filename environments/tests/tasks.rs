@@ -298,7 +298,7 @@ fn goal_tasks(count: usize, max_steps: u32) -> Vec<ExploreGoals> {
         ..ExploreSettings::default()
     };
     let place = Arc::new(ExplorePlace::of_houses((100..120).collect(), settings).unwrap());
-    let goals = Arc::new(GoalSettings::default());
+    let goals = Arc::new(GoalSettings { shows_routes: true, ..GoalSettings::default() });
     (0..count).map(|_| ExploreGoals::new(&place, &goals).unwrap()).collect()
 }
 
@@ -322,6 +322,47 @@ fn run_goals(first: usize, count: usize, is_parallel: bool) -> Vec<Vec<u32>> {
     }
     assert!(resets > 0, "no episode ended");
     rows
+}
+
+/// The results of some steps with goals, with or without routes in the observation.
+fn steps_of_goals(shows_routes: bool) -> Vec<(Vec<f32>, Vec<f32>, Vec<f32>)> {
+    let settings = ExploreSettings { beams: Some(60), ..ExploreSettings::default() };
+    let place = Arc::new(ExplorePlace::of_houses((100..120).collect(), settings).unwrap());
+    let goals = Arc::new(GoalSettings { shows_routes, ..GoalSettings::default() });
+    let mut batch = Batch::new(vec![ExploreGoals::new(&place, &goals).unwrap()]);
+    batch.reset(&[5]).unwrap();
+    let step = |step: usize| {
+        let results = batch.step(&[(step % 8) as f32], &[9]).unwrap();
+        (results.observations.clone(), results.rewards.clone(), results.info.clone())
+    };
+    (0..12).map(step).collect()
+}
+
+#[test]
+fn routes_change_nothing_else() {
+    for (without, with) in steps_of_goals(false).iter().zip(&steps_of_goals(true)) {
+        let (same, routes) = with.0.split_at(without.0.len());
+        assert_eq!((same, &with.1, &with.2), (&without.0[..], &without.1, &without.2));
+        assert_eq!(routes.len(), 8 * 7);
+        assert!(routes.iter().all(|value| (0.0..=1.0).contains(value)) && routes.iter().sum::<f32>() > 1.0);
+    }
+}
+
+#[test]
+fn a_step_that_ends_on_arrival_takes_less_time() {
+    let place = Arc::new(ExplorePlace::of_houses((100..120).collect(), ExploreSettings::default()).unwrap());
+    let times = |stays_at_goals| {
+        let goals = Arc::new(GoalSettings { stays_at_goals, ..GoalSettings::default() });
+        let mut batch = Batch::new(vec![ExploreGoals::new(&place, &goals).unwrap()]);
+        let mut first_step = |choice| {
+            batch.reset(&[5]).unwrap();
+            *batch.step(&[choice as f32], &[9]).unwrap().info.last().unwrap()
+        };
+        (0..8).map(&mut first_step).collect::<Vec<_>>()
+    };
+    let (without, with) = (times(false), times(true));
+    assert!(without.iter().zip(&with).all(|(without, with)| without <= with), "{without:?} {with:?}");
+    assert!(without.iter().sum::<f32>() < 0.9 * with.iter().sum::<f32>(), "{without:?} {with:?}");
 }
 
 #[test]

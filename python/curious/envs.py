@@ -27,7 +27,8 @@
 ``ExploreGoalsEnv`` and ``ExploreGoalsVectorEnv``
     The same robot, which drives by itself: the action, ``Discrete``, is the number of the strategy whose goal is taken.
     Observation, a dict: ``candidates``, shape (strategies, 9), from 0 to 1: what the goal of each strategy promises;
-    ``state``, shape (9,); ``local_map`` as above, if ``shows_local_map=True``. A step ends when the goal is finished, or after
+    ``state``, shape (9,); ``local_map`` as above, if ``shows_local_map=True``; ``routes``, shape (strategies, 7), from 0 to 1, if
+    ``shows_routes=True``: what the whole way to each goal promises. A step ends when the goal is finished, or after
     45 s; the reward is that of its readings.
 
 ``slices`` of an environment names the values of an observation: ``observation[env.slices["goal_direction"]]`` in Drive,
@@ -90,7 +91,7 @@ def _world_seed(value: Any) -> int:
 
 def _observation_space(parts: list[tuple[str, list[int]]]) -> spaces.Space:
     def box(name: str, shape: list[int]) -> spaces.Box:
-        low = 0.0 if name in ("scan", "map", "candidates", "local_map") else -1.0
+        low = 0.0 if name in ("scan", "map", "candidates", "local_map", "routes") else -1.0
         return spaces.Box(low, 1.0, tuple(shape), np.float32)
 
     if len(parts) == 1:
@@ -496,7 +497,8 @@ class ExploreGoalsEnv(_Single):
     """Exploring by the choice of goals; see the module.
 
     Settings: those of ``ExploreEnv``, ``strategies`` (names of ``curious.strategies()``: each proposes a goal at every step),
-    ``max_goal_s`` (the longest time of a step, s).
+    ``max_goal_s`` (the longest time of a step, s), ``stays_at_goals`` (False: a step ends on arrival; the robot neither explores
+    around the goal nor stops there), ``shows_routes``.
     """
 
     _make = staticmethod(_explore_goals)

@@ -13,6 +13,7 @@ import copy
 import json
 import time
 from concurrent.futures import ThreadPoolExecutor
+from types import MappingProxyType
 from typing import Any, Callable, Sequence
 
 import numpy as np
@@ -195,15 +196,12 @@ def episode(env: Any, act: Callable[[Any, int], Any], seed: int) -> list[float]:
     return [reward, *(info[name] for name in FIELDS[1:])]
 
 
-def measure(name: str, policy: Choose | None, houses: int, threads: int) -> np.ndarray:
-    """One episode per seed, from 1 on, in houses of `TEST_HOUSES`: shape (houses, FIELDS)."""
-    is_single = policy is None and name != "any goal"
+def measure(name: str, policy: Choose | None, houses: int, threads: int, settings: Any = MappingProxyType({})) -> np.ndarray:
+    """One episode per seed, from 1 on, in houses of `TEST_HOUSES`; `settings` are those of the learned policy's goals."""
+    used = {"strategies": STRATEGIES, **settings} if policy is not None or name == "any goal" else {"strategies": [name]}
 
     def some(first: int) -> list[list[float]]:
-        if name in DRIVERS:
-            env: Any = ExploreEnv(houses=TEST_HOUSES)
-        else:
-            env = ExploreGoalsEnv(houses=TEST_HOUSES, strategies=[name] if is_single else STRATEGIES)
+        env: Any = ExploreEnv(houses=TEST_HOUSES) if name in DRIVERS else ExploreGoalsEnv(houses=TEST_HOUSES, **used)
         return [one(env, seed) for seed in range(first, houses + 1, threads)]
 
     def one(env: Any, seed: int) -> list[float]:
@@ -212,7 +210,7 @@ def measure(name: str, policy: Choose | None, houses: int, threads: int) -> np.n
             return episode(env, lambda seen, step: DRIVERS[name](seen, step, random), seed)
         if policy is not None:
             return episode(env, lambda seen, _: policy({key: part[None] for key, part in seen.items()})[0], seed)
-        return episode(env, lambda *_: 0 if is_single else random.integers(0, len(STRATEGIES)), seed)
+        return episode(env, lambda *_: random.integers(0, len(used["strategies"])), seed)
 
     with ThreadPoolExecutor(threads) as pool:
         parts = list(pool.map(some, range(1, threads + 1)))
@@ -261,15 +259,17 @@ def add_arguments(parser: argparse.ArgumentParser, houses: int) -> None:
     parser.add_argument("--json", help="a file for all numbers")
 
 
-def report(policy: Choose | None, curve: list[tuple[float, float]], arguments: argparse.Namespace) -> None:
-    """Measures the learned policy, if there is one, and the others in the test houses."""
+def report(
+    policy: Choose | None, curve: list[tuple[float, float]], arguments: argparse.Namespace, settings: Any = MappingProxyType({})
+) -> None:
+    """Measures the learned policy, if there is one, and the others in the test houses; `settings`: see `measure`."""
     results: dict[str, np.ndarray] = {}
     if policy is not None:
-        results["learned"] = measure("learned", policy, arguments.houses, arguments.threads)
+        results["learned"] = measure("learned", policy, arguments.houses, arguments.threads, settings)
     print(f"\n{arguments.houses} test houses   reward ± s.e.   found    seen m²    contacts   p against learned")
     for name in [*results, *filter(None, arguments.others.split(","))]:
         if name not in results:
-            results[name] = measure(name, None, arguments.houses, arguments.threads)
+            results[name] = measure(name, None, arguments.houses, arguments.threads, settings)
         mean, error = results[name].mean(axis=0), results[name].std(axis=0, ddof=1) / np.sqrt(arguments.houses)
         p = ""
         if "learned" in results and name != "learned":

@@ -57,6 +57,14 @@ pub(crate) fn goal_settings(keywords: Option<&Bound<'_, PyDict>>) -> PyResult<Go
         set(&mut settings.max_goal_s, &value, "max_goal_s")?;
         keywords.del_item("max_goal_s")?;
     }
+    for (key, to) in
+        [("stays_at_goals", &mut settings.stays_at_goals), ("shows_routes", &mut settings.shows_routes)]
+    {
+        if let Some(value) = keywords.get_item(key)? {
+            set(to, &value, key)?;
+            keywords.del_item(key)?;
+        }
+    }
     if let Some(value) = keywords.get_item("strategies")? {
         let mut names: Vec<String> = Vec::new();
         set(&mut names, &value, "strategies")?;

@@ -19,7 +19,7 @@ SMALL = {
     "curious/Drive-v0": {"max_steps": 25},
     "curious/Explore-v0": {"worlds": [curious.Spec.house(1), curious.Spec.house(4)], "max_steps": 25, "beams": 60},
     "curious/Explore-v1": {"houses": range(3), "max_steps": 25, "beams": 60, "shows_local_map": True, "local_map_cells": 12},
-    GOALS: {"houses": range(3), "max_steps": 150, "beams": 60, "max_goal_s": 3.0, "shows_local_map": True},
+    GOALS: {"houses": range(3), "max_steps": 150, "beams": 60, "max_goal_s": 3.0, "shows_local_map": True, "shows_routes": True},
 }
 
 
@@ -275,6 +275,25 @@ def test_a_local_map_is_an_option_with_named_layers(name):
     assert (layers["age"][layers["unknown"] == 1.0] == 1.0).all() and layers["age"][10, 10] < 0.1
     with pytest.raises(ValueError, match="local_map_cells"):
         gymnasium.make(name, local_map_cells=1)
+
+
+def test_routes_are_an_option_with_named_values():
+    settings = {"houses": range(3), "max_steps": 300, "beams": 60}
+    plain, env = (gymnasium.make(GOALS, shows_routes=shows, **settings).unwrapped for shows in (False, True))
+    for each in (plain, env):
+        each.reset(seed=5)
+    for step in range(3):
+        without, with_routes = (each.step(action(0, step, GOALS))[0] for each in (plain, env))
+        for part, values in without.items():
+            np.testing.assert_array_equal(values, with_routes[part])
+    assert "routes" not in without and env.observation_space["routes"].contains(with_routes["routes"])
+    assert list(env.slices["routes"]) == ["travel", "gap", "unseen", "stale", "age", "expected_changes", "changing"]
+    direct, route = (with_routes[part][:, env.slices[part]["travel"]] for part in ("candidates", "routes"))
+    # Every route ends where the robot can go; that of a goal with a path is the same.
+    assert (route < 1.0).all()
+    np.testing.assert_array_equal(route[direct < 1.0], direct[direct < 1.0])
+    with pytest.raises(TypeError, match="stays_at_goals"):
+        gymnasium.make(GOALS, stays_at_goals="no")
 
 
 def test_every_task_counts_contacts():
