@@ -88,7 +88,8 @@ impl GoalSettings {
 ///
 /// The observation has two parts. `candidates`: one row of features per strategy. `state`: position, heading, time left, what
 /// is known, and the features of the paper's agent. `local_map` is as in
-/// [`Explore`](crate::Explore), if it is shown, and `routes`, if they are shown, have one row of features per strategy. The reward is that of [`Explore`](crate::Explore), summed over the step.
+/// [`Explore`](crate::Explore), if it is shown; `routes`, if they are shown, have one row of features per strategy. The reward is
+/// that of [`Explore`](crate::Explore), summed over the step.
 ///
 /// A strategy whose goal is not taken forgets it, and learns nothing from what the robot sees meanwhile. A policy whose
 /// index is always chosen therefore does what it does alone.

@@ -99,7 +99,7 @@ PARAMETERS (--ros-args -p name:=value, or --params-file FILE)
   scan_topic, odom_topic  [/scan, odom]
   resolution              side of a cell, m [0.05]
   map_size                side of the map around the start, m [40.0]
-  max_laser_range         longer ranges are not used, m [20.0]
+  max_laser_range         a longer range shows free space up to this one, m [20.0]
   no_return               what a beam without a return means: learn, free or ignore [learn]
   range_noise             standard deviation of ranges, m [0.02]
   map_update_interval     time between two whole maps, s; longer for large maps [5.0]
