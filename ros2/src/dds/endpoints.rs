@@ -12,9 +12,10 @@ const POLL: Duration = Duration::from_millis(5);
 
 /// A node, to which endpoints are added.
 ///
-/// Fast DDS (3.2) keeps announcements without a source timestamp, as those of our library, in the order in which they arrive. If a new one
-/// arrives between the request for earlier ones and the answer, it drops the earlier ones without a word: their topics are never
-/// matched. Without a pause, 8 of 20 starts of two nodes and a participant of Fast DDS at the same time lost a topic or a node.
+/// Recorded packets show that Fast DDS (3.2) can drop announcements without a word, so that their topics are never matched: this happens
+/// if a new one arrives between its request for earlier ones and the answer. The probable reason is that it keeps announcements without
+/// a source timestamp, as those of our library, in the order in which they arrive. Without a pause, 8 of 20 starts of two nodes and a
+/// participant of Fast DDS at the same time lost a topic or a node.
 pub(super) struct Endpoints {
     node: Node,
     others: Others,
