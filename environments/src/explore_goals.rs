@@ -346,8 +346,7 @@ impl Task for ExploreGoals {
         type Saved = (Vec<u8>, Vec<u8>, Vec<Candidate>, Last);
         let (explorer, learned, candidates, last): Saved =
             from_bytes(snapshot).map_err(|_| SnapshotError::Damaged)?;
-        let routes = if self.settings.shows_routes { candidates.len() } else { 0 };
-        if candidates.len() != self.candidates.len() || last.3.len() != routes {
+        if candidates.len() != self.candidates.len() || last.3.len() != self.routes.len() {
             return Err(SnapshotError::OtherSpec);
         }
         self.explorer.restore(&explorer)?;

@@ -21,7 +21,7 @@ pub(crate) const INFO: &[&str] =
 
 /// A change is found by a move if the cell was last seen from a place at least this far away, m: not what a door hides and
 /// shows again.
-const MOVE_M: f64 = 2.0;
+pub(crate) const MOVE_M: f64 = 2.0;
 /// The number of readings from one note of when each cell was seen to the next: 5 s, less than the gaps of found changes.
 const NOTE_EVERY: usize = 50;
 

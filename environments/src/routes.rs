@@ -1,5 +1,6 @@
 //! What the way to a goal promises: the view from the whole route, and not from its end alone.
 
+use crate::explorer::MOVE_M;
 use crate::task::Part;
 use interfaces::{Cell, CellState};
 use mapper::Mapper;
@@ -36,9 +37,8 @@ const STEP_M: f64 = 0.1;
 const UNKNOWN_M: f64 = 1.5;
 /// The side of the squares that are counted once, in cells.
 const TILE: i32 = 4;
-/// A change counts as found in a cell that was out of view this long, s, and was last seen from this far away, m.
+/// A change counts as found in a cell that was out of view for longer than the `max_gap` of the mapper of a laser, s.
 const GAP_S: f64 = 8.0;
-const MOVE_M: f64 = 2.0;
 
 /// The part of the observation.
 pub(crate) fn part(goals: usize) -> Part {
@@ -68,7 +68,7 @@ impl<'a, F: Fn(usize) -> Point2<f64>> Routes<'a, F> {
         let stale = mapper.changed().filter(|&index| mapper.recency(index) >= GAP_S);
         routes.changing = stale
             .map(|index| {
-                let tile = routes.tile(frame.cell_at(&frame.center(frame.cell(index))));
+                let tile = routes.tile(frame.cell(index));
                 (tile, mapper.change_probability(index), (routes.seen_from)(index))
             })
             .collect();

@@ -158,8 +158,9 @@ fn main() -> anyhow::Result<()> {
     let mut rows = Vec::new();
     for bench in BENCHES {
         for occupancy in [OccupancyChoice::steady(), OccupancyChoice::naive()] {
-            rows.push(row(bench, &occupancy)?);
-            println!("{:?}", rows.last());
+            let row = row(bench, &occupancy)?;
+            println!("{row:?}");
+            rows.push(row);
         }
     }
     write_rows(Path::new(ROWS), COMMAND, &rows)?;

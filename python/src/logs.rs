@@ -109,7 +109,8 @@ pub(crate) struct Survey {
 /// first pass finds the trajectory, the second one learns the changes.
 ///
 /// `pose`: "localized" (the trajectory is found from scans and odometry), "odometry", "exact", "corrected" (of a log that was opened
-/// with `corrected = True`); by default "corrected" for such a log, "exact" where the laser stands, otherwise "localized". `cell`: m. `max_range`: a longer range shows free space up to this one, m.
+/// with `corrected = True`); by default "corrected" for such a log, "exact" where the laser stands, otherwise "localized".
+/// `cell`: m. `max_range`: a longer range shows free space up to this one, m.
 #[pyfunction]
 #[pyo3(signature = (log, *, pose = None, cell = 0.05, max_range = 20.0, estimator = None, range_noise = None))]
 pub(crate) fn map_log(
