@@ -4,6 +4,7 @@
 //! cargo run -p curious-reports --example intrinsic_motivation -- --csv study.csv
 //! cargo run -p curious-reports --example intrinsic_motivation -- --shard 1/2 --csv 1.csv             # and 2/2
 //! cargo run -p curious-reports --example intrinsic_motivation -- --merge 1.csv 2.csv
+//! cargo run -p curious-reports --example intrinsic_motivation -- --merge study.csv --page docs/strategies.md
 //! ```
 //!
 //! `cells-MOTIVE` is tabular Q-learning over the cells of the robot: it chooses single steps, and learns anew in every world.
@@ -41,15 +42,14 @@ mod tiles;
 #[path = "intrinsic_motivation/view.rs"]
 mod view;
 
-use anyhow::ensure;
+use anyhow::{Context, ensure};
 use cells::CellSettings;
 use clap::Parser;
 use goals::{GoalSettings, Learned};
-use motives::RANDOM;
 use rayon::prelude::*;
 use reports::shards::Shard;
 use rows::Row;
-use runs::{GOALS, Run, Tuned, learners, train};
+use runs::{Run, Tuned, can_be_trained, learners, train};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 use study::Study;
@@ -96,6 +96,9 @@ struct Options {
     /// Computes nothing: prints the tables of these files
     #[arg(long, num_args = 1.., conflicts_with = "csv")]
     merge: Vec<PathBuf>,
+    /// Writes the tables of this page anew, from the files of --merge
+    #[arg(long, value_name = "PAGE", requires = "merge")]
+    page: Option<PathBuf>,
 }
 
 fn learner(word: &str) -> Result<String, String> {
@@ -133,8 +136,8 @@ impl Options {
             for (estimator, learner) in
                 self.estimator.iter().flat_map(|name| all.iter().map(move |learner| (name, learner)))
             {
-                let can_be_trained = learner.starts_with(GOALS) && !learner.ends_with(RANDOM);
-                for &experience in self.experience.iter().filter(|steps| can_be_trained || **steps == 0) {
+                let trained = can_be_trained(learner);
+                for &experience in self.experience.iter().filter(|steps| trained || **steps == 0) {
                     let steps = if experience > 0 { self.steps.min(TRAINED_STEPS) } else { self.steps };
                     let (learner, estimator) = (learner.clone(), estimator.clone());
                     runs.push(Run { learner, experience, estimator, steps, seed });
@@ -170,8 +173,15 @@ impl Options {
 fn main() -> anyhow::Result<()> {
     let options = Options::parse();
     if !options.merge.is_empty() {
-        tables::print(study::merged(&options.merge)?);
-        return Ok(());
+        let rows = study::merged(&options.merge)?;
+        let Some(path) = &options.page else {
+            tables::print(rows);
+            return Ok(());
+        };
+        let page =
+            std::fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
+        let page = tables::rewritten(&page, rows).with_context(|| format!("in {}", path.display()))?;
+        return std::fs::write(path, page).with_context(|| format!("cannot write {}", path.display()));
     }
     let runs = options.runs();
     ensure!(!runs.is_empty(), "there is nothing to compute");

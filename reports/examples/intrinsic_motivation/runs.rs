@@ -19,7 +19,7 @@ pub(crate) const STRATEGIES: [&str; 6] =
 pub(crate) const WALK: &str = "walk";
 /// The first words of the names of learners over single steps, and of those over goals.
 const CELLS: &str = "cells-";
-pub(crate) const GOALS: &str = "goals-";
+const GOALS: &str = "goals-";
 
 /// A learner is trained in lives of this number of steps, each in another world.
 const TRAINING_LIFE: u64 = 5000;
@@ -32,6 +32,11 @@ pub(crate) fn learners() -> Vec<String> {
     let strategies = STRATEGIES.iter().map(ToString::to_string).chain([WALK.to_owned()]);
     let cells = MOTIVES[..INTRINSIC].iter().map(|motive| format!("{CELLS}{motive}"));
     strategies.chain(cells).chain(MOTIVES.iter().map(|motive| format!("{GOALS}{motive}"))).collect()
+}
+
+/// Whether a learner can learn in other worlds before it is measured: a learner over goals that does not choose at random.
+pub(crate) fn can_be_trained(learner: &str) -> bool {
+    learner.starts_with(GOALS) && !learner.ends_with(RANDOM)
 }
 
 /// What is computed, and what a row of the table begins with.

@@ -1,10 +1,12 @@
 use crate::cells::{CellSettings, Table, draw};
 use crate::distillation::Distillation;
 use crate::forward_model::ForwardModel;
+use crate::life::Outcome;
 use crate::motives::{Motive, Progress, Surprise, Visits, motive};
 use crate::rows::Row;
 use crate::runs::{Run, Tuned, train};
 use crate::study::RowFile;
+use crate::tables::rewritten;
 use crate::tiles::Tiles;
 use crate::view::View;
 use evaluation::trials::{Experiment, GridRobot, TrialStrategy};
@@ -221,4 +223,52 @@ fn a_table_is_read_back() {
     assert_eq!((rows.len(), &rows[0].run), (1, &run));
     assert!((rows[0].outcome.errors[0] - outcome.errors[0]).abs() < 1e-6);
     assert!(rows[0].outcome.areas[0].is_nan());
+}
+
+#[test]
+fn tables_are_made_of_rows() {
+    let row = |learner: &str, experience: u64, steps: u64, seed: u64, area: f64| {
+        let run = Run { experience, steps, ..some_run(learner, seed) };
+        let late = if steps > 20_000 { area / 4.0 } else { f64::NAN };
+        let errors = [area, area, area, area, area / 2.0, late, f64::NAN];
+        let outcome =
+            Outcome { areas: [2.0 * area, area], errors, map_quality: 0.99, changing: 0.5, brier: 0.1 };
+        Row { run, outcome }
+    };
+    let rows = vec![
+        row("goals-visits", 10_000, 20_000, 1, 0.5),
+        row("walk", 0, 20_000, 0, 0.9),
+        row("curious", 0, 20_000, 0, 1.0),
+        row("curious", 0, 20_000, 1, 2.0),
+        // A longer life of the same takes the place of the shorter one.
+        row("curious", 0, 50_000, 1, 2.0),
+    ];
+    let page = "a\n<!-- intrinsic_motivation areas two-state-gaps --><!-- end -->\n<!-- intrinsic_motivation times two-state-gaps --><!-- end -->\n";
+    let made = rewritten(page, rows.clone()).unwrap();
+    for line in [
+        "| `curious` |  | 2 | 3.000 | 1.500 |  |  | 0.990 | 0.500 | 0.100 |",
+        "| `walk` |  | 1 | 1.800 | 0.900 | 0.90, p = NaN |",
+        "| `goals-visits` | 10,000 | 1 | 1.000 | 0.500 | 0.25, p = NaN |",
+        "| `curious` | 1.500 | 1.500 | 1.500 | 1.500 | 0.750 | 0.500 |  |",
+        "| `walk` | 0.900 | 0.900 | 0.900 | 0.900 | 0.450 |  |  |",
+    ] {
+        assert!(made.contains(line), "{line}\n{made}");
+    }
+    for which in ["areas paper", "speed two-state-gaps", "areas"] {
+        let page = format!("<!-- intrinsic_motivation {which} --><!-- end -->");
+        assert!(rewritten(&page, rows.clone()).is_err(), "{which}");
+    }
+}
+
+/// A page with tables that were not made from the rows of the study is stale.
+#[test]
+fn the_page_has_what_the_file_says() {
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let rows = RowFile::read(&root.join("docs/results/intrinsic_motivation.csv")).unwrap();
+    let page = std::fs::read_to_string(root.join("docs/strategies.md")).unwrap();
+    assert_eq!(page.matches("<!-- intrinsic_motivation ").count(), 2);
+    assert!(
+        rewritten(&page, rows).unwrap() == page,
+        "cargo run -p curious-reports --example intrinsic_motivation -- --merge docs/results/intrinsic_motivation.csv --page docs/strategies.md"
+    );
 }

@@ -61,7 +61,7 @@ fn by_hand(page: &str) -> usize {
     let mut rest = page;
     while let Some((before, after)) = rest.split_once("\n<!-- ") {
         outside += before;
-        let is_table = ["rows ", "results_table ", "patrols ", "physics_patrols "]
+        let is_table = ["rows ", "results_table ", "patrols ", "physics_patrols ", "intrinsic_motivation "]
             .iter()
             .any(|name| after.starts_with(name));
         rest = if is_table { after.split_once("<!-- end -->").map_or("", |(_, after)| after) } else { after };
