@@ -134,7 +134,8 @@ impl Policy {
     }
 }
 
-/// What a robot explores for: each purpose names the policy that was best for it in our trials, see `docs/strategies.md`.
+/// What a robot explores for: each purpose names the policy that is made for it. `docs/strategies.md` shows in which worlds it is better
+/// than the default.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum RobotPurpose {
     /// To know at any time what is blocked.

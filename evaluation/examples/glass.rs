@@ -37,22 +37,22 @@ const HALL: Kind = Kind { is_hall: true, range_m: 8.0, ..HOUSE };
 
 const KINDS: [Kind; 17] = [
     Kind { name: "houses", ..HOUSE },
-    Kind { name: "houses, standing", drives: false, ..HOUSE },
+    Kind { name: "houses, stationary", drives: false, ..HOUSE },
     Kind { name: "houses, range 2.5 m", range_m: 2.5, ..HOUSE },
-    Kind { name: "houses, range 2.5 m, standing", range_m: 2.5, drives: false, ..HOUSE },
+    Kind { name: "houses, range 2.5 m, stationary", range_m: 2.5, drives: false, ..HOUSE },
     Kind { name: "halls of 40 × 30 m", ..HALL },
-    Kind { name: "halls, standing", drives: false, ..HALL },
+    Kind { name: "halls, stationary", drives: false, ..HALL },
     Kind { name: "houses, 5 % glass", glass: 0.05, ..HOUSE },
     Kind { name: "houses, 10 % glass", glass: 0.1, ..HOUSE },
     Kind { name: "houses, 20 % glass", glass: 0.2, ..HOUSE },
     Kind { name: "houses, 40 % glass", glass: 0.4, ..HOUSE },
-    Kind { name: "houses, 20 % glass, standing", glass: 0.2, drives: false, ..HOUSE },
+    Kind { name: "houses, 20 % glass, stationary", glass: 0.2, drives: false, ..HOUSE },
     Kind { name: "houses, 20 % glass, range 2.5 m", glass: 0.2, range_m: 2.5, ..HOUSE },
     Kind { name: "houses, black furniture", is_black: true, ..HOUSE },
     Kind { name: "houses, black furniture, 10 % glass", is_black: true, glass: 0.1, ..HOUSE },
     Kind { name: "halls, 20 % glass", glass: 0.2, ..HALL },
     Kind { name: "halls, 40 % glass", glass: 0.4, ..HALL },
-    Kind { name: "halls, 20 % glass, standing", glass: 0.2, drives: false, ..HALL },
+    Kind { name: "halls, 20 % glass, stationary", glass: 0.2, drives: false, ..HALL },
 ];
 
 impl Kind {
@@ -196,7 +196,7 @@ fn main() {
     let number = |index, default| argument(index, default).expect("a whole number");
     let (first, seeds, minutes) = (number(1, 7000), number(2, 8), number(3, 3));
     println!(
-        "| worlds ({seeds} each) | swallowed, learned from the log | trusted: live, log | cleared: free, live, log, ignore | free, m²: free, live, log, ignore |"
+        "| worlds | swallowed, learned from the log | trusted: live, log | cleared: free, live, log, ignore | free, m²: free, live, log, ignore |"
     );
     println!("|---|---|---|---|---|");
     for kind in &KINDS {

@@ -1,15 +1,22 @@
 //! How well rates predict: explained Poisson deviance of the events after the map was frozen.
 //!
-//! The map of a curious robot is frozen at the given time, and compared with the true events up to three times this time.
-//! Columns: explained deviance of the estimator; the same against the constant known at the freeze; a full view until then.
-//! Then, at the freeze: log error, the same of range, AUC, the share of the true rates inside the 50 % and the 90 % interval;
-//! of tiles, the log error of passages per hour and the hits of the busiest tenth. Then the predicted map 1 and 10 minutes ahead:
-//! Brier score, that of the state last seen, of the share of time blocked, of true chains, calibration error.
+//! The map of a curious robot is frozen at the given time, and compared with the true events up to three times this time. A line per
+//! world and estimator, as CSV: explained deviance; the same against the constant known at the freeze; a full view until then. Then,
+//! at the freeze: log error, the same of range, AUC, the share of the true rates inside the 50 % and the 90 % interval; of tiles, the log
+//! error of passages per hour and the hits of the busiest tenth. Then the predicted map 1 and 10 minutes ahead: Brier score, that of the
+//! state last seen, of the share of time blocked, of true chains, calibration error. The goals do not depend on the estimator.
 //!
 //! ```text
-//! cargo run -p curious-evaluation --example predicted_rates -- MINUTES ESTIMATOR [WORLD:]SEED..
-//! cargo run -p curious-evaluation --example predicted_rates -- 20 shared-prior 4000 4001 office-7:7 worlds/office.toml:100
+//! cargo run -p curious-evaluation --example predicted_rates -- MINUTES SET=WORLD,WORLD.. ..
+//! (echo "# $(git show -s --format='commit %h of %cs'), cargo run -p curious-evaluation --example predicted_rates"
+//!  cargo run -p curious-evaluation --example predicted_rates -- 20 "houses 4000–4007=4000,4001,4002,4003,4004,4005,4006,4007" \
+//!    "houses 7000–7010=7000,7001,7002,7003,7004,7005,7006,7007,7008,7009,7010" \
+//!    "offices 100–105=office-100:100,office-101:101,office-102:102,office-103:103,office-104:104,office-105:105" \
+//!    "`warehouse` 100–102=warehouse:100,warehouse:101,warehouse:102" "`office` 100–102=office:100,office:101,office:102" \
+//!    "`cave` 100–102=cave:100,cave:101,cave:102" "`house` 100=house:100" "`yard` 100=yard:100") > docs/results/predicted_rates.csv
 //! ```
+//!
+//! A world is the seed of a generated house, or `NAME:SEED` or `FILE:SEED`.
 
 use agent::Policy;
 use evaluation::metrics::{FrozenRates, StateScores, interval_scores, passage_scores, rate_scores};
@@ -18,27 +25,34 @@ use mapper::EstimatorChoice;
 use sim::physics::WorldSpec;
 use std::error::Error;
 
+/// The estimators that are compared.
+const ESTIMATORS: [&str; 2] = ["two-state-gaps", "shared-prior"];
+const COLUMNS: &str = "set,world,estimator,deviance,known,full_view,log_error,log_error_of_range,rate_auc,inside_50,inside_90,\
+                       passages_log_error,busiest_tenth,brier_1min,last_seen_1min,blocked_share_1min,true_chains_1min,\
+                       calibration_1min,brier_10min,last_seen_10min,blocked_share_10min,true_chains_10min,calibration_10min";
+
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let [minutes, estimator, worlds @ ..] = &arguments[..] else {
-        return Err("usage: predicted_rates MINUTES ESTIMATOR [WORLD:]SEED..".into());
+    let [minutes, sets @ ..] = &arguments[..] else {
+        return Err("usage: predicted_rates MINUTES SET=WORLD,WORLD.. ..".into());
     };
-    let (freeze_s, estimator) = (60.0 * minutes.parse::<f64>()?, estimator.parse::<EstimatorChoice>()?);
-    let mut rows = Vec::new();
-    for world in worlds {
-        let (spec, seed) = match world.split_once(':') {
-            Some((path, seed)) => (worldfile::shipped::load(path)?, seed.parse()?),
-            None => (WorldSpec::generate_house(world.parse()?), world.parse()?),
-        };
-        let row = scores(&spec, seed, freeze_s, &estimator)?;
-        print_row(world, &row);
-        rows.push(row);
+    let freeze_s = 60.0 * minutes.parse::<f64>()?;
+    println!("{COLUMNS}");
+    for set in sets {
+        let (set, worlds) = set.split_once('=').ok_or("expected SET=WORLD,WORLD..")?;
+        for world in worlds.split(',') {
+            let (spec, seed) = match world.split_once(':') {
+                Some((name, seed)) => (worldfile::shipped::load(name)?, seed.parse()?),
+                None => (WorldSpec::generate_house(world.parse()?), world.parse()?),
+            };
+            for estimator in ESTIMATORS {
+                let scores = scores(&spec, seed, freeze_s, &estimator.parse()?)?;
+                let text = |score: &Option<f64>| score.map_or(String::new(), |score| format!("{score:.4}"));
+                let scores: Vec<String> = scores.iter().map(text).collect();
+                println!("{set},{world},{estimator},{}", scores.join(","));
+            }
+        }
     }
-    let mean =
-        |column: usize| rows.iter().filter_map(|row| row[column]).sum::<f64>() / rows.len().max(1) as f64;
-    let means: Vec<Option<f64>> =
-        (0..rows.first().map_or(0, Vec::len)).map(|column| Some(mean(column))).collect();
-    print_row("mean", &means);
     Ok(())
 }
 
@@ -78,11 +92,4 @@ fn scores(
         row.extend([brier, brier_last_seen, brier_mean, brier_true_chains, calibration_error]);
     }
     Ok(row)
-}
-
-fn print_row(name: &str, row: &[Option<f64>]) {
-    print!("{name:<24}");
-    row.iter()
-        .for_each(|value| print!(" {:>7}", value.map_or("–".to_owned(), |value| format!("{value:.4}"))));
-    println!();
 }

@@ -9,7 +9,7 @@
 Units are SI: meters, seconds, radians. Poses are ``[x, y, heading]``. Arrays of cells have the shape (rows, columns),
 and row 0 has the lowest y. The same world, seed and commands give the same bits as in Rust.
 
-Where Gymnasium is installed, the environments ``curious/Drive-v0`` and ``curious/Explore-v0`` are registered.
+Where Gymnasium is installed, the environments of :mod:`curious.envs` are registered, as ``curious/Drive-v0``.
 """
 
 from ._native import (

@@ -199,12 +199,12 @@ impl Mapper {
         self.array(py, |mapper, index| state_number(mapper.states().cells()[index]))
     }
 
-    /// The rate of every cell, cycles per second; 0: it never changed.
+    /// The rate of every cell, cycles per second. A cell that never changed has 0, with the estimator `shared-prior` a small rate.
     fn rates<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         self.array(py, mapper::Mapper::rate)
     }
 
-    /// The mean duration of a cycle, s; inf: the cell never changed.
+    /// The mean duration of a cycle, s: 1 divided by the rate, inf where it is 0.
     fn intervals<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         self.array(py, mapper::Mapper::interval)
     }

@@ -1,4 +1,4 @@
-//! Keeps what pages show of experiments: of `report.json`, the runs over all worlds, as rows.
+//! Keeps what pages show of experiments: of `report.json`, the runs over all worlds, or those of each world, as rows.
 //!
 //! ```text
 //! cargo run -p curious-reports --example report_rows -- --made "docs/clusters/study.sh" --to docs/results/grid_study \
@@ -25,6 +25,9 @@ struct Args {
     /// The files, without `.csv`
     #[arg(long)]
     to: PathBuf,
+    /// Keeps each world, and not all worlds together; without pairs of strategies
+    #[arg(long)]
+    each: bool,
     /// `NAME=FILE`: what the experiment is called in the rows, and its `report.json`
     #[arg(required = true, value_parser = named)]
     reports: Vec<(String, PathBuf)>,
@@ -50,12 +53,20 @@ struct Run {
     comparisons: Vec<PairRow>,
 }
 
+impl Run {
+    fn is_of_all_worlds(&self) -> bool {
+        self.world.starts_with("all worlds")
+    }
+}
+
 /// A strategy with an estimator in an experiment: means over the worlds, but for the last two, which are sums. Measures that are not
 /// defined are empty.
 #[derive(Clone, Default, Deserialize, Serialize)]
 struct StrategyRow {
     #[serde(default)]
     experiment: String,
+    #[serde(default)]
+    world: String,
     #[serde(default)]
     estimator: String,
     #[serde(default)]
@@ -65,12 +76,21 @@ struct StrategyRow {
     trials: usize,
     log_error_area: Option<f64>,
     final_log_error: Option<f64>,
+    log_error_of_range_area: Option<f64>,
     final_log_error_of_range: Option<f64>,
     final_rate_auc: Option<f64>,
+    final_coverage: Option<f64>,
     final_map_quality: Option<f64>,
     final_map_quality_changing: Option<f64>,
     final_changing_share: Option<f64>,
     final_brier: Option<f64>,
+    brier_area: Option<f64>,
+    brier_last_seen_area: Option<f64>,
+    brier_mean_area: Option<f64>,
+    final_predictive_deviance: Option<f64>,
+    final_predictive_deviance_known: Option<f64>,
+    final_passages_log_error: Option<f64>,
+    final_busiest_tenth_hit: Option<f64>,
     false_change_events: u64,
     collisions: Option<u64>,
 }
@@ -111,13 +131,16 @@ fn main() -> anyhow::Result<()> {
         let report: Report =
             serde_json::from_str(&text).with_context(|| format!("{} is no report", path.display()))?;
         let before = strategies.len();
-        for run in report.runs.iter().filter(|run| run.world.starts_with("all worlds")) {
+        for run in report.runs.iter().filter(|run| run.is_of_all_worlds() != args.each) {
             strategies.extend(strategy_rows(name, &report.strategies, run));
             pairs.extend(pair_rows(name, run));
         }
-        ensure!(strategies.len() > before, "{} has no run over all worlds", path.display());
+        ensure!(strategies.len() > before, "{} has no such runs", path.display());
     }
     write(&args.to.with_extension("csv"), &args.made, &strategies)?;
+    if args.each {
+        return Ok(());
+    }
     let mut name = args.to.file_name().unwrap_or_default().to_owned();
     name.push("_pairs.csv");
     write(&args.to.with_file_name(name), &args.made, &pairs)
@@ -134,6 +157,7 @@ fn strategy_rows(experiment: &str, order: &[String], run: &Run) -> Vec<StrategyR
         let row = run.strategies.get(strategy)?;
         Some(StrategyRow {
             experiment: experiment.to_owned(),
+            world: run.world.clone(),
             estimator: run.estimator.clone(),
             strategy: strategy.clone(),
             to_curious: row.log_error_area.zip(curious).map(|(own, curious)| own / curious),
@@ -184,8 +208,10 @@ mod tests {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/results");
         let columns =
             |file: &str| Rows::of_csv(&std::fs::read_to_string(root.join(file)).unwrap()).unwrap().columns;
-        for study in ["grid_study", "grid_strategies"] {
+        for study in ["grid_study", "grid_strategies", "houses", "houses_hour"] {
             assert_eq!(columns(&format!("{study}.csv")), columns_of(&StrategyRow::default()));
+        }
+        for study in ["grid_study", "grid_strategies"] {
             assert_eq!(columns(&format!("{study}_pairs.csv")), columns_of(&PairRow::default()));
         }
     }

@@ -15,7 +15,7 @@ const PROGRAMS: [(&str, &str); 7] = [
 const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/programs.md");
 const HEAD: &str = "# Programs
 
-What every program says with `--help`; `-h` says it shorter. They start with `cargo run --bin NAME -- OPTIONS`, or, once
+What every program says with `--help`; `-h` prints a shorter text. They start with `cargo run --bin NAME -- OPTIONS`, or, once
 installed, with their names. The live nodes `curious_node` and `sim_node` take ROS arguments: [robots.md](robots.md#live).
 ";
 

@@ -27,7 +27,7 @@ const READINGS_PER_EVENT: f64 = 5.0;
 ///
 /// Without the division, the chooser found the better strategies less often. With map updates as the reward, the
 /// chooser preferred the strategies that follow a block longest, although they learn no more. `docs/strategies.md`
-/// lists other variants.
+/// names other choosers that were tried.
 #[derive(Clone, Debug)]
 pub struct Progress {
     mean: Account,

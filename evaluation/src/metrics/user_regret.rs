@@ -123,7 +123,7 @@ impl UserRegret {
         self.lost_s / self.trips as f64
     }
 
-    /// The share of the possible trips that were not made, since no route was believed open; NaN without one.
+    /// The share of the possible trips that were not made or were broken off, since no route was believed open; NaN without one.
     pub fn not_made(&self) -> f64 {
         self.not_made as f64 / self.possible as f64
     }

@@ -1,4 +1,5 @@
-//! Whether intervals contain the truth as often as they say, on simulated things whose law is known.
+//! Whether intervals contain the truth as often as they say, on simulated things whose law is known. The rows of the page are held to
+//! what the tests find.
 
 use super::*;
 use rand::RngExt;
@@ -24,6 +25,18 @@ enum Kind {
     Door,
     /// A state that is drawn anew with this probability per minute; the probability of being blocked swings over the day by this.
     Chain { renewal: f64, amplitude: f64 },
+}
+
+impl Kind {
+    /// The name on the page.
+    fn name(self) -> String {
+        let Self::Chain { renewal, amplitude } = self else {
+            return "door, open on working days ± 20 min".to_owned();
+        };
+        let lasts = if renewal > 0.01 { "10 min" } else { "3 h" };
+        let hours = if amplitude > 0.0 { ", with hours of the day" } else { "" };
+        format!("state that lasts for {lasts}{hours}")
+    }
 }
 
 /// A thing, minute by minute.
@@ -131,22 +144,36 @@ impl Inside {
 /// (days, looks per day)
 const HISTORIES: [(u32, u32); 4] = [(15, 288), (29, 288), (29, 30), (57, 288)];
 
+/// That `docs/results/clock_intervals.csv` has exactly these rows of an interval: which of the clock, the thing, days, looks per day, share
+/// of true values inside, mean length.
+pub(super) fn check_rows(which: &str, rows: &[String]) {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/results/clock_intervals.csv");
+    let file = std::fs::read_to_string(path).unwrap();
+    let known: Vec<&str> = file.lines().filter(|line| line.starts_with(&format!("{which},"))).collect();
+    assert!(known == rows, "{path} should have\n{}\nand has\n{}", rows.join("\n"), known.join("\n"));
+}
+
 /// Every kind of thing with every history: nearly nine of ten are inside, and on the average not many more. (Doors, which are
 /// never open at night, and a constant share, which is found in every slot, are inside more often than the intervals say.)
-fn check(mut of_thing: impl FnMut(Thing, (u32, u32), &mut Inside), kinds: impl IntoIterator<Item = Kind>) {
-    let mut all = Inside::default();
+fn check(
+    which: &str,
+    mut of_thing: impl FnMut(Thing, (u32, u32), &mut Inside),
+    kinds: impl IntoIterator<Item = Kind>,
+) {
+    let (mut all, mut rows) = (Inside::default(), Vec::new());
     for kind in kinds {
-        for history in HISTORIES {
+        for (days, looks) in HISTORIES {
             let mut inside = Inside::default();
-            (0..8).for_each(|seed| of_thing(Thing::new(kind, seed), history, &mut inside));
+            (0..8).for_each(|seed| of_thing(Thing::new(kind, seed), (days, looks), &mut inside));
             let [share, length] = inside.share_and_length();
-            println!("{kind:?}, (days, looks per day) {history:?}: {share:.3} inside, {length:.3} long");
-            assert!(share > 0.85, "{kind:?}, {history:?}: {share} inside, {length} long");
+            assert!(share > 0.85, "{kind:?}, {days} days, {looks} looks: {share} inside, {length} long");
+            rows.push(format!("{which},\"{}\",{days},{looks},{share:.4},{length:.4}", kind.name()));
             all.add_all(&inside);
         }
     }
     let [share, length] = all.share_and_length();
     assert!((0.88..0.975).contains(&share), "all: {share} inside, {length} long");
+    check_rows(which, &rows);
 }
 
 #[test]
@@ -160,7 +187,7 @@ fn usual_shares_are_inside_their_intervals() {
             inside.add(thing.later(minute - 2 * MINUTES, 2 * MINUTES, false), slot.interval_90);
         }
     };
-    check(of_thing, CHAINS.into_iter().chain([Kind::Door]));
+    check("schedule", of_thing, CHAINS.into_iter().chain([Kind::Door]));
 }
 
 #[test]
@@ -176,7 +203,7 @@ fn predictions_are_inside_their_intervals() {
             }
         });
     };
-    check(of_thing, CHAINS);
+    check("prediction", of_thing, CHAINS);
 }
 
 #[test]

@@ -125,7 +125,7 @@ fn door_with_hours(hours: [f64; 2], days: u32, looks_per_day: u32, rng: &mut Cha
 
 #[test]
 fn the_hours_of_doors_are_inside_their_intervals() {
-    let mut rng = ChaCha8Rng::seed_from_u64(11);
+    let (mut rng, mut rows) = (ChaCha8Rng::seed_from_u64(11), Vec::new());
     for (days, looks_per_day, max_length_h) in [(15, 200, 2.0), (29, 200, 1.1), (29, 20, 1.7), (57, 20, 1.2)]
     {
         let (mut inside, mut all, mut length_h) = (0.0, 0.0, 0.0);
@@ -152,7 +152,11 @@ fn the_hours_of_doors_are_inside_their_intervals() {
             "{days} days, {looks_per_day} looks: {inside} inside, {length_h} h"
         );
         assert!(length_h < max_length_h, "{days} days, {looks_per_day} looks: {length_h} h");
+        rows.push(format!(
+            "hours,\"door, open on working days ± 20 min\",{days},{looks_per_day},{inside:.4},{length_h:.4}"
+        ));
     }
+    calibration::check_rows("hours", &rows);
 }
 
 #[test]

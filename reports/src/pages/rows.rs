@@ -33,16 +33,17 @@ impl Rows {
         Ok(Self { made, columns, values: values.collect::<Result<_, _>>().map_err(|why| why.to_string())? })
     }
 
-    /// The tables below a heading of a Markdown text, up to the next heading.
+    /// The tables below a heading of a Markdown text, up to the next heading. A line `Made from …` says what they were made from.
     pub fn of_markdown(text: &str, heading: &str) -> Vec<Self> {
         let is_heading = |line: &&str| line.starts_with('#');
         let named = |line: &str| line.trim_start_matches('#').trim() == heading;
         let lines = text.lines().skip_while(|line| !(is_heading(line) && named(line))).skip(1);
         let lines: Vec<&str> = lines.take_while(|line| !is_heading(line)).collect();
+        let made = lines.iter().find_map(|line| line.strip_prefix("Made from ")?.strip_suffix('.'));
         let tables = lines.split(|line| !line.starts_with('|')).filter(|table| table.len() > 2);
         tables
             .map(|table| Self {
-                made: String::new(),
+                made: made.unwrap_or_default().to_owned(),
                 columns: cells(table[0]),
                 values: table[2..].iter().map(|line| cells(line)).collect(),
             })
@@ -109,7 +110,9 @@ mod tests {
         let tables = Rows::of_markdown(text, "Two");
         assert_eq!(tables.len(), 2);
         assert_eq!((&tables[0].columns, &tables[0].values), (&csv.columns, &csv.values));
-        assert!(Rows::of_markdown(text, "Three").is_empty());
+        assert!(Rows::of_markdown(text, "Three").is_empty() && tables[0].made.is_empty());
+        let made = Rows::of_markdown("# T\nMade from commit 2, run.\n| a |\n|---|\n| 1 |\n", "T");
+        assert_eq!(made[0].made, "commit 2, run");
         assert!(Rows::of_csv("a,b\n1\n").is_err());
     }
 

@@ -22,7 +22,7 @@ use viewer::recording::Live;
 ///
 /// The results of an earlier run in the folder stay until the new ones are complete; until then the new ones are in its
 /// subfolder unfinished_run. Other files are never removed or replaced: where one has the name of a result, the run is
-/// refused before it begins.
+/// rejected before it begins.
 #[derive(Clone, Debug, Parser)]
 #[command(
     name = "four_rooms",
@@ -73,7 +73,7 @@ pub(crate) struct Args {
     #[arg(long, value_parser = strategies(), help_heading = "Pilot")]
     pub(crate) strategy: Option<Policy>,
 
-    /// What the robot explores for; names the strategy that was best for it in our trials (docs/strategies.md)
+    /// What the robot explores for: a name for the strategy that is made for it. docs/strategies.md shows where it is better than curious
     #[arg(long, value_parser = purpose(), conflicts_with = "strategy", help_heading = "Pilot")]
     pub(crate) purpose: Option<RobotPurpose>,
 

@@ -31,7 +31,7 @@ use survey::{LogEntry, SavedLogs, SurveySettings};
 ///
 /// The results of an earlier run in the folder stay until the new ones are complete; until then the new ones are in its
 /// subfolder unfinished_run. Other files are never removed or replaced: where one has the name of a result, the run is
-/// refused before it begins.
+/// rejected before it begins.
 #[derive(Clone, Debug, Parser)]
 #[command(
     name = "map_log",

@@ -37,7 +37,7 @@ const SCHEMA: u32 = 2;
 const ABOUT: &str = "Predicts a place from what was learned about it: is that door open at ten past five?
 
 Prints when the doors are usually open, how often they open, and the probability that they are open at the times of --at; for \
-a place (--place), the probability that it is blocked. A 90 % interval follows each probability; it needs observations on 14 days.
+a place (--place), the probability that its square of half a meter is blocked. A 90 % interval follows each probability; it needs observations on 14 days.
 
 STATE is a file of `map_log --state`, or of four_rooms in a world with a calendar, whose first week begins on Monday, 2024-01-01, \
 in UTC. (Other states of four_rooms, and those of curious_node, have no hours.) A time is
@@ -48,7 +48,7 @@ in UTC. (Other states of four_rooms, and those of curious_node, have no hours.) 
 For each time of --at, the folder predict_out has the map of the probability that a cell is blocked, as a picture with the doors \
 (predicted.png), for the map server of Nav2 (predicted.yaml, in the mode `scale`: 100 is certainly blocked) and as an array for NumPy \
 (predicted.npy, rows from the lowest y on, NaN where never seen); and masks for the filters of Nav2: keepout_mask.yaml (100 where a \
-cell that changes is probably blocked then) and speed_mask.yaml (slower where changes are usual at that hour). With several times, the \
+door, a piece of furniture or a group of cells that change is probably blocked then) and speed_mask.yaml (slower where changes are usual at that hour). With several times, the \
 files are numbered. Also in the folder: for how long a look at a place counts before its usual hours say more (expiry.png, expiry.npy, \
 in hours), and all that is printed, as data (summary.json).
 

@@ -28,7 +28,7 @@ pub struct SurfaceGridSettings {
     /// The number of scans that must pass a blocked cell until the cell becomes free, if the cell became blocked
     /// only recently.
     pub misses_to_free_fresh: u8,
-    /// The number of scans that must pass a blocked cell until the cell becomes free, if the cell was hit often.
+    /// The number of scans that must pass a blocked cell until the cell becomes free, if the cell was hit in at least four scans.
     pub misses_to_free: u8,
     /// The number of hits after which a surface counts as permanent: noise around it is then not a new obstacle. The surface
     /// of a cell that was never free needs at most the hits of 4 s, at least `hits_to_block`.

@@ -177,7 +177,7 @@ impl Page<'_> {
                 "Made from " (list(&summary.logs)) ": " (summary.scans) " scans"
                 @if let Some(duration_s) = summary.duration_s { " in " (length_of(duration_s)) }
                 @if let Some(begin_s) = summary.begin_s { ", from " (date(begin_s)) " on" }
-                ", " (format!("{:.0}", summary.trajectory_m)) " m travelled, " (format!("{:.0}", summary.seen_m2)) " m² seen. "
+                ", " (format!("{:.0}", summary.trajectory_m)) " m driven, " (format!("{:.0}", summary.seen_m2)) " m² seen. "
                 @if summary.begin_s.is_some() { "Hours of people and doors: " (summary.hours) ". " }
                 (percent(summary.changed_share)) " of the area changed at least once, in " (summary.place_count) " places. "
                 @if summary.scans_left_out > 0 {
