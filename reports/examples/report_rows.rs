@@ -12,8 +12,8 @@
 use anyhow::{Context, ensure};
 use clap::Parser;
 use reports::pages::write_rows;
+use serde::de::{Deserializer, MapAccess, Visitor};
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// Rows of experiments.
@@ -41,7 +41,6 @@ fn named(word: &str) -> Result<(String, PathBuf), String> {
 /// What is read of `report.json`. The curves, which are most of it, are passed over.
 #[derive(Deserialize)]
 struct Report {
-    strategies: Vec<String>,
     runs: Vec<Run>,
 }
 
@@ -49,8 +48,30 @@ struct Report {
 struct Run {
     world: String,
     estimator: String,
-    strategies: BTreeMap<String, StrategyRow>,
+    #[serde(deserialize_with = "in_order")]
+    strategies: Vec<(String, StrategyRow)>,
     comparisons: Vec<PairRow>,
+}
+
+/// An object as pairs, in their order: that of the experiment.
+fn in_order<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<(String, StrategyRow)>, D::Error> {
+    struct Pairs;
+    impl<'de> Visitor<'de> for Pairs {
+        type Value = Vec<(String, StrategyRow)>;
+
+        fn expecting(&self, to: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+            to.write_str("an object with a strategy per key")
+        }
+
+        fn visit_map<M: MapAccess<'de>>(self, mut object: M) -> Result<Self::Value, M::Error> {
+            let mut pairs = Vec::new();
+            while let Some(pair) = object.next_entry()? {
+                pairs.push(pair);
+            }
+            Ok(pairs)
+        }
+    }
+    from.deserialize_map(Pairs)
 }
 
 impl Run {
@@ -132,7 +153,7 @@ fn main() -> anyhow::Result<()> {
             serde_json::from_str(&text).with_context(|| format!("{} is no report", path.display()))?;
         let before = strategies.len();
         for run in report.runs.iter().filter(|run| run.is_of_all_worlds() != args.each) {
-            strategies.extend(strategy_rows(name, &report.strategies, run));
+            strategies.extend(strategy_rows(name, run));
             pairs.extend(pair_rows(name, run));
         }
         ensure!(strategies.len() > before, "{} has no such runs", path.display());
@@ -150,21 +171,18 @@ fn write<R: Serialize>(path: &Path, made: &str, rows: &[R]) -> anyhow::Result<()
     write_rows(path, made, rows).with_context(|| format!("cannot write {}", path.display()))
 }
 
-/// The strategies of a run, in the order of the experiment.
-fn strategy_rows(experiment: &str, order: &[String], run: &Run) -> Vec<StrategyRow> {
-    let curious = run.strategies.get("curious").and_then(|row| row.log_error_area);
-    let row = |strategy: &String| {
-        let row = run.strategies.get(strategy)?;
-        Some(StrategyRow {
-            experiment: experiment.to_owned(),
-            world: run.world.clone(),
-            estimator: run.estimator.clone(),
-            strategy: strategy.clone(),
-            to_curious: row.log_error_area.zip(curious).map(|(own, curious)| own / curious),
-            ..row.clone()
-        })
+fn strategy_rows(experiment: &str, run: &Run) -> Vec<StrategyRow> {
+    let curious = run.strategies.iter().find(|(name, _)| name == "curious");
+    let curious = curious.and_then(|(_, row)| row.log_error_area);
+    let row = |(strategy, row): &(String, StrategyRow)| StrategyRow {
+        experiment: experiment.to_owned(),
+        world: run.world.clone(),
+        estimator: run.estimator.clone(),
+        strategy: strategy.clone(),
+        to_curious: row.log_error_area.zip(curious).map(|(own, curious)| own / curious),
+        ..row.clone()
     };
-    order.iter().filter_map(row).collect()
+    run.strategies.iter().map(row).collect()
 }
 
 fn pair_rows(experiment: &str, run: &Run) -> Vec<PairRow> {
@@ -182,11 +200,11 @@ mod tests {
     use super::*;
     use reports::pages::{Rows, columns_of};
 
-    const REPORT: &str = r#"{"strategies": ["curious", "best"], "seed": 1, "runs": [
+    const REPORT: &str = r#"{"seed": 1, "runs": [
         {"world": "a", "estimator": "paper", "strategies": {}, "comparisons": []},
         {"world": "all worlds (2)", "estimator": "paper", "claim": null, "strategies": {
-            "best": {"trials": 2, "log_error_area": 0.5, "final_brier": null, "false_change_events": 3, "log_error": [[1, 2, 3, 4]]},
-            "curious": {"trials": 2, "log_error_area": 2.0, "false_change_events": 1, "collisions": 4}},
+            "curious": {"trials": 2, "log_error_area": 2.0, "false_change_events": 1, "collisions": 4},
+            "best": {"trials": 2, "log_error_area": 0.5, "final_brier": null, "false_change_events": 3, "log_error": [[1, 2, 3, 4]]}},
          "comparisons": [
             {"a": "curious", "b": "best", "metric": "log_error_area", "pairs": 2, "mean_b": 0.5, "mean_difference": 1.5,
              "low": 1.0, "high": 2.0, "p_value": 0.25, "p_holm": 0.5, "ratio": 4.0, "effect_size": 1.0},
@@ -195,7 +213,7 @@ mod tests {
     #[test]
     fn runs_over_all_worlds_become_rows() {
         let report: Report = serde_json::from_str(REPORT).unwrap();
-        let rows = strategy_rows("e", &report.strategies, &report.runs[1]);
+        let rows = strategy_rows("e", &report.runs[1]);
         assert_eq!(rows.iter().map(|row| row.strategy.as_str()).collect::<Vec<_>>(), ["curious", "best"]);
         assert_eq!((rows[1].to_curious, rows[1].false_change_events), (Some(0.25), 3));
         let pairs = pair_rows("e", &report.runs[1]);
