@@ -159,7 +159,7 @@ fn main() -> anyhow::Result<()> {
         ensure!(strategies.len() > before, "{} has no such runs", path.display());
     }
     write(&args.to.with_extension("csv"), &args.made, &strategies)?;
-    if args.each {
+    if args.each || pairs.is_empty() {
         return Ok(());
     }
     let mut name = args.to.file_name().unwrap_or_default().to_owned();

@@ -1,4 +1,5 @@
-//! The worlds that are part of the program, so that it runs from any folder.
+//! The worlds that are part of the program, so that it runs from any folder. They are read through the link `worldfile/worlds`: a package has
+//! only what is in its own folder.
 
 use crate::{Files, WorldError, grid, physics};
 use interfaces::printable;
@@ -9,34 +10,34 @@ use std::path::{Path, PathBuf};
 
 /// The name and the text of every shipped physics world; the first is the default.
 pub const PHYSICS: [(&str, &str); 10] = [
-    ("four_rooms", include_str!("../../worlds/four_rooms.toml")),
-    ("toy_on_the_floor", include_str!("../../worlds/toy_on_the_floor.toml")),
-    ("turned_house", include_str!("../../worlds/turned_house.toml")),
-    ("house", include_str!("../../worlds/house.toml")),
-    ("drifting_house", include_str!("../../worlds/drifting_house.toml")),
-    ("office", include_str!("../../worlds/office.toml")),
-    ("warehouse", include_str!("../../worlds/warehouse.toml")),
-    ("cave", include_str!("../../worlds/cave.toml")),
-    ("yard", include_str!("../../worlds/yard.toml")),
-    ("office_week", include_str!("../../worlds/office_week.toml")),
+    ("four_rooms", include_str!("../worlds/four_rooms.toml")),
+    ("toy_on_the_floor", include_str!("../worlds/toy_on_the_floor.toml")),
+    ("turned_house", include_str!("../worlds/turned_house.toml")),
+    ("house", include_str!("../worlds/house.toml")),
+    ("drifting_house", include_str!("../worlds/drifting_house.toml")),
+    ("office", include_str!("../worlds/office.toml")),
+    ("warehouse", include_str!("../worlds/warehouse.toml")),
+    ("cave", include_str!("../worlds/cave.toml")),
+    ("yard", include_str!("../worlds/yard.toml")),
+    ("office_week", include_str!("../worlds/office_week.toml")),
 ];
 
 /// The name and the text of every shipped grid world; the first is the default.
 pub const GRID: [(&str, &str); 5] = [
-    ("two_blocks", include_str!("../../worlds/two_blocks.toml")),
-    ("open_hall", include_str!("../../worlds/open_hall.toml")),
-    ("corridor_with_doors", include_str!("../../worlds/corridor_with_doors.toml")),
-    ("many_slow_blocks", include_str!("../../worlds/many_slow_blocks.toml")),
-    ("one_fast_block", include_str!("../../worlds/one_fast_block.toml")),
+    ("two_blocks", include_str!("../worlds/two_blocks.toml")),
+    ("open_hall", include_str!("../worlds/open_hall.toml")),
+    ("corridor_with_doors", include_str!("../worlds/corridor_with_doors.toml")),
+    ("many_slow_blocks", include_str!("../worlds/many_slow_blocks.toml")),
+    ("one_fast_block", include_str!("../worlds/one_fast_block.toml")),
 ];
 
 /// The name and the text of the shipped tour.
-pub const TOUR: (&str, &str) = ("four_rooms.tour.toml", include_str!("../../worlds/four_rooms.tour.toml"));
+pub const TOUR: (&str, &str) = ("four_rooms.tour.toml", include_str!("../worlds/four_rooms.tour.toml"));
 
 /// The pictures that floor plans of shipped worlds are made from.
 const PICTURES: [(&str, &[u8]); 2] = [
-    ("office.png", include_bytes!("../../worlds/office.png")),
-    ("cave.png", include_bytes!("../../worlds/cave.png")),
+    ("office.png", include_bytes!("../worlds/office.png")),
+    ("cave.png", include_bytes!("../worlds/cave.png")),
 ];
 
 /// The text of the shipped world (of either kind) with the name `name`.
