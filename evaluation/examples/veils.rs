@@ -45,10 +45,13 @@ fn main() -> Result<(), Box<dyn Error>> {
         for (name, sums) in ["none", "veils", "veils, and 0.04 m beside edges"].iter().zip(sums) {
             let percent = |[part, all]: [usize; 2]| match all {
                 0 => "–".to_owned(),
-                _ => format!("{:.2} % of {all}", 100.0 * part as f64 / all as f64),
+                _ => format!("{:.2} %", 100.0 * part as f64 / all as f64),
             };
             let ([found, seen], per_1000) = (sums.posts, sums.changes as f64 * 1000.0 / sums.scans as f64);
-            let (veils, hits) = (percent(sums.veils), percent(sums.hits));
+            let (mut veils, hits) = (percent(sums.veils), percent(sums.hits));
+            if sums.veils[1] > 0 {
+                veils += &format!(" of {}", sums.veils[1]);
+            }
             println!("| {width_deg}° | {name} | {veils} | {hits} | {found} of {seen} | {per_1000:.1} |");
         }
     }

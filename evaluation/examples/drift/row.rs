@@ -84,6 +84,9 @@ mod tests {
         let files = [
             include_str!("../../../docs/results/localization_houses.csv"),
             include_str!("../../../docs/results/localization_house.csv"),
+            include_str!("../../../docs/results/localization_carried.csv"),
+            include_str!("../../../docs/results/localization_carried_closed.csv"),
+            include_str!("../../../docs/results/localization_shelves.csv"),
         ];
         let mut writer = csv::Writer::from_writer(Vec::new());
         writer.serialize(Row::default()).unwrap();

@@ -3,7 +3,7 @@
 use crate::life::{AREAS, TIMES};
 use crate::rows::Row;
 use crate::runs::{can_be_trained, learners};
-use reports::pages::{PageError, mean, with_tables};
+use reports::pages::{PageError, mean, ratio, with_tables};
 use results::numbers::thousands;
 
 /// What the others are compared with.
@@ -25,10 +25,8 @@ impl Named<'_> {
             let other = other.rows.iter().find(|other| other.run.seed == row.run.seed)?;
             Some((value(row), value(other)))
         };
-        let pairs: Vec<(f64, f64)> = self.rows.iter().filter_map(pair).collect();
-        let [sum, others] = [0, 1].map(|which| pairs.iter().map(|pair| [pair.0, pair.1][which]).sum::<f64>());
-        let test = reports::paired_test(pairs.iter().map(|(value, other)| value - other));
-        format!("{:.2}, p = {:.1e}", sum / others, test.p_value)
+        let (own, others): (Vec<f64>, Vec<f64>) = self.rows.iter().filter_map(pair).unzip();
+        ratio(&own, &others)
     }
 }
 
