@@ -12,8 +12,8 @@
 //!  cargo run -p curious-evaluation --example predicted_rates -- 20 "houses 4000–4007=4000,4001,4002,4003,4004,4005,4006,4007" \
 //!    "houses 7000–7010=7000,7001,7002,7003,7004,7005,7006,7007,7008,7009,7010" \
 //!    "offices 100–105=office-100:100,office-101:101,office-102:102,office-103:103,office-104:104,office-105:105" \
-//!    "`warehouse` 100–102=warehouse:100,warehouse:101,warehouse:102" "`office` 100–102=office:100,office:101,office:102" \
-//!    "`cave` 100–102=cave:100,cave:101,cave:102" "`house` 100=house:100" "`yard` 100=yard:100") > docs/results/predicted_rates.csv
+//!    '`warehouse` 100–102=warehouse:100,warehouse:101,warehouse:102' '`office` 100–102=office:100,office:101,office:102' \
+//!    '`cave` 100–102=cave:100,cave:101,cave:102' '`house` 100=house:100' '`yard` 100=yard:100') > docs/results/predicted_rates.csv
 //! ```
 //!
 //! A world is the seed of a generated house, or `NAME:SEED` or `FILE:SEED`.
