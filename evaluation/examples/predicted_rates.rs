@@ -8,7 +8,7 @@
 //!
 //! ```text
 //! cargo run -p curious-evaluation --example predicted_rates -- MINUTES SET=WORLD,WORLD.. ..
-//! (echo "# $(git show -s --format='commit %h of %cs'), cargo run -p curious-evaluation --example predicted_rates"
+//! (echo "# $(git show -s --format='commit %h of %cs'), cargo run -p curious-evaluation --example predicted_rates (sets: see the top of its source)"
 //!  cargo run -p curious-evaluation --example predicted_rates -- 20 "houses 4000–4007=4000,4001,4002,4003,4004,4005,4006,4007" \
 //!    "houses 7000–7010=7000,7001,7002,7003,7004,7005,7006,7007,7008,7009,7010" \
 //!    "offices 100–105=office-100:100,office-101:101,office-102:102,office-103:103,office-104:104,office-105:105" \
