@@ -14,7 +14,7 @@ const BY_HAND: [(&str, usize); 15] = [
     ("results.md", 1),
     ("robots.md", 3),
     ("state.md", 2),
-    ("strategies.md", 6),
+    ("strategies.md", 4),
     ("things.md", 2),
     ("trajectories.md", 3),
     ("worlds.md", 1),
