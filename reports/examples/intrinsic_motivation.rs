@@ -42,7 +42,7 @@ mod tiles;
 #[path = "intrinsic_motivation/view.rs"]
 mod view;
 
-use anyhow::{Context, ensure};
+use anyhow::ensure;
 use cells::CellSettings;
 use clap::Parser;
 use goals::{GoalSettings, Learned};
@@ -178,10 +178,7 @@ fn main() -> anyhow::Result<()> {
             tables::print(rows);
             return Ok(());
         };
-        let page =
-            std::fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
-        let page = tables::rewritten(&page, rows).with_context(|| format!("in {}", path.display()))?;
-        return std::fs::write(path, page).with_context(|| format!("cannot write {}", path.display()));
+        return study::rewrite(path, |page| tables::rewritten(page, rows));
     }
     let runs = options.runs();
     ensure!(!runs.is_empty(), "there is nothing to compute");

@@ -35,7 +35,7 @@ mod study;
 #[path = "patrols/tables.rs"]
 mod tables;
 
-use anyhow::{Context, ensure};
+use anyhow::ensure;
 use clap::Parser;
 use days::{Habits, Kind};
 use reports::shards::Shard;
@@ -133,10 +133,7 @@ fn main() -> anyhow::Result<()> {
             tables::print(&rows);
             return Ok(());
         };
-        let text =
-            std::fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
-        let text = page::rewritten(&text, &rows).with_context(|| format!("in {}", path.display()))?;
-        return std::fs::write(path, text).with_context(|| format!("cannot write {}", path.display()));
+        return study::rewrite(path, |text| page::rewritten(text, &rows));
     }
     let runs = options.runs();
     ensure!(!runs.is_empty(), "there is nothing to compute");

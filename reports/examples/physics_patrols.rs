@@ -23,7 +23,7 @@ mod study;
 mod table;
 
 use agent::Policy;
-use anyhow::{Context, ensure};
+use anyhow::ensure;
 use clap::Parser;
 use days::Kind;
 use reports::shards::Shard;
@@ -105,10 +105,7 @@ fn main() -> anyhow::Result<()> {
             print!("{}", table::table(&rows).map_err(anyhow::Error::msg)?);
             return Ok(());
         };
-        let page =
-            std::fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
-        let page = table::rewritten(&page, &rows).with_context(|| format!("in {}", path.display()))?;
-        return std::fs::write(path, page).with_context(|| format!("cannot write {}", path.display()));
+        return study::rewrite(path, |page| table::rewritten(page, &rows));
     }
     let runs = options.runs();
     ensure!(!runs.is_empty(), "there is nothing to compute");

@@ -141,7 +141,7 @@ struct PairRow {
 }
 
 /// The measures of pairs that pages show.
-const METRICS: [&str; 3] = ["log_error_area", "final_log_error", "final_map_quality"];
+const METRICS: [&str; 2] = ["log_error_area", "final_map_quality"];
 
 fn main() -> anyhow::Result<()> {
     let args = Args::parse();

@@ -2,6 +2,7 @@
 
 use anyhow::{Context, bail};
 use rayon::prelude::*;
+use reports::pages::PageError;
 use std::fs::File;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -70,6 +71,16 @@ pub(crate) fn merged<R: Line>(paths: &[PathBuf]) -> anyhow::Result<Vec<R>> {
     let read =
         |path: &PathBuf| RowFile::read(path).with_context(|| format!("cannot read {}", path.display()));
     Ok(paths.iter().map(read).collect::<anyhow::Result<Vec<_>>>()?.concat())
+}
+
+/// Writes the tables of a page anew.
+pub(crate) fn rewrite(
+    path: &Path,
+    rewritten: impl FnOnce(&str) -> Result<String, PageError>,
+) -> anyhow::Result<()> {
+    let page = std::fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
+    let page = rewritten(&page).with_context(|| format!("in {}", path.display()))?;
+    std::fs::write(path, page).with_context(|| format!("cannot write {}", path.display()))
 }
 
 /// A study whose file may have a part of its rows.
