@@ -17,6 +17,11 @@
 //! use of looks. B without looks is that of a robot that knows the habits. Its columns `÷ X` are ratios of mean regrets, with the
 //! p-value of the paired t test.
 //!
+//! With `--habits recorded`, the things of the generated buildings repeat what was recorded in real ones: doors the series of
+//! `--doors`, other things those of `--others`. The robot learns from its looks. A file has the lines `time_s,state`, one per
+//! change: seconds since a midnight, and 1 (a door is open, another thing is present), 0, or nan where nothing was recorded.
+//! Files whose names agree up to the first `-` are of one building: their things repeat the same days, without gaps.
+//!
 //! `--merge … --page docs/strategies.md` writes the tables of that page anew.
 //!
 //! A file of `--csv` gets a line per run as soon as it ends. A study that was stopped goes on where it was: what the file has is
@@ -26,6 +31,8 @@
 mod cells;
 #[path = "patrols/page.rs"]
 mod page;
+#[path = "patrols/recorded.rs"]
+mod recorded;
 #[path = "patrols/rows.rs"]
 mod rows;
 #[path = "patrols/runs.rs"]
@@ -37,9 +44,10 @@ mod tables;
 
 use anyhow::ensure;
 use clap::Parser;
-use days::{Habits, Kind};
+use days::Kind;
+use recorded::Recorded;
 use reports::shards::Shard;
-use runs::{Run, STRATEGIES};
+use runs::{BOUND, Run, STRATEGIES, Things};
 use std::path::PathBuf;
 use study::Study;
 
@@ -49,9 +57,16 @@ struct Options {
     #[arg(long, default_values = ["home", "office"])]
     kind: Vec<Kind>,
     /// Whether the robot knows the habits of the things: known, learned (from its looks), or, to see what learning costs,
-    /// known-to-plan (only the predictions are learned) and known-to-predict (only the plans are)
+    /// known-to-plan (only the predictions are learned) and known-to-predict (only the plans are). recorded: the things repeat
+    /// recorded series, see --doors, and the robot learns from its looks
     #[arg(long, default_values = ["known"])]
-    habits: Vec<Habits>,
+    habits: Vec<Things>,
+    /// Recorded series of doors, for --habits recorded: files with the lines `time_s,state`, where 1 is open
+    #[arg(long, num_args = 1.., value_name = "FILE", requires = "others")]
+    doors: Vec<PathBuf>,
+    /// Recorded series of other things, where 1 is present or occupied
+    #[arg(long, num_args = 1.., value_name = "FILE", requires = "doors")]
+    others: Vec<PathBuf>,
     /// The number of buildings of each kind
     #[arg(long, default_value_t = 100)]
     buildings: u64,
@@ -108,15 +123,15 @@ impl Options {
         for seed in
             (1..=self.buildings).filter(|number| is_of_shard(*number)).map(|number| self.seed + number - 1)
         {
-            for (kind, habits) in
-                self.kind.iter().flat_map(|kind| self.habits.iter().map(move |habits| (kind, habits)))
+            for (kind, things) in
+                self.kind.iter().flat_map(|kind| self.habits.iter().map(move |things| (kind, things)))
             {
                 for (share, strategy) in self
                     .duty
                     .iter()
                     .flat_map(|share| self.strategy.iter().map(move |strategy| (share, strategy)))
                 {
-                    runs.extend(Run::all(*kind, *habits, *share, seed, self.days, strategy, &self.length));
+                    runs.extend(Run::all(*kind, *things, *share, seed, self.days, strategy, &self.length));
                 }
             }
         }
@@ -137,8 +152,18 @@ fn main() -> anyhow::Result<()> {
     }
     let runs = options.runs();
     ensure!(!runs.is_empty(), "there is nothing to compute");
+    let is_recorded = options.habits.contains(&Things::Recorded);
+    ensure!(
+        is_recorded != options.doors.is_empty(),
+        "--habits recorded needs --doors and --others, and only it needs them"
+    );
+    ensure!(
+        !(is_recorded && options.strategy.iter().any(|strategy| strategy == BOUND)),
+        "recorded things have no habits that a bound could know: leave out one of --habits recorded and --strategy {BOUND}"
+    );
+    let recorded = Recorded::read(&options.doors, &options.others, options.days)?;
     let study = Study::open(options.csv.as_deref())?;
-    let mut rows = study.complete(&runs, |run: &Run| Ok(run.row()))?;
+    let mut rows = study.complete(&runs, |run: &Run| Ok(run.row(&recorded)))?;
     cells::sort(&mut rows);
     tables::print(&rows);
     Ok(())

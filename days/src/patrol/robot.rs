@@ -3,7 +3,7 @@ use super::knowledge::{Habits, Knowledge};
 use super::view::{Choice, Seen, Strategy, View};
 use crate::STEP_S;
 use crate::belief::Model;
-use crate::building::Building;
+use crate::building::{Building, Thing};
 use crate::calendar::Timeline;
 use interfaces::{Purpose, RandomStream};
 
@@ -57,13 +57,37 @@ impl<'a> Patrol<'a> {
             let rng = RandomStream::new(seed, Purpose::Thing(index));
             Timeline::of_habit(&thing.habit, model.start(), 0.0, rng)
         });
+        let timelines = timelines.collect();
+        Self::of_timelines(building, duty, timelines, Knowledge::new(building, habits, models), seed)
+    }
+
+    /// A robot that learns the habits of all things from its looks. The things do not follow the habits of the building, but
+    /// other timelines, for example those of a real building. `timeline` is called for each thing in turn.
+    pub fn following(
+        building: &'a Building,
+        duty: Duty,
+        timeline: impl FnMut(&Thing) -> Timeline,
+        seed: u64,
+    ) -> Self {
+        let timelines = building.things.iter().map(timeline).collect();
+        let knowledge = Knowledge::new(building, Habits::Learned, Vec::new());
+        Self::of_timelines(building, duty, timelines, knowledge, seed)
+    }
+
+    fn of_timelines(
+        building: &'a Building,
+        duty: Duty,
+        timelines: Vec<Timeline>,
+        knowledge: Knowledge,
+        seed: u64,
+    ) -> Self {
         Self {
             building,
             duty,
-            timelines: timelines.collect(),
-            last_states: vec![false; models.len()],
-            seen: vec![None; models.len()],
-            knowledge: Knowledge::new(building, habits, models),
+            last_states: vec![false; timelines.len()],
+            seen: vec![None; timelines.len()],
+            timelines,
+            knowledge,
             step: 0,
             at: building.dock,
             charge_steps: duty.full_steps().min(if duty.is_always() { f64::INFINITY } else { 0.0 }),

@@ -1,16 +1,16 @@
 //! The rows of a study, by kind of building, knowledge of the habits, and share of the time.
 
 use crate::rows::Row;
-use crate::runs::{BOUND, NO_LOOKS, Outcome, STRATEGIES};
+use crate::runs::{BOUND, NO_LOOKS, Outcome, STRATEGIES, Things};
 use days::{Habits, Kind};
 use evaluation::metrics::freshness_regret;
 use reports::pages::mean;
 use std::collections::BTreeSet;
 
-/// All rows of a kind of building, of a robot that knows the habits or not, and of a share of the time.
+/// All rows of a kind of building, of what the things do and the robot knows, and of a share of the time.
 pub(crate) struct Cell<'a> {
     pub(crate) kind: Kind,
-    pub(crate) habits: Habits,
+    pub(crate) things: Things,
     pub(crate) share: f64,
     pub(crate) days: f64,
     pub(crate) rows: &'a [Row],
@@ -34,10 +34,9 @@ pub(crate) struct Bounded {
 /// Sorts the rows, without those that are there twice.
 pub(crate) fn sort(rows: &mut Vec<Row>) {
     let place = |kind: Kind| Kind::ALL.iter().position(|other| other.1 == kind);
-    let habits = |habits: Habits| Habits::ALL.iter().position(|other| other.1 == habits);
     let strategy = |row: &Row| STRATEGIES.iter().position(|name| *name == row.run.strategy);
     rows.sort_by(|a, b| {
-        let key = |row: &Row| (place(row.run.kind), habits(row.run.habits));
+        let key = |row: &Row| (place(row.run.kind), row.run.things.place());
         let cell = key(a)
             .cmp(&key(b))
             .then(b.run.share.total_cmp(&a.run.share))
@@ -52,12 +51,12 @@ pub(crate) fn sort(rows: &mut Vec<Row>) {
 
 /// The cells of sorted rows, in their order.
 pub(crate) fn cells(rows: &[Row]) -> impl Iterator<Item = Cell<'_>> {
-    let key = |row: &Row| (row.run.kind, row.run.habits, row.run.share, row.run.days);
+    let key = |row: &Row| (row.run.kind, row.run.things, row.run.share, row.run.days);
     rows.chunk_by(move |a, b| key(a) == key(b)).map(|group| {
         let first = &group[0].run;
         Cell {
             kind: first.kind,
-            habits: first.habits,
+            things: first.things,
             share: first.share,
             days: first.days,
             rows: group,
@@ -122,7 +121,7 @@ impl Cell<'_> {
                 let run = &row.run;
                 run.seed == seed
                     && run.strategy == strategy
-                    && run.habits == Habits::Known
+                    && run.things == Things::Generated(Habits::Known)
                     && (run.kind, run.share, run.days) == (self.kind, self.share, self.days)
             });
             row.map(|row| row.outcome.brier)

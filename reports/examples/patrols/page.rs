@@ -16,7 +16,7 @@ pub(crate) fn rewritten(page: &str, rows: &[Row]) -> Result<String, PageError> {
     with_tables(page, "patrols", |which| table(which, rows))
 }
 
-/// A table: the knowledge of the habits, and what is measured.
+/// A table: what the things do and the robot knows, and what is measured.
 fn table(which: &str, rows: &[Row]) -> Result<String, String> {
     let (habits, measure) = which.split_once(' ').ok_or("expected habits and a measure")?;
     let (head, line): (&str, Line) = match measure {
@@ -39,7 +39,7 @@ fn table(which: &str, rows: &[Row]) -> Result<String, String> {
         _ => return Err("the measures are scores, delays, regrets and users".to_owned()),
     };
     let lines: Vec<String> = cells(rows)
-        .filter(|cell| cell.habits.name() == habits)
+        .filter(|cell| cell.things.name() == habits)
         .filter_map(|cell| {
             let place = [cell.kind.name().to_owned(), format!("{} %", 100.0 * cell.share)];
             let values = line(&cell)?;

@@ -33,11 +33,11 @@ impl Line for Row {
     }
 
     fn line(&self) -> String {
-        let Run { kind, habits, share, days, seed, strategy, length_min } = &self.run;
+        let Run { kind, things, share, days, seed, strategy, length_min } = &self.run;
         let Outcome { brier, delays_min: [median, late], missed, patrol, closed, lost_s, not_made } =
             self.outcome;
         let length = length_min.map_or(String::new(), |length_min| length_min.to_string());
-        let (kind, habits) = (kind.name(), habits.name());
+        let (kind, habits) = (kind.name(), things.name());
         format!(
             "{kind},{habits},{share},{days},{seed},{strategy},{length},{brier},{median},{late},{missed},{patrol},{closed},{lost_s},{not_made}"
         )
@@ -55,7 +55,7 @@ impl Line for Row {
         };
         let run = Run {
             kind: kind.parse().map_err(anyhow::Error::msg)?,
-            habits: habits.parse().map_err(anyhow::Error::msg)?,
+            things: habits.parse().map_err(anyhow::Error::msg)?,
             share: share.parse()?,
             days: days.parse()?,
             seed: seed.parse()?,

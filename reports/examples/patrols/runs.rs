@@ -1,5 +1,6 @@
 //! A run: a strategy in a building, or its lower bound.
 
+use crate::recorded::Recorded;
 use crate::rows::Row;
 use days::{Building, Duty, Habits, Kind, Patrol, Plan, STEP_S};
 use evaluation::freshness_bound::building::{BoundSettings, BuildingBound};
@@ -15,11 +16,49 @@ const DAY_STEPS: f64 = 86_400.0 / STEP_S;
 /// Users want to go somewhere every 50 minutes: at all times of the day in turn.
 const TRIP_STEPS: usize = 300;
 
+/// What the things do, and what the robot knows of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Things {
+    /// They follow generated habits, which the robot knows or learns.
+    Generated(Habits),
+    /// They repeat what was recorded in real buildings. The robot learns from its looks.
+    Recorded,
+}
+
+impl Things {
+    const RECORDED: &'static str = "recorded";
+
+    /// The name: that of the habits, or `recorded`.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Generated(habits) => habits.name(),
+            Self::Recorded => Self::RECORDED,
+        }
+    }
+
+    /// The place in the order of the tables.
+    pub(crate) fn place(self) -> usize {
+        Habits::ALL.iter().position(|(name, _)| *name == self.name()).unwrap_or(Habits::ALL.len())
+    }
+}
+
+impl std::str::FromStr for Things {
+    type Err = String;
+
+    fn from_str(word: &str) -> Result<Self, String> {
+        if word == Self::RECORDED {
+            return Ok(Self::Recorded);
+        }
+        let habits = word.parse().map(Self::Generated);
+        habits.map_err(|error: String| error.replacen("one of", "one of recorded,", 1))
+    }
+}
+
 /// What is computed, and what a row of the table begins with.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Run {
     pub(crate) kind: Kind,
-    pub(crate) habits: Habits,
+    pub(crate) things: Things,
     /// The share of the time that the robot can be on patrol.
     pub(crate) share: f64,
     pub(crate) days: f64,
@@ -49,7 +88,7 @@ impl Run {
     /// The runs of a strategy, with each length of patrols that it does not choose.
     pub(crate) fn all(
         kind: Kind,
-        habits: Habits,
+        things: Things,
         share: f64,
         seed: u64,
         days: f64,
@@ -57,7 +96,7 @@ impl Run {
         lengths_min: &[f64],
     ) -> Vec<Self> {
         let run =
-            |length_min| Self { kind, habits, share, seed, days, strategy: strategy.to_owned(), length_min };
+            |length_min| Self { kind, things, share, seed, days, strategy: strategy.to_owned(), length_min };
         if share >= 1.0 || !["curious", "round", "coverage"].contains(&strategy) {
             return vec![run(None)];
         }
@@ -67,10 +106,11 @@ impl Run {
         lengths_min.iter().map(|length_min| run(Some(*length_min))).collect()
     }
 
-    /// Computes the row.
-    pub(crate) fn row(&self) -> Row {
+    /// Computes the row; `recorded` has what the things do if they repeat recorded series.
+    pub(crate) fn row(&self, recorded: &Recorded) -> Row {
         let building = Building::generate(self.kind, self.seed);
-        let outcome = if self.strategy == BOUND { self.bound(&building) } else { self.patrol(&building) };
+        let outcome =
+            if self.strategy == BOUND { self.bound(&building) } else { self.patrol(&building, recorded) };
         Row { run: self.clone(), outcome }
     }
 
@@ -89,22 +129,25 @@ impl Run {
         }
     }
 
-    fn patrol(&self, building: &Building) -> Outcome {
+    fn patrol(&self, building: &Building, recorded: &Recorded) -> Outcome {
         let duty = Duty::share(self.share);
+        let mut patrol = match self.things {
+            Things::Generated(habits) => Patrol::with(building, duty, habits, self.seed),
+            Things::Recorded => {
+                let mut draw = recorded.draw(self.days, self.seed);
+                Patrol::following(building, duty, |thing| draw.timeline(thing.kind), self.seed)
+            }
+        };
         let mut strategy = self.plan().strategy(building, duty);
         let mut freshness = Freshness::new(STEP_S);
         let (routes, mut users, mut step) = (Routes::of_building(building), UserRegret::default(), 0);
-        let totals = Patrol::with(building, duty, self.habits, self.seed).run(
-            strategy.as_mut(),
-            self.steps(),
-            |predicted, is_blocked| {
-                freshness.add(predicted, is_blocked);
-                step += 1;
-                if step % TRIP_STEPS == 0 {
-                    users.add(&routes, predicted, is_blocked);
-                }
-            },
-        );
+        let totals = patrol.run(strategy.as_mut(), self.steps(), |predicted, is_blocked| {
+            freshness.add(predicted, is_blocked);
+            step += 1;
+            if step % TRIP_STEPS == 0 {
+                users.add(&routes, predicted, is_blocked);
+            }
+        });
         let scores = freshness.scores();
         Outcome {
             brier: scores.brier,

@@ -23,7 +23,7 @@ impl Cell<'_> {
         println!(
             "\n{}, habits {}, patrol {} % of the time, {} days, {} buildings",
             self.kind.name(),
-            self.habits.name(),
+            self.things.name(),
             100.0 * self.share,
             self.days,
             seeds.len()
