@@ -7,8 +7,15 @@ use xxhash_rust::xxh3::{xxh3_64, xxh3_64_with_seed};
 /// Ranges whose median is beyond these are no meters: no laser of a robot is so far from what it sees, or so near.
 const FARTHEST_M: f32 = 100.0;
 const NEAREST_M: f32 = 0.05;
-/// Larger numbers are millimeters, others centimeters.
+/// Larger numbers are millimeters, others centimeters: of most scans, since near a wall millimeters are small too.
 const MIN_MILLIMETERS: f32 = 1000.0;
+/// The units that ranges may be in instead of meters: the name, what the medians of ranges are then, the factor to meters, and what to
+/// do.
+const OTHER_UNITS: [(&str, &str, f32, &str); 3] = [
+    ("kilometers", "below 0.05 m", 1000.0, "multiply them by 1000"),
+    ("centimeters", "beyond 100 m", 0.01, "divide them by 100"),
+    ("millimeters", "beyond 100 m", 0.001, "divide them by 1000"),
+];
 /// A log contains a part twice if this number of scans, and this share, come twice after the same scan. Scans that are as one
 /// of the last ones are those of a robot that stands.
 const MIN_REPEATED: usize = 20;
@@ -30,9 +37,8 @@ pub(crate) struct Doubts {
     scans: usize,
     /// Scans with a range.
     seeing: usize,
-    /// Scans whose ranges are no meters, and the median range of the first one.
-    beyond: usize,
-    first_beyond: f32,
+    /// For each of the other units the scans whose ranges look like it, and the median range of the first one.
+    in_unit: [(usize, f32); OTHER_UNITS.len()],
     /// The hashes of the last scans, and of all that came after another scan; the number of those that came twice.
     recent: VecDeque<u64>,
     moved: HashSet<u64>,
@@ -45,10 +51,12 @@ impl Doubts {
         self.scans += 1;
         self.seeing += usize::from(ranges_m.iter().any(|range_m| range_m.is_finite() && *range_m > 0.0));
         if let Some(typical) = typical.filter(|typical| !(NEAREST_M..=FARTHEST_M).contains(typical)) {
-            if self.beyond == 0 {
-                self.first_beyond = typical;
+            let unit = usize::from(typical > FARTHEST_M) + usize::from(typical >= MIN_MILLIMETERS);
+            let (count, first) = &mut self.in_unit[unit];
+            if *count == 0 {
+                *first = typical;
             }
-            self.beyond += 1;
+            *count += 1;
         }
         self.compare(xxh3_64(
             &ranges_m.iter().flat_map(|range_m| range_m.to_le_bytes()).collect::<Vec<u8>>(),
@@ -71,10 +79,11 @@ impl Doubts {
 
     /// Why no map can be made of these scans, beside `invalid` ones. `stands`: whether the laser stands.
     pub(crate) fn impossible(&self, invalid: usize, stands: bool) -> Option<String> {
-        let Self { scans, seeing, beyond, repeated, .. } = *self;
+        let Self { scans, seeing, repeated, .. } = *self;
         let all = scans + invalid;
+        let beyond: usize = self.in_unit.iter().map(|(count, _)| count).sum();
         if beyond * 2 > scans {
-            return Some(self.other_unit());
+            return Some(self.other_unit(beyond));
         }
         if seeing == 0 {
             return Some(format!(
@@ -94,19 +103,15 @@ impl Doubts {
         (scans == 1).then(|| "one scan: what changes is found by comparing scans, at least 2".to_owned())
     }
 
-    /// That most ranges are not in meters.
-    fn other_unit(&self) -> String {
-        let Self { scans, beyond, first_beyond: first, .. } = *self;
-        let (unit, median, in_meters, what) = match first {
-            _ if first < NEAREST_M => ("kilometers", "below 0.05 m", first * 1000.0, "multiply them by 1000"),
-            _ if first < MIN_MILLIMETERS => {
-                ("centimeters", "beyond 100 m", first / 100.0, "divide them by 100")
-            }
-            _ => ("millimeters", "beyond 100 m", first / 1000.0, "divide them by 1000"),
-        };
+    /// That most ranges are not in meters, and what they are in by most of these scans.
+    fn other_unit(&self, beyond: usize) -> String {
+        let most = self.in_unit.iter().zip(OTHER_UNITS).max_by_key(|((count, _), _)| *count);
+        let ((_, first), (unit, medians, to_meters, what)) = most.unwrap_or((&(0, 0.0), OTHER_UNITS[0]));
         format!(
-            "the ranges look like {unit}: in {beyond} of {scans} scans, their median is {median} (the first: {first}, which \
-             would be {in_meters} m); ranges are in meters: {what}"
+            "the ranges look like {unit}: in {beyond} of {} scans, their median is {medians} (the first: {first}, which \
+             would be {:.2} m); ranges are in meters: {what}",
+            self.scans,
+            first * to_meters
         )
     }
 }
@@ -161,5 +166,22 @@ impl OdometryTimes {
                  within {NEAR_S} s of the time of the scan before; a line is `ODOM x y theta tv rv accel time host logger_time`"
             )
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_unit_is_that_of_most_scans() {
+        let mut doubts = Doubts::default();
+        // The first scan is near a wall: 0.9 m.
+        for (scan, typical) in [900.0, 2500.0, 3100.0].into_iter().enumerate() {
+            doubts.add(Some(typical), &[1.0 + scan as f32]);
+        }
+        let why = doubts.impossible(0, false).unwrap();
+        assert!(why.starts_with("the ranges look like millimeters: in 3 of 3 scans"), "{why}");
+        assert!(why.contains("(the first: 2500, which would be 2.50 m)"), "{why}");
     }
 }

@@ -73,7 +73,11 @@ class DriveParallelEnv(ParallelEnv):
             self._world_seed = _world_seed(options["world_seed"])
         rows = self.batch.reset_one(0, self._world_seed)
         self.agents = list(self.possible_agents)
-        return dict(zip(self.agents, rows)), {agent: {"world_seed": self._world_seed} for agent in self.agents}
+        return dict(zip(self.agents, rows)), dict(zip(self.agents, self._infos(self.batch.info())))
+
+    def _infos(self, values: np.ndarray) -> list[dict[str, Any]]:
+        """Return the info of every agent from its row of values."""
+        return [dict(zip(self._names, row), world_seed=self._world_seed) for row in values.tolist()]
 
     def step(self, actions: dict[str, Any]) -> tuple[dict, dict, dict, dict, dict]:
         """Simulate one step. ``actions`` has one for every present agent."""
@@ -92,11 +96,11 @@ class DriveParallelEnv(ParallelEnv):
                     if not abs(value) <= 1.0 + 1e-6:
                         raise ValueError(f"{agent}: action {value} is not from -1 to 1")
         rows, rewards, terminated, truncated, values, _, _ = self.batch.step(array, self._no_seeds)
+        infos = self._infos(values)
         results: tuple[dict, dict, dict, dict, dict] = ({}, {}, {}, {}, {})
         for row, agent in enumerate(self.possible_agents):
             if agent in self.agents:
-                info = dict(zip(self._names, values[row].tolist()), world_seed=self._world_seed)
-                of_agent = (rows[row], float(rewards[row]), bool(terminated[row]), bool(truncated[row]), info)
+                of_agent = (rows[row], float(rewards[row]), bool(terminated[row]), bool(truncated[row]), infos[row])
                 for result, value in zip(results, of_agent):
                     result[agent] = value
         self.agents = [agent for agent in self.agents if not (results[2][agent] or results[3][agent])]

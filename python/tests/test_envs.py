@@ -398,8 +398,10 @@ def test_pettingzoo(fleet_toml):
     parallel_api_test(make(), num_cycles=200)
     parallel_seed_test(make)
     env = make()
-    observations, _ = env.reset(seed=1)
+    observations, infos = env.reset(seed=1)
     assert set(observations) == {"a", "b"} and env.render().shape[2] == 3
+    _, _, _, _, after = env.step({"a": [0.0, 0.0], "b": [0.0, 0.0]})
+    assert [info.keys() for info in infos.values()] == [info.keys() for info in after.values()]
     with pytest.raises(ValueError, match="no action for b"):
         env.step({"a": [0.0, 0.0]})
     with pytest.raises(ValueError, match="a: the actions have the shape"):
