@@ -36,7 +36,9 @@ pub use occupancy::{
     BeamReturn, CloneModel, OccupancyChoice, OccupancyModel, ProjectedScan, SurfaceGridSettings,
 };
 pub use reading_error::ReadingError;
-pub use scan_filter::{NoReturn, NoReturnEvidence, NoReturns, ScanFilter, ScanFilterSettings};
+pub use scan_filter::{
+    NoReturn, NoReturnDistrust, NoReturnEvidence, NoReturns, ScanFilter, ScanFilterSettings,
+};
 pub use things::{Door, DoorStatistics, Furniture, Leaf, Place, Segment, Thing, ThingKind};
 
 pub use tiles::Tile;

@@ -3,7 +3,7 @@
 mod no_return;
 mod veils;
 
-pub use no_return::{NoReturn, NoReturnEvidence, NoReturns};
+pub use no_return::{NoReturn, NoReturnDistrust, NoReturnEvidence, NoReturns};
 
 use interfaces::{LaserReading, Scan, SettingsCheck, SettingsError, Values, value};
 use nalgebra::Isometry2;

@@ -138,8 +138,30 @@ impl NoReturnEvidence {
 
     /// Whether beams without a return of this scanner mean free space.
     pub fn is_trusted(&self) -> bool {
-        self.swallowed() < MAX_SWALLOWED && self.learned_s >= LEARNS_S
+        self.distrust().is_none()
     }
+
+    /// Why beams without a return of this scanner do not mean free space; `None` if they do.
+    pub fn distrust(&self) -> Option<NoReturnDistrust> {
+        if self.learned_s < LEARNS_S {
+            return Some(NoReturnDistrust::SeenShortly);
+        }
+        let judged = (self.passing + self.ending) as f64;
+        let is_by_prior = judged == 0.0 || (self.passing as f64) < MAX_SWALLOWED * judged;
+        let distrust = if is_by_prior { NoReturnDistrust::SeldomJudged } else { NoReturnDistrust::Swallows };
+        (self.swallowed() >= MAX_SWALLOWED).then_some(distrust)
+    }
+}
+
+/// Why beams without a return of a scanner are not trusted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NoReturnDistrust {
+    /// The scanner was seen for less than half a minute.
+    SeenShortly,
+    /// Too few of its beams met surfaces that had been hit before.
+    SeldomJudged,
+    /// Surfaces often give no return.
+    Swallows,
 }
 
 impl NoReturns {
@@ -307,4 +329,23 @@ fn passed(origin: Point2<f64>, along: Vector2<f64>, range_m: f64) -> impl Iterat
 
 fn cell(at: &Point2<f64>) -> [i32; 2] {
     [at.x, at.y].map(|m| (m / CELL_M).floor() as i32)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_scanner_is_not_trusted_for_the_reason_that_is_given() {
+        let distrust = |learned_s, passing, ending| {
+            let evidence = NoReturnEvidence { passing, ending, silent: 1000, learned_s };
+            assert_eq!(evidence.is_trusted(), evidence.distrust().is_none());
+            evidence.distrust()
+        };
+        assert_eq!(distrust(29.0, 0, 100_000), Some(NoReturnDistrust::SeenShortly));
+        assert_eq!(distrust(60.0, 0, 0), Some(NoReturnDistrust::SeldomJudged));
+        assert_eq!(distrust(60.0, 1, 60), Some(NoReturnDistrust::SeldomJudged));
+        assert_eq!(distrust(60.0, 50, 400), Some(NoReturnDistrust::Swallows));
+        assert_eq!(distrust(60.0, 5, 400), None);
+    }
 }

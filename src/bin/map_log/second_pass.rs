@@ -8,7 +8,7 @@ use curious::busy::Busy;
 use curious::program::{Failure, input};
 use curious::progress::Progress;
 use curious::terminal::say;
-use mapper::NoReturnEvidence;
+use mapper::{NoReturnDistrust, NoReturnEvidence};
 use results::numbers::percent;
 use results::output::TrajectoryFile;
 use robot::NoPilot;
@@ -148,7 +148,17 @@ impl Learned {
 
 /// What the user should know of a scanner that is not trusted.
 pub(crate) fn ignored(scanner: &NoReturnEvidence) -> Option<String> {
-    let swallowed = percent(scanner.swallowed());
-    let why = format!("surfaces swallow {swallowed} of the beams (--no-return)");
-    (!scanner.is_trusted()).then(|| format!("beams without a return are ignored: {why}"))
+    let why = match scanner.distrust()? {
+        NoReturnDistrust::SeenShortly => {
+            format!("{:.0} s of the scanner are too little to learn what they mean", scanner.learned_s)
+        }
+        NoReturnDistrust::SeldomJudged => {
+            let beams = scanner.passing + scanner.ending;
+            format!("only {beams} beams met surfaces that were hit before, too few to learn what they mean")
+        }
+        NoReturnDistrust::Swallows => {
+            format!("surfaces swallow {} of the beams", percent(scanner.swallowed()))
+        }
+    };
+    Some(format!("beams without a return are ignored: {why} (--no-return)"))
 }
