@@ -4,7 +4,7 @@ use crate::rows::{Row, Run, VALUES};
 use agent::Policy;
 use reports::pages::{PageError, mean, ratio, with_tables};
 
-const HEAD: &str = "building | time on patrol | buildings | strategy | Brier | ÷ first | delay, min: median / 95 % | missed | \
+const HEAD: &str = "building | time on patrol | days | buildings | strategy | Brier | ÷ first | delay, min: median / 95 % | missed | \
                     lost per trip, s | not made | flat battery | contacts";
 
 /// The page with its tables made from the rows.
@@ -57,9 +57,10 @@ fn lines(rows: &[Row], cell: &Run, strategies: &[Policy]) -> Vec<String> {
             ratio(&values(strategy, "brier"), &values(&strategies[0], "brier"))
         };
         format!(
-            "| {} | {} % | {} | `{}` | {:.3} | {to_first} | {:.0} / {:.0} | {:.0} % | {:.2} | {:.1} % | {} | {} |\n",
+            "| {} | {} % | {} | {} | `{}` | {:.3} | {to_first} | {:.0} / {:.0} | {:.0} % | {:.2} | {:.1} % | {} | {} |\n",
             cell.kind.name(),
             100.0 * cell.share,
+            cell.days,
             seeds.len(),
             strategy.name(),
             mean_of("brier"),
