@@ -20,7 +20,8 @@
 //! With `--habits recorded`, the things of the generated buildings repeat what was recorded in real ones: doors the series of
 //! `--doors`, other things those of `--others`. The robot learns from its looks. A file has the lines `time_s,state`, one per
 //! change: seconds since a midnight, and 1 (a door is open, another thing is present), 0, or nan where nothing was recorded.
-//! Files whose names agree up to the first `-` are of one building: their things repeat the same days, without gaps.
+//! Files whose names agree up to the first `-` are of one building: their things repeat the same days, without gaps, as long as no
+//! series is used twice.
 //!
 //! `--merge … --page docs/strategies.md` writes the tables of that page anew.
 //!

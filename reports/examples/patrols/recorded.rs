@@ -22,7 +22,8 @@ struct Series {
     end_s: f64,
 }
 
-/// The series of the things of one building. Things that were recorded in the same real building repeat the same days.
+/// The series of the things of one building. Things that were recorded in the same real building repeat the same days, as long as no
+/// series is used twice.
 pub(crate) struct Draw<'a> {
     recorded: &'a Recorded,
     days: f64,
@@ -78,7 +79,7 @@ impl Draw<'_> {
         let is_door = kind == ThingKind::Door;
         let left = usize::from(!is_door);
         if self.left[left].is_empty() {
-            // Two things never repeat the same days of the same series.
+            // The second thing with a series mostly repeats other days of it.
             self.starts_s.clear();
             let all = if is_door { &self.recorded.doors } else { &self.recorded.others };
             self.left[left] = all.iter().collect();
