@@ -93,7 +93,7 @@ impl Draw<'_> {
             self.starts_s.push((&series.building, start_s));
             start_s
         });
-        let changes = series.from(start_s).into_iter();
+        let changes = series.changes_from(start_s).into_iter();
         // An open door does not block.
         let changes: Vec<(f64, bool)> = changes.map(|(time_s, is_one)| (time_s, is_one != is_door)).collect();
         Timeline::recorded(&changes)
@@ -132,7 +132,7 @@ impl Series {
     }
 
     /// The state at a time and the changes after it; their times are since that time, s.
-    fn from(&self, start_s: f64) -> Vec<(f64, bool)> {
+    fn changes_from(&self, start_s: f64) -> Vec<(f64, bool)> {
         let from = self.until(start_s).saturating_sub(1);
         let known = self.changes[from..].iter();
         known.filter_map(|(time_s, state)| Some(((time_s - start_s).max(0.0), (*state)?))).collect()

@@ -10,6 +10,11 @@ const OLD_TITLES: &str =
 const TITLES: &str = "kind,habits,share,days,seed,strategy,length_min,brier,median_min,delay95_min,missed,patrol,closed,lost_s,\
                       not_made";
 
+/// A number with six decimals, which are far below the scatter of a run: a study has thousands of rows.
+fn rounded(value: f64) -> f64 {
+    (1e6 * value).round() / 1e6
+}
+
 /// A run and what came of it.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Row {
@@ -36,6 +41,8 @@ impl Line for Row {
         let Run { kind, things, share, days, seed, strategy, length_min } = &self.run;
         let Outcome { brier, delays_min: [median, late], missed, patrol, closed, lost_s, not_made } =
             self.outcome;
+        let [brier, median, late, missed, patrol, closed, lost_s, not_made] =
+            [brier, median, late, missed, patrol, closed, lost_s, not_made].map(rounded);
         let length = length_min.map_or(String::new(), |length_min| length_min.to_string());
         let (kind, habits) = (kind.name(), things.name());
         format!(
