@@ -4,7 +4,7 @@ use crate::calibration::Calibration;
 use crate::constants::{DISTRUST_SCANS, MIN_MOTION};
 use crate::motion::Motion;
 use crate::settings::OdometryTrust;
-use nalgebra::Isometry2;
+use nalgebra::{Isometry2, Matrix3};
 
 /// The odometry of a robot.
 #[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
@@ -12,6 +12,10 @@ pub(crate) struct MotionPrior {
     calibration: Calibration,
     /// The last valid odometry pose.
     last: Option<Isometry2<f64>>,
+    /// The odometry pose from which a motion shows that there is an odometry: of a slow robot with a fast laser, no step between two
+    /// readings does.
+    #[serde(skip)]
+    origin: Option<Isometry2<f64>>,
     /// Whether there is an odometry, as far as is known.
     exists: bool,
     /// The number of scans for which the odometry is not trusted.
@@ -20,7 +24,7 @@ pub(crate) struct MotionPrior {
 
 impl MotionPrior {
     pub(crate) fn new(trust: &OdometryTrust) -> Self {
-        Self { calibration: Calibration::new(trust), last: None, exists: false, distrust: 0 }
+        Self { calibration: Calibration::new(trust), last: None, origin: None, exists: false, distrust: 0 }
     }
 
     /// There is an odometry, though it may not have moved yet.
@@ -39,13 +43,13 @@ impl MotionPrior {
 
     /// Forgets where the odometry was; what was learned about its gains stays.
     pub(crate) fn begin_session(&mut self) {
-        (self.last, self.distrust) = (None, 0);
+        (self.last, self.origin, self.distrust) = (None, None, 0);
     }
 
     /// The motion since the last reading, as the odometry measured it.
     pub(crate) fn measure(&mut self, odometry: &Isometry2<f64>) -> Isometry2<f64> {
         let measured = self.last.replace(*odometry).unwrap_or(*odometry).inv_mul(odometry);
-        self.exists |= !MIN_MOTION.contains(&measured);
+        self.exists |= !MIN_MOTION.contains(&self.origin.get_or_insert(*odometry).inv_mul(odometry));
         measured
     }
 
@@ -64,8 +68,32 @@ impl MotionPrior {
         self.distrust = if is_outlier { DISTRUST_SCANS } else { self.distrust.saturating_sub(1) };
     }
 
-    /// Learns the gains from a measured and a matched motion.
-    pub(crate) fn learn(&mut self, measured: &Isometry2<f64>, matched: &Isometry2<f64>) {
-        self.calibration.learn(measured, matched);
+    /// Learns the gains from a measured and a matched motion, and the covariance of the match by the scan alone.
+    pub(crate) fn learn(
+        &mut self,
+        measured: &Isometry2<f64>,
+        matched: &Isometry2<f64>,
+        covariance: &Matrix3<f64>,
+    ) {
+        self.calibration.learn(measured, matched, covariance);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use interfaces::pose;
+
+    #[test]
+    fn the_odometry_of_a_slow_robot_exists_and_that_of_a_standing_one_does_not() {
+        let exists = |step_m: f64| {
+            let mut prior = MotionPrior::new(&OdometryTrust::default());
+            for step in 0..100 {
+                prior.measure(&pose(step_m * f64::from(step), 0.0, 0.0));
+            }
+            prior.has_odometry()
+        };
+        assert!(exists(0.001));
+        assert!(!exists(0.0));
     }
 }
