@@ -4,7 +4,7 @@
 //! Recursive least squares with forgetting (Ljung 1999, section 11.2): the errors of wheels change with the floor, the
 //! load and the air in the tires.
 
-use crate::constants::{LEARNED_MOTION, LEARNED_MOTIONS, MOTION_STD};
+use crate::constants::{FIXED_STD_M, LEARNED_MOTION, LEARNED_MOTIONS, MOTION_STD};
 use crate::settings::OdometryTrust;
 use interfaces::heading_rad;
 use nalgebra::{Isometry2, Matrix2, Matrix3, Vector2};
@@ -65,10 +65,10 @@ impl Calibration {
         let square = |x: f64| x * x;
         let (distance_m, turn_rad) = (measured.translation.vector.norm(), heading_rad(measured).abs());
         let memory = 1.0 - 1.0 / LEARNED_MOTIONS;
-        if distance_m >= LEARNED_MOTION.m {
-            let ahead = measured.translation.vector / distance_m;
-            let by_scan = ahead.dot(&(covariance.fixed_view::<2, 2>(0, 0) * ahead));
-            let noise = square(MOTION_STD.m) + square(self.trust.distance_noise_m) * distance_m + by_scan;
+        let ahead = measured.translation.vector / distance_m.max(LEARNED_MOTION.m);
+        let by_scan = ahead.dot(&(covariance.fixed_view::<2, 2>(0, 0) * ahead));
+        if distance_m >= LEARNED_MOTION.m && by_scan <= square(FIXED_STD_M) {
+            let noise = square(MOTION_STD.m) + square(self.trust.distance_noise_m) * distance_m;
             let (gain, variance) = &mut self.distance;
             *variance = (*variance / memory).min(square(self.trust.distance_gain));
             let k = *variance * distance_m / (noise + *variance * square(distance_m));
@@ -78,8 +78,7 @@ impl Calibration {
         }
         if distance_m >= LEARNED_MOTION.m || turn_rad >= LEARNED_MOTION.rad {
             let x = self.features(measured);
-            let noise =
-                square(MOTION_STD.rad) + square(self.trust.turn_noise_rad) * turn_rad + covariance[(2, 2)];
+            let noise = square(MOTION_STD.rad) + square(self.trust.turn_noise_rad) * turn_rad;
             let (gains, covariance) = &mut self.turn;
             *covariance /= memory;
             // What was never excited must not grow without a limit.
