@@ -36,6 +36,7 @@ mod route_graph;
 mod search;
 mod seen_area;
 mod settings;
+mod silence;
 mod survey;
 mod surveyed_log;
 #[cfg(test)]

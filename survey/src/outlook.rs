@@ -1,6 +1,6 @@
 //! What a map says of other times: P(blocked), doors, for how long a look counts.
 
-use interfaces::{Cell, CellState, Grid};
+use interfaces::{Cell, CellState, Grid, GridFrame};
 use mapper::{Calendar, Clock, Door, Mapper, Segment, ThingKind};
 use nalgebra::{Point2, Vector2};
 
@@ -90,7 +90,9 @@ impl<'a> Outlook<'a> {
         let doors: Vec<&Door> =
             doors(self.mapper).map(|(_, door)| door).filter(|door| door.is_open.is_some()).collect();
         let mut largest: Option<f64> = None;
-        for step in 0..=steps as usize {
+        let margin_m = (f64::from(reach) + LEAF + 1.0) * cell_m;
+        let [first, last] = part_near(frame, margin_m, from, way)?;
+        for step in (first * steps).floor() as usize..=(last * steps).ceil() as usize {
             let share = step as f64 / steps;
             let (at, time_s) = (from + way * share, time_s(share * length_m));
             for offset in (-reach..=reach).flat_map(|y| (-reach..=reach).map(move |x| Vector2::new(x, y))) {
@@ -111,6 +113,25 @@ impl<'a> Outlook<'a> {
     }
 }
 
+/// The part of a way that is at most a margin (m) away from a map, as shares of the way at its begin and its end; `None` if there is none.
+/// The rest of a way can be very long.
+fn part_near(frame: &GridFrame, margin_m: f64, from: Point2<f64>, way: Vector2<f64>) -> Option<[f64; 2]> {
+    let size_m = Vector2::new(frame.width() as f64, frame.height() as f64) * frame.resolution_m();
+    let low = frame.origin() - Vector2::repeat(margin_m);
+    let high = frame.origin() + size_m + Vector2::repeat(margin_m);
+    let (mut first, mut last) = (0.0_f64, 1.0_f64);
+    for axis in 0..2 {
+        let reached = |side: f64| (side - from[axis]) / way[axis];
+        if way[axis] != 0.0 {
+            let [one, other] = [reached(low[axis]), reached(high[axis])];
+            (first, last) = (first.max(one.min(other)), last.min(one.max(other)));
+        } else if !(low[axis]..=high[axis]).contains(&from[axis]) {
+            return None;
+        }
+    }
+    (first <= last).then_some([first, last])
+}
+
 /// The doors of a map, with their numbers.
 pub fn doors(mapper: &Mapper) -> impl Iterator<Item = (u32, &Door)> {
     mapper.things().iter().filter_map(|thing| match &thing.kind {
@@ -125,4 +146,62 @@ pub(crate) fn distance_m(segment: &Segment, point: Point2<f64>) -> f64 {
     let along = to - from;
     let share = (along.dot(&(point - from)) / along.norm_squared()).clamp(0.0, 1.0);
     (point - from - along * share).norm()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use interfaces::CellReading;
+    use mapper::MapperSettings;
+    use nalgebra::Isometry2;
+    use std::cell::RefCell;
+
+    /// A map of 5 × 2 m from (1, 2) on, in cells of 0.1 m: one cell is blocked.
+    fn map(blocked: Cell) -> Mapper {
+        let frame = GridFrame::new(Point2::new(1.0, 2.0), 0.1, 50, 20).unwrap();
+        let mut mapper = Mapper::new(&MapperSettings::default(), frame).unwrap();
+        for time in 0..9 {
+            let cells =
+                (0..frame.len()).map(|cell| (frame.cell(cell), frame.cell(cell) == blocked)).collect();
+            let reading = CellReading { time: f64::from(time), pose: Isometry2::identity(), cells };
+            mapper.update(&reading).unwrap();
+        }
+        mapper
+    }
+
+    /// Only the part of a way near the map is looked at, whatever the length of the way, at the times of the whole way.
+    #[test]
+    fn a_way_from_far_away_is_that_through_the_map() {
+        let mapper = map(Cell::new(25, 10));
+        let outlook = Outlook::live(&mapper);
+        let at = |y_m: f64, [from_m, to_m]: [f64; 2]| {
+            let asked_m = RefCell::new(Vec::new());
+            let time_s = |way_m: f64| {
+                asked_m.borrow_mut().push(way_m);
+                outlook.now_s()
+            };
+            let found = outlook.stopped([Point2::new(from_m, y_m), Point2::new(to_m, y_m)], 0.2, time_s);
+            (found, asked_m.into_inner())
+        };
+        for y_m in [2.45, 3.05, 3.3] {
+            let (near, _) = at(y_m, [0.0, 7.0]);
+            assert_eq!(near.is_some_and(|blocked| blocked > 0.9), y_m > 3.0, "{y_m}: {near:?}");
+            for ends_m in [[-9.0e5, 9.9e5], [9.9e5, -9.0e5], [-1e9, 4.0]] {
+                let (far, asked_m) = at(y_m, ends_m);
+                assert_eq!(far, near, "{y_m}, {ends_m:?}");
+                let inside_m =
+                    [1.0, 6.0].map(|x_m: f64| (x_m.min(ends_m[1].max(ends_m[0])) - ends_m[0]).abs());
+                let [low_m, high_m] = [inside_m[0].min(inside_m[1]), inside_m[0].max(inside_m[1])];
+                assert!(asked_m.len() < 8000, "{}", asked_m.len());
+                assert!(
+                    asked_m.iter().all(|way_m| (low_m - 1.0..high_m + 1.0).contains(way_m)),
+                    "{ends_m:?}"
+                );
+            }
+        }
+        // Ways that never come near the map, and one that only comes as near as the radius.
+        assert_eq!(at(900.0, [-5.0, 9.0]), (None, Vec::new()));
+        assert_eq!(at(3.0, [7.0, 9.9e5]), (None, Vec::new()));
+        assert!(at(1.85, [0.0, 7.0]).0.is_some());
+    }
 }

@@ -1,6 +1,7 @@
 //! A graph of routes in the GeoJSON of `nav2_route`, whose edges are open with a probability.
 
 use crate::outlook::Outlook;
+use interfaces::FARTHEST_M;
 use nalgebra::Point2;
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
@@ -104,6 +105,11 @@ impl RouteGraph {
                             "node {own} needs `geometry.coordinates` of two numbers, as [1.5, 2.0]"
                         ));
                     };
+                    if [x, y].iter().any(|at_m| at_m.abs() > FARTHEST_M) {
+                        return error(format!(
+                            "node {own} is at [{x}, {y}]: coordinates must be from -{FARTHEST_M} to {FARTHEST_M} m"
+                        ));
+                    }
                     if nodes.insert(own, Point2::new(x, y)).is_some() {
                         return error(format!("node {own} is there twice"));
                     }
@@ -249,6 +255,10 @@ mod tests {
             (vec![node(0, 0.0, 0.0), edge(1, 0, 5)], "feature 1 joins node 5, which is not in the graph"),
             (vec![json!({"properties": {}})], "feature 0 has no number `properties.id`"),
             (vec![node(0, 0.0, 0.0), node(0, 1.0, 0.0)], "node 0 is there twice"),
+            (
+                vec![node(0, 0.0, 0.0), node(4, 0.0, -2e8)],
+                "node 4 is at [0, -200000000]: coordinates must be from -1000000 to 1000000 m",
+            ),
             (
                 vec![json!({"properties": {"id": 1}, "geometry": {"type": "Polygon"}})],
                 "feature 0 is a Polygon: nodes are Point, edges MultiLineString",

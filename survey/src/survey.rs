@@ -17,6 +17,7 @@ use crate::replay::{FoundPoses, Replay, judged};
 use crate::route::frame;
 use crate::seen_area::{self, too_much};
 use crate::settings::SurveySettings;
+use crate::silence::max_step_s;
 use crate::surveyed_log::{LogEntry, SurveyedLog};
 use interfaces::{GridFrame, LaserReading};
 use logs::Log;
@@ -196,12 +197,12 @@ impl Survey {
         }
         seen_area::check(self.seen_m2 + route.seen_m2, &self.settings)?;
         self.seen_m2 += route.seen_m2;
-        self.logs.push(SurveyedLog::new(entry, route, frame));
+        self.logs.push(SurveyedLog::new(entry, route, frame, self.settings.mapper.max_gap));
         Ok(())
     }
 
     /// Begins the second pass over a log, or goes on with it: the first reading is one that was not learned yet. The time
-    /// since the log before counts as not observed.
+    /// since the log before counts as not observed, and so does a time without any scan (longer than 8 s, and than ten usual steps).
     ///
     /// # Errors
     ///
@@ -223,8 +224,11 @@ impl Survey {
             }
         }
         let Some(begin_s) = replay.next_s() else { return Ok(None) };
+        let max_step_s = max_step_s(route, settings.mapper.max_gap);
         let mapper = self.mapper_for(number, begin_s)?;
-        self.robot = Some(Robot::new(Box::new(poses), mapper, NoPilot).with_filter(filter));
+        let mut robot = Robot::new(Box::new(poses), mapper, NoPilot).with_filter(filter);
+        robot.session_mut().max_step_s = max_step_s;
+        self.robot = Some(robot);
         Ok(Some(replay))
     }
 

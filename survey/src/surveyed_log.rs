@@ -4,6 +4,7 @@ use crate::noise::noise_m;
 use crate::quality::Quality;
 use crate::repeated::{repeats, sketch};
 use crate::route::{Route, distance_m};
+use crate::silence;
 use interfaces::GridFrame;
 use localizer::{PoseState, TrajectoryPose};
 use logs::{Log, LogError, TopicChoice};
@@ -130,8 +131,9 @@ pub struct Travelled {
 }
 
 impl SurveyedLog {
-    pub(crate) fn new(mut entry: LogEntry, route: Route, frame: GridFrame) -> Self {
-        entry.notes.extend(route.scale_note());
+    /// `hiding_s`: for how long a body can hide what is in view, s.
+    pub(crate) fn new(mut entry: LogEntry, route: Route, frame: GridFrame, hiding_s: f64) -> Self {
+        entry.notes.extend(route.scale_note().into_iter().chain(silence::note(&route.poses, hiding_s)));
         Self {
             entry,
             readings: route.poses.len(),

@@ -220,6 +220,21 @@ fn what_cannot_be_predicted_is_refused_with_a_sentence() {
     assert!(refused("a.state --place 99,0").contains("--place 99,0: it is outside of the map, x from "));
     assert!(refused("way.csv").contains("way.csv: this is not a state file"));
     assert!(refused("a.state --route way.csv").contains("way.csv, line 2: a point is `x y` or `time x y`"));
+    // Nothing is predicted for the past.
+    let expected =
+        "error: --at: `2024-01-15T22:10`: must not be before the last reading, 2024-01-15T22:10:19 (CET)\n";
+    assert_eq!(refused("a.state --at +1h --at 2024-01-15T22:10"), expected);
+    run.write("far.csv", "0 0\n200000000 0\n");
+    run.write("late.csv", "1 0 0\ninf 1 0\n");
+    run.write("back.csv", "1,0,0\n2,1,0\n1.5,1,1\n");
+    let files = &["a.state", "back.csv", "far.csv", "g.json", "late.csv", "way.csv"];
+    let refused = |arguments: &str| refuses(&run, arguments, files);
+    let expected =
+        "far.csv, line 2: x and y must be numbers from -1000000 to 1000000 m, found 200000000 and 0\n";
+    assert!(refused("a.state --route far.csv").ends_with(expected));
+    let time = "a time must be a finite number of seconds, not before that of the point before, found";
+    assert!(refused("a.state --route late.csv").ends_with(&format!("late.csv, line 2: {time} inf\n")));
+    assert!(refused("a.state --route back.csv").ends_with(&format!("back.csv, line 3: {time} 1.5\n")));
     assert!(
         refused("a.state --graph g.json")
             .contains("g.json: this is no graph of nav2_route: it has no list `features`")

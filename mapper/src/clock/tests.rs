@@ -167,6 +167,33 @@ fn nothing_is_usual_before_two_weeks() {
     assert_eq!(clocks[1].week(&Calendar::Relative), None);
 }
 
+/// A thing that was seen from 9 to 10 o'clock only, and then at 21 o'clock.
+#[test]
+fn at_an_hour_that_was_never_seen_the_last_look_counts_and_nothing_is_usual() {
+    let (mut clock, mut chain) = (Clock::default(), Chain::new([0.03, 0.01], 9));
+    for minute in 0..16 * 1440 {
+        let (is_blocked, time_s) = (chain.step(), MONDAY_S + MINUTE_S * f64::from(minute));
+        if (540..600).contains(&(minute % 1440)) {
+            clock.observe(Look { time_s, is_blocked }, &Calendar::UTC);
+        }
+    }
+    let look_s = MONDAY_S + 15.0 * DAY_S + 21.0 * 3600.0;
+    clock.observe(Look { time_s: look_s, is_blocked: false }, &Calendar::UTC);
+    let length = |ahead_s: f64| {
+        let [low, high] = clock.interval_90(look_s + ahead_s, &Calendar::UTC).unwrap();
+        let found = clock.probability(look_s + ahead_s, &Calendar::UTC);
+        assert!(0.0 <= low && low <= found && found <= high && high <= 1.0, "{low} to {high}, {found}");
+        high - low
+    };
+    assert!(length(5.0) < 0.1, "{}", length(5.0));
+    assert!(length(5.0) < length(600.0) && length(600.0) < length(7200.0), "{}", length(600.0));
+    assert_eq!(length(7200.0), 1.0, "two hours later, nothing is known");
+    // At night, nothing is usual, though the mean of the morning is far from one half.
+    let week = clock.week(&Calendar::UTC).unwrap();
+    assert!(week.at(3.0).probability > 0.6 && week.at(3.0).interval_90 == [0.0, 1.0], "{:?}", week.at(3.0));
+    assert!(week.usual_changes().is_empty(), "{:?}", week.usual_changes());
+}
+
 /// For a Markov chain the last look is worth as much as the mean when half of the memory is left, whatever the mean.
 #[test]
 fn a_look_at_a_chain_expires_after_its_half_life() {

@@ -12,6 +12,10 @@ const TAIL: f64 = 0.05;
 /// each other more than draws with a constant probability do, so that TAIL would be too strict.
 const UNCLEAR: f64 = 0.15;
 
+/// The variance of the probability at an hour around which the thing was never seen, divided by that of the state: the mean of all
+/// other hours is worth one day (`MEAN_DAYS` of the schedule), which is one draw.
+pub(super) const UNSEEN_VARIANCE: f64 = 1.0;
+
 /// What is usual in one half hour of the week.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct UsualSlot {
@@ -45,8 +49,12 @@ impl UsualSlot {
         self.probability > 0.5
     }
 
-    /// Whether it is clear on which side of one half the probability is.
+    /// Whether it is clear on which side of one half the probability is. It never is at an hour around which the thing was not seen:
+    /// most of the time open does not mean open at night.
     fn is_clear(&self) -> bool {
+        if self.variance >= UNSEEN_VARIANCE {
+            return false;
+        }
         let below = beta_cdf(distribution(self.probability, self.variance), 0.5);
         below.min(1.0 - below) < UNCLEAR
     }

@@ -18,10 +18,12 @@ const WEEKDAYS: [(&str, Weekday); 7] = [
 ];
 
 /// The time of `text`, s, as in `forecast`: a time after the last reading (`+10m`), a date (ISO 8601), or the next time of the
-/// day (`17:10`) or of the week (`Tue 17:10`).
+/// day (`17:10`) or of the week (`Tue 17:10`). A date before the last reading is refused: a forecast knows only the present and what
+/// follows.
 pub(crate) fn parse(text: &str, forecast: &Forecast) -> Result<f64, String> {
+    let now_s = forecast.now_s();
     if let Some(ahead) = text.strip_prefix('+') {
-        return duration_s(ahead).map(|ahead_s| forecast.now_s() + ahead_s);
+        return duration_s(ahead).map(|ahead_s| now_s + ahead_s);
     }
     let zone = match forecast.calendar() {
         Calendar::Zone(zone) => zone,
@@ -32,23 +34,33 @@ pub(crate) fn parse(text: &str, forecast: &Forecast) -> Result<f64, String> {
             ));
         }
     };
+    let time_s = in_zone(text, zone, now_s).ok_or_else(|| {
+        "must be a time as +10m, 17:10, \"Tue 17:10\", 2024-01-30T17:10 or 2024-01-30T17:10Z".to_owned()
+    })?;
+    if time_s < now_s {
+        // Rounded up: this text is a time that is accepted.
+        let last = zoned(now_s.ceil(), zone).map(|at| at.strftime("%FT%T (%Z)").to_string());
+        let last = last.unwrap_or_else(|| format!("{now_s:.0} s"));
+        return Err(format!("must not be before the last reading, {last}"));
+    }
+    Ok(time_s)
+}
+
+/// The time of a text that names a date, or the next time of the day or of the week, s; `None` if it does not.
+fn in_zone(text: &str, zone: &TimeZone, now_s: f64) -> Option<f64> {
     let seconds = |zoned: &Zoned| zoned.timestamp().as_duration().as_secs_f64();
-    let invalid =
-        || "must be a time as +10m, 17:10, \"Tue 17:10\", 2024-01-30T17:10 or 2024-01-30T17:10Z".to_owned();
     if let Ok(timestamp) = text.parse::<Timestamp>() {
-        return Ok(timestamp.as_duration().as_secs_f64());
+        return Some(timestamp.as_duration().as_secs_f64());
     }
     if let Ok(date) = text.parse::<DateTime>() {
-        return date.to_zoned(zone.clone()).map(|zoned| seconds(&zoned)).map_err(|_| invalid());
+        return date.to_zoned(zone.clone()).ok().as_ref().map(seconds);
     }
     let (weekday, time) = match text.rsplit_once(' ') {
-        Some((day, time)) => (Some(weekday(day.trim()).ok_or_else(invalid)?), time),
+        Some((day, time)) => (Some(weekday(day.trim())?), time),
         None => (None, text),
     };
-    let time: Time = format!("{time:0>5}").parse().map_err(|_| invalid())?; // 8:00 is 08:00
-    next(&zoned(forecast.now_s(), zone).ok_or_else(invalid)?, weekday, time)
-        .map(|next| seconds(&next))
-        .ok_or_else(invalid)
+    let time: Time = format!("{time:0>5}").parse().ok()?; // 8:00 is 08:00
+    next(&zoned(now_s, zone)?, weekday, time).as_ref().map(seconds)
 }
 
 /// The first of eight days on which this time of the day, on this weekday, is after `now`.

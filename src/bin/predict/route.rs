@@ -1,6 +1,7 @@
 //! A route, and a graph of routes, at the times of arrival.
 
 use anyhow::{Context, bail, ensure};
+use interfaces::FARTHEST_M;
 use nalgebra::Point2;
 use serde::Serialize;
 use serde_json::Value;
@@ -35,11 +36,21 @@ pub(crate) fn route(path: &Path, forecast: &Forecast, travel: Travel) -> anyhow:
             Err(_) if points.is_empty() => {} // the names of the columns
             _ => bail!("{}, line {number}: a point is `x y` or `time x y`, as in 1.5 2.0", path.display()),
         }
-        let last = points.last().map(|(_, at)| at.coords.norm());
+        let Some((time_s, at)) = points.last() else { continue };
+        let line = || format!("{}, line {number}", path.display());
         ensure!(
-            last.is_none_or(f64::is_finite),
-            "{}, line {number}: coordinates must be finite numbers",
-            path.display()
+            at.iter().all(|at_m| at_m.abs() <= FARTHEST_M),
+            "{}: x and y must be numbers from -{FARTHEST_M} to {FARTHEST_M} m, found {} and {}",
+            line(),
+            at.x,
+            at.y
+        );
+        let before_s = points.iter().rev().nth(1).and_then(|(time_s, _)| *time_s);
+        ensure!(
+            time_s.is_none_or(|time_s| time_s.is_finite() && before_s.is_none_or(|before_s| time_s >= before_s)),
+            "{}: a time must be a finite number of seconds, not before that of the point before, found {}",
+            line(),
+            time_s.unwrap_or_default()
         );
     }
     ensure!(points.len() >= 2, "{}: a route needs at least two points", path.display());

@@ -74,6 +74,14 @@ impl PlacedScan {
     fn cells(&self) -> impl Iterator<Item = CellKey> {
         self.hits.iter().map(key)
     }
+
+    /// Each cell with a hit once, in order.
+    fn distinct_cells(&self) -> Vec<CellKey> {
+        let mut cells: Vec<CellKey> = self.cells().collect();
+        cells.sort_unstable();
+        cells.dedup();
+        cells
+    }
 }
 
 /// A scan against all others.
@@ -95,7 +103,7 @@ struct Seen {
     /// The last scan that hit it, and the last one that passed it.
     hit_by: u32,
     passed_by: u32,
-    /// Hits of the scans shortly before the present one, and of those shortly after it.
+    /// The scans shortly before the present one that hit it, and those shortly after it.
     before: u32,
     after: u32,
 }
@@ -159,15 +167,13 @@ impl Evidence {
         }
     }
 
-    /// Counts every hit of a scan, as `count` does.
+    /// Counts a scan in every cell that it hits, as `count` does: once, as in `hits`.
     fn neighbor(&mut self, scan: &PlacedScan, count: impl Fn(&mut Seen)) {
-        scan.cells().for_each(|cell| count(self.0.entry(cell).or_default()));
+        scan.distinct_cells().into_iter().for_each(|cell| count(self.0.entry(cell).or_default()));
     }
 
     fn judged(&self, scan: &PlacedScan, is_first: bool) -> Judged {
-        let mut own: Vec<CellKey> = scan.cells().collect();
-        own.sort_unstable();
-        own.dedup();
+        let own = scan.distinct_cells();
         let [mut linked, mut seen_once] = [0_u32; 2];
         let mut is_in_free = Vec::with_capacity(scan.hits.len());
         for cell in scan.cells() {

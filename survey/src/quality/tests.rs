@@ -85,6 +85,22 @@ fn a_turn_against_the_odometry_needs_another_pass() {
     assert_eq!(weak(&judged, &turned), [5]);
 }
 
+/// In a narrow place, several hits of a scan are in one cell. What another pass saw as well stays confirmed.
+#[test]
+fn hits_beside_each_other_do_not_hide_another_pass() {
+    let seen_once = |beams: usize, passes: usize| -> Vec<f64> {
+        let scan =
+            |at: Point2<f64>| PlacedScan::new(&Isometry2::identity(), &Point2::origin(), &vec![at; beams]);
+        let (near, far) = (scan(Point2::new(1.05, 0.05)), scan(Point2::new(9.05, 0.05)));
+        let pass = [vec![near; 5], vec![far; 40]].concat();
+        Evidence::judge(&vec![pass; passes].concat()).iter().map(|scan| scan.seen_once).collect()
+    };
+    for beams in [1, 4] {
+        assert_eq!(seen_once(beams, 2)[..5], [0.0; 5], "{beams} beams per cell, seen on two passes");
+        assert_eq!(seen_once(beams, 1)[..5], [1.0; 5], "{beams} beams per cell, seen on one pass");
+    }
+}
+
 /// Too few scans say nothing.
 #[test]
 fn a_robot_that_rests_is_not_judged() {

@@ -8,6 +8,8 @@ use crate::surveyed_log::LogEntry;
 use crate::tests::drive;
 use interfaces::{LaserReading, PoseMode, ValueError};
 use logs::{Log, McapWriter, TopicChoice};
+use mapper::{NoReturn, ScanFilterSettings};
+use nalgebra::Isometry2;
 use std::fs::File;
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -132,6 +134,52 @@ fn a_map_that_grows_is_the_map_of_the_large_frame() {
         assert_eq!(grown.statistics(index), large.statistics(index));
         assert_eq!(grown.is_candidate(index), large.is_candidate(index));
     }
+}
+
+#[test]
+fn a_log_with_a_silent_hour_shows_what_two_logs_show() {
+    const HOUR_S: f64 = 3600.0;
+    let (readings, truth) = drive(3, 40.0);
+    let folder = tempfile::tempdir().unwrap();
+    let exact = |readings: &[LaserReading], later_s: f64| -> Vec<LaserReading> {
+        let posed = |(reading, pose): (&LaserReading, &Isometry2<f64>)| {
+            let (pose, velocities) = (truth[0].inv_mul(pose), Vec::new());
+            LaserReading { pose, velocities, time_s: reading.time_s + later_s, ..reading.clone() }
+        };
+        readings.iter().zip(&truth).map(posed).collect()
+    };
+    let (early, late) = (exact(&readings[..200], 0.0), exact(&readings[..200], HOUR_S));
+    let filter = ScanFilterSettings { no_return: NoReturn::Free, ..ScanFilterSettings::default() };
+    let settings = SurveySettings { resolution_m: 0.1, filter, ..SurveySettings::of(PoseMode::Exact) };
+    let surveyed = |logs: &[(Log, f64)]| {
+        let mut survey = Survey::new(settings.clone(), false);
+        for (number, (log, days)) in logs.iter().enumerate() {
+            let entry = entry(log, "log", *days);
+            survey.first_pass(log, entry, false, |_| ControlFlow::Continue(())).unwrap();
+            assert!(learn(&mut survey, number, log, usize::MAX));
+        }
+        survey
+    };
+    let whole = [&early[..], &late].concat();
+    let one = surveyed(&[(bag(folder.path(), "one", &whole, 0.0), 0.0)]);
+    let days = HOUR_S / DAY_S;
+    let two = surveyed(&[
+        (bag(folder.path(), "early", &early, 0.0), 0.0),
+        (bag(folder.path(), "late", &late, days), days),
+    ]);
+    let note = "the laser was silent once for more than 8 s, 60 min in all: this time counts as not observed";
+    assert_eq!(one.logs()[0].entry.notes, [note]);
+    assert!(two.logs().iter().all(|log| log.entry.notes.is_empty()));
+    let [one, two] = [&one, &two].map(|survey| survey.mapper().unwrap());
+    assert_eq!(one.frame(), two.frame());
+    let mut longest_s = 0.0_f64;
+    for index in 0..one.frame().len() {
+        let [one, two] = [one, two].map(|mapper| mapper.statistics(index));
+        assert!((one.observed() - two.observed()).abs() < 1e-3, "cell {index}: {one:?}, {two:?}");
+        assert!((one.unobserved - two.unobserved).abs() < 1e-3, "cell {index}: {one:?}, {two:?}");
+        longest_s = longest_s.max(one.observed());
+    }
+    assert!((10.0..45.0).contains(&longest_s), "{longest_s} s");
 }
 
 #[test]

@@ -4,7 +4,7 @@
 
 use super::{DAY_DAYS, DAYS, KERNEL, MEAN_DAYS, PARTS, REACH, SLOT_S, SLOTS, Schedule, parts};
 use crate::clock::calendar::{Civil, DAY_S};
-use crate::clock::week::{UsualSlot, Week};
+use crate::clock::week::{UNSEEN_VARIANCE, UsualSlot, Week};
 
 /// Looks that are farther apart count as independent, days.
 const MAX_LAG_DAYS: usize = 63;
@@ -101,6 +101,9 @@ impl Schedule {
     fn variance_of(&self, slot: usize, covariances: &Covariances) -> f64 {
         let (weekday, of_day) = (slot / SLOTS, slot % SLOTS);
         let [day, week] = self.smoothed(weekday, of_day);
+        if day.days == 0.0 {
+            return UNSEEN_VARIANCE;
+        }
         let own = f64::from(self.week[slot].days);
         // What each part is by itself, without the one that it is shrunk toward.
         let alone = |days: f64, prior: f64| days / (days + prior);
