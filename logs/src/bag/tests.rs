@@ -4,4 +4,5 @@ mod choices;
 mod corrected;
 mod faults;
 mod fuzz;
+mod order;
 mod reading;

@@ -102,6 +102,43 @@ fn transforms_are_odometry_where_there_is_no_other() {
     assert_near(&at(&readings(&bag)[1]), &[0.0, 0.15, 0.0]);
 }
 
+/// A robot that drives 1 m/s along x in `odom`, with a laser that pans on `base`.
+fn by_transforms([map, odom, base]: [&str; 3], corrected_m: f64, pans: bool) -> crate::Log {
+    let mut bag = Builder::default();
+    for step in 0..40 {
+        let time_s = f64::from(step) * 0.1;
+        let pan_rad = if pans { 0.5 * time_s.sin() } else { 0.0 };
+        bag.tf("/tf", time_s, &[transform(time_s, base, "laser", pose(0.2, 0.0, pan_rad))]);
+        if odom != base {
+            let correction = pose(corrected_m * time_s.floor(), 0.0, 0.0);
+            bag.tf("/tf", time_s, &[transform(time_s, map, odom, correction)]);
+        }
+        let parent = if odom == base { map } else { odom };
+        bag.tf("/tf", time_s, &[transform(time_s, parent, base, pose(time_s, 0.0, 0.0))]);
+        bag.scan("/scan", time_s + 0.05, &scan(time_s + 0.05, "laser"));
+    }
+    bag.open(&TopicChoice::default()).unwrap()
+}
+
+#[test]
+fn odometry_in_transforms_is_below_the_world_whatever_its_name() {
+    for odom in ["odom", "robot1_odom", "camera_odom_frame", "wheels"] {
+        for (corrected_m, pans) in [(0.0, false), (0.0, true), (0.3, false), (0.3, true)] {
+            let bag = by_transforms(["map", odom, "base_link"], corrected_m, pans);
+            let (odom_frame, base_frame) = (odom.to_owned(), "base_link".to_owned());
+            assert_eq!(bag.summary().pose_source, PoseSource::Transforms { odom_frame, base_frame });
+            let found = readings(&bag);
+            assert_near(&at(&found[30]), &[3.05, 0.0, 0.0]);
+            assert!((found[30].mount.translation.x - 0.2).abs() < 1e-9);
+        }
+    }
+    // Without odometry, the robot is tracked in the world.
+    let bag = by_transforms(["world", "base_link", "base_link"], 0.0, true);
+    let (odom_frame, base_frame) = ("world".to_owned(), "base_link".to_owned());
+    assert_eq!(bag.summary().pose_source, PoseSource::Transforms { odom_frame, base_frame });
+    assert_near(&at(&readings(&bag)[30]), &[3.05, 0.0, 0.0]);
+}
+
 #[test]
 fn a_scan_that_sweeps_ends_later_and_has_velocities() {
     let mut bag = Builder::default();
@@ -192,6 +229,67 @@ fn stamps_that_make_no_sense_give_way_to_the_times_of_the_recording() {
         ["the stamps of the scans are unusable: the times of the recording count"]
     );
     assert_near(&[bag.summary().duration_s, bag.summary().begin_s.unwrap() - BEGIN_S], &[0.4, 0.0]);
+}
+
+/// A driving robot for 2 s whose stamps are changed, with the time at which each message was recorded.
+fn with_stamps(scans: impl Fn(f64) -> f64, odometry: impl Fn(f64) -> f64) -> crate::Log {
+    let mut bag = Builder::default();
+    bag.mount();
+    for step in 0..40 {
+        let time_s = f64::from(step) * 0.05;
+        bag.odometry("/odom", odometry(time_s), time_s, 0.0);
+        bag.messages.last_mut().unwrap().2 = ((BEGIN_S + time_s) * 1e3).round() as u64 * 1_000_000;
+        if step % 2 == 1 {
+            let sweeping = crate::ros::LaserScan { time_increment: 0.02, ..scan(scans(time_s), "laser") };
+            bag.scan("/scan", time_s, &sweeping);
+        }
+    }
+    bag.open(&TopicChoice::default()).unwrap()
+}
+
+/// A recorder gets a scan after its last beam.
+#[test]
+fn a_scan_that_sweeps_ends_when_it_is_recorded() {
+    let bag = with_stamps(|_| 0.0, |time_s| time_s);
+    let note = "the stamps of the scans are unusable: the times of the recording count";
+    assert_eq!(bag.summary().notes, [note]);
+    for (step, reading) in (0..).zip(readings(&bag)) {
+        assert_near(&at(&reading), &[0.05 + 0.1 * f64::from(step), 0.0, 0.0]);
+    }
+}
+
+#[test]
+fn odometry_whose_stamps_do_not_advance_has_the_times_of_the_recording() {
+    // The stamps of a scan are those of its first beam.
+    for stamp in [|_| 0.0, f64::floor] {
+        let bag = with_stamps(|time_s| time_s - 0.04, stamp);
+        let note = "the stamps of the odometry are unusable: the times of the recording count";
+        assert_eq!(bag.summary().notes, [note]);
+        for (step, reading) in (0..).zip(readings(&bag)) {
+            assert_near(&at(&reading), &[0.05 + 0.1 * f64::from(step), 0.0, 0.0]);
+        }
+    }
+    // A pose of a time that comes again, with a correction or without.
+    let twice = with_stamps(|time_s| time_s - 0.04, |time_s| (time_s * 10.0).floor() * 0.1);
+    assert!(twice.summary().notes.is_empty(), "{:?}", twice.summary().notes);
+}
+
+#[test]
+fn odometry_without_times_is_not_used_and_a_note_says_so() {
+    let mut bag = Builder::default();
+    bag.mount();
+    for step in 0..20 {
+        bag.odometry("/odom", 0.0, f64::from(step), 0.0);
+    }
+    for step in 0..20 {
+        let time_s = f64::from(step) * 0.1;
+        bag.scan("/scan", time_s, &scan(time_s, "laser"));
+    }
+    let bag = bag.open(&TopicChoice::default()).unwrap();
+    let note =
+        "neither the stamps of the odometry nor the times of its recording advance: its motions are not used";
+    assert_eq!(bag.summary().notes, [note]);
+    assert!(readings(&bag).iter().all(|reading| at(reading) == [0.0; 3]));
 }
 
 #[test]
