@@ -6,3 +6,4 @@ mod faults;
 mod fuzz;
 mod order;
 mod reading;
+mod times;
