@@ -1,7 +1,7 @@
 //! Bags of ROS 2 (rosbag2): MCAP files and SQLite databases, several of them one after the other.
 //!
 //! A bag is read three times: for its topics and frames, for the times of its scans, and reading by reading. Each time it
-//! is a stream: memory does not grow with the bag.
+//! is a stream, or a stream per topic: memory does not grow with the bag.
 
 mod chunk;
 mod fields;
@@ -12,6 +12,7 @@ mod message;
 mod messages;
 mod motion;
 mod no_scans;
+mod order;
 mod plan;
 mod readings;
 mod slam;
@@ -29,15 +30,18 @@ use crate::log::{Log, Source};
 use crate::raw_readings::{self, RawReadings as _};
 use crate::standing::{NO_MOTION, Standing};
 use crate::summary::{LogSummary, since_epoch};
-use crate::times;
+use crate::times::{self, Times};
 use inventory::Inventory;
-use message::{Selection, Topic};
-use messages::Messages;
+use message::Topic;
 use motion::MotionSource;
 use nalgebra::Isometry2;
+use order::Merged;
 use plan::Plan;
 use readings::{Clock, Counts, RawReadings};
 use std::sync::Arc;
+
+/// Their name in notes.
+const SCANS: &str = "scans";
 
 /// A bag.
 #[derive(Debug)]
@@ -46,6 +50,8 @@ pub(crate) struct Bag {
     files: Vec<BagFile>,
     plan: Arc<Plan>,
     clock: Clock,
+    /// The topics whose messages are merged by their times of recording; none: the order is that of the files.
+    merged: Vec<Arc<Topic>>,
 }
 
 impl Bag {
@@ -70,21 +76,26 @@ impl Bag {
         missing.extend(inventory.notes.iter().cloned());
         let plan = Plan::new(&inventory, choice, &mut notes).map_err(|why| in_cut_file(why, &missing));
         let mut plan = Arc::new(plan.map_err(unusable)?);
+        let merged = order::merged_topics(&inventory.order, &inventory.topics, |topic| plan.needs(topic));
+        let merged = merged.map_err(unusable)?;
+        if !merged.is_empty() {
+            let note =
+                "the messages are sorted by topic: they are read in the order of their times of recording";
+            notes.push(note.to_owned());
+        }
         let (stamp_ns, log_ns) = inventory.begin_ns.unwrap_or_default();
-        let mut clock = Clock::Stamps(stamp_ns);
-        let mut inspection = inspected(&files, &plan, clock, unusable)?;
-        let mut times = times::repaired(&inspection.1);
-        if !times.has_times {
-            let by_recording = inspected(&files, &plan, Clock::Recording(log_ns), unusable)?;
-            let recorded = times::repaired(&by_recording.1);
-            if recorded.has_times {
-                notes.push(
-                    "the stamps of the scans are unusable: the times of the recording count".to_owned(),
-                );
-                (clock, inspection, times) = (Clock::Recording(log_ns), by_recording, recorded);
+        let inspect = |clock| inspected(&files, &plan, clock, &merged, unusable);
+        let mut inspection = inspect(Clock::Stamps(stamp_ns))?;
+        if let Some(of) = inspection.without_times() {
+            let recorded = inspect(Clock::Recording(log_ns))?;
+            let is_better = recorded.times.has_times && (of == SCANS || recorded.raw.has_pose_times());
+            if is_better {
+                notes.push(format!("the stamps of the {of} are unusable: the times of the recording count"));
+                inspection = recorded;
             }
         }
-        let (raw, raw_s, standing) = inspection;
+        let has_pose_times = inspection.raw.has_pose_times();
+        let Inspection { clock, raw, raw_s, standing, times } = inspection;
         let raw_begin_s = raw_s.first().copied().unwrap_or_default();
         let is_corrected = plan.correction.is_some();
         let stands = raw.stands() && standing.looks_so() && !is_corrected;
@@ -94,7 +105,10 @@ impl Bag {
         notes.extend(
             raw.corrections(raw_begin_s).map(|what| format!("the poses are those of another SLAM: {what}")),
         );
-        if raw.stands() && !stands && !matches!(plan.motion, MotionSource::Standing) {
+        if !has_pose_times {
+            let what = "neither the stamps of the odometry nor the times of its recording advance: its motions are not used";
+            notes.push(what.to_owned());
+        } else if raw.stands() && !stands && !matches!(plan.motion, MotionSource::Standing) {
             notes.push(NO_MOTION.to_owned());
         }
         let counts = raw.counts;
@@ -141,13 +155,13 @@ impl Bag {
             Arc::make_mut(&mut plan).motion = MotionSource::Standing;
         }
         let name = file.to_owned();
-        Ok(Log::new(Self { name, files, plan, clock }, times.times_s, summary))
+        Ok(Log::new(Self { name, files, plan, clock, merged }, times.times_s, summary))
     }
 }
 
 impl Source for Bag {
     fn raw_readings(&self) -> Result<Box<dyn raw_readings::RawReadings + Send>, LogError> {
-        Ok(Box::new(raw_readings(&self.files, &self.plan, self.clock)))
+        Ok(Box::new(raw_readings(&self.files, &self.plan, self.clock, &self.merged)))
     }
 
     fn content_hash(&self) -> Result<u128, LogError> {
@@ -156,28 +170,51 @@ impl Source for Bag {
     }
 }
 
-fn raw_readings(files: &[BagFile], plan: &Arc<Plan>, clock: Clock) -> RawReadings {
+fn raw_readings(files: &[BagFile], plan: &Arc<Plan>, clock: Clock, merged: &[Arc<Topic>]) -> RawReadings {
     let needed = plan.clone();
-    let is_wanted = Arc::new(move |topic: &Topic| needed.needs(topic));
-    let messages = Messages::new(files.to_vec(), Selection { is_wanted, checks_sums: false });
+    let messages = Merged::new(files, move |topic: &Topic| needed.needs(topic), merged);
     RawReadings::new(messages, plan, clock)
 }
 
-/// Reads all scans once: what the readings know at their end, the times of the scans, s, and how the scans look.
+/// What a pass over all scans finds.
+struct Inspection {
+    clock: Clock,
+    /// The readings at their end.
+    raw: RawReadings,
+    /// The times of the scans, s, and how the scans look.
+    raw_s: Vec<f64>,
+    standing: Standing,
+    times: Times,
+}
+
+impl Inspection {
+    /// What has no usable times.
+    fn without_times(&self) -> Option<&'static str> {
+        match (self.times.has_times, self.raw.has_pose_times()) {
+            (false, _) => Some(SCANS),
+            (true, false) => Some("odometry"),
+            (true, true) => None,
+        }
+    }
+}
+
+/// Reads all scans once.
 fn inspected(
     files: &[BagFile],
     plan: &Arc<Plan>,
     clock: Clock,
+    merged: &[Arc<Topic>],
     unusable: impl Fn(String) -> LogError,
-) -> Result<(RawReadings, Vec<f64>, Standing), LogError> {
-    let mut raw = raw_readings(files, plan, clock);
+) -> Result<Inspection, LogError> {
+    let mut raw = raw_readings(files, plan, clock, merged);
     let (mut raw_s, mut standing) = (Vec::new(), Standing::default());
     while let Some(reading) = raw.next_reading()? {
         bounds::one_more(raw_s.len()).map_err(&unusable)?;
         raw_s.push(reading.time_s);
         standing.add(&reading.mount, &reading.scan);
     }
-    Ok((raw, raw_s, standing))
+    let times = times::repaired(&raw_s);
+    Ok(Inspection { clock, raw, raw_s, standing, times })
 }
 
 impl Counts {

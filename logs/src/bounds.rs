@@ -7,20 +7,25 @@ use std::path::Path;
 pub(crate) const MAX_NAME_BYTES: usize = 1024;
 /// The most scans of a log: 19 days of 10 per second.
 const MAX_SCANS: usize = 1 << 24;
-/// A file may grow by this factor when it is unpacked: recorded scans grow by 3 to 10. Chunks are not stored, and those
-/// that hold equal pictures grow by far more.
+/// A file may grow by this factor when it is unpacked: recorded scans grow by 3 to 10.
 const MAX_GROWTH: u64 = 100;
-pub(crate) const MAX_CHUNK_GROWTH: u64 = 1000;
+/// Chunks are read as a stream and not stored, and those that hold equal pictures grow by far more.
+const MAX_CHUNK_GROWTH: u64 = 1000;
 /// Any file may grow to this number of bytes.
 const ALLOWED_UNPACKED_BYTES: u64 = 64 << 20;
-/// No file may grow beyond this number of bytes.
+/// No file may grow beyond this number of bytes on the disk.
 const MAX_UNPACKED_BYTES: u64 = 16 << 30;
 /// The bytes of a disk that stay free when a file is unpacked.
 const KEPT_FREE_BYTES: u64 = 256 << 20;
 
-/// The most bytes that `packed` bytes may unpack to.
-pub(crate) fn max_unpacked_bytes(packed: u64, growth: u64) -> u64 {
-    packed.saturating_mul(growth).saturating_add(ALLOWED_UNPACKED_BYTES).min(MAX_UNPACKED_BYTES)
+/// The most bytes that the chunks of a file of `packed` bytes may unpack to.
+pub(crate) fn max_chunk_bytes(packed: u64) -> u64 {
+    packed.saturating_mul(MAX_CHUNK_GROWTH).saturating_add(ALLOWED_UNPACKED_BYTES)
+}
+
+/// The most bytes that a file of `packed` bytes may unpack to on the disk.
+fn max_unpacked_bytes(packed: u64) -> u64 {
+    packed.saturating_mul(MAX_GROWTH).saturating_add(ALLOWED_UNPACKED_BYTES).min(MAX_UNPACKED_BYTES)
 }
 
 /// A name that is not too long; `what` it names.
@@ -52,7 +57,7 @@ pub(crate) struct Unpacked<R> {
 impl<R> Unpacked<R> {
     /// `bytes` from a file of `packed` bytes. `by_hand` is the program that unpacks it for those who know that it is large.
     pub(crate) fn new(bytes: R, packed: u64, by_hand: &str) -> Self {
-        let most = max_unpacked_bytes(packed, MAX_GROWTH);
+        let most = max_unpacked_bytes(packed);
         let exceeded = format!(
             "the {packed} bytes of the file unpack to more than {most}, which is the most that is unpacked; if it is a log, \
              unpack it first: {by_hand}"
@@ -96,6 +101,14 @@ impl<R: Read> Read for Unpacked<R> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A day of a camera has 100 GiB and more.
+    #[test]
+    fn only_what_is_stored_has_a_largest_size() {
+        assert_eq!(max_unpacked_bytes(1 << 40), MAX_UNPACKED_BYTES);
+        assert!(max_chunk_bytes(1 << 30) > 1000 << 30);
+        assert_eq!([max_unpacked_bytes(0), max_chunk_bytes(0)], [ALLOWED_UNPACKED_BYTES; 2]);
+    }
 
     #[test]
     fn some_of_a_disk_stays_free() {

@@ -11,8 +11,8 @@ mod tests;
 
 use crate::error::LogError;
 use crate::ros::{
-    Header, Odometry, Path, PointCloud2, PointField, Pose, PoseStamped, Time, TransformStamped, Transforms,
-    scan_message,
+    FIRST_STAMP_NS, Header, Odometry, Path, PointCloud2, PointField, Pose, PoseStamped, Time,
+    TransformStamped, Transforms, scan_message,
 };
 use channels::Channels;
 use grids::Grids;
@@ -59,7 +59,7 @@ pub struct McapWriter<W: Write + Seek> {
 
 impl<W: Write + Seek> McapWriter<W> {
     /// Begins a recording. `name` is that of the file in messages; `begin_s` is the time 0 of the readings in seconds since
-    /// the epoch, 0 in a simulation.
+    /// the epoch, 0 in a simulation: its stamps begin at 10 s, so that none of a scan that begins before the time 0 is negative.
     ///
     /// # Errors
     ///
@@ -69,7 +69,8 @@ impl<W: Write + Seek> McapWriter<W> {
             channels: Channels::new(to, name)?,
             begin_ns: (begin_s.floor() as i64)
                 .saturating_mul(1_000_000_000)
-                .saturating_add(((begin_s - begin_s.floor()) * 1e9).round() as i64),
+                .saturating_add(((begin_s - begin_s.floor()) * 1e9).round() as i64)
+                .max(FIRST_STAMP_NS),
             lasers: Vec::new(),
             map_to_odom: Isometry2::identity(),
             grids: Grids::default(),

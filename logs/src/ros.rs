@@ -8,10 +8,10 @@ mod messages;
 mod scan;
 
 pub use frames::{Chain, Frames, flat, mounted};
-pub(crate) use frames::{is_odom, is_world};
+pub(crate) use frames::{is_base, is_odom, is_world};
 pub use messages::{
     Covariance, Header, LaserScan, OccupancyGrid, OccupancyGridUpdate, Odometry, Path, PointCloud2,
     PointField, Pose, PoseStamped, PoseWithCovariance, Rotation, Time, TransformStamped, Transforms,
     TwistWithCovariance, Vector,
 };
-pub use scan::{converted as scan_of, message as scan_message};
+pub use scan::{FIRST_STAMP_NS, converted as scan_of, message as scan_message};

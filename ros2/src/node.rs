@@ -213,9 +213,9 @@ impl<L: Link> CuriousNode<L> {
 
     /// One step of the robot, for a live scan whose pose by odometry is known.
     fn step(&mut self, live: LiveReading, now: Instant) {
-        let LiveReading { mut reading, in_odom, stamp, is_restart } = live;
+        let LiveReading { mut reading, in_odom, in_first_odom, stamp, is_restart } = live;
         if self.parameters.pose != PoseMode::Localized {
-            reading.pose = in_odom;
+            reading.pose = in_first_odom;
         }
         self.begin_session(&reading, stamp, is_restart);
         self.take_seat();

@@ -65,7 +65,10 @@ impl RosArgs {
             }
             let mut next = || all.next().map(text).transpose();
             while let Some(flag) = next()?.filter(|flag| flag != "--") {
-                ros.take(&flag, &mut next)?;
+                // Launch files write it again before each group of arguments.
+                if flag != "--ros-args" {
+                    ros.take(&flag, &mut next)?;
+                }
             }
         }
         Ok((others, ros))
@@ -174,6 +177,14 @@ mod tests {
         assert_eq!(ros.remapped("node", |from| from == "scan"), Some("/front"));
         assert_eq!(ros.remapped("node", |from| from == "__ns"), Some("/robot"));
         assert_eq!(ros.remapped("node", |from| from == "map"), None);
+    }
+
+    /// As `launch_ros` starts nodes.
+    #[test]
+    fn the_flag_may_be_repeated() {
+        let launched = "node --ros-args --log-level info --ros-args -r __node:=foo --ros-args";
+        assert_eq!(split(launched), split("node --ros-args --log-level info -r __node:=foo"));
+        assert_eq!(split(launched).unwrap().1.remaps.len(), 1);
     }
 
     #[test]

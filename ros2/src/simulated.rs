@@ -5,7 +5,7 @@ use crate::message::{Clock, Message, Odometry, Pose, Time, Topic, covariance, he
 use crate::parameter_services::{self, Parametrized};
 use crate::value::Value;
 use interfaces::{LaserReading, Twist};
-use logs::ros::scan_message;
+use logs::ros::{FIRST_STAMP_NS, scan_message};
 use nalgebra::{Isometry2, Matrix3};
 use sim::physics::{Command, Controller, Fleet, OdometryError, RobotView, WorldSpec};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -31,7 +31,7 @@ pub struct SimulationSettings {
     pub seed: u64,
     /// The simulated time per real time.
     pub speed: f64,
-    /// The time at the start, ns since the epoch.
+    /// The time at the start, ns since the epoch; at least 10 s, so that no stamp of the first scan is negative.
     pub begin_ns: i64,
 }
 
@@ -122,6 +122,7 @@ impl Controller for Scans {
 impl<L: Link> SimulatedRobot<L> {
     /// The robot at its start.
     pub fn new(link: L, spec: &WorldSpec, settings: SimulationSettings) -> Self {
+        let settings = SimulationSettings { begin_ns: settings.begin_ns.max(FIRST_STAMP_NS), ..settings };
         Self {
             link,
             fleet: Fleet::new(spec.fleet(), settings.seed),

@@ -42,9 +42,11 @@ pub(crate) struct LiveReading {
     pub(crate) reading: LaserReading,
     /// The pose in the frame of the odometry.
     pub(crate) in_odom: Isometry2<f64>,
+    /// The same in the frame that the odometry had before it was reset: it does not jump.
+    pub(crate) in_first_odom: Isometry2<f64>,
     /// The time of the reading.
     pub(crate) stamp: Time,
-    /// Whether the clock, or the odometry, has started anew since the reading before.
+    /// Whether the clock has started anew since the reading before.
     pub(crate) is_restart: bool,
 }
 
@@ -144,8 +146,9 @@ impl Source {
                 self.notes.push("a scan is left out: there is no pose of the robot at its time".to_owned());
                 continue;
             }
-            let (reading, in_odom) = self.motions.reading(end_ns, mount, scan);
-            return Some(LiveReading { reading, in_odom, stamp: Time::from_ns(end_ns), is_restart });
+            let (reading, in_odom, in_first_odom) = self.motions.reading(end_ns, mount, scan);
+            let stamp = Time::from_ns(end_ns);
+            return Some(LiveReading { reading, in_odom, in_first_odom, stamp, is_restart });
         }
     }
 
@@ -262,7 +265,7 @@ impl Source {
         let chain = self.frames.chain(&message.child_frame_id, &self.names.base, &[&self.names.odom]);
         let Some(chain) = chain else { return };
         let pose = pose * self.frames.along(&chain);
-        self.motions.add_odometry(message.header.stamp.ns(), &pose);
+        self.notes.extend(self.motions.add_odometry(message.header.stamp.ns(), &pose));
     }
 
     fn take_transforms(&mut self, message: &Transforms, is_static: bool) {
@@ -297,7 +300,7 @@ impl Source {
         };
         let is_in_chain = |(edge, _): &&(usize, i64)| chain.iter().any(|(other, _)| other == edge);
         if let Some((_, stamp_ns)) = edges.iter().filter(is_in_chain).max_by_key(|(_, stamp_ns)| stamp_ns) {
-            self.motions.add_transform(*stamp_ns, &self.frames.along(&chain));
+            self.notes.extend(self.motions.add_transform(*stamp_ns, &self.frames.along(&chain)));
         }
     }
 

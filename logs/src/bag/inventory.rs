@@ -3,6 +3,7 @@
 use super::files::BagFile;
 use super::message::{Message, Selection, Topic};
 use super::messages::Messages;
+use super::order::RecordedOrder;
 use crate::bounds;
 use crate::cdr;
 use crate::choice::bare;
@@ -73,6 +74,7 @@ pub(super) struct Inventory {
     pub(super) begin_ns: Option<(i64, i64)>,
     /// The time of recording of the last scan, ns.
     pub(super) end_ns: i64,
+    pub(super) order: RecordedOrder,
     pub(super) topics: Vec<Arc<Topic>>,
     pub(super) notes: Vec<String>,
 }
@@ -86,6 +88,7 @@ impl Inventory {
         let mut messages = Messages::new(files.to_vec(), Selection { is_wanted, checks_sums: true });
         let mut inventory = Self::default();
         while let Some(message) = messages.next_message()? {
+            inventory.order.note(&message);
             let counted = match Kind::of(&message.topic) {
                 Some(Kind::Scans) => inventory.count_scan(&message),
                 Some(Kind::Odometry) => inventory.count_odometry(&message),

@@ -6,7 +6,7 @@
 use super::chunk::{Chunk, Records};
 use super::fields::Fields;
 use super::message::{Message, MessageSource, Selection, Topic};
-use crate::bounds::{MAX_CHUNK_GROWTH, MAX_NAME_BYTES, max_unpacked_bytes};
+use crate::bounds::{MAX_NAME_BYTES, max_chunk_bytes};
 use crate::bytes::{Bytes, Input};
 use crate::error::LogError;
 use crate::magic::MCAP as MAGIC;
@@ -135,7 +135,7 @@ impl McapFile {
                     false => Stop::Invalid(what),
                 })?;
                 self.unpacked = self.unpacked.saturating_add(chunk.remaining);
-                let most = max_unpacked_bytes(self.size, MAX_CHUNK_GROWTH);
+                let most = max_chunk_bytes(self.size);
                 if self.unpacked > most {
                     let (unpacked, size) = (self.unpacked, self.size);
                     let what = format!(

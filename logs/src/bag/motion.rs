@@ -2,7 +2,7 @@
 
 use super::inventory::{Inventory, LaserTopic, OdometryTopic};
 use crate::choice::{TopicChoice, bare, listed};
-use crate::ros::{Chain, Frames, is_odom, is_world};
+use crate::ros::{Chain, Frames, is_base, is_odom, is_world};
 use crate::summary::PoseSource;
 
 /// Where the motions come from.
@@ -77,7 +77,8 @@ pub(super) fn chosen_odometry<'a>(
     }
 }
 
-/// The transform that is the odometry: from a frame of odometry, or of the world, to the robot.
+/// The transform that is the odometry: from a frame of odometry, or of the world, to the robot. Where a transform below the world
+/// moves, that of the world is the correction by another SLAM.
 fn moving_edge(
     frames: &Frames,
     lasers: &[&LaserTopic],
@@ -89,8 +90,15 @@ fn moving_edge(
         let by_name = |is: fn(&str) -> bool| {
             above.iter().find(|index| is(&frames.edge(**index).parent) && frames.edge(**index).poses > 1)
         };
-        let moving = || above.iter().rev().find(|index| frames.edge(**index).moves);
-        if let Some(index) = by_name(is_odom).or_else(|| by_name(is_world)).or_else(moving) {
+        let moves = |index: &&usize| frames.edge(**index).moves;
+        // Below the frame of the robot, its lasers may pan.
+        let robot = above.iter().rposition(|index| is_base(&frames.edge(*index).child)).unwrap_or(0);
+        let below_world = || {
+            let below = above[robot..].iter().take_while(|index| !is_world(&frames.edge(**index).parent));
+            below.filter(moves).last()
+        };
+        let named = by_name(is_odom).or_else(below_world).or_else(|| by_name(is_world));
+        if let Some(index) = named.or_else(|| above.iter().rev().find(moves)) {
             return Ok(Some(*index));
         }
     }

@@ -6,7 +6,7 @@ use super::motion::{self, Motion, MotionSource};
 use super::no_scans::no_scans;
 use super::slam;
 use crate::choice::{TopicChoice, bare, listed};
-use crate::ros::{Chain, Frames, is_odom, is_world, mounted};
+use crate::ros::{Chain, Frames, is_base, is_odom, is_world, mounted};
 use crate::summary::PoseSource;
 
 /// A laser that is used.
@@ -128,10 +128,9 @@ fn likely_base(frames: &Frames, lasers: &[&LaserTopic]) -> Result<String, String
     let Some(first) = lasers.first() else { return Ok(String::new()) };
     let above = frames.above(&first.frame)?;
     let parents = above.iter().map(|index| frames.edge(*index).parent.as_str());
-    let is_robot = |name: &&str| name.rsplit('/').next().is_some_and(|name| name.starts_with("base"));
     let on_ground = |name: &&str| !is_odom(name) && !is_world(name);
     let root = parents.clone().rfind(on_ground);
-    Ok(parents.clone().find(is_robot).or(root).unwrap_or(&first.frame).to_owned())
+    Ok(parents.clone().find(|name| is_base(name)).or(root).unwrap_or(&first.frame).to_owned())
 }
 
 /// The lasers that are connected to the robot.

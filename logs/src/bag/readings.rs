@@ -2,8 +2,8 @@
 
 use super::inventory::Kind;
 use super::message::Message;
-use super::messages::Messages;
 use super::motion::MotionSource;
+use super::order::Merged;
 use super::plan::{Laser, Plan};
 use super::slam::Corrections;
 use crate::cdr;
@@ -15,7 +15,7 @@ use crate::raw_readings;
 use crate::ros::{self, Frames, Header, LaserScan, Transforms, flat, mounted, scan_of};
 use crate::speeds::Speeds;
 use interfaces::{LaserReading, Scan};
-use nalgebra::{Isometry2, Vector2};
+use nalgebra::{Isometry2, Isometry3, Vector2};
 use std::collections::VecDeque;
 use std::sync::Arc;
 
@@ -27,6 +27,8 @@ const DISORDER_S: f64 = 0.5;
 const TURN_S: f64 = 2e-3;
 /// Between scans that are farther apart than this, the clock was set, s.
 const JUMP_S: f64 = 60.0;
+/// The times of an odometry are usable if they advance in at least one of this number of its steps: stamps in whole seconds do not.
+const STEPS_PER_TIME: usize = 10;
 
 /// Which times count.
 #[derive(Clone, Copy, Debug)]
@@ -44,6 +46,15 @@ impl Clock {
             Self::Recording(origin_ns) => (message.log_ns, origin_ns),
         };
         time_ns.saturating_sub(origin_ns) as f64 * 1e-9
+    }
+
+    /// The time of the last beam of a scan, s, from the time of its message: a stamp is that of the first beam, and a scan is recorded
+    /// after the last one.
+    fn end_s(self, time_s: f64, sweep_s: f64) -> f64 {
+        match self {
+            Self::Stamps(_) => time_s + sweep_s,
+            Self::Recording(_) => time_s,
+        }
     }
 }
 
@@ -71,13 +82,16 @@ struct Waiting {
 
 /// The readings of a bag, with times as the bag has them, since its first scan.
 pub(super) struct RawReadings {
-    messages: Messages,
+    messages: Merged,
     plan: Arc<Plan>,
     clock: Clock,
     odometry: Odometry,
     speeds: Speeds,
-    /// The time of the last pose, s.
-    last_pose_s: Option<f64>,
+    /// The last pose as written, and its time, s.
+    last_pose: Option<(f64, Isometry3<f64>)>,
+    /// The steps in which the pose changes, and those of them in which the time advances.
+    steps: usize,
+    timed_steps: usize,
     frames: Frames,
     /// `None`: the poses are those of the odometry.
     corrections: Option<Corrections>,
@@ -92,7 +106,7 @@ pub(super) struct RawReadings {
 }
 
 impl RawReadings {
-    pub(super) fn new(messages: Messages, plan: &Arc<Plan>, clock: Clock) -> Self {
+    pub(super) fn new(messages: Merged, plan: &Arc<Plan>, clock: Clock) -> Self {
         let corrections = plan.correction.as_ref().map(|chain| Corrections::new(chain, &plan.frames));
         let odometry = if corrections.is_some() { Odometry::as_written() } else { Odometry::default() };
         Self {
@@ -101,7 +115,9 @@ impl RawReadings {
             clock,
             odometry,
             speeds: Speeds::default(),
-            last_pose_s: None,
+            last_pose: None,
+            steps: 0,
+            timed_steps: 0,
             frames: plan.frames.clone(),
             corrections,
             waiting: VecDeque::new(),
@@ -170,6 +186,11 @@ impl RawReadings {
         self.odometry.holes_note()
     }
 
+    /// Whether the poses of the odometry have times.
+    pub(super) fn has_pose_times(&self) -> bool {
+        self.timed_steps * STEPS_PER_TIME >= self.steps
+    }
+
     /// Whether the robot has not moved, except for a drift of its odometry.
     pub(super) fn stands(&self) -> bool {
         self.odometry.stands()
@@ -180,7 +201,7 @@ impl RawReadings {
         let (frame, topic) = (bare(&found.header.frame_id), &message.topic.name);
         let is_this = |laser: &Laser| laser.frame == frame && laser.topic == *topic;
         let Some(laser) = self.plan.lasers.iter().position(is_this) else { return Ok(()) };
-        let begin_s = self.clock.time_s(&found.header, message);
+        let message_s = self.clock.time_s(&found.header, message);
         let mounted = mounted(&self.frames.along(&self.plan.lasers[laser].chain));
         let typical = doubts::typical(found.ranges.iter().copied());
         let scan = mounted.and_then(|(mount, is_upside_down)| Ok((mount, scan_of(found, is_upside_down)?)));
@@ -193,8 +214,7 @@ impl RawReadings {
             }
         };
         self.counts.doubts.add(typical, &scan.ranges_m);
-        // The stamp of a scan is the time of its first beam.
-        let time_s = begin_s + scan.sweep_s;
+        let time_s = self.clock.end_s(message_s, scan.sweep_s);
         if self.waiting.back().is_some_and(|last| (last.time_s - time_s).abs() > JUMP_S) {
             self.overdue = self.waiting.len();
             self.newest_s = time_s;
@@ -241,11 +261,16 @@ impl RawReadings {
             return;
         };
         let time_s = self.clock.time_s(header, message);
-        // Some estimators give the same pose again.
-        if self.last_pose_s == Some(time_s) {
-            return;
+        if let Some((last_s, last)) = self.last_pose.replace((time_s, pose)) {
+            if last != pose {
+                self.steps += 1;
+                self.timed_steps += usize::from(time_s > last_s);
+            }
+            // Some estimators give the pose of a time again.
+            if last_s == time_s {
+                return;
+            }
         }
-        self.last_pose_s = Some(time_s);
         self.newest_s = self.newest_s.max(time_s);
         self.counts.poses += 1;
         self.odometry.add(time_s, flat(&(pose * self.frames.along(&self.plan.to_base))));

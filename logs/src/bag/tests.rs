@@ -4,4 +4,6 @@ mod choices;
 mod corrected;
 mod faults;
 mod fuzz;
+mod order;
 mod reading;
+mod times;

@@ -1,6 +1,8 @@
 use super::McapWriter;
 use crate::cdr::decoded;
-use crate::ros::{OccupancyGrid, OccupancyGridUpdate, Path, PointCloud2, Pose, PoseStamped, Transforms};
+use crate::ros::{
+    LaserScan, OccupancyGrid, OccupancyGridUpdate, Odometry, Path, PointCloud2, Pose, PoseStamped, Transforms,
+};
 use crate::{Log, LogSummary, TopicChoice};
 use interfaces::{Event, Grid, GridFrame, LaserReading, Scan, Twist, VelocitySample, heading_rad, wrap_rad};
 use mcap::MessageStream;
@@ -50,7 +52,11 @@ fn driven(sweep_s: f64) -> Vec<LaserReading> {
 }
 
 fn written(write: impl FnOnce(&mut McapWriter<Cursor<Vec<u8>>>)) -> Vec<u8> {
-    let mut writer = McapWriter::new(Cursor::new(Vec::new()), "test", BEGIN_S).unwrap();
+    written_from(BEGIN_S, write)
+}
+
+fn written_from(begin_s: f64, write: impl FnOnce(&mut McapWriter<Cursor<Vec<u8>>>)) -> Vec<u8> {
+    let mut writer = McapWriter::new(Cursor::new(Vec::new()), "test", begin_s).unwrap();
     write(&mut writer);
     writer.finish().unwrap().into_inner()
 }
@@ -109,6 +115,23 @@ fn readings_come_back() {
             }
         }
     }
+}
+
+/// Clients of ROS refuse times before 0.
+#[test]
+fn no_stamp_of_a_run_without_a_date_is_negative() {
+    let readings = driven(0.1);
+    let bytes = written_from(0.0, |writer| {
+        readings.iter().for_each(|reading| writer.reading(reading).unwrap());
+    });
+    let scans: Vec<LaserScan> = messages(&bytes, "/scan");
+    let odometry: Vec<Odometry> = messages(&bytes, "/odom");
+    assert!((9_000_000_000..10_000_000_000).contains(&scans[0].header.stamp.ns()));
+    assert!(odometry.iter().all(|odometry| odometry.header.stamp.sec >= 0));
+    let (summary, found) = read(&bytes);
+    assert_eq!((summary.begin_s, summary.notes.len()), (None, 0), "{:?}", summary.notes);
+    let pairs = found.iter().zip(&readings);
+    pairs.for_each(|(found, expected)| assert_same(found, expected, &summary.odom_origin));
 }
 
 #[test]

@@ -154,9 +154,14 @@ impl Frames {
     }
 }
 
-/// Whether this is the name of a frame of odometry (REP-105).
+/// Whether this is the name of a frame of odometry (REP-105): `odom`, `odom_combined`, `robot1_odom`, `camera_odom_frame`.
 pub(crate) fn is_odom(frame: &str) -> bool {
-    frame.rsplit('/').next().is_some_and(|name| name.starts_with("odom"))
+    frame.rsplit('/').next().is_some_and(|name| name.contains("odom"))
+}
+
+/// Whether this is the usual name of the frame of a robot (REP-105): `base_link`, `base_footprint`.
+pub(crate) fn is_base(frame: &str) -> bool {
+    frame.rsplit('/').next().is_some_and(|name| name.starts_with("base"))
 }
 
 /// Whether this is the name of a frame in which the world stands still.

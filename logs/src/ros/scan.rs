@@ -10,6 +10,9 @@ const MAX_BEAMS: usize = 100_000;
 const FARTHEST_M: f64 = 300.0;
 /// A scan never takes longer than this, s.
 const LONGEST_SWEEP_S: f64 = 10.0;
+/// The stamp of the time 0 of a run without a date, ns: the first scan begins before the time 0, and ROS has no times before its
+/// own 0.
+pub const FIRST_STAMP_NS: i64 = LONGEST_SWEEP_S as i64 * 1_000_000_000;
 
 /// The scan of a message. `is_upside_down`: the laser hangs with its head down, so that its beams turn clockwise.
 ///

@@ -30,7 +30,7 @@ struct Args {
     /// Ends after this simulated time, s
     #[arg(long, value_name = "SECONDS", default_value_t = f64::INFINITY, value_parser = duration, allow_negative_numbers = true)]
     duration: f64,
-    /// Times are those of the wall clock at the start, and not from 0: for nodes without use_sim_time; for speed 1
+    /// Times are those of the wall clock at the start, and not from 10 s on: for nodes without use_sim_time; for speed 1
     #[arg(long)]
     wall_time: bool,
 }

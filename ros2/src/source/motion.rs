@@ -1,13 +1,18 @@
 //! The motion of the robot by odometry, from tf or from a topic.
 
 use super::RESTART_NS;
-use interfaces::{LaserReading, Scan};
+use interfaces::{LaserReading, Scan, heading_rad};
 use logs::Odometry;
 use logs::ros::flat;
 use nalgebra::{Isometry2, Isometry3};
 
 /// A pose that is older than a scan by more than this is not the pose of the scan, s.
 const LATEST_S: f64 = 0.1;
+/// A step that demands a higher speed than a robot's, and is longer than noise, is a reset of the odometry: m/s and rad/s, m and rad.
+const MAX_MPS: f64 = 3.0;
+const MAX_RADPS: f64 = 4.0;
+const MIN_RESET_M: f64 = 0.5;
+const MIN_RESET_RAD: f64 = 0.5;
 /// Odometry on a topic is used if no transform has come for this time, ns.
 const WAIT_FOR_TF_NS: i64 = 2_000_000_000;
 
@@ -17,19 +22,40 @@ struct PoseStream {
     poses: Odometry,
     first_ns: Option<i64>,
     last_ns: Option<i64>,
+    /// The last pose as it came.
+    last: Option<Isometry2<f64>>,
+    /// The first pose as it came: the origin of the summed motions.
+    first: Isometry2<f64>,
+    /// The same origin in the present frame of the odometry: a reset moves that frame.
+    origin: Isometry2<f64>,
 }
 
 impl PoseStream {
-    fn add(&mut self, ns: i64, time_s: impl Fn(i64) -> f64, pose: &Isometry3<f64>) {
+    /// Adds a pose. Says so if the odometry was reset: that is no motion.
+    fn add(&mut self, ns: i64, time_s: impl Fn(i64) -> f64, pose: &Isometry3<f64>) -> Option<String> {
         if let Some(last_ns) = self.last_ns.filter(|last_ns| ns <= *last_ns) {
             if last_ns.saturating_sub(ns) < RESTART_NS {
-                return;
+                return None;
             }
             *self = Self::default();
         }
+        let pose = flat(pose);
+        let reset = self
+            .last_ns
+            .zip(self.last)
+            .and_then(|(last_ns, last)| reset(&last.inv_mul(&pose), seconds_since(last_ns, ns)));
+        match self.last.replace(pose) {
+            None => (self.first, self.origin) = (pose, pose),
+            Some(last) if reset.is_some() => {
+                self.origin = pose * last.inverse() * self.origin;
+                self.poses.set_origin(pose);
+            }
+            Some(_) => {}
+        }
         self.first_ns.get_or_insert(ns);
         self.last_ns = Some(ns);
-        self.poses.add(time_s(ns), flat(pose));
+        self.poses.add(time_s(ns), pose);
+        reset
     }
 
     fn span_ns(&self) -> i64 {
@@ -49,15 +75,19 @@ pub(super) struct Motions {
 }
 
 impl Motions {
-    pub(super) fn add_transform(&mut self, ns: i64, pose: &Isometry3<f64>) {
+    /// Adds a pose from tf. Says so if the odometry was reset.
+    pub(super) fn add_transform(&mut self, ns: i64, pose: &Isometry3<f64>) -> Option<String> {
         let origin_ns = *self.origin_ns.get_or_insert(ns);
-        self.transforms.add(ns, |ns| seconds_since(origin_ns, ns), pose);
+        let reset = self.transforms.add(ns, |ns| seconds_since(origin_ns, ns), pose);
+        reset.filter(|_| !self.uses_odometry)
     }
 
-    pub(super) fn add_odometry(&mut self, ns: i64, pose: &Isometry3<f64>) {
+    /// Adds a pose from a topic. Says so if the odometry was reset.
+    pub(super) fn add_odometry(&mut self, ns: i64, pose: &Isometry3<f64>) -> Option<String> {
         let origin_ns = *self.origin_ns.get_or_insert(ns);
-        self.odometry.add(ns, |ns| seconds_since(origin_ns, ns), pose);
+        let reset = self.odometry.add(ns, |ns| seconds_since(origin_ns, ns), pose);
         self.uses_odometry |= self.transforms.last_ns.is_none() && self.odometry.span_ns() >= WAIT_FOR_TF_NS;
+        reset.filter(|_| self.uses_odometry)
     }
 
     /// Whether no pose is known.
@@ -84,17 +114,18 @@ impl Motions {
             .is_some_and(|(oldest_s, newest_s)| oldest_s <= time_s && time_s <= newest_s + LATEST_S)
     }
 
-    /// The reading of a scan that ends at a time, and its pose in the frame of the odometry.
+    /// The reading of a scan that ends at a time, its pose in the frame of the odometry, and the same without resets: in the frame
+    /// of the first odometry.
     pub(super) fn reading(
         &self,
         ns: i64,
         mount: Isometry2<f64>,
         scan: Scan,
-    ) -> (LaserReading, Isometry2<f64>) {
-        let poses = &self.used().poses;
+    ) -> (LaserReading, Isometry2<f64>, Isometry2<f64>) {
+        let PoseStream { poses, first, origin, .. } = self.used();
         let reading = poses.reading(self.time_s(ns), mount, scan);
-        let in_odom = poses.origin() * reading.pose;
-        (reading, in_odom)
+        let (in_odom, in_first_odom) = (origin * reading.pose, first * reading.pose);
+        (reading, in_odom, in_first_odom)
     }
 
     /// Forgets poses that another clock has stamped: those that are later than a time by more than a second.
@@ -109,6 +140,18 @@ impl Motions {
     fn used(&self) -> &PoseStream {
         if self.uses_odometry { &self.odometry } else { &self.transforms }
     }
+}
+
+/// What is said of a step of the odometry that no robot can drive; `None` for all others.
+fn reset(step: &Isometry2<f64>, elapsed_s: f64) -> Option<String> {
+    let (step_m, step_rad) = (step.translation.vector.norm(), heading_rad(step).abs());
+    let is_reset = step_m > (MAX_MPS * elapsed_s).max(MIN_RESET_M)
+        || step_rad > (MAX_RADPS * elapsed_s).max(MIN_RESET_RAD);
+    is_reset.then(|| {
+        format!(
+            "the odometry jumps by {step_m:.2} m and {step_rad:.2} rad in {elapsed_s:.2} s: it was reset, and the jump is no motion"
+        )
+    })
 }
 
 fn seconds_since(origin_ns: i64, ns: i64) -> f64 {

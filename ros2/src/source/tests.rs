@@ -90,6 +90,28 @@ fn a_scan_waits_for_a_later_pose_but_not_for_long() {
     assert_eq!(source.take_notes(), ["a scan is left out: there is no pose of the robot at its time"]);
 }
 
+/// The odometry of many robots starts again at 0 with its driver, on the same clock.
+#[test]
+fn an_odometry_that_is_reset_is_no_motion() {
+    let (mut source, now) = (source(), Instant::now());
+    robot(&mut source, now);
+    for step in 11..=20 {
+        let time_s = 0.1 * f64::from(step);
+        source.take(Topic::Transforms, transform(time_s, "odom", "base_footprint", at(time_s - 1.1)), now);
+    }
+    source.take(Topic::Scan, scan(0.95, "laser"), now);
+    source.take(Topic::Scan, scan(1.65, "laser"), now);
+    let [before, after] = [source.next(now).unwrap(), source.next(now).unwrap()];
+    assert!((before.reading.pose.translation.x - 0.95).abs() < 1e-9);
+    assert!((after.reading.pose.translation.x - 1.55).abs() < 1e-9, "{}", after.reading.pose);
+    // The odometry has it where it publishes it.
+    assert!((after.in_odom.translation.x - 0.55).abs() < 1e-9, "{}", after.in_odom);
+    assert!((after.in_first_odom.translation.x - 6.55).abs() < 1e-9, "{}", after.in_first_odom);
+    assert!(!after.is_restart);
+    let note = "the odometry jumps by 6.00 m and 0.00 rad in 0.10 s: it was reset, and the jump is no motion";
+    assert_eq!(source.take_notes(), [note]);
+}
+
 #[test]
 fn a_robot_without_a_footprint_is_at_its_base_link() {
     let (mut source, now) = (source(), Instant::now());

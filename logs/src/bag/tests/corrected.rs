@@ -115,6 +115,16 @@ fn frames_have_other_names() {
     let expected = "test: no transform (tf) has the frame `map`, in which another SLAM would have corrected the poses; --map-frame \
                     names it; the frames are laser, robot, slam_map, wheels";
     assert_eq!(refused(&bag, &corrected()), expected);
+    // A SLAM that publishes its corrections more often than the robot its odometry.
+    let mut often = self::bag(&Slam { frames: ["map", "robot1_odom", "base_link"], ..SLAM });
+    often.messages.pop();
+    let all = often.messages.clone();
+    let is_correction = |index: usize| all[index..].iter().take(2).all(|(topic, ..)| topic == "/tf");
+    let copies = |index: usize| if is_correction(index) { 2 } else { 1 };
+    let repeated = (0..all.len()).flat_map(|index| vec![all[index].clone(); copies(index)]);
+    often.messages = repeated.collect();
+    assert!(often.messages.len() > all.len() + 30);
+    assert_in_map(&readings(&often.open(&corrected()).unwrap()));
 }
 
 /// Some SLAMs have no frame of odometry: their poses jump themselves.

@@ -16,11 +16,11 @@ fn driving() -> Builder {
     bag
 }
 
-fn at(reading: &LaserReading) -> [f64; 3] {
+pub(super) fn at(reading: &LaserReading) -> [f64; 3] {
     [reading.pose.translation.x, reading.pose.translation.y, heading_rad(&reading.pose)]
 }
 
-fn assert_near(found: &[f64], expected: &[f64]) {
+pub(super) fn assert_near(found: &[f64], expected: &[f64]) {
     let near = found.iter().zip(expected).all(|(found, expected)| (found - expected).abs() < 1e-6);
     assert!(near && found.len() == expected.len(), "{found:?} instead of {expected:?}");
 }
@@ -100,6 +100,43 @@ fn transforms_are_odometry_where_there_is_no_other() {
     let (odom_frame, base_frame) = ("odom".to_owned(), "base_link".to_owned());
     assert_eq!(bag.summary().pose_source, PoseSource::Transforms { odom_frame, base_frame });
     assert_near(&at(&readings(&bag)[1]), &[0.0, 0.15, 0.0]);
+}
+
+/// A robot that drives 1 m/s along x in `odom`, with a laser that pans on `base`.
+fn by_transforms([map, odom, base]: [&str; 3], corrected_m: f64, pans: bool) -> crate::Log {
+    let mut bag = Builder::default();
+    for step in 0..40 {
+        let time_s = f64::from(step) * 0.1;
+        let pan_rad = if pans { 0.5 * time_s.sin() } else { 0.0 };
+        bag.tf("/tf", time_s, &[transform(time_s, base, "laser", pose(0.2, 0.0, pan_rad))]);
+        if odom != base {
+            let correction = pose(corrected_m * time_s.floor(), 0.0, 0.0);
+            bag.tf("/tf", time_s, &[transform(time_s, map, odom, correction)]);
+        }
+        let parent = if odom == base { map } else { odom };
+        bag.tf("/tf", time_s, &[transform(time_s, parent, base, pose(time_s, 0.0, 0.0))]);
+        bag.scan("/scan", time_s + 0.05, &scan(time_s + 0.05, "laser"));
+    }
+    bag.open(&TopicChoice::default()).unwrap()
+}
+
+#[test]
+fn odometry_in_transforms_is_below_the_world_whatever_its_name() {
+    for odom in ["odom", "robot1_odom", "camera_odom_frame", "wheels"] {
+        for (corrected_m, pans) in [(0.0, false), (0.0, true), (0.3, false), (0.3, true)] {
+            let bag = by_transforms(["map", odom, "base_link"], corrected_m, pans);
+            let (odom_frame, base_frame) = (odom.to_owned(), "base_link".to_owned());
+            assert_eq!(bag.summary().pose_source, PoseSource::Transforms { odom_frame, base_frame });
+            let found = readings(&bag);
+            assert_near(&at(&found[30]), &[3.05, 0.0, 0.0]);
+            assert!((found[30].mount.translation.x - 0.2).abs() < 1e-9);
+        }
+    }
+    // Without odometry, the robot is tracked in the world.
+    let bag = by_transforms(["world", "base_link", "base_link"], 0.0, true);
+    let (odom_frame, base_frame) = ("world".to_owned(), "base_link".to_owned());
+    assert_eq!(bag.summary().pose_source, PoseSource::Transforms { odom_frame, base_frame });
+    assert_near(&at(&readings(&bag)[30]), &[3.05, 0.0, 0.0]);
 }
 
 #[test]
