@@ -107,9 +107,9 @@ fn day(text: &str) -> Option<usize> {
 /// A time of day, hours, from `0:00` to `24:00`.
 fn hour(text: &str) -> Option<f64> {
     let (hours, minutes) = text.trim().split_once(':')?;
-    let (hours, minutes) =
-        (hours.parse::<u32>().ok()?, minutes.parse::<u32>().ok().filter(|_| minutes.len() == 2)?);
-    (minutes < 60 && 60 * hours + minutes <= 1440).then(|| f64::from(hours) + f64::from(minutes) / 60.0)
+    let minutes = minutes.parse::<u32>().ok().filter(|value| minutes.len() == 2 && *value < 60)?;
+    let hours = hours.parse::<u32>().ok().filter(|hours| *hours < 24 || (*hours, minutes) == (24, 0))?;
+    Some(f64::from(hours) + f64::from(minutes) / 60.0)
 }
 
 #[cfg(test)]
@@ -145,6 +145,8 @@ mod tests {
             "Mon 8:10-9:00",
             "Mon 8:00-25:00",
             "Mon 8:0-9:00",
+            "Mon 8:00-24:01",
+            "Mon 8:00-99999999:00",
         ] {
             assert!(Hours::never().add(wrong).unwrap_err().contains("`Mon-Fri 8:00-18:00`"), "{wrong}");
         }
@@ -155,7 +157,7 @@ mod tests {
         assert_eq!(time_of_week_s("Mon 7:00"), Ok(7.0 * HOUR_S));
         assert_eq!(time_of_week_s("Sun"), Ok(6.0 * DAY_S));
         assert_eq!(moment(time_of_week_s("Wed 17:05").unwrap()), "Wed 17:05");
-        for wrong in ["", "7:00", "Mon 24:00", "Mon 7", "Mon 7:00 h", "mon 7:00"] {
+        for wrong in ["", "7:00", "Mon 24:00", "Mon 99999999:00", "Mon 7", "Mon 7:00 h", "mon 7:00"] {
             assert!(time_of_week_s(wrong).is_err(), "{wrong}");
         }
     }

@@ -52,7 +52,8 @@ pub fn source(spec: &WorldSpec) -> Result<Source, UnsupportedDrive> {
         cell_m: spec.frame.resolution_m(),
         range_max_m: robot.laser.range_max_m,
         range_noise_m: Some(robot.laser.noise_std_m),
-        no_return: NoReturn::Free, // nothing in a simulated world swallows beams
+        // Without glass, nothing in a simulated world swallows beams.
+        no_return: if spec.glass.is_empty() { NoReturn::Free } else { NoReturn::Learn },
         period_s,
         drive: DiffDriveSettings {
             radius_m: robot.radius_m,

@@ -43,8 +43,8 @@ pub struct GridWorlds {
     #[arg(long, value_name = "CELLS", value_parser = clap::value_parser!(u32).range(1..=100), allow_negative_numbers = true, help_heading = "World")]
     sensor_radius: Option<u32>,
 
-    /// The probability of every move of a block and of the robot, instead of the probabilities in the world
-    /// file; 0.8 without a number
+    /// The probability of every move of the robot and of a block without a schedule, instead of the
+    /// probabilities in the world file; 0.8 without a number
     #[arg(long, value_name = "PROBABILITY", num_args = 0..=1, default_missing_value = "0.8", value_parser = probability, help_heading = "World")]
     stochastic: Option<f64>,
 

@@ -9,7 +9,7 @@ use interfaces::GridFrame;
 use nalgebra::Point2;
 
 /// The cells around whose center the disc of a robot fits, divided into connected regions. Doors are open, obstacles
-/// that stand at the start are at their start, and robots and other moving things are away.
+/// that stand at the start are at their start, and robots, things with a schedule and other moving things are away.
 #[derive(Clone, Debug)]
 pub struct FreeSpace {
     frame: GridFrame,
@@ -23,30 +23,10 @@ impl FreeSpace {
     /// The free space of a disc of `radius_m` in a world.
     pub fn new(spec: &FleetSpec, radius_m: f64) -> Self {
         let frame = spec.frame;
-        let mut is_free = vec![true; frame.len()];
-        for solid in solids(spec) {
-            let near = Rectangle { half_m: solid.half_m.add_scalar(radius_m), ..solid };
-            cover::box_cells(&frame, &near, |index, _| {
-                is_free[index] &= solid.distance_m(&frame.center(frame.cell(index))) >= radius_m;
-            });
-        }
         let cell_m2 = frame.resolution_m() * frame.resolution_m();
-        let (mut regions, mut areas_m2) = (vec![None; frame.len()], Vec::new());
-        for index in 0..frame.len() {
-            let region = Some(areas_m2.len());
-            let enter = |index: usize| {
-                let is_new = is_free[index] && regions[index].is_none();
-                if is_new {
-                    regions[index] = region;
-                }
-                is_new
-            };
-            let count = flood(&frame, frame.cell(index), enter);
-            if count > 0 {
-                areas_m2.push(count as f64 * cell_m2);
-            }
-        }
-        Self { frame, regions, areas_m2 }
+        let mut regions = vec![None; frame.len()];
+        let counts = divide(&frame, &fits(&frame, &solids(spec), radius_m), &mut regions, 0);
+        Self { frame, regions, areas_m2: counts.into_iter().map(|count| count as f64 * cell_m2).collect() }
     }
 
     /// The region of each cell of the frame; `None` where the disc does not fit.
@@ -73,10 +53,48 @@ impl FreeSpace {
     }
 }
 
+/// Whether a disc of `radius_m` around the center of each cell keeps clear of all rectangles.
+pub(super) fn fits(frame: &GridFrame, solids: &[Rectangle], radius_m: f64) -> Vec<bool> {
+    let mut is_free = vec![true; frame.len()];
+    for solid in solids {
+        let near = Rectangle { half_m: solid.half_m.add_scalar(radius_m), ..*solid };
+        cover::box_cells(frame, &near, |index, _| {
+            is_free[index] &= solid.distance_m(&frame.center(frame.cell(index))) >= radius_m;
+        });
+    }
+    is_free
+}
+
+/// Divides the free cells that have no region yet into connected regions, numbered from `first` on. Returns the number of cells
+/// of each.
+pub(super) fn divide(
+    frame: &GridFrame,
+    is_free: &[bool],
+    regions: &mut [Option<usize>],
+    first: usize,
+) -> Vec<usize> {
+    let mut counts = Vec::new();
+    for index in 0..frame.len() {
+        let region = Some(first + counts.len());
+        let enter = |index: usize| {
+            let is_new = is_free[index] && regions[index].is_none();
+            if is_new {
+                regions[index] = region;
+            }
+            is_new
+        };
+        let count = flood(frame, frame.cell(index), enter);
+        if count > 0 {
+            counts.push(count);
+        }
+    }
+    counts
+}
+
 /// The walls, and the obstacles that stand there when the robots start, unless they move away by themselves.
 pub(super) fn solids(spec: &FleetSpec) -> Vec<Rectangle> {
     let stays = |obstacle: &&ObstacleSpec| {
-        obstacle.appears_s.is_none() && !matches!(obstacle.motion, Motion::Path(_))
+        obstacle.appears_s.is_none() && !matches!(obstacle.motion, Motion::Path(_) | Motion::Scheduled(_))
     };
     let standing = spec.obstacles.iter().filter(stays).map(ObstacleSpec::opened);
     spec.walls.iter().copied().chain(standing).collect()

@@ -151,7 +151,8 @@ impl PhysicsWorld {
         self.fleet.command(self.spec.driven_index(), Twist::STOP);
         let step_s = self.spec.step_s;
         let steps_to = |now_s: f64, time_s: f64| ((time_s - now_s) / step_s - 1e-6).ceil().max(0.0) as u64;
-        let mut left = steps_to(self.time_s(), until_s);
+        // At least one: a robot that rests until it may leave must get there, however few parts of a step are missing.
+        let mut left = steps_to(self.time_s(), until_s).max(u64::from(until_s > self.time_s()));
         while left > 0 {
             let number = ((self.time_s() + ROUNDING_S) / every_s).floor();
             let due = steps_to(self.time_s(), (number + 1.0) * every_s).max(1);

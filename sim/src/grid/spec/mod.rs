@@ -24,7 +24,8 @@ pub struct GridSpec {
     /// The range of the sensor between the centers of cells, in cells; 1 to
     /// [`GridSpec::MAX_SENSOR_RADIUS`].
     pub sensor_radius: u32,
-    /// The probability per step that a block moves once its dwell is over; above 0, at most 1.
+    /// The probability per step that a block moves once its dwell is over; above 0, at most 1. A block with a schedule keeps to its
+    /// calendar, whatever this probability is.
     pub block_probability: f64,
     /// The probability that an action of the robot happens; above 0, at most 1.
     pub robot_probability: f64,
@@ -103,7 +104,7 @@ impl GridSpec {
         Self { sensor_radius: sensor_radius.clamp(1, Self::MAX_SENSOR_RADIUS), ..self }
     }
 
-    /// The same world with other probabilities for blocks and the robot, limited to above 0 and at most 1; NaN
+    /// The same world with other probabilities for blocks without a schedule and the robot, limited to above 0 and at most 1; NaN
     /// becomes the smallest valid value.
     #[must_use]
     pub fn with_probabilities(self, block: f64, robot: f64) -> Self {

@@ -1,6 +1,7 @@
 //! What the behaviors drive with: straight legs, the pace that lets a robot stop, and the end of its patience.
 
 use crate::physics::rays::Beams;
+use crate::physics::shape::TOUCH_M;
 use crate::physics::snapshot::{pose, value};
 use crate::physics::spec::RobotSpec;
 use interfaces::{LaserReading, Twist, Values, values};
@@ -120,17 +121,37 @@ impl Legs {
         points.map(move |(range_m, beam)| lean * (mount + beam * f64::from(*range_m)))
     }
 
+    /// Where something is too close to be measured (−∞), in the frame of the leg, m: as far to the side as the minimum range
+    /// reaches, and not farther ahead than a touch. A beam beyond the minimum range would have measured it, so that a wall
+    /// beside the way is not in the way.
+    pub(super) fn too_close(
+        &self,
+        reading: &LaserReading,
+        lean: &UnitComplex<f64>,
+    ) -> impl Iterator<Item = Vector2<f64>> {
+        let mount = reading.mount.translation.vector;
+        let ranges_m = reading.scan.ranges_m.iter().zip(&self.beams);
+        let beams = ranges_m.filter(|(range_m, _)| **range_m == f32::NEG_INFINITY).map(|(_, beam)| beam);
+        let farthest = beams.map(move |beam| lean * (mount + beam * reading.scan.range_min_m));
+        farthest.map(move |at| Vector2::new(at.x.min(self.nose_m(&at) + TOUCH_M), at.y))
+    }
+
     /// The distance that the round body can drive along the leg, m, with a free space at both sides.
     pub(super) fn free_m(&self, reading: &LaserReading, lean: &UnitComplex<f64>, side_margin_m: f64) -> f64 {
         let open_m = self.radius_m + side_margin_m;
-        let ahead = self.points(reading, lean).filter(|point| point.x > 0.0 && point.y.abs() < open_m);
+        let points = self.points(reading, lean).chain(self.too_close(reading, lean));
+        let ahead = points.filter(|point| point.x > 0.0 && point.y.abs() < open_m);
         ahead.fold(f64::INFINITY, |free_m, point| free_m.min(self.gap_m(&point)))
     }
 
     /// The distance that the round body can drive before it touches a point ahead, m.
     pub(super) fn gap_m(&self, point: &Vector2<f64>) -> f64 {
-        let nose_m = (self.radius_m * self.radius_m - point.y * point.y).max(0.0).sqrt();
-        point.x - nose_m
+        point.x - self.nose_m(point)
+    }
+
+    /// How far the round body reaches ahead, m, as far to the side as a point.
+    fn nose_m(&self, point: &Vector2<f64>) -> f64 {
+        (self.radius_m * self.radius_m - point.y * point.y).max(0.0).sqrt()
     }
 }
 

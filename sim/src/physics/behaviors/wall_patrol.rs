@@ -50,7 +50,8 @@ impl WallPatrol {
         // +1: the wall is on the left of the leg; −1: on the right.
         let side = if self.spec.wall_on_left == self.outbound { 1.0 } else { -1.0 };
         self.legs.drive(reading, &along, remaining_m, |legs, lean| {
-            let (wall_m, gap_m) = wall_and_gap_m(&self.spec, side, legs, legs.points(reading, lean));
+            let (points, too_close) = (legs.points(reading, lean), legs.too_close(reading, lean));
+            let (wall_m, gap_m) = wall_and_gap_m(&self.spec, side, legs, points, too_close);
             let too_far_m = wall_m.map_or(0.0, |wall_m| wall_m - self.spec.wall_distance_m);
             (gap_m, side * (LATERAL_GAIN * too_far_m).clamp(-MAX_LEAN_RAD, MAX_LEAN_RAD))
         })
@@ -63,19 +64,22 @@ impl WallPatrol {
 }
 
 /// Divides the points of a scan into the wall beside the robot and bodies ahead: the distance to the wall, m, if the
-/// laser sees the wall, and the free distance ahead, m.
+/// laser sees the wall, and the free distance ahead, m. What is too close measures no wall.
 fn wall_and_gap_m(
     spec: &PatrolSpec,
     side: f64,
     legs: &Legs,
     points: impl Iterator<Item = Vector2<f64>>,
+    too_close: impl Iterator<Item = Vector2<f64>>,
 ) -> (Option<f64>, f64) {
     let (wall_m, open_m) = (spec.wall_distance_m, legs.radius_m + SIDE_MARGIN_M);
     let walled_m = open_m.min(wall_m - PatrolSpec::WALL_RELIEF_M);
     let (mut sum_m, mut count, mut gap_m) = (0.0, 0.0, f64::INFINITY);
-    for point in points {
+    for (point, is_measured) in points.map(|point| (point, true)).chain(too_close.map(|point| (point, false)))
+    {
         let toward_wall_m = point.y * side;
-        if (toward_wall_m - wall_m).abs() < WALL_SLACK_M && point.x.abs() < 2.0 * legs.radius_m {
+        let is_wall = (toward_wall_m - wall_m).abs() < WALL_SLACK_M && point.x.abs() < 2.0 * legs.radius_m;
+        if is_measured && is_wall {
             sum_m += toward_wall_m;
             count += 1.0;
         }

@@ -123,7 +123,8 @@ impl Wander {
         let max_m = reading.scan.range_max_m as f32;
         let mut more_left_m = 0.0;
         let beams = reading.scan.ranges_m.iter().zip(&self.escape.legs.beams);
-        for (range_m, beam) in beams.filter(|(_, beam)| beam.x > 0.0) {
+        // A beam that was lost (NaN) says nothing.
+        for (range_m, beam) in beams.filter(|(range_m, beam)| beam.x > 0.0 && !range_m.is_nan()) {
             let range_m = range_m.clamp(0.0, max_m);
             more_left_m += if beam.y > 0.0 { range_m } else { -range_m };
         }

@@ -1,13 +1,16 @@
 //! Rooms that are not closed while a robot must get out of them, or into them.
 
-use crate::flood::flood;
+use crate::physics::convex;
+use crate::physics::free_space::{divide, fits};
 use crate::physics::ground_truth::cover::box_cells;
 use crate::physics::ground_truth::start::walls_cover;
 use crate::physics::robot::SimulatedRobot;
 use crate::physics::shape::Rectangle;
-use crate::physics::spec::FleetSpec;
+use crate::physics::spec::{FleetSpec, RobotSpec};
 use interfaces::{GridFrame, TrueState};
 use nalgebra::Point2;
+use std::collections::VecDeque;
+use std::f64::consts::FRAC_1_SQRT_2;
 
 /// How far beside a closed leaf a free cell is looked for, m.
 const BESIDE_M: f64 = 0.5;
@@ -32,7 +35,7 @@ impl Rooms {
         let frame = spec.frame;
         let waiting = spec.obstacles.iter().enumerate().filter(|(_, obstacle)| obstacle.waits_for_robots());
         let leaves: Vec<(usize, Rectangle)> = waiting.map(|(index, door)| (index, door.shape)).collect();
-        if leaves.is_empty() {
+        if leaves.is_empty() || spec.docks().next().is_none() {
             return Self { frame, rooms: Vec::new(), ways: Vec::new() };
         }
         let (mut rooms, count) = separate(spec, &leaves);
@@ -72,22 +75,37 @@ impl Rooms {
     }
 }
 
-/// The room of each free cell, and the number of rooms: what is connected while all leaves are closed, and all other obstacles away.
+/// The room of each free cell, and the number of rooms: where the smallest robot with a dock could drive while all leaves are closed, and
+/// all other obstacles away. A cell where it does not fit, as in the gap beside a leaf, belongs to the room that is nearest.
 fn separate(spec: &FleetSpec, leaves: &[(usize, Rectangle)]) -> (Vec<Option<usize>>, usize) {
+    let frame = &spec.frame;
     let boxes: Vec<Rectangle> = spec.walls.iter().chain(leaves.iter().map(|leaf| &leaf.1)).copied().collect();
-    let states = walls_cover(&spec.frame, &boxes);
-    let (mut rooms, mut count) = (vec![None; spec.frame.len()], 0);
-    for start in 0..spec.frame.len() {
-        let entered = flood(&spec.frame, spec.frame.cell(start), |cell| {
-            let is_new = states[cell] == TrueState::Free && rooms[cell].is_none();
-            if is_new {
-                rooms[cell] = Some(count);
+    let states = walls_cover(frame, &boxes);
+    let is_free: Vec<bool> = states.iter().map(|state| *state == TrueState::Free).collect();
+    let inner_m = spec.docks().map(|(robot, _)| inner_m(&spec.robots[robot])).fold(f64::INFINITY, f64::min);
+    // A robot that fits somewhere is at most half a diagonal from the center of its cell.
+    let radius_m = (inner_m - FRAC_1_SQRT_2 * frame.resolution_m()).max(0.0);
+    let mut is_open = fits(frame, &boxes, radius_m);
+    is_open.iter_mut().zip(&is_free).for_each(|(open, free)| *open &= free);
+    let mut rooms = vec![None; frame.len()];
+    let count = divide(frame, &is_open, &mut rooms, 0).len();
+    let mut reached: VecDeque<usize> = (0..frame.len()).filter(|cell| is_open[*cell]).collect();
+    while let Some(cell) = reached.pop_front() {
+        for beside in frame.beside(cell) {
+            if is_free[beside] && rooms[beside].is_none() {
+                rooms[beside] = rooms[cell];
+                reached.push_back(beside);
             }
-            is_new
-        });
-        count += usize::from(entered > 0);
+        }
     }
-    (rooms, count)
+    // Rooms without a place for a robot, as between two doors.
+    let narrow = divide(frame, &is_free, &mut rooms, count).len();
+    (rooms, count + narrow)
+}
+
+/// The radius of a disc that lies within the body of a robot, m.
+fn inner_m(robot: &RobotSpec) -> f64 {
+    if robot.corners.is_empty() { robot.radius_m } else { convex::inner_m(&robot.corners) }
 }
 
 /// For each room, the doors on the way to a room with the fewest doors.
@@ -110,4 +128,36 @@ fn ways_to(dock: usize, count: usize, passages: &[Passage]) -> Vec<Vec<usize>> {
         }
     }
     ways.into_iter().map(Option::unwrap_or_default).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::physics::spec::WorldSpec;
+    use ::calendar::Kind;
+    use std::collections::BTreeMap;
+
+    /// Generated leaves leave no gap: the rooms are what free cells connect.
+    #[test]
+    fn rooms_without_gaps_are_what_free_cells_connect() {
+        let kinds = [Kind::Home, Kind::Office, Kind::Warehouse, Kind::Clinic];
+        let mut with_doors = 0;
+        for (kind, seed) in kinds.into_iter().flat_map(|kind| (0..6).map(move |seed| (kind, seed))) {
+            let spec = WorldSpec::generate_calendar(kind, seed);
+            let (spec, frame) = (spec.fleet(), spec.frame);
+            let doors = spec.obstacles.iter().enumerate().filter(|(_, door)| door.waits_for_robots());
+            let leaves: Vec<(usize, Rectangle)> = doors.map(|(index, door)| (index, door.shape)).collect();
+            with_doors += usize::from(!leaves.is_empty());
+            let (rooms, count) = separate(spec, &leaves);
+            let boxes: Vec<Rectangle> =
+                spec.walls.iter().chain(leaves.iter().map(|leaf| &leaf.1)).copied().collect();
+            let states = walls_cover(&frame, &boxes);
+            let is_free: Vec<bool> = states.iter().map(|state| *state == TrueState::Free).collect();
+            let mut connected = vec![None; frame.len()];
+            assert_eq!(divide(&frame, &is_free, &mut connected, 0).len(), count, "{kind:?} {seed}");
+            let pairs: BTreeMap<_, _> = connected.iter().zip(&rooms).collect();
+            assert!(connected.iter().zip(&rooms).all(|(connected, room)| pairs[connected] == room));
+        }
+        assert!(with_doors > 12, "{with_doors}");
+    }
 }

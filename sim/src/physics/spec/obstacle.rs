@@ -210,7 +210,7 @@ pub enum Opening {
         /// The schedule.
         schedule: Box<Schedule>,
         /// Whether people open the door for robots: it is open, against its schedule, while it is on the way with the fewest
-        /// such doors from the room of a driven robot to its dock.
+        /// such doors from the room of a driven robot to its dock. A leaf closes a room if the robot does not fit past it.
         waits_for_robots: bool,
     },
 }

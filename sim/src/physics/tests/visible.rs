@@ -2,6 +2,7 @@
 
 use super::specs;
 use crate::physics::*;
+use calendar::{Habit, Hours, Schedule, Stays};
 use interfaces::{Cell, GridFrame};
 use nalgebra::{Point2, Vector2};
 
@@ -87,4 +88,28 @@ fn what_can_be_seen_is_what_some_pose_sees() {
     assert!(compared > 1000, "{compared}");
     // The poses are coarse, and so are the directions.
     assert!(missed == 0 && unproved * 200 < compared, "{missed} missed, {unproved} unproved of {compared}");
+}
+
+/// A parked robot in the place of the driven one, which comes later, and a box that closes a doorway until it leaves: both go away
+/// by themselves, as a block on a path does.
+#[test]
+fn a_thing_with_a_schedule_is_not_in_the_way() {
+    let spec = house();
+    for starts_blocked in [false, true] {
+        let thing = |name: &str, at: [f64; 4]| {
+            let stays = [Stays::of_mean(600.0); 2];
+            let changes =
+                calendar::Changes::Habit(Habit { hours: Hours::always(), active: stays, quiet: stays });
+            let schedule = Schedule { changes, starts_blocked };
+            ObstacleSpec::new(name, wall(at), Motion::Scheduled(Box::new(schedule)))
+        };
+        let mut fleet = spec.fleet().clone();
+        let box_in_doorway = thing("box", [2.5, 5.95, 3.5, 6.05]);
+        let parked = (!starts_blocked).then(|| thing("parked", [1.5, 1.5, 2.5, 2.5]));
+        fleet.obstacles.extend(parked.into_iter().chain([box_in_doorway]));
+        let with_things = WorldSpec::new(fleet).unwrap();
+        let [here, there] = [&spec, &with_things].map(|spec| FreeSpace::new(spec, RADIUS_M));
+        assert_eq!(here.regions(), there.regions());
+        assert!(spec.visible_cells() == with_things.visible_cells());
+    }
 }

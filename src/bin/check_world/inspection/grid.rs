@@ -18,8 +18,14 @@ pub(super) fn content(world: &GridSpec) -> Content {
         ),
     ];
     if world.block_probability < 1.0 || world.robot_probability < 1.0 {
-        let both = [moves("a block", world.block_probability), moves("the robot", world.robot_probability)];
-        lines.push(("chance", both.join(", ")));
+        // A block with a schedule keeps to its calendar.
+        let (scheduled, others): (Vec<_>, Vec<_>) =
+            world.blocks.iter().partition(|block| block.schedule.is_some());
+        let block = if scheduled.is_empty() { "a block" } else { "a block without a schedule" };
+        let block = moves(block, world.block_probability);
+        let block = (scheduled.is_empty() || !others.is_empty()).then_some(block);
+        let both = block.into_iter().chain([moves("the robot", world.robot_probability)]);
+        lines.push(("chance", both.collect::<Vec<_>>().join(", ")));
     }
     lines.extend(world.calendar.map(|steps| {
         let starts = calendar::of_world(steps.starts_s);

@@ -49,3 +49,29 @@ fn a_file_that_is_none_says_so() {
     );
     assert!(inspect(&file("worlds/office.png")).errors[0].contains("not a text file"));
 }
+
+#[test]
+fn a_block_with_a_schedule_has_no_chance() {
+    let folder = tempfile::tempdir().unwrap();
+    let chance = |blocks: &str| {
+        let path = folder.path().join("grid.toml");
+        let text = format!(
+            "name = \"grid\"\nsensor_radius = 4\nmap = \"\"\"\n......\n......\nR.....\n\"\"\"\n\
+             [transitions]\nblock_chance = 0.5\n{blocks}"
+        );
+        std::fs::write(&path, text).unwrap();
+        let content = inspect(path.to_str().unwrap()).content.unwrap();
+        content.lines.into_iter().find(|(what, _)| *what == "chance").unwrap().1
+    };
+    let walker =
+        "[[block]]\nname = \"walker\"\ndwell = 5\ncourse = \"back-and-forth\"\npath = [[1, 1], [4, 1]]\n";
+    let door = "[[block]]\nname = \"door\"\npath = [[1, 2], [2, 2]]\n\
+                [block.schedule]\nfree_s = 600.0\nblocked_s = 600.0\n";
+    let robot = "the robot moves with probability 1";
+    assert_eq!(chance(walker), format!("a block moves with probability 0.5, {robot}"));
+    assert_eq!(chance(door), robot);
+    assert_eq!(
+        chance(&format!("{walker}{door}")),
+        format!("a block without a schedule moves with probability 0.5, {robot}")
+    );
+}

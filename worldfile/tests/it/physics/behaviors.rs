@@ -120,3 +120,63 @@ fn a_wandering_robot_finds_its_way_out_of_a_narrow_place() {
         assert_eq!(fleet.contacts(), []);
     }
 }
+
+/// A wall ahead, and one beside the robot: the robot turns to the open side, also if a part of the beams is lost.
+#[test]
+fn a_wanderer_turns_to_the_open_side_although_beams_are_lost() {
+    let wall = |min: [f64; 2], max: [f64; 2]| format!("[[wall]]\nmin_m = {min:?}\nmax_m = {max:?}\n");
+    let ahead = wall([2.5, 2.0], [2.6, 4.0]);
+    for (is_left_open, beside) in [(true, [2.4, 2.6]), (false, [3.4, 3.6])] {
+        let walls = ahead.clone() + &wall([0.5, beside[0]], [2.5, beside[1]]);
+        for dropout in ["0.0", "0.1", "0.3"] {
+            let wander = robot("one", [1.5, 3.0], 0.0, "kind = \"wander\"\nspeed_mps = 0.4");
+            let wander = wander.replace("beams = 90", &format!("beams = 90\ndropout = {dropout}"));
+            let spec = house(&[wander], &walls);
+            let turns_left = |seed: &u64| {
+                let mut fleet = Fleet::new(&spec, *seed);
+                for step in 1..200 {
+                    let before = pose(&fleet, 0);
+                    fleet.run_until(0.1 * f64::from(step), &mut nobody);
+                    let turned_rad = before.rotation.rotation_to(&pose(&fleet, 0).rotation).angle();
+                    if turned_rad.abs() > 0.05 {
+                        return turned_rad > 0.0;
+                    }
+                }
+                panic!("the robot never turned");
+            };
+            let left = (0..20).filter(turns_left).count();
+            let open = if is_left_open { left } else { 20 - left };
+            assert!(open >= 15, "{open} of 20 with dropout {dropout}, left open: {is_left_open}");
+        }
+    }
+}
+
+/// Nearer than the minimum range, a laser measures −∞: something is there, but not where.
+#[test]
+fn what_is_too_close_to_be_measured_is_in_the_way() {
+    let ways = ["kind = \"waypoints\"\npoints_m = [[4.5, 3.0], [1.0, 3.0]]", "kind = \"wander\""];
+    for (way, range_min_m) in
+        ways.iter().flat_map(|way| [0.0, 0.3, 0.45, 0.6].map(|range_min_m| (way, range_min_m)))
+    {
+        let driver = robot("driver", [1.0, 3.0], 0.0, &format!("{way}\nspeed_mps = 0.4"));
+        let driver = driver.replace("beams = 90", &format!("beams = 360\nrange_min_m = {range_min_m:?}"));
+        let stands = robot("stands", [2.5, 3.0], 0.0, "kind = \"standing\"");
+        let mut fleet = Fleet::new(&house(&[driver, stands], ""), 1);
+        for step in 1..1200 {
+            fleet.run_until(0.05 * f64::from(step), &mut nobody);
+            assert_eq!(fleet.contacts(), [], "{way}, {range_min_m} m, at {} s", fleet.time_s());
+        }
+    }
+}
+
+/// Walls beside the way are nearer than the minimum range, and are not in the way.
+#[test]
+fn a_corridor_that_is_too_close_to_be_measured_is_driven_through() {
+    let wall = |low_m: f64| format!("[[wall]]\nmin_m = [1.5, {low_m:?}]\nmax_m = [3.5, {:?}]\n", low_m + 0.1);
+    let way = "kind = \"waypoints\"\npoints_m = [[4.5, 3.0]]\nspeed_mps = 0.4\nrepeat = \"once\"";
+    let driver = robot("driver", [1.0, 3.0], 0.0, way);
+    let driver = driver.replace("beams = 90", "beams = 360\nrange_min_m = 0.5");
+    let mut fleet = Fleet::new(&house(&[driver], &(wall(2.6) + &wall(3.3))), 1);
+    fleet.run_until(15.0, &mut nobody);
+    assert!((at(&fleet, 0).x - 4.5).abs() < 0.03, "{}", at(&fleet, 0));
+}

@@ -195,3 +195,61 @@ fn things_repeat_recorded_events() {
         assert_eq!(states, expected, "{more}");
     }
 }
+
+/// A closed leaf that leaves a gap too narrow for the robot closes the room.
+#[test]
+fn people_let_a_robot_out_although_the_leaf_leaves_a_gap() {
+    let is_open = |gap_m: f64, is_inside: bool| {
+        let wall = |min: [f64; 2], max: [f64; 2]| format!("[[wall]]\nmin_m = {min:?}\nmax_m = {max:?}\n");
+        let walls = [
+            ([0.0, 0.0], [8.0, 0.1]),
+            ([0.0, 3.9], [8.0, 4.0]),
+            ([0.0, 0.1], [0.1, 3.9]),
+            ([7.9, 0.1], [8.0, 3.9]),
+            ([4.0, 0.1], [4.1, 1.5]),
+            ([4.0, 2.5 + gap_m], [4.1, 3.9]),
+        ];
+        let walls: String = walls.map(|(min, max)| wall(min, max)).concat();
+        let at = if is_inside { [1.0, 1.0] } else { [6.0, 2.0] };
+        let text = format!(
+            "name = \"gap\"\nstarts = \"Mon 0:00\"\n[map]\nsize_m = [8.0, 4.0]\ncell_m = 0.05\n{walls}\
+             [[obstacle]]\nname = \"door\"\nkind = \"hinged_door\"\nfrom_m = [4.05, 1.5]\nto_m = [4.05, 2.5]\nthickness_m = 0.05\n\
+             waits_for_robots = true\n[obstacle.schedule]\nevents = \"door.csv\"\n\
+             [[robot]]\nname = \"curious\"\nradius_m = 0.2\npose_m = {at:?}\n[robot.drive]\nmax_linear_mps = 0.8\n\
+             max_angular_degps = 150.0\nmax_linear_acceleration_mps2 = 1.5\nmax_angular_acceleration_degps2 = 600.0\n\
+             [robot.laser]\nbeams = 90\nrange_max_m = 10.0\nrate_hz = 10.0\n[robot.behavior]\nkind = \"driven\"\n\
+             [robot.patrol]\nshare = 0.05\nbattery_s = 300.0\ndock_m = [6.0, 2.0]\n"
+        );
+        let events = (PathBuf::from("door.csv"), b"0,0\n600,1\n".to_vec());
+        let spec =
+            worldfile::physics::parse_world_with("gap.toml", &text, &BTreeMap::from([events])).unwrap();
+        let mut world = PhysicsWorld::new(&spec, 0);
+        world.rest(900.0);
+        let middle = spec.frame.cell_at(&nalgebra::Point2::new(4.05, 2.0));
+        world.truth().state(spec.frame.index(middle).unwrap()) == interfaces::TrueState::Free
+    };
+    for gap_m in [0.0, 0.03, 0.05, 0.1, 0.2, 0.3] {
+        assert!(is_open(gap_m, true), "a gap of {gap_m} m");
+        assert!(!is_open(gap_m, false), "a gap of {gap_m} m, the robot at its dock");
+    }
+    // The robot needs no door.
+    assert!(!is_open(0.6, true));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(12))]
+    /// Steps of which no number is exactly the time of the end: `while world.time_s() < end_s { world.rest(end_s) }` ends.
+    #[test]
+    fn a_rest_gets_to_its_end(step_ms in 10_u32..100, hours in 1_u32..24) {
+        let text = include_str!("../../../../worlds/office_week.toml");
+        let step_s = f64::from(step_ms) / 1000.0;
+        let of_step = text.replace("rate_hz = 10.0", &format!("rate_hz = {:?}", 0.25 / step_s));
+        let of_step = format!("{of_step}\n[physics]\nstep_s = {step_s:?}\n");
+        let spec = worldfile::physics::parse_world_with("office.toml", &of_step, &BTreeMap::<PathBuf, Vec<u8>>::new());
+        let mut world = PhysicsWorld::new(&spec.unwrap(), 0);
+        let end_s = f64::from(hours) * HOUR_S / 2.0;
+        world.rest(end_s);
+        world.rest(end_s);
+        prop_assert!(world.time_s() >= end_s && world.time_s() < end_s + 2.0 * step_s, "{} s", world.time_s());
+    }
+}
