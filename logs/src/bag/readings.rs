@@ -152,7 +152,7 @@ impl RawReadings {
 
     /// The first pose of the odometry, in its own frame.
     pub(super) fn origin(&self) -> Isometry2<f64> {
-        self.odometry.origin()
+        self.odometry.first()
     }
 
     /// The corrections of another SLAM in words, with times after `begin_s`; `None` if the poses are those of the odometry.
@@ -165,9 +165,9 @@ impl RawReadings {
         self.odometry.impossible().or_else(|| self.speeds.impossible())
     }
 
-    /// As [`Odometry::holes_note`].
-    pub(super) fn holes_note(&self) -> Option<String> {
-        self.odometry.holes_note()
+    /// As [`Odometry::holes_note`] and [`Odometry::restarts_note`], with times after `begin_s`.
+    pub(super) fn odometry_notes(&self, begin_s: f64) -> impl Iterator<Item = String> {
+        self.odometry.holes_note().into_iter().chain(self.odometry.restarts_note(begin_s))
     }
 
     /// Whether the robot has not moved, except for a drift of its odometry.
