@@ -28,7 +28,7 @@ use crate::content;
 use crate::error::LogError;
 use crate::log::{Log, Source};
 use crate::raw_readings::{self, RawReadings as _};
-use crate::standing::{NO_MOTION, Standing};
+use crate::standing::Standing;
 use crate::summary::{LogSummary, since_epoch};
 use crate::times::{self, Times};
 use inventory::Inventory;
@@ -101,7 +101,7 @@ impl Bag {
         let stands = raw.stands() && standing.looks_so() && !is_corrected;
         let odom_origin = if is_corrected { Isometry2::identity() } else { raw.origin() };
         let impossible = raw.impossible();
-        notes.extend(raw.holes_note());
+        notes.extend(raw.odometry_notes(raw_begin_s));
         notes.extend(
             raw.corrections(raw_begin_s).map(|what| format!("the poses are those of another SLAM: {what}")),
         );
@@ -109,7 +109,7 @@ impl Bag {
             let what = "neither the stamps of the odometry nor the times of its recording advance: its motions are not used";
             notes.push(what.to_owned());
         } else if raw.stands() && !stands && !matches!(plan.motion, MotionSource::Standing) {
-            notes.push(NO_MOTION.to_owned());
+            notes.push(standing.note().to_owned());
         }
         let counts = raw.counts;
         if times.times_s.is_empty() {
@@ -121,7 +121,7 @@ impl Bag {
             };
             return Err(unusable(in_cut_file(why, &missing)));
         }
-        notes.extend(times.note);
+        notes.extend(times.note.clone());
         if let (Clock::Stamps(_), Some(duration_s)) = (clock, times.times_s.last()) {
             let recorded_s = inventory.end_ns.saturating_sub(log_ns) as f64 * 1e-9;
             notes.extend(times::other_pace(*duration_s, recorded_s));
@@ -131,18 +131,20 @@ impl Bag {
             missing.push(format!("what could be read ends {duration_s:.1} s after the first scan"));
         }
         notes.splice(0..0, missing);
-        let begins_s = [stamp_ns, log_ns].map(|ns| since_epoch(ns as f64 * 1e-9 + raw_begin_s));
-        let begin_s = match clock {
-            Clock::Stamps(_) => begins_s[0].or(begins_s[1]),
-            Clock::Recording(_) => begins_s[1],
+        let since = |ns: i64, begin_s: f64| since_epoch(ns as f64 * 1e-9 + begin_s);
+        let (begin_s, by_recording_s) = match clock {
+            Clock::Stamps(_) => (since(stamp_ns, times.begin_s), since(log_ns, raw_begin_s)),
+            Clock::Recording(_) => (since(log_ns, times.begin_s), None),
         };
+        notes.extend(begin_s.and(times.date_note()));
+        let begin_s = begin_s.or(by_recording_s).filter(|_| times.has_times);
         let mut scan_topics: Vec<String> = plan.lasers.iter().map(|laser| laser.topic.clone()).collect();
         scan_topics.dedup();
         let summary = LogSummary {
             scans: times.times_s.len(),
             duration_s: times.times_s.last().copied().unwrap_or_default(),
             has_times: times.has_times,
-            begin_s: begin_s.filter(|_| times.has_times),
+            begin_s,
             pose_source: plan.pose_source.clone(),
             odometry_poses: counts.poses,
             stands,

@@ -10,12 +10,18 @@
 //! - From a FLASER line come the ranges and the time alone: in *corrected* logs its two poses are both the result of an
 //!   earlier estimation. Poses come from ODOM lines, interpolated to the time of the scan. Only on request
 //!   ([`TopicChoice::is_corrected`]) they are those of the FLASER lines.
-//! - A FLASER line does not name the field of view: it is 180°, in steps of 1° (180 or 181 readings) or 0.5° (360 or
-//!   361 readings), from right to left.
+//! - A FLASER line does not name the field of view. It is that of the parameters `laser_front_laser_fov` and
+//!   `laser_front_laser_resolution`, if they agree with each other; otherwise, it follows from the number of readings: 180°, in steps
+//!   of 1° (180 or 181 readings) or 0.5° (360 or 361 readings), or 100° in steps of 0.25° (400 or 401). Readings go from right to left.
+//! - The pose of the laser on the robot is that of the parameters `robot_frontlaser_offset`, `robot_frontlaser_side_offset` (to the
+//!   left) and `robot_frontlaser_angular_offset` (rad), or for ROBOTLASER1 lines the one between their two poses, if it is the same in
+//!   all lines.
+//! - Invalid lines are left out with a note; if most scans or most poses are invalid, the log is refused.
 //! - Corrected logs write a second ODOM line after every scan, with the corrected pose of the scan, and with no time or a
 //!   meaningless one; the next ODOM line continues from there. Such a line is a new origin of the odometry, not a motion.
 
 mod corrected;
+mod geometry;
 mod inspection;
 mod line;
 mod readings;
@@ -29,7 +35,8 @@ use crate::error::LogError;
 use crate::lines::{Lines, Text};
 use crate::log::{Log, Source};
 use crate::raw_readings::RawReadings;
-use line::{Geometry, Line};
+use geometry::Geometry;
+use line::Line;
 use nalgebra::Isometry2;
 use readings::Readings;
 
@@ -62,7 +69,7 @@ impl CarmenLog {
     ///
     /// # Errors
     ///
-    /// When the file cannot be read, when a line is invalid, when no line is a scan, or when `choice` demands corrected poses and
+    /// When the file cannot be read, when most scans or most poses are invalid, when no line is a scan, or when `choice` demands corrected poses and
     /// the log has none. A last line that is cut off is left out, see [`LogSummary::notes`](crate::LogSummary::notes).
     pub(crate) fn open(file: &str, bytes: Bytes, choice: &TopicChoice) -> Result<Log, LogError> {
         let (rules, times_s, mut summary) = inspection::of(&mut Lines::open(&bytes, file)?)?;
@@ -94,7 +101,7 @@ impl Source for CarmenLog {
         let mut poses = Vec::new();
         while let Some(line) = line::next(&mut lines, &self.rules.geometry)? {
             if let Line::Scan(scan) = line {
-                poses.push(scan.reference);
+                poses.push(scan.reference());
             }
         }
         Ok(Some(poses))

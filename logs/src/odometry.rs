@@ -1,21 +1,14 @@
 //! Odometry: the sum of its motions, and its pose at the time of a scan.
 
+use crate::holes::{Holes, LONGEST_GAP_S};
 use crate::jumps::Jumps;
+use crate::pace::Pace;
 use crate::standing::{MIN_MOTION_M, MIN_MOTION_RAD};
 use interfaces::{LaserReading, Scan, Twist, VelocitySample, heading_rad, wrap_rad};
 use nalgebra::Isometry2;
 
-/// Between two poses that are farther apart than this, s, the odometry is not interpolated.
-const LONGEST_GAP_S: f64 = 2.0;
 /// Intervals that overlap by less than this do so by rounding, s.
 const MIN_OVERLAP_S: f64 = 1e-6;
-/// A gap this many times as long as the step before it is a hole: some logs have a pose every few seconds.
-const HOLE: f64 = 10.0;
-/// A robot that moves slower than this in nearly all of at least this number of steps is none, m/s and rad/s: 0.15 m/s and more
-/// are usual, a thousandth of it with times in milliseconds.
-const MIN_MPS: f64 = 0.002;
-const MIN_RADPS: f64 = 0.005;
-const MIN_STEPS: usize = 100;
 /// The number of poses that are kept: some messages arrive later than others.
 const KEPT: usize = 256;
 /// The same of poses as written: scans wait for corrections up to half a second, and there are 1000 poses per second and more.
@@ -25,6 +18,11 @@ const KEPT_AS_WRITTEN: usize = 1024;
 /// at most 2 m/s.
 const MAX_MPS: f64 = 3.0;
 const MAX_RADPS: f64 = 4.0;
+/// An odometry that demands such a speed over a longer step than this, m and rad, starts anew: its driver was started again. A pose
+/// that is wrong once makes two such steps. Where more of them follow each other, lengths or times are in another unit.
+const MIN_RESTART_M: f64 = 0.5;
+const MIN_RESTART_RAD: f64 = 0.5;
+const MAX_RESTARTS: usize = 2;
 
 /// The recent poses of a robot by odometry, as the sum of its motions since the first one: the first pose is the origin.
 #[derive(Debug, Default)]
@@ -32,17 +30,19 @@ pub struct Odometry {
     /// The first and the last pose as written.
     first: Option<Isometry2<f64>>,
     written: Option<Isometry2<f64>>,
+    /// The origin of the motions since the odometry was missing or started anew.
+    origin: Option<Isometry2<f64>>,
     /// The times (s) and the sums of the motions, the newest last.
     samples: Vec<(f64, Isometry2<f64>)>,
     /// The largest distance from the first pose, m, and the largest turn since then, rad.
     farthest_m: f64,
     farthest_rad: f64,
-    /// The number of steps with a motion, and of those at the speed of a robot.
-    moving: usize,
-    fast: usize,
-    /// The time of the last scan without a pose near it, s, and the number of gaps with such scans.
-    unknown_s: Option<f64>,
-    holes: usize,
+    pace: Pace,
+    holes: Holes,
+    /// The number of starts anew, and the first one: its time, s, and its step; the number of such steps up to the last pose.
+    restarts: usize,
+    first_restart: Option<(f64, Isometry2<f64>)>,
+    leaps: usize,
     /// Whether the poses are kept as written, with their jumps.
     is_as_written: bool,
     jumps: Jumps,
@@ -57,10 +57,24 @@ impl Odometry {
 
     /// Adds a pose as written.
     pub fn add(&mut self, time_s: f64, pose: Isometry2<f64>) {
-        let is_hole = self.is_hole(time_s);
-        self.holes += usize::from(is_hole);
+        let is_hole = !self.is_as_written && self.holes.add_pose(time_s);
+        let elapsed_s = self.samples.last().map_or(0.0, |(last_s, _)| time_s - last_s);
         let before = self.written.filter(|_| !is_hole);
-        let motion = before.map_or(Isometry2::identity(), |before| before.inv_mul(&pose));
+        let mut motion = before.map_or(Isometry2::identity(), |before| before.inv_mul(&pose));
+        let (step_m, step_rad) = (motion.translation.vector.norm(), heading_rad(&motion).abs());
+        let is_too_fast = step_m > MAX_MPS * elapsed_s || step_rad > MAX_RADPS * elapsed_s;
+        // Over two steps: after a gap, the time of one pose can be late.
+        let since_s = self.samples.iter().rev().nth(1).map_or(elapsed_s, |(before_s, _)| time_s - before_s);
+        let is_leap = elapsed_s > 0.0
+            && (step_m > MIN_RESTART_M.max(MAX_MPS * since_s)
+                || step_rad > MIN_RESTART_RAD.max(MAX_RADPS * since_s));
+        self.leaps = if is_leap { self.leaps + 1 } else { 0 };
+        let is_restart = is_leap && self.leaps <= MAX_RESTARTS && !self.is_as_written;
+        if is_restart {
+            self.restarts += 1;
+            self.first_restart.get_or_insert((time_s, motion));
+            motion = Isometry2::identity();
+        }
         self.first.get_or_insert(pose);
         self.written = Some(pose);
         let mut at = self.last() * motion;
@@ -68,16 +82,13 @@ impl Odometry {
         if self.is_as_written {
             at = pose;
         }
-        let (step_m, step_rad) = (motion.translation.vector.norm(), heading_rad(&motion).abs());
-        let elapsed_s = self.samples.last().map_or(0.0, |(last_s, _)| time_s - last_s);
-        if elapsed_s > 0.0 && (step_m > MIN_MOTION_M || step_rad > MIN_MOTION_RAD) {
-            self.moving += 1;
-            self.fast += usize::from(step_m > MIN_MPS * elapsed_s || step_rad > MIN_RADPS * elapsed_s);
+        if is_hole || is_restart {
+            self.origin = Some(pose * at.inverse());
         }
-        let since_first = if self.is_as_written { self.origin().inv_mul(&at) } else { at };
+        self.pace.add(elapsed_s, &motion);
+        let since_first = if self.is_as_written { self.first().inv_mul(&at) } else { at };
         self.farthest_m = self.farthest_m.max(since_first.translation.vector.norm());
         self.farthest_rad = self.farthest_rad.max(heading_rad(&since_first).abs());
-        let is_too_fast = step_m > MAX_MPS * elapsed_s || step_rad > MAX_RADPS * elapsed_s;
         if self.is_as_written && elapsed_s > 0.0 && is_too_fast {
             let (last, Twist { linear_mps, angular_radps }) = self.newest();
             let on_s = elapsed_s.min(LONGEST_GAP_S);
@@ -105,21 +116,28 @@ impl Odometry {
         self.samples.iter().rev().any(|(sample_s, _)| (0.0..=LONGEST_GAP_S).contains(&(time_s - sample_s)))
     }
 
-    /// Whether the poses until now are missing, while there were scans: with the motion of the whole gap in the next step, the
-    /// odometry would contradict these scans twice. They have found the way by themselves.
-    fn is_hole(&self, time_s: f64) -> bool {
-        let [.., (before_s, _), (last_s, _)] = self.samples[..] else { return false };
-        if self.is_as_written {
-            return false;
-        }
-        let gap_s = time_s - last_s;
-        let had_scans = self.unknown_s.is_some_and(|unknown_s| unknown_s > last_s);
-        had_scans && gap_s > LONGEST_GAP_S && gap_s > HOLE * (last_s - before_s)
+    /// A note if the odometry starts anew, with times after `begin_s`.
+    pub(crate) fn restarts_note(&self, begin_s: f64) -> Option<String> {
+        let (time_s, step) = self.first_restart?;
+        let times = if self.restarts == 1 { "once" } else { &format!("{} times", self.restarts) };
+        Some(format!(
+            "the odometry jumps faster than any robot moves, {times} (the first time by {:.2} m and {:.1}° at {:.1} s): such a jump is \
+             a new start of the odometry, and no motion",
+            step.translation.vector.norm(),
+            heading_rad(&step).to_degrees().abs(),
+            time_s - begin_s
+        ))
     }
 
-    /// The first pose, as written: the origin of all others.
-    pub fn origin(&self) -> Isometry2<f64> {
+    /// The first pose, as written: the origin of all others, up to the point where the odometry sets a new one.
+    pub(crate) fn first(&self) -> Isometry2<f64> {
         self.first.unwrap_or_default()
+    }
+
+    /// The origin of the newest poses: `origin * pose` is the pose as it is written at that time. It is the first pose, until the
+    /// odometry starts anew.
+    pub fn origin(&self) -> Isometry2<f64> {
+        self.origin.unwrap_or_else(|| self.first())
     }
 
     /// Whether the robot has not moved so far, except for a drift.
@@ -127,21 +145,15 @@ impl Odometry {
         self.farthest_m < MIN_MOTION_M && self.farthest_rad < MIN_MOTION_RAD
     }
 
-    /// Why the times cannot be in seconds, if it is sure: the robot moves far slower than any robot.
+    /// As [`Pace::impossible`].
     pub(crate) fn impossible(&self) -> Option<String> {
-        let Self { moving, fast, .. } = *self;
-        (moving >= MIN_STEPS && fast * 100 < moving).then(|| {
-            format!(
-                "the times look like milliseconds: in {} of the {moving} steps in which the odometry moves, it is slower than \
-                 {MIN_MPS} m/s and {MIN_RADPS} rad/s; times are in seconds",
-                moving - fast
-            )
-        })
+        self.pace.impossible()
     }
 
     /// Motions are measured from this pose on.
     pub fn set_origin(&mut self, pose: Isometry2<f64>) {
         self.written = Some(pose);
+        self.origin = Some(pose * self.last().inverse());
         // The older poses were written in another frame, but their motions are true.
     }
 
@@ -173,20 +185,12 @@ impl Odometry {
 
     /// Notes a scan of a log: without a pose near it, the last pose holds on until the odometry returns.
     pub(crate) fn note_scan(&mut self, time_s: f64) {
-        if self.samples.last().is_some_and(|(last_s, _)| time_s > last_s + LONGEST_GAP_S) {
-            self.unknown_s = Some(time_s);
-        }
+        self.holes.add_scan(time_s);
     }
 
-    /// A note if the odometry is missing at times.
+    /// As [`Holes::note`].
     pub(crate) fn holes_note(&self) -> Option<String> {
-        let holes = self.holes;
-        (holes > 0).then(|| {
-            format!(
-                "the odometry is missing for more than {LONGEST_GAP_S} s while there are scans, in {holes} places: the way \
-                 there is that of the scans alone"
-            )
-        })
+        self.holes.note()
     }
 
     /// The reading of a scan that ends at a time.
@@ -259,5 +263,54 @@ mod tests {
         assert!((after_hole(false) - 12.9).abs() < 1e-9);
         // The pose that the scans of the hole were given holds on: 1.9 m, and then 0.9 m more.
         assert!((after_hole(true) - 2.8).abs() < 1e-9);
+    }
+
+    /// Drives 0.1 m per pose, in this unit of length, at 10 Hz; then `change` gives the pose as written, by its number.
+    fn driven(unit_m: f64, change: impl Fn(u32, f64) -> [f64; 3]) -> Odometry {
+        let mut odometry = Odometry::default();
+        for step in 0..100 {
+            let [x, y, theta] = change(step, 0.1 * f64::from(step) / unit_m);
+            odometry.add(0.1 * f64::from(step), interfaces::pose(x, y, theta));
+        }
+        odometry
+    }
+
+    #[test]
+    fn an_odometry_that_starts_anew_does_not_move() {
+        let restarted = driven(1.0, |step, x| if step < 60 { [x, 0.0, 0.0] } else { [0.0, x - 6.0, 1.57] });
+        let turned = driven(1.0, |step, x| [x, 0.0, if step < 60 { 0.0 } else { 3.0 }]);
+        let at = |odometry: &Odometry| odometry.newest().0.translation.x;
+        // The motion of one step is not known.
+        assert!((at(&restarted) - 9.8).abs() < 0.01, "{}", at(&restarted));
+        let note = restarted.restarts_note(1.0).unwrap();
+        let expected = "the odometry jumps faster than any robot moves, once (the first time by 5.90 m and 90.0° at 5.0 s): such a \
+                        jump is a new start of the odometry, and no motion";
+        assert_eq!(note, expected);
+        assert!(turned.restarts_note(0.0).unwrap().contains("171.9° at 6.0 s"));
+        // The pose as written is known all the same.
+        let in_frame = restarted.origin() * restarted.newest().0;
+        assert!(
+            (in_frame.translation.y - 3.9).abs() < 1e-9 && in_frame.translation.x.abs() < 1e-9,
+            "{in_frame}"
+        );
+        assert_eq!(restarted.first(), Isometry2::identity());
+    }
+
+    #[test]
+    fn one_wrong_pose_is_no_motion() {
+        let odometry = driven(1.0, |step, x| [if step == 60 { 50.0 } else { x }, 0.0, 0.0]);
+        assert!((odometry.newest().0.translation.x - 9.7).abs() < 1e-9);
+        assert!(odometry.restarts_note(0.0).unwrap().contains(" 2 times (the first time by 44.10 m"));
+    }
+
+    #[test]
+    fn another_unit_is_no_start_anew() {
+        let odometry = driven(1e-3, |_, x| [x, 0.0, 0.0]);
+        assert!(odometry.newest().0.translation.x > 9000.0);
+        assert_eq!(driven(1.0, |_, x| [x, 0.0, 0.0]).restarts_note(0.0), None);
+        // Without times, nothing is too fast.
+        let mut untimed = Odometry::default();
+        (0..5).for_each(|step| untimed.add(0.0, interfaces::pose(f64::from(step), 0.0, 0.0)));
+        assert_eq!(untimed.newest().0.translation.x, 4.0);
     }
 }

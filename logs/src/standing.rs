@@ -10,13 +10,17 @@ pub(crate) const MIN_MOTION_RAD: f64 = 0.02;
 /// A note on an odometry that does not move, while the scans change.
 pub(crate) const NO_MOTION: &str =
     "the odometry stands still, and the scans do not: the way is that of the scans alone";
+/// The same where the scans do not show whether the laser moves.
+pub(crate) const UNKNOWN_MOTION: &str = "the odometry stands still, and too few ranges of the scans can be compared to tell whether \
+                                         the robot does: the way is that of the scans alone";
 /// Two ranges of one beam agree if they differ by less than this, m, and this share of the range: more than a laser
 /// errs by, and less than people and robots move.
 const SAME_M: f64 = 0.1;
 const SAME_SHARE: f64 = 0.02;
-/// One beam in three is compared, and at least this number of them must have a range in both scans.
-const BEAM_STEP: usize = 3;
+/// Two scans are compared if at least this number of beams has a range in both of them; of a laser with few beams, half of them.
 const MIN_BEAMS: usize = 20;
+/// At least this share of the scans must be compared: a laser that sees too little does not show that it stands.
+const MIN_COMPARED: f64 = 0.5;
 /// In a scan of a laser that stands, at least this share of the ranges agree with the first scan: people hide the rest.
 const MIN_SHARE: f64 = 0.5;
 /// This share of the scans may be worse: somebody stands before the laser.
@@ -24,10 +28,12 @@ const MAX_WORSE: f64 = 0.1;
 /// Lasers beyond this number are not compared.
 const MAX_LASERS: usize = 8;
 
-/// Compares the scans of a log with the first scan of the same laser.
+/// Compares the scans of a log with the first scan of the same laser that sees enough.
 #[derive(Debug, Default)]
 pub(crate) struct Standing {
     first: Vec<(Isometry2<f64>, Vec<f32>)>,
+    /// The number of scans without the first ones, of those that were compared, and of those that differ.
+    scans: usize,
     compared: usize,
     worse: usize,
 }
@@ -36,23 +42,26 @@ impl Standing {
     /// Adds the next scan of a laser with this pose on the robot.
     pub(crate) fn add(&mut self, mount: &Isometry2<f64>, scan: &Scan) {
         let ranges_m = &scan.ranges_m;
+        let min_beams = MIN_BEAMS.min(ranges_m.len() / 2).max(1);
         let is_same =
             |(known, first): &&(Isometry2<f64>, Vec<f32>)| known == mount && first.len() == ranges_m.len();
         let Some((_, first)) = self.first.iter().find(is_same) else {
-            if self.first.len() < MAX_LASERS {
+            let valid = ranges_m.iter().filter(|range_m| is_valid(**range_m)).count();
+            if self.first.len() < MAX_LASERS && valid >= min_beams {
                 self.first.push((*mount, ranges_m.clone()));
+            } else {
+                self.scans += 1;
             }
             return;
         };
-        let pairs = first.iter().zip(ranges_m).step_by(BEAM_STEP);
-        let pairs = pairs.map(|(a, b)| (f64::from(*a), f64::from(*b)));
-        let valid = pairs.filter(|(a, b)| a.is_finite() && b.is_finite() && *a > 0.0 && *b > 0.0);
+        self.scans += 1;
         let (mut all, mut same) = (0_usize, 0_usize);
-        for (a, b) in valid {
+        for (a, b) in first.iter().zip(ranges_m).filter(|(a, b)| is_valid(**a) && is_valid(**b)) {
+            let (a, b) = (f64::from(*a), f64::from(*b));
             all += 1;
             same += usize::from((a - b).abs() < SAME_M + SAME_SHARE * a);
         }
-        if all >= MIN_BEAMS {
+        if all >= min_beams {
             self.compared += 1;
             self.worse += usize::from((same as f64) < MIN_SHARE * all as f64);
         }
@@ -60,6 +69,69 @@ impl Standing {
 
     /// Whether the scans look as if they were all taken from one pose.
     pub(crate) fn looks_so(&self) -> bool {
-        self.worse as f64 <= MAX_WORSE * self.compared as f64
+        self.is_known() && self.worse as f64 <= MAX_WORSE * self.compared as f64
+    }
+
+    fn is_known(&self) -> bool {
+        self.compared as f64 >= MIN_COMPARED * self.scans as f64
+    }
+
+    /// The note on an odometry that does not move, of a robot that does not look as if it stood.
+    pub(crate) fn note(&self) -> &'static str {
+        if self.is_known() { NO_MOTION } else { UNKNOWN_MOTION }
+    }
+}
+
+fn is_valid(range_m: f32) -> bool {
+    range_m.is_finite() && range_m > 0.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whether a laser seems to stand whose scans have these ranges.
+    fn stands(scans: impl IntoIterator<Item = Vec<f32>>) -> bool {
+        let mut standing = Standing::default();
+        for ranges_m in scans {
+            let scan = Scan {
+                angle_min_rad: 0.0,
+                angle_increment_rad: 0.01,
+                range_min_m: 0.0,
+                range_max_m: 80.0,
+                sweep_s: 0.0,
+                ranges_m,
+            };
+            standing.add(&Isometry2::identity(), &scan);
+        }
+        standing.looks_so()
+    }
+
+    /// 40 scans of this number of beams, of a robot that moves by this much per scan, m.
+    fn room(beams: usize, step_m: f32) -> Vec<Vec<f32>> {
+        (0..40).map(|scan| vec![2.0 + step_m * scan as f32; beams]).collect()
+    }
+
+    #[test]
+    fn a_laser_stands_if_most_scans_are_as_the_first_one_that_sees() {
+        for beams in [1, 8, 30, 57, 180, 720] {
+            assert!(stands(room(beams, 0.0)) && !stands(room(beams, 0.1)), "{beams}");
+            // A laser sees nothing while it starts.
+            for blind in [0.0, f32::NAN, f32::INFINITY] {
+                let starts = |step_m| [vec![blind; beams]].into_iter().chain(room(beams, step_m));
+                assert!(stands(starts(0.0)) && !stands(starts(0.1)), "{beams} {blind}");
+            }
+        }
+        assert!(stands([]) && stands(room(180, 0.1).into_iter().take(1)));
+    }
+
+    #[test]
+    fn scans_that_cannot_be_compared_show_nothing() {
+        let few = |scan: usize| {
+            (0..180).map(|beam| if beam % 20 == scan % 20 { 2.0 } else { f32::NAN }).collect::<Vec<f32>>()
+        };
+        assert!(!stands((0..40).map(few)));
+        // The number of beams is another one each time, as with a mount that changes.
+        assert!(!stands((0..40).map(|scan| vec![2.0; 180 + scan])));
     }
 }

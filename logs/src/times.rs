@@ -19,8 +19,22 @@ pub(crate) struct Times {
     pub(crate) times_s: Vec<f64>,
     /// Whether the times in the log can be compared with each other.
     pub(crate) has_times: bool,
+    /// The time of the first reading by the clock of the longest part between two jumps of the clock, s.
+    pub(crate) begin_s: f64,
+    /// The length of this part, s; `None` without a jump.
+    dated_s: Option<f64>,
     /// What was repaired.
     pub(crate) note: Option<String>,
+}
+
+impl Times {
+    /// A note on the date of a log whose clock was set.
+    pub(crate) fn date_note(&self) -> Option<String> {
+        let (dated_s, all_s) = (self.dated_s?, self.times_s.last()?);
+        Some(format!(
+            "the date and the hours are those of the longest part between jumps of the clock ({dated_s:.1} s of {all_s:.1} s)"
+        ))
+    }
 }
 
 /// Repairs the times of the scans of a log.
@@ -35,12 +49,13 @@ pub(crate) fn repaired(raw_s: &[f64]) -> Times {
             steps.len(),
         );
         let times_s = (0..raw_s.len()).map(|scan| scan as f64 * STEP_WITHOUT_TIMES_S).collect();
-        return Times { times_s, has_times: false, note: Some(note) };
+        return Times { times_s, has_times: false, begin_s: 0.0, dated_s: None, note: Some(note) };
     }
     steps.sort_by(f64::total_cmp);
     let period_s = steps.get(steps.len() / 2).copied().unwrap_or(STEP_WITHOUT_TIMES_S);
     let (mut jumps, mut back) = (0, 0);
     let (mut times_s, mut offset_s) = (Vec::with_capacity(raw_s.len()), 0.0);
+    let (mut part_s, mut longest) = (0.0, (0.0, 0.0));
     for raw in raw_s {
         let Some(last_s) = times_s.last().copied() else {
             offset_s = -raw;
@@ -50,12 +65,16 @@ pub(crate) fn repaired(raw_s: &[f64]) -> Times {
         let step_s = raw + offset_s - last_s;
         if !(-DISORDER_S..=LONGEST_PAUSE_S).contains(&step_s) {
             jumps += 1;
+            longest = longer(longest, (last_s - part_s, offset_s));
             offset_s += period_s - step_s;
+            part_s = last_s + period_s;
         } else if step_s < MIN_STEP_S {
             back += 1;
         }
         times_s.push((raw + offset_s).max(last_s + MIN_STEP_S));
     }
+    let end_s = times_s.last().copied().unwrap_or_default();
+    let (dated_s, offset_s) = longer(longest, (end_s - part_s, offset_s));
     let of_back = match back {
         0 => None,
         1 => Some(format!("1 scan is not later than the scan before and counts as {MIN_STEP_S} s later")),
@@ -70,7 +89,13 @@ pub(crate) fn repaired(raw_s: &[f64]) -> Times {
     };
     let notes: Vec<String> = of_back.into_iter().chain(of_jumps).collect();
     let note = (!notes.is_empty()).then(|| notes.join("; "));
-    Times { times_s, has_times: true, note }
+    let dated_s = (jumps > 0).then_some(dated_s);
+    Times { times_s, has_times: true, begin_s: -offset_s, dated_s, note }
+}
+
+/// The longer one of two parts of a log, each with its length and its offset; of equal ones the later: clocks are set to be right.
+fn longer(earlier: (f64, f64), later: (f64, f64)) -> (f64, f64) {
+    if later.0 >= earlier.0 { later } else { earlier }
 }
 
 /// A note if the scans took another time, s, than their recording: a log may be recorded while it is played, so that this is
@@ -91,14 +116,15 @@ mod tests {
 
     #[test]
     fn good_times_begin_at_zero_and_stay() {
-        let Times { times_s, has_times, note } = repaired(&[1e9, 1e9 + 0.5, 1e9 + 2.0]);
-        assert_eq!((times_s, has_times, note), (vec![0.0, 0.5, 2.0], true, None));
+        let times = repaired(&[1e9, 1e9 + 0.5, 1e9 + 2.0]);
+        assert_eq!((times.begin_s, times.date_note()), (1e9, None));
+        assert_eq!((times.times_s, times.has_times, times.note), (vec![0.0, 0.5, 2.0], true, None));
         assert_eq!(repaired(&[7.0]).times_s, [0.0]);
     }
 
     #[test]
     fn times_that_span_nothing_are_counted() {
-        let Times { times_s, has_times, note } = repaired(&[1.018_93e9; 4]);
+        let Times { times_s, has_times, note, .. } = repaired(&[1.018_93e9; 4]);
         assert_eq!((times_s, has_times), (vec![0.0, 1.0, 2.0, 3.0], false));
         assert!(note.unwrap().starts_with("the times of the scans are unusable (0 of 3 steps go forward)"));
         assert!(!repaired(&[0.0, f64::NAN, 1.0]).has_times);
@@ -114,5 +140,24 @@ mod tests {
         }
         let note = "2 scans are not later than the scan before and count as 0.001 s later; 2 jumps of the clock count as 0.500 s";
         assert_eq!(repaired.note.as_deref(), Some(note));
+    }
+
+    #[test]
+    fn a_log_is_dated_by_its_longest_part_between_jumps() {
+        // The clock is set after 3 s, by years, by an hour back, and back and forth for one scan.
+        let log = |before: f64, at: std::ops::Range<usize>| {
+            let raw_s: Vec<f64> = (0..100)
+                .map(|step| 1.7e9 + 0.1 * step as f64 + if at.contains(&step) { before } else { 0.0 })
+                .collect();
+            repaired(&raw_s)
+        };
+        for (before, at) in [(-5e8, 0..30), (3600.0, 0..30), (1e9, 0..1), (2e5, 60..61), (-4000.0, 80..100)] {
+            let times = log(before, at.clone());
+            assert!((times.begin_s - 1.7e9).abs() < 1e-3, "{before} {at:?}: {}", times.begin_s);
+            let note = times.date_note().unwrap();
+            assert!(note.starts_with("the date and the hours are those of the longest part"), "{note}");
+        }
+        let note = "the date and the hours are those of the longest part between jumps of the clock (6.9 s of 9.9 s)";
+        assert_eq!(log(-5e8, 0..30).date_note().as_deref(), Some(note));
     }
 }

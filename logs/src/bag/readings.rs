@@ -168,7 +168,7 @@ impl RawReadings {
 
     /// The first pose of the odometry, in its own frame.
     pub(super) fn origin(&self) -> Isometry2<f64> {
-        self.odometry.origin()
+        self.odometry.first()
     }
 
     /// The corrections of another SLAM in words, with times after `begin_s`; `None` if the poses are those of the odometry.
@@ -181,9 +181,9 @@ impl RawReadings {
         self.odometry.impossible().or_else(|| self.speeds.impossible())
     }
 
-    /// As [`Odometry::holes_note`].
-    pub(super) fn holes_note(&self) -> Option<String> {
-        self.odometry.holes_note()
+    /// As [`Odometry::holes_note`] and [`Odometry::restarts_note`], with times after `begin_s`.
+    pub(super) fn odometry_notes(&self, begin_s: f64) -> impl Iterator<Item = String> {
+        self.odometry.holes_note().into_iter().chain(self.odometry.restarts_note(begin_s))
     }
 
     /// Whether the poses of the odometry have times.

@@ -3,7 +3,7 @@
 use super::CarmenLog;
 use crate::error::LogError;
 use crate::log::Source;
-use crate::standing::{MIN_MOTION_M, MIN_MOTION_RAD, NO_MOTION};
+use crate::standing::{MIN_MOTION_M, MIN_MOTION_RAD, NO_MOTION, UNKNOWN_MOTION};
 use crate::summary::{LogSummary, PoseSource};
 use interfaces::heading_rad;
 use nalgebra::Isometry2;
@@ -30,7 +30,7 @@ pub(super) fn check(log: &CarmenLog, summary: &LogSummary) -> Result<(), LogErro
     let (scans, without) = (all.len(), all.len() - given.len());
     if without > 0 {
         return Err(why(format!(
-            "{without} of {scans} scans are ROBOTLASER1 lines; those of FLASER lines would be used"
+            "{without} of {scans} scans are ROBOTLASER1 lines, or have an invalid pose; those of FLASER lines would be used"
         )));
     }
     if !summary.stands && (1..scans).all(|at| is_near(&given[0], &given[at], [MIN_MOTION_M, MIN_MOTION_RAD]))
@@ -72,7 +72,7 @@ fn is_near(a: &Isometry2<f64>, b: &Isometry2<f64>, [far_m, far_rad]: [f64; 2]) -
 pub(super) fn note(summary: &mut LogSummary) {
     summary.pose_source = PoseSource::ScanLines;
     summary.odom_origin = Isometry2::identity();
-    summary.notes.retain(|note| note != NO_MOTION);
+    summary.notes.retain(|note| ![NO_MOTION, UNKNOWN_MOTION].contains(&note.as_str()));
     summary
         .notes
         .push("the poses are those of the FLASER lines, which another SLAM has corrected".to_owned());

@@ -1,14 +1,15 @@
 //! The first reading of a log: what it contains, and what makes no sense.
 
 use super::Rules;
-use super::line::{self, Geometry, Line};
+use super::geometry::{Geometry, MAX_RANGE_M, Mounts, Param};
+use super::line::{self, Line, Poses};
 use crate::bounds;
 use crate::doubts::{Doubts, OdometryTimes};
 use crate::error::LogError;
 use crate::lines::Lines;
 use crate::odometry::Odometry;
 use crate::speeds::Speeds;
-use crate::standing::{NO_MOTION, Standing};
+use crate::standing::Standing;
 use crate::summary::{LogSummary, PoseSource, since_epoch};
 use crate::times::{self, Times};
 use nalgebra::Isometry2;
@@ -25,6 +26,10 @@ pub(super) fn of(lines: &mut Lines) -> Result<(Rules, Vec<f64>, LogSummary), Log
     let mut inspection = Inspection::default();
     while let Some(line) = line::next(lines, &inspection.geometry)? {
         inspection.add(line, lines)?;
+    }
+    let of_most = inspection.of_most_invalid();
+    if let Some((line, what)) = of_most {
+        return Err(LogError::Line { file: lines.file.clone(), line, what });
     }
     if inspection.times_s.is_empty() {
         let why = match lines.cut() {
@@ -48,6 +53,23 @@ pub(super) fn of(lines: &mut Lines) -> Result<(Rules, Vec<f64>, LogSummary), Log
     Ok((rules, times_s, summary))
 }
 
+/// Lines that are left out: their number, and the first one.
+#[derive(Default)]
+struct Invalid {
+    count: usize,
+    first: Option<(u64, String)>,
+}
+
+impl Invalid {
+    fn note(&self, one: &str, several: &str) -> Option<String> {
+        let (line, what) = self.first.as_ref()?;
+        Some(match self.count {
+            1 => format!("1 {one} is invalid and left out, line {line}: {what}"),
+            count => format!("{count} {several} are invalid and left out, the first in line {line}: {what}"),
+        })
+    }
+}
+
 /// The lines of a log so far.
 #[derive(Default)]
 struct Inspection {
@@ -66,6 +88,13 @@ struct Inspection {
     /// The maximum range that a parameter states, m, and different ranges beyond it, as bits; at most [`MIN_BEYOND`].
     stated_max_m: Option<f64>,
     beyond: BTreeSet<u32>,
+    /// Different ranges from 80 m up to a stated maximum, as bits; at most [`MIN_BEYOND`].
+    far: BTreeSet<u32>,
+    /// The numbers of readings of FLASER lines.
+    counts: BTreeSet<usize>,
+    mounts: Mounts,
+    invalid_scans: Invalid,
+    invalid_poses: Invalid,
     odom_origin: Option<Isometry2<f64>>,
     /// The poses without the lines that have no time, and these alone: whether they are origins is known at the end.
     timed: Odometry,
@@ -88,18 +117,32 @@ impl Inspection {
                 self.add_pose(if is_origin { 0.0 } else { time_s }, pose, speed_mps);
             }
             Line::Scan(mut scan) => {
-                self.check_range(&mut scan.scan.ranges_m);
-                self.scan = scan.reference.map(|pose| (scan.time_s, pose));
+                match scan.poses {
+                    Poses::Laser(_) => {
+                        self.check_range(&mut scan.scan.ranges_m);
+                        self.counts.insert(scan.scan.ranges_m.len());
+                    }
+                    Poses::Mount(mount) => mount.iter().for_each(|mount| self.mounts.add(mount)),
+                }
+                self.note_far(&scan.scan.ranges_m);
+                self.scan = scan.reference().map(|pose| (scan.time_s, pose));
                 bounds::one_more(self.times_s.len()).map_err(|what| lines.error(what))?;
                 self.times_s.push(scan.time_s);
+                self.timed.note_scan(scan.time_s);
                 self.recorded_s.extend(scan.recorded_s);
                 self.doubts.add(scan.typical, &scan.scan.ranges_m);
                 self.standing.add(&Isometry2::identity(), &scan.scan);
             }
-            Line::LaserOffset(offset_m) => self.geometry.offset_m = offset_m,
-            Line::MaxRange(stated_m) => {
-                self.stated_max_m = Some(stated_m);
-                self.geometry.range_max_m = stated_m.max(Geometry::default().range_max_m);
+            Line::Param(param) => {
+                if let Param::MaxRange(stated_m) = param {
+                    self.stated_max_m = Some(stated_m);
+                }
+                self.geometry.set(param);
+            }
+            Line::Invalid { is_scan, what } => {
+                let invalid = if is_scan { &mut self.invalid_scans } else { &mut self.invalid_poses };
+                invalid.count += 1;
+                invalid.first.get_or_insert((lines.number, what));
             }
             Line::Other { is_cut_off: true } => {
                 self.notes.push(format!("line {}, the last one, is cut off and left out", lines.number));
@@ -112,12 +155,30 @@ impl Inspection {
     /// Removes ranges beyond the stated maximum, and counts how many different ones there are.
     fn check_range(&mut self, ranges_m: &mut [f32]) {
         let Some(max_m) = self.stated_max_m else { return };
-        for range_m in ranges_m.iter_mut().filter(|range_m| f64::from(**range_m) >= max_m) {
+        for range_m in ranges_m.iter_mut().filter(|range_m| **range_m >= max_m as f32) {
             if self.beyond.len() < MIN_BEYOND {
                 self.beyond.insert(range_m.to_bits());
             }
             *range_m = f32::NAN;
         }
+    }
+
+    /// Counts how many different ranges there are from 80 m on.
+    fn note_far(&mut self, ranges_m: &[f32]) {
+        for range_m in ranges_m.iter().filter(|range_m| **range_m >= MAX_RANGE_M as f32) {
+            if self.far.len() < MIN_BEYOND {
+                self.far.insert(range_m.to_bits());
+            }
+        }
+    }
+
+    /// The first invalid line, if most scans or most poses are invalid.
+    fn of_most_invalid(&self) -> Option<(u64, String)> {
+        let Self { invalid_scans, invalid_poses, .. } = self;
+        let of_scans = invalid_scans.first.as_ref().filter(|_| invalid_scans.count > self.times_s.len());
+        let poses = self.with_time + self.without_time;
+        let of_poses = invalid_poses.first.as_ref().filter(|_| invalid_poses.count > poses);
+        of_scans.into_iter().chain(of_poses).min().cloned()
     }
 
     fn add_pose(&mut self, time_s: f64, pose: Isometry2<f64>, speed_mps: f64) {
@@ -138,6 +199,23 @@ impl Inspection {
 
     fn summarized(self) -> (Rules, Vec<f64>, LogSummary) {
         let Self { mut geometry, mut notes, .. } = self;
+        notes.extend(self.invalid_scans.note("scan", "scans"));
+        notes.extend(self.invalid_poses.note("ODOM line", "ODOM lines"));
+        geometry.has_codes = !self.far.is_empty() && self.far.len() < MIN_BEYOND;
+        if geometry.has_codes {
+            notes.push(format!(
+                "the log states a maximum range above {MAX_RANGE_M} m, but from there on, there are only {} different ranges: they \
+                 are numbers for failures, and no measurements",
+                self.far.len()
+            ));
+        }
+        geometry.robotlaser_mount = self.mounts.fixed();
+        if let Some(count) = self.counts.iter().find(|count| !geometry.field(**count).2) {
+            notes.push(format!(
+                "FLASER lines with {count} readings do not say their field of view: 180° is assumed; a line `PARAM \
+                 laser_front_laser_fov DEGREES` before them states it"
+            ));
+        }
         match self.stated_max_m {
             Some(max_m) if self.beyond.len() == MIN_BEYOND => notes.push(format!(
                 "a parameter states a maximum range of {max_m} m, but beams measure more: it is ignored"
@@ -152,22 +230,28 @@ impl Inspection {
         if odometry_poses == 0 {
             notes.push("no ODOM line: the odometry stands still".to_owned());
         }
-        let begin_s = self.times_s.first().copied().and_then(since_epoch);
         let stands = odometry.stands() && self.standing.looks_so();
         if odometry.stands() && !stands && odometry_poses > 0 {
-            notes.push(NO_MOTION.to_owned());
+            notes.push(self.standing.note().to_owned());
         }
         let impossible = self.odometry_times.impossible(&self.times_s).or_else(|| odometry.impossible());
         let impossible = impossible.or_else(|| self.speeds.impossible());
         let impossible = impossible.or_else(|| self.doubts.impossible(0, stands));
-        let Times { times_s, has_times, note } = times::repaired(&self.times_s);
-        notes.extend(note);
+        let times = times::repaired(&self.times_s);
+        let begin_s = since_epoch(times.begin_s).filter(|_| times.has_times);
+        if times.has_times && has_origins {
+            let begin_s = self.times_s.first().copied().unwrap_or_default();
+            notes.extend(odometry.holes_note().into_iter().chain(odometry.restarts_note(begin_s)));
+        }
+        notes.extend(times.note.clone());
+        notes.extend(begin_s.and(times.date_note()));
+        let Times { times_s, has_times, .. } = times;
         notes.extend(recorded_pace(&self.recorded_s, has_times, &times_s));
         let summary = LogSummary {
             scans: times_s.len(),
             duration_s: times_s.last().copied().unwrap_or_default(),
             has_times,
-            begin_s: begin_s.filter(|_| has_times),
+            begin_s,
             pose_source: if odometry_poses > 0 { PoseSource::OdometryLines } else { PoseSource::Standing },
             odometry_poses,
             stands,

@@ -1,32 +1,18 @@
 //! One line of a log.
 
+use super::geometry::{Geometry, MAX_RANGE_M, Param};
 use crate::doubts;
 use crate::error::LogError;
 use crate::lines::Lines;
 use interfaces::{Scan, is_valid_pose};
 use nalgebra::Isometry2;
-use std::f64::consts::{FRAC_PI_2, PI};
 use std::str::{FromStr, SplitAsciiWhitespace};
 
 /// The largest number of readings of a scan: a line that claims more is invalid.
 const MAX_READINGS: usize = 20_000;
-/// The maximum range of a laser without a parameter, m: a SICK LMS 200 reports failures as 81.83 m and above.
-const MAX_RANGE_M: f64 = 80.0;
-
-/// What parameters say about the laser of FLASER lines.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Geometry {
-    /// The distance of the laser in front of the center of the robot, m.
-    pub(super) offset_m: f64,
-    /// Ranges from here on are no measurements, m.
-    pub(super) range_max_m: f64,
-}
-
-impl Default for Geometry {
-    fn default() -> Self {
-        Self { offset_m: 0.0, range_max_m: MAX_RANGE_M }
-    }
-}
+const ODOM: &str = "ODOM";
+/// The most characters of a word in a message.
+const MAX_WORD: usize = 40;
 
 /// A line.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,8 +24,12 @@ pub(super) enum Line {
         speed_mps: f64,
     },
     Scan(ScanLine),
-    LaserOffset(f64),
-    MaxRange(f64),
+    Param(Param),
+    /// A scan or a pose that is left out, and why.
+    Invalid {
+        is_scan: bool,
+        what: String,
+    },
     /// Comments, other messages, and a last line that is cut off.
     Other {
         is_cut_off: bool,
@@ -55,8 +45,26 @@ pub(super) struct ScanLine {
     pub(super) scan: Scan,
     /// The typical range as written.
     pub(super) typical: Option<f32>,
-    /// The pose of the laser in the line: the result of an earlier estimation in corrected logs.
-    pub(super) reference: Option<Isometry2<f64>>,
+    pub(super) poses: Poses,
+}
+
+/// The poses in a line with a scan; `None` if one is invalid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Poses {
+    /// A FLASER line: the pose of the laser, the result of an earlier estimation in corrected logs.
+    Laser(Option<Isometry2<f64>>),
+    /// A ROBOTLASER1 line: the pose of the laser in the frame of the robot.
+    Mount(Option<Isometry2<f64>>),
+}
+
+impl ScanLine {
+    /// The pose of the laser in a FLASER line.
+    pub(super) fn reference(&self) -> Option<Isometry2<f64>> {
+        match self.poses {
+            Poses::Laser(pose) => pose,
+            Poses::Mount(_) => None,
+        }
+    }
 }
 
 /// The next line, `None` at the end.
@@ -65,7 +73,10 @@ pub(super) fn next(lines: &mut Lines, geometry: &Geometry) -> Result<Option<Line
     match parse(&text, geometry) {
         Ok(line) => Ok(Some(line)),
         Err(_) if !lines.is_complete => Ok(Some(Line::Other { is_cut_off: true })),
-        Err(what) => Err(lines.error(what)),
+        Err(what) => {
+            let is_scan = text.split_ascii_whitespace().next() != Some(ODOM);
+            Ok(Some(Line::Invalid { is_scan, what }))
+        }
     }
 }
 
@@ -73,15 +84,15 @@ pub(super) fn next(lines: &mut Lines, geometry: &Geometry) -> Result<Option<Line
 fn parse(text: &str, geometry: &Geometry) -> Result<Line, String> {
     let mut words = text.split_ascii_whitespace();
     match words.next() {
-        Some("ODOM") => {
-            let mut words = Words { message: "ODOM", words };
+        Some(ODOM) => {
+            let mut words = Words { message: ODOM, words };
             let pose = words.pose("x, y and theta")?;
             let speed_mps = words.next("tv")?.parse().unwrap_or(0.0);
             words.skip(2, "rv and accel")?;
             Ok(Line::Odometry { time_s: words.time()?, pose, speed_mps })
         }
         Some("FLASER") => flaser(Words { message: "FLASER", words }, geometry).map(Line::Scan),
-        Some("ROBOTLASER1") => robotlaser(Words { message: "ROBOTLASER1", words }).map(Line::Scan),
+        Some("ROBOTLASER1") => robotlaser(Words { message: "ROBOTLASER1", words }, geometry).map(Line::Scan),
         Some("PARAM") => Ok(param(words)),
         _ => Ok(Line::Other { is_cut_off: false }),
     }
@@ -90,55 +101,53 @@ fn parse(text: &str, geometry: &Geometry) -> Result<Line, String> {
 fn param(mut words: SplitAsciiWhitespace) -> Line {
     let name = words.next().unwrap_or_default();
     let value = words.next().and_then(|word| word.parse::<f64>().ok()).filter(|value| value.is_finite());
-    match (name, value) {
-        ("robot_frontlaser_offset", Some(value)) if value.abs() < 10.0 => Line::LaserOffset(value),
-        ("robot_front_laser_max" | "laser_front_laser_max", Some(value)) if value > 0.1 => {
-            Line::MaxRange(value)
-        }
-        _ => Line::Other { is_cut_off: false },
-    }
+    value.and_then(|value| Param::of(name, value)).map_or(Line::Other { is_cut_off: false }, Line::Param)
 }
 
 fn flaser(mut words: Words, geometry: &Geometry) -> Result<ScanLine, String> {
     let count = words.count()?;
-    let (ranges_m, typical) = words.ranges(count, geometry.range_max_m)?;
-    let reference = words.pose("the pose of the laser")?;
+    let range_max_m = geometry.limited_m(geometry.range_max_m);
+    let (ranges_m, typical) = words.ranges(count, range_max_m)?;
+    let reference = words.optional_pose("the pose of the laser")?;
     words.skip(3, "the pose of the robot")?;
-    let steps = if count.is_multiple_of(2) { count } else { count - 1 };
+    let (fov_rad, angle_increment_rad, _) = geometry.field(count);
     let scan = Scan {
-        angle_min_rad: -FRAC_PI_2,
-        angle_increment_rad: PI / steps.max(1) as f64,
+        angle_min_rad: -0.5 * fov_rad,
+        angle_increment_rad,
         range_min_m: 0.0,
-        range_max_m: geometry.range_max_m,
+        range_max_m,
         sweep_s: 0.0,
         ranges_m,
     };
     let (time_s, recorded_s) = words.times()?;
-    Ok(ScanLine { time_s, recorded_s, scan, typical, reference: Some(reference) })
+    Ok(ScanLine { time_s, recorded_s, scan, typical, poses: Poses::Laser(reference) })
 }
 
-fn robotlaser(mut words: Words) -> Result<ScanLine, String> {
+fn robotlaser(mut words: Words, geometry: &Geometry) -> Result<ScanLine, String> {
     words.skip(1, "the type of the laser")?;
     let [angle_min_rad, fov_rad, increment_rad] =
         [words.number("start")?, words.number("fov")?, words.number("resolution")?];
     let max_m = words.number("max_range")?;
     words.skip(2, "accuracy and remission mode")?;
     let count = words.count()?;
-    let range_max_m = if max_m > 0.1 { max_m } else { MAX_RANGE_M };
+    let range_max_m = geometry.limited_m(if max_m > 0.1 { max_m } else { MAX_RANGE_M });
     let (ranges_m, typical) = words.ranges(count, range_max_m)?;
     let remissions = words.number("the number of remissions")?;
     if !(0.0..=MAX_READINGS as f64).contains(&remissions) {
         return Err(words.invalid("the number of remissions", &remissions.to_string()));
     }
-    // Remissions, the poses of laser and robot, velocities and safety distances.
-    words.skip(remissions as usize + 11, "remissions, poses, velocities and distances")?;
+    words.skip(remissions as usize, "its last remission")?;
+    let [laser, robot] =
+        [words.optional_pose("the pose of the laser")?, words.optional_pose("the pose of the robot")?];
+    let mount = laser.zip(robot).map(|(laser, robot)| robot.inv_mul(&laser));
+    words.skip(5, "velocities and distances")?;
     let angle_increment_rad =
         if increment_rad > 0.0 { increment_rad } else { fov_rad / (count as f64 - 1.0).max(1.0) };
     let scan =
         Scan { angle_min_rad, angle_increment_rad, range_min_m: 0.0, range_max_m, sweep_s: 0.0, ranges_m };
     scan.check().map_err(|error| format!("ROBOTLASER1: {error}"))?;
     let (time_s, recorded_s) = words.times()?;
-    Ok(ScanLine { time_s, recorded_s, scan, typical, reference: None })
+    Ok(ScanLine { time_s, recorded_s, scan, typical, poses: Poses::Mount(mount) })
 }
 
 /// The words after the name of a message.
@@ -153,7 +162,9 @@ impl Words<'_> {
     }
 
     fn invalid(&self, what: &str, word: &str) -> String {
-        format!("{}: `{word}` is no valid value for {what}", self.message)
+        let shown: String = word.chars().take(MAX_WORD).collect();
+        let more = if shown.len() < word.len() { "…" } else { "" };
+        format!("{}: `{shown}{more}` is no valid value for {what}", self.message)
     }
 
     fn skip(&mut self, count: usize, what: &str) -> Result<(), String> {
@@ -192,6 +203,17 @@ impl Words<'_> {
         is_valid_pose(&pose).then_some(pose).ok_or_else(|| format!("{}: the pose is too far", self.message))
     }
 
+    /// A pose that few logs need; `None` if it is invalid.
+    fn optional_pose(&mut self, what: &str) -> Result<Option<Isometry2<f64>>, String> {
+        let mut numbers = [0.0; 3];
+        for number in &mut numbers {
+            *number = self.next(what)?.parse().unwrap_or(f64::NAN);
+        }
+        let [x, y, theta] = numbers;
+        let is_valid = numbers.iter().all(|number| number.is_finite());
+        Ok(is_valid.then(|| interfaces::pose(x, y, theta)).filter(is_valid_pose))
+    }
+
     /// Ranges, and the typical one as written; what is no measurement becomes NaN: a laser that sees nothing in a dark or shining surface reports the
     /// same number as in the open.
     fn ranges(&mut self, count: usize, max_m: f64) -> Result<(Vec<f32>, Option<f32>), String> {
@@ -204,7 +226,8 @@ impl Words<'_> {
                 return Err(self.invalid("a range", &word));
             };
             written.push(range_m);
-            let is_measured = range_m > 0.0 && f64::from(range_m) < max_m;
+            // As `f32`: the nearest one to a maximum can be below it as `f64`.
+            let is_measured = range_m > 0.0 && range_m < max_m as f32;
             ranges_m.push(if is_measured { range_m } else { f32::NAN });
         }
         Ok((ranges_m, doubts::typical(written.into_iter())))

@@ -1,7 +1,7 @@
 //! The second reading of a log: reading by reading.
 
 use super::Rules;
-use super::line::{self, Line, ScanLine};
+use super::line::{self, Line, Poses, ScanLine};
 use crate::error::LogError;
 use crate::lines::Lines;
 use crate::odometry::Odometry;
@@ -38,12 +38,16 @@ impl Readings {
         if has_times && !now && self.odometry.must_wait(time_s, now_s) {
             return None;
         }
-        let ScanLine { scan, reference, .. } = self.waiting.pop_front()?;
-        let mount = interfaces::pose(geometry.offset_m, 0.0, 0.0);
+        let line = self.waiting.pop_front()?;
+        let mount = match line.poses {
+            Poses::Laser(_) => geometry.mount(),
+            Poses::Mount(_) => geometry.robotlaser_mount.unwrap_or(geometry.mount()),
+        };
         if has_times {
             self.odometry.note_scan(time_s);
         }
-        let mut reading = self.odometry.reading(time_s, mount, scan);
+        let reference = line.reference();
+        let mut reading = self.odometry.reading(time_s, mount, line.scan);
         if !has_times {
             reading = LaserReading { pose: self.odometry.newest().0, twist: Twist::STOP, ..reading };
         }
@@ -67,7 +71,7 @@ impl RawReadings for Readings {
             match line::next(&mut self.lines, &self.rules.geometry)? {
                 None => self.is_over = true,
                 Some(Line::Scan(scan)) => {
-                    self.scan_pose = scan.reference;
+                    self.scan_pose = scan.reference();
                     self.waiting.push_back(scan);
                 }
                 Some(Line::Odometry { .. }) if self.rules.stands => {}

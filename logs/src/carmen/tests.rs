@@ -1,4 +1,6 @@
 mod corrected;
+mod faults;
+mod lasers;
 
 use super::CarmenLog;
 use crate::Log;

@@ -55,7 +55,8 @@ fn logs_without_corrected_poses_are_refused() {
     let expected = "test.log: no corrected poses: those of the FLASER lines are all the same (1, 2)";
     assert_eq!(refused(&still), expected.to_owned() + instead);
     let other = "ROBOTLASER1 0 -0.5 1.0 0.5 10 0.01 0 3 1 2 11 2 7 8 0 0 0 0 0 0 0 0 0 0 0 2 h 2\n";
-    let expected = "test.log: no corrected poses: 2 of 2 scans are ROBOTLASER1 lines; those of FLASER lines would be used";
+    let expected = "test.log: no corrected poses: 2 of 2 scans are ROBOTLASER1 lines, or have an invalid pose; those of FLASER lines \
+                    would be used";
     assert_eq!(refused(&other.repeat(2)), expected.to_owned() + instead);
 }
 

@@ -1,0 +1,106 @@
+//! Whether a robot moves so slowly that its times cannot be in seconds.
+
+use crate::standing::{MIN_MOTION_M, MIN_MOTION_RAD};
+use interfaces::heading_rad;
+use nalgebra::Isometry2;
+
+/// A robot that moves slower than this in nearly all of at least this number of steps is none, m/s and rad/s: 0.15 m/s and more
+/// are usual, a thousandth of it with times in milliseconds.
+const MIN_MPS: f64 = 0.002;
+const MIN_RADPS: f64 = 0.005;
+const MIN_STEPS: usize = 100;
+/// Poses that are nearer in time than this, s, do not come in milliseconds: they would be more than 1000 per second.
+const MIN_PERIOD_S: f64 = 1.0;
+
+/// Measures the speed of an odometry over steps that are longer than its drift: with many poses per second, a robot moves by less
+/// between two of them.
+#[derive(Debug, Default)]
+pub(crate) struct Pace {
+    /// The length of the present step so far, m, its time, s, and its number of poses.
+    way_m: f64,
+    elapsed_s: f64,
+    poses: usize,
+    /// The number of steps with a motion, and of those at the speed of a robot.
+    moving: usize,
+    fast: usize,
+    /// The motion of the present step.
+    motion: Isometry2<f64>,
+}
+
+impl Pace {
+    /// Adds the motion from one pose to the next.
+    pub(crate) fn add(&mut self, elapsed_s: f64, motion: &Isometry2<f64>) {
+        if elapsed_s <= 0.0 {
+            return;
+        }
+        self.motion *= motion;
+        self.motion.rotation.renormalize();
+        self.elapsed_s += elapsed_s;
+        self.poses += 1;
+        self.way_m = self.motion.translation.vector.norm();
+        let turn_rad = heading_rad(motion).abs();
+        // The heading of a robot that stands drifts as fast as others turn in milliseconds: turns are not added up.
+        if self.way_m <= MIN_MOTION_M && turn_rad <= MIN_MOTION_RAD {
+            return;
+        }
+        let is_slow = self.way_m <= MIN_MPS * self.elapsed_s
+            && turn_rad <= MIN_RADPS * elapsed_s
+            && self.elapsed_s >= MIN_PERIOD_S * self.poses as f64;
+        self.moving += 1;
+        self.fast += usize::from(!is_slow);
+        *self = Self { moving: self.moving, fast: self.fast, ..Self::default() };
+    }
+
+    /// Why the times cannot be in seconds, if it is sure: the robot moves far slower than any robot.
+    pub(crate) fn impossible(&self) -> Option<String> {
+        let Self { moving, fast, .. } = *self;
+        (moving >= MIN_STEPS && fast * 100 < moving).then(|| {
+            format!(
+                "the times look like milliseconds: in {} of the {moving} steps in which the odometry moves, it is slower than \
+                 {MIN_MPS} m/s and {MIN_RADPS} rad/s; times are in seconds",
+                moving - fast
+            )
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A robot that drives 0.3 m/s and turns 0.4 rad/s by turns, with rests, for 200 s; its times in this unit, s.
+    fn drives(hz: u32, unit_s: f64) -> bool {
+        let mut pace = Pace::default();
+        for step in 0..200 * hz {
+            let period_s = 1.0 / f64::from(hz);
+            let (x, theta) =
+                [(0.3, 0.0), (0.0, 0.0), (0.3, 0.1), (0.0, 0.4)][(step / (10 * hz) % 4) as usize];
+            pace.add(period_s / unit_s, &interfaces::pose(x * period_s, 0.0, theta * period_s));
+        }
+        pace.impossible().is_none()
+    }
+
+    /// A robot that stands for this number of poses at this rate, with this drift per second.
+    fn drifts(poses: u32, hz: f64, drift: [f64; 2]) -> bool {
+        let mut pace = Pace::default();
+        let motion = interfaces::pose(drift[0] / hz, 0.0, drift[1] / hz);
+        (0..poses).for_each(|_| pace.add(1.0 / hz, &motion));
+        pace.impossible().is_none()
+    }
+
+    #[test]
+    fn milliseconds_are_found_at_any_rate() {
+        for hz in [1, 5, 10, 15, 20, 50, 100, 200] {
+            assert!(drives(hz, 1.0), "{hz}");
+            assert!(!drives(hz, 1e-3), "{hz}");
+        }
+    }
+
+    #[test]
+    fn a_robot_that_stands_may_drift() {
+        // Ten hours with a gyroscope that drifts by 1° per minute, also with a pose every 10 s.
+        assert!(drifts(360_000, 10.0, [0.0, 3e-4]) && drifts(3600, 0.1, [0.0, 3e-4]));
+        // An estimation that drifts by 7 m in that time.
+        assert!(drifts(360_000, 10.0, [2e-4, 1e-4]));
+    }
+}
