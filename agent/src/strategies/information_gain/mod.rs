@@ -181,6 +181,11 @@ impl Strategy for InformationGain {
         self.reliability.decline();
     }
 
+    fn end(&mut self, situation: &Situation) {
+        let regions = self.visibility.update(situation.mapper);
+        self.reliability.end(situation.mapper, &mut self.visibility, &regions, situation.cell());
+    }
+
     fn values(&mut self, _: &Mapper) -> Values<'_> {
         let mut values = self.change.values();
         values.push(value(&mut self.reliability));
