@@ -140,6 +140,19 @@ impl Agent {
         self.updates = 0;
     }
 
+    /// The robot, at `pose`, leaves the goal that [`next_goal`](Self::next_goal) gave last, and no other goal follows for a
+    /// while: it goes to its dock. Ends the trajectory and the visit, and learns from them; nothing is learned from what the
+    /// robot sees until the next goal.
+    pub fn end_goal(&mut self, mapper: &Mapper, pose: &Isometry2<f64>) {
+        self.learn(mapper);
+        if let Some(strategy) = self.current.take() {
+            self.strategies[strategy].end(&Situation::new(mapper, pose, self.features));
+        }
+        if let Some(unseen) = &mut self.unseen {
+            unseen.end(mapper);
+        }
+    }
+
     /// Whether the present goal has served its purpose before the robot is there: a look into unseen space whose
     /// target is in view already.
     pub fn is_goal_obsolete(&self, mapper: &Mapper) -> bool {

@@ -82,6 +82,13 @@ impl UnseenSpace {
         self.target = None;
     }
 
+    /// Ends the last look, if there is one.
+    pub(crate) fn end(&mut self, mapper: &Mapper) {
+        if self.target.is_some() {
+            self.update(mapper);
+        }
+    }
+
     /// Ends the last look. Returns whether any frontier is due for a look now.
     pub(crate) fn update(&mut self, mapper: &Mapper) -> bool {
         let regions = self.regions(mapper);

@@ -33,6 +33,14 @@ pub trait GoalSelector {
         false
     }
 
+    /// Whether the robot has to leave the present goal, although the goal has not served its purpose: the goal has no outcome.
+    fn breaks_off(&self, _: &Mapper) -> bool {
+        false
+    }
+
+    /// The robot, at `pose`, leaves the last goal, and no other goal follows for a while. Can be called more than once.
+    fn end_goal(&mut self, _pose: &Isometry2<f64>, _: &Mapper) {}
+
     /// Called at every reading.
     fn observe(&mut self, _: Features, _: &Mapper) {}
 
@@ -134,12 +142,18 @@ impl<G: GoalSelector, D: Driver> Pilot for Autonomous<G, D> {
         }
         self.rests_until_s = self.selector.rests_until_s(&belief.pose, mapper);
         if self.rests_until_s.is_some() {
+            if self.driver.goal().is_some() {
+                // The time of a goal goes on while the robot rests, until the driver gives the goal up.
+                self.driver.cancel();
+                self.selector.end_goal(&belief.pose, mapper);
+            }
             return self.driver.pause(&input, false);
         }
         let command = self.driver.drive(&input);
         let last = match self.driver.status() {
             Status::Idle if !self.is_done => None,
             Status::Finished(outcome) => Some(outcome),
+            Status::Travelling | Status::Exploring if self.selector.breaks_off(mapper) => None,
             Status::Travelling | Status::Exploring if self.selector.is_obsolete(mapper) => {
                 Some(Outcome::Reached)
             }
@@ -230,6 +244,10 @@ impl GoalSelector for Agent {
 
     fn is_obsolete(&self, mapper: &Mapper) -> bool {
         self.is_goal_obsolete(mapper)
+    }
+
+    fn end_goal(&mut self, pose: &Isometry2<f64>, mapper: &Mapper) {
+        Agent::end_goal(self, mapper, pose);
     }
 
     fn observe(&mut self, features: Features, mapper: &Mapper) {

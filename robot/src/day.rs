@@ -165,17 +165,24 @@ impl<G: GoalSelector> GoalSelector for PatrolDay<G> {
             return self.goals.next_goal(pose, mapper, travel);
         }
         self.state.phase = Phase::Returning;
+        self.goals.end_goal(pose, mapper);
         Some(Destination { position: self.settings.dock, stay: Stay::Watch(WAIT_S) })
     }
 
     fn is_obsolete(&self, mapper: &Mapper) -> bool {
+        self.state.phase == Phase::Patrolling && self.goals.is_obsolete(mapper)
+    }
+
+    fn breaks_off(&self, mapper: &Mapper) -> bool {
         match self.state.phase {
             Phase::Resting => false,
             Phase::Returning => self.state.needs_goal,
-            Phase::Patrolling => {
-                self.state.needs_goal || self.must_return(mapper.time()) || self.goals.is_obsolete(mapper)
-            }
+            Phase::Patrolling => self.state.needs_goal || self.must_return(mapper.time()),
         }
+    }
+
+    fn end_goal(&mut self, pose: &Isometry2<f64>, mapper: &Mapper) {
+        self.goals.end_goal(pose, mapper);
     }
 
     fn observe(&mut self, features: Features, mapper: &Mapper) {

@@ -1,6 +1,8 @@
 //! The robot in a tiny world, and with parts that only write down what they are asked.
 
-use crate::{Autonomous, Belief, ExactPoses, GoalSelector, Localization, Permission, Pilot, Robot, explore};
+use crate::{
+    Autonomous, Belief, ExactPoses, GoalCount, GoalSelector, Localization, Permission, Pilot, Robot, explore,
+};
 use agent::{Agent, AgentSettings, Features, Policy};
 use controller::{CellDrive, Controller, Driver};
 use interfaces::{
@@ -245,9 +247,10 @@ fn a_robot_that_is_restored_goes_on_bit_for_bit() {
     }
 }
 
-/// Reaches every goal at once, and writes down what it is asked.
+/// Reaches every goal at once, or none, and writes down what it is asked.
 #[derive(Default)]
 struct Jumping {
+    is_slow: bool,
     goal: Option<Point2<f64>>,
     asked: Vec<&'static str>,
 }
@@ -262,6 +265,7 @@ impl Driver for Jumping {
 
     fn cancel(&mut self) {
         self.goal = None;
+        self.asked.push("cancel");
     }
 
     fn goal(&self) -> Option<Point2<f64>> {
@@ -278,6 +282,7 @@ impl Driver for Jumping {
 
     fn status(&self) -> controller::Status {
         match self.goal {
+            Some(_) if self.is_slow => controller::Status::Travelling,
             Some(_) => controller::Status::Finished(controller::Outcome::Reached),
             None => controller::Status::Idle,
         }
@@ -328,4 +333,60 @@ fn permissions_hold_for_every_driver() {
     assert_eq!(pilot.goals().reached, 0);
     pilot.command(&Belief::exact(Isometry2::identity()), Features::default(), &map);
     assert_eq!(pilot.goals().reached, 1);
+}
+
+/// Goes to the origin, and notes the ends of its goals.
+#[derive(Default)]
+struct Ordered {
+    rests: bool,
+    breaks_off: bool,
+    ended: usize,
+}
+
+impl GoalSelector for Ordered {
+    fn next_goal(
+        &mut self,
+        pose: &Isometry2<f64>,
+        mapper: &Mapper,
+        travel: &mut impl agent::Travel,
+    ) -> Option<crate::Destination> {
+        Origin.next_goal(pose, mapper, travel)
+    }
+
+    fn breaks_off(&self, _: &Mapper) -> bool {
+        self.breaks_off
+    }
+
+    fn end_goal(&mut self, _: &Isometry2<f64>, _: &Mapper) {
+        self.ended += 1;
+    }
+
+    fn rests_until_s(&mut self, _: &Isometry2<f64>, _: &Mapper) -> Option<f64> {
+        self.rests.then_some(1e3)
+    }
+
+    fn reason(&self) -> String {
+        String::new()
+    }
+}
+
+#[test]
+fn goals_that_the_day_ends_have_no_outcome() {
+    let belief = Belief::exact(Isometry2::identity());
+    let map = mapper(7, 1.0);
+    let mut pilot = Autonomous::new(Ordered::default(), Jumping::default());
+    for rests in [false, true, true, false] {
+        pilot.selector_mut().rests = rests;
+        pilot.command(&belief, Features::default(), &map);
+    }
+    let goes = ["drive", "goal", "drive"];
+    assert_eq!(pilot.driver_mut().asked, [&goes[..], &["cancel", "rest", "rest"], &goes].concat());
+    assert_eq!((pilot.goals(), pilot.selector_mut().ended), (GoalCount::default(), 1));
+    // The goal is replaced on the way.
+    let driver = Jumping { is_slow: true, ..Jumping::default() };
+    let mut pilot = Autonomous::new(Ordered { breaks_off: true, ..Ordered::default() }, driver);
+    pilot.command(&belief, Features::default(), &map);
+    pilot.command(&belief, Features::default(), &map);
+    assert_eq!(pilot.driver_mut().asked, [goes, goes].concat());
+    assert_eq!(pilot.goals(), GoalCount::default());
 }

@@ -6,19 +6,30 @@ use interfaces::{CellReading, GridFrame};
 use mapper::{Mapper, MapperSettings};
 use nalgebra::{Isometry2, Point2};
 use robot::{DaySettings, DayTotals, Destination, GoalSelector, PatrolDay};
+use std::cell::Cell;
+use std::rc::Rc;
 
 const FULL_SPEED_MPS: f64 = 0.8;
 /// A robot that turns, waits and goes round others.
 const SPEED_MPS: f64 = 0.5;
 
 /// The corners of a place of 30 m × 20 m, one after the other.
-struct Corners(usize);
+struct Corners {
+    count: usize,
+    /// Whether the robot is on its way to a corner.
+    has_goal: Rc<Cell<bool>>,
+}
 
 impl GoalSelector for Corners {
     fn next_goal(&mut self, _: &Isometry2<f64>, _: &Mapper, _: &mut impl Travel) -> Option<Destination> {
-        self.0 += 1;
-        let position = [[29.0, 1.0], [29.0, 19.0], [1.0, 19.0], [1.0, 1.0]][self.0 % 4].into();
+        self.count += 1;
+        self.has_goal.set(true);
+        let position = [[29.0, 1.0], [29.0, 19.0], [1.0, 19.0], [1.0, 1.0]][self.count % 4].into();
         Some(Destination { position, stay: Stay::Watch(0.0) })
+    }
+
+    fn end_goal(&mut self, _: &Isometry2<f64>, _: &Mapper) {
+        self.has_goal.set(false);
     }
 
     fn reason(&self) -> String {
@@ -43,7 +54,8 @@ fn week(share: f64, battery_s: f64, busy: &str) -> (DayTotals, f64) {
     hours.add(busy).unwrap();
     let dock = Point2::new(2.0, 10.0);
     let settings = DaySettings { dock, battery_s, share, busy: hours.clone(), starts_s: 0.0 };
-    let mut day = PatrolDay::new(Corners(0), settings);
+    let has_goal = Rc::new(Cell::new(false));
+    let mut day = PatrolDay::new(Corners { count: 0, has_goal: Rc::clone(&has_goal) }, settings);
     let frame = GridFrame::new(Point2::origin(), 1.0, 30, 20).unwrap();
     let mut mapper = Mapper::new(&MapperSettings::default(), frame).unwrap();
     let (mut time_s, mut at, mut goal, mut busy_s) = (0.0, dock, dock, 0.0);
@@ -59,8 +71,9 @@ fn week(share: f64, battery_s: f64, busy: &str) -> (DayTotals, f64) {
             continue;
         }
         busy_s += f64::from(u8::from(hours.is_active(time_s)));
-        if (goal - at).norm() < SPEED_MPS || day.is_obsolete(&mapper) {
+        if (goal - at).norm() < SPEED_MPS || day.breaks_off(&mapper) {
             goal = day.next_goal(&pose, &mapper, &mut Straight).unwrap().position;
+            assert_eq!(has_goal.get(), goal != dock, "the last goal ends where the robot turns back");
         }
         at += (goal - at).cap_magnitude(SPEED_MPS);
         time_s += 1.0;

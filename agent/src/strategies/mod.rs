@@ -76,6 +76,11 @@ pub trait Strategy: std::fmt::Debug + Send {
     /// The robot does not go to the goal that was selected last. A strategy that remembers its goals forgets it.
     fn decline(&mut self) {}
 
+    /// The robot leaves the goal that was selected last, there or on the way, and no other goal follows for a while. A
+    /// strategy that remembers its goals ends the visit; if another goal follows at once, it does so in
+    /// [`weigh`](Self::weigh).
+    fn end(&mut self, _situation: &Situation) {}
+
     /// Everything that a goal changes and a later goal needs: what a state file holds of the strategy. `mapper` is that of
     /// the same state; what follows from it is not in the list. Empty for a strategy that remembers nothing.
     fn values(&mut self, _mapper: &Mapper) -> Values<'_> {

@@ -55,6 +55,10 @@ impl Strategy for OptimalRevisiting {
         self.history.decline();
     }
 
+    fn end(&mut self, situation: &Situation) {
+        self.history.update(situation.mapper);
+    }
+
     fn values(&mut self, mapper: &Mapper) -> Values<'_> {
         self.history.values(mapper)
     }

@@ -39,14 +39,19 @@ impl Regions {
         index / width / self.side * self.columns + index % width / self.side
     }
 
+    /// The index of a cell; `None` outside of the map.
+    pub(crate) fn index(&self, cell: Cell) -> Option<usize> {
+        self.frame.index(cell)
+    }
+
     /// Whether each region is a cell.
     pub(crate) fn are_cells(&self) -> bool {
         self.side == 1
     }
 
-    /// The index of the region of a cell; `None` outside of the map.
-    pub(crate) fn at_cell(&self, cell: Cell) -> Option<usize> {
-        self.frame.index(cell).map(|index| self.of(index))
+    /// Whether two cells are less than a region apart; if each region is a cell: whether they are the same.
+    pub(crate) fn are_near(&self, one: Cell, other: Cell) -> bool {
+        (one.x.abs_diff(other.x).max(one.y.abs_diff(other.y)) as usize) < self.side
     }
 
     /// The indices of the cells of a region, row by row.

@@ -2,8 +2,8 @@
 
 use crate::drawing::{agent, can_be_a_goal, empty, map, names, reading, rng};
 use agent::{
-    Agent, AgentSettings, Chooser, Features, Policy, Random, Recency, Reward, Situation, StraightLineTravel,
-    Trajectory,
+    Agent, AgentSettings, Chooser, Features, FreshMap, OptimalRevisiting, Policy, Random, Recency, Reward,
+    Situation, StraightLineTravel, Trajectory,
 };
 use interfaces::{Cell, CellReading, CellState, RandomStream, Transition};
 use mapper::Mapper;
@@ -208,6 +208,55 @@ fn a_trajectory_is_rewarded_by_its_updates_per_reading() {
             *lessons.lock().unwrap(),
             [(0, vec![at(1.0), at(2.0), at(3.0), at(4.0)], first), (0, vec![at(5.0)], second)]
         );
+    }
+}
+
+#[test]
+fn what_follows_the_end_of_a_goal_belongs_to_no_strategy() {
+    let block = Transition { cell: Cell::new(0, 0), before: CellState::Free, after: CellState::Blocked };
+    let mapper = map(&[(0.0, &["..."])]);
+    let pupil = Pupil::default();
+    let lessons = Lessons::clone(&pupil.lessons);
+    let strategies: Vec<Box<dyn agent::Strategy>> = vec![Box::new(Recency), Box::new(Random)];
+    let mut agent = Agent::with(&AgentSettings::default(), strategies, Box::new(pupil), rng(0)).unwrap();
+    agent.next_goal(&mapper, &Isometry2::identity(), &mut StraightLineTravel);
+    agent.watch(Features::default(), &[block]);
+    for _ in 0..2 {
+        agent.end_goal(&mapper, &Isometry2::identity());
+        agent.watch(Features::default(), &[block; 9]);
+    }
+    assert_eq!(agent.current(), None);
+    assert_eq!(agent.shares().collect::<Vec<_>>(), [1.0, 0.0]);
+    agent.next_goal(&mapper, &Isometry2::identity(), &mut StraightLineTravel);
+    assert_eq!(*lessons.lock().unwrap(), [(0, vec![Features::default()], 1.0)]);
+}
+
+/// What should have been in view counts as seen when the robot leaves its goal, not when it selects the next one.
+#[test]
+fn a_visit_ends_with_its_goal() {
+    let settings = AgentSettings::default();
+    let worth = |mut strategy: Box<dyn agent::Strategy>, is_ended: bool| {
+        let mut mapper = map(&[(0.0, &["....."])]);
+        let (pose, travel, mut weights) = (Isometry2::identity(), [1.0; 5], vec![0.0; 5]);
+        let weigh = |strategy: &mut dyn agent::Strategy, mapper: &Mapper, weights: &mut [f64]| {
+            let situation = Situation::new(mapper, &pose, Features::default()).with_travel(&travel);
+            strategy.weigh(&situation, weights);
+        };
+        weigh(&mut *strategy, &mapper, &mut weights);
+        strategy.stay(Cell::new(0, 0));
+        mapper.update(&reading(10.0, &["....."])).unwrap();
+        if is_ended {
+            strategy.end(&Situation::new(&mapper, &pose, Features::default()));
+        }
+        mapper.update(&reading(1000.0, &[".    "])).unwrap();
+        weigh(&mut *strategy, &mapper, &mut weights);
+        weights[2]
+    };
+    let strategies: [fn(&AgentSettings) -> Box<dyn agent::Strategy>; 2] =
+        [|settings| Box::new(FreshMap::new(settings)), |settings| Box::new(OptimalRevisiting::new(settings))];
+    for strategy in strategies {
+        assert_eq!(worth(strategy(&settings), false), 0.0);
+        assert!(worth(strategy(&settings), true) > 0.0);
     }
 }
 

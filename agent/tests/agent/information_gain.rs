@@ -112,6 +112,48 @@ fn what_a_visit_did_not_show_is_worth_less_from_there() {
     assert!(last < 0.1 * first, "{last} after {first}");
 }
 
+/// The worth of a region of 5 × 5 cells after three complete views, by a robot that stopped at some cells to the left of its
+/// goal, or did not go there. The goal is the lower left cell of the region.
+fn worth_after_visits(cells_before: i32, goes_there: bool) -> f64 {
+    let frame = GridFrame::new(Point2::origin(), 0.05, 60, 20).unwrap();
+    let mut mapper = Mapper::new(&MapperSettings::default(), frame).unwrap();
+    let mut strategy = InformationGain::new(&seeing(10.0));
+    let (goal, travel) = (Cell::new(40, 10), vec![1.0; frame.len()]);
+    let robot = frame.center(Cell::new(goal.x - cells_before, goal.y));
+    let pose = Isometry2::translation(robot.x, robot.y);
+    let mut weights = Vec::new();
+    for step in 0..=20 {
+        let cells = (0..frame.len()).map(|index| (frame.cell(index), false)).collect();
+        mapper.update(&CellReading { time: f64::from(step), pose, cells }).unwrap();
+        // A view lasts five units of time at most.
+        if step % 6 == 2 {
+            weights = vec![0.0; frame.len()];
+            let situation = Situation::new(&mapper, &pose, Default::default()).with_travel(&travel);
+            strategy.weigh(&situation, &mut weights);
+            strategy.stay(goal);
+            if !goes_there {
+                strategy.decline();
+            }
+        }
+    }
+    weights[frame.index(goal).unwrap()]
+}
+
+#[test]
+fn a_robot_that_stops_beside_its_goal_has_the_view_of_its_goal() {
+    let complete = worth_after_visits(0, true);
+    assert!(complete > 0.0);
+    for cells in [2, 4] {
+        assert_eq!(worth_after_visits(cells, true), complete, "{cells} cells");
+    }
+    assert!(worth_after_visits(5, true) < complete, "the goal was not reached");
+}
+
+#[test]
+fn a_goal_that_is_declined_is_no_visit_that_failed() {
+    assert_eq!(worth_after_visits(30, false), worth_after_visits(0, true));
+}
+
 #[test]
 fn a_fine_grid_is_weighed_too() {
     let frame = GridFrame::new(Point2::origin(), 0.05, 240, 120).unwrap();

@@ -177,6 +177,15 @@ impl Strategy for InformationGain {
         self.plan = Some(Plan { regions, watches, watched: (0..regions.count()).map(watched).collect() });
     }
 
+    fn decline(&mut self) {
+        self.reliability.decline();
+    }
+
+    fn end(&mut self, situation: &Situation) {
+        let regions = self.visibility.update(situation.mapper);
+        self.reliability.end(situation.mapper, &mut self.visibility, &regions, situation.cell());
+    }
+
     fn values(&mut self, _: &Mapper) -> Values<'_> {
         let mut values = self.change.values();
         values.push(value(&mut self.reliability));
@@ -189,9 +198,9 @@ impl Strategy for InformationGain {
 
     fn stay(&mut self, goal: Cell) -> Stay {
         let Some(Plan { regions, watches, watched }) = &self.plan else { return Stay::Watch(0.0) };
-        let Some(region) = regions.at_cell(goal) else { return Stay::Watch(0.0) };
-        let watch = watches[region];
-        self.reliability.begin(&mut self.visibility, watched, region, watch);
+        let Some(goal) = regions.index(goal) else { return Stay::Watch(0.0) };
+        let watch = watches[regions.of(goal)];
+        self.reliability.begin(&mut self.visibility, regions, watched, goal, watch);
         Stay::Watch(watch)
     }
 }

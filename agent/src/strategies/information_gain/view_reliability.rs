@@ -7,11 +7,11 @@ use mapper::Mapper;
 /// The pseudo-observation of a complete view, in the time unit of the readings.
 const TRUST: f64 = 10.0;
 
-/// A visit: the region, the planned duration, and for each region in view the time that it had been observed
-/// before.
+/// A visit: the index of the cell of the goal, the planned duration, and for each region in view the time that it had
+/// been observed before.
 #[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
 struct Visit {
-    region: usize,
+    goal: usize,
     duration: f64,
     watched: Vec<f64>,
 }
@@ -37,19 +37,26 @@ pub(super) fn watched(mapper: &Mapper, regions: &Regions, region: usize) -> f64 
 }
 
 impl ViewReliability {
-    /// Begins a visit. `watched` is the time that each region was observed before.
+    /// Begins the visit of a goal, the index of a cell. `watched` is the time that each region was observed before.
     pub(super) fn begin(
         &mut self,
         visibility: &mut Visibility,
+        regions: &Regions,
         watched: &[f64],
-        region: usize,
+        goal: usize,
         duration: f64,
     ) {
-        let watched = visibility.seen_from(region).iter().map(|&seen| watched[seen as usize]).collect();
-        self.visit = Some(Visit { region, duration, watched });
+        let view = visibility.seen_from(regions.of(goal));
+        let watched = view.iter().map(|&seen| watched[seen as usize]).collect();
+        self.visit = Some(Visit { goal, duration, watched });
     }
 
-    /// Ends the last visit. If the robot did not reach the region, nothing was seen from there.
+    /// The last goal is not visited.
+    pub(super) fn decline(&mut self) {
+        self.visit = None;
+    }
+
+    /// Ends the last visit. If the robot did not reach the goal, nothing was seen from its region.
     pub(super) fn end(
         &mut self,
         mapper: &Mapper,
@@ -61,13 +68,16 @@ impl ViewReliability {
             self.observations = vec![Vec::new(); regions.count()];
             self.visit = None;
         }
-        let Some(Visit { region, duration, watched: before }) = self.visit.take() else { return };
+        let Some(Visit { goal, duration, watched: before }) = self.visit.take() else { return };
+        let region = regions.of(goal);
         let view = visibility.seen_from(region);
         // If a wall appeared or disappeared since then, the view is another one.
         if before.len() != view.len() {
             return;
         }
-        let is_there = mapper.frame().index(robot).is_some_and(|robot| regions.of(robot) == region);
+        // The nearest cell of a region is at its border, and the robot stops shortly before its goal: in a fine grid, it
+        // mostly stops in another region, with the same view.
+        let is_there = regions.are_near(robot, mapper.frame().cell(goal));
         let observations = &mut self.observations[region];
         if observations.len() != view.len() {
             *observations = vec![[0.0; 2]; view.len()];
