@@ -204,7 +204,7 @@ impl Inspection {
         geometry.has_codes = !self.far.is_empty() && self.far.len() < MIN_BEYOND;
         if geometry.has_codes {
             notes.push(format!(
-                "the log states a maximum range above {MAX_RANGE_M} m, but from there on, there are only {} different ranges: they \
+                "the log states a maximum range above {MAX_RANGE_M} m, but the number of different ranges from there on is only {}: they \
                  are numbers for failures, and no measurements",
                 self.far.len()
             ));
