@@ -13,7 +13,7 @@
 //! ```
 
 use agent::Policy;
-use evaluation::metrics::{RateScores, alignment, rate_scores};
+use evaluation::metrics::{RateScores, alignment, quantile, rate_scores};
 use evaluation::physics_trial::{self, PhysicsTrial};
 use interfaces::{GridFrame, LaserReading, PoseMode, World, heading_rad};
 use localizer::TrajectoryPose;
@@ -96,13 +96,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     print("survey, true poses    ", &rate_scores(&mapper_of_truth, trial.world.truth()));
     println!("the first pose is turned by {:.2}° against the rest", turn_rad.to_degrees());
     for (number, (route, truth)) in routes.iter().zip(&truth).enumerate() {
-        let mut errors_m: Vec<f64> = route
+        let errors_m: Vec<f64> = route
             .iter()
             .zip(truth)
             .map(|(found, truth)| (found.pose.translation.vector - truth.translation.vector).norm())
             .collect();
-        errors_m.sort_by(f64::total_cmp);
-        let at = |share: f64| errors_m[(share * (errors_m.len() - 1) as f64) as usize] * 1000.0;
+        let at = |share: f64| quantile(&errors_m, share).unwrap_or(f64::NAN) * 1000.0;
         println!(
             "poses of bag {number}: median {:.0}, 95 % {:.0}, largest {:.0} mm",
             at(0.5),

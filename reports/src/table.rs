@@ -1,6 +1,7 @@
 //! The tables for a terminal of 80 columns.
 
 use super::claim::Claim;
+use super::comparison::Comparison;
 use super::measure::Measure;
 use super::run::{Run, conditions};
 use super::strategy::{StrategyResult, Unit};
@@ -162,7 +163,22 @@ fn values(strategies: &[StrategyResult], columns: &[Column]) -> Table {
     table
 }
 
-/// One number per strategy; a star marks the best number, and numbers that are printed the same.
+/// The strategies that can be the best.
+fn rivals(strategies: &[StrategyResult]) -> impl Iterator<Item = &StrategyResult> + Clone {
+    strategies.iter().filter(|strategy| !is_reference(&strategy.name))
+}
+
+/// Whether all rivals have the same trials, or worlds: after an interruption, means can be those of different ones.
+fn have_same_units(strategies: &[StrategyResult]) -> bool {
+    let keys =
+        |strategy: &StrategyResult| -> Vec<u64> { strategy.units.iter().map(|unit| unit.key).collect() };
+    let mut all = rivals(strategies).map(keys);
+    let first = all.next();
+    all.all(|keys| first.as_ref() == Some(&keys))
+}
+
+/// One number per strategy; a star marks the best number, and numbers that are printed the same. Means of different trials have no
+/// best.
 fn cells(strategies: &[StrategyResult], measure: Measure, kind: Kind) -> impl Iterator<Item = String> {
     let text = move |number: f64| match kind {
         Kind::Error => value(number, 3),
@@ -170,7 +186,7 @@ fn cells(strategies: &[StrategyResult], measure: Measure, kind: Kind) -> impl It
         Kind::Share if number.is_nan() => "-".into(),
         Kind::Share => percent(number),
     };
-    let rivals = strategies.iter().filter(|strategy| !is_reference(&strategy.name));
+    let rivals = rivals(strategies);
     let numbers = rivals.clone().map(|strategy| strategy.value(measure));
     let best = match kind {
         Kind::Error => numbers.fold(f64::NAN, f64::min),
@@ -181,7 +197,7 @@ fn cells(strategies: &[StrategyResult], measure: Measure, kind: Kind) -> impl It
     let mut texts = rivals.map(|strategy| text(strategy.value(measure)));
     let first = texts.next();
     let differs = texts.any(|text| first.as_ref() != Some(&text));
-    let best = (!best.is_nan() && differs).then(|| text(best));
+    let best = (!best.is_nan() && differs && have_same_units(strategies)).then(|| text(best));
     strategies.iter().map(move |strategy| {
         let text = text(strategy.value(measure));
         let is_best = best.as_ref() == Some(&text) && !is_reference(&strategy.name);
@@ -254,21 +270,36 @@ fn counts(run: &Run, what: &str, count: impl Fn(&StrategyResult) -> u64) -> Opti
     (!counts.is_empty()).then(|| format!("{what}: {}.", counts.join(", ")))
 }
 
-/// The strategy with the smallest error of the rates, and whether the next one is significantly worse.
+/// The strategy with the smallest error of the rates, and whether the next one is significantly worse. Strategies are ranked by
+/// their pairs, like the ratio and the test: the means of an interrupted experiment can be those of different trials.
 fn winner(run: &Run) -> Option<String> {
-    let area = |strategy: &StrategyResult| strategy.value(Measure::PRIMARY);
-    let is_rival = |strategy: &&StrategyResult| !is_reference(&strategy.name) && !area(strategy).is_nan();
-    let mut ranked: Vec<&StrategyResult> = run.strategies.iter().filter(is_rival).collect();
-    ranked.sort_by(|a, b| area(a).total_cmp(&area(b)));
-    let [winner, next, ..] = ranked.as_slice() else { return None };
-    let comparison = run.comparison(&winner.name, &next.name, Measure::PRIMARY)?;
-    let (winner, next, ratio) = (&winner.name, &next.name, value(comparison.ratio, 2));
-    let smallest = format!("{winner} has the smallest log error over the run, {ratio} times\nthat of {next}");
-    Some(match comparison.p_holm {
+    let is_defined = |strategy: &&StrategyResult| !strategy.value(Measure::PRIMARY).is_nan();
+    let names: Vec<&str> =
+        rivals(&run.strategies).filter(is_defined).map(|strategy| strategy.name.as_str()).collect();
+    let against_others = |name: &&str| -> Option<Vec<Comparison>> {
+        let others = names.iter().filter(|other| *other != name);
+        others.map(|other| run.comparison(name, other, Measure::PRIMARY)).collect()
+    };
+    let comparisons = names
+        .iter()
+        .filter_map(against_others)
+        .find(|all| all.iter().all(|comparison| comparison.mean_difference <= 0.0))?;
+    let comparison = comparisons.iter().min_by(|a, b| b.mean_difference.total_cmp(&a.mean_difference))?;
+    let Comparison { a: winner, b: next, pairs, p_holm, .. } = comparison;
+    let ratio = value(comparison.ratio, 2);
+    let units = if run.worlds > 1 { "world" } else { "trial" };
+    let of_both = match pairs {
+        _ if have_same_units(&run.strategies) => String::new(),
+        1 => format!(",\nin the {units} of both"),
+        _ => format!(",\nin the {pairs} {units}s of both"),
+    };
+    let smallest =
+        format!("{winner} has the smallest log error over the run, {ratio} times\nthat of {next}{of_both}");
+    Some(match *p_holm {
         p if p.is_nan() => format!("{smallest}; a single pair cannot be tested."),
         p if p < 0.05 => format!(
             "{winner} learns rates fastest: its log error over the run is {ratio} times\n\
-             that of {next} (significant: {} after Holm's correction).",
+             that of {next}{of_both} (significant: {} after Holm's correction).",
             p_value(p)
         ),
         p => format!(

@@ -11,7 +11,7 @@
 mod world;
 
 use agent::Policy;
-use evaluation::metrics::map_scores;
+use evaluation::metrics::{map_scores, quantile};
 use evaluation::physics_trial::{self, PhysicsTrial};
 use interfaces::{CellState, GroundTruth, PoseMode, TrueState};
 use localizer::Localizer;
@@ -84,7 +84,7 @@ fn run(
     }
     let elapsed_s = begin.elapsed().as_secs_f64();
     let scores = map_scores(&trial.robot.mapper, trial.world.truth());
-    let [before, after] = errors_m.map(quantiles);
+    let [before, after] = errors_m.map(|errors_m| quantiles(&errors_m));
     println!(
         "before {before}; after {after}; {uncertain} scans not certain; seen {:.1} %, right {:.1} %, walls that are not \
          there {:.2} %; {:.0} x real time, a scan at most {:.0} ms",
@@ -116,12 +116,7 @@ fn wrong_walls<P>(trial: &PhysicsTrial<P>) -> f64 {
 }
 
 /// The median, the value that 95 % do not exceed, and the largest, in cm.
-fn quantiles(mut errors_m: Vec<f64>) -> String {
-    errors_m.sort_by(f64::total_cmp);
-    let at = |share: f64| {
-        errors_m
-            .get((share * errors_m.len().saturating_sub(1) as f64) as usize)
-            .map_or(f64::NAN, |m| m * 100.0)
-    };
+fn quantiles(errors_m: &[f64]) -> String {
+    let at = |share: f64| quantile(errors_m, share).map_or(f64::NAN, |m| m * 100.0);
     format!("{:.1} / {:.1} / {:.1} cm", at(0.5), at(0.95), at(1.0))
 }

@@ -22,8 +22,8 @@ pub(crate) struct Recovery {
     last: Option<[Isometry2<f64>; 2]>,
     displaced_s: Option<f64>,
     pub(crate) times_s: Vec<f64>,
-    /// The number of displacements after which the next one came first.
-    pub(crate) overtaken: usize,
+    /// The number of displacements after which the next one, or the end of the run, came first.
+    pub(crate) not_recovered: usize,
     /// The number of scans with a certain pose that is wrong.
     pub(crate) wrong: usize,
 }
@@ -40,7 +40,7 @@ impl Recovery {
         if let Some([last_pose, last_odometry]) = before {
             let off = last_pose.inv_mul(true_pose).inv_mul(&last_odometry.inv_mul(odometry));
             if off.translation.vector.norm() > DISPLACED_M || heading_rad(&off).abs() > DISPLACED_RAD {
-                self.overtaken += usize::from(self.displaced_s.replace(time_s).is_some());
+                self.not_recovered += usize::from(self.displaced_s.replace(time_s).is_some());
             }
         }
         let (error_m, error_rad) = error(&estimate.pose, true_pose);
@@ -56,24 +56,33 @@ impl Recovery {
         }
     }
 
+    /// The run ends.
+    pub(crate) fn finish(&mut self) {
+        self.not_recovered += usize::from(self.displaced_s.take().is_some());
+    }
+
     pub(crate) fn add(&mut self, other: &Self) {
         self.times_s.extend(&other.times_s);
-        self.overtaken += other.overtaken;
+        self.not_recovered += other.not_recovered;
         self.wrong += other.wrong;
+    }
+
+    pub(crate) fn displacements(&self) -> usize {
+        self.times_s.len() + self.not_recovered
     }
 
     pub(crate) fn print(&self) {
         if self.wrong > 0 {
             println!("    certain and more than {WRONG_M} m or {WRONG_RAD} rad off in {} scans", self.wrong);
         }
-        let count = self.times_s.len() + self.overtaken;
+        let count = self.displacements();
         if count == 0 {
             return;
         }
         let [median_s, most_s, worst_s] = [0.5, 0.95, 1.0].map(|share| quantile(&self.times_s, share));
         println!(
-            "    {count} displacements: recovered after {median_s:.1} / {most_s:.1} / {worst_s:.1} s, {} not before the next",
-            self.overtaken,
+            "    {count} displacements: recovered after {median_s:.1} / {most_s:.1} / {worst_s:.1} s, {} not before the next or the end",
+            self.not_recovered,
         );
     }
 }

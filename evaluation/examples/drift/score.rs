@@ -71,8 +71,9 @@ impl Score {
         }
     }
 
-    /// Counts the false changes: those of cells that nothing ever touched.
+    /// Ends a run, and counts the false changes: those of cells that nothing ever touched.
     pub(crate) fn finish(&mut self, truth: &impl GroundTruth) {
+        self.recovery.finish();
         for (which, changes) in self.changes.iter().enumerate() {
             self.all_changes[which] = changes.iter().sum();
             let still = changes.iter().enumerate().filter(|(index, _)| !truth.is_swept(*index));
@@ -123,10 +124,7 @@ impl Score {
 }
 
 pub(crate) fn quantile(values: &[f64], share: f64) -> f64 {
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    let last = sorted.len().saturating_sub(1) as f64;
-    sorted.get((share * last).round() as usize).copied().unwrap_or(f64::NAN)
+    evaluation::metrics::quantile(values, share).unwrap_or(f64::NAN)
 }
 
 /// The estimate of a robot that believes its odometry.

@@ -1,6 +1,6 @@
 //! The difference to poses of an earlier estimation, and which of both trajectories makes the sharper map.
 
-use evaluation::metrics::alignment;
+use evaluation::metrics::{alignment, quantile};
 use interfaces::{LaserReading, heading_rad, wrap_rad};
 use localizer::Trajectory;
 use logs::{Log, LogError};
@@ -36,13 +36,11 @@ pub(crate) fn print(log: &Log, trajectory: &Trajectory, readings: &[LaserReading
         let turn_rad = wrap_rad(heading_rad(&found) - heading_rad(reference));
         ((found.translation.vector - reference.translation.vector).norm(), turn_rad.abs().to_degrees())
     });
-    let (mut positions_m, mut headings_deg): (Vec<f64>, Vec<f64>) = errors.unzip();
-    let by_poses = |sorted: &mut Vec<f64>| {
-        sorted.sort_by(f64::total_cmp);
-        [0.5, 0.95, 1.0].map(|share| sorted[(share * (sorted.len() - 1) as f64) as usize])
-    };
+    let (positions_m, headings_deg): (Vec<f64>, Vec<f64>) = errors.unzip();
+    let quantiles =
+        |errors: &[f64]| [0.5, 0.95, 1.0].map(|share| quantile(errors, share).expect("there is a pair"));
     let ([median_m, p95_m, max_m], [median_deg, p95_deg, max_deg]) =
-        (by_poses(&mut positions_m), by_poses(&mut headings_deg));
+        (quantiles(&positions_m), quantiles(&headings_deg));
     println!(
         "against the poses in the FLASER lines, median / 95 % / max: {:.1} / {:.1} / {:.1} cm, {median_deg:.2} / {p95_deg:.2} / \
          {max_deg:.2}°",

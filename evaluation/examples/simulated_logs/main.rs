@@ -15,7 +15,7 @@ mod drive;
 mod ghosts;
 
 use drive::{LogSpec, SimulatedLog};
-use evaluation::metrics::alignment;
+use evaluation::metrics::{alignment, quantile};
 use interfaces::PoseMode;
 use logs::McapWriter;
 use nalgebra::{Isometry2, Point2};
@@ -140,7 +140,6 @@ fn errors_m(to_truth: &Isometry2<f64>, poses: &[Isometry2<f64>], truth: &[Isomet
     let at = |pose: &Isometry2<f64>| Point2::from(pose.translation.vector);
     let error =
         |(found, truth): (&Isometry2<f64>, &Isometry2<f64>)| (to_truth * at(found) - at(truth)).norm();
-    let mut errors: Vec<f64> = poses.iter().zip(truth).map(error).collect();
-    errors.sort_by(f64::total_cmp);
-    [0.5, 0.95, 1.0].map(|share| errors[(share * (errors.len() - 1) as f64) as usize])
+    let errors: Vec<f64> = poses.iter().zip(truth).map(error).collect();
+    [0.5, 0.95, 1.0].map(|share| quantile(&errors, share).unwrap_or(f64::NAN))
 }

@@ -1,3 +1,4 @@
+use super::quantile::rank;
 use std::collections::BTreeMap;
 
 /// How often each value from 0 to `MAX` occurred, for quantiles in bounded memory. Values are rounded to `1 / STEPS`.
@@ -18,7 +19,12 @@ impl<const STEPS: u32, const MAX: u32> Counts<STEPS, MAX> {
 
     /// The value that this share of the values does not exceed; `None` without a value.
     pub(super) fn quantile(&self, share: f64) -> Option<f64> {
-        let rank = (share * self.count().saturating_sub(1) as f64) as usize;
+        self.quantile_with(0, share)
+    }
+
+    /// The same for these values and `infinite` others that are larger than all of them; `None` if it is one of the others.
+    pub(super) fn quantile_with(&self, infinite: usize, share: f64) -> Option<f64> {
+        let rank = rank(share, self.count() + infinite);
         let mut up_to = 0;
         let reaches_rank = |&(_, count): &(_, &usize)| {
             up_to += count;

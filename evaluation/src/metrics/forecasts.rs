@@ -14,6 +14,9 @@ const FIRST_FREEZE: f64 = 400.0 / 27.0;
 const FACTOR: f64 = 3.0;
 /// How far ahead the states of cells are predicted, s (steps in a grid world): 1 minute, 10 minutes, 1 hour.
 const HORIZONS: [f64; 3] = [60.0, 600.0, 3600.0];
+/// A prediction is scored up to this share of the horizon after its time: a robot that rests has no readings, and the prediction was
+/// not for the end of the rest.
+const LATE: f64 = 0.05;
 /// Times are sums of steps of a physics world, s.
 const SLACK: f64 = 1e-6;
 
@@ -42,7 +45,8 @@ pub struct ForecastScores {
 }
 
 /// The quality of the predicted map over swept cells that were known and free, or had changed, when the map was frozen;
-/// cells that are partly covered when the time has come are left out. All are `None` before the end of a forecast.
+/// cells that are partly covered when the time has come are left out. A prediction without a reading at its time, or at most 5 %
+/// of the horizon later, is left out, as those that end while a robot rests. All are `None` before the end of a forecast.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct StateScores {
     /// The Brier score of P(blocked): the mean of (prediction − truth)².
@@ -122,11 +126,12 @@ impl Lookahead {
         truth: &impl GroundTruth,
         chains: Option<&TrueChains>,
     ) {
-        let now = truth.elapsed();
-        if now + SLACK < self.due.unwrap_or(horizon) {
+        let (now, due) = (truth.elapsed(), self.due.unwrap_or(horizon));
+        if now + SLACK < due {
             return;
         }
-        for cell in std::mem::take(&mut self.cells) {
+        let is_late = now > due + LATE * horizon + SLACK;
+        for cell in std::mem::take(&mut self.cells).into_iter().filter(|_| !is_late) {
             let index = cell.index as usize;
             if truth.is_swept(index) && truth.state(index) != TrueState::PartlyCovered {
                 self.score(cell, truth.state(index) == TrueState::Blocked);

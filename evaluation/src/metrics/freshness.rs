@@ -1,6 +1,8 @@
 //! How fresh a predicted map is: its Brier score over all things that change at all times, in view or not, and how long
 //! lasting changes stay unknown.
 
+use super::quantile::quantile;
+
 /// A change lasts if the thing then stays for this long, s.
 const LASTING_S: f64 = 3600.0;
 
@@ -78,18 +80,12 @@ impl Freshness {
     pub fn scores(&self) -> FreshnessScores {
         let mut all = self.clone();
         self.stays.iter().flatten().for_each(|stay| all.end(*stay));
-        let mut delays: Vec<f64> = all.changes.iter().map(|change| change.0).collect();
-        delays.sort_by(f64::total_cmp);
-        // The smallest delay that at least this share does not exceed.
-        let quantile = |share: f64| {
-            let rank = (share * delays.len() as f64).ceil() as usize;
-            delays.get(rank.saturating_sub(1)).copied().unwrap_or(f64::NAN)
-        };
+        let delays: Vec<f64> = all.changes.iter().map(|change| change.0).collect();
         let missed = all.changes.iter().filter(|change| !change.1).count();
         FreshnessScores {
             brier: self.squares / self.predictions as f64,
             lasting_changes: delays.len(),
-            detection_delay_s: [0.5, 0.95].map(quantile),
+            detection_delay_s: [0.5, 0.95].map(|share| quantile(&delays, share).unwrap_or(f64::NAN)),
             missed: missed as f64 / delays.len() as f64,
         }
     }

@@ -10,13 +10,14 @@ use serde::Serialize;
 pub struct Delays {
     /// The number of changes that a beam showed while the map had the old state.
     pub shown: usize,
-    /// The share of these changes that the map did not follow before the cell changed back. Changes that are still
-    /// open at the end of the run are not counted.
+    /// The share of these changes that the map did not follow before the cell changed back. A change that the map has not
+    /// followed yet, of a cell that has not changed back yet, is not counted.
     pub never_noticed: f64,
-    /// The median time from the first beam that shows the change to the change of the map, s. A delay of more than
-    /// an hour counts as an hour.
+    /// The time within which the map followed half of these changes, from the first beam that shows the change, s. A delay
+    /// of more than an hour counts as an hour. `None` if the map did not follow half of them.
     pub median_s: Option<f64>,
-    /// The time within which the map followed 95 % of these changes, s, with the same limit.
+    /// The time within which the map followed 95 % of these changes, s, with the same limit. `None` if the map did not
+    /// follow 95 % of them.
     pub p95_s: Option<f64>,
 }
 
@@ -35,6 +36,15 @@ struct Open {
     shown_s: Option<f64>,
     /// The time at which the map had the new state, s.
     noticed_s: Option<f64>,
+}
+
+impl Open {
+    /// Whether nothing that follows changes the result: the map has followed a free event; a block event is complete, and a
+    /// beam has shown it, too.
+    fn is_finished(&self) -> bool {
+        let is_counted = self.is_complete && self.shown_s.is_some();
+        self.noticed_s.is_some() && (self.event == Event::Free || is_counted)
+    }
 }
 
 /// Measures the delay between a change that a laser shows and the change of the map.
@@ -107,10 +117,11 @@ impl Latency {
             if open.noticed_s.is_none() && mapper.states().cells()[index] == after {
                 open.noticed_s = Some(reading.time_s);
             }
-            // A free event is finished when the map has followed it; a block event must also become complete.
-            if open.noticed_s.is_some() && open.event == Event::Free {
-                self.close(index);
-            }
+        }
+        // Not only when the cell changes back: a body that stays counts too.
+        let finished = self.open.iter().filter(|open| open.is_finished()).map(|open| open.index);
+        for index in finished.collect::<Vec<_>>() {
+            self.close(index);
         }
     }
 
@@ -151,8 +162,8 @@ impl Latency {
             Delays {
                 shown,
                 never_noticed: missed as f64 / shown.max(1) as f64,
-                median_s: noticed.quantile(0.5),
-                p95_s: noticed.quantile(0.95),
+                median_s: noticed.quantile_with(missed, 0.5),
+                p95_s: noticed.quantile_with(missed, 0.95),
             }
         })
     }
@@ -174,6 +185,24 @@ mod tests {
             assert!((counts.quantile(share).unwrap() - delays_s[rank]).abs() < 1e-9, "{share}");
         }
         assert_eq!(counts.count(), 1001);
+    }
+
+    #[test]
+    fn changes_that_were_missed_have_no_end() {
+        let mut latency = Latency::default();
+        let delays = |latency: &Latency| latency.delays().map(|of| (of.median_s, of.p95_s));
+        (1..=19).for_each(|delay_s| latency.noticed[Event::Free as usize].add(f64::from(delay_s)));
+        assert_eq!(delays(&latency), [(None, None), (Some(10.0), Some(19.0))]);
+        // 19 of 20 are 95 %; of 21, the map followed no 95 %.
+        for (missed, expected) in [
+            (1, (Some(10.0), Some(19.0))),
+            (2, (Some(11.0), None)),
+            (19, (Some(19.0), None)),
+            (20, (None, None)),
+        ] {
+            latency.missed[Event::Free as usize] = missed;
+            assert_eq!(delays(&latency)[1], expected, "{missed} missed");
+        }
     }
 
     #[test]

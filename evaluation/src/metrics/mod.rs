@@ -18,6 +18,7 @@ mod passages;
 mod pose;
 mod prediction;
 mod probability;
+mod quantile;
 mod rates;
 mod standstill;
 mod things;
@@ -35,6 +36,7 @@ pub use passages::{PassageScores, passage_scores};
 pub use pose::{PoseErrors, PoseScores};
 pub use prediction::{BrierOfAll, PredictedScores, Prediction};
 pub use probability::ProbabilityScores;
+pub use quantile::quantile;
 pub use rates::{
     IntervalScores, MAX_LOG_ERROR, RateErrors, RateScores, interval_scores, log_error, mean_log_error,
     mean_log_error_of_range, rate_scores,
