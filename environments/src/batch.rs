@@ -2,6 +2,7 @@
 
 use crate::task::{Actions, Results, Task, TaskError};
 use crate::threads::share;
+use interfaces::{from_bytes, to_bytes};
 use rayon::ThreadPool;
 use sim::physics::SnapshotError;
 
@@ -13,25 +14,28 @@ pub struct Batch {
     is_autoreset: bool,
 }
 
-/// A task, and the results of its last step.
+/// A task, the seed of its episode, and the results of its last step.
 struct Slot {
     task: Box<dyn Task>,
+    seed: u64,
     results: Results,
 }
 
 impl Slot {
     fn reset(&mut self, seed: u64) {
+        self.seed = seed;
         self.task.reset(seed);
         self.task.observe(&mut self.results.observations);
     }
 
     fn step(&mut self, actions: &[f32], next_seed: u64, is_autoreset: bool) {
-        let Self { task, results } = self;
+        let Self { task, seed, results } = self;
         task.step(actions, results);
         task.info(&mut results.info);
         results.was_reset[0] = is_autoreset && results.is_over();
         if results.was_reset[0] {
             task.observe(&mut results.last_observations);
+            *seed = next_seed;
             task.reset(next_seed);
         }
         task.observe(&mut results.observations);
@@ -41,7 +45,8 @@ impl Slot {
 impl Batch {
     /// A batch of tasks of the same kind and place; at least one. The tasks must be reset before the first step.
     pub fn new(tasks: impl IntoIterator<Item = impl Task + 'static>) -> Self {
-        let slots = tasks.into_iter().map(|task| Slot { results: Results::of(&task), task: Box::new(task) });
+        let slots =
+            tasks.into_iter().map(|task| Slot { results: Results::of(&task), seed: 0, task: Box::new(task) });
         let slots: Vec<Slot> = slots.collect();
         Self { is_parallel: slots.len() > 1, slots, pool: None, is_autoreset: true }
     }
@@ -127,9 +132,15 @@ impl Batch {
         Ok(Results::joined(self.slots.iter().map(|slot| &slot.results)))
     }
 
-    /// The state of one task as bytes.
+    /// The seed of the present episode of one task; 0 before its first reset.
+    pub fn seed(&self, index: usize) -> u64 {
+        self.slots[index].seed
+    }
+
+    /// The state of one task as bytes, with the seed of its episode.
     pub fn snapshot(&mut self, index: usize) -> Vec<u8> {
-        self.slots[index].task.snapshot()
+        let Slot { task, seed, .. } = &mut self.slots[index];
+        to_bytes(&(*seed, task.snapshot()))
     }
 
     /// Returns one task to the state of a snapshot of a task with the same settings. Returns its observations.
@@ -138,8 +149,10 @@ impl Batch {
     ///
     /// When the bytes are not such a snapshot. The task must be reset then.
     pub fn restore(&mut self, index: usize, snapshot: &[u8]) -> Result<&[f32], SnapshotError> {
-        let Slot { task, results } = &mut self.slots[index];
-        task.restore(snapshot)?;
+        let (saved, state): (u64, Vec<u8>) = from_bytes(snapshot).map_err(|_| SnapshotError::Damaged)?;
+        let Slot { task, seed, results } = &mut self.slots[index];
+        task.restore(&state)?;
+        *seed = saved;
         task.observe(&mut results.observations);
         Ok(&results.observations)
     }

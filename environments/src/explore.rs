@@ -80,7 +80,7 @@ impl Task for Explore {
 
     fn step(&mut self, actions: &[f32], results: &mut Results) {
         let twist = twist(&self.explorer.world.spec().driven().drive, actions);
-        let reward = self.explorer.advance(&twist);
+        let reward = if self.explorer.is_over() { 0.0 } else { self.explorer.advance(&twist) };
         let is_over = self.explorer.is_over();
         let map_every = self.explorer.place.settings.map_every;
         if is_over || self.explorer.episode.steps.is_multiple_of(map_every) {

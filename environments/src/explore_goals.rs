@@ -276,6 +276,11 @@ impl Task for ExploreGoals {
     }
 
     fn step(&mut self, actions: &[f32], results: &mut Results) {
+        let Results { rewards, terminated, truncated, .. } = results;
+        if self.explorer.is_over() {
+            (rewards[0], terminated[0], truncated[0]) = (0.0, false, true);
+            return;
+        }
         let choice = actions.first().map_or(0, |action| *action as usize).min(self.candidates.len() - 1);
         let begin_s = self.explorer.world.time_s();
         let reward = self.drive(choice);
@@ -283,7 +288,6 @@ impl Task for ExploreGoals {
         self.last_reward_per_s = if elapsed_s > 0.0 { reward / elapsed_s } else { 0.0 };
         self.last_goal = Some(self.candidates[choice].at);
         self.propose();
-        let Results { rewards, terminated, truncated, .. } = results;
         (rewards[0], terminated[0], truncated[0]) = (reward as f32, false, self.explorer.is_over());
     }
 

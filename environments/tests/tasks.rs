@@ -392,6 +392,37 @@ fn a_snapshot_of_goals_goes_on_bit_by_bit() {
 }
 
 #[test]
+fn an_exploring_task_that_is_over_stands_still() {
+    let place =
+        explore_place(ExploreSettings { max_steps: 30, beams: Some(60), ..ExploreSettings::default() });
+    let settings = Arc::new(GoalSettings::default());
+    let mut batches = [
+        Batch::new(vec![Explore::new(&place).unwrap()]),
+        Batch::new(vec![ExploreGoals::new(&place, &settings).unwrap()]),
+    ];
+    for (batch, action) in batches.iter_mut().zip([&[1.0, 0.3][..], &[1.0]]) {
+        batch.set_autoreset(false);
+        batch.reset(&[4]).unwrap();
+        let mut step = || batch.step(action, &[0]).unwrap();
+        let last = (0..31).map(|_| step()).find(|results| results.truncated[0]).unwrap();
+        let after = step();
+        assert_eq!((after.rewards[0], after.terminated[0], after.truncated[0]), (0.0, false, true));
+        assert_eq!((after.observations, after.info), (last.observations, last.info));
+    }
+}
+
+#[test]
+fn a_snapshot_has_the_seed_of_its_episode() {
+    let place = drive_place(DriveSettings::default());
+    let mut batch = Batch::new((0..2).map(|_| Drive::new(&place)));
+    batch.reset(&[7, 8]).unwrap();
+    let snapshot = batch.snapshot(1);
+    batch.reset(&[9, 10]).unwrap();
+    batch.restore(0, &snapshot).unwrap();
+    assert_eq!([batch.seed(0), batch.seed(1)], [8, 10]);
+}
+
+#[test]
 fn choices_are_whole_numbers() {
     let mut batch = Batch::new(goal_tasks(2, 3000));
     batch.reset(&[1, 2]).unwrap();

@@ -279,6 +279,7 @@ class _Single(gymnasium.Env):
     def restore(self, snapshot: bytes, *, allow_other_build: bool = False) -> Any:
         """Return to a snapshot of an environment with the same settings; returns the observation."""
         restored = self.batch.restore(0, snapshot, allow_other_build=allow_other_build)
+        self._world_seed = self.batch.seed(0)
         self._was_reset = True
         return _split(self._parts, restored[0])
 
@@ -289,7 +290,6 @@ class _Single(gymnasium.Env):
         memo[id(self)] = other
         other.spec = self.spec
         other._np_random, other._np_random_seed = copy.deepcopy(self._np_random, memo), self._np_random_seed
-        other._world_seed = self._world_seed
         if snapshot is not None:
             other.restore(snapshot)
         return other
@@ -433,6 +433,7 @@ class _Vector(gymnasium.vector.VectorEnv):
     def restore(self, index: int, snapshot: bytes, *, allow_other_build: bool = False) -> Any:
         """Return one environment to a snapshot; returns its observation."""
         restored = self.batch.restore(index, snapshot, allow_other_build=allow_other_build)
+        self._world_seeds[index] = self.batch.seed(index)
         return _split(self._parts, restored[0])
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Any:

@@ -19,11 +19,28 @@ pub(crate) struct Forecast {
 
 type Mask<'py> = Bound<'py, PyArray2<u8>>;
 
-/// A time as seconds: a number, or an object with the method `timestamp`, as a `datetime`.
-fn seconds(time: &Bound<'_, PyAny>) -> PyResult<f64> {
-    match time.extract() {
-        Ok(seconds) => Ok(seconds),
-        Err(_) => time.call_method0("timestamp")?.extract(),
+impl Forecast {
+    /// A time as seconds: a number, or an object with the method `timestamp`, as a `datetime`. `ValueError`: it is NaN, or
+    /// the place has no hours and knows no `datetime`.
+    fn seconds(&self, time: &Bound<'_, PyAny>) -> PyResult<f64> {
+        let time_s: f64 = match time.extract() {
+            Ok(time_s) => time_s,
+            Err(_) => {
+                let time_s = time.call_method0("timestamp")?.extract()?;
+                if let Some(why) = self.forecast.why_undated() {
+                    return Err(value_error(format!(
+                        "the state knows no hours ({why}): give a time in seconds, as `now`, which is {}",
+                        self.now()
+                    )));
+                }
+                time_s
+            }
+        };
+        if time_s.is_nan() {
+            Err(value_error("the time is NaN; it must be a number of seconds"))
+        } else {
+            Ok(time_s)
+        }
     }
 }
 
@@ -71,7 +88,7 @@ impl Forecast {
         py: Python<'py>,
         time: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let time_s = seconds(time)?;
+        let time_s = self.seconds(time)?;
         let map = py.detach(|| self.forecast.map(time_s));
         grid(py, map.frame(), map.cells().to_vec())
     }
@@ -79,7 +96,7 @@ impl Forecast {
     /// The probability that the cell at a point (m) is blocked at a time; None where nothing was ever seen.
     fn at(&self, x: f64, y: f64, time: &Bound<'_, PyAny>) -> PyResult<Option<f64>> {
         let cell = self.forecast.mapper().frame().cell_at(&Point2::new(x, y));
-        Ok(self.forecast.blocked(cell, seconds(time)?))
+        Ok(self.forecast.blocked(cell, self.seconds(time)?))
     }
 
     /// The doors that were found, a dict for each, with the number `id`, the ends of the `closed` leaf (m), `is_open` when last seen,
@@ -93,7 +110,7 @@ impl Forecast {
         py: Python<'py>,
         time: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Vec<Bound<'py, PyDict>>> {
-        let time_s = time.map_or(Ok(self.forecast.now_s()), seconds)?;
+        let time_s = time.map_or(Ok(self.forecast.now_s()), |time| self.seconds(time))?;
         let (calendar, epoch_s) = (self.forecast.calendar(), self.forecast.mapper().epoch_s());
         let dict = |(id, door): (u32, &mapper::Door)| {
             let (dict, seen) = (PyDict::new(py), &door.statistics);
@@ -118,7 +135,7 @@ impl Forecast {
 
     /// The speed mask and the keepout mask of Nav2 at a time, 0 to 100, shape (rows, columns).
     fn masks<'py>(&self, py: Python<'py>, time: &Bound<'py, PyAny>) -> PyResult<(Mask<'py>, Mask<'py>)> {
-        let time_s = seconds(time)?;
+        let time_s = self.seconds(time)?;
         let [speed, keepout] = py.detach(|| self.forecast.masks(time_s));
         let [speed, keepout] = [speed, keepout].map(|mask| grid(py, mask.frame(), mask.cells().to_vec()));
         Ok((speed?, keepout?))

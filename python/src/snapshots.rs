@@ -10,7 +10,7 @@ use robot::BUILD;
 use xxhash_rust::xxh3::xxh3_64;
 
 /// The version of the format; count up when the layout of a state changes.
-const VERSION: u32 = 4;
+const VERSION: u32 = 5;
 const KIND: usize = 8;
 /// The kind, and the build of the program.
 const HEADER: usize = KIND + BUILD.len();

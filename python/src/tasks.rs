@@ -301,7 +301,14 @@ impl Batch {
         rows_array(py, poses_of(self.batch.task(environment).fleet())?)
     }
 
-    /// The state of an environment as bytes.
+    /// The seed of the present episode of an environment; 0 before its first reset.
+    #[pyo3(signature = (environment = 0))]
+    fn seed(&self, #[pyo3(from_py_with = index)] environment: usize) -> PyResult<u64> {
+        self.check(environment)?;
+        Ok(self.batch.seed(environment))
+    }
+
+    /// The state of an environment as bytes, with the seed of its episode.
     #[pyo3(signature = (environment = 0))]
     fn snapshot<'py>(
         &mut self,

@@ -90,7 +90,7 @@ def test_a_vector_environment_has_the_bits_of_single_ones(name):
 @pytest.mark.parametrize("name", NAMES)
 def test_snapshots_and_pictures(name):
     env = gymnasium.make(name, render_mode="rgb_array", **SMALL[name]).unwrapped
-    env.reset(seed=1)
+    world_seed = env.reset(seed=1)[1]["world_seed"]
     for step in range(5):
         env.step(action(0, step, name))
     snapshot, picture = env.snapshot(), env.render()
@@ -101,7 +101,14 @@ def test_snapshots_and_pictures(name):
     env.restore(snapshot)
     np.testing.assert_array_equal(env.render(), picture)
     for step in range(5, 10):
-        np.testing.assert_array_equal(flat(env.step(action(0, step, name))[0]), expected[step - 5])
+        observation, _, _, _, info = env.step(action(0, step, name))
+        np.testing.assert_array_equal(flat(observation), expected[step - 5])
+        assert info["world_seed"] == world_seed
+    many = gymnasium.make_vec(name, num_envs=2, **SMALL[name]).unwrapped
+    many.reset(seed=5)
+    many.restore(1, snapshot)
+    info = many.step(np.stack([action(0, 5, name)] * 2))[4]
+    assert info["world_seed"][1] == world_seed != info["world_seed"][0]
     with pytest.raises(curious.SnapshotError):
         env.restore(snapshot[:-3])
 

@@ -1,4 +1,4 @@
-"""A place at another time, from a state of `map_log`, which `.ci/python` puts beside this file."""
+"""A place at another time, from states of `map_log` and of `four_rooms`, which `.ci/python` puts beside this file."""
 
 import pathlib
 from datetime import datetime, timedelta, timezone
@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 STATE = pathlib.Path(__file__).with_name("place.state")
+UNDATED = STATE.with_name("undated.state")
 
 
 def test_the_map_at_a_time():
@@ -42,3 +43,21 @@ def test_what_is_no_state_is_an_error(tmp_path):
         curious.Forecast(other)
     with pytest.raises(AttributeError, match="timestamp"):
         curious.Forecast(STATE).probability("Tue 17:10")
+
+
+def test_what_is_no_time_is_an_error():
+    dated, undated = curious.Forecast(STATE), curious.Forecast(UNDATED)
+    assert dated.zone == "UTC" and undated.zone is None
+    calls = [
+        lambda forecast, time: forecast.probability(time),
+        lambda forecast, time: forecast.at(0.0, 0.0, time),
+        lambda forecast, time: forecast.doors(time),
+        lambda forecast, time: forecast.masks(time),
+    ]
+    for call in calls:
+        for forecast in (dated, undated):
+            call(forecast, forecast.now + 60.0)
+            with pytest.raises(ValueError, match="the time is NaN"):
+                call(forecast, float("nan"))
+        with pytest.raises(ValueError, match=r"the state knows no hours .* give a time in seconds, as `now`, which is \d+"):
+            call(undated, datetime(2026, 1, 1, tzinfo=timezone.utc))

@@ -27,7 +27,7 @@ const PROGRAMS: [Program; 8] = [
             ("--strategy", "clever"),
             ("--purpose", "fame"),
             ("--patrol", "0"),
-            ("--battery", "0"),
+            ("--battery", "59s"),
             ("--speed", "0"),
             ("--pose", "guessed"),
             ("--estimator", "guess"),
