@@ -86,3 +86,37 @@ impl Recovery {
         );
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Matrix3;
+
+    /// The odometry jumps at 3 s, and again at 7 s; the pose is found from `found_s` on.
+    fn displaced(found_s: f64) -> Recovery {
+        let mut recovery = Recovery::default();
+        for second in 0..10 {
+            let time_s = f64::from(second);
+            let jumps = f64::from(u8::from(second >= 3) + u8::from(second >= 7));
+            let is_found = second < 3 || time_s >= found_s;
+            let state = if is_found { PoseState::Tracking } else { PoseState::Lost };
+            let (pose, covariance) = (Isometry2::identity(), Matrix3::identity());
+            let estimate = PoseEstimate { pose, covariance, support: 1.0, state };
+            recovery.observe(time_s, &estimate, &pose, &interfaces::pose(jumps, 0.0, 0.0));
+        }
+        recovery.finish();
+        recovery
+    }
+
+    #[test]
+    fn every_displacement_is_recovered_or_not() {
+        for (found_s, times_s, not_recovered) in
+            [(5.0, vec![2.0, 0.0], 0), (9.0, vec![2.0], 1), (20.0, vec![], 2)]
+        {
+            let mut all = Recovery::default();
+            (0..2).for_each(|_| all.add(&displaced(found_s)));
+            assert_eq!(all.times_s, [times_s.clone(), times_s].concat());
+            assert_eq!((all.not_recovered, all.displacements()), (2 * not_recovered, 4));
+        }
+    }
+}
