@@ -6,10 +6,9 @@ use crate::constants::{
 };
 use crate::estimate::{Localized, PoseEstimate, PoseState};
 use crate::localizer::PosePrior;
-use crate::matcher::in_frame;
 use crate::openings::has_opening;
 use crate::settings::LocalizerSettings;
-use crate::trajectory::{TrajectoryFinder, TrajectorySettings};
+use crate::trajectory::{TrajectoryFinder, TrajectorySettings, in_frame};
 use interfaces::{CellState, Grid, LaserReading, SettingsError, heading_rad};
 use nalgebra::{Isometry2, Matrix3, Vector2};
 

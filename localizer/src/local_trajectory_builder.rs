@@ -8,7 +8,6 @@
 
 use crate::deskew::Deskew;
 use crate::faults::{Fault, FaultFinder};
-use crate::matcher::in_frame;
 use crate::motion::{Motion, Predicted};
 use crate::motion_prior::MotionPrior;
 use crate::placement::shifted;
@@ -34,8 +33,8 @@ pub(crate) trait ScanMatcher<C> {
 pub(crate) struct Matched<F> {
     /// How far the robot was from the last pose of the track, as the scan shows: x, y (m) and heading (rad).
     pub(crate) begin: Vector3<f64>,
-    /// The covariance of the pose by the scan alone, if the odometry can learn from the motion.
-    pub(crate) reliable: Option<Matrix3<f64>>,
+    /// Whether the odometry can learn from the motion.
+    pub(crate) is_reliable: bool,
     /// Whether the odometry is an outlier, as a scan shows that supports the pose.
     pub(crate) is_outlier: Option<bool>,
     pub(crate) found: F,
@@ -120,8 +119,8 @@ impl<M> LocalTrajectoryBuilder<M> {
         if let Some(is_outlier) = matched.is_outlier {
             self.motion_prior.judge(is_outlier);
         }
-        if let Some(covariance) = matched.reliable {
-            self.motion_prior.learn(&scan.measured, &motion, &in_frame(&covariance, &before));
+        if matched.is_reliable {
+            self.motion_prior.learn(&scan.measured, &motion);
             // The noise of the odometry within a scan bends its walls. The matched motion does not.
             if reading.scan.sweep_s > 0.0 {
                 scan.points = self.deskew.update(&mut scan.reading, reading, &motion, scan.elapsed_s);

@@ -4,7 +4,7 @@
 //! a second scan (as Segal, Haehnel & Thrun 2009 use surfaces on both sides), the kernel of Geman & McClure (1987), and
 //! a prior from odometry.
 
-use crate::constants::{LOOSE_STD, MAX_STEPS, MIN_KERNEL, SPURIOUS, STEP, SURFEL_STD_M};
+use crate::constants::{MAX_STEPS, MIN_KERNEL, STEP, SURFEL_STD_M};
 use crate::placement::Placement;
 use crate::scan_points::ScanPoint;
 use crate::spread::Spread;
@@ -62,20 +62,6 @@ pub(crate) struct Match {
     pub(crate) beam_covariance: Matrix3<f64>,
     /// The mean square of the residuals over their expectation; about 1 for a good match.
     pub(crate) residual_ratio: f64,
-}
-
-impl Match {
-    /// The covariance of the pose by the scan alone. Directions that the scan does not fix stay free: of all that a scan says,
-    /// a small share comes from normals that are a little off.
-    pub(crate) fn scan_covariance(&self) -> Option<Matrix3<f64>> {
-        let scan = &self.scan_information;
-        let off = SPURIOUS * (scan[(0, 0)] + scan[(1, 1)]);
-        let eigen = (scan - Matrix3::from_diagonal(&Vector3::new(off, off, 0.0))).symmetric_eigen();
-        let values = eigen.eigenvalues.map(|value| value.max(0.0));
-        let fixed = eigen.eigenvectors * Matrix3::from_diagonal(&values) * eigen.eigenvectors.transpose();
-        let free = LOOSE_STD.covariance().try_inverse()?;
-        Some((fixed + free).try_inverse()? * self.residual_ratio.max(1.0))
-    }
 }
 
 /// The sums of the normal equations.
@@ -262,13 +248,6 @@ fn accumulate(
         sums.weight = sums.points;
     }
     sums
-}
-
-/// An information matrix, or a covariance, of shifts along the axes of a map, as one along the axes of a frame with this pose.
-pub(crate) fn in_frame(matrix: &Matrix3<f64>, frame: &Isometry2<f64>) -> Matrix3<f64> {
-    let (cos, sin) = (frame.rotation.re, frame.rotation.im);
-    let turn = Matrix3::new(cos, -sin, 0.0, sin, cos, 0.0, 0.0, 0.0, 1.0);
-    turn.transpose() * matrix * turn
 }
 
 /// The difference of two poses: x, y, and the heading in (−π, π].

@@ -4,7 +4,7 @@ use crate::calibration::Calibration;
 use crate::constants::{DISTRUST_SCANS, MIN_MOTION};
 use crate::motion::Motion;
 use crate::settings::OdometryTrust;
-use nalgebra::{Isometry2, Matrix3};
+use nalgebra::Isometry2;
 
 /// The odometry of a robot.
 #[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
@@ -49,7 +49,8 @@ impl MotionPrior {
     /// The motion since the last reading, as the odometry measured it.
     pub(crate) fn measure(&mut self, odometry: &Isometry2<f64>) -> Isometry2<f64> {
         let measured = self.last.replace(*odometry).unwrap_or(*odometry).inv_mul(odometry);
-        self.exists |= !MIN_MOTION.contains(&self.origin.get_or_insert(*odometry).inv_mul(odometry));
+        let since_origin = self.origin.get_or_insert(*odometry).inv_mul(odometry);
+        self.exists |= !MIN_MOTION.contains(&since_origin);
         measured
     }
 
@@ -68,14 +69,9 @@ impl MotionPrior {
         self.distrust = if is_outlier { DISTRUST_SCANS } else { self.distrust.saturating_sub(1) };
     }
 
-    /// Learns the gains from a measured and a matched motion, and the covariance of the match by the scan alone.
-    pub(crate) fn learn(
-        &mut self,
-        measured: &Isometry2<f64>,
-        matched: &Isometry2<f64>,
-        covariance: &Matrix3<f64>,
-    ) {
-        self.calibration.learn(measured, matched, covariance);
+    /// Learns the gains from a measured and a matched motion.
+    pub(crate) fn learn(&mut self, measured: &Isometry2<f64>, matched: &Isometry2<f64>) {
+        self.calibration.learn(measured, matched);
     }
 }
 

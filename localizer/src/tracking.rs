@@ -19,8 +19,6 @@ pub(crate) struct Tracked {
     pub(crate) covariance: Matrix3<f64>,
     /// The covariance of the pose of a beam, in the mean over the scan.
     pub(crate) beam_covariance: Matrix3<f64>,
-    /// The covariance of the pose by the scan alone; `None` without a match, or where it fixes nothing.
-    pub(crate) scan_covariance: Option<Matrix3<f64>>,
     pub(crate) support: Support,
     /// What lies in place fixes the pose, though much of the view does not.
     pub(crate) stayed: bool,
@@ -38,7 +36,6 @@ impl Tracked {
             placement,
             covariance,
             beam_covariance,
-            scan_covariance: None,
             support,
             stayed: false,
             follower: None,
@@ -121,8 +118,7 @@ fn tracked<M: ChangingMap>(scene: &MatchScene<M>, found: &Match) -> Tracked {
     let honest =
         |covariance: Matrix3<f64>| covariance * found.residual_ratio.max(1.0) + MODEL_STD.covariance();
     let covariances = [inverse, found.beam_covariance].map(honest);
-    let scan_covariance = found.scan_covariance();
-    Tracked { scan_covariance, ..Tracked::new(found.placement, covariances, scene.judge(&found.placement)) }
+    Tracked::new(found.placement, covariances, scene.judge(&found.placement))
 }
 
 #[cfg(test)]

@@ -40,6 +40,7 @@ mod submap_matcher;
 
 pub use distance_scale::DistanceScale;
 pub use line_map::{LineFit, LineMap, LineMatcher};
+pub(crate) use matching::in_frame;
 pub use residual::Residual;
 pub use settings::TrajectorySettings;
 pub(crate) use submap_matcher::SubmapMatcher;

@@ -7,6 +7,7 @@ mod chunk;
 mod fields;
 mod files;
 mod inventory;
+mod kind;
 mod mcap;
 mod message;
 mod messages;

@@ -72,7 +72,5 @@ pub(crate) const FROZEN_MOTION: Spread = Spread::of_motion(0.01);
 pub(crate) const LEARNED_MOTIONS: f64 = 300.0;
 /// Minimum motion that says something about the gains.
 pub(crate) const LEARNED_MOTION: Spread = Spread { m: 0.01, rad: 0.005 };
-/// A scan that fixes the position along the motion less well than this, m, says nothing about the gain of the distance.
-pub(crate) const FIXED_STD_M: f64 = 0.5;
 /// Errors of a matched motion, from scan to scan and between keyframes: those of two matches.
 pub(crate) const MOTION_STD: Spread = Spread { m: 0.004, rad: 0.002 };

@@ -67,7 +67,6 @@ impl MapMatcher {
     pub(super) fn accept<M: ChangingMap>(&mut self, step: &mut Step<M>, tracked: &Tracked) {
         (step.track.pose, step.track.covariance) = (tracked.placement.pose, tracked.covariance);
         step.found.begin += tracked.placement.begin();
-        step.found.scan_covariance = tracked.scan_covariance;
         step.found.follower = tracked.follower;
         if tracked.support.share() >= MIN_SUPPORT {
             self.accepted_support = MIN_SUPPORT;

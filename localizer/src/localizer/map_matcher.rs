@@ -52,8 +52,6 @@ pub(super) struct MapFound {
     pub(super) is_outlier: Option<bool>,
     /// How far the robot was from its last pose, as the scan shows: x, y (m) and heading (rad).
     pub(super) begin: Vector3<f64>,
-    /// The covariance of the pose by the scan alone, where the scan supports the pose.
-    pub(super) scan_covariance: Option<Matrix3<f64>>,
     /// Whether the scan may enter the line map.
     pub(super) learns: bool,
 }
@@ -233,12 +231,11 @@ impl<'a, M: ChangingMap> ScanMatcher<Around<'a, M>> for MapMatcher {
             self.relocalization.end_wide();
         }
         let is_reliable = was_tracking && self.state == State::Tracking;
-        let reliable = found.scan_covariance.filter(|_| is_reliable);
         if scan.fault.is_some() && self.state == State::Tracking {
             self.on(Event::Unsupported);
             found.learns = false;
         }
-        Matched { begin: found.begin, reliable, is_outlier: found.is_outlier, found }
+        Matched { begin: found.begin, is_reliable, is_outlier: found.is_outlier, found }
     }
 
     fn insert(&mut self, scan: &IncomingScan, track: &Track, found: &MapFound, _: Around<'a, M>) {

@@ -5,11 +5,11 @@ use super::correlation::{Correlated, Correlation};
 use super::far_scan::matched_at;
 use super::graph::{Edge, EdgeKind, PoseGraph};
 use super::keyframe::Keyframe;
+use super::matching::in_frame;
 use crate::constants::{
     CHAIN_KEYFRAMES, CHAIN_M, CHAIN_RESPONSE, CHAIN_ROUNDS, CORRELATED, CORRELATED_KEYFRAMES, MAX_CHAINS,
     MIN_CHAIN, SPARSE,
 };
-use crate::matcher::in_frame;
 use rayon::prelude::*;
 use std::ops::Range;
 

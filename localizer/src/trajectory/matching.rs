@@ -1,19 +1,26 @@
 //! What matches of scans and of submaps share: gates, covariances, and what a match says.
 
 use super::submap::{Agreement, agreement};
-use crate::constants::{EXPECTED, JUDGED_M, MIN_NOISE_M, STDS};
+use crate::constants::{EXPECTED, JUDGED_M, LOOSE_STD, MIN_NOISE_M, SPURIOUS, STDS};
 use crate::match_scene::hit_std_m;
 use crate::matcher::{Gates, Match, Prior, align, difference};
 use crate::scan_points::ScanPoint;
 use crate::spread::Spread;
 use crate::surfel_map::SurfelMap;
-use nalgebra::{Isometry2, Matrix3};
+use nalgebra::{Isometry2, Matrix3, Vector3};
 
 /// The gates of a match of scans with this noise.
 pub(super) fn gates(noise_m: f64, first_m: f64) -> Gates {
     let noise_m = noise_m.max(MIN_NOISE_M);
     let last_m = STDS * hit_std_m(noise_m);
     Gates { noise_m, first_m: first_m.min(JUDGED_M).max(last_m), last_m, by_rates: false }
+}
+
+/// An information matrix of shifts along the axes of a map, as one along the axes of a frame with this pose.
+pub(crate) fn in_frame(information: &Matrix3<f64>, frame: &Isometry2<f64>) -> Matrix3<f64> {
+    let (cos, sin) = (frame.rotation.re, frame.rotation.im);
+    let turn = Matrix3::new(cos, -sin, 0.0, sin, cos, 0.0, 0.0, 0.0, 1.0);
+    turn.transpose() * information * turn
 }
 
 /// Matches points with a map, from a pose that is uncertain by this much.
@@ -31,9 +38,17 @@ pub(super) fn fit(
     Some((found, agreement))
 }
 
-/// The information of a match, with the errors of submaps.
+/// The information of a match, with the errors of submaps. Directions that the scan does not fix stay free:
+/// of all that a scan says, a small share comes from normals that are a little off.
 pub(super) fn information_of(found: &Match, std: Spread) -> Option<Matrix3<f64>> {
-    (found.scan_covariance()? + std.covariance()).try_inverse()
+    let scan = &found.scan_information;
+    let off = SPURIOUS * (scan[(0, 0)] + scan[(1, 1)]);
+    let eigen = (scan - Matrix3::from_diagonal(&Vector3::new(off, off, 0.0))).symmetric_eigen();
+    let values = eigen.eigenvalues.map(|value| value.max(0.0));
+    let fixed = eigen.eigenvectors * Matrix3::from_diagonal(&values) * eigen.eigenvectors.transpose();
+    let free = LOOSE_STD.covariance().try_inverse()?;
+    let spread = (fixed + free).try_inverse()? * found.residual_ratio.max(1.0);
+    (spread + std.covariance()).try_inverse()
 }
 
 /// The covariance of a motion between keyframes, from the motion by odometry with its covariance, and the information of

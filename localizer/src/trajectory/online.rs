@@ -2,10 +2,9 @@
 
 use super::TrajectoryFinder;
 use super::graph::{Edge, EdgeKind};
-use super::matching::fit;
+use super::matching::{fit, in_frame};
 use crate::constants::{FOUND_STD, NEW_GROUND_M, TURN_M};
 use crate::estimate::PoseState;
-use crate::matcher::in_frame;
 use crate::surfel_map::SurfelMap;
 use interfaces::heading_rad;
 use nalgebra::{Isometry2, Matrix3};

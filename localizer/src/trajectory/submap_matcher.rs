@@ -3,7 +3,7 @@
 use super::distance_scale::MeasuredMotion;
 use super::far_scan::{FarScan, matched_at};
 use super::keyframe::{Keyframe, filled};
-use super::matching::{gates, motion_spread};
+use super::matching::{gates, in_frame, motion_spread};
 use super::settings::TrajectorySettings;
 use super::submap::{Agreement, FinishedSubmap, GrowingSubmap, agreement};
 use crate::constants::{
@@ -13,7 +13,7 @@ use crate::constants::{
 };
 use crate::faults::Fault;
 use crate::local_trajectory_builder::{IncomingScan, Matched, ScanMatcher, Track};
-use crate::matcher::{Match, Prior, align, in_frame};
+use crate::matcher::{Match, Prior, align};
 use crate::motion::Motion;
 use crate::scan_points::ScanPoint;
 use crate::score_grid::ScoreGrid;
@@ -84,19 +84,18 @@ impl ScanMatcher<()> for SubmapMatcher {
             None => self.match_submap(scan, track),
         };
         let min_share = if far.is_some() { MIN_RESPONSE } else { FAIR_SHARE };
-        let (mut begin, mut agreement, mut reliable) = (Vector3::zeros(), 0.0, None);
+        let (mut begin, mut agreement, mut is_reliable) = (Vector3::zeros(), 0.0, false);
         if let Some(matched) = &matched {
             let Match { placement, information, .. } = &matched.found;
             (begin, track.pose) = (placement.begin(), placement.pose);
             track.covariance =
                 information.try_inverse().unwrap_or_else(|| FOUND_STD.covariance()) + SCAN_STD.covariance();
             agreement = matched.agreement.share();
-            let is_reliable = !matched.is_below(MIN_AGREEMENT, MAJORITY);
-            reliable = matched.found.scan_covariance().filter(|_| is_reliable);
+            is_reliable = !matched.is_below(MIN_AGREEMENT, MAJORITY);
         }
         let is_supported = is_first || agreement >= min_share;
         let found = SubmapFound { matched, is_supported, is_frozen };
-        Matched { begin, reliable, is_outlier: None, found }
+        Matched { begin, is_reliable, is_outlier: None, found }
     }
 
     fn insert(&mut self, scan: &IncomingScan, track: &Track, found: &SubmapFound, (): ()) {

@@ -1,6 +1,6 @@
 //! Bags without scans of a plane: what they have instead, and what can be done.
 
-use super::inventory::Kind;
+use super::kind::Kind;
 use super::message::Topic;
 use crate::choice::listed;
 use std::sync::Arc;

@@ -2,7 +2,7 @@
 //! topic.
 
 use super::files::BagFile;
-use super::inventory::Kind;
+use super::kind::Kind;
 use super::message::{Message, Selection, Topic};
 use super::messages::Messages;
 use crate::error::LogError;

@@ -1,6 +1,7 @@
 //! What to use of a bag: which lasers, where they are mounted, and where the poses come from.
 
-use super::inventory::{Inventory, Kind, LaserTopic};
+use super::inventory::{Inventory, LaserTopic};
+use super::kind::Kind;
 use super::message::Topic;
 use super::motion::{self, Motion, MotionSource};
 use super::no_scans::no_scans;

@@ -1,6 +1,6 @@
 //! The second pass over a bag, and all later ones: reading by reading.
 
-use super::inventory::Kind;
+use super::kind::Kind;
 use super::message::Message;
 use super::motion::MotionSource;
 use super::order::Merged;
