@@ -252,7 +252,8 @@ fn a_visit_ends_with_its_goal() {
         weigh(&mut *strategy, &mapper, &mut weights);
         weights[2]
     };
-    let strategies: [fn(&AgentSettings) -> Box<dyn agent::Strategy>; 2] =
+    type New = fn(&AgentSettings) -> Box<dyn agent::Strategy>;
+    let strategies: [New; 2] =
         [|settings| Box::new(FreshMap::new(settings)), |settings| Box::new(OptimalRevisiting::new(settings))];
     for strategy in strategies {
         assert_eq!(worth(strategy(&settings), false), 0.0);
