@@ -16,15 +16,13 @@ const MIN_PERIOD_S: f64 = 1.0;
 /// between two of them.
 #[derive(Debug, Default)]
 pub(crate) struct Pace {
-    /// The length of the present step so far, m, its time, s, and its number of poses.
-    way_m: f64,
+    /// The motion of the present step so far, its time, s, and its number of poses.
+    motion: Isometry2<f64>,
     elapsed_s: f64,
     poses: usize,
     /// The number of steps with a motion, and of those at the speed of a robot.
     moving: usize,
     fast: usize,
-    /// The motion of the present step.
-    motion: Isometry2<f64>,
 }
 
 impl Pace {
@@ -37,13 +35,12 @@ impl Pace {
         self.motion.rotation.renormalize();
         self.elapsed_s += elapsed_s;
         self.poses += 1;
-        self.way_m = self.motion.translation.vector.norm();
-        let turn_rad = heading_rad(motion).abs();
+        let (way_m, turn_rad) = (self.motion.translation.vector.norm(), heading_rad(motion).abs());
         // The heading of a robot that stands drifts as fast as others turn in milliseconds: turns are not added up.
-        if self.way_m <= MIN_MOTION_M && turn_rad <= MIN_MOTION_RAD {
+        if way_m <= MIN_MOTION_M && turn_rad <= MIN_MOTION_RAD {
             return;
         }
-        let is_slow = self.way_m <= MIN_MPS * self.elapsed_s
+        let is_slow = way_m <= MIN_MPS * self.elapsed_s
             && turn_rad <= MIN_RADPS * elapsed_s
             && self.elapsed_s >= MIN_PERIOD_S * self.poses as f64;
         self.moving += 1;
