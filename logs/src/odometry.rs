@@ -55,8 +55,9 @@ impl Odometry {
         Self { is_as_written: true, ..Self::default() }
     }
 
-    /// Adds a pose as written.
-    pub fn add(&mut self, time_s: f64, pose: Isometry2<f64>) {
+    /// Adds a pose as written. Returns its step, in the frame of the pose before it, if the odometry starts anew with it: that is no
+    /// motion.
+    pub fn add(&mut self, time_s: f64, pose: Isometry2<f64>) -> Option<Isometry2<f64>> {
         let is_hole = !self.is_as_written && self.holes.add_pose(time_s);
         let elapsed_s = self.samples.last().map_or(0.0, |(last_s, _)| time_s - last_s);
         let before = self.written.filter(|_| !is_hole);
@@ -70,9 +71,10 @@ impl Odometry {
                 || step_rad > MIN_RESTART_RAD.max(MAX_RADPS * since_s));
         self.leaps = if is_leap { self.leaps + 1 } else { 0 };
         let is_restart = is_leap && self.leaps <= MAX_RESTARTS && !self.is_as_written;
-        if is_restart {
+        let restart = is_restart.then_some(motion);
+        if let Some(step) = restart {
             self.restarts += 1;
-            self.first_restart.get_or_insert((time_s, motion));
+            self.first_restart.get_or_insert((time_s, step));
             motion = Isometry2::identity();
         }
         self.first.get_or_insert(pose);
@@ -82,7 +84,7 @@ impl Odometry {
         if self.is_as_written {
             at = pose;
         }
-        if is_hole || is_restart {
+        if is_hole || restart.is_some() {
             self.origin = Some(pose * at.inverse());
         }
         self.pace.add(elapsed_s, &motion);
@@ -97,6 +99,7 @@ impl Odometry {
             self.keep(time_s, unjumped);
         }
         self.keep(time_s, at);
+        restart
     }
 
     fn keep(&mut self, time_s: f64, pose: Isometry2<f64>) {
@@ -129,8 +132,8 @@ impl Odometry {
         ))
     }
 
-    /// The first pose, as written: the origin of all others, up to the point where the odometry sets a new one.
-    pub(crate) fn first(&self) -> Isometry2<f64> {
+    /// The first pose, as written: the origin of all others, until the odometry starts anew; the identity without a pose.
+    pub fn first(&self) -> Isometry2<f64> {
         self.first.unwrap_or_default()
     }
 
@@ -310,7 +313,9 @@ mod tests {
         assert_eq!(driven(1.0, |_, x| [x, 0.0, 0.0]).restarts_note(0.0), None);
         // Without times, nothing is too fast.
         let mut untimed = Odometry::default();
-        (0..5).for_each(|step| untimed.add(0.0, interfaces::pose(f64::from(step), 0.0, 0.0)));
+        for step in 0..5 {
+            untimed.add(0.0, interfaces::pose(f64::from(step), 0.0, 0.0));
+        }
         assert_eq!(untimed.newest().0.translation.x, 4.0);
     }
 }

@@ -77,9 +77,10 @@ impl RawReadings for Readings {
                 Some(Line::Odometry { .. }) if self.rules.stands => {}
                 Some(Line::Odometry { time_s, pose, .. }) => {
                     let repeats_scan = self.rules.is_corrected && scan_pose == Some(pose);
-                    match repeats_scan || time_s == 0.0 && self.rules.has_origins {
-                        true => self.odometry.set_origin(pose),
-                        false => self.odometry.add(time_s, pose),
+                    if repeats_scan || time_s == 0.0 && self.rules.has_origins {
+                        self.odometry.set_origin(pose);
+                    } else {
+                        self.odometry.add(time_s, pose);
                     }
                 }
                 Some(_) => {}

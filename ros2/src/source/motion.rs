@@ -8,11 +8,6 @@ use nalgebra::{Isometry2, Isometry3};
 
 /// A pose that is older than a scan by more than this is not the pose of the scan, s.
 const LATEST_S: f64 = 0.1;
-/// A step that demands a higher speed than a robot's, and is longer than noise, is a reset of the odometry: m/s and rad/s, m and rad.
-const MAX_MPS: f64 = 3.0;
-const MAX_RADPS: f64 = 4.0;
-const MIN_RESET_M: f64 = 0.5;
-const MIN_RESET_RAD: f64 = 0.5;
 /// Odometry on a topic is used if no transform has come for this time, ns.
 const WAIT_FOR_TF_NS: i64 = 2_000_000_000;
 
@@ -22,12 +17,6 @@ struct PoseStream {
     poses: Odometry,
     first_ns: Option<i64>,
     last_ns: Option<i64>,
-    /// The last pose as it came.
-    last: Option<Isometry2<f64>>,
-    /// The first pose as it came: the origin of the summed motions.
-    first: Isometry2<f64>,
-    /// The same origin in the present frame of the odometry: a reset moves that frame.
-    origin: Isometry2<f64>,
 }
 
 impl PoseStream {
@@ -39,23 +28,10 @@ impl PoseStream {
             }
             *self = Self::default();
         }
-        let pose = flat(pose);
-        let reset = self
-            .last_ns
-            .zip(self.last)
-            .and_then(|(last_ns, last)| reset(&last.inv_mul(&pose), seconds_since(last_ns, ns)));
-        match self.last.replace(pose) {
-            None => (self.first, self.origin) = (pose, pose),
-            Some(last) if reset.is_some() => {
-                self.origin = pose * last.inverse() * self.origin;
-                self.poses.set_origin(pose);
-            }
-            Some(_) => {}
-        }
+        let elapsed_s = seconds_since(self.last_ns.unwrap_or(ns), ns);
         self.first_ns.get_or_insert(ns);
         self.last_ns = Some(ns);
-        self.poses.add(time_s(ns), pose);
-        reset
+        self.poses.add(time_s(ns), flat(pose)).map(|step| reset(&step, elapsed_s))
     }
 
     fn span_ns(&self) -> i64 {
@@ -122,9 +98,9 @@ impl Motions {
         mount: Isometry2<f64>,
         scan: Scan,
     ) -> (LaserReading, Isometry2<f64>, Isometry2<f64>) {
-        let PoseStream { poses, first, origin, .. } = self.used();
+        let poses = &self.used().poses;
         let reading = poses.reading(self.time_s(ns), mount, scan);
-        let (in_odom, in_first_odom) = (origin * reading.pose, first * reading.pose);
+        let (in_odom, in_first_odom) = (poses.origin() * reading.pose, poses.first() * reading.pose);
         (reading, in_odom, in_first_odom)
     }
 
@@ -142,16 +118,12 @@ impl Motions {
     }
 }
 
-/// What is said of a step of the odometry that no robot can drive; `None` for all others.
-fn reset(step: &Isometry2<f64>, elapsed_s: f64) -> Option<String> {
+/// What is said of a step of the odometry that is no motion.
+fn reset(step: &Isometry2<f64>, elapsed_s: f64) -> String {
     let (step_m, step_rad) = (step.translation.vector.norm(), heading_rad(step).abs());
-    let is_reset = step_m > (MAX_MPS * elapsed_s).max(MIN_RESET_M)
-        || step_rad > (MAX_RADPS * elapsed_s).max(MIN_RESET_RAD);
-    is_reset.then(|| {
-        format!(
-            "the odometry jumps by {step_m:.2} m and {step_rad:.2} rad in {elapsed_s:.2} s: it was reset, and the jump is no motion"
-        )
-    })
+    format!(
+        "the odometry jumps by {step_m:.2} m and {step_rad:.2} rad in {elapsed_s:.2} s: it was reset, and the jump is no motion"
+    )
 }
 
 fn seconds_since(origin_ns: i64, ns: i64) -> f64 {
