@@ -74,12 +74,12 @@ impl ScanMatcher<()> for SubmapMatcher {
         self.since_keyframe.rotation.renormalize();
         self.sees_nothing = scan.points.is_empty();
         (track.pose, track.covariance) = (scan.predicted.pose, scan.predicted.covariance);
-        // The first scan is right by definition.
-        let is_first = self.keyframes.is_empty();
+        // The first scan that shows a surface is right by definition: some lasers see nothing while they start.
+        let is_first = !self.knows_surfaces();
         let is_frozen = scan.fault == Some(Fault::Frozen) && !is_first;
         let far = if is_frozen { None } else { FarScan::of(scan) };
         let matched = match &far {
-            _ if is_frozen => None,
+            _ if is_frozen || is_first => None,
             Some(far) => self.match_far(far, scan),
             None => self.match_submap(scan, track),
         };
@@ -93,6 +93,10 @@ impl ScanMatcher<()> for SubmapMatcher {
             agreement = matched.agreement.share();
             is_reliable = !matched.is_below(MIN_AGREEMENT, MAJORITY);
         }
+        if is_first && !self.keyframes.is_empty() {
+            // The next scan is compared with this one: the motion since the begin says nothing about it.
+            track.covariance = Matrix3::zeros();
+        }
         let is_supported = is_first || agreement >= min_share;
         let found = SubmapFound { matched, is_supported, is_frozen };
         Matched { begin, is_reliable, is_outlier: None, found }
@@ -101,7 +105,8 @@ impl ScanMatcher<()> for SubmapMatcher {
     fn insert(&mut self, scan: &IncomingScan, track: &Track, found: &SubmapFound, (): ()) {
         let offset = self.offset(track);
         let is_far = !KEYFRAME.contains(&offset);
-        if self.keyframes.is_empty() || is_far && !found.is_frozen {
+        let is_first = self.keyframes.is_empty() || !self.knows_surfaces() && !self.sees_nothing;
+        if is_first || is_far && !found.is_frozen {
             let found = found.matched.as_ref().map(|matched| &matched.found);
             self.add_keyframe(scan, track, found);
         }
@@ -130,6 +135,11 @@ impl SubmapMatcher {
 
     pub(super) fn keyframes(&self) -> &[Keyframe] {
         &self.keyframes
+    }
+
+    /// Whether a keyframe shows a surface.
+    fn knows_surfaces(&self) -> bool {
+        self.keyframes.iter().any(|keyframe| !keyframe.points.is_empty())
     }
 
     /// The motions between keyframes that the odometry measured, and scans.

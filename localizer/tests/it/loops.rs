@@ -227,6 +227,30 @@ fn without_odometry_the_scans_are_enough() {
     assert!(error_m < 0.05, "{error_m} m");
 }
 
+/// Some lasers see nothing while they start.
+#[test]
+fn a_trip_begins_with_the_first_scan_that_shows_something() {
+    for has_odometry in [false, true] {
+        let mut corridor = Corridor::new([15.0, 11.0], Plan::Varied, 106);
+        let trip = trip_with(&mut corridor, 0.3, &TrajectorySettings::default(), 106, |reading| {
+            if reading.time_s < 5.0 * PERIOD_S {
+                reading.scan.ranges_m.fill(f32::NAN);
+            }
+            if !has_odometry {
+                reading.pose = Isometry2::identity();
+            }
+        });
+        trip.report("15 m after five scans that show nothing");
+        let tracked = trip.trajectory.poses.iter().filter(|pose| pose.state == PoseState::Tracking).count();
+        assert_eq!(tracked, trip.truth.len(), "odometry: {has_odometry}");
+        let errors_m = trip.errors_m(true);
+        let worst_m = errors_m[errors_m.len() - 1];
+        // Without odometry, nothing shows how far the robot moved before.
+        let unseen_m = 5.0 * SPEED_MPS * PERIOD_S;
+        assert!(worst_m < 0.05 + if has_odometry { 0.0 } else { unseen_m }, "{worst_m} m");
+    }
+}
+
 #[test]
 fn no_reading_has_no_trajectory() {
     let finder = TrajectoryFinder::new(&TrajectorySettings::default()).unwrap();

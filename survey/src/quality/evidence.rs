@@ -123,7 +123,8 @@ impl Evidence {
         let mut judged = Vec::with_capacity(scans.len());
         for (index, scan) in scans.iter().enumerate() {
             evidence.neighbor(scan, |seen| seen.after -= 1);
-            judged.push(evidence.judged(scan, index == 0));
+            let is_first = scans[..index].iter().all(|scan| scan.hits.is_empty());
+            judged.push(evidence.judged(scan, is_first));
             evidence.neighbor(scan, |seen| seen.before += 1);
             if let Some(old) = index.checked_sub(SAME_PASS) {
                 evidence.neighbor(&scans[old], |seen| seen.before -= 1);

@@ -101,6 +101,16 @@ fn hits_beside_each_other_do_not_hide_another_pass() {
     }
 }
 
+/// Scans that show nothing have no link, and neither has the first one that shows something.
+#[test]
+fn a_log_may_begin_with_scans_that_show_nothing() {
+    let scan = |hits: &[Point2<f64>]| PlacedScan::new(&Isometry2::identity(), &Point2::origin(), hits);
+    let (at, elsewhere) = (Point2::new(1.05, 0.05), Point2::new(9.05, 0.05));
+    let scans = [scan(&[]), scan(&[]), scan(&[at]), scan(&[at]), scan(&[elsewhere])];
+    let links: Vec<f64> = Evidence::judge(&scans).iter().map(|scan| scan.link).collect();
+    assert_eq!(links, [1.0, 1.0, 1.0, 1.0, 0.0]);
+}
+
 /// Too few scans say nothing.
 #[test]
 fn a_robot_that_rests_is_not_judged() {
