@@ -141,15 +141,16 @@ impl Agent {
     }
 
     /// The robot, at `pose`, leaves the goal that [`next_goal`](Self::next_goal) gave last, and no other goal follows for a
-    /// while: it goes to its dock. Ends the trajectory and the visit, and learns from them; nothing is learned from what the
-    /// robot sees until the next goal.
+    /// while: it goes to its dock. Ends the trajectory and the visit, if the robot is there, and learns from them; nothing is
+    /// learned from what the robot sees until the next goal.
     pub fn end_goal(&mut self, mapper: &Mapper, pose: &Isometry2<f64>) {
         self.learn(mapper);
+        let situation = Situation::new(mapper, pose, self.features);
         if let Some(strategy) = self.current.take() {
-            self.strategies[strategy].end(&Situation::new(mapper, pose, self.features));
+            self.strategies[strategy].end(&situation);
         }
         if let Some(unseen) = &mut self.unseen {
-            unseen.end(mapper);
+            unseen.end(&situation);
         }
     }
 

@@ -82,10 +82,17 @@ impl UnseenSpace {
         self.target = None;
     }
 
-    /// Ends the last look, if there is one.
-    pub(crate) fn end(&mut self, mapper: &Mapper) {
-        if self.target.is_some() {
+    /// Ends the last look, if there is one, where no other goal follows for a while. A robot that is called away before it is as
+    /// near as its sensor reaches has not looked.
+    pub(crate) fn end(&mut self, situation: &Situation) {
+        let (mapper, frame) = (situation.mapper, situation.mapper.frame());
+        let Some(Target { cell, .. }) = self.target else { return };
+        let distance_m = (frame.center(situation.cell()) - frame.center(frame.cell(cell))).norm();
+        let is_seen = mapper.states().cells()[cell] != CellState::Unknown;
+        if is_seen || distance_m <= self.range_m {
             self.update(mapper);
+        } else {
+            self.decline();
         }
     }
 

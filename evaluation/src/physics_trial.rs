@@ -159,10 +159,7 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
     pub fn turn(&mut self) -> Result<Turn<LaserReading, Twist>, ReadingError> {
         if let Some(command) = self.command.take() {
             match self.robot.pilot.rests_until_s() {
-                // The map is compared with the world also while the robot does not look.
-                Some(until_s) => self.world.rest_watched(until_s, ScheduledThings::EVERY_S, |world| {
-                    self.observer.scheduled.sample(world, &self.robot.mapper);
-                }),
+                Some(until_s) => self.rest(until_s),
                 None => self.world.act(&command),
             }
         }
@@ -180,6 +177,32 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
     pub fn run(&mut self, end_s: f64) -> Result<(), ReadingError> {
         while self.turn()?.reading.time_s < end_s && !self.robot.pilot.is_done() {}
         Ok(())
+    }
+
+    /// The same, where the measurements of things with a schedule end exactly at `end_s`: the rest of a robot that charges
+    /// then is cut off. The run cannot be continued.
+    ///
+    /// # Errors
+    ///
+    /// When the mapper refuses a reading.
+    pub fn run_exactly(&mut self, end_s: f64) -> Result<(), ReadingError> {
+        loop {
+            let ends_in_rest = self.robot.pilot.rests_until_s().is_some_and(|until_s| until_s > end_s);
+            if ends_in_rest && self.command.take().is_some() {
+                self.rest(end_s);
+                return Ok(());
+            }
+            if self.turn()?.reading.time_s >= end_s || self.robot.pilot.is_done() {
+                return Ok(());
+            }
+        }
+    }
+
+    /// Lets time pass. The map is compared with the world also while the robot does not look.
+    fn rest(&mut self, until_s: f64) {
+        self.world.rest_watched(until_s, ScheduledThings::EVERY_S, |world| {
+            self.observer.scheduled.sample(world, &self.robot.mapper);
+        });
     }
 
     /// The results so far.

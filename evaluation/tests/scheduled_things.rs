@@ -111,3 +111,20 @@ fn a_resting_robot_is_scored_every_minute() {
     let late_s = scores.detection_delay_s[1];
     assert!(late_s > 0.0 && late_s < 6600.0, "{late_s}");
 }
+
+/// Strategies are compared over the same time, whenever the robot rests.
+#[test]
+fn a_run_can_end_exactly_in_a_rest() {
+    let spec = world();
+    let settings = physics_trial::settings(&spec).unwrap();
+    for end_s in [7200.0, 20_000.0, 36_000.0] {
+        let agent = settings.agent(&Policy::default(), 1).unwrap();
+        let day = PatrolDay::new(agent, physics_trial::day(&spec).unwrap());
+        let pilot = settings.pilot(day, 1).unwrap();
+        let mut trial = PhysicsTrial::new(&spec, 1, &settings, None, pilot).unwrap();
+        trial.run_exactly(end_s).unwrap();
+        assert!((trial.world.time_s() - end_s).abs() < 0.2, "{} s", trial.world.time_s());
+        let scores = trial.results().scheduled.unwrap();
+        assert_eq!(scores.samples, (end_s / 60.0) as u64 + 1);
+    }
+}

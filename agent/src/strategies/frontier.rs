@@ -41,7 +41,7 @@ impl Strategy for Frontier {
     }
 
     fn end(&mut self, situation: &Situation) {
-        self.history.update(situation.mapper);
+        self.history.end(situation);
     }
 
     fn values(&mut self, mapper: &Mapper) -> Values<'_> {

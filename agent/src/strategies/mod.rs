@@ -77,8 +77,8 @@ pub trait Strategy: std::fmt::Debug + Send {
     fn decline(&mut self) {}
 
     /// The robot leaves the goal that was selected last, there or on the way, and no other goal follows for a while. A
-    /// strategy that remembers its goals ends the visit; if another goal follows at once, it does so in
-    /// [`weigh`](Self::weigh).
+    /// strategy that remembers its goals ends the visit, or forgets the goal if the robot is not there yet; if another goal
+    /// follows at once, it ends the visit in [`weigh`](Self::weigh).
     fn end(&mut self, _situation: &Situation) {}
 
     /// Everything that a goal changes and a later goal needs: what a state file holds of the strategy. `mapper` is that of

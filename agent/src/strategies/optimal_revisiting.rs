@@ -56,7 +56,7 @@ impl Strategy for OptimalRevisiting {
     }
 
     fn end(&mut self, situation: &Situation) {
-        self.history.update(situation.mapper);
+        self.history.end(situation);
     }
 
     fn values(&mut self, mapper: &Mapper) -> Values<'_> {

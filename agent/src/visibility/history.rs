@@ -35,15 +35,29 @@ impl ViewHistory {
     pub(crate) fn update(&mut self, mapper: &Mapper) -> Regions {
         let regions = self.visibility.update(mapper);
         self.set_frame(*mapper.frame());
-        if let Some(goal) = self.goal.take() {
-            for &region in self.visibility.seen_from(regions.of(goal)) {
-                for cell in regions.cells(region as usize) {
-                    let count = self.visits[cell].count.saturating_add(1);
-                    self.visits[cell] = Visits { count, time: mapper.time() };
-                }
+        self.end_visit(&regions, mapper.time());
+        regions
+    }
+
+    /// Ends the visit of the last goal, where no other goal follows for a while. On the way to its goal, the robot has
+    /// been called away: there was no visit.
+    pub(crate) fn end(&mut self, situation: &Situation) {
+        let mapper = situation.mapper;
+        let regions = self.visibility.update(mapper);
+        self.set_frame(*mapper.frame());
+        let is_there = |goal: &usize| regions.are_near(situation.cell(), mapper.frame().cell(*goal));
+        self.goal = self.goal.filter(is_there);
+        self.end_visit(&regions, mapper.time());
+    }
+
+    fn end_visit(&mut self, regions: &Regions, time: f64) {
+        let Some(goal) = self.goal.take() else { return };
+        for &region in self.visibility.seen_from(regions.of(goal)) {
+            for cell in regions.cells(region as usize) {
+                let count = self.visits[cell].count.saturating_add(1);
+                self.visits[cell] = Visits { count, time };
             }
         }
-        regions
     }
 
     fn set_frame(&mut self, frame: GridFrame) {

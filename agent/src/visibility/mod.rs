@@ -35,7 +35,6 @@ impl Visibility {
     }
 
     /// Applies the present map and returns its regions. Call it before views are computed. One pass over the map.
-    /// pass over the map.
     pub(crate) fn update(&mut self, mapper: &Mapper) -> Regions {
         let regions = Regions::new(*mapper.frame(), self.radius_m);
         if self.regions != Some(regions) {

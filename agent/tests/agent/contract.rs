@@ -235,20 +235,24 @@ fn what_follows_the_end_of_a_goal_belongs_to_no_strategy() {
 #[test]
 fn a_visit_ends_with_its_goal() {
     let settings = AgentSettings::default();
-    let worth = |mut strategy: Box<dyn agent::Strategy>, is_ended: bool| {
+    // The goal is called off, or the robot at the cell `x` leaves it.
+    let worth = |mut strategy: Box<dyn agent::Strategy>, goal: i32, leaves_at: Option<f64>| {
         let mut mapper = map(&[(0.0, &["....."])]);
-        let (pose, travel, mut weights) = (Isometry2::identity(), [1.0; 5], vec![0.0; 5]);
+        let pose = Isometry2::translation(leaves_at.unwrap_or(0.0), 0.0);
+        let (travel, mut weights) = ([1.0; 5], vec![0.0; 5]);
         let weigh = |strategy: &mut dyn agent::Strategy, mapper: &Mapper, weights: &mut [f64]| {
             let situation = Situation::new(mapper, &pose, Features::default()).with_travel(&travel);
             strategy.weigh(&situation, weights);
         };
         weigh(&mut *strategy, &mapper, &mut weights);
-        strategy.stay(Cell::new(0, 0));
+        strategy.stay(Cell::new(goal, 0));
         mapper.update(&reading(10.0, &["....."])).unwrap();
-        if is_ended {
-            strategy.end(&Situation::new(&mapper, &pose, Features::default()));
+        mapper.update(&reading(20.0, &[".    "])).unwrap();
+        match leaves_at {
+            Some(_) => strategy.end(&Situation::new(&mapper, &pose, Features::default())),
+            None => strategy.decline(),
         }
-        mapper.update(&reading(1000.0, &[".    "])).unwrap();
+        mapper.update(&reading(25.0, &[".    "])).unwrap();
         weigh(&mut *strategy, &mapper, &mut weights);
         weights[2]
     };
@@ -256,8 +260,14 @@ fn a_visit_ends_with_its_goal() {
     let strategies: [New; 2] =
         [|settings| Box::new(FreshMap::new(settings)), |settings| Box::new(OptimalRevisiting::new(settings))];
     for strategy in strategies {
-        assert_eq!(worth(strategy(&settings), false), 0.0);
-        assert!(worth(strategy(&settings), true) > 0.0);
+        let declined = worth(strategy(&settings), 4, None);
+        assert!(declined > 0.0);
+        // On the way, the robot was called away: nothing of the view from its goal was seen.
+        assert_eq!(worth(strategy(&settings), 4, Some(0.0)), declined);
+        for goal in [0, 4] {
+            let ended = worth(strategy(&settings), goal, Some(f64::from(goal)));
+            assert!(ended > 0.0 && ended < declined, "{ended} {declined}");
+        }
     }
 }
 

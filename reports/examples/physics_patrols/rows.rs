@@ -46,7 +46,8 @@ impl Run {
         let agent = settings.agent(&self.strategy, self.seed)?;
         let pilot = settings.pilot(PatrolDay::new(agent, day), self.seed)?;
         let mut trial = PhysicsTrial::new(&spec, self.seed, &settings, None, pilot)?;
-        trial.run(f64::from(self.days) * 86_400.0)?;
+        let end_s = f64::from(self.days) * 86_400.0;
+        trial.run_exactly(end_s)?;
         let results = trial.results();
         let scheduled = results.scheduled.context("nothing in the world has a schedule")?;
         let day = results.day.context("the robot has no day")?;
@@ -60,7 +61,7 @@ impl Run {
                 scheduled.missed,
                 scheduled.user_lost_s,
                 scheduled.trips_not_made,
-                day.patrol_share().unwrap_or(f64::NAN),
+                day.patrol_s / end_s,
                 f64::from(day.flat),
                 results.contacts.own_motion as f64,
             ],

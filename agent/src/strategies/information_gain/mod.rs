@@ -182,8 +182,13 @@ impl Strategy for InformationGain {
     }
 
     fn end(&mut self, situation: &Situation) {
-        let regions = self.visibility.update(situation.mapper);
-        self.reliability.end(situation.mapper, &mut self.visibility, &regions, situation.cell());
+        let (mapper, robot) = (situation.mapper, situation.cell());
+        let regions = self.visibility.update(mapper);
+        // On the way to its goal, the robot has been called away: that says nothing of the view from there.
+        if self.reliability.goal().is_some_and(|goal| !regions.are_near(robot, mapper.frame().cell(goal))) {
+            self.reliability.decline();
+        }
+        self.reliability.end(mapper, &mut self.visibility, &regions, robot);
     }
 
     fn values(&mut self, _: &Mapper) -> Values<'_> {

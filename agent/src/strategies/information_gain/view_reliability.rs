@@ -51,6 +51,11 @@ impl ViewReliability {
         self.visit = Some(Visit { goal, duration, watched });
     }
 
+    /// The index of the cell of the goal that is being visited.
+    pub(super) fn goal(&self) -> Option<usize> {
+        self.visit.as_ref().map(|visit| visit.goal)
+    }
+
     /// The last goal is not visited.
     pub(super) fn decline(&mut self) {
         self.visit = None;
