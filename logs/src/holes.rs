@@ -1,11 +1,11 @@
 //! Where the odometry of a log is missing while there are scans.
 
+use crate::times::LONGEST_PAUSE_S;
+
 /// The odometry is not missing for a shorter time than this, s.
 pub(crate) const LONGEST_GAP_S: f64 = 2.0;
 /// A gap this many times as long as the step before it is a hole: some logs have a pose every few seconds.
 const HOLE: f64 = 10.0;
-/// A longer gap is a jump of the clock, s.
-const LONGEST_HOLE_S: f64 = 86_400.0;
 /// In a pause of the recording there are no scans either, at least for this share of the gap: nothing else shows the motion in it.
 const MAX_SCANLESS: f64 = 0.5;
 
@@ -58,7 +58,7 @@ impl Holes {
         let (since_s, scan_s) = self.since_s.zip(self.scan_s)?;
         let (gap_s, scanless_s) = (time_s - since_s, self.scanless_s.max(time_s - scan_s));
         let is_missing =
-            gap_s > LONGEST_GAP_S && gap_s <= LONGEST_HOLE_S && scanless_s <= MAX_SCANLESS * gap_s;
+            gap_s > LONGEST_GAP_S && gap_s <= LONGEST_PAUSE_S && scanless_s <= MAX_SCANLESS * gap_s;
         is_missing.then_some(gap_s)
     }
 

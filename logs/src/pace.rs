@@ -9,8 +9,10 @@ use nalgebra::Isometry2;
 const MIN_MPS: f64 = 0.002;
 const MIN_RADPS: f64 = 0.005;
 const MIN_STEPS: usize = 100;
-/// Poses that are nearer in time than this, s, do not come in milliseconds: they would be more than 1000 per second.
-const MIN_PERIOD_S: f64 = 1.0;
+/// Poses that are nearer in time than this, s, do not come in milliseconds: they would be more than 250 per second.
+const MIN_PERIOD_S: f64 = 4.0;
+/// What is slower than this, m/s, is the drift of a robot that stands: no robot drives at 0.05 m/s.
+const DRIFT_MPS: f64 = 5e-5;
 
 /// Measures the speed of an odometry over steps that are longer than its drift: with many poses per second, a robot moves by less
 /// between two of them.
@@ -38,6 +40,10 @@ impl Pace {
         let (way_m, turn_rad) = (self.motion.translation.vector.norm(), heading_rad(motion).abs());
         // The heading of a robot that stands drifts as fast as others turn in milliseconds: turns are not added up.
         if way_m <= MIN_MOTION_M && turn_rad <= MIN_MOTION_RAD {
+            return;
+        }
+        if way_m < DRIFT_MPS * self.elapsed_s && turn_rad <= MIN_MOTION_RAD {
+            *self = Self { moving: self.moving, fast: self.fast, ..Self::default() };
             return;
         }
         let is_slow = way_m <= MIN_MPS * self.elapsed_s
@@ -97,7 +103,16 @@ mod tests {
     fn a_robot_that_stands_may_drift() {
         // Ten hours with a gyroscope that drifts by 1° per minute, also with a pose every 10 s.
         assert!(drifts(360_000, 10.0, [0.0, 3e-4]) && drifts(3600, 0.1, [0.0, 3e-4]));
-        // An estimation that drifts by 7 m in that time.
-        assert!(drifts(360_000, 10.0, [2e-4, 1e-4]));
+        // An estimation that drifts by 7 m in that time, also with a pose every two seconds.
+        assert!([10.0, 1.0, 0.5].map(|hz| drifts(36_000, hz, [2e-4, 1e-4])) == [true; 3]);
+        // One whose error is a random walk, with a pose every five seconds.
+        let mut random = 1_u64;
+        let mut pace = Pace::default();
+        for _ in 0..20_000 {
+            random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            let angle = (random >> 40) as f64;
+            pace.add(5.0, &interfaces::pose(2e-3 * angle.cos(), 2e-3 * angle.sin(), 0.0));
+        }
+        assert_eq!(pace.impossible(), None);
     }
 }

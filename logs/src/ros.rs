@@ -8,7 +8,7 @@ mod messages;
 mod scan;
 
 pub use frames::{Chain, Frames, flat, mounted};
-pub(crate) use frames::{is_base, is_odom, is_world};
+pub(crate) use frames::{can_be_base, is_base, is_odom, is_world};
 pub use messages::{
     Covariance, Header, LaserScan, OccupancyGrid, OccupancyGridUpdate, Odometry, Path, PointCloud2,
     PointField, Pose, PoseStamped, PoseWithCovariance, Rotation, Time, TransformStamped, Transforms,

@@ -27,11 +27,15 @@ const MIN_SHARE: f64 = 0.5;
 const MAX_WORSE: f64 = 0.1;
 /// Lasers beyond this number are not compared.
 const MAX_LASERS: usize = 8;
+/// Scans are of one laser if their numbers of beams differ by at most this share, and their first beams by this number of beams:
+/// some lasers turn at another speed each time.
+const MAX_OTHER_BEAMS: f64 = 0.2;
+const MAX_SHIFTED_BEAMS: f64 = 10.0;
 
 /// Compares the scans of a log with the first scan of the same laser that sees enough.
 #[derive(Debug, Default)]
 pub(crate) struct Standing {
-    first: Vec<(Isometry2<f64>, Vec<f32>)>,
+    first: Vec<(Isometry2<f64>, Scan)>,
     /// The number of scans without the first ones, of those that were compared, and of those that differ.
     scans: usize,
     compared: usize,
@@ -44,11 +48,11 @@ impl Standing {
         let ranges_m = &scan.ranges_m;
         let min_beams = MIN_BEAMS.min(ranges_m.len() / 2).max(1);
         let is_same =
-            |(known, first): &&(Isometry2<f64>, Vec<f32>)| known == mount && first.len() == ranges_m.len();
+            |(known, first): &&(Isometry2<f64>, Scan)| known == mount && are_of_one_laser(first, scan);
         let Some((_, first)) = self.first.iter().find(is_same) else {
             let valid = ranges_m.iter().filter(|range_m| is_valid(**range_m)).count();
             if self.first.len() < MAX_LASERS && valid >= min_beams {
-                self.first.push((*mount, ranges_m.clone()));
+                self.first.push((*mount, scan.clone()));
             } else {
                 self.scans += 1;
             }
@@ -56,8 +60,8 @@ impl Standing {
         };
         self.scans += 1;
         let (mut all, mut same) = (0_usize, 0_usize);
-        for (a, b) in first.iter().zip(ranges_m).filter(|(a, b)| is_valid(**a) && is_valid(**b)) {
-            let (a, b) = (f64::from(*a), f64::from(*b));
+        for (a, b) in same_directions(first, scan).filter(|(a, b)| is_valid(*a) && is_valid(*b)) {
+            let (a, b) = (f64::from(a), f64::from(b));
             all += 1;
             same += usize::from((a - b).abs() < SAME_M + SAME_SHARE * a);
         }
@@ -82,6 +86,25 @@ impl Standing {
     }
 }
 
+fn are_of_one_laser(first: &Scan, scan: &Scan) -> bool {
+    let [n, other] = [first, scan].map(|scan| scan.ranges_m.len() as f64);
+    let shift_rad = (first.angle_min_rad - scan.angle_min_rad).abs();
+    (n - other).abs() <= MAX_OTHER_BEAMS * n
+        && first.angle_increment_rad * scan.angle_increment_rad > 0.0
+        && shift_rad <= MAX_SHIFTED_BEAMS * first.angle_increment_rad.abs()
+}
+
+/// The ranges of two scans in the directions of the second one.
+fn same_directions(first: &Scan, scan: &Scan) -> impl Iterator<Item = (f32, f32)> {
+    let beams = scan.ranges_m.iter().enumerate();
+    beams.filter_map(|(beam, range_m)| {
+        let angle_rad = scan.angle_min_rad + beam as f64 * scan.angle_increment_rad;
+        let known = ((angle_rad - first.angle_min_rad) / first.angle_increment_rad).round();
+        let is_known = known >= 0.0 && known < first.ranges_m.len() as f64;
+        is_known.then(|| (first.ranges_m[known as usize], *range_m))
+    })
+}
+
 fn is_valid(range_m: f32) -> bool {
     range_m.is_finite() && range_m > 0.0
 }
@@ -89,14 +112,16 @@ fn is_valid(range_m: f32) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::f64::consts::TAU;
 
     /// Whether a laser seems to stand whose scans have these ranges.
     fn stands(scans: impl IntoIterator<Item = Vec<f32>>) -> bool {
         let mut standing = Standing::default();
         for ranges_m in scans {
+            // All around, whatever the number of beams.
             let scan = Scan {
                 angle_min_rad: 0.0,
-                angle_increment_rad: 0.01,
+                angle_increment_rad: TAU / ranges_m.len() as f64,
                 range_min_m: 0.0,
                 range_max_m: 80.0,
                 sweep_s: 0.0,
@@ -131,7 +156,38 @@ mod tests {
             (0..180).map(|beam| if beam % 20 == scan % 20 { 2.0 } else { f32::NAN }).collect::<Vec<f32>>()
         };
         assert!(!stands((0..40).map(few)));
-        // The number of beams is another one each time, as with a mount that changes.
-        assert!(!stands((0..40).map(|scan| vec![2.0; 180 + scan])));
+        // The mount is another one each time.
+        let mut standing = Standing::default();
+        for turn in 0..40 {
+            let scan = Scan {
+                angle_min_rad: 0.0,
+                angle_increment_rad: 0.01,
+                range_min_m: 0.0,
+                range_max_m: 80.0,
+                sweep_s: 0.0,
+                ranges_m: vec![2.0; 180],
+            };
+            standing.add(&interfaces::pose(0.0, 0.0, 0.1 * f64::from(turn)), &scan);
+        }
+        assert!(!standing.looks_so());
+    }
+
+    /// A laser in a square room of 6 m, 1 m from its middle, that moves by this much per scan, m; the number of its beams is another
+    /// one each time.
+    #[test]
+    fn a_laser_stands_also_if_its_number_of_beams_changes() {
+        let scans = |step_m: f64| {
+            (0..40).map(move |scan| {
+                let beams = 400 + (17 * scan) % 40;
+                let at_m = 1.0 + step_m * scan as f64;
+                let range_m = |beam: i32| {
+                    let (sin, cos) = (TAU * f64::from(beam) / f64::from(beams)).sin_cos();
+                    let ahead_m = if cos > 0.0 { 3.0 - at_m } else { 3.0 + at_m };
+                    (ahead_m / cos.abs()).min(3.0 / sin.abs()) as f32
+                };
+                (0..beams).map(range_m).collect()
+            })
+        };
+        assert!(stands(scans(0.0)) && !stands(scans(0.05)));
     }
 }

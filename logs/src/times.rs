@@ -1,7 +1,8 @@
 //! Times that make no sense. Clocks of robots are set while they run, and some programs write too few digits.
 
-/// Two scans are never farther apart than this, s.
-const LONGEST_PAUSE_S: f64 = 86_400.0;
+/// Two scans of a log are never farther apart than a month, s: a robot may rest for a weekend or a holiday, and a clock that was
+/// never set is wrong by years.
+pub(crate) const LONGEST_PAUSE_S: f64 = 30.0 * 86_400.0;
 /// Times that go back by less than this come from messages that were written in another order, s.
 const DISORDER_S: f64 = 60.0;
 /// The time between scans that have the time of the scan before, or an earlier one, s.
@@ -151,7 +152,7 @@ mod tests {
                 .collect();
             repaired(&raw_s)
         };
-        for (before, at) in [(-5e8, 0..30), (3600.0, 0..30), (1e9, 0..1), (2e5, 60..61), (-4000.0, 80..100)] {
+        for (before, at) in [(-5e8, 0..30), (3600.0, 0..30), (1e9, 0..1), (5e6, 60..61), (-4000.0, 80..100)] {
             let times = log(before, at.clone());
             assert!((times.begin_s - 1.7e9).abs() < 1e-3, "{before} {at:?}: {}", times.begin_s);
             let note = times.date_note().unwrap();
@@ -159,5 +160,16 @@ mod tests {
         }
         let note = "the date and the hours are those of the longest part between jumps of the clock (6.9 s of 9.9 s)";
         assert_eq!(log(-5e8, 0..30).date_note().as_deref(), Some(note));
+    }
+    #[test]
+    fn a_robot_may_rest_for_weeks() {
+        for days in [1.5, 3.0, 25.0] {
+            let raw_s = [1.7e9, 1.7e9 + 0.1, 1.7e9 + 0.2, 1.7e9 + 0.2 + 86_400.0 * days];
+            let times = repaired(&raw_s);
+            assert!(
+                (times.times_s[3] - 0.2 - 86_400.0 * days).abs() < 1e-6 && times.note.is_none(),
+                "{days}"
+            );
+        }
     }
 }

@@ -34,7 +34,7 @@ pub use localization::{ExactPoses, Localization};
 pub use messages::{Level, Message};
 pub use pilot::{GoalCount, NoPilot, Pilot, StrategyState};
 pub use robot::{Robot, Turn};
-pub use session::Session;
+pub use session::{Session, max_step_s};
 pub use settings::{LOCAL_STEPS, Settings, Source, default_mapper};
 pub use tour::Tour;
 

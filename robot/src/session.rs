@@ -3,6 +3,16 @@ use interfaces::LaserReading;
 /// The gap before a session whose distance in time is not known, s: none, but for the step to the next reading.
 const UNKNOWN_GAP_S: f64 = 1.0;
 
+/// The laser was silent between two scans that are farther apart than this number of usual steps: a log with one scan per meter has
+/// irregular steps, and is one view nevertheless.
+const SILENT_STEPS: f64 = 10.0;
+
+/// The longest time between two readings during which things are in view, s: that for which a body can hide them, `hiding_s`, and
+/// longer where readings are rare.
+pub fn max_step_s(hiding_s: f64, usual_step_s: f64) -> f64 {
+    hiding_s.max(SILENT_STEPS * usual_step_s)
+}
+
 /// The readings of one source in a row, and how their times continue those of the sessions before: the time of a map never
 /// goes back, though the clock of every source may start anew.
 #[derive(Clone, Copy, Debug, PartialEq)]

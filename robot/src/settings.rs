@@ -2,6 +2,7 @@ use crate::autonomous::{Autonomous, GoalSelector};
 use crate::localization::Localization;
 use crate::pilot::Pilot;
 use crate::robot::Robot;
+use crate::session::max_step_s;
 use agent::{Agent, AgentSettings, Policy};
 use controller::{Controller, DiffDrive, DiffDriveSettings};
 use interfaces::{CellState, Grid, GridFrame, LaserReading, PoseMode, Purpose, RandomStream, SettingsError};
@@ -22,9 +23,6 @@ pub const LOCAL_STEPS: u32 = 15;
 const NOISE_M: [f64; 2] = [0.01, 0.5];
 /// The range noise of a source that declares none, m: with exact poses, and with poses that have errors of some centimeters.
 const UNKNOWN_NOISE_M: [f64; 2] = [0.03, 0.06];
-/// Between readings that are farther apart, nothing was in view: this time, s, and this number of periods of the laser.
-const MAX_STEP_S: f64 = 2.0;
-const MAX_STEP_PERIODS: f64 = 3.0;
 
 /// What a source of readings says of itself and of its robot: a world file, a log, the parameters of a live robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -126,7 +124,7 @@ impl Settings {
             pose: source.pose,
             localizer: LocalizerSettings { range_noise_std_m: noise_m, ..LocalizerSettings::default() },
             switch: Switch::default(),
-            max_step_s: MAX_STEP_S.max(MAX_STEP_PERIODS * source.period_s),
+            max_step_s: max_step_s(HIDING_S, source.period_s),
         }
     }
 

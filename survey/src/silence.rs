@@ -3,14 +3,9 @@
 use crate::median::median;
 use localizer::TrajectoryPose;
 
-/// The laser was silent between two scans that are farther apart than this number of usual steps: a log with one scan per meter has
-/// irregular steps, and is one view nevertheless.
-const SILENT_STEPS: f64 = 10.0;
-
-/// The longest time between two scans during which things are in view, s: that for which a body can hide them (`hiding_s`), and
-/// longer where scans are rare.
+/// The longest time between two scans of a log during which things are in view, s; see [`robot::max_step_s`].
 pub(crate) fn max_step_s(poses: &[TrajectoryPose], hiding_s: f64) -> f64 {
-    hiding_s.max(SILENT_STEPS * median(steps_s(poses)))
+    robot::max_step_s(hiding_s, median(steps_s(poses)))
 }
 
 /// What users should know about the times without a scan, in a sentence.

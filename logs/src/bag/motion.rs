@@ -2,7 +2,7 @@
 
 use super::inventory::{Inventory, LaserTopic, OdometryTopic};
 use crate::choice::{TopicChoice, bare, listed};
-use crate::ros::{Chain, Frames, is_base, is_odom, is_world};
+use crate::ros::{Chain, Frames, can_be_base, is_odom, is_world};
 use crate::summary::PoseSource;
 
 /// Where the motions come from.
@@ -92,7 +92,7 @@ fn moving_edge(
         };
         let moves = |index: &&usize| frames.edge(**index).moves;
         // Below the frame of the robot, its lasers may pan.
-        let robot = above.iter().rposition(|index| is_base(&frames.edge(*index).child)).unwrap_or(0);
+        let robot = above.iter().rposition(|index| can_be_base(&frames.edge(*index).child)).unwrap_or(0);
         let below_world = || {
             let below = above[robot..].iter().take_while(|index| !is_world(&frames.edge(**index).parent));
             below.filter(moves).last()

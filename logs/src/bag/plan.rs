@@ -7,7 +7,7 @@ use super::motion::{self, Motion, MotionSource};
 use super::no_scans::no_scans;
 use super::slam;
 use crate::choice::{TopicChoice, bare, listed};
-use crate::ros::{Chain, Frames, is_base, is_odom, is_world, mounted};
+use crate::ros::{Chain, Frames, can_be_base, is_base, is_odom, is_world, mounted};
 use crate::summary::PoseSource;
 
 /// A laser that is used.
@@ -131,7 +131,11 @@ fn likely_base(frames: &Frames, lasers: &[&LaserTopic]) -> Result<String, String
     let parents = above.iter().map(|index| frames.edge(*index).parent.as_str());
     let on_ground = |name: &&str| !is_odom(name) && !is_world(name);
     let root = parents.clone().rfind(on_ground);
-    Ok(parents.clone().find(|name| is_base(name)).or(root).unwrap_or(&first.frame).to_owned())
+    let known = parents
+        .clone()
+        .find(|name| is_base(name))
+        .or_else(|| parents.clone().rfind(|name| can_be_base(name)));
+    Ok(known.or(root).unwrap_or(&first.frame).to_owned())
 }
 
 /// The lasers that are connected to the robot.

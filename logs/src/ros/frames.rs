@@ -164,6 +164,11 @@ pub(crate) fn is_base(frame: &str) -> bool {
     frame.rsplit('/').next().is_some_and(|name| name.starts_with("base"))
 }
 
+/// The same with a prefix, as of one of many robots: `robot1_base_link`. Parts of a robot can have such names as well.
+pub(crate) fn can_be_base(frame: &str) -> bool {
+    frame.rsplit('/').next().is_some_and(|name| name.contains("base"))
+}
+
 /// Whether this is the name of a frame in which the world stands still.
 pub(crate) fn is_world(frame: &str) -> bool {
     matches!(frame.rsplit('/').next(), Some("map" | "world" | "earth"))

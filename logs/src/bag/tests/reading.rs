@@ -133,10 +133,12 @@ fn odometry_in_transforms_is_below_the_world_whatever_its_name() {
         }
     }
     // Without odometry, the robot is tracked in the world.
-    let bag = by_transforms(["world", "base_link", "base_link"], 0.0, true);
-    let (odom_frame, base_frame) = ("world".to_owned(), "base_link".to_owned());
-    assert_eq!(bag.summary().pose_source, PoseSource::Transforms { odom_frame, base_frame });
-    assert_near(&at(&readings(&bag)[30]), &[3.05, 0.0, 0.0]);
+    for base in ["base_link", "robot1_base_link", "robot1/base_link"] {
+        let bag = by_transforms(["world", base, base], 0.0, true);
+        let (odom_frame, base_frame) = ("world".to_owned(), base.to_owned());
+        assert_eq!(bag.summary().pose_source, PoseSource::Transforms { odom_frame, base_frame });
+        assert_near(&at(&readings(&bag)[30]), &[3.05, 0.0, 0.0]);
+    }
 }
 
 #[test]

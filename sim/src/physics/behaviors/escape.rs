@@ -67,7 +67,7 @@ impl Escape {
         let remaining_m = along.dot(&(end - Point2::from(reading.pose.translation.vector)));
         self.scans_left = self.scans_left.saturating_sub(1);
         let twist = self.legs.drive(reading, &along, remaining_m, |legs, lean| {
-            (legs.free_m(reading, lean, SIDE_MARGIN_M), 0.0)
+            (legs.free_m(reading, lean, SIDE_MARGIN_M, remaining_m), 0.0)
         });
         if remaining_m < CLEARANCE_M || self.scans_left == 0 || self.legs.blocked {
             self.leg = None;
@@ -87,7 +87,8 @@ impl Escape {
             .step_by(beams.len().div_ceil(DIRECTIONS))
             .map(|beam| {
                 let lean = UnitComplex::from_cos_sin_unchecked(beam.x, beam.y).inverse();
-                let free_m = self.legs.free_m(reading, &lean, SIDE_MARGIN_M) - self.legs.needed_m();
+                let free_m =
+                    self.legs.free_m(reading, &lean, SIDE_MARGIN_M, f64::INFINITY) - self.legs.needed_m();
                 (reading.pose.rotation * beam, free_m.clamp(0.0, FAR_M))
             })
             .collect();

@@ -123,23 +123,33 @@ impl Legs {
 
     /// Where something is too close to be measured (−∞), in the frame of the leg, m: as far to the side as the minimum range
     /// reaches, and not farther ahead than a touch. A beam beyond the minimum range would have measured it, so that a wall
-    /// beside the way is not in the way.
+    /// beside the way is not in the way. Where the minimum range reaches beyond the end of the leg, `remaining_m` ahead, it is
+    /// the wall behind the end.
     pub(super) fn too_close(
         &self,
         reading: &LaserReading,
         lean: &UnitComplex<f64>,
+        remaining_m: f64,
     ) -> impl Iterator<Item = Vector2<f64>> {
         let mount = reading.mount.translation.vector;
         let ranges_m = reading.scan.ranges_m.iter().zip(&self.beams);
         let beams = ranges_m.filter(|(range_m, _)| **range_m == f32::NEG_INFINITY).map(|(_, beam)| beam);
         let farthest = beams.map(move |beam| lean * (mount + beam * reading.scan.range_min_m));
-        farthest.map(move |at| Vector2::new(at.x.min(self.nose_m(&at) + TOUCH_M), at.y))
+        let on_leg = farthest.filter(move |at| self.gap_m(at) < remaining_m + END_MARGIN_M);
+        on_leg.map(move |at| Vector2::new(at.x.min(self.nose_m(&at) + TOUCH_M), at.y))
     }
 
-    /// The distance that the round body can drive along the leg, m, with a free space at both sides.
-    pub(super) fn free_m(&self, reading: &LaserReading, lean: &UnitComplex<f64>, side_margin_m: f64) -> f64 {
+    /// The distance that the round body can drive along the leg, m, with a free space at both sides; the leg ends `remaining_m`
+    /// ahead.
+    pub(super) fn free_m(
+        &self,
+        reading: &LaserReading,
+        lean: &UnitComplex<f64>,
+        side_margin_m: f64,
+        remaining_m: f64,
+    ) -> f64 {
         let open_m = self.radius_m + side_margin_m;
-        let points = self.points(reading, lean).chain(self.too_close(reading, lean));
+        let points = self.points(reading, lean).chain(self.too_close(reading, lean, remaining_m));
         let ahead = points.filter(|point| point.x > 0.0 && point.y.abs() < open_m);
         ahead.fold(f64::INFINITY, |free_m, point| free_m.min(self.gap_m(&point)))
     }

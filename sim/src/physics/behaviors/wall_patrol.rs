@@ -50,7 +50,8 @@ impl WallPatrol {
         // +1: the wall is on the left of the leg; −1: on the right.
         let side = if self.spec.wall_on_left == self.outbound { 1.0 } else { -1.0 };
         self.legs.drive(reading, &along, remaining_m, |legs, lean| {
-            let (points, too_close) = (legs.points(reading, lean), legs.too_close(reading, lean));
+            let (points, too_close) =
+                (legs.points(reading, lean), legs.too_close(reading, lean, remaining_m));
             let (wall_m, gap_m) = wall_and_gap_m(&self.spec, side, legs, points, too_close);
             let too_far_m = wall_m.map_or(0.0, |wall_m| wall_m - self.spec.wall_distance_m);
             (gap_m, side * (LATERAL_GAIN * too_far_m).clamp(-MAX_LEAN_RAD, MAX_LEAN_RAD))

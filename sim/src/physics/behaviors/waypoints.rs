@@ -134,7 +134,7 @@ impl Waypoints {
         let leg = self.spec.points[goal] - at;
         let remaining_m = leg.norm();
         self.legs.drive(reading, &(leg / remaining_m), remaining_m, |legs, lean| {
-            (legs.free_m(reading, lean, SIDE_MARGIN_M), 0.0)
+            (legs.free_m(reading, lean, SIDE_MARGIN_M, remaining_m), 0.0)
         })
     }
 

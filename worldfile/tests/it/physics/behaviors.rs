@@ -180,3 +180,23 @@ fn a_corridor_that_is_too_close_to_be_measured_is_driven_through() {
     fleet.run_until(15.0, &mut nobody);
     assert!((at(&fleet, 0).x - 4.5).abs() < 0.03, "{}", at(&fleet, 0));
 }
+
+/// The wall behind the end of a way is nearer than the minimum range, and is not in the way.
+#[test]
+fn a_way_may_end_before_a_wall_that_is_too_close_to_be_measured() {
+    let wall = "[[wall]]\nmin_m = [4.8, 0.2]\nmax_m = [4.9, 2.0]\n";
+    let ways = [
+        "kind = \"waypoints\"\npoints_m = [[4.5, 0.5], [1.0, 0.5]]",
+        "kind = \"wall_patrol\"\nfrom_m = [1.0, 0.5]\nto_m = [4.5, 0.5]\nwall_side = \"right\"",
+    ];
+    for (way, [mount_m, range_min_m]) in
+        ways.iter().flat_map(|way| [[0.0, 0.4], [0.2, 0.12], [0.2, 0.15]].map(|laser| (way, laser)))
+    {
+        let driver = robot("driver", [1.0, 0.5], 0.0, &format!("{way}\nspeed_mps = 0.4"));
+        let laser = format!("beams = 360\nrange_min_m = {range_min_m:?}\nmount_m = [{mount_m:?}, 0.0]");
+        let mut fleet = Fleet::new(&house(&[driver.replace("beams = 90", &laser)], wall), 1);
+        let visits = visits(&mut fleet, &[[1.0, 0.5], [4.5, 0.5]], 60.0);
+        assert_eq!(visits[..4], [0, 1, 0, 1], "{way}, {mount_m} m, {range_min_m} m");
+        assert_eq!(fleet.contacts(), []);
+    }
+}
