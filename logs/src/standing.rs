@@ -90,16 +90,21 @@ fn are_of_one_laser(first: &Scan, scan: &Scan) -> bool {
     let [n, other] = [first, scan].map(|scan| scan.ranges_m.len() as f64);
     let shift_rad = (first.angle_min_rad - scan.angle_min_rad).abs();
     (n - other).abs() <= MAX_OTHER_BEAMS * n
-        && first.angle_increment_rad * scan.angle_increment_rad > 0.0
-        && shift_rad <= MAX_SHIFTED_BEAMS * first.angle_increment_rad.abs()
+        && step_rad(first) * step_rad(scan) > 0.0
+        && shift_rad <= MAX_SHIFTED_BEAMS * step_rad(first).abs()
+}
+
+/// The angle between two beams, rad; of a laser with one beam, which may declare none, anything.
+fn step_rad(scan: &Scan) -> f64 {
+    if scan.angle_increment_rad == 0.0 { 1.0 } else { scan.angle_increment_rad }
 }
 
 /// The ranges of two scans in the directions of the second one.
 fn same_directions(first: &Scan, scan: &Scan) -> impl Iterator<Item = (f32, f32)> {
     let beams = scan.ranges_m.iter().enumerate();
     beams.filter_map(|(beam, range_m)| {
-        let angle_rad = scan.angle_min_rad + beam as f64 * scan.angle_increment_rad;
-        let known = ((angle_rad - first.angle_min_rad) / first.angle_increment_rad).round();
+        let angle_rad = scan.angle_min_rad + beam as f64 * step_rad(scan);
+        let known = ((angle_rad - first.angle_min_rad) / step_rad(first)).round();
         let is_known = known >= 0.0 && known < first.ranges_m.len() as f64;
         is_known.then(|| (first.ranges_m[known as usize], *range_m))
     })
@@ -121,7 +126,7 @@ mod tests {
             // All around, whatever the number of beams.
             let scan = Scan {
                 angle_min_rad: 0.0,
-                angle_increment_rad: TAU / ranges_m.len() as f64,
+                angle_increment_rad: if ranges_m.len() > 1 { TAU / ranges_m.len() as f64 } else { 0.0 },
                 range_min_m: 0.0,
                 range_max_m: 80.0,
                 sweep_s: 0.0,
