@@ -179,8 +179,8 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
         Ok(())
     }
 
-    /// The same, where the measurements of things with a schedule end exactly at `end_s`: the rest of a robot that charges
-    /// then is cut off. The run cannot be continued.
+    /// As [`run`](Self::run), but the measurements of things with a schedule end exactly at `end_s`: if the robot rests then, its
+    /// rest is cut off. The run cannot be continued.
     ///
     /// # Errors
     ///

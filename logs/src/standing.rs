@@ -119,21 +119,22 @@ mod tests {
     use super::*;
     use std::f64::consts::TAU;
 
+    /// A scan all around, whatever the number of beams.
+    fn scan(ranges_m: Vec<f32>) -> Scan {
+        Scan {
+            angle_min_rad: 0.0,
+            angle_increment_rad: if ranges_m.len() > 1 { TAU / ranges_m.len() as f64 } else { 0.0 },
+            range_min_m: 0.0,
+            range_max_m: 80.0,
+            sweep_s: 0.0,
+            ranges_m,
+        }
+    }
+
     /// Whether a laser seems to stand whose scans have these ranges.
     fn stands(scans: impl IntoIterator<Item = Vec<f32>>) -> bool {
         let mut standing = Standing::default();
-        for ranges_m in scans {
-            // All around, whatever the number of beams.
-            let scan = Scan {
-                angle_min_rad: 0.0,
-                angle_increment_rad: if ranges_m.len() > 1 { TAU / ranges_m.len() as f64 } else { 0.0 },
-                range_min_m: 0.0,
-                range_max_m: 80.0,
-                sweep_s: 0.0,
-                ranges_m,
-            };
-            standing.add(&Isometry2::identity(), &scan);
-        }
+        scans.into_iter().for_each(|ranges_m| standing.add(&Isometry2::identity(), &scan(ranges_m)));
         standing.looks_so()
     }
 
@@ -164,15 +165,7 @@ mod tests {
         // The mount is another one each time.
         let mut standing = Standing::default();
         for turn in 0..40 {
-            let scan = Scan {
-                angle_min_rad: 0.0,
-                angle_increment_rad: 0.01,
-                range_min_m: 0.0,
-                range_max_m: 80.0,
-                sweep_s: 0.0,
-                ranges_m: vec![2.0; 180],
-            };
-            standing.add(&interfaces::pose(0.0, 0.0, 0.1 * f64::from(turn)), &scan);
+            standing.add(&interfaces::pose(0.0, 0.0, 0.1 * f64::from(turn)), &scan(vec![2.0; 180]));
         }
         assert!(!standing.looks_so());
     }
