@@ -34,7 +34,7 @@ impl Hours {
     ///
     /// # Errors
     ///
-    /// When the text is none; the message says what is valid.
+    /// When the text is none, or the hours last no time; the message says what is valid.
     pub fn add(&mut self, text: &str) -> Result<(), String> {
         let valid = || {
             "hours are days, and from when to when in half hours, as in `Mon-Fri 8:00-18:00`, `Sat 22:00-2:00` or `daily 7:00-20:00`".to_owned()
@@ -50,6 +50,9 @@ impl Hours {
         let (from, until) = hours.trim().split_once('-').ok_or_else(valid)?;
         let half = |text: &str| hour(text).filter(|hour| (2.0 * hour).fract() == 0.0).ok_or_else(valid);
         let (from_h, until_h) = (half(from)?, half(until)?);
+        if from_h == 24.0 || from_h == until_h {
+            return Err(format!("`{}` is no time: a whole day is `0:00-24:00`", hours.trim()));
+        }
         for ahead in 0..=(last + 7 - first) % 7 {
             let day = first + ahead;
             if until_h > from_h {
@@ -149,6 +152,12 @@ mod tests {
             "Mon 8:00-99999999:00",
         ] {
             assert!(Hours::never().add(wrong).unwrap_err().contains("`Mon-Fri 8:00-18:00`"), "{wrong}");
+        }
+        for wrong in ["Mon 9:00-9:00", "Mon 24:00-24:00", "Mon 24:00-2:00"] {
+            assert!(
+                Hours::never().add(wrong).unwrap_err().ends_with("a whole day is `0:00-24:00`"),
+                "{wrong}"
+            );
         }
     }
 

@@ -203,6 +203,7 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
         self.world.rest_watched(until_s, ScheduledThings::EVERY_S, |world| {
             self.observer.scheduled.sample(world, &self.robot.mapper);
         });
+        self.observer.poses.rest(until_s);
     }
 
     /// The results so far.

@@ -2,7 +2,9 @@
 
 /// Two scans of a log are never farther apart than a month, s: a robot may rest for a weekend or a holiday, and a clock that was
 /// never set is wrong by years.
-pub(crate) const LONGEST_PAUSE_S: f64 = 30.0 * 86_400.0;
+pub(crate) const LONGEST_PAUSE_S: f64 = 30.0 * DAY_S;
+/// A pause of more than a day, s, is noted, because a clock that was set looks the same.
+const DAY_S: f64 = 86_400.0;
 /// Times that go back by less than this come from messages that were written in another order, s.
 const DISORDER_S: f64 = 60.0;
 /// The time between scans that have the time of the scan before, or an earlier one, s.
@@ -54,23 +56,26 @@ pub(crate) fn repaired(raw_s: &[f64]) -> Times {
     }
     steps.sort_by(f64::total_cmp);
     let period_s = steps.get(steps.len() / 2).copied().unwrap_or(STEP_WITHOUT_TIMES_S);
-    let (mut jumps, mut back) = (0, 0);
+    let (mut jumps, mut back, mut rests_s) = (0, 0, Vec::new());
     let (mut times_s, mut offset_s) = (Vec::with_capacity(raw_s.len()), 0.0);
     let (mut part_s, mut longest) = (0.0, (0.0, 0.0));
-    for raw in raw_s {
+    for (scan, raw) in raw_s.iter().enumerate() {
         let Some(last_s) = times_s.last().copied() else {
             offset_s = -raw;
             times_s.push(0.0);
             continue;
         };
         let step_s = raw + offset_s - last_s;
-        if !(-DISORDER_S..=LONGEST_PAUSE_S).contains(&step_s) {
+        let is_pause = (-DISORDER_S..=LONGEST_PAUSE_S).contains(&step_s);
+        if !is_pause || step_s > DAY_S && is_undone(&raw_s[scan..], step_s) {
             jumps += 1;
             longest = longer(longest, (last_s - part_s, offset_s));
             offset_s += period_s - step_s;
             part_s = last_s + period_s;
         } else if step_s < MIN_STEP_S {
             back += 1;
+        } else if step_s > DAY_S {
+            rests_s.push(step_s);
         }
         times_s.push((raw + offset_s).max(last_s + MIN_STEP_S));
     }
@@ -88,10 +93,27 @@ pub(crate) fn repaired(raw_s: &[f64]) -> Times {
         1 => Some(format!("a jump of the clock counts as {period_s:.3} s")),
         _ => Some(format!("{jumps} jumps of the clock count as {period_s:.3} s")),
     };
-    let notes: Vec<String> = of_back.into_iter().chain(of_jumps).collect();
+    let of_rests = match rests_s[..] {
+        [] => None,
+        [rest_s] => Some(format!("{:.1} days without a scan count as a rest of the robot", rest_s / DAY_S)),
+        _ => Some(format!(
+            "{} pauses of more than a day ({:.1} days in all) count as rests of the robot",
+            rests_s.len(),
+            rests_s.iter().sum::<f64>() / DAY_S
+        )),
+    };
+    let of_rests =
+        of_rests.map(|note| format!("{note}: if the clock was set instead, hours and rates are wrong"));
+    let notes: Vec<String> = of_back.into_iter().chain(of_jumps).chain(of_rests).collect();
     let note = (!notes.is_empty()).then(|| notes.join("; "));
     let dated_s = (jumps > 0).then_some(dated_s);
     Times { times_s, has_times: true, begin_s: -offset_s, dated_s, note }
+}
+
+/// Whether the clock later goes back over more than half of the step, s, to the first of these times: it was wrong for a while.
+fn is_undone(from_s: &[f64], step_s: f64) -> bool {
+    let undone_s = from_s[0] - step_s - DISORDER_S..from_s[0] - step_s / 2.0;
+    from_s.iter().any(|time_s| undone_s.contains(time_s))
 }
 
 /// The longer one of two parts of a log, each with its length and its offset; of equal ones the later: clocks are set to be right.
@@ -152,7 +174,9 @@ mod tests {
                 .collect();
             repaired(&raw_s)
         };
-        for (before, at) in [(-5e8, 0..30), (3600.0, 0..30), (1e9, 0..1), (5e6, 60..61), (-4000.0, 80..100)] {
+        for (before, at) in
+            [(-5e8, 0..30), (3600.0, 0..30), (1e9, 0..1), (2e5, 60..61), (5e6, 60..61), (-4000.0, 80..100)]
+        {
             let times = log(before, at.clone());
             assert!((times.begin_s - 1.7e9).abs() < 1e-3, "{before} {at:?}: {}", times.begin_s);
             let note = times.date_note().unwrap();
@@ -161,15 +185,18 @@ mod tests {
         let note = "the date and the hours are those of the longest part between jumps of the clock (6.9 s of 9.9 s)";
         assert_eq!(log(-5e8, 0..30).date_note().as_deref(), Some(note));
     }
+
     #[test]
     fn a_robot_may_rest_for_weeks() {
         for days in [1.5, 3.0, 25.0] {
-            let raw_s = [1.7e9, 1.7e9 + 0.1, 1.7e9 + 0.2, 1.7e9 + 0.2 + 86_400.0 * days];
+            let raw_s = [1.7e9, 1.7e9 + 0.1, 1.7e9 + 0.2, 1.7e9 + 0.2 + DAY_S * days];
             let times = repaired(&raw_s);
-            assert!(
-                (times.times_s[3] - 0.2 - 86_400.0 * days).abs() < 1e-6 && times.note.is_none(),
-                "{days}"
+            assert!((times.times_s[3] - 0.2 - DAY_S * days).abs() < 1e-6, "{days}");
+            let note = format!(
+                "{days:.1} days without a scan count as a rest of the robot: if the clock was set instead, hours and"
             );
+            assert!(times.note.unwrap().starts_with(&note) && times.dated_s.is_none());
         }
+        assert!(repaired(&[0.0, 0.1, 0.2, 0.9 * DAY_S]).note.is_none());
     }
 }

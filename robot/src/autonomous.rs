@@ -44,8 +44,9 @@ pub trait GoalSelector {
     /// Called at every reading.
     fn observe(&mut self, _: Features, _: &Mapper) {}
 
-    /// Until when the robot, at `pose`, is to rest where it is, s; `None` if it is to drive. Called at every reading.
-    fn rests_until_s(&mut self, _pose: &Isometry2<f64>, _: &Mapper) -> Option<f64> {
+    /// Until when the robot, at `pose` if it is not lost, is to rest where it is, s; `None` if it is to drive. Called at every
+    /// reading.
+    fn rests_until_s(&mut self, _pose: Option<&Isometry2<f64>>, _: &Mapper) -> Option<f64> {
         None
     }
 
@@ -137,10 +138,11 @@ impl<G: GoalSelector, D: Driver> Pilot for Autonomous<G, D> {
         self.selector.observe(features, mapper);
         let input = input(mapper, &belief.pose);
         self.rests_until_s = None;
-        if belief.permission != Permission::Drive {
-            return self.driver.pause(&input, belief.permission == Permission::LookAround);
+        if belief.permission == Permission::Rest {
+            return self.driver.pause(&input, false);
         }
-        self.rests_until_s = self.selector.rests_until_s(&belief.pose, mapper);
+        let is_lost = belief.permission == Permission::LookAround;
+        self.rests_until_s = self.selector.rests_until_s((!is_lost).then_some(&belief.pose), mapper);
         if self.rests_until_s.is_some() {
             if self.driver.goal().is_some() {
                 // The time of a goal goes on while the robot rests, until the driver gives the goal up.
@@ -148,6 +150,9 @@ impl<G: GoalSelector, D: Driver> Pilot for Autonomous<G, D> {
                 self.selector.end_goal(&belief.pose, mapper);
             }
             return self.driver.pause(&input, false);
+        }
+        if is_lost {
+            return self.driver.pause(&input, true);
         }
         let command = self.driver.drive(&input);
         let last = match self.driver.status() {

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 
 /// A robot that is this near to its dock is at its dock, m.
 const AT_DOCK_M: f64 = 0.5;
-/// The way back may take this many times as long as at full speed: a robot turns, waits and goes round people.
+/// A way may take this many times as long as at full speed: a robot turns, waits and goes round people.
 const MARGIN: f64 = 2.0;
 /// The reserve of battery on top of the return path, s: the longest wait in front of a body that may leave.
 const RESERVE_S: f64 = 30.0;
@@ -34,6 +34,14 @@ pub struct DaySettings {
     pub starts_s: f64,
 }
 
+impl DaySettings {
+    /// The longest way from the dock to a goal, s at full speed: the way there may take [`MARGIN`] times as long, and for the way
+    /// back the robot keeps [`MARGIN`] times as much as it took, and a reserve.
+    fn range_s(&self) -> f64 {
+        (self.battery_s - RESERVE_S) / (MARGIN * (1.0 + MARGIN))
+    }
+}
+
 /// Selects goals while the robot is on patrol, and sends it to its dock in time.
 ///
 /// The robot leaves its dock when its battery is full and nobody else uses it. On the way it is never farther from the dock
@@ -43,8 +51,28 @@ pub struct PatrolDay<G> {
     goals: G,
     settings: DaySettings,
     state: State,
-    /// Scratch memory: travel times to all cells, s.
+    /// Scratch memory: travel times to all cells, from the robot or from the dock, s.
     times_s: Vec<f64>,
+}
+
+/// Travel times without the cells that are too far from the dock for the battery: a robot that turned back on the way to such a
+/// goal would choose it again in its next patrol.
+struct WithinRange<'a, T> {
+    travel: &'a mut T,
+    /// From the dock; ∞ without a known way, s.
+    from_dock_s: &'a [f64],
+    range_s: f64,
+}
+
+impl<T: Travel> Travel for WithinRange<'_, T> {
+    fn times(&mut self, mapper: &Mapper, pose: &Isometry2<f64>, times: &mut Vec<f64>) {
+        self.travel.times(mapper, pose, times);
+        for (time_s, from_dock_s) in times.iter_mut().zip(self.from_dock_s) {
+            if from_dock_s.is_finite() && *from_dock_s > self.range_s {
+                *time_s = f64::INFINITY;
+            }
+        }
+    }
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -162,7 +190,14 @@ impl<G: GoalSelector> GoalSelector for PatrolDay<G> {
         self.plan(pose, mapper, travel);
         self.state.needs_goal = false;
         if self.state.phase != Phase::Returning && !self.must_return(mapper.time()) {
-            return self.goals.next_goal(pose, mapper, travel);
+            if !self.charges() {
+                return self.goals.next_goal(pose, mapper, travel);
+            }
+            let dock = Isometry2::new(self.settings.dock.coords, 0.0);
+            travel.times(mapper, &dock, &mut self.times_s);
+            let (from_dock_s, range_s) = (&self.times_s, self.settings.range_s());
+            let mut within = WithinRange { travel, from_dock_s, range_s };
+            return self.goals.next_goal(pose, mapper, &mut within);
         }
         self.state.phase = Phase::Returning;
         self.goals.end_goal(pose, mapper);
@@ -190,10 +225,11 @@ impl<G: GoalSelector> GoalSelector for PatrolDay<G> {
         self.goals.observe(features, mapper);
     }
 
-    fn rests_until_s(&mut self, pose: &Isometry2<f64>, mapper: &Mapper) -> Option<f64> {
+    fn rests_until_s(&mut self, pose: Option<&Isometry2<f64>>, mapper: &Mapper) -> Option<f64> {
         let now_s = mapper.time();
-        let from_dock_m = (pose.translation.vector - self.settings.dock.coords).norm();
-        if self.state.phase == Phase::Returning && from_dock_m <= AT_DOCK_M {
+        let from_dock_m =
+            |pose: &Isometry2<f64>| (pose.translation.vector - self.settings.dock.coords).norm();
+        if self.state.phase == Phase::Returning && pose.is_some_and(|pose| from_dock_m(pose) <= AT_DOCK_M) {
             self.state.phase = Phase::Resting;
         }
         if self.state.phase != Phase::Resting {

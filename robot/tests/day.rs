@@ -37,6 +37,31 @@ impl GoalSelector for Corners {
     }
 }
 
+/// The reachable cell that is farthest away.
+struct Farthest;
+
+impl GoalSelector for Farthest {
+    fn next_goal(
+        &mut self,
+        pose: &Isometry2<f64>,
+        mapper: &Mapper,
+        travel: &mut impl Travel,
+    ) -> Option<Destination> {
+        let mut times = Vec::new();
+        travel.times(mapper, pose, &mut times);
+        let reachable = (0..times.len()).filter(|cell| times[*cell].is_finite());
+        let cell = reachable.max_by(|one, other| times[*one].total_cmp(&times[*other]))?;
+        let position = mapper.frame().center(mapper.frame().cell(cell));
+        Some(Destination { position, stay: Stay::Watch(0.0) })
+    }
+
+    fn end_goal(&mut self, _: &Isometry2<f64>, _: &Mapper) {}
+
+    fn reason(&self) -> String {
+        "the farthest cell".to_owned()
+    }
+}
+
 /// Straight ways.
 struct Straight;
 
@@ -48,43 +73,73 @@ impl Travel for Straight {
     }
 }
 
-/// What a robot with a day does in a week, and the time out in its busy hours, s.
-fn week(share: f64, battery_s: f64, busy: &str) -> (DayTotals, f64) {
+/// What a robot with a day did in a week.
+struct Week {
+    totals: DayTotals,
+    /// The time out in its busy hours, s.
+    busy_s: f64,
+    /// The goals that it reached, without its dock.
+    reached: u32,
+}
+
+/// A week of a robot; `check` receives with each destination whether it is a goal, not the dock.
+fn week_with(goals: impl GoalSelector, share: f64, battery_s: f64, busy: &str, check: impl Fn(bool)) -> Week {
     let mut hours = Hours::never();
     hours.add(busy).unwrap();
     let dock = Point2::new(2.0, 10.0);
     let settings = DaySettings { dock, battery_s, share, busy: hours.clone(), starts_s: 0.0 };
-    let has_goal = Rc::new(Cell::new(false));
-    let mut day = PatrolDay::new(Corners { count: 0, has_goal: Rc::clone(&has_goal) }, settings);
+    let mut day = PatrolDay::new(goals, settings);
     let frame = GridFrame::new(Point2::origin(), 1.0, 30, 20).unwrap();
     let mut mapper = Mapper::new(&MapperSettings::default(), frame).unwrap();
-    let (mut time_s, mut at, mut goal, mut busy_s) = (0.0, dock, dock, 0.0);
+    let (mut time_s, mut at, mut goal, mut busy_s, mut reached) = (0.0, dock, dock, 0.0, 0);
     while time_s < WEEK_S {
         let pose = Isometry2::translation(at.x, at.y);
         mapper.update(&CellReading { time: time_s, pose, cells: Vec::new() }).unwrap();
         let features = Features::of(&mut mapper);
         day.observe(features, &mapper);
-        if let Some(until_s) = day.rests_until_s(&pose, &mapper) {
+        if let Some(until_s) = day.rests_until_s(Some(&pose), &mapper) {
             assert!(until_s > time_s && until_s <= time_s + DAY_S);
             assert!((at - dock).norm() <= 0.5, "it rests at {at}");
             time_s = until_s;
             continue;
         }
         busy_s += f64::from(u8::from(hours.is_active(time_s)));
-        if (goal - at).norm() < SPEED_MPS || day.breaks_off(&mapper) {
+        let is_there = (goal - at).norm() < SPEED_MPS;
+        if is_there || day.breaks_off(&mapper) {
+            reached += u32::from(is_there && goal != dock);
             goal = day.next_goal(&pose, &mapper, &mut Straight).unwrap().position;
-            assert_eq!(has_goal.get(), goal != dock, "the last goal ends where the robot turns back");
+            check(goal != dock);
         }
         at += (goal - at).cap_magnitude(SPEED_MPS);
         time_s += 1.0;
     }
-    (day.day().unwrap(), busy_s)
+    Week { totals: day.day().unwrap(), busy_s, reached }
+}
+
+/// A week of a robot that goes from corner to corner.
+fn week(share: f64, battery_s: f64, busy: &str) -> Week {
+    let has_goal = Rc::new(Cell::new(false));
+    let goals = Corners { count: 0, has_goal: Rc::clone(&has_goal) };
+    week_with(goals, share, battery_s, busy, |is_out| {
+        assert_eq!(has_goal.get(), is_out, "the last goal ends where the robot turns back");
+    })
+}
+
+#[test]
+fn a_robot_goes_no_farther_than_its_battery_lasts() {
+    for battery_s in [60.0, 90.0, 120.0] {
+        let Week { totals, reached, .. } = week_with(Farthest, 0.05, battery_s, "Mon 0:00-0:30", |_| {});
+        assert!(
+            totals.patrols > 100 && reached + 1 >= totals.patrols,
+            "{battery_s} s: {reached}, {totals:?}"
+        );
+    }
 }
 
 #[test]
 fn a_robot_is_back_in_time() {
     for (share, battery_s) in [(0.05, 300.0), (0.05, 1800.0), (0.01, 600.0), (0.5, 240.0)] {
-        let (totals, _) = week(share, battery_s, "Mon 0:00-0:30");
+        let Week { totals, .. } = week(share, battery_s, "Mon 0:00-0:30");
         assert_eq!(totals.flat, 0, "{share}, {battery_s} s: {totals:?}");
         let on_patrol = totals.patrol_share().unwrap();
         assert!(
@@ -96,9 +151,36 @@ fn a_robot_is_back_in_time() {
 
 #[test]
 fn a_robot_rests_while_others_use_it() {
-    let (totals, busy_s) = week(1.0, 1800.0, "Mon-Fri 9:00-17:00");
+    let Week { totals, busy_s, .. } = week(1.0, 1800.0, "Mon-Fri 9:00-17:00");
     // On each of the five days the way back, at most 30 m at this speed.
     assert!(busy_s <= 5.0 * 62.0, "{busy_s} s");
     let free = 1.0 - 5.0 * 8.0 / 168.0;
     assert!((totals.patrol_share().unwrap() - free).abs() < 0.01, "{totals:?}");
+}
+
+#[test]
+fn a_lost_robot_uses_its_battery_and_rests_when_it_is_flat() {
+    let dock = Point2::new(2.0, 10.0);
+    let settings = DaySettings { dock, battery_s: 300.0, share: 0.05, busy: Hours::never(), starts_s: 0.0 };
+    let mut day = PatrolDay::new(Farthest, settings);
+    let frame = GridFrame::new(Point2::origin(), 1.0, 30, 20).unwrap();
+    let mut mapper = Mapper::new(&MapperSettings::default(), frame).unwrap();
+    let (mut time_s, mut rests) = (0.0, Vec::new());
+    while time_s < DAY_S {
+        let pose = Isometry2::translation(dock.x, dock.y);
+        mapper.update(&CellReading { time: time_s, pose, cells: Vec::new() }).unwrap();
+        let features = Features::of(&mut mapper);
+        day.observe(features, &mapper);
+        // Where it takes itself to be says nothing.
+        time_s = match day.rests_until_s(None, &mapper) {
+            Some(until_s) => {
+                rests.push((time_s, until_s));
+                until_s
+            }
+            None => time_s + 1.0,
+        };
+    }
+    let totals = day.day().unwrap();
+    assert_eq!((rests[0], totals.flat, totals.patrols), ((300.0, 6000.0), 15, 15), "{totals:?}");
+    assert!((totals.patrol_s - 15.0 * 300.0).abs() < 1.0, "{totals:?}");
 }

@@ -90,6 +90,11 @@ impl TrialKind for Houses {
         Ok((spec, warnings.into_iter().chain(patrol).map(|warning| warning + "\n").collect()))
     }
 
+    fn of_generated(&self) -> Option<&'static str> {
+        let is_office = self.kind == "office";
+        self.calendar.map(|_| "--calendar").or(is_office.then_some("--kind"))
+    }
+
     fn generate(&self, seed: u64) -> WorldSpec {
         if let Some(kind) = self.calendar {
             return WorldSpec::generate_calendar(kind, seed);

@@ -69,6 +69,11 @@ pub trait TrialKind: Args + Clone + Debug {
     /// When it cannot be loaded, or no trial can run in it.
     fn load(&self, name: &str) -> anyhow::Result<(Self::Spec, Vec<String>)>;
 
+    /// The option that is given, and only changes generated worlds.
+    fn of_generated(&self) -> Option<&'static str> {
+        None
+    }
+
     /// The random world of a seed.
     fn generate(&self, seed: u64) -> Self::Spec;
 
@@ -180,6 +185,11 @@ impl<K: TrialKind> TrialArgs<K> {
             ([], None) => (K::NAMED, K::GENERATED),
             (names, generated) => (names, generated.unwrap_or(0)),
         };
+        if let Some(option) = self.kind.of_generated().filter(|_| generated == 0) {
+            bail!(
+                "{option} changes only generated worlds, and there is none: add --generate, or leave out {option}"
+            );
+        }
         let load = |name: &&str| self.load(name).map_err(|error| value_of("--world", error));
         let mut worlds = distinct(names).iter().map(load).collect::<anyhow::Result<Vec<_>>>()?;
         let seeds = (0..generated).map(|number| self.seed.wrapping_add(number));

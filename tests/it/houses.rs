@@ -114,6 +114,8 @@ fn invalid_input_is_refused() {
         ("--save-worlds", "--generate <N>"),
         ("--seeds 0", "0 is not in 1..="),
         ("--world two_blocks", "`two_blocks` is a grid world"),
+        ("--world house --calendar office", "--calendar changes only generated worlds"),
+        ("--world house --kind office", "--kind changes only generated worlds"),
     ] {
         let message = refuses(&Run::houses(), arguments, &[]);
         assert!(message.contains(says), "{arguments}: {message}");

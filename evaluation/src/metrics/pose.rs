@@ -91,6 +91,11 @@ impl PoseErrors {
         }
     }
 
+    /// Lets time pass without a pose, until `until_s`: the robot rests.
+    pub fn rest(&mut self, until_s: f64) {
+        (self.last_s, self.wrong_since_s) = (until_s, None);
+    }
+
     /// Counts a closed loop.
     pub fn correct(&mut self, correction: &Correction) {
         self.loops_closed += 1;
@@ -151,6 +156,16 @@ mod tests {
         assert_eq!(observed(0.06, &[Tracking, Uncertain, Tracking]).lock_ins, 2);
         assert_eq!(observed(0.06, &[Uncertain]).lock_ins, 0);
         assert_eq!(observed(0.04, &[Tracking]).lock_ins, 0);
+    }
+
+    #[test]
+    fn rests_are_no_time_with_an_uncertain_pose() {
+        let mut errors = PoseErrors::default();
+        let (lost, at) = (estimate(PoseState::Lost), Isometry2::identity());
+        errors.observe(1.0, &at, &at, Some(&lost));
+        errors.rest(3600.0);
+        errors.observe(3600.1, &at, &at, Some(&lost));
+        assert!((errors.scores("localized").lost_s - 1.1).abs() < 1e-9);
     }
 
     #[test]

@@ -146,7 +146,7 @@ impl RunResults {
         };
         (mode != "exact").then(|| {
             format!(
-                "{mode}: error {median:.1} mm in the median, {p95:.1} mm for 95 %, {:.0} mm at most; {:.1}° for 95 %; \
+                "{mode}: error {median:.1} mm in the median, {p95:.1} mm for 95 %, {:.1} mm at most; {:.1}° for 95 %; \
                  uncertain for {uncertain_s:.1} s, lost for {lost_s:.1} s, certain but wrong {lock_ins} times{loops}",
                 max_m * 1e3,
                 self.pose.heading_p95_deg.unwrap_or_default(),

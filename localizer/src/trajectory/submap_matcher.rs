@@ -23,6 +23,9 @@ use crate::surfel_map::SurfelMap;
 use interfaces::LaserReading;
 use nalgebra::{Isometry2, Matrix3, Vector3};
 
+/// While its laser starts, a robot does not drive farther than this, m.
+const START_M: f64 = 1.0;
+
 /// The submaps that grow, and their keyframes.
 #[derive(Debug)]
 pub(crate) struct SubmapMatcher {
@@ -40,6 +43,8 @@ pub(crate) struct SubmapMatcher {
     spare: Option<SurfelMap>,
     /// Whether the last scan shows no surface.
     sees_nothing: bool,
+    /// Whether any scan so far shows a surface.
+    has_seen: bool,
 }
 
 /// What a match with a submap says beside the pose.
@@ -75,7 +80,7 @@ impl ScanMatcher<()> for SubmapMatcher {
         self.sees_nothing = scan.points.is_empty();
         (track.pose, track.covariance) = (scan.predicted.pose, scan.predicted.covariance);
         // The first scan that shows a surface is right by definition: some lasers see nothing while they start.
-        let is_first = !self.knows_surfaces();
+        let is_first = !self.has_seen && (!self.sees_nothing || self.is_at_start(&track.pose));
         let is_frozen = scan.fault == Some(Fault::Frozen) && !is_first;
         let far = if is_frozen { None } else { FarScan::of(scan) };
         let matched = match &far {
@@ -105,7 +110,8 @@ impl ScanMatcher<()> for SubmapMatcher {
     fn insert(&mut self, scan: &IncomingScan, track: &Track, found: &SubmapFound, (): ()) {
         let offset = self.offset(track);
         let is_far = !KEYFRAME.contains(&offset);
-        let is_first = self.keyframes.is_empty() || !self.knows_surfaces() && !self.sees_nothing;
+        let is_first = self.keyframes.is_empty() || !self.has_seen && !self.sees_nothing;
+        self.has_seen |= !self.sees_nothing;
         if is_first || is_far && !found.is_frozen {
             let found = found.matched.as_ref().map(|matched| &matched.found);
             self.add_keyframe(scan, track, found);
@@ -125,6 +131,7 @@ impl SubmapMatcher {
             finished: Vec::new(),
             spare: None,
             sees_nothing: true,
+            has_seen: false,
         }
     }
 
@@ -137,9 +144,10 @@ impl SubmapMatcher {
         &self.keyframes
     }
 
-    /// Whether a keyframe shows a surface.
-    fn knows_surfaces(&self) -> bool {
-        self.keyframes.iter().any(|keyframe| !keyframe.points.is_empty())
+    /// Whether the robot has not left the place where it started.
+    fn is_at_start(&self, pose: &Isometry2<f64>) -> bool {
+        let from_start = |start: &Keyframe| start.local.inv_mul(pose).translation.vector.norm();
+        self.keyframes.first().is_none_or(|start| from_start(start) < START_M)
     }
 
     /// The motions between keyframes that the odometry measured, and scans.

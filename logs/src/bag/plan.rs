@@ -129,13 +129,18 @@ fn likely_base(frames: &Frames, lasers: &[&LaserTopic]) -> Result<String, String
     let Some(first) = lasers.first() else { return Ok(String::new()) };
     let above = frames.above(&first.frame)?;
     let parents = above.iter().map(|index| frames.edge(*index).parent.as_str());
-    let on_ground = |name: &&str| !is_odom(name) && !is_world(name);
-    let root = parents.clone().rfind(on_ground);
-    let known = parents
-        .clone()
-        .find(|name| is_base(name))
-        .or_else(|| parents.clone().rfind(|name| can_be_base(name)));
-    Ok(known.or(root).unwrap_or(&first.frame).to_owned())
+    if let Some(base) = parents.clone().find(|name| is_base(name)) {
+        return Ok(base.to_owned());
+    }
+    let below_odom = parents.clone().take_while(|name| !is_odom(name)).last();
+    let base = match parents.clone().any(is_odom) {
+        true => below_odom,
+        false => {
+            let root = || parents.clone().rfind(|name| !is_world(name));
+            parents.clone().rfind(|name| can_be_base(name)).or_else(root)
+        }
+    };
+    Ok(base.unwrap_or(&first.frame).to_owned())
 }
 
 /// The lasers that are connected to the robot.

@@ -88,6 +88,17 @@ fn patrol(
     let battery_s = table.number_or("battery_s", PatrolDaySpec::BATTERY_S, 60.0..=1e6);
     let dock = table.get("dock_m").map_or(Some(None), |value| value.point(&space.size).map(Some));
     let busy = table.get("busy").map_or(Some(Hours::never()), |value| hours(&value));
+    let in_solid = |dock: &Point2<f64>| space.first_solid(|shape| shape.distance_m(dock) <= 0.0);
+    if let Some(solid) = dock.flatten().as_ref().and_then(in_solid) {
+        let what = format!("the dock of the robot `{name}` is in a wall or an obstacle");
+        let others = [(solid.span.clone(), "in this one")];
+        return table.error(
+            &what,
+            (table.at("dock_m"), "stands here"),
+            &others,
+            "a robot at its dock is within 0.5 m of it",
+        );
+    }
     if behavior.as_ref().is_some_and(|behavior| *behavior != BehaviorSpec::Driven) {
         let what = format!("the robot `{name}` has a patrol, and is not driven");
         let help = "leave `patrol` out, or give the robot `kind = \"driven\"`";

@@ -5,7 +5,7 @@ use crate::physics::shape::TOUCH_M;
 use crate::physics::snapshot::{pose, value};
 use crate::physics::spec::RobotSpec;
 use interfaces::{LaserReading, Twist, Values, values};
-use nalgebra::{Isometry2, UnitComplex, Vector2};
+use nalgebra::{Isometry2, Point2, UnitComplex, Vector2};
 
 /// Steering toward a heading, 1/s.
 const HEADING_GAIN: f64 = 3.0;
@@ -44,6 +44,9 @@ pub(super) struct Legs {
     turning: bool,
     /// Whether something was in the way at the last reading.
     pub(super) blocked: bool,
+    /// Where a surface ahead would stop the center of the robot, by odometry, as it was measured last: nearer than the minimum
+    /// range, no laser measures it.
+    ahead: Option<Point2<f64>>,
 }
 
 impl Legs {
@@ -61,6 +64,7 @@ impl Legs {
             pace: Pace::new(robot, speed_mps, step_s),
             turning: false,
             blocked: false,
+            ahead: None,
         }
     }
 
@@ -76,7 +80,7 @@ impl Legs {
 
     /// The values that a snapshot holds.
     pub(super) fn values(&mut self) -> Values<'_> {
-        values![self.turning, self.blocked]
+        values![self.turning, self.blocked, self.ahead]
     }
 
     /// The velocity on the leg in the direction of the unit vector `along`, `remaining_m` before its end. `look`
@@ -91,6 +95,7 @@ impl Legs {
     ) -> Twist {
         let lean = UnitComplex::from_cos_sin_unchecked(along.x, along.y).inverse() * reading.pose.rotation;
         let lean_rad = libm::atan2(lean.im, lean.re);
+        self.remember(reading, along, &lean);
         self.turning = lean_rad.abs() > if self.turning { TURNED_RAD } else { TURN_BEYOND_RAD };
         if self.turning {
             return Twist { linear_mps: 0.0, angular_radps: self.pace.turn_radps(-lean_rad) };
@@ -121,21 +126,52 @@ impl Legs {
         points.map(move |(range_m, beam)| lean * (mount + beam * f64::from(*range_m)))
     }
 
+    /// Remembers the surface ahead while the laser measures it.
+    fn remember(&mut self, reading: &LaserReading, along: &Vector2<f64>, lean: &UnitComplex<f64>) {
+        let is_ahead = |point: &Vector2<f64>| point.x > 0.0 && point.y.abs() < self.radius_m + END_MARGIN_M;
+        if reading.scan.range_min_m <= 0.0 || self.blind_ends(reading, lean).any(|end| is_ahead(&end)) {
+            return;
+        }
+        let points = self.points(reading, lean).filter(is_ahead);
+        let gap_m = points.fold(f64::INFINITY, |gap_m, point| gap_m.min(self.gap_m(&point)));
+        let stop = Point2::from(reading.pose.translation.vector) + along * gap_m;
+        self.ahead = gap_m.is_finite().then_some(stop);
+    }
+
+    /// Whether what is too close to be measured is the wall behind the end of the leg: the surface that was measured before is
+    /// behind the end, and now nearer than the minimum range.
+    fn is_wall_behind_end(&self, reading: &LaserReading, lean: &UnitComplex<f64>, remaining_m: f64) -> bool {
+        let Some(stop) = self.ahead else { return false };
+        let from_robot = stop - Point2::from(reading.pose.translation.vector);
+        let way = lean * reading.pose.rotation.inverse() * from_robot;
+        let blind_m = reading.mount.translation.vector.norm() + reading.scan.range_min_m;
+        way.y.abs() < self.radius_m && (remaining_m + END_MARGIN_M..blind_m).contains(&way.x)
+    }
+
+    /// The points at the minimum range on the beams that measure something nearer (−∞), in the frame of the leg, m.
+    fn blind_ends(
+        &self,
+        reading: &LaserReading,
+        lean: &UnitComplex<f64>,
+    ) -> impl Iterator<Item = Vector2<f64>> {
+        let mount = reading.mount.translation.vector;
+        let ranges_m = reading.scan.ranges_m.iter().zip(&self.beams);
+        let beams = ranges_m.filter(|(range_m, _)| **range_m == f32::NEG_INFINITY).map(|(_, beam)| beam);
+        beams.map(move |beam| lean * (mount + beam * reading.scan.range_min_m))
+    }
+
     /// Where something is too close to be measured (−∞), in the frame of the leg, m: as far to the side as the minimum range
     /// reaches, and not farther ahead than a touch. A beam beyond the minimum range would have measured it, so that a wall
-    /// beside the way is not in the way. Where the minimum range reaches beyond the end of the leg, `remaining_m` ahead, it is
-    /// the wall behind the end.
+    /// beside the way is not in the way. The wall behind the end of the leg, `remaining_m` ahead, is not in the way either.
     pub(super) fn too_close(
         &self,
         reading: &LaserReading,
         lean: &UnitComplex<f64>,
         remaining_m: f64,
     ) -> impl Iterator<Item = Vector2<f64>> {
-        let mount = reading.mount.translation.vector;
-        let ranges_m = reading.scan.ranges_m.iter().zip(&self.beams);
-        let beams = ranges_m.filter(|(range_m, _)| **range_m == f32::NEG_INFINITY).map(|(_, beam)| beam);
-        let farthest = beams.map(move |beam| lean * (mount + beam * reading.scan.range_min_m));
-        let on_leg = farthest.filter(move |at| self.gap_m(at) < remaining_m + END_MARGIN_M);
+        let is_wall = self.is_wall_behind_end(reading, lean, remaining_m);
+        let behind_m = if is_wall { remaining_m + END_MARGIN_M } else { f64::INFINITY };
+        let on_leg = self.blind_ends(reading, lean).filter(move |at| self.gap_m(at) < behind_m);
         on_leg.map(move |at| Vector2::new(at.x.min(self.nose_m(&at) + TOUCH_M), at.y))
     }
 

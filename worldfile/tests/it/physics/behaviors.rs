@@ -200,3 +200,21 @@ fn a_way_may_end_before_a_wall_that_is_too_close_to_be_measured() {
         assert_eq!(fleet.contacts(), []);
     }
 }
+
+/// On short legs, what is too close to be measured can be a body as well as a wall.
+#[test]
+fn a_body_on_a_way_of_short_legs_is_not_taken_for_a_wall() {
+    let points_m: Vec<[f64; 2]> = (1..24).map(|leg| [1.0 + 0.15 * f64::from(leg), 3.0]).collect();
+    for range_min_m in [0.0, 0.3, 0.4, 0.6] {
+        let way =
+            format!("kind = \"waypoints\"\npoints_m = {points_m:?}\nspeed_mps = 0.3\nclearance_m = 0.15");
+        let laser = format!("beams = 180\nrange_min_m = {range_min_m:?}");
+        let driver = robot("driver", [1.0, 3.0], 0.0, &way).replace("beams = 90", &laser);
+        let stands = robot("stands", [3.0, 3.0], 0.0, "kind = \"standing\"");
+        let mut fleet = Fleet::new(&house(&[driver, stands], ""), 1);
+        for step in 1..1200 {
+            fleet.run_until(0.05 * f64::from(step), &mut nobody);
+            assert_eq!(fleet.contacts(), [], "{range_min_m} m, at {} s", fleet.time_s());
+        }
+    }
+}

@@ -46,6 +46,16 @@ fn state(mut world: PhysicsWorld) -> Vec<u8> {
     world.snapshot().into_bytes()
 }
 
+#[test]
+fn a_dock_is_where_a_robot_can_be() {
+    let text = include_str!("../../../../worlds/office_week.toml");
+    let with = |dock: &str| text.replace("[robot.patrol]\n", &format!("[robot.patrol]\ndock_m = {dock}\n"));
+    let parse = |dock: &str| worldfile::physics::parse_world("office.toml", &with(dock));
+    assert!(parse("[2.0, 2.0]").is_ok());
+    let error = parse("[0.05, 2.0]").unwrap_err().to_string();
+    assert!(error.contains("is in a wall or an obstacle") && error.contains("within 0.5 m"), "{error}");
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(12))]
     #[test]
