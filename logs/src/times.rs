@@ -57,6 +57,8 @@ pub(crate) fn repaired(raw_s: &[f64]) -> Times {
     steps.sort_by(f64::total_cmp);
     let period_s = steps.get(steps.len() / 2).copied().unwrap_or(STEP_WITHOUT_TIMES_S);
     let (mut jumps, mut back, mut rests_s) = (0, 0, Vec::new());
+    // By how much the clock is behind, as far as is known, s.
+    let mut behind_s = 0.0;
     let (mut times_s, mut offset_s) = (Vec::with_capacity(raw_s.len()), 0.0);
     let (mut part_s, mut longest) = (0.0, (0.0, 0.0));
     for (scan, raw) in raw_s.iter().enumerate() {
@@ -67,7 +69,9 @@ pub(crate) fn repaired(raw_s: &[f64]) -> Times {
         };
         let step_s = raw + offset_s - last_s;
         let is_pause = (-DISORDER_S..=LONGEST_PAUSE_S).contains(&step_s);
-        if !is_pause || step_s > DAY_S && is_undone(&raw_s[scan..], step_s) {
+        let catches_up = (behind_s / 2.0..behind_s + DISORDER_S).contains(&step_s);
+        if !is_pause || step_s > DAY_S && (catches_up || is_undone(&raw_s[scan..], step_s)) {
+            behind_s = if step_s < 0.0 { behind_s - step_s } else { 0.0 };
             jumps += 1;
             longest = longer(longest, (last_s - part_s, offset_s));
             offset_s += period_s - step_s;
@@ -174,9 +178,16 @@ mod tests {
                 .collect();
             repaired(&raw_s)
         };
-        for (before, at) in
-            [(-5e8, 0..30), (3600.0, 0..30), (1e9, 0..1), (2e5, 60..61), (5e6, 60..61), (-4000.0, 80..100)]
-        {
+        for (before, at) in [
+            (-5e8, 0..30),
+            (3600.0, 0..30),
+            (1e9, 0..1),
+            (2e5, 60..61),
+            (-2e5, 60..61),
+            (-2e5, 60..80),
+            (5e6, 60..61),
+            (-4000.0, 80..100),
+        ] {
             let times = log(before, at.clone());
             assert!((times.begin_s - 1.7e9).abs() < 1e-3, "{before} {at:?}: {}", times.begin_s);
             let note = times.date_note().unwrap();

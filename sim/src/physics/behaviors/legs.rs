@@ -20,6 +20,8 @@ const TURN_BEYOND_RAD: f64 = 0.5;
 const TURNED_RAD: f64 = 0.03;
 /// An obstacle is in the way if less than this space is left between it and the robot at the end of the leg, m.
 const END_MARGIN_M: f64 = 0.03;
+/// A free way counts as this long, m: longer than the minimum range of any laser.
+const FREE_M: f64 = 1e3;
 /// After a stop, this much additional space must be free before the robot continues, m: this avoids stop-and-go at
 /// the limit.
 const HYSTERESIS_M: f64 = 0.05;
@@ -45,7 +47,7 @@ pub(super) struct Legs {
     /// Whether something was in the way at the last reading.
     pub(super) blocked: bool,
     /// Where a surface ahead would stop the center of the robot, by odometry, as it was measured last: nearer than the minimum
-    /// range, no laser measures it.
+    /// range, no laser measures it. Far away if the way was free.
     ahead: Option<Point2<f64>>,
 }
 
@@ -133,19 +135,20 @@ impl Legs {
             return;
         }
         let points = self.points(reading, lean).filter(is_ahead);
-        let gap_m = points.fold(f64::INFINITY, |gap_m, point| gap_m.min(self.gap_m(&point)));
-        let stop = Point2::from(reading.pose.translation.vector) + along * gap_m;
-        self.ahead = gap_m.is_finite().then_some(stop);
+        let gap_m = points.fold(FREE_M, |gap_m, point| gap_m.min(self.gap_m(&point)));
+        self.ahead = Some(Point2::from(reading.pose.translation.vector) + along * gap_m);
     }
 
     /// Whether what is too close to be measured is the wall behind the end of the leg: the surface that was measured before is
-    /// behind the end, and now nearer than the minimum range.
+    /// behind the end, and now nearer than the minimum range. Of a leg that was never measured, nothing else is known.
     fn is_wall_behind_end(&self, reading: &LaserReading, lean: &UnitComplex<f64>, remaining_m: f64) -> bool {
-        let Some(stop) = self.ahead else { return false };
+        let Some(stop) = self.ahead else { return true };
         let from_robot = stop - Point2::from(reading.pose.translation.vector);
         let way = lean * reading.pose.rotation.inverse() * from_robot;
         let blind_m = reading.mount.translation.vector.norm() + reading.scan.range_min_m;
-        way.y.abs() < self.radius_m && (remaining_m + END_MARGIN_M..blind_m).contains(&way.x)
+        let is_on_leg = way.x > 0.0 && way.y.abs() < self.radius_m;
+        // Without a margin: noise lets the nearest point seem nearer than the wall is.
+        !is_on_leg || (remaining_m..blind_m).contains(&way.x)
     }
 
     /// The points at the minimum range on the beams that measure something nearer (−∞), in the frame of the leg, m.

@@ -201,6 +201,21 @@ fn a_way_may_end_before_a_wall_that_is_too_close_to_be_measured() {
     }
 }
 
+/// A robot gets to the end of its way also if its laser is noisy, and if it starts where it does not measure the wall.
+#[test]
+fn a_wall_that_was_measured_badly_or_never_is_no_obstacle() {
+    let wall = "[[wall]]\nmin_m = [4.8, 0.2]\nmax_m = [4.9, 2.0]\n";
+    let way = "kind = \"wall_patrol\"\nfrom_m = [1.0, 0.5]\nto_m = [4.54, 0.5]\nwall_side = \"right\"\nspeed_mps = 0.4";
+    for (start_m, noise_m) in [(1.0, 0.0), (1.0, 0.01), (1.0, 0.02), (4.44, 0.0)] {
+        let driver = robot("driver", [start_m, 0.5], 0.0, way);
+        let driver = driver.replace("beams = 90", "beams = 360\nrange_min_m = 0.45");
+        let driver = driver.replace("noise_std_m = 0.005", &format!("noise_std_m = {noise_m:?}"));
+        let mut fleet = Fleet::new(&house(&[driver], wall), 1);
+        let visits = visits(&mut fleet, &[[1.0, 0.5], [4.54, 0.5]], 600.0);
+        assert!(visits.len() > 40, "from {start_m} m, noise {noise_m} m: {}", visits.len());
+    }
+}
+
 /// On short legs, what is too close to be measured can be a body as well as a wall.
 #[test]
 fn a_body_on_a_way_of_short_legs_is_not_taken_for_a_wall() {
