@@ -20,8 +20,8 @@ const TURN_BEYOND_RAD: f64 = 0.5;
 const TURNED_RAD: f64 = 0.03;
 /// An obstacle is in the way if less than this space is left between it and the robot at the end of the leg, m.
 const END_MARGIN_M: f64 = 0.03;
-/// A free way counts as this long, m: longer than the minimum range of any laser.
-const FREE_M: f64 = 1e3;
+/// A way counts as free if nothing is nearer than this beyond the minimum range, m.
+const FREE_M: f64 = 1.0;
 /// After a stop, this much additional space must be free before the robot continues, m: this avoids stop-and-go at
 /// the limit.
 const HYSTERESIS_M: f64 = 0.05;
@@ -47,7 +47,7 @@ pub(super) struct Legs {
     /// Whether something was in the way at the last reading.
     pub(super) blocked: bool,
     /// Where a surface ahead would stop the center of the robot, by odometry, as it was measured last: nearer than the minimum
-    /// range, no laser measures it. Far away if the way was free.
+    /// range, no laser measures it. Beyond the minimum range if the way was free.
     ahead: Option<Point2<f64>>,
 }
 
@@ -135,7 +135,7 @@ impl Legs {
             return;
         }
         let points = self.points(reading, lean).filter(is_ahead);
-        let gap_m = points.fold(FREE_M, |gap_m, point| gap_m.min(self.gap_m(&point)));
+        let gap_m = points.fold(blind_m(reading) + FREE_M, |gap_m, point| gap_m.min(self.gap_m(&point)));
         self.ahead = Some(Point2::from(reading.pose.translation.vector) + along * gap_m);
     }
 
@@ -145,10 +145,9 @@ impl Legs {
         let Some(stop) = self.ahead else { return true };
         let from_robot = stop - Point2::from(reading.pose.translation.vector);
         let way = lean * reading.pose.rotation.inverse() * from_robot;
-        let blind_m = reading.mount.translation.vector.norm() + reading.scan.range_min_m;
         let is_on_leg = way.x > 0.0 && way.y.abs() < self.radius_m;
         // Without a margin: noise lets the nearest point seem nearer than the wall is.
-        !is_on_leg || (remaining_m..blind_m).contains(&way.x)
+        !is_on_leg || (remaining_m..blind_m(reading)).contains(&way.x)
     }
 
     /// The points at the minimum range on the beams that measure something nearer (−∞), in the frame of the leg, m.
@@ -202,6 +201,11 @@ impl Legs {
     fn nose_m(&self, point: &Vector2<f64>) -> f64 {
         (self.radius_m * self.radius_m - point.y * point.y).max(0.0).sqrt()
     }
+}
+
+/// Farther from the center of the robot than this, m, the laser measures a surface.
+fn blind_m(reading: &LaserReading) -> f64 {
+    reading.mount.translation.vector.norm() + reading.scan.range_min_m
 }
 
 /// How fast a robot that receives one command per scan can stop and turn.
