@@ -379,16 +379,15 @@ fn goals_that_the_day_ends_have_no_outcome() {
         pilot.selector_mut().rests = rests;
         pilot.command(&belief, Features::default(), &map);
     }
+    let goes = ["drive", "goal", "drive"];
+    assert_eq!(pilot.driver_mut().asked, [&goes[..], &["cancel", "rest", "rest"], &goes].concat());
+    assert_eq!((pilot.goals(), pilot.selector_mut().ended), (GoalCount::default(), 1));
     // A robot that is lost rests as well.
     pilot.selector_mut().rests = true;
     let lost = Belief { permission: Permission::LookAround, ..belief.clone() };
     pilot.command(&lost, Features::default(), &map);
     assert_eq!(pilot.rests_until_s(), Some(1e3));
     assert_eq!(pilot.driver_mut().asked.split_off(9), ["cancel", "rest"]);
-    pilot.selector_mut().ended = 1;
-    let goes = ["drive", "goal", "drive"];
-    assert_eq!(pilot.driver_mut().asked, [&goes[..], &["cancel", "rest", "rest"], &goes].concat());
-    assert_eq!((pilot.goals(), pilot.selector_mut().ended), (GoalCount::default(), 1));
     // The goal is replaced on the way.
     let driver = Jumping { is_slow: true, ..Jumping::default() };
     let mut pilot = Autonomous::new(Ordered { breaks_off: true, ..Ordered::default() }, driver);

@@ -145,7 +145,7 @@ impl Legs {
         let Some(stop) = self.ahead else { return true };
         let from_robot = stop - Point2::from(reading.pose.translation.vector);
         let way = lean * reading.pose.rotation.inverse() * from_robot;
-        let is_on_leg = way.x > 0.0 && way.y.abs() < self.radius_m;
+        let is_on_leg = way.x > -self.radius_m && way.y.abs() < self.radius_m;
         // Without a margin: noise lets the nearest point seem nearer than the wall is.
         !is_on_leg || (remaining_m..blind_m(reading)).contains(&way.x)
     }
