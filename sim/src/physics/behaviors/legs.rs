@@ -46,6 +46,8 @@ pub(super) struct Legs {
     turning: bool,
     /// Whether something was in the way at the last reading.
     pub(super) blocked: bool,
+    /// Whether the laser has a minimum range.
+    can_be_too_close: bool,
     /// Where a surface ahead would stop the center of the robot, by odometry, as it was measured last: nearer than the minimum
     /// range, no laser measures it. Beyond the minimum range if the way was free.
     ahead: Option<Point2<f64>>,
@@ -66,6 +68,7 @@ impl Legs {
             pace: Pace::new(robot, speed_mps, step_s),
             turning: false,
             blocked: false,
+            can_be_too_close: robot.laser.range_min_m > 0.0,
             ahead: None,
         }
     }
@@ -82,7 +85,10 @@ impl Legs {
 
     /// The values that a snapshot holds.
     pub(super) fn values(&mut self) -> Values<'_> {
-        values![self.turning, self.blocked, self.ahead]
+        let mut values = values![self.turning, self.blocked];
+        // Without a minimum range nothing is remembered: so older snapshots stay readable.
+        values.extend(self.can_be_too_close.then(|| value(&mut self.ahead)));
+        values
     }
 
     /// The velocity on the leg in the direction of the unit vector `along`, `remaining_m` before its end. `look`
@@ -131,7 +137,7 @@ impl Legs {
     /// Remembers the surface ahead while the laser measures it.
     fn remember(&mut self, reading: &LaserReading, along: &Vector2<f64>, lean: &UnitComplex<f64>) {
         let is_ahead = |point: &Vector2<f64>| point.x > 0.0 && point.y.abs() < self.radius_m + END_MARGIN_M;
-        if reading.scan.range_min_m <= 0.0 || self.blind_ends(reading, lean).any(|end| is_ahead(&end)) {
+        if !self.can_be_too_close || self.blind_ends(reading, lean).any(|end| is_ahead(&end)) {
             return;
         }
         let points = self.points(reading, lean).filter(is_ahead);
