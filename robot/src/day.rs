@@ -35,8 +35,8 @@ pub struct DaySettings {
 }
 
 impl DaySettings {
-    /// The longest way from the dock to a goal, s at full speed: the way there may take [`MARGIN`] times as long, and for the way
-    /// back the robot keeps [`MARGIN`] times as much as it took, and a reserve.
+    /// The longest travel time from the dock to a goal, s at full speed: the robot may take [`MARGIN`] times as long, and then keeps
+    /// [`MARGIN`] times what it took, and a reserve, to return.
     fn range_s(&self) -> f64 {
         (self.battery_s - RESERVE_S) / (MARGIN * (1.0 + MARGIN))
     }

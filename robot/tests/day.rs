@@ -55,8 +55,6 @@ impl GoalSelector for Farthest {
         Some(Destination { position, stay: Stay::Watch(0.0) })
     }
 
-    fn end_goal(&mut self, _: &Isometry2<f64>, _: &Mapper) {}
-
     fn reason(&self) -> String {
         "the farthest cell".to_owned()
     }

@@ -69,7 +69,7 @@ pub trait TrialKind: Args + Clone + Debug {
     /// When it cannot be loaded, or no trial can run in it.
     fn load(&self, name: &str) -> anyhow::Result<(Self::Spec, Vec<String>)>;
 
-    /// The option that is given, and only changes generated worlds.
+    /// An option that was given, and that changes only generated worlds.
     fn of_generated(&self) -> Option<&'static str> {
         None
     }

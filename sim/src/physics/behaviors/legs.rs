@@ -128,10 +128,19 @@ impl Legs {
         reading: &LaserReading,
         lean: &UnitComplex<f64>,
     ) -> impl Iterator<Item = Vector2<f64>> {
+        self.ends(reading, lean, |range_m| range_m.is_finite().then_some(range_m.into()))
+    }
+
+    /// The points on the beams at the distance that `at_m` makes of their ranges, in the frame of the leg, m.
+    fn ends(
+        &self,
+        reading: &LaserReading,
+        lean: &UnitComplex<f64>,
+        at_m: impl Fn(f32) -> Option<f64>,
+    ) -> impl Iterator<Item = Vector2<f64>> {
         let mount = reading.mount.translation.vector;
-        let ranges_m = reading.scan.ranges_m.iter().zip(&self.beams);
-        let points = ranges_m.filter(|(range_m, _)| range_m.is_finite());
-        points.map(move |(range_m, beam)| lean * (mount + beam * f64::from(*range_m)))
+        let beams = reading.scan.ranges_m.iter().zip(&self.beams);
+        beams.filter_map(move |(range_m, beam)| Some(lean * (mount + beam * at_m(*range_m)?)))
     }
 
     /// Remembers the surface ahead while the laser measures it.
@@ -162,10 +171,8 @@ impl Legs {
         reading: &LaserReading,
         lean: &UnitComplex<f64>,
     ) -> impl Iterator<Item = Vector2<f64>> {
-        let mount = reading.mount.translation.vector;
-        let ranges_m = reading.scan.ranges_m.iter().zip(&self.beams);
-        let beams = ranges_m.filter(|(range_m, _)| **range_m == f32::NEG_INFINITY).map(|(_, beam)| beam);
-        beams.map(move |beam| lean * (mount + beam * reading.scan.range_min_m))
+        let range_min_m = reading.scan.range_min_m;
+        self.ends(reading, lean, move |range_m| (range_m == f32::NEG_INFINITY).then_some(range_min_m))
     }
 
     /// Where something is too close to be measured (−∞), in the frame of the leg, m: as far to the side as the minimum range
