@@ -79,17 +79,3 @@ fn capital(text: &str) -> String {
     let mut letters = text.chars();
     letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// The tables of docs/figure3.md are taken from this file: with other columns, it is older than this program.
-    #[test]
-    fn the_file_has_the_columns_of_this_program() {
-        let file = include_str!("../../docs/figure3/results.md");
-        assert_eq!(file.lines().filter(|line| *line == SHARES).count(), crate::conditions().len());
-        assert_eq!(file.lines().filter(|line| line.ends_with(RATIOS)).count(), 1);
-        assert!(file.contains(Claim::markdown_head()));
-    }
-}

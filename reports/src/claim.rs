@@ -9,11 +9,6 @@ use evaluation::trials::Metric;
 
 /// A map whose quality is lower by at most this value counts as equally good.
 const QUALITY_MARGIN: f64 = 0.005;
-/// Two strategies learn rates equally fast if their log errors over the run differ by less than this share. It is
-/// less than the difference between two trials of the same strategies: in the paper's world the standard deviation
-/// of the difference between curious and recency is 0.14 of recency's error (docs/figure3/results.md).
-const LEVEL_SHARE: f64 = 0.1;
-
 /// The verdict on the claim in one run. All differences are curious − the other strategy.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Claim {
@@ -71,13 +66,6 @@ fn is_slower(error: &Comparison) -> bool {
     error.is_significant() && error.mean_difference > 0.0
 }
 
-/// Whether the interval excludes a difference that matters. An interval that includes zero and such a difference says
-/// nothing.
-fn is_level(error: &Comparison) -> bool {
-    let margin = LEVEL_SHARE * error.mean_b;
-    error.low > -margin && error.high < margin
-}
-
 fn is_as_good_map(quality: &Comparison) -> bool {
     quality.low >= -QUALITY_MARGIN
 }
@@ -123,9 +111,6 @@ impl Claim {
         let speed = |error: &Comparison| match (error, &error.b) {
             (error, other) if is_faster(error) => format!("curious learns rates faster than {other}"),
             (error, other) if is_slower(error) => format!("curious learns rates slower than {other}"),
-            (error, other) if is_level(error) => {
-                format!("curious learns rates level with {other}, within 10 %")
-            }
             (_, other) => format!("{pairs} cannot tell whether curious or {other} learns rates faster"),
         };
         let map = match &self.quality_like_recency {

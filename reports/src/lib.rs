@@ -4,7 +4,7 @@
 //!
 //! ```text
 //! trials ──▶ runs: curves, areas, comparisons ──▶ report.json, figures, table, claim
-//!   └──────▶ trials.csv, trials.parquet
+//!   └──────▶ trials.csv
 //! ```
 
 mod builder;
@@ -13,13 +13,12 @@ mod comparison;
 mod figure;
 mod files;
 mod measure;
-pub mod pages;
 mod run;
 pub mod shards;
 mod statistics;
 mod strategy;
 mod table;
-mod trial_files;
+mod trial_file;
 mod wording;
 
 pub use builder::{ReportBuilder, UnequalTimes};
@@ -30,7 +29,7 @@ pub use measure::Measure;
 pub use run::Run;
 pub use statistics::{Estimate, PairedTest, paired_test};
 pub use strategy::StrategyResult;
-pub use trial_files::collect;
+pub use trial_file::collect;
 
 use evaluation::trials::{Experiment, Length, Trial, TrialError, TrialWorld};
 use results::drawing::PictureError;

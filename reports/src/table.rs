@@ -4,7 +4,7 @@ use super::claim::Claim;
 use super::comparison::Comparison;
 use super::measure::Measure;
 use super::run::{Run, conditions};
-use super::strategy::{StrategyResult, Unit};
+use super::strategy::StrategyResult;
 use super::wording::{difference, p_value, value};
 use super::{ONE_BY_ONE, Report, is_reference};
 use evaluation::trials::Metric;
@@ -103,7 +103,7 @@ pub(super) fn table(report: &Report) -> String {
     for run in report.runs.iter().filter(|run| !is_short || run.worlds > 1) {
         let claim = Claim::of(run).map(|claim| claim.sentence());
         let counts = COUNTS.iter().filter_map(|(what, count)| counts(run, what, count));
-        let conclusions = counts.chain(same(run)).chain(winner(run)).chain(claim);
+        let conclusions = counts.chain(winner(run)).chain(claim);
         let paragraphs = [
             format!("{}\n{}", run.world, conditions(run, &report.settings)),
             values(&run.strategies, columns).to_string(),
@@ -235,31 +235,6 @@ fn differences(run: &Run) -> Option<String> {
         ),
     };
     Some(format!("{head}\n{}", aligned(rows)))
-}
-
-/// In how many worlds or trials another strategy did what the first one did: too few decisions differ to compare them there.
-fn same(run: &Run) -> Option<String> {
-    let (first, others) = run.strategies.split_first()?;
-    let is_same = |other: &StrategyResult, unit: &Unit| {
-        let partner = other.units.iter().find(|partner| partner.key == unit.key);
-        partner.is_some_and(|partner| {
-            let values = |unit: &Unit| DIFFERENCES.map(|(_, measure, _)| unit.value(measure).to_bits());
-            values(unit) == values(partner)
-        })
-    };
-    let counted = |other: &StrategyResult| {
-        let count = first.units.iter().filter(|unit| is_same(other, unit)).count();
-        (count > 0).then(|| format!("{} {count}", other.name))
-    };
-    let counts: Vec<String> = others.iter().filter_map(counted).collect();
-    let units = if run.worlds > 1 { "worlds" } else { "trials" };
-    let (name, all) = (&first.name, first.units.len());
-    (!counts.is_empty()).then(|| {
-        format!(
-            "Of {all} {units}, the same results as {name}:\n{}; a longer time can tell them apart.",
-            counts.join(", ")
-        )
-    })
 }
 
 /// A count of the strategies for which it is above zero.

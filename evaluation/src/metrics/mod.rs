@@ -29,7 +29,7 @@ pub use alignment::alignment;
 pub use changing::{ChangingAccuracy, ChangingScores};
 pub use deviance::{DevianceScores, FrozenRates, poisson_deviance};
 pub use forecasts::{ForecastScores, Forecasts, StateScores};
-pub use freshness::{Freshness, FreshnessScores, freshness_regret};
+pub use freshness::{Freshness, FreshnessScores};
 pub use latency::{Delays, Latency};
 pub use map::{Age, MapScores, ReachableScores, age, map_scores, reachable_scores};
 pub use passages::{PassageScores, passage_scores};

@@ -36,18 +36,16 @@ fn the_claim_holds_only_in_all_its_parts() {
     let as_good = "curious has as good a map as recency.";
     for (errors, qualities, expected, [to_recency, to_poisson]) in [
         ([0.5, 0.6, 0.7], [0.98, 0.98], Verdict::Holds, ["faster than recency", "faster than poisson"]),
-        (
-            [0.5, 0.6, 0.5],
-            [0.98, 0.98],
-            Verdict::NotShown,
-            ["faster than recency", "level with poisson, within 10 %"],
-        ),
+        ([0.5, 0.6, 0.5], [0.98, 0.98], Verdict::NotShown, ["faster than recency", ""]),
         ([0.5, 0.6, 0.4], [0.98, 0.98], Verdict::Fails, ["faster than recency", "slower than poisson"]),
         ([0.5, 0.4, 0.6], [0.98, 0.98], Verdict::Fails, ["slower than recency", "faster than poisson"]),
         ([0.5, 0.6, 0.7], [0.977, 0.98], Verdict::Holds, ["faster than recency", "faster than poisson"]),
     ] {
-        let parts =
-            format!("curious learns rates {to_recency}; curious learns rates {to_poisson}; {as_good}");
+        let of_poisson = match to_poisson {
+            "" => "10 trials cannot tell whether curious or poisson learns rates faster".to_owned(),
+            _ => format!("curious learns rates {to_poisson}"),
+        };
+        let parts = format!("curious learns rates {to_recency}; {of_poisson}; {as_good}");
         assert_eq!(verdict(errors, qualities, 0.02), (expected, parts));
     }
     let (worse, parts) = verdict([0.5, 0.6, 0.7], [0.97, 0.98], 0.02);
