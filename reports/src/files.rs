@@ -1,7 +1,6 @@
 //! `report.json`. An undefined value is `null`; names are in the order of the experiment.
 
 use super::Report;
-use super::claim::Claim;
 use super::measure::Measure;
 use super::run::Run;
 use super::strategy::StrategyResult;
@@ -40,7 +39,6 @@ impl Serialize for Run {
         let mut object = to.serialize_map(None)?;
         object.serialize_entry("world", &self.world)?;
         object.serialize_entry("estimator", &self.estimator)?;
-        object.serialize_entry("claim", &Claim::of(self).map(|claim| claim.verdict.name()))?;
         let strategies = self.strategies.iter().map(|strategy| (&strategy.name, strategy));
         object.serialize_entry("strategies", &Object(strategies))?;
         object.serialize_entry("comparisons", &self.comparisons)?;

@@ -1,14 +1,13 @@
-//! The report of an experiment: from trials to curves with confidence bands, paired comparisons, the verdict
-//! on the paper's claim, files and a table; and experiments in shards. It must not know the command line,
+//! The report of an experiment: from trials to curves with confidence bands, paired comparisons, files and a table; and
+//! experiments in shards. It must not know the command line,
 //! recordings or screens.
 //!
 //! ```text
-//! trials ──▶ runs: curves, areas, comparisons ──▶ report.json, figures, table, claim
+//! trials ──▶ runs: curves, areas, comparisons ──▶ report.json, figures, table
 //!   └──────▶ trials.csv
 //! ```
 
 mod builder;
-mod claim;
 mod comparison;
 mod figure;
 mod files;
@@ -19,10 +18,8 @@ mod statistics;
 mod strategy;
 mod table;
 mod trial_file;
-mod wording;
 
 pub use builder::{ReportBuilder, UnequalTimes};
-pub use claim::{Claim, Verdict};
 pub use comparison::Comparison;
 pub use figure::Plan;
 pub use measure::Measure;

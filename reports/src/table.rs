@@ -1,11 +1,9 @@
 //! The tables for a terminal of 80 columns.
 
-use super::claim::Claim;
 use super::comparison::Comparison;
 use super::measure::Measure;
 use super::run::{Run, conditions};
 use super::strategy::StrategyResult;
-use super::wording::{difference, p_value, value};
 use super::{ONE_BY_ONE, Report, is_reference};
 use evaluation::trials::Metric;
 use results::numbers::percent;
@@ -101,9 +99,8 @@ pub(super) fn table(report: &Report) -> String {
             format!("Interrupted: {finished} of {} trials were finished.\n\n", report.settings.all_trials());
     }
     for run in report.runs.iter().filter(|run| !is_short || run.worlds > 1) {
-        let claim = Claim::of(run).map(|claim| claim.sentence());
         let counts = COUNTS.iter().filter_map(|(what, count)| counts(run, what, count));
-        let conclusions = counts.chain(winner(run)).chain(claim);
+        let conclusions = counts.chain(winner(run));
         let paragraphs = [
             format!("{}\n{}", run.world, conditions(run, &report.settings)),
             values(&run.strategies, columns).to_string(),
@@ -282,4 +279,21 @@ fn winner(run: &Run) -> Option<String> {
             p_value(p)
         ),
     })
+}
+
+/// A value with `decimals`; a dash where it is not a number.
+fn value(value: f64, decimals: usize) -> String {
+    if value.is_finite() { format!("{value:.decimals$}") } else { "-".into() }
+}
+
+/// A difference, with its sign; zero has none.
+fn difference(value: f64, decimals: usize) -> String {
+    let text = if value.is_finite() { format!("{value:+.decimals$}") } else { return "-".into() };
+    let is_zero = !text.contains(|letter: char| ('1'..='9').contains(&letter));
+    if is_zero { text.replace(['+', '-'], " ") } else { text }
+}
+
+/// `p = 0.012`, or `p < 0.001`.
+fn p_value(p_value: f64) -> String {
+    if p_value < 0.001 { "p < 0.001".into() } else { format!("p = {p_value:.3}") }
 }

@@ -30,14 +30,14 @@ pub mod freshness_bound;
 mod learner;
 mod patrol;
 pub mod rows;
-mod user_routes;
+mod user_regret;
 
 pub use calendar;
 
 pub use belief::{Belief, Model};
 pub use building::{Building, Kind, Room, Thing, ThingKind, Viewpoint};
 pub use patrol::{Choice, Duty, Habits, Patrol, Plan, Seen, Strategy, Totals, View};
-pub use user_routes::routes;
+pub use user_regret::{Routes, UserRegret, Way};
 
 /// The step of beliefs, looks and scores, s. Things change at any time between.
 pub const STEP_S: f64 = 10.0;

@@ -23,7 +23,6 @@ mod rates;
 mod standstill;
 mod things;
 mod true_chains;
-mod user_regret;
 
 pub use alignment::alignment;
 pub use changing::{ChangingAccuracy, ChangingScores};
@@ -44,7 +43,6 @@ pub use rates::{
 pub use standstill::Standstills;
 pub use things::{ThingReport, Things};
 pub use true_chains::TrueChains;
-pub use user_regret::{Routes, UserRegret, Way};
 
 #[cfg(test)]
 mod tests;

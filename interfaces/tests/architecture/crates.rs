@@ -150,6 +150,14 @@ fn every_crate_uses_only_what_it_may() {
 }
 
 #[test]
+fn nothing_uses_the_studies() {
+    for package in packages() {
+        let mut all = package.dependencies.iter().chain(&package.of_tests);
+        assert!(all.all(|name| name != "studies"), "{} must not use studies", package.name);
+    }
+}
+
+#[test]
 fn only_the_viewer_and_the_programs_need_rerun() {
     for name in WITHOUT_RERUN {
         let needs = needs(name);

@@ -12,10 +12,10 @@
 //! A row is printed as soon as its run ends; at the end, the mean Brier scores go to the other output.
 
 use clap::Parser;
-use evaluation::metrics::{Freshness, UserRegret};
+use evaluation::metrics::Freshness;
 use studies::freshness_bound::building::{BoundSettings, BuildingBound};
 use studies::rows::{Score, compute, means};
-use studies::{Building, Duty, Habits, Kind, Patrol, Plan, STEP_S, routes};
+use studies::{Building, Duty, Habits, Kind, Patrol, Plan, Routes, STEP_S, UserRegret};
 
 const STRATEGIES: [&str; 6] = ["no-looks", "curious", "round", "coverage", "gain", BOUND];
 const BOUND: &str = "bound";
@@ -137,7 +137,7 @@ impl Options {
             _ => Plan::Never,
         };
         let (mut freshness, mut users) = (Freshness::new(STEP_S), UserRegret::default());
-        let (routes, mut step) = (routes(&building), 0);
+        let (routes, mut step) = (Routes::of_building(&building), 0);
         let mut patrol = Patrol::with(&building, duty, run.habits, run.seed);
         let totals = patrol.run(plan.strategy(&building, duty).as_mut(), steps, |predicted, is_blocked| {
             freshness.add(predicted, is_blocked);

@@ -6,7 +6,7 @@
 //!
 //! Every strategy has the same buildings, and the same changes in them. The measures are those of `four_rooms` (`scheduled` in
 //! `summary.json`): the Brier score of the predicted map over all things with a schedule, every minute, in view or not; the delays of
-//! changes that last an hour or more, by belief; what users lose per trip, and the trips that they do not make.
+//! changes that last an hour or more, by belief.
 //!
 //! A run of a week takes half a minute with 1 % of the time on patrol, and minutes with 5 %. A row is printed as soon as its run
 //! ends; at the end, the mean Brier scores go to the other output.
@@ -53,8 +53,7 @@ struct Run {
     strategy: Policy,
 }
 
-/// A run and its results: delays in minutes; `lost_s` per trip; shares of the lasting changes that were missed, of the trips that
-/// were not made, and of the time on patrol; how often the battery was flat away from the dock; contacts by the robot's own motion.
+/// A run and its results: delays in minutes; shares of the lasting changes that were missed, and of the time on patrol; how often the battery was flat away from the dock; contacts by the robot's own motion.
 #[derive(serde::Serialize)]
 struct Row {
     kind: &'static str,
@@ -67,8 +66,6 @@ struct Row {
     median_min: f64,
     delay95_min: f64,
     missed: f64,
-    lost_s: f64,
-    not_made: f64,
     patrol: f64,
     flat: u32,
     contacts: usize,
@@ -116,8 +113,6 @@ impl Options {
             median_min,
             delay95_min,
             missed: scheduled.missed,
-            lost_s: scheduled.user_lost_s,
-            not_made: scheduled.trips_not_made,
             patrol: day.patrol_s / end_s,
             flat: day.flat,
             contacts: results.contacts.own_motion,

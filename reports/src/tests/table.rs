@@ -1,4 +1,4 @@
-//! The verdict, and its text.
+//! The table for a terminal.
 
 use super::*;
 
@@ -18,55 +18,6 @@ fn made([curious, recency, poisson]: [f64; 3], [of_curious, of_recency]: [f64; 2
         }
     }
     Report::new(settings, trials)
-}
-
-fn claim(report: &Report) -> Option<Claim> {
-    Claim::of(report.run("two_blocks", "paper")?)
-}
-
-/// The verdict, and its parts as text; `chance` is the deviation of the errors.
-fn verdict(errors: [f64; 3], qualities: [f64; 2], chance: f64) -> (Verdict, String) {
-    let claim = claim(&made(errors, qualities, chance)).unwrap();
-    let parts = claim.sentence();
-    (claim.verdict, parts.split_once(":\n").unwrap().1.replace('\n', " "))
-}
-
-#[test]
-fn the_claim_holds_only_in_all_its_parts() {
-    let as_good = "curious has as good a map as recency.";
-    for (errors, qualities, expected, [to_recency, to_poisson]) in [
-        ([0.5, 0.6, 0.7], [0.98, 0.98], Verdict::Holds, ["faster than recency", "faster than poisson"]),
-        ([0.5, 0.6, 0.5], [0.98, 0.98], Verdict::NotShown, ["faster than recency", ""]),
-        ([0.5, 0.6, 0.4], [0.98, 0.98], Verdict::Fails, ["faster than recency", "slower than poisson"]),
-        ([0.5, 0.4, 0.6], [0.98, 0.98], Verdict::Fails, ["slower than recency", "faster than poisson"]),
-        ([0.5, 0.6, 0.7], [0.977, 0.98], Verdict::Holds, ["faster than recency", "faster than poisson"]),
-    ] {
-        let of_poisson = match to_poisson {
-            "" => "10 trials cannot tell whether curious or poisson learns rates faster".to_owned(),
-            _ => format!("curious learns rates {to_poisson}"),
-        };
-        let parts = format!("curious learns rates {to_recency}; {of_poisson}; {as_good}");
-        assert_eq!(verdict(errors, qualities, 0.02), (expected, parts));
-    }
-    let (worse, parts) = verdict([0.5, 0.6, 0.7], [0.97, 0.98], 0.02);
-    assert_eq!(worse, Verdict::Fails);
-    assert!(parts.ends_with("curious has a worse map than recency."), "{parts}");
-}
-
-#[test]
-fn a_wide_interval_cannot_tell() {
-    let (not_shown, parts) = verdict([0.5, 0.55, 0.5], [0.98, 0.98], 0.3);
-    assert_eq!(not_shown, Verdict::NotShown);
-    let cannot_tell =
-        |other| format!("10 trials cannot tell whether curious or {other} learns rates faster; ");
-    assert!(parts.starts_with(&(cannot_tell("recency") + &cannot_tell("poisson"))), "{parts}");
-    // The errors are clear, the map qualities are not: no claim holds.
-    let (not_shown, parts) = verdict([1.5, 4.0, 4.0], [0.98, 0.98], 1.0);
-    assert_eq!(not_shown, Verdict::NotShown);
-    assert!(
-        parts.ends_with("10 trials cannot tell whether curious has as good a map as recency."),
-        "{parts}"
-    );
 }
 
 #[test]
@@ -115,26 +66,6 @@ fn a_strategy_is_the_fastest_only_if_that_is_significant() {
     assert!(table.contains("recency has the smallest log error over the run, 0.94 times"), "{table}");
     assert!(table.contains("that of curious; the difference is not significant (p = "), "{table}");
     assert!(!table.contains("learns rates fastest"), "{table}");
-}
-
-#[test]
-fn without_the_paper_s_three_strategies_there_is_no_claim() {
-    assert!(claim(&report(1, &["paper"], &["curious", "recency"], 2)).is_none());
-    assert!(made([0.5; 3], [0.98; 2], 0.1).run("elsewhere", "paper").is_none());
-}
-
-#[test]
-fn a_single_trial_shows_nothing() {
-    let claim = claim(&report(1, &["paper"], &["curious", "recency", "poisson"], 1));
-    assert_eq!(claim.unwrap().verdict, Verdict::NotShown);
-}
-
-#[test]
-fn a_claim_is_a_row_of_markdown() {
-    let claim = claim(&made([0.5, 0.6, 0.7], [0.98, 0.98], 0.02)).unwrap();
-    let columns = |line: &str| line.matches('|').count();
-    assert_eq!(Claim::markdown_head().lines().map(columns).collect::<Vec<_>>(), [9, 9]);
-    insta::assert_snapshot!(claim.markdown_row(), @"| two_blocks | paper | **holds** | -0.091 [-0.111, -0.071], ×0.85, d -3.31, p < 0.001 | -0.192 [-0.204, -0.180], ×0.73, d -11.68, p < 0.001 | -0.053 [-0.061, -0.045], ×0.90, d -4.75, p < 0.001 | -0.003 [-0.014, +0.008], ×0.99, d -0.18, p = 0.588 | +0.0001 [-0.0001, +0.0003], d +0.32, p = 0.333 |");
 }
 
 #[test]
