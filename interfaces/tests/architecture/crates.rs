@@ -17,23 +17,11 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("robot", &["interfaces", "calendar", "mapper", "localizer", "agent", "controller"]),
     ("survey", &["interfaces", "mapper", "localizer", "logs", "robot"]),
     ("results", &["interfaces", "mapper"]),
-    ("days", &["interfaces", "calendar", "agent"]),
     (
         "evaluation",
-        &[
-            "interfaces",
-            "calendar",
-            "sim",
-            "mapper",
-            "localizer",
-            "agent",
-            "controller",
-            "robot",
-            "results",
-            "days",
-        ],
+        &["interfaces", "calendar", "sim", "mapper", "localizer", "agent", "controller", "robot", "results"],
     ),
-    ("reports", &["interfaces", "sim", "robot", "results", "days", "evaluation"]),
+    ("reports", &["interfaces", "sim", "robot", "results", "evaluation"]),
     (
         "environments",
         &["interfaces", "sim", "worldfile", "mapper", "agent", "controller", "robot", "evaluation"],
@@ -106,6 +94,8 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "survey",
         ],
     ),
+    // No part of the product: no other crate may use it.
+    ("studies", &["interfaces", "calendar", "sim", "mapper", "agent", "robot", "evaluation", "reports"]),
 ];
 
 /// Packages that only these crates may have as a dependency.
@@ -127,12 +117,12 @@ const WITHOUT_RERUN: &[&str] = &[
     "robot",
     "survey",
     "results",
-    "days",
     "evaluation",
     "reports",
     "ros2",
     "environments",
     "python",
+    "studies",
 ];
 
 #[test]
@@ -160,6 +150,14 @@ fn every_crate_uses_only_what_it_may() {
 }
 
 #[test]
+fn nothing_uses_the_studies() {
+    for package in packages() {
+        let mut all = package.dependencies.iter().chain(&package.of_tests);
+        assert!(all.all(|name| name != "studies"), "{} must not use studies", package.name);
+    }
+}
+
+#[test]
 fn only_the_viewer_and_the_programs_need_rerun() {
     for name in WITHOUT_RERUN {
         let needs = needs(name);
@@ -173,7 +171,7 @@ fn only_the_viewer_and_the_programs_need_rerun() {
 
 #[test]
 fn a_robot_owner_builds_no_simulator() {
-    let simulation = ["rerun", "sim", "rapier2d", "evaluation", "reports", "parquet"];
+    let simulation = ["rerun", "sim", "rapier2d", "evaluation", "reports"];
     let all = needs("curious");
     assert!(simulation.iter().all(|name| all.iter().any(|needed| needed == name)), "{all:?}");
     let alone = needs_without_features("curious");
