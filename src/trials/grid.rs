@@ -1,11 +1,11 @@
 //! Trials in grid worlds: `grid_world`.
 
 use super::{TrialKind, one_of_kinds};
-use crate::program::list;
 use crate::worlds::{SHIPPED_GRID, load_grid};
 use agent::{AgentSettings, Reward};
 use calendar::Kind;
 use clap::Args;
+use cli::program::list;
 use controller::CellDrive;
 use evaluation::trials::GridRobot;
 use mapper::MapperSettings;

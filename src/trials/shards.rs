@@ -2,12 +2,12 @@
 
 use super::run::{Results, experiment_arguments, report_settings};
 use super::{TrialArgs, TrialKind};
-use crate::flags::folder;
-use crate::program::{Failure, INTERRUPTED, input, results_folder};
-use crate::progress::Progress;
-use crate::terminal::{print, say};
 use anyhow::{Context, anyhow};
 use clap::{Parser, Subcommand};
+use cli::flags::folder;
+use cli::program::{Failure, INTERRUPTED, input, results_folder};
+use cli::progress::Progress;
+use cli::terminal::{print, say};
 use evaluation::trials::Experiment;
 use reports::shards::{Header, Shard, ShardFile, Shards, array, check_builds};
 use reports::{Plan, ReportSettings};

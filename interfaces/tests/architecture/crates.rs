@@ -1,6 +1,6 @@
 //! Which crate may depend on which.
 
-use crate::workspace::{needs, needs_without_features, packages};
+use crate::workspace::{needs, packages};
 
 /// Every crate, and the crates of the workspace that it may depend on.
 const ALLOWED: &[(&str, &[&str])] = &[
@@ -43,20 +43,9 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "environments",
         ],
     ),
-    (
-        "viewer",
-        &[
-            "interfaces",
-            "sim",
-            "mapper",
-            "localizer",
-            "agent",
-            "controller",
-            "robot",
-            "results",
-            "evaluation",
-        ],
-    ),
+    ("viewer", &["interfaces", "mapper", "localizer", "agent", "robot", "results"]),
+    ("cli", &["interfaces", "mapper", "robot", "logs", "results"]),
+    ("owner", &["interfaces", "mapper", "robot", "logs", "survey", "results", "viewer", "cli"]),
     (
         "curious",
         &[
@@ -66,16 +55,14 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "worldfile",
             "stage",
             "mapper",
-            "localizer",
-            "logs",
             "agent",
             "controller",
             "robot",
-            "survey",
             "results",
             "evaluation",
             "reports",
             "viewer",
+            "cli",
         ],
     ),
     (
@@ -100,7 +87,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
 
 /// Packages that only these crates may have as a dependency.
 const RESERVED: &[(&str, &[&str])] =
-    &[("rerun", &["viewer", "curious"]), ("rapier2d", &["sim"]), ("ros2-client", &["ros2"])];
+    &[("rerun", &["viewer"]), ("rapier2d", &["sim"]), ("ros2-client", &["ros2"])];
 
 /// The crates that must build without Rerun.
 const WITHOUT_RERUN: &[&str] = &[
@@ -170,11 +157,14 @@ fn only_the_viewer_and_the_programs_need_rerun() {
 }
 
 #[test]
-fn a_robot_owner_builds_no_simulator() {
-    let simulation = ["rerun", "sim", "rapier2d", "evaluation", "reports"];
-    let all = needs("curious");
-    assert!(simulation.iter().all(|name| all.iter().any(|needed| needed == name)), "{all:?}");
-    let alone = needs_without_features("curious");
-    let found: Vec<_> = simulation.iter().filter(|name| alone.iter().any(|needed| needed == *name)).collect();
-    assert!(found.is_empty(), "map_log alone needs {found:?}");
+fn a_robot_owner_builds_no_simulator_and_a_simulation_no_logs() {
+    for (name, unneeded) in [
+        ("owner", &["sim", "worldfile", "rapier2d", "evaluation", "reports"][..]),
+        ("curious", &["survey"]),
+    ] {
+        let needs = needs(name);
+        let found: Vec<_> =
+            unneeded.iter().filter(|name| needs.iter().any(|needed| needed == *name)).collect();
+        assert!(found.is_empty(), "{name} needs {found:?}");
+    }
 }

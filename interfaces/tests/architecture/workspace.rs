@@ -42,18 +42,9 @@ fn package(package: &Value) -> Package {
 
 /// All packages that a crate needs to build, the crate itself included; without those of tests.
 pub(crate) fn needs(package: &str) -> Vec<String> {
-    tree(package, "--all-features")
-}
-
-/// The same without the default features of the crate.
-pub(crate) fn needs_without_features(package: &str) -> Vec<String> {
-    tree(package, "--no-default-features")
-}
-
-fn tree(package: &str, features: &str) -> Vec<String> {
     let renamed = RENAMED.iter().find(|(short, _)| *short == package);
     let package = renamed.map_or_else(|| format!("curious-{package}"), |(_, name)| (*name).to_owned());
-    let tree = cargo(&["tree", "-p", &package, "-e", "normal,build", "--prefix", "none", features]);
+    let tree = cargo(&["tree", "-p", &package, "-e", "normal,build", "--prefix", "none", "--all-features"]);
     tree.lines().filter_map(|line| line.split_whitespace().next()).map(short).collect()
 }
 

@@ -3,8 +3,8 @@
 use agent::{Policy, RobotPurpose};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Parser, ValueEnum};
-use curious::flags::{folder, input_file, output_file};
-use curious::program::{duration_s, one_of, pose_in_world, pose_mode, strategy_of};
+use cli::flags::{folder, input_file, output_file};
+use cli::program::{duration_s, one_of, pose_in_world, pose_mode, strategy_of};
 use interfaces::PoseMode;
 use mapper::{EstimatorChoice, OccupancyChoice};
 use std::path::PathBuf;

@@ -2,8 +2,8 @@
 
 use crate::args::Args;
 use crate::parts::Parts;
-use curious::program::{Failure, open_state, state_failure};
-use curious::terminal::say;
+use cli::program::{Failure, open_state, state_failure};
+use cli::terminal::say;
 use evaluation::physics_trial::PhysicsTrial;
 use evaluation::trial_state::TrialFacts;
 use interfaces::Twist;

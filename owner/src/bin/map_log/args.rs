@@ -3,8 +3,8 @@
 use crate::logs_in_order::Source;
 use anyhow::ensure;
 use clap::Parser;
-use curious::flags::{folder, input_file, number, output_file, time_zone};
-use curious::program::{duration_s, one_of, pose_mode};
+use cli::flags::{folder, input_file, number, output_file, time_zone};
+use cli::program::{duration_s, one_of, pose_mode};
 use interfaces::PoseMode;
 use logs::TopicChoice;
 use mapper::{EstimatorChoice, NoReturn};

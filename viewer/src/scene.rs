@@ -1,13 +1,8 @@
-//! The parts of a world that are constant during a run, as plain data, and the trait of a world that can be
-//! displayed.
+//! The parts of a world that are constant during a run, as plain data.
 
-#[cfg(feature = "simulation")]
-mod grid;
 mod log;
-#[cfg(feature = "simulation")]
-mod physics;
 
-use interfaces::{CellReading, GridFrame, LaserReading, World};
+use interfaces::{CellReading, GridFrame, LaserReading};
 use nalgebra::{Isometry2, Point2, Vector2};
 use results::drawing::palette::{self, Rgb};
 
@@ -25,7 +20,7 @@ pub enum TimeUnit {
 
 impl TimeUnit {
     /// The value that belongs to the unit.
-    pub(crate) fn choose<T>(self, second: T, step: T) -> T {
+    pub fn choose<T>(self, second: T, step: T) -> T {
         match self {
             Self::Second => second,
             Self::Step => step,
@@ -167,17 +162,4 @@ pub enum Sight<'a> {
         /// The range of the sensor, cells.
         radius: u32,
     },
-}
-
-/// A world that can be displayed while a robot explores it.
-pub trait Visible: World {
-    /// The unit of time of the world.
-    const UNIT: TimeUnit;
-
-    /// The present states of the robots, in the order of [`Scene::robots`].
-    fn robots<'a>(&'a self, reading: &'a Self::Reading) -> Vec<RobotState<'a>>;
-
-    /// The present outlines of the obstacles, m, in the order of [`Scene::obstacles`]; `None` for an obstacle that
-    /// is absent.
-    fn obstacles(&self) -> Vec<Option<Outline>>;
 }

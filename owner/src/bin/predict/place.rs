@@ -1,11 +1,11 @@
 //! What is known of one place or door, in sentences and as data.
 
 use crate::moment;
-use curious::week::usual_hours;
-use curious::words::{Seen, changed, length_of, range, rate};
 use interfaces::CellState;
 use mapper::{Clock, Door, UsualChange, UsualSlot, Week};
 use nalgebra::Point2;
+use owner::week::usual_hours;
+use owner::words::{Seen, changed, length_of, range, rate};
 use results::numbers::percent;
 use serde::Serialize;
 use survey::{Forecast, NEAR_M};

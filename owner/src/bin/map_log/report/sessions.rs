@@ -2,9 +2,9 @@
 
 use super::Page;
 use super::marks::{Mark, MarkKind};
-use curious::words::{date, length_of, list, rate, times};
 use maud::{Markup, html};
 use nalgebra::{Point2, Vector2};
+use owner::words::{date, length_of, list, rate, times};
 use survey::{Lasting, Place, PlaceSince, Since, Trend};
 
 /// What has come or gone is drawn at least this large, m.

@@ -1,8 +1,8 @@
 //! `--state`: what was learned from earlier logs, and what this run leaves for the next one.
 
 use crate::args::Args;
-use curious::program::{Failure, open_state, state_failure};
-use curious::terminal::say;
+use cli::program::{Failure, open_state, state_failure};
+use cli::terminal::say;
 use robot::state::{Facts, State, StateError, StateFile};
 use std::io::stderr;
 use survey::{SavedLogs, SavedSurvey, Survey, SurveySettings, SurveyedLog};

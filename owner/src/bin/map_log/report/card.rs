@@ -4,11 +4,11 @@ use super::advice::advice;
 use super::marks::{Mark, MarkKind};
 use super::plan::{Plan, Shown};
 use super::{Page, middle, number};
-use curious::week;
-use curious::words::{Seen, changed, date, length_of, range, rate, short, times};
 use mapper::{Clock, Door, Furniture, Leaf, ThingKind, Week};
 use maud::{Markup, html};
 use nalgebra::{Point2, Vector2};
+use owner::week;
+use owner::words::{Seen, changed, date, length_of, range, rate, short, times};
 use std::f64::consts::PI;
 use survey::{Direction, Place, PlaceKind, is_line};
 

@@ -3,11 +3,11 @@
 use crate::Job;
 use crate::survey_state_file::SurveyStateFile;
 use anyhow::{Context, anyhow};
-use curious::bag::RunBag;
-use curious::busy::Busy;
-use curious::program::{Failure, input};
-use curious::progress::Progress;
-use curious::terminal::say;
+use cli::bag::RunBag;
+use cli::busy::Busy;
+use cli::program::{Failure, input};
+use cli::progress::Progress;
+use cli::terminal::say;
 use mapper::{NoReturnDistrust, NoReturnEvidence};
 use results::numbers::percent;
 use results::output::TrajectoryFile;

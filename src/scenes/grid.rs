@@ -1,9 +1,10 @@
 //! The scene of a grid world. Cells are 1 m wide, with `[0, 0]` at the origin.
 
-use super::{Obstacle, Outline, RobotState, Scene, SceneRobot, Sight, TimeUnit, Visible};
+use super::{Displayed, Visible};
 use interfaces::{Cell, CellReading, Grid};
 use nalgebra::{Isometry2, Point2};
 use sim::grid::{GridSpec, GridWorld};
+use viewer::scene::{Obstacle, Outline, RobotState, Scene, SceneRobot, Sight, TimeUnit};
 
 /// The name of the only robot.
 const ROBOT: &str = "robot";
@@ -12,16 +13,16 @@ const ROBOT_RADIUS_M: f64 = 0.35;
 /// The distance between a block and the border of its cell, m, so that the cell stays visible.
 const INSET_M: f64 = 0.12;
 
-impl From<&GridSpec> for Scene {
-    fn from(spec: &GridSpec) -> Self {
+impl Displayed for GridSpec {
+    fn scene(&self) -> Scene {
         let square = |cell: &Cell| rectangle(*cell, *cell, 0.0);
-        let start = spec.frame().center(spec.start);
-        Self {
-            title: spec.name.to_owned(),
+        let start = self.frame().center(self.start);
+        Scene {
+            title: self.name.to_owned(),
             unit: GridWorld::UNIT,
-            frame: *spec.frame(),
-            walls: rectangles(&spec.walls),
-            obstacles: spec
+            frame: *self.frame(),
+            walls: rectangles(&self.walls),
+            obstacles: self
                 .blocks
                 .iter()
                 .map(|block| Obstacle {

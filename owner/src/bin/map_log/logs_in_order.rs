@@ -1,8 +1,8 @@
 //! The logs of one place, in the order of their times.
 
 use anyhow::{bail, ensure};
-use curious::busy::Busy;
-use curious::terminal::say;
+use cli::busy::Busy;
+use cli::terminal::say;
 use logs::{Log, TopicChoice};
 use std::io::stderr;
 use std::path::{Path, PathBuf};

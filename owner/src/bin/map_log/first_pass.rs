@@ -3,10 +3,10 @@
 use crate::Job;
 use crate::survey_state_file::SurveyStateFile;
 use anyhow::Error;
-use curious::busy::Busy;
-use curious::program::{Failure, input};
-use curious::progress::Progress;
-use curious::terminal::say;
+use cli::busy::Busy;
+use cli::program::{Failure, input};
+use cli::progress::Progress;
+use cli::terminal::say;
 use std::io::stderr;
 use std::ops::ControlFlow;
 use survey::{PassError, Stage, Survey, Verdict};

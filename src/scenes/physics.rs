@@ -1,31 +1,32 @@
 //! The scene of a physics world.
 
-use super::{Obstacle, Outline, RobotState, Scene, SceneRobot, Sector, Sight, TimeUnit, Visible};
+use super::{Displayed, Visible};
 use interfaces::LaserReading;
 use nalgebra::Isometry2;
 use sim::physics::{
     BehaviorSpec, FleetSpec, Motion, ObstacleSpec, PhysicsWorld, Rectangle, RobotSpec, WorldSpec,
 };
+use viewer::scene::{Obstacle, Outline, RobotState, Scene, SceneRobot, Sector, Sight, TimeUnit};
 
 /// The number of outlines that show the swing of a door.
 const SWING: u32 = 24;
 
-impl From<&FleetSpec> for Scene {
-    fn from(spec: &FleetSpec) -> Self {
-        Self {
-            title: spec.name.to_owned(),
+impl Displayed for FleetSpec {
+    fn scene(&self) -> Scene {
+        Scene {
+            title: self.name.to_owned(),
             unit: PhysicsWorld::UNIT,
-            frame: spec.frame,
-            walls: spec.walls.iter().map(|wall| wall.corners().to_vec()).collect(),
-            obstacles: spec.obstacles.iter().map(obstacle).collect(),
-            robots: spec.robots.iter().map(robot).collect(),
+            frame: self.frame,
+            walls: self.walls.iter().map(|wall| wall.corners().to_vec()).collect(),
+            obstacles: self.obstacles.iter().map(obstacle).collect(),
+            robots: self.robots.iter().map(robot).collect(),
         }
     }
 }
 
-impl From<&WorldSpec> for Scene {
-    fn from(spec: &WorldSpec) -> Self {
-        spec.fleet().into()
+impl Displayed for WorldSpec {
+    fn scene(&self) -> Scene {
+        self.fleet().scene()
     }
 }
 

@@ -3,10 +3,10 @@
 use crate::logs_in_order::begin_s;
 use crate::second_pass::{Learned, ignored};
 use anyhow::Context;
-use curious::program::arguments;
-use curious::words::{how_often, list};
+use cli::program::arguments;
 use interfaces::{CellState, PoseMode};
 use mapper::{Mapper, NoReturn, NoReturnEvidence};
+use owner::words::{how_often, list};
 use results::numbers::percent;
 use robot::BUILD;
 use serde::Serialize;

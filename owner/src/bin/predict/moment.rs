@@ -1,6 +1,6 @@
 //! Times as people say them, and as they read them.
 
-use curious::program::duration_s;
+use cli::program::duration_s;
 use jiff::civil::{DateTime, Time, Weekday};
 use jiff::tz::TimeZone;
 use jiff::{Timestamp, ToSpan, Zoned};
@@ -91,7 +91,7 @@ pub(crate) fn text(time_s: f64, forecast: &Forecast) -> String {
         Calendar::Relative => {
             let ahead_s = time_s - forecast.now_s();
             let side = if ahead_s < 0.0 { "before" } else { "after" };
-            format!("{} {side} the last reading", curious::words::length_of(ahead_s.abs()))
+            format!("{} {side} the last reading", owner::words::length_of(ahead_s.abs()))
         }
     }
 }

@@ -3,9 +3,9 @@
 use super::marks::{Mark, MarkKind};
 use super::plan::Shown;
 use super::{Page, middle};
-use curious::words::{Seen, changed, range};
 use maud::{Markup, html};
 use nalgebra::{Point2, Vector2};
+use owner::words::{Seen, changed, range};
 use survey::{Place, PlaceKind, Verdict};
 
 /// Half the side of the rectangle around a point in doubt, m.

@@ -2,9 +2,9 @@
 
 use anyhow::{Context, anyhow, bail, ensure};
 use clap::{Parser, Subcommand};
-use curious::program::{Failure, input, start};
-use curious::terminal::print;
-use curious::words::{date, length_of, list};
+use cli::program::{Failure, input, start};
+use cli::terminal::print;
+use owner::words::{date, length_of, list};
 use robot::state::{Facts, State, StateFile, earlier_name, read_state};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;

@@ -10,10 +10,10 @@ mod raster;
 mod sessions;
 
 use crate::summary::Summary;
-use curious::words::{date, length_of, list};
 use mapper::Mapper;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use nalgebra::Point2;
+use owner::words::{date, length_of, list};
 use plan::{Plan, Shown};
 use results::drawing::palette::{self, Rgb};
 use results::numbers::percent;

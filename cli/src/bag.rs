@@ -10,11 +10,13 @@ use robot::{Pilot, Turn};
 use std::fs::File;
 use std::io::BufWriter;
 use std::path::Path;
-use survey::CHANGE_HORIZON_S;
 
 /// The time between two maps, and between two maps of changes and predictions, s.
 const MAP_S: f64 = 1.0;
 const CHANGES_S: f64 = 10.0;
+/// The time in which a change matters to a robot on its route, s: maps of changes show the probability of a change
+/// [within](Mapper::change_probability_within) this time. It is 0.63 where a cycle takes this long on average.
+const CHANGE_HORIZON_S: f64 = 600.0;
 /// Maps of changes and predictions of more cells than this are written less often.
 const MANY_CELLS: f64 = 1e6;
 

@@ -1,15 +1,15 @@
 //! A trial that is recorded while it runs, in any kind of world.
 
-use crate::recording::{Recorder, RecordingError};
-use crate::scene::Visible;
-use crate::view::{Measured, View};
+use crate::scenes::Visible;
 use evaluation::metrics::{RateErrors, map_scores, rate_scores};
 use evaluation::trials::{Trial, TrialError, TrialSettings, TrialStep, TrialWorld, run_trial};
 use robot::{Level, Message};
 use std::sync::atomic::{AtomicBool, Ordering};
+use viewer::recording::{Recorder, RecordingError};
+use viewer::view::Measured;
 
 /// Later readings are not recorded, so that the file stays a few megabytes large.
-pub const RECORDED_READINGS: usize = 20_000;
+pub(super) const RECORDED_READINGS: usize = 20_000;
 
 /// Scores take a pass over the map: once in this many readings in a map of up to [`SCORE_CELLS`] cells, and
 /// less often in a larger map.
@@ -19,12 +19,12 @@ const SCORE_CELLS: usize = 10_000;
 
 /// The outcome of a recorded trial.
 #[derive(Debug)]
-pub struct Recorded {
+pub(super) struct Recorded {
     /// The trial, the same as without a recording; `None` if it was canceled.
-    pub trial: Option<Trial>,
+    pub(super) trial: Option<Trial>,
     /// Why a part of the trial is not in the recording; `None` if the recording is complete. The trial has
     /// continued.
-    pub problem: Option<RecordingError>,
+    pub(super) problem: Option<RecordingError>,
 }
 
 /// Runs one trial and records its first readings. When `is_canceled` is set, the trial stops, and the recording
@@ -33,7 +33,7 @@ pub struct Recorded {
 /// # Errors
 ///
 /// When the trial cannot run.
-pub fn record<W: TrialWorld<World: Visible>>(
+pub(super) fn record<W: TrialWorld<World: Visible>>(
     settings: &TrialSettings<W>,
     mut recorder: Recorder,
     is_canceled: &AtomicBool,
@@ -70,15 +70,17 @@ fn log<W: TrialWorld<World: Visible>>(
     let score_every = SCORE_EVERY * mapper.frame().len().div_ceil(SCORE_CELLS);
     let mut measured = Measured { messages: &messages, ..Measured::default() };
     if is_last || steps.is_multiple_of(score_every) {
-        measured.scores = Some(map_scores(mapper, truth));
-        measured.rate_errors = Some(RateErrors::from(&rate_scores(mapper, truth)));
+        let (scores, errors) = (map_scores(mapper, truth), RateErrors::from(&rate_scores(mapper, truth)));
+        measured.coverage_and_quality = Some([scores.coverage, scores.map_quality]);
+        measured.rate_errors = Some([errors.relative, errors.log]);
     }
-    recorder.log(&View::new(now.world, now.turn, mapper, &*now.pilot, measured), is_last)
+    recorder.log(&now.world.view(now.turn, mapper, &*now.pilot, measured), is_last)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scenes::Displayed;
     use evaluation::trials::{Experiment, GridRobot, TrialStrategy};
     use mapper::Paper;
     use sim::grid::GridSpec;
@@ -103,7 +105,7 @@ mod tests {
     fn recorded(steps: u64, file: &Path, is_canceled: bool) -> Recorded {
         let experiment = experiment(steps);
         let life = experiment.jobs().remove(0);
-        let recorder = Recorder::new(Some(file), &[], life.world.into()).unwrap();
+        let recorder = Recorder::new(Some(file), &[], life.world.scene()).unwrap();
         record(&life, recorder, &is_canceled.into()).unwrap()
     }
 

@@ -1,6 +1,6 @@
 //! What to do at a place.
 
-use curious::words::Seen;
+use owner::words::Seen;
 use survey::PlaceKind;
 
 /// From this number of passages per hour on, a robot should slow down.

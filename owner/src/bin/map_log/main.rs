@@ -12,12 +12,12 @@ mod survey_state_file;
 
 use anyhow::{Context, anyhow};
 use args::Args;
-use curious::bag::RunBag;
-use curious::flags::check_distinct;
-use curious::program::{Failure, INTERRUPTED, input, interrupt_flag, results_folder, start};
-use curious::terminal::{print, say};
-use curious::words::list;
+use cli::bag::RunBag;
+use cli::flags::check_distinct;
+use cli::program::{Failure, INTERRUPTED, input, interrupt_flag, results_folder, start};
+use cli::terminal::{print, say};
 use logs_in_order::Source;
+use owner::words::list;
 use results::output::RunFolder;
 use std::io::stderr;
 use std::path::PathBuf;
