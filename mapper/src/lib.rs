@@ -26,8 +26,8 @@ mod things;
 mod tiles;
 
 pub use change::{
-    CellMap, CellStatistics, ChoGarciaMolina, Estimator, EstimatorChoice, Exposure, GapBin, GapEvidence,
-    GapHistogram, GapModel, GapWeights, GapWorth, Imac, Paper, PaperAll, RateDistribution, ReadingIndex,
+    CellMap, CellStatistics, Estimator, EstimatorChoice, Exposure, GapBin, GapEvidence,
+    GapHistogram, GapModel, GapWeights, GapWorth, Paper, PaperAll, RateDistribution, ReadingIndex,
     SharedPrior, Step, TransitionRates, TwoState, TwoStateGaps,
 };
 pub use clock::{Calendar, Clock, DAY_S, Look, UnknownZone, UsualChange, UsualSlot, Week, share_interval};

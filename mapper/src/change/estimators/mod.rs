@@ -4,16 +4,12 @@
 //! [`EstimatorChoice::all`]. An estimator of another crate is set in
 //! [`MapperSettings::estimator`](crate::MapperSettings::estimator) with `.into()`.
 
-mod cho_garcia_molina;
-mod imac;
 mod paper;
 mod shared_prior;
 mod two_state;
 mod two_state_gaps;
 
 use super::{CellStatistics, GapModel, TransitionRates};
-pub use cho_garcia_molina::ChoGarciaMolina;
-pub use imac::Imac;
 pub use paper::{Paper, PaperAll};
 pub use shared_prior::SharedPrior;
 use std::fmt;
@@ -83,8 +79,6 @@ impl EstimatorChoice {
         vec![
             Paper.into(),
             PaperAll.into(),
-            ChoGarciaMolina.into(),
-            Imac.into(),
             TwoState.into(),
             TwoStateGaps.into(),
             SharedPrior.into(),
