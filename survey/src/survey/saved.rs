@@ -2,13 +2,13 @@
 
 use super::Survey;
 use crate::change_log::ChangeLog;
-use crate::known_place::KnownPlace;
 use crate::places::{Directions, PlaceBook};
 use crate::quality::Quality;
 use crate::replay::FoundPoses;
 use crate::settings::SurveySettings;
 use crate::surveyed_log::SurveyedLog;
 use interfaces::{GridFrame, PoseMode, ValueError, from_bytes, to_bytes};
+use localizer::KnownPlace;
 use mapper::Mapper;
 use robot::{NoPilot, Robot};
 use std::sync::Arc;
@@ -113,7 +113,7 @@ impl Survey {
                 from_bytes::<Earlier>(learned).map(|(place, map, changes)| (place, map, changes, None))?
             };
         let is_earlier = book.is_none();
-        let place = place.map(|bytes| KnownPlace::restored(&settings, &bytes)).transpose()?;
+        let place = place.map(|bytes| KnownPlace::restored(&bytes)).transpose()?;
         let mut survey = Self {
             settings,
             learns_noise,
