@@ -36,7 +36,7 @@ pub(crate) fn named(bytes: &Bytes) -> io::Result<Option<String>> {
     let (inside, compression) = match () {
         () if start.starts_with(&GZIP) => (head(MultiGzDecoder::new(packed)), "gzip"),
         () if start.starts_with(&ZSTD) => (head(zstd::stream::read::Decoder::with_buffer(packed)?), "zstd"),
-        () => return Ok(format(&start).map(|(name, what)| format!("a {name}, which is not read: {what}"))),
+        () => return Ok(format(&start).map(|(name, what)| format!("a {name}; {what}"))),
     };
     if let Some((name, what)) = format(&inside) {
         let unpack = format!("after `{compression} -d FILE`");
@@ -89,7 +89,7 @@ mod tests {
     fn what_is_no_log_is_named() {
         let convert =
             "convert it with `rosbags-convert --src FILE.bag --dst FOLDER` (from PyPI: pip install rosbags)";
-        assert_eq!(what(ROS1), format!("a bag of ROS 1, which is not read: {convert}"));
+        assert_eq!(what(ROS1), format!("a bag of ROS 1; {convert}"));
         let expected = "a bag of ROS 1, compressed with gzip: after `gzip -d FILE`, ";
         assert_eq!(what(&gzipped(ROS1)), expected.to_owned() + convert);
         let zstd = zstd::encode_all(ROS1, 0).unwrap();
@@ -99,7 +99,7 @@ mod tests {
         let expected =
             "a tar archive, compressed with gzip: after `gzip -d FILE`, unpack it with `tar -xf FILE`";
         assert_eq!(what(&gzipped(&tar)), expected);
-        assert_eq!(what(b"PK\x03\x04"), "a zip archive, which is not read: unpack it with `unzip FILE`");
+        assert_eq!(what(b"PK\x03\x04"), "a zip archive; unpack it with `unzip FILE`");
         let expected =
             "a bag of ROS 2, compressed with gzip, which is not read: unpack it with `gzip -d FILE`";
         assert_eq!(what(&gzipped(MCAP)), expected);
@@ -115,6 +115,6 @@ mod tests {
         let mut file = tempfile::NamedTempFile::new().unwrap();
         file.write_all(b"PK\x03\x04").unwrap();
         let error = Log::open(file.path(), &TopicChoice::default()).unwrap_err().to_string();
-        assert!(error.starts_with(&format!("{}: a zip archive, ", file.path().display())), "{error}");
+        assert!(error.starts_with(&format!("{}: a zip archive; ", file.path().display())), "{error}");
     }
 }
