@@ -11,7 +11,8 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("stage", &["interfaces", "sim", "worldfile"]),
     ("mapper", &["interfaces"]),
     ("localizer", &["interfaces", "mapper"]),
-    ("logs", &["interfaces"]),
+    ("ros", &["interfaces"]),
+    ("logs", &["interfaces", "ros"]),
     ("agent", &["interfaces", "mapper"]),
     ("controller", &["interfaces"]),
     ("robot", &["interfaces", "calendar", "mapper", "localizer", "agent", "controller"]),
@@ -44,7 +45,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
         ],
     ),
     ("viewer", &["interfaces", "mapper", "localizer", "agent", "robot", "results"]),
-    ("cli", &["interfaces", "mapper", "robot", "logs", "results"]),
+    ("cli", &["interfaces", "mapper", "robot", "ros", "results"]),
     ("owner", &["interfaces", "mapper", "robot", "logs", "survey", "results", "viewer", "cli"]),
     (
         "curious",
@@ -73,6 +74,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "worldfile",
             "mapper",
             "localizer",
+            "ros",
             "logs",
             "agent",
             "controller",
@@ -98,6 +100,7 @@ const WITHOUT_RERUN: &[&str] = &[
     "stage",
     "mapper",
     "localizer",
+    "ros",
     "logs",
     "agent",
     "controller",
@@ -160,7 +163,7 @@ fn only_the_viewer_and_the_programs_need_rerun() {
 fn a_robot_owner_builds_no_simulator_and_a_simulation_no_logs() {
     for (name, unneeded) in [
         ("owner", &["sim", "worldfile", "rapier2d", "evaluation", "reports"][..]),
-        ("curious", &["survey"]),
+        ("curious", &["survey", "logs"]),
     ] {
         let needs = needs(name);
         let found: Vec<_> =

@@ -1,6 +1,6 @@
 //! Where the odometry of a log is missing while there are scans.
 
-use crate::times::LONGEST_PAUSE_S;
+use super::times::LONGEST_PAUSE_S;
 
 /// The odometry is not missing for a shorter time than this, s.
 pub(crate) const LONGEST_GAP_S: f64 = 2.0;

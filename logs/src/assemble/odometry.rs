@@ -1,9 +1,6 @@
 //! Odometry: the sum of its motions, and its pose at the time of a scan.
 
-use crate::holes::{Holes, LONGEST_GAP_S};
-use crate::jumps::Jumps;
-use crate::pace::Pace;
-use crate::standing::{MIN_MOTION_M, MIN_MOTION_RAD};
+use crate::checks::{Holes, Jumps, LONGEST_GAP_S, MIN_MOTION_M, MIN_MOTION_RAD, Pace};
 use interfaces::{LaserReading, Scan, Twist, VelocitySample, heading_rad, wrap_rad};
 use nalgebra::Isometry2;
 

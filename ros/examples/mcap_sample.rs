@@ -1,14 +1,14 @@
 //! A short bag with messages of every kind, for a look in Foxglove and for tests with other readers.
 //!
 //! ```text
-//! cargo run -p curious-logs --example mcap_sample -- sample.mcap
+//! cargo run -p curious-ros --example mcap_sample -- sample.mcap
 //! ```
 //!
 //! A robot drives around in a square room, and a door in the right wall opens and closes.
 
 use interfaces::{Cell, Event, Grid, GridFrame, LaserReading, Scan, Twist, pose, rotation};
-use logs::McapWriter;
 use nalgebra::{Isometry2, Point2, Vector2};
+use ros::McapWriter;
 use std::error::Error;
 use std::f64::consts::TAU;
 use std::fs::File;

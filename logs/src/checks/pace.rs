@@ -1,6 +1,6 @@
 //! Whether a robot moves so slowly that its times cannot be in seconds.
 
-use crate::standing::{MIN_MOTION_M, MIN_MOTION_RAD};
+use super::standing::{MIN_MOTION_M, MIN_MOTION_RAD};
 use interfaces::heading_rad;
 use nalgebra::Isometry2;
 

@@ -1,11 +1,10 @@
 //! Maps: as a whole, or the part that changed.
 
 use super::channels::Channels;
-use crate::error::LogError;
-use crate::ros::{Header, OccupancyGrid, OccupancyGridUpdate};
+use crate::messages::{Header, OccupancyGrid, OccupancyGridUpdate};
 use interfaces::Grid;
 use std::collections::BTreeMap;
-use std::io::{Seek, Write};
+use std::io::{Error, Seek, Write};
 
 /// A map that changes is written as a whole when the last whole one is older than this, ns: a viewer that shows no updates,
 /// or jumps in time, is at most this late.
@@ -28,7 +27,7 @@ impl Grids {
         header: Header,
         ns: i64,
         grid: &Grid<i8>,
-    ) -> Result<(), LogError> {
+    ) -> Result<(), Error> {
         let known = self.last.get_mut(topic).filter(|(_, last)| last.frame() == grid.frame());
         if let Some((whole_ns, last)) = known {
             let update = OccupancyGridUpdate::between(last, grid, header.clone());

@@ -2,13 +2,11 @@
 
 use crate::bounds;
 use crate::choice::bare;
-use nalgebra::{Isometry2, Isometry3, UnitComplex, Vector3};
+use nalgebra::Isometry3;
 use std::collections::{BTreeMap, VecDeque};
 
 /// The most frames of a robot.
 const MAX_FRAMES: usize = 10_000;
-/// A laser that is tilted by more than this does not measure a plane: the cosine of 15°.
-const MIN_UPRIGHT: f64 = 0.9659;
 /// Frames that move against each other are the robot and the world.
 const MIN_MOTION: f64 = 1e-6;
 
@@ -172,27 +170,4 @@ pub(crate) fn can_be_base(frame: &str) -> bool {
 /// Whether this is the name of a frame in which the world stands still.
 pub(crate) fn is_world(frame: &str) -> bool {
     matches!(frame.rsplit('/').next(), Some("map" | "world" | "earth"))
-}
-
-/// A pose without height, roll and pitch.
-pub fn flat(pose: &Isometry3<f64>) -> Isometry2<f64> {
-    let ahead = pose.rotation * Vector3::x();
-    // A robot that stands on end has no heading.
-    let length = (ahead.x * ahead.x + ahead.y * ahead.y).sqrt();
-    let (cos, sin) = if length > 1e-9 { (ahead.x / length, ahead.y / length) } else { (1.0, 0.0) };
-    let rotation = UnitComplex::from_cos_sin_unchecked(cos, sin);
-    Isometry2::from_parts([pose.translation.x, pose.translation.y].into(), rotation)
-}
-
-/// How a laser is mounted: its pose, and whether it is upside down.
-///
-/// # Errors
-///
-/// When it is tilted.
-pub fn mounted(pose: &Isometry3<f64>) -> Result<(Isometry2<f64>, bool), String> {
-    let up = (pose.rotation * Vector3::z()).z;
-    if up.abs() < MIN_UPRIGHT {
-        return Err(format!("is tilted by {:.0}° and does not scan a plane", up.abs().acos().to_degrees()));
-    }
-    Ok((flat(pose), up < 0.0))
 }

@@ -3,7 +3,6 @@
 use super::schemas;
 use super::sorted::HeldBack;
 use crate::cdr;
-use crate::error::LogError;
 use mcap::records::MessageHeader;
 use mcap::{Compression, WriteOptions, Writer};
 use serde::Serialize;
@@ -37,7 +36,7 @@ pub(super) struct Channels<W: Write + Seek> {
 }
 
 impl<W: Write + Seek> Channels<W> {
-    pub(super) fn new(to: W, name: &str) -> Result<Self, LogError> {
+    pub(super) fn new(to: W, name: &str) -> Result<Self, Error> {
         let options = WriteOptions::library(WriteOptions::new().profile("ros2"), "curious")
             .compression(Some(Compression::Zstd));
         let (to, is_end) = HeldBack::new(to);
@@ -52,7 +51,7 @@ impl<W: Write + Seek> Channels<W> {
         type_name: &str,
         ns: i64,
         message: &T,
-    ) -> Result<(), LogError> {
+    ) -> Result<(), Error> {
         let (channel_id, sequence) = match self.known.get_mut(topic) {
             Some((id, count)) => {
                 *count = count.wrapping_add(1);
@@ -70,7 +69,7 @@ impl<W: Write + Seek> Channels<W> {
         self.writer.write_to_known_channel(&header, &data).map_err(|error| failed(&self.name, error))
     }
 
-    fn add(&mut self, topic: &str, type_name: &str) -> Result<u16, LogError> {
+    fn add(&mut self, topic: &str, type_name: &str) -> Result<u16, Error> {
         let full_name = type_name.replacen('/', "/msg/", 1);
         let definition = schemas::definition(type_name);
         let mut metadata = BTreeMap::new();
@@ -84,7 +83,7 @@ impl<W: Write + Seek> Channels<W> {
         add().map_err(|error| failed(&self.name, error))
     }
 
-    pub(super) fn finish(mut self) -> Result<W, LogError> {
+    pub(super) fn finish(mut self) -> Result<W, Error> {
         self.writer.flush().map_err(|error| failed(&self.name, error))?;
         self.is_end.store(true, Ordering::Relaxed);
         self.writer.finish().map_err(|error| failed(&self.name, error))?;
@@ -92,10 +91,10 @@ impl<W: Write + Seek> Channels<W> {
     }
 }
 
-fn failed(name: &str, error: mcap::McapError) -> LogError {
-    let source = match error {
-        mcap::McapError::Io(source) => source,
+fn failed(name: &str, error: mcap::McapError) -> Error {
+    let why = match error {
+        mcap::McapError::Io(why) => why,
         other => Error::other(other),
     };
-    LogError::Io { file: name.to_owned(), why: source }
+    Error::new(why.kind(), format!("{name}: {why}"))
 }

@@ -1,4 +1,4 @@
-//! Recordings as bags of ROS 2: MCAP files that Foxglove shows, and that [`crate::Log`] reads.
+//! Recordings as bags of ROS 2: MCAP files that Foxglove shows, and that `logs::Log` reads.
 
 mod channels;
 mod grids;
@@ -6,20 +6,17 @@ mod lasers;
 mod odometry;
 mod schemas;
 mod sorted;
-#[cfg(test)]
-mod tests;
 
-use crate::error::LogError;
-use crate::ros::{
-    FIRST_STAMP_NS, Header, Odometry, Path, PointCloud2, PointField, Pose, PoseStamped, Time,
-    TransformStamped, Transforms, scan_message,
+use crate::messages::{
+    Header, Odometry, Path, PointCloud2, PointField, Pose, PoseStamped, Time, TransformStamped, Transforms,
 };
+use crate::scan::{FIRST_STAMP_NS, message as scan_message};
 use channels::Channels;
 use grids::Grids;
 use interfaces::{Event, Grid, LaserReading, Twist};
 use lasers::Laser;
 use nalgebra::{Isometry2, Point2};
-use std::io::{Seek, Write};
+use std::io::{Error, Seek, Write};
 
 /// The frames, by REP-105.
 const MAP: &str = "map";
@@ -64,7 +61,7 @@ impl<W: Write + Seek> McapWriter<W> {
     /// # Errors
     ///
     /// When the file cannot be written, as for all methods.
-    pub fn new(to: W, name: &str, begin_s: f64) -> Result<Self, LogError> {
+    pub fn new(to: W, name: &str, begin_s: f64) -> Result<Self, Error> {
         Ok(Self {
             channels: Channels::new(to, name)?,
             begin_ns: (begin_s.floor() as i64)
@@ -79,7 +76,7 @@ impl<W: Write + Seek> McapWriter<W> {
     }
 
     /// Writes a reading: scan, odometry and transforms. A scan that sweeps comes with the odometry while it was measured.
-    pub fn reading(&mut self, reading: &LaserReading) -> Result<(), LogError> {
+    pub fn reading(&mut self, reading: &LaserReading) -> Result<(), Error> {
         let end_ns = self.ns(reading.time_s);
         let laser = self.laser(end_ns, reading)?;
         self.odometry(reading)?;
@@ -89,7 +86,7 @@ impl<W: Write + Seek> McapWriter<W> {
     }
 
     /// Writes a correction of the odometry: the pose of its frame in the frame of the map. It holds from now on.
-    pub fn correction(&mut self, time_s: f64, map_to_odom: &Isometry2<f64>) -> Result<(), LogError> {
+    pub fn correction(&mut self, time_s: f64, map_to_odom: &Isometry2<f64>) -> Result<(), Error> {
         self.map_to_odom = *map_to_odom;
         let ns = self.ns(time_s);
         self.transforms("/tf", ns, &[(MAP, ODOM, *map_to_odom)])
@@ -103,7 +100,7 @@ impl<W: Write + Seek> McapWriter<W> {
         time_s: f64,
         grid: &Grid<T>,
         share: impl Fn(&T) -> Option<f64>,
-    ) -> Result<(), LogError> {
+    ) -> Result<(), Error> {
         let ns = self.ns(time_s);
         let percent =
             |cell: &T| share(cell).map_or(-1, |share| (share.clamp(0.0, 1.0) * 100.0).round() as i8);
@@ -112,14 +109,14 @@ impl<W: Write + Seek> McapWriter<W> {
     }
 
     /// Writes the pose to which the robot drives.
-    pub fn goal(&mut self, time_s: f64, pose: &Isometry2<f64>) -> Result<(), LogError> {
+    pub fn goal(&mut self, time_s: f64, pose: &Isometry2<f64>) -> Result<(), Error> {
         let ns = self.ns(time_s);
         let goal = PoseStamped { header: header(ns, MAP), pose: Pose::in_plane(pose) };
         self.channels.write("/goal_pose", "geometry_msgs/PoseStamped", ns, &goal)
     }
 
     /// Writes the path on which it drives there; none if it is empty.
-    pub fn path(&mut self, time_s: f64, poses: &[Isometry2<f64>]) -> Result<(), LogError> {
+    pub fn path(&mut self, time_s: f64, poses: &[Isometry2<f64>]) -> Result<(), Error> {
         let ns = self.ns(time_s);
         let stamped = |pose| PoseStamped { header: header(ns, MAP), pose: Pose::in_plane(pose) };
         let path = Path { header: header(ns, MAP), poses: poses.iter().map(stamped).collect() };
@@ -127,7 +124,7 @@ impl<W: Write + Seek> McapWriter<W> {
     }
 
     /// Writes changes of the place, each with the center of its cell.
-    pub fn events(&mut self, time_s: f64, events: &[(Point2<f64>, Event)]) -> Result<(), LogError> {
+    pub fn events(&mut self, time_s: f64, events: &[(Point2<f64>, Event)]) -> Result<(), Error> {
         let ns = self.ns(time_s);
         let mut data = Vec::with_capacity(events.len() * POINT_BYTES as usize);
         for (center, event) in events {
@@ -160,7 +157,7 @@ impl<W: Write + Seek> McapWriter<W> {
     }
 
     /// Writes the index and ends the file.
-    pub fn finish(self) -> Result<W, LogError> {
+    pub fn finish(self) -> Result<W, Error> {
         self.channels.finish()
     }
 
@@ -170,7 +167,7 @@ impl<W: Write + Seek> McapWriter<W> {
 
     /// The number of the laser of a reading. A new one is written as a static transform, one that has moved on the robot as
     /// a transform.
-    fn laser(&mut self, ns: i64, reading: &LaserReading) -> Result<usize, LogError> {
+    fn laser(&mut self, ns: i64, reading: &LaserReading) -> Result<usize, Error> {
         let now = Laser::of(reading);
         let known = self.lasers.iter().position(|laser| laser.mount == now.mount);
         if let Some(laser) = known.or_else(|| now.moved_from(&self.lasers)) {
@@ -187,7 +184,7 @@ impl<W: Write + Seek> McapWriter<W> {
     }
 
     /// The odometry at the end of a reading, and before it while the scan was measured.
-    fn odometry(&mut self, reading: &LaserReading) -> Result<(), LogError> {
+    fn odometry(&mut self, reading: &LaserReading) -> Result<(), Error> {
         let last =
             self.last_odometry.map(|(ns, pose)| (ns.saturating_sub(self.begin_ns) as f64 * 1e-9, pose));
         for step in odometry::steps(reading, last) {
@@ -200,7 +197,7 @@ impl<W: Write + Seek> McapWriter<W> {
         Ok(())
     }
 
-    fn pose(&mut self, ns: i64, pose: &Isometry2<f64>, twist: &Twist) -> Result<(), LogError> {
+    fn pose(&mut self, ns: i64, pose: &Isometry2<f64>, twist: &Twist) -> Result<(), Error> {
         let odometry = Odometry::in_plane(header(ns, ODOM), BASE, pose, twist);
         self.channels.write("/odom", "nav_msgs/Odometry", ns, &odometry)?;
         self.transforms("/tf", ns, &[(MAP, ODOM, self.map_to_odom), (ODOM, BASE, *pose)])
@@ -211,7 +208,7 @@ impl<W: Write + Seek> McapWriter<W> {
         topic: &str,
         ns: i64,
         transforms: &[(&str, &str, Isometry2<f64>)],
-    ) -> Result<(), LogError> {
+    ) -> Result<(), Error> {
         let stamped = |(parent, child, pose): &(&str, &str, Isometry2<f64>)| TransformStamped {
             header: header(ns, parent),
             child_frame_id: (*child).to_owned(),

@@ -1,12 +1,13 @@
-use super::McapWriter;
-use crate::cdr::decoded;
-use crate::ros::{
-    LaserScan, OccupancyGrid, OccupancyGridUpdate, Odometry, Path, PointCloud2, Pose, PoseStamped, Transforms,
-};
-use crate::{Log, LogSummary, TopicChoice};
+//! Bags that are written and read again.
+
 use interfaces::{Event, Grid, GridFrame, LaserReading, Scan, Twist, VelocitySample, heading_rad, wrap_rad};
+use logs::{Log, LogSummary, McapWriter, TopicChoice};
 use mcap::MessageStream;
 use nalgebra::{Isometry2, Point2};
+use ros::cdr::decoded;
+use ros::{
+    LaserScan, OccupancyGrid, OccupancyGridUpdate, Odometry, Path, PointCloud2, Pose, PoseStamped, Transforms,
+};
 use std::f64::consts::{PI, TAU};
 use std::io::Cursor;
 

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 /// # Errors
 ///
 /// When the encoding is none of these, or the bytes end too early.
-pub(crate) fn decoded<'a, T: Deserialize<'a>>(bytes: &'a [u8]) -> Result<T, String> {
+pub fn decoded<'a, T: Deserialize<'a>>(bytes: &'a [u8]) -> Result<T, String> {
     let Some((start, body)) = bytes.split_at_checked(4) else {
         return Err(format!("{} bytes, too short for a message", bytes.len()));
     };
@@ -21,7 +21,11 @@ pub(crate) fn decoded<'a, T: Deserialize<'a>>(bytes: &'a [u8]) -> Result<T, Stri
 }
 
 /// A message as bytes, in little-endian order.
-pub(crate) fn encoded<T: Serialize>(message: &T) -> Result<Vec<u8>, String> {
+///
+/// # Errors
+///
+/// When a list is too long for its format.
+pub fn encoded<T: Serialize>(message: &T) -> Result<Vec<u8>, String> {
     let mut bytes = vec![0, 1, 0, 0];
     bytes.extend(cdr_encoding::to_vec::<T, LittleEndian>(message).map_err(|error| error.to_string())?);
     Ok(bytes)
@@ -30,7 +34,7 @@ pub(crate) fn encoded<T: Serialize>(message: &T) -> Result<Vec<u8>, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ros::{Time, Transforms};
+    use crate::{Time, Transforms};
 
     #[test]
     fn both_orders_of_bytes_are_read() {

@@ -1,7 +1,8 @@
-//! `sensor_msgs/LaserScan` and a scan of ours.
+//! `sensor_msgs/LaserScan` and a scan of ours, and where it is measured on a robot in the plane.
 
 use super::messages::{Header, LaserScan, Time};
 use interfaces::{LaserReading, Scan};
+use nalgebra::{Isometry2, Isometry3, UnitComplex, Vector3};
 use std::f64::consts::TAU;
 
 /// The most beams of a scan: a message that claims more is invalid.
@@ -10,6 +11,8 @@ const MAX_BEAMS: usize = 100_000;
 const FARTHEST_M: f64 = 300.0;
 /// A scan never takes longer than this, s.
 const LONGEST_SWEEP_S: f64 = 10.0;
+/// A laser that is tilted by more than this does not measure a plane: the cosine of 15°.
+const MIN_UPRIGHT: f64 = 0.9659;
 /// The stamp of the time 0 of a run without a date, ns: the first scan begins before the time 0, and ROS has no times before its
 /// own 0.
 pub const FIRST_STAMP_NS: i64 = LONGEST_SWEEP_S as i64 * 1_000_000_000;
@@ -95,6 +98,29 @@ fn meaning(range_m: f32, min_m: f32, max_m: f32) -> f32 {
     } else {
         range_m
     }
+}
+
+/// A pose without height, roll and pitch.
+pub fn flat(pose: &Isometry3<f64>) -> Isometry2<f64> {
+    let ahead = pose.rotation * Vector3::x();
+    // A robot that stands on end has no heading.
+    let length = (ahead.x * ahead.x + ahead.y * ahead.y).sqrt();
+    let (cos, sin) = if length > 1e-9 { (ahead.x / length, ahead.y / length) } else { (1.0, 0.0) };
+    let rotation = UnitComplex::from_cos_sin_unchecked(cos, sin);
+    Isometry2::from_parts([pose.translation.x, pose.translation.y].into(), rotation)
+}
+
+/// How a laser is mounted: its pose, and whether it is upside down.
+///
+/// # Errors
+///
+/// When it is tilted.
+pub fn mounted(pose: &Isometry3<f64>) -> Result<(Isometry2<f64>, bool), String> {
+    let up = (pose.rotation * Vector3::z()).z;
+    if up.abs() < MIN_UPRIGHT {
+        return Err(format!("is tilted by {:.0}° and does not scan a plane", up.abs().acos().to_degrees()));
+    }
+    Ok((flat(pose), up < 0.0))
 }
 
 #[cfg(test)]
