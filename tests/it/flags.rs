@@ -79,7 +79,7 @@ const PROGRAMS: [Program; 8] = [
     },
     Program {
         path: env!("CARGO_BIN_EXE_predict"),
-        arguments: concat!(env!("CARGO_MANIFEST_DIR"), "/tests/states/8/map_log.state"),
+        arguments: concat!(env!("CARGO_MANIFEST_DIR"), "/tests/states/map_log.state"),
         wrong: &[
             ("--at", "teatime"),
             ("--place", "here"),

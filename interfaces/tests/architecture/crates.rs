@@ -5,6 +5,7 @@ use crate::workspace::{needs, needs_without_features, packages};
 /// Every crate, and the crates of the workspace that it may depend on.
 const ALLOWED: &[(&str, &[&str])] = &[
     ("interfaces", &[]),
+    ("files", &[]),
     ("calendar", &["interfaces"]),
     ("sim", &["interfaces", "calendar"]),
     ("worldfile", &["interfaces", "calendar", "sim"]),
@@ -14,9 +15,9 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("logs", &["interfaces"]),
     ("agent", &["interfaces", "mapper"]),
     ("controller", &["interfaces"]),
-    ("robot", &["interfaces", "calendar", "mapper", "localizer", "agent", "controller"]),
+    ("robot", &["interfaces", "files", "calendar", "mapper", "localizer", "agent", "controller"]),
     ("survey", &["interfaces", "mapper", "localizer", "logs", "robot"]),
-    ("results", &["interfaces", "mapper"]),
+    ("results", &["interfaces", "files", "mapper"]),
     ("days", &["interfaces", "calendar", "agent"]),
     (
         "evaluation",
@@ -33,7 +34,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "days",
         ],
     ),
-    ("reports", &["interfaces", "sim", "robot", "results", "days", "evaluation"]),
+    ("reports", &["interfaces", "files", "sim", "robot", "results", "days", "evaluation"]),
     (
         "environments",
         &["interfaces", "sim", "worldfile", "mapper", "agent", "controller", "robot", "evaluation"],
@@ -59,6 +60,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
         "viewer",
         &[
             "interfaces",
+            "files",
             "sim",
             "mapper",
             "localizer",
@@ -73,6 +75,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
         "curious",
         &[
             "interfaces",
+            "files",
             "calendar",
             "sim",
             "worldfile",
@@ -115,6 +118,7 @@ const RESERVED: &[(&str, &[&str])] =
 /// The crates that must build without Rerun.
 const WITHOUT_RERUN: &[&str] = &[
     "interfaces",
+    "files",
     "calendar",
     "sim",
     "worldfile",

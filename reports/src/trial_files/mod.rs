@@ -7,7 +7,7 @@ use self::parquet::ParquetFile;
 use self::text::CsvFile;
 use super::{Report, ReportBuilder, ReportSettings, UnequalTimes};
 use evaluation::trials::Trial;
-use results::output::OutputError;
+use files::OutputError;
 use std::io;
 use std::iter::once;
 use std::path::Path;

@@ -2,8 +2,8 @@
 
 use evaluation::trials::Length;
 use evaluation::trials::{Metric, Trial};
+use files::OutputError;
 use rayon::prelude::*;
-use results::output::OutputError;
 use std::borrow::Cow;
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
