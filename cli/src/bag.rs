@@ -1,10 +1,10 @@
 //! `--mcap`: a run as a bag of ROS 2.
 
 use anyhow::bail;
+use files::{UnfinishedFile, is_another_kind};
 use interfaces::{CellState, Grid, LaserReading};
 use mapper::Mapper;
 use nalgebra::{Isometry2, Point2};
-use results::output::{UnfinishedFile, is_another_kind};
 use robot::{Pilot, Turn};
 use ros::McapWriter;
 use std::fs::File;

@@ -16,8 +16,8 @@ mod tables;
 use anyhow::Context;
 use claim::Claim;
 use condition::{BASE, Condition, conditions};
+use files::{RunFolder, make_folder, write_file};
 use reports::{Report, Run};
-use results::output::{RunFolder, make_folder, write_file};
 use std::path::{Path, PathBuf};
 
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/figure3");

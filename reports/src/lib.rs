@@ -28,9 +28,9 @@ pub use statistics::{Estimate, PairedTest, paired_test};
 pub use strategy::StrategyResult;
 pub use trial_file::collect;
 
+use ::files::{RunFolder, write_file};
 use evaluation::trials::{Experiment, Length, Trial, TrialError, TrialWorld};
 use results::drawing::PictureError;
-use results::output::{RunFolder, write_file};
 use serde::Serialize;
 use std::sync::atomic::AtomicBool;
 

@@ -10,9 +10,9 @@ use cli::program::{Failure, INTERRUPTED, input, interrupt_flag, results_folder, 
 use cli::progress::Progress;
 use cli::terminal::{print, say};
 use evaluation::trials::{Experiment, Trial, TrialError, TrialWorld};
+use files::{RunFolder, write_file};
 use rayon::ThreadPool;
 use reports::{Plan, REPORT, ReportSettings, collect};
-use results::output::{RunFolder, write_file};
 use std::io::stderr;
 use std::path::Path;
 use std::process::ExitCode;

@@ -71,7 +71,7 @@ const PROGRAMS: [Program; 8] = [
     },
     Program {
         name: "predict",
-        arguments: concat!(env!("CARGO_MANIFEST_DIR"), "/tests/states/8/map_log.state"),
+        arguments: concat!(env!("CARGO_MANIFEST_DIR"), "/tests/states/map_log.state"),
         wrong: &[
             ("--at", "teatime"),
             ("--place", "here"),

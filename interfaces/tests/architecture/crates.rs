@@ -5,6 +5,7 @@ use crate::workspace::{needs, packages};
 /// Every crate, and the crates of the workspace that it may depend on.
 const ALLOWED: &[(&str, &[&str])] = &[
     ("interfaces", &[]),
+    ("files", &[]),
     ("calendar", &["interfaces"]),
     ("sim", &["interfaces", "calendar"]),
     ("worldfile", &["interfaces", "calendar", "sim"]),
@@ -15,14 +16,14 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("logs", &["interfaces", "ros"]),
     ("agent", &["interfaces", "mapper"]),
     ("controller", &["interfaces"]),
-    ("robot", &["interfaces", "calendar", "mapper", "localizer", "agent", "controller"]),
+    ("robot", &["interfaces", "files", "calendar", "mapper", "localizer", "agent", "controller"]),
     ("survey", &["interfaces", "mapper", "localizer", "logs", "robot"]),
-    ("results", &["interfaces", "mapper"]),
+    ("results", &["interfaces", "files", "mapper"]),
     (
         "evaluation",
         &["interfaces", "calendar", "sim", "mapper", "localizer", "agent", "controller", "robot", "results"],
     ),
-    ("reports", &["interfaces", "sim", "robot", "results", "evaluation"]),
+    ("reports", &["interfaces", "files", "sim", "robot", "results", "evaluation"]),
     (
         "environments",
         &["interfaces", "sim", "worldfile", "mapper", "agent", "controller", "robot", "evaluation"],
@@ -44,13 +45,14 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "environments",
         ],
     ),
-    ("viewer", &["interfaces", "mapper", "localizer", "agent", "robot", "results"]),
-    ("cli", &["interfaces", "mapper", "robot", "ros", "results"]),
-    ("owner", &["interfaces", "mapper", "robot", "logs", "survey", "results", "viewer", "cli"]),
+    ("viewer", &["interfaces", "files", "mapper", "localizer", "agent", "robot", "results"]),
+    ("cli", &["interfaces", "files", "mapper", "robot", "ros", "results"]),
+    ("owner", &["interfaces", "files", "mapper", "robot", "logs", "survey", "results", "viewer", "cli"]),
     (
         "curious",
         &[
             "interfaces",
+            "files",
             "calendar",
             "sim",
             "worldfile",
@@ -94,6 +96,7 @@ const RESERVED: &[(&str, &[&str])] =
 /// The crates that must build without Rerun.
 const WITHOUT_RERUN: &[&str] = &[
     "interfaces",
+    "files",
     "calendar",
     "sim",
     "worldfile",

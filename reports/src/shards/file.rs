@@ -4,7 +4,7 @@ use super::line;
 use super::scan::{MAX_LINE, Scan, not_a_shard};
 use super::{Header, Shard, ShardError};
 use evaluation::trials::Trial;
-use results::output::{OutputError, lock, make_folder};
+use files::{OutputError, lock, make_folder};
 use std::collections::BTreeSet;
 use std::fs::{self, DirEntry, File};
 use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom, Write};

@@ -28,7 +28,7 @@ pub use scan::Scan;
 pub use shard::{InvalidShard, Shard, array};
 
 use evaluation::trials::TrialError;
-use results::output::OutputError;
+use files::OutputError;
 use std::io;
 use std::path::{Path, PathBuf};
 

@@ -2,9 +2,9 @@ use super::*;
 use crate::tests::synthetic::{experiment, uniform};
 use crate::{ReportSettings, collect};
 use evaluation::trials::Trial;
+use files::RunFolder;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
-use results::output::RunFolder;
 use std::fs;
 use tempfile::TempDir;
 

@@ -1,6 +1,6 @@
 //! Runs that are killed while results are exchanged.
 
-use results::output::RunFolder;
+use files::RunFolder;
 use std::collections::BTreeMap;
 use std::fs;
 use std::io::{BufRead, BufReader};
@@ -35,7 +35,7 @@ fn exchanges_until_it_is_killed() {
     }
 }
 
-/// `KILLS=200 cargo test -p curious-results killed_runs` kills more often.
+/// `KILLS=200 cargo test -p curious-files killed_runs` kills more often.
 #[test]
 fn killed_runs_lose_nothing() {
     let kills: u64 = std::env::var("KILLS").map_or(20, |count| count.parse().unwrap());

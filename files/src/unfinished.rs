@@ -65,14 +65,15 @@ impl UnfinishedFile {
         self.finish()
     }
 
-    /// Gives the complete file its name. An older file is replaced.
+    /// Gives the complete file its name when its content is on the disk. An older file is replaced.
     ///
     /// # Errors
     ///
-    /// When the file cannot be renamed.
+    /// When the file cannot be brought to the disk, or cannot be renamed.
     pub fn finish(mut self) -> Result<(), OutputError> {
         let Some(partial) = &self.partial else { return Ok(()) };
-        fs::rename(partial, &self.path).map_err(|why| OutputError::new(&self.path, why))?;
+        let renamed = self.file.sync_all().and_then(|()| fs::rename(partial, &self.path));
+        renamed.map_err(|why| OutputError::new(&self.path, why))?;
         self.partial = None;
         Ok(())
     }
@@ -104,7 +105,7 @@ pub fn is_another_kind(path: &Path, start: &[u8]) -> bool {
 }
 
 /// The name of a file while it is incomplete. It keeps its ending, so that a viewer opens it.
-fn temporary_name(path: &Path) -> PathBuf {
+pub fn temporary_name(path: &Path) -> PathBuf {
     let mut name = path.file_stem().unwrap_or_default().to_owned();
     name.push(".unfinished");
     if let Some(ending) = path.extension() {

@@ -20,7 +20,6 @@ pub(super) fn write(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
     run(path, || {
         let file = UnfinishedFile::create(path).map_err(|error| error.why)?;
         file.file().write_all(bytes)?;
-        file.file().sync_all()?;
         file.finish().map_err(|error| error.why)
     })
 }

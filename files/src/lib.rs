@@ -1,23 +1,19 @@
-//! Files that are either complete or absent, and the folder of a run.
+//! Files that are either complete or absent, locks, and the folder of the results of a run. It depends on nothing of ours.
 
 mod disk;
 mod exchange;
 mod folder;
+mod lock;
 mod marker;
-mod trajectory;
 mod unfinished;
 
 pub use folder::RunFolder;
-pub use trajectory::TrajectoryFile;
-pub use unfinished::{UnfinishedFile, is_another_kind};
+pub use lock::{FileLock, lock};
+pub use unfinished::{UnfinishedFile, is_another_kind, temporary_name};
 
-use std::fs::{self, File, TryLockError};
+use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-use std::time::Duration;
-
-/// How often a lock is tried again, in steps of 10 ms.
-const LOCK_TRIES: u32 = 20;
 
 /// The error for a file or folder that cannot be written.
 #[derive(Debug, thiserror::Error)]
@@ -46,28 +42,6 @@ impl OutputError {
     }
 }
 
-/// Locks an open file until it is closed. If another run has locked it, `path` cannot be written, and `advice` says
-/// what to do.
-pub fn lock(file: &File, path: &Path, advice: &str) -> Result<(), OutputError> {
-    let mut tried = file.try_lock();
-    // A program that is being started holds the locks of the one that starts it for a moment.
-    for _ in 0..LOCK_TRIES {
-        if !matches!(tried, Err(TryLockError::WouldBlock)) {
-            break;
-        }
-        std::thread::sleep(Duration::from_millis(10));
-        tried = file.try_lock();
-    }
-    match tried {
-        // Not every file system has locks.
-        Ok(()) | Err(TryLockError::Error(_)) => Ok(()),
-        Err(TryLockError::WouldBlock) => {
-            let why = format!("another run is writing there; {advice}");
-            Err(OutputError::new(path, io::Error::new(io::ErrorKind::ResourceBusy, why)))
-        }
-    }
-}
-
 /// Writes a file as an [`UnfinishedFile`]: an older file stays until the new one is complete.
 ///
 /// # Errors
@@ -78,6 +52,13 @@ pub fn write_file(
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> Result<(), OutputError> {
     UnfinishedFile::create(path)?.write(write)
+}
+
+/// Returns when the names in the folder of a file are on the disk. Not every file system can do this; the file is complete under
+/// one of its names.
+pub fn sync_folder_of(path: &Path) {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    File::open(folder).and_then(|folder| folder.sync_all()).ok();
 }
 
 /// Makes a folder, and its parent folders, unless it exists.
