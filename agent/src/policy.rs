@@ -1,9 +1,6 @@
-use crate::choosers::{Always, Chooser, Coin, Curious, Progress};
+use crate::choosers::{Always, Chooser, Coin, Curious};
 use crate::settings::AgentSettings;
-use crate::strategies::{
-    FreshMap, Frontier, InformationGain, OptimalRevisiting, Poisson, PredictedChange, Random, Recency,
-    Strategy,
-};
+use crate::strategies::{FreshMap, InformationGain, Poisson, Random, Recency, Strategy};
 use interfaces::RandomStream;
 use std::num::NonZeroUsize;
 use std::sync::{Arc, LazyLock};
@@ -58,12 +55,8 @@ static BUILT_IN: LazyLock<Vec<Policy>> = LazyLock::new(|| {
         Policy::single("poisson", "cells that probably changed (paper)", |_| Poisson),
         Policy::single("random", "any cell: a baseline", |_| Random),
         Policy::new("coin", "recency or poisson by a fair coin: the baseline of learners", coin),
-        Policy::single("frontier", "most unknown cells in view per time, then the oldest", Frontier::new),
-        Policy::single("optimal-revisiting", "least time with a wrong map, per time", OptimalRevisiting::new),
-        Policy::single("predicted-change", "cells that are probably not as last seen", |_| PredictedChange),
         Policy::single("fresh-map", "least error of the predicted map, per time", FreshMap::new),
         Policy::single("information-gain", "least error of the rates, per time", InformationGain::new),
-        Policy::new("progress", "one of five strategies, chosen by progress in learning", progress),
     ]
 });
 
@@ -79,15 +72,6 @@ fn curious(settings: &AgentSettings, rng: &mut RandomStream) -> Parts {
 
 fn coin(_: &AgentSettings, _: &mut RandomStream) -> Parts {
     (papers(), Box::new(Coin(const { NonZeroUsize::new(2).unwrap() })))
-}
-
-fn progress(settings: &AgentSettings, _: &mut RandomStream) -> Parts {
-    let mut strategies = papers();
-    strategies.push(Box::new(Frontier::new(settings)));
-    strategies.push(Box::new(OptimalRevisiting::new(settings)));
-    strategies.push(Box::new(InformationGain::new(settings)));
-    let chooser = Progress::new(strategies.len());
-    (strategies, Box::new(chooser))
 }
 
 impl Policy {
@@ -226,8 +210,8 @@ mod tests {
     fn an_unknown_name_lists_the_known_ones() {
         assert_eq!(
             "Curius".parse::<Policy>().unwrap_err().to_string(),
-            "no strategy is called `Curius`; there are curious, recency, poisson, random, coin, frontier, \
-             optimal-revisiting, predicted-change, fresh-map, information-gain, progress"
+            "no strategy is called `Curius`; there are curious, recency, poisson, random, coin, fresh-map, \
+             information-gain"
         );
     }
 }

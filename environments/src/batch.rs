@@ -1,6 +1,6 @@
 //! Many tasks, stepped by one call.
 
-use crate::task::{Actions, Results, Task, TaskError};
+use crate::task::{ACTIONS, ROUNDING, Results, Task, TaskError};
 use crate::threads::share;
 use interfaces::{from_bytes, to_bytes};
 use rayon::ThreadPool;
@@ -113,16 +113,13 @@ impl Batch {
     /// When an action is out of range, or a slice has the wrong length. Nothing is changed then.
     pub fn step(&mut self, actions: &[f32], next_seeds: &[u64]) -> Result<Results, TaskError> {
         let tasks = self.slots.len();
-        let kind = self.slots.first().map_or(Actions::Velocities, |first| first.task.actions());
-        let of_task = self.slots.first().map_or(1, |first| first.task.agents()) * kind.values();
+        let of_task = self.slots.first().map_or(1, |first| first.task.agents()) * ACTIONS;
         check("actions", actions.len(), tasks * of_task)?;
         check("seeds", next_seeds.len(), tasks)?;
-        if let Some(at) = actions.iter().position(|action| !kind.allow(*action)) {
-            let (environment, value) = (at / of_task, actions[at]);
-            return Err(match kind {
-                Actions::Velocities => TaskError::Action { environment, value },
-                Actions::Choice(count) => TaskError::Choice { environment, value, last: count - 1 },
-            });
+        // Not NaN, and rounding may add a little.
+        let is_valid = |action: &f32| action.abs() <= 1.0 + ROUNDING;
+        if let Some(at) = actions.iter().position(|action| !is_valid(action)) {
+            return Err(TaskError::Action { environment: at / of_task, value: actions[at] });
         }
         let is_autoreset = self.is_autoreset;
         let jobs = self.slots.iter_mut().zip(actions.chunks(of_task)).zip(next_seeds);

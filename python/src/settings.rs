@@ -1,8 +1,7 @@
 //! The settings of tasks and of maps, from the keywords of a call.
 
 use crate::convert::value_error;
-use agent::Policy;
-use environments::{DriveSettings, ExploreSettings, GoalSettings, Reward, Start};
+use environments::{DriveSettings, ExploreSettings};
 use mapper::MapperSettings;
 use pyo3::exceptions::{PyOverflowError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -23,19 +22,11 @@ const DRIVE: [Setting<DriveSettings>; 10] = [
     ("collision_reward", |to, value, key| set(&mut to.collision_reward, value, key)),
     ("step_reward", |to, value, key| set(&mut to.step_reward, value, key)),
 ];
-const EXPLORE: [Setting<ExploreSettings>; 13] = [
-    ("reward", |to, value, key| named(&mut to.reward, &Reward::ALL, value, key)),
-    ("starts", |to, value, key| named(&mut to.starts, &Start::ALL, value, key)),
+const EXPLORE: [Setting<ExploreSettings>; 5] = [
     ("seen_reward", |to, value, key| set(&mut to.seen_reward, value, key)),
     ("max_steps", |to, value, key| set(&mut to.max_steps, value, key)),
     ("beams", |to, value, key| set(&mut to.beams, value, key)),
-    ("error_every", |to, value, key| set(&mut to.error_every, value, key)),
-    ("map_every", |to, value, key| set(&mut to.map_every, value, key)),
-    ("shows_local_map", |to, value, key| set(&mut to.shows_local_map, value, key)),
-    ("local_map_cells", |to, value, key| set(&mut to.local_map_cells, value, key)),
-    ("local_map_cell", |to, value, key| set(&mut to.local_map_cell_m, value, key)),
     ("update_reward", |to, value, key| set(&mut to.update_reward, value, key)),
-    ("error_reward", |to, value, key| set(&mut to.error_reward, value, key)),
     ("collision_reward", |to, value, key| set(&mut to.collision_reward, value, key)),
 ];
 
@@ -47,47 +38,6 @@ pub(crate) fn drive_settings(keywords: Option<&Bound<'_, PyDict>>) -> PyResult<D
 /// The settings of an exploring task.
 pub(crate) fn explore_settings(keywords: Option<&Bound<'_, PyDict>>) -> PyResult<ExploreSettings> {
     settings("exploring", &EXPLORE, keywords)
-}
-
-/// Takes the settings of the choice of goals from the keywords.
-pub(crate) fn goal_settings(keywords: Option<&Bound<'_, PyDict>>) -> PyResult<GoalSettings> {
-    let mut settings = GoalSettings::default();
-    let Some(keywords) = keywords else { return Ok(settings) };
-    if let Some(value) = keywords.get_item("max_goal_s")? {
-        set(&mut settings.max_goal_s, &value, "max_goal_s")?;
-        keywords.del_item("max_goal_s")?;
-    }
-    for (key, to) in
-        [("stays_at_goals", &mut settings.stays_at_goals), ("shows_routes", &mut settings.shows_routes)]
-    {
-        if let Some(value) = keywords.get_item(key)? {
-            set(to, &value, key)?;
-            keywords.del_item(key)?;
-        }
-    }
-    if let Some(value) = keywords.get_item("strategies")? {
-        let mut names: Vec<String> = Vec::new();
-        set(&mut names, &value, "strategies")?;
-        let policies = names.iter().map(|name| name.parse::<Policy>().map_err(value_error));
-        settings.strategies = policies.collect::<PyResult<_>>()?;
-        keywords.del_item("strategies")?;
-    }
-    Ok(settings)
-}
-
-/// Sets a setting to one of some named values.
-fn named<T: Copy>(to: &mut T, all: &[(&str, T)], value: &Bound<'_, PyAny>, key: &str) -> PyResult<()> {
-    let mut name = String::new();
-    set(&mut name, value, key)?;
-    let Some((_, found)) = all.iter().find(|(known, _)| *known == name) else {
-        let known: Vec<&str> = all.iter().map(|(known, _)| *known).collect();
-        return Err(value_error(format!(
-            "the setting `{key}` is one of {}, and not {name}",
-            known.join(", ")
-        )));
-    };
-    *to = *found;
-    Ok(())
 }
 
 fn settings<S: Default>(

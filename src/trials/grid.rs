@@ -24,7 +24,7 @@ use sim::grid::{GenerateSettings, GridSpec};
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "Examples:\n  \
         grid_world --trials 100                                  more trials, smaller intervals\n  \
-        grid_world --generate 50 --trials 2 --strategy curious --strategy progress\n  \
+        grid_world --generate 50 --trials 2 --strategy curious --strategy information-gain\n  \
         grid_world --generate 10 --calendar office --steps 60480 --strategy curious --strategy fresh-map\n  \
         grid_world --world my_world.toml --sensor-radius 6 --rrd one_trial.rrd\n\n\
         Large experiments run in shards, on one machine or on many (docs/clusters.md):\n  \

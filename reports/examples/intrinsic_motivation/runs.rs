@@ -14,8 +14,7 @@ use robot::Autonomous;
 use sim::grid::{GenerateSettings, GridSpec};
 
 /// The strategies of the agent that are compared, and the random walk over cells.
-pub(crate) const STRATEGIES: [&str; 6] =
-    ["curious", "information-gain", "predicted-change", "frontier", "recency", "random"];
+pub(crate) const STRATEGIES: [&str; 4] = ["curious", "information-gain", "recency", "random"];
 pub(crate) const WALK: &str = "walk";
 /// The first words of the names of learners over single steps, and of those over goals.
 const CELLS: &str = "cells-";
