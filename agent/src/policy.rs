@@ -102,6 +102,11 @@ impl Policy {
         &BUILT_IN
     }
 
+    /// The policy for one of the [`PURPOSES`].
+    pub fn for_purpose(name: &str) -> Option<Self> {
+        PURPOSES.iter().find(|[purpose, ..]| *purpose == name).and_then(|[.., policy]| Self::named(policy))
+    }
+
     /// The name on the command line and in files.
     pub fn name(&self) -> &'static str {
         self.name
@@ -118,53 +123,13 @@ impl Policy {
     }
 }
 
-/// What a robot explores for: each purpose names the policy that is made for it. `docs/strategies.md` shows in which worlds it is better
-/// than the default.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum RobotPurpose {
-    /// To know at any time what is blocked.
-    FreshMap,
-    /// To learn how often every cell changes.
-    LearnRates,
-    /// What the paper's robot does.
-    #[default]
-    Paper,
-}
-
-impl RobotPurpose {
-    /// All, with their names.
-    pub const ALL: [(&'static str, Self); 3] =
-        [("fresh-map", Self::FreshMap), ("learn-rates", Self::LearnRates), ("paper", Self::Paper)];
-
-    /// The purpose with this name.
-    pub fn named(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|(known, _)| *known == name).map(|(_, purpose)| purpose)
-    }
-
-    /// The description in lists, in one line.
-    pub fn description(self) -> &'static str {
-        match self {
-            Self::FreshMap => "To know at any time what is blocked",
-            Self::LearnRates => "To learn how often every cell changes",
-            Self::Paper => "What the paper's robot does",
-        }
-    }
-
-    /// The name of the policy for this purpose.
-    pub fn policy_name(self) -> &'static str {
-        match self {
-            Self::FreshMap => "fresh-map",
-            Self::LearnRates => "information-gain",
-            Self::Paper => "curious",
-        }
-    }
-
-    /// The policy for this purpose.
-    pub fn policy(self) -> Policy {
-        let found = Policy::built_in().iter().find(|policy| policy.name() == self.policy_name());
-        found.cloned().unwrap_or_default()
-    }
-}
+/// What a robot explores for: the name of a purpose, its description, and the name of the policy that is made for it.
+/// `docs/strategies.md` shows in which worlds it is better than the default.
+pub const PURPOSES: [[&str; 3]; 3] = [
+    ["fresh-map", "To know at any time what is blocked", "fresh-map"],
+    ["learn-rates", "To learn how often every cell changes", "information-gain"],
+    ["paper", "What the paper's robot does", "curious"],
+];
 
 impl Default for Policy {
     fn default() -> Self {
@@ -197,13 +162,10 @@ mod tests {
 
     #[test]
     fn every_purpose_has_a_policy() {
-        for (_, purpose) in RobotPurpose::ALL {
-            assert_eq!(purpose.policy().name(), purpose.policy_name());
+        for [name, _, policy] in PURPOSES {
+            assert_eq!(Policy::for_purpose(name).unwrap().name(), policy);
         }
-        for (name, purpose) in RobotPurpose::ALL {
-            assert_eq!(RobotPurpose::named(name), Some(purpose));
-        }
-        assert_eq!(RobotPurpose::named("fame"), None);
+        assert_eq!(Policy::for_purpose("fame"), None);
     }
 
     #[test]

@@ -30,7 +30,6 @@ mod patches;
 mod picture;
 mod place;
 mod task;
-mod threads;
 
 pub use batch::Batch;
 pub use drive::Drive;

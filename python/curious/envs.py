@@ -190,7 +190,7 @@ class _Single(gymnasium.Env):
         self._world_seed = _draw(self.np_random)
         if options and "world_seed" in options:
             self._world_seed = _world_seed(options["world_seed"])
-        rows = batch.reset_one(0, self._world_seed)
+        rows = batch.reset(np.array([self._world_seed], np.uint64))
         self._was_reset = True
         if self.render_mode == "human":
             self.render()

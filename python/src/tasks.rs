@@ -1,6 +1,6 @@
 use crate::convert::{index, rows_array, snapshot_error, value_error, whole};
 use crate::fleet::poses_of;
-use crate::settings::{drive_settings, explore_settings};
+use crate::settings::task_settings;
 use crate::snapshots::{Kind, check_build};
 use crate::spec::{driving, spec_of};
 use environments::{ACTIONS, Drive, DrivePlace, Explore, ExplorePlace, Picture, Results, TaskError};
@@ -78,7 +78,7 @@ impl Batch {
         settings: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
         Self::check_count(environments)?;
-        let (spec, settings) = (spec_of(py, world)?, drive_settings(settings)?);
+        let (spec, settings) = (spec_of(py, world)?, task_settings(settings)?);
         let batch = py.detach(|| -> Result<_, TaskError> {
             let place = Arc::new(DrivePlace::new(&spec, settings)?);
             Ok(environments::Batch::new((0..environments).map(|_| Drive::new(&place))))
@@ -100,7 +100,7 @@ impl Batch {
     ) -> PyResult<Self> {
         Self::check_count(environments)?;
         let specs = worlds.iter().map(|world| driving(&spec_of(py, &world)?, None));
-        let (specs, settings) = (specs.collect::<PyResult<Vec<_>>>()?, explore_settings(settings)?);
+        let (specs, settings) = (specs.collect::<PyResult<Vec<_>>>()?, task_settings(settings)?);
         let batch = py.detach(|| -> Result<_, TaskError> {
             let place = Arc::new(match houses {
                 Some(seeds) => ExplorePlace::of_houses(seeds, settings)?,
@@ -160,7 +160,7 @@ impl Batch {
         values.into_pyarray(py).reshape([rows, names])
     }
 
-    /// Whether an environment that is over is reset in the same step: set it to False to reset it by `reset_one`.
+    /// Whether an environment that is over is reset in the same step: set it to False to reset all of them by `reset`.
     #[getter]
     fn autoreset(&self) -> bool {
         self.batch.is_autoreset()
@@ -182,20 +182,6 @@ impl Batch {
         let observations = py.detach(|| batch.reset(&seeds)).map_err(value_error)?;
         self.is_ready = true;
         observations.into_pyarray(py).reshape([self.rows(), self.observation_len()])
-    }
-
-    /// Begins an episode in one environment, and returns its observations, shape (agents, observation_len).
-    fn reset_one<'py>(
-        &mut self,
-        py: Python<'py>,
-        #[pyo3(from_py_with = index)] environment: usize,
-        #[pyo3(from_py_with = whole)] seed: u64,
-    ) -> PyResult<Bound<'py, PyArray2<f32>>> {
-        self.check(environment)?;
-        self.is_ready |= self.environments() == 1;
-        let batch = &mut self.batch;
-        let observations = py.detach(|| batch.reset_one(environment, seed).to_vec());
-        self.rows_of_one(py, observations)
     }
 
     /// Simulates one step. `actions`: float32, shape (environments * agents, 2), from -1 to 1. `next_seeds`: uint64, one per

@@ -3,12 +3,9 @@
 use super::{TrialKind, one_of_kinds};
 use crate::program::list;
 use crate::worlds::{SHIPPED_GRID, load_grid};
-use agent::{AgentSettings, Reward};
 use calendar::Kind;
 use clap::Args;
-use controller::CellDrive;
 use evaluation::trials::GridRobot;
-use mapper::MapperSettings;
 use sim::grid::{GenerateSettings, GridSpec};
 
 /// Compares exploration strategies in grid worlds with moving blocks: the paper's Figure 3, with statistics.
@@ -89,11 +86,10 @@ impl TrialKind for GridWorlds {
         self.steps
     }
 
-    fn robot(&self, reward: Reward, max_steps: u32) -> GridRobot {
-        let mut controller = CellDrive::settings();
-        controller.exploration.max_steps = max_steps;
-        let agent = AgentSettings { reward, ..Default::default() };
-        GridRobot { mapper: MapperSettings::default(), agent, controller }
+    fn robot(&self, max_steps: u32) -> GridRobot {
+        let mut robot = GridRobot::default();
+        robot.controller.exploration.max_steps = max_steps;
+        robot
     }
 
     fn to_toml(world: &GridSpec) -> Option<String> {

@@ -44,8 +44,8 @@ impl Run {
         let own = in_own_frame(&settings, &spec, self.seed);
         let day = day(own.as_ref().map_or(&spec, |(spec, _)| spec)).context("the robot has no patrol")?;
         let agent = settings.agent(&self.strategy, self.seed)?;
-        let pilot = settings.pilot(PatrolDay::new(agent, day), self.seed)?;
-        let mut trial = PhysicsTrial::new(&spec, self.seed, &settings, None, pilot)?;
+        let pilot = PatrolDay::new(settings.pilot(agent, self.seed)?, day);
+        let mut trial = PhysicsTrial::new(&spec, self.seed, &settings, None, pilot)?.on_battery();
         let end_s = f64::from(self.days) * 86_400.0;
         trial.run_exactly(end_s)?;
         let results = trial.results();
