@@ -61,9 +61,8 @@ fn a_resting_robot_is_scored_every_minute() {
     let spec = world();
     let settings = physics_trial::settings(&spec).unwrap();
     let agent = settings.agent(&Policy::default(), 1).unwrap();
-    let day = PatrolDay::new(agent, physics_trial::day(&spec).unwrap());
-    let pilot = settings.pilot(day, 1).unwrap();
-    let mut trial = PhysicsTrial::new(&spec, 1, &settings, None, pilot).unwrap();
+    let pilot = PatrolDay::new(settings.pilot(agent, 1).unwrap(), physics_trial::day(&spec).unwrap());
+    let mut trial = PhysicsTrial::new(&spec, 1, &settings, None, pilot).unwrap().on_battery();
     let (mut readings, mut door_s) = (0, Vec::new());
     while trial.turn().unwrap().reading.time_s < 36_000.0 {
         readings += 1;
@@ -94,9 +93,8 @@ fn a_run_can_end_exactly_in_a_rest() {
     let settings = physics_trial::settings(&spec).unwrap();
     for end_s in [7200.0, 20_000.0, 36_000.0] {
         let agent = settings.agent(&Policy::default(), 1).unwrap();
-        let day = PatrolDay::new(agent, physics_trial::day(&spec).unwrap());
-        let pilot = settings.pilot(day, 1).unwrap();
-        let mut trial = PhysicsTrial::new(&spec, 1, &settings, None, pilot).unwrap();
+        let pilot = PatrolDay::new(settings.pilot(agent, 1).unwrap(), physics_trial::day(&spec).unwrap());
+        let mut trial = PhysicsTrial::new(&spec, 1, &settings, None, pilot).unwrap().on_battery();
         trial.run_exactly(end_s).unwrap();
         assert!((trial.world.time_s() - end_s).abs() < 0.2, "{} s", trial.world.time_s());
         let scores = trial.results().scheduled.unwrap();

@@ -3,8 +3,8 @@
 
 use super::{Report, ReportBuilder, ReportSettings, UnequalTimes};
 use evaluation::trials::{Metric, Trial};
+use files::OutputError;
 use rayon::prelude::*;
-use results::output::OutputError;
 use std::borrow::Cow;
 use std::fs::File;
 use std::io::{self, BufWriter, Write};

@@ -2,7 +2,6 @@
 
 use super::{TrialKind, one_of_kinds};
 use crate::worlds::{Loaded, list_physics_worlds, load};
-use agent::Reward;
 use anyhow::Context;
 use calendar::Kind;
 use clap::Args;
@@ -109,8 +108,8 @@ impl TrialKind for Houses {
         self.duration
     }
 
-    fn robot(&self, reward: Reward, max_steps: u32) -> PhysicsRobot {
-        PhysicsRobot { reward, max_steps, pose: self.pose }
+    fn robot(&self, max_steps: u32) -> PhysicsRobot {
+        PhysicsRobot { max_steps, pose: self.pose }
     }
 
     fn to_toml(world: &WorldSpec) -> Option<String> {

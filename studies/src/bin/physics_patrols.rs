@@ -94,8 +94,8 @@ impl Options {
         let settings = settings(&spec)?;
         let own = in_own_frame(&settings, &spec, seed);
         let day = day(own.as_ref().map_or(&spec, |(spec, _)| spec)).context("the robot has no patrol")?;
-        let pilot = settings.pilot(PatrolDay::new(settings.agent(strategy, seed)?, day), seed)?;
-        let mut trial = PhysicsTrial::new(&spec, seed, &settings, None, pilot)?;
+        let pilot = PatrolDay::new(settings.pilot(settings.agent(strategy, seed)?, seed)?, day);
+        let mut trial = PhysicsTrial::new(&spec, seed, &settings, None, pilot)?.on_battery();
         let end_s = f64::from(self.days) * 86_400.0;
         trial.run_exactly(end_s)?;
         let results = trial.results();

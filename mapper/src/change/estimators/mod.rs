@@ -76,13 +76,7 @@ impl Default for EstimatorChoice {
 impl EstimatorChoice {
     /// Every built-in estimator, in the order of reports.
     pub fn all() -> Vec<Self> {
-        vec![
-            Paper.into(),
-            PaperAll.into(),
-            TwoState.into(),
-            TwoStateGaps.into(),
-            SharedPrior.into(),
-        ]
+        vec![Paper.into(), PaperAll.into(), TwoState.into(), TwoStateGaps.into(), SharedPrior.into()]
     }
 
     /// The name on the command line, in files and in reports.
