@@ -3,7 +3,6 @@ use super::sampler::Sampler;
 use super::{Sample, Trial, TrialError, TrialSettings, TrialStrategy, TrialWorld};
 use crate::map_hash::map_hash;
 use crate::metrics::{RateScores, rate_scores};
-use crate::oracle::Oracle;
 use agent::Features;
 use controller::Controller;
 use interfaces::World;
@@ -41,22 +40,20 @@ pub fn run_trial<W: TrialWorld>(
     let world = own.as_ref().unwrap_or(trial.world);
     let trial = &TrialSettings { world, ..*trial };
     match trial.strategy {
-        TrialStrategy::Agent(policy) => run(trial, W::agent(trial, policy)?, |_, _| (), observe),
-        TrialStrategy::Oracle => run(trial, world.oracle(), Oracle::learn, observe),
-        TrialStrategy::FullObservation => run(trial, Tour::new(Vec::new(), false), |_, _| (), observe),
+        TrialStrategy::Agent(policy) => run(trial, W::agent(trial, policy)?, observe),
+        TrialStrategy::FullObservation => run(trial, Tour::new(Vec::new(), false), observe),
     }
 }
 
 fn run<W: TrialWorld, G: GoalSelector>(
     trial: &TrialSettings<W>,
     selector: G,
-    reveal: impl Fn(&mut G, &W::Truth),
     observe: impl FnMut(TrialStep<W>) -> bool,
 ) -> Result<Option<Trial>, TrialError> {
     let mut world = trial.world.start(trial.seed);
     let mut robot = W::robot(trial, &mut world, selector)?;
     let sampler = Sampler::new(trial.experiment.length);
-    let mut measured = Measured { sampler, collisions: None, rates: None, reveal, observe };
+    let mut measured = Measured { sampler, collisions: None, rates: None, observe };
     if *trial.strategy == TrialStrategy::FullObservation {
         let Robot { mapper, pilot, .. } = robot;
         let mut seeing = Robot::new(Box::new(ExactPoses), mapper, pilot);
@@ -78,16 +75,15 @@ fn run<W: TrialWorld, G: GoalSelector>(
 }
 
 /// The measurements of a trial.
-struct Measured<V, O> {
+struct Measured<O> {
     sampler: Sampler,
     collisions: Option<u64>,
     /// The rates at the end.
     rates: Option<RateScores>,
-    reveal: V,
     observe: O,
 }
 
-impl<V, O> Measured<V, O> {
+impl<O> Measured<O> {
     fn measure<W: TrialWorld, G: GoalSelector, R>(
         &mut self,
         world: &W::World,
@@ -95,11 +91,9 @@ impl<V, O> Measured<V, O> {
         turn: &Turn<<W::World as World>::Reading, <W::World as World>::Command>,
     ) -> Result<ControlFlow<()>, TrialError>
     where
-        V: Fn(&mut G, &W::Truth),
         O: FnMut(TrialStep<W>) -> bool,
     {
         let (truth, Robot { mapper, pilot, .. }) = (W::truth(world), &mut *robot);
-        (self.reveal)(pilot.selector_mut(), truth);
         if let Some(count) = W::collisions(world) {
             *self.collisions.get_or_insert(0) += count;
         }

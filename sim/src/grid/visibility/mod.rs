@@ -76,22 +76,6 @@ impl LineOfSight {
     }
 }
 
-impl GridSpec {
-    /// For every cell, the cells that the robot sees from there if no block is in between, all by index. From
-    /// inside a wall the robot sees nothing.
-    pub fn sights(&self) -> Vec<Vec<usize>> {
-        let frame = self.frame();
-        let blocked = BlockedCells::new(&self.walls, self.sensor_radius);
-        let mut line_of_sight = LineOfSight::new(self.sensor_radius);
-        let mut from = |index: usize| {
-            let seen = line_of_sight.look(&blocked, frame.cell(index));
-            seen.into_iter().filter_map(|(cell, _)| frame.index(cell)).collect()
-        };
-        let walls = self.walls.cells();
-        (0..frame.len()).map(|index| if walls[index] { Vec::new() } else { from(index) }).collect()
-    }
-}
-
 /// The word that begins a number of bits after the word with an index.
 #[inline]
 fn shifted(words: &[u64], word: usize, bits: usize) -> u64 {
