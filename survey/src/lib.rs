@@ -20,7 +20,6 @@ mod forecast;
 mod known_place;
 mod masks;
 mod median;
-mod noise;
 mod odometry_check;
 mod outlook;
 mod passes;
