@@ -45,7 +45,7 @@ pub use tiles::Tile;
 use derived::ExpectedChanges;
 use interfaces::{
     CellState, Grid, GridFrame, LaserReading, Observation, Reading, SMALL_GRID, SettingsCheck, SettingsError,
-    Transition, ValueError, Values, if_present, is_valid_pose, last_value, value,
+    Transition, ValueError, Values, is_valid_pose, value,
 };
 use nalgebra::Point2;
 use reading_error::check_pose;
@@ -311,13 +311,12 @@ impl Mapper {
     }
 
     fn values(&mut self) -> Values<'_> {
-        let (mut values, prior) = self.cells.values();
+        let mut values = self.cells.values();
         values.extend(self.occupancy.values());
         values.push(value(&mut self.expected_changes));
         values.push(self.tiles.value());
-        values.push(last_value(&mut self.things));
-        values.extend(prior.into_iter().map(if_present));
-        values.push(last_value(&mut self.leaf_cells));
+        values.push(value(&mut self.things));
+        values.push(value(&mut self.leaf_cells));
         values
     }
 
