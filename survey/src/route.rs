@@ -1,7 +1,7 @@
 //! The route of a log, and the cells that cover several of them.
 
 use crate::error::SurveyError;
-use crate::extent::{self, Reach, Reaches};
+use crate::extent::{self, Reach};
 use crate::quality::{Quality, QualityCheck, Verdict};
 use crate::range_noise::RangeNoise;
 use crate::seen_area::SeenArea;
@@ -136,7 +136,6 @@ pub struct FirstPass {
     range_noise: RangeNoise,
     quality: QualityCheck,
     reaches: Vec<Reach>,
-    reach: Reaches,
     /// The corners of the rectangle that was seen so far.
     seen: Option<(Point2<f64>, Point2<f64>)>,
     area: SeenArea,
@@ -166,7 +165,6 @@ impl FirstPass {
             range_noise: RangeNoise::default(),
             quality: QualityCheck::default(),
             reaches: Vec::new(),
-            reach: Reaches::default(),
             seen: None,
             area: SeenArea::default(),
             turns: Turns::default(),
@@ -182,7 +180,7 @@ impl FirstPass {
     /// Adds the next reading.
     pub fn add(&mut self, reading: LaserReading) {
         let filtered = self.filter.filter(reading.clone());
-        let reach = self.reach.of(&filtered);
+        let reach = Reach::of(&filtered);
         self.reaches.push(reach);
         self.turns.add(&reading);
         let found = match &mut self.finder {

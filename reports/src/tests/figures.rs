@@ -127,7 +127,8 @@ fn names_are_escaped() {
 #[test]
 #[ignore = "draws figures for an inspection by eye"]
 fn draw_figures() {
-    let nine = [FIVE.as_slice(), &["information-gain", "optimal-revisiting", "frontier", "oracle"]].concat();
+    let nine = [FIVE.as_slice(), &["information-gain", "optimal-revisiting", "frontier", "full-observation"]]
+        .concat();
     let folder = tempfile::tempdir().unwrap().keep();
     for (name, worlds, strategies, seeds) in [
         ("one", 1, FIVE.to_vec(), 5),
