@@ -147,13 +147,3 @@ fn draw_figures() {
     }
     println!("{}", folder.display());
 }
-
-/// Nothing says what the colors of small plans are, if they have no legend.
-#[test]
-fn small_plans_have_a_legend() {
-    let (_, _, texts) = figures(&report(3, &["paper"], &["curious"], 1));
-    let all = texts.iter().find(|text| text.contains("The worlds")).expect("a figure of all worlds");
-    for entry in ["wall", "path of a block", "start of the robot", "range of its sensor"] {
-        assert!(all.contains(&format!(">\n{entry}\n</text>")), "{entry}");
-    }
-}

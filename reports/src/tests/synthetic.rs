@@ -103,7 +103,6 @@ pub(crate) fn experiment(
         length: Length::Grid { steps: HORIZON },
         trials: seeds,
         sensor_radius: Some(4),
-        other_build: None,
         interrupted: false,
         worlds: (0..worlds).map(world_name).collect(),
         estimators: owned(estimators),
