@@ -120,7 +120,7 @@ impl<M> LocalTrajectoryBuilder<M> {
             self.motion_prior.judge(is_outlier);
         }
         if matched.is_reliable {
-            self.motion_prior.learn(&scan.measured, &motion);
+            self.motion_prior.calibration.learn(&scan.measured, &motion);
             // The noise of the odometry within a scan bends its walls. The matched motion does not.
             if reading.scan.sweep_s > 0.0 {
                 scan.points = self.deskew.update(&mut scan.reading, reading, &motion, scan.elapsed_s);
@@ -144,7 +144,7 @@ impl<M> LocalTrajectoryBuilder<M> {
         let points = self.deskew.update(&mut deskewed, reading, &in_sweep.0, in_sweep.1);
         let Track { pose, covariance, .. } = &self.track;
         let predicted = motion.predict(pose, covariance, reading.scan.sweep_s > 0.0);
-        let has_odometry = self.motion_prior.has_odometry();
+        let has_odometry = self.motion_prior.exists;
         let reading = deskewed;
         IncomingScan { reading, points, fault, motion, predicted, measured, has_odometry, elapsed_s, now_s }
     }

@@ -59,7 +59,8 @@ impl Surfel {
 /// The line map.
 #[derive(Clone, Debug)]
 pub(crate) struct SurfelMap {
-    frame: GridFrame,
+    /// The grid of the cells.
+    pub(crate) frame: GridFrame,
     cells: Vec<[u32; PER_CELL]>,
     surfels: Vec<Surfel>,
     /// Places in `surfels` that can be used again.
@@ -100,11 +101,6 @@ impl SurfelMap {
             value(&mut self.unused),
             value(&mut self.scan),
         ]
-    }
-
-    /// The grid of the cells.
-    pub(crate) fn frame(&self) -> &GridFrame {
-        &self.frame
     }
 
     /// The surfel at an index from [`SurfelMap::nearest`].
