@@ -45,7 +45,7 @@ mod upright;
 pub use change_log::ChangeLog;
 pub use error::SurveyError;
 pub use forecast::{Forecast, NEAR_M};
-pub use masks::{CHANGE_HORIZON_S, MASKS, masks, masks_ahead};
+pub use masks::{MASKS, masks, masks_ahead};
 pub use outlook::{Outlook, doors};
 pub use passes::{PassError, Stage};
 pub use permanent::permanent;
