@@ -65,7 +65,9 @@ impl FirstMap {
     pub(crate) fn new(settings: &LocalizerSettings) -> Result<Self, SettingsError> {
         let range_noise_std_m = settings.range_noise_std_m.max(LOG_NOISE_M);
         let settings = LocalizerSettings { range_noise_std_m, ..settings.clone() };
-        let finder = TrajectoryFinder::new(&settings)?.with_odometry();
+        let mut finder = TrajectoryFinder::new(&settings)?;
+        // A robot that rests at the start does not go on as before.
+        finder.builder.motion_prior.exists = true;
         Ok(Self { finder, keyframes: Vec::new(), log: Log::default() })
     }
 

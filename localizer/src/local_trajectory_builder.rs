@@ -41,7 +41,7 @@ pub(crate) struct Matched<F> {
 }
 
 /// The last pose of the robot.
-#[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
+#[derive(Clone, Debug, Default, serde::Deserialize, serde::Serialize)]
 pub(crate) struct Track {
     pub(crate) pose: Isometry2<f64>,
     pub(crate) covariance: Matrix3<f64>,
@@ -89,11 +89,7 @@ impl<M> LocalTrajectoryBuilder<M> {
             motion_prior: MotionPrior::new(odometry),
             deskew: Deskew::new(rules),
             matcher,
-            track: Track {
-                pose: Isometry2::identity(),
-                covariance: Matrix3::zeros(),
-                last_motion: Isometry2::identity(),
-            },
+            track: Track::default(),
             time_s: None,
         }
     }

@@ -92,7 +92,7 @@ struct Attached {
 #[derive(Debug)]
 pub struct TrajectoryFinder {
     settings: LocalizerSettings,
-    builder: LocalTrajectoryBuilder<SubmapMatcher>,
+    pub(crate) builder: LocalTrajectoryBuilder<SubmapMatcher>,
     closer: LoopCloser,
     graph: PoseGraph,
     readings: Vec<Attached>,

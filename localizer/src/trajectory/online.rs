@@ -11,12 +11,6 @@ use interfaces::heading_rad;
 use nalgebra::{Isometry2, Matrix3};
 
 impl TrajectoryFinder {
-    /// The same finder, for an odometry that is there: a robot that rests at the start does not go on as before.
-    pub(crate) fn with_odometry(mut self) -> Self {
-        self.builder.motion_prior.exists = true;
-        self
-    }
-
     /// The poses of all readings so far, with all loops that are closed. The pose of the first reading is the origin.
     pub(crate) fn corrected(&self) -> Vec<Isometry2<f64>> {
         self.poses(&self.optimized()).iter().map(|found| found.pose).collect()

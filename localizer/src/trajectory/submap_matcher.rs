@@ -27,7 +27,7 @@ use nalgebra::{Isometry2, Matrix3, Vector3};
 const START_M: f64 = 1.0;
 
 /// The submaps that grow, and their keyframes.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(crate) struct SubmapMatcher {
     settings: LocalizerSettings,
     /// The motion by odometry since the last keyframe.
@@ -123,18 +123,7 @@ impl ScanMatcher<()> for SubmapMatcher {
 
 impl SubmapMatcher {
     pub(super) fn new(settings: &LocalizerSettings) -> Self {
-        Self {
-            settings: settings.clone(),
-            since_keyframe: Isometry2::identity(),
-            measured: Isometry2::identity(),
-            measured_motions: Vec::new(),
-            keyframes: Vec::new(),
-            growing: Vec::new(),
-            finished: Vec::new(),
-            spare: None,
-            sees_nothing: true,
-            has_seen: false,
-        }
+        Self { settings: settings.clone(), sees_nothing: true, ..Self::default() }
     }
 
     /// Whether the robot has not left the place where it started.
