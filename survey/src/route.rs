@@ -8,7 +8,7 @@ use crate::seen_area::SeenArea;
 use crate::settings::SurveySettings;
 use crate::turns::Turns;
 use interfaces::{GridFrame, LaserReading, PoseMode};
-use localizer::{DistanceScale, PoseState, Residual, TrajectoryFinder, TrajectoryPose, TrajectorySettings};
+use localizer::{DistanceScale, LocalizerSettings, PoseState, Residual, TrajectoryFinder, TrajectoryPose};
 use mapper::ScanFilter;
 use nalgebra::{Isometry2, Point2};
 use std::ops::Range;
@@ -154,7 +154,7 @@ impl FirstPass {
     pub fn new(settings: &SurveySettings) -> Result<Self, SurveyError> {
         settings.check()?;
         let finder = match settings.pose {
-            PoseMode::Localized => Some(TrajectoryFinder::new(&TrajectorySettings::default())?),
+            PoseMode::Localized => Some(TrajectoryFinder::new(&LocalizerSettings::of_logs())?),
             PoseMode::Exact | PoseMode::Odometry | PoseMode::Corrected => None,
         };
         Ok(Self {
