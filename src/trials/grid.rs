@@ -1,10 +1,10 @@
 //! Trials in grid worlds: `grid_world`.
 
 use super::{TrialKind, one_of_kinds};
-use crate::program::list;
 use crate::worlds::{SHIPPED_GRID, load_grid};
 use calendar::Kind;
 use clap::Args;
+use cli::program::list;
 use evaluation::trials::GridRobot;
 use sim::grid::{GenerateSettings, GridSpec};
 
@@ -13,7 +13,7 @@ use sim::grid::{GenerateSettings, GridSpec};
 /// Without options, the paper's learner (curious) is compared in the paper's world with each of its strategies
 /// alone (recency, poisson) and with two baselines (random, coin), in five trials of 20,000 steps each. The
 /// folder grid_world_out contains the results: the curves (figure3.svg, figure3.png), every number
-/// (report.json), and every trial (trials.csv, trials.parquet). The table at the end shows which strategy learned the rates of
+/// (report.json), and every trial (trials.csv). The table at the end shows which strategy learned the rates of
 /// change best, and whether the difference is significant.
 ///
 /// Options that can be repeated multiply: 2 worlds, 2 estimators, 3 strategies and 10 trials are 120 trials in

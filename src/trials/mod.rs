@@ -2,6 +2,7 @@
 
 mod grid;
 mod houses;
+mod recorded;
 mod run;
 mod shards;
 
@@ -9,13 +10,14 @@ pub use grid::GridWorlds;
 pub use houses::Houses;
 pub use run::main;
 
-use crate::flags::{folder, output_file, value_of};
-use crate::program::{one_of, strategy_of};
-use crate::terminal::say;
+use crate::scenes::{Displayed, Visible};
 use anyhow::bail;
 use calendar::Kind;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser};
+use cli::flags::{folder, output_file, value_of};
+use cli::program::{one_of, strategy_of};
+use cli::terminal::say;
 use evaluation::trials::{Experiment, TrialStrategy, TrialWorld};
 use mapper::EstimatorChoice;
 use reports::shards::Shard;
@@ -24,7 +26,6 @@ use std::collections::BTreeSet;
 use std::fmt::Debug;
 use std::io::stderr;
 use std::path::PathBuf;
-use viewer::scene::Visible;
 
 /// The groups of options that do not change the results of an experiment.
 const OUTPUT: &str = "Output";
@@ -33,7 +34,7 @@ const EXECUTION: &str = "Execution";
 /// A kind of worlds: what is the default there, and the options that no other kind has.
 pub trait TrialKind: Args + Clone + Debug {
     /// The worlds.
-    type Spec: TrialWorld<World: Visible, Robot: Debug> + Debug;
+    type Spec: TrialWorld<World: Visible, Robot: Debug> + Displayed + Debug;
 
     /// The name of the program.
     const NAME: &str;

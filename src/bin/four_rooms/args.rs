@@ -3,8 +3,8 @@
 use agent::{PURPOSES, Policy};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Parser, ValueEnum};
-use curious::flags::{folder, input_file, output_file};
-use curious::program::{duration_s, one_of, pose_in_world, pose_mode, strategy_of};
+use cli::flags::{folder, input_file, output_file};
+use cli::program::{duration_s, one_of, pose_in_world, pose_mode, strategy_of};
 use interfaces::PoseMode;
 use mapper::{EstimatorChoice, OccupancyChoice};
 use std::path::PathBuf;
@@ -228,8 +228,6 @@ mod tests {
     fn the_command_line_is_sound() {
         Args::command().debug_assert();
         assert_eq!(Args::parse_from(["four_rooms"]).strategy().name(), "curious");
-        let best = Args::parse_from(["four_rooms", "--strategy", "best"]);
-        assert_eq!(best.strategy().name(), "information-gain");
         for [name, _, policy] in PURPOSES {
             let args = Args::parse_from(["four_rooms", "--purpose", name]);
             assert_eq!(args.strategy().name(), policy);

@@ -7,8 +7,8 @@ mod parts;
 mod trial_state_file;
 
 use args::{Args, DriveChoice};
-use curious::flags::check_distinct;
-use curious::program::{Failure, INTERRUPTED, input, interrupt_flag, start};
+use cli::flags::check_distinct;
+use cli::program::{Failure, INTERRUPTED, input, interrupt_flag, start};
 use curious::worlds::list_physics_worlds;
 use evaluation::physics_trial::PhysicsTrial;
 use interfaces::Twist;
