@@ -7,10 +7,9 @@ mod runs;
 #[cfg(test)]
 mod tests;
 
-use curious::reachability;
 use curious::worlds::is_of_stage;
 use interfaces::printable;
-use sim::physics::{FleetSpec, WorldSpec};
+use sim::physics::WorldSpec;
 use std::path::Path;
 use viewer::scene::Scene;
 use worldfile::floor_plan::FloorPlan;
@@ -45,8 +44,6 @@ pub(crate) struct Content {
     /// One line per part of the world: the name of the part, and its description; at the end, the program that runs
     /// the file.
     pub(crate) lines: Vec<(&'static str, String)>,
-    /// The world, if it can be simulated.
-    pub(crate) fleet: Option<FleetSpec>,
     /// The world from above; its title is the name of the world.
     pub(crate) scene: Scene,
 }
@@ -106,7 +103,7 @@ fn world_file(name: &str, text: &str, files: &dyn Files) -> Inspection {
         })
     } else {
         worldfile::physics::parse_fleet_with(name, text, files)
-            .map(|world| (physics::content("physics world", &world), reachability::warnings(&world)))
+            .map(|world| (physics::content("physics world", &world), Vec::new()))
     };
     match outcome {
         Ok((content, warnings)) => Inspection { content: Some(content), warnings, ..Inspection::default() },
@@ -119,10 +116,7 @@ fn world_file(name: &str, text: &str, files: &dyn Files) -> Inspection {
 
 fn stage_file(path: &Path) -> Inspection {
     let (world, findings) = stage::load(path, &Disk);
-    let warnings = world.as_ref().map(reachability::warnings).unwrap_or_default();
-    let mut inspection = found(world.map(|world| physics::content("Stage world", &world)), &findings);
-    inspection.warnings.extend(warnings);
-    inspection
+    found(world.map(|world| physics::content("Stage world", &world)), &findings)
 }
 
 fn ros_file(path: &Path) -> Inspection {
