@@ -13,9 +13,12 @@ mod tests;
 
 pub(crate) use checking::Checker;
 
-use crate::constants::{PER_CELL, SAME_NORMAL, SURFEL_M};
+use crate::constants::{SAME_NORMAL, SURFEL_M};
 use interfaces::{GridFrame, Values, runs, value};
 use nalgebra::{Point2, Vector2};
+
+/// Surfels in a cell: two sides of a thin wall, and a corner.
+const PER_CELL: usize = 4;
 
 /// The maximum number of cells of a grid of the localizer: they are stored one by one, seen or not.
 const MAX_CELLS: usize = 1 << 26;
