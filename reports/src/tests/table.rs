@@ -70,21 +70,6 @@ fn a_strategy_is_the_fastest_only_if_that_is_significant() {
 
 #[test]
 fn the_table_names_the_winner() {
-<<<<<<< HEAD
-    insta::assert_snapshot!(report(1, &["two-state"], &["curious", "recency"], 5).table(), @"
-    two_blocks
-    5 trials of 20,000 steps, estimator two-state, sensor radius 4
-
-                log error       rate error        map correct      time at
-    strategy   final    area   final    area  all cells  changing  changes
-    curious   0.326   0.476*  0.453*  0.497*    0.9848    0.8857*  10.0 %
-    recency   0.321*  0.542   0.463   0.547     0.9879*   0.8806    7.0 %
-
-    Paired differences over seeds, curious minus the other: mean ± half of its
-    95 % interval, p-value of the t test
-                  log error, area      log error, final      map correct, final
-    recency  -0.066 ±0.028  0.003  +0.006 ±0.053  0.780  -0.0030 ±0.0078  0.345
-=======
     insta::assert_snapshot!(report(1, &["two-state"], &["curious", "recency", "full-observation"], 5).table(), @"
     two_blocks
     5 trials of 20,000 steps, estimator two-state, sensor radius 4
@@ -101,7 +86,6 @@ fn the_table_names_the_winner() {
     recency      -0.066 ±0.028  0.003  +0.006 ±0.053  0.780  -0.0030 ±0.0078  0.345
     full-        +0.180 ±0.048 <0.001  +0.085 ±0.050  0.009  -0.0044 ±0.0062  0.125
     observation
->>>>>>> studies
 
     curious learns rates fastest: its log error over the run is 0.88 times
     that of recency (significant: p = 0.003 after Holm's correction).
