@@ -9,80 +9,14 @@ pub use choices::{Mode, Navigator};
 pub(crate) use runtime::When;
 
 use crate::value::Value;
+use anyhow::anyhow;
 use choices::Slot;
-use interfaces::{PoseMode, SettingsCheck, SettingsError};
+use interfaces::{PoseMode, SettingsCheck};
 use mapper::NoReturn;
 
-/// The error for a parameter.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum ParameterError {
-    /// There is no such parameter.
-    #[error("there is no parameter `{name}`; there are {known}")]
-    Unknown {
-        /// The name as given.
-        name: String,
-        /// The names of all parameters.
-        known: String,
-    },
-    /// The value has another type, or is not one of those that are possible.
-    #[error("the parameter `{name}` must be {expected}, not `{found}`")]
-    Value {
-        /// The name.
-        name: String,
-        /// The valid values.
-        expected: &'static str,
-        /// The value as given.
-        found: Value,
-    },
-    /// There is a list, or nothing, where a value must be.
-    #[error("the parameter `{name}` must be one value, not a list or nothing")]
-    NoValue {
-        /// The name.
-        name: String,
-    },
-    /// A parameter in a file.
-    #[error("{place}: {error}")]
-    InFile {
-        /// The file and the line.
-        place: String,
-        /// What is wrong.
-        error: Box<ParameterError>,
-    },
-    /// There is no strategy, or no purpose, with this name.
-    #[error("the parameter `{name}` must be one of {known}, not `{found}`")]
-    Name {
-        /// The name of the parameter.
-        name: &'static str,
-        /// The valid names.
-        known: String,
-        /// The name as given.
-        found: String,
-    },
-    /// A strategy and a purpose, which names another one.
-    #[error(
-        "the parameters `strategy` (`{strategy}`) and `purpose` (`{purpose}`) both name a strategy: leave one of them empty"
-    )]
-    Both {
-        /// The strategy as given.
-        strategy: String,
-        /// The purpose as given.
-        purpose: String,
-    },
-    /// The value is out of range.
-    #[error(transparent)]
-    Range(#[from] SettingsError),
-}
-
-impl ParameterError {
-    fn unknown(name: &str) -> Self {
-        let names: Vec<&str> = Parameters::default().slots().into_iter().map(|(name, _)| name).collect();
-        let known = names.join(", ");
-        Self::Unknown { name: name.to_owned(), known }
-    }
-
-    fn value(name: &str, expected: &'static str, found: Value) -> Self {
-        Self::Value { name: name.to_owned(), expected, found }
-    }
+/// What is said of a value that a parameter cannot have.
+fn invalid(name: &str, expected: &str, found: &Value) -> anyhow::Error {
+    anyhow!("the parameter `{name}` must be {expected}, not `{found}`")
 }
 
 /// Defines the parameters in one table: documentation, name, field, type and default.
@@ -204,11 +138,9 @@ impl Parameters {
     /// # Errors
     ///
     /// When there is no such parameter, or when it has no such value. Ranges are checked by [`check`](Self::check).
-    pub fn set(&mut self, name: &str, value: &Value) -> Result<(), ParameterError> {
-        let Some(slot) = self.slot(name) else {
-            return Err(ParameterError::unknown(name));
-        };
-        slot.set(value).map_err(|expected| ParameterError::value(name, expected, value.clone()))
+    pub fn set(&mut self, name: &str, value: &Value) -> anyhow::Result<()> {
+        let set = self.slot(name)?.set(value);
+        set.map_err(|expected| invalid(name, expected, value))
     }
 
     /// All parameters with their values.
@@ -222,7 +154,7 @@ impl Parameters {
     /// # Errors
     ///
     /// When a value is out of range.
-    pub fn check(&self) -> Result<(), ParameterError> {
+    pub fn check(&self) -> anyhow::Result<()> {
         let check = SettingsCheck { part: "node" };
         check.within("resolution", self.resolution_m, 0.005..=1.0, "from 0.005 to 1")?;
         check.within("map_size", self.map_size_m, 1.0..=1000.0, "from 1 to 1000")?;
@@ -251,19 +183,21 @@ impl Parameters {
             ("base_frame", &self.base_frame),
         ] {
             if frame.is_empty() {
-                return Err(ParameterError::value(name, "the name of a frame", Value::Text(String::new())));
+                return Err(invalid(name, "the name of a frame", &Value::Text(String::new())));
             }
         }
         if !matches!(self.scan_reliability.as_str(), "best_effort" | "reliable") {
             let name = "qos_overrides./scan.subscription.reliability";
             let found = Value::Text(self.scan_reliability.clone());
-            return Err(ParameterError::value(name, "best_effort or reliable", found));
+            return Err(invalid(name, "best_effort or reliable", &found));
         }
         self.policy().map(drop)
     }
 
-    fn slot(&mut self, name: &str) -> Option<&mut dyn Slot> {
-        self.slots().into_iter().find(|(known, _)| *known == name).map(|(_, slot)| slot)
+    fn slot(&mut self, name: &str) -> anyhow::Result<&mut dyn Slot> {
+        let names = Self::default().slots().into_iter().map(|(name, _)| name).collect::<Vec<_>>().join(", ");
+        let slot = self.slots().into_iter().find(|(known, _)| *known == name).map(|(_, slot)| slot);
+        slot.ok_or_else(|| anyhow!("there is no parameter `{name}`; there are {names}"))
     }
 }
 

@@ -10,6 +10,7 @@
 //! ```
 
 use crate::value::{Given, Value};
+use anyhow::anyhow;
 use serde::de::{Deserialize, Deserializer, IgnoredAny, MapAccess, SeqAccess, Visitor};
 use serde_saphyr::{NonFiniteFloatPolicy, Spanned, from_str_with_options, options};
 use std::fmt;
@@ -23,42 +24,13 @@ const PARAMETERS: &str = "ros__parameters";
 const MAX_BYTES: u64 = 1 << 20;
 const EXAMPLE: &str = "as in `curious_node: {ros__parameters: {resolution: 0.05}}`";
 
-/// The error for a file of parameters.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum ParamsFileError {
-    /// It cannot be read.
-    #[error("cannot read the parameters in {file}: {why}")]
-    Io {
-        /// The file.
-        file: String,
-        /// Why.
-        why: String,
-    },
-    /// It is not a file of parameters.
-    #[error("{file}, line {line}: {what}")]
-    Invalid {
-        /// The file.
-        file: String,
-        /// The line, from 1.
-        line: u64,
-        /// What is wrong, and what would be valid.
-        what: String,
-    },
-}
-
 /// All parameters of a file in the order of their lines.
-pub(crate) fn read(path: &Path) -> Result<Vec<Given>, ParamsFileError> {
-    let file = path.display().to_string();
-    let text = text(path).map_err(|why| ParamsFileError::Io { file: file.clone(), why: why.to_string() })?;
-    let place = |line: &u64| Some(format!("{file}, line {line}"));
-    let found = entries(&text);
-    let found =
-        found.map(|found| found.into_iter().map(|(given, line)| Given { place: place(&line), ..given }));
-    found.map(Iterator::collect).map_err(|(line, what)| ParamsFileError::Invalid {
-        file: file.clone(),
-        line,
-        what,
-    })
+pub(crate) fn read(path: &Path) -> anyhow::Result<Vec<Given>> {
+    let file = path.display();
+    let text = text(path).map_err(|why| anyhow!("cannot read the parameters in {file}: {why}"))?;
+    let found = entries(&text).map_err(|(line, what)| anyhow!("{file}, line {line}: {what}"))?;
+    let placed = |(given, line)| Given { place: Some(format!("{file}, line {line}")), ..given };
+    Ok(found.into_iter().map(placed).collect())
 }
 
 /// The value of a text on the command line, as YAML has it: `true`, `5`, `0.05`, `"text"`, `text`.

@@ -1,7 +1,9 @@
 //! Parameters as the arguments of ROS and files give them.
 
-use super::{ParameterError, Parameters};
+use super::choices::Slot as _;
+use super::{Parameters, invalid};
 use crate::value::Given;
+use anyhow::anyhow;
 
 impl Parameters {
     /// Sets what is given, in its order. What a file gives to many nodes, and this node does not know, is not an error.
@@ -9,20 +11,22 @@ impl Parameters {
     /// # Errors
     ///
     /// As [`set`](Self::set), with the file and the line.
-    pub fn set_all<'a>(&mut self, all: impl IntoIterator<Item = &'a Given>) -> Result<(), ParameterError> {
+    pub fn set_all<'a>(&mut self, all: impl IntoIterator<Item = &'a Given>) -> anyhow::Result<()> {
         for given in all {
-            let set = match &given.value {
-                Some(value) => self.set(&given.name, value),
-                None if self.slot(&given.name).is_none() => Err(ParameterError::unknown(&given.name)),
-                None => Err(ParameterError::NoValue { name: given.name.clone() }),
-            };
-            match (set, &given.place) {
-                (Err(ParameterError::Unknown { .. }), _) if given.is_for_others_too() => {}
-                (Err(error), Some(place)) => {
-                    return Err(ParameterError::InFile { place: place.clone(), error: Box::new(error) });
-                }
-                (set, _) => set?,
+            let slot = self.slot(&given.name);
+            if slot.is_err() && given.is_for_others_too() {
+                continue;
             }
+            let set = slot.and_then(|slot| match &given.value {
+                Some(value) => slot.set(value).map_err(|expected| invalid(&given.name, expected, value)),
+                None => {
+                    Err(anyhow!("the parameter `{}` must be one value, not a list or nothing", given.name))
+                }
+            });
+            set.map_err(|error| match &given.place {
+                Some(place) => anyhow!("{place}: {error}"),
+                None => error,
+            })?;
         }
         Ok(())
     }

@@ -1,6 +1,7 @@
 //! Which parameters can be set while the node runs.
 
 use super::Parameters;
+use anyhow::bail;
 
 /// When a parameter can be set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,7 +41,7 @@ impl Parameters {
     /// # Errors
     ///
     /// When one cannot be set now: one sentence.
-    pub(crate) fn check_change(&self, from: &Self, is_unconfigured: bool) -> Result<(), String> {
+    pub(crate) fn check_change(&self, from: &Self, is_unconfigured: bool) -> anyhow::Result<()> {
         let (mut now, before) = (self.clone(), from.list());
         for ((name, old), (_, slot)) in before.iter().zip(now.slots()) {
             let new = slot.get();
@@ -49,18 +50,18 @@ impl Parameters {
             }
             match Self::when(name) {
                 When::Always if SWITCHES.contains(&name.as_str()) && is_zero(&new) != is_zero(old) => {
-                    return Err(format!(
+                    bail!(
                         "the parameter `{name}` is {old}: a value of 0, or another one after 0, is possible when the node starts"
-                    ));
+                    );
                 }
                 When::Always => {}
                 When::Unconfigured if is_unconfigured => {}
                 When::Unconfigured => {
-                    return Err(format!(
+                    bail!(
                         "the parameter `{name}` can be set while the node is unconfigured: before, deactivate it and clean it up"
-                    ));
+                    );
                 }
-                When::Start => return Err(format!("the parameter `{name}` can be set when the node starts")),
+                When::Start => bail!("the parameter `{name}` can be set when the node starts"),
             }
         }
         Ok(())

@@ -1,7 +1,8 @@
 //! How goals are selected: by the strategy that is named, or by the one that is best for a purpose.
 
-use super::{ParameterError, Parameters};
+use super::Parameters;
 use agent::{Policy, RobotPurpose};
+use anyhow::{anyhow, bail};
 
 impl Parameters {
     /// The strategy: as `strategy` says, or else as is best for `purpose`.
@@ -9,7 +10,7 @@ impl Parameters {
     /// # Errors
     ///
     /// When there is no such strategy or purpose, or when both are given.
-    pub(crate) fn policy(&self) -> Result<Policy, ParameterError> {
+    pub(crate) fn policy(&self) -> anyhow::Result<Policy> {
         let Self { strategy, purpose, .. } = self;
         match (strategy.as_str(), purpose.as_str()) {
             ("", "") => Ok(RobotPurpose::default().policy()),
@@ -22,13 +23,16 @@ impl Parameters {
                 let known = || Policy::built_in().iter().map(Policy::name).collect::<Vec<_>>().join(", ");
                 Policy::named(name).ok_or_else(|| unknown("strategy", known(), name))
             }
-            _ => Err(ParameterError::Both { strategy: strategy.clone(), purpose: purpose.clone() }),
+            _ => bail!(
+                "the parameters `strategy` (`{strategy}`) and `purpose` (`{purpose}`) both name a strategy: leave one of them \
+                 empty"
+            ),
         }
     }
 }
 
-fn unknown(name: &'static str, known: String, found: &str) -> ParameterError {
-    ParameterError::Name { name, known, found: found.to_owned() }
+fn unknown(name: &str, known: String, found: &str) -> anyhow::Error {
+    anyhow!("the parameter `{name}` must be one of {known}, not `{found}`")
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@ fn every_parameter_has_a_name_a_value_and_a_slot() {
         set.set(name, value).unwrap();
     }
     assert_eq!(set, Parameters::default());
-    assert_eq!(set.check(), Ok(()));
+    set.check().unwrap();
 }
 
 #[test]
