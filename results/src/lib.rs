@@ -1,4 +1,4 @@
-//! What a run leaves behind: files that are either complete or absent, the folder of a run, what the mapper
+//! What a run leaves behind: trajectories, what the mapper
 //! has learned as a table, as an array, and as maps for ROS, and the canvas on which figures and pictures are
 //! drawn. It must not know where readings come from: the results of a simulated robot and of a log have the
 //! same files.
@@ -9,8 +9,10 @@ pub mod drawing;
 pub mod file_name;
 pub mod intervals;
 pub mod numbers;
-pub mod output;
 pub mod raster;
 pub mod ros_map;
 pub mod things;
 pub mod thinned;
+mod trajectory;
+
+pub use trajectory::TrajectoryFile;

@@ -2,12 +2,12 @@
 
 use super::run::{Results, experiment_arguments, report_settings};
 use super::{TrialArgs, TrialKind};
-use crate::flags::folder;
-use crate::program::{Failure, INTERRUPTED, input, results_folder};
-use crate::progress::Progress;
-use crate::terminal::{print, say};
 use anyhow::{Context, anyhow};
 use clap::{Parser, Subcommand};
+use cli::flags::folder;
+use cli::program::{Failure, INTERRUPTED, input, results_folder};
+use cli::progress::Progress;
+use cli::terminal::{print, say};
 use evaluation::trials::Experiment;
 use reports::shards::{Header, Shard, ShardFile, Shards, array, check_builds};
 use reports::{Plan, ReportSettings};
@@ -53,10 +53,7 @@ pub(super) enum ShardCommand {
         #[arg(long, short)]
         quiet: bool,
     },
-    /// Print what is finished, what runs, and the time that remains; also while shards run
-    ///
-    /// A shard counts as running while its newest trial is not older than five trials take, and at least one minute.
-    /// The cost is the wall time of all trials on their threads.
+    /// Print what is finished; also while shards run
     Status {
         /// The folder of the shards
         dir: PathBuf,

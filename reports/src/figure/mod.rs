@@ -8,13 +8,13 @@ mod plan;
 use super::run::{Run, conditions};
 use super::{ONE_BY_ONE, Report};
 use evaluation::trials::Metric;
+use files::write_file;
 use pen::{Pen, Sheet, svg};
 pub use plan::Plan;
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
 use results::drawing::palette;
 use results::drawing::{Canvas, PictureError, ink, why};
-use results::output::write_file;
 use std::collections::BTreeSet;
 use std::path::Path;
 

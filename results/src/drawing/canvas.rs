@@ -1,7 +1,7 @@
 //! A font, a canvas, and PNG files.
 
 use super::palette::{self, Rgb};
-use crate::output::{OutputError, write_file};
+use files::{OutputError, write_file};
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::{TextStyle, register_font};

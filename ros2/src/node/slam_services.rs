@@ -126,7 +126,7 @@ impl<L: Link> CuriousNode<L> {
             self.notes.warn(&format!("{}: there is no such state", path.display()));
             return INVALID_FILENAME;
         }
-        match Parts::new(&self.parameters, Some(&path), &mut self.notes) {
+        match Parts::new(&self.parameters, Some(&path)) {
             Ok(Parts { robot, continued, .. }) => {
                 self.stop_robot();
                 (self.robot, self.continued, self.last) = (robot, continued, None);

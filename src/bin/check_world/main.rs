@@ -5,12 +5,12 @@ mod simulation;
 
 use anyhow::bail;
 use clap::Parser;
-use curious::flags::folder;
-use curious::program::{Failure, duration_s, start};
-use curious::terminal::{print, say};
+use cli::flags::folder;
+use cli::program::{Failure, duration_s, start};
+use cli::terminal::{print, say};
+use files::{make_folder, write_file};
 use inspection::{Content, Inspection, as_world_file, inspect};
 use interfaces::printable;
-use results::output::{make_folder, write_file};
 use std::collections::BTreeSet;
 use std::io::stderr;
 use std::path::{Path, PathBuf};

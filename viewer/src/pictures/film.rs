@@ -8,13 +8,13 @@ use crate::legend;
 use crate::outline::field_of_view;
 use crate::scene::{Scene, Sight, TimeUnit};
 use crate::view::{Trail, View};
+use files::UnfinishedFile;
 use gif::{DisposalMethod, Encoder, Frame, Repeat};
 use mapper::{Mapper, ThingKind};
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
 use results::drawing::palette::{self, Rgb};
 use results::drawing::{Area, Canvas, PictureError, ink, px, why};
-use results::output::UnfinishedFile;
 use std::collections::BTreeMap;
 use std::io::{self, Write};
 

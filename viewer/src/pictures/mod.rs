@@ -13,12 +13,12 @@ pub use film::Film;
 use crate::layers::Layer;
 use crate::scene::{Scene, TimeUnit};
 use crate::view::Trail;
+use files::make_folder;
 use interfaces::Grid;
 use mapper::Mapper;
 use nalgebra::Point2;
 use panel::Panel;
 use results::drawing::{Area, Canvas, PictureError};
-use results::output::make_folder;
 use results::thinned::Goals;
 use std::path::Path;
 

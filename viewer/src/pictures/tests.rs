@@ -2,11 +2,11 @@ use super::*;
 use crate::legend::Mark;
 use crate::scene::SceneRobot;
 use crate::tests::FakeRun;
+use files::UnfinishedFile;
 use image::RgbImage;
 use interfaces::CellState;
 use nalgebra::Point2;
 use results::drawing::palette::{self, Rgb};
-use results::output::UnfinishedFile;
 
 struct Drawn {
     folder: tempfile::TempDir,

@@ -1,6 +1,7 @@
 //! The description of a grid world.
 
 use super::{Content, GRID_WORLD, calendar};
+use curious::scenes::Displayed;
 use sim::grid::{BlockSpec, Course, GridSpec};
 
 pub(super) fn content(world: &GridSpec) -> Content {
@@ -37,7 +38,7 @@ pub(super) fn content(world: &GridSpec) -> Content {
         description: world.description.to_owned(),
         lines,
         fleet: None,
-        scene: world.into(),
+        scene: world.scene(),
     }
 }
 

@@ -1,6 +1,7 @@
 //! The description of physics worlds and floor plans.
 
 use super::{Content, FLOOR_PLAN, calendar};
+use curious::scenes::Displayed;
 use interfaces::{GridFrame, printable};
 use nalgebra::Point2;
 use sim::physics::{
@@ -42,7 +43,7 @@ pub(super) fn content(kind: &'static str, world: &FleetSpec) -> Content {
         description: world.description.to_owned(),
         lines,
         fleet: Some(world.clone()),
-        scene: world.into(),
+        scene: world.scene(),
     }
 }
 
