@@ -91,9 +91,7 @@ impl RosArgs {
     /// The files that have no parameter for a node: the name of the node in them is probably wrong.
     pub fn files_without(&self, full_name: &str) -> Vec<&str> {
         let has = |file: &str| {
-            let place = format!("{file}, line ");
-            self.parameters_of(full_name)
-                .any(|given| given.place.as_ref().is_some_and(|at| at.starts_with(&place)))
+            self.parameters_of(full_name).any(|given| given.place.as_ref().is_some_and(|place| place == file))
         };
         self.files.iter().map(String::as_str).filter(|file| !has(file)).collect()
     }
