@@ -16,6 +16,7 @@
 
 mod hours;
 mod models;
+mod probability;
 mod score;
 mod series;
 mod table;
@@ -23,8 +24,8 @@ mod table;
 mod tests;
 
 use clap::Parser;
-use evaluation::metrics::ProbabilityScores;
 use mapper::{Calendar, DAY_S};
+use probability::ProbabilityScores;
 use rayon::prelude::*;
 use score::HORIZONS;
 use series::{LOOKS, Looks, Series};
