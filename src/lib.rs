@@ -3,6 +3,7 @@
 //! or is measured: the other crates do.
 
 pub mod keyboard;
+pub mod reachability;
 pub mod scenes;
 #[cfg(feature = "recording")]
 pub mod trials;

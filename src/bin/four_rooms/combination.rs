@@ -1,7 +1,8 @@
-//! A world, a way to know the pose and a map that do not fit together: warnings where the run is possible, but not what a user
+//! A world, a tour and a map that do not fit together: warnings where the run is possible, but not what a user
 //! expects, and an error where it makes no sense.
 
 use interfaces::{Cell, CellState, GroundTruth, PoseMode, TrueState};
+use nalgebra::Point2;
 use sim::physics::{PhysicsWorld, WorldSpec};
 use worldfile::ros_map::RosMap;
 
@@ -20,6 +21,26 @@ pub(crate) fn odometry(spec: &WorldSpec, pose: PoseMode) -> Option<String> {
             robot.name
         )
     })
+}
+
+/// Which waypoints the robot cannot reach.
+pub(crate) fn waypoints(spec: &WorldSpec, waypoints: &[Point2<f64>]) -> Option<String> {
+    let world = PhysicsWorld::new(spec, 0);
+    let truth = world.truth();
+    let frame = truth.frame();
+    let is_free = |at: &Point2<f64>| {
+        frame.index(frame.cell_at(at)).is_some_and(|cell| truth.state(cell) == TrueState::Free)
+    };
+    let blocked: Vec<&Point2<f64>> = waypoints.iter().filter(|at| !is_free(at)).collect();
+    let first = blocked.first()?;
+    Some(format!(
+        "warning: {} of the {} waypoints of the tour are in walls or outside of the map of `{}`, the first at \
+         {:?}\n  = help: the robot stops at the nearest point that it can reach",
+        blocked.len(),
+        waypoints.len(),
+        spec.name,
+        [first.x, first.y],
+    ))
 }
 
 /// The difference between a known map and the world; an error if the map shows nothing of the world.

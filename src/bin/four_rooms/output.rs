@@ -5,7 +5,7 @@ use crate::args::{Args, DriveChoice};
 use crate::trial_state_file::TrialStateFile;
 use anyhow::{Context, anyhow};
 use cli::bag::RunBag;
-use cli::program::{Failure, arguments, input, results_folder};
+use cli::program::{Failure, PURPOSE_GAIN, arguments, input, results_folder};
 use cli::progress::Progress;
 use cli::terminal::{print, say};
 use curious::scenes::{Displayed, Visible};
@@ -180,8 +180,15 @@ impl<'a> Outputs<'a> {
         }
         self.folder.finish(&[])?;
         if !args.quiet {
+            // For those who did not choose: others know what they want.
+            let has_chosen = args.strategy.is_some() || args.purpose.is_some();
+            let hint = if args.drive == DriveChoice::Agent && !has_chosen {
+                format!("\n  hint      {PURPOSE_GAIN}")
+            } else {
+                String::new()
+            };
             let (out, picture) = (args.out.display(), args.out.join(FIGURE_5_FILE));
-            print(format_args!("{summary}\n  files     {out}: open {}", picture.display()))?;
+            print(format_args!("{summary}{hint}\n  files     {out}: open {}", picture.display()))?;
         }
         Ok(self.is_complete && failures.is_empty())
     }

@@ -9,6 +9,7 @@ use cli::program::{Failure, input};
 use cli::terminal::say;
 use controller::{Controller, DiffDrive};
 use curious::keyboard::Keyboard;
+use curious::reachability;
 use curious::worlds::{self, Loaded};
 use evaluation::physics_trial::{self, PhysicsTrial};
 use interfaces::{CellState, Grid, Twist};
@@ -42,6 +43,7 @@ impl Parts {
         let Loaded { spec, warnings } =
             worlds::load(&args.world).map_err(|error| input(value_of("--world", error)))?;
         warn(warnings);
+        warn(reachability::warnings(spec.fleet()));
         let spec = with_patrol(args, spec)?;
         let settings = physics_trial::settings(&spec).with_context(|| format!("cannot run `{}`", args.world));
         let mut settings = settings.map_err(input)?;
@@ -100,6 +102,7 @@ impl Parts {
             }
         };
         let TourSpec { mut waypoints, repeat } = tour.map_err(input)?;
+        warn(combination::waypoints(&self.spec, &waypoints));
         if let Some((_, to_own)) = self.own_frame(args) {
             waypoints.iter_mut().for_each(|at| *at = to_own.point(at));
         }

@@ -7,6 +7,7 @@ mod runs;
 #[cfg(test)]
 mod tests;
 
+use curious::reachability;
 use curious::worlds::is_of_stage;
 use interfaces::printable;
 use sim::physics::WorldSpec;
@@ -103,7 +104,7 @@ fn world_file(name: &str, text: &str, files: &dyn Files) -> Inspection {
         })
     } else {
         worldfile::physics::parse_fleet_with(name, text, files)
-            .map(|world| (physics::content("physics world", &world), Vec::new()))
+            .map(|world| (physics::content("physics world", &world), reachability::warnings(&world)))
     };
     match outcome {
         Ok((content, warnings)) => Inspection { content: Some(content), warnings, ..Inspection::default() },
@@ -116,7 +117,10 @@ fn world_file(name: &str, text: &str, files: &dyn Files) -> Inspection {
 
 fn stage_file(path: &Path) -> Inspection {
     let (world, findings) = stage::load(path, &Disk);
-    found(world.map(|world| physics::content("Stage world", &world)), &findings)
+    let warnings = world.as_ref().map(reachability::warnings).unwrap_or_default();
+    let mut inspection = found(world.map(|world| physics::content("Stage world", &world)), &findings);
+    inspection.warnings.extend(warnings);
+    inspection
 }
 
 fn ros_file(path: &Path) -> Inspection {
