@@ -10,7 +10,6 @@ pub use grid::GridWorlds;
 pub use houses::Houses;
 pub use run::main;
 
-use crate::scenes::{Displayed, Visible};
 use agent::Reward;
 use anyhow::bail;
 use calendar::Kind;
@@ -19,6 +18,7 @@ use clap::{Args, Parser};
 use cli::flags::{folder, output_file, value_of};
 use cli::program::{one_of, strategy_of};
 use cli::terminal::say;
+use evaluation::scenes::{Displayed, Visible};
 use evaluation::trials::{Experiment, TrialStrategy, TrialWorld};
 use mapper::EstimatorChoice;
 use reports::shards::Shard;

@@ -1,12 +1,12 @@
 //! A trial that is recorded while it runs, in any kind of world.
 
-use crate::scenes::Visible;
+use draw::view::Measured;
 use evaluation::metrics::{RateErrors, map_scores, rate_scores};
+use evaluation::scenes::Visible;
 use evaluation::trials::{Trial, TrialError, TrialSettings, TrialStep, TrialWorld, run_trial};
 use robot::{Level, Message};
 use std::sync::atomic::{AtomicBool, Ordering};
 use viewer::recording::{Recorder, RecordingError};
-use viewer::view::Measured;
 
 /// Later readings are not recorded, so that the file stays a few megabytes large.
 pub(super) const RECORDED_READINGS: usize = 20_000;
@@ -80,7 +80,7 @@ fn log<W: TrialWorld<World: Visible>>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenes::Displayed;
+    use evaluation::scenes::Displayed;
     use evaluation::trials::{Experiment, GridRobot, TrialStrategy};
     use mapper::Paper;
     use sim::grid::GridSpec;

@@ -2,16 +2,16 @@
 
 use super::recorded::{Recorded, record};
 use super::{EXECUTION, OUTPUT, TrialArgs, TrialKind};
-use crate::scenes::Displayed;
 use anyhow::Context;
 use clap::CommandFactory;
 use clap::parser::ValueSource;
 use cli::program::{Failure, INTERRUPTED, input, interrupt_flag, results_folder, start};
 use cli::progress::Progress;
 use cli::terminal::{print, say};
+use evaluation::scenes::Displayed;
 use evaluation::trials::{Experiment, Trial, TrialError, TrialWorld};
 use rayon::ThreadPool;
-use reports::{Plan, REPORT, ReportSettings, collect};
+use reports::{REPORT, ReportSettings, collect};
 use results::output::{RunFolder, write_file};
 use std::io::stderr;
 use std::path::Path;
@@ -20,10 +20,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use viewer::recording::{Recorder, RecordingError};
 
 /// The program: it runs what the command line asks for, and returns its exit code.
-pub fn main<K: TrialKind>() -> ExitCode
-where
-    for<'a> Plan<'a>: From<&'a K::Spec>,
-{
+pub fn main<K: TrialKind>() -> ExitCode {
     start(|args: &TrialArgs<K>| {
         if args.list_worlds {
             K::list_worlds()?;
@@ -41,10 +38,7 @@ where
     })
 }
 
-impl<K: TrialKind> TrialArgs<K>
-where
-    for<'a> Plan<'a>: From<&'a K::Spec>,
-{
+impl<K: TrialKind> TrialArgs<K> {
     /// Runs the trials, and writes the results.
     fn run(&self, experiment: &Experiment<K::Spec>, is_canceled: &AtomicBool) -> Result<ExitCode, Failure> {
         let mut folder = results_folder(&self.out)?;
@@ -162,15 +156,12 @@ pub(super) struct Results<'a> {
 
 impl Results<'_> {
     /// Writes the results of trials, which come in the order of the report, and prints the table.
-    pub(super) fn write<'w, W>(
+    pub(super) fn write<W: Displayed>(
         self,
         settings: ReportSettings,
         trials: impl Iterator<Item = anyhow::Result<Trial>>,
-        worlds: &'w [W],
-    ) -> Result<(), Failure>
-    where
-        Plan<'w>: From<&'w W>,
-    {
+        worlds: &[W],
+    ) -> Result<(), Failure> {
         let report = collect(settings, self.folder.unfinished(), trials)?;
         let written = report.write(&self.folder, worlds).map_err(anyhow::Error::from)?;
         let inputs: Vec<&Path> = self.world_names.iter().map(Path::new).collect();

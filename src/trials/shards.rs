@@ -9,8 +9,8 @@ use cli::program::{Failure, INTERRUPTED, input, results_folder};
 use cli::progress::Progress;
 use cli::terminal::{print, say};
 use evaluation::trials::Experiment;
+use reports::ReportSettings;
 use reports::shards::{Header, Shard, ShardFile, Shards, array, check_builds};
-use reports::{Plan, ReportSettings};
 use std::io::stderr;
 use std::iter::once;
 use std::path::{Path, PathBuf};
@@ -65,10 +65,7 @@ pub(super) enum ShardCommand {
 
 impl ShardCommand {
     /// Carries out the subcommand.
-    pub(super) fn run<K: TrialKind>(&self) -> Result<ExitCode, Failure>
-    where
-        for<'a> Plan<'a>: From<&'a K::Spec>,
-    {
+    pub(super) fn run<K: TrialKind>(&self) -> Result<ExitCode, Failure> {
         match self {
             Self::Missing { dir } => {
                 let missing = Shards::read(dir).map_err(input)?.missing();
@@ -87,10 +84,7 @@ impl ShardCommand {
     }
 }
 
-fn merge<K: TrialKind>(dir: &Path, out: &Path, allows_other_build: bool, quiet: bool) -> Result<(), Failure>
-where
-    for<'a> Plan<'a>: From<&'a K::Spec>,
-{
+fn merge<K: TrialKind>(dir: &Path, out: &Path, allows_other_build: bool, quiet: bool) -> Result<(), Failure> {
     let shards = Shards::read(dir).map_err(input)?;
     let other_build = shards.check(K::NAME, env!("CARGO_PKG_VERSION"), allows_other_build).map_err(input)?;
     let found = shards.header();

@@ -2,18 +2,17 @@
 //! rates and of the share of the map that is correct, one per strategy, with bands of 95 % confidence.
 
 mod curves;
-mod pen;
-mod plan;
 
 use super::run::{Run, conditions};
 use super::{ONE_BY_ONE, Report};
+use draw::canvas::{Canvas, PictureError, ink, why};
+use draw::palette;
+use draw::pen::{Pen, Sheet, svg};
+use draw::scene::Scene;
+use draw::sketch;
 use evaluation::trials::Metric;
-use pen::{Pen, Sheet, svg};
-pub use plan::Plan;
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
-use results::drawing::palette;
-use results::drawing::{Canvas, PictureError, ink, why};
 use results::output::write_file;
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -27,7 +26,7 @@ const LEGEND_COLUMNS: usize = 5;
 const PANEL_HEIGHT: i32 = 360;
 
 /// Writes the figures as PNG and SVG.
-pub(super) fn write_all(folder: &Path, report: &Report, worlds: &[Plan]) -> Result<(), PictureError> {
+pub(super) fn write_all(folder: &Path, report: &Report, worlds: &[Scene]) -> Result<(), PictureError> {
     for (name, run) in chosen(report) {
         let figure = Figure { report, run, worlds: worlds_of(report, run, worlds) };
         let failed = |why| PictureError::Draw { name: name.clone(), why };
@@ -82,18 +81,18 @@ fn in_file_name(name: &str) -> String {
 }
 
 /// The plans of the worlds of `run`, in the report's order.
-fn worlds_of<'a>(report: &Report, run: &Run, worlds: &[Plan<'a>]) -> Vec<Plan<'a>> {
+fn worlds_of<'a>(report: &Report, run: &Run, worlds: &'a [Scene]) -> Vec<&'a Scene> {
     let has_trials = |one: &&Run| one.worlds == 1 && one.estimator == run.estimator;
     let is_wanted = |one: &&Run| run.worlds > 1 || one.world == run.world;
     let names = report.runs.iter().filter(has_trials).filter(is_wanted).map(|one| &one.world);
-    names.filter_map(|name| worlds.iter().find(|world| world.name() == *name).copied()).collect()
+    names.filter_map(|name| worlds.iter().find(|world| world.title == **name)).collect()
 }
 
 /// One figure.
 struct Figure<'a> {
     report: &'a Report,
     run: &'a Run,
-    worlds: Vec<Plan<'a>>,
+    worlds: Vec<&'a Scene>,
 }
 
 impl Figure<'_> {
@@ -111,17 +110,14 @@ impl Figure<'_> {
         let sheet = sheet.margin(0, pen.px(MARGIN), pen.px(MARGIN), pen.px(MARGIN));
         let (head, rest) = sheet.split_vertically(pen.px(TITLE));
         let title = format!("{}: {}", self.run.world, conditions(self.run, &self.report.settings));
-        pen.write(&head, (MARGIN, TITLE / 2), HPos::Left, 20, &title)?;
+        pen.write(&head, (pen.px(MARGIN), pen.px(TITLE / 2)), HPos::Left, 20, &title)?;
         let over = if self.run.worlds > 1 { "worlds" } else { "trials" };
         let note = format!("lines: means over {over}; bands: their 95 % confidence");
-        pen.write(&head, (WIDTH as i32 - 2 * MARGIN, TITLE / 2), HPos::Right, 15, &note)?;
+        pen.write(&head, (pen.px(WIDTH as i32 - 2 * MARGIN), pen.px(TITLE / 2)), HPos::Right, 15, &note)?;
         let (legend, panels) = rest.split_vertically(pen.px(self.legend_height()));
         self.legend(&legend, pen)?;
         let panels = panels.split_evenly((2, 2));
-        match self.worlds.as_slice() {
-            [world] => plan::one(&panels[0], pen, world)?,
-            worlds => plan::many(&panels[0], pen, worlds)?,
-        }
+        sketch::worlds(&panels[0], pen, &self.worlds)?;
         let length = self.report.settings.length;
         let second = length.choose(Metric::RateError, Metric::RateAuc);
         let curves = [second, Metric::LogError, Metric::MapQuality];
@@ -141,7 +137,7 @@ impl Figure<'_> {
             let line = [left, left + 26].map(|x| (pen.px(x), pen.px(middle)));
             let is_dashed = curves::is_dashed(&strategy.name);
             curves::draw_line(sheet, pen, line.into(), pen.line(color, 2), is_dashed)?;
-            pen.write(sheet, (left + 34, middle), HPos::Left, 16, &strategy.name)?;
+            pen.write(sheet, (pen.px(left + 34), pen.px(middle)), HPos::Left, 16, &strategy.name)?;
         }
         Ok(())
     }

@@ -8,6 +8,7 @@ use clap::Parser;
 use cli::flags::folder;
 use cli::program::{Failure, duration_s, start};
 use cli::terminal::{print, say};
+use draw::pictures::draw_plan;
 use inspection::{Content, Inspection, as_world_file, inspect};
 use interfaces::printable;
 use results::output::{make_folder, write_file};
@@ -15,7 +16,6 @@ use std::collections::BTreeSet;
 use std::io::stderr;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use viewer::pictures::draw_plan;
 
 /// Checks world files: describes them, draws them, and reports all errors at once, except errors that follow
 /// from other errors.

@@ -3,11 +3,11 @@
 mod grid;
 mod physics;
 
+use draw::scene::{Outline, RobotState, Scene, TimeUnit};
+use draw::view::{Measured, View};
 use interfaces::World;
 use mapper::Mapper;
 use robot::{Pilot, Turn};
-use viewer::scene::{Outline, RobotState, Scene, TimeUnit};
-use viewer::view::{Measured, View};
 
 /// The description of a world that can be displayed.
 pub trait Displayed {

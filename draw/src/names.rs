@@ -1,11 +1,11 @@
 //! Named lines on a map.
 
-use super::NamedLine;
-use super::panel::{Chart, Panel, pair};
+use crate::canvas::{Area, ink, why};
+use crate::palette;
+use crate::panel::{Chart, Panel, pair};
+use crate::pictures::NamedLine;
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
-use results::drawing::palette;
-use results::drawing::{Area, ink, why};
 
 /// The space between a line and its name, in points.
 const GAP: u32 = 4;
@@ -14,7 +14,7 @@ const GAP: u32 = 4;
 type Label = [i32; 4];
 
 /// Draws the lines, then the names on a white ground: beside the middle of each line, and below another name that is there.
-pub(super) fn draw(panel: &Panel, area: &Area, chart: &Chart, lines: &[NamedLine]) -> Result<(), String> {
+pub(crate) fn draw(panel: &Panel, area: &Area, chart: &Chart, lines: &[NamedLine]) -> Result<(), String> {
     for line in lines {
         let ends = line.ends.map(|end| pair(&end));
         chart

@@ -1,11 +1,12 @@
 use super::*;
+use crate::Film;
+use crate::fake_run::FakeRun;
 use crate::legend::Mark;
+use crate::palette::{self, Rgb};
 use crate::scene::SceneRobot;
-use crate::tests::FakeRun;
 use image::RgbImage;
 use interfaces::CellState;
 use nalgebra::Point2;
-use results::drawing::palette::{self, Rgb};
 use results::output::UnfinishedFile;
 
 struct Drawn {

@@ -1,10 +1,10 @@
 //! The layers of a map for display: every cell has a class, and every class has a color and a meaning. The
 //! recording and the pictures use the same layers, so that a color has the same meaning in both.
 
+use crate::palette::{self, Rgb};
 use crate::scene::TimeUnit;
 use interfaces::{CellState, Grid};
 use mapper::Mapper;
-use results::drawing::palette::{self, Rgb};
 
 /// A layer of the map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -359,7 +359,7 @@ mod tests {
 
     #[test]
     fn every_class_has_one_meaning() {
-        let mut run = crate::tests::FakeRun::new();
+        let mut run = crate::fake_run::FakeRun::new();
         (0..600).for_each(|_| run.step());
         for (layer, unit) in all() {
             let mut classes: Vec<u8> = layer.legend(unit).iter().map(|(class, _)| *class).collect();

@@ -1,15 +1,15 @@
 //! The parts of a scene that every picture shows: walls, furniture, and what moves with the area it sweeps.
 
-use super::panel::{Chart, pair};
+use crate::canvas::{ink, why};
 use crate::legend::{self, Legend, Mark};
+use crate::palette::{self, Rgb};
+use crate::panel::{Chart, pair};
 use crate::scene::Scene;
 use nalgebra::Point2;
 use plotters::prelude::*;
-use results::drawing::palette::{self, Rgb};
-use results::drawing::{ink, why};
 
 /// Draws everything except the robots.
-pub(super) fn draw(chart: &Chart, scene: &Scene) -> Result<(), String> {
+pub(crate) fn draw(chart: &Chart, scene: &Scene) -> Result<(), String> {
     let swept = scene.obstacles.iter().flat_map(|obstacle| &obstacle.reach);
     swept.into_iter().try_for_each(|outline| fill(chart, outline, palette::SWEPT))?;
     scene.walls.iter().try_for_each(|wall| fill(chart, wall, palette::WALL))?;
@@ -18,7 +18,7 @@ pub(super) fn draw(chart: &Chart, scene: &Scene) -> Result<(), String> {
 }
 
 /// The entries of the legend for what [`draw`] draws.
-pub(super) fn entries(scene: &Scene) -> Legend {
+pub(crate) fn entries(scene: &Scene) -> Legend {
     let has_moving = scene.has_obstacle(false);
     legend::entries([
         (!scene.walls.is_empty(), Mark::Area(palette::WALL), "wall"),
@@ -29,7 +29,7 @@ pub(super) fn entries(scene: &Scene) -> Legend {
 }
 
 /// Fills a polygon.
-pub(super) fn fill(chart: &Chart, corners: &[Point2<f64>], color: Rgb) -> Result<(), String> {
+pub(crate) fn fill(chart: &Chart, corners: &[Point2<f64>], color: Rgb) -> Result<(), String> {
     let corners: Vec<(f64, f64)> = corners.iter().map(pair).collect();
     chart.plotting_area().draw(&Polygon::new(corners, ink(color).filled())).map_err(why)
 }

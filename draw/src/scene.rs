@@ -2,9 +2,9 @@
 
 mod log;
 
+use crate::palette::{self, Rgb};
 use interfaces::{CellReading, GridFrame, LaserReading};
 use nalgebra::{Isometry2, Point2, Vector2};
-use results::drawing::palette::{self, Rgb};
 
 /// The corners of a polygon, m; the last corner is joined to the first.
 pub type Outline = Vec<Point2<f64>>;
@@ -62,23 +62,23 @@ pub struct Scene {
 
 impl Scene {
     /// Whether a robot is driven, or is part of the surroundings.
-    pub(crate) fn has_robot(&self, is_driven: bool) -> bool {
+    pub fn has_robot(&self, is_driven: bool) -> bool {
         self.robots.iter().any(|robot| robot.is_driven == is_driven)
     }
 
     /// Whether an obstacle is fixed, or moves, appears or disappears.
-    pub(crate) fn has_obstacle(&self, is_fixed: bool) -> bool {
+    pub fn has_obstacle(&self, is_fixed: bool) -> bool {
         self.obstacles.iter().any(|obstacle| obstacle.is_fixed() == is_fixed)
     }
 }
 
 /// Lower left corner and size of a frame, m.
-pub(crate) fn extent(frame: &GridFrame) -> (Point2<f64>, Vector2<f64>) {
+pub fn extent(frame: &GridFrame) -> (Point2<f64>, Vector2<f64>) {
     (frame.origin(), Vector2::new(frame.width() as f64, frame.height() as f64) * frame.resolution_m())
 }
 
 /// The lowest and the highest coordinates of an outline, m.
-pub(crate) fn span(outline: &[Point2<f64>]) -> [Point2<f64>; 2] {
+pub fn span(outline: &[Point2<f64>]) -> [Point2<f64>; 2] {
     let first = outline.first().copied().unwrap_or(Point2::origin());
     outline.iter().fold([first; 2], |[low, high], corner| [low.inf(corner), high.sup(corner)])
 }
@@ -101,7 +101,7 @@ impl Obstacle {
     }
 
     /// The color of the obstacle.
-    pub(crate) fn color(&self) -> Rgb {
+    pub fn color(&self) -> Rgb {
         if self.is_fixed() { palette::FURNITURE } else { palette::MOVING }
     }
 }
@@ -119,13 +119,15 @@ pub struct SceneRobot {
     pub corners: Outline,
     /// The areas that the range sensors of the robot cover.
     pub sectors: Vec<Sector>,
+    /// The points that the robot drives along, m; empty unless they are known at the start.
+    pub route: Vec<Point2<f64>>,
     /// Whether the robot executes commands: the curious robot, and not a part of its surroundings.
     pub is_driven: bool,
 }
 
 impl SceneRobot {
     /// The color of the robot.
-    pub(crate) fn color(&self) -> Rgb {
+    pub fn color(&self) -> Rgb {
         if self.is_driven { palette::CURIOUS } else { palette::OTHER_ROBOT }
     }
 }

@@ -1,20 +1,21 @@
 //! The trajectories of the robots, as the paper's Figure 4.
 
-use super::panel::{Chart, Panel, pair};
-use super::{Trails, ground};
+use crate::canvas::{Area, ink, why};
+use crate::ground;
 use crate::layers::Layer;
 use crate::legend::{Legend, Mark};
+use crate::palette::{self, Rgb};
+use crate::panel::{Chart, Panel, pair};
+use crate::pictures::Trails;
 use crate::scene::{Scene, SceneRobot, extent};
 use crate::view::Trail;
 use mapper::Mapper;
 use nalgebra::Point2;
 use plotters::prelude::*;
-use results::drawing::palette::{self, Rgb};
-use results::drawing::{Area, ink, why};
 use results::thinned::Goals;
 
 /// Draws the scene, every trail with its start, and the goals. Below the scene is the map, where there is one.
-pub(super) fn draw(
+pub(crate) fn draw(
     panel: &Panel,
     area: &Area,
     (scene, map): (&Scene, Option<&Mapper>),
@@ -61,7 +62,7 @@ fn colors(scene: &Scene) -> Vec<Rgb> {
 }
 
 /// The entries of the legend.
-pub(super) fn entries(scene: &Scene, believed: &Trail, goals: &Goals) -> Legend {
+pub(crate) fn entries(scene: &Scene, believed: &Trail, goals: &Goals) -> Legend {
     let mut robots: Vec<(&SceneRobot, Rgb)> = scene.robots.iter().zip(colors(scene)).collect();
     robots.sort_by_key(|(robot, _)| !robot.is_driven);
     let entry = |same: &[(&SceneRobot, Rgb)]| match same {
@@ -83,7 +84,7 @@ pub(super) fn entries(scene: &Scene, believed: &Trail, goals: &Goals) -> Legend 
 }
 
 /// Draws a line step by step: the library's thick lines break where a line turns back on itself.
-pub(super) fn line(
+pub(crate) fn line(
     panel: &Panel,
     chart: &Chart,
     points: &[Point2<f64>],

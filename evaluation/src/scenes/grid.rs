@@ -1,10 +1,11 @@
 //! The scene of a grid world. Cells are 1 m wide, with `[0, 0]` at the origin.
 
 use super::{Displayed, Visible};
+use draw::scene::{Obstacle, Outline, RobotState, Scene, SceneRobot, Sector, Sight, TimeUnit};
 use interfaces::{Cell, CellReading, Grid};
 use nalgebra::{Isometry2, Point2};
 use sim::grid::{GridSpec, GridWorld};
-use viewer::scene::{Obstacle, Outline, RobotState, Scene, SceneRobot, Sight, TimeUnit};
+use std::f64::consts::TAU;
 
 /// The name of the only robot.
 const ROBOT: &str = "robot";
@@ -36,7 +37,12 @@ impl Displayed for GridSpec {
                 pose: Isometry2::translation(start.x, start.y),
                 radius_m: ROBOT_RADIUS_M,
                 corners: Vec::new(),
-                sectors: Vec::new(),
+                sectors: vec![Sector {
+                    mount: Isometry2::identity(),
+                    angle_rad: TAU,
+                    range_m: f64::from(self.sensor_radius),
+                }],
+                route: Vec::new(),
                 is_driven: true,
             }],
         }

@@ -1,12 +1,12 @@
 //! The legends of the pictures and of the recording.
 
+use crate::palette::{self, Rgb};
 use crate::scene::Scene;
 use crate::view::View;
-use results::drawing::palette::{self, Rgb};
 
 /// How an entry of a legend is drawn.
 #[derive(Clone, Copy)]
-pub(crate) enum Mark {
+pub enum Mark {
     /// A filled square.
     Area(Rgb),
     /// A line.
@@ -15,18 +15,22 @@ pub(crate) enum Mark {
     Cross(Rgb),
     /// A filled circle with a white rim.
     Dot(Rgb),
+    /// A circle around the curious robot.
+    Ring,
+    /// Text alone.
+    Nothing,
 }
 
 /// The entries of a legend.
-pub(crate) type Legend = Vec<(Mark, String)>;
+pub type Legend = Vec<(Mark, String)>;
 
 /// The entries whose condition holds.
-pub(crate) fn entries<const N: usize>(entries: [(bool, Mark, &str); N]) -> Legend {
+pub fn entries<const N: usize>(entries: [(bool, Mark, &str); N]) -> Legend {
     entries.into_iter().filter(|entry| entry.0).map(|(_, mark, text)| (mark, text.to_owned())).collect()
 }
 
 /// The entries for what the map of the occupancy shows of the run.
-pub(crate) fn of_run(scene: &Scene, view: &View) -> Legend {
+pub fn of_run(scene: &Scene, view: &View) -> Legend {
     let has_plan = !view.strategies.is_empty() || view.goal.is_some();
     entries([
         (true, Mark::Dot(palette::CURIOUS), "curious robot"),

@@ -1,9 +1,9 @@
 //! Shared parts of the tests: a simulated run of four rooms, a robot that drives a tour, another that drives back
 //! and forth, and scans from a simple geometry. No physics, no agent.
 
-use crate::scene::{Obstacle, Outline, RobotState, Scene, SceneRobot, Sight, TimeUnit};
-use crate::view::{Measured, View};
 use agent::Features;
+use draw::scene::{Obstacle, Outline, RobotState, Scene, SceneRobot, Sight, TimeUnit};
+use draw::view::{Measured, View};
 use interfaces::{GridFrame, LaserReading, Scan, Twist, heading_rad, pose, wrap_rad};
 use localizer::PoseEstimate;
 use mapper::{Mapper, MapperSettings};
@@ -87,6 +87,7 @@ impl FakeRun {
             radius_m: RADIUS_M,
             corners: Vec::new(),
             sectors: Vec::new(),
+            route: Vec::new(),
             is_driven,
         };
         Self {

@@ -1,19 +1,19 @@
 //! A moving picture of a run: the map with the robots on the left, and how often its cells change on the right.
 
-use super::panel::{Chart, Panel, pair};
-use super::trajectory::line;
-use super::{ground, plan};
+use crate::canvas::{Area, Canvas, PictureError, ink, px, why};
 use crate::layers::Layer;
 use crate::legend;
 use crate::outline::field_of_view;
+use crate::palette::{self, Rgb};
+use crate::panel::{Chart, Panel, pair};
 use crate::scene::{Scene, Sight, TimeUnit};
+use crate::trajectory::line;
 use crate::view::{Trail, View};
+use crate::{ground, plan};
 use gif::{DisposalMethod, Encoder, Frame, Repeat};
 use mapper::{Mapper, ThingKind};
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
-use results::drawing::palette::{self, Rgb};
-use results::drawing::{Area, Canvas, PictureError, ink, px, why};
 use results::output::UnfinishedFile;
 use std::collections::BTreeMap;
 use std::io::{self, Write};

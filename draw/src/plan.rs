@@ -1,14 +1,14 @@
 //! A world from above, at its start.
 
-use super::ground::{self, fill};
-use super::panel::{Chart, Panel, pair};
+use crate::canvas::{Area, why};
+use crate::ground::{self, fill};
 use crate::legend::{self, Legend, Mark};
-use crate::scene::{Scene, SceneRobot, Sector, span};
+use crate::palette;
+use crate::panel::{Chart, Panel, pair};
+use crate::scene::{Scene, SceneRobot, Sector, TimeUnit, span};
 use nalgebra::{Isometry2, Point2};
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
-use results::drawing::palette;
-use results::drawing::{Area, why};
 use std::f64::consts::TAU;
 
 /// The corners of the polygon that a circle is drawn as.
@@ -20,7 +20,7 @@ const MAX_NAMES: usize = 40;
 const SECTOR_RADII: f64 = 2.5;
 
 /// Draws the scene, the robots with the directions of their sensors, and the names.
-pub(super) fn draw(panel: &Panel, area: &Area, scene: &Scene) -> Result<(), String> {
+pub(crate) fn draw(panel: &Panel, area: &Area, scene: &Scene) -> Result<(), String> {
     let (chart, legend) = panel.axes(area, &scene.title)?;
     for robot in with_sensors(scene) {
         let mut sectors = robot.sectors.iter();
@@ -39,7 +39,7 @@ pub(super) fn draw(panel: &Panel, area: &Area, scene: &Scene) -> Result<(), Stri
 }
 
 /// Draws the body of a robot at a pose, with a line from its center to its front, m.
-pub(super) fn draw_robot(
+pub(crate) fn draw_robot(
     panel: &Panel,
     chart: &Chart,
     robot: &SceneRobot,
@@ -52,7 +52,7 @@ pub(super) fn draw_robot(
 }
 
 /// The entries of the legend.
-pub(super) fn entries(scene: &Scene) -> Legend {
+pub(crate) fn entries(scene: &Scene) -> Legend {
     let robots = legend::entries([
         (scene.has_robot(true), Mark::Area(palette::CURIOUS), "driven robot"),
         (scene.has_robot(false), Mark::Area(palette::OTHER_ROBOT), "other robot"),
@@ -68,7 +68,10 @@ fn is_crowded(scene: &Scene) -> bool {
 /// The robots whose sensors are drawn.
 fn with_sensors(scene: &Scene) -> impl Iterator<Item = &SceneRobot> {
     let is_shown = !is_crowded(scene);
-    scene.robots.iter().filter(move |robot| is_shown && !robot.sectors.is_empty())
+    scene
+        .robots
+        .iter()
+        .filter(move |robot| is_shown && scene.unit == TimeUnit::Second && !robot.sectors.is_empty())
 }
 
 /// The outline of a robot at a pose.

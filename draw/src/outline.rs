@@ -8,7 +8,7 @@ const TOLERANCE_M: f64 = 0.04;
 
 /// The field of view of a scan in the frame of the map, m: a line through the end of every beam, and through the
 /// laser unless the beams cover a full turn. Closed: the last point equals the first.
-pub(crate) fn field_of_view(reading: &LaserReading) -> Vec<Point2<f64>> {
+pub fn field_of_view(reading: &LaserReading) -> Vec<Point2<f64>> {
     let scan = &reading.scan;
     let laser = reading.pose * reading.mount;
     let mut corners: Vec<Point2<f64>> = Vec::with_capacity(scan.ranges_m.len() + 2);

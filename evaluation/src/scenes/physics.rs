@@ -1,12 +1,12 @@
 //! The scene of a physics world.
 
 use super::{Displayed, Visible};
+use draw::scene::{Obstacle, Outline, RobotState, Scene, SceneRobot, Sector, Sight, TimeUnit};
 use interfaces::LaserReading;
-use nalgebra::Isometry2;
+use nalgebra::{Isometry2, Point2};
 use sim::physics::{
-    BehaviorSpec, FleetSpec, Motion, ObstacleSpec, PhysicsWorld, Rectangle, RobotSpec, WorldSpec,
+    BehaviorSpec, FleetSpec, Motion, ObstacleSpec, PhysicsWorld, Rectangle, Repeat, RobotSpec, WorldSpec,
 };
-use viewer::scene::{Obstacle, Outline, RobotState, Scene, SceneRobot, Sector, Sight, TimeUnit};
 
 /// The number of outlines that show the swing of a door.
 const SWING: u32 = 24;
@@ -86,6 +86,19 @@ fn robot(spec: &RobotSpec) -> SceneRobot {
         radius_m: spec.radius_m,
         corners: spec.corners.clone(),
         sectors: lasers.chain(sonars).map(sector).collect(),
+        route: route(&spec.behavior),
         is_driven: spec.behavior == BehaviorSpec::Driven,
+    }
+}
+
+/// The points of the way of a robot; empty if it has none.
+fn route(behavior: &BehaviorSpec) -> Vec<Point2<f64>> {
+    match behavior {
+        BehaviorSpec::Waypoints(way) if way.repeat == Repeat::Loop => {
+            way.points.iter().chain(way.points.first()).copied().collect()
+        }
+        BehaviorSpec::Waypoints(way) => way.points.clone(),
+        BehaviorSpec::WallPatrol(patrol) => vec![patrol.from, patrol.to],
+        _ => Vec::new(),
     }
 }

@@ -1,7 +1,10 @@
 //! A map with a title, axes in meters, and a legend below.
 
+use crate::canvas::{Area, INK, ink, why};
 use crate::layers::Layer;
 use crate::legend::Mark;
+use crate::palette::Rgb;
+use crate::pen::Pen;
 use crate::scene::{TimeUnit, extent};
 use interfaces::{Grid, GridFrame};
 use mapper::Mapper;
@@ -10,16 +13,14 @@ use plotters::chart::ChartContext;
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
-use results::drawing::palette::Rgb;
-use results::drawing::{Area, INK, ink, px, text, why};
 
 /// A point as plotters has points.
-pub(super) fn pair(point: &Point2<f64>) -> (f64, f64) {
+pub(crate) fn pair(point: &Point2<f64>) -> (f64, f64) {
     (point.x, point.y)
 }
 
 /// A chart in meters.
-pub(super) type Chart<'a, 'b> =
+pub(crate) type Chart<'a, 'b> =
     ChartContext<'a, BitMapBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
 // All lengths in points. A panel of 280 points is legible as a third of a page of 840 pixels.
@@ -34,7 +35,7 @@ const SWATCH: u32 = 12;
 
 /// The size and the position of the parts of a panel.
 #[derive(Clone, Copy)]
-pub(super) struct Panel {
+pub(crate) struct Panel {
     frame: GridFrame,
     /// The unit of length.
     unit: &'static str,
@@ -42,6 +43,7 @@ pub(super) struct Panel {
     width: u32,
     /// The pixels of the finished picture per point.
     scale: u32,
+    pen: Pen,
     /// Entries of the legend side by side.
     columns: u32,
     /// Rows of the legend.
@@ -52,28 +54,55 @@ pub(super) struct Panel {
 
 impl Panel {
     /// A panel for one layer of the map, a third of Figure 5.
-    pub(super) fn of_layer(frame: &GridFrame, unit: TimeUnit) -> Self {
+    pub(crate) fn of_layer(frame: &GridFrame, unit: TimeUnit) -> Self {
         let width = (280 - Y_AXIS - MARGIN).max(enough_for(frame));
-        Self { frame: *frame, unit: unit.length(), width, scale: 2, columns: 2, rows: 3, has_bar: true }
+        Self {
+            frame: *frame,
+            unit: unit.length(),
+            width,
+            scale: 2,
+            pen: Pen::of_points(2),
+            columns: 2,
+            rows: 3,
+            has_bar: true,
+        }
     }
 
     /// A panel for a picture of its own, with a legend of `entries` entries.
-    pub(super) fn of_scene(frame: &GridFrame, unit: TimeUnit, entries: usize) -> Self {
+    pub(crate) fn of_scene(frame: &GridFrame, unit: TimeUnit, entries: usize) -> Self {
         let rows = entries.div_ceil(3) as u32;
         let width = 430.max(enough_for(frame));
-        Self { frame: *frame, unit: unit.length(), width, scale: 2, columns: 3, rows, has_bar: false }
+        Self {
+            frame: *frame,
+            unit: unit.length(),
+            width,
+            scale: 2,
+            pen: Pen::of_points(2),
+            columns: 3,
+            rows,
+            has_bar: false,
+        }
     }
 
     /// Half of a frame of the moving picture.
-    pub(super) fn of_film(frame: &GridFrame, unit: TimeUnit, has_bar: bool) -> Self {
+    pub(crate) fn of_film(frame: &GridFrame, unit: TimeUnit, has_bar: bool) -> Self {
         let rows = if has_bar { 2 } else { 4 };
         let width = 420 - Y_AXIS - MARGIN;
-        Self { frame: *frame, unit: unit.length(), width, scale: 1, columns: 3, rows, has_bar }
+        Self {
+            frame: *frame,
+            unit: unit.length(),
+            width,
+            scale: 1,
+            pen: Pen::of_points(1),
+            columns: 3,
+            rows,
+            has_bar,
+        }
     }
 
     /// A length in points, in pixels to draw with.
-    pub(super) fn px(&self, points: u32) -> i32 {
-        px(points * self.scale)
+    pub(crate) fn px(&self, points: u32) -> i32 {
+        self.pen.px(points as i32)
     }
 
     /// The height of the map in points: the map keeps its proportions, within reason.
@@ -83,20 +112,20 @@ impl Panel {
     }
 
     /// Width and height of the finished picture, pixels.
-    pub(super) fn size(&self) -> [u32; 2] {
+    pub(crate) fn size(&self) -> [u32; 2] {
         let legend = self.rows * ROW + if self.has_bar { BAR } else { 0 };
         [Y_AXIS + self.width + MARGIN, TITLE + self.height() + X_AXIS + legend + MARGIN / 2]
             .map(|length| length * self.scale)
     }
 
     /// Draws the title and the axes. Returns the chart of the map, and the area of the legend below it.
-    pub(super) fn axes<'a, 'b>(
+    pub(crate) fn axes<'a, 'b>(
         &self,
         area: &'a Area<'b>,
         title: &str,
     ) -> Result<(Chart<'a, 'b>, Area<'b>), String> {
         let middle = (self.px(Y_AXIS + self.width / 2), self.px(TITLE / 2));
-        let style = text((LETTERS + 1) * self.scale).pos(Pos::new(HPos::Center, VPos::Center));
+        let style = self.pen.text(LETTERS as i32 + 1).pos(Pos::new(HPos::Center, VPos::Center));
         area.draw_text(title, &style, middle).map_err(why)?;
         let below = self.px(TITLE + self.height() + X_AXIS);
         let (_, legend) = area.split_vertically(below);
@@ -120,8 +149,8 @@ impl Panel {
             .y_labels(7)
             .x_label_formatter(&|x_m| short(*x_m))
             .y_label_formatter(&|y_m| short(*y_m))
-            .label_style(text(LETTERS * self.scale))
-            .axis_desc_style(text(LETTERS * self.scale))
+            .label_style(self.pen.text(LETTERS as i32))
+            .axis_desc_style(self.pen.text(LETTERS as i32))
             .axis_style(self.line(INK, 1))
             .set_all_tick_mark_size(self.px(2))
             .x_desc(format!("x ({})", self.unit))
@@ -132,12 +161,12 @@ impl Panel {
     }
 
     /// A line with a width in half points.
-    pub(super) fn line(&self, color: RGBColor, width: u32) -> ShapeStyle {
+    pub(crate) fn line(&self, color: RGBColor, width: u32) -> ShapeStyle {
         color.stroke_width(width * self.scale)
     }
 
     /// Draws a line around the map.
-    pub(super) fn frame(&self, chart: &Chart) -> Result<(), String> {
+    pub(crate) fn frame(&self, chart: &Chart) -> Result<(), String> {
         let (from, size) = extent(&self.frame);
         let to = from + size;
         let border = Rectangle::new([(from.x, from.y), (to.x, to.y)], self.line(INK, 1));
@@ -145,56 +174,36 @@ impl Panel {
     }
 
     /// Draws the entries of the legend.
-    pub(super) fn legend(&self, legend: &Area, entries: &[(Mark, String)]) -> Result<(), String> {
+    pub(crate) fn legend(&self, legend: &Area, entries: &[(Mark, String)]) -> Result<(), String> {
         let column = (self.width + Y_AXIS) / self.columns;
         let top = if self.has_bar { BAR } else { 0 };
         for (index, (mark, meaning)) in (0..).zip(entries) {
             let x = self.px(index % self.columns * column);
             let y = self.px(top + index / self.columns * ROW + ROW / 2);
-            let (half, middle) = (self.px(SWATCH / 2), (x + self.px(SWATCH / 2), y));
-            match *mark {
-                Mark::Area(color) => {
-                    let corners = [(x, y - half), (x + 2 * half, y + half)];
-                    legend.draw(&Rectangle::new(corners, ink(color).filled())).map_err(why)?;
-                    legend.draw(&Rectangle::new(corners, INK.stroke_width(1))).map_err(why)?;
-                }
-                Mark::Line(color) => {
-                    let line = PathElement::new([(x, y), (x + 2 * half, y)], self.line(ink(color), 4));
-                    legend.draw(&line).map_err(why)?;
-                }
-                Mark::Cross(color) => {
-                    let cross = Cross::new(middle, half * 2 / 3, self.line(ink(color), 3));
-                    legend.draw(&cross).map_err(why)?;
-                }
-                Mark::Dot(color) => self.dot(legend, middle, color)?,
-            }
+            self.pen.mark(legend, *mark, (x, y), SWATCH as i32)?;
             self.write(legend, (x + self.px(SWATCH + 5), y), HPos::Left, meaning)?;
         }
         Ok(())
     }
 
     /// Draws a filled circle with a white rim; `center` in pixels of `area`.
-    pub(super) fn dot(&self, area: &Area, center: (i32, i32), color: Rgb) -> Result<(), String> {
-        area.draw(&Circle::new(center, self.px(6), WHITE.filled())).map_err(why)?;
-        area.draw(&Circle::new(center, self.px(5), ink(color).filled())).map_err(why)
+    pub(crate) fn dot(&self, area: &Area, center: (i32, i32), color: Rgb) -> Result<(), String> {
+        self.pen.dot(area, center, 5, color)
     }
 
     /// Writes a line; `at` is the middle of its left side, or of the line.
-    pub(super) fn write(&self, area: &Area, at: (i32, i32), anchor: HPos, line: &str) -> Result<(), String> {
-        let style = text(LETTERS * self.scale).pos(Pos::new(anchor, VPos::Center));
-        // The library puts the middle of a letter a quarter of its height too high.
-        let text = Text::new(line.to_owned(), (at.0, at.1 + self.px(LETTERS) / 4), style);
-        area.draw(&text).map_err(why)
+    pub(crate) fn write(&self, area: &Area, at: (i32, i32), anchor: HPos, line: &str) -> Result<(), String> {
+        self.pen.write(area, at, anchor, LETTERS as i32, line)
     }
 
     /// Width and height of a line of text, in pixels to draw with.
-    pub(super) fn text_size(&self, area: &Area, line: &str) -> Result<[i32; 2], String> {
-        let (width, height) = area.estimate_text_size(line, &text(LETTERS * self.scale)).map_err(why)?;
+    pub(crate) fn text_size(&self, area: &Area, line: &str) -> Result<[i32; 2], String> {
+        let (width, height) = area.estimate_text_size(line, &self.pen.text(LETTERS as i32)).map_err(why)?;
         Ok([width as i32, height as i32])
     }
 
     /// Draws a layer of the map with its legend. Returns the chart of the map.
-    pub(super) fn layer<'a, 'b>(
+    pub(crate) fn layer<'a, 'b>(
         &self,
         area: &'a Area<'b>,
         mapper: &Mapper,
@@ -205,7 +214,7 @@ impl Panel {
     }
 
     /// Draws the classes of the cells, in the colors of a layer, with its legend. Returns the chart of the map.
-    pub(super) fn classes<'a, 'b>(
+    pub(crate) fn classes<'a, 'b>(
         &self,
         area: &'a Area<'b>,
         (layer, title): (Layer, &str),
@@ -247,7 +256,7 @@ impl Panel {
     }
 
     /// Draws the cells, as few rectangles as the rows allow.
-    pub(super) fn cells(&self, chart: &Chart, layer: Layer, classes: &Grid<u8>) -> Result<(), String> {
+    pub(crate) fn cells(&self, chart: &Chart, layer: Layer, classes: &Grid<u8>) -> Result<(), String> {
         let (from, cell_m) = (self.frame.origin(), self.frame.resolution_m());
         let mut of_row: Vec<u8> = Vec::new();
         for (row, classes) in classes.rows().enumerate() {
@@ -268,7 +277,7 @@ impl Panel {
 
     /// The pixel of a finished panel that shows a position in the world.
     #[cfg(test)]
-    pub(super) fn pixel(&self, position: &Point2<f64>) -> [u32; 2] {
+    pub(crate) fn pixel(&self, position: &Point2<f64>) -> [u32; 2] {
         let share = (position - self.frame.origin()) / self.frame.resolution_m();
         let [width, height] = [self.width, self.height()].map(|length| f64::from(length * self.scale));
         let x = f64::from(Y_AXIS * self.scale) + share.x / self.frame.width() as f64 * width;

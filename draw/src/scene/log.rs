@@ -20,6 +20,7 @@ impl Scene {
             radius_m: RADIUS_M,
             corners: Vec::new(),
             sectors: vec![Sector { mount, angle_rad, range_m: scan.range_max_m }],
+            route: Vec::new(),
             is_driven: true,
         };
         Self {
@@ -33,7 +34,7 @@ impl Scene {
     }
 
     /// Whether nothing but the robots is known before the run.
-    pub(crate) fn is_unknown(&self) -> bool {
+    pub fn is_unknown(&self) -> bool {
         self.walls.is_empty() && self.obstacles.is_empty()
     }
 }

@@ -1,23 +1,15 @@
 //! Pictures of a run and of a world: the panels of the paper's Figure 5, the trajectories of its Figure 4, a
 //! plan, and a moving picture.
 
-mod film;
-mod ground;
-mod names;
-mod panel;
-mod plan;
-mod trajectory;
-
-pub use film::Film;
-
+use crate::canvas::{Area, Canvas, PictureError};
 use crate::layers::Layer;
+use crate::panel::Panel;
 use crate::scene::{Scene, TimeUnit};
 use crate::view::Trail;
+use crate::{names, plan, trajectory};
 use interfaces::Grid;
 use mapper::Mapper;
 use nalgebra::Point2;
-use panel::Panel;
-use results::drawing::{Area, Canvas, PictureError};
 use results::output::make_folder;
 use results::thinned::Goals;
 use std::path::Path;
@@ -129,4 +121,5 @@ fn draw(
 }
 
 #[cfg(test)]
+#[path = "tests.rs"]
 mod tests;

@@ -1,10 +1,10 @@
 //! A font, a canvas, and PNG files.
 
-use super::palette::{self, Rgb};
-use crate::output::{OutputError, write_file};
+use crate::palette::{self, Rgb};
 use plotters::coord::Shift;
 use plotters::prelude::*;
-use plotters::style::{TextStyle, register_font};
+use plotters::style::register_font;
+use results::output::{OutputError, write_file};
 use std::path::Path;
 
 /// The error for a picture that could not be made.
@@ -33,11 +33,6 @@ const OVERSAMPLING: u32 = 2;
 /// Converts a length in pixels of the finished picture to pixels of the larger drawing.
 pub const fn px(length: u32) -> i32 {
     (length * OVERSAMPLING) as i32
-}
-
-/// The style of text with a height in pixels of the finished picture.
-pub fn text(height: u32) -> TextStyle<'static> {
-    (FONT, px(height)).into_font().color(&INK)
 }
 
 /// The color of text and axes.
