@@ -1,14 +1,14 @@
 //! `--mcap`: a run as a bag of ROS 2.
 
 use anyhow::bail;
+use files::{UnfinishedFile, is_another_kind};
 use interfaces::{CellState, Grid, LaserReading};
-use logs::{LogError, McapWriter};
 use mapper::Mapper;
 use nalgebra::{Isometry2, Point2};
-use results::output::{UnfinishedFile, is_another_kind};
 use robot::{Pilot, Turn};
+use ros::McapWriter;
 use std::fs::File;
-use std::io::BufWriter;
+use std::io::{self, BufWriter};
 use std::path::Path;
 
 /// The time between two maps, and between two maps of changes and predictions, s.
@@ -24,7 +24,7 @@ const MANY_CELLS: f64 = 1e6;
 /// [`finish`](Self::finish) reports it.
 pub struct RunBag {
     file: UnfinishedFile,
-    writer: Result<McapWriter<BufWriter<File>>, LogError>,
+    writer: Result<McapWriter<BufWriter<File>>, io::Error>,
     /// What was written last.
     correction: Option<Isometry2<f64>>,
     goal: Option<Point2<f64>>,
@@ -88,7 +88,7 @@ impl RunBag {
         correction: &Isometry2<f64>,
         mapper: &Mapper,
         pilot: &impl Pilot,
-    ) -> Result<(), LogError> {
+    ) -> Result<(), io::Error> {
         let time_s = mapper.time();
         let Ok(writer) = &mut self.writer else { return Ok(()) };
         writer.reading(raw)?;

@@ -4,8 +4,8 @@ use crate::terminal::{check_printed, print, say};
 use anyhow::{Context, anyhow};
 use clap::Parser;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use files::{OutputError, RunFolder};
 use interfaces::{PoseMode, printable_lines};
-use results::output::{OutputError, RunFolder};
 use robot::state::{State, StateFile};
 use std::error::Error;
 use std::fmt::Display;
@@ -13,8 +13,8 @@ use std::io::stderr;
 use std::path::Path;
 use std::process::ExitCode;
 use std::str::FromStr;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Once};
 use std::time::Duration;
 
 /// The exit code of a run that Ctrl-C or another signal has ended.
@@ -138,13 +138,11 @@ where
     PossibleValuesParser::new(all.iter().map(name)).try_map(|name| name.parse::<T>())
 }
 
-/// What `--strategy best` means: the strategy of `--purpose learn-rates`.
-const BEST_STRATEGY: &str = "information-gain";
 /// What other purposes gain over the default one, measured in `docs/strategies.md` and `docs/houses.md`.
 pub const PURPOSE_GAIN: &str = "--purpose learn-rates (information-gain) has 0.64 to 0.69 of the rate error of curious in grid \
                                 worlds with blocks, 1.13 to 1.23 times in those with a calendar, and 3 % more in houses";
 
-/// A parser of the name of a strategy, one of `all`; `best` is another name of the best one. `describe`
+/// A parser of the name of a strategy, one of `all`. `describe`
 /// gives the name and the description of a strategy.
 pub fn strategy_of<T>(
     all: Vec<T>,
@@ -157,28 +155,12 @@ where
         let (name, description) = describe(strategy);
         PossibleValue::new(name).help(description)
     };
-    let best = PossibleValue::new("best").help("the same as --purpose learn-rates; it will be removed");
-    PossibleValuesParser::new(all.iter().map(named).chain([best])).try_map(move |name| {
-        let name = if name == "best" { best_strategy() } else { name.as_str() };
+    PossibleValuesParser::new(all.iter().map(named)).try_map(move |name| {
         all.iter()
             .find(|strategy| describe(strategy).0 == name)
             .cloned()
             .ok_or("not one of the possible values")
     })
-}
-
-/// The strategy that was called `best`, with a note. A command line can be parsed more than once.
-fn best_strategy() -> &'static str {
-    static NOTE: Once = Once::new();
-    NOTE.call_once(|| {
-        say(
-            stderr(),
-            format_args!(
-                "note: --strategy best is --strategy {BEST_STRATEGY}, and will be removed in the next version"
-            ),
-        );
-    });
-    BEST_STRATEGY
 }
 
 /// A parser of how the pose is known, one of `modes`. `describe` says what a mode means.

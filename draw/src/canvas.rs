@@ -1,10 +1,10 @@
 //! A font, a canvas, and PNG files.
 
 use crate::palette::{self, Rgb};
+use files::{OutputError, write_file};
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::register_font;
-use results::output::{OutputError, write_file};
 use std::path::Path;
 
 /// The error for a picture that could not be made.

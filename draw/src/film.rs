@@ -10,11 +10,11 @@ use crate::scene::{Scene, Sight, TimeUnit};
 use crate::trajectory::line;
 use crate::view::{Trail, View};
 use crate::{ground, plan};
+use files::UnfinishedFile;
 use gif::{DisposalMethod, Encoder, Frame, Repeat};
 use mapper::{Mapper, ThingKind};
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
-use results::output::UnfinishedFile;
 use std::collections::BTreeMap;
 use std::io::{self, Write};
 

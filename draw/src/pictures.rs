@@ -7,10 +7,10 @@ use crate::panel::Panel;
 use crate::scene::{Scene, TimeUnit};
 use crate::view::Trail;
 use crate::{names, plan, trajectory};
+use files::make_folder;
 use interfaces::Grid;
 use mapper::Mapper;
 use nalgebra::Point2;
-use results::output::make_folder;
 use results::thinned::Goals;
 use std::path::Path;
 

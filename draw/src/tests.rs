@@ -4,10 +4,10 @@ use crate::fake_run::FakeRun;
 use crate::legend::Mark;
 use crate::palette::{self, Rgb};
 use crate::scene::SceneRobot;
+use files::UnfinishedFile;
 use image::RgbImage;
 use interfaces::CellState;
 use nalgebra::Point2;
-use results::output::UnfinishedFile;
 
 struct Drawn {
     folder: tempfile::TempDir,

@@ -34,11 +34,9 @@ pub struct Observer {
     pub changing: ChangingAccuracy,
     /// The quality of the predicted map on swept cells out of view.
     pub prediction: Prediction,
-    /// The forecasts: a part of a state file of its own, since earlier state files have none.
-    #[serde(skip)]
+    /// The forecasts.
     pub forecasts: Forecasts,
-    /// The comparison with the things of a calendar, also at rest: a part of a state file of its own.
-    #[serde(skip)]
+    /// The comparison with the things of a calendar, also at rest.
     pub scheduled: ScheduledThings,
     /// The true chains of all cells.
     pub true_chains: TrueChains,

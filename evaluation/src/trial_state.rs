@@ -13,11 +13,6 @@ const WORLD: &str = "world";
 const CONTENT: &str = "content";
 const PILOT: &str = "pilot";
 const MEASUREMENTS: &str = "measurements";
-/// Absent before the first forecast, and in a state file that was written before forecasts of three horizons existed.
-const FORECASTS: &str = "forecasts of three horizons";
-/// Absent in worlds without a calendar, and in a state file that was written before these scores existed.
-const SCHEDULED: &str = "scheduled things";
-
 /// What the state of a run belongs to.
 #[derive(Clone, Debug)]
 pub struct TrialFacts {
@@ -71,14 +66,6 @@ impl TrialSnapshot {
             .with(CONTENT, facts.content, Vec::new())
             .with(PILOT, facts.pilot, pilot)
             .with(MEASUREMENTS, facts.world.clone(), interfaces::to_bytes(&observer));
-        let state = match observer.forecasts {
-            none if none.is_empty() => state,
-            forecasts => state.with(FORECASTS, facts.world.clone(), interfaces::to_bytes(&forecasts)),
-        };
-        let state = match observer.scheduled {
-            none if none.is_empty() => state,
-            scheduled => state.with(SCHEDULED, facts.world, interfaces::to_bytes(&scheduled)),
-        };
         learned.added_to(state).with_build()
     }
 }
@@ -95,12 +82,12 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
         }
     }
 
-    /// Goes on from a state that a run with the same facts has saved. Returns a note for the user, if there is one.
+    /// Goes on from a state that a run with the same facts has saved.
     ///
     /// # Errors
     ///
     /// When the state is of another run or of another build; the error names what differs. The run must not be used then.
-    pub fn restore(&mut self, state: &State, facts: &TrialFacts) -> Result<Option<&'static str>, StateError> {
+    pub fn restore(&mut self, state: &State, facts: &TrialFacts) -> Result<(), StateError> {
         let misfit = |part: &str| StateError::OtherContent(part.to_owned());
         let world = state.section(WORLD, &facts.world)?;
         let (pilot, observer) =
@@ -110,19 +97,11 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
             Err(_) => {}
             Ok(()) => drop(state.section(CONTENT, &facts.content)?),
         }
-        let note = facts.learned.restore(state, &mut self.robot)?;
+        facts.learned.restore(state, &mut self.robot)?;
         self.world.restore(world).map_err(|_| misfit(WORLD))?;
         interfaces::restore(self.pilot_values(), pilot).map_err(|_| misfit(PILOT))?;
         self.observer = interfaces::from_bytes(observer).map_err(|_| misfit(MEASUREMENTS))?;
-        if state.has(FORECASTS) {
-            let forecasts = state.section(FORECASTS, &facts.world)?;
-            self.observer.forecasts = interfaces::from_bytes(forecasts).map_err(|_| misfit(FORECASTS))?;
-        }
-        if state.has(SCHEDULED) {
-            let scheduled = state.section(SCHEDULED, &facts.world)?;
-            self.observer.scheduled = interfaces::from_bytes(scheduled).map_err(|_| misfit(SCHEDULED))?;
-        }
-        Ok(note)
+        Ok(())
     }
 
     /// The values of the pilot and of its last command.

@@ -43,7 +43,7 @@ pub use settings::{SettingsCheck, SettingsError};
 pub use sparse_cells::{Place, SMALL_GRID, SparseCells};
 pub use state::{CellState, Event, Transition};
 pub use values::{
-    CellList, Value, ValueError, Values, cell_runs, converted, from_bytes, if_present, last_value,
-    read_value, read_values, restore, runs, snapshot, to_bytes, value, write_value, write_values,
+    CellList, Value, ValueError, Values, cell_runs, converted, from_bytes, read_value, read_values, restore,
+    runs, snapshot, to_bytes, value, write_value, write_values,
 };
 pub use world::World;

@@ -67,24 +67,6 @@ pub fn value<'a, T: Serialize + DeserializeOwned>(value: &'a mut T) -> Box<dyn V
     Box::new(value)
 }
 
-/// A value at the end of a snapshot: the default one if the snapshot ends before it, in an older format.
-pub fn last_value<'a, T: Default + Serialize + DeserializeOwned>(value: &'a mut T) -> Box<dyn Value + 'a> {
-    struct Last<'a, T>(&'a mut T);
-
-    impl<T: Default + Serialize + DeserializeOwned> Value for Last<'_, T> {
-        fn write(&self, bytes: &mut Vec<u8>) -> Result<(), ValueError> {
-            write_value(&*self.0, bytes)
-        }
-
-        fn read(&mut self, bytes: &mut &[u8]) -> Result<(), ValueError> {
-            *self.0 = if bytes.is_empty() { T::default() } else { read_value(bytes)? };
-            Ok(())
-        }
-    }
-
-    Box::new(Last(value))
-}
-
 /// A part that is saved in another form, which `save` makes of it; `load` brings the part into the state of that form.
 pub fn converted<'a, P: ?Sized, T: Serialize + DeserializeOwned + 'a>(
     part: &'a mut P,
@@ -104,23 +86,6 @@ pub fn converted<'a, P: ?Sized, T: Serialize + DeserializeOwned + 'a>(
     }
 
     Box::new(Converted(part, save, load))
-}
-
-/// A value at the end of a snapshot: it stays as it is if the snapshot ends before it, in an older format.
-pub fn if_present<'a>(value: Box<dyn Value + 'a>) -> Box<dyn Value + 'a> {
-    struct IfPresent<'a>(Box<dyn Value + 'a>);
-
-    impl Value for IfPresent<'_> {
-        fn write(&self, bytes: &mut Vec<u8>) -> Result<(), ValueError> {
-            self.0.write(bytes)
-        }
-
-        fn read(&mut self, bytes: &mut &[u8]) -> Result<(), ValueError> {
-            if bytes.is_empty() { Ok(()) } else { self.0.read(bytes) }
-        }
-    }
-
-    Box::new(IfPresent(value))
 }
 
 /// The [`Values`] of fields, and after a semicolon those of parts that list their own.

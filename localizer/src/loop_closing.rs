@@ -25,9 +25,7 @@ use crate::estimate::Localized;
 use crate::first_map::{FirstMap, Log};
 use crate::localizer::Localizer;
 use crate::settings::LocalizerSettings;
-use interfaces::{
-    CellState, Grid, GridFrame, LaserReading, SettingsError, ValueError, read_value, write_value,
-};
+use interfaces::{GridFrame, LaserReading, SettingsError, ValueError, read_value, write_value};
 use mapper::Mapper;
 use nalgebra::{Isometry2, Matrix3};
 use replay::{Background, Replay, Replayed, learn};
@@ -262,15 +260,6 @@ impl LoopClosingLocalizer {
             None => None,
         };
         if snapshot.is_empty() { Ok(()) } else { Err(ValueError) }
-    }
-
-    /// Begins anew in a known map, see [`Localizer::begin_in`]. A map in which the pose is searched for is frozen.
-    pub fn begin_in(&mut self, map: &Grid<CellState>) -> bool {
-        let searches = self.localizer.begin_in(map);
-        if searches {
-            (self.background, self.first) = (None, None);
-        }
-        searches
     }
 
     /// Puts the robot elsewhere, see [`Localizer::seat`]. The map is frozen: its readings so far are of another way.

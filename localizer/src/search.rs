@@ -23,15 +23,6 @@ pub(crate) struct Window {
     pub(crate) reach_rad: f64,
 }
 
-/// A pose that fits.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Candidate {
-    pub(crate) pose: Isometry2<f64>,
-    /// The score, from 0 to 1.
-    #[cfg(test)]
-    pub(crate) score: f64,
-}
-
 /// A square of positions at one heading. At level 0, the bound is the score.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
 struct Node {
@@ -66,7 +57,7 @@ pub(crate) fn search(
     window: Option<&Window>,
     min_score: f64,
     ratio: f64,
-) -> Vec<Candidate> {
+) -> Vec<Isometry2<f64>> {
     search_within(&mut { MAX_WORK }, grid, points, window, (min_score, ratio))
 }
 
@@ -77,7 +68,7 @@ pub(crate) fn search_within(
     points: &[ScanPoint],
     window: Option<&Window>,
     (min_score, ratio): (f64, f64),
-) -> Vec<Candidate> {
+) -> Vec<Isometry2<f64>> {
     let mut search = Search::new(points, window.copied(), lower(1.0, min_score), ratio);
     while search.pass(grid, left) && !search.is_over(min_score) {
         search.repeat(lower(search.min_score, min_score));
@@ -117,18 +108,13 @@ impl Search {
     }
 
     /// The poses so far.
-    pub(crate) fn candidates(&self, grid: &ScoreGrid) -> Vec<Candidate> {
+    pub(crate) fn candidates(&self, grid: &ScoreGrid) -> Vec<Isometry2<f64>> {
         let headings_rad = headings(self.window.as_ref(), grid);
-        let candidate = |node: &Node| {
+        let pose = |node: &Node| {
             let at = grid.frame().center(Cell::new(node.x, node.y));
-            let pose = interfaces::pose(at.x, at.y, headings_rad[node.heading]);
-            Candidate {
-                pose,
-                #[cfg(test)]
-                score: f64::from(node.bound) / f64::from(self.perfect()),
-            }
+            interfaces::pose(at.x, at.y, headings_rad[node.heading])
         };
-        self.found.iter().map(candidate).collect()
+        self.found.iter().map(pose).collect()
     }
 
     /// Goes on until all squares with a score are searched, or nothing is `left` of the work; returns whether all are.

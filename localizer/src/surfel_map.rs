@@ -64,8 +64,6 @@ pub(crate) struct SurfelMap {
     surfels: Vec<Surfel>,
     /// Places in `surfels` that can be used again.
     removed: Vec<u32>,
-    /// Always 0: without it, the layout of states would be another version, of which 7 loses what its localizer knew.
-    unused: u64,
     /// The number of scans that were learned.
     scan: u32,
 }
@@ -75,7 +73,7 @@ impl SurfelMap {
     pub(crate) fn new(frame: &GridFrame) -> Self {
         let frame = fitted(frame, SURFEL_M, 1);
         let cells = vec![[NONE; PER_CELL]; frame.len()];
-        Self { frame, cells, surfels: Vec::new(), removed: Vec::new(), unused: 0, scan: 0 }
+        Self { frame, cells, surfels: Vec::new(), removed: Vec::new(), scan: 0 }
     }
 
     /// The map without its surfels, for a frame of the same size: most cells are empty and stay as they are.
@@ -93,13 +91,7 @@ impl SurfelMap {
 
     /// Everything that scans have changed.
     pub(crate) fn values(&mut self) -> Values<'_> {
-        vec![
-            runs(&mut self.cells),
-            value(&mut self.surfels),
-            value(&mut self.removed),
-            value(&mut self.unused),
-            value(&mut self.scan),
-        ]
+        vec![runs(&mut self.cells), value(&mut self.surfels), value(&mut self.removed), value(&mut self.scan)]
     }
 
     /// The grid of the cells.

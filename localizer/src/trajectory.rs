@@ -24,7 +24,7 @@ mod far_scan;
 mod free_space;
 mod graph;
 mod keyframe;
-mod line_map;
+mod known_place;
 mod loops;
 mod matching;
 mod odometry_drift;
@@ -39,7 +39,7 @@ mod submap;
 mod submap_matcher;
 
 pub use distance_scale::DistanceScale;
-pub use line_map::{LineFit, LineMap, LineMatcher};
+pub use known_place::{KnownPlace, PlaceError, RouteSearch};
 pub(crate) use matching::in_frame;
 pub use residual::Residual;
 pub use settings::TrajectorySettings;

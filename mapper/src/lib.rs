@@ -26,9 +26,9 @@ mod things;
 mod tiles;
 
 pub use change::{
-    CellMap, CellStatistics, ChoGarciaMolina, Estimator, EstimatorChoice, Exposure, GapBin, GapEvidence,
-    GapHistogram, GapModel, GapWeights, GapWorth, Imac, Paper, PaperAll, RateDistribution, ReadingIndex,
-    SharedPrior, Step, TransitionRates, TwoState, TwoStateGaps,
+    CellMap, CellStatistics, Estimator, EstimatorChoice, Exposure, GapBin, GapEvidence, GapHistogram,
+    GapModel, GapWeights, GapWorth, Paper, PaperAll, RateDistribution, ReadingIndex, SharedPrior, Step,
+    TransitionRates, TwoState, TwoStateGaps,
 };
 pub use clock::{Calendar, Clock, DAY_S, Look, UnknownZone, UsualChange, UsualSlot, Week, share_interval};
 pub use growth::Growth;
@@ -46,7 +46,7 @@ pub use tiles::Tile;
 use derived::ExpectedChanges;
 use interfaces::{
     CellState, Grid, GridFrame, LaserReading, Observation, Reading, SMALL_GRID, SettingsCheck, SettingsError,
-    Transition, ValueError, Values, if_present, is_valid_pose, last_value, value,
+    Transition, ValueError, Values, is_valid_pose, value,
 };
 use nalgebra::Point2;
 use reading_error::check_pose;
@@ -312,13 +312,12 @@ impl Mapper {
     }
 
     fn values(&mut self) -> Values<'_> {
-        let (mut values, prior) = self.cells.values();
+        let mut values = self.cells.values();
         values.extend(self.occupancy.values());
         values.push(value(&mut self.expected_changes));
         values.push(self.tiles.value());
-        values.push(last_value(&mut self.things));
-        values.extend(prior.into_iter().map(if_present));
-        values.push(last_value(&mut self.leaf_cells));
+        values.push(value(&mut self.things));
+        values.push(value(&mut self.leaf_cells));
         values
     }
 

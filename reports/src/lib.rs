@@ -1,41 +1,37 @@
-//! The report of an experiment: from trials to curves with confidence bands, paired comparisons, the verdict
-//! on the paper's claim, files and a table; and experiments in shards. It must not know the command line,
+//! The report of an experiment: from trials to curves with confidence bands, paired comparisons, files and a table; and
+//! experiments in shards. It must not know the command line,
 //! recordings or screens.
 //!
 //! ```text
-//! trials ──▶ runs: curves, areas, comparisons ──▶ report.json, figures, table, claim
-//!   └──────▶ trials.csv, trials.parquet
+//! trials ──▶ runs: curves, areas, comparisons ──▶ report.json, figures, table
+//!   └──────▶ trials.csv
 //! ```
 
 mod builder;
-mod claim;
 mod comparison;
 mod figure;
 mod files;
 mod measure;
-pub mod pages;
 mod run;
 pub mod shards;
 mod statistics;
 mod strategy;
 mod table;
-mod trial_files;
-mod wording;
+mod trial_file;
 
 pub use builder::{ReportBuilder, UnequalTimes};
-pub use claim::{Claim, Verdict};
 pub use comparison::Comparison;
 pub use measure::Measure;
 pub use run::Run;
 pub use statistics::{Estimate, PairedTest, paired_test};
 pub use strategy::StrategyResult;
-pub use trial_files::collect;
+pub use trial_file::collect;
 
+use ::files::{RunFolder, write_file};
 use draw::canvas::PictureError;
 use draw::scene::Scene;
 use evaluation::scenes::Displayed;
 use evaluation::trials::{Experiment, Length, Trial, TrialError, TrialWorld};
-use results::output::{RunFolder, write_file};
 use serde::Serialize;
 use std::sync::atomic::AtomicBool;
 

@@ -2,7 +2,7 @@
 
 use crate::intervals::Intervals;
 use crate::numbers::rounded;
-use crate::output::{OutputError, write_file};
+use files::{OutputError, write_file};
 use interfaces::CellState;
 use mapper::Mapper;
 use std::io;

@@ -2,7 +2,7 @@
 //! layers are.
 
 use crate::intervals::Intervals;
-use crate::output::{OutputError, write_file};
+use files::{OutputError, write_file};
 use interfaces::{CellState, Grid};
 use mapper::Mapper;
 use serde_json::json;

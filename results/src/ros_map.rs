@@ -1,7 +1,7 @@
 //! Maps as the two files of the ROS `map_server`, a picture (PGM, binary) and a YAML file, and masks for the costmap filters of
 //! Nav2. The crate `worldfile` reads maps.
 
-use crate::output::{OutputError, write_file};
+use files::{OutputError, write_file};
 use interfaces::{CellState, Grid, GridFrame};
 use std::path::Path;
 

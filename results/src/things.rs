@@ -1,7 +1,7 @@
 //! `things.json`: the doors that were found, and the furniture that was moved.
 
 use crate::numbers::rounded;
-use crate::output::{OutputError, write_file};
+use files::{OutputError, write_file};
 use mapper::{Door, Leaf, Mapper, ThingKind};
 use nalgebra::Point2;
 use serde::Serialize;

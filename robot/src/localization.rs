@@ -20,16 +20,6 @@ pub trait Localization<R> {
     /// When the bytes are no such snapshot. The localization must not be used then.
     fn restore(&mut self, snapshot: &[u8]) -> Result<(), ValueError>;
 
-    /// Continues after a state file with an older format, whose localizer is not read: the localizer begins anew in the
-    /// learned map, and the note says how.
-    ///
-    /// # Errors
-    ///
-    /// When the bytes are no such snapshot.
-    fn restore_earlier(&mut self, snapshot: &[u8], _: &Mapper) -> Result<Option<&'static str>, ValueError> {
-        self.restore(snapshot).map(|()| None)
-    }
-
     /// Begins another session in the place that was learned, at a pose that is not known.
     fn begin_session(&mut self);
 
@@ -103,10 +93,6 @@ impl Localization<LaserReading> for Localizer {
         Localizer::restore(self, snapshot)
     }
 
-    fn restore_earlier(&mut self, _: &[u8], map: &Mapper) -> Result<Option<&'static str>, ValueError> {
-        Ok(Some(begun(self.begin_in(map.states()))))
-    }
-
     fn begin_session(&mut self) {
         Localizer::begin_session(self);
     }
@@ -130,10 +116,6 @@ impl Localization<LaserReading> for LoopClosingLocalizer {
         LoopClosingLocalizer::restore(self, snapshot)
     }
 
-    fn restore_earlier(&mut self, _: &[u8], map: &Mapper) -> Result<Option<&'static str>, ValueError> {
-        Ok(Some(begun(self.begin_in(map.states()))))
-    }
-
     fn begin_session(&mut self) {
         LoopClosingLocalizer::begin_session(self);
     }
@@ -152,19 +134,6 @@ impl Localization<LaserReading> for LoopClosingLocalizer {
 
     fn switches(&self) -> &[usize] {
         LoopClosingLocalizer::switches(self)
-    }
-}
-
-/// What is said of a state whose map is used, and not what its localizer knew.
-fn begun(searches: bool) -> &'static str {
-    match searches {
-        true => {
-            "the state file has an older format: its map is used, and the robot searches for its pose in it"
-        }
-        false => {
-            "the state file has an older format: its map has no surface, and the robot begins at a known pose, as \
-             without a state"
-        }
     }
 }
 

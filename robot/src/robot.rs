@@ -3,7 +3,7 @@ use crate::localization::Localization;
 use crate::pilot::Pilot;
 use crate::session::Session;
 use agent::Features;
-use interfaces::{Reading, ValueError};
+use interfaces::Reading;
 use mapper::{Mapper, ReadingError, ScanFilter};
 use nalgebra::{Isometry2, Matrix3};
 
@@ -129,19 +129,6 @@ impl<R: Reading, P: Pilot> Robot<R, P> {
     /// What is removed from scans; `None` if nothing is.
     pub fn filter_mut(&mut self) -> Option<&mut ScanFilter> {
         self.filter.as_mut()
-    }
-
-    /// Goes on from a snapshot of the localization, of this version or of an earlier one, after the mapper. Returns a note for the
-    /// user if the localization begins anew.
-    pub(crate) fn restore_localization(
-        &mut self,
-        snapshot: &[u8],
-        is_earlier: bool,
-    ) -> Result<Option<&'static str>, ValueError> {
-        match is_earlier {
-            true => self.localization.restore_earlier(snapshot, &self.mapper),
-            false => self.localization.restore(snapshot).map(|()| None),
-        }
     }
 
     /// What gives the readings their poses.

@@ -2,7 +2,6 @@
 
 use crate::link::Request;
 use crate::message::Time;
-use crate::notes::Notes;
 use crate::parameters::{Navigator, Parameters};
 use crate::pilot::LivePilot;
 use anyhow::{Context, anyhow};
@@ -67,16 +66,10 @@ impl NodeStateFile {
     /// # Errors
     ///
     /// When the file is no state, or that of another node.
-    pub(crate) fn restore(
-        &self,
-        robot: &mut Robot<LaserReading, LivePilot>,
-        notes: &mut Notes,
-    ) -> anyhow::Result<Option<Time>> {
+    pub(crate) fn restore(&self, robot: &mut Robot<LaserReading, LivePilot>) -> anyhow::Result<Option<Time>> {
         let name = self.name();
         let Some(state) = self.file.load().with_context(|| name.clone())? else { return Ok(None) };
-        if let Some(note) = self.facts.restore(&state, robot).with_context(|| name.clone())? {
-            notes.say(&format!("{name}: {note}"));
-        }
+        self.facts.restore(&state, robot).with_context(|| name.clone())?;
         let clock = state.section(CLOCK, &Facts::default()).with_context(|| name.clone())?;
         let clock = clock.try_into().map_err(|_| anyhow!("{name}: the part `{CLOCK}` has another length"))?;
         // Another strategy, or none, has learned nothing that this one could use.

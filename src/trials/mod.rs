@@ -10,10 +10,9 @@ pub use grid::GridWorlds;
 pub use houses::Houses;
 pub use run::main;
 
-use agent::Reward;
 use anyhow::bail;
 use calendar::Kind;
-use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser};
 use cli::flags::{folder, output_file, value_of};
 use cli::program::{one_of, strategy_of};
@@ -82,7 +81,7 @@ pub trait TrialKind: Args + Clone + Debug {
     fn length(&self) -> u64;
 
     /// The robot of all trials.
-    fn robot(&self, reward: Reward, max_steps: u32) -> <Self::Spec as TrialWorld>::Robot;
+    fn robot(&self, max_steps: u32) -> <Self::Spec as TrialWorld>::Robot;
 
     /// The text of the file of a generated world.
     fn to_toml(world: &Self::Spec) -> Option<String>;
@@ -131,10 +130,6 @@ pub struct TrialArgs<K: TrialKind> {
     #[arg(long, default_value_t = 0, allow_negative_numbers = true, help_heading = "Comparison")]
     seed: u64,
 
-    /// The reward of the learner
-    #[arg(long, default_value = "changes", value_parser = reward(), help_heading = "Comparison")]
-    reward: Reward,
-
     /// The number of threads [default: the number of cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), allow_negative_numbers = true, help_heading = EXECUTION)]
     threads: Option<u16>,
@@ -175,7 +170,7 @@ impl<K: TrialKind> TrialArgs<K> {
             trials: self.trials,
             seed: self.seed,
             length: self.kind.length(),
-            robot: self.kind.robot(self.reward, self.max_steps),
+            robot: self.kind.robot(self.max_steps),
         })
     }
 
@@ -214,19 +209,6 @@ impl<K: TrialKind> TrialArgs<K> {
 /// A parser of the name of a strategy, or of a reference.
 fn strategies() -> impl TypedValueParser<Value = TrialStrategy> {
     strategy_of(TrialStrategy::all().collect(), |strategy| (strategy.name(), strategy.description()))
-}
-
-/// A parser of what counts as a map update when the learner is rewarded.
-fn reward() -> impl TypedValueParser<Value = Reward> {
-    let all = [
-        PossibleValue::new("changes").help("Cells that changed"),
-        PossibleValue::new("changes-and-discoveries")
-            .help("Cells that changed, and cells that were seen for the first time"),
-    ];
-    PossibleValuesParser::new(all).map(|name| match name.as_str() {
-        "changes" => Reward::Changes,
-        _ => Reward::ChangesAndDiscoveries,
-    })
 }
 
 /// Every value once, in the order of first occurrence.

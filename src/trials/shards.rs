@@ -53,10 +53,7 @@ pub(super) enum ShardCommand {
         #[arg(long, short)]
         quiet: bool,
     },
-    /// Print what is finished, what runs, and the time that remains; also while shards run
-    ///
-    /// A shard counts as running while its newest trial is not older than five trials take, and at least one minute.
-    /// The cost is the wall time of all trials on their threads.
+    /// Print what is finished; also while shards run
     Status {
         /// The folder of the shards
         dir: PathBuf,

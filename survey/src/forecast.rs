@@ -39,15 +39,11 @@ impl Forecast {
         let logs =
             SavedLogs::read(state.section(SavedLogs::PART, &Facts::default())?).map_err(|_| misfit())?;
         let settings: SurveySettings = facts.settings("survey").ok_or_else(misfit)?;
-        let has_zone = settings.mapper.time_zone.is_some();
         let learns_noise = facts.get("--noise") == Some("learned");
         let learned = state.section(SavedSurvey::PART, facts)?;
         let survey = Survey::restored(settings, learns_noise, logs, learned).map_err(|_| misfit())?;
         let undated = survey.undated(survey.logs().len());
-        let why_undated = match undated {
-            Some(log) => Some(format!("{} does not say when it was recorded", log.name)),
-            None => (!has_zone).then(|| "its format is older than version 8, which has hours".to_owned()),
-        };
+        let why_undated = undated.map(|log| format!("{} does not say when it was recorded", log.name));
         let mapper = survey.mapper().ok_or(StateError::NothingLearned)?.clone();
         Ok(Self { mapper, places: survey.places(), why_undated })
     }

@@ -5,7 +5,7 @@
 //!
 //! ```text
 //! first pass:   log ─▶ trajectory and reach                  [`FirstPass`] ─▶ [`Route`]
-//!               later log ─▶ its pose in the first one       [`KnownPlace`], [`Search`]
+//!               later log ─▶ its pose in the first one       [`localizer::KnownPlace`], [`localizer::RouteSearch`]
 //! second pass:  log ─▶ robot at the found poses ─▶ changes    [`Replay`], [`FoundPoses`], [`ChangeLog`]
 //! ```
 //!
@@ -17,7 +17,6 @@ mod change_log;
 mod error;
 mod extent;
 mod forecast;
-mod known_place;
 mod masks;
 mod median;
 mod noise;
@@ -33,7 +32,6 @@ mod repeated;
 mod replay;
 mod route;
 mod route_graph;
-mod search;
 mod seen_area;
 mod settings;
 mod silence;
@@ -47,7 +45,6 @@ mod upright;
 pub use change_log::ChangeLog;
 pub use error::SurveyError;
 pub use forecast::{Forecast, NEAR_M};
-pub use known_place::KnownPlace;
 pub use masks::{MASKS, masks, masks_ahead};
 pub use outlook::{Outlook, doors};
 pub use passes::{PassError, Stage};
@@ -60,7 +57,6 @@ pub use quality::{Doubt, DoubtKind, Quality, Verdict};
 pub use replay::{FoundPoses, Replay};
 pub use route::{FirstPass, Route};
 pub use route_graph::{EdgeOutlook, RouteGraph, RouteGraphError, Travel};
-pub use search::Search;
 pub use settings::SurveySettings;
 pub use survey::{SavedLogs, SavedSurvey, Survey};
 pub use surveyed_log::{LogEntry, SurveyedLog, Travelled};

@@ -107,8 +107,7 @@ pub struct SurveyedLog {
     pub loops: usize,
     /// The part that was used.
     pub travelled: Travelled,
-    /// How far the trajectory agrees with its own scans. It is saved beside the logs: earlier states do not have it.
-    #[serde(skip)]
+    /// How far the trajectory agrees with its own scans.
     pub quality: Quality,
     /// The noise that the mapper must expect, m.
     pub(crate) noise_m: Option<f64>,

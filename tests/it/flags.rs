@@ -21,7 +21,6 @@ const PROGRAMS: [Program; 8] = [
             ("--map", "gone.yaml"),
             ("--seed", "-1"),
             ("--duration", "0"),
-            ("--lost-after", "0"),
             ("--drive", "train"),
             ("--tour", "gone.toml"),
             ("--strategy", "clever"),
@@ -71,7 +70,7 @@ const PROGRAMS: [Program; 8] = [
     },
     Program {
         name: "predict",
-        arguments: concat!(env!("CARGO_MANIFEST_DIR"), "/tests/states/8/map_log.state"),
+        arguments: concat!(env!("CARGO_MANIFEST_DIR"), "/tests/states/map_log.state"),
         wrong: &[
             ("--at", "teatime"),
             ("--place", "here"),
@@ -91,7 +90,7 @@ const PROGRAMS: [Program; 8] = [
     },
 ];
 
-const GRID_WORLD: [(&str, &str); 16] = [
+const GRID_WORLD: [(&str, &str); 15] = [
     ("--world", "nowhere"),
     ("--calendar", "moon"),
     ("--sensor-radius", "-1"),
@@ -103,14 +102,13 @@ const GRID_WORLD: [(&str, &str); 16] = [
     ("--steps", "0"),
     ("--max-steps", "-1"),
     ("--seed", "-1"),
-    ("--reward", "praise"),
     ("--out", "a.log"),
     ("--rrd", "folder"),
     ("--threads", "0"),
     ("--shard", "3/2"),
 ];
 
-const HOUSE_TRIALS: [(&str, &str); 16] = [
+const HOUSE_TRIALS: [(&str, &str); 15] = [
     ("--world", "nowhere"),
     ("--generate", "0"),
     ("--calendar", "moon"),
@@ -122,7 +120,6 @@ const HOUSE_TRIALS: [(&str, &str); 16] = [
     ("--max-steps", "-1"),
     ("--pose", "guessed"),
     ("--seed", "-1"),
-    ("--reward", "praise"),
     ("--out", "a.log"),
     ("--rrd", "folder"),
     ("--threads", "0"),

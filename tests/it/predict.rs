@@ -5,7 +5,6 @@ use crate::map_log::{standing_line, standing_log};
 use crate::run::{Run, Summary};
 use serde_json::{Value, json};
 use std::fs;
-use std::path::PathBuf;
 
 /// Monday, 2024-01-01, 0:00 in Berlin.
 const MONDAY_S: f64 = 1_704_063_600.0;
@@ -261,15 +260,10 @@ fn a_state_keeps_its_time_zone_and_an_earlier_one_gets_one() {
         refused.stderr
     );
 
-    // A log without a date has no hours, nor has a state with a format before version 8.
+    // A log without a date has no hours.
     run.write("b.log", &standing_log(10.0, 60));
     run.goes_well("b.log --quiet --no-rrd --state b.state");
     assert_eq!(run.summary().text("/hours"), "none: b.log does not say when it was recorded");
-    let example = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/states/7/map_log.state");
-    fs::copy(example, run.path("c.state")).unwrap();
-    run.write("a.log", &standing_log(1.7e9, 120));
-    run.write("later.log", &standing_log(1.7e9 + DAY_S, 90));
-    run.goes_well("a.log later.log --time-zone Europe/Berlin --quiet --no-rrd --state c.state");
     let run = run.with_predict();
     let hours = |state: &str| run.ends(&format!("{state} --at 17:10"));
     assert!(
@@ -277,7 +271,6 @@ fn a_state_keeps_its_time_zone_and_an_earlier_one_gets_one() {
             .stderr
             .contains("the state knows no hours (b.log does not say when it was recorded)")
     );
-    assert_eq!(hours("c.state").code, Some(0));
     run.goes_well("b.state --at +10m --place 1,0");
     let Summary(summary) = run.summary();
     assert_eq!(summary["places"][0]["expected"].as_array().unwrap().len(), 1);

@@ -18,7 +18,7 @@ mod verdict;
 
 use localizer::{DistanceScale, PoseState, Trajectory, TrajectoryFinder, TrajectorySettings};
 use logs::{Log, TopicChoice};
-use results::output::TrajectoryFile;
+use results::TrajectoryFile;
 use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::time::Instant;

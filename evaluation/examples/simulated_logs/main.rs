@@ -19,7 +19,7 @@ use evaluation::metrics::{alignment, quantile};
 use interfaces::PoseMode;
 use logs::McapWriter;
 use nalgebra::{Isometry2, Point2};
-use results::output::TrajectoryFile;
+use results::TrajectoryFile;
 use std::error::Error;
 use std::fs::{File, create_dir_all};
 use std::path::Path;

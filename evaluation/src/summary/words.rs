@@ -78,7 +78,7 @@ impl fmt::Display for RunResults {
 
 /// How well the map knew the things with a schedule.
 fn of_calendar(scores: &ScheduledScores) -> Vec<(&'static str, String)> {
-    let ScheduledScores { things, brier, lasting_changes, missed, user_lost_s, trips_not_made, .. } = scores;
+    let ScheduledScores { things, brier, lasting_changes, missed, .. } = scores;
     let mut lines = vec![(
         "calendar",
         format!("Brier score {brier:.4} over {things} things with a schedule, at all times"),
@@ -88,13 +88,6 @@ fn of_calendar(scores: &ScheduledScores) -> Vec<(&'static str, String)> {
         let missed = percent(*missed);
         let text = format!(
             "{lasting_changes} changes that last an hour or more: on the map after {median} in the median, {late} for 95 %, {missed} missed"
-        );
-        lines.push(("", text));
-    }
-    if user_lost_s.is_finite() {
-        let not_made = if trips_not_made.is_finite() { percent(*trips_not_made) } else { "none".into() };
-        let text = format!(
-            "a user of the map loses {user_lost_s:.1} s per trip at closed doors, and does not make {not_made} of the possible trips"
         );
         lines.push(("", text));
     }

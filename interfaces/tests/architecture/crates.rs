@@ -5,19 +5,20 @@ use crate::workspace::{needs, packages};
 /// Every crate, and the crates of the workspace that it may depend on.
 const ALLOWED: &[(&str, &[&str])] = &[
     ("interfaces", &[]),
+    ("files", &[]),
     ("calendar", &["interfaces"]),
     ("sim", &["interfaces", "calendar"]),
     ("worldfile", &["interfaces", "calendar", "sim"]),
     ("stage", &["interfaces", "sim", "worldfile"]),
     ("mapper", &["interfaces"]),
     ("localizer", &["interfaces", "mapper"]),
-    ("logs", &["interfaces"]),
+    ("ros", &["interfaces"]),
+    ("logs", &["interfaces", "ros"]),
     ("agent", &["interfaces", "mapper"]),
     ("controller", &["interfaces"]),
-    ("robot", &["interfaces", "calendar", "mapper", "localizer", "agent", "controller"]),
+    ("robot", &["interfaces", "files", "calendar", "mapper", "localizer", "agent", "controller"]),
     ("survey", &["interfaces", "mapper", "localizer", "logs", "robot"]),
-    ("results", &["interfaces", "mapper"]),
-    ("days", &["interfaces", "calendar", "agent"]),
+    ("results", &["interfaces", "files", "mapper"]),
     (
         "evaluation",
         &[
@@ -31,10 +32,9 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "robot",
             "results",
             "draw",
-            "days",
         ],
     ),
-    ("reports", &["interfaces", "sim", "robot", "results", "draw", "days", "evaluation"]),
+    ("reports", &["interfaces", "files", "sim", "robot", "results", "draw", "evaluation"]),
     (
         "environments",
         &["interfaces", "sim", "worldfile", "mapper", "agent", "controller", "robot", "evaluation"],
@@ -56,14 +56,18 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "environments",
         ],
     ),
-    ("draw", &["interfaces", "mapper", "agent", "robot", "results"]),
-    ("viewer", &["interfaces", "mapper", "localizer", "agent", "robot", "results", "draw"]),
-    ("cli", &["interfaces", "mapper", "robot", "logs", "results"]),
-    ("owner", &["interfaces", "mapper", "robot", "logs", "survey", "results", "draw", "viewer", "cli"]),
+    ("draw", &["interfaces", "files", "mapper", "agent", "robot", "results"]),
+    ("viewer", &["interfaces", "files", "mapper", "localizer", "agent", "robot", "results", "draw"]),
+    ("cli", &["interfaces", "files", "mapper", "robot", "ros", "results"]),
+    (
+        "owner",
+        &["interfaces", "files", "mapper", "robot", "logs", "survey", "results", "draw", "viewer", "cli"],
+    ),
     (
         "curious",
         &[
             "interfaces",
+            "files",
             "calendar",
             "sim",
             "worldfile",
@@ -88,6 +92,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "worldfile",
             "mapper",
             "localizer",
+            "ros",
             "logs",
             "agent",
             "controller",
@@ -96,6 +101,8 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "survey",
         ],
     ),
+    // No part of the product: no other crate may use it.
+    ("studies", &["interfaces", "calendar", "sim", "mapper", "agent", "robot", "evaluation", "reports"]),
 ];
 
 /// Packages that only these crates may have as a dependency.
@@ -105,12 +112,14 @@ const RESERVED: &[(&str, &[&str])] =
 /// The crates that must build without Rerun.
 const WITHOUT_RERUN: &[&str] = &[
     "interfaces",
+    "files",
     "calendar",
     "sim",
     "worldfile",
     "stage",
     "mapper",
     "localizer",
+    "ros",
     "logs",
     "agent",
     "controller",
@@ -118,12 +127,12 @@ const WITHOUT_RERUN: &[&str] = &[
     "survey",
     "results",
     "draw",
-    "days",
     "evaluation",
     "reports",
     "ros2",
     "environments",
     "python",
+    "studies",
 ];
 
 #[test]
@@ -151,6 +160,14 @@ fn every_crate_uses_only_what_it_may() {
 }
 
 #[test]
+fn nothing_uses_the_studies() {
+    for package in packages() {
+        let mut all = package.dependencies.iter().chain(&package.of_tests);
+        assert!(all.all(|name| name != "studies"), "{} must not use studies", package.name);
+    }
+}
+
+#[test]
 fn only_the_viewer_and_the_programs_need_rerun() {
     for name in WITHOUT_RERUN {
         let needs = needs(name);
@@ -165,8 +182,8 @@ fn only_the_viewer_and_the_programs_need_rerun() {
 #[test]
 fn a_robot_owner_builds_no_simulator_and_a_simulation_no_logs() {
     for (name, unneeded) in [
-        ("owner", &["sim", "worldfile", "rapier2d", "evaluation", "reports", "parquet"][..]),
-        ("curious", &["survey"]),
+        ("owner", &["sim", "worldfile", "rapier2d", "evaluation", "reports"][..]),
+        ("curious", &["survey", "logs"]),
     ] {
         let needs = needs(name);
         let found: Vec<_> =

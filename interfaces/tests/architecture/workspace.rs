@@ -13,6 +13,8 @@ pub(crate) struct Package {
     pub(crate) name: String,
     /// Normal and build dependencies, by the name of the package.
     pub(crate) dependencies: Vec<String>,
+    /// The dependencies of its tests, examples and benches.
+    pub(crate) of_tests: Vec<String>,
     /// The name and the root file of the library and of each program.
     pub(crate) targets: Vec<(String, PathBuf)>,
 }
@@ -25,15 +27,17 @@ pub(crate) fn packages() -> Vec<Package> {
 
 fn package(package: &Value) -> Package {
     let name = short(&text(package, "name"));
-    let of_users = list(package, "dependencies").iter().filter(|dependency| dependency["kind"] != "dev");
-    let dependencies = of_users.map(|dependency| short(&text(dependency, "name"))).collect();
+    let (of_tests, of_users): (Vec<&Value>, _) =
+        list(package, "dependencies").iter().partition(|dependency| dependency["kind"] == "dev");
+    let [dependencies, of_tests] = [of_users, of_tests]
+        .map(|all| all.iter().map(|dependency| short(&text(dependency, "name"))).collect());
     let is_product = |target: &&Value| ["lib", "bin"].iter().any(|kind| target["kind"][0] == *kind);
     let targets = list(package, "targets").iter().filter(is_product).map(|target| {
         let is_program = target["kind"][0] == "bin";
         let name = if is_program { format!("{name}/{}", text(target, "name")) } else { name.clone() };
         (name, PathBuf::from(text(target, "src_path")))
     });
-    Package { dependencies, targets: targets.collect(), name }
+    Package { dependencies, of_tests, targets: targets.collect(), name }
 }
 
 /// All packages that a crate needs to build, the crate itself included; without those of tests.

@@ -2,10 +2,9 @@
 
 use super::Localizer;
 use crate::constants::NEAR_STD;
-use crate::estimate::Start;
 use crate::faults::FaultFinder;
 use crate::local_trajectory_builder::LocalTrajectoryBuilder;
-use interfaces::{CellState, Grid, ValueError, Values, value};
+use interfaces::{ValueError, Values, value};
 use nalgebra::{Isometry2, Matrix3};
 
 impl Localizer {
@@ -44,17 +43,6 @@ impl Localizer {
         track.last_motion = Isometry2::identity();
         self.builder.matcher.seat(pose);
         self.much_has_moved = false;
-    }
-
-    /// Begins anew in a known map, at an unknown pose: the localizer of a state file with an older format is not read.
-    /// Returns whether the pose is searched for. In a map without a surface it is not: the robot makes its own map.
-    pub fn begin_in(&mut self, map: &Grid<CellState>) -> bool {
-        let known = Self::in_map(&self.builder.matcher.settings, map, Start::Unknown);
-        // The settings were valid before.
-        let known = known.ok().filter(|known| !known.builder.matcher.surfels.is_empty());
-        let searches = known.is_some();
-        *self = known.unwrap_or_else(|| self.clone());
-        searches
     }
 
     fn values(&mut self) -> Values<'_> {

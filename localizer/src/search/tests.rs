@@ -45,7 +45,7 @@ fn a_search_finds_the_pose_in_cells_of_any_size() {
         let (surfels, _, pose, points) = room(seed);
         let frame = GridFrame::covering(surfels.frame().origin(), 4.2, 3.2, cell_m).unwrap();
         let found = search(&ScoreGrid::of_frame(&surfels, frame), &points, None, 0.5, 1.0)[0];
-        let off = pose.inv_mul(&found.pose);
+        let off = pose.inv_mul(&found);
         let is_right = off.translation.vector.norm() < 2.0 * cell_m && heading_rad(&off).abs() < cell_m;
         assert!(is_right, "seed {seed}, {cell_m} m: {off}");
     }
@@ -57,9 +57,10 @@ fn branch_and_bound_finds_what_exhaustive_search_finds() {
         let (grid, points) = random_room(seed);
         let window = Window { pose: interfaces::pose(1.8, 1.4, 0.3), reach_m: 0.8, reach_rad: 0.4 };
         for window in [None, Some(&window)] {
-            let found = search(&grid, &points, window, 0.0, 1.0)[0];
-            let exhaustive = exhaustive(&grid, &points, window);
-            assert!((found.score - exhaustive).abs() < 1e-9, "{seed}: {} {exhaustive}", found.score);
+            let mut search = Search::new(&points, window.copied(), 0.0, 1.0);
+            assert!(search.pass(&grid, &mut { usize::MAX }));
+            let (found, exhaustive) = (search.best_score(), exhaustive(&grid, &points, window));
+            assert!((found - exhaustive).abs() < 1e-9, "{seed}: {found} {exhaustive}");
         }
     }
 }
@@ -113,7 +114,7 @@ fn a_search_that_is_interrupted_finds_the_same() {
     while !search.pass(&grid, &mut left) {
         (left, scans) = (20_000, scans + 1);
     }
-    let poses = |search: &Search| search.candidates(&grid).iter().map(|found| found.pose).collect::<Vec<_>>();
-    assert!(scans > 10 && poses(&once).len() > 1, "{scans} scans");
-    assert_eq!(poses(&search), poses(&once));
+    let poses = once.candidates(&grid);
+    assert!(scans > 10 && poses.len() > 1, "{scans} scans");
+    assert_eq!(search.candidates(&grid), poses);
 }

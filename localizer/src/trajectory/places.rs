@@ -166,8 +166,8 @@ impl Places {
         let near: Vec<ScanPoint> = self.submaps[to].points.iter().filter(is_near).copied().collect();
         let points = thinned(&near, COMPARED_POINTS);
         let window = Window { pose, reach_m, reach_rad };
-        for candidate in search(grid, &points, Some(&window), PLACE_SCORE, EXAMINED) {
-            let Some((found, agreement)) = fit(map, &points, &candidate.pose, PLACE_STD, self.noise_m) else {
+        for start in search(grid, &points, Some(&window), PLACE_SCORE, EXAMINED) {
+            let Some((found, agreement)) = fit(map, &points, &start, PLACE_STD, self.noise_m) else {
                 continue;
             };
             let off = (found.placement.pose.translation.vector - pose.translation.vector).norm() / reach_m;

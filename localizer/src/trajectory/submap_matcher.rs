@@ -205,7 +205,6 @@ impl SubmapMatcher {
         let window = Window { pose: *pose, reach_m: SEARCHED.m, reach_rad: SEARCHED.rad };
         let grid = ScoreGrid::anywhere(&near);
         let found = search(&grid, points, Some(&window), MIN_OVERLAP, CLEARLY.recip());
-        let found: Vec<Isometry2<f64>> = found.iter().map(|candidate| candidate.pose).collect();
         Some(self.better(map, points, matched, &found, &wide))
     }
 

@@ -12,9 +12,7 @@ mod transition_kernel;
 
 pub use cell_map::CellMap;
 pub(crate) use cell_map::Slot;
-pub use estimators::{
-    ChoGarciaMolina, Estimator, EstimatorChoice, Imac, Paper, PaperAll, SharedPrior, TwoState, TwoStateGaps,
-};
+pub use estimators::{Estimator, EstimatorChoice, Paper, PaperAll, SharedPrior, TwoState, TwoStateGaps};
 pub use exposure::Exposure;
 pub(crate) use gaps::Belief;
 pub use gaps::{GapBin, GapEvidence, GapHistogram, GapModel, GapWeights};

@@ -39,15 +39,8 @@ pub(crate) struct LeafLook {
 }
 
 /// The cells of all doors, by their index.
-#[derive(Clone, Debug, Default, serde::Deserialize)]
+#[derive(Clone, Debug, Default, serde::Deserialize, serde::Serialize)]
 pub(crate) struct LeafCells(BTreeMap<u32, LeafCell>);
-
-impl serde::Serialize for LeafCells {
-    /// Without doors, a snapshot ends before this value, as those that were written before it existed.
-    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        if self.0.is_empty() { serializer.serialize_unit() } else { self.0.serialize(serializer) }
-    }
-}
 
 impl LeafCells {
     /// Counts what the open reading shows of the doors in view.

@@ -11,7 +11,7 @@ use crate::change::{CellMap, Slot};
 use crate::clock::Dates;
 use crate::look_counts::LookCounts;
 use crate::{Calendar, Clock, Growth, Look, MapperSettings};
-use interfaces::{Cell, CellState, Value, last_value};
+use interfaces::{Cell, CellState, Value, value};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -196,9 +196,9 @@ impl Tiles {
         *corner = (corner.0 + x, corner.1 + y);
     }
 
-    /// The tiles as a value of a snapshot; absent from snapshots with an older format.
+    /// The tiles as a value of a snapshot.
     pub(crate) fn value(&mut self) -> Box<dyn Value + '_> {
-        last_value(&mut self.learned)
+        value(&mut self.learned)
     }
 }
 

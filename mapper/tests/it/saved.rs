@@ -44,19 +44,12 @@ fn every_model_and_estimator_goes_on_from_a_snapshot() {
     }
 }
 
-/// The bytes of a mapper that knows no tiles, and of one that knows no things.
-const NO_TILES: usize = 22;
-const NO_THINGS: usize = 8;
-
 #[test]
 fn a_snapshot_that_is_cut_or_of_another_frame_is_refused() {
     let settings = MapperSettings::default();
     let snapshot = mapper(&settings, 100).snapshot();
-    // A snapshot that ends before the tiles, or before the things, has an older format.
     let read = |length: &usize| mapper(&settings, 0).restore(&snapshot[..*length]).is_ok();
-    let lengths: Vec<usize> = (0..snapshot.len()).filter(read).collect();
-    let without_things = snapshot.len() - NO_THINGS;
-    assert_eq!(lengths, [without_things - NO_TILES, without_things]);
+    assert_eq!((0..snapshot.len()).filter(read).count(), 0);
     let larger = GridFrame::new(Point2::origin(), 0.1, 4, 2).unwrap();
     assert!(Mapper::new(&settings, larger).unwrap().restore(&snapshot).is_err());
 }

@@ -11,9 +11,9 @@ use draw::pen::{Pen, Sheet, svg};
 use draw::scene::Scene;
 use draw::sketch;
 use evaluation::trials::Metric;
+use files::write_file;
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
-use results::output::write_file;
 use std::collections::BTreeSet;
 use std::path::Path;
 

@@ -1,10 +1,10 @@
 //! The file of a shard that runs.
 
-use super::line::{self, Cost};
+use super::line;
 use super::scan::{MAX_LINE, Scan, not_a_shard};
 use super::{Header, Shard, ShardError};
 use evaluation::trials::Trial;
-use results::output::{OutputError, lock, make_folder};
+use files::{OutputError, lock, make_folder};
 use std::collections::BTreeSet;
 use std::fs::{self, DirEntry, File};
 use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom, Write};
@@ -81,9 +81,9 @@ impl ShardFile {
     /// # Errors
     ///
     /// When the line cannot be written, as on a full disk. The lines before it stay; all later calls fail as well.
-    pub fn append(&self, number: u64, cost: Cost, trial: &Trial) -> Result<(), OutputError> {
+    pub fn append(&self, number: u64, trial: &Trial) -> Result<(), OutputError> {
         let failed = |why| OutputError::new(&self.path, why);
-        let line = line::write(number, cost, trial, self.key).map_err(|error| failed(error.into()))?;
+        let line = line::write(number, trial, self.key).map_err(|error| failed(error.into()))?;
         let mut appended = self.file.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(earlier) = &appended.failure {
             return Err(failed(again(earlier)));

@@ -7,7 +7,7 @@ use std::io::Write;
 use xxhash_rust::xxh3::{Xxh3, xxh3_64};
 
 /// The version of the format of the files of shards.
-const SCHEMA: u32 = 2;
+const SCHEMA: u32 = 3;
 
 /// What a shard has in place of its build when another one has gone on with it, and a report of such shards.
 pub const SEVERAL_BUILDS: &str = "mixed of several";

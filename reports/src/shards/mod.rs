@@ -18,19 +18,17 @@ mod merge;
 mod run;
 mod scan;
 mod shard;
-mod status;
 #[cfg(test)]
 mod tests;
 
 pub use file::{ShardFile, check_builds};
 pub use header::{Header, SEVERAL_BUILDS};
-pub use line::Cost;
-pub use merge::{Shards, Trials};
+pub use merge::Shards;
 pub use scan::Scan;
 pub use shard::{InvalidShard, Shard, array};
 
 use evaluation::trials::TrialError;
-use results::output::OutputError;
+use files::OutputError;
 use std::io;
 use std::path::{Path, PathBuf};
 

@@ -2,13 +2,11 @@ use super::*;
 use crate::tests::synthetic::{experiment, uniform};
 use crate::{ReportSettings, collect};
 use evaluation::trials::Trial;
+use files::RunFolder;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
-use results::output::RunFolder;
 use std::fs;
 use tempfile::TempDir;
-
-const COST: Cost = Cost { seconds: 1.5, finished: 1_800_000_000 };
 
 /// Twelve short trials.
 fn small() -> (ReportSettings, Vec<Trial>) {
@@ -46,7 +44,7 @@ fn run(folder: &Path, shard: Shard, trials: &[Trial]) -> Result<(), ShardError> 
     let jobs = (1..).zip(trials).filter(|(job, _)| shard.has(*job) && !file.finished.contains(job));
     let mut jobs: Vec<(u64, &Trial)> = jobs.collect();
     jobs.sort_by_key(|(job, _)| job * 7919 % 101);
-    jobs.into_iter().try_for_each(|(job, trial)| file.append(job, COST, trial))?;
+    jobs.into_iter().try_for_each(|(job, trial)| file.append(job, trial))?;
     Ok(file.sync()?)
 }
 
@@ -245,7 +243,7 @@ fn merge_a_million_trials() {
                         (trial.strategy, trial.seed) = (strategy.clone(), seed);
                         number += 1;
                         trial.map_hash = format!("{number:032x}");
-                        files[((number - 1) % 64) as usize].append(number, COST, &trial).unwrap();
+                        files[((number - 1) % 64) as usize].append(number, &trial).unwrap();
                     }
                 }
             }
@@ -265,7 +263,7 @@ fn merge_a_million_trials() {
         let status = fs::read_to_string("/proc/self/status").unwrap();
         let peak = status.lines().find(|line| line.starts_with("VmHWM")).unwrap();
         println!("  merged after {:?}, {peak}", start.elapsed());
-        for name in ["trials.csv", "trials.parquet", "report.json"] {
+        for name in ["trials.csv", "report.json"] {
             println!("  {name}: {} MB", fs::metadata(out.unfinished().join(name)).unwrap().len() / 1_000_000);
         }
     }

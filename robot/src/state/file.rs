@@ -1,8 +1,9 @@
 //! The file of a state, and the thread that writes it.
 
 use super::format::{State, StateError};
-use std::fs::{self, File, TryLockError};
-use std::io::{self, Read, Write};
+use files::{FileLock, OutputError, sync_folder_of, temporary_name, write_file};
+use std::fs::{self, File};
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
@@ -50,10 +51,12 @@ impl StateFile {
             Ok(known) if !known.is_file() => return Err(io::Error::other(NO_FILE)),
             _ => {}
         }
-        ["lock", "unfinished", "earlier"]
-            .iter()
-            .try_for_each(|ending| check_own(&with_ending(&target, ending)))?;
-        let lock = FileLock::new(&with_ending(&target, "lock"))?;
+        let (lock, earlier) = (with_ending(&target, "lock"), with_ending(&target, "earlier"));
+        let unfinished = [&target, &earlier].map(|path| temporary_name(path));
+        [&lock, &earlier].into_iter().chain(&unfinished).try_for_each(|path| check_own(path))?;
+        let why = "another run uses it; wait for its end, or give another file by --state";
+        let busy = || io::Error::new(io::ErrorKind::ResourceBusy, why);
+        let lock = FileLock::new(&lock)?.ok_or_else(busy)?;
         Ok(Self {
             path: path.to_owned(),
             target,
@@ -94,9 +97,9 @@ impl StateFile {
     ///
     /// When it cannot be kept.
     pub fn keep_earlier(&self) -> io::Result<()> {
-        let unfinished = with_ending(&self.target, "unfinished");
-        fs::copy(&self.target, &unfinished)?;
-        fs::rename(unfinished, with_ending(&self.target, "earlier"))
+        let mut present = File::open(&self.target)?;
+        let kept = write_file(&earlier_name(&self.target), |file| io::copy(&mut present, file).map(|_| ()));
+        kept.map_err(|OutputError { why, .. }| why)
     }
 
     /// Goes back to the file that was [kept](Self::keep_earlier); there is none then.
@@ -148,8 +151,6 @@ impl Drop for StateFile {
     }
 }
 
-/// How often a lock is tried, in steps of 10 ms.
-const LOCK_TRIES: u32 = 20;
 /// Why something is no state file.
 const NO_FILE: &str = "it is not a file (but a folder, a pipe or a device)";
 
@@ -184,76 +185,12 @@ fn target_of(path: &Path) -> PathBuf {
     path.canonicalize().unwrap_or_else(|_| path.to_owned())
 }
 
-/// A file that one process has, while it is open.
-#[derive(Debug)]
-struct FileLock {
-    path: PathBuf,
-    file: Option<File>,
-}
-
-impl FileLock {
-    fn new(path: &Path) -> io::Result<Self> {
-        for _ in 0..LOCK_TRIES {
-            let file = File::options().write(true).create(true).truncate(false).open(path);
-            let file = file.map_err(|why| match why.kind() {
-                io::ErrorKind::NotFound => why, // the folder
-                kind => io::Error::new(kind, format!("its lock {} cannot be written: {why}", path.display())),
-            })?;
-            match file.try_lock() {
-                // A program that is being started holds the locks of the one that starts it for a moment.
-                Err(TryLockError::WouldBlock) => std::thread::sleep(Duration::from_millis(10)),
-                // Not every file system has locks. Another run can have removed the file after it was opened here.
-                Ok(()) | Err(TryLockError::Error(_)) if is_file_at(&file, path) => {
-                    return Ok(Self { path: path.to_owned(), file: Some(file) });
-                }
-                Ok(()) | Err(TryLockError::Error(_)) => {}
-            }
-        }
-        let why = "another run uses it; wait for its end, or give another file by --state";
-        Err(io::Error::new(io::ErrorKind::ResourceBusy, why))
-    }
-}
-
-impl Drop for FileLock {
-    fn drop(&mut self) {
-        fs::remove_file(&self.path).ok(); // while it is locked: whoever has opened it looks again
-        self.file.take();
-    }
-}
-
-/// Whether an open file still has this name.
-#[cfg(unix)]
-fn is_file_at(file: &File, path: &Path) -> bool {
-    use std::os::unix::fs::MetadataExt;
-    let id = |known: fs::Metadata| (known.dev(), known.ino());
-    file.metadata().is_ok_and(|open| fs::metadata(path).is_ok_and(|named| id(open) == id(named)))
-}
-
-/// An open file cannot be removed on this system.
-#[cfg(not(unix))]
-fn is_file_at(_file: &File, _path: &Path) -> bool {
-    true
-}
-
 /// Replaces the file at once and completely, or not at all.
 fn write(path: &Path, state: &State) -> io::Result<()> {
     let bytes = state.to_bytes().map_err(io::Error::other)?;
-    let unfinished = with_ending(path, "unfinished");
-    let mut file = File::create(&unfinished)?;
-    let written = file.write_all(&bytes).and_then(|()| file.sync_all());
-    let renamed = written.and_then(|()| fs::rename(&unfinished, path));
-    if renamed.is_err() {
-        fs::remove_file(&unfinished).ok(); // the reason for the end is reported
-        return renamed;
-    }
-    sync_folder(path);
+    write_file(path, |file| file.write_all(&bytes)).map_err(|OutputError { why, .. }| why)?;
+    sync_folder_of(path);
     Ok(())
-}
-
-/// Brings the new name to the disk as well. Not every file system can do it; the file is complete under one of its names.
-fn sync_folder(path: &Path) {
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    File::open(folder).and_then(|folder| folder.sync_all()).ok();
 }
 
 /// Checks that nothing is lost when a run writes this file beside the state: there is none, it is empty, or one of a state.
@@ -271,7 +208,7 @@ fn check_own(path: &Path) -> io::Result<()> {
     if is_own { Ok(()) } else { Err(io::Error::other(format!("{}: {why}", path.display()))) }
 }
 
-/// The name of a file beside the state: `house.state.unfinished` while it is incomplete.
+/// The name of a file beside the state: `house.state.lock` while a run uses it.
 fn with_ending(path: &Path, ending: &str) -> PathBuf {
     let mut name = path.file_name().unwrap_or_default().to_owned();
     name.push(".");

@@ -14,14 +14,8 @@ use crate::build::{BUILD, other_build};
 use serde::{Deserialize, Serialize};
 use xxhash_rust::xxh3::xxh3_64_with_seed;
 
-/// Count up when the body, or a snapshot in it, changes; `tests/states` of the workspace holds examples of every version
-/// that is read.
-const VERSION: u32 = 11;
-/// The earliest version that is read. Since then, what is saved of a localizer has changed (7), and a mapper has tiles and
-/// things (8), logs have the quality of their maps (9), places have numbers and names (10), and places of traffic directions (11).
-const EARLIEST: u32 = 6;
-/// The first version with what is saved of a localizer now.
-const LOCALIZER_SINCE: u32 = 7;
+/// Count up when the body, or a snapshot in it, changes.
+const VERSION: u32 = 1;
 /// The part with the build.
 const BUILD_PART: &str = "build";
 /// The largest body, bytes: what a mapper with the largest map can take.
@@ -34,9 +28,7 @@ pub enum StateError {
     #[error("this is not a state file")]
     OtherKind,
     /// The state was written by another version.
-    #[error(
-        "this state file has version {found} of the format, and this program reads versions {EARLIEST} to {VERSION}"
-    )]
+    #[error("this state file has version {found} of the format, and this program reads version {VERSION}")]
     OtherVersion {
         /// The version of the bytes.
         found: u32,
@@ -82,8 +74,6 @@ pub enum StateError {
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
 pub struct State {
     sections: Vec<Section>,
-    #[serde(skip)]
-    is_earlier: bool,
 }
 
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
@@ -95,7 +85,7 @@ struct Section {
 
 impl State {
     /// How a state begins.
-    pub(crate) const MAGIC: &[u8; 8] = b"\x89curious";
+    pub(crate) const MAGIC: &[u8; 8] = b"\x89learned";
 
     /// Adds the snapshot of a part. `facts` is what it belongs to.
     #[must_use]
@@ -112,16 +102,6 @@ impl State {
     /// What the snapshot of a part belongs to.
     pub fn facts(&self, name: &str) -> Option<&Facts> {
         self.sections.iter().find(|section| section.name == name).map(|section| &section.facts)
-    }
-
-    /// Whether the file has a version of the format in which a localizer was saved otherwise.
-    pub(crate) fn is_earlier(&self) -> bool {
-        self.is_earlier
-    }
-
-    #[cfg(test)]
-    pub(super) fn of_earlier_version(self) -> Self {
-        Self { is_earlier: true, ..self }
     }
 
     /// The state with the build of this program.
@@ -198,14 +178,13 @@ impl State {
         if u64::from_le_bytes(*checksum) != xxh3_64_with_seed(packed, found.into()) {
             return Err(StateError::Damaged);
         }
-        if !(EARLIEST..=VERSION).contains(&found) {
+        if found != VERSION {
             return Err(StateError::OtherVersion { found });
         }
         let length = packed.first_chunk().ok_or(StateError::Damaged)?;
         check_length(u32::from_le_bytes(*length) as usize)?;
         let body = lz4_flex::decompress_size_prepended(packed).map_err(|_| StateError::Damaged)?;
-        let state: Self = postcard::from_bytes(&body).map_err(|_| StateError::Damaged)?;
-        Ok(Self { is_earlier: found < LOCALIZER_SINCE, ..state })
+        postcard::from_bytes(&body).map_err(|_| StateError::Damaged)
     }
 }
 

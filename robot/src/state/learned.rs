@@ -11,10 +11,8 @@ use nalgebra::Point2;
 
 const MAPPER: &str = "mapper";
 const LOCALIZATION: &str = "localization";
-/// Absent in state files with an older format.
 const FILTER: &str = "filter";
-/// The time at which readings have the time 0, in seconds since 1970-01-01 UTC. Absent where readings have no dates, and in
-/// state files that were written before dates were saved.
+/// The time at which readings have the time 0, in seconds since 1970-01-01 UTC. Absent where readings have no dates.
 const DATES: &str = "dates";
 
 /// The mapper that a robot has left in a state, whatever its settings are. It has the dates of its readings if the robot knew them.
@@ -89,8 +87,7 @@ impl LearnedFacts {
         LearnedSnapshot { facts: self.clone(), mapper, localization, filter: filter.unwrap_or_default() }
     }
 
-    /// Lets a robot that was made with the settings of these facts go on with what was learned. Returns a note for the user if
-    /// the state file has an older format, whose localizer is not read.
+    /// Lets a robot that was made with the settings of these facts go on with what was learned.
     ///
     /// # Errors
     ///
@@ -100,20 +97,18 @@ impl LearnedFacts {
         &self,
         state: &State,
         robot: &mut Robot<LaserReading, P>,
-    ) -> Result<Option<&'static str>, StateError> {
+    ) -> Result<(), StateError> {
         let misfit = |part: &str| StateError::OtherContent(part.to_owned());
         let learned = [
             state.section(MAPPER, &self.mapper)?, //
             state.section(LOCALIZATION, &self.localization)?,
         ];
         robot.mapper.restore(learned[0]).map_err(|_| misfit(MAPPER))?;
-        let note = robot.restore_localization(learned[1], state.is_earlier());
-        let note = note.map_err(|_| misfit(LOCALIZATION))?;
-        // Absent from states of programs that did not save it.
+        robot.localization_mut().restore(learned[1]).map_err(|_| misfit(LOCALIZATION))?;
         if let (Some(filter), Ok(learned)) = (robot.filter_mut(), state.section(FILTER, &self.filter)) {
             interfaces::restore(filter.values(), learned).map_err(|_| misfit(FILTER))?;
         }
-        Ok(note)
+        Ok(())
     }
 }
 
@@ -136,58 +131,5 @@ impl LearnedSnapshot {
         let state = if is_dated { state.with(DATES, Facts::default(), epoch_s) } else { state };
         let state = state.with(LOCALIZATION, facts.localization, localization);
         if filter.is_empty() { state } else { state.with(FILTER, facts.filter, filter) }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::{Localization, NoPilot};
-    use interfaces::{Scan, Twist};
-    use localizer::{Localizer, LoopClosingLocalizer, PoseState};
-    use nalgebra::Isometry2;
-
-    /// A scan in a square room of 4 m, or where nothing is near.
-    fn reading(time_s: f64, is_in_room: bool) -> LaserReading {
-        let angle_increment_rad = std::f64::consts::TAU / 360.0;
-        let range = |beam: u32| {
-            let (sin, cos) = (f64::from(beam) * angle_increment_rad).sin_cos();
-            if is_in_room { (2.0 / sin.abs().max(cos.abs())) as f32 } else { f32::NAN }
-        };
-        let ranges_m = (0..360).map(range).collect();
-        let (range_min_m, range_max_m) = (0.1, 5.0);
-        let scan = Scan { angle_increment_rad, range_min_m, range_max_m, ranges_m, ..Scan::default() };
-        let (pose, twist, mount) = (Isometry2::identity(), Twist::STOP, Isometry2::identity());
-        LaserReading { time_s, pose, twist, velocities: Vec::new(), mount, scan }
-    }
-
-    fn robots() -> [Robot<LaserReading, NoPilot>; 2] {
-        let frame = GridFrame::new(Point2::new(-4.0, -4.0), 0.05, 160, 160).unwrap();
-        let settings = LocalizerSettings::default();
-        let plain = Localizer::from_nothing(&settings, &frame, Isometry2::identity()).unwrap();
-        let looping = LoopClosingLocalizer::from_nothing(&settings, &frame, Isometry2::identity()).unwrap();
-        let robot = |localization: Box<dyn Localization<LaserReading> + Send + Sync>| {
-            Robot::new(localization, Mapper::new(&MapperSettings::default(), frame).unwrap(), NoPilot)
-        };
-        [robot(Box::new(plain)), robot(Box::new(looping))]
-    }
-
-    #[test]
-    fn the_note_of_an_earlier_state_is_what_the_robot_does() {
-        for saw_a_room in [false, true] {
-            for (mut robot, mut next) in robots().into_iter().zip(robots()) {
-                let facts = LearnedFacts::new(&MapperSettings::default(), robot.mapper.frame(), "", None);
-                for scan in 0..30 {
-                    robot.step(reading(0.1 * f64::from(scan), saw_a_room)).unwrap();
-                }
-                let state = facts.snapshot(&mut robot).added_to(State::default()).of_earlier_version();
-                let note = facts.restore(&state, &mut next).unwrap().unwrap();
-                assert_eq!(note.contains("searches for its pose"), saw_a_room, "{note}");
-                assert_eq!(note.contains("begins at a known pose"), !saw_a_room, "{note}");
-                let belief = next.step(reading(3.0, true)).unwrap().belief;
-                let is_lost = belief.state() == PoseState::Lost;
-                assert_eq!(is_lost, saw_a_room, "{belief:?}");
-            }
-        }
     }
 }

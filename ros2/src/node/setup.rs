@@ -2,7 +2,6 @@
 
 use crate::message::Time;
 use crate::node_state_file::NodeStateFile;
-use crate::notes::Notes;
 use crate::parameters::Parameters;
 use crate::pilot::LivePilot;
 use crate::source::FrameNames;
@@ -31,19 +30,14 @@ impl Parts {
     /// # Errors
     ///
     /// When a parameter is out of range, or when the state cannot be used.
-    pub(super) fn new(
-        parameters: &Parameters,
-        state: Option<&Path>,
-        notes: &mut Notes,
-    ) -> anyhow::Result<Self> {
+    pub(super) fn new(parameters: &Parameters, state: Option<&Path>) -> anyhow::Result<Self> {
         parameters.check()?;
         let (settings, frame) = of(parameters)?;
         let pilot = LivePilot::new(parameters, &settings)?;
         let mut robot = settings.robot(frame, None, Isometry2::identity(), pilot)?;
         let state_file =
             state.map(|path| NodeStateFile::new(path, &settings, &frame, parameters)).transpose()?;
-        let continued =
-            state_file.as_ref().map(|file| file.restore(&mut robot, notes)).transpose()?.flatten();
+        let continued = state_file.as_ref().map(|file| file.restore(&mut robot)).transpose()?.flatten();
         Ok(Self { robot, state_file, continued })
     }
 }

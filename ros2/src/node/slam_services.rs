@@ -7,8 +7,8 @@ use crate::node_state_file::NodeStateFile;
 use crate::service::Reply;
 use crate::service::wire::Deserialize;
 use interfaces::PoseMode;
-use logs::ros::flat;
 use nalgebra::{Isometry2, Matrix3};
+use ros::flat;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -126,7 +126,7 @@ impl<L: Link> CuriousNode<L> {
             self.notes.warn(&format!("{}: there is no such state", path.display()));
             return INVALID_FILENAME;
         }
-        match Parts::new(&self.parameters, Some(&path), &mut self.notes) {
+        match Parts::new(&self.parameters, Some(&path)) {
             Ok(Parts { robot, continued, .. }) => {
                 self.stop_robot();
                 (self.robot, self.continued, self.last) = (robot, continued, None);

@@ -3,7 +3,6 @@ mod lifecycle;
 mod loops;
 mod same_robot;
 mod seating;
-mod states;
 
 use super::*;
 use crate::fake::FakeLink;

@@ -3,7 +3,6 @@
 use crate::args::Args;
 use crate::parts::Parts;
 use cli::program::{Failure, open_state, state_failure};
-use cli::terminal::say;
 use evaluation::physics_trial::PhysicsTrial;
 use evaluation::trial_state::TrialFacts;
 use interfaces::Twist;
@@ -28,10 +27,8 @@ impl TrialStateFile {
         let (file, state) = open_state(path, args.state_every)?;
         let facts = TrialFacts::new(&parts.spec, args.seed, &parts.settings, parts.pilot_facts(args))
             .allowing_other_build(args.allow_other_build);
-        if let Some(state) = state
-            && let Some(note) = trial.restore(&state, &facts).map_err(|why| state_failure(path, why))?
-        {
-            say(io::stderr(), format_args!("note: {}: {note}", path.display()));
+        if let Some(state) = state {
+            trial.restore(&state, &facts).map_err(|why| state_failure(path, why))?;
         }
         Ok(Some(Self { file, facts }))
     }

@@ -20,13 +20,12 @@ pub(crate) struct PlaceBook {
     names: Vec<PlaceName>,
     pub(super) passages: Passages,
     pub(super) session: Session,
-    /// Saved behind the book, as states with an older format have none.
-    #[serde(skip)]
-    pub(crate) directions: Directions,
+    pub(super) directions: Directions,
 }
 
 impl PlaceBook {
     /// The book of a map that was learned without one.
+    #[cfg(test)]
     pub(crate) fn of_map(mapper: &Mapper) -> Self {
         Self { passages: Passages::of_map(mapper), ..Self::default() }
     }

@@ -118,11 +118,6 @@ pub(crate) struct Directions {
 }
 
 impl Directions {
-    /// Whether nothing was noted.
-    pub(crate) fn is_empty(&self) -> bool {
-        self.counts.is_empty() && self.traces.is_empty()
-    }
-
     /// Learns from the changes of the last reading.
     pub(super) fn note(&mut self, mapper: &Mapper) {
         let (frame, now_s) = (mapper.frame(), mapper.time());

@@ -19,7 +19,6 @@ mod tests;
 
 pub(crate) use book::PlaceBook;
 pub use directions::Direction;
-pub(crate) use directions::Directions;
 pub use line::is_line;
 pub use names::{PlaceName, StillName};
 pub(crate) use since::since;

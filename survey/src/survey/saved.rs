@@ -2,13 +2,12 @@
 
 use super::Survey;
 use crate::change_log::ChangeLog;
-use crate::known_place::KnownPlace;
-use crate::places::{Directions, PlaceBook};
-use crate::quality::Quality;
+use crate::places::PlaceBook;
 use crate::replay::FoundPoses;
 use crate::settings::SurveySettings;
 use crate::surveyed_log::SurveyedLog;
 use interfaces::{GridFrame, PoseMode, ValueError, from_bytes, to_bytes};
+use localizer::KnownPlace;
 use mapper::Mapper;
 use robot::{NoPilot, Robot};
 use std::sync::Arc;
@@ -31,12 +30,7 @@ impl SavedLogs {
     ///
     /// When the bytes are no logs of a survey.
     pub fn read(bytes: &[u8]) -> Result<Self, ValueError> {
-        type Saved = (PoseMode, Vec<SurveyedLog>, Vec<Quality>);
-        let Ok((pose, mut logs, qualities)) = from_bytes::<Saved>(bytes) else {
-            return from_bytes(bytes).map(|(pose, logs)| Self { pose, logs }); // an earlier state, without qualities
-        };
-        logs.iter_mut().zip(qualities).for_each(|(log, quality)| log.quality = quality);
-        Ok(Self { pose, logs })
+        from_bytes(bytes).map(|(pose, logs)| Self { pose, logs })
     }
 
     /// The logs, in the order of their times.
@@ -65,14 +59,7 @@ impl SavedSurvey {
         let Self { pose, place, mapper, changes, book, logs } = self;
         let place = place.map(|place| Arc::unwrap_or_clone(place).snapshot());
         let mapper = mapper.map(|mut mapper| (*mapper.frame(), mapper.snapshot()));
-        let qualities: Vec<Quality> = logs.iter().map(|log| log.quality.clone()).collect();
-        let logs = to_bytes(&(pose, logs, qualities));
-        // Without directions, the bytes are those of an earlier state, which has none.
-        let learned = match book.directions.is_empty() {
-            true => to_bytes(&(place, mapper, changes, book)),
-            false => to_bytes(&(place, mapper, changes, &book, &book.directions)),
-        };
-        (logs, learned)
+        (to_bytes(&(pose, logs)), to_bytes(&(place, mapper, changes, book)))
     }
 }
 
@@ -100,27 +87,16 @@ impl Survey {
         logs: SavedLogs,
         learned: &[u8],
     ) -> Result<Self, ValueError> {
-        type Earlier = (Option<Vec<u8>>, Option<(GridFrame, Vec<u8>)>, ChangeLog);
-        type Undirected = (Option<Vec<u8>>, Option<(GridFrame, Vec<u8>)>, ChangeLog, PlaceBook);
-        type Learned = (Option<Vec<u8>>, Option<(GridFrame, Vec<u8>)>, ChangeLog, PlaceBook, Directions);
-        let (place, map, changes, book) =
-            if let Ok((place, map, changes, mut book, directions)) = from_bytes::<Learned>(learned) {
-                book.directions = directions;
-                (place, map, changes, Some(book))
-            } else if let Ok((place, map, changes, book)) = from_bytes::<Undirected>(learned) {
-                (place, map, changes, Some(book))
-            } else {
-                from_bytes::<Earlier>(learned).map(|(place, map, changes)| (place, map, changes, None))?
-            };
-        let is_earlier = book.is_none();
-        let place = place.map(|bytes| KnownPlace::restored(&settings, &bytes)).transpose()?;
+        type Learned = (Option<Vec<u8>>, Option<(GridFrame, Vec<u8>)>, ChangeLog, PlaceBook);
+        let (place, map, changes, book): Learned = from_bytes(learned)?;
+        let place = place.map(|bytes| KnownPlace::restored(&bytes)).transpose()?;
         let mut survey = Self {
             settings,
             learns_noise,
             place: place.map(Arc::new),
             robot: None,
             changes,
-            book: book.unwrap_or_default(),
+            book,
             logs: logs.logs,
             seen_m2: 0.0,
         };
@@ -131,9 +107,6 @@ impl Survey {
             let mut mapper = Mapper::new(&settings.mapper, frame).map_err(|_| ValueError)?;
             survey.date(&mut mapper, last);
             mapper.restore(&bytes)?;
-            if is_earlier {
-                survey.book = PlaceBook::of_map(&mapper); // a state of a version before 10 has none
-            }
             let poses = Box::new(FoundPoses::new(Vec::new()));
             survey.robot = Some(Robot::new(poses, mapper, NoPilot));
         }

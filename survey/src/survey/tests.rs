@@ -90,7 +90,7 @@ fn a_survey_that_is_saved_and_goes_on_equals_one_that_was_never_interrupted() {
     }
     // The place in which later logs find theirs is the same, too.
     let saved = place.as_ref().clone().snapshot();
-    let again = crate::KnownPlace::restored(&settings(), &saved).unwrap();
+    let again = localizer::KnownPlace::restored(&saved).unwrap();
     assert!(again.snapshot() == saved);
 
     // Without the poses, the sums stay.

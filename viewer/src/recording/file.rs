@@ -1,9 +1,9 @@
 //! The file of a recording.
 
 use super::RecordingError;
+use files::{OutputError, UnfinishedFile, is_another_kind};
 use rerun::external::re_log_encoding::rrd::{EncodeError, Encoder, EncodingOptions};
 use rerun::log::LogMsg;
-use results::output::{OutputError, UnfinishedFile, is_another_kind};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 

@@ -9,7 +9,7 @@ use crate::hypotheses::Hypotheses;
 use crate::motion::Motion;
 use crate::scan_points::ScanPoint;
 use crate::score_grid::ScoreGrid;
-use crate::search::{Candidate, Search, Window, lower, search_within};
+use crate::search::{Search, Window, lower, search_within};
 use interfaces::GridFrame;
 use nalgebra::{Isometry2, Point2, Vector2};
 use std::f64::consts::PI;
@@ -82,7 +82,7 @@ impl MapMatcher {
         step: &Step<M>,
         window: &Window,
         left: &mut usize,
-    ) -> Vec<Candidate> {
+    ) -> Vec<Isometry2<f64>> {
         let reach_m = reach_m(&step.scan.points);
         let grid = self.scores(step, window, reach_m);
         *left = left.saturating_sub(grid.cells() / CELLS_PER_LOOKUP);
@@ -142,7 +142,7 @@ impl MapMatcher {
         let (search, since) = wide.part.get_or_insert_with(begin);
         if search.pass(scores, left) {
             let mut candidates = search.candidates(scores);
-            candidates.iter_mut().for_each(|candidate| candidate.pose *= *since);
+            candidates.iter_mut().for_each(|pose| *pose *= *since);
             let found = Hypotheses::start(&self.scene(step), &candidates, MIN_SCORE);
             wide.best_score = wide.best_score.max(search.best_score());
             wide.found = std::mem::take(&mut wide.found).restarted().or(found);

@@ -7,9 +7,8 @@ use crate::change::shared_cells;
 use interfaces::{CellState, SparseCells, Values, cell_runs, value};
 
 impl CellMap {
-    /// The changing values, and apart from them those of the prior that cells share: absent from the snapshot of a mapper whose
-    /// cells share none. Values that follow from others are not in the lists.
-    pub(crate) fn values(&mut self) -> (Values<'_>, Values<'_>) {
+    /// The changing values. Values that follow from others are not in the list.
+    pub(crate) fn values(&mut self) -> Values<'_> {
         let mut values = vec![
             value(&mut self.interrupted),
             cell_runs(self.states.cells_mut(), usize::MAX),
@@ -23,11 +22,11 @@ impl CellMap {
             value(&mut self.last_seen_counts),
         ];
         values.push(cell_runs(&mut self.gaps, shared_cells::RUN));
-        let prior = self.shared.as_mut().map(|shared| {
+        if let Some(shared) = &mut self.shared {
             let means = cell_runs(&mut shared.means, usize::MAX);
-            vec![value(&mut shared.prior), value(&mut shared.due), means]
-        });
-        (values, prior.unwrap_or_default())
+            values.extend([value(&mut shared.prior), value(&mut shared.due), means]);
+        }
+        values
     }
 
     /// Computes what follows from the values.

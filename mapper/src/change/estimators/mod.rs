@@ -4,16 +4,12 @@
 //! [`EstimatorChoice::all`]. An estimator of another crate is set in
 //! [`MapperSettings::estimator`](crate::MapperSettings::estimator) with `.into()`.
 
-mod cho_garcia_molina;
-mod imac;
 mod paper;
 mod shared_prior;
 mod two_state;
 mod two_state_gaps;
 
 use super::{CellStatistics, GapModel, TransitionRates};
-pub use cho_garcia_molina::ChoGarciaMolina;
-pub use imac::Imac;
 pub use paper::{Paper, PaperAll};
 pub use shared_prior::SharedPrior;
 use std::fmt;
@@ -80,15 +76,7 @@ impl Default for EstimatorChoice {
 impl EstimatorChoice {
     /// Every built-in estimator, in the order of reports.
     pub fn all() -> Vec<Self> {
-        vec![
-            Paper.into(),
-            PaperAll.into(),
-            ChoGarciaMolina.into(),
-            Imac.into(),
-            TwoState.into(),
-            TwoStateGaps.into(),
-            SharedPrior.into(),
-        ]
+        vec![Paper.into(), PaperAll.into(), TwoState.into(), TwoStateGaps.into(), SharedPrior.into()]
     }
 
     /// The name on the command line, in files and in reports.

@@ -57,23 +57,13 @@ impl SurveyStateFile {
     ) -> Result<Survey, Failure> {
         let noise = noise_m.map_or_else(|| "learned".to_owned(), |noise_m| noise_m.to_string());
         let default = SurveySettings::of(settings.pose);
-        let facts = |settings| {
-            let facts = Facts::default().with("--pose", default.pose.name()).with("--noise", &noise);
-            facts.with_learned_settings("survey", settings, Some(&default))
-        };
-        self.facts = facts(settings);
-        let mut expected = self.facts.clone();
-        if loaded.as_ref().is_some_and(|loaded| loaded.time_zone().is_none()) {
-            // A state with a format before version 8 knows no hours: they can be those of any zone.
-            let mut without_zone = settings.clone();
-            without_zone.mapper.time_zone.clone_from(&default.mapper.time_zone);
-            expected = facts(&without_zone);
-        }
+        let facts = Facts::default().with("--pose", default.pose.name()).with("--noise", &noise);
+        self.facts = facts.with_learned_settings("survey", settings, Some(&default));
         let (settings, learns_noise) = (settings.clone(), noise_m.is_none());
         let (Some(Loaded { state, logs }), Some(file)) = (loaded, &self.file) else {
             return Ok(Survey::new(settings, learns_noise));
         };
-        let learned = state.section(SURVEY, &expected).and_then(|learned| {
+        let learned = state.section(SURVEY, &self.facts).and_then(|learned| {
             let survey = Survey::restored(settings, learns_noise, logs, learned);
             survey.map_err(|_| StateError::OtherContent(SURVEY.to_owned()))
         });

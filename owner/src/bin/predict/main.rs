@@ -13,12 +13,12 @@ use cli::program::{Failure, arguments, input, results_folder, start, state_failu
 use cli::terminal::print;
 use draw::layers::Layer;
 use draw::pictures::{NamedLine, draw_values};
+use files::write_file;
 use interfaces::Grid;
 use mapper::Door;
 use owner::words::length_of;
 use place::Place;
 use results::numbers::percent;
-use results::output::write_file;
 use results::{raster, ros_map};
 use robot::BUILD;
 use robot::state::read_state;
