@@ -5,12 +5,12 @@
 
 pub mod canvas;
 #[cfg(test)]
+#[path = "tests/fake_run.rs"]
 mod fake_run;
 mod film;
 mod ground;
 pub mod layers;
 pub mod legend;
-mod names;
 pub mod outline;
 pub mod palette;
 mod panel;

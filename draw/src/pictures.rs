@@ -2,26 +2,20 @@
 //! plan, and a moving picture.
 
 use crate::canvas::{Area, Canvas, PictureError};
+pub use crate::plan::NamedLine;
+pub use crate::trajectory::Trails;
+
 use crate::layers::Layer;
 use crate::panel::Panel;
 use crate::scene::{Scene, TimeUnit};
 use crate::view::Trail;
-use crate::{names, plan, trajectory};
+use crate::{plan, trajectory};
 use files::make_folder;
 use interfaces::Grid;
 use mapper::Mapper;
 use nalgebra::Point2;
 use results::thinned::Goals;
 use std::path::Path;
-
-/// The trails of the robots.
-#[derive(Clone, Copy)]
-pub struct Trails<'a> {
-    /// Where the robots were, in the order of the scene.
-    pub true_poses: &'a [Trail],
-    /// Where the curious robot believed to be; empty if its poses are exact.
-    pub believed: &'a Trail,
-}
 
 /// The panels of Figure 5, in its order.
 const FIGURE_5: [Layer; 3] = [Layer::Occupancy, Layer::Interval, Layer::ChangeProbability];
@@ -80,15 +74,6 @@ pub fn draw_plan(path: &Path, scene: &Scene) -> Result<(), PictureError> {
     Ok(picture.write(path)?)
 }
 
-/// A line on a map with a name beside it, as the leaf of a door.
-#[derive(Clone, Debug)]
-pub struct NamedLine {
-    /// Its ends, m.
-    pub ends: [Point2<f64>; 2],
-    /// The name.
-    pub name: String,
-}
-
 /// Draws a layer of the map with other values, and named lines on it, to the PNG file `path`; NaN is drawn as what does not change.
 ///
 /// # Errors
@@ -107,7 +92,7 @@ pub fn draw_values(
         layer.classes_of(mapper, unit, |index| Some(values.cells()[index]).filter(|value| !value.is_nan()));
     let picture = draw(layer.name(), panel.size(), |area| {
         let chart = panel.classes(area, (layer, title), &classes, unit)?;
-        names::draw(&panel, area, &chart, lines)
+        plan::lines(&panel, &chart, lines)
     })?;
     Ok(picture.write(path)?)
 }
@@ -121,5 +106,5 @@ fn draw(
 }
 
 #[cfg(test)]
-#[path = "tests.rs"]
+#[path = "tests/pictures.rs"]
 mod tests;

@@ -1,6 +1,6 @@
 //! A world from above, at its start.
 
-use crate::canvas::{Area, why};
+use crate::canvas::{Area, ink, why};
 use crate::ground::{self, fill};
 use crate::legend::{self, Legend, Mark};
 use crate::palette;
@@ -18,6 +18,15 @@ const MAX_NAMES: usize = 40;
 /// The drawn part of the range of a sensor, as a multiple of the robot's radius: all of it would cover the
 /// world.
 const SECTOR_RADII: f64 = 2.5;
+
+/// A line on a map with a name beside it, as the leaf of a door.
+#[derive(Clone, Debug)]
+pub struct NamedLine {
+    /// Its ends, m.
+    pub ends: [Point2<f64>; 2],
+    /// The name.
+    pub name: String,
+}
 
 /// Draws the scene, the robots with the directions of their sensors, and the names.
 pub(crate) fn draw(panel: &Panel, area: &Area, scene: &Scene) -> Result<(), String> {
@@ -109,7 +118,6 @@ fn names(panel: &Panel, chart: &Chart, scene: &Scene) -> Result<(), String> {
     });
     let robots = scene.robots.iter().map(|robot| (&robot.name, body(robot, &robot.pose), false));
     let plot = chart.plotting_area();
-    let (columns, rows) = plot.get_pixel_range();
     let pixels = plot.use_screen_coord();
     let (mut beside, mut taken) = (Vec::new(), Vec::new());
     for (name, outline, is_light) in obstacles.chain(robots) {
@@ -128,8 +136,34 @@ fn names(panel: &Panel, chart: &Chart, scene: &Scene) -> Result<(), String> {
             taken.push(owner);
         }
     }
+    write_beside(panel, chart, beside, taken)
+}
+
+/// Draws named lines, as the leaves of doors, with the names beside their middles.
+pub(crate) fn lines(panel: &Panel, chart: &Chart, lines: &[NamedLine]) -> Result<(), String> {
+    let plot = chart.plotting_area();
+    let mut names = Vec::new();
+    for NamedLine { ends, name } in lines {
+        let style = panel.line(ink(palette::CURIOUS), 5);
+        plot.draw(&PathElement::new(ends.map(|end| pair(&end)), style)).map_err(why)?;
+        let middle = plot.map_coordinate(&pair(&nalgebra::center(&ends[0], &ends[1])));
+        let size = panel.text_size(&plot.use_screen_coord(), name)?;
+        names.push((name, Plate::around(middle, [panel.px(4); 2]), size));
+    }
+    write_beside(panel, chart, names, Vec::new())
+}
+
+/// Writes names of a size beside their owners, where nothing is `taken`.
+fn write_beside(
+    panel: &Panel,
+    chart: &Chart,
+    names: Vec<(&String, Plate, [i32; 2])>,
+    mut taken: Vec<Plate>,
+) -> Result<(), String> {
+    let plot = chart.plotting_area();
+    let ((columns, rows), pixels) = (plot.get_pixel_range(), plot.use_screen_coord());
     let area = Plate { left: columns.start, right: columns.end, top: rows.start, bottom: rows.end };
-    for (name, owner, size) in beside {
+    for (name, owner, size) in names {
         let plate = owner.place_beside(size, panel.px(2), &area, &taken);
         // A light ground, because there may be a wall.
         let corners = [(plate.left, plate.top), (plate.right, plate.bottom)];

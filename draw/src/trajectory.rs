@@ -6,13 +6,21 @@ use crate::layers::Layer;
 use crate::legend::{Legend, Mark};
 use crate::palette::{self, Rgb};
 use crate::panel::{Chart, Panel, pair};
-use crate::pictures::Trails;
 use crate::scene::{Scene, SceneRobot, extent};
 use crate::view::Trail;
 use mapper::Mapper;
 use nalgebra::Point2;
 use plotters::prelude::*;
 use results::thinned::Goals;
+
+/// The trails of the robots.
+#[derive(Clone, Copy)]
+pub struct Trails<'a> {
+    /// Where the robots were, in the order of the scene.
+    pub true_poses: &'a [Trail],
+    /// Where the curious robot believed to be; empty if its poses are exact.
+    pub believed: &'a Trail,
+}
 
 /// Draws the scene, every trail with its start, and the goals. Below the scene is the map, where there is one.
 pub(crate) fn draw(

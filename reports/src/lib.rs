@@ -18,6 +18,8 @@ mod statistics;
 mod strategy;
 mod table;
 mod trial_file;
+#[cfg(feature = "programs")]
+pub mod trials;
 
 pub use builder::{ReportBuilder, UnequalTimes};
 pub use comparison::Comparison;

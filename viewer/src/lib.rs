@@ -4,7 +4,7 @@
 //! It reads the state of a run and changes nothing: no result depends on the display.
 
 #[cfg(all(test, feature = "recording"))]
-#[path = "../../draw/src/fake_run.rs"]
+#[path = "../../draw/src/tests/fake_run.rs"]
 mod fake_run;
 #[cfg(not(feature = "recording"))]
 mod no_recording;

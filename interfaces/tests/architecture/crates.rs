@@ -34,7 +34,25 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "draw",
         ],
     ),
-    ("reports", &["interfaces", "files", "sim", "robot", "results", "draw", "evaluation"]),
+    (
+        "reports",
+        &[
+            "interfaces",
+            "files",
+            "calendar",
+            "sim",
+            "worldfile",
+            "mapper",
+            "agent",
+            "robot",
+            "results",
+            "draw",
+            "viewer",
+            "cli",
+            "evaluation",
+            "curious",
+        ],
+    ),
     (
         "environments",
         &["interfaces", "sim", "worldfile", "mapper", "agent", "controller", "robot", "evaluation"],
@@ -78,7 +96,6 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "robot",
             "results",
             "evaluation",
-            "reports",
             "draw",
             "viewer",
             "cli",
@@ -128,7 +145,6 @@ const WITHOUT_RERUN: &[&str] = &[
     "results",
     "draw",
     "evaluation",
-    "reports",
     "ros2",
     "environments",
     "python",
@@ -183,7 +199,7 @@ fn only_the_viewer_and_the_programs_need_rerun() {
 fn a_robot_owner_builds_no_simulator_and_a_simulation_no_logs() {
     for (name, unneeded) in [
         ("owner", &["sim", "worldfile", "rapier2d", "evaluation", "reports"][..]),
-        ("curious", &["survey", "logs"]),
+        ("curious", &["survey", "logs", "reports"]),
     ] {
         let needs = needs(name);
         let found: Vec<_> =

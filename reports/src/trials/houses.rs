@@ -1,11 +1,11 @@
 //! Trials in houses and other physics worlds: `house_trials`.
 
 use super::{TrialKind, one_of_kinds};
-use crate::worlds::{Loaded, list_physics_worlds, load};
 use anyhow::Context;
 use calendar::Kind;
 use clap::Args;
 use cli::program::{duration_s, pose_in_world, pose_mode};
+use curious::worlds::{Loaded, list_physics_worlds, load};
 use evaluation::physics_trial;
 use evaluation::trials::PhysicsRobot;
 use interfaces::PoseMode;

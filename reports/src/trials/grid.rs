@@ -1,10 +1,10 @@
 //! Trials in grid worlds: `grid_world`.
 
 use super::{TrialKind, one_of_kinds};
-use crate::worlds::{SHIPPED_GRID, load_grid};
 use calendar::Kind;
 use clap::Args;
 use cli::program::list;
+use curious::worlds::{SHIPPED_GRID, load_grid};
 use evaluation::trials::GridRobot;
 use sim::grid::{GenerateSettings, GridSpec};
 

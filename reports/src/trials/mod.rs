@@ -10,6 +10,7 @@ pub use grid::GridWorlds;
 pub use houses::Houses;
 pub use run::main;
 
+use crate::shards::Shard;
 use anyhow::bail;
 use calendar::Kind;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -20,7 +21,6 @@ use cli::terminal::say;
 use evaluation::scenes::{Displayed, Visible};
 use evaluation::trials::{Experiment, TrialStrategy, TrialWorld};
 use mapper::EstimatorChoice;
-use reports::shards::Shard;
 use shards::ShardCommand;
 use std::collections::BTreeSet;
 use std::fmt::Debug;

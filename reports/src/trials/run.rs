@@ -2,6 +2,7 @@
 
 use super::recorded::{Recorded, record};
 use super::{EXECUTION, OUTPUT, TrialArgs, TrialKind};
+use crate::{REPORT, ReportSettings, collect};
 use anyhow::Context;
 use clap::CommandFactory;
 use clap::parser::ValueSource;
@@ -12,7 +13,6 @@ use evaluation::scenes::Displayed;
 use evaluation::trials::{Experiment, Trial, TrialError, TrialWorld};
 use files::{RunFolder, write_file};
 use rayon::ThreadPool;
-use reports::{REPORT, ReportSettings, collect};
 use std::io::stderr;
 use std::path::Path;
 use std::process::ExitCode;

@@ -90,7 +90,7 @@ mod tests {
     fn experiment(steps: u64) -> Experiment<GridSpec> {
         Experiment {
             worlds: vec![
-                worldfile::grid::parse("two_blocks.toml", include_str!("../../worlds/two_blocks.toml"))
+                worldfile::grid::parse("two_blocks.toml", include_str!("../../../worlds/two_blocks.toml"))
                     .unwrap(),
             ],
             estimators: vec![Paper.into()],

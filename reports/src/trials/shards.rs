@@ -2,6 +2,8 @@
 
 use super::run::{Results, experiment_arguments, report_settings};
 use super::{TrialArgs, TrialKind};
+use crate::ReportSettings;
+use crate::shards::{Header, Shard, ShardFile, Shards, array, check_builds};
 use anyhow::{Context, anyhow};
 use clap::{Parser, Subcommand};
 use cli::flags::folder;
@@ -9,8 +11,6 @@ use cli::program::{Failure, INTERRUPTED, input, results_folder};
 use cli::progress::Progress;
 use cli::terminal::{print, say};
 use evaluation::trials::Experiment;
-use reports::ReportSettings;
-use reports::shards::{Header, Shard, ShardFile, Shards, array, check_builds};
 use std::io::stderr;
 use std::iter::once;
 use std::path::{Path, PathBuf};

@@ -1,6 +1,6 @@
 //! Trials in grid worlds.
 
-use curious::trials::{GridWorlds, main as trials};
+use reports::trials::{GridWorlds, main as trials};
 use std::process::ExitCode;
 
 fn main() -> ExitCode {

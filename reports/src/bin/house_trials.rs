@@ -1,6 +1,6 @@
 //! Trials in houses and other physics worlds.
 
-use curious::trials::{Houses, main as trials};
+use reports::trials::{Houses, main as trials};
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
