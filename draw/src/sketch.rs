@@ -1,4 +1,4 @@
-//! Small plans of worlds, beside curves.
+//! A small plan of a world, beside curves.
 
 use crate::canvas::{ink, why};
 use crate::legend::{self, Legend, Mark};
@@ -14,68 +14,31 @@ use std::f64::consts::TAU;
 const LEGEND: i32 = 190;
 const ROW: i32 = 24;
 const SWATCH: i32 = 14;
-/// The entries of the legend below several plans in a row, and the width of one.
-const ENTRIES: i32 = 3;
-const ENTRY: i32 = 190;
-/// The maximum number of drawn worlds, and of named blocks of a grid world.
-const WORLDS: usize = 12;
+/// The maximum number of named blocks of a grid world.
 const BLOCKS: usize = 8;
 const GRID: RGBColor = RGBColor(232, 234, 238);
 
-/// Draws worlds: one with a legend beside it, several side by side, as many as fit, with a legend below.
+/// Draws a world with a legend beside it.
 ///
 /// # Errors
 ///
 /// As of the plotting library.
-pub fn worlds<DB: DrawingBackend>(sheet: &Sheet<DB>, pen: &Pen, scenes: &[&Scene]) -> Result<(), String> {
-    let shown = &scenes[..scenes.len().min(WORLDS)];
-    let title = match scenes.len() {
-        0 => return Ok(()),
-        1 => "The world".to_owned(),
-        count if count > WORLDS => format!("{WORLDS} of the worlds"),
-        _ => "The worlds".to_owned(),
-    };
-    pen.write(sheet, (pen.px(16), pen.px(18)), HPos::Left, 17, &title)?;
-    let (width, height) = sheet.dim_in_pixel();
-    let entry = |legend: &Sheet<DB>, [left, middle]: [i32; 2], (mark, text): &(Mark, String)| {
-        pen.mark(legend, *mark, (pen.px(left + 4), pen.px(middle)), SWATCH)?;
-        pen.write(legend, (pen.px(left + 26), pen.px(middle)), HPos::Left, 15, text)
-    };
-    if let [scene] = shown {
-        let below = sheet.margin(pen.px(34), pen.px(14), pen.px(16), 0);
-        let (left, _) = below.split_horizontally(width as i32 - pen.px(LEGEND + 16));
-        let right = draw(&left, pen, scene)?;
-        let (_, legend) = below.split_horizontally(right + pen.px(14));
-        return (0..)
-            .zip(&entries(scene, true))
-            .try_for_each(|(row, it)| entry(&legend, [0, 12 + row * ROW], it));
-    }
-    let mut common: Legend = Vec::new();
-    for (place, own) in shown.iter().flat_map(|scene| entries(scene, false).into_iter().enumerate()) {
-        if !common.iter().any(|(_, known)| *known == own.1) {
-            common.insert(place.min(common.len()), own);
-        }
-    }
-    let rows = (common.len() as i32 + ENTRIES - 1) / ENTRIES;
-    let (plans, legend) = sheet.split_vertically(height as i32 - pen.px(ROW * rows + 6));
-    for (number, it) in (0..).zip(&common) {
-        entry(&legend, [12 + number % ENTRIES * ENTRY, ROW / 2 + number / ENTRIES * ROW], it)?;
-    }
-    let columns = match shown.len() {
-        few @ ..=2 => few,
-        3..=6 => 3,
-        _ => 4,
-    };
-    let below = plans.margin(pen.px(34), pen.px(4), pen.px(12), 0);
-    let areas = below.split_evenly((shown.len().div_ceil(columns), columns));
-    let mut plans = areas.iter().zip(shown);
-    plans.try_for_each(|(area, scene)| {
-        draw(&area.margin(0, pen.px(16), pen.px(6), pen.px(6)), pen, scene).map(drop)
+pub fn world<DB: DrawingBackend>(sheet: &Sheet<DB>, pen: &Pen, scene: &Scene) -> Result<(), String> {
+    pen.write(sheet, (pen.px(16), pen.px(18)), HPos::Left, 17, "The world")?;
+    let (width, _) = sheet.dim_in_pixel();
+    let below = sheet.margin(pen.px(34), pen.px(14), pen.px(16), 0);
+    let (left, _) = below.split_horizontally(width as i32 - pen.px(LEGEND + 16));
+    let right = draw(&left, pen, scene)?;
+    let (_, legend) = below.split_horizontally(right + pen.px(14));
+    (0..).zip(&entries(scene)).try_for_each(|(row, (mark, text))| {
+        let middle = pen.px(12 + row * ROW);
+        pen.mark(&legend, *mark, (pen.px(4), middle), SWATCH)?;
+        pen.write(&legend, (pen.px(26), middle), HPos::Left, 15, text)
     })
 }
 
-/// The entries of the legend; those of one world have the names of its blocks.
-fn entries(scene: &Scene, is_alone: bool) -> Legend {
+/// The entries of the legend.
+fn entries(scene: &Scene) -> Legend {
     let blocks = &scene.obstacles;
     let wall = (!scene.walls.is_empty(), Mark::Area(palette::INK), "wall");
     let start = (Mark::Dot(CURIOUS), "start of the robot".to_owned());
@@ -91,19 +54,14 @@ fn entries(scene: &Scene, is_alone: bool) -> Legend {
         return entries;
     }
     let mut entries = legend::entries([wall]);
-    if is_alone {
-        let named = blocks.iter().take(BLOCKS).enumerate();
-        entries.extend(named.map(|(index, block)| (Mark::Area(palette::thing(index)), block.name.clone())));
-        if blocks.len() > BLOCKS {
-            entries.push((Mark::Nothing, format!("and {} more blocks", blocks.len() - BLOCKS)));
-        }
-    } else if !blocks.is_empty() {
-        entries.push((Mark::Area(palette::thing(0)), "path of a block".to_owned()));
+    let named = blocks.iter().take(BLOCKS).enumerate();
+    entries.extend(named.map(|(index, block)| (Mark::Area(palette::thing(index)), block.name.clone())));
+    if blocks.len() > BLOCKS {
+        entries.push((Mark::Nothing, format!("and {} more blocks", blocks.len() - BLOCKS)));
     }
     entries.push(start);
     let range = scene.robots.iter().flat_map(|robot| &robot.sectors).map(|sector| sector.range_m).next();
-    let range = range.filter(|_| is_alone).map(|range| format!(": {range}")).unwrap_or_default();
-    entries.push((Mark::Ring, format!("range of its sensor{range}")));
+    entries.extend(range.map(|range| (Mark::Ring, format!("range of its sensor: {range}"))));
     entries
 }
 

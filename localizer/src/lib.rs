@@ -72,5 +72,5 @@ pub use loop_closing::{Correction, LoopClosed, LoopClosingLocalizer, Switch};
 pub use settings::{LocalizerSettings, OdometryTrust};
 pub use trajectory::{
     DistanceScale, KnownPlace, PlaceError, Residual, RouteSearch, Trajectory, TrajectoryFinder,
-    TrajectoryPose, TrajectorySettings,
+    TrajectoryPose,
 };

@@ -59,7 +59,8 @@ impl Surfel {
 /// The line map.
 #[derive(Clone, Debug)]
 pub(crate) struct SurfelMap {
-    frame: GridFrame,
+    /// The grid of the cells.
+    pub(crate) frame: GridFrame,
     cells: Vec<[u32; PER_CELL]>,
     surfels: Vec<Surfel>,
     /// Places in `surfels` that can be used again.
@@ -92,11 +93,6 @@ impl SurfelMap {
     /// Everything that scans have changed.
     pub(crate) fn values(&mut self) -> Values<'_> {
         vec![runs(&mut self.cells), value(&mut self.surfels), value(&mut self.removed), value(&mut self.scan)]
-    }
-
-    /// The grid of the cells.
-    pub(crate) fn frame(&self) -> &GridFrame {
-        &self.frame
     }
 
     /// The surfel at an index from [`SurfelMap::nearest`].
