@@ -8,12 +8,10 @@ pub use crate::trajectory::Trails;
 use crate::layers::Layer;
 use crate::panel::Panel;
 use crate::scene::{Scene, TimeUnit};
-use crate::view::Trail;
 use crate::{plan, trajectory};
 use files::make_folder;
 use interfaces::Grid;
 use mapper::Mapper;
-use nalgebra::Point2;
 use results::thinned::Goals;
 use std::path::Path;
 

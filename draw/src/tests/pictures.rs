@@ -4,6 +4,7 @@ use crate::fake_run::FakeRun;
 use crate::legend::Mark;
 use crate::palette::{self, Rgb};
 use crate::scene::SceneRobot;
+use crate::view::Trail;
 use files::UnfinishedFile;
 use image::RgbImage;
 use interfaces::CellState;

@@ -2,8 +2,7 @@
 
 use super::run::{Results, experiment_arguments, report_settings};
 use super::{TrialArgs, TrialKind};
-use crate::ReportSettings;
-use crate::shards::{Header, Shard, ShardFile, Shards, array, check_builds};
+use crate::shards::{Header, Shard, ShardFile, Shards, array};
 use anyhow::{Context, anyhow};
 use clap::{Parser, Subcommand};
 use cli::flags::folder;
