@@ -52,12 +52,6 @@ fn worlds_are_listed() {
     ");
 }
 
-#[test]
-fn the_version_is_printed() {
-    let expected = concat!("four_rooms ", env!("CARGO_PKG_VERSION"), "\n");
-    assert_eq!(Run::new().goes_well("--version").stdout, expected);
-}
-
 /// A port on which no program listens.
 fn free_port() -> u16 {
     TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port()
