@@ -20,7 +20,10 @@ const ALLOWED: &[(&str, &str)] = &[
     ("survey", "interfaces mapper localizer logs robot"),
     ("results", "interfaces files mapper"),
     ("evaluation", "interfaces calendar sim mapper localizer agent controller robot results draw"),
-    ("reports", "interfaces files calendar sim worldfile mapper agent robot results draw viewer cli evaluation curious"),
+    (
+        "reports",
+        "interfaces files calendar sim worldfile mapper agent robot results draw viewer cli evaluation curious",
+    ),
     ("environments", "interfaces sim worldfile mapper agent controller robot evaluation"),
     (
         "python",
