@@ -4,6 +4,7 @@
 use crate::observer::Observer;
 use crate::physics_trial::PhysicsTrial;
 use interfaces::{PoseMode, Twist, Values, value};
+use localizer::LocalizerSettings;
 use robot::state::{Facts, LearnedFacts, LearnedSnapshot, State, StateError};
 use robot::{Pilot, Settings};
 use sim::physics::{WorldSnapshot, WorldSpec};
@@ -27,16 +28,18 @@ pub struct TrialFacts {
 impl TrialFacts {
     /// The facts of a run. `pilot` is what its pilot is made of, beside the settings.
     pub fn new(spec: &WorldSpec, seed: u64, settings: &Settings, pilot: Facts) -> Self {
-        let Settings { mapper, agent, controller, drive, pose, localizer, .. } = settings;
+        let Settings { filter, mapper, agent, controller, drive, pose, localizer, .. } = settings;
         let localizer = (*pose == PoseMode::Localized).then_some(localizer);
         let content = xxh3_64(format!("{spec:?}").as_bytes());
         let world = Facts::default().with("world", &spec.name).with("seed", seed);
         let content = Facts::default().with("content of the world", format!("{content:016x}"));
         let pilot = pilot
+            .with_learned_settings("mapper", mapper, Some(&robot::default_mapper()))
+            .with_learned_settings("localizer", &settings.localizer, Some(&LocalizerSettings::default()))
             .with_settings("agent", agent)
             .with_settings("controller", controller)
             .with_settings("drive", drive);
-        let learned = LearnedFacts::new(mapper, &spec.frame, pose.name(), localizer);
+        let learned = LearnedFacts::new(pose.name(), localizer, Some(filter));
         Self { learned, world, content, pilot, allows_other_build: false }
     }
 

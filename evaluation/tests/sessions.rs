@@ -62,14 +62,14 @@ fn a_run_that_goes_on_equals_one_that_was_not_interrupted() {
 
 const GAP_S: f64 = 3.0 * 86_400.0;
 
-fn learned_facts(spec: &WorldSpec, settings: &Settings) -> LearnedFacts {
+fn learned_facts(settings: &Settings) -> LearnedFacts {
     let localizer = (settings.pose == PoseMode::Localized).then_some(&settings.localizer);
-    LearnedFacts::new(&settings.mapper, &spec.frame, settings.pose.name(), localizer)
+    LearnedFacts::new(settings.pose.name(), localizer, Some(&settings.filter))
 }
 
 /// What a run has learned, as another run with another seed reads it from a file.
 fn saved(first: &mut Trial, spec: &WorldSpec, settings: &Settings) -> Trial {
-    let facts = learned_facts(spec, settings);
+    let facts = learned_facts(settings);
     let state = facts.snapshot(&mut first.robot).added_to(State::default());
     let mut second = trial(spec, 101, settings, "curious");
     facts.restore(&again(&state), &mut second.robot).unwrap();
@@ -130,7 +130,7 @@ fn two_sessions_add_up_with_the_time_between_as_a_gap() {
 fn a_robot_finds_itself_in_the_map_that_it_has_saved() {
     let here = spec("drifting_house");
     let settings = physics_trial::settings(&here).unwrap();
-    let facts = learned_facts(&here, &settings);
+    let facts = learned_facts(&settings);
     // The frame of the world is that of the map, so that both sessions have the same one.
     let start = |spec: &WorldSpec, seed: u64| {
         let mut world = PhysicsWorld::new(spec, seed);

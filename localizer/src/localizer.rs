@@ -113,6 +113,11 @@ impl Localizer {
         Localized { reading, estimate: PoseEstimate { pose, covariance, support, state } }
     }
 
+    /// Whether it knows no surface.
+    pub(crate) fn is_without_surfaces(&self) -> bool {
+        self.builder.matcher.surfels.is_empty()
+    }
+
     /// Whether much of the view has moved at once at the last reading.
     pub(crate) fn much_has_moved(&self) -> bool {
         self.much_has_moved

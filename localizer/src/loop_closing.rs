@@ -25,7 +25,9 @@ use crate::estimate::Localized;
 use crate::first_map::{FirstMap, Log};
 use crate::localizer::Localizer;
 use crate::settings::LocalizerSettings;
-use interfaces::{GridFrame, LaserReading, SettingsError, ValueError, read_value, write_value};
+use interfaces::{
+    CellState, Grid, GridFrame, LaserReading, SettingsError, ValueError, read_value, write_value,
+};
 use mapper::Mapper;
 use nalgebra::{Isometry2, Matrix3};
 use replay::{Background, Replay, Replayed, learn};
@@ -260,6 +262,24 @@ impl LoopClosingLocalizer {
             None => None,
         };
         if snapshot.is_empty() { Ok(()) } else { Err(ValueError) }
+    }
+
+    /// See [`Localizer::surfaces`].
+    pub fn surfaces(&mut self) -> Vec<u8> {
+        self.localizer.surfaces()
+    }
+
+    /// Begins in a known place, see [`Localizer::begin_in`]; its map is frozen.
+    ///
+    /// # Errors
+    ///
+    /// When the bytes are no surfaces.
+    pub fn begin_in(&mut self, surfaces: &[u8], map: &Grid<CellState>) -> Result<(), ValueError> {
+        self.localizer.begin_in(surfaces, map)?;
+        if !self.localizer.is_without_surfaces() {
+            (self.background, self.first) = (None, None);
+        }
+        Ok(())
     }
 
     /// Puts the robot elsewhere, see [`Localizer::seat`]. The map is frozen: its readings so far are of another way.

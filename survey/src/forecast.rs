@@ -4,11 +4,11 @@ use crate::masks::{keepout_mask, speed_mask};
 use crate::outlook::{Outlook, distance_m, doors};
 use crate::places::Place;
 use crate::settings::SurveySettings;
-use crate::survey::{SavedLogs, SavedSurvey, Survey};
+use crate::survey::{SavedSurvey, Survey};
 use interfaces::{Cell, CellState, Grid};
 use mapper::{Calendar, Door, Mapper};
 use nalgebra::Point2;
-use robot::state::{Facts, State, StateError, saved_mapper};
+use robot::state::{State, StateError, saved_mapper};
 
 /// What changes is at most this far from a point that means it, m.
 pub const NEAR_M: f64 = 0.5;
@@ -29,19 +29,16 @@ impl Forecast {
     ///
     /// When the state holds neither, or was written by another program, and when nothing was learned yet.
     pub fn of_state(state: &State) -> Result<Self, StateError> {
-        let Some(facts) = state.facts(SavedSurvey::PART) else {
+        let Some(facts) = SavedSurvey::facts(state) else {
             let mapper = saved_mapper(state)?;
             let is_dated = *mapper.calendar() != Calendar::Relative;
             let why = (!is_dated).then(|| "it is of a robot that does not know the date".to_owned());
             return Ok(Self { mapper, places: Vec::new(), why_undated: why });
         };
-        let misfit = || StateError::OtherContent(SavedSurvey::PART.to_owned());
-        let logs =
-            SavedLogs::read(state.section(SavedLogs::PART, &Facts::default())?).map_err(|_| misfit())?;
+        let misfit = || StateError::OtherContent("survey".to_owned());
         let settings: SurveySettings = facts.settings("survey").ok_or_else(misfit)?;
         let learns_noise = facts.get("--noise") == Some("learned");
-        let learned = state.section(SavedSurvey::PART, facts)?;
-        let survey = Survey::restored(settings, learns_noise, logs, learned).map_err(|_| misfit())?;
+        let (survey, _) = Survey::restored(settings, learns_noise, state, facts)?;
         let undated = survey.undated(survey.logs().len());
         let why_undated = undated.map(|log| format!("{} does not say when it was recorded", log.name));
         let mapper = survey.mapper().ok_or(StateError::NothingLearned)?.clone();

@@ -3,7 +3,7 @@
 use crate::error::SurveyError;
 use crate::route::{Route, frame};
 use crate::settings::SurveySettings;
-use interfaces::{GridFrame, LaserReading, ValueError, read_value, to_bytes};
+use interfaces::{GridFrame, LaserReading, ValueError};
 use localizer::{LineMap, PoseState, TrajectoryPose, TrajectorySettings};
 use mapper::ScanFilter;
 use nalgebra::Vector2;
@@ -15,8 +15,6 @@ const AROUND_M: f64 = 10.0;
 #[derive(Clone, Debug)]
 pub struct KnownPlace {
     pub(crate) filter: ScanFilter,
-    /// The rectangle of the surfaces.
-    frame: GridFrame,
     pub(crate) lines: LineMap,
 }
 
@@ -34,7 +32,7 @@ impl KnownPlace {
         // Around a place of the largest size, there is no space left.
         let frame = GridFrame::new(origin, extent.resolution_m(), sides[0], sides[1]).unwrap_or(extent);
         let lines = LineMap::new(&TrajectorySettings::default(), &frame)?;
-        Ok(Self { filter: settings.scan_filter(), frame, lines })
+        Ok(Self { filter: settings.scan_filter(), lines })
     }
 
     /// Adds a reading of the first log, with the pose that was found for it; if the pose is not certain, it says nothing.
@@ -44,18 +42,14 @@ impl KnownPlace {
         }
     }
 
-    /// Everything that the log has left, as bytes; settings are not in it.
-    pub(crate) fn snapshot(mut self) -> Vec<u8> {
-        let mut bytes = to_bytes(&self.frame);
-        bytes.extend(self.lines.snapshot());
-        bytes
+    /// The surfaces, as bytes.
+    pub(crate) fn surfaces(mut self) -> Vec<u8> {
+        self.lines.snapshot()
     }
 
-    /// The place from its snapshot, with the settings of the survey that has made it. No more readings can be added.
-    pub(crate) fn restored(settings: &SurveySettings, mut snapshot: &[u8]) -> Result<Self, ValueError> {
-        let frame = read_value(&mut snapshot)?;
-        let mut lines = LineMap::new(&TrajectorySettings::default(), &frame).map_err(|_| ValueError)?;
-        lines.restore(snapshot)?;
-        Ok(Self { filter: settings.scan_filter(), frame, lines })
+    /// The place with surfaces from their bytes. No more readings can be added.
+    pub(crate) fn restored(settings: &SurveySettings, surfaces: &[u8]) -> Result<Self, ValueError> {
+        let lines = LineMap::restored(&TrajectorySettings::default(), surfaces)?;
+        Ok(Self { filter: settings.scan_filter(), lines })
     }
 }

@@ -62,6 +62,6 @@ pub use route::{FirstPass, Route};
 pub use route_graph::{EdgeOutlook, RouteGraph, RouteGraphError, Travel};
 pub use search::Search;
 pub use settings::SurveySettings;
-pub use survey::{SavedLogs, SavedSurvey, Survey};
+pub use survey::{SURVEY_PARTS, SavedLogs, SavedSurvey, Survey};
 pub use surveyed_log::{LogEntry, SurveyedLog, Travelled};
 pub use upright::upright_rad;

@@ -4,7 +4,7 @@ mod saved;
 #[cfg(test)]
 mod tests;
 
-pub use saved::{SavedLogs, SavedSurvey};
+pub use saved::{SURVEY_PARTS, SavedLogs, SavedSurvey};
 
 use crate::change_log::ChangeLog;
 use crate::error::SurveyError;

@@ -8,12 +8,18 @@ use crate::silence;
 use interfaces::GridFrame;
 use localizer::{PoseState, TrajectoryPose};
 use logs::{Log, LogError, TopicChoice};
+use robot::state::Session;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
+
+/// The program that learns from logs.
+const PROGRAM: &str = "map_log";
 
 /// A log, and its place in time among the logs of one place.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct LogEntry {
+    /// The program that learned from it: a session of a robot counts as a log of which nothing is left to read.
+    pub program: String,
     /// Its name for people.
     pub name: String,
     /// The [hash](Log::content_hash) of its content; 0 where it is not needed.
@@ -56,6 +62,7 @@ impl LogEntry {
         let TopicChoice { scan_topics, odom_topic, base_frame, map_frame, .. } = choice.clone();
         let poses = odom_topic.into_iter().chain(map_frame).reduce(|topic, frame| format!("{topic} {frame}"));
         Ok(Self {
+            program: PROGRAM.to_owned(),
             name,
             content: 0,
             scans: Vec::new(),
@@ -144,6 +151,44 @@ impl SurveyedLog {
             frame,
             poses: Arc::new(route.poses),
         }
+    }
+
+    /// A session of a robot, in the map of this frame.
+    pub(crate) fn of_session(session: Session, frame: GridFrame) -> Self {
+        let Session {
+            program,
+            name,
+            offset_s,
+            begin_s,
+            duration_s,
+            readings: [used, readings],
+            laser,
+            notes,
+        } = session;
+        let entry = LogEntry {
+            program,
+            name,
+            content: 0,
+            scans: Vec::new(),
+            choice: (Vec::new(), None, None),
+            offset_s,
+            begin_s,
+            duration_s,
+            has_times: true,
+            stands: false,
+            laser,
+            notes,
+        };
+        let travelled = Travelled { duration_s, ..Travelled::default() };
+        let (quality, poses) = (Quality::default(), Arc::default());
+        Self { entry, readings, used, loops: 0, travelled, quality, noise_m: None, frame, poses }
+    }
+
+    /// The log as a session.
+    pub(crate) fn session(&self) -> Session {
+        let LogEntry { program, name, offset_s, begin_s, duration_s, laser, notes, .. } = self.entry.clone();
+        let readings = [self.used, self.readings];
+        Session { program, name, offset_s, begin_s, duration_s, readings, laser, notes }
     }
 
     /// Whether the survey has learned from all readings.

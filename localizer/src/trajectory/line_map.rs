@@ -62,17 +62,24 @@ impl LineMap {
 
     /// The surfaces, as bytes: what readings of other logs are matched with.
     pub fn snapshot(&mut self) -> Vec<u8> {
-        interfaces::snapshot(self.map.values())
+        self.map.saved()
     }
 
-    /// Takes the surfaces of a map with the same settings and the same frame from its snapshot. No more readings of the log
-    /// can be added.
+    /// The map with surfaces from a [snapshot](Self::snapshot), or from a [localizer](crate::Localizer::surfaces). No more readings
+    /// of the log can be added.
     ///
     /// # Errors
     ///
-    /// When the bytes are no such snapshot. The map must not be used then.
-    pub fn restore(&mut self, snapshot: &[u8]) -> Result<(), ValueError> {
-        interfaces::restore(self.map.values(), snapshot)
+    /// When the bytes are no surfaces.
+    pub fn restored(settings: &TrajectorySettings, surfaces: &[u8]) -> Result<Self, ValueError> {
+        let (given, points) = (GivenPoses::default(), ScanPoints::default());
+        Ok(Self {
+            settings: settings.clone(),
+            map: SurfelMap::restored(surfaces)?,
+            given,
+            points,
+            last: None,
+        })
     }
 
     /// A matcher for the readings of another log.

@@ -1,3 +1,4 @@
+use super::format::StateError;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -92,17 +93,43 @@ impl Facts {
         self.0.iter().map(|fact| (fact.name.as_str(), fact.value.as_str()))
     }
 
-    /// The first fact in which `self`, as saved, differs from what is expected, other than by a changed default.
-    pub(crate) fn difference(&self, expected: &Self) -> Option<Difference> {
+    /// The settings in which `self`, as saved, differs from what is expected, other than by a changed default: their names and saved
+    /// values. The frame of a map can differ.
+    ///
+    /// # Errors
+    ///
+    /// When one of them is in `must_agree`.
+    pub(crate) fn agree(&self, expected: &Self, must_agree: &[&str]) -> Result<Vec<String>, StateError> {
+        let differences = self.differences(expected);
+        match differences.iter().find(|other| must_agree.contains(&other.name.as_str())) {
+            Some(other) => Err(other.clone().into()),
+            None => Ok(differences
+                .into_iter()
+                .map(|Difference { name, saved, .. }| format!("{name} = {}", saved.unwrap_or_default()))
+                .collect()),
+        }
+    }
+
+    /// The facts in which `self`, as saved, differs from what is expected, other than by a changed default.
+    pub(crate) fn differences(&self, expected: &Self) -> Vec<Difference> {
         let find = |facts: &Self, name: &str| facts.0.iter().find(|fact| fact.name == name).cloned();
-        let names = expected.0.iter().chain(&self.0).map(|fact| fact.name.clone());
-        names.map(|name| (find(self, &name), find(expected, &name), name)).find_map(
-            |(saved, expected, name)| {
+        let mut names: Vec<&String> = expected.0.iter().map(|fact| &fact.name).collect();
+        names.extend(self.0.iter().map(|fact| &fact.name).filter(|name| expected.get(name).is_none()));
+        let pairs = names.into_iter().map(|name| (find(self, name), find(expected, name), name.clone()));
+        pairs
+            .filter_map(|(saved, expected, name)| {
                 let is_default = |fact: &Option<Fact>| fact.as_ref().is_none_or(|fact| fact.is_default);
                 let is_other_default = is_default(&saved) && is_default(&expected);
                 let [saved, expected] = [saved, expected].map(|fact| fact.map(|fact| fact.value));
                 (saved != expected && !is_other_default).then_some(Difference { name, saved, expected })
-            },
-        )
+            })
+            .collect()
+    }
+}
+
+impl From<Difference> for StateError {
+    fn from(Difference { name, saved, expected }: Difference) -> Self {
+        let text = |value: Option<String>| value.map_or("not set".to_owned(), |value| format!("`{value}`"));
+        Self::OtherFacts { name, saved: text(saved), expected: text(expected) }
     }
 }

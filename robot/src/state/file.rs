@@ -35,6 +35,8 @@ pub struct StateFile {
     every: Duration,
     last: Instant,
     writing: Option<JoinHandle<io::Result<()>>>,
+    /// Whether the file is kept before it is written.
+    keeps: bool,
     _lock: FileLock,
 }
 
@@ -63,6 +65,7 @@ impl StateFile {
             every: EVERY,
             last: Instant::now(),
             writing: None,
+            keeps: false,
             _lock: lock,
         })
     }
@@ -89,6 +92,11 @@ impl StateFile {
             Err(LoadError::Read(missing)) if missing.kind() == io::ErrorKind::NotFound => Ok(None),
             state => state.map(Some),
         }
+    }
+
+    /// Keeps the file beside it before the next [`save`](Self::save), as [`keep_earlier`](Self::keep_earlier).
+    pub fn keep_before_save(&mut self) {
+        self.keeps = true;
     }
 
     /// Keeps the file as it is now beside it, with the ending `.earlier`, so that what is saved next can be undone.
@@ -128,10 +136,11 @@ impl StateFile {
     /// When the writing before has failed. The new one has begun nevertheless.
     pub fn save(&mut self, state: impl FnOnce() -> State + Send + 'static) -> io::Result<()> {
         let before = self.wait();
+        let kept = if std::mem::take(&mut self.keeps) { self.keep_earlier() } else { Ok(()) };
         let target = self.target.clone();
         self.last = Instant::now();
         self.writing = Some(std::thread::spawn(move || write(&target, &state())));
-        before
+        before.and(kept)
     }
 
     /// Waits until the last state is on the disk.

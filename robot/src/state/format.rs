@@ -3,19 +3,22 @@
 //! ```text
 //! 0  the kind of file, 8 bytes
 //! 8  the version of the format, 4 bytes
-//! 12 the checksum of all that follows, 8 bytes: XXH3 with the version as its seed
-//! 20 the length of the body, 4 bytes, and the compressed body
+//! 12 the hash of the layout, 16 hexadecimal digits
+//! 28 the checksum of all that follows, 8 bytes: XXH3 with the version as its seed
+//! 36 the length of the body, 4 bytes, and the compressed body
 //! ```
 //!
 //! Numbers are little-endian.
 
-use super::facts::{Difference, Facts};
+use super::facts::Facts;
 use crate::build::{BUILD, other_build};
 use serde::{Deserialize, Serialize};
 use xxhash_rust::xxh3::xxh3_64_with_seed;
 
-/// Count up when the body, or a snapshot in it, changes.
+/// The version of the format.
 const VERSION: u32 = 1;
+/// A hash of all types that can be in a file: see `layout.rs`.
+pub const LAYOUT: &str = env!("CURIOUS_LAYOUT");
 /// The part with the build.
 const BUILD_PART: &str = "build";
 /// The largest body, bytes: what a mapper with the largest map can take.
@@ -33,6 +36,11 @@ pub enum StateError {
         /// The version of the bytes.
         found: u32,
     },
+    /// The types in the file have changed since it was written.
+    #[error(
+        "this state file has another layout: until version 0.1.0, only builds with the same layout read it; map the place again"
+    )]
+    OtherLayout,
     /// Bytes are missing, or were changed.
     #[error("the state file is damaged: its checksum does not fit")]
     Damaged,
@@ -136,11 +144,18 @@ impl State {
     pub fn section(&self, name: &str, facts: &Facts) -> Result<&[u8], StateError> {
         let section = self.sections.iter().find(|section| section.name == name);
         let section = section.ok_or_else(|| StateError::NoSection(name.to_owned()))?;
-        let Some(Difference { name, saved, expected }) = section.facts.difference(facts) else {
-            return Ok(&section.snapshot);
-        };
-        let text = |value: Option<String>| value.map_or("not set".to_owned(), |value| format!("`{value}`"));
-        Err(StateError::OtherFacts { name, saved: text(saved), expected: text(expected) })
+        match section.facts.differences(facts).into_iter().next() {
+            None => Ok(&section.snapshot),
+            Some(other) => Err(other.into()),
+        }
+    }
+
+    /// Adds the parts with these names of another state, as they are there.
+    #[must_use]
+    pub fn with_parts_of(mut self, other: &Self, names: &[&str]) -> Self {
+        let is_named = |section: &&Section| names.contains(&section.name.as_str());
+        self.sections.extend(other.sections.iter().filter(is_named).cloned());
+        self
     }
 
     /// The names of its parts, what each belongs to, and the bytes of each.
@@ -161,7 +176,8 @@ impl State {
         check_length(body.len())?;
         let packed = lz4_flex::compress_prepend_size(&body);
         let checksum = xxh3_64_with_seed(&packed, VERSION.into());
-        Ok([&Self::MAGIC[..], &VERSION.to_le_bytes(), &checksum.to_le_bytes(), &packed].concat())
+        let header = [&Self::MAGIC[..], &VERSION.to_le_bytes(), LAYOUT.as_bytes(), &checksum.to_le_bytes()];
+        Ok([&header.concat()[..], &packed].concat())
     }
 
     /// The state in the bytes of a file.
@@ -173,6 +189,7 @@ impl State {
         let rest = bytes.strip_prefix(Self::MAGIC).ok_or(StateError::OtherKind)?;
         let (found, rest) = rest.split_first_chunk().ok_or(StateError::Damaged)?;
         let found = u32::from_le_bytes(*found);
+        let (layout, rest) = rest.split_first_chunk::<16>().ok_or(StateError::Damaged)?;
         let (checksum, packed) = rest.split_first_chunk().ok_or(StateError::Damaged)?;
         // A flipped bit of the version is damage; another version has another checksum.
         if u64::from_le_bytes(*checksum) != xxh3_64_with_seed(packed, found.into()) {
@@ -180,6 +197,9 @@ impl State {
         }
         if found != VERSION {
             return Err(StateError::OtherVersion { found });
+        }
+        if layout != LAYOUT.as_bytes() {
+            return Err(StateError::OtherLayout);
         }
         let length = packed.first_chunk().ok_or(StateError::Damaged)?;
         check_length(u32::from_le_bytes(*length) as usize)?;

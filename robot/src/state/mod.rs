@@ -11,9 +11,14 @@
 mod facts;
 mod file;
 mod format;
+#[cfg(test)]
+mod layout;
 mod learned;
 
 pub use facts::Facts;
 pub use file::{LoadError, StateFile, earlier_name, read_state};
-pub use format::{State, StateError};
-pub use learned::{LearnedFacts, LearnedSnapshot, saved_mapper};
+pub use format::{LAYOUT, State, StateError};
+pub use learned::{
+    LearnedFacts, LearnedSnapshot, Session, Sessions, saved_frame, saved_mapper, saved_mapper_with,
+    saved_sessions, saved_surfaces, with_map, with_sessions, with_surfaces,
+};

@@ -2,6 +2,7 @@
 
 use crate::message::Time;
 use crate::node_state_file::NodeStateFile;
+use crate::notes::Notes;
 use crate::parameters::Parameters;
 use crate::pilot::LivePilot;
 use crate::source::FrameNames;
@@ -10,6 +11,7 @@ use controller::DiffDriveSettings;
 use interfaces::{GridFrame, LaserReading};
 use localizer::Switch;
 use nalgebra::{Isometry2, Point2};
+use robot::state::saved_frame;
 use robot::{Robot, Settings, Source};
 use std::path::Path;
 
@@ -30,14 +32,22 @@ impl Parts {
     /// # Errors
     ///
     /// When a parameter is out of range, or when the state cannot be used.
-    pub(super) fn new(parameters: &Parameters, state: Option<&Path>) -> anyhow::Result<Self> {
+    pub(super) fn new(
+        parameters: &Parameters,
+        state: Option<&Path>,
+        notes: &mut Notes,
+    ) -> anyhow::Result<Self> {
         parameters.check()?;
         let (settings, frame) = of(parameters)?;
         let pilot = LivePilot::new(parameters, &settings)?;
-        let mut robot = settings.robot(frame, None, Isometry2::identity(), pilot)?;
-        let state_file =
-            state.map(|path| NodeStateFile::new(path, &settings, &frame, parameters)).transpose()?;
-        let continued = state_file.as_ref().map(|file| file.restore(&mut robot)).transpose()?.flatten();
+        let mut state_file = state.map(|path| NodeStateFile::new(path, &settings, parameters)).transpose()?;
+        let saved = state_file.as_ref().map(NodeStateFile::load).transpose()?.flatten();
+        let known = saved.as_ref().and_then(saved_frame).and_then(|known| known.union(&frame));
+        let mut robot = settings.robot(known.unwrap_or(frame), None, Isometry2::identity(), pilot)?;
+        let continued = match (&mut state_file, saved) {
+            (Some(file), Some(state)) => Some(file.restore(state, &mut robot, notes)?),
+            _ => None,
+        };
         Ok(Self { robot, state_file, continued })
     }
 }

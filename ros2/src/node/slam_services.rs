@@ -99,8 +99,8 @@ impl<L: Link> CuriousNode<L> {
     }
 
     fn begin_writing(&mut self, path: &Path) -> anyhow::Result<NodeStateFile> {
-        let (settings, frame) = super::setup::of(&self.parameters)?;
-        let mut file = NodeStateFile::new(path, &settings, &frame, &self.parameters)?;
+        let settings = super::setup::settings(&self.parameters);
+        let mut file = NodeStateFile::new(path, &settings, &self.parameters)?;
         let last = self.last.map_or(crate::message::Time::default(), |(last, _)| last);
         file.save(last, &mut self.robot)?;
         Ok(file)
@@ -126,7 +126,7 @@ impl<L: Link> CuriousNode<L> {
             self.notes.warn(&format!("{}: there is no such state", path.display()));
             return INVALID_FILENAME;
         }
-        match Parts::new(&self.parameters, Some(&path)) {
+        match Parts::new(&self.parameters, Some(&path), &mut self.notes) {
             Ok(Parts { robot, continued, .. }) => {
                 self.stop_robot();
                 (self.robot, self.continued, self.last) = (robot, continued, None);

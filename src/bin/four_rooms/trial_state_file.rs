@@ -7,13 +7,14 @@ use evaluation::physics_trial::PhysicsTrial;
 use evaluation::trial_state::TrialFacts;
 use interfaces::Twist;
 use robot::Pilot;
-use robot::state::StateFile;
+use robot::state::{Sessions, StateFile, with_sessions};
 use std::io;
 
 /// The state file of a run.
 pub(crate) struct TrialStateFile {
     file: StateFile,
     facts: TrialFacts,
+    sessions: Sessions,
 }
 
 impl TrialStateFile {
@@ -24,13 +25,15 @@ impl TrialStateFile {
         trial: &mut PhysicsTrial<impl Pilot<Command = Twist>>,
     ) -> Result<Option<Self>, Failure> {
         let Some(path) = &args.state else { return Ok(None) };
-        let (file, state) = open_state(path, args.state_every)?;
+        let (mut file, state) = open_state(path, args.state_every)?;
         let facts = TrialFacts::new(&parts.spec, args.seed, &parts.settings, parts.pilot_facts(args))
             .allowing_other_build(args.allow_other_build);
-        if let Some(state) = state {
-            trial.restore(&state, &facts).map_err(|why| state_failure(path, why))?;
+        if let Some(state) = &state {
+            trial.restore(state, &facts).map_err(|why| state_failure(path, why))?;
+            file.keep_before_save();
         }
-        Ok(Some(Self { file, facts }))
+        let sessions = Sessions::after(state.as_ref(), "four_rooms", &trial.robot.mapper);
+        Ok(Some(Self { file, facts, sessions }))
     }
 
     pub(crate) fn is_due(&self) -> bool {
@@ -39,8 +42,8 @@ impl TrialStateFile {
 
     /// Begins to write the state. An error is that of the writing before.
     pub(crate) fn save(&mut self, trial: &mut PhysicsTrial<impl Pilot<Command = Twist>>) -> io::Result<()> {
-        let snapshot = trial.snapshot(&self.facts);
-        self.file.save(move || snapshot.into_state())
+        let (snapshot, sessions) = (trial.snapshot(&self.facts), self.sessions.now(&trial.robot.mapper));
+        self.file.save(move || with_sessions(snapshot.into_state(), &sessions))
     }
 
     /// Writes the state, and waits until it is on the disk.

@@ -185,7 +185,7 @@ fn pose_in_log(mode: PoseMode) -> &'static str {
 impl Args {
     /// How the poses are known, as this run or the one before says it.
     fn pose(&self, saved: Option<&SavedLogs>) -> Option<PoseMode> {
-        self.pose.or(saved.map(|saved| saved.pose))
+        self.pose.or(saved.and_then(|saved| saved.pose))
     }
 
     /// What to use of logs, after those of a state.

@@ -7,9 +7,6 @@ use robot::state::{Facts, State, StateError, StateFile};
 use std::io::stderr;
 use survey::{SavedLogs, SavedSurvey, Survey, SurveySettings, SurveyedLog};
 
-/// The part of a state with what was learned from logs, beside that with the logs.
-const SURVEY: &str = SavedSurvey::PART;
-
 /// The state file of a run, or none.
 pub(crate) struct SurveyStateFile {
     file: Option<StateFile>,
@@ -60,14 +57,13 @@ impl SurveyStateFile {
         let facts = Facts::default().with("--pose", default.pose.name()).with("--noise", &noise);
         self.facts = facts.with_learned_settings("survey", settings, Some(&default));
         let (settings, learns_noise) = (settings.clone(), noise_m.is_none());
-        let (Some(Loaded { state, logs }), Some(file)) = (loaded, &self.file) else {
+        let (Some(Loaded { state, .. }), Some(file)) = (loaded, &self.file) else {
             return Ok(Survey::new(settings, learns_noise));
         };
-        let learned = state.section(SURVEY, &self.facts).and_then(|learned| {
-            let survey = Survey::restored(settings, learns_noise, logs, learned);
-            survey.map_err(|_| StateError::OtherContent(SURVEY.to_owned()))
-        });
-        learned.map_err(|why| state_failure(file.path(), why))
+        let restored = Survey::restored(settings, learns_noise, &state, &self.facts);
+        let (survey, note) = restored.map_err(|why| state_failure(file.path(), why))?;
+        note.iter().for_each(|note| say(stderr(), format_args!("note: {}: {note}", file.path().display())));
+        Ok(survey)
     }
 
     /// Leaves the file as it is from now on.
@@ -90,13 +86,7 @@ impl SurveyStateFile {
         }
         self.learned = self.learned.filter(|learned| survey.logs().len() == *learned);
         let (survey, facts) = (survey.saved(), self.facts.clone());
-        let saved = file.save(move || {
-            let (logs, learned) = survey.into_snapshot();
-            State::default()
-                .with(SavedLogs::PART, Facts::default(), logs)
-                .with(SURVEY, facts, learned)
-                .with_build()
-        });
+        let saved = file.save(move || survey.into_state(facts));
         if let Err(problem) = saved {
             self.is_written = false;
             say(stderr(), format_args!("error: cannot save the state: {problem}; the run goes on"));
@@ -115,11 +105,10 @@ impl SurveyStateFile {
 impl Loaded {
     /// The time zone of the place.
     pub(crate) fn time_zone(&self) -> Option<String> {
-        Some(self.state.facts(SURVEY)?.get("survey.mapper.time_zone")?.to_owned())
+        Some(SavedSurvey::facts(&self.state)?.get("survey.mapper.time_zone")?.to_owned())
     }
 
     fn of(state: State) -> Result<Self, StateError> {
-        let logs = SavedLogs::read(state.section(SavedLogs::PART, &Facts::default())?);
-        Ok(Self { logs: logs.map_err(|_| StateError::OtherContent(SavedLogs::PART.to_owned()))?, state })
+        Ok(Self { logs: SavedLogs::read(&state)?, state })
     }
 }

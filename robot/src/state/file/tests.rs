@@ -147,12 +147,27 @@ fn other_facts_and_files_are_refused_with_a_sentence() {
     insta::assert_snapshot!(read(b"[world]\nname = \"house\""), @"this is not a state file");
     insta::assert_snapshot!(read(b""), @"this is not a state file");
     insta::assert_snapshot!(read(&state().to_bytes().unwrap()[..20]), @"the state file is damaged: its checksum does not fit");
-    // A later version of the format, with a checksum as this version has it.
-    let mut later = state().to_bytes().unwrap();
-    later[8] = 12;
-    let checksum = xxhash_rust::xxh3::xxh3_64_with_seed(&later[20..], 12);
-    later[12..20].copy_from_slice(&checksum.to_le_bytes());
-    insta::assert_snapshot!(read(&later), @"this state file has version 12 of the format, and this program reads version 1");
+    // Another version of the format, and another layout, with a checksum as this version has it.
+    let mut other = state().to_bytes().unwrap();
+    other[8] = 12;
+    let checksum = xxhash_rust::xxh3::xxh3_64_with_seed(&other[36..], 12);
+    other[28..36].copy_from_slice(&checksum.to_le_bytes());
+    insta::assert_snapshot!(read(&other), @"this state file has version 12 of the format, and this program reads version 1");
+    let mut other = state().to_bytes().unwrap();
+    other[12] ^= 1;
+    insta::assert_snapshot!(read(&other), @"this state file has another layout: until version 0.1.0, only builds with the same layout read it; map the place again");
+}
+
+/// The layout follows from the types: it changes with a field, and not with a comment.
+#[test]
+fn the_layout_is_that_of_the_types() {
+    use crate::state::layout::layout;
+    let text = "/// A type.\n#[derive(Clone, serde::Deserialize, serde::Serialize)]\nstruct A {\n    /// A field.\n    a: u32, // why\n}\n\nfn f() {}\n";
+    assert_eq!(layout(text), "#[derive(Clone,serde::Deserialize,serde::Serialize)]structA{a:u32,}\n");
+    assert_ne!(layout(&text.replace("u32", "u64")), layout(text));
+    assert_eq!(layout(&text.replace("why", "because").replace("fn f", "fn g")), layout(text));
+    let values = "    fn values(&mut self) -> Values<'_> {\n        vec![value(&mut self.a)]\n    }\n";
+    assert_eq!(layout(values), "fnvalues(&mutself)->Values<'_>{vec![value(&mutself.a)]}\n");
 }
 
 proptest! {
