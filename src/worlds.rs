@@ -1,7 +1,7 @@
 //! The world to run: a shipped world, a world file, or a Stage file.
 
-use crate::program::list;
 use anyhow::{anyhow, bail};
+use cli::program::list;
 use interfaces::printable;
 use results::file_name;
 use sim::grid::GridSpec;

@@ -8,7 +8,6 @@ use crate::unseen::UnseenSpace;
 use interfaces::{RandomStream, SettingsError, Transition, Values, values};
 use mapper::Mapper;
 use nalgebra::Isometry2;
-use std::f64::consts::LN_10;
 
 /// Selects the next goal of the robot (section 4).
 ///
@@ -31,8 +30,6 @@ pub struct Agent {
     trajectory: Vec<Features>,
     /// The map updates in these readings.
     updates: usize,
-    /// The rate information when the present goal was sampled.
-    information: f64,
     features: Features,
     /// The number of goals that were selected by each strategy.
     goal_counts: Vec<usize>,
@@ -86,7 +83,6 @@ impl Agent {
             current: None,
             trajectory: Vec::new(),
             updates: 0,
-            information: 0.0,
             features: Features::default(),
             last_reward: 0.0,
         })
@@ -108,7 +104,7 @@ impl Agent {
     /// goal: a cell that [can be a goal](Mapper::is_candidate). If there is no such cell, the goal is the cell of
     /// the robot.
     pub fn next_goal(&mut self, mapper: &Mapper, pose: &Isometry2<f64>, travel: &mut impl Travel) -> Goal {
-        self.learn(mapper);
+        self.learn();
         self.travel.clear();
         let looks = self.unseen.as_mut().is_some_and(|unseen| unseen.update(mapper));
         if looks || self.strategies.iter().any(|strategy| strategy.needs_travel()) {
@@ -126,25 +122,11 @@ impl Agent {
         sample(self.patch_cells, &mut *self.strategies[strategy], &situation, &mut self.rng)
     }
 
-    /// The robot does not go to the goal that [`next_goal`](Self::next_goal) gave last, since something else decided: nothing
-    /// is learned from what it sees until the next goal.
-    pub fn decline(&mut self) {
-        if let Some(strategy) = self.current.take() {
-            self.goal_counts[strategy] -= 1;
-            self.strategies[strategy].decline();
-        }
-        if let Some(unseen) = &mut self.unseen {
-            unseen.decline();
-        }
-        self.trajectory.clear();
-        self.updates = 0;
-    }
-
     /// The robot, at `pose`, leaves the goal that [`next_goal`](Self::next_goal) gave last, and no other goal follows for a
     /// while: it goes to its dock. Ends the trajectory and the visit, if the robot is there, and learns from them; nothing is
     /// learned from what the robot sees until the next goal.
     pub fn end_goal(&mut self, mapper: &Mapper, pose: &Isometry2<f64>) {
-        self.learn(mapper);
+        self.learn();
         let situation = Situation::new(mapper, pose, self.features);
         if let Some(strategy) = self.current.take() {
             self.strategies[strategy].end(&situation);
@@ -160,16 +142,13 @@ impl Agent {
         self.current.is_none() && self.unseen.as_ref().is_some_and(|unseen| unseen.is_seen(mapper))
     }
 
-    fn learn(&mut self, mapper: &Mapper) {
-        let before = std::mem::replace(&mut self.information, rate_information(mapper));
+    fn learn(&mut self) {
         // There is nothing to learn from a trajectory without a reading.
         let Some(strategy) = self.current.filter(|_| !self.trajectory.is_empty()) else { return };
         let length = self.trajectory.len() as f64;
         self.last_reward = self.updates as f64 / length;
-        // The information falls when a first observation proves to be wrong.
-        let progress = (self.information - before).max(0.0) / length;
         let (features, reward) = (&self.trajectory[..], self.last_reward);
-        self.chooser.learn(&Trajectory { strategy, features, reward, progress });
+        self.chooser.learn(&Trajectory { strategy, features, reward });
         self.trajectory.clear();
         self.updates = 0;
     }
@@ -182,7 +161,6 @@ impl Agent {
             self.current,
             self.trajectory,
             self.updates,
-            self.information,
             self.features,
             self.goal_counts,
             self.last_reward
@@ -219,52 +197,5 @@ impl Agent {
     /// The reward of the last finished trajectory, in map updates per reading; 0 before the first.
     pub fn last_reward(&self) -> f64 {
         self.last_reward
-    }
-}
-
-/// How well the rates of change are known: the sum of ln 10 − 1/√n over the cells that changed in view, where n is
-/// the number of changes of the cell in view.
-///
-/// After n events of a Poisson process the standard deviation of the logarithm of its rate is about 1/√n. Without
-/// an event the error counts as ln 10, as in the metric of the rates. The first event of a cell therefore adds most
-/// information, and each further event adds less.
-fn rate_information(mapper: &Mapper) -> f64 {
-    let of_cell = |cell| {
-        let seen = mapper.statistics(cell);
-        let events = f64::from(seen.block_events) + f64::from(seen.free_events);
-        if events > 0.0 { LN_10 - 1.0 / events.sqrt() } else { 0.0 }
-    };
-    mapper.changed().map(of_cell).sum()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use interfaces::{Cell, CellReading, GridFrame};
-    use mapper::MapperSettings;
-    use nalgebra::{Isometry2, Point2};
-
-    #[test]
-    fn the_first_event_is_worth_most() {
-        let frame = GridFrame::new(Point2::origin(), 1.0, 2, 1).unwrap();
-        let mut mapper = Mapper::new(&MapperSettings::default(), frame).unwrap();
-        let mut known = Vec::new();
-        for step in 0..5 {
-            let cells = vec![(Cell::new(0, 0), step % 2 == 1), (Cell::new(1, 0), false)];
-            let (time, pose) = (f64::from(step), Isometry2::identity());
-            mapper.update(&CellReading { time, pose, cells }).unwrap();
-            known.push(rate_information(&mapper));
-        }
-        let ln_10 = std::f64::consts::LN_10;
-        let expected = [0.0, ln_10 - 1.0, ln_10 - 0.5f64.sqrt(), ln_10 - 3f64.sqrt() / 3.0, ln_10 - 0.5];
-        assert!(known.iter().zip(expected).all(|(known, expected)| (known - expected).abs() < 1e-12));
-        // A change that was found after a gap gives no rate.
-        let away =
-            CellReading { time: 5.0, pose: Isometry2::identity(), cells: vec![(Cell::new(0, 0), false)] };
-        mapper.update(&away).unwrap();
-        let found =
-            CellReading { time: 9.0, pose: Isometry2::identity(), cells: vec![(Cell::new(1, 0), true)] };
-        mapper.update(&found).unwrap();
-        assert!((rate_information(&mapper) - expected[4]).abs() < 1e-12);
     }
 }

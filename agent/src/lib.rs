@@ -22,12 +22,9 @@ mod unseen;
 mod visibility;
 
 pub use agent::Agent;
-pub use choosers::{Always, Chooser, Coin, Curious, Progress, TileCoder, Trajectory};
+pub use choosers::{Always, Chooser, Coin, Curious, TileCoder, Trajectory};
 pub use goal_sampler::Goal;
-pub use policy::{Parts, Policy, RobotPurpose};
+pub use policy::{PURPOSES, Parts, Policy};
 pub use settings::{AgentSettings, CuriousSettings, Reward};
 pub use situation::{Features, Situation, StraightLineTravel, Travel};
-pub use strategies::{
-    FreshMap, Frontier, InformationGain, OptimalRevisiting, Pick, Poisson, PredictedChange, Random, Recency,
-    Stay, Strategy,
-};
+pub use strategies::{FreshMap, InformationGain, Pick, Poisson, Random, Recency, Stay, Strategy};

@@ -1,9 +1,6 @@
-use crate::choosers::{Always, Chooser, Coin, Curious, Progress};
+use crate::choosers::{Always, Chooser, Coin, Curious};
 use crate::settings::AgentSettings;
-use crate::strategies::{
-    FreshMap, Frontier, InformationGain, OptimalRevisiting, Poisson, PredictedChange, Random, Recency,
-    Strategy,
-};
+use crate::strategies::{FreshMap, InformationGain, Poisson, Random, Recency, Strategy};
 use interfaces::RandomStream;
 use std::num::NonZeroUsize;
 use std::sync::{Arc, LazyLock};
@@ -58,12 +55,8 @@ static BUILT_IN: LazyLock<Vec<Policy>> = LazyLock::new(|| {
         Policy::single("poisson", "cells that probably changed (paper)", |_| Poisson),
         Policy::single("random", "any cell: a baseline", |_| Random),
         Policy::new("coin", "recency or poisson by a fair coin: the baseline of learners", coin),
-        Policy::single("frontier", "most unknown cells in view per time, then the oldest", Frontier::new),
-        Policy::single("optimal-revisiting", "least time with a wrong map, per time", OptimalRevisiting::new),
-        Policy::single("predicted-change", "cells that are probably not as last seen", |_| PredictedChange),
         Policy::single("fresh-map", "least error of the predicted map, per time", FreshMap::new),
         Policy::single("information-gain", "least error of the rates, per time", InformationGain::new),
-        Policy::new("progress", "one of five strategies, chosen by progress in learning", progress),
     ]
 });
 
@@ -79,15 +72,6 @@ fn curious(settings: &AgentSettings, rng: &mut RandomStream) -> Parts {
 
 fn coin(_: &AgentSettings, _: &mut RandomStream) -> Parts {
     (papers(), Box::new(Coin(const { NonZeroUsize::new(2).unwrap() })))
-}
-
-fn progress(settings: &AgentSettings, _: &mut RandomStream) -> Parts {
-    let mut strategies = papers();
-    strategies.push(Box::new(Frontier::new(settings)));
-    strategies.push(Box::new(OptimalRevisiting::new(settings)));
-    strategies.push(Box::new(InformationGain::new(settings)));
-    let chooser = Progress::new(strategies.len());
-    (strategies, Box::new(chooser))
 }
 
 impl Policy {
@@ -118,6 +102,11 @@ impl Policy {
         &BUILT_IN
     }
 
+    /// The policy for one of the [`PURPOSES`].
+    pub fn for_purpose(name: &str) -> Option<Self> {
+        PURPOSES.iter().find(|[purpose, ..]| *purpose == name).and_then(|[.., policy]| Self::named(policy))
+    }
+
     /// The name on the command line and in files.
     pub fn name(&self) -> &'static str {
         self.name
@@ -134,53 +123,13 @@ impl Policy {
     }
 }
 
-/// What a robot explores for: each purpose names the policy that is made for it. `docs/strategies.md` shows in which worlds it is better
-/// than the default.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum RobotPurpose {
-    /// To know at any time what is blocked.
-    FreshMap,
-    /// To learn how often every cell changes.
-    LearnRates,
-    /// What the paper's robot does.
-    #[default]
-    Paper,
-}
-
-impl RobotPurpose {
-    /// All, with their names.
-    pub const ALL: [(&'static str, Self); 3] =
-        [("fresh-map", Self::FreshMap), ("learn-rates", Self::LearnRates), ("paper", Self::Paper)];
-
-    /// The purpose with this name.
-    pub fn named(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|(known, _)| *known == name).map(|(_, purpose)| purpose)
-    }
-
-    /// The description in lists, in one line.
-    pub fn description(self) -> &'static str {
-        match self {
-            Self::FreshMap => "To know at any time what is blocked",
-            Self::LearnRates => "To learn how often every cell changes",
-            Self::Paper => "What the paper's robot does",
-        }
-    }
-
-    /// The name of the policy for this purpose.
-    pub fn policy_name(self) -> &'static str {
-        match self {
-            Self::FreshMap => "fresh-map",
-            Self::LearnRates => "information-gain",
-            Self::Paper => "curious",
-        }
-    }
-
-    /// The policy for this purpose.
-    pub fn policy(self) -> Policy {
-        let found = Policy::built_in().iter().find(|policy| policy.name() == self.policy_name());
-        found.cloned().unwrap_or_default()
-    }
-}
+/// What a robot explores for: the name of a purpose, its description, and the name of the policy that is made for it.
+/// `docs/strategies.md` shows in which worlds it is better than the default.
+pub const PURPOSES: [[&str; 3]; 3] = [
+    ["fresh-map", "To know at any time what is blocked", "fresh-map"],
+    ["learn-rates", "To learn how often every cell changes", "information-gain"],
+    ["paper", "What the paper's robot does", "curious"],
+];
 
 impl Default for Policy {
     fn default() -> Self {
@@ -213,21 +162,18 @@ mod tests {
 
     #[test]
     fn every_purpose_has_a_policy() {
-        for (_, purpose) in RobotPurpose::ALL {
-            assert_eq!(purpose.policy().name(), purpose.policy_name());
+        for [name, _, policy] in PURPOSES {
+            assert_eq!(Policy::for_purpose(name).unwrap().name(), policy);
         }
-        for (name, purpose) in RobotPurpose::ALL {
-            assert_eq!(RobotPurpose::named(name), Some(purpose));
-        }
-        assert_eq!(RobotPurpose::named("fame"), None);
+        assert_eq!(Policy::for_purpose("fame"), None);
     }
 
     #[test]
     fn an_unknown_name_lists_the_known_ones() {
         assert_eq!(
             "Curius".parse::<Policy>().unwrap_err().to_string(),
-            "no strategy is called `Curius`; there are curious, recency, poisson, random, coin, frontier, \
-             optimal-revisiting, predicted-change, fresh-map, information-gain, progress"
+            "no strategy is called `Curius`; there are curious, recency, poisson, random, coin, fresh-map, \
+             information-gain"
         );
     }
 }

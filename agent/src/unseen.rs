@@ -77,11 +77,6 @@ impl UnseenSpace {
         vec![value(&mut self.looks), value(&mut self.target)]
     }
 
-    /// The last look does not take place.
-    pub(crate) fn decline(&mut self) {
-        self.target = None;
-    }
-
     /// Ends the last look, if there is one, where no other goal follows for a while. A robot that is called away before it is as
     /// near as its sensor reaches has not looked.
     pub(crate) fn end(&mut self, situation: &Situation) {
@@ -92,7 +87,7 @@ impl UnseenSpace {
         if is_seen || distance_m <= self.range_m {
             self.update(mapper);
         } else {
-            self.decline();
+            self.target = None;
         }
     }
 

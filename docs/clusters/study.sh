@@ -9,7 +9,7 @@ study=$1 shard=$2
 shift 2
 programs=${PROGRAMS:-$(dirname "$0")/../../target/debug}
 common=(--seed 20000 --trials 1 --estimator paper --estimator two-state-gaps)
-for strategy in curious recency poisson coin progress information-gain; do
+for strategy in curious recency poisson coin information-gain; do
   common+=(--strategy "$strategy")
 done
 case $study in

@@ -1,9 +1,9 @@
 //! Many tasks, stepped by one call.
 
-use crate::task::{Actions, Results, Task, TaskError};
-use crate::threads::share;
+use crate::task::{ACTIONS, ROUNDING, Results, Task, TaskError};
 use interfaces::{from_bytes, to_bytes};
 use rayon::ThreadPool;
+use rayon::prelude::*;
 use sim::physics::SnapshotError;
 
 /// A number of tasks of the same kind.
@@ -51,8 +51,7 @@ impl Batch {
         Self { is_parallel: slots.len() > 1, slots, pool: None, is_autoreset: true }
     }
 
-    /// Whether the tasks are stepped on as many threads as the pool has (the default for more than one task), one of which
-    /// is this thread, or on this thread alone. The results are the same.
+    /// Whether the tasks are stepped on the threads of the pool (the default for more than one task), or on this thread alone. The results are the same.
     pub fn set_parallel(&mut self, is_parallel: bool) {
         self.is_parallel = is_parallel;
     }
@@ -87,6 +86,19 @@ impl Batch {
         self.slots.first().map_or(0, |first| first.results.observations.len() / first.task.agents())
     }
 
+    /// Calls `run` with every slot and its input.
+    fn each<I: Send>(&mut self, inputs: Vec<I>, run: impl Fn(&mut Slot, I) + Sync + Send) {
+        let Self { slots, pool, .. } = self;
+        if !self.is_parallel {
+            return slots.iter_mut().zip(inputs).for_each(|(slot, input)| run(slot, input));
+        }
+        let all = || slots.par_iter_mut().zip(inputs).for_each(|(slot, input)| run(slot, input));
+        match pool {
+            Some(pool) => pool.install(all),
+            None => all(),
+        }
+    }
+
     /// Begins an episode in every task. Returns the observations.
     ///
     /// # Errors
@@ -94,15 +106,8 @@ impl Batch {
     /// When the number of seeds is not that of the tasks. Nothing is changed then.
     pub fn reset(&mut self, seeds: &[u64]) -> Result<Vec<f32>, TaskError> {
         check("seeds", seeds.len(), self.slots.len())?;
-        let jobs = self.slots.iter_mut().zip(seeds);
-        share(self.is_parallel, self.pool.as_ref(), jobs, |(slot, seed)| slot.reset(*seed));
+        self.each(seeds.to_vec(), Slot::reset);
         Ok(self.slots.iter().flat_map(|slot| &slot.results.observations).copied().collect())
-    }
-
-    /// Begins an episode in one task. Returns its observations.
-    pub fn reset_one(&mut self, index: usize, seed: u64) -> &[f32] {
-        self.slots[index].reset(seed);
-        &self.slots[index].results.observations
     }
 
     /// Simulates one step of every task. `next_seeds` has, for every task, the seed of its next episode, which begins
@@ -113,22 +118,17 @@ impl Batch {
     /// When an action is out of range, or a slice has the wrong length. Nothing is changed then.
     pub fn step(&mut self, actions: &[f32], next_seeds: &[u64]) -> Result<Results, TaskError> {
         let tasks = self.slots.len();
-        let kind = self.slots.first().map_or(Actions::Velocities, |first| first.task.actions());
-        let of_task = self.slots.first().map_or(1, |first| first.task.agents()) * kind.values();
+        let of_task = self.slots.first().map_or(1, |first| first.task.agents()) * ACTIONS;
         check("actions", actions.len(), tasks * of_task)?;
         check("seeds", next_seeds.len(), tasks)?;
-        if let Some(at) = actions.iter().position(|action| !kind.allow(*action)) {
-            let (environment, value) = (at / of_task, actions[at]);
-            return Err(match kind {
-                Actions::Velocities => TaskError::Action { environment, value },
-                Actions::Choice(count) => TaskError::Choice { environment, value, last: count - 1 },
-            });
+        // Not NaN, and rounding may add a little.
+        let is_valid = |action: &f32| action.abs() <= 1.0 + ROUNDING;
+        if let Some(at) = actions.iter().position(|action| !is_valid(action)) {
+            return Err(TaskError::Action { environment: at / of_task, value: actions[at] });
         }
         let is_autoreset = self.is_autoreset;
-        let jobs = self.slots.iter_mut().zip(actions.chunks(of_task)).zip(next_seeds);
-        share(self.is_parallel, self.pool.as_ref(), jobs, |((slot, actions), seed)| {
-            slot.step(actions, *seed, is_autoreset);
-        });
+        let inputs = actions.chunks(of_task).zip(next_seeds).collect();
+        self.each(inputs, |slot, (actions, seed)| slot.step(actions, *seed, is_autoreset));
         Ok(Results::joined(self.slots.iter().map(|slot| &slot.results)))
     }
 

@@ -11,8 +11,10 @@ pub struct DriveSettings {
     /// The number of decisions after which an episode is truncated.
     pub max_steps: u32,
     /// A goal is reached when the center of the robot is nearer than this, m.
+    #[serde(rename = "goal_radius")]
     pub goal_radius_m: f64,
     /// The smallest distance from the start to the goal, m, in a straight line.
+    #[serde(rename = "min_goal")]
     pub min_goal_m: f64,
     /// Whether the observation has the direction of the shortest path, as a global planner with a map would give it.
     /// Without it both numbers are 0.

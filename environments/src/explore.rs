@@ -1,16 +1,30 @@
 //! Exploring a place that changes.
 
-use crate::explore_place::ExplorePlace;
-use crate::explorer::{Explorer, INFO};
+use crate::explore_place::{ExplorePlace, One};
 use crate::patches::{LAYERS, Patches};
-use crate::picture::Picture;
+use crate::picture::{Picture, size_m};
 use crate::task::{Part, Results, Task, TaskError, twist, write_scan, write_state};
-use interfaces::{from_bytes, to_bytes};
-use sim::physics::{Fleet, SnapshotError};
+use evaluation::metrics::{MAX_LOG_ERROR, mean_log_error};
+use interfaces::{
+    CellState, LaserReading, Purpose, RandomStream, SparseCells, Twist, ValueError, World, from_bytes,
+    heading_rad, to_bytes,
+};
+use mapper::Mapper;
+use robot::{NoPilot, Robot};
+use sim::physics::{Fleet, PhysicsWorld, SnapshotError};
 use std::sync::Arc;
 
 /// The numbers of an observation beside scan and map.
 const STATE: usize = 6;
+/// A change is found by a move if the cell was last seen from a place at least this far away, m: not what a door hides and
+/// shows again.
+const MOVE_M: f64 = 2.0;
+/// The number of readings from one note of when each cell was seen to the next: 5 s, less than the gaps of found changes.
+const NOTE_EVERY: usize = 50;
+/// The number of readings from one refresh of the map in the observation to the next.
+const MAP_EVERY: u32 = 10;
+/// The number of readings from one measurement of the log error to the next.
+const ERROR_EVERY: u32 = 50;
 
 /// A robot with exact poses maps a place in which things move.
 ///
@@ -18,17 +32,45 @@ const STATE: usize = 6;
 /// invalid. `state`: position (shares of the size of the world), cosine and sine of the heading, linear and angular
 /// velocity (shares of the maximum). `map`: four layers of patches of 0.5 m, row 0 at the lowest y: share that was
 /// seen, share that is blocked, how long ago it was seen, mean probability of a change since then; from 0 to 1. The
-/// map is refreshed at every tenth reading. With [`shows_local_map`](crate::ExploreSettings::shows_local_map), a fourth part
-/// follows: `local_map`, the map around the robot in its own frame, refreshed at every reading.
+/// map is refreshed at every tenth reading.
 ///
 /// The two actions are the wanted linear and angular velocity, as shares of the maximum. One step is one scan of the
-/// laser of the world.
+/// laser of the world. An episode begins anywhere in the free space that the robot can reach.
 ///
-/// The reward is in [`ExploreSettings::reward`](crate::ExploreSettings::reward).
+/// The reward is for what the map did not have and a move of the robot has shown: the changes that are found in cells that
+/// were out of view for eight seconds or more and were last seen from a place at least two meters away, and the area that
+/// becomes known. A robot that stands still earns next to nothing.
 pub struct Explore {
-    explorer: Explorer,
+    place: Arc<ExplorePlace>,
+    /// The index of the world, and the world at its start.
+    number: usize,
+    one: Arc<One>,
+    world: PhysicsWorld,
+    /// The robot without a pilot: the commands come from outside.
+    robot: Robot<LaserReading, NoPilot>,
+    reading: LaserReading,
+    episode: Episode,
     /// The map of the observation.
     layers: Vec<f32>,
+    /// Per cell the changes that were found after a gap in its view.
+    found: SparseCells<u32>,
+    /// Per cell the number of the reading that had last seen it, at the last note.
+    seen_at: SparseCells<u32>,
+    /// The position at every reading, m.
+    path: Vec<[f64; 2]>,
+}
+
+/// The present episode, for snapshots.
+#[derive(Clone, Copy, Debug, Default, serde::Deserialize, serde::Serialize)]
+struct Episode {
+    /// The number of readings after the first one.
+    steps: u32,
+    log_error: f64,
+    map_updates: u64,
+    collisions: u32,
+    found: u64,
+    /// The known cells.
+    known: i64,
 }
 
 impl Explore {
@@ -38,11 +80,106 @@ impl Explore {
     ///
     /// When the mapper refuses its settings.
     pub fn new(place: &Arc<ExplorePlace>) -> Result<Self, TaskError> {
-        Ok(Self { explorer: Explorer::new(place)?, layers: vec![0.0; place.patches.len()] })
+        let one = place.one(0)?;
+        let mut world = one.world.clone();
+        let (robot, reading, place) = (one.robot()?, world.sense(), Arc::clone(place));
+        let (found, seen_at, path) = (none(&robot.mapper), none(&robot.mapper), Vec::new());
+        let (layers, episode) = (vec![0.0; place.patches.len()], Episode::default());
+        Ok(Self { place, number: 0, one, world, robot, reading, episode, layers, found, seen_at, path })
+    }
+
+    /// Takes the world with an index, at its start, and an empty map.
+    fn take(&mut self, number: usize) {
+        if number != self.number {
+            match self.place.one(number) {
+                Ok(one) => (self.world, self.one, self.number) = (one.world.clone(), one, number),
+                Err(why) => debug_assert!(false, "all generated houses are valid: {why}"),
+            }
+        }
+        // It was made with these settings once before.
+        if let Ok(robot) = self.one.robot() {
+            self.robot = robot;
+        }
+        self.episode = Episode::default();
+        self.path.clear();
+        self.seen_at = none(&self.robot.mapper);
+        self.count_found();
+    }
+
+    /// Executes a command until the next reading. Returns the reward.
+    fn advance(&mut self, command: &Twist) -> f64 {
+        self.world.act(command);
+        let hits = self.world.contacts().iter().filter(|contact| contact.moving).count() as u32;
+        let before = self.episode;
+        self.sense();
+        self.episode.steps += 1;
+        self.episode.collisions += hits;
+        let (settings, after) = (&self.place.settings, self.episode);
+        let reward = settings.update_reward * (after.found - before.found) as f64 / self.one.cells_wide
+            + settings.collision_reward * f64::from(hits)
+            + settings.seen_reward * (after.known - before.known) as f64 * self.cell_m2();
+        if self.is_over() || after.steps.is_multiple_of(ERROR_EVERY) {
+            self.episode.log_error = self.log_error();
+        }
+        reward
+    }
+
+    fn is_over(&self) -> bool {
+        self.episode.steps >= self.place.settings.max_steps
+    }
+
+    /// Senses: one turn of the robot.
+    fn sense(&mut self) {
+        match self.robot.step(self.world.sense()) {
+            Ok(turn) => self.reading = turn.reading,
+            Err(why) => debug_assert!(false, "a simulated reading is valid: {why}"),
+        }
+        let at = self.reading.pose.translation.vector;
+        self.path.push(at.into());
+        let mapper = &self.robot.mapper;
+        for transition in mapper.transitions() {
+            let is_known = |state| i64::from(state != CellState::Unknown);
+            self.episode.known += is_known(transition.after) - is_known(transition.before);
+            if transition.event().is_none() {
+                continue;
+            }
+            self.episode.map_updates += 1;
+            let Some(index) = mapper.frame().index(transition.cell) else { continue };
+            let after_gaps = found_changes(mapper, index);
+            if after_gaps > self.found[index] {
+                let from = self.path[self.seen_at[index] as usize];
+                self.episode.found += u64::from((at.x - from[0]).hypot(at.y - from[1]) >= MOVE_M);
+            }
+            self.found.set(index, after_gaps);
+        }
+        let number = self.path.len() - 1;
+        if number.is_multiple_of(NOTE_EVERY) {
+            for index in mapper.seen() {
+                let ago = mapper.recency(index) * self.one.rate_hz;
+                self.seen_at.set(index, number.saturating_sub(ago.round() as usize) as u32);
+            }
+        }
+    }
+
+    /// Counts the found changes of all cells anew.
+    fn count_found(&mut self) {
+        let mapper = &self.robot.mapper;
+        self.found = none(mapper);
+        for index in mapper.changed() {
+            self.found.set(index, found_changes(mapper, index));
+        }
+    }
+
+    fn log_error(&self) -> f64 {
+        mean_log_error(&self.robot.mapper, self.world.truth()).unwrap_or(MAX_LOG_ERROR)
+    }
+
+    fn cell_m2(&self) -> f64 {
+        self.robot.mapper.frame().resolution_m().powi(2)
     }
 
     fn write_map(&mut self) {
-        self.explorer.place.patches.write(&self.explorer.robot.mapper, &mut self.layers);
+        self.place.patches.write(&self.robot.mapper, &mut self.layers);
     }
 }
 
@@ -56,34 +193,38 @@ impl Task for Explore {
     }
 
     fn parts(&self) -> Vec<Part> {
-        let place = &self.explorer.place;
-        let Patches { rows, columns } = place.patches;
+        let Patches { rows, columns } = self.place.patches;
         let state = vec![("position", 2), ("heading", 2), ("velocity", 2)];
         let map = Part::new("map", vec![LAYERS.len(), rows, columns]);
-        let mut parts = vec![
-            Part::new("scan", vec![place.beams]),
+        vec![
+            Part::new("scan", vec![self.place.beams]),
             Part { slices: state, ..Part::new("state", vec![STATE]) },
             Part { slices: LAYERS.to_vec(), ..map },
-        ];
-        parts.extend(place.local_map().map(|local| local.part()));
-        parts
+        ]
     }
 
     fn info_names(&self) -> &'static [&'static str] {
-        INFO
+        &["world", "map_updates", "log_error", "collisions", "found_changes", "seen_m2", "time"]
     }
 
     fn reset(&mut self, seed: u64) {
-        self.explorer.reset(seed);
+        let mut random = RandomStream::new(seed, Purpose::Task);
+        let worlds = self.place.count();
+        self.take((random.uniform(0.0..worlds as f64) as usize).min(worlds - 1));
+        self.world.reset(seed);
+        if let Some(free) = &self.one.free {
+            self.world.start_in(free, &mut random);
+        }
+        self.sense();
+        self.episode.log_error = self.log_error();
         self.write_map();
     }
 
     fn step(&mut self, actions: &[f32], results: &mut Results) {
-        let twist = twist(&self.explorer.world.spec().driven().drive, actions);
-        let reward = if self.explorer.is_over() { 0.0 } else { self.explorer.advance(&twist) };
-        let is_over = self.explorer.is_over();
-        let map_every = self.explorer.place.settings.map_every;
-        if is_over || self.explorer.episode.steps.is_multiple_of(map_every) {
+        let twist = twist(&self.world.spec().driven().drive, actions);
+        let reward = if self.is_over() { 0.0 } else { self.advance(&twist) };
+        let is_over = self.is_over();
+        if is_over || self.episode.steps.is_multiple_of(MAP_EVERY) {
             self.write_map();
         }
         let Results { rewards, terminated, truncated, .. } = results;
@@ -91,128 +232,101 @@ impl Task for Explore {
     }
 
     fn observe(&mut self, observations: &mut [f32]) {
-        let Self { explorer, layers } = self;
-        let (scan, rest) = observations.split_at_mut(explorer.place.beams);
-        let (state, rest) = rest.split_at_mut(STATE);
-        let (map, local_map) = rest.split_at_mut(layers.len());
-        write_scan(scan, &explorer.reading.scan.ranges_m, explorer.one.range_max_m);
-        write_state(state, explorer.state());
-        map.copy_from_slice(layers);
-        explorer.write_local_map(local_map);
+        let (scan, rest) = observations.split_at_mut(self.place.beams);
+        let (state, map) = rest.split_at_mut(STATE);
+        write_scan(scan, &self.reading.scan.ranges_m, self.one.range_max_m);
+        let (spec, pose) = (self.world.spec(), &self.reading.pose);
+        let (drive, (width_m, height_m)) = (&spec.driven().drive, size_m(&spec.frame));
+        let at = pose.translation.vector - spec.frame.origin().coords;
+        let (sin, cos) = libm::sincos(heading_rad(pose));
+        let (linear, angular) = (self.reading.twist.linear_mps, self.reading.twist.angular_radps);
+        let velocity = [linear / drive.max_linear_mps, angular / drive.max_angular_radps];
+        write_state(state, [at.x / width_m, at.y / height_m, cos, sin, velocity[0], velocity[1]]);
+        map.copy_from_slice(&self.layers);
     }
 
     fn info(&self, info: &mut [f32]) {
-        self.explorer.info(info);
+        let Episode { log_error, map_updates, collisions, found, known, .. } = self.episode;
+        let values = [
+            self.number as f32,
+            map_updates as f32,
+            log_error as f32,
+            collisions as f32,
+            found as f32,
+            (known as f64 * self.cell_m2()) as f32,
+            self.world.time_s() as f32,
+        ];
+        info.copy_from_slice(&values);
     }
 
     fn fleet(&self) -> &Fleet {
-        self.explorer.world.fleet()
+        self.world.fleet()
     }
 
+    /// The map as the robot knows it: free, blocked and changing cells, and the robots.
     fn picture(&self, size: usize) -> Picture {
-        self.explorer.picture(size)
+        let (spec, mapper) = (self.world.spec(), &self.robot.mapper);
+        let mut picture = Picture::floor(&spec.frame, size);
+        picture.cells(mapper.frame(), |index| match mapper.states().cells()[index] {
+            CellState::Unknown => Some([160, 160, 165]),
+            CellState::Blocked => Some([70, 70, 75]),
+            CellState::Free if mapper.acting_rate(index) > 0.0 => Some([245, 180, 90]),
+            CellState::Free => None,
+        });
+        picture.robots(self.world.fleet(), &[spec.driven_index()]);
+        picture
     }
 
     fn snapshot(&mut self) -> Vec<u8> {
-        to_bytes(&(self.explorer.snapshot(), &self.layers))
+        let filter = self.robot.filter_mut().map(|filter| interfaces::snapshot(filter.values()));
+        let learned = (
+            self.robot.mapper.snapshot(),
+            self.robot.localization_mut().snapshot(),
+            filter.unwrap_or_default(),
+        );
+        let world = self.world.snapshot().into_bytes();
+        let views = (self.seen_at.to_vec(), &self.path, &self.layers);
+        to_bytes(&(self.number, world, learned, &self.reading, self.episode, views))
     }
 
     fn restore(&mut self, snapshot: &[u8]) -> Result<(), SnapshotError> {
-        let (explorer, layers): (Vec<u8>, Vec<f32>) =
-            from_bytes(snapshot).map_err(|_| SnapshotError::Damaged)?;
-        if layers.len() != self.layers.len() {
+        type Learned = (Vec<u8>, Vec<u8>, Vec<u8>);
+        type Views = (Vec<u32>, Vec<[f64; 2]>, Vec<f32>);
+        type Saved = (usize, Vec<u8>, Learned, LaserReading, Episode, Views);
+        let damaged = |_: ValueError| SnapshotError::Damaged;
+        let saved: Saved = from_bytes(snapshot).map_err(damaged)?;
+        let (number, world, (mapper, poses, filter), reading, episode, (seen_at, path, layers)) = saved;
+        if number >= self.place.count() || layers.len() != self.layers.len() {
             return Err(SnapshotError::OtherSpec);
         }
-        self.explorer.restore(&explorer)?;
-        self.layers = layers;
+        self.take(number);
+        if seen_at.len() != self.seen_at.len()
+            || seen_at.iter().any(|&reading| reading as usize >= path.len())
+        {
+            return Err(SnapshotError::Damaged);
+        }
+        (self.path, self.layers) = (path, layers);
+        seen_at.into_iter().enumerate().for_each(|(index, reading)| self.seen_at.set(index, reading));
+        self.world.restore(&world)?;
+        self.robot.mapper.restore(&mapper).map_err(damaged)?;
+        self.robot.localization_mut().restore(&poses).map_err(damaged)?;
+        if let Some(own) = self.robot.filter_mut() {
+            interfaces::restore(own.values(), &filter).map_err(damaged)?;
+        }
+        (self.reading, self.episode) = (reading, episode);
+        self.count_found();
         Ok(())
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::ExploreSettings;
-    use crate::local_map;
-    use interfaces::CellState::{Blocked, Free, Unknown};
-    use interfaces::heading_rad;
+/// A number per cell that is 0 for most of them.
+fn none(mapper: &Mapper) -> SparseCells<u32> {
+    SparseCells::in_blocks(mapper.frame().width(), mapper.frame().height(), 0)
+}
 
-    const CELLS: usize = 24;
-    const CELL_M: f64 = 0.5;
-
-    /// A task with a local map, after a drive of three minutes.
-    fn driven() -> Explore {
-        let settings = ExploreSettings {
-            beams: Some(90),
-            shows_local_map: true,
-            local_map_cells: CELLS,
-            local_map_cell_m: CELL_M,
-            ..ExploreSettings::default()
-        };
-        let place = Arc::new(ExplorePlace::of_houses(vec![7], settings).unwrap());
-        let mut task = Explore::new(&place).unwrap();
-        task.reset(3);
-        let mut results = Results::of(&task);
-        for step in 0..1800 {
-            task.step(&[0.5, if step % 80 < 50 { 0.1 } else { 0.7 }], &mut results);
-        }
-        task
-    }
-
-    /// The mean of a value of the cells at the four points in a cell of the local map; 0 beyond the map.
-    fn mean(task: &Explore, row: usize, column: usize, value: &dyn Fn(usize) -> f64) -> f64 {
-        let (mapper, pose) = (&task.explorer.robot.mapper, &task.explorer.reading.pose);
-        let (sin, cos) = libm::sincos(heading_rad(pose));
-        let half_m = CELLS as f64 * CELL_M / 2.0;
-        let mut sum = 0.0;
-        for (dx, dy) in [(0.25, 0.25), (0.25, 0.75), (0.75, 0.25), (0.75, 0.75)] {
-            let ahead_m = (column as f64 + dx) * CELL_M - half_m;
-            let left_m = (row as f64 + dy) * CELL_M - half_m;
-            let mut point = nalgebra::Point2::from(pose.translation.vector);
-            point.x += cos * ahead_m - sin * left_m;
-            point.y += sin * ahead_m + cos * left_m;
-            sum += mapper.frame().index(mapper.frame().cell_at(&point)).map_or(0.0, value);
-        }
-        sum / 4.0
-    }
-
-    #[test]
-    fn the_local_map_has_the_cells_around_the_robot() {
-        let mut task = driven();
-        let parts = task.parts();
-        let lengths: Vec<usize> = parts.iter().map(Part::values).collect();
-        assert_eq!((parts[3].name, lengths[3]), ("local_map", local_map::LAYERS.len() * CELLS * CELLS));
-        let mut observation = vec![0.0; lengths.iter().sum()];
-        task.observe(&mut observation);
-        let layers = &observation[lengths[..3].iter().sum()..];
-        let mapper = &task.explorer.robot.mapper;
-        let is = |is: bool| f64::from(u8::from(is));
-        let state = |index: usize| mapper.states().cells()[index];
-        let beside_free = |index: usize| mapper.frame().beside(index).any(|other| state(other) == Free);
-        let age =
-            |index: usize| if mapper.was_ever_seen(index) { mapper.recency(index) } else { f64::INFINITY };
-        let oracle: [&dyn Fn(usize) -> f64; local_map::LAYERS.len()] = [
-            &|index| is(state(index) == Free),
-            &|index| is(state(index) == Blocked),
-            &|index| is(state(index) == Unknown),
-            &|index| is(state(index) == Unknown && beside_free(index)),
-            &|index| 1.0 - libm::exp(-age(index) / 60.0),
-            &|index| mapper.change_probability(index) * is(mapper.was_ever_seen(index)),
-            &|index| 1.0 - 0.01 / (0.01 + mapper.acting_rate(index)),
-        ];
-        for (layer, value) in oracle.into_iter().enumerate() {
-            let mut most = 0.0_f32;
-            for (row, column) in (0..CELLS).flat_map(|row| (0..CELLS).map(move |column| (row, column))) {
-                let found = layers[(layer * CELLS + row) * CELLS + column];
-                let expected = mean(&task, row, column, value);
-                let name = local_map::LAYERS[layer].0;
-                assert!(
-                    (f64::from(found) - expected).abs() < 1e-5,
-                    "{name}, {row}, {column}: {found}, {expected}"
-                );
-                most = most.max(found);
-            }
-            assert!(most > 0.01, "nothing in `{}`", local_map::LAYERS[layer].0);
-        }
-    }
+/// The changes of a cell that were found at the end of a gap in its view: the mapper counts a cell that was hidden for less
+/// than eight seconds as watched.
+fn found_changes(mapper: &Mapper, index: usize) -> u32 {
+    let seen = mapper.statistics(index);
+    seen.block_events_after_gap + seen.free_events_after_gap
 }

@@ -1,6 +1,5 @@
 //! The worlds of exploring tasks, built once and shared.
 
-use crate::local_map::LocalMap;
 use crate::patches::Patches;
 use crate::task::TaskError;
 use evaluation::physics_trial;
@@ -13,41 +12,6 @@ use sim::physics::{ContactModel, FleetSpec, FreePoses, PhysicsWorld, WorldSpec};
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError, Weak};
 
-/// What an exploring robot earns.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Deserialize, serde::Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Reward {
-    /// What the map did not have and a move of the robot has shown: the changes that are found in cells that were out of view
-    /// for eight seconds or more and were last seen from a place at least two meters away, and the area that becomes known.
-    /// A robot that stands still earns next to nothing.
-    #[default]
-    Found,
-    /// All map updates, as the paper's agent earns them, and the fall of the log error of the rates. A robot that stays beside
-    /// a door earns as much as one that drives about at random.
-    Updates,
-}
-
-/// Where an episode begins.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Deserialize, serde::Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Start {
-    /// Anywhere in the free space that the robot can reach.
-    #[default]
-    Anywhere,
-    /// At the pose of the world.
-    Spec,
-}
-
-impl Reward {
-    /// All, with their names.
-    pub const ALL: [(&'static str, Self); 2] = [("found", Self::Found), ("updates", Self::Updates)];
-}
-
-impl Start {
-    /// All, with their names.
-    pub const ALL: [(&'static str, Self); 2] = [("anywhere", Self::Anywhere), ("spec", Self::Spec)];
-}
-
 /// Settings of [`Explore`](crate::Explore).
 #[derive(Clone, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
 #[serde(default, deny_unknown_fields)]
@@ -56,26 +20,9 @@ pub struct ExploreSettings {
     pub max_steps: u32,
     /// The number of beams of the laser; `None`: as in the world. Its other properties are those of the world.
     pub beams: Option<usize>,
-    /// The number of readings from one measurement of the log error to the next.
-    pub error_every: u32,
-    /// The number of readings from one refresh of the map in the observation to the next.
-    pub map_every: u32,
-    /// Whether the observation has the part `local_map`: the map around the robot, in the robot's own frame.
-    pub shows_local_map: bool,
-    /// The cells of the local map, along each side.
-    pub local_map_cells: usize,
-    /// The side of a cell of the local map, m.
-    pub local_map_cell_m: f64,
-    /// What earns a reward.
-    pub reward: Reward,
-    /// Where an episode begins.
-    pub starts: Start,
-    /// The reward per map update (a known cell that is found changed), divided by the number of cells in the width of
-    /// the robot. With [`Reward::Found`], only the changes that a move has shown count.
+    /// The reward per change that a move has shown, divided by the number of cells in the width of the robot.
     pub update_reward: f64,
-    /// The reward per fall of the log error of the rates by 1; not with [`Reward::Found`].
-    pub error_reward: f64,
-    /// The reward per square meter that becomes known; only with [`Reward::Found`].
+    /// The reward per square meter that becomes known.
     pub seen_reward: f64,
     /// The reward (below 0) of a collision of the moving robot.
     pub collision_reward: f64,
@@ -86,15 +33,7 @@ impl Default for ExploreSettings {
         Self {
             max_steps: 3000,
             beams: Some(180),
-            error_every: 50,
-            map_every: 10,
-            shows_local_map: false,
-            local_map_cells: 32,
-            local_map_cell_m: 0.25,
-            reward: Reward::Found,
-            starts: Start::Anywhere,
             update_reward: 1.0,
-            error_reward: 10.0,
             seen_reward: 0.2,
             collision_reward: -0.5,
         }
@@ -102,24 +41,14 @@ impl Default for ExploreSettings {
 }
 
 impl ExploreSettings {
-    /// The settings of the task `Explore-v0`: all map updates count, and the robot starts at the pose of the world.
-    pub fn version_0() -> Self {
-        Self { reward: Reward::Updates, starts: Start::Spec, ..Self::default() }
-    }
-
     fn check(&self) -> Result<(), SettingsError> {
         let check = SettingsCheck { part: "exploring task" };
         check.within("max_steps", self.max_steps, 1.0..=1e9, "from 1 to 1000000000")?;
-        check.within("error_every", self.error_every, 1.0..=1e9, "from 1 to 1000000000")?;
-        check.within("map_every", self.map_every, 1.0..=1e9, "from 1 to 1000000000")?;
-        check.within("local_map_cells", self.local_map_cells as f64, 2.0..=256.0, "from 2 to 256")?;
-        check.within("local_map_cell_m", self.local_map_cell_m, 0.05..=2.0, "from 0.05 to 2")?;
         if let Some(beams) = self.beams {
             check.within("beams", beams as f64, 2.0..=1e4, "from 2 to 10000")?;
         }
         for (key, reward) in [
             ("update_reward", self.update_reward),
-            ("error_reward", self.error_reward),
             ("seen_reward", self.seen_reward),
             ("collision_reward", self.collision_reward),
         ] {
@@ -216,12 +145,6 @@ impl ExplorePlace {
         Ok(Self { settings, worlds: Worlds::Houses(houses), patches, beams: first.beams() })
     }
 
-    /// The local map of the observation, if it has one.
-    pub(crate) fn local_map(&self) -> Option<LocalMap> {
-        let ExploreSettings { local_map_cells: cells, local_map_cell_m: cell_m, .. } = self.settings;
-        self.settings.shows_local_map.then_some(LocalMap { cells, cell_m })
-    }
-
     /// The number of worlds.
     pub(crate) fn count(&self) -> usize {
         match &self.worlds {
@@ -252,8 +175,7 @@ impl One {
         let (range_max_m, rate_hz) = (robot.laser.range_max_m, robot.laser.rate_hz);
         let mut world = PhysicsWorld::new(&spec, 0);
         world.correct_odometry();
-        let is_anywhere = task.starts == Start::Anywhere;
-        let free = is_anywhere.then(|| FreePoses::reachable(spec.fleet(), spec.driven_index())).flatten();
+        let free = FreePoses::reachable(spec.fleet(), spec.driven_index());
         let one = Self { world, settings, range_max_m, rate_hz, cells_wide, free };
         // Errors of the settings and of the size of the map are found here, and not in an episode.
         one.robot()?;

@@ -20,32 +20,25 @@
 //! ```
 
 mod batch;
-mod candidates;
 mod distance;
 mod drive;
 mod drive_settings;
 mod explore;
-mod explore_goals;
 mod explore_place;
-mod explorer;
-mod local_map;
 mod memory;
 mod patches;
 mod picture;
 mod place;
-mod routes;
 mod task;
-mod threads;
 
 pub use batch::Batch;
 pub use drive::Drive;
 pub use drive_settings::DriveSettings;
 pub use explore::Explore;
-pub use explore_goals::{ExploreGoals, GoalSettings};
-pub use explore_place::{ExplorePlace, ExploreSettings, Reward, Start};
+pub use explore_place::{ExplorePlace, ExploreSettings};
 pub use picture::Picture;
 pub use place::DrivePlace;
-pub use task::{ACTIONS, Actions, Part, Results, Task, TaskError};
+pub use task::{ACTIONS, Part, Results, Task, TaskError};
 
 use sim::physics::FleetSpec;
 

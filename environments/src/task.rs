@@ -5,38 +5,11 @@ use interfaces::Twist;
 use nalgebra::Point2;
 use sim::physics::{DriveLimits, Fleet, SnapshotError};
 
-/// The number of actions of an agent that chooses its velocities.
+/// The number of values of an action: linear and angular velocity.
 pub const ACTIONS: usize = 2;
 
-/// The actions of an agent.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Actions {
-    /// Linear and angular velocity, from −1 to 1.
-    Velocities,
-    /// One of this number of choices, counted from 0.
-    Choice(usize),
-}
-
-impl Actions {
-    /// The number of values of an action.
-    pub fn values(self) -> usize {
-        match self {
-            Self::Velocities => ACTIONS,
-            Self::Choice(_) => 1,
-        }
-    }
-
-    /// Whether a value is one of an action. Rounding may add a little to a velocity.
-    pub(crate) fn allow(self, value: f32) -> bool {
-        match self {
-            Self::Velocities => value.abs() <= 1.0 + ROUNDING,
-            Self::Choice(count) => value.fract() == 0.0 && (0.0..count as f32).contains(&value),
-        }
-    }
-}
-
 /// What rounding may add to an action.
-const ROUNDING: f32 = 1e-6;
+pub(crate) const ROUNDING: f32 = 1e-6;
 
 /// A world with a reward, for one or more agents.
 ///
@@ -48,11 +21,6 @@ pub trait Task: Send + Sync {
     /// The kind of the task, for messages.
     fn kind(&self) -> &'static str;
 
-    /// The actions of an agent.
-    fn actions(&self) -> Actions {
-        Actions::Velocities
-    }
-
     /// The parts of the observation of an agent, one after the other.
     fn parts(&self) -> Vec<Part>;
 
@@ -63,7 +31,7 @@ pub trait Task: Send + Sync {
     fn reset(&mut self, seed: u64);
 
     /// Simulates one step. An agent whose part of the episode is over stands still, and its action is ignored.
-    /// Writes rewards and ends. The actions are [valid](Self::actions).
+    /// Writes rewards and ends. The actions are [`ACTIONS`] shares of the maximum velocity per agent, from −1 to 1.
     fn step(&mut self, actions: &[f32], results: &mut Results);
 
     /// Writes the observations of all agents.
@@ -243,9 +211,6 @@ pub enum TaskError {
     /// The controller cannot drive the robot.
     #[error(transparent)]
     Drive(#[from] evaluation::physics_trial::UnsupportedDrive),
-    /// There is no strategy.
-    #[error("choosing goals needs at least one strategy")]
-    NoStrategy,
     /// There is no world.
     #[error("exploring needs at least one world")]
     NoWorld,
@@ -266,16 +231,6 @@ pub enum TaskError {
         environment: usize,
         /// The action.
         value: f32,
-    },
-    /// An action is none of the choices.
-    #[error("action {value} of environment {environment} is not a whole number from 0 to {last}")]
-    Choice {
-        /// The index of the environment.
-        environment: usize,
-        /// The action.
-        value: f32,
-        /// The last choice.
-        last: usize,
     },
     /// A slice has the wrong length.
     #[error("{what}: {found} values, and not {expected}")]

@@ -1,8 +1,8 @@
 //! The tasks as a learner uses them.
 
 use environments::{
-    Batch, Drive, DrivePlace, DriveSettings, Explore, ExploreGoals, ExplorePlace, ExploreSettings,
-    GoalSettings, Results, Task, TaskError, driving_hall,
+    Batch, Drive, DrivePlace, DriveSettings, Explore, ExplorePlace, ExploreSettings, Results, Task,
+    TaskError, driving_hall,
 };
 use sim::physics::{SnapshotError, WorldSpec};
 use std::sync::Arc;
@@ -64,49 +64,12 @@ fn alone_and_in_a_batch_on_any_number_of_threads_the_bits_are_the_same() {
     for (index, row) in together.iter().enumerate() {
         assert_eq!(run(tasks(1), index, 1, 150)[0], *row, "environment {index}");
     }
-    let mut lengths = Vec::new();
-    for shows_local_map in [false, true] {
-        let place = explore_place(ExploreSettings {
-            max_steps: 25,
-            beams: Some(60),
-            shows_local_map,
-            ..ExploreSettings::default()
-        });
-        let tasks = |count| (0..count).map(|_| Explore::new(&place).unwrap()).collect::<Vec<_>>();
-        let together = run(tasks(4), 0, 1, 60);
-        assert_eq!(run(tasks(4), 0, 2, 60), together);
-        assert_eq!(run(tasks(1), 2, 1, 60)[0], together[2]);
-        lengths.push(together[0].len() / 60);
-    }
-    assert_eq!(lengths[1] - lengths[0], 7 * 32 * 32);
-}
-
-#[test]
-fn a_local_map_changes_nothing_else() {
-    let results = [false, true].map(|shows_local_map| {
-        let settings = ExploreSettings { beams: Some(60), shows_local_map, ..ExploreSettings::default() };
-        let mut batch = Batch::new(vec![Explore::new(&explore_place(settings)).unwrap()]);
-        batch.reset(&[5]).unwrap();
-        (0..40).map(|step| batch.step(&action(0, step), &[9]).unwrap()).collect::<Vec<_>>()
-    });
-    let [without, with] = results;
-    for (without, with) in without.iter().zip(&with) {
-        let (same, local) = with.observations.split_at(without.observations.len());
-        assert_eq!(
-            (same, &with.rewards, &with.info),
-            (&without.observations[..], &without.rewards, &without.info)
-        );
-        assert!(local.iter().all(|value| (0.0..=1.0).contains(value)) && local.iter().sum::<f32>() > 100.0);
-    }
-    let refused = |settings| ExplorePlace::of_houses(vec![1], settings).err().unwrap().to_string();
-    assert_eq!(
-        refused(ExploreSettings { local_map_cells: 1, ..ExploreSettings::default() }),
-        "exploring task setting `local_map_cells` must be from 2 to 256, not 1"
-    );
-    assert_eq!(
-        refused(ExploreSettings { local_map_cell_m: 0.01, ..ExploreSettings::default() }),
-        "exploring task setting `local_map_cell_m` must be from 0.05 to 2, not 0.01"
-    );
+    let settings = ExploreSettings { max_steps: 25, beams: Some(60), ..ExploreSettings::default() };
+    let place = explore_place(settings);
+    let tasks = |count| (0..count).map(|_| Explore::new(&place).unwrap()).collect::<Vec<_>>();
+    let together = run(tasks(4), 0, 1, 60);
+    assert_eq!(run(tasks(4), 0, 2, 60), together);
+    assert_eq!(run(tasks(1), 2, 1, 60)[0], together[2]);
 }
 
 #[test]
@@ -131,8 +94,7 @@ fn a_snapshot_goes_on_bit_by_bit() {
         let place = drive_place(DriveSettings { shows_memory, ..DriveSettings::default() });
         check(Batch::new(vec![Drive::new(&place)]), Batch::new(vec![Drive::new(&place)]));
     }
-    let settings = ExploreSettings { beams: Some(60), shows_local_map: true, ..ExploreSettings::default() };
-    let place = explore_place(settings);
+    let place = explore_place(ExploreSettings { beams: Some(60), ..ExploreSettings::default() });
     let one = || Batch::new(vec![Explore::new(&place).unwrap()]);
     check(one(), one());
 }
@@ -206,12 +168,14 @@ fn the_goals_of_the_hall_are_far_and_can_be_reached() {
 }
 
 #[test]
-fn exploring_earns_map_updates_and_the_fall_of_the_log_error() {
-    let settings = ExploreSettings { max_steps: 600, collision_reward: 0.0, ..ExploreSettings::version_0() };
+fn exploring_earns_found_changes_and_the_area_that_becomes_known() {
+    let settings = ExploreSettings { max_steps: 600, collision_reward: 0.0, ..ExploreSettings::default() };
     let place = explore_place(settings.clone());
     let mut batch = Batch::new(vec![Explore::new(&place).unwrap()]);
     batch.set_autoreset(false);
     batch.reset(&[4]).unwrap();
+    let mut first = [0.0; 7];
+    batch.task(0).info(&mut first);
     let (mut sum, mut results) = (0.0, Results::default());
     for step in 0..600 {
         let turn = if step % 100 < 60 { 0.0 } else { 0.6 };
@@ -220,13 +184,13 @@ fn exploring_earns_map_updates_and_the_fall_of_the_log_error() {
         sum += f64::from(results.rewards[0]);
     }
     assert_eq!((results.terminated[0], results.truncated[0]), (false, true));
-    let [_, updates, log_error, ..] = results.info[..] else { panic!("{:?}", results.info) };
+    let [_, updates, _, _, found, seen_m2, _] = results.info[..] else { panic!("{:?}", results.info) };
     let fleet = batch.task(0).fleet();
     assert!(updates > 0.0 && (fleet.time_s() - 60.0).abs() < 1e-9);
     let robot = &fleet.spec().robots[fleet.spec().driven_robots().next().unwrap()];
     let cells_wide = 2.0 * robot.radius_m / fleet.spec().frame.resolution_m();
-    let fall = evaluation::metrics::MAX_LOG_ERROR - f64::from(log_error);
-    let expected = settings.update_reward * f64::from(updates) / cells_wide + settings.error_reward * fall;
+    let area = settings.seen_reward * f64::from(seen_m2 - first[5]);
+    let expected = settings.update_reward * f64::from(found) / cells_wide + area;
     assert!((sum - expected).abs() < 1e-3 * expected.abs().max(1.0), "{sum} and not {expected}");
 }
 
@@ -284,131 +248,23 @@ fn golden_hashes() {
     let place = drive_place(DriveSettings { max_steps: 40, ..DriveSettings::default() });
     let driving = golden((0..3).map(|_| Drive::new(&place)).collect());
     let place =
-        explore_place(ExploreSettings { max_steps: 40, beams: Some(20), ..ExploreSettings::version_0() });
+        explore_place(ExploreSettings { max_steps: 40, beams: Some(20), ..ExploreSettings::default() });
     let exploring = golden((0..2).map(|_| Explore::new(&place).unwrap()).collect());
-    assert_eq!([driving, exploring], [6_763_501_705_012_223_895, 17_686_607_519_096_061_081]);
-}
-
-fn goal_tasks(count: usize, max_steps: u32) -> Vec<ExploreGoals> {
-    let settings = ExploreSettings {
-        max_steps,
-        beams: Some(60),
-        shows_local_map: true,
-        local_map_cells: 16,
-        ..ExploreSettings::default()
-    };
-    let place = Arc::new(ExplorePlace::of_houses((100..120).collect(), settings).unwrap());
-    let goals = Arc::new(GoalSettings { shows_routes: true, ..GoalSettings::default() });
-    (0..count).map(|_| ExploreGoals::new(&place, &goals).unwrap()).collect()
-}
-
-/// The bits of some steps with goals; episodes end in between.
-fn run_goals(first: usize, count: usize, is_parallel: bool) -> Vec<Vec<u32>> {
-    let mut batch = Batch::new(goal_tasks(count, 300));
-    batch.set_parallel(is_parallel);
-    batch.reset(&(first..first + count).map(|seed| seed as u64).collect::<Vec<_>>()).unwrap();
-    let (mut rows, values) = (vec![Vec::new(); count], batch.observation_len());
-    let mut resets = 0;
-    for step in 0..6 {
-        let actions: Vec<f32> = (first..first + count).map(|index| ((index + step) % 8) as f32).collect();
-        let next: Vec<u64> = (first..first + count).map(|index| (100 * step + index) as u64).collect();
-        let results = batch.step(&actions, &next).unwrap();
-        assert!(results.observations.iter().all(|value| (-1.0..=1.0).contains(value)));
-        resets += results.was_reset.iter().filter(|was| **was).count();
-        for (index, row) in rows.iter_mut().enumerate() {
-            let observation = &results.observations[index * values..(index + 1) * values];
-            row.extend(observation.iter().chain([&results.rewards[index]]).map(|value| value.to_bits()));
-        }
-    }
-    assert!(resets > 0, "no episode ended");
-    rows
-}
-
-/// The results of some steps with goals, with or without routes in the observation.
-fn steps_of_goals(shows_routes: bool) -> Vec<(Vec<f32>, Vec<f32>, Vec<f32>)> {
-    let settings = ExploreSettings { beams: Some(60), ..ExploreSettings::default() };
-    let place = Arc::new(ExplorePlace::of_houses((100..120).collect(), settings).unwrap());
-    let goals = Arc::new(GoalSettings { shows_routes, ..GoalSettings::default() });
-    let mut batch = Batch::new(vec![ExploreGoals::new(&place, &goals).unwrap()]);
-    batch.reset(&[5]).unwrap();
-    let step = |step: usize| {
-        let results = batch.step(&[(step % 8) as f32], &[9]).unwrap();
-        (results.observations.clone(), results.rewards.clone(), results.info.clone())
-    };
-    (0..12).map(step).collect()
-}
-
-#[test]
-fn routes_change_nothing_else() {
-    for (without, with) in steps_of_goals(false).iter().zip(&steps_of_goals(true)) {
-        let (same, routes) = with.0.split_at(without.0.len());
-        assert_eq!((same, &with.1, &with.2), (&without.0[..], &without.1, &without.2));
-        assert_eq!(routes.len(), 8 * 7);
-        assert!(routes.iter().all(|value| (0.0..=1.0).contains(value)) && routes.iter().sum::<f32>() > 1.0);
-    }
-}
-
-#[test]
-fn a_step_that_ends_on_arrival_takes_less_time() {
-    let place = Arc::new(ExplorePlace::of_houses((100..120).collect(), ExploreSettings::default()).unwrap());
-    let times = |stays_at_goals| {
-        let goals = Arc::new(GoalSettings { stays_at_goals, ..GoalSettings::default() });
-        let mut batch = Batch::new(vec![ExploreGoals::new(&place, &goals).unwrap()]);
-        let mut first_step = |choice| {
-            batch.reset(&[5]).unwrap();
-            *batch.step(&[choice as f32], &[9]).unwrap().info.last().unwrap()
-        };
-        (0..8).map(&mut first_step).collect::<Vec<_>>()
-    };
-    let (without, with) = (times(false), times(true));
-    assert!(without.iter().zip(&with).all(|(without, with)| without <= with), "{without:?} {with:?}");
-    assert!(without.iter().sum::<f32>() < 0.9 * with.iter().sum::<f32>(), "{without:?} {with:?}");
-}
-
-#[test]
-fn goals_have_the_same_bits_alone_and_in_a_batch() {
-    let together = run_goals(0, 3, true);
-    assert_eq!(run_goals(0, 3, false), together);
-    assert_eq!(run_goals(1, 1, false)[0], together[1]);
-}
-
-#[test]
-fn a_snapshot_of_goals_goes_on_bit_by_bit() {
-    let [mut here, mut there] = [5, 6].map(|seed| {
-        let mut batch = Batch::new(goal_tasks(1, 3000));
-        batch.reset(&[seed]).unwrap();
-        batch
-    });
-    (0..4).for_each(|step| drop(here.step(&[(step % 8) as f32], &[9]).unwrap()));
-    let snapshot = here.snapshot(0);
-    there.restore(0, &snapshot).unwrap();
-    assert_eq!(there.snapshot(0), snapshot);
-    for step in 4..10 {
-        let [results, other] =
-            [&mut here, &mut there].map(|batch| batch.step(&[(step % 8) as f32], &[9]).unwrap());
-        assert_eq!(bits(&results), bits(&other), "step {step}");
-    }
-    assert_eq!(there.restore(0, &snapshot[1..]), Err(SnapshotError::Damaged));
+    assert_eq!([driving, exploring], [6_763_501_705_012_223_895, 1_655_936_441_867_180_169]);
 }
 
 #[test]
 fn an_exploring_task_that_is_over_stands_still() {
     let place =
         explore_place(ExploreSettings { max_steps: 30, beams: Some(60), ..ExploreSettings::default() });
-    let settings = Arc::new(GoalSettings::default());
-    let mut batches = [
-        Batch::new(vec![Explore::new(&place).unwrap()]),
-        Batch::new(vec![ExploreGoals::new(&place, &settings).unwrap()]),
-    ];
-    for (batch, action) in batches.iter_mut().zip([&[1.0, 0.3][..], &[1.0]]) {
-        batch.set_autoreset(false);
-        batch.reset(&[4]).unwrap();
-        let mut step = || batch.step(action, &[0]).unwrap();
-        let last = (0..31).map(|_| step()).find(|results| results.truncated[0]).unwrap();
-        let after = step();
-        assert_eq!((after.rewards[0], after.terminated[0], after.truncated[0]), (0.0, false, true));
-        assert_eq!((after.observations, after.info), (last.observations, last.info));
-    }
+    let mut batch = Batch::new(vec![Explore::new(&place).unwrap()]);
+    batch.set_autoreset(false);
+    batch.reset(&[4]).unwrap();
+    let mut step = || batch.step(&[1.0, 0.3], &[0]).unwrap();
+    let last = (0..31).map(|_| step()).find(|results| results.truncated[0]).unwrap();
+    let after = step();
+    assert_eq!((after.rewards[0], after.terminated[0], after.truncated[0]), (0.0, false, true));
+    assert_eq!((after.observations, after.info), (last.observations, last.info));
 }
 
 #[test]
@@ -422,42 +278,29 @@ fn a_snapshot_has_the_seed_of_its_episode() {
     assert_eq!([batch.seed(0), batch.seed(1)], [8, 10]);
 }
 
-#[test]
-fn choices_are_whole_numbers() {
-    let mut batch = Batch::new(goal_tasks(2, 3000));
-    batch.reset(&[1, 2]).unwrap();
-    for (value, printed) in [(8.0, "8"), (0.5, "0.5"), (-1.0, "-1"), (f32::NAN, "NaN")] {
-        let error = batch.step(&[0.0, value], &[3, 4]).unwrap_err().to_string();
-        assert_eq!(error, format!("action {printed} of environment 1 is not a whole number from 0 to 7"));
-    }
-}
-
 /// In a minute, a robot that stands still earns the area of its first view alone.
 #[test]
 fn standing_still_earns_next_to_nothing() {
     let settings = ExploreSettings { max_steps: 600, beams: Some(90), ..ExploreSettings::default() };
     let place = Arc::new(ExplorePlace::of_houses((0..8).collect(), settings).unwrap());
-    let goals = Arc::new(GoalSettings::default());
-    let total = |tasks: Vec<Box<dyn Task>>, action: &[f32]| {
-        let mut sum = 0.0;
-        for (seed, mut task) in tasks.into_iter().enumerate() {
-            task.reset(seed as u64);
-            let mut results = Results {
-                rewards: vec![0.0],
-                terminated: vec![false],
-                truncated: vec![false],
-                ..Results::default()
-            };
-            while !results.truncated[0] {
-                task.step(action, &mut results);
-                sum += f64::from(results.rewards[0]);
-            }
+    let total = |action: fn(&[f32]) -> [f32; 2]| {
+        let mut batch = Batch::new((0..6).map(|_| Explore::new(&place).unwrap()));
+        batch.set_autoreset(false);
+        let mut observations = batch.reset(&[0, 1, 2, 3, 4, 5]).unwrap();
+        let (len, mut sum) = (batch.observation_len(), 0.0);
+        for _ in 0..600 {
+            let actions: Vec<f32> = observations.chunks(len).flat_map(action).collect();
+            let results = batch.step(&actions, &[0; 6]).unwrap();
+            sum += f64::from(results.rewards.iter().sum::<f32>());
+            observations = results.observations;
         }
         sum
     };
-    let standing = (0..6).map(|_| Box::new(Explore::new(&place).unwrap()) as Box<dyn Task>).collect();
-    let exploring =
-        (0..6).map(|_| Box::new(ExploreGoals::new(&place, &goals).unwrap()) as Box<dyn Task>).collect();
-    let (standing, exploring) = (total(standing, &[0.0, 0.0]), total(exploring, &[0.0]));
-    assert!(exploring > 6.0 * 5.0 && standing < 0.25 * exploring, "{standing} and {exploring}");
+    let standing = total(|_| [0.0, 0.0]);
+    // Straight on, and a turn before obstacles.
+    let wandering = total(|observation| {
+        let near = observation[35..55].iter().copied().fold(1.0_f32, f32::min);
+        if near < 0.08 { [0.0, 1.0] } else { [0.8, 0.0] }
+    });
+    assert!(wandering > 6.0 * 2.0 && standing < 0.5 * wandering, "{standing} and {wandering}");
 }

@@ -29,7 +29,7 @@ fn house() -> Mapper {
     mapper
 }
 
-#[divan::bench(args = ["recency", "poisson", "random", "curious", "frontier", "optimal-revisiting", "information-gain"])]
+#[divan::bench(args = ["recency", "poisson", "random", "curious", "fresh-map", "information-gain"])]
 fn next_goal(bencher: divan::Bencher, strategy: &str) {
     let mut mapper = house();
     let settings = AgentSettings { patch_cells: 10, ..Default::default() };

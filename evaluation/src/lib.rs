@@ -1,11 +1,9 @@
 //! The quality of a robot: metrics over the ground truth of a simulated world, and trials. It must not know
 //! the command line, recordings or screens.
 
-pub mod freshness_bound;
 pub mod map_hash;
 pub mod metrics;
 pub mod observer;
-pub mod oracle;
 pub mod physics_trial;
 pub mod scheduled_things;
 pub mod summary;

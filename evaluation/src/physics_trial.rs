@@ -1,17 +1,15 @@
 //! A run in a physics world as a library call: what the world says of itself, the robot, and the loop with the observer.
 
 use crate::map_hash::map_hash;
-use crate::metrics::{age, interval_scores, map_scores, passage_scores, rate_scores, reachable_scores};
+use crate::metrics::{age, map_scores, rate_scores, reachable_scores};
 use crate::observer::Observer;
 use crate::scheduled_things::ScheduledThings;
-use crate::summary::{Contacts, CurvePoint, Liveliest, RunResults};
+use crate::summary::{Contacts, CurvePoint, RunResults};
 use agent::Features;
-use controller::DiffDriveSettings;
-use interfaces::{
-    CellState, Grid, LaserReading, PoseMode, Purpose, RandomStream, SettingsError, Twist, World,
-};
+use controller::{DiffDriveSettings, Driver};
+use interfaces::{CellState, Grid, LaserReading, PoseMode, Purpose, RandomStream, SettingsError, Twist};
 use mapper::{NoReturn, ReadingError};
-use robot::{DaySettings, Pilot, Robot, Settings, Source, Turn};
+use robot::{Battery, DaySettings, GoalSelector, PatrolDay, Pilot, Robot, Settings, Source, Turn};
 use sim::physics::shape::Transform;
 use sim::physics::{BehaviorSpec, DriveKind, PatrolDaySpec, PhysicsWorld, WorldSpec};
 use std::collections::BTreeMap;
@@ -129,6 +127,16 @@ pub struct PhysicsTrial<P> {
     pub observer: Observer,
     /// The last command, which the world executes at the next turn.
     pub(crate) command: Option<Twist>,
+    /// The battery of the robot, where its pilot has one.
+    battery: fn(&P) -> Option<&Battery>,
+}
+
+impl<G: GoalSelector, D: Driver<Command = Twist>> PhysicsTrial<PatrolDay<G, D>> {
+    /// The same run: where the battery charges, time passes without readings.
+    #[must_use]
+    pub fn on_battery(self) -> Self {
+        Self { battery: |pilot| Some(pilot.battery()), ..self }
+    }
 }
 
 impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
@@ -147,7 +155,14 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
         let own = if prior.is_none() { in_own_frame(settings, spec, seed) } else { None };
         let mut world = PhysicsWorld::new(own.as_ref().map_or(spec, |(spec, _)| spec), seed);
         let robot = robot(settings, &mut world, prior, pilot)?;
-        Ok(Self { world, pose: settings.pose, robot, observer: Observer::default(), command: None })
+        Ok(Self {
+            world,
+            pose: settings.pose,
+            robot,
+            observer: Observer::default(),
+            command: None,
+            battery: |_| None,
+        })
     }
 
     /// One turn: the world executes the last command, or passes the time for which the robot rests;
@@ -157,15 +172,11 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
     ///
     /// When the mapper refuses the reading.
     pub fn turn(&mut self) -> Result<Turn<LaserReading, Twist>, ReadingError> {
-        if let Some(command) = self.command.take() {
-            match self.robot.pilot.rests_until_s() {
-                Some(until_s) => self.rest(until_s),
-                None => self.world.act(&command),
-            }
+        if let Some(until_s) = self.rests_until_s() {
+            self.rest(until_s);
         }
-        let turn = self.robot.step(self.world.sense())?;
+        let turn = robot::turn(&mut self.world, &mut self.robot, &mut self.command)?;
         self.observer.observe(&self.world, &mut self.robot, &turn);
-        self.command = Some(turn.command);
         Ok(turn)
     }
 
@@ -187,8 +198,7 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
     /// When the mapper refuses a reading.
     pub fn run_exactly(&mut self, end_s: f64) -> Result<(), ReadingError> {
         loop {
-            let ends_in_rest = self.robot.pilot.rests_until_s().is_some_and(|until_s| until_s > end_s);
-            if ends_in_rest && self.command.take().is_some() {
+            if self.rests_until_s().is_some_and(|until_s| until_s > end_s) {
                 self.rest(end_s);
                 return Ok(());
             }
@@ -198,8 +208,15 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
         }
     }
 
+    /// Until when the robot rests in place of its last command, s; `None` if it drives.
+    fn rests_until_s(&self) -> Option<f64> {
+        let battery = (self.battery)(&self.robot.pilot)?;
+        battery.rests_until_s().filter(|_| self.command.is_some())
+    }
+
     /// Lets time pass. The map is compared with the world also while the robot does not look.
     fn rest(&mut self, until_s: f64) {
+        self.command = None;
         self.world.rest_watched(until_s, ScheduledThings::EVERY_S, |world| {
             self.observer.scheduled.sample(world, &self.robot.mapper);
         });
@@ -220,14 +237,11 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
             changing: observer.changing.scores(),
             predicted: observer.prediction.scores(),
             forecasts: observer.forecasts.scores(),
-            intervals: interval_scores(mapper, truth),
-            passages: passage_scores(mapper, truth),
             rates: rate_scores(mapper, truth),
             age: age(mapper, truth),
             block_latency,
             free_latency,
             collisions,
-            contacts_while_standing,
             contacts: Contacts {
                 own_motion: observer.own_contacts,
                 run_into: contacts_while_standing + collisions - observer.own_contacts,
@@ -235,13 +249,12 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
             longest_standstill_s: longest_standstill_s(world, observer),
             pose: observer.poses.scores(pose.name()),
             goals: pilot.goals(),
-            day: pilot.day(),
+            day: (self.battery)(pilot).map(Battery::totals),
             scheduled: observer.scheduled.scores(),
             strategy_share: strategies.map(|strategy| (strategy.name, strategy.share)).collect(),
             things: observer.things.reports().cloned().collect(),
             curve: curve.map(|&(time_s, scores)| CurvePoint { time_s, scores }).collect(),
             map_hash: map_hash(mapper),
-            liveliest: Liveliest::of(mapper),
         }
     }
 }

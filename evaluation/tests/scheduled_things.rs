@@ -3,7 +3,6 @@
 use agent::Policy;
 use evaluation::physics_trial::{self, PhysicsTrial};
 use evaluation::scheduled_things::ScheduledThings;
-use interfaces::CellState;
 use mapper::Mapper;
 use robot::PatrolDay;
 use sim::physics::{PhysicsWorld, WorldSpec};
@@ -54,30 +53,6 @@ fn an_empty_map_has_the_scores_that_follow_from_the_events() {
     assert_eq!((scores.lasting_changes, scores.missed), (3, 1.0));
     let minutes = scores.detection_delay_s.map(|delay_s| delay_s / 60.0);
     assert!((minutes[0] - 120.0).abs() <= 1.0 && (minutes[1] - 240.0).abs() <= 1.0, "{minutes:?}");
-    // A door that is probably closed with ½ is not believed open: no trip is lost, and none to the other room is made while the door is
-    // open (6 of 10 hours). Of 12 places, 6 are in each room: 72 of 132 trips lead to the other room, 60 do not.
-    assert_eq!(scores.user_lost_s, 0.0);
-    let possible = 0.6 * 72.0 + 60.0;
-    assert!((scores.trips_not_made - 0.6 * 72.0 / possible).abs() < 0.01, "{}", scores.trips_not_made);
-}
-
-/// A map in which everything is free, and never changes: users go to the door and back while it is closed.
-#[test]
-fn a_map_without_the_door_costs_the_way_to_it_and_back() {
-    let spec = world();
-    let free = interfaces::Grid::filled(spec.frame, CellState::Free);
-    let settings = physics_trial::settings(&spec).unwrap();
-    let mapper = Mapper::with_prior(&settings.mapper, free).unwrap();
-    let mut world = PhysicsWorld::new(&spec, 1);
-    let mut things = ScheduledThings::default();
-    world.rest_watched(7190.0, 60.0, |world| things.sample(world, &mapper));
-    assert_eq!(things.scores().unwrap().user_lost_s, 0.0);
-    world.rest_watched(14_000.0, 60.0, |world| things.sample(world, &mapper));
-    let lost_s = things.scores().unwrap().user_lost_s;
-    // About half of the time, in 72 of 132 trips: from a place in a room of 4 m × 4 m to the door in the middle of a side, 2.3 m in the
-    // mean, and back, at 0.8 m/s.
-    let expected_s = 0.5 * 72.0 / 132.0 * 2.0 * 2.3 / 0.8;
-    assert!((lost_s / expected_s - 1.0).abs() < 0.25, "{lost_s} s, {expected_s} s");
 }
 
 /// A robot that rests for most of the time is compared as often as one that never rests.
@@ -86,9 +61,8 @@ fn a_resting_robot_is_scored_every_minute() {
     let spec = world();
     let settings = physics_trial::settings(&spec).unwrap();
     let agent = settings.agent(&Policy::default(), 1).unwrap();
-    let day = PatrolDay::new(agent, physics_trial::day(&spec).unwrap());
-    let pilot = settings.pilot(day, 1).unwrap();
-    let mut trial = PhysicsTrial::new(&spec, 1, &settings, None, pilot).unwrap();
+    let pilot = PatrolDay::new(settings.pilot(agent, 1).unwrap(), physics_trial::day(&spec).unwrap());
+    let mut trial = PhysicsTrial::new(&spec, 1, &settings, None, pilot).unwrap().on_battery();
     let (mut readings, mut door_s) = (0, Vec::new());
     while trial.turn().unwrap().reading.time_s < 36_000.0 {
         readings += 1;
@@ -119,9 +93,8 @@ fn a_run_can_end_exactly_in_a_rest() {
     let settings = physics_trial::settings(&spec).unwrap();
     for end_s in [7200.0, 20_000.0, 36_000.0] {
         let agent = settings.agent(&Policy::default(), 1).unwrap();
-        let day = PatrolDay::new(agent, physics_trial::day(&spec).unwrap());
-        let pilot = settings.pilot(day, 1).unwrap();
-        let mut trial = PhysicsTrial::new(&spec, 1, &settings, None, pilot).unwrap();
+        let pilot = PatrolDay::new(settings.pilot(agent, 1).unwrap(), physics_trial::day(&spec).unwrap());
+        let mut trial = PhysicsTrial::new(&spec, 1, &settings, None, pilot).unwrap().on_battery();
         trial.run_exactly(end_s).unwrap();
         assert!((trial.world.time_s() - end_s).abs() < 0.2, "{} s", trial.world.time_s());
         let scores = trial.results().scheduled.unwrap();

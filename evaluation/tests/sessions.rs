@@ -31,9 +31,9 @@ fn again(state: &State) -> State {
 fn a_run_that_goes_on_equals_one_that_was_not_interrupted() {
     let policies = [
         ("house", "curious"),
-        ("drifting_house", "progress"),
+        ("drifting_house", "curious"),
         ("four_rooms", "information-gain"),
-        ("yard", "frontier"),
+        ("yard", "fresh-map"),
     ];
     for (name, policy) in policies {
         let spec = spec(name);

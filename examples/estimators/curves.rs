@@ -14,11 +14,9 @@ const FROM: f64 = 0.0004;
 const TO: f64 = 0.5;
 
 /// Okabe and Ito's colors, which color-blind readers can tell apart.
-const COLOURS: [RGBColor; 7] = [
+const COLOURS: [RGBColor; 5] = [
     RGBColor(0, 0, 0),
     RGBColor(153, 153, 153),
-    RGBColor(204, 121, 167),
-    RGBColor(230, 159, 0),
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
     RGBColor(0, 158, 115),

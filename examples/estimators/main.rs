@@ -1,6 +1,5 @@
 //! The accuracy of the rate estimators, all on the same streams of observations: in block worlds, and on simulated
-//! two-state chains. Writes `docs/estimators/tables.md` and `docs/estimators/chains.svg`, and the rows of the tables of
-//! `docs/estimators.md`.
+//! two-state chains. Writes `docs/estimators/tables.md` and `docs/estimators/chains.svg`.
 //!
 //! ```text
 //! cargo run --release --example estimators              60 block worlds of 20,000 steps
@@ -14,14 +13,11 @@ mod information;
 mod patterns;
 mod robots;
 mod room;
-mod rows;
 mod score;
 mod tables;
 
 use interfaces::SettingsError;
 use mapper::{EstimatorChoice, Mapper, MapperSettings};
-use reports::pages::write_rows;
-use std::path::Path;
 
 const TABLES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/estimators/tables.md");
 const CURVES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/estimators/chains.svg");
@@ -40,20 +36,12 @@ fn main() -> anyhow::Result<()> {
         "# Estimators: the tables\n\nMade by `cargo run --release --example estimators -- {worlds} \
          {steps}`; what they mean is in [`estimators.md`](../estimators.md).\n"
     );
-    let command = format!("cargo run --release --example estimators -- {worlds} {steps}");
-    let mut of_blocks = Vec::new();
     for set in blocks::Set::ALL {
-        let judged = blocks::judge(set, worlds, steps)?;
-        text += &tables::blocks(set, &judged);
-        of_blocks.extend(rows::blocks(set, &judged));
+        text += &tables::blocks(set, &blocks::judge(set, worlds, steps)?);
     }
-    let in_room = room::judge()?;
-    text += &tables::room(&in_room);
+    text += &tables::room(&room::judge()?);
     let outcomes = chains::all(steps)?;
     text += &tables::chains(&outcomes);
-    write_rows(Path::new(rows::BLOCKS), &command, &of_blocks)?;
-    write_rows(Path::new(rows::ROOM), &command, &rows::room(&in_room))?;
-    write_rows(Path::new(rows::CHAINS), &command, &rows::chains(&outcomes))?;
     text += &tables::unlike_neighbours(&chains::unlike_neighbours(steps)?);
     std::fs::write(TABLES, text)?;
     curves::draw(&outcomes, CURVES)

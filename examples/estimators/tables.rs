@@ -90,21 +90,21 @@ pub(crate) fn room(scores: &[Vec<room::Score>]) -> String {
 
 /// The scores of one estimator for all kinds of chains under one pattern of observations.
 #[derive(Default)]
-pub(crate) struct Row {
-    pub(crate) identified: u32,
+struct Row {
+    identified: u32,
     /// The largest bias among the identified rates, with its sign.
-    pub(crate) bias: f64,
+    bias: f64,
     /// Root mean square error over the least possible.
-    pub(crate) over_least: Mean,
+    over_least: Mean,
     log_error: Mean,
-    pub(crate) covered: Mean,
+    covered: Mean,
     elsewhere: Mean,
     /// The most by which the log error is above that of `paper`.
-    pub(crate) worse: f64,
+    worse: f64,
 }
 
 impl Row {
-    pub(crate) fn of(outcomes: &[Outcome], pattern: Pattern, at: usize) -> Self {
+    fn of(outcomes: &[Outcome], pattern: Pattern, at: usize) -> Self {
         let mut row = Self { worse: f64::NEG_INFINITY, ..Self::default() };
         for outcome in outcomes.iter().filter(|outcome| outcome.pattern == pattern) {
             let (score, paper) = (outcome.scores[at], outcome.scores[0]);

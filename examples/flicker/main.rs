@@ -3,7 +3,6 @@
 //!
 //! ```text
 //! cargo run --release --example flicker
-//! cargo run -p curious-reports --example page_tables -- docs/flicker.md
 //! ```
 //!
 //! Every house is toured for ten minutes (6000 scans) while nothing moves: each change in the map is false. Then
@@ -18,9 +17,7 @@ mod things;
 use house::House;
 use interfaces::LaserReading;
 use mapper::{Mapper, MapperSettings, OccupancyChoice, SurfaceGridSettings};
-use reports::pages::write_rows;
 use serde::Serialize;
-use std::path::Path;
 use things::{cleared_after, latencies, median};
 
 const SCANS: u32 = 6000;
@@ -28,7 +25,6 @@ const PERIOD_S: f64 = 0.1;
 
 const ROWS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/results/flicker.csv");
 const CURVE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/results/flicker_curve.csv");
-const COMMAND: &str = "cargo run --release --example flicker";
 
 /// The results of an occupancy model in a house.
 #[derive(Debug, Default, Serialize)]
@@ -154,6 +150,12 @@ fn row(bench: Bench, occupancy: &OccupancyChoice) -> anyhow::Result<Row> {
     })
 }
 
+fn write<R: Serialize>(path: &str, rows: &[R]) -> anyhow::Result<()> {
+    let mut writer = csv::Writer::from_path(path)?;
+    rows.iter().try_for_each(|row| writer.serialize(row))?;
+    Ok(writer.flush()?)
+}
+
 fn main() -> anyhow::Result<()> {
     let mut rows = Vec::new();
     for bench in BENCHES {
@@ -163,22 +165,8 @@ fn main() -> anyhow::Result<()> {
             rows.push(row);
         }
     }
-    write_rows(Path::new(ROWS), COMMAND, &rows)?;
+    write(ROWS, &rows)?;
     let points = curve::sweep()?;
-    write_rows(Path::new(CURVE), COMMAND, &points)?;
+    write(CURVE, &points)?;
     curve::draw(&points, concat!(env!("CARGO_MANIFEST_DIR"), "/docs/flicker.svg"))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use reports::pages::{Rows, columns_of};
-
-    /// Rows with other columns are older than this program.
-    #[test]
-    fn the_rows_of_the_page_are_those_of_this_program() {
-        let columns = |path| Rows::of_csv(&std::fs::read_to_string(path).unwrap()).unwrap().columns;
-        assert_eq!(columns(ROWS), columns_of(&Row::default()));
-        assert_eq!(columns(CURVE), columns_of(&curve::Point::default()));
-    }
 }

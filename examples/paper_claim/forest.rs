@@ -1,9 +1,10 @@
 //! The picture of all verdicts: a forest plot.
 
 use crate::Finding;
+use crate::claim::Claim;
 use plotters::prelude::*;
 use plotters::style::{FontStyle, register_font};
-use reports::{Claim, Comparison, Verdict};
+use reports::Comparison;
 use std::path::Path;
 
 const ROW: i32 = 22;
@@ -56,21 +57,15 @@ pub(crate) fn draw(findings: &[Finding], path: &Path) -> anyhow::Result<()> {
             ))?;
         }
         area.draw(&Text::new(name.clone(), (12, y - 8), text.clone()))?;
-        for (panel, comparison) in
-            [&claim.faster_than_recency, &claim.faster_than_poisson].into_iter().enumerate()
-        {
+        for (panel, comparison) in claim.speed.iter().enumerate() {
             whisker(&area, panel, y, comparison)?;
         }
         let colour = match claim.verdict {
-            Verdict::Holds => RGBColor(0, 158, 115),
-            Verdict::NotShown => RGBColor(110, 110, 110),
-            Verdict::Fails => RGBColor(213, 94, 0),
+            "holds" => RGBColor(0, 158, 115),
+            "fails" => RGBColor(213, 94, 0),
+            _ => RGBColor(110, 110, 110),
         };
-        let verdict = Text::new(
-            claim.verdict.name().to_owned(),
-            (WIDTH as i32 - 66, y - 8),
-            text.clone().color(&colour),
-        );
+        let verdict = Text::new(claim.verdict, (WIDTH as i32 - 66, y - 8), text.clone().color(&colour));
         area.draw(&verdict)?;
     }
     area.present()?;

@@ -8,14 +8,16 @@
 //! Each condition changes one setting. It runs in the shipped worlds, with N seeds in each, and in N generated
 //! worlds, each with its own seed.
 
+mod claim;
 mod condition;
 mod forest;
 mod tables;
 
 use anyhow::Context;
+use claim::Claim;
 use condition::{BASE, Condition, conditions};
 use files::{RunFolder, make_folder, write_file};
-use reports::{Claim, Report, Run};
+use reports::{Report, Run};
 use std::path::{Path, PathBuf};
 
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/figure3");

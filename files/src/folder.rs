@@ -18,7 +18,7 @@ const LOCK_CONTENT: &[u8] =
 /// Results of the programs whose names do not depend on the world: a folder that has other files with these names is
 /// refused before the run. Other names are checked at the end.
 const RESULTS: &str = "\
-    map_log.rrd summary.json report.json report.html trials.csv trials.parquet map.pgm map.yaml \
+    map_log.rrd summary.json report.json report.html trials.csv map.pgm map.yaml \
     permanent.pgm permanent.yaml speed_mask.pgm speed_mask.yaml keepout_mask.pgm keepout_mask.yaml \
     cell_statistics.csv things.json layers.npy layers.json trajectory.tum trajectory_true.tum \
     trajectory.png figure3.png figure3.svg curves.png curves.svg figure5.png occupancy.png \

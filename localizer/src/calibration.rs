@@ -16,7 +16,8 @@ pub(crate) struct Calibration {
     distance: (f64, f64),
     /// The true turn per measured turn, and per measured distance (rad/m), and their covariance.
     turn: (Vector2<f64>, Matrix2<f64>),
-    trust: OdometryTrust,
+    /// The largest errors that are expected.
+    pub(crate) trust: OdometryTrust,
 }
 
 impl Calibration {
@@ -33,11 +34,6 @@ impl Calibration {
     /// The true distance per measured distance is known with a standard deviation.
     pub(crate) fn expect_distance(&mut self, scale: f64, std: f64) {
         self.distance = (scale, std * std);
-    }
-
-    /// The largest errors that are expected.
-    pub(crate) fn trust(&self) -> &OdometryTrust {
-        &self.trust
     }
 
     /// The motion that a measured motion means.

@@ -5,7 +5,6 @@ use crate::constants::{AMBIGUOUS, EQUAL, FOUND_STD, SAME_POSE, SCORE_MEMORY, WID
 use crate::match_scene::MatchScene;
 use crate::matcher::{Prior, difference};
 use crate::motion::Motion;
-use crate::search::Candidate;
 use crate::support::Support;
 use nalgebra::{Isometry2, Matrix3};
 
@@ -30,11 +29,15 @@ pub(crate) struct Hypotheses {
 
 impl Hypotheses {
     /// Refines the poses that a search has found. Poses below `min_score` are dropped.
-    pub(crate) fn start<M: ChangingMap>(scene: &MatchScene<M>, found: &[Candidate], min_score: f64) -> Self {
+    pub(crate) fn start<M: ChangingMap>(
+        scene: &MatchScene<M>,
+        found: &[Isometry2<f64>],
+        min_score: f64,
+    ) -> Self {
         let covariance = FOUND_STD.covariance();
         let list = found
             .iter()
-            .filter_map(|candidate| refine(scene, &candidate.pose, &covariance, WIDE_GATE_M, 0.0))
+            .filter_map(|pose| refine(scene, pose, &covariance, WIDE_GATE_M, 0.0))
             .filter(|hypothesis| hypothesis.score >= min_score)
             .collect();
         let mut hypotheses = Self { list, scans: 0 };

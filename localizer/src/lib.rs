@@ -28,7 +28,7 @@
 //! - Learned rates of change ([`ChangingMap`]) lower the weight of surfaces in a search; not in tracking.
 //!
 //! [`TrajectoryFinder`] finds the trajectory of a whole log: with submaps that move along with the robot, loops, and a pose
-//! graph. [`LoopClosingLocalizer`] closes loops while the robot maps a place for the first time.
+//! graph. [`RouteSearch`] finds the place of such a trajectory among the surfaces of another one ([`KnownPlace`]). [`LoopClosingLocalizer`] closes loops while the robot maps a place for the first time.
 
 mod beams;
 mod calibration;
@@ -71,6 +71,6 @@ pub use localizer::Localizer;
 pub use loop_closing::{Correction, LoopClosed, LoopClosingLocalizer, Switch};
 pub use settings::{LocalizerSettings, OdometryTrust};
 pub use trajectory::{
-    DistanceScale, LineFit, LineMap, LineMatcher, Residual, Trajectory, TrajectoryFinder, TrajectoryPose,
-    TrajectorySettings,
+    DistanceScale, KnownPlace, PlaceError, Residual, RouteSearch, Trajectory, TrajectoryFinder,
+    TrajectoryPose,
 };

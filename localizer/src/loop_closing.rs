@@ -166,7 +166,7 @@ impl LoopClosingLocalizer {
         };
         let prior = first.pose_prior(reading);
         let localized = self.localizer.localize_near(reading, map, prior);
-        if self.localizer.much_has_moved() {
+        if self.localizer.much_has_moved {
             // Keyframes from before and after do not fit together: most of what they show has moved.
             self.first = None;
             return LoopClosed { localized, correction: None };
@@ -184,7 +184,7 @@ impl LoopClosingLocalizer {
         let (settings, frame, start) = (self.settings.clone(), self.frame, self.start);
         let (emptied, first) = (map.emptied(), self.first.take()?);
         let (meanwhile, coming) = mpsc::channel();
-        let (begun, read) = (first.kept().len(), Arc::new(AtomicUsize::new(0)));
+        let (begun, read) = (first.log.kept.len(), Arc::new(AtomicUsize::new(0)));
         let count = read.clone();
         // To make a large map takes time as well.
         let read_all = move || match Localizer::from_nothing(&settings, &frame, start) {
@@ -205,7 +205,7 @@ impl LoopClosingLocalizer {
     fn localize_meanwhile(&mut self, reading: &LaserReading, map: &mut Mapper) -> LoopClosed {
         let map_s = map.time();
         let localized = self.localizer.localize(reading, map);
-        if self.localizer.much_has_moved() {
+        if self.localizer.much_has_moved {
             self.background = None;
         } else if let Some(background) = &mut self.background
             && background.add((reading.clone(), map_s, localized.clone()), &self.switch)
@@ -237,7 +237,7 @@ impl LoopClosingLocalizer {
     /// Everything that readings have changed, as bytes; settings are not in it. While the first map is young, that is all
     /// readings. A map that is being learned again must be [settled](Self::settle) before.
     pub fn snapshot(&mut self) -> Vec<u8> {
-        let (mut bytes, log) = (Vec::new(), self.first.as_ref().map(FirstMap::log));
+        let (mut bytes, log) = (Vec::new(), self.first.as_ref().map(|first| &first.log));
         let localizer = self.localizer.snapshot();
         // Both always can be written. An empty snapshot would be refused.
         match write_value(&localizer, &mut bytes).and_then(|()| write_value(&log, &mut bytes)) {
@@ -292,7 +292,7 @@ impl LoopClosingLocalizer {
     pub fn begin_session(&mut self) {
         self.localizer.begin_session();
         self.background = None;
-        if self.first.as_ref().is_some_and(|first| !first.kept().is_empty()) {
+        if self.first.as_ref().is_some_and(|first| !first.log.kept.is_empty()) {
             self.first = None;
         }
     }

@@ -93,13 +93,11 @@ impl NormalEquations {
     /// The steps of the end and of the begin. `None` if the points do not fix the pose.
     fn step(&self, placement: &Placement, prior: Option<&Prior>) -> Option<[Vector3<f64>; 2]> {
         let (mut hessian, mut gradient) = (self.hessian, self.gradient);
-        let Some(prior) = prior else {
-            return Some([-(hessian.try_inverse()? * gradient), Vector3::zeros()]);
-        };
-        let off = difference(&placement.pose, &prior.pose);
-        let Some(begin) = &prior.begin else {
-            hessian += prior.information;
-            gradient += prior.information * off;
+        let off = prior.map_or(Vector3::zeros(), |prior| difference(&placement.pose, &prior.pose));
+        let Some(begin) = prior.and_then(|prior| prior.begin) else {
+            let information = prior.map_or(Matrix3::zeros(), |prior| prior.information);
+            hessian += information;
+            gradient += information * off;
             return Some([-(hessian.try_inverse()? * gradient), Vector3::zeros()]);
         };
         let off = stack(&(placement.begin() - begin.expected), &off);

@@ -159,11 +159,9 @@ mod tests {
     fn the_motion_within_a_first_scan_follows_from_its_velocities() {
         let reading = |linear_mps: f64, angular_radps: f64| LaserReading {
             time_s: 1.0,
-            pose: Isometry2::identity(),
             twist: Twist { linear_mps, angular_radps },
-            velocities: Vec::new(),
-            mount: Isometry2::identity(),
             scan: Scan { sweep_s: 0.1, ..Scan::default() },
+            ..LaserReading::default()
         };
         let (motion, elapsed_s) = ScanPath::by_velocities(&reading(0.5, 1.0));
         assert_eq!(elapsed_s, 0.1);
@@ -186,11 +184,9 @@ mod tests {
         for velocities in [vec![], vec![sample(0.95, 0.3), sample(0.92, 0.3), sample(f64::NAN, 1.0)]] {
             let reading = LaserReading {
                 time_s: 1.0,
-                pose: Isometry2::identity(),
                 twist: Twist { linear_mps: f64::INFINITY, angular_radps: 0.0 },
                 velocities,
-                mount: Isometry2::identity(),
-                scan: Scan::default(),
+                ..LaserReading::default()
             };
             let path = ScanPath::new(&reading, &pose(0.04, 0.0, 0.1), 0.1);
             let [first, middle] = [0.1, 0.05].map(|age_s| path.at(age_s));

@@ -33,6 +33,13 @@ pub(crate) struct ScanPoint {
     pub(crate) passed: f64,
 }
 
+impl ScanPoint {
+    /// A point with full weight, measured at the end of a scan.
+    pub(crate) fn new(at: Point2<f64>, normal: Vector2<f64>) -> Self {
+        Self { at, normal, weight: 1.0, noise_share: 1.0, beam: 0, passed: 1.0 }
+    }
+}
+
 /// How points are made of end points.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PointRules {
@@ -57,14 +64,10 @@ pub(crate) struct ScanPoints {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Directions {
     geometry: Option<(f64, f64, usize, Isometry2<f64>)>,
-    units: Vec<Vector2<f64>>,
+    pub(crate) units: Vec<Vector2<f64>>,
 }
 
 impl Directions {
-    pub(crate) fn units(&self) -> &[Vector2<f64>] {
-        &self.units
-    }
-
     pub(crate) fn update(&mut self, scan: &Scan, mount: &Isometry2<f64>) {
         let geometry = Some((scan.angle_min_rad, scan.angle_increment_rad, scan.ranges_m.len(), *mount));
         if self.geometry != geometry {
@@ -186,7 +189,7 @@ impl ScanPoints {
         let arc_m = spacing_m / incidence.max(0.2);
         let weight = (arc_m / FULL_WEIGHT_M).min(1.0);
         let noise_share = if rules.grazing { incidence.max(MIN_GRAZING) } else { 1.0 };
-        Some(ScanPoint { at, normal, weight, noise_share, beam, passed: 1.0 })
+        Some(ScanPoint { weight, noise_share, beam, ..ScanPoint::new(at, normal) })
     }
 
     fn origin(&self) -> Vector2<f64> {

@@ -13,8 +13,10 @@ const MARGIN: usize = 1 << TOP;
 /// The scores, from 0 to 255, and where a robot can be.
 #[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
 pub(crate) struct ScoreGrid {
-    frame: GridFrame,
-    scores: Vec<Level>,
+    /// The grid of the scores.
+    pub(crate) frame: GridFrame,
+    /// The bounds of the scores in squares of 2^level cells.
+    pub(crate) scores: Vec<Level>,
     /// Not 0 where a robot can be. Without levels: anywhere.
     free: Vec<Level>,
 }
@@ -29,7 +31,7 @@ impl ScoreGrid {
         reach_m: f64,
     ) -> Self {
         let reach = Vector2::repeat(reach_m.min(MAX_SIDE_M / 2.0));
-        let whole = surfels.frame();
+        let whole = &surfels.frame;
         let end = Vector2::new(whole.width() as f64, whole.height() as f64) * whole.resolution_m();
         let (low, high) = ((middle - reach - whole.origin()), (middle + reach - whole.origin()));
         let (low, high) = (low.sup(&Vector2::zeros()), high.inf(&end));
@@ -40,7 +42,7 @@ impl ScoreGrid {
 
     /// The scores of the line map, where nothing is known about the places where the robot can be.
     pub(crate) fn anywhere(surfels: &SurfelMap) -> Self {
-        Self::of_frame(surfels, fitted(surfels.frame(), SCORE_CELL_M, 0))
+        Self::of_frame(surfels, fitted(&surfels.frame, SCORE_CELL_M, 0))
     }
 
     /// The same, in cells of any size.
@@ -48,19 +50,9 @@ impl ScoreGrid {
         Self { frame, scores: levels(&frame, splat(surfels, &frame)), free: Vec::new() }
     }
 
-    /// The grid of the scores.
-    pub(crate) fn frame(&self) -> &GridFrame {
-        &self.frame
-    }
-
     /// The number of cells at all levels.
     pub(crate) fn cells(&self) -> usize {
         self.scores.iter().chain(&self.free).map(|level| level.cells.len()).sum()
-    }
-
-    /// The bounds of the scores in squares of 2^`level` cells.
-    pub(crate) fn level(&self, level: usize) -> &Level {
-        &self.scores[level]
     }
 
     /// Whether a robot can be in a square of 2^`level` cells; above level 2, or in one that touches it.

@@ -59,7 +59,8 @@ impl Surfel {
 /// The line map.
 #[derive(Clone, Debug)]
 pub(crate) struct SurfelMap {
-    frame: GridFrame,
+    /// The grid of the cells.
+    pub(crate) frame: GridFrame,
     cells: Vec<[u32; PER_CELL]>,
     surfels: Vec<Surfel>,
     /// Places in `surfels` that can be used again.
@@ -120,11 +121,6 @@ impl SurfelMap {
             map.add(surfel.at, surfel.normal, PRIOR_SCANS);
         }
         map
-    }
-
-    /// The grid of the cells.
-    pub(crate) fn frame(&self) -> &GridFrame {
-        &self.frame
     }
 
     /// The surfel at an index from [`SurfelMap::nearest`].

@@ -134,14 +134,8 @@ mod tests {
     fn line(from: Point2<f64>, angle_rad: f64, normal_y: f64, count: usize) -> Vec<ScanPoint> {
         let along = rotation(angle_rad) * Vector2::x();
         let normal = rotation(angle_rad) * Vector2::new(0.0, normal_y);
-        let point = |number: usize| ScanPoint {
-            at: from + along * (0.1 * number as f64),
-            normal,
-            weight: 1.0,
-            noise_share: 1.0,
-            beam: number,
-            passed: 1.0,
-        };
+        let point =
+            |beam: usize| ScanPoint { beam, ..ScanPoint::new(from + along * (0.1 * beam as f64), normal) };
         (0..count).map(point).collect()
     }
 

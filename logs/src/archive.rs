@@ -1,16 +1,29 @@
 //! Files that are no log but can have one inside: bags of ROS 1, archives, and other compressions. They are named as what they are,
 //! with what would be right.
 
-mod content;
-mod entries;
-
-use crate::bounds::Unpacked;
-use crate::bytes::Bytes;
-use crate::magic::{GZIP, OTHERS, ZSTD};
-use content::{Content, head};
-use entries::{Listed, of_tar, of_zip};
+use crate::bytes::{Bytes, GZIP, ZSTD};
 use flate2::bufread::MultiGzDecoder;
-use std::io::{self, BufReader, Read, Seek, SeekFrom};
+use std::io::{self, BufReader, Read};
+
+/// The bytes by which a file is known: a tar archive has its name after 257 bytes.
+const HEAD: u64 = 512;
+/// The name of a format, its first bytes and the number of bytes before them, and what to do with it.
+const FORMATS: [(&str, &[u8], usize, &str); 9] = [
+    (
+        "bag of ROS 1",
+        b"#ROSBAG V",
+        0,
+        "convert it with `rosbags-convert --src FILE.bag --dst FOLDER` (from PyPI: pip install rosbags)",
+    ),
+    ("tar archive", b"ustar", 257, "unpack it with `tar -xf FILE`"),
+    ("zip archive", b"PK\x03\x04", 0, "unpack it with `unzip FILE`"),
+    ("zip archive", b"PK\x05\x06", 0, "unpack it with `unzip FILE`"),
+    ("file compressed with bzip2", b"BZh", 0, "unpack it with `bzip2 -d FILE`"),
+    ("file compressed with xz", b"\xfd7zXZ\0", 0, "unpack it with `xz -d FILE`"),
+    ("file compressed with lz4", b"\x04\x22\x4d\x18", 0, "unpack it with `lz4 -d FILE`"),
+    ("7-Zip archive", b"7z\xbc\xaf\x27\x1c", 0, "unpack it with `7z x FILE`"),
+    ("RAR archive", b"Rar!\x1a\x07", 0, "unpack it with `unrar x FILE`"),
+];
 
 /// What a file is, and what would be right; `None` for a log, and for what is not known.
 ///
@@ -18,103 +31,90 @@ use std::io::{self, BufReader, Read, Seek, SeekFrom};
 ///
 /// When the file cannot be read.
 pub(crate) fn named(bytes: &Bytes) -> io::Result<Option<String>> {
-    let mut file = bytes.open()?;
-    let packed = file.seek(SeekFrom::End(0))?;
-    file.rewind()?;
-    let start = head(&mut file);
-    file.rewind()?;
-    match Content::of(&start) {
-        Content::Ros1 => {
-            return Ok(Some(format!("a bag of ROS 1; convert it with {}", converter("FILE.bag"))));
-        }
-        Content::Zip => return Ok(Some(archive("zip", "unzip FILE", of_zip(file)))),
-        Content::Tar => return Ok(Some(archive("tar", "tar -xf FILE", of_tar(file)))),
-        _ => {}
-    }
-    if let Some((name, _, command)) = OTHERS.iter().find(|(_, magic, _)| start.starts_with(magic)) {
-        return Ok(Some(format!(
-            "a file in the format {name}, which is not read: unpack it first (`{command}`)"
-        )));
-    }
-    let open = || -> io::Result<Box<dyn Read>> {
-        let input = BufReader::new(bytes.open()?);
-        Ok(match start.starts_with(&GZIP) {
-            true => Box::new(Unpacked::new(MultiGzDecoder::new(input), packed, "gzip -d FILE")),
-            false => Box::new(Unpacked::new(
-                zstd::stream::read::Decoder::with_buffer(input)?,
-                packed,
-                "zstd -d FILE",
-            )),
-        })
+    let start = head(bytes.open()?);
+    let packed = BufReader::new(bytes.open()?);
+    let (inside, compression) = match () {
+        () if start.starts_with(&GZIP) => (head(MultiGzDecoder::new(packed)), "gzip"),
+        () if start.starts_with(&ZSTD) => (head(zstd::stream::read::Decoder::with_buffer(packed)?), "zstd"),
+        () => return Ok(format(&start).map(|(name, what)| format!("a {name}; {what}"))),
     };
-    let (name, command) = match () {
-        () if start.starts_with(&GZIP) => ("gzip", "gzip -d FILE"),
-        () if start.starts_with(&ZSTD) => ("zstd", "zstd -d FILE"),
-        () => return Ok(None),
-    };
-    let is_gzip = name == "gzip";
-    Ok(match Content::of(&head(&mut open()?)) {
-        Content::Ros1 => Some(format!(
-            "a bag of ROS 1, compressed with {name}: unpack it (`{command}`), and convert it with {}",
-            converter("FILE.bag")
-        )),
-        Content::Ros2 if is_gzip => Some(format!(
-            "a bag of ROS 2, compressed with gzip, which is not read: unpack it first (`{command}`)"
-        )),
-        Content::Carmen if !is_gzip => Some(format!(
-            "a CARMEN log, compressed with zstd, which is not read: unpack it first (`{command}`)"
-        )),
-        Content::Tar => Some(archive(&format!("tar with {name}"), "tar -xf FILE", of_tar(open()?))),
-        Content::Zip => Some(format!("a zip archive, compressed with {name}: unpack it first (`{command}`)")),
-        _ => None,
-    })
+    if let Some((name, what)) = format(&inside) {
+        let unpack = format!("after `{compression} -d FILE`");
+        return Ok(Some(format!("a {name}, compressed with {compression}: {unpack}, {what}")));
+    }
+    let is_packed_bag = compression == "gzip" && crate::bag::is_bag(&inside);
+    let what = "a bag of ROS 2, compressed with gzip, which is not read: unpack it with `gzip -d FILE`";
+    Ok(is_packed_bag.then(|| what.to_owned()))
 }
 
-/// The command that converts a bag of ROS 1.
-fn converter(bag: &str) -> String {
-    format!("`rosbags-convert --src {bag} --dst FOLDER` (from PyPI: pip install rosbags)")
+/// The name of the format of a file with these first bytes, and what to do with it.
+fn format(head: &[u8]) -> Option<(&'static str, &'static str)> {
+    let is_this = |(_, magic, at, _): &&(_, &[u8], usize, _)| {
+        head.get(*at..).is_some_and(|rest| rest.starts_with(magic))
+    };
+    FORMATS.iter().find(is_this).map(|(name, _, _, what)| (*name, *what))
 }
 
-/// What to do with an archive with these files.
-fn archive(kind: &str, command: &str, listed: io::Result<Listed>) -> String {
-    let what = format!("an archive ({kind})");
-    let Listed { log, names, files } = match listed {
-        Ok(listed) => listed,
-        Err(error) => return format!("{what} that cannot be listed ({error}); unpack it (`{command}`)"),
-    };
-    let Some((name, content)) = log else {
-        let names = if names.is_empty() { "nothing".to_owned() } else { names.join(", ") };
-        let more = if files > names_shown(files) {
-            format!(" and {} more", files - names_shown(files))
-        } else {
-            String::new()
-        };
-        return format!(
-            "{what} without a log: it contains {names}{more}; logs are CARMEN logs and bags of ROS 2 (MCAP, SQLite)"
-        );
-    };
-    match content {
-        Content::Ros1 => format!(
-            "{what} with a bag of ROS 1, `{name}`: unpack it (`{command}`), and convert the bag with {}",
-            converter(&name)
-        ),
-        Content::Ros2 => match name.rsplit_once('/') {
-            Some((folder, _)) => {
-                format!(
-                    "{what} with a bag of ROS 2, `{name}`: unpack it (`{command}`), and give the folder `{folder}`"
-                )
-            }
-            None => {
-                format!("{what} with a bag of ROS 2: unpack it (`{command}`), and give the file `{name}`")
-            }
-        },
-        _ => format!("{what} with a CARMEN log: unpack it (`{command}`), and give the file `{name}`"),
-    }
-}
-
-fn names_shown(files: usize) -> usize {
-    files.min(entries::NAMED)
+/// The first bytes; fewer where they cannot be read.
+fn head(from: impl Read) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let _ = from.take(HEAD).read_to_end(&mut bytes);
+    bytes
 }
 
 #[cfg(test)]
-mod tests;
+mod tests {
+    use super::*;
+    use crate::{Log, TopicChoice};
+    use flate2::Compression;
+    use flate2::write::GzEncoder;
+    use std::io::Write;
+
+    const ROS1: &[u8] = b"#ROSBAG V2.0\nand so on";
+    const MCAP: &[u8] = b"\x89MCAP0\r\nand so on";
+    const CARMEN: &[u8] = b"# a log\nPARAM robot_frontlaser_offset 0.1\n";
+
+    fn what(bytes: &[u8]) -> String {
+        let named = named(&Bytes::Memory(bytes.into())).unwrap();
+        named.unwrap_or_else(|| "a log, or not known".to_owned())
+    }
+
+    fn gzipped(bytes: &[u8]) -> Vec<u8> {
+        let mut encoder = GzEncoder::new(Vec::new(), Compression::fast());
+        encoder.write_all(bytes).unwrap();
+        encoder.finish().unwrap()
+    }
+
+    #[test]
+    fn what_is_no_log_is_named() {
+        let convert =
+            "convert it with `rosbags-convert --src FILE.bag --dst FOLDER` (from PyPI: pip install rosbags)";
+        assert_eq!(what(ROS1), format!("a bag of ROS 1; {convert}"));
+        let expected = "a bag of ROS 1, compressed with gzip: after `gzip -d FILE`, ";
+        assert_eq!(what(&gzipped(ROS1)), expected.to_owned() + convert);
+        let zstd = zstd::encode_all(ROS1, 0).unwrap();
+        assert_eq!(what(&zstd), expected.replace("gzip", "zstd") + convert);
+        let mut tar = vec![0; 257];
+        tar.extend(b"ustar");
+        let expected =
+            "a tar archive, compressed with gzip: after `gzip -d FILE`, unpack it with `tar -xf FILE`";
+        assert_eq!(what(&gzipped(&tar)), expected);
+        assert_eq!(what(b"PK\x03\x04"), "a zip archive; unpack it with `unzip FILE`");
+        let expected =
+            "a bag of ROS 2, compressed with gzip, which is not read: unpack it with `gzip -d FILE`";
+        assert_eq!(what(&gzipped(MCAP)), expected);
+    }
+
+    #[test]
+    fn logs_are_no_archives() {
+        for log in
+            [CARMEN, &gzipped(CARMEN), MCAP, &zstd::encode_all(MCAP, 0).unwrap(), b"", b"\x1f\x8b", b"hello"]
+        {
+            assert_eq!(what(log), "a log, or not known");
+        }
+        let mut file = tempfile::NamedTempFile::new().unwrap();
+        file.write_all(b"PK\x03\x04").unwrap();
+        let error = Log::open(file.path(), &TopicChoice::default()).unwrap_err().to_string();
+        assert!(error.starts_with(&format!("{}: a zip archive; ", file.path().display())), "{error}");
+    }
+}

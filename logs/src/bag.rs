@@ -4,15 +4,11 @@
 //! is a stream, or a stream per topic: memory does not grow with the bag.
 
 mod chunk;
-mod fields;
 mod files;
 mod inventory;
-mod kind;
 mod mcap;
 mod message;
-mod messages;
 mod motion;
-mod no_scans;
 mod order;
 mod plan;
 mod readings;
@@ -21,17 +17,16 @@ mod sqlite;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use files::{BagFile, in_folder};
+pub(crate) use files::{BagFile, in_folder, is_bag};
 
 use crate::bounds;
+use crate::bytes::content_hash;
+use crate::checks::Standing;
+use crate::checks::times::{self, Times};
 use crate::choice::TopicChoice;
-use crate::content;
 use crate::error::LogError;
-use crate::log::{Log, Source};
-use crate::raw_readings::{self, RawReadings as _};
-use crate::standing::Standing;
+use crate::log::{self, Log, RawReadings as _, Source};
 use crate::summary::{LogSummary, since_epoch};
-use crate::times::{self, Times};
 use inventory::Inventory;
 use message::Topic;
 use motion::MotionSource;
@@ -97,19 +92,20 @@ impl Bag {
         }
         let has_pose_times = inspection.raw.has_pose_times();
         let Inspection { clock, raw, raw_s, standing, times } = inspection;
+        let odometry = &raw.assembler.odometry;
         let raw_begin_s = raw_s.first().copied().unwrap_or_default();
         let is_corrected = plan.correction.is_some();
-        let stands = raw.stands() && standing.looks_so() && !is_corrected;
-        let odom_origin = if is_corrected { Isometry2::identity() } else { raw.origin() };
+        let stands = odometry.stands() && standing.looks_so() && !is_corrected;
+        let odom_origin = if is_corrected { Isometry2::identity() } else { odometry.first() };
         let impossible = raw.impossible();
-        notes.extend(raw.odometry_notes(raw_begin_s));
+        notes.extend(odometry.holes_note().into_iter().chain(odometry.restarts_note(raw_begin_s)));
         notes.extend(
             raw.corrections(raw_begin_s).map(|what| format!("the poses are those of another SLAM: {what}")),
         );
         if !has_pose_times {
             let what = "neither the stamps of the odometry nor the times of its recording advance: its motions are not used";
             notes.push(what.to_owned());
-        } else if raw.stands() && !stands && !matches!(plan.motion, MotionSource::Standing) {
+        } else if odometry.stands() && !stands && !matches!(plan.motion, MotionSource::Standing) {
             notes.push(standing.note().to_owned());
         }
         let counts = raw.counts;
@@ -163,13 +159,13 @@ impl Bag {
 }
 
 impl Source for Bag {
-    fn raw_readings(&self) -> Result<Box<dyn raw_readings::RawReadings + Send>, LogError> {
+    fn raw_readings(&self) -> Result<Box<dyn log::RawReadings + Send>, LogError> {
         Ok(Box::new(raw_readings(&self.files, &self.plan, self.clock, &self.merged)))
     }
 
     fn content_hash(&self) -> Result<u128, LogError> {
         let io = |why| LogError::Io { file: self.name.clone(), why };
-        content::hash(self.files.iter().map(BagFile::content)).map_err(io)
+        content_hash(self.files.iter().map(|file| file.bytes.open())).map_err(io)
     }
 }
 

@@ -47,9 +47,13 @@ pub(crate) fn one_more(scans: usize) -> Result<(), String> {
     }
 }
 
-/// Bytes that are unpacked, up to a bound; then an error.
+/// Bytes that are unpacked, up to a bound; then an error. They end where the compressed ones are cut off.
 pub(crate) struct Unpacked<R> {
     bytes: R,
+    /// The number of bytes so far.
+    pub(crate) count: u64,
+    /// Whether the compressed bytes have ended too early.
+    pub(crate) is_cut: bool,
     remaining: u64,
     exceeded: String,
 }
@@ -62,7 +66,7 @@ impl<R> Unpacked<R> {
             "the {packed} bytes of the file unpack to more than {most}, which is the most that is unpacked; if it is a log, \
              unpack it first: {by_hand}"
         );
-        Self { bytes, remaining: most, exceeded }
+        Self { bytes, count: 0, is_cut: false, remaining: most, exceeded }
     }
 
     /// The same, written into a folder with this number of free bytes: others need some of them.
@@ -90,10 +94,20 @@ pub(crate) fn free_bytes(folder: &Path) -> Option<u64> {
 
 impl<R: Read> Read for Unpacked<R> {
     fn read(&mut self, to: &mut [u8]) -> io::Result<usize> {
-        let count = self.bytes.read(to)?;
+        if self.is_cut {
+            return Ok(0);
+        }
+        let count = match self.bytes.read(to) {
+            Err(error) if error.kind() == ErrorKind::UnexpectedEof => {
+                self.is_cut = true;
+                return Ok(0);
+            }
+            read => read?,
+        };
         let remaining = self.remaining.checked_sub(count as u64);
         let exceeded = || Error::new(ErrorKind::InvalidData, self.exceeded.clone());
         self.remaining = remaining.ok_or_else(exceeded)?;
+        self.count += count as u64;
         Ok(count)
     }
 }

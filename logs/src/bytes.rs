@@ -5,6 +5,11 @@ use std::io::{self, Read, Seek};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use tempfile::NamedTempFile;
+use xxhash_rust::xxh3::Xxh3;
+
+/// The first bytes of files that are compressed.
+pub(crate) const GZIP: [u8; 2] = [0x1f, 0x8b];
+pub(crate) const ZSTD: [u8; 4] = [0x28, 0xb5, 0x2f, 0xfd];
 
 /// Where the bytes of a log come from.
 #[derive(Clone, Debug)]
@@ -45,5 +50,30 @@ impl Bytes {
         let mut start = Vec::new();
         self.open()?.take(16).read_to_end(&mut start)?;
         Ok(start)
+    }
+}
+
+/// The hash of all bytes of some files, and of where one ends: XXH3 with 128 bits.
+pub(crate) fn content_hash<R: Read>(files: impl IntoIterator<Item = io::Result<R>>) -> io::Result<u128> {
+    let mut hash = Xxh3::new();
+    for file in files {
+        let length = io::copy(&mut file?, &mut hash)?;
+        hash.update(&length.to_le_bytes());
+    }
+    Ok(hash.digest128())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_byte_and_every_border_counts() {
+        let of = |files: &[&[u8]]| content_hash(files.iter().map(|bytes| Ok(*bytes))).unwrap();
+        let hashes = [of(&[b"ab", b"c"]), of(&[b"a", b"bc"]), of(&[b"abc"]), of(&[b"abd"]), of(&[b"ab"])];
+        for (index, one) in hashes.iter().enumerate() {
+            assert!(hashes[index + 1..].iter().all(|other| other != one), "{hashes:?}");
+        }
+        assert_eq!(of(&[b"ab", b"c"]), hashes[0]);
     }
 }

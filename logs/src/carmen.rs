@@ -28,13 +28,11 @@ mod readings;
 #[cfg(test)]
 mod tests;
 
-use crate::bytes::Bytes;
+use crate::bytes::{Bytes, content_hash};
 use crate::choice::TopicChoice;
-use crate::content;
 use crate::error::LogError;
 use crate::lines::{Lines, Text};
-use crate::log::{Log, Source};
-use crate::raw_readings::RawReadings;
+use crate::log::{Log, RawReadings, Source};
 use geometry::Geometry;
 use line::Line;
 use nalgebra::Isometry2;
@@ -91,7 +89,7 @@ impl Source for CarmenLog {
 
     fn content_hash(&self) -> Result<u128, LogError> {
         let io = |why| LogError::Io { file: self.file.clone(), why };
-        content::hash([Text::open(&self.bytes)]).map_err(io)
+        content_hash([Text::open(&self.bytes)]).map_err(io)
     }
 
     /// The poses of the laser that the FLASER lines contain; `None` for readings of other lines. In a corrected log they are

@@ -1,10 +1,8 @@
 //! A file as lines of text, plain or compressed.
 
 use crate::bounds::Unpacked;
-use crate::bytes::{Bytes, Input};
+use crate::bytes::{Bytes, GZIP, Input};
 use crate::error::LogError;
-use crate::magic::GZIP;
-use crate::whole_part::WholePart;
 use flate2::bufread::MultiGzDecoder;
 use std::io::{self, BufRead, BufReader, Error, ErrorKind, Read, Seek, SeekFrom};
 
@@ -12,7 +10,7 @@ use std::io::{self, BufRead, BufReader, Error, ErrorKind, Read, Seek, SeekFrom};
 const LONGEST: u64 = 1 << 20;
 
 /// Bytes that are unpacked from a file with gzip.
-type Gzip = WholePart<Unpacked<MultiGzDecoder<BufReader<Box<dyn Input>>>>>;
+type Gzip = Unpacked<MultiGzDecoder<BufReader<Box<dyn Input>>>>;
 
 /// The text of a log; its compression is undone.
 pub(crate) enum Text {
@@ -33,7 +31,7 @@ impl Text {
         }
         let packed = reader.seek(SeekFrom::End(0))?;
         reader.rewind()?;
-        let unpacked = WholePart::of(Unpacked::new(MultiGzDecoder::new(reader), packed, "gzip -d FILE"));
+        let unpacked = Unpacked::new(MultiGzDecoder::new(reader), packed, "gzip -d FILE");
         Ok(Self::Gzip { reader: Box::new(BufReader::new(unpacked)), packed })
     }
 
@@ -100,8 +98,8 @@ impl Lines {
     /// The bytes of a compressed file that is cut off, and the bytes of text that could be unpacked; `None` if it is whole so far.
     pub(crate) fn cut(&self) -> Option<(u64, u64)> {
         match &self.reader {
-            Text::Gzip { reader, packed } if reader.get_ref().is_cut() => {
-                Some((*packed, reader.get_ref().count()))
+            Text::Gzip { reader, packed } if reader.get_ref().is_cut => {
+                Some((*packed, reader.get_ref().count))
             }
             _ => None,
         }

@@ -1,7 +1,7 @@
 //! Readings that are read on a thread, some ahead: to unpack and to parse a log takes as long as to match its scans.
 
 use crate::error::LogError;
-use crate::raw_readings::RawReadings;
+use crate::log::RawReadings;
 use interfaces::LaserReading;
 use std::io;
 use std::panic::resume_unwind;

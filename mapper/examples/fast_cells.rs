@@ -3,7 +3,6 @@
 //! ```text
 //! (echo "# $(git show -s --format='commit %h of %cs'), cargo run -p curious-mapper --example fast_cells";
 //!  cargo run -p curious-mapper --example fast_cells) > docs/results/fast_changes.csv
-//! cargo run -p curious-reports --example page_tables -- docs/flicker.md
 //! ```
 //!
 //! A box comes and goes; the leaf of a door swings between closed and open within 0.2 s; a row of round bodies, 0.4 m wide and

@@ -62,7 +62,7 @@ def _register() -> None:
         import gymnasium
     except ImportError:
         return
-    names = {"Drive-v0": "Drive", "Explore-v0": "Explore0", "Explore-v1": "Explore", "ExploreGoals-v0": "ExploreGoals"}
+    names = {"Drive-v0": "Drive", "Explore-v1": "Explore"}
     for name, of_class in names.items():
         gymnasium.register(
             id=f"curious/{name}",

@@ -15,25 +15,14 @@
     shape (6,): position (shares of the size of the world), cosine and sine of the heading, linear and angular velocity
     (shares of the maximum); ``map``, shape (4, rows, columns), patches of 0.5 m, row 0 at the lowest y: share that was
     seen, share that is blocked, how long ago it was seen, probability of a change since then. The map is refreshed at
-    every tenth step. With ``shows_local_map=True``, ``local_map``, shape (7, 32, 32), from 0 to 1, of every step: the map around
-    the robot in its own frame, 32 x 32 cells (``local_map_cells``) of 0.25 m (``local_map_cell``). Columns go ahead, rows go to
-    the left: row 0 is at the right, column 0 behind, and the robot is in the middle. Layers: share that is free, blocked,
-    unknown, and frontier (unknown beside a free cell of the map); how long ago it was seen (1 - e^(-time / 60 s); 1 where never
-    seen); probability of a change since then; learned rate of change r, as r / (r + 0.01 Hz). Beyond the map all are 0.
+    every tenth step.
     Action as above. Reward: the changes that are found in cells that were out of view for 8 s or more,
     per cell of the robot's width, 0.2 per square meter that becomes known, -0.5 per collision: who stands still earns
     next to nothing. The episode is truncated after 3000 steps of 0.1 s. It begins anywhere in one of ``houses``.
 
-``ExploreGoalsEnv`` and ``ExploreGoalsVectorEnv``
-    The same robot, which drives by itself: the action, ``Discrete``, is the number of the strategy whose goal is taken.
-    Observation, a dict: ``candidates``, shape (strategies, 9), from 0 to 1: what the goal of each strategy promises;
-    ``state``, shape (9,); ``local_map`` as above, if ``shows_local_map=True``; ``routes``, shape (strategies, 7), from 0 to 1, if
-    ``shows_routes=True``: what the whole way to each goal promises. A step ends when the goal is finished, or after
-    45 s; the reward is that of its readings.
-
 ``slices`` of an environment names the values of an observation: ``observation[env.slices["goal_direction"]]`` in Drive,
-``observation["state"][env.slices["state"]["heading"]]`` in the other ones. Of parts with layers it names the layers:
-``observation["local_map"][env.slices["local_map"]["frontier"]]`` has the shape (1, 32, 32).
+``observation["state"][env.slices["state"]["heading"]]`` in Explore. Of ``map`` it names the layers:
+``observation["map"][env.slices["map"]["seen"]]`` has the shape (1, rows, columns).
 
 ``info["collisions"]`` of every task counts the contacts of the episode that began while the robot moved.
 
@@ -66,8 +55,6 @@ __all__ = [
     "DriveEnv",
     "DriveVectorEnv",
     "ExploreEnv",
-    "ExploreGoalsEnv",
-    "ExploreGoalsVectorEnv",
     "ExploreVectorEnv",
 ]
 
@@ -91,7 +78,7 @@ def _world_seed(value: Any) -> int:
 
 def _observation_space(parts: list[tuple[str, list[int]]]) -> spaces.Space:
     def box(name: str, shape: list[int]) -> spaces.Box:
-        low = 0.0 if name in ("scan", "map", "candidates", "local_map", "routes") else -1.0
+        low = 0.0 if name in ("scan", "map") else -1.0
         return spaces.Box(low, 1.0, tuple(shape), np.float32)
 
     if len(parts) == 1:
@@ -134,24 +121,6 @@ def _explore(num_envs: int, threads: int, worlds: Any = None, houses: Any = None
     return Batch.explore(specs, num_envs, threads, houses=seeds, **settings)
 
 
-def _explore_goals(num_envs: int, threads: int, worlds: Any = None, houses: Any = None, **settings: Any) -> Batch:
-    specs, seeds = _worlds(worlds, houses)
-    return Batch.explore_goals(specs, num_envs, threads, houses=seeds, **settings)
-
-
-def _explore_0(num_envs: int, threads: int, worlds: Any = None, **settings: Any) -> Batch:
-    """``Explore-v0``: eight houses, the pose of the world, all map updates."""
-    if worlds is None and "houses" not in settings:
-        worlds = [Spec.house(seed) for seed in range(8)]
-    return _explore(num_envs, threads, worlds, **{"reward": "updates", "starts": "spec", **settings})
-
-
-def _action_space(batch: Batch) -> spaces.Space:
-    if batch.choices is not None:
-        return spaces.Discrete(batch.choices)
-    return spaces.Box(-1.0, 1.0, (2,), np.float32)
-
-
 def _slices(batch: Batch) -> dict[str, Any]:
     """The named slices of the last axis, or of the layers, per part of the observation; of the only part alone."""
     found: dict[str, dict[str, slice]] = {}
@@ -173,39 +142,22 @@ def _infos(names: Sequence[str], values: np.ndarray) -> dict[str, np.ndarray]:
     return {name: column.astype(np.int64) if name in _COUNTS else column for name, column in columns.items()}
 
 
-def _no_pickle(environment: Any, protocol: Any) -> Any:
-    """For `pickle`, and for `copy.copy`, whose result would share the world."""
-    raise TypeError(
-        f"{type(environment).__name__} cannot be pickled: make another one with the same settings, and give it `snapshot()` "
-        "by `restore()`, as `copy.deepcopy` does"
-    )
+class _Native:
+    """What one environment and many have in common: the native part, which one call steps."""
 
-
-class _Single(gymnasium.Env):
-    """One environment."""
-
-    metadata = {"render_modes": ["rgb_array", "human"], "render_fps": 10}
+    metadata: dict[str, Any]
     _make: Any
 
-    def __init__(self, render_mode: str | None = None, render_size: int = 480, **settings: Any) -> None:
+    def _open(self, num_envs: int, threads: int, render_mode: str | None, render_size: int, settings: dict[str, Any]) -> None:
         if render_mode is not None and render_mode not in self.metadata["render_modes"]:
             raise ValueError(f"render_mode must be one of {self.metadata['render_modes']}, not {render_mode!r}")
-        for name in {"num_envs", "threads"} & settings.keys():
-            raise TypeError(f"`{name}` is for many environments: make them with `gymnasium.make_vec`")
         self.render_mode = render_mode
         self.render_size = render_size
-        self._settings = settings
-        self._batch: Batch | None = type(self)._make(1, 1, **settings)
-        self._batch.autoreset = False
+        self._batch: Batch | None = type(self)._make(num_envs, threads, **settings)
         self._parts = self._batch.parts
         self._names = self._batch.info_names
-        self.observation_space = _observation_space(self._parts)
-        self.action_space = _action_space(self._batch)
         self.slices = _slices(self._batch)
-        self._world_seed = 0
         self._was_reset = False
-        self._screen: Any = None
-        self._no_seeds = np.zeros(1, np.uint64)
 
     @property
     def batch(self) -> Batch:
@@ -214,6 +166,31 @@ class _Single(gymnasium.Env):
             raise gymnasium.error.ClosedEnvironmentError("the environment is closed: make a new one")
         return self._batch
 
+    def __reduce_ex__(self, protocol: Any) -> Any:
+        """For `pickle`, and for `copy.copy`, whose result would share the world."""
+        raise TypeError(
+            f"{type(self).__name__} cannot be pickled: make another one with the same settings, and give it `snapshot()` "
+            "by `restore()`, as `copy.deepcopy` does"
+        )
+
+
+class _Single(_Native, gymnasium.Env):
+    """One environment."""
+
+    metadata = {"render_modes": ["rgb_array", "human"], "render_fps": 10}
+
+    def __init__(self, render_mode: str | None = None, render_size: int = 480, **settings: Any) -> None:
+        for name in {"num_envs", "threads"} & settings.keys():
+            raise TypeError(f"`{name}` is for many environments: make them with `gymnasium.make_vec`")
+        self._open(1, 1, render_mode, render_size, settings)
+        self.batch.autoreset = False
+        self._settings = settings
+        self.observation_space = _observation_space(self._parts)
+        self.action_space = spaces.Box(-1.0, 1.0, (2,), np.float32)
+        self._world_seed = 0
+        self._screen: Any = None
+        self._no_seeds = np.zeros(1, np.uint64)
+
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
         """Begin an episode. ``options={"world_seed": n}`` repeats a world."""
         batch = self.batch
@@ -221,7 +198,7 @@ class _Single(gymnasium.Env):
         self._world_seed = _draw(self.np_random)
         if options and "world_seed" in options:
             self._world_seed = _world_seed(options["world_seed"])
-        rows = batch.reset_one(0, self._world_seed)
+        rows = batch.reset(np.array([self._world_seed], np.uint64))
         self._was_reset = True
         if self.render_mode == "human":
             self.render()
@@ -229,7 +206,7 @@ class _Single(gymnasium.Env):
 
     def step(self, action: Any) -> tuple[Any, float, bool, bool, dict[str, Any]]:
         """Simulate one step. ``ValueError``: the action has the wrong shape, is NaN or out of range."""
-        actions = _actions(action, 1, self.batch.choices)
+        actions = _actions(action, 1)
         rows, rewards, terminated, truncated, values, _, _ = self.batch.step(actions, self._no_seeds)
         info = self._info(values)
         if self.render_mode == "human":
@@ -303,31 +280,23 @@ class _Single(gymnasium.Env):
             pygame.display.quit()
             self._screen = None
 
-    __reduce_ex__ = _no_pickle
 
-
-def _actions(actions: Any, rows: int, choices: int | None = None) -> np.ndarray:
-    """The actions as float32 of shape (rows, 2); of choices (rows, 1)."""
+def _actions(actions: Any, rows: int) -> np.ndarray:
+    """The actions as float32 of shape (rows, 2)."""
     array = np.asarray(actions)
     if array.dtype.kind not in "biuf":
         raise TypeError(f"actions are real numbers, and not {array.dtype} ({type(actions).__name__})")
     array = array.astype(np.float32, copy=False)
-    if choices is not None:
-        if array.size != rows or array.ndim > 1:
-            expected = "()" if rows == 1 else f"({rows},)"
-            raise ValueError(f"the actions have the shape {array.shape}, and must have {expected}")
-        return array.reshape(rows, 1)
     if array.size != rows * 2 or array.shape[-1:] != (2,):
         expected = "(2,)" if rows == 1 else f"({rows}, 2)"
         raise ValueError(f"the actions have the shape {array.shape}, and must have {expected}")
     return array.reshape(rows, 2)
 
 
-class _Vector(gymnasium.vector.VectorEnv):
+class _Vector(_Native, gymnasium.vector.VectorEnv):
     """Many environments: one call steps all of them, on several threads."""
 
     metadata = {"render_modes": ["rgb_array"], "render_fps": 10, "autoreset_mode": AutoresetMode.SAME_STEP}
-    _make: Any
 
     def __init__(
         self,
@@ -337,19 +306,11 @@ class _Vector(gymnasium.vector.VectorEnv):
         render_size: int = 240,
         **settings: Any,
     ) -> None:
-        if render_mode is not None and render_mode not in self.metadata["render_modes"]:
-            raise ValueError(f"render_mode must be one of {self.metadata['render_modes']}, not {render_mode!r}")
+        self._open(num_envs, threads, render_mode, render_size, settings)
         self.num_envs = num_envs
-        self.render_mode = render_mode
-        self.render_size = render_size
         self._settings = {"threads": threads, **settings}
-        self._was_reset = False
-        self._batch: Batch | None = type(self)._make(num_envs, threads, **settings)
-        self._parts = self._batch.parts
-        self._names = self._batch.info_names
         self.single_observation_space = _observation_space(self._parts)
-        self.single_action_space = _action_space(self._batch)
-        self.slices = _slices(self._batch)
+        self.single_action_space = spaces.Box(-1.0, 1.0, (2,), np.float32)
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self.action_space = batch_space(self.single_action_space, num_envs)
         self._randoms = [seeding.np_random(None)[0] for _ in range(num_envs)]
@@ -358,13 +319,6 @@ class _Vector(gymnasium.vector.VectorEnv):
         self._all = np.ones(num_envs, bool)
         # Every environment has every value.
         self._masks = {f"_{name}": self._all for name in [*self._names, "world_seed"]}
-
-    @property
-    def batch(self) -> Batch:
-        """The native part. ``ClosedEnvironmentError`` after ``close``."""
-        if self._batch is None:
-            raise gymnasium.error.ClosedEnvironmentError("the environment is closed: make a new one")
-        return self._batch
 
     def reset(
         self, *, seed: int | Sequence[int | None] | None = None, options: dict[str, Any] | None = None
@@ -399,7 +353,7 @@ class _Vector(gymnasium.vector.VectorEnv):
     def step(self, actions: Any) -> tuple[Any, np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]:
         """Simulate one step of every environment. ``ValueError``: an action is NaN or out of range."""
         rows, rewards, terminated, truncated, values, was_reset, last = self.batch.step(
-            _actions(actions, self.num_envs, self.batch.choices), self._next_seeds
+            _actions(actions, self.num_envs), self._next_seeds
         )
         info: dict[str, Any] = dict(_infos(self._names, values))
         if last is not None:
@@ -455,8 +409,6 @@ class _Vector(gymnasium.vector.VectorEnv):
         """Free everything."""
         self._batch = None
 
-    __reduce_ex__ = _no_pickle
-
 
 class DriveEnv(_Single):
     """Driving to goals among moving things; see the module.
@@ -479,10 +431,7 @@ class ExploreEnv(_Single):
 
     ``houses``: the seeds of generated houses, as ``TRAIN_HOUSES`` (the default) and ``TEST_HOUSES``; or ``worlds``: a list of
     ``Spec``, names or paths. Each episode is in one of them, ``info["world"]`` is its index. Settings: ``max_steps``,
-    ``beams``, ``reward`` (``"found"``, or ``"updates"`` as in ``Explore-v0``), ``starts`` (``"anywhere"``, or ``"spec"``: at
-    the pose of the world), ``error_every``, ``map_every``, ``shows_local_map``, ``local_map_cells`` (along each side, 32),
-    ``local_map_cell`` (m, 0.25), ``update_reward``, ``seen_reward``, ``error_reward``,
-    ``collision_reward``.
+    ``beams``, ``update_reward``, ``seen_reward``, ``collision_reward``.
     """
 
     _make = staticmethod(_explore)
@@ -492,32 +441,3 @@ class ExploreVectorEnv(_Vector):
     """Many of ``ExploreEnv``. ``threads``: 0 for all, 1 for none beside the caller."""
 
     _make = staticmethod(_explore)
-
-
-class ExploreGoalsEnv(_Single):
-    """Exploring by the choice of goals; see the module.
-
-    Settings: those of ``ExploreEnv``, ``strategies`` (names of ``curious.strategies()``: each proposes a goal at every step),
-    ``max_goal_s`` (the longest time of a step, s), ``stays_at_goals`` (False: a step ends on arrival; the robot neither explores
-    around the goal nor stops there), ``shows_routes``.
-    """
-
-    _make = staticmethod(_explore_goals)
-
-
-class ExploreGoalsVectorEnv(_Vector):
-    """Many of ``ExploreGoalsEnv``. ``threads``: 0 for all, 1 for none beside the caller."""
-
-    _make = staticmethod(_explore_goals)
-
-
-class Explore0Env(_Single):
-    """``curious/Explore-v0``: ``ExploreEnv`` with ``reward="updates"``, ``starts="spec"`` and eight houses."""
-
-    _make = staticmethod(_explore_0)
-
-
-class Explore0VectorEnv(_Vector):
-    """Many of ``Explore0Env``."""
-
-    _make = staticmethod(_explore_0)

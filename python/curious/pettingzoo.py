@@ -71,7 +71,7 @@ class DriveParallelEnv(ParallelEnv):
         self._world_seed = _draw(self._random)
         if options and "world_seed" in options:
             self._world_seed = _world_seed(options["world_seed"])
-        rows = self.batch.reset_one(0, self._world_seed)
+        rows = self.batch.reset(np.array([self._world_seed], np.uint64))
         self.agents = list(self.possible_agents)
         return dict(zip(self.agents, rows)), dict(zip(self.agents, self._infos(self.batch.info())))
 

@@ -16,10 +16,10 @@ statistics = survey.mapper.statistics()
 changed = np.count_nonzero(statistics["block_events"] + statistics["free_events"])
 print(f"{np.count_nonzero(survey.permanent == 1)} cells are permanent walls, {changed} cells changed")
 for place in survey.places[:10]:
-    at = f"{place['kind']} at ({place['x']:6.2f}, {place['y']:6.2f}) m"
-    if place["passages_per_hour"] is None:  # the times of the log are unusable
+    at = f"{place['kind']} at ({place['x_m']:6.2f}, {place['y_m']:6.2f}) m"
+    if place.get("passages_per_hour") is None:  # the times of the log are unusable
         print(f"{at}: {place['changes']} changes")
         continue
     low, high = ("?" if bound is None else f"{bound:.0f}" for bound in place["passages_per_hour_90"])
-    print(f"{at}: {place['passages']} times in {place['observed']:.0f} s of looking: {low} to {high} times per hour")
+    print(f"{at}: {place['passages']} times in {place['observed_s']:.0f} s of looking: {low} to {high} times per hour")
 np.savez("map.npz", states=survey.mapper.states(), rates=rates, permanent=survey.permanent, path=survey.trajectory)

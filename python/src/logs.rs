@@ -7,7 +7,6 @@ use interfaces::PoseMode;
 use localizer::{PoseState, TrajectoryPose};
 use numpy::PyArray2;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
@@ -234,43 +233,12 @@ impl Survey {
         crate::convert::grid(py, self.permanent.frame(), states)
     }
 
-    /// The places where something changes, the liveliest first, each a dict: number, kind (door, furniture, traffic or
-    /// unknown), thing (its number, or None), x, y (m), low, high (m), area (m²), changes, cycles_per_hour,
-    /// cycles_per_hour_90, passages, passages_per_hour, passages_per_hour_90, share_blocked, observed (s), last_change (s),
-    /// direction (None, or a dict: heading (rad) of most passages, share of them, share_90, passages, across), tiles (of traffic,
-    /// its squares of half a meter, each a dict: x, y (m), passages, passages_per_hour, direction);
-    /// from cycles_per_hour on, they are None where the times of the log, or the map, are unusable.
+    /// The places where something changes, the liveliest first, each a dict with the keys of `places.json`. Where the times of the
+    /// log, or the map, are unusable, it has no rates: no key from cycles_per_hour to last_change_s.
     #[getter]
-    fn places<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
-        let dict = |place: &survey::Place| {
-            let dict = PyDict::new(py);
-            dict.set_item("number", place.number)?;
-            dict.set_item("kind", place.kind.name())?;
-            dict.set_item("thing", place.kind.thing())?;
-            dict.set_item("x", place.x_m)?;
-            dict.set_item("y", place.y_m)?;
-            dict.set_item("low", place.low_m)?;
-            dict.set_item("high", place.high_m)?;
-            dict.set_item("area", place.area_m2)?;
-            dict.set_item("changes", place.changes)?;
-            let rates = place.rates.as_ref();
-            dict.set_item("cycles_per_hour", rates.map(|rates| rates.cycles_per_hour))?;
-            dict.set_item("cycles_per_hour_90", rates.map(|rates| rates.cycles_per_hour_90))?;
-            dict.set_item("passages", rates.map(|rates| rates.passages))?;
-            dict.set_item("passages_per_hour", rates.and_then(|rates| rates.passages_per_hour))?;
-            dict.set_item("passages_per_hour_90", rates.and_then(|rates| rates.passages_per_hour_90))?;
-            dict.set_item(
-                "direction",
-                place.direction.map(|direction| direction_dict(py, direction)).transpose()?,
-            )?;
-            let tiles: PyResult<Vec<_>> = place.tiles.iter().map(|tile| tile_dict(py, tile)).collect();
-            dict.set_item("tiles", tiles?)?;
-            dict.set_item("share_blocked", rates.map(|rates| rates.share_blocked))?;
-            dict.set_item("observed", rates.map(|rates| rates.observed_s))?;
-            dict.set_item("last_change", rates.map(|rates| rates.last_change_s))?;
-            Ok(dict)
-        };
-        self.places.iter().map(dict).collect()
+    fn places<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let text = serde_json::to_string(&self.places).map_err(value_error)?;
+        py.import("json")?.call_method1("loads", (text,))
     }
 
     /// The middle of each place, shape (places, 2), m.
@@ -281,26 +249,4 @@ impl Survey {
     fn __repr__(&self) -> String {
         format!("<curious.Survey: {} places that change>", self.places.len())
     }
-}
-
-/// Where most of what passes goes.
-fn direction_dict(py: Python<'_>, direction: survey::Direction) -> PyResult<Bound<'_, PyDict>> {
-    let dict = PyDict::new(py);
-    dict.set_item("heading", direction.heading_rad)?;
-    dict.set_item("share", direction.share)?;
-    dict.set_item("share_90", direction.share_90)?;
-    dict.set_item("passages", direction.passages)?;
-    dict.set_item("across", direction.across)?;
-    Ok(dict)
-}
-
-/// A square of half a meter through which something passes.
-fn tile_dict<'py>(py: Python<'py>, tile: &survey::TrafficTile) -> PyResult<Bound<'py, PyDict>> {
-    let dict = PyDict::new(py);
-    dict.set_item("x", tile.x_m)?;
-    dict.set_item("y", tile.y_m)?;
-    dict.set_item("passages", tile.passages)?;
-    dict.set_item("passages_per_hour", tile.passages_per_hour)?;
-    dict.set_item("direction", tile.direction.map(|direction| direction_dict(py, direction)).transpose()?)?;
-    Ok(dict)
 }

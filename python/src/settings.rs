@@ -1,129 +1,32 @@
 //! The settings of tasks and of maps, from the keywords of a call.
 
 use crate::convert::value_error;
-use agent::Policy;
-use environments::{DriveSettings, ExploreSettings, GoalSettings, Reward, Start};
 use mapper::MapperSettings;
-use pyo3::exceptions::{PyOverflowError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use serde::de::DeserializeOwned;
+use serde_json::{Map, Value};
 
-/// A setting of a task: its keyword, and what sets it.
-type Setting<S> = (&'static str, fn(&mut S, &Bound<'_, PyAny>, &str) -> PyResult<()>);
-
-const DRIVE: [Setting<DriveSettings>; 10] = [
-    ("decision_s", |to, value, key| set(&mut to.decision_s, value, key)),
-    ("max_steps", |to, value, key| set(&mut to.max_steps, value, key)),
-    ("goal_radius", |to, value, key| set(&mut to.goal_radius_m, value, key)),
-    ("min_goal", |to, value, key| set(&mut to.min_goal_m, value, key)),
-    ("shows_path", |to, value, key| set(&mut to.shows_path, value, key)),
-    ("shows_memory", |to, value, key| set(&mut to.shows_memory, value, key)),
-    ("goal_reward", |to, value, key| set(&mut to.goal_reward, value, key)),
-    ("progress_reward", |to, value, key| set(&mut to.progress_reward, value, key)),
-    ("collision_reward", |to, value, key| set(&mut to.collision_reward, value, key)),
-    ("step_reward", |to, value, key| set(&mut to.step_reward, value, key)),
-];
-const EXPLORE: [Setting<ExploreSettings>; 13] = [
-    ("reward", |to, value, key| named(&mut to.reward, &Reward::ALL, value, key)),
-    ("starts", |to, value, key| named(&mut to.starts, &Start::ALL, value, key)),
-    ("seen_reward", |to, value, key| set(&mut to.seen_reward, value, key)),
-    ("max_steps", |to, value, key| set(&mut to.max_steps, value, key)),
-    ("beams", |to, value, key| set(&mut to.beams, value, key)),
-    ("error_every", |to, value, key| set(&mut to.error_every, value, key)),
-    ("map_every", |to, value, key| set(&mut to.map_every, value, key)),
-    ("shows_local_map", |to, value, key| set(&mut to.shows_local_map, value, key)),
-    ("local_map_cells", |to, value, key| set(&mut to.local_map_cells, value, key)),
-    ("local_map_cell", |to, value, key| set(&mut to.local_map_cell_m, value, key)),
-    ("update_reward", |to, value, key| set(&mut to.update_reward, value, key)),
-    ("error_reward", |to, value, key| set(&mut to.error_reward, value, key)),
-    ("collision_reward", |to, value, key| set(&mut to.collision_reward, value, key)),
-];
-
-/// The settings of a driving task.
-pub(crate) fn drive_settings(keywords: Option<&Bound<'_, PyDict>>) -> PyResult<DriveSettings> {
-    settings("driving", &DRIVE, keywords)
-}
-
-/// The settings of an exploring task.
-pub(crate) fn explore_settings(keywords: Option<&Bound<'_, PyDict>>) -> PyResult<ExploreSettings> {
-    settings("exploring", &EXPLORE, keywords)
-}
-
-/// Takes the settings of the choice of goals from the keywords.
-pub(crate) fn goal_settings(keywords: Option<&Bound<'_, PyDict>>) -> PyResult<GoalSettings> {
-    let mut settings = GoalSettings::default();
-    let Some(keywords) = keywords else { return Ok(settings) };
-    if let Some(value) = keywords.get_item("max_goal_s")? {
-        set(&mut settings.max_goal_s, &value, "max_goal_s")?;
-        keywords.del_item("max_goal_s")?;
-    }
-    for (key, to) in
-        [("stays_at_goals", &mut settings.stays_at_goals), ("shows_routes", &mut settings.shows_routes)]
-    {
-        if let Some(value) = keywords.get_item(key)? {
-            set(to, &value, key)?;
-            keywords.del_item(key)?;
-        }
-    }
-    if let Some(value) = keywords.get_item("strategies")? {
-        let mut names: Vec<String> = Vec::new();
-        set(&mut names, &value, "strategies")?;
-        let policies = names.iter().map(|name| name.parse::<Policy>().map_err(value_error));
-        settings.strategies = policies.collect::<PyResult<_>>()?;
-        keywords.del_item("strategies")?;
-    }
-    Ok(settings)
-}
-
-/// Sets a setting to one of some named values.
-fn named<T: Copy>(to: &mut T, all: &[(&str, T)], value: &Bound<'_, PyAny>, key: &str) -> PyResult<()> {
-    let mut name = String::new();
-    set(&mut name, value, key)?;
-    let Some((_, found)) = all.iter().find(|(known, _)| *known == name) else {
-        let known: Vec<&str> = all.iter().map(|(known, _)| *known).collect();
-        return Err(value_error(format!(
-            "the setting `{key}` is one of {}, and not {name}",
-            known.join(", ")
-        )));
-    };
-    *to = *found;
-    Ok(())
-}
-
-fn settings<S: Default>(
-    task: &str,
-    known: &[Setting<S>],
-    keywords: Option<&Bound<'_, PyDict>>,
-) -> PyResult<S> {
-    let mut settings = S::default();
-    for (key, value) in keywords.into_iter().flatten() {
-        let key: String = key.extract()?;
-        let Some((_, set)) = known.iter().find(|(known, _)| *known == key) else {
-            let known: Vec<&str> = known.iter().map(|(known, _)| *known).collect();
-            let known = known.join(", ");
-            return Err(PyTypeError::new_err(format!(
-                "the {task} task has no setting `{key}`; there are {known}"
-            )));
-        };
-        set(&mut settings, &value, &key)?;
-    }
-    Ok(settings)
-}
-
-/// Sets a setting.
-fn set<'a, 'py, T>(to: &mut T, value: &'a Bound<'py, PyAny>, key: &str) -> PyResult<()>
+/// The settings of a task, from keywords that are called as their fields.
+pub(crate) fn task_settings<S>(keywords: Option<&Bound<'_, PyDict>>) -> PyResult<S>
 where
-    T: FromPyObject<'a, 'py, Error: Into<PyErr>>,
+    S: DeserializeOwned + Default,
 {
-    *to = T::extract(value.as_borrowed()).map_err(|error| {
-        let error: PyErr = error.into();
-        if error.is_instance_of::<PyOverflowError>(value.py()) {
-            return PyValueError::new_err(format!("the setting `{key}` cannot be {value}: out of range"));
-        }
-        let (kind, message) = (error.get_type(value.py()), error.value(value.py()).to_string());
-        PyErr::from_type(kind, format!("the setting `{key}` cannot be {value}: {message}"))
-    })?;
-    Ok(())
+    let Some(keywords) = keywords else { return Ok(S::default()) };
+    let py = keywords.py();
+    let options = PyDict::new(py);
+    // Scalars of NumPy are no numbers for `json`.
+    options.set_item("default", py.import("operator")?.call_method1("methodcaller", ("item",))?)?;
+    let text: String = py.import("json")?.call_method("dumps", (keywords,), Some(&options))?.extract()?;
+    let settings: Map<String, Value> = serde_json::from_str(&text)
+        .map_err(|_| value_error(format!("a setting is no finite number: {text}")))?;
+    // One by one, so that the error names the setting.
+    for (key, value) in &settings {
+        let alone = Map::from_iter([(key.clone(), value.clone())]);
+        S::deserialize(Value::Object(alone))
+            .map_err(|why| value_error(format!("the setting `{key}` cannot be {value}: {why}")))?;
+    }
+    S::deserialize(Value::Object(settings)).map_err(value_error)
 }
 
 /// The settings with another estimator, occupancy model, gap and range noise.

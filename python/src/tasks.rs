@@ -1,17 +1,13 @@
 use crate::convert::{index, rows_array, snapshot_error, value_error, whole};
 use crate::fleet::poses_of;
-use crate::settings::{drive_settings, explore_settings, goal_settings};
+use crate::settings::task_settings;
 use crate::snapshots::{Kind, check_build};
 use crate::spec::{driving, spec_of};
-use environments::{
-    Actions, Drive, DrivePlace, Explore, ExploreGoals, ExplorePlace, ExploreSettings, Picture, Results, Task,
-    TaskError,
-};
+use environments::{ACTIONS, Drive, DrivePlace, Explore, ExplorePlace, Picture, Results, TaskError};
 use numpy::{IntoPyArray, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::{PyIndexError, PyRuntimeError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyList, PyTuple};
-use sim::physics::WorldSpec;
 use std::sync::Arc;
 
 /// A number of tasks that are stepped by one call: the native part of the environments.
@@ -82,7 +78,7 @@ impl Batch {
         settings: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
         Self::check_count(environments)?;
-        let (spec, settings) = (spec_of(py, world)?, drive_settings(settings)?);
+        let (spec, settings) = (spec_of(py, world)?, task_settings(settings)?);
         let batch = py.detach(|| -> Result<_, TaskError> {
             let place = Arc::new(DrivePlace::new(&spec, settings)?);
             Ok(environments::Batch::new((0..environments).map(|_| Drive::new(&place))))
@@ -103,29 +99,16 @@ impl Batch {
         settings: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
         Self::check_count(environments)?;
-        let worlds = Worlds::of(py, worlds, houses)?;
-        let settings = explore_settings(settings)?;
-        let batch = py.detach(|| worlds.tasks(environments, settings, Explore::new));
-        Self::with(batch.map_err(value_error)?, threads)
-    }
-
-    /// Exploring tasks whose actions are goals: those of `explore`, with the settings `strategies` (names) and `max_goal_s`.
-    #[staticmethod]
-    #[pyo3(signature = (worlds, environments, threads = 0, *, houses = None, **settings))]
-    fn explore_goals(
-        py: Python<'_>,
-        worlds: &Bound<'_, PyList>,
-        #[pyo3(from_py_with = whole)] environments: usize,
-        #[pyo3(from_py_with = whole)] threads: usize,
-        houses: Option<Vec<u64>>,
-        settings: Option<&Bound<'_, PyDict>>,
-    ) -> PyResult<Self> {
-        Self::check_count(environments)?;
-        let worlds = Worlds::of(py, worlds, houses)?;
-        let goals = Arc::new(goal_settings(settings)?);
-        let settings = explore_settings(settings)?;
-        let task = |place: &Arc<ExplorePlace>| ExploreGoals::new(place, &goals);
-        let batch = py.detach(|| worlds.tasks(environments, settings, task));
+        let specs = worlds.iter().map(|world| driving(&spec_of(py, &world)?, None));
+        let (specs, settings) = (specs.collect::<PyResult<Vec<_>>>()?, task_settings(settings)?);
+        let batch = py.detach(|| -> Result<_, TaskError> {
+            let place = Arc::new(match houses {
+                Some(seeds) => ExplorePlace::of_houses(seeds, settings)?,
+                None => ExplorePlace::new(&specs, settings)?,
+            });
+            let tasks = (0..environments).map(|_| Explore::new(&place)).collect::<Result<Vec<_>, _>>()?;
+            Ok(environments::Batch::new(tasks))
+        });
         Self::with(batch.map_err(value_error)?, threads)
     }
 
@@ -160,15 +143,6 @@ impl Batch {
         self.batch.task(0).parts().into_iter().map(|part| (part.name, part.slices)).collect()
     }
 
-    /// The number of choices of an action; None if an action is two velocities.
-    #[getter]
-    fn choices(&self) -> Option<usize> {
-        match self.batch.task(0).actions() {
-            Actions::Velocities => None,
-            Actions::Choice(count) => Some(count),
-        }
-    }
-
     /// The names of the columns of the information about a step.
     #[getter]
     fn info_names(&self) -> &'static [&'static str] {
@@ -186,7 +160,7 @@ impl Batch {
         values.into_pyarray(py).reshape([rows, names])
     }
 
-    /// Whether an environment that is over is reset in the same step: set it to False to reset it by `reset_one`.
+    /// Whether an environment that is over is reset in the same step: set it to False to reset all of them by `reset`.
     #[getter]
     fn autoreset(&self) -> bool {
         self.batch.is_autoreset()
@@ -210,23 +184,8 @@ impl Batch {
         observations.into_pyarray(py).reshape([self.rows(), self.observation_len()])
     }
 
-    /// Begins an episode in one environment, and returns its observations, shape (agents, observation_len).
-    fn reset_one<'py>(
-        &mut self,
-        py: Python<'py>,
-        #[pyo3(from_py_with = index)] environment: usize,
-        #[pyo3(from_py_with = whole)] seed: u64,
-    ) -> PyResult<Bound<'py, PyArray2<f32>>> {
-        self.check(environment)?;
-        self.is_ready |= self.environments() == 1;
-        let batch = &mut self.batch;
-        let observations = py.detach(|| batch.reset_one(environment, seed).to_vec());
-        self.rows_of_one(py, observations)
-    }
-
-    /// Simulates one step. `actions`: float32, shape (environments * agents, 2), from -1 to 1; of a choice, its number in an
-    /// array of shape (environments, 1). `next_seeds`: uint64,
-    /// one per environment, for the episodes that begin in this step.
+    /// Simulates one step. `actions`: float32, shape (environments * agents, 2), from -1 to 1. `next_seeds`: uint64, one per
+    /// environment, for the episodes that begin in this step.
     ///
     /// Returns observations, rewards, terminated, truncated, information, whether each environment was reset, and the
     /// last observations of the episodes that ended (None if none ended; other rows are not meaningful).
@@ -241,10 +200,9 @@ impl Batch {
         }
         let (rows, values, infos) = (self.rows(), self.observation_len(), self.info_names().len());
         let shape = actions.as_array().dim();
-        let of_one = self.batch.task(0).actions().values();
-        if shape != (rows, of_one) {
+        if shape != (rows, ACTIONS) {
             return Err(value_error(format!(
-                "the actions have the shape {shape:?}, and must have ({rows}, {of_one})"
+                "the actions have the shape {shape:?}, and must have ({rows}, {ACTIONS})"
             )));
         }
         let (actions, next_seeds) =
@@ -336,40 +294,5 @@ impl Batch {
         let observations = self.batch.restore(environment, state).map_err(snapshot_error)?.to_vec();
         self.is_ready |= self.environments() == 1;
         self.rows_of_one(py, observations)
-    }
-}
-
-/// The worlds of exploring tasks.
-enum Worlds {
-    Specs(Vec<WorldSpec>),
-    Houses(Vec<u64>),
-}
-
-impl Worlds {
-    fn of(py: Python<'_>, worlds: &Bound<'_, PyList>, houses: Option<Vec<u64>>) -> PyResult<Self> {
-        if let Some(seeds) = houses {
-            return Ok(Self::Houses(seeds));
-        }
-        let specs = worlds.iter().map(|world| driving(&spec_of(py, &world)?, None));
-        Ok(Self::Specs(specs.collect::<PyResult<_>>()?))
-    }
-
-    /// A number of tasks that share the place.
-    fn tasks<T: Task + 'static>(
-        self,
-        count: usize,
-        settings: ExploreSettings,
-        task: impl Fn(&Arc<ExplorePlace>) -> Result<T, TaskError>,
-    ) -> Result<environments::Batch, TaskError> {
-        let place = self.place(settings)?;
-        let tasks = (0..count).map(|_| task(&place)).collect::<Result<Vec<_>, _>>()?;
-        Ok(environments::Batch::new(tasks))
-    }
-
-    fn place(self, settings: ExploreSettings) -> Result<Arc<ExplorePlace>, TaskError> {
-        Ok(Arc::new(match self {
-            Self::Specs(specs) => ExplorePlace::new(&specs, settings)?,
-            Self::Houses(seeds) => ExplorePlace::of_houses(seeds, settings)?,
-        }))
     }
 }

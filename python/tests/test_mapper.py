@@ -172,7 +172,7 @@ def test_a_log_is_read_and_mapped(tmp_path):
     survey = curious.map_log(log)
     assert survey.trajectory.shape == (300, 4) and len(survey.certain) == 300
     assert survey.places and survey.places[0]["changes"] >= 2
-    assert np.hypot(survey.places[0]["x"] - 1.0, survey.places[0]["y"]) < 0.4
+    assert np.hypot(survey.places[0]["x_m"] - 1.0, survey.places[0]["y_m"]) < 0.4
     assert survey.permanent.shape == survey.mapper.shape == survey.mapper.rates().shape
     with pytest.raises(ValueError, match="localized, odometry, exact or corrected"):
         curious.map_log(log, pose="perfect")

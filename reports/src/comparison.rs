@@ -3,7 +3,6 @@
 use super::measure::Measure;
 use super::statistics::{Moments, Quantiles, holm};
 use super::strategy::{StrategyResult, Unit};
-use super::wording::{p_value, value};
 use serde::Serialize;
 
 /// The difference between two strategies in one measure. Within a world, trials with the same seed are pairs; in
@@ -43,11 +42,6 @@ impl Comparison {
     /// Whether the difference is significant, at 5 % and without correction for other tests.
     pub fn is_significant(&self) -> bool {
         self.p_value < 0.05
-    }
-
-    /// The ratio of the means and the p-value, as in `×0.98, p = 0.012`.
-    pub fn in_short(&self) -> String {
-        format!("×{}, {}", value(self.ratio, 2), p_value(self.p_value))
     }
 
     /// The same comparison with a and b exchanged.

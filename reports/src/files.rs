@@ -1,7 +1,6 @@
 //! `report.json`. An undefined value is `null`; names are in the order of the experiment.
 
 use super::Report;
-use super::claim::Claim;
 use super::measure::Measure;
 use super::run::Run;
 use super::strategy::StrategyResult;
@@ -9,7 +8,6 @@ use evaluation::trials::Metric;
 use robot::BUILD;
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
-use serde_json::ser::{Formatter, PrettyFormatter};
 use std::io::{self, Write};
 
 /// The version of the layout of `report.json`; count up when a key is renamed, removed or changes its meaning.
@@ -30,9 +28,8 @@ struct Content<'a> {
 
 /// Writes `report.json`; `files` are the names of the other files.
 pub(super) fn write_report(report: &Report, files: &[String], mut to: impl Write) -> io::Result<()> {
-    let content =
-        Content { schema: SCHEMA, build: report.settings.other_build.unwrap_or(BUILD), report, files };
-    content.serialize(&mut serde_json::Serializer::with_formatter(&mut to, Layout::default()))?;
+    let content = Content { schema: SCHEMA, build: BUILD, report, files };
+    serde_json::to_writer(&mut to, &content)?;
     writeln!(to)
 }
 
@@ -41,7 +38,6 @@ impl Serialize for Run {
         let mut object = to.serialize_map(None)?;
         object.serialize_entry("world", &self.world)?;
         object.serialize_entry("estimator", &self.estimator)?;
-        object.serialize_entry("claim", &Claim::of(self).map(|claim| claim.verdict.name()))?;
         let strategies = self.strategies.iter().map(|strategy| (&strategy.name, strategy));
         object.serialize_entry("strategies", &Object(strategies))?;
         object.serialize_entry("comparisons", &self.comparisons)?;
@@ -84,31 +80,5 @@ struct Object<I>(I);
 impl<K: Serialize, V: Serialize, I: Iterator<Item = (K, V)> + Clone> Serialize for Object<I> {
     fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
         to.collect_map(self.0.clone())
-    }
-}
-
-/// Every key on a line of its own; arrays, as the curves, on one line.
-#[derive(Default)]
-struct Layout(PrettyFormatter<'static>);
-
-impl Formatter for Layout {
-    fn begin_object<W: ?Sized + Write>(&mut self, to: &mut W) -> io::Result<()> {
-        self.0.begin_object(to)
-    }
-
-    fn begin_object_key<W: ?Sized + Write>(&mut self, to: &mut W, is_first: bool) -> io::Result<()> {
-        self.0.begin_object_key(to, is_first)
-    }
-
-    fn begin_object_value<W: ?Sized + Write>(&mut self, to: &mut W) -> io::Result<()> {
-        self.0.begin_object_value(to)
-    }
-
-    fn end_object_value<W: ?Sized + Write>(&mut self, to: &mut W) -> io::Result<()> {
-        self.0.end_object_value(to)
-    }
-
-    fn end_object<W: ?Sized + Write>(&mut self, to: &mut W) -> io::Result<()> {
-        self.0.end_object(to)
     }
 }

@@ -85,10 +85,6 @@ impl StrategySums {
         }
     }
 
-    pub(super) fn name(&self) -> &str {
-        &self.result.name
-    }
-
     /// Adds a trial.
     pub(super) fn add_trial(&mut self, trial: &Trial) {
         let curve = |metric: Metric| trial.samples.iter().map(|sample| metric.of(sample)).collect();

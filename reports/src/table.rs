@@ -1,11 +1,9 @@
 //! The tables for a terminal of 80 columns.
 
-use super::claim::Claim;
 use super::comparison::Comparison;
 use super::measure::Measure;
 use super::run::{Run, conditions};
-use super::strategy::{StrategyResult, Unit};
-use super::wording::{difference, p_value, value};
+use super::strategy::StrategyResult;
 use super::{ONE_BY_ONE, Report, is_reference};
 use evaluation::trials::Metric;
 use results::numbers::percent;
@@ -101,9 +99,8 @@ pub(super) fn table(report: &Report) -> String {
             format!("Interrupted: {finished} of {} trials were finished.\n\n", report.settings.all_trials());
     }
     for run in report.runs.iter().filter(|run| !is_short || run.worlds > 1) {
-        let claim = Claim::of(run).map(|claim| claim.sentence());
         let counts = COUNTS.iter().filter_map(|(what, count)| counts(run, what, count));
-        let conclusions = counts.chain(same(run)).chain(winner(run)).chain(claim);
+        let conclusions = counts.chain(winner(run));
         let paragraphs = [
             format!("{}\n{}", run.world, conditions(run, &report.settings)),
             values(&run.strategies, columns).to_string(),
@@ -237,31 +234,6 @@ fn differences(run: &Run) -> Option<String> {
     Some(format!("{head}\n{}", aligned(rows)))
 }
 
-/// In how many worlds or trials another strategy did what the first one did: too few decisions differ to compare them there.
-fn same(run: &Run) -> Option<String> {
-    let (first, others) = run.strategies.split_first()?;
-    let is_same = |other: &StrategyResult, unit: &Unit| {
-        let partner = other.units.iter().find(|partner| partner.key == unit.key);
-        partner.is_some_and(|partner| {
-            let values = |unit: &Unit| DIFFERENCES.map(|(_, measure, _)| unit.value(measure).to_bits());
-            values(unit) == values(partner)
-        })
-    };
-    let counted = |other: &StrategyResult| {
-        let count = first.units.iter().filter(|unit| is_same(other, unit)).count();
-        (count > 0).then(|| format!("{} {count}", other.name))
-    };
-    let counts: Vec<String> = others.iter().filter_map(counted).collect();
-    let units = if run.worlds > 1 { "worlds" } else { "trials" };
-    let (name, all) = (&first.name, first.units.len());
-    (!counts.is_empty()).then(|| {
-        format!(
-            "Of {all} {units}, the same results as {name}:\n{}; a longer time can tell them apart.",
-            counts.join(", ")
-        )
-    })
-}
-
 /// A count of the strategies for which it is above zero.
 fn counts(run: &Run, what: &str, count: impl Fn(&StrategyResult) -> u64) -> Option<String> {
     let those = run.strategies.iter().filter(|strategy| count(strategy) > 0);
@@ -307,4 +279,21 @@ fn winner(run: &Run) -> Option<String> {
             p_value(p)
         ),
     })
+}
+
+/// A value with `decimals`; a dash where it is not a number.
+fn value(value: f64, decimals: usize) -> String {
+    if value.is_finite() { format!("{value:.decimals$}") } else { "-".into() }
+}
+
+/// A difference, with its sign; zero has none.
+fn difference(value: f64, decimals: usize) -> String {
+    let text = if value.is_finite() { format!("{value:+.decimals$}") } else { return "-".into() };
+    let is_zero = !text.contains(|letter: char| ('1'..='9').contains(&letter));
+    if is_zero { text.replace(['+', '-'], " ") } else { text }
+}
+
+/// `p = 0.012`, or `p < 0.001`.
+fn p_value(p_value: f64) -> String {
+    if p_value < 0.001 { "p < 0.001".into() } else { format!("p = {p_value:.3}") }
 }

@@ -1,10 +1,9 @@
 use crate::belief::{Belief, Permission};
-use crate::day_totals::DayTotals;
 use crate::messages::{Level, Message};
 use crate::pilot::{GoalCount, Pilot, StrategyState};
 use agent::{Agent, Features, Goal, Stay, Travel};
 use controller::{ControlInput, Driver, Outcome, Status};
-use interfaces::{Values, value};
+use interfaces::{Values, values};
 use mapper::Mapper;
 use nalgebra::{Isometry2, Point2};
 
@@ -33,27 +32,11 @@ pub trait GoalSelector {
         false
     }
 
-    /// Whether the robot has to leave the present goal, although the goal has not served its purpose: the goal has no outcome.
-    fn breaks_off(&self, _: &Mapper) -> bool {
-        false
-    }
-
     /// The robot, at `pose`, leaves the last goal, and no other goal follows for a while. Can be called more than once.
     fn end_goal(&mut self, _pose: &Isometry2<f64>, _: &Mapper) {}
 
     /// Called at every reading.
     fn observe(&mut self, _: Features, _: &Mapper) {}
-
-    /// Until when the robot, at `pose` if it is not lost, is to rest where it is, s; `None` if it is to drive. Called at every
-    /// reading.
-    fn rests_until_s(&mut self, _pose: Option<&Isometry2<f64>>, _: &Mapper) -> Option<f64> {
-        None
-    }
-
-    /// What the robot did with its time; `None` if it is always on patrol.
-    fn day(&self) -> Option<DayTotals> {
-        None
-    }
 
     /// The reason for the last goal, in a few words.
     fn reason(&self) -> String;
@@ -77,15 +60,13 @@ pub struct Autonomous<G, D> {
     goals: GoalCount,
     messages: Vec<Message>,
     is_done: bool,
-    /// Until when the robot rests, as of the last reading, s.
-    rests_until_s: Option<f64>,
 }
 
 impl<G: GoalSelector, D: Driver> Autonomous<G, D> {
     /// A pilot that has no goal yet.
     pub fn new(selector: G, driver: D) -> Self {
         let (goals, messages) = (GoalCount::default(), Vec::new());
-        Self { selector, driver, goals, messages, is_done: false, rests_until_s: None }
+        Self { selector, driver, goals, messages, is_done: false }
     }
 
     /// The goal selector.
@@ -102,32 +83,65 @@ impl<G: GoalSelector, D: Driver> Autonomous<G, D> {
         self.messages.push(Message { level, text });
     }
 
-    /// Counts the outcome of the last goal, and selects the next one.
-    fn start_next(&mut self, pose: &Isometry2<f64>, mapper: &Mapper, last: Option<Outcome>) {
-        match last {
-            Some(Outcome::GivenUp) => {
+    /// Processes one reading: drives to the goal, and at its end to the next one, which `next` selects, with the reason.
+    /// `breaks_off`: the robot has to leave its goal on the way, and the goal has no outcome.
+    pub(crate) fn go(
+        &mut self,
+        belief: &Belief,
+        features: Features,
+        mapper: &Mapper,
+        breaks_off: bool,
+        next: impl FnOnce(&mut G, &mut TravelTimes<'_, D>) -> Option<(Destination, String)>,
+    ) -> D::Command {
+        self.selector.observe(features, mapper);
+        let input = input(mapper, &belief.pose);
+        match belief.permission {
+            Permission::Rest => return self.driver.pause(&input, false),
+            Permission::LookAround => return self.driver.pause(&input, true),
+            Permission::Drive => {}
+        }
+        let command = self.driver.drive(&input);
+        match self.driver.status() {
+            Status::Idle if !self.is_done => {}
+            Status::Finished(Outcome::GivenUp) => {
                 self.goals.given_up += 1;
                 self.log(Level::Trouble, format!("goal given up: {}", self.driver.trouble()));
             }
-            Some(Outcome::Reached) => self.goals.reached += 1,
-            Some(Outcome::Nearest) => self.goals.approached += 1,
-            None => {}
+            Status::Finished(Outcome::Reached) => self.goals.reached += 1,
+            Status::Finished(Outcome::Nearest) => self.goals.approached += 1,
+            Status::Travelling | Status::Exploring if breaks_off => {}
+            Status::Travelling | Status::Exploring if self.selector.is_obsolete(mapper) => {
+                self.goals.reached += 1;
+            }
+            _ => return command,
         }
-        let mut travel = TravelTimes { driver: &mut self.driver };
-        let Some(Destination { position, stay }) = self.selector.next_goal(pose, mapper, &mut travel) else {
+        match next(&mut self.selector, &mut TravelTimes { driver: &mut self.driver }) {
+            None => {
+                self.driver.cancel();
+                self.is_done = true;
+            }
+            Some((Destination { position, stay }, reason)) => {
+                let watch = match stay {
+                    Stay::Explore => None,
+                    Stay::Watch(duration) => Some(duration),
+                };
+                self.driver.set_goal(position, watch);
+                self.log(Level::Decision, format!("{reason}: to ({:.2}, {:.2})", position.x, position.y));
+            }
+        }
+        // Drive to the new goal in the same tick. The driver already has the transitions of this reading.
+        self.driver.drive(&ControlInput { transitions: &[], ..input })
+    }
+
+    /// Processes one reading of a robot that rests: it leaves its goal, which has no outcome.
+    pub(crate) fn rest(&mut self, pose: &Isometry2<f64>, features: Features, mapper: &Mapper) -> D::Command {
+        self.selector.observe(features, mapper);
+        if self.driver.goal().is_some() {
+            // The time of a goal goes on while the robot rests, until the driver gives the goal up.
             self.driver.cancel();
-            self.is_done = true;
-            return;
-        };
-        self.driver.set_goal(
-            position,
-            match stay {
-                Stay::Explore => None,
-                Stay::Watch(duration) => Some(duration),
-            },
-        );
-        let reason = self.selector.reason();
-        self.log(Level::Decision, format!("{reason}: to ({:.2}, {:.2})", position.x, position.y));
+            self.selector.end_goal(pose, mapper);
+        }
+        self.driver.pause(&input(mapper, pose), false)
     }
 }
 
@@ -135,38 +149,10 @@ impl<G: GoalSelector, D: Driver> Pilot for Autonomous<G, D> {
     type Command = D::Command;
 
     fn command(&mut self, belief: &Belief, features: Features, mapper: &Mapper) -> D::Command {
-        self.selector.observe(features, mapper);
-        let input = input(mapper, &belief.pose);
-        self.rests_until_s = None;
-        if belief.permission == Permission::Rest {
-            return self.driver.pause(&input, false);
-        }
-        let is_lost = belief.permission == Permission::LookAround;
-        self.rests_until_s = self.selector.rests_until_s((!is_lost).then_some(&belief.pose), mapper);
-        if self.rests_until_s.is_some() {
-            if self.driver.goal().is_some() {
-                // The time of a goal goes on while the robot rests, until the driver gives the goal up.
-                self.driver.cancel();
-                self.selector.end_goal(&belief.pose, mapper);
-            }
-            return self.driver.pause(&input, false);
-        }
-        if is_lost {
-            return self.driver.pause(&input, true);
-        }
-        let command = self.driver.drive(&input);
-        let last = match self.driver.status() {
-            Status::Idle if !self.is_done => None,
-            Status::Finished(outcome) => Some(outcome),
-            Status::Travelling | Status::Exploring if self.selector.breaks_off(mapper) => None,
-            Status::Travelling | Status::Exploring if self.selector.is_obsolete(mapper) => {
-                Some(Outcome::Reached)
-            }
-            _ => return command,
-        };
-        self.start_next(&belief.pose, mapper, last);
-        // Drive to the new goal in the same tick. The driver already has the transitions of this reading.
-        self.driver.drive(&ControlInput { transitions: &[], ..input })
+        self.go(belief, features, mapper, false, |selector, travel| {
+            let goal = selector.next_goal(&belief.pose, mapper, travel)?;
+            Some((goal, selector.reason()))
+        })
     }
 
     fn forget_map(&mut self) {
@@ -189,14 +175,6 @@ impl<G: GoalSelector, D: Driver> Pilot for Autonomous<G, D> {
         self.goals
     }
 
-    fn rests_until_s(&self) -> Option<f64> {
-        self.rests_until_s
-    }
-
-    fn day(&self) -> Option<DayTotals> {
-        self.selector.day()
-    }
-
     fn take_messages(&mut self) -> Vec<Message> {
         std::mem::take(&mut self.messages)
     }
@@ -206,11 +184,9 @@ impl<G: GoalSelector, D: Driver> Pilot for Autonomous<G, D> {
     }
 
     fn values(&mut self, mapper: &Mapper) -> Values<'_> {
-        let has_day = self.selector.day().is_some();
         let mut values = self.selector.values(mapper);
         values.extend(self.driver.values(mapper.states()));
-        values.extend(has_day.then(|| value(&mut self.rests_until_s)));
-        values.extend([value(&mut self.goals), value(&mut self.messages), value(&mut self.is_done)]);
+        values.extend(values![self.goals, self.messages, self.is_done]);
         values
     }
 }
@@ -226,7 +202,7 @@ fn input<'a>(mapper: &'a Mapper, pose: &'a Isometry2<f64>) -> ControlInput<'a> {
 }
 
 /// The travel times along the paths that the driver would take.
-struct TravelTimes<'a, D> {
+pub(crate) struct TravelTimes<'a, D> {
     driver: &'a mut D,
 }
 

@@ -1,10 +1,12 @@
 //! The day of a robot: patrols on a battery, rests at its dock, and orders by others.
 
-use crate::autonomous::{Destination, GoalSelector};
-use crate::day_totals::DayTotals;
-use crate::pilot::StrategyState;
+use crate::autonomous::{Autonomous, Destination, GoalSelector};
+use crate::belief::{Belief, Permission};
+use crate::messages::Message;
+use crate::pilot::{GoalCount, Pilot, StrategyState};
 use agent::{Features, Stay, Travel};
 use calendar::{DAY_S, Hours};
+use controller::Driver;
 use interfaces::{Values, value};
 use mapper::Mapper;
 use nalgebra::{Isometry2, Point2};
@@ -42,17 +44,71 @@ impl DaySettings {
     }
 }
 
-/// Selects goals while the robot is on patrol, and sends it to its dock in time.
+/// What a robot did with its time.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct DayTotals {
+    /// The time on patrol, s.
+    pub patrol_s: f64,
+    /// The time at rest, s.
+    pub rest_s: f64,
+    /// The number of patrols.
+    pub patrols: u32,
+    /// How often the battery was flat before the robot was back.
+    pub flat: u32,
+}
+
+impl DayTotals {
+    /// The share of the time on patrol; `None` before any time has passed.
+    pub fn patrol_share(&self) -> Option<f64> {
+        let all_s = self.patrol_s + self.rest_s;
+        (all_s > 0.0).then(|| self.patrol_s / all_s)
+    }
+}
+
+/// The pilot of a robot with a battery: it lets another pilot drive while the robot is on patrol, and sends the robot to its dock
+/// in time.
 ///
 /// The robot leaves its dock when its battery is full and nobody else uses it. On the way it is never farther from the dock
 /// than it could have driven since the last goal was chosen: so it turns back while the battery lasts for twice that way.
 #[derive(Debug)]
-pub struct PatrolDay<G> {
-    goals: G,
+pub struct PatrolDay<G, D> {
+    pilot: Autonomous<G, D>,
+    battery: Battery,
+}
+
+/// The battery of a robot, and its day so far.
+#[derive(Debug)]
+pub struct Battery {
     settings: DaySettings,
     state: State,
     /// Scratch memory: travel times to all cells, from the robot or from the dock, s.
     times_s: Vec<f64>,
+}
+
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct State {
+    phase: Phase,
+    /// The time of the last reading, s; `None` before the first one.
+    now_s: Option<f64>,
+    /// The time on patrol for which the battery lasts, s.
+    left_s: f64,
+    /// When the last goal was chosen, s, and the travel time to the dock then, s.
+    planned_s: f64,
+    home_s: f64,
+    /// The robot has just left its dock: the last goal is that of the patrol before.
+    needs_goal: bool,
+    /// Until when the robot rests, as of the last reading, s.
+    rests_until_s: Option<f64>,
+    totals: DayTotals,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+enum Phase {
+    /// At the dock, or where the battery was flat: the robot charges.
+    Resting,
+    Patrolling,
+    /// On the way to the dock.
+    Returning,
 }
 
 /// Travel times without the cells that are too far from the dock for the battery: a robot that turned back on the way to such a
@@ -75,43 +131,15 @@ impl<T: Travel> Travel for WithinRange<'_, T> {
     }
 }
 
-#[derive(Clone, Debug, Serialize, Deserialize)]
-struct State {
-    phase: Phase,
-    /// The time of the last reading, s; `None` before the first one.
-    now_s: Option<f64>,
-    /// The time on patrol for which the battery lasts, s.
-    left_s: f64,
-    /// When the last goal was chosen, s, and the travel time to the dock then, s.
-    planned_s: f64,
-    home_s: f64,
-    /// The robot has just left its dock: the last goal is that of the patrol before.
-    needs_goal: bool,
-    totals: DayTotals,
-}
+impl Battery {
+    /// Until when the robot rests where it is, s, by its last command: until then it needs no reading. `None` if it drives.
+    pub fn rests_until_s(&self) -> Option<f64> {
+        self.state.rests_until_s
+    }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-enum Phase {
-    /// At the dock, or where the battery was flat: the robot charges.
-    Resting,
-    Patrolling,
-    /// On the way to the dock.
-    Returning,
-}
-
-impl<G: GoalSelector> PatrolDay<G> {
-    /// A robot at its dock, with a full battery. `goals` selects the goals of its patrols.
-    pub fn new(goals: G, settings: DaySettings) -> Self {
-        let state = State {
-            phase: Phase::Resting,
-            now_s: None,
-            left_s: settings.battery_s,
-            planned_s: 0.0,
-            home_s: 0.0,
-            needs_goal: false,
-            totals: DayTotals::default(),
-        };
-        Self { goals, settings, state, times_s: Vec::new() }
+    /// What the robot did with its time.
+    pub fn totals(&self) -> DayTotals {
+        self.state.totals
     }
 
     fn charges(&self) -> bool {
@@ -162,71 +190,8 @@ impl<G: GoalSelector> PatrolDay<G> {
         free_s.min(now_s + DAY_S)
     }
 
-    /// Whether it is time to go back.
-    fn must_return(&self, now_s: f64) -> bool {
-        let way_s = self.state.home_s + (now_s - self.state.planned_s);
-        self.is_busy(now_s) || self.charges() && self.state.left_s <= MARGIN * way_s + RESERVE_S
-    }
-
-    /// Measures the way to the dock from where the robot is.
-    fn plan(&mut self, pose: &Isometry2<f64>, mapper: &Mapper, travel: &mut impl Travel) {
-        let now_s = mapper.time();
-        travel.times(mapper, pose, &mut self.times_s);
-        let dock = mapper.frame().index(mapper.frame().cell_at(&self.settings.dock));
-        let way_s = dock.and_then(|dock| self.times_s.get(dock)).copied().filter(|way_s| way_s.is_finite());
-        // Without a known way: back as the robot came.
-        self.state.home_s = way_s.unwrap_or(self.state.home_s + (now_s - self.state.planned_s));
-        self.state.planned_s = now_s;
-    }
-}
-
-impl<G: GoalSelector> GoalSelector for PatrolDay<G> {
-    fn next_goal(
-        &mut self,
-        pose: &Isometry2<f64>,
-        mapper: &Mapper,
-        travel: &mut impl Travel,
-    ) -> Option<Destination> {
-        self.plan(pose, mapper, travel);
-        self.state.needs_goal = false;
-        if self.state.phase != Phase::Returning && !self.must_return(mapper.time()) {
-            if !self.charges() {
-                return self.goals.next_goal(pose, mapper, travel);
-            }
-            let dock = Isometry2::new(self.settings.dock.coords, 0.0);
-            travel.times(mapper, &dock, &mut self.times_s);
-            let (from_dock_s, range_s) = (&self.times_s, self.settings.range_s());
-            let mut within = WithinRange { travel, from_dock_s, range_s };
-            return self.goals.next_goal(pose, mapper, &mut within);
-        }
-        self.state.phase = Phase::Returning;
-        self.goals.end_goal(pose, mapper);
-        Some(Destination { position: self.settings.dock, stay: Stay::Watch(WAIT_S) })
-    }
-
-    fn is_obsolete(&self, mapper: &Mapper) -> bool {
-        self.state.phase == Phase::Patrolling && self.goals.is_obsolete(mapper)
-    }
-
-    fn breaks_off(&self, mapper: &Mapper) -> bool {
-        match self.state.phase {
-            Phase::Resting => false,
-            Phase::Returning => self.state.needs_goal,
-            Phase::Patrolling => self.state.needs_goal || self.must_return(mapper.time()),
-        }
-    }
-
-    fn end_goal(&mut self, pose: &Isometry2<f64>, mapper: &Mapper) {
-        self.goals.end_goal(pose, mapper);
-    }
-
-    fn observe(&mut self, features: Features, mapper: &Mapper) {
-        self.pass(mapper.time());
-        self.goals.observe(features, mapper);
-    }
-
-    fn rests_until_s(&mut self, pose: Option<&Isometry2<f64>>, mapper: &Mapper) -> Option<f64> {
-        let now_s = mapper.time();
+    /// Until when the robot, at `pose` if it is not lost, is to rest where it is, s; `None` if it is to drive.
+    fn rest(&mut self, pose: Option<&Isometry2<f64>>, now_s: f64) -> Option<f64> {
         let from_dock_m =
             |pose: &Isometry2<f64>| (pose.translation.vector - self.settings.dock.coords).norm();
         if self.state.phase == Phase::Returning && pose.is_some_and(|pose| from_dock_m(pose) <= AT_DOCK_M) {
@@ -245,24 +210,130 @@ impl<G: GoalSelector> GoalSelector for PatrolDay<G> {
         None
     }
 
-    fn day(&self) -> Option<DayTotals> {
-        Some(self.state.totals)
+    /// Whether it is time to go back.
+    fn must_return(&self, now_s: f64) -> bool {
+        let way_s = self.state.home_s + (now_s - self.state.planned_s);
+        self.is_busy(now_s) || self.charges() && self.state.left_s <= MARGIN * way_s + RESERVE_S
     }
 
-    fn reason(&self) -> String {
-        match self.state.phase {
-            Phase::Patrolling => self.goals.reason(),
-            Phase::Resting | Phase::Returning => "back to the dock".to_owned(),
+    /// Whether the robot leaves its goal on the way.
+    fn breaks_off(&self, now_s: f64) -> bool {
+        self.state.phase == Phase::Patrolling && (self.state.needs_goal || self.must_return(now_s))
+    }
+
+    /// Measures the way to the dock from where the robot is.
+    fn plan(&mut self, pose: &Isometry2<f64>, mapper: &Mapper, travel: &mut impl Travel) {
+        let now_s = mapper.time();
+        travel.times(mapper, pose, &mut self.times_s);
+        let dock = mapper.frame().index(mapper.frame().cell_at(&self.settings.dock));
+        let way_s = dock.and_then(|dock| self.times_s.get(dock)).copied().filter(|way_s| way_s.is_finite());
+        // Without a known way: back as the robot came.
+        self.state.home_s = way_s.unwrap_or(self.state.home_s + (now_s - self.state.planned_s));
+        self.state.planned_s = now_s;
+    }
+
+    /// The next goal of `goals` within the range of the battery, or the dock; and the reason.
+    fn next_goal(
+        &mut self,
+        goals: &mut impl GoalSelector,
+        pose: &Isometry2<f64>,
+        mapper: &Mapper,
+        travel: &mut impl Travel,
+    ) -> Option<(Destination, String)> {
+        self.plan(pose, mapper, travel);
+        self.state.needs_goal = false;
+        if self.state.phase == Phase::Returning || self.must_return(mapper.time()) {
+            self.state.phase = Phase::Returning;
+            goals.end_goal(pose, mapper);
+            let dock = Destination { position: self.settings.dock, stay: Stay::Watch(WAIT_S) };
+            return Some((dock, "back to the dock".to_owned()));
         }
+        let goal = if self.charges() {
+            let dock = Isometry2::new(self.settings.dock.coords, 0.0);
+            travel.times(mapper, &dock, &mut self.times_s);
+            let (from_dock_s, range_s) = (&self.times_s, self.settings.range_s());
+            goals.next_goal(pose, mapper, &mut WithinRange { travel, from_dock_s, range_s })
+        } else {
+            goals.next_goal(pose, mapper, travel)
+        };
+        goal.map(|goal| (goal, goals.reason()))
+    }
+}
+
+impl<G: GoalSelector, D: Driver> PatrolDay<G, D> {
+    /// A robot at its dock, with a full battery. `pilot` drives on its patrols.
+    pub fn new(pilot: Autonomous<G, D>, settings: DaySettings) -> Self {
+        let state = State {
+            phase: Phase::Resting,
+            now_s: None,
+            left_s: settings.battery_s,
+            planned_s: 0.0,
+            home_s: 0.0,
+            needs_goal: false,
+            rests_until_s: None,
+            totals: DayTotals::default(),
+        };
+        Self { pilot, battery: Battery { settings, state, times_s: Vec::new() } }
+    }
+
+    /// The battery.
+    pub fn battery(&self) -> &Battery {
+        &self.battery
+    }
+}
+
+impl<G: GoalSelector, D: Driver> Pilot for PatrolDay<G, D> {
+    type Command = D::Command;
+
+    fn command(&mut self, belief: &Belief, features: Features, mapper: &Mapper) -> D::Command {
+        let Self { pilot, battery } = self;
+        let (pose, now_s) = (&belief.pose, mapper.time());
+        battery.pass(now_s);
+        battery.state.rests_until_s = match belief.permission {
+            Permission::Rest => None,
+            Permission::LookAround => battery.rest(None, now_s),
+            Permission::Drive => battery.rest(Some(pose), now_s),
+        };
+        if battery.state.rests_until_s.is_some() {
+            return pilot.rest(pose, features, mapper);
+        }
+        let breaks_off = battery.breaks_off(now_s);
+        pilot.go(belief, features, mapper, breaks_off, |goals, travel| {
+            battery.next_goal(goals, pose, mapper, travel)
+        })
+    }
+
+    fn forget_map(&mut self) {
+        self.pilot.forget_map();
+    }
+
+    fn path(&self) -> &[Point2<f64>] {
+        self.pilot.path()
+    }
+
+    fn goal(&self) -> Option<Point2<f64>> {
+        self.pilot.goal()
     }
 
     fn strategies(&self, features: Features) -> Vec<StrategyState> {
-        self.goals.strategies(features)
+        self.pilot.strategies(features)
+    }
+
+    fn goals(&self) -> GoalCount {
+        self.pilot.goals()
+    }
+
+    fn take_messages(&mut self) -> Vec<Message> {
+        self.pilot.take_messages()
+    }
+
+    fn is_done(&self) -> bool {
+        self.pilot.is_done()
     }
 
     fn values(&mut self, mapper: &Mapper) -> Values<'_> {
-        let mut values = self.goals.values(mapper);
-        values.push(value(&mut self.state));
+        let mut values = self.pilot.values(mapper);
+        values.push(value(&mut self.battery.state));
         values
     }
 }

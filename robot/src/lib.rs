@@ -13,7 +13,6 @@ mod autonomous;
 mod belief;
 mod build;
 mod day;
-mod day_totals;
 mod localization;
 mod messages;
 mod pilot;
@@ -27,9 +26,8 @@ mod tour;
 
 pub use autonomous::{Autonomous, Destination, GoalSelector};
 pub use belief::{Belief, Permission};
-pub use build::{BUILD, other_build};
-pub use day::{DaySettings, PatrolDay};
-pub use day_totals::DayTotals;
+pub use build::BUILD;
+pub use day::{Battery, DaySettings, DayTotals, PatrolDay};
 pub use localization::{ExactPoses, Localization};
 pub use messages::{Level, Message};
 pub use pilot::{GoalCount, NoPilot, Pilot, StrategyState};
@@ -41,6 +39,29 @@ pub use tour::Tour;
 use interfaces::{Reading, World};
 use mapper::ReadingError;
 use std::ops::ControlFlow;
+
+/// One turn of the loop: the world executes the last command, and the robot makes of the next reading another one, which waits in
+/// `command`. Between two turns, a run can be saved.
+///
+/// # Errors
+///
+/// When the mapper refuses the reading.
+pub fn turn<W, P>(
+    world: &mut W,
+    robot: &mut Robot<W::Reading, P>,
+    command: &mut Option<W::Command>,
+) -> Result<Turn<W::Reading, W::Command>, ReadingError>
+where
+    W: World<Reading: Reading, Command: Clone>,
+    P: Pilot<Command = W::Command>,
+{
+    if let Some(command) = command.take() {
+        world.act(&command);
+    }
+    let turn = robot.step(world.sense())?;
+    *command = Some(turn.command.clone());
+    Ok(turn)
+}
 
 /// Runs the robot in `world` until `observe` breaks the loop. Returns the last command, which the world has not executed:
 /// to go on, let the world execute it first.
@@ -58,15 +79,15 @@ pub fn explore<W, P, E>(
     ) -> Result<ControlFlow<()>, E>,
 ) -> Result<W::Command, E>
 where
-    W: World<Reading: Reading>,
+    W: World<Reading: Reading, Command: Clone>,
     P: Pilot<Command = W::Command>,
     E: From<ReadingError>,
 {
+    let mut command = None;
     loop {
-        let turn = robot.step(world.sense())?;
+        let turn = turn(world, robot, &mut command)?;
         if observe(world, robot, &turn)?.is_break() {
             return Ok(turn.command);
         }
-        world.act(&turn.command);
     }
 }

@@ -1,5 +1,4 @@
 use crate::belief::Belief;
-use crate::day_totals::DayTotals;
 use crate::messages::Message;
 use agent::Features;
 use interfaces::Values;
@@ -36,16 +35,6 @@ pub trait Pilot {
     /// The number of goals so far, by outcome.
     fn goals(&self) -> GoalCount {
         GoalCount::default()
-    }
-
-    /// Until when the robot rests where it is, s, by its last command: until then it needs no reading. `None` if it drives.
-    fn rests_until_s(&self) -> Option<f64> {
-        None
-    }
-
-    /// What the robot did with its time; `None` if it is always on patrol.
-    fn day(&self) -> Option<DayTotals> {
-        None
     }
 
     /// The messages since the last call.

@@ -231,7 +231,7 @@ fn commands(world: &mut Room, robot: &mut Explorer, turns: usize) -> Vec<Step> {
 
 #[test]
 fn a_robot_that_is_restored_goes_on_bit_for_bit() {
-    for policy in ["curious", "information-gain", "frontier", "progress"] {
+    for policy in ["curious", "information-gain", "fresh-map"] {
         let (mut world, mut robot) = (Room { time: 0.0, at: Cell::new(1, 1) }, explorer(policy));
         commands(&mut world, &mut robot, 157);
         let learned = robot.mapper.snapshot();
@@ -337,13 +337,9 @@ fn permissions_hold_for_every_driver() {
 
 /// Goes to the origin, and notes the ends of its goals.
 #[derive(Default)]
-struct Ordered {
-    rests: bool,
-    breaks_off: bool,
-    ended: usize,
-}
+struct Ended(usize);
 
-impl GoalSelector for Ordered {
+impl GoalSelector for Ended {
     fn next_goal(
         &mut self,
         pose: &Isometry2<f64>,
@@ -353,16 +349,8 @@ impl GoalSelector for Ordered {
         Origin.next_goal(pose, mapper, travel)
     }
 
-    fn breaks_off(&self, _: &Mapper) -> bool {
-        self.breaks_off
-    }
-
     fn end_goal(&mut self, _: &Isometry2<f64>, _: &Mapper) {
-        self.ended += 1;
-    }
-
-    fn rests_until_s(&mut self, _: Option<&Isometry2<f64>>, _: &Mapper) -> Option<f64> {
-        self.rests.then_some(1e3)
+        self.0 += 1;
     }
 
     fn reason(&self) -> String {
@@ -371,28 +359,25 @@ impl GoalSelector for Ordered {
 }
 
 #[test]
-fn goals_that_the_day_ends_have_no_outcome() {
+fn goals_that_a_rest_ends_have_no_outcome() {
     let belief = Belief::exact(Isometry2::identity());
-    let map = mapper(7, 1.0);
-    let mut pilot = Autonomous::new(Ordered::default(), Jumping::default());
-    for rests in [false, true, true, false] {
-        pilot.selector_mut().rests = rests;
-        pilot.command(&belief, Features::default(), &map);
-    }
+    let (map, features) = (mapper(7, 1.0), Features::default());
+    let mut pilot = Autonomous::new(Ended::default(), Jumping::default());
+    pilot.command(&belief, features, &map);
+    pilot.rest(&belief.pose, features, &map);
+    pilot.rest(&belief.pose, features, &map);
+    pilot.command(&belief, features, &map);
     let goes = ["drive", "goal", "drive"];
     assert_eq!(pilot.driver_mut().asked, [&goes[..], &["cancel", "rest", "rest"], &goes].concat());
-    assert_eq!((pilot.goals(), pilot.selector_mut().ended), (GoalCount::default(), 1));
-    // A robot that is lost rests as well.
-    pilot.selector_mut().rests = true;
-    let lost = Belief { permission: Permission::LookAround, ..belief.clone() };
-    pilot.command(&lost, Features::default(), &map);
-    assert_eq!(pilot.rests_until_s(), Some(1e3));
-    assert_eq!(pilot.driver_mut().asked.split_off(9), ["cancel", "rest"]);
+    assert_eq!((pilot.goals(), pilot.selector_mut().0), (GoalCount::default(), 1));
     // The goal is replaced on the way.
     let driver = Jumping { is_slow: true, ..Jumping::default() };
-    let mut pilot = Autonomous::new(Ordered { breaks_off: true, ..Ordered::default() }, driver);
-    pilot.command(&belief, Features::default(), &map);
-    pilot.command(&belief, Features::default(), &map);
+    let mut pilot = Autonomous::new(Ended::default(), driver);
+    for _ in 0..2 {
+        pilot.go(&belief, features, &map, true, |goals, travel| {
+            Some((goals.next_goal(&belief.pose, &map, travel)?, goals.reason()))
+        });
+    }
     assert_eq!(pilot.driver_mut().asked, [goes, goes].concat());
     assert_eq!(pilot.goals(), GoalCount::default());
 }

@@ -2,10 +2,13 @@
 
 use agent::{Features, Stay, Travel};
 use calendar::{DAY_S, Hours, WEEK_S};
-use interfaces::{CellReading, GridFrame};
+use controller::{ControlInput, Driver, Outcome, Status};
+use interfaces::{CellReading, CellState, Grid, GridFrame, Values};
 use mapper::{Mapper, MapperSettings};
 use nalgebra::{Isometry2, Point2};
-use robot::{DaySettings, DayTotals, Destination, GoalSelector, PatrolDay};
+use robot::{
+    Autonomous, Belief, DaySettings, DayTotals, Destination, GoalSelector, PatrolDay, Permission, Pilot,
+};
 use std::cell::Cell;
 use std::rc::Rc;
 
@@ -60,14 +63,57 @@ impl GoalSelector for Farthest {
     }
 }
 
-/// Straight ways.
-struct Straight;
+/// Drives straight to its goals, without a map.
+#[derive(Default)]
+struct Straight {
+    goal: Option<Point2<f64>>,
+    is_there: bool,
+}
 
-impl Travel for Straight {
-    fn times(&mut self, mapper: &Mapper, pose: &Isometry2<f64>, times: &mut Vec<f64>) {
-        let frame = mapper.frame();
-        let way_m = |index| (frame.center(frame.cell(index)).coords - pose.translation.vector).norm();
+impl Driver for Straight {
+    type Command = ();
+
+    fn set_goal(&mut self, goal: Point2<f64>, _: Option<f64>) {
+        (self.goal, self.is_there) = (Some(goal), false);
+    }
+
+    fn cancel(&mut self) {
+        self.goal = None;
+    }
+
+    fn goal(&self) -> Option<Point2<f64>> {
+        self.goal
+    }
+
+    fn drive(&mut self, input: &ControlInput) {
+        let away_m = |goal: Point2<f64>| (goal.coords - input.pose.translation.vector).norm();
+        self.is_there = self.goal.is_some_and(|goal| away_m(goal) < SPEED_MPS);
+    }
+
+    fn pause(&mut self, _: &ControlInput, _: bool) {}
+
+    fn status(&self) -> Status {
+        match self.goal {
+            None => Status::Idle,
+            Some(_) if self.is_there => Status::Finished(Outcome::Reached),
+            Some(_) => Status::Travelling,
+        }
+    }
+
+    fn travel_times(&mut self, input: &ControlInput, times: &mut Vec<f64>) {
+        let frame = input.map.frame();
+        let way_m = |index| (frame.center(frame.cell(index)).coords - input.pose.translation.vector).norm();
         *times = (0..frame.len()).map(|index| way_m(index) / FULL_SPEED_MPS).collect();
+    }
+
+    fn forget_map(&mut self) {}
+
+    fn path(&self) -> &[Point2<f64>] {
+        &[]
+    }
+
+    fn values(&mut self, _: &Grid<CellState>) -> Values<'_> {
+        Vec::new()
     }
 }
 
@@ -80,38 +126,45 @@ struct Week {
     reached: u32,
 }
 
-/// A week of a robot; `check` receives with each destination whether it is a goal, not the dock.
+/// An empty map of 30 m × 20 m.
+fn mapper() -> Mapper {
+    let frame = GridFrame::new(Point2::origin(), 1.0, 30, 20).unwrap();
+    Mapper::new(&MapperSettings::default(), frame).unwrap()
+}
+
+/// Where a robot believes to be in the map after a reading.
+fn look(mapper: &mut Mapper, time: f64, at: Point2<f64>) -> (Belief, Features) {
+    let pose = Isometry2::translation(at.x, at.y);
+    mapper.update(&CellReading { time, pose, cells: Vec::new() }).unwrap();
+    (Belief::exact(pose), Features::of(mapper))
+}
+
+/// A week of a robot; `check` receives at each step on patrol whether it goes to a goal, not to the dock.
 fn week_with(goals: impl GoalSelector, share: f64, battery_s: f64, busy: &str, check: impl Fn(bool)) -> Week {
     let mut hours = Hours::never();
     hours.add(busy).unwrap();
     let dock = Point2::new(2.0, 10.0);
     let settings = DaySettings { dock, battery_s, share, busy: hours.clone(), starts_s: 0.0 };
-    let mut day = PatrolDay::new(goals, settings);
-    let frame = GridFrame::new(Point2::origin(), 1.0, 30, 20).unwrap();
-    let mut mapper = Mapper::new(&MapperSettings::default(), frame).unwrap();
-    let (mut time_s, mut at, mut goal, mut busy_s, mut reached) = (0.0, dock, dock, 0.0, 0);
+    let mut day = PatrolDay::new(Autonomous::new(goals, Straight::default()), settings);
+    let (mut mapper, mut time_s, mut at, mut busy_s, mut reached) = (mapper(), 0.0, dock, 0.0, 0);
     while time_s < WEEK_S {
-        let pose = Isometry2::translation(at.x, at.y);
-        mapper.update(&CellReading { time: time_s, pose, cells: Vec::new() }).unwrap();
-        let features = Features::of(&mut mapper);
-        day.observe(features, &mapper);
-        if let Some(until_s) = day.rests_until_s(Some(&pose), &mapper) {
+        let (belief, features) = look(&mut mapper, time_s, at);
+        let before = day.goal();
+        day.command(&belief, features, &mapper);
+        if let Some(until_s) = day.battery().rests_until_s() {
             assert!(until_s > time_s && until_s <= time_s + DAY_S);
             assert!((at - dock).norm() <= 0.5, "it rests at {at}");
             time_s = until_s;
             continue;
         }
         busy_s += f64::from(u8::from(hours.is_active(time_s)));
-        let is_there = (goal - at).norm() < SPEED_MPS;
-        if is_there || day.breaks_off(&mapper) {
-            reached += u32::from(is_there && goal != dock);
-            goal = day.next_goal(&pose, &mapper, &mut Straight).unwrap().position;
-            check(goal != dock);
-        }
+        reached += u32::from(before.is_some_and(|goal| goal != dock && (goal - at).norm() < SPEED_MPS));
+        let goal = day.goal().unwrap();
+        check(goal != dock);
         at += (goal - at).cap_magnitude(SPEED_MPS);
         time_s += 1.0;
     }
-    Week { totals: day.day().unwrap(), busy_s, reached }
+    Week { totals: day.battery().totals(), busy_s, reached }
 }
 
 /// A week of a robot that goes from corner to corner.
@@ -160,17 +213,14 @@ fn a_robot_rests_while_others_use_it() {
 fn a_lost_robot_uses_its_battery_and_rests_when_it_is_flat() {
     let dock = Point2::new(2.0, 10.0);
     let settings = DaySettings { dock, battery_s: 300.0, share: 0.05, busy: Hours::never(), starts_s: 0.0 };
-    let mut day = PatrolDay::new(Farthest, settings);
-    let frame = GridFrame::new(Point2::origin(), 1.0, 30, 20).unwrap();
-    let mut mapper = Mapper::new(&MapperSettings::default(), frame).unwrap();
-    let (mut time_s, mut rests) = (0.0, Vec::new());
+    let mut day = PatrolDay::new(Autonomous::new(Farthest, Straight::default()), settings);
+    let (mut mapper, mut time_s, mut rests) = (mapper(), 0.0, Vec::new());
     while time_s < DAY_S {
-        let pose = Isometry2::translation(dock.x, dock.y);
-        mapper.update(&CellReading { time: time_s, pose, cells: Vec::new() }).unwrap();
-        let features = Features::of(&mut mapper);
-        day.observe(features, &mapper);
         // Where it takes itself to be says nothing.
-        time_s = match day.rests_until_s(None, &mapper) {
+        let (belief, features) = look(&mut mapper, time_s, dock);
+        let lost = Belief { permission: Permission::LookAround, ..belief };
+        day.command(&lost, features, &mapper);
+        time_s = match day.battery().rests_until_s() {
             Some(until_s) => {
                 rests.push((time_s, until_s));
                 until_s
@@ -178,7 +228,7 @@ fn a_lost_robot_uses_its_battery_and_rests_when_it_is_flat() {
             None => time_s + 1.0,
         };
     }
-    let totals = day.day().unwrap();
+    let totals = day.battery().totals();
     assert_eq!((rests[0], totals.flat, totals.patrols), ((300.0, 6000.0), 15, 15), "{totals:?}");
     assert!((totals.patrol_s - 15.0 * 300.0).abs() < 1.0, "{totals:?}");
 }

@@ -1,6 +1,6 @@
 //! The messages that the nodes send and receive.
 
-pub(crate) use logs::ros::{
+pub(crate) use ros::{
     Header, LaserScan, OccupancyGrid, OccupancyGridUpdate, Odometry, Pose, PoseStamped, Time,
     TransformStamped, Transforms, Vector,
 };
@@ -10,8 +10,8 @@ pub use crate::topic::{Quality, Topic};
 
 use crate::service::wire::Labelled;
 
-use logs::ros::{Covariance, PoseWithCovariance};
 use nalgebra::{Isometry2, Matrix3};
+use ros::{Covariance, PoseWithCovariance};
 use serde::{Deserialize, Serialize};
 
 /// `rosgraph_msgs/Clock`.

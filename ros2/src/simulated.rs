@@ -5,8 +5,8 @@ use crate::message::{Clock, Message, Odometry, Pose, Time, Topic, covariance, he
 use crate::parameter_services::{self, Parametrized};
 use crate::value::Value;
 use interfaces::{LaserReading, Twist};
-use logs::ros::{FIRST_STAMP_NS, scan_message};
 use nalgebra::{Isometry2, Matrix3};
+use ros::{FIRST_STAMP_NS, scan_message};
 use sim::physics::{Command, Controller, Fleet, OdometryError, RobotView, WorldSpec};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};

@@ -1,13 +1,9 @@
 //! From messages to readings: scans with the pose of the robot at their time, by the transforms of the robot.
 
-mod motion;
-
 use crate::message::{Header, LaserScan, Message, Odometry, Time, Topic, Transforms};
-use interfaces::{LaserReading, Scan};
-use logs::ros::{Frames, mounted, scan_of};
-use motion::Motions;
+use interfaces::{LaserReading, heading_rad};
+use logs::assemble::{self, Assembler, Chain, Waiting};
 use nalgebra::{Isometry2, Isometry3};
-use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
 /// A scan waits this long for a later pose.
@@ -16,7 +12,10 @@ const PATIENCE: Duration = Duration::from_millis(500);
 const MAX_WAITING: usize = 64;
 /// A scan or a pose that is older than the last one by more than this comes from a clock that has started anew, ns.
 const RESTART_NS: i64 = 1_000_000_000;
-
+/// A pose that is older than a scan by more than this is not the pose of the scan, s.
+const LATEST_S: f64 = 0.1;
+/// Odometry on a topic is used if no transform has come for this time, ns.
+const WAIT_FOR_TF_NS: i64 = 2_000_000_000;
 /// A laser that sends nothing for this time makes way for another one.
 const SILENT: Duration = Duration::from_secs(2);
 
@@ -64,12 +63,22 @@ pub(crate) struct ScanCount {
     pub(crate) other: u64,
 }
 
-struct Waiting {
+/// What is known of a scan that waits.
+#[derive(Debug)]
+struct Arrival {
     end_ns: i64,
     since: Instant,
-    mount: Isometry2<f64>,
-    scan: Scan,
     is_restart: bool,
+}
+
+/// Where the poses come from. Transforms are preferred to messages of odometry.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+enum PoseSource {
+    /// Messages have come, and transforms may still come.
+    #[default]
+    Unknown,
+    Transforms,
+    Topic,
 }
 
 /// The robot as a source of readings.
@@ -79,9 +88,13 @@ pub(crate) struct Source {
     given: FrameNames,
     names: FrameNames,
     is_localized: bool,
-    frames: Frames,
-    motions: Motions,
-    waiting: VecDeque<Waiting>,
+    /// Times are since the first pose.
+    assembler: Assembler<Arrival>,
+    poses: PoseSource,
+    /// The time of the first pose of all, ns: times count from it on.
+    origin_ns: Option<i64>,
+    /// The times of the first and the last pose by the clock of now, ns.
+    pose_span_ns: Option<(i64, i64)>,
     /// The end of the last scan that was taken, ns.
     last_ns: Option<i64>,
     is_restart: bool,
@@ -104,8 +117,9 @@ impl Source {
         self.is_localized = is_localized;
         if names != self.given {
             (self.given, self.names) = (names.clone(), names);
-            self.motions = Motions::default();
-            self.waiting.clear();
+            self.forget_poses();
+            (self.poses, self.origin_ns) = (PoseSource::Unknown, None);
+            self.assembler.waiting.clear();
         }
     }
 
@@ -134,19 +148,22 @@ impl Source {
     /// The next reading that is complete. A scan without a pose at its time is left out.
     pub(crate) fn next(&mut self, now: Instant) -> Option<LiveReading> {
         loop {
-            let first = self.waiting.front()?;
-            let is_overdue = now.duration_since(first.since) >= PATIENCE;
-            if self.motions.must_wait(first.end_ns) && !is_overdue {
+            let first = self.assembler.waiting.front()?;
+            let is_overdue = now.duration_since(first.tag.since) >= PATIENCE;
+            if self.assembler.must_wait(first.time_s) && !is_overdue {
                 return None;
             }
-            let Waiting { end_ns, mount, scan, is_restart, .. } = self.waiting.pop_front()?;
-            if !self.motions.covers(end_ns) {
+            let (reading, Arrival { end_ns, is_restart, .. }) = self.assembler.next_reading()?;
+            let (odometry, time_s) = (&self.assembler.odometry, reading.time_s);
+            let covers = |(oldest_s, newest_s)| oldest_s <= time_s && time_s <= newest_s + LATEST_S;
+            if !odometry.span_s().is_some_and(covers) {
                 self.count.unplaced += 1;
                 self.is_restart |= is_restart;
                 self.notes.push("a scan is left out: there is no pose of the robot at its time".to_owned());
                 continue;
             }
-            let (reading, in_odom, in_first_odom) = self.motions.reading(end_ns, mount, scan);
+            let (in_odom, in_first_odom) =
+                (odometry.origin() * reading.pose, odometry.first() * reading.pose);
             let stamp = Time::from_ns(end_ns);
             return Some(LiveReading { reading, in_odom, in_first_odom, stamp, is_restart });
         }
@@ -155,11 +172,11 @@ impl Source {
     /// Why there is no reading, in one sentence; `None` if it is not known.
     pub(crate) fn obstacle(&self) -> Option<String> {
         let FrameNames { odom, base, .. } = &self.names;
-        let known = match self.frames.names().as_slice() {
+        let known = match self.assembler.frames.names().as_slice() {
             [] => "there are no transforms on /tf and /tf_static".to_owned(),
             names => format!("the frames in tf are {}", names.join(", ")),
         };
-        if self.motions.is_empty() {
+        if !self.has_pose() {
             return Some(format!(
                 "no pose: neither is there a transform from `{odom}` to `{base}`, nor odometry for `{base}`; {known}"
             ));
@@ -171,7 +188,7 @@ impl Source {
     fn take_scan(&mut self, message: LaserScan, now: Instant) {
         self.count.received += 1;
         let begin_ns = message.header.stamp.ns();
-        let Some(mount) = self.mount(&message.header.frame_id) else {
+        let Some(chain) = self.chain_to(&message.header.frame_id) else {
             self.count.unplaced += 1;
             return;
         };
@@ -179,18 +196,15 @@ impl Source {
             self.count.other += 1;
             return;
         }
-        let scan = mounted(&mount).and_then(|(mount, is_upside_down)| {
-            Ok((mount, scan_of(message, is_upside_down).map_err(|why| format!("is not valid: {why}"))?))
-        });
-        let (mount, scan) = match scan {
+        let (mount, scan) = match self.assembler.placed(&chain, message) {
             Ok(scan) => scan,
             Err(why) => {
                 self.count.invalid += 1;
-                self.notes.push(format!("a scan {why}"));
+                self.notes.push(format!("a scan is not valid: {why}"));
                 return;
             }
         };
-        if self.motions.is_empty() {
+        if !self.has_pose() {
             self.count.unplaced += 1;
             return;
         }
@@ -208,11 +222,12 @@ impl Source {
         }
         self.last_ns = Some(end_ns);
         let is_restart = std::mem::take(&mut self.is_restart);
-        if self.waiting.len() == MAX_WAITING {
-            self.waiting.pop_front();
+        let (time_s, waiting) = (self.time_s(end_ns), &mut self.assembler.waiting);
+        if waiting.len() == MAX_WAITING {
+            waiting.pop_front();
             self.count.unplaced += 1;
         }
-        self.waiting.push_back(Waiting { end_ns, since: now, mount, scan, is_restart });
+        waiting.push_back(Waiting { time_s, mount, scan, tag: Arrival { end_ns, since: now, is_restart } });
     }
 
     /// Whether a scan is of another laser than the one in use. A map of changes needs to know from where each cell was seen, so that the
@@ -236,24 +251,65 @@ impl Source {
         true
     }
 
-    /// Forgets what another clock has stamped.
+    /// Forgets what another clock has stamped: poses that are later than now by more than a second.
     fn restart(&mut self, now_ns: i64) {
-        self.count.unplaced += self.waiting.len() as u64;
-        self.waiting.clear();
-        self.motions.forget_after(now_ns);
+        self.count.unplaced += self.assembler.waiting.len() as u64;
+        self.assembler.waiting.clear();
+        if self.pose_span_ns.is_some_and(|(_, last_ns)| last_ns.saturating_sub(now_ns) > RESTART_NS) {
+            self.forget_poses();
+            if self.poses == PoseSource::Transforms {
+                self.poses = PoseSource::Unknown;
+            }
+        }
         self.is_restart = true;
     }
 
-    /// The place of a laser on the robot.
-    fn mount(&mut self, laser: &str) -> Option<Isometry3<f64>> {
-        let chain = self.frames.chain(&self.names.base, laser, &[&self.names.odom]);
+    fn forget_poses(&mut self) {
+        (self.assembler.odometry, self.pose_span_ns) = (assemble::Odometry::default(), None);
+    }
+
+    /// Whether a pose is known, and its source.
+    fn has_pose(&self) -> bool {
+        self.poses != PoseSource::Unknown && self.pose_span_ns.is_some()
+    }
+
+    /// A time since the first pose, s.
+    fn time_s(&self, ns: i64) -> f64 {
+        ns.saturating_sub(self.origin_ns.unwrap_or(ns)) as f64 * 1e-9
+    }
+
+    /// Adds a pose that is not older than the last one. If the odometry was reset, that is no motion.
+    fn add_pose(&mut self, ns: i64, pose: &Isometry3<f64>, chain: &Chain) {
+        if let Some((_, last_ns)) = self.pose_span_ns.filter(|(_, last_ns)| ns <= *last_ns) {
+            if last_ns.saturating_sub(ns) < RESTART_NS {
+                return;
+            }
+            self.forget_poses();
+        }
+        self.origin_ns.get_or_insert(ns);
+        let (first_ns, last_ns) = self.pose_span_ns.unwrap_or((ns, ns));
+        self.pose_span_ns = Some((first_ns, ns));
+        let reset = self.assembler.add_pose(self.time_s(ns), pose, chain);
+        if let Some(step) = reset.filter(|_| self.poses != PoseSource::Unknown) {
+            let (step_m, step_rad) = (step.translation.vector.norm(), heading_rad(&step).abs());
+            let elapsed_s = ns.saturating_sub(last_ns) as f64 * 1e-9;
+            self.notes.push(format!(
+                "the odometry jumps by {step_m:.2} m and {step_rad:.2} rad in {elapsed_s:.2} s: it was reset, and the jump is \
+                 no motion"
+            ));
+        }
+    }
+
+    /// The transforms from the robot to a laser.
+    fn chain_to(&mut self, laser: &str) -> Option<Chain> {
+        let chain = self.assembler.frames.chain(&self.names.base, laser, &[&self.names.odom]);
         let is_lost = chain.is_none();
         if is_lost && self.lost_laser.as_deref() != Some(laser) {
             self.lost_laser = Some(laser.to_owned());
         } else if !is_lost {
             self.lost_laser = None;
         }
-        chain.map(|chain| self.frames.along(&chain))
+        chain
     }
 
     fn take_odometry(&mut self, message: &Odometry) {
@@ -262,10 +318,13 @@ impl Source {
             return;
         };
         self.choose_base(&message.child_frame_id);
-        let chain = self.frames.chain(&message.child_frame_id, &self.names.base, &[&self.names.odom]);
-        let Some(chain) = chain else { return };
-        let pose = pose * self.frames.along(&chain);
-        self.notes.extend(self.motions.add_odometry(message.header.stamp.ns(), &pose));
+        let frames = &self.assembler.frames;
+        let chain = frames.chain(&message.child_frame_id, &self.names.base, &[&self.names.odom]);
+        let Some(chain) = chain.filter(|_| self.poses != PoseSource::Transforms) else { return };
+        self.add_pose(message.header.stamp.ns(), &pose, &chain);
+        if self.pose_span_ns.is_some_and(|(first_ns, last_ns)| last_ns - first_ns >= WAIT_FOR_TF_NS) {
+            self.poses = PoseSource::Topic;
+        }
     }
 
     fn take_transforms(&mut self, message: &Transforms, is_static: bool) {
@@ -286,7 +345,7 @@ impl Source {
                 self.notes.push(format!("the transform to `{}` is not valid", found.child_frame_id));
                 continue;
             };
-            match self.frames.set(frame_id, &found.child_frame_id, pose) {
+            match self.assembler.frames.set(frame_id, &found.child_frame_id, pose) {
                 Ok(edge) => edges.push((edge, stamp.ns())),
                 Err(why) => self.notes.push(why),
             }
@@ -295,18 +354,26 @@ impl Source {
         if is_static {
             return;
         }
-        let Some(chain) = self.frames.chain(&self.names.odom, &self.names.base, &[&self.names.map]) else {
+        let frames = &self.assembler.frames;
+        let Some(chain) = frames.chain(&self.names.odom, &self.names.base, &[&self.names.map]) else {
             return;
         };
         let is_in_chain = |(edge, _): &&(usize, i64)| chain.iter().any(|(other, _)| other == edge);
         if let Some((_, stamp_ns)) = edges.iter().filter(is_in_chain).max_by_key(|(_, stamp_ns)| stamp_ns) {
-            self.notes.extend(self.motions.add_transform(*stamp_ns, &self.frames.along(&chain)));
+            let pose = frames.along(&chain);
+            if self.poses == PoseSource::Unknown {
+                self.forget_poses();
+                self.poses = PoseSource::Transforms;
+            }
+            if self.poses == PoseSource::Transforms {
+                self.add_pose(*stamp_ns, &pose, &Chain::new());
+            }
         }
     }
 
     /// The default name of the frame of the robot is that of `slam_toolbox`; many robots have only a `base_link`.
     fn choose_base(&mut self, frame: &str) {
-        let has_base = || self.frames.names().contains(&self.names.base.as_str());
+        let has_base = || self.assembler.frames.names().contains(&self.names.base.as_str());
         if self.names.base == DEFAULT_BASE && bare(frame) == OTHER_BASE && !has_base() {
             self.notes.push(format!("there is no frame `{DEFAULT_BASE}`: the robot is at `{OTHER_BASE}`"));
             self.names.base = OTHER_BASE.to_owned();

@@ -1,14 +1,11 @@
 //! Trials in grid worlds: `grid_world`.
 
 use super::{TrialKind, one_of_kinds};
-use crate::program::list;
 use crate::worlds::{SHIPPED_GRID, load_grid};
-use agent::{AgentSettings, Reward};
 use calendar::Kind;
 use clap::Args;
-use controller::CellDrive;
+use cli::program::list;
 use evaluation::trials::GridRobot;
-use mapper::MapperSettings;
 use sim::grid::{GenerateSettings, GridSpec};
 
 /// Compares exploration strategies in grid worlds with moving blocks: the paper's Figure 3, with statistics.
@@ -16,7 +13,7 @@ use sim::grid::{GenerateSettings, GridSpec};
 /// Without options, the paper's learner (curious) is compared in the paper's world with each of its strategies
 /// alone (recency, poisson) and with two baselines (random, coin), in five trials of 20,000 steps each. The
 /// folder grid_world_out contains the results: the curves (figure3.svg, figure3.png), every number
-/// (report.json), and every trial (trials.csv, trials.parquet). The table at the end shows which strategy learned the rates of
+/// (report.json), and every trial (trials.csv). The table at the end shows which strategy learned the rates of
 /// change best, and whether the difference is significant.
 ///
 /// Options that can be repeated multiply: 2 worlds, 2 estimators, 3 strategies and 10 trials are 120 trials in
@@ -24,7 +21,7 @@ use sim::grid::{GenerateSettings, GridSpec};
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "Examples:\n  \
         grid_world --trials 100                                  more trials, smaller intervals\n  \
-        grid_world --generate 50 --trials 2 --strategy curious --strategy progress\n  \
+        grid_world --generate 50 --trials 2 --strategy curious --strategy information-gain\n  \
         grid_world --generate 10 --calendar office --steps 60480 --strategy curious --strategy fresh-map\n  \
         grid_world --world my_world.toml --sensor-radius 6 --rrd one_trial.rrd\n\n\
         Large experiments run in shards, on one machine or on many (docs/clusters.md):\n  \
@@ -89,11 +86,10 @@ impl TrialKind for GridWorlds {
         self.steps
     }
 
-    fn robot(&self, reward: Reward, max_steps: u32) -> GridRobot {
-        let mut controller = CellDrive::settings();
-        controller.exploration.max_steps = max_steps;
-        let agent = AgentSettings { reward, ..Default::default() };
-        GridRobot { mapper: MapperSettings::default(), agent, controller }
+    fn robot(&self, max_steps: u32) -> GridRobot {
+        let mut robot = GridRobot::default();
+        robot.controller.exploration.max_steps = max_steps;
+        robot
     }
 
     fn to_toml(world: &GridSpec) -> Option<String> {

@@ -1,12 +1,11 @@
 //! Trials in houses and other physics worlds: `house_trials`.
 
 use super::{TrialKind, one_of_kinds};
-use crate::program::{duration_s, pose_in_world, pose_mode};
 use crate::worlds::{Loaded, list_physics_worlds, load};
-use agent::Reward;
 use anyhow::Context;
 use calendar::Kind;
 use clap::Args;
+use cli::program::{duration_s, pose_in_world, pose_mode};
 use evaluation::physics_trial;
 use evaluation::trials::PhysicsRobot;
 use interfaces::PoseMode;
@@ -16,13 +15,12 @@ use sim::physics::WorldSpec;
 ///
 /// Without options, five strategies are compared in eight generated houses, for 20 simulated minutes each: about four
 /// minutes on two cores. The folder house_trials_out contains the results: the curves of all worlds together (curves.svg, curves.png)
-/// and of each (curves-house-0.svg, ...; at most eight), every number (report.json), and every trial (trials.csv, trials.parquet). The
+/// and of each (curves-house-0.svg, ...; at most eight), every number (report.json), and every trial (trials.csv). The
 /// table at the end shows which strategy learned the rates of change best, and whether the difference is significant. With
 /// one trial per house, the houses are the sample: over 200 of them, the 95 % interval of a difference was ± 2 % of the error, so
 /// that it is about ± 3 % over 100, and ± 12 % over eight.
 ///
-/// Two references show how far a strategy can get: oracle knows the true rates, and full-observation sees every cell
-/// all the time.
+/// The reference full-observation sees every cell all the time: it shows how far a strategy can get.
 ///
 /// --generate makes houses, or with `--kind office` offices: larger, with more rooms, more people, and doors that stay for
 /// minutes. One of them alone is a world by its name: `--world house-7`, `--world office-7`.
@@ -109,8 +107,8 @@ impl TrialKind for Houses {
         self.duration
     }
 
-    fn robot(&self, reward: Reward, max_steps: u32) -> PhysicsRobot {
-        PhysicsRobot { reward, max_steps, pose: self.pose }
+    fn robot(&self, max_steps: u32) -> PhysicsRobot {
+        PhysicsRobot { max_steps, pose: self.pose }
     }
 
     fn to_toml(world: &WorldSpec) -> Option<String> {

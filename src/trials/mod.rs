@@ -2,6 +2,7 @@
 
 mod grid;
 mod houses;
+mod recorded;
 mod run;
 mod shards;
 
@@ -9,14 +10,14 @@ pub use grid::GridWorlds;
 pub use houses::Houses;
 pub use run::main;
 
-use crate::flags::{folder, output_file, value_of};
-use crate::program::{one_of, strategy_of};
-use crate::terminal::say;
-use agent::Reward;
+use crate::scenes::{Displayed, Visible};
 use anyhow::bail;
 use calendar::Kind;
-use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser};
+use cli::flags::{folder, output_file, value_of};
+use cli::program::{one_of, strategy_of};
+use cli::terminal::say;
 use evaluation::trials::{Experiment, TrialStrategy, TrialWorld};
 use mapper::EstimatorChoice;
 use reports::shards::Shard;
@@ -25,7 +26,6 @@ use std::collections::BTreeSet;
 use std::fmt::Debug;
 use std::io::stderr;
 use std::path::PathBuf;
-use viewer::scene::Visible;
 
 /// The groups of options that do not change the results of an experiment.
 const OUTPUT: &str = "Output";
@@ -34,7 +34,7 @@ const EXECUTION: &str = "Execution";
 /// A kind of worlds: what is the default there, and the options that no other kind has.
 pub trait TrialKind: Args + Clone + Debug {
     /// The worlds.
-    type Spec: TrialWorld<World: Visible, Robot: Debug> + Debug;
+    type Spec: TrialWorld<World: Visible, Robot: Debug> + Displayed + Debug;
 
     /// The name of the program.
     const NAME: &str;
@@ -81,7 +81,7 @@ pub trait TrialKind: Args + Clone + Debug {
     fn length(&self) -> u64;
 
     /// The robot of all trials.
-    fn robot(&self, reward: Reward, max_steps: u32) -> <Self::Spec as TrialWorld>::Robot;
+    fn robot(&self, max_steps: u32) -> <Self::Spec as TrialWorld>::Robot;
 
     /// The text of the file of a generated world.
     fn to_toml(world: &Self::Spec) -> Option<String>;
@@ -130,10 +130,6 @@ pub struct TrialArgs<K: TrialKind> {
     #[arg(long, default_value_t = 0, allow_negative_numbers = true, help_heading = "Comparison")]
     seed: u64,
 
-    /// The reward of the learner
-    #[arg(long, default_value = "changes", value_parser = reward(), help_heading = "Comparison")]
-    reward: Reward,
-
     /// The number of threads [default: the number of cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), allow_negative_numbers = true, help_heading = EXECUTION)]
     threads: Option<u16>,
@@ -142,10 +138,6 @@ pub struct TrialArgs<K: TrialKind> {
     /// `merge`. A shard that is started again continues where it stopped
     #[arg(long, value_name = "I/N", conflicts_with_all = ["rrd", "save_worlds"], help_heading = EXECUTION)]
     shard: Option<Shard>,
-
-    /// Continue in a folder with shards of another build of this program; the results may differ from those of both builds
-    #[arg(long, requires = "shard", help_heading = EXECUTION)]
-    allow_other_build: bool,
 
     /// The folder for all results
     #[arg(long, value_name = "DIR", default_value = K::OUT, value_parser = folder(), help_heading = OUTPUT)]
@@ -174,7 +166,7 @@ impl<K: TrialKind> TrialArgs<K> {
             trials: self.trials,
             seed: self.seed,
             length: self.kind.length(),
-            robot: self.kind.robot(self.reward, self.max_steps),
+            robot: self.kind.robot(self.max_steps),
         })
     }
 
@@ -213,19 +205,6 @@ impl<K: TrialKind> TrialArgs<K> {
 /// A parser of the name of a strategy, or of a reference.
 fn strategies() -> impl TypedValueParser<Value = TrialStrategy> {
     strategy_of(TrialStrategy::all().collect(), |strategy| (strategy.name(), strategy.description()))
-}
-
-/// A parser of what counts as a map update when the learner is rewarded.
-fn reward() -> impl TypedValueParser<Value = Reward> {
-    let all = [
-        PossibleValue::new("changes").help("Cells that changed"),
-        PossibleValue::new("changes-and-discoveries")
-            .help("Cells that changed, and cells that were seen for the first time"),
-    ];
-    PossibleValuesParser::new(all).map(|name| match name.as_str() {
-        "changes" => Reward::Changes,
-        _ => Reward::ChangesAndDiscoveries,
-    })
 }
 
 /// Every value once, in the order of first occurrence.

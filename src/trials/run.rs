@@ -1,12 +1,14 @@
 //! Arguments → trials → report.
 
+use super::recorded::{Recorded, record};
 use super::{EXECUTION, OUTPUT, TrialArgs, TrialKind};
-use crate::program::{Failure, INTERRUPTED, input, interrupt_flag, results_folder, start};
-use crate::progress::Progress;
-use crate::terminal::{print, say};
+use crate::scenes::Displayed;
 use anyhow::Context;
 use clap::CommandFactory;
 use clap::parser::ValueSource;
+use cli::program::{Failure, INTERRUPTED, input, interrupt_flag, results_folder, start};
+use cli::progress::Progress;
+use cli::terminal::{print, say};
 use evaluation::trials::{Experiment, Trial, TrialError, TrialWorld};
 use files::{RunFolder, write_file};
 use rayon::ThreadPool;
@@ -16,13 +18,10 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 use viewer::recording::{Recorder, RecordingError};
-use viewer::scene::Scene;
-use viewer::trial::{Recorded, record};
 
 /// The program: it runs what the command line asks for, and returns its exit code.
 pub fn main<K: TrialKind>() -> ExitCode
 where
-    for<'a> Scene: From<&'a K::Spec>,
     for<'a> Plan<'a>: From<&'a K::Spec>,
 {
     start(|args: &TrialArgs<K>| {
@@ -44,7 +43,6 @@ where
 
 impl<K: TrialKind> TrialArgs<K>
 where
-    for<'a> Scene: From<&'a K::Spec>,
     for<'a> Plan<'a>: From<&'a K::Spec>,
 {
     /// Runs the trials, and writes the results.
@@ -86,7 +84,7 @@ where
             Some(file) => {
                 let trial = jobs.remove(0);
                 let own = trial.world.in_own_frame(&experiment.robot, trial.seed);
-                let scene = own.as_ref().unwrap_or(trial.world).into();
+                let scene = own.as_ref().unwrap_or(trial.world).scene();
                 Some((Recorder::new(Some(file), &[], scene)?, trial))
             }
         };

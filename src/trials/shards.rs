@@ -2,15 +2,15 @@
 
 use super::run::{Results, experiment_arguments, report_settings};
 use super::{TrialArgs, TrialKind};
-use crate::flags::folder;
-use crate::program::{Failure, INTERRUPTED, input, results_folder};
-use crate::progress::Progress;
-use crate::terminal::{print, say};
 use anyhow::{Context, anyhow};
 use clap::{Parser, Subcommand};
+use cli::flags::folder;
+use cli::program::{Failure, INTERRUPTED, input, results_folder};
+use cli::progress::Progress;
+use cli::terminal::{print, say};
 use evaluation::trials::Experiment;
-use reports::shards::{Header, Shard, ShardFile, Shards, array, check_builds};
-use reports::{Plan, ReportSettings};
+use reports::Plan;
+use reports::shards::{Header, Shard, ShardFile, Shards, array};
 use std::io::stderr;
 use std::iter::once;
 use std::path::{Path, PathBuf};
@@ -45,18 +45,11 @@ pub(super) enum ShardCommand {
         #[arg(long, value_name = "DIR", value_parser = folder())]
         out: Option<PathBuf>,
 
-        /// Merge shards of other builds of this program; the results are those of no build
-        #[arg(long)]
-        allow_other_build: bool,
-
         /// Print only errors
         #[arg(long, short)]
         quiet: bool,
     },
-    /// Print what is finished, what runs, and the time that remains; also while shards run
-    ///
-    /// A shard counts as running while its newest trial is not older than five trials take, and at least one minute.
-    /// The cost is the wall time of all trials on their threads.
+    /// Print what is finished; also while shards run
     Status {
         /// The folder of the shards
         dir: PathBuf,
@@ -78,8 +71,8 @@ impl ShardCommand {
                 print(array(&missing))?;
                 return Ok(ExitCode::FAILURE);
             }
-            Self::Merge { dir, out, allow_other_build, quiet } => {
-                merge::<K>(dir, out.as_deref().unwrap_or(dir), *allow_other_build, *quiet)?;
+            Self::Merge { dir, out, quiet } => {
+                merge::<K>(dir, out.as_deref().unwrap_or(dir), *quiet)?;
             }
             Self::Status { dir } => print(Shards::read(dir).map_err(input)?.status())?,
         }
@@ -87,12 +80,12 @@ impl ShardCommand {
     }
 }
 
-fn merge<K: TrialKind>(dir: &Path, out: &Path, allows_other_build: bool, quiet: bool) -> Result<(), Failure>
+fn merge<K: TrialKind>(dir: &Path, out: &Path, quiet: bool) -> Result<(), Failure>
 where
     for<'a> Plan<'a>: From<&'a K::Spec>,
 {
     let shards = Shards::read(dir).map_err(input)?;
-    let other_build = shards.check(K::NAME, env!("CARGO_PKG_VERSION"), allows_other_build).map_err(input)?;
+    shards.check(K::NAME, env!("CARGO_PKG_VERSION")).map_err(input)?;
     let found = shards.header();
     let args =
         TrialArgs::<K>::try_parse_from(once(K::NAME).chain(found.arguments.iter().map(String::as_str)));
@@ -104,7 +97,7 @@ where
         return Err(input(anyhow!("the experiment of {} cannot be repeated: {why}", dir.display())));
     }
     let arguments = found.arguments.clone();
-    let settings = ReportSettings { other_build, ..report_settings(&experiment, arguments) };
+    let settings = report_settings(&experiment, arguments);
     let folder = results_folder(out).map_err(|(Failure::Run(why) | Failure::Input(why))| input(why))?;
     let results = Results { folder, out, world_names: &args.world, quiet };
     let trials = shards.trials().map_err(input)?.map(|trial| trial.map_err(Into::into));
@@ -126,9 +119,6 @@ impl<K: TrialKind> TrialArgs<K> {
         is_canceled: &AtomicBool,
     ) -> Result<ExitCode, Failure> {
         let header = header::<K>(experiment_arguments::<K>(), shard, experiment);
-        if !self.allow_other_build {
-            check_builds(&self.out).map_err(input)?;
-        }
         let file = ShardFile::open(&self.out, &header, shard).map_err(input)?;
         let (all, open) = (shard.trials(header.trials), file.open_trials(experiment));
         let before = all - open.len() as u64;

@@ -76,27 +76,4 @@ pub enum SurveyError {
         /// The median length of the motions by scans, per length by odometry.
         ratio: f64,
     },
-    /// The place of a log is not that of the first one.
-    #[error(
-        "the place is not recognized in the map of the first log: {certain} of {compared} scans fit there"
-    )]
-    OtherPlace {
-        /// The number of scans that fit in the map of the first log, at the pose with the most.
-        certain: usize,
-        /// The number of scans that were compared.
-        compared: usize,
-    },
-    /// A log fits at several poses in the map of the first one.
-    #[error(
-        "the place in the map of the first log is ambiguous: of {compared} scans, {fitting} fit at one pose, and {other} at \
-         another"
-    )]
-    AmbiguousPlace {
-        /// The number of scans that fit at the best pose.
-        fitting: usize,
-        /// The number of scans that fit at another pose.
-        other: usize,
-        /// The number of scans that were compared.
-        compared: usize,
-    },
 }

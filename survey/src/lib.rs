@@ -5,7 +5,7 @@
 //!
 //! ```text
 //! first pass:   log ─▶ trajectory and reach                  [`FirstPass`] ─▶ [`Route`]
-//!               later log ─▶ its pose in the first one       [`KnownPlace`], [`Search`]
+//!               later log ─▶ its pose in the first one       [`localizer::KnownPlace`], [`localizer::RouteSearch`]
 //! second pass:  log ─▶ robot at the found poses ─▶ changes    [`Replay`], [`FoundPoses`], [`ChangeLog`]
 //! ```
 //!
@@ -17,10 +17,8 @@ mod change_log;
 mod error;
 mod extent;
 mod forecast;
-mod known_place;
 mod masks;
 mod median;
-mod noise;
 mod odometry_check;
 mod outlook;
 mod passes;
@@ -33,7 +31,6 @@ mod repeated;
 mod replay;
 mod route;
 mod route_graph;
-mod search;
 mod seen_area;
 mod settings;
 mod silence;
@@ -47,8 +44,7 @@ mod upright;
 pub use change_log::ChangeLog;
 pub use error::SurveyError;
 pub use forecast::{Forecast, NEAR_M};
-pub use known_place::KnownPlace;
-pub use masks::{CHANGE_HORIZON_S, MASKS, masks, masks_ahead};
+pub use masks::{MASKS, masks, masks_ahead};
 pub use outlook::{Outlook, doors};
 pub use passes::{PassError, Stage};
 pub use permanent::permanent;
@@ -60,7 +56,6 @@ pub use quality::{Doubt, DoubtKind, Quality, Verdict};
 pub use replay::{FoundPoses, Replay};
 pub use route::{FirstPass, Route};
 pub use route_graph::{EdgeOutlook, RouteGraph, RouteGraphError, Travel};
-pub use search::Search;
 pub use settings::SurveySettings;
 pub use survey::{SURVEY_PARTS, SavedLogs, SavedSurvey, Survey};
 pub use surveyed_log::{LogEntry, SurveyedLog, Travelled};

@@ -5,9 +5,6 @@ use crate::permanent::share_blocked;
 use interfaces::{Cell, Grid};
 use mapper::{Mapper, ThingKind};
 
-/// The time in which a change matters to a robot on its route, s: maps of changes show the probability of a change
-/// [within](Mapper::change_probability_within) this time. It is 0.63 where a cycle takes this long on average.
-pub const CHANGE_HORIZON_S: f64 = 600.0;
 /// The names of the masks, in the order of [`masks`] and of [`Forecast::masks`](crate::Forecast::masks).
 pub const MASKS: [&str; 2] = ["speed_mask", "keepout_mask"];
 

@@ -1,17 +1,15 @@
 //! The first pass over a log.
 
 use crate::error::SurveyError;
-use crate::known_place::KnownPlace;
 use crate::odometry_check;
 use crate::replay::judged;
-use crate::route::{FirstPass, Route, uncertain};
-use crate::search::Search;
+use crate::route::{FirstPass, Route, frame, uncertain};
 use crate::settings::SurveySettings;
-use interfaces::{LaserReading, PoseMode};
-use localizer::Start;
+use interfaces::{GridFrame, LaserReading, PoseMode};
+use localizer::{KnownPlace, PlaceError, PoseState, RouteSearch, Start};
 use logs::{Log, LogError};
 use mapper::ReadingError;
-use nalgebra::Isometry2;
+use nalgebra::{Isometry2, Vector2};
 use std::ops::ControlFlow;
 
 /// The error of a pass over a log.
@@ -28,7 +26,7 @@ pub enum PassError {
     Survey(#[from] SurveyError),
     /// A later log finds no place in the map of the first one.
     #[error(transparent)]
-    Alignment(SurveyError),
+    Alignment(#[from] PlaceError),
     /// The callback has interrupted the pass.
     #[error("the first pass was interrupted")]
     Interrupted,
@@ -46,6 +44,9 @@ pub enum Stage {
     /// It searches for a later log in the map of the first one.
     Search,
 }
+
+/// How far later logs may leave the extent of the first one and still be aligned there, m.
+const AROUND_M: f64 = 10.0;
 
 /// The first pass over one log.
 pub(crate) struct RoutePass<'a, W> {
@@ -108,14 +109,15 @@ impl<W: FnMut((Stage, usize)) -> ControlFlow<()>> RoutePass<'_, W> {
     pub(crate) fn in_place(&mut self, place: &KnownPlace, all_stand: bool) -> Result<Route, PassError> {
         let route = self.route()?;
         let start = if all_stand { Start::At(Isometry2::identity()) } else { Start::Unknown };
-        let mut search = Search::new(place, start, route.poses.len());
+        let mut search = RouteSearch::new(place, start, route.poses.len());
+        let mut filter = self.settings.scan_filter();
         self.each_reading(Stage::Search, |index, reading| {
             if let Some(found) = route.poses.get(index) {
-                search.add(reading, found);
+                search.add(LaserReading { pose: found.pose, ..filter.filter(reading) });
             }
             Ok(())
         })?;
-        Ok(route.moved(&search.finish().map_err(PassError::Alignment)?))
+        Ok(route.moved(&search.finish()?))
     }
 
     /// The place in which later logs find theirs, from the first log along its route.
@@ -124,7 +126,8 @@ impl<W: FnMut((Stage, usize)) -> ControlFlow<()>> RoutePass<'_, W> {
     ///
     /// As for [`RoutePass::route`], and when the place is too large for a map.
     pub(crate) fn place(&mut self, route: &Route) -> Result<KnownPlace, PassError> {
-        let mut place = KnownPlace::new(self.settings, route)?;
+        let mut place = KnownPlace::new(&around(route, self.settings)?);
+        let mut filter = self.settings.scan_filter();
         let no_returns = judged(self.log, &route.poses, &self.settings.filter)?;
         self.each_reading(Stage::Map, |index, mut reading| {
             if let Some(found) = route.poses.get(index) {
@@ -132,7 +135,10 @@ impl<W: FnMut((Stage, usize)) -> ControlFlow<()>> RoutePass<'_, W> {
                 no_returns.apply(&mut reading);
                 no_returns.protect(&mut reading);
                 reading.pose = odometry;
-                place.add(reading, found);
+                // A pose that is not certain says nothing.
+                if found.state == PoseState::Tracking {
+                    place.add(LaserReading { pose: found.pose, ..filter.filter(reading) });
+                }
             }
             Ok(())
         })?;
@@ -159,4 +165,14 @@ impl<W: FnMut((Stage, usize)) -> ControlFlow<()>> RoutePass<'_, W> {
             ControlFlow::Break(()) => Err(PassError::Interrupted),
         }
     }
+}
+
+/// The rectangle of the surfaces in which later logs find their place: more than the extent of the first route.
+fn around(first: &Route, settings: &SurveySettings) -> Result<GridFrame, SurveyError> {
+    let extent = frame(std::slice::from_ref(first), settings)?;
+    let around = (AROUND_M / extent.resolution_m()).ceil();
+    let origin = extent.origin() - Vector2::repeat(around * extent.resolution_m());
+    let [width, height] = [extent.width(), extent.height()].map(|cells| cells + 2 * around as usize);
+    // Around a place of the largest size, there is no space left.
+    Ok(GridFrame::new(origin, extent.resolution_m(), width, height).unwrap_or(extent))
 }

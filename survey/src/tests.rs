@@ -6,14 +6,14 @@ mod scaled;
 
 use crate::route::frame;
 use crate::{
-    ChangeLog, FirstPass, KnownPlace, LogEntry, PassError, Route, Search, Stage, Survey, SurveyError,
-    SurveySettings, masks, permanent,
+    ChangeLog, FirstPass, LogEntry, PassError, Route, Stage, Survey, SurveyError, SurveySettings, masks,
+    permanent,
 };
 use interfaces::{
     CellReading, CellState, Grid, GridFrame, LaserReading, PoseMode, SMALL_GRID, Scan, Twist, World,
     heading_rad,
 };
-use localizer::{Start, TrajectoryPose};
+use localizer::{KnownPlace, PlaceError, RouteSearch, Start, TrajectoryPose};
 use logs::{Log, McapWriter, TopicChoice};
 use mapper::{Mapper, MapperSettings, NoReturn, ScanFilterSettings};
 use nalgebra::{Isometry2, Point2};
@@ -135,23 +135,27 @@ fn a_later_log_finds_its_place_in_the_first_one() {
     let (readings, truth) = drive(2, 120.0);
     let first = first_pass(&settings, &readings);
     assert!(largest_error_m(&first.poses, &truth[0], &truth) < 0.1);
-    let mut place = KnownPlace::new(&settings, &first).unwrap();
-    readings.iter().zip(&first.poses).for_each(|(reading, found)| place.add(reading.clone(), found));
+    let on_route = |reading: &LaserReading, found: &TrajectoryPose| LaserReading {
+        pose: found.pose,
+        ..settings.scan_filter().filter(reading.clone())
+    };
+    let mut place = KnownPlace::new(&frame(std::slice::from_ref(&first), &settings).unwrap());
+    readings.iter().zip(&first.poses).for_each(|(reading, found)| place.add(on_route(reading, found)));
     // The second log begins where the first one has ended, with another odometry.
     let (all, all_truth) = drive(2, 180.0);
     let (later, later_truth) = (&all[1250..], &all_truth[1250..]);
     let second = first_pass(&settings, later);
-    let mut search = Search::new(&place, Start::Unknown, later.len());
-    later.iter().zip(&second.poses).for_each(|(reading, found)| search.add(reading.clone(), found));
+    let mut search = RouteSearch::new(&place, Start::Unknown, later.len());
+    later.iter().zip(&second.poses).for_each(|(reading, found)| search.add(on_route(reading, found)));
     let second = second.moved(&search.finish().unwrap());
     let error_m = largest_error_m(&second.poses, &truth[0], later_truth);
     assert!(error_m < 0.015, "{error_m}");
 
     // A place that is another one is refused.
-    let mut search = Search::new(&place, Start::Unknown, 100);
+    let mut search = RouteSearch::new(&place, Start::Unknown, 100);
     let blind = LaserReading { scan: scan(vec![1.0; 360]), ..readings[0].clone() };
-    (0..100).for_each(|_| search.add(blind.clone(), &first.poses[0]));
-    assert_eq!(search.finish(), Err(SurveyError::OtherPlace { certain: 0, compared: 100 }));
+    (0..100).for_each(|_| search.add(on_route(&blind, &first.poses[0])));
+    assert_eq!(search.finish(), Err(PlaceError::Other { certain: 0, compared: 100 }));
 }
 
 /// A bag with these readings.

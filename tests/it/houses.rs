@@ -96,7 +96,7 @@ fn a_saved_house_is_the_one_that_was_made_and_runs_in_four_rooms() {
 fn help_names_every_choice() {
     let help = Run::houses().goes_well("--help").stdout;
     let choices = "--world --generate --strategy --estimator --trials --seeds --duration --seed --threads --out --rrd \
-                   --quiet --list-worlds --save-worlds --max-steps --reward --shard missing merge status";
+                   --quiet --list-worlds --save-worlds --max-steps --shard missing merge status";
     for choice in choices.split_whitespace() {
         assert!(help.contains(choice), "{choice} is not in\n{help}");
     }

@@ -1,6 +1,7 @@
 //! The pages: every link leads to a file and a heading that exist, every flag that a command of a page has exists, and user pages
 //! do not speak of how they came about.
 
+use crate::run::{PROGRAMS, program};
 use pulldown_cmark::{Event, Parser, Tag, TagEnd};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -13,15 +14,6 @@ const FOLDERS: [&str; 8] =
 const HISTORY: [&str; 2] = ["CHANGELOG.md", "docs/notebook"];
 /// What a user page does not say: what an older program did, and how busy the machine of a measurement was.
 const NOTES: [&str; 5] = ["earlier version", "a load of", "the target was", "later session", "slow session"];
-const PROGRAMS: [(&str, &str); 7] = [
-    ("four_rooms", env!("CARGO_BIN_EXE_four_rooms")),
-    ("grid_world", env!("CARGO_BIN_EXE_grid_world")),
-    ("house_trials", env!("CARGO_BIN_EXE_house_trials")),
-    ("map_log", env!("CARGO_BIN_EXE_map_log")),
-    ("check_world", env!("CARGO_BIN_EXE_check_world")),
-    ("predict", env!("CARGO_BIN_EXE_predict")),
-    ("state_file", env!("CARGO_BIN_EXE_state_file")),
-];
 
 struct Page {
     /// From the root of the repository.
@@ -142,8 +134,8 @@ fn commands(text: &str) -> Vec<String> {
 
 #[test]
 fn every_flag_of_a_command_exists() {
-    let help = PROGRAMS.map(|(name, program)| {
-        let output = Command::new(program).arg("--help").output().unwrap();
+    let help = PROGRAMS.map(|name| {
+        let output = Command::new(program(name)).arg("--help").output().unwrap();
         (name, String::from_utf8(output.stdout).unwrap())
     });
     let help = BTreeMap::from(help);

@@ -1,6 +1,5 @@
 //! How the robot knows its pose: `--pose`.
 
-use crate::bad_input::refuses;
 use crate::run::Run;
 
 /// The error of the position that 95 % of the readings do not exceed, m, and how poses were known.
@@ -33,17 +32,4 @@ fn a_localizer_corrects_odometry_that_drifts() {
 fn exact_odometry_needs_no_localizer() {
     let run = Run::quiet("--duration 5");
     assert_eq!(p95_m(&run), (0.0, "exact".to_owned()));
-}
-
-#[test]
-fn the_time_until_a_robot_is_lost_is_for_one_that_is_localized() {
-    let run = Run::new();
-    assert_eq!(
-        refuses(&run, "--lost-after 5s", &[]).trim_end(),
-        "error: --lost-after is for a robot that is localized: give --pose localized"
-    );
-    assert!(refuses(&run, "--pose localized --lost-after -1", &[]).contains("--lost-after"));
-    let settings = |more: &str| Run::quiet(&format!("--duration 2 --pose localized {more}")).summary();
-    assert_eq!(settings("--lost-after 5s").number("/settings/localizer/lost_after_s"), 5.0);
-    assert_eq!(settings("").number("/settings/localizer/lost_after_s"), 2.0);
 }

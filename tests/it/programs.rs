@@ -1,17 +1,9 @@
 //! `docs/programs.md` is what the programs say with `--help`.
 
+use crate::run::{PROGRAMS, program};
 use std::path::Path;
 use std::process::Command;
 
-const PROGRAMS: [(&str, &str); 7] = [
-    ("four_rooms", env!("CARGO_BIN_EXE_four_rooms")),
-    ("map_log", env!("CARGO_BIN_EXE_map_log")),
-    ("predict", env!("CARGO_BIN_EXE_predict")),
-    ("grid_world", env!("CARGO_BIN_EXE_grid_world")),
-    ("house_trials", env!("CARGO_BIN_EXE_house_trials")),
-    ("check_world", env!("CARGO_BIN_EXE_check_world")),
-    ("state_file", env!("CARGO_BIN_EXE_state_file")),
-];
 const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/programs.md");
 const HEAD: &str = "# Programs
 
@@ -21,8 +13,8 @@ installed, with their names. The live nodes `curious_node` and `sim_node` take R
 
 fn page() -> String {
     let mut page = HEAD.to_owned();
-    for (name, program) in PROGRAMS {
-        let output = Command::new(program).arg("--help").output().unwrap();
+    for name in PROGRAMS {
+        let output = Command::new(program(name)).arg("--help").output().unwrap();
         assert!(output.status.success(), "{name} --help");
         let help = String::from_utf8(output.stdout).unwrap();
         let lines: Vec<&str> = help.trim().lines().map(str::trim_end).collect();

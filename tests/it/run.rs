@@ -5,18 +5,16 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use tempfile::TempDir;
 
-/// The program for the physics worlds.
-const FOUR_ROOMS: &str = env!("CARGO_BIN_EXE_four_rooms");
-/// The program for the grid worlds.
-const GRID_WORLD: &str = env!("CARGO_BIN_EXE_grid_world");
-/// The program for trials in physics worlds.
-const HOUSE_TRIALS: &str = env!("CARGO_BIN_EXE_house_trials");
-/// The program for logs.
-const MAP_LOG: &str = env!("CARGO_BIN_EXE_map_log");
-/// The program for predictions.
-const PREDICT: &str = env!("CARGO_BIN_EXE_predict");
-/// The program for state files.
-const STATE_FILE: &str = env!("CARGO_BIN_EXE_state_file");
+/// All programs but those of ROS 2.
+pub(crate) const PROGRAMS: [&str; 7] =
+    ["four_rooms", "map_log", "predict", "grid_world", "house_trials", "check_world", "state_file"];
+
+/// The file of a program. Those of another package are beside those of this one: `cargo test` builds all.
+pub(crate) fn program(name: &str) -> PathBuf {
+    let path = Path::new(env!("CARGO_BIN_EXE_four_rooms")).with_file_name(name);
+    assert!(path.exists(), "there is no {}: cargo build --bins", path.display());
+    path
+}
 
 /// A folder in which a program runs. All output goes to the subfolder `out`, unless the arguments name another
 /// folder.
@@ -43,37 +41,37 @@ impl From<Output> for Ended {
 impl Run {
     /// A run of `four_rooms`.
     pub(crate) fn new() -> Self {
-        Self { folder: tempfile::tempdir().unwrap(), program: FOUR_ROOMS }
+        Self { folder: tempfile::tempdir().unwrap(), program: "four_rooms" }
     }
 
     /// A run of `grid_world`.
     pub(crate) fn grid() -> Self {
-        Self { folder: tempfile::tempdir().unwrap(), program: GRID_WORLD }
+        Self { folder: tempfile::tempdir().unwrap(), program: "grid_world" }
     }
 
     /// A run of `house_trials`.
     pub(crate) fn houses() -> Self {
-        Self { folder: tempfile::tempdir().unwrap(), program: HOUSE_TRIALS }
+        Self { folder: tempfile::tempdir().unwrap(), program: "house_trials" }
     }
 
     /// The same folder, for `map_log`.
     pub(crate) fn with_map_log(self) -> Self {
-        Self { program: MAP_LOG, ..self }
+        Self { program: "map_log", ..self }
     }
 
     /// The same folder, for `predict`.
     pub(crate) fn with_predict(self) -> Self {
-        Self { program: PREDICT, ..self }
+        Self { program: "predict", ..self }
     }
 
     /// The same folder, for `state_file`.
     pub(crate) fn with_state_file(self) -> Self {
-        Self { program: STATE_FILE, ..self }
+        Self { program: "state_file", ..self }
     }
 
     /// The same folder, for `four_rooms`.
     pub(crate) fn with_four_rooms(self) -> Self {
-        Self { program: FOUR_ROOMS, ..self }
+        Self { program: "four_rooms", ..self }
     }
 
     /// A finished run of `four_rooms` without a recording, which must succeed; arguments are separated by spaces.
@@ -103,10 +101,10 @@ impl Run {
 
     /// The program with its arguments, not started yet.
     pub(crate) fn command(&self, arguments: &str) -> Command {
-        let mut command = Command::new(self.program);
+        let mut command = Command::new(program(self.program));
         command.current_dir(self.folder.path()).args(arguments.split_whitespace());
         let is_on_shards = ["missing ", "merge ", "status "].iter().any(|name| arguments.starts_with(name));
-        if !arguments.contains("--out") && !is_on_shards && self.program != STATE_FILE {
+        if !arguments.contains("--out") && !is_on_shards && self.program != "state_file" {
             command.args(["--out", "out"]);
         }
         command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());

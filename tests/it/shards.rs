@@ -39,7 +39,7 @@ fn refused(run: &Run, arguments: &str) -> String {
 #[test]
 fn any_number_of_shards_in_any_order_gives_the_files_of_a_single_run() {
     let reference = single(Run::grid(), GRID);
-    assert!(reference.iter().any(|(name, _)| name == "trials.parquet"));
+    assert!(reference.iter().any(|(name, _)| name == "trials.csv"));
     for count in [1, 3, 64] {
         let run = Run::grid();
         // The last shard first. Neither threads nor the order of the arguments matter.
@@ -268,12 +268,11 @@ fn the_status_of_many_shards_is_short() {
     fs::write(&path, two.concat()).unwrap();
     let status = run.goes_well("status shards").stdout;
     let lines: Vec<&str> = status.lines().collect();
-    assert_eq!(lines[0], "shard 2/4                0 of 6 trials  not started");
-    assert!(lines[1].starts_with("shard 3/4                2 of 6 trials  running"), "{status}");
-    assert!(
-        lines[3].starts_with("8 of 24 trials (33.3 %), 0.0") && lines[3].ends_with(" core-hours"),
-        "{status}"
-    );
-    assert!(lines[4].starts_with("1 of 4 shards complete, 1 running"), "{status}");
-    assert!(lines.iter().all(|line| line.chars().count() <= 60), "{status}");
+    let expected = [
+        "shard 2/4                0 of 6 trials",
+        "shard 3/4                2 of 6 trials",
+        "shard 4/4                0 of 6 trials",
+        "8 of 24 trials (33.3 %), 1 of 4 shards complete",
+    ];
+    assert_eq!(lines, expected);
 }

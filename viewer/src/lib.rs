@@ -16,8 +16,6 @@ pub mod scene;
 pub mod show;
 #[cfg(all(test, feature = "recording"))]
 mod tests;
-#[cfg(feature = "recording")]
-pub mod trial;
 pub mod view;
 
 /// There is no recording in a build without the feature `recording`.

@@ -4,7 +4,6 @@
 use crate::scene::{Obstacle, Outline, RobotState, Scene, SceneRobot, Sight, TimeUnit};
 use crate::view::{Measured, View};
 use agent::Features;
-use evaluation::metrics::MapScores;
 use interfaces::{GridFrame, LaserReading, Scan, Twist, heading_rad, pose, wrap_rad};
 use localizer::PoseEstimate;
 use mapper::{Mapper, MapperSettings};
@@ -220,7 +219,7 @@ impl FakeRun {
                 Vec::new()
             },
             measured: Measured {
-                scores: Some(MapScores { coverage, map_quality: 0.98 * coverage }),
+                coverage_and_quality: Some([coverage, 0.98 * coverage]),
                 rate_errors: None,
                 messages: &self.messages,
             },

@@ -1,14 +1,12 @@
 //! The state of a run at one time, as plain data: the input of the recording and of the moving picture.
 
-use crate::scene::{Outline, RobotState, Sight, Visible};
+use crate::scene::{Outline, RobotState, Sight};
 use agent::Features;
-#[cfg(feature = "simulation")]
-use evaluation::metrics::{MapScores, RateErrors};
 use interfaces::LaserReading;
 use mapper::Mapper;
 use nalgebra::Point2;
 use results::thinned::Thinned;
-use robot::{Belief, Message, Pilot, StrategyState, Turn};
+use robot::{Belief, Message, StrategyState, Turn};
 use std::collections::VecDeque;
 
 /// The state of a run at one time.
@@ -41,41 +39,16 @@ pub struct View<'a> {
 /// The measurements that an observer adds to the state of the robot.
 #[derive(Clone, Copy, Default)]
 pub struct Measured<'a> {
-    /// Coverage and quality of the map; `None` if they were not measured.
-    #[cfg(feature = "simulation")]
-    pub scores: Option<MapScores>,
-    /// The errors of the rates of change; `None` if they were not measured.
-    #[cfg(feature = "simulation")]
-    pub rate_errors: Option<RateErrors>,
+    /// The share of the cells that can be seen that was seen, and the share that is right in the map; `None` if they were not
+    /// measured.
+    pub coverage_and_quality: Option<[f64; 2]>,
+    /// The relative and the logarithmic error of the rates of change; `None` if they were not measured.
+    pub rate_errors: Option<[f64; 2]>,
     /// The messages since the last view.
     pub messages: &'a [Message],
 }
 
 impl<'a> View<'a> {
-    /// The state of the run in `world` after a turn of the robot.
-    pub fn new<W: Visible>(
-        world: &'a W,
-        turn: &'a Turn<W::Reading, W::Command>,
-        mapper: &'a Mapper,
-        pilot: &'a (impl Pilot<Command = W::Command> + ?Sized),
-        measured: Measured<'a>,
-    ) -> Self {
-        let time = mapper.time();
-        Self {
-            time,
-            step: W::UNIT.choose(mapper.readings() as u64, time as u64),
-            mapper,
-            features: turn.features,
-            robots: world.robots(&turn.reading),
-            belief: Some(&turn.belief).filter(|_| !world.poses_are_exact()),
-            obstacles: world.obstacles(),
-            path: pilot.path(),
-            goal: pilot.goal(),
-            strategies: pilot.strategies(turn.features),
-            measured,
-        }
-    }
-
     /// The state of a pass over a log, in which nothing but the robot is known.
     pub fn of_log(turn: &'a Turn<LaserReading, ()>, mapper: &'a Mapper) -> Self {
         let sight = Some(Sight::Laser(&turn.reading));

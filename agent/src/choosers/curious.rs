@@ -79,12 +79,7 @@ mod tests {
         for _ in 0..rounds {
             let strategy = curious.choose(&situation, &mut rng);
             counts[strategy] += 1.0;
-            curious.learn(&Trajectory {
-                strategy,
-                features: &[features; 3],
-                reward: rewards[strategy],
-                progress: 0.0,
-            });
+            curious.learn(&Trajectory::of_reward(strategy, &[features; 3], rewards[strategy]));
         }
         counts
     }

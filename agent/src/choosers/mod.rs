@@ -1,9 +1,7 @@
 mod curious;
-mod progress;
 mod tile_coder;
 
 pub use curious::Curious;
-pub use progress::Progress;
 pub use tile_coder::TileCoder;
 
 use crate::situation::{Features, Situation};
@@ -20,15 +18,12 @@ pub struct Trajectory<'a> {
     pub features: &'a [Features],
     /// The number of map updates per reading, R of section 4; finite, 0 or more.
     pub reward: f64,
-    /// The progress in learning per reading: the expected decrease of the error of the logarithms of the rates,
-    /// summed over the cells. Finite, 0 or more.
-    pub progress: f64,
 }
 
 impl<'a> Trajectory<'a> {
-    /// A trajectory without a measure of progress in learning.
+    /// A trajectory with this reward.
     pub fn of_reward(strategy: usize, features: &'a [Features], reward: f64) -> Self {
-        Self { strategy, features, reward, progress: 0.0 }
+        Self { strategy, features, reward }
     }
 }
 
@@ -40,7 +35,7 @@ pub trait Chooser: std::fmt::Debug + Send {
     /// Learns from the result of the last choice. Does nothing by default.
     fn learn(&mut self, _: &Trajectory) {}
 
-    /// The expected reward per reading of the strategy at `features` (map updates, or progress); `None` if the
+    /// The expected reward per reading of the strategy at `features` (map updates); `None` if the
     /// chooser has no values.
     fn value(&self, _strategy: usize, _features: Features) -> Option<f64> {
         None

@@ -1,4 +1,3 @@
-use super::unchanged::UnchangedCells;
 use super::{Pick, Stay, Strategy};
 use crate::settings::AgentSettings;
 use crate::situation::Situation;
@@ -9,6 +8,10 @@ use mapper::Mapper;
 /// The duration of the stop at a goal, in the time unit of the readings: one look, or a watch over what changes too fast for a look.
 const LOOK: f64 = 1.0;
 const WATCH: f64 = 5.0;
+
+/// The number of events that is assumed for a cell that never changed: one half, as in the Jeffreys posterior of a
+/// Poisson rate.
+const UNSEEN_EVENTS: f64 = 0.5;
 
 /// Keeps the predicted map right: goes where a look takes most away from its Brier score, per time.
 ///
@@ -53,10 +56,6 @@ impl Strategy for FreshMap {
         "fresh-map"
     }
 
-    fn decline(&mut self) {
-        self.history.decline();
-    }
-
     fn end(&mut self, situation: &Situation) {
         self.history.end(situation);
     }
@@ -69,7 +68,10 @@ impl Strategy for FreshMap {
         let mapper = situation.mapper;
         let regions = self.history.update(mapper);
         let states = mapper.states().cells();
-        let unchanged = UnchangedCells::of(mapper);
+        let candidates = (0..states.len()).filter(|&cell| mapper.is_candidate(cell));
+        let known = candidates.filter(|&cell| states[cell] != CellState::Unknown).count();
+        // Without this share, a robot would stay with the first moving thing.
+        let changing = (mapper.changed().count() as f64 + UNSEEN_EVENTS) / (known as f64 + 1.0);
         // What a look is worth, and what each unit of time in view.
         let (mut looks, mut views) = (vec![0.0; regions.count()], vec![0.0; regions.count()]);
         for cell in (0..weights.len()).filter(|&cell| mapper.is_candidate(cell)) {
@@ -82,7 +84,9 @@ impl Strategy for FreshMap {
                     (gain(blocked * (1.0 - blocked), sum, elapsed), view)
                 }
                 (_, None) => {
-                    let (probability, rate) = unchanged.rate(mapper, cell);
+                    let seen = mapper.statistics(cell);
+                    let rate = UNSEEN_EVENTS / (seen.watched_free + seen.watched_blocked + 1.0);
+                    let probability = if seen.events() > 0 { 1.0 } else { changing.min(1.0) };
                     let changed = probability * -0.5 * libm::expm1(-2.0 * rate * elapsed);
                     (gain(changed * (1.0 - changed), 2.0 * rate, elapsed), 0.0)
                 }

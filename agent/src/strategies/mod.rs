@@ -3,21 +3,14 @@
 //! A row in the table of `docs/strategies.md` is needed as well; a test compares the table with `BUILT_IN`.
 
 mod fresh_map;
-mod frontier;
 mod information_gain;
-mod optimal_revisiting;
 mod poisson;
-mod predicted_change;
 mod random;
 mod recency;
-mod unchanged;
 
 pub use fresh_map::FreshMap;
-pub use frontier::Frontier;
 pub use information_gain::InformationGain;
-pub use optimal_revisiting::OptimalRevisiting;
 pub use poisson::Poisson;
-pub use predicted_change::PredictedChange;
 pub use random::Random;
 pub use recency::Recency;
 
@@ -72,9 +65,6 @@ pub trait Strategy: std::fmt::Debug + Send {
     fn stay(&mut self, _goal: Cell) -> Stay {
         Stay::Explore
     }
-
-    /// The robot does not go to the goal that was selected last. A strategy that remembers its goals forgets it.
-    fn decline(&mut self) {}
 
     /// The robot leaves the goal that was selected last, there or on the way, and no other goal follows for a while. A
     /// strategy that remembers its goals ends the visit, or forgets the goal if the robot is not there yet; if another goal

@@ -3,7 +3,7 @@ use crate::Situation;
 use interfaces::{Cell, GridFrame, Values, runs, value};
 use mapper::Mapper;
 
-/// Visibility, and for each cell the visits from which it should have been in view. For strategies that select a
+/// Visibility, and for each cell the last visit from which it should have been in view. For strategies that select a
 /// goal by the number of cells that come into view.
 ///
 /// The history is needed because an obstacle that hides a cell is not always on the map. Without the history the
@@ -12,23 +12,16 @@ use mapper::Mapper;
 pub(crate) struct ViewHistory {
     visibility: Visibility,
     frame: Option<GridFrame>,
-    visits: Vec<Visits>,
+    /// For each cell, the end of the last visit from which it should have been in view, whether or not it was seen.
+    visited: Vec<f64>,
     /// The index of the cell of the last goal, until the visit is over.
     goal: Option<usize>,
-}
-
-/// The visits from which a cell should have been in view, whether or not it was seen.
-#[derive(Clone, Copy, Debug, Default, serde::Deserialize, serde::Serialize)]
-struct Visits {
-    count: u8,
-    /// The end time of the last visit.
-    time: f64,
 }
 
 impl ViewHistory {
     /// For a robot whose sensor has the range `radius_m`.
     pub(crate) fn new(radius_m: f64) -> Self {
-        Self { visibility: Visibility::new(radius_m), frame: None, visits: Vec::new(), goal: None }
+        Self { visibility: Visibility::new(radius_m), frame: None, visited: Vec::new(), goal: None }
     }
 
     /// Applies the present map, and the finished visit of the last goal. Returns the regions of the map.
@@ -54,8 +47,7 @@ impl ViewHistory {
         let Some(goal) = self.goal.take() else { return };
         for &region in self.visibility.seen_from(regions.of(goal)) {
             for cell in regions.cells(region as usize) {
-                let count = self.visits[cell].count.saturating_add(1);
-                self.visits[cell] = Visits { count, time };
+                self.visited[cell] = time;
             }
         }
     }
@@ -63,7 +55,7 @@ impl ViewHistory {
     fn set_frame(&mut self, frame: GridFrame) {
         if self.frame != Some(frame) {
             self.frame = Some(frame);
-            self.visits = vec![Visits::default(); frame.len()];
+            self.visited = vec![0.0; frame.len()];
             self.goal = None;
         }
     }
@@ -71,7 +63,7 @@ impl ViewHistory {
     /// The visits so far, and the present one.
     pub(crate) fn values(&mut self, mapper: &Mapper) -> Values<'_> {
         self.set_frame(*mapper.frame());
-        vec![runs(&mut self.visits), value(&mut self.goal)]
+        vec![runs(&mut self.visited), value(&mut self.goal)]
     }
 
     /// Begins the visit of a goal.
@@ -79,21 +71,10 @@ impl ViewHistory {
         self.goal = self.frame.and_then(|frame| frame.index(goal));
     }
 
-    /// The last goal is not visited.
-    pub(crate) fn decline(&mut self) {
-        self.goal = None;
-    }
-
-    /// The number of visits from which the cell should have been in view, up to 255.
-    #[inline]
-    pub(crate) fn visits(&self, cell: usize) -> u8 {
-        self.visits[cell].count
-    }
-
     /// The time since the cell was last seen or should have been seen.
     #[inline]
     pub(crate) fn elapsed(&self, mapper: &Mapper, cell: usize) -> f64 {
-        mapper.recency(cell).min(mapper.time() - self.visits[cell].time)
+        mapper.recency(cell).min(mapper.time() - self.visited[cell])
     }
 
     /// Writes the weight of each candidate: the sum of `worth` (one value per region) over the regions in view from

@@ -2,8 +2,8 @@
 
 use crate::drawing::{agent, can_be_a_goal, empty, map, names, reading, rng};
 use agent::{
-    Agent, AgentSettings, Chooser, Features, FreshMap, OptimalRevisiting, Policy, Random, Recency, Reward,
-    Situation, StraightLineTravel, Trajectory,
+    Agent, AgentSettings, Chooser, Features, FreshMap, Policy, Random, Recency, Reward, Situation,
+    StraightLineTravel, Trajectory,
 };
 use interfaces::{Cell, CellReading, CellState, RandomStream, Transition};
 use mapper::Mapper;
@@ -77,7 +77,7 @@ fn the_same_seed_gives_the_same_life_and_another_seed_another() {
         let life = |seed| live(&mut agent(choice, seed), |_, _, _| ());
         assert_eq!(life(1), life(1), "{choice}");
         // The strategies that go to the best cell use few random numbers.
-        let is_best = ["frontier", "optimal-revisiting", "information-gain"].contains(&choice);
+        let is_best = choice == "information-gain";
         assert!(is_best || life(1) != life(2), "{choice}");
     }
 }
@@ -101,7 +101,7 @@ fn shares_are_those_of_the_goals() {
 #[test]
 fn learners_know_finite_values_and_others_none() {
     for choice in names() {
-        let is_learner = ["curious", "progress"].contains(&choice);
+        let is_learner = choice == "curious";
         let mut agent = agent(choice, 4);
         let mut learned = false;
         live(&mut agent, |agent, _, _| {
@@ -126,10 +126,6 @@ fn the_strategies_of_each_choice() {
     let names = |choice| agent(choice, 0).strategies().collect::<Vec<_>>();
     assert_eq!(names("curious"), ["recency", "poisson"]);
     assert_eq!(names("coin"), ["recency", "poisson"]);
-    assert_eq!(
-        names("progress"),
-        ["recency", "poisson", "frontier", "optimal-revisiting", "information-gain"]
-    );
     for choice in ["recency", "poisson", "random"] {
         assert_eq!(names(choice), [choice]);
     }
@@ -235,76 +231,32 @@ fn what_follows_the_end_of_a_goal_belongs_to_no_strategy() {
 #[test]
 fn a_visit_ends_with_its_goal() {
     let settings = AgentSettings::default();
-    // The goal is called off, or the robot at the cell `x` leaves it.
-    let worth = |mut strategy: Box<dyn agent::Strategy>, goal: i32, leaves_at: Option<f64>| {
+    // The robot at the cell `x` leaves the goal.
+    let worth = |goal: i32, leaves_at: f64| {
+        let mut strategy = FreshMap::new(&settings);
         let mut mapper = map(&[(0.0, &["....."])]);
-        let pose = Isometry2::translation(leaves_at.unwrap_or(0.0), 0.0);
+        let pose = Isometry2::translation(leaves_at, 0.0);
         let (travel, mut weights) = ([1.0; 5], vec![0.0; 5]);
-        let weigh = |strategy: &mut dyn agent::Strategy, mapper: &Mapper, weights: &mut [f64]| {
+        let weigh = |strategy: &mut FreshMap, mapper: &Mapper, weights: &mut [f64]| {
             let situation = Situation::new(mapper, &pose, Features::default()).with_travel(&travel);
-            strategy.weigh(&situation, weights);
+            agent::Strategy::weigh(strategy, &situation, weights);
         };
-        weigh(&mut *strategy, &mapper, &mut weights);
-        strategy.stay(Cell::new(goal, 0));
+        weigh(&mut strategy, &mapper, &mut weights);
+        agent::Strategy::stay(&mut strategy, Cell::new(goal, 0));
         mapper.update(&reading(10.0, &["....."])).unwrap();
         mapper.update(&reading(20.0, &[".    "])).unwrap();
-        match leaves_at {
-            Some(_) => strategy.end(&Situation::new(&mapper, &pose, Features::default())),
-            None => strategy.decline(),
-        }
+        agent::Strategy::end(&mut strategy, &Situation::new(&mapper, &pose, Features::default()));
         mapper.update(&reading(25.0, &[".    "])).unwrap();
-        weigh(&mut *strategy, &mapper, &mut weights);
+        weigh(&mut strategy, &mapper, &mut weights);
         weights[2]
     };
-    type New = fn(&AgentSettings) -> Box<dyn agent::Strategy>;
-    let strategies: [New; 2] =
-        [|settings| Box::new(FreshMap::new(settings)), |settings| Box::new(OptimalRevisiting::new(settings))];
-    for strategy in strategies {
-        let declined = worth(strategy(&settings), 4, None);
-        assert!(declined > 0.0);
-        // On the way, the robot was called away: nothing of the view from its goal was seen.
-        assert_eq!(worth(strategy(&settings), 4, Some(0.0)), declined);
-        for goal in [0, 4] {
-            let ended = worth(strategy(&settings), goal, Some(f64::from(goal)));
-            assert!(ended > 0.0 && ended < declined, "{ended} {declined}");
-        }
+    // On the way, the robot was called away: nothing of the view from its goal was seen.
+    let away = worth(4, 0.0);
+    assert!(away > 0.0);
+    for goal in [0, 4] {
+        let ended = worth(goal, f64::from(goal));
+        assert!(ended > 0.0 && ended < away, "{ended} {away}");
     }
-}
-
-/// Records the progress that it receives.
-#[derive(Debug, Default)]
-struct Listener(Arc<Mutex<Vec<f64>>>);
-
-impl Chooser for Listener {
-    fn choose(&mut self, _: &Situation, _: &mut RandomStream) -> usize {
-        0
-    }
-
-    fn learn(&mut self, trajectory: &Trajectory) {
-        self.0.lock().unwrap().push(trajectory.progress);
-    }
-}
-
-#[test]
-fn progress_is_what_the_events_of_a_trajectory_tell_per_reading() {
-    let listener = Listener::default();
-    let heard = Arc::clone(&listener.0);
-    let mut agent =
-        Agent::with(&AgentSettings::default(), vec![Box::new(Random)], Box::new(listener), rng(0)).unwrap();
-    let mut mapper = empty(3, 1);
-    let drawings = ["...", ".#.", "...", ".#.", ".#.", ".#."];
-    for (step, drawing) in drawings.into_iter().enumerate() {
-        mapper.update(&reading(step as f64, &[drawing])).unwrap();
-        agent.watch(Features::default(), mapper.transitions());
-        // The first goal comes after one event, the next two readings and two events later, the last
-        // when two readings showed nothing.
-        if [1, 3, 5].contains(&step) {
-            agent.next_goal(&mapper, &Isometry2::identity(), &mut StraightLineTravel);
-        }
-    }
-    let heard = heard.lock().unwrap();
-    assert!((heard[0] - (1.0 - 1.0 / 3f64.sqrt()) / 2.0).abs() < 1e-12, "{heard:?}");
-    assert_eq!(heard[1..], [0.0]);
 }
 
 #[test]

@@ -132,7 +132,7 @@ fn worth_after_visits(cells_before: i32, goes_there: bool) -> f64 {
             strategy.weigh(&situation, &mut weights);
             strategy.stay(goal);
             if !goes_there {
-                strategy.decline();
+                strategy.end(&situation);
             }
         }
     }
@@ -150,7 +150,7 @@ fn a_robot_that_stops_beside_its_goal_has_the_view_of_its_goal() {
 }
 
 #[test]
-fn a_goal_that_is_declined_is_no_visit_that_failed() {
+fn a_robot_that_is_called_away_has_made_no_visit() {
     assert_eq!(worth_after_visits(30, false), worth_after_visits(0, true));
 }
 

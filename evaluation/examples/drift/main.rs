@@ -55,7 +55,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 fn run(options: &Options, seed: u64) -> Result<Score, Box<dyn std::error::Error>> {
     let spec = options.spec(seed)?;
     let mut world = PhysicsWorld::new(&spec, seed);
-    let settings = options.settings(&spec)?;
+    let settings = evaluation::physics_trial::settings(&spec)?;
     let mut true_poses = GivenPoses::default();
     let mut exact = Mapper::new(&settings.mapper, spec.frame)?;
     let mut estimated = Mapper::new(&settings.mapper, spec.frame)?;
@@ -67,7 +67,7 @@ fn run(options: &Options, seed: u64) -> Result<Score, Box<dyn std::error::Error>
     let mut corners = Corners::new(&spec.frame);
     let first_odometry = world.sense().pose;
     while world.time_s() < options.minutes * 60.0 {
-        let reading = options.distort(world.sense());
+        let reading = world.sense();
         let true_pose = *world.true_pose();
         exact.update(&true_poses.deskewed(LaserReading { pose: true_pose, ..reading.clone() }))?;
         let odometry = reading.pose;
@@ -94,9 +94,6 @@ fn run(options: &Options, seed: u64) -> Result<Score, Box<dyn std::error::Error>
         score.observe(estimate, &true_pose, &exact, enters_map.then_some(&estimated), elapsed);
         corners.observe(world.time_s(), estimate, &true_pose);
         score.recovery.observe(world.time_s(), estimate, &true_pose, &odometry);
-        if options.trace {
-            score::trace(world.time_s(), estimate, &true_pose);
-        }
         let permission = match estimate.state {
             _ if world.time_s() < 2.0 || options.rests_at(world.time_s()) => Permission::Rest,
             PoseState::Lost if options.closed => Permission::LookAround,

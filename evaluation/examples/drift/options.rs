@@ -1,7 +1,4 @@
 use crate::shelves;
-use evaluation::physics_trial::{self, UnsupportedDrive};
-use interfaces::LaserReading;
-use robot::Settings;
 use sim::physics::{DisplacementSpec, Motion, OdometryError, WorldSpec};
 
 /// Displacements are 20 s apart in the mean.
@@ -32,13 +29,9 @@ pub(crate) struct Options {
     /// Jumps of the odometry, and the robot carried away.
     jump: DisplacementSpec,
     carried: DisplacementSpec,
-    /// The sign of the errors of the odometry, and their size in hard drifts.
-    drift: f64,
     pub(crate) minutes: f64,
     /// The robot drives by its estimate.
     pub(crate) closed: bool,
-    /// One line per scan.
-    pub(crate) trace: bool,
     pub(crate) odometry_only: bool,
     /// Loops are not closed.
     pub(crate) no_loops: bool,
@@ -46,9 +39,6 @@ pub(crate) struct Options {
     pub(crate) relocate: bool,
     /// A third of the furniture was moved since the map of the unknown starts was made.
     pub(crate) moved: bool,
-    no_rates: bool,
-    /// The odometry never moves.
-    no_odometry: bool,
     /// The file that gets a row with the results, and what the row is called.
     pub(crate) rows: Option<String>,
     pub(crate) table: String,
@@ -72,16 +62,12 @@ impl Options {
             rest: false,
             jump: NO_DISPLACEMENT,
             carried: NO_DISPLACEMENT,
-            drift: 1.0,
             minutes: 20.0,
             closed: false,
-            trace: false,
             odometry_only: false,
             no_loops: false,
             relocate: false,
             moved: false,
-            no_rates: false,
-            no_odometry: false,
             rows: None,
             table: String::new(),
             variant: String::new(),
@@ -108,20 +94,14 @@ impl Options {
                 "rest" => options.rest = is_on,
                 "jump_m" => options.jump.distance_m = number()?,
                 "jump_deg" => options.jump.turn_rad = number()?.to_radians(),
-                "jump_s" => options.jump.every_s = number()?,
                 "carried_m" => options.carried.distance_m = number()?,
                 "carried_deg" => options.carried.turn_rad = number()?.to_radians(),
-                "carried_s" => options.carried.every_s = number()?,
-                "drift" => options.drift = number()?,
                 "minutes" => options.minutes = number()?,
                 "closed" => options.closed = is_on,
-                "trace" => options.trace = is_on,
                 "odometry-only" => options.odometry_only = is_on,
                 "no-loops" => options.no_loops = is_on,
                 "relocate" => options.relocate = is_on,
                 "moved" => options.moved = is_on,
-                "no-rates" => options.no_rates = is_on,
-                "no-odometry" => options.no_odometry = is_on,
                 _ => return Err(format!("{key}: no such option").into()),
             }
         }
@@ -152,11 +132,11 @@ impl Options {
         }
         let robot = &mut fleet.robots[driven];
         robot.odometry = OdometryError {
-            distance_gain: 0.05 * self.drift,
-            turn_gain: -0.05 * self.drift,
-            turn_radpm: 3.0_f64.to_radians() * self.drift,
-            distance_noise_m: 0.05 * self.drift.abs(),
-            turn_noise_rad: 0.05 * self.drift.abs(),
+            distance_gain: 0.05,
+            turn_gain: -0.05,
+            turn_radpm: 3.0_f64.to_radians(),
+            distance_noise_m: 0.05,
+            turn_noise_rad: 0.05,
             jump: Some(self.jump).filter(is_any),
             carried: Some(self.carried).filter(is_any),
             ..OdometryError::default()
@@ -170,22 +150,5 @@ impl Options {
     /// Whether the robot rests at a time, since shelves are about to shift or have just shifted.
     pub(crate) fn rests_at(&self, time_s: f64) -> bool {
         self.shelves && self.rest && shelves::is_near_shift(time_s)
-    }
-
-    /// The reading with the faults of the sensors.
-    pub(crate) fn distort(&self, mut reading: LaserReading) -> LaserReading {
-        if self.no_odometry {
-            reading.pose = nalgebra::Isometry2::identity();
-        }
-        reading
-    }
-
-    /// The settings of the robot in this world, with the parts of the localizer that are switched off.
-    pub(crate) fn settings(&self, spec: &WorldSpec) -> Result<Settings, UnsupportedDrive> {
-        let mut settings = physics_trial::settings(spec)?;
-        if self.no_rates {
-            settings.localizer.rate_horizon_s = 0.0;
-        }
-        Ok(settings)
     }
 }

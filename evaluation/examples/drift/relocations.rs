@@ -50,12 +50,6 @@ pub(crate) fn run(
             PoseState::Tracking => wrong += 1,
             _ => open += 1,
         }
-        if options.trace {
-            println!(
-                "{:?} {error_m:.2} m {error_rad:.2} rad, {slowest_ms:.1} ms, support {:.2}",
-                estimate.state, estimate.support
-            );
-        }
     }
     println!(
         "unknown start: {right} right, {wrong} wrong, {open} not certain; {:.1} ms in the median, {:.1} ms at most",

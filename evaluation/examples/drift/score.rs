@@ -133,20 +133,3 @@ pub(crate) fn by_odometry(pose: Isometry2<f64>, reading: LaserReading) -> Locali
         PoseEstimate { pose, covariance: Matrix3::zeros(), support: 1.0, state: PoseState::Tracking };
     Localized { reading: LaserReading { pose, ..reading }, estimate }
 }
-
-/// One line per scan.
-pub(crate) fn trace(time_s: f64, estimate: &PoseEstimate, true_pose: &Isometry2<f64>) {
-    let (error_m, error_rad) = error(&estimate.pose, true_pose);
-    println!(
-        "{time_s:.1} {:?} error {:.1} mm {:.3}° sigma {:.1} mm {:.3}° support {:.3} at {:.2} {:.2} {:.1}°",
-        estimate.state,
-        error_m * 1e3,
-        error_rad.to_degrees(),
-        estimate.position_std_m() * 1e3,
-        estimate.heading_std_rad().to_degrees(),
-        estimate.support,
-        true_pose.translation.x,
-        true_pose.translation.y,
-        heading_rad(true_pose).to_degrees(),
-    );
-}

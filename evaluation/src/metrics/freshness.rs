@@ -101,12 +101,6 @@ impl Freshness {
     }
 }
 
-/// The share of what looks could improve at most that is still missing: (B − B_bound)/(B_none − B_bound), of the Brier scores of
-/// a strategy, of a lower bound for all strategies, and without looks. 0 is the bound, 1 no use of looks.
-pub fn freshness_regret(brier: f64, bound: f64, none: f64) -> f64 {
-    (brier - bound) / (none - bound)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -135,6 +129,5 @@ mod tests {
     fn nothing_has_no_score() {
         let scores = Freshness::new(1.0).scores();
         assert!(scores.brier.is_nan() && scores.missed.is_nan() && scores.detection_delay_s[0].is_nan());
-        assert!((freshness_regret(0.2, 0.1, 0.3) - 0.5).abs() < 1e-12);
     }
 }

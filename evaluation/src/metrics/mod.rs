@@ -23,13 +23,12 @@ mod rates;
 mod standstill;
 mod things;
 mod true_chains;
-mod user_regret;
 
 pub use alignment::alignment;
 pub use changing::{ChangingAccuracy, ChangingScores};
 pub use deviance::{DevianceScores, FrozenRates, poisson_deviance};
 pub use forecasts::{ForecastScores, Forecasts, StateScores};
-pub use freshness::{Freshness, FreshnessScores, freshness_regret};
+pub use freshness::{Freshness, FreshnessScores};
 pub use latency::{Delays, Latency};
 pub use map::{Age, MapScores, ReachableScores, age, map_scores, reachable_scores};
 pub use passages::{PassageScores, passage_scores};
@@ -44,7 +43,6 @@ pub use rates::{
 pub use standstill::Standstills;
 pub use things::{ThingReport, Things};
 pub use true_chains::TrueChains;
-pub use user_regret::{Routes, UserRegret, Way};
 
 #[cfg(test)]
 mod tests;

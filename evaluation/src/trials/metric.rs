@@ -1,6 +1,7 @@
 //! The metrics of a trial over time.
 
 use crate::metrics::MAX_LOG_ERROR;
+use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
 
 /// A share, or the mean of shares.
@@ -12,8 +13,10 @@ const NOT_NEGATIVE: RangeInclusive<f64> = 0.0..=f64::INFINITY;
 macro_rules! metrics {
     ($count:literal: $($(#[$doc:meta])+ $field:ident => $metric:ident in $range:expr,)+) => {
         /// The metrics at one time, see [`crate::metrics`]. A metric that is undefined at this time, as the error of
-        /// the rates before anything changed, is NaN.
-        #[derive(Clone, Copy, Debug, PartialEq)]
+        /// the rates before anything changed, is NaN. Serialized, it is its numbers as text, since reading a JSON number need
+        /// not give every bit again.
+        #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
+        #[serde(into = "String", try_from = "String")]
         pub struct Sample {
             /// The time: steps, or s in a physics world.
             pub time: u64,
@@ -93,8 +96,43 @@ metrics! {
     busiest_tenth_hit => BusiestTenthHit in SHARE,
 }
 
+impl From<Sample> for String {
+    fn from(sample: Sample) -> Self {
+        let values = Metric::ALL.map(|metric| metric.of(&sample).to_string()).join(" ");
+        format!("{} {values}", sample.time)
+    }
+}
+
+impl TryFrom<String> for Sample {
+    type Error = &'static str;
+
+    fn try_from(text: String) -> Result<Self, Self::Error> {
+        let read = || {
+            let (time, values) = text.split_once(' ')?;
+            let values: Vec<f64> = values.split(' ').map(str::parse).collect::<Result<_, _>>().ok()?;
+            Some(Self::new(time.parse().ok()?, values.try_into().ok()?))
+        };
+        read().ok_or("not the numbers of a sample")
+    }
+}
+
+/// Names with numbers, which are serialized as text as those of a [`Sample`].
+mod as_text {
+    use serde::de::{Deserialize, Deserializer, Error};
+    use serde::ser::Serializer;
+
+    pub(super) fn serialize<S: Serializer>(shares: &[(String, f64)], to: S) -> Result<S::Ok, S::Error> {
+        to.collect_seq(shares.iter().map(|(name, share)| (name, share.to_string())))
+    }
+
+    pub(super) fn deserialize<'a, D: Deserializer<'a>>(from: D) -> Result<Vec<(String, f64)>, D::Error> {
+        let shares = Vec::<(String, String)>::deserialize(from)?.into_iter();
+        shares.map(|(name, share)| Ok((name, share.parse().map_err(D::Error::custom)?))).collect()
+    }
+}
+
 /// The result of one trial: a strategy with an estimator in a world.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Trial {
     /// The name of the world.
     pub world: String,
@@ -107,6 +145,7 @@ pub struct Trial {
     /// The samples in order of time: at the same times in all trials of a report, the last at the end.
     pub samples: Vec<Sample>,
     /// For each strategy of the agent, in the order of the chooser, the share of the goals that it selected.
+    #[serde(with = "as_text")]
     pub strategy_share: Vec<(String, f64)>,
     /// The number of change events on static cells.
     pub false_change_events: u64,

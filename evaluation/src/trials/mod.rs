@@ -4,7 +4,6 @@
 //! Trials with the same world and seed are paired: the random streams of the world do not depend on the robot. A
 //! trial depends only on its own settings, so that the results are the same with any number of threads.
 
-mod full_observation;
 mod grid;
 mod length;
 mod metric;

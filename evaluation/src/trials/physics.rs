@@ -1,7 +1,6 @@
 use super::{Length, TrialError, TrialRobot, TrialSettings, TrialWorld};
-use crate::oracle::Oracle;
 use crate::physics_trial::{self, UnsupportedDrive};
-use agent::{Agent, Policy, Reward};
+use agent::{Agent, Policy};
 use controller::DiffDrive;
 use interfaces::PoseMode;
 use robot::{GoalSelector, LOCAL_STEPS, Settings};
@@ -10,8 +9,6 @@ use sim::physics::{PhysicsGroundTruth, PhysicsWorld, WorldSpec};
 /// The settings of the robot in physics worlds; all others are those of [`physics_trial::settings`].
 #[derive(Clone, Copy, Debug)]
 pub struct PhysicsRobot {
-    /// The reward of the learner.
-    pub reward: Reward,
     /// The maximum number of steps of local exploration.
     pub max_steps: u32,
     /// How the robot knows its pose; `None`: as the world suggests.
@@ -20,14 +17,13 @@ pub struct PhysicsRobot {
 
 impl Default for PhysicsRobot {
     fn default() -> Self {
-        Self { reward: Reward::default(), max_steps: LOCAL_STEPS, pose: None }
+        Self { max_steps: LOCAL_STEPS, pose: None }
     }
 }
 
 impl PhysicsRobot {
     fn settings(&self, spec: &WorldSpec) -> Result<Settings, UnsupportedDrive> {
         let mut settings = physics_trial::settings(spec)?;
-        settings.agent.reward = self.reward;
         settings.controller.exploration.max_steps = self.max_steps;
         settings.pose = self.pose.unwrap_or(settings.pose);
         Ok(settings)
@@ -73,10 +69,6 @@ impl TrialWorld for WorldSpec {
 
     fn agent(trial: &TrialSettings<Self>, policy: &Policy) -> Result<Agent, TrialError> {
         Ok(trial.experiment.robot.settings(trial.world)?.agent(policy, trial.seed)?)
-    }
-
-    fn oracle(&self) -> Oracle {
-        Oracle::in_physics(self)
     }
 
     fn robot<G: GoalSelector>(

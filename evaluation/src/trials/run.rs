@@ -1,14 +1,11 @@
-use super::full_observation::observed;
 use super::sampler::Sampler;
 use super::{Sample, Trial, TrialError, TrialSettings, TrialStrategy, TrialWorld};
 use crate::map_hash::map_hash;
-use crate::metrics::{RateScores, rate_scores};
-use crate::oracle::Oracle;
+use crate::metrics::rate_scores;
 use agent::Features;
-use controller::Controller;
-use interfaces::World;
+use interfaces::{CellReading, GroundTruth, Reading, TrueState, World};
 use mapper::Mapper;
-use robot::{Autonomous, ExactPoses, GoalSelector, Pilot, Robot, Tour, Turn, explore};
+use robot::{GoalSelector, Pilot, Robot, Tour, Turn, explore};
 use std::ops::ControlFlow;
 
 /// One turn of the robot of a trial.
@@ -41,100 +38,66 @@ pub fn run_trial<W: TrialWorld>(
     let world = own.as_ref().unwrap_or(trial.world);
     let trial = &TrialSettings { world, ..*trial };
     match trial.strategy {
-        TrialStrategy::Agent(policy) => run(trial, W::agent(trial, policy)?, |_, _| (), observe),
-        TrialStrategy::Oracle => run(trial, world.oracle(), Oracle::learn, observe),
-        TrialStrategy::FullObservation => run(trial, Tour::new(Vec::new(), false), |_, _| (), observe),
+        TrialStrategy::Agent(policy) => run(trial, W::agent(trial, policy)?, observe),
+        TrialStrategy::FullObservation => run(trial, Tour::new(Vec::new(), false), observe),
     }
 }
 
+/// Runs a trial whose robot drives to the goals of `selector`.
 fn run<W: TrialWorld, G: GoalSelector>(
     trial: &TrialSettings<W>,
     selector: G,
-    reveal: impl Fn(&mut G, &W::Truth),
-    observe: impl FnMut(TrialStep<W>) -> bool,
+    mut observe: impl FnMut(TrialStep<W>) -> bool,
 ) -> Result<Option<Trial>, TrialError> {
     let mut world = trial.world.start(trial.seed);
     let mut robot = W::robot(trial, &mut world, selector)?;
-    let sampler = Sampler::new(trial.experiment.length);
-    let mut measured = Measured { sampler, collisions: None, rates: None, reveal, observe };
-    if *trial.strategy == TrialStrategy::FullObservation {
+    let sees_all = *trial.strategy == TrialStrategy::FullObservation;
+    let mut full_map = sees_all.then(|| robot.mapper.clone());
+    let mut sampler = Sampler::new(trial.experiment.length);
+    let (mut collisions, mut rates) = (None, None);
+    explore(&mut world, &mut robot, |world, robot, turn| -> Result<_, TrialError> {
+        let truth = W::truth(world);
+        if let Some(map) = &mut full_map {
+            map.update(&observed(truth, &turn.reading))?;
+        }
         let Robot { mapper, pilot, .. } = robot;
-        let mut seeing = Robot::new(Box::new(ExactPoses), mapper, pilot);
-        loop {
-            let reading = world.sense();
-            let Turn { belief, features, command, .. } = seeing.step(observed::<W>(&world, &reading))?;
-            let turn = Turn { reading, belief, features, command };
-            if measured.measure(&world, &mut seeing, &turn)?.is_break() {
-                break;
-            }
-            world.act(&turn.command);
-        }
-        let Robot { mapper, pilot, .. } = seeing;
-        return Ok(measured.result(trial, mapper, &pilot));
-    }
-    explore(&mut world, &mut robot, |world, robot, turn| measured.measure(world, robot, turn))?;
-    let Robot { mapper, pilot, .. } = robot;
-    Ok(measured.result(trial, mapper, &pilot))
-}
-
-/// The measurements of a trial.
-struct Measured<V, O> {
-    sampler: Sampler,
-    collisions: Option<u64>,
-    /// The rates at the end.
-    rates: Option<RateScores>,
-    reveal: V,
-    observe: O,
-}
-
-impl<V, O> Measured<V, O> {
-    fn measure<W: TrialWorld, G: GoalSelector, R>(
-        &mut self,
-        world: &W::World,
-        robot: &mut Robot<R, Autonomous<G, Controller<W::Drive>>>,
-        turn: &Turn<<W::World as World>::Reading, <W::World as World>::Command>,
-    ) -> Result<ControlFlow<()>, TrialError>
-    where
-        V: Fn(&mut G, &W::Truth),
-        O: FnMut(TrialStep<W>) -> bool,
-    {
-        let (truth, Robot { mapper, pilot, .. }) = (W::truth(world), &mut *robot);
-        (self.reveal)(pilot.selector_mut(), truth);
+        let mapper = full_map.as_ref().unwrap_or(mapper);
         if let Some(count) = W::collisions(world) {
-            *self.collisions.get_or_insert(0) += count;
+            *collisions.get_or_insert(0) += count;
         }
-        let is_complete = self.sampler.is_complete(mapper.time());
-        let sample = self.sampler.update::<W>(mapper, truth);
+        let is_complete = sampler.is_complete(mapper.time());
+        let sample = sampler.update::<W>(mapper, truth);
         if is_complete {
-            self.rates = Some(rate_scores(mapper, truth));
+            rates = Some(rate_scores(mapper, truth));
         }
-        let step = TrialStep { world, turn, mapper, pilot, sample, is_complete };
-        let goes_on = (self.observe)(step) && !is_complete;
-        robot.pilot.take_messages(); // messages that `observe` has not taken must not accumulate
+        let goes_on = observe(TrialStep { world, turn, mapper, pilot, sample, is_complete }) && !is_complete;
+        pilot.take_messages(); // messages that `observe` has not taken must not accumulate
         Ok(if goes_on { ControlFlow::Continue(()) } else { ControlFlow::Break(()) })
-    }
+    })?;
+    let Some(rates) = rates else { return Ok(None) };
+    let mut mapper = full_map.unwrap_or(robot.mapper);
+    let strategies = robot.pilot.strategies(Features::of(&mut mapper)).into_iter();
+    Ok(Some(Trial {
+        world: trial.world.name().to_owned(),
+        estimator: trial.estimator.name().to_owned(),
+        strategy: trial.strategy.name().to_owned(),
+        seed: trial.seed,
+        samples: sampler.into_samples(),
+        strategy_share: strategies.map(|strategy| (strategy.name, strategy.share)).collect(),
+        false_change_events: rates.false_change_events,
+        false_map_changes: rates.false_map_changes,
+        collisions,
+        map_hash: map_hash(&mapper),
+    }))
+}
 
-    /// The result; `None` of a trial that was canceled.
-    fn result<W: TrialWorld>(
-        self,
-        trial: &TrialSettings<W>,
-        mut mapper: Mapper,
-        pilot: &impl Pilot,
-    ) -> Option<Trial> {
-        let Self { sampler, collisions, rates, .. } = self;
-        let rates = rates?;
-        let strategies = pilot.strategies(Features::of(&mut mapper)).into_iter();
-        Some(Trial {
-            world: trial.world.name().to_owned(),
-            estimator: trial.estimator.name().to_owned(),
-            strategy: trial.strategy.name().to_owned(),
-            seed: trial.seed,
-            samples: sampler.into_samples(),
-            strategy_share: strategies.map(|strategy| (strategy.name, strategy.share)).collect(),
-            false_change_events: rates.false_change_events,
-            false_map_changes: rates.false_map_changes,
-            collisions,
-            map_hash: map_hash(&mapper),
-        })
-    }
+/// The true state of every cell, except of cells that are partly covered, at the time and the pose of a reading. A map of these
+/// readings has the errors of the estimator alone: it bounds what exploration can reach.
+fn observed(truth: &impl GroundTruth, of_sensors: &impl Reading) -> CellReading {
+    let frame = truth.frame();
+    let cells = (0..frame.len()).filter_map(|index| match truth.state(index) {
+        TrueState::PartlyCovered => None,
+        state => Some((frame.cell(index), state == TrueState::Blocked)),
+    });
+    CellReading { time: of_sensors.time(), pose: *of_sensors.pose(), cells: cells.collect() }
 }

@@ -1,6 +1,6 @@
 //! Which crate may depend on which.
 
-use crate::workspace::{needs, needs_without_features, packages};
+use crate::workspace::{needs, packages};
 
 /// Every crate, and the crates of the workspace that it may depend on.
 const ALLOWED: &[(&str, &[&str])] = &[
@@ -12,29 +12,18 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("stage", &["interfaces", "sim", "worldfile"]),
     ("mapper", &["interfaces"]),
     ("localizer", &["interfaces", "mapper"]),
-    ("logs", &["interfaces"]),
+    ("ros", &["interfaces"]),
+    ("logs", &["interfaces", "ros"]),
     ("agent", &["interfaces", "mapper"]),
     ("controller", &["interfaces"]),
     ("robot", &["interfaces", "files", "calendar", "mapper", "localizer", "agent", "controller"]),
     ("survey", &["interfaces", "mapper", "localizer", "logs", "robot"]),
     ("results", &["interfaces", "files", "mapper"]),
-    ("days", &["interfaces", "calendar", "agent"]),
     (
         "evaluation",
-        &[
-            "interfaces",
-            "calendar",
-            "sim",
-            "mapper",
-            "localizer",
-            "agent",
-            "controller",
-            "robot",
-            "results",
-            "days",
-        ],
+        &["interfaces", "calendar", "sim", "mapper", "localizer", "agent", "controller", "robot", "results"],
     ),
-    ("reports", &["interfaces", "files", "sim", "robot", "results", "days", "evaluation"]),
+    ("reports", &["interfaces", "files", "sim", "robot", "results", "evaluation"]),
     (
         "environments",
         &["interfaces", "sim", "worldfile", "mapper", "agent", "controller", "robot", "evaluation"],
@@ -56,21 +45,9 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "environments",
         ],
     ),
-    (
-        "viewer",
-        &[
-            "interfaces",
-            "files",
-            "sim",
-            "mapper",
-            "localizer",
-            "agent",
-            "controller",
-            "robot",
-            "results",
-            "evaluation",
-        ],
-    ),
+    ("viewer", &["interfaces", "files", "mapper", "localizer", "agent", "robot", "results"]),
+    ("cli", &["interfaces", "files", "mapper", "robot", "ros", "results"]),
+    ("owner", &["interfaces", "files", "mapper", "robot", "logs", "survey", "results", "viewer", "cli"]),
     (
         "curious",
         &[
@@ -81,16 +58,14 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "worldfile",
             "stage",
             "mapper",
-            "localizer",
-            "logs",
             "agent",
             "controller",
             "robot",
-            "survey",
             "results",
             "evaluation",
             "reports",
             "viewer",
+            "cli",
         ],
     ),
     (
@@ -101,6 +76,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "worldfile",
             "mapper",
             "localizer",
+            "ros",
             "logs",
             "agent",
             "controller",
@@ -109,11 +85,13 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "survey",
         ],
     ),
+    // No part of the product: no other crate may use it.
+    ("studies", &["interfaces", "calendar", "sim", "mapper", "agent", "robot", "evaluation", "reports"]),
 ];
 
 /// Packages that only these crates may have as a dependency.
 const RESERVED: &[(&str, &[&str])] =
-    &[("rerun", &["viewer", "curious"]), ("rapier2d", &["sim"]), ("ros2-client", &["ros2"])];
+    &[("rerun", &["viewer"]), ("rapier2d", &["sim"]), ("ros2-client", &["ros2"])];
 
 /// The crates that must build without Rerun.
 const WITHOUT_RERUN: &[&str] = &[
@@ -125,18 +103,19 @@ const WITHOUT_RERUN: &[&str] = &[
     "stage",
     "mapper",
     "localizer",
+    "ros",
     "logs",
     "agent",
     "controller",
     "robot",
     "survey",
     "results",
-    "days",
     "evaluation",
     "reports",
     "ros2",
     "environments",
     "python",
+    "studies",
 ];
 
 #[test]
@@ -164,6 +143,14 @@ fn every_crate_uses_only_what_it_may() {
 }
 
 #[test]
+fn nothing_uses_the_studies() {
+    for package in packages() {
+        let mut all = package.dependencies.iter().chain(&package.of_tests);
+        assert!(all.all(|name| name != "studies"), "{} must not use studies", package.name);
+    }
+}
+
+#[test]
 fn only_the_viewer_and_the_programs_need_rerun() {
     for name in WITHOUT_RERUN {
         let needs = needs(name);
@@ -176,11 +163,14 @@ fn only_the_viewer_and_the_programs_need_rerun() {
 }
 
 #[test]
-fn a_robot_owner_builds_no_simulator() {
-    let simulation = ["rerun", "sim", "rapier2d", "evaluation", "reports", "parquet"];
-    let all = needs("curious");
-    assert!(simulation.iter().all(|name| all.iter().any(|needed| needed == name)), "{all:?}");
-    let alone = needs_without_features("curious");
-    let found: Vec<_> = simulation.iter().filter(|name| alone.iter().any(|needed| needed == *name)).collect();
-    assert!(found.is_empty(), "map_log alone needs {found:?}");
+fn a_robot_owner_builds_no_simulator_and_a_simulation_no_logs() {
+    for (name, unneeded) in [
+        ("owner", &["sim", "worldfile", "rapier2d", "evaluation", "reports"][..]),
+        ("curious", &["survey", "logs"]),
+    ] {
+        let needs = needs(name);
+        let found: Vec<_> =
+            unneeded.iter().filter(|name| needs.iter().any(|needed| needed == *name)).collect();
+        assert!(found.is_empty(), "{name} needs {found:?}");
+    }
 }

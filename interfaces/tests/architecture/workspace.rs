@@ -13,6 +13,8 @@ pub(crate) struct Package {
     pub(crate) name: String,
     /// Normal and build dependencies, by the name of the package.
     pub(crate) dependencies: Vec<String>,
+    /// The dependencies of its tests, examples and benches.
+    pub(crate) of_tests: Vec<String>,
     /// The name and the root file of the library and of each program.
     pub(crate) targets: Vec<(String, PathBuf)>,
 }
@@ -25,31 +27,24 @@ pub(crate) fn packages() -> Vec<Package> {
 
 fn package(package: &Value) -> Package {
     let name = short(&text(package, "name"));
-    let of_users = list(package, "dependencies").iter().filter(|dependency| dependency["kind"] != "dev");
-    let dependencies = of_users.map(|dependency| short(&text(dependency, "name"))).collect();
+    let (of_tests, of_users): (Vec<&Value>, _) =
+        list(package, "dependencies").iter().partition(|dependency| dependency["kind"] == "dev");
+    let [dependencies, of_tests] = [of_users, of_tests]
+        .map(|all| all.iter().map(|dependency| short(&text(dependency, "name"))).collect());
     let is_product = |target: &&Value| ["lib", "bin"].iter().any(|kind| target["kind"][0] == *kind);
     let targets = list(package, "targets").iter().filter(is_product).map(|target| {
         let is_program = target["kind"][0] == "bin";
         let name = if is_program { format!("{name}/{}", text(target, "name")) } else { name.clone() };
         (name, PathBuf::from(text(target, "src_path")))
     });
-    Package { dependencies, targets: targets.collect(), name }
+    Package { dependencies, of_tests, targets: targets.collect(), name }
 }
 
 /// All packages that a crate needs to build, the crate itself included; without those of tests.
 pub(crate) fn needs(package: &str) -> Vec<String> {
-    tree(package, "--all-features")
-}
-
-/// The same without the default features of the crate.
-pub(crate) fn needs_without_features(package: &str) -> Vec<String> {
-    tree(package, "--no-default-features")
-}
-
-fn tree(package: &str, features: &str) -> Vec<String> {
     let renamed = RENAMED.iter().find(|(short, _)| *short == package);
     let package = renamed.map_or_else(|| format!("curious-{package}"), |(_, name)| (*name).to_owned());
-    let tree = cargo(&["tree", "-p", &package, "-e", "normal,build", "--prefix", "none", features]);
+    let tree = cargo(&["tree", "-p", &package, "-e", "normal,build", "--prefix", "none", "--all-features"]);
     tree.lines().filter_map(|line| line.split_whitespace().next()).map(short).collect()
 }
 

@@ -115,6 +115,8 @@ pub(crate) const MAX_STD: Spread = Spread { m: 0.005, rad: 0.003 };
 pub(crate) const LEVER_M: f64 = 1.2;
 /// The range noise for which these limits hold, m.
 pub(crate) const LIMIT_NOISE_M: f64 = 0.01;
+/// The noise of the lasers of logs, whose walls are less straight, m.
+pub(crate) const LOG_NOISE_M: f64 = 0.02;
 /// The line map learns from poses that are less certain by this factor: otherwise a robot with few beams never sees the rest
 /// of a new room with certainty.
 pub(crate) const LEARNING_LIMITS: f64 = 10.0;

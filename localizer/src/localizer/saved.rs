@@ -47,7 +47,7 @@ impl Localizer {
         self.much_has_moved = false;
     }
 
-    /// The surfaces in which poses are found, as bytes: also for a [`LineMap`](crate::LineMap).
+    /// The surfaces in which poses are found, as bytes: also for a [`KnownPlace`](crate::KnownPlace).
     pub fn surfaces(&mut self) -> Vec<u8> {
         self.builder.matcher.surfels.saved()
     }

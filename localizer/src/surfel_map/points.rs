@@ -11,12 +11,8 @@ impl SurfelMap {
     pub(crate) fn points(&self, pose: &Isometry2<f64>) -> Vec<ScanPoint> {
         let back = pose.inverse();
         let point = |(beam, surfel): (usize, &super::Surfel)| ScanPoint {
-            at: back * surfel.at,
-            normal: back.rotation * surfel.normal,
-            weight: 1.0,
-            noise_share: 1.0,
             beam,
-            passed: 1.0,
+            ..ScanPoint::new(back * surfel.at, back.rotation * surfel.normal)
         };
         self.usable().enumerate().map(point).collect()
     }

@@ -97,14 +97,7 @@ mod tests {
         };
         let passed = |beam: f64, distance_m: f64, facing: f64| {
             let along = interfaces::rotation((beam - 90.0).to_radians()) * Vector2::x();
-            let point = ScanPoint {
-                at: (along * distance_m).into(),
-                normal: -along * facing,
-                weight: 1.0,
-                noise_share: 1.0,
-                beam: 0,
-                passed: 1.0,
-            };
+            let point = ScanPoint::new((along * distance_m).into(), -along * facing);
             is_passed(&keyframe, &point, &Isometry2::identity())
         };
         assert_eq!(passed(90.0, 2.0, 1.0), Some(true));

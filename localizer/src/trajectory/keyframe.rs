@@ -66,12 +66,8 @@ mod tests {
     #[test]
     fn only_neighbors_on_one_surface_are_joined() {
         let point = |x: f64, y: f64, beam: usize| ScanPoint {
-            at: Point2::new(x, y),
-            normal: -Vector2::y(),
-            weight: 1.0,
-            noise_share: 1.0,
             beam,
-            passed: 1.0,
+            ..ScanPoint::new(Point2::new(x, y), -Vector2::y())
         };
         // 0.5 m along a wall; then a step, a missing beam, and a point that is too far away.
         let points = [

@@ -74,13 +74,8 @@ mod tests {
 
     /// Points on straight walls along x, 2 m apart, and on some more surfaces.
     fn corridor(more: &[(f64, f64, f64)]) -> Vec<ScanPoint> {
-        let point = |(x, y, normal_rad): (f64, f64, f64)| ScanPoint {
-            at: Point2::new(x, y),
-            normal: interfaces::rotation(normal_rad) * Vector2::x(),
-            weight: 1.0,
-            noise_share: 1.0,
-            beam: 0,
-            passed: 1.0,
+        let point = |(x, y, normal_rad): (f64, f64, f64)| {
+            ScanPoint::new(Point2::new(x, y), interfaces::rotation(normal_rad) * Vector2::x())
         };
         // The normals are a little off, to both sides.
         let walls = (-40_i32..40).flat_map(|step| {

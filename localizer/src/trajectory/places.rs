@@ -7,7 +7,7 @@ use super::matching::{fit, information_of};
 use super::odometry_drift::{reach, ways_m};
 use super::submap::{Agreement, FinishedSubmap};
 use crate::constants::{
-    AMBIGUOUS, COMPARED_POINTS, EXAMINED, MAJORITY, MAX_PASSING, MAX_SEARCHES, MIN_WAY_M, NEAR_M,
+    AMBIGUOUS, COMPARED_POINTS, EXAMINED, MAJORITY, MAX_PASSING, MAX_SEARCHES, MAX_WORK, MIN_WAY_M, NEAR_M,
     NEAR_RANGE_M, NEIGHBORS, PLACE_AGREEMENT, PLACE_MODEL_STD, PLACE_OVERLAP, PLACE_SCORE, PLACE_STD,
     REFERENCE_M, SAME_SUBMAP, STRONG_AGREEMENT, UNLIKELY,
 };
@@ -20,12 +20,12 @@ use nalgebra::Isometry2;
 
 /// A recognized place: the pose of submap `to` in submap `from`.
 #[derive(Clone, Debug)]
-pub(super) struct RecognizedPlace {
+pub(crate) struct RecognizedPlace {
     pub(super) from: usize,
     pub(super) to: usize,
     /// The way between the two along the trajectory, m.
     pub(super) way_m: f64,
-    pub(super) edge: Edge,
+    pub(crate) edge: Edge,
     /// Whether little speaks against it.
     pub(super) is_strong: bool,
 }
@@ -166,8 +166,8 @@ impl Places {
         let near: Vec<ScanPoint> = self.submaps[to].points.iter().filter(is_near).copied().collect();
         let points = thinned(&near, COMPARED_POINTS);
         let window = Window { pose, reach_m, reach_rad };
-        for candidate in search(grid, &points, Some(&window), PLACE_SCORE, EXAMINED) {
-            let Some((found, agreement)) = fit(map, &points, &candidate.pose, PLACE_STD, self.noise_m) else {
+        for start in search(&mut { MAX_WORK }, grid, &points, &window, (PLACE_SCORE, EXAMINED)) {
+            let Some((found, agreement)) = fit(map, &points, &start, PLACE_STD, self.noise_m) else {
                 continue;
             };
             let off = (found.placement.pose.translation.vector - pose.translation.vector).norm() / reach_m;

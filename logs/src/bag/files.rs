@@ -1,11 +1,10 @@
 //! The files of a bag: found out by content, put in order, unpacked.
 
+use super::mcap::MAGIC;
 use crate::archive;
 use crate::bounds::{self, Unpacked};
-use crate::bytes::Bytes;
+use crate::bytes::{Bytes, ZSTD};
 use crate::error::LogError;
-use crate::magic::{self, ZSTD};
-use crate::whole_part::WholePart;
 use serde::Deserialize;
 use std::fs::{self, DirEntry};
 use std::io::{self, Read, Seek, Write};
@@ -38,11 +37,16 @@ impl Format {
     /// The format of a file that begins with these bytes.
     fn of(start: &[u8]) -> Option<Self> {
         match start {
-            _ if start.starts_with(&magic::MCAP) => Some(Self::Mcap),
-            _ if start.starts_with(&magic::SQLITE) => Some(Self::Sqlite),
+            _ if start.starts_with(&MAGIC) => Some(Self::Mcap),
+            _ if start.starts_with(b"SQLite format 3\0") => Some(Self::Sqlite),
             _ => None,
         }
     }
+}
+
+/// Whether a file that begins with these bytes is one of a bag.
+pub(crate) fn is_bag(start: &[u8]) -> bool {
+    Format::of(start).is_some()
 }
 
 impl BagFile {
@@ -55,11 +59,6 @@ impl BagFile {
         let name: Arc<str> = path.display().to_string().into();
         Self::recognized(name.clone(), Bytes::File(path.to_owned()))
             .map_err(|why| LogError::Io { file: name.to_string(), why })
-    }
-
-    /// Its bytes.
-    pub(super) fn content(&self) -> io::Result<impl Read + use<>> {
-        self.bytes.open()
     }
 
     pub(crate) fn recognized(name: Arc<str>, bytes: Bytes) -> io::Result<Option<Self>> {
@@ -86,11 +85,11 @@ fn unpacked(name: &str, bytes: &Bytes) -> io::Result<(Format, NamedTempFile, Opt
     input.rewind()?;
     let folder = std::env::temp_dir();
     let decoder = Unpacked::new(zstd::stream::read::Decoder::new(input)?, packed, "zstd -d FILE");
-    let mut decoder = WholePart::of(decoder.into_folder(&folder, bounds::free_bytes(&folder)));
+    let mut decoder = decoder.into_folder(&folder, bounds::free_bytes(&folder));
     let mut start = Vec::new();
     decoder.by_ref().take(16).read_to_end(&mut start)?;
     let format = Format::of(&start).ok_or_else(|| {
-        invalid(match decoder.is_cut() {
+        invalid(match decoder.is_cut {
             true => format!("the zstd file is cut off after {packed} bytes, before a bag could be unpacked"),
             false => "compressed with zstd, but what is in it is no bag".to_owned(),
         })
@@ -99,12 +98,12 @@ fn unpacked(name: &str, bytes: &Bytes) -> io::Result<(Format, NamedTempFile, Opt
     file.write_all(&start)?;
     io::copy(&mut decoder, &mut file)?;
     file.flush()?;
-    let missing = decoder.is_cut().then(|| {
+    let missing = decoder.is_cut.then(|| {
         let all = zstd::zstd_safe::get_frame_content_size(&bytes.start().unwrap_or_default()).ok().flatten();
         let of = all.map(|all| format!(" of {all}")).unwrap_or_default();
         format!(
             "the zstd file {name} is cut off after {packed} bytes: the first {}{of} bytes could be unpacked",
-            decoder.count()
+            decoder.count
         )
     });
     Ok((format, file, missing))

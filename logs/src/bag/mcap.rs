@@ -3,17 +3,17 @@
 //! The crate `mcap` has readers as well, but version 0.25 trusts the lengths within chunks: a hostile file makes it panic or
 //! allocate gigabytes.
 
-use super::chunk::{Chunk, Records};
-use super::fields::Fields;
+use super::chunk::{Chunk, Fields, Records};
 use super::message::{Message, MessageSource, Selection, Topic};
 use crate::bounds::{MAX_NAME_BYTES, max_chunk_bytes};
 use crate::bytes::{Bytes, Input};
 use crate::error::LogError;
-use crate::magic::MCAP as MAGIC;
 use std::collections::BTreeMap;
 use std::io::{self, BufReader, ErrorKind, Read, Seek, SeekFrom};
 use std::sync::Arc;
 
+/// The first bytes of a file, and its last ones.
+pub(super) const MAGIC: [u8; 8] = *b"\x89MCAP0\r\n";
 /// The codes of records.
 const FOOTER: u8 = 2;
 const SCHEMA: u8 = 3;

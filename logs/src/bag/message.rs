@@ -1,43 +1,53 @@
-//! A message of a bag, its topic, and what gives messages.
+//! The messages of a bag, file by file, and what their topics are to us.
 
+use super::files::{BagFile, Format};
+use super::mcap::McapFile;
+use super::sqlite::SqliteFile;
+use crate::bytes::ZSTD;
 use crate::error::LogError;
+use std::io::Read;
 use std::sync::Arc;
+use std::vec::IntoIter;
+
+/// The most bytes of a message, unpacked, and the most topics that are listed.
+const MAX_MESSAGE_BYTES: u64 = 64 << 20;
+const MAX_TOPICS: usize = 1 << 16;
 
 /// A topic of a bag.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) struct Topic {
+pub(super) struct Topic {
     /// Its name, as written.
-    pub(crate) name: String,
+    pub(super) name: String,
     /// The type of its messages, as written: `sensor_msgs/msg/LaserScan`.
-    pub(crate) type_name: String,
+    pub(super) type_name: String,
     /// The encoding of its messages.
-    pub(crate) encoding: String,
+    pub(super) encoding: String,
 }
 
 /// What a pass over a bag needs.
 #[derive(Clone)]
-pub(crate) struct Selection {
+pub(super) struct Selection {
     /// Whether the messages of a topic are wanted; others are skipped.
-    pub(crate) is_wanted: Arc<dyn Fn(&Topic) -> bool + Send + Sync>,
+    pub(super) is_wanted: Arc<dyn Fn(&Topic) -> bool + Send + Sync>,
     /// Whether checksums are compared: once is enough, and it takes a third of the time of a pass.
-    pub(crate) checks_sums: bool,
+    pub(super) checks_sums: bool,
 }
 
 /// A message.
 #[derive(Clone, Debug)]
-pub(crate) struct Message {
-    pub(crate) topic: Arc<Topic>,
+pub(super) struct Message {
+    pub(super) topic: Arc<Topic>,
     /// The time at which it was recorded, ns.
-    pub(crate) log_ns: i64,
-    pub(crate) data: Vec<u8>,
-    pub(crate) file: Arc<str>,
+    pub(super) log_ns: i64,
+    pub(super) data: Vec<u8>,
+    pub(super) file: Arc<str>,
     /// Its number among the messages of its topic in the file, from 1.
-    pub(crate) number: u64,
+    pub(super) number: u64,
 }
 
 impl Message {
     /// The error for this message.
-    pub(crate) fn error(&self, what: String) -> LogError {
+    pub(super) fn error(&self, what: String) -> LogError {
         LogError::Message {
             file: self.file.to_string(),
             topic: self.topic.name.clone(),
@@ -48,10 +58,99 @@ impl Message {
 }
 
 /// The messages of one file, in the order of the file.
-pub(crate) trait MessageSource {
+pub(super) trait MessageSource {
     /// The next message that is wanted.
     fn next_message(&mut self) -> Result<Option<Message>, LogError>;
 
     /// All topics that were found so far, and after the last message what is missing in the file.
     fn report(&self) -> (Vec<Arc<Topic>>, Option<String>);
+}
+
+/// What the messages of a topic are to us.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Kind {
+    Scans,
+    Odometry,
+    Transforms,
+}
+
+impl Kind {
+    /// The kind of a topic by the type of its messages; `None` for all others.
+    pub(super) fn of(topic: &Topic) -> Option<Self> {
+        // Types of ROS 1 have the same names without `msg`; what has their encoding is named in an error.
+        let kind = match topic.type_name.replacen("/msg/", "/", 1).as_str() {
+            "sensor_msgs/LaserScan" => Self::Scans,
+            "nav_msgs/Odometry" => Self::Odometry,
+            "tf2_msgs/TFMessage" => Self::Transforms,
+            _ => return None,
+        };
+        // Other topics of transforms are those of tools, or copies.
+        let is_tf = matches!(topic.name.rsplit('/').next(), Some("tf" | "tf_static"));
+        (kind != Self::Transforms || is_tf).then_some(kind)
+    }
+
+    /// The kind of a topic that can be read.
+    pub(super) fn of_readable(topic: &Topic) -> Option<Self> {
+        Self::of(topic).filter(|_| topic.encoding == "cdr")
+    }
+}
+
+/// The messages of a bag, in the order of its files.
+pub(super) struct Messages {
+    files: IntoIter<BagFile>,
+    current: Option<Box<dyn MessageSource + Send>>,
+    selection: Selection,
+    /// All topics, also those that are not wanted.
+    pub(super) topics: Vec<Arc<Topic>>,
+    pub(super) notes: Vec<String>,
+}
+
+impl Messages {
+    pub(super) fn new(files: Vec<BagFile>, selection: Selection) -> Self {
+        let files = files.into_iter();
+        Self { files, current: None, selection, topics: Vec::new(), notes: Vec::new() }
+    }
+
+    pub(super) fn next_message(&mut self) -> Result<Option<Message>, LogError> {
+        loop {
+            let Some(current) = &mut self.current else {
+                let Some(file) = self.files.next() else { return Ok(None) };
+                let selection = self.selection.clone();
+                self.current = Some(match file.format {
+                    Format::Mcap => Box::new(McapFile::open(&file.name, &file.bytes, selection)?),
+                    Format::Sqlite => Box::new(SqliteFile::open(&file.name, &file.bytes, selection)?),
+                });
+                continue;
+            };
+            if let Some(mut message) = current.next_message()? {
+                if message.data.starts_with(&ZSTD) {
+                    message.data = unpacked(&message)?;
+                }
+                return Ok(Some(message));
+            }
+            let (topics, note) = current.report();
+            self.topics.extend(topics);
+            self.topics.sort();
+            self.topics.dedup();
+            self.topics.truncate(MAX_TOPICS);
+            self.notes.extend(note);
+            self.current = None;
+        }
+    }
+}
+
+/// The data of a message that was compressed on its own (rosbag2's compression mode `message`).
+fn unpacked(message: &Message) -> Result<Vec<u8>, LogError> {
+    let mut data = Vec::new();
+    let mut unpack = || {
+        zstd::stream::read::Decoder::with_buffer(&message.data[..])?
+            .take(MAX_MESSAGE_BYTES + 1)
+            .read_to_end(&mut data)
+    };
+    let count = unpack().map_err(|error| message.error(error.to_string()))?;
+    if count as u64 > MAX_MESSAGE_BYTES {
+        return Err(message
+            .error(format!("it unpacks to more than {MAX_MESSAGE_BYTES} bytes; at most these are read")));
+    }
+    Ok(data)
 }

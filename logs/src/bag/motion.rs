@@ -1,8 +1,8 @@
 //! Where the motions of the robot of a bag come from: the odometry.
 
 use super::inventory::{Inventory, LaserTopic, OdometryTopic};
+use crate::assemble::{Chain, Frames, can_be_base, is_odom, is_world};
 use crate::choice::{TopicChoice, bare, listed};
-use crate::ros::{Chain, Frames, can_be_base, is_odom, is_world};
 use crate::summary::PoseSource;
 
 /// Where the motions come from.

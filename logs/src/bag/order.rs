@@ -2,9 +2,7 @@
 //! topic.
 
 use super::files::BagFile;
-use super::kind::Kind;
-use super::message::{Message, Selection, Topic};
-use super::messages::Messages;
+use super::message::{Kind, Message, Messages, Selection, Topic};
 use crate::error::LogError;
 use std::collections::BTreeMap;
 use std::sync::Arc;

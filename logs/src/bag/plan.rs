@@ -1,14 +1,13 @@
 //! What to use of a bag: which lasers, where they are mounted, and where the poses come from.
 
-use super::inventory::{Inventory, LaserTopic};
-use super::kind::Kind;
-use super::message::Topic;
+use super::inventory::{Inventory, LaserTopic, no_scans};
+use super::message::{Kind, Topic};
 use super::motion::{self, Motion, MotionSource};
-use super::no_scans::no_scans;
 use super::slam;
+use crate::assemble::{Chain, Frames, can_be_base, is_base, is_odom, is_world};
 use crate::choice::{TopicChoice, bare, listed};
-use crate::ros::{Chain, Frames, can_be_base, is_base, is_odom, is_world, mounted};
 use crate::summary::PoseSource;
+use ros::mounted;
 
 /// A laser that is used.
 #[derive(Clone, Debug)]

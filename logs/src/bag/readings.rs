@@ -1,22 +1,18 @@
 //! The second pass over a bag, and all later ones: reading by reading.
 
-use super::kind::Kind;
-use super::message::Message;
+use super::message::{Kind, Message};
 use super::motion::MotionSource;
 use super::order::Merged;
 use super::plan::{Laser, Plan};
 use super::slam::Corrections;
-use crate::cdr;
+use crate::assemble::{Assembler, Odometry, Waiting};
+use crate::checks::{Doubts, Speeds, typical};
 use crate::choice::bare;
-use crate::doubts::{self, Doubts};
 use crate::error::LogError;
-use crate::odometry::Odometry;
-use crate::raw_readings;
-use crate::ros::{self, Frames, Header, LaserScan, Transforms, flat, mounted, scan_of};
-use crate::speeds::Speeds;
-use interfaces::{LaserReading, Scan};
-use nalgebra::{Isometry2, Isometry3, Vector2};
-use std::collections::VecDeque;
+use crate::log;
+use interfaces::LaserReading;
+use nalgebra::{Isometry3, Vector2};
+use ros::{Header, LaserScan, Transforms, cdr};
 use std::sync::Arc;
 
 /// Scans that wait for a later pose, or for an earlier scan of another laser; more are not kept.
@@ -71,31 +67,21 @@ pub(super) struct Counts {
     pub(super) doubts: Doubts,
 }
 
-/// A scan that waits.
-struct Waiting {
-    /// The time of its last beam, since the begin of the bag, s.
-    time_s: f64,
-    laser: usize,
-    mount: Isometry2<f64>,
-    scan: Scan,
-}
-
 /// The readings of a bag, with times as the bag has them, since its first scan.
 pub(super) struct RawReadings {
     messages: Merged,
     plan: Arc<Plan>,
     clock: Clock,
-    odometry: Odometry,
+    /// With the laser of each scan. Times are since the begin of the bag.
+    pub(super) assembler: Assembler<usize>,
     speeds: Speeds,
     /// The last pose as written, and its time, s.
     last_pose: Option<(f64, Isometry3<f64>)>,
     /// The steps in which the pose changes, and those of them in which the time advances.
     steps: usize,
     timed_steps: usize,
-    frames: Frames,
     /// `None`: the poses are those of the odometry.
     corrections: Option<Corrections>,
-    waiting: VecDeque<Waiting>,
     /// The number of scans before the clock was set: they do not wait any longer.
     overdue: usize,
     newest_s: f64,
@@ -113,14 +99,12 @@ impl RawReadings {
             messages,
             plan: plan.clone(),
             clock,
-            odometry,
+            assembler: Assembler { frames: plan.frames.clone(), odometry, ..Assembler::default() },
             speeds: Speeds::default(),
             last_pose: None,
             steps: 0,
             timed_steps: 0,
-            frames: plan.frames.clone(),
             corrections,
-            waiting: VecDeque::new(),
             overdue: 0,
             newest_s: f64::NEG_INFINITY,
             last: None,
@@ -131,27 +115,29 @@ impl RawReadings {
 
     /// Whether the first scan that waits has a pose, and no earlier scan can come.
     fn is_ripe(&self) -> bool {
-        let Some(first) = self.waiting.front() else { return false };
-        if self.is_over || self.overdue > 0 || self.waiting.len() > MAX_WAITING {
+        let waiting = &self.assembler.waiting;
+        let Some(first) = waiting.front() else { return false };
+        if self.is_over || self.overdue > 0 || waiting.len() > MAX_WAITING {
             return true;
         }
-        let has_come = |laser| self.waiting.iter().any(|scan| scan.laser == laser);
+        let has_come = |laser| waiting.iter().any(|scan| scan.tag == laser);
         let is_first = self.newest_s > first.time_s + DISORDER_S || (0..self.plan.lasers.len()).all(has_come);
         // A SLAM corrects itself by a scan after it.
         let is_corrected = self.corrections.is_none() || self.newest_s > first.time_s + DISORDER_S;
-        is_first && is_corrected && !self.odometry.must_wait(first.time_s, self.newest_s)
+        is_first && is_corrected && !self.assembler.must_wait(self.newest_s)
     }
 
-    /// The reading of a scan; `None` if its pose should be that of another SLAM, and is not known.
-    fn reading(&mut self, Waiting { time_s, laser, mount, scan }: Waiting) -> Option<LaserReading> {
+    /// The reading of the first scan; `None` if its pose should be that of another SLAM, and is not known.
+    fn reading(&mut self) -> Option<LaserReading> {
+        let (mut reading, laser) = self.assembler.next_reading()?;
+        let (time_s, odometry) = (reading.time_s, &mut self.assembler.odometry);
         self.overdue = self.overdue.saturating_sub(1);
         let correction = self.corrections.as_ref().and_then(|corrections| corrections.at(time_s));
-        if self.corrections.is_some() && (correction.is_none() || !self.odometry.knows(time_s)) {
+        if self.corrections.is_some() && (correction.is_none() || !odometry.knows(time_s)) {
             self.counts.without_pose += 1;
             return None;
         }
-        self.odometry.note_scan(time_s);
-        let mut reading = self.odometry.reading(time_s, mount, scan);
+        odometry.note_scan(time_s);
         if let Some(correction) = correction {
             reading.pose = correction * reading.pose;
         }
@@ -166,34 +152,19 @@ impl RawReadings {
         Some(LaserReading { time_s, ..reading })
     }
 
-    /// The first pose of the odometry, in its own frame.
-    pub(super) fn origin(&self) -> Isometry2<f64> {
-        self.odometry.first()
-    }
-
     /// The corrections of another SLAM in words, with times after `begin_s`; `None` if the poses are those of the odometry.
     pub(super) fn corrections(&self, begin_s: f64) -> Option<String> {
-        Some(self.corrections.as_ref()?.described(self.odometry.jumps(), begin_s))
+        Some(self.corrections.as_ref()?.described(self.assembler.odometry.jumps(), begin_s))
     }
 
     /// As [`Odometry::impossible`] and [`Speeds::impossible`].
     pub(super) fn impossible(&self) -> Option<String> {
-        self.odometry.impossible().or_else(|| self.speeds.impossible())
-    }
-
-    /// As [`Odometry::holes_note`] and [`Odometry::restarts_note`], with times after `begin_s`.
-    pub(super) fn odometry_notes(&self, begin_s: f64) -> impl Iterator<Item = String> {
-        self.odometry.holes_note().into_iter().chain(self.odometry.restarts_note(begin_s))
+        self.assembler.odometry.impossible().or_else(|| self.speeds.impossible())
     }
 
     /// Whether the poses of the odometry have times.
     pub(super) fn has_pose_times(&self) -> bool {
         self.timed_steps * STEPS_PER_TIME >= self.steps
-    }
-
-    /// Whether the robot has not moved, except for a drift of its odometry.
-    pub(super) fn stands(&self) -> bool {
-        self.odometry.stands()
     }
 
     fn take_scan(&mut self, message: &Message) -> Result<(), String> {
@@ -202,10 +173,8 @@ impl RawReadings {
         let is_this = |laser: &Laser| laser.frame == frame && laser.topic == *topic;
         let Some(laser) = self.plan.lasers.iter().position(is_this) else { return Ok(()) };
         let message_s = self.clock.time_s(&found.header, message);
-        let mounted = mounted(&self.frames.along(&self.plan.lasers[laser].chain));
-        let typical = doubts::typical(found.ranges.iter().copied());
-        let scan = mounted.and_then(|(mount, is_upside_down)| Ok((mount, scan_of(found, is_upside_down)?)));
-        let (mount, scan) = match scan {
+        let typical = typical(found.ranges.iter().copied());
+        let (mount, scan) = match self.assembler.placed(&self.plan.lasers[laser].chain, found) {
             Ok(scan) => scan,
             Err(what) => {
                 self.counts.invalid_scans += 1;
@@ -215,13 +184,13 @@ impl RawReadings {
         };
         self.counts.doubts.add(typical, &scan.ranges_m);
         let time_s = self.clock.end_s(message_s, scan.sweep_s);
-        if self.waiting.back().is_some_and(|last| (last.time_s - time_s).abs() > JUMP_S) {
-            self.overdue = self.waiting.len();
+        let waiting = &mut self.assembler.waiting;
+        if waiting.back().is_some_and(|last| (last.time_s - time_s).abs() > JUMP_S) {
+            self.overdue = waiting.len();
             self.newest_s = time_s;
         }
-        let is_earlier = |scan: &Waiting| scan.time_s <= time_s;
-        let at = self.waiting.iter().skip(self.overdue).take_while(|scan| is_earlier(scan)).count();
-        self.waiting.insert(self.overdue + at, Waiting { time_s, laser, mount, scan });
+        let at = waiting.iter().skip(self.overdue).take_while(|scan| scan.time_s <= time_s).count();
+        waiting.insert(self.overdue + at, Waiting { time_s, mount, scan, tag: laser });
         self.newest_s = self.newest_s.max(time_s);
         Ok(())
     }
@@ -243,10 +212,11 @@ impl RawReadings {
                 self.counts.invalid_poses += 1;
                 continue;
             };
-            let edge = self.frames.set(&found.header.frame_id, &found.child_frame_id, pose)?;
+            let edge = self.assembler.frames.set(&found.header.frame_id, &found.child_frame_id, pose)?;
             if let Some(corrections) = &mut self.corrections {
                 let times_s = [self.clock.time_s(&found.header, message), self.newest_s];
-                corrections.note(edge, &self.frames, times_s, &self.odometry.newest().0);
+                let robot = self.assembler.odometry.newest().0;
+                corrections.note(edge, &self.assembler.frames, times_s, &robot);
             }
             if matches!(self.plan.motion, MotionSource::Transform(index) if index == edge) {
                 self.take_pose(&found.header, message, &found.transform);
@@ -273,15 +243,15 @@ impl RawReadings {
         }
         self.newest_s = self.newest_s.max(time_s);
         self.counts.poses += 1;
-        self.odometry.add(time_s, flat(&(pose * self.frames.along(&self.plan.to_base))));
+        self.assembler.add_pose(time_s, &pose, &self.plan.to_base);
     }
 }
 
-impl raw_readings::RawReadings for RawReadings {
+impl log::RawReadings for RawReadings {
     fn next_reading(&mut self) -> Result<Option<LaserReading>, LogError> {
         loop {
             if self.is_ripe() {
-                let reading = self.waiting.pop_front().and_then(|scan| self.reading(scan));
+                let reading = self.reading();
                 if reading.is_some() {
                     return Ok(reading);
                 }

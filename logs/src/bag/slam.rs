@@ -3,11 +3,12 @@
 
 use super::inventory::{Inventory, LaserTopic};
 use super::motion::{Motion, MotionSource, chosen_odometry};
+use crate::assemble::{Chain, Frames, is_odom};
+use crate::checks::Jumps;
 use crate::choice::{TopicChoice, bare, listed};
-use crate::jumps::Jumps;
-use crate::ros::{Chain, Frames, flat, is_odom};
 use crate::summary::PoseSource;
 use nalgebra::Isometry2;
+use ros::flat;
 use std::collections::{BTreeSet, VecDeque};
 
 /// The frame of the map by default.

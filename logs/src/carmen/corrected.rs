@@ -1,9 +1,9 @@
 //! Corrected poses: those of the FLASER lines, where another SLAM has written them.
 
 use super::CarmenLog;
+use crate::checks::{MIN_MOTION_M, MIN_MOTION_RAD, NO_MOTION, UNKNOWN_MOTION};
 use crate::error::LogError;
 use crate::log::Source;
-use crate::standing::{MIN_MOTION_M, MIN_MOTION_RAD, NO_MOTION, UNKNOWN_MOTION};
 use crate::summary::{LogSummary, PoseSource};
 use interfaces::heading_rad;
 use nalgebra::Isometry2;

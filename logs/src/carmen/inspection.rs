@@ -3,15 +3,13 @@
 use super::Rules;
 use super::geometry::{Geometry, MAX_RANGE_M, Mounts, Param};
 use super::line::{self, Line, Poses};
+use crate::assemble::Odometry;
 use crate::bounds;
-use crate::doubts::{Doubts, OdometryTimes};
+use crate::checks::times::{self, Times};
+use crate::checks::{Doubts, OdometryTimes, Speeds, Standing};
 use crate::error::LogError;
 use crate::lines::Lines;
-use crate::odometry::Odometry;
-use crate::speeds::Speeds;
-use crate::standing::Standing;
 use crate::summary::{LogSummary, PoseSource, since_epoch};
-use crate::times::{self, Times};
 use nalgebra::Isometry2;
 use std::collections::BTreeSet;
 

@@ -1,7 +1,7 @@
 //! One line of a log.
 
 use super::geometry::{Geometry, MAX_RANGE_M, Param};
-use crate::doubts;
+use crate::checks::typical;
 use crate::error::LogError;
 use crate::lines::Lines;
 use interfaces::{Scan, is_valid_pose};
@@ -230,6 +230,6 @@ impl Words<'_> {
             let is_measured = range_m > 0.0 && range_m < max_m as f32;
             ranges_m.push(if is_measured { range_m } else { f32::NAN });
         }
-        Ok((ranges_m, doubts::typical(written.into_iter())))
+        Ok((ranges_m, typical(written.into_iter())))
     }
 }

@@ -12,13 +12,10 @@ mod transition_kernel;
 
 pub use cell_map::CellMap;
 pub(crate) use cell_map::Slot;
-pub use estimators::{
-    ChoGarciaMolina, Estimator, EstimatorChoice, Imac, Paper, PaperAll, SharedPrior, TwoState, TwoStateGaps,
-};
-pub use exposure::Exposure;
+pub use estimators::{Estimator, EstimatorChoice, Paper, PaperAll, SharedPrior, TwoState, TwoStateGaps};
+pub(crate) use exposure::Exposure;
 pub(crate) use gaps::Belief;
-pub use gaps::{GapBin, GapEvidence, GapHistogram, GapModel, GapWeights};
 pub use reading_times::ReadingIndex;
 pub use shared_prior::RateDistribution;
 pub use statistics::{CellStatistics, GapWorth};
-pub use transition_kernel::{Step, TransitionRates};
+pub use transition_kernel::TransitionRates;

@@ -113,14 +113,6 @@ impl Book {
                 let half_if_none = |events: f64| if events == 0.0 { 0.5 } else { events };
                 seen.watched_free / half_if_none(block) + seen.watched_blocked / half_if_none(free)
             }
-            "imac" if block + free + gaps.0 + gaps.1 == 0.0 => f64::INFINITY,
-            "imac" => {
-                let dwell = |watched: f64, looks: u32, events: f64| {
-                    (watched / seen.period + f64::from(looks) + 1.0) / (events + 1.0) * seen.period
-                };
-                dwell(seen.watched_free, seen.gaps_from_free, block + gaps.0)
-                    + dwell(seen.watched_blocked, seen.gaps_from_blocked, free + gaps.1)
-            }
             _ => return None,
         };
         // 0/0: events, but no time in view.

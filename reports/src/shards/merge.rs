@@ -1,18 +1,19 @@
 //! All shards of a folder, and their trials in the order of the experiment.
 
-use super::file::{check_builds, shards_in};
-use super::line::{read, unseal};
+use super::file::shards_in;
+use super::line;
 use super::scan::Scan;
-use super::{Header, SEVERAL_BUILDS, Shard, ShardError, array};
+use super::{Header, Shard, ShardError, array};
 use evaluation::trials::Trial;
 use rayon::prelude::*;
-use std::collections::VecDeque;
+use results::numbers::percent;
+use robot::BUILD;
 use std::fs::File;
-use std::io::{self, BufRead, BufReader};
+use std::io::{self, BufRead, BufReader, Seek};
 use std::path::{Path, PathBuf};
 
 /// The number of trials that are parsed together, on all threads: 8 MB.
-const BATCH: u64 = 256;
+const BATCH: usize = 256;
 
 /// The shards of an experiment that have files in a folder.
 #[derive(Debug)]
@@ -71,42 +72,52 @@ impl Shards {
         numbers.zip(self.scans.iter().map(Option::as_ref))
     }
 
-    /// The numbers of the shards with trials that are not finished.
-    pub fn missing(&self) -> Vec<u64> {
-        let is_missing = |(shard, scan): &(Shard, Option<&Scan>)| {
-            scan.map_or(0, Scan::finished) < shard.trials(self.header.trials)
-        };
-        self.shards().filter(is_missing).map(|(shard, _)| shard.number()).collect()
+    /// The shards with trials that are not finished, each with the number of its finished trials.
+    fn open(&self) -> impl Iterator<Item = (Shard, u64)> {
+        let finished = self.shards().map(|(shard, scan)| (shard, scan.map_or(0, Scan::finished)));
+        finished.filter(|(shard, finished)| *finished < shard.trials(self.header.trials))
     }
 
-    /// Checks that this program can merge the shards: that they are its own, of its version and, unless it allows another
-    /// one, of its build, and that no trial is missing. Returns what is said of the build if not all shards are of this one.
+    /// The numbers of the shards with trials that are not finished.
+    pub fn missing(&self) -> Vec<u64> {
+        self.open().map(|(shard, _)| shard.number()).collect()
+    }
+
+    /// The present state as text: one line for each shard that is not complete, and one for all shards.
+    pub fn status(&self) -> String {
+        let trials = self.header.trials;
+        let line = |(shard, finished): (Shard, u64)| {
+            let done = format!("{finished} of {}", shard.trials(trials));
+            format!("shard {:<9} {done:>15} trials\n", shard.to_string())
+        };
+        let open: String = self.open().map(line).collect();
+        let finished: u64 = self.shards().filter_map(|(_, scan)| Some(scan?.finished())).sum();
+        let (share, all) = (percent(finished as f64 / trials.max(1) as f64), self.scans.len());
+        let complete = all - self.open().count();
+        format!("{open}{finished} of {trials} trials ({share}), {complete} of {all} shards complete")
+    }
+
+    /// Checks that this program can merge the shards: that they are its own, of its version and of its build, and that no trial
+    /// is missing.
     ///
     /// # Errors
     ///
     /// When they are not.
-    pub fn check(
-        &self,
-        program: &str,
-        version: &str,
-        allows_other_build: bool,
-    ) -> Result<Option<&'static str>, ShardError> {
+    pub fn check(&self, program: &str, version: &str) -> Result<(), ShardError> {
         let refuse = |why: String| Err(ShardError::Merge { folder: self.folder.clone(), why });
         let shown = self.folder.display();
-        let Header { program: found, version: found_version, .. } = &self.header;
+        let Header { program: found, version: found_version, build, .. } = &self.header;
         if found != program {
             return refuse(format!("has shards of {found}: merge them with `{found} merge {shown}`"));
         }
-        if found_version != version {
-            return refuse(format!("has shards of version {found_version}: merge them with that version"));
+        for (what, found, own) in [("version", found_version, version), ("build", build, BUILD)] {
+            if found != own {
+                return refuse(format!("has shards of {what} {found}: merge them with that {what}"));
+            }
         }
-        let other_build = match check_builds(&self.folder) {
-            Err(_) if allows_other_build => Some(SEVERAL_BUILDS),
-            checked => checked.map(|()| None)?,
-        };
         let missing = self.missing();
         let Some((first, count)) = missing.first().zip(self.header.shard().map(Shard::count)) else {
-            return Ok(other_build);
+            return Ok(());
         };
         let file = Shard::new(*first, count).map(Shard::file_name).unwrap_or_default();
         let which = format!("the shards {} of {count} lack trials, the first is {file}", array(&missing));
@@ -118,93 +129,49 @@ impl Shards {
     /// # Errors
     ///
     /// When a file cannot be opened.
-    pub fn trials(&self) -> Result<Trials<'_>, ShardError> {
-        let mut files = Vec::new();
-        for (shard, _) in self.shards() {
+    pub fn trials(&self) -> Result<impl Iterator<Item = Result<Trial, ShardError>>, ShardError> {
+        let open = |(shard, _): (Shard, Option<&Scan>)| {
             let path = self.folder.join(shard.file_name());
             let file = File::open(&path).map_err(|why| ShardError::read(&path, why))?;
-            files.push(LineFile { path, file: BufReader::with_capacity(1 << 16, file), place: 0 });
-        }
-        Ok(Trials { shards: self, files, next: 1, parsed: VecDeque::new() })
-    }
-}
-
-/// See [`Shards::trials`].
-#[derive(Debug)]
-pub struct Trials<'a> {
-    shards: &'a Shards,
-    /// One per shard.
-    files: Vec<LineFile>,
-    /// The number of the next trial that is read.
-    next: u64,
-    /// Trials that are read and not asked for yet.
-    parsed: VecDeque<Result<Trial, ShardError>>,
-}
-
-#[derive(Debug)]
-struct LineFile {
-    path: PathBuf,
-    file: BufReader<File>,
-    /// Where the next byte is read, in bytes from the beginning.
-    place: u64,
-}
-
-impl LineFile {
-    /// The line at a place, with its end. What is in the buffer is not read again.
-    fn read(&mut self, place: u64) -> io::Result<String> {
-        let mut line = String::new();
-        self.file.seek_relative(place.cast_signed() - self.place.cast_signed())?;
-        self.place = place + self.file.read_line(&mut line)? as u64;
-        Ok(line)
-    }
-}
-
-impl Trials<'_> {
-    /// The position of the shard with a trial.
-    fn shard_of(&self, number: u64) -> usize {
-        ((number - 1) % self.files.len() as u64) as usize
+            Ok((BufReader::with_capacity(1 << 16, file), path))
+        };
+        let mut files = self.shards().map(open).collect::<Result<Vec<_>, ShardError>>()?;
+        let end = self.header.trials + 1;
+        let batches = (1..end).step_by(BATCH).map(move |first| first..(first + BATCH as u64).min(end));
+        Ok(batches.flat_map(move |numbers| {
+            let mut line = |number: u64| {
+                let at = ((number - 1) % files.len() as u64) as usize;
+                let (file, path) = &mut files[at];
+                (number, path.clone(), self.line(number, at, file, path))
+            };
+            let lines: Vec<_> = numbers.map(&mut line).collect();
+            let trial = |(number, path, line): (u64, PathBuf, Result<String, ShardError>)| {
+                let read = line::read(line?.trim_end_matches('\n'), self.header.key());
+                let changed = || ShardError::content(&path, "the file was changed while it was read");
+                read.filter(|line| line.job == number).map(|line| line.trial).ok_or_else(changed)
+            };
+            lines.into_par_iter().map(trial).collect::<Vec<_>>()
+        }))
     }
 
-    /// The line of a trial.
-    fn line(&mut self, number: u64) -> Result<String, ShardError> {
-        let at = self.shard_of(number);
-        let file = &mut self.files[at];
-        let known = self.shards.scans[at].as_ref().and_then(|scan| scan.lines.get(&number));
-        let missing = || ShardError::content(&file.path, format!("trial {number} is missing"));
+    /// The line of a trial, with its end. What is in the buffer is not read again.
+    fn line(
+        &self,
+        number: u64,
+        shard: usize,
+        file: &mut BufReader<File>,
+        path: &Path,
+    ) -> Result<String, ShardError> {
+        let known = self.scans[shard].as_ref().and_then(|scan| scan.lines.get(&number));
+        let missing = || ShardError::content(path, format!("trial {number} is missing"));
         let place = *known.ok_or_else(missing)?;
-        file.read(place).map_err(|why| ShardError::read(&file.path, why))
-    }
-
-    /// The trial of a line.
-    fn parse(&self, number: u64, line: &str) -> Result<Trial, ShardError> {
-        let text = unseal(line.trim_end_matches('\n'), self.shards.header.key());
-        match text.and_then(read) {
-            Some((found, trial)) if found == number => Ok(trial),
-            _ => {
-                let path = &self.files[self.shard_of(number)].path;
-                Err(ShardError::content(path, "the file was changed while it was read"))
-            }
-        }
-    }
-
-    /// Reads the next trials.
-    fn parse_batch(&mut self) {
-        let numbers = self.next..(self.next + BATCH).min(self.shards.header.trials + 1);
-        self.next = numbers.end;
-        let lines: Vec<_> = numbers.map(|number| (number, self.line(number))).collect();
-        let trial = |(number, line): (u64, Result<String, ShardError>)| self.parse(number, &line?);
-        let parsed: Vec<_> = lines.into_par_iter().map(trial).collect();
-        self.parsed = parsed.into();
-    }
-}
-
-impl Iterator for Trials<'_> {
-    type Item = Result<Trial, ShardError>;
-
-    fn next(&mut self) -> Option<Self::Item> {
-        if self.parsed.is_empty() {
-            self.parse_batch();
-        }
-        self.parsed.pop_front()
+        let mut line = String::new();
+        let mut read = || -> io::Result<usize> {
+            let from = file.stream_position()?;
+            file.seek_relative(place.cast_signed() - from.cast_signed())?;
+            file.read_line(&mut line)
+        };
+        read().map_err(|why| ShardError::read(path, why))?;
+        Ok(line)
     }
 }

@@ -18,14 +18,12 @@ mod merge;
 mod run;
 mod scan;
 mod shard;
-mod status;
 #[cfg(test)]
 mod tests;
 
-pub use file::{ShardFile, check_builds};
-pub use header::{Header, SEVERAL_BUILDS};
-pub use line::Cost;
-pub use merge::{Shards, Trials};
+pub use file::ShardFile;
+pub use header::Header;
+pub use merge::Shards;
 pub use scan::Scan;
 pub use shard::{InvalidShard, Shard, array};
 

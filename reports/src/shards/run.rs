@@ -1,12 +1,9 @@
 //! The trials of a shard, run and appended to its file.
 
-use super::line::Cost;
-use super::status::now_s;
 use super::{ShardError, ShardFile};
 use evaluation::trials::{Experiment, TrialSettings, TrialWorld, run_trial};
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Instant;
 
 impl ShardFile {
     /// The trials of the shard that were not finished when the file was opened, in the order in which they are merged.
@@ -48,12 +45,10 @@ impl ShardFile {
         is_canceled: &AtomicBool,
     ) -> Result<bool, ShardError> {
         let goes_on = || !is_canceled.load(Ordering::Relaxed);
-        let start = Instant::now();
         let Some(done) = goes_on().then(|| run_trial(trial, |_| goes_on())).transpose()?.flatten() else {
             return Ok(false);
         };
-        let cost = Cost { seconds: start.elapsed().as_secs_f64(), finished: now_s() };
-        self.append(trial.number, cost, &done).map_err(ShardError::Append)?;
+        self.append(trial.number, &done).map_err(ShardError::Append)?;
         Ok(true)
     }
 }

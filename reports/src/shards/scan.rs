@@ -1,16 +1,15 @@
 //! One pass over the file of a shard.
 
-use super::line::{split, unseal};
+use super::line;
 use super::{Header, Shard, ShardError};
-use std::collections::{BTreeMap, VecDeque};
+use serde::de::IgnoredAny;
+use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 
 /// No line is longer, bytes.
 pub(super) const MAX_LINE: u64 = 1 << 20;
-/// The speed of a shard is measured over this number of newest trials.
-const NEWEST: usize = 20;
 
 /// The content of the file of a shard, without the trials themselves.
 #[derive(Debug, Default)]
@@ -24,10 +23,6 @@ pub struct Scan {
     pub(super) intact: u64,
     /// The text after the last whole line.
     pub(super) torn: Vec<u8>,
-    /// The wall time of all trials, s.
-    pub seconds: f64,
-    /// The times at which the newest trials were finished, s since 1970.
-    newest: VecDeque<u64>,
 }
 
 impl Scan {
@@ -75,39 +70,20 @@ impl Scan {
     }
 
     fn add(&mut self, line: &str, key: u64, trials: u64, shard: Shard) -> Result<(), String> {
-        let Some((head, _)) = unseal(line, key).and_then(split) else {
-            return Err("is not as it was written: it was edited, or is of another experiment".into());
-        };
-        let job = head.job;
+        let read = line::read::<IgnoredAny>(line, key).map(|line| line.job);
+        let job = read.ok_or("is not as it was written: it was edited, or is of another experiment")?;
         if !(1..=trials).contains(&job) || !shard.has(job) {
             return Err(format!("is trial {job}, which does not belong to this shard"));
         }
         if self.lines.insert(job, self.intact).is_some() {
             return Err(format!("is trial {job}, which is in this file before"));
         }
-        self.seconds += head.cost.seconds;
-        if self.newest.len() == NEWEST {
-            self.newest.pop_front();
-        }
-        self.newest.push_back(head.cost.finished);
         Ok(())
     }
 
     /// The number of finished trials.
     pub fn finished(&self) -> u64 {
         self.lines.len() as u64
-    }
-
-    /// The time at which the newest trial was finished, s since 1970.
-    pub fn last_finished(&self) -> Option<u64> {
-        self.newest.back().copied()
-    }
-
-    /// The wall time per trial of the newest trials, s; `None` for fewer than two.
-    pub fn seconds_per_trial(&self) -> Option<f64> {
-        let (first, last) = (self.newest.front()?, self.newest.back()?);
-        let intervals = self.newest.len() - 1;
-        (intervals > 0).then(|| last.saturating_sub(*first) as f64 / intervals as f64)
     }
 }
 

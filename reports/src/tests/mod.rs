@@ -1,8 +1,8 @@
-mod claim;
 mod figures;
 mod files;
 mod runs;
 mod statistics;
+mod table;
 
 use super::*;
 use evaluation::trials::{Metric, Sample};

@@ -1,6 +1,6 @@
 //! Maps what a live robot sees, and where the place changes; can explore.
 
-use agent::RobotPurpose;
+use agent::PURPOSES;
 use anyhow::Context;
 use clap::Parser;
 use clap::builder::{PathBufValueParser, PossibleValue, PossibleValuesParser, TypedValueParser};
@@ -39,9 +39,11 @@ struct Args {
 }
 
 fn purposes() -> PossibleValuesParser {
-    PossibleValuesParser::new(RobotPurpose::ALL.map(|(name, purpose)| {
-        PossibleValue::new(name).help(format!("{}: {}", purpose.description(), purpose.policy_name()))
-    }))
+    PossibleValuesParser::new(
+        PURPOSES.map(|[name, description, policy]| {
+            PossibleValue::new(name).help(format!("{description}: {policy}"))
+        }),
+    )
 }
 
 fn no_folder(path: PathBuf) -> Result<PathBuf, &'static str> {

@@ -4,8 +4,8 @@ use super::CuriousNode;
 use crate::link::Link;
 use crate::message::PoseWithCovarianceStamped;
 use interfaces::PoseMode;
-use logs::ros::flat;
 use nalgebra::{Isometry2, Matrix3};
+use ros::flat;
 use std::time::Instant;
 
 /// A pose in the map, and its covariance.

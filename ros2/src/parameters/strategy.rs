@@ -1,7 +1,7 @@
 //! How goals are selected: by the strategy that is named, or by the one that is best for a purpose.
 
 use super::{ParameterError, Parameters};
-use agent::{Policy, RobotPurpose};
+use agent::{PURPOSES, Policy};
 
 impl Parameters {
     /// The strategy: as `strategy` says, or else as is best for `purpose`.
@@ -12,11 +12,10 @@ impl Parameters {
     pub(crate) fn policy(&self) -> Result<Policy, ParameterError> {
         let Self { strategy, purpose, .. } = self;
         match (strategy.as_str(), purpose.as_str()) {
-            ("", "") => Ok(RobotPurpose::default().policy()),
+            ("", "") => Ok(Policy::default()),
             ("", name) => {
-                let known = || RobotPurpose::ALL.map(|(name, _)| name).join(", ");
-                let found = RobotPurpose::named(name).map(RobotPurpose::policy);
-                found.ok_or_else(|| unknown("purpose", known(), name))
+                let known = || PURPOSES.map(|[name, ..]| name).join(", ");
+                Policy::for_purpose(name).ok_or_else(|| unknown("purpose", known(), name))
             }
             (name, "") => {
                 let known = || Policy::built_in().iter().map(Policy::name).collect::<Vec<_>>().join(", ");

@@ -253,7 +253,7 @@ fn of_two_lasers_one_is_used_and_a_sentence_says_which() {
     robot(&mut first, now);
     scans(&mut first, 0.2, now);
     assert_eq!((first.count.received, first.count.other, first.count.late), (8, 4, 0));
-    assert_eq!(first.waiting.iter().filter(|waiting| waiting.mount.translation.x > 0.1).count(), 4);
+    assert_eq!(first.assembler.waiting.iter().filter(|waiting| waiting.mount.translation.x > 0.1).count(), 4);
     let expected = "scans come from more than one laser: those of `laser` are used, and those of `base_link` are left out; the \
                     parameter `laser_frame` chooses another one";
     assert_eq!(first.take_notes()[0], expected);
@@ -265,7 +265,7 @@ fn of_two_lasers_one_is_used_and_a_sentence_says_which() {
     robot(&mut chosen, now);
     scans(&mut chosen, 0.2, now);
     assert_eq!(chosen.count.other, 4);
-    assert!(chosen.waiting.iter().all(|waiting| waiting.mount.translation.x.abs() < 1e-9));
+    assert!(chosen.assembler.waiting.iter().all(|waiting| waiting.mount.translation.x.abs() < 1e-9));
 }
 
 fn source_takes_over(source: &mut Source, now: Instant) {

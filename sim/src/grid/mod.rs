@@ -25,7 +25,7 @@ mod spec;
 mod visibility;
 mod world;
 
-pub use generate::{GenerateSettings, PathKind};
+pub use generate::GenerateSettings;
 pub use ground_truth::GridGroundTruth;
 pub use spec::{BlockSpec, Course, GridCalendar, GridSpec};
 pub use world::GridWorld;

@@ -1,8 +1,8 @@
 use super::ground_truth::GridGroundTruth;
 use super::spec::{BlockSpec, Course, GridCalendar, GridSpec};
-use super::visibility::{BlockedCells, LineOfSight};
+use super::visibility::LineOfSight;
 use crate::routine::Routine;
-use interfaces::{Cell, CellReading, Purpose, RandomStream, Step, World};
+use interfaces::{Cell, CellReading, Grid, Purpose, RandomStream, Step, World};
 use nalgebra::Isometry2;
 
 /// A grid world with one robot.
@@ -18,7 +18,7 @@ pub struct GridWorld {
     random: RandomStream,
     blocks: Vec<Block>,
     /// Walls and blocks as they are now, also in the middle of a step.
-    blocked: BlockedCells,
+    blocked: Grid<bool>,
     line_of_sight: LineOfSight,
     truth: GridGroundTruth,
     /// The moves of the last step.
@@ -31,7 +31,7 @@ impl GridWorld {
         let block =
             |(index, block)| Block::new(block, index, spec.block_probability, spec.calendar.as_ref(), seed);
         let blocks: Vec<Block> = spec.blocks.iter().enumerate().map(block).collect();
-        let mut blocked = BlockedCells::new(&spec.walls, spec.sensor_radius);
+        let mut blocked = spec.walls.clone();
         for block in &blocks {
             blocked.set(block.cell(), true);
         }
@@ -97,13 +97,13 @@ impl World for GridWorld {
     fn act(&mut self, command: &Step) {
         let target = command.target(self.robot);
         let is_obeyed = self.random.bernoulli(self.spec.robot_probability);
-        if is_obeyed && self.spec.frame().contains(target) && !self.blocked.get(target) {
+        if is_obeyed && self.blocked.get(target) == Some(&false) {
             self.robot = target;
         }
         self.moved.clear();
         let time_s = self.spec.calendar.map_or(0.0, |calendar| (self.step + 1) as f64 * calendar.step_s);
         for block in &mut self.blocks {
-            let is_free = |cell: Cell| cell != self.robot && !self.blocked.get(cell);
+            let is_free = |cell: Cell| cell != self.robot && self.blocked.get(cell) == Some(&false);
             if let Some((from, to)) = block.step(time_s, is_free) {
                 self.blocked.set(from, false);
                 self.blocked.set(to, true);
@@ -111,7 +111,7 @@ impl World for GridWorld {
             }
         }
         self.step += 1;
-        self.truth.update(&self.moved, |cell| self.blocked.get(cell));
+        self.truth.update(&self.moved, |cell| self.blocked.get(cell) == Some(&true));
     }
 }
 

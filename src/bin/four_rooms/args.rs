@@ -1,10 +1,10 @@
 //! The command line.
 
-use agent::{Policy, RobotPurpose};
+use agent::{PURPOSES, Policy};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Parser, ValueEnum};
-use curious::flags::{folder, input_file, output_file};
-use curious::program::{duration_s, one_of, pose_in_world, pose_mode, strategy_of};
+use cli::flags::{folder, input_file, output_file};
+use cli::program::{duration_s, one_of, pose_in_world, pose_mode, strategy_of};
 use interfaces::PoseMode;
 use mapper::{EstimatorChoice, OccupancyChoice};
 use std::path::PathBuf;
@@ -64,18 +64,13 @@ pub(crate) struct Args {
     #[arg(long, value_parser = pose_mode(&PoseMode::LIVE, pose_in_world), help_heading = "Robot")]
     pub(crate) pose: Option<PoseMode>,
 
-    /// With a localized pose: the time without an agreeing scan after which the robot is lost, and looks around and searches for
-    /// its pose in the whole map [default: 2s]
-    #[arg(long, value_name = "TIME", value_parser = duration_s, allow_negative_numbers = true, help_heading = "Robot")]
-    pub(crate) lost_after: Option<f64>,
-
     /// The strategy of the agent [default: curious]
     #[arg(long, value_parser = strategies(), help_heading = "Pilot")]
     pub(crate) strategy: Option<Policy>,
 
     /// What the robot explores for: a name for the strategy that is made for it. docs/strategies.md shows where it is better than curious
     #[arg(long, value_parser = purpose(), conflicts_with = "strategy", help_heading = "Pilot")]
-    pub(crate) purpose: Option<RobotPurpose>,
+    pub(crate) purpose: Option<Policy>,
 
     /// The speed as a multiple of real time, or max for full speed [default: max, with --drive keyboard 1]
     #[arg(long, value_name = "FACTOR|max", value_parser = speed, allow_negative_numbers = true, help_heading = "Pilot")]
@@ -149,8 +144,7 @@ pub(crate) struct Args {
 impl Args {
     /// The strategy of the agent.
     pub(crate) fn strategy(&self) -> Policy {
-        let by_purpose = || self.purpose.unwrap_or_default().policy();
-        self.strategy.clone().unwrap_or_else(by_purpose)
+        self.strategy.clone().or_else(|| self.purpose.clone()).unwrap_or_default()
     }
 
     /// Whether a person drives.
@@ -186,14 +180,12 @@ pub(crate) enum DriveChoice {
     Tour,
 }
 
-/// A parser of the purpose of a robot.
-fn purpose() -> impl TypedValueParser<Value = RobotPurpose> {
-    let named = |(name, purpose): (&'static str, RobotPurpose)| {
-        let help = format!("{}: --strategy {}", purpose.description(), purpose.policy_name());
-        PossibleValue::new(name).help(help)
+/// A parser of the purpose of a robot: the policy that is made for it.
+fn purpose() -> impl TypedValueParser<Value = Policy> {
+    let named = |[name, description, policy]: [&'static str; 3]| {
+        PossibleValue::new(name).help(format!("{description}: --strategy {policy}"))
     };
-    PossibleValuesParser::new(RobotPurpose::ALL.map(named))
-        .map(|name| RobotPurpose::named(&name).unwrap_or_default())
+    PossibleValuesParser::new(PURPOSES.map(named)).map(|name| Policy::for_purpose(&name).unwrap_or_default())
 }
 
 fn strategies() -> impl TypedValueParser<Value = Policy> {
@@ -236,9 +228,9 @@ mod tests {
     fn the_command_line_is_sound() {
         Args::command().debug_assert();
         assert_eq!(Args::parse_from(["four_rooms"]).strategy().name(), "curious");
-        for (name, purpose) in RobotPurpose::ALL {
+        for [name, _, policy] in PURPOSES {
             let args = Args::parse_from(["four_rooms", "--purpose", name]);
-            assert_eq!(args.strategy(), purpose.policy());
+            assert_eq!(args.strategy().name(), policy);
         }
         let both = ["four_rooms", "--purpose", "paper", "--strategy", "recency"];
         assert!(Args::try_parse_from(both).is_err());

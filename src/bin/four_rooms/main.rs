@@ -6,10 +6,9 @@ mod output;
 mod parts;
 mod trial_state_file;
 
-use anyhow::Context;
 use args::{Args, DriveChoice};
-use curious::flags::check_distinct;
-use curious::program::{Failure, INTERRUPTED, input, interrupt_flag, start};
+use cli::flags::check_distinct;
+use cli::program::{Failure, INTERRUPTED, input, interrupt_flag, start};
 use curious::worlds::list_physics_worlds;
 use evaluation::physics_trial::PhysicsTrial;
 use interfaces::Twist;
@@ -47,18 +46,20 @@ fn run(args: &Args) -> Result<ExitCode, Failure> {
     let parts = Parts::new(args)?;
     match args.drive {
         DriveChoice::Agent if parts.spec.driven().patrol.is_some() => {
-            explore(args, &parts, parts.agent_with_day(args)?)
+            explore(args, &parts, parts.trial(args, parts.agent_with_day(args)?)?.on_battery())
         }
-        DriveChoice::Agent => explore(args, &parts, parts.agent(args)?),
-        DriveChoice::Tour => explore(args, &parts, parts.tour(args)?),
-        DriveChoice::Keyboard => explore(args, &parts, parts.keyboard()?),
+        DriveChoice::Agent => explore(args, &parts, parts.trial(args, parts.agent(args)?)?),
+        DriveChoice::Tour => explore(args, &parts, parts.trial(args, parts.tour(args)?)?),
+        DriveChoice::Keyboard => explore(args, &parts, parts.trial(args, parts.keyboard()?)?),
     }
 }
 
 /// Runs the robot in the world, and writes the results.
-fn explore(args: &Args, parts: &Parts, pilot: impl Pilot<Command = Twist>) -> Result<ExitCode, Failure> {
-    let trial = PhysicsTrial::new(&parts.spec, args.seed, &parts.settings, parts.prior.clone(), pilot);
-    let mut trial = trial.context("cannot make the mapper").map_err(input)?;
+fn explore(
+    args: &Args,
+    parts: &Parts,
+    mut trial: PhysicsTrial<impl Pilot<Command = Twist>>,
+) -> Result<ExitCode, Failure> {
     let state_file = TrialStateFile::open(args, parts, &mut trial)?;
     let is_interrupted = interrupt_flag()?; // before any file is made
     let mut outputs = Outputs::open(args, trial.world.spec(), state_file, trial.robot.mapper.time())?;

@@ -4,10 +4,11 @@ use crate::Ended;
 use crate::args::{Args, DriveChoice};
 use crate::trial_state_file::TrialStateFile;
 use anyhow::{Context, anyhow};
-use curious::bag::RunBag;
-use curious::program::{Failure, PURPOSE_GAIN, arguments, input, results_folder};
-use curious::progress::Progress;
-use curious::terminal::{print, say};
+use cli::bag::RunBag;
+use cli::program::{Failure, PURPOSE_GAIN, arguments, input, results_folder};
+use cli::progress::Progress;
+use cli::terminal::{print, say};
+use curious::scenes::{Displayed, Visible};
 use evaluation::metrics::map_scores;
 use evaluation::physics_trial::PhysicsTrial;
 use evaluation::summary::{SCHEMA, Summary};
@@ -28,7 +29,7 @@ use viewer::pictures::{FIGURE_5_FILE, Film};
 use viewer::recording::{Live, Recorder};
 use viewer::scene::Scene;
 use viewer::show::Show;
-use viewer::view::{Measured, View};
+use viewer::view::Measured;
 
 /// The file that ends a run.
 const SUMMARY: &str = "summary.json";
@@ -64,7 +65,7 @@ impl<'a> Outputs<'a> {
         args.mcap.as_ref().map_or(Ok(()), |path| folder.adopt(path, "mcap")).map_err(input)?;
         let bag = args.mcap.as_deref().map(|path| RunBag::create(path, 0.0)).transpose();
         let bag = bag.context("cannot write the bag of --mcap").map_err(input)?;
-        let show = show(args, Scene::from(spec.fleet()), &mut folder)?;
+        let show = show(args, spec.scene(), &mut folder)?;
         let file = |name| TrajectoryFile::create(&folder.unfinished().join(name));
         let trajectories = ["trajectory.tum", "trajectory_true.tum"].map(file);
         let reported = show.live_problem();
@@ -110,9 +111,12 @@ impl<'a> Outputs<'a> {
         let [used, truth] = &mut self.trajectories;
         used.add(time_s, &turn.belief.pose);
         truth.add(time_s, world.true_pose());
-        let measured =
-            Measured { scores: observer.scores(), rate_errors: None, messages: &observer.messages };
-        if let Err(problem) = self.show.add(&View::new(world, turn, mapper, pilot, measured), is_last) {
+        let measured = Measured {
+            coverage_and_quality: observer.scores().map(|scores| [scores.coverage, scores.map_quality]),
+            rate_errors: None,
+            messages: &observer.messages,
+        };
+        if let Err(problem) = self.show.add(&world.view(turn, mapper, pilot, measured), is_last) {
             self.is_complete = false;
             self.progress.say(format_args!("error: {problem}; the run goes on without it"));
         }

@@ -4,17 +4,17 @@ use crate::args::{Args, DriveChoice};
 use crate::combination;
 use agent::Agent;
 use anyhow::{Context, anyhow};
+use cli::flags::value_of;
+use cli::program::{Failure, input};
+use cli::terminal::say;
 use controller::{Controller, DiffDrive};
-use curious::flags::value_of;
 use curious::keyboard::Keyboard;
-use curious::program::{Failure, input};
 use curious::reachability;
-use curious::terminal::say;
 use curious::worlds::{self, Loaded};
-use evaluation::physics_trial;
-use interfaces::{CellState, Grid, PoseMode, Twist};
+use evaluation::physics_trial::{self, PhysicsTrial};
+use interfaces::{CellState, Grid, Twist};
 use robot::state::Facts;
-use robot::{Autonomous, PatrolDay, Settings, Tour};
+use robot::{Autonomous, PatrolDay, Pilot, Settings, Tour};
 use sim::physics::shape::Transform;
 use sim::physics::{PatrolDaySpec, WorldSpec};
 use std::io::stderr;
@@ -50,14 +50,6 @@ impl Parts {
         settings.mapper.estimator = args.estimator.clone();
         settings.mapper.occupancy = args.occupancy.clone();
         settings.pose = args.pose.unwrap_or(settings.pose);
-        if let Some(lost_after_s) = args.lost_after {
-            if settings.pose != PoseMode::Localized {
-                return Err(input(anyhow!(
-                    "--lost-after is for a robot that is localized: give --pose localized"
-                )));
-            }
-            settings.localizer.lost_after_s = lost_after_s;
-        }
         warn(combination::odometry(&spec, settings.pose));
         let prior = args.map.as_deref().map(|path| known_map(path, &spec)).transpose()?;
         Ok(Self { spec, settings, prior })
@@ -68,16 +60,25 @@ impl Parts {
         self.settings.pilot(agent, args.seed).map_err(input)
     }
 
+    /// The run that a pilot begins.
+    pub(crate) fn trial<P: Pilot<Command = Twist>>(
+        &self,
+        args: &Args,
+        pilot: P,
+    ) -> Result<PhysicsTrial<P>, Failure> {
+        let trial = PhysicsTrial::new(&self.spec, args.seed, &self.settings, self.prior.clone(), pilot);
+        trial.context("cannot make the mapper").map_err(input)
+    }
+
     /// The agent of a robot with a battery, or with orders by others.
     pub(crate) fn agent_with_day(
         &self,
         args: &Args,
-    ) -> Result<Autonomous<PatrolDay<Agent>, Controller<DiffDrive>>, Failure> {
-        let agent = self.settings.agent(&args.strategy(), args.seed).map_err(input)?;
+    ) -> Result<PatrolDay<Agent, Controller<DiffDrive>>, Failure> {
         let own = self.own_frame(args);
         let day = physics_trial::day(own.as_ref().map_or(&self.spec, |(spec, _)| spec));
         let day = day.context("the robot has no patrol").map_err(input)?;
-        self.settings.pilot(PatrolDay::new(agent, day), args.seed).map_err(input)
+        Ok(PatrolDay::new(self.agent(args)?, day))
     }
 
     /// The world in the frame of the map, and the motion to it, if this is another frame.

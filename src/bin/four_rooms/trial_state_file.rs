@@ -2,7 +2,7 @@
 
 use crate::args::Args;
 use crate::parts::Parts;
-use curious::program::{Failure, open_state, state_failure};
+use cli::program::{Failure, open_state, state_failure};
 use evaluation::physics_trial::PhysicsTrial;
 use evaluation::trial_state::TrialFacts;
 use interfaces::Twist;

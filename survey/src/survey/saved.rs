@@ -2,12 +2,12 @@
 
 use super::Survey;
 use crate::change_log::ChangeLog;
-use crate::known_place::KnownPlace;
 use crate::places::PlaceBook;
 use crate::replay::FoundPoses;
 use crate::settings::SurveySettings;
 use crate::surveyed_log::SurveyedLog;
 use interfaces::{GridFrame, PoseMode, from_bytes, to_bytes};
+use localizer::KnownPlace;
 use mapper::{Growth, Mapper, ScanFilterSettings};
 use robot::state::{
     Facts, Session, State, StateError, saved_frame, saved_mapper_with, saved_sessions, saved_surfaces,
@@ -74,7 +74,7 @@ impl SavedSurvey {
     /// Everything that logs have changed, as a state. `facts`: what it belongs to.
     pub fn into_state(self, facts: Facts) -> State {
         let Self { pose, filter, place, mapper, changes, book, logs } = self;
-        let surfaces = place.map(|place| Arc::unwrap_or_clone(place).surfaces()).unwrap_or_default();
+        let surfaces = place.map(|place| Arc::unwrap_or_clone(place).snapshot()).unwrap_or_default();
         let frame = mapper.as_ref().map(|mapper| *mapper.frame());
         let sessions: Vec<Session> = logs.iter().map(SurveyedLog::session).collect();
         let state = State::default()
@@ -122,7 +122,7 @@ impl Survey {
     ) -> Result<(Self, Option<String>), StateError> {
         let misfit = |_| StateError::OtherContent(SavedSurvey::PART.to_owned());
         let logs = SavedLogs::read(state)?.logs;
-        let place = saved_surfaces(state).map(|surfaces| KnownPlace::restored(&settings, surfaces));
+        let place = saved_surfaces(state).map(KnownPlace::restored);
         let place = place.transpose().map_err(misfit)?.map(Arc::new);
         let mut survey = Self { place, logs, ..Self::new(settings, learns_noise) };
         let mut note = None;

@@ -93,9 +93,9 @@ fn a_survey_that_is_saved_and_goes_on_equals_one_that_was_never_interrupted() {
         assert!(survey.saved().into_state(Facts::default()) == whole_bytes, "{parts} readings at once");
     }
     // The place in which later logs find theirs is the same, too.
-    let saved = place.as_ref().clone().surfaces();
-    let again = crate::KnownPlace::restored(&settings(), &saved).unwrap();
-    assert!(again.surfaces() == saved);
+    let saved = place.as_ref().clone().snapshot();
+    let again = localizer::KnownPlace::restored(&saved).unwrap();
+    assert!(again.snapshot() == saved);
 
     // Without the poses, the sums stay.
     let travelled = whole.logs()[1].travelled;

@@ -149,7 +149,6 @@ fn command_lines() {
     for (arguments, says) in [
         ("--strategy=clever", "[possible values: curious, recency, poisson, random, coin"),
         ("--estimator=guess", "[possible values: paper, paper-all, "),
-        ("--reward=joy", "[possible values: changes, changes-and-discoveries]"),
         ("--trials=0", "0 is not in 1..="),
         ("--trials=-1", "'--trials <TRIALS>'"),
         ("--steps=0", "0 is not in 1..="),

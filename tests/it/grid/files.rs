@@ -8,15 +8,14 @@ fn the_output_folder_is_complete() {
     let ended = run.goes_well("--steps 300");
     assert_eq!(run.names(), ["out"]);
     let written = names(&run.path("out"));
-    for file in ["figure3.png", "figure3.svg", "report.json", "trials.csv", "trials.parquet"] {
+    for file in ["figure3.png", "figure3.svg", "report.json", "trials.csv"] {
         assert!(written.iter().any(|name| name == file), "{file} is not in {written:?}");
     }
     // In addition the figure of the second estimator.
-    assert_eq!(written.len(), 7, "{written:?}");
+    assert_eq!(written.len(), 6, "{written:?}");
     let last = ended.stdout.lines().last().unwrap();
     let listed = "written to out: report.json, figure3-two-blocks-two-state-gaps.png, \
-                  figure3-two-blocks-two-state-gaps.svg, figure3.png, figure3.svg, trials.csv, \
-                  trials.parquet";
+                  figure3-two-blocks-two-state-gaps.svg, figure3.png, figure3.svg, trials.csv";
     assert_eq!(last, listed);
 
     let picture = image::open(run.out("figure3.png")).unwrap().into_rgb8();

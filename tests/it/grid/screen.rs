@@ -41,7 +41,7 @@ fn the_version_is_printed() {
 fn help_names_every_choice() {
     let help = Run::grid().goes_well("--help").stdout;
     let choices = "--world --generate --strategy --estimator --trials --steps --seed --sensor-radius --threads \
-                   --out --rrd --quiet --list-worlds --save-worlds --stochastic --max-steps --reward";
+                   --out --rrd --quiet --list-worlds --save-worlds --stochastic --max-steps";
     for choice in choices.split_whitespace() {
         assert!(help.contains(choice), "{choice} is not in\n{help}");
     }

@@ -18,15 +18,11 @@ use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 pub(crate) use value::{Figure, Value, extent, valid};
 
 /// The number of errors that are shown; further errors are only counted.
 const MAX_SHOWN: usize = 20;
-
-/// Other spellings of keys.
-const SPELLINGS: [(&str, &str); 1] = [("behavior", "behaviour")];
 
 /// The number of errors after which no key is looked up for an unknown one.
 const MAX_JUDGED: usize = 1000;
@@ -179,14 +175,7 @@ impl<'a> Table<'a> {
             is_valid: Cell::new(true),
             meant: Vec::new(),
         };
-        let is_known = |key: &str| {
-            // A key that is given in both spellings is not one of them twice.
-            let listed = SPELLINGS.iter().find(|(_, other)| *other == key);
-            let is_other =
-                |listed: &str| has(keys, listed) && entries.is_some_and(|all| all.get(listed).is_none());
-            has(keys, key) || listed.is_some_and(|(listed, _)| is_other(listed))
-        };
-        for (key, _) in entries.into_iter().flatten().filter(|(key, _)| !is_known(key.get_ref())) {
+        for (key, _) in entries.into_iter().flatten().filter(|(key, _)| !has(keys, key.get_ref())) {
             let is_judged = file.errors.borrow().len() < MAX_JUDGED;
             let near = is_judged.then(|| spelling::nearest(key.get_ref(), keys.split(", "))).flatten();
             let hint = near.map(|near| format!("did you mean `{near}`? ")).unwrap_or_default();
@@ -217,13 +206,7 @@ impl<'a> Table<'a> {
     /// The value of a key, if it is given.
     pub(crate) fn get<'t>(&'t self, key: &'static str) -> Option<Value<'t, 'a>> {
         debug_assert!(has(self.keys, key), "`{key}` is not in the list of keys");
-        Some(Value { table: self, key, found: self.entry(key)? })
-    }
-
-    /// The value of a key in the file, in any of its spellings.
-    fn entry(&self, key: &str) -> Option<&'a Spanned<DeValue<'a>>> {
-        let other = SPELLINGS.iter().find(|(listed, _)| *listed == key);
-        self.entries?.get(key).or_else(|| self.entries?.get(other?.1))
+        Some(Value { table: self, key, found: self.entries?.get(key)? })
     }
 
     /// The value of a key, which must be given.
@@ -244,7 +227,7 @@ impl<'a> Table<'a> {
 
     /// The keys that are given, with the places of their values.
     pub(crate) fn given(&self) -> impl Iterator<Item = (&str, Range<usize>)> {
-        let given = |key| Some((key, self.entry(key)?.span()));
+        let given = |key| Some((key, self.entries?.get(key)?.span()));
         self.keys.split(", ").filter_map(given)
     }
 

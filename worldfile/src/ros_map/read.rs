@@ -33,7 +33,7 @@ pub fn read(yaml: &Path, files: &dyn Files, findings: &mut Findings) -> Option<R
     let values: BTreeMap<String, Spanned<Value>> = match from_str_with_options(&source.text, options) {
         Ok(values) => values,
         Err(error) => {
-            let (line, what, help) = syntax::fault(&source, error.without_snippet());
+            let (line, what, help) = syntax::fault(error.without_snippet());
             findings.add(Severity::Error, &source, what, (source.whole_line(line), ""), help);
             return None;
         }

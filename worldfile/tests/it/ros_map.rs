@@ -56,14 +56,6 @@ fn states(yaml: &str, pixels: &[u8]) -> String {
     draw(&map.cells).concat()
 }
 
-fn refused(yaml: &str) -> String {
-    let folder = folder(yaml, &[0, 255]);
-    let path = folder.path().join("map.yaml");
-    let error = read(&path).unwrap_err();
-    assert!(error.contains(&path.display().to_string()), "{error}");
-    error
-}
-
 #[test]
 fn what_is_written_comes_back() {
     let map = drawn((-1.25, 3.0), 0.25, &["#####", "#.. #", "#.###"]);
@@ -134,61 +126,4 @@ fn a_turned_map_is_turned_back() {
     let frame = GridFrame::new(Point2::new(0.0, -2.0), 0.5, 3, 3).unwrap();
     assert_eq!(draw(&map.onto(&frame)), [" # ", " . ", " # "]);
     assert_eq!(map.onto(&frame).get(Cell::new(1, 1)), Some(&CellState::Free));
-}
-
-#[test]
-fn an_invalid_value_is_named_with_a_valid_one() {
-    let cases = [
-        ("resolution: 0.5", "resolution: 0", "`resolution` is 0", "the side of a pixel in meters"),
-        ("resolution: 0.5", "resolution: .inf", "`resolution` is inf", "the side of a pixel in meters"),
-        ("-2.0, 0.0]", "-2.0, .nan]", "`origin` is [1, -2, NaN]", "[x, y, yaw] in m and rad"),
-        ("negate: 0", "negate: 2", "`negate` is 2", "it must be 0 or 1"),
-        ("free_thresh: 0.196", "free_thresh: 0.7", "`free_thresh` is 0.7", "above `occupied_thresh`"),
-        ("occupied_thresh: 0.65", "occupied_thresh: 65", "`occupied_thresh` is 65", "a number from 0 to 1"),
-        ("negate: 0", "mode: fancy", "`mode` is \"fancy\"", "`trinary`, `scale` or `raw`"),
-        ("resolution: 0.5", "resolution: abc", "`resolution` is \"abc\"", "the side of a pixel in meters"),
-        ("resolution: 0.5\n", "", "the key `resolution` is missing", "the side of a pixel in meters"),
-        ("1.0, -2.0, 0.0", "1.0, -2.0", "`origin` is [1, -2]", "[x, y, yaw] in m and rad"),
-    ];
-    for (from, to, invalid, valid) in cases {
-        assert!(YAML.contains(from));
-        let error = refused(&YAML.replace(from, to));
-        assert!(error.contains(invalid) && error.contains(valid), "{error}");
-    }
-}
-
-#[test]
-fn a_file_that_is_not_a_map_says_where_and_shows_a_valid_one() {
-    for (yaml, valid) in [("- 1", "`occupied_thresh: 0.65`"), ("image: [", "`[-6.0, -6.0, 0.0]`")] {
-        let error = refused(yaml);
-        assert!(error.contains("map.yaml:1") && error.contains(valid), "{error}");
-    }
-}
-
-#[test]
-fn an_unknown_key_is_a_warning() {
-    let folder = folder(&format!("{YAML}free_tresh: 0.2\n"), &[0, 255]);
-    let mut findings = Findings::default();
-    assert!(ros_map::read(&folder.path().join("map.yaml"), &Disk, &mut findings).is_some());
-    assert_eq!((findings.warnings(), findings.errors()), (1, 0));
-}
-
-#[test]
-fn a_missing_or_damaged_picture_is_named() {
-    let error = refused(&YAML.replace("map.pgm", "none.pgm"));
-    assert!(error.contains("none.pgm") && error.contains("No such file"), "{error}");
-    let error = refused(&YAML.replace("map.pgm", "map.yaml"));
-    assert!(error.contains("cannot read the picture"), "{error}");
-    let error = read(Path::new("no/map.yaml")).unwrap_err();
-    assert!(error.starts_with("no/map.yaml: cannot read this file: "), "{error}");
-}
-
-#[test]
-fn an_absurd_picture_is_refused_by_its_header() {
-    let folder = folder(YAML, &[]);
-    for size in ["100000 100000", "4294967295 4294967295", "0 0"] {
-        fs::write(folder.path().join("map.pgm"), format!("P5\n{size}\n255\n")).unwrap();
-        let error = read(&folder.path().join("map.yaml")).unwrap_err();
-        assert!(error.contains("cannot read the picture"), "{error}");
-    }
 }

@@ -177,10 +177,6 @@ impl Strategy for InformationGain {
         self.plan = Some(Plan { regions, watches, watched: (0..regions.count()).map(watched).collect() });
     }
 
-    fn decline(&mut self) {
-        self.reliability.decline();
-    }
-
     fn end(&mut self, situation: &Situation) {
         let (mapper, robot) = (situation.mapper, situation.cell());
         let regions = self.visibility.update(mapper);

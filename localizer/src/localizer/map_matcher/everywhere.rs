@@ -9,7 +9,7 @@ use crate::hypotheses::Hypotheses;
 use crate::motion::Motion;
 use crate::scan_points::ScanPoint;
 use crate::score_grid::ScoreGrid;
-use crate::search::{Candidate, Search, Window, lower, search_within};
+use crate::search::{Search, Window, lower, search};
 use interfaces::GridFrame;
 use nalgebra::{Isometry2, Point2, Vector2};
 use std::f64::consts::PI;
@@ -82,12 +82,12 @@ impl MapMatcher {
         step: &Step<M>,
         window: &Window,
         left: &mut usize,
-    ) -> Vec<Candidate> {
+    ) -> Vec<Isometry2<f64>> {
         let reach_m = reach_m(&step.scan.points);
         let grid = self.scores(step, window, reach_m);
         *left = left.saturating_sub(grid.cells() / CELLS_PER_LOOKUP);
         let points = near(&step.scan.points, reach_m);
-        search_within(left, &grid, &points, Some(window), (MIN_FOUND, AMBIGUOUS))
+        search(left, &grid, &points, window, (MIN_FOUND, AMBIGUOUS))
     }
 
     /// The scores of what can be seen from a window.
@@ -120,7 +120,7 @@ impl MapMatcher {
 
     /// Searches in the present part, or in the next one. Returns false after the last one.
     fn search_part<M: ChangingMap>(&self, step: &Step<M>, wide: &mut WideSearch, left: &mut usize) -> bool {
-        let Some(window) = wide.window(wide.next, self.surfels.frame()) else { return false };
+        let Some(window) = wide.window(wide.next, &self.surfels.frame) else { return false };
         if wide.scores.as_ref().is_none_or(|(number, _)| *number != wide.next) {
             if *left < MAX_WORK / 2 {
                 *left = 0; // the tables of a large part are made in the next scan
@@ -134,17 +134,14 @@ impl MapMatcher {
         let begin = || {
             let points = near(&step.scan.points, wide.reach_m);
             let min_score = if wide.found.is_empty() { 0.0 } else { AMBIGUOUS * wide.best_score };
-            (
-                Search::new(&points, Some(window), wide.min_score.max(min_score), AMBIGUOUS),
-                Isometry2::identity(),
-            )
+            (Search::new(&points, window, wide.min_score.max(min_score), AMBIGUOUS), Isometry2::identity())
         };
-        let (search, since) = wide.part.get_or_insert_with(begin);
-        if search.pass(scores, left) {
-            let mut candidates = search.candidates(scores);
-            candidates.iter_mut().for_each(|candidate| candidate.pose *= *since);
+        let (begun, since) = wide.part.get_or_insert_with(begin);
+        if begun.pass(scores, left) {
+            let mut candidates = begun.candidates(scores);
+            candidates.iter_mut().for_each(|pose| *pose *= *since);
             let found = Hypotheses::start(&self.scene(step), &candidates, MIN_SCORE);
-            wide.best_score = wide.best_score.max(search.best_score());
+            wide.best_score = wide.best_score.max(begun.best_score());
             wide.found = std::mem::take(&mut wide.found).restarted().or(found);
             wide.part = None;
             wide.next += 1;

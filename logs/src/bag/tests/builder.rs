@@ -3,16 +3,16 @@
 use crate::Log;
 use crate::bag::{Bag, BagFile};
 use crate::bytes::Bytes;
-use crate::cdr::encoded;
 use crate::choice::TopicChoice;
 use crate::error::LogError;
-use crate::ros::{
-    Header, LaserScan, Odometry, Pose, PoseWithCovariance, Rotation, Time, TransformStamped, Transforms,
-    TwistWithCovariance, Vector,
-};
 use interfaces::LaserReading;
 use mcap::records::MessageHeader;
 use mcap::{Compression, WriteOptions};
+use ros::cdr::encoded;
+use ros::{
+    Header, LaserScan, Odometry, Pose, PoseWithCovariance, Rotation, Time, TransformStamped, Transforms,
+    TwistWithCovariance, Vector,
+};
 use std::collections::BTreeMap;
 use std::io::{Cursor, Write};
 use std::sync::Arc;

@@ -70,9 +70,9 @@ fn a_laser_that_is_not_connected_is_refused_or_left_out() {
 fn the_frame_of_the_odometry_may_be_unnamed() {
     let mut bag = Builder::default();
     bag.mount().odometry("/odom", 0.0, 0.0, 0.0).scan("/scan", 0.0, &scan(0.0, "laser"));
-    let mut odometry: crate::ros::Odometry = crate::cdr::decoded(&bag.messages[1].3).unwrap();
+    let mut odometry: ros::Odometry = ros::cdr::decoded(&bag.messages[1].3).unwrap();
     odometry.child_frame_id.clear();
-    bag.messages[1].3 = crate::cdr::encoded(&odometry).unwrap();
+    bag.messages[1].3 = ros::cdr::encoded(&odometry).unwrap();
     let opened = bag.open(&TopicChoice::default()).unwrap();
     assert_eq!(opened.summary().notes.len(), 0);
     assert_eq!(readings(&opened)[0].mount.translation.x, 0.2);
@@ -82,8 +82,8 @@ fn the_frame_of_the_odometry_may_be_unnamed() {
 fn frames_in_a_cycle_and_tilted_lasers_are_refused() {
     let mut bag = Builder::default();
     bag.odometry("/odom", 0.0, 0.0, 0.0).scan("/scan", 0.0, &scan(0.0, "laser"));
-    let tilted = crate::ros::Rotation { x: 0.0, y: 0.5, z: 0.0, w: 0.75_f64.sqrt() };
-    let tilted = crate::ros::Pose { orientation: tilted, ..pose(0.0, 0.0, 0.0) };
+    let tilted = ros::Rotation { x: 0.0, y: 0.5, z: 0.0, w: 0.75_f64.sqrt() };
+    let tilted = ros::Pose { orientation: tilted, ..pose(0.0, 0.0, 0.0) };
     let mut looking_down = bag.clone();
     looking_down.tf("/tf_static", 0.0, &[transform(0.0, "base_link", "laser", tilted)]);
     let error = looking_down.refused();

@@ -1,8 +1,8 @@
 use super::builder::*;
 use crate::choice::TopicChoice;
-use crate::ros::Pose;
 use crate::summary::PoseSource;
 use interfaces::{LaserReading, heading_rad};
+use ros::Pose;
 
 /// How a robot of a bag is localized by another SLAM.
 struct Slam {
@@ -136,7 +136,7 @@ fn the_motion_before_a_jump_goes_on_until_the_jump() {
         let time_s = f64::from(step) * 0.1;
         let y = if step < 20 { 1.0 } else { 0.0 };
         bag.tf("/tf", time_s, &[transform(time_s, "map", "base_link", pose(time_s, y, 0.0))]);
-        let sweeping = crate::ros::LaserScan { time_increment: 0.02, ..scan(time_s + 0.03, "laser") };
+        let sweeping = ros::LaserScan { time_increment: 0.02, ..scan(time_s + 0.03, "laser") };
         bag.scan("/scan", time_s + 0.05, &sweeping);
     }
     let opened = bag.open(&corrected()).unwrap();

@@ -1,7 +1,7 @@
 use super::builder::*;
 use crate::choice::TopicChoice;
-use crate::ros::LaserScan;
 use mcap::{Compression, WriteOptions};
+use ros::LaserScan;
 
 /// Twenty scans, without a pose.
 fn standing() -> Builder {

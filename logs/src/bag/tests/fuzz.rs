@@ -23,7 +23,7 @@ fn whole() -> Builder {
         let time_s = f64::from(step) * 0.1;
         let moving = transform(time_s, "odom", "base_link", pose(time_s, 0.0, 0.1));
         bag.tf("/tf", time_s, &[moving]).odometry("/odom", time_s, time_s, 0.1 * time_s);
-        let sweeping = crate::ros::LaserScan { time_increment: 0.01, ..scan(time_s, "laser") };
+        let sweeping = ros::LaserScan { time_increment: 0.01, ..scan(time_s, "laser") };
         bag.scan("/scan", time_s, &sweeping);
     }
     bag

@@ -1,9 +1,9 @@
 use super::builder::*;
 use crate::choice::TopicChoice;
-use crate::ros::{Pose, Rotation};
 use crate::summary::PoseSource;
 use interfaces::{LaserReading, heading_rad};
 use mcap::{Compression, WriteOptions};
+use ros::{Pose, Rotation};
 use std::io::Write;
 
 /// A robot that drives 1 m/s, with a scan between two poses.
@@ -75,7 +75,7 @@ fn a_laser_alone_stands() {
         // The number of beams changes.
         let ranges = vec![1.0; 3 + index as usize];
         let angle_increment = 0.1;
-        let message = crate::ros::LaserScan { ranges, angle_increment, ..scan(time_s, "laser") };
+        let message = ros::LaserScan { ranges, angle_increment, ..scan(time_s, "laser") };
         bag.scan("/scan", time_s, &message);
     }
     let bag = bag.open(&TopicChoice::default()).unwrap();
@@ -150,7 +150,7 @@ fn a_scan_that_sweeps_ends_later_and_has_velocities() {
         // It brakes at 0.2 s.
         bag.odometry("/odom", time_s, time_s.min(0.2), 0.0);
         if step == 8 {
-            let sweeping = crate::ros::LaserScan { time_increment: 0.05, ..scan(0.15, "laser") };
+            let sweeping = ros::LaserScan { time_increment: 0.05, ..scan(0.15, "laser") };
             bag.scan("/scan", 0.16, &sweeping);
         }
     }
@@ -222,7 +222,7 @@ fn stamps_that_make_no_sense_give_way_to_the_times_of_the_recording() {
     for step in 0..5 {
         let time_s = f64::from(step) * 0.1;
         let mut message = scan(time_s, "laser");
-        message.header.stamp = crate::ros::Time::default();
+        message.header.stamp = ros::Time::default();
         bag.scan("/scan", time_s, &message);
     }
     let bag = bag.open(&TopicChoice::default()).unwrap();
@@ -298,7 +298,7 @@ fn a_parked_robot_stands_although_its_odometry_drifts() {
             let time_s = f64::from(index) * 0.1;
             bag.odometry("/odom", time_s, 5.0 + step_m * f64::from(index), 0.0);
             let ranges = vec![2.0 + range_step_m * index as f32; 90];
-            let message = crate::ros::LaserScan { ranges, angle_increment: 0.01, ..scan(time_s, "laser") };
+            let message = ros::LaserScan { ranges, angle_increment: 0.01, ..scan(time_s, "laser") };
             bag.scan("/scan", time_s + 0.05, &message);
         }
         bag.open(&TopicChoice::default()).unwrap()
@@ -336,9 +336,9 @@ fn at_pace(pace: f64, speed_mps: f64) -> crate::summary::LogSummary {
         let recorded_s = 0.1 * f64::from(step);
         bag.odometry("/odom", pace * recorded_s, 0.5 * recorded_s, 0.0);
         let data = &mut bag.messages.last_mut().unwrap().3;
-        let mut odometry: crate::ros::Odometry = crate::cdr::decoded(data).unwrap();
+        let mut odometry: ros::Odometry = ros::cdr::decoded(data).unwrap();
         odometry.twist.linear.x = speed_mps;
-        *data = crate::cdr::encoded(&odometry).unwrap();
+        *data = ros::cdr::encoded(&odometry).unwrap();
         bag.scan("/scan", recorded_s + 0.01, &scan(pace * recorded_s, "laser"));
     }
     bag.open(&TopicChoice::default()).unwrap().summary().clone()

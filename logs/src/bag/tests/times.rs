@@ -13,7 +13,7 @@ fn with_stamps(scans: impl Fn(f64) -> f64, odometry: impl Fn(f64) -> f64) -> cra
         bag.odometry("/odom", odometry(time_s), time_s, 0.0);
         bag.messages.last_mut().unwrap().2 = ((BEGIN_S + time_s) * 1e3).round() as u64 * 1_000_000;
         if step % 2 == 1 {
-            let sweeping = crate::ros::LaserScan { time_increment: 0.02, ..scan(scans(time_s), "laser") };
+            let sweeping = ros::LaserScan { time_increment: 0.02, ..scan(scans(time_s), "laser") };
             bag.scan("/scan", time_s, &sweeping);
         }
     }

@@ -4,16 +4,12 @@
 //! [`EstimatorChoice::all`]. An estimator of another crate is set in
 //! [`MapperSettings::estimator`](crate::MapperSettings::estimator) with `.into()`.
 
-mod cho_garcia_molina;
-mod imac;
 mod paper;
 mod shared_prior;
 mod two_state;
 mod two_state_gaps;
 
-use super::{CellStatistics, GapModel, TransitionRates};
-pub use cho_garcia_molina::ChoGarciaMolina;
-pub use imac::Imac;
+use super::{CellStatistics, TransitionRates};
 pub use paper::{Paper, PaperAll};
 pub use shared_prior::SharedPrior;
 use std::fmt;
@@ -46,10 +42,10 @@ pub trait Estimator: fmt::Debug + Send + Sync {
         Some(TransitionRates::shared(seen, 1.0 / self.interval(seen)))
     }
 
-    /// The model of the gaps in the view. Without a model, gaps are not recorded, and [`CellStatistics::gap_worth`]
-    /// stays 0.
-    fn gap_model(&self) -> Option<&dyn GapModel> {
-        None
+    /// Whether gaps in the view are recorded and weighed as those of a two-state chain. Otherwise [`CellStatistics::gap_worth`]
+    /// stays 0, and credible intervals are those without gaps.
+    fn weighs_gaps(&self) -> bool {
+        false
     }
 
     /// Whether all traversable cells (free, or ever changed) share a prior. Only then [`CellStatistics::prior`] is learned,
@@ -80,15 +76,7 @@ impl Default for EstimatorChoice {
 impl EstimatorChoice {
     /// Every built-in estimator, in the order of reports.
     pub fn all() -> Vec<Self> {
-        vec![
-            Paper.into(),
-            PaperAll.into(),
-            ChoGarciaMolina.into(),
-            Imac.into(),
-            TwoState.into(),
-            TwoStateGaps.into(),
-            SharedPrior.into(),
-        ]
+        vec![Paper.into(), PaperAll.into(), TwoState.into(), TwoStateGaps.into(), SharedPrior.into()]
     }
 
     /// The name on the command line, in files and in reports.
@@ -125,8 +113,8 @@ impl EstimatorChoice {
         self.0.shares_prior()
     }
 
-    pub(crate) fn gap_model(&self) -> Option<&dyn GapModel> {
-        self.0.gap_model()
+    pub(crate) fn weighs_gaps(&self) -> bool {
+        self.0.weighs_gaps()
     }
 }
 

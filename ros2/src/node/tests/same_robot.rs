@@ -7,11 +7,11 @@
 use super::*;
 use crate::message::{Header, Pose, TransformStamped, Transforms};
 use interfaces::{LaserReading, PoseMode, Scan, World};
-use logs::ros::{scan_message, scan_of};
 use logs::{Log, McapWriter, TopicChoice};
 use mapper::{Mapper, NoReturn};
 use nalgebra::Isometry2;
 use robot::{Pilot, Settings};
+use ros::{scan_message, scan_of};
 use sim::physics::PhysicsWorld;
 use std::fs::File;
 use std::ops::ControlFlow;

@@ -17,8 +17,7 @@ const MAX_MAPS: usize = 20;
 
 /// Settings of random worlds. A pair is the smallest and the largest value, both included; each world draws its own
 /// value between them. A pair in the wrong order is swapped, and values out of range are limited to the range.
-#[derive(Clone, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
-#[serde(default, deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct GenerateSettings {
     /// Columns, outer walls included; 9 to 1000.
     pub width: [u32; 2],
@@ -35,8 +34,6 @@ pub struct GenerateSettings {
     pub blocks: [u32; 2],
     /// The number of cells of the path of a block; 2 to 1000.
     pub path_cells: [u32; 2],
-    /// The kinds of paths to draw from; an empty list stands for all.
-    pub paths: Vec<PathKind>,
     /// The steps that a block stays on a cell, 1 to 1 000 000. All orders of magnitude are equally likely.
     pub dwell: [u32; 2],
     /// The range of the sensor of the robot, cells; 1 to 100.
@@ -54,28 +51,10 @@ impl Default for GenerateSettings {
             pillars: [0, 4],
             blocks: [2, 6],
             path_cells: [3, 20],
-            paths: Vec::new(),
             dwell: [1, 60],
             sensor_radius: 4,
         }
     }
-}
-
-/// The shape of a block's path.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Deserialize, serde::Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum PathKind {
-    /// A straight line, back and forth.
-    Line,
-    /// The border of a rectangle, always in the same direction.
-    Ring,
-    /// A path with random bends that never crosses itself, back and forth.
-    Winding,
-}
-
-impl PathKind {
-    /// All kinds.
-    pub const ALL: [Self; 3] = [Self::Line, Self::Ring, Self::Winding];
 }
 
 impl GridSpec {

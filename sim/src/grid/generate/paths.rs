@@ -2,7 +2,7 @@
 //! there is at least one cell.
 
 use super::super::spec::Course;
-use super::{GenerateSettings, PathKind, cut};
+use super::{GenerateSettings, cut};
 use interfaces::{Cell, Grid, RandomStream};
 use rand::RngExt;
 
@@ -10,6 +10,14 @@ use rand::RngExt;
 const MAX_TRIES: usize = 400;
 /// The probability that a winding path goes straight on.
 const STRAIGHT_ON: f64 = 0.7;
+
+/// A straight line, the border of a rectangle, or a path with random bends that never crosses itself.
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    Line,
+    Ring,
+    Winding,
+}
 
 pub(super) struct BlockPath {
     pub(super) cells: Vec<Cell>,
@@ -39,16 +47,15 @@ pub(super) fn paths(
 
 /// A random path, if all of its cells are open.
 fn path(settings: &GenerateSettings, open: &Grid<bool>, rng: &mut RandomStream) -> Option<BlockPath> {
-    let kinds = if settings.paths.is_empty() { &PathKind::ALL[..] } else { &settings.paths };
-    let kind = kinds[rng.random_range(0..kinds.len())];
+    let kind = [Kind::Line, Kind::Ring, Kind::Winding][rng.random_range(0..3_usize)];
     let (low, high) = cut(settings.path_cells, 2..=1000);
     let first = open.frame().cell(rng.random_range(0..open.frame().len()));
     let cells = match kind {
-        PathKind::Line => line(first, rng.random_range(low..=high), rng),
-        PathKind::Ring => ring(first, low, high, rng)?,
-        PathKind::Winding => winding(first, rng.random_range(low..=high), open, rng)?,
+        Kind::Line => line(first, rng.random_range(low..=high), rng),
+        Kind::Ring => ring(first, low, high, rng)?,
+        Kind::Winding => winding(first, rng.random_range(low..=high), open, rng)?,
     };
-    let course = if kind == PathKind::Ring { Course::Loop } else { Course::BackAndForth };
+    let course = if kind == Kind::Ring { Course::Loop } else { Course::BackAndForth };
     cells.iter().all(|cell| open.get(*cell) == Some(&true)).then_some(BlockPath { cells, course })
 }
 

@@ -3,108 +3,81 @@
 //! A cell is in line of sight when the segment from the center of the robot's cell to the center of the cell
 //! passes through the inside of no other blocked cell. A segment may pass exactly through the corner at which
 //! four cells meet, unless both cells beside the corner are blocked. Line of sight is symmetric.
-//!
-//! Nearly all of the work is done in advance. Seen from the robot, a blocked cell always hides the same cells:
-//! those strictly within the angle of its corners and behind the cell. Every blocked cell near the robot therefore
-//! has a *shadow*, a set of bits, and the union of the shadows is hidden. The computing time depends on the number
-//! of blocked cells around the robot, not on the size of the world.
 
-mod blocked;
-mod shadows;
 #[cfg(test)]
 mod tests;
 
-use super::spec::GridSpec;
-pub(super) use blocked::BlockedCells;
-use interfaces::Cell;
-use shadows::{Reach, Shadows};
+use interfaces::{Cell, Grid};
+use std::cmp::Ordering;
+
+/// An offset from the robot: columns to the right, rows up.
+type Offset = (i32, i32);
 
 /// The cells in line of sight of a sensor.
 #[derive(Clone, Debug)]
 pub(super) struct LineOfSight {
-    shadows: Shadows,
-    /// Scratch, a bit per cell of the square around the robot: what is blocked.
-    square: Vec<u64>,
-    /// Scratch, a bit per cell in reach: what is hidden.
-    hidden: Vec<u64>,
+    /// The cells in reach: the cell of the robot, then by direction counter-clockwise from the right and from near to far.
+    reach: Vec<Offset>,
 }
 
 impl LineOfSight {
     pub(super) fn new(radius: u32) -> Self {
-        let shadows = Shadows::new(radius as i32);
-        // The cell to the upper right is a row and a bit further on, and may be beyond the last cell.
-        let square = vec![0; shadows.masks.len() + shadows.side / 64 + 2];
-        let hidden = vec![0; shadows.everything.len()];
-        Self { shadows, square, hidden }
+        let radius = radius as i32;
+        let square = (-radius..=radius).flat_map(|y| (-radius..=radius).map(move |x| (x, y)));
+        let mut reach: Vec<Offset> = square.filter(|(x, y)| x * x + y * y <= radius * radius).collect();
+        let is_away = |offset: Offset| offset != (0, 0);
+        reach.sort_unstable_by(|&a, &b| {
+            let by_angle = if is_away(a) && is_away(b) { by_direction(a, b) } else { Ordering::Equal };
+            is_away(a).cmp(&is_away(b)).then(by_angle).then(steps(a).cmp(&steps(b)))
+        });
+        Self { reach }
     }
 
     /// The cells in line of sight from `robot`, each with whether it is blocked.
-    pub(super) fn look(&mut self, blocked: &BlockedCells, robot: Cell) -> Vec<(Cell, bool)> {
-        blocked.copy_square(robot, self.shadows.side, &mut self.square);
-        self.hide(blocked, robot);
-        let seen = self.hidden.iter().zip(&self.shadows.everything).map(|(hidden, all)| !hidden & all);
-        let count = seen.clone().map(|seen| seen.count_ones() as usize).sum();
-        let mut cells = Vec::with_capacity(count);
-        for (seen, reach) in seen.zip(self.shadows.reach.chunks(64)) {
-            each_bit(seen, |bit| {
-                let Reach { offset: (dx, dy), bit } = reach[bit];
-                let is_blocked = self.square[bit as usize / 64] >> (bit % 64) & 1 == 1;
-                cells.push((Cell::new(robot.x + dx, robot.y + dy), is_blocked));
-            });
-        }
-        cells
-    }
-
-    /// Unites the shadows of the blocked cells.
-    fn hide(&mut self, blocked: &BlockedCells, robot: Cell) {
-        let (shadows, square, hidden) = (&self.shadows, &self.square[..], &mut self.hidden[..]);
-        hidden.fill(0);
-        for outside in shadows.outside(blocked, robot) {
-            hidden.iter_mut().zip(outside).for_each(|(hidden, outside)| *hidden |= outside);
-        }
-        for (word, mask) in shadows.masks.iter().enumerate() {
-            let here = square[word];
-            let [right, above, above_right] =
-                [1, shadows.side, shadows.side + 1].map(|further| shifted(square, word, further));
-            each_bit(here & mask.cells, |bit| {
-                shadows.cells[word * 64 + bit].unite(hidden, &shadows.words);
-            });
-            each_bit(right & above & mask.rising | here & above_right & mask.falling, |bit| {
-                shadows.corners[word * 64 + bit].unite(hidden, &shadows.words);
-            });
-        }
-    }
-}
-
-impl GridSpec {
-    /// For every cell, the cells that the robot sees from there if no block is in between, all by index. From
-    /// inside a wall the robot sees nothing.
-    pub fn sights(&self) -> Vec<Vec<usize>> {
-        let frame = self.frame();
-        let blocked = BlockedCells::new(&self.walls, self.sensor_radius);
-        let mut line_of_sight = LineOfSight::new(self.sensor_radius);
-        let mut from = |index: usize| {
-            let seen = line_of_sight.look(&blocked, frame.cell(index));
-            seen.into_iter().filter_map(|(cell, _)| frame.index(cell)).collect()
+    pub(super) fn look(&self, blocked: &Grid<bool>, robot: Cell) -> Vec<(Cell, bool)> {
+        let seen = |&(dx, dy): &Offset| {
+            let cell = Cell::new(robot.x + dx, robot.y + dy);
+            let is_blocked = *blocked.get(cell)?;
+            is_in_sight(blocked, robot, (dx, dy)).then_some((cell, is_blocked))
         };
-        let walls = self.walls.cells();
-        (0..frame.len()).map(|index| if walls[index] { Vec::new() } else { from(index) }).collect()
+        self.reach.iter().filter_map(seen).collect()
     }
 }
 
-/// The word that begins a number of bits after the word with an index.
-#[inline]
-fn shifted(words: &[u64], word: usize, bits: usize) -> u64 {
-    let (word, shift) = (word + bits / 64, bits % 64);
-    // In two shifts, since a shift by 64 is not defined.
-    words[word] >> shift | words[word + 1] << 1 << (63 - shift)
+/// Whether nothing is between two cells of the grid. The segment crosses borders between columns and between rows in turn;
+/// their shares of the way are compared in integers.
+fn is_in_sight(blocked: &Grid<bool>, robot: Cell, (dx, dy): Offset) -> bool {
+    let (columns, rows, cells) = (dx.abs(), dy.abs(), blocked.cells());
+    let start = robot.y as isize * blocked.frame().width() as isize + robot.x as isize;
+    let (right, up) = (dx.signum() as isize, dy.signum() as isize * blocked.frame().width() as isize);
+    let is_blocked = |x: i32, y: i32| cells[(start + x as isize * right + y as isize * up) as usize];
+    let (mut x, mut y) = (0, 0);
+    while x + y < columns + rows {
+        let (across, along) = ((2 * x + 1) * rows, (2 * y + 1) * columns);
+        if across == along && is_blocked(x + 1, y) && is_blocked(x, y + 1) {
+            return false;
+        }
+        x += i32::from(across <= along);
+        y += i32::from(across >= along);
+        if x + y < columns + rows && is_blocked(x, y) {
+            return false;
+        }
+    }
+    true
 }
 
-/// Calls `f` with the index of every bit that is set.
-#[inline]
-fn each_bit(mut bits: u64, mut f: impl FnMut(usize)) {
-    while bits != 0 {
-        f(bits.trailing_zeros() as usize);
-        bits &= bits - 1;
-    }
+/// The order of directions, counter-clockwise from the right.
+fn by_direction(a: Offset, b: Offset) -> Ordering {
+    let is_lower_half = |(x, y): Offset| y < 0 || (y == 0 && x < 0);
+    is_lower_half(a).cmp(&is_lower_half(b)).then(0.cmp(&cross(a, b)))
+}
+
+/// Positive if `b` lies counter-clockwise of `a`.
+fn cross(a: Offset, b: Offset) -> i64 {
+    i64::from(a.0) * i64::from(b.1) - i64::from(a.1) * i64::from(b.0)
+}
+
+/// The number of columns and rows to get there.
+fn steps((x, y): Offset) -> i32 {
+    x.abs() + y.abs()
 }

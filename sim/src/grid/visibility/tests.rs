@@ -1,5 +1,5 @@
 use super::*;
-use interfaces::{Grid, GridFrame};
+use interfaces::GridFrame;
 use nalgebra::Point2;
 use proptest::prelude::*;
 
@@ -13,7 +13,7 @@ fn walls(drawing: &str) -> (Grid<bool>, Cell) {
 }
 
 fn look(walls: &Grid<bool>, robot: Cell, radius: u32) -> Vec<(Cell, bool)> {
-    LineOfSight::new(radius).look(&BlockedCells::new(walls, radius), robot)
+    LineOfSight::new(radius).look(walls, robot)
 }
 
 /// The view of the robot in a drawing: `.` free, `#` blocked, `?` not seen.

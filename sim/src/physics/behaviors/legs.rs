@@ -85,10 +85,7 @@ impl Legs {
 
     /// The values that a snapshot holds.
     pub(super) fn values(&mut self) -> Values<'_> {
-        let mut values = values![self.turning, self.blocked];
-        // Without a minimum range nothing is remembered: so older snapshots stay readable.
-        values.extend(self.can_be_too_close.then(|| value(&mut self.ahead)));
-        values
+        values![self.turning, self.blocked, self.ahead]
     }
 
     /// The velocity on the leg in the direction of the unit vector `along`, `remaining_m` before its end. `look`

@@ -51,16 +51,11 @@ impl Fleet {
         let is_due = |robot: &SimulatedRobot| {
             robot.senses(step) && is_meant(robot) && !robot.has_thought(step, time_s)
         };
-        let (mut any, mut sweeps, mut looks) = (false, false, false);
-        for robot in self.robots.iter().filter(|robot| is_due(robot)) {
-            (any, sweeps, looks) = (true, sweeps || robot.sweeps(), looks || robot.looks());
-        }
-        if !any {
+        let mut due = self.robots.iter().filter(|robot| is_due(robot)).peekable();
+        if due.peek().is_none() {
             return;
         }
-        if looks {
-            self.scene.sort();
-        }
+        let sweeps = due.any(SimulatedRobot::sweeps);
         let surroundings = &self.surroundings(sweeps);
         self.for_robots(is_due, |robot| robot.think(surroundings));
     }

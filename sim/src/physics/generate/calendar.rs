@@ -6,7 +6,7 @@ use super::routes::Routes;
 use crate::building_calendar::BuildingCalendar;
 use crate::physics::shape::Rectangle;
 use crate::physics::spec::{Motion, ObstacleSpec, Opening};
-use calendar::{Kind, ThingKind};
+use calendar::ThingKind;
 use nalgebra::{Point2, Vector2};
 use rand::RngExt;
 
@@ -20,43 +20,36 @@ const THINGS: [(ThingKind, &str, [f64; 2]); 3] = [
     (ThingKind::ParkedRobot, "parked robot", [0.4, 0.45]),
 ];
 
-/// The calendar of a building.
-pub(super) struct Calendar(BuildingCalendar);
-
-impl Calendar {
-    /// The calendar of a building of a kind: the same walls, doors and furniture as without one.
-    pub(super) fn new(kind: Kind, seed: u64) -> Self {
-        Self(BuildingCalendar::new(kind, seed))
-    }
-
-    /// Gives the doors schedules.
-    pub(super) fn schedule_doors(&mut self, obstacles: &mut [ObstacleSpec]) {
-        for obstacle in obstacles {
-            if let Motion::Door(door) = &mut obstacle.motion {
-                let schedule = self.0.draw(ThingKind::Door);
-                door.starts_open = !schedule.starts_blocked;
-                door.opening = Opening::Scheduled { schedule: Box::new(schedule), waits_for_robots: true };
-            }
+/// Gives the doors schedules.
+pub(super) fn schedule_doors(calendar: &mut BuildingCalendar, obstacles: &mut [ObstacleSpec]) {
+    for obstacle in obstacles {
+        if let Motion::Door(door) = &mut obstacle.motion {
+            let schedule = calendar.draw(ThingKind::Door);
+            door.starts_open = !schedule.starts_blocked;
+            door.opening = Opening::Scheduled { schedule: Box::new(schedule), waits_for_robots: true };
         }
     }
+}
 
-    /// Things that come and go in rooms, away from where the explorer starts (m).
-    pub(super) fn things(&mut self, routes: &Routes, plan: &Plan, start: &Point2<f64>) -> Vec<ObstacleSpec> {
-        let mut things = Vec::new();
-        for places in routes.places_by_room() {
-            let count = self.0.rng.random_range(0..=MAX_THINGS.min(places.len()));
-            for at in places.iter().take(count).filter(|at| (*at - start).norm() >= APART_M) {
-                let (kind, name, sides_m) = THINGS[self.0.rng.random_range(0..THINGS.len())];
-                let schedule = self.0.draw(kind);
-                let sides_m =
-                    if plan.is_upright { Vector2::new(sides_m[1], sides_m[0]) } else { sides_m.into() };
-                let corner =
-                    |offset: Vector2<f64>| (at + offset).map(|at_m| (at_m * 1000.0).round() / 1000.0);
-                let shape = Rectangle::between(corner(-sides_m / 2.0), corner(sides_m / 2.0));
-                let name = format!("{name} {}", things.len() + 1);
-                things.push(ObstacleSpec::new(&name, shape, Motion::Scheduled(Box::new(schedule))));
-            }
+/// Things that come and go in rooms, away from where the explorer starts (m).
+pub(super) fn things(
+    calendar: &mut BuildingCalendar,
+    routes: &Routes,
+    plan: &Plan,
+    start: &Point2<f64>,
+) -> Vec<ObstacleSpec> {
+    let mut things = Vec::new();
+    for places in routes.places_by_room() {
+        let count = calendar.rng.random_range(0..=MAX_THINGS.min(places.len()));
+        for at in places.iter().take(count).filter(|at| (*at - start).norm() >= APART_M) {
+            let (kind, name, sides_m) = THINGS[calendar.rng.random_range(0..THINGS.len())];
+            let schedule = calendar.draw(kind);
+            let sides_m = if plan.is_upright { Vector2::new(sides_m[1], sides_m[0]) } else { sides_m.into() };
+            let corner = |offset: Vector2<f64>| (at + offset).map(|at_m| (at_m * 1000.0).round() / 1000.0);
+            let shape = Rectangle::between(corner(-sides_m / 2.0), corner(sides_m / 2.0));
+            let name = format!("{name} {}", things.len() + 1);
+            things.push(ObstacleSpec::new(&name, shape, Motion::Scheduled(Box::new(schedule))));
         }
-        things
     }
+    things
 }

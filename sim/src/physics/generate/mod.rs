@@ -15,9 +15,9 @@ use super::spec::{
     BehaviorSpec, ContactModel, DriveKind, DriveLimits, FleetSpec, Motion, ObstacleSpec, Repeat, RobotSpec,
     WanderSpec, WaypointsSpec, WorldSpec,
 };
+use crate::building_calendar::BuildingCalendar;
 use ::calendar::Kind;
 use building_ranges::BuildingRanges;
-use calendar::Calendar;
 use draw::{CELLS_PER_M, integer, value};
 use furniture::Piece;
 use interfaces::{GridFrame, Purpose, RandomStream, pose};
@@ -104,9 +104,9 @@ fn draw_building(
     let mut robots = robots(&routes, rng)?;
     if let Some(kind) = kind {
         robots.truncate(1); // the explorer
-        let mut calendar = Calendar::new(kind, seed);
-        calendar.schedule_doors(&mut obstacles);
-        obstacles.extend(calendar.things(&routes, &plan, &robots[0].pose.translation.vector.into()));
+        let (mut calendar, start) = (BuildingCalendar::new(kind, seed), robots[0].pose.translation.vector);
+        calendar::schedule_doors(&mut calendar, &mut obstacles);
+        obstacles.extend(calendar::things(&mut calendar, &routes, &plan, &start.into()));
     }
     let size = plan.point(layout.size.map(f64::from));
     let frame = GridFrame::covering(Point2::origin(), size.x, size.y, 1.0 / CELLS_PER_M);

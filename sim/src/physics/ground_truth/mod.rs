@@ -2,7 +2,6 @@
 
 pub(super) mod cover;
 mod open_share;
-mod passages;
 mod robots;
 pub(super) mod start;
 #[cfg(test)]
@@ -10,11 +9,12 @@ mod tests;
 
 use super::report::Body;
 use super::shape::Rectangle;
-use interfaces::{Cell, GridFrame, GroundTruth, SparseCells, TrueChange, TrueState, Values, runs, value};
+use interfaces::{
+    Cell, GridFrame, GroundTruth, SparseCells, TrueChange, TrueState, Values, cell_runs, runs, value,
+};
 use nalgebra::Point2;
 use open_share::Cover;
-use passages::{Mover, Passages, SavedPassages};
-use robots::UnderChange;
+use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -38,15 +38,25 @@ pub struct PhysicsGroundTruth {
     passages: SparseCells<Passages>,
     /// The cells under each robot, by index, and whether the robot covers all of the cell.
     under: Vec<Vec<(u32, bool)>>,
-    /// Scratch memory for such a list, and for the differences of two.
-    spare: Vec<(u32, bool)>,
-    under_changes: Vec<UnderChange>,
     /// Whether the cell has been free since it was last blocked, so that the next time is a new event.
     armed: Vec<bool>,
     /// The cells that have a mover, one bit each.
     swept: Vec<u64>,
     reach: Arc<Reach>,
     pub(super) changes: Vec<TrueChange>,
+}
+
+/// What moving things did to a cell so far, and do now.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, Serialize)]
+struct Passages {
+    /// The number of robots that overlap the cell, and the number of robots that cover all of the cell.
+    overlapped: u16,
+    covered: u16,
+    block_events: u32,
+    /// How often the cell was free and then overlapped.
+    pass_events: u32,
+    /// The first moving thing that touched the cell.
+    mover: Option<Body>,
 }
 
 /// What the driven robot can reach and see: the same at all times, and shared by all copies.
@@ -70,8 +80,6 @@ impl PhysicsGroundTruth {
             states: fixed.clone(),
             passages: SparseCells::in_blocks(frame.width(), frame.height(), Passages::default()),
             under: Vec::new(),
-            spare: Vec::new(),
-            under_changes: Vec::new(),
             armed: fixed.iter().map(|state| *state != TrueState::Blocked).collect(),
             swept: vec![0; frame.len().div_ceil(64)],
             reach: Arc::new(Reach { may_be_seen: (0..frame.len()).map(may_be_seen).collect(), reachable }),
@@ -83,7 +91,7 @@ impl PhysicsGroundTruth {
     /// The first moving thing that touched a cell: another robot, or an obstacle that moves, appears or disappears.
     /// `None` for a static cell.
     pub fn mover(&self, index: usize) -> Option<Body> {
-        self.passages[index].mover.body()
+        self.passages[index].mover
     }
 
     /// The values that a snapshot holds; walls and the reachable cells follow from the spec.
@@ -92,11 +100,9 @@ impl PhysicsGroundTruth {
             value(&mut self.elapsed_s),
             runs(&mut self.states),
             runs(&mut self.fixed),
-            Box::new(SavedPassages {
-                passages: &mut self.passages,
-                under: &mut self.under,
-                armed: &mut self.armed,
-            }),
+            cell_runs(&mut self.passages, usize::MAX),
+            value(&mut self.under),
+            runs(&mut self.armed),
             runs(&mut self.swept),
             value(&mut self.changes),
         ]
@@ -168,7 +174,7 @@ impl PhysicsGroundTruth {
         let (word, bit) = (&mut self.swept[index / 64], 1 << (index % 64));
         if *word & bit == 0 {
             *word |= bit;
-            self.passages[index].mover = Mover::of(body);
+            self.passages[index].mover = Some(body);
         }
     }
 
@@ -179,7 +185,9 @@ impl PhysicsGroundTruth {
         let before =
             std::mem::replace(&mut self.passages, SparseCells::in_blocks(width, height, Passages::default()));
         // Without the blocks in which only the setup counted something.
-        before.stored().for_each(|(index, passages)| self.passages.set(index, passages.without_events()));
+        for (index, passages) in before.stored() {
+            self.passages.set(index, Passages { block_events: 0, pass_events: 0, ..*passages });
+        }
         for (armed, state) in self.armed.iter_mut().zip(&self.states) {
             *armed = *state != TrueState::Blocked;
         }

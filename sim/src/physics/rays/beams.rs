@@ -4,6 +4,7 @@
 //! that a straight edge is a dot product: the ray `t·d` hits the line `n·x = c` at `1/t = (n/c)·d`, and the
 //! nearest hit is the largest value.
 
+use super::disc::Disc;
 use super::edges::Edge;
 use interfaces::{APPROXIMATE_ATAN2_ERROR_RAD, approximate_atan2};
 use nalgebra::{Isometry2, Point2, Vector2};
@@ -135,6 +136,26 @@ struct Bearing {
     end: usize,
 }
 
+/// Where a disc lies, seen from a laser.
+enum Place {
+    /// Out of range.
+    Beyond,
+    /// Around the laser.
+    Around,
+    /// In a direction.
+    At {
+        /// The center in the frame of the laser, m.
+        center: Vector2<f64>,
+        /// The power of the laser position: distance squared less radius squared, m²; positive.
+        power: f64,
+        /// The direction of the center, approximately, and the half width, at least the true one, rad.
+        angle_rad: f64,
+        half_rad: f64,
+        /// One over the shortest range, at least the true value, 1/m.
+        nearest: f64,
+    },
+}
+
 /// The nearest hit on each beam of a laser.
 pub(super) struct Hits<'a> {
     pub(super) beams: &'a Beams,
@@ -166,7 +187,7 @@ impl<'a> Hits<'a> {
     }
 
     /// Adds all sides of a convex body, in order: two sides share a corner.
-    pub(super) fn add_polygon(&mut self, edges: &[Edge]) {
+    fn add_polygon(&mut self, edges: &[Edge]) {
         let mut shared: Option<Bearing> = None;
         for edge in edges {
             let from = shared.take();
@@ -205,22 +226,50 @@ impl<'a> Hits<'a> {
         }
     }
 
-    /// Adds a round body with the center `center` (m, in the frame of the laser). Its directions are less than
-    /// `half_rad` away from `angle_rad`, and its inverse ranges are at most `nearest`.
-    pub(super) fn add_disc(
-        &mut self,
-        center: &Vector2<f64>,
-        power: f64,
-        angle_rad: f64,
-        half_rad: f64,
-        nearest: f64,
-    ) {
-        let (first, end) = self.beams.around(angle_rad, half_rad);
-        if end <= self.beams.count {
-            self.add_disc_to(first..end, center, power, nearest);
-        } else {
-            let runs = self.beams.runs(first, end);
-            runs.into_iter().for_each(|run| self.add_disc_to(run, center, power, nearest));
+    /// Where a disc lies, seen from the laser.
+    #[inline(always)]
+    fn place(&self, disc: &Disc) -> Place {
+        let to = (disc.center - self.laser.translation.vector).coords;
+        let distance2 = to.norm_squared();
+        let power = distance2 - disc.radius_m * disc.radius_m;
+        let reach_m = self.beams.range_max_m + disc.radius_m;
+        if power > reach_m * reach_m {
+            return Place::Beyond;
+        }
+        if power <= 0.0 {
+            return Place::Around;
+        }
+        let (center, distance_m) = (self.laser.rotation.inverse() * to, distance2.sqrt());
+        let gap_m = distance_m - disc.radius_m;
+        // A gap as small as rounding errors counts as zero.
+        let nearest = if gap_m > distance_m * 1e-9 { Disc::SAFE / gap_m } else { f64::INFINITY };
+        let angle_rad = approximate_atan2(center.y, center.x);
+        Place::At { center, power, angle_rad, half_rad: disc.half_rad(distance_m), nearest }
+    }
+
+    /// Adds a round body. A laser inside of it sees nothing else.
+    #[inline]
+    pub(super) fn add_disc(&mut self, disc: &Disc) {
+        match self.place(disc) {
+            Place::Beyond => {}
+            Place::Around => self.add_inside(),
+            Place::At { center, power, angle_rad, half_rad, nearest } => {
+                let (first, end) = self.beams.around(angle_rad, half_rad);
+                let runs = self.beams.runs(first, end);
+                runs.into_iter().for_each(|run| self.add_disc_to(run, &center, power, nearest));
+            }
+        }
+    }
+
+    /// Adds a convex body within a disc, unless the disc is out of range or hidden.
+    pub(super) fn add_polygon_in(&mut self, around: &Disc, edges: &[Edge]) {
+        let may_be_seen = match self.place(around) {
+            Place::Beyond => false,
+            Place::Around => true,
+            Place::At { angle_rad, half_rad, nearest, .. } => !self.is_hidden(angle_rad, half_rad, nearest),
+        };
+        if may_be_seen {
+            self.add_polygon(edges);
         }
     }
 

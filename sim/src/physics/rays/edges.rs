@@ -1,5 +1,6 @@
 //! The edges of a set of rectangles that a ray can hit.
 
+use crate::physics::box_tree::BoxTree;
 use crate::physics::shape::Rectangle;
 use nalgebra::{Point2, Vector2};
 
@@ -40,60 +41,15 @@ impl Edge {
 /// covers; sides that continue each other are merged.
 pub(super) fn visible_edges(boxes: &[Rectangle]) -> Vec<Edge> {
     let sides: Vec<[Edge; 4]> = boxes.iter().map(Edge::of_rectangle).collect();
-    let bins = Bins::new(boxes);
-    let open = sides.iter().enumerate().flat_map(|(own, edges)| {
-        let is_covered = {
-            let (sides, bins) = (&sides, &bins);
-            move |edge: &&Edge| {
-                let near = bins.at(&nalgebra::center(&edge.from, &edge.to));
-                near.iter().any(|&other| other as usize != own && covers(&sides[other as usize], edge))
-            }
-        };
-        edges.iter().filter(move |edge| !is_covered(edge))
-    });
-    merged(open.copied().collect())
-}
-
-/// The rectangles by position, on a coarse grid.
-struct Bins {
-    low: Point2<f64>,
-    bin_m: Vector2<f64>,
-    bins: Vec<Vec<u32>>,
-}
-
-impl Bins {
-    /// Bins along each side.
-    const SIDE: usize = 64;
-
-    fn new(boxes: &[Rectangle]) -> Self {
-        let bounds: Vec<_> = boxes.iter().map(Rectangle::bounds).collect();
-        let low = bounds.iter().fold(Point2::new(f64::MAX, f64::MAX), |low, (at, _)| low.inf(at));
-        let high = bounds.iter().fold(Point2::new(f64::MIN, f64::MIN), |high, (_, at)| high.sup(at));
-        let bin_m = ((high - low) / Self::SIDE as f64).sup(&Vector2::repeat(ON_M));
-        let mut bins = Self { low, bin_m, bins: vec![Vec::new(); Self::SIDE * Self::SIDE] };
-        for (i, (from, to)) in bounds.iter().enumerate() {
-            let margin = Vector2::repeat(BESIDE_M);
-            let ((left, bottom), (right, top)) = (bins.bin(&(from - margin)), bins.bin(&(to + margin)));
-            for (row, column) in
-                (bottom..=top).flat_map(|row| (left..=right).map(move |column| (row, column)))
-            {
-                bins.bins[row * Self::SIDE + column].push(i as u32);
-            }
-        }
-        bins
-    }
-
-    /// The column and the row of the bin that a point lies in, or of the nearest bin.
-    fn bin(&self, point: &Point2<f64>) -> (usize, usize) {
-        let at = (point - self.low).component_div(&self.bin_m);
-        ((at.x as usize).min(Self::SIDE - 1), (at.y as usize).min(Self::SIDE - 1))
-    }
-
-    /// The rectangles near a point: all that contain the point, and more.
-    fn at(&self, point: &Point2<f64>) -> &[u32] {
-        let (column, row) = self.bin(point);
-        &self.bins[row * Self::SIDE + column]
-    }
+    let tree = BoxTree::new(boxes.iter().map(Rectangle::bounds));
+    let is_covered = |own: usize, edge: &Edge| {
+        let middle = nalgebra::center(&edge.from, &edge.to);
+        let may_cover = |area: &Rectangle| area.distance_m(&middle) == 0.0;
+        tree.first_below(boxes.len(), may_cover, |other| other != own && covers(&sides[other], edge))
+            .is_some()
+    };
+    let all = sides.iter().enumerate().flat_map(|(own, edges)| edges.iter().map(move |edge| (own, edge)));
+    merged(all.filter(|(own, edge)| !is_covered(*own, edge)).map(|(_, edge)| *edge).collect())
 }
 
 /// Whether an edge and the space directly outside of the edge lie in the rectangle with the given sides: a ray

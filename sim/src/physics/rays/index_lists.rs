@@ -21,29 +21,23 @@ impl<T: Clone + Default> IndexLists<T> {
         self.starts.push(self.items.len() as u32);
     }
 
-    /// Replaces everything by `lists` lists of the given entries, each with the list that it belongs to. Entries of
-    /// one list keep their order.
-    pub(super) fn sort(
-        &mut self,
-        lists: usize,
-        entries: impl DoubleEndedIterator<Item = (usize, T)> + Clone,
-    ) {
+    /// `lists` lists of the given entries, each with the list that it belongs to. Entries of one list keep their order.
+    pub(super) fn sorted(lists: usize, entries: impl DoubleEndedIterator<Item = (usize, T)> + Clone) -> Self {
         // Counting sort: the number of entries per list, summed up to the end of each list. Filled from the back,
         // ends become starts.
-        self.starts.clear();
-        self.starts.resize(lists + 1, 0);
-        entries.clone().for_each(|(list, _)| self.starts[list] += 1);
+        let mut starts = vec![0; lists + 1];
+        entries.clone().for_each(|(list, _)| starts[list] += 1);
         let mut end = 0;
-        for start in &mut self.starts {
+        for start in &mut starts {
             end += *start;
             *start = end;
         }
-        self.items.resize(end as usize, T::default());
+        let mut items = vec![T::default(); end as usize];
         for (list, item) in entries.rev() {
-            let start = &mut self.starts[list];
-            *start -= 1;
-            self.items[*start as usize] = item;
+            starts[list] -= 1;
+            items[starts[list] as usize] = item;
         }
+        Self { starts, items }
     }
 
     /// One of the lists.

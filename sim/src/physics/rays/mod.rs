@@ -10,7 +10,6 @@
 //! near ([`vicinity`]). A scan that sweeps has a method of its own ([`sectors`]).
 
 mod beams;
-mod circles;
 mod disc;
 mod edges;
 mod hiding;

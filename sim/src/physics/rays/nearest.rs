@@ -7,11 +7,11 @@
 use super::beams::{Beams, EDGE_ON_M};
 use super::disc::Disc;
 use super::edges::Edge;
-use interfaces::{APPROXIMATE_ATAN2_ERROR_RAD, approximate_atan2};
+use interfaces::approximate_atan2;
 use nalgebra::{Isometry2, Point2, Vector2};
 
 /// A body may be left out if it is farther away than the shortest range by this factor: far above rounding.
-const SAFE: f64 = 1.0 + 1e-5;
+const SAFE: f64 = Disc::SAFE;
 /// A point counts as beside the beams if it is this far beyond their border, m: far above rounding.
 const BESIDE_M: f64 = 1e-6;
 
@@ -156,10 +156,8 @@ impl<'a> Nearest<'a> {
         if power <= 0.0 {
             return self.take(f64::INFINITY);
         }
-        // asin(s) ≤ s + (π/2 − 1)·s³, and the margin of the approximate angle.
-        let s = (disc.radius_m / distance_m * SAFE).min(1.0);
-        let half_rad = s + 0.571 * s * s * s + 3.0 * APPROXIMATE_ATAN2_ERROR_RAD;
-        let (first, end) = self.beams.around(approximate_atan2(center.y, center.x), half_rad);
+        let angle_rad = approximate_atan2(center.y, center.x);
+        let (first, end) = self.beams.around(angle_rad, disc.half_rad(distance_m));
         let (per_power, mut most) = (1.0 / power, 0.0);
         for run in self.beams.runs(first, end) {
             for (x, y) in self.beams.x[run.clone()].iter().zip(&self.beams.y[run]) {

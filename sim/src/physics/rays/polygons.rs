@@ -1,6 +1,7 @@
 //! Convex bodies that appear, disappear and move. Each body is listed in the cells that it overlaps, so that a
 //! laser tests only the bodies in the cells that it may see.
 
+use super::beams::Hits;
 use super::disc::Disc;
 use super::edges::Edge;
 use super::index_lists::IndexLists;
@@ -9,37 +10,27 @@ use crate::physics::form::bounds;
 use nalgebra::Point2;
 use std::ops::Range;
 
-/// The robot of a body that belongs to no robot.
-const NO_ROBOT: u32 = u32::MAX;
-
 /// Convex bodies, each with an index.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Polygons {
-    bodies: Vec<Body>,
-    /// The corners of all bodies, counter-clockwise, m.
-    corners: Vec<Point2<f64>>,
-}
+pub(super) struct Polygons(Vec<Body>);
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 struct Body {
-    /// Its corners; none while the body is absent.
-    corners: Range<usize>,
-    /// The number of corners for which there is room.
-    room: usize,
+    /// Its corners, counter-clockwise, m; none while the body is absent.
+    corners: Vec<Point2<f64>>,
     /// The robot that the body belongs to: its lasers never see the body.
-    robot: u32,
+    robot: Option<usize>,
 }
 
 impl Polygons {
     /// Room for `count` bodies, all absent.
     pub(super) fn new(count: usize) -> Self {
-        let absent = Body { corners: 0..0, room: 0, robot: NO_ROBOT };
-        Self { bodies: vec![absent; count], corners: Vec::new() }
+        Self(vec![Body::default(); count])
     }
 
     /// The number of bodies, present or not.
     pub(super) fn len(&self) -> usize {
-        self.bodies.len()
+        self.0.len()
     }
 
     /// Sets the corners of a body (counter-clockwise, m). No corners: the body is absent.
@@ -47,30 +38,22 @@ impl Polygons {
         &mut self,
         index: usize,
         robot: Option<usize>,
-        corners: impl ExactSizeIterator<Item = Point2<f64>>,
+        corners: impl Iterator<Item = Point2<f64>>,
     ) {
-        let (body, count) = (&mut self.bodies[index], corners.len());
-        if count > body.room {
-            (body.corners.start, body.room) = (self.corners.len(), count);
-            self.corners.resize(self.corners.len() + count, Point2::origin());
-        }
-        body.robot = robot.map_or(NO_ROBOT, |robot| robot as u32);
-        body.corners.end = body.corners.start + count;
-        for (own, corner) in self.corners[body.corners.clone()].iter_mut().zip(corners) {
-            *own = corner;
-        }
+        let body = &mut self.0[index];
+        body.robot = robot;
+        body.corners.clear();
+        body.corners.extend(corners);
     }
 }
 
 /// The bodies that are present, prepared for rays.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct SortedPolygons {
     edges: Vec<Edge>,
     bodies: Vec<Polygon>,
     /// The bodies in each cell; at the end the bodies that reach beyond the borders. No lists if there are few bodies.
     cells: IndexLists,
-    /// Scratch memory: the cells of all bodies.
-    in_cells: Vec<(usize, u32)>,
 }
 
 /// A body that is present.
@@ -79,25 +62,22 @@ pub(super) struct Polygon {
     /// A disc that contains the body.
     pub(super) around: Disc,
     edges: Range<usize>,
-    robot: u32,
+    robot: Option<usize>,
 }
 
 impl Polygon {
     /// Whether the lasers of a robot see the body.
     pub(super) fn is_seen_by(&self, robot: usize) -> bool {
-        self.robot != robot as u32
+        self.robot != Some(robot)
     }
 }
 
 impl SortedPolygons {
-    /// Replaces everything by these bodies, sorted into the cells, if there are cells.
-    pub(super) fn sort(&mut self, polygons: &Polygons, visible: Option<&PotentiallyVisibleSet>) {
-        let Self { edges, bodies, cells, in_cells } = self;
-        edges.clear();
-        bodies.clear();
-        in_cells.clear();
-        for Body { corners, robot, .. } in polygons.bodies.iter().filter(|body| !body.corners.is_empty()) {
-            let (corners, index) = (&polygons.corners[corners.clone()], bodies.len() as u32);
+    /// These bodies, sorted into the cells, if there are cells.
+    pub(super) fn new(polygons: &Polygons, visible: Option<&PotentiallyVisibleSet>) -> Self {
+        let (mut edges, mut bodies, mut in_cells) = (Vec::new(), Vec::new(), Vec::new());
+        for Body { corners, robot } in polygons.0.iter().filter(|body| !body.corners.is_empty()) {
+            let index = bodies.len() as u32;
             let (low, high) = bounds(corners);
             let center = nalgebra::center(&low, &high);
             let radius2 = corners.iter().map(|corner| (corner - center).norm_squared()).fold(0.0, f64::max);
@@ -112,9 +92,8 @@ impl SortedPolygons {
                 in_cells.extend(visible.around(&low, &high).chain(beyond).map(|cell| (cell, index)));
             }
         }
-        if let Some(visible) = visible {
-            cells.sort(visible.len() + 1, in_cells.iter().copied());
-        }
+        let cells = visible.map(|visible| IndexLists::sorted(visible.len() + 1, in_cells.iter().copied()));
+        Self { edges, bodies, cells: cells.unwrap_or_default() }
     }
 
     /// The number of bodies.
@@ -135,6 +114,14 @@ impl SortedPolygons {
     /// The sides of a body.
     pub(super) fn edges(&self, polygon: &Polygon) -> &[Edge] {
         &self.edges[polygon.edges.clone()]
+    }
+
+    /// Adds the body with an index to the hits of a laser of the robot `own`, if the laser sees it.
+    pub(super) fn add_to(&self, index: u32, own: usize, hits: &mut Hits<'_>) {
+        let polygon = self.get(index);
+        if polygon.is_seen_by(own) {
+            hits.add_polygon_in(&polygon.around, self.edges(polygon));
+        }
     }
 
     /// Whether a point is inside of a body that overlaps the cell of the point (none: of any body).

@@ -4,9 +4,7 @@ use super::disc::Disc;
 use super::edges::Edge;
 use crate::physics::shape::point_segment_m;
 use nalgebra::Point2;
-
-/// A stored distance is at most the true one by this factor: the rounding of single precision.
-const SAFE: f64 = 1.0 - 1e-6;
+use std::cmp::Ordering;
 
 /// The positions and ranges of the sensors of a robot.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -18,7 +16,7 @@ pub(in crate::physics) struct Ring {
 }
 
 /// A wall or a body, by its index.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 pub(super) enum Thing {
     /// A visible edge of the walls.
     Edge(usize),
@@ -37,9 +35,8 @@ pub(in crate::physics) struct Vicinity {
     reach_m: f64,
     /// The solid walls in which a sensor may be.
     pub(super) solids: Vec<u32>,
-    /// For each thing its distance from the center of the robot, at most the true one, in 32 bits; its kind in 2 bits;
-    /// and its index in 30 bits. So the order of the numbers is that of the distances.
-    things: Vec<u64>,
+    /// For each thing its distance from the center of the robot, at least 0, m.
+    things: Vec<(f64, Thing)>,
 }
 
 impl Vicinity {
@@ -71,36 +68,20 @@ impl Vicinity {
 
     /// Adds a thing at a distance from the center of the robot, m.
     fn add(&mut self, distance_m: f64, thing: Thing) {
-        if distance_m > self.reach_m {
-            return;
+        if distance_m <= self.reach_m {
+            self.things.push((distance_m.max(0.0), thing));
         }
-        // The bits of positive numbers have the order of the numbers.
-        let distance = ((distance_m.max(0.0) * SAFE) as f32).to_bits();
-        let (kind, index) = match thing {
-            Thing::Edge(index) => (0, index as u64),
-            Thing::Robot(index) => (1, index as u64),
-            Thing::Polygon(index) => (2, u64::from(index)),
-        };
-        self.things.push(u64::from(distance) << 32 | kind << 30 | index);
     }
 
     /// Sorts the things by their distance, and removes those that were added twice.
     pub(super) fn sort(&mut self) {
-        self.things.sort_unstable();
+        self.things.sort_unstable_by(|a, b| a.partial_cmp(b).unwrap_or(Ordering::Equal));
         self.things.dedup();
     }
 
-    /// The things, each with a distance from the center of the robot (m) that is at most the true one, the nearest first.
+    /// The things, each with its distance from the center of the robot (m), the nearest first.
     pub(super) fn things(&self) -> impl Iterator<Item = (f64, Thing)> {
-        self.things.iter().map(|thing| {
-            let index = thing & ((1 << 30) - 1);
-            let kind = match thing >> 30 & 3 {
-                0 => Thing::Edge(index as usize),
-                1 => Thing::Robot(index as usize),
-                _ => Thing::Polygon(index as u32),
-            };
-            (f64::from(f32::from_bits((thing >> 32) as u32)), kind)
-        })
+        self.things.iter().copied()
     }
 }
 
@@ -126,9 +107,7 @@ mod tests {
             found.iter().map(|found| found.1).collect::<Vec<_>>(),
             [1, 2, 4, 0, 5].map(|i| things[i].1)
         );
-        for ((stored_m, _), index) in found.iter().zip([1, 2, 4, 0, 5]) {
-            let true_m = f64::max(things[index].0, 0.0);
-            assert!(*stored_m <= true_m && *stored_m >= true_m * (1.0 - 1e-5), "{stored_m} m, {true_m} m");
-        }
+        let distances_m = [0.0, 1e-3, 0.7, 3.5, 1e3];
+        assert!(found.iter().map(|found| found.0).eq(distances_m));
     }
 }

@@ -10,6 +10,7 @@ use super::hiding::{SeenEdge, sectors_of};
 use super::index_lists::IndexLists;
 use crate::physics::shape::{Rectangle, point_segment_m};
 use nalgebra::{Point2, Vector2};
+use std::f64::consts::SQRT_2;
 
 /// The largest number of cells: more cells would have shorter lists, but take longer to compute.
 const MAX_CELLS: f64 = 1024.0;
@@ -31,8 +32,8 @@ pub(super) struct PotentiallyVisibleSet {
     rows: usize,
     /// The column and the row of each cell.
     places: Vec<[u16; 2]>,
-    /// See [`PotentiallyVisibleSet::apart_m`]: by the difference of the columns and of the rows, like cells.
-    apart_m: Vec<f32>,
+    /// The largest radius of any robot, m.
+    radius_m: f64,
     /// The edges that may be seen from each cell, the nearest first.
     pub(super) edges: IndexLists<SeenEdge>,
     /// The cells in which a robot may be seen from each cell, the nearest first.
@@ -61,19 +62,12 @@ impl PotentiallyVisibleSet {
             columns: count(extent.x),
             rows: count(extent.y),
             places: Vec::new(),
-            apart_m: Vec::new(),
+            radius_m,
             edges: IndexLists::default(),
             cells: IndexLists::default(),
             boxes: IndexLists::default(),
         };
         set.places = (0..set.len()).map(|cell| set.place(cell).map(|index| index as u16)).collect();
-        let apart_m = |cell: usize| {
-            let cells =
-                Vector2::from(set.place(cell).map(|index| index as f64)).norm() - std::f64::consts::SQRT_2;
-            // Less than the true value, also in single precision.
-            (cells * cell_m - radius_m - MARGIN_M) as f32 - 1e-5 * (cells * cell_m).abs() as f32
-        };
-        set.apart_m = (0..set.len()).map(apart_m).collect();
         let mut boxes_in = vec![Vec::new(); set.len()];
         for (i, shape) in boxes.iter().enumerate() {
             let (low, high) = shape.bounds();
@@ -120,8 +114,8 @@ impl PotentiallyVisibleSet {
     /// part of a body that lies in the other one, m.
     pub(super) fn apart_m(&self, cell: usize, other: usize) -> f64 {
         let ([x, y], [other_x, other_y]) = (self.places[cell], self.places[other]);
-        let across = usize::from(x.abs_diff(other_x));
-        f64::from(self.apart_m[usize::from(y.abs_diff(other_y)) * self.columns + across])
+        let cells = Vector2::new(x.abs_diff(other_x), y.abs_diff(other_y)).cast::<f64>().norm();
+        (cells - SQRT_2) * self.cell_m - self.radius_m - MARGIN_M
     }
 
     /// The column and the row of a cell.

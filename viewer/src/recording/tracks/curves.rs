@@ -48,12 +48,12 @@ pub(in crate::recording) fn plots(scene: &Scene, view: &View) -> Vec<Plot> {
     let mut plot = |title: &str, path, range, curves| {
         plots.push(Plot { title: title.to_owned(), path, range, curves });
     };
-    if view.measured.scores.is_some() {
+    if view.measured.coverage_and_quality.is_some() {
         let coverage = curve("coverage", "coverage: cells that were seen", palette::SENSOR, |view| {
-            Some(view.measured.scores?.coverage)
+            Some(view.measured.coverage_and_quality?[0])
         });
         let quality = curve("map_quality", "quality: cells that are correct", palette::PATH, |view| {
-            Some(view.measured.scores?.map_quality)
+            Some(view.measured.coverage_and_quality?[1])
         });
         plot("Map: coverage and quality", "/curves/scores", SHARE, vec![coverage, quality]);
     }
@@ -76,10 +76,9 @@ pub(in crate::recording) fn plots(scene: &Scene, view: &View) -> Vec<Plot> {
         plot("Localization: error of the position (mm)", "/curves/pose_error", None, curves);
     }
     if view.measured.rate_errors.is_some() && !scene.obstacles.is_empty() {
-        let relative = curve("relative", "relative error", palette::MOVING, |view| {
-            Some(view.measured.rate_errors?.relative)
-        });
-        let log = curve("log", "log error", palette::GOAL, |view| Some(view.measured.rate_errors?.log));
+        let relative =
+            curve("relative", "relative error", palette::MOVING, |view| Some(view.measured.rate_errors?[0]));
+        let log = curve("log", "log error", palette::GOAL, |view| Some(view.measured.rate_errors?[1]));
         plot("Errors of the rates of change", "/curves/rate_errors", None, vec![relative, log]);
     }
     let expected = curve("p", "changes expected out of view", palette::GOAL, |view| Some(view.features.p));

@@ -71,16 +71,6 @@ fn error(from: &str, to: &str) -> String {
 }
 
 #[test]
-fn behavior_is_read_in_both_spellings() {
-    let british = GOOD.replace("behavior", "behaviour");
-    let [spec, same] = [GOOD, &british].map(|text| crate::physics::parse_world("closet.toml", text).unwrap());
-    assert_eq!(format!("{spec:?}"), format!("{same:?}"));
-    let both = "radius_m = 0.2\nbehaviour = { kind = \"driven\" }";
-    assert!(error("radius_m = 0.2", both).contains("unknown key `behaviour`"));
-    assert!(crate::physics::parse_world("closet.toml", &british.replace("\"driven\"", "\"dance\"")).is_err());
-}
-
-#[test]
 fn the_good_world_is_good() {
     let spec = crate::physics::parse_world("closet.toml", GOOD).unwrap();
     assert_eq!((spec.frame.width(), spec.frame.height()), (80, 60));

@@ -1,6 +1,6 @@
 //! Snapshots, copies and resets.
 
-use super::fleet::{crowd, hash, nobody, robot};
+use super::fleet::{crowd, hash, robot};
 use super::*;
 use interfaces::LaserReading;
 use proptest::prelude::*;
@@ -73,19 +73,6 @@ fn a_fork_goes_its_own_way() {
     assert_eq!(hash(&fleet), before);
     fleet.run_until(6.0, &mut drivers);
     assert_ne!(hash(&fleet), hash(&fork));
-}
-
-#[test]
-fn a_reset_is_a_new_start() {
-    let mut fleet = Fleet::new(&crowd(), 1);
-    fleet.run_until(3.0, &mut nobody);
-    fleet.reset(2);
-    let mut new = Fleet::new(&crowd(), 2);
-    assert_eq!(fleet.snapshot(), new.snapshot());
-    for fleet in [&mut fleet, &mut new] {
-        fleet.run_until(3.0, &mut nobody);
-    }
-    assert_eq!(hash(&fleet), hash(&new));
 }
 
 #[test]

@@ -4,7 +4,6 @@ mod sweep;
 mod tests;
 
 use super::beams::{Beams, Hits};
-use super::circles::Discs;
 use super::disc::Disc;
 use super::edges::{Edge, visible_edges};
 use super::hiding::add_edges;
@@ -25,7 +24,6 @@ thread_local! {
 struct Scratch {
     /// The result: one over the range for each beam, 1/m; 0 where there is no hit.
     inverse: Vec<f64>,
-    discs: Discs,
     tested: Tested,
 }
 
@@ -59,8 +57,6 @@ struct Moving {
     discs: Vec<Disc>,
     /// The same bodies by position, as soon as a ray is cast.
     sorted: OnceLock<Sorted>,
-    /// Memory to sort them into.
-    spare: Option<Sorted>,
 }
 
 impl Clone for Moving {
@@ -68,18 +64,11 @@ impl Clone for Moving {
     fn clone(&self) -> Self {
         let Self { walls, polygons, discs, .. } = self;
         let (walls, polygons, discs) = (Arc::clone(walls), polygons.clone(), discs.clone());
-        Self { walls, polygons, discs, sorted: OnceLock::new(), spare: None }
+        Self { walls, polygons, discs, sorted: OnceLock::new() }
     }
 }
 
-impl Moving {
-    /// A body moves.
-    fn unsort(&mut self) {
-        self.spare = self.sorted.take().or(self.spare.take());
-    }
-}
-
-#[derive(Debug, Default)]
+#[derive(Debug)]
 struct Sorted {
     /// The robots by the cell of their center; at the end those beyond the borders.
     robots: IndexLists<(u32, Disc)>,
@@ -89,21 +78,20 @@ struct Sorted {
 }
 
 impl Sorted {
-    /// The bodies sorted into cells, in the memory of an earlier result.
-    fn new(mut memory: Self, moving: &Moving) -> Self {
+    /// The bodies sorted into cells.
+    fn new(moving: &Moving) -> Self {
         let Moving { walls, polygons, discs, .. } = moving;
         let visible = &walls.visible;
-        memory.are_few = discs.len() + polygons.len() <= FEW_BODIES;
-        memory.polygons.sort(polygons, (!memory.are_few).then_some(visible));
+        let are_few = discs.len() + polygons.len() <= FEW_BODIES;
+        let polygons = SortedPolygons::new(polygons, (!are_few).then_some(visible));
         // A disc of radius 0 stands for a robot with corners, whose polygon hides its center.
         let round = discs.iter().enumerate().filter(|(_, disc)| disc.radius_m > 0.0);
         let cells = round.map(|(robot, disc)| {
-            let cell =
-                if memory.are_few { 0 } else { visible.cell_at(&disc.center).unwrap_or(visible.len()) };
+            let cell = if are_few { 0 } else { visible.cell_at(&disc.center).unwrap_or(visible.len()) };
             (cell, (robot as u32, *disc))
         });
-        memory.robots.sort(if memory.are_few { 1 } else { visible.len() + 1 }, cells);
-        memory
+        let robots = IndexLists::sorted(if are_few { 1 } else { visible.len() + 1 }, cells);
+        Self { robots, polygons, are_few }
     }
 }
 
@@ -122,7 +110,7 @@ impl Scene {
         let visible = PotentiallyVisibleSet::new(low, high, walls, &edges, range_m, radius_m);
         let solids = walls.iter().map(Edge::of_rectangle).collect();
         let (walls, polygons) = (Arc::new(Walls { solids, edges, visible }), Polygons::new(polygons));
-        Self { moving: Arc::new(Moving { walls, polygons, discs, sorted: OnceLock::new(), spare: None }) }
+        Self { moving: Arc::new(Moving { walls, polygons, discs, sorted: OnceLock::new() }) }
     }
 
     /// Sets the corners of the convex body with an index (counter-clockwise, m). No corners: the body is absent.
@@ -131,33 +119,23 @@ impl Scene {
         &mut self,
         index: usize,
         robot: Option<usize>,
-        corners: impl ExactSizeIterator<Item = Point2<f64>>,
+        corners: impl Iterator<Item = Point2<f64>>,
     ) {
         let moving = Arc::make_mut(&mut self.moving);
         moving.polygons.set(index, robot, corners);
-        moving.unsort();
+        moving.sorted = OnceLock::new();
     }
 
     /// Sets the center of a robot, m.
     pub(in crate::physics) fn move_disc(&mut self, robot: usize, center: Point2<f64>) {
         let moving = Arc::make_mut(&mut self.moving);
         moving.discs[robot].center = center;
-        moving.unsort();
-    }
-
-    /// Prepares the bodies for rays, in memory that was used before if no clone shares them.
-    pub(in crate::physics) fn sort(&mut self) {
-        if self.moving.sorted.get().is_none()
-            && let Some(moving) = Arc::get_mut(&mut self.moving)
-        {
-            let memory = moving.spare.take().unwrap_or_default();
-            moving.sorted = Sorted::new(memory, moving).into();
-        }
+        moving.sorted = OnceLock::new();
     }
 
     /// The moving bodies, sorted into cells.
     fn sorted(&self) -> &Sorted {
-        self.moving.sorted.get_or_init(|| Sorted::new(Sorted::default(), &self.moving))
+        self.moving.sorted.get_or_init(|| Sorted::new(&self.moving))
     }
 
     /// Computes what `beams` of a laser at the pose `laser` hit. The laser never sees the robot `own`. `read` receives
@@ -178,9 +156,8 @@ impl Scene {
     fn cast_into(&self, beams: &Beams, laser: &Isometry2<f64>, own: usize, scratch: &mut Scratch) {
         let Walls { solids, edges, visible } = &*self.moving.walls;
         let Sorted { robots, polygons, are_few } = self.sorted();
-        let Scratch { inverse, discs, tested } = scratch;
+        let Scratch { inverse, tested } = scratch;
         let mut hits = Hits::new(beams, laser, inverse);
-        discs.clear(robots.items.len() + polygons.len());
         let at = Point2::from(laser.translation.vector);
         let own_cell = visible.cell_at(&at);
         let has_polygons = polygons.len() > 0;
@@ -193,23 +170,21 @@ impl Scene {
             Some(cell) => {
                 let cells = visible.cells.get(cell).iter().map(|&cell| cell as usize);
                 for cell in cells.chain([visible.len()]) {
-                    add_robots(discs, &mut hits, robots.get(cell), own);
+                    add_robots(&mut hits, robots.get(cell), own);
                     if has_polygons {
                         for &index in polygons.in_cell(cell).iter().filter(|index| tested.is_first(**index)) {
-                            discs.push_polygon(index, polygons, own, &mut hits);
+                            polygons.add_to(index, own, &mut hits);
                         }
                     }
                 }
             }
             None => {
-                add_robots(discs, &mut hits, &robots.items, own);
+                add_robots(&mut hits, &robots.items, own);
                 for index in 0..polygons.len() as u32 {
-                    discs.push_polygon(index, polygons, own, &mut hits);
+                    polygons.add_to(index, own, &mut hits);
                 }
             }
         }
-        // Last, since other bodies hide most of them.
-        discs.add_to(polygons, &mut hits);
         let polygon_cell = own_cell.filter(|_| !are_few);
         if is_in_wall(solids, visible, own_cell, &at) || polygons.contains(polygon_cell, own, &at) {
             hits.add_inside();
@@ -233,10 +208,10 @@ fn is_in_wall(
 
 // Runs for every visible cell, most of which are empty: a call would cost 5 % of a simulated second.
 #[inline(always)]
-fn add_robots(discs: &mut Discs, hits: &mut Hits<'_>, robots: &[(u32, Disc)], own: usize) {
+fn add_robots(hits: &mut Hits<'_>, robots: &[(u32, Disc)], own: usize) {
     for (robot, disc) in robots {
         if *robot as usize != own {
-            discs.push(disc, hits);
+            hits.add_disc(disc);
         }
     }
 }

@@ -81,13 +81,10 @@ fn what_is_left_out_changes_no_bit() {
         let mut scene = scene(&mut random, range_m, case >= 40);
         for place in 0..120 {
             if place % 40 == 0 {
-                // Sorted anew, now and then in memory that was used before.
+                // Sorted anew.
                 let robot = place % scene.moving.discs.len();
                 let center = scene.moving.discs[robot].center;
                 scene.move_disc(robot, center + Vector2::new(0.01, 0.0));
-                if case % 2 == 0 {
-                    scene.sort();
-                }
             }
             let count = random.uniform(1.0..200.0) as usize;
             let is_full = place % 3 == 0 && count > 1;

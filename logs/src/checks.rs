@@ -1,0 +1,17 @@
+//! What cannot be true of a log, and what should be known of it: each check sees scans, poses or times as they come, and says
+//! at the end why the log is impossible, or what to note.
+
+mod doubts;
+mod holes;
+mod jumps;
+mod pace;
+mod speeds;
+mod standing;
+pub(crate) mod times;
+
+pub(crate) use doubts::{Doubts, OdometryTimes, typical};
+pub(crate) use holes::{Holes, LONGEST_GAP_S};
+pub(crate) use jumps::Jumps;
+pub(crate) use pace::Pace;
+pub(crate) use speeds::Speeds;
+pub(crate) use standing::{MIN_MOTION_M, MIN_MOTION_RAD, NO_MOTION, Standing, UNKNOWN_MOTION};

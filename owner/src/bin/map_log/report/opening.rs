@@ -1,0 +1,125 @@
+//! The first lines of the page: is the map good, where is it liveliest, how many doors.
+
+use super::marks::{Mark, MarkKind};
+use super::plan::Shown;
+use super::{Page, middle};
+use maud::{Markup, html};
+use nalgebra::{Point2, Vector2};
+use owner::words::{Seen, changed, range};
+use survey::{Place, PlaceKind, Verdict};
+
+/// Half the side of the rectangle around a point in doubt, m.
+const HALF_M: f64 = 0.4;
+
+impl Page<'_> {
+    /// What everyone should read.
+    pub(super) fn opening(&self) -> Markup {
+        let (class, words) = match (self.summary.verdict, self.summary.is_refused) {
+            (Verdict::Good, _) => ("", "This map is good: what the laser saw from different places agrees."),
+            (Verdict::UsableWithCare, _) => {
+                ("care", "This map is usable with care: parts of it are probably wrong.")
+            }
+            (Verdict::NotUsable, true) => {
+                ("bad", "This map is not usable: it is wrong. It has no rates and no masks.")
+            }
+            (Verdict::NotUsable, false) => {
+                ("bad", "This map is not usable: it is wrong. It was accepted anyway.")
+            }
+        };
+        html! {
+            div class={ "opening " (class) } {
+                h1 { (words) }
+                @if !self.summary.verdict_reasons.is_empty() {
+                    ul { @for reason in &self.summary.verdict_reasons { li { (reason) "." } } }
+                    p { a href="#doubts" { "Uncertain places of the map" } }
+                }
+                p { (self.liveliest()) }
+                p { (self.doors()) }
+                @if let Some(why) = &self.summary.rates_withheld { p { strong { "No rates: " } (why) "." } }
+                @if self.summary.is_interrupted {
+                    p { strong { "Interrupted: " } "the maps and the numbers are of the part of the logs up to then." }
+                }
+            }
+        }
+    }
+
+    fn liveliest(&self) -> Markup {
+        let Some(place) = self.summary.places.first() else {
+            return html! { "Nothing of 0.02 m² or more was seen to change." };
+        };
+        let is_known = |place: &Place| self.seen(place).is_none_or(|seen| seen.is_known());
+        let is_any_known = self.summary.places.iter().any(is_known);
+        let begin = match (self.has_rates(), is_any_known) {
+            (false, _) => "Most cells changed at ",
+            (true, true) => "Most often it changes at ",
+            (true, false) => "Most was seen at ",
+        };
+        html! {
+            (begin) (self.link(place)) ", " (self.plan.words(&middle(place))) " of the plan" (self.with_rate(place)) "."
+            @if self.has_rates() && !is_any_known {
+                " This is a first impression: no place was observed for long enough to say how often it changes, or where it changes most."
+            }
+        }
+    }
+
+    fn with_rate(&self, place: &Place) -> String {
+        let Some(rates) = &place.rates else { return String::new() };
+        let seen =
+            self.door(place).map_or_else(|| Seen::of_place(rates), |door| Seen::of_door(&door.statistics));
+        let (does, did) = match place.kind {
+            PlaceKind::Door { .. } => ("the door opens", "the door opened"),
+            PlaceKind::Traffic => ("something passes there", "something passed there"),
+            _ => ("something comes and goes there", "something came there"),
+        };
+        match (seen.how_often(), seen.per_hour) {
+            (Some(often), Some((rate, ends))) if seen.is_known() => {
+                format!(": {does} {often} (90 % range: {})", range(rate, ends))
+            }
+            (Some(often), _) => format!(": {did} {often}"),
+            (None, _) => format!(": {}", changed(place.changes, &seen)),
+        }
+    }
+
+    fn doors(&self) -> Markup {
+        let mut doors: Vec<&Place> = self.summary.places.iter().filter(|place| self.is_door(place)).collect();
+        doors.sort_by_key(|door| door.number);
+        match &doors[..] {
+            [] => html! { "No door was seen to open or close." },
+            [door] => {
+                html! { "One door was found: " (self.link(door)) ", " (self.plan.words(&middle(door))) " of the plan." }
+            }
+            doors => html! {
+                (doors.len()) " doors were found: "
+                @for (number, door) in doors.iter().enumerate() {
+                    @if number > 0 { (if number + 1 == doors.len() { " and " } else { ", " }) }
+                    (self.link(door)) " " (self.plan.words(&middle(door)))
+                }
+                "."
+            },
+        }
+    }
+
+    /// The uncertain places of the map.
+    pub(super) fn doubts(&self) -> Markup {
+        if self.summary.verdict == Verdict::Good {
+            return html! {};
+        }
+        let doubts = self.summary.quality.iter().flat_map(|quality| &quality.doubts);
+        let around = Vector2::repeat(HALF_M);
+        let mark = |(number, doubt): (usize, &survey::Doubt)| {
+            let at = Point2::new(doubt.x_m, doubt.y_m);
+            Mark {
+                label: number.to_string(),
+                link: None,
+                points: vec![at - around, at + around],
+                kind: MarkKind::Doubt,
+            }
+        };
+        let marks: Vec<Mark> = (1..).zip(doubts).map(mark).collect();
+        html! {
+            h2 #doubts { "Uncertain places of the map" }
+            p { "The numbers are the uncertain places, in the order of time. There, walls can be drawn twice, or in the wrong place." }
+            figure { (self.plan.draw(Shown::Places, &marks, "Uncertain places")) }
+        }
+    }
+}

@@ -1,0 +1,86 @@
+//! A route, and a graph of routes, at the times of arrival.
+
+use anyhow::{Context, bail, ensure};
+use interfaces::FARTHEST_M;
+use nalgebra::Point2;
+use serde::Serialize;
+use serde_json::Value;
+use std::path::Path;
+use survey::{Forecast, RouteGraph, Travel};
+
+/// A point of a route.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct Stop {
+    pub(crate) x_m: f64,
+    pub(crate) y_m: f64,
+    /// The time of arrival, s.
+    pub(crate) time_s: f64,
+    /// The probability that the way to it is blocked then; `null` if it was never seen.
+    pub(crate) blocked: Option<f64>,
+}
+
+/// The points of the route in a file: a line for each, with x and y (m), or with time (s), x and y, as in a TUM trajectory.
+pub(crate) fn route(path: &Path, forecast: &Forecast, travel: Travel) -> anyhow::Result<Vec<Stop>> {
+    let text =
+        std::fs::read_to_string(path).with_context(|| format!("{}: cannot read it", path.display()))?;
+    let mut points: Vec<(Option<f64>, Point2<f64>)> = Vec::new();
+    for (number, line) in (1..).zip(text.lines().map(str::trim)) {
+        if line.is_empty() || line.starts_with('#') {
+            continue;
+        }
+        let values = line.split([',', ' ', '\t', ';']).filter(|word| !word.is_empty());
+        let numbers: Result<Vec<f64>, _> = values.map(str::parse::<f64>).collect();
+        match numbers.as_deref() {
+            Ok([x, y]) => points.push((None, Point2::new(*x, *y))),
+            Ok([time_s, x, y, ..]) => points.push((Some(*time_s), Point2::new(*x, *y))),
+            Err(_) if points.is_empty() => {} // the names of the columns
+            _ => bail!("{}, line {number}: a point is `x y` or `time x y`, as in 1.5 2.0", path.display()),
+        }
+        let Some((time_s, at)) = points.last() else { continue };
+        let line = || format!("{}, line {number}", path.display());
+        ensure!(
+            at.iter().all(|at_m| at_m.abs() <= FARTHEST_M),
+            "{}: x and y must be numbers from -{FARTHEST_M} to {FARTHEST_M} m, found {} and {}",
+            line(),
+            at.x,
+            at.y
+        );
+        let before_s = points.iter().rev().nth(1).and_then(|(time_s, _)| *time_s);
+        ensure!(
+            time_s.is_none_or(|time_s| time_s.is_finite() && before_s.is_none_or(|before_s| time_s >= before_s)),
+            "{}: a time must be a finite number of seconds, not before that of the point before, found {}",
+            line(),
+            time_s.unwrap_or_default()
+        );
+    }
+    ensure!(points.len() >= 2, "{}: a route needs at least two points", path.display());
+    let (begin_s, mut before, mut time_s) = (points[0].0, points[0].1, travel.departure_s);
+    let stops = points.into_iter().map(|(own_s, at)| {
+        let from_s = time_s;
+        let length_m = (at - before).norm();
+        time_s = match own_s.zip(begin_s) {
+            Some((own_s, begin_s)) => travel.departure_s + own_s - begin_s,
+            None => time_s + length_m / travel.speed_m_s,
+        };
+        let arrival_s = |way_m: f64| from_s + (time_s - from_s) * way_m / length_m.max(1e-9);
+        let blocked = forecast.outlook().stopped([before, at], travel.radius_m, arrival_s);
+        before = at;
+        Stop { x_m: at.x, y_m: at.y, time_s, blocked }
+    });
+    Ok(stops.collect())
+}
+
+/// The graph of routes in a file, with the probability that each edge is open at the time of arrival.
+pub(crate) fn graph(
+    path: &Path,
+    forecast: &Forecast,
+    travel: Travel,
+    from: Option<u64>,
+) -> anyhow::Result<Value> {
+    let name = path.display();
+    let text = std::fs::read_to_string(path).with_context(|| format!("{name}: cannot read it"))?;
+    let graph =
+        RouteGraph::parse(&text).with_context(|| format!("{name}: this is no graph of nav2_route"))?;
+    let edges = graph.outlook(&forecast.outlook(), travel, from)?;
+    Ok(graph.with(&edges))
+}
