@@ -1,16 +1,31 @@
 //! The readings of a robot that maps a place for the first time, and whether they must be read again.
 
-use crate::constants::{
-    AMBIGUOUS, BROKEN_READINGS, CERTAIN_STD, CORRECTED_STD, FROZEN_WAY_M, INCONSISTENT, LOG_NOISE_M,
-    MAX_READINGS, MAX_REJECTED, NEAR_STD, OPENING_WAY_M, SEARCH_EVERY, STDS, SUBMAP_KEYFRAMES, WINDOW,
-};
+use crate::constants::{AMBIGUOUS, LOG_NOISE_M, NEAR_STD, SEARCH_EVERY, STDS, SUBMAP_KEYFRAMES};
 use crate::estimate::{Localized, PoseEstimate, PoseState};
 use crate::localizer::PosePrior;
 use crate::openings::has_opening;
 use crate::settings::LocalizerSettings;
+use crate::spread::Spread;
 use crate::trajectory::{TrajectoryFinder, in_frame};
 use interfaces::{CellState, Grid, LaserReading, SettingsError, heading_rad};
 use nalgebra::{Isometry2, Matrix3, Vector2};
+
+/// Motions in the map and by matching that differ by more than this, and than this many standard deviations, are inconsistent.
+const INCONSISTENT: Spread = Spread::of_error(0.06);
+/// Keyframes of the longer way over which motions are compared: about 5 m.
+const WINDOW: usize = 16;
+/// Ways on known ground after which the map is frozen: without openings, and with openings that may be too narrow, m.
+const FROZEN_WAY_M: f64 = 60.0;
+const OPENING_WAY_M: f64 = 300.0;
+/// The first map is frozen after this number of readings, which bounds the memory: half an hour at 10 Hz.
+const MAX_READINGS: usize = 18_000;
+/// The same after this many readings in a row that do not agree with those before: the robot was carried.
+const BROKEN_READINGS: u32 = 10;
+/// Maximum number of rejected replays.
+const MAX_REJECTED: u32 = 3;
+/// Errors of a certain pose, and of the corrected trajectory, which are the same for many scans.
+const CERTAIN_STD: Spread = Spread { m: 0.01, rad: 0.003 };
+const CORRECTED_STD: Spread = Spread::of_error(0.003);
 
 /// A reading, and what the localizer has made of it.
 #[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]

@@ -25,9 +25,7 @@ use crate::estimate::Localized;
 use crate::first_map::{FirstMap, Log};
 use crate::localizer::Localizer;
 use crate::settings::LocalizerSettings;
-use interfaces::{
-    CellState, Grid, GridFrame, LaserReading, SettingsError, ValueError, read_value, write_value,
-};
+use interfaces::{CellState, Grid, GridFrame, LaserReading, SettingsError, ValueError, from_bytes, to_bytes};
 use mapper::Mapper;
 use nalgebra::{Isometry2, Matrix3};
 use replay::{Background, Replay, Replayed, learn};
@@ -237,13 +235,7 @@ impl LoopClosingLocalizer {
     /// Everything that readings have changed, as bytes; settings are not in it. While the first map is young, that is all
     /// readings. A map that is being learned again must be [settled](Self::settle) before.
     pub fn snapshot(&mut self) -> Vec<u8> {
-        let (mut bytes, log) = (Vec::new(), self.first.as_ref().map(|first| &first.log));
-        let localizer = self.localizer.snapshot();
-        // Both always can be written. An empty snapshot would be refused.
-        match write_value(&localizer, &mut bytes).and_then(|()| write_value(&log, &mut bytes)) {
-            Ok(()) => bytes,
-            Err(ValueError) => Vec::new(),
-        }
+        to_bytes(&(self.localizer.snapshot(), self.first.as_ref().map(|first| &first.log)))
     }
 
     /// Goes on from the snapshot of a localizer with the same settings and the same frame, bit for bit. The trajectory of a
@@ -252,16 +244,15 @@ impl LoopClosingLocalizer {
     /// # Errors
     ///
     /// When the bytes are no such snapshot. The localizer must not be used then.
-    pub fn restore(&mut self, mut snapshot: &[u8]) -> Result<(), ValueError> {
-        let localizer: Vec<u8> = read_value(&mut snapshot)?;
-        let log: Option<Log> = read_value(&mut snapshot)?;
+    pub fn restore(&mut self, snapshot: &[u8]) -> Result<(), ValueError> {
+        let (localizer, log): (Vec<u8>, Option<Log>) = from_bytes(snapshot)?;
         self.background = None;
         self.localizer.restore(&localizer)?;
         self.first = match log {
             Some(log) => Some(FirstMap::with_log(&self.settings, log).ok_or(ValueError)?),
             None => None,
         };
-        if snapshot.is_empty() { Ok(()) } else { Err(ValueError) }
+        Ok(())
     }
 
     /// See [`Localizer::surfaces`].

@@ -4,13 +4,16 @@
 //! a second scan (as Segal, Haehnel & Thrun 2009 use surfaces on both sides), the kernel of Geman & McClure (1987), and
 //! a prior from odometry.
 
-use crate::constants::{MAX_STEPS, MIN_KERNEL, STEP, SURFEL_STD_M};
+use crate::constants::{MAX_STEPS, STEP, SURFEL_STD_M};
 use crate::placement::Placement;
 use crate::scan_points::ScanPoint;
 use crate::spread::Spread;
 use crate::surfel_map::SurfelMap;
 use interfaces::heading_rad;
 use nalgebra::{Isometry2, Matrix3, Matrix6, Vector2, Vector3, Vector6};
+
+/// A point whose noise across the surface is small must not pull where it hits another surface: minimum share of the kernel.
+const MIN_KERNEL: f64 = 0.3;
 
 /// A pose with the inverse of its covariance, in the frame of the map.
 #[derive(Clone, Copy, Debug)]

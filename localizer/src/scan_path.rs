@@ -1,8 +1,17 @@
 //! The path of a robot while a scan was measured, from odometry.
 
-use crate::constants::{MAX_CHORD_RAD, MAX_MISMATCH, MAX_MPS, RAD_PER_M};
+use crate::spread::Spread;
 use interfaces::{LaserReading, Twist, VelocitySample, heading_rad};
 use nalgebra::{Complex, Isometry2, Translation2, UnitComplex, Vector2, Vector3};
+
+/// Rotation equivalent to 1 m of a path within a scan, rad.
+const RAD_PER_M: f64 = 3.0;
+/// Largest difference between the motion and the sum of the velocities within a scan. Beyond it, the odometry has jumped.
+const MAX_MISMATCH: Spread = Spread { m: 0.1, rad: 0.15 };
+/// No robot is faster than this, m/s.
+const MAX_MPS: f64 = 50.0;
+/// Largest turn of which the chord approximates the arc, rad: wrong by less than 1e-5 rad.
+const MAX_CHORD_RAD: f64 = 0.1;
 
 /// The path of a robot up to the end of a scan.
 pub(crate) struct ScanPath {

@@ -6,14 +6,35 @@
 #[cfg(test)]
 mod tests;
 
-use crate::constants::{
-    AVERAGED, FULL_WEIGHT_M, GRAZING_M, GRAZING_OFF_M, GRAZING_STDS, JOIN_SPACINGS, JUDGED_M, MAX_NEIGHBORS,
-    MIN_GRAZING, NORMAL_REACH_M, SAME_SURFACE, STRAIGHT_M, STRAIGHT_STDS, SURFEL_M,
-};
+use crate::constants::{JUDGED_M, SAME_SURFACE, SURFEL_M};
 use crate::moments::Moments;
 use crate::work;
 use interfaces::{FARTHEST_M, LaserReading, Scan};
 use nalgebra::{Isometry2, Point2, Vector2};
+
+/// End points of neighboring beams that are nearer than this, in spacings of the beams, are on one surface: below about 20° between
+/// beam and surface, a third beam must confirm the surface.
+const JOIN_SPACINGS: f64 = 3.0;
+/// End points of beams that graze one surface may be this far apart, m.
+const GRAZING_M: f64 = 1.0;
+/// The third end point lies off the line by at most this many standard deviations of the noise across the surface, and by no
+/// more than this, m.
+const GRAZING_STDS: f64 = 8.0;
+const GRAZING_OFF_M: f64 = 0.03;
+/// Minimum cosine of the angle of incidence of a point: below it, surfaces are rarely straight enough.
+const MIN_GRAZING: f64 = 0.06;
+/// Normals are fitted to the points up to this far away, m: with less, the noise of 1 cm turns them by degrees.
+const NORMAL_REACH_M: f64 = 0.2;
+/// Normals are fitted to at most this number of points on either side, which bounds the work of a scan.
+const MAX_NEIGHBORS: usize = 1000;
+/// Points lie on a line if their mean square distance is below that of this many standard deviations, and this
+/// more, m.
+const STRAIGHT_STDS: f64 = 1.3;
+const STRAIGHT_M: f64 = 0.002;
+/// Length of surface with weight 1, m: a beam that grazes a wall does not confirm all of it.
+const FULL_WEIGHT_M: f64 = 0.04;
+/// The mean over this many neighbors of a point on either side tells apart what the noise of a point hides.
+const AVERAGED: usize = 4;
 
 /// A point on a surface, in the frame of the robot.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,11 +1,14 @@
 //! How well a point fits at each place of the line map, and the maxima over squares of growing size: the bounds of the
 //! branch and bound of Hess, Kohler, Rapp & Andor (2016), section V, in tables that shrink as the squares grow.
 
-use crate::constants::{ALONG_M, MAX_SIDE_M, MINOR, SCORE_CELL_M, THICK_M, TOP};
+use crate::constants::{MAX_SIDE_M, MINOR, SCORE_CELL_M, THICK_M, TOP};
 use crate::surfel_map::{SurfelMap, fitted};
 use crate::work;
 use interfaces::{Cell, CellState, Grid, GridFrame};
 use nalgebra::{Point2, Vector2};
+
+/// A surfel reaches this far along its surface, m: neighbors join.
+const ALONG_M: f64 = 0.08;
 
 /// Cells on the low sides of a frame: a square may begin outside of the frame and end inside.
 const MARGIN: usize = 1 << TOP;

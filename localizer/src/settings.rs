@@ -1,5 +1,10 @@
-use crate::constants::{HARD_DRIFT, HARD_DRIFT_RADPM, LIMIT_NOISE_M, LOG_NOISE_M};
+use crate::constants::{LIMIT_NOISE_M, LOG_NOISE_M};
 use interfaces::{SettingsCheck, SettingsError};
+
+/// Hard drift, the largest errors of an odometry that are expected by default: gains, and noise after 1 m and after 1 rad; and
+/// rad per m, which is 3°.
+const HARD_DRIFT: f64 = 0.05;
+const HARD_DRIFT_RADPM: f64 = 0.052;
 
 /// Settings of a [`Localizer`](crate::Localizer), and of a [`TrajectoryFinder`](crate::TrajectoryFinder), which uses the first two.
 #[derive(Clone, Debug, PartialEq, serde::Deserialize, serde::Serialize)]

@@ -13,9 +13,12 @@ mod tests;
 
 pub(crate) use checking::Checker;
 
-use crate::constants::{PER_CELL, PRIOR_SCANS, SAME_NORMAL, SURFEL_M};
+use crate::constants::{SAME_NORMAL, SURFEL_M};
 use interfaces::{GridFrame, ValueError, Values, read_value, runs, to_bytes, value};
 use nalgebra::{Point2, Vector2};
+
+/// Surfels in a cell: two sides of a thin wall, and a corner.
+const PER_CELL: usize = 4;
 
 /// The maximum number of cells of a grid of the localizer: they are stored one by one, seen or not.
 const MAX_CELLS: usize = 1 << 26;
@@ -112,15 +115,6 @@ impl SurfelMap {
         let mut map = Self { frame, cells, surfels: Vec::new(), removed: Vec::new(), scan: 0 };
         interfaces::restore(map.values(), bytes)?;
         Ok(map)
-    }
-
-    /// Its surfaces in a map of another frame, as those of a known map.
-    pub(crate) fn moved_to(&self, frame: &GridFrame) -> Self {
-        let mut map = Self::new(frame);
-        for surfel in self.usable() {
-            map.add(surfel.at, surfel.normal, PRIOR_SCANS);
-        }
-        map
     }
 
     /// The surfel at an index from [`SurfelMap::nearest`].

@@ -4,10 +4,22 @@
 //! found pose is certain once enough scans from enough viewpoints agree with the map: those of a wrong pose would contradict
 //! it. Until then no scan enters the map: a wrong pose would soon agree with what it has drawn itself.
 
-use crate::constants::{
-    CONTRADICTION, ENOUGH, FAIR, FAIR_NEAR, FAIR_SHARE, FIRST_VIEWS, GAIN, LOSS, MINOR, VIEW_M,
-};
+use crate::constants::{FAIR_SHARE, MINOR};
 use crate::support::Support;
+
+/// What contradicts the map counts this many times.
+const CONTRADICTION: f64 = 4.0;
+/// Agreement that says nothing: near the pose by odometry, and elsewhere, where that of wrong poses was at most 0.25.
+const FAIR_NEAR: f64 = 0.2;
+const FAIR: f64 = 0.35;
+/// Evidence of a viewpoint per agreement, for and against a pose; and the evidence that decides.
+const GAIN: f64 = 4.0;
+const LOSS: f64 = 20.0;
+const ENOUGH: f64 = 3.0;
+/// Viewpoints that the first one counts: of a laser that sees all around.
+const FIRST_VIEWS: f64 = 2.0;
+/// Way to another viewpoint, m.
+const VIEW_M: f64 = 0.25;
 
 /// What speaks for and against a pose since it was found.
 #[derive(Clone, Copy, Debug, Default, serde::Deserialize, serde::Serialize)]

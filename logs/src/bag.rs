@@ -8,6 +8,7 @@ mod files;
 mod inventory;
 mod mcap;
 mod message;
+mod messages;
 mod motion;
 mod order;
 mod plan;
@@ -17,7 +18,7 @@ mod sqlite;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use files::{BagFile, in_folder, is_bag};
+pub(crate) use files::{BagFile, in_folder};
 
 use crate::bounds;
 use crate::bytes::content_hash;

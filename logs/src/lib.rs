@@ -16,7 +16,7 @@ mod choice;
 mod error;
 mod lines;
 mod log;
-mod read_ahead;
+mod open;
 mod summary;
 
 pub use choice::TopicChoice;

@@ -2,8 +2,6 @@
 
 use crate::link::{Event, Link};
 use crate::message::{Clock, Message, Odometry, Pose, Time, Topic, covariance, header, transform};
-use crate::parameter_services::{self, Parametrized};
-use crate::value::Value;
 use interfaces::{LaserReading, Twist};
 use nalgebra::{Isometry2, Matrix3};
 use ros::{FIRST_STAMP_NS, scan_message};
@@ -84,23 +82,6 @@ impl Drift {
             + heading * square(way) / 3.0
             + square(Self::LEAST);
         Matrix3::from_diagonal(&[position, position, heading].into())
-    }
-}
-
-/// The simulator has options, and only the parameter that tools ask every node for.
-struct NoParameters;
-
-impl Parametrized for NoParameters {
-    fn list(&self) -> Vec<(String, Value)> {
-        vec![("use_sim_time".to_owned(), Value::Bool(false))]
-    }
-
-    fn about(&self, _: &str) -> (&'static str, Option<&'static str>) {
-        ("The simulator makes the time.", None)
-    }
-
-    fn set_all(&mut self, all: &[(String, Value)]) -> Result<(), String> {
-        if all == self.list() { Ok(()) } else { Err("sim_node has options, see --help".to_owned()) }
     }
 }
 
@@ -195,12 +176,6 @@ impl<L: Link> SimulatedRobot<L> {
         let twist = match event {
             Event::Message(_, Message::Twist(twist)) => twist,
             Event::Message(_, Message::TwistStamped(stamped)) => stamped.twist,
-            Event::Call(request, service, call) => {
-                if let Some((reply, _)) = parameter_services::answer(&mut NoParameters, service, &call) {
-                    self.link.answer(request, reply);
-                }
-                return;
-            }
             _ => return,
         };
         self.commanded_s = Some(self.fleet.time_s());

@@ -6,7 +6,7 @@ mod relocalizing;
 use super::PosePrior;
 use super::state::{Event, State};
 use crate::changing_map::ChangingMap;
-use crate::constants::{LOST_STD, MIN_SUPPORT, RATES_EVERY, SETTLE_S};
+use crate::constants::{LOST_STD, MIN_SUPPORT};
 use crate::estimate::{PoseState, Start};
 use crate::hypotheses::Hypotheses;
 use crate::local_trajectory_builder::{IncomingScan, Matched, ScanMatcher, Track};
@@ -17,6 +17,11 @@ use crate::surfel_map::{Checker, SurfelMap};
 use crate::verification::Verification;
 use nalgebra::{Isometry2, Matrix3, Vector3};
 use relocalizing::Relocalization;
+
+/// Scans between two updates of the weights by rates.
+const RATES_EVERY: u32 = 100;
+/// Rest at the start from nothing, s: the first scans decide the heading of all that follows (0.076° → 0.024°).
+const SETTLE_S: f64 = 2.0;
 
 /// The map of changes, and what another source knows.
 type Around<'a, M> = (&'a M, Option<PosePrior>);

@@ -1,7 +1,7 @@
 //! All readings so far are read again, at once or beside the robot.
 
 use super::{Correction, Switch};
-use crate::constants::{CHANGED_CERTAIN, NEAR_STD};
+use crate::constants::NEAR_STD;
 use crate::estimate::{Localized, PoseEstimate, PoseState};
 use crate::first_map::{FirstMap, Kept};
 use crate::localizer::{Localizer, PosePrior};
@@ -11,6 +11,9 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, Sender};
 use std::thread::JoinHandle;
+
+/// A replay is rejected if this share fewer poses would be certain; it is accepted if this share more are, or if some move.
+const CHANGED_CERTAIN: f64 = 0.02;
 
 /// A reading that came while others were read again, with the time of the map before it.
 pub(super) type Meanwhile = (LaserReading, f64, Localized);

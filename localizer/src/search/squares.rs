@@ -1,12 +1,16 @@
 //! The squares of positions that a search divides, and the bounds of their scores.
 
 use super::{Node, Search, Window};
-use crate::constants::{FAR_M, SAME_PLACE, SEARCH_CHUNK, TOP};
+use crate::constants::{FAR_M, SEARCH_CHUNK, TOP};
 use crate::score_grid::ScoreGrid;
+use crate::spread::Spread;
 use crate::work;
 use interfaces::{Cell, GridFrame, heading_rad, wrap_rad};
 use nalgebra::{Point2, Vector2};
 use std::f64::consts::PI;
+
+/// The same of poses in a search, and of places of submaps.
+const SAME_PLACE: Spread = Spread { m: 0.4, rad: 0.35 };
 
 /// The points of a scan at one heading, in cells from the robot, with their weights.
 type Turned = Vec<(i32, i32, u32)>;

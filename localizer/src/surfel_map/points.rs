@@ -1,10 +1,13 @@
 //! A line map as a list of points on surfaces, and back: what is kept of a map that is rarely needed.
 
 use super::SurfelMap;
-use crate::constants::{MAX_PLACE_M, SURFEL_M, TRUSTED_SCANS};
+use crate::constants::{SURFEL_M, TRUSTED_SCANS};
 use crate::scan_points::ScanPoint;
 use interfaces::GridFrame;
 use nalgebra::{Isometry2, Point2, Vector2};
+
+/// No map of points is larger, m.
+const MAX_PLACE_M: f64 = 200.0;
 
 impl SurfelMap {
     /// All surfels that take part in matching, in a frame whose pose in the frame of the map is `pose`.

@@ -3,9 +3,12 @@
 use super::keyframe::Keyframe;
 use super::submap::FinishedSubmap;
 use crate::beams::ranges_around;
-use crate::constants::{CLEARANCE_M, MIN_SURE_INCIDENCE, NEAR_RANGE_M, PASSED_SHARE, REFINE};
+use crate::constants::{CLEARANCE_M, MIN_SURE_INCIDENCE, NEAR_RANGE_M, REFINE};
 use crate::scan_points::ScanPoint;
 use nalgebra::{Isometry2, Point2};
+
+/// A beam passes a surface that it ends behind by this share of the range more.
+const PASSED_SHARE: f64 = 0.02;
 
 /// The numbers of beams that end at the surfaces, and that pass them.
 #[derive(Clone, Copy, Debug, Default)]

@@ -6,10 +6,16 @@
 //! contradicts all that is known.
 
 use super::sparse::Equations;
-use crate::constants::{GRAPH_KERNEL, GRAPH_SHRINK, GRAPH_STEPS, STEP};
+use crate::constants::STEP;
 use crate::matcher::difference;
 use interfaces::wrap_rad;
 use nalgebra::{Isometry2, Matrix3, Vector3};
+
+/// Steps of the graph at most; the change that ends them; a loop off by this (over its covariance) counts a quarter; factor
+/// by which this limit shrinks.
+const GRAPH_STEPS: usize = 25;
+const GRAPH_KERNEL: f64 = 16.0;
+const GRAPH_SHRINK: f64 = 3.0;
 
 /// How a motion was measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,13 +1,20 @@
 //! What matches of scans and of submaps share: gates, covariances, and what a match says.
 
 use super::submap::{Agreement, agreement};
-use crate::constants::{EXPECTED, JUDGED_M, LOOSE_STD, MIN_NOISE_M, SPURIOUS, STDS};
+use crate::constants::{JUDGED_M, MIN_NOISE_M, STDS};
 use crate::match_scene::hit_std_m;
 use crate::matcher::{Gates, Match, Prior, align, difference};
 use crate::scan_points::ScanPoint;
 use crate::spread::Spread;
 use crate::surfel_map::SurfelMap;
 use nalgebra::{Isometry2, Matrix3, Vector3};
+
+/// Contradiction to the odometry over its covariance that means nothing.
+const EXPECTED: f64 = 4.0;
+/// Share of the information that may come from normals that are a little off.
+const SPURIOUS: f64 = 0.03;
+/// Errors of a direction that no surface fixes.
+const LOOSE_STD: Spread = Spread { m: 10.0, rad: 1.0 };
 
 /// The gates of a match of scans with this noise.
 pub(super) fn gates(noise_m: f64, first_m: f64) -> Gates {

@@ -4,11 +4,14 @@ use super::TrajectoryFinder;
 use super::graph::{Edge, EdgeKind};
 use super::matching::{fit, in_frame};
 use super::places::RecognizedPlace;
-use crate::constants::{FOUND_STD, NEW_GROUND_M, TURN_M};
+use crate::constants::{FOUND_STD, TURN_M};
 use crate::estimate::PoseState;
 use crate::surfel_map::SurfelMap;
 use interfaces::heading_rad;
 use nalgebra::{Isometry2, Matrix3};
+
+/// New ground is farther than this from all places before, m.
+const NEW_GROUND_M: f64 = 4.0;
 
 impl TrajectoryFinder {
     /// The poses of all readings so far, with all loops that are closed. The pose of the first reading is the origin.

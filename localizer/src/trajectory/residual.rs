@@ -4,8 +4,13 @@ use super::graph::PoseGraph;
 use super::keyframe::Keyframe;
 use super::places::Places;
 use super::refine::around;
-use crate::constants::{CLEARANCE_M, MIN_RESIDUALS, REFINE, STD_PER_MEDIAN, TAIL};
+use crate::constants::{CLEARANCE_M, REFINE};
 use crate::scan_points::ScanPoint;
+
+/// Share of the residuals before the tail; fewer points say nothing; standard deviation in medians.
+const TAIL: f64 = 0.97;
+const MIN_RESIDUALS: usize = 200;
+const STD_PER_MEDIAN: f64 = 1.4826;
 
 /// The distances of scans from the surfaces that were seen in other passes: the errors of ranges and poses together.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -6,9 +6,8 @@ use super::keyframe::{Keyframe, filled};
 use super::matching::{gates, in_frame, motion_spread};
 use super::submap::{Agreement, FinishedSubmap, GrowingSubmap, agreement};
 use crate::constants::{
-    CLEARLY, FAIR_SHARE, FAR_SCAN, FOUND_STD, JUDGED_M, KEYFRAME, KEYFRAME_STD, MAJORITY, MAX_WORK,
-    MIN_AGREEMENT, MIN_OVERLAP, MIN_POINTS, MIN_RESPONSE, MIN_SHARE, MISSING_STD, OTHER_TURNS_RAD, SCAN_STD,
-    SEARCHED, SEARCHED_STD, SUBMAP_KEYFRAMES, SURFEL_M,
+    FAIR_SHARE, FOUND_STD, JUDGED_M, KEYFRAME, KEYFRAME_STD, MAJORITY, MAX_WORK, MIN_AGREEMENT, MIN_OVERLAP,
+    MIN_RESPONSE, SCAN_STD, SUBMAP_KEYFRAMES, SURFEL_M,
 };
 use crate::faults::Fault;
 use crate::local_trajectory_builder::{IncomingScan, Matched, ScanMatcher, Track};
@@ -22,6 +21,21 @@ use crate::spread::Spread;
 use crate::surfel_map::SurfelMap;
 use interfaces::LaserReading;
 use nalgebra::{Isometry2, Matrix3, Vector3};
+
+/// Minimum number of points on a submap.
+const MIN_POINTS: usize = 12;
+/// Where less agrees: turns that are tried, rad (a laser out of step with the odometry), then a search.
+const OTHER_TURNS_RAD: [f64; 3] = [0.08, 0.16, 0.25];
+const MIN_SHARE: f64 = 0.3;
+const SEARCHED: Spread = Spread { m: 0.8, rad: 0.4 };
+/// Errors of the prediction in a search: along a corridor nothing but the odometry says how far the robot went.
+const SEARCHED_STD: Spread = Spread { m: 0.05, rad: 0.3 };
+/// Another pose must confirm more by this factor.
+const CLEARLY: f64 = 1.15;
+/// Errors of a motion without odometry, and without a match.
+const MISSING_STD: Spread = Spread::of_motion(0.3);
+/// A motion between two scans after which the robot has another viewpoint.
+const FAR_SCAN: Spread = Spread { m: 0.3, rad: 0.3 };
 
 /// While its laser starts, a robot does not drive farther than this, m.
 const START_M: f64 = 1.0;

@@ -2,9 +2,7 @@
 
 use super::{MapMatcher, Step};
 use crate::changing_map::ChangingMap;
-use crate::constants::{
-    AMBIGUOUS, CELLS_PER_LOOKUP, MAX_REACH_M, MAX_SIDE_M, MAX_WORK, MIN_FOUND, MIN_SCORE,
-};
+use crate::constants::{AMBIGUOUS, CELLS_PER_LOOKUP, MAX_SIDE_M, MAX_WORK, MIN_FOUND, MIN_SCORE};
 use crate::hypotheses::Hypotheses;
 use crate::motion::Motion;
 use crate::scan_points::ScanPoint;
@@ -13,6 +11,9 @@ use crate::search::{Search, Window, lower, search};
 use interfaces::GridFrame;
 use nalgebra::{Isometry2, Point2, Vector2};
 use std::f64::consts::PI;
+
+/// Surfaces farther away are not looked for in parts of a map, m.
+const MAX_REACH_M: f64 = 28.8;
 
 /// A search that goes on in the next scan.
 #[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
