@@ -34,6 +34,7 @@ impl TrialFacts {
         let world = Facts::default().with("world", &spec.name).with("seed", seed);
         let content = Facts::default().with("content of the world", format!("{content:016x}"));
         let pilot = pilot
+            .with("pose", pose.name())
             .with_learned_settings("mapper", mapper, Some(&robot::default_mapper()))
             .with_learned_settings("localizer", &settings.localizer, Some(&LocalizerSettings::default()))
             .with_settings("agent", agent)

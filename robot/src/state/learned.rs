@@ -19,9 +19,9 @@ const FILTER: &str = "filter";
 /// The time at which readings have the time 0, in seconds since 1970-01-01 UTC. Absent where readings have no dates.
 const DATES: &str = "dates";
 const SESSIONS: &str = "sessions";
-/// The settings that must be the same in a state and in the program that reads it. Others are those of the program.
-const MUST_AGREE: [&str; 5] = [
-    "map.resolution_m",
+/// The settings that must be the same in a state and in the program that reads it, beside the resolution. Others are those of the
+/// program.
+const MUST_AGREE: [&str; 4] = [
     "mapper.estimator",
     "mapper.occupancy",
     "filter.max_range_m",
@@ -163,10 +163,15 @@ pub fn saved_mapper(state: &State) -> Result<Mapper, StateError> {
 pub fn saved_mapper_with(
     state: &State,
     settings: &MapperSettings,
+    resolution_m: f64,
     filter: Option<&ScanFilterSettings>,
 ) -> Result<(Mapper, Option<String>), StateError> {
     let facts = state.facts(MAPPER).ok_or(StateError::NothingLearned)?;
     let frame = saved_frame(state).ok_or_else(|| StateError::OtherContent(MAPPER.to_owned()))?;
+    if frame.resolution_m() != resolution_m {
+        let [saved, expected] = [frame.resolution_m(), resolution_m].map(|side_m| format!("`{side_m}`"));
+        return Err(StateError::OtherFacts { name: "map.resolution_m".to_owned(), saved, expected });
+    }
     let others = facts.agree(&mapper_facts(settings, &frame, filter), &MUST_AGREE)?;
     let note = (!others.is_empty())
         .then(|| format!("the state has other values, and those of this run count: {}", others.join(", ")));
@@ -254,7 +259,7 @@ impl LearnedFacts {
         let misfit = |part: &str| StateError::OtherContent(part.to_owned());
         let (settings, frame) = (robot.mapper.settings().clone(), *robot.mapper.frame());
         let dates = (robot.mapper.epoch_s(), robot.mapper.is_dated());
-        let (mut mapper, note) = saved_mapper_with(state, &settings, self.filter.as_ref())?;
+        let (mut mapper, note) = saved_mapper_with(state, &settings, frame.resolution_m(), self.filter.as_ref())?;
         if !state.has(DATES) {
             mapper.set_epoch(dates.0, dates.1);
         }

@@ -130,8 +130,8 @@ impl Survey {
         let last = survey.logs.iter().rposition(|log| log.used > 0);
         if let (Some(last), Some(_)) = (last, saved_frame(state)) {
             let settings = survey.settings_of(last);
-            let (mut mapper, differs) =
-                saved_mapper_with(state, &settings.mapper, Some(&survey.settings.filter))?;
+            let (resolution_m, filter) = (survey.settings.resolution_m, Some(&survey.settings.filter));
+            let (mut mapper, differs) = saved_mapper_with(state, &settings.mapper, resolution_m, filter)?;
             note = differs;
             survey.date(&mut mapper, last);
             survey.book = PlaceBook::of_map(&mapper);
