@@ -207,8 +207,9 @@ fn a_log_adds_to_the_map_of_a_robot() {
     run.write("a.log", &standing_log(MONDAY_S, 60));
     let files = ["a.log", "a.state"];
     insta::assert_snapshot!(refuses(&run, &format!("a.log {SAVED} --resolution 0.1"), &files), @"error: a.state: the state is of another run: `map.resolution_m` is `0.05` there, and `0.1` here");
+    insta::assert_snapshot!(refuses(&run, &format!("a.log {SAVED}"), &files), @"error: a.state: the state is of another run: `filter.max_range_m` is `10.0` there, and `20.0` here");
     let robot = fs::read(run.path("a.state")).unwrap();
-    run.goes_well(&format!("a.log {SAVED}"));
+    run.goes_well(&format!("a.log {SAVED} --max-range 10"));
     let run = run.with_state_file();
     let shown = run.goes_well("show a.state").stdout;
     let sessions: Vec<&str> = shown.lines().filter(|line| line.contains("scans learned")).collect();

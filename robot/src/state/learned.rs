@@ -21,12 +21,8 @@ const DATES: &str = "dates";
 const SESSIONS: &str = "sessions";
 /// The settings that must be the same in a state and in the program that reads it, beside the resolution. Others are those of the
 /// program.
-const MUST_AGREE: [&str; 4] = [
-    "mapper.estimator",
-    "mapper.occupancy",
-    "filter.max_range_m",
-    "filter.min_shadow_angle_rad",
-];
+const MUST_AGREE: [&str; 4] =
+    ["mapper.estimator", "mapper.occupancy", "filter.max_range_m", "filter.min_shadow_angle_rad"];
 
 /// A session in a place: a log, or a run of a robot.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
@@ -259,7 +255,8 @@ impl LearnedFacts {
         let misfit = |part: &str| StateError::OtherContent(part.to_owned());
         let (settings, frame) = (robot.mapper.settings().clone(), *robot.mapper.frame());
         let dates = (robot.mapper.epoch_s(), robot.mapper.is_dated());
-        let (mut mapper, note) = saved_mapper_with(state, &settings, frame.resolution_m(), self.filter.as_ref())?;
+        let (mut mapper, note) =
+            saved_mapper_with(state, &settings, frame.resolution_m(), self.filter.as_ref())?;
         if !state.has(DATES) {
             mapper.set_epoch(dates.0, dates.1);
         }
