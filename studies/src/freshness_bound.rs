@@ -14,7 +14,7 @@
 
 pub mod building;
 
-use crate::calendar::{Habit, blocked_probability};
+use crate::calendar::{Habit, Law, blocked_probability};
 use crate::{Model, STEP_S};
 use rayon::prelude::*;
 

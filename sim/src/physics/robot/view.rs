@@ -38,8 +38,7 @@ impl<'a> RobotView<'a> {
         (self.robot.odometry.pose, self.robot.odometry_twist())
     }
 
-    /// The latest reading of the main laser scanner; `None` before the first measurement. As with all sensors, the
-    /// reading is computed when it is first read.
+    /// The latest reading of the main laser scanner; `None` before the first measurement.
     pub fn reading(&self) -> Option<&'a LaserReading> {
         self.robot.reading()
     }
@@ -51,17 +50,20 @@ impl<'a> RobotView<'a> {
 
     /// The latest reading of each laser scanner, in the order of the spec.
     pub fn lasers(&self) -> impl Iterator<Item = Option<&'a LaserReading>> + use<'a> {
-        self.robot.sensors.iter().filter_map(Sensor::laser_reading)
+        self.readings()
+            .filter_map(|reading| if let SensorReading::Laser(laser) = reading { Some(laser) } else { None })
     }
 
     /// The latest reading of each sonar, in the order of the spec.
     pub fn sonars(&self) -> impl Iterator<Item = Option<SonarReading>> + use<'a> {
-        self.robot.sensors.iter().filter_map(Sensor::sonar_reading)
+        self.readings()
+            .filter_map(|reading| if let SensorReading::Sonar(sonar) = reading { Some(sonar) } else { None })
     }
 
     /// The latest detections of the fiducial finder, robots first, each in the order of the spec.
     pub fn fiducials(&self) -> impl Iterator<Item = &'a Fiducial> + use<'a> {
-        self.robot.sensors.iter().filter_map(Sensor::detections).flatten()
+        self.readings()
+            .flat_map(|reading| if let SensorReading::Fiducials(found) = reading { found } else { &[] })
     }
 
     /// For each bumper, from right to left, whether it touches something now.

@@ -8,7 +8,7 @@ use super::disc::Disc;
 use super::edges::{Edge, visible_edges};
 use super::hiding::add_edges;
 use super::index_lists::IndexLists;
-use super::polygons::{Polygons, SortedPolygons, Tested};
+use super::polygons::{Body, SortedPolygons};
 use super::visibility::PotentiallyVisibleSet;
 use crate::physics::shape::Rectangle;
 use nalgebra::{Isometry2, Point2};
@@ -24,17 +24,24 @@ thread_local! {
 struct Scratch {
     /// The result: one over the range for each beam, 1/m; 0 where there is no hit.
     inverse: Vec<f64>,
-    tested: Tested,
+    /// The convex bodies that the cast has tested.
+    tested: Vec<bool>,
 }
 
 /// Up to this number of moving bodies, all of them are tested, and not only those in the cells that may be seen: to go
 /// through the cells would take longer.
 const FEW_BODIES: usize = 16;
 
-/// Everything that a laser can see. A clone shares everything until a body moves.
+/// Everything that a laser can see.
 #[derive(Clone, Debug)]
 pub(in crate::physics) struct Scene {
-    moving: Arc<Moving>,
+    walls: Arc<Walls>,
+    /// The convex bodies that appear, disappear or move.
+    polygons: Vec<Body>,
+    /// The robots, by index.
+    discs: Vec<Disc>,
+    /// The same bodies by position, as soon as a ray is cast.
+    sorted: OnceLock<Sorted>,
 }
 
 /// The bodies that never move.
@@ -45,30 +52,7 @@ struct Walls {
     visible: PotentiallyVisibleSet,
 }
 
-/// The walls, and the other bodies.
-#[derive(Debug)]
-struct Moving {
-    /// Here, so that a clone of the scene counts one owner of this world, and not one of the walls that the worlds on all
-    /// threads share: all of them would write to the same memory.
-    walls: Arc<Walls>,
-    /// The convex bodies that appear, disappear or move.
-    polygons: Polygons,
-    /// The robots, by index.
-    discs: Vec<Disc>,
-    /// The same bodies by position, as soon as a ray is cast.
-    sorted: OnceLock<Sorted>,
-}
-
-impl Clone for Moving {
-    /// A clone is made because a body moves.
-    fn clone(&self) -> Self {
-        let Self { walls, polygons, discs, .. } = self;
-        let (walls, polygons, discs) = (Arc::clone(walls), polygons.clone(), discs.clone());
-        Self { walls, polygons, discs, sorted: OnceLock::new() }
-    }
-}
-
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Sorted {
     /// The robots by the cell of their center; at the end those beyond the borders.
     robots: IndexLists<(u32, Disc)>,
@@ -79,8 +63,8 @@ struct Sorted {
 
 impl Sorted {
     /// The bodies sorted into cells.
-    fn new(moving: &Moving) -> Self {
-        let Moving { walls, polygons, discs, .. } = moving;
+    fn new(scene: &Scene) -> Self {
+        let Scene { walls, polygons, discs, .. } = scene;
         let visible = &walls.visible;
         let are_few = discs.len() + polygons.len() <= FEW_BODIES;
         let polygons = SortedPolygons::new(polygons, (!are_few).then_some(visible));
@@ -109,8 +93,8 @@ impl Scene {
         let radius_m = discs.iter().fold(0.0, |most: f64, disc| most.max(disc.radius_m));
         let visible = PotentiallyVisibleSet::new(low, high, walls, &edges, range_m, radius_m);
         let solids = walls.iter().map(Edge::of_rectangle).collect();
-        let (walls, polygons) = (Arc::new(Walls { solids, edges, visible }), Polygons::new(polygons));
-        Self { moving: Arc::new(Moving { walls, polygons, discs, sorted: OnceLock::new() }) }
+        let (walls, polygons) = (Arc::new(Walls { solids, edges, visible }), vec![Body::default(); polygons]);
+        Self { walls, polygons, discs, sorted: OnceLock::new() }
     }
 
     /// Sets the corners of the convex body with an index (counter-clockwise, m). No corners: the body is absent.
@@ -121,21 +105,22 @@ impl Scene {
         robot: Option<usize>,
         corners: impl Iterator<Item = Point2<f64>>,
     ) {
-        let moving = Arc::make_mut(&mut self.moving);
-        moving.polygons.set(index, robot, corners);
-        moving.sorted = OnceLock::new();
+        let body = &mut self.polygons[index];
+        body.robot = robot;
+        body.corners.clear();
+        body.corners.extend(corners);
+        self.sorted = OnceLock::new();
     }
 
     /// Sets the center of a robot, m.
     pub(in crate::physics) fn move_disc(&mut self, robot: usize, center: Point2<f64>) {
-        let moving = Arc::make_mut(&mut self.moving);
-        moving.discs[robot].center = center;
-        moving.sorted = OnceLock::new();
+        self.discs[robot].center = center;
+        self.sorted = OnceLock::new();
     }
 
     /// The moving bodies, sorted into cells.
     fn sorted(&self) -> &Sorted {
-        self.moving.sorted.get_or_init(|| Sorted::new(&self.moving))
+        self.sorted.get_or_init(|| Sorted::new(self))
     }
 
     /// Computes what `beams` of a laser at the pose `laser` hit. The laser never sees the robot `own`. `read` receives
@@ -154,14 +139,15 @@ impl Scene {
     }
 
     fn cast_into(&self, beams: &Beams, laser: &Isometry2<f64>, own: usize, scratch: &mut Scratch) {
-        let Walls { solids, edges, visible } = &*self.moving.walls;
+        let Walls { solids, edges, visible } = &*self.walls;
         let Sorted { robots, polygons, are_few } = self.sorted();
         let Scratch { inverse, tested } = scratch;
         let mut hits = Hits::new(beams, laser, inverse);
         let at = Point2::from(laser.translation.vector);
         let own_cell = visible.cell_at(&at);
         let has_polygons = polygons.len() > 0;
-        tested.begin(polygons.len());
+        tested.clear();
+        tested.resize(polygons.len(), false);
         match own_cell {
             Some(cell) => add_edges(visible.edges.get(cell), edges, &mut hits),
             None => edges.iter().for_each(|edge| hits.add_edge(edge)),
@@ -172,8 +158,10 @@ impl Scene {
                 for cell in cells.chain([visible.len()]) {
                     add_robots(&mut hits, robots.get(cell), own);
                     if has_polygons {
-                        for &index in polygons.in_cell(cell).iter().filter(|index| tested.is_first(**index)) {
-                            polygons.add_to(index, own, &mut hits);
+                        for &index in polygons.in_cell(cell) {
+                            if !std::mem::replace(&mut tested[index as usize], true) {
+                                polygons.add_to(index, own, &mut hits);
+                            }
                         }
                     }
                 }
