@@ -3,7 +3,8 @@
 //! The map of a curious robot is frozen at the given time, and compared with the true events up to three times this time. A line per
 //! world and estimator, as CSV: explained deviance; the same against the constant known at the freeze; a full view until then. Then,
 //! at the freeze: log error, the same of range, AUC, the share of the true rates inside the 50 % and the 90 % interval; of tiles, the log
-//! error of passages per hour and the hits of the busiest tenth. The goals do not depend on the estimator.
+//! error of passages per hour and the hits of the busiest tenth. Then the predicted map 1 and 10 minutes ahead: Brier score, that of the
+//! state last seen, of the share of time blocked, of true chains, calibration error. The goals do not depend on the estimator.
 //!
 //! ```text
 //! cargo run -p curious-evaluation --example predicted_rates -- MINUTES SET=WORLD,WORLD.. ..
@@ -18,7 +19,7 @@
 //! A world is the seed of a generated house, or `NAME:SEED` or `FILE:SEED`.
 
 use agent::Policy;
-use evaluation::metrics::{FrozenRates, interval_scores, passage_scores, rate_scores};
+use evaluation::metrics::{FrozenRates, StateScores, interval_scores, passage_scores, rate_scores};
 use evaluation::physics_trial::{self, PhysicsTrial};
 use mapper::EstimatorChoice;
 use sim::physics::WorldSpec;
@@ -27,7 +28,8 @@ use std::error::Error;
 /// The estimators that are compared.
 const ESTIMATORS: [&str; 2] = ["two-state-gaps", "shared-prior"];
 const COLUMNS: &str = "set,world,estimator,deviance,known,full_view,log_error,log_error_of_range,rate_auc,inside_50,inside_90,\
-                       passages_log_error,busiest_tenth";
+                       passages_log_error,busiest_tenth,brier_1min,last_seen_1min,blocked_share_1min,true_chains_1min,\
+                       calibration_1min,brier_10min,last_seen_10min,blocked_share_10min,true_chains_10min,calibration_10min";
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -71,7 +73,8 @@ fn scores(
     let passages = passage_scores(mapper, truth);
     trial.run(3.0 * freeze_s)?;
     let frozen = frozen.scores(trial.world.truth());
-    Ok(vec![
+    let forecasts = trial.observer.forecasts.scores();
+    let mut row = vec![
         frozen.predictive_deviance,
         frozen.predictive_deviance_known,
         frozen.predictive_deviance_ceiling,
@@ -82,5 +85,11 @@ fn scores(
         intervals.inside_90,
         passages.log_error_busy,
         passages.busiest_tenth_hit,
-    ])
+    ];
+    let states = [forecasts.states_1min, forecasts.states_10min];
+    for StateScores { brier, brier_last_seen, brier_mean, brier_true_chains, calibration_error, .. } in states
+    {
+        row.extend([brier, brier_last_seen, brier_mean, brier_true_chains, calibration_error]);
+    }
+    Ok(row)
 }

@@ -1,7 +1,8 @@
 //! Measures a run in the physics world against the ground truth, from outside the loop.
 
 use crate::metrics::{
-    ChangingAccuracy, Forecasts, Latency, MapScores, PoseErrors, Prediction, Things, TrueChains, map_scores,
+    ChangingAccuracy, Forecasts, Latency, MapScores, PoseErrors, Prediction, Standstills, Things, TrueChains,
+    map_scores,
 };
 use crate::scheduled_things::ScheduledThings;
 use interfaces::{GroundTruth, LaserReading, Twist};
@@ -41,6 +42,8 @@ pub struct Observer {
     pub true_chains: TrueChains,
     /// The errors of the poses that the robot used.
     pub poses: PoseErrors,
+    /// The longest standstill of every robot.
+    pub standstills: Standstills,
     /// Coverage and map quality over time.
     pub curve: Curve,
     /// The positions of the goals of the curious robot, m.
@@ -81,11 +84,15 @@ impl Observer {
         self.latency.observe(truth, mapper, reading, &laser);
         self.things.observe(world.obstacle_events(), truth.frame(), mapper, reading, &laser);
         self.true_chains.observe(truth);
-        self.forecasts.observe(mapper, truth);
+        self.forecasts.observe(mapper, truth, Some(&self.true_chains));
         self.scheduled.sample(world, mapper);
         if mapper.readings().is_multiple_of(SAMPLE_EVERY) {
             self.changing.sample(mapper, truth);
         }
+        self.standstills.observe(
+            reading.time_s,
+            world.fleet().robots().map(|robot| robot.pose.translation.vector.into()),
+        );
         if mapper.readings() % SCORE_EVERY == 1 {
             self.prediction.sample(mapper, truth, Some(&self.true_chains));
             self.curve.push((reading.time_s, map_scores(mapper, truth)));

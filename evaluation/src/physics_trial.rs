@@ -11,7 +11,8 @@ use interfaces::{CellState, Grid, LaserReading, PoseMode, Purpose, RandomStream,
 use mapper::{NoReturn, ReadingError};
 use robot::{Battery, DaySettings, GoalSelector, PatrolDay, Pilot, Robot, Settings, Source, Turn};
 use sim::physics::shape::Transform;
-use sim::physics::{DriveKind, PatrolDaySpec, PhysicsWorld, WorldSpec};
+use sim::physics::{BehaviorSpec, DriveKind, PatrolDaySpec, PhysicsWorld, WorldSpec};
+use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
 /// The Monday on which a week of a world with a calendar begins: 2024-01-01, s since 1970-01-01 UTC.
@@ -245,6 +246,7 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
                 own_motion: observer.own_contacts,
                 run_into: contacts_while_standing + collisions - observer.own_contacts,
             },
+            longest_standstill_s: longest_standstill_s(world, observer),
             pose: observer.poses.scores(pose.name()),
             goals: pilot.goals(),
             day: (self.battery)(pilot).map(Battery::totals),
@@ -255,4 +257,11 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
             map_hash: map_hash(mapper),
         }
     }
+}
+
+/// The longest standstills of the robots that can move, by name.
+fn longest_standstill_s(world: &PhysicsWorld, observer: &Observer) -> BTreeMap<String, f64> {
+    let robots = world.spec().robots.iter().zip(observer.standstills.longest());
+    let moving = robots.filter(|(robot, _)| robot.behavior != BehaviorSpec::Standing);
+    moving.map(|(robot, (longest_s, _))| (robot.name.clone(), *longest_s)).collect()
 }

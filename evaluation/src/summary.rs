@@ -3,7 +3,7 @@
 mod words;
 
 use crate::metrics::{
-    Age, ChangingScores, Delays, DevianceScores, MapScores, PoseScores, PredictedScores, RateScores,
+    Age, ChangingScores, Delays, ForecastScores, MapScores, PoseScores, PredictedScores, RateScores,
     ReachableScores, ThingReport,
 };
 use crate::scheduled_things::ScheduledScores;
@@ -78,8 +78,8 @@ pub struct RunResults {
     pub changing: ChangingScores,
     /// The quality of the predicted map on swept cells out of view, over the run.
     pub predicted: PredictedScores,
-    /// How well frozen rates predicted the events that followed.
-    pub forecasts: DevianceScores,
+    /// How well the frozen map predicted what followed.
+    pub forecasts: ForecastScores,
     /// The estimated rates compared with the true rates.
     #[serde(flatten)]
     pub rates: RateScores,
@@ -93,6 +93,9 @@ pub struct RunResults {
     pub collisions: usize,
     /// All contacts of the curious robot, by cause.
     pub contacts: Contacts,
+    /// For each robot that can move, by name, the longest time for which it did not move farther than 0.1 m from a
+    /// position, s.
+    pub longest_standstill_s: BTreeMap<String, f64>,
     /// The errors of the poses that the robot used.
     pub pose: PoseScores,
     /// The goals by outcome.

@@ -124,46 +124,6 @@ impl FrozenRates {
     }
 }
 
-/// The first time at which the rates are frozen, s (steps in a grid world), and the factor from one time to the next: 400 s,
-/// 20 minutes and 1 hour are among the times, so that runs of 20 minutes and of 1 hour end with a forecast.
-const FIRST_FREEZE: f64 = 400.0 / 27.0;
-const FACTOR: f64 = 3.0;
-/// Times are sums of steps of a physics world, s.
-const SLACK: f64 = 1e-6;
-
-/// The forecasts of a run: its rates are frozen now and then, and compared with the events that follow.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub struct Forecasts {
-    /// The rates frozen last, and the time at which they are scored and frozen again.
-    rates: FrozenRates,
-    due: Option<f64>,
-    scores: DevianceScores,
-}
-
-impl Forecasts {
-    /// Observes one reading.
-    pub fn observe(&mut self, mapper: &Mapper, truth: &impl GroundTruth) {
-        let now = truth.elapsed() + SLACK;
-        let mut due = self.due.unwrap_or(FIRST_FREEZE);
-        if now >= due {
-            if self.due.is_some() {
-                self.scores = self.rates.scores(truth);
-            }
-            self.rates = FrozenRates::of(mapper, truth);
-            while now >= due {
-                due *= FACTOR;
-            }
-            self.due = Some(due);
-        }
-    }
-
-    /// How well the rates predicted the events between the last two times of 400 s, 20 minutes, 1 hour, and so on (also
-    /// before: a third, a ninth, a 27th of 400 s).
-    pub fn scores(&self) -> DevianceScores {
-        self.scores
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

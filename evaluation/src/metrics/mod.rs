@@ -9,6 +9,7 @@ mod beams;
 mod changing;
 mod counts;
 mod deviance;
+mod forecasts;
 mod freshness;
 mod latency;
 mod map;
@@ -16,25 +17,30 @@ mod mean;
 mod passages;
 mod pose;
 mod prediction;
+mod probability;
 mod quantile;
 mod rates;
+mod standstill;
 mod things;
 mod true_chains;
 
 pub use alignment::alignment;
 pub use changing::{ChangingAccuracy, ChangingScores};
-pub use deviance::{DevianceScores, Forecasts, FrozenRates, poisson_deviance};
+pub use deviance::{DevianceScores, FrozenRates, poisson_deviance};
+pub use forecasts::{ForecastScores, Forecasts, StateScores};
 pub use freshness::{Freshness, FreshnessScores};
 pub use latency::{Delays, Latency};
 pub use map::{Age, MapScores, ReachableScores, age, map_scores, reachable_scores};
 pub use passages::{PassageScores, passage_scores};
 pub use pose::{PoseErrors, PoseScores};
 pub use prediction::{BrierOfAll, PredictedScores, Prediction};
+pub use probability::ProbabilityScores;
 pub use quantile::quantile;
 pub use rates::{
     IntervalScores, MAX_LOG_ERROR, RateErrors, RateScores, interval_scores, log_error, mean_log_error,
     mean_log_error_of_range, rate_scores,
 };
+pub use standstill::Standstills;
 pub use things::{ThingReport, Things};
 pub use true_chains::TrueChains;
 

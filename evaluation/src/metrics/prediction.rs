@@ -106,7 +106,7 @@ impl BrierOfAll {
 }
 
 /// The share of the time in view during which a cell was blocked; `None` if the cell was not in view for any time.
-fn share_blocked(mapper: &Mapper, index: usize) -> Option<f64> {
+pub(super) fn share_blocked(mapper: &Mapper, index: usize) -> Option<f64> {
     let seen = mapper.statistics(index);
     let watched = seen.watched_free + seen.watched_blocked;
     (watched > 0.0).then(|| seen.watched_blocked / watched)

@@ -254,18 +254,49 @@ fn a_map_that_sees_everything_forecasts_a_clock() {
     let mut forecasts = Forecasts::default();
     for step in 0..=1200 {
         show(&world, &mut mapper, |_| true);
-        forecasts.observe(&mapper, world.truth());
-        let is_scored = forecasts.scores().from.is_some();
-        assert_eq!(is_scored, step >= 45, "the first forecast is from 15 to 45");
+        forecasts.observe(&mapper, world.truth(), None);
+        let scores = forecasts.scores();
+        assert_eq!(scores.rates.from.is_some(), step >= 45, "the first forecast is from 15 to 45");
+        assert_eq!(scores.states_1min.brier.is_some(), step >= 120);
+        assert_eq!(scores.states_10min.brier.is_some(), step >= 1200);
         world.act(&Step::Stay);
     }
-    let rates = forecasts.scores();
+    let ForecastScores { rates, states_1min, states_10min, states_1h } = forecasts.scores();
+    assert_eq!(states_1h, StateScores::default(), "the run is shorter");
     assert_eq!((rates.from, rates.to), (Some(400.0), Some(1200.0)));
     assert!(rates.predictive_deviance.unwrap() > 0.95, "{rates:?}");
     assert!(
         rates.predictive_deviance.unwrap() <= rates.predictive_deviance_ceiling.unwrap() + 0.02,
         "{rates:?}"
     );
+    for scores in [states_1min, states_10min] {
+        let StateScores { brier, brier_last_seen, calibration_error, .. } = scores;
+        assert!(
+            (0.0..0.6).contains(&brier.unwrap()) && (0.0..=1.0).contains(&brier_last_seen.unwrap()),
+            "{scores:?}"
+        );
+        assert!((0.0..=1.0).contains(&calibration_error.unwrap()), "{scores:?}");
+    }
+}
+
+#[test]
+fn a_prediction_whose_time_comes_while_the_robot_rests_is_left_out() {
+    // The last reading before the rest is at 60, and freezes the prediction for 120. The first reading after the rest freezes
+    // the next one.
+    for (wakes, ends) in [(123, 123), (124, 184), (130, 190), (1000, 1060)] {
+        let mut world = grid_world();
+        let mut mapper = mapper(&world);
+        let mut forecasts = Forecasts::default();
+        for step in 0..=1060 {
+            if step <= 60 || step >= wakes {
+                show(&world, &mut mapper, |_| true);
+                forecasts.observe(&mapper, world.truth(), None);
+                let is_scored = forecasts.scores().states_1min.brier.is_some();
+                assert_eq!(is_scored, step >= ends, "rest from 60 to {wakes}, at {step}");
+            }
+            world.act(&Step::Stay);
+        }
+    }
 }
 
 /// The delays of block events and free events after 30 s of a robot that turns, and looks elsewhere while a box appears or disappears.

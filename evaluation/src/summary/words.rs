@@ -66,6 +66,7 @@ impl fmt::Display for RunResults {
             lines.push(("chosen", shares.join(", ")));
         }
         lines.extend(self.pose().map(|text| ("pose", text)));
+        lines.extend(self.standstills().map(|text| ("stood", text)));
         for (name, text) in lines {
             writeln!(f, "  {name:<9} {text}")?;
         }
@@ -145,6 +146,13 @@ impl RunResults {
         })
     }
 
+    /// The robots that stood still for a minute or longer; `None` if no robot did.
+    fn standstills(&self) -> Option<String> {
+        let stood = self.longest_standstill_s.iter().filter(|(_, longest_s)| **longest_s >= 60.0);
+        let stood: Vec<String> = stood.map(|(name, longest_s)| format!("{name} {longest_s:.0} s")).collect();
+        (!stood.is_empty()).then(|| format!("longest time without moving 0.1 m: {}", stood.join(", ")))
+    }
+
     /// The quality of the predicted map beside that of simpler predictions; `None` if nothing changed out of view.
     fn prediction(&self) -> Option<String> {
         let PredictedScores { brier, brier_last_seen, brier_mean, brier_true_chains, .. } = self.predicted;
@@ -159,7 +167,7 @@ impl RunResults {
     /// The events that the rates predicted; `None` before the end of a forecast, and if nothing happened in it.
     fn deviance(&self) -> Option<String> {
         let DevianceScores { from, to, predictive_deviance, predictive_deviance_ceiling, .. } =
-            self.forecasts;
+            self.forecasts.rates;
         let [from_min, to_min] = [from? / 60.0, to? / 60.0];
         Some(format!(
             "predictive deviance {:.2} from {from_min:.0} to {to_min:.0} min: 1 is perfect, 0 the best constant, {:.2} \
@@ -221,7 +229,7 @@ fn line_of(thing: &ThingReport) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::metrics::{ChangingAccuracy, Delays, MapScores, ReachableScores};
+    use crate::metrics::{ChangingAccuracy, Delays, ForecastScores, MapScores, ReachableScores};
     use std::collections::BTreeMap;
 
     fn results(coverage: f64, age: Age, rates: RateScores) -> RunResults {
@@ -232,7 +240,7 @@ mod tests {
             reachable: ReachableScores { coverage_reachable: coverage, map_quality_reachable: 0.9999 },
             changing: ChangingAccuracy::default().scores(),
             predicted: PredictedScores::default(),
-            forecasts: DevianceScores::default(),
+            forecasts: ForecastScores::default(),
             rates,
             age,
             block_latency: Delays::default(),
@@ -240,6 +248,9 @@ mod tests {
             collisions: 0,
             contacts: Contacts { own_motion: 1, run_into: 2 },
             pose: PoseScores { mode: "exact", ..PoseScores::default() },
+            longest_standstill_s: [("cat", 312.4), ("dummy", 3.0)]
+                .map(|(name, s)| (name.to_owned(), s))
+                .into(),
             goals: GoalCount::default(),
             strategy_share: BTreeMap::new(),
             things: Vec::new(),
@@ -268,13 +279,14 @@ mod tests {
             brier_mean: Some(0.01612),
             brier_true_chains: Some(0.014),
         };
-        let forecasts = DevianceScores {
+        let deviance = DevianceScores {
             from: Some(400.0),
             to: Some(1200.0),
             predictive_deviance: Some(0.62),
             predictive_deviance_ceiling: Some(0.823),
             ..DevianceScores::default()
         };
+        let forecasts = ForecastScores { rates: deviance, ..ForecastScores::default() };
         insta::assert_snapshot!(RunResults { predicted, forecasts, ..results(0.99999, age, rates) }, @"
           seen      >99.9 % of the cells in sight of reachable places, >99.9 % of free cells and their borders; 2 cells were never seen
           map       >99.9 % correct now; 0 false changes recorded, 0 in the map, on 50000 static cells
@@ -284,6 +296,7 @@ mod tests {
                     predictive deviance 0.62 from 7 to 20 min: 1 is perfect, 0 the best constant, 0.82 a full view before
                     AUC 0.83: how well the rates separate changing from static cells, 1 is perfect, 0.5 is chance
           predicted Brier score 0.0159 on changing cells out of view; as last seen 0.0270, share of time blocked 0.0161, true chains 0.0140
+          stood     longest time without moving 0.1 m: cat 312 s
           contacts  1 by its own motion, 2 in which something ran into it
         ");
     }
@@ -294,6 +307,7 @@ mod tests {
         insta::assert_snapshot!(results(1.0, age, RateScores::default()), @"
           seen      100.0 % of the cells in sight of reachable places, 100.0 % of free cells and their borders; every cell was seen in the last 431 s
           map       >99.9 % correct now; 0 false changes recorded, 0 in the map, on 0 static cells
+          stood     longest time without moving 0.1 m: cat 312 s
           contacts  1 by its own motion, 2 in which something ran into it
         ");
     }

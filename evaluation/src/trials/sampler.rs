@@ -40,7 +40,7 @@ impl Sampler {
     /// Measures one reading. Returns the sample, if one is due.
     pub(super) fn update<W: TrialWorld>(&mut self, mapper: &Mapper, truth: &W::Truth) -> Option<&Sample> {
         let is_due = has_come(mapper.time(), self.due);
-        self.forecasts.observe(mapper, truth);
+        self.forecasts.observe(mapper, truth, None);
         if is_due || self.readings.is_multiple_of(W::COMPARE_EVERY) {
             self.accuracy.sample(mapper, truth);
             self.prediction.sample(mapper, truth, None);
@@ -74,7 +74,8 @@ impl Sampler {
         let (rates, map) = (rate_scores(mapper, truth), map_scores(mapper, truth));
         let RateScores { rate_error_all, log_error, log_error_of_range, rate_auc, false_rate_hz, .. } = rates;
         let PassageScores { log_error_busy, busiest_tenth_hit } = passage_scores(mapper, truth);
-        let DevianceScores { predictive_deviance, predictive_deviance_known, .. } = self.forecasts.scores();
+        let DevianceScores { predictive_deviance, predictive_deviance_known, .. } =
+            self.forecasts.scores().rates;
         let brier = std::mem::take(&mut self.prediction).scores();
         let or_nan = |value: Option<f64>| value.unwrap_or(f64::NAN);
         Sample {

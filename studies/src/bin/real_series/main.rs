@@ -16,7 +16,6 @@
 
 mod hours;
 mod models;
-mod probability;
 mod score;
 mod series;
 mod table;
@@ -24,8 +23,8 @@ mod table;
 mod tests;
 
 use clap::Parser;
+use evaluation::metrics::ProbabilityScores;
 use mapper::{Calendar, DAY_S};
-use probability::ProbabilityScores;
 use rayon::prelude::*;
 use score::HORIZONS;
 use series::{LOOKS, Looks, Series};

@@ -1,8 +1,8 @@
 //! Scores of predictions.
 
 use crate::models::Named;
-use crate::probability::ProbabilityScores;
 use crate::series::{Looks, STEP_S, Series};
+use evaluation::metrics::ProbabilityScores;
 use mapper::Look;
 
 /// The times ahead of a prediction, and the steps of the series.

@@ -2,9 +2,9 @@
 
 use crate::Case;
 use crate::models::Named;
-use crate::probability::ProbabilityScores;
 use crate::score::HORIZONS;
 use crate::series::LOOKS;
+use evaluation::metrics::ProbabilityScores;
 use std::collections::BTreeMap;
 use std::io::{self, Write};
 

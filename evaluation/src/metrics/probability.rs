@@ -1,46 +1,58 @@
 use serde::{Deserialize, Serialize};
 
+/// Predictions are limited to probabilities from this to 1 minus this in the log score, which is infinite for a wrong
+/// prediction that was certain.
+const MIN_PROBABILITY: f64 = 1e-3;
 /// The number of classes of equal width in the expected calibration error.
 const CLASSES: usize = 10;
 
 /// How well predicted probabilities of "blocked" were, as sums over predictions; every score is `None` without a prediction.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
-pub(crate) struct ProbabilityScores {
+pub struct ProbabilityScores {
     count: usize,
     squares: f64,
+    logs: f64,
     /// For each class of predictions, the predicted minus the true number of blocked cells.
     excess: [f64; CLASSES],
 }
 
 impl ProbabilityScores {
     /// Adds a prediction.
-    pub(crate) fn add(&mut self, predicted: f64, is_blocked: bool) {
+    pub fn add(&mut self, predicted: f64, is_blocked: bool) {
         let truth = f64::from(u8::from(is_blocked));
+        let of_truth = if is_blocked { predicted } else { 1.0 - predicted };
         self.count += 1;
         self.squares += (predicted - truth) * (predicted - truth);
+        self.logs -= libm::log(of_truth.clamp(MIN_PROBABILITY, 1.0 - MIN_PROBABILITY));
         self.excess[((predicted * CLASSES as f64) as usize).min(CLASSES - 1)] += predicted - truth;
     }
 
     /// Adds the scores of other predictions.
-    pub(crate) fn merge(&mut self, other: &Self) {
+    pub fn merge(&mut self, other: &Self) {
         self.count += other.count;
         self.squares += other.squares;
+        self.logs += other.logs;
         self.excess.iter_mut().zip(other.excess).for_each(|(excess, other)| *excess += other);
     }
 
     /// The number of predictions.
-    pub(crate) fn count(&self) -> usize {
+    pub fn count(&self) -> usize {
         self.count
     }
 
     /// The Brier score: the mean of (prediction − truth)².
-    pub(crate) fn brier(&self) -> Option<f64> {
+    pub fn brier(&self) -> Option<f64> {
         self.mean(self.squares)
+    }
+
+    /// The log score, nat: the mean of −ln of the probability of what was true, from 0.001 on.
+    pub fn log_score(&self) -> Option<f64> {
+        self.mean(self.logs)
     }
 
     /// The expected calibration error: the mean distance of the predicted from the true share in ten classes of predictions,
     /// by the number of predictions in each.
-    pub(crate) fn calibration_error(&self) -> Option<f64> {
+    pub fn calibration_error(&self) -> Option<f64> {
         self.mean(self.excess.iter().map(|excess| excess.abs()).sum())
     }
 
@@ -65,6 +77,8 @@ mod tests {
         let squares: f64 = 0.12 * 0.12 + 0.82 * 0.82 + 0.25 + 1.0;
         assert_eq!(scores.count(), 4);
         assert!((scores.brier().unwrap() - squares / 4.0).abs() < 1e-12);
+        let logs = -(0.88_f64.ln() + 0.18_f64.ln() + 0.5_f64.ln() + 0.001_f64.ln());
+        assert!((scores.log_score().unwrap() - logs / 4.0).abs() < 1e-12);
         // The classes from 0 and from 0.1 on are apart.
         assert!((scores.calibration_error().unwrap() - (1.0 + 0.7 + 0.5) / 4.0).abs() < 1e-12);
     }
