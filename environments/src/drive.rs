@@ -214,14 +214,6 @@ impl Task for Drive {
         }
     }
 
-    fn fleet(&self) -> &Fleet {
-        &self.fleet
-    }
-
-    fn goal(&self, agent: usize) -> Option<Point2<f64>> {
-        self.agents.get(agent).map(|progress| self.place.goal(agent, progress.goal))
-    }
-
     fn picture(&self, size: usize) -> Picture {
         let mut picture = Picture::of(&self.fleet, size);
         for (agent, progress) in self.agents.iter().enumerate() {

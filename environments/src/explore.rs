@@ -11,7 +11,7 @@ use interfaces::{
 };
 use mapper::Mapper;
 use robot::{NoPilot, Robot};
-use sim::physics::{Fleet, PhysicsWorld, SnapshotError};
+use sim::physics::{PhysicsWorld, SnapshotError};
 use std::sync::Arc;
 
 /// The numbers of an observation beside scan and map.
@@ -257,10 +257,6 @@ impl Task for Explore {
             self.world.time_s() as f32,
         ];
         info.copy_from_slice(&values);
-    }
-
-    fn fleet(&self) -> &Fleet {
-        self.world.fleet()
     }
 
     /// The map as the robot knows it: free, blocked and changing cells, and the robots.

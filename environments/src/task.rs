@@ -2,8 +2,7 @@
 
 use crate::picture::Picture;
 use interfaces::Twist;
-use nalgebra::Point2;
-use sim::physics::{DriveLimits, Fleet, SnapshotError};
+use sim::physics::{DriveLimits, SnapshotError};
 
 /// The number of values of an action: linear and angular velocity.
 pub const ACTIONS: usize = 2;
@@ -40,12 +39,6 @@ pub trait Task: Send + Sync {
     /// Writes what is known about the last step: one value per name and agent.
     fn info(&self, info: &mut [f32]);
 
-    /// The simulated world.
-    fn fleet(&self) -> &Fleet;
-    /// The position of the goal of an agent, m; `None` if there is no such agent, or the task has no goals.
-    fn goal(&self, _agent: usize) -> Option<Point2<f64>> {
-        None
-    }
     /// The task from above, at most `size` pixels wide and high.
     fn picture(&self, size: usize) -> Picture;
     /// The state as bytes.

@@ -143,8 +143,9 @@ fn the_goals_of_the_hall_are_far_and_can_be_reached() {
     batch.set_autoreset(false);
     let first = batch.reset(&(0..100).collect::<Vec<u64>>()).unwrap();
     for task in (0..100).map(|index| batch.task(index)) {
-        let at = task.fleet().robot(0).unwrap().pose.translation.vector;
-        assert!((task.goal(0).unwrap().coords - at).norm() >= 3.0);
+        let mut info = [0.0; 3];
+        task.info(&mut info);
+        assert!(info[2] >= 3.0, "{} m", info[2]);
     }
     let mut results = Results { observations: first.clone(), ..Results::default() };
     for _ in 0..400 {
@@ -184,11 +185,12 @@ fn exploring_earns_found_changes_and_the_area_that_becomes_known() {
         sum += f64::from(results.rewards[0]);
     }
     assert_eq!((results.terminated[0], results.truncated[0]), (false, true));
-    let [_, updates, _, _, found, seen_m2, _] = results.info[..] else { panic!("{:?}", results.info) };
-    let fleet = batch.task(0).fleet();
-    assert!(updates > 0.0 && (fleet.time_s() - 60.0).abs() < 1e-9);
-    let robot = &fleet.spec().robots[fleet.spec().driven_robots().next().unwrap()];
-    let cells_wide = 2.0 * robot.radius_m / fleet.spec().frame.resolution_m();
+    let [house, updates, _, _, found, seen_m2, time_s] = results.info[..] else {
+        panic!("{:?}", results.info)
+    };
+    assert!(updates > 0.0 && (time_s - 60.0).abs() < 1e-4);
+    let spec = WorldSpec::generate_house([3, 5][house as usize]);
+    let cells_wide = 2.0 * spec.driven().radius_m / spec.frame.resolution_m();
     let area = settings.seen_reward * f64::from(seen_m2 - first[5]);
     let expected = settings.update_reward * f64::from(found) / cells_wide + area;
     assert!((sum - expected).abs() < 1e-3 * expected.abs().max(1.0), "{sum} and not {expected}");
@@ -250,7 +252,7 @@ fn golden_hashes() {
     let place =
         explore_place(ExploreSettings { max_steps: 40, beams: Some(20), ..ExploreSettings::default() });
     let exploring = golden((0..2).map(|_| Explore::new(&place).unwrap()).collect());
-    assert_eq!([driving, exploring], [6_763_501_705_012_223_895, 17_686_607_519_096_061_081]);
+    assert_eq!([driving, exploring], [6_763_501_705_012_223_895, 1_655_936_441_867_180_169]);
 }
 
 #[test]

@@ -4,7 +4,6 @@
 pub mod map_hash;
 pub mod metrics;
 pub mod observer;
-pub mod oracle;
 pub mod physics_trial;
 pub mod scheduled_things;
 pub mod summary;

@@ -1,10 +1,10 @@
 //! A run in a physics world as a library call: what the world says of itself, the robot, and the loop with the observer.
 
 use crate::map_hash::map_hash;
-use crate::metrics::{age, interval_scores, map_scores, passage_scores, rate_scores, reachable_scores};
+use crate::metrics::{age, map_scores, rate_scores, reachable_scores};
 use crate::observer::Observer;
 use crate::scheduled_things::ScheduledThings;
-use crate::summary::{Contacts, CurvePoint, Liveliest, RunResults};
+use crate::summary::{Contacts, CurvePoint, RunResults};
 use agent::Features;
 use controller::{DiffDriveSettings, Driver};
 use interfaces::{CellState, Grid, LaserReading, PoseMode, Purpose, RandomStream, SettingsError, Twist};
@@ -237,14 +237,11 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
             changing: observer.changing.scores(),
             predicted: observer.prediction.scores(),
             forecasts: observer.forecasts.scores(),
-            intervals: interval_scores(mapper, truth),
-            passages: passage_scores(mapper, truth),
             rates: rate_scores(mapper, truth),
             age: age(mapper, truth),
             block_latency,
             free_latency,
             collisions,
-            contacts_while_standing,
             contacts: Contacts {
                 own_motion: observer.own_contacts,
                 run_into: contacts_while_standing + collisions - observer.own_contacts,
@@ -258,7 +255,6 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
             things: observer.things.reports().cloned().collect(),
             curve: curve.map(|&(time_s, scores)| CurvePoint { time_s, scores }).collect(),
             map_hash: map_hash(mapper),
-            liveliest: Liveliest::of(mapper),
         }
     }
 }

@@ -3,11 +3,10 @@
 mod words;
 
 use crate::metrics::{
-    Age, ChangingScores, Delays, ForecastScores, IntervalScores, MapScores, PassageScores, PoseScores,
-    PredictedScores, RateScores, ReachableScores, ThingReport,
+    Age, ChangingScores, Delays, ForecastScores, MapScores, PoseScores, PredictedScores, RateScores,
+    ReachableScores, ThingReport,
 };
 use crate::scheduled_things::ScheduledScores;
-use mapper::Mapper;
 use robot::{DayTotals, GoalCount};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -81,10 +80,6 @@ pub struct RunResults {
     pub predicted: PredictedScores,
     /// How well the frozen map predicted what followed.
     pub forecasts: ForecastScores,
-    /// The credible intervals of the rates.
-    pub intervals: IntervalScores,
-    /// The estimated passages per tile compared with the true ones.
-    pub passages: PassageScores,
     /// The estimated rates compared with the true rates.
     #[serde(flatten)]
     pub rates: RateScores,
@@ -96,9 +91,7 @@ pub struct RunResults {
     pub free_latency: Delays,
     /// The number of contacts of the curious robot that began while it moved.
     pub collisions: usize,
-    /// The number of contacts of the curious robot that began while it stood still.
-    pub contacts_while_standing: usize,
-    /// The same contacts, by cause.
+    /// All contacts of the curious robot, by cause.
     pub contacts: Contacts,
     /// For each robot that can move, by name, the longest time for which it did not move farther than 0.1 m from a
     /// position, s.
@@ -122,8 +115,6 @@ pub struct RunResults {
     pub curve: Vec<CurvePoint>,
     /// The hash of everything that was learned, see [`crate::map_hash`].
     pub map_hash: String,
-    /// The area in which the map changes most often.
-    pub liveliest: Option<Liveliest>,
 }
 
 /// The number of contacts of the curious robot, by cause.
@@ -133,32 +124,4 @@ pub struct Contacts {
     pub own_motion: usize,
     /// Those in which the other body ran into the curious robot.
     pub run_into: usize,
-}
-
-/// The area in which the map changes most often.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub struct Liveliest {
-    /// The lower left corner of the smallest box around the cells with more than one event, m.
-    pub low_m: [f64; 2],
-    /// The upper right corner of this box, m.
-    pub high_m: [f64; 2],
-    /// The number of cells with more than one event.
-    pub cells: usize,
-    /// The median cycle time of these cells, s.
-    pub median_interval_s: f64,
-}
-
-impl Liveliest {
-    /// The area of the cells that changed more than once; `None` without such cells.
-    pub fn of(mapper: &Mapper) -> Option<Self> {
-        let returning = |&index: &usize| mapper.statistics(index).events() > 1 && mapper.rate(index) > 0.0;
-        let cells: Vec<usize> = mapper.changed().filter(returning).collect();
-        let centers = cells.iter().map(|&index| mapper.frame().center(mapper.frame().cell(index)));
-        let boxes = centers.map(|at| (at, at));
-        let (low, high) = boxes.reduce(|(low, high), (at, _)| (low.inf(&at), high.sup(&at)))?;
-        let mut intervals_s: Vec<f64> = cells.iter().map(|&index| mapper.interval(index)).collect();
-        intervals_s.sort_unstable_by(f64::total_cmp);
-        let median_interval_s = *intervals_s.get(intervals_s.len() / 2)?;
-        Some(Self { low_m: low.into(), high_m: high.into(), cells: cells.len(), median_interval_s })
-    }
 }

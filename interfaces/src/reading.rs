@@ -37,7 +37,7 @@ pub struct VelocitySample {
 }
 
 /// A laser scan, and the pose of the robot at the same time. A scan that sweeps ([`Scan::sweep_s`]) ends at this time.
-#[derive(Clone, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, serde::Deserialize, serde::Serialize)]
 pub struct LaserReading {
     /// The time of the last beam of the scan and of the pose, s.
     pub time_s: f64,

@@ -1,14 +1,12 @@
 //! A localizer in places that it was not tuned on: how many scans a robot at an unknown pose of a large place needs, and the
-//! CPU time of the slowest of them (Linux; the time of this thread, not that of the clock); and whether a robot with perfect
-//! odometry is still right after a time without returns, in rooms that look alike from several sides.
+//! CPU time of the slowest of them (Linux; the time of this thread, not that of the clock).
 //!
 //! ```text
-//! cargo run -p curious-localizer --example attack -- [SIDE_M CELL_M RANGE_MAX_M SEED | trips]
+//! cargo run -p curious-localizer --example attack -- [SIDE_M CELL_M RANGE_MAX_M SEED]
 //! ```
 
 use interfaces::{Cell, CellState, Grid, GridFrame, LaserReading, Purpose, RandomStream, Scan, Twist, pose};
 use localizer::{Localizer, LocalizerSettings, PoseState, Start};
-use mapper::{Mapper, MapperSettings};
 use nalgebra::{Isometry2, Point2, Vector2};
 
 /// The CPU time of this thread so far, ms.
@@ -123,61 +121,11 @@ fn search(side_m: f64, cell_m: f64, range_max_m: f64, seed: u64) {
     );
 }
 
-/// A robot that goes round in a rectangle with perfect odometry; `missing_s` from 15 s on without a return.
-fn trip(size_m: [f64; 2], missing_s: f64, range_m: f32) -> String {
-    let true_pose = |number: u32| {
-        let angle = 0.02 * f64::from(number.saturating_sub(20));
-        let radius_m = 0.2 * size_m[1];
-        pose(
-            size_m[0] / 2.0 + radius_m * libm::cos(angle),
-            size_m[1] / 2.0 + radius_m * libm::sin(angle),
-            angle + 1.6,
-        )
-    };
-    let frame = GridFrame::covering(Point2::new(-1.0, -1.0), size_m[0] + 2.0, size_m[1] + 2.0, 0.05)
-        .expect("a valid frame");
-    let mut localizer =
-        Localizer::from_nothing(&LocalizerSettings::default(), &frame, true_pose(0)).expect("valid");
-    let mut map = Mapper::new(&MapperSettings::default(), frame).expect("valid");
-    let (mut worst_m, mut mapped, mut after) = (0.0_f64, 0, 0);
-    let last = 150 + (10.0 * missing_s) as u32;
-    for number in 0..last + 200 {
-        let at = true_pose(number);
-        let range = |beam: u32| {
-            let along = at.rotation * interfaces::rotation(f64::from(beam).to_radians()) * Vector2::x();
-            let to_wall = |axis: usize| {
-                let wall_m = if along[axis] > 0.0 { size_m[axis] } else { 0.0 };
-                (wall_m - at.translation.vector[axis]) / along[axis]
-            };
-            let noise_m = 0.01 * libm::sin(f64::from(beam * 7919 + number * 1049));
-            (to_wall(0).min(to_wall(1)) + noise_m) as f32
-        };
-        let ranges_m = (0..360).map(|beam| if (150..last).contains(&number) { range_m } else { range(beam) });
-        let reading = reading(0.1 * f64::from(number), true_pose(0).inv_mul(&at), 50.0, ranges_m.collect());
-        let localized = localizer.localize(&reading, &map);
-        if localized.estimate.state == PoseState::Tracking {
-            map.update(&localized.reading).expect("a valid reading");
-            worst_m =
-                worst_m.max((localized.estimate.pose.translation.vector - at.translation.vector).norm());
-            mapped += u32::from(number >= last);
-        }
-        after += u32::from(number >= last);
-    }
-    format!("{mapped}/{after}, {worst_m:.2}")
-}
-
 fn main() {
     let arguments: Vec<f64> = std::env::args().skip(1).filter_map(|text| text.parse().ok()).collect();
     if let [side_m, cell_m, range_max_m, seed] = arguments[..] {
         return search(side_m, cell_m, range_max_m, seed as u64);
     }
-    if std::env::args().all(|argument| argument != "trips") {
-        searches();
-    }
-    trips();
-}
-
-fn searches() {
     println!(
         "| side, m | cell, m | range, m | off, m | scans | CPU per scan, ms: median | most | to build |\n|---|---|---|---|---|---|---|---|"
     );
@@ -193,18 +141,6 @@ fn searches() {
     ] {
         for (range_max_m, seed) in [(30.0, 1), (8.0, 2)] {
             search(side_m, cell_m, range_max_m, seed);
-        }
-    }
-}
-
-fn trips() {
-    println!(
-        "\n| room, m | no returns for, s | mapped afterwards, worst error of a certain pose, m: NaN | +inf |\n|---|---|---|---|"
-    );
-    for size_m in [[6.0, 4.0], [5.0, 5.0], [40.0, 2.0], [12.0, 9.0]] {
-        for missing_s in [0.5, 2.0, 10.0, 60.0] {
-            let [nan, infinite] = [f32::NAN, f32::INFINITY].map(|range_m| trip(size_m, missing_s, range_m));
-            println!("| {} × {} | {missing_s} | {nan} | {infinite} |", size_m[0], size_m[1]);
         }
     }
 }

@@ -9,10 +9,7 @@
 //! tells apart what the noise of a single point hides.
 
 use crate::changing_map::ChangingMap;
-use crate::constants::{
-    APART_M, EXPLAINED_COUNTS, MAJORITY, MARGIN, MIN_LEFT, MIN_MOVED, MIN_MOVED_SHARE, MIN_STAYED,
-    MIN_WEIGHT, MOVED_M, NEAR_STD, RATIO_COUNTS, ROUNDS, SAME_MATCH, STAYED_COUNTS, SURFEL_STD_M, TURNS_RAD,
-};
+use crate::constants::{MAJORITY, MIN_LEFT, MOVED_M, NEAR_STD, SURFEL_STD_M};
 use crate::match_scene::MatchScene;
 use crate::matcher::{Match, Prior, difference};
 use crate::motion::Predicted;
@@ -20,6 +17,28 @@ use crate::placement::Placement;
 use crate::scan_points::{ScanPoint, means};
 use crate::support::Support;
 use nalgebra::Isometry2;
+
+/// Minimum weight that only the pose of what has stayed explains, about 20 cm of wall, and that only the other pose
+/// explains, and its share of the known surfaces.
+const MIN_STAYED: f64 = 5.0;
+const MIN_MOVED: f64 = 10.0;
+const MIN_MOVED_SHARE: f64 = 0.15;
+/// Two motions are at least this far apart, m.
+const APART_M: f64 = 0.02;
+/// Matches nearer than this to each other are the same, m and rad.
+const SAME_MATCH: f64 = 0.001;
+/// Turns from which the pose of what has stayed is looked for, rad.
+const TURNS_RAD: [f64; 2] = [0.006, 0.012];
+/// The two poses are fitted in turns this often.
+const ROUNDS: usize = 3;
+/// Weights of the log-evidence terms: what both poses explain, what has stayed, and few against many.
+const EXPLAINED_COUNTS: f64 = 25.0;
+const STAYED_COUNTS: f64 = 2.0;
+const RATIO_COUNTS: f64 = 6.0;
+/// Weights below this are none.
+const MIN_WEIGHT: f64 = 1e-3;
+/// By this log-evidence, what has stayed must be better.
+const MARGIN: f64 = 4.0;
 
 /// The pose of a robot of which much of the view does not know that it has stayed.
 pub(crate) struct Stayed {

@@ -45,7 +45,7 @@ impl Deskew {
 pub(crate) fn deskewed_scan(directions: &mut Directions, reading: &LaserReading, path: &ScanPath) -> Scan {
     let (scan, mount, to_laser) = (&reading.scan, reading.mount, reading.mount.inverse());
     directions.update(scan, &Isometry2::identity());
-    deskew(scan, directions.units(), |left| to_laser * path.at(left * scan.sweep_s) * mount)
+    deskew(scan, &directions.units, |left| to_laser * path.at(left * scan.sweep_s) * mount)
 }
 
 /// The end point of a beam in the frame of the laser at the end of the sweep.
@@ -170,7 +170,7 @@ mod tests {
     fn deskewed(scan: &Scan, laser_before: impl Fn(f64) -> Isometry2<f64>) -> Scan {
         let mut directions = Directions::default();
         directions.update(scan, &Isometry2::identity());
-        deskew(scan, directions.units(), laser_before)
+        deskew(scan, &directions.units, laser_before)
     }
 
     #[test]
@@ -227,11 +227,9 @@ mod tests {
         };
         let reading = LaserReading {
             time_s: 1.0,
-            pose: Isometry2::identity(),
-            twist: Twist::STOP,
             velocities: (1..=5).map(sample).collect(),
-            mount: Isometry2::identity(),
             scan: scan((0..beams).map(range).collect()),
+            ..LaserReading::default()
         };
         let path = ScanPath::of_sweep(&reading, &before(elapsed_s).inverse(), elapsed_s).unwrap();
         let deskewed = deskewed_scan(&mut Directions::default(), &reading, &path);

@@ -1,16 +1,31 @@
 //! The readings of a robot that maps a place for the first time, and whether they must be read again.
 
-use crate::constants::{
-    AMBIGUOUS, BROKEN_READINGS, CERTAIN_STD, CORRECTED_STD, FROZEN_WAY_M, INCONSISTENT, MAX_READINGS,
-    MAX_REJECTED, NEAR_STD, OPENING_WAY_M, SEARCH_EVERY, STDS, SUBMAP_KEYFRAMES, WINDOW,
-};
+use crate::constants::{AMBIGUOUS, LOG_NOISE_M, NEAR_STD, SEARCH_EVERY, STDS, SUBMAP_KEYFRAMES};
 use crate::estimate::{Localized, PoseEstimate, PoseState};
 use crate::localizer::PosePrior;
 use crate::openings::has_opening;
 use crate::settings::LocalizerSettings;
-use crate::trajectory::{TrajectoryFinder, TrajectorySettings, in_frame};
+use crate::spread::Spread;
+use crate::trajectory::{TrajectoryFinder, in_frame};
 use interfaces::{CellState, Grid, LaserReading, SettingsError, heading_rad};
 use nalgebra::{Isometry2, Matrix3, Vector2};
+
+/// Motions in the map and by matching that differ by more than this, and than this many standard deviations, are inconsistent.
+const INCONSISTENT: Spread = Spread::of_error(0.06);
+/// Keyframes of the longer way over which motions are compared: about 5 m.
+const WINDOW: usize = 16;
+/// Ways on known ground after which the map is frozen: without openings, and with openings that may be too narrow, m.
+const FROZEN_WAY_M: f64 = 60.0;
+const OPENING_WAY_M: f64 = 300.0;
+/// The first map is frozen after this number of readings, which bounds the memory: half an hour at 10 Hz.
+const MAX_READINGS: usize = 18_000;
+/// The same after this many readings in a row that do not agree with those before: the robot was carried.
+const BROKEN_READINGS: u32 = 10;
+/// Maximum number of rejected replays.
+const MAX_REJECTED: u32 = 3;
+/// Errors of a certain pose, and of the corrected trajectory, which are the same for many scans.
+const CERTAIN_STD: Spread = Spread { m: 0.01, rad: 0.003 };
+const CORRECTED_STD: Spread = Spread::of_error(0.003);
 
 /// A reading, and what the localizer has made of it.
 #[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
@@ -29,7 +44,8 @@ pub(crate) struct Kept {
 /// What is in a state file: the rest follows from the readings.
 #[derive(Clone, Debug, Default, serde::Deserialize, serde::Serialize)]
 pub(crate) struct Log {
-    kept: Vec<Kept>,
+    /// The readings so far.
+    pub(crate) kept: Vec<Kept>,
     /// The time of the latest reading, s.
     time_s: f64,
     /// The last reading with a certain pose.
@@ -37,7 +53,7 @@ pub(crate) struct Log {
     /// The last keyframe with a known pose.
     last_known: Option<usize>,
     /// The number of loops that were compared with the map.
-    loops: usize,
+    pub(crate) loops: usize,
     /// Whether the map is inconsistent, as far as is known.
     is_inconsistent: bool,
     /// The number of scans until the readings are read again.
@@ -57,17 +73,16 @@ pub(crate) struct FirstMap {
     finder: TrajectoryFinder,
     /// The numbers of the readings that are keyframes.
     keyframes: Vec<usize>,
-    log: Log,
+    pub(crate) log: Log,
 }
 
 impl FirstMap {
     pub(crate) fn new(settings: &LocalizerSettings) -> Result<Self, SettingsError> {
-        let of_logs = TrajectorySettings::default().range_noise_std_m;
-        let settings = TrajectorySettings {
-            range_noise_std_m: settings.range_noise_std_m.max(of_logs),
-            odometry: settings.odometry,
-        };
-        let finder = TrajectoryFinder::new(&settings)?.with_odometry();
+        let range_noise_std_m = settings.range_noise_std_m.max(LOG_NOISE_M);
+        let settings = LocalizerSettings { range_noise_std_m, ..settings.clone() };
+        let mut finder = TrajectoryFinder::new(&settings)?;
+        // A robot that rests at the start does not go on as before.
+        finder.builder.motion_prior.exists = true;
         Ok(Self { finder, keyframes: Vec::new(), log: Log::default() })
     }
 
@@ -79,12 +94,7 @@ impl FirstMap {
         }
         let is_known = log.last_known.is_none_or(|last| last < first.keyframes.len())
             && log.last_certain.is_none_or(|last| last < log.kept.len());
-        (is_known && log.loops == first.finder.loops()).then_some(Self { log, ..first })
-    }
-
-    /// What is saved.
-    pub(crate) fn log(&self) -> &Log {
-        &self.log
+        (is_known && log.loops == first.finder.loops().len()).then_some(Self { log, ..first })
     }
 
     /// Finds the trajectory to reading `number`.
@@ -93,16 +103,6 @@ impl FirstMap {
         if self.finder.keyframe_count() > self.keyframes.len() {
             self.keyframes.push(number);
         }
-    }
-
-    /// The readings so far.
-    pub(crate) fn kept(&self) -> &[Kept] {
-        &self.log.kept
-    }
-
-    /// The number of loops that are closed.
-    pub(crate) fn loops(&self) -> usize {
-        self.log.loops
     }
 
     /// Whether the map is_frozen: its frame does not move any more.
@@ -155,7 +155,7 @@ impl FirstMap {
             self.log.is_whole = has_returned
                 && (known_m >= OPENING_WAY_M || states.is_some_and(|states| !has_opening(states)));
         }
-        if self.finder.loops() != self.log.loops {
+        if self.finder.loops().len() != self.log.loops {
             self.look_at_loops();
             let is_wanted = self.log.is_inconsistent || state == PoseState::Lost;
             if is_wanted && self.log.refused < MAX_REJECTED {
@@ -217,18 +217,18 @@ impl FirstMap {
 
     /// Compares the motions in the map with those of new loops. What the map says may explain the place as well as the loop.
     fn look_at_loops(&mut self) {
-        let is_inconsistent = self.finder.loops_since(self.log.loops).any(|found| {
-            let mapped = self.mapped_motion(found.from, found.to);
+        let is_inconsistent = self.finder.loops()[self.log.loops..].iter().any(|found| {
+            let mapped = self.mapped_motion(found.edge.from, found.edge.to);
             mapped.is_some_and(|mapped| {
-                let near = || self.finder.agreement_near(&found, &mapped);
+                let near = || self.finder.agreement_near(found, &mapped);
                 let is_inconsistent =
                     |motion: &Isometry2<f64>| is_inconsistent(&mapped, motion, &Matrix3::zeros());
                 let is_explained = |(near, share)| share >= AMBIGUOUS && !is_inconsistent(&near);
-                is_inconsistent(&found.motion) && !near().is_some_and(is_explained)
+                is_inconsistent(&found.edge.motion) && !near().is_some_and(is_explained)
             })
         });
         self.log.is_inconsistent |= is_inconsistent;
-        self.log.loops = self.finder.loops();
+        self.log.loops = self.finder.loops().len();
     }
 
     /// The poses of all readings in the map, by the trajectory with all loops. Where the trajectory begins, it is where the

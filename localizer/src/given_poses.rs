@@ -1,14 +1,15 @@
 use crate::deskew::deskewed_scan;
 use crate::scan_path::ScanPath;
 use crate::scan_points::Directions;
-use interfaces::{LaserReading, ValueError, value};
+use interfaces::LaserReading;
 use nalgebra::Isometry2;
 
 /// The poses of the source, taken as they are. Scans are deskewed with them, the first scan with its velocities.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, serde::Deserialize, serde::Serialize)]
 pub struct GivenPoses {
     /// The time and the pose of the last reading.
     last: Option<(f64, Isometry2<f64>)>,
+    #[serde(skip)]
     directions: Directions,
 }
 
@@ -23,19 +24,5 @@ impl GivenPoses {
             reading.scan = deskewed_scan(&mut self.directions, &reading, &path);
         }
         reading
-    }
-
-    /// What an earlier reading has left, as bytes.
-    pub fn snapshot(&mut self) -> Vec<u8> {
-        interfaces::snapshot(vec![value(&mut self.last)])
-    }
-
-    /// Goes on from a snapshot.
-    ///
-    /// # Errors
-    ///
-    /// When the bytes are no snapshot of given poses.
-    pub fn restore(&mut self, snapshot: &[u8]) -> Result<(), ValueError> {
-        interfaces::restore(vec![value(&mut self.last)], snapshot)
     }
 }

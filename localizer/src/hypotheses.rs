@@ -1,12 +1,15 @@
 //! Several poses that the robot may have. Driving on decides between them.
 
 use crate::changing_map::ChangingMap;
-use crate::constants::{AMBIGUOUS, EQUAL, FOUND_STD, SAME_POSE, SCORE_MEMORY, WIDE_GATE_M};
+use crate::constants::{AMBIGUOUS, EQUAL, FOUND_STD, SAME_POSE, WIDE_GATE_M};
 use crate::match_scene::MatchScene;
 use crate::matcher::{Prior, difference};
 use crate::motion::Motion;
 use crate::support::Support;
 use nalgebra::{Isometry2, Matrix3};
+
+/// What a score counts at the next scan: about five scans decide.
+const SCORE_MEMORY: f64 = 0.8;
 
 /// A pose that the robot may have.
 #[derive(Clone, Copy, Debug, serde::Deserialize, serde::Serialize)]

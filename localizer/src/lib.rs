@@ -7,7 +7,7 @@
 //! ```
 //!
 //! [`Localizer::localize`] (`localizer.rs`) does this for a reading; the common part is `LocalTrajectoryBuilder::add`. The table of
-//! its states is in `localizer/state.rs`, and all chosen numbers in `constants/`. The localizer never mistakes its own error
+//! its states is in `localizer/state.rs`. A chosen number stands beside its formula, or, with several users, in `constants.rs`. The localizer never mistakes its own error
 //! for a change of the place, because a scan enters a map only while the state of the estimate is [`PoseState::Tracking`];
 //! all other time counts as not observed.
 //!
@@ -72,5 +72,5 @@ pub use loop_closing::{Correction, LoopClosed, LoopClosingLocalizer, Switch};
 pub use settings::{LocalizerSettings, OdometryTrust};
 pub use trajectory::{
     DistanceScale, KnownPlace, PlaceError, Residual, RouteSearch, Trajectory, TrajectoryFinder,
-    TrajectoryPose, TrajectorySettings,
+    TrajectoryPose,
 };

@@ -41,7 +41,7 @@ pub(crate) struct Matched<F> {
 }
 
 /// The last pose of the robot.
-#[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
+#[derive(Clone, Debug, Default, serde::Deserialize, serde::Serialize)]
 pub(crate) struct Track {
     pub(crate) pose: Isometry2<f64>,
     pub(crate) covariance: Matrix3<f64>,
@@ -89,11 +89,7 @@ impl<M> LocalTrajectoryBuilder<M> {
             motion_prior: MotionPrior::new(odometry),
             deskew: Deskew::new(rules),
             matcher,
-            track: Track {
-                pose: Isometry2::identity(),
-                covariance: Matrix3::zeros(),
-                last_motion: Isometry2::identity(),
-            },
+            track: Track::default(),
             time_s: None,
         }
     }
@@ -120,7 +116,7 @@ impl<M> LocalTrajectoryBuilder<M> {
             self.motion_prior.judge(is_outlier);
         }
         if matched.is_reliable {
-            self.motion_prior.learn(&scan.measured, &motion);
+            self.motion_prior.calibration.learn(&scan.measured, &motion);
             // The noise of the odometry within a scan bends its walls. The matched motion does not.
             if reading.scan.sweep_s > 0.0 {
                 scan.points = self.deskew.update(&mut scan.reading, reading, &motion, scan.elapsed_s);
@@ -144,7 +140,7 @@ impl<M> LocalTrajectoryBuilder<M> {
         let points = self.deskew.update(&mut deskewed, reading, &in_sweep.0, in_sweep.1);
         let Track { pose, covariance, .. } = &self.track;
         let predicted = motion.predict(pose, covariance, reading.scan.sweep_s > 0.0);
-        let has_odometry = self.motion_prior.has_odometry();
+        let has_odometry = self.motion_prior.exists;
         let reading = deskewed;
         IncomingScan { reading, points, fault, motion, predicted, measured, has_odometry, elapsed_s, now_s }
     }

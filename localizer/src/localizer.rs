@@ -16,7 +16,7 @@ use crate::scan_points::PointRules;
 use crate::settings::LocalizerSettings;
 use crate::surfel_map::SurfelMap;
 use interfaces::{CellState, Grid, GridFrame, LaserReading, SettingsError};
-use map_matcher::{Around, MapMatcher};
+use map_matcher::MapMatcher;
 use nalgebra::{Isometry2, Matrix3};
 
 /// Estimates the pose of a robot from odometry and scans. The same readings give the same bits.
@@ -24,7 +24,7 @@ use nalgebra::{Isometry2, Matrix3};
 pub struct Localizer {
     builder: LocalTrajectoryBuilder<MapMatcher>,
     /// Whether much of the view has moved at once at the last reading.
-    much_has_moved: bool,
+    pub(crate) much_has_moved: bool,
 }
 
 impl Localizer {
@@ -65,7 +65,7 @@ impl Localizer {
         let matcher = MapMatcher::new(settings, surfels, start, from_nothing);
         let rules = PointRules { noise_m: settings.range_noise_std_m, grazing: true };
         let mut builder = LocalTrajectoryBuilder::new(matcher, &settings.odometry, rules);
-        builder.motion_prior.expect_odometry();
+        builder.motion_prior.exists = true;
         let (pose, covariance) = match start {
             Start::At(pose) if from_nothing => (pose, Matrix3::zeros()),
             Start::At(pose) => (pose, NEAR_STD.covariance()),
@@ -97,7 +97,7 @@ impl Localizer {
         map: &impl ChangingMap,
         prior: Option<PosePrior>,
     ) -> Localized {
-        let (mut reading, support) = match self.builder.add(reading, Around { map, prior }) {
+        let (mut reading, support) = match self.builder.add(reading, (map, prior)) {
             Some((reading, found)) => {
                 self.much_has_moved = found.follower.is_some();
                 (reading, found.support)
@@ -111,10 +111,5 @@ impl Localizer {
         reading.pose = pose;
         let state = self.builder.matcher.reported();
         Localized { reading, estimate: PoseEstimate { pose, covariance, support, state } }
-    }
-
-    /// Whether much of the view has moved at once at the last reading.
-    pub(crate) fn much_has_moved(&self) -> bool {
-        self.much_has_moved
     }
 }

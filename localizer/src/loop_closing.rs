@@ -25,7 +25,7 @@ use crate::estimate::Localized;
 use crate::first_map::{FirstMap, Log};
 use crate::localizer::Localizer;
 use crate::settings::LocalizerSettings;
-use interfaces::{GridFrame, LaserReading, SettingsError, ValueError, read_value, write_value};
+use interfaces::{GridFrame, LaserReading, SettingsError, ValueError, from_bytes, to_bytes};
 use mapper::Mapper;
 use nalgebra::{Isometry2, Matrix3};
 use replay::{Background, Replay, Replayed, learn};
@@ -164,7 +164,7 @@ impl LoopClosingLocalizer {
         };
         let prior = first.pose_prior(reading);
         let localized = self.localizer.localize_near(reading, map, prior);
-        if self.localizer.much_has_moved() {
+        if self.localizer.much_has_moved {
             // Keyframes from before and after do not fit together: most of what they show has moved.
             self.first = None;
             return LoopClosed { localized, correction: None };
@@ -182,7 +182,7 @@ impl LoopClosingLocalizer {
         let (settings, frame, start) = (self.settings.clone(), self.frame, self.start);
         let (emptied, first) = (map.emptied(), self.first.take()?);
         let (meanwhile, coming) = mpsc::channel();
-        let (begun, read) = (first.kept().len(), Arc::new(AtomicUsize::new(0)));
+        let (begun, read) = (first.log.kept.len(), Arc::new(AtomicUsize::new(0)));
         let count = read.clone();
         // To make a large map takes time as well.
         let read_all = move || match Localizer::from_nothing(&settings, &frame, start) {
@@ -203,7 +203,7 @@ impl LoopClosingLocalizer {
     fn localize_meanwhile(&mut self, reading: &LaserReading, map: &mut Mapper) -> LoopClosed {
         let map_s = map.time();
         let localized = self.localizer.localize(reading, map);
-        if self.localizer.much_has_moved() {
+        if self.localizer.much_has_moved {
             self.background = None;
         } else if let Some(background) = &mut self.background
             && background.add((reading.clone(), map_s, localized.clone()), &self.switch)
@@ -235,13 +235,7 @@ impl LoopClosingLocalizer {
     /// Everything that readings have changed, as bytes; settings are not in it. While the first map is young, that is all
     /// readings. A map that is being learned again must be [settled](Self::settle) before.
     pub fn snapshot(&mut self) -> Vec<u8> {
-        let (mut bytes, log) = (Vec::new(), self.first.as_ref().map(FirstMap::log));
-        let localizer = self.localizer.snapshot();
-        // Both always can be written. An empty snapshot would be refused.
-        match write_value(&localizer, &mut bytes).and_then(|()| write_value(&log, &mut bytes)) {
-            Ok(()) => bytes,
-            Err(ValueError) => Vec::new(),
-        }
+        to_bytes(&(self.localizer.snapshot(), self.first.as_ref().map(|first| &first.log)))
     }
 
     /// Goes on from the snapshot of a localizer with the same settings and the same frame, bit for bit. The trajectory of a
@@ -250,16 +244,15 @@ impl LoopClosingLocalizer {
     /// # Errors
     ///
     /// When the bytes are no such snapshot. The localizer must not be used then.
-    pub fn restore(&mut self, mut snapshot: &[u8]) -> Result<(), ValueError> {
-        let localizer: Vec<u8> = read_value(&mut snapshot)?;
-        let log: Option<Log> = read_value(&mut snapshot)?;
+    pub fn restore(&mut self, snapshot: &[u8]) -> Result<(), ValueError> {
+        let (localizer, log): (Vec<u8>, Option<Log>) = from_bytes(snapshot)?;
         self.background = None;
         self.localizer.restore(&localizer)?;
         self.first = match log {
             Some(log) => Some(FirstMap::with_log(&self.settings, log).ok_or(ValueError)?),
             None => None,
         };
-        if snapshot.is_empty() { Ok(()) } else { Err(ValueError) }
+        Ok(())
     }
 
     /// Puts the robot elsewhere, see [`Localizer::seat`]. The map is frozen: its readings so far are of another way.
@@ -272,7 +265,7 @@ impl LoopClosingLocalizer {
     pub fn begin_session(&mut self) {
         self.localizer.begin_session();
         self.background = None;
-        if self.first.as_ref().is_some_and(|first| !first.kept().is_empty()) {
+        if self.first.as_ref().is_some_and(|first| !first.log.kept.is_empty()) {
             self.first = None;
         }
     }

@@ -1,7 +1,7 @@
 //! All that one scan is compared with.
 
 use crate::changing_map::ChangingMap;
-use crate::constants::{GATE_STDS, SURFEL_STD_M};
+use crate::constants::SURFEL_STD_M;
 use crate::matcher::{Gates, Match, Prior, align};
 use crate::placement::Placement;
 use crate::scan_points::ScanPoint;
@@ -9,6 +9,10 @@ use crate::settings::LocalizerSettings;
 use crate::support::{ClearBeams, Support, judge};
 use crate::surfel_map::SurfelMap;
 use nalgebra::{Isometry2, Point2};
+
+/// The same of points and surfels in live matches, whose maps are followed for hours: with 3, the position is off by 32 mm instead of
+/// 19 mm where the noise is 3 cm.
+const GATE_STDS: f64 = 3.5;
 
 /// One scan, and the maps.
 pub(crate) struct MatchScene<'a, M> {

@@ -4,13 +4,16 @@
 //! a second scan (as Segal, Haehnel & Thrun 2009 use surfaces on both sides), the kernel of Geman & McClure (1987), and
 //! a prior from odometry.
 
-use crate::constants::{MAX_STEPS, MIN_KERNEL, STEP, SURFEL_STD_M};
+use crate::constants::{MAX_STEPS, STEP, SURFEL_STD_M};
 use crate::placement::Placement;
 use crate::scan_points::ScanPoint;
 use crate::spread::Spread;
 use crate::surfel_map::SurfelMap;
 use interfaces::heading_rad;
 use nalgebra::{Isometry2, Matrix3, Matrix6, Vector2, Vector3, Vector6};
+
+/// A point whose noise across the surface is small must not pull where it hits another surface: minimum share of the kernel.
+const MIN_KERNEL: f64 = 0.3;
 
 /// A pose with the inverse of its covariance, in the frame of the map.
 #[derive(Clone, Copy, Debug)]
@@ -93,13 +96,11 @@ impl NormalEquations {
     /// The steps of the end and of the begin. `None` if the points do not fix the pose.
     fn step(&self, placement: &Placement, prior: Option<&Prior>) -> Option<[Vector3<f64>; 2]> {
         let (mut hessian, mut gradient) = (self.hessian, self.gradient);
-        let Some(prior) = prior else {
-            return Some([-(hessian.try_inverse()? * gradient), Vector3::zeros()]);
-        };
-        let off = difference(&placement.pose, &prior.pose);
-        let Some(begin) = &prior.begin else {
-            hessian += prior.information;
-            gradient += prior.information * off;
+        let off = prior.map_or(Vector3::zeros(), |prior| difference(&placement.pose, &prior.pose));
+        let Some(begin) = prior.and_then(|prior| prior.begin) else {
+            let information = prior.map_or(Matrix3::zeros(), |prior| prior.information);
+            hessian += information;
+            gradient += information * off;
             return Some([-(hessian.try_inverse()? * gradient), Vector3::zeros()]);
         };
         let off = stack(&(placement.begin() - begin.expected), &off);

@@ -1,11 +1,19 @@
 //! The motion between two readings by odometry, and how far it can be trusted.
 
-use crate::constants::{DISTRUSTED_STD, PRIOR_FACTOR, REST_STD, SLIP};
+use crate::constants::DISTRUSTED_STD;
 use crate::matcher::{Begin, Prior, difference};
 use crate::placement::shifted;
 use crate::settings::OdometryTrust;
+use crate::spread::Spread;
 use interfaces::heading_rad;
 use nalgebra::{Isometry2, Matrix3, Matrix6, Vector3, Vector6};
+
+/// Errors at rest: vibration, and rounding of the odometry.
+const REST_STD: Spread = Spread { m: 2e-4, rad: 1e-4 };
+/// Share of a motion that slips to the side.
+const SLIP: f64 = 0.02;
+/// The expected errors count as larger by this: what is the same from scan to scan would bend the map.
+const PRIOR_FACTOR: f64 = 1.5;
 
 /// A motion in the frame of the robot before the motion.
 #[derive(Clone, Copy, Debug)]

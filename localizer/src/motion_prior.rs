@@ -9,15 +9,15 @@ use nalgebra::Isometry2;
 /// The odometry of a robot.
 #[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
 pub(crate) struct MotionPrior {
-    calibration: Calibration,
+    pub(crate) calibration: Calibration,
     /// The last valid odometry pose.
     last: Option<Isometry2<f64>>,
     /// The odometry pose from which a motion shows that there is an odometry: of a slow robot with a fast laser, no step between two
     /// readings does.
     #[serde(skip)]
     origin: Option<Isometry2<f64>>,
-    /// Whether there is an odometry, as far as is known.
-    exists: bool,
+    /// Whether there is an odometry, as far as is known; it may not have moved yet.
+    pub(crate) exists: bool,
     /// The number of scans for which the odometry is not trusted.
     distrust: u32,
 }
@@ -25,20 +25,6 @@ pub(crate) struct MotionPrior {
 impl MotionPrior {
     pub(crate) fn new(trust: &OdometryTrust) -> Self {
         Self { calibration: Calibration::new(trust), last: None, origin: None, exists: false, distrust: 0 }
-    }
-
-    /// There is an odometry, though it may not have moved yet.
-    pub(crate) fn expect_odometry(&mut self) {
-        self.exists = true;
-    }
-
-    /// The true distance per distance that the odometry measures is known, with its standard deviation.
-    pub(crate) fn expect_distance_scale(&mut self, scale: f64, std: f64) {
-        self.calibration.expect_distance(scale, std);
-    }
-
-    pub(crate) fn has_odometry(&self) -> bool {
-        self.exists
     }
 
     /// Forgets where the odometry was; what was learned about its gains stays.
@@ -56,7 +42,7 @@ impl MotionPrior {
 
     /// The expected motion. Without odometry, the robot goes on as before.
     pub(crate) fn motion(&self, measured: &Isometry2<f64>, last_motion: &Isometry2<f64>) -> Motion {
-        let trust = self.calibration.trust();
+        let trust = &self.calibration.trust;
         match self.exists {
             true if self.distrust == 0 => Motion::new(self.calibration.correct(measured), trust),
             true => Motion::new(self.calibration.correct(measured), trust).distrusted(),
@@ -67,11 +53,6 @@ impl MotionPrior {
     /// Learns from a supported scan whether the odometry can be trusted.
     pub(crate) fn judge(&mut self, is_outlier: bool) {
         self.distrust = if is_outlier { DISTRUST_SCANS } else { self.distrust.saturating_sub(1) };
-    }
-
-    /// Learns the gains from a measured and a matched motion.
-    pub(crate) fn learn(&mut self, measured: &Isometry2<f64>, matched: &Isometry2<f64>) {
-        self.calibration.learn(measured, matched);
     }
 }
 
@@ -87,7 +68,7 @@ mod tests {
             for step in 0..100 {
                 prior.measure(&pose(step_m * f64::from(step), 0.0, 0.0));
             }
-            prior.has_odometry()
+            prior.exists
         };
         assert!(exists(0.001));
         assert!(!exists(0.0));

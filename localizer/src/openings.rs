@@ -1,7 +1,10 @@
 //! Whether a map has openings: places where the known space goes on into space that was never seen.
 
-use crate::constants::{OPENING_CELLS, OPENING_M};
 use interfaces::{Cell, CellState, Grid};
+
+/// A narrower gap is no opening, m; cells so near to a surface are part of it.
+const OPENING_M: f64 = 0.5;
+const OPENING_CELLS: i32 = 2;
 
 /// Whether free space goes on into unknown space somewhere, over a width of half a meter: then there is more to explore
 /// (frontiers: Yamauchi 1997).

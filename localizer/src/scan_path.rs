@@ -1,8 +1,17 @@
 //! The path of a robot while a scan was measured, from odometry.
 
-use crate::constants::{MAX_CHORD_RAD, MAX_MISMATCH, MAX_MPS, RAD_PER_M};
+use crate::spread::Spread;
 use interfaces::{LaserReading, Twist, VelocitySample, heading_rad};
 use nalgebra::{Complex, Isometry2, Translation2, UnitComplex, Vector2, Vector3};
+
+/// Rotation equivalent to 1 m of a path within a scan, rad.
+const RAD_PER_M: f64 = 3.0;
+/// Largest difference between the motion and the sum of the velocities within a scan. Beyond it, the odometry has jumped.
+const MAX_MISMATCH: Spread = Spread { m: 0.1, rad: 0.15 };
+/// No robot is faster than this, m/s.
+const MAX_MPS: f64 = 50.0;
+/// Largest turn of which the chord approximates the arc, rad: wrong by less than 1e-5 rad.
+const MAX_CHORD_RAD: f64 = 0.1;
 
 /// The path of a robot up to the end of a scan.
 pub(crate) struct ScanPath {
@@ -159,11 +168,9 @@ mod tests {
     fn the_motion_within_a_first_scan_follows_from_its_velocities() {
         let reading = |linear_mps: f64, angular_radps: f64| LaserReading {
             time_s: 1.0,
-            pose: Isometry2::identity(),
             twist: Twist { linear_mps, angular_radps },
-            velocities: Vec::new(),
-            mount: Isometry2::identity(),
             scan: Scan { sweep_s: 0.1, ..Scan::default() },
+            ..LaserReading::default()
         };
         let (motion, elapsed_s) = ScanPath::by_velocities(&reading(0.5, 1.0));
         assert_eq!(elapsed_s, 0.1);
@@ -186,11 +193,9 @@ mod tests {
         for velocities in [vec![], vec![sample(0.95, 0.3), sample(0.92, 0.3), sample(f64::NAN, 1.0)]] {
             let reading = LaserReading {
                 time_s: 1.0,
-                pose: Isometry2::identity(),
                 twist: Twist { linear_mps: f64::INFINITY, angular_radps: 0.0 },
                 velocities,
-                mount: Isometry2::identity(),
-                scan: Scan::default(),
+                ..LaserReading::default()
             };
             let path = ScanPath::new(&reading, &pose(0.04, 0.0, 0.1), 0.1);
             let [first, middle] = [0.1, 0.05].map(|age_s| path.at(age_s));

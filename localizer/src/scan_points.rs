@@ -6,14 +6,35 @@
 #[cfg(test)]
 mod tests;
 
-use crate::constants::{
-    AVERAGED, FULL_WEIGHT_M, GRAZING_M, GRAZING_OFF_M, GRAZING_STDS, JOIN_SPACINGS, JUDGED_M, MAX_NEIGHBORS,
-    MIN_GRAZING, NORMAL_REACH_M, SAME_SURFACE, STRAIGHT_M, STRAIGHT_STDS, SURFEL_M,
-};
+use crate::constants::{JUDGED_M, SAME_SURFACE, SURFEL_M};
 use crate::moments::Moments;
 use crate::work;
 use interfaces::{FARTHEST_M, LaserReading, Scan};
 use nalgebra::{Isometry2, Point2, Vector2};
+
+/// End points of neighboring beams that are nearer than this, in spacings of the beams, are on one surface: below about 20° between
+/// beam and surface, a third beam must confirm the surface.
+const JOIN_SPACINGS: f64 = 3.0;
+/// End points of beams that graze one surface may be this far apart, m.
+const GRAZING_M: f64 = 1.0;
+/// The third end point lies off the line by at most this many standard deviations of the noise across the surface, and by no
+/// more than this, m.
+const GRAZING_STDS: f64 = 8.0;
+const GRAZING_OFF_M: f64 = 0.03;
+/// Minimum cosine of the angle of incidence of a point: below it, surfaces are rarely straight enough.
+const MIN_GRAZING: f64 = 0.06;
+/// Normals are fitted to the points up to this far away, m: with less, the noise of 1 cm turns them by degrees.
+const NORMAL_REACH_M: f64 = 0.2;
+/// Normals are fitted to at most this number of points on either side, which bounds the work of a scan.
+const MAX_NEIGHBORS: usize = 1000;
+/// Points lie on a line if their mean square distance is below that of this many standard deviations, and this
+/// more, m.
+const STRAIGHT_STDS: f64 = 1.3;
+const STRAIGHT_M: f64 = 0.002;
+/// Length of surface with weight 1, m: a beam that grazes a wall does not confirm all of it.
+const FULL_WEIGHT_M: f64 = 0.04;
+/// The mean over this many neighbors of a point on either side tells apart what the noise of a point hides.
+const AVERAGED: usize = 4;
 
 /// A point on a surface, in the frame of the robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,6 +52,13 @@ pub(crate) struct ScanPoint {
     /// The share of the way since the last scan that the robot had gone when the beam was measured: from 0 to 1, the end
     /// of the scan.
     pub(crate) passed: f64,
+}
+
+impl ScanPoint {
+    /// A point with full weight, measured at the end of a scan.
+    pub(crate) fn new(at: Point2<f64>, normal: Vector2<f64>) -> Self {
+        Self { at, normal, weight: 1.0, noise_share: 1.0, beam: 0, passed: 1.0 }
+    }
 }
 
 /// How points are made of end points.
@@ -57,14 +85,10 @@ pub(crate) struct ScanPoints {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Directions {
     geometry: Option<(f64, f64, usize, Isometry2<f64>)>,
-    units: Vec<Vector2<f64>>,
+    pub(crate) units: Vec<Vector2<f64>>,
 }
 
 impl Directions {
-    pub(crate) fn units(&self) -> &[Vector2<f64>] {
-        &self.units
-    }
-
     pub(crate) fn update(&mut self, scan: &Scan, mount: &Isometry2<f64>) {
         let geometry = Some((scan.angle_min_rad, scan.angle_increment_rad, scan.ranges_m.len(), *mount));
         if self.geometry != geometry {
@@ -186,7 +210,7 @@ impl ScanPoints {
         let arc_m = spacing_m / incidence.max(0.2);
         let weight = (arc_m / FULL_WEIGHT_M).min(1.0);
         let noise_share = if rules.grazing { incidence.max(MIN_GRAZING) } else { 1.0 };
-        Some(ScanPoint { at, normal, weight, noise_share, beam, passed: 1.0 })
+        Some(ScanPoint { weight, noise_share, beam, ..ScanPoint::new(at, normal) })
     }
 
     fn origin(&self) -> Vector2<f64> {

@@ -1,11 +1,14 @@
 //! How well a point fits at each place of the line map, and the maxima over squares of growing size: the bounds of the
 //! branch and bound of Hess, Kohler, Rapp & Andor (2016), section V, in tables that shrink as the squares grow.
 
-use crate::constants::{ALONG_M, MAX_SIDE_M, MINOR, SCORE_CELL_M, THICK_M, TOP};
+use crate::constants::{MAX_SIDE_M, MINOR, SCORE_CELL_M, THICK_M, TOP};
 use crate::surfel_map::{SurfelMap, fitted};
 use crate::work;
 use interfaces::{Cell, CellState, Grid, GridFrame};
 use nalgebra::{Point2, Vector2};
+
+/// A surfel reaches this far along its surface, m: neighbors join.
+const ALONG_M: f64 = 0.08;
 
 /// Cells on the low sides of a frame: a square may begin outside of the frame and end inside.
 const MARGIN: usize = 1 << TOP;
@@ -13,8 +16,10 @@ const MARGIN: usize = 1 << TOP;
 /// The scores, from 0 to 255, and where a robot can be.
 #[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
 pub(crate) struct ScoreGrid {
-    frame: GridFrame,
-    scores: Vec<Level>,
+    /// The grid of the scores.
+    pub(crate) frame: GridFrame,
+    /// The bounds of the scores in squares of 2^level cells.
+    pub(crate) scores: Vec<Level>,
     /// Not 0 where a robot can be. Without levels: anywhere.
     free: Vec<Level>,
 }
@@ -29,7 +34,7 @@ impl ScoreGrid {
         reach_m: f64,
     ) -> Self {
         let reach = Vector2::repeat(reach_m.min(MAX_SIDE_M / 2.0));
-        let whole = surfels.frame();
+        let whole = &surfels.frame;
         let end = Vector2::new(whole.width() as f64, whole.height() as f64) * whole.resolution_m();
         let (low, high) = ((middle - reach - whole.origin()), (middle + reach - whole.origin()));
         let (low, high) = (low.sup(&Vector2::zeros()), high.inf(&end));
@@ -40,7 +45,7 @@ impl ScoreGrid {
 
     /// The scores of the line map, where nothing is known about the places where the robot can be.
     pub(crate) fn anywhere(surfels: &SurfelMap) -> Self {
-        Self::of_frame(surfels, fitted(surfels.frame(), SCORE_CELL_M, 0))
+        Self::of_frame(surfels, fitted(&surfels.frame, SCORE_CELL_M, 0))
     }
 
     /// The same, in cells of any size.
@@ -48,19 +53,9 @@ impl ScoreGrid {
         Self { frame, scores: levels(&frame, splat(surfels, &frame)), free: Vec::new() }
     }
 
-    /// The grid of the scores.
-    pub(crate) fn frame(&self) -> &GridFrame {
-        &self.frame
-    }
-
     /// The number of cells at all levels.
     pub(crate) fn cells(&self) -> usize {
         self.scores.iter().chain(&self.free).map(|level| level.cells.len()).sum()
-    }
-
-    /// The bounds of the scores in squares of 2^`level` cells.
-    pub(crate) fn level(&self, level: usize) -> &Level {
-        &self.scores[level]
     }
 
     /// Whether a robot can be in a square of 2^`level` cells; above level 2, or in one that touches it.

@@ -5,12 +5,13 @@ mod squares;
 #[cfg(test)]
 mod tests;
 
-use crate::constants::{MAX_CANDIDATES, MAX_WORK, SEARCH_POINTS};
+use crate::constants::{MAX_CANDIDATES, SEARCH_POINTS};
 use crate::scan_points::ScanPoint;
 use crate::score_grid::ScoreGrid;
-use interfaces::Cell;
-use nalgebra::{Isometry2, Point2};
+use interfaces::{Cell, GridFrame};
+use nalgebra::{Isometry2, Point2, Vector2};
 use squares::{Squares, headings};
+use std::f64::consts::PI;
 
 /// Where to search.
 #[derive(Clone, Copy, Debug, serde::Deserialize, serde::Serialize)]
@@ -23,6 +24,16 @@ pub(crate) struct Window {
     pub(crate) reach_rad: f64,
 }
 
+impl Window {
+    /// All poses in a frame.
+    pub(crate) fn of(frame: &GridFrame) -> Self {
+        let sides_m = Vector2::new(frame.width() as f64, frame.height() as f64) * frame.resolution_m();
+        let middle = frame.origin() + sides_m / 2.0;
+        let pose = interfaces::pose(middle.x, middle.y, 0.0);
+        Self { pose, reach_m: sides_m.max(), reach_rad: PI }
+    }
+}
+
 /// A square of positions at one heading. At level 0, the bound is the score.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
 struct Node {
@@ -33,12 +44,12 @@ struct Node {
     y: i32,
 }
 
-/// One search: the poses of a scan in a window, or without one in a whole map.
+/// One search: the poses of a scan in a window.
 #[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
 pub(crate) struct Search {
     /// The points of the scan with their weights.
     points: Vec<(Point2<f64>, u32)>,
-    window: Option<Window>,
+    window: Window,
     /// The smallest score, and the smallest share of the best one.
     min_score: f64,
     ratio: f64,
@@ -49,31 +60,16 @@ pub(crate) struct Search {
     found: Vec<Node>,
 }
 
-/// The poses that fit best, the best first: all that differ and reach `ratio` of the best score, up to a number.
-/// Without a window, the whole map is searched.
+/// The poses in a window that fit best, the best first: all that differ and reach `ratio` of the best score, up to a number.
+/// `left` is what is left of the work of a scan.
 pub(crate) fn search(
-    grid: &ScoreGrid,
-    points: &[ScanPoint],
-    window: Option<&Window>,
-    min_score: f64,
-    ratio: f64,
-) -> Vec<Isometry2<f64>> {
-    search_within(&mut { MAX_WORK }, grid, points, window, (min_score, ratio))
-}
-
-/// The same, with what is `left` of the work of a scan.
-pub(crate) fn search_within(
     left: &mut usize,
     grid: &ScoreGrid,
     points: &[ScanPoint],
-    window: Option<&Window>,
+    window: &Window,
     (min_score, ratio): (f64, f64),
 ) -> Vec<Isometry2<f64>> {
-    let mut search = Search::new(points, window.copied(), lower(1.0, min_score), ratio);
-    while search.pass(grid, left) && !search.is_over(min_score) {
-        search.repeat(lower(search.min_score, min_score));
-    }
-    search.candidates(grid)
+    Search::new(points, *window, lower(1.0, min_score), ratio).all(grid, left, min_score)
 }
 
 /// The smallest score of the next pass: few squares can reach a high one, and most scans fit well somewhere.
@@ -82,14 +78,17 @@ pub(crate) fn lower(score: f64, min_score: f64) -> f64 {
 }
 
 impl Search {
-    pub(crate) fn new(points: &[ScanPoint], window: Option<Window>, min_score: f64, ratio: f64) -> Self {
+    pub(crate) fn new(points: &[ScanPoint], window: Window, min_score: f64, ratio: f64) -> Self {
         let (points, nodes, found) = (spread(points), Vec::new(), Vec::new());
         Self { points, window, min_score, ratio, next: 0, nodes, found }
     }
 
-    /// Begins another pass.
-    fn repeat(&mut self, min_score: f64) {
-        (self.next, self.min_score) = (0, min_score);
+    /// Searches in passes down to a score.
+    fn all(mut self, grid: &ScoreGrid, left: &mut usize, min_score: f64) -> Vec<Isometry2<f64>> {
+        while self.pass(grid, left) && !self.is_over(min_score) {
+            (self.next, self.min_score) = (0, lower(self.min_score, min_score));
+        }
+        self.candidates(grid)
     }
 
     /// Whether no pass with a smaller score would find more.
@@ -109,9 +108,9 @@ impl Search {
 
     /// The poses so far.
     pub(crate) fn candidates(&self, grid: &ScoreGrid) -> Vec<Isometry2<f64>> {
-        let headings_rad = headings(self.window.as_ref(), grid);
+        let headings_rad = headings(&self.window, grid);
         let pose = |node: &Node| {
-            let at = grid.frame().center(Cell::new(node.x, node.y));
+            let at = grid.frame.center(Cell::new(node.x, node.y));
             interfaces::pose(at.x, at.y, headings_rad[node.heading])
         };
         self.found.iter().map(pose).collect()

@@ -1,7 +1,12 @@
-use crate::constants::{HARD_DRIFT, HARD_DRIFT_RADPM, LIMIT_NOISE_M};
+use crate::constants::{LIMIT_NOISE_M, LOG_NOISE_M};
 use interfaces::{SettingsCheck, SettingsError};
 
-/// Settings of a [`Localizer`](crate::Localizer).
+/// Hard drift, the largest errors of an odometry that are expected by default: gains, and noise after 1 m and after 1 rad; and
+/// rad per m, which is 3°.
+const HARD_DRIFT: f64 = 0.05;
+const HARD_DRIFT_RADPM: f64 = 0.052;
+
+/// Settings of a [`Localizer`](crate::Localizer), and of a [`TrajectoryFinder`](crate::TrajectoryFinder), which uses the first two.
 #[derive(Clone, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct LocalizerSettings {
@@ -58,6 +63,11 @@ impl Default for LocalizerSettings {
 }
 
 impl LocalizerSettings {
+    /// For the trajectories of logs, whose walls are less straight.
+    pub fn of_logs() -> Self {
+        Self { range_noise_std_m: LOG_NOISE_M, ..Self::default() }
+    }
+
     pub(crate) fn check(&self) -> Result<(), SettingsError> {
         let check = SettingsCheck { part: "localizer" };
         check.within("range_noise_std_m", self.range_noise_std_m, 0.0..=0.5, "from 0 to 0.5 m")?;

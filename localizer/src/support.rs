@@ -1,7 +1,7 @@
 //! How well a scan at a pose agrees with the maps.
 
 use crate::changing_map::ChangingMap;
-use crate::constants::{CLEAR_STRIDE, END_M, MOVED_M};
+use crate::constants::{END_M, MOVED_M};
 use crate::matcher::derivative;
 use crate::placement::Placement;
 use crate::scan_points::ScanPoint;
@@ -10,6 +10,9 @@ use crate::work;
 use interfaces::{CellState, FARTHEST_M, Grid, GridFrame, Scan};
 use nalgebra::{Isometry2, Matrix3, Point2, Vector2};
 use std::ops::Range;
+
+/// One of this many beams without a return is compared, with half the weight of a point for each.
+const CLEAR_STRIDE: usize = 6;
 
 /// The length of the surface that a scan saw, in weights of points.
 #[derive(Clone, Copy, Debug, Default, serde::Deserialize, serde::Serialize)]

@@ -13,9 +13,12 @@ mod tests;
 
 pub(crate) use checking::Checker;
 
-use crate::constants::{PER_CELL, SAME_NORMAL, SURFEL_M};
+use crate::constants::{SAME_NORMAL, SURFEL_M};
 use interfaces::{GridFrame, Values, runs, value};
 use nalgebra::{Point2, Vector2};
+
+/// Surfels in a cell: two sides of a thin wall, and a corner.
+const PER_CELL: usize = 4;
 
 /// The maximum number of cells of a grid of the localizer: they are stored one by one, seen or not.
 const MAX_CELLS: usize = 1 << 26;
@@ -59,7 +62,8 @@ impl Surfel {
 /// The line map.
 #[derive(Clone, Debug)]
 pub(crate) struct SurfelMap {
-    frame: GridFrame,
+    /// The grid of the cells.
+    pub(crate) frame: GridFrame,
     cells: Vec<[u32; PER_CELL]>,
     surfels: Vec<Surfel>,
     /// Places in `surfels` that can be used again.
@@ -92,11 +96,6 @@ impl SurfelMap {
     /// Everything that scans have changed.
     pub(crate) fn values(&mut self) -> Values<'_> {
         vec![runs(&mut self.cells), value(&mut self.surfels), value(&mut self.removed), value(&mut self.scan)]
-    }
-
-    /// The grid of the cells.
-    pub(crate) fn frame(&self) -> &GridFrame {
-        &self.frame
     }
 
     /// The surfel at an index from [`SurfelMap::nearest`].

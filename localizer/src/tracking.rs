@@ -2,15 +2,25 @@
 
 use crate::changing_map::ChangingMap;
 use crate::coherent_motion::{Stayed, stayed};
-use crate::constants::{
-    BETTER, MAJORITY, MAP_STD, MAX_SLIDE_M, MIN_SUPPORT, MINOR, MODEL_STD, MOVED_SHARE, OUTLIER, WIDE_GATE_M,
-};
+use crate::constants::{MAJORITY, MIN_SUPPORT, MINOR, MOVED_SHARE, WIDE_GATE_M};
 use crate::match_scene::MatchScene;
 use crate::matcher::{Match, difference};
 use crate::motion::Predicted;
 use crate::placement::Placement;
+use crate::spread::Spread;
 use crate::support::Support;
 use nalgebra::{Isometry2, Matrix3};
+
+/// Innovation over its covariance above which the odometry is an outlier: 1 in 10⁵ by chance.
+const OUTLIER: f64 = 26.0;
+/// A match without odometry slides at most this far from its start, m.
+const MAX_SLIDE_M: f64 = 0.5;
+/// Minimum gain of support with which another pose replaces the predicted one.
+const BETTER: f64 = 0.05;
+/// Errors of the map where other surfaces come into view.
+const MAP_STD: Spread = Spread { m: 0.002, rad: 7e-4 };
+/// Errors of a match that do not average out, per scan: surfaces that are not straight.
+const MODEL_STD: Spread = Spread { m: 5e-4, rad: 1.5e-4 };
 
 /// The pose of a scan by tracking.
 #[derive(Clone, Copy, Debug)]
@@ -134,14 +144,8 @@ mod tests {
     fn line(from: Point2<f64>, angle_rad: f64, normal_y: f64, count: usize) -> Vec<ScanPoint> {
         let along = rotation(angle_rad) * Vector2::x();
         let normal = rotation(angle_rad) * Vector2::new(0.0, normal_y);
-        let point = |number: usize| ScanPoint {
-            at: from + along * (0.1 * number as f64),
-            normal,
-            weight: 1.0,
-            noise_share: 1.0,
-            beam: number,
-            passed: 1.0,
-        };
+        let point =
+            |beam: usize| ScanPoint { beam, ..ScanPoint::new(from + along * (0.1 * beam as f64), normal) };
         (0..count).map(point).collect()
     }
 

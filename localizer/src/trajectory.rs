@@ -33,7 +33,6 @@ mod places;
 mod refine;
 mod residual;
 mod score_kernel;
-mod settings;
 mod sparse;
 mod submap;
 mod submap_matcher;
@@ -42,11 +41,12 @@ pub use distance_scale::DistanceScale;
 pub use known_place::{KnownPlace, PlaceError, RouteSearch};
 pub(crate) use matching::in_frame;
 pub use residual::Residual;
-pub use settings::TrajectorySettings;
 pub(crate) use submap_matcher::SubmapMatcher;
 
 use crate::estimate::PoseState;
 use crate::local_trajectory_builder::LocalTrajectoryBuilder;
+use crate::scan_points::PointRules;
+use crate::settings::LocalizerSettings;
 use graph::{Edge, EdgeKind, PoseGraph};
 use interfaces::{LaserReading, SettingsError};
 use keyframe::Keyframe;
@@ -91,27 +91,27 @@ struct Attached {
 /// Finds the trajectory of a robot from its readings, one after the other. The same readings give the same bits.
 #[derive(Debug)]
 pub struct TrajectoryFinder {
-    settings: TrajectorySettings,
-    builder: LocalTrajectoryBuilder<SubmapMatcher>,
+    settings: LocalizerSettings,
+    pub(crate) builder: LocalTrajectoryBuilder<SubmapMatcher>,
     closer: LoopCloser,
     graph: PoseGraph,
     readings: Vec<Attached>,
 }
 
 impl TrajectoryFinder {
-    /// A finder without a reading.
+    /// A finder without a reading; see [`LocalizerSettings::of_logs`].
     ///
     /// # Errors
     ///
     /// When a setting is out of range.
-    pub fn new(settings: &TrajectorySettings) -> Result<Self, SettingsError> {
+    pub fn new(settings: &LocalizerSettings) -> Result<Self, SettingsError> {
         settings.check()?;
         Ok(Self {
             settings: settings.clone(),
             builder: LocalTrajectoryBuilder::new(
                 SubmapMatcher::new(settings),
                 &settings.odometry,
-                settings.point_rules(),
+                PointRules { noise_m: settings.range_noise_std_m, grazing: false },
             ),
             closer: LoopCloser::new(settings.range_noise_std_m),
             graph: PoseGraph::default(),
@@ -122,7 +122,7 @@ impl TrajectoryFinder {
     /// The same finder, for an odometry whose distances are known to have a scale.
     #[must_use]
     pub fn with_distance_scale(mut self, scale: &DistanceScale) -> Self {
-        self.builder.motion_prior.expect_distance_scale(scale.scale, scale.std);
+        self.builder.motion_prior.calibration.expect_distance(scale.scale, scale.std);
         self
     }
 
@@ -148,7 +148,7 @@ impl TrajectoryFinder {
     /// Adds new keyframes to the graph.
     fn add_keyframes(&mut self) {
         let PoseGraph { poses, edges } = &mut self.graph;
-        for keyframe in &self.builder.matcher.keyframes()[poses.len()..] {
+        for keyframe in &self.builder.matcher.keyframes[poses.len()..] {
             let (motion, information) = keyframe.from_last;
             let Some(last) = poses.last() else {
                 poses.push(keyframe.local);
@@ -168,13 +168,13 @@ impl TrajectoryFinder {
     }
 
     fn keyframes(&self) -> &[Keyframe] {
-        self.builder.matcher.keyframes()
+        &self.builder.matcher.keyframes
     }
 
     /// Searches for the submaps that were finished since the last search.
     fn search_loops(&mut self) {
         while let Some(submap) = self.builder.matcher.next_finished() {
-            self.closer.add(submap, self.builder.matcher.keyframes(), &mut self.graph);
+            self.closer.add(submap, &self.builder.matcher.keyframes, &mut self.graph);
         }
     }
 
@@ -185,9 +185,9 @@ impl TrajectoryFinder {
         self.closer.accept_strong(&mut self.graph);
         self.graph = self.optimized();
         let residual = residual::residual(&self.closer.places, self.keyframes(), &self.graph);
-        let loops = self.closer.loops();
+        let loops = self.closer.accepted.len();
         let distance_scale =
-            distance_scale::distance_scale(self.builder.matcher.measured_motions(), &self.graph);
+            distance_scale::distance_scale(&self.builder.matcher.measured_motions, &self.graph);
         Trajectory { poses: self.poses(&self.graph), loops, residual, distance_scale }
     }
 

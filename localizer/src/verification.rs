@@ -4,10 +4,22 @@
 //! found pose is certain once enough scans from enough viewpoints agree with the map: those of a wrong pose would contradict
 //! it. Until then no scan enters the map: a wrong pose would soon agree with what it has drawn itself.
 
-use crate::constants::{
-    CONTRADICTION, ENOUGH, FAIR, FAIR_NEAR, FAIR_SHARE, FIRST_VIEWS, GAIN, LOSS, MINOR, VIEW_M,
-};
+use crate::constants::{FAIR_SHARE, MINOR};
 use crate::support::Support;
+
+/// What contradicts the map counts this many times.
+const CONTRADICTION: f64 = 4.0;
+/// Agreement that says nothing: near the pose by odometry, and elsewhere, where that of wrong poses was at most 0.25.
+const FAIR_NEAR: f64 = 0.2;
+const FAIR: f64 = 0.35;
+/// Evidence of a viewpoint per agreement, for and against a pose; and the evidence that decides.
+const GAIN: f64 = 4.0;
+const LOSS: f64 = 20.0;
+const ENOUGH: f64 = 3.0;
+/// Viewpoints that the first one counts: of a laser that sees all around.
+const FIRST_VIEWS: f64 = 2.0;
+/// Way to another viewpoint, m.
+const VIEW_M: f64 = 0.25;
 
 /// What speaks for and against a pose since it was found.
 #[derive(Clone, Copy, Debug, Default, serde::Deserialize, serde::Serialize)]
@@ -100,8 +112,23 @@ mod tests {
     }
 
     #[test]
-    fn a_pose_with_which_all_agrees_is_certain_at_once() {
-        assert_eq!(verdict(98.0, 1.0, false), (Verdict::Certain, 1));
+    fn what_agrees_and_what_the_map_contradicts_decide() {
+        use Verdict::{Certain, Open, Wrong};
+        for (confirmed, contradicted, is_near, expected, scans) in [
+            (98.0, 1.0, false, Certain, 1..=1),
+            // It has to hold on the way.
+            (90.0, 8.0, false, Certain, 6..=49),
+            // What is new decides only far from the odometry.
+            (50.0, 1.0, false, Open, 200..=200),
+            (50.0, 1.0, true, Certain, 1..=200),
+            (20.0, 4.0, true, Open, 200..=200),
+            (60.0, 35.0, false, Wrong, 2..=59),
+            (60.0, 35.0, true, Wrong, 2..=59),
+        ] {
+            let (verdict, after) = verdict(confirmed, contradicted, is_near);
+            let is_right = verdict == expected && scans.contains(&after);
+            assert!(is_right, "{confirmed} {contradicted} {is_near}: {verdict:?} after {after} scans");
+        }
     }
 
     #[test]
@@ -114,28 +141,5 @@ mod tests {
         let turns = Moved { turn_rad: 0.2, ..rests };
         let scans = (1..100).find(|_| verification.count(&support, &turns, false, 3) == Verdict::Certain);
         assert!(scans.is_some_and(|scans| (3..30).contains(&scans)), "{scans:?}");
-    }
-
-    #[test]
-    fn a_pose_with_which_most_agrees_has_to_hold_on_the_way() {
-        let (verdict, scans) = verdict(90.0, 8.0, false);
-        assert_eq!(verdict, Verdict::Certain);
-        assert!(scans > 5 && scans < 50, "{scans} scans");
-    }
-
-    #[test]
-    fn what_is_new_decides_only_far_from_the_odometry() {
-        assert_eq!(verdict(50.0, 1.0, false).0, Verdict::Open);
-        assert_eq!(verdict(50.0, 1.0, true).0, Verdict::Certain);
-        assert_eq!(verdict(20.0, 4.0, true).0, Verdict::Open);
-    }
-
-    #[test]
-    fn a_pose_that_the_map_contradicts_is_dropped() {
-        for is_near in [false, true] {
-            let (verdict, scans) = verdict(60.0, 35.0, is_near);
-            assert_eq!(verdict, Verdict::Wrong);
-            assert!(scans > 1 && scans < 60, "{scans} scans");
-        }
     }
 }

@@ -1,7 +1,7 @@
 //! Files that are no log but can have one inside: bags of ROS 1, archives, and other compressions. They are named as what they are,
 //! with what would be right.
 
-use crate::bytes::{Bytes, GZIP, ZSTD};
+use crate::bytes::{Bytes, GZIP, MCAP, SQLITE, ZSTD};
 use flate2::bufread::MultiGzDecoder;
 use std::io::{self, BufReader, Read};
 
@@ -42,9 +42,9 @@ pub(crate) fn named(bytes: &Bytes) -> io::Result<Option<String>> {
         let unpack = format!("after `{compression} -d FILE`");
         return Ok(Some(format!("a {name}, compressed with {compression}: {unpack}, {what}")));
     }
-    let is_packed_bag = compression == "gzip" && crate::bag::is_bag(&inside);
+    let is_bag = inside.starts_with(&MCAP) || inside.starts_with(&SQLITE);
     let what = "a bag of ROS 2, compressed with gzip, which is not read: unpack it with `gzip -d FILE`";
-    Ok(is_packed_bag.then(|| what.to_owned()))
+    Ok((is_bag && compression == "gzip").then(|| what.to_owned()))
 }
 
 /// The name of the format of a file with these first bytes, and what to do with it.

@@ -17,7 +17,7 @@ mod sqlite;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use files::{BagFile, in_folder, is_bag};
+pub(crate) use files::{BagFile, in_folder};
 
 use crate::bounds;
 use crate::bytes::content_hash;

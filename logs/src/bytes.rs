@@ -7,7 +7,9 @@ use std::sync::Arc;
 use tempfile::NamedTempFile;
 use xxhash_rust::xxh3::Xxh3;
 
-/// The first bytes of files that are compressed.
+/// The first bytes of files by which a format is known, whatever the name is.
+pub(crate) const MCAP: [u8; 8] = *b"\x89MCAP0\r\n";
+pub(crate) const SQLITE: [u8; 16] = *b"SQLite format 3\0";
 pub(crate) const GZIP: [u8; 2] = [0x1f, 0x8b];
 pub(crate) const ZSTD: [u8; 4] = [0x28, 0xb5, 0x2f, 0xfd];
 

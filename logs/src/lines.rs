@@ -107,6 +107,6 @@ impl Lines {
 
     /// The error for the last line.
     pub(crate) fn error(&self, what: String) -> LogError {
-        LogError::Line { file: self.file.clone(), line: self.number, what }
+        LogError::line(&self.file, self.number, what)
     }
 }

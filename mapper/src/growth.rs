@@ -42,16 +42,6 @@ impl Growth {
         (y as usize + self.row) * self.to.width() + x as usize + self.column
     }
 
-    /// Moves one value per cell; the new cells have the value `new`.
-    pub fn cells<T: Clone>(&self, cells: &mut Vec<T>, new: T) {
-        let mut moved = vec![new; self.to.len()];
-        for (row, values) in cells.chunks(self.from.width()).enumerate() {
-            let start = (row + self.row) * self.to.width() + self.column;
-            moved[start..start + values.len()].clone_from_slice(values);
-        }
-        *cells = moved;
-    }
-
     /// Moves the cells of a grid; the new cells have the value of those that never got another one.
     pub(crate) fn grid<T: Clone + PartialEq>(&self, grid: &mut Grid<T>) {
         let mut moved = Grid::filled(self.to, grid.cells().fill().clone());
@@ -88,11 +78,7 @@ mod tests {
         let growth = Growth::new(small, large).unwrap();
         let mut sparse = SparseCells::from_vec(2, vec![0, 2, 3, 4, 5, 6]);
         growth.sparse(&mut sparse);
-        let mut cells: Vec<usize> = (1..=6).collect();
-        growth.cells(&mut cells, 0);
-        assert_eq!(cells.iter().filter(|value| **value > 0).count(), 6);
         for index in 0..small.len() {
-            assert_eq!(cells[growth.index(index)], index + 1);
             assert_eq!(sparse[growth.index(index)], if index == 0 { 0 } else { index + 1 });
             let off = large.center(large.cell(growth.index(index))) - small.center(small.cell(index));
             assert!(off.norm() < 1e-9, "{off}");

@@ -26,9 +26,8 @@ mod things;
 mod tiles;
 
 pub use change::{
-    CellMap, CellStatistics, Estimator, EstimatorChoice, Exposure, GapBin, GapEvidence, GapHistogram,
-    GapModel, GapWeights, GapWorth, Paper, PaperAll, RateDistribution, ReadingIndex, SharedPrior, Step,
-    TransitionRates, TwoState, TwoStateGaps,
+    CellMap, CellStatistics, Estimator, EstimatorChoice, GapWorth, Paper, PaperAll, RateDistribution,
+    ReadingIndex, SharedPrior, TransitionRates, TwoState, TwoStateGaps,
 };
 pub use clock::{Calendar, Clock, DAY_S, Look, UnknownZone, UsualChange, UsualSlot, Week, share_interval};
 pub use growth::Growth;

@@ -142,39 +142,22 @@ def _infos(names: Sequence[str], values: np.ndarray) -> dict[str, np.ndarray]:
     return {name: column.astype(np.int64) if name in _COUNTS else column for name, column in columns.items()}
 
 
-def _no_pickle(environment: Any, protocol: Any) -> Any:
-    """For `pickle`, and for `copy.copy`, whose result would share the world."""
-    raise TypeError(
-        f"{type(environment).__name__} cannot be pickled: make another one with the same settings, and give it `snapshot()` "
-        "by `restore()`, as `copy.deepcopy` does"
-    )
+class _Native:
+    """What one environment and many have in common: the native part, which one call steps."""
 
-
-class _Single(gymnasium.Env):
-    """One environment."""
-
-    metadata = {"render_modes": ["rgb_array", "human"], "render_fps": 10}
+    metadata: dict[str, Any]
     _make: Any
 
-    def __init__(self, render_mode: str | None = None, render_size: int = 480, **settings: Any) -> None:
+    def _open(self, num_envs: int, threads: int, render_mode: str | None, render_size: int, settings: dict[str, Any]) -> None:
         if render_mode is not None and render_mode not in self.metadata["render_modes"]:
             raise ValueError(f"render_mode must be one of {self.metadata['render_modes']}, not {render_mode!r}")
-        for name in {"num_envs", "threads"} & settings.keys():
-            raise TypeError(f"`{name}` is for many environments: make them with `gymnasium.make_vec`")
         self.render_mode = render_mode
         self.render_size = render_size
-        self._settings = settings
-        self._batch: Batch | None = type(self)._make(1, 1, **settings)
-        self._batch.autoreset = False
+        self._batch: Batch | None = type(self)._make(num_envs, threads, **settings)
         self._parts = self._batch.parts
         self._names = self._batch.info_names
-        self.observation_space = _observation_space(self._parts)
-        self.action_space = spaces.Box(-1.0, 1.0, (2,), np.float32)
         self.slices = _slices(self._batch)
-        self._world_seed = 0
         self._was_reset = False
-        self._screen: Any = None
-        self._no_seeds = np.zeros(1, np.uint64)
 
     @property
     def batch(self) -> Batch:
@@ -182,6 +165,31 @@ class _Single(gymnasium.Env):
         if self._batch is None:
             raise gymnasium.error.ClosedEnvironmentError("the environment is closed: make a new one")
         return self._batch
+
+    def __reduce_ex__(self, protocol: Any) -> Any:
+        """For `pickle`, and for `copy.copy`, whose result would share the world."""
+        raise TypeError(
+            f"{type(self).__name__} cannot be pickled: make another one with the same settings, and give it `snapshot()` "
+            "by `restore()`, as `copy.deepcopy` does"
+        )
+
+
+class _Single(_Native, gymnasium.Env):
+    """One environment."""
+
+    metadata = {"render_modes": ["rgb_array", "human"], "render_fps": 10}
+
+    def __init__(self, render_mode: str | None = None, render_size: int = 480, **settings: Any) -> None:
+        for name in {"num_envs", "threads"} & settings.keys():
+            raise TypeError(f"`{name}` is for many environments: make them with `gymnasium.make_vec`")
+        self._open(1, 1, render_mode, render_size, settings)
+        self.batch.autoreset = False
+        self._settings = settings
+        self.observation_space = _observation_space(self._parts)
+        self.action_space = spaces.Box(-1.0, 1.0, (2,), np.float32)
+        self._world_seed = 0
+        self._screen: Any = None
+        self._no_seeds = np.zeros(1, np.uint64)
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
         """Begin an episode. ``options={"world_seed": n}`` repeats a world."""
@@ -272,8 +280,6 @@ class _Single(gymnasium.Env):
             pygame.display.quit()
             self._screen = None
 
-    __reduce_ex__ = _no_pickle
-
 
 def _actions(actions: Any, rows: int) -> np.ndarray:
     """The actions as float32 of shape (rows, 2)."""
@@ -287,11 +293,10 @@ def _actions(actions: Any, rows: int) -> np.ndarray:
     return array.reshape(rows, 2)
 
 
-class _Vector(gymnasium.vector.VectorEnv):
+class _Vector(_Native, gymnasium.vector.VectorEnv):
     """Many environments: one call steps all of them, on several threads."""
 
     metadata = {"render_modes": ["rgb_array"], "render_fps": 10, "autoreset_mode": AutoresetMode.SAME_STEP}
-    _make: Any
 
     def __init__(
         self,
@@ -301,19 +306,11 @@ class _Vector(gymnasium.vector.VectorEnv):
         render_size: int = 240,
         **settings: Any,
     ) -> None:
-        if render_mode is not None and render_mode not in self.metadata["render_modes"]:
-            raise ValueError(f"render_mode must be one of {self.metadata['render_modes']}, not {render_mode!r}")
+        self._open(num_envs, threads, render_mode, render_size, settings)
         self.num_envs = num_envs
-        self.render_mode = render_mode
-        self.render_size = render_size
         self._settings = {"threads": threads, **settings}
-        self._was_reset = False
-        self._batch: Batch | None = type(self)._make(num_envs, threads, **settings)
-        self._parts = self._batch.parts
-        self._names = self._batch.info_names
         self.single_observation_space = _observation_space(self._parts)
         self.single_action_space = spaces.Box(-1.0, 1.0, (2,), np.float32)
-        self.slices = _slices(self._batch)
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self.action_space = batch_space(self.single_action_space, num_envs)
         self._randoms = [seeding.np_random(None)[0] for _ in range(num_envs)]
@@ -322,13 +319,6 @@ class _Vector(gymnasium.vector.VectorEnv):
         self._all = np.ones(num_envs, bool)
         # Every environment has every value.
         self._masks = {f"_{name}": self._all for name in [*self._names, "world_seed"]}
-
-    @property
-    def batch(self) -> Batch:
-        """The native part. ``ClosedEnvironmentError`` after ``close``."""
-        if self._batch is None:
-            raise gymnasium.error.ClosedEnvironmentError("the environment is closed: make a new one")
-        return self._batch
 
     def reset(
         self, *, seed: int | Sequence[int | None] | None = None, options: dict[str, Any] | None = None
@@ -418,8 +408,6 @@ class _Vector(gymnasium.vector.VectorEnv):
     def close_extras(self, **kwargs: Any) -> None:
         """Free everything."""
         self._batch = None
-
-    __reduce_ex__ = _no_pickle
 
 
 class DriveEnv(_Single):

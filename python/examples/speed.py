@@ -2,8 +2,7 @@
 
 One thread for fleets; the environments use `--threads` (0: all). With `--ir-sim`, the simulator ir-sim (`pip install ir-sim`)
 drives one robot with the same laser through the same walls in the same run. With `--rust PROGRAM`, the example `speed` of the
-crate `environments` (`cargo build --release -p curious-environments --example speed`) does the same without Python, in turns. With `--beside`, irsim-x and navground drive
-the same robots, and the ranges of all are compared with exact geometry: see `others.py`.
+crate `environments` (`cargo build --release -p curious-environments --example speed`) does the same without Python, in turns.
 """
 
 import argparse
@@ -63,19 +62,10 @@ behavior = {{ kind = "driven" }}
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--ir-sim", action="store_true")
-    parser.add_argument("--beside", action="store_true", help="irsim-x and navground, and nothing else")
     parser.add_argument("--rust", metavar="PROGRAM", help="the example `speed` of the crate `environments`")
     parser.add_argument("--seconds", type=int, default=2, help="CPU seconds per line")
     parser.add_argument("--threads", type=int, default=0, help="of the environments; 0: all")
     args = parser.parse_args()
-    if args.beside:
-        # It sets the number of threads of the others, before they are imported.
-        from others import beside
-
-        for robots, beams in ((1, 360), (1000, 64)):
-            beside(robots, beams, measure, args.seconds)
-        return
-
     for robots in (1, 10, 100):
         spec = rooms(robots)
         fleet = curious.Fleet(spec, seed=1)

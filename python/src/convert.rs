@@ -10,6 +10,7 @@ use pyo3::exceptions::{
     PyFileNotFoundError, PyIndexError, PyOverflowError, PyTypeError, PyUserWarning, PyValueError,
 };
 use pyo3::prelude::*;
+use serde::Serialize;
 use std::ffi::CString;
 use std::fmt::Display;
 use worldfile::shipped::LoadError;
@@ -215,6 +216,12 @@ pub(crate) fn rows_array<'py, T: Element, const COLUMNS: usize>(
     let values: Vec<T> = rows.into_iter().flatten().collect();
     let count = values.len() / COLUMNS;
     values.into_pyarray(py).reshape([count, COLUMNS])
+}
+
+/// A value by its JSON: dicts, lists, texts, numbers and None.
+pub(crate) fn from_json<'py>(py: Python<'py>, value: &impl Serialize) -> PyResult<Bound<'py, PyAny>> {
+    let text = serde_json::to_string(value).map_err(value_error)?;
+    py.import("json")?.call_method1("loads", (text,))
 }
 
 /// A warning of Python.

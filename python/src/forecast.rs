@@ -144,7 +144,7 @@ impl Forecast {
     /// For how long a look at each cell says more than its usual hours, s, shape (rows, columns); NaN where nothing ever
     /// changed, and where this is longer than four weeks.
     fn expiry<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let expiry = py.detach(|| self.forecast.expiry());
+        let expiry = py.detach(|| self.forecast.outlook().expiry(f64::NAN));
         grid(py, expiry.frame(), expiry.cells().to_vec())
     }
 

@@ -1,4 +1,4 @@
-use crate::convert::{log_error, pose_values, rows_array, state_number, value_error};
+use crate::convert::{from_json, log_error, pose_values, rows_array, state_number, value_error};
 use crate::mapper::Mapper;
 use crate::reading::Reading;
 use crate::settings::mapper_settings;
@@ -237,8 +237,7 @@ impl Survey {
     /// log, or the map, are unusable, it has no rates: no key from cycles_per_hour to last_change_s.
     #[getter]
     fn places<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let text = serde_json::to_string(&self.places).map_err(value_error)?;
-        py.import("json")?.call_method1("loads", (text,))
+        from_json(py, &self.places)
     }
 
     /// The middle of each place, shape (places, 2), m.

@@ -1,5 +1,4 @@
-use crate::convert::{index, rows_array, snapshot_error, value_error, whole};
-use crate::fleet::poses_of;
+use crate::convert::{index, snapshot_error, value_error, whole};
 use crate::settings::task_settings;
 use crate::snapshots::{Kind, check_build};
 use crate::spec::{driving, spec_of};
@@ -235,28 +234,6 @@ impl Batch {
         self.check(environment)?;
         let Picture { width, height, pixels, .. } = self.batch.task(environment).picture(size);
         pixels.into_pyarray(py).reshape([height, width, 3])
-    }
-
-    /// The position of the goal of an agent of a driving task, m: (x, y); None for other tasks.
-    #[pyo3(signature = (environment = 0, agent = 0))]
-    fn goal(
-        &self,
-        #[pyo3(from_py_with = index)] environment: usize,
-        #[pyo3(from_py_with = index)] agent: usize,
-    ) -> PyResult<Option<(f64, f64)>> {
-        self.check(environment)?;
-        Ok(self.batch.task(environment).goal(agent).map(|goal| (goal.x, goal.y)))
-    }
-
-    /// The true poses of all robots of an environment, shape (robots, 3).
-    #[pyo3(signature = (environment = 0))]
-    fn poses<'py>(
-        &self,
-        py: Python<'py>,
-        #[pyo3(from_py_with = index)] environment: usize,
-    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        self.check(environment)?;
-        rows_array(py, poses_of(self.batch.task(environment).fleet())?)
     }
 
     /// The seed of the present episode of an environment; 0 before its first reset.

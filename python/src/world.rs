@@ -1,19 +1,28 @@
-use crate::convert::{grid, optional_index, pose_array, snapshot_error, value_error, whole};
+use crate::convert::{from_json, grid, optional_index, pose_array, snapshot_error, value_error, whole};
 use crate::mapper::Mapper;
 use crate::reading::Reading;
 use crate::snapshots::{Kind, check_build};
 use crate::spec::{driving, spec_of};
-use evaluation::metrics::{map_scores, rate_scores};
+use evaluation::metrics::{MapScores, RateScores, map_scores, rate_scores};
 use interfaces::{GroundTruth, TrueState, Twist, World as _};
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyDict};
+use pyo3::types::PyBytes;
 use sim::physics::PhysicsWorld;
 
 /// A world in which one robot is driven, with the ground truth of every cell.
 #[pyclass(module = "curious")]
 pub(crate) struct World {
     pub(crate) world: PhysicsWorld,
+}
+
+/// How good a map is.
+#[derive(serde::Serialize)]
+struct Scores {
+    #[serde(flatten)]
+    rates: RateScores,
+    #[serde(flatten)]
+    map: MapScores,
 }
 
 const SNAPSHOT: Kind = Kind("world");
@@ -113,27 +122,15 @@ impl World {
         Mapper::for_world(self.world.spec(), estimator, occupancy, max_gap)
     }
 
-    /// The scores of a map of this world, by the names of the reports: log_error, rate_error, false_rate_hz,
+    /// The scores of a map of this world, a dict with the keys of `summary.json`: among them log_error, rate_error, false_rate_hz,
     /// rate_auc, coverage, map_quality. None: not defined yet.
-    fn score<'py>(&self, py: Python<'py>, mapper: &Mapper) -> PyResult<Bound<'py, PyDict>> {
-        let truth = self.world.truth();
-        if mapper.mapper.frame() != truth.frame() {
+    fn score<'py>(&self, py: Python<'py>, mapper: &Mapper) -> PyResult<Bound<'py, PyAny>> {
+        let (truth, map) = (self.world.truth(), &mapper.mapper);
+        if map.frame() != truth.frame() {
             return Err(value_error("the map has other cells than the world: make it by `world.mapper()`"));
         }
-        let (rates, map) =
-            py.detach(|| (rate_scores(&mapper.mapper, truth), map_scores(&mapper.mapper, truth)));
-        let scores = PyDict::new(py);
-        for (name, value) in [
-            ("log_error", rates.log_error),
-            ("rate_error", rates.rate_error),
-            ("rate_auc", rates.rate_auc),
-            ("false_rate_hz", Some(rates.false_rate_hz)),
-            ("coverage", Some(map.coverage)),
-            ("map_quality", Some(map.map_quality)),
-        ] {
-            scores.set_item(name, value)?;
-        }
-        Ok(scores)
+        let scores = py.detach(|| Scores { rates: rate_scores(map, truth), map: map_scores(map, truth) });
+        from_json(py, &scores)
     }
 
     /// Returns to the start, with another seed.

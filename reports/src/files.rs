@@ -28,8 +28,7 @@ struct Content<'a> {
 
 /// Writes `report.json`; `files` are the names of the other files.
 pub(super) fn write_report(report: &Report, files: &[String], mut to: impl Write) -> io::Result<()> {
-    let content =
-        Content { schema: SCHEMA, build: report.settings.other_build.unwrap_or(BUILD), report, files };
+    let content = Content { schema: SCHEMA, build: BUILD, report, files };
     serde_json::to_writer(&mut to, &content)?;
     writeln!(to)
 }

@@ -38,11 +38,9 @@ use std::sync::atomic::AtomicBool;
 const ONE_BY_ONE: usize = 8;
 /// The name of the file with all results.
 pub const REPORT: &str = "report.json";
-/// The strategies that know the ground truth: they are listed with the others, but cannot be the best one.
-const REFERENCES: [&str; 2] = ["oracle", "full-observation"];
-
+/// Whether a strategy knows the ground truth: it is listed with the others, but cannot be the best one.
 fn is_reference(strategy: &str) -> bool {
-    REFERENCES.contains(&strategy)
+    strategy == "full-observation"
 }
 
 /// The settings of an experiment.
@@ -60,9 +58,6 @@ pub struct ReportSettings {
     /// The range of the sensor of a grid world, in cells.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sensor_radius: Option<u32>,
-    /// What is said of the build of trials that are not all of this one.
-    #[serde(skip)]
-    pub other_build: Option<&'static str>,
     /// Whether the experiment was interrupted before all trials were finished.
     pub interrupted: bool,
     /// The names of the worlds, in the order of the report; other worlds come last, sorted by name. Estimators and
@@ -174,8 +169,7 @@ impl Report {
     /// `figure3` (in physics worlds: `curves`) shows the run over all worlds, or the only one, with the first estimator; the other figures
     /// are `figure3-<world>-<estimator>`, without the estimator if there is only one. With more than eight worlds, only all worlds
     /// together are drawn.
-    /// The plans of `worlds`, in any order, are drawn beside the curves; the plan of a world that is not given is
-    /// left out.
+    /// The plan of a single world is drawn beside its curves, if it is among `worlds`.
     ///
     /// # Errors
     ///

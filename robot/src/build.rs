@@ -7,7 +7,7 @@
 pub const BUILD: &str = env!("CURIOUS_BUILD");
 
 /// The advice where a build differs, after the name of what has it.
-pub fn other_build(found: &str) -> String {
+pub(crate) fn other_build(found: &str) -> String {
     let found = if found.is_empty() { "an earlier version" } else { found };
     format!(
         "is of another build ({found}, this program is {BUILD}), whose results can differ; use that program, or \

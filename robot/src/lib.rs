@@ -26,7 +26,7 @@ mod tour;
 
 pub use autonomous::{Autonomous, Destination, GoalSelector};
 pub use belief::{Belief, Permission};
-pub use build::{BUILD, other_build};
+pub use build::BUILD;
 pub use day::{Battery, DaySettings, DayTotals, PatrolDay};
 pub use localization::{ExactPoses, Localization};
 pub use messages::{Level, Message};

@@ -1,5 +1,5 @@
 use crate::belief::{Belief, Permission};
-use interfaces::{LaserReading, Reading, ValueError};
+use interfaces::{LaserReading, Reading, ValueError, from_bytes, to_bytes};
 use localizer::{Correction, GivenPoses, Localized, Localizer, LoopClosed, LoopClosingLocalizer, PoseState};
 use mapper::Mapper;
 use nalgebra::{Isometry2, Matrix3};
@@ -67,11 +67,12 @@ impl Localization<LaserReading> for GivenPoses {
     }
 
     fn snapshot(&mut self) -> Vec<u8> {
-        GivenPoses::snapshot(self)
+        to_bytes(self)
     }
 
     fn restore(&mut self, snapshot: &[u8]) -> Result<(), ValueError> {
-        GivenPoses::restore(self, snapshot)
+        *self = from_bytes(snapshot)?;
+        Ok(())
     }
 
     fn begin_session(&mut self) {

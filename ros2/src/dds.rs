@@ -29,25 +29,19 @@ macro_rules! by_type {
 
 mod actions;
 mod discovery;
-mod edges;
-mod endpoints;
 mod others;
 mod publishers;
-mod reply_size;
 mod services;
 mod subscribers;
-mod typed;
 
 use crate::environment::{self, Environment, Range};
 use crate::link::{Event, Link, Request, Wiring};
 use crate::message::{DynamicEdges, Message, PoseStamped, Quality, Topic};
 use crate::service::Reply;
-use actions::Navigator;
+use actions::{EdgesClient, Navigator};
 use anyhow::Context as _;
 use discovery::Discovery;
-use edges::EdgesClient;
-use endpoints::Endpoints;
-use others::Others;
+use others::{Endpoints, Others};
 use publishers::Publishers;
 use ros2_client::dds::rustdds::DomainParticipantBuilder;
 use ros2_client::qos::{Durability, History, QosProfile, Reliability, WhenFull};
@@ -57,7 +51,7 @@ use std::collections::{BTreeMap, VecDeque};
 use std::net::{IpAddr, Ipv4Addr};
 use std::sync::mpsc::{self, Receiver};
 use std::time::{Duration, Instant};
-use typed::Typed;
+use subscribers::Typed;
 
 /// How long a message that must not be lost waits if a subscriber does not keep up.
 const WAIT: Duration = Duration::from_millis(20);

@@ -1,5 +1,7 @@
 //! What the environment says about the network, as for every node of ROS.
 
+use anyhow::Context;
+
 /// With which hosts a node speaks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Range {
@@ -36,22 +38,13 @@ pub struct Environment {
 /// The largest domain whose ports exist.
 const MAX_DOMAIN: u16 = 232;
 
-/// The error for a variable of the environment.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{name} must be {expected}, not `{found}`")]
-pub struct EnvironmentError {
-    name: &'static str,
-    expected: &'static str,
-    found: String,
-}
-
 impl Environment {
     /// Reads the variables. `variable` gives the value of one; an empty one counts as not set.
     ///
     /// # Errors
     ///
     /// When a value is not valid.
-    pub fn read(variable: impl Fn(&str) -> Option<String>) -> Result<Self, EnvironmentError> {
+    pub fn read(variable: impl Fn(&str) -> Option<String>) -> anyhow::Result<Self> {
         let variable = |name: &str| variable(name).filter(|value| !value.is_empty());
         let domain = parsed(variable, "ROS_DOMAIN_ID", "a whole number from 0 to 232", |value| {
             value.parse().ok().filter(|domain| *domain <= MAX_DOMAIN)
@@ -81,12 +74,12 @@ impl Environment {
 /// The value of a variable; `None` if it is not set.
 fn parsed<T>(
     variable: impl Fn(&str) -> Option<String>,
-    name: &'static str,
-    expected: &'static str,
+    name: &str,
+    expected: &str,
     parse: impl Fn(&str) -> Option<T>,
-) -> Result<Option<T>, EnvironmentError> {
+) -> anyhow::Result<Option<T>> {
     let Some(found) = variable(name) else { return Ok(None) };
-    parse(&found).map(Some).ok_or(EnvironmentError { name, expected, found })
+    Ok(Some(parse(&found).with_context(|| format!("{name} must be {expected}, not `{found}`"))?))
 }
 
 #[cfg(test)]

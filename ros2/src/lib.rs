@@ -13,8 +13,6 @@
 
 mod dds;
 mod environment;
-#[cfg(test)]
-mod fake;
 mod lifecycle;
 mod link;
 mod maps;
@@ -24,8 +22,6 @@ mod node;
 pub mod node_program;
 mod node_state_file;
 mod notes;
-mod order;
-mod parameter_services;
 mod parameters;
 mod params_file;
 mod pilot;
@@ -33,23 +29,24 @@ mod ros_args;
 mod service;
 mod simulated;
 mod source;
+#[cfg(test)]
+mod tests;
 mod topic;
 mod value;
 mod wiring;
 
 pub use dds::DdsLink;
-pub use environment::{Environment, EnvironmentError, Range, Services};
+pub use environment::{Environment, Range, Services};
 pub use link::{Event, Link, Navigation, Request, Wiring};
 pub use message::{
     Bool, Clock, Color, CostmapFilterInfo, DiagnosticStatus, Diagnostics, Log, Marker, Markers, Message,
     PoseWithCovarianceStamped, Quality, Texture, Topic, TransitionEvent, Twist as TwistMessage, TwistStamped,
 };
-pub use names::{NameError, Names};
+pub use names::Names;
 pub use node::{CuriousNode, NodeReport, Signals};
 pub use notes::Output;
-pub use parameters::{Mode, Navigator, ParameterError, Parameters};
-pub use params_file::ParamsFileError;
-pub use ros_args::{RosArgs, RosArgsError};
+pub use parameters::{Mode, Navigator, Parameters};
+pub use ros_args::RosArgs;
 pub use service::{Call, Reply, Service, wire};
 pub use simulated::{SimulatedRobot, SimulationSettings};
 pub use value::{Given, Value};

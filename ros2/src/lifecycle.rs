@@ -1,6 +1,5 @@
 //! The managed lifecycle of ROS 2 (design.ros2.org/articles/node_lifecycle.html), in one table.
 
-use crate::parameter_services::labelled;
 use crate::service::wire::{Labelled, Transition};
 
 /// What a managed node does.
@@ -74,4 +73,9 @@ impl State {
 fn transition((id, label, from, to): &Row) -> Transition {
     let (start_state, goal_state) = (from.labelled(), to.labelled());
     Transition { transition: labelled(*id, label), start_state, goal_state }
+}
+
+/// A number and a name on the wire.
+fn labelled(id: u8, label: &str) -> Labelled {
+    Labelled { id, label: label.to_owned() }
 }

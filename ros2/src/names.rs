@@ -1,15 +1,7 @@
 //! The names of a node, its topics and services: relative, absolute, private, remapped.
 
 use crate::ros_args::RosArgs;
-
-/// The error for a name that ROS does not allow.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("`{name}` is not a valid name of a {kind}: {why}")]
-pub struct NameError {
-    kind: &'static str,
-    name: String,
-    why: &'static str,
-}
+use anyhow::bail;
 
 /// The names of a node.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -24,18 +16,18 @@ impl Names {
     /// # Errors
     ///
     /// When a name is not valid.
-    pub fn new(default_node: &str, ros: &RosArgs) -> Result<Self, NameError> {
+    pub fn new(default_node: &str, ros: &RosArgs) -> anyhow::Result<Self> {
         let special = |long: &str, short: &str| {
             ros.remapped(default_node, |from| from == long || from == short).map(str::to_owned)
         };
         let node = special("__node", "__name").unwrap_or_else(|| default_node.to_owned());
         let namespace = special("__ns", "__ns").unwrap_or_else(|| "/".to_owned());
         if node.contains('/') {
-            return Err(NameError { kind: "node", name: node, why: "it must not contain a slash" });
+            bail!("`{node}` is not a valid name of a node: it must not contain a slash");
         }
         check("node", &node)?;
         if !namespace.starts_with('/') {
-            return Err(NameError { kind: "namespace", name: namespace, why: "it must begin with a slash" });
+            bail!("`{namespace}` is not a valid name of a namespace: it must begin with a slash");
         }
         if namespace != "/" {
             check("namespace", &namespace)?;
@@ -64,7 +56,7 @@ impl Names {
     /// # Errors
     ///
     /// When the name, or what it is remapped to, is not valid.
-    pub fn resolved(&self, kind: &'static str, name: &str, ros: &RosArgs) -> Result<String, NameError> {
+    pub fn resolved(&self, kind: &str, name: &str, ros: &RosArgs) -> anyhow::Result<String> {
         let full = self.full(name);
         let to = ros.remapped(&self.node, |from| from == name || self.full(from) == full);
         let full = to.map_or(full, |to| self.full(to));
@@ -83,7 +75,7 @@ impl Names {
 }
 
 /// Checks the parts of a name between slashes.
-fn check(kind: &'static str, name: &str) -> Result<(), NameError> {
+fn check(kind: &str, name: &str) -> anyhow::Result<()> {
     for part in name.strip_prefix('/').unwrap_or(name).split('/') {
         let is_valid = |c: char| c.is_ascii_alphanumeric() || c == '_';
         let why = if part.is_empty() {
@@ -97,7 +89,7 @@ fn check(kind: &'static str, name: &str) -> Result<(), NameError> {
         } else {
             continue;
         };
-        return Err(NameError { kind, name: name.to_owned(), why });
+        bail!("`{name}` is not a valid name of a {kind}: {why}");
     }
     Ok(())
 }

@@ -1,93 +1,33 @@
 //! The parameters of the mapping node, named as those of `slam_toolbox` and Nav2 where these have them.
 
 mod choices;
-mod given;
-mod runtime;
-mod strategy;
 
+pub(crate) use choices::When;
 pub use choices::{Mode, Navigator};
-pub(crate) use runtime::When;
 
-use crate::value::Value;
+use crate::value::{Given, Value};
+use agent::{PURPOSES, Policy};
+use anyhow::{anyhow, bail};
 use choices::Slot;
-use interfaces::{PoseMode, SettingsCheck, SettingsError};
+use interfaces::{PoseMode, SettingsCheck};
 use mapper::NoReturn;
 
-/// The error for a parameter.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum ParameterError {
-    /// There is no such parameter.
-    #[error("there is no parameter `{name}`; there are {known}")]
-    Unknown {
-        /// The name as given.
-        name: String,
-        /// The names of all parameters.
-        known: String,
-    },
-    /// The value has another type, or is not one of those that are possible.
-    #[error("the parameter `{name}` must be {expected}, not `{found}`")]
-    Value {
-        /// The name.
-        name: String,
-        /// The valid values.
-        expected: &'static str,
-        /// The value as given.
-        found: Value,
-    },
-    /// There is a list, or nothing, where a value must be.
-    #[error("the parameter `{name}` must be one value, not a list or nothing")]
-    NoValue {
-        /// The name.
-        name: String,
-    },
-    /// A parameter in a file.
-    #[error("{place}: {error}")]
-    InFile {
-        /// The file and the line.
-        place: String,
-        /// What is wrong.
-        error: Box<ParameterError>,
-    },
-    /// There is no strategy, or no purpose, with this name.
-    #[error("the parameter `{name}` must be one of {known}, not `{found}`")]
-    Name {
-        /// The name of the parameter.
-        name: &'static str,
-        /// The valid names.
-        known: String,
-        /// The name as given.
-        found: String,
-    },
-    /// A strategy and a purpose, which names another one.
-    #[error(
-        "the parameters `strategy` (`{strategy}`) and `purpose` (`{purpose}`) both name a strategy: leave one of them empty"
-    )]
-    Both {
-        /// The strategy as given.
-        strategy: String,
-        /// The purpose as given.
-        purpose: String,
-    },
-    /// The value is out of range.
-    #[error(transparent)]
-    Range(#[from] SettingsError),
+/// What is said of a value that a parameter cannot have.
+fn invalid(name: &str, expected: &str, found: &Value) -> anyhow::Error {
+    anyhow!("the parameter `{name}` must be {expected}, not `{found}`")
 }
 
-impl ParameterError {
-    fn unknown(name: &str) -> Self {
-        let names: Vec<&str> = Parameters::default().slots().into_iter().map(|(name, _)| name).collect();
-        let known = names.join(", ");
-        Self::Unknown { name: name.to_owned(), known }
-    }
-
-    fn value(name: &str, expected: &'static str, found: Value) -> Self {
-        Self::Value { name: name.to_owned(), expected, found }
-    }
+fn unknown(name: &str, known: String, found: &str) -> anyhow::Error {
+    anyhow!("the parameter `{name}` must be one of {known}, not `{found}`")
 }
 
-/// Defines the parameters in one table: documentation, name, field, type and default.
+fn is_zero(value: &Value) -> bool {
+    matches!(value, Value::Float(value) if *value == 0.0)
+}
+
+/// Defines the parameters in one table: documentation, name, when it can be set, field, type and default.
 macro_rules! parameters {
-    ($($(#[doc = $doc:literal])* $name:literal, $field:ident: $kind:ty = $default:expr;)*) => {
+    ($($(#[doc = $doc:literal])* $when:ident $name:literal, $field:ident: $kind:ty = $default:expr;)*) => {
         /// All parameters.
         #[derive(Clone, Debug, PartialEq)]
         pub struct Parameters {
@@ -111,6 +51,14 @@ macro_rules! parameters {
                 }
             }
 
+            /// When a parameter can be set.
+            pub(crate) fn when(name: &str) -> When {
+                match name {
+                    $($name => When::$when,)*
+                    _ => When::Start,
+                }
+            }
+
             /// The parameters by name.
             fn slots(&mut self) -> Vec<(&'static str, &mut dyn Slot)> {
                 vec![$(($name, &mut self.$field),)*]
@@ -121,80 +69,82 @@ macro_rules! parameters {
 
 parameters! {
     /// What the node does.
-    "mode", mode: Mode = Mode::Map;
+    Start "mode", mode: Mode = Mode::Map;
     /// What drives the robot to goals.
-    "navigator", navigator: Navigator = Navigator::CmdVel;
+    Start "navigator", navigator: Navigator = Navigator::CmdVel;
     /// How the pose is known.
-    "pose", pose: PoseMode = PoseMode::Localized;
+    Unconfigured "pose", pose: PoseMode = PoseMode::Localized;
     /// The frame of the map.
-    "map_frame", map_frame: String = "map".to_owned();
+    Unconfigured "map_frame", map_frame: String = "map".to_owned();
     /// The frame of the odometry.
-    "odom_frame", odom_frame: String = "odom".to_owned();
+    Unconfigured "odom_frame", odom_frame: String = "odom".to_owned();
     /// The frame of the robot.
-    "base_frame", base_frame: String = "base_footprint".to_owned();
+    Unconfigured "base_frame", base_frame: String = "base_footprint".to_owned();
     /// The frame of the laser in use, where more than one sends; empty: the first one.
-    "laser_frame", laser_frame: String = String::new();
+    Unconfigured "laser_frame", laser_frame: String = String::new();
     /// The topic of the scans.
-    "scan_topic", scan_topic: String = "/scan".to_owned();
+    Start "scan_topic", scan_topic: String = "/scan".to_owned();
     /// For a robot whose odometry is not in tf.
-    "odom_topic", odom_topic: String = "odom".to_owned();
+    Start "odom_topic", odom_topic: String = "odom".to_owned();
     /// The side of a cell, m.
-    "resolution", resolution_m: f64 = 0.05;
+    Unconfigured "resolution", resolution_m: f64 = 0.05;
     /// The sides of the map, whose center is where the robot starts, m.
-    "map_size", map_size_m: f64 = 40.0;
+    Unconfigured "map_size", map_size_m: f64 = 40.0;
     /// Longer ranges are not used, m.
-    "max_laser_range", max_laser_range_m: f64 = 20.0;
+    Unconfigured "max_laser_range", max_laser_range_m: f64 = 20.0;
     /// What beams without a return mean.
-    "no_return", no_return: NoReturn = NoReturn::default();
+    Unconfigured "no_return", no_return: NoReturn = NoReturn::default();
     /// The standard deviation of ranges, m.
-    "range_noise", range_noise_m: f64 = 0.02;
+    Unconfigured "range_noise", range_noise_m: f64 = 0.02;
     /// The time between two maps, s.
-    "map_update_interval", map_update_interval_s: f64 = 5.0;
+    Always "map_update_interval", map_update_interval_s: f64 = 5.0;
     /// How far ahead the map of changes looks, s.
-    "change_horizon", change_horizon_s: f64 = 60.0;
+    Always "change_horizon", change_horizon_s: f64 = 60.0;
     /// How far ahead the predicted map and the keepout mask look, s; 0: now.
-    "prediction_horizon", prediction_horizon_s: f64 = 0.0;
+    Always "prediction_horizon", prediction_horizon_s: f64 = 0.0;
     /// The time between two masks for Nav2, s; 0: none.
-    "mask_update_interval", mask_update_interval_s: f64 = 30.0;
+    Always "mask_update_interval", mask_update_interval_s: f64 = 30.0;
     /// A graph of routes in the GeoJSON of `nav2_route`, whose edges are adjusted; empty: none.
-    "route_graph", route_graph: String = String::new();
+    Start "route_graph", route_graph: String = String::new();
     /// The service of `nav2_route` that adjusts edges: its node, its scorer, `adjust_edges`.
-    "route_edges_service", route_edges_service: String = "route_server/DynamicEdgesScorer/adjust_edges".to_owned();
+    Start "route_edges_service", route_edges_service: String = "route_server/DynamicEdgesScorer/adjust_edges".to_owned();
     /// The time between two requests with all edges, s.
-    "route_update_interval", route_update_interval_s: f64 = 10.0;
+    Always "route_update_interval", route_update_interval_s: f64 = 10.0;
     /// The time between two transforms from map to odometry, s; 0: none.
-    "transform_publish_period", transform_publish_period_s: f64 = 0.02;
+    Always "transform_publish_period", transform_publish_period_s: f64 = 0.02;
     /// How long a transform holds after the last reading, s.
-    "transform_timeout", transform_timeout_s: f64 = 0.2;
+    Always "transform_timeout", transform_timeout_s: f64 = 0.2;
     /// The time without an agreeing scan after which the robot is lost, s.
-    "lost_after", lost_after_s: f64 = 2.0;
+    Unconfigured "lost_after", lost_after_s: f64 = 2.0;
     /// Whether velocities are `TwistStamped`, as Nav2 has it since Kilted, or `Twist`.
-    "enable_stamped_cmd_vel", enable_stamped_cmd_vel: bool = true;
+    Start "enable_stamped_cmd_vel", enable_stamped_cmd_vel: bool = true;
     /// Radius of the robot, m.
-    "robot_radius", robot_radius_m: f64 = 0.22;
+    Unconfigured "robot_radius", robot_radius_m: f64 = 0.22;
     /// Maximum velocity, m/s.
-    "max_vel_x", max_vel_x_mps: f64 = 0.26;
+    Unconfigured "max_vel_x", max_vel_x_mps: f64 = 0.26;
     /// Maximum angular velocity, rad/s.
-    "max_vel_theta", max_vel_theta_radps: f64 = 1.0;
+    Unconfigured "max_vel_theta", max_vel_theta_radps: f64 = 1.0;
     /// Maximum acceleration, m/s².
-    "acc_lim_x", acc_lim_x_mps2: f64 = 2.5;
+    Unconfigured "acc_lim_x", acc_lim_x_mps2: f64 = 2.5;
     /// Maximum angular acceleration, rad/s².
-    "acc_lim_theta", acc_lim_theta_radps2: f64 = 3.2;
+    Unconfigured "acc_lim_theta", acc_lim_theta_radps2: f64 = 3.2;
     /// How goals are selected; empty: as is best for `purpose`.
-    "strategy", strategy: String = String::new();
+    Unconfigured "strategy", strategy: String = String::new();
     /// What the robot explores for: `fresh-map`, `learn-rates` or `paper`; empty: `paper`. Not together with `strategy`.
-    "purpose", purpose: String = String::new();
+    Unconfigured "purpose", purpose: String = String::new();
     /// Whether the node begins to work when it starts; otherwise it waits for a lifecycle manager, unconfigured.
-    "autostart", autostart: bool = true;
+    Start "autostart", autostart: bool = true;
     /// The seed of the random decisions.
-    "seed", seed: i64 = 1;
+    Unconfigured "seed", seed: i64 = 1;
     /// Whether the clock is simulated: then a corrected map replaces the old one after a fixed number of readings, and not
     /// when it is ready. All times are those of the messages.
-    "use_sim_time", use_sim_time: bool = false;
+    Start "use_sim_time", use_sim_time: bool = false;
     /// `best_effort` or `reliable`.
-    "qos_overrides./scan.subscription.reliability", scan_reliability: String = "best_effort".to_owned();
+    Start "qos_overrides./scan.subscription.reliability", scan_reliability: String = "best_effort".to_owned();
 }
 
+/// Intervals: 0 switches something off, for which there are topics only if it is on at the start.
+const SWITCHES: [&str; 2] = ["mask_update_interval", "transform_publish_period"];
 /// The longest horizon, s.
 const DAY_S: f64 = 86400.0;
 
@@ -204,11 +154,9 @@ impl Parameters {
     /// # Errors
     ///
     /// When there is no such parameter, or when it has no such value. Ranges are checked by [`check`](Self::check).
-    pub fn set(&mut self, name: &str, value: &Value) -> Result<(), ParameterError> {
-        let Some(slot) = self.slot(name) else {
-            return Err(ParameterError::unknown(name));
-        };
-        slot.set(value).map_err(|expected| ParameterError::value(name, expected, value.clone()))
+    pub fn set(&mut self, name: &str, value: &Value) -> anyhow::Result<()> {
+        let set = self.slot(name)?.set(value);
+        set.map_err(|expected| invalid(name, expected, value))
     }
 
     /// All parameters with their values.
@@ -222,7 +170,7 @@ impl Parameters {
     /// # Errors
     ///
     /// When a value is out of range.
-    pub fn check(&self) -> Result<(), ParameterError> {
+    pub fn check(&self) -> anyhow::Result<()> {
         let check = SettingsCheck { part: "node" };
         check.within("resolution", self.resolution_m, 0.005..=1.0, "from 0.005 to 1")?;
         check.within("map_size", self.map_size_m, 1.0..=1000.0, "from 1 to 1000")?;
@@ -251,19 +199,101 @@ impl Parameters {
             ("base_frame", &self.base_frame),
         ] {
             if frame.is_empty() {
-                return Err(ParameterError::value(name, "the name of a frame", Value::Text(String::new())));
+                return Err(invalid(name, "the name of a frame", &Value::Text(String::new())));
             }
         }
         if !matches!(self.scan_reliability.as_str(), "best_effort" | "reliable") {
             let name = "qos_overrides./scan.subscription.reliability";
             let found = Value::Text(self.scan_reliability.clone());
-            return Err(ParameterError::value(name, "best_effort or reliable", found));
+            return Err(invalid(name, "best_effort or reliable", &found));
         }
         self.policy().map(drop)
     }
 
-    fn slot(&mut self, name: &str) -> Option<&mut dyn Slot> {
-        self.slots().into_iter().find(|(known, _)| *known == name).map(|(_, slot)| slot)
+    /// Sets what is given, in its order. What a file gives to many nodes, and this node does not know, is not an error.
+    ///
+    /// # Errors
+    ///
+    /// As [`set`](Self::set), with the file.
+    pub fn set_all<'a>(&mut self, all: impl IntoIterator<Item = &'a Given>) -> anyhow::Result<()> {
+        for given in all {
+            let slot = self.slot(&given.name);
+            if slot.is_err() && given.is_for_others_too() {
+                continue;
+            }
+            let set = slot.and_then(|slot| match &given.value {
+                Some(value) => slot.set(value).map_err(|expected| invalid(&given.name, expected, value)),
+                None => {
+                    Err(anyhow!("the parameter `{}` must be one value, not a list or nothing", given.name))
+                }
+            });
+            set.map_err(|error| match &given.place {
+                Some(place) => anyhow!("{place}: {error}"),
+                None => error,
+            })?;
+        }
+        Ok(())
+    }
+
+    /// Checks whether the node can go from other parameters to these.
+    ///
+    /// # Errors
+    ///
+    /// When one cannot be set now: one sentence.
+    pub(crate) fn check_change(&self, from: &Self, is_unconfigured: bool) -> anyhow::Result<()> {
+        let (mut now, before) = (self.clone(), from.list());
+        for ((name, old), (_, slot)) in before.iter().zip(now.slots()) {
+            let new = slot.get();
+            if new == *old {
+                continue;
+            }
+            match Self::when(name) {
+                When::Always if SWITCHES.contains(&name.as_str()) && is_zero(&new) != is_zero(old) => {
+                    bail!(
+                        "the parameter `{name}` is {old}: a value of 0, or another one after 0, is possible when the node starts"
+                    );
+                }
+                When::Always => {}
+                When::Unconfigured if is_unconfigured => {}
+                When::Unconfigured => {
+                    bail!(
+                        "the parameter `{name}` can be set while the node is unconfigured: before, deactivate it and clean it up"
+                    );
+                }
+                When::Start => bail!("the parameter `{name}` can be set when the node starts"),
+            }
+        }
+        Ok(())
+    }
+
+    /// The strategy: as `strategy` says, or else as is best for `purpose`.
+    ///
+    /// # Errors
+    ///
+    /// When there is no such strategy or purpose, or when both are given.
+    pub(crate) fn policy(&self) -> anyhow::Result<Policy> {
+        let Self { strategy, purpose, .. } = self;
+        match (strategy.as_str(), purpose.as_str()) {
+            ("", "") => Ok(Policy::default()),
+            ("", name) => {
+                let known = || PURPOSES.map(|[name, ..]| name).join(", ");
+                Policy::for_purpose(name).ok_or_else(|| unknown("purpose", known(), name))
+            }
+            (name, "") => {
+                let known = || Policy::built_in().iter().map(Policy::name).collect::<Vec<_>>().join(", ");
+                Policy::named(name).ok_or_else(|| unknown("strategy", known(), name))
+            }
+            _ => bail!(
+                "the parameters `strategy` (`{strategy}`) and `purpose` (`{purpose}`) both name a strategy: leave one of them \
+                 empty"
+            ),
+        }
+    }
+
+    fn slot(&mut self, name: &str) -> anyhow::Result<&mut dyn Slot> {
+        let names = Self::default().slots().into_iter().map(|(name, _)| name).collect::<Vec<_>>().join(", ");
+        let slot = self.slots().into_iter().find(|(known, _)| *known == name).map(|(_, slot)| slot);
+        slot.ok_or_else(|| anyhow!("there is no parameter `{name}`; there are {names}"))
     }
 }
 

@@ -10,9 +10,8 @@
 //! ```
 
 use crate::value::{Given, Value};
-use serde::de::{Deserialize, Deserializer, IgnoredAny, MapAccess, SeqAccess, Visitor};
-use serde_saphyr::{NonFiniteFloatPolicy, Spanned, from_str_with_options, options};
-use std::fmt;
+use anyhow::{anyhow, bail};
+use serde_json::Value as Yaml;
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
@@ -23,50 +22,29 @@ const PARAMETERS: &str = "ros__parameters";
 const MAX_BYTES: u64 = 1 << 20;
 const EXAMPLE: &str = "as in `curious_node: {ros__parameters: {resolution: 0.05}}`";
 
-/// The error for a file of parameters.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum ParamsFileError {
-    /// It cannot be read.
-    #[error("cannot read the parameters in {file}: {why}")]
-    Io {
-        /// The file.
-        file: String,
-        /// Why.
-        why: String,
-    },
-    /// It is not a file of parameters.
-    #[error("{file}, line {line}: {what}")]
-    Invalid {
-        /// The file.
-        file: String,
-        /// The line, from 1.
-        line: u64,
-        /// What is wrong, and what would be valid.
-        what: String,
-    },
-}
-
-/// All parameters of a file in the order of their lines.
-pub(crate) fn read(path: &Path) -> Result<Vec<Given>, ParamsFileError> {
+/// All parameters of a file; those for all nodes come before those for one.
+pub(crate) fn read(path: &Path) -> anyhow::Result<Vec<Given>> {
     let file = path.display().to_string();
-    let text = text(path).map_err(|why| ParamsFileError::Io { file: file.clone(), why: why.to_string() })?;
-    let place = |line: &u64| Some(format!("{file}, line {line}"));
-    let found = entries(&text);
-    let found =
-        found.map(|found| found.into_iter().map(|(given, line)| Given { place: place(&line), ..given }));
-    found.map(Iterator::collect).map_err(|(line, what)| ParamsFileError::Invalid {
-        file: file.clone(),
-        line,
-        what,
-    })
+    let text = text(path).map_err(|why| anyhow!("cannot read the parameters in {file}: {why}"))?;
+    let found = entries(&text).map_err(|what| anyhow!("{file}{what}"))?;
+    Ok(found.into_iter().map(|given| Given { place: Some(file.clone()), ..given }).collect())
 }
 
 /// The value of a text on the command line, as YAML has it: `true`, `5`, `0.05`, `"text"`, `text`.
 pub(crate) fn value_of(text: &str) -> Value {
-    match from_str_with_options(text, options! { non_finite_float_policy: NonFiniteFloatPolicy::PassThrough })
-    {
-        Ok(Yaml::Value(value)) => value,
-        _ => Value::Text(text.trim().to_owned()),
+    let parsed = serde_saphyr::from_str(text).ok();
+    parsed.and_then(|yaml| value(&yaml)).unwrap_or_else(|| Value::Text(text.trim().to_owned()))
+}
+
+/// The value of a parameter; `None`: a list, or nothing.
+fn value(yaml: &Yaml) -> Option<Value> {
+    match yaml {
+        Yaml::Bool(value) => Some(Value::Bool(*value)),
+        Yaml::Number(number) => {
+            number.as_i64().map(Value::Integer).or_else(|| number.as_f64().map(Value::Float))
+        }
+        Yaml::String(text) => Some(Value::Text(text.clone())),
+        _ => None,
     }
 }
 
@@ -81,35 +59,32 @@ fn text(path: &Path) -> io::Result<String> {
 
 /// # Errors
 ///
-/// The line, and what is wrong there.
-fn entries(text: &str) -> Result<Vec<(Given, u64)>, (u64, String)> {
-    // What is no number for a parameter is an error of that parameter.
-    let options = options! { non_finite_float_policy: NonFiniteFloatPolicy::PassThrough };
-    let root: Spanned<Yaml> = from_str_with_options(text, options).map_err(|error| {
+/// The end of a sentence that begins with the name of the file.
+fn entries(text: &str) -> Result<Vec<Given>, String> {
+    let root: Yaml = serde_saphyr::from_str(text).map_err(|error| {
         let error = error.without_snippet();
         let line = error.location().map_or(1, |at| at.line());
         let text = error.to_string();
         let what = text.lines().next().unwrap_or_default();
         let what = what.split(" at line ").next().unwrap_or(what);
-        (line, format!("{what}; parameters are written {EXAMPLE}"))
+        format!(", line {line}: {what}; parameters are written {EXAMPLE}")
     })?;
     let mut entries = Vec::new();
-    sections(&mut entries, "", &root)?;
+    sections(&mut entries, "", &root).map_err(|why| format!(": {why}"))?;
     Ok(entries)
 }
 
 /// The parameters of all nodes below a namespace.
-fn sections(entries: &mut Vec<(Given, u64)>, nodes: &str, part: &Spanned<Yaml>) -> Result<(), (u64, String)> {
-    let line = part.referenced.line();
-    let Yaml::Table(table) = &part.value else {
+fn sections(entries: &mut Vec<Given>, nodes: &str, part: &Yaml) -> anyhow::Result<()> {
+    let Some(table) = part.as_object() else {
         let which = if nodes.is_empty() { "this".to_owned() } else { format!("`{nodes}`") };
-        return Err((line, format!("{which} must be a table with `{PARAMETERS}`, {EXAMPLE}")));
+        bail!("{which} must be a table with `{PARAMETERS}`, {EXAMPLE}");
     };
     for (key, below) in table {
         if key == PARAMETERS && !nodes.is_empty() {
             parameters(entries, nodes, "", below);
         } else if key == PARAMETERS {
-            return Err((below.referenced.line(), format!("`{PARAMETERS}` must be below a node, {EXAMPLE}")));
+            bail!("`{PARAMETERS}` must be below a node, {EXAMPLE}");
         } else {
             sections(entries, &format!("{nodes}/{}", key.trim_matches('/')), below)?;
         }
@@ -117,21 +92,13 @@ fn sections(entries: &mut Vec<(Given, u64)>, nodes: &str, part: &Spanned<Yaml>) 
     Ok(())
 }
 
-fn parameters(entries: &mut Vec<(Given, u64)>, nodes: &str, prefix: &str, part: &Spanned<Yaml>) {
-    let value = match &part.value {
-        Yaml::Table(table) => {
-            for (key, below) in table {
-                let name = if prefix.is_empty() { key.clone() } else { format!("{prefix}.{key}") };
-                parameters(entries, nodes, &name, below);
-            }
-            return;
-        }
-        Yaml::Value(value) => Some(value.clone()),
-        Yaml::Other => None,
-    };
-    let (nodes, name) = (nodes.to_owned(), prefix.to_owned());
-    if !name.is_empty() {
-        entries.push((Given { nodes, name, value, place: None }, part.referenced.line()));
+fn parameters(entries: &mut Vec<Given>, nodes: &str, prefix: &str, part: &Yaml) {
+    for (key, below) in part.as_object().into_iter().flatten() {
+        parameters(entries, nodes, &format!("{prefix}.{key}"), below);
+    }
+    let (nodes, name) = (nodes.to_owned(), prefix.trim_start_matches('.').to_owned());
+    if !part.is_object() && !name.is_empty() {
+        entries.push(Given { nodes, name, value: value(part), place: None });
     }
 }
 
@@ -153,90 +120,33 @@ pub(crate) fn matches(pattern: &str, node: &str) -> bool {
     parts_match(&parts(pattern), &parts(node))
 }
 
-/// What can be in such a file.
-#[derive(Debug)]
-enum Yaml {
-    Value(Value),
-    Table(Vec<(String, Spanned<Yaml>)>),
-    /// A list, or nothing: no parameter of this project's nodes has such a value.
-    Other,
-}
-
-impl<'de> Deserialize<'de> for Yaml {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Any;
-        impl<'de> Visitor<'de> for Any {
-            type Value = Yaml;
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("parameters")
-            }
-            fn visit_bool<E>(self, value: bool) -> Result<Yaml, E> {
-                Ok(Yaml::Value(Value::Bool(value)))
-            }
-            fn visit_i64<E>(self, value: i64) -> Result<Yaml, E> {
-                Ok(Yaml::Value(Value::Integer(value)))
-            }
-            fn visit_u64<E>(self, value: u64) -> Result<Yaml, E> {
-                Ok(Yaml::Value(i64::try_from(value).map_or(Value::Float(value as f64), Value::Integer)))
-            }
-            fn visit_f64<E>(self, value: f64) -> Result<Yaml, E> {
-                Ok(Yaml::Value(Value::Float(value)))
-            }
-            fn visit_str<E>(self, value: &str) -> Result<Yaml, E> {
-                Ok(Yaml::Value(Value::Text(value.to_owned())))
-            }
-            fn visit_unit<E>(self) -> Result<Yaml, E> {
-                Ok(Yaml::Other)
-            }
-            fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Yaml, A::Error> {
-                while list.next_element::<IgnoredAny>()?.is_some() {}
-                Ok(Yaml::Other)
-            }
-            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Yaml, A::Error> {
-                let mut table = Vec::new();
-                while let Some(entry) = map.next_entry()? {
-                    table.push(entry);
-                }
-                Ok(Yaml::Table(table))
-            }
-        }
-        deserializer.deserialize_any(Any)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn parameters_have_nodes_names_values_and_lines() {
+    fn parameters_have_nodes_names_and_values() {
         let text = "/**:\n  ros__parameters:\n    use_sim_time: true\n\nrobot1:\n  curious_node:\n    \
                     ros__parameters:\n      resolution: 0.1\n      seed: 7\n      mode: explore\n      \
                     qos_overrides:\n        /scan:\n          subscription: {reliability: reliable}\n      \
                     others: [1.0, 2.0]\n";
-        let found: Vec<_> = entries(text)
-            .unwrap()
-            .into_iter()
-            .map(|(Given { nodes, name, value, .. }, line)| (nodes, name, value, line))
-            .collect();
-        let entry = |nodes: &str, name: &str, value, line| (nodes.to_owned(), name.to_owned(), value, line);
+        let found = entries(text).unwrap();
+        let entry = |nodes: &str, name: &str, value| Given {
+            nodes: nodes.to_owned(),
+            name: name.to_owned(),
+            value,
+            place: None,
+        };
         let node = "/robot1/curious_node";
-        assert_eq!(
-            found,
-            [
-                entry("/**", "use_sim_time", Some(Value::Bool(true)), 3),
-                entry(node, "resolution", Some(Value::Float(0.1)), 8),
-                entry(node, "seed", Some(Value::Integer(7)), 9),
-                entry(node, "mode", Some(Value::Text("explore".into())), 10),
-                entry(
-                    node,
-                    "qos_overrides./scan.subscription.reliability",
-                    Some(Value::Text("reliable".into())),
-                    13
-                ),
-                entry(node, "others", None, 14),
-            ]
-        );
+        let expected = [
+            entry("/**", "use_sim_time", Some(Value::Bool(true))),
+            entry(node, "mode", Some(Value::Text("explore".into()))),
+            entry(node, "others", None),
+            entry(node, "qos_overrides./scan.subscription.reliability", Some(Value::Text("reliable".into()))),
+            entry(node, "resolution", Some(Value::Float(0.1))),
+            entry(node, "seed", Some(Value::Integer(7))),
+        ];
+        assert_eq!(found, expected);
     }
 
     #[test]
@@ -253,21 +163,21 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_file_of_parameters_is_refused_with_its_line() {
+    fn what_is_no_file_of_parameters_is_refused() {
         let error = |text| entries(text).unwrap_err();
         let example = "as in `curious_node: {ros__parameters: {resolution: 0.05}}`";
         assert_eq!(
             error("curious_node:\n  resolution: 0.1\n"),
-            (2, format!("`/curious_node/resolution` must be a table with `ros__parameters`, {example}"))
+            format!(": `/curious_node/resolution` must be a table with `ros__parameters`, {example}")
         );
         assert_eq!(
-            error("ros__parameters: {a: 1}").1,
-            format!("`ros__parameters` must be below a node, {example}")
+            error("ros__parameters: {a: 1}"),
+            format!(": `ros__parameters` must be below a node, {example}")
         );
-        assert_eq!(error("- 1").1, format!("this must be a table with `ros__parameters`, {example}"));
+        assert_eq!(error("- 1"), format!(": this must be a table with `ros__parameters`, {example}"));
         let unclosed = "unclosed bracket '['; parameters are written";
-        assert_eq!(error("a:\n  b: [1,\nc: 2\n"), (2, format!("{unclosed} {example}")));
-        assert_eq!(error("").1, format!("this must be a table with `ros__parameters`, {example}"));
+        assert_eq!(error("a:\n  b: [1,\nc: 2\n"), format!(", line 2: {unclosed} {example}"));
+        assert_eq!(error(""), format!(": this must be a table with `ros__parameters`, {example}"));
     }
 
     #[test]

@@ -2,8 +2,9 @@
 
 mod navigation;
 
+pub(crate) use navigation::Order;
+
 use crate::link;
-use crate::order::Order;
 use crate::parameters::{Mode, Navigator, Parameters};
 use agent::{Agent, Features};
 use anyhow::Context;

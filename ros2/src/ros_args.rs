@@ -1,39 +1,10 @@
 //! The arguments that every node of ROS has: `--ros-args -p name:=value -r from:=to --params-file FILE`.
 
-use crate::params_file::{self, ParamsFileError};
+use crate::params_file;
 use crate::value::Given;
+use anyhow::{Context, anyhow, bail};
 use std::ffi::OsString;
 use std::path::Path;
-
-/// The error for arguments after `--ros-args`.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum RosArgsError {
-    /// An argument is no text.
-    #[error("`{0}` after --ros-args is not valid UTF-8")]
-    NoText(String),
-    /// An argument needs another one.
-    #[error("{0} needs {1}")]
-    Missing(String, &'static str),
-    /// The text after `-p` or `-r` has no `:=`.
-    #[error("`{text}` after {flag} must be {expected}")]
-    Rule {
-        /// The argument before it.
-        flag: String,
-        /// The text.
-        text: String,
-        /// What would be valid.
-        expected: &'static str,
-    },
-    /// The argument is not known.
-    #[error(
-        "`{0}` after --ros-args is not known: there are -p name:=value, -r from:=to, --params-file FILE, and -- at the \
-         end"
-    )]
-    Unknown(String),
-    /// A file of parameters is not valid.
-    #[error(transparent)]
-    File(#[from] ParamsFileError),
-}
 
 /// What `--ros-args` says.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -52,9 +23,11 @@ impl RosArgs {
     /// # Errors
     ///
     /// When an argument after `--ros-args` is not valid.
-    pub fn split(all: impl IntoIterator<Item = OsString>) -> Result<(Vec<OsString>, Self), RosArgsError> {
+    pub fn split(all: impl IntoIterator<Item = OsString>) -> anyhow::Result<(Vec<OsString>, Self)> {
         let text = |argument: OsString| {
-            argument.into_string().map_err(|other| RosArgsError::NoText(other.to_string_lossy().into_owned()))
+            argument
+                .into_string()
+                .map_err(|other| anyhow!("`{}` after --ros-args is not valid UTF-8", other.to_string_lossy()))
         };
         let (mut others, mut ros) = (Vec::new(), Self::default());
         let mut all = all.into_iter();
@@ -77,8 +50,8 @@ impl RosArgs {
     fn take(
         &mut self,
         flag: &str,
-        next: impl FnOnce() -> Result<Option<String>, RosArgsError>,
-    ) -> Result<(), RosArgsError> {
+        next: impl FnOnce() -> anyhow::Result<Option<String>>,
+    ) -> anyhow::Result<()> {
         match flag {
             "-p" | "--param" => {
                 let (node, name, value) = rule(flag, next()?, "name:=value")?;
@@ -89,7 +62,7 @@ impl RosArgs {
                 self.parameters.push(Given { nodes, name, value, place: None });
             }
             "--params-file" => {
-                let file = next()?.ok_or_else(|| RosArgsError::Missing(flag.to_owned(), "a file"))?;
+                let file = next()?.with_context(|| format!("{flag} needs a file"))?;
                 self.parameters.extend(params_file::read(Path::new(&file))?);
                 self.files.push(file);
             }
@@ -99,10 +72,13 @@ impl RosArgs {
             }
             // How a node logs is not a matter of this project's nodes: they write sentences to the error output.
             "--log-level" | "--log-config-file" | "-e" | "--enclave" => {
-                next()?.ok_or_else(|| RosArgsError::Missing(flag.to_owned(), "a value"))?;
+                next()?.with_context(|| format!("{flag} needs a value"))?;
             }
             _ if flag.starts_with("--enable-") || flag.starts_with("--disable-") => {}
-            _ => return Err(RosArgsError::Unknown(flag.to_owned())),
+            _ => bail!(
+                "`{flag}` after --ros-args is not known: there are -p name:=value, -r from:=to, --params-file FILE, and -- at \
+                 the end"
+            ),
         }
         Ok(())
     }
@@ -115,9 +91,7 @@ impl RosArgs {
     /// The files that have no parameter for a node: the name of the node in them is probably wrong.
     pub fn files_without(&self, full_name: &str) -> Vec<&str> {
         let has = |file: &str| {
-            let place = format!("{file}, line ");
-            self.parameters_of(full_name)
-                .any(|given| given.place.as_ref().is_some_and(|at| at.starts_with(&place)))
+            self.parameters_of(full_name).any(|given| given.place.as_ref().is_some_and(|place| place == file))
         };
         self.files.iter().map(String::as_str).filter(|file| !has(file)).collect()
     }
@@ -138,16 +112,16 @@ fn rule(
     flag: &str,
     text: Option<String>,
     expected: &'static str,
-) -> Result<(Option<String>, String, String), RosArgsError> {
-    let text = text.ok_or_else(|| RosArgsError::Missing(flag.to_owned(), expected))?;
-    let invalid = || RosArgsError::Rule { flag: flag.to_owned(), text: text.clone(), expected };
-    let (left, right) = text.split_once(":=").ok_or_else(invalid)?;
+) -> anyhow::Result<(Option<String>, String, String)> {
+    let text = text.with_context(|| format!("{flag} needs {expected}"))?;
+    let invalid = || format!("`{text}` after {flag} must be {expected}");
+    let (left, right) = text.split_once(":=").with_context(invalid)?;
     let (node, left) = match left.split_once(':') {
         Some((node, left)) => (Some(node.to_owned()), left),
         None => (None, left),
     };
     if left.is_empty() {
-        return Err(invalid());
+        bail!(invalid());
     }
     Ok((node, left.to_owned(), right.to_owned()))
 }
@@ -157,7 +131,7 @@ mod tests {
     use super::*;
     use crate::value::Value;
 
-    fn split(line: &str) -> Result<(Vec<OsString>, RosArgs), RosArgsError> {
+    fn split(line: &str) -> anyhow::Result<(Vec<OsString>, RosArgs)> {
         RosArgs::split(line.split_whitespace().map(OsString::from))
     }
 
@@ -183,7 +157,10 @@ mod tests {
     #[test]
     fn the_flag_may_be_repeated() {
         let launched = "node --ros-args --log-level info --ros-args -r __node:=foo --ros-args";
-        assert_eq!(split(launched), split("node --ros-args --log-level info -r __node:=foo"));
+        assert_eq!(
+            split(launched).unwrap(),
+            split("node --ros-args --log-level info -r __node:=foo").unwrap()
+        );
         assert_eq!(split(launched).unwrap().1.remaps.len(), 1);
     }
 

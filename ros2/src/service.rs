@@ -43,18 +43,8 @@ pub enum Service {
 }
 
 impl Service {
-    /// The services of parameters, which every node of ROS has.
-    pub const PARAMETERS: [Self; 6] = [
-        Self::GetParameters,
-        Self::GetParameterTypes,
-        Self::SetParameters,
-        Self::SetParametersAtomically,
-        Self::ListParameters,
-        Self::DescribeParameters,
-    ];
-
-    /// The services of the mapping node, beside those of parameters.
-    pub const MAPPING: [Self; 9] = [
+    /// All services.
+    pub const ALL: [Self; 15] = [
         Self::SaveState,
         Self::SaveMap,
         Self::SerializeMap,
@@ -64,6 +54,12 @@ impl Service {
         Self::GetAvailableStates,
         Self::GetAvailableTransitions,
         Self::GetTransitionGraph,
+        Self::GetParameters,
+        Self::GetParameterTypes,
+        Self::SetParameters,
+        Self::SetParametersAtomically,
+        Self::ListParameters,
+        Self::DescribeParameters,
     ];
 
     /// The name, below that of the node.

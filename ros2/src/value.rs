@@ -35,7 +35,7 @@ pub struct Given {
     pub name: String,
     /// The value; `None`: a list, or nothing.
     pub value: Option<Value>,
-    /// The file and the line; `None`: the command line.
+    /// The file; `None`: the command line.
     pub place: Option<String>,
 }
 

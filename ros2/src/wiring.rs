@@ -2,7 +2,7 @@
 
 use crate::link::Wiring;
 use crate::message::{Quality, Topic};
-use crate::names::{NameError, Names};
+use crate::names::Names;
 use crate::parameters::{Mode, Navigator, Parameters};
 use crate::ros_args::RosArgs;
 use crate::service::Service;
@@ -15,7 +15,7 @@ const SCANS: usize = 100;
 /// # Errors
 ///
 /// When a name is not valid.
-pub fn curious_wiring(parameters: &Parameters, names: &Names, ros: &RosArgs) -> Result<Wiring, NameError> {
+pub fn curious_wiring(parameters: &Parameters, names: &Names, ros: &RosArgs) -> anyhow::Result<Wiring> {
     let mut subscribed =
         vec![Topic::Scan, Topic::Odometry, Topic::Transforms, Topic::StaticTransforms, Topic::InitialPose];
     let mut published = vec![
@@ -61,8 +61,11 @@ pub fn curious_wiring(parameters: &Parameters, names: &Names, ros: &RosArgs) -> 
         Topic::Odometry => &parameters.odom_topic,
         _ => topic.default_name(),
     };
+    let services = Service::ALL
+        .iter()
+        .map(|service| Ok((*service, names.resolved("service", service.default_name(), ros)?)));
     Ok(Wiring {
-        services: services(names, ros, &[&Service::MAPPING[..], &Service::PARAMETERS].concat())?,
+        services: services.collect::<anyhow::Result<_>>()?,
         navigate_to_pose,
         adjust_edges,
         ..wiring(names, ros, [&subscribed, &published], scan, name)?
@@ -74,7 +77,7 @@ pub fn curious_wiring(parameters: &Parameters, names: &Names, ros: &RosArgs) -> 
 /// # Errors
 ///
 /// When a name is not valid.
-pub fn simulation_wiring(names: &Names, ros: &RosArgs) -> Result<Wiring, NameError> {
+pub fn simulation_wiring(names: &Names, ros: &RosArgs) -> anyhow::Result<Wiring> {
     let subscribed = [Topic::Velocity, Topic::StampedVelocity];
     let published = [
         Topic::Scan,
@@ -83,17 +86,9 @@ pub fn simulation_wiring(names: &Names, ros: &RosArgs) -> Result<Wiring, NameErr
         Topic::StaticTransforms,
         Topic::Clock,
         Topic::GroundTruth,
-        Topic::ParameterEvents,
     ];
     let scan = Quality { is_reliable: true, ..Quality::SENSOR };
-    let services = services(names, ros, &Service::PARAMETERS)?;
-    Ok(Wiring { services, ..wiring(names, ros, [&subscribed, &published], scan, Topic::default_name)? })
-}
-
-/// The services with their full names.
-fn services(names: &Names, ros: &RosArgs, all: &[Service]) -> Result<Vec<(Service, String)>, NameError> {
-    let named = |service: &Service| Ok((*service, names.resolved("service", service.default_name(), ros)?));
-    all.iter().map(named).collect()
+    wiring(names, ros, [&subscribed, &published], scan, Topic::default_name)
 }
 
 /// The wiring of a node that subscribes and publishes these topics.
@@ -103,12 +98,12 @@ fn wiring<'a>(
     topics: [&[Topic]; 2],
     scan: Quality,
     name: impl Fn(Topic) -> &'a str,
-) -> Result<Wiring, NameError> {
-    let named = |topic: &Topic| -> Result<_, NameError> {
+) -> anyhow::Result<Wiring> {
+    let named = |topic: &Topic| -> anyhow::Result<_> {
         let quality = if *topic == Topic::Scan { scan } else { topic.quality() };
         Ok((*topic, names.resolved("topic", name(*topic), ros)?, quality))
     };
-    let all = |topics: &[Topic]| topics.iter().map(named).collect::<Result<Vec<_>, NameError>>();
+    let all = |topics: &[Topic]| topics.iter().map(named).collect::<anyhow::Result<Vec<_>>>();
     let [subscribed, published] = topics.map(all);
     Ok(Wiring {
         name: names.node().to_owned(),

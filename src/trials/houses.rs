@@ -20,8 +20,7 @@ use sim::physics::WorldSpec;
 /// one trial per house, the houses are the sample: over 200 of them, the 95 % interval of a difference was ± 2 % of the error, so
 /// that it is about ± 3 % over 100, and ± 12 % over eight.
 ///
-/// Two references show how far a strategy can get: oracle knows the true rates, and full-observation sees every cell
-/// all the time.
+/// The reference full-observation sees every cell all the time: it shows how far a strategy can get.
 ///
 /// --generate makes houses, or with `--kind office` offices: larger, with more rooms, more people, and doors that stay for
 /// minutes. One of them alone is a world by its name: `--world house-7`, `--world office-7`.

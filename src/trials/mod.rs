@@ -139,10 +139,6 @@ pub struct TrialArgs<K: TrialKind> {
     #[arg(long, value_name = "I/N", conflicts_with_all = ["rrd", "save_worlds"], help_heading = EXECUTION)]
     shard: Option<Shard>,
 
-    /// Continue in a folder with shards of another build of this program; the results may differ from those of both builds
-    #[arg(long, requires = "shard", help_heading = EXECUTION)]
-    allow_other_build: bool,
-
     /// The folder for all results
     #[arg(long, value_name = "DIR", default_value = K::OUT, value_parser = folder(), help_heading = OUTPUT)]
     out: PathBuf,

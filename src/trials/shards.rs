@@ -9,8 +9,8 @@ use cli::program::{Failure, INTERRUPTED, input, results_folder};
 use cli::progress::Progress;
 use cli::terminal::{print, say};
 use evaluation::trials::Experiment;
-use reports::shards::{Header, Shard, ShardFile, Shards, array, check_builds};
-use reports::{Plan, ReportSettings};
+use reports::Plan;
+use reports::shards::{Header, Shard, ShardFile, Shards, array};
 use std::io::stderr;
 use std::iter::once;
 use std::path::{Path, PathBuf};
@@ -45,10 +45,6 @@ pub(super) enum ShardCommand {
         #[arg(long, value_name = "DIR", value_parser = folder())]
         out: Option<PathBuf>,
 
-        /// Merge shards of other builds of this program; the results are those of no build
-        #[arg(long)]
-        allow_other_build: bool,
-
         /// Print only errors
         #[arg(long, short)]
         quiet: bool,
@@ -75,8 +71,8 @@ impl ShardCommand {
                 print(array(&missing))?;
                 return Ok(ExitCode::FAILURE);
             }
-            Self::Merge { dir, out, allow_other_build, quiet } => {
-                merge::<K>(dir, out.as_deref().unwrap_or(dir), *allow_other_build, *quiet)?;
+            Self::Merge { dir, out, quiet } => {
+                merge::<K>(dir, out.as_deref().unwrap_or(dir), *quiet)?;
             }
             Self::Status { dir } => print(Shards::read(dir).map_err(input)?.status())?,
         }
@@ -84,12 +80,12 @@ impl ShardCommand {
     }
 }
 
-fn merge<K: TrialKind>(dir: &Path, out: &Path, allows_other_build: bool, quiet: bool) -> Result<(), Failure>
+fn merge<K: TrialKind>(dir: &Path, out: &Path, quiet: bool) -> Result<(), Failure>
 where
     for<'a> Plan<'a>: From<&'a K::Spec>,
 {
     let shards = Shards::read(dir).map_err(input)?;
-    let other_build = shards.check(K::NAME, env!("CARGO_PKG_VERSION"), allows_other_build).map_err(input)?;
+    shards.check(K::NAME, env!("CARGO_PKG_VERSION")).map_err(input)?;
     let found = shards.header();
     let args =
         TrialArgs::<K>::try_parse_from(once(K::NAME).chain(found.arguments.iter().map(String::as_str)));
@@ -101,7 +97,7 @@ where
         return Err(input(anyhow!("the experiment of {} cannot be repeated: {why}", dir.display())));
     }
     let arguments = found.arguments.clone();
-    let settings = ReportSettings { other_build, ..report_settings(&experiment, arguments) };
+    let settings = report_settings(&experiment, arguments);
     let folder = results_folder(out).map_err(|(Failure::Run(why) | Failure::Input(why))| input(why))?;
     let results = Results { folder, out, world_names: &args.world, quiet };
     let trials = shards.trials().map_err(input)?.map(|trial| trial.map_err(Into::into));
@@ -123,9 +119,6 @@ impl<K: TrialKind> TrialArgs<K> {
         is_canceled: &AtomicBool,
     ) -> Result<ExitCode, Failure> {
         let header = header::<K>(experiment_arguments::<K>(), shard, experiment);
-        if !self.allow_other_build {
-            check_builds(&self.out).map_err(input)?;
-        }
         let file = ShardFile::open(&self.out, &header, shard).map_err(input)?;
         let (all, open) = (shard.trials(header.trials), file.open_trials(experiment));
         let before = all - open.len() as u64;

@@ -1,6 +1,6 @@
 use crate::error::SurveyError;
 use interfaces::{GridFrame, LaserReading};
-use nalgebra::{Isometry2, Point2, UnitComplex, Vector2};
+use nalgebra::{Isometry2, Point2, Vector2};
 
 /// The number of directions in which the reach of a reading is kept. In another direction it is too short by at most
 /// 2 %: at 20 m, less than [`MARGIN_M`].
@@ -13,55 +13,24 @@ const MARGIN_M: f64 = 0.5;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Reach([[f32; 2]; DIRECTIONS]);
 
-/// Makes the reaches of readings. The directions are computed once: sines and cosines of all beams take longer than the rest.
-#[derive(Clone, Debug)]
-pub(crate) struct Reaches {
-    directions: [Vector2<f64>; DIRECTIONS],
-    /// The first angle, the step, rad, and the directions of the beams of the last reading.
-    beams: (f64, f64, Vec<UnitComplex<f64>>),
-}
-
-impl Default for Reaches {
-    fn default() -> Self {
-        let direction = |number: usize| {
-            interfaces::rotation(std::f64::consts::TAU * number as f64 / DIRECTIONS as f64) * Vector2::x()
-        };
-        Self { directions: std::array::from_fn(direction), beams: (0.0, 0.0, Vec::new()) }
-    }
-}
-
-impl Reaches {
+impl Reach {
     /// The reach of a reading; the position of the robot counts as a hit.
-    pub(crate) fn of(&mut self, reading: &LaserReading) -> Reach {
-        let scan = &reading.scan;
-        let (first_rad, step_rad, beams) = &mut self.beams;
-        if beams.len() != scan.ranges_m.len()
-            || *first_rad != scan.angle_min_rad
-            || *step_rad != scan.angle_increment_rad
-        {
-            (*first_rad, *step_rad) = (scan.angle_min_rad, scan.angle_increment_rad);
-            *beams =
-                (0..scan.ranges_m.len()).map(|beam| interfaces::rotation(scan.angle_rad(beam))).collect();
-        }
-        let limits_m = scan.range_min_m..=scan.range_max_m;
+    pub(crate) fn of(reading: &LaserReading) -> Self {
+        let directions: [Vector2<f64>; DIRECTIONS] = std::array::from_fn(|number| {
+            interfaces::rotation(std::f64::consts::TAU * number as f64 / DIRECTIONS as f64) * Vector2::x()
+        });
         let mut farthest = [(0.0, Point2::origin()); DIRECTIONS];
-        for (range_m, beam) in scan.ranges_m.iter().map(|range_m| f64::from(*range_m)).zip(&*beams) {
-            if !limits_m.contains(&range_m) {
-                continue;
-            }
-            let hit = reading.mount * Point2::from(beam * Vector2::new(range_m, 0.0));
-            for (kept, direction) in farthest.iter_mut().zip(&self.directions) {
+        for hit in reading.hits() {
+            for (kept, direction) in farthest.iter_mut().zip(&directions) {
                 let distance_m = hit.coords.dot(direction);
                 if distance_m > kept.0 {
                     *kept = (distance_m, hit);
                 }
             }
         }
-        Reach(farthest.map(|(_, hit)| [hit.x as f32, hit.y as f32]))
+        Self(farthest.map(|(_, hit)| [hit.x as f32, hit.y as f32]))
     }
-}
 
-impl Reach {
     pub(crate) fn hits(&self) -> impl Iterator<Item = Point2<f64>> {
         self.0.iter().map(|[x, y]| Point2::new(f64::from(*x), f64::from(*y)))
     }

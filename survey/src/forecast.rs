@@ -96,11 +96,6 @@ impl Forecast {
         self.outlook().blocked(cell, time_s)
     }
 
-    /// See [`Outlook::expiry`]; NaN where it is longer than four weeks.
-    pub fn expiry(&self) -> Grid<f64> {
-        self.outlook().expiry(f64::NAN)
-    }
-
     /// The map at a time, s: P(blocked) of every cell; NaN for a cell that was never seen.
     pub fn map(&self, time_s: f64) -> Grid<f64> {
         let frame = *self.mapper.frame();
@@ -119,10 +114,5 @@ impl Forecast {
         let pace = self.outlook().by_tile(1.0, |clock| clock.pace(time_s, self.calendar()));
         let blocked = |index: usize| self.blocked(self.mapper.frame().cell(index), time_s).unwrap_or(0.0);
         [speed_mask(&self.mapper, |index| pace.cells()[index]), keepout_mask(&self.mapper, blocked)]
-    }
-
-    /// See [`Outlook::stopped`].
-    pub fn stopped(&self, way: [Point2<f64>; 2], radius_m: f64, time_s: impl Fn(f64) -> f64) -> Option<f64> {
-        self.outlook().stopped(way, radius_m, time_s)
     }
 }

@@ -19,7 +19,6 @@ mod extent;
 mod forecast;
 mod masks;
 mod median;
-mod noise;
 mod odometry_check;
 mod outlook;
 mod passes;

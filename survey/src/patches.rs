@@ -33,7 +33,7 @@ fn connected_where(frame: &GridFrame, cells: &[usize], is_kept: impl Fn(&[usize]
     let mut left: BTreeSet<usize> = cells.iter().copied().collect();
     let mut found = Vec::new();
     while let Some(first) = left.pop_first() {
-        let patch = connected(frame, first, &mut left);
+        let patch = connected(frame, first, 1, &mut left);
         if is_kept(&patch) {
             found.extend(patch);
         }
@@ -42,12 +42,19 @@ fn connected_where(frame: &GridFrame, cells: &[usize], is_kept: impl Fn(&[usize]
     found
 }
 
-/// The cells of `left` that are connected with `first` by sides or corners, with it; they are removed from `left`.
-fn connected(frame: &GridFrame, first: usize, left: &mut BTreeSet<usize>) -> Vec<usize> {
+/// The cells of `left` that are connected with `first`, with it; they are removed from `left`. Cells are connected up to a distance
+/// of `reach` along both axes: with 1, by sides or corners.
+pub(crate) fn connected(
+    frame: &GridFrame,
+    first: usize,
+    reach: i32,
+    left: &mut BTreeSet<usize>,
+) -> Vec<usize> {
     let (mut cells, mut next) = (vec![first], 0);
     while let Some(Cell { x, y }) = cells.get(next).map(|index| frame.cell(*index)) {
         next += 1;
-        let around = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| Cell::new(x + dx, y + dy)));
+        let around =
+            (-reach..=reach).flat_map(|dy| (-reach..=reach).map(move |dx| Cell::new(x + dx, y + dy)));
         cells.extend(around.filter_map(|cell| frame.index(cell)).filter(|index| left.remove(index)));
     }
     cells

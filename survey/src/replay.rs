@@ -1,6 +1,6 @@
 //! The second pass: a robot reads a log, at the poses that the first pass has found.
 
-use interfaces::{LaserReading, ValueError};
+use interfaces::{LaserReading, ValueError, from_bytes, to_bytes};
 use localizer::{GivenPoses, PoseEstimate, PoseState, TrajectoryPose};
 use logs::{Log, LogError, Readings};
 use mapper::{Mapper, NoReturn, NoReturns, ScanFilterSettings};
@@ -86,11 +86,12 @@ impl Localization<LaserReading> for FoundPoses {
     }
 
     fn snapshot(&mut self) -> Vec<u8> {
-        GivenPoses::snapshot(&mut self.given)
+        to_bytes(&self.given)
     }
 
     fn restore(&mut self, snapshot: &[u8]) -> Result<(), ValueError> {
-        GivenPoses::restore(&mut self.given, snapshot)
+        self.given = from_bytes(snapshot)?;
+        Ok(())
     }
 
     fn begin_session(&mut self) {

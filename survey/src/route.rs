@@ -1,14 +1,14 @@
 //! The route of a log, and the cells that cover several of them.
 
 use crate::error::SurveyError;
-use crate::extent::{self, Reach, Reaches};
+use crate::extent::{self, Reach};
 use crate::quality::{Quality, QualityCheck, Verdict};
 use crate::range_noise::RangeNoise;
 use crate::seen_area::SeenArea;
 use crate::settings::SurveySettings;
 use crate::turns::Turns;
 use interfaces::{GridFrame, LaserReading, PoseMode};
-use localizer::{DistanceScale, PoseState, Residual, TrajectoryFinder, TrajectoryPose, TrajectorySettings};
+use localizer::{DistanceScale, LocalizerSettings, PoseState, Residual, TrajectoryFinder, TrajectoryPose};
 use mapper::ScanFilter;
 use nalgebra::{Isometry2, Point2};
 use std::ops::Range;
@@ -136,7 +136,6 @@ pub struct FirstPass {
     range_noise: RangeNoise,
     quality: QualityCheck,
     reaches: Vec<Reach>,
-    reach: Reaches,
     /// The corners of the rectangle that was seen so far.
     seen: Option<(Point2<f64>, Point2<f64>)>,
     area: SeenArea,
@@ -155,7 +154,7 @@ impl FirstPass {
     pub fn new(settings: &SurveySettings) -> Result<Self, SurveyError> {
         settings.check()?;
         let finder = match settings.pose {
-            PoseMode::Localized => Some(TrajectoryFinder::new(&TrajectorySettings::default())?),
+            PoseMode::Localized => Some(TrajectoryFinder::new(&LocalizerSettings::of_logs())?),
             PoseMode::Exact | PoseMode::Odometry | PoseMode::Corrected => None,
         };
         Ok(Self {
@@ -166,7 +165,6 @@ impl FirstPass {
             range_noise: RangeNoise::default(),
             quality: QualityCheck::default(),
             reaches: Vec::new(),
-            reach: Reaches::default(),
             seen: None,
             area: SeenArea::default(),
             turns: Turns::default(),
@@ -182,7 +180,7 @@ impl FirstPass {
     /// Adds the next reading.
     pub fn add(&mut self, reading: LaserReading) {
         let filtered = self.filter.filter(reading.clone());
-        let reach = self.reach.of(&filtered);
+        let reach = Reach::of(&filtered);
         self.reaches.push(reach);
         self.turns.add(&reading);
         let found = match &mut self.finder {

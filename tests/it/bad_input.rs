@@ -224,22 +224,9 @@ fn tours() {
 #[test]
 fn command_lines() {
     for (arguments, says) in [
-        ("--duration=0", "a time above 0"),
-        ("--duration=-1", "a time above 0"),
-        ("--duration=nan", "a time above 0"),
         ("--duration=1001h", "at most 1000h"),
-        ("--duration=ten", "as in 90s, 20m, 1h"),
-        ("--speed=0", "a factor from 0.001 to 1000000, or max"),
-        ("--speed=-2", "a factor from 0.001 to 1000000, or max"),
         ("--speed=inf", "a factor from 0.001 to 1000000, or max"),
-        ("--seed=-1", "--seed <SEED>"),
-        ("--seed=1.5", "--seed <SEED>"),
-        ("--strategy=clever", "[possible values: curious, recency, poisson, random, coin"),
-        ("--estimator=guess", "[possible values: paper, paper-all, "),
-        ("--occupancy=loose", "[possible values: steady, naive]"),
-        ("--drive=train", "[possible values: agent, keyboard, tour]"),
         ("--rrd a.rrd --no-rrd", "'--rrd <FILE>' cannot be used with '--no-rrd'"),
-        ("--connect=", "'--connect [<ADDRESS>]'"),
         ("--connect=viewer:here", "`viewer:here` is not the address of a viewer: "),
         ("--sped=2", "a similar argument exists: '--speed'"),
     ] {

@@ -192,17 +192,10 @@ fn what_is_wrong_is_reported_for_every_file() {
     assert_eq!(names, ["ragged.toml", "two_blocks.png"]);
 }
 
-/// A robot whose waypoint is behind a wall, and an open outer wall.
 #[test]
-fn robots_that_stand_and_parts_out_of_reach_are_reported() {
+fn an_open_outer_wall_is_reported() {
     let folder = tempfile::tempdir().unwrap();
     let house = include_str!("../../worlds/house.toml");
-    let ended = check(folder.path(), &["--simulate", "3m", "house"]);
-    assert_eq!(ended.status.code(), Some(0), "{ended:?}");
-    let said = text(&ended.stdout);
-    assert!(said.contains("simulated 3.0 minutes with seed 0"), "{said}");
-    assert!(said.contains("stood     no robot stood longer than"), "{said}");
-
     let from = house.find("[[wall]]").unwrap();
     let to = from + house[from..].find("\n\n").unwrap();
     std::fs::write(folder.path().join("open.toml"), [&house[..from], &house[to..]].concat()).unwrap();

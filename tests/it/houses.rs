@@ -93,14 +93,7 @@ fn a_saved_house_is_the_one_that_was_made_and_runs_in_four_rooms() {
 }
 
 #[test]
-fn help_names_every_choice() {
-    let help = Run::houses().goes_well("--help").stdout;
-    let choices = "--world --generate --strategy --estimator --trials --seeds --duration --seed --threads --out --rrd \
-                   --quiet --list-worlds --save-worlds --max-steps --shard missing merge status";
-    for choice in choices.split_whitespace() {
-        assert!(help.contains(choice), "{choice} is not in\n{help}");
-    }
-    assert!(help.lines().all(|line| line.chars().count() <= 100), "{help}");
+fn worlds_are_listed() {
     let listed = Run::houses().goes_well("--list-worlds").stdout;
     assert!(listed.lines().any(|line| line.starts_with("house ")), "{listed}");
 }

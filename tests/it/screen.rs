@@ -58,17 +58,6 @@ fn the_version_is_printed() {
     assert_eq!(Run::new().goes_well("--version").stdout, expected);
 }
 
-#[test]
-fn help_names_every_choice() {
-    let help = Run::new().goes_well("--help").stdout;
-    let choices = "--world --map --seed --duration --drive --tour --strategy --speed --estimator --occupancy \
-                   --out --rrd --no-rrd --view --connect --quiet --list-worlds";
-    for choice in choices.split_whitespace() {
-        assert!(help.contains(choice), "{choice} is not in\n{help}");
-    }
-    assert!(help.lines().all(|line| line.chars().count() <= 100), "{help}");
-}
-
 /// A port on which no program listens.
 fn free_port() -> u16 {
     TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port()

@@ -117,30 +117,6 @@ mod tests {
     }
 
     #[test]
-    fn walls_are_seen_and_hide_what_is_behind() {
-        let rows = [
-            "...#...", //
-            "...#...", ".......", "...#...",
-        ];
-        assert_eq!(
-            drawn(&mut Visibility::new(9.0), &map(&rows), Cell::new(1, 1)),
-            [
-                "oooo---", //
-                "oooo--o", "ooooooo", "oooo--o",
-            ]
-        );
-    }
-
-    #[test]
-    fn the_radius_is_round_and_the_unknown_is_seen_through() {
-        let rows = ["     ", "     ", "  .  ", "     ", "     "];
-        assert_eq!(
-            drawn(&mut Visibility::new(2.0), &map(&rows), Cell::new(2, 2)),
-            ["--o--", "-ooo-", "ooooo", "-ooo-", "--o--"]
-        );
-    }
-
-    #[test]
     fn moving_things_do_not_hide_and_walls_found_later_do() {
         let mut mapper = map(&["....."]);
         let mut visibility = Visibility::new(9.0);

@@ -16,7 +16,7 @@ mod comparison;
 mod picture;
 mod verdict;
 
-use localizer::{DistanceScale, PoseState, Trajectory, TrajectoryFinder, TrajectorySettings};
+use localizer::{DistanceScale, LocalizerSettings, PoseState, Trajectory, TrajectoryFinder};
 use logs::{Log, TopicChoice};
 use results::TrajectoryFile;
 use std::error::Error;
@@ -36,7 +36,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let folder = paths.get(1).map_or_else(|| PathBuf::from("."), PathBuf::from);
     let log = Log::open(Path::new(file), &TopicChoice::default())?;
     print_summary(&log);
-    let finder = || TrajectoryFinder::new(&TrajectorySettings::default());
+    let finder = || TrajectoryFinder::new(&LocalizerSettings::of_logs());
     let mut readings = Vec::new();
     for reading in log.readings()? {
         let mut reading = reading?;

@@ -59,8 +59,6 @@ pub struct StateScores {
     /// The Brier score of a Markov chain with the true rates and the true share of the time that the cell is blocked, up to the
     /// freeze, after the same observations. `None` where it was not measured.
     pub brier_true_chains: Option<f64>,
-    /// The log score of P(blocked), nat: the mean of −ln of the probability of what was true, from 0.001 on.
-    pub log_score: Option<f64>,
     /// The expected calibration error of P(blocked): the mean distance of the predicted from the true share of blocked
     /// cells in ten classes of predictions, by the number of predictions in each.
     pub calibration_error: Option<f64>,
@@ -173,7 +171,6 @@ impl Lookahead {
             brier_last_seen: self.last_seen.get(),
             brier_mean: self.average.get(),
             brier_true_chains: self.true_chains.get(),
-            log_score: self.predicted.log_score(),
             calibration_error: self.predicted.calibration_error(),
         }
     }

@@ -68,8 +68,6 @@ pub fn reachable_scores(mapper: &Mapper, truth: &impl GroundTruth, visible: &[bo
 /// time since the start.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct Age {
-    /// The mean, s (steps in a grid world).
-    pub mean_s: f64,
     /// The maximum, s (steps in a grid world).
     pub max_s: f64,
     /// The number of cells that were never seen.
@@ -78,11 +76,10 @@ pub struct Age {
 
 /// The age of the map now: the time since its cells were last seen.
 pub fn age(mapper: &Mapper, truth: &impl GroundTruth) -> Age {
-    let (mut ages, mut max_s, mut never_seen) = (Mean::default(), 0.0_f64, 0);
+    let mut age = Age::default();
     for index in visible_cells(truth) {
-        ages.add(mapper.recency(index));
-        max_s = max_s.max(mapper.recency(index));
-        never_seen += usize::from(!mapper.was_ever_seen(index));
+        age.max_s = age.max_s.max(mapper.recency(index));
+        age.never_seen += usize::from(!mapper.was_ever_seen(index));
     }
-    Age { mean_s: ages.get().unwrap_or(0.0), max_s, never_seen }
+    age
 }

@@ -48,9 +48,8 @@ fn coverage_and_age_count_the_cells_that_can_be_seen() {
     }
     let share = half as f64 / visible.len() as f64;
     assert_eq!(map_scores(&mapper, truth), MapScores { coverage: share, map_quality: share });
-    let Age { mean_s, max_s, never_seen } = age(&mapper, truth);
+    let Age { max_s, never_seen } = age(&mapper, truth);
     assert_eq!((max_s, never_seen), (30.0, visible.len() - half));
-    assert!((mean_s - (20.0 * share + 30.0 * (1.0 - share))).abs() < 1e-9, "{mean_s}");
 }
 
 /// A block that moves every step over three cells, and another that moves every 50 over two.
@@ -271,12 +270,12 @@ fn a_map_that_sees_everything_forecasts_a_clock() {
         "{rates:?}"
     );
     for scores in [states_1min, states_10min] {
-        let StateScores { brier, brier_last_seen, log_score, calibration_error, .. } = scores;
+        let StateScores { brier, brier_last_seen, calibration_error, .. } = scores;
         assert!(
             (0.0..0.6).contains(&brier.unwrap()) && (0.0..=1.0).contains(&brier_last_seen.unwrap()),
             "{scores:?}"
         );
-        assert!(log_score.unwrap() > 0.0 && (0.0..=1.0).contains(&calibration_error.unwrap()), "{scores:?}");
+        assert!((0.0..=1.0).contains(&calibration_error.unwrap()), "{scores:?}");
     }
 }
 

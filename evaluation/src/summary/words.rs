@@ -1,6 +1,6 @@
 //! The results as a few lines for the terminal.
 
-use super::{Contacts, Liveliest, RunResults, Summary};
+use super::{Contacts, RunResults, Summary};
 use crate::metrics::{Age, DevianceScores, PoseScores, PredictedScores, RateScores, ThingReport};
 use crate::scheduled_things::ScheduledScores;
 use results::numbers::percent;
@@ -47,7 +47,6 @@ impl fmt::Display for RunResults {
                     "{correct} correct now; {events} false changes recorded, {changes} in the map, on {cells} static cells"
                 ),
             ),
-            ("changes", self.liveliest.as_ref().map_or("none seen".into(), Liveliest::to_string)),
         ];
         lines.extend(self.rates());
         lines.extend(self.prediction().map(|text| ("predicted", text)));
@@ -214,18 +213,6 @@ impl RunResults {
     }
 }
 
-impl fmt::Display for Liveliest {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { low_m, high_m, cells, median_interval_s } = self;
-        write!(
-            f,
-            "{cells} cells changed more than once, between ({:.1}, {:.1}) and ({:.1}, {:.1}) m; median cycle time \
-             {median_interval_s:.0} s",
-            low_m[0], low_m[1], high_m[0], high_m[1]
-        )
-    }
-}
-
 /// The detection of a thing as a line.
 fn line_of(thing: &ThingReport) -> String {
     let verb = if thing.appeared { "appeared" } else { "disappeared" };
@@ -242,9 +229,7 @@ fn line_of(thing: &ThingReport) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::metrics::{
-        ChangingAccuracy, Delays, ForecastScores, IntervalScores, MapScores, PassageScores, ReachableScores,
-    };
+    use crate::metrics::{ChangingAccuracy, Delays, ForecastScores, MapScores, ReachableScores};
     use std::collections::BTreeMap;
 
     fn results(coverage: f64, age: Age, rates: RateScores) -> RunResults {
@@ -256,14 +241,11 @@ mod tests {
             changing: ChangingAccuracy::default().scores(),
             predicted: PredictedScores::default(),
             forecasts: ForecastScores::default(),
-            passages: PassageScores::default(),
-            intervals: IntervalScores::default(),
             rates,
             age,
             block_latency: Delays::default(),
             free_latency: Delays::default(),
             collisions: 0,
-            contacts_while_standing: 0,
             contacts: Contacts { own_motion: 1, run_into: 2 },
             pose: PoseScores { mode: "exact", ..PoseScores::default() },
             longest_standstill_s: [("cat", 312.4), ("dummy", 3.0)]
@@ -274,7 +256,6 @@ mod tests {
             things: Vec::new(),
             curve: Vec::new(),
             map_hash: String::new(),
-            liveliest: None,
         }
     }
 
@@ -290,7 +271,7 @@ mod tests {
             static_cells: 50_000,
             ..RateScores::default()
         };
-        let age = Age { mean_s: 60.0, max_s: 600.0, never_seen: 2 };
+        let age = Age { max_s: 600.0, never_seen: 2 };
         let predicted = PredictedScores {
             balanced_accuracy_out_of_view: None,
             brier: Some(0.0159),
@@ -309,7 +290,6 @@ mod tests {
         insta::assert_snapshot!(RunResults { predicted, forecasts, ..results(0.99999, age, rates) }, @"
           seen      >99.9 % of the cells in sight of reachable places, >99.9 % of free cells and their borders; 2 cells were never seen
           map       >99.9 % correct now; 0 false changes recorded, 0 in the map, on 50000 static cells
-          changes   none seen
           rates     mean error 251.0 % over all changing cells, 29.0 % over the 43 in view for 3 cycles or more
                     log error 0.91, mean over moving things: 0 is perfect, 0.69 a factor of 2, 2.30 a factor of 10 or no estimate
                     log error 0.53 where a pass that covers only a part of a cell may count or not
@@ -323,11 +303,10 @@ mod tests {
 
     #[test]
     fn a_complete_map_without_changes_is_short() {
-        let age = Age { mean_s: 60.0, max_s: 431.0, never_seen: 0 };
+        let age = Age { max_s: 431.0, never_seen: 0 };
         insta::assert_snapshot!(results(1.0, age, RateScores::default()), @"
           seen      100.0 % of the cells in sight of reachable places, 100.0 % of free cells and their borders; every cell was seen in the last 431 s
           map       >99.9 % correct now; 0 false changes recorded, 0 in the map, on 0 static cells
-          changes   none seen
           stood     longest time without moving 0.1 m: cat 312 s
           contacts  1 by its own motion, 2 in which something ran into it
         ");
@@ -343,7 +322,7 @@ mod tests {
                 ..PoseScores::default()
             };
             let pose = PoseScores { loops_closed, largest_correction_m: 0.253, ..pose };
-            let age = Age { mean_s: 60.0, max_s: 431.0, never_seen: 0 };
+            let age = Age { max_s: 431.0, never_seen: 0 };
             RunResults { pose, ..results(1.0, age, RateScores::default()) }.pose().unwrap()
         };
         assert!(line(0).ends_with("certain but wrong 0 times"));

@@ -1,5 +1,4 @@
 use super::{Length, TrialError, TrialRobot, TrialSettings, TrialWorld};
-use crate::oracle::Oracle;
 use agent::{Agent, AgentSettings, Policy};
 use controller::{CellDrive, Controller};
 use interfaces::{Purpose, RandomStream};
@@ -61,10 +60,6 @@ impl TrialWorld for GridSpec {
         let sensor_radius_m = f64::from(trial.world.sensor_radius) * trial.world.frame().resolution_m();
         let settings = AgentSettings { sensor_radius_m, ..trial.experiment.robot.agent.clone() };
         Ok(Agent::new(&settings, policy, RandomStream::new(trial.seed, Purpose::GridAgent))?)
-    }
-
-    fn oracle(&self) -> Oracle {
-        Oracle::in_grid(self)
     }
 
     fn robot<G: GoalSelector>(

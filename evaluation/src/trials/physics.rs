@@ -1,5 +1,4 @@
 use super::{Length, TrialError, TrialRobot, TrialSettings, TrialWorld};
-use crate::oracle::Oracle;
 use crate::physics_trial::{self, UnsupportedDrive};
 use agent::{Agent, Policy};
 use controller::DiffDrive;
@@ -70,10 +69,6 @@ impl TrialWorld for WorldSpec {
 
     fn agent(trial: &TrialSettings<Self>, policy: &Policy) -> Result<Agent, TrialError> {
         Ok(trial.experiment.robot.settings(trial.world)?.agent(policy, trial.seed)?)
-    }
-
-    fn oracle(&self) -> Oracle {
-        Oracle::in_physics(self)
     }
 
     fn robot<G: GoalSelector>(

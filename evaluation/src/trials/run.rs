@@ -2,7 +2,6 @@ use super::sampler::Sampler;
 use super::{Sample, Trial, TrialError, TrialSettings, TrialStrategy, TrialWorld};
 use crate::map_hash::map_hash;
 use crate::metrics::rate_scores;
-use crate::oracle::Oracle;
 use agent::Features;
 use interfaces::{CellReading, GroundTruth, Reading, TrueState, World};
 use mapper::Mapper;
@@ -39,17 +38,15 @@ pub fn run_trial<W: TrialWorld>(
     let world = own.as_ref().unwrap_or(trial.world);
     let trial = &TrialSettings { world, ..*trial };
     match trial.strategy {
-        TrialStrategy::Agent(policy) => run(trial, W::agent(trial, policy)?, |_, _| (), observe),
-        TrialStrategy::Oracle => run(trial, world.oracle(), Oracle::learn, observe),
-        TrialStrategy::FullObservation => run(trial, Tour::new(Vec::new(), false), |_, _| (), observe),
+        TrialStrategy::Agent(policy) => run(trial, W::agent(trial, policy)?, observe),
+        TrialStrategy::FullObservation => run(trial, Tour::new(Vec::new(), false), observe),
     }
 }
 
-/// Runs a trial whose robot drives to the goals of `selector`, to which `reveal` may show the ground truth.
+/// Runs a trial whose robot drives to the goals of `selector`.
 fn run<W: TrialWorld, G: GoalSelector>(
     trial: &TrialSettings<W>,
     selector: G,
-    reveal: impl Fn(&mut G, &W::Truth),
     mut observe: impl FnMut(TrialStep<W>) -> bool,
 ) -> Result<Option<Trial>, TrialError> {
     let mut world = trial.world.start(trial.seed);
@@ -65,7 +62,6 @@ fn run<W: TrialWorld, G: GoalSelector>(
         }
         let Robot { mapper, pilot, .. } = robot;
         let mapper = full_map.as_ref().unwrap_or(mapper);
-        reveal(pilot.selector_mut(), truth);
         if let Some(count) = W::collisions(world) {
             *collisions.get_or_insert(0) += count;
         }

@@ -5,8 +5,6 @@ use agent::Policy;
 pub enum TrialStrategy {
     /// By an agent with this policy.
     Agent(Policy),
-    /// By the oracle, which knows the true rates: a reference, not possible for a robot.
-    Oracle,
     /// Not at all: the robot stays where it starts, but observes the true state of every cell at every reading. A
     /// reference: it has the errors of the estimator alone.
     FullObservation,
@@ -15,14 +13,13 @@ pub enum TrialStrategy {
 impl TrialStrategy {
     /// All strategies.
     pub fn all() -> impl Iterator<Item = Self> {
-        Policy::built_in().iter().cloned().map(Self::Agent).chain([Self::Oracle, Self::FullObservation])
+        Policy::built_in().iter().cloned().map(Self::Agent).chain([Self::FullObservation])
     }
 
     /// The name on the command line and in files.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Agent(policy) => policy.name(),
-            Self::Oracle => "oracle",
             Self::FullObservation => "full-observation",
         }
     }
@@ -31,7 +28,6 @@ impl TrialStrategy {
     pub fn description(&self) -> &'static str {
         match self {
             Self::Agent(policy) => policy.description(),
-            Self::Oracle => "where the true rates promise most: a reference, no robot knows them",
             Self::FullObservation => "nowhere: it sees every cell all the time, the bound of the estimator",
         }
     }

@@ -41,7 +41,7 @@ fn a_robot_that_observes_every_cell_has_the_true_map() {
 fn samples_of_a_physics_world_are_at_whole_seconds() {
     for length in [7, 90] {
         let trial =
-            trials(WorldSpec::generate_house(5), length, &["oracle"], PhysicsRobot::default()).remove(0);
+            trials(WorldSpec::generate_house(5), length, &["recency"], PhysicsRobot::default()).remove(0);
         let times: Vec<u64> = trial.samples.iter().map(|sample| sample.time).collect();
         assert!(times.is_sorted_by(|a, b| a < b) && times.last() == Some(&length), "{times:?}");
         assert!(times.len() == 80.min(length as usize), "{times:?}");

@@ -1,5 +1,4 @@
 use super::{Experiment, Length, TrialError, TrialStrategy};
-use crate::oracle::Oracle;
 use agent::{Agent, Policy};
 use controller::{Controller, Drive};
 use interfaces::{GroundTruth, Reading, World};
@@ -68,8 +67,6 @@ pub trait TrialWorld: Sized + Sync {
     ///
     /// When a setting is out of range.
     fn agent(trial: &TrialSettings<Self>, policy: &Policy) -> Result<Agent, TrialError>;
-    /// The oracle of the world.
-    fn oracle(&self) -> Oracle;
     /// The robot at its start in a world, whose pilot drives to the goals of `selector`.
     ///
     /// # Errors

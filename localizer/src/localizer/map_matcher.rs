@@ -6,8 +6,9 @@ mod relocalizing;
 use super::PosePrior;
 use super::state::{Event, State};
 use crate::changing_map::ChangingMap;
-use crate::constants::{LOST_STD, MIN_SUPPORT, RATES_EVERY, SETTLE_S};
+use crate::constants::{LOST_STD, MIN_SUPPORT};
 use crate::estimate::{PoseState, Start};
+use crate::hypotheses::Hypotheses;
 use crate::local_trajectory_builder::{IncomingScan, Matched, ScanMatcher, Track};
 use crate::match_scene::{MatchScene, exact_m};
 use crate::settings::LocalizerSettings;
@@ -17,19 +18,13 @@ use crate::verification::Verification;
 use nalgebra::{Isometry2, Matrix3, Vector3};
 use relocalizing::Relocalization;
 
-/// What the map of changes and another source know.
-pub(super) struct Around<'a, M> {
-    pub(super) map: &'a M,
-    pub(super) prior: Option<PosePrior>,
-}
+/// Scans between two updates of the weights by rates.
+const RATES_EVERY: u32 = 100;
+/// Rest at the start from nothing, s: the first scans decide the heading of all that follows (0.076° → 0.024°).
+const SETTLE_S: f64 = 2.0;
 
-impl<M> Clone for Around<'_, M> {
-    fn clone(&self) -> Self {
-        *self
-    }
-}
-
-impl<M> Copy for Around<'_, M> {}
+/// The map of changes, and what another source knows.
+type Around<'a, M> = (&'a M, Option<PosePrior>);
 
 /// The values of one scan.
 pub(super) struct Step<'a, M> {
@@ -43,7 +38,7 @@ pub(super) struct Step<'a, M> {
 
 /// What a match with the line map says beside the pose.
 #[derive(Default)]
-pub(super) struct MapFound {
+pub(crate) struct MapFound {
     /// See [`PoseEstimate::support`].
     pub(super) support: f64,
     /// If much of the view has moved at once: the pose of a robot that follows it.
@@ -204,31 +199,31 @@ impl<'a, M: ChangingMap> ScanMatcher<Around<'a, M>> for MapMatcher {
         &mut self,
         scan: &IncomingScan,
         track: &mut Track,
-        around: Around<'a, M>,
+        (map, prior): Around<'a, M>,
     ) -> Matched<Self::Found> {
         self.times.now_s = scan.now_s;
         self.times.start_s.get_or_insert(scan.now_s);
-        self.weigh_by_rates(around.map);
+        self.weigh_by_rates(map);
         self.by_odometry = scan.motion.apply(&self.by_odometry);
         if let Some(wide) = &mut self.relocalization.wide {
             wide.follow_odometry(&scan.motion);
         }
         let was_tracking = self.state == State::Tracking;
-        let prior = around.prior.filter(|_| !self.ignores_prior);
+        let prior = prior.filter(|_| !self.ignores_prior);
         if prior.is_some() {
-            self.relocalization.forget();
+            self.relocalization.hypotheses = Hypotheses::default();
             self.on(Event::Located);
         }
         let clear = ClearBeams::of(&scan.reading.scan);
         let found = MapFound::default();
-        let mut step = Step { scan, map: around.map, prior, clear: &clear, track, found };
+        let mut step = Step { scan, map, prior, clear: &clear, track, found };
         let support = self.estimate(&mut step);
         let Step { track, mut found, .. } = step;
         found.support = support.share();
         if self.state == State::Tracking {
             (self.by_odometry, self.times.certain_s) = (track.pose, self.times.now_s);
             self.ignores_prior = false;
-            self.relocalization.end_wide();
+            self.relocalization.wide = None;
         }
         let is_reliable = was_tracking && self.state == State::Tracking;
         if scan.fault.is_some() && self.state == State::Tracking {
@@ -246,10 +241,7 @@ impl<'a, M: ChangingMap> ScanMatcher<Around<'a, M>> for MapMatcher {
         if let Some(follower) = &found.follower {
             self.surfels.displace_all(points, &track.pose, follower, exact_m(noise_m));
         }
-        match self.state {
-            State::Tracking => self.surfels.learn(points, &track.pose, noise_m),
-            _ => self.surfels.learn_uncertain(points, &track.pose, noise_m),
-        }
+        self.surfels.learn(points, &track.pose, noise_m, self.state == State::Tracking);
         self.checker.check(&mut self.surfels, &scan.reading, &track.pose);
     }
 }

@@ -1,7 +1,11 @@
-use crate::constants::{ELSEWHERE, ELSEWHERE_STDS};
 use crate::matcher::difference;
 use crate::motion::Predicted;
+use crate::spread::Spread;
 use nalgebra::{Isometry2, Matrix3};
+
+/// A pose is elsewhere if it is farther from the pose prior than this, beyond its errors.
+const ELSEWHERE: Spread = Spread::of_motion(0.3);
+const ELSEWHERE_STDS: f64 = 4.0;
 
 /// Where the robot is by another source, in the frame of the map: a pose with its covariance.
 #[derive(Clone, Copy, Debug)]

@@ -3,7 +3,7 @@
 use super::state::State;
 use super::*;
 use crate::constants::MAX_WORK;
-use crate::trajectory::{TrajectoryFinder, TrajectorySettings};
+use crate::trajectory::TrajectoryFinder;
 use crate::work;
 use interfaces::{Purpose, RandomStream, Scan, Twist, VelocitySample, heading_rad, pose};
 use nalgebra::{Point2, Vector2};
@@ -183,7 +183,7 @@ fn no_number_of_a_reading_makes_it_take_longer_or_panic() {
 fn a_trajectory_of_numbers_that_cannot_be_true_takes_no_longer() {
     let mut random = RandomStream::new(111, Purpose::Agent);
     for case in 0..200 {
-        let mut finder = TrajectoryFinder::new(&TrajectorySettings::default()).unwrap();
+        let mut finder = TrajectoryFinder::new(&LocalizerSettings::of_logs()).unwrap();
         for number in 0..12 {
             let mut reading = reading(number * 5, 0.1 * f64::from(case % 2));
             if number > 2 && below(&mut random, 2) == 0 {

@@ -1,7 +1,7 @@
 //! All readings so far are read again, at once or beside the robot.
 
 use super::{Correction, Switch};
-use crate::constants::{CHANGED_CERTAIN, NEAR_STD};
+use crate::constants::NEAR_STD;
 use crate::estimate::{Localized, PoseEstimate, PoseState};
 use crate::first_map::{FirstMap, Kept};
 use crate::localizer::{Localizer, PosePrior};
@@ -11,6 +11,9 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, Sender};
 use std::thread::JoinHandle;
+
+/// A replay is rejected if this share fewer poses would be certain; it is accepted if this share more are, or if some move.
+const CHANGED_CERTAIN: f64 = 0.02;
 
 /// A reading that came while others were read again, with the time of the map before it.
 pub(super) type Meanwhile = (LaserReading, f64, Localized);
@@ -75,7 +78,7 @@ impl Replay {
     /// Reads all readings, near their corrected poses, and those that come meanwhile.
     pub(super) fn all(self, first: FirstMap, coming: Receiver<Meanwhile>, read: &AtomicUsize) -> Replayed {
         let (mut first, mut again) = self.log(first);
-        read.store(first.kept().len(), Ordering::Relaxed);
+        read.store(first.log.kept.len(), Ordering::Relaxed);
         for (reading, map_s, localized) in coming {
             let (near, is_after_pause) = (first.pose_prior(&reading), first.is_after_pause(map_s));
             if let Some((again, correction)) = &mut again {
@@ -89,7 +92,7 @@ impl Replay {
             if first.add(&reading, (map_s, states), localized) {
                 first.postpone();
             }
-            read.store(first.kept().len(), Ordering::Relaxed);
+            read.store(first.log.kept.len(), Ordering::Relaxed);
         }
         (first, again)
     }
@@ -99,10 +102,10 @@ impl Replay {
         let near = first.corrected();
         let read =
             |(kept, near): (&Kept, PosePrior)| self.read(&kept.reading, kept.is_after_pause, Some(near));
-        let estimates: Vec<PoseEstimate> = first.kept().iter().zip(near).map(read).collect();
+        let estimates: Vec<PoseEstimate> = first.log.kept.iter().zip(near).map(read).collect();
         let is_certain = |state: PoseState| usize::from(state == PoseState::Tracking);
         let (mut before, mut after, mut largest_m) = (0, 0, 0.0_f64);
-        for (kept, estimate) in first.kept().iter().zip(&estimates) {
+        for (kept, estimate) in first.log.kept.iter().zip(&estimates) {
             (before, after) = (before + is_certain(kept.state), after + is_certain(estimate.state));
             if kept.state == PoseState::Tracking {
                 let moved = estimate.pose.translation.vector - kept.pose.translation.vector;
@@ -116,7 +119,7 @@ impl Replay {
             first.refuse();
             return (first, None);
         }
-        let correction = Correction { places: first.loops(), readings: estimates.len(), largest_m };
+        let correction = Correction { places: first.log.loops, readings: estimates.len(), largest_m };
         first.accept(&estimates);
         (first, Some((self, correction)))
     }

@@ -1,5 +1,5 @@
 use super::*;
-use interfaces::{Purpose, RandomStream, Twist};
+use interfaces::{Purpose, RandomStream};
 use std::f64::consts::TAU;
 
 const NOISE_M: f64 = 0.01;
@@ -8,11 +8,6 @@ const NOISE_M: f64 = 0.01;
 fn reading(range_m: impl FnMut(f64) -> f64) -> LaserReading {
     let angles = (0..360).map(|beam| -TAU / 2.0 + TAU / 360.0 * f64::from(beam));
     LaserReading {
-        time_s: 0.0,
-        pose: Isometry2::identity(),
-        twist: Twist::STOP,
-        velocities: Vec::new(),
-        mount: Isometry2::identity(),
         scan: Scan {
             angle_min_rad: -TAU / 2.0,
             angle_increment_rad: TAU / 360.0,
@@ -21,6 +16,7 @@ fn reading(range_m: impl FnMut(f64) -> f64) -> LaserReading {
             sweep_s: 0.0,
             ranges_m: angles.map(range_m).map(|range_m| range_m as f32).collect(),
         },
+        ..LaserReading::default()
     }
 }
 

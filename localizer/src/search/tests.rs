@@ -1,7 +1,7 @@
-use super::squares::{cells, turned};
+use super::squares::cells;
 use super::*;
-use crate::constants::TOP;
-use crate::surfel_map::SurfelMap;
+use crate::constants::{MAX_WORK, TOP};
+use crate::surfel_map::{Surfel, SurfelMap};
 use interfaces::{CellState, Grid, Purpose, RandomStream};
 use interfaces::{GridFrame, heading_rad};
 use nalgebra::Vector2;
@@ -27,15 +27,8 @@ fn room(seed: u64) -> (SurfelMap, Grid<CellState>, Isometry2<f64>, Vec<ScanPoint
     }
     let surfels = SurfelMap::from_grid(&grid);
     let pose = interfaces::pose(2.0, 1.5, random.uniform(-3.0..3.0));
-    let point = |at: &Point2<f64>| ScanPoint {
-        at: pose.inverse_transform_point(at),
-        normal: Vector2::x(),
-        weight: 1.0,
-        noise_share: 1.0,
-        beam: 0,
-        passed: 1.0,
-    };
-    let points = surfels.usable().map(|surfel| point(&surfel.at)).collect();
+    let point = |surfel: &Surfel| ScanPoint::new(pose.inverse_transform_point(&surfel.at), Vector2::x());
+    let points = surfels.usable().map(point).collect();
     (surfels, grid, pose, points)
 }
 
@@ -43,8 +36,9 @@ fn room(seed: u64) -> (SurfelMap, Grid<CellState>, Isometry2<f64>, Vec<ScanPoint
 fn a_search_finds_the_pose_in_cells_of_any_size() {
     for (seed, cell_m) in (200..206).flat_map(|seed| [0.05, 0.07, 0.1].map(move |cell_m| (seed, cell_m))) {
         let (surfels, _, pose, points) = room(seed);
-        let frame = GridFrame::covering(surfels.frame().origin(), 4.2, 3.2, cell_m).unwrap();
-        let found = search(&ScoreGrid::of_frame(&surfels, frame), &points, None, 0.5, 1.0)[0];
+        let frame = GridFrame::covering(surfels.frame.origin(), 4.2, 3.2, cell_m).unwrap();
+        let grid = ScoreGrid::of_frame(&surfels, frame);
+        let found = search(&mut { MAX_WORK }, &grid, &points, &Window::of(&frame), (0.5, 1.0))[0];
         let off = pose.inv_mul(&found);
         let is_right = off.translation.vector.norm() < 2.0 * cell_m && heading_rad(&off).abs() < cell_m;
         assert!(is_right, "seed {seed}, {cell_m} m: {off}");
@@ -56,35 +50,26 @@ fn branch_and_bound_finds_what_exhaustive_search_finds() {
     for seed in 200..206 {
         let (grid, points) = random_room(seed);
         let window = Window { pose: interfaces::pose(1.8, 1.4, 0.3), reach_m: 0.8, reach_rad: 0.4 };
-        for window in [None, Some(&window)] {
-            let mut search = Search::new(&points, window.copied(), 0.0, 1.0);
-            assert!(search.pass(&grid, &mut { usize::MAX }));
-            let (found, exhaustive) = (search.best_score(), exhaustive(&grid, &points, window));
-            assert!((found - exhaustive).abs() < 1e-9, "{seed}: {found} {exhaustive}");
+        for window in [Window::of(&grid.frame), window] {
+            let search = || Search::new(&points, window, 0.0, 1.0);
+            let mut found = search();
+            assert!(found.pass(&grid, &mut { usize::MAX }));
+            assert_eq!(found.found[0].bound, exhaustive(&grid, &search()), "{seed}: {window:?}");
         }
     }
 }
 
 /// The best score of all poses.
-fn exhaustive(grid: &ScoreGrid, points: &[ScanPoint], window: Option<&Window>) -> f64 {
-    let chosen = spread(points);
-    let perfect: u32 = chosen.iter().map(|(_, weight)| 255 * weight).sum();
-    let frame = grid.frame();
-    let (low, high) = cells(frame, window);
-    let is_inside = |cell: Cell| (low.x..=high.x).contains(&cell.x) && (low.y..=high.y).contains(&cell.y);
-    let mut best = 0;
-    for heading in headings(window, grid) {
-        let turned = turned(&chosen, heading, frame.resolution_m());
-        for cell in (0..frame.len()).map(|index| frame.cell(index)).filter(|cell| is_inside(*cell)) {
-            if grid.has_free(0, cell.x, cell.y) {
-                let score = |&(dx, dy, weight): &(i32, i32, u32)| {
-                    weight * u32::from(grid.level(0).bound(cell.x + dx, cell.y + dy))
-                };
-                best = best.max(turned.iter().map(score).sum());
-            }
-        }
-    }
-    f64::from(best) / f64::from(perfect)
+fn exhaustive(grid: &ScoreGrid, search: &Search) -> u32 {
+    let (squares, (low, high)) = (Squares::new(search, grid), cells(&grid.frame, &search.window));
+    let positions = (low.y..=high.y).flat_map(|y| (low.x..=high.x).map(move |x| (x, y)));
+    let at = |(x, y)| {
+        let headings = 0..headings(&search.window, grid).len();
+        headings
+            .filter_map(|heading| squares.node(0, heading, (x, y), 0, &mut { usize::MAX }))
+            .collect::<Vec<_>>()
+    };
+    positions.flat_map(at).map(|node| node.bound).max().unwrap_or(0)
 }
 
 #[test]
@@ -94,10 +79,10 @@ fn every_bound_is_above_all_scores_in_its_square() {
         for (x, y) in [(-40, -30), (0, 0), (3, 17), (41, 29)] {
             let most = |from: i32, to: i32| {
                 let cells = (from..to).flat_map(|down| (from..to).map(move |right| (x + right, y + down)));
-                cells.map(|(x, y)| grid.level(0).bound(x, y)).max().unwrap()
+                cells.map(|(x, y)| grid.scores[0].bound(x, y)).max().unwrap()
             };
             let (side, beyond) = (1 << level, (1 << level) / 4 - 1);
-            let bound = grid.level(level).bound(x, y);
+            let bound = grid.scores[level].bound(x, y);
             assert!(bound >= most(0, side), "level {level} at {x}, {y}");
             assert!(bound <= most(-beyond.max(0), side + beyond.max(0)), "level {level} at {x}, {y}");
         }
@@ -107,7 +92,7 @@ fn every_bound_is_above_all_scores_in_its_square() {
 #[test]
 fn a_search_that_is_interrupted_finds_the_same() {
     let (grid, points) = random_room(203);
-    let begin = || Search::new(&points, None, 0.5, 0.5);
+    let begin = || Search::new(&points, Window::of(&grid.frame), 0.5, 0.5);
     let (mut once, mut search) = (begin(), begin());
     assert!(once.pass(&grid, &mut { usize::MAX }));
     let (mut left, mut scans) = (20_000, 1);

@@ -2,11 +2,14 @@
 
 use super::SurfelMap;
 use crate::beams::ranges_around;
-use crate::constants::{
-    CHECK_TURNS, CLEARANCE_M, FAR_M, MIN_INCIDENCE, PASSED_COUNTS, SCANS_PER_MISS, SURFEL_M, THICK_M,
-};
+use crate::constants::{CHECK_TURNS, CLEARANCE_M, FAR_M, MIN_INCIDENCE, SURFEL_M, THICK_M};
 use interfaces::LaserReading;
 use nalgebra::{Isometry2, Point2};
+
+/// A beam that passes a surfel counts as this many of what may stand in front.
+const PASSED_COUNTS: u32 = 4;
+/// Scans that made a surfel for each scan that is needed to remove it.
+const SCANS_PER_MISS: u32 = 20;
 
 /// Checks the surfels against scans, a few per scan.
 #[derive(Clone, Debug, Default, serde::Deserialize, serde::Serialize)]

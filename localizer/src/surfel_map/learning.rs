@@ -9,24 +9,18 @@ use crate::scan_points::ScanPoint;
 use nalgebra::Isometry2;
 
 impl SurfelMap {
-    /// Updates the map with a scan at a certain pose: surfels follow surfaces that have moved.
-    pub(crate) fn learn(&mut self, points: &[ScanPoint], pose: &Isometry2<f64>, range_noise_std_m: f64) {
-        self.learn_as(points, pose, range_noise_std_m, self.first_scans(), true);
-    }
-
-    /// Updates the map with a scan whose pose is less certain: what seems to have moved stays where it is.
-    pub(crate) fn learn_uncertain(
+    /// Updates the map with a scan. If its pose is certain, surfels follow surfaces that have moved; else, what seems to have
+    /// moved stays where it is.
+    pub(crate) fn learn(
         &mut self,
         points: &[ScanPoint],
         pose: &Isometry2<f64>,
         range_noise_std_m: f64,
+        is_certain: bool,
     ) {
-        self.learn_as(points, pose, range_noise_std_m, self.first_scans(), false);
-    }
-
-    /// As how many scans one scan counts for a new surfel: all that follows is matched with the first scan.
-    fn first_scans(&self) -> u32 {
-        if self.surfels.is_empty() { USABLE_SCANS } else { 1 }
+        // All that follows is matched with the first scan.
+        let scans = if self.surfels.is_empty() { USABLE_SCANS } else { 1 };
+        self.learn_as(points, pose, range_noise_std_m, scans, is_certain);
     }
 
     /// Updates the map with a keyframe: one scan represents all around it, and takes part in matching at once.

@@ -1,22 +1,21 @@
 //! A line map as a list of points on surfaces, and back: what is kept of a map that is rarely needed.
 
 use super::SurfelMap;
-use crate::constants::{MAX_PLACE_M, SURFEL_M, TRUSTED_SCANS};
+use crate::constants::{SURFEL_M, TRUSTED_SCANS};
 use crate::scan_points::ScanPoint;
 use interfaces::GridFrame;
 use nalgebra::{Isometry2, Point2, Vector2};
+
+/// No map of points is larger, m.
+const MAX_PLACE_M: f64 = 200.0;
 
 impl SurfelMap {
     /// All surfels that take part in matching, in a frame whose pose in the frame of the map is `pose`.
     pub(crate) fn points(&self, pose: &Isometry2<f64>) -> Vec<ScanPoint> {
         let back = pose.inverse();
         let point = |(beam, surfel): (usize, &super::Surfel)| ScanPoint {
-            at: back * surfel.at,
-            normal: back.rotation * surfel.normal,
-            weight: 1.0,
-            noise_share: 1.0,
             beam,
-            passed: 1.0,
+            ..ScanPoint::new(back * surfel.at, back.rotation * surfel.normal)
         };
         self.usable().enumerate().map(point).collect()
     }

@@ -1,10 +1,13 @@
 //! Surfels from a known occupancy grid.
 
 use super::SurfelMap;
-use crate::constants::{PRIOR_SCANS, SURFEL_M, THICK_M};
+use crate::constants::{SURFEL_M, THICK_M};
 use crate::work;
 use interfaces::{Cell, CellState, Grid};
 use nalgebra::{Point2, Vector2};
+
+/// Scans as which a surfel of a known map counts: the next ones correct it.
+const PRIOR_SCANS: u32 = 20;
 
 /// The middle of a side between a blocked and a free cell: the blocked cell, the position and the direction to the free side.
 type Border = (Cell, Point2<f64>, Vector2<f64>);

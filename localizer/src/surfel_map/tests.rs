@@ -3,7 +3,7 @@ use super::*;
 use crate::constants::FROZEN_SCANS;
 use crate::scan_points::{PointRules, ScanPoint, ScanPoints};
 use crate::work;
-use interfaces::{Cell, CellState, Grid, LaserReading, Purpose, RandomStream, Scan, Twist};
+use interfaces::{Cell, CellState, Grid, LaserReading, Purpose, RandomStream, Scan};
 use nalgebra::Isometry2;
 
 const RULES: PointRules = PointRules { noise_m: 0.01, grazing: true };
@@ -17,11 +17,6 @@ fn wall(angle_rad: f64, distance_m: f64, noise: &mut RandomStream) -> LaserReadi
     let angle = |beam: usize| -1.0 + 0.01 * beam as f64;
     let range = |beam: usize| (distance_m / (angle(beam) - angle_rad).cos() + 0.01 * noise.normal()) as f32;
     LaserReading {
-        time_s: 0.0,
-        pose: Isometry2::identity(),
-        twist: Twist::STOP,
-        velocities: Vec::new(),
-        mount: Isometry2::identity(),
         scan: Scan {
             angle_min_rad: -1.0,
             angle_increment_rad: 0.01,
@@ -30,6 +25,7 @@ fn wall(angle_rad: f64, distance_m: f64, noise: &mut RandomStream) -> LaserReadi
             sweep_s: 0.0,
             ranges_m: (0..200).map(range).collect(),
         },
+        ..LaserReading::default()
     }
 }
 
@@ -41,7 +37,7 @@ fn surfels_lie_on_the_line_of_the_wall() {
         let mut points = ScanPoints::default();
         for _ in 0..100 {
             let points = points.of(&wall(angle_rad, distance_m, &mut noise), |_| 1.0, &RULES);
-            map.learn(&points, &Isometry2::identity(), 0.01);
+            map.learn(&points, &Isometry2::identity(), 0.01, true);
         }
         let normal = interfaces::rotation(angle_rad) * Vector2::x();
         let seen: Vec<&Surfel> = map.usable().filter(|surfel| surfel.scans >= 50).collect();
@@ -57,20 +53,12 @@ fn surfels_lie_on_the_line_of_the_wall() {
 #[test]
 fn a_surfel_freezes() {
     let mut map = SurfelMap::new(&frame());
-    let point = |off_m: f64| ScanPoint {
-        at: Point2::new(1.0 + off_m, 0.55),
-        normal: -Vector2::x(),
-        weight: 1.0,
-        noise_share: 1.0,
-        beam: 0,
-        passed: 1.0,
-    };
     for _ in 0..FROZEN_SCANS {
-        map.learn(&[point(0.0)], &Isometry2::identity(), 0.01);
+        map.learn(&[on_wall(1.0, 0.55)], &Isometry2::identity(), 0.01, true);
     }
     let before = *map.surfel(0);
     for _ in 0..1000 {
-        map.learn(&[point(0.02)], &Isometry2::identity(), 0.01);
+        map.learn(&[on_wall(1.02, 0.55)], &Isometry2::identity(), 0.01, true);
     }
     assert_eq!(map.surfel(0).at, before.at);
     assert_eq!(map.usable().count(), 1, "a second wall beside the first is an error of the pose");
@@ -78,14 +66,7 @@ fn a_surfel_freezes() {
 
 /// A point of a wall across the x axis, from the free side.
 fn on_wall(x_m: f64, y_m: f64) -> ScanPoint {
-    ScanPoint {
-        at: Point2::new(x_m, y_m),
-        normal: -Vector2::x(),
-        weight: 1.0,
-        noise_share: 1.0,
-        beam: 0,
-        passed: 1.0,
-    }
+    ScanPoint::new(Point2::new(x_m, y_m), -Vector2::x())
 }
 
 /// A wall, 1 m long.
@@ -96,7 +77,7 @@ fn wall_at(x_m: f64) -> Vec<ScanPoint> {
 fn learned(x_m: f64, scans: u32) -> SurfelMap {
     let mut map = SurfelMap::new(&frame());
     for _ in 0..scans {
-        map.learn(&wall_at(x_m), &Isometry2::identity(), 0.01);
+        map.learn(&wall_at(x_m), &Isometry2::identity(), 0.01, true);
     }
     map
 }
@@ -106,11 +87,11 @@ fn a_surfel_follows_its_surface() {
     let mut map = learned(1.0, 100);
     assert!(map.usable().all(|surfel| surfel.is_permanent() && surfel.weight() == 1.0));
     for _ in 0..2 {
-        map.learn(&wall_at(1.06), &Isometry2::identity(), 0.01);
+        map.learn(&wall_at(1.06), &Isometry2::identity(), 0.01, true);
     }
     assert!(map.usable().all(Surfel::is_permanent), "two scans are no proof");
     for _ in 0..20 {
-        map.learn(&wall_at(1.06), &Isometry2::identity(), 0.01);
+        map.learn(&wall_at(1.06), &Isometry2::identity(), 0.01, true);
     }
     assert!(map.usable().count() > 5);
     for surfel in map.usable() {
@@ -119,7 +100,7 @@ fn a_surfel_follows_its_surface() {
     }
     // It follows at once from now on, and counts fully again after ten minutes in one place.
     for _ in 0..6100 {
-        map.learn(&wall_at(1.0), &Isometry2::identity(), 0.01);
+        map.learn(&wall_at(1.0), &Isometry2::identity(), 0.01, true);
     }
     assert!(map.usable().all(|surfel| (surfel.at.x - 1.0).abs() < 1e-6 && surfel.is_permanent()));
 }
@@ -128,8 +109,8 @@ fn a_surfel_follows_its_surface() {
 fn a_surfel_does_not_follow_a_surface_seen_from_an_uncertain_pose_or_far_away() {
     let (mut uncertain, mut far) = (learned(1.0, 100), learned(1.0, 100));
     for _ in 0..50 {
-        uncertain.learn_uncertain(&wall_at(1.06), &Isometry2::identity(), 0.01);
-        far.learn(&wall_at(1.2), &Isometry2::identity(), 0.01);
+        uncertain.learn(&wall_at(1.06), &Isometry2::identity(), 0.01, false);
+        far.learn(&wall_at(1.2), &Isometry2::identity(), 0.01, true);
     }
     for map in [uncertain, far] {
         assert!(map.usable().all(|surfel| (surfel.at.x - 1.0).abs() < 1e-9 && surfel.is_permanent()));
@@ -142,14 +123,14 @@ fn what_is_out_of_view_of_a_coherent_motion_is_doubted_until_it_is_seen() {
     let other: Vec<ScanPoint> = (0..20).map(|at| on_wall(3.0, 2.0 + 0.05 * f64::from(at))).collect();
     let mut map = SurfelMap::new(&frame());
     for _ in 0..100 {
-        map.learn(&[wall_at(1.0), other.clone()].concat(), &Isometry2::identity(), 0.01);
+        map.learn(&[wall_at(1.0), other.clone()].concat(), &Isometry2::identity(), 0.01, true);
     }
     let follower = Isometry2::translation(-0.06, 0.0);
     map.displace_all(&wall_at(1.06), &Isometry2::identity(), &follower, 0.01);
     assert!(map.usable().all(Surfel::is_suspect));
     let moved = |surfel: &&Surfel| surfel.at.x < 2.0;
     assert!(map.usable().filter(moved).all(|surfel| (surfel.at.x - 1.06).abs() < 1e-9));
-    map.learn(&other, &Isometry2::identity(), 0.01);
+    map.learn(&other, &Isometry2::identity(), 0.01, true);
     assert!(map.usable().filter(|surfel| !moved(surfel)).all(Surfel::is_permanent));
     assert!(map.usable().filter(moved).all(Surfel::is_suspect));
 }
@@ -161,7 +142,7 @@ fn what_beams_pass_is_removed() {
         (SurfelMap::new(&frame()), ScanPoints::default(), Checker::default());
     let mut see = |map: &mut SurfelMap, distance_m: f64| {
         let reading = wall(0.0, distance_m, &mut noise);
-        map.learn(&points.of(&reading, |_| 1.0, &RULES), &Isometry2::identity(), 0.01);
+        map.learn(&points.of(&reading, |_| 1.0, &RULES), &Isometry2::identity(), 0.01, true);
         checker.check(map, &reading, &Isometry2::identity());
     };
     for _ in 0..50 {

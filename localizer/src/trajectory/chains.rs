@@ -6,12 +6,22 @@ use super::far_scan::matched_at;
 use super::graph::{Edge, EdgeKind, PoseGraph};
 use super::keyframe::Keyframe;
 use super::matching::in_frame;
-use crate::constants::{
-    CHAIN_KEYFRAMES, CHAIN_M, CHAIN_RESPONSE, CHAIN_ROUNDS, CORRELATED, CORRELATED_KEYFRAMES, MAX_CHAINS,
-    MIN_CHAIN, SPARSE,
-};
+use crate::constants::{CORRELATED, CORRELATED_KEYFRAMES};
+use crate::spread::Spread;
 use rayon::prelude::*;
 use std::ops::Range;
+
+/// A keyframe is far from the one before after this motion.
+const SPARSE: Spread = Spread { m: 0.5, rad: 0.4 };
+/// A chain: keyframes in a row within this distance, m; minimum length; number of chains that are tried, the nearest first; keyframes
+/// before and after them that are compared as well.
+const CHAIN_M: f64 = 4.0;
+const MIN_CHAIN: usize = 4;
+const MAX_CHAINS: usize = 2;
+const CHAIN_KEYFRAMES: usize = 8;
+/// Minimum response of a keyframe in a chain, and number of rounds.
+const CHAIN_RESPONSE: f64 = 0.45;
+const CHAIN_ROUNDS: usize = 2;
 
 /// Whether most keyframes are far from the one before.
 pub(super) fn are_sparse(keyframes: &[Keyframe]) -> bool {

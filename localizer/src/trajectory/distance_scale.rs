@@ -5,10 +5,19 @@
 //! corridor is too long by the same share.
 
 use super::graph::PoseGraph;
-use crate::constants::{
-    MAX_SCALE, MIN_SCALE, MIN_SCALE_STDS, SCALE_NOISE_M, SCALED_M, SCALED_MOTIONS, SCALED_STD_M,
-};
 use nalgebra::{Isometry2, Matrix3, Vector2};
+
+/// Motions of at least this length, m, whose distance the scan fixes with at most this standard deviation, m, at least this many;
+/// the noise of the odometry after 1 m, m.
+const SCALED_M: f64 = 0.2;
+const SCALED_STD_M: f64 = 0.03;
+const SCALED_MOTIONS: usize = 30;
+const SCALE_NOISE_M: f64 = 0.04;
+/// A scale that is off by a smaller share than this, or by fewer standard deviations, needs no second pass.
+const MIN_SCALE: f64 = 0.005;
+const MIN_SCALE_STDS: f64 = 4.0;
+/// A scale beyond this factor, in either direction, is no error of wheels.
+const MAX_SCALE: f64 = 2.0;
 
 /// A motion between two keyframes in a row, as the odometry measured it.
 #[derive(Clone, Copy, Debug)]

@@ -4,52 +4,36 @@ use super::correlation::{Correlated, Correlation};
 use super::keyframe::Keyframe;
 use super::matching::information_of;
 use crate::constants::{
-    ALL_HEADINGS, CORRELATED, CORRELATED_KEYFRAMES, CORRELATED_M, CORRELATION_STD_M, FAR_SCAN, MIN_RESPONSE,
+    ALL_HEADINGS, CORRELATED, CORRELATED_KEYFRAMES, CORRELATED_M, CORRELATION_STD_M, MIN_RESPONSE,
     RECENT_KEYFRAMES, SUBMAP_STD, SURE_FACTOR, SURE_RESPONSE,
 };
 use crate::local_trajectory_builder::IncomingScan;
 use crate::matcher::{Match, derivative};
 use crate::placement::Placement;
 use crate::scan_points::ScanPoint;
-use interfaces::{LaserReading, Scan};
+use interfaces::LaserReading;
 use nalgebra::{Isometry2, Matrix3};
 
-/// A scan from another viewpoint than the scan before.
-pub(super) struct FarScan<'a> {
-    scan: &'a Scan,
-    mount: &'a Isometry2<f64>,
-}
-
-impl<'a> FarScan<'a> {
-    /// The scan, if it is far from the one before.
-    pub(super) fn of(scan: &'a IncomingScan) -> Option<Self> {
-        let LaserReading { scan: beams, mount, .. } = &scan.reading;
-        (!FAR_SCAN.contains(&scan.motion.delta)).then_some(Self { scan: beams, mount })
+/// The pose of a scan that fits best around the predicted one; where none fits, of all headings. `None` before the first
+/// keyframe.
+pub(super) fn found_among(keyframes: &[Keyframe], scan: &IncomingScan) -> Option<Correlated> {
+    keyframes.first()?;
+    let (LaserReading { scan: beams, mount, .. }, predicted) = (&scan.reading, &scan.predicted.pose);
+    let is_near = |keyframe: &&Keyframe| {
+        (keyframe.local.translation.vector - predicted.translation.vector).norm() <= CORRELATED_M
+    };
+    let best = |count: usize, window| {
+        let last = keyframes.iter().rev().take(count).take_while(is_near);
+        Correlation::of(last.map(|keyframe| (&keyframe.local, keyframe)), predicted)
+            .best(beams, mount, window)
+    };
+    let near = best(CORRELATED_KEYFRAMES, CORRELATED);
+    if near.response >= MIN_RESPONSE {
+        return Some(near);
     }
-
-    /// The pose that fits best around the predicted one; where none fits, of all headings. `None` before the first keyframe.
-    pub(super) fn correlated(
-        &self,
-        keyframes: &[Keyframe],
-        predicted: &Isometry2<f64>,
-    ) -> Option<Correlated> {
-        keyframes.first()?;
-        let is_near = |keyframe: &&Keyframe| {
-            (keyframe.local.translation.vector - predicted.translation.vector).norm() <= CORRELATED_M
-        };
-        let best = |count: usize, window| {
-            let last = keyframes.iter().rev().take(count).take_while(is_near);
-            Correlation::of(last.map(|keyframe| (&keyframe.local, keyframe)), predicted)
-                .best(self.scan, self.mount, window)
-        };
-        let near = best(CORRELATED_KEYFRAMES, CORRELATED);
-        if near.response >= MIN_RESPONSE {
-            return Some(near);
-        }
-        let other = best(RECENT_KEYFRAMES, ALL_HEADINGS);
-        let is_sure = other.response >= SURE_RESPONSE && other.response > SURE_FACTOR * near.response;
-        Some(if is_sure { other } else { near })
-    }
+    let other = best(RECENT_KEYFRAMES, ALL_HEADINGS);
+    let is_sure = other.response >= SURE_RESPONSE && other.response > SURE_FACTOR * near.response;
+    Some(if is_sure { other } else { near })
 }
 
 /// The match at a correlated pose. Straight surfaces say how well it is known: a direction that none of them fixes stays free.

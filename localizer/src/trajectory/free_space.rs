@@ -3,9 +3,12 @@
 use super::keyframe::Keyframe;
 use super::submap::FinishedSubmap;
 use crate::beams::ranges_around;
-use crate::constants::{CLEARANCE_M, MIN_SURE_INCIDENCE, NEAR_RANGE_M, PASSED_SHARE, REFINE};
+use crate::constants::{CLEARANCE_M, MIN_SURE_INCIDENCE, NEAR_RANGE_M, REFINE};
 use crate::scan_points::ScanPoint;
 use nalgebra::{Isometry2, Point2};
+
+/// A beam passes a surface that it ends behind by this share of the range more.
+const PASSED_SHARE: f64 = 0.02;
 
 /// The numbers of beams that end at the surfaces, and that pass them.
 #[derive(Clone, Copy, Debug, Default)]
@@ -97,14 +100,7 @@ mod tests {
         };
         let passed = |beam: f64, distance_m: f64, facing: f64| {
             let along = interfaces::rotation((beam - 90.0).to_radians()) * Vector2::x();
-            let point = ScanPoint {
-                at: (along * distance_m).into(),
-                normal: -along * facing,
-                weight: 1.0,
-                noise_share: 1.0,
-                beam: 0,
-                passed: 1.0,
-            };
+            let point = ScanPoint::new((along * distance_m).into(), -along * facing);
             is_passed(&keyframe, &point, &Isometry2::identity())
         };
         assert_eq!(passed(90.0, 2.0, 1.0), Some(true));

@@ -6,14 +6,20 @@
 //! contradicts all that is known.
 
 use super::sparse::Equations;
-use crate::constants::{GRAPH_KERNEL, GRAPH_SHRINK, GRAPH_STEPS, STEP};
+use crate::constants::STEP;
 use crate::matcher::difference;
 use interfaces::wrap_rad;
 use nalgebra::{Isometry2, Matrix3, Vector3};
 
+/// Steps of the graph at most; the change that ends them; a loop off by this (over its covariance) counts a quarter; factor
+/// by which this limit shrinks.
+const GRAPH_STEPS: usize = 25;
+const GRAPH_KERNEL: f64 = 16.0;
+const GRAPH_SHRINK: f64 = 3.0;
+
 /// How a motion was measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum EdgeKind {
+pub(crate) enum EdgeKind {
     /// From one keyframe to the next, by matching with the submap of the last keyframes.
     Match,
     /// By recognizing a place. It can be wrong.
@@ -22,11 +28,11 @@ pub(super) enum EdgeKind {
 
 /// A measured motion from one keyframe to another.
 #[derive(Clone, Debug)]
-pub(super) struct Edge {
-    pub(super) from: usize,
-    pub(super) to: usize,
+pub(crate) struct Edge {
+    pub(crate) from: usize,
+    pub(crate) to: usize,
     /// The pose of `to` in the frame of `from`.
-    pub(super) motion: Isometry2<f64>,
+    pub(crate) motion: Isometry2<f64>,
     /// The inverse covariance of x, y and heading of the motion, in the frame of `from`.
     pub(super) information: Matrix3<f64>,
     pub(super) kind: EdgeKind,
@@ -176,13 +182,5 @@ mod tests {
         graph.remove_outliers();
         let worst_m = worst_m(&graph, &truth);
         assert!(worst_m < 0.25 && graph.loops().count() == 3, "{worst_m} m, {}", graph.loops().count());
-    }
-
-    #[test]
-    fn without_loops_nothing_moves() {
-        let (mut graph, _) = circle(0.01);
-        let before = graph.poses.clone();
-        graph.optimize();
-        assert!(worst_m(&graph, &before) < 1e-9);
     }
 }

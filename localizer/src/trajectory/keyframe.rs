@@ -1,7 +1,14 @@
-use crate::constants::{JUDGED_M, KEPT_POINTS, KEYFRAME_RANGE_M, OFF_LINE, SAME_SURFACE, SURFEL_M};
+use crate::constants::{JUDGED_M, SAME_SURFACE, SURFEL_M};
 use crate::scan_points::ScanPoint;
 use interfaces::Scan;
 use nalgebra::{Isometry2, Matrix3};
+
+/// Points farther away are left out of keyframes and of parts of a map, m: neighboring beams are on different surfaces.
+const KEYFRAME_RANGE_M: f64 = 25.0;
+/// Neighboring points are on one line up to this share of their distance.
+const OFF_LINE: f64 = 0.15;
+/// Points of a keyframe that are kept for the end: ten thousand keyframes of 1000 points are too many.
+const KEPT_POINTS: usize = 120;
 
 /// A scan that represents all scans around it.
 #[derive(Clone, Debug)]
@@ -66,12 +73,8 @@ mod tests {
     #[test]
     fn only_neighbors_on_one_surface_are_joined() {
         let point = |x: f64, y: f64, beam: usize| ScanPoint {
-            at: Point2::new(x, y),
-            normal: -Vector2::y(),
-            weight: 1.0,
-            noise_share: 1.0,
             beam,
-            passed: 1.0,
+            ..ScanPoint::new(Point2::new(x, y), -Vector2::y())
         };
         // 0.5 m along a wall; then a step, a missing beam, and a point that is too far away.
         let points = [

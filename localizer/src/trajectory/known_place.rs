@@ -5,15 +5,14 @@
 //! but only the right one is proposed again and again. The most frequent ones are held against scans from everywhere in the
 //! log, and the one with which most of them fit is taken.
 
-use super::TrajectorySettings;
 use super::keyframe::filled;
 use super::matching::fit;
-use crate::constants::{EXAMINED, KEYFRAME, MIN_AGREEMENT, MIN_OVERLAP, PLACE_STD};
+use crate::constants::{EXAMINED, KEYFRAME, LOG_NOISE_M, MAX_WORK, MIN_AGREEMENT, MIN_OVERLAP, PLACE_STD};
 use crate::estimate::Start;
 use crate::given_poses::GivenPoses;
 use crate::scan_points::{PointRules, ScanPoint, ScanPoints};
 use crate::score_grid::ScoreGrid;
-use crate::search::search;
+use crate::search::{Window, search};
 use crate::spread::Spread;
 use crate::surfel_map::SurfelMap;
 use interfaces::{GridFrame, LaserReading, ValueError, heading_rad, read_value, to_bytes, wrap_rad};
@@ -121,7 +120,7 @@ impl KnownPlace {
 }
 
 fn rules() -> PointRules {
-    TrajectorySettings::default().point_rules()
+    PointRules { noise_m: LOG_NOISE_M, grazing: false }
 }
 
 /// The search for the place of a log among known surfaces.
@@ -141,7 +140,7 @@ pub struct RouteSearch<'a> {
 /// The pose of the frame of the route among the surfaces.
 struct Alignment {
     motion: Isometry2<f64>,
-    /// The number of scans that propose it, or that fit with it.
+    /// The number of scans that fit with it.
     scans: usize,
     /// The sum of what the map confirms of these scans, a whole scan being 1.
     confirmed: f64,
@@ -183,8 +182,8 @@ impl<'a> RouteSearch<'a> {
             }
         }
         // First from a wide neighborhood.
-        let fitted = |proposed: &Alignment| {
-            self.corrected(&self.corrected(&proposed.motion, PROPOSED_STD).motion, CORRECTED_STD)
+        let fitted = |(motion, _): &(Isometry2<f64>, usize)| {
+            self.corrected(&self.corrected(motion, PROPOSED_STD).motion, CORRECTED_STD)
         };
         let mut fits: Vec<Alignment> = self.proposed().iter().take(MAX_MOTIONS).map(fitted).collect();
         fits.sort_by(|a, b| b.confirmed.total_cmp(&a.confirmed));
@@ -204,23 +203,22 @@ impl<'a> RouteSearch<'a> {
         }
     }
 
-    /// The different motions that single scans propose, the most frequent first.
-    fn proposed(&self) -> Vec<Alignment> {
+    /// The different motions that single scans propose, with their number, the most frequent first.
+    fn proposed(&self) -> Vec<(Isometry2<f64>, usize)> {
         let grid = ScoreGrid::anywhere(self.map);
-        let mut proposed: Vec<Alignment> = Vec::new();
+        let window = Window::of(&grid.frame);
+        let mut proposed: Vec<(Isometry2<f64>, usize)> = Vec::new();
         for (own, points) in self.compared.iter().step_by(self.compared.len().div_ceil(SEARCHED).max(1)) {
-            for candidate in search(&grid, points, None, MIN_OVERLAP, EXAMINED) {
-                let Some((pose, confirmed)) = self.fit(points, &candidate, PLACE_STD) else { continue };
+            for candidate in search(&mut { MAX_WORK }, &grid, points, &window, (MIN_OVERLAP, EXAMINED)) {
+                let Some((pose, _)) = self.fit(points, &candidate, PLACE_STD) else { continue };
                 let motion = pose * own.inverse();
-                match proposed.iter_mut().find(|known| is_same(&known.motion, &motion, own)) {
-                    Some(known) => {
-                        (known.scans, known.confirmed) = (known.scans + 1, known.confirmed + confirmed)
-                    }
-                    None => proposed.push(Alignment { motion, scans: 1, confirmed }),
+                match proposed.iter_mut().find(|(known, _)| is_same(known, &motion, own)) {
+                    Some((_, scans)) => *scans += 1,
+                    None => proposed.push((motion, 1)),
                 }
             }
-            proposed.sort_by_key(|motion| std::cmp::Reverse(motion.scans));
-            let [first, second] = [0, 1].map(|index| proposed.get(index).map_or(0, |motion| motion.scans));
+            proposed.sort_by_key(|(_, scans)| std::cmp::Reverse(*scans));
+            let [first, second] = [0, 1].map(|index| proposed.get(index).map_or(0, |(_, scans)| *scans));
             if first >= ENOUGH && 2 * second < first {
                 break;
             }

@@ -14,17 +14,13 @@ pub(super) struct LoopCloser {
     pub(super) places: Places,
     /// Places that no other has confirmed yet.
     pending: Vec<RecognizedPlace>,
-    accepted: Vec<RecognizedPlace>,
+    /// In the order in which they were accepted.
+    pub(super) accepted: Vec<RecognizedPlace>,
 }
 
 impl LoopCloser {
     pub(super) fn new(noise_m: f64) -> Self {
         Self { places: Places::new(noise_m), pending: Vec::new(), accepted: Vec::new() }
-    }
-
-    /// The number of loops that were accepted.
-    pub(super) fn loops(&self) -> usize {
-        self.accepted.len()
     }
 
     /// Searches for a finished submap in the earlier ones.
@@ -42,11 +38,6 @@ impl LoopCloser {
         if is_urgent {
             graph.optimize();
         }
-    }
-
-    /// The loops that were accepted, in the order in which they were accepted.
-    pub(super) fn accepted(&self) -> &[RecognizedPlace] {
-        &self.accepted
     }
 
     /// At the end: of the places that wait for others, strong ones are accepted if two earlier submaps say the same.

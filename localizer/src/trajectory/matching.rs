@@ -1,13 +1,20 @@
 //! What matches of scans and of submaps share: gates, covariances, and what a match says.
 
 use super::submap::{Agreement, agreement};
-use crate::constants::{EXPECTED, JUDGED_M, LOOSE_STD, MIN_NOISE_M, SPURIOUS, STDS};
+use crate::constants::{JUDGED_M, MIN_NOISE_M, STDS};
 use crate::match_scene::hit_std_m;
 use crate::matcher::{Gates, Match, Prior, align, difference};
 use crate::scan_points::ScanPoint;
 use crate::spread::Spread;
 use crate::surfel_map::SurfelMap;
 use nalgebra::{Isometry2, Matrix3, Vector3};
+
+/// Contradiction to the odometry over its covariance that means nothing.
+const EXPECTED: f64 = 4.0;
+/// Share of the information that may come from normals that are a little off.
+const SPURIOUS: f64 = 0.03;
+/// Errors of a direction that no surface fixes.
+const LOOSE_STD: Spread = Spread { m: 10.0, rad: 1.0 };
 
 /// The gates of a match of scans with this noise.
 pub(super) fn gates(noise_m: f64, first_m: f64) -> Gates {
@@ -74,13 +81,8 @@ mod tests {
 
     /// Points on straight walls along x, 2 m apart, and on some more surfaces.
     fn corridor(more: &[(f64, f64, f64)]) -> Vec<ScanPoint> {
-        let point = |(x, y, normal_rad): (f64, f64, f64)| ScanPoint {
-            at: Point2::new(x, y),
-            normal: interfaces::rotation(normal_rad) * Vector2::x(),
-            weight: 1.0,
-            noise_share: 1.0,
-            beam: 0,
-            passed: 1.0,
+        let point = |(x, y, normal_rad): (f64, f64, f64)| {
+            ScanPoint::new(Point2::new(x, y), interfaces::rotation(normal_rad) * Vector2::x())
         };
         // The normals are a little off, to both sides.
         let walls = (-40_i32..40).flat_map(|step| {

@@ -1,9 +1,15 @@
 //! How far apart two keyframes are along the trajectory, and how far their relative pose can be wrong.
 
 use super::graph::{EdgeKind, PoseGraph};
-use crate::constants::{DRIFT, DRIFT_PER_M, LOOP_M, MAX_DRIFT_M, TURN_M};
+use crate::constants::{LOOP_M, TURN_M};
+use crate::spread::Spread;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
+
+/// Errors after a way: at least these, m and rad; per way; per root of the way, rad; at most this, m.
+const DRIFT: Spread = Spread { m: 0.4, rad: 0.08 };
+const DRIFT_PER_M: f64 = 0.03;
+const MAX_DRIFT_M: f64 = 12.0;
 
 /// The shortest way from a keyframe to every other keyframe, along the edges of the graph, m.
 pub(super) fn ways_m(graph: &PoseGraph, from: usize) -> Vec<f64> {

@@ -3,30 +3,17 @@
 use super::TrajectoryFinder;
 use super::graph::{Edge, EdgeKind};
 use super::matching::{fit, in_frame};
-use crate::constants::{FOUND_STD, NEW_GROUND_M, TURN_M};
+use super::places::RecognizedPlace;
+use crate::constants::{FOUND_STD, TURN_M};
 use crate::estimate::PoseState;
 use crate::surfel_map::SurfelMap;
 use interfaces::heading_rad;
 use nalgebra::{Isometry2, Matrix3};
 
-/// A place that was recognized.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct FoundLoop {
-    /// Two keyframes, and the motion between them.
-    pub(crate) from: usize,
-    pub(crate) to: usize,
-    pub(crate) motion: Isometry2<f64>,
-    /// The submaps in whose middle the keyframes are.
-    submaps: [usize; 2],
-}
+/// New ground is farther than this from all places before, m.
+const NEW_GROUND_M: f64 = 4.0;
 
 impl TrajectoryFinder {
-    /// The same finder, for an odometry that is there: a robot that rests at the start does not go on as before.
-    pub(crate) fn with_odometry(mut self) -> Self {
-        self.builder.motion_prior.expect_odometry();
-        self
-    }
-
     /// The poses of all readings so far, with all loops that are closed. The pose of the first reading is the origin.
     pub(crate) fn corrected(&self) -> Vec<Isometry2<f64>> {
         self.poses(&self.optimized()).iter().map(|found| found.pose).collect()
@@ -70,7 +57,7 @@ impl TrajectoryFinder {
 
     /// Whether the last reading agreed with its submap; invalid readings, and those that show nothing, do not disagree.
     pub(crate) fn is_supported(&self) -> bool {
-        self.builder.matcher.sees_nothing()
+        self.builder.matcher.sees_nothing
             || self.readings.last().is_some_and(|reading| reading.state != PoseState::Uncertain)
     }
 
@@ -89,32 +76,22 @@ impl TrajectoryFinder {
         (from..to).map(step_m).sum()
     }
 
-    /// The number of loops that are closed.
-    pub(crate) fn loops(&self) -> usize {
-        self.closer.loops()
-    }
-
-    /// The loops from number `first` on.
-    pub(crate) fn loops_since(&self, first: usize) -> impl Iterator<Item = FoundLoop> {
-        self.closer.accepted()[first..].iter().map(|place| FoundLoop {
-            from: place.edge.from,
-            to: place.edge.to,
-            motion: place.edge.motion,
-            submaps: [place.from, place.to],
-        })
+    /// The loops, in the order in which they were closed.
+    pub(crate) fn loops(&self) -> &[RecognizedPlace] {
+        &self.closer.accepted
     }
 
     /// The motion near `motion` at which the two submaps of a loop agree best, and how much agrees there, compared with the
     /// motion of the loop: 1 for as much.
     pub(crate) fn agreement_near(
         &self,
-        found: &FoundLoop,
+        found: &RecognizedPlace,
         motion: &Isometry2<f64>,
     ) -> Option<(Isometry2<f64>, f64)> {
-        let [from, to] = found.submaps.map(|number| &self.closer.places.submaps[number]);
+        let [from, to] = [found.from, found.to].map(|number| &self.closer.places.submaps[number]);
         let map = SurfelMap::of_points(&from.points)?;
         let fit = |motion| fit(&map, &to.points, motion, FOUND_STD, self.settings.range_noise_std_m);
-        let ((near, agrees), (_, most)) = (fit(motion)?, fit(&found.motion)?);
+        let ((near, agrees), (_, most)) = (fit(motion)?, fit(&found.edge.motion)?);
         Some((near.placement.pose, agrees.confirmed / most.confirmed.max(f64::MIN_POSITIVE)))
     }
 

@@ -7,25 +7,37 @@ use super::matching::{fit, information_of};
 use super::odometry_drift::{reach, ways_m};
 use super::submap::{Agreement, FinishedSubmap};
 use crate::constants::{
-    AMBIGUOUS, COMPARED_POINTS, EXAMINED, MAJORITY, MAX_PASSING, MAX_SEARCHES, MIN_WAY_M, NEAR_M,
-    NEAR_RANGE_M, NEIGHBORS, PLACE_AGREEMENT, PLACE_MODEL_STD, PLACE_OVERLAP, PLACE_SCORE, PLACE_STD,
-    REFERENCE_M, SAME_SUBMAP, STRONG_AGREEMENT, UNLIKELY,
+    AMBIGUOUS, EXAMINED, MAJORITY, MAX_PASSING, MAX_WORK, MIN_WAY_M, NEAR_M, NEAR_RANGE_M, NEIGHBORS,
+    PLACE_AGREEMENT, PLACE_MODEL_STD, PLACE_OVERLAP, PLACE_STD, STRONG_AGREEMENT,
 };
 use crate::matcher::Match;
 use crate::scan_points::ScanPoint;
 use crate::score_grid::ScoreGrid;
 use crate::search::{Window, search};
+use crate::spread::Spread;
 use crate::surfel_map::SurfelMap;
 use nalgebra::Isometry2;
 
+/// Earlier submaps in which one is searched for, with the score grids of twice as many; points that are compared.
+const MAX_SEARCHES: usize = 3;
+const COMPARED_POINTS: usize = 300;
+/// Minimum score of a pose in a search.
+const PLACE_SCORE: f64 = 0.35;
+/// Poses of submaps that are the same.
+const SAME_SUBMAP: Spread = Spread { m: 0.5, rad: 0.1 };
+/// What a pose at the border of the window counts less.
+const UNLIKELY: f64 = 0.3;
+/// A submap with twice as many references nearer than this is no reference, m: hours in one place.
+const REFERENCE_M: f64 = 3.0;
+
 /// A recognized place: the pose of submap `to` in submap `from`.
 #[derive(Clone, Debug)]
-pub(super) struct RecognizedPlace {
+pub(crate) struct RecognizedPlace {
     pub(super) from: usize,
     pub(super) to: usize,
     /// The way between the two along the trajectory, m.
     pub(super) way_m: f64,
-    pub(super) edge: Edge,
+    pub(crate) edge: Edge,
     /// Whether little speaks against it.
     pub(super) is_strong: bool,
 }
@@ -166,7 +178,7 @@ impl Places {
         let near: Vec<ScanPoint> = self.submaps[to].points.iter().filter(is_near).copied().collect();
         let points = thinned(&near, COMPARED_POINTS);
         let window = Window { pose, reach_m, reach_rad };
-        for start in search(grid, &points, Some(&window), PLACE_SCORE, EXAMINED) {
+        for start in search(&mut { MAX_WORK }, grid, &points, &window, (PLACE_SCORE, EXAMINED)) {
             let Some((found, agreement)) = fit(map, &points, &start, PLACE_STD, self.noise_m) else {
                 continue;
             };

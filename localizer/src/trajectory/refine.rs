@@ -7,8 +7,8 @@ use super::places::Places;
 use super::submap::{Agreement, FinishedSubmap};
 use crate::constants::{MIN_AGREEMENT, MIN_OVERLAP, NEAR_M, REFINE, SUBMAP_STD};
 use crate::matcher::Match;
-use crate::spread::Spread;
 use crate::surfel_map::SurfelMap;
+use nalgebra::Isometry2;
 use rayon::prelude::*;
 
 /// Matches keyframes with all submaps around them of which they are no part, and optimizes the graph; once more from the
@@ -16,7 +16,10 @@ use rayon::prelude::*;
 pub(super) fn refine(places: &Places, keyframes: &[Keyframe], graph: &mut PoseGraph) {
     let without = graph.edges.clone();
     for (stride, std) in REFINE {
-        let edges = edges(places, keyframes, stride, std, graph);
+        let edges = around(places, graph, stride, |map, [anchor, keyframe], pose| {
+            let found = fit(map, &keyframes[keyframe].points, &pose, std, places.noise_m);
+            found.and_then(|found| edge(anchor, keyframe, &found)).into_iter().collect()
+        });
         graph.edges.clone_from(&without);
         graph.edges.extend(edges);
         graph.optimize();
@@ -25,24 +28,23 @@ pub(super) fn refine(places: &Places, keyframes: &[Keyframe], graph: &mut PoseGr
     graph.optimize();
 }
 
-/// The motions from submaps to the keyframes around them.
-fn edges(
+/// What `of` says of submaps and the keyframes around them of which they are no part, one of `stride`: of the map, the middle
+/// keyframe, the other keyframe, and its pose in the map.
+pub(super) fn around<T: Send>(
     places: &Places,
-    keyframes: &[Keyframe],
-    stride: usize,
-    std: Spread,
     graph: &PoseGraph,
-) -> Vec<Edge> {
+    stride: usize,
+    of: impl Fn(&SurfelMap, [usize; 2], Isometry2<f64>) -> Vec<T> + Sync,
+) -> Vec<T> {
     let of_submap = |(number, submap): (usize, &FinishedSubmap)| {
         let near: Vec<usize> = near(submap, graph).filter(|near| (near + number) % stride == 0).collect();
         let map = if near.is_empty() { None } else { SurfelMap::of_points(&submap.points) };
-        let edge = |(map, keyframe): (&SurfelMap, usize)| {
+        let mut all = Vec::new();
+        for (map, keyframe) in map.iter().flat_map(|map| near.iter().map(move |keyframe| (map, *keyframe))) {
             let pose = graph.poses[submap.anchor].inv_mul(&graph.poses[keyframe]);
-            let found = fit(map, &keyframes[keyframe].points, &pose, std, places.noise_m)?;
-            edge(submap.anchor, keyframe, &found)
-        };
-        let pairs = map.iter().flat_map(|map| near.iter().map(move |keyframe| (map, *keyframe)));
-        pairs.filter_map(edge).collect::<Vec<Edge>>()
+            all.extend(of(map, [submap.anchor, keyframe], pose));
+        }
+        all
     };
     // In the order of the submaps, however many threads there are.
     let submaps: Vec<(usize, &FinishedSubmap)> = places.references().collect();
@@ -50,7 +52,7 @@ fn edges(
 }
 
 /// The keyframes around a submap of which they are no part.
-pub(super) fn near<'a>(submap: &'a FinishedSubmap, graph: &'a PoseGraph) -> impl Iterator<Item = usize> + 'a {
+fn near<'a>(submap: &'a FinishedSubmap, graph: &'a PoseGraph) -> impl Iterator<Item = usize> + 'a {
     let middle = graph.poses[submap.anchor].translation.vector;
     let is_near = move |number: &usize| {
         let is_part = (submap.first..=submap.last).contains(number);

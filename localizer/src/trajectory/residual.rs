@@ -3,11 +3,14 @@
 use super::graph::PoseGraph;
 use super::keyframe::Keyframe;
 use super::places::Places;
-use super::refine::near;
-use super::submap::FinishedSubmap;
-use crate::constants::{CLEARANCE_M, MIN_RESIDUALS, REFINE, STD_PER_MEDIAN, TAIL};
-use crate::surfel_map::SurfelMap;
-use rayon::prelude::*;
+use super::refine::around;
+use crate::constants::{CLEARANCE_M, REFINE};
+use crate::scan_points::ScanPoint;
+
+/// Share of the residuals before the tail; fewer points say nothing; standard deviation in medians.
+const TAIL: f64 = 0.97;
+const MIN_RESIDUALS: usize = 200;
+const STD_PER_MEDIAN: f64 = 1.4826;
 
 /// The distances of scans from the surfaces that were seen in other passes: the errors of ranges and poses together.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,22 +25,13 @@ pub struct Residual {
 /// The distances of points from the surfaces of submaps to which they do not belong, along the trajectory as it is. `None` if
 /// no place was seen twice.
 pub(super) fn residual(places: &Places, keyframes: &[Keyframe], graph: &PoseGraph) -> Option<Residual> {
-    let of_submap = |(number, submap): (usize, &FinishedSubmap)| {
-        let mut distances_m = Vec::new();
-        let near: Vec<usize> =
-            near(submap, graph).filter(|near| (near + number) % REFINE[0].0 == 0).collect();
-        let map = if near.is_empty() { None } else { SurfelMap::of_points(&submap.points) };
-        for (map, keyframe) in map.iter().flat_map(|map| near.iter().map(move |keyframe| (map, *keyframe))) {
-            let pose = graph.poses[submap.anchor].inv_mul(&graph.poses[keyframe]);
-            distances_m.extend(keyframes[keyframe].points.iter().filter_map(|point| {
-                let nearest = map.nearest(&(pose * point.at), &(pose.rotation * point.normal), CLEARANCE_M);
-                nearest.map(|(_, off_m)| off_m.abs())
-            }));
-        }
-        distances_m
-    };
-    let submaps: Vec<(usize, &FinishedSubmap)> = places.references().collect();
-    let mut distances_m: Vec<f64> = submaps.into_par_iter().flat_map_iter(of_submap).collect();
+    let mut distances_m = around(places, graph, REFINE[0].0, |map, [_, keyframe], pose| {
+        let distance_m = |point: &ScanPoint| {
+            let nearest = map.nearest(&(pose * point.at), &(pose.rotation * point.normal), CLEARANCE_M);
+            nearest.map(|(_, off_m)| off_m.abs())
+        };
+        keyframes[keyframe].points.iter().filter_map(distance_m).collect()
+    });
     if distances_m.len() < MIN_RESIDUALS {
         return None;
     }

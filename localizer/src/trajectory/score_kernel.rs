@@ -16,7 +16,7 @@ const REACH: i32 = (2.5 * CORRELATION_STD_M / CORRELATION_CELL_M) as i32;
 const ROWS: usize = 2 * REACH as usize + 1;
 const ROW: usize = 16;
 const COARSE: usize = 8;
-/// An end point that is nearer to the border of the grid than this raises its cells one by one.
+/// An end point that is nearer to the border of the grid than this is out of reach of the points of a scan.
 const BORDER: i32 = 4 * BLOCK + REACH;
 
 /// Squares of scores: fine cells, and maxima over coarse ones.
@@ -64,12 +64,10 @@ impl Scores {
     /// Raises the scores around an end point in a fine cell.
     pub(super) fn add(&mut self, [x, y]: [i32; 2]) {
         let inner = BORDER..self.side - BORDER;
-        if !inner.contains(&x) || !inner.contains(&y) {
-            return self.add_at_border([x, y]);
-        }
-        let here = (y * self.side + x) as usize;
-        if self.fine[here] == TOP_SCORE {
-            return; // another end point lies in this cell
+        let is_inner = inner.contains(&x) && inner.contains(&y);
+        // Another end point lies in this cell, or this one is out of reach.
+        if !is_inner || self.fine[(y * self.side + x) as usize] == TOP_SCORE {
+            return;
         }
         let kernel = &*KERNEL;
         for (row, scores) in (y - REACH..).zip(&kernel.rows) {
@@ -78,19 +76,6 @@ impl Scores {
         let place = (y % BLOCK) * BLOCK + x % BLOCK;
         for (row, scores) in (first_block(y)..).zip(&kernel.coarse[place as usize]) {
             raise(&mut self.coarse[(row * (self.side / BLOCK) + first_block(x)) as usize..], scores);
-        }
-    }
-
-    fn add_at_border(&mut self, [x, y]: [i32; 2]) {
-        for ([dx, dy], score) in scores() {
-            let Some(here) = index([x + dx, y + dy], self.side) else { continue };
-            self.fine[here] = self.fine[here].max(score);
-            for row in blocks_of(y + dy) {
-                for column in blocks_of(x + dx) {
-                    let bound = &mut self.coarse[(row * (self.side / BLOCK) + column) as usize];
-                    *bound = (*bound).max(score);
-                }
-            }
         }
     }
 }
@@ -156,10 +141,11 @@ mod tests {
     fn scores_are_the_largest_ones_of_all_end_points() {
         let (mut grid, mut random) = (Scores::new(40), RandomStream::new(100, Purpose::Agent));
         let side = grid.side;
-        // Some are beyond the border.
-        let points: Vec<[i32; 2]> =
+        // Some are beyond the border, where nothing is raised.
+        let mut points: Vec<[i32; 2]> =
             (0..300).map(|_| [0, 0].map(|_| random.uniform(-10.0..f64::from(side) + 10.0) as i32)).collect();
         points.iter().for_each(|point| grid.add(*point));
+        points.retain(|point| point.iter().all(|at| (BORDER..side - BORDER).contains(at)));
         let around: Vec<u8> = scores().map(|(_, score)| score).collect();
         let expected = |at: [i32; 2]| {
             let of_point = |point: &[i32; 2]| {

@@ -11,9 +11,9 @@ use nalgebra::{Isometry2, Point2, Vector2};
 /// A submap to which keyframes are added, in the frame of the matches with local submaps.
 #[derive(Clone, Debug)]
 pub(super) struct GrowingSubmap {
-    map: SurfelMap,
+    pub(super) map: SurfelMap,
     /// The numbers of the keyframes.
-    keyframes: Vec<usize>,
+    pub(super) keyframes: Vec<usize>,
 }
 
 /// A submap with all of its keyframes.
@@ -35,15 +35,6 @@ impl GrowingSubmap {
         let frame = GridFrame::covering(low, 2.0 * SUBMAP_REACH_M, 2.0 * SUBMAP_REACH_M, SURFEL_M)?;
         let map = spare.map_or_else(|| SurfelMap::new(&frame), |spare| spare.emptied(&frame));
         Some(Self { map, keyframes: Vec::new() })
-    }
-
-    pub(super) fn map(&self) -> &SurfelMap {
-        &self.map
-    }
-
-    /// The number of keyframes.
-    pub(super) fn len(&self) -> usize {
-        self.keyframes.len()
     }
 
     pub(super) fn add(&mut self, number: usize, keyframe: &Keyframe, noise_m: f64) {

@@ -1,15 +1,13 @@
 //! Matches scans with the submap of the last keyframes, and makes keyframes of them.
 
 use super::distance_scale::MeasuredMotion;
-use super::far_scan::{FarScan, matched_at};
+use super::far_scan::{found_among, matched_at};
 use super::keyframe::{Keyframe, filled};
 use super::matching::{gates, in_frame, motion_spread};
-use super::settings::TrajectorySettings;
 use super::submap::{Agreement, FinishedSubmap, GrowingSubmap, agreement};
 use crate::constants::{
-    CLEARLY, FAIR_SHARE, FOUND_STD, JUDGED_M, KEYFRAME, KEYFRAME_STD, MAJORITY, MIN_AGREEMENT, MIN_OVERLAP,
-    MIN_POINTS, MIN_RESPONSE, MIN_SHARE, MISSING_STD, OTHER_TURNS_RAD, SCAN_STD, SEARCHED, SEARCHED_STD,
-    SUBMAP_KEYFRAMES, SURFEL_M,
+    FAIR_SHARE, FOUND_STD, JUDGED_M, KEYFRAME, KEYFRAME_STD, MAJORITY, MAX_WORK, MIN_AGREEMENT, MIN_OVERLAP,
+    MIN_RESPONSE, SCAN_STD, SUBMAP_KEYFRAMES, SURFEL_M,
 };
 use crate::faults::Fault;
 use crate::local_trajectory_builder::{IncomingScan, Matched, ScanMatcher, Track};
@@ -18,31 +16,48 @@ use crate::motion::Motion;
 use crate::scan_points::ScanPoint;
 use crate::score_grid::ScoreGrid;
 use crate::search::{Window, search};
+use crate::settings::LocalizerSettings;
 use crate::spread::Spread;
 use crate::surfel_map::SurfelMap;
 use interfaces::LaserReading;
 use nalgebra::{Isometry2, Matrix3, Vector3};
 
+/// Minimum number of points on a submap.
+const MIN_POINTS: usize = 12;
+/// Where less agrees: turns that are tried, rad (a laser out of step with the odometry), then a search.
+const OTHER_TURNS_RAD: [f64; 3] = [0.08, 0.16, 0.25];
+const MIN_SHARE: f64 = 0.3;
+const SEARCHED: Spread = Spread { m: 0.8, rad: 0.4 };
+/// Errors of the prediction in a search: along a corridor nothing but the odometry says how far the robot went.
+const SEARCHED_STD: Spread = Spread { m: 0.05, rad: 0.3 };
+/// Another pose must confirm more by this factor.
+const CLEARLY: f64 = 1.15;
+/// Errors of a motion without odometry, and without a match.
+const MISSING_STD: Spread = Spread::of_motion(0.3);
+/// A motion between two scans after which the robot has another viewpoint.
+const FAR_SCAN: Spread = Spread { m: 0.3, rad: 0.3 };
+
 /// While its laser starts, a robot does not drive farther than this, m.
 const START_M: f64 = 1.0;
 
 /// The submaps that grow, and their keyframes.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(crate) struct SubmapMatcher {
-    settings: TrajectorySettings,
+    settings: LocalizerSettings,
     /// The motion by odometry since the last keyframe.
     since_keyframe: Isometry2<f64>,
     /// The same motion as it was measured, without what was learned of the odometry.
     measured: Isometry2<f64>,
-    measured_motions: Vec<MeasuredMotion>,
-    keyframes: Vec<Keyframe>,
+    /// The motions between keyframes that the odometry measured, and scans.
+    pub(super) measured_motions: Vec<MeasuredMotion>,
+    pub(super) keyframes: Vec<Keyframe>,
     /// The older one is matched with, the younger one is only filled.
     growing: Vec<GrowingSubmap>,
     finished: Vec<FinishedSubmap>,
     /// The memory of the last submap that was finished.
     spare: Option<SurfelMap>,
     /// Whether the last scan shows no surface.
-    sees_nothing: bool,
+    pub(super) sees_nothing: bool,
     /// Whether any scan so far shows a surface.
     has_seen: bool,
 }
@@ -82,13 +97,14 @@ impl ScanMatcher<()> for SubmapMatcher {
         // The first scan that shows a surface is right by definition: some lasers see nothing while they start.
         let is_first = !self.has_seen && (!self.sees_nothing || self.is_at_start(&track.pose));
         let is_frozen = scan.fault == Some(Fault::Frozen) && !is_first;
-        let far = if is_frozen { None } else { FarScan::of(scan) };
-        let matched = match &far {
+        // From another viewpoint than the scan before.
+        let is_far = !is_frozen && !FAR_SCAN.contains(&scan.motion.delta);
+        let matched = match is_far {
             _ if is_frozen || is_first => None,
-            Some(far) => self.match_far(far, scan),
-            None => self.match_submap(scan, track),
+            true => self.match_far(scan),
+            false => self.match_submap(scan, track),
         };
-        let min_share = if far.is_some() { MIN_RESPONSE } else { FAIR_SHARE };
+        let min_share = if is_far { MIN_RESPONSE } else { FAIR_SHARE };
         let (mut begin, mut agreement, mut is_reliable) = (Vector3::zeros(), 0.0, false);
         if let Some(matched) = &matched {
             let Match { placement, information, .. } = &matched.found;
@@ -120,39 +136,14 @@ impl ScanMatcher<()> for SubmapMatcher {
 }
 
 impl SubmapMatcher {
-    pub(super) fn new(settings: &TrajectorySettings) -> Self {
-        Self {
-            settings: settings.clone(),
-            since_keyframe: Isometry2::identity(),
-            measured: Isometry2::identity(),
-            measured_motions: Vec::new(),
-            keyframes: Vec::new(),
-            growing: Vec::new(),
-            finished: Vec::new(),
-            spare: None,
-            sees_nothing: true,
-            has_seen: false,
-        }
-    }
-
-    /// Whether the last scan shows no surface.
-    pub(super) fn sees_nothing(&self) -> bool {
-        self.sees_nothing
-    }
-
-    pub(super) fn keyframes(&self) -> &[Keyframe] {
-        &self.keyframes
+    pub(super) fn new(settings: &LocalizerSettings) -> Self {
+        Self { settings: settings.clone(), sees_nothing: true, ..Self::default() }
     }
 
     /// Whether the robot has not left the place where it started.
     fn is_at_start(&self, pose: &Isometry2<f64>) -> bool {
         let from_start = |start: &Keyframe| start.local.inv_mul(pose).translation.vector.norm();
         self.keyframes.first().is_none_or(|start| from_start(start) < START_M)
-    }
-
-    /// The motions between keyframes that the odometry measured, and scans.
-    pub(super) fn measured_motions(&self) -> &[MeasuredMotion] {
-        &self.measured_motions
     }
 
     /// The next submap that is full.
@@ -177,15 +168,15 @@ impl SubmapMatcher {
     }
 
     /// The match of a far scan; `None` if there is nothing to match with.
-    fn match_far(&self, far: &FarScan, scan: &IncomingScan) -> Option<SubmapMatch> {
-        let found = far.correlated(&self.keyframes, &scan.predicted.pose)?;
+    fn match_far(&self, scan: &IncomingScan) -> Option<SubmapMatch> {
+        let found = found_among(&self.keyframes, scan)?;
         let agreement = Agreement::of_response(found.response);
         Some(SubmapMatch { found: matched_at(&found.pose, &scan.points)?, agreement })
     }
 
     /// The match of the scan with the submap; `None` if there is nothing to match with.
     fn match_submap(&self, scan: &IncomingScan, track: &Track) -> Option<SubmapMatch> {
-        let (map, points, pose) = (self.growing.first()?.map(), &scan.points, &track.pose);
+        let (map, points, pose) = (&self.growing.first()?.map, &scan.points, &track.pose);
         let prior = scan.predicted.prior()?;
         let at_range_m = 5.0 * track.covariance[(2, 2)].sqrt();
         let first_m = SURFEL_M + 2.0 * (scan.predicted.spread_m() + at_range_m);
@@ -204,7 +195,7 @@ impl SubmapMatcher {
         let near = SurfelMap::of_points(&map.points(&Isometry2::identity()))?;
         let window = Window { pose: *pose, reach_m: SEARCHED.m, reach_rad: SEARCHED.rad };
         let grid = ScoreGrid::anywhere(&near);
-        let found = search(&grid, points, Some(&window), MIN_OVERLAP, CLEARLY.recip());
+        let found = search(&mut { MAX_WORK }, &grid, points, &window, (MIN_OVERLAP, CLEARLY.recip()));
         Some(self.better(map, points, matched, &found, &wide))
     }
 
@@ -282,14 +273,14 @@ impl SubmapMatcher {
         let number = self.keyframes.len() - 1;
         let keyframe = &self.keyframes[number];
         let half = SUBMAP_KEYFRAMES / 2;
-        if self.growing.last().is_none_or(|youngest| youngest.len() >= half) {
+        if self.growing.last().is_none_or(|youngest| youngest.keyframes.len() >= half) {
             self.growing.extend(GrowingSubmap::new(&keyframe.local, self.spare.take()));
         }
         for submap in &mut self.growing {
             submap.add(number, keyframe, self.settings.range_noise_std_m);
         }
         self.keyframes[number].thin();
-        if self.growing.len() > 1 && self.growing[0].len() >= SUBMAP_KEYFRAMES {
+        if self.growing.len() > 1 && self.growing[0].keyframes.len() >= SUBMAP_KEYFRAMES {
             let full = self.growing.remove(0);
             let (finished, spare) = full.finish(&self.keyframes);
             self.finished.push(finished);

@@ -1,7 +1,7 @@
 //! Scans that show nothing, in a room that looks alike from two sides.
 
 use crate::robot::mapper;
-use interfaces::{GridFrame, LaserReading, Scan, Twist, pose};
+use interfaces::{GridFrame, LaserReading, Scan, pose};
 use localizer::{Localizer, LocalizerSettings, LoopClosingLocalizer, PoseState};
 use nalgebra::{Isometry2, Point2, Vector2};
 
@@ -31,9 +31,6 @@ fn reading(number: usize) -> LaserReading {
     LaserReading {
         time_s: 0.1 * number as f64,
         pose: at(0).inv_mul(&pose),
-        twist: Twist::STOP,
-        velocities: Vec::new(),
-        mount: Isometry2::identity(),
         scan: Scan {
             angle_min_rad: 0.0,
             angle_increment_rad: 1.0_f64.to_radians(),
@@ -42,6 +39,7 @@ fn reading(number: usize) -> LaserReading {
             sweep_s: 0.0,
             ranges_m: (0..360).map(range).collect(),
         },
+        ..LaserReading::default()
     }
 }
 

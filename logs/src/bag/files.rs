@@ -1,9 +1,8 @@
 //! The files of a bag: found out by content, put in order, unpacked.
 
-use super::mcap::MAGIC;
 use crate::archive;
 use crate::bounds::{self, Unpacked};
-use crate::bytes::{Bytes, ZSTD};
+use crate::bytes::{Bytes, MCAP, SQLITE, ZSTD};
 use crate::error::LogError;
 use serde::Deserialize;
 use std::fs::{self, DirEntry};
@@ -37,16 +36,11 @@ impl Format {
     /// The format of a file that begins with these bytes.
     fn of(start: &[u8]) -> Option<Self> {
         match start {
-            _ if start.starts_with(&MAGIC) => Some(Self::Mcap),
-            _ if start.starts_with(b"SQLite format 3\0") => Some(Self::Sqlite),
+            _ if start.starts_with(&MCAP) => Some(Self::Mcap),
+            _ if start.starts_with(&SQLITE) => Some(Self::Sqlite),
             _ => None,
         }
     }
-}
-
-/// Whether a file that begins with these bytes is one of a bag.
-pub(crate) fn is_bag(start: &[u8]) -> bool {
-    Format::of(start).is_some()
 }
 
 impl BagFile {

@@ -6,14 +6,12 @@
 use super::chunk::{Chunk, Fields, Records};
 use super::message::{Message, MessageSource, Selection, Topic};
 use crate::bounds::{MAX_NAME_BYTES, max_chunk_bytes};
-use crate::bytes::{Bytes, Input};
+use crate::bytes::{Bytes, Input, MCAP as MAGIC};
 use crate::error::LogError;
 use std::collections::BTreeMap;
 use std::io::{self, BufReader, ErrorKind, Read, Seek, SeekFrom};
 use std::sync::Arc;
 
-/// The first bytes of a file, and its last ones.
-pub(super) const MAGIC: [u8; 8] = *b"\x89MCAP0\r\n";
 /// The codes of records.
 const FOOTER: u8 = 2;
 const SCHEMA: u8 = 3;
@@ -162,7 +160,8 @@ impl McapFile {
 
     fn invalid(&mut self, what: String) -> LogError {
         self.is_over = true;
-        LogError::Byte { file: self.content.file.to_string(), byte: self.record, what }
+        let why = format!("byte {}: {what}", self.record);
+        LogError::Unusable { file: self.content.file.to_string(), why }
     }
 
     fn cut(&mut self) {

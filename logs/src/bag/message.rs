@@ -48,12 +48,8 @@ pub(super) struct Message {
 impl Message {
     /// The error for this message.
     pub(super) fn error(&self, what: String) -> LogError {
-        LogError::Message {
-            file: self.file.to_string(),
-            topic: self.topic.name.clone(),
-            number: self.number,
-            what,
-        }
+        let why = format!("message {} of {}: {what}", self.number, self.topic.name);
+        LogError::Unusable { file: self.file.to_string(), why }
     }
 }
 

@@ -27,7 +27,7 @@ pub(super) fn of(lines: &mut Lines) -> Result<(Rules, Vec<f64>, LogSummary), Log
     }
     let of_most = inspection.of_most_invalid();
     if let Some((line, what)) = of_most {
-        return Err(LogError::Line { file: lines.file.clone(), line, what });
+        return Err(LogError::line(&lines.file, line, what));
     }
     if inspection.times_s.is_empty() {
         let why = match lines.cut() {

@@ -5,16 +5,16 @@ use std::ops::Add;
 /// in the state, counted in steps of the readings. Events divided by steps are the probability per step of leaving
 /// the state.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Deserialize, serde::Serialize)]
-pub struct Exposure {
+pub(crate) struct Exposure {
     /// The number of events that ended a free stay, and a blocked stay.
-    pub events: [f64; 2],
+    pub(crate) events: [f64; 2],
     /// The number of steps that began free, and blocked.
-    pub steps: [f64; 2],
+    pub(crate) steps: [f64; 2],
 }
 
 impl Exposure {
     /// The exposure in view. In the statistics, the step of a change counts for the state after the change.
-    pub fn in_view(seen: &CellStatistics) -> Self {
+    pub(crate) fn in_view(seen: &CellStatistics) -> Self {
         let (block, free) = (f64::from(seen.block_events), f64::from(seen.free_events));
         let steps = |watched: f64, own: f64, other: f64| (watched / seen.period + own - other).max(own);
         Self {
@@ -24,7 +24,7 @@ impl Exposure {
     }
 
     /// The exposure with the same information as the gaps.
-    pub fn of_gaps(seen: &CellStatistics) -> Self {
+    pub(crate) fn of_gaps(seen: &CellStatistics) -> Self {
         let worth = &seen.gap_worth;
         Self {
             events: [worth.block_events, worth.free_events],
@@ -33,18 +33,18 @@ impl Exposure {
     }
 
     /// An exposure with the same numbers of events and steps for both states.
-    pub fn uniform(events: f64, steps: f64) -> Self {
+    pub(crate) fn uniform(events: f64, steps: f64) -> Self {
         Self { events: [events; 2], steps: [steps; 2] }
     }
 
     /// The exposure multiplied by one factor per state.
-    pub fn scaled(self, factors: [f64; 2]) -> Self {
+    pub(crate) fn scaled(self, factors: [f64; 2]) -> Self {
         let times = |of: [f64; 2]| [of[0] * factors[0], of[1] * factors[1]];
         Self { events: times(self.events), steps: times(self.steps) }
     }
 
     /// Events per step, for each state.
-    pub fn leave(self) -> [f64; 2] {
+    pub(crate) fn leave(self) -> [f64; 2] {
         [0, 1].map(|state| self.events[state] / self.steps[state])
     }
 }

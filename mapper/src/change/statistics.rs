@@ -30,7 +30,7 @@ pub struct CellStatistics {
     pub gaps_from_free: u32,
     /// Gaps in the view that began while the cell was blocked.
     pub gaps_from_blocked: u32,
-    /// The information in the gaps, if the estimator has a [model of gaps](crate::GapModel); otherwise 0.
+    /// The information in the gaps, if the estimator [weighs gaps](crate::Estimator::weighs_gaps); otherwise 0.
     pub gap_worth: GapWorth,
     /// The prior of the cycle rate that all traversable cells [share](crate::Estimator::shares_prior), once there is one.
     pub prior: Option<RateDistribution>,

@@ -59,11 +59,11 @@ impl TransitionRates {
 
 /// The transition probabilities of a cell from one reading to the next.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
-pub struct Step {
+pub(crate) struct Step {
     /// The probability of free → blocked per step.
-    pub block: f64,
+    pub(crate) block: f64,
     /// The probability of blocked → free per step.
-    pub free: f64,
+    pub(crate) free: f64,
 }
 
 /// The prediction of a chain for the end of a gap.

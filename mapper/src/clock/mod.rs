@@ -5,8 +5,6 @@
 
 mod beta;
 mod calendar;
-#[cfg(test)]
-mod calibration;
 mod correlations;
 mod guard;
 mod long_stays;

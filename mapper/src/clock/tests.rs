@@ -1,5 +1,7 @@
 //! The clock against things whose law is known.
 
+mod calibration;
+
 use super::*;
 use proptest::prelude::*;
 use rand::RngExt;

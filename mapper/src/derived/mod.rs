@@ -72,7 +72,7 @@ impl Mapper {
 
     /// The interval that contains the cycle rate of the cell (per unit of time) with probability `mass`, with equal
     /// probabilities below and above the interval. The interval is that of the posterior of the two-state chain;
-    /// the gaps are included if the estimator in use [models a two-state chain](crate::GapModel::is_two_state). The
+    /// the gaps are included if the estimator in use [weighs them](crate::Estimator::weighs_gaps). The
     /// estimate for a cell without an event is 0, but its interval is not: it follows from the prior and the
     /// observation time, and the longer the cell was observed without an event, the lower is the upper bound.
     /// Before the second reading the interval is 0 to ∞. Where traversable

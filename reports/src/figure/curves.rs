@@ -130,6 +130,7 @@ fn heading(metric: Metric) -> &'static str {
         Metric::RateError => "Relative error of the rates",
         Metric::LogError => "Log error of the rates: 0.69 is a factor of 2",
         Metric::MapQuality => "Map correct: share of cells",
+        Metric::MapQualityChanging => "Map correct: changing cells, blocked and free ones alike",
         Metric::RateAuc => "AUC of the rates: changing cells against static cells",
         other => other.name(),
     }
@@ -144,7 +145,7 @@ fn range<'a>(metric: Metric, settled: impl Iterator<Item = &'a Estimate>) -> Ran
         return 0.0..1.0;
     }
     match metric {
-        Metric::MapQuality | Metric::RateAuc => {
+        Metric::MapQuality | Metric::MapQualityChanging | Metric::RateAuc => {
             let span = (1.0 - low).max(0.001);
             1.0 - 1.15 * span..1.0 + 0.05 * span
         }

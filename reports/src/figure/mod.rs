@@ -1,5 +1,6 @@
-//! Figure 3 of the paper, in grid worlds and in physics worlds: the plan of the world, and the curves of the errors of the
-//! rates and of the share of the map that is correct, one per strategy, with bands of 95 % confidence.
+//! Figure 3 of the paper, in grid worlds and in physics worlds: the plan of the world (over several worlds: the share of its
+//! changing cells that is correct), and the curves of the errors of the rates and of the share of the map that is correct, one
+//! per strategy, with bands of 95 % confidence.
 
 mod curves;
 mod pen;
@@ -29,7 +30,8 @@ const PANEL_HEIGHT: i32 = 360;
 /// Writes the figures as PNG and SVG.
 pub(super) fn write_all(folder: &Path, report: &Report, worlds: &[Plan]) -> Result<(), PictureError> {
     for (name, run) in chosen(report) {
-        let figure = Figure { report, run, worlds: worlds_of(report, run, worlds) };
+        let world = worlds.iter().find(|world| run.worlds == 1 && world.name() == run.world);
+        let figure = Figure { report, run, world };
         let failed = |why| PictureError::Draw { name: name.clone(), why };
         let [png, vector] = ["png", "svg"].map(|ending| folder.join(format!("{name}.{ending}")));
         Canvas::draw(figure.size(), |sheet| figure.draw(sheet, &Pen::BITMAP)).map_err(failed)?.write(&png)?;
@@ -81,19 +83,12 @@ fn in_file_name(name: &str) -> String {
     words.join("-")
 }
 
-/// The plans of the worlds of `run`, in the report's order.
-fn worlds_of<'a>(report: &Report, run: &Run, worlds: &[Plan<'a>]) -> Vec<Plan<'a>> {
-    let has_trials = |one: &&Run| one.worlds == 1 && one.estimator == run.estimator;
-    let is_wanted = |one: &&Run| run.worlds > 1 || one.world == run.world;
-    let names = report.runs.iter().filter(has_trials).filter(is_wanted).map(|one| &one.world);
-    names.filter_map(|name| worlds.iter().find(|world| world.name() == *name).copied()).collect()
-}
-
 /// One figure.
 struct Figure<'a> {
     report: &'a Report,
     run: &'a Run,
-    worlds: Vec<Plan<'a>>,
+    /// The plan, of a single world.
+    world: Option<&'a Plan<'a>>,
 }
 
 impl Figure<'_> {
@@ -118,17 +113,15 @@ impl Figure<'_> {
         let (legend, panels) = rest.split_vertically(pen.px(self.legend_height()));
         self.legend(&legend, pen)?;
         let panels = panels.split_evenly((2, 2));
-        match self.worlds.as_slice() {
-            [world] => plan::one(&panels[0], pen, world)?,
-            worlds => plan::many(&panels[0], pen, worlds)?,
-        }
         let length = self.report.settings.length;
+        let draw = |panel, metric| curves::draw(panel, pen, metric, length, &self.run.strategies);
+        match self.world {
+            Some(world) => plan::draw(&panels[0], pen, world)?,
+            None => draw(&panels[0], Metric::MapQualityChanging)?,
+        }
         let second = length.choose(Metric::RateError, Metric::RateAuc);
         let curves = [second, Metric::LogError, Metric::MapQuality];
-        panels[1..]
-            .iter()
-            .zip(curves)
-            .try_for_each(|(panel, metric)| curves::draw(panel, pen, metric, length, &self.run.strategies))
+        panels[1..].iter().zip(curves).try_for_each(|(panel, metric)| draw(panel, metric))
     }
 
     fn legend<DB: DrawingBackend>(&self, sheet: &Sheet<DB>, pen: &Pen) -> Result<(), String> {

@@ -34,7 +34,7 @@ struct Appended {
 
 impl ShardFile {
     /// Opens the file of the shard of `header` in a folder; folder and file are made unless they exist. A line that
-    /// was cut off at the end is removed. If another build has begun the shard, it is marked as one of several builds.
+    /// was cut off at the end is removed.
     ///
     /// # Errors
     ///
@@ -54,9 +54,6 @@ impl ShardFile {
             return Err(not_a_shard(&path));
         }
         file.set_len(scan.intact).and_then(|()| file.seek(SeekFrom::Start(scan.intact))).map_err(failed)?;
-        if let Some(known) = scan.header.as_ref().filter(|known| known.check_build().is_err()) {
-            mark(&mut file, known).map_err(failed)?;
-        }
         if scan.header.is_none() {
             file.write_all(line.as_bytes()).map_err(failed)?;
             scan.intact = line.len() as u64;
@@ -108,16 +105,6 @@ impl ShardFile {
     }
 }
 
-/// Marks a shard as one of several builds: what follows is of this one, and no program promises the bits of both.
-fn mark(file: &mut File, known: &Header) -> io::Result<()> {
-    let [before, line] = [known.line()?, known.of_several_builds().line()?];
-    if before.len() == line.len() {
-        file.rewind()?;
-        file.write_all(line.as_bytes())?;
-    }
-    file.seek(SeekFrom::End(0)).map(drop)
-}
-
 /// The same error once more.
 fn again(error: &io::Error) -> io::Error {
     error.raw_os_error().map_or_else(|| error.kind().into(), io::Error::from_raw_os_error)
@@ -138,39 +125,19 @@ pub(super) fn shards_in(folder: &Path) -> Result<Vec<(Shard, PathBuf)>, ShardErr
     Ok(shards)
 }
 
-/// Checks that this program computes trials as those that ran the shards in a folder.
-///
-/// # Errors
-///
-/// When a file cannot be read, or is of another build.
-pub fn check_builds(folder: &Path) -> Result<(), ShardError> {
-    let headers = if folder.is_dir() { headers_in(folder)? } else { Vec::new() };
-    headers
-        .into_iter()
-        .try_for_each(|(path, header)| header.check_build().map_err(|why| ShardError::content(&path, why)))
-}
-
-/// Checks that all shards in a folder are of the experiment of `header`.
+/// Checks that all shards in a folder are of the experiment of `header`, by their first lines, where they are complete.
 fn check_others(folder: &Path, header: &Header) -> Result<(), ShardError> {
-    for (path, other) in headers_in(folder)? {
-        if let Some(difference) = other.difference(header) {
-            let why = format!("this shard is {difference}; give another folder by --out");
-            return Err(ShardError::content(&path, why));
-        }
-    }
-    Ok(())
-}
-
-/// The first lines of all shards in a folder that are complete.
-fn headers_in(folder: &Path) -> Result<Vec<(PathBuf, Header)>, ShardError> {
-    let mut headers = Vec::new();
     for (_, path) in shards_in(folder)? {
         let mut line = Vec::new();
         let file = File::open(&path).map_err(|why| ShardError::read(&path, why))?;
         let read = BufReader::new(file).take(MAX_LINE).read_until(b'\n', &mut line);
         read.map_err(|why| ShardError::read(&path, why))?;
         let text = line.strip_suffix(b"\n").and_then(|line| std::str::from_utf8(line).ok());
-        headers.extend(text.and_then(Header::read).map(|header| (path, header)));
+        let other = text.and_then(Header::read);
+        if let Some(difference) = other.and_then(|other| other.difference(header)) {
+            let why = format!("this shard is {difference}; give another folder by --out");
+            return Err(ShardError::content(&path, why));
+        }
     }
-    Ok(headers)
+    Ok(())
 }

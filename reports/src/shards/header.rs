@@ -1,6 +1,6 @@
 use super::Shard;
 use super::line::{seal, unseal};
-use robot::{BUILD, other_build};
+use robot::BUILD;
 use serde::{Deserialize, Serialize};
 use std::fmt::Debug;
 use std::io::Write;
@@ -8,9 +8,6 @@ use xxhash_rust::xxh3::{Xxh3, xxh3_64};
 
 /// The version of the format of the files of shards.
 const SCHEMA: u32 = 3;
-
-/// What a shard has in place of its build when another one has gone on with it, and a report of such shards.
-pub const SEVERAL_BUILDS: &str = "mixed of several";
 
 /// The first line of the file of a shard: what all shards of an experiment have in common, and the shard.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -20,9 +17,8 @@ pub struct Header {
     pub program: String,
     /// The version of the program.
     pub version: String,
-    /// The build of the program; empty in files of the first format.
-    #[serde(default)]
-    build: String,
+    /// The build of the program: another build need not compute the same.
+    pub build: String,
     /// The arguments that describe the experiment, without those on output, threads and shards.
     pub arguments: Vec<String>,
     /// A hash of all settings, of the worlds as well.
@@ -70,16 +66,6 @@ impl Header {
         Self { shard: shard.number(), shards: shard.count(), ..self.clone() }
     }
 
-    /// The header with the mark of a shard whose trials are of several builds, which is as long.
-    pub(super) fn of_several_builds(&self) -> Self {
-        Self { build: SEVERAL_BUILDS.to_owned(), ..self.clone() }
-    }
-
-    /// Checks that this program computes trials as the one that began the shard.
-    pub(super) fn check_build(&self) -> Result<(), String> {
-        if self.build == BUILD { Ok(()) } else { Err(format!("this shard {}", other_build(&self.build))) }
-    }
-
     /// The same header from another build.
     #[cfg(test)]
     pub(super) fn of_build(self, build: &str) -> Self {
@@ -91,7 +77,7 @@ impl Header {
         xxh3_64(format!("{} {} {}", self.program, self.version, self.settings).as_bytes())
     }
 
-    /// Whether both are shards of the same experiment, whatever their builds.
+    /// Whether both are shards of the same experiment and the same build.
     pub fn is_same_experiment(&self, other: &Self) -> bool {
         self.difference(other).is_none()
     }
@@ -108,6 +94,7 @@ impl Header {
         named("format", |header| header.schema.to_string())
             .or_else(|| named("the program", |header| header.program.clone()))
             .or_else(|| named("version", |header| header.version.clone()))
+            .or_else(|| named("build", |header| header.build.clone()))
             .or_else(|| named("the experiment", |header| format!("`{}`", header.arguments.join(" "))))
             .or_else(|| is_otherwise.then(|| otherwise.to_owned()))
             .or_else(|| (self.shards != other.shards).then(shards))

@@ -1,12 +1,13 @@
 //! All shards of a folder, and their trials in the order of the experiment.
 
-use super::file::{check_builds, shards_in};
+use super::file::shards_in;
 use super::line;
 use super::scan::Scan;
-use super::{Header, SEVERAL_BUILDS, Shard, ShardError, array};
+use super::{Header, Shard, ShardError, array};
 use evaluation::trials::Trial;
 use rayon::prelude::*;
 use results::numbers::percent;
+use robot::BUILD;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Seek};
 use std::path::{Path, PathBuf};
@@ -96,34 +97,27 @@ impl Shards {
         format!("{open}{finished} of {trials} trials ({share}), {complete} of {all} shards complete")
     }
 
-    /// Checks that this program can merge the shards: that they are its own, of its version and, unless it allows another
-    /// one, of its build, and that no trial is missing. Returns what is said of the build if not all shards are of this one.
+    /// Checks that this program can merge the shards: that they are its own, of its version and of its build, and that no trial
+    /// is missing.
     ///
     /// # Errors
     ///
     /// When they are not.
-    pub fn check(
-        &self,
-        program: &str,
-        version: &str,
-        allows_other_build: bool,
-    ) -> Result<Option<&'static str>, ShardError> {
+    pub fn check(&self, program: &str, version: &str) -> Result<(), ShardError> {
         let refuse = |why: String| Err(ShardError::Merge { folder: self.folder.clone(), why });
         let shown = self.folder.display();
-        let Header { program: found, version: found_version, .. } = &self.header;
+        let Header { program: found, version: found_version, build, .. } = &self.header;
         if found != program {
             return refuse(format!("has shards of {found}: merge them with `{found} merge {shown}`"));
         }
-        if found_version != version {
-            return refuse(format!("has shards of version {found_version}: merge them with that version"));
+        for (what, found, own) in [("version", found_version, version), ("build", build, BUILD)] {
+            if found != own {
+                return refuse(format!("has shards of {what} {found}: merge them with that {what}"));
+            }
         }
-        let other_build = match check_builds(&self.folder) {
-            Err(_) if allows_other_build => Some(SEVERAL_BUILDS),
-            checked => checked.map(|()| None)?,
-        };
         let missing = self.missing();
         let Some((first, count)) = missing.first().zip(self.header.shard().map(Shard::count)) else {
-            return Ok(other_build);
+            return Ok(());
         };
         let file = Shard::new(*first, count).map(Shard::file_name).unwrap_or_default();
         let which = format!("the shards {} of {count} lack trials, the first is {file}", array(&missing));

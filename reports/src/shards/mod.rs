@@ -21,8 +21,8 @@ mod shard;
 #[cfg(test)]
 mod tests;
 
-pub use file::{ShardFile, check_builds};
-pub use header::{Header, SEVERAL_BUILDS};
+pub use file::ShardFile;
+pub use header::Header;
 pub use merge::Shards;
 pub use scan::Scan;
 pub use shard::{InvalidShard, Shard, array};

@@ -176,30 +176,17 @@ fn a_shard_of_another_experiment_is_refused_before_anything_is_written() {
 }
 
 #[test]
-fn shards_of_another_build_are_found() {
+fn shards_of_another_build_are_refused() {
     let (_, trials) = small();
     let folder = ran(3, &trials);
-    check_builds(folder.path()).unwrap();
-    check_builds(&folder.path().join("missing")).unwrap();
     let path = folder.path().join("shard-2-of-3.jsonl");
     let own = fs::read_to_string(&path).unwrap();
-    for (build, name) in [("0123456789abcdef", "0123456789abcdef"), ("", "an earlier version")] {
-        let other = header(shard(2, 3), &trials).of_build(build).line().unwrap();
-        fs::write(&path, other + own.split_once('\n').unwrap().1).unwrap();
-        let error = check_builds(folder.path()).unwrap_err().to_string();
-        let expected =
-            format!("shard-2-of-3.jsonl: this shard is of another build ({name}, this program is ");
-        assert!(error.contains(&expected) && error.ends_with("--allow-other-build"), "{error}");
-        // Whoever allows it has all trials.
-        assert!(Shards::read(folder.path()).unwrap().missing().is_empty());
-        if !build.is_empty() {
-            // A program of another build that goes on with the shard marks it as one of no build.
-            drop(ShardFile::open(folder.path(), &header(shard(2, 3), &trials), shard(2, 3)).unwrap());
-            let error = check_builds(folder.path()).unwrap_err().to_string();
-            assert!(error.contains("is of another build (mixed of several, this program is "), "{error}");
-            assert!(Shards::read(folder.path()).unwrap().missing().is_empty());
-        }
-    }
+    let other = header(shard(2, 3), &trials).of_build("0123").line().unwrap();
+    fs::write(&path, other + own.split_once('\n').unwrap().1).unwrap();
+    let expected = "DIR/shard-2-of-3.jsonl: this shard is of build 0123, not ";
+    assert!(message(folder.path()).starts_with(expected), "{}", message(folder.path()));
+    let error = ShardFile::open(folder.path(), &header(shard(1, 3), &trials), shard(1, 3)).unwrap_err();
+    assert!(error.to_string().contains("this shard is of build 0123, not "), "{error}");
 }
 
 #[test]

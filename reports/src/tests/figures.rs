@@ -127,7 +127,8 @@ fn names_are_escaped() {
 #[test]
 #[ignore = "draws figures for an inspection by eye"]
 fn draw_figures() {
-    let nine = [FIVE.as_slice(), &["information-gain", "optimal-revisiting", "frontier", "oracle"]].concat();
+    let nine = [FIVE.as_slice(), &["information-gain", "optimal-revisiting", "frontier", "full-observation"]]
+        .concat();
     let folder = tempfile::tempdir().unwrap().keep();
     for (name, worlds, strategies, seeds) in [
         ("one", 1, FIVE.to_vec(), 5),
@@ -145,14 +146,4 @@ fn draw_figures() {
         println!("{name}: statistics in {made:?}, {} files after {:?}", files.len(), start.elapsed());
     }
     println!("{}", folder.display());
-}
-
-/// Nothing says what the colors of small plans are, if they have no legend.
-#[test]
-fn small_plans_have_a_legend() {
-    let (_, _, texts) = figures(&report(3, &["paper"], &["curious"], 1));
-    let all = texts.iter().find(|text| text.contains("The worlds")).expect("a figure of all worlds");
-    for entry in ["wall", "path of a block", "start of the robot", "range of its sensor"] {
-        assert!(all.contains(&format!(">\n{entry}\n</text>")), "{entry}");
-    }
 }

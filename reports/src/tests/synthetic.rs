@@ -18,7 +18,7 @@ const CHARACTERS: [(&str, f64, f64, f64); 9] = [
     ("information-gain", 2.2, 0.2, 0.98),
     ("optimal-revisiting", 1.5, 0.3, 0.97),
     ("frontier", 0.3, 0.8, 0.96),
-    ("oracle", 2.0, 0.22, 0.985),
+    ("full-observation", 2.0, 0.22, 0.985),
 ];
 
 /// Uniform in [0, 1).
@@ -103,7 +103,6 @@ pub(crate) fn experiment(
         length: Length::Grid { steps: HORIZON },
         trials: seeds,
         sensor_radius: Some(4),
-        other_build: None,
         interrupted: false,
         worlds: (0..worlds).map(world_name).collect(),
         estimators: owned(estimators),

@@ -41,16 +41,13 @@ pub const BLOCKED_FAINT: Rgb = [158, 160, 165];
 /// A cell of a map that was never seen.
 pub const UNKNOWN: Rgb = [211, 219, 232];
 
-const STRATEGIES: [(&str, Rgb); 10] = [
+const STRATEGIES: [(&str, Rgb); 7] = [
     ("curious", CURIOUS),
     ("recency", OTHER_ROBOT),
     ("poisson", PATH),
     ("random", [150, 150, 150]),
     ("coin", SENSOR),
     ("information-gain", GOAL),
-    ("optimal-revisiting", MOVING),
-    ("frontier", [122, 92, 40]),
-    ("oracle", [0, 0, 0]),
     ("full-observation", [110, 110, 110]),
 ];
 

@@ -50,7 +50,8 @@ fn no_folder(path: PathBuf) -> Result<PathBuf, &'static str> {
     if path.is_dir() { Err("it is a folder, not a file") } else { Ok(path) }
 }
 
-const MANUAL: &str = "\
+const MANUAL: &str = concat!(
+    "\
 SUBSCRIBES
   scan_topic (/scan)      sensor_msgs/LaserScan, sensor-data QoS
   /tf, /tf_static         tf2_msgs/TFMessage: odom_frame to base_frame, base_frame to the laser
@@ -91,43 +92,10 @@ SERVICES AND ACTIONS
   route_edges_service     nav2_msgs/DynamicEdges, with route_graph: a client
   navigate_to_pose        nav2_msgs/NavigateToPose, with navigator:=nav2: a client
 
-PARAMETERS (--ros-args -p name:=value, or --params-file FILE)
-  mode                    map | explore [map]
-  navigator               cmd_vel | nav2 | goal_pose: what drives to the goals [cmd_vel]
-  pose                    localized | odometry | exact: how the pose is known [localized]
-  map_frame, odom_frame, base_frame
-                          frames of REP-105 [map, odom, base_footprint; base_link if there is no other]
-  laser_frame             the laser in use, where more than one sends; empty: the first one []
-  scan_topic, odom_topic  [/scan, odom]
-  resolution              side of a cell, m [0.05]
-  map_size                side of the map around the start, m [40.0]
-  max_laser_range         a longer range shows free space up to this one, m [20.0]
-  no_return               what a beam without a return means: learn, free or ignore [learn]
-  range_noise             standard deviation of ranges, m [0.02]
-  map_update_interval     time between two whole maps, s; longer for large maps [5.0]
-  change_horizon          how far ahead change_map looks, s [60.0]
-  prediction_horizon      how far ahead predicted_map and keepout_mask look, s; 0: now [0.0]
-  mask_update_interval    time between two masks, s; 0: no masks [30.0]
-  route_graph             a graph of nav2_route (GeoJSON), whose edges are adjusted; empty: none []
-  route_edges_service     [route_server/DynamicEdgesScorer/adjust_edges]
-  route_update_interval   time between two requests with all edges, s [10.0]
-  transform_publish_period
-                          time between two transforms, s; 0: none [0.02]
-  transform_timeout       how long a transform holds after a scan, s [0.2]
-  lost_after              the time without an agreeing scan after which the robot is lost, s [2.0]
-  robot_radius            m [0.22]
-  max_vel_x, max_vel_theta, acc_lim_x, acc_lim_theta
-                          limits, m/s, rad/s, m/s^2, rad/s^2 [0.26, 1.0, 2.5, 3.2]
-  enable_stamped_cmd_vel  [true]
-  autostart               false: the node waits for a lifecycle manager, unconfigured [true]
-  purpose                 fresh-map | learn-rates | paper: what the robot explores for [paper]
-  strategy                how goals are selected [as is best for purpose]
-  seed                    of random decisions [1]
-  qos_overrides./scan.subscription.reliability
-                          best_effort | reliable [best_effort]
-  use_sim_time            a corrected map replaces the old one after 50 scans, so that a run repeats, and not when
-                          it is ready [false]; all times are those of the messages
-
+PARAMETERS (--ros-args -p name:=value, or --params-file FILE with a file like this one, which has the defaults)
+",
+    include_str!("../../config/params.yaml"),
+    "
 ENVIRONMENT
   ROS_DOMAIN_ID, ROS_AUTOMATIC_DISCOVERY_RANGE, ROS_LOCALHOST_ONLY
   RMW_IMPLEMENTATION      rmw_cyclonedds_cpp: services and actions are those of nodes with CycloneDDS
@@ -140,7 +108,8 @@ EXAMPLES
   curious_node --ros-args --params-file mapping.yaml
 
 EXIT CODES
-  0 ended by Ctrl-C, SIGTERM or SIGHUP; 1 the node failed; 2 an argument or the state file is not valid";
+  0 ended by Ctrl-C, SIGTERM or SIGHUP; 1 the node failed; 2 an argument or the state file is not valid"
+);
 
 fn main() -> ExitCode {
     start(run)

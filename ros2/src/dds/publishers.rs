@@ -1,6 +1,6 @@
 //! What the node sends.
 
-use super::endpoints::Endpoints;
+use super::others::Endpoints;
 use super::{WAIT, profile};
 use crate::link::Wiring;
 use crate::message::{Message, Quality, Topic};

@@ -1,17 +1,19 @@
 //! The services of the node: a thread waits for all requests, and another one sends the answers.
 
-use super::endpoints::Endpoints;
-use super::others::Others;
-use super::{WAIT, profile, reply_size};
+use super::others::{Endpoints, Others};
+use super::{WAIT, profile};
 use crate::link::{Event, Request};
 use crate::message::Quality;
 use crate::service::wire;
 use crate::service::{Call, Reply, Service};
 use futures::executor::block_on_stream;
 use futures::stream::{BoxStream, StreamExt, select_all, unfold};
+use ros2_client::dds::rustdds::{RepresentationIdentifier, serialization::to_writer_with_rep_id};
 use ros2_client::qos::WhenFull;
 use ros2_client::{Message, Name, Node, ReadError, RmwRequestId, Server, ServiceMapping, ServiceTypeName};
+use serde::Serialize;
 use std::collections::BTreeMap;
+use std::io::{self, Write};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender, SyncSender};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
@@ -116,7 +118,7 @@ impl Services {
     pub(super) fn answer(&self, Request(number): Request, reply: Reply) {
         let asked = self.asked.lock().ok().and_then(|mut asked| asked.by_number.remove(&number));
         if let Some((service, id)) = asked {
-            let (reply, is_cut) = reply_size::fitting(reply);
+            let (reply, is_cut) = fitting(reply);
             if is_cut {
                 let name = service.default_name();
                 let text = format!(
@@ -259,4 +261,66 @@ where
         }
     };
     Ok((stream.boxed(), Box::new(send)))
+}
+
+/// The longest answer, bytes: a datagram of 1452 bytes without the headers of RTPS.
+const MAX_REPLY: usize = 1200;
+
+/// The answer, or a shorter one that fits in one datagram, and whether something that was asked for is missing.
+///
+/// The library writes fragments of an answer with one byte too many before the identity of the request (rustdds 0.15.1, `DataFrag`: the
+/// tag of an `Option`). No client can read them, and a build with debug assertions ends the thread of the network. Other messages
+/// have no such identity, and are sent in fragments as they should.
+fn fitting(reply: Reply) -> (Reply, bool) {
+    match reply {
+        Reply::Values(values) if length(&values) > MAX_REPLY => (Reply::Values(Vec::new()), true),
+        Reply::Descriptions(mut all) if length(&all) > MAX_REPLY => {
+            for one in &mut all {
+                one.description.clear();
+                one.additional_constraints.clear();
+            }
+            match length(&all) > MAX_REPLY {
+                true => (Reply::Descriptions(Vec::new()), true),
+                false => (Reply::Descriptions(all), false),
+            }
+        }
+        reply => (reply, false),
+    }
+}
+
+/// The number of bytes of a message; 0 if it cannot be written, which is noticed where it is.
+fn length(message: &impl Serialize) -> usize {
+    struct Count(usize);
+    impl Write for Count {
+        fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+            self.0 += bytes.len();
+            Ok(bytes.len())
+        }
+
+        fn flush(&mut self) -> io::Result<()> {
+            Ok(())
+        }
+    }
+    let mut count = Count(0);
+    to_writer_with_rep_id(&mut count, message, RepresentationIdentifier::CDR_LE).map_or(0, |()| count.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::service::wire::{Description, ParameterValue};
+    use crate::value::Value;
+
+    #[test]
+    fn an_answer_that_is_too_long_is_empty() {
+        let values = |count| Reply::Values(vec![ParameterValue::from(&Value::Float(1.0)); count]);
+        assert_eq!(fitting(values(20)), (values(20), false));
+        assert_eq!(fitting(values(30)), (Reply::Values(Vec::new()), true));
+        let text = "What it means. ".repeat(10);
+        let described =
+            |count| vec![Description { description: text.clone(), ..Description::default() }; count];
+        assert_eq!(fitting(Reply::Descriptions(described(5))), (Reply::Descriptions(described(5)), false));
+        let (Reply::Descriptions(cut), false) = fitting(Reply::Descriptions(described(15))) else { panic!() };
+        assert!(cut.len() == 15 && cut.iter().all(|one| one.description.is_empty()));
+    }
 }

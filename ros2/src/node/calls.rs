@@ -1,23 +1,21 @@
-//! The services of the node.
+//! The services of the node. Those of parameters, which every node of ROS has, are for `ros2 param`, rqt and launch files.
 
 use super::CuriousNode;
 use crate::lifecycle::State;
 use crate::link::{Link, Request};
 use crate::message::{Message, ParameterEvent, Topic};
-use crate::parameter_services::{self, Parametrized};
 use crate::parameters::{Parameters, When};
-use crate::service::wire::Parameter;
+use crate::service::wire::{Description, Listed, Parameter, ParameterValue, Prefixes, SetResult};
 use crate::service::{Call, Reply, Service};
 use crate::value::Value;
+use anyhow::Context;
 use std::time::Instant;
 
 impl<L: Link> CuriousNode<L> {
     /// Answers a call, at once or later.
     pub(super) fn call(&mut self, request: Request, service: Service, call: Call) {
-        if let Some((reply, changed)) = parameter_services::answer(self, service, &call) {
-            self.link.answer(request, reply);
-            return self.publish_changes(changed);
-        }
+        let list = self.parameters.list();
+        let find = |name: &String| list.iter().find(|(known, _)| known == name);
         let reply = match (service, call) {
             (Service::SaveState, _) => return self.save_for(Some(request)),
             (Service::SerializeMap, Call::Name(name)) => return self.serialize(&name, request),
@@ -28,46 +26,55 @@ impl<L: Link> CuriousNode<L> {
             (Service::GetAvailableStates, _) => Reply::States(State::all()),
             (Service::GetAvailableTransitions, _) => Reply::Transitions(self.state.transitions()),
             (Service::GetTransitionGraph, _) => Reply::Transitions(State::graph()),
+            (Service::GetParameters, Call::Names(names)) => {
+                let value = |name| find(name).map(|(_, value)| value.into()).unwrap_or_default();
+                Reply::Values(names.iter().map(value).collect())
+            }
+            (Service::GetParameterTypes, Call::Names(names)) => {
+                let kind = |name| find(name).map_or(0, |(_, value)| ParameterValue::from(value).kind());
+                Reply::Types(names.iter().map(kind).collect())
+            }
+            (Service::DescribeParameters, Call::Names(names)) => {
+                let known = names.iter().filter_map(find);
+                Reply::Descriptions(known.map(|(name, value)| description(name, value)).collect())
+            }
+            (Service::ListParameters, Call::Prefixes(prefixes)) => Reply::Listed(listed(&list, &prefixes)),
+            (Service::SetParameters, Call::Parameters(all)) => {
+                Reply::Results(all.iter().map(|one| self.set_parameters(std::slice::from_ref(one))).collect())
+            }
+            (Service::SetParametersAtomically, Call::Parameters(all)) => {
+                Reply::Result(self.set_parameters(&all))
+            }
             _ => return,
         };
         self.link.answer(request, reply);
     }
 
-    fn publish_changes(&mut self, changed: Vec<Parameter>) {
-        if changed.is_empty() {
-            return;
+    /// Sets all parameters or none.
+    fn set_parameters(&mut self, all: &[Parameter]) -> SetResult {
+        if let Err(why) = self.try_set_parameters(all) {
+            return SetResult { successful: false, reason: why.to_string() };
         }
-        for Parameter { name, value } in &changed {
+        for Parameter { name, value } in all {
             if let Some(value) = value.value() {
                 self.notes.say(&format!("the parameter `{name}` is {value} now"));
             }
         }
         let (stamp, node) = (self.stamp(Instant::now()), self.link.node().to_owned());
+        let changed = all.to_vec();
         let event = ParameterEvent { stamp, node, new: Vec::new(), changed, deleted: Vec::new() };
         self.link.send(Topic::ParameterEvents, Message::ParameterEvent(event));
-    }
-}
-
-impl<L: Link> Parametrized for CuriousNode<L> {
-    fn list(&self) -> Vec<(String, Value)> {
-        self.parameters.list()
+        SetResult { successful: true, reason: String::new() }
     }
 
-    fn about(&self, name: &str) -> (&'static str, Option<&'static str>) {
-        let when = match Parameters::when(name) {
-            When::Always => Some("It can be set at any time."),
-            When::Unconfigured => Some("It can be set while the node is unconfigured."),
-            When::Start => None,
-        };
-        (Parameters::about(name), when)
-    }
-
-    fn set_all(&mut self, all: &[(String, Value)]) -> Result<(), String> {
+    fn try_set_parameters(&mut self, all: &[Parameter]) -> anyhow::Result<()> {
         let mut next = self.parameters.clone();
-        for (name, value) in all {
-            next.set(name, value).map_err(|error| error.to_string())?;
+        for Parameter { name, value } in all {
+            let value = value.value();
+            let none = || format!("the parameter `{name}` must be one value, not a list or nothing");
+            next.set(name, &value.with_context(none)?)?;
         }
-        next.check().map_err(|error| error.to_string())?;
+        next.check()?;
         next.check_change(&self.parameters, self.state == State::Unconfigured)?;
         self.published.set(&next);
         if let Some(routes) = &mut self.routes {
@@ -76,4 +83,45 @@ impl<L: Link> Parametrized for CuriousNode<L> {
         self.parameters = next;
         Ok(())
     }
+}
+
+fn description(name: &str, value: &Value) -> Description {
+    let when = match Parameters::when(name) {
+        When::Always => Some("It can be set at any time."),
+        When::Unconfigured => Some("It can be set while the node is unconfigured."),
+        When::Start => None,
+    };
+    Description {
+        name: name.to_owned(),
+        kind: ParameterValue::from(value).kind(),
+        description: Parameters::about(name).to_owned(),
+        additional_constraints: when.unwrap_or_default().to_owned(),
+        read_only: when.is_none(),
+        ..Description::default()
+    }
+}
+
+/// The names as `rclcpp` lists them: below the prefixes, down to a number of levels.
+fn listed(list: &[(String, Value)], Prefixes { prefixes, depth }: &Prefixes) -> Listed {
+    let is_within = |rest: &str| *depth == 0 || (rest.matches('.').count() as u64) < *depth;
+    let is_below = |name: &str, prefix: &String| {
+        name == prefix
+            || name
+                .strip_prefix(prefix.as_str())
+                .and_then(|rest| rest.strip_prefix('.'))
+                .is_some_and(|rest| is_within(&format!(".{rest}")))
+    };
+    let mut found = Listed::default();
+    for (name, _) in list {
+        let is_all = prefixes.is_empty() && is_within(name);
+        if is_all || prefixes.iter().any(|prefix| is_below(name, prefix)) {
+            found.names.push(name.clone());
+            if let Some((before, _)) = name.rsplit_once('.')
+                && !found.prefixes.iter().any(|known| known == before)
+            {
+                found.prefixes.push(before.to_owned());
+            }
+        }
+    }
+    found
 }

@@ -40,9 +40,7 @@ impl Published {
             switches: 0,
         }
     }
-}
 
-impl Published {
     /// Takes over parameters that have changed.
     pub(super) fn set(&mut self, parameters: &Parameters) {
         self.maps.set(parameters);

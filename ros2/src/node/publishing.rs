@@ -6,8 +6,8 @@ use crate::message::{
     Message, Pose, PoseStamped, PoseWithCovarianceStamped, Time, Topic, Twist as TwistMessage, TwistStamped,
     Vector, header, transform,
 };
-use crate::order::Order;
 use crate::parameters::{Navigator, Parameters};
+use crate::pilot::Order;
 use interfaces::{LaserReading, Twist};
 use nalgebra::Point2;
 use robot::{Belief, Level, Pilot, Turn};

@@ -5,13 +5,13 @@ mod same_robot;
 mod seating;
 
 use super::*;
-use crate::fake::FakeLink;
 use crate::link::Navigation;
 use crate::message::{Bool, Message, Twist as TwistMessage, TwistStamped, Vector};
 use crate::parameters::{Mode, Navigator};
 use crate::service::wire::Trigger;
 use crate::service::{Call, Reply, Service};
 use crate::simulated::{SimulatedRobot, SimulationSettings};
+use crate::tests::fake::FakeLink;
 use interfaces::{CellState, Grid};
 use nalgebra::{Isometry2, Point2};
 use sim::physics::WorldSpec;

@@ -26,6 +26,17 @@ pub enum Navigator {
     GoalPose,
 }
 
+/// When a parameter can be set.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum When {
+    /// At any time.
+    Always,
+    /// While the node is unconfigured: the map, the localization or the controller depend on it.
+    Unconfigured,
+    /// Before the node starts: its topics and services depend on it.
+    Start,
+}
+
 /// A value with a name.
 trait Choice: Copy + PartialEq + 'static {
     /// The names, as an error lists them.

@@ -1,4 +1,6 @@
 use super::*;
+use crate::RosArgs;
+use std::io::Write;
 
 #[test]
 fn every_parameter_has_a_name_a_value_and_a_slot() {
@@ -9,7 +11,7 @@ fn every_parameter_has_a_name_a_value_and_a_slot() {
         set.set(name, value).unwrap();
     }
     assert_eq!(set, Parameters::default());
-    assert_eq!(set.check(), Ok(()));
+    set.check().unwrap();
 }
 
 #[test]
@@ -48,4 +50,81 @@ fn the_shipped_file_has_all_parameters_with_their_defaults() {
     let mut parameters = Parameters { seed: 5, resolution_m: 0.2, ..Parameters::default() };
     parameters.set_all(&given).unwrap();
     assert_eq!(parameters, Parameters::default());
+}
+
+/// The parameters of `/robot1/curious_node` with a file and arguments after it.
+fn set_by_file(text: &str, then: &[&str]) -> Result<Parameters, String> {
+    let mut file = tempfile::NamedTempFile::new().unwrap();
+    file.write_all(text.as_bytes()).unwrap();
+    let path = file.path().to_str().unwrap();
+    let line = ["--ros-args", "--params-file", path].into_iter();
+    let (_, ros) = RosArgs::split(line.chain(then.iter().copied()).map(Into::into))
+        .map_err(|error| error.to_string())?;
+    let mut parameters = Parameters::default();
+    let set = parameters.set_all(ros.parameters_of("/robot1/curious_node"));
+    set.map_err(|error| error.to_string().replace(path, "FILE"))?;
+    Ok(parameters)
+}
+
+#[test]
+fn a_file_sets_what_is_for_this_node_and_later_arguments_replace_it() {
+    let text = "/**:\n  ros__parameters: {resolution: 0.1, use_sim_time: true, yaw_goal_tolerance: 0.1}\n\
+                /robot1/curious_node:\n  ros__parameters: {resolution: 0.02, seed: 5}\n\
+                /robot2/curious_node:\n  ros__parameters: {seed: 6, mode: drive}\n";
+    let parameters = set_by_file(text, &["-p", "seed:=9"]).unwrap();
+    let expected = Parameters { resolution_m: 0.02, seed: 9, use_sim_time: true, ..Parameters::default() };
+    assert_eq!(parameters, expected);
+}
+
+#[test]
+fn what_is_wrong_is_named_with_its_file() {
+    let error = |parameters: &str| {
+        set_by_file(&format!("/robot1/curious_node:\n  ros__parameters:\n    {parameters}\n"), &[])
+            .unwrap_err()
+    };
+    assert_eq!(error("seed: 0.5"), "FILE: the parameter `seed` must be a whole number, not `0.5`");
+    assert_eq!(error("seed: [1, 2]"), "FILE: the parameter `seed` must be one value, not a list or nothing");
+    assert!(error("sede: 1").starts_with("FILE: there is no parameter `sede`; there are mode, "));
+}
+
+#[test]
+fn a_file_for_other_nodes_is_noticed() {
+    let mut file = tempfile::NamedTempFile::new().unwrap();
+    file.write_all(b"other: {ros__parameters: {a: 1}}").unwrap();
+    let path = file.path().to_str().unwrap();
+    let line = ["--ros-args", "--params-file", path].map(Into::into);
+    let (_, ros) = RosArgs::split(line).unwrap();
+    assert_eq!(ros.files_without("/curious_node"), [path]);
+    assert_eq!(ros.files_without("/other"), Vec::<&str>::new());
+}
+
+fn policy(strategy: &str, purpose: &str) -> Result<String, String> {
+    let parameters =
+        Parameters { strategy: strategy.to_owned(), purpose: purpose.to_owned(), ..Parameters::default() };
+    assert_eq!(parameters.check().is_ok(), parameters.policy().is_ok());
+    parameters.policy().map(|policy| policy.name().to_owned()).map_err(|error| error.to_string())
+}
+
+#[test]
+fn a_purpose_names_a_strategy_where_none_is_given() {
+    assert_eq!(policy("", ""), Ok("curious".to_owned()));
+    assert_eq!(policy("", "fresh-map"), Ok("fresh-map".to_owned()));
+    assert_eq!(policy("", "learn-rates"), Ok("information-gain".to_owned()));
+    assert_eq!(policy("", "paper"), Ok("curious".to_owned()));
+    assert_eq!(policy("recency", ""), Ok("recency".to_owned()));
+}
+
+#[test]
+fn wrong_names_and_both_names_are_refused() {
+    assert_eq!(
+        policy("", "fame").unwrap_err(),
+        "the parameter `purpose` must be one of fresh-map, learn-rates, paper, not `fame`"
+    );
+    let error = policy("clever", "").unwrap_err();
+    assert!(error.starts_with("the parameter `strategy` must be one of curious, recency, "), "{error}");
+    assert!(error.ends_with(", not `clever`"), "{error}");
+    assert_eq!(
+        policy("curious", "paper").unwrap_err(),
+        "the parameters `strategy` (`curious`) and `purpose` (`paper`) both name a strategy: leave one of them empty"
+    );
 }

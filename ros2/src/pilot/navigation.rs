@@ -1,10 +1,23 @@
 //! Goals of our agent for another navigation: Nav2, or whatever listens to `goal_pose`.
 
 use crate::link;
-use crate::order::Order;
 use controller::{ControlInput, Outcome, Status};
-use interfaces::heading_rad;
-use nalgebra::Point2;
+use interfaces::{Twist, heading_rad};
+use nalgebra::{Isometry2, Point2};
+
+/// What the node asks of the robot.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) enum Order {
+    /// Nothing.
+    #[default]
+    None,
+    /// To drive at a velocity until the next order.
+    Velocity(Twist),
+    /// To drive to a pose in the frame of the map.
+    Goal(Isometry2<f64>),
+    /// To give up the goal.
+    Cancel,
+}
 
 /// A robot that is nearer to its goal than this is there, m: Nav2's default tolerance.
 const TOLERANCE_M: f64 = 0.25;

@@ -1,12 +1,11 @@
 //! Checks world files: describes them, draws them, and reports every error.
 
 mod inspection;
-mod simulation;
 
 use anyhow::bail;
 use clap::Parser;
 use cli::flags::folder;
-use cli::program::{Failure, duration_s, start};
+use cli::program::{Failure, start};
 use cli::terminal::{print, say};
 use files::{make_folder, write_file};
 use inspection::{Content, Inspection, as_world_file, inspect};
@@ -32,7 +31,6 @@ use viewer::pictures::draw_plan;
         check_world my_house.toml                  describe the world, or report its errors\n  \
         check_world --png four_rooms two_blocks    draw shipped worlds to four_rooms.png, two_blocks.png\n  \
         check_world --png --out plans lab.world    draw a Stage world to plans/lab.world.png\n  \
-        check_world --simulate 20m my_house.toml   see whether its robots get stuck\n  \
         check_world --toml lab.world               convert a Stage world to lab.world.toml, for four_rooms\n\n\
         Exit codes: 0 all files are valid (with or without warnings), 1 a file cannot be written, 2 a file is \
         invalid."
@@ -49,15 +47,6 @@ struct Args {
     /// Convert each valid Stage world to a world file, FILE.toml
     #[arg(long)]
     toml: bool,
-
-    /// Simulate each valid physics world for a time (as 90, 20m, 2h), and report robots that stand for a minute or
-    /// longer, and contacts
-    #[arg(long, value_name = "TIME", value_parser = duration_s, allow_negative_numbers = true)]
-    simulate: Option<f64>,
-
-    /// The seed of the simulation
-    #[arg(long, default_value_t = 0, requires = "simulate")]
-    seed: u64,
 
     /// The folder for the written files; created if it does not exist
     #[arg(long, value_name = "DIR", default_value = ".", value_parser = folder())]
@@ -77,11 +66,6 @@ fn check(args: &Args) -> Result<ExitCode, Failure> {
             say(stderr(), format_args!("{message}\n"));
         }
         let mut lines = describe(&inspection);
-        let fleet = inspection.content.as_ref().and_then(|content| content.fleet.as_ref());
-        if let (Some(fleet), Some(duration_s)) = (fleet, args.simulate) {
-            let simulated = simulation::lines(fleet, args.seed, duration_s).into_iter();
-            lines.extend(simulated.map(line));
-        }
         let outcome = match &inspection.content {
             Some(content) => write(content, file, args, &mut written, &mut lines),
             None => {
@@ -106,13 +90,8 @@ fn describe(inspection: &Inspection) -> Vec<String> {
     let first = format!("{file}: valid, a {kind} named `{}`", scene.title);
     let description = description.split_whitespace().collect::<Vec<_>>().join(" ");
     let second = (!description.is_empty()).then(|| format!("  {}", printable(&description)));
-    let others = lines.iter().cloned().map(line);
+    let others = lines.iter().map(|(name, what)| format!("  {name:<9} {what}"));
     [first].into_iter().chain(second).chain(others).collect()
-}
-
-/// A part of a description as a line.
-fn line((name, what): (&str, String)) -> String {
-    format!("  {name:<9} {what}")
 }
 
 /// Writes the picture and the world file, and adds their names to the `lines` for the user. The name of a file is

@@ -1,5 +1,6 @@
 //! Cells that change, in groups: those of a door, those of a piece of furniture, and neighboring ones.
 
+use crate::patches::connected;
 use interfaces::{Cell, GridFrame};
 use mapper::{Mapper, ThingKind};
 use std::collections::BTreeSet;
@@ -45,8 +46,9 @@ pub(super) fn groups(mapper: &Mapper) -> Vec<Group> {
             found.push(Group { cells, thing: Some(thing.id) });
         }
     }
+    let reach = (APART_M / mapper.frame().resolution_m()).round().max(1.0) as i32;
     while let Some(first) = left.pop_first() {
-        let cells = connected_cells(mapper, first, &mut left);
+        let cells = connected(mapper.frame(), first, reach, &mut left);
         found.extend(divided(mapper.frame(), cells).into_iter().map(|cells| Group { cells, thing: None }));
     }
     found
@@ -60,23 +62,6 @@ fn cells_of<'a>(kind: &'a ThingKind, all: &'a [u32]) -> &'a [u32] {
             furniture.to.as_ref().or(furniture.from.as_ref()).map_or(all, |place| &place.cells)
         }
     }
-}
-
-/// The cells of `left` that are connected with `first`; they are removed from `left`.
-fn connected_cells(mapper: &Mapper, first: usize, left: &mut BTreeSet<usize>) -> Vec<usize> {
-    let frame = mapper.frame();
-    let reach = (APART_M / frame.resolution_m()).round().max(1.0) as i32;
-    let (mut cells, mut next) = (vec![first], 0);
-    while let Some(cell) = cells.get(next).map(|index| frame.cell(*index)) {
-        next += 1;
-        for y in -reach..=reach {
-            for x in -reach..=reach {
-                let beside = Cell { x: cell.x + x, y: cell.y + y };
-                cells.extend(frame.index(beside).filter(|index| left.remove(index)));
-            }
-        }
-    }
-    cells
 }
 
 /// Cells in groups that are at most [`MAX_M`] long: a longer group is cut across its longer side, in the middle half of it,

@@ -25,24 +25,3 @@ fn the_output_folder_is_complete() {
     let drawing = std::fs::read_to_string(run.out("figure3.svg")).unwrap();
     assert!(drawing.contains("<svg") && drawing.trim_end().ends_with("</svg>"));
 }
-
-#[test]
-fn the_table_of_trials_has_every_trial_at_every_sample() {
-    let run =
-        super::ran("--steps 300 --trials 2 --seed 4 --strategy recency --strategy random --estimator paper");
-    let rows = super::rows(&run);
-    let trials: std::collections::BTreeSet<_> =
-        rows.iter().map(|row| (row.strategy.clone(), row.seed)).collect();
-    let expected = [("random", 4), ("random", 5), ("recency", 4), ("recency", 5)];
-    assert_eq!(trials, expected.map(|(name, seed)| (name.to_owned(), seed)).into());
-    assert!(rows.iter().all(|row| row.world == "two blocks" && row.estimator == "paper"));
-    for trial in rows.chunk_by(|a, b| (&a.strategy, a.seed) == (&b.strategy, b.seed)) {
-        assert_eq!(trial.len(), 80);
-        assert_eq!(trial[79].step, 300);
-        assert!(trial.windows(2).all(|pair| pair[0].step < pair[1].step));
-        // No block event has happened in the first step, and many have at the end.
-        assert!(trial[0].rate_error.is_none() && trial[0].log_error.is_none(), "{:?}", trial[0]);
-        assert!(trial[79].rate_error.is_some() && trial[79].log_error.is_some(), "{:?}", trial[79]);
-        assert!(trial.iter().all(|row| (0.0..=1.0).contains(&row.coverage)), "{trial:?}");
-    }
-}

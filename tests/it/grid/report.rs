@@ -1,4 +1,4 @@
-//! `report.json` is complete, and agrees with `trials.csv`.
+//! `report.json` agrees with `trials.csv`.
 
 use super::{Row, ran, report, rows};
 use crate::run::Run;
@@ -15,84 +15,11 @@ static RUN: LazyLock<Run> = LazyLock::new(|| {
 
 const STRATEGIES: [&str; 3] = ["curious", "poisson", "recency"];
 
-fn keys(value: &Value) -> Vec<&str> {
-    value.as_object().unwrap().keys().map(String::as_str).collect()
-}
-
 /// A number, or a value that is not a number.
 fn number(value: &Value) -> f64 {
     match value {
         Value::Null => f64::NAN,
         value => value.as_f64().unwrap_or_else(|| panic!("{value} is neither a number nor null")),
-    }
-}
-
-#[test]
-fn it_has_every_key() {
-    let report = report(&RUN);
-    let top = ["version", "arguments", "steps", "trials", "sensor_radius", "runs"];
-    assert!(top.iter().all(|key| keys(&report).contains(key)), "{:?}", keys(&report));
-    assert_eq!(report["version"], env!("CARGO_PKG_VERSION"));
-    let arguments = report["arguments"].as_array().unwrap();
-    assert_eq!(arguments[..2], ["--world", "two_blocks"]);
-    assert!(!arguments.contains(&"--quiet".into()) && !arguments.contains(&"--out".into()), "{arguments:?}");
-    assert_eq!([&report["steps"], &report["trials"], &report["sensor_radius"]], [600, 3, 4]);
-    assert_eq!(report["interrupted"], false);
-
-    let runs = report["runs"].as_array().unwrap();
-    let which: Vec<_> =
-        runs.iter().map(|run| [run["world"].as_str().unwrap(), run["estimator"].as_str().unwrap()]).collect();
-    assert_eq!(
-        which,
-        [
-            ["two blocks", "paper"],
-            ["two blocks", "two-state"],
-            ["open hall", "paper"],
-            ["open hall", "two-state"],
-            ["all worlds (2)", "paper"],
-            ["all worlds (2)", "two-state"],
-        ]
-    );
-    for run in runs {
-        let mut names = keys(&run["strategies"]);
-        names.sort_unstable();
-        assert_eq!(names, STRATEGIES);
-        for strategy in run["strategies"].as_object().unwrap().values() {
-            for curve in ["rate_error", "log_error", "map_quality"] {
-                check_curve(&strategy[curve]);
-            }
-            for value in [
-                "final_rate_error",
-                "rate_error_area",
-                "final_log_error",
-                "log_error_area",
-                "final_map_quality",
-            ] {
-                assert!(number(&strategy[value]).is_finite(), "{value} of {}", run["world"]);
-            }
-        }
-        for comparison in run["comparisons"].as_array().unwrap() {
-            let [a, b] = ["a", "b"].map(|key| comparison[key].as_str().unwrap());
-            assert!(a != b && STRATEGIES.contains(&a) && STRATEGIES.contains(&b), "{a}, {b}");
-            assert!(comparison["metric"].is_string());
-            let [mean, low, high, p] =
-                ["mean_difference", "low", "high", "p_value"].map(|key| number(&comparison[key]));
-            assert!(!(low > mean || mean > high), "{comparison}");
-            assert!(p.is_nan() || (0.0..=1.0).contains(&p), "{comparison}");
-        }
-    }
-}
-
-/// Step, mean and 95 % interval, 80 times.
-fn check_curve(curve: &Value) {
-    let points = curve.as_array().unwrap();
-    assert_eq!(points.len(), 80);
-    let steps: Vec<u64> = points.iter().map(|point| point[0].as_u64().unwrap()).collect();
-    assert!(steps.is_sorted_by(|a, b| a < b) && steps[79] == 600, "{steps:?}");
-    for point in points {
-        assert_eq!(point.as_array().unwrap().len(), 4, "{point}");
-        let [mean, low, high] = [1, 2, 3].map(|column| number(&point[column]));
-        assert!(mean.is_nan() || !(low > mean || mean > high), "{point}");
     }
 }
 

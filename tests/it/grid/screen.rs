@@ -32,23 +32,6 @@ fn worlds_are_listed() {
 }
 
 #[test]
-fn the_version_is_printed() {
-    let expected = concat!("grid_world ", env!("CARGO_PKG_VERSION"), "\n");
-    assert_eq!(Run::grid().goes_well("--version").stdout, expected);
-}
-
-#[test]
-fn help_names_every_choice() {
-    let help = Run::grid().goes_well("--help").stdout;
-    let choices = "--world --generate --strategy --estimator --trials --steps --seed --sensor-radius --threads \
-                   --out --rrd --quiet --list-worlds --save-worlds --stochastic --max-steps";
-    for choice in choices.split_whitespace() {
-        assert!(help.contains(choice), "{choice} is not in\n{help}");
-    }
-    assert!(help.lines().all(|line| line.chars().count() <= 100), "{help}");
-}
-
-#[test]
 #[cfg(target_os = "linux")]
 fn a_terminal_shows_a_bar_that_goes_away() {
     let run = Run::grid();

@@ -1,6 +1,6 @@
 use super::*;
 use crate::FREE;
-use crate::tests::{costmap, find};
+use crate::tests::costmap;
 use nalgebra::Point2;
 use proptest::prelude::*;
 use std::cmp::Reverse;
@@ -98,25 +98,6 @@ proptest! {
             prop_assert!(moves == Moves::Eight || !path.windows(2).any(diagonal));
         }
     }
-}
-
-#[test]
-fn the_path_leads_through_the_door() {
-    let rows = ["....#....", "....#....", "R...D....", "....#....", "....#...G"];
-    let map = costmap(&rows);
-    let mut wave = Wavefront::new(*map.frame(), Moves::Eight);
-    assert!(wave.spread(&map, find(&rows, 'G'), Some(find(&rows, 'R'))));
-    let path = wave.descend(&map, find(&rows, 'R'));
-    assert!(path.contains(&find(&rows, 'D')));
-}
-
-#[test]
-fn nothing_leads_through_a_wall_or_between_two_corners() {
-    let rows = ["R.#..", "..#.G", "###..", "....."];
-    let map = costmap(&rows);
-    let mut wave = Wavefront::new(*map.frame(), Moves::Eight);
-    assert!(!wave.spread(&map, find(&rows, 'G'), Some(find(&rows, 'R'))));
-    assert_eq!(wave.descend(&map, find(&rows, 'R')), []);
 }
 
 #[test]

@@ -2,17 +2,18 @@
 
 use super::{MapMatcher, Step};
 use crate::changing_map::ChangingMap;
-use crate::constants::{
-    AMBIGUOUS, CELLS_PER_LOOKUP, MAX_REACH_M, MAX_SIDE_M, MAX_WORK, MIN_FOUND, MIN_SCORE,
-};
+use crate::constants::{AMBIGUOUS, CELLS_PER_LOOKUP, MAX_SIDE_M, MAX_WORK, MIN_FOUND, MIN_SCORE};
 use crate::hypotheses::Hypotheses;
 use crate::motion::Motion;
 use crate::scan_points::ScanPoint;
 use crate::score_grid::ScoreGrid;
-use crate::search::{Search, Window, lower, search_within};
+use crate::search::{Search, Window, lower, search};
 use interfaces::GridFrame;
 use nalgebra::{Isometry2, Point2, Vector2};
 use std::f64::consts::PI;
+
+/// Surfaces farther away are not looked for in parts of a map, m.
+const MAX_REACH_M: f64 = 28.8;
 
 /// A search that goes on in the next scan.
 #[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
@@ -87,7 +88,7 @@ impl MapMatcher {
         let grid = self.scores(step, window, reach_m);
         *left = left.saturating_sub(grid.cells() / CELLS_PER_LOOKUP);
         let points = near(&step.scan.points, reach_m);
-        search_within(left, &grid, &points, Some(window), (MIN_FOUND, AMBIGUOUS))
+        search(left, &grid, &points, window, (MIN_FOUND, AMBIGUOUS))
     }
 
     /// The scores of what can be seen from a window.
@@ -120,7 +121,7 @@ impl MapMatcher {
 
     /// Searches in the present part, or in the next one. Returns false after the last one.
     fn search_part<M: ChangingMap>(&self, step: &Step<M>, wide: &mut WideSearch, left: &mut usize) -> bool {
-        let Some(window) = wide.window(wide.next, self.surfels.frame()) else { return false };
+        let Some(window) = wide.window(wide.next, &self.surfels.frame) else { return false };
         if wide.scores.as_ref().is_none_or(|(number, _)| *number != wide.next) {
             if *left < MAX_WORK / 2 {
                 *left = 0; // the tables of a large part are made in the next scan
@@ -134,17 +135,14 @@ impl MapMatcher {
         let begin = || {
             let points = near(&step.scan.points, wide.reach_m);
             let min_score = if wide.found.is_empty() { 0.0 } else { AMBIGUOUS * wide.best_score };
-            (
-                Search::new(&points, Some(window), wide.min_score.max(min_score), AMBIGUOUS),
-                Isometry2::identity(),
-            )
+            (Search::new(&points, window, wide.min_score.max(min_score), AMBIGUOUS), Isometry2::identity())
         };
-        let (search, since) = wide.part.get_or_insert_with(begin);
-        if search.pass(scores, left) {
-            let mut candidates = search.candidates(scores);
+        let (begun, since) = wide.part.get_or_insert_with(begin);
+        if begun.pass(scores, left) {
+            let mut candidates = begun.candidates(scores);
             candidates.iter_mut().for_each(|pose| *pose *= *since);
             let found = Hypotheses::start(&self.scene(step), &candidates, MIN_SCORE);
-            wide.best_score = wide.best_score.max(search.best_score());
+            wide.best_score = wide.best_score.max(begun.best_score());
             wide.found = std::mem::take(&mut wide.found).restarted().or(found);
             wide.part = None;
             wide.next += 1;

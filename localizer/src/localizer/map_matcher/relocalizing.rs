@@ -30,18 +30,6 @@ impl Default for Relocalization {
     }
 }
 
-impl Relocalization {
-    /// Forgets the found poses.
-    pub(in crate::localizer) fn forget(&mut self) {
-        self.hypotheses = Hypotheses::default();
-    }
-
-    /// Ends a search in the whole map.
-    pub(in crate::localizer) fn end_wide(&mut self) {
-        self.wide = None;
-    }
-}
-
 impl MapMatcher {
     /// Searches around a pose that the scan contradicts, though a pose prior allows it: a robot that was carried along a
     /// corridor still sees most of its walls. If another pose is clearly better, the prior was wrong.
@@ -94,7 +82,7 @@ impl MapMatcher {
             }
         }
         if !found.is_empty() {
-            self.relocalization.end_wide();
+            self.relocalization.wide = None;
         }
         let is_confirmed = is_near && found.contains(&tracked.placement.pose);
         if is_confirmed && tracked.support.confirmed >= MIN_CONFIRMED {

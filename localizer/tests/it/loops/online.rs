@@ -6,12 +6,11 @@ use super::ahead;
 use super::world::{Corridor, Plan};
 use crate::robot::{Odometry, PERIOD_S, furnished, mapper};
 use localizer::{Localizer, LocalizerSettings, LoopClosed, LoopClosingLocalizer, PoseState, Switch};
-use trips::{RESTING, Run, narrow, quantile, switched, switched_in, trip, walls_m};
+use trips::{RESTING, Run, narrow, quantile, switched, trip, walls_m};
 
 #[test]
 fn a_loop_is_closed_while_the_robot_drives() {
     let trip = trip(narrow(101), 1.5, 101, false);
-    trip.report("50 m");
     let [first, second] = [0, 1].map(|round| quantile(&trip.errors_m[round], 0.95));
     assert!(first > 0.12 && second < 0.08, "{first} {second}");
     assert_eq!(trip.corrections.len(), 1);
@@ -32,7 +31,6 @@ fn robots_beside_smooth_walls() {
 #[test]
 fn a_robot_that_was_lost_gets_the_map_of_the_corrected_trajectory() {
     let trip = trip(mostly_smooth(105), 1.5, 105, false);
-    trip.report("100 m, mostly smooth");
     // Of the few poses that were certain before, none has moved by what otherwise makes a new map worth it.
     assert!(trip.corrections[0].1.largest_m < 0.05, "{:?}", trip.corrections);
     assert!(quantile(&trip.errors_m[1], 1.0) < 0.5 && trip.not_certain[1] < 500);
@@ -43,7 +41,6 @@ fn a_robot_that_was_lost_gets_the_map_of_the_corrected_trajectory() {
 fn alone_and_guided(corridor: impl Fn() -> Corridor) -> [(usize, f64); 2] {
     [true, false].map(|plain| {
         let trip = trip(corridor(), 1.0, 102, plain);
-        trip.report(if plain { "50 m, the localizer alone" } else { "50 m" });
         (trip.not_certain[0], quantile(&trip.errors_m[0], 0.95))
     })
 }
@@ -82,11 +79,7 @@ fn a_run_that_goes_on_equals_one_that_was_not_interrupted() {
 fn a_loop_is_closed_beside_the_robot() {
     let at_once = switched(Switch::AtOnce);
     for switch in [Switch::After(30), Switch::WhenReady] {
-        let (poses, changes, worst_m, longest_ms) = switched(switch.clone());
-        println!(
-            "{switch:?}: {changes:?}, {worst_m:.2} m, {longest_ms:.0} ms; at once: {:?}, {:.0} ms",
-            at_once.1, at_once.3
-        );
+        let (poses, changes, worst_m) = switched(switch.clone());
         let [(reading, read_again)] = changes[..] else { panic!("{switch:?}: {changes:?}") };
         // Until it changes the map, the robot goes on in the old one.
         let (begun, _) = at_once.1[0];
@@ -184,19 +177,4 @@ fn long_loops_are_closed() {
         }
     }
     assert!(worst_m[0] < 0.5 && worst_m[1] < 0.2, "{worst_m:?} m");
-}
-
-/// The longest time for a reading where thousands are read again, in a thread and at once. On a machine without other work:
-///
-/// ```text
-/// cargo test -p curious-localizer --test it loops::online::thousands -- --ignored --nocapture
-/// ```
-#[test]
-#[ignore = "takes minutes"]
-fn thousands_of_readings_are_read_again_beside_the_robot() {
-    for switch in [Switch::WhenReady, Switch::AtOnce] {
-        let (_, changes, worst_m, longest_ms) =
-            switched_in(ahead(Corridor::new([62.0, 41.0], Plan::Varied, 101)), switch.clone(), 0.5);
-        println!("{switch:?}: {changes:?}, {worst_m:.2} m, at most {longest_ms:.0} ms for a reading");
-    }
 }

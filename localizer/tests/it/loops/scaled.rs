@@ -30,7 +30,7 @@ fn readings(corridor: &mut Corridor, seed: u64) -> (Vec<LaserReading>, Vec<Isome
 }
 
 fn pass(readings: &[LaserReading], truth: &[Isometry2<f64>], scale: Option<&DistanceScale>) -> Trip {
-    let mut finder = TrajectoryFinder::new(&TrajectorySettings::default()).unwrap();
+    let mut finder = finder();
     if let Some(scale) = scale {
         finder = finder.with_distance_scale(scale);
     }
@@ -39,7 +39,7 @@ fn pass(readings: &[LaserReading], truth: &[Isometry2<f64>], scale: Option<&Dist
         finder.add(reading.clone());
         local.push(finder.local_pose());
     }
-    Trip { trajectory: finder.finish(), local, truth: truth.to_vec(), drift_m: 0.0, per_scan_ms: 0.0 }
+    Trip { trajectory: finder.finish(), local, truth: truth.to_vec(), drift_m: 0.0 }
 }
 
 #[test]
@@ -48,12 +48,11 @@ fn a_scale_that_is_seen_at_the_end_corrects_the_begin() {
         let mut corridor = Corridor::new([50.0, 8.0], Plan::OneSide, seed);
         let (readings, truth) = readings(&mut corridor, seed);
         let first = pass(&readings, &truth, None);
-        let before_m = first.report("bare corridors first");
+        let before_m = first.error_m();
         let scale = first.trajectory.distance_scale.unwrap();
         let off = (scale.scale - TRUE_SCALE).abs();
-        println!("{scale:?}, true {TRUE_SCALE:.4}");
         assert!(off < 0.015 && off < 4.0 * scale.std && scale.is_significant(), "{scale:?}");
-        let after_m = pass(&readings, &truth, Some(&scale)).report("the same, with the scale");
+        let after_m = pass(&readings, &truth, Some(&scale)).error_m();
         assert!(after_m < 0.6 * before_m, "{before_m} m, then {after_m} m");
     }
 }

@@ -1,7 +1,7 @@
 //! Corridors around a block, with niches and rooms behind doors; rays are cast against every near wall.
 
 use crate::robot::PERIOD_S;
-use interfaces::{GridFrame, LaserReading, Purpose, RandomStream, Scan, Twist};
+use interfaces::{GridFrame, LaserReading, Purpose, RandomStream, Scan};
 use nalgebra::{Isometry2, Point2, Vector2};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -189,9 +189,6 @@ impl Corridor {
         LaserReading {
             time_s,
             pose,
-            twist: Twist::STOP,
-            velocities: Vec::new(),
-            mount: Isometry2::identity(),
             scan: Scan {
                 angle_min_rad,
                 angle_increment_rad: increment,
@@ -200,6 +197,7 @@ impl Corridor {
                 sweep_s: if self.sweeps { PERIOD_S } else { 0.0 },
                 ranges_m,
             },
+            ..LaserReading::default()
         }
     }
 }

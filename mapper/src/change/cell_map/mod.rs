@@ -65,7 +65,7 @@ impl CellMap {
 
     pub(crate) fn new(prior: Grid<CellState>, estimator: EstimatorChoice, max_gap: f64) -> Self {
         let frame = *prior.frame();
-        let gaps = SharedCells::new(estimator.gap_model().map(|_| &frame));
+        let gaps = SharedCells::new(estimator.weighs_gaps().then_some(&frame));
         let shared = estimator.shares_prior().then(|| SharedPrior::new(&frame));
         let known: Vec<usize> =
             prior.cells().other_than(CellState::Unknown).map(|(index, _)| index).collect();

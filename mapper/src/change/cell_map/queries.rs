@@ -171,10 +171,9 @@ impl CellMap {
             return None;
         }
         let seen = CellStatistics { period, ..self.statistics(index) };
-        let model = self.estimator.gap_model().filter(|model| model.is_two_state());
-        let belief = match model {
-            Some(model) => self.gaps[index].belief(model, &seen, &self.regularity),
-            None => Belief {
+        let belief = match self.estimator.weighs_gaps() {
+            true => self.gaps[index].belief(&seen, &self.regularity),
+            false => Belief {
                 exposure: Exposure::in_view(&seen) + Exposure::uniform(MEAN_EVENTS, 1.0),
                 mixed: 0.0,
             },

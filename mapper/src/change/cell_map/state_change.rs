@@ -95,9 +95,9 @@ impl CellMap {
             return;
         }
         let seen = self.statistics(index);
-        let Some(model) = self.estimator.gap_model().filter(|_| self.gaps[index].is_due(&seen)) else {
+        if !self.estimator.weighs_gaps() || !self.gaps[index].is_due(&seen) {
             return;
-        };
+        }
         let (frame, Cell { x, y }) = (self.frame(), self.frame().cell(index));
         let cells = (y - NEAR..=y + NEAR).flat_map(|y| (x - NEAR..=x + NEAR).map(move |x| Cell::new(x, y)));
         let others = cells.filter_map(|cell| frame.index(cell)).filter(|&other| other != index);
@@ -106,7 +106,7 @@ impl CellMap {
             others.map(|other| self.gaps[other].weights().own),
         );
         if let Some(gaps) = self.gaps.get_mut(index) {
-            gaps.weigh(model, &seen, prior, &self.regularity);
+            gaps.weigh(&seen, prior, &self.regularity);
         }
     }
 }

@@ -9,7 +9,7 @@ mod shared_prior;
 mod two_state;
 mod two_state_gaps;
 
-use super::{CellStatistics, GapModel, TransitionRates};
+use super::{CellStatistics, TransitionRates};
 pub use paper::{Paper, PaperAll};
 pub use shared_prior::SharedPrior;
 use std::fmt;
@@ -42,10 +42,10 @@ pub trait Estimator: fmt::Debug + Send + Sync {
         Some(TransitionRates::shared(seen, 1.0 / self.interval(seen)))
     }
 
-    /// The model of the gaps in the view. Without a model, gaps are not recorded, and [`CellStatistics::gap_worth`]
-    /// stays 0.
-    fn gap_model(&self) -> Option<&dyn GapModel> {
-        None
+    /// Whether gaps in the view are recorded and weighed as those of a two-state chain. Otherwise [`CellStatistics::gap_worth`]
+    /// stays 0, and credible intervals are those without gaps.
+    fn weighs_gaps(&self) -> bool {
+        false
     }
 
     /// Whether all traversable cells (free, or ever changed) share a prior. Only then [`CellStatistics::prior`] is learned,
@@ -113,8 +113,8 @@ impl EstimatorChoice {
         self.0.shares_prior()
     }
 
-    pub(crate) fn gap_model(&self) -> Option<&dyn GapModel> {
-        self.0.gap_model()
+    pub(crate) fn weighs_gaps(&self) -> bool {
+        self.0.weighs_gaps()
     }
 }
 

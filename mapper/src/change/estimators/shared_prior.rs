@@ -1,5 +1,5 @@
 use super::{Estimator, TwoStateGaps};
-use crate::change::{CellStatistics, GapModel, TransitionRates};
+use crate::change::{CellStatistics, TransitionRates};
 
 /// `shared-prior`: the changes in view, as in equation 1, with a prior that all traversable cells share (empirical
 /// Bayes). Few events are shrunk toward the mean rate of all cells, and a cell without an event has a rate above 0, the lower the
@@ -25,8 +25,8 @@ impl Estimator for SharedPrior {
         TwoStateGaps.transition_rates(seen)
     }
 
-    fn gap_model(&self) -> Option<&dyn GapModel> {
-        TwoStateGaps.gap_model()
+    fn weighs_gaps(&self) -> bool {
+        true
     }
 
     fn shares_prior(&self) -> bool {

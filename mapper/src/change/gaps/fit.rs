@@ -1,30 +1,30 @@
 //! The two-state chain that explains the observations of a cell best, gaps included.
 
-use super::GapHistogram;
+use super::histogram::GapHistogram;
 use crate::change::Exposure;
 use crate::change::transition_kernel::{Prediction, Step, TransitionKernel};
 
 /// The observations to which a chain is fitted.
-pub(in crate::change) struct Observations<'a> {
+pub(super) struct Observations<'a> {
     /// The exposure in view, with the prior.
-    pub(in crate::change) exposure: Exposure,
+    pub(super) exposure: Exposure,
     /// The gaps.
-    pub(in crate::change) gaps: &'a GapHistogram,
+    pub(super) gaps: &'a GapHistogram,
     /// The time of one step.
-    pub(in crate::change) period: f64,
+    pub(super) period: f64,
     /// The regularity of stays, per state.
-    pub(in crate::change) regular: [f64; 2],
+    pub(super) regular: [f64; 2],
 }
 
 /// The maximum of the posterior, and its shape there.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::change) struct Fit {
+pub(super) struct Fit {
     /// The transition probabilities per step.
-    pub(in crate::change) step: Step,
+    pub(super) step: Step,
     /// The exposure whose score and information equal those of the gaps at the maximum.
-    pub(in crate::change) worth: Exposure,
+    pub(super) worth: Exposure,
     /// The mixed term of the information of the gaps, in log-odds.
-    pub(in crate::change) mixed: f64,
+    pub(super) mixed: f64,
 }
 
 /// The maximum number of scoring steps. Most fits take two or three.
@@ -88,7 +88,7 @@ impl Observations<'_> {
 
     /// Fits by Fisher scoring from `start`, with smaller steps where a full step would lead downhill; `None` if a
     /// result is not finite.
-    pub(in crate::change) fn fit(&self, start: Step) -> Option<Fit> {
+    pub(super) fn fit(&self, start: Step) -> Option<Fit> {
         let mut odds = [start.block, start.free].map(|leave| {
             let odds = libm::log(leave) - libm::log1p(-leave);
             odds.clamp(-EXTREME, EXTREME)

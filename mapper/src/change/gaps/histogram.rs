@@ -10,14 +10,14 @@ const LONGEST: f64 = (1u64 << 40) as f64;
 
 /// The gaps of about one length with the same states before and after.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
-pub struct GapBin {
+pub(in crate::change) struct GapBin {
     /// The length's exponent and leading binary digits, then the state before and after.
     key: u16,
     /// The number of gaps.
-    pub count: u32,
+    pub(crate) count: u32,
     /// The sum of the lengths of these gaps, in the time unit of the readings.
     #[serde(with = "interfaces::serde_time")]
-    pub total: f64,
+    pub(crate) total: f64,
 }
 
 /// The number of binary digits of a length, after the leading digit, that distinguish bins: two bins per octave;
@@ -30,17 +30,17 @@ const MORE_BINS: usize = 3;
 
 impl GapBin {
     /// Whether the cell was blocked before these gaps.
-    pub fn before(self) -> bool {
+    pub(crate) fn before(self) -> bool {
         self.key & 2 != 0
     }
 
     /// Whether the cell was blocked after these gaps.
-    pub fn after(self) -> bool {
+    pub(crate) fn after(self) -> bool {
         self.key & 1 != 0
     }
 
     /// The mean length of these gaps.
-    pub fn length(self) -> f64 {
+    pub(crate) fn length(self) -> f64 {
         self.total / f64::from(self.count)
     }
 }
@@ -70,7 +70,7 @@ impl Gap {
 /// All gaps of one cell, by length and by the states before and after.
 #[derive(Clone, Debug, Default, PartialEq, serde::Deserialize, serde::Serialize)]
 #[serde(from = "Saved", into = "Saved")]
-pub struct GapHistogram {
+pub(in crate::change) struct GapHistogram {
     /// In the order of their keys.
     bins: SmallVec<[GapBin; 1]>,
     /// The last gap: later readings can correct its states.
@@ -129,12 +129,12 @@ impl GapHistogram {
     }
 
     /// The number of gaps.
-    pub fn count(&self) -> u32 {
+    pub(crate) fn count(&self) -> u32 {
         self.bins.iter().map(|bin| bin.count).sum()
     }
 
     /// The bins that hold a gap, by ascending length.
-    pub fn iter(&self) -> impl Iterator<Item = GapBin> + Clone {
+    pub(crate) fn iter(&self) -> impl Iterator<Item = GapBin> + Clone {
         self.bins.iter().copied()
     }
 

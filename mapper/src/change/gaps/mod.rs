@@ -1,17 +1,18 @@
 //! The information in the gaps in the view of a cell: the state before, the state after, and the time between.
 //!
-//! [`CellGaps`] collects the gaps of a cell and decides when they are weighed. The [`GapModel`] of the estimator
-//! computes the weights.
+//! [`CellGaps`] collects the gaps of a cell, decides when they are weighed, and computes their weights: maximum a posteriori of a
+//! two-state Markov chain.
 
-pub(super) mod fit;
+mod fit;
 mod histogram;
 pub(super) mod neighbors;
 mod regularity;
 
 use super::transition_kernel::Step;
 use super::{CellStatistics, Exposure, GapWorth};
+use fit::Observations;
 pub(super) use histogram::Gap;
-pub use histogram::{GapBin, GapHistogram};
+use histogram::GapHistogram;
 pub(super) use regularity::Regularity;
 
 /// The number of events of a cell without any observation, in one step. With Jeffreys' prior the rate after n
@@ -25,53 +26,24 @@ pub(super) const MEAN_EVENTS: f64 = 0.5;
 /// work per gap is bounded, and little information is missing in between.
 const COUNTED_GROWTH: f64 = 1.0 / 8.0;
 const WATCHED_GROWTH: f64 = 1.0 / 4.0;
-
-/// Computes the information that the gaps of a cell give about its rates.
-pub trait GapModel {
-    /// Weighs the gaps of a cell. With `None`, the previous result is kept.
-    fn weigh(&self, evidence: &GapEvidence<'_>) -> Option<GapWeights>;
-
-    /// Whether [`GapWeights::worth`] is the exposure of a two-state chain. Only then do credible intervals take the
-    /// gaps into account.
-    fn is_two_state(&self) -> bool {
-        false
-    }
-}
-
-/// The inputs of a [`GapModel`] for one cell.
-#[derive(Clone, Copy, Debug)]
-pub struct GapEvidence<'a> {
-    /// The statistics of the cell.
-    pub seen: &'a CellStatistics,
-    /// The gaps.
-    pub gaps: &'a GapHistogram,
-    /// The prior: an exposure that stands for the knowledge before any observation.
-    pub prior: Exposure,
-    /// The exposure of the cells nearby, weighted by how much they resemble this cell.
-    pub neighbors: Exposure,
-    /// The stays that began and ended with an event in view: their number, and their total number of steps.
-    pub whole_stays: Exposure,
-    /// For each state, the regularity of stays: from 0 (random length) to 1 (equal length). One value for the whole
-    /// map.
-    pub regularity: [f64; 2],
-    /// [`GapWeights::step`] of the previous result.
-    pub last_step: Option<Step>,
-}
+/// If stays are equally long, a stay that was in view from begin to end counts as this many additional stays of a
+/// chain: one stay shows the length of all.
+const WHOLE_STAY: f64 = 3.0;
 
 /// The information in the gaps of a cell. By default there is none.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Deserialize, serde::Serialize)]
-pub struct GapWeights {
+pub(in crate::change) struct GapWeights {
     /// The exposure that has the same information as the gaps and all other evidence out of view. It becomes
     /// [`CellStatistics::gap_worth`].
-    pub worth: Exposure,
+    pub(in crate::change) worth: Exposure,
     /// The part of `worth` that comes from the neighbors.
-    pub neighbors: Exposure,
+    pub(in crate::change) neighbors: Exposure,
     /// The exposure of this cell alone, in view and in gaps. The neighboring cells use it.
-    pub own: Exposure,
+    pub(in crate::change) own: Exposure,
     /// The mixed term of the information about both transition probabilities, in log-odds.
-    pub mixed: f64,
+    pub(in crate::change) mixed: f64,
     /// The most probable chain; the next search starts there.
-    pub step: Option<Step>,
+    pub(in crate::change) step: Option<Step>,
 }
 
 /// The belief about both transition probabilities of a cell.
@@ -140,27 +112,9 @@ impl CellGaps {
         f64::from(self.histogram.count()) + f64::from(seen.events())
     }
 
-    fn evidence<'a>(&'a self, seen: &'a CellStatistics, regularity: &Regularity) -> GapEvidence<'a> {
-        GapEvidence {
-            seen,
-            gaps: &self.histogram,
-            prior: Exposure::uniform(MEDIAN_EVENTS, 1.0),
-            neighbors: Exposure::default(),
-            whole_stays: self.weighed.as_ref().map_or(Exposure::default(), |weighed| weighed.whole_stays),
-            regularity: regularity.weights(),
-            last_step: self.weights().step,
-        }
-    }
-
-    /// Weighs the gaps of a cell that changes.
-    pub(super) fn weigh(
-        &mut self,
-        model: &dyn GapModel,
-        seen: &CellStatistics,
-        neighbors: Exposure,
-        regularity: &Regularity,
-    ) {
-        let weights = model.weigh(&GapEvidence { neighbors, ..self.evidence(seen, regularity) });
+    /// Weighs the gaps of a cell that changes. Without a result, the previous one is kept.
+    pub(super) fn weigh(&mut self, seen: &CellStatistics, neighbors: Exposure, regularity: &Regularity) {
+        let weights = self.weighed_with(Exposure::uniform(MEDIAN_EVENTS, 1.0), seen, neighbors, regularity);
         let counted = self.counted(seen) * (1.0 + COUNTED_GROWTH) + 0.5;
         let weighed = self.weighed.get_or_insert_default();
         weighed.due = [counted, seen.observed() * (1.0 + WATCHED_GROWTH)];
@@ -168,12 +122,7 @@ impl CellGaps {
     }
 
     /// The belief about the transition probabilities of a cell; also defined for a cell that never changed.
-    pub(super) fn belief(
-        &self,
-        model: &dyn GapModel,
-        seen: &CellStatistics,
-        regularity: &Regularity,
-    ) -> Belief {
+    pub(super) fn belief(&self, seen: &CellStatistics, regularity: &Regularity) -> Belief {
         let prior = Exposure::uniform(MEAN_EVENTS, 1.0);
         let exposure = Exposure::in_view(seen) + prior;
         if let Some(Weighed { weights, .. }) = self.weighed.as_deref() {
@@ -183,8 +132,66 @@ impl CellGaps {
             let own = [0, 1].map(|state| 1.0 - weights.neighbors.steps[state] / all.steps[state]);
             return Belief { exposure: all.scaled(own), mixed: weights.mixed };
         }
-        let weights =
-            model.weigh(&GapEvidence { prior, ..self.evidence(seen, regularity) }).unwrap_or_default();
+        let weights = self.weighed_with(prior, seen, Exposure::default(), regularity).unwrap_or_default();
         Belief { exposure: exposure + weights.worth, mixed: weights.mixed }
     }
+
+    /// The two-state Markov chain in steps of the readings that explains best what was seen of a cell. `prior` is an exposure that
+    /// stands for the knowledge before any observation; `neighbors` is that of the cells nearby, weighted by how much they
+    /// resemble this cell.
+    fn weighed_with(
+        &self,
+        prior: Exposure,
+        seen: &CellStatistics,
+        neighbors: Exposure,
+        regularity: &Regularity,
+    ) -> Option<GapWeights> {
+        let (in_view, regular, period) = (Exposure::in_view(seen), regularity.weights(), seen.period);
+        let more = neighbors + self.visit_prior(in_view, period) + self.whole_stays(regular);
+        let exposure = in_view + more + prior;
+        let observations = Observations { exposure, gaps: &self.histogram, period, regular };
+        let fit = observations.fit(self.weights().step.unwrap_or_else(|| slowest(seen)))?;
+        Some(GapWeights {
+            worth: fit.worth + more,
+            neighbors,
+            own: in_view + fit.worth,
+            mixed: fit.mixed,
+            step: Some(fit.step),
+        })
+    }
+
+    /// The number of steps without an event that gives the prior the weight of one visit: the harmonic mean of the time
+    /// between two observations. The rate of a cell that changes much faster than it was observed cannot be known; the
+    /// estimate is then the slowest rate that explains the observations.
+    fn visit_prior(&self, in_view: Exposure, period: f64) -> Exposure {
+        let steps = in_view.steps[0] + in_view.steps[1];
+        let (mut visits, mut pace) = (steps, steps);
+        for bin in self.histogram.iter() {
+            let count = f64::from(bin.count);
+            visits += count;
+            pace += count * period / bin.length();
+        }
+        let visit = visits / pace;
+        Exposure::uniform(0.0, if visit > 1.0 && visit.is_finite() { visit - 1.0 } else { 0.0 })
+    }
+
+    /// The information in complete stays, in addition to their time in view. Mostly it is the state with the shorter
+    /// stays that has complete stays; of the other state, only the shortest stays fit into a visit, and they count
+    /// little. `regular`: the regularity of the stays in each state, from 0 (random length) to 1 (equal length).
+    fn whole_stays(&self, regular: [f64; 2]) -> Exposure {
+        let Some(Weighed { weights: GapWeights { step: Some(step), .. }, whole_stays, .. }) =
+            self.weighed.as_deref()
+        else {
+            return Exposure::default();
+        };
+        let share = [step.block, step.free].map(|leave| leave / (step.block + step.free));
+        whole_stays.scaled([0, 1].map(|state| WHOLE_STAY * (share[state] * share[state] * regular[state])))
+    }
+}
+
+/// The slowest chain that the observations of a cell allow.
+fn slowest(seen: &CellStatistics) -> Step {
+    let steps = (seen.last_seen - seen.first_seen) / seen.period + 1.0;
+    let leave = (f64::from(seen.events().max(1)) / steps).min(0.5);
+    Step { block: leave, free: leave }
 }

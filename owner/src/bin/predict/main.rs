@@ -162,7 +162,7 @@ fn run(args: &Args) -> Result<ExitCode, Failure> {
         let suffix = if times_s.len() == 1 { String::new() } else { format!("_{}", number + 1) };
         write_time(folder.unfinished(), &suffix, &forecast, *time_s)?;
     }
-    let expiry_h = forecast.expiry().map(|expiry_s| expiry_s / 3600.0);
+    let expiry_h = forecast.outlook().expiry(f64::NAN).map(|expiry_s| expiry_s / 3600.0);
     let title = "Hours for which a look counts";
     write_map(folder.unfinished(), "expiry", (Layer::Expiry, title), &forecast, &expiry_h, &[])?;
     if let Some(graph) = graph {

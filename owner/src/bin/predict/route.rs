@@ -63,7 +63,7 @@ pub(crate) fn route(path: &Path, forecast: &Forecast, travel: Travel) -> anyhow:
             None => time_s + length_m / travel.speed_m_s,
         };
         let arrival_s = |way_m: f64| from_s + (time_s - from_s) * way_m / length_m.max(1e-9);
-        let blocked = forecast.stopped([before, at], travel.radius_m, arrival_s);
+        let blocked = forecast.outlook().stopped([before, at], travel.radius_m, arrival_s);
         before = at;
         Stop { x_m: at.x, y_m: at.y, time_s, blocked }
     });

@@ -28,17 +28,6 @@ pub(super) fn legend(world: &GridSpec) -> Vec<Entry> {
     entries
 }
 
-/// The entries for several worlds, whose blocks have different names.
-pub(super) fn short_legend(world: &GridSpec) -> Vec<Entry> {
-    let mut entries = vec![(Mark::Square(INK), "wall".to_owned())];
-    if !world.blocks.is_empty() {
-        entries.push((Mark::Square(ink(palette::thing(0))), "path of a block".to_owned()));
-    }
-    entries.push((Mark::Dot, "start of the robot".to_owned()));
-    entries.push((Mark::Ring, "range of its sensor".to_owned()));
-    entries
-}
-
 /// Draws the cells of a world as large as they fit, from the upper left corner. Returns the right end of the plan.
 pub(super) fn draw<DB: DrawingBackend>(
     sheet: &Sheet<DB>,

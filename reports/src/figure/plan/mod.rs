@@ -1,4 +1,4 @@
-//! The plan of a world, or of several.
+//! The plan of a world.
 
 mod grid;
 mod physics;
@@ -14,12 +14,6 @@ use sim::physics::WorldSpec;
 /// The width of the legend beside a plan, in pixels of the finished picture.
 const LEGEND: i32 = 190;
 const ROW: i32 = 24;
-/// The entries of the legend below several plans in a row, and the width of one.
-const ENTRIES: i32 = 3;
-const ENTRY: i32 = 190;
-/// The maximum number of drawn worlds.
-const WORLDS: usize = 12;
-
 /// A world whose plan is drawn beside the curves.
 #[derive(Clone, Copy, Debug)]
 pub enum Plan<'a> {
@@ -78,7 +72,7 @@ impl Plan<'_> {
 }
 
 /// Draws a world with a legend.
-pub(super) fn one<DB: DrawingBackend>(sheet: &Sheet<DB>, pen: &Pen, world: &Plan) -> Result<(), String> {
+pub(super) fn draw<DB: DrawingBackend>(sheet: &Sheet<DB>, pen: &Pen, world: &Plan) -> Result<(), String> {
     pen.write(sheet, (16, 18), HPos::Left, 17, "The world")?;
     let (width, _) = sheet.dim_in_pixel();
     let below = sheet.margin(pen.px(34), pen.px(14), pen.px(16), 0);
@@ -106,53 +100,6 @@ fn draw_entry<DB: DrawingBackend>(
         Mark::Nothing => {}
     }
     pen.write(sheet, (left + 26, middle), HPos::Left, 15, text)
-}
-
-/// The entries of a legend for several worlds: what is drawn in any of them.
-fn common_legend(worlds: &[Plan]) -> Vec<Entry> {
-    let mut entries: Vec<Entry> = Vec::new();
-    for world in worlds {
-        let own = match world {
-            Plan::Grid(world) => grid::short_legend(world),
-            Plan::Physics(world) => physics::legend(world),
-        };
-        for (place, entry) in own.into_iter().enumerate() {
-            if !entries.iter().any(|(_, known)| *known == entry.1) {
-                entries.insert(place.min(entries.len()), entry);
-            }
-        }
-    }
-    entries
-}
-
-/// Draws worlds side by side, as many as fit, with a legend below.
-pub(super) fn many<DB: DrawingBackend>(sheet: &Sheet<DB>, pen: &Pen, worlds: &[Plan]) -> Result<(), String> {
-    let title = match worlds.len() {
-        0 => return Ok(()),
-        count if count > WORLDS => format!("{WORLDS} of the worlds"),
-        _ => "The worlds".into(),
-    };
-    pen.write(sheet, (16, 18), HPos::Left, 17, &title)?;
-    let shown = worlds.len().min(WORLDS);
-    let entries = common_legend(&worlds[..shown]);
-    let height = ROW * ((entries.len() as i32 + ENTRIES - 1) / ENTRIES);
-    let (_, sheet_height) = sheet.dim_in_pixel();
-    let (plans, legend) = sheet.split_vertically(sheet_height as i32 - pen.px(height + 6));
-    for (number, entry) in (0..).zip(&entries) {
-        let at = (12 + number % ENTRIES * ENTRY, ROW / 2 + number / ENTRIES * ROW);
-        draw_entry(&legend, pen, at, entry)?;
-    }
-    let below = plans.margin(pen.px(34), pen.px(4), pen.px(12), 0);
-    let columns = match shown {
-        ..=2 => shown,
-        3..=6 => 3,
-        _ => 4,
-    };
-    let areas = below.split_evenly((shown.div_ceil(columns), columns));
-    for (area, world) in areas.iter().zip(worlds) {
-        world.draw(&area.margin(0, pen.px(16), pen.px(6), pen.px(6)), pen)?;
-    }
-    Ok(())
 }
 
 /// Draws the start of the robot: a filled circle with a white rim.

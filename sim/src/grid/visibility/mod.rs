@@ -7,7 +7,6 @@
 #[cfg(test)]
 mod tests;
 
-use super::spec::GridSpec;
 use interfaces::{Cell, Grid};
 use std::cmp::Ordering;
 
@@ -42,20 +41,6 @@ impl LineOfSight {
             is_in_sight(blocked, robot, (dx, dy)).then_some((cell, is_blocked))
         };
         self.reach.iter().filter_map(seen).collect()
-    }
-}
-
-impl GridSpec {
-    /// For every cell, the cells that the robot sees from there if no block is in between, all by index. From
-    /// inside a wall the robot sees nothing.
-    pub fn sights(&self) -> Vec<Vec<usize>> {
-        let (frame, line_of_sight) = (self.frame(), LineOfSight::new(self.sensor_radius));
-        let from = |index: usize| {
-            let seen = line_of_sight.look(&self.walls, frame.cell(index));
-            seen.into_iter().filter_map(|(cell, _)| frame.index(cell)).collect()
-        };
-        let walls = self.walls.cells();
-        (0..frame.len()).map(|index| if walls[index] { Vec::new() } else { from(index) }).collect()
     }
 }
 

@@ -33,13 +33,7 @@ pub(super) fn content(world: &GridSpec) -> Content {
         ("calendar", format!("{starts}, steps of {} s", steps.step_s))
     }));
     lines.extend(world.blocks.iter().map(|block| ("block", describe(block))));
-    Content {
-        kind: GRID_WORLD,
-        description: world.description.to_owned(),
-        lines,
-        fleet: None,
-        scene: world.scene(),
-    }
+    Content { kind: GRID_WORLD, description: world.description.to_owned(), lines, scene: world.scene() }
 }
 
 /// The name, the path and the dwell time of a block.

@@ -10,7 +10,7 @@ mod tests;
 use curious::reachability;
 use curious::worlds::is_of_stage;
 use interfaces::printable;
-use sim::physics::{FleetSpec, WorldSpec};
+use sim::physics::WorldSpec;
 use std::path::Path;
 use viewer::scene::Scene;
 use worldfile::floor_plan::FloorPlan;
@@ -45,8 +45,6 @@ pub(crate) struct Content {
     /// One line per part of the world: the name of the part, and its description; at the end, the program that runs
     /// the file.
     pub(crate) lines: Vec<(&'static str, String)>,
-    /// The world, if it can be simulated.
-    pub(crate) fleet: Option<FleetSpec>,
     /// The world from above; its title is the name of the world.
     pub(crate) scene: Scene,
 }

@@ -38,13 +38,7 @@ pub(super) fn content(kind: &'static str, world: &FleetSpec) -> Content {
     lines.extend(world.starts_s.map(|starts_s| ("calendar", calendar::of_world(starts_s))));
     lines.extend(world.obstacles.iter().map(|obstacle| ("thing", thing_line(obstacle))));
     lines.extend(robot_lines(&world.robots));
-    Content {
-        kind,
-        description: world.description.to_owned(),
-        lines,
-        fleet: Some(world.clone()),
-        scene: world.scene(),
-    }
+    Content { kind, description: world.description.to_owned(), lines, scene: world.scene() }
 }
 
 /// A floor plan alone; none if it has no area.
@@ -60,7 +54,6 @@ pub(super) fn floor_plan(path: &Path, plan: &FloorPlan) -> Option<Content> {
     Some(Content {
         kind: FLOOR_PLAN,
         description: String::new(),
-        fleet: None,
         lines: vec![
             ("size", format!("{} × {} m", short(size.x), short(size.y))),
             (
