@@ -1,6 +1,6 @@
 //! The law of a habit: the probabilities of its phases over time.
 
-use calendar::{Habit, PHASES, SLOT_S};
+use calendar::{Habit, PHASES, SLOT_S, Stays};
 
 /// A law over the phases: free for a short stay, free for a long one, blocked for a short stay, blocked for a long one.
 /// The phase is not visible, only the state is.
