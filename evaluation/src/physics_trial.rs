@@ -1,7 +1,7 @@
 //! A run in a physics world as a library call: what the world says of itself, the robot, and the loop with the observer.
 
 use crate::map_hash::map_hash;
-use crate::metrics::{age, map_scores, rate_scores, reachable_scores};
+use crate::metrics::{age, interval_scores, map_scores, passage_scores, rate_scores, reachable_scores};
 use crate::observer::Observer;
 use crate::scheduled_things::ScheduledThings;
 use crate::summary::{Contacts, CurvePoint, RunResults};
@@ -237,6 +237,8 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
             changing: observer.changing.scores(),
             predicted: observer.prediction.scores(),
             forecasts: observer.forecasts.scores(),
+            intervals: interval_scores(mapper, truth),
+            passages: passage_scores(mapper, truth),
             rates: rate_scores(mapper, truth),
             age: age(mapper, truth),
             block_latency,

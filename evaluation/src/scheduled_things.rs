@@ -75,7 +75,7 @@ impl ScheduledThings {
     pub fn scores(&self) -> Option<ScheduledScores> {
         let things = self.freshness.things();
         let fresh = self.freshness.scores();
-        (things > 0).then(|| ScheduledScores {
+        (things > 0).then_some(ScheduledScores {
             things,
             samples: self.samples,
             brier: fresh.brier,

@@ -3,8 +3,8 @@
 mod words;
 
 use crate::metrics::{
-    Age, ChangingScores, Delays, ForecastScores, MapScores, PoseScores, PredictedScores, RateScores,
-    ReachableScores, ThingReport,
+    Age, ChangingScores, Delays, ForecastScores, IntervalScores, MapScores, PassageScores, PoseScores,
+    PredictedScores, RateScores, ReachableScores, ThingReport,
 };
 use crate::scheduled_things::ScheduledScores;
 use robot::{DayTotals, GoalCount};
@@ -80,6 +80,10 @@ pub struct RunResults {
     pub predicted: PredictedScores,
     /// How well the frozen map predicted what followed.
     pub forecasts: ForecastScores,
+    /// The credible intervals of the rates.
+    pub intervals: IntervalScores,
+    /// The estimated passages per tile compared with the true ones.
+    pub passages: PassageScores,
     /// The estimated rates compared with the true rates.
     #[serde(flatten)]
     pub rates: RateScores,

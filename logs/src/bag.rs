@@ -8,6 +8,7 @@ mod files;
 mod inventory;
 mod mcap;
 mod message;
+mod messages;
 mod motion;
 mod order;
 mod plan;

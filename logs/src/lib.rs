@@ -17,7 +17,6 @@ mod error;
 mod lines;
 mod log;
 mod open;
-mod read_ahead;
 mod summary;
 
 pub use choice::TopicChoice;

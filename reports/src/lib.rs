@@ -18,10 +18,11 @@ mod statistics;
 mod strategy;
 mod table;
 mod trial_file;
+#[cfg(feature = "programs")]
+pub mod trials;
 
 pub use builder::{ReportBuilder, UnequalTimes};
 pub use comparison::Comparison;
-pub use figure::Plan;
 pub use measure::Measure;
 pub use run::Run;
 pub use statistics::{Estimate, PairedTest, paired_test};
@@ -29,8 +30,10 @@ pub use strategy::StrategyResult;
 pub use trial_file::collect;
 
 use ::files::{RunFolder, write_file};
+use draw::canvas::PictureError;
+use draw::scene::Scene;
+use evaluation::scenes::Displayed;
 use evaluation::trials::{Experiment, Length, Trial, TrialError, TrialWorld};
-use results::drawing::PictureError;
 use serde::Serialize;
 use std::sync::atomic::AtomicBool;
 
@@ -174,13 +177,10 @@ impl Report {
     /// # Errors
     ///
     /// When something cannot be drawn or written.
-    pub fn write<'a, W>(&self, folder: &RunFolder, worlds: &'a [W]) -> Result<Vec<String>, PictureError>
-    where
-        Plan<'a>: From<&'a W>,
-    {
-        let plans: Vec<Plan> = worlds.iter().map(Plan::from).collect();
+    pub fn write(&self, folder: &RunFolder, worlds: &[impl Displayed]) -> Result<Vec<String>, PictureError> {
+        let scenes: Vec<Scene> = worlds.iter().map(Displayed::scene).collect();
         let to = folder.unfinished();
-        figure::write_all(to, self, &plans)?;
+        figure::write_all(to, self, &scenes)?;
         let mut names = folder.results()?;
         write_file(&to.join(REPORT), |file| files::write_report(self, &names, file))?;
         names.insert(0, REPORT.to_owned());

@@ -1,11 +1,8 @@
-//! What a run leaves behind: trajectories, what the mapper
-//! has learned as a table, as an array, and as maps for ROS, and the canvas on which figures and pictures are
-//! drawn. It must not know where readings come from: the results of a simulated robot and of a log have the
+//! What a run leaves behind: trajectories, what the mapper has learned as a table, as an array, and as maps for ROS. It must not
+//! know where readings come from: the results of a simulated robot and of a log have the
 //! same files.
 
 pub mod cell_statistics;
-#[cfg(feature = "drawing")]
-pub mod drawing;
 pub mod file_name;
 pub mod intervals;
 pub mod numbers;

@@ -34,7 +34,7 @@ pub fn encoded<T: Serialize>(message: &T) -> Result<Vec<u8>, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Time, Transforms};
+    use crate::messages::{Time, Transforms};
 
     #[test]
     fn both_orders_of_bytes_are_read() {

@@ -19,7 +19,7 @@
 //! | `model`, or a `define` of it | walls |
 //! | `bitmap` | a floor plan; its dark pixels (the first color below 128) are scaled to fill `size` |
 //! | `block` with `points`, `point[…]`, `z` | polygons, scaled to fill `size` together |
-//! | `pose`, `origin`, `size`, `boundary` | as in Stage, but for heights: there are none here, and everything meets everything |
+//! | `pose`, `origin`, `size`, `boundary`, `stack_children` | as in Stage |
 //! | `obstacle_return`, `ranger_return`, `laser_return` | a model that neither collides nor is seen is left out |
 //! | `position` | a robot |
 //! | `drive`, `wheelbase`, `velocity_bounds`, `acceleration_bounds` | [`StageRobot`] |
@@ -39,6 +39,7 @@ mod body;
 mod builder;
 mod check;
 mod drive;
+mod heights;
 mod left_out;
 mod lexer;
 mod load;

@@ -1,16 +1,16 @@
 //! Models: their names, their bodies, and those that are walls.
 
 use super::body::Body;
-use super::builder::Builder;
+use super::builder::{Builder, Pose};
+use super::heights::Solid;
 use super::lexer::Span;
 use super::tree::Entity;
 use super::{StageWall, left_out};
-use nalgebra::Isometry2;
 use sim::physics::{BoxTree, Rectangle};
 use worldfile::Severity;
 
 /// The size of a model, where the file gives none, m.
-pub(super) const DEFAULT_SIZE_M: [f64; 2] = [0.1; 2];
+pub(super) const DEFAULT_SIZE_M: [f64; 3] = [0.1; 3];
 /// The pose of a box is its middle if it is as near as this, m.
 const NEAR_M: f64 = 1e-6;
 
@@ -21,7 +21,9 @@ pub(super) struct Placed {
     pub(super) is_solid: bool,
     /// The tag of the model, and the place of the tag in the file.
     pub(super) tag: Option<(u32, Span)>,
-    pub(super) at: Isometry2<f64>,
+    pub(super) at: Pose,
+    /// The reference of the poses of its parts: the pose of the model, on top of it if parts are stacked.
+    pub(super) top: Pose,
     pub(super) body: Body,
 }
 
@@ -30,8 +32,8 @@ impl Builder<'_, '_> {
     pub(super) fn placed(
         &mut self,
         model: &Entity,
-        on: &Isometry2<f64>,
-        default_size_m: [f64; 2],
+        on: &Pose,
+        default_size_m: [f64; 3],
         has_box: bool,
     ) -> Placed {
         let name = self.name(model);
@@ -49,9 +51,11 @@ impl Builder<'_, '_> {
             self.sources.add(Severity::Note, place, what, help);
         }
         let tag = self.tag(model);
-        let at = on * self.pose(model, "pose");
+        let at = on.then(&self.pose(model, "pose"));
         let size_m = self.size_m(model, default_size_m);
         let body = self.body(model, &at, size_m, has_box);
+        let is_stacked = self.flag(model, "stack_children").unwrap_or(true);
+        let top = Pose { z_m: at.z_m + if is_stacked { size_m[2] } else { 0.0 }, ..at };
         if collides != is_seen && !body.is_empty() {
             let (what, help) = match collides {
                 true => ("this thing cannot be seen in Stage", "here lasers see whatever robots bump into"),
@@ -61,7 +65,7 @@ impl Builder<'_, '_> {
             };
             self.sources.warning(model.place, what, help);
         }
-        Placed { name, is_solid: collides || is_seen, tag, at, body }
+        Placed { name, is_solid: collides || is_seen, tag, at, top, body }
     }
 
     /// A name that no other model has.
@@ -88,7 +92,7 @@ impl Builder<'_, '_> {
     }
 
     /// Adds a model that stands on the floor or on another one that does.
-    pub(super) fn add(&mut self, model: &Entity, on: &Isometry2<f64>, is_first: bool) {
+    pub(super) fn add(&mut self, model: &Entity, on: &Pose, is_first: bool) {
         match model.kind.as_str() {
             "position" if is_first => self.robot(model),
             "position" => {
@@ -109,9 +113,9 @@ impl Builder<'_, '_> {
         }
     }
 
-    fn wall(&mut self, model: &Entity, on: &Isometry2<f64>) {
+    fn wall(&mut self, model: &Entity, on: &Pose) {
         let placed = self.placed(model, on, DEFAULT_SIZE_M, true);
-        let Placed { name, tag, at: pose, body, .. } = placed;
+        let Placed { name, tag, at, top, body, .. } = placed;
         if let Some((_, place)) = self.text(model, "ctrl") {
             let what = "controllers of Stage cannot be loaded";
             self.sources.warning(place, what, "this thing stands still");
@@ -131,15 +135,17 @@ impl Builder<'_, '_> {
                 let help = "walls here are made of rectangles, which do not fill a corner of less than 90°";
                 self.sources.warning(model.place, what, help);
             }
+            let (solid_name, place) = (name.clone(), model.place);
+            self.heights.solids.push(Solid { name: solid_name, robot: None, place, z_m: body.z_m });
             if let Some((_, place)) = tag {
-                self.tagged.push((self.walls.len(), pose.translation.vector.into(), place));
+                self.tagged.push((self.walls.len(), at.flat.translation.vector.into(), place));
             }
-            let (place, at) = (self.sources.name(model.place), model.place);
+            let (place, at) = (self.sources.name(place), place);
             let tag = tag.map(|(tag, _)| tag);
             self.walls.push(StageWall { name, place, rectangles, tag, at });
         }
         for part in model.carried() {
-            self.add(part, &pose, false);
+            self.add(part, &top, false);
         }
     }
 

@@ -66,7 +66,7 @@ pub(super) fn turns(corners: &[Point2<f64>]) -> impl Iterator<Item = [Vector2<f6
 }
 
 /// Where a line along x lies in a polygon, m.
-fn spans(corners: &[Point2<f64>], y: f64) -> Vec<[f64; 2]> {
+pub(super) fn spans(corners: &[Point2<f64>], y: f64) -> Vec<[f64; 2]> {
     let crossing = sides(corners).filter(|(a, b)| (a.y > y) != (b.y > y));
     let mut xs: Vec<f64> = crossing.map(|(a, b)| a.x + (y - a.y) / (b.y - a.y) * (b.x - a.x)).collect();
     xs.sort_by(f64::total_cmp);

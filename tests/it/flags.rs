@@ -83,11 +83,7 @@ const PROGRAMS: [Program; 8] = [
             ("--out", "a.log"),
         ],
     },
-    Program {
-        name: "check_world",
-        arguments: "four_rooms --png",
-        wrong: &[("--out", "a.log")],
-    },
+    Program { name: "check_world", arguments: "four_rooms --png", wrong: &[("--out", "a.log")] },
 ];
 
 const GRID_WORLD: [(&str, &str); 15] = [

@@ -18,9 +18,19 @@ fn page() -> String {
         assert!(output.status.success(), "{name} --help");
         let help = String::from_utf8(output.stdout).unwrap();
         let lines: Vec<&str> = help.trim().lines().map(str::trim_end).collect();
+        assert!(lines.iter().all(|line| line.chars().count() <= 100), "{name}: {help}");
         page += &format!("\n## {name}\n\n```text\n{}\n```\n", lines.join("\n"));
     }
     page
+}
+
+#[test]
+fn every_version_is_printed() {
+    for name in PROGRAMS {
+        let output = Command::new(program(name)).arg("--version").output().unwrap();
+        let expected = format!("{name} {}\n", env!("CARGO_PKG_VERSION"));
+        assert_eq!(String::from_utf8_lossy(&output.stdout), expected);
+    }
 }
 
 #[test]

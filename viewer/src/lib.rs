@@ -1,22 +1,16 @@
-//! The display of a run: the scene of a world, the layers of a map, pictures, a moving picture, and the Rerun
-//! recording. This is the only crate that knows Rerun, and only with the feature `recording`; it must not
+//! The display of a run: the Rerun recording, beside the pictures of `draw`. This is the only crate that knows Rerun, and only with the feature `recording`; it must not
 //! know command lines, world files, or how a run is made.
 //!
 //! It reads the state of a run and changes nothing: no result depends on the display.
 
-pub mod layers;
-mod legend;
+#[cfg(all(test, feature = "recording"))]
+#[path = "../../draw/src/tests/fake_run.rs"]
+mod fake_run;
 #[cfg(not(feature = "recording"))]
 mod no_recording;
-mod outline;
-pub mod pictures;
 #[cfg(feature = "recording")]
 pub mod recording;
-pub mod scene;
 pub mod show;
-#[cfg(all(test, feature = "recording"))]
-mod tests;
-pub mod view;
 
 /// There is no recording in a build without the feature `recording`.
 #[cfg(not(feature = "recording"))]

@@ -1,6 +1,6 @@
 //! What takes the place of the recording in a build without the feature `recording`: there is none.
 
-use crate::view::View;
+use draw::view::View;
 
 /// A recording that cannot be made.
 pub enum Recorder {}

@@ -1,14 +1,15 @@
 //! Everything that shows one run: the recording, the moving picture, and the pictures at the end.
 
-use crate::layers::Layer;
-use crate::pictures::{self, Film, Trails};
 use crate::recording::{Recorder, RecordingError};
-use crate::scene::Scene;
-use crate::view::{Trail, View};
+use draw::Film;
+use draw::canvas::PictureError;
+use draw::layers::Layer;
+use draw::pictures::{self, Trails};
+use draw::scene::Scene;
+use draw::view::{Trail, View};
 use interfaces::GridFrame;
 use mapper::Mapper;
 use nalgebra::Isometry2;
-use results::drawing::PictureError;
 use results::thinned::Goals;
 use std::path::Path;
 

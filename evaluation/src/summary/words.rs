@@ -229,7 +229,9 @@ fn line_of(thing: &ThingReport) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::metrics::{ChangingAccuracy, Delays, ForecastScores, MapScores, ReachableScores};
+    use crate::metrics::{
+        ChangingAccuracy, Delays, ForecastScores, IntervalScores, MapScores, PassageScores, ReachableScores,
+    };
     use std::collections::BTreeMap;
 
     fn results(coverage: f64, age: Age, rates: RateScores) -> RunResults {
@@ -241,6 +243,8 @@ mod tests {
             changing: ChangingAccuracy::default().scores(),
             predicted: PredictedScores::default(),
             forecasts: ForecastScores::default(),
+            passages: PassageScores::default(),
+            intervals: IntervalScores::default(),
             rates,
             age,
             block_latency: Delays::default(),

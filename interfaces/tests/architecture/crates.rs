@@ -19,19 +19,23 @@ const ALLOWED: &[(&str, &str)] = &[
     ("robot", "interfaces files calendar mapper localizer agent controller"),
     ("survey", "interfaces mapper localizer logs robot"),
     ("results", "interfaces files mapper"),
-    ("evaluation", "interfaces calendar sim mapper localizer agent controller robot results"),
-    ("reports", "interfaces files sim robot results evaluation"),
+    ("evaluation", "interfaces calendar sim mapper localizer agent controller robot results draw"),
+    (
+        "reports",
+        "interfaces files calendar sim worldfile mapper agent robot results draw viewer cli evaluation curious",
+    ),
     ("environments", "interfaces sim worldfile mapper agent controller robot evaluation"),
     (
         "python",
         "interfaces sim worldfile stage mapper localizer logs agent robot survey evaluation environments",
     ),
-    ("viewer", "interfaces files mapper localizer agent robot results"),
+    ("draw", "interfaces files mapper agent robot results"),
+    ("viewer", "interfaces files mapper localizer agent robot results draw"),
     ("cli", "interfaces files mapper robot ros results"),
-    ("owner", "interfaces files mapper robot logs survey results viewer cli"),
+    ("owner", "interfaces files mapper robot logs survey results draw viewer cli"),
     (
         "curious",
-        "interfaces files calendar sim worldfile stage mapper agent controller robot results evaluation reports viewer cli",
+        "interfaces files calendar sim worldfile stage mapper agent controller robot results evaluation draw viewer cli",
     ),
     ("ros2", "interfaces sim worldfile mapper localizer ros logs agent controller robot results survey"),
     // No part of the product: no other crate may use it.
@@ -43,7 +47,7 @@ const RESERVED: &[(&str, &[&str])] =
     &[("rerun", &["viewer"]), ("rapier2d", &["sim"]), ("ros2-client", &["ros2"])];
 
 /// The crates that may need Rerun.
-const WITH_RERUN: [&str; 3] = ["viewer", "owner", "curious"];
+const WITH_RERUN: [&str; 4] = ["viewer", "owner", "curious", "reports"];
 
 #[test]
 fn every_crate_uses_only_what_it_may() {

@@ -2,7 +2,8 @@
 //! topic.
 
 use super::files::BagFile;
-use super::message::{Kind, Message, Messages, Selection, Topic};
+use super::message::{Kind, Message, Selection, Topic};
+use super::messages::Messages;
 use crate::error::LogError;
 use std::collections::BTreeMap;
 use std::sync::Arc;

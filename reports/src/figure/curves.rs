@@ -1,9 +1,11 @@
 //! The curves of a metric, one per strategy.
 
-use super::pen::{Pen, Sheet};
 use crate::is_reference;
 use crate::statistics::Estimate;
 use crate::strategy::StrategyResult;
+use draw::canvas::{INK, ink, why};
+use draw::palette;
+use draw::pen::{Pen, Sheet};
 use evaluation::trials::Length;
 use evaluation::trials::Metric;
 use plotters::chart::ChartContext;
@@ -12,8 +14,6 @@ use plotters::coord::types::RangedCoordf64;
 use plotters::element::DashedPathElement;
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
-use results::drawing::palette;
-use results::drawing::{INK, ink, why};
 use results::numbers::thousands;
 use std::ops::Range;
 
@@ -59,7 +59,7 @@ pub(super) fn draw<DB: DrawingBackend>(
     };
 
     let (above, _) = sheet.split_vertically(pen.px(34));
-    pen.write(&above, (LEFT, 18), HPos::Left, 17, heading(metric))?;
+    pen.write(&above, (pen.px(LEFT), pen.px(18)), HPos::Left, 17, heading(metric))?;
     let mut chart = ChartBuilder::on(sheet)
         .margin_top(pen.px(34))
         .margin_right(pen.px(14))

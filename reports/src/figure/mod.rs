@@ -3,19 +3,18 @@
 //! per strategy, with bands of 95 % confidence.
 
 mod curves;
-mod pen;
-mod plan;
 
 use super::run::{Run, conditions};
 use super::{ONE_BY_ONE, Report};
+use draw::canvas::{Canvas, PictureError, ink, why};
+use draw::palette;
+use draw::pen::{Pen, Sheet, svg};
+use draw::scene::Scene;
+use draw::sketch;
 use evaluation::trials::Metric;
 use files::write_file;
-use pen::{Pen, Sheet, svg};
-pub use plan::Plan;
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
-use results::drawing::palette;
-use results::drawing::{Canvas, PictureError, ink, why};
 use std::collections::BTreeSet;
 use std::path::Path;
 
@@ -28,9 +27,9 @@ const LEGEND_COLUMNS: usize = 5;
 const PANEL_HEIGHT: i32 = 360;
 
 /// Writes the figures as PNG and SVG.
-pub(super) fn write_all(folder: &Path, report: &Report, worlds: &[Plan]) -> Result<(), PictureError> {
+pub(super) fn write_all(folder: &Path, report: &Report, worlds: &[Scene]) -> Result<(), PictureError> {
     for (name, run) in chosen(report) {
-        let world = worlds.iter().find(|world| run.worlds == 1 && world.name() == run.world);
+        let world = worlds.iter().find(|world| run.worlds == 1 && world.title == run.world);
         let figure = Figure { report, run, world };
         let failed = |why| PictureError::Draw { name: name.clone(), why };
         let [png, vector] = ["png", "svg"].map(|ending| folder.join(format!("{name}.{ending}")));
@@ -88,7 +87,7 @@ struct Figure<'a> {
     report: &'a Report,
     run: &'a Run,
     /// The plan, of a single world.
-    world: Option<&'a Plan<'a>>,
+    world: Option<&'a Scene>,
 }
 
 impl Figure<'_> {
@@ -106,17 +105,17 @@ impl Figure<'_> {
         let sheet = sheet.margin(0, pen.px(MARGIN), pen.px(MARGIN), pen.px(MARGIN));
         let (head, rest) = sheet.split_vertically(pen.px(TITLE));
         let title = format!("{}: {}", self.run.world, conditions(self.run, &self.report.settings));
-        pen.write(&head, (MARGIN, TITLE / 2), HPos::Left, 20, &title)?;
+        pen.write(&head, (pen.px(MARGIN), pen.px(TITLE / 2)), HPos::Left, 20, &title)?;
         let over = if self.run.worlds > 1 { "worlds" } else { "trials" };
         let note = format!("lines: means over {over}; bands: their 95 % confidence");
-        pen.write(&head, (WIDTH as i32 - 2 * MARGIN, TITLE / 2), HPos::Right, 15, &note)?;
+        pen.write(&head, (pen.px(WIDTH as i32 - 2 * MARGIN), pen.px(TITLE / 2)), HPos::Right, 15, &note)?;
         let (legend, panels) = rest.split_vertically(pen.px(self.legend_height()));
         self.legend(&legend, pen)?;
         let panels = panels.split_evenly((2, 2));
         let length = self.report.settings.length;
         let draw = |panel, metric| curves::draw(panel, pen, metric, length, &self.run.strategies);
         match self.world {
-            Some(world) => plan::draw(&panels[0], pen, world)?,
+            Some(world) => sketch::world(&panels[0], pen, world)?,
             None => draw(&panels[0], Metric::MapQualityChanging)?,
         }
         let second = length.choose(Metric::RateError, Metric::RateAuc);
@@ -134,7 +133,7 @@ impl Figure<'_> {
             let line = [left, left + 26].map(|x| (pen.px(x), pen.px(middle)));
             let is_dashed = curves::is_dashed(&strategy.name);
             curves::draw_line(sheet, pen, line.into(), pen.line(color, 2), is_dashed)?;
-            pen.write(sheet, (left + 34, middle), HPos::Left, 16, &strategy.name)?;
+            pen.write(sheet, (pen.px(left + 34), pen.px(middle)), HPos::Left, 16, &strategy.name)?;
         }
         Ok(())
     }

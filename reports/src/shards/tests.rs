@@ -246,7 +246,7 @@ fn merge_a_million_trials() {
         let trials = shards.trials().unwrap().map(|trial| trial.map_err(Box::<dyn std::error::Error>::from));
         let report = collect(settings, out.unfinished(), trials).unwrap();
         println!("  trials written after {:?}", start.elapsed());
-        report.write::<sim::grid::GridSpec>(&out, &[]).unwrap();
+        report.write(&out, &[] as &[sim::grid::GridSpec]).unwrap();
         let status = fs::read_to_string("/proc/self/status").unwrap();
         let peak = status.lines().find(|line| line.starts_with("VmHWM")).unwrap();
         println!("  merged after {:?}, {peak}", start.elapsed());

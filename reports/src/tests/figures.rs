@@ -1,8 +1,8 @@
 //! The figures, from made-up trials.
 
 use super::*;
+use draw::palette;
 use image::RgbImage;
-use results::drawing::palette;
 
 const FIVE: [&str; 5] = ["curious", "recency", "poisson", "random", "coin"];
 

@@ -7,6 +7,7 @@ use clap::Parser;
 use cli::flags::folder;
 use cli::program::{Failure, start};
 use cli::terminal::{print, say};
+use draw::pictures::draw_plan;
 use files::{make_folder, write_file};
 use inspection::{Content, Inspection, as_world_file, inspect};
 use interfaces::printable;
@@ -14,7 +15,6 @@ use std::collections::BTreeSet;
 use std::io::stderr;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use viewer::pictures::draw_plan;
 
 /// Checks world files: describes them, draws them, and reports all errors at once, except errors that follow
 /// from other errors.

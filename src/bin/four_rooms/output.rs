@@ -8,9 +8,14 @@ use cli::bag::RunBag;
 use cli::program::{Failure, PURPOSE_GAIN, arguments, input, results_folder};
 use cli::progress::Progress;
 use cli::terminal::{print, say};
-use curious::scenes::{Displayed, Visible};
+use draw::Film;
+use draw::layers::Layer;
+use draw::pictures::FIGURE_5_FILE;
+use draw::scene::Scene;
+use draw::view::Measured;
 use evaluation::metrics::map_scores;
 use evaluation::physics_trial::PhysicsTrial;
+use evaluation::scenes::{Displayed, Visible};
 use evaluation::summary::{SCHEMA, Summary};
 use files::{RunFolder, UnfinishedFile, is_another_kind, write_file};
 use interfaces::{LaserReading, Twist, World};
@@ -24,12 +29,8 @@ use sim::physics::WorldSpec;
 use std::io::stderr;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
-use viewer::layers::Layer;
-use viewer::pictures::{FIGURE_5_FILE, Film};
 use viewer::recording::{Live, Recorder};
-use viewer::scene::Scene;
 use viewer::show::Show;
-use viewer::view::Measured;
 
 /// The file that ends a run.
 const SUMMARY: &str = "summary.json";

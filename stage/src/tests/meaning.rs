@@ -245,3 +245,20 @@ fn includes_lie_beside_the_world_or_beside_each_other() {
     let world = world.unwrap_or_else(|| panic!("{findings}"));
     assert_eq!((world.name.as_str(), world.walls.len(), world.files.len()), ("four files", 1, 4));
 }
+
+#[test]
+fn heights_are_compared() {
+    // Beams at 1.1 m pass over a step of 0.1 m; a robot under a bridge.
+    let text = "model( name \"step\" size [1 1 0.1] pose [5 0 0 0] )
+        position( size [0.4 0.4 1] laser( ) )
+        model( name \"bridge\" size [1 1 1] pose [0 5 2 0] )";
+    let (_, findings) = one(text);
+    let what: Vec<&str> = findings.iter().map(|finding| finding.what.as_str()).collect();
+    assert_eq!(
+        what,
+        [
+            "in Stage these beams, 1.000 m high, miss `step`",
+            "in Stage `position:0` passes over or under `bridge`"
+        ]
+    );
+}

@@ -18,7 +18,7 @@ fn every_strategy_explores_a_grid_world() {
     let results = results(&run);
     // In the order of the arguments.
     let text = std::fs::read_to_string(run.out("report.json")).unwrap();
-    let places: Vec<_> = names.iter().map(|name| text.find(&format!("\"{name}\": {{")).unwrap()).collect();
+    let places: Vec<_> = names.iter().map(|name| text.find(&format!("\"{name}\":{{")).unwrap()).collect();
     assert!(places.is_sorted(), "{places:?}");
     let mut hashes = BTreeSet::new();
     for result in &results {

@@ -3,8 +3,8 @@
 //! One call of the SDK per row takes some tens of microseconds. Rows are therefore collected here and sent as
 //! columns, many ticks at once.
 
-use crate::scene::TimeUnit;
-use crate::view::View;
+use draw::scene::TimeUnit;
+use draw::view::View;
 use rerun::{AsComponents, RecordingStream, RecordingStreamResult, TimeColumn};
 
 /// The timeline of the simulated time.

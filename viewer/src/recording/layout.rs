@@ -5,9 +5,9 @@
 
 use super::entity::timeline;
 use super::tracks::{self, BAR_SHARE, LEGEND_SHARE, has_choice, plots};
-use crate::layers::Layer;
-use crate::scene::{Scene, extent};
-use crate::view::View;
+use draw::layers::Layer;
+use draw::scene::{Scene, extent};
+use draw::view::View;
 use rerun::blueprint::components::{BackgroundKind, ContainerKind, Corner2D, PanelState, PlayState};
 use rerun::external::re_log_types::BlueprintActivationCommand;
 use rerun::external::re_sdk_types::blueprint::datatypes::{TextLogColumn, TextLogColumnKind, TimelineColumn};

@@ -16,8 +16,8 @@ mod tracks;
 
 pub use live::{Live, LiveError};
 
-use crate::scene::Scene;
-use crate::view::View;
+use draw::scene::Scene;
+use draw::view::View;
 use entity::Track;
 use rerun::log::ChunkBatcherConfig;
 use rerun::{RecordingStream, RecordingStreamBuilder, RecordingStreamError};

@@ -1,9 +1,9 @@
 mod disk;
 
 use super::*;
-use crate::layers::Layer;
-use crate::scene::TimeUnit;
-use crate::tests::FakeRun;
+use crate::fake_run::FakeRun;
+use draw::layers::Layer;
+use draw::scene::TimeUnit;
 use localizer::{PoseEstimate, PoseState};
 use nalgebra::{Matrix3, Point2, Vector3};
 use rerun::components::{ImageBuffer, Scalar, Text, Translation3D};

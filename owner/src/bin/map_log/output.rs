@@ -4,12 +4,12 @@ use crate::report;
 use crate::second_pass::Learned;
 use crate::summary::Summary;
 use anyhow::Context;
+use draw::layers::Layer;
 use files::{RunFolder, write_file};
 use results::intervals::Intervals;
 use results::thinned::Thinned;
 use results::{cell_statistics, raster, ros_map, things};
 use survey::{MASKS, Survey, masks, permanent};
-use viewer::layers::Layer;
 
 /// The page for people.
 pub(crate) const PAGE: &str = "report.html";

@@ -8,6 +8,8 @@ use cli::busy::Busy;
 use cli::program::{Failure, input};
 use cli::progress::Progress;
 use cli::terminal::say;
+use draw::scene::Scene;
+use draw::view::View;
 use mapper::{NoReturnDistrust, NoReturnEvidence};
 use results::TrajectoryFile;
 use results::numbers::percent;
@@ -16,9 +18,7 @@ use std::io::stderr;
 use std::path::Path;
 use survey::Survey;
 use viewer::recording::Recorder;
-use viewer::scene::Scene;
 use viewer::show::Show;
-use viewer::view::View;
 
 /// The name of the recording.
 const RECORDING: &str = "map_log.rrd";

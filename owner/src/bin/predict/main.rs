@@ -11,6 +11,8 @@ use clap::Parser;
 use cli::flags::{folder, input_file, number, value_of};
 use cli::program::{Failure, arguments, input, results_folder, start, state_failure};
 use cli::terminal::print;
+use draw::layers::Layer;
+use draw::pictures::{NamedLine, draw_values};
 use files::write_file;
 use interfaces::Grid;
 use mapper::Door;
@@ -25,8 +27,6 @@ use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use survey::{Forecast, MASKS, Travel};
-use viewer::layers::Layer;
-use viewer::pictures::{NamedLine, draw_values};
 
 /// The graph of `--graph` with its probabilities.
 const GRAPH: &str = "graph.geojson";

@@ -1,6 +1,7 @@
 //! What is known of one place or door, in sentences and as data.
 
 use crate::moment;
+use draw::pictures::NamedLine;
 use interfaces::CellState;
 use mapper::{Clock, Door, UsualChange, UsualSlot, Week};
 use nalgebra::Point2;
@@ -9,7 +10,6 @@ use owner::words::{Seen, changed, length_of, range, rate};
 use results::numbers::percent;
 use serde::Serialize;
 use survey::{Forecast, NEAR_M};
-use viewer::pictures::NamedLine;
 
 /// The looks at a place are counted by half hours, s.
 const HALF_HOUR_S: f64 = 1800.0;

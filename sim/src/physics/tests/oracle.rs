@@ -54,8 +54,8 @@ pub(super) fn scan(spec: &LaserSpec, at: &Isometry2<f64>, scene: &Scene, own: us
     let spec = LaserSpec { mount: Isometry2::identity(), sweep_s: 0.0, ..*spec };
     let mut laser = Sensor::laser(&spec, &mut SharedBeams::default(), 0, 0);
     let platform = Platform { robot: own, pose: *at, odometry_pose: *at, odometry_twist: Twist::STOP };
-    let recent = &Recent::default();
-    let surroundings = Surroundings { step: 0, time_s: 0.0, scene, glass: &[], tagged: Vec::new(), recent: recent.clone() };
+    let (tagged, recent) = (Vec::new(), Recent::default());
+    let surroundings = Surroundings { step: 0, time_s: 0.0, scene, glass: &[], tagged, recent };
     laser.measure(&Look::new(platform, &surroundings));
     match laser.reading() {
         SensorReading::Laser(Some(reading)) => reading.scan.clone(),

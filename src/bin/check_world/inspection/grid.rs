@@ -1,7 +1,7 @@
 //! The description of a grid world.
 
 use super::{Content, GRID_WORLD, calendar};
-use curious::scenes::Displayed;
+use evaluation::scenes::Displayed;
 use sim::grid::{BlockSpec, Course, GridSpec};
 
 pub(super) fn content(world: &GridSpec) -> Content {

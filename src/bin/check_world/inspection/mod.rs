@@ -9,10 +9,10 @@ mod tests;
 
 use curious::reachability;
 use curious::worlds::is_of_stage;
+use draw::scene::Scene;
 use interfaces::printable;
 use sim::physics::WorldSpec;
 use std::path::Path;
-use viewer::scene::Scene;
 use worldfile::floor_plan::FloorPlan;
 use worldfile::physics::to_toml;
 use worldfile::{Disk, Files, Findings, MAX_TEXT_BYTES, Severity, ros_map, shipped};

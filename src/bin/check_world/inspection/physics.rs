@@ -1,7 +1,8 @@
 //! The description of physics worlds and floor plans.
 
 use super::{Content, FLOOR_PLAN, calendar};
-use curious::scenes::Displayed;
+use draw::scene::{Scene, TimeUnit};
+use evaluation::scenes::Displayed;
 use interfaces::{GridFrame, printable};
 use nalgebra::Point2;
 use sim::physics::{
@@ -9,7 +10,6 @@ use sim::physics::{
     OdometryError, Opening, Rectangle, RobotSpec,
 };
 use std::path::Path;
-use viewer::scene::{Scene, TimeUnit};
 use worldfile::floor_plan::FloorPlan;
 
 /// The maximum number of lines about robots.

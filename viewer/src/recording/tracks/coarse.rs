@@ -1,6 +1,6 @@
 //! Images of a large map: their cells are as much larger as is needed for the memory of a viewer.
 
-use crate::layers::UNKNOWN;
+use draw::layers::UNKNOWN;
 use interfaces::{Cell, Grid, GridFrame};
 use mapper::Growth;
 

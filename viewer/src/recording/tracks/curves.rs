@@ -1,11 +1,11 @@
 //! The curves over time, and the strategy that chose the goal.
 
 use super::{Kind, ON_CHANGE, Tracks, color, escape};
-use crate::scene::Scene;
-use crate::view::View;
+use draw::palette::{self, Rgb};
+use draw::scene::Scene;
+use draw::view::View;
 use localizer::PoseState;
 use rerun::{RecordingStreamResult, Scalars, SeriesLines, StateChange, StateConfiguration};
-use results::drawing::palette::{self, Rgb};
 use robot::StrategyState;
 
 /// The strategy that chose the goal.

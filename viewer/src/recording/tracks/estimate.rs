@@ -2,12 +2,12 @@
 
 use super::robots::add_trail;
 use super::{Kind, ON_CHANGE, Strip, Tracks, WORLD, closed, color, line, order, points, position, strips};
-use crate::scene::Sight;
-use crate::view::View;
+use draw::palette;
+use draw::scene::Sight;
+use draw::view::View;
 use localizer::PoseEstimate;
 use nalgebra::{Isometry2, Point2, SymmetricEigen, Vector2};
 use rerun::{Points2D, Radius, RecordingStreamResult};
-use results::drawing::palette;
 use std::f64::consts::TAU;
 
 /// The ellipse of the uncertainty is drawn at this many standard deviations, ...

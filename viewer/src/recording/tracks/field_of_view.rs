@@ -3,13 +3,13 @@
 use super::coarse::Coarse;
 use super::maps::{Picture, images};
 use super::{Tracks, WORLD, class, color, line, order, position, strips};
-use crate::outline::field_of_view;
-use crate::scene::Sight;
-use crate::view::View;
+use draw::outline::field_of_view;
+use draw::palette;
+use draw::scene::Sight;
+use draw::view::View;
 use interfaces::{Cell, GridFrame};
 use nalgebra::Point2;
 use rerun::{AnnotationContext, RecordingStreamResult, Transform3D};
-use results::drawing::palette;
 
 /// The class of the cells in the field of view.
 const IN_VIEW: u8 = 1;

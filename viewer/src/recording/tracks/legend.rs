@@ -1,11 +1,11 @@
 //! The legend below the map of the occupancy: the meaning of lines and areas.
 
 use super::{Tracks, WORLD, color, labels, position};
-use crate::legend::{self, Mark};
-use crate::scene::extent;
+use draw::legend::{self, Mark};
+use draw::palette;
+use draw::scene::extent;
 use nalgebra::Vector2;
 use rerun::{LineStrips2D, Radius, RecordingStreamResult};
-use results::drawing::palette;
 
 /// The height of the strip below the map that holds the legend, as a share of the height of the map.
 pub(in crate::recording) const SHARE: f64 = 0.16;
@@ -34,6 +34,7 @@ pub(super) fn add(tracks: &Tracks) -> RecordingStreamResult<()> {
         .map(|(mark, _)| match *mark {
             Mark::Line(color) => (color, 1.5),
             Mark::Area(color) | Mark::Cross(color) | Mark::Dot(color) => (color, 5.0),
+            Mark::Ring | Mark::Nothing => (palette::CURIOUS, 0.5),
         })
         .collect();
     // A dark rim shows white areas on a light ground.

@@ -2,9 +2,9 @@
 
 use super::coarse::Coarse;
 use super::{Tracks, WORLD, class, color, labels, order};
-use crate::layers::Layer;
-use crate::scene::{TimeUnit, extent};
-use crate::view::View;
+use draw::layers::Layer;
+use draw::scene::{TimeUnit, extent};
+use draw::view::View;
 use interfaces::GridFrame;
 use nalgebra::{Point2, Vector2};
 use rerun::components::ImageBuffer;

@@ -18,14 +18,14 @@ pub(super) use maps::{BAR_SHARE, map};
 pub(super) use robots::robot;
 
 use super::entity::{Entity, Kind, Track};
-use crate::scene::Scene;
-use crate::view::View;
+use draw::palette::Rgb;
+use draw::scene::Scene;
+use draw::view::View;
 use interfaces::GridFrame;
 use nalgebra::Point2;
 use rerun::external::re_sdk_types::datatypes::AnnotationInfo;
 use rerun::{AsComponents, Color, LineStrips2D, Points2D, Radius, RecordingStream, RecordingStreamResult};
 use rerun::{EntityPathPart, TextLog, TextLogLevel};
-use results::drawing::palette::Rgb;
 use robot::Level;
 
 /// The entity above everything that has a position.

@@ -3,11 +3,11 @@
 use super::{
     ON_CHANGE, Position, Tracks, WORLD, closed, color, escape, labels, line, order, points, position, strips,
 };
-use crate::scene::{Outline, span};
-use crate::view::View;
+use draw::palette;
+use draw::scene::{Outline, span};
+use draw::view::View;
 use nalgebra::Point2;
 use rerun::RecordingStreamResult;
-use results::drawing::palette;
 
 /// More names than this would hide the map; a viewer still shows them one by one.
 const MAX_LABELS: usize = 4;

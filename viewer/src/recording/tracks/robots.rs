@@ -2,12 +2,12 @@
 
 use super::{EVENTS, LABEL, ON_CHANGE, Strip, Tracks, WORLD, color, escape, labels, line, order, points};
 use super::{position, strips};
-use crate::scene::TimeUnit;
-use crate::view::{View, is_next_point};
+use draw::palette;
+use draw::scene::TimeUnit;
+use draw::view::{View, is_next_point};
 use interfaces::rotation;
 use nalgebra::{Isometry2, Vector2};
 use rerun::{Arrows2D, AsComponents, Points2D, Radius, RecordingStreamResult, Transform3D};
-use results::drawing::palette;
 
 /// A part of a robot.
 pub(in crate::recording) fn robot(name: &str, part: &str) -> String {

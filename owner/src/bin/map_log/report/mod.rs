@@ -10,16 +10,16 @@ mod raster;
 mod sessions;
 
 use crate::summary::Summary;
+use draw::layers::Layer;
+use draw::palette::{self, Rgb};
+use draw::scene::TimeUnit;
 use mapper::Mapper;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use nalgebra::Point2;
 use owner::words::{date, length_of, list};
 use plan::{Plan, Shown};
-use results::drawing::palette::{self, Rgb};
 use results::numbers::percent;
 use survey::{Place, StillName};
-use viewer::layers::Layer;
-use viewer::scene::TimeUnit;
 
 const STYLE: &str = include_str!("style.css");
 

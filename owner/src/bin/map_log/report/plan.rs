@@ -4,14 +4,14 @@ use super::labels::{Box4, labels};
 use super::marks::{Mark, drawn};
 use super::number;
 use super::raster::Cells;
+use draw::layers::{BLOCKED, FREE, Layer, UNKNOWN};
+use draw::palette;
+use draw::scene::TimeUnit;
 use mapper::Mapper;
 use maud::{Markup, html};
 use nalgebra::{Point2, Vector2};
-use results::drawing::palette;
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 use survey::upright_rad;
-use viewer::layers::{BLOCKED, FREE, Layer, UNKNOWN};
-use viewer::scene::TimeUnit;
 
 /// The share of the plan from which on a point is beside its middle.
 const BESIDE: f64 = 0.05;

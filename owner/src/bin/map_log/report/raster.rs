@@ -2,9 +2,9 @@
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
+use draw::palette::Rgb;
 use interfaces::Grid;
 use nalgebra::Point2;
-use results::drawing::palette::Rgb;
 
 /// The largest number of samples of a pixel along one side.
 const MAX_SAMPLES: usize = 6;

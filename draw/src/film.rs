@@ -1,0 +1,242 @@
+//! A moving picture of a run: the map with the robots on the left, and how often its cells change on the right.
+
+use crate::canvas::{Area, Canvas, PictureError, ink, px, why};
+use crate::layers::Layer;
+use crate::legend;
+use crate::outline::field_of_view;
+use crate::palette::{self, Rgb};
+use crate::panel::{Chart, Panel, pair};
+use crate::scene::{Scene, Sight, TimeUnit};
+use crate::trajectory::line;
+use crate::view::{Trail, View};
+use crate::{ground, plan};
+use files::UnfinishedFile;
+use gif::{DisposalMethod, Encoder, Frame, Repeat};
+use mapper::{Mapper, ThingKind};
+use plotters::prelude::*;
+use plotters::style::text_anchor::HPos;
+use std::collections::BTreeMap;
+use std::io::{self, Write};
+
+/// The number of frames.
+const FRAMES: u32 = 130;
+/// The share of the run before the first frame, which sites show as a preview: a room is known then.
+const BEGIN: f64 = 0.02;
+/// The duration of a frame, and of the last frame, 1/100 s.
+const DELAY: u16 = 10;
+const LAST_DELAY: u16 = 250;
+/// The color index of a pixel that is as in the frame before.
+const SAME: u8 = 255;
+
+/// The frames so far of a moving picture.
+pub struct Film {
+    file: UnfinishedFile,
+    scene: Scene,
+    duration: f64,
+    panels: [Panel; 2],
+    colors: Colors,
+    frames: Vec<Frame<'static>>,
+    /// The color indices of the last frame.
+    last: Vec<u8>,
+}
+
+impl Film {
+    /// A moving picture of a run in `scene`, to be written to a GIF file; `duration` is in the unit of time of the
+    /// scene.
+    pub fn new(file: UnfinishedFile, scene: Scene, duration: f64) -> Self {
+        let panels = [false, true].map(|has_bar| Panel::of_film(&scene.frame, scene.unit, has_bar));
+        Self { file, scene, duration, panels, colors: Colors::new(), frames: Vec::new(), last: Vec::new() }
+    }
+
+    /// Adds the present state of the run, with the trails of the robots. Frames are frequent at the start, when
+    /// most of the map is new, and rare at the end.
+    ///
+    /// # Errors
+    ///
+    /// When a frame cannot be drawn.
+    pub fn add(&mut self, view: &View, trails: &[Trail]) -> Result<(), PictureError> {
+        let part = self.frames.len() as f64 / f64::from(FRAMES - 1);
+        let due = BEGIN + (1.0 - BEGIN) * part * part.sqrt();
+        if view.time < self.duration * due || self.frames.len() >= FRAMES as usize {
+            return Ok(());
+        }
+        let size = self.size();
+        let canvas = Canvas::draw(size, |area| self.draw(area, view, trails));
+        let canvas = canvas.map_err(|why| PictureError::Draw { name: "the moving picture".into(), why })?;
+        let (colors, pixels) = (&mut self.colors, canvas.pixels().as_chunks::<3>().0);
+        let indices: Vec<u8> = pixels.iter().map(|&color| colors.index(color)).collect();
+        self.frames.push(difference(&self.last, &indices, size));
+        self.last = indices;
+        Ok(())
+    }
+
+    /// Writes the file; the picture repeats forever.
+    ///
+    /// # Errors
+    ///
+    /// When the file cannot be written.
+    pub fn write(mut self) -> Result<(), PictureError> {
+        if let Some(last) = self.frames.last_mut() {
+            last.delay = LAST_DELAY;
+        }
+        let [width, height] = self.size().map(|length| length as u16);
+        let colors: Vec<u8> = self.colors.all.iter().flatten().copied().collect();
+        let frames = self.frames;
+        let write = |to: &mut dyn Write| -> Result<(), gif::EncodingError> {
+            let mut encoder = Encoder::new(to, width, height, &colors)?;
+            encoder.set_repeat(Repeat::Infinite)?;
+            frames.iter().try_for_each(|frame| encoder.write_frame(frame))
+        };
+        Ok(self.file.write(|to| write(to).map_err(io::Error::other))?)
+    }
+
+    /// Width and height, pixels.
+    fn size(&self) -> [u32; 2] {
+        let [[left, height], [right, other]] = self.panels.map(|panel| panel.size());
+        [left + right, height.max(other)]
+    }
+
+    fn draw(&self, area: &Area, view: &View, trails: &[Trail]) -> Result<(), String> {
+        let [left, right] = &self.panels;
+        let (first, second) = area.split_horizontally(px(left.size()[0]));
+        let title = format!("{}: the map after {}", self.scene.title, duration(view.time, self.scene.unit));
+        let (chart, legend) = left.axes(&first, &title)?;
+        left.cells(&chart, Layer::Occupancy, &Layer::Occupancy.classes(view.mapper, self.scene.unit))?;
+        self.robots(left, &chart, view, trails)?;
+        left.frame(&chart)?;
+        left.legend(&legend, &legend::of_run(&self.scene, view))?;
+        let chart = right.layer(&second, view.mapper, Layer::Interval, self.scene.unit)?;
+        doors(right, &chart, view.mapper)
+    }
+
+    /// Draws what is on the map: the field of view, what moves, the plan, and the robots with their trails.
+    fn robots(&self, panel: &Panel, chart: &Chart, view: &View, trails: &[Trail]) -> Result<(), String> {
+        let plot = chart.plotting_area();
+        if let Some(Sight::Laser(reading)) = view.sight() {
+            let corners: Vec<(f64, f64)> = field_of_view(reading).iter().map(pair).collect();
+            plot.draw(&Polygon::new(corners, ink(palette::SENSOR).mix(0.25).filled())).map_err(why)?;
+        }
+        for (obstacle, outline) in self.scene.obstacles.iter().zip(&view.obstacles) {
+            if let Some(outline) = outline.as_ref().filter(|_| !obstacle.is_fixed()) {
+                ground::fill(chart, outline, palette::MOVING)?;
+            }
+        }
+        for (robot, trail) in self.scene.robots.iter().zip(trails) {
+            line(panel, chart, &Vec::from_iter(trail.recent()), (robot.color(), 3))?;
+        }
+        line(panel, chart, view.path, (palette::PATH, 3))?;
+        if let Some(goal) = view.goal {
+            let goal = plot.map_coordinate(&pair(&goal));
+            panel.dot(&plot.use_screen_coord(), goal, palette::GOAL)?;
+        }
+        for (robot, state) in self.scene.robots.iter().zip(&view.robots) {
+            plan::draw_robot(panel, chart, robot, &state.pose, robot.radius_m)?;
+        }
+        Ok(())
+    }
+}
+
+/// Writes beside every door that opened twice in view how often it opens.
+fn doors(panel: &Panel, chart: &Chart, mapper: &Mapper) -> Result<(), String> {
+    let plot = chart.plotting_area();
+    let (area, rows) = (plot.use_screen_coord(), plot.get_pixel_range().1);
+    for thing in mapper.things() {
+        let ThingKind::Door(door) = &thing.kind else { continue };
+        let Some(rate) = door.statistics.openings_per_hour().filter(|_| door.statistics.opened >= 2) else {
+            continue;
+        };
+        let every = format!("door: every {}", period(3600.0 / rate.mean()));
+        let [from, to] = door.closed.ends;
+        let (x, y) = plot.map_coordinate(&pair(&nalgebra::center(&from, &to)));
+        let [width, height] = panel.text_size(&area, &every)?;
+        // Above the door where there is room, otherwise below.
+        let beside = panel.px(14);
+        let y = if y - 2 * beside > rows.start { y - beside } else { y + beside };
+        let around = [(x - width / 2 - 3, y - height / 2 - 1), (x + width / 2 + 3, y + height / 2 + 1)];
+        area.draw(&Rectangle::new(around, WHITE.mix(0.8).filled())).map_err(why)?;
+        panel.write(&area, (x, y), HPos::Center, &every)?;
+    }
+    Ok(())
+}
+
+/// A time in the largest unit that keeps two digits: 40 s, 12 min.
+fn period(time_s: f64) -> String {
+    if time_s < 100.0 { format!("{time_s:.0} s") } else { format!("{:.0} min", time_s / 60.0) }
+}
+
+/// A duration as text: 3 min 20 s, 150 steps.
+fn duration(time: f64, unit: TimeUnit) -> String {
+    match unit {
+        TimeUnit::Second => format!("{} min {:02} s", time as u64 / 60, time as u64 % 60),
+        TimeUnit::Step => format!("{time} steps"),
+    }
+}
+
+/// The part of a picture that differs from the picture before.
+fn difference(before: &[u8], now: &[u8], [width, height]: [u32; 2]) -> Frame<'static> {
+    let width = width as usize;
+    let is_new = |at: usize| before.get(at) != Some(&now[at]);
+    let changed: Vec<usize> = (0..now.len()).filter(|&at| is_new(at)).collect();
+    let rows = changed.first().map_or(0..1, |first| first / width..changed[changed.len() - 1] / width + 1);
+    let buffer = (rows.start * width..rows.end * width).map(|at| if is_new(at) { now[at] } else { SAME });
+    debug_assert!(rows.end <= height as usize);
+    Frame {
+        delay: DELAY,
+        dispose: DisposalMethod::Keep,
+        transparent: Some(SAME),
+        top: rows.start as u16,
+        width: width as u16,
+        height: rows.len() as u16,
+        buffer: buffer.collect::<Vec<u8>>().into(),
+        ..Frame::default()
+    }
+}
+
+/// The colors of a film.
+struct Colors {
+    all: Vec<Rgb>,
+    /// The nearest of all colors.
+    known: BTreeMap<Rgb, u8>,
+}
+
+impl Colors {
+    /// The colors of the maps and the robots, and a coarse selection of all others for smooth edges.
+    fn new() -> Self {
+        let mut all = vec![
+            palette::FREE,
+            palette::BLOCKED,
+            palette::BLOCKED_FAINT,
+            palette::UNKNOWN,
+            palette::INK,
+            palette::CURIOUS,
+            palette::OTHER_ROBOT,
+            palette::PATH,
+            palette::GOAL,
+            palette::MOVING,
+            palette::SENSOR,
+            palette::SENSOR_AREA,
+        ];
+        all.extend(
+            Layer::Interval.scale_classes().iter().step_by(2).map(|&class| Layer::Interval.color(class)),
+        );
+        all.extend((1..32).map(|gray| [gray * 8; 3]));
+        let steps =
+            |count: u8| (0..count).map(move |step| (u16::from(step) * 255 / u16::from(count - 1)) as u8);
+        all.extend(
+            steps(6)
+                .flat_map(|red| steps(6).flat_map(move |green| steps(5).map(move |blue| [red, green, blue]))),
+        );
+        all.truncate(usize::from(SAME));
+        Self { all, known: BTreeMap::new() }
+    }
+
+    fn index(&mut self, color: Rgb) -> u8 {
+        let distance = |other: &Rgb| -> u32 {
+            color.iter().zip(other).map(|(a, b)| u32::from(a.abs_diff(*b)).pow(2)).sum()
+        };
+        *self.known.entry(color).or_insert_with(|| {
+            let nearest = self.all.iter().enumerate().min_by_key(|(_, other)| distance(other));
+            nearest.map_or(0, |(index, _)| index as u8)
+        })
+    }
+}

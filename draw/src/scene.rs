@@ -1,0 +1,167 @@
+//! The parts of a world that are constant during a run, as plain data.
+
+mod log;
+
+use crate::palette::{self, Rgb};
+use interfaces::{CellReading, GridFrame, LaserReading};
+use nalgebra::{Isometry2, Point2, Vector2};
+
+/// The corners of a polygon, m; the last corner is joined to the first.
+pub type Outline = Vec<Point2<f64>>;
+
+/// The unit of time of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TimeUnit {
+    /// Seconds of simulated time.
+    Second,
+    /// Steps of a grid world.
+    Step,
+}
+
+impl TimeUnit {
+    /// The value that belongs to the unit.
+    pub fn choose<T>(self, second: T, step: T) -> T {
+        match self {
+            Self::Second => second,
+            Self::Step => step,
+        }
+    }
+
+    /// The unit as a plural word, for titles.
+    pub fn plural(self) -> &'static str {
+        self.choose("seconds", "steps")
+    }
+
+    /// The symbol of the unit, for use after a number.
+    pub fn symbol(self) -> &'static str {
+        self.choose("s", "steps")
+    }
+
+    /// The unit of length in a world with this unit of time.
+    pub fn length(self) -> &'static str {
+        self.choose("m", "cells")
+    }
+}
+
+/// A world from above, at its start.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// The name of the world.
+    pub title: String,
+    /// The unit of time.
+    pub unit: TimeUnit,
+    /// The rectangle that is shown, and its cells.
+    pub frame: GridFrame,
+    /// The walls.
+    pub walls: Vec<Outline>,
+    /// Everything that is neither a wall nor a robot, in the order of the world file.
+    pub obstacles: Vec<Obstacle>,
+    /// The robots, in the order of the world file.
+    pub robots: Vec<SceneRobot>,
+}
+
+impl Scene {
+    /// Whether a robot is driven, or is part of the surroundings.
+    pub fn has_robot(&self, is_driven: bool) -> bool {
+        self.robots.iter().any(|robot| robot.is_driven == is_driven)
+    }
+
+    /// Whether an obstacle is fixed, or moves, appears or disappears.
+    pub fn has_obstacle(&self, is_fixed: bool) -> bool {
+        self.obstacles.iter().any(|obstacle| obstacle.is_fixed() == is_fixed)
+    }
+}
+
+/// Lower left corner and size of a frame, m.
+pub fn extent(frame: &GridFrame) -> (Point2<f64>, Vector2<f64>) {
+    (frame.origin(), Vector2::new(frame.width() as f64, frame.height() as f64) * frame.resolution_m())
+}
+
+/// The lowest and the highest coordinates of an outline, m.
+pub fn span(outline: &[Point2<f64>]) -> [Point2<f64>; 2] {
+    let first = outline.first().copied().unwrap_or(Point2::origin());
+    outline.iter().fold([first; 2], |[low, high], corner| [low.inf(corner), high.sup(corner)])
+}
+
+/// An object that is neither a wall nor a robot.
+#[derive(Clone, Debug)]
+pub struct Obstacle {
+    /// The name of the obstacle in the world file.
+    pub name: String,
+    /// The outline at the start, m; empty if the obstacle appears later.
+    pub outline: Outline,
+    /// The outlines at other times that follow from the world file: the swing of a door, the path of a block.
+    pub reach: Vec<Outline>,
+}
+
+impl Obstacle {
+    /// Whether the pose of the obstacle is constant during the whole run, like that of furniture.
+    pub fn is_fixed(&self) -> bool {
+        self.reach.is_empty()
+    }
+
+    /// The color of the obstacle.
+    pub fn color(&self) -> Rgb {
+        if self.is_fixed() { palette::FURNITURE } else { palette::MOVING }
+    }
+}
+
+/// A robot at its start.
+#[derive(Clone, Debug)]
+pub struct SceneRobot {
+    /// The name of the robot in the world file.
+    pub name: String,
+    /// The pose in the frame of the world, m and rad.
+    pub pose: Isometry2<f64>,
+    /// The radius of the circle around the body, m.
+    pub radius_m: f64,
+    /// The corners of the body in the frame of the robot, m; empty for a round body.
+    pub corners: Outline,
+    /// The areas that the range sensors of the robot cover.
+    pub sectors: Vec<Sector>,
+    /// The points that the robot drives along, m; empty unless they are known at the start.
+    pub route: Vec<Point2<f64>>,
+    /// Whether the robot executes commands: the curious robot, and not a part of its surroundings.
+    pub is_driven: bool,
+}
+
+impl SceneRobot {
+    /// The color of the robot.
+    pub fn color(&self) -> Rgb {
+        if self.is_driven { palette::CURIOUS } else { palette::OTHER_ROBOT }
+    }
+}
+
+/// The area that a laser scanner or a sonar covers.
+#[derive(Clone, Copy, Debug)]
+pub struct Sector {
+    /// The pose of the sensor in the frame of the robot, m and rad.
+    pub mount: Isometry2<f64>,
+    /// The angle of the area, symmetrical to the direction of the sensor, rad.
+    pub angle_rad: f64,
+    /// The range, m.
+    pub range_m: f64,
+}
+
+/// The state of a robot at one time.
+#[derive(Clone, Copy, Debug)]
+pub struct RobotState<'a> {
+    /// The pose in the frame of the world, m and rad. A robot in a grid world has no heading.
+    pub pose: Isometry2<f64>,
+    /// The field of view of the curious robot; `None` for every other robot.
+    pub sight: Option<Sight<'a>>,
+}
+
+/// The field of view of a robot.
+#[derive(Clone, Copy, Debug)]
+pub enum Sight<'a> {
+    /// The latest scan of a laser.
+    Laser(&'a LaserReading),
+    /// The cells that a robot in a grid world sees.
+    Cells {
+        /// The cells that are in view now.
+        reading: &'a CellReading,
+        /// The range of the sensor, cells.
+        radius: u32,
+    },
+}

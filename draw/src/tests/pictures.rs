@@ -1,0 +1,192 @@
+use super::*;
+use crate::Film;
+use crate::fake_run::FakeRun;
+use crate::legend::Mark;
+use crate::palette::{self, Rgb};
+use crate::scene::SceneRobot;
+use crate::view::Trail;
+use files::UnfinishedFile;
+use image::RgbImage;
+use interfaces::CellState;
+use nalgebra::Point2;
+
+struct Drawn {
+    folder: tempfile::TempDir,
+    run: FakeRun,
+}
+
+fn goals() -> Goals {
+    let mut goals = Goals::default();
+    goals.push(Point2::new(3.0, 4.0));
+    goals
+}
+
+/// A simulated run, drawn into a folder.
+fn drawn(ticks: usize) -> Drawn {
+    let folder = tempfile::tempdir().unwrap();
+    let mut run = FakeRun::new();
+    let mut trails = [(); 2].map(|()| Trail::default());
+    for _ in 0..ticks {
+        run.step();
+        for (trail, (_, at)) in trails.iter_mut().zip(run.positions()) {
+            trail.push(at);
+        }
+    }
+    let start = std::time::Instant::now();
+    let trails = Trails { true_poses: &trails, believed: &Trail::default() };
+    write_all(folder.path(), &run.scene, &run.mapper, &trails, &goals(), &Layer::ALL).unwrap();
+    println!("drawn in {:?}", start.elapsed());
+    Drawn { folder, run }
+}
+
+impl Drawn {
+    fn picture(&self, name: &str) -> RgbImage {
+        image::open(self.folder.path().join(format!("{name}.png"))).unwrap().into_rgb8()
+    }
+
+    fn color(&self, picture: &RgbImage, x_m: f64, y_m: f64) -> Rgb {
+        let panel = Panel::of_layer(self.run.mapper.frame(), self.run.scene.unit);
+        let [x, y] = panel.pixel(&Point2::new(x_m, y_m));
+        picture.get_pixel(x, y).0
+    }
+}
+
+#[test]
+fn a_map_shows_every_cell_where_it_lies() {
+    let drawn = drawn(600);
+    let (picture, mapper) = (drawn.picture("occupancy"), &drawn.run.mapper);
+    let (mut shown, mut total) = (0, 0);
+    // The border of the picture has the axes' line.
+    for index in (0..mapper.frame().len()).step_by(7) {
+        let cell = mapper.frame().cell(index);
+        if !(2..238).contains(&cell.x) || !(2..238).contains(&cell.y) {
+            continue;
+        }
+        let center = mapper.frame().center(cell);
+        let expected = match mapper.states().cells()[index] {
+            CellState::Free => palette::FREE,
+            CellState::Blocked => palette::BLOCKED,
+            CellState::Unknown => palette::UNKNOWN,
+        };
+        total += 1;
+        shown += usize::from(drawn.color(&picture, center.x, center.y) == expected);
+    }
+    assert!(total > 7500 && shown as f64 > 0.99 * f64::from(total), "{shown} of {total}");
+}
+
+#[test]
+fn the_stripe_of_the_dummy_is_dark_and_nothing_else_is() {
+    let drawn = drawn(3000);
+    let picture = drawn.picture("interval");
+    // Purple to red: a cycle takes less than half a minute.
+    let is_short = |[red, green, blue]: Rgb| red < 230 && green < 90 && blue < 120;
+    let stripe = (0..=8).filter(|x| is_short(drawn.color(&picture, 7.2 + 0.4 * f64::from(*x), 11.1)));
+    assert!(stripe.count() >= 5);
+    for (x_m, y_m) in [(3.0, 3.0), (9.0, 3.0), (3.0, 9.0), (9.0, 8.0)] {
+        assert_eq!(drawn.color(&picture, x_m, y_m), palette::FREE);
+    }
+    assert_eq!(drawn.color(&picture, 6.0, 1.0), palette::BLOCKED_FAINT, "walls are drawn faintly");
+}
+
+#[test]
+fn trails_walls_obstacles_starts_and_goals_are_drawn() {
+    let drawn = drawn(300);
+    let picture = drawn.picture("trajectory");
+    let entries = trajectory::entries(&drawn.run.scene, &Trail::default(), &goals()).len();
+    let panel = Panel::of_scene(drawn.run.mapper.frame(), drawn.run.scene.unit, entries);
+    let near = |x_m: f64, y_m: f64, color: Rgb| {
+        let [x, y] = panel.pixel(&Point2::new(x_m, y_m));
+        let mut around = (x - 3..x + 3).flat_map(|x| (y - 3..y + 3).map(move |y| (x, y)));
+        around.any(|(x, y)| picture.get_pixel(x, y).0 == color)
+    };
+    let (curious, other) = (palette::CURIOUS, palette::OTHER_ROBOT);
+    assert!(near(3.0, 3.0, curious) && near(6.0, 3.0, curious) && !near(6.0, 9.0, curious));
+    assert!(near(7.0, 11.2, other) && near(9.0, 11.2, other) && !near(9.0, 10.0, other));
+    assert!(near(6.0, 1.0, palette::WALL));
+    assert!(near(2.2, 10.2, palette::SWEPT));
+    assert!(near(3.0, 4.0, palette::GOAL));
+}
+
+#[test]
+fn a_few_robots_have_a_color_each_and_many_share_one() {
+    let mut scene = FakeRun::new().scene;
+    let lines = |scene: &Scene| -> Vec<(Rgb, String)> {
+        let entries = trajectory::entries(scene, &Trail::default(), &Goals::default()).into_iter();
+        let line = |(mark, text)| if let Mark::Line(color) = mark { Some((color, text)) } else { None };
+        entries.filter_map(line).collect()
+    };
+    let named = |color: Rgb, text: &str| (color, text.to_owned());
+    let curious = named(palette::CURIOUS, "curious");
+    scene.robots.insert(0, SceneRobot { name: "cat".into(), ..scene.robots[1].clone() });
+    let dummy = palette::other_robots(2)[1];
+    assert_eq!(lines(&scene), [curious.clone(), named(palette::OTHER_ROBOT, "cat"), named(dummy, "dummy")]);
+    let all = palette::other_robots(5);
+    assert!((1..5).all(|robot| !all[..robot].contains(&all[robot]) && all[robot] != palette::CURIOUS));
+    scene.robots.extend(vec![scene.robots[0].clone(); 6]);
+    assert_eq!(lines(&scene), [curious, named(palette::OTHER_ROBOT, "8 other robots")]);
+}
+
+#[test]
+fn a_film_is_a_small_gif_that_shows_the_run() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("run.gif");
+    let mut run = FakeRun::new();
+    let mut film = Film::new(UnfinishedFile::create(&file).unwrap(), run.scene.clone(), 30.0);
+    let mut trails = [(); 2].map(|()| Trail::default());
+    for _ in 0..300 {
+        run.step();
+        for (trail, (_, at)) in trails.iter_mut().zip(run.positions()) {
+            trail.push(at);
+        }
+        run.with_view(|view| film.add(view, &trails)).unwrap();
+    }
+    film.write().unwrap();
+    let bytes = std::fs::read(&file).unwrap();
+    assert!(bytes.len() < 1_000_000, "{}", bytes.len());
+    let mut options = gif::DecodeOptions::new();
+    options.set_color_output(gif::ColorOutput::Indexed);
+    let mut decoder = options.read_info(&*bytes).unwrap();
+    let mut frames = 0;
+    let mut duration = 0;
+    while let Some(frame) = decoder.read_next_frame().unwrap() {
+        frames += 1;
+        duration += u32::from(frame.delay);
+        assert!(frame.top + frame.height <= 600 && frame.width == 840, "{} {}", frame.top, frame.height);
+    }
+    assert!((100..=130).contains(&frames), "{frames}");
+    assert!((1000..=1600).contains(&duration), "{duration}");
+}
+
+#[test]
+fn figure_5_is_its_three_panels_side_by_side() {
+    let drawn = drawn(100);
+    let figure = drawn.picture("figure5");
+    let mut left = 0;
+    for layer in FIGURE_5 {
+        let panel = drawn.picture(layer.name());
+        let part = image::imageops::crop_imm(&figure, left, 0, panel.width(), panel.height()).to_image();
+        assert!(part == panel, "{layer:?}");
+        left += panel.width();
+    }
+    assert_eq!(figure.width(), left);
+}
+
+#[test]
+fn a_folder_that_cannot_be_written_is_named() {
+    let file = tempfile::NamedTempFile::new().unwrap();
+    let folder = file.path().join("pictures");
+    let run = FakeRun::new();
+    let trails = Trails { true_poses: &[], believed: &Trail::default() };
+    let error = write_all(&folder, &run.scene, &run.mapper, &trails, &Goals::default(), &Layer::ALL)
+        .unwrap_err()
+        .to_string();
+    assert!(error.starts_with(&format!("cannot write {}: ", folder.display())), "{error}");
+}
+
+#[test]
+#[ignore = "draws pictures for inspection"]
+fn pictures_for_inspection() {
+    let start = std::time::Instant::now();
+    let folder = drawn(6000).folder.keep();
+    println!("{} in {:?}", folder.display(), start.elapsed());
+}
