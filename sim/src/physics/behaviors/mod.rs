@@ -43,6 +43,11 @@ impl Behavior {
         })
     }
 
+    /// Whether the behavior reads its laser.
+    pub(super) fn looks(&self) -> bool {
+        !matches!(self, Self::Steady(_))
+    }
+
     /// The velocity until the next reading of the laser, which `read` returns; `None` without a reading.
     pub(super) fn decide<'a>(&mut self, read: impl FnOnce() -> Option<&'a LaserReading>) -> Option<Twist> {
         Some(match self {

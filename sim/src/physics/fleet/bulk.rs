@@ -28,14 +28,16 @@ impl Fleet {
     /// at another time is one more measurement: it draws noise, so that later readings of this laser have other noise.
     pub fn look(&mut self, robot: usize) -> Option<RobotView<'_>> {
         let sweeps = self.robots.get(robot)?.sweeps();
-        self.measure(sweeps, |other| other.index() == robot, SimulatedRobot::look);
+        let surroundings = self.surroundings(sweeps);
+        self.robots[robot].look(&surroundings);
         self.robot(robot)
     }
 
     /// Measures with the main lasers of all robots now, as [`Fleet::look`] does with one. With
     /// [parallel lasers](Fleet::set_parallel_lasers) on all threads.
     pub fn look_all(&mut self) {
-        self.measure(self.robots.iter().any(SimulatedRobot::sweeps), |_| true, SimulatedRobot::look);
+        let surroundings = &self.surroundings(self.robots.iter().any(SimulatedRobot::sweeps));
+        self.for_robots(|_| true, |robot| robot.look(surroundings));
     }
 
     /// The number of beams of the main lasers of all robots together: the length of the slice of [`Fleet::copy_scans`].

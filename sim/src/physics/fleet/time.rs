@@ -12,6 +12,7 @@ use crate::physics::sensors::{Surroundings, bumper};
 use crate::physics::shape::Rectangle;
 use interfaces::LaserReading;
 use rayon::prelude::*;
+use std::sync::Arc;
 
 impl Fleet {
     /// Simulates one physics step. Robots whose scan is due measure first, and decide; `controller` decides for
@@ -55,30 +56,33 @@ impl Fleet {
             return;
         }
         let sweeps = due.any(SimulatedRobot::sweeps);
-        self.measure(sweeps, is_due, SimulatedRobot::think);
+        let surroundings = &self.surroundings(sweeps);
+        self.for_robots(is_due, |robot| robot.think(surroundings));
     }
 
-    /// Lets the robots for which `is_meant` is true `measure` what is around them, in parallel if this is set. `sweeps`: a
-    /// laser of theirs sweeps.
-    pub(super) fn measure(
+    /// Lets the robots for which `is_meant` is true measure, in parallel if this is set.
+    pub(super) fn for_robots(
         &mut self,
-        sweeps: bool,
         is_meant: impl Fn(&SimulatedRobot) -> bool + Sync,
-        measure: impl Fn(&mut SimulatedRobot, &Surroundings<'_>) + Send + Sync,
+        measure: impl Fn(&mut SimulatedRobot) + Send + Sync,
     ) {
-        let (time_s, tagged) = (self.time_s(), self.tagged());
-        let poses = self.robots.iter().map(|robot| robot.pose);
+        if self.parallel_lasers {
+            self.robots.par_iter_mut().filter(|robot| is_meant(robot)).for_each(measure);
+        } else {
+            self.robots.iter_mut().filter(|robot| is_meant(robot)).for_each(measure);
+        }
+    }
+
+    /// What sensors that measure now can see. `sweeps`: a laser of theirs sweeps.
+    pub(super) fn surroundings(&self, sweeps: bool) -> Arc<Surroundings> {
+        let (scene, tagged) = (self.scene.clone(), self.tagged());
+        let robots = self.robots.iter().map(|robot| robot.pose);
         let obstacles = self.obstacles.iter();
         let obstacles = obstacles.map(|obstacle| obstacle.is_standing().then_some(obstacle.shape.pose));
-        let recent = if sweeps { self.past.recent(self.spec(), poses, obstacles) } else { Recent::default() };
-        let (scene, glass) = (&self.scene, &self.start.spec.glass);
-        let around = &Surroundings { step: self.step, time_s, scene, glass, tagged, recent };
-        if self.parallel_lasers {
-            let robots = self.robots.par_iter_mut().filter(|robot| is_meant(robot));
-            robots.for_each(|robot| measure(robot, around));
-        } else {
-            self.robots.iter_mut().filter(|robot| is_meant(robot)).for_each(|robot| measure(robot, around));
-        }
+        let recent =
+            if sweeps { self.past.recent(self.spec(), robots, obstacles) } else { Recent::default() };
+        let (time_s, glass) = (self.time_s(), self.spec().glass.clone());
+        Arc::new(Surroundings { step: self.step, time_s, scene, glass, tagged, recent })
     }
 
     /// Moves robots and obstacles by one physics step.
@@ -194,8 +198,9 @@ impl Fleet {
 /// A controller of driven robots: any type, or a closure that takes a robot and the reading of its main laser and
 /// returns a velocity ([`interfaces::Twist`]) or any other [`Command`].
 ///
-/// The fleet calls the controller at every scan of the main laser of a driven robot. The controller `&mut ()` gives no
-/// commands: the robots keep the command of [`Fleet::command`](super::Fleet::command).
+/// The fleet calls the controller at every scan of the main laser of a driven robot. Sensors that the controller does
+/// not read are not simulated. The controller `&mut ()` gives no commands: the robots keep the command of
+/// [`Fleet::command`](super::Fleet::command).
 pub trait Controller {
     /// The new command; `None` if the robot keeps its command. The readings of all sensors are in the view of the
     /// robot. A command that contains NaN stops the robot; a command beyond the limits of the drive is limited to

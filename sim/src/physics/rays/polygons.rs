@@ -20,7 +20,7 @@ pub(super) struct Body {
 }
 
 /// The bodies that are present, prepared for rays.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(super) struct SortedPolygons {
     edges: Vec<Edge>,
     bodies: Vec<Polygon>,

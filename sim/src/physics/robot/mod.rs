@@ -17,6 +17,7 @@ use super::spec::{BehaviorSpec, RobotSpec};
 use interfaces::{LaserReading, Purpose, RandomStream, Twist, Values, values};
 use nalgebra::{Isometry2, Point2, Vector2};
 use odometry::{Displacements, Odometry, Wheels};
+use std::sync::Arc;
 
 #[derive(Clone)]
 pub(crate) struct SimulatedRobot {
@@ -103,11 +104,6 @@ impl SimulatedRobot {
         values
     }
 
-    /// The index among the robots.
-    pub(super) fn index(&self) -> usize {
-        self.index
-    }
-
     /// The center, m.
     pub(super) fn at(&self) -> Point2<f64> {
         self.pose.translation.vector.into()
@@ -154,6 +150,11 @@ impl SimulatedRobot {
         self.is_driven() && due.all(|sensor| sensor.has_measured(time_s))
     }
 
+    /// Whether the robot reads its main laser scanner at once when it decides.
+    pub(super) fn looks(&self) -> bool {
+        self.behavior.as_ref().is_some_and(Behavior::looks)
+    }
+
     /// Whether a laser of the robot sweeps.
     pub(super) fn sweeps(&self) -> bool {
         self.spec.lasers().any(|laser| laser.sweep_s > 0.0)
@@ -161,7 +162,7 @@ impl SimulatedRobot {
 
     /// The latest reading of the main laser scanner.
     pub(super) fn reading(&self) -> Option<&LaserReading> {
-        reading_of(&self.sensors[0])
+        self.sensors[0].laser_reading()?
     }
 
     /// Sets the command of the robot.
@@ -189,28 +190,35 @@ impl SimulatedRobot {
     }
 
     /// Measures with the main laser scanner, and with all other sensors that are due.
-    pub(super) fn look(&mut self, surroundings: &Surroundings<'_>) {
+    pub(super) fn look(&mut self, surroundings: &Arc<Surroundings>) {
         self.sense(surroundings, true);
     }
 
     /// Measures with all sensors that are due. A robot with a behavior then decides its velocity.
-    pub(super) fn think(&mut self, surroundings: &Surroundings<'_>) {
-        self.sense(surroundings, false);
-        if self.decides(surroundings.step)
+    pub(super) fn think(&mut self, surroundings: &Arc<Surroundings>) {
+        let decides = self.decides(surroundings.step);
+        let looks = decides && self.looks();
+        self.sense(surroundings, looks);
+        if decides
             && let Some(behavior) = &mut self.behavior
-            && let Some(twist) = behavior.decide(|| reading_of(&self.sensors[0]))
+            && let Some(twist) = behavior.decide(|| self.sensors[0].laser_reading()?)
         {
             self.command = twist.into();
         }
     }
 
     /// Measures with all sensors that are due, and with the main laser scanner if its reading `is_needed` now.
-    fn sense(&mut self, surroundings: &Surroundings<'_>, is_needed: bool) {
-        let look = Look::new(self.platform(), surroundings);
-        for (index, sensor) in self.sensors.iter_mut().enumerate() {
-            if sensor.is_due(surroundings.step) || is_needed && index == 0 {
-                sensor.measure(&look);
-            }
+    fn sense(&mut self, surroundings: &Arc<Surroundings>, is_needed: bool) {
+        let look = Look::new(self.platform(), Arc::clone(surroundings));
+        let others = if is_needed {
+            self.sensors[0].measure(&look);
+            &mut self.sensors[1..]
+        } else {
+            &mut self.sensors[..]
+        };
+        let mut shared = None;
+        for sensor in others.iter_mut().filter(|sensor| sensor.is_due(surroundings.step)) {
+            sensor.request(shared.get_or_insert_with(|| Arc::new(look.clone())));
         }
     }
 
@@ -263,9 +271,4 @@ impl SimulatedRobot {
             self.odometry.jump(jumps);
         }
     }
-}
-
-/// The latest reading of the main laser scanner.
-fn reading_of(main: &Sensor) -> Option<&LaserReading> {
-    if let Sensor::Laser(laser) = main { laser.reading.as_ref() } else { None }
 }

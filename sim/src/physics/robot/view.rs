@@ -38,7 +38,8 @@ impl<'a> RobotView<'a> {
         (self.robot.odometry.pose, self.robot.odometry_twist())
     }
 
-    /// The latest reading of the main laser scanner; `None` before the first measurement.
+    /// The latest reading of the main laser scanner; `None` before the first measurement. As with all sensors, the
+    /// reading is computed when it is first read.
     pub fn reading(&self) -> Option<&'a LaserReading> {
         self.robot.reading()
     }
@@ -50,20 +51,17 @@ impl<'a> RobotView<'a> {
 
     /// The latest reading of each laser scanner, in the order of the spec.
     pub fn lasers(&self) -> impl Iterator<Item = Option<&'a LaserReading>> + use<'a> {
-        self.readings()
-            .filter_map(|reading| if let SensorReading::Laser(laser) = reading { Some(laser) } else { None })
+        self.robot.sensors.iter().filter_map(Sensor::laser_reading)
     }
 
     /// The latest reading of each sonar, in the order of the spec.
     pub fn sonars(&self) -> impl Iterator<Item = Option<SonarReading>> + use<'a> {
-        self.readings()
-            .filter_map(|reading| if let SensorReading::Sonar(sonar) = reading { Some(sonar) } else { None })
+        self.robot.sensors.iter().filter_map(Sensor::sonar_reading)
     }
 
     /// The latest detections of the fiducial finder, robots first, each in the order of the spec.
     pub fn fiducials(&self) -> impl Iterator<Item = &'a Fiducial> + use<'a> {
-        self.readings()
-            .flat_map(|reading| if let SensorReading::Fiducials(found) = reading { found } else { &[] })
+        self.robot.sensors.iter().filter_map(Sensor::detections).flatten()
     }
 
     /// For each bumper, from right to left, whether it touches something now.

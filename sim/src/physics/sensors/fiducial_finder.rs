@@ -1,4 +1,4 @@
-use super::Look;
+use super::on_demand::{Device, Look};
 use crate::physics::form::Form;
 use crate::physics::rays::{Beams, Ring};
 use crate::physics::report::Body;
@@ -40,18 +40,23 @@ pub(crate) struct FiducialFinder {
     beam: Beams,
     /// Of all sensors of the robot.
     ring: Ring,
-    pub(super) reading: Vec<Fiducial>,
 }
 
 impl FiducialFinder {
     pub(super) fn new(spec: &FiducialSpec, ring: Ring) -> Self {
-        Self { spec: *spec, beam: Beams::new(0.0, 1.0, 1, spec.range_max_m), ring, reading: Vec::new() }
+        Self { spec: *spec, beam: Beams::new(0.0, 1.0, 1, spec.range_max_m), ring }
     }
+}
 
-    pub(super) fn measure(&mut self, look: &Look<'_>) {
+impl Device for FiducialFinder {
+    type Reading = Vec<Fiducial>;
+    type Streams = ();
+
+    fn measure(&self, look: &Look, (): &mut (), spare: Option<Vec<Fiducial>>) -> Vec<Fiducial> {
         let Look { platform, surroundings, .. } = look;
         let pose = platform.pose * self.spec.mount;
-        self.reading.clear();
+        let mut bodies = spare.unwrap_or_default();
+        bodies.clear();
         let own = Body::Robot(platform.robot);
         for &Tagged { tag, body, center, ref form } in surroundings.tagged.iter().filter(|it| it.body != own)
         {
@@ -64,8 +69,15 @@ impl FiducialFinder {
             let ray = pose * Isometry2::from_parts(nalgebra::Translation2::identity(), rotation(bearing_rad));
             let first_m = 1.0 / surroundings.scene.nearest(&self.beam, &ray, look.vicinity(&self.ring));
             if first_m > range_m || form.gap_m_to(&(ray * Point2::new(first_m, 0.0))) < ON_SURFACE_M {
-                self.reading.push(Fiducial { tag, body, bearing_rad, range_m });
+                bodies.push(Fiducial { tag, body, bearing_rad, range_m });
             }
         }
+        bodies
+    }
+
+    fn skip(&self, (): &mut ()) {}
+
+    fn time_s(_: &Vec<Fiducial>) -> Option<f64> {
+        None
     }
 }

@@ -1,4 +1,5 @@
-use super::{Look, SharedBeams, reported};
+use super::on_demand::{Device, Look};
+use super::{SharedBeams, reported};
 use crate::physics::rays::{Beams, Ray};
 use crate::physics::spec::LaserSpec;
 use interfaces::{LaserReading, RandomStream, Scan};
@@ -15,23 +16,22 @@ const MIN_SHARE: f64 = 0.25;
 pub(crate) struct LaserScanner {
     pub(super) spec: LaserSpec,
     beams: Arc<Beams>,
+}
+
+/// The random streams of a laser scanner.
+#[derive(Clone)]
+pub(crate) struct LaserStreams {
     pub(super) noise: RandomStream,
     pub(super) dropout: RandomStream,
-    pub(in crate::physics) reading: Option<LaserReading>,
 }
 
 impl LaserScanner {
-    pub(super) fn new(
-        spec: &LaserSpec,
-        beams: &mut SharedBeams,
-        noise: RandomStream,
-        dropout: RandomStream,
-    ) -> Self {
-        Self { spec: *spec, beams: beams.of_laser(spec), noise, dropout, reading: None }
+    pub(crate) fn new(spec: &LaserSpec, beams: &mut SharedBeams) -> Self {
+        Self { spec: *spec, beams: beams.of_laser(spec) }
     }
 
     /// The beams of a scan that sweeps.
-    fn rays(&self, look: &Look<'_>, scan: &Scan) -> Vec<Ray> {
+    fn rays(&self, look: &Look, scan: &Scan) -> Vec<Ray> {
         let (robot, recent) = (look.platform.robot, &look.surroundings.recent);
         let mut motion = (usize::MAX, recent.motion(robot, 0));
         let directions = self.beams.directions().enumerate();
@@ -47,12 +47,11 @@ impl LaserScanner {
         rays.collect()
     }
 
-    /// The reading of this time without ranges, in the memory of the last one.
-    fn empty_reading(&mut self, look: &Look<'_>) -> LaserReading {
+    /// The reading of this time without ranges, in the memory of a spare one.
+    fn empty_reading(&self, look: &Look, spare: Option<LaserReading>) -> LaserReading {
         let Look { platform, surroundings, .. } = look;
-        let last = self.reading.take();
-        let (scan, mut velocities) =
-            last.map_or_else(|| (self.spec.empty_scan(), Vec::new()), |last| (last.scan, last.velocities));
+        let (scan, mut velocities) = spare
+            .map_or_else(|| (self.spec.empty_scan(), Vec::new()), |spare| (spare.scan, spare.velocities));
         velocities.clear();
         if self.spec.sweep_s > 0.0 {
             velocities.extend(surroundings.recent.velocities(platform.robot, surroundings.time_s));
@@ -68,7 +67,7 @@ impl LaserScanner {
     }
 
     /// Takes the ranges of beams that end in glass. `exact`: one over the range without noise of each beam, 1/m.
-    fn swallow(&self, look: &Look<'_>, rays: &[Ray], exact: &[f64], ranges_m: &mut [f32]) {
+    fn swallow(&self, look: &Look, rays: &[Ray], exact: &[f64], ranges_m: &mut [f32]) {
         let laser = look.platform.pose * self.spec.mount;
         for (beam, (inverse, (x, y))) in exact.iter().zip(self.beams.directions()).enumerate() {
             let (from, along) = rays.get(beam).map_or_else(
@@ -83,9 +82,9 @@ impl LaserScanner {
     }
 
     /// One over the ranges of beams with a width, 1/m. `rays`: the beams of a scan that sweeps.
-    fn mixed(&self, look: &Look<'_>, rays: &[Ray]) -> Vec<f64> {
+    fn mixed(&self, look: &Look, rays: &[Ray]) -> Vec<f64> {
         let Look { platform, surroundings, .. } = look;
-        let (scene, laser) = (surroundings.scene, platform.pose * self.spec.mount);
+        let (scene, laser) = (&surroundings.scene, platform.pose * self.spec.mount);
         let cast = |share: f64| {
             let turn = interfaces::rotation(self.spec.beam_width_rad * share);
             let turned: Vec<_> = rays.iter().map(|ray| Ray { along: turn * ray.along, ..*ray }).collect();
@@ -100,17 +99,31 @@ impl LaserScanner {
         let middle = cast(0.0).into_iter().enumerate();
         middle.map(|(beam, middle)| mixed(parts.iter().map(|part| 1.0 / part[beam]), middle)).collect()
     }
+}
 
-    pub(super) fn measure(&mut self, look: &Look<'_>) {
+/// One over the range of a beam whose rays have these ranges (m), and the ray in its middle one over the range `middle`:
+/// the mean, if a near and a far surface both have a good share.
+fn mixed(ranges_m: impl Iterator<Item = f64> + Clone, middle: f64) -> f64 {
+    let (near_m, far_m) =
+        (ranges_m.clone().fold(f64::INFINITY, f64::min), ranges_m.clone().fold(0.0, f64::max));
+    let near = ranges_m.clone().filter(|range_m| *range_m < (near_m + far_m) / 2.0).count();
+    let is_mixed = (MIN_SHARE..=1.0 - MIN_SHARE).contains(&(near as f64 / RAYS as f64));
+    if is_mixed && far_m.is_finite() { RAYS as f64 / ranges_m.sum::<f64>() } else { middle }
+}
+
+impl Device for LaserScanner {
+    type Reading = LaserReading;
+    type Streams = LaserStreams;
+
+    fn measure(&self, look: &Look, streams: &mut LaserStreams, spare: Option<LaserReading>) -> LaserReading {
         let Look { platform, surroundings, .. } = look;
         let LaserSpec { range_min_m, range_max_m, noise_std_m, dropout, mount, sweep_s, .. } = self.spec;
-        let mut reading = self.empty_reading(look);
+        let mut reading = self.empty_reading(look, spare);
         let rays = if sweep_s > 0.0 { self.rays(look, &reading.scan) } else { Vec::new() };
         let reported = move |measured_m: f64| reported(measured_m, range_min_m, range_max_m);
-        let (glass, mut exact) = (surroundings.glass, Vec::new());
+        let (glass, mut exact) = (&surroundings.glass, Vec::new());
         let ranges_m = &mut reading.scan.ranges_m;
-        let wide = (self.spec.beam_width_rad > 0.0).then(|| self.mixed(look, &rays));
-        let (scene, noise) = (surroundings.scene, &mut self.noise);
+        let (scene, noise) = (&surroundings.scene, &mut streams.noise);
         // By value: the limits cannot be among the ranges that are written, so that the loops below need not read them
         // again for every beam.
         let kept = &mut exact;
@@ -133,8 +146,8 @@ impl LaserScanner {
                 }
             }
         };
-        if let Some(inverses) = wide {
-            report(&inverses);
+        if self.spec.beam_width_rad > 0.0 {
+            report(&self.mixed(look, &rays));
         } else if rays.is_empty() {
             scene.cast(&self.beams, &(platform.pose * mount), platform.robot, report);
         } else {
@@ -144,21 +157,27 @@ impl LaserScanner {
         if dropout > 0.0 {
             for range_m in &mut reading.scan.ranges_m {
                 // REP-117: a missing measurement is NaN. One draw per beam, as above.
-                if self.dropout.bernoulli(dropout) {
+                if streams.dropout.bernoulli(dropout) {
                     *range_m = f32::NAN;
                 }
             }
         }
-        self.reading = Some(reading);
+        reading
     }
-}
 
-/// One over the range of a beam whose rays have these ranges (m), and the ray in its middle one over the range `middle`:
-/// the mean, if a near and a far surface both have a good share.
-fn mixed(ranges_m: impl Iterator<Item = f64> + Clone, middle: f64) -> f64 {
-    let (near_m, far_m) =
-        (ranges_m.clone().fold(f64::INFINITY, f64::min), ranges_m.clone().fold(0.0, f64::max));
-    let near = ranges_m.clone().filter(|range_m| *range_m < (near_m + far_m) / 2.0).count();
-    let is_mixed = (MIN_SHARE..=1.0 - MIN_SHARE).contains(&(near as f64 / RAYS as f64));
-    if is_mixed && far_m.is_finite() { RAYS as f64 / ranges_m.sum::<f64>() } else { middle }
+    fn skip(&self, streams: &mut LaserStreams) {
+        let LaserSpec { beams, noise_std_m, dropout, .. } = self.spec;
+        for _ in 0..beams {
+            if noise_std_m > 0.0 {
+                streams.noise.normal();
+            }
+            if dropout > 0.0 {
+                streams.dropout.bernoulli(dropout);
+            }
+        }
+    }
+
+    fn time_s(reading: &LaserReading) -> Option<f64> {
+        Some(reading.time_s)
+    }
 }

@@ -1,6 +1,7 @@
 //! The sensors of a robot.
 //!
-//! A sensor measures at fixed steps.
+//! A sensor measures at fixed steps, but its reading is computed when it is first read ([`on_demand`]): sensors that
+//! nobody reads cost nothing.
 //!
 //! Stepping, snapshots and views use one list of sensors, [`Sensor::all`]. To add a sensor: write a file, and add a
 //! variant to [`Sensor`] and one to [`SensorReading`].
@@ -8,6 +9,7 @@
 pub(super) mod bumper;
 mod fiducial_finder;
 mod laser_scanner;
+mod on_demand;
 mod shared_beams;
 mod sonar;
 
@@ -15,23 +17,26 @@ pub use fiducial_finder::Fiducial;
 use fiducial_finder::FiducialFinder;
 pub(super) use fiducial_finder::Tagged;
 pub(super) use laser_scanner::LaserScanner;
+use laser_scanner::LaserStreams;
+pub(super) use on_demand::{Look, OnDemand};
 pub(super) use shared_beams::SharedBeams;
 use sonar::Sonar;
 pub use sonar::SonarReading;
 
 use super::past::Recent;
-use super::rays::{Ring, Scene, Vicinity};
+use super::rays::{Ring, Scene};
+use super::snapshot::{Values, value};
 use super::spec::{Glass, LaserSpec, RobotSpec};
-use interfaces::{LaserReading, Purpose, RandomStream, Twist, Values, values};
+use interfaces::{LaserReading, Purpose, RandomStream, Twist};
 use nalgebra::Isometry2;
-use std::cell::OnceCell;
+use std::sync::Arc;
 
 /// A sensor on a robot, with its latest reading.
 #[derive(Clone)]
 pub(super) enum Sensor {
-    Laser(Box<LaserScanner>),
-    Sonar(Box<Sonar>),
-    Fiducials(Box<FiducialFinder>),
+    Laser(Box<OnDemand<LaserScanner>>),
+    Sonar(Box<OnDemand<Sonar>>),
+    Fiducials(Box<OnDemand<FiducialFinder>>),
 }
 
 /// The same for every kind of sensor.
@@ -57,23 +62,25 @@ impl Sensor {
         }
         for (index, sonar) in spec.sonars.iter().enumerate() {
             let noise = RandomStream::new(seed, Purpose::SonarNoise(stream(index)));
-            sensors.push(Self::Sonar(Box::new(Sonar::new(sonar, beams, ring, noise))));
+            sensors.push(Self::Sonar(Box::new(OnDemand::new(Sonar::new(sonar, beams, ring), noise))));
         }
-        let finder = spec.fiducial.iter().map(|finder| FiducialFinder::new(finder, ring));
+        let finder = spec.fiducial.iter().map(|finder| OnDemand::new(FiducialFinder::new(finder, ring), ()));
         sensors.extend(finder.map(|finder| Self::Fiducials(Box::new(finder))));
         sensors
     }
 
     /// A laser scanner with random streams with the index `stream`.
     pub(super) fn laser(spec: &LaserSpec, beams: &mut SharedBeams, seed: u64, stream: usize) -> Self {
-        let noise = RandomStream::new(seed, Purpose::LaserNoise(stream));
-        let dropout = RandomStream::new(seed, Purpose::LaserDropout(stream));
-        Self::Laser(Box::new(LaserScanner::new(spec, beams, noise, dropout)))
+        let streams = LaserStreams {
+            noise: RandomStream::new(seed, Purpose::LaserNoise(stream)),
+            dropout: RandomStream::new(seed, Purpose::LaserDropout(stream)),
+        };
+        Self::Laser(Box::new(OnDemand::new(LaserScanner::new(spec, beams), streams)))
     }
 
     /// The number of steps from one measurement to the next.
     pub(super) fn period_steps(&self) -> u64 {
-        each!(self, sensor => sensor.spec.period_steps)
+        each!(self, sensor => sensor.device.spec.period_steps)
     }
 
     /// Whether the sensor measures at a step.
@@ -81,43 +88,65 @@ impl Sensor {
         step.is_multiple_of(self.period_steps())
     }
 
-    /// Whether the sensor has measured at a time, s. Bodies with a tag may be found again: that draws no noise.
+    /// Whether the sensor has measured at a time, s.
     pub(super) fn has_measured(&self, time_s: f64) -> bool {
-        let last_s = match self {
-            Self::Laser(laser) => laser.reading.as_ref().map(|reading| reading.time_s),
-            Self::Sonar(sonar) => sonar.reading.map(|reading| reading.time_s),
-            Self::Fiducials(_) => None,
-        };
-        last_s == Some(time_s)
+        each!(self, sensor => sensor.has_measured(time_s))
     }
 
-    /// The sensor measures now, unless it has measured at this time.
-    pub(super) fn measure(&mut self, look: &Look<'_>) {
-        if !self.has_measured(look.surroundings.time_s) {
-            each!(self, sensor => sensor.measure(look));
-        }
+    /// The sensor measures now, but the reading is computed when it is read.
+    pub(super) fn request(&mut self, look: &Arc<Look>) {
+        each!(self, sensor => sensor.request(look))
+    }
+
+    /// The sensor measures now, and the reading will be read: it is computed at once.
+    pub(super) fn measure(&mut self, look: &Look) {
+        each!(self, sensor => sensor.measure(look))
     }
 
     /// The latest reading.
     pub(super) fn reading(&self) -> SensorReading<'_> {
         match self {
-            Self::Laser(laser) => SensorReading::Laser(laser.reading.as_ref()),
-            Self::Sonar(sonar) => SensorReading::Sonar(sonar.reading),
-            Self::Fiducials(finder) => SensorReading::Fiducials(&finder.reading),
+            Self::Laser(laser) => SensorReading::Laser(laser.reading()),
+            Self::Sonar(sonar) => SensorReading::Sonar(sonar.reading().copied()),
+            Self::Fiducials(finder) => SensorReading::Fiducials(finder.reading().map_or(&[], Vec::as_slice)),
         }
+    }
+
+    /// The latest reading, if the sensor is a laser scanner.
+    pub(super) fn laser_reading(&self) -> Option<Option<&LaserReading>> {
+        let Self::Laser(laser) = self else { return None };
+        Some(laser.reading())
+    }
+
+    /// The latest reading, if the sensor is a sonar.
+    pub(super) fn sonar_reading(&self) -> Option<Option<SonarReading>> {
+        let Self::Sonar(sonar) = self else { return None };
+        Some(sonar.reading().copied())
+    }
+
+    /// The latest detections, if the sensor is a fiducial finder.
+    pub(super) fn detections(&self) -> Option<&[Fiducial]> {
+        let Self::Fiducials(finder) = self else { return None };
+        Some(finder.reading().map_or(&[], Vec::as_slice))
     }
 
     /// Removes the latest reading.
     pub(super) fn clear(&mut self) {
-        each!(self, sensor => sensor.reading = Default::default())
+        each!(self, sensor => sensor.clear())
     }
 
     /// The values that a snapshot holds.
     pub(super) fn values(&mut self) -> Values<'_> {
         match self {
-            Self::Laser(laser) => values![laser.noise, laser.dropout, laser.reading],
-            Self::Sonar(sonar) => values![sonar.noise, sonar.reading],
-            Self::Fiducials(finder) => values![finder.reading],
+            Self::Laser(laser) => {
+                let (LaserStreams { noise, dropout }, reading) = laser.state();
+                vec![value(noise), value(dropout), value(reading)]
+            }
+            Self::Sonar(sonar) => {
+                let (noise, reading) = sonar.state();
+                vec![value(noise), value(reading)]
+            }
+            Self::Fiducials(finder) => vec![value(finder.state().1.get_or_insert_default())],
         }
     }
 }
@@ -144,6 +173,7 @@ pub enum SensorReading<'a> {
 }
 
 /// A robot at the moment of a measurement.
+#[derive(Clone)]
 pub(super) struct Platform {
     /// The index of the robot.
     pub(super) robot: usize,
@@ -154,33 +184,13 @@ pub(super) struct Platform {
     pub(super) odometry_twist: Twist,
 }
 
-/// A robot and its surroundings at the time of a measurement.
-pub(super) struct Look<'a> {
-    platform: Platform,
-    surroundings: &'a Surroundings<'a>,
-    vicinity: OnceCell<Vicinity>,
-}
-
-impl<'a> Look<'a> {
-    pub(super) fn new(platform: Platform, surroundings: &'a Surroundings<'a>) -> Self {
-        Self { platform, surroundings, vicinity: OnceCell::new() }
-    }
-
-    /// What is around the robot. All sensors of the robot that ask for it must be within `ring`, the same one.
-    fn vicinity(&self, ring: &Ring) -> &Vicinity {
-        let Platform { pose, robot, .. } = &self.platform;
-        self.vicinity
-            .get_or_init(|| self.surroundings.scene.vicinity(pose.translation.vector.into(), ring, *robot))
-    }
-}
-
 /// The surroundings of all robots at the time of a measurement.
-pub(super) struct Surroundings<'a> {
+pub(super) struct Surroundings {
     /// The number of the physics step.
     pub(super) step: u64,
     pub(super) time_s: f64,
-    pub(super) scene: &'a Scene,
-    pub(super) glass: &'a [Glass],
+    pub(super) scene: Scene,
+    pub(super) glass: Vec<Glass>,
     pub(super) tagged: Vec<Tagged>,
     /// For lasers that sweep.
     pub(super) recent: Recent,

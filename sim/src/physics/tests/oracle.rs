@@ -10,6 +10,7 @@ use interfaces::{Scan, Twist, rotation};
 use nalgebra::{Isometry2, Point2, Vector2};
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
+use std::sync::Arc;
 
 /// A beam is grazing if a rotation by this angle changes the body that it hits, rad.
 const GRAZE_RAD: f64 = 1e-6;
@@ -54,9 +55,10 @@ pub(super) fn scan(spec: &LaserSpec, at: &Isometry2<f64>, scene: &Scene, own: us
     let spec = LaserSpec { mount: Isometry2::identity(), sweep_s: 0.0, ..*spec };
     let mut laser = Sensor::laser(&spec, &mut SharedBeams::default(), 0, 0);
     let platform = Platform { robot: own, pose: *at, odometry_pose: *at, odometry_twist: Twist::STOP };
-    let (tagged, recent) = (Vec::new(), Recent::default());
-    let surroundings = Surroundings { step: 0, time_s: 0.0, scene, glass: &[], tagged, recent };
-    laser.measure(&Look::new(platform, &surroundings));
+    let (scene, recent) = (scene.clone(), Recent::default());
+    let surroundings =
+        Surroundings { step: 0, time_s: 0.0, scene, glass: Vec::new(), tagged: Vec::new(), recent };
+    laser.measure(&Look::new(platform, Arc::new(surroundings)));
     match laser.reading() {
         SensorReading::Laser(Some(reading)) => reading.scan.clone(),
         reading => panic!("{reading:?}"),

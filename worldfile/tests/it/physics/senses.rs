@@ -164,3 +164,46 @@ fn a_snapshot_knows_what_was_sensed() {
     }
     assert_eq!(again.snapshot(), fleet.snapshot());
 }
+
+/// A reading is computed when it is first read, if at all: this never shows.
+#[test]
+fn readings_do_not_depend_on_which_readings_were_read() {
+    let driven = robot("one", [1.0, 2.0], 0.0, "kind = \"driven\"").replace("[robot.behavior]", SENSES);
+    let free = robot("free", [4.0, 2.0], 1.0, "kind = \"wander\"\nspeed_mps = 0.3");
+    let robots = [driven, tagged("other", [2.0, 2.0], 1), free];
+    let robots =
+        robots.map(|robot| robot.replace("noise_std_m = 0.005\n", "noise_std_m = 0.005\ndropout = 0.1\n"));
+    let spec = house(&robots, "");
+    let [mut read, mut unread] = [Fleet::new(&spec, 3), Fleet::new(&spec, 3)];
+    let sensed = |fleet: &Fleet| -> Vec<String> {
+        fleet.robots().flat_map(|robot| robot.readings().map(|reading| format!("{reading:?}"))).collect()
+    };
+    for step in 0..60 {
+        read.step(&mut Ahead);
+        unread.step(&mut Ahead);
+        let all = sensed(&read);
+        if step % 17 == 0 {
+            // The robots have moved since the readings that are computed only now.
+            assert_eq!(sensed(&unread), all);
+            assert_eq!(unread.snapshot(), read.snapshot());
+        }
+    }
+    for fleet in [&mut read, &mut unread] {
+        fleet.teleport(0, &interfaces::pose(1.5, 3.0, 0.0)).unwrap();
+    }
+    let mut restored = Fleet::restored(&spec, &unread.snapshot()).unwrap();
+    for fleet in [&mut read, &mut unread, &mut restored] {
+        fleet.run_until(5.0, &mut Ahead);
+    }
+    assert_eq!(sensed(&unread), sensed(&read));
+    assert_eq!([unread.snapshot(), restored.snapshot()], [read.snapshot(), read.snapshot()]);
+}
+
+/// A controller that reads nothing.
+struct Ahead;
+
+impl Controller for Ahead {
+    fn drive(&mut self, _: &RobotView<'_>) -> Option<Command> {
+        Some(Twist { linear_mps: 0.3, angular_radps: 0.2 }.into())
+    }
+}

@@ -32,16 +32,10 @@ struct Scratch {
 /// through the cells would take longer.
 const FEW_BODIES: usize = 16;
 
-/// Everything that a laser can see.
+/// Everything that a laser can see. A clone shares everything until a body moves.
 #[derive(Clone, Debug)]
 pub(in crate::physics) struct Scene {
-    walls: Arc<Walls>,
-    /// The convex bodies that appear, disappear or move.
-    polygons: Vec<Body>,
-    /// The robots, by index.
-    discs: Vec<Disc>,
-    /// The same bodies by position, as soon as a ray is cast.
-    sorted: OnceLock<Sorted>,
+    moving: Arc<Moving>,
 }
 
 /// The bodies that never move.
@@ -52,7 +46,30 @@ struct Walls {
     visible: PotentiallyVisibleSet,
 }
 
-#[derive(Clone, Debug)]
+/// The walls, and the other bodies.
+#[derive(Debug)]
+struct Moving {
+    /// Here, so that a clone of the scene counts one owner of this world, and not one of the walls that the worlds on all
+    /// threads share: all of them would write to the same memory.
+    walls: Arc<Walls>,
+    /// The convex bodies that appear, disappear or move.
+    polygons: Vec<Body>,
+    /// The robots, by index.
+    discs: Vec<Disc>,
+    /// The same bodies by position, as soon as a ray is cast.
+    sorted: OnceLock<Sorted>,
+}
+
+impl Clone for Moving {
+    /// A clone is made because a body moves.
+    fn clone(&self) -> Self {
+        let Self { walls, polygons, discs, .. } = self;
+        let (walls, polygons, discs) = (Arc::clone(walls), polygons.clone(), discs.clone());
+        Self { walls, polygons, discs, sorted: OnceLock::new() }
+    }
+}
+
+#[derive(Debug)]
 struct Sorted {
     /// The robots by the cell of their center; at the end those beyond the borders.
     robots: IndexLists<(u32, Disc)>,
@@ -63,8 +80,8 @@ struct Sorted {
 
 impl Sorted {
     /// The bodies sorted into cells.
-    fn new(scene: &Scene) -> Self {
-        let Scene { walls, polygons, discs, .. } = scene;
+    fn new(moving: &Moving) -> Self {
+        let Moving { walls, polygons, discs, .. } = moving;
         let visible = &walls.visible;
         let are_few = discs.len() + polygons.len() <= FEW_BODIES;
         let polygons = SortedPolygons::new(polygons, (!are_few).then_some(visible));
@@ -94,7 +111,7 @@ impl Scene {
         let visible = PotentiallyVisibleSet::new(low, high, walls, &edges, range_m, radius_m);
         let solids = walls.iter().map(Edge::of_rectangle).collect();
         let (walls, polygons) = (Arc::new(Walls { solids, edges, visible }), vec![Body::default(); polygons]);
-        Self { walls, polygons, discs, sorted: OnceLock::new() }
+        Self { moving: Arc::new(Moving { walls, polygons, discs, sorted: OnceLock::new() }) }
     }
 
     /// Sets the corners of the convex body with an index (counter-clockwise, m). No corners: the body is absent.
@@ -105,22 +122,24 @@ impl Scene {
         robot: Option<usize>,
         corners: impl Iterator<Item = Point2<f64>>,
     ) {
-        let body = &mut self.polygons[index];
+        let moving = Arc::make_mut(&mut self.moving);
+        let body = &mut moving.polygons[index];
         body.robot = robot;
         body.corners.clear();
         body.corners.extend(corners);
-        self.sorted = OnceLock::new();
+        moving.sorted = OnceLock::new();
     }
 
     /// Sets the center of a robot, m.
     pub(in crate::physics) fn move_disc(&mut self, robot: usize, center: Point2<f64>) {
-        self.discs[robot].center = center;
-        self.sorted = OnceLock::new();
+        let moving = Arc::make_mut(&mut self.moving);
+        moving.discs[robot].center = center;
+        moving.sorted = OnceLock::new();
     }
 
     /// The moving bodies, sorted into cells.
     fn sorted(&self) -> &Sorted {
-        self.sorted.get_or_init(|| Sorted::new(self))
+        self.moving.sorted.get_or_init(|| Sorted::new(&self.moving))
     }
 
     /// Computes what `beams` of a laser at the pose `laser` hit. The laser never sees the robot `own`. `read` receives
@@ -139,7 +158,7 @@ impl Scene {
     }
 
     fn cast_into(&self, beams: &Beams, laser: &Isometry2<f64>, own: usize, scratch: &mut Scratch) {
-        let Walls { solids, edges, visible } = &*self.walls;
+        let Walls { solids, edges, visible } = &*self.moving.walls;
         let Sorted { robots, polygons, are_few } = self.sorted();
         let Scratch { inverse, tested } = scratch;
         let mut hits = Hits::new(beams, laser, inverse);

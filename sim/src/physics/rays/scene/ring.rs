@@ -12,7 +12,7 @@ impl Scene {
     /// What the sensors of the robot `own` may detect, whose center is at `center`.
     pub(in crate::physics) fn vicinity(&self, center: Point2<f64>, ring: &Ring, own: usize) -> Vicinity {
         let mut found = Vicinity::new(center, ring);
-        let (Walls { solids, edges, visible }, sorted) = (&*self.walls, self.sorted());
+        let (Walls { solids, edges, visible }, sorted) = (&*self.moving.walls, self.sorted());
         let reach = Vector2::repeat(found.sensors.radius_m);
         let (low, high) = (center - reach, center + reach);
         if visible.reaches_out(&low, &high) {
@@ -52,7 +52,7 @@ impl Scene {
         sensor: &Isometry2<f64>,
         vicinity: &Vicinity,
     ) -> f64 {
-        let Walls { solids, edges, .. } = &*self.walls;
+        let Walls { solids, edges, .. } = &*self.moving.walls;
         let Sorted { polygons, .. } = self.sorted();
         let at = Point2::from(sensor.translation.vector);
         let mut containing = vicinity.solids.iter().map(|&solid| &solids[solid as usize]);
@@ -67,7 +67,7 @@ impl Scene {
             }
             match thing {
                 Thing::Edge(index) => nearest.add_edge(&edges[index]),
-                Thing::Robot(index) => nearest.add_disc(&self.discs[index]),
+                Thing::Robot(index) => nearest.add_disc(&self.moving.discs[index]),
                 Thing::Polygon(index) => {
                     let polygon = polygons.get(index);
                     let sides = polygons.edges(polygon);

@@ -22,7 +22,7 @@ impl Scene {
         SCRATCH.with_borrow_mut(|scratch| {
             let inverse = &mut scratch.inverse;
             inverse.resize(rays.len(), 0.0);
-            let visible = &self.walls.visible;
+            let visible = &self.moving.walls.visible;
             let place = |ray: &Ray| (ray.interval, visible.cell_at(&ray.from));
             let mut rest = &mut inverse[..];
             for rays in rays.chunk_by(|a, b| place(a) == place(b)).flat_map(|rays| rays.chunks(SECTOR_RAYS)) {
@@ -41,7 +41,7 @@ impl Scene {
 
     /// Adds the walls to a sector whose rays begin in a cell (none: beyond the borders).
     fn add_walls(&self, cell: Option<usize>, sector: &mut Sector<'_>) {
-        let Walls { solids, edges, visible } = &*self.walls;
+        let Walls { solids, edges, visible } = &*self.moving.walls;
         sector.add_inside(|at| is_in_wall(solids, visible, cell, at));
         let Some(cell) = cell else { return edges.iter().for_each(|edge| sector.add_edge(edge)) };
         for seen in visible.edges.get(cell) {

@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 
 /// Without any culling: every edge and every disc is compared with all beams that could hit it.
 fn slow(scene: &Scene, beams: &Beams, laser: &Isometry2<f64>, own: usize) -> Vec<f64> {
-    let (Walls { solids, edges, visible }, Sorted { polygons, .. }) = (&*scene.walls, scene.sorted());
+    let (Walls { solids, edges, visible }, Sorted { polygons, .. }) = (&*scene.moving.walls, scene.sorted());
     let mut inverse = Vec::new();
     let mut hits = Hits::new(beams, laser, &mut inverse);
     edges.iter().for_each(|edge| hits.add_edge(edge));
@@ -16,7 +16,7 @@ fn slow(scene: &Scene, beams: &Beams, laser: &Isometry2<f64>, own: usize) -> Vec
     for polygon in seen.filter(|polygon| polygon.is_seen_by(own)) {
         polygons.edges(polygon).iter().for_each(|edge| hits.add_edge(edge));
     }
-    let discs = scene.discs.iter().enumerate().filter(|(robot, _)| *robot != own);
+    let discs = scene.moving.discs.iter().enumerate().filter(|(robot, _)| *robot != own);
     for (_, disc) in discs.filter(|(_, disc)| disc.radius_m > 0.0) {
         let to = disc.center - laser.translation.vector;
         let power = to.coords.norm_squared() - disc.radius_m * disc.radius_m;
@@ -82,8 +82,8 @@ fn what_is_left_out_changes_no_bit() {
         for place in 0..120 {
             if place % 40 == 0 {
                 // Sorted anew.
-                let robot = place % scene.discs.len();
-                let center = scene.discs[robot].center;
+                let robot = place % scene.moving.discs.len();
+                let center = scene.moving.discs[robot].center;
                 scene.move_disc(robot, center + Vector2::new(0.01, 0.0));
             }
             let count = random.uniform(1.0..200.0) as usize;
@@ -93,9 +93,9 @@ fn what_is_left_out_changes_no_bit() {
             let first_rad = if is_full { -std::f64::consts::PI } else { -fov_rad / 2.0 };
             let first_rad = if count == 1 { 0.0 } else { first_rad };
             let beams = Beams::new(first_rad, fov_rad / gaps as f64, count, range_m);
-            let own = place % scene.discs.len();
+            let own = place % scene.moving.discs.len();
             // In a robot, anywhere in the hall, or beyond its border.
-            let center = scene.discs[own].center;
+            let center = scene.moving.discs[own].center;
             let at = match place % 4 {
                 0 => Point2::new(random.uniform(-1.0..13.0), random.uniform(-1.0..10.0)),
                 _ => center + Vector2::new(random.uniform(-0.2..0.2), random.uniform(-0.2..0.2)),
