@@ -10,13 +10,41 @@ use crate::physics::form::bounds;
 use nalgebra::Point2;
 use std::ops::Range;
 
-/// A convex body that appears, disappears and moves.
+/// Convex bodies, each with an index.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Body {
+pub(super) struct Polygons(Vec<Body>);
+
+#[derive(Clone, Debug, Default)]
+struct Body {
     /// Its corners, counter-clockwise, m; none while the body is absent.
-    pub(super) corners: Vec<Point2<f64>>,
+    corners: Vec<Point2<f64>>,
     /// The robot that the body belongs to: its lasers never see the body.
-    pub(super) robot: Option<usize>,
+    robot: Option<usize>,
+}
+
+impl Polygons {
+    /// Room for `count` bodies, all absent.
+    pub(super) fn new(count: usize) -> Self {
+        Self(vec![Body::default(); count])
+    }
+
+    /// The number of bodies, present or not.
+    pub(super) fn len(&self) -> usize {
+        self.0.len()
+    }
+
+    /// Sets the corners of a body (counter-clockwise, m). No corners: the body is absent.
+    pub(super) fn set(
+        &mut self,
+        index: usize,
+        robot: Option<usize>,
+        corners: impl Iterator<Item = Point2<f64>>,
+    ) {
+        let body = &mut self.0[index];
+        body.robot = robot;
+        body.corners.clear();
+        body.corners.extend(corners);
+    }
 }
 
 /// The bodies that are present, prepared for rays.
@@ -46,9 +74,9 @@ impl Polygon {
 
 impl SortedPolygons {
     /// These bodies, sorted into the cells, if there are cells.
-    pub(super) fn new(polygons: &[Body], visible: Option<&PotentiallyVisibleSet>) -> Self {
+    pub(super) fn new(polygons: &Polygons, visible: Option<&PotentiallyVisibleSet>) -> Self {
         let (mut edges, mut bodies, mut in_cells) = (Vec::new(), Vec::new(), Vec::new());
-        for Body { corners, robot } in polygons.iter().filter(|body| !body.corners.is_empty()) {
+        for Body { corners, robot } in polygons.0.iter().filter(|body| !body.corners.is_empty()) {
             let index = bodies.len() as u32;
             let (low, high) = bounds(corners);
             let center = nalgebra::center(&low, &high);
@@ -105,5 +133,25 @@ impl SortedPolygons {
             Some(cell) => self.in_cell(cell).iter().any(|&index| is_in(self.get(index))),
             None => self.bodies.iter().any(is_in),
         }
+    }
+}
+
+/// The bodies that the present cast has tested.
+#[derive(Debug, Default)]
+pub(super) struct Tested {
+    cast: u64,
+    last: Vec<u64>,
+}
+
+impl Tested {
+    /// Starts a new cast among a number of bodies: no body has been tested yet.
+    pub(super) fn begin(&mut self, bodies: usize) {
+        self.cast += 1;
+        self.last.resize(bodies.max(self.last.len()), 0);
+    }
+
+    /// Whether this is the first test of a body in this cast.
+    pub(super) fn is_first(&mut self, index: u32) -> bool {
+        std::mem::replace(&mut self.last[index as usize], self.cast) != self.cast
     }
 }

@@ -8,7 +8,7 @@ use super::disc::Disc;
 use super::edges::{Edge, visible_edges};
 use super::hiding::add_edges;
 use super::index_lists::IndexLists;
-use super::polygons::{Body, SortedPolygons};
+use super::polygons::{Polygons, SortedPolygons, Tested};
 use super::visibility::PotentiallyVisibleSet;
 use crate::physics::shape::Rectangle;
 use nalgebra::{Isometry2, Point2};
@@ -24,8 +24,7 @@ thread_local! {
 struct Scratch {
     /// The result: one over the range for each beam, 1/m; 0 where there is no hit.
     inverse: Vec<f64>,
-    /// The convex bodies that the cast has tested.
-    tested: Vec<bool>,
+    tested: Tested,
 }
 
 /// Up to this number of moving bodies, all of them are tested, and not only those in the cells that may be seen: to go
@@ -53,7 +52,7 @@ struct Moving {
     /// threads share: all of them would write to the same memory.
     walls: Arc<Walls>,
     /// The convex bodies that appear, disappear or move.
-    polygons: Vec<Body>,
+    polygons: Polygons,
     /// The robots, by index.
     discs: Vec<Disc>,
     /// The same bodies by position, as soon as a ray is cast.
@@ -110,7 +109,7 @@ impl Scene {
         let radius_m = discs.iter().fold(0.0, |most: f64, disc| most.max(disc.radius_m));
         let visible = PotentiallyVisibleSet::new(low, high, walls, &edges, range_m, radius_m);
         let solids = walls.iter().map(Edge::of_rectangle).collect();
-        let (walls, polygons) = (Arc::new(Walls { solids, edges, visible }), vec![Body::default(); polygons]);
+        let (walls, polygons) = (Arc::new(Walls { solids, edges, visible }), Polygons::new(polygons));
         Self { moving: Arc::new(Moving { walls, polygons, discs, sorted: OnceLock::new() }) }
     }
 
@@ -123,10 +122,7 @@ impl Scene {
         corners: impl Iterator<Item = Point2<f64>>,
     ) {
         let moving = Arc::make_mut(&mut self.moving);
-        let body = &mut moving.polygons[index];
-        body.robot = robot;
-        body.corners.clear();
-        body.corners.extend(corners);
+        moving.polygons.set(index, robot, corners);
         moving.sorted = OnceLock::new();
     }
 
@@ -165,8 +161,7 @@ impl Scene {
         let at = Point2::from(laser.translation.vector);
         let own_cell = visible.cell_at(&at);
         let has_polygons = polygons.len() > 0;
-        tested.clear();
-        tested.resize(polygons.len(), false);
+        tested.begin(polygons.len());
         match own_cell {
             Some(cell) => add_edges(visible.edges.get(cell), edges, &mut hits),
             None => edges.iter().for_each(|edge| hits.add_edge(edge)),
@@ -177,10 +172,8 @@ impl Scene {
                 for cell in cells.chain([visible.len()]) {
                     add_robots(&mut hits, robots.get(cell), own);
                     if has_polygons {
-                        for &index in polygons.in_cell(cell) {
-                            if !std::mem::replace(&mut tested[index as usize], true) {
-                                polygons.add_to(index, own, &mut hits);
-                            }
+                        for &index in polygons.in_cell(cell).iter().filter(|index| tested.is_first(**index)) {
+                            polygons.add_to(index, own, &mut hits);
                         }
                     }
                 }
