@@ -40,8 +40,8 @@ use interfaces::{Reading, World};
 use mapper::ReadingError;
 use std::ops::ControlFlow;
 
-/// One turn of the loop: the world executes the last command, and the robot makes of the next reading another one, which waits in
-/// `command`. Between two turns, a run can be saved.
+/// One turn of the loop: the world executes the last command, and the robot processes the next reading. The next command waits in
+/// `command`, so that a run can be saved between two turns.
 ///
 /// # Errors
 ///

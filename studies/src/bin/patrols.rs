@@ -20,7 +20,7 @@ use studies::{Building, Duty, Habits, Kind, Patrol, Plan, Routes, STEP_S, UserRe
 const STRATEGIES: [&str; 6] = ["no-looks", "curious", "round", "coverage", "gain", BOUND];
 const BOUND: &str = "bound";
 const DAY_STEPS: f64 = 86_400.0 / STEP_S;
-/// Users go every so many steps: fifty minutes.
+/// The number of steps between two trips of users: fifty minutes.
 const TRIP_STEPS: usize = 300;
 
 #[derive(Parser)]
