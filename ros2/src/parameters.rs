@@ -202,6 +202,10 @@ impl Parameters {
                 return Err(invalid(name, "the name of a frame", &Value::Text(String::new())));
             }
         }
+        if !PoseMode::LIVE.contains(&self.pose) {
+            let found = Value::Text(self.pose.name().to_owned());
+            return Err(invalid("pose", "exact, odometry or localized", &found));
+        }
         if !matches!(self.scan_reliability.as_str(), "best_effort" | "reliable") {
             let name = "qos_overrides./scan.subscription.reliability";
             let found = Value::Text(self.scan_reliability.clone());
