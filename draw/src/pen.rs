@@ -2,7 +2,7 @@
 
 use crate::canvas::{FONT, INK, ink, px, register_fonts, why};
 use crate::legend::Mark;
-use crate::palette::{self, Rgb};
+use crate::palette::Rgb;
 use interfaces::printable;
 use plotters::coord::Shift;
 use plotters::prelude::*;
@@ -122,10 +122,6 @@ impl Pen {
                 sheet.draw(&Cross::new(middle, half * 2 / 3, style)).map_err(why)
             }
             Mark::Dot(color) => self.dot(sheet, middle, 5, color),
-            Mark::Ring => {
-                sheet.draw(&Circle::new(middle, half, self.line(ink(palette::CURIOUS), 2))).map_err(why)
-            }
-            Mark::Nothing => Ok(()),
         }
     }
 }

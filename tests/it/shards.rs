@@ -202,7 +202,6 @@ fn invalid_input_is_refused_and_nothing_is_overwritten() {
     error: .: this folder has no shard with a finished line
     ");
     for (arguments, says) in [
-        ("--shard 1/3 --rrd a.rrd", "cannot be used with"),
         ("--shard 1/3 --generate 1 --save-worlds", "cannot be used with"),
         ("merge shards --steps 3", "unexpected argument '--steps'"),
     ] {

@@ -45,7 +45,7 @@ impl Drawn {
     }
 
     fn color(&self, picture: &RgbImage, x_m: f64, y_m: f64) -> Rgb {
-        let panel = Panel::of_layer(self.run.mapper.frame(), self.run.scene.unit);
+        let panel = Panel::of_layer(self.run.mapper.frame());
         let [x, y] = panel.pixel(&Point2::new(x_m, y_m));
         picture.get_pixel(x, y).0
     }
@@ -93,7 +93,7 @@ fn trails_walls_obstacles_starts_and_goals_are_drawn() {
     let drawn = drawn(300);
     let picture = drawn.picture("trajectory");
     let entries = trajectory::entries(&drawn.run.scene, &Trail::default(), &goals()).len();
-    let panel = Panel::of_scene(drawn.run.mapper.frame(), drawn.run.scene.unit, entries);
+    let panel = Panel::of_scene(drawn.run.mapper.frame(), drawn.run.scene.is_grid, entries);
     let near = |x_m: f64, y_m: f64, color: Rgb| {
         let [x, y] = panel.pixel(&Point2::new(x_m, y_m));
         let mut around = (x - 3..x + 3).flat_map(|x| (y - 3..y + 3).map(move |y| (x, y)));

@@ -9,8 +9,8 @@ use super::{ONE_BY_ONE, Report};
 use draw::canvas::{Canvas, PictureError, ink, why};
 use draw::palette;
 use draw::pen::{Pen, Sheet, svg};
+use draw::pictures::plan_on;
 use draw::scene::Scene;
-use draw::sketch;
 use evaluation::trials::Metric;
 use files::write_file;
 use plotters::prelude::*;
@@ -115,7 +115,7 @@ impl Figure<'_> {
         let length = self.report.settings.length;
         let draw = |panel, metric| curves::draw(panel, pen, metric, length, &self.run.strategies);
         match self.world {
-            Some(world) => sketch::world(&panels[0], pen, world)?,
+            Some(world) => plan_on(&panels[0], *pen, world)?,
             None => draw(&panels[0], Metric::MapQualityChanging)?,
         }
         let second = length.choose(Metric::RateError, Metric::RateAuc);

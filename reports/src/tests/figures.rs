@@ -55,13 +55,13 @@ fn every_strategy_the_world_and_the_words_are_drawn() {
         assert!(text.contains(&format!("stroke=\"#{red:02X}{green:02X}{blue:02X}\"")), "{name}");
         assert!(text.contains(&format!(">\n{name}\n</text>")), "{name}");
     }
-    // Six cells of the top block and 42 of the bottom one, 12 pixels wide.
-    assert!((600..900).contains(&count([238, 136, 102])), "{}", count([238, 136, 102]));
-    assert!((4500..6500).contains(&count([119, 170, 221])), "{}", count([119, 170, 221]));
+    // The walls, and the blocks at their starts.
+    assert!(count(palette::WALL) > 1000, "{}", count(palette::WALL));
+    assert!(count(palette::MOVING) > 100, "{}", count(palette::MOVING));
     for words in [
         "two_blocks: 5 trials of 20,000 steps, estimator two-state, sensor radius 4",
         "top block",
-        "range of its sensor: 4",
+        "bottom block",
         "Map correct: share of cells",
         "15,000",
     ] {
@@ -122,28 +122,4 @@ fn names_are_escaped() {
     let (.., texts) = figures(&Report::new(settings, trials));
     // Control characters are not allowed in XML, not even escaped.
     assert!(texts[0].contains("a &lt; b &amp; &quot;c&quot;\\u{1b}\\u{ffff}: 1 trial"));
-}
-
-#[test]
-#[ignore = "draws figures for an inspection by eye"]
-fn draw_figures() {
-    let nine = [FIVE.as_slice(), &["information-gain", "optimal-revisiting", "frontier", "full-observation"]]
-        .concat();
-    let folder = tempfile::tempdir().unwrap().keep();
-    for (name, worlds, strategies, seeds) in [
-        ("one", 1, FIVE.to_vec(), 5),
-        ("three", 3, nine, 20),
-        ("many", 24, FIVE.to_vec(), 10),
-        ("single", 1, FIVE.to_vec(), 1),
-    ] {
-        let start = std::time::Instant::now();
-        let report = report(worlds, &["two-state"], &strategies, seeds);
-        let made = start.elapsed();
-        let plans: Vec<GridSpec> = (0..worlds).map(world).collect();
-        let run = RunFolder::open(&folder.join(name)).unwrap();
-        let files = report.write(&run, &plans).unwrap();
-        run.finish(&[]).unwrap();
-        println!("{name}: statistics in {made:?}, {} files after {:?}", files.len(), start.elapsed());
-    }
-    println!("{}", folder.display());
 }

@@ -23,7 +23,7 @@ use sim::grid::{GenerateSettings, GridSpec};
         grid_world --trials 100                                  more trials, smaller intervals\n  \
         grid_world --generate 50 --trials 2 --strategy curious --strategy information-gain\n  \
         grid_world --generate 10 --calendar office --steps 60480 --strategy curious --strategy fresh-map\n  \
-        grid_world --world my_world.toml --sensor-radius 6 --rrd one_trial.rrd\n\n\
+        grid_world --world my_world.toml --sensor-radius 6\n\n\
         Large experiments run in shards, on one machine or on many (docs/clusters.md):\n  \
         grid_world --trials 1000 --shard 1/3 --out big     # and 2/3 and 3/3, anywhere, at any time\n  \
         grid_world status big\n  \

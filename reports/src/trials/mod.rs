@@ -2,7 +2,6 @@
 
 mod grid;
 mod houses;
-mod recorded;
 mod run;
 mod shards;
 
@@ -15,10 +14,10 @@ use anyhow::bail;
 use calendar::Kind;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser};
-use cli::flags::{folder, output_file, value_of};
+use cli::flags::{folder, value_of};
 use cli::program::{one_of, strategy_of};
 use cli::terminal::say;
-use evaluation::scenes::{Displayed, Visible};
+use evaluation::scenes::Displayed;
 use evaluation::trials::{Experiment, TrialStrategy, TrialWorld};
 use mapper::EstimatorChoice;
 use shards::ShardCommand;
@@ -34,7 +33,7 @@ const EXECUTION: &str = "Execution";
 /// A kind of worlds: what is the default there, and the options that no other kind has.
 pub trait TrialKind: Args + Clone + Debug {
     /// The worlds.
-    type Spec: TrialWorld<World: Visible, Robot: Debug> + Displayed + Debug;
+    type Spec: TrialWorld<Robot: Debug> + Displayed + Debug;
 
     /// The name of the program.
     const NAME: &str;
@@ -136,16 +135,12 @@ pub struct TrialArgs<K: TrialKind> {
 
     /// Run shard I of N: every N-th trial, into a file of its own in --out. Run shards 1/N to N/N on any machines, then
     /// `merge`. A shard that is started again continues where it stopped
-    #[arg(long, value_name = "I/N", conflicts_with_all = ["rrd", "save_worlds"], help_heading = EXECUTION)]
+    #[arg(long, value_name = "I/N", conflicts_with = "save_worlds", help_heading = EXECUTION)]
     shard: Option<Shard>,
 
     /// The folder for all results
     #[arg(long, value_name = "DIR", default_value = K::OUT, value_parser = folder(), help_heading = OUTPUT)]
     out: PathBuf,
-
-    /// Record the first trial, at most 20,000 readings; open the recording with `rerun FILE`
-    #[arg(long, value_name = "FILE", value_parser = output_file(), help_heading = OUTPUT)]
-    rrd: Option<PathBuf>,
 
     /// Save the generated worlds as TOML files in the output folder
     #[arg(long, requires = "generate", help_heading = OUTPUT)]

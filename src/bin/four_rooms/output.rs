@@ -15,7 +15,7 @@ use draw::scene::Scene;
 use draw::view::Measured;
 use evaluation::metrics::map_scores;
 use evaluation::physics_trial::PhysicsTrial;
-use evaluation::scenes::{Displayed, Visible};
+use evaluation::scenes::{Displayed, view};
 use evaluation::summary::{SCHEMA, Summary};
 use files::{RunFolder, UnfinishedFile, is_another_kind, write_file};
 use interfaces::{LaserReading, Twist, World};
@@ -114,10 +114,9 @@ impl<'a> Outputs<'a> {
         truth.add(time_s, world.true_pose());
         let measured = Measured {
             coverage_and_quality: observer.scores().map(|scores| [scores.coverage, scores.map_quality]),
-            rate_errors: None,
             messages: &observer.messages,
         };
-        if let Err(problem) = self.show.add(&world.view(turn, mapper, pilot, measured), is_last) {
+        if let Err(problem) = self.show.add(&view(world, turn, mapper, pilot, measured), is_last) {
             self.is_complete = false;
             self.progress.say(format_args!("error: {problem}; the run goes on without it"));
         }

@@ -27,14 +27,6 @@ fn on_any_number_of_threads_and_again() {
 }
 
 #[test]
-fn neither_words_nor_a_recording_matter() {
-    let reference = files(&ran(ARGUMENTS));
-    let recorded = Run::grid();
-    recorded.goes_well(&format!("{ARGUMENTS} --rrd first.rrd"));
-    assert!(files(&recorded) == reference);
-}
-
-#[test]
 fn other_seeds_differ() {
     let one = "--steps 800 --trials 1 --estimator paper --strategy random";
     let hashes: BTreeSet<_> = (0..4).map(|seed| hash(&format!("{one} --seed {seed}"))).collect();

@@ -1,7 +1,7 @@
 //! The description of physics worlds and floor plans.
 
 use super::{Content, FLOOR_PLAN, calendar};
-use draw::scene::{Scene, TimeUnit};
+use draw::scene::Scene;
 use evaluation::scenes::Displayed;
 use interfaces::{GridFrame, printable};
 use nalgebra::Point2;
@@ -64,7 +64,7 @@ pub(super) fn floor_plan(path: &Path, plan: &FloorPlan) -> Option<Content> {
         ],
         scene: Scene {
             title: name,
-            unit: TimeUnit::Second,
+            is_grid: false,
             frame: GridFrame::covering(low, high.x - low.x, high.y - low.y, PLAN_CELL_M.max(plan.pixel_m.x))?,
             walls: rectangles.iter().map(|wall| wall.corners().to_vec()).collect(),
             obstacles: Vec::new(),

@@ -6,7 +6,6 @@ use super::number;
 use super::raster::Cells;
 use draw::layers::{BLOCKED, FREE, Layer, UNKNOWN};
 use draw::palette;
-use draw::scene::TimeUnit;
 use mapper::Mapper;
 use maud::{Markup, html};
 use nalgebra::{Point2, Vector2};
@@ -148,7 +147,7 @@ impl<'a> Plan<'a> {
 
     fn cells(&self, shown: Shown) -> Cells {
         let layer = if shown == Shown::Places { Layer::Occupancy } else { Layer::Interval };
-        let mut classes = layer.classes(self.mapper, TimeUnit::Second);
+        let mut classes = layer.classes(self.mapper);
         let mut colors: Vec<palette::Rgb> = (0..CHANGED).map(|class| layer.color(class)).collect();
         colors.push(palette::MOVING);
         if shown == Shown::Places {
