@@ -152,6 +152,13 @@ impl Panel {
         Ok((chart, legend))
     }
 
+    /// The chart of a map that fills a picture.
+    pub(crate) fn bare<'a, DB: DrawingBackend>(&self, area: &'a Sheet<DB>) -> Result<Chart<'a, DB>, String> {
+        let (from, size) = extent(&self.frame);
+        let to = from + size;
+        ChartBuilder::on(area).build_cartesian_2d(from.x..to.x, from.y..to.y).map_err(why)
+    }
+
     /// A line with a width in half points.
     pub(crate) fn line(&self, color: RGBColor, width: u32) -> ShapeStyle {
         color.stroke_width(self.px(width) as u32 / 2)

@@ -8,13 +8,15 @@ pub use crate::trajectory::Trails;
 use crate::layers::Layer;
 use crate::panel::Panel;
 use crate::pen::{Pen, Sheet};
-use crate::scene::Scene;
-use crate::{plan, trajectory};
+use crate::scene::{Scene, extent};
+use crate::{ground, palette, plan, trajectory};
 use files::make_folder;
 use interfaces::Grid;
 use mapper::Mapper;
+use nalgebra::{Point2, Translation2};
 use plotters::prelude::DrawingBackend;
 use results::thinned::Goals;
+use std::f64::consts::TAU;
 use std::path::Path;
 
 /// The panels of Figure 5, in its order.
@@ -82,6 +84,36 @@ pub fn plan_on(sheet: &Sheet<impl DrawingBackend>, pen: Pen, scene: &Scene) -> R
     let size = [width, height].map(|length| length / pen.px(1) as u32);
     let panel = Panel::within(&scene.frame, scene.is_grid, size, pen, plan::entries(scene).len());
     plan::draw(&panel, sheet, scene)
+}
+
+/// A scene without words, on the map of the robot if there is one, with discs as goals: centers and radii, m. The longer side has
+/// `size` pixels.
+///
+/// # Errors
+/// When the picture cannot be drawn.
+pub fn bare(
+    scene: &Scene,
+    map: Option<&Mapper>,
+    goals: &[(Point2<f64>, f64)],
+    size: u32,
+) -> Result<Canvas, PictureError> {
+    let size_m = extent(&scene.frame).1;
+    let pixels_per_m = f64::from(size.clamp(16, 4096)) / size_m.max();
+    let size = [size_m.x, size_m.y].map(|length_m| (length_m * pixels_per_m).round().max(1.0) as u32);
+    let panel = Panel::of_film(&scene.frame, false);
+    draw(&scene.title, size, |area| {
+        let chart = panel.bare(area)?;
+        if let Some(map) = map {
+            panel.cells(&chart, Layer::Interval, &Layer::Interval.classes(map))?;
+        }
+        ground::draw(&chart, scene)?;
+        for (center, radius_m) in goals {
+            let disc = plan::arc(&Translation2::from(*center).into(), *radius_m, TAU);
+            ground::fill(&chart, &disc, palette::GOAL)?;
+        }
+        let mut robots = scene.robots.iter();
+        robots.try_for_each(|robot| plan::draw_robot(&panel, &chart, robot, &robot.pose, robot.radius_m))
+    })
 }
 
 /// Draws a layer of the map with other values, and named lines on it, to the PNG file `path`; NaN is drawn as what does not change.

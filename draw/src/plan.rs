@@ -100,7 +100,7 @@ fn sector(robot: &SceneRobot, sector: &Sector) -> Vec<Point2<f64>> {
 }
 
 /// Points on a circle around a pose, half of the angle on either side of its direction.
-fn arc(pose: &Isometry2<f64>, radius_m: f64, angle_rad: f64) -> Vec<Point2<f64>> {
+pub(crate) fn arc(pose: &Isometry2<f64>, radius_m: f64, angle_rad: f64) -> Vec<Point2<f64>> {
     let point = |index: usize| {
         let angle = angle_rad * (index as f64 / CORNERS as f64 - 0.5);
         pose * Point2::new(radius_m * angle.cos(), radius_m * angle.sin())

@@ -24,10 +24,10 @@ const ALLOWED: &[(&str, &str)] = &[
         "reports",
         "interfaces files calendar sim worldfile mapper agent robot results draw cli evaluation curious",
     ),
-    ("environments", "interfaces sim worldfile mapper agent controller robot evaluation"),
+    ("environments", "interfaces sim worldfile mapper agent controller robot evaluation draw"),
     (
         "python",
-        "interfaces sim worldfile stage mapper localizer logs agent robot survey evaluation environments",
+        "interfaces sim worldfile stage mapper localizer logs agent robot survey evaluation environments draw",
     ),
     ("draw", "interfaces files mapper agent robot results"),
     ("viewer", "interfaces files mapper localizer agent robot results draw"),
