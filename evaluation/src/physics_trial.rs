@@ -179,23 +179,12 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
         Ok(turn)
     }
 
-    /// Runs until `end_s` of simulated time, or until the pilot is done.
+    /// Runs until `end_s` of simulated time, or until the pilot is done. A rest at `end_s` is cut off; the run cannot be continued
+    /// then.
     ///
     /// # Errors
-    ///
     /// When the mapper refuses a reading.
     pub fn run(&mut self, end_s: f64) -> Result<(), ReadingError> {
-        while self.turn()?.reading.time_s < end_s && !self.robot.pilot.is_done() {}
-        Ok(())
-    }
-
-    /// As [`run`](Self::run), but the measurements of things with a schedule end exactly at `end_s`: if the robot rests then, its
-    /// rest is cut off. The run cannot be continued.
-    ///
-    /// # Errors
-    ///
-    /// When the mapper refuses a reading.
-    pub fn run_exactly(&mut self, end_s: f64) -> Result<(), ReadingError> {
         loop {
             if self.rests_until_s().is_some_and(|until_s| until_s > end_s) {
                 self.rest(end_s);

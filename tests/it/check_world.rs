@@ -191,15 +191,3 @@ fn what_is_wrong_is_reported_for_every_file() {
     names.sort();
     assert_eq!(names, ["ragged.toml", "two_blocks.png"]);
 }
-
-#[test]
-fn an_open_outer_wall_is_reported() {
-    let folder = tempfile::tempdir().unwrap();
-    let house = include_str!("../../worlds/house.toml");
-    let from = house.find("[[wall]]").unwrap();
-    let to = from + house[from..].find("\n\n").unwrap();
-    std::fs::write(folder.path().join("open.toml"), [&house[..from], &house[to..]].concat()).unwrap();
-    let ended = check(folder.path(), &["open.toml"]);
-    assert_eq!(ended.status.code(), Some(0), "{ended:?}");
-    assert!(text(&ended.stderr).contains("warning: robots can leave the map of"), "{ended:?}");
-}

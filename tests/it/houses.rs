@@ -110,23 +110,3 @@ fn invalid_input_is_refused() {
     run.write("twin.toml", world);
     insta::assert_snapshot!(refuses(&run, "--world house --world twin.toml", &["twin.toml"]), @"error: two worlds have the name `house`: results are listed by name, so give each world its own name");
 }
-
-#[test]
-#[cfg(unix)]
-fn ctrl_c_keeps_the_finished_trials() {
-    use crate::run::Ended;
-    use nix::sys::signal::Signal;
-    use std::io::{BufRead, BufReader};
-
-    let run = Run::houses();
-    let mut child =
-        run.starts("--trials 100000 --generate 1 --duration 20s --strategy random --strategy recency");
-    let mut line = String::new();
-    BufReader::new(child.stderr.take().unwrap()).read_line(&mut line).unwrap();
-    assert!(line.contains(" of 200000 trials, "), "{line:?}");
-    crate::ending::send(Signal::SIGINT, &child);
-    let ended = Ended::from(child.wait_with_output().unwrap());
-    assert_eq!(ended.code, Some(130), "{ended:?}");
-    assert_eq!(report(&run)["interrupted"], true);
-    assert!(ended.stdout.starts_with("Interrupted: "), "{}", ended.stdout);
-}

@@ -32,10 +32,8 @@ fn drawn(ticks: usize) -> Drawn {
             trail.push(at);
         }
     }
-    let start = std::time::Instant::now();
     let trails = Trails { true_poses: &trails, believed: &Trail::default() };
     write_all(folder.path(), &run.scene, &run.mapper, &trails, &goals(), &Layer::ALL).unwrap();
-    println!("drawn in {:?}", start.elapsed());
     Drawn { folder, run }
 }
 
@@ -181,12 +179,4 @@ fn a_folder_that_cannot_be_written_is_named() {
         .unwrap_err()
         .to_string();
     assert!(error.starts_with(&format!("cannot write {}: ", folder.display())), "{error}");
-}
-
-#[test]
-#[ignore = "draws pictures for inspection"]
-fn pictures_for_inspection() {
-    let start = std::time::Instant::now();
-    let folder = drawn(6000).folder.keep();
-    println!("{} in {:?}", folder.display(), start.elapsed());
 }

@@ -1,7 +1,9 @@
 //! The results as a few lines for the terminal.
 
 use super::{Contacts, RunResults, Summary};
-use crate::metrics::{Age, DevianceScores, PoseScores, PredictedScores, RateScores, ThingReport};
+use crate::metrics::{
+    Age, DevianceScores, FreshnessScores, PoseScores, PredictedScores, RateScores, ThingReport,
+};
 use crate::scheduled_things::ScheduledScores;
 use results::numbers::percent;
 use robot::GoalCount;
@@ -76,13 +78,14 @@ impl fmt::Display for RunResults {
 
 /// How well the map knew the things with a schedule.
 fn of_calendar(scores: &ScheduledScores) -> Vec<(&'static str, String)> {
-    let ScheduledScores { things, brier, lasting_changes, missed, .. } = scores;
+    let ScheduledScores { things, fresh, .. } = scores;
+    let FreshnessScores { brier, lasting_changes, missed, detection_delay_s } = fresh;
     let mut lines = vec![(
         "calendar",
         format!("Brier score {brier:.4} over {things} things with a schedule, at all times"),
     )];
     if *lasting_changes > 0 {
-        let [median, late] = scores.detection_delay_s.map(length_of);
+        let [median, late] = detection_delay_s.map(length_of);
         let missed = percent(*missed);
         let text = format!(
             "{lasting_changes} changes that last an hour or more: on the map after {median} in the median, {late} for 95 %, {missed} missed"

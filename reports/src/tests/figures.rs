@@ -24,8 +24,8 @@ fn the_run_over_all_worlds_is_figure_3_and_the_others_are_named() {
     };
     assert_eq!(names(1, &["paper"]), ["figure3"]);
     // By name.
-    assert_eq!(names(1, &["paper", "two-state"]), ["figure3-two-blocks-two-state", "figure3"]);
-    assert_eq!(names(2, &["paper"]), ["figure3-generated-1", "figure3-two-blocks", "figure3"]);
+    assert_eq!(names(1, &["paper", "two-state"]), ["figure3-two_blocks-two-state", "figure3"]);
+    assert_eq!(names(2, &["paper"]), ["figure3-generated_1", "figure3-two_blocks", "figure3"]);
     assert_eq!(names(9, &["paper"]), ["figure3"]);
 }
 
@@ -33,13 +33,13 @@ fn the_run_over_all_worlds_is_figure_3_and_the_others_are_named() {
 fn names_that_look_alike_in_a_file_s_name_stay_apart() {
     let (settings, trials) = experiment(3, &["paper"], &["curious"], 1);
     let renamed = trials.into_iter().map(|mut trial| {
-        trial.world = trial.world.replace("generated 1", "a b").replace("generated 2", "A_b");
+        trial.world = trial.world.replace("generated 1", "a b").replace("generated 2", "a_b");
         trial
     });
     let (names, ..) = figures(&Report::new(settings, renamed.collect()));
     assert_eq!(
         names.iter().filter(|name| name.ends_with("svg")).collect::<Vec<_>>(),
-        ["figure3-a-b-2.svg", "figure3-a-b.svg", "figure3-two-blocks.svg", "figure3.svg"]
+        ["figure3-a_b-2.svg", "figure3-a_b.svg", "figure3-two_blocks.svg", "figure3.svg"]
     );
 }
 
@@ -102,16 +102,6 @@ fn undefined_values_single_samples_and_missing_worlds_can_be_drawn() {
         let (_, pictures, texts) = figures(&Report::new(settings.clone(), trials));
         assert_eq!(pictures.len(), 1);
         assert!(!texts[0].contains("NaN") && !texts[0].contains("inf"));
-    }
-}
-
-#[test]
-fn a_strategy_keeps_its_colour() {
-    let (_, alone, _) = figures(&report(1, &["paper"], &["recency"], 2));
-    assert!(alone[0].pixels().any(|pixel| pixel.0 == palette::strategy("recency")));
-    // The color of curious is not asked for: the robot in the picture of the world has the same.
-    for other in ["poisson", "information-gain", "optimal-revisiting", "coin"] {
-        assert!(alone[0].pixels().all(|pixel| pixel.0 != palette::strategy(other)), "{other}");
     }
 }
 

@@ -300,13 +300,3 @@ fn a_missing_viewer_does_not_stop_a_recording_with_a_file() {
 
     assert_eq!(Recorder::new(None, &live, FakeRun::new().scene).err().unwrap().to_string(), problem);
 }
-
-#[test]
-#[ignore = "writes a recording for inspection, and prints its size and time"]
-fn recording_for_inspection() {
-    let file = std::env::temp_dir().join("inspection.rrd");
-    let start = Instant::now();
-    record(&file, std::env::var("TICKS").map_or(12_000, |ticks| ticks.parse().unwrap()));
-    let bytes = std::fs::metadata(&file).unwrap().len();
-    println!("{}: {} MB in {:?}", file.display(), bytes as f64 / 1e6, start.elapsed());
-}
