@@ -24,7 +24,6 @@ const PROGRAMS: [Program; 8] = [
             ("--drive", "train"),
             ("--tour", "gone.toml"),
             ("--strategy", "clever"),
-            ("--purpose", "fame"),
             ("--patrol", "0"),
             ("--battery", "59s"),
             ("--speed", "0"),

@@ -49,6 +49,8 @@ pub trait TrialKind: Args + Clone + Debug {
     const STRATEGIES: [&str; 5];
     /// The estimators.
     const ESTIMATORS: &[&str];
+    /// Commands, for the help.
+    const EXAMPLES: &[&str];
     /// The trials of each combination.
     const TRIALS: &str;
     /// The maximum number of steps of local exploration.
@@ -89,7 +91,7 @@ pub trait TrialKind: Args + Clone + Debug {
 // The command line. A doc comment would be the first line of --help, instead of that of the kind.
 #[expect(missing_docs)]
 #[derive(Clone, Debug, Parser)]
-#[command(name = K::NAME, version, max_term_width = 100, args_conflicts_with_subcommands = true)]
+#[command(name = K::NAME, version, max_term_width = 100, args_conflicts_with_subcommands = true, after_help = after_help::<K>())]
 pub struct TrialArgs<K: TrialKind> {
     #[command(subcommand)]
     command: Option<ShardCommand>,
@@ -195,6 +197,20 @@ impl<K: TrialKind> TrialArgs<K> {
         warnings.iter().filter(|_| !self.quiet).for_each(|warning| say(stderr(), warning));
         Ok(world)
     }
+}
+
+fn after_help<K: TrialKind>() -> String {
+    format!(
+        "Examples:\n  {}\n\n\
+         Large experiments run in shards, on one machine or on many (docs/clusters.md):\n  \
+         {name} --trials 1000 --shard 1/3 --out big     # and 2/3 and 3/3, anywhere, at any time\n  \
+         {name} status big\n  \
+         {name} merge big                               # the same files as without shards\n\n\
+         Exit codes: 0 success, 1 the run failed, 2 invalid arguments or input, 130 interrupted (Ctrl-C; the \
+         finished trials are reported).",
+        K::EXAMPLES.join("\n  "),
+        name = K::NAME,
+    )
 }
 
 /// A parser of the name of a strategy, or of a reference.
