@@ -62,7 +62,7 @@ impl Pen {
         let style = self.text(height).pos(Pos::new(anchor, VPos::Center));
         let lower = if self.is_bitmap { self.px(height) / 4 } else { 0 };
         // XML forbids some characters, and names can have any.
-        sheet.draw_text(&printable(text), &style, (at.0, at.1 + lower)).map_err(why)
+        sheet.draw(&Text::new(printable(text), (at.0, at.1 + lower), style)).map_err(why)
     }
 
     /// Fills a rectangle.

@@ -106,6 +106,22 @@ fn trails_walls_obstacles_starts_and_goals_are_drawn() {
 }
 
 #[test]
+fn names_are_beside_their_owners() {
+    let (file, scene) = (tempfile::NamedTempFile::new().unwrap(), FakeRun::new().scene);
+    draw_plan(file.path(), &scene).unwrap();
+    let picture = image::load_from_memory(&std::fs::read(file.path()).unwrap()).unwrap().into_rgb8();
+    let panel = Panel::of_scene(&scene.frame, scene.is_grid, plan::entries(&scene).len());
+    let dark = |[x, y]: [f64; 2]| {
+        let [left, top] = panel.pixel(&Point2::new(x - 0.5, y));
+        let [right, bottom] = panel.pixel(&Point2::new(x + 0.5, y - 0.6));
+        let below = (left..right).flat_map(|x| (top..bottom).map(move |y| (x, y)));
+        below.filter(|(x, y)| picture.get_pixel(*x, *y).0.iter().all(|part| *part < 120)).count()
+    };
+    // Below the two robots.
+    assert!(dark([3.0, 2.75]) > 20 && dark([7.0, 10.95]) > 20);
+}
+
+#[test]
 fn a_few_robots_have_a_color_each_and_many_share_one() {
     let mut scene = FakeRun::new().scene;
     let lines = |scene: &Scene| -> Vec<(Rgb, String)> {

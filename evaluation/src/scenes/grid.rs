@@ -81,18 +81,13 @@ fn rectangles(cells: &Grid<bool>) -> Vec<Outline> {
 mod tests {
     use super::*;
 
-    /// The walls of a drawn world, as rectangles.
-    fn walls(rows: &[&str]) -> (Grid<bool>, Vec<Outline>) {
-        let text = format!("name = 'x'\nsensor_radius = 1\nmap = '''\n{}\n'''", rows.join("\n"));
-        let walls = worldfile::grid::parse("x.toml", &text).unwrap().walls;
-        let rectangles = rectangles(&walls);
-        (walls, rectangles)
-    }
-
     #[test]
     fn rectangles_cover_the_walls_once_and_nothing_else() {
         let rows = ["#######", "#..#..#", "####R.#", "#..##.#", "#.....#", "##.##.#", "#######"];
-        let (walls, rectangles) = walls(&rows);
+        let text = format!("name = 'x'\nsensor_radius = 1\nmap = '''\n{}\n'''", rows.join("\n"));
+        let walls = worldfile::grid::parse("x.toml", &text).unwrap().walls;
+        let rectangles = rectangles(&walls);
+        assert_eq!(rectangles.len(), 10);
         for (index, is_wall) in walls.cells().iter().enumerate() {
             let middle = walls.frame().center(walls.frame().cell(index));
             let holds = |outline: &&Outline| {
@@ -101,21 +96,5 @@ mod tests {
             };
             assert_eq!(rectangles.iter().filter(holds).count(), usize::from(*is_wall), "{middle}");
         }
-    }
-
-    #[test]
-    fn a_box_of_walls_is_four_rectangles() {
-        let (_, rectangles) = walls(&["#####", "#...#", "#...#", "#####"]);
-        let corners: Vec<_> = rectangles.iter().map(|outline| (outline[0], outline[2])).collect();
-        let corner = |x, y| Point2::new(x, y);
-        assert_eq!(
-            corners,
-            [
-                (corner(0.0, 0.0), corner(5.0, 1.0)),
-                (corner(0.0, 1.0), corner(1.0, 3.0)),
-                (corner(0.0, 3.0), corner(5.0, 4.0)),
-                (corner(4.0, 1.0), corner(5.0, 3.0)),
-            ]
-        );
     }
 }

@@ -303,23 +303,4 @@ mod tests {
           contacts  1 by its own motion, 2 in which something ran into it
         ");
     }
-
-    #[test]
-    fn closed_loops_are_in_the_line_of_the_pose() {
-        let line = |loops_closed| {
-            let pose = PoseScores {
-                mode: "localized",
-                median_m: Some(0.001),
-                p95_m: Some(0.004),
-                ..PoseScores::default()
-            };
-            let pose = PoseScores { loops_closed, largest_correction_m: 0.253, ..pose };
-            let age = Age { max_s: 431.0, never_seen: 0 };
-            RunResults { pose, ..results(1.0, age, RateScores::default()) }.pose().unwrap()
-        };
-        assert!(line(0).ends_with("certain but wrong 0 times"));
-        assert!(
-            line(2).ends_with("wrong 0 times; 2 loops closed, which moved poses of the past by up to 0.25 m")
-        );
-    }
 }

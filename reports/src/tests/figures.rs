@@ -60,8 +60,8 @@ fn every_strategy_the_world_and_the_words_are_drawn() {
     assert!(count(palette::MOVING) > 100, "{}", count(palette::MOVING));
     for words in [
         "two_blocks: 5 trials of 20,000 steps, estimator two-state, sensor radius 4",
-        "top block",
-        "bottom block",
+        "top",
+        "bottom",
         "Map correct: share of cells",
         "15,000",
     ] {
