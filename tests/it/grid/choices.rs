@@ -53,11 +53,3 @@ fn every_estimator_estimates_in_its_own_way() {
     let errors: BTreeSet<_> = results.iter().map(|it| it.entry["final_log_error"].to_string()).collect();
     assert_eq!(errors.len(), names.len(), "{errors:?}");
 }
-
-#[test]
-fn the_learner_can_be_changed() {
-    let one = "--steps 2000 --trials 1 --estimator paper --strategy curious";
-    let hashes: BTreeSet<_> =
-        ["", "--max-steps 1"].map(|change| super::hash(&format!("{one} {change}"))).into();
-    assert_eq!(hashes.len(), 2);
-}
