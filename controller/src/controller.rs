@@ -4,8 +4,7 @@ use crate::drives::Drive;
 use crate::dynamic_obstacles::DynamicObstacleFilter;
 use crate::navigation::{LocalExploration, NavigationTask, Progress, Surroundings, Tick, random_step};
 use crate::planner::{Path, Planner};
-use crate::settings::Settings;
-use interfaces::{CellState, Grid, RandomStream, SettingsError, Values, values};
+use interfaces::{CellState, Grid, RandomStream, Values, values};
 use nalgebra::Point2;
 
 /// Drives the robot to a goal and explores around it (paper, section 2).
@@ -14,8 +13,9 @@ use nalgebra::Point2;
 /// commands. All random numbers come from the stream given at construction.
 #[derive(Clone, Debug)]
 pub struct Controller<D: Drive> {
-    settings: Settings,
     drive: D,
+    /// The maximum number of steps of local exploration.
+    max_steps: u32,
     rng: RandomStream,
     surroundings: Option<Surroundings>,
     state: State,
@@ -65,15 +65,10 @@ struct Done {
 }
 
 impl<D: Drive> Controller<D> {
-    /// A controller without a goal.
-    ///
-    /// # Errors
-    ///
-    /// When a setting is out of range or contradicts another; the error names it.
-    pub fn new(settings: Settings, drive: D, rng: RandomStream) -> Result<Self, SettingsError> {
-        settings.check()?;
+    /// A controller without a goal, with at most this number of steps of local exploration at a goal; 42 in the paper.
+    pub fn new(drive: D, max_steps: u32, rng: RandomStream) -> Self {
         let (state, path) = (State::Idle, Path::default());
-        Ok(Self { settings, drive, rng, surroundings: None, state, path, last_change: None })
+        Self { drive, max_steps, rng, surroundings: None, state, path, last_change: None }
     }
 }
 
@@ -107,12 +102,11 @@ impl<D: Drive> Driver for Controller<D> {
             self.last_change = Some((change, input.time));
         }
         let mut surroundings = self.update_surroundings(input);
-        let settings = self.settings.navigation;
-        let tick = &mut Tick { settings: &settings, input, surroundings: &mut surroundings };
+        let tick = &mut Tick { input, surroundings: &mut surroundings };
         let command = match std::mem::replace(&mut self.state, State::Idle) {
             State::Idle => self.drive.rest(&tick.scene()),
             State::New { goal, at_goal } => {
-                let task = NavigationTask::new(input, goal, f64::INFINITY, settings.goal_timeout_s);
+                let task = NavigationTask::new(input, goal, f64::INFINITY, self.drive.body().goal_timeout_s);
                 self.travel(tick, task, at_goal)
             }
             State::Travelling { task, at_goal } => self.travel(tick, task, at_goal),
@@ -126,10 +120,9 @@ impl<D: Drive> Driver for Controller<D> {
 
     fn pause(&mut self, input: &ControlInput, looks_around: bool) -> D::Command {
         let mut surroundings = self.update_surroundings(input);
-        let settings = self.settings.navigation;
-        let scene = Tick { settings: &settings, input, surroundings: &mut surroundings };
-        let scene = &scene.scene();
-        let command = if looks_around { self.drive.look_around(scene) } else { self.drive.rest(scene) };
+        let tick = Tick { input, surroundings: &mut surroundings };
+        let rests = if looks_around { D::look_around } else { D::rest };
+        let command = rests(&mut self.drive, &tick.scene());
         self.surroundings = Some(surroundings);
         command
     }
@@ -195,9 +188,10 @@ impl<D: Drive> Controller<D> {
     }
 
     fn surroundings_of(&self, map: &Grid<CellState>) -> Surroundings {
-        let body = self.drive.body();
-        let planner = Planner::new(&self.settings.inflation, body.radius_m, body.moves, map);
-        Surroundings { planner, dynamic: DynamicObstacleFilter::new(map) }
+        Surroundings {
+            planner: Planner::new(&self.drive.body(), map),
+            dynamic: DynamicObstacleFilter::new(map),
+        }
     }
 
     fn travel(&mut self, tick: &mut Tick, mut task: NavigationTask, at_goal: AtGoal) -> D::Command {
@@ -252,7 +246,7 @@ impl<D: Drive> Controller<D> {
         let change = self.last_change.filter(is_new).map(|(change, _)| change);
         let costmap = tick.surroundings.planner.costmap();
         let random = || random_step(&body, costmap, &input.position(), &mut self.rng);
-        let Some(target) = exploration.next(&self.settings.exploration, change, random) else {
+        let Some(target) = exploration.next(self.max_steps, change, random) else {
             return self.finish(tick, done);
         };
         let mut step = NavigationTask::new(input, target, body.step_m, body.step_limit_s);

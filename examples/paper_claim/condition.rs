@@ -1,7 +1,6 @@
 //! The conditions: each differs from the paper's condition in one setting.
 
 use agent::{AgentSettings, Reward};
-use controller::CellDrive;
 use curious::worlds::{SHIPPED_GRID, load_grid};
 use evaluation::trials::{Experiment, GridRobot, TrialSettings, TrialStrategy};
 use mapper::{EstimatorChoice, MapperSettings, Paper, PaperAll};
@@ -89,8 +88,6 @@ impl Condition {
         let set = |world: GridSpec| {
             world.with_sensor_radius(self.sensor_radius).with_probabilities(self.chance, self.chance)
         };
-        let mut controller = CellDrive::settings();
-        controller.exploration.max_steps = self.max_steps;
         let agent = AgentSettings { reward: self.reward, ..Default::default() };
         Experiment {
             worlds: worlds.into_iter().map(set).collect(),
@@ -101,7 +98,7 @@ impl Condition {
             trials,
             seed: 0,
             length: self.steps,
-            robot: GridRobot { mapper: MapperSettings::default(), agent, controller },
+            robot: GridRobot { agent, max_steps: self.max_steps, ..GridRobot::default() },
         }
     }
 }

@@ -12,6 +12,7 @@ pub use inflation::{Inflation, InflationSettings};
 pub use path::Path;
 pub use wavefront::Wavefront;
 
+use crate::drives::Body;
 use costmap::line;
 use interfaces::{Cell, CellState, Grid, Transition, Value, converted};
 use nalgebra::Point2;
@@ -46,12 +47,12 @@ pub struct Planner {
 }
 
 impl Planner {
-    /// A planner over `map` for a robot of `radius_m`.
-    pub fn new(settings: &InflationSettings, radius_m: f64, moves: Moves, map: &Grid<CellState>) -> Self {
+    /// A planner over `map` for a robot.
+    pub fn new(&Body { radius_m, ref inflation, moves, .. }: &Body, map: &Grid<CellState>) -> Self {
         let frame = *map.frame();
-        let exit_m = 4.0 * (radius_m + settings.footprint_padding_m);
+        let exit_m = 4.0 * (radius_m + inflation.footprint_padding_m);
         Self {
-            inflation: Inflation::new(settings, radius_m, map),
+            inflation: Inflation::new(inflation, radius_m, map),
             wavefront: Wavefront::new(frame, moves),
             moves,
             exit_reach: (exit_m / frame.resolution_m()).ceil() as i32 + 1,

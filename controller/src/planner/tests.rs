@@ -1,13 +1,11 @@
 use super::*;
 use crate::tests::{find, states};
+use crate::{CellDrive, Drive};
 use interfaces::GridFrame;
 use proptest::prelude::*;
 
-const POINT: InflationSettings =
-    InflationSettings { footprint_padding_m: 0.0, inflation_m: 0.0, inflation_cost: 1 };
-
 fn planner(map: &Grid<CellState>, moves: Moves) -> Planner {
-    Planner::new(&POINT, 0.0, moves, map)
+    Planner::new(&Body { moves, ..CellDrive.body() }, map)
 }
 
 fn transition(map: &mut Grid<CellState>, cell: Cell, after: CellState) -> [Transition; 1] {
@@ -101,8 +99,9 @@ fn an_opening_concerns_a_path_that_falls_short() {
 fn a_robot_in_a_closed_cell_leaves_it_on_its_own_side_of_the_wall() {
     let rows = ["......#......", "......#......", ".....R#....G.", "......#......", "......#......"];
     let map = states(&rows, 0.2);
-    let settings = InflationSettings { footprint_padding_m: 0.01, inflation_m: 0.01, inflation_cost: 1 };
-    let mut planner = Planner::new(&settings, 0.2, Moves::Eight, &map);
+    let inflation = InflationSettings { footprint_padding_m: 0.01, inflation_m: 0.01, inflation_cost: 1 };
+    let body = Body { radius_m: 0.2, inflation, moves: Moves::Eight, ..CellDrive.body() };
+    let mut planner = Planner::new(&body, &map);
     let mut path = Path::default();
     let (robot, goal) = (find(&rows, 'R'), find(&rows, 'G'));
     assert!(!planner.costmap().is_traversable(robot));

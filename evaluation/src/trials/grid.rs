@@ -13,14 +13,14 @@ pub struct GridRobot {
     pub mapper: MapperSettings,
     /// The settings of the agent; its sensor radius is that of the world.
     pub agent: AgentSettings,
-    /// The settings of the controller.
-    pub controller: controller::Settings,
+    /// The maximum number of steps of local exploration.
+    pub max_steps: u32,
 }
 
 impl Default for GridRobot {
     fn default() -> Self {
         let (mapper, agent) = (MapperSettings::default(), AgentSettings::default());
-        Self { mapper, agent, controller: CellDrive::settings() }
+        Self { mapper, agent, max_steps: 42 }
     }
 }
 
@@ -67,9 +67,9 @@ impl TrialWorld for GridSpec {
         _: &mut GridWorld,
         selector: G,
     ) -> Result<TrialRobot<Self, G>, TrialError> {
-        let GridRobot { mapper, controller, .. } = &trial.experiment.robot;
+        let GridRobot { mapper, max_steps, .. } = &trial.experiment.robot;
         let stream = RandomStream::new(trial.seed, Purpose::GridController);
-        let pilot = Autonomous::new(selector, Controller::new(*controller, CellDrive, stream)?);
+        let pilot = Autonomous::new(selector, Controller::new(CellDrive, *max_steps, stream));
         let settings = MapperSettings { estimator: trial.estimator.clone(), ..mapper.clone() };
         Ok(Robot::new(Box::new(ExactPoses), Mapper::new(&settings, *trial.world.frame())?, pilot))
     }

@@ -87,9 +87,7 @@ impl TrialKind for GridWorlds {
     }
 
     fn robot(&self, max_steps: u32) -> GridRobot {
-        let mut robot = GridRobot::default();
-        robot.controller.exploration.max_steps = max_steps;
-        robot
+        GridRobot { max_steps, ..GridRobot::default() }
     }
 
     fn to_toml(world: &GridSpec) -> Option<String> {
