@@ -66,7 +66,7 @@ fn papers() -> Vec<Box<dyn Strategy>> {
 
 fn curious(settings: &AgentSettings, rng: &mut RandomStream) -> Parts {
     let strategies = papers();
-    let chooser = Curious::new(&settings.curious, strategies.len(), rng);
+    let chooser = Curious::new(settings.temperature, strategies.len(), rng);
     (strategies, Box::new(chooser))
 }
 

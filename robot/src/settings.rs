@@ -106,7 +106,7 @@ impl Settings {
         };
         // A reward counts cells. The paper's temperature is for blocks of one cell; a robot is many cells wide, and each of its
         // moves changes about as many cells.
-        agent.curious.temperature *= (2.0 * source.drive.radius_m / source.cell_m).max(1.0);
+        agent.temperature *= (2.0 * source.drive.radius_m / source.cell_m).max(1.0);
         let filter = ScanFilterSettings {
             max_range_m: source.range_max_m.clamp(0.1, 1000.0),
             no_return: source.no_return,

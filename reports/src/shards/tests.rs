@@ -207,7 +207,7 @@ fn two_processes_on_one_shard_are_one_too_many() {
 fn merge_a_million_trials() {
     for (worlds, seeds, samples) in [(1000, 100, 8), (1, 100_000, 8), (500, 100, 80)] {
         let strategies = ["curious", "recency", "poisson", "random", "coin"];
-        let (mut settings, mut some) = experiment(1, &["paper", "two-state"], &strategies, 9);
+        let (mut settings, mut some) = experiment(1, &["paper", "two-state-gaps"], &strategies, 9);
         some.iter_mut().for_each(|trial| trial.samples.truncate(samples));
         settings.worlds = (0..worlds).map(|number| format!("world {number}")).collect();
         settings.trials = seeds;

@@ -24,7 +24,7 @@ fn the_run_over_all_worlds_is_figure_3_and_the_others_are_named() {
     };
     assert_eq!(names(1, &["paper"]), ["figure3"]);
     // By name.
-    assert_eq!(names(1, &["paper", "two-state"]), ["figure3-two-blocks-two-state", "figure3"]);
+    assert_eq!(names(1, &["paper", "two-state-gaps"]), ["figure3-two-blocks-two-state-gaps", "figure3"]);
     assert_eq!(names(2, &["paper"]), ["figure3-generated-1", "figure3-two-blocks", "figure3"]);
     assert_eq!(names(9, &["paper"]), ["figure3"]);
 }
@@ -45,7 +45,7 @@ fn names_that_look_alike_in_a_file_s_name_stay_apart() {
 
 #[test]
 fn every_strategy_the_world_and_the_words_are_drawn() {
-    let (_, pictures, texts) = figures(&report(1, &["two-state"], &FIVE, 5));
+    let (_, pictures, texts) = figures(&report(1, &["two-state-gaps"], &FIVE, 5));
     let (picture, text) = (&pictures[0], &texts[0]);
     let count = |colour: [u8; 3]| picture.pixels().filter(|pixel| pixel.0 == colour).count();
     let colors = [[0, 114, 178], [0, 158, 115], [230, 159, 0], [150, 150, 150], [86, 180, 233]];
@@ -59,7 +59,7 @@ fn every_strategy_the_world_and_the_words_are_drawn() {
     assert!((600..900).contains(&count([238, 136, 102])), "{}", count([238, 136, 102]));
     assert!((4500..6500).contains(&count([119, 170, 221])), "{}", count([119, 170, 221]));
     for words in [
-        "two_blocks: 5 trials of 20,000 steps, estimator two-state, sensor radius 4",
+        "two_blocks: 5 trials of 20,000 steps, estimator two-state-gaps, sensor radius 4",
         "top block",
         "range of its sensor: 4",
         "Map correct: share of cells",
@@ -137,7 +137,7 @@ fn draw_figures() {
         ("single", 1, FIVE.to_vec(), 1),
     ] {
         let start = std::time::Instant::now();
-        let report = report(worlds, &["two-state"], &strategies, seeds);
+        let report = report(worlds, &["two-state-gaps"], &strategies, seeds);
         let made = start.elapsed();
         let plans: Vec<GridSpec> = (0..worlds).map(world).collect();
         let run = RunFolder::open(&folder.join(name)).unwrap();

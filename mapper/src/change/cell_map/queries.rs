@@ -65,7 +65,7 @@ impl CellMap {
 
     /// The index of a cell among those that ever changed.
     pub(crate) fn slot(&self, index: usize) -> Option<Slot> {
-        self.records.get(index).slot()
+        self.records.get(index).slot
     }
 
     /// The number of readings so far.
@@ -121,8 +121,6 @@ impl CellMap {
             free_events: record.in_view[1],
             block_events_after_gap: record.after_gap[0],
             free_events_after_gap: record.after_gap[1],
-            gaps_from_free: record.gaps[0],
-            gaps_from_blocked: record.gaps[1],
             gap_worth: self.gaps.at(place).map_or(GapWorth::default(), |gaps| gaps.worth(period)),
             prior: self.rate_prior(place),
         }
@@ -130,7 +128,7 @@ impl CellMap {
 
     /// How often the state of the cell changed in the map: its changes, and the correction of a wrong first observation.
     pub(crate) fn map_changes(&self, index: usize) -> u32 {
-        self.statistics(index).events() + u32::from(self.records.get(index).was_corrected())
+        self.statistics(index).events() + u32::from(self.records.get(index).was_corrected)
     }
 
     /// Whether the cell ever changed. Most cells did not: their rates need no statistics.
