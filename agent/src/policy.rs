@@ -104,7 +104,7 @@ impl Policy {
 
     /// The policy for one of the [`PURPOSES`].
     pub fn for_purpose(name: &str) -> Option<Self> {
-        PURPOSES.iter().find(|[purpose, ..]| *purpose == name).and_then(|[.., policy]| Self::named(policy))
+        PURPOSES.iter().find(|[purpose, ..]| *purpose == name).and_then(|[.., policy]| policy.parse().ok())
     }
 
     /// The name on the command line and in files.

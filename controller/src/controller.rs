@@ -28,14 +28,14 @@ pub struct Controller<D: Drive> {
 #[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
 enum State {
     Idle,
-    /// A goal that was set since the last tick.
+    /// A goal that was set since the last tick; with `watch`, the robot stops there for this duration, s (steps in a grid world).
     New {
         goal: Point2<f64>,
-        at_goal: AtGoal,
+        watch: Option<f64>,
     },
     Travelling {
         task: NavigationTask,
-        at_goal: AtGoal,
+        watch: Option<f64>,
     },
     Exploring {
         done: Done,
@@ -47,14 +47,6 @@ enum State {
         until: f64,
     },
     Finished(Done),
-}
-
-/// What the robot does at the goal.
-#[derive(Clone, Copy, Debug, serde::Deserialize, serde::Serialize)]
-enum AtGoal {
-    Explore,
-    /// Stop for this duration, s (steps in a grid world).
-    Watch(f64),
 }
 
 /// A goal, and the outcome of the navigation to it.
@@ -76,8 +68,7 @@ impl<D: Drive> Driver for Controller<D> {
     type Command = D::Command;
 
     fn set_goal(&mut self, goal: Point2<f64>, watch: Option<f64>) {
-        let at_goal = watch.map_or(AtGoal::Explore, |duration| AtGoal::Watch(duration.max(0.0)));
-        self.state = State::New { goal, at_goal };
+        self.state = State::New { goal, watch: watch.map(|duration| duration.max(0.0)) };
         self.path.clear();
     }
 
@@ -105,11 +96,11 @@ impl<D: Drive> Driver for Controller<D> {
         let tick = &mut Tick { input, surroundings: &mut surroundings };
         let command = match std::mem::replace(&mut self.state, State::Idle) {
             State::Idle => self.drive.rest(&tick.scene()),
-            State::New { goal, at_goal } => {
+            State::New { goal, watch } => {
                 let task = NavigationTask::new(input, goal, f64::INFINITY, self.drive.body().goal_timeout_s);
-                self.travel(tick, task, at_goal)
+                self.travel(tick, task, watch)
             }
-            State::Travelling { task, at_goal } => self.travel(tick, task, at_goal),
+            State::Travelling { task, watch } => self.travel(tick, task, watch),
             State::Exploring { done, exploration, step } => self.explore(tick, done, exploration, step),
             State::Watching { done, until } => self.watch(tick, done, until),
             State::Finished(done) => self.finish(tick, done),
@@ -150,7 +141,7 @@ impl<D: Drive> Driver for Controller<D> {
         (self.surroundings, self.last_change) = (None, None);
         self.path.clear();
         self.state = match std::mem::replace(&mut self.state, State::Idle) {
-            State::Travelling { task, at_goal } => State::New { goal: *task.goal(), at_goal },
+            State::Travelling { task, watch } => State::New { goal: *task.goal(), watch },
             State::Exploring { done, .. } => State::Finished(done),
             other => other,
         };
@@ -163,9 +154,10 @@ impl<D: Drive> Driver for Controller<D> {
     fn values(&mut self, map: &Grid<CellState>) -> Values<'_> {
         let surroundings = self.surroundings.take().unwrap_or_else(|| self.surroundings_of(map));
         let surroundings = self.surroundings.insert(surroundings);
-        let mut values = values![self.rng, self.state, self.path, self.last_change];
-        values.extend([surroundings.planner.value(), surroundings.dynamic.value()]);
-        values.extend(self.drive.values());
+        let dynamic = surroundings.dynamic.value();
+        let mut values =
+            values![self.rng, self.state, self.path, self.last_change; surroundings.planner, self.drive];
+        values.push(dynamic);
         values
     }
 }
@@ -188,16 +180,15 @@ impl<D: Drive> Controller<D> {
     }
 
     fn surroundings_of(&self, map: &Grid<CellState>) -> Surroundings {
-        Surroundings {
-            planner: Planner::new(&self.drive.body(), map),
-            dynamic: DynamicObstacleFilter::new(map),
-        }
+        let body = self.drive.body();
+        let planner = Planner::new(&body.inflation, body.radius_m, body.moves, map);
+        Surroundings { planner, dynamic: DynamicObstacleFilter::new(map) }
     }
 
-    fn travel(&mut self, tick: &mut Tick, mut task: NavigationTask, at_goal: AtGoal) -> D::Command {
+    fn travel(&mut self, tick: &mut Tick, mut task: NavigationTask, watch: Option<f64>) -> D::Command {
         let outcome = match task.drive(tick, &mut self.path, &mut self.drive) {
             Progress::Underway(command) => {
-                self.state = State::Travelling { task, at_goal };
+                self.state = State::Travelling { task, watch };
                 return command;
             }
             Progress::Arrived(end) if end.is_goal => Outcome::Reached,
@@ -205,10 +196,10 @@ impl<D: Drive> Controller<D> {
             Progress::GivenUp => Outcome::GivenUp,
         };
         let done = Done { goal: *task.goal(), outcome };
-        match at_goal {
+        match watch {
             _ if outcome == Outcome::GivenUp => self.finish(tick, done),
-            AtGoal::Explore => self.step(tick, done, LocalExploration::default()),
-            AtGoal::Watch(duration) => self.watch(tick, done, tick.input.time + duration),
+            None => self.step(tick, done, LocalExploration::default()),
+            Some(duration) => self.watch(tick, done, tick.input.time + duration),
         }
     }
 

@@ -1,7 +1,7 @@
 //! The memory of the map of a large place, as the operating system counts it. One test, in a process of its own.
 
 use interfaces::{GridFrame, LaserReading, Scan, Twist};
-use mapper::{EstimatorChoice, Mapper, MapperSettings};
+use mapper::{Mapper, MapperSettings, SharedPrior};
 use nalgebra::{Isometry2, Point2};
 use std::f64::consts::TAU;
 
@@ -63,10 +63,7 @@ fn a_large_place_takes_the_memory_of_what_was_seen() {
 fn two_rooms_a_kilometer_apart_take_the_memory_of_two_rooms() {
     let before = resident();
     let frame = GridFrame::new(Point2::origin(), 0.05, 20_000, 20_000).unwrap();
-    let settings = MapperSettings {
-        estimator: EstimatorChoice::named("shared-prior").unwrap(),
-        ..MapperSettings::default()
-    };
+    let settings = MapperSettings { estimator: SharedPrior.into(), ..MapperSettings::default() };
     let mut mapper = Mapper::new(&settings, frame).unwrap();
     let outline = mapper.bytes();
     assert!(outline < 80 << 20, "the outline alone takes {outline} bytes");
@@ -131,10 +128,7 @@ fn cells_that_change_take_little_more_memory() {
     const STEPS: u32 = 80;
     const SCANS_PER_STEP: u32 = 4;
     let frame = GridFrame::new(Point2::origin(), 0.05, 800, 800).unwrap();
-    let settings = MapperSettings {
-        estimator: EstimatorChoice::named("shared-prior").unwrap(),
-        ..MapperSettings::default()
-    };
+    let settings = MapperSettings { estimator: SharedPrior.into(), ..MapperSettings::default() };
     let mut mapper = Mapper::new(&settings, frame).unwrap();
     let mut time_s = 0.0;
     let mut look = |mapper: &mut Mapper, radius_m: f64, scans: u32| {

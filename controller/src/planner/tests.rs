@@ -1,11 +1,11 @@
 use super::*;
 use crate::tests::{find, states};
-use crate::{CellDrive, Drive};
 use interfaces::GridFrame;
 use proptest::prelude::*;
 
 fn planner(map: &Grid<CellState>, moves: Moves) -> Planner {
-    Planner::new(&Body { moves, ..CellDrive.body() }, map)
+    let point = InflationSettings { footprint_padding_m: 0.0, inflation_m: 0.0, inflation_cost: 1 };
+    Planner::new(&point, 0.0, moves, map)
 }
 
 fn transition(map: &mut Grid<CellState>, cell: Cell, after: CellState) -> [Transition; 1] {
@@ -100,8 +100,7 @@ fn a_robot_in_a_closed_cell_leaves_it_on_its_own_side_of_the_wall() {
     let rows = ["......#......", "......#......", ".....R#....G.", "......#......", "......#......"];
     let map = states(&rows, 0.2);
     let inflation = InflationSettings { footprint_padding_m: 0.01, inflation_m: 0.01, inflation_cost: 1 };
-    let body = Body { radius_m: 0.2, inflation, moves: Moves::Eight, ..CellDrive.body() };
-    let mut planner = Planner::new(&body, &map);
+    let mut planner = Planner::new(&inflation, 0.2, Moves::Eight, &map);
     let mut path = Path::default();
     let (robot, goal) = (find(&rows, 'R'), find(&rows, 'G'));
     assert!(!planner.costmap().is_traversable(robot));

@@ -17,9 +17,10 @@ fn is_a_step(from: Cell, to: Cell) -> bool {
 
 #[test]
 fn a_recording_agrees_with_its_world_and_its_trial() {
-    let run =
-        ran("--steps 3000 --trials 2 --seed 6 --world open_hall --world two_blocks --estimator two-state-gaps \
-                   --strategy curious --strategy random --rrd trial.rrd");
+    let run = ran(
+        "--steps 3000 --trials 2 --seed 6 --world open_hall --world two_blocks --estimator two-state-gaps \
+                   --strategy curious --strategy random --rrd trial.rrd",
+    );
     let (recording, world) = (Recording::read(&run.path("trial.rrd")), load_grid("open_hall").unwrap());
     assert_eq!(recording.timelines(), ["step"]);
     assert_eq!(recording.times("/", "step").last(), Some(&3000));

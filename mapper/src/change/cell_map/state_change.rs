@@ -51,8 +51,9 @@ impl CellMap {
         let stayed = self.times.at(until) - self.times.at(record.since);
         let event = state_index(before); // free → blocked is a block event, blocked → free a free event
         record.watched[event] += stayed;
-        if let Some(gaps) = self.gaps.get_mut(index)
-            && (in_view && record.is_whole && period > 0.0)
+        if in_view
+            && (record.is_whole && period > 0.0 && self.estimator.weighs_gaps())
+            && let Some(gaps) = self.gaps.get_mut(index)
         {
             gaps.add_stay(event, stayed / period, &mut self.regularity);
         }
@@ -91,11 +92,11 @@ impl CellMap {
 
     /// Weighs the gaps of a cell that changes, if enough was observed since the gaps were last weighed.
     pub(super) fn weigh_gaps(&mut self, index: usize) {
-        if self.gaps.is_empty() || !self.has_changed(index) {
+        if !self.has_changed(index) || !self.estimator.weighs_gaps() {
             return;
         }
         let seen = self.statistics(index);
-        if !self.estimator.weighs_gaps() || !self.gaps[index].is_due(&seen) {
+        if !self.gaps[index].is_due(&seen) {
             return;
         }
         let (frame, Cell { x, y }) = (self.frame(), self.frame().cell(index));
