@@ -285,7 +285,7 @@ impl Parameters {
             }
             (name, "") => {
                 let known = || Policy::built_in().iter().map(Policy::name).collect::<Vec<_>>().join(", ");
-                Policy::named(name).ok_or_else(|| unknown("strategy", known(), name))
+                name.parse().map_err(|_| unknown("strategy", known(), name))
             }
             _ => bail!(
                 "the parameters `strategy` (`{strategy}`) and `purpose` (`{purpose}`) both name a strategy: leave one of them \

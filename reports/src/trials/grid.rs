@@ -82,9 +82,7 @@ impl TrialKind for GridWorlds {
     }
 
     fn robot(&self, max_steps: u32) -> GridRobot {
-        let mut robot = GridRobot::default();
-        robot.controller.exploration.max_steps = max_steps;
-        robot
+        GridRobot { max_steps }
     }
 
     fn to_toml(world: &GridSpec) -> Option<String> {
