@@ -98,6 +98,11 @@ impl Canvas {
         }
     }
 
+    /// Width and height, pixels.
+    pub fn size(&self) -> [u32; 2] {
+        self.size
+    }
+
     /// The rows from the top; red, green and blue of every pixel.
     pub fn pixels(&self) -> &[u8] {
         &self.pixels

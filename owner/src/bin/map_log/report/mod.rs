@@ -11,7 +11,6 @@ mod sessions;
 use crate::summary::Summary;
 use draw::layers::Layer;
 use draw::palette::{self, Rgb};
-use draw::scene::TimeUnit;
 use mapper::Mapper;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use nalgebra::Point2;
@@ -231,7 +230,7 @@ fn interval_key() -> Markup {
     const LEFT: f64 = 20.0;
     let (layer, classes) = (Layer::Interval, Layer::Interval.scale_classes());
     let step = WIDTH / classes.len() as f64;
-    let scale = layer.scale(TimeUnit::Second);
+    let scale = layer.scale();
     html! {
         svg width="340" height="38" viewBox="0 0 340 38" font-size="13" font-family="sans-serif" role="img" aria-label="From dark, often, to light, rarely" {
             @for (place, class) in classes.iter().enumerate() {

@@ -8,7 +8,7 @@ use base64::engine::general_purpose::STANDARD;
 use draw::canvas::png_of_palette;
 use draw::layers::{BLOCKED, FREE, Layer, UNKNOWN};
 use draw::palette;
-use draw::scene::{TimeUnit, span};
+use draw::scene::span;
 use interfaces::{Cell, CellState};
 use mapper::Mapper;
 use maud::{Markup, html};
@@ -112,7 +112,7 @@ impl<'a> Plan<'a> {
 
     /// The picture of all cells that every plan on the page shows a part of.
     pub(super) fn picture(&self, layer: Layer) -> Markup {
-        let mut classes = layer.classes(self.mapper, TimeUnit::Second);
+        let mut classes = layer.classes(self.mapper);
         let mut colors: Vec<palette::Rgb> = (0..CHANGED).map(|class| layer.color(class)).collect();
         colors.push(palette::MOVING);
         if layer == Layer::Occupancy {
