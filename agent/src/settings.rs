@@ -1,4 +1,24 @@
-use interfaces::{SettingsCheck, SettingsError};
+use interfaces::{CellState, SettingsCheck, SettingsError, Transition};
+
+/// The map updates that count in the reward of a trajectory.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Reward {
+    /// Changes of a known cell: free to blocked, blocked to free.
+    #[default]
+    Changes,
+    /// First observations as well. A laser has thousands of them in one scan, far more than the temperature.
+    ChangesAndDiscoveries,
+}
+
+impl Reward {
+    pub(crate) fn count(self, transitions: &[Transition]) -> usize {
+        let with_discoveries = self == Self::ChangesAndDiscoveries;
+        let counts =
+            |of: &&Transition| of.event().is_some() || with_discoveries && of.before == CellState::Unknown;
+        transitions.iter().filter(counts).count()
+    }
+}
 
 /// Settings of an [`Agent`](crate::Agent).
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
@@ -7,6 +27,8 @@ pub struct AgentSettings {
     pub patch_cells: usize,
     /// The range of the sensor, m. Used by strategies that compute visibility.
     pub sensor_radius_m: f64,
+    /// The map updates that count.
+    pub reward: Reward,
     /// Whether the robot looks into unseen space that it can reach before its strategies decide. The paper's robot
     /// does not: in its worlds everything comes into view soon.
     pub looks_at_unseen: bool,
@@ -17,7 +39,13 @@ pub struct AgentSettings {
 
 impl Default for AgentSettings {
     fn default() -> Self {
-        Self { patch_cells: 5, sensor_radius_m: 10.0, looks_at_unseen: false, temperature: 2.0 }
+        Self {
+            patch_cells: 5,
+            sensor_radius_m: 10.0,
+            reward: Reward::default(),
+            looks_at_unseen: false,
+            temperature: 2.0,
+        }
     }
 }
 

@@ -9,13 +9,15 @@ use sim::grid::{GridGroundTruth, GridSpec, GridWorld};
 /// The settings of the robot in grid worlds.
 #[derive(Clone, Debug)]
 pub struct GridRobot {
+    /// The settings of the agent; its sensor radius is that of the world.
+    pub agent: AgentSettings,
     /// The maximum number of steps of local exploration.
     pub max_steps: u32,
 }
 
 impl Default for GridRobot {
     fn default() -> Self {
-        Self { max_steps: 42 }
+        Self { agent: AgentSettings::default(), max_steps: 42 }
     }
 }
 
@@ -53,7 +55,7 @@ impl TrialWorld for GridSpec {
 
     fn agent(trial: &TrialSettings<Self>, policy: &Policy) -> Result<Agent, TrialError> {
         let sensor_radius_m = f64::from(trial.world.sensor_radius) * trial.world.frame().resolution_m();
-        let settings = AgentSettings { sensor_radius_m, ..AgentSettings::default() };
+        let settings = AgentSettings { sensor_radius_m, ..trial.experiment.robot.agent };
         Ok(Agent::new(&settings, policy, RandomStream::new(trial.seed, Purpose::GridAgent))?)
     }
 
