@@ -72,13 +72,13 @@ impl Default for Geometry {
 }
 
 impl Geometry {
-    /// Takes a parameter over.
+    /// Takes a parameter over. A stated maximum range counts only if no range is beyond it, which is known at the end.
     pub(super) fn set(&mut self, param: Param) {
         match param {
             Param::Ahead(ahead_m) => self.ahead_m = ahead_m,
             Param::Left(left_m) => self.left_m = left_m,
             Param::Turn(turn_rad) => self.turn_rad = turn_rad,
-            Param::MaxRange(max_m) => self.range_max_m = max_m.min(MAX_RANGE_M),
+            Param::MaxRange(_) => {}
             Param::Fov(fov_rad) => self.fov_rad = Some(fov_rad),
         }
     }

@@ -1,7 +1,7 @@
 //! The first reading of a log: what it contains, and what makes no sense.
 
 use super::Rules;
-use super::geometry::{Geometry, Mounts};
+use super::geometry::{Geometry, MAX_RANGE_M, Mounts, Param};
 use super::line::{self, Line, Poses};
 use crate::assemble::Odometry;
 use crate::bounds;
@@ -13,6 +13,8 @@ use crate::summary::{LogSummary, since_epoch};
 use nalgebra::Isometry2;
 use std::collections::BTreeSet;
 
+/// A laser that measures this number of different ranges beyond a stated maximum has another one: failures have few values.
+const MIN_BEYOND: usize = 20;
 /// A pose that the odometry measures right after a scan is at most this far from it in time, s.
 const SAME_TIME_S: f64 = 1.0;
 
@@ -81,6 +83,9 @@ struct Inspection {
     scan: Option<(f64, Isometry2<f64>)>,
     /// The number of poses right after a scan that repeat its pose, at about its time, and at another one.
     repeated: [usize; 2],
+    /// The maximum range that a parameter states, m, and different ranges beyond it, as bits; at most [`MIN_BEYOND`].
+    stated_max_m: Option<f64>,
+    beyond: BTreeSet<u32>,
     /// The numbers of readings of FLASER lines.
     counts: BTreeSet<usize>,
     mounts: Mounts,
@@ -106,9 +111,10 @@ impl Inspection {
                 self.repeated[usize::from(is_origin)] += usize::from(scan_s.is_some());
                 self.add_pose(if is_origin { 0.0 } else { time_s }, pose, speed_mps);
             }
-            Line::Scan(scan) => {
+            Line::Scan(mut scan) => {
                 match scan.poses {
                     Poses::Laser(_) => {
+                        self.check_range(&mut scan.scan.ranges_m);
                         self.counts.insert(scan.scan.ranges_m.len());
                     }
                     Poses::Mount(mount) => mount.iter().for_each(|mount| self.mounts.add(mount)),
@@ -121,7 +127,12 @@ impl Inspection {
                 self.doubts.add(scan.typical, &scan.scan.ranges_m);
                 self.standing.add(&Isometry2::identity(), &scan.scan);
             }
-            Line::Param(param) => self.geometry.set(param),
+            Line::Param(param) => {
+                if let Param::MaxRange(stated_m) = param {
+                    self.stated_max_m = Some(stated_m);
+                }
+                self.geometry.set(param);
+            }
             Line::Invalid { is_scan, what } => {
                 let invalid = if is_scan { &mut self.invalid_scans } else { &mut self.invalid_poses };
                 invalid.count += 1;
@@ -133,6 +144,17 @@ impl Inspection {
             Line::Other { is_cut_off: false } => {}
         }
         Ok(())
+    }
+
+    /// Removes ranges beyond the stated maximum, and counts how many different ones there are.
+    fn check_range(&mut self, ranges_m: &mut [f32]) {
+        let Some(max_m) = self.stated_max_m else { return };
+        for range_m in ranges_m.iter_mut().filter(|range_m| **range_m >= max_m as f32) {
+            if self.beyond.len() < MIN_BEYOND {
+                self.beyond.insert(range_m.to_bits());
+            }
+            *range_m = f32::NAN;
+        }
     }
 
     /// The first invalid line, if most scans or most poses are invalid.
@@ -169,6 +191,13 @@ impl Inspection {
                 "FLASER lines with {count} readings do not say their field of view: 180° is assumed; a line `PARAM \
                  laser_front_laser_fov DEGREES` before them states it"
             ));
+        }
+        match self.stated_max_m {
+            Some(max_m) if self.beyond.len() == MIN_BEYOND => notes.push(format!(
+                "a parameter states a maximum range of {max_m} m, but beams measure more: it is ignored"
+            )),
+            Some(max_m) => geometry.range_max_m = max_m.min(MAX_RANGE_M),
+            None => {}
         }
         let has_origins = self.with_time > 0;
         let is_corrected = has_origins && self.repeated[1] > self.repeated[0];

@@ -91,6 +91,20 @@ fn a_pose_of_the_odometry_right_after_a_scan_is_a_motion() {
 }
 
 #[test]
+fn a_stated_maximum_range_is_ignored_if_beams_measure_more() {
+    let scan =
+        |step: u32, far: &str| format!("FLASER 180 {} {far} 0 0 0 0 0 0 {step} h {step}\n", "2 ".repeat(179));
+    let log = |far: &dyn Fn(u32) -> String| {
+        let scans: String = (1..41).map(|step| scan(step, &far(step))).collect();
+        "PARAM robot_front_laser_max 10 h 0\n".to_owned() + &scans
+    };
+    let far_m = |text: &str| readings(text)[7].scan.ranges_m[179];
+    assert_eq!(far_m(&log(&|step| format!("{}", 20.0 + f64::from(step)))), 28.0);
+    // A number for failures is no measurement.
+    assert!(far_m(&log(&|_| "50.0".to_owned())).is_nan());
+}
+
+#[test]
 fn robotlaser_lines_name_their_field_of_view() {
     let text = "ODOM 0 0 0 0 0 0 1 h 1\nODOM 1 0 0 0 0 0 2 h 2\n\
         ROBOTLASER1 0 -0.5 1.0 0.5 10 0.01 0 3 1 2 11 2 7 8 0 0 0 0 0 0 0 0 0 0 0 2 h 2\n";
