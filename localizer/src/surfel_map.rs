@@ -80,19 +80,6 @@ impl SurfelMap {
         Self { frame, cells, surfels: Vec::new(), removed: Vec::new(), scan: 0 }
     }
 
-    /// The map without its surfels, for a frame of the same size: most cells are empty and stay as they are.
-    pub(crate) fn emptied(mut self, frame: &GridFrame) -> Self {
-        let cells = fitted(frame, SURFEL_M, 1);
-        if cells.len() != self.cells.len() {
-            return Self::new(frame);
-        }
-        for surfel in self.surfels.drain(..).filter(|surfel| !surfel.is_removed()) {
-            self.cells[surfel.cell as usize] = [NONE; PER_CELL];
-        }
-        self.removed.clear();
-        Self { frame: cells, scan: 0, ..self }
-    }
-
     /// Everything that scans have changed.
     pub(crate) fn values(&mut self) -> Values<'_> {
         vec![runs(&mut self.cells), value(&mut self.surfels), value(&mut self.removed), value(&mut self.scan)]

@@ -184,7 +184,7 @@ const MAX_M: f64 = 0.1;
 /// plants and glass, real scans have long tails, each of which would count as a change. Of a laser that stands, it is the noise
 /// of its ranges, from 0.01 to 0.1 m. `None` if no place was seen twice.
 fn noise_m(route: &Route) -> Option<f64> {
-    let found = route.residual.map(|residual| residual.tail_m.clamp(MIN_M, MAX_M));
+    let found = route.residual_m.map(|residual_m| residual_m.clamp(MIN_M, MAX_M));
     found.or_else(|| route.range_std_m.map(|std_m| std_m.clamp(MIN_STANDING_M, MAX_M)))
 }
 
