@@ -9,13 +9,9 @@ use mapper::Mapper;
 use robot::state::{Facts, LearnedFacts, State};
 use robot::{Autonomous, Settings};
 use sim::physics::{PhysicsWorld, WorldSpec};
+use worldfile::shipped;
 
 type Trial = PhysicsTrial<Autonomous<Agent, Controller<DiffDrive>>>;
-
-fn spec(name: &str) -> WorldSpec {
-    let file = format!("{}/../worlds/{name}.toml", env!("CARGO_MANIFEST_DIR"));
-    worldfile::physics::parse_world(name, &std::fs::read_to_string(file).unwrap()).unwrap()
-}
 
 fn trial(spec: &WorldSpec, seed: u64, settings: &Settings, policy: &str) -> Trial {
     let agent = settings.agent(&policy.parse::<Policy>().unwrap(), seed).unwrap();
@@ -36,7 +32,7 @@ fn a_run_that_goes_on_equals_one_that_was_not_interrupted() {
         ("yard", "fresh-map"),
     ];
     for (name, policy) in policies {
-        let spec = spec(name);
+        let spec = shipped::load(name).unwrap();
         let settings = physics_trial::settings(&spec).unwrap();
         let facts = TrialFacts::new(&spec, 100, &settings, Facts::default());
         let mut whole = trial(&spec, 100, &settings, policy);
@@ -97,7 +93,7 @@ fn exposure(mapper: &Mapper) -> [f64; 3] {
 
 #[test]
 fn two_sessions_add_up_with_the_time_between_as_a_gap() {
-    let here = spec("house");
+    let here = shipped::load("house").unwrap();
     let there = moved(&here);
     let settings = physics_trial::settings(&here).unwrap();
     let mut first = trial(&here, 100, &settings, "curious");
@@ -128,7 +124,7 @@ fn two_sessions_add_up_with_the_time_between_as_a_gap() {
 
 #[test]
 fn a_robot_finds_itself_in_the_map_that_it_has_saved() {
-    let here = spec("drifting_house");
+    let here = shipped::load("drifting_house").unwrap();
     let settings = physics_trial::settings(&here).unwrap();
     let facts = learned_facts(&here, &settings);
     // The frame of the world is that of the map, so that both sessions have the same one.
