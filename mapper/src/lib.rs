@@ -342,6 +342,16 @@ impl Mapper {
         self.tiles.epoch_s
     }
 
+    /// Whether readings say when they were made.
+    pub fn is_dated(&self) -> bool {
+        self.tiles.is_dated
+    }
+
+    /// The settings.
+    pub fn settings(&self) -> &MapperSettings {
+        &self.settings
+    }
+
     /// How the times of readings, [since the epoch](Self::epoch_s), relate to local civil time.
     pub fn calendar(&self) -> &Calendar {
         self.tiles.calendar()

@@ -1,5 +1,5 @@
 use crate::belief::{Belief, Permission};
-use interfaces::{LaserReading, Reading, ValueError, from_bytes, to_bytes};
+use interfaces::{CellState, Grid, LaserReading, Reading, ValueError, from_bytes, to_bytes};
 use localizer::{Correction, GivenPoses, Localized, Localizer, LoopClosed, LoopClosingLocalizer, PoseState};
 use mapper::Mapper;
 use nalgebra::{Isometry2, Matrix3};
@@ -19,6 +19,20 @@ pub trait Localization<R> {
     ///
     /// When the bytes are no such snapshot. The localization must not be used then.
     fn restore(&mut self, snapshot: &[u8]) -> Result<(), ValueError>;
+
+    /// The surfaces in which poses are found, as bytes; none where poses are given.
+    fn surfaces(&mut self) -> Vec<u8> {
+        Vec::new()
+    }
+
+    /// Begins at an unknown pose in surfaces that another localization or a survey has left, or in a map if there are none.
+    ///
+    /// # Errors
+    ///
+    /// When the bytes are no surfaces.
+    fn begin_in(&mut self, _surfaces: &[u8], _map: &Grid<CellState>) -> Result<(), ValueError> {
+        Ok(())
+    }
 
     /// Begins another session in the place that was learned, at a pose that is not known.
     fn begin_session(&mut self);
@@ -94,6 +108,14 @@ impl Localization<LaserReading> for Localizer {
         Localizer::restore(self, snapshot)
     }
 
+    fn surfaces(&mut self) -> Vec<u8> {
+        Localizer::surfaces(self)
+    }
+
+    fn begin_in(&mut self, surfaces: &[u8], map: &Grid<CellState>) -> Result<(), ValueError> {
+        Localizer::begin_in(self, surfaces, map)
+    }
+
     fn begin_session(&mut self) {
         Localizer::begin_session(self);
     }
@@ -115,6 +137,14 @@ impl Localization<LaserReading> for LoopClosingLocalizer {
 
     fn restore(&mut self, snapshot: &[u8]) -> Result<(), ValueError> {
         LoopClosingLocalizer::restore(self, snapshot)
+    }
+
+    fn surfaces(&mut self) -> Vec<u8> {
+        LoopClosingLocalizer::surfaces(self)
+    }
+
+    fn begin_in(&mut self, surfaces: &[u8], map: &Grid<CellState>) -> Result<(), ValueError> {
+        LoopClosingLocalizer::begin_in(self, surfaces, map)
     }
 
     fn begin_session(&mut self) {
