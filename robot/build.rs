@@ -57,10 +57,13 @@ fn main() -> io::Result<()> {
 /// The paragraphs of a source text that decide what is saved: types that serde reads, and lists of values. Settings are saved by
 /// name.
 fn layout(text: &str) -> impl Iterator<Item = &str> {
-    let is_saved = |text: &&str| {
-        text.contains("derive(") && text.contains("Deserialize") || text.contains("fn values(")
-    };
-    text.split("\n\n").filter(is_saved).flat_map(str::lines).map(str::trim).filter(|line| !line.starts_with("//"))
+    let is_saved =
+        |text: &&str| text.contains("derive(") && text.contains("Deserialize") || text.contains("fn values(");
+    text.split("\n\n")
+        .filter(is_saved)
+        .flat_map(str::lines)
+        .map(str::trim)
+        .filter(|line| !line.starts_with("//"))
 }
 
 /// Adds the sources in a folder, without tests.

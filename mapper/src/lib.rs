@@ -232,6 +232,7 @@ impl Mapper {
             self.points.clear();
         }
         self.occupancy.grow(&growth, settings);
+        self.settings.steady.range_noise_std_m = settings.steady.range_noise_std_m;
         Ok(is_larger.then_some(growth))
     }
 

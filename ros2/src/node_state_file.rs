@@ -43,7 +43,9 @@ impl NodeStateFile {
         // What was learned does not depend on when the robot counts as lost.
         settings.localizer.lost_after_s = LocalizerSettings::default().lost_after_s;
         let is_driver = parameters.navigator == Navigator::CmdVel;
-        let pilot = SavedSettings::default().with("strategy", &parameters.policy()?.name()).with("drives", &is_driver);
+        let pilot = SavedSettings::default()
+            .with("strategy", &parameters.policy()?.name())
+            .with("drives", &is_driver);
         let file = StateFile::open(path).with_context(|| format!("{}: cannot use it", path.display()))?;
         let (sessions, survey) = (Sessions::of(PROGRAM), None);
         Ok(Self { file, settings, pilot, sessions, survey, askers: Vec::new(), must_save: false })

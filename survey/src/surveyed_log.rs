@@ -153,7 +153,8 @@ impl SurveyedLog {
 
     /// A session of a robot, in the map of this frame: a log of which nothing is left to read.
     pub(crate) fn of_session(session: Session, frame: GridFrame) -> Self {
-        let Session { name, offset_s, begin_s, duration_s, readings: [used, readings], laser, notes } = session;
+        let Session { name, offset_s, begin_s, duration_s, readings: [used, readings], laser, notes } =
+            session;
         let has_times = begin_s.is_some();
         let entry =
             LogEntry { name, offset_s, begin_s, duration_s, has_times, laser, notes, ..LogEntry::default() };

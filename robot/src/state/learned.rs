@@ -53,10 +53,7 @@ impl SavedMap {
 }
 
 fn settings_of(mapper: &MapperSettings, filter: &ScanFilterSettings, resolution_m: f64) -> SavedSettings {
-    SavedSettings::default()
-        .with("resolution_m", &resolution_m)
-        .with("mapper", mapper)
-        .with("filter", filter)
+    SavedSettings::default().with("resolution_m", &resolution_m).with("mapper", mapper).with("filter", filter)
 }
 
 /// The settings on which the snapshot of a localization depends.

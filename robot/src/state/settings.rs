@@ -4,8 +4,14 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 /// The settings that must be the same in a state and in the program that goes on with it. All others are those of the program.
-const MUST_AGREE: [&str; 6] =
-    ["--pose", "--noise", "resolution_m", "mapper.estimator", "mapper.occupancy", "filter.min_shadow_angle_rad"];
+const MUST_AGREE: [&str; 6] = [
+    "--pose",
+    "--noise",
+    "resolution_m",
+    "mapper.estimator",
+    "mapper.occupancy",
+    "filter.min_shadow_angle_rad",
+];
 
 /// Settings with their names, as JSON.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
@@ -60,7 +66,8 @@ impl SavedSettings {
                 _ => return Err(difference),
             }
         }
-        let note = || format!("other settings were used so far, those of this run count: {}", others.join(", "));
+        let note =
+            || format!("other settings were used so far, those of this run count: {}", others.join(", "));
         Ok((!others.is_empty()).then(note))
     }
 

@@ -60,8 +60,15 @@ pub fn saved_pose(state: &State) -> Option<PoseMode> {
 
 fn settings_of(settings: &SurveySettings, learns_noise: bool) -> SavedSettings {
     // Noise that is learned is not set, and follows from the logs.
-    let noise = if learns_noise { "learned".to_owned() } else { settings.mapper.steady.range_noise_std_m.to_string() };
-    SavedSettings::default().with("--pose", &settings.pose.name()).with("--noise", &noise).with("survey", settings)
+    let noise = if learns_noise {
+        "learned".to_owned()
+    } else {
+        settings.mapper.steady.range_noise_std_m.to_string()
+    };
+    SavedSettings::default()
+        .with("--pose", &settings.pose.name())
+        .with("--noise", &noise)
+        .with("survey", settings)
 }
 
 impl Survey {

@@ -1,7 +1,7 @@
 //! The command line.
 
-use crate::survey_state_file::Loaded;
 use crate::logs_in_order::Source;
+use crate::survey_state_file::Loaded;
 use anyhow::ensure;
 use clap::Parser;
 use cli::flags::{folder, input_file, number, output_file, time_zone};
