@@ -182,9 +182,9 @@ fn a_state_that_does_not_fit_is_refused_and_stays() {
         assert!(fs::read(run.path("a.state")).unwrap() == saved);
         message
     };
-    insta::assert_snapshot!(refused("b.log --resolution 0.1"), @"error: a.state: the state is of another run: `map.resolution_m` is `0.05` there, and `0.1` here");
+    insta::assert_snapshot!(refused("b.log --resolution 0.1"), @"error: a.state: the state is of another run: `survey.resolution_m` is `0.05` there, and `0.1` here");
     insta::assert_snapshot!(refused("b.log --pose localized"), @"error: a.state: the state is of another run: `--pose` is `exact` there, and `localized` here");
-    insta::assert_snapshot!(refused("b.log --estimator paper"), @"error: a.state: the state is of another run: `mapper.estimator` is `shared-prior` there, and `paper` here");
+    insta::assert_snapshot!(refused("b.log --estimator paper"), @"error: a.state: the state is of another run: `survey.mapper.estimator` is `shared-prior` there, and `paper` here");
     insta::assert_snapshot!(refused("b.log --noise 0.05"), @"error: a.state: the state is of another run: `--noise` is `learned` there, and `0.05` here");
     insta::assert_snapshot!(refused("early.log"), @"error: early.log begins before a.log has ended: logs of one robot follow each other");
     insta::assert_snapshot!(refused("b.log b.log"), @"error: b.log is given twice: it has the content of b.log");
@@ -206,10 +206,13 @@ fn a_log_adds_to_the_map_of_a_robot() {
     let run = run.with_map_log();
     run.write("a.log", &standing_log(MONDAY_S, 60));
     let files = ["a.log", "a.state"];
-    insta::assert_snapshot!(refuses(&run, &format!("a.log {SAVED} --resolution 0.1"), &files), @"error: a.state: the state is of another run: `map.resolution_m` is `0.05` there, and `0.1` here");
-    insta::assert_snapshot!(refuses(&run, &format!("a.log {SAVED}"), &files), @"error: a.state: the state is of another run: `filter.max_range_m` is `10.0` there, and `20.0` here");
+    insta::assert_snapshot!(refuses(&run, &format!("a.log {SAVED} --resolution 0.1"), &files), @"error: a.state: the state is of another run: `resolution_m` is `0.05` there, and `0.1` here");
     let robot = fs::read(run.path("a.state")).unwrap();
-    run.goes_well(&format!("a.log {SAVED} --max-range 10"));
+    let ended = run.goes_well(&format!("a.log {SAVED}"));
+    assert!(
+        ended.stderr.contains("note: a.state: other settings were used so far, those of this run count: ")
+    );
+    assert!(ended.stderr.contains("filter.max_range_m = `10.0`"), "{}", ended.stderr);
     let run = run.with_state_file();
     let shown = run.goes_well("show a.state").stdout;
     let sessions: Vec<&str> = shown.lines().filter(|line| line.contains("scans learned")).collect();
@@ -223,7 +226,7 @@ fn a_log_adds_to_the_map_of_a_robot() {
     run.goes_well(&format!("a.log {QUIET} --state b.state"));
     fs::remove_dir_all(run.path("out")).unwrap();
     let run = run.with_four_rooms();
-    insta::assert_snapshot!(refuses(&run, &format!("--duration 2 {QUIET} --state b.state"), &["a.log", "a.state", "b.state"]), @"error: b.state: the state was saved by another program: it has no part `world`");
+    insta::assert_snapshot!(refuses(&run, &format!("--duration 2 {QUIET} --state b.state"), &["a.log", "a.state", "b.state"]), @"error: b.state: the state was saved by another program: it has no part `run`");
 }
 
 #[test]
@@ -277,7 +280,7 @@ fn a_pipe_is_no_state() {
     let run = with_logs();
     nix::unistd::mkfifo(&run.path("pipe"), nix::sys::stat::Mode::S_IRWXU).unwrap();
     let message = refuses(&run, &format!("a.log {QUIET} --state pipe"), &["a.log", "b.log", "pipe"]);
-    insta::assert_snapshot!(message, @"error: pipe: cannot use it: it is not a file (but a folder, a pipe or a device)");
+    insta::assert_snapshot!(message, @"error: pipe: cannot read it: it is not a file (but a folder, a pipe or a device)");
     let run = run.with_state_file();
     insta::assert_snapshot!(refuses(&run, "show pipe", &["a.log", "b.log", "pipe"]), @"error: pipe: cannot read it: it is not a file (but a folder, a pipe or a device)");
 }
@@ -299,7 +302,7 @@ fn the_last_log_can_be_removed_and_another_one_cannot() {
       can be removed: b.log
     ");
     let settings = run.goes_well("show a.state --settings").stdout;
-    assert!(settings.contains("    survey.resolution_m = 0.05\n"), "{settings}");
+    assert!(settings.contains("  survey.resolution_m = 0.05\n"), "{settings}");
     let files = ["a.log", "a.state", "a.state.earlier", "b.log"];
     insta::assert_snapshot!(refuses(&run, "remove a.state a.log", &files), @"error: a.log cannot be removed: what was learned from all logs is one map, and only b.log was added last; map the other logs into a new file by map_log --state");
     insta::assert_snapshot!(refuses(&run, "remove a.state c.log", &files), @"error: a.state holds no session c.log, but a.log, b.log");

@@ -1,6 +1,6 @@
 //! The file of a state, and the thread that writes it.
 
-use super::format::{State, StateError};
+use super::format::{Session, State, StateError};
 use files::{FileLock, OutputError, is_another_kind, sync_folder_of, temporary_name, write_file};
 use std::fs::{self, File};
 use std::io::{self, Read};
@@ -24,7 +24,7 @@ pub struct StateFile {
     every: Duration,
     last: Instant,
     writing: Option<JoinHandle<io::Result<bool>>>,
-    /// The number of sessions in the file as it was loaded: before another one is added, the file is kept.
+    /// The number of sessions in the file as it was loaded, if all are complete: before another one is added, the file is kept.
     sessions: Option<usize>,
     _lock: FileLock,
 }
@@ -80,7 +80,9 @@ impl StateFile {
             Err(StateError::Read(missing)) if missing.kind() == io::ErrorKind::NotFound => Ok(None),
             Err(other) => Err(other),
             Ok(state) => {
-                self.sessions = Some(state.sessions.len());
+                let is_complete =
+                    state.sessions.iter().all(|Session { readings: [used, all], .. }| used >= all);
+                self.sessions = is_complete.then_some(state.sessions.len());
                 Ok(Some(state))
             }
         }

@@ -144,7 +144,7 @@ pub struct Session {
 
 impl State {
     /// How a state begins.
-    pub(crate) const MAGIC: &[u8; 8] = b"\x89learned";
+    pub(crate) const MAGIC: &[u8; 8] = b"\x89curious";
 
     /// Checks that this program computes the same bits as the one that saved the state.
     ///

@@ -3,13 +3,15 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-/// The settings that must be the same in a state and in the program that goes on with it. All others are those of the program.
-const MUST_AGREE: [&str; 6] = [
+/// The settings that must be the same in a state and in the program that goes on with it, if they were set at all. All others are
+/// those of the program.
+const MUST_AGREE: [&str; 7] = [
     "--pose",
     "--noise",
     "resolution_m",
     "mapper.estimator",
     "mapper.occupancy",
+    "mapper.time_zone",
     "filter.min_shadow_angle_rad",
 ];
 
@@ -59,7 +61,7 @@ impl SavedSettings {
         for difference in self.differences(present) {
             match &difference {
                 StateError::OtherSettings { name, saved, .. }
-                    if !MUST_AGREE.iter().any(|end| name.ends_with(end)) =>
+                    if saved == "`null`" || !MUST_AGREE.iter().any(|end| name.ends_with(end)) =>
                 {
                     others.push(format!("{name} = {saved}"));
                 }
