@@ -61,7 +61,7 @@ impl SavedSettings {
         for difference in self.differences(present) {
             match &difference {
                 StateError::OtherSettings { name, saved, .. }
-                    if saved == "`null`" || !MUST_AGREE.iter().any(|end| name.ends_with(end)) =>
+                    if saved == "not set" || !MUST_AGREE.iter().any(|end| name.ends_with(end)) =>
                 {
                     others.push(format!("{name} = {saved}"));
                 }
