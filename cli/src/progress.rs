@@ -61,6 +61,17 @@ impl Progress {
         progress
     }
 
+    /// Work of a length that is not known: a spinner in a terminal, nothing elsewhere.
+    pub fn of_work(what: String, is_quiet: bool) -> Self {
+        let is_hidden = is_quiet || !stderr().is_terminal();
+        let progress = Self::new(0, OF_WORK, LINE_EVERY, is_hidden, false);
+        progress.bar.set_message(what);
+        if progress.kind == Kind::Bar {
+            progress.bar.enable_steady_tick(BAR_EVERY);
+        }
+        progress
+    }
+
     fn new(length: u64, template: &str, first: Duration, is_quiet: bool, is_raw: bool) -> Self {
         let (kind, target) = if is_quiet {
             (Kind::Silent, ProgressDrawTarget::hidden())
@@ -170,6 +181,7 @@ fn milliseconds(time_s: f64) -> u64 {
 
 const OF_TIME: &str = "{done:>3} % {wide_bar} {msg}, {left}";
 const OF_COUNT: &str = "{done:>3} % {wide_bar} {pos} of {len} {prefix}, {left}";
+const OF_WORK: &str = "{spinner} {msg}, {elapsed} so far";
 
 fn bar(length: u64, template: &str, target: ProgressDrawTarget) -> ProgressBar {
     let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());

@@ -1,7 +1,7 @@
 //! The command line.
 
-use agent::{PURPOSES, Policy};
-use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use agent::Policy;
+use clap::builder::TypedValueParser;
 use clap::{Parser, ValueEnum};
 use cli::flags::{folder, input_file, output_file};
 use cli::program::{duration_s, one_of, pose_in_world, pose_mode, strategy_of};
@@ -67,10 +67,6 @@ pub(crate) struct Args {
     /// The strategy of the agent [default: curious]
     #[arg(long, value_parser = strategies(), help_heading = "Pilot")]
     pub(crate) strategy: Option<Policy>,
-
-    /// What the robot explores for: a name for the strategy that is made for it. docs/strategies.md shows where it is better than curious
-    #[arg(long, value_parser = purpose(), conflicts_with = "strategy", help_heading = "Pilot")]
-    pub(crate) purpose: Option<Policy>,
 
     /// The speed as a multiple of real time, or max for full speed [default: max, with --drive keyboard 1]
     #[arg(long, value_name = "FACTOR|max", value_parser = speed, allow_negative_numbers = true, help_heading = "Pilot")]
@@ -144,7 +140,7 @@ pub(crate) struct Args {
 impl Args {
     /// The strategy of the agent.
     pub(crate) fn strategy(&self) -> Policy {
-        self.strategy.clone().or_else(|| self.purpose.clone()).unwrap_or_default()
+        self.strategy.clone().unwrap_or_default()
     }
 
     /// Whether a person drives.
@@ -178,14 +174,6 @@ pub(crate) enum DriveChoice {
     Keyboard,
     /// A list of waypoints, see --tour
     Tour,
-}
-
-/// A parser of the purpose of a robot: the policy that is made for it.
-fn purpose() -> impl TypedValueParser<Value = Policy> {
-    let named = |[name, description, policy]: [&'static str; 3]| {
-        PossibleValue::new(name).help(format!("{description}: --strategy {policy}"))
-    };
-    PossibleValuesParser::new(PURPOSES.map(named)).map(|name| Policy::for_purpose(&name).unwrap_or_default())
 }
 
 fn strategies() -> impl TypedValueParser<Value = Policy> {
@@ -228,12 +216,6 @@ mod tests {
     fn the_command_line_is_sound() {
         Args::command().debug_assert();
         assert_eq!(Args::parse_from(["four_rooms"]).strategy().name(), "curious");
-        for [name, _, policy] in PURPOSES {
-            let args = Args::parse_from(["four_rooms", "--purpose", name]);
-            assert_eq!(args.strategy().name(), policy);
-        }
-        let both = ["four_rooms", "--purpose", "paper", "--strategy", "recency"];
-        assert!(Args::try_parse_from(both).is_err());
     }
 
     #[test]

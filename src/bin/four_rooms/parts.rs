@@ -35,10 +35,8 @@ impl Parts {
         if args.tour.is_some() && args.drive != DriveChoice::Tour {
             return Err(input(anyhow!("--tour needs --drive tour")));
         }
-        let is_for_agent = args.strategy.is_some() || args.purpose.is_some();
-        if is_for_agent && args.drive != DriveChoice::Agent {
-            let flag = if args.purpose.is_some() { "--purpose" } else { "--strategy" };
-            return Err(input(anyhow!("{flag} is for the agent: leave out --drive, or {flag}")));
+        if args.strategy.is_some() && args.drive != DriveChoice::Agent {
+            return Err(input(anyhow!("--strategy is for the agent: leave out --drive, or --strategy")));
         }
         let Loaded { spec, warnings } =
             worlds::load(&args.world).map_err(|error| input(value_of("--world", error)))?;
