@@ -35,8 +35,8 @@ fn add(state: &Path, folder: &Path, name: &str, days: f64) {
         None => Survey::new(settings, true),
     };
     let number = survey.logs().len();
-    let entry = LogEntry::of(name.to_owned(), &log, &TopicChoice::default()).unwrap();
-    let entry = LogEntry { offset_s: days * DAY_S, content: log.content_hash().unwrap(), ..entry };
+    let mut entry = LogEntry::of(name.to_owned(), &log, &TopicChoice::default()).unwrap();
+    (entry.offset_s, entry.content) = (days * DAY_S, log.content_hash().unwrap());
     survey.first_pass(&log, entry, true, |_| ControlFlow::Continue(())).unwrap();
     let mut replay = survey.replay(number, &log).unwrap().unwrap();
     while !replay.is_over() {
