@@ -16,7 +16,8 @@ pub struct TrialFacts {
     run: SavedSettings,
     /// What another build prints otherwise, though the world is the same.
     content: u64,
-    allows_other_build: bool,
+    /// Whether a run can go on that another build has begun: its bits are those of neither build.
+    pub allows_other_build: bool,
 }
 
 /// The run in a state: the content of its world, the world, the pilot, the measurements.
@@ -29,12 +30,6 @@ impl TrialFacts {
         let run = run.with("pose", &settings.pose.name()).with("", settings);
         let content = xxh3_64(format!("{spec:?}").as_bytes());
         Self { settings: settings.clone(), run, content, allows_other_build: false }
-    }
-
-    /// The same; with `allows`, a run can go on that another build has begun: its bits are those of neither build.
-    #[must_use]
-    pub fn allowing_other_build(self, allows: bool) -> Self {
-        Self { allows_other_build: allows, ..self }
     }
 }
 

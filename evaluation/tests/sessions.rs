@@ -4,7 +4,7 @@ use agent::{Agent, Policy};
 use controller::{Controller, DiffDrive};
 use evaluation::physics_trial::{self, PhysicsTrial};
 use evaluation::trial_state::TrialFacts;
-use interfaces::{PoseMode, World, heading_rad, pose};
+use interfaces::{World, heading_rad, pose};
 use mapper::Mapper;
 use robot::state::{SavedSettings, Sessions, State, learned, restore};
 use robot::{Autonomous, Settings};

@@ -112,9 +112,4 @@ impl Localizer {
         let state = self.builder.matcher.reported();
         Localized { reading, estimate: PoseEstimate { pose, covariance, support, state } }
     }
-
-    /// Whether it knows no surface.
-    pub(crate) fn is_without_surfaces(&self) -> bool {
-        self.builder.matcher.surfels.is_empty()
-    }
 }

@@ -266,8 +266,7 @@ impl LoopClosingLocalizer {
     ///
     /// When the bytes are no surfaces.
     pub fn begin_in(&mut self, surfaces: &[u8], map: &Grid<CellState>) -> Result<(), ValueError> {
-        self.localizer.begin_in(surfaces, map)?;
-        if !self.localizer.is_without_surfaces() {
+        if self.localizer.begin_in(surfaces, map)? {
             (self.background, self.first) = (None, None);
         }
         Ok(())

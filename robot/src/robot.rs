@@ -3,7 +3,7 @@ use crate::localization::Localization;
 use crate::pilot::Pilot;
 use crate::session::Session;
 use agent::Features;
-use interfaces::{Reading, ValueError};
+use interfaces::Reading;
 use mapper::{Mapper, ReadingError, ScanFilter};
 use nalgebra::{Isometry2, Matrix3};
 
@@ -129,11 +129,6 @@ impl<R: Reading, P: Pilot> Robot<R, P> {
     /// What is removed from scans; `None` if nothing is.
     pub fn filter_mut(&mut self) -> Option<&mut ScanFilter> {
         self.filter.as_mut()
-    }
-
-    /// Searches for the pose in surfaces that were learned before, or in the map if there are none.
-    pub(crate) fn begin_in(&mut self, surfaces: &[u8]) -> Result<(), ValueError> {
-        self.localization.begin_in(surfaces, self.mapper.states())
     }
 
     /// What gives the readings their poses.

@@ -5,7 +5,7 @@ mod saved;
 mod tests;
 
 pub(crate) use saved::SavedSurvey;
-pub use saved::{saved_logs, saved_pose};
+pub use saved::{saved_logs, saved_settings};
 
 use crate::change_log::ChangeLog;
 use crate::error::SurveyError;

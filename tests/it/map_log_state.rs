@@ -183,9 +183,8 @@ fn a_state_that_does_not_fit_is_refused_and_stays() {
         message
     };
     insta::assert_snapshot!(refused("b.log --resolution 0.1"), @"error: a.state: the state is of another run: `survey.resolution_m` is `0.05` there, and `0.1` here");
-    insta::assert_snapshot!(refused("b.log --pose localized"), @"error: a.state: the state is of another run: `--pose` is `exact` there, and `localized` here");
+    insta::assert_snapshot!(refused("b.log --pose localized"), @"error: a.state: the state is of another run: `survey.pose` is `exact` there, and `localized` here");
     insta::assert_snapshot!(refused("b.log --estimator paper"), @"error: a.state: the state is of another run: `survey.mapper.estimator` is `shared-prior` there, and `paper` here");
-    insta::assert_snapshot!(refused("b.log --noise 0.05"), @"error: a.state: the state is of another run: `--noise` is `learned` there, and `0.05` here");
     insta::assert_snapshot!(refused("early.log"), @"error: early.log begins before a.log has ended: logs of one robot follow each other");
     insta::assert_snapshot!(refused("b.log b.log"), @"error: b.log is given twice: it has the content of b.log");
     // Any bit.

@@ -53,21 +53,22 @@ impl Localizer {
     }
 
     /// Begins at an unknown pose in surfaces that were learned before, in the frame of this localizer, or in a map if there are
-    /// none. If the map has no surface either, the localizer stays as it is.
+    /// none. If the map has no surface either, the localizer stays as it is. Returns whether there are surfaces.
     ///
     /// # Errors
     ///
     /// When the bytes are no surfaces.
-    pub fn begin_in(&mut self, surfaces: &[u8], map: &Grid<CellState>) -> Result<(), ValueError> {
+    pub fn begin_in(&mut self, surfaces: &[u8], map: &Grid<CellState>) -> Result<bool, ValueError> {
         let known = match surfaces {
             [] => SurfelMap::from_grid(map),
             bytes => SurfelMap::restored(bytes)?.moved_to(map.frame()),
         };
-        if !known.is_empty() {
+        let is_known = !known.is_empty();
+        if is_known {
             let settings = self.builder.matcher.settings.clone();
             *self = Self::new(&settings, known, Start::Unknown, false).map_err(|_| ValueError)?;
         }
-        Ok(())
+        Ok(is_known)
     }
 
     fn values(&mut self) -> Values<'_> {

@@ -3,7 +3,7 @@
 use super::format::{Session, State, StateError};
 use files::{FileLock, OutputError, is_another_kind, sync_folder_of, temporary_name, write_file};
 use std::fs::{self, File};
-use std::io::{self, Read};
+use std::io;
 use std::path::{Path, PathBuf};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
@@ -157,16 +157,11 @@ pub fn read_state(path: &Path) -> Result<State, StateError> {
         let why = "it is not a file (but a folder, a pipe or a device)";
         return Err(io::Error::other(why).into()); // a pipe would wait for ever
     }
-    let mut file = File::open(path)?;
-    // Another kind of file can be very long.
-    let mut bytes = vec![0; State::MAGIC.len()];
-    match file.read_exact(&mut bytes) {
-        Ok(()) if bytes == State::MAGIC => {}
-        Err(other) if other.kind() != io::ErrorKind::UnexpectedEof => return Err(other.into()),
-        _ => return Err(StateError::OtherKind.into()),
+    File::open(path)?;
+    if is_another_kind(path, State::MAGIC) {
+        return Err(StateError::OtherKind); // and perhaps very long
     }
-    file.read_to_end(&mut bytes)?;
-    Ok(State::from_bytes(&bytes)?)
+    State::from_bytes(&fs::read(path)?)
 }
 
 /// The name of the file that [`StateFile::keep_earlier`] keeps: `house.state.earlier` for `house.state`.

@@ -157,12 +157,12 @@ pub fn restore<P: Pilot>(
         let [saved, expected] = [map.frame, frame].map(|frame| format!("{frame:?}"));
         return Err(StateError::OtherSettings { name: "frame".to_owned(), saved, expected });
     }
-    robot.mapper = mapper;
     if is_same_frame && state.localization.settings == localization_of(settings) {
         robot.localization_mut().restore(&state.localization.bytes)?;
     } else {
-        robot.begin_in(&state.surfaces)?;
+        robot.localization_mut().begin_in(&state.surfaces, mapper.states())?;
     }
+    robot.mapper = mapper;
     if let Some(filter) = robot.filter_mut().filter(|_| !state.filter.is_empty()) {
         interfaces::restore(filter.values(), &state.filter)?;
     }

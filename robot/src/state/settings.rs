@@ -5,9 +5,8 @@ use serde_json::Value;
 
 /// The settings that must be the same in a state and in the program that goes on with it, if they were set at all. All others are
 /// those of the program.
-const MUST_AGREE: [&str; 7] = [
-    "--pose",
-    "--noise",
+const MUST_AGREE: [&str; 6] = [
+    "survey.pose",
     "resolution_m",
     "mapper.estimator",
     "mapper.occupancy",

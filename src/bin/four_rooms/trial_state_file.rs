@@ -26,8 +26,8 @@ impl TrialStateFile {
     ) -> Result<Option<Self>, Failure> {
         let Some(path) = &args.state else { return Ok(None) };
         let (file, state) = open_state(path, args.state_every)?;
-        let facts = TrialFacts::new(&parts.spec, args.seed, &parts.settings, parts.pilot_facts(args))
-            .allowing_other_build(args.allow_other_build);
+        let mut facts = TrialFacts::new(&parts.spec, args.seed, &parts.settings, parts.pilot_facts(args));
+        facts.allows_other_build = args.allow_other_build;
         let mut sessions = Sessions::of("four_rooms");
         if let Some(state) = state {
             trial.restore(&state, &facts).map_err(|why| state_failure(path, why))?;

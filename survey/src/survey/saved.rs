@@ -6,7 +6,7 @@ use crate::places::PlaceBook;
 use crate::replay::FoundPoses;
 use crate::settings::SurveySettings;
 use crate::surveyed_log::SurveyedLog;
-use interfaces::{GridFrame, PoseMode, from_bytes, to_bytes};
+use interfaces::{GridFrame, from_bytes, to_bytes};
 use localizer::KnownPlace;
 use mapper::Growth;
 use robot::state::{Part, SavedMap, SavedSettings, State, StateCopy, StateError};
@@ -53,28 +53,15 @@ pub fn saved_logs(state: &State) -> Result<Vec<SurveyedLog>, StateError> {
     SavedSurvey::of(state).map(|saved| saved.logs)
 }
 
-/// How the poses of the logs in a state are used; `None` if no log was learned.
-pub fn saved_pose(state: &State) -> Option<PoseMode> {
-    PoseMode::named(&state.survey.as_ref()?.settings.get::<String>("--pose")?)
-}
-
-fn settings_of(settings: &SurveySettings, learns_noise: bool) -> SavedSettings {
-    // Noise that is learned is not set, and follows from the logs.
-    let noise = if learns_noise {
-        "learned".to_owned()
-    } else {
-        settings.mapper.steady.range_noise_std_m.to_string()
-    };
-    SavedSettings::default()
-        .with("--pose", &settings.pose.name())
-        .with("--noise", &noise)
-        .with("survey", settings)
+/// The settings of the survey in a state; `None` if no log was learned.
+pub fn saved_settings(state: &State) -> Option<SurveySettings> {
+    state.survey.as_ref()?.settings.get("survey")
 }
 
 impl Survey {
     /// Copies what logs have changed.
     pub fn saved(&self) -> StateCopy {
-        let settings = settings_of(&self.settings, self.learns_noise);
+        let settings = SavedSettings::default().with("survey", &self.settings);
         let (filter, place, mapper) =
             (self.settings.filter.clone(), self.place.clone(), self.mapper().cloned());
         let frame = mapper.as_ref().map(|mapper| *mapper.frame());
@@ -101,7 +88,7 @@ impl Survey {
         state: &State,
     ) -> Result<(Self, Option<String>), StateError> {
         let mut note = match &state.survey {
-            Some(survey) => survey.settings.agree(&settings_of(&settings, learns_noise))?,
+            Some(survey) => survey.settings.agree(&SavedSettings::default().with("survey", &settings))?,
             None => None,
         };
         let SavedSurvey { changes, book, logs, .. } = SavedSurvey::of(state)?;

@@ -10,7 +10,7 @@ use interfaces::PoseMode;
 use logs::TopicChoice;
 use mapper::{EstimatorChoice, NoReturn};
 use std::path::PathBuf;
-use survey::{LogEntry, SurveySettings, saved_pose};
+use survey::{LogEntry, SurveySettings, saved_settings};
 
 /// Maps the logs of a robot: where the place changes, how often, and when last.
 ///
@@ -186,7 +186,7 @@ fn pose_in_log(mode: PoseMode) -> &'static str {
 impl Args {
     /// How the poses are known, as this run or the one before says it.
     fn pose(&self, saved: Option<&Loaded>) -> Option<PoseMode> {
-        self.pose.or_else(|| saved_pose(&saved?.state))
+        self.pose.or_else(|| Some(saved_settings(&saved?.state)?.pose))
     }
 
     /// What to use of logs, after those of a state.

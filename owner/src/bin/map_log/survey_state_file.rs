@@ -6,7 +6,7 @@ use cli::terminal::say;
 use mapper::MapperSettings;
 use robot::state::{State, StateError, StateFile};
 use std::io::stderr;
-use survey::{Survey, SurveySettings, SurveyedLog, saved_logs};
+use survey::{Survey, SurveySettings, SurveyedLog, saved_logs, saved_settings};
 
 /// The state file of a run, or none.
 pub(crate) struct SurveyStateFile {
@@ -88,7 +88,6 @@ impl Loaded {
     /// The time zone of the place.
     pub(crate) fn time_zone(&self) -> Option<String> {
         let of_map = self.state.map.as_ref().and_then(|map| map.settings.get::<MapperSettings>("mapper"));
-        let survey = || self.state.survey.as_ref()?.settings.get::<SurveySettings>("survey");
-        of_map.or_else(|| Some(survey()?.mapper))?.time_zone
+        of_map.or_else(|| Some(saved_settings(&self.state)?.mapper))?.time_zone
     }
 }
