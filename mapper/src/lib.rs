@@ -232,6 +232,7 @@ impl Mapper {
             self.points.clear();
         }
         self.occupancy.grow(&growth, settings);
+        self.settings.steady.range_noise_std_m = settings.steady.range_noise_std_m;
         Ok(is_larger.then_some(growth))
     }
 
@@ -340,6 +341,16 @@ impl Mapper {
     /// The time at which readings have the time 0, in seconds since 1970-01-01 UTC.
     pub fn epoch_s(&self) -> f64 {
         self.tiles.epoch_s
+    }
+
+    /// Whether readings say when they were made.
+    pub fn is_dated(&self) -> bool {
+        self.tiles.is_dated
+    }
+
+    /// The settings.
+    pub fn settings(&self) -> &MapperSettings {
+        &self.settings
     }
 
     /// How the times of readings, [since the epoch](Self::epoch_s), relate to local civil time.

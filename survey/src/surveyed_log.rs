@@ -7,11 +7,12 @@ use crate::silence;
 use interfaces::GridFrame;
 use localizer::{PoseState, TrajectoryPose};
 use logs::{Log, LogError, TopicChoice};
+use robot::state::Session;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// A log, and its place in time among the logs of one place.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
 pub struct LogEntry {
     /// Its name for people.
     pub name: String,
@@ -87,6 +88,11 @@ impl LogEntry {
         repeats(&self.scans, &other.scans)
     }
 
+    /// Whether it says when it was recorded.
+    pub(crate) fn is_dated(&self) -> bool {
+        self.begin_s.is_some() && self.has_times
+    }
+
     /// The time of its last reading, s after the first reading of the first log.
     pub fn end_s(&self) -> f64 {
         self.offset_s + self.duration_s
@@ -143,6 +149,24 @@ impl SurveyedLog {
             frame,
             poses: Arc::new(route.poses),
         }
+    }
+
+    /// A session of a robot, in the map of this frame: a log of which nothing is left to read.
+    pub(crate) fn of_session(session: Session, frame: GridFrame) -> Self {
+        let Session { name, offset_s, begin_s, duration_s, readings: [used, readings], laser, notes } =
+            session;
+        let has_times = begin_s.is_some();
+        let entry =
+            LogEntry { name, offset_s, begin_s, duration_s, has_times, laser, notes, ..LogEntry::default() };
+        let travelled = Travelled { duration_s, ..Travelled::default() };
+        let (quality, poses) = (Quality::default(), Arc::default());
+        Self { entry, readings, used, loops: 0, travelled, quality, noise_m: None, frame, poses }
+    }
+
+    /// The log as a session.
+    pub(crate) fn session(&self) -> Session {
+        let LogEntry { name, offset_s, begin_s, duration_s, laser, notes, .. } = self.entry.clone();
+        Session { name, offset_s, begin_s, duration_s, readings: [self.used, self.readings], laser, notes }
     }
 
     /// Whether the survey has learned from all readings.
