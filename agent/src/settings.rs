@@ -1,6 +1,6 @@
 use interfaces::{CellState, SettingsCheck, SettingsError, Transition};
 
-/// The map updates that count in the reward of a trajectory.
+/// The events that count as map updates in the reward of a trajectory.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Reward {
@@ -12,10 +12,12 @@ pub enum Reward {
 }
 
 impl Reward {
+    /// The number of transitions that count as map updates.
     pub(crate) fn count(self, transitions: &[Transition]) -> usize {
-        let with_discoveries = self == Self::ChangesAndDiscoveries;
-        let counts =
-            |of: &&Transition| of.event().is_some() || with_discoveries && of.before == CellState::Unknown;
+        let counts = |transition: &&Transition| {
+            let is_discovery = transition.before == CellState::Unknown;
+            transition.event().is_some() || self == Self::ChangesAndDiscoveries && is_discovery
+        };
         transitions.iter().filter(counts).count()
     }
 }
@@ -27,7 +29,7 @@ pub struct AgentSettings {
     pub patch_cells: usize,
     /// The range of the sensor, m. Used by strategies that compute visibility.
     pub sensor_radius_m: f64,
-    /// The map updates that count.
+    /// The events that count as map updates.
     pub reward: Reward,
     /// Whether the robot looks into unseen space that it can reach before its strategies decide. The paper's robot
     /// does not: in its worlds everything comes into view soon.
@@ -61,6 +63,7 @@ impl AgentSettings {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use interfaces::Cell;
 
     #[test]
     fn invalid_settings_are_refused() {
@@ -76,5 +79,14 @@ mod tests {
         ] {
             assert_eq!(settings.check().unwrap_err().to_string(), format!("agent setting {message}"));
         }
+    }
+    #[test]
+    fn rewards_count_their_transitions() {
+        use CellState::{Blocked, Free, Unknown};
+        let transitions = [(Unknown, Free), (Unknown, Blocked), (Free, Blocked), (Blocked, Free)]
+            .map(|(before, after)| Transition { cell: Cell::new(0, 0), before, after });
+        assert_eq!(Reward::Changes.count(&transitions), 2);
+        assert_eq!(Reward::ChangesAndDiscoveries.count(&transitions), 4);
+        assert_eq!(Reward::Changes.count(&[]), 0);
     }
 }

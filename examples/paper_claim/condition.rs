@@ -1,6 +1,6 @@
 //! The conditions: each differs from the paper's condition in one setting.
 
-use agent::{AgentSettings, Reward};
+use agent::Reward;
 use curious::worlds::{SHIPPED_GRID, load_grid};
 use evaluation::trials::{Experiment, GridRobot, TrialSettings, TrialStrategy};
 use mapper::{EstimatorChoice, Paper, PaperAll};
@@ -88,7 +88,6 @@ impl Condition {
         let set = |world: GridSpec| {
             world.with_sensor_radius(self.sensor_radius).with_probabilities(self.chance, self.chance)
         };
-        let agent = AgentSettings { reward: self.reward, ..Default::default() };
         Experiment {
             worlds: worlds.into_iter().map(set).collect(),
             estimators: vec![self.estimator.clone()],
@@ -98,7 +97,7 @@ impl Condition {
             trials,
             seed: 0,
             length: self.steps,
-            robot: GridRobot { agent, max_steps: self.max_steps },
+            robot: GridRobot { reward: self.reward, max_steps: self.max_steps },
         }
     }
 }
