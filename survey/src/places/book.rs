@@ -24,12 +24,6 @@ pub(crate) struct PlaceBook {
 }
 
 impl PlaceBook {
-    /// The book of a map that was learned without one.
-    #[cfg(test)]
-    pub(crate) fn of_map(mapper: &Mapper) -> Self {
-        Self { passages: Passages::of_map(mapper), ..Self::default() }
-    }
-
     /// The names that the user has given.
     pub(super) fn names(&self) -> &[PlaceName] {
         &self.names
