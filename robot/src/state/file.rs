@@ -164,7 +164,7 @@ pub fn read_state(path: &Path) -> Result<State, StateError> {
     State::from_bytes(&fs::read(path)?)
 }
 
-/// The name of the file that [`StateFile::keep_earlier`] keeps: `house.state.earlier` for `house.state`.
+/// The name of the file that a [`StateFile`] keeps before a session is added: `house.state.earlier` for `house.state`.
 pub fn earlier_name(path: &Path) -> PathBuf {
     with_ending(&target_of(path), "earlier")
 }
