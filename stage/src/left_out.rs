@@ -4,10 +4,7 @@
 const KINDS: [(&str, &str); 9] = [
     ("camera", "there are no cameras here"),
     ("blobfinder", "nothing here sees colors"),
-    (
-        "bumper",
-        "Stage's are short beams that may lie anywhere; `[robot.bumper]` is a ring that feels touches",
-    ),
+    ("bumper", "there are no bumpers here"),
     ("gripper", "there are no grippers here; its body is left out too"),
     ("actuator", "there are no actuators here; it and what it carries are left out"),
     ("charger powerpack power", "there is no energy here"),

@@ -31,9 +31,7 @@
 //! | `fiducial_return` | the tag of a robot, or of a box that stands about its pose |
 //! | `color`, `mass`, `ctrl` | kept in [`StageRobot`] |
 //!
-//! Everything else (windows, cameras, blob finders, bumpers, grippers, energy, …) is listed in a warning. Bumpers
-//! are left out since those of Stage are short beams at any place, and those of this simulator are parts of a ring
-//! around the robot that detect contacts.
+//! Everything else (windows, cameras, blob finders, bumpers, grippers, energy, …) is listed in a warning.
 
 mod body;
 mod builder;
@@ -61,7 +59,6 @@ use sources::Sources;
 
 use nalgebra::{Isometry2, Point2};
 use sim::physics::{FleetSpec, Form, OdometryError, Rectangle};
-use std::collections::BTreeMap;
 use std::path::Path;
 use worldfile::{Files, Findings};
 
@@ -131,8 +128,6 @@ pub struct StageRobot {
     /// The controllers that Stage would load.
     pub controllers: Vec<String>,
     at: Span,
-    /// The places of the keys of the robot in the file.
-    keys: BTreeMap<String, Span>,
 }
 
 /// The kind of a drive.
@@ -190,11 +185,6 @@ impl StageRobot {
     pub fn radius_m(&self) -> f64 {
         let corners = self.footprint.iter().flatten();
         corners.map(|corner| corner.coords.norm()).fold(0.0, f64::max)
-    }
-
-    /// The place of this key in the file, or else that of this robot.
-    fn key(&self, key: &str) -> Span {
-        self.keys.get(key).copied().unwrap_or(self.at)
     }
 
     /// All sensors, each with what it is.

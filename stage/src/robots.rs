@@ -39,7 +39,6 @@ impl Builder<'_, '_> {
             mass_kg: self.number(entity, "mass", 0.0..=1e5),
             controllers: self.controllers(entity),
             at: entity.place,
-            keys: entity.properties.iter().map(|(name, key)| (name.clone(), key.place())).collect(),
         };
         let index = self.robots.len();
         self.add_body(&mut robot, entity, &body, index);

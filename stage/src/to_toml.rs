@@ -27,59 +27,29 @@ const WANDER_MPS: f64 = 0.4;
 /// The keys of a table with their values.
 type Keys = Vec<(&'static str, Value)>;
 
-/// The keys of a world file, and the keys of a Stage robot that they come from.
-const STAGE_KEYS: [(&str, &str); 10] = [
-    ("max_linear_mps", "velocity_bounds"),
-    ("max_left_mps", "velocity_bounds"),
-    ("max_angular_degps", "velocity_bounds"),
-    ("max_linear_acceleration_mps2", "acceleration_bounds"),
-    ("max_left_acceleration_mps2", "acceleration_bounds"),
-    ("max_angular_acceleration_degps2", "acceleration_bounds"),
-    ("wheelbase_m", "wheelbase"),
-    ("mass_kg", "mass"),
-    ("distance_gain", "odom_error"),
-    ("turn_gain", "odom_error"),
-];
-
 /// A world file made of a Stage world.
-pub(super) struct Made<'a> {
+pub(super) struct Made {
     pub(super) text: String,
-    tables: Vec<Origin<'a>>,
+    /// The bytes at which tables begin, and what they come from.
+    tables: Vec<(usize, Span)>,
 }
 
-/// Where the table that begins at a byte of the text comes from.
-struct Origin<'a> {
-    start: usize,
-    at: Span,
-    robot: Option<&'a StageRobot>,
-}
-
-impl<'a> Made<'a> {
+impl Made {
     fn table(&mut self, header: &str, keys: Keys) {
         self.text += &format!("\n{header}\n{}", lines(keys));
     }
 
     /// A table that comes from a thing or a robot at a place.
-    fn table_of(
-        &mut self,
-        header: &str,
-        (at, place): (Span, &str),
-        robot: Option<&'a StageRobot>,
-        keys: Keys,
-    ) {
-        self.tables.push(Origin { start: self.text.len(), at, robot });
+    fn table_of(&mut self, header: &str, (at, place): (Span, &str), keys: Keys) {
+        self.tables.push((self.text.len(), at));
         self.table(&format!("{header}  # {place}"), keys);
     }
 
     /// What a line comes from; `None` for what holds for the whole world.
     pub(super) fn origin(&self, line: usize) -> Option<Span> {
-        let mut lines = self.text.split_inclusive('\n');
-        let start: usize = lines.by_ref().take(line - 1).map(str::len).sum();
-        let after = self.tables.partition_point(|table| table.start < start);
-        let Origin { at, robot, .. } = self.tables[..after].last()?;
-        let key = lines.next()?.split(" = ").next()?;
-        let known = STAGE_KEYS.iter().find(|(made, _)| *made == key);
-        Some(known.zip(*robot).map_or(*at, |((_, key), robot)| robot.key(key)))
+        let start = self.text.split_inclusive('\n').take(line - 1).map(str::len).sum();
+        let after = self.tables.partition_point(|(table, _)| *table < start);
+        self.tables[..after].last().map(|(_, at)| *at)
     }
 }
 
@@ -98,7 +68,7 @@ impl StageWorld {
         self.made().text
     }
 
-    pub(super) fn made(&self) -> Made<'_> {
+    pub(super) fn made(&self) -> Made {
         let map = self.map();
         let (name, low) = (Value::from(self.name.as_str()), point(&map.low));
         let files = self.files.join(", ");
@@ -116,11 +86,11 @@ impl StageWorld {
                 Some(tag) => ("[[obstacle]]", map.tagged(wall, rectangle, tag)),
                 None => ("[[wall]]", map.wall(rectangle)),
             };
-            made.table_of(header, (wall.at, &wall.place), None, keys);
+            made.table_of(header, (wall.at, &wall.place), keys);
         }
         for robot in &self.robots {
             let mut table = |header: &str, keys| {
-                made.table_of(header, (robot.at, &robot.place), Some(robot), keys);
+                made.table_of(header, (robot.at, &robot.place), keys);
             };
             table("[[robot]]", map.robot(robot));
             table("[robot.drive]", drive(robot));
@@ -133,7 +103,7 @@ impl StageWorld {
                 let mut keys = vec![("beams", Value::from(180)), ("fov_deg", number(180.0))];
                 keys.extend([("range_max_m", number(8.0)), ("rate_hz", number(10.0))]);
                 let place = format!("{}: none there", robot.place);
-                made.table_of("[robot.laser]", (robot.at, &place), None, keys);
+                made.table_of("[robot.laser]", (robot.at, &place), keys);
             }
             for (kind, sensor) in robot.sensors() {
                 let header = match kind {
@@ -143,9 +113,9 @@ impl StageWorld {
                     _ => "[robot.fiducial]",
                 };
                 let keys = self::sensor(kind, sensor, robot.radius_m());
-                made.table_of(header, (sensor.at, &sensor.place), None, keys);
+                made.table_of(header, (sensor.at, &sensor.place), keys);
             }
-            made.table_of("[robot.behavior]", (robot.at, &robot.place), None, behavior(robot));
+            made.table_of("[robot.behavior]", (robot.at, &robot.place), behavior(robot));
         }
         made
     }

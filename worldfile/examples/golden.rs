@@ -43,7 +43,6 @@ fn hash(fleet: &Fleet) -> u64 {
             eat(found.bearing_rad.to_bits());
             eat(found.range_m.to_bits());
         }
-        robot.bumpers().for_each(|is_pressed| eat(u64::from(is_pressed)));
     }
     for corner in fleet.obstacles().flat_map(|obstacle| obstacle.corners) {
         eat(corner.x.to_bits());

@@ -8,7 +8,6 @@
 mod behaviors;
 mod bodies;
 mod box_tree;
-mod command;
 pub mod convex;
 mod drives;
 mod fleet;
@@ -29,11 +28,11 @@ mod snapshot;
 mod spec;
 #[cfg(test)]
 mod tests;
+mod velocity;
 mod visible_cells;
 mod world;
 
 pub use box_tree::BoxTree;
-pub use command::{Acceleration, Command, Velocity};
 pub use fleet::{Controller, Fleet, LengthError, TeleportError};
 pub use form::Form;
 pub use free_poses::FreePoses;
@@ -42,13 +41,14 @@ pub use generate::building_ranges;
 pub use ground_truth::PhysicsGroundTruth;
 pub use report::{Body, Contact, ObstacleEvent, ObstacleView};
 pub use robot::RobotView;
-pub use sensors::{Fiducial, SensorReading, SonarReading};
+pub use sensors::{Fiducial, SonarReading};
 pub use shape::Rectangle;
 pub use snapshot::SnapshotError;
 pub use spec::{
-    BehaviorSpec, BumperSpec, CircleSpec, ContactModel, DisplacementSpec, DoorSpec, DriveKind, DriveLimits,
-    DrivenError, FiducialSpec, FleetSpec, Glass, LaserSpec, Leaf, Motion, ObstacleSpec, OdometryError,
-    Opening, PathSpec, PatrolDaySpec, PatrolSpec, PushedSpec, Repeat, RobotSpec, SonarSpec, WanderSpec,
-    WaypointsSpec, WorldSpec,
+    BehaviorSpec, CircleSpec, ContactModel, DisplacementSpec, DoorSpec, DriveKind, DriveLimits, DrivenError,
+    FiducialSpec, FleetSpec, Glass, LaserSpec, Leaf, Motion, ObstacleSpec, OdometryError, Opening, PathSpec,
+    PatrolDaySpec, PatrolSpec, PushedSpec, Repeat, RobotSpec, SonarSpec, WanderSpec, WaypointsSpec,
+    WorldSpec,
 };
+pub use velocity::Velocity;
 pub use world::{PhysicsWorld, WorldSnapshot};

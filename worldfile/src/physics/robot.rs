@@ -2,7 +2,7 @@
 
 use super::behavior::{self, Driver};
 use super::drive::{self, drive};
-use super::sensor::{Carrier, bumper};
+use super::sensor::Carrier;
 use super::space::Space;
 use crate::reader::{Table, Value, valid};
 use crate::schedule::hours;
@@ -16,7 +16,7 @@ use sim::physics::{
 };
 
 pub(super) const KEYS: &str = "name, radius_m, footprint_m, mass_kg, pose_m, heading_deg, drive, odometry, laser, \
-                               bumper, sonar, fiducial, tag, behavior, patrol";
+                               sonar, fiducial, tag, behavior, patrol";
 
 /// The limits by which a behavior is judged if those of the drive are invalid: nothing is too fast for them.
 const BOUNDLESS: DriveLimits = DriveLimits {
@@ -40,7 +40,6 @@ pub(super) fn robot(table: &Table<'_>, space: &Space) -> Option<RobotSpec> {
     let drive = table.table("drive", drive::KEYS).and_then(|table| drive(&table, inner_m / space.step_s));
     let odometry = odometry(table);
     let lasers = carrier.lasers(table, called);
-    let bumper = bumper(table);
     let sonars = carrier.sonars(table);
     let fiducial = carrier.fiducial(table);
     let (mass_kg, tag) = (table.number_if("mass_kg", 0.001..=100_000.0), table.tag());
@@ -64,7 +63,6 @@ pub(super) fn robot(table: &Table<'_>, space: &Space) -> Option<RobotSpec> {
         odometry: odometry?,
         laser,
         more_lasers,
-        bumper: bumper?,
         sonars: sonars?,
         fiducial: fiducial?,
         behavior: behavior?,

@@ -1,9 +1,9 @@
-//! The sensors of a robot: lasers, bumpers, sonars, fiducial finders.
+//! The sensors of a robot: lasers, sonars, fiducial finders.
 
 use crate::reader::{Figure, Table, valid};
 use interfaces::pose;
 use nalgebra::{Isometry2, Point2};
-use sim::physics::{BumperSpec, FiducialSpec, LaserSpec, SonarSpec};
+use sim::physics::{FiducialSpec, LaserSpec, SonarSpec};
 
 /// The maximum distance by which a sensor may be outside of the circle around its robot, m.
 pub const MAX_OUT_M: f64 = 1.0;
@@ -124,14 +124,6 @@ impl Carrier {
         }
         Some(pose(at.x, at.y, mount_deg.to_radians()))
     }
-}
-
-/// `Some(None)`: the robot has none.
-pub(super) fn bumper(robot: &Table<'_>) -> Option<Option<BumperSpec>> {
-    let Some(value) = robot.get("bumper") else { return Some(None) };
-    let table = value.table("sectors, fov_deg")?;
-    let fov_deg = table.number_or("fov_deg", 360.0, 1.0..=360.0);
-    table.sound(Some(BumperSpec { sectors: table.count("sectors", 1..=64), fov_rad: fov_deg.to_radians() }))
 }
 
 /// The time from the first to the last beam of a laser, s, for a rate (Hz) with the physics steps between scans.

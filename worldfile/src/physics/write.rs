@@ -129,7 +129,7 @@ fn body(robot: &RobotSpec) -> Option<Keys> {
         && robot.mass_kg.is_none()
         && robot.odometry.is_exact()
         && (robot.more_lasers.is_empty() && robot.sonars.is_empty())
-        && (robot.bumper.is_none() && robot.fiducial.is_none() && robot.tag.is_none());
+        && (robot.fiducial.is_none() && robot.tag.is_none());
     let keys = || {
         vec![
             ("name", robot.name.as_str().into()),

@@ -1,6 +1,6 @@
 use super::on_demand::{Device, Look};
 use crate::physics::form::Form;
-use crate::physics::rays::{Beams, Ring};
+use crate::physics::rays::Beams;
 use crate::physics::report::Body;
 use crate::physics::spec::FiducialSpec;
 use interfaces::rotation;
@@ -38,13 +38,11 @@ pub(crate) struct FiducialFinder {
     pub(super) spec: FiducialSpec,
     /// A single beam straight ahead.
     beam: Beams,
-    /// Of all sensors of the robot.
-    ring: Ring,
 }
 
 impl FiducialFinder {
-    pub(super) fn new(spec: &FiducialSpec, ring: Ring) -> Self {
-        Self { spec: *spec, beam: Beams::new(0.0, 1.0, 1, spec.range_max_m), ring }
+    pub(super) fn new(spec: &FiducialSpec) -> Self {
+        Self { spec: *spec, beam: Beams::new(0.0, 1.0, 1, spec.range_max_m) }
     }
 }
 
@@ -67,7 +65,7 @@ impl Device for FiducialFinder {
             }
             // The first body that the ray to the center hits must be the body itself.
             let ray = pose * Isometry2::from_parts(nalgebra::Translation2::identity(), rotation(bearing_rad));
-            let first_m = 1.0 / surroundings.scene.nearest(&self.beam, &ray, look.vicinity(&self.ring));
+            let first_m = 1.0 / surroundings.scene.nearest(&self.beam, &ray, platform.robot);
             if first_m > range_m || form.gap_m_to(&(ray * Point2::new(first_m, 0.0))) < ON_SURFACE_M {
                 bodies.push(Fiducial { tag, body, bearing_rad, range_m });
             }

@@ -4,9 +4,8 @@
 //! nobody reads cost nothing.
 //!
 //! Stepping, snapshots and views use one list of sensors, [`Sensor::all`]. To add a sensor: write a file, and add a
-//! variant to [`Sensor`] and one to [`SensorReading`].
+//! variant to [`Sensor`].
 
-pub(super) mod bumper;
 mod fiducial_finder;
 mod laser_scanner;
 mod on_demand;
@@ -24,7 +23,7 @@ use sonar::Sonar;
 pub use sonar::SonarReading;
 
 use super::past::Recent;
-use super::rays::{Ring, Scene};
+use super::rays::Scene;
 use super::snapshot::{Values, value};
 use super::spec::{Glass, LaserSpec, RobotSpec};
 use interfaces::{LaserReading, Purpose, RandomStream, Twist};
@@ -55,16 +54,15 @@ impl Sensor {
     pub(super) fn all(spec: &RobotSpec, beams: &mut SharedBeams, seed: u64, robot: usize) -> Vec<Self> {
         // Each sensor has streams of its own; the streams of the first sensor of a kind are those of the robot.
         let stream = |sensor: usize| robot + (sensor << 24);
-        let ring = ring(spec);
         let mut sensors = Vec::new();
         for (index, laser) in spec.lasers().enumerate() {
             sensors.push(Self::laser(laser, beams, seed, stream(index)));
         }
         for (index, sonar) in spec.sonars.iter().enumerate() {
             let noise = RandomStream::new(seed, Purpose::SonarNoise(stream(index)));
-            sensors.push(Self::Sonar(Box::new(OnDemand::new(Sonar::new(sonar, beams, ring), noise))));
+            sensors.push(Self::Sonar(Box::new(OnDemand::new(Sonar::new(sonar, beams), noise))));
         }
-        let finder = spec.fiducial.iter().map(|finder| OnDemand::new(FiducialFinder::new(finder, ring), ()));
+        let finder = spec.fiducial.iter().map(|finder| OnDemand::new(FiducialFinder::new(finder), ()));
         sensors.extend(finder.map(|finder| Self::Fiducials(Box::new(finder))));
         sensors
     }
@@ -101,15 +99,6 @@ impl Sensor {
     /// The sensor measures now, and the reading will be read: it is computed at once.
     pub(super) fn measure(&mut self, look: &Look) {
         each!(self, sensor => sensor.measure(look))
-    }
-
-    /// The latest reading.
-    pub(super) fn reading(&self) -> SensorReading<'_> {
-        match self {
-            Self::Laser(laser) => SensorReading::Laser(laser.reading()),
-            Self::Sonar(sonar) => SensorReading::Sonar(sonar.reading().copied()),
-            Self::Fiducials(finder) => SensorReading::Fiducials(finder.reading().map_or(&[], Vec::as_slice)),
-        }
     }
 
     /// The latest reading, if the sensor is a laser scanner.
@@ -149,27 +138,6 @@ impl Sensor {
             Self::Fiducials(finder) => vec![value(finder.state().1.get_or_insert_default())],
         }
     }
-}
-
-/// The ring of the sonars and of the fiducial finder of a robot.
-fn ring(spec: &RobotSpec) -> Ring {
-    let sonars = spec.sonars.iter().map(|sonar| (sonar.mount, sonar.range_max_m));
-    let finder = spec.fiducial.iter().map(|finder| (finder.mount, finder.range_max_m));
-    sonars.chain(finder).fold(Ring::default(), |ring, (mount, range_m)| Ring {
-        offset_m: ring.offset_m.max(mount.translation.vector.norm()),
-        range_m: ring.range_m.max(range_m),
-    })
-}
-
-/// The latest reading of a sensor; `None` before the first measurement.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum SensorReading<'a> {
-    /// The reading of a laser scanner. The pose is the pose by odometry.
-    Laser(Option<&'a LaserReading>),
-    /// The reading of a sonar.
-    Sonar(Option<SonarReading>),
-    /// The bodies that a fiducial finder detected: robots first, then obstacles, each in the order of the spec.
-    Fiducials(&'a [Fiducial]),
 }
 
 /// A robot at the moment of a measurement.

@@ -1,7 +1,6 @@
 //! Readings that are computed when they are first read.
 
 use super::{Platform, Surroundings};
-use crate::physics::rays::{Ring, Vicinity};
 use std::sync::{Arc, OnceLock};
 
 /// A robot and its surroundings at the time of a measurement.
@@ -9,20 +8,6 @@ use std::sync::{Arc, OnceLock};
 pub(crate) struct Look {
     pub(crate) platform: Platform,
     pub(crate) surroundings: Arc<Surroundings>,
-    vicinity: OnceLock<Vicinity>,
-}
-
-impl Look {
-    pub(crate) fn new(platform: Platform, surroundings: Arc<Surroundings>) -> Self {
-        Self { platform, surroundings, vicinity: OnceLock::new() }
-    }
-
-    /// What is around the robot. All sensors of the robot that ask for it must be within `ring`, the same one.
-    pub(super) fn vicinity(&self, ring: &Ring) -> &Vicinity {
-        let Platform { pose, robot, .. } = &self.platform;
-        self.vicinity
-            .get_or_init(|| self.surroundings.scene.vicinity(pose.translation.vector.into(), ring, *robot))
-    }
 }
 
 /// A sensor without its readings.

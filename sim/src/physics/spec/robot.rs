@@ -1,6 +1,6 @@
 //! A robot and its parts.
 
-use super::{BehaviorSpec, BumperSpec, FiducialSpec, OdometryError, SonarSpec};
+use super::{BehaviorSpec, FiducialSpec, OdometryError, SonarSpec};
 use crate::physics::form::Form;
 use calendar::Hours;
 use interfaces::Scan;
@@ -29,8 +29,6 @@ pub struct RobotSpec {
     pub laser: LaserSpec,
     /// The other laser scanners.
     pub more_lasers: Vec<LaserSpec>,
-    /// The ring of bumpers; `None` if there is none.
-    pub bumper: Option<BumperSpec>,
     /// The sonars and infrared sensors.
     pub sonars: Vec<SonarSpec>,
     /// The fiducial finder; `None` if there is none.
@@ -98,7 +96,6 @@ impl RobotSpec {
                 beam_width_rad: 0.0,
             },
             more_lasers: Vec::new(),
-            bumper: None,
             sonars: Vec::new(),
             fiducial: None,
             tag: None,

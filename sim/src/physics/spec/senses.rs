@@ -1,15 +1,6 @@
-//! Sensors other than lasers: bumpers, sonars, fiducial finders.
+//! Sensors other than lasers: sonars, fiducial finders.
 
 use nalgebra::Isometry2;
-
-/// A ring of bumpers around a part of the outline of a robot.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BumperSpec {
-    /// The number of bumpers, at most 64, from right to left.
-    pub sectors: usize,
-    /// The angle that all bumpers cover together, symmetrical to straight ahead, rad, in (0, 2π].
-    pub fov_rad: f64,
-}
 
 /// A sonar or infrared sensor: it measures the range of the nearest surface in a cone.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -168,11 +168,7 @@ fn robot_line(robot: &RobotSpec) -> String {
         )
     }));
     parts.push(odometry_errors(&robot.odometry));
-    let others = [
-        (robot.sonars.len(), "sonar"),
-        (usize::from(robot.bumper.is_some()), "bumper"),
-        (usize::from(robot.fiducial.is_some()), "fiducial finder"),
-    ];
+    let others = [(robot.sonars.len(), "sonar"), (usize::from(robot.fiducial.is_some()), "fiducial finder")];
     parts.extend(
         others.into_iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{what} × {count}")),
     );

@@ -142,7 +142,6 @@ fn senses() {
     let with = |keys: &str| format!("{keys}\n\n{at}");
     let sonar = "[[robot.sonar]]\ncone_deg = 30.0\nrange_max_m = 3.0\nrate_hz = 10.0";
     let cases = [
-        ("no bumpers", with("[robot.bumper]\nsectors = 0")),
         ("sonar that hears nothing", with(&format!("{sonar}\nrange_min_m = 3.0"))),
         ("sonar off the robot", with(&format!("{sonar}\nmount_m = [1.3, 0.0]"))),
         ("sonar between steps", with(&sonar.replace("10.0", "15.0"))),

@@ -71,7 +71,6 @@ const GOOD: &[(&str, &str, &str)] = &[
     ),
     ("`robot.laser`", "robot.laser", "beams = 10\nrange_max_m = 5.0\nrate_hz = 10.0"),
     ("`robot.behavior`", "robot.behavior", "kind = \"driven\""),
-    ("`robot.bumper`", "robot.bumper", "sectors = 4"),
     ("`robot.sonar`", "robot.sonar", "cone_deg = 30.0\nrange_max_m = 5.0\nrate_hz = 10.0"),
     ("`robot.fiducial`", "robot.fiducial", "range_max_m = 5.0\nrate_hz = 10.0"),
 ];
@@ -106,7 +105,6 @@ fn world(heading: &str, changed: &str) -> String {
                 | "obstacle.schedule"
                 | "robot.patrol"
                 | "robot.odometry.jump"
-                | "robot.bumper"
                 | "robot.sonar"
                 | "robot.fiducial"
         );
@@ -164,7 +162,7 @@ fn the_ranges_are_those_that_are_checked() {
                 keys.lines().filter(|line| !line.starts_with(&format!("{key} ="))).collect();
             for beyond in [least - 0.5 * least.abs() - 1e-5, most * 1.5] {
                 let value = match *key {
-                    "beams" | "sectors" => format!("{}", beyond.max(0.0) as u32),
+                    "beams" => format!("{}", beyond.max(0.0) as u32),
                     "size_m" => format!("[{beyond:?}, {beyond:?}]"),
                     "times_s" | "switches_s" => format!("[{beyond:?}]"),
                     _ => format!("{beyond:?}"),

@@ -1,11 +1,10 @@
-//! Bumpers, sonars and fiducial finders.
+//! Sonars and fiducial finders.
 
 use super::fleet::{house, robot};
 use super::*;
 use interfaces::LaserReading;
 
-const SENSES: &str = "[robot.bumper]\nsectors = 4\nfov_deg = 180.0\n\
-    [[robot.sonar]]\ncone_deg = 30.0\nrange_max_m = 5.0\nrate_hz = 10.0\n\
+const SENSES: &str = "[[robot.sonar]]\ncone_deg = 30.0\nrange_max_m = 5.0\nrate_hz = 10.0\n\
     [[robot.sonar]]\ncone_deg = 30.0\nrange_max_m = 5.0\nrate_hz = 5.0\nmount_deg = 90.0\nnoise_std_m = 0.02\n\
     [robot.fiducial]\nfov_deg = 180.0\nrange_max_m = 5.0\nrate_hz = 10.0\n[robot.behavior]";
 
@@ -58,69 +57,6 @@ fn a_sonar_hears_farther_than_the_laser_sees() {
 }
 
 #[test]
-fn bumpers_feel_where_they_are_touched() {
-    for (turn_deg, sector) in [(0.0, 2), (30.0, 1), (-30.0, 2), (60.0, 0), (-60.0, 3)] {
-        let text = place(&[], "");
-        let mut fleet = Fleet::new(&text, 0);
-        // The outer wall on the left ends at 0.1 m: it drives into it, turned.
-        let heading: f64 = std::f64::consts::PI + f64::to_radians(turn_deg);
-        fleet.teleport(0, &interfaces::pose(0.305, 3.0, heading)).unwrap();
-        assert!(!fleet.robots().next().unwrap().bumpers().any(|pressed| pressed));
-        let mut felt = vec![false; 4];
-        for _ in 0..20 {
-            fleet.step(&mut |_: &RobotView<'_>, _: &LaserReading| Twist {
-                linear_mps: 0.5,
-                angular_radps: 0.0,
-            });
-            for (felt, pressed) in felt.iter_mut().zip(fleet.robots().next().unwrap().bumpers()) {
-                *felt |= pressed;
-            }
-        }
-        if turn_deg == 0.0 {
-            // Straight ahead two of them meet.
-            assert!(felt[1] || felt[2], "{felt:?}");
-        } else {
-            let expected: Vec<bool> = (0..4).map(|i| i == sector).collect();
-            assert_eq!(felt, expected, "turned by {turn_deg}°");
-        }
-    }
-}
-
-#[test]
-fn a_flat_touch_presses_every_bumper_along_it_until_they_part() {
-    let square = |heading_deg: f64| {
-        let robot = robot("one", [5.4, 1.5], heading_deg, "kind = \"driven\"")
-            .replace("[robot.drive]", "[robot.drive]\nkind = \"omni\"\nmax_left_mps = 0.5")
-            .replace("radius_m = 0.2", "footprint_m = [[-0.2, -0.2], [0.2, -0.2], [0.2, 0.2], [-0.2, 0.2]]");
-        // Three sectors of 32° each, right, middle and left; the front is nearly as wide as all of them.
-        let bumper = "[robot.bumper]\nsectors = 3\nfov_deg = 96.0\n[robot.behavior]";
-        house(&[robot.replace("[robot.behavior]", bumper)], "")
-    };
-    let drive =
-        |linear_mps| move |_: &RobotView<'_>, _: &LaserReading| Twist { linear_mps, angular_radps: 0.0 };
-    let mut fleet = Fleet::new(&square(0.0), 0);
-    let pressed = |fleet: &Fleet| fleet.robots().next().unwrap().bumpers().collect::<Vec<_>>();
-    fleet.run_until(2.0, &mut drive(0.5));
-    assert_eq!(pressed(&fleet), [true; 3]);
-    assert_eq!(fleet.contacts().len(), 1);
-    assert_eq!(fleet.robots().next().unwrap().touching, [fleet.contacts()[0].with]);
-    // At rest against the wall the bumper still detects the contact.
-    fleet.run_until(4.0, &mut drive(0.0));
-    assert_eq!(pressed(&fleet), [true; 3]);
-    assert_eq!(fleet.contacts(), []);
-    fleet.run_until(5.0, &mut drive(-0.5));
-    assert_eq!(pressed(&fleet), [false; 3]);
-    // With a corner ahead it is that of the corner alone.
-    let mut fleet = Fleet::new(&square(45.0), 0);
-    fleet.run_until(3.0, &mut |_: &RobotView<'_>, _: &LaserReading| Velocity {
-        forward_mps: libm::sqrt(0.5) * 0.2,
-        left_mps: -libm::sqrt(0.5) * 0.2,
-        turn_radps: 0.0,
-    });
-    assert_eq!(pressed(&fleet), [true, false, false]);
-}
-
-#[test]
 fn tags_are_found_where_nothing_is_in_front() {
     let others = [
         tagged("ahead", [3.0, 2.0], 11),
@@ -151,14 +87,10 @@ fn a_snapshot_knows_what_was_sensed() {
     let mut again = Fleet::restored(fleet.spec(), &snapshot).unwrap();
     let sensed = |fleet: &Fleet| {
         let robot = fleet.robots().next().unwrap();
-        (
-            robot.sonars().collect::<Vec<_>>(),
-            robot.bumpers().collect::<Vec<_>>(),
-            robot.fiducials().copied().collect::<Vec<_>>(),
-        )
+        (robot.sonars().collect::<Vec<_>>(), robot.fiducials().copied().collect::<Vec<_>>())
     };
     assert_eq!(sensed(&again), sensed(&fleet));
-    assert_eq!(sensed(&fleet).2.len(), 1);
+    assert_eq!(sensed(&fleet).1.len(), 1);
     for fleet in [&mut fleet, &mut again] {
         fleet.run_until(4.0, &mut ahead);
     }
@@ -176,7 +108,14 @@ fn readings_do_not_depend_on_which_readings_were_read() {
     let spec = house(&robots, "");
     let [mut read, mut unread] = [Fleet::new(&spec, 3), Fleet::new(&spec, 3)];
     let sensed = |fleet: &Fleet| -> Vec<String> {
-        fleet.robots().flat_map(|robot| robot.readings().map(|reading| format!("{reading:?}"))).collect()
+        let sensed = |robot: RobotView<'_>| {
+            let [lasers, sonars] = [
+                format!("{:?}", robot.lasers().collect::<Vec<_>>()),
+                format!("{:?}", robot.sonars().collect::<Vec<_>>()),
+            ];
+            format!("{lasers} {sonars} {:?}", robot.fiducials().collect::<Vec<_>>())
+        };
+        fleet.robots().map(sensed).collect()
     };
     for step in 0..60 {
         read.step(&mut Ahead);
@@ -203,7 +142,7 @@ fn readings_do_not_depend_on_which_readings_were_read() {
 struct Ahead;
 
 impl Controller for Ahead {
-    fn drive(&mut self, _: &RobotView<'_>) -> Option<Command> {
+    fn drive(&mut self, _: &RobotView<'_>) -> Option<Velocity> {
         Some(Twist { linear_mps: 0.3, angular_radps: 0.2 }.into())
     }
 }
