@@ -39,9 +39,9 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// A run of `duration_s` of simulated time. `is_raw`: the keyboard pilot uses the terminal.
-    pub fn of_time(duration_s: f64, is_quiet: bool, is_raw: bool) -> Self {
-        Self::new(milliseconds(duration_s), OF_TIME, FIRST, is_quiet, is_raw)
+    /// A run of `duration_s` of simulated time.
+    pub fn of_time(duration_s: f64, is_quiet: bool) -> Self {
+        Self::new(milliseconds(duration_s), OF_TIME, FIRST, is_quiet)
     }
 
     /// The same, of a run that goes on from a simulated time.
@@ -53,7 +53,7 @@ impl Progress {
 
     /// A number of `what`: trials, or scans of a log.
     pub fn of_count(count: usize, what: &'static str, is_quiet: bool) -> Self {
-        let progress = Self::new(count as u64, OF_COUNT, LINE_EVERY, is_quiet, false);
+        let progress = Self::new(count as u64, OF_COUNT, LINE_EVERY, is_quiet);
         progress.bar.set_prefix(what);
         if progress.kind == Kind::Bar {
             progress.bar.enable_steady_tick(BAR_EVERY); // The time left changes during long trials.
@@ -61,10 +61,10 @@ impl Progress {
         progress
     }
 
-    fn new(length: u64, template: &str, first: Duration, is_quiet: bool, is_raw: bool) -> Self {
+    fn new(length: u64, template: &str, first: Duration, is_quiet: bool) -> Self {
         let (kind, target) = if is_quiet {
             (Kind::Silent, ProgressDrawTarget::hidden())
-        } else if stderr().is_terminal() && !is_raw {
+        } else if stderr().is_terminal() {
             (Kind::Bar, ProgressDrawTarget::stderr())
         } else {
             (Kind::Lines, ProgressDrawTarget::hidden())

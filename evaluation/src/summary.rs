@@ -41,7 +41,7 @@ pub struct Summary {
     pub world: String,
     /// The seed of all random streams.
     pub seed: u64,
-    /// The pilot: `agent`, `tour` or `keyboard`.
+    /// The pilot: `agent` or `tour`.
     pub drive: &'static str,
     /// The strategy of the agent; `null` for other pilots.
     pub strategy: Option<&'static str>,
@@ -49,7 +49,7 @@ pub struct Summary {
     pub estimator: &'static str,
     /// The occupancy model.
     pub occupancy: &'static str,
-    /// The reason for the end of the run: `duration`, `tour`, `person` or `interrupted`.
+    /// The reason for the end of the run: `duration`, `tour` or `interrupted`.
     pub ended_by: &'static str,
     /// The simulated time, s.
     pub simulated_s: f64,

@@ -82,11 +82,7 @@ impl StageWorld {
         for (wall, rectangle) in
             self.walls.iter().flat_map(|wall| wall.rectangles.iter().map(move |r| (wall, r)))
         {
-            let (header, keys) = match wall.tag {
-                Some(tag) => ("[[obstacle]]", map.tagged(wall, rectangle, tag)),
-                None => ("[[wall]]", map.wall(rectangle)),
-            };
-            made.table_of(header, (wall.at, &wall.place), keys);
+            made.table_of("[[wall]]", (wall.at, &wall.place), map.wall(rectangle));
         }
         for robot in &self.robots {
             let mut table = |header: &str, keys| {
@@ -109,8 +105,7 @@ impl StageWorld {
                 let header = match kind {
                     "laser" if robot.lasers.len() == 1 => "[robot.laser]",
                     "laser" => "[[robot.laser]]",
-                    "sonar" => "[[robot.sonar]]",
-                    _ => "[robot.fiducial]",
+                    _ => "[[robot.sonar]]",
                 };
                 let keys = self::sensor(kind, sensor, robot.radius_m());
                 made.table_of(header, (sensor.at, &sensor.place), keys);
@@ -168,16 +163,6 @@ impl Map {
         vec![("from_m", end(-along)), ("to_m", end(along)), ("thickness_m", number(2.0 * x.min(y)))]
     }
 
-    fn tagged(&self, wall: &StageWall, shape: &Rectangle, tag: u32) -> Keys {
-        vec![
-            ("name", Value::from(wall.name.as_str())),
-            ("tag", Value::from(tag)),
-            ("center_m", self.point(shape.pose.translation.vector.into())),
-            ("size_m", point(&(2.0 * shape.half_m).into())),
-            ("heading_deg", heading(&shape.pose)),
-        ]
-    }
-
     fn robot(&self, robot: &StageRobot) -> Keys {
         let outline: Vec<Value> = robot.outline.iter().map(point).collect();
         let mut keys = vec![("name", Value::from(robot.name.as_str()))];
@@ -186,7 +171,6 @@ impl Map {
             false => ("footprint_m", Value::from(outline)),
         });
         keys.extend(robot.mass_kg.map(|mass_kg| ("mass_kg", number(mass_kg))));
-        keys.extend(robot.tag.map(|tag| ("tag", Value::from(tag))));
         keys.push(("pose_m", self.point(robot.pose.translation.vector.into())));
         keys.push(("heading_deg", heading(&robot.pose)));
         keys
@@ -218,16 +202,12 @@ fn drive(robot: &StageRobot) -> Keys {
 }
 
 fn sensor(kind: &str, sensor: &StageSensor, radius_m: f64) -> Keys {
-    let (left_out, angle): (&[&str], _) = match kind {
-        "laser" => (&[], "fov_deg"),
-        "sonar" => (&["beams"], "cone_deg"),
-        _ => (&["beams", "range_min_m", "noise_std_m"], "fov_deg"),
-    };
+    let is_sonar = kind == "sonar";
     // Not farther out than it may be, by more than rounding.
     let mount_m = sensor.mount.translation.vector.cap_magnitude(radius_m + MAX_OUT_M - 1e-7);
     let mut keys = vec![
         ("beams", Value::from(sensor.beams as i64)),
-        (angle, degrees(sensor.fov_rad)),
+        (if is_sonar { "cone_deg" } else { "fov_deg" }, degrees(sensor.fov_rad)),
         ("range_min_m", number(sensor.range_m[0])),
         ("range_max_m", number(sensor.range_m[1])),
         ("rate_hz", number(1000.0 / f64::from(sensor.interval_ms))),
@@ -235,7 +215,7 @@ fn sensor(kind: &str, sensor: &StageSensor, radius_m: f64) -> Keys {
         ("mount_deg", heading(&sensor.mount)),
         ("noise_std_m", number(sensor.noise_std_m)),
     ];
-    keys.retain(|(key, _)| !left_out.contains(key));
+    keys.retain(|(key, _)| !(is_sonar && *key == "beams"));
     keys
 }
 

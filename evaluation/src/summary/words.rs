@@ -16,7 +16,6 @@ impl fmt::Display for Summary {
         let Self { drive, world, simulated_s, wall_s, real_time_factor, .. } = self;
         let ended = match self.ended_by {
             "interrupted" => ", interrupted",
-            "person" => ", ended by the user",
             _ => "",
         };
         let simulated = match simulated_s {

@@ -41,14 +41,13 @@ pub use generate::building_ranges;
 pub use ground_truth::PhysicsGroundTruth;
 pub use report::{Body, Contact, ObstacleEvent, ObstacleView};
 pub use robot::RobotView;
-pub use sensors::{Fiducial, SonarReading};
+pub use sensors::SonarReading;
 pub use shape::Rectangle;
 pub use snapshot::SnapshotError;
 pub use spec::{
     BehaviorSpec, CircleSpec, ContactModel, DisplacementSpec, DoorSpec, DriveKind, DriveLimits, DrivenError,
-    FiducialSpec, FleetSpec, Glass, LaserSpec, Leaf, Motion, ObstacleSpec, OdometryError, Opening, PathSpec,
-    PatrolDaySpec, PatrolSpec, PushedSpec, Repeat, RobotSpec, SonarSpec, WanderSpec, WaypointsSpec,
-    WorldSpec,
+    FleetSpec, Glass, LaserSpec, Leaf, Motion, ObstacleSpec, OdometryError, Opening, PathSpec, PatrolDaySpec,
+    PatrolSpec, PushedSpec, Repeat, RobotSpec, SonarSpec, WanderSpec, WaypointsSpec, WorldSpec,
 };
 pub use velocity::Velocity;
 pub use world::{PhysicsWorld, WorldSnapshot};

@@ -95,6 +95,11 @@ impl File<'_> {
         Path::new(&self.source.name).parent().unwrap_or(Path::new("")).join(name)
     }
 
+    /// The text at a place.
+    pub(crate) fn text(&self, place: Range<usize>) -> &str {
+        self.source.text.get(place).unwrap_or_default()
+    }
+
     /// The errors in the order of the file.
     fn findings(&self) -> Findings {
         let mut errors = self.errors.take();

@@ -1,7 +1,6 @@
 use super::{Bodies, unpack};
 use crate::physics::report::Body;
 use nalgebra::{Point2, Vector2};
-use rapier2d::prelude as rapier;
 
 /// Bodies that are farther apart than this do not touch any more, m. The distance of a lasting contact varies by
 /// less.

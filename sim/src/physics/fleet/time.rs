@@ -75,14 +75,14 @@ impl Fleet {
 
     /// What sensors that measure now can see. `sweeps`: a laser of theirs sweeps.
     pub(super) fn surroundings(&self, sweeps: bool) -> Arc<Surroundings> {
-        let (scene, tagged) = (self.scene.clone(), self.tagged());
+        let scene = self.scene.clone();
         let robots = self.robots.iter().map(|robot| robot.pose);
         let obstacles = self.obstacles.iter();
         let obstacles = obstacles.map(|obstacle| obstacle.is_standing().then_some(obstacle.shape.pose));
         let recent =
             if sweeps { self.past.recent(self.spec(), robots, obstacles) } else { Recent::default() };
         let (time_s, glass) = (self.time_s(), self.spec().glass.clone());
-        Arc::new(Surroundings { step: self.step, time_s, scene, glass, tagged, recent })
+        Arc::new(Surroundings { step: self.step, time_s, scene, glass, recent })
     }
 
     /// Moves robots and obstacles by one physics step.
@@ -101,7 +101,7 @@ impl Fleet {
             self.bodies.step();
         }
         for index in 0..self.robots.len() {
-            self.robots[index].end_step(&self.bodies, time_s, step_s);
+            self.robots[index].end_step(&self.bodies, time_s);
             if self.robots[index].has_moved() {
                 self.show_robot(index);
             }

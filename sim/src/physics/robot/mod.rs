@@ -16,7 +16,7 @@ use super::spec::{BehaviorSpec, RobotSpec};
 use super::velocity::Velocity;
 use interfaces::{LaserReading, Purpose, RandomStream, Twist, Values, values};
 use nalgebra::{Isometry2, Point2, Vector2};
-use odometry::{Displacements, Odometry, Wheels};
+use odometry::{Displacements, Odometry};
 use std::sync::Arc;
 
 #[derive(Clone)]
@@ -35,7 +35,6 @@ pub(crate) struct SimulatedRobot {
     pub(super) touching: Vec<Body>,
     command: Velocity,
     drive: Motors,
-    wheels: Wheels,
     odometry: Odometry,
     /// When the odometry jumps, and when the robot is carried away.
     jumps: Option<Displacements>,
@@ -76,7 +75,6 @@ impl SimulatedRobot {
             touching: Vec::new(),
             command: Velocity::STOP,
             drive,
-            wheels: Wheels::new(spec.odometry.slip, drive),
             odometry: Odometry::new(spec, random(Purpose::OdometryNoise(index)), pose),
             jumps: displacements(spec.odometry.jump, Purpose::OdometryJump(index)),
             carried: displacements(spec.odometry.carried, Purpose::Carried(index)),
@@ -89,9 +87,9 @@ impl SimulatedRobot {
 
     /// The values that a snapshot holds.
     pub(super) fn values(&mut self) -> Values<'_> {
-        let Self { velocity, driven, touching, command, drive, wheels, odometry, .. } = self;
+        let Self { velocity, driven, touching, command, drive, odometry, .. } = self;
         let mut values = vec![pose(&mut self.pose), pose(&mut self.previous_pose)];
-        values.extend(values![*velocity, *driven, *touching, *command; drive, wheels, odometry]);
+        values.extend(values![*velocity, *driven, *touching, *command; drive, odometry]);
         let displacements = self.jumps.iter_mut().chain(&mut self.carried);
         values.extend(displacements.flat_map(Displacements::values));
         values.extend(self.behavior.iter_mut().flat_map(Behavior::values));
@@ -121,8 +119,8 @@ impl SimulatedRobot {
 
     /// The time until which the robot rests if no other body moves, s; `None` if it moves, or decides by itself.
     pub(super) fn rests_until_s(&self) -> Option<f64> {
-        let is_still = !self.has_moved()
-            && [self.velocity, self.driven, self.wheels.slipping].iter().all(|own| *own == Velocity::STOP);
+        let is_still =
+            !self.has_moved() && [self.velocity, self.driven].iter().all(|own| *own == Velocity::STOP);
         let obeys = matches!(self.spec.behavior, BehaviorSpec::Driven | BehaviorSpec::Standing);
         let displaced = self.jumps.iter().chain(&self.carried).map(Displacements::next_s);
         (is_still && obeys && self.command == Velocity::STOP).then(|| displaced.fold(f64::INFINITY, f64::min))
@@ -170,7 +168,6 @@ impl SimulatedRobot {
         self.pose = pose;
         self.velocity = Velocity::STOP;
         self.drive = Motors::new(self.spec.drive);
-        self.wheels = Wheels::new(self.spec.odometry.slip, self.drive);
     }
 
     /// Moves the robot to `pose`, at rest. The odometry starts again there.
@@ -218,11 +215,7 @@ impl SimulatedRobot {
 
     /// The velocity by odometry.
     pub(super) fn odometry_twist(&self) -> Twist {
-        let (velocity, slipping) = (self.velocity.twist(), self.wheels.slipping.twist());
-        self.odometry.twist(&Twist {
-            linear_mps: velocity.linear_mps + slipping.linear_mps,
-            angular_radps: velocity.angular_radps + slipping.angular_radps,
-        })
+        self.odometry.twist(&self.velocity.twist())
     }
 
     fn platform(&self) -> Platform {
@@ -236,7 +229,6 @@ impl SimulatedRobot {
 
     /// Gives the body the velocity of the next step.
     pub(super) fn start_step(&mut self, bodies: &mut Bodies, step_s: f64) {
-        self.wheels.start_step(&self.drive, &self.command, step_s);
         self.velocity = self.drive.step(&self.command, step_s);
         self.driven = self.velocity;
         bodies.set_velocity(self.index, &self.velocity, step_s);
@@ -252,12 +244,11 @@ impl SimulatedRobot {
     }
 
     /// Takes over the pose and the velocity of the body after the step, which ends at `time_s`.
-    pub(super) fn end_step(&mut self, bodies: &Bodies, time_s: f64, step_s: f64) {
+    pub(super) fn end_step(&mut self, bodies: &Bodies, time_s: f64) {
         self.previous_pose = std::mem::replace(&mut self.pose, bodies.pose(self.index));
         let solved = bodies.velocity(self.index);
         self.velocity = self.drive.settle(&solved);
-        self.wheels.end_step(&self.drive, &solved);
-        self.odometry.update(&self.previous_pose, &self.pose, &self.wheels.slipping, step_s);
+        self.odometry.update(&self.previous_pose, &self.pose);
         if let Some(jumps) = &mut self.jumps
             && jumps.is_due(time_s)
         {

@@ -6,15 +6,11 @@
 //! Stepping, snapshots and views use one list of sensors, [`Sensor::all`]. To add a sensor: write a file, and add a
 //! variant to [`Sensor`].
 
-mod fiducial_finder;
 mod laser_scanner;
 mod on_demand;
 mod shared_beams;
 mod sonar;
 
-pub use fiducial_finder::Fiducial;
-use fiducial_finder::FiducialFinder;
-pub(super) use fiducial_finder::Tagged;
 pub(super) use laser_scanner::LaserScanner;
 use laser_scanner::LaserStreams;
 pub(super) use on_demand::{Look, OnDemand};
@@ -35,7 +31,6 @@ use std::sync::Arc;
 pub(super) enum Sensor {
     Laser(Box<OnDemand<LaserScanner>>),
     Sonar(Box<OnDemand<Sonar>>),
-    Fiducials(Box<OnDemand<FiducialFinder>>),
 }
 
 /// The same for every kind of sensor.
@@ -44,7 +39,6 @@ macro_rules! each {
         match $self {
             Sensor::Laser($sensor) => $result,
             Sensor::Sonar($sensor) => $result,
-            Sensor::Fiducials($sensor) => $result,
         }
     };
 }
@@ -62,8 +56,6 @@ impl Sensor {
             let noise = RandomStream::new(seed, Purpose::SonarNoise(stream(index)));
             sensors.push(Self::Sonar(Box::new(OnDemand::new(Sonar::new(sonar, beams), noise))));
         }
-        let finder = spec.fiducial.iter().map(|finder| OnDemand::new(FiducialFinder::new(finder), ()));
-        sensors.extend(finder.map(|finder| Self::Fiducials(Box::new(finder))));
         sensors
     }
 
@@ -113,12 +105,6 @@ impl Sensor {
         Some(sonar.reading().copied())
     }
 
-    /// The latest detections, if the sensor is a fiducial finder.
-    pub(super) fn detections(&self) -> Option<&[Fiducial]> {
-        let Self::Fiducials(finder) = self else { return None };
-        Some(finder.reading().map_or(&[], Vec::as_slice))
-    }
-
     /// Removes the latest reading.
     pub(super) fn clear(&mut self) {
         each!(self, sensor => sensor.clear())
@@ -135,7 +121,6 @@ impl Sensor {
                 let (noise, reading) = sonar.state();
                 vec![value(noise), value(reading)]
             }
-            Self::Fiducials(finder) => vec![value(finder.state().1.get_or_insert_default())],
         }
     }
 }
@@ -159,7 +144,6 @@ pub(super) struct Surroundings {
     pub(super) time_s: f64,
     pub(super) scene: Scene,
     pub(super) glass: Vec<Glass>,
-    pub(super) tagged: Vec<Tagged>,
     /// For lasers that sweep.
     pub(super) recent: Recent,
 }

@@ -54,7 +54,7 @@ impl Device for Sonar {
         }
     }
 
-    fn time_s(reading: &SonarReading) -> Option<f64> {
-        Some(reading.time_s)
+    fn time_s(reading: &SonarReading) -> f64 {
+        reading.time_s
     }
 }

@@ -168,11 +168,9 @@ fn robot_line(robot: &RobotSpec) -> String {
         )
     }));
     parts.push(odometry_errors(&robot.odometry));
-    let others = [(robot.sonars.len(), "sonar"), (usize::from(robot.fiducial.is_some()), "fiducial finder")];
-    parts.extend(
-        others.into_iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{what} × {count}")),
-    );
-    parts.extend(robot.tag.map(|tag| format!("tag {tag}")));
+    if !robot.sonars.is_empty() {
+        parts.push(format!("sonar × {}", robot.sonars.len()));
+    }
     parts.extend(robot.patrol.as_ref().map(calendar::of_robot));
     parts.join("; ")
 }
@@ -200,7 +198,6 @@ fn odometry_errors(error: &OdometryError) -> String {
         (error.turn_radpm.to_degrees(), "° per meter"),
         (error.distance_noise_m, " m of noise after 1 m"),
         (error.turn_noise_rad.to_degrees(), "° of noise after a turn of 1 rad"),
-        (100.0 * error.slip, " % slip in contacts"),
     ];
     let errors = errors.into_iter().filter(|(value, _)| *value != 0.0);
     let errors = errors.map(|(value, what)| format!("{}{what}", short(value)));

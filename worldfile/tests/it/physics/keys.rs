@@ -72,7 +72,6 @@ const GOOD: &[(&str, &str, &str)] = &[
     ("`robot.laser`", "robot.laser", "beams = 10\nrange_max_m = 5.0\nrate_hz = 10.0"),
     ("`robot.behavior`", "robot.behavior", "kind = \"driven\""),
     ("`robot.sonar`", "robot.sonar", "cone_deg = 30.0\nrange_max_m = 5.0\nrate_hz = 10.0"),
-    ("`robot.fiducial`", "robot.fiducial", "range_max_m = 5.0\nrate_hz = 10.0"),
 ];
 
 /// The additional keys that a key needs, if the valid ones do not include them.
@@ -106,7 +105,6 @@ fn world(heading: &str, changed: &str) -> String {
                 | "robot.patrol"
                 | "robot.odometry.jump"
                 | "robot.sonar"
-                | "robot.fiducial"
         );
         let holds_it = *known == "`obstacle`" && heading == "`obstacle.schedule`";
         if (is_optional || table_of(heading) == *table) && *known != heading && !holds_it {
