@@ -1,5 +1,5 @@
 """CycloneDDS as another vendor, with messages written down by hand: what the packages of rclpy lack (tf, parts of maps,
-markers), and a stand-in for Nav2's action server.
+paths), and a stand-in for Nav2's action server.
 
 Arguments: a folder for files, the program curious_node, the program sim_node; `hear`: prints when transforms come.
 """
@@ -97,64 +97,9 @@ class OccupancyGridUpdate(IdlStruct, typename="map_msgs::msg::dds_::OccupancyGri
 
 
 @dataclass
-class Color(IdlStruct, typename="std_msgs::msg::dds_::ColorRGBA_"):
-    r: float32
-    g: float32
-    b: float32
-    a: float32
-
-
-@dataclass
-class Duration(IdlStruct, typename="builtin_interfaces::msg::dds_::Duration_"):
-    sec: int32
-    nanosec: uint32
-
-
-@dataclass
-class Image(IdlStruct, typename="sensor_msgs::msg::dds_::CompressedImage_"):
+class Path(IdlStruct, typename="nav_msgs::msg::dds_::Path_"):
     header: Header
-    format: str
-    data: sequence[uint8]
-
-
-@dataclass
-class UV(IdlStruct, typename="visualization_msgs::msg::dds_::UVCoordinate_"):
-    u: float32
-    v: float32
-
-
-@dataclass
-class MeshFile(IdlStruct, typename="visualization_msgs::msg::dds_::MeshFile_"):
-    filename: str
-    data: sequence[uint8]
-
-
-@dataclass
-class Marker(IdlStruct, typename="visualization_msgs::msg::dds_::Marker_"):
-    header: Header
-    ns: str
-    id: int32
-    type: int32
-    action: int32
-    pose: Pose
-    scale: Vector3
-    color: Color
-    lifetime: Duration
-    frame_locked: bool
-    points: sequence[Vector3]
-    colors: sequence[Color]
-    texture_resource: str
-    texture: Image
-    uv_coordinates: sequence[UV]
-    text: str
-    mesh_resource: str
-    mesh_file: MeshFile
-    mesh_use_embedded_materials: bool
-
-
-@dataclass
-class MarkerArray(IdlStruct, typename="visualization_msgs::msg::dds_::MarkerArray_"):
-    markers: sequence[Marker]
+    poses: sequence[PoseStamped]
 
 
 @dataclass
@@ -330,7 +275,7 @@ def test_messages():
     readers = {
         "tf": reader("rt/tf", TFMessage),
         "updates": reader("rt/map_updates", OccupancyGridUpdate),
-        "markers": reader("rt/explore/goals", MarkerArray),
+        "path": reader("rt/explore/path", Path),
     }
     node = explore()
     heard = {name: [] for name in readers}
@@ -343,16 +288,14 @@ def test_messages():
         return {(t.header.frame_id, t.child_frame_id): t for m in heard["tf"] for t in m.transforms}
 
     def is_complete():
-        return {("map", "odom"), ("odom", "base_link")} <= set(transforms()) and heard["updates"] and heard["markers"]
+        return {("map", "odom"), ("odom", "base_link")} <= set(transforms()) and heard["updates"] and heard["path"]
 
-    check("tf, map_updates and markers come", spin(40, turn, is_complete), {n: len(m) for n, m in heard.items()})
+    check("tf, map_updates and paths come", spin(40, turn, is_complete), {n: len(m) for n, m in heard.items()})
     turned = transforms()["map", "odom"].transform.rotation
     check("the rotation is one", abs(turned.z**2 + turned.w**2 - 1) < 1e-9 and turned.x == turned.y == 0)
     is_whole = all(len(u.data) == u.width * u.height and set(u.data) <= {-1, 0, 100} for u in heard["updates"])
     check("every update is a rectangle of three values", is_whole)
-    markers = [marker for array in heard["markers"] for marker in array.markers]
-    is_drawn = all(m.ns == "goals" and m.header.frame_id == "map" and len(m.points) != 1 for m in markers)
-    check("every marker can be drawn", is_drawn and {m.type for m in markers} <= {0, 4})
+    check("every path is in the map", all(m.header.frame_id == "map" for path in heard["path"] for m in [path, *path.poses]))
     end(node)
 
 

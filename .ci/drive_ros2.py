@@ -227,6 +227,20 @@ def compare(name, grid, segments):
     check(f"{name}: walls are where they are", missing <= len(points) * 0.02, f"{missing} of {len(points)} missing")
 
 
+def check_false_changes(name, grid, within=True):
+    """Checks that of these cells, where nothing changes, at most three that touch a wall count as changed.
+
+    All walls lie on borders of cells, and ranges have a noise of 1 cm: half of the hits are on the free side of a wall. A cell there can
+    count as blocked at first, and as free later. In 600 runs with other noise, 45 had one such cell and 2 had two, all beside the
+    box. Where one scan of ten gets a pose that is 0.3 s old, 18 to 25 cells change, most of which do not touch a wall.
+    """
+    change, x, y = cells(grid)
+    false = (change > 0) & within
+    off_walls = false & (distance(x, y, ROOM + BOX) > 0.05)
+    places = " ".join(f"({cell_x:.3f}, {cell_y:.3f})" for cell_x, cell_y in zip(x[false], y[false]))
+    check(name, false.sum() <= 3 and not off_walls.any(), f"{int(false.sum())} cells {places}".strip())
+
+
 def parameter(name, value):
     return ["-p", f"{name}:={value}"]
 
@@ -252,8 +266,7 @@ def test_map_of_an_independent_robot():
     late.spin(0.5)
     same = late.last["map"].data == robot.last["map"].data
     check("the late joiner has the same map", same)
-    change, _, _ = cells(late.last["change_map"])
-    check("nothing has changed yet", change.max() == 0, int(change.max()))
+    check_false_changes("nothing has changed yet", late.last["change_map"])
 
     robot.segments = ROOM + BOX + THING
     def is_mapped():
@@ -265,8 +278,7 @@ def test_map_of_an_independent_robot():
     change, x, y = cells(late.last["change_map"])
     where = change > 0
     check("the map of changes shows it", where.sum() > 10, f"{int(where.sum())} cells")
-    far = int((where & (distance(x, y, THING) > 0.35)).sum())
-    check("the map of changes shows nothing else", far == 0, f"{far} cells")
+    check_false_changes("the map of changes shows nothing else", late.last["change_map"], distance(x, y, THING) > 0.35)
     late.close()
 
     client = robot.node.create_client(Trigger, "curious_node/save_state")

@@ -1,7 +1,7 @@
 use crate::choosers::{Chooser, Trajectory};
 use crate::goal_sampler::{Goal, sample};
 use crate::policy::Policy;
-use crate::settings::{AgentSettings, Reward};
+use crate::settings::AgentSettings;
 use crate::situation::{Features, Situation, Travel};
 use crate::strategies::Strategy;
 use crate::unseen::UnseenSpace;
@@ -22,7 +22,6 @@ pub struct Agent {
     unseen: Option<UnseenSpace>,
     /// The travel time to each cell, for strategies that need it.
     travel: Vec<f64>,
-    reward: Reward,
     rng: RandomStream,
     /// The index of the strategy that sampled the present goal; `None` for a look into unseen space.
     current: Option<usize>,
@@ -78,7 +77,6 @@ impl Agent {
                 .looks_at_unseen
                 .then(|| UnseenSpace::new(settings.patch_cells, settings.sensor_radius_m)),
             travel: Vec::new(),
-            reward: settings.reward,
             rng,
             current: None,
             trajectory: Vec::new(),
@@ -94,7 +92,7 @@ impl Agent {
         self.features = features;
         if self.current.is_some() {
             self.trajectory.push(features);
-            self.updates += self.reward.count(transitions);
+            self.updates += transitions.iter().filter(|transition| transition.event().is_some()).count();
         }
     }
 

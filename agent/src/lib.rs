@@ -22,9 +22,9 @@ mod unseen;
 mod visibility;
 
 pub use agent::Agent;
-pub use choosers::{Always, Chooser, Coin, Curious, TileCoder, Trajectory};
+pub use choosers::{Always, Chooser, Coin, Curious, Trajectory};
 pub use goal_sampler::Goal;
 pub use policy::{PURPOSES, Parts, Policy};
-pub use settings::{AgentSettings, CuriousSettings, Reward};
+pub use settings::AgentSettings;
 pub use situation::{Features, Situation, StraightLineTravel, Travel};
 pub use strategies::{FreshMap, InformationGain, Pick, Poisson, Random, Recency, Stay, Strategy};

@@ -66,7 +66,7 @@ fn papers() -> Vec<Box<dyn Strategy>> {
 
 fn curious(settings: &AgentSettings, rng: &mut RandomStream) -> Parts {
     let strategies = papers();
-    let chooser = Curious::new(&settings.curious, strategies.len(), rng);
+    let chooser = Curious::new(settings.temperature, strategies.len(), rng);
     (strategies, Box::new(chooser))
 }
 
@@ -104,7 +104,7 @@ impl Policy {
 
     /// The policy for one of the [`PURPOSES`].
     pub fn for_purpose(name: &str) -> Option<Self> {
-        PURPOSES.iter().find(|[purpose, ..]| *purpose == name).and_then(|[.., policy]| Self::named(policy))
+        PURPOSES.iter().find(|[purpose, ..]| *purpose == name).and_then(|[.., policy]| policy.parse().ok())
     }
 
     /// The name on the command line and in files.

@@ -43,11 +43,6 @@ impl Hours {
         self.active[slot_of(time_s) as usize % SLOTS]
     }
 
-    /// The share of the week in which the place is active.
-    pub fn active_share(&self) -> f64 {
-        self.active.iter().filter(|is_active| **is_active).count() as f64 / SLOTS as f64
-    }
-
     /// The first time after `time_s` at which the place becomes active or quiet, s; infinite if it never does.
     pub fn next_switch_s(&self, time_s: f64) -> f64 {
         let (first, week) = (slot_of(time_s) as usize, (time_s / WEEK_S).floor() * WEEK_S);

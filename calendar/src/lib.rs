@@ -26,17 +26,15 @@
 mod drawn;
 mod habit;
 mod hours;
-mod matrix;
 mod recorded;
 mod schedule;
 mod text;
 mod timeline;
 
 pub use drawn::{Kind, Range, ThingKind, log_uniform};
-pub use habit::{Habit, Phases, Stays, blocked_probability};
+pub use habit::{Habit, PHASES, Stays};
 pub use hours::{DAY_S, HOUR_S, Hours, SLOT_S, WEEK_S};
-pub use matrix::{Matrix, PHASES, advanced, product};
-pub use recorded::{Change, RecordedError, Recording};
+pub use recorded::{Change, Recording};
 pub use schedule::{Changes, Schedule};
 pub use text::{moment, time_of_week_s};
 pub use timeline::Timeline;

@@ -1,5 +1,3 @@
-use std::fmt::Display;
-
 /// No recording is longer, years.
 const MAX_YEARS: f64 = 10.0;
 const YEAR_S: f64 = 365.25 * 86_400.0;
@@ -10,29 +8,12 @@ pub type Change = (f64, Option<bool>);
 /// What a real thing did: a file of comma-separated values `time_s,state`, one line per change. A first line with neither a
 /// time nor a state holds titles.
 ///
-/// A state is 0, 1 or nan (not recorded). Lines that begin with `#` are comments, in which `end_s=` and `split_s=` may state
-/// when the recording ended, and where its part for learning ends.
+/// A state is 0, 1 or nan (not recorded). Lines that begin with `#` are comments.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recording {
     /// The changes in the order of time; at least one.
     pub changes: Vec<Change>,
-    /// When the recording ended, s, if the file states it.
-    pub end_s: Option<f64>,
-    /// Where the part for learning ends, s, if the file states it.
-    pub split_s: Option<f64>,
 }
-
-/// Why a recording is invalid.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct RecordedError(String);
-
-impl Display for RecordedError {
-    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        formatter.write_str(&self.0)
-    }
-}
-
-impl std::error::Error for RecordedError {}
 
 impl Recording {
     /// Reads the text of a file.
@@ -41,37 +22,18 @@ impl Recording {
     ///
     /// When a line is not `time_s,state`, time goes backwards, the recording is longer than ten years or has no change. The
     /// message names the line, and what is valid.
-    pub fn parse(text: &str) -> Result<Self, RecordedError> {
-        let changes = changes(text).map_err(RecordedError)?;
+    pub fn parse(text: &str) -> Result<Self, String> {
+        let changes = changes(text)?;
         if changes.is_empty() {
-            return Err(RecordedError("no events".to_owned()));
+            return Err("no events".to_owned());
         }
-        let head = |key: &str| -> Option<f64> {
-            let words = text.lines().filter(|line| line.starts_with('#')).flat_map(str::split_whitespace);
-            words.filter_map(|word| word.strip_prefix(key)).find_map(|value| value.parse().ok())
-        };
-        Ok(Self { end_s: head("end_s="), split_s: head("split_s="), changes })
-    }
-
-    /// When the recording began, s.
-    pub fn start_s(&self) -> f64 {
-        self.changes[0].0
-    }
-
-    /// When the last change happened, s.
-    pub fn last_s(&self) -> f64 {
-        self.changes[self.changes.len() - 1].0
-    }
-
-    /// The latest time at which a recording that began with this one can end, s.
-    pub fn limit_s(&self) -> f64 {
-        self.start_s() + MAX_YEARS * YEAR_S
+        Ok(Self { changes })
     }
 
     /// The changes with times that begin at 0, s. Where nothing was recorded, the last state stays.
     pub fn known_changes(&self) -> Vec<(f64, bool)> {
-        let known =
-            self.changes.iter().filter_map(|(time_s, state)| Some((time_s - self.start_s(), (*state)?)));
+        let start_s = self.changes[0].0;
+        let known = self.changes.iter().filter_map(|(time_s, state)| Some((time_s - start_s, (*state)?)));
         let mut changes: Vec<(f64, bool)> = Vec::new();
         for (time_s, is_blocked) in known {
             if changes.last().map_or(is_blocked, |(_, before)| *before != is_blocked) {
@@ -139,7 +101,7 @@ mod tests {
         for (first, found) in
             [("x,1", "x,1"), ("0,2", "0,2"), ("inf,0", "inf,0"), ("time_s,state\nx,y", "x,y")]
         {
-            let error = Recording::parse(&format!("{first}\n60,0\n")).unwrap_err().to_string();
+            let error = Recording::parse(&format!("{first}\n60,0\n")).unwrap_err();
             assert!(
                 error.contains("expected `time_s,state`") && error.ends_with(&format!("`{found}`")),
                 "{error}"

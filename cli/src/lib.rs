@@ -2,7 +2,6 @@
 //! as a bag. It must not know the simulator.
 
 pub mod bag;
-pub mod busy;
 pub mod flags;
 pub mod program;
 pub mod progress;

@@ -138,10 +138,6 @@ where
     PossibleValuesParser::new(all.iter().map(name)).try_map(|name| name.parse::<T>())
 }
 
-/// What other purposes gain over the default one, measured in `docs/strategies.md` and `docs/houses.md`.
-pub const PURPOSE_GAIN: &str = "--purpose learn-rates (information-gain) has 0.64 to 0.69 of the rate error of curious in grid \
-                                worlds with blocks, 1.13 to 1.23 times in those with a calendar, and 3 % more in houses";
-
 /// A parser of the name of a strategy, one of `all`. `describe`
 /// gives the name and the description of a strategy.
 pub fn strategy_of<T>(

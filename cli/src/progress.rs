@@ -39,9 +39,9 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// A run of `duration_s` of simulated time.
-    pub fn of_time(duration_s: f64, is_quiet: bool) -> Self {
-        Self::new(milliseconds(duration_s), OF_TIME, FIRST, is_quiet)
+    /// A run of `duration_s` of simulated time. `is_raw`: the keyboard pilot uses the terminal.
+    pub fn of_time(duration_s: f64, is_quiet: bool, is_raw: bool) -> Self {
+        Self::new(milliseconds(duration_s), OF_TIME, FIRST, is_quiet, is_raw)
     }
 
     /// The same, of a run that goes on from a simulated time.
@@ -53,7 +53,7 @@ impl Progress {
 
     /// A number of `what`: trials, or scans of a log.
     pub fn of_count(count: usize, what: &'static str, is_quiet: bool) -> Self {
-        let progress = Self::new(count as u64, OF_COUNT, LINE_EVERY, is_quiet);
+        let progress = Self::new(count as u64, OF_COUNT, LINE_EVERY, is_quiet, false);
         progress.bar.set_prefix(what);
         if progress.kind == Kind::Bar {
             progress.bar.enable_steady_tick(BAR_EVERY); // The time left changes during long trials.
@@ -61,10 +61,21 @@ impl Progress {
         progress
     }
 
-    fn new(length: u64, template: &str, first: Duration, is_quiet: bool) -> Self {
+    /// Work of a length that is not known: a spinner in a terminal, nothing elsewhere.
+    pub fn of_work(what: String, is_quiet: bool) -> Self {
+        let is_hidden = is_quiet || !stderr().is_terminal();
+        let progress = Self::new(0, OF_WORK, LINE_EVERY, is_hidden, false);
+        progress.bar.set_message(what);
+        if progress.kind == Kind::Bar {
+            progress.bar.enable_steady_tick(BAR_EVERY);
+        }
+        progress
+    }
+
+    fn new(length: u64, template: &str, first: Duration, is_quiet: bool, is_raw: bool) -> Self {
         let (kind, target) = if is_quiet {
             (Kind::Silent, ProgressDrawTarget::hidden())
-        } else if stderr().is_terminal() {
+        } else if stderr().is_terminal() && !is_raw {
             (Kind::Bar, ProgressDrawTarget::stderr())
         } else {
             (Kind::Lines, ProgressDrawTarget::hidden())
@@ -170,6 +181,7 @@ fn milliseconds(time_s: f64) -> u64 {
 
 const OF_TIME: &str = "{done:>3} % {wide_bar} {msg}, {left}";
 const OF_COUNT: &str = "{done:>3} % {wide_bar} {pos} of {len} {prefix}, {left}";
+const OF_WORK: &str = "{spinner} {msg}, {elapsed} so far";
 
 fn bar(length: u64, template: &str, target: ProgressDrawTarget) -> ProgressBar {
     let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());

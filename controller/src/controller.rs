@@ -4,8 +4,7 @@ use crate::drives::Drive;
 use crate::dynamic_obstacles::DynamicObstacleFilter;
 use crate::navigation::{LocalExploration, NavigationTask, Progress, Surroundings, Tick, random_step};
 use crate::planner::{Path, Planner};
-use crate::settings::Settings;
-use interfaces::{CellState, Grid, RandomStream, SettingsError, Values, values};
+use interfaces::{CellState, Grid, RandomStream, Values, values};
 use nalgebra::Point2;
 
 /// Drives the robot to a goal and explores around it (paper, section 2).
@@ -14,8 +13,9 @@ use nalgebra::Point2;
 /// commands. All random numbers come from the stream given at construction.
 #[derive(Clone, Debug)]
 pub struct Controller<D: Drive> {
-    settings: Settings,
     drive: D,
+    /// The maximum number of steps of local exploration.
+    max_steps: u32,
     rng: RandomStream,
     surroundings: Option<Surroundings>,
     state: State,
@@ -28,14 +28,14 @@ pub struct Controller<D: Drive> {
 #[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
 enum State {
     Idle,
-    /// A goal that was set since the last tick.
+    /// A goal that was set since the last tick; with `watch`, the robot stops there for this duration, s (steps in a grid world).
     New {
         goal: Point2<f64>,
-        at_goal: AtGoal,
+        watch: Option<f64>,
     },
     Travelling {
         task: NavigationTask,
-        at_goal: AtGoal,
+        watch: Option<f64>,
     },
     Exploring {
         done: Done,
@@ -49,14 +49,6 @@ enum State {
     Finished(Done),
 }
 
-/// What the robot does at the goal.
-#[derive(Clone, Copy, Debug, serde::Deserialize, serde::Serialize)]
-enum AtGoal {
-    Explore,
-    /// Stop for this duration, s (steps in a grid world).
-    Watch(f64),
-}
-
 /// A goal, and the outcome of the navigation to it.
 #[derive(Clone, Copy, Debug, serde::Deserialize, serde::Serialize)]
 struct Done {
@@ -65,15 +57,10 @@ struct Done {
 }
 
 impl<D: Drive> Controller<D> {
-    /// A controller without a goal.
-    ///
-    /// # Errors
-    ///
-    /// When a setting is out of range or contradicts another; the error names it.
-    pub fn new(settings: Settings, drive: D, rng: RandomStream) -> Result<Self, SettingsError> {
-        settings.check()?;
+    /// A controller without a goal, with at most this number of steps of local exploration at a goal; 42 in the paper.
+    pub fn new(drive: D, max_steps: u32, rng: RandomStream) -> Self {
         let (state, path) = (State::Idle, Path::default());
-        Ok(Self { settings, drive, rng, surroundings: None, state, path, last_change: None })
+        Self { drive, max_steps, rng, surroundings: None, state, path, last_change: None }
     }
 }
 
@@ -81,8 +68,7 @@ impl<D: Drive> Driver for Controller<D> {
     type Command = D::Command;
 
     fn set_goal(&mut self, goal: Point2<f64>, watch: Option<f64>) {
-        let at_goal = watch.map_or(AtGoal::Explore, |duration| AtGoal::Watch(duration.max(0.0)));
-        self.state = State::New { goal, at_goal };
+        self.state = State::New { goal, watch: watch.map(|duration| duration.max(0.0)) };
         self.path.clear();
     }
 
@@ -107,15 +93,14 @@ impl<D: Drive> Driver for Controller<D> {
             self.last_change = Some((change, input.time));
         }
         let mut surroundings = self.update_surroundings(input);
-        let settings = self.settings.navigation;
-        let tick = &mut Tick { settings: &settings, input, surroundings: &mut surroundings };
+        let tick = &mut Tick { input, surroundings: &mut surroundings };
         let command = match std::mem::replace(&mut self.state, State::Idle) {
             State::Idle => self.drive.rest(&tick.scene()),
-            State::New { goal, at_goal } => {
-                let task = NavigationTask::new(input, goal, f64::INFINITY, settings.goal_timeout_s);
-                self.travel(tick, task, at_goal)
+            State::New { goal, watch } => {
+                let task = NavigationTask::new(input, goal, f64::INFINITY, self.drive.body().goal_timeout_s);
+                self.travel(tick, task, watch)
             }
-            State::Travelling { task, at_goal } => self.travel(tick, task, at_goal),
+            State::Travelling { task, watch } => self.travel(tick, task, watch),
             State::Exploring { done, exploration, step } => self.explore(tick, done, exploration, step),
             State::Watching { done, until } => self.watch(tick, done, until),
             State::Finished(done) => self.finish(tick, done),
@@ -126,10 +111,9 @@ impl<D: Drive> Driver for Controller<D> {
 
     fn pause(&mut self, input: &ControlInput, looks_around: bool) -> D::Command {
         let mut surroundings = self.update_surroundings(input);
-        let settings = self.settings.navigation;
-        let scene = Tick { settings: &settings, input, surroundings: &mut surroundings };
-        let scene = &scene.scene();
-        let command = if looks_around { self.drive.look_around(scene) } else { self.drive.rest(scene) };
+        let tick = Tick { input, surroundings: &mut surroundings };
+        let rests = if looks_around { D::look_around } else { D::rest };
+        let command = rests(&mut self.drive, &tick.scene());
         self.surroundings = Some(surroundings);
         command
     }
@@ -157,7 +141,7 @@ impl<D: Drive> Driver for Controller<D> {
         (self.surroundings, self.last_change) = (None, None);
         self.path.clear();
         self.state = match std::mem::replace(&mut self.state, State::Idle) {
-            State::Travelling { task, at_goal } => State::New { goal: *task.goal(), at_goal },
+            State::Travelling { task, watch } => State::New { goal: *task.goal(), watch },
             State::Exploring { done, .. } => State::Finished(done),
             other => other,
         };
@@ -170,9 +154,10 @@ impl<D: Drive> Driver for Controller<D> {
     fn values(&mut self, map: &Grid<CellState>) -> Values<'_> {
         let surroundings = self.surroundings.take().unwrap_or_else(|| self.surroundings_of(map));
         let surroundings = self.surroundings.insert(surroundings);
-        let mut values = values![self.rng, self.state, self.path, self.last_change];
-        values.extend([surroundings.planner.value(), surroundings.dynamic.value()]);
-        values.extend(self.drive.values());
+        let dynamic = surroundings.dynamic.value();
+        let mut values =
+            values![self.rng, self.state, self.path, self.last_change; surroundings.planner, self.drive];
+        values.push(dynamic);
         values
     }
 }
@@ -196,14 +181,14 @@ impl<D: Drive> Controller<D> {
 
     fn surroundings_of(&self, map: &Grid<CellState>) -> Surroundings {
         let body = self.drive.body();
-        let planner = Planner::new(&self.settings.inflation, body.radius_m, body.moves, map);
+        let planner = Planner::new(&body.inflation, body.radius_m, body.moves, map);
         Surroundings { planner, dynamic: DynamicObstacleFilter::new(map) }
     }
 
-    fn travel(&mut self, tick: &mut Tick, mut task: NavigationTask, at_goal: AtGoal) -> D::Command {
+    fn travel(&mut self, tick: &mut Tick, mut task: NavigationTask, watch: Option<f64>) -> D::Command {
         let outcome = match task.drive(tick, &mut self.path, &mut self.drive) {
             Progress::Underway(command) => {
-                self.state = State::Travelling { task, at_goal };
+                self.state = State::Travelling { task, watch };
                 return command;
             }
             Progress::Arrived(end) if end.is_goal => Outcome::Reached,
@@ -211,10 +196,10 @@ impl<D: Drive> Controller<D> {
             Progress::GivenUp => Outcome::GivenUp,
         };
         let done = Done { goal: *task.goal(), outcome };
-        match at_goal {
+        match watch {
             _ if outcome == Outcome::GivenUp => self.finish(tick, done),
-            AtGoal::Explore => self.step(tick, done, LocalExploration::default()),
-            AtGoal::Watch(duration) => self.watch(tick, done, tick.input.time + duration),
+            None => self.step(tick, done, LocalExploration::default()),
+            Some(duration) => self.watch(tick, done, tick.input.time + duration),
         }
     }
 
@@ -252,7 +237,7 @@ impl<D: Drive> Controller<D> {
         let change = self.last_change.filter(is_new).map(|(change, _)| change);
         let costmap = tick.surroundings.planner.costmap();
         let random = || random_step(&body, costmap, &input.position(), &mut self.rng);
-        let Some(target) = exploration.next(&self.settings.exploration, change, random) else {
+        let Some(target) = exploration.next(self.max_steps, change, random) else {
             return self.finish(tick, done);
         };
         let mut step = NavigationTask::new(input, target, body.step_m, body.step_limit_s);

@@ -1,5 +1,5 @@
 use crate::ControlInput;
-use interfaces::{Cell, CellState, Grid, SparseCells, Value, ValueError, converted};
+use interfaces::{Cell, CellState, Grid, Value, cell_runs};
 use nalgebra::Point2;
 
 /// The time for which a cell counts as dynamic after a change in or beside it, s.
@@ -21,20 +21,9 @@ impl DynamicObstacleFilter {
         Self { changed_at: map.map(|_| f64::NEG_INFINITY) }
     }
 
-    /// The times of the changes. A change longer ago than [`MEMORY_S`] counts no more.
+    /// The times of the changes.
     pub(crate) fn value(&mut self) -> Box<dyn Value + '_> {
-        let recent = |times: &SparseCells<f64>| -> Vec<(usize, f64)> {
-            let last = times.stored_values().copied().fold(f64::NEG_INFINITY, f64::max);
-            let is_recent = |(_, time): &(usize, f64)| time.is_finite() && last - time <= MEMORY_S;
-            times.stored().map(|(index, time)| (index, *time)).filter(is_recent).collect()
-        };
-        converted(self.changed_at.cells_mut(), recent, |times, recent| {
-            times.stored_values_mut().for_each(|time| *time = f64::NEG_INFINITY);
-            for (index, time) in recent {
-                *times.get_mut(index).ok_or(ValueError)? = time;
-            }
-            Ok(())
-        })
+        cell_runs(self.changed_at.cells_mut(), usize::MAX)
     }
 
     /// Applies the changes of this update.

@@ -16,7 +16,6 @@ mod drives;
 mod dynamic_obstacles;
 mod navigation;
 mod planner;
-mod settings;
 #[cfg(test)]
 mod tests;
 
@@ -29,4 +28,3 @@ pub use planner::{
     Costmap, DIAGONAL, FREE, Inflation, InflationSettings, LETHAL, MAX_COST, Moves, Path, PlanEnd, Planner,
     STRAIGHT, Wavefront,
 };
-pub use settings::{ExplorationSettings, NavigationSettings, Settings};

@@ -98,6 +98,11 @@ impl Canvas {
         }
     }
 
+    /// Width and height, pixels.
+    pub fn size(&self) -> [u32; 2] {
+        self.size
+    }
+
     /// The rows from the top; red, green and blue of every pixel.
     pub fn pixels(&self) -> &[u8] {
         &self.pixels
@@ -120,6 +125,20 @@ impl Canvas {
             Ok(writer.finish()?)
         })
     }
+}
+
+/// A PNG file with a palette, and an index in it for every pixel.
+pub fn png_of_palette([width, height]: [u32; 2], colors: &[Rgb], pixels: &[u8]) -> Vec<u8> {
+    let mut file = Vec::new();
+    let mut encoder = png::Encoder::new(&mut file, width, height);
+    encoder.set_color(png::ColorType::Indexed);
+    encoder.set_palette(colors.concat());
+    encoder.set_compression(png::Compression::Balanced);
+    encoder.set_filter(png::Filter::NoFilter);
+    // Into memory, with as many pixels as the header says: nothing can fail.
+    let written = encoder.write_header().and_then(|mut writer| writer.write_image_data(pixels));
+    debug_assert!(written.is_ok(), "{written:?}");
+    file
 }
 
 /// Reduces the picture: every square of pixels becomes its mean.

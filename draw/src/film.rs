@@ -6,7 +6,7 @@ use crate::legend;
 use crate::outline::field_of_view;
 use crate::palette::{self, Rgb};
 use crate::panel::{Chart, Panel, pair};
-use crate::scene::{Scene, Sight, TimeUnit};
+use crate::scene::Scene;
 use crate::trajectory::line;
 use crate::view::{Trail, View};
 use crate::{ground, plan};
@@ -32,7 +32,7 @@ const SAME: u8 = 255;
 pub struct Film {
     file: UnfinishedFile,
     scene: Scene,
-    duration: f64,
+    duration_s: f64,
     panels: [Panel; 2],
     colors: Colors,
     frames: Vec<Frame<'static>>,
@@ -41,11 +41,10 @@ pub struct Film {
 }
 
 impl Film {
-    /// A moving picture of a run in `scene`, to be written to a GIF file; `duration` is in the unit of time of the
-    /// scene.
-    pub fn new(file: UnfinishedFile, scene: Scene, duration: f64) -> Self {
-        let panels = [false, true].map(|has_bar| Panel::of_film(&scene.frame, scene.unit, has_bar));
-        Self { file, scene, duration, panels, colors: Colors::new(), frames: Vec::new(), last: Vec::new() }
+    /// A moving picture of a run in `scene`, to be written to a GIF file.
+    pub fn new(file: UnfinishedFile, scene: Scene, duration_s: f64) -> Self {
+        let panels = [false, true].map(|has_bar| Panel::of_film(&scene.frame, has_bar));
+        Self { file, scene, duration_s, panels, colors: Colors::new(), frames: Vec::new(), last: Vec::new() }
     }
 
     /// Adds the present state of the run, with the trails of the robots. Frames are frequent at the start, when
@@ -57,7 +56,7 @@ impl Film {
     pub fn add(&mut self, view: &View, trails: &[Trail]) -> Result<(), PictureError> {
         let part = self.frames.len() as f64 / f64::from(FRAMES - 1);
         let due = BEGIN + (1.0 - BEGIN) * part * part.sqrt();
-        if view.time < self.duration * due || self.frames.len() >= FRAMES as usize {
+        if view.time_s < self.duration_s * due || self.frames.len() >= FRAMES as usize {
             return Ok(());
         }
         let size = self.size();
@@ -99,20 +98,27 @@ impl Film {
     fn draw(&self, area: &Area, view: &View, trails: &[Trail]) -> Result<(), String> {
         let [left, right] = &self.panels;
         let (first, second) = area.split_horizontally(px(left.size()[0]));
-        let title = format!("{}: the map after {}", self.scene.title, duration(view.time, self.scene.unit));
+        let time_s = view.time_s as u64;
+        let title = format!("{}: the map after {} min {:02} s", self.scene.title, time_s / 60, time_s % 60);
         let (chart, legend) = left.axes(&first, &title)?;
-        left.cells(&chart, Layer::Occupancy, &Layer::Occupancy.classes(view.mapper, self.scene.unit))?;
+        left.cells(&chart, Layer::Occupancy, &Layer::Occupancy.classes(view.mapper))?;
         self.robots(left, &chart, view, trails)?;
         left.frame(&chart)?;
         left.legend(&legend, &legend::of_run(&self.scene, view))?;
-        let chart = right.layer(&second, view.mapper, Layer::Interval, self.scene.unit)?;
+        let chart = right.layer(&second, view.mapper, Layer::Interval)?;
         doors(right, &chart, view.mapper)
     }
 
     /// Draws what is on the map: the field of view, what moves, the plan, and the robots with their trails.
-    fn robots(&self, panel: &Panel, chart: &Chart, view: &View, trails: &[Trail]) -> Result<(), String> {
+    fn robots(
+        &self,
+        panel: &Panel,
+        chart: &Chart<impl DrawingBackend>,
+        view: &View,
+        trails: &[Trail],
+    ) -> Result<(), String> {
         let plot = chart.plotting_area();
-        if let Some(Sight::Laser(reading)) = view.sight() {
+        if let Some(reading) = view.sight() {
             let corners: Vec<(f64, f64)> = field_of_view(reading).iter().map(pair).collect();
             plot.draw(&Polygon::new(corners, ink(palette::SENSOR).mix(0.25).filled())).map_err(why)?;
         }
@@ -137,7 +143,7 @@ impl Film {
 }
 
 /// Writes beside every door that opened twice in view how often it opens.
-fn doors(panel: &Panel, chart: &Chart, mapper: &Mapper) -> Result<(), String> {
+fn doors(panel: &Panel, chart: &Chart<impl DrawingBackend>, mapper: &Mapper) -> Result<(), String> {
     let plot = chart.plotting_area();
     let (area, rows) = (plot.use_screen_coord(), plot.get_pixel_range().1);
     for thing in mapper.things() {
@@ -162,14 +168,6 @@ fn doors(panel: &Panel, chart: &Chart, mapper: &Mapper) -> Result<(), String> {
 /// A time in the largest unit that keeps two digits: 40 s, 12 min.
 fn period(time_s: f64) -> String {
     if time_s < 100.0 { format!("{time_s:.0} s") } else { format!("{:.0} min", time_s / 60.0) }
-}
-
-/// A duration as text: 3 min 20 s, 150 steps.
-fn duration(time: f64, unit: TimeUnit) -> String {
-    match unit {
-        TimeUnit::Second => format!("{} min {:02} s", time as u64 / 60, time as u64 % 60),
-        TimeUnit::Step => format!("{time} steps"),
-    }
 }
 
 /// The part of a picture that differs from the picture before.

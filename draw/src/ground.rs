@@ -9,7 +9,7 @@ use nalgebra::Point2;
 use plotters::prelude::*;
 
 /// Draws everything except the robots.
-pub(crate) fn draw(chart: &Chart, scene: &Scene) -> Result<(), String> {
+pub(crate) fn draw(chart: &Chart<impl DrawingBackend>, scene: &Scene) -> Result<(), String> {
     let swept = scene.obstacles.iter().flat_map(|obstacle| &obstacle.reach);
     swept.into_iter().try_for_each(|outline| fill(chart, outline, palette::SWEPT))?;
     scene.walls.iter().try_for_each(|wall| fill(chart, wall, palette::WALL))?;
@@ -29,7 +29,11 @@ pub(crate) fn entries(scene: &Scene) -> Legend {
 }
 
 /// Fills a polygon.
-pub(crate) fn fill(chart: &Chart, corners: &[Point2<f64>], color: Rgb) -> Result<(), String> {
+pub(crate) fn fill(
+    chart: &Chart<impl DrawingBackend>,
+    corners: &[Point2<f64>],
+    color: Rgb,
+) -> Result<(), String> {
     let corners: Vec<(f64, f64)> = corners.iter().map(pair).collect();
     chart.plotting_area().draw(&Polygon::new(corners, ink(color).filled())).map_err(why)
 }

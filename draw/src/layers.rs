@@ -2,7 +2,6 @@
 //! recording and the pictures use the same layers, so that a color has the same meaning in both.
 
 use crate::palette::{self, Rgb};
-use crate::scene::TimeUnit;
 use interfaces::{CellState, Grid};
 use mapper::Mapper;
 
@@ -11,11 +10,11 @@ use mapper::Mapper;
 pub enum Layer {
     /// Unknown, free or blocked.
     Occupancy,
-    /// The cycle time T of equation 1 (mean duration of blocked → free → blocked), s or steps.
+    /// The cycle time T of equation 1 (mean duration of blocked → free → blocked), s.
     Interval,
     /// The probability of a change since the cell was last seen (equation 2).
     ChangeProbability,
-    /// The time since the cell was last seen, s or steps.
+    /// The time since the cell was last seen, s.
     Recency,
     /// The probability that the cell is blocked now or later, for cells that change: the map as predicted.
     Predicted(Ahead),
@@ -28,32 +27,22 @@ pub enum Layer {
 pub enum Ahead {
     /// Now.
     Now,
-    /// In 60 s, or steps.
+    /// In 60 s.
     Minute,
-    /// In 600 s, or steps.
+    /// In 600 s.
     TenMinutes,
-    /// In 3600 s, or steps.
+    /// In 3600 s.
     Hour,
 }
 
 impl Ahead {
-    /// The time, s or steps.
-    fn time(self) -> f64 {
+    /// The time, s.
+    fn time_s(self) -> f64 {
         match self {
             Self::Now => 0.0,
             Self::Minute => 60.0,
             Self::TenMinutes => 600.0,
             Self::Hour => 3600.0,
-        }
-    }
-
-    fn words(self, unit: TimeUnit) -> String {
-        match (self, unit) {
-            (Self::Now, _) => "now".into(),
-            (_, TimeUnit::Step) => format!("in {} steps", self.time()),
-            (Self::Minute, TimeUnit::Second) => "in 1 min".into(),
-            (Self::TenMinutes, TimeUnit::Second) => "in 10 min".into(),
-            (Self::Hour, TimeUnit::Second) => "in 1 h".into(),
         }
     }
 }
@@ -123,59 +112,47 @@ impl Layer {
         Self::Predicted(Ahead::Hour),
     ];
 
+    /// The name in entity paths and file names, and the title above the map.
+    fn words(self) -> [&'static str; 2] {
+        match self {
+            Self::Occupancy => ["occupancy", "Occupancy"],
+            Self::Interval => ["interval", "Cycle time: seconds per cycle"],
+            Self::ChangeProbability => ["change_probability", "Probability of a change since last seen"],
+            Self::Recency => ["recency", "Recency: seconds since last seen"],
+            Self::Predicted(Ahead::Now) => ["predicted", "Probability of being blocked now"],
+            Self::Predicted(Ahead::Minute) => ["predicted_60", "Probability of being blocked in 1 min"],
+            Self::Predicted(Ahead::TenMinutes) => ["predicted_600", "Probability of being blocked in 10 min"],
+            Self::Predicted(Ahead::Hour) => ["predicted_3600", "Probability of being blocked in 1 h"],
+            Self::Expiry => ["expiry", "Expiry: hours for which a look counts"],
+        }
+    }
+
     /// The name in entity paths and file names.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Occupancy => "occupancy",
-            Self::Interval => "interval",
-            Self::ChangeProbability => "change_probability",
-            Self::Recency => "recency",
-            Self::Predicted(Ahead::Now) => "predicted",
-            Self::Predicted(Ahead::Minute) => "predicted_60",
-            Self::Predicted(Ahead::TenMinutes) => "predicted_600",
-            Self::Predicted(Ahead::Hour) => "predicted_3600",
-            Self::Expiry => "expiry",
-        }
+        self.words()[0]
     }
 
     /// The title above the map.
-    pub fn title(self, unit: TimeUnit) -> String {
-        match self {
-            Self::Occupancy => "Occupancy".into(),
-            Self::Interval => format!("Cycle time: {} per cycle", unit.plural()),
-            Self::ChangeProbability => "Probability of a change since last seen".into(),
-            Self::Recency => format!("Recency: {} since last seen", unit.plural()),
-            Self::Predicted(ahead) => {
-                format!("Probability of being blocked {}", ahead.words(unit))
-            }
-            Self::Expiry => "Expiry: hours for which a look counts".into(),
-        }
+    pub fn title(self) -> &'static str {
+        self.words()[1]
     }
 
     /// The scale of the color bar; `None` for the occupancy.
-    pub fn scale(self, unit: TimeUnit) -> Option<Scale> {
-        let (low, high, ticks): (_, _, &[f64]) = match (self, unit) {
-            (Self::Occupancy, _) => return None,
+    pub fn scale(self) -> Option<Scale> {
+        let (low, high, is_log, ticks): (_, _, _, &[f64]) = match self {
+            Self::Occupancy => return None,
             // Typical causes are a door, a passing robot, a chair: two decades around half a minute.
-            (Self::Interval, TimeUnit::Second) => (5.0, 500.0, &[5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0]),
-            // From a block that moves in every step to a block that stands for hundreds of steps.
-            (Self::Interval, TimeUnit::Step) => (5.0, 2000.0, &[5.0, 20.0, 50.0, 200.0, 500.0, 2000.0]),
-            (Self::ChangeProbability | Self::Predicted(_), _) => (0.0, 1.0, &[0.0, 0.25, 0.5, 0.75, 1.0]),
-            (Self::Expiry, _) => (0.01, 672.0, &[0.01, 0.1, 1.0, 10.0, 100.0]),
-            (Self::Recency, TimeUnit::Second) => (1.0, 1000.0, &[1.0, 10.0, 100.0, 1000.0]),
-            (Self::Recency, TimeUnit::Step) => (1.0, 5000.0, &[1.0, 10.0, 100.0, 1000.0]),
+            Self::Interval => (5.0, 500.0, true, &[5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0]),
+            Self::ChangeProbability | Self::Predicted(_) => (0.0, 1.0, false, &[0.0, 0.25, 0.5, 0.75, 1.0]),
+            Self::Expiry => (0.01, 672.0, true, &[0.01, 0.1, 1.0, 10.0, 100.0]),
+            Self::Recency => (1.0, 1000.0, true, &[1.0, 10.0, 100.0, 1000.0]),
         };
-        Some(Scale {
-            low,
-            high,
-            is_log: !matches!(self, Self::ChangeProbability | Self::Predicted(_)),
-            ticks,
-        })
+        Some(Scale { low, high, is_log, ticks })
     }
 
     /// The class of every cell of the map.
-    pub fn classes(self, mapper: &Mapper, unit: TimeUnit) -> Grid<u8> {
-        if let Some(scale) = self.scale(unit).filter(|_| self == Self::Recency) {
+    pub fn classes(self, mapper: &Mapper) -> Grid<u8> {
+        if let Some(scale) = self.scale().filter(|_| self == Self::Recency) {
             // Every cell that was seen has a value.
             let mut classes = Grid::filled(*mapper.frame(), UNKNOWN);
             for index in mapper.seen() {
@@ -183,11 +160,11 @@ impl Layer {
             }
             return classes;
         }
-        self.classes_of(mapper, unit, |index| {
+        self.classes_of(mapper, |index| {
             let interval = mapper.interval(index);
             interval.is_finite().then(|| match self {
                 Self::Interval => interval,
-                Self::Predicted(ahead) => mapper.blocked_probability_later(index, ahead.time()),
+                Self::Predicted(ahead) => mapper.blocked_probability_later(index, ahead.time_s()),
                 Self::Expiry => f64::NAN,
                 _ => mapper.change_probability(index),
             })
@@ -195,14 +172,9 @@ impl Layer {
     }
 
     /// The class of every cell, by the values of those that ever changed.
-    pub fn classes_of(
-        self,
-        mapper: &Mapper,
-        unit: TimeUnit,
-        value: impl Fn(usize) -> Option<f64>,
-    ) -> Grid<u8> {
+    pub fn classes_of(self, mapper: &Mapper, value: impl Fn(usize) -> Option<f64>) -> Grid<u8> {
         let mut classes = mapper.states().map(|state| plain(*state));
-        let Some(scale) = self.scale(unit) else { return classes };
+        let Some(scale) = self.scale() else { return classes };
         for index in mapper.changed() {
             if let Some(value) = value(index) {
                 classes.cells_mut()[index] = scale.class(value);
@@ -257,11 +229,10 @@ impl Layer {
     }
 
     /// Every class that a cell can have, with its meaning.
-    pub fn legend(self, unit: TimeUnit) -> Vec<(u8, String)> {
+    pub fn legend(self) -> Vec<(u8, String)> {
         let plain = self.plain_legend().into_iter();
         let mut legend: Vec<(u8, String)> = plain.map(|(class, text)| (class, text.into())).collect();
-        if let Some(scale) = self.scale(unit) {
-            let symbol = unit.symbol();
+        if let Some(scale) = self.scale() {
             legend.extend((0..STEPS).map(|step| {
                 let edge = |step: u8| scale.value(f64::from(step) / f64::from(STEPS));
                 let (from, to) = (edge(step), edge(step + 1));
@@ -269,9 +240,9 @@ impl Layer {
                     Self::ChangeProbability | Self::Predicted(_) => {
                         format!("{:.0}–{:.0} %", 100.0 * from, 100.0 * to)
                     }
-                    _ if step == STEPS - 1 => format!("{from:.0} {symbol} or more"),
-                    _ if to < 20.0 => format!("{from:.1}–{to:.1} {symbol}"),
-                    _ => format!("{from:.0}–{to:.0} {symbol}"),
+                    _ if step == STEPS - 1 => format!("{from:.0} s or more"),
+                    _ if to < 20.0 => format!("{from:.1}–{to:.1} s"),
+                    _ => format!("{from:.0}–{to:.0} s"),
                 };
                 (FIRST + step, text)
             }));
@@ -292,16 +263,10 @@ fn plain(state: CellState) -> u8 {
 mod tests {
     use super::*;
 
-    const UNITS: [TimeUnit; 2] = [TimeUnit::Second, TimeUnit::Step];
-
-    fn all() -> impl Iterator<Item = (Layer, TimeUnit)> {
-        Layer::ALL.into_iter().flat_map(|layer| UNITS.map(|unit| (layer, unit)))
-    }
-
     #[test]
     fn a_scale_and_its_inverse_agree() {
-        for (layer, unit) in all() {
-            let Some(scale) = layer.scale(unit) else { continue };
+        for scale in Layer::ALL.into_iter().filter_map(Layer::scale) {
+            assert!(scale.ticks.iter().all(|tick| (scale.low..=scale.high).contains(tick)));
             for step in 0..=20 {
                 let position = f64::from(step) / 20.0;
                 assert!((scale.position(scale.value(position)) - position).abs() < 1e-12);
@@ -325,7 +290,7 @@ mod tests {
     #[test]
     fn a_cycle_of_27_s_looks_unlike_half_and_double_also_without_hues() {
         let interval = Layer::Interval;
-        let scale = interval.scale(TimeUnit::Second).unwrap();
+        let scale = interval.scale().unwrap();
         let shade = |seconds: f64| lightness(interval.color(scale.class(seconds)));
         assert!(shade(27.0) - shade(13.5) > 9.0, "{} {}", shade(27.0), shade(13.5));
         assert!(shade(54.0) - shade(27.0) > 9.0, "{} {}", shade(54.0), shade(27.0));
@@ -361,18 +326,11 @@ mod tests {
     fn every_class_has_one_meaning() {
         let mut run = crate::fake_run::FakeRun::new();
         (0..600).for_each(|_| run.step());
-        for (layer, unit) in all() {
-            let mut classes: Vec<u8> = layer.legend(unit).iter().map(|(class, _)| *class).collect();
+        for layer in Layer::ALL {
+            let mut classes: Vec<u8> = layer.legend().iter().map(|(class, _)| *class).collect();
             classes.sort_unstable();
             assert!(classes.windows(2).all(|pair| pair[0] < pair[1]));
-            assert!(layer.classes(&run.mapper, unit).cells().iter().all(|class| classes.contains(class)));
-        }
-    }
-
-    #[test]
-    fn ticks_lie_on_their_scale() {
-        for scale in all().filter_map(|(layer, unit)| layer.scale(unit)) {
-            assert!(scale.ticks.iter().all(|tick| (scale.low..=scale.high).contains(tick)));
+            assert!(layer.classes(&run.mapper).cells().iter().all(|class| classes.contains(class)));
         }
     }
 }

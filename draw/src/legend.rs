@@ -15,10 +15,6 @@ pub enum Mark {
     Cross(Rgb),
     /// A filled circle with a white rim.
     Dot(Rgb),
-    /// A circle around the curious robot.
-    Ring,
-    /// Text alone.
-    Nothing,
 }
 
 /// The entries of a legend.

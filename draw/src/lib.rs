@@ -18,7 +18,6 @@ pub mod pen;
 pub mod pictures;
 mod plan;
 pub mod scene;
-pub mod sketch;
 mod trajectory;
 pub mod view;
 

@@ -58,18 +58,6 @@ const ROBOTS: [Rgb; 5] = [OTHER_ROBOT, [136, 34, 85], [153, 153, 51], SENSOR, [5
 const OTHER_STRATEGIES: [Rgb; 5] =
     [[51, 34, 136], [17, 119, 51], [136, 34, 85], [153, 153, 51], [68, 170, 153]];
 
-/// For the things that move in a grid world: Paul Tol's light scheme, unlike the curves beside it.
-const THINGS: [Rgb; 8] = [
-    [238, 136, 102],
-    [119, 170, 221],
-    [238, 221, 136],
-    [68, 187, 153],
-    [255, 170, 187],
-    [170, 170, 0],
-    [153, 221, 255],
-    [187, 204, 51],
-];
-
 /// The color of a strategy's curve.
 pub fn strategy(name: &str) -> Rgb {
     let known = STRATEGIES.iter().find(|(known, _)| *known == name).map(|(_, color)| *color);
@@ -80,11 +68,6 @@ pub fn strategy(name: &str) -> Rgb {
 /// The colors of `count` other robots: one for each of a handful, and one for all if there are more.
 pub fn other_robots(count: usize) -> Vec<Rgb> {
     ROBOTS.get(..count).map_or_else(|| vec![OTHER_ROBOT; count], <[Rgb]>::to_vec)
-}
-
-/// The color of the cells of a thing that moves, by its index in the world.
-pub fn thing(index: usize) -> Rgb {
-    THINGS[index % THINGS.len()]
 }
 
 /// A color of the same hue, bright enough for a dark background.

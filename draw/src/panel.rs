@@ -1,11 +1,11 @@
 //! A map with a title, axes in meters, and a legend below.
 
-use crate::canvas::{Area, INK, ink, why};
+use crate::canvas::{INK, ink, px, why};
 use crate::layers::Layer;
 use crate::legend::Mark;
 use crate::palette::Rgb;
-use crate::pen::Pen;
-use crate::scene::{TimeUnit, extent};
+use crate::pen::{Pen, Sheet};
+use crate::scene::extent;
 use interfaces::{Grid, GridFrame};
 use mapper::Mapper;
 use nalgebra::Point2;
@@ -20,8 +20,7 @@ pub(crate) fn pair(point: &Point2<f64>) -> (f64, f64) {
 }
 
 /// A chart in meters.
-pub(crate) type Chart<'a, 'b> =
-    ChartContext<'a, BitMapBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
+pub(crate) type Chart<'a, DB> = ChartContext<'a, DB, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
 // All lengths in points. A panel of 280 points is legible as a third of a page of 840 pixels.
 const MARGIN: u32 = 12;
@@ -41,8 +40,6 @@ pub(crate) struct Panel {
     unit: &'static str,
     /// The width of the map, in points.
     width: u32,
-    /// The pixels of the finished picture per point.
-    scale: u32,
     pen: Pen,
     /// Entries of the legend side by side.
     columns: u32,
@@ -54,50 +51,41 @@ pub(crate) struct Panel {
 
 impl Panel {
     /// A panel for one layer of the map, a third of Figure 5.
-    pub(crate) fn of_layer(frame: &GridFrame, unit: TimeUnit) -> Self {
-        let width = (280 - Y_AXIS - MARGIN).max(enough_for(frame));
-        Self {
-            frame: *frame,
-            unit: unit.length(),
-            width,
-            scale: 2,
-            pen: Pen::of_points(2),
-            columns: 2,
-            rows: 3,
-            has_bar: true,
-        }
+    pub(crate) fn of_layer(frame: &GridFrame) -> Self {
+        Self { columns: 2, has_bar: true, ..Self::of_width(frame, 280 - Y_AXIS - MARGIN, 2, 3) }
     }
 
     /// A panel for a picture of its own, with a legend of `entries` entries.
-    pub(crate) fn of_scene(frame: &GridFrame, unit: TimeUnit, entries: usize) -> Self {
-        let rows = entries.div_ceil(3) as u32;
-        let width = 430.max(enough_for(frame));
-        Self {
-            frame: *frame,
-            unit: unit.length(),
-            width,
-            scale: 2,
-            pen: Pen::of_points(2),
-            columns: 3,
-            rows,
-            has_bar: false,
-        }
+    pub(crate) fn of_scene(frame: &GridFrame, is_grid: bool, entries: usize) -> Self {
+        let unit = if is_grid { "cells" } else { "m" };
+        Self { unit, ..Self::of_width(frame, 430, 2, entries.div_ceil(3) as u32) }
     }
 
     /// Half of a frame of the moving picture.
-    pub(crate) fn of_film(frame: &GridFrame, unit: TimeUnit, has_bar: bool) -> Self {
-        let rows = if has_bar { 2 } else { 4 };
+    pub(crate) fn of_film(frame: &GridFrame, has_bar: bool) -> Self {
         let width = 420 - Y_AXIS - MARGIN;
-        Self {
-            frame: *frame,
-            unit: unit.length(),
-            width,
-            scale: 1,
-            pen: Pen::of_points(1),
-            columns: 3,
-            rows,
-            has_bar,
-        }
+        Self { width, has_bar, ..Self::of_width(frame, width, 1, if has_bar { 2 } else { 4 }) }
+    }
+
+    /// A panel of a scene as large as possible within a width and a height in points.
+    pub(crate) fn within(
+        frame: &GridFrame,
+        is_grid: bool,
+        [width, height]: [u32; 2],
+        pen: Pen,
+        entries: usize,
+    ) -> Self {
+        let panel = Self { pen, ..Self::of_scene(frame, is_grid, entries) };
+        let around = TITLE + X_AXIS + panel.rows * ROW + MARGIN / 2;
+        let high = f64::from(height.saturating_sub(around)) / panel.proportion();
+        let width = width.saturating_sub(Y_AXIS + MARGIN).min(high as u32).max(1);
+        Self { width, ..panel }
+    }
+
+    /// A panel of at least this width, with the pixels of the finished picture per point and a number of rows of the legend.
+    fn of_width(frame: &GridFrame, least: u32, scale: u32, rows: u32) -> Self {
+        let (width, pen) = (least.max(enough_for(frame)), Pen::of_points(scale));
+        Self { frame: *frame, unit: "m", width, pen, columns: 3, rows, has_bar: false }
     }
 
     /// A length in points, in pixels to draw with.
@@ -105,25 +93,29 @@ impl Panel {
         self.pen.px(points as i32)
     }
 
-    /// The height of the map in points: the map keeps its proportions, within reason.
+    /// The height of the map divided by its width, within reason.
+    fn proportion(&self) -> f64 {
+        (self.frame.height() as f64 / self.frame.width() as f64).clamp(0.4, 2.5)
+    }
+
+    /// The height of the map in points.
     fn height(&self) -> u32 {
-        let proportion = (self.frame.height() as f64 / self.frame.width() as f64).clamp(0.4, 2.5);
-        (f64::from(self.width) * proportion).round() as u32
+        (f64::from(self.width) * self.proportion()).round() as u32
     }
 
     /// Width and height of the finished picture, pixels.
     pub(crate) fn size(&self) -> [u32; 2] {
         let legend = self.rows * ROW + if self.has_bar { BAR } else { 0 };
         [Y_AXIS + self.width + MARGIN, TITLE + self.height() + X_AXIS + legend + MARGIN / 2]
-            .map(|length| length * self.scale)
+            .map(|length| (self.px(length) / px(1)) as u32)
     }
 
     /// Draws the title and the axes. Returns the chart of the map, and the area of the legend below it.
-    pub(crate) fn axes<'a, 'b>(
+    pub(crate) fn axes<'a, DB: DrawingBackend>(
         &self,
-        area: &'a Area<'b>,
+        area: &'a Sheet<DB>,
         title: &str,
-    ) -> Result<(Chart<'a, 'b>, Area<'b>), String> {
+    ) -> Result<(Chart<'a, DB>, Sheet<DB>), String> {
         let middle = (self.px(Y_AXIS + self.width / 2), self.px(TITLE / 2));
         let style = self.pen.text(LETTERS as i32 + 1).pos(Pos::new(HPos::Center, VPos::Center));
         area.draw_text(title, &style, middle).map_err(why)?;
@@ -160,13 +152,20 @@ impl Panel {
         Ok((chart, legend))
     }
 
+    /// The chart of a map that fills a picture.
+    pub(crate) fn bare<'a, DB: DrawingBackend>(&self, area: &'a Sheet<DB>) -> Result<Chart<'a, DB>, String> {
+        let (from, size) = extent(&self.frame);
+        let to = from + size;
+        ChartBuilder::on(area).build_cartesian_2d(from.x..to.x, from.y..to.y).map_err(why)
+    }
+
     /// A line with a width in half points.
     pub(crate) fn line(&self, color: RGBColor, width: u32) -> ShapeStyle {
-        color.stroke_width(width * self.scale)
+        color.stroke_width(self.px(width) as u32 / 2)
     }
 
     /// Draws a line around the map.
-    pub(crate) fn frame(&self, chart: &Chart) -> Result<(), String> {
+    pub(crate) fn frame(&self, chart: &Chart<impl DrawingBackend>) -> Result<(), String> {
         let (from, size) = extent(&self.frame);
         let to = from + size;
         let border = Rectangle::new([(from.x, from.y), (to.x, to.y)], self.line(INK, 1));
@@ -174,7 +173,11 @@ impl Panel {
     }
 
     /// Draws the entries of the legend.
-    pub(crate) fn legend(&self, legend: &Area, entries: &[(Mark, String)]) -> Result<(), String> {
+    pub(crate) fn legend(
+        &self,
+        legend: &Sheet<impl DrawingBackend>,
+        entries: &[(Mark, String)],
+    ) -> Result<(), String> {
         let column = (self.width + Y_AXIS) / self.columns;
         let top = if self.has_bar { BAR } else { 0 };
         for (index, (mark, meaning)) in (0..).zip(entries) {
@@ -187,45 +190,58 @@ impl Panel {
     }
 
     /// Draws a filled circle with a white rim; `center` in pixels of `area`.
-    pub(crate) fn dot(&self, area: &Area, center: (i32, i32), color: Rgb) -> Result<(), String> {
+    pub(crate) fn dot(
+        &self,
+        area: &Sheet<impl DrawingBackend>,
+        center: (i32, i32),
+        color: Rgb,
+    ) -> Result<(), String> {
         self.pen.dot(area, center, 5, color)
     }
 
     /// Writes a line; `at` is the middle of its left side, or of the line.
-    pub(crate) fn write(&self, area: &Area, at: (i32, i32), anchor: HPos, line: &str) -> Result<(), String> {
+    pub(crate) fn write(
+        &self,
+        area: &Sheet<impl DrawingBackend>,
+        at: (i32, i32),
+        anchor: HPos,
+        line: &str,
+    ) -> Result<(), String> {
         self.pen.write(area, at, anchor, LETTERS as i32, line)
     }
 
     /// Width and height of a line of text, in pixels to draw with.
-    pub(crate) fn text_size(&self, area: &Area, line: &str) -> Result<[i32; 2], String> {
+    pub(crate) fn text_size(
+        &self,
+        area: &Sheet<impl DrawingBackend>,
+        line: &str,
+    ) -> Result<[i32; 2], String> {
         let (width, height) = area.estimate_text_size(line, &self.pen.text(LETTERS as i32)).map_err(why)?;
         Ok([width as i32, height as i32])
     }
 
     /// Draws a layer of the map with its legend. Returns the chart of the map.
-    pub(crate) fn layer<'a, 'b>(
+    pub(crate) fn layer<'a, DB: DrawingBackend>(
         &self,
-        area: &'a Area<'b>,
+        area: &'a Sheet<DB>,
         mapper: &Mapper,
         layer: Layer,
-        unit: TimeUnit,
-    ) -> Result<Chart<'a, 'b>, String> {
-        self.classes(area, (layer, &layer.title(unit)), &layer.classes(mapper, unit), unit)
+    ) -> Result<Chart<'a, DB>, String> {
+        self.classes(area, (layer, layer.title()), &layer.classes(mapper))
     }
 
     /// Draws the classes of the cells, in the colors of a layer, with its legend. Returns the chart of the map.
-    pub(crate) fn classes<'a, 'b>(
+    pub(crate) fn classes<'a, DB: DrawingBackend>(
         &self,
-        area: &'a Area<'b>,
+        area: &'a Sheet<DB>,
         (layer, title): (Layer, &str),
         classes: &Grid<u8>,
-        unit: TimeUnit,
-    ) -> Result<Chart<'a, 'b>, String> {
+    ) -> Result<Chart<'a, DB>, String> {
         let (chart, legend) = self.axes(area, title)?;
         self.cells(&chart, layer, classes)?;
         self.frame(&chart)?;
         let mut panel = *self;
-        if let Some(scale) = layer.scale(unit) {
+        if let Some(scale) = layer.scale() {
             let (left, length) = (self.px(Y_AXIS - MARGIN), f64::from(self.px(self.width)));
             let at = |position: f64| left + (position * length) as i32;
             let (top, bottom) = (self.px(4), self.px(4 + SWATCH));
@@ -256,7 +272,12 @@ impl Panel {
     }
 
     /// Draws the cells, as few rectangles as the rows allow.
-    pub(crate) fn cells(&self, chart: &Chart, layer: Layer, classes: &Grid<u8>) -> Result<(), String> {
+    pub(crate) fn cells(
+        &self,
+        chart: &Chart<impl DrawingBackend>,
+        layer: Layer,
+        classes: &Grid<u8>,
+    ) -> Result<(), String> {
         let (from, cell_m) = (self.frame.origin(), self.frame.resolution_m());
         let mut of_row: Vec<u8> = Vec::new();
         for (row, classes) in classes.rows().enumerate() {
@@ -279,9 +300,9 @@ impl Panel {
     #[cfg(test)]
     pub(crate) fn pixel(&self, position: &Point2<f64>) -> [u32; 2] {
         let share = (position - self.frame.origin()) / self.frame.resolution_m();
-        let [width, height] = [self.width, self.height()].map(|length| f64::from(length * self.scale));
-        let x = f64::from(Y_AXIS * self.scale) + share.x / self.frame.width() as f64 * width;
-        let y = f64::from(TITLE * self.scale) + (1.0 - share.y / self.frame.height() as f64) * height;
+        let [width, height] = [self.width, self.height()].map(|length| f64::from(self.px(length) / px(1)));
+        let x = f64::from(self.px(Y_AXIS) / px(1)) + share.x / self.frame.width() as f64 * width;
+        let y = f64::from(self.px(TITLE) / px(1)) + (1.0 - share.y / self.frame.height() as f64) * height;
         [x as u32, y as u32]
     }
 }

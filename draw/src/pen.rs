@@ -2,7 +2,7 @@
 
 use crate::canvas::{FONT, INK, ink, px, register_fonts, why};
 use crate::legend::Mark;
-use crate::palette::{self, Rgb};
+use crate::palette::Rgb;
 use interfaces::printable;
 use plotters::coord::Shift;
 use plotters::prelude::*;
@@ -62,7 +62,7 @@ impl Pen {
         let style = self.text(height).pos(Pos::new(anchor, VPos::Center));
         let lower = if self.is_bitmap { self.px(height) / 4 } else { 0 };
         // XML forbids some characters, and names can have any.
-        sheet.draw_text(&printable(text), &style, (at.0, at.1 + lower)).map_err(why)
+        sheet.draw(&Text::new(printable(text), (at.0, at.1 + lower), style)).map_err(why)
     }
 
     /// Fills a rectangle.
@@ -122,10 +122,6 @@ impl Pen {
                 sheet.draw(&Cross::new(middle, half * 2 / 3, style)).map_err(why)
             }
             Mark::Dot(color) => self.dot(sheet, middle, 5, color),
-            Mark::Ring => {
-                sheet.draw(&Circle::new(middle, half, self.line(ink(palette::CURIOUS), 2))).map_err(why)
-            }
-            Mark::Nothing => Ok(()),
         }
     }
 }

@@ -7,12 +7,16 @@ pub use crate::trajectory::Trails;
 
 use crate::layers::Layer;
 use crate::panel::Panel;
-use crate::scene::{Scene, TimeUnit};
-use crate::{plan, trajectory};
+use crate::pen::{Pen, Sheet};
+use crate::scene::{Scene, extent};
+use crate::{ground, palette, plan, trajectory};
 use files::make_folder;
 use interfaces::Grid;
 use mapper::Mapper;
+use nalgebra::{Point2, Translation2};
+use plotters::prelude::DrawingBackend;
 use results::thinned::Goals;
+use std::f64::consts::TAU;
 use std::path::Path;
 
 /// The panels of Figure 5, in its order.
@@ -37,11 +41,10 @@ pub fn write_all(
 ) -> Result<(), PictureError> {
     make_folder(folder)?;
     let file = |name: &str| folder.join(format!("{name}.png"));
-    let panel = Panel::of_layer(mapper.frame(), scene.unit);
+    let panel = Panel::of_layer(mapper.frame());
     let mut panels = Vec::new();
     for &layer in layers {
-        let picture =
-            draw(layer.name(), panel.size(), |area| panel.layer(area, mapper, layer, scene.unit).map(drop))?;
+        let picture = draw(layer.name(), panel.size(), |area| panel.layer(area, mapper, layer).map(drop))?;
         if !Layer::PREDICTED.contains(&layer) {
             picture.write(&file(layer.name()))?;
         }
@@ -54,8 +57,8 @@ pub fn write_all(
             Canvas::beside(&beside).write(&folder.join(name))?;
         }
     }
-    let panel =
-        Panel::of_scene(mapper.frame(), scene.unit, trajectory::entries(scene, trails.believed, goals).len());
+    let entries = trajectory::entries(scene, trails.believed, goals).len();
+    let panel = Panel::of_scene(mapper.frame(), scene.is_grid, entries);
     let ground = scene.is_unknown().then_some(mapper);
     let draw_trails = |area: &Area| trajectory::draw(&panel, area, (scene, ground), trails, goals);
     Ok(draw("trajectory", panel.size(), draw_trails)?.write(&file("trajectory"))?)
@@ -67,9 +70,50 @@ pub fn write_all(
 ///
 /// When the picture cannot be drawn or written.
 pub fn draw_plan(path: &Path, scene: &Scene) -> Result<(), PictureError> {
-    let panel = Panel::of_scene(&scene.frame, scene.unit, plan::entries(scene).len());
+    let panel = Panel::of_scene(&scene.frame, scene.is_grid, plan::entries(scene).len());
     let picture = draw(&scene.title, panel.size(), |area| plan::draw(&panel, area, scene))?;
     Ok(picture.write(path)?)
+}
+
+/// Draws a world from above into a part of a picture.
+///
+/// # Errors
+/// As of the plotting library.
+pub fn plan_on(sheet: &Sheet<impl DrawingBackend>, pen: Pen, scene: &Scene) -> Result<(), String> {
+    let (width, height) = sheet.dim_in_pixel();
+    let size = [width, height].map(|length| length / pen.px(1) as u32);
+    let panel = Panel::within(&scene.frame, scene.is_grid, size, pen, plan::entries(scene).len());
+    plan::draw(&panel, sheet, scene)
+}
+
+/// A scene without words, on the map of the robot if there is one, with discs as goals: centers and radii, m. The longer side has
+/// `size` pixels.
+///
+/// # Errors
+/// When the picture cannot be drawn.
+pub fn bare(
+    scene: &Scene,
+    map: Option<&Mapper>,
+    goals: &[(Point2<f64>, f64)],
+    size: u32,
+) -> Result<Canvas, PictureError> {
+    let size_m = extent(&scene.frame).1;
+    let pixels_per_m = f64::from(size.clamp(16, 4096)) / size_m.max();
+    let size = [size_m.x, size_m.y].map(|length_m| (length_m * pixels_per_m).round().max(1.0) as u32);
+    let panel = Panel::of_film(&scene.frame, false);
+    draw(&scene.title, size, |area| {
+        let chart = panel.bare(area)?;
+        if let Some(map) = map {
+            panel.cells(&chart, Layer::Interval, &Layer::Interval.classes(map))?;
+        }
+        ground::draw(&chart, scene)?;
+        for (center, radius_m) in goals {
+            let disc = plan::arc(&Translation2::from(*center).into(), *radius_m, TAU);
+            ground::fill(&chart, &disc, palette::GOAL)?;
+        }
+        let mut robots = scene.robots.iter();
+        robots.try_for_each(|robot| plan::draw_robot(&panel, &chart, robot, &robot.pose, robot.radius_m))
+    })
 }
 
 /// Draws a layer of the map with other values, and named lines on it, to the PNG file `path`; NaN is drawn as what does not change.
@@ -84,12 +128,11 @@ pub fn draw_values(
     values: &Grid<f64>,
     lines: &[NamedLine],
 ) -> Result<(), PictureError> {
-    let unit = TimeUnit::Second;
-    let panel = Panel::of_layer(mapper.frame(), unit);
+    let panel = Panel::of_layer(mapper.frame());
     let classes =
-        layer.classes_of(mapper, unit, |index| Some(values.cells()[index]).filter(|value| !value.is_nan()));
+        layer.classes_of(mapper, |index| Some(values.cells()[index]).filter(|value| !value.is_nan()));
     let picture = draw(layer.name(), panel.size(), |area| {
-        let chart = panel.classes(area, (layer, title), &classes, unit)?;
+        let chart = panel.classes(area, (layer, title), &classes)?;
         plan::lines(&panel, &chart, lines)
     })?;
     Ok(picture.write(path)?)

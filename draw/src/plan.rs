@@ -1,11 +1,12 @@
 //! A world from above, at its start.
 
-use crate::canvas::{Area, ink, why};
+use crate::canvas::{ink, why};
 use crate::ground::{self, fill};
 use crate::legend::{self, Legend, Mark};
 use crate::palette;
 use crate::panel::{Chart, Panel, pair};
-use crate::scene::{Scene, SceneRobot, Sector, TimeUnit, span};
+use crate::pen::Sheet;
+use crate::scene::{Scene, SceneRobot, Sector, span};
 use nalgebra::{Isometry2, Point2};
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
@@ -29,7 +30,7 @@ pub struct NamedLine {
 }
 
 /// Draws the scene, the robots with the directions of their sensors, and the names.
-pub(crate) fn draw(panel: &Panel, area: &Area, scene: &Scene) -> Result<(), String> {
+pub(crate) fn draw(panel: &Panel, area: &Sheet<impl DrawingBackend>, scene: &Scene) -> Result<(), String> {
     let (chart, legend) = panel.axes(area, &scene.title)?;
     for robot in with_sensors(scene) {
         let mut sectors = robot.sectors.iter();
@@ -50,7 +51,7 @@ pub(crate) fn draw(panel: &Panel, area: &Area, scene: &Scene) -> Result<(), Stri
 /// Draws the body of a robot at a pose, with a line from its center to its front, m.
 pub(crate) fn draw_robot(
     panel: &Panel,
-    chart: &Chart,
+    chart: &Chart<impl DrawingBackend>,
     robot: &SceneRobot,
     pose: &Isometry2<f64>,
     front_m: f64,
@@ -77,10 +78,7 @@ fn is_crowded(scene: &Scene) -> bool {
 /// The robots whose sensors are drawn.
 fn with_sensors(scene: &Scene) -> impl Iterator<Item = &SceneRobot> {
     let is_shown = !is_crowded(scene);
-    scene
-        .robots
-        .iter()
-        .filter(move |robot| is_shown && scene.unit == TimeUnit::Second && !robot.sectors.is_empty())
+    scene.robots.iter().filter(move |robot| is_shown && !scene.is_grid && !robot.sectors.is_empty())
 }
 
 /// The outline of a robot at a pose.
@@ -102,7 +100,7 @@ fn sector(robot: &SceneRobot, sector: &Sector) -> Vec<Point2<f64>> {
 }
 
 /// Points on a circle around a pose, half of the angle on either side of its direction.
-fn arc(pose: &Isometry2<f64>, radius_m: f64, angle_rad: f64) -> Vec<Point2<f64>> {
+pub(crate) fn arc(pose: &Isometry2<f64>, radius_m: f64, angle_rad: f64) -> Vec<Point2<f64>> {
     let point = |index: usize| {
         let angle = angle_rad * (index as f64 / CORNERS as f64 - 0.5);
         pose * Point2::new(radius_m * angle.cos(), radius_m * angle.sin())
@@ -111,7 +109,7 @@ fn arc(pose: &Isometry2<f64>, radius_m: f64, angle_rad: f64) -> Vec<Point2<f64>>
 }
 
 /// Writes the names: that of an obstacle in its middle if there is room, every other name beside its owner.
-fn names(panel: &Panel, chart: &Chart, scene: &Scene) -> Result<(), String> {
+fn names(panel: &Panel, chart: &Chart<impl DrawingBackend>, scene: &Scene) -> Result<(), String> {
     let obstacles = scene.obstacles.iter().filter_map(|obstacle| {
         let outline = if obstacle.outline.is_empty() { obstacle.reach.first()? } else { &obstacle.outline };
         Some((&obstacle.name, outline.clone(), true))
@@ -140,7 +138,11 @@ fn names(panel: &Panel, chart: &Chart, scene: &Scene) -> Result<(), String> {
 }
 
 /// Draws named lines, as the leaves of doors, with the names beside their middles.
-pub(crate) fn lines(panel: &Panel, chart: &Chart, lines: &[NamedLine]) -> Result<(), String> {
+pub(crate) fn lines(
+    panel: &Panel,
+    chart: &Chart<impl DrawingBackend>,
+    lines: &[NamedLine],
+) -> Result<(), String> {
     let plot = chart.plotting_area();
     let mut names = Vec::new();
     for NamedLine { ends, name } in lines {
@@ -156,7 +158,7 @@ pub(crate) fn lines(panel: &Panel, chart: &Chart, lines: &[NamedLine]) -> Result
 /// Writes names of a size beside their owners, where nothing is `taken`.
 fn write_beside(
     panel: &Panel,
-    chart: &Chart,
+    chart: &Chart<impl DrawingBackend>,
     names: Vec<(&String, Plate, [i32; 2])>,
     mut taken: Vec<Plate>,
 ) -> Result<(), String> {

@@ -3,53 +3,19 @@
 mod log;
 
 use crate::palette::{self, Rgb};
-use interfaces::{CellReading, GridFrame, LaserReading};
+use interfaces::{GridFrame, LaserReading};
 use nalgebra::{Isometry2, Point2, Vector2};
 
 /// The corners of a polygon, m; the last corner is joined to the first.
 pub type Outline = Vec<Point2<f64>>;
-
-/// The unit of time of a run.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum TimeUnit {
-    /// Seconds of simulated time.
-    Second,
-    /// Steps of a grid world.
-    Step,
-}
-
-impl TimeUnit {
-    /// The value that belongs to the unit.
-    pub fn choose<T>(self, second: T, step: T) -> T {
-        match self {
-            Self::Second => second,
-            Self::Step => step,
-        }
-    }
-
-    /// The unit as a plural word, for titles.
-    pub fn plural(self) -> &'static str {
-        self.choose("seconds", "steps")
-    }
-
-    /// The symbol of the unit, for use after a number.
-    pub fn symbol(self) -> &'static str {
-        self.choose("s", "steps")
-    }
-
-    /// The unit of length in a world with this unit of time.
-    pub fn length(self) -> &'static str {
-        self.choose("m", "cells")
-    }
-}
 
 /// A world from above, at its start.
 #[derive(Clone, Debug)]
 pub struct Scene {
     /// The name of the world.
     pub title: String,
-    /// The unit of time.
-    pub unit: TimeUnit,
+    /// Whether it is a grid world: lengths are in cells, and robots have no heading.
+    pub is_grid: bool,
     /// The rectangle that is shown, and its cells.
     pub frame: GridFrame,
     /// The walls.
@@ -119,8 +85,6 @@ pub struct SceneRobot {
     pub corners: Outline,
     /// The areas that the range sensors of the robot cover.
     pub sectors: Vec<Sector>,
-    /// The points that the robot drives along, m; empty unless they are known at the start.
-    pub route: Vec<Point2<f64>>,
     /// Whether the robot executes commands: the curious robot, and not a part of its surroundings.
     pub is_driven: bool,
 }
@@ -146,22 +110,8 @@ pub struct Sector {
 /// The state of a robot at one time.
 #[derive(Clone, Copy, Debug)]
 pub struct RobotState<'a> {
-    /// The pose in the frame of the world, m and rad. A robot in a grid world has no heading.
+    /// The pose in the frame of the world, m and rad.
     pub pose: Isometry2<f64>,
-    /// The field of view of the curious robot; `None` for every other robot.
-    pub sight: Option<Sight<'a>>,
-}
-
-/// The field of view of a robot.
-#[derive(Clone, Copy, Debug)]
-pub enum Sight<'a> {
-    /// The latest scan of a laser.
-    Laser(&'a LaserReading),
-    /// The cells that a robot in a grid world sees.
-    Cells {
-        /// The cells that are in view now.
-        reading: &'a CellReading,
-        /// The range of the sensor, cells.
-        radius: u32,
-    },
+    /// The latest scan of the curious robot; `None` for every other robot.
+    pub sight: Option<&'a LaserReading>,
 }

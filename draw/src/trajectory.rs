@@ -32,7 +32,7 @@ pub(crate) fn draw(
 ) -> Result<(), String> {
     let (chart, legend) = panel.axes(area, &format!("Trajectories in {}", scene.title))?;
     if let Some(map) = map {
-        panel.cells(&chart, Layer::Occupancy, &Layer::Occupancy.classes(map, scene.unit))?;
+        panel.cells(&chart, Layer::Occupancy, &Layer::Occupancy.classes(map))?;
     }
     ground::draw(&chart, scene)?;
     // The other robots' trails on top: the curious robot goes everywhere.
@@ -94,7 +94,7 @@ pub(crate) fn entries(scene: &Scene, believed: &Trail, goals: &Goals) -> Legend 
 /// Draws a line step by step: the library's thick lines break where a line turns back on itself.
 pub(crate) fn line(
     panel: &Panel,
-    chart: &Chart,
+    chart: &Chart<impl DrawingBackend>,
     points: &[Point2<f64>],
     (color, width): (Rgb, u32),
 ) -> Result<(), String> {

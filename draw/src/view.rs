@@ -1,6 +1,6 @@
 //! The state of a run at one time, as plain data: the input of the recording and of the moving picture.
 
-use crate::scene::{Outline, RobotState, Sight};
+use crate::scene::{Outline, RobotState};
 use agent::Features;
 use interfaces::LaserReading;
 use mapper::Mapper;
@@ -11,9 +11,9 @@ use std::collections::VecDeque;
 
 /// The state of a run at one time.
 pub struct View<'a> {
-    /// The simulated time, in the unit of the scene.
-    pub time: f64,
-    /// The number of readings so far; in a grid world equal to the time.
+    /// The simulated time, s.
+    pub time_s: f64,
+    /// The number of readings so far.
     pub step: u64,
     /// The map and the change statistics.
     pub mapper: &'a Mapper,
@@ -42,8 +42,6 @@ pub struct Measured<'a> {
     /// The share of the cells that can be seen that was seen, and the share that is right in the map; `None` if they were not
     /// measured.
     pub coverage_and_quality: Option<[f64; 2]>,
-    /// The relative and the logarithmic error of the rates of change; `None` if they were not measured.
-    pub rate_errors: Option<[f64; 2]>,
     /// The messages since the last view.
     pub messages: &'a [Message],
 }
@@ -51,13 +49,12 @@ pub struct Measured<'a> {
 impl<'a> View<'a> {
     /// The state of a pass over a log, in which nothing but the robot is known.
     pub fn of_log(turn: &'a Turn<LaserReading, ()>, mapper: &'a Mapper) -> Self {
-        let sight = Some(Sight::Laser(&turn.reading));
         Self {
-            time: mapper.time(),
+            time_s: mapper.time(),
             step: mapper.readings() as u64,
             mapper,
             features: turn.features,
-            robots: vec![RobotState { pose: turn.reading.pose, sight }],
+            robots: vec![RobotState { pose: turn.reading.pose, sight: Some(&turn.reading) }],
             belief: None,
             obstacles: Vec::new(),
             path: &[],
@@ -73,8 +70,8 @@ impl<'a> View<'a> {
         Some((self.belief?.pose.translation.vector - curious.pose.translation.vector).norm())
     }
 
-    /// The field of view of the curious robot.
-    pub fn sight(&self) -> Option<Sight<'a>> {
+    /// The latest scan of the curious robot.
+    pub fn sight(&self) -> Option<&'a LaserReading> {
         self.robots.iter().find_map(|robot| robot.sight)
     }
 }

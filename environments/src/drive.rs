@@ -1,9 +1,10 @@
 //! Driving to goals among moving things.
 
 use crate::memory::{LAYER, Memory};
-use crate::picture::Picture;
 use crate::place::DrivePlace;
-use crate::task::{ACTIONS, Part, Results, Task, twist, write_scan, write_state};
+use crate::task::{ACTIONS, Part, Results, Task, present_scene, twist, write_scan, write_state};
+use draw::canvas::{Canvas, PictureError};
+use draw::pictures::bare;
 use interfaces::{Purpose, RandomStream, Twist, from_bytes, to_bytes};
 use nalgebra::{Point2, Vector2};
 use sim::physics::{Fleet, SnapshotError};
@@ -214,15 +215,11 @@ impl Task for Drive {
         }
     }
 
-    fn picture(&self, size: usize) -> Picture {
-        let mut picture = Picture::of(&self.fleet, size);
-        for (agent, progress) in self.agents.iter().enumerate() {
-            let goal = self.place.goal(agent, progress.goal);
-            picture.disc(&goal, self.place.settings.goal_radius_m, [60, 170, 80]);
-        }
-        let driven: Vec<usize> = self.place.robots.iter().map(|agent| agent.robot).collect();
-        picture.robots(&self.fleet, &driven);
-        picture
+    fn picture(&self, size: u32) -> Result<Canvas, PictureError> {
+        let place = &self.place;
+        let goals = self.agents.iter().enumerate().map(|(agent, of)| place.goal(agent, of.goal));
+        let goals: Vec<_> = goals.map(|goal| (goal, place.settings.goal_radius_m)).collect();
+        bare(&present_scene(&self.fleet), None, &goals, size)
     }
 
     fn snapshot(&mut self) -> Vec<u8> {

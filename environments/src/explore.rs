@@ -2,8 +2,10 @@
 
 use crate::explore_place::{ExplorePlace, One};
 use crate::patches::{LAYERS, Patches};
-use crate::picture::{Picture, size_m};
-use crate::task::{Part, Results, Task, TaskError, twist, write_scan, write_state};
+use crate::task::{Part, Results, Task, TaskError, present_scene, twist, write_scan, write_state};
+use draw::canvas::{Canvas, PictureError};
+use draw::pictures::bare;
+use draw::scene::{Scene, extent};
 use evaluation::metrics::{MAX_LOG_ERROR, mean_log_error};
 use interfaces::{
     CellState, LaserReading, Purpose, RandomStream, SparseCells, Twist, ValueError, World, from_bytes,
@@ -236,12 +238,12 @@ impl Task for Explore {
         let (state, map) = rest.split_at_mut(STATE);
         write_scan(scan, &self.reading.scan.ranges_m, self.one.range_max_m);
         let (spec, pose) = (self.world.spec(), &self.reading.pose);
-        let (drive, (width_m, height_m)) = (&spec.driven().drive, size_m(&spec.frame));
-        let at = pose.translation.vector - spec.frame.origin().coords;
+        let (drive, (origin, size_m)) = (&spec.driven().drive, extent(&spec.frame));
+        let at = pose.translation.vector - origin.coords;
         let (sin, cos) = libm::sincos(heading_rad(pose));
         let (linear, angular) = (self.reading.twist.linear_mps, self.reading.twist.angular_radps);
         let velocity = [linear / drive.max_linear_mps, angular / drive.max_angular_radps];
-        write_state(state, [at.x / width_m, at.y / height_m, cos, sin, velocity[0], velocity[1]]);
+        write_state(state, [at.x / size_m.x, at.y / size_m.y, cos, sin, velocity[0], velocity[1]]);
         map.copy_from_slice(&self.layers);
     }
 
@@ -259,18 +261,11 @@ impl Task for Explore {
         info.copy_from_slice(&values);
     }
 
-    /// The map as the robot knows it: free, blocked and changing cells, and the robots.
-    fn picture(&self, size: usize) -> Picture {
-        let (spec, mapper) = (self.world.spec(), &self.robot.mapper);
-        let mut picture = Picture::floor(&spec.frame, size);
-        picture.cells(mapper.frame(), |index| match mapper.states().cells()[index] {
-            CellState::Unknown => Some([160, 160, 165]),
-            CellState::Blocked => Some([70, 70, 75]),
-            CellState::Free if mapper.acting_rate(index) > 0.0 => Some([245, 180, 90]),
-            CellState::Free => None,
-        });
-        picture.robots(self.world.fleet(), &[spec.driven_index()]);
-        picture
+    /// The map as the robot knows it, with the cycle times of cells that change, and the robots.
+    fn picture(&self, size: u32) -> Result<Canvas, PictureError> {
+        let scene = present_scene(self.world.fleet());
+        let scene = Scene { walls: Vec::new(), obstacles: Vec::new(), ..scene };
+        bare(&scene, Some(&self.robot.mapper), &[], size)
     }
 
     fn snapshot(&mut self) -> Vec<u8> {

@@ -9,8 +9,7 @@ use nalgebra::{Isometry2, Point2};
 use robot::{NoPilot, Robot, Settings};
 use sim::physics::building_ranges::HOUSE;
 use sim::physics::{ContactModel, FleetSpec, FreePoses, PhysicsWorld, WorldSpec};
-use std::collections::BTreeMap;
-use std::sync::{Arc, Mutex, PoisonError, Weak};
+use std::sync::Arc;
 
 /// Settings of [`Explore`](crate::Explore).
 #[derive(Clone, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
@@ -66,32 +65,10 @@ pub struct ExplorePlace {
     pub(crate) beams: usize,
 }
 
-/// Worlds that are kept, or seeds of houses that are built when an episode begins in them.
+/// Worlds that are kept, or seeds of houses that are built when an episode begins in them: a hundredth of a second.
 enum Worlds {
     Kept(Vec<Arc<One>>),
-    Houses(Houses),
-}
-
-/// Houses that are built when an episode begins in them, and are shared by the episodes in them.
-struct Houses {
-    seeds: Vec<u64>,
-    /// Those that were built, by index: some are gone.
-    built: Mutex<BTreeMap<usize, Weak<One>>>,
-}
-
-impl Houses {
-    fn one(&self, number: usize, settings: &ExploreSettings) -> Result<Arc<One>, TaskError> {
-        let built = || self.built.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(one) = built().get(&number).and_then(Weak::upgrade) {
-            return Ok(one);
-        }
-        // Not while others wait: to build a house takes a hundredth of a second.
-        let one = Arc::new(One::new(&WorldSpec::generate_house(self.seeds[number]), settings)?);
-        let mut built = built();
-        built.retain(|_, one| one.strong_count() > 0);
-        built.insert(number, Arc::downgrade(&one));
-        Ok(one)
-    }
+    Houses(Vec<u64>),
 }
 
 /// A world at its start, and the settings of its robot.
@@ -120,8 +97,8 @@ impl ExplorePlace {
         let worlds = worlds.iter().map(|spec| One::new(spec, &settings)).collect::<Result<Vec<_>, _>>()?;
         let expected = worlds.first().ok_or(TaskError::NoWorld)?.beams();
         if let Some(other) = worlds.iter().find(|one| one.beams() != expected) {
-            let (world, found) = (other.world.spec().name.clone(), other.beams());
-            return Err(TaskError::OtherExplorer { world, found, expected });
+            let of = format!("the robot in `{}`", other.world.spec().name);
+            return Err(TaskError::OtherBeams { of, found: other.beams(), expected });
         }
         let patches = Patches::covering(worlds.iter().map(|one| &one.world.spec().frame));
         let worlds = Worlds::Kept(worlds.into_iter().map(Arc::new).collect());
@@ -141,15 +118,14 @@ impl ExplorePlace {
         let cell_m = first.world.spec().frame.resolution_m();
         let largest = GridFrame::covering(Point2::origin(), HOUSE.length_m[1], HOUSE.width_m[1], cell_m);
         let patches = Patches::covering(largest.iter());
-        let houses = Houses { seeds, built: Mutex::default() };
-        Ok(Self { settings, worlds: Worlds::Houses(houses), patches, beams: first.beams() })
+        Ok(Self { settings, worlds: Worlds::Houses(seeds), patches, beams: first.beams() })
     }
 
     /// The number of worlds.
     pub(crate) fn count(&self) -> usize {
         match &self.worlds {
             Worlds::Kept(worlds) => worlds.len(),
-            Worlds::Houses(houses) => houses.seeds.len(),
+            Worlds::Houses(seeds) => seeds.len(),
         }
     }
 
@@ -157,7 +133,9 @@ impl ExplorePlace {
     pub(crate) fn one(&self, number: usize) -> Result<Arc<One>, TaskError> {
         match &self.worlds {
             Worlds::Kept(worlds) => Ok(Arc::clone(&worlds[number])),
-            Worlds::Houses(houses) => houses.one(number, &self.settings),
+            Worlds::Houses(seeds) => {
+                One::new(&WorldSpec::generate_house(seeds[number]), &self.settings).map(Arc::new)
+            }
         }
     }
 }
@@ -189,22 +167,5 @@ impl One {
 
     fn beams(&self) -> usize {
         self.world.spec().driven().laser.beams
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn episodes_in_one_house_share_it_while_they_last() {
-        let place = ExplorePlace::of_houses(vec![7, 8], ExploreSettings::default()).unwrap();
-        let (one, other) = (place.one(0).unwrap(), place.one(1).unwrap());
-        assert!(Arc::ptr_eq(&one, &place.one(0).unwrap()) && !Arc::ptr_eq(&one, &other));
-        let Worlds::Houses(houses) = &place.worlds else { panic!("these are houses") };
-        drop((one, other));
-        let _again = place.one(1).unwrap();
-        let built = houses.built.lock().unwrap();
-        assert_eq!(built.keys().copied().collect::<Vec<_>>(), [1]);
     }
 }

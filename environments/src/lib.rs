@@ -27,7 +27,6 @@ mod explore;
 mod explore_place;
 mod memory;
 mod patches;
-mod picture;
 mod place;
 mod task;
 
@@ -36,7 +35,6 @@ pub use drive::Drive;
 pub use drive_settings::DriveSettings;
 pub use explore::Explore;
 pub use explore_place::{ExplorePlace, ExploreSettings};
-pub use picture::Picture;
 pub use place::DrivePlace;
 pub use task::{ACTIONS, Part, Results, Task, TaskError};
 

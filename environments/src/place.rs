@@ -2,8 +2,8 @@
 
 use crate::distance::Distances;
 use crate::drive_settings::DriveSettings;
-use crate::picture::size_m;
 use crate::task::TaskError;
+use draw::scene::extent;
 use interfaces::{GridFrame, RandomStream};
 use nalgebra::Point2;
 use sim::physics::{Fleet, FleetSpec, FreePoses};
@@ -59,9 +59,10 @@ impl DrivePlace {
         if steps < 1.0 || (steps * spec.step_s - settings.decision_s).abs() > 1e-6 {
             return Err(TaskError::Decision { decision_s: settings.decision_s, step_s: spec.step_s });
         }
-        let (width_m, height_m) = size_m(&spec.frame);
+        let size_m = extent(&spec.frame).1;
         let cell_m = spec.frame.resolution_m().max(PATH_CELL_M);
-        let frame = GridFrame::covering(spec.frame.origin(), width_m, height_m, cell_m).unwrap_or(spec.frame);
+        let frame =
+            GridFrame::covering(spec.frame.origin(), size_m.x, size_m.y, cell_m).unwrap_or(spec.frame);
         let coarse = FleetSpec { frame, ..spec.clone() };
         let driven: Vec<usize> = spec.driven_robots().collect();
         let first = driven.first().ok_or_else(|| TaskError::NoDrivenRobot { world: spec.name.clone() })?;
@@ -69,13 +70,13 @@ impl DrivePlace {
         let agent = |&robot: &usize| {
             let (name, found) = (&spec.robots[robot].name, spec.robots[robot].laser.beams);
             if found != expected {
-                return Err(TaskError::OtherBeams { robot: name.clone(), found, expected });
+                return Err(TaskError::OtherBeams { of: format!("the robot `{name}`"), found, expected });
             }
             DrivenRobot::new(&coarse, robot)
                 .ok_or_else(|| TaskError::NoSpace { robot: name.clone(), world: spec.name.clone() })
         };
         let robots = driven.iter().map(agent).collect::<Result<_, _>>()?;
-        let (fleet, diagonal_m) = (Fleet::new(spec, 0), width_m.hypot(height_m));
+        let (fleet, diagonal_m) = (Fleet::new(spec, 0), size_m.x.hypot(size_m.y));
         Ok(Self { settings, fleet, robots, steps: steps as u64, diagonal_m, frame })
     }
 

@@ -1,8 +1,10 @@
 //! What all tasks have in common.
 
-use crate::picture::Picture;
+use draw::canvas::{Canvas, PictureError};
+use draw::scene::Scene;
+use evaluation::scenes::Displayed;
 use interfaces::Twist;
-use sim::physics::{DriveLimits, SnapshotError};
+use sim::physics::{DriveLimits, Fleet, SnapshotError};
 
 /// The number of values of an action: linear and angular velocity.
 pub const ACTIONS: usize = 2;
@@ -40,7 +42,10 @@ pub trait Task: Send + Sync {
     fn info(&self, info: &mut [f32]);
 
     /// The task from above, at most `size` pixels wide and high.
-    fn picture(&self, size: usize) -> Picture;
+    ///
+    /// # Errors
+    /// When it cannot be drawn.
+    fn picture(&self, size: u32) -> Result<Canvas, PictureError>;
     /// The state as bytes.
     fn snapshot(&mut self) -> Vec<u8>;
 
@@ -135,6 +140,17 @@ pub(crate) fn twist(drive: &DriveLimits, actions: &[f32]) -> Twist {
     Twist { linear_mps: linear * drive.max_linear_mps, angular_radps: angular * drive.max_angular_radps }
 }
 
+/// The robots and the obstacles as they are now.
+pub(crate) fn present_scene(fleet: &Fleet) -> Scene {
+    let mut scene = fleet.spec().scene();
+    scene.obstacles.iter_mut().for_each(|obstacle| obstacle.outline.clear());
+    for obstacle in fleet.obstacles() {
+        scene.obstacles[obstacle.index].outline = obstacle.corners.to_vec();
+    }
+    fleet.robots().for_each(|robot| scene.robots[robot.index].pose = robot.pose);
+    scene
+}
+
 /// A part of an observation.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Part {
@@ -178,16 +194,14 @@ pub enum TaskError {
         /// The name of the world.
         world: String,
     },
-    /// The driven robots differ in their sensors.
-    #[error(
-        "the robot `{robot}` has a laser with {found} beams, and the first driven robot one with {expected}"
-    )]
+    /// The lasers of driven robots, or of the explorers of several worlds, differ.
+    #[error("the laser of {of} has {found} beams, and that of the first one has {expected}")]
     OtherBeams {
-        /// The name of the robot.
-        robot: String,
+        /// The robot, or the world.
+        of: String,
         /// Its number of beams.
         found: usize,
-        /// The number of beams of the first driven robot.
+        /// The number of beams of the first one.
         expected: usize,
     },
     /// The time of a decision is not a whole number of physics steps.
@@ -207,16 +221,6 @@ pub enum TaskError {
     /// There is no world.
     #[error("exploring needs at least one world")]
     NoWorld,
-    /// The lasers of the explorers of several worlds differ.
-    #[error("the explorer of `{world}` has {found} beams, and that of the first world {expected}")]
-    OtherExplorer {
-        /// The name of the world.
-        world: String,
-        /// Its number of beams.
-        found: usize,
-        /// The number of beams in the first world.
-        expected: usize,
-    },
     /// An action is NaN or beyond −1 to 1.
     #[error("action {value} of environment {environment} is not from -1 to 1")]
     Action {

@@ -73,9 +73,8 @@ impl<P: Pilot<Command = Step>> Run<P> {
 }
 
 fn autonomous<G: GoalSelector>(selector: G) -> Autonomous<G, Controller<CellDrive>> {
-    let controller =
-        Controller::new(CellDrive::settings(), CellDrive, RandomStream::new(SEED, Purpose::GridController));
-    Autonomous::new(selector, controller.expect("the drive's own settings make sense"))
+    let controller = Controller::new(CellDrive, 42, RandomStream::new(SEED, Purpose::GridController));
+    Autonomous::new(selector, controller)
 }
 
 fn agent(policy: &str) -> Agent {

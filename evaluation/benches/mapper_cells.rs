@@ -9,7 +9,7 @@ mod robots;
 use agent::Features;
 use divan::Bencher;
 use interfaces::{CellReading, World};
-use mapper::{EstimatorChoice, Mapper, MapperSettings};
+use mapper::{Mapper, MapperSettings};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use robots::{Habit, Robot};
@@ -41,10 +41,10 @@ fn readings() -> (GridSpec, Vec<CellReading>) {
 }
 
 /// The time of [`BATCH`] steps.
-#[divan::bench(args = ["paper", "two-state", "two-state-gaps"])]
+#[divan::bench(args = ["paper", "two-state-gaps"])]
 fn hundred_steps(bencher: Bencher, estimator: &str) {
     let (spec, mut readings) = readings();
-    let estimator = EstimatorChoice::named(estimator).unwrap();
+    let estimator = estimator.parse().unwrap();
     let settings = MapperSettings { estimator, ..MapperSettings::default() };
     let mut mapper = Mapper::new(&settings, *spec.frame()).unwrap();
     let mut next = 0;

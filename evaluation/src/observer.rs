@@ -1,8 +1,7 @@
 //! Measures a run in the physics world against the ground truth, from outside the loop.
 
 use crate::metrics::{
-    ChangingAccuracy, Forecasts, Latency, MapScores, PoseErrors, Prediction, Standstills, Things, TrueChains,
-    map_scores,
+    ChangingAccuracy, Forecasts, MapScores, PoseErrors, Prediction, Things, TrueChains, map_scores,
 };
 use crate::scheduled_things::ScheduledThings;
 use interfaces::{GroundTruth, LaserReading, Twist};
@@ -26,8 +25,6 @@ pub type Curve = Thinned<(f64, MapScores), 1024>;
 /// The measurements of a run so far.
 #[derive(Clone, Debug, Default, serde::Deserialize, serde::Serialize)]
 pub struct Observer {
-    /// The delays between changes that a beam has shown and the map.
-    pub latency: Latency,
     /// The detection of the things that appeared or disappeared.
     pub things: Things,
     /// The accuracy on swept cells.
@@ -42,8 +39,6 @@ pub struct Observer {
     pub true_chains: TrueChains,
     /// The errors of the poses that the robot used.
     pub poses: PoseErrors,
-    /// The longest standstill of every robot.
-    pub standstills: Standstills,
     /// Coverage and map quality over time.
     pub curve: Curve,
     /// The positions of the goals of the curious robot, m.
@@ -81,7 +76,6 @@ impl Observer {
 
     fn measure(&mut self, world: &PhysicsWorld, reading: &LaserReading, mapper: &Mapper) {
         let (truth, laser) = (world.truth(), world.true_pose() * reading.mount);
-        self.latency.observe(truth, mapper, reading, &laser);
         self.things.observe(world.obstacle_events(), truth.frame(), mapper, reading, &laser);
         self.true_chains.observe(truth);
         self.forecasts.observe(mapper, truth, Some(&self.true_chains));
@@ -89,10 +83,6 @@ impl Observer {
         if mapper.readings().is_multiple_of(SAMPLE_EVERY) {
             self.changing.sample(mapper, truth);
         }
-        self.standstills.observe(
-            reading.time_s,
-            world.fleet().robots().map(|robot| robot.pose.translation.vector.into()),
-        );
         if mapper.readings() % SCORE_EVERY == 1 {
             self.prediction.sample(mapper, truth, Some(&self.true_chains));
             self.curve.push((reading.time_s, map_scores(mapper, truth)));

@@ -11,8 +11,7 @@ use interfaces::{CellState, Grid, LaserReading, PoseMode, Purpose, RandomStream,
 use mapper::{NoReturn, ReadingError};
 use robot::{Battery, DaySettings, GoalSelector, PatrolDay, Pilot, Robot, Settings, Source, Turn};
 use sim::physics::shape::Transform;
-use sim::physics::{BehaviorSpec, DriveKind, PatrolDaySpec, PhysicsWorld, WorldSpec};
-use std::collections::BTreeMap;
+use sim::physics::{DriveKind, PatrolDaySpec, PhysicsWorld, WorldSpec};
 use std::f64::consts::PI;
 
 /// The Monday on which a week of a world with a calendar begins: 2024-01-01, s since 1970-01-01 UTC.
@@ -180,23 +179,12 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
         Ok(turn)
     }
 
-    /// Runs until `end_s` of simulated time, or until the pilot is done.
+    /// Runs until `end_s` of simulated time, or until the pilot is done. A rest at `end_s` is cut off; the run cannot be continued
+    /// then.
     ///
     /// # Errors
-    ///
     /// When the mapper refuses a reading.
     pub fn run(&mut self, end_s: f64) -> Result<(), ReadingError> {
-        while self.turn()?.reading.time_s < end_s && !self.robot.pilot.is_done() {}
-        Ok(())
-    }
-
-    /// As [`run`](Self::run), but the measurements of things with a schedule end exactly at `end_s`: if the robot rests then, its
-    /// rest is cut off. The run cannot be continued.
-    ///
-    /// # Errors
-    ///
-    /// When the mapper refuses a reading.
-    pub fn run_exactly(&mut self, end_s: f64) -> Result<(), ReadingError> {
         loop {
             if self.rests_until_s().is_some_and(|until_s| until_s > end_s) {
                 self.rest(end_s);
@@ -227,7 +215,6 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
     pub fn results(&self) -> RunResults {
         let Self { world, pose, robot: Robot { mapper, pilot, .. }, observer, .. } = self;
         let truth = world.truth();
-        let [block_latency, free_latency] = observer.latency.delays();
         let [contacts_while_standing, collisions] = observer.contacts;
         let strategies = pilot.strategies(Features::default()).into_iter();
         let curve = observer.curve.samples().iter();
@@ -241,14 +228,11 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
             passages: passage_scores(mapper, truth),
             rates: rate_scores(mapper, truth),
             age: age(mapper, truth),
-            block_latency,
-            free_latency,
             collisions,
             contacts: Contacts {
                 own_motion: observer.own_contacts,
                 run_into: contacts_while_standing + collisions - observer.own_contacts,
             },
-            longest_standstill_s: longest_standstill_s(world, observer),
             pose: observer.poses.scores(pose.name()),
             goals: pilot.goals(),
             day: (self.battery)(pilot).map(Battery::totals),
@@ -259,11 +243,4 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
             map_hash: map_hash(mapper),
         }
     }
-}
-
-/// The longest standstills of the robots that can move, by name.
-fn longest_standstill_s(world: &PhysicsWorld, observer: &Observer) -> BTreeMap<String, f64> {
-    let robots = world.spec().robots.iter().zip(observer.standstills.longest());
-    let moving = robots.filter(|(robot, _)| robot.behavior != BehaviorSpec::Standing);
-    moving.map(|(robot, (longest_s, _))| (robot.name.clone(), *longest_s)).collect()
 }

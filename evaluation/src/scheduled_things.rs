@@ -1,7 +1,7 @@
 //! How well the predicted map knew the things with a schedule, at all times of a run: while the robot drives, and while it rests
 //! without looking.
 
-use crate::metrics::Freshness;
+use crate::metrics::{Freshness, FreshnessScores};
 use interfaces::{CellState, GridFrame, GroundTruth, TrueState};
 use mapper::{Door, Mapper, ThingKind};
 use nalgebra::{Point2, Vector2};
@@ -38,14 +38,9 @@ pub struct ScheduledScores {
     pub things: usize,
     /// The number of minutes.
     pub samples: u64,
-    /// The mean of (probability of being blocked − true state)² over all things and minutes, in view or not.
-    pub brier: f64,
-    /// The number of changes that lasted an hour or more.
-    pub lasting_changes: usize,
-    /// The median and the 95 % point of the time from such a change until the predicted map shows it, s; `null` without one.
-    pub detection_delay_s: [f64; 2],
-    /// The share of such changes that the map did not show until the next one.
-    pub missed: f64,
+    /// The scores over all minutes, in view or not.
+    #[serde(flatten)]
+    pub fresh: FreshnessScores,
 }
 
 impl ScheduledThings {
@@ -73,16 +68,8 @@ impl ScheduledThings {
 
     /// The scores; `None` in a world without a calendar.
     pub fn scores(&self) -> Option<ScheduledScores> {
-        let things = self.freshness.things();
-        let fresh = self.freshness.scores();
-        (things > 0).then_some(ScheduledScores {
-            things,
-            samples: self.samples,
-            brier: fresh.brier,
-            lasting_changes: fresh.lasting_changes,
-            detection_delay_s: fresh.detection_delay_s,
-            missed: fresh.missed,
-        })
+        let (things, samples) = (self.freshness.things(), self.samples);
+        (things > 0).then(|| ScheduledScores { things, samples, fresh: self.freshness.scores() })
     }
 }
 

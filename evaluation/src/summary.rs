@@ -3,7 +3,7 @@
 mod words;
 
 use crate::metrics::{
-    Age, ChangingScores, Delays, ForecastScores, IntervalScores, MapScores, PassageScores, PoseScores,
+    Age, ChangingScores, ForecastScores, IntervalScores, MapScores, PassageScores, PoseScores,
     PredictedScores, RateScores, ReachableScores, ThingReport,
 };
 use crate::scheduled_things::ScheduledScores;
@@ -12,7 +12,7 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 
 /// The version of the layout of `summary.json`; count up when a key is renamed, removed or changes its meaning.
-pub const SCHEMA: u32 = 2;
+pub const SCHEMA: u32 = 3;
 
 /// Coverage and map quality at one time.
 #[derive(Clone, Copy, Debug, Serialize)]
@@ -41,7 +41,7 @@ pub struct Summary {
     pub world: String,
     /// The seed of all random streams.
     pub seed: u64,
-    /// The pilot: `agent` or `tour`.
+    /// The pilot: `agent`, `tour` or `keyboard`.
     pub drive: &'static str,
     /// The strategy of the agent; `null` for other pilots.
     pub strategy: Option<&'static str>,
@@ -49,7 +49,7 @@ pub struct Summary {
     pub estimator: &'static str,
     /// The occupancy model.
     pub occupancy: &'static str,
-    /// The reason for the end of the run: `duration`, `tour` or `interrupted`.
+    /// The reason for the end of the run: `duration`, `tour`, `person` or `interrupted`.
     pub ended_by: &'static str,
     /// The simulated time, s.
     pub simulated_s: f64,
@@ -89,17 +89,10 @@ pub struct RunResults {
     pub rates: RateScores,
     /// The time since cells were last seen, at the end.
     pub age: Age,
-    /// The delays between block events that a beam has shown and the map.
-    pub block_latency: Delays,
-    /// The delays between free events that a beam has shown and the map.
-    pub free_latency: Delays,
     /// The number of contacts of the curious robot that began while it moved.
     pub collisions: usize,
     /// All contacts of the curious robot, by cause.
     pub contacts: Contacts,
-    /// For each robot that can move, by name, the longest time for which it did not move farther than 0.1 m from a
-    /// position, s.
-    pub longest_standstill_s: BTreeMap<String, f64>,
     /// The errors of the poses that the robot used.
     pub pose: PoseScores,
     /// The goals by outcome.

@@ -27,14 +27,14 @@ pub struct TrialFacts {
 impl TrialFacts {
     /// The facts of a run. `pilot` is what its pilot is made of, beside the settings.
     pub fn new(spec: &WorldSpec, seed: u64, settings: &Settings, pilot: Facts) -> Self {
-        let Settings { mapper, agent, controller, drive, pose, localizer, .. } = settings;
+        let Settings { mapper, agent, local_steps, drive, pose, localizer, .. } = settings;
         let localizer = (*pose == PoseMode::Localized).then_some(localizer);
         let content = xxh3_64(format!("{spec:?}").as_bytes());
         let world = Facts::default().with("world", &spec.name).with("seed", seed);
         let content = Facts::default().with("content of the world", format!("{content:016x}"));
         let pilot = pilot
             .with_settings("agent", agent)
-            .with_settings("controller", controller)
+            .with("local_steps", local_steps)
             .with_settings("drive", drive);
         let learned = LearnedFacts::new(mapper, &spec.frame, pose.name(), localizer);
         Self { learned, world, content, pilot, allows_other_build: false }

@@ -1,6 +1,5 @@
 //! Beams without a return: in a world whose walls swallow beams they say nothing, in a long hall they say that it is free.
 
-use evaluation::physics_trial;
 use interfaces::{CellState, GroundTruth, LaserReading, Twist, World};
 use mapper::{Mapper, MapperSettings, NoReturn, NoReturns};
 use sim::physics::{PhysicsWorld, WorldSpec};
@@ -78,12 +77,4 @@ fn a_long_hall_is_free_to_the_maximum_range() {
     assert!(ignored.free + 5000 < free.free, "{} {}", ignored.free, free.free);
     let missing = free.free - learned.free;
     assert!(missing * 100 < free.free && learned.cleared == 0, "{missing} of {} cells", free.free);
-}
-
-#[test]
-fn the_robot_of_a_trial_learns_what_no_return_means_where_there_is_glass() {
-    for (upper_wall, expected) in [("", "free"), ("returns_within_deg = 15.0", "learn")] {
-        let settings = physics_trial::settings(&hall(upper_wall)).unwrap();
-        assert_eq!(settings.filter.no_return.name(), expected);
-    }
 }

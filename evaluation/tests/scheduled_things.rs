@@ -48,10 +48,10 @@ fn an_empty_map_has_the_scores_that_follow_from_the_events() {
     assert!(world.snapshot().into_bytes() == unwatched.snapshot().into_bytes());
     let scores = things.scores().unwrap();
     assert_eq!((scores.things, scores.samples as usize), (1, MINUTES));
-    assert_eq!(scores.brier, 0.25);
+    assert_eq!(scores.fresh.brier, 0.25);
     // Nobody knows: each of the three changes is missed, after 120, 240 and 120 minutes.
-    assert_eq!((scores.lasting_changes, scores.missed), (3, 1.0));
-    let minutes = scores.detection_delay_s.map(|delay_s| delay_s / 60.0);
+    assert_eq!((scores.fresh.lasting_changes, scores.fresh.missed), (3, 1.0));
+    let minutes = scores.fresh.detection_delay_s.map(|delay_s| delay_s / 60.0);
     assert!((minutes[0] - 120.0).abs() <= 1.0 && (minutes[1] - 240.0).abs() <= 1.0, "{minutes:?}");
 }
 
@@ -81,8 +81,8 @@ fn a_resting_robot_is_scored_every_minute() {
         with_reading.len()
     );
     // It leaves its dock about every 100 minutes, and sees the door then.
-    assert_eq!((scores.lasting_changes, scores.missed), (3, 0.0));
-    let late_s = scores.detection_delay_s[1];
+    assert_eq!((scores.fresh.lasting_changes, scores.fresh.missed), (3, 0.0));
+    let late_s = scores.fresh.detection_delay_s[1];
     assert!(late_s > 0.0 && late_s < 6600.0, "{late_s}");
 }
 
@@ -95,7 +95,7 @@ fn a_run_can_end_exactly_in_a_rest() {
         let agent = settings.agent(&Policy::default(), 1).unwrap();
         let pilot = PatrolDay::new(settings.pilot(agent, 1).unwrap(), physics_trial::day(&spec).unwrap());
         let mut trial = PhysicsTrial::new(&spec, 1, &settings, None, pilot).unwrap().on_battery();
-        trial.run_exactly(end_s).unwrap();
+        trial.run(end_s).unwrap();
         assert!((trial.world.time_s() - end_s).abs() < 0.2, "{} s", trial.world.time_s());
         let scores = trial.results().scheduled.unwrap();
         assert_eq!(scores.samples, (end_s / 60.0) as u64 + 1);

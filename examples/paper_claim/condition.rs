@@ -1,10 +1,8 @@
 //! The conditions: each differs from the paper's condition in one setting.
 
-use agent::{AgentSettings, Reward};
-use controller::CellDrive;
 use curious::worlds::{SHIPPED_GRID, load_grid};
 use evaluation::trials::{Experiment, GridRobot, TrialSettings, TrialStrategy};
-use mapper::{EstimatorChoice, MapperSettings, Paper, PaperAll};
+use mapper::{EstimatorChoice, Paper};
 use reports::{Report, ReportSettings};
 use sim::grid::{GenerateSettings, GridSpec};
 use std::sync::atomic::AtomicBool;
@@ -22,7 +20,6 @@ pub(crate) struct Condition {
     sensor_radius: u32,
     steps: u64,
     estimator: EstimatorChoice,
-    reward: Reward,
     /// The probability of a move of a block or of the robot.
     chance: f64,
     /// The maximum number of steps of local exploration.
@@ -36,7 +33,6 @@ pub(crate) fn conditions() -> Vec<Condition> {
         sensor_radius: 4,
         steps: 20_000,
         estimator: Paper.into(),
-        reward: Reward::Changes,
         chance: 1.0,
         max_steps: 42,
     };
@@ -52,12 +48,8 @@ pub(crate) fn conditions() -> Vec<Condition> {
     for (steps, name) in [(2_000, "2,000 steps"), (5_000, "5,000 steps"), (50_000, "50,000 steps")] {
         conditions.push(change(name.to_owned(), &|other| other.steps = steps));
     }
-    conditions.push(change("estimator paper-all".to_owned(), &|other| other.estimator = PaperAll.into()));
     let best = EstimatorChoice::default();
     conditions.push(change(format!("estimator {}", best.name()), &|other| other.estimator = best.clone()));
-    conditions.push(change("reward with discoveries".to_owned(), &|other| {
-        other.reward = Reward::ChangesAndDiscoveries;
-    }));
     conditions.push(change("stochastic moves (0.8)".to_owned(), &|other| other.chance = 0.8));
     for bound in [1, 10, 100] {
         conditions.push(change(format!("max_steps {bound}"), &|other| other.max_steps = bound));
@@ -89,9 +81,6 @@ impl Condition {
         let set = |world: GridSpec| {
             world.with_sensor_radius(self.sensor_radius).with_probabilities(self.chance, self.chance)
         };
-        let mut controller = CellDrive::settings();
-        controller.exploration.max_steps = self.max_steps;
-        let agent = AgentSettings { reward: self.reward, ..Default::default() };
         Experiment {
             worlds: worlds.into_iter().map(set).collect(),
             estimators: vec![self.estimator.clone()],
@@ -101,7 +90,7 @@ impl Condition {
             trials,
             seed: 0,
             length: self.steps,
-            robot: GridRobot { mapper: MapperSettings::default(), agent, controller },
+            robot: GridRobot { max_steps: self.max_steps },
         }
     }
 }

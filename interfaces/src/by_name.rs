@@ -18,13 +18,6 @@ pub struct UnknownName {
 #[macro_export]
 macro_rules! chosen_by_name {
     ($part:ty, $kind:literal, $all:expr) => {
-        impl $part {
-            /// The built-in value with this name.
-            pub fn named(name: &str) -> Option<Self> {
-                name.parse().ok()
-            }
-        }
-
         impl PartialEq for $part {
             fn eq(&self, other: &Self) -> bool {
                 self.name() == other.name()

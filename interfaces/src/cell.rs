@@ -47,13 +47,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn neighbours_touch() {
-        let cell = Cell::new(0, 0);
-        assert!(cell.neighbours4().iter().all(|n| n.x.abs() + n.y.abs() == 1));
-        assert!(cell.neighbours8().iter().all(|n| n.x.abs().max(n.y.abs()) == 1));
-    }
-
-    #[test]
     fn centroid_is_the_mean() {
         assert_eq!(Cell::centroid([]), None);
         assert_eq!(Cell::centroid([Cell::new(0, 0), Cell::new(4, 2)]), Some(Cell::new(2, 1)));

@@ -31,7 +31,6 @@ use crate::summary::{LogSummary, since_epoch};
 use inventory::Inventory;
 use message::Topic;
 use motion::MotionSource;
-use nalgebra::Isometry2;
 use order::Merged;
 use plan::Plan;
 use readings::{Clock, Counts, RawReadings};
@@ -95,9 +94,7 @@ impl Bag {
         let Inspection { clock, raw, raw_s, standing, times } = inspection;
         let odometry = &raw.assembler.odometry;
         let raw_begin_s = raw_s.first().copied().unwrap_or_default();
-        let is_corrected = plan.correction.is_some();
-        let stands = odometry.stands() && standing.looks_so() && !is_corrected;
-        let odom_origin = if is_corrected { Isometry2::identity() } else { odometry.first() };
+        let stands = odometry.stands() && standing.looks_so() && plan.correction.is_none();
         let impossible = raw.impossible();
         notes.extend(odometry.holes_note().into_iter().chain(odometry.restarts_note(raw_begin_s)));
         notes.extend(
@@ -143,10 +140,8 @@ impl Bag {
             duration_s: times.times_s.last().copied().unwrap_or_default(),
             has_times: times.has_times,
             begin_s,
-            pose_source: plan.pose_source.clone(),
             odometry_poses: counts.poses,
             stands,
-            odom_origin,
             scan_topics,
             notes,
             impossible: impossible.or_else(|| counts.doubts.impossible(counts.invalid_scans, stands)),

@@ -50,6 +50,8 @@ pub(crate) fn one_more(scans: usize) -> Result<(), String> {
 /// Bytes that are unpacked, up to a bound; then an error. They end where the compressed ones are cut off.
 pub(crate) struct Unpacked<R> {
     bytes: R,
+    /// The number of compressed bytes.
+    pub(crate) packed: u64,
     /// The number of bytes so far.
     pub(crate) count: u64,
     /// Whether the compressed bytes have ended too early.
@@ -66,7 +68,12 @@ impl<R> Unpacked<R> {
             "the {packed} bytes of the file unpack to more than {most}, which is the most that is unpacked; if it is a log, \
              unpack it first: {by_hand}"
         );
-        Self { bytes, count: 0, is_cut: false, remaining: most, exceeded }
+        Self { bytes, packed, count: 0, is_cut: false, remaining: most, exceeded }
+    }
+
+    /// Bytes that are not compressed: without a bound.
+    pub(crate) fn plain(bytes: R) -> Self {
+        Self { bytes, packed: 0, count: 0, is_cut: false, remaining: u64::MAX, exceeded: String::new() }
     }
 
     /// The same, written into a folder with this number of free bytes: others need some of them.

@@ -10,9 +10,10 @@
 //! - From a FLASER line come the ranges and the time alone: in *corrected* logs its two poses are both the result of an
 //!   earlier estimation. Poses come from ODOM lines, interpolated to the time of the scan. Only on request
 //!   ([`TopicChoice::is_corrected`]) they are those of the FLASER lines.
-//! - A FLASER line does not name the field of view. It is that of the parameters `laser_front_laser_fov` and
-//!   `laser_front_laser_resolution`, if they agree with each other; otherwise, it follows from the number of readings: 180°, in steps
-//!   of 1° (180 or 181 readings) or 0.5° (360 or 361 readings), or 100° in steps of 0.25° (400 or 401). Readings go from right to left.
+//! - A FLASER line does not name the field of view. It is that of the parameter `laser_front_laser_fov`; without it, it follows from
+//!   the number of readings: 180°, in steps of 1° (180 or 181 readings) or 0.5° (360 or 361 readings), or 100° in steps of 0.25° (400
+//!   or 401). Readings go from right to left.
+//! - Ranges of 80 m and more are numbers for failures, and no measurements.
 //! - The pose of the laser on the robot is that of the parameters `robot_frontlaser_offset`, `robot_frontlaser_side_offset` (to the
 //!   left) and `robot_frontlaser_angular_offset` (rad), or for ROBOTLASER1 lines the one between their two poses, if it is the same in
 //!   all lines.
@@ -31,7 +32,7 @@ mod tests;
 use crate::bytes::{Bytes, content_hash};
 use crate::choice::TopicChoice;
 use crate::error::LogError;
-use crate::lines::{Lines, Text};
+use crate::lines::{self, Lines};
 use crate::log::{Log, RawReadings, Source};
 use geometry::Geometry;
 use line::Line;
@@ -89,7 +90,7 @@ impl Source for CarmenLog {
 
     fn content_hash(&self) -> Result<u128, LogError> {
         let io = |why| LogError::Io { file: self.file.clone(), why };
-        content_hash([Text::open(&self.bytes)]).map_err(io)
+        content_hash([lines::open(&self.bytes)]).map_err(io)
     }
 
     /// The poses of the laser that the FLASER lines contain; `None` for readings of other lines. In a corrected log they are

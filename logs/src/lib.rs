@@ -23,4 +23,4 @@ pub use choice::TopicChoice;
 pub use error::LogError;
 pub use log::{Log, Readings};
 pub use ros::{self, McapWriter};
-pub use summary::{LogSummary, PoseSource};
+pub use summary::LogSummary;

@@ -1,7 +1,7 @@
 //! A file as lines of text, plain or compressed.
 
 use crate::bounds::Unpacked;
-use crate::bytes::{Bytes, GZIP, Input};
+use crate::bytes::{Bytes, GZIP};
 use crate::error::LogError;
 use flate2::bufread::MultiGzDecoder;
 use std::io::{self, BufRead, BufReader, Error, ErrorKind, Read, Seek, SeekFrom};
@@ -9,54 +9,20 @@ use std::io::{self, BufRead, BufReader, Error, ErrorKind, Read, Seek, SeekFrom};
 /// The longest line, in bytes: a file that never ends a line must not fill the memory.
 const LONGEST: u64 = 1 << 20;
 
-/// Bytes that are unpacked from a file with gzip.
-type Gzip = Unpacked<MultiGzDecoder<BufReader<Box<dyn Input>>>>;
-
 /// The text of a log; its compression is undone.
-pub(crate) enum Text {
-    Plain(BufReader<Box<dyn Input>>),
-    Gzip {
-        reader: Box<BufReader<Gzip>>,
-        /// The bytes of the file.
-        packed: u64,
-    },
-}
+pub(crate) type Text = BufReader<Unpacked<Box<dyn Read + Send>>>;
 
-impl Text {
-    /// Opens a log. The compression is recognized by the content.
-    pub(crate) fn open(bytes: &Bytes) -> io::Result<Self> {
-        let mut reader = BufReader::new(bytes.open()?);
-        if !reader.fill_buf()?.starts_with(&GZIP) {
-            return Ok(Self::Plain(reader));
-        }
-        let packed = reader.seek(SeekFrom::End(0))?;
-        reader.rewind()?;
-        let unpacked = Unpacked::new(MultiGzDecoder::new(reader), packed, "gzip -d FILE");
-        Ok(Self::Gzip { reader: Box::new(BufReader::new(unpacked)), packed })
-    }
-
-    fn buffer(&mut self) -> &mut dyn BufRead {
-        match self {
-            Self::Plain(reader) => reader,
-            Self::Gzip { reader, .. } => &mut **reader,
-        }
-    }
-}
-
-impl Read for Text {
-    fn read(&mut self, to: &mut [u8]) -> io::Result<usize> {
-        self.buffer().read(to)
-    }
-}
-
-impl BufRead for Text {
-    fn fill_buf(&mut self) -> io::Result<&[u8]> {
-        self.buffer().fill_buf()
-    }
-
-    fn consume(&mut self, count: usize) {
-        self.buffer().consume(count);
-    }
+/// Opens a log. The compression is recognized by the content.
+pub(crate) fn open(bytes: &Bytes) -> io::Result<Text> {
+    let mut reader = BufReader::new(bytes.open()?);
+    let is_packed = reader.fill_buf()?.starts_with(&GZIP);
+    let size = reader.seek(SeekFrom::End(0))?;
+    reader.rewind()?;
+    let text = match is_packed {
+        true => Unpacked::new(Box::new(MultiGzDecoder::new(reader)) as Box<_>, size, "gzip -d FILE"),
+        false => Unpacked::plain(Box::new(reader.into_inner()) as Box<_>),
+    };
+    Ok(BufReader::new(text))
 }
 
 /// The lines of a log, one after the other.
@@ -73,7 +39,7 @@ pub(crate) struct Lines {
 impl Lines {
     /// Opens a log. The compression is recognized by the content.
     pub(crate) fn open(bytes: &Bytes, file: &str) -> Result<Self, LogError> {
-        let reader = Text::open(bytes).map_err(|why| LogError::Io { file: file.to_owned(), why })?;
+        let reader = open(bytes).map_err(|why| LogError::Io { file: file.to_owned(), why })?;
         Ok(Self { reader, file: file.to_owned(), number: 0, is_complete: true, line: Vec::new() })
     }
 
@@ -97,12 +63,8 @@ impl Lines {
 
     /// The bytes of a compressed file that is cut off, and the bytes of text that could be unpacked; `None` if it is whole so far.
     pub(crate) fn cut(&self) -> Option<(u64, u64)> {
-        match &self.reader {
-            Text::Gzip { reader, packed } if reader.get_ref().is_cut => {
-                Some((*packed, reader.get_ref().count))
-            }
-            _ => None,
-        }
+        let text = self.reader.get_ref();
+        text.is_cut.then_some((text.packed, text.count))
     }
 
     /// The error for the last line.

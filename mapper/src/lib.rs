@@ -26,8 +26,8 @@ mod things;
 mod tiles;
 
 pub use change::{
-    CellMap, CellStatistics, Estimator, EstimatorChoice, GapWorth, Paper, PaperAll, RateDistribution,
-    ReadingIndex, SharedPrior, TransitionRates, TwoState, TwoStateGaps,
+    CellMap, CellStatistics, Estimator, EstimatorChoice, GapWorth, Paper, RateDistribution, ReadingIndex,
+    SharedPrior, TransitionRates, TwoStateGaps,
 };
 pub use clock::{Calendar, Clock, DAY_S, Look, UnknownZone, UsualChange, UsualSlot, Week, share_interval};
 pub use growth::Growth;

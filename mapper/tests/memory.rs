@@ -1,7 +1,7 @@
 //! The memory of the map of a large place, as the operating system counts it. One test, in a process of its own.
 
 use interfaces::{GridFrame, LaserReading, Scan, Twist};
-use mapper::{EstimatorChoice, Mapper, MapperSettings};
+use mapper::{Mapper, MapperSettings, SharedPrior};
 use nalgebra::{Isometry2, Point2};
 use std::f64::consts::TAU;
 
@@ -63,10 +63,7 @@ fn a_large_place_takes_the_memory_of_what_was_seen() {
 fn two_rooms_a_kilometer_apart_take_the_memory_of_two_rooms() {
     let before = resident();
     let frame = GridFrame::new(Point2::origin(), 0.05, 20_000, 20_000).unwrap();
-    let settings = MapperSettings {
-        estimator: EstimatorChoice::named("shared-prior").unwrap(),
-        ..MapperSettings::default()
-    };
+    let settings = MapperSettings { estimator: SharedPrior.into(), ..MapperSettings::default() };
     let mut mapper = Mapper::new(&settings, frame).unwrap();
     let outline = mapper.bytes();
     assert!(outline < 80 << 20, "the outline alone takes {outline} bytes");
@@ -120,7 +117,7 @@ fn a_full_map_goes_on_where_it_is() {
     // Its cells have a gap each now.
     assert!(mapper.bytes() < full + 70 * of_one, "{} bytes, {full} before", mapper.bytes());
     let index = frame.index(frame.cell_at(&Point2::new(21.0, 21.0))).unwrap();
-    assert!(mapper.is_in_view(index) && mapper.statistics(index).gaps_from_free == 1);
+    assert!(mapper.is_in_view(index) && mapper.statistics(index).unobserved > 0.0);
 }
 
 /// A round wall that comes near and goes away again, cell by cell, three times: each of its cells becomes blocked and free, and is
@@ -131,10 +128,7 @@ fn cells_that_change_take_little_more_memory() {
     const STEPS: u32 = 80;
     const SCANS_PER_STEP: u32 = 4;
     let frame = GridFrame::new(Point2::origin(), 0.05, 800, 800).unwrap();
-    let settings = MapperSettings {
-        estimator: EstimatorChoice::named("shared-prior").unwrap(),
-        ..MapperSettings::default()
-    };
+    let settings = MapperSettings { estimator: SharedPrior.into(), ..MapperSettings::default() };
     let mut mapper = Mapper::new(&settings, frame).unwrap();
     let mut time_s = 0.0;
     let mut look = |mapper: &mut Mapper, radius_m: f64, scans: u32| {

@@ -1,5 +1,6 @@
 //! Times and rates in words.
 
+use jiff::Timestamp;
 use mapper::DoorStatistics;
 use survey::{Place, PlaceRates};
 
@@ -153,19 +154,8 @@ pub fn length_of(time_s: f64) -> String {
 
 /// A time in seconds since the epoch (1970-01-01), as date and time of day in UTC.
 pub fn date(time_s: f64) -> String {
-    const DAY_S: i64 = 86_400;
-    let time_s = time_s.floor() as i64;
-    let (days, second) = (time_s.div_euclid(DAY_S), time_s.rem_euclid(DAY_S));
-    // Years begin in March, so that the leap day is the last one; 400 years have 146,097 days (Richards 2013).
-    let days = days + 719_468;
-    let (era, day) = (days.div_euclid(146_097), days.rem_euclid(146_097));
-    let year = (day - day / 1460 + day / 36_524 - day / 146_096) / 365;
-    let day_of_year = day - (365 * year + year / 4 - year / 100);
-    let month_from_march = (5 * day_of_year + 2) / 153;
-    let day = day_of_year - (153 * month_from_march + 2) / 5 + 1;
-    let month = if month_from_march < 10 { month_from_march + 3 } else { month_from_march - 9 };
-    let year = era * 400 + year + i64::from(month <= 2);
-    format!("{year}-{month:02}-{day:02} {:02}:{:02} UTC", second / 3600, second / 60 % 60)
+    let at = Timestamp::from_second(time_s.floor() as i64).unwrap_or_default();
+    at.strftime("%Y-%m-%d %H:%M UTC").to_string()
 }
 
 #[cfg(test)]

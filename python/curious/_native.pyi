@@ -55,28 +55,6 @@ class Spec:
     def to_toml(self) -> str: ...
 
 @final
-class GridSpec:
-    @staticmethod
-    def load(name: str | PathLike[str]) -> GridSpec: ...
-    @staticmethod
-    def from_toml(text: str, name: str = "world.toml") -> GridSpec: ...
-    @staticmethod
-    def generate(seed: int) -> GridSpec: ...
-    @staticmethod
-    def shipped() -> list[str]: ...
-    @property
-    def name(self) -> str: ...
-    @property
-    def description(self) -> str: ...
-    @property
-    def shape(self) -> tuple[int, int]: ...
-    @property
-    def sensor_radius(self) -> int: ...
-    @property
-    def walls(self) -> NDArray[np.bool_]: ...
-    def to_toml(self) -> str: ...
-
-@final
 class Reading:
     def __init__(
         self,
@@ -347,12 +325,11 @@ class Strategy(Protocol):
 
 def strategies() -> list[str]: ...
 def trial(
-    world: WorldLike | GridSpec,
+    world: WorldLike,
     strategy: str | Strategy | None = None,
     *,
     seed: int = 0,
-    seconds: int | None = None,
-    steps: int | None = None,
+    seconds: int = 600,
     estimator: str | None = None,
     robot: int | None = None,
 ) -> dict[str, Any]: ...

@@ -153,10 +153,7 @@ pub(crate) fn load_error(error: LoadError) -> PyErr {
     match error {
         LoadError::Unknown { .. } => PyFileNotFoundError::new_err(error.to_string()),
         LoadError::OtherKind { name, kind, .. } => {
-            let class = if kind == "grid" { "GridSpec" } else { "Spec" };
-            world_error(format!(
-                "`{name}` is a {kind} world: `curious.{class}.load` loads it, `curious.trial` runs it"
-            ))
+            world_error(format!("`{name}` is a {kind} world: the program `grid_world` runs it"))
         }
         other => world_error(other),
     }

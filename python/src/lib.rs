@@ -6,7 +6,6 @@
 mod convert;
 mod fleet;
 mod forecast;
-mod grid_spec;
 mod localizer;
 mod logs;
 mod mapper;
@@ -28,8 +27,6 @@ mod _native {
     use crate::fleet::Fleet;
     #[pymodule_export]
     use crate::forecast::Forecast;
-    #[pymodule_export]
-    use crate::grid_spec::GridSpec;
     #[pymodule_export]
     use crate::localizer::{Estimate, Localizer};
     #[pymodule_export]

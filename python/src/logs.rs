@@ -2,7 +2,7 @@ use crate::convert::{from_json, log_error, pose_values, rows_array, state_number
 use crate::mapper::Mapper;
 use crate::reading::Reading;
 use crate::settings::mapper_settings;
-use ::logs::{LogSummary, PoseSource, TopicChoice};
+use ::logs::{LogSummary, TopicChoice};
 use interfaces::PoseMode;
 use localizer::{PoseState, TrajectoryPose};
 use numpy::PyArray2;
@@ -62,9 +62,8 @@ impl Log {
         }
         let choice = TopicChoice { scan_topics, odom_topic, base_frame, is_corrected: corrected, map_frame };
         let log = py.detach(|| ::logs::Log::open(&path, &choice)).map_err(|error| log_error(&path, error))?;
-        let LogSummary { duration_s, begin_s, notes, pose_source, odometry_poses, .. } =
-            log.summary().clone();
-        let stands = !corrected && (pose_source == PoseSource::Standing || odometry_poses == 0);
+        let LogSummary { duration_s, begin_s, notes, odometry_poses, .. } = log.summary().clone();
+        let stands = !corrected && odometry_poses == 0;
         Ok(Self { log, is_corrected: corrected, duration: duration_s, begin: begin_s, notes, stands })
     }
 

@@ -1,5 +1,5 @@
 use crate::convert::{
-    Numbers, Ranges, SnapshotError, grid, optional_index, rows_array, state_number, value_error, world_error,
+    SnapshotError, grid, optional_index, rows_array, state_number, value_error, world_error,
 };
 use crate::reading::Reading;
 use crate::settings::mapper_settings;
@@ -11,7 +11,7 @@ use mapper::{CellStatistics, MapperSettings};
 use nalgebra::Point2;
 use numpy::{IntoPyArray, PyArray1, PyArray2};
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyDict};
+use pyo3::types::{PyBytes, PyDict, PyTuple};
 use sim::physics::WorldSpec;
 
 /// A map of a place that changes: its cells, and how often each of them changes.
@@ -119,26 +119,15 @@ impl Mapper {
     /// `angle_increment`: rad; by default the beams cover a full turn from straight behind. `range_min`, `range_max`:
     /// m. `mount`: the pose of the laser on the robot. `ValueError`: the scan is invalid; the map then stays as it
     /// was.
-    #[pyo3(signature = (time, ranges, pose, *, angle_min = -std::f64::consts::PI, angle_increment = None,
-        range_min = 0.0, range_max = 10.0, mount = None))]
-    #[allow(clippy::too_many_arguments)]
+    #[pyo3(signature = (*scan, **keywords))]
     fn update(
         &mut self,
         py: Python<'_>,
-        time: f64,
-        ranges: Ranges<'_>,
-        pose: Numbers<'_>,
-        angle_min: f64,
-        angle_increment: Option<f64>,
-        range_min: f64,
-        range_max: f64,
-        mount: Option<Numbers<'_>>,
+        scan: &Bound<'_, PyTuple>,
+        keywords: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<()> {
-        let (increment, at_rest) = (angle_increment, [0.0, 0.0]);
-        let reading = Reading::new(
-            time, ranges, pose, angle_min, increment, range_min, range_max, mount, 0.0, at_rest,
-        )?;
-        self.update_reading(py, &reading)
+        let reading = py.get_type::<Reading>().call(scan, keywords)?;
+        self.update_reading(py, reading.cast::<Reading>()?.get())
     }
 
     /// Updates the map with a reading, whose pose is taken as exact.

@@ -2,7 +2,7 @@ use crate::convert::{index, snapshot_error, value_error, whole};
 use crate::settings::task_settings;
 use crate::snapshots::{Kind, check_build};
 use crate::spec::{driving, spec_of};
-use environments::{ACTIONS, Drive, DrivePlace, Explore, ExplorePlace, Picture, Results, TaskError};
+use environments::{ACTIONS, Drive, DrivePlace, Explore, ExplorePlace, Results, TaskError};
 use numpy::{IntoPyArray, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::{PyIndexError, PyRuntimeError};
 use pyo3::prelude::*;
@@ -229,11 +229,13 @@ impl Batch {
         &self,
         py: Python<'py>,
         #[pyo3(from_py_with = index)] environment: usize,
-        #[pyo3(from_py_with = whole)] size: usize,
+        #[pyo3(from_py_with = whole)] size: u32,
     ) -> PyResult<Bound<'py, PyArray3<u8>>> {
         self.check(environment)?;
-        let Picture { width, height, pixels, .. } = self.batch.task(environment).picture(size);
-        pixels.into_pyarray(py).reshape([height, width, 3])
+        let picture = self.batch.task(environment).picture(size);
+        let picture = picture.map_err(|why| PyRuntimeError::new_err(why.to_string()))?;
+        let [width, height] = picture.size().map(|length| length as usize);
+        picture.pixels().to_vec().into_pyarray(py).reshape([height, width, 3])
     }
 
     /// The seed of the present episode of an environment; 0 before its first reset.

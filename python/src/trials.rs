@@ -1,15 +1,12 @@
 //! Trials of exploring robots, with strategies of the library or of Python.
 
 use crate::convert::{Table, optional_index, pose_array, value_error, whole, world_error};
-use crate::grid_spec::GridSpec;
 use crate::mapper::Mapper;
-use crate::spec::{Spec, driving, spec_of, world_name};
+use crate::spec::{driving, spec_of};
 use agent::{Policy, Situation as Inputs, Strategy};
-use evaluation::trials::{
-    Experiment, GridRobot, Metric, PhysicsRobot, Trial, TrialStep, TrialStrategy, TrialWorld, run_trial,
-};
+use evaluation::trials::{Experiment, Metric, PhysicsRobot, Trial, TrialStrategy, run_trial};
 use interfaces::Values;
-use mapper::{EstimatorChoice, MapperSettings};
+use mapper::EstimatorChoice;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -31,7 +28,7 @@ pub(crate) struct Situation {
 
 #[pymethods]
 impl Situation {
-    /// The travel time to every cell, s (steps in a grid world), shape (rows, columns); inf where no path is known.
+    /// The travel time to every cell, s, shape (rows, columns); inf where no path is known.
     /// `AttributeError`: the strategy does not have the attribute `needs_travel = True`.
     #[getter]
     fn travel<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
@@ -124,63 +121,24 @@ fn strategy_of(strategy: &Bound<'_, PyAny>, error: &FirstError) -> PyResult<Tria
     Ok(TrialStrategy::Agent(policy))
 }
 
-/// The world of a trial.
-enum World {
-    Physics(Box<WorldSpec>),
-    Grid(Arc<sim::grid::GridSpec>),
-}
-
-impl World {
-    /// A spec, or the name or the path of a world of either kind.
-    fn of(py: Python<'_>, world: &Bound<'_, PyAny>, robot: Option<usize>) -> PyResult<Self> {
-        if let Ok(spec) = world.cast::<GridSpec>() {
-            return Ok(Self::Grid(Arc::clone(&spec.get().spec)));
-        }
-        if !world.is_instance_of::<Spec>() {
-            let name = world_name(world)?;
-            if GridSpec::is_named(&name) {
-                return Ok(Self::Grid(GridSpec::load(py, name)?.spec));
-            }
-        }
-        Ok(Self::Physics(Box::new(driving(&spec_of(py, world)?, robot)?)))
-    }
-}
-
-/// The length of a trial, of which one unit was asked for: `unit`, and not `other`.
-fn length(unit: (&str, Option<u64>), other: (&str, Option<u64>), kind: &str, default: u64) -> PyResult<u64> {
-    if other.1.is_some() {
-        return Err(value_error(format!(
-            "the length of a trial in a {kind} world is `{}`, not `{}`",
-            unit.0, other.0
-        )));
-    }
-    match unit.1.unwrap_or(default) {
-        0 => Err(value_error(format!("a trial has at least 1 of `{}`", unit.0))),
-        length => Ok(length),
-    }
-}
-
 /// Lets a robot explore a world for some time, and scores what it has learned.
 ///
-/// `world`: a physics world (`Spec`, name or path), or a grid world (`GridSpec`, name or path). The length of the trial is
-/// `seconds` (default 600) in a physics world, and `steps` (default 20000) in a grid world. `strategy`: the name of one of
-/// the library (`curious.strategies()`), or an object with a method `weigh(situation) -> array` of one weight per cell,
+/// `world`: a physics world (`Spec`, name or path). `seconds`: the length of the trial. `strategy`: the name of one of the library (`curious.strategies()`), or an object with a method `weigh(situation) -> array` of one weight per cell,
 /// shape (rows, columns): a goal is drawn with a probability in proportion to the weight of its patch. `estimator`: see
 /// `Mapper.estimators()`.
 ///
 /// Returns a dict: the last value of every metric, `samples` (a dict of lists over the time), `strategy_share`,
-/// `collisions` (None in a grid world), `false_change_events`, `false_map_changes`, `map_hash`. Times are in s, or in
-/// steps. The same arguments give the same result, also in `house_trials` and `grid_world`. An exception of the strategy ends the trial.
+/// `collisions`, `false_change_events`, `false_map_changes`, `map_hash`. Times are in s. The same arguments give the same result,
+/// also in `house_trials`. An exception of the strategy ends the trial.
 #[pyfunction]
-#[pyo3(signature = (world, strategy = None, *, seed = 0, seconds = None, steps = None, estimator = None, robot = None))]
+#[pyo3(signature = (world, strategy = None, *, seed = 0, seconds = 600, estimator = None, robot = None))]
 #[allow(clippy::too_many_arguments)]
 pub(crate) fn trial<'py>(
     py: Python<'py>,
     world: &Bound<'py, PyAny>,
     strategy: Option<&Bound<'py, PyAny>>,
     #[pyo3(from_py_with = whole)] seed: u64,
-    #[pyo3(from_py_with = whole)] seconds: Option<u64>,
-    #[pyo3(from_py_with = whole)] steps: Option<u64>,
+    #[pyo3(from_py_with = whole)] seconds: u64,
     estimator: Option<&str>,
     #[pyo3(from_py_with = optional_index)] robot: Option<usize>,
 ) -> PyResult<Bound<'py, PyDict>> {
@@ -190,22 +148,20 @@ pub(crate) fn trial<'py>(
         None => TrialStrategy::Agent(Policy::default()),
     }];
     let estimator = estimator.map(str::parse::<EstimatorChoice>).transpose().map_err(value_error)?;
-    let estimators = |default: MapperSettings| vec![estimator.unwrap_or(default.estimator)];
-    let (seconds, steps) = (("seconds", seconds), ("steps", steps));
-    let trial = match World::of(py, world, robot)? {
-        World::Physics(spec) => {
-            let length = length(seconds, steps, "physics", SECONDS)?;
-            let (worlds, robot) = (vec![*spec], PhysicsRobot::default());
-            let estimators = estimators(robot::default_mapper());
-            run(py, &Experiment { worlds, estimators, strategies, trials: 1, seed, length, robot }, &error)
-        }
-        World::Grid(spec) => {
-            let length = length(steps, seconds, "grid", STEPS)?;
-            let (worlds, robot) = (vec![(*spec).clone()], GridRobot::default());
-            let estimators = estimators(MapperSettings::default());
-            run(py, &Experiment { worlds, estimators, strategies, trials: 1, seed, length, robot }, &error)
-        }
-    }?;
+    let estimator = estimator.unwrap_or(robot::default_mapper().estimator);
+    if seconds == 0 {
+        return Err(value_error("a trial has at least 1 of `seconds`"));
+    }
+    let experiment = Experiment {
+        worlds: vec![driving(&spec_of(py, world)?, robot)?],
+        estimators: vec![estimator],
+        strategies,
+        trials: 1,
+        seed,
+        length: seconds,
+        robot: PhysicsRobot::default(),
+    };
+    let trial = run(py, &experiment, &error)?;
     let (dict, samples) = (PyDict::new(py), PyDict::new(py));
     for (name, value) in
         [("world", &trial.world), ("strategy", &trial.strategy), ("estimator", &trial.estimator)]
@@ -228,15 +184,11 @@ pub(crate) fn trial<'py>(
     Ok(dict)
 }
 
-/// The lengths of trials by default: in physics worlds, and in grid worlds.
-const SECONDS: u64 = 600;
-const STEPS: u64 = 20_000;
-
 /// Runs the only trial of an experiment. Ctrl-C and an error of the strategy end it.
-fn run<W: TrialWorld>(py: Python<'_>, experiment: &Experiment<W>, error: &FirstError) -> PyResult<Trial> {
+fn run(py: Python<'_>, experiment: &Experiment<WorldSpec>, error: &FirstError) -> PyResult<Trial> {
     let error = || error.lock().unwrap_or_else(PoisonError::into_inner);
     let mut readings = 0_u32;
-    let goes_on = |_: TrialStep<'_, W>| {
+    let goes_on = || {
         readings = readings.wrapping_add(1);
         if readings.is_multiple_of(256)
             && let Err(signal) = Python::attach(|py| py.check_signals())

@@ -218,27 +218,6 @@ def test_a_strategy_of_python_runs_in_a_trial():
     assert "curious" in curious.strategies()
 
 
-def test_trials_run_in_grid_worlds(tmp_path):
-    named = curious.trial("two_blocks", "recency", seed=3, steps=500)
-    # The hash that `grid_world --strategy recency --seed 3 --steps 500 --trials 1 --estimator two-state-gaps` writes.
-    assert named["map_hash"] == "ad1e134784fae0c8b8f860e1aba49185"
-    assert named["samples"]["time"][-1] == 500 and named["collisions"] is None
-    spec = curious.GridSpec.load("two_blocks")
-    assert spec.shape == spec.walls.shape == (25, 25) and spec.walls[0].all() and spec.sensor_radius > 0
-    path = tmp_path / "mine.toml"
-    path.write_text(spec.to_toml())
-    for same in (spec, path, pickle.loads(pickle.dumps(spec)), curious.GridSpec.from_toml(spec.to_toml())):
-        assert curious.trial(same, Oldest(), seed=3, steps=500)["map_hash"] == named["map_hash"]
-    generated = curious.GridSpec.generate(5)
-    assert generated == curious.GridSpec.generate(5) != curious.GridSpec.generate(6)
-    assert "open_hall" in curious.GridSpec.shipped()
-    for world, wrong, right in (("two_blocks", "seconds", "steps"), ("four_rooms", "steps", "seconds")):
-        with pytest.raises(ValueError, match=f"is `{right}`, not `{wrong}`"):
-            curious.trial(world, **{wrong: 60})
-        with pytest.raises(ValueError, match=f"at least 1 of `{right}`"):
-            curious.trial(world, **{right: 0})
-
-
 def test_errors_of_strategies_end_the_trial():
     class Wrong:
         needs_travel = True
@@ -255,6 +234,8 @@ def test_errors_of_strategies_end_the_trial():
         curious.trial("four_rooms", Wrong(), seconds=60)
     with pytest.raises(KeyError, match="mine"):
         curious.trial("four_rooms", Raises(), seconds=60)
+    with pytest.raises(ValueError, match="at least 1 of `seconds`"):
+        curious.trial("four_rooms", seconds=0)
     with pytest.raises(ValueError, match="no strategy is called `best`"):
         curious.trial("four_rooms", "best")
     with pytest.raises(TypeError, match="a strategy is a name"):

@@ -2,7 +2,6 @@
 
 use super::Report;
 use super::measure::Measure;
-use super::run::Run;
 use super::strategy::StrategyResult;
 use evaluation::trials::Metric;
 use robot::BUILD;
@@ -33,32 +32,20 @@ pub(super) fn write_report(report: &Report, files: &[String], mut to: impl Write
     writeln!(to)
 }
 
-impl Serialize for Run {
-    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
-        let mut object = to.serialize_map(None)?;
-        object.serialize_entry("world", &self.world)?;
-        object.serialize_entry("estimator", &self.estimator)?;
-        let strategies = self.strategies.iter().map(|strategy| (&strategy.name, strategy));
-        object.serialize_entry("strategies", &Object(strategies))?;
-        object.serialize_entry("comparisons", &self.comparisons)?;
-        object.end()
-    }
-}
-
 impl Serialize for StrategyResult {
     fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
         let mut object = to.serialize_map(None)?;
         object.serialize_entry("trials", &self.trials)?;
         for measure in Metric::ALL.iter().flat_map(|&metric| [Measure::Final(metric), Measure::Area(metric)])
         {
-            object.serialize_entry(&measure, &self.value(measure))?;
+            object.serialize_entry(&measure.name(), &self.value(measure))?;
         }
         object.serialize_entry("false_change_events", &self.false_change_events)?;
         object.serialize_entry("false_map_changes", &self.false_map_changes)?;
         if let Some(collisions) = self.collisions {
             object.serialize_entry("collisions", &collisions)?;
         }
-        object.serialize_entry("strategy_share", &Object(self.strategy_share.iter().cloned()))?;
+        object.serialize_entry("strategy_share", &Shares(&self.strategy_share))?;
         for metric in Metric::ALL {
             let curve = self.times.iter().zip(self.curve(metric));
             let points: Vec<_> = curve.map(|(time, at)| (time, at.mean, at.low, at.high)).collect();
@@ -68,17 +55,11 @@ impl Serialize for StrategyResult {
     }
 }
 
-impl Serialize for Measure {
-    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
-        to.serialize_str(&self.name())
-    }
-}
-
 /// Pairs as an object, in their order.
-struct Object<I>(I);
+struct Shares<'a>(&'a [(String, f64)]);
 
-impl<K: Serialize, V: Serialize, I: Iterator<Item = (K, V)> + Clone> Serialize for Object<I> {
+impl Serialize for Shares<'_> {
     fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
-        to.collect_map(self.0.clone())
+        to.collect_map(self.0.iter().map(|(name, share)| (name, share)))
     }
 }

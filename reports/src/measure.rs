@@ -1,9 +1,11 @@
 //! The measures in which strategies are compared.
 
 use evaluation::trials::Metric;
+use serde::Serialize;
 
 /// One number per trial.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[serde(into = "String")]
 pub enum Measure {
     /// The value of a metric in the last sample.
     Final(Metric),
@@ -33,6 +35,12 @@ impl Measure {
             Self::Final(metric) => format!("final_{}", metric.name()),
             Self::Area(metric) => format!("{}_area", metric.name()),
         }
+    }
+}
+
+impl From<Measure> for String {
+    fn from(measure: Measure) -> Self {
+        measure.name()
     }
 }
 

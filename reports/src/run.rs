@@ -5,17 +5,20 @@ use super::comparison::{Comparison, compare_all};
 use super::measure::Measure;
 use super::statistics::Quantiles;
 use super::strategy::StrategyResult;
+use serde::{Serialize, Serializer};
 
 /// The strategies with one estimator in one world, or over all worlds.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
 pub struct Run {
     /// The name of the world; `all worlds (N)` for the run over all worlds.
     pub world: String,
     /// The number of worlds: 1, except in the run over all worlds.
+    #[serde(skip)]
     pub worlds: usize,
     /// The name of the estimator.
     pub estimator: String,
     /// The strategies, in the order of the experiment.
+    #[serde(serialize_with = "by_name")]
     pub strategies: Vec<StrategyResult>,
     /// Every pair of strategies in every measure of [`Measure::COMPARED`].
     pub comparisons: Vec<Comparison>,
@@ -47,6 +50,10 @@ impl Run {
             _ => None,
         })
     }
+}
+
+fn by_name<S: Serializer>(strategies: &[StrategyResult], to: S) -> Result<S::Ok, S::Error> {
+    to.collect_map(strategies.iter().map(|strategy| (&strategy.name, strategy)))
 }
 
 /// The conditions of a run: `5 trials of 20,000 steps, estimator two-state, sensor radius 4`; `3 to 5 trials` where

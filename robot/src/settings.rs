@@ -67,8 +67,8 @@ pub struct Settings {
     pub mapper: MapperSettings,
     /// The settings of the agent.
     pub agent: AgentSettings,
-    /// The settings of the controller.
-    pub controller: controller::Settings,
+    /// The maximum number of steps of local exploration.
+    pub local_steps: u32,
     /// The settings of the drive.
     pub drive: DiffDriveSettings,
     /// How the robot knows its pose.
@@ -106,9 +106,7 @@ impl Settings {
         };
         // A reward counts cells. The paper's temperature is for blocks of one cell; a robot is many cells wide, and each of its
         // moves changes about as many cells.
-        agent.curious.temperature *= (2.0 * source.drive.radius_m / source.cell_m).max(1.0);
-        let mut controller = controller::Settings::default();
-        controller.exploration.max_steps = LOCAL_STEPS;
+        agent.temperature *= (2.0 * source.drive.radius_m / source.cell_m).max(1.0);
         let filter = ScanFilterSettings {
             max_range_m: source.range_max_m.clamp(0.1, 1000.0),
             no_return: source.no_return,
@@ -119,7 +117,7 @@ impl Settings {
             filter: if source.pose == PoseMode::Exact { filter } else { filter.for_noise(noise_m) },
             mapper,
             agent,
-            controller,
+            local_steps: LOCAL_STEPS,
             drive: DiffDriveSettings { tolerance_m, ..source.drive },
             pose: source.pose,
             localizer: LocalizerSettings { range_noise_std_m: noise_m, ..LocalizerSettings::default() },
@@ -144,7 +142,7 @@ impl Settings {
     /// When a setting is out of range.
     pub fn controller(&self, seed: u64) -> Result<Controller<DiffDrive>, SettingsError> {
         let stream = RandomStream::new(seed, Purpose::Controller);
-        Controller::new(self.controller, DiffDrive::new(self.drive)?, stream)
+        Ok(Controller::new(DiffDrive::new(self.drive)?, self.local_steps, stream))
     }
 
     /// The pilot that drives to the goals of `selector`.

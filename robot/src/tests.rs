@@ -213,8 +213,8 @@ fn explorer(policy: &str) -> Explorer {
     let stream = |purpose| RandomStream::new(1, purpose);
     let policy = policy.parse::<Policy>().unwrap();
     let agent = Agent::new(&AgentSettings::default(), &policy, stream(Purpose::GridAgent)).unwrap();
-    let controller = Controller::new(CellDrive::settings(), CellDrive, stream(Purpose::GridController));
-    Robot::new(Box::new(ExactPoses), mapper(7, 1.0), Autonomous::new(agent, controller.unwrap()))
+    let controller = Controller::new(CellDrive, 42, stream(Purpose::GridController));
+    Robot::new(Box::new(ExactPoses), mapper(7, 1.0), Autonomous::new(agent, controller))
 }
 
 /// The commands of some turns.

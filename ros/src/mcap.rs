@@ -16,7 +16,7 @@ use grids::Grids;
 use interfaces::{Event, Grid, LaserReading, Twist};
 use lasers::Laser;
 use nalgebra::{Isometry2, Point2};
-use std::io::{Error, Seek, Write};
+use std::io::{Error, Write};
 
 /// The frames, by REP-105.
 const MAP: &str = "map";
@@ -44,7 +44,7 @@ const POINT_BYTES: u32 = 16;
 ///
 /// A file that is not finished can be read up to its last chunk. For a file that appears when it is complete, give the writer
 /// one with a temporary name, and rename it after [`finish`](Self::finish).
-pub struct McapWriter<W: Write + Seek> {
+pub struct McapWriter<W: Write> {
     channels: Channels<W>,
     begin_ns: i64,
     lasers: Vec<Laser>,
@@ -54,7 +54,7 @@ pub struct McapWriter<W: Write + Seek> {
     last_odometry: Option<(i64, Isometry2<f64>)>,
 }
 
-impl<W: Write + Seek> McapWriter<W> {
+impl<W: Write> McapWriter<W> {
     /// Begins a recording. `name` is that of the file in messages; `begin_s` is the time 0 of the readings in seconds since
     /// the epoch, 0 in a simulation: its stamps begin at 10 s, so that none of a scan that begins before the time 0 is negative.
     ///

@@ -21,7 +21,7 @@ macro_rules! by_type {
             Topic::TransitionEvents => $open!(TransitionEvent),
             Topic::Diagnostics => $open!(Diagnostics),
             Topic::MapUpdates => $open!(GridUpdate),
-            Topic::Markers => $open!(Markers),
+            Topic::Path => $open!(Path),
             Topic::GoalPose => $open!(Pose),
         }
     };
@@ -40,7 +40,6 @@ use crate::message::{DynamicEdges, Message, PoseStamped, Quality, Topic};
 use crate::service::Reply;
 use actions::{EdgesClient, Navigator};
 use anyhow::Context as _;
-use discovery::Discovery;
 use others::{Endpoints, Others};
 use publishers::Publishers;
 use ros2_client::dds::rustdds::DomainParticipantBuilder;
@@ -64,7 +63,6 @@ pub struct DdsLink {
     events: Receiver<Event>,
     names: BTreeMap<Topic, String>,
     publishers: Publishers,
-    discovery: Discovery,
     problems: VecDeque<String>,
     navigator: Option<Navigator>,
     edges: Option<EdgesClient>,
@@ -89,7 +87,8 @@ impl DdsLink {
         // The node answers for its parameters and its log itself: the library does so for one vendor only, and subscribes `/clock`
         // with a type of its own.
         let options = NodeOptions::new().enable_rosout(false).start_parameter_services(false);
-        let others = Others::follow(&context)?;
+        let (to, events) = mpsc::sync_channel(MAX_EVENTS);
+        let others = Others::follow(&context, wiring.subscribed.clone(), to.clone())?;
         let mut endpoints = Endpoints::new(context.new_node(name, options)?, others.clone());
         let mapping = match environment.services {
             environment::Services::Enhanced => ServiceMapping::Enhanced,
@@ -100,7 +99,6 @@ impl DdsLink {
         let navigator = navigator.map(|name| Navigator::new(endpoints.node(), name, mapping)).transpose()?;
         let edges = wiring.adjust_edges.as_deref();
         let edges = edges.map(|name| EdgesClient::new(endpoints.node(), name, mapping)).transpose()?;
-        let (to, events) = mpsc::sync_channel(MAX_EVENTS);
         let services = Services::open(&mut endpoints, others, &wiring.services, mapping, &to)?;
         let (typed, subscribed) =
             Typed::new(wiring.subscribed.clone(), context.clone(), publishers.ids(), to.clone());
@@ -109,7 +107,6 @@ impl DdsLink {
             events,
             names: wiring.published.iter().map(|(topic, name, _)| (*topic, name.clone())).collect(),
             publishers,
-            discovery: Discovery::new(context, wiring),
             problems: VecDeque::new(),
             navigator,
             edges,
@@ -142,7 +139,6 @@ impl Link for DdsLink {
 
     fn receive(&mut self, patience: Duration) -> Option<Event> {
         self.problems.extend(self.publishers.take_problem());
-        self.problems.extend(self.discovery.problems());
         self.problems.extend(self.typed.open(&mut self.endpoints));
         if let Some(problem) = self.problems.pop_front() {
             return Some(Event::Problem(problem));

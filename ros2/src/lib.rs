@@ -39,8 +39,8 @@ pub use dds::DdsLink;
 pub use environment::{Environment, Range, Services};
 pub use link::{Event, Link, Navigation, Request, Wiring};
 pub use message::{
-    Bool, Clock, Color, CostmapFilterInfo, DiagnosticStatus, Diagnostics, Log, Marker, Markers, Message,
-    PoseWithCovarianceStamped, Quality, Texture, Topic, TransitionEvent, Twist as TwistMessage, TwistStamped,
+    Bool, Clock, CostmapFilterInfo, DiagnosticStatus, Diagnostics, Log, Message, PoseWithCovarianceStamped,
+    Quality, Topic, TransitionEvent, Twist as TwistMessage, TwistStamped,
 };
 pub use names::Names;
 pub use node::{CuriousNode, NodeReport, Signals};
@@ -49,5 +49,6 @@ pub use parameters::{Mode, Navigator, Parameters};
 pub use ros_args::RosArgs;
 pub use service::{Call, Reply, Service, wire};
 pub use simulated::{SimulatedRobot, SimulationSettings};
+pub use source::ScanCount;
 pub use value::{Given, Value};
 pub use wiring::{curious_wiring, simulation_wiring};

@@ -26,40 +26,27 @@ const MINUTE_S: f64 = 60.0;
 /// What was published, and when.
 #[derive(Default)]
 pub(crate) struct PublishedMaps {
-    interval: Duration,
-    /// How far ahead the maps of changes and of predictions look, s.
-    change_horizon_s: f64,
-    prediction_horizon_s: f64,
     /// The map as subscribers know it.
     shown: Option<Grid<i8>>,
     whole: Option<Instant>,
     changes: Option<Instant>,
-    /// Whether something changed since the last whole map.
-    is_changed: bool,
+    /// Whether nothing changed since the last whole map.
+    is_whole: bool,
 }
 
 impl PublishedMaps {
-    /// Publishes maps as these parameters say.
-    pub(crate) fn new(parameters: &Parameters) -> Self {
-        let mut maps = Self { is_changed: true, ..Self::default() };
-        maps.set(parameters);
-        maps
-    }
-
-    /// Takes over parameters that have changed; the maps are published anew as soon as it is time.
-    pub(crate) fn set(&mut self, parameters: &Parameters) {
-        self.interval = Duration::from_secs_f64(parameters.map_update_interval_s);
-        self.change_horizon_s = parameters.change_horizon_s;
-        self.prediction_horizon_s = parameters.prediction_horizon_s;
-        (self.is_changed, self.changes) = (true, None);
-    }
-
     /// The messages after a reading. `header` has the time of the reading and the frame of the map.
-    pub(crate) fn after(&mut self, mapper: &Mapper, header: &Header, now: Instant) -> Vec<(Topic, Message)> {
+    pub(crate) fn after(
+        &mut self,
+        parameters: &Parameters,
+        mapper: &Mapper,
+        header: &Header,
+        now: Instant,
+    ) -> Vec<(Topic, Message)> {
         let mut messages = Vec::new();
-        self.is_changed |= !mapper.transitions().is_empty();
-        if self.is_due(now) && self.is_changed {
-            self.show_whole(mapper, header, now, &mut messages);
+        self.is_whole &= mapper.transitions().is_empty();
+        if self.is_due(parameters, now) && !self.is_whole {
+            self.show_whole(parameters, mapper, header, now, &mut messages);
         } else if let Some(update) = self.update(mapper, header) {
             messages.push((Topic::MapUpdates, Message::GridUpdate(update)));
         }
@@ -68,18 +55,20 @@ impl PublishedMaps {
 
     /// Publishes the whole map again as soon as it is time: one was not sent.
     pub(crate) fn repeat(&mut self) {
-        self.is_changed = true;
+        self.is_whole = false;
     }
 
-    fn is_due(&self, now: Instant) -> bool {
+    fn is_due(&self, parameters: &Parameters, now: Instant) -> bool {
         let cells = self.shown.as_ref().map_or(0, |shown| shown.cells().len());
         let share = cells as f64 / MANY_CELLS;
-        let interval = if share > 1.0 { self.interval.max(LARGE).mul_f64(share) } else { self.interval };
+        let interval = Duration::from_secs_f64(parameters.map_update_interval_s);
+        let interval = if share > 1.0 { interval.max(LARGE).mul_f64(share) } else { interval };
         self.whole.is_none_or(|whole| now.duration_since(whole) >= interval)
     }
 
     fn show_whole(
         &mut self,
+        parameters: &Parameters,
         mapper: &Mapper,
         header: &Header,
         now: Instant,
@@ -91,10 +80,10 @@ impl PublishedMaps {
         messages.push((Topic::Map, message(&map)));
         self.shown = Some(map);
         self.whole = Some(now);
-        self.is_changed = false;
+        self.is_whole = true;
         if self.changes.is_none_or(|last| now.duration_since(last) >= CHANGES) {
             self.changes = Some(now);
-            let (change_s, ahead_s) = (self.change_horizon_s, self.prediction_horizon_s);
+            let (change_s, ahead_s) = (parameters.change_horizon_s, parameters.prediction_horizon_s);
             let share = |index, share: f64| match mapper.was_ever_seen(index) {
                 true => (share.clamp(0.0, 1.0) * 100.0).round() as i8,
                 false => -1,
@@ -136,42 +125,29 @@ impl PublishedMaps {
 }
 
 /// When the masks were published.
+#[derive(Default)]
 pub(crate) struct PublishedMasks {
-    interval: Duration,
-    /// How far ahead the keepout mask looks, s.
-    ahead_s: f64,
     last: Option<Instant>,
 }
 
 impl PublishedMasks {
-    /// Publishes masks as these parameters say.
-    pub(crate) fn new(parameters: &Parameters) -> Self {
-        let mut masks = Self { interval: Duration::ZERO, ahead_s: 0.0, last: None };
-        masks.set(parameters);
-        masks
-    }
-
-    /// Takes over parameters that have changed.
-    pub(crate) fn set(&mut self, parameters: &Parameters) {
-        self.interval = Duration::from_secs_f64(parameters.mask_update_interval_s);
-        self.ahead_s = parameters.prediction_horizon_s;
-    }
-
     /// The messages that are due. `name` is the full name of a topic, which the filters subscribe.
     pub(crate) fn due<'a>(
         &mut self,
+        parameters: &Parameters,
         mapper: &Mapper,
         header: &Header,
         now: Instant,
         name: impl Fn(Topic) -> &'a str,
     ) -> Vec<(Topic, Message)> {
         let is_first = self.last.is_none();
-        if self.interval.is_zero() || self.last.is_some_and(|last| now.duration_since(last) < self.interval) {
+        let interval = Duration::from_secs_f64(parameters.mask_update_interval_s);
+        if interval.is_zero() || self.last.is_some_and(|last| now.duration_since(last) < interval) {
             return Vec::new();
         }
         let Some(frame) = known_part(mapper.states()) else { return Vec::new() };
         self.last = Some(now);
-        let [speed, keepout] = masks_ahead(mapper, self.ahead_s);
+        let [speed, keepout] = masks_ahead(mapper, parameters.prediction_horizon_s);
         let mut messages = Vec::new();
         for (topic, mask) in [(Topic::SpeedMask, speed), (Topic::KeepoutMask, keepout)] {
             let value = |_: &CellState, index: usize| i8::try_from(mask.cells()[index]).unwrap_or(i8::MAX);

@@ -1,7 +1,7 @@
 //! The messages that the nodes send and receive.
 
 pub(crate) use ros::{
-    Header, LaserScan, OccupancyGrid, OccupancyGridUpdate, Odometry, Pose, PoseStamped, Time,
+    Header, LaserScan, OccupancyGrid, OccupancyGridUpdate, Odometry, Path, Pose, PoseStamped, Time,
     TransformStamped, Transforms, Vector,
 };
 
@@ -44,75 +44,6 @@ pub struct TwistStamped {
 pub struct Bool {
     /// The value.
     pub data: bool,
-}
-
-/// `std_msgs/ColorRGBA`, each from 0 to 1.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, Serialize)]
-pub struct Color {
-    /// Red.
-    pub r: f32,
-    /// Green.
-    pub g: f32,
-    /// Blue.
-    pub b: f32,
-    /// Opacity.
-    pub a: f32,
-}
-
-/// `visualization_msgs/Marker`, as in Humble and later. The shapes of this project need no texture, text or mesh.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
-pub struct Marker {
-    /// The time, and the frame of all points.
-    pub header: Header,
-    /// The group of the marker.
-    pub ns: String,
-    /// The number of the marker in its group: a later marker with the same number replaces it.
-    pub id: i32,
-    /// The shape, one of the constants of this type.
-    pub shape: i32,
-    /// What to do, one of the constants of this type.
-    pub action: i32,
-    /// The pose of the shape.
-    pub pose: Pose,
-    /// The size of the shape, m.
-    pub scale: Vector,
-    /// The color of the shape.
-    pub color: Color,
-    /// How long the marker is shown, s and ns; 0: until it is replaced.
-    pub lifetime: (i32, u32),
-    /// Whether the marker moves along with its frame.
-    pub frame_locked: bool,
-    /// The points of a line.
-    pub points: Vec<Vector>,
-    /// The colors of the points.
-    pub colors: Vec<Color>,
-    /// A texture.
-    pub texture: Texture,
-    /// A text.
-    pub text: String,
-    /// A mesh: its name, a file (name, bytes), and whether the materials of the file are used.
-    pub mesh: (String, (String, Vec<u8>), bool),
-}
-
-/// The texture of a [`Marker`]: its name, the picture (header, format, bytes), and the coordinates of the points in it.
-pub type Texture = (String, (Header, String, Vec<u8>), Vec<(f32, f32)>);
-
-impl Marker {
-    /// The shape of an arrow.
-    pub const ARROW: i32 = 0;
-    /// The shape of a line through the points.
-    pub const LINE_STRIP: i32 = 4;
-    /// Shows the marker.
-    pub const ADD: i32 = 0;
-    /// Removes the marker.
-    pub const DELETE: i32 = 2;
-}
-
-/// `visualization_msgs/MarkerArray`.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
-pub struct Markers {
-    /// The markers.
-    pub markers: Vec<Marker>,
 }
 
 /// `nav2_msgs/CostmapFilterInfo`: what the values of a mask mean.
@@ -158,7 +89,7 @@ impl PoseWithCovarianceStamped {
 const PLACES: [usize; 3] = [0, 1, 5];
 
 /// The covariance of x, y, z and the angles about them, from that of x, y and heading.
-pub(crate) fn covariance(of_plane: &Matrix3<f64>) -> Covariance {
+fn covariance(of_plane: &Matrix3<f64>) -> Covariance {
     let mut all = Covariance::default();
     for (row, at) in PLACES.into_iter().enumerate() {
         for (column, beside) in PLACES.into_iter().enumerate() {
@@ -285,8 +216,8 @@ pub enum Message {
     Grid(OccupancyGrid),
     /// A part of a map that has changed.
     GridUpdate(OccupancyGridUpdate),
-    /// Shapes to be drawn.
-    Markers(Markers),
+    /// A path.
+    Path(Path),
     /// A pose.
     Pose(PoseStamped),
     /// A pose with its covariance.

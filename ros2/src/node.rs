@@ -53,14 +53,12 @@ pub struct Signals {
 /// What a run of a node has done.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct NodeReport {
-    /// Scans that came.
-    pub received: u64,
+    /// Scans that came, and what happened to them.
+    pub scans: ScanCount,
     /// Scans that became readings.
     pub readings: u64,
     /// Readings that entered the map: those whose pose was certain.
     pub mapped: u64,
-    /// Scans that are not valid, that have no place or no pose, that came too late, and that are of another laser.
-    pub unused: [u64; 4],
     /// The longest time from the arrival of an event to the end of its processing, µs.
     pub longest_us: u64,
 }
@@ -113,7 +111,7 @@ impl<L: Link> CuriousNode<L> {
             source: Source::new(names, is_localized),
             parameters: parameters.clone(),
             robot,
-            published: Published::new(parameters),
+            published: Published::default(),
             routes: Routes::new(parameters)?,
             state: State::Unconfigured,
             state_path: state.map(Path::to_owned),
@@ -174,8 +172,7 @@ impl<L: Link> CuriousNode<L> {
 
     /// What the node has done so far.
     pub fn report(&self) -> NodeReport {
-        let ScanCount { received, invalid, unplaced, late, other } = self.source.count;
-        NodeReport { received, unused: [invalid, unplaced, late, other], ..self.report }
+        NodeReport { scans: self.source.count, ..self.report }
     }
 
     /// The map.
@@ -184,7 +181,8 @@ impl<L: Link> CuriousNode<L> {
     }
 
     fn nap(&self) -> Duration {
-        let transform = self.published.next_transform.saturating_duration_since(Instant::now());
+        let next = self.published.next_transform;
+        let transform = next.map_or(Duration::ZERO, |next| next.saturating_duration_since(Instant::now()));
         let has_transforms = self.parameters.transform_publish_period_s > 0.0 && self.is_active();
         if has_transforms { transform.min(NAP) } else { NAP }
     }
@@ -288,7 +286,7 @@ impl<L: Link> CuriousNode<L> {
 
     fn tick_active(&mut self, now: Instant) {
         let period_s = self.parameters.transform_publish_period_s;
-        if period_s > 0.0 && now >= self.published.next_transform {
+        if period_s > 0.0 && self.published.next_transform.is_none_or(|next| now >= next) {
             self.publish_transform(now);
         }
         if self.last.is_some_and(|(_, at)| now.duration_since(at) >= BLIND) {

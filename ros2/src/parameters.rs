@@ -202,6 +202,10 @@ impl Parameters {
                 return Err(invalid(name, "the name of a frame", &Value::Text(String::new())));
             }
         }
+        if !PoseMode::LIVE.contains(&self.pose) {
+            let found = Value::Text(self.pose.name().to_owned());
+            return Err(invalid("pose", "exact, odometry or localized", &found));
+        }
         if !matches!(self.scan_reliability.as_str(), "best_effort" | "reliable") {
             let name = "qos_overrides./scan.subscription.reliability";
             let found = Value::Text(self.scan_reliability.clone());
@@ -281,7 +285,7 @@ impl Parameters {
             }
             (name, "") => {
                 let known = || Policy::built_in().iter().map(Policy::name).collect::<Vec<_>>().join(", ");
-                Policy::named(name).ok_or_else(|| unknown("strategy", known(), name))
+                name.parse().map_err(|_| unknown("strategy", known(), name))
             }
             _ => bail!(
                 "the parameters `strategy` (`{strategy}`) and `purpose` (`{purpose}`) both name a strategy: leave one of them \

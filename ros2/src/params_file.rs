@@ -11,6 +11,7 @@
 
 use crate::value::{Given, Value};
 use anyhow::{anyhow, bail};
+use serde::Deserialize;
 use serde_json::Value as Yaml;
 use std::fs::File;
 use std::io::{self, Read};
@@ -32,20 +33,7 @@ pub(crate) fn read(path: &Path) -> anyhow::Result<Vec<Given>> {
 
 /// The value of a text on the command line, as YAML has it: `true`, `5`, `0.05`, `"text"`, `text`.
 pub(crate) fn value_of(text: &str) -> Value {
-    let parsed = serde_saphyr::from_str(text).ok();
-    parsed.and_then(|yaml| value(&yaml)).unwrap_or_else(|| Value::Text(text.trim().to_owned()))
-}
-
-/// The value of a parameter; `None`: a list, or nothing.
-fn value(yaml: &Yaml) -> Option<Value> {
-    match yaml {
-        Yaml::Bool(value) => Some(Value::Bool(*value)),
-        Yaml::Number(number) => {
-            number.as_i64().map(Value::Integer).or_else(|| number.as_f64().map(Value::Float))
-        }
-        Yaml::String(text) => Some(Value::Text(text.clone())),
-        _ => None,
-    }
+    serde_saphyr::from_str(text).unwrap_or_else(|_| Value::Text(text.trim().to_owned()))
 }
 
 fn text(path: &Path) -> io::Result<String> {
@@ -98,7 +86,7 @@ fn parameters(entries: &mut Vec<Given>, nodes: &str, prefix: &str, part: &Yaml) 
     }
     let (nodes, name) = (nodes.to_owned(), prefix.trim_start_matches('.').to_owned());
     if !part.is_object() && !name.is_empty() {
-        entries.push(Given { nodes, name, value: value(part), place: None });
+        entries.push(Given { nodes, name, value: Value::deserialize(part).ok(), place: None });
     }
 }
 

@@ -51,16 +51,17 @@ pub(crate) struct LiveReading {
 
 /// How many scans came, and what happened to them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct ScanCount {
-    pub(crate) received: u64,
-    /// Scans that are none.
-    pub(crate) invalid: u64,
+pub struct ScanCount {
+    /// All scans.
+    pub received: u64,
+    /// Scans that are not valid.
+    pub invalid: u64,
     /// Scans whose place on the robot, or whose pose, was not known.
-    pub(crate) unplaced: u64,
+    pub unplaced: u64,
     /// Scans that are not later than the one before.
-    pub(crate) late: u64,
+    pub late: u64,
     /// Scans of another laser than the one in use.
-    pub(crate) other: u64,
+    pub other: u64,
 }
 
 /// What is known of a scan that waits.

@@ -51,8 +51,8 @@ pub enum Topic {
     ParameterEvents,
     /// Transitions of the managed lifecycle.
     TransitionEvents,
-    /// The goal and the path of the robot, to be drawn.
-    Markers,
+    /// The path of the robot to its goal.
+    Path,
     /// The pose to which Nav2 drives.
     GoalPose,
     /// The true pose of a simulated robot.
@@ -126,7 +126,7 @@ impl Topic {
             Self::Log => ("/rosout", "rcl_interfaces", "Log", Quality::LOG),
             Self::ParameterEvents => ("/parameter_events", "rcl_interfaces", "ParameterEvent", Quality { depth: 1000, ..DEFAULT }),
             Self::TransitionEvents => ("~/transition_event", "lifecycle_msgs", "TransitionEvent", DEFAULT),
-            Self::Markers => ("explore/goals", "visualization_msgs", "MarkerArray", DEFAULT),
+            Self::Path => ("explore/path", "nav_msgs", "Path", DEFAULT),
             Self::GoalPose => ("goal_pose", "geometry_msgs", "PoseStamped", DEFAULT),
             Self::GroundTruth => ("ground_truth", "nav_msgs", "Odometry", DEFAULT),
         }

@@ -1,9 +1,11 @@
 //! The values of parameters.
 
+use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// The value of a parameter.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[serde(untagged)]
 pub enum Value {
     /// Yes or no.
     Bool(bool),

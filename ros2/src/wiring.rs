@@ -39,7 +39,7 @@ pub fn curious_wiring(parameters: &Parameters, names: &Names, ros: &RosArgs) -> 
     let mut navigate_to_pose = None;
     if parameters.mode == Mode::Explore {
         subscribed.push(Topic::Resume);
-        published.push(Topic::Markers);
+        published.push(Topic::Path);
         match parameters.navigator {
             Navigator::CmdVel if parameters.enable_stamped_cmd_vel => published.push(Topic::StampedVelocity),
             Navigator::CmdVel => published.push(Topic::Velocity),

@@ -1,7 +1,7 @@
 //! What a robot believes about a thing: the law of its phase, after all looks, by a model of its habit.
 
 use crate::calendar::{
-    Habit, Hours, Matrix, PHASES, Phases, SLOT_S, WEEK_S, advanced, blocked_probability, product,
+    Habit, Hours, Law, Matrix, PHASES, Phases, SLOT_S, WEEK_S, advanced, blocked_probability, product,
 };
 use crate::{SLOT_STEPS, STEP_S};
 

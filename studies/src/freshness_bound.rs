@@ -14,7 +14,7 @@
 
 pub mod building;
 
-use crate::calendar::{Habit, blocked_probability};
+use crate::calendar::{Habit, Law, blocked_probability};
 use crate::{Model, STEP_S};
 use rayon::prelude::*;
 
@@ -54,7 +54,8 @@ impl LookLimits {
 /// without a thing or a step. A look at a thing in a step shows its state before the step is scored. `None` if a thing
 /// has stays that are not exponential: its belief is then more than one probability.
 pub fn freshness_bound(habits: &[Habit], limits: &LookLimits) -> Option<f64> {
-    if !habits.iter().all(Habit::is_two_state) {
+    let mut stays = habits.iter().flat_map(|habit| habit.active.iter().chain(&habit.quiet));
+    if stays.any(|stays| stays.long_share != 0.0) {
         return None;
     }
     let things: Vec<Thing> = habits.par_iter().map(|habit| Thing::new(habit, limits)).collect();

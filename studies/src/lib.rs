@@ -27,12 +27,17 @@
 mod belief;
 mod building;
 pub mod freshness_bound;
+mod law;
 mod learner;
 mod patrol;
 pub mod rows;
 mod user_regret;
 
-pub use calendar;
+/// Things with two states, and the laws of their habits.
+pub mod calendar {
+    pub use crate::law::*;
+    pub use ::calendar::*;
+}
 
 pub use belief::{Belief, Model};
 pub use building::{Building, Kind, Room, Thing, ThingKind, Viewpoint};

@@ -2,7 +2,6 @@
 
 use crate::run::Run;
 use agent::Policy;
-use mapper::EstimatorChoice;
 use std::collections::BTreeSet;
 
 fn hash(arguments: &str) -> String {
@@ -31,21 +30,6 @@ fn every_strategy_explores_in_its_own_way() {
         hashes.insert(summary.hash().to_owned());
     }
     assert_eq!(hashes.len(), Policy::built_in().len(), "two strategies did the same");
-}
-
-#[test]
-fn every_estimator_estimates_in_its_own_way() {
-    let mut errors = BTreeSet::new();
-    for estimator in EstimatorChoice::all().iter().map(EstimatorChoice::name) {
-        // A tour does not depend on rates, so that all runs have the same observations.
-        let arguments = format!("--duration 8m --drive tour --estimator {estimator}");
-        let summary = Run::quiet(&arguments).summary();
-        assert_eq!(summary.text("/estimator"), estimator);
-        assert!(summary.at("/strategy").is_null(), "nobody chose a strategy");
-        assert!(summary.number("/rate_auc") > 0.9, "{estimator}: {}", summary.number("/rate_auc"));
-        errors.insert(summary.at("/log_error").to_string());
-    }
-    assert_eq!(errors.len(), EstimatorChoice::all().len(), "{errors:?}");
 }
 
 #[test]

@@ -23,7 +23,7 @@ pub(crate) fn send(signal: Signal, child: &Child) {
 }
 
 /// Waits until the recording has begun, at most for a minute.
-pub(crate) fn wait_for_recording(recording: &Path) {
+fn wait_for_recording(recording: &Path) {
     let has_begun = (0..1200).any(|_| {
         std::thread::sleep(Duration::from_millis(50));
         std::fs::metadata(recording).is_ok_and(|file| file.len() >= 50_000)

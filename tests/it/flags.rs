@@ -24,7 +24,6 @@ const PROGRAMS: [Program; 8] = [
             ("--drive", "train"),
             ("--tour", "gone.toml"),
             ("--strategy", "clever"),
-            ("--purpose", "fame"),
             ("--patrol", "0"),
             ("--battery", "59s"),
             ("--speed", "0"),
@@ -86,7 +85,7 @@ const PROGRAMS: [Program; 8] = [
     Program { name: "check_world", arguments: "four_rooms --png", wrong: &[("--out", "a.log")] },
 ];
 
-const GRID_WORLD: [(&str, &str); 15] = [
+const GRID_WORLD: [(&str, &str); 14] = [
     ("--world", "nowhere"),
     ("--calendar", "moon"),
     ("--sensor-radius", "-1"),
@@ -99,12 +98,11 @@ const GRID_WORLD: [(&str, &str); 15] = [
     ("--max-steps", "-1"),
     ("--seed", "-1"),
     ("--out", "a.log"),
-    ("--rrd", "folder"),
     ("--threads", "0"),
     ("--shard", "3/2"),
 ];
 
-const HOUSE_TRIALS: [(&str, &str); 15] = [
+const HOUSE_TRIALS: [(&str, &str); 14] = [
     ("--world", "nowhere"),
     ("--generate", "0"),
     ("--calendar", "moon"),
@@ -117,7 +115,6 @@ const HOUSE_TRIALS: [(&str, &str); 15] = [
     ("--pose", "guessed"),
     ("--seed", "-1"),
     ("--out", "a.log"),
-    ("--rrd", "folder"),
     ("--threads", "0"),
     ("--shard", "3/2"),
 ];

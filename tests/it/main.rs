@@ -17,6 +17,7 @@ mod flicker;
 mod folder;
 mod grid;
 mod houses;
+mod keyboard;
 mod map_log;
 mod map_log_poses;
 mod map_log_refusals;

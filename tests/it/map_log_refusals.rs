@@ -112,13 +112,6 @@ fn corrected_poses_must_be_there() {
     ");
 }
 
-#[test]
-fn topics_are_for_bags() {
-    let run = Run::new().with_map_log();
-    run.write("a.log", &standing_log(1.7e9, 40));
-    insta::assert_snapshot!(refuses(&run, "a.log --odom-topic /odom", &["a.log"]), @"error: --odom-topic is for bags, but a.log is a CARMEN log, which has no topics and frames: leave it out");
-}
-
 /// The resolution that an error names.
 fn enough(message: &str) -> &str {
     let (_, rest) = message.split_once("--resolution, at least ").unwrap();

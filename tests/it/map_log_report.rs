@@ -57,29 +57,6 @@ fn the_page_is_one_file_for_people() {
 }
 
 #[test]
-fn a_rate_needs_a_full_cycle() {
-    let run = Run::new().with_map_log();
-    // Something 1.4 m wide comes, and stays.
-    let ranges = |is_here: bool| -> String {
-        let range_m = |beam: u32| if is_here && (55..125).contains(&beam) { 1.0 } else { 4.0 };
-        (0..180).map(|beam| format!("{:.2} ", range_m(beam))).collect()
-    };
-    let line = |second: u32| {
-        let (time_s, ranges) = (MONDAY_S + f64::from(second), ranges(second >= 200));
-        format!("FLASER 180 {ranges}0 0 0 0 0 0 {time_s} h 0\n")
-    };
-    run.write("a.log", &(0..600).map(line).collect::<String>());
-    run.goes_well("a.log --no-rrd --quiet");
-    let place = &run.summary().0["places"][0];
-    assert_eq!((&place["kind"], &place["passages"]), (&"furniture".into(), &1.into()), "{place}");
-    let page = page(&run);
-    assert!(
-        page.contains("Changed once in 10 min of observation") && !page.contains("about once in"),
-        "{page}"
-    );
-}
-
-#[test]
 fn names_and_numbers_stay_in_the_state() {
     let run = Run::new().with_map_log();
     run.write("a.log", &standing_log(MONDAY_S, 120));

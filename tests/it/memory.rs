@@ -80,9 +80,3 @@ fn is_flat(arguments: &str, hours: u32) {
 fn memory_is_flat_for_ten_hours() {
     is_flat("--no-rrd --world room.toml", 10);
 }
-
-#[test]
-#[ignore = "a hundred simulated hours take more than ten minutes"]
-fn memory_is_flat_for_a_hundred_hours() {
-    is_flat("--no-rrd --world four_rooms", 100);
-}

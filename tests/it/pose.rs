@@ -27,9 +27,3 @@ fn a_localizer_corrects_odometry_that_drifts() {
     assert!(localized.0 < 0.02 && localized.1 == "localized", "{localized:?}");
     assert!(odometry.0 > 0.1 && odometry.1 == "odometry", "{odometry:?}");
 }
-
-#[test]
-fn exact_odometry_needs_no_localizer() {
-    let run = Run::quiet("--duration 5");
-    assert_eq!(p95_m(&run), (0.0, "exact".to_owned()));
-}

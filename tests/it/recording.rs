@@ -1,10 +1,7 @@
 //! Reads a recording back, as a viewer does.
 
-use rerun::components::{LineStrip2D, Scalar, Text, Translation3D};
-use rerun::{
-    ChunkStore, ChunkStoreConfig, Component, ComponentIdentifier, EntityPath, LineStrips2D, Scalars,
-    StoreKind, TextLog, Transform3D,
-};
+use rerun::components::Scalar;
+use rerun::{ChunkStore, ChunkStoreConfig, EntityPath, Scalars, StoreKind};
 use std::path::Path;
 
 /// A recording in memory.
@@ -45,63 +42,20 @@ impl Recording {
         *self.times("/", "sim_time").last().unwrap() as f64 * 1e-9
     }
 
-    /// The names of the timelines, sorted.
-    pub(crate) fn timelines(&self) -> Vec<String> {
-        let mut names: Vec<_> = self.0.schema().timelines().keys().map(|name| name.to_string()).collect();
-        names.sort();
-        names
-    }
-
     /// A curve: simulated time, s, and value.
     pub(crate) fn curve(&self, entity: &str) -> Vec<(f64, f64)> {
-        let points = self.rows::<Scalar>(entity, "sim_time", Scalars::descriptor_scalars().component);
-        points.iter().map(|(time_ns, values)| (*time_ns as f64 * 1e-9, values[0].0.0)).collect()
-    }
-
-    /// A curve over steps.
-    pub(crate) fn curve_over_steps(&self, entity: &str) -> Vec<(i64, f64)> {
-        let points = self.rows::<Scalar>(entity, "step", Scalars::descriptor_scalars().component);
-        points.iter().map(|(step, values)| (*step, values[0].0.0)).collect()
-    }
-
-    /// The positions of a robot, whenever it has moved: step and position, m.
-    pub(crate) fn places(&self, entity: &str) -> Vec<(i64, [f32; 2])> {
-        let component = Transform3D::descriptor_translation().component;
-        let places = self.rows::<Translation3D>(entity, "step", component);
-        places.iter().map(|(step, places)| (*step, [places[0].x(), places[0].y()])).collect()
-    }
-
-    /// The corners of a thing, whenever they have changed: step and positions, m.
-    pub(crate) fn outlines(&self, entity: &str) -> Vec<(i64, Vec<[f32; 2]>)> {
-        let strips = self.rows::<LineStrip2D>(entity, "step", LineStrips2D::descriptor_strips().component);
-        let corners = |strip: &LineStrip2D| strip.0.iter().map(|corner| [corner.x(), corner.y()]).collect();
-        strips.iter().map(|(step, strips)| (*step, corners(&strips[0]))).collect()
-    }
-
-    /// The lines of the log, with their steps.
-    pub(crate) fn log(&self) -> Vec<(i64, String)> {
-        let lines = self.rows::<Text>("/log", "step", TextLog::descriptor_text().component);
-        lines.iter().map(|(step, lines)| (*step, lines[0].0.to_string())).collect()
-    }
-
-    /// The rows of a component of an entity in the order of their times.
-    fn rows<C: Component + Clone>(
-        &self,
-        entity: &str,
-        timeline: &str,
-        component: ComponentIdentifier,
-    ) -> Vec<(i64, Vec<C>)> {
-        let entity = EntityPath::parse_forgiving(entity);
-        let mut rows = Vec::new();
+        let (entity, component) =
+            (EntityPath::parse_forgiving(entity), Scalars::descriptor_scalars().component);
+        let mut points = Vec::new();
         for chunk in self.0.iter_physical_chunks().filter(|chunk| chunk.entity_path() == &entity) {
             if chunk.is_static() {
                 continue; // the style
             }
-            let times = chunk.timelines().values().find(|column| column.name() == timeline).unwrap();
-            let items = chunk.iter_component::<C>(component).map(|items| items.as_slice().to_vec());
-            rows.extend(times.times_raw().iter().copied().zip(items));
+            let times = chunk.timelines().values().find(|column| column.name() == "sim_time").unwrap();
+            let values = chunk.iter_component::<Scalar>(component).map(|values| values.as_slice()[0].0.0);
+            points.extend(times.times_raw().iter().map(|time_ns| *time_ns as f64 * 1e-9).zip(values));
         }
-        rows.sort_by_key(|row| row.0);
-        rows
+        points.sort_by(|a: &(f64, f64), b| a.0.total_cmp(&b.0));
+        points
     }
 }

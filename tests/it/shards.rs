@@ -70,46 +70,6 @@ fn houses_have_shards_as_well() {
 }
 
 #[test]
-fn results_can_be_merged_into_the_folder_of_the_shards() {
-    let run = Run::grid();
-    start(&run, GRID, 2, 1..=2);
-    for _ in 0..2 {
-        let ended = run.goes_well("merge shards");
-        assert!(ended.stdout.contains("all worlds (2)\n4 trials of 300 steps"), "{}", ended.stdout);
-        assert!(ended.stdout.contains("written to shards: report.json, "), "{}", ended.stdout);
-        let all = names(&run.path("shards"));
-        assert!(
-            ["report.json", "shard-1-of-2.jsonl", "shard-2-of-2.jsonl"]
-                .iter()
-                .all(|name| all.contains(&(*name).to_owned()))
-        );
-    }
-}
-
-#[test]
-fn a_shard_that_was_cut_off_anywhere_goes_on() {
-    let reference = single(Run::grid(), GRID);
-    let run = Run::grid();
-    start(&run, GRID, 3, 1..=3);
-    let path = run.path("shards/shard-2-of-3.jsonl");
-    let whole = fs::read(&path).unwrap();
-    for cut in [0, 17, whole.len() / 3, whole.len() / 2 + 1, whole.len() - 1] {
-        fs::write(&path, &whole[..cut]).unwrap();
-        let missing = run.ends("missing shards");
-        assert_eq!((missing.code, missing.stdout.as_str()), (Some(1), "2\n"), "{missing:?}");
-        let error = refused(&run, "merge shards");
-        assert_eq!(
-            error,
-            "error: shards is not complete: the shards 2 of 3 lack trials, the first is shard-2-of-3.jsonl; run those shards again"
-        );
-        start(&run, GRID, 3, [2]);
-        assert!(merged(&run) == reference, "cut at {cut}");
-    }
-    let missing = run.goes_well("missing shards");
-    assert_eq!(missing.stdout, "");
-}
-
-#[test]
 #[cfg(unix)]
 fn a_killed_shard_goes_on_and_no_other_process_may_have_it() {
     use nix::sys::signal::Signal;
@@ -202,7 +162,6 @@ fn invalid_input_is_refused_and_nothing_is_overwritten() {
     error: .: this folder has no shard with a finished line
     ");
     for (arguments, says) in [
-        ("--shard 1/3 --rrd a.rrd", "cannot be used with"),
         ("--shard 1/3 --generate 1 --save-worlds", "cannot be used with"),
         ("merge shards --steps 3", "unexpected argument '--steps'"),
     ] {
@@ -256,23 +215,4 @@ fn a_world_that_was_changed_is_not_merged() {
         error.contains("of an experiment with the same arguments, but other worlds or settings"),
         "{error}"
     );
-}
-
-#[test]
-fn the_status_of_many_shards_is_short() {
-    let run = Run::grid();
-    start(&run, GRID, 4, [1, 3]);
-    let path = run.path("shards/shard-3-of-4.jsonl");
-    let text = fs::read_to_string(&path).unwrap();
-    let two: Vec<&str> = text.split_inclusive('\n').take(3).collect();
-    fs::write(&path, two.concat()).unwrap();
-    let status = run.goes_well("status shards").stdout;
-    let lines: Vec<&str> = status.lines().collect();
-    let expected = [
-        "shard 2/4                0 of 6 trials",
-        "shard 3/4                2 of 6 trials",
-        "shard 4/4                0 of 6 trials",
-        "8 of 24 trials (33.3 %), 1 of 4 shards complete",
-    ];
-    assert_eq!(lines, expected);
 }

@@ -99,7 +99,7 @@ fn recorded(table: &Table<'_>, name: &str, files: &dyn Files) -> Option<Schedule
     let file = table.get("events")?.text()?;
     let bytes = files.read(&table.file.beside(file), MAX_FILE_BYTES).map_err(|error| error.to_string());
     let text = bytes.and_then(|bytes| String::from_utf8(bytes).map_err(|_| "it is no text".to_owned()));
-    let recording = text.and_then(|text| Recording::parse(&text).map_err(|error| error.to_string()));
+    let recording = text.and_then(|text| Recording::parse(&text));
     match recording {
         Ok(mut recording) => {
             if !is_one_blocked {

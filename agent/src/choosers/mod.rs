@@ -2,7 +2,6 @@ mod curious;
 mod tile_coder;
 
 pub use curious::Curious;
-pub use tile_coder::TileCoder;
 
 use crate::situation::{Features, Situation};
 use interfaces::{RandomStream, Values};
@@ -10,7 +9,6 @@ use rand::RngExt;
 
 /// The result of one goal: the data from which a chooser learns.
 #[derive(Clone, Copy, Debug)]
-#[non_exhaustive]
 pub struct Trajectory<'a> {
     /// The index of the strategy that selected the goal.
     pub strategy: usize,
@@ -18,13 +16,6 @@ pub struct Trajectory<'a> {
     pub features: &'a [Features],
     /// The number of map updates per reading, R of section 4; finite, 0 or more.
     pub reward: f64,
-}
-
-impl<'a> Trajectory<'a> {
-    /// A trajectory with this reward.
-    pub fn of_reward(strategy: usize, features: &'a [Features], reward: f64) -> Self {
-        Self { strategy, features, reward }
-    }
 }
 
 /// Selects the strategy that selects the next goal. A strategy is identified by its index in the agent's list.

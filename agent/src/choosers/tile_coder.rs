@@ -1,9 +1,11 @@
-use crate::settings::CuriousSettings;
 use crate::situation::Features;
 use interfaces::RandomStream;
 use rand::RngExt;
 use std::collections::BTreeMap;
 
+/// The number of tilings, and the size of a tile in p (expected changed cells) and r (s; steps in a grid world), as in the paper.
+const TILINGS: usize = 5;
+const TILE: [f64; 2] = [0.5, 100.0];
 /// The maximum number of tiles of a tiling. A run of 20 minutes at 10 Hz does not reach it. Without a limit, a cell that
 /// is never seen would add new tiles for ever, since r grows with the time.
 const MAX_TILES: usize = 1 << 14;
@@ -13,9 +15,7 @@ const MAX_TILES: usize = 1 << 14;
 /// is 0 until something is learned for the tile. A tiling has at most 16,384 tiles: the tiles that were visited longest
 /// ago are forgotten.
 #[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
-pub struct TileCoder {
-    /// The size of a tile in p and r.
-    tile: [f64; 2],
+pub(super) struct TileCoder {
     tilings: Vec<Tiling>,
 }
 
@@ -57,32 +57,29 @@ impl Tiling {
 
 impl TileCoder {
     /// A tile coder with value 0 everywhere and random offsets. Draws two numbers per tiling.
-    pub fn new(settings: &CuriousSettings, rng: &mut RandomStream) -> Self {
-        let offsets: Vec<_> = (0..settings.tilings).map(|_| [rng.random(), rng.random()]).collect();
-        Self::with_offsets([settings.tile_p, settings.tile_r], &offsets)
+    pub(super) fn new(rng: &mut RandomStream) -> Self {
+        Self::with_offsets((0..TILINGS).map(|_| [rng.random(), rng.random()]))
     }
 
-    /// A tile coder with value 0 everywhere, with tiles of size `tile` in p and r, and one tiling per offset (in
-    /// tiles).
-    pub fn with_offsets(tile: [f64; 2], offsets: &[[f64; 2]]) -> Self {
-        let tiling = |&offset| Tiling { offset, tiles: BTreeMap::new(), visits: 0 };
-        Self { tile, tilings: offsets.iter().map(tiling).collect() }
+    /// A tile coder with value 0 everywhere, and one tiling per offset (in tiles).
+    fn with_offsets(offsets: impl IntoIterator<Item = [f64; 2]>) -> Self {
+        let tiling = |offset| Tiling { offset, tiles: BTreeMap::new(), visits: 0 };
+        Self { tilings: offsets.into_iter().map(tiling).collect() }
     }
 
     /// V(p, r): the mean over the tilings of the weight of the tile that contains the features.
-    pub fn value(&self, features: Features) -> f64 {
-        let weight =
-            |tiling: &Tiling| Some(tiling.tiles.get(&tile(tiling.offset, self.tile, features))?.weight);
+    pub(super) fn value(&self, features: Features) -> f64 {
+        let weight = |tiling: &Tiling| Some(tiling.tiles.get(&tile(tiling.offset, features))?.weight);
         let sum: f64 = self.tilings.iter().filter_map(weight).sum();
         sum / self.tilings.len().max(1) as f64
     }
 
     /// For every (p, r) of `trajectory`, moves the weight of each tile that contains (p, r) toward `target`:
     /// w ← w (1 − λ) + target λ.
-    pub fn learn(&mut self, trajectory: &[Features], target: f64, learning_rate: f64) {
+    pub(super) fn learn(&mut self, trajectory: &[Features], target: f64, learning_rate: f64) {
         for tiling in &mut self.tilings {
-            let (offset, size) = (tiling.offset, self.tile);
-            let tile = |features: &Features| tile(offset, size, *features);
+            let offset = tiling.offset;
+            let tile = |features: &Features| tile(offset, *features);
             // The features change slowly: consecutive pairs are mostly in the same tile.
             for visit in trajectory.chunk_by(|a, b| tile(a) == tile(b)) {
                 let weight = tiling.visit(tile(&visit[0]));
@@ -96,9 +93,9 @@ impl TileCoder {
 
 /// The tile that contains the features. The casts saturate, and NaN is in tile 0: every pair of features has a
 /// tile.
-fn tile(offset: [f64; 2], size: [f64; 2], features: Features) -> (i64, i64) {
-    let axis = |offset: f64, size: f64, feature: f64| (feature / size + offset).floor() as i64;
-    (axis(offset[0], size[0], features.p), axis(offset[1], size[1], features.r))
+fn tile(offset: [f64; 2], features: Features) -> (i64, i64) {
+    let axis = |axis: usize, feature: f64| (feature / TILE[axis] + offset[axis]).floor() as i64;
+    (axis(0, features.p), axis(1, features.r))
 }
 
 #[cfg(test)]
@@ -114,7 +111,7 @@ mod tests {
     /// Two tilings of 0.5 × 100: one from the origin, one displaced by half a tile in p and a
     /// quarter of a tile in r.
     fn two_tilings() -> TileCoder {
-        TileCoder::with_offsets([0.5, 100.0], &[[0.0, 0.0], [0.5, 0.25]])
+        TileCoder::with_offsets([[0.0, 0.0], [0.5, 0.25]])
     }
 
     #[test]
@@ -139,23 +136,8 @@ mod tests {
     }
 
     #[test]
-    fn each_pair_of_a_trajectory_counts() {
-        let mut coder = TileCoder::with_offsets([0.5, 100.0], &[[0.0, 0.0]]);
-        coder.learn(&[at(0.1, 1.0), at(0.2, 2.0), at(9.0, 2.0), at(0.3, 3.0)], 1.0, 0.5);
-        assert_eq!(coder.value(at(0.0, 0.0)), 1.0 - 0.5f64.powi(3));
-        assert_eq!(coder.value(at(9.0, 0.0)), 0.5);
-    }
-
-    #[test]
-    fn an_empty_trajectory_teaches_nothing() {
-        let mut coder = two_tilings();
-        coder.learn(&[], 10.0, 0.9);
-        assert_eq!(coder.value(at(0.0, 0.0)), 0.0);
-    }
-
-    #[test]
     fn the_tiles_visited_longest_ago_are_forgotten() {
-        let mut coder = TileCoder::with_offsets([0.5, 100.0], &[[0.0, 0.0]]);
+        let mut coder = TileCoder::with_offsets([[0.0, 0.0]]);
         let row = |row: usize| at(0.0, 100.0 * row as f64);
         for newest in 0..5 * MAX_TILES {
             coder.learn(&[row(0), row(newest)], 1.0, 1.0);
@@ -173,8 +155,7 @@ mod tests {
             pairs in prop::collection::vec((0.0..3.0, 0.0..400.0), 1..40),
             seed in any::<u64>(),
         ) {
-            let settings = CuriousSettings::default();
-            let mut whole = TileCoder::new(&settings, &mut RandomStream::new(seed, Purpose::Agent));
+            let mut whole = TileCoder::new(&mut RandomStream::new(seed, Purpose::Agent));
             let mut single = whole.clone();
             let trajectory: Vec<_> = pairs.iter().map(|&(p, r)| at(p, r)).collect();
             whole.learn(&trajectory, 7.0, 0.9);
@@ -190,8 +171,7 @@ mod tests {
             r in prop_oneof![0.0..1e6, 0.0..f64::MAX, Just(f64::INFINITY), Just(f64::NAN)],
             target in 0.0..1e6,
         ) {
-            let settings = CuriousSettings::default();
-            let mut coder = TileCoder::new(&settings, &mut RandomStream::new(3, Purpose::Agent));
+            let mut coder = TileCoder::new(&mut RandomStream::new(3, Purpose::Agent));
             coder.learn(&[at(p, r), at(p, r)], target, 0.9);
             let value = coder.value(at(p, r));
             prop_assert!((0.98 * target..=target * (1.0 + 1e-12)).contains(&value), "{}", value);
@@ -199,7 +179,7 @@ mod tests {
 
         #[test]
         fn far_apart_is_independent(dp in 0.5..1e5, dr in 0.0..1e5) {
-            let mut coder = TileCoder::new(&CuriousSettings::default(), &mut RandomStream::new(5, Purpose::Agent));
+            let mut coder = TileCoder::new(&mut RandomStream::new(5, Purpose::Agent));
             coder.learn(&[at(1.0, 50.0)], 10.0, 0.9);
             prop_assert_eq!(coder.value(at(1.0 + dp + 1e-9, 50.0 + dr)), 0.0);
         }

@@ -154,25 +154,6 @@ fn a_robot_that_is_called_away_has_made_no_visit() {
     assert_eq!(worth_after_visits(30, false), worth_after_visits(0, true));
 }
 
-#[test]
-fn a_fine_grid_is_weighed_too() {
-    let frame = GridFrame::new(Point2::origin(), 0.05, 240, 120).unwrap();
-    let mut mapper = Mapper::new(&MapperSettings::default(), frame).unwrap();
-    for look in 0..20 {
-        // A box of half a meter that appears and disappears in the left half.
-        let is_blocked =
-            |cell: Cell| look % 2 == 1 && (40..50).contains(&cell.x) && (40..50).contains(&cell.y);
-        let cells = (0..frame.len()).map(|index| frame.cell(index)).map(|cell| (cell, is_blocked(cell)));
-        let (time, pose) = (f64::from(look), Isometry2::identity());
-        mapper.update(&CellReading { time, pose, cells: cells.collect() }).unwrap();
-    }
-    let travel = vec![1.0; frame.len()];
-    let weights = weigh(&mut InformationGain::new(&seeing(3.0)), &mapper, &travel);
-    let best = (0..weights.len()).max_by(|&a, &b| weights[a].total_cmp(&weights[b])).unwrap();
-    assert!((frame.cell(best).x - 45).abs() <= 60, "the box is in view from {:?}", frame.cell(best));
-    assert!(weights.iter().all(|weight| weight.is_finite() && *weight >= 0.0));
-}
-
 proptest! {
     #[test]
     fn weights_are_finite_whatever_was_seen(

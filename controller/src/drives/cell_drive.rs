@@ -1,6 +1,5 @@
 use super::{Body, Drive, DriveScene};
 use crate::planner::{InflationSettings, Moves, Path};
-use crate::settings::{NavigationSettings, Settings};
 use interfaces::Step;
 
 /// The drive of a grid world: the robot is as large as its cell, and at each step it stays or moves to one of the
@@ -8,23 +7,13 @@ use interfaces::Step;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct CellDrive;
 
-impl CellDrive {
-    /// The settings of a controller for this drive: no inflation, and a time limit that no path needs.
-    pub fn settings() -> Settings {
-        Settings {
-            inflation: InflationSettings { footprint_padding_m: 0.0, inflation_m: 0.0, inflation_cost: 1 },
-            navigation: NavigationSettings { goal_timeout_s: 1e5, ..NavigationSettings::default() },
-            ..Settings::default()
-        }
-    }
-}
-
 impl Drive for CellDrive {
     type Command = Step;
 
     fn body(&self) -> Body {
         Body {
             radius_m: 0.0,
+            inflation: InflationSettings { footprint_padding_m: 0.0, inflation_m: 0.0, inflation_cost: 1 },
             moves: Moves::Four,
             speed_mps: 1.0,
             tolerance_m: 0.4,
@@ -32,6 +21,7 @@ impl Drive for CellDrive {
             directions: 4,
             step_s: 1.0,
             step_limit_s: 1.0,
+            goal_timeout_s: 1e5, // no path needs it
         }
     }
 

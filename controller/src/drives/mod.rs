@@ -8,7 +8,7 @@ pub use diff_drive::{DiffDrive, DiffDriveSettings};
 
 use crate::control_input::ControlInput;
 use crate::dynamic_obstacles::DynamicObstacleFilter;
-use crate::planner::{Costmap, Moves, Path};
+use crate::planner::{Costmap, InflationSettings, Moves, Path};
 use interfaces::Values;
 
 /// The properties of a robot that planning needs.
@@ -16,6 +16,8 @@ use interfaces::Values;
 pub struct Body {
     /// The radius of the footprint, m; 0 where a robot is as large as its cell.
     pub radius_m: f64,
+    /// The distance between paths and obstacles.
+    pub inflation: InflationSettings,
     /// The moves from cell to cell.
     pub moves: Moves,
     /// The speed along a path, m/s.
@@ -30,6 +32,8 @@ pub struct Body {
     pub step_s: f64,
     /// The maximum duration of a step of local exploration, s.
     pub step_limit_s: f64,
+    /// The maximum time for a goal, s; after that the goal is given up in any case.
+    pub goal_timeout_s: f64,
 }
 
 /// The inputs of a drive when it chooses a command.

@@ -1,10 +1,12 @@
 use crate::drives::Body;
 use crate::planner::Costmap;
-use crate::settings::ExplorationSettings;
 use interfaces::RandomStream;
 use nalgebra::{Point2, Vector2};
 use rand::RngExt;
 use std::f64::consts::TAU;
+
+/// The maximum number of consecutive random steps: in the paper fewer than 2.
+const MAX_RANDOM_STEPS: u32 = 1;
 
 /// Local exploration (paper, section 2): each step goes toward the centroid of the last change, or in a random
 /// direction if nothing changed. Counts the steps.
@@ -15,15 +17,15 @@ pub(crate) struct LocalExploration {
 }
 
 impl LocalExploration {
-    /// The target of the next step; `None` after the maximum number of steps. `change` is the centroid of the last
+    /// The target of the next step; `None` after `max_steps` steps. `change` is the centroid of the last
     /// change, `random` the target of a random step.
     pub(crate) fn next(
         &mut self,
-        settings: &ExplorationSettings,
+        max_steps: u32,
         change: Option<Point2<f64>>,
         random: impl FnOnce() -> Point2<f64>,
     ) -> Option<Point2<f64>> {
-        if self.steps >= settings.max_steps {
+        if self.steps >= max_steps {
             return None;
         }
         let target = match change {
@@ -31,7 +33,7 @@ impl LocalExploration {
                 self.random_steps_in_a_row = 0;
                 change
             }
-            None if self.random_steps_in_a_row >= settings.max_random_steps => return None,
+            None if self.random_steps_in_a_row >= MAX_RANDOM_STEPS => return None,
             None => {
                 self.random_steps_in_a_row += 1;
                 random()
@@ -66,8 +68,8 @@ pub(crate) fn random_step(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Moves;
     use crate::tests::{costmap, find};
+    use crate::{CellDrive, Drive};
     use interfaces::Purpose;
 
     const HERE: Point2<f64> = Point2::new(1.0, 1.0);
@@ -75,36 +77,27 @@ mod tests {
 
     #[test]
     fn it_follows_changes_up_to_the_bound() {
-        let (settings, mut exploration) = (ExplorationSettings::default(), LocalExploration::default());
-        for _ in 0..settings.max_steps {
-            assert_eq!(exploration.next(&settings, CHANGE, || HERE), CHANGE);
+        let mut exploration = LocalExploration::default();
+        for _ in 0..42 {
+            assert_eq!(exploration.next(42, CHANGE, || HERE), CHANGE);
         }
-        assert_eq!(exploration.next(&settings, CHANGE, || HERE), None);
+        assert_eq!(exploration.next(42, CHANGE, || HERE), None);
     }
 
     #[test]
     fn it_makes_fewer_than_two_random_steps_in_a_row() {
-        let (settings, mut exploration) = (ExplorationSettings::default(), LocalExploration::default());
-        assert_eq!(exploration.next(&settings, None, || HERE), Some(HERE));
-        assert_eq!(exploration.next(&settings, CHANGE, || HERE), CHANGE);
-        assert_eq!(exploration.next(&settings, None, || HERE), Some(HERE));
-        assert_eq!(exploration.next(&settings, None, || HERE), None);
+        let mut exploration = LocalExploration::default();
+        assert_eq!(exploration.next(42, None, || HERE), Some(HERE));
+        assert_eq!(exploration.next(42, CHANGE, || HERE), CHANGE);
+        assert_eq!(exploration.next(42, None, || HERE), Some(HERE));
+        assert_eq!(exploration.next(42, None, || HERE), None);
     }
 
     #[test]
     fn random_steps_lead_to_every_open_side_and_no_other() {
         let rows = ["....", "#R..", ".#.."];
         let map = costmap(&rows);
-        let body = Body {
-            radius_m: 0.0,
-            moves: Moves::Four,
-            speed_mps: 1.0,
-            tolerance_m: 0.1,
-            step_m: 1.0,
-            directions: 4,
-            step_s: 1.0,
-            step_limit_s: 1.0,
-        };
+        let body = CellDrive.body();
         let robot = find(&rows, 'R');
         let here = map.frame().center(robot);
         let mut rng = RandomStream::new(1, Purpose::Controller);

@@ -2,9 +2,21 @@ use crate::control_input::ControlInput;
 use crate::drives::{Drive, DriveScene};
 use crate::dynamic_obstacles::DynamicObstacleFilter;
 use crate::planner::{Path, PlanEnd, Planner};
-use crate::settings::NavigationSettings;
 use nalgebra::Point2;
 
+/// The minimum time between a plan and the next one, s: if a change blocks the path, and for any other reason.
+const REPLAN_BLOCKED_S: f64 = 0.2;
+const REPLAN_S: f64 = 0.5;
+/// The robot replans if it is farther from its path than this, m.
+const OFF_PATH_M: f64 = 0.3;
+/// The time that the robot waits if the path to the goal is blocked, s. Longer than a slow robot needs to pass a door.
+const WAIT_S: f64 = 10.0;
+/// The robot is stuck if it stays for this time, the movement time allowance, s, within this distance, the required movement
+/// radius, m.
+const MOVEMENT_TIME_ALLOWANCE_S: f64 = 5.0;
+const REQUIRED_MOVEMENT_RADIUS_M: f64 = 0.15;
+/// The maximum number of recoveries within [`SAME_POSITION_M`]; after that the goal is given up.
+const MAX_RECOVERIES: u32 = 3;
 /// Recoveries farther apart than this are counted separately, m.
 const SAME_POSITION_M: f64 = 1.0;
 /// A path that ends this much farther from the goal than an earlier path is worse, m.
@@ -19,7 +31,6 @@ pub(crate) struct Surroundings {
 
 /// The inputs of one tick.
 pub(crate) struct Tick<'a> {
-    pub(crate) settings: &'a NavigationSettings,
     pub(crate) input: &'a ControlInput<'a>,
     pub(crate) surroundings: &'a mut Surroundings,
 }
@@ -120,7 +131,7 @@ impl NavigationTask {
         if let Some(end) = self.plan.filter(|_| path.remaining_m(&position) <= drive.body().tolerance_m) {
             return Progress::Arrived(end);
         }
-        if !self.keeps_trying(tick.settings, input) {
+        if !self.keeps_trying(input) {
             return Progress::GivenUp;
         }
         if let Some(since_s) = self.recovering_since_s {
@@ -147,15 +158,15 @@ impl NavigationTask {
     }
 
     fn must_plan(&self, tick: &Tick, off_path_m: f64) -> bool {
-        let (settings, planner) = (tick.settings, &tick.surroundings.planner);
+        let planner = &tick.surroundings.planner;
         let since_s = tick.input.time - self.planned_at_s;
-        let is_lost = self.plan.is_none() || off_path_m > settings.off_path_m;
-        planner.path_blocked() && since_s >= settings.replan_blocked_s
-            || (is_lost || planner.goal_cleared()) && since_s >= settings.replan_s
+        let is_lost = self.plan.is_none() || off_path_m > OFF_PATH_M;
+        planner.path_blocked() && since_s >= REPLAN_BLOCKED_S
+            || (is_lost || planner.goal_cleared()) && since_s >= REPLAN_S
     }
 
     fn plan(&mut self, tick: &mut Tick, path: &mut Path) {
-        let Tick { settings, input, surroundings } = tick;
+        let Tick { input, surroundings } = tick;
         let position = input.position();
         self.planned_at_s = input.time;
         self.plan = surroundings.planner.plan(input.map, &position, &self.goal, path);
@@ -166,17 +177,17 @@ impl NavigationTask {
             self.best_distance_m = self.best_distance_m.min(end.distance_to_goal_m);
         } else if self.waits_until_s.is_none() && self.max_distance_m.is_infinite() {
             // The obstacle may move away again. A step of local exploration is not worth the wait.
-            self.waits_until_s = Some(input.time + settings.wait_s);
+            self.waits_until_s = Some(input.time + WAIT_S);
         }
     }
 
     /// Checks the progress, and starts a recovery if the robot is stuck. Returns false after too many recoveries.
-    fn keeps_trying(&mut self, settings: &NavigationSettings, input: &ControlInput) -> bool {
+    fn keeps_trying(&mut self, input: &ControlInput) -> bool {
         let position = input.position();
-        if (position - self.anchor.0).norm() > settings.required_movement_radius_m {
+        if (position - self.anchor.0).norm() > REQUIRED_MOVEMENT_RADIUS_M {
             self.anchor = (position, input.time);
         }
-        let is_stuck = input.time - self.anchor.1 >= settings.movement_time_allowance_s;
+        let is_stuck = input.time - self.anchor.1 >= MOVEMENT_TIME_ALLOWANCE_S;
         if self.recovering_since_s.is_some() || !is_stuck {
             return true;
         }
@@ -186,6 +197,6 @@ impl NavigationTask {
         self.recovery_at = position;
         self.recoveries += 1;
         self.recovering_since_s = Some(input.time);
-        self.recoveries <= settings.max_recoveries
+        self.recoveries <= MAX_RECOVERIES
     }
 }

@@ -1,25 +1,17 @@
 use super::costmap::{Costmap, FREE, LETHAL, MAX_COST};
 use interfaces::{Cell, CellState, Grid, Transition};
-use serde::{Deserialize, Serialize};
 
-/// Settings of the distance between paths and obstacles.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
-#[serde(default, deny_unknown_fields)]
+/// The distance between paths and obstacles.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InflationSettings {
     /// A cell is lethal if its center is nearer to a blocked cell than the radius of the robot plus this padding,
-    /// m. The padding covers half a cell of rounding and the error of path following.
+    /// m.
     pub footprint_padding_m: f64,
     /// A cell has a higher cost if its center is nearer to a blocked cell than the radius of the robot plus this,
-    /// m. Paths then lead through the middle of doors, and not along walls.
+    /// m; at least the padding.
     pub inflation_m: f64,
     /// The cost of such a cell, relative to a free cell, from 1 to [`MAX_COST`].
     pub inflation_cost: u8,
-}
-
-impl Default for InflationSettings {
-    fn default() -> Self {
-        Self { footprint_padding_m: 0.08, inflation_m: 0.25, inflation_cost: 3 }
-    }
 }
 
 /// A row of cells near a blocked cell: from `-reach` to `reach` columns away.

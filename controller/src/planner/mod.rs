@@ -13,9 +13,10 @@ pub use path::Path;
 pub use wavefront::Wavefront;
 
 use costmap::line;
-use interfaces::{Cell, CellState, Grid, Transition, Value, converted};
+use interfaces::{Cell, CellState, Grid, Transition, Values, values};
 use nalgebra::Point2;
 use path::corners;
+use std::collections::BTreeSet;
 
 /// The end of a plan.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
@@ -36,9 +37,8 @@ pub struct Planner {
     moves: Moves,
     /// The distance from a lethal cell within which the robot looks for a traversable one, cells.
     exit_reach: i32,
-    /// The cells of the last path, as a list and as a set.
-    on_path: Vec<Cell>,
-    is_on_path: Grid<bool>,
+    /// The cells of the last path.
+    on_path: BTreeSet<Cell>,
     goal: Cell,
     end: Option<PlanEnd>,
     path_blocked: bool,
@@ -47,16 +47,15 @@ pub struct Planner {
 
 impl Planner {
     /// A planner over `map` for a robot of `radius_m`.
-    pub fn new(settings: &InflationSettings, radius_m: f64, moves: Moves, map: &Grid<CellState>) -> Self {
+    pub fn new(inflation: &InflationSettings, radius_m: f64, moves: Moves, map: &Grid<CellState>) -> Self {
         let frame = *map.frame();
-        let exit_m = 4.0 * (radius_m + settings.footprint_padding_m);
+        let exit_m = 4.0 * (radius_m + inflation.footprint_padding_m);
         Self {
-            inflation: Inflation::new(settings, radius_m, map),
+            inflation: Inflation::new(inflation, radius_m, map),
             wavefront: Wavefront::new(frame, moves),
             moves,
             exit_reach: (exit_m / frame.resolution_m()).ceil() as i32 + 1,
-            on_path: Vec::new(),
-            is_on_path: Grid::filled(frame, false),
+            on_path: BTreeSet::new(),
             goal: Cell::new(0, 0),
             end: None,
             path_blocked: false,
@@ -71,9 +70,9 @@ impl Planner {
 
     /// Applies the changes of the map, as [`Inflation::update`].
     pub fn update(&mut self, transitions: &[Transition]) {
-        let Self { inflation, is_on_path, path_blocked, goal_cleared, goal, end, .. } = self;
-        let resolution_m = is_on_path.frame().resolution_m();
-        let blocked = |cell| *path_blocked |= is_on_path.get(cell) == Some(&true);
+        let Self { inflation, on_path, path_blocked, goal_cleared, goal, end, .. } = self;
+        let resolution_m = inflation.costmap().frame().resolution_m();
+        let blocked = |cell| *path_blocked |= on_path.contains(&cell);
         // A cell farther from the goal than the end of the path helps only if it opens a path.
         let cleared = |cell: Cell| {
             *goal_cleared |= end.is_some_and(|end| {
@@ -136,9 +135,8 @@ impl Planner {
         path.set(std::iter::once(*from).chain(corners[skipped..].iter().map(point)));
         let distance_to_goal_m = distance_squared(last, self.goal).sqrt() * frame.resolution_m();
         self.end = Some(PlanEnd { is_goal, distance_to_goal_m, is_cut_off });
-        self.on_path.push(start);
+        self.on_path.insert(start);
         self.on_path.extend(corners.windows(2).flat_map(|leg| line(leg[0], leg[1])));
-        self.on_path.iter().for_each(|cell| self.is_on_path.set(*cell, true));
         self.end
     }
 
@@ -192,22 +190,12 @@ impl Planner {
     }
 
     /// The last plan. What follows from the map is not in it.
-    pub(crate) fn value(&mut self) -> Box<dyn Value + '_> {
-        let save = |planner: &Self| {
-            let Self { on_path, goal, end, path_blocked, goal_cleared, .. } = planner;
-            (on_path.clone(), *goal, *end, *path_blocked, *goal_cleared)
-        };
-        converted(self, save, |planner, saved| {
-            planner.reset();
-            let Self { on_path, goal, end, path_blocked, goal_cleared, is_on_path, .. } = planner;
-            (*on_path, *goal, *end, *path_blocked, *goal_cleared) = saved;
-            on_path.iter().for_each(|cell| is_on_path.set(*cell, true));
-            Ok(())
-        })
+    pub(crate) fn values(&mut self) -> Values<'_> {
+        values![self.on_path, self.goal, self.end, self.path_blocked, self.goal_cleared]
     }
 
     fn reset(&mut self) {
-        self.on_path.drain(..).for_each(|cell| self.is_on_path.set(cell, false));
+        self.on_path.clear();
         self.wavefront.clear();
         (self.end, self.path_blocked, self.goal_cleared) = (None, false, false);
     }

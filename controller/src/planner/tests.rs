@@ -3,11 +3,9 @@ use crate::tests::{find, states};
 use interfaces::GridFrame;
 use proptest::prelude::*;
 
-const POINT: InflationSettings =
-    InflationSettings { footprint_padding_m: 0.0, inflation_m: 0.0, inflation_cost: 1 };
-
 fn planner(map: &Grid<CellState>, moves: Moves) -> Planner {
-    Planner::new(&POINT, 0.0, moves, map)
+    let point = InflationSettings { footprint_padding_m: 0.0, inflation_m: 0.0, inflation_cost: 1 };
+    Planner::new(&point, 0.0, moves, map)
 }
 
 fn transition(map: &mut Grid<CellState>, cell: Cell, after: CellState) -> [Transition; 1] {
@@ -101,8 +99,8 @@ fn an_opening_concerns_a_path_that_falls_short() {
 fn a_robot_in_a_closed_cell_leaves_it_on_its_own_side_of_the_wall() {
     let rows = ["......#......", "......#......", ".....R#....G.", "......#......", "......#......"];
     let map = states(&rows, 0.2);
-    let settings = InflationSettings { footprint_padding_m: 0.01, inflation_m: 0.01, inflation_cost: 1 };
-    let mut planner = Planner::new(&settings, 0.2, Moves::Eight, &map);
+    let inflation = InflationSettings { footprint_padding_m: 0.01, inflation_m: 0.01, inflation_cost: 1 };
+    let mut planner = Planner::new(&inflation, 0.2, Moves::Eight, &map);
     let mut path = Path::default();
     let (robot, goal) = (find(&rows, 'R'), find(&rows, 'G'));
     assert!(!planner.costmap().is_traversable(robot));

@@ -56,7 +56,7 @@ impl World {
 }
 
 fn controller() -> Controller<CellDrive> {
-    Controller::new(CellDrive::settings(), CellDrive, RandomStream::new(3, Purpose::Controller)).unwrap()
+    Controller::new(CellDrive, 42, RandomStream::new(3, Purpose::Controller))
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! A small kinematic world: walls drawn in ASCII, boxes that move, a differential-drive robot with bounded
 //! accelerations, a laser with exact rays, and a map that lags behind as a real map does.
 
-use controller::{ControlInput, Controller, DiffDrive, DiffDriveSettings, Driver, Settings, Status};
+use controller::{ControlInput, Controller, DiffDrive, DiffDriveSettings, Driver, Status};
 use interfaces::{
     Cell, CellState, Grid, GridFrame, Purpose, RandomStream, Transition, Twist, heading_rad, pose,
 };
@@ -274,7 +274,7 @@ impl House {
     }
 }
 
-pub(crate) fn controller(settings: Settings) -> Controller<DiffDrive> {
+pub(crate) fn controller() -> Controller<DiffDrive> {
     let drive = DiffDrive::new(DiffDriveSettings::default()).unwrap();
-    Controller::new(settings, drive, RandomStream::new(7, Purpose::Controller)).unwrap()
+    Controller::new(drive, 42, RandomStream::new(7, Purpose::Controller))
 }

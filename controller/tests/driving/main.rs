@@ -3,7 +3,7 @@
 mod grid;
 mod house;
 
-use controller::{ControlInput, Controller, DiffDrive, Driver, Outcome, Settings, Status};
+use controller::{ControlInput, Controller, DiffDrive, Driver, Outcome, Status};
 use house::{House, Mover, controller};
 use interfaces::{CellState, Purpose, RandomStream};
 use nalgebra::Point2;
@@ -63,7 +63,7 @@ fn assert_untouched(house: &House) {
 
 #[test]
 fn it_gets_everywhere_and_touches_nothing() {
-    let (mut house, mut controller) = (House::new(&ROOMS), controller(Settings::default()));
+    let (mut house, mut controller) = (House::new(&ROOMS), controller());
     let mut rng = RandomStream::new(1, Purpose::Controller);
     for _ in 0..60 {
         let goal = Point2::new(rng.random_range(0.3..6.2), rng.random_range(0.3..6.2));
@@ -80,7 +80,7 @@ fn it_gets_everywhere_and_touches_nothing() {
 
 #[test]
 fn it_goes_through_the_middle_of_a_door() {
-    let (mut house, mut controller) = (House::new(&DOOR), controller(Settings::default()));
+    let (mut house, mut controller) = (House::new(&DOOR), controller());
     controller.set_goal(House::at(22, 7), Some(0.0));
     assert_eq!(house.run(&mut controller, 30.0), Outcome::Reached);
     assert!(house.nearest_m > 0.2, "came within {} m", house.nearest_m);
@@ -89,7 +89,7 @@ fn it_goes_through_the_middle_of_a_door() {
 #[test]
 fn it_goes_around_what_appears_on_its_path() {
     for (along, appears_s) in [(8, 1.0), (8, 4.5), (14, 3.0), (18, 6.0)] {
-        let (mut house, mut controller) = (House::new(&DOOR), controller(Settings::default()));
+        let (mut house, mut controller) = (House::new(&DOOR), controller());
         let place = House::at(along, 7);
         house.movers = vec![Mover { appears_s, ..Mover::new([place, place], 0.2, 0.3) }];
         controller.set_goal(House::at(22, 7), Some(0.0));
@@ -102,7 +102,7 @@ fn it_goes_around_what_appears_on_its_path() {
 
 #[test]
 fn it_waits_for_a_way_that_opens_again() {
-    let (mut house, mut controller) = (House::new(&DOOR), controller(Settings::default()));
+    let (mut house, mut controller) = (House::new(&DOOR), controller());
     let place = House::at(13, 7);
     house.movers = vec![Mover { appears_s: 2.0, goes_s: 6.0, ..Mover::new([place, place], 0.3, 0.3) }];
     controller.set_goal(House::at(22, 7), Some(0.0));
@@ -113,7 +113,7 @@ fn it_waits_for_a_way_that_opens_again() {
 #[test]
 fn it_gets_past_a_box_that_goes_back_and_forth_across_the_door() {
     for phase in 0..6 {
-        let (mut house, mut controller) = (House::new(&DOOR), controller(Settings::default()));
+        let (mut house, mut controller) = (House::new(&DOOR), controller());
         let between = [House::at(15, 2), House::at(15, 11)];
         house.movers = vec![Mover::new(between, 0.2, 0.3)];
         for _ in 0..phase * 20 {
@@ -148,7 +148,7 @@ fn goals_in_walls_outside_and_behind_walls_end_as_near_as_can_be() {
         (Point2::new(-3.0, 1.0), 3.7),
         (Point2::new(9.0, 9.0), 9.0),
     ] {
-        let (mut house, mut controller) = (House::new(&rows), controller(Settings::default()));
+        let (mut house, mut controller) = (House::new(&rows), controller());
         controller.set_goal(goal, Some(0.0));
         assert_eq!(house.run(&mut controller, 60.0), Outcome::Nearest);
         assert!((house.position() - goal).norm() < at_most_m, "{goal} {}", house.position());
@@ -160,13 +160,13 @@ fn goals_in_walls_outside_and_behind_walls_end_as_near_as_can_be() {
 fn a_trapped_robot_comes_to_an_end() {
     // By the map there is no room for the robot to stand; and a cage with some room.
     for rows in [["#####", "##R##", "#####"], ["#####", "#.R.#", "#####"]] {
-        let (mut house, mut controller) = (House::new(&rows), controller(Settings::default()));
+        let (mut house, mut controller) = (House::new(&rows), controller());
         controller.set_goal(House::at(0, 0), None);
         assert_eq!(house.run(&mut controller, 180.0), Outcome::GivenUp);
     }
     let cage =
         ["########", "#......#", "#......#", "#..R...#", "#......#", "########", "#......#", "########"];
-    let (mut house, mut controller) = (House::new(&cage), controller(Settings::default()));
+    let (mut house, mut controller) = (House::new(&cage), controller());
     controller.set_goal(House::at(3, 1), None);
     assert_eq!(house.run(&mut controller, 180.0), Outcome::Nearest);
     assert_untouched(&house);
@@ -175,7 +175,7 @@ fn a_trapped_robot_comes_to_an_end() {
 #[test]
 fn a_robot_shut_in_gets_out_when_it_can() {
     // A box appears so near that the cell of the robot becomes lethal.
-    let (mut house, mut controller) = (House::new(&DOOR), controller(Settings::default()));
+    let (mut house, mut controller) = (House::new(&DOOR), controller());
     let place = house.position() + nalgebra::Vector2::new(0.45, 0.1);
     house.movers = vec![Mover::new([place, place], 0.2, 0.3)];
     (0..20).for_each(|_| house.tick(&mut controller));
@@ -186,7 +186,7 @@ fn a_robot_shut_in_gets_out_when_it_can() {
 
 #[test]
 fn local_exploration_ends_soon_where_nothing_changes() {
-    let (mut house, mut controller) = (House::new(&DOOR), controller(Settings::default()));
+    let (mut house, mut controller) = (House::new(&DOOR), controller());
     controller.set_goal(House::at(8, 7), None);
     let mut explored_s = 0.0;
     loop {
@@ -204,7 +204,7 @@ fn local_exploration_ends_soon_where_nothing_changes() {
 
 #[test]
 fn local_exploration_stays_with_what_moves_and_does_not_touch_it() {
-    let (mut house, mut controller) = (House::new(&DOOR), controller(Settings::default()));
+    let (mut house, mut controller) = (House::new(&DOOR), controller());
     house.movers =
         vec![Mover { yields_m: 0.3, ..Mover::new([House::at(23, 2), House::at(23, 11)], 0.2, 0.3) }];
     let (mut nearest_m, mut explored_s) = (f64::INFINITY, 0.0);
@@ -227,7 +227,7 @@ fn local_exploration_stays_with_what_moves_and_does_not_touch_it() {
 fn it_lives_with_another_robot() {
     let (mut goals, mut given_up) = (0, 0);
     for seed in 0..3 {
-        let (mut house, mut controller) = (House::new(&ROOMS), controller(Settings::default()));
+        let (mut house, mut controller) = (House::new(&ROOMS), controller());
         house.movers = vec![
             Mover { yields_m: 0.3, ..Mover::new([House::at(15, 23), House::at(23, 23)], 0.2, 0.3) },
             Mover { yields_m: 0.3, ..Mover::new([House::at(19, 3), House::at(19, 22)], 0.2, 0.3) },
@@ -253,7 +253,7 @@ fn it_lives_with_another_robot() {
 
 #[test]
 fn a_robot_that_looks_around_turns_once_then_looks_from_elsewhere() {
-    let (mut house, mut controller) = (House::new(&DOOR), controller(Settings::default()));
+    let (mut house, mut controller) = (House::new(&DOOR), controller());
     let start = house.position();
     let looks_for = |house: &mut House, controller: &mut controller::Controller<_>, seconds: f64| {
         let mut farthest_m: f64 = 0.0;
@@ -276,7 +276,7 @@ fn a_robot_that_looks_around_turns_once_then_looks_from_elsewhere() {
 #[test]
 fn the_same_again_is_the_same() {
     let drive = || {
-        let (mut house, mut controller) = (House::new(&ROOMS), controller(Settings::default()));
+        let (mut house, mut controller) = (House::new(&ROOMS), controller());
         house.movers = vec![Mover::new([House::at(15, 18), House::at(23, 18)], 0.2, 0.3)];
         let mut trace = Vec::new();
         for goal in [House::at(20, 20), House::at(5, 20), House::at(20, 4)] {
@@ -293,7 +293,7 @@ fn the_same_again_is_the_same() {
 
 #[test]
 fn a_goal_can_be_taken_back() {
-    let (mut house, mut controller) = (House::new(&DOOR), controller(Settings::default()));
+    let (mut house, mut controller) = (House::new(&DOOR), controller());
     assert_eq!((controller.status(), controller.goal()), (Status::Idle, None));
     controller.set_goal(House::at(22, 7), None);
     (0..30).for_each(|_| house.tick(&mut controller));
@@ -308,7 +308,7 @@ fn a_goal_can_be_taken_back() {
 
 #[test]
 fn a_map_that_was_replaced_is_read_again() {
-    let (mut house, mut controller) = (House::new(&DOOR), controller(Settings::default()));
+    let (mut house, mut controller) = (House::new(&DOOR), controller());
     let goal = House::at(22, 7);
     controller.set_goal(goal, Some(0.0));
     (0..20).for_each(|_| house.tick(&mut controller));

@@ -1,6 +1,6 @@
 //! The scene of a log: a place of which nothing is known before.
 
-use super::{Scene, SceneRobot, Sector, TimeUnit};
+use super::{Scene, SceneRobot, Sector};
 use interfaces::{GridFrame, LaserReading};
 use nalgebra::Isometry2;
 
@@ -20,12 +20,11 @@ impl Scene {
             radius_m: RADIUS_M,
             corners: Vec::new(),
             sectors: vec![Sector { mount, angle_rad, range_m: scan.range_max_m }],
-            route: Vec::new(),
             is_driven: true,
         };
         Self {
             title: title.to_owned(),
-            unit: TimeUnit::Second,
+            is_grid: false,
             frame,
             walls: Vec::new(),
             obstacles: Vec::new(),

@@ -2,7 +2,7 @@
 //! and forth, and scans from a simple geometry. No physics, no agent.
 
 use agent::Features;
-use draw::scene::{Obstacle, Outline, RobotState, Scene, SceneRobot, Sight, TimeUnit};
+use draw::scene::{Obstacle, Outline, RobotState, Scene, SceneRobot};
 use draw::view::{Measured, View};
 use interfaces::{GridFrame, LaserReading, Scan, Twist, heading_rad, pose, wrap_rad};
 use localizer::PoseEstimate;
@@ -87,13 +87,12 @@ impl FakeRun {
             radius_m: RADIUS_M,
             corners: Vec::new(),
             sectors: Vec::new(),
-            route: Vec::new(),
             is_driven,
         };
         Self {
             scene: Scene {
                 title: "fake rooms".into(),
-                unit: TimeUnit::Second,
+                is_grid: false,
                 frame,
                 walls,
                 obstacles: vec![Obstacle {
@@ -202,12 +201,12 @@ impl FakeRun {
             .clone()
             .map(|estimate| Belief { estimate: Some(estimate.clone()), ..Belief::exact(estimate.pose) });
         use_view(&View {
-            time: self.time_s(),
+            time_s: self.time_s(),
             step: self.step,
             features,
             mapper: &self.mapper,
             robots: vec![
-                RobotState { pose: self.curious.pose, sight: Some(Sight::Laser(&self.reading)) },
+                RobotState { pose: self.curious.pose, sight: Some(&self.reading) },
                 RobotState { pose: self.dummy.pose, sight: None },
             ],
             belief: belief.as_ref(),
@@ -221,7 +220,6 @@ impl FakeRun {
             },
             measured: Measured {
                 coverage_and_quality: Some([coverage, 0.98 * coverage]),
-                rate_errors: None,
                 messages: &self.messages,
             },
         })

@@ -32,10 +32,8 @@ fn drawn(ticks: usize) -> Drawn {
             trail.push(at);
         }
     }
-    let start = std::time::Instant::now();
     let trails = Trails { true_poses: &trails, believed: &Trail::default() };
     write_all(folder.path(), &run.scene, &run.mapper, &trails, &goals(), &Layer::ALL).unwrap();
-    println!("drawn in {:?}", start.elapsed());
     Drawn { folder, run }
 }
 
@@ -45,7 +43,7 @@ impl Drawn {
     }
 
     fn color(&self, picture: &RgbImage, x_m: f64, y_m: f64) -> Rgb {
-        let panel = Panel::of_layer(self.run.mapper.frame(), self.run.scene.unit);
+        let panel = Panel::of_layer(self.run.mapper.frame());
         let [x, y] = panel.pixel(&Point2::new(x_m, y_m));
         picture.get_pixel(x, y).0
     }
@@ -93,7 +91,7 @@ fn trails_walls_obstacles_starts_and_goals_are_drawn() {
     let drawn = drawn(300);
     let picture = drawn.picture("trajectory");
     let entries = trajectory::entries(&drawn.run.scene, &Trail::default(), &goals()).len();
-    let panel = Panel::of_scene(drawn.run.mapper.frame(), drawn.run.scene.unit, entries);
+    let panel = Panel::of_scene(drawn.run.mapper.frame(), drawn.run.scene.is_grid, entries);
     let near = |x_m: f64, y_m: f64, color: Rgb| {
         let [x, y] = panel.pixel(&Point2::new(x_m, y_m));
         let mut around = (x - 3..x + 3).flat_map(|x| (y - 3..y + 3).map(move |y| (x, y)));
@@ -105,6 +103,22 @@ fn trails_walls_obstacles_starts_and_goals_are_drawn() {
     assert!(near(6.0, 1.0, palette::WALL));
     assert!(near(2.2, 10.2, palette::SWEPT));
     assert!(near(3.0, 4.0, palette::GOAL));
+}
+
+#[test]
+fn names_are_beside_their_owners() {
+    let (file, scene) = (tempfile::NamedTempFile::new().unwrap(), FakeRun::new().scene);
+    draw_plan(file.path(), &scene).unwrap();
+    let picture = image::load_from_memory(&std::fs::read(file.path()).unwrap()).unwrap().into_rgb8();
+    let panel = Panel::of_scene(&scene.frame, scene.is_grid, plan::entries(&scene).len());
+    let dark = |[x, y]: [f64; 2]| {
+        let [left, top] = panel.pixel(&Point2::new(x - 0.5, y));
+        let [right, bottom] = panel.pixel(&Point2::new(x + 0.5, y - 0.6));
+        let below = (left..right).flat_map(|x| (top..bottom).map(move |y| (x, y)));
+        below.filter(|(x, y)| picture.get_pixel(*x, *y).0.iter().all(|part| *part < 120)).count()
+    };
+    // Below the two robots.
+    assert!(dark([3.0, 2.75]) > 20 && dark([7.0, 10.95]) > 20);
 }
 
 #[test]
@@ -181,12 +195,4 @@ fn a_folder_that_cannot_be_written_is_named() {
         .unwrap_err()
         .to_string();
     assert!(error.starts_with(&format!("cannot write {}: ", folder.display())), "{error}");
-}
-
-#[test]
-#[ignore = "draws pictures for inspection"]
-fn pictures_for_inspection() {
-    let start = std::time::Instant::now();
-    let folder = drawn(6000).folder.keep();
-    println!("{} in {:?}", folder.display(), start.elapsed());
 }

@@ -127,12 +127,9 @@ impl FrozenRates {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use interfaces::{GridFrame, TrueChange, TrueState};
-    use nalgebra::Point2;
     use rand::RngExt;
     use rand_chacha::ChaCha8Rng;
     use rand_chacha::rand_core::SeedableRng;
-    use std::borrow::Cow;
 
     #[test]
     fn the_mean_is_the_best_constant_and_only_the_counts_themselves_are_perfect() {
@@ -146,78 +143,6 @@ mod tests {
             assert_eq!(poisson_deviance(counts.iter().map(|&count| (count, count))), 0.0);
             let shifted = poisson_deviance(counts.iter().map(|&count| (count, count + 0.1)));
             assert!(shifted > 0.0, "{counts:?}");
-        }
-    }
-
-    /// 40 cells, of which one has an event: fewer than 0.1 events per cell.
-    #[test]
-    fn with_rare_events_the_best_constant_is_still_the_mean() {
-        let deviance = |expected: &dyn Fn(u32) -> f64| {
-            poisson_deviance((0..40).map(|cell| (f64::from(u8::from(cell == 0)), expected(cell))))
-        };
-        let frozen = |constant: f64, rates: &dyn Fn(u32) -> f64| {
-            let cells = (0..40).map(|index| FrozenCell { index, rates: [rates(index), 0.0], events: 0 });
-            FrozenRates { time: 0.0, constant, cells: cells.collect() }
-        };
-        let scores =
-            |constant: f64, rates: &dyn Fn(u32) -> f64| frozen(constant, rates).scores(&OneEvent::new());
-        let close = |found: Option<f64>, expected: f64| {
-            assert!((found.unwrap() - expected).abs() < 1e-12, "{found:?}, not {expected}");
-        };
-        let best = deviance(&|_| 0.025);
-        // A constant is as good as itself, and the best one no worse than others.
-        close(scores(0.025, &|_| 0.025).predictive_deviance, 0.0);
-        close(scores(0.05, &|_| 0.05).predictive_deviance_known, 0.0);
-        close(scores(0.05, &|_| 0.05).predictive_deviance, 1.0 - deviance(&|_| 0.05) / best);
-        assert!(scores(0.05, &|_| 0.05).predictive_deviance.unwrap() < 0.0);
-        // The true rates: cells without events count as the mean.
-        let perfect = |cell: u32| f64::from(u8::from(cell == 0));
-        let floored = deviance(&|cell| perfect(cell).max(0.025));
-        close(scores(0.05, &perfect).predictive_deviance, 1.0 - floored / best);
-        close(scores(0.05, &perfect).predictive_deviance_known, 1.0 - floored / deviance(&|_| 0.05));
-        assert!(scores(0.05, &perfect).predictive_deviance.unwrap() > 0.7);
-    }
-
-    /// A truth after 1 s, with one event in the cell 0.
-    struct OneEvent(GridFrame);
-
-    impl OneEvent {
-        fn new() -> Self {
-            Self(GridFrame::new(Point2::origin(), 1.0, 40, 1).unwrap())
-        }
-    }
-
-    impl GroundTruth for OneEvent {
-        fn frame(&self) -> &GridFrame {
-            &self.0
-        }
-
-        fn elapsed(&self) -> f64 {
-            1.0
-        }
-
-        fn state(&self, _: usize) -> TrueState {
-            TrueState::Free
-        }
-
-        fn can_be_seen(&self, _: usize) -> bool {
-            true
-        }
-
-        fn block_events(&self, index: usize) -> u32 {
-            u32::from(index == 0)
-        }
-
-        fn is_swept(&self, _: usize) -> bool {
-            true
-        }
-
-        fn moving_things(&self) -> Cow<'_, [Vec<usize>]> {
-            Cow::Borrowed(&[])
-        }
-
-        fn changes(&self) -> &[TrueChange] {
-            &[]
         }
     }
 

@@ -2,6 +2,7 @@
 //! lasting changes stay unknown.
 
 use super::quantile::quantile;
+use serde::Serialize;
 
 /// A change lasts if the thing then stays for this long, s.
 const LASTING_S: f64 = 3600.0;
@@ -29,7 +30,7 @@ struct Stay {
 }
 
 /// How fresh a predicted map was.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct FreshnessScores {
     /// The mean of (probability of being blocked − true state)² over all things and steps; NaN without any.
     pub brier: f64,

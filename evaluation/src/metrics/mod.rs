@@ -11,7 +11,6 @@ mod counts;
 mod deviance;
 mod forecasts;
 mod freshness;
-mod latency;
 mod map;
 mod mean;
 mod passages;
@@ -20,7 +19,6 @@ mod prediction;
 mod probability;
 mod quantile;
 mod rates;
-mod standstill;
 mod things;
 mod true_chains;
 
@@ -29,7 +27,6 @@ pub use changing::{ChangingAccuracy, ChangingScores};
 pub use deviance::{DevianceScores, FrozenRates, poisson_deviance};
 pub use forecasts::{ForecastScores, Forecasts, StateScores};
 pub use freshness::{Freshness, FreshnessScores};
-pub use latency::{Delays, Latency};
 pub use map::{Age, MapScores, ReachableScores, age, map_scores, reachable_scores};
 pub use passages::{PassageScores, passage_scores};
 pub use pose::{PoseErrors, PoseScores};
@@ -37,10 +34,9 @@ pub use prediction::{BrierOfAll, PredictedScores, Prediction};
 pub use probability::ProbabilityScores;
 pub use quantile::quantile;
 pub use rates::{
-    IntervalScores, MAX_LOG_ERROR, RateErrors, RateScores, interval_scores, log_error, mean_log_error,
+    IntervalScores, MAX_LOG_ERROR, RateScores, interval_scores, log_error, mean_log_error,
     mean_log_error_of_range, rate_scores,
 };
-pub use standstill::Standstills;
 pub use things::{ThingReport, Things};
 pub use true_chains::TrueChains;
 

@@ -1,8 +1,5 @@
 use serde::{Deserialize, Serialize};
 
-/// Predictions are limited to probabilities from this to 1 minus this in the log score, which is infinite for a wrong
-/// prediction that was certain.
-const MIN_PROBABILITY: f64 = 1e-3;
 /// The number of classes of equal width in the expected calibration error.
 const CLASSES: usize = 10;
 
@@ -11,7 +8,6 @@ const CLASSES: usize = 10;
 pub struct ProbabilityScores {
     count: usize,
     squares: f64,
-    logs: f64,
     /// For each class of predictions, the predicted minus the true number of blocked cells.
     excess: [f64; CLASSES],
 }
@@ -20,10 +16,8 @@ impl ProbabilityScores {
     /// Adds a prediction.
     pub fn add(&mut self, predicted: f64, is_blocked: bool) {
         let truth = f64::from(u8::from(is_blocked));
-        let of_truth = if is_blocked { predicted } else { 1.0 - predicted };
         self.count += 1;
         self.squares += (predicted - truth) * (predicted - truth);
-        self.logs -= libm::log(of_truth.clamp(MIN_PROBABILITY, 1.0 - MIN_PROBABILITY));
         self.excess[((predicted * CLASSES as f64) as usize).min(CLASSES - 1)] += predicted - truth;
     }
 
@@ -31,7 +25,6 @@ impl ProbabilityScores {
     pub fn merge(&mut self, other: &Self) {
         self.count += other.count;
         self.squares += other.squares;
-        self.logs += other.logs;
         self.excess.iter_mut().zip(other.excess).for_each(|(excess, other)| *excess += other);
     }
 
@@ -43,11 +36,6 @@ impl ProbabilityScores {
     /// The Brier score: the mean of (prediction − truth)².
     pub fn brier(&self) -> Option<f64> {
         self.mean(self.squares)
-    }
-
-    /// The log score, nat: the mean of −ln of the probability of what was true, from 0.001 on.
-    pub fn log_score(&self) -> Option<f64> {
-        self.mean(self.logs)
     }
 
     /// The expected calibration error: the mean distance of the predicted from the true share in ten classes of predictions,
@@ -77,8 +65,6 @@ mod tests {
         let squares: f64 = 0.12 * 0.12 + 0.82 * 0.82 + 0.25 + 1.0;
         assert_eq!(scores.count(), 4);
         assert!((scores.brier().unwrap() - squares / 4.0).abs() < 1e-12);
-        let logs = -(0.88_f64.ln() + 0.18_f64.ln() + 0.5_f64.ln() + 0.001_f64.ln());
-        assert!((scores.log_score().unwrap() - logs / 4.0).abs() < 1e-12);
         // The classes from 0 and from 0.1 on are apart.
         assert!((scores.calibration_error().unwrap() - (1.0 + 0.7 + 0.5) / 4.0).abs() < 1e-12);
     }

@@ -38,22 +38,6 @@ pub struct RateScores {
     pub false_rate_hz: f64,
 }
 
-/// The two errors of the rates that a recording shows; NaN before the first true change.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RateErrors {
-    /// See [`RateScores::rate_error_all`].
-    pub relative: f64,
-    /// See [`RateScores::log_error`].
-    pub log: f64,
-}
-
-impl From<&RateScores> for RateErrors {
-    fn from(scores: &RateScores) -> Self {
-        let or_nan = |value: Option<f64>| value.unwrap_or(f64::NAN);
-        Self { relative: or_nan(scores.rate_error_all), log: or_nan(scores.log_error) }
-    }
-}
-
 /// The credible intervals of the rates compared with the true rates so far, over the observed cells that truly changed;
 /// [`GroundTruth::predicted_events`] says which events count. All are `None` without such cells.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]

@@ -1,26 +1,23 @@
 //! The scene of a grid world. Cells are 1 m wide, with `[0, 0]` at the origin.
 
-use super::{Displayed, Visible};
-use draw::scene::{Obstacle, Outline, RobotState, Scene, SceneRobot, Sector, Sight, TimeUnit};
-use interfaces::{Cell, CellReading, Grid};
+use super::Displayed;
+use draw::scene::{Obstacle, Outline, Scene, SceneRobot, Sector};
+use interfaces::{Cell, Grid};
 use nalgebra::{Isometry2, Point2};
-use sim::grid::{GridSpec, GridWorld};
+use sim::grid::GridSpec;
 use std::f64::consts::TAU;
 
 /// The name of the only robot.
 const ROBOT: &str = "robot";
 /// The radius that the robot is drawn with, m: a little less than half a cell.
 const ROBOT_RADIUS_M: f64 = 0.35;
-/// The distance between a block and the border of its cell, m, so that the cell stays visible.
-const INSET_M: f64 = 0.12;
-
 impl Displayed for GridSpec {
     fn scene(&self) -> Scene {
-        let square = |cell: &Cell| rectangle(*cell, *cell, 0.0);
+        let square = |cell: &Cell| rectangle(*cell, *cell);
         let start = self.frame().center(self.start);
         Scene {
             title: self.name.to_owned(),
-            unit: GridWorld::UNIT,
+            is_grid: true,
             frame: *self.frame(),
             walls: rectangles(&self.walls),
             obstacles: self
@@ -42,30 +39,16 @@ impl Displayed for GridSpec {
                     angle_rad: TAU,
                     range_m: f64::from(self.sensor_radius),
                 }],
-                route: Vec::new(),
                 is_driven: true,
             }],
         }
     }
 }
 
-impl Visible for GridWorld {
-    const UNIT: TimeUnit = TimeUnit::Step;
-
-    fn robots<'a>(&'a self, reading: &'a CellReading) -> Vec<RobotState<'a>> {
-        let sight = Sight::Cells { reading, radius: self.spec().sensor_radius };
-        vec![RobotState { pose: reading.pose, sight: Some(sight) }]
-    }
-
-    fn obstacles(&self) -> Vec<Option<Outline>> {
-        self.blocks().map(|(_, cell)| Some(rectangle(cell, cell, INSET_M))).collect()
-    }
-}
-
-/// The rectangle from one cell to another, both included, with its sides moved inwards, m.
-fn rectangle(low: Cell, high: Cell, inset_m: f64) -> Outline {
-    let from = Point2::new(f64::from(low.x), f64::from(low.y)).map(|side| side + inset_m);
-    let to = Point2::new(f64::from(high.x), f64::from(high.y)).map(|side| side + 1.0 - inset_m);
+/// The rectangle from one cell to another, both included, m.
+fn rectangle(low: Cell, high: Cell) -> Outline {
+    let from = Point2::new(f64::from(low.x), f64::from(low.y));
+    let to = Point2::new(f64::from(high.x + 1), f64::from(high.y + 1));
     vec![from, Point2::new(to.x, from.y), to, Point2::new(from.x, to.y)]
 }
 
@@ -91,25 +74,20 @@ fn rectangles(cells: &Grid<bool>) -> Vec<Outline> {
     }
     done.append(&mut open);
     done.sort_unstable();
-    done.into_iter().map(|(low, high)| rectangle(low, high, 0.0)).collect()
+    done.into_iter().map(|(low, high)| rectangle(low, high)).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// The walls of a drawn world, as rectangles.
-    fn walls(rows: &[&str]) -> (Grid<bool>, Vec<Outline>) {
-        let text = format!("name = 'x'\nsensor_radius = 1\nmap = '''\n{}\n'''", rows.join("\n"));
-        let walls = worldfile::grid::parse("x.toml", &text).unwrap().walls;
-        let rectangles = rectangles(&walls);
-        (walls, rectangles)
-    }
-
     #[test]
     fn rectangles_cover_the_walls_once_and_nothing_else() {
         let rows = ["#######", "#..#..#", "####R.#", "#..##.#", "#.....#", "##.##.#", "#######"];
-        let (walls, rectangles) = walls(&rows);
+        let text = format!("name = 'x'\nsensor_radius = 1\nmap = '''\n{}\n'''", rows.join("\n"));
+        let walls = worldfile::grid::parse("x.toml", &text).unwrap().walls;
+        let rectangles = rectangles(&walls);
+        assert_eq!(rectangles.len(), 10);
         for (index, is_wall) in walls.cells().iter().enumerate() {
             let middle = walls.frame().center(walls.frame().cell(index));
             let holds = |outline: &&Outline| {
@@ -118,21 +96,5 @@ mod tests {
             };
             assert_eq!(rectangles.iter().filter(holds).count(), usize::from(*is_wall), "{middle}");
         }
-    }
-
-    #[test]
-    fn a_box_of_walls_is_four_rectangles() {
-        let (_, rectangles) = walls(&["#####", "#...#", "#...#", "#####"]);
-        let corners: Vec<_> = rectangles.iter().map(|outline| (outline[0], outline[2])).collect();
-        let corner = |x, y| Point2::new(x, y);
-        assert_eq!(
-            corners,
-            [
-                (corner(0.0, 0.0), corner(5.0, 1.0)),
-                (corner(0.0, 1.0), corner(1.0, 3.0)),
-                (corner(0.0, 3.0), corner(5.0, 4.0)),
-                (corner(4.0, 1.0), corner(5.0, 3.0)),
-            ]
-        );
     }
 }

@@ -1,11 +1,14 @@
 //! The scene of a physics world.
 
-use super::{Displayed, Visible};
-use draw::scene::{Obstacle, Outline, RobotState, Scene, SceneRobot, Sector, Sight, TimeUnit};
-use interfaces::LaserReading;
-use nalgebra::{Isometry2, Point2};
+use super::Displayed;
+use draw::scene::{Obstacle, Outline, RobotState, Scene, SceneRobot, Sector};
+use draw::view::{Measured, View};
+use interfaces::{LaserReading, Twist, World};
+use mapper::Mapper;
+use nalgebra::Isometry2;
+use robot::{Pilot, Turn};
 use sim::physics::{
-    BehaviorSpec, FleetSpec, Motion, ObstacleSpec, PhysicsWorld, Rectangle, Repeat, RobotSpec, WorldSpec,
+    BehaviorSpec, FleetSpec, Motion, ObstacleSpec, PhysicsWorld, Rectangle, RobotSpec, WorldSpec,
 };
 
 /// The number of outlines that show the swing of a door.
@@ -15,7 +18,7 @@ impl Displayed for FleetSpec {
     fn scene(&self) -> Scene {
         Scene {
             title: self.name.to_owned(),
-            unit: PhysicsWorld::UNIT,
+            is_grid: false,
             frame: self.frame,
             walls: self.walls.iter().map(|wall| wall.corners().to_vec()).collect(),
             obstacles: self.obstacles.iter().map(obstacle).collect(),
@@ -30,23 +33,34 @@ impl Displayed for WorldSpec {
     }
 }
 
-impl Visible for PhysicsWorld {
-    const UNIT: TimeUnit = TimeUnit::Second;
-
-    fn robots<'a>(&'a self, reading: &'a LaserReading) -> Vec<RobotState<'a>> {
-        let state = |robot: sim::physics::RobotView<'a>| RobotState {
-            pose: robot.pose,
-            sight: robot.is_driven.then_some(Sight::Laser(reading)),
-        };
-        self.fleet().robots().map(state).collect()
+/// The state of a run after a turn of the robot.
+pub fn view<'a>(
+    world: &'a PhysicsWorld,
+    turn: &'a Turn<LaserReading, Twist>,
+    mapper: &'a Mapper,
+    pilot: &'a impl Pilot<Command = Twist>,
+    measured: Measured<'a>,
+) -> View<'a> {
+    let robot = |robot: sim::physics::RobotView<'a>| RobotState {
+        pose: robot.pose,
+        sight: robot.is_driven.then_some(&turn.reading),
+    };
+    let mut obstacles = vec![None; world.spec().obstacles.len()];
+    for obstacle in world.fleet().obstacles() {
+        obstacles[obstacle.index] = Some(obstacle.corners.to_vec());
     }
-
-    fn obstacles(&self) -> Vec<Option<Outline>> {
-        let mut outlines = vec![None; self.spec().obstacles.len()];
-        for obstacle in self.fleet().obstacles() {
-            outlines[obstacle.index] = Some(obstacle.corners.to_vec());
-        }
-        outlines
+    View {
+        time_s: mapper.time(),
+        step: mapper.readings() as u64,
+        mapper,
+        features: turn.features,
+        robots: world.fleet().robots().map(robot).collect(),
+        belief: Some(&turn.belief).filter(|_| !world.poses_are_exact()),
+        obstacles,
+        path: pilot.path(),
+        goal: pilot.goal(),
+        strategies: pilot.strategies(turn.features),
+        measured,
     }
 }
 
@@ -86,19 +100,6 @@ fn robot(spec: &RobotSpec) -> SceneRobot {
         radius_m: spec.radius_m,
         corners: spec.corners.clone(),
         sectors: lasers.chain(sonars).map(sector).collect(),
-        route: route(&spec.behavior),
         is_driven: spec.behavior == BehaviorSpec::Driven,
-    }
-}
-
-/// The points of the way of a robot; empty if it has none.
-fn route(behavior: &BehaviorSpec) -> Vec<Point2<f64>> {
-    match behavior {
-        BehaviorSpec::Waypoints(way) if way.repeat == Repeat::Loop => {
-            way.points.iter().chain(way.points.first()).copied().collect()
-        }
-        BehaviorSpec::Waypoints(way) => way.points.clone(),
-        BehaviorSpec::WallPatrol(patrol) => vec![patrol.from, patrol.to],
-        _ => Vec::new(),
     }
 }

@@ -1,7 +1,9 @@
 //! The results as a few lines for the terminal.
 
 use super::{Contacts, RunResults, Summary};
-use crate::metrics::{Age, DevianceScores, PoseScores, PredictedScores, RateScores, ThingReport};
+use crate::metrics::{
+    Age, DevianceScores, FreshnessScores, PoseScores, PredictedScores, RateScores, ThingReport,
+};
 use crate::scheduled_things::ScheduledScores;
 use results::numbers::percent;
 use robot::GoalCount;
@@ -16,6 +18,7 @@ impl fmt::Display for Summary {
         let Self { drive, world, simulated_s, wall_s, real_time_factor, .. } = self;
         let ended = match self.ended_by {
             "interrupted" => ", interrupted",
+            "person" => ", ended by the user",
             _ => "",
         };
         let simulated = match simulated_s {
@@ -65,7 +68,6 @@ impl fmt::Display for RunResults {
             lines.push(("chosen", shares.join(", ")));
         }
         lines.extend(self.pose().map(|text| ("pose", text)));
-        lines.extend(self.standstills().map(|text| ("stood", text)));
         for (name, text) in lines {
             writeln!(f, "  {name:<9} {text}")?;
         }
@@ -76,13 +78,14 @@ impl fmt::Display for RunResults {
 
 /// How well the map knew the things with a schedule.
 fn of_calendar(scores: &ScheduledScores) -> Vec<(&'static str, String)> {
-    let ScheduledScores { things, brier, lasting_changes, missed, .. } = scores;
+    let ScheduledScores { things, fresh, .. } = scores;
+    let FreshnessScores { brier, lasting_changes, missed, detection_delay_s } = fresh;
     let mut lines = vec![(
         "calendar",
         format!("Brier score {brier:.4} over {things} things with a schedule, at all times"),
     )];
     if *lasting_changes > 0 {
-        let [median, late] = scores.detection_delay_s.map(length_of);
+        let [median, late] = detection_delay_s.map(length_of);
         let missed = percent(*missed);
         let text = format!(
             "{lasting_changes} changes that last an hour or more: on the map after {median} in the median, {late} for 95 %, {missed} missed"
@@ -143,13 +146,6 @@ impl RunResults {
                 self.pose.heading_p95_deg.unwrap_or_default(),
             )
         })
-    }
-
-    /// The robots that stood still for a minute or longer; `None` if no robot did.
-    fn standstills(&self) -> Option<String> {
-        let stood = self.longest_standstill_s.iter().filter(|(_, longest_s)| **longest_s >= 60.0);
-        let stood: Vec<String> = stood.map(|(name, longest_s)| format!("{name} {longest_s:.0} s")).collect();
-        (!stood.is_empty()).then(|| format!("longest time without moving 0.1 m: {}", stood.join(", ")))
     }
 
     /// The quality of the predicted map beside that of simpler predictions; `None` if nothing changed out of view.
@@ -229,7 +225,7 @@ fn line_of(thing: &ThingReport) -> String {
 mod tests {
     use super::*;
     use crate::metrics::{
-        ChangingAccuracy, Delays, ForecastScores, IntervalScores, MapScores, PassageScores, ReachableScores,
+        ChangingAccuracy, ForecastScores, IntervalScores, MapScores, PassageScores, ReachableScores,
     };
     use std::collections::BTreeMap;
 
@@ -246,14 +242,9 @@ mod tests {
             intervals: IntervalScores::default(),
             rates,
             age,
-            block_latency: Delays::default(),
-            free_latency: Delays::default(),
             collisions: 0,
             contacts: Contacts { own_motion: 1, run_into: 2 },
             pose: PoseScores { mode: "exact", ..PoseScores::default() },
-            longest_standstill_s: [("cat", 312.4), ("dummy", 3.0)]
-                .map(|(name, s)| (name.to_owned(), s))
-                .into(),
             goals: GoalCount::default(),
             strategy_share: BTreeMap::new(),
             things: Vec::new(),
@@ -299,7 +290,6 @@ mod tests {
                     predictive deviance 0.62 from 7 to 20 min: 1 is perfect, 0 the best constant, 0.82 a full view before
                     AUC 0.83: how well the rates separate changing from static cells, 1 is perfect, 0.5 is chance
           predicted Brier score 0.0159 on changing cells out of view; as last seen 0.0270, share of time blocked 0.0161, true chains 0.0140
-          stood     longest time without moving 0.1 m: cat 312 s
           contacts  1 by its own motion, 2 in which something ran into it
         ");
     }
@@ -310,27 +300,7 @@ mod tests {
         insta::assert_snapshot!(results(1.0, age, RateScores::default()), @"
           seen      100.0 % of the cells in sight of reachable places, 100.0 % of free cells and their borders; every cell was seen in the last 431 s
           map       >99.9 % correct now; 0 false changes recorded, 0 in the map, on 0 static cells
-          stood     longest time without moving 0.1 m: cat 312 s
           contacts  1 by its own motion, 2 in which something ran into it
         ");
-    }
-
-    #[test]
-    fn closed_loops_are_in_the_line_of_the_pose() {
-        let line = |loops_closed| {
-            let pose = PoseScores {
-                mode: "localized",
-                median_m: Some(0.001),
-                p95_m: Some(0.004),
-                ..PoseScores::default()
-            };
-            let pose = PoseScores { loops_closed, largest_correction_m: 0.253, ..pose };
-            let age = Age { max_s: 431.0, never_seen: 0 };
-            RunResults { pose, ..results(1.0, age, RateScores::default()) }.pose().unwrap()
-        };
-        assert!(line(0).ends_with("certain but wrong 0 times"));
-        assert!(
-            line(2).ends_with("wrong 0 times; 2 loops closed, which moved poses of the past by up to 0.25 m")
-        );
     }
 }

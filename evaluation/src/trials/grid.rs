@@ -9,18 +9,13 @@ use sim::grid::{GridGroundTruth, GridSpec, GridWorld};
 /// The settings of the robot in grid worlds.
 #[derive(Clone, Debug)]
 pub struct GridRobot {
-    /// The settings of the mapper; the estimator in these settings is not used.
-    pub mapper: MapperSettings,
-    /// The settings of the agent; its sensor radius is that of the world.
-    pub agent: AgentSettings,
-    /// The settings of the controller.
-    pub controller: controller::Settings,
+    /// The maximum number of steps of local exploration.
+    pub max_steps: u32,
 }
 
 impl Default for GridRobot {
     fn default() -> Self {
-        let (mapper, agent) = (MapperSettings::default(), AgentSettings::default());
-        Self { mapper, agent, controller: CellDrive::settings() }
+        Self { max_steps: 42 }
     }
 }
 
@@ -58,7 +53,7 @@ impl TrialWorld for GridSpec {
 
     fn agent(trial: &TrialSettings<Self>, policy: &Policy) -> Result<Agent, TrialError> {
         let sensor_radius_m = f64::from(trial.world.sensor_radius) * trial.world.frame().resolution_m();
-        let settings = AgentSettings { sensor_radius_m, ..trial.experiment.robot.agent.clone() };
+        let settings = AgentSettings { sensor_radius_m, ..AgentSettings::default() };
         Ok(Agent::new(&settings, policy, RandomStream::new(trial.seed, Purpose::GridAgent))?)
     }
 
@@ -67,10 +62,10 @@ impl TrialWorld for GridSpec {
         _: &mut GridWorld,
         selector: G,
     ) -> Result<TrialRobot<Self, G>, TrialError> {
-        let GridRobot { mapper, controller, .. } = &trial.experiment.robot;
         let stream = RandomStream::new(trial.seed, Purpose::GridController);
-        let pilot = Autonomous::new(selector, Controller::new(*controller, CellDrive, stream)?);
-        let settings = MapperSettings { estimator: trial.estimator.clone(), ..mapper.clone() };
+        let pilot =
+            Autonomous::new(selector, Controller::new(CellDrive, trial.experiment.robot.max_steps, stream));
+        let settings = MapperSettings { estimator: trial.estimator.clone(), ..MapperSettings::default() };
         Ok(Robot::new(Box::new(ExactPoses), Mapper::new(&settings, *trial.world.frame())?, pilot))
     }
 }

@@ -33,14 +33,6 @@ impl Length {
         }
     }
 
-    /// The end of a trial, as in `step 20000` or `1200 s`.
-    pub fn end(self) -> String {
-        match self {
-            Self::Grid { steps } => format!("step {steps}"),
-            Self::Physics { duration_s } => format!("{duration_s} s"),
-        }
-    }
-
     /// The name of the column of times in `trials.csv`.
     pub fn column(self) -> &'static str {
         self.choose("step", "time_s")

@@ -19,7 +19,7 @@ pub use grid::GridRobot;
 pub use length::Length;
 pub use metric::{Metric, Sample, Trial};
 pub use physics::PhysicsRobot;
-pub use run::{TrialStep, run_trial};
+pub use run::run_trial;
 pub use strategy::TrialStrategy;
 pub use world::{TrialRobot, TrialSettings, TrialWorld};
 
@@ -108,7 +108,7 @@ impl<W: TrialWorld> Experiment<W> {
             if !goes_on() {
                 return Ok(None);
             }
-            let trial = run_trial(&job, |_| goes_on())?;
+            let trial = run_trial(&job, goes_on)?;
             Ok(trial.inspect(&observe))
         };
         let trials: Result<Vec<Option<Trial>>, TrialError> = jobs.into_par_iter().map(run).collect();

@@ -24,7 +24,7 @@ impl Default for PhysicsRobot {
 impl PhysicsRobot {
     fn settings(&self, spec: &WorldSpec) -> Result<Settings, UnsupportedDrive> {
         let mut settings = physics_trial::settings(spec)?;
-        settings.controller.exploration.max_steps = self.max_steps;
+        settings.local_steps = self.max_steps;
         settings.pose = self.pose.unwrap_or(settings.pose);
         Ok(settings)
     }

@@ -1,45 +1,26 @@
 use super::sampler::Sampler;
-use super::{Sample, Trial, TrialError, TrialSettings, TrialStrategy, TrialWorld};
+use super::{Trial, TrialError, TrialSettings, TrialStrategy, TrialWorld};
 use crate::map_hash::map_hash;
 use crate::metrics::rate_scores;
 use agent::Features;
-use interfaces::{CellReading, GroundTruth, Reading, TrueState, World};
-use mapper::Mapper;
-use robot::{GoalSelector, Pilot, Robot, Tour, Turn, explore};
+use interfaces::{CellReading, GroundTruth, Reading, TrueState};
+use robot::{GoalSelector, Pilot, Tour, explore};
 use std::ops::ControlFlow;
 
-/// One turn of the robot of a trial.
-pub struct TrialStep<'a, W: TrialWorld> {
-    /// The world.
-    pub world: &'a W::World,
-    /// What the robot has made of the reading of its sensors.
-    pub turn: &'a Turn<<W::World as World>::Reading, <W::World as World>::Command>,
-    /// The map.
-    pub mapper: &'a Mapper,
-    /// The pilot.
-    pub pilot: &'a mut dyn Pilot<Command = <W::World as World>::Command>,
-    /// The sample at this reading; `None` for most readings.
-    pub sample: Option<&'a Sample>,
-    /// Whether this is the last reading of the trial.
-    pub is_complete: bool,
-}
-
-/// Runs one trial. `observe` is called at every reading; when it returns false, the trial is canceled and there
-/// is no result.
+/// Runs one trial. `goes_on` is called at every reading; when it returns false, the trial is canceled and there is no result.
 ///
 /// # Errors
-///
 /// When the trial cannot run.
 pub fn run_trial<W: TrialWorld>(
     trial: &TrialSettings<W>,
-    observe: impl FnMut(TrialStep<W>) -> bool,
+    goes_on: impl FnMut() -> bool,
 ) -> Result<Option<Trial>, TrialError> {
     let own = trial.world.in_own_frame(&trial.experiment.robot, trial.seed);
     let world = own.as_ref().unwrap_or(trial.world);
     let trial = &TrialSettings { world, ..*trial };
     match trial.strategy {
-        TrialStrategy::Agent(policy) => run(trial, W::agent(trial, policy)?, observe),
-        TrialStrategy::FullObservation => run(trial, Tour::new(Vec::new(), false), observe),
+        TrialStrategy::Agent(policy) => run(trial, W::agent(trial, policy)?, goes_on),
+        TrialStrategy::FullObservation => run(trial, Tour::new(Vec::new(), false), goes_on),
     }
 }
 
@@ -47,7 +28,7 @@ pub fn run_trial<W: TrialWorld>(
 fn run<W: TrialWorld, G: GoalSelector>(
     trial: &TrialSettings<W>,
     selector: G,
-    mut observe: impl FnMut(TrialStep<W>) -> bool,
+    mut goes_on: impl FnMut() -> bool,
 ) -> Result<Option<Trial>, TrialError> {
     let mut world = trial.world.start(trial.seed);
     let mut robot = W::robot(trial, &mut world, selector)?;
@@ -60,19 +41,17 @@ fn run<W: TrialWorld, G: GoalSelector>(
         if let Some(map) = &mut full_map {
             map.update(&observed(truth, &turn.reading))?;
         }
-        let Robot { mapper, pilot, .. } = robot;
-        let mapper = full_map.as_ref().unwrap_or(mapper);
+        let mapper = full_map.as_ref().unwrap_or(&robot.mapper);
         if let Some(count) = W::collisions(world) {
             *collisions.get_or_insert(0) += count;
         }
+        sampler.update::<W>(mapper, truth);
         let is_complete = sampler.is_complete(mapper.time());
-        let sample = sampler.update::<W>(mapper, truth);
         if is_complete {
             rates = Some(rate_scores(mapper, truth));
         }
-        let goes_on = observe(TrialStep { world, turn, mapper, pilot, sample, is_complete }) && !is_complete;
-        pilot.take_messages(); // messages that `observe` has not taken must not accumulate
-        Ok(if goes_on { ControlFlow::Continue(()) } else { ControlFlow::Break(()) })
+        robot.pilot.take_messages(); // they must not accumulate
+        Ok(if goes_on() && !is_complete { ControlFlow::Continue(()) } else { ControlFlow::Break(()) })
     })?;
     let Some(rates) = rates else { return Ok(None) };
     let mut mapper = full_map.unwrap_or(robot.mapper);

@@ -37,8 +37,8 @@ impl Sampler {
         Self { length, due: sample_time(0, length), ..Self::default() }
     }
 
-    /// Measures one reading. Returns the sample, if one is due.
-    pub(super) fn update<W: TrialWorld>(&mut self, mapper: &Mapper, truth: &W::Truth) -> Option<&Sample> {
+    /// Measures one reading, and takes a sample if one is due.
+    pub(super) fn update<W: TrialWorld>(&mut self, mapper: &Mapper, truth: &W::Truth) {
         let is_due = has_come(mapper.time(), self.due);
         self.forecasts.observe(mapper, truth, None);
         if is_due || self.readings.is_multiple_of(W::COMPARE_EVERY) {
@@ -51,13 +51,11 @@ impl Sampler {
             self.views_of_changes += usize::from(truth.swept().iter().any(|&index| mapper.is_in_view(index)));
         }
         self.readings += 1;
-        if !is_due {
-            return None;
+        if is_due {
+            let sample = self.sample(mapper, truth);
+            self.samples.push(sample);
+            self.due = sample_time(self.samples.len() as u64, self.length);
         }
-        let sample = self.sample(mapper, truth);
-        self.samples.push(sample);
-        self.due = sample_time(self.samples.len() as u64, self.length);
-        self.samples.last()
     }
 
     /// Whether the trial is complete at a time.

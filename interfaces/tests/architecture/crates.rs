@@ -22,12 +22,12 @@ const ALLOWED: &[(&str, &str)] = &[
     ("evaluation", "interfaces calendar sim mapper localizer agent controller robot results draw"),
     (
         "reports",
-        "interfaces files calendar sim worldfile mapper agent robot results draw viewer cli evaluation curious",
+        "interfaces files calendar sim worldfile mapper agent robot results draw cli evaluation curious",
     ),
-    ("environments", "interfaces sim worldfile mapper agent controller robot evaluation"),
+    ("environments", "interfaces sim worldfile mapper agent controller robot evaluation draw"),
     (
         "python",
-        "interfaces sim worldfile stage mapper localizer logs agent robot survey evaluation environments",
+        "interfaces sim worldfile stage mapper localizer logs agent robot survey evaluation environments draw",
     ),
     ("draw", "interfaces files mapper agent robot results"),
     ("viewer", "interfaces files mapper localizer agent robot results draw"),
@@ -47,7 +47,7 @@ const RESERVED: &[(&str, &[&str])] =
     &[("rerun", &["viewer"]), ("rapier2d", &["sim"]), ("ros2-client", &["ros2"])];
 
 /// The crates that may need Rerun.
-const WITH_RERUN: [&str; 4] = ["viewer", "owner", "curious", "reports"];
+const WITH_RERUN: [&str; 3] = ["viewer", "owner", "curious"];
 
 #[test]
 fn every_crate_uses_only_what_it_may() {

@@ -3,7 +3,6 @@
 use super::inventory::{Inventory, LaserTopic, OdometryTopic};
 use crate::assemble::{Chain, Frames, can_be_base, is_odom, is_world};
 use crate::choice::{TopicChoice, bare, listed};
-use crate::summary::PoseSource;
 
 /// Where the motions come from.
 #[derive(Clone, Debug)]
@@ -18,7 +17,6 @@ pub(super) enum MotionSource {
 /// How the pose of a frame of the robot is known.
 pub(super) struct Motion {
     pub(super) source: MotionSource,
-    pub(super) pose_source: PoseSource,
     /// The frame whose pose is known.
     pub(super) moving: Option<String>,
     /// From the frame of the map of another SLAM to the one in which the motions are given; `None`: odometry alone.
@@ -33,25 +31,16 @@ pub(super) fn by_odometry(
     lasers: &[&LaserTopic],
     choice: &TopicChoice,
 ) -> Result<Motion, String> {
-    let of =
-        |source, pose_source, moving, fixed| Motion { source, pose_source, moving, correction: None, fixed };
+    let of = |source, moving, fixed| Motion { source, moving, correction: None, fixed };
     if let Some(OdometryTopic { topic, odom_frame, child_frame }) = chosen_odometry(found, choice)? {
-        let pose_source = PoseSource::OdometryTopic(topic.clone());
         let (moving, fixed) = (Some(child_frame.clone()), vec![odom_frame.clone()]);
-        return Ok(of(MotionSource::Topic(topic.clone()), pose_source, moving, fixed));
+        return Ok(of(MotionSource::Topic(topic.clone()), moving, fixed));
     }
     let Some(index) = moving_edge(&found.frames, lasers, choice)? else {
-        return Ok(of(MotionSource::Standing, PoseSource::Standing, None, Vec::new()));
+        return Ok(of(MotionSource::Standing, None, Vec::new()));
     };
-    let edge = found.frames.edge(index);
-    let (odom_frame, base_frame) = (edge.parent.clone(), edge.child.clone());
-    let moving = Some(base_frame.clone());
-    Ok(of(
-        MotionSource::Transform(index),
-        PoseSource::Transforms { odom_frame, base_frame },
-        moving,
-        Vec::new(),
-    ))
+    let moving = found.frames.edge(index).child.clone();
+    Ok(of(MotionSource::Transform(index), Some(moving), Vec::new()))
 }
 
 /// The topic of odometry, if there is one.

@@ -6,7 +6,6 @@ use super::motion::{self, Motion, MotionSource};
 use super::slam;
 use crate::assemble::{Chain, Frames, can_be_base, is_base, is_odom, is_world};
 use crate::choice::{TopicChoice, bare, listed};
-use crate::summary::PoseSource;
 use ros::mounted;
 
 /// A laser that is used.
@@ -23,7 +22,6 @@ pub(super) struct Laser {
 pub(super) struct Plan {
     pub(super) lasers: Vec<Laser>,
     pub(super) motion: MotionSource,
-    pub(super) pose_source: PoseSource,
     /// With poses of another SLAM, from the frame of its map to the one in which the motions are given.
     pub(super) correction: Option<Chain>,
     /// From the frame whose poses are known to that of the robot.
@@ -45,12 +43,11 @@ impl Plan {
     ) -> Result<Self, String> {
         let lasers = chosen_lasers(found, choice, notes)?;
         let frames = &found.frames;
-        let Motion { source: motion, pose_source, moving: moving_frame, correction, fixed } =
-            if choice.is_corrected {
-                slam::poses(found, &lasers, choice)?
-            } else {
-                motion::by_odometry(found, &lasers, choice)?
-            };
+        let Motion { source: motion, moving: moving_frame, correction, fixed } = if choice.is_corrected {
+            slam::poses(found, &lasers, choice)?
+        } else {
+            motion::by_odometry(found, &lasers, choice)?
+        };
         let base = match (&choice.base_frame, &moving_frame) {
             (Some(base), _) => bare(base).to_owned(),
             (None, Some(moving)) if !moving.is_empty() => moving.clone(),
@@ -70,7 +67,7 @@ impl Plan {
             _ => Chain::new(),
         };
         let lasers = connected(frames, lasers, &base, &world, notes)?;
-        Ok(Self { lasers, motion, pose_source, correction, to_base, frames: frames.clone() })
+        Ok(Self { lasers, motion, correction, to_base, frames: frames.clone() })
     }
 
     /// Whether the messages of a topic are needed.

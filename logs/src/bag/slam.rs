@@ -6,7 +6,6 @@ use super::motion::{Motion, MotionSource, chosen_odometry};
 use crate::assemble::{Chain, Frames, is_odom};
 use crate::checks::Jumps;
 use crate::choice::{TopicChoice, bare, listed};
-use crate::summary::PoseSource;
 use nalgebra::Isometry2;
 use ros::flat;
 use std::collections::{BTreeSet, VecDeque};
@@ -41,10 +40,8 @@ pub(super) fn poses(
     let laser = lasers.first().map_or("", |laser| laser.frame.as_str());
     let robot = choice.base_frame.as_deref().map_or(laser, bare);
     let of = |source, correction: Chain, moving: String, parent: &str| {
-        let base_frame = choice.base_frame.clone().unwrap_or_else(|| moving.clone());
-        let pose_source = PoseSource::Corrected { map_frame: map.to_owned(), base_frame };
         let fixed = vec![map.to_owned(), parent.to_owned()];
-        Motion { source, pose_source, moving: Some(moving), correction: Some(correction), fixed }
+        Motion { source, moving: Some(moving), correction: Some(correction), fixed }
     };
     if let Some(chain) = frames.chain(map, robot, &[]) {
         let Some(at) = moving_part(frames, &chain) else {

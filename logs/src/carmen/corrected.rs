@@ -4,7 +4,7 @@ use super::CarmenLog;
 use crate::checks::{MIN_MOTION_M, MIN_MOTION_RAD, NO_MOTION, UNKNOWN_MOTION};
 use crate::error::LogError;
 use crate::log::Source;
-use crate::summary::{LogSummary, PoseSource};
+use crate::summary::LogSummary;
 use interfaces::heading_rad;
 use nalgebra::Isometry2;
 
@@ -70,8 +70,6 @@ fn is_near(a: &Isometry2<f64>, b: &Isometry2<f64>, [far_m, far_rad]: [f64; 2]) -
 
 /// What the log contains, with these poses.
 pub(super) fn note(summary: &mut LogSummary) {
-    summary.pose_source = PoseSource::ScanLines;
-    summary.odom_origin = Isometry2::identity();
     summary.notes.retain(|note| ![NO_MOTION, UNKNOWN_MOTION].contains(&note.as_str()));
     summary
         .notes

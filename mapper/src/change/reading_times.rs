@@ -17,7 +17,6 @@ pub(super) struct ReadingTimes {
     /// The older readings in use, in order, and their times.
     old: Vec<(ReadingIndex, f64)>,
     /// The times of all readings from `start` on.
-    #[serde(with = "regular_times")]
     recent: Vec<f64>,
     start: ReadingIndex,
     /// The time of the first reading after the prior.
@@ -114,36 +113,6 @@ impl ReadingTimes {
         self.start += (MAX_RECENT / 2) as ReadingIndex;
         let mut is_in_use = is_in_use.into_iter();
         self.old.retain(|_| is_in_use.next() == Some(true));
-    }
-}
-
-/// Times of readings that come about regularly, in about two bytes each: how far each is from where the two before it
-/// lead, in units of the last binary digit.
-mod regular_times {
-    use serde::{Deserialize, Deserializer, Serialize, Serializer};
-
-    /// The bits of the number that continues the two before.
-    fn next([before, last]: [u64; 2]) -> u64 {
-        last.wrapping_add(last.wrapping_sub(before))
-    }
-
-    pub(super) fn serialize<S: Serializer>(times: &[f64], serializer: S) -> Result<S::Ok, S::Error> {
-        let mut last = [0; 2];
-        let off = times.iter().map(|time| {
-            let off = time.to_bits().wrapping_sub(next(last)) as i64;
-            last = [last[1], time.to_bits()];
-            off
-        });
-        off.collect::<Vec<i64>>().serialize(serializer)
-    }
-
-    pub(super) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<f64>, D::Error> {
-        let mut last = [0; 2];
-        let time = |off: i64| {
-            last = [last[1], next(last).wrapping_add(off as u64)];
-            f64::from_bits(last[1])
-        };
-        Ok(Vec::<i64>::deserialize(deserializer)?.into_iter().map(time).collect())
     }
 }
 

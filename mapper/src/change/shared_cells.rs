@@ -11,75 +11,57 @@ const CHUNK: usize = 64;
 /// robot for longer than a few milliseconds. A value takes memory from the first time that it differs from the default.
 #[derive(Clone, Debug)]
 pub(super) struct SharedCells<T> {
-    /// The number of the value of each cell, plus one; 0 for the default. `None` without any cell.
-    numbers: Option<SparseCells<u32>>,
+    /// The number of the value of each cell, plus one; 0 for the default.
+    numbers: SparseCells<u32>,
     /// All values but the default, in the order in which they were made.
     chunks: Vec<Arc<Vec<T>>>,
     default: T,
 }
 
 impl<T: Clone + Default + PartialEq> SharedCells<T> {
-    /// The default value for each cell of a frame; no cell without a frame.
-    pub(super) fn new(frame: Option<&GridFrame>) -> Self {
-        let numbers = frame.map(|frame| SparseCells::in_blocks(frame.width(), frame.height(), 0));
+    /// The default value for each cell of a frame.
+    pub(super) fn new(frame: &GridFrame) -> Self {
+        let numbers = SparseCells::in_blocks(frame.width(), frame.height(), 0);
         Self { numbers, chunks: Vec::new(), default: T::default() }
     }
 
-    /// Whether there is no cell.
-    pub(super) fn is_empty(&self) -> bool {
-        self.numbers.is_none()
-    }
-
-    /// The value of a cell; `None` if there is no cell.
+    /// The value at a place of a grid in blocks.
     #[inline]
-    pub(super) fn get(&self, index: usize) -> Option<&T> {
-        self.at(self.numbers.as_ref()?.place(index))
-    }
-
-    /// The value at a place of a grid in blocks; `None` if there is no cell.
-    #[inline]
-    pub(super) fn at(&self, place: Place) -> Option<&T> {
-        Some(match *self.numbers.as_ref()?.at_place(place) {
+    pub(super) fn at(&self, place: Place) -> &T {
+        match *self.numbers.at_place(place) as usize {
             0 => &self.default,
-            number => self.numbered(number as usize - 1),
-        })
-    }
-
-    fn numbered(&self, number: usize) -> &T {
-        &self.chunks[number / CHUNK][number % CHUNK]
+            number => &self.chunks[(number - 1) / CHUNK][(number - 1) % CHUNK],
+        }
     }
 
     /// The value of a cell, to be changed, if it was ever changed.
     pub(super) fn changed_mut(&mut self, index: usize) -> Option<&mut T> {
-        let number = self.numbers.as_ref()?[index].checked_sub(1)? as usize;
+        let number = self.numbers[index].checked_sub(1)? as usize;
         Arc::make_mut(self.chunks.get_mut(number / CHUNK)?).get_mut(number % CHUNK)
     }
 
-    /// The value of a cell, to be changed; `None` if there is no cell.
+    /// The value of a cell, to be changed.
     pub(super) fn get_mut(&mut self, index: usize) -> Option<&mut T> {
-        let numbers = self.numbers.as_mut()?;
-        if numbers[index] == 0 {
+        if self.numbers[index] == 0 {
             if self.chunks.last().is_none_or(|chunk| chunk.len() == CHUNK) {
                 self.chunks.push(Arc::new(Vec::with_capacity(CHUNK)));
             }
             let before = (self.chunks.len() - 1) * CHUNK;
             let chunk = Arc::make_mut(self.chunks.last_mut()?);
             chunk.push(T::default());
-            numbers[index] = (before + chunk.len()) as u32;
+            self.numbers[index] = (before + chunk.len()) as u32;
         }
         self.changed_mut(index)
     }
 
     /// Moves all values into a larger map.
     pub(super) fn grow(&mut self, growth: &Growth) {
-        if let Some(numbers) = &mut self.numbers {
-            growth.sparse(numbers);
-        }
+        growth.sparse(&mut self.numbers);
     }
 
     /// The memory of all values, bytes, without what they own elsewhere.
     pub(super) fn bytes(&self) -> usize {
-        self.numbers.as_ref().map_or(0, SparseCells::bytes) + self.chunks.len() * CHUNK * size_of::<T>()
+        self.numbers.bytes() + self.chunks.len() * CHUNK * size_of::<T>()
     }
 
     /// The values that were ever changed.
@@ -95,15 +77,15 @@ impl<T: Clone + Default + PartialEq + Serialize + DeserializeOwned> CellList for
     type Item = T;
 
     fn len(&self) -> usize {
-        self.numbers.as_ref().map_or(0, SparseCells::len)
+        self.numbers.len()
     }
 
     fn write(&self, index: usize, bytes: &mut Vec<u8>) -> Result<(), ValueError> {
-        write_value(self.get(index).unwrap_or(&self.default), bytes)
+        write_value(&self[index], bytes)
     }
 
     fn alike(&self, index: usize) -> usize {
-        self.numbers.as_ref().map_or(1, |numbers| numbers.alike(index))
+        self.numbers.alike(index)
     }
 
     fn set(&mut self, index: usize, value: &T) {
@@ -120,7 +102,7 @@ impl<T: Clone + Default + PartialEq> Index<usize> for SharedCells<T> {
 
     #[inline]
     fn index(&self, index: usize) -> &T {
-        self.get(index).unwrap_or(&self.default)
+        self.at(self.numbers.place(index))
     }
 }
 
@@ -132,7 +114,7 @@ mod tests {
     #[test]
     fn a_change_does_not_reach_a_copy() {
         let frame = GridFrame::new(Point2::origin(), 0.1, 13, 10).unwrap();
-        let mut cells = SharedCells::new(Some(&frame));
+        let mut cells = SharedCells::new(&frame);
         *cells.get_mut(129).unwrap() = 1;
         let copy = cells.clone();
         *cells.get_mut(129).unwrap() = 2;
@@ -141,7 +123,5 @@ mod tests {
         assert_eq!([copy[129], copy[63], copy[64]], [1, 0, 0]);
         assert_eq!((cells.changed_mut(63), copy.chunks.len()), (Some(&mut 3), 1));
         assert!(cells.changed_mut(64).is_none());
-        let mut none = SharedCells::<u8>::new(None);
-        assert!(none.is_empty() && none.get_mut(0).is_none());
     }
 }

@@ -26,10 +26,6 @@ pub struct CellStatistics {
     pub block_events_after_gap: u32,
     /// Changes from blocked to free that were found at the end of a gap in the view.
     pub free_events_after_gap: u32,
-    /// Gaps in the view that began while the cell was free.
-    pub gaps_from_free: u32,
-    /// Gaps in the view that began while the cell was blocked.
-    pub gaps_from_blocked: u32,
     /// The information in the gaps, if the estimator [weighs gaps](crate::Estimator::weighs_gaps); otherwise 0.
     pub gap_worth: GapWorth,
     /// The prior of the cycle rate that all traversable cells [share](crate::Estimator::shares_prior), once there is one.

@@ -161,14 +161,6 @@ fn the_hours_of_doors_are_inside_their_intervals() {
     calibration::check_rows("hours", &rows);
 }
 
-#[test]
-fn nothing_is_usual_before_two_weeks() {
-    let mut rng = ChaCha8Rng::seed_from_u64(12);
-    let clocks = [14, 15].map(|days| door_with_hours([9.0, 17.0], days, 100, &mut rng));
-    assert_eq!(clocks.each_ref().map(|clock| clock.week(&Calendar::UTC).is_some()), [false, true]);
-    assert_eq!(clocks[1].week(&Calendar::Relative), None);
-}
-
 /// A thing that was seen from 9 to 10 o'clock only, and then at 21 o'clock.
 #[test]
 fn at_an_hour_that_was_never_seen_the_last_look_counts_and_nothing_is_usual() {
@@ -208,22 +200,6 @@ fn a_look_at_a_chain_expires_after_its_half_life() {
     let half_life_s = MINUTE_S * std::f64::consts::LN_2 / 0.02;
     let ratio = clock.expiry_s(&Calendar::Relative).unwrap() / half_life_s;
     assert!((0.6..1.6).contains(&ratio), "{ratio}");
-}
-
-#[test]
-fn without_a_calendar_there_is_no_schedule() {
-    let mut clock = Clock::default();
-    for hour in 0..24 * 30 {
-        let time_s = MONDAY_S + 3600.0 * f64::from(hour);
-        clock.observe(Look { time_s, is_blocked: is_open(time_s - MONDAY_S) }, &Calendar::Relative);
-    }
-    let ahead = |hours: f64| {
-        clock.probability(MONDAY_S + DAY_S * 30.0 + 3600.0 * (12.0 + hours), &Calendar::Relative)
-    };
-    // Two and four weeks later the mean is left.
-    for days in [14.0, 28.0] {
-        assert!((ahead(24.0 * days) - ahead(24.0 * days + 12.0)).abs() < 0.02);
-    }
 }
 
 #[test]

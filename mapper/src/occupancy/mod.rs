@@ -95,7 +95,7 @@ impl OccupancyChoice {
     /// its surface. Static walls then rarely change: 0 to 81 false changes on a tour of a static world, more where
     /// things move (`docs/flicker.md`, `docs/results.md`).
     pub fn steady() -> Self {
-        Self::new("steady", |settings, cells| Box::new(SurfaceGrid::new(settings.steady.clone(), cells)))
+        Self::new("steady", |settings, cells| Box::new(SurfaceGrid::new(settings.steady, cells)))
     }
 
     /// `naive`: every beam adds evidence to every cell that it crosses, and a cell changes its state at even odds.

@@ -3,7 +3,7 @@
 use crate::Growth;
 use crate::change::{CellMap, ReadingIndex};
 use interfaces::CellState;
-use std::collections::VecDeque;
+use std::collections::{BTreeMap, VecDeque};
 
 /// A change lasts when the cell has kept its state for this time, s.
 const LASTING_S: f64 = 1.5;
@@ -19,8 +19,8 @@ pub(super) struct Change {
     pub(super) seen_before_s: f64,
 }
 
-/// A change that may last. All zero: none.
-#[derive(Clone, Copy, Debug, Default, serde::Deserialize, serde::Serialize)]
+/// A change that may last.
+#[derive(Clone, Copy, Debug, serde::Deserialize, serde::Serialize)]
 struct Pending {
     /// The reading in which the cell left its last lasting state, and that of its last change.
     left: ReadingIndex,
@@ -30,47 +30,26 @@ struct Pending {
 
 /// Finds the changes that last.
 #[derive(Clone, Debug, Default, serde::Deserialize, serde::Serialize)]
-#[serde(from = "Saved", into = "Saved")]
 pub(super) struct LastingChanges {
-    /// In the order of [`CellMap::changed`].
-    pending: Vec<Pending>,
+    /// By the position in [`CellMap::changed`].
+    pending: BTreeMap<u32, Pending>,
     recent: VecDeque<Recent>,
 }
 
 /// A recent change: its position in [`CellMap::changed`], reading and time.
 type Recent = (u32, ReadingIndex, f64);
 
-/// What a state file holds: most cells have no pending change.
-type Saved = (Vec<(u32, Pending)>, VecDeque<Recent>);
-
-impl From<LastingChanges> for Saved {
-    fn from(LastingChanges { pending, recent }: LastingChanges) -> Self {
-        ((0..).zip(pending).filter(|(_, pending)| pending.left > 0).collect(), recent)
-    }
-}
-
-impl From<Saved> for LastingChanges {
-    fn from((saved, recent): Saved) -> Self {
-        let mut pending = vec![Pending::default(); saved.last().map_or(0, |(slot, _)| *slot as usize + 1)];
-        saved.into_iter().for_each(|(slot, saved)| pending[slot as usize] = saved);
-        Self { pending, recent }
-    }
-}
-
 impl LastingChanges {
     /// Adds the changes of the open reading.
     pub(super) fn add(&mut self, cells: &CellMap) {
         let (reading, time_s) = (cells.reading(), cells.time());
-        self.pending.resize(cells.changed.len(), Pending::default());
         for transition in &cells.transitions {
             let Some(slot) = cells.frame().index(transition.cell).and_then(|index| cells.slot(index)) else {
                 continue;
             };
-            let pending = &mut self.pending[slot as usize];
-            if pending.left == 0 {
-                (pending.left, pending.was_blocked) = (reading, transition.before == CellState::Blocked);
-            }
-            pending.last = reading;
+            let was_blocked = transition.before == CellState::Blocked;
+            let pending = Pending { left: reading, last: reading, was_blocked };
+            self.pending.entry(slot).or_insert(pending).last = reading;
             self.recent.push_back((slot, reading, time_s));
         }
     }
@@ -79,11 +58,10 @@ impl LastingChanges {
     pub(super) fn next(&mut self, cells: &CellMap) -> Option<Change> {
         let is_over = |(_, _, time_s): &mut Recent| *time_s <= cells.time() - LASTING_S;
         while let Some((slot, reading, _)) = self.recent.pop_front_if(is_over) {
-            let pending = &mut self.pending[slot as usize];
-            if pending.last != reading || pending.left == 0 {
+            if self.pending.get(&slot).is_none_or(|pending| pending.last != reading) {
                 continue;
             }
-            let Pending { left, was_blocked, .. } = std::mem::take(pending);
+            let Some(Pending { left, was_blocked, .. }) = self.pending.remove(&slot) else { continue };
             let cell = cells.changed[slot as usize];
             let is_blocked = cells.state(cell as usize) == CellState::Blocked;
             if is_blocked != was_blocked {

@@ -82,11 +82,6 @@ impl Book {
                 (true, false) => seen.watched_free += next_time - time,
                 (false, _) => seen.unobserved += next_time - time,
             }
-            match (in_view, was_blocked) {
-                (true, _) => {}
-                (false, false) => seen.gaps_from_free += 1,
-                (false, true) => seen.gaps_from_blocked += 1,
-            }
             match (was_blocked, is_blocked, in_view) {
                 (false, true, true) => seen.block_events += 1,
                 (true, false, true) => seen.free_events += 1,
@@ -103,16 +98,9 @@ impl Book {
     fn rate(&self, index: usize, estimator: &str) -> Option<f64> {
         let seen = self.statistics(index);
         let (block, free) = (f64::from(seen.block_events), f64::from(seen.free_events));
-        let gaps = (f64::from(seen.block_events_after_gap), f64::from(seen.free_events_after_gap));
         let observed = seen.last_seen - seen.first_seen - seen.unobserved;
         let interval = match estimator {
             "paper" => (observed / block).min(observed / free),
-            "paper-all" => (observed / (block + gaps.0)).min(observed / (free + gaps.1)),
-            "two-state" if block + free == 0.0 => f64::INFINITY,
-            "two-state" => {
-                let half_if_none = |events: f64| if events == 0.0 { 0.5 } else { events };
-                seen.watched_free / half_if_none(block) + seen.watched_blocked / half_if_none(free)
-            }
             _ => return None,
         };
         // 0/0: events, but no time in view.
@@ -156,7 +144,7 @@ fn assert_statistics(mapper: &Mapper, book: &Book, index: usize) {
     let counts = |seen: &CellStatistics| {
         let in_view = [seen.block_events, seen.free_events];
         let after_gap = [seen.block_events_after_gap, seen.free_events_after_gap];
-        [in_view, after_gap, [seen.gaps_from_free, seen.gaps_from_blocked]].concat()
+        [in_view, after_gap].concat()
     };
     let is_near = times(&found).iter().zip(times(&expected)).all(|(&a, b)| near(a, b));
     assert!(is_near && counts(&found) == counts(&expected), "found {found:?}, expected {expected:?}");

@@ -9,12 +9,13 @@ use super::{ONE_BY_ONE, Report};
 use draw::canvas::{Canvas, PictureError, ink, why};
 use draw::palette;
 use draw::pen::{Pen, Sheet, svg};
+use draw::pictures::plan_on;
 use draw::scene::Scene;
-use draw::sketch;
 use evaluation::trials::Metric;
 use files::write_file;
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
+use results::file_name;
 use std::collections::BTreeSet;
 use std::path::Path;
 
@@ -56,10 +57,10 @@ fn chosen(report: &Report) -> Vec<(String, &Run)> {
         let mut name = String::from(report.settings.length.choose("figure3", "curves"));
         if Some(index) != main {
             if run.worlds == 1 {
-                name += &format!("-{}", in_file_name(&run.world));
+                name += &format!("-{}", file_name::of(&run.world));
             }
             if !has_one_estimator {
-                name += &format!("-{}", in_file_name(&run.estimator));
+                name += &format!("-{}", file_name::of(&run.estimator));
             }
         }
         // Different names can become the same in a file name.
@@ -72,14 +73,6 @@ fn chosen(report: &Report) -> Vec<(String, &Run)> {
         chosen.push((unique, run));
     }
     chosen
-}
-
-/// A name as a part of a file name: lower-case letters, digits and dashes.
-fn in_file_name(name: &str) -> String {
-    let plain = |letter: char| if letter.is_ascii_alphanumeric() { letter.to_ascii_lowercase() } else { '-' };
-    let dashed: String = name.chars().map(plain).collect();
-    let words: Vec<&str> = dashed.split('-').filter(|word| !word.is_empty()).collect();
-    words.join("-")
 }
 
 /// One figure.
@@ -115,7 +108,7 @@ impl Figure<'_> {
         let length = self.report.settings.length;
         let draw = |panel, metric| curves::draw(panel, pen, metric, length, &self.run.strategies);
         match self.world {
-            Some(world) => sketch::world(&panels[0], pen, world)?,
+            Some(world) => plan_on(&panels[0], *pen, world)?,
             None => draw(&panels[0], Metric::MapQualityChanging)?,
         }
         let second = length.choose(Metric::RateError, Metric::RateAuc);

@@ -104,8 +104,8 @@ impl Shards {
     ///
     /// When they are not.
     pub fn check(&self, program: &str, version: &str) -> Result<(), ShardError> {
-        let refuse = |why: String| Err(ShardError::Merge { folder: self.folder.clone(), why });
         let shown = self.folder.display();
+        let refuse = |why: String| Err(ShardError::Content(format!("{shown} {why}")));
         let Header { program: found, version: found_version, build, .. } = &self.header;
         if found != program {
             return refuse(format!("has shards of {found}: merge them with `{found} merge {shown}`"));

@@ -29,8 +29,9 @@ pub use shard::{InvalidShard, Shard, array};
 
 use evaluation::trials::TrialError;
 use files::OutputError;
+use std::fmt::Display;
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// The error for files of shards that cannot be written, read or merged.
 #[derive(Debug, thiserror::Error)]
@@ -38,30 +39,10 @@ pub enum ShardError {
     /// A file cannot be written.
     #[error(transparent)]
     Output(#[from] OutputError),
-    /// A file or folder cannot be read.
-    #[error("cannot read {}: {why}", path.display())]
-    Read {
-        /// The file or folder.
-        path: PathBuf,
-        /// The reason.
-        why: io::Error,
-    },
-    /// A file is not the file of this shard.
-    #[error("{}: {why}", path.display())]
-    Content {
-        /// The file.
-        path: PathBuf,
-        /// What is invalid, with the number of the line, and what to do.
-        why: String,
-    },
-    /// The shards of a folder cannot be merged.
-    #[error("{} {why}", folder.display())]
-    Merge {
-        /// The folder.
-        folder: PathBuf,
-        /// The reason, and what to do.
-        why: String,
-    },
+    /// A file or folder cannot be read, is not the file of this shard, or has shards that cannot be merged: the place, the reason, and
+    /// what to do.
+    #[error("{0}")]
+    Content(String),
     /// A finished trial cannot be written.
     #[error("{0}; free space, and start the shard again: the trials before are kept")]
     Append(OutputError),
@@ -72,10 +53,10 @@ pub enum ShardError {
 
 impl ShardError {
     fn read(path: &Path, why: io::Error) -> Self {
-        Self::Read { path: path.to_owned(), why }
+        Self::Content(format!("cannot read {}: {why}", path.display()))
     }
 
-    fn content(path: &Path, why: impl Into<String>) -> Self {
-        Self::Content { path: path.to_owned(), why: why.into() }
+    fn content(path: &Path, why: impl Display) -> Self {
+        Self::Content(format!("{}: {why}", path.display()))
     }
 }

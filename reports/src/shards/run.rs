@@ -45,7 +45,7 @@ impl ShardFile {
         is_canceled: &AtomicBool,
     ) -> Result<bool, ShardError> {
         let goes_on = || !is_canceled.load(Ordering::Relaxed);
-        let Some(done) = goes_on().then(|| run_trial(trial, |_| goes_on())).transpose()?.flatten() else {
+        let Some(done) = goes_on().then(|| run_trial(trial, goes_on)).transpose()?.flatten() else {
             return Ok(false);
         };
         self.append(trial.number, &done).map_err(ShardError::Append)?;

@@ -1,8 +1,7 @@
 use super::*;
+use crate::ReportSettings;
 use crate::tests::synthetic::{experiment, uniform};
-use crate::{ReportSettings, collect};
 use evaluation::trials::Trial;
-use files::RunFolder;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use std::fs;
@@ -107,6 +106,9 @@ fn missing_shards_are_listed() {
     drop(ShardFile::open(folder.path(), &header(shard(5, 6), &trials), shard(5, 6)).unwrap());
     let shards = Shards::read(folder.path()).unwrap();
     assert_eq!(array(&shards.missing()), "2,4-5");
+    let expected = "shard 2/6                0 of 2 trials\nshard 4/6                0 of 2 trials\n\
+                    shard 5/6                0 of 2 trials\n6 of 12 trials (50.0 %), 3 of 6 shards complete";
+    assert_eq!(shards.status(), expected);
     let finished = shards.shards().map(|(_, scan)| scan.map(Scan::finished)).collect::<Vec<_>>();
     assert_eq!(finished, [Some(2), None, Some(2), None, Some(0), Some(2)]);
 }
@@ -199,59 +201,4 @@ fn two_processes_on_one_shard_are_one_too_many() {
     assert!(error.ends_with("another run is writing there; wait for it, or start another shard"), "{error}");
     drop(first);
     ShardFile::open(folder.path(), &header, shard(1, 3)).unwrap();
-}
-
-/// Time and memory of a large merge; see docs/clusters.md.
-#[test]
-#[ignore = "writes 20 GB, and prints what it takes"]
-fn merge_a_million_trials() {
-    for (worlds, seeds, samples) in [(1000, 100, 8), (1, 100_000, 8), (500, 100, 80)] {
-        let strategies = ["curious", "recency", "poisson", "random", "coin"];
-        let (mut settings, mut some) = experiment(1, &["paper", "two-state"], &strategies, 9);
-        some.iter_mut().for_each(|trial| trial.samples.truncate(samples));
-        settings.worlds = (0..worlds).map(|number| format!("world {number}")).collect();
-        settings.trials = seeds;
-        let all = settings.all_trials();
-        let folder = tempfile::tempdir().unwrap();
-        let start = std::time::Instant::now();
-        let own = |number| {
-            let shard = shard(number, 64);
-            let header = Header::new("grid_world", "0.1.0", Vec::new(), &"million", all, shard);
-            ShardFile::open(folder.path(), &header, shard).unwrap()
-        };
-        let files: Vec<ShardFile> = (1..=64).map(own).collect();
-        let mut number = 0;
-        for world in &settings.worlds {
-            for estimator in &settings.estimators {
-                for strategy in &settings.strategies {
-                    for seed in 0..seeds {
-                        let mut trial = some[number as usize % some.len()].clone();
-                        (trial.world, trial.estimator) = (world.clone(), estimator.clone());
-                        (trial.strategy, trial.seed) = (strategy.clone(), seed);
-                        number += 1;
-                        trial.map_hash = format!("{number:032x}");
-                        files[((number - 1) % 64) as usize].append(number, &trial).unwrap();
-                    }
-                }
-            }
-        }
-        drop(files);
-        println!("{all} trials of {samples} samples: written in {:?}", start.elapsed());
-        let start = std::time::Instant::now();
-        let shards = Shards::read(folder.path()).unwrap();
-        assert!(shards.missing().is_empty());
-        println!("  scanned after {:?}", start.elapsed());
-        let out = folder.path().join("out");
-        let out = RunFolder::open(&out).unwrap();
-        let trials = shards.trials().unwrap().map(|trial| trial.map_err(Box::<dyn std::error::Error>::from));
-        let report = collect(settings, out.unfinished(), trials).unwrap();
-        println!("  trials written after {:?}", start.elapsed());
-        report.write(&out, &[] as &[sim::grid::GridSpec]).unwrap();
-        let status = fs::read_to_string("/proc/self/status").unwrap();
-        let peak = status.lines().find(|line| line.starts_with("VmHWM")).unwrap();
-        println!("  merged after {:?}, {peak}", start.elapsed());
-        for name in ["trials.csv", "report.json"] {
-            println!("  {name}: {} MB", fs::metadata(out.unfinished().join(name)).unwrap().len() / 1_000_000);
-        }
-    }
 }

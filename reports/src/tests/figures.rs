@@ -24,8 +24,8 @@ fn the_run_over_all_worlds_is_figure_3_and_the_others_are_named() {
     };
     assert_eq!(names(1, &["paper"]), ["figure3"]);
     // By name.
-    assert_eq!(names(1, &["paper", "two-state"]), ["figure3-two-blocks-two-state", "figure3"]);
-    assert_eq!(names(2, &["paper"]), ["figure3-generated-1", "figure3-two-blocks", "figure3"]);
+    assert_eq!(names(1, &["paper", "two-state"]), ["figure3-two_blocks-two-state", "figure3"]);
+    assert_eq!(names(2, &["paper"]), ["figure3-generated_1", "figure3-two_blocks", "figure3"]);
     assert_eq!(names(9, &["paper"]), ["figure3"]);
 }
 
@@ -33,19 +33,19 @@ fn the_run_over_all_worlds_is_figure_3_and_the_others_are_named() {
 fn names_that_look_alike_in_a_file_s_name_stay_apart() {
     let (settings, trials) = experiment(3, &["paper"], &["curious"], 1);
     let renamed = trials.into_iter().map(|mut trial| {
-        trial.world = trial.world.replace("generated 1", "a b").replace("generated 2", "A_b");
+        trial.world = trial.world.replace("generated 1", "a b").replace("generated 2", "a_b");
         trial
     });
     let (names, ..) = figures(&Report::new(settings, renamed.collect()));
     assert_eq!(
         names.iter().filter(|name| name.ends_with("svg")).collect::<Vec<_>>(),
-        ["figure3-a-b-2.svg", "figure3-a-b.svg", "figure3-two-blocks.svg", "figure3.svg"]
+        ["figure3-a_b-2.svg", "figure3-a_b.svg", "figure3-two_blocks.svg", "figure3.svg"]
     );
 }
 
 #[test]
 fn every_strategy_the_world_and_the_words_are_drawn() {
-    let (_, pictures, texts) = figures(&report(1, &["two-state"], &FIVE, 5));
+    let (_, pictures, texts) = figures(&report(1, &["two-state-gaps"], &FIVE, 5));
     let (picture, text) = (&pictures[0], &texts[0]);
     let count = |colour: [u8; 3]| picture.pixels().filter(|pixel| pixel.0 == colour).count();
     let colors = [[0, 114, 178], [0, 158, 115], [230, 159, 0], [150, 150, 150], [86, 180, 233]];
@@ -55,13 +55,13 @@ fn every_strategy_the_world_and_the_words_are_drawn() {
         assert!(text.contains(&format!("stroke=\"#{red:02X}{green:02X}{blue:02X}\"")), "{name}");
         assert!(text.contains(&format!(">\n{name}\n</text>")), "{name}");
     }
-    // Six cells of the top block and 42 of the bottom one, 12 pixels wide.
-    assert!((600..900).contains(&count([238, 136, 102])), "{}", count([238, 136, 102]));
-    assert!((4500..6500).contains(&count([119, 170, 221])), "{}", count([119, 170, 221]));
+    // The walls, and the blocks at their starts.
+    assert!(count(palette::WALL) > 1000, "{}", count(palette::WALL));
+    assert!(count(palette::MOVING) > 100, "{}", count(palette::MOVING));
     for words in [
         "two_blocks: 5 trials of 20,000 steps, estimator two-state, sensor radius 4",
-        "top block",
-        "range of its sensor: 4",
+        "top",
+        "bottom",
         "Map correct: share of cells",
         "15,000",
     ] {
@@ -106,44 +106,10 @@ fn undefined_values_single_samples_and_missing_worlds_can_be_drawn() {
 }
 
 #[test]
-fn a_strategy_keeps_its_colour() {
-    let (_, alone, _) = figures(&report(1, &["paper"], &["recency"], 2));
-    assert!(alone[0].pixels().any(|pixel| pixel.0 == palette::strategy("recency")));
-    // The color of curious is not asked for: the robot in the picture of the world has the same.
-    for other in ["poisson", "information-gain", "optimal-revisiting", "coin"] {
-        assert!(alone[0].pixels().all(|pixel| pixel.0 != palette::strategy(other)), "{other}");
-    }
-}
-
-#[test]
 fn names_are_escaped() {
     let (settings, mut trials) = experiment(1, &["paper"], &["curious"], 1);
     trials[0].world = "a < b & \"c\"\u{1b}\u{ffff}".into();
     let (.., texts) = figures(&Report::new(settings, trials));
     // Control characters are not allowed in XML, not even escaped.
     assert!(texts[0].contains("a &lt; b &amp; &quot;c&quot;\\u{1b}\\u{ffff}: 1 trial"));
-}
-
-#[test]
-#[ignore = "draws figures for an inspection by eye"]
-fn draw_figures() {
-    let nine = [FIVE.as_slice(), &["information-gain", "optimal-revisiting", "frontier", "full-observation"]]
-        .concat();
-    let folder = tempfile::tempdir().unwrap().keep();
-    for (name, worlds, strategies, seeds) in [
-        ("one", 1, FIVE.to_vec(), 5),
-        ("three", 3, nine, 20),
-        ("many", 24, FIVE.to_vec(), 10),
-        ("single", 1, FIVE.to_vec(), 1),
-    ] {
-        let start = std::time::Instant::now();
-        let report = report(worlds, &["two-state"], &strategies, seeds);
-        let made = start.elapsed();
-        let plans: Vec<GridSpec> = (0..worlds).map(world).collect();
-        let run = RunFolder::open(&folder.join(name)).unwrap();
-        let files = report.write(&run, &plans).unwrap();
-        run.finish(&[]).unwrap();
-        println!("{name}: statistics in {made:?}, {} files after {:?}", files.len(), start.elapsed());
-    }
-    println!("{}", folder.display());
 }

@@ -111,52 +111,9 @@ pub(crate) fn experiment(
     (settings, trials)
 }
 
-/// A world similar to the paper's: the upper block moves along 6 cells, the lower one along 42.
+/// The paper's world, under another name.
 pub(crate) fn world(world: usize) -> GridSpec {
-    let text = r##"
-name = "two_blocks"
-sensor_radius = 4
-map = """
-#########################
-#...........#...........#
-#...........#...........#
-#...........#...........#
-#...........#...........#
-#.......................#
-#...........#...........#
-#...........#...........#
-#...........#...........#
-######.#############.####
-#.......................#
-#.......................#
-#...........R...........#
-#.......................#
-#.......................#
-#####.#######.###########
-#...........#...........#
-#...........#...........#
-#...........#...........#
-#.......................#
-#...........#...........#
-#...........#...........#
-#.......................#
-#.......................#
-#########################
-"""
-
-[[block]]
-name = "top block"
-dwell = 3
-course = "back-and-forth"
-path = [[3, 22], [8, 22]]
-
-[[block]]
-name = "bottom block"
-dwell = 1
-course = "loop"
-path = [[2, 1], [22, 1], [22, 2], [2, 2]]
-"##;
-    let mut spec = worldfile::grid::parse("two_blocks.toml", text).unwrap();
-    spec.name = world_name(world);
-    spec
+    let text = include_str!("../../../worlds/two_blocks.toml");
+    let spec = worldfile::grid::parse("two_blocks.toml", text).unwrap();
+    GridSpec { name: world_name(world), ..spec }
 }

@@ -19,17 +19,6 @@ use sim::grid::{GenerateSettings, GridSpec};
 /// Options that can be repeated multiply: 2 worlds, 2 estimators, 3 strategies and 10 trials are 120 trials in
 /// total.
 #[derive(Clone, Debug, Args)]
-#[command(after_help = "Examples:\n  \
-        grid_world --trials 100                                  more trials, smaller intervals\n  \
-        grid_world --generate 50 --trials 2 --strategy curious --strategy information-gain\n  \
-        grid_world --generate 10 --calendar office --steps 60480 --strategy curious --strategy fresh-map\n  \
-        grid_world --world my_world.toml --sensor-radius 6 --rrd one_trial.rrd\n\n\
-        Large experiments run in shards, on one machine or on many (docs/clusters.md):\n  \
-        grid_world --trials 1000 --shard 1/3 --out big     # and 2/3 and 3/3, anywhere, at any time\n  \
-        grid_world status big\n  \
-        grid_world merge big                               # the same files as without shards\n\n\
-        Exit codes: 0 success, 1 the run failed, 2 invalid arguments or input, 130 interrupted (Ctrl-C; the \
-        finished trials are reported).")]
 pub struct GridWorlds {
     /// Give the worlds of --generate a calendar of this kind: doors, boxes and people by hours and weekdays, from Monday 0:00 on. A step
     /// is 10 s: a week has 60,480 steps
@@ -61,6 +50,12 @@ impl TrialKind for GridWorlds {
     const GENERATED: u64 = 0;
     const STRATEGIES: [&str; 5] = ["curious", "recency", "poisson", "random", "coin"];
     const ESTIMATORS: &[&str] = &["paper", "two-state-gaps"];
+    const EXAMPLES: &[&str] = &[
+        "grid_world --trials 100                                  more trials, smaller intervals",
+        "grid_world --generate 50 --trials 2 --strategy curious --strategy information-gain",
+        "grid_world --generate 10 --calendar office --steps 60480 --strategy curious --strategy fresh-map",
+        "grid_world --world my_world.toml --sensor-radius 6",
+    ];
     const TRIALS: &str = "5";
     const MAX_STEPS: &str = "42";
 
@@ -87,9 +82,7 @@ impl TrialKind for GridWorlds {
     }
 
     fn robot(&self, max_steps: u32) -> GridRobot {
-        let mut robot = GridRobot::default();
-        robot.controller.exploration.max_steps = max_steps;
-        robot
+        GridRobot { max_steps }
     }
 
     fn to_toml(world: &GridSpec) -> Option<String> {

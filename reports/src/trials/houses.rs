@@ -28,16 +28,6 @@ use sim::physics::WorldSpec;
 /// Options that can be repeated multiply: 2 worlds, 2 estimators, 3 strategies and 10 trials are 120 trials in
 /// total.
 #[derive(Clone, Debug, Args)]
-#[command(after_help = "Examples:\n  \
-        house_trials --generate 20 --strategy curious --strategy information-gain\n  \
-        house_trials --world house --world office --trials 3 --duration 1h\n  \
-        house_trials --generate 2 --seed 7 --duration 60s --save-worlds\n\n\
-        Large experiments run in shards, on one machine or on many (docs/clusters.md):\n  \
-        house_trials --trials 1000 --shard 1/3 --out big     # and 2/3 and 3/3, anywhere, at any time\n  \
-        house_trials status big\n  \
-        house_trials merge big                               # the same files as without shards\n\n\
-        Exit codes: 0 success, 1 the run failed, 2 invalid arguments or input, 130 interrupted (Ctrl-C; the \
-        finished trials are reported).")]
 pub struct Houses {
     /// The simulated time of each trial: whole seconds, or with a unit as in 90s, 20m, 1h
     #[arg(long, value_name = "TIME", default_value = "20m", value_parser = whole_s, allow_negative_numbers = true, help_heading = "Comparison")]
@@ -69,6 +59,11 @@ impl TrialKind for Houses {
     const GENERATED: u64 = 8;
     const STRATEGIES: [&str; 5] = ["curious", "recency", "poisson", "random", "information-gain"];
     const ESTIMATORS: &[&str] = &["shared-prior"];
+    const EXAMPLES: &[&str] = &[
+        "house_trials --generate 20 --strategy curious --strategy information-gain",
+        "house_trials --world house --world office --trials 3 --duration 1h",
+        "house_trials --generate 2 --seed 7 --duration 60s --save-worlds",
+    ];
     const TRIALS: &str = "1";
     const MAX_STEPS: &str = "15";
 

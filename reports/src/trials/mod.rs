@@ -2,7 +2,6 @@
 
 mod grid;
 mod houses;
-mod recorded;
 mod run;
 mod shards;
 
@@ -15,10 +14,10 @@ use anyhow::bail;
 use calendar::Kind;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser};
-use cli::flags::{folder, output_file, value_of};
+use cli::flags::{folder, value_of};
 use cli::program::{one_of, strategy_of};
 use cli::terminal::say;
-use evaluation::scenes::{Displayed, Visible};
+use evaluation::scenes::Displayed;
 use evaluation::trials::{Experiment, TrialStrategy, TrialWorld};
 use mapper::EstimatorChoice;
 use shards::ShardCommand;
@@ -34,7 +33,7 @@ const EXECUTION: &str = "Execution";
 /// A kind of worlds: what is the default there, and the options that no other kind has.
 pub trait TrialKind: Args + Clone + Debug {
     /// The worlds.
-    type Spec: TrialWorld<World: Visible, Robot: Debug> + Displayed + Debug;
+    type Spec: TrialWorld<Robot: Debug> + Displayed + Debug;
 
     /// The name of the program.
     const NAME: &str;
@@ -50,6 +49,8 @@ pub trait TrialKind: Args + Clone + Debug {
     const STRATEGIES: [&str; 5];
     /// The estimators.
     const ESTIMATORS: &[&str];
+    /// Commands, for the help.
+    const EXAMPLES: &[&str];
     /// The trials of each combination.
     const TRIALS: &str;
     /// The maximum number of steps of local exploration.
@@ -90,7 +91,7 @@ pub trait TrialKind: Args + Clone + Debug {
 // The command line. A doc comment would be the first line of --help, instead of that of the kind.
 #[expect(missing_docs)]
 #[derive(Clone, Debug, Parser)]
-#[command(name = K::NAME, version, max_term_width = 100, args_conflicts_with_subcommands = true)]
+#[command(name = K::NAME, version, max_term_width = 100, args_conflicts_with_subcommands = true, after_help = after_help::<K>())]
 pub struct TrialArgs<K: TrialKind> {
     #[command(subcommand)]
     command: Option<ShardCommand>,
@@ -136,16 +137,12 @@ pub struct TrialArgs<K: TrialKind> {
 
     /// Run shard I of N: every N-th trial, into a file of its own in --out. Run shards 1/N to N/N on any machines, then
     /// `merge`. A shard that is started again continues where it stopped
-    #[arg(long, value_name = "I/N", conflicts_with_all = ["rrd", "save_worlds"], help_heading = EXECUTION)]
+    #[arg(long, value_name = "I/N", conflicts_with = "save_worlds", help_heading = EXECUTION)]
     shard: Option<Shard>,
 
     /// The folder for all results
     #[arg(long, value_name = "DIR", default_value = K::OUT, value_parser = folder(), help_heading = OUTPUT)]
     out: PathBuf,
-
-    /// Record the first trial, at most 20,000 readings; open the recording with `rerun FILE`
-    #[arg(long, value_name = "FILE", value_parser = output_file(), help_heading = OUTPUT)]
-    rrd: Option<PathBuf>,
 
     /// Save the generated worlds as TOML files in the output folder
     #[arg(long, requires = "generate", help_heading = OUTPUT)]
@@ -200,6 +197,20 @@ impl<K: TrialKind> TrialArgs<K> {
         warnings.iter().filter(|_| !self.quiet).for_each(|warning| say(stderr(), warning));
         Ok(world)
     }
+}
+
+fn after_help<K: TrialKind>() -> String {
+    format!(
+        "Examples:\n  {}\n\n\
+         Large experiments run in shards, on one machine or on many (docs/clusters.md):\n  \
+         {name} --trials 1000 --shard 1/3 --out big     # and 2/3 and 3/3, anywhere, at any time\n  \
+         {name} status big\n  \
+         {name} merge big                               # the same files as without shards\n\n\
+         Exit codes: 0 success, 1 the run failed, 2 invalid arguments or input, 130 interrupted (Ctrl-C; the \
+         finished trials are reported).",
+        K::EXAMPLES.join("\n  "),
+        name = K::NAME,
+    )
 }
 
 /// A parser of the name of a strategy, or of a reference.

@@ -1,6 +1,5 @@
 //! Arguments → trials → report.
 
-use super::recorded::{Recorded, record};
 use super::{EXECUTION, OUTPUT, TrialArgs, TrialKind};
 use crate::{REPORT, ReportSettings, collect};
 use anyhow::Context;
@@ -10,14 +9,13 @@ use cli::program::{Failure, INTERRUPTED, input, interrupt_flag, results_folder, 
 use cli::progress::Progress;
 use cli::terminal::{print, say};
 use evaluation::scenes::Displayed;
-use evaluation::trials::{Experiment, Trial, TrialError, TrialWorld};
+use evaluation::trials::{Experiment, Trial, TrialWorld};
 use files::{RunFolder, write_file};
 use rayon::ThreadPool;
 use std::io::stderr;
 use std::path::Path;
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
-use viewer::recording::{Recorder, RecordingError};
 
 /// The program: it runs what the command line asks for, and returns its exit code.
 pub fn main<K: TrialKind>() -> ExitCode {
@@ -41,9 +39,12 @@ pub fn main<K: TrialKind>() -> ExitCode {
 impl<K: TrialKind> TrialArgs<K> {
     /// Runs the trials, and writes the results.
     fn run(&self, experiment: &Experiment<K::Spec>, is_canceled: &AtomicBool) -> Result<ExitCode, Failure> {
-        let mut folder = results_folder(&self.out)?;
-        self.rrd.as_ref().map_or(Ok(()), |path| folder.adopt(path, "rrd")).map_err(input)?;
-        let (mut trials, problem) = self.trials(experiment, is_canceled)?;
+        let folder = results_folder(&self.out)?;
+        let jobs = experiment.jobs();
+        let progress = Progress::of_count(jobs.len(), "trials", self.quiet);
+        let run = || experiment.run(jobs, is_canceled, |_| progress.step());
+        let mut trials = self.pool()?.install(run).map_err(anyhow::Error::from)?;
+        drop(progress);
         let interrupted = is_canceled.load(Ordering::Relaxed);
         if trials.is_empty() {
             say(stderr(), "interrupted before the first trial was finished: no report");
@@ -57,41 +58,7 @@ impl<K: TrialKind> TrialArgs<K> {
         settings.sort(&mut trials);
         let results = Results { folder, out: &self.out, world_names: &self.world, quiet: self.quiet };
         results.write(settings, trials.into_iter().map(Ok), &experiment.worlds)?;
-        if let Some(problem) = problem {
-            return Err(Failure::Run(problem.into()));
-        }
         Ok(if interrupted { ExitCode::from(INTERRUPTED) } else { ExitCode::SUCCESS })
-    }
-
-    /// Runs the trials; the first trial is recorded if `--rrd` is given. A failure of the recording is returned
-    /// together with the trials, so that no trial is lost.
-    fn trials(
-        &self,
-        experiment: &Experiment<K::Spec>,
-        is_canceled: &AtomicBool,
-    ) -> anyhow::Result<(Vec<Trial>, Option<RecordingError>)> {
-        let pool = self.pool()?;
-        let mut jobs = experiment.jobs();
-        let progress = Progress::of_count(jobs.len(), "trials", self.quiet);
-        let first = match &self.rrd {
-            None => None,
-            Some(file) => {
-                let trial = jobs.remove(0);
-                let own = trial.world.in_own_frame(&experiment.robot, trial.seed);
-                let scene = own.as_ref().unwrap_or(trial.world).scene();
-                Some((Recorder::new(Some(file), &[], scene)?, trial))
-            }
-        };
-        let record = || -> Result<_, TrialError> {
-            let Some((recorder, settings)) = first else { return Ok((None, None)) };
-            let Recorded { trial, problem } = record(&settings, recorder, is_canceled)?;
-            Ok((trial.inspect(|_| progress.step()), problem))
-        };
-        let run = || experiment.run(jobs, is_canceled, |_| progress.step());
-        let (first, others) = pool.install(|| rayon::join(record, run));
-        drop(progress);
-        let (first, problem) = first?;
-        Ok((first.into_iter().chain(others?).collect(), problem))
     }
 
     /// Writes the files of the generated worlds.

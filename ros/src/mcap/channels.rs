@@ -4,10 +4,11 @@ use super::schemas;
 use super::sorted::HeldBack;
 use crate::cdr;
 use mcap::records::MessageHeader;
+use mcap::write::NoSeek;
 use mcap::{Compression, WriteOptions, Writer};
 use serde::Serialize;
 use std::collections::BTreeMap;
-use std::io::{Error, Seek, Write};
+use std::io::{Error, Write};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -26,8 +27,8 @@ const LATCHED: &str = "\
 ";
 
 /// The channels of a file that is being written.
-pub(super) struct Channels<W: Write + Seek> {
-    writer: Writer<HeldBack<W>>,
+pub(super) struct Channels<W: Write> {
+    writer: Writer<NoSeek<HeldBack<W>>>,
     /// Holds back what is written from now on.
     is_end: Arc<AtomicBool>,
     name: String,
@@ -35,12 +36,13 @@ pub(super) struct Channels<W: Write + Seek> {
     known: BTreeMap<String, (u16, u32)>,
 }
 
-impl<W: Write + Seek> Channels<W> {
+impl<W: Write> Channels<W> {
     pub(super) fn new(to: W, name: &str) -> Result<Self, Error> {
         let options = WriteOptions::library(WriteOptions::new().profile("ros2"), "curious")
-            .compression(Some(Compression::Zstd));
+            .compression(Some(Compression::Zstd))
+            .disable_seeking(true);
         let (to, is_end) = HeldBack::new(to);
-        let writer = options.create(to).map_err(|error| failed(name, error))?;
+        let writer = options.create(NoSeek::new(to)).map_err(|error| failed(name, error))?;
         Ok(Self { writer, is_end, name: name.to_owned(), known: BTreeMap::new() })
     }
 
@@ -87,7 +89,7 @@ impl<W: Write + Seek> Channels<W> {
         self.writer.flush().map_err(|error| failed(&self.name, error))?;
         self.is_end.store(true, Ordering::Relaxed);
         self.writer.finish().map_err(|error| failed(&self.name, error))?;
-        self.writer.into_inner().finish().map_err(|error| failed(&self.name, error.into()))
+        self.writer.into_inner().into_inner().finish().map_err(|error| failed(&self.name, error.into()))
     }
 }
 

@@ -4,7 +4,7 @@ use super::channels::Channels;
 use crate::messages::{Header, OccupancyGrid, OccupancyGridUpdate};
 use interfaces::Grid;
 use std::collections::BTreeMap;
-use std::io::{Error, Seek, Write};
+use std::io::{Error, Write};
 
 /// A map that changes is written as a whole when the last whole one is older than this, ns: a viewer that shows no updates,
 /// or jumps in time, is at most this late.
@@ -20,7 +20,7 @@ pub(super) struct Grids {
 
 impl Grids {
     /// Writes a map of percents, −1 where unknown.
-    pub(super) fn write<W: Write + Seek>(
+    pub(super) fn write<W: Write>(
         &mut self,
         channels: &mut Channels<W>,
         topic: &str,

@@ -2,7 +2,7 @@
 //! another one in every run. The end is held back, sorted, and written then.
 
 use flate2::Crc;
-use std::io::{Error, ErrorKind, Result, Seek, SeekFrom, Write};
+use std::io::{Result, Write};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -23,7 +23,7 @@ pub(super) struct HeldBack<W> {
     end: Vec<u8>,
 }
 
-impl<W: Write + Seek> HeldBack<W> {
+impl<W: Write> HeldBack<W> {
     /// The file, and the switch that holds back what follows.
     pub(super) fn new(to: W) -> (Self, Arc<AtomicBool>) {
         let is_end = Arc::new(AtomicBool::new(false));
@@ -37,29 +37,13 @@ impl<W: Write + Seek> HeldBack<W> {
     }
 }
 
-impl<W> HeldBack<W> {
-    fn is_end(&self) -> bool {
-        self.is_end.load(Ordering::Relaxed)
-    }
-}
-
 impl<W: Write> Write for HeldBack<W> {
     fn write(&mut self, bytes: &[u8]) -> Result<usize> {
-        if self.is_end() { self.end.write(bytes) } else { self.to.write(bytes) }
+        if self.is_end.load(Ordering::Relaxed) { self.end.write(bytes) } else { self.to.write(bytes) }
     }
 
     fn flush(&mut self) -> Result<()> {
         self.to.flush()
-    }
-}
-
-impl<W: Write + Seek> Seek for HeldBack<W> {
-    fn seek(&mut self, to: SeekFrom) -> Result<u64> {
-        match to {
-            SeekFrom::Current(0) => Ok(self.to.stream_position()? + self.end.len() as u64),
-            _ if self.is_end() => Err(Error::new(ErrorKind::Unsupported, "the end of the file is held back")),
-            to => self.to.seek(to),
-        }
     }
 }
 

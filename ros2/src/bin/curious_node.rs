@@ -5,7 +5,9 @@ use anyhow::Context;
 use clap::Parser;
 use clap::builder::{PathBufValueParser, PossibleValue, PossibleValuesParser, TypedValueParser};
 use ros2::node_program::{Failure, input, note_unused_files, output, say, start};
-use ros2::{CuriousNode, DdsLink, Environment, Names, Parameters, RosArgs, Signals, Value, curious_wiring};
+use ros2::{
+    CuriousNode, DdsLink, Environment, Names, Parameters, RosArgs, ScanCount, Signals, Value, curious_wiring,
+};
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -78,7 +80,7 @@ PUBLISHES
   /tf                     tf2_msgs/TFMessage: map_frame to odom_frame
   cmd_vel                 geometry_msgs/TwistStamped, or Twist with enable_stamped_cmd_vel:=false
   goal_pose               geometry_msgs/PoseStamped, with navigator:=goal_pose
-  explore/goals           visualization_msgs/MarkerArray: the goal and the path
+  explore/path            nav_msgs/Path: the path to the goal
 
 SERVICES AND ACTIONS
   ~/save_state            std_srvs/Trigger: saves the state
@@ -136,12 +138,11 @@ fn run(args: Args, ros: RosArgs) -> Result<(), Failure> {
     let mut node = node.map_err(input)?;
     say(&format!("[{}] waiting for scans on {}", names.node(), parameters.scan_topic));
     let report = node.run(&signals)?;
-    let [invalid, unplaced, late, other] = report.unused;
+    let ScanCount { received, invalid, unplaced, late, other } = report.scans;
     say(&format!(
-        "[{}] {} scans: {} readings, {} in the map; {invalid} not valid, {unplaced} without a pose, {late} late, {other} of \
+        "[{}] {received} scans: {} readings, {} in the map; {invalid} not valid, {unplaced} without a pose, {late} late, {other} of \
          another laser; longest turn {:.1} ms",
         names.node(),
-        report.received,
         report.readings,
         report.mapped,
         report.longest_us as f64 * 1e-3

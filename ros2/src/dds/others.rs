@@ -1,11 +1,15 @@
 //! What this node hears of other participants: when one is discovered, and when its readers and writers match with those of this
 //! node. The first call of a service depends on it.
 
+use super::discovery;
+use super::subscribers::Named;
+use crate::link::Event;
 use futures::executor::block_on_stream;
 use ros2_client::dds::rustdds::{DomainParticipantStatusEvent, GUID, RTPSEntity, StatusEvented};
 use ros2_client::{Context, Gid, Node};
 use std::collections::BTreeSet;
 use std::net::{SocketAddr, UdpSocket};
+use std::sync::mpsc::SyncSender;
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
@@ -33,9 +37,13 @@ struct Known {
 }
 
 impl Others {
-    /// Follows what is heard, in a thread of its own. The participant of this node has just been opened: all that are there discover
+    /// Follows what is heard, in a thread of its own, and reports publishers that cannot be heard. The participant of this node has just been opened: all that are there discover
     /// it now.
-    pub(super) fn follow(context: &Context) -> std::io::Result<Self> {
+    pub(super) fn follow(
+        context: &Context,
+        subscribed: Vec<Named>,
+        problems: SyncSender<Event>,
+    ) -> std::io::Result<Self> {
         let known = Arc::new(Mutex::new(Known { newest: Instant::now(), matched: BTreeSet::new() }));
         let (to, of) = (known.clone(), context.clone());
         let socket = UdpSocket::bind(("0.0.0.0", 0)).ok();
@@ -44,6 +52,12 @@ impl Others {
             for event in block_on_stream(news.as_async_status_stream()) {
                 let Ok(mut known) = to.lock() else { return };
                 match event {
+                    DomainParticipantStatusEvent::WriterDetected { writer } => {
+                        if let Some(problem) = discovery::problem(&subscribed, &writer) {
+                            // If the node does not keep up, it has other problems.
+                            problems.try_send(Event::Problem(problem)).ok();
+                        }
+                    }
                     DomainParticipantStatusEvent::ParticipantDiscovered { .. } => {
                         known.newest = Instant::now();
                     }

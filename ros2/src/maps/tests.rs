@@ -3,8 +3,13 @@ use interfaces::{CellReading, Event};
 use mapper::MapperSettings;
 use nalgebra::Isometry2;
 
-fn published(map_update_interval_s: f64) -> PublishedMaps {
-    PublishedMaps::new(&Parameters { map_update_interval_s, ..Parameters::default() })
+/// What is published after a reading, at a time in seconds, with this interval.
+fn publisher(map_update_interval_s: f64) -> impl FnMut(&Mapper, u64) -> Vec<(Topic, Message)> {
+    let (mut maps, start) = (PublishedMaps::default(), Instant::now());
+    let parameters = Parameters { map_update_interval_s, ..Parameters::default() };
+    move |mapper, after_s| {
+        maps.after(&parameters, mapper, &Header::default(), start + Duration::from_secs(after_s))
+    }
 }
 
 /// A mapper of 300 × 200 cells that has seen some cells.
@@ -25,10 +30,10 @@ fn grid(message: &(Topic, Message)) -> (Topic, &OccupancyGrid) {
 
 #[test]
 fn only_the_known_part_is_published() {
-    let (mut mapper, mut maps, start) = (mapper(), published(5.0), Instant::now());
-    assert_eq!(maps.after(&mapper, &Header::default(), start), []);
+    let (mut mapper, mut after) = (mapper(), publisher(5.0));
+    assert_eq!(after(&mapper, 0), []);
     see(&mut mapper, 1.0, &[(70, 130, false), (71, 130, true)]);
-    let messages = maps.after(&mapper, &Header::default(), start);
+    let messages = after(&mapper, 0);
     let topics: Vec<Topic> = messages.iter().map(|message| grid(message).0).collect();
     assert_eq!(topics, [Topic::Map, Topic::ChangeMap, Topic::PredictedMap, Topic::RateMap, Topic::ExpiryMap]);
     let (_, map) = grid(&messages[0]);
@@ -41,23 +46,23 @@ fn only_the_known_part_is_published() {
     assert_eq!(map.data.iter().filter(|value| **value != -1).count(), 2);
     // At the upper border, the map ends before the next block.
     see(&mut mapper, 2.0, &[(299, 199, true)]);
-    let messages = maps.after(&mapper, &Header::default(), start + Duration::from_secs(5));
+    let messages = after(&mapper, 5);
     let (_, map) = grid(&messages[0]);
     assert_eq!((map.width, map.height), (300 - 64, 200 - 128));
 }
 
 #[test]
 fn changes_are_published_at_once_and_maps_rarely() {
-    let (mut mapper, mut maps, start) = (mapper(), published(5.0), Instant::now());
+    let (mut mapper, mut after) = (mapper(), publisher(5.0));
     see(&mut mapper, 0.0, &[(70, 130, false), (71, 130, true)]);
-    maps.after(&mapper, &Header::default(), start);
+    after(&mapper, 0);
     // Nothing new.
     see(&mut mapper, 0.1, &[(70, 130, false)]);
-    assert_eq!(maps.after(&mapper, &Header::default(), start), []);
+    assert_eq!(after(&mapper, 0), []);
     see(&mut mapper, 0.2, &[(71, 130, false), (73, 131, true), (1, 1, true)]);
     let event = mapper.transitions().iter().find_map(|change| change.event());
     assert_eq!(event, Some(Event::Free));
-    let messages = maps.after(&mapper, &Header::default(), start + Duration::from_secs(1));
+    let messages = after(&mapper, 1);
     let [(Topic::MapUpdates, Message::GridUpdate(update))] = messages.as_slice() else {
         panic!("{messages:?}")
     };
@@ -65,11 +70,11 @@ fn changes_are_published_at_once_and_maps_rarely() {
     assert_eq!(update.data, [0, -1, -1, -1, -1, 100]);
     // What is outside of the published part comes with the next whole map, and the changes ten seconds after the first.
     see(&mut mapper, 0.3, &[(70, 130, false)]);
-    let messages = maps.after(&mapper, &Header::default(), start + Duration::from_secs(6));
+    let messages = after(&mapper, 6);
     assert_eq!(messages.iter().map(|message| grid(message).0).collect::<Vec<_>>(), [Topic::Map]);
     assert_eq!(grid(&messages[0]).1.width, 128);
     see(&mut mapper, 0.4, &[(70, 130, true)]);
-    let messages = maps.after(&mapper, &Header::default(), start + Duration::from_secs(12));
+    let messages = after(&mapper, 12);
     assert_eq!(messages.len(), 5);
 }
 
@@ -77,23 +82,23 @@ fn changes_are_published_at_once_and_maps_rarely() {
 fn large_maps_are_published_less_often() {
     let frame = GridFrame::new(Point2::origin(), 0.1, 1200, 600).unwrap();
     let mut mapper = Mapper::new(&MapperSettings::default(), frame).unwrap();
-    let (mut maps, start) = (published(1.0), Instant::now());
+    let mut after = publisher(1.0);
     see(&mut mapper, 0.0, &[(0, 0, true), (1199, 599, true)]);
-    assert_eq!(maps.after(&mapper, &Header::default(), start).len(), 5);
+    assert_eq!(after(&mapper, 0).len(), 5);
     see(&mut mapper, 1.0, &[(5, 5, true)]);
     // 720,000 cells: twice the interval of a large map.
-    let messages = maps.after(&mapper, &Header::default(), start + Duration::from_secs(9));
+    let messages = after(&mapper, 9);
     assert!(matches!(messages[..], [(Topic::MapUpdates, _)]));
-    assert_eq!(maps.after(&mapper, &Header::default(), start + Duration::from_secs(10)).len(), 5);
+    assert_eq!(after(&mapper, 10).len(), 5);
 }
 
 #[test]
 fn masks_are_published_rarely_and_their_meaning_once() {
     let (mut mapper, start) = (mapper(), Instant::now());
-    let mut masks = PublishedMasks::new(&Parameters::default());
+    let (mut masks, parameters) = (PublishedMasks::default(), Parameters::default());
     let mut due = |mapper: &Mapper, after_s: u64| {
         let now = start + Duration::from_secs(after_s);
-        masks.due(mapper, &Header::default(), now, Topic::default_name)
+        masks.due(&parameters, mapper, &Header::default(), now, Topic::default_name)
     };
     assert_eq!(due(&mapper, 0), []);
     // A box of 0.5 m comes to stay where it was free.
@@ -128,8 +133,8 @@ pub(crate) fn corridor() -> Mapper {
 
 #[test]
 fn a_look_expires_where_something_changes() {
-    let (mapper, mut maps) = (corridor(), published(5.0));
-    let messages = maps.after(&mapper, &Header::default(), Instant::now());
+    let (mapper, mut after) = (corridor(), publisher(5.0));
+    let messages = after(&mapper, 0);
     let (topic, expiry) = grid(messages.last().unwrap());
     assert_eq!(topic, Topic::ExpiryMap);
     let known: Vec<i8> = expiry.data.iter().copied().filter(|value| *value != -1).collect();

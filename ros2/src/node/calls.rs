@@ -3,6 +3,7 @@
 use super::CuriousNode;
 use crate::lifecycle::State;
 use crate::link::{Link, Request};
+use crate::maps::PublishedMaps;
 use crate::message::{Message, ParameterEvent, Topic};
 use crate::parameters::{Parameters, When};
 use crate::service::wire::{Description, Listed, Parameter, ParameterValue, Prefixes, SetResult};
@@ -76,10 +77,8 @@ impl<L: Link> CuriousNode<L> {
         }
         next.check()?;
         next.check_change(&self.parameters, self.state == State::Unconfigured)?;
-        self.published.set(&next);
-        if let Some(routes) = &mut self.routes {
-            routes.set(&next);
-        }
+        // They are published with the new parameters at once.
+        self.published.maps = PublishedMaps::default();
         self.parameters = next;
         Ok(())
     }

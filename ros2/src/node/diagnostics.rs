@@ -4,6 +4,7 @@ use super::{BLIND, CuriousNode, NodeReport};
 use crate::link::Link;
 use crate::message::{DiagnosticStatus, Diagnostics, Log, Message, Time, Topic, header};
 use crate::notes::Severity;
+use crate::source::ScanCount;
 use localizer::PoseState;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
@@ -49,10 +50,10 @@ impl<L: Link> CuriousNode<L> {
 
     /// Publishes once per second how the node is, for `rqt_robot_monitor` and monitors of fleets.
     pub(super) fn publish_diagnostics(&mut self, now: Instant) {
-        if now < self.published.next_diagnostics {
+        if self.published.next_diagnostics.is_some_and(|next| now < next) {
             return;
         }
-        self.published.next_diagnostics = now + EVERY;
+        self.published.next_diagnostics = Some(now + EVERY);
         let report = self.report();
         let stamp = self.last.map_or(Time::default(), |(stamp, _)| stamp);
         let is_blind = self.last.is_none_or(|(_, at)| now.duration_since(at) >= BLIND);
@@ -87,15 +88,15 @@ fn localization(state: PoseState, is_blind: bool) -> DiagnosticStatus {
 }
 
 fn scans(report: &NodeReport, is_blind: bool) -> DiagnosticStatus {
-    let [invalid, unplaced, late, other] = report.unused;
+    let ScanCount { received, invalid, unplaced, late, other } = report.scans;
     let left_out = invalid + unplaced + late + other;
     let (level, message) = match left_out {
         _ if is_blind => (ERROR, "no scans arrive".to_owned()),
         0 => (OK, "all scans are used".to_owned()),
-        _ => (WARNING, format!("{left_out} of {} scans are left out", report.received)),
+        _ => (WARNING, format!("{left_out} of {received} scans are left out")),
     };
     let values = [
-        ("received", report.received),
+        ("received", received),
         ("readings", report.readings),
         ("in the map", report.mapped),
         ("not valid", invalid),

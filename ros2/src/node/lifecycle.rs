@@ -56,7 +56,7 @@ impl<L: Link> CuriousNode<L> {
         let (names, is_localized) = super::setup::frames(&self.parameters);
         self.source.configure(names, is_localized);
         (self.robot, self.state_file, self.continued) = (robot, state_file, continued);
-        (self.published, self.last, self.seat) = (Published::new(&self.parameters), None, None);
+        (self.published, self.last, self.seat) = (Published::default(), None, None);
         Ok(())
     }
 
@@ -66,7 +66,8 @@ impl<L: Link> CuriousNode<L> {
         self.next_silence = now + super::SILENCE;
         if let Some(last) = self.continued {
             let header = header(last, &self.parameters.map_frame);
-            for (topic, message) in self.published.maps.after(&self.robot.mapper, &header, now) {
+            let maps = self.published.maps.after(&self.parameters, &self.robot.mapper, &header, now);
+            for (topic, message) in maps {
                 self.link.send(topic, message);
             }
             let readings = self.robot.mapper.readings();

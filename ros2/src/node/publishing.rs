@@ -3,8 +3,8 @@
 use super::CuriousNode;
 use crate::link::Link;
 use crate::message::{
-    Message, Pose, PoseStamped, PoseWithCovarianceStamped, Time, Topic, Twist as TwistMessage, TwistStamped,
-    Vector, header, transform,
+    Message, Path, Pose, PoseStamped, PoseWithCovarianceStamped, Time, Topic, Twist as TwistMessage,
+    TwistStamped, Vector, header, transform,
 };
 use crate::parameters::{Navigator, Parameters};
 use crate::pilot::Order;
@@ -19,20 +19,28 @@ impl<L: Link> CuriousNode<L> {
         self.publish_transform(now);
         self.publish_pose(stamp, &turn.belief);
         let header = header(stamp, &self.parameters.map_frame);
-        for (topic, message) in self.published.maps.after(&self.robot.mapper, &header, now) {
+        let (parameters, mapper) = (&self.parameters, &self.robot.mapper);
+        for (topic, message) in self.published.maps.after(parameters, mapper, &header, now) {
             if !self.link.send(topic, message) {
                 self.published.maps.repeat();
             }
         }
         let name = |topic| self.link.name(topic);
-        let masks = self.published.masks.due(&self.robot.mapper, &header, now, name);
+        let masks = self.published.masks.due(parameters, mapper, &header, now, name);
         for (topic, message) in masks {
             self.link.send(topic, message);
         }
         self.publish_edges(now);
-        let path: Vec<Point2<f64>> = self.robot.pilot.path().to_vec();
-        if let Some(message) = self.published.markers.changed(self.robot.pilot.goal(), &path, &header) {
-            self.link.send(Topic::Markers, message);
+        let (goal, path) = (self.robot.pilot.goal(), self.robot.pilot.path());
+        let path: Vec<Point2<f64>> = path.iter().copied().chain(goal).collect();
+        if path != self.published.path {
+            let stamped = |at: &Point2<f64>| {
+                let pose = Pose::in_plane(&interfaces::pose(at.x, at.y, 0.0));
+                PoseStamped { header: header.clone(), pose }
+            };
+            let poses = path.iter().map(stamped).collect();
+            self.link.send(Topic::Path, Message::Path(Path { header, poses }));
+            self.published.path = path;
         }
         for message in self.robot.pilot.take_messages() {
             if message.level != Level::Event {
@@ -99,6 +107,6 @@ impl<L: Link> CuriousNode<L> {
         let stamp = Time::from_ns(stamp.ns().saturating_add(ahead_ns));
         let message = transform(stamp, (map_frame, odom_frame), Pose::in_plane(map_to_odom));
         self.link.send(Topic::Transforms, message);
-        self.published.next_transform = now + Duration::from_secs_f64(period_s);
+        self.published.next_transform = Some(now + Duration::from_secs_f64(period_s));
     }
 }

@@ -14,7 +14,6 @@ const CLOSED_BELOW: f64 = 0.1;
 /// The graph, and what is known of its edges.
 pub(super) struct Routes {
     graph: RouteGraph,
-    interval: Duration,
     next_round: Instant,
     /// The number of the edge that is looked at next. One edge per reading bounds the time of a turn.
     next_edge: usize,
@@ -38,16 +37,17 @@ impl Routes {
         if let Some(id) = graph.edges().find(|id| u16::try_from(*id).is_err()) {
             bail!("{name}: edge {id}: the service DynamicEdges has numbers up to 65535");
         }
-        let interval = Duration::from_secs_f64(parameters.route_update_interval_s);
-        Ok(Some(Self { graph, interval, next_round: Instant::now(), next_edge: 0, found: Vec::new() }))
-    }
-
-    pub(super) fn set(&mut self, parameters: &Parameters) {
-        self.interval = Duration::from_secs_f64(parameters.route_update_interval_s);
+        Ok(Some(Self { graph, next_round: Instant::now(), next_edge: 0, found: Vec::new() }))
     }
 
     /// Looks at the next edge. After the last one, a request with all edges that were ever seen.
-    fn next(&mut self, outlook: &Outlook<'_>, travel: Travel, now: Instant) -> Option<DynamicEdges> {
+    fn next(
+        &mut self,
+        outlook: &Outlook<'_>,
+        travel: Travel,
+        now: Instant,
+        interval_s: f64,
+    ) -> Option<DynamicEdges> {
         if now < self.next_round {
             return None;
         }
@@ -61,7 +61,7 @@ impl Routes {
         if found.is_empty() {
             return None; // nothing is known of the place yet
         }
-        self.next_round = now + self.interval;
+        self.next_round = now + Duration::from_secs_f64(interval_s);
         Some(request(&found))
     }
 }
@@ -88,7 +88,7 @@ impl<L: Link> CuriousNode<L> {
             speed_m_s: self.parameters.max_vel_x_mps,
             radius_m: self.parameters.robot_radius_m,
         };
-        if let Some(edges) = routes.next(&outlook, travel, now) {
+        if let Some(edges) = routes.next(&outlook, travel, now, self.parameters.route_update_interval_s) {
             self.link.adjust_edges(edges);
         }
     }

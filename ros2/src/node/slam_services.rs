@@ -130,7 +130,7 @@ impl<L: Link> CuriousNode<L> {
             Ok(Parts { robot, continued, .. }) => {
                 self.stop_robot();
                 (self.robot, self.continued, self.last) = (robot, continued, None);
-                self.published = super::outputs::Published::new(&self.parameters);
+                self.published = super::outputs::Published::default();
                 self.activate_map();
                 if let Some(pose) = seat.filter(|_| self.parameters.pose == PoseMode::Localized) {
                     self.seat_at((pose, Matrix3::zeros()));

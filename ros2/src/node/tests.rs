@@ -96,8 +96,10 @@ fn a_robot_that_someone_else_drives_is_mapped() {
     pair.run(5.0);
     let report = pair.node.report();
     // The last scan waits for a later pose.
-    assert!(report.received - report.readings <= 1, "{report:?}");
-    assert_eq!((report.unused, report.readings), ([0; 4], report.mapped));
+    assert!(report.scans.received - report.readings <= 1, "{report:?}");
+    let received = report.scans.received;
+    assert_eq!(report.scans, ScanCount { received, ..ScanCount::default() });
+    assert_eq!(report.readings, report.mapped);
     assert!(report.readings >= 48, "{report:?}");
     assert!(known(pair.node.mapper().states()) > 1000);
     assert_eq!(pair.others.heard(Topic::StampedVelocity), []);
@@ -127,7 +129,7 @@ fn a_robot_explores_and_waits() {
     let report = pair.node.report();
     assert!(report.mapped * 10 >= report.readings * 9, "{report:?}");
     assert!(pair.is_said("to ("), "no goal");
-    assert!(!pair.others.heard(Topic::Markers).is_empty());
+    assert!(!pair.others.heard(Topic::Path).is_empty());
     pair.others.sends(Topic::Resume, Message::Bool(Bool { data: false }));
     pair.others.others(|others| others.heard.clear());
     let mut orders = Vec::new();

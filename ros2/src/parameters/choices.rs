@@ -3,19 +3,24 @@
 use crate::value::Value;
 use interfaces::PoseMode;
 use mapper::NoReturn;
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
 
 /// What the node does.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Mode {
-    /// It maps, and gives no command.
+    /// It maps, and gives no command; `slam_toolbox` calls it `mapping`.
     #[default]
+    #[serde(alias = "mapping")]
     Map,
     /// It explores.
     Explore,
 }
 
 /// What drives the robot to goals.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Navigator {
     /// The controller of this project, by velocities.
     #[default]
@@ -37,12 +42,29 @@ pub(crate) enum When {
     Start,
 }
 
-/// A value with a name.
-trait Choice: Copy + PartialEq + 'static {
-    /// The names, as an error lists them.
+/// The type of a parameter.
+trait Kind: DeserializeOwned + Serialize {
+    /// The valid values, as an error lists them.
     const EXPECTED: &'static str;
-    /// Every value with its names, the first of which is the usual one.
-    const ALL: &'static [(Self, &'static [&'static str])];
+}
+
+macro_rules! kinds {
+    ($($kind:ty = $expected:literal;)*) => {
+        $(impl Kind for $kind {
+            const EXPECTED: &'static str = $expected;
+        })*
+    };
+}
+
+kinds! {
+    String = "a text";
+    f64 = "a number";
+    i64 = "a whole number";
+    bool = "true or false";
+    Mode = "map or explore";
+    Navigator = "cmd_vel, nav2 or goal_pose";
+    PoseMode = "exact, odometry or localized";
+    NoReturn = "learn, free or ignore";
 }
 
 /// Where the value of a parameter is.
@@ -55,64 +77,16 @@ pub(super) trait Slot {
     fn get(&self) -> Value;
 }
 
-impl<C: Choice> Slot for C {
+impl<K: Kind> Slot for K {
     fn set(&mut self, value: &Value) -> Result<(), &'static str> {
-        let is_named =
-            |(_, names): &&(C, &[&str])| matches!(value, Value::Text(name) if names.contains(&&**name));
-        *self = Self::ALL.iter().find(is_named).ok_or(C::EXPECTED)?.0;
+        let found = serde_json::to_value(value).and_then(serde_json::from_value);
+        *self = found.map_err(|_| K::EXPECTED)?;
         Ok(())
     }
 
     fn get(&self) -> Value {
-        let own = Self::ALL.iter().find(|(value, _)| value == self);
-        Value::Text(own.map_or("", |(_, names)| names[0]).to_owned())
+        // A number that is not finite has no value: no parameter can have it.
+        let value = serde_json::to_value(self).and_then(serde_json::from_value);
+        value.unwrap_or(Value::Float(f64::NAN))
     }
-}
-
-macro_rules! slot {
-    ($kind:ty, $variant:ident, $expected:literal, { $($from:pat => $to:expr),+ }) => {
-        impl Slot for $kind {
-            fn set(&mut self, value: &Value) -> Result<(), &'static str> {
-                *self = match value {
-                    $($from => $to,)+
-                    _ => return Err($expected),
-                };
-                Ok(())
-            }
-
-            fn get(&self) -> Value {
-                Value::$variant(self.clone())
-            }
-        }
-    };
-}
-
-slot!(String, Text, "a text", { Value::Text(text) => text.clone() });
-slot!(f64, Float, "a number", { Value::Float(number) => *number, Value::Integer(number) => *number as f64 });
-slot!(i64, Integer, "a whole number", { Value::Integer(number) => *number });
-slot!(bool, Bool, "true or false", { Value::Bool(value) => *value });
-
-impl Choice for Mode {
-    const EXPECTED: &'static str = "map or explore";
-    // `slam_toolbox` calls it `mapping`.
-    const ALL: &'static [(Self, &'static [&'static str])] =
-        &[(Self::Map, &["map", "mapping"]), (Self::Explore, &["explore"])];
-}
-
-impl Choice for Navigator {
-    const EXPECTED: &'static str = "cmd_vel, nav2 or goal_pose";
-    const ALL: &'static [(Self, &'static [&'static str])] =
-        &[(Self::CmdVel, &["cmd_vel"]), (Self::Nav2, &["nav2"]), (Self::GoalPose, &["goal_pose"])];
-}
-
-impl Choice for PoseMode {
-    const EXPECTED: &'static str = "exact, odometry or localized";
-    const ALL: &'static [(Self, &'static [&'static str])] =
-        &[(Self::Exact, &["exact"]), (Self::Odometry, &["odometry"]), (Self::Localized, &["localized"])];
-}
-
-impl Choice for NoReturn {
-    const EXPECTED: &'static str = "learn, free or ignore";
-    const ALL: &'static [(Self, &'static [&'static str])] =
-        &[(Self::Learn, &["learn"]), (Self::Free, &["free"]), (Self::Ignore, &["ignore"])];
 }

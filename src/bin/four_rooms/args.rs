@@ -1,7 +1,7 @@
 //! The command line.
 
-use agent::{PURPOSES, Policy};
-use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use agent::Policy;
+use clap::builder::TypedValueParser;
 use clap::{Parser, ValueEnum};
 use cli::flags::{folder, input_file, output_file};
 use cli::program::{duration_s, one_of, pose_in_world, pose_mode, strategy_of};
@@ -68,13 +68,9 @@ pub(crate) struct Args {
     #[arg(long, value_parser = strategies(), help_heading = "Pilot")]
     pub(crate) strategy: Option<Policy>,
 
-    /// What the robot explores for: a name for the strategy that is made for it. docs/strategies.md shows where it is better than curious
-    #[arg(long, value_parser = purpose(), conflicts_with = "strategy", help_heading = "Pilot")]
-    pub(crate) purpose: Option<Policy>,
-
-    /// The speed as a multiple of real time, or max for full speed
-    #[arg(long, value_name = "FACTOR|max", default_value = "max", value_parser = speed, allow_negative_numbers = true, help_heading = "Pilot")]
-    pub(crate) speed: f64,
+    /// The speed as a multiple of real time, or max for full speed [default: max, with --drive keyboard 1]
+    #[arg(long, value_name = "FACTOR|max", value_parser = speed, allow_negative_numbers = true, help_heading = "Pilot")]
+    pub(crate) speed: Option<f64>,
 
     /// The share of the time that the robot can be on patrol, for example 0.05: it has a battery, and a dock where it starts and
     /// rests, and returns before the battery is empty [default: as in the world file, otherwise always]
@@ -144,7 +140,17 @@ pub(crate) struct Args {
 impl Args {
     /// The strategy of the agent.
     pub(crate) fn strategy(&self) -> Policy {
-        self.strategy.clone().or_else(|| self.purpose.clone()).unwrap_or_default()
+        self.strategy.clone().unwrap_or_default()
+    }
+
+    /// Whether a person drives.
+    pub(crate) fn is_keyboard(&self) -> bool {
+        self.drive == DriveChoice::Keyboard
+    }
+
+    /// The speed as a multiple of real time; ∞: as fast as possible.
+    pub(crate) fn speed(&self) -> f64 {
+        self.speed.unwrap_or(if self.is_keyboard() { 1.0 } else { f64::INFINITY })
     }
 }
 
@@ -153,6 +159,7 @@ impl DriveChoice {
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Agent => "agent",
+            Self::Keyboard => "keyboard",
             Self::Tour => "tour",
         }
     }
@@ -163,16 +170,10 @@ impl DriveChoice {
 pub(crate) enum DriveChoice {
     /// The agent: it goes where an observation is worth most
     Agent,
+    /// The keyboard: arrows or WASD drive, space stops, Q ends the run; best with --view
+    Keyboard,
     /// A list of waypoints, see --tour
     Tour,
-}
-
-/// A parser of the purpose of a robot: the policy that is made for it.
-fn purpose() -> impl TypedValueParser<Value = Policy> {
-    let named = |[name, description, policy]: [&'static str; 3]| {
-        PossibleValue::new(name).help(format!("{description}: --strategy {policy}"))
-    };
-    PossibleValuesParser::new(PURPOSES.map(named)).map(|name| Policy::for_purpose(&name).unwrap_or_default())
 }
 
 fn strategies() -> impl TypedValueParser<Value = Policy> {
@@ -215,12 +216,6 @@ mod tests {
     fn the_command_line_is_sound() {
         Args::command().debug_assert();
         assert_eq!(Args::parse_from(["four_rooms"]).strategy().name(), "curious");
-        for [name, _, policy] in PURPOSES {
-            let args = Args::parse_from(["four_rooms", "--purpose", name]);
-            assert_eq!(args.strategy().name(), policy);
-        }
-        let both = ["four_rooms", "--purpose", "paper", "--strategy", "recency"];
-        assert!(Args::try_parse_from(both).is_err());
     }
 
     #[test]

@@ -5,7 +5,7 @@ use crate::args::{Args, DriveChoice};
 use crate::trial_state_file::TrialStateFile;
 use anyhow::{Context, anyhow};
 use cli::bag::RunBag;
-use cli::program::{Failure, PURPOSE_GAIN, arguments, input, results_folder};
+use cli::program::{Failure, arguments, input, results_folder};
 use cli::progress::Progress;
 use cli::terminal::{print, say};
 use draw::Film;
@@ -15,7 +15,7 @@ use draw::scene::Scene;
 use draw::view::Measured;
 use evaluation::metrics::map_scores;
 use evaluation::physics_trial::PhysicsTrial;
-use evaluation::scenes::{Displayed, Visible};
+use evaluation::scenes::{Displayed, view};
 use evaluation::summary::{SCHEMA, Summary};
 use files::{RunFolder, UnfinishedFile, is_another_kind, write_file};
 use interfaces::{LaserReading, Twist, World};
@@ -31,6 +31,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 use viewer::recording::{Live, Recorder};
 use viewer::show::Show;
+
+/// What another strategy gains over the default one, measured in `docs/strategies.md` and `docs/houses.md`.
+const OTHER_STRATEGY: &str = "--strategy information-gain has 0.64 to 0.69 of the rate error of curious in grid worlds with blocks, \
+                              1.13 to 1.23 times in those with a calendar, and 3 % more in houses";
 
 /// The file that ends a run.
 const SUMMARY: &str = "summary.json";
@@ -73,7 +77,10 @@ impl<'a> Outputs<'a> {
         if let Some(problem) = &reported {
             say(stderr(), format_args!("note: {problem}"));
         }
-        let progress = Progress::of_time(args.duration, args.quiet).from(began_s);
+        if args.is_keyboard() && !args.quiet {
+            say(stderr(), "arrows or WASD drive, space stops, Q ends the run\r");
+        }
+        let progress = Progress::of_time(args.duration, args.quiet, args.is_keyboard()).from(began_s);
         if began_s > 0.0 && !args.quiet {
             progress.say(format_args!("the run goes on from {began_s:.1} s"));
         }
@@ -111,10 +118,9 @@ impl<'a> Outputs<'a> {
         truth.add(time_s, world.true_pose());
         let measured = Measured {
             coverage_and_quality: observer.scores().map(|scores| [scores.coverage, scores.map_quality]),
-            rate_errors: None,
             messages: &observer.messages,
         };
-        if let Err(problem) = self.show.add(&world.view(turn, mapper, pilot, measured), is_last) {
+        if let Err(problem) = self.show.add(&view(world, turn, mapper, pilot, measured), is_last) {
             self.is_complete = false;
             self.progress.say(format_args!("error: {problem}; the run goes on without it"));
         }
@@ -132,10 +138,10 @@ impl<'a> Outputs<'a> {
 
     /// Waits until a simulated time is due, in short naps: an interrupted run ends soon.
     pub(crate) fn keep_pace(&self, time_s: f64, start: Instant, is_interrupted: &AtomicBool) {
-        if self.args.speed.is_infinite() {
+        if self.args.speed().is_infinite() {
             return;
         }
-        let due = Duration::from_secs_f64((time_s - self.began_s).max(0.0) / self.args.speed);
+        let due = Duration::from_secs_f64((time_s - self.began_s).max(0.0) / self.args.speed());
         while start.elapsed() < due && !is_interrupted.load(Ordering::Relaxed) {
             std::thread::sleep(due.saturating_sub(start.elapsed()).min(NAP));
         }
@@ -179,12 +185,8 @@ impl<'a> Outputs<'a> {
         self.folder.finish(&[])?;
         if !args.quiet {
             // For those who did not choose: others know what they want.
-            let has_chosen = args.strategy.is_some() || args.purpose.is_some();
-            let hint = if args.drive == DriveChoice::Agent && !has_chosen {
-                format!("\n  hint      {PURPOSE_GAIN}")
-            } else {
-                String::new()
-            };
+            let has_chosen = args.strategy.is_some() || args.drive != DriveChoice::Agent;
+            let hint = if has_chosen { String::new() } else { format!("\n  hint      {OTHER_STRATEGY}") };
             let (out, picture) = (args.out.display(), args.out.join(FIGURE_5_FILE));
             print(format_args!("{summary}{hint}\n  files     {out}: open {}", picture.display()))?;
         }
@@ -256,7 +258,8 @@ fn summary(
         occupancy: args.occupancy.name(),
         ended_by: match ended {
             Ended::Duration => "duration",
-            Ended::Pilot => "tour",
+            Ended::Pilot if args.drive == DriveChoice::Tour => "tour",
+            Ended::Pilot => "person",
             Ended::Interrupted => "interrupted",
         },
         simulated_s,

@@ -8,6 +8,7 @@ use cli::flags::value_of;
 use cli::program::{Failure, input};
 use cli::terminal::say;
 use controller::{Controller, DiffDrive};
+use curious::keyboard::Keyboard;
 use curious::reachability;
 use curious::worlds::{self, Loaded};
 use evaluation::physics_trial::{self, PhysicsTrial};
@@ -34,10 +35,8 @@ impl Parts {
         if args.tour.is_some() && args.drive != DriveChoice::Tour {
             return Err(input(anyhow!("--tour needs --drive tour")));
         }
-        let is_for_agent = args.strategy.is_some() || args.purpose.is_some();
-        if is_for_agent && args.drive != DriveChoice::Agent {
-            let flag = if args.purpose.is_some() { "--purpose" } else { "--strategy" };
-            return Err(input(anyhow!("{flag} is for the agent: leave out --drive, or {flag}")));
+        if args.strategy.is_some() && args.drive != DriveChoice::Agent {
+            return Err(input(anyhow!("--strategy is for the agent: leave out --drive, or --strategy")));
         }
         let Loaded { spec, warnings } =
             worlds::load(&args.world).map_err(|error| input(value_of("--world", error)))?;
@@ -122,6 +121,12 @@ impl Parts {
             (DriveChoice::Tour, Some(tour)) => facts.with("--tour", tour.display()),
             _ => facts,
         }
+    }
+
+    pub(crate) fn keyboard(&self) -> Result<Keyboard, Failure> {
+        let drive = &self.settings.drive;
+        let max = Twist { linear_mps: drive.max_linear_mps, angular_radps: drive.max_angular_radps };
+        Keyboard::new(max).map_err(input)
     }
 }
 

@@ -97,9 +97,9 @@ impl Options {
         let pilot = PatrolDay::new(settings.pilot(settings.agent(strategy, seed)?, seed)?, day);
         let mut trial = PhysicsTrial::new(&spec, seed, &settings, None, pilot)?.on_battery();
         let end_s = f64::from(self.days) * 86_400.0;
-        trial.run_exactly(end_s)?;
+        trial.run(end_s)?;
         let results = trial.results();
-        let scheduled = results.scheduled.context("nothing in the world has a schedule")?;
+        let scheduled = results.scheduled.context("nothing in the world has a schedule")?.fresh;
         let day = results.day.context("the robot has no day")?;
         let [median_min, delay95_min] = scheduled.detection_delay_s.map(|delay_s| delay_s / 60.0);
         Ok(Row {

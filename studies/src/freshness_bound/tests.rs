@@ -1,5 +1,5 @@
 use super::*;
-use crate::calendar::{Hours, Stays};
+use crate::calendar::{Hours, Law, Stays};
 use crate::{
     Building, Choice, Duty, Patrol, Plan, Strategy, Thing as PlacedThing, ThingKind, View, Viewpoint,
 };

@@ -1,5 +1,5 @@
 use crate::belief::{Model, POWERS};
-use crate::calendar::{DAY_S, HOUR_S, Habit, Hours, PHASES, SLOT_S, Stays};
+use crate::calendar::{DAY_S, HOUR_S, Habit, Hours, Law as _, PHASES, SLOT_S, Stays};
 use crate::{SLOT_STEPS, STEP_S};
 
 /// The number of candidate habits.

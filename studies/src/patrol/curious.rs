@@ -1,7 +1,7 @@
 use super::fixed_length::NextViewpoint;
 use super::view::{Seen, View};
 use crate::STEP_S;
-use agent::{Chooser, Curious, CuriousSettings, Features, Trajectory};
+use agent::{Chooser, Curious, Features, Trajectory};
 use interfaces::RandomStream;
 
 /// The paper's robot at viewpoints: its learner chooses `recency` or `poisson` for every goal, and a viewpoint is drawn in
@@ -35,7 +35,7 @@ impl NextViewpoint for CuriousViewpoints {
             p: things.clone().map(|thing| change_probability(view, thing)).sum(),
             r: things.map(|thing| view.age(thing)).max().unwrap_or(0) as f64 * STEP_S,
         };
-        let learner = self.learner.get_or_insert_with(|| Curious::new(&CuriousSettings::default(), 2, rng));
+        let learner = self.learner.get_or_insert_with(|| Curious::new(2.0, 2, rng));
         let probabilities = learner.probabilities(self.features);
         self.strategy = usize::from(!rng.bernoulli(probabilities[RECENCY]));
         let weight = |viewpoint: usize| {
@@ -66,7 +66,7 @@ impl NextViewpoint for CuriousViewpoints {
         let (features, strategy) = ([self.features], self.strategy);
         let reward = seen.changes as f64 / seen.steps.max(1) as f64;
         if let Some(learner) = &mut self.learner {
-            learner.learn(&Trajectory::of_reward(strategy, &features, reward));
+            learner.learn(&Trajectory { strategy, features: &features, reward });
         }
     }
 }

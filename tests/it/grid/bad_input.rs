@@ -68,69 +68,6 @@ fn names_that_are_no_names_of_files() {
 }
 
 #[test]
-fn maps() {
-    let row = "#.....#.....R.....#.....#";
-    insta::assert_snapshot!(refused_world(row, "#.....#.....R.....#....."), @"
-    error: the rows of the map are not equally long
-      --> grid.toml:28:1
-       |
-    16 | #########################
-       | ------------------------- the first row has 25 characters
-    ...
-    28 | #.....#.....R.....#.....
-       | ^^^^^^^^^^^^^^^^^^^^^^^^ this one has 24 characters
-       |
-       = help: every row must be as long as the first; draw the outside as `#`
-    ");
-    insta::assert_snapshot!(refused_world(row, "#.....#.....R..?..#.....#"), @"
-    error: unknown character `?` in the map
-      --> grid.toml:28:16
-       |
-    28 | #.....#.....R..?..#.....#
-       |                ^ not known here
-       |
-       = help: `#` is a wall, `.` is free, `R` is where the robot starts
-    ");
-    insta::assert_snapshot!(refused_world(row, "#.....#.....#.....#.....#"), @"
-    error: the robot starts in a wall
-      --> grid.toml:28:13
-       |
-    28 | #.....#.....#.....#.....#
-       |             ^ the center of the map
-       |
-       = help: without an `R` the robot starts in the center of the map, [12, 12]: draw an `R`, or a `.` there
-    ");
-}
-
-#[test]
-fn blocks() {
-    insta::assert_snapshot!(refused_world("[4, 1], [13, 1]", "[4, 1], [13, 2]"), @"
-    error: the path of the block `bottom` jumps
-      --> grid.toml:62:17
-       |
-    62 | path = [[4, 1], [13, 2], [13, 2], [4, 2]]
-       |         ------  ^^^^^^^ to here
-       |         |
-       |         from here
-       |
-       = help: two way points must lie in one row or in one column
-    ");
-    insta::assert_snapshot!(refused_world("[4, 1], [13, 1]", "[4, 0], [13, 0]"), @"
-    error: the path of the block `bottom` crosses a wall
-      --> grid.toml:62:9
-       |
-    62 | path = [[4, 0], [13, 0], [13, 2], [4, 2]]
-       |         ^^^^^^ a wall
-       |
-       = help: [4, 0] is a wall: x counts columns from the left, y rows from the bottom, both from 0
-    ");
-    for wrong in ["0", "-2", "1.5", "nan", "1000001"] {
-        let message = refused_world("dwell = 2\n", &format!("dwell = {wrong}\n"));
-        assert!(message.contains("dwell") && message.contains("grid.toml:60:9"), "{message}");
-    }
-}
-
-#[test]
 fn worlds_of_the_other_kind() {
     let file = |name: &str| format!("{}/worlds/{name}.toml", env!("CARGO_MANIFEST_DIR"));
     let message = refused(&format!("--world {}", file("four_rooms")));

@@ -14,8 +14,8 @@ fn the_output_folder_is_complete() {
     // In addition the figure of the second estimator.
     assert_eq!(written.len(), 6, "{written:?}");
     let last = ended.stdout.lines().last().unwrap();
-    let listed = "written to out: report.json, figure3-two-blocks-two-state-gaps.png, \
-                  figure3-two-blocks-two-state-gaps.svg, figure3.png, figure3.svg, trials.csv";
+    let listed = "written to out: report.json, figure3-two_blocks-two-state-gaps.png, \
+                  figure3-two_blocks-two-state-gaps.svg, figure3.png, figure3.svg, trials.csv";
     assert_eq!(last, listed);
 
     let picture = image::open(run.out("figure3.png")).unwrap().into_rgb8();

@@ -5,7 +5,6 @@ mod choices;
 mod ending;
 mod files;
 mod golden;
-mod recording;
 mod report;
 pub(crate) mod same;
 mod screen;
@@ -105,7 +104,6 @@ struct Row {
     rate_error: Option<f64>,
     log_error: Option<f64>,
     map_quality: f64,
-    coverage: f64,
 }
 
 fn rows(run: &Run) -> Vec<Row> {

@@ -3,12 +3,6 @@
 use crate::run::Run;
 
 #[test]
-fn quiet_is_silent() {
-    let ended = Run::grid().goes_well("--quiet --steps 200 --trials 1");
-    assert_eq!((ended.stdout.as_str(), ended.stderr.as_str()), ("", ""));
-}
-
-#[test]
 fn the_table_names_every_strategy_and_fits_a_terminal() {
     let ended = Run::grid().goes_well("--steps 500");
     assert_eq!(ended.stderr, "");
@@ -29,25 +23,4 @@ fn worlds_are_listed() {
     many_slow_blocks     Twelve slow blocks in nine rooms; each moves once in 20 to 60 steps.
     one_fast_block       One block that moves at every step, and eight that stay for hundreds of steps.
     ");
-}
-
-#[test]
-#[cfg(target_os = "linux")]
-fn a_terminal_shows_a_bar_that_goes_away() {
-    let run = Run::grid();
-    let ended = crate::terminal::run(&run, "--steps 20000 --trials 2 --estimator paper", |_| ());
-    assert_eq!(ended.code, Some(0), "{ended:?}");
-    let (before, after) = ended.stdout.split_once("two blocks\r\n").unwrap();
-    assert!(before.contains(" of 10 trials"), "{before:?}");
-    assert!(!after.contains(" of 10 trials"), "{after:?}");
-}
-
-/// Like `| head`.
-#[test]
-fn a_run_goes_on_when_nobody_listens() {
-    let run = Run::grid();
-    let mut child = run.starts("--steps 500");
-    drop((child.stdout.take(), child.stderr.take()));
-    assert_eq!(child.wait().unwrap().code(), Some(0));
-    assert_eq!(super::report(&run)["interrupted"], false);
 }

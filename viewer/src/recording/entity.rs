@@ -3,27 +3,21 @@
 //! One call of the SDK per row takes some tens of microseconds. Rows are therefore collected here and sent as
 //! columns, many ticks at once.
 
-use draw::scene::TimeUnit;
 use draw::view::View;
 use rerun::{AsComponents, RecordingStream, RecordingStreamResult, TimeColumn};
 
-/// The timeline of the simulated time.
+/// The timeline of the simulated time, which is active when a viewer opens.
 pub(super) const SIM_TIME: &str = "sim_time";
-/// The timeline of readings, or of steps.
-pub(super) const STEP: &str = "step";
-
-/// The timeline that is active when a viewer opens.
-pub(super) fn timeline(unit: TimeUnit) -> &'static str {
-    unit.choose(SIM_TIME, STEP)
-}
+/// The timeline of readings.
+const STEP: &str = "step";
 
 /// An entity that changes during a run.
 pub(super) trait Track: Send {
     /// Appends the rows of `view` if they are due, or if the view is the last one.
     fn push(&mut self, view: &View, is_last: bool);
 
-    /// Sends the rows. If time is counted in steps, the timeline of steps is the only one.
-    fn flush(&mut self, stream: &RecordingStream, unit: TimeUnit) -> RecordingStreamResult<()>;
+    /// Sends the rows.
+    fn flush(&mut self, stream: &RecordingStream) -> RecordingStreamResult<()>;
 }
 
 /// How the items of a view become rows.
@@ -39,12 +33,12 @@ pub(super) enum Kind {
 pub(super) struct Entity<T, F, C> {
     path: String,
     kind: Kind,
-    /// The time between two rows, in the unit of the scene; 0 for every view.
-    period: f64,
+    /// The time between two rows, s; 0 for every view.
+    period_s: f64,
     items_of: F,
     /// The components of the items of many rows.
     components: fn(Vec<T>) -> C,
-    due: f64,
+    due_s: f64,
     last: Vec<T>,
     /// Step, time in nanoseconds, and items of every row.
     rows: Vec<(i64, i64, Vec<T>)>,
@@ -53,12 +47,12 @@ pub(super) struct Entity<T, F, C> {
 impl<T, F, C> Entity<T, F, C> {
     pub(super) fn new(
         path: String,
-        (kind, period): (Kind, f64),
+        (kind, period_s): (Kind, f64),
         items_of: F,
         components: fn(Vec<T>) -> C,
     ) -> Self {
-        let (due, last, rows) = (f64::NEG_INFINITY, Vec::new(), Vec::new());
-        Self { path, kind, period, items_of, components, due, last, rows }
+        let (due_s, last, rows) = (f64::NEG_INFINITY, Vec::new(), Vec::new());
+        Self { path, kind, period_s, items_of, components, due_s, last, rows }
     }
 }
 
@@ -70,13 +64,13 @@ where
 {
     fn push(&mut self, view: &View, is_last: bool) {
         // Half a millisecond of tolerance: 0.1 added ten times is not exactly 1.
-        if view.time < self.due - 5e-4 && !is_last {
+        if view.time_s < self.due_s - 5e-4 && !is_last {
             return;
         }
         let items = (self.items_of)(view);
         // The period of events begins with an event: a view without events does not start a new period.
         if self.kind == Kind::State || !items.is_empty() {
-            self.due = view.time + self.period;
+            self.due_s = view.time_s + self.period_s;
         }
         let rows = match self.kind {
             Kind::State if items == self.last => Vec::new(),
@@ -86,11 +80,11 @@ where
             }
             Kind::Events => items.into_iter().map(|item| vec![item]).collect(),
         };
-        let (step, time_ns) = (view.step as i64, (view.time * 1e9).round() as i64);
+        let (step, time_ns) = (view.step as i64, (view.time_s * 1e9).round() as i64);
         self.rows.extend(rows.into_iter().map(|items| (step, time_ns, items)));
     }
 
-    fn flush(&mut self, stream: &RecordingStream, unit: TimeUnit) -> RecordingStreamResult<()> {
+    fn flush(&mut self, stream: &RecordingStream) -> RecordingStreamResult<()> {
         let rows = std::mem::take(&mut self.rows);
         if rows.is_empty() {
             return Ok(());
@@ -98,10 +92,8 @@ where
         let steps: Vec<i64> = rows.iter().map(|row| row.0).collect();
         let times_ns: Vec<i64> = rows.iter().map(|row| row.1).collect();
         let lengths: Vec<usize> = rows.iter().map(|row| row.2.len()).collect();
-        let mut times = vec![TimeColumn::new_sequence(STEP, steps)];
-        if unit == TimeUnit::Second {
-            times.push(TimeColumn::new_duration_nanos(SIM_TIME, times_ns));
-        }
+        let times =
+            [TimeColumn::new_sequence(STEP, steps), TimeColumn::new_duration_nanos(SIM_TIME, times_ns)];
         let components = (self.components)(rows.into_iter().flat_map(|row| row.2).collect());
         let columns = components.as_serialized_batches().into_iter();
         let columns = columns.map(|batch| batch.partitioned(lengths.iter().copied()));

@@ -3,7 +3,7 @@
 //! Logged component by component, since the SDK's layout types cannot set a view's bounds, the
 //! axis of a plot, or how much of a trail is shown.
 
-use super::entity::timeline;
+use super::entity::SIM_TIME;
 use super::tracks::{self, BAR_SHARE, LEGEND_SHARE, has_choice, plots};
 use draw::layers::Layer;
 use draw::scene::{Scene, extent};
@@ -118,17 +118,16 @@ impl Layout<'_> {
     }
 
     fn scene(&mut self) -> RecordingStreamResult<Part> {
-        let (scene, unit) = (self.scene, self.scene.unit);
+        let scene = self.scene;
         let name = format!("The map so far: {}", scene.title);
         let contents = ["+ /world/**", "- /world/maps/**", "+ /world/maps/occupancy/**"];
         let part = self.spatial(&name, &contents, [0.02, LEGEND_SHARE])?;
-        // Nanoseconds or steps of the curious robot's trail: all of it would hide the map.
-        let recent = TimeRangeBoundary::CursorRelative(TimeInt(-unit.choose(300 * 1_000_000_000, 60)));
+        // Nanoseconds of the curious robot's trail: all of it would hide the map.
+        let recent = TimeRangeBoundary::CursorRelative(TimeInt(-300 * 1_000_000_000));
         for robot in &scene.robots {
             let start = if robot.is_driven { recent } else { past().start };
             let range = TimeRange { start, ..past() };
-            let range =
-                VisibleTimeRange(datatypes::VisibleTimeRange { timeline: timeline(unit).into(), range });
+            let range = VisibleTimeRange(datatypes::VisibleTimeRange { timeline: SIM_TIME.into(), range });
             let trail = tracks::robot(&robot.name, "trail");
             let path = format!("{}/ViewContents/overrides{trail}/visualizers", part.path);
             self.stream.log(path, &blueprint::VisibleTimeRanges::new([range]))?;
@@ -138,12 +137,12 @@ impl Layout<'_> {
 
     fn map(&mut self, layer: Layer) -> RecordingStreamResult<Part> {
         let contents = format!("+ {}/**", tracks::map(layer));
-        self.spatial(&layer.title(self.scene.unit), &[&contents], [0.0, BAR_SHARE])
+        self.spatial(layer.title(), &[&contents], [0.0, BAR_SHARE])
     }
 
     fn log(&mut self) -> RecordingStreamResult<Part> {
         let view = self.view("TextLog", "What happened", &[tracks::LOG])?;
-        let timeline = timeline(self.scene.unit).into();
+        let timeline = SIM_TIME.into();
         let columns = [TextLogColumnKind::LogLevel, TextLogColumnKind::Body];
         let columns = blueprint::TextLogColumns::new()
             .with_timeline_columns([TimelineColumn { visible: true.into(), timeline }])
@@ -154,8 +153,8 @@ impl Layout<'_> {
 
     fn curves(&mut self) -> RecordingStreamResult<Vec<Part>> {
         let mut views = Vec::new();
-        for plot in plots(self.scene, self.view) {
-            let view = self.view("TimeSeries", &plot.title, &[&format!("+ {}/**", plot.path)])?;
+        for plot in plots(self.view) {
+            let view = self.view("TimeSeries", plot.title, &[&format!("+ {}/**", plot.path)])?;
             self.property(&view, &blueprint::PlotLegend::new().with_corner(Corner2D::LeftTop))?;
             self.property(&view, &blueprint::TimeAxis::new().with_view_range(past()))?;
             if let Some(range) = plot.range {
@@ -182,7 +181,7 @@ impl Layout<'_> {
         self.stream.log("selection_panel", &hidden)?;
         let time = blueprint::TimePanelBlueprint::new()
             .with_state(PanelState::Collapsed)
-            .with_timeline(timeline(self.scene.unit))
+            .with_timeline(SIM_TIME)
             .with_play_state(PlayState::Following);
         self.stream.log("time_panel", &time)
     }

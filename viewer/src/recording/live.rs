@@ -214,52 +214,24 @@ mod tests {
     }
 
     #[test]
-    fn a_missing_viewer_is_one_sentence() {
-        let free = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
-        let message = fails(&format!("127.0.0.1:{free}"));
-        assert!(message.starts_with("no viewer answers at rerun+http://127.0.0.1:"), "{message}");
-        assert!(!message.contains('\n'));
-    }
-
-    /// For example a viewer that is stopped, or another program with a similar port.
-    #[test]
-    fn a_server_that_never_answers_is_one_sentence() {
-        let server = TcpListener::bind("127.0.0.1:0").unwrap(); // the system accepts connections for it
-        let address = server.local_addr().unwrap().to_string();
-        let message = fails(&address);
-        let silent = "a program accepts connections there, but does not answer";
-        assert!(
-            message.starts_with(&format!("no viewer answers at rerun+http://{address}/proxy: {silent}; ")),
-            "{message}"
-        );
-    }
-
-    #[test]
-    fn a_server_that_is_no_viewer_is_one_sentence() {
-        let server = TcpListener::bind("127.0.0.1:0").unwrap();
-        let address = server.local_addr().unwrap().to_string();
-        std::thread::spawn(move || server.accept().unwrap().0.write_all(b"HTTP/1.1 400 Bad Request\r\n\r\n"));
-        let message = fails(&address);
-        assert!(message.contains("what listens there is not a viewer"), "{message}");
-    }
-
-    #[test]
-    fn a_viewer_that_is_not_installed_is_one_sentence() {
-        let free = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
-        let uri = parse(&format!("127.0.0.1:{free}")).unwrap();
-        let message = spawn("no-such-viewer-0", &uri).unwrap_err().to_string();
-        assert!(
-            message.starts_with("cannot start the viewer: there is no program `no-such-viewer-0`"),
-            "{message}"
-        );
-    }
-
-    #[test]
-    #[cfg(unix)]
-    fn a_viewer_that_ends_at_once_is_noticed() {
-        let free = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
-        let uri = parse(&format!("127.0.0.1:{free}")).unwrap();
-        let message = spawn("false", &uri).unwrap_err().to_string();
-        assert!(message.contains("ended at once"), "{message}");
+    fn a_viewer_that_cannot_show_the_run_is_one_sentence() {
+        let listen = || TcpListener::bind("127.0.0.1:0").unwrap();
+        let address = |server: &TcpListener| server.local_addr().unwrap().to_string();
+        let silent = listen(); // the system accepts connections for it
+        let other = listen();
+        let (free, silent_at, other_at) = (address(&listen()), address(&silent), address(&other));
+        std::thread::spawn(move || other.accept().unwrap().0.write_all(b"HTTP/1.1 400 Bad Request\r\n\r\n"));
+        let uri = parse(&free).unwrap();
+        let spawns = |program: &str| spawn(program, &uri).unwrap_err().to_string();
+        for (message, says) in [
+            (fails(&free), format!("no viewer answers at rerun+http://{free}/proxy: ")),
+            (fails(&silent_at), "a program accepts connections there, but does not answer; ".to_owned()),
+            (fails(&other_at), "what listens there is not a viewer".to_owned()),
+            (spawns("no-such-viewer-0"), "there is no program `no-such-viewer-0`".to_owned()),
+            #[cfg(unix)]
+            (spawns("false"), "ended at once".to_owned()),
+        ] {
+            assert!(message.contains(&says) && !message.contains('\n'), "{message}");
+        }
     }
 }

@@ -65,8 +65,8 @@ pub struct Recorder {
     /// Made at the first view, which shows what can be logged.
     tracks: Option<Vec<Box<dyn Track>>>,
     flushed: Instant,
-    /// The time of the last flush, in the unit of the scene.
-    flushed_at: f64,
+    /// The simulated time of the last flush, s.
+    flushed_at_s: f64,
     live_problem: Option<String>,
 }
 
@@ -88,7 +88,7 @@ impl Recorder {
         let stream =
             RecordingStream::new(info, properties, batching, Default::default(), Box::new(sinks.clone()))?;
         let flushed = Instant::now();
-        Ok(Self { stream, sinks, scene, tracks: None, flushed, flushed_at: 0.0, live_problem })
+        Ok(Self { stream, sinks, scene, tracks: None, flushed, flushed_at_s: 0.0, live_problem })
     }
 
     /// Records the present state of the run. The last view has every map, and closes the recording.
@@ -108,9 +108,9 @@ impl Recorder {
         self.tracks.iter_mut().flatten().for_each(|track| track.push(view, is_last));
         let wait = if self.sinks.is_live() { FLUSH_LIVE } else { FLUSH_FILE };
         // Maps at hundreds of times real time fill the memory.
-        let is_much = view.time - self.flushed_at >= self.scene.unit.choose(60.0, 2000.0);
+        let is_much = view.time_s - self.flushed_at_s >= 60.0;
         if is_last || is_much || self.flushed.elapsed() >= wait {
-            self.flushed_at = view.time;
+            self.flushed_at_s = view.time_s;
             self.flush()?;
         }
         if is_last {
@@ -133,8 +133,8 @@ impl Recorder {
     /// Sends the rows that wait.
     fn flush(&mut self) -> Result<(), RecordingError> {
         self.flushed = Instant::now();
-        let (stream, unit) = (&self.stream, self.scene.unit);
-        self.tracks.iter_mut().flatten().try_for_each(|track| track.flush(stream, unit))?;
+        let stream = &self.stream;
+        self.tracks.iter_mut().flatten().try_for_each(|track| track.flush(stream))?;
         self.sinks.check()
     }
 }

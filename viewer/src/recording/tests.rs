@@ -3,7 +3,6 @@ mod disk;
 use super::*;
 use crate::fake_run::FakeRun;
 use draw::layers::Layer;
-use draw::scene::TimeUnit;
 use localizer::{PoseEstimate, PoseState};
 use nalgebra::{Matrix3, Point2, Vector3};
 use rerun::components::{ImageBuffer, Scalar, Text, Translation3D};
@@ -162,27 +161,6 @@ fn a_robot_that_is_localized_is_there_twice() {
 }
 
 #[test]
-fn where_time_is_counted_in_steps_nothing_speaks_of_seconds() {
-    let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("run.rrd");
-    let mut run = FakeRun::new();
-    run.scene = Scene { unit: TimeUnit::Step, ..run.scene };
-    record_run(run, &file, 3);
-    let store = store(&std::fs::read(&file).unwrap(), StoreKind::Recording);
-    assert_eq!(timelines(&store), ["step"]);
-    let titles = titles(&file);
-    for title in [
-        "The map so far: fake rooms",
-        "Cycle time: steps per cycle",
-        "Longest time since a cell was seen (steps)",
-        "Recency: steps since last seen",
-    ] {
-        assert!(titles.iter().any(|found| found == title), "{title} is not in {titles:?}");
-    }
-    assert!(titles.iter().all(|title| !title.contains("second") && !title.contains("(s)")), "{titles:?}");
-}
-
-#[test]
 fn what_is_read_back_is_what_happened() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("run.rrd");
@@ -204,11 +182,7 @@ fn what_is_read_back_is_what_happened() {
         let most = if layer == Layer::Occupancy { 32 } else { 5 };
         assert!((2..=most).contains(&maps.len()), "{layer:?}: {}", maps.len());
         let last = maps.last().unwrap().1[0].0.to_vec();
-        assert_eq!(
-            last,
-            layer.classes(&run.mapper, TimeUnit::Second).cells().to_vec(),
-            "{layer:?} at the end"
-        );
+        assert_eq!(last, layer.classes(&run.mapper).cells().to_vec(), "{layer:?} at the end");
     }
     let coverage = rows::<Scalar>(&store, "/curves/scores/coverage", Scalars::descriptor_scalars().component);
     assert_eq!(coverage.len(), 32); // once a second, and at the end
@@ -325,14 +299,4 @@ fn a_missing_viewer_does_not_stop_a_recording_with_a_file() {
     store(&std::fs::read(&file).unwrap(), StoreKind::Recording);
 
     assert_eq!(Recorder::new(None, &live, FakeRun::new().scene).err().unwrap().to_string(), problem);
-}
-
-#[test]
-#[ignore = "writes a recording for inspection, and prints its size and time"]
-fn recording_for_inspection() {
-    let file = std::env::temp_dir().join("inspection.rrd");
-    let start = Instant::now();
-    record(&file, std::env::var("TICKS").map_or(12_000, |ticks| ticks.parse().unwrap()));
-    let bytes = std::fs::metadata(&file).unwrap().len();
-    println!("{}: {} MB in {:?}", file.display(), bytes as f64 / 1e6, start.elapsed());
 }

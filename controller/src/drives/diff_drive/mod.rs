@@ -6,13 +6,23 @@ mod settings;
 pub use settings::DiffDriveSettings;
 
 use super::{Body, Drive, DriveScene};
-use crate::planner::{Costmap, Moves, Path};
+use crate::planner::{Costmap, InflationSettings, Moves, Path};
 use collision_monitor::CollisionMonitor;
 use interfaces::{SettingsError, Twist, Values, values};
 use nalgebra::Point2;
 use std::f64::consts::{PI, TAU};
 
-/// A turn in place ends at this share of `turn_in_place_rad`, so that it does not begin again at once.
+/// Half a cell of rounding and the error of path following; and what leads paths through the middle of doors, and not along walls.
+const INFLATION: InflationSettings =
+    InflationSettings { footprint_padding_m: 0.08, inflation_m: 0.25, inflation_cost: 3 };
+/// The distance along the path to the pursued point, m. With a larger value the robot cuts corners, with a smaller one it
+/// oscillates.
+const LOOKAHEAD_M: f64 = 0.35;
+/// The robot turns in place if the angle between its heading and the path is larger than this, rad.
+const TURN_IN_PLACE_RAD: f64 = 0.9;
+/// The backward speed in a recovery, m/s.
+const REVERSE_MPS: f64 = 0.15;
+/// A turn in place ends at this share of [`TURN_IN_PLACE_RAD`], so that it does not begin again at once.
 const TURNED: f64 = 0.3;
 /// The minimum speed at the end of a path, m/s.
 const CREEP_MPS: f64 = 0.05;
@@ -92,6 +102,7 @@ impl Drive for DiffDrive {
         let step_s = step_m / max_linear_mps;
         Body {
             radius_m,
+            inflation: INFLATION,
             moves: Moves::Eight,
             speed_mps: max_linear_mps,
             tolerance_m,
@@ -100,6 +111,7 @@ impl Drive for DiffDrive {
             step_s,
             // The time to turn around, to accelerate and to brake.
             step_limit_s: 2.0 * step_s + PI / self.settings.max_angular_radps,
+            goal_timeout_s: 180.0,
         }
     }
 
@@ -107,13 +119,12 @@ impl Drive for DiffDrive {
         let settings = self.settings;
         self.looked_rad = 0.0;
         let position = scene.input.position();
-        let Some(target) = visible_lookahead_point(scene.costmap, path, &position, settings.lookahead_m)
-        else {
+        let Some(target) = visible_lookahead_point(scene.costmap, path, &position, LOOKAHEAD_M) else {
             return self.rest(scene);
         };
         let towards = scene.input.pose.inverse_transform_point(&target).coords;
         let off_rad = libm::atan2(towards.y, towards.x);
-        let allowed_rad = settings.turn_in_place_rad * if self.is_turning { TURNED } else { 1.0 };
+        let allowed_rad = TURN_IN_PLACE_RAD * if self.is_turning { TURNED } else { 1.0 };
         self.is_turning = off_rad.abs() > allowed_rad;
         let turn = Twist { linear_mps: 0.0, angular_radps: self.turn_radps(off_rad) };
         if self.is_turning {
@@ -122,7 +133,7 @@ impl Drive for DiffDrive {
         // The arc that starts in the direction of the robot's heading and passes through the target.
         let curvature_radpm = 2.0 * towards.y / towards.norm_squared().max(1e-6);
         let end_mps = (settings.acceleration_mps2 * path.remaining_m(&position)).sqrt().max(CREEP_MPS);
-        let aligned = 1.0 - (off_rad / settings.turn_in_place_rad).abs();
+        let aligned = 1.0 - (off_rad / TURN_IN_PLACE_RAD).abs();
         let wish_mps = (settings.max_linear_mps * aligned.max(0.2))
             .min(end_mps)
             .min(settings.max_angular_radps / curvature_radpm.abs().max(1e-6))
@@ -166,8 +177,8 @@ impl Drive for DiffDrive {
             return None;
         }
         let settings = self.settings;
-        self.monitor.update(&settings, scene, settings.reverse_mps);
-        let back_mps = self.monitor.safe_speed_mps(&settings, -settings.reverse_mps, 0.0);
+        self.monitor.update(&settings, scene, REVERSE_MPS);
+        let back_mps = self.monitor.safe_speed_mps(&settings, -REVERSE_MPS, 0.0);
         let turn_radps = if back_mps == 0.0 { 0.5 * self.settings.max_angular_radps } else { 0.0 };
         Some(self.command(scene, Twist { linear_mps: back_mps, angular_radps: turn_radps }))
     }

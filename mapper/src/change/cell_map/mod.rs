@@ -40,7 +40,7 @@ pub struct CellMap {
     /// For each cell the last reading that observed it, with the mark [`observing::UNSETTLED`].
     observed: SparseCells<ReadingIndex>,
     records: Records,
-    /// The gaps of every cell; empty if the estimator has no model of gaps.
+    /// The gaps of every cell; none if the estimator has no model of gaps.
     gaps: SharedCells<CellGaps>,
     /// The memory that gaps own elsewhere, bytes.
     gap_bytes: usize,
@@ -65,7 +65,6 @@ impl CellMap {
 
     pub(crate) fn new(prior: Grid<CellState>, estimator: EstimatorChoice, max_gap: f64) -> Self {
         let frame = *prior.frame();
-        let gaps = SharedCells::new(estimator.weighs_gaps().then_some(&frame));
         let shared = estimator.shares_prior().then(|| SharedPrior::new(&frame));
         let known: Vec<usize> =
             prior.cells().other_than(CellState::Unknown).map(|(index, _)| index).collect();
@@ -77,7 +76,7 @@ impl CellMap {
             times: ReadingTimes::default(),
             observed: SparseCells::new(frame.width(), frame.height(), NEVER | observing::UNSETTLED),
             records: Records::new(&frame),
-            gaps,
+            gaps: SharedCells::new(&frame),
             gap_bytes: 0,
             regularity: Regularity::default(),
             shared,

@@ -197,8 +197,9 @@ impl CellMap {
         if record.is_known() {
             let length = self.times.at(now) - self.times.at(last);
             record.watched[state_index(before)] += self.times.at(last) - self.times.at(record.since);
-            record.gaps[state_index(before)] += 1;
-            if let Some(gaps) = self.gaps.get_mut(index) {
+            if self.estimator.weighs_gaps()
+                && let Some(gaps) = self.gaps.get_mut(index)
+            {
                 let [before, after] = [before, after].map(|state| state == CellState::Blocked);
                 let owned = gaps.histogram.owned_bytes();
                 gaps.histogram.add(Gap { start: last, end: now, length, before, after });
@@ -208,7 +209,7 @@ impl CellMap {
             record.first = now;
         }
         record.since = now;
-        record.set_whole(false);
+        record.is_whole = false;
         self.records.set(index, record);
     }
 }

@@ -1,7 +1,7 @@
 use super::record::state_index;
 use super::{CellMap, PRIOR, Slot};
 use crate::change::gaps::MEAN_EVENTS;
-use crate::change::{Belief, CellStatistics, Exposure, GapWorth, ReadingIndex, TransitionRates};
+use crate::change::{Belief, CellStatistics, Exposure, ReadingIndex, TransitionRates};
 use interfaces::{CellState, Grid, GridFrame};
 
 impl CellMap {
@@ -59,13 +59,13 @@ impl CellMap {
     pub(crate) fn seen_before(&self, index: usize, found: ReadingIndex) -> ReadingIndex {
         /// The largest number of readings until the evidence of a change suffices.
         const EVIDENCE: ReadingIndex = 20;
-        let gap = self.gaps.get(index).and_then(|gaps| gaps.histogram.last());
+        let gap = self.gaps[index].histogram.last();
         gap.filter(|gap| gap[1] + EVIDENCE >= found).map_or(found, |gap| gap[0])
     }
 
     /// The index of a cell among those that ever changed.
     pub(crate) fn slot(&self, index: usize) -> Option<Slot> {
-        self.records.get(index).slot()
+        self.records.get(index).slot
     }
 
     /// The number of readings so far.
@@ -121,16 +121,14 @@ impl CellMap {
             free_events: record.in_view[1],
             block_events_after_gap: record.after_gap[0],
             free_events_after_gap: record.after_gap[1],
-            gaps_from_free: record.gaps[0],
-            gaps_from_blocked: record.gaps[1],
-            gap_worth: self.gaps.at(place).map_or(GapWorth::default(), |gaps| gaps.worth(period)),
+            gap_worth: self.gaps.at(place).worth(period),
             prior: self.rate_prior(place),
         }
     }
 
     /// How often the state of the cell changed in the map: its changes, and the correction of a wrong first observation.
     pub(crate) fn map_changes(&self, index: usize) -> u32 {
-        self.statistics(index).events() + u32::from(self.records.get(index).was_corrected())
+        self.statistics(index).events() + u32::from(self.records.get(index).was_corrected)
     }
 
     /// Whether the cell ever changed. Most cells did not: their rates need no statistics.

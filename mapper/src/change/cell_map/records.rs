@@ -1,6 +1,6 @@
 //! The records of all cells. That of a cell that never changed is short.
 
-use super::record::{Marks, Record};
+use super::record::Record;
 use super::{NEVER, ReadingIndex};
 use crate::Growth;
 use interfaces::{CellList, GridFrame, Place, SparseCells, ValueError, write_value};
@@ -12,9 +12,10 @@ struct Short {
     since: ReadingIndex,
     /// The time in view in the only state.
     watched: f64,
-    /// The gaps in the only state, or the number of the long record.
-    count: u32,
-    marks: Marks,
+    /// The number of the long record.
+    long: u32,
+    is_whole: bool,
+    was_corrected: bool,
     kind: Kind,
 }
 
@@ -58,12 +59,13 @@ impl Records {
     /// The record at a place.
     #[inline]
     pub(super) fn at(&self, place: Place) -> Record {
-        let Short { first, since, watched, count, marks, kind } = *self.short.at_place(place);
-        let record = Record { first, since, marks, ..Record::default() };
+        let Short { first, since, watched, long, is_whole, was_corrected, kind } =
+            *self.short.at_place(place);
+        let record = Record { first, since, is_whole, was_corrected, ..Record::default() };
         match kind {
-            Kind::Free => Record { watched: [watched, 0.0], gaps: [count, 0], ..record },
-            Kind::Blocked => Record { watched: [0.0, watched], gaps: [0, count], ..record },
-            Kind::Long => self.long[count as usize],
+            Kind::Free => Record { watched: [watched, 0.0], ..record },
+            Kind::Blocked => Record { watched: [0.0, watched], ..record },
+            Kind::Long => self.long[long as usize],
         }
     }
 
@@ -81,17 +83,17 @@ impl Records {
 
     /// Replaces the record of a cell.
     pub(super) fn set(&mut self, index: usize, record: Record) {
-        let Record { first, since, watched, gaps, marks, .. } = record;
-        let short = Short { first, since, marks, ..Short::default() };
+        let Record { first, since, watched, is_whole, was_corrected, .. } = record;
+        let short = Short { first, since, is_whole, was_corrected, ..Short::default() };
         let present = self.short[index];
         if present.kind == Kind::Long {
-            self.long[present.count as usize] = record;
-            self.short[index] = Short { count: present.count, kind: Kind::Long, ..short };
+            self.long[present.long as usize] = record;
+            self.short[index] = Short { long: present.long, kind: Kind::Long, ..short };
         } else if let Some(state) = record.only_state() {
             let kind = if state == 0 { Kind::Free } else { Kind::Blocked };
-            self.short.set(index, Short { watched: watched[state], count: gaps[state], kind, ..short });
+            self.short.set(index, Short { watched: watched[state], kind, ..short });
         } else {
-            self.short[index] = Short { count: self.long.len() as u32, kind: Kind::Long, ..short };
+            self.short[index] = Short { long: self.long.len() as u32, kind: Kind::Long, ..short };
             self.long.push(record);
         }
     }
@@ -141,15 +143,13 @@ mod tests {
     fn every_record_comes_back() {
         let frame = GridFrame::new(Point2::origin(), 0.05, 20, 20).unwrap();
         let mut records = Records::new(&frame);
-        let seen = Record { watched: [0.0, 3.5], gaps: [0, 7], ..Record::since(4) };
+        let seen = Record { watched: [0.0, 3.5], ..Record::since(4) };
         let both = Record { watched: [1.0, 3.5], ..Record::since(4) };
-        let negative = Record { watched: [-0.0, 0.0], gaps: [0, 1], ..Record::since(2) };
+        let negative = Record { watched: [-0.0, 0.0], ..Record::since(2) };
         let event = Record { in_view: [1, 0], ..Record::since(4) };
-        let mut changed = Record { watched: [1.0, 0.0], ..Record::corrected(9) };
-        changed.set_slot(0);
-        changed.set_whole(true);
-        let all =
-            [Record::default(), Record::since(3), Record::corrected(5), seen, both, negative, event, changed];
+        let corrected = |first| Record { was_corrected: true, ..Record::since(first) };
+        let changed = Record { watched: [1.0, 0.0], slot: Some(0), is_whole: true, ..corrected(9) };
+        let all = [Record::default(), Record::since(3), corrected(5), seen, both, negative, event, changed];
         for (index, record) in all.into_iter().enumerate() {
             records.set(index * 40, record);
         }
@@ -163,8 +163,8 @@ mod tests {
             );
         }
         // A long record stays long, and shows the new values.
-        records.set(7 * 40, Record::corrected(11));
-        assert_eq!((records.get(7 * 40), records.since(7 * 40)), (Record::corrected(11), 11));
+        records.set(7 * 40, corrected(11));
+        assert_eq!((records.get(7 * 40), records.since(7 * 40)), (corrected(11), 11));
         assert_eq!(size_of::<Short>(), 24);
     }
 }

@@ -41,8 +41,8 @@ impl CellMap {
         let last = self.last_reading(index);
         let period = self.times.period(last);
         let mut record = self.records.get(index);
-        if record.slot().is_none() {
-            record.set_slot(self.changed.len() as Slot);
+        if record.slot.is_none() {
+            record.slot = Some(self.changed.len() as Slot);
             self.changed.push(index as u32);
             self.flags[index].has_changed = true;
         }
@@ -51,12 +51,13 @@ impl CellMap {
         let stayed = self.times.at(until) - self.times.at(record.since);
         let event = state_index(before); // free → blocked is a block event, blocked → free a free event
         record.watched[event] += stayed;
-        if let Some(gaps) = self.gaps.get_mut(index)
-            && (in_view && record.is_whole() && period > 0.0)
+        if in_view
+            && (record.is_whole && period > 0.0 && self.estimator.weighs_gaps())
+            && let Some(gaps) = self.gaps.get_mut(index)
         {
             gaps.add_stay(event, stayed / period, &mut self.regularity);
         }
-        record.set_whole(in_view);
+        record.is_whole = in_view;
         record.since = until;
         if in_view {
             record.in_view[event] += 1
@@ -71,7 +72,7 @@ impl CellMap {
     /// every change of a cell that changes faster than `confirm` would be a correction.
     pub fn is_unconfirmed(&self, index: usize, confirm: f64) -> bool {
         let record = self.records.get(index);
-        let may_be = record.first > PRIOR && !record.was_corrected() && !self.has_changed(index);
+        let may_be = record.first > PRIOR && !record.was_corrected && !self.has_changed(index);
         may_be && self.statistics(index).observed() < confirm
     }
 
@@ -79,7 +80,7 @@ impl CellMap {
     pub fn correct(&mut self, index: usize, after: CellState) {
         let now = self.reading();
         self.observe(index);
-        self.records.set(index, Record::corrected(now));
+        self.records.set(index, Record { was_corrected: true, ..Record::since(now) });
         if let Some(gaps) = self.gaps.changed_mut(index) {
             *gaps = CellGaps::default();
         }
@@ -91,11 +92,11 @@ impl CellMap {
 
     /// Weighs the gaps of a cell that changes, if enough was observed since the gaps were last weighed.
     pub(super) fn weigh_gaps(&mut self, index: usize) {
-        if self.gaps.is_empty() || !self.has_changed(index) {
+        if !self.has_changed(index) || !self.estimator.weighs_gaps() {
             return;
         }
         let seen = self.statistics(index);
-        if !self.estimator.weighs_gaps() || !self.gaps[index].is_due(&seen) {
+        if !self.gaps[index].is_due(&seen) {
             return;
         }
         let (frame, Cell { x, y }) = (self.frame(), self.frame().cell(index));

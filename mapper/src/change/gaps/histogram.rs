@@ -77,19 +77,18 @@ pub(in crate::change) struct GapHistogram {
     last: Option<Gap>,
 }
 
-/// The layout in a state file: the bins, the last gap, and the number of gaps.
-type Saved = (Vec<GapBin>, Option<Gap>, u32);
+/// The layout in a state file: the bins, and the last gap.
+type Saved = (Vec<GapBin>, Option<Gap>);
 
 impl From<Saved> for GapHistogram {
-    fn from((bins, last, _): Saved) -> Self {
+    fn from((bins, last): Saved) -> Self {
         Self { bins: SmallVec::from_slice(&bins), last }
     }
 }
 
 impl From<GapHistogram> for Saved {
     fn from(gaps: GapHistogram) -> Self {
-        let count = gaps.count();
-        (gaps.bins.into_vec(), gaps.last, count)
+        (gaps.bins.into_vec(), gaps.last)
     }
 }
 

@@ -1,6 +1,6 @@
 //! Bodies: the cells inside of a new obstacle, which no beam can show.
 
-use super::{Surface, SurfaceGrid, SurfaceGridSettings};
+use super::{HITS_TO_STAND, MAX_GAP_M, SURFACE_DEPTH_M, Surface, SurfaceGrid};
 use crate::change::{CellMap, ReadingIndex};
 use crate::occupancy::inverse_sensor_model::{NOISE_STDS, passes};
 use crate::occupancy::projection::ProjectedScan;
@@ -118,7 +118,7 @@ impl SurfaceGrid {
             CellState::Free if surface.hit_at == cells.reading() => false,
             _ => return,
         };
-        let is_at_rest = is_on_map && surface.hits >= self.settings.hits_to_stand.saturating_mul(REST);
+        let is_at_rest = is_on_map && surface.hits >= HITS_TO_STAND * REST;
         let since = if is_at_rest { surface.doubted_since } else { ReadingIndex::MAX };
         self.new_hits.push(NewHit { beam, is_on_map, since });
     }
@@ -135,7 +135,7 @@ impl SurfaceGrid {
                 // A thing that comes near another one at rest is a body of its own.
                 let may_be_other = last.is_at_rest() != hit.is_at_rest();
                 let max_m = if may_be_other { self.same_surface_m(hit.beam, scan) } else { f64::INFINITY };
-                last.beam + 1 == hit.beam && (end - last_end).norm() < max_m.min(self.settings.max_gap_m)
+                last.beam + 1 == hit.beam && (end - last_end).norm() < max_m.min(MAX_GAP_M)
             });
             if !goes_on {
                 self.body(&hits, known, scan, cells);
@@ -165,8 +165,7 @@ impl SurfaceGrid {
         let mut body = std::mem::take(&mut self.body);
         body.wrap(hits, scan.increment_rad < 0.0);
         let (deepest, depth_m) = body.deepest(hits);
-        let SurfaceGridSettings { range_noise_std_m, surface_depth_m, .. } = self.settings;
-        let is_hollow = depth_m > surface_depth_m.max(NOISE_STDS * range_noise_std_m);
+        let is_hollow = depth_m > SURFACE_DEPTH_M.max(NOISE_STDS * self.settings.range_noise_std_m);
         if !is_hollow {
             self.block(&body, known.since, scan, cells);
         }
@@ -194,8 +193,7 @@ impl SurfaceGrid {
                 };
                 let Some(index) = frame.index(cell).filter(may_be_inside) else { continue };
                 let center = frame.center(cell);
-                let max_gap_m = self.settings.max_gap_m;
-                if body.reaches(&center, reach_m) && !passes(scan, &center, 0.0, max_gap_m, reach_m[0]) {
+                if body.reaches(&center, reach_m) && !passes(scan, &center, 0.0, MAX_GAP_M, reach_m[0]) {
                     let in_view = cells.is_in_view(index);
                     self.surfaces[index] = Surface {
                         hit_at: cells.reading(),

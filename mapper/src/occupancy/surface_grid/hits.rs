@@ -1,6 +1,6 @@
 //! Hits: the evidence that a cell is blocked.
 
-use super::{SURFACE_MEMORY, Surface, SurfaceGrid, SurfaceGridSettings};
+use super::{HITS_TO_BLOCK, HITS_TO_STAND, SURFACE_DEPTH_M, SURFACE_MEMORY, Surface, SurfaceGrid};
 use crate::change::CellMap;
 use crate::occupancy::footprint::cells_along;
 use crate::occupancy::inverse_sensor_model::{NOISE_STDS, hit_point};
@@ -19,7 +19,7 @@ impl SurfaceGrid {
     /// of [`CellMap::load`].
     pub(super) fn find_ahead(&mut self, scan: &ProjectedScan, cells: &CellMap) {
         let frame = cells.frame();
-        let depth_m = self.settings.surface_depth_m / 4.0;
+        let depth_m = SURFACE_DEPTH_M / 4.0;
         let ends = self.segmentation.ends.iter().zip(&scan.directions);
         let ahead = ends.map(|(end, direction)| {
             let index = frame.index(frame.cell_at(&((*end)? + direction * depth_m)));
@@ -41,7 +41,7 @@ impl SurfaceGrid {
         };
         // Most beams end on known walls: in a cell with a settled surface, or right before it. Then no normal is
         // needed.
-        let ahead = end + scan.directions[beam] * (self.settings.surface_depth_m / 4.0);
+        let ahead = end + scan.directions[beam] * (SURFACE_DEPTH_M / 4.0);
         if let Some(index) = self.ahead[beam].filter(|&index| self.has_settled(index, cells)) {
             self.support(index, None, cells);
             self.note_new(beam, index, cells);
@@ -50,7 +50,7 @@ impl SurfaceGrid {
             }
             return;
         }
-        let point = hit_point(beam, &end, self.settings.surface_depth_m, &self.segmentation, scan);
+        let point = hit_point(beam, &end, SURFACE_DEPTH_M, &self.segmentation, scan);
         // A surface in a cell is an observation of the cell, even if the hit counts for the cell behind: a cell
         // that an obstacle enters stays in view.
         if let Some(index) = index_at(end, cells).filter(|&index| cells.state(index) != CellState::Unknown) {
@@ -70,13 +70,12 @@ impl SurfaceGrid {
 
     /// Whether a cell holds a standing surface whose position no longer changes with further hits.
     fn has_settled(&self, index: usize, cells: &CellMap) -> bool {
-        let settled = self.settings.hits_to_stand.max(2 * SURFACE_MEMORY);
-        self.surfaces[index].hits >= settled && cells.state(index) == CellState::Blocked
+        self.surfaces[index].hits >= HITS_TO_STAND.max(2 * SURFACE_MEMORY)
+            && cells.state(index) == CellState::Blocked
     }
 
     /// Counts a hit for a cell that is not blocked.
     fn hit_open(&mut self, index: usize, end: &Point2<f64>, point: Point2<f64>, cells: &mut CellMap) {
-        let SurfaceGridSettings { hits_to_block, hits_to_block_in_open, .. } = self.settings;
         let noise_m = NOISE_STDS * self.settings.range_noise_std_m;
         let is_free = cells.state(index) == CellState::Free;
         let frame = *cells.frame();
@@ -92,24 +91,17 @@ impl SurfaceGrid {
             // A free cell beside a standing surface stays free. An unknown cell can be part of the
             // surface, but that takes more hits.
             Some(_) if is_free => return,
-            Some(_) => self.few_hits_to_stand(cells),
+            Some(_) => few_hits_to_stand(cells),
             // Far from known surfaces one hit is enough, unless noise could put the hit into this cell.
             None if is_free
                 && self.surface_near(end, OPEN_M, true, cells).is_none()
                 && is_inside(end + (point - end).normalize() * noise_m) =>
             {
-                u16::from(hits_to_block_in_open)
+                u16::from(self.settings.hits_to_block_in_open)
             }
-            None => u16::from(hits_to_block),
+            None => HITS_TO_BLOCK,
         };
         self.add_hit(index, point, hits_to_block, cells);
-    }
-
-    /// The number of hits after which the surface of a cell that was never free is permanent.
-    fn few_hits_to_stand(&self, cells: &CellMap) -> u16 {
-        let SurfaceGridSettings { hits_to_stand, hits_to_block, .. } = self.settings;
-        let hits = (STAND_S / cells.period()).ceil().max(f64::from(hits_to_block));
-        hits_to_stand.min(hits as u16)
     }
 
     /// The nearest of the blocked cells within `reach_m` along both axes, `is_permanent`: of those with a permanent surface.
@@ -121,9 +113,9 @@ impl SurfaceGrid {
         is_permanent: bool,
         cells: &CellMap,
     ) -> Option<usize> {
-        let (frame, few_hits) = (cells.frame(), self.few_hits_to_stand(cells));
+        let (frame, few_hits) = (cells.frame(), few_hits_to_stand(cells));
         let counts = |surface: &Surface| {
-            let hits_to_stand = if surface.came { self.settings.hits_to_stand } else { few_hits };
+            let hits_to_stand = if surface.came { HITS_TO_STAND } else { few_hits };
             !is_permanent || surface.hits >= hits_to_stand
         };
         let reach = Vector2::repeat(reach_m);
@@ -218,4 +210,10 @@ impl SurfaceGrid {
             *mean += (at - *mean) * weight;
         }
     }
+}
+
+/// The number of hits after which the surface of a cell that was never free is permanent.
+fn few_hits_to_stand(cells: &CellMap) -> u16 {
+    let hits = (STAND_S / cells.period()).ceil().max(f64::from(HITS_TO_BLOCK));
+    HITS_TO_STAND.min(hits as u16)
 }

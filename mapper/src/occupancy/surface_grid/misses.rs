@@ -1,6 +1,8 @@
 //! Misses: the evidence that a cell is free.
 
-use super::{Surface, SurfaceGrid};
+use super::{
+    MAX_GAP_M, MISSES_TO_DISCOVER, MISSES_TO_DISCOVER_BESIDE, SURFACE_DEPTH_M, Surface, SurfaceGrid,
+};
 use crate::change::CellMap;
 use crate::occupancy::footprint::beyond_fan;
 use crate::occupancy::inverse_sensor_model::passes;
@@ -18,11 +20,11 @@ impl SurfaceGrid {
         self.footprint.fill(
             scan,
             &frame,
-            self.settings.max_gap_m,
+            MAX_GAP_M,
             |beam| joined[beam],
             |start, end| cells.observe_run(start, end, &mut unsettled),
         );
-        beyond_fan(scan, &frame, self.settings.max_gap_m, |index| {
+        beyond_fan(scan, &frame, MAX_GAP_M, |index| {
             cells.observe_run(index, index + 1, &mut unsettled);
         });
         // A cell that was hit receives no miss. A miss changes nothing else in a settled cell without a surface. In a loop of its
@@ -54,13 +56,13 @@ impl SurfaceGrid {
             }
             CellState::Unknown if self.surfaces[index].surface_at != now => {
                 let misses = if self.is_beside_surface(index, cells.frame()) {
-                    self.settings.misses_to_discover_beside
+                    MISSES_TO_DISCOVER_BESIDE
                 } else {
-                    self.settings.misses_to_discover
+                    MISSES_TO_DISCOVER
                 };
                 let evidence = &mut self.evidence[index];
                 *evidence = (*evidence).min(0) - 1;
-                if *evidence <= -(misses as i8) {
+                if *evidence <= -misses {
                     *evidence = 0;
                     cells.set_settled(index, true);
                     cells.set_state(index, CellState::Free, now, false);
@@ -99,8 +101,7 @@ impl SurfaceGrid {
     fn is_passed(&self, index: usize, scan: &ProjectedScan, frame: &GridFrame) -> bool {
         let [x, y] = self.surfaces[index].point_m;
         let surface = frame.origin() + Vector2::new(f64::from(x), f64::from(y));
-        let depth_m = self.settings.surface_depth_m;
-        let margin_m = depth_m.max(2.0 * self.settings.range_noise_std_m);
-        passes(scan, &surface, margin_m, self.settings.max_gap_m, depth_m)
+        let margin_m = SURFACE_DEPTH_M.max(2.0 * self.settings.range_noise_std_m);
+        passes(scan, &surface, margin_m, MAX_GAP_M, SURFACE_DEPTH_M)
     }
 }

@@ -25,7 +25,6 @@
 mod bodies;
 mod hits;
 mod misses;
-mod saved;
 mod settings;
 mod surfaces;
 
@@ -41,13 +40,33 @@ use nalgebra::Point2;
 pub use settings::SurfaceGridSettings;
 use surfaces::Surfaces;
 
+/// The distance behind the surface, along its normal, at which a hit counts, m: a surface on the border of two cells belongs to
+/// the solid cell.
+const SURFACE_DEPTH_M: f64 = 0.02;
+/// Hits nearer to each other than this, m, belong to one surface: no beam passes the cells between them.
+const JOIN_M: f64 = 1.0;
+/// Where neighboring beams are farther apart than this, m, the space between them counts as not observed, and hits of new
+/// obstacles as hits on different bodies.
+const MAX_GAP_M: f64 = 0.15;
+/// The number of scans with a hit after which a free or unknown cell becomes blocked.
+const HITS_TO_BLOCK: u16 = 2;
+/// The number of scans that must pass an unknown cell until it becomes free; and one beside a surface, of which it can still be a
+/// part.
+const MISSES_TO_DISCOVER: i8 = 3;
+const MISSES_TO_DISCOVER_BESIDE: i8 = 20;
+/// The number of hits after which a surface counts as permanent: noise around it is then not a new obstacle. The surface of a
+/// cell that was never free needs at most the hits of 4 s, at least [`HITS_TO_BLOCK`].
+const HITS_TO_STAND: u16 = 20;
+/// A first observation that is contradicted after less than this time in view, s, and less than [`MIN_CONFIRMING`] readings, was
+/// wrong. The state is corrected, which does not count as a change.
+const CONFIRM_S: f64 = 2.0;
 /// The mean of the hit points is taken over about this number of hits.
 const SURFACE_MEMORY: u16 = 32;
 /// A first observation needs at least this number of readings to be confirmed, however long they take.
 const MIN_CONFIRMING: f64 = 5.0;
 
 /// The hits in a cell.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Deserialize, serde::Serialize)]
 struct Surface {
     /// The mean of the points that were hit, relative to the lower left corner of the grid, m.
     point_m: [f32; 2],
@@ -98,7 +117,7 @@ impl SurfaceGrid {
             if state == CellState::Blocked {
                 let center = frame.center(frame.cell(index)) - frame.origin();
                 let point_m = [center.x as f32, center.y as f32];
-                surfaces[index] = Surface { point_m, hits: settings.hits_to_stand, ..Surface::default() };
+                surfaces[index] = Surface { point_m, hits: HITS_TO_STAND, ..Surface::default() };
                 evidence[index] = settings.misses_to_free as i8;
             }
         }
@@ -120,13 +139,13 @@ impl SurfaceGrid {
 impl SurfaceGrid {
     /// Whether the first observation of a cell can still be wrong.
     fn is_unconfirmed(&self, index: usize, cells: &CellMap) -> bool {
-        cells.is_unconfirmed(index, self.settings.confirm_s.max(MIN_CONFIRMING * cells.period()))
+        cells.is_unconfirmed(index, CONFIRM_S.max(MIN_CONFIRMING * cells.period()))
     }
 }
 
 impl OccupancyModel for SurfaceGrid {
     fn update(&mut self, scan: &ProjectedScan, cells: &mut CellMap) {
-        self.segmentation.segment(scan, self.settings.join_m);
+        self.segmentation.segment(scan, JOIN_M);
         self.new_hits.clear();
         self.find_ahead(scan, cells);
         for beam in 0..scan.len() {
@@ -137,7 +156,7 @@ impl OccupancyModel for SurfaceGrid {
     }
 
     fn values(&mut self) -> Values<'_> {
-        vec![cell_runs(self.saved(), usize::MAX)]
+        vec![cell_runs(&mut self.surfaces, usize::MAX), cell_runs(&mut self.evidence, usize::MAX)]
     }
 
     fn bytes(&self) -> usize {
@@ -145,7 +164,7 @@ impl OccupancyModel for SurfaceGrid {
     }
 
     fn grow(&mut self, growth: &Growth, settings: &MapperSettings) {
-        self.settings = settings.steady.clone();
+        self.settings = settings.steady;
         let shift_m = growth.shift_m();
         for surface in self.surfaces.all_mut().filter(|surface| surface.point_m != [0.0; 2]) {
             for (at, shift_m) in surface.point_m.iter_mut().zip(shift_m.iter()) {

@@ -2,7 +2,7 @@
 
 use super::Surface;
 use crate::Growth;
-use interfaces::{GridFrame, SparseCells};
+use interfaces::{CellList, GridFrame, SparseCells, ValueError, write_value};
 use std::ops::{Index, IndexMut};
 
 /// One surface per cell. A cell takes four bytes until it is changed for the first time.
@@ -18,11 +18,6 @@ impl Surfaces {
     pub(super) fn new(frame: &GridFrame) -> Self {
         let numbers = SparseCells::new(frame.width(), frame.height(), 0);
         Self { numbers, surfaces: vec![Surface::default()] }
-    }
-
-    /// The number of cells.
-    pub(super) fn len(&self) -> usize {
-        self.numbers.len()
     }
 
     /// Whether the surface of a cell was never changed.
@@ -45,18 +40,6 @@ impl Surfaces {
         self.surfaces.iter_mut().skip(1)
     }
 
-    /// Sets the surface of a cell. One that the cell has already needs no memory.
-    pub(super) fn set(&mut self, index: usize, surface: Surface) {
-        if self[index] != surface {
-            self[index] = surface;
-        }
-    }
-
-    /// The number of cells from this one on that certainly have equal surfaces.
-    pub(super) fn alike(&self, index: usize) -> usize {
-        self.numbers.alike(index)
-    }
-
     /// Moves all surfaces into a larger map.
     pub(super) fn grow(&mut self, growth: &Growth) {
         growth.sparse(&mut self.numbers);
@@ -65,6 +48,29 @@ impl Surfaces {
     /// The memory of all surfaces, bytes.
     pub(super) fn bytes(&self) -> usize {
         self.numbers.bytes() + self.surfaces.capacity() * size_of::<Surface>()
+    }
+}
+
+impl CellList for &mut Surfaces {
+    type Item = Surface;
+
+    fn len(&self) -> usize {
+        self.numbers.len()
+    }
+
+    fn write(&self, index: usize, bytes: &mut Vec<u8>) -> Result<(), ValueError> {
+        write_value(&self[index], bytes)
+    }
+
+    fn alike(&self, index: usize) -> usize {
+        self.numbers.alike(index)
+    }
+
+    /// One that the cell has already needs no memory.
+    fn set(&mut self, index: usize, surface: &Surface) {
+        if self[index] != *surface {
+            self[index] = *surface;
+        }
     }
 }
 
@@ -95,13 +101,13 @@ mod tests {
 
     #[test]
     fn only_cells_that_were_changed_have_a_surface() {
-        let mut surfaces = Surfaces::new(&GridFrame::new(Point2::origin(), 0.05, 20, 20).unwrap());
-        surfaces.set(7, Surface::default());
+        let mut surfaces = &mut Surfaces::new(&GridFrame::new(Point2::origin(), 0.05, 20, 20).unwrap());
+        surfaces.set(7, &Surface::default());
         assert!(surfaces.stored_mut(7).is_none() && surfaces.all_mut().count() == 0);
         surfaces[7].hits = 3;
-        surfaces.set(399, Surface { hits: 4, ..Surface::default() });
+        surfaces.set(399, &Surface { hits: 4, ..Surface::default() });
         assert_eq!([surfaces[6].hits, surfaces[7].hits, surfaces[399].hits], [0, 3, 4]);
-        surfaces.set(7, Surface::default());
+        surfaces.set(7, &Surface::default());
         assert_eq!((surfaces[7], surfaces.all_mut().count(), surfaces.len()), (Surface::default(), 2, 400));
     }
 }

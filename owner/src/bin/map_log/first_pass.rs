@@ -3,7 +3,6 @@
 use crate::Job;
 use crate::survey_state_file::SurveyStateFile;
 use anyhow::Error;
-use cli::busy::Busy;
 use cli::program::{Failure, input};
 use cli::progress::Progress;
 use cli::terminal::say;
@@ -24,14 +23,14 @@ pub(crate) fn routes(
         }
         let can_align = source.entry.stands || job.settings.pose.is_consistent();
         let is_followed = can_align && (state_file.is_kept() || number + 1 < job.sources.len());
-        let mut shown = Shown::Nothing;
+        let mut shown: Option<Progress> = None;
         let watch = |(stage, readings)| {
             match (readings, &shown) {
                 (0, _) => {
-                    drop(std::mem::replace(&mut shown, Shown::Nothing)); // below the finished bar of the stage before
-                    shown = begin(job, number, stage);
+                    drop(shown.take()); // below the finished bar of the stage before
+                    shown = Some(begin(job, number, stage));
                 }
-                (_, Shown::Readings(bar)) => bar.step(),
+                (_, Some(bar)) => bar.step(),
                 _ => {}
             }
             if job.is_interrupted() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
@@ -65,15 +64,8 @@ pub(crate) fn routes(
     Ok(true)
 }
 
-/// What is shown of a stage.
-enum Shown {
-    Nothing,
-    Readings(Progress),
-    Work { _busy: Busy },
-}
-
 /// Reports that a stage begins, and shows it.
-fn begin(job: &Job, number: usize, stage: Stage) -> Shown {
+fn begin(job: &Job, number: usize, stage: Stage) -> Progress {
     let what = match stage {
         Stage::Trajectory => "first pass",
         Stage::Loops => "closing loops",
@@ -83,9 +75,7 @@ fn begin(job: &Job, number: usize, stage: Stage) -> Shown {
     let source = &job.sources[number];
     job.say(format_args!("{}: {what}", source.entry.name));
     match stage {
-        Stage::Loops => {
-            Shown::Work { _busy: Busy::with(format!("{}: {what}", source.entry.name), job.args.quiet) }
-        }
-        _ => Shown::Readings(Progress::of_count(source.log.summary().scans, "scans", job.args.quiet)),
+        Stage::Loops => Progress::of_work(format!("{}: {what}", source.entry.name), job.args.quiet),
+        _ => Progress::of_count(source.log.summary().scans, "scans", job.args.quiet),
     }
 }

@@ -1,7 +1,7 @@
 //! The logs of one place, in the order of their times.
 
 use anyhow::{bail, ensure};
-use cli::busy::Busy;
+use cli::progress::Progress;
 use cli::terminal::say;
 use logs::{Log, TopicChoice};
 use std::io::stderr;
@@ -27,7 +27,7 @@ pub(crate) fn open(
     is_quiet: bool,
 ) -> anyhow::Result<Vec<Source>> {
     let open = |file: &PathBuf| {
-        let busy = || Busy::with(format!("reading {}", file.display()), is_quiet);
+        let busy = || Progress::of_work(format!("reading {}", file.display()), is_quiet);
         let reading = busy();
         let log = Log::open(file, choice);
         drop(reading);

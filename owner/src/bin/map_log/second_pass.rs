@@ -4,7 +4,6 @@ use crate::Job;
 use crate::survey_state_file::SurveyStateFile;
 use anyhow::{Context, anyhow};
 use cli::bag::RunBag;
-use cli::busy::Busy;
 use cli::program::{Failure, input};
 use cli::progress::Progress;
 use cli::terminal::say;
@@ -108,7 +107,7 @@ impl Learned {
             0 => job.say(format_args!("{name}: learning what changes")),
             _ => job.say(format_args!("{name}: learning what changes, from scan {} on", used + 1)),
         }
-        let busy = Busy::with(format!("{name}: what beams without a return mean"), job.args.quiet);
+        let busy = Progress::of_work(format!("{name}: what beams without a return mean"), job.args.quiet);
         let replay = survey.replay(log, &source.log).map_err(input);
         drop(busy);
         let replay = replay?;

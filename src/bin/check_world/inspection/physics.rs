@@ -1,13 +1,12 @@
 //! The description of physics worlds and floor plans.
 
 use super::{Content, FLOOR_PLAN, calendar};
-use draw::scene::{Scene, TimeUnit};
+use draw::scene::Scene;
 use evaluation::scenes::Displayed;
 use interfaces::{GridFrame, printable};
 use nalgebra::Point2;
 use sim::physics::{
-    BehaviorSpec, DisplacementSpec, DriveKind, FleetSpec, LaserSpec, Leaf, Motion, ObstacleSpec,
-    OdometryError, Opening, Rectangle, RobotSpec,
+    BehaviorSpec, DriveKind, FleetSpec, Leaf, Motion, ObstacleSpec, Opening, Rectangle, RobotSpec,
 };
 use std::path::Path;
 use worldfile::floor_plan::FloorPlan;
@@ -64,7 +63,7 @@ pub(super) fn floor_plan(path: &Path, plan: &FloorPlan) -> Option<Content> {
         ],
         scene: Scene {
             title: name,
-            unit: TimeUnit::Second,
+            is_grid: false,
             frame: GridFrame::covering(low, high.x - low.x, high.y - low.y, PLAN_CELL_M.max(plan.pixel_m.x))?,
             walls: rectangles.iter().map(|wall| wall.corners().to_vec()).collect(),
             obstacles: Vec::new(),
@@ -159,59 +158,27 @@ fn robot_line(robot: &RobotSpec) -> String {
     let mut parts = vec![format!("{does}, {body}, {drive} up to {} m/s", short(robot.drive.max_linear_mps))];
     parts.extend(robot.lasers().map(|laser| {
         format!(
-            "laser of {} beams over {}°, {} m, {} Hz, {}",
+            "laser of {} beams over {}°, {} m, {} Hz, noise {} m",
             laser.beams,
             short(laser.fov_rad.to_degrees()),
             short(laser.range_max_m),
             short(laser.rate_hz),
-            range_errors(laser),
+            short(laser.noise_std_m),
         )
     }));
-    parts.push(odometry_errors(&robot.odometry));
-    if !robot.sonars.is_empty() {
-        parts.push(format!("sonar × {}", robot.sonars.len()));
-    }
+    let poses = if robot.odometry.is_exact() { "poses are exact" } else { "its odometry drifts" };
+    parts.push(poses.to_owned());
+    let others = [
+        (robot.sonars.len(), "sonar"),
+        (usize::from(robot.bumper.is_some()), "bumper"),
+        (usize::from(robot.fiducial.is_some()), "fiducial finder"),
+    ];
+    parts.extend(
+        others.into_iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{what} × {count}")),
+    );
+    parts.extend(robot.tag.map(|tag| format!("tag {tag}")));
     parts.extend(robot.patrol.as_ref().map(calendar::of_robot));
     parts.join("; ")
-}
-
-fn range_errors(laser: &LaserSpec) -> String {
-    let noise = match laser.noise_std_m {
-        0.0 => "no noise".to_owned(),
-        noise_m => format!("noise {} m", short(noise_m)),
-    };
-    let dropout = match laser.dropout {
-        0.0 => "no dropout".to_owned(),
-        dropout => format!("dropout {} %", short(100.0 * dropout)),
-    };
-    let sweep = match laser.sweep_s {
-        0.0 => String::new(),
-        sweep_s => format!(", sweep {} s", short(sweep_s)),
-    };
-    format!("{noise}, {dropout}{sweep}")
-}
-
-fn odometry_errors(error: &OdometryError) -> String {
-    let errors = [
-        (100.0 * error.distance_gain, " % of the distance"),
-        (100.0 * error.turn_gain, " % of the turns"),
-        (error.turn_radpm.to_degrees(), "° per meter"),
-        (error.distance_noise_m, " m of noise after 1 m"),
-        (error.turn_noise_rad.to_degrees(), "° of noise after a turn of 1 rad"),
-    ];
-    let errors = errors.into_iter().filter(|(value, _)| *value != 0.0);
-    let errors = errors.map(|(value, what)| format!("{}{what}", short(value)));
-    let displacements = [("a jump", error.jump), ("carried", error.carried)];
-    let displacements = displacements.into_iter().filter_map(|(what, displacement)| {
-        let DisplacementSpec { every_s, distance_m, turn_rad } = displacement?;
-        let [distance, turn, every] = [distance_m, turn_rad.to_degrees(), every_s].map(short);
-        Some(format!("{what} up to {distance} m and {turn}° every {every} s"))
-    });
-    let errors: Vec<String> = errors.chain(displacements).collect();
-    match errors.is_empty() {
-        true => "poses are exact".to_owned(),
-        false => format!("odometry errors: {}", errors.join(", ")),
-    }
 }
 
 /// A number rounded to thousandths, without trailing zeros.

@@ -39,18 +39,6 @@ fn what_is_in_the_paper_s_worlds() {
 }
 
 #[test]
-fn a_file_that_is_none_says_so() {
-    let inspection = inspect("no_such_world");
-    assert!(inspection.content.is_none());
-    assert!(
-        inspection.errors[0].starts_with("error: cannot read `no_such_world`"),
-        "{:?}",
-        inspection.errors
-    );
-    assert!(inspect(&file("worlds/office.png")).errors[0].contains("not a text file"));
-}
-
-#[test]
 fn a_block_with_a_schedule_has_no_chance() {
     let folder = tempfile::tempdir().unwrap();
     let chance = |blocks: &str| {

@@ -8,6 +8,9 @@ use std::path::Path;
 /// The step of all series, s.
 pub(crate) const STEP_S: f64 = 60.0;
 
+/// No recording is longer, s: ten years.
+const MAX_S: f64 = 10.0 * 365.25 * DAY_S;
+
 /// The recorded states of one thing.
 pub(crate) struct Series {
     pub(crate) name: String,
@@ -24,10 +27,16 @@ impl Series {
     pub(crate) fn read(path: &Path) -> Result<Self, String> {
         let at = |what: &str| format!("{}: {what}", path.display());
         let text = std::fs::read_to_string(path).map_err(|error| at(&error.to_string()))?;
-        let recording = Recording::parse(&text).map_err(|error| at(&error.to_string()))?;
-        let start_s = recording.start_s();
-        let end_s = recording.end_s.unwrap_or(recording.last_s() + STEP_S).min(recording.limit_s());
-        let split_s = recording.split_s.unwrap_or(0.5 * (start_s + end_s));
+        let recording = Recording::parse(&text).map_err(|error| at(&error))?;
+        let [start_s, last_s] = [recording.changes.first(), recording.changes.last()]
+            .map(|change| change.map_or(0.0, |change| change.0));
+        // Comments may state when the recording ended, and where its part for learning ends.
+        let stated = |key: &str| -> Option<f64> {
+            let words = text.lines().filter(|line| line.starts_with('#')).flat_map(str::split_whitespace);
+            words.filter_map(|word| word.strip_prefix(key)).find_map(|value| value.parse().ok())
+        };
+        let end_s = stated("end_s=").unwrap_or(last_s + STEP_S).min(start_s + MAX_S);
+        let split_s = stated("split_s=").unwrap_or(0.5 * (start_s + end_s));
         let mut next = recording.changes.iter().peekable();
         let mut state = None;
         let states = (0..((end_s - start_s) / STEP_S) as usize).map(|step| {

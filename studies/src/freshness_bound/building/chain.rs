@@ -1,5 +1,5 @@
 use super::cells::Run;
-use crate::calendar::{Habit, Matrix, PHASES, Phases, advanced};
+use crate::calendar::{Habit, Law, Matrix, PHASES, Phases, advanced};
 use crate::{Model, STEP_S};
 
 /// Points of the grid of the probability that the present stay is a long one, for each state.

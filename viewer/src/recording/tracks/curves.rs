@@ -2,7 +2,6 @@
 
 use super::{Kind, ON_CHANGE, Tracks, color, escape};
 use draw::palette::{self, Rgb};
-use draw::scene::Scene;
 use draw::view::View;
 use localizer::PoseState;
 use rerun::{RecordingStreamResult, Scalars, SeriesLines, StateChange, StateConfiguration};
@@ -14,7 +13,7 @@ pub(in crate::recording) const STRATEGY: &str = "/curves/strategy";
 /// A panel with curves.
 pub(in crate::recording) struct Plot {
     /// The title of the panel.
-    pub(in crate::recording) title: String,
+    pub(in crate::recording) title: &'static str,
     /// The entity above the curves.
     pub(in crate::recording) path: &'static str,
     /// What the axis of values spans, unless it follows the values.
@@ -37,7 +36,7 @@ type Value = dyn Fn(&View) -> Option<f64> + Send;
 const SHARE: Option<[f64; 2]> = Some([0.0, 1.05]);
 
 /// The panels for a run whose first view is `view`. A panel without any curve to come is left out.
-pub(in crate::recording) fn plots(scene: &Scene, view: &View) -> Vec<Plot> {
+pub(in crate::recording) fn plots(view: &View) -> Vec<Plot> {
     let curve = |part: &str, name: &str, color: Rgb, value: fn(&View) -> Option<f64>| Curve {
         part: part.to_owned(),
         name: name.to_owned(),
@@ -45,8 +44,8 @@ pub(in crate::recording) fn plots(scene: &Scene, view: &View) -> Vec<Plot> {
         value: Box::new(value),
     };
     let mut plots = Vec::new();
-    let mut plot = |title: &str, path, range, curves| {
-        plots.push(Plot { title: title.to_owned(), path, range, curves });
+    let mut plot = |title, path, range, curves| {
+        plots.push(Plot { title, path, range, curves });
     };
     if view.measured.coverage_and_quality.is_some() {
         let coverage = curve("coverage", "coverage: cells that were seen", palette::SENSOR, |view| {
@@ -75,17 +74,10 @@ pub(in crate::recording) fn plots(scene: &Scene, view: &View) -> Vec<Plot> {
         }
         plot("Localization: error of the position (mm)", "/curves/pose_error", None, curves);
     }
-    if view.measured.rate_errors.is_some() && !scene.obstacles.is_empty() {
-        let relative =
-            curve("relative", "relative error", palette::MOVING, |view| Some(view.measured.rate_errors?[0]));
-        let log = curve("log", "log error", palette::GOAL, |view| Some(view.measured.rate_errors?[1]));
-        plot("Errors of the rates of change", "/curves/rate_errors", None, vec![relative, log]);
-    }
     let expected = curve("p", "changes expected out of view", palette::GOAL, |view| Some(view.features.p));
     plot("Changes expected out of view", "/curves/expected_changes", None, vec![expected]);
     let oldest = curve("r", "longest time", palette::OTHER_ROBOT, |view| Some(view.features.r));
-    let title = format!("Longest time since a cell was seen ({})", scene.unit.symbol());
-    plot(&title, "/curves/longest_unseen", None, vec![oldest]);
+    plot("Longest time since a cell was seen (s)", "/curves/longest_unseen", None, vec![oldest]);
     if has_choice(view) {
         // A strategy about which nothing was learned has the value 0.
         let values = of_strategies(view, |strategy| strategy.value.unwrap_or(0.0));
@@ -113,8 +105,8 @@ pub(in crate::recording) fn has_choice(view: &View) -> bool {
 }
 
 pub(super) fn add(tracks: &mut Tracks) -> RecordingStreamResult<()> {
-    let (view, when) = (tracks.view, (Kind::Events, tracks.scene.unit.choose(1.0, 10.0)));
-    for plot in plots(tracks.scene, view) {
+    let (view, when) = (tracks.view, (Kind::Events, 1.0));
+    for plot in plots(view) {
         for Curve { part, name, color: own, value } in plot.curves {
             let path = format!("{}/{part}", plot.path);
             let line = SeriesLines::new()

@@ -3,7 +3,6 @@
 use super::robots::add_trail;
 use super::{Kind, ON_CHANGE, Strip, Tracks, WORLD, closed, color, line, order, points, position, strips};
 use draw::palette;
-use draw::scene::Sight;
 use draw::view::View;
 use localizer::PoseEstimate;
 use nalgebra::{Isometry2, Point2, SymmetricEigen, Vector2};
@@ -37,7 +36,7 @@ pub(super) fn add(tracks: &mut Tracks) -> RecordingStreamResult<()> {
     let outline = move |view: &View| view.belief.iter().map(|it| self::body(&it.pose, radius_m)).collect();
     tracks.add(body, ON_CHANGE, outline, strips);
     add_trail(tracks, trail, |view| Some(view.belief?.pose));
-    let when = (Kind::State, tracks.scene.unit.choose(1.0, 10.0));
+    let when = (Kind::State, 1.0);
     tracks.add(scan, when, hits, points);
     if belief.estimate.is_some() {
         let uncertainty = path(&format!("uncertainty_{ENLARGED}_times_enlarged"));
@@ -74,6 +73,6 @@ fn ellipse(estimate: &PoseEstimate) -> Strip {
 
 /// Some of the hits of the scan, at the believed pose.
 fn hits(view: &View) -> Vec<[f32; 2]> {
-    let Some(Sight::Laser(reading)) = view.sight() else { return Vec::new() };
+    let Some(reading) = view.sight() else { return Vec::new() };
     reading.hits().step_by(EVERY).map(|hit| position(&(reading.pose * hit))).collect()
 }

@@ -1,105 +1,50 @@
-//! What the curious robot sees: the field of view of a laser, or cells around the robot.
+//! The field of view of the laser of the curious robot.
 
 use super::coarse::Coarse;
 use super::maps::{Picture, images};
-use super::{Tracks, WORLD, class, color, line, order, position, strips};
+use super::{Tracks, WORLD, class, color, every, line, order, position, strips};
 use draw::outline::field_of_view;
 use draw::palette;
-use draw::scene::Sight;
 use draw::view::View;
 use interfaces::{Cell, GridFrame};
 use nalgebra::Point2;
-use rerun::{AnnotationContext, RecordingStreamResult, Transform3D};
+use rerun::{AnnotationContext, RecordingStreamResult};
 
 /// The class of the cells in the field of view.
 const IN_VIEW: u8 = 1;
 
-/// Adds what the robot sees in the first view; nothing if no robot sees.
+/// Adds what the robot sees; nothing if no robot sees in the first view.
 pub(super) fn add(tracks: &mut Tracks) -> RecordingStreamResult<()> {
-    let Some(sight) = tracks.view.sight() else { return Ok(()) };
+    if tracks.view.sight().is_none() {
+        return Ok(());
+    }
     let path = format!("{WORLD}/field_of_view");
     let (cells, outline) = (format!("{path}/cells"), format!("{path}/outline"));
-    let frame = frame(sight, &tracks.scene.frame);
-    let when = tracks.images(&frame, 0.2, 1.0);
+    let frame = frame(&tracks.scene.frame);
+    let when = every(&frame, 0.2);
     let classes = [("out of view", 0), ("in view", 255)];
     let classes =
         (0..).zip(classes).map(|(id, (label, alpha))| class(id, label, color(palette::SENSOR, alpha)));
     tracks.always(&cells, &AnnotationContext::new(classes))?;
     Picture::of_frame(&frame).log(tracks, &cells, order::FIELD_OF_VIEW, 0.25)?;
-    match sight {
-        Sight::Laser(_) => {
-            tracks.always(&outline, &line(color(palette::SENSOR, 220), 0.75, order::SIGHT_OUTLINE))?;
-            let strip = |corners: Vec<Point2<f64>>| corners.iter().map(position).collect();
-            tracks.add(outline, when, move |view| corners(view).map(strip).into_iter().collect(), strips);
-            let cells_of = move |corners: Vec<Point2<f64>>| fill(&corners, &frame, IN_VIEW);
-            tracks.add(cells, when, move |view| corners(view).map(cells_of).into_iter().collect(), images);
-        }
-        Sight::Cells { .. } => {
-            let center = |view: &View| robot(view).map(|robot| position(&view.mapper.frame().center(robot)));
-            tracks.add(
-                path,
-                when,
-                move |view| center(view).into_iter().collect(),
-                |centers| {
-                    let centers = centers.into_iter().map(|[x, y]| [x, y, 0.0]);
-                    Transform3D::update_fields().with_many_translation(centers)
-                },
-            );
-            tracks.add(cells, when, move |view| around(view, &frame).into_iter().collect(), images);
-        }
-    }
+    tracks.always(&outline, &line(color(palette::SENSOR, 220), 0.75, order::SIGHT_OUTLINE))?;
+    let strip = |corners: Vec<Point2<f64>>| corners.iter().map(position).collect();
+    tracks.add(outline, when, move |view| corners(view).map(strip).collect(), strips);
+    let cells_of = move |corners: Vec<Point2<f64>>| fill(&corners, &frame, IN_VIEW);
+    tracks.add(cells, when, move |view| corners(view).map(cells_of).collect(), images);
     Ok(())
 }
 
-/// The cells that fill the field of view. The cells of a laser are fixed to the map, with twice the side of
-/// the map's cells, because there are five images per second. The cells of a robot that sees cells move with
-/// the robot, so that a large map costs no more than a small one.
-fn frame(sight: Sight, map: &GridFrame) -> GridFrame {
-    let cell_m = map.resolution_m();
-    let frame = match sight {
-        Sight::Laser(_) => {
-            let map = Coarse::new(map).frame;
-            let (width, height) = (map.width().div_ceil(2), map.height().div_ceil(2));
-            GridFrame::new(map.origin(), 2.0 * map.resolution_m(), width, height)
-        }
-        Sight::Cells { radius, .. } => {
-            let side = 2 * radius as usize + 1;
-            let corner = -0.5 * side as f64 * cell_m;
-            GridFrame::new(Point2::new(corner, corner), cell_m, side, side)
-        }
-    };
-    frame.unwrap_or(*map)
+/// The cells that fill the field of view, with twice the side of the map's cells, because there are five images per second.
+fn frame(map: &GridFrame) -> GridFrame {
+    let map = Coarse::new(map).frame;
+    let (width, height) = (map.width().div_ceil(2), map.height().div_ceil(2));
+    GridFrame::new(map.origin(), 2.0 * map.resolution_m(), width, height).unwrap_or(map)
 }
 
-/// The corners of the field of view of a laser, m.
-fn corners(view: &View) -> Option<Vec<Point2<f64>>> {
-    match view.sight()? {
-        Sight::Laser(reading) => Some(field_of_view(reading)),
-        Sight::Cells { .. } => None,
-    }
-}
-
-/// The cell of the robot.
-fn robot(view: &View) -> Option<Cell> {
-    match view.sight()? {
-        Sight::Laser(_) => None,
-        Sight::Cells { reading, .. } => {
-            Some(view.mapper.frame().cell_at(&reading.pose.translation.vector.into()))
-        }
-    }
-}
-
-/// The classes of the cells around the robot.
-fn around(view: &View, frame: &GridFrame) -> Option<Vec<u8>> {
-    let (robot, Sight::Cells { reading, radius }) = (robot(view)?, view.sight()?) else { return None };
-    let mut classes = vec![0; frame.len()];
-    for (cell, _) in &reading.cells {
-        let cell = Cell::new(cell.x - robot.x + radius as i32, cell.y - robot.y + radius as i32);
-        if let Some(index) = frame.index(cell) {
-            classes[index] = IN_VIEW;
-        }
-    }
-    Some(classes)
+/// The corners of the field of view, m; none where no robot sees.
+fn corners(view: &View) -> impl Iterator<Item = Vec<Point2<f64>>> {
+    view.sight().map(field_of_view).into_iter()
 }
 
 /// Fills a closed outline: `class` for every cell of `frame` whose center is inside, 0 for the others.

@@ -34,7 +34,6 @@ pub(super) fn add(tracks: &Tracks) -> RecordingStreamResult<()> {
         .map(|(mark, _)| match *mark {
             Mark::Line(color) => (color, 1.5),
             Mark::Area(color) | Mark::Cross(color) | Mark::Dot(color) => (color, 5.0),
-            Mark::Ring | Mark::Nothing => (palette::CURIOUS, 0.5),
         })
         .collect();
     // A dark rim shows white areas on a light ground.

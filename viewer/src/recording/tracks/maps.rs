@@ -1,9 +1,9 @@
 //! The layers of the map, each with its color bar.
 
 use super::coarse::Coarse;
-use super::{Tracks, WORLD, class, color, labels, order};
+use super::{Tracks, WORLD, class, color, every, labels, order};
 use draw::layers::Layer;
-use draw::scene::{TimeUnit, extent};
+use draw::scene::extent;
 use draw::view::View;
 use interfaces::GridFrame;
 use nalgebra::{Point2, Vector2};
@@ -21,31 +21,26 @@ pub(in crate::recording) fn map(layer: Layer) -> String {
 }
 
 pub(super) fn add(tracks: &mut Tracks) -> RecordingStreamResult<()> {
-    let (unit, frame) = (tracks.scene.unit, tracks.scene.frame);
-    let frame = &frame;
+    let frame = &tracks.scene.frame;
     for layer in Layer::ALL {
         let cells = format!("{}/cells", map(layer));
-        let classes = layer.legend(unit).into_iter();
+        let classes = layer.legend().into_iter();
         let classes = classes.map(|(id, meaning)| class(id, &meaning, color(layer.color(id), 255)));
         tracks.always(&map(layer), &AnnotationContext::new(classes))?;
         let coarse = Coarse::new(frame);
         Picture::of_frame(&coarse.frame).log(tracks, &cells, order::MAP, 1.0)?;
         color_bar(tracks, layer, frame)?;
-        let [seconds, steps] = if layer == Layer::Occupancy { [1.0, 1.0] } else { [10.0, 20.0] };
-        let when = tracks.images(&coarse.frame, seconds, steps);
-        tracks.add(cells, when, classes_of(layer, unit, coarse), images);
+        let when = every(&coarse.frame, if layer == Layer::Occupancy { 1.0 } else { 10.0 });
+        // The map can still be smaller than the image.
+        let classes = move |view: &View| vec![coarse.classes(&layer.classes(view.mapper))];
+        tracks.add(cells, when, classes, images);
     }
     Ok(())
 }
 
-/// The classes of all cells of an image; the map can still be smaller.
-fn classes_of(layer: Layer, unit: TimeUnit, coarse: Coarse) -> impl FnMut(&View) -> Vec<Vec<u8>> {
-    move |view| vec![coarse.classes(&layer.classes(view.mapper, unit))]
-}
-
 /// Logs the color bar below a map, if the layer has one.
 fn color_bar(tracks: &Tracks, layer: Layer, frame: &GridFrame) -> RecordingStreamResult<()> {
-    let Some(scale) = layer.scale(tracks.scene.unit) else { return Ok(()) };
+    let Some(scale) = layer.scale() else { return Ok(()) };
     let (origin, size) = extent(frame);
     let at = |x: f64, y: f64| origin + size.component_mul(&Vector2::new(x, y));
     let classes = layer.scale_classes();

@@ -61,20 +61,15 @@ pub(super) fn start(
     Ok(tracks.tracks)
 }
 
-/// Where time is counted in steps, images with more cells than this are logged less often: a viewer holds
-/// 20,000 images of this size in 50 MB.
-const STEP_CELLS: usize = 2500;
-/// The same where time is counted in seconds: the maps of a building would fill the file.
-const SECOND_CELLS: usize = 100_000;
+/// Images with more cells than this are logged less often: the maps of a building would fill the file.
+const MANY_CELLS: usize = 100_000;
+
+/// Images of the cells of `frame`, logged when they have changed, at intervals of at least this time.
+fn every(frame: &GridFrame, period_s: f64) -> (Kind, f64) {
+    (Kind::State, period_s * frame.len().div_ceil(MANY_CELLS) as f64)
+}
 
 impl Tracks<'_> {
-    /// Images of the cells of `frame`, logged when they have changed, at intervals of at least `seconds` or
-    /// `steps`.
-    fn images(&self, frame: &GridFrame, seconds: f64, steps: f64) -> (Kind, f64) {
-        let times = |cells: usize| frame.len().div_ceil(cells) as f64;
-        (Kind::State, self.scene.unit.choose(seconds * times(SECOND_CELLS), steps * times(STEP_CELLS)))
-    }
-
     /// Logs components that never change.
     fn always(&self, path: &str, components: &impl AsComponents) -> RecordingStreamResult<()> {
         self.stream.log_static(path, components)

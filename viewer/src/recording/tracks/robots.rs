@@ -3,9 +3,7 @@
 use super::{EVENTS, LABEL, ON_CHANGE, Strip, Tracks, WORLD, color, escape, labels, line, order, points};
 use super::{position, strips};
 use draw::palette;
-use draw::scene::TimeUnit;
 use draw::view::{View, is_next_point};
-use interfaces::rotation;
 use nalgebra::{Isometry2, Vector2};
 use rerun::{Arrows2D, AsComponents, Points2D, Radius, RecordingStreamResult, Transform3D};
 
@@ -59,18 +57,9 @@ fn body(tracks: &mut Tracks, index: usize) -> RecordingStreamResult<()> {
         let below = labels([robot.name.as_str()]).with_positions([[0.0, -1.2 * radius_m]]);
         tracks.always(&format!("{path}/name"), &below)?;
     }
-    // The pose in a grid world has no heading: the robot is drawn along its last move.
-    let has_heading = scene.unit == TimeUnit::Second;
     let nose = Vector2::new(1.4 * robot.radius_m, 0.0);
-    let mut last: Option<Isometry2<f64>> = None;
     let pose = move |view: &View| {
-        let mut pose = view.robots[index].pose;
-        if let (false, Some(last)) = (has_heading, last) {
-            let moved = pose.translation.vector - last.translation.vector;
-            let is_still = moved.norm() == 0.0;
-            pose.rotation = if is_still { last.rotation } else { rotation(libm::atan2(moved.y, moved.x)) };
-        }
-        last = Some(pose);
+        let pose = view.robots[index].pose;
         vec![(position(&pose.translation.vector.into()), position(&(pose * nose).into()))]
     };
     tracks.add(path, ON_CHANGE, pose, |poses| -> [Box<dyn AsComponents>; 2] {

@@ -1,9 +1,10 @@
 //! A card for each place.
 
 use super::advice::advice;
-use super::marks::{Mark, MarkKind};
-use super::plan::{Plan, Shown};
+use super::marks::{Mark, outline};
+use super::plan::Plan;
 use super::{Page, middle, number};
+use draw::layers::Layer;
 use mapper::{Clock, Door, Furniture, Leaf, ThingKind, Week};
 use maud::{Markup, html};
 use nalgebra::{Point2, Vector2};
@@ -213,15 +214,15 @@ impl Page<'_> {
     /// The picture of a place.
     fn surroundings(&self, place: &Place) -> Markup {
         let plan = self.plan.around(&middle(place), SIDE_M);
-        let [width, height] = plan.drawing();
+        let size = plan.drawing();
         html! {
-            svg.plan viewBox={ "0 0 " (number(width)) " " (number(height)) } role="img" aria-label={ "Surroundings of place " (place.number) } font-family="sans-serif" {
-                (plan.image(Shown::Places))
-                @if let Some(door) = self.door(place) { (leaf(&plan, door)) } @else { (outline(&plan, &self.cells(place))) }
+            svg.plan.mark viewBox={ "0 0 " (number(size.x)) " " (number(size.y)) } role="img" aria-label={ "Surroundings of place " (place.number) } font-family="sans-serif" stroke-width="2" {
+                (plan.cells(Layer::Occupancy))
+                @if let Some(door) = self.door(place) { (leaf(&plan, door)) } @else { (outline(&plan.rectangle(&self.cells(place)))) }
                 @for tile in &place.tiles { @if let Some(direction) = &tile.direction { (arrow(&plan, [tile.x_m, tile.y_m].into(), direction)) } }
                 @if let Some(Furniture { from: Some(from), to: Some(to) }) = self.furniture(place) { (line(&plan, [from.center, to.center], "6 4")) }
-                rect x="0" y=(number(height - 28.0)) width="106" height="28" fill="#fff" opacity="0.85" {}
-                (plan.scale_bar([8.0, height - 8.0]))
+                rect x="0" y=(number(size.y - 28.0)) width="106" height="28" fill="#fff" opacity="0.85" {}
+                g stroke-width="0" { (plan.scale_bar([8.0, size.y - 8.0])) }
             }
         }
     }
@@ -238,7 +239,7 @@ impl Page<'_> {
             label: place.number.to_string(),
             link: Some(format!("#place-{}", place.number)),
             points: self.cells(place),
-            kind: if self.is_door(place) { MarkKind::Door } else { MarkKind::Place },
+            class: if self.is_door(place) { "door" } else { "place" },
         };
         self.summary.places.iter().map(mark).collect()
     }
@@ -280,32 +281,25 @@ fn leaf(plan: &Plan, door: &Door) -> Markup {
 }
 
 fn line(plan: &Plan, ends: [Point2<f64>; 2], dashes: &str) -> Markup {
-    let [[x1, y1], [x2, y2]] = ends.map(|end| plan.unit(&end).map(number));
-    html! { line x1=(x1) y1=(y1) x2=(x2) y2=(y2) stroke="#0072b2" stroke-width="4" stroke-dasharray=(dashes) {} }
+    let [from, to] = ends.map(|end| plan.unit(&end));
+    html! { line x1=(number(from.x)) y1=(number(from.y)) x2=(number(to.x)) y2=(number(to.y)) stroke="currentColor" stroke-width="4" stroke-dasharray=(dashes) {} }
 }
 
 /// An arrow along the heading of most passages of a tile; with two heads if at least a quarter goes the opposite way.
 fn arrow(plan: &Plan, at: Point2<f64>, direction: &Direction) -> Markup {
     let point = |along_m: f64, beside_m: f64| {
-        let [x, y] =
-            plan.unit(&(at + interfaces::rotation(direction.heading_rad) * Vector2::new(along_m, beside_m)));
-        format!("{},{}", number(x), number(y))
+        let at = at + interfaces::rotation(direction.heading_rad) * Vector2::new(along_m, beside_m);
+        let at = plan.unit(&at);
+        format!("{},{}", number(at.x), number(at.y))
     };
     let head =
         |way: f64| [point(way * 0.08, 0.08), point(way * 0.2, 0.0), point(way * 0.08, -0.08)].join(" ");
-    let is_both = direction.share < BOTH_WAYS;
     html! {
-        polyline points={ (point(-0.2, 0.0)) " " (point(0.2, 0.0)) } fill="none" stroke="#0072b2" stroke-width="2" {}
-        polyline points=(head(1.0)) fill="none" stroke="#0072b2" stroke-width="2" {}
-        @if is_both { polyline points=(head(-1.0)) fill="none" stroke="#0072b2" stroke-width="2" {} }
-    }
-}
-
-/// A rectangle around points.
-fn outline(plan: &Plan, points: &[Point2<f64>]) -> Markup {
-    let [left, top, right, bottom] = plan.visible(points);
-    html! {
-        rect x=(number(left)) y=(number(top)) width=(number(right - left)) height=(number(bottom - top)) fill="none" stroke="#0072b2" stroke-width="2" {}
+        g fill="none" stroke="currentColor" {
+            polyline points={ (point(-0.2, 0.0)) " " (point(0.2, 0.0)) } {}
+            polyline points=(head(1.0)) {}
+            @if direction.share < BOTH_WAYS { polyline points=(head(-1.0)) {} }
+        }
     }
 }
 

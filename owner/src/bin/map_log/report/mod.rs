@@ -6,18 +6,16 @@ mod labels;
 mod marks;
 mod opening;
 mod plan;
-mod raster;
 mod sessions;
 
 use crate::summary::Summary;
 use draw::layers::Layer;
 use draw::palette::{self, Rgb};
-use draw::scene::TimeUnit;
 use mapper::Mapper;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use nalgebra::Point2;
 use owner::words::{date, length_of, list};
-use plan::{Plan, Shown};
+use plan::Plan;
 use results::numbers::percent;
 use survey::{Place, StillName};
 
@@ -51,6 +49,8 @@ impl Page<'_> {
                     style { (PreEscaped(STYLE)) }
                 }
                 body {
+                    (self.plan.picture(Layer::Occupancy))
+                    @if self.has_rates() { (self.plan.picture(Layer::Interval)) }
                     (self.opening())
                     (self.where_it_changes())
                     (self.sessions())
@@ -69,7 +69,7 @@ impl Page<'_> {
         html! {
             h2 { "Where it changes" }
             figure {
-                (self.plan.draw(Shown::Places, &marks, "The plan, with the places where something changes"))
+                (self.plan.draw(Layer::Occupancy, &marks, "The plan, with the places where something changes"))
                 ul.key {
                     (key(palette::BLOCKED, "wall or thing"))
                     (key(palette::MOVING, "something was here at times"))
@@ -91,7 +91,7 @@ impl Page<'_> {
     }
 
     fn turned(&self) -> String {
-        match self.plan.turn_deg() {
+        match self.plan.turn_rad.to_degrees() {
             turn_deg if turn_deg.abs() < 0.01 => "x and y are the directions of the coordinates.".to_owned(),
             turn_deg => {
                 let direction = if turn_deg > 0.0 { "to the left" } else { "to the right" };
@@ -148,7 +148,7 @@ impl Page<'_> {
         html! {
             h2 { "How often" }
             figure {
-                (self.plan.draw(Shown::Interval, &[], "The mean time of one cycle of every cell"))
+                (self.plan.draw(Layer::Interval, &[], "The mean time of one cycle of every cell"))
                 (interval_key())
                 figcaption {
                     "The mean time of one cycle of each cell: blocked, free, and blocked again. Dark: often; light: rarely. Each cell counts alone, and not \
@@ -217,12 +217,11 @@ fn still(StillName { name, observed_s }: &StillName) -> String {
 }
 
 fn key(color: Rgb, meaning: &str) -> Markup {
-    html! { li { (swatch(color)) (meaning) } }
+    html! { li { svg width="16" height="16" aria-hidden="true" { rect x="1" y="1" width="14" height="14" fill=(hex(color)) stroke="#777" {} } (meaning) } }
 }
 
-fn swatch([red, green, blue]: Rgb) -> Markup {
-    let fill = format!("#{red:02x}{green:02x}{blue:02x}");
-    html! { svg width="16" height="16" aria-hidden="true" { rect x="1" y="1" width="14" height="14" fill=(fill) stroke="#777" {} } }
+fn hex([red, green, blue]: Rgb) -> String {
+    format!("#{red:02x}{green:02x}{blue:02x}")
 }
 
 /// The colors of the times of a cycle.
@@ -231,12 +230,11 @@ fn interval_key() -> Markup {
     const LEFT: f64 = 20.0;
     let (layer, classes) = (Layer::Interval, Layer::Interval.scale_classes());
     let step = WIDTH / classes.len() as f64;
-    let scale = layer.scale(TimeUnit::Second);
+    let scale = layer.scale();
     html! {
         svg width="340" height="38" viewBox="0 0 340 38" font-size="13" font-family="sans-serif" role="img" aria-label="From dark, often, to light, rarely" {
             @for (place, class) in classes.iter().enumerate() {
-                @let [red, green, blue] = layer.color(*class);
-                rect x=(number(LEFT + step * place as f64)) y="0" width=(number(step + 0.5)) height="14" fill=(format!("#{red:02x}{green:02x}{blue:02x}")) {}
+                rect x=(number(LEFT + step * place as f64)) y="0" width=(number(step + 0.5)) height="14" fill=(hex(layer.color(*class))) {}
             }
             @for tick in scale.iter().flat_map(|scale| scale.ticks.iter().map(move |tick| (*tick, scale.position(*tick)))) {
                 text x=(number(LEFT + WIDTH * tick.1)) y="31" text-anchor="middle" { (tick.0) @if tick.0 >= 500.0 { " s" } }

@@ -1,8 +1,8 @@
 //! The first lines of the page: is the map good, where is it liveliest, how many doors.
 
-use super::marks::{Mark, MarkKind};
-use super::plan::Shown;
+use super::marks::Mark;
 use super::{Page, middle};
+use draw::layers::Layer;
 use maud::{Markup, html};
 use nalgebra::{Point2, Vector2};
 use owner::words::{Seen, changed, range};
@@ -112,14 +112,14 @@ impl Page<'_> {
                 label: number.to_string(),
                 link: None,
                 points: vec![at - around, at + around],
-                kind: MarkKind::Doubt,
+                class: "doubt",
             }
         };
         let marks: Vec<Mark> = (1..).zip(doubts).map(mark).collect();
         html! {
             h2 #doubts { "Uncertain places of the map" }
             p { "The numbers are the uncertain places, in the order of time. There, walls can be drawn twice, or in the wrong place." }
-            figure { (self.plan.draw(Shown::Places, &marks, "Uncertain places")) }
+            figure { (self.plan.draw(Layer::Occupancy, &marks, "Uncertain places")) }
         }
     }
 }

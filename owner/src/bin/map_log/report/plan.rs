@@ -1,12 +1,15 @@
 //! The plan of the place: turned so that its walls are upright, and parts of it.
 
-use super::labels::{Box4, labels};
+use super::labels::{RADIUS, Rectangle, labels};
 use super::marks::{Mark, drawn};
-use super::number;
-use super::raster::Cells;
+use super::{hex, number};
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use draw::canvas::png_of_palette;
 use draw::layers::{BLOCKED, FREE, Layer, UNKNOWN};
 use draw::palette;
-use draw::scene::TimeUnit;
+use draw::scene::{extent, span};
+use interfaces::{Cell, CellState};
 use mapper::Mapper;
 use maud::{Markup, html};
 use nalgebra::{Point2, Vector2};
@@ -20,7 +23,7 @@ const WIDTH: f64 = 720.0;
 /// The space around the map, for labels, and that below it, for the scale.
 const MARGIN: f64 = 48.0;
 const BELOW: f64 = 38.0;
-/// The largest number of pixels along the longer side of the picture of the cells.
+/// The largest number of pixels along the longer side of a plan: several cells of a large map share one.
 const MAX_PIXELS: f64 = 1500.0;
 /// A plan that is wider than high by this factor is turned once more: telephones and pages are high.
 const WIDE: f64 = 1.5;
@@ -39,88 +42,48 @@ const SCALES_M: [f64; 8] = [0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0];
 #[derive(Clone, Copy)]
 pub(super) struct Plan<'a> {
     mapper: &'a Mapper,
-    turn_rad: f64,
+    /// The angle by which the map is turned counter-clockwise.
+    pub(super) turn_rad: f64,
     /// Its lower left corner and its size in the turned frame, m.
     low: Point2<f64>,
     size: Vector2<f64>,
     /// Units of the drawing per meter, and the space around the map in units.
     scale: f64,
     margin: f64,
-}
-
-/// What is drawn of the cells.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Shown {
-    /// Walls, and what changed.
-    Places,
-    /// The time of a cycle.
-    Interval,
+    /// The cells of the map along the side of a pixel of its pictures.
+    cells_per_pixel: usize,
 }
 
 impl<'a> Plan<'a> {
     /// The plan of all that was seen.
     pub(super) fn whole(mapper: &'a Mapper) -> Self {
-        let upright = upright_rad(mapper);
-        let plan = Self {
-            mapper,
-            turn_rad: upright,
-            low: Point2::origin(),
-            size: Vector2::zeros(),
-            scale: 1.0,
-            margin: MARGIN,
-        };
-        let (mut low, mut size) = plan.seen();
-        let mut turn_rad = upright;
+        let mut turn_rad = upright_rad(mapper);
+        let (mut low, mut size) = seen(mapper, turn_rad);
         if size.x > WIDE * size.y {
             turn_rad += FRAC_PI_2;
-            (low, size) = (Point2::new(-low.y - size.y, low.x), Vector2::new(size.y, size.x));
+            (low, size) = seen(mapper, turn_rad);
         }
         let scale = (WIDTH - 2.0 * MARGIN) / size.x;
-        Self { turn_rad, low, size, scale, ..plan }
+        let cells_per_pixel = (size.max() / MAX_PIXELS / mapper.frame().resolution_m()).ceil() as usize;
+        Self { mapper, turn_rad, low, size, scale, margin: MARGIN, cells_per_pixel }
     }
 
     /// The square of this side around a point, m.
     pub(super) fn around(&self, at: &Point2<f64>, side_m: f64) -> Self {
         let size = Vector2::repeat(side_m);
-        Self { low: self.turned(at) - size / 2.0, size, scale: 300.0 / side_m, margin: 0.0, ..*self }
-    }
-
-    /// The rectangle of the turned map that was seen.
-    fn seen(&self) -> (Point2<f64>, Vector2<f64>) {
-        let frame = self.mapper.frame();
-        let seen = (0..frame.len()).filter(|index| self.mapper.was_ever_seen(*index));
-        let points: Vec<Point2<f64>> =
-            seen.map(|index| self.turned(&frame.center(frame.cell(index)))).collect();
-        let span = |of: fn(&Point2<f64>) -> f64| {
-            let mut values: Vec<f64> = points.iter().map(of).collect();
-            values.sort_by(f64::total_cmp);
-            let tail = (TAIL * values.len() as f64) as usize;
-            let at = |number: usize| values.get(number).copied().unwrap_or_default();
-            [at(tail), at(values.len().saturating_sub(1 + tail))]
-        };
-        let [x, y] = [span(|at| at.x), span(|at| at.y)];
-        let low = Point2::new(x[0] - AROUND_M, y[0] - AROUND_M);
-        (low, Vector2::new(x[1] - x[0] + 2.0 * AROUND_M, y[1] - y[0] + 2.0 * AROUND_M))
-    }
-
-    fn turned(&self, at: &Point2<f64>) -> Point2<f64> {
-        interfaces::rotation(self.turn_rad) * at
-    }
-
-    /// The angle by which the map is turned counter-clockwise, degrees.
-    pub(super) fn turn_deg(&self) -> f64 {
-        self.turn_rad.to_degrees()
+        let low = interfaces::rotation(self.turn_rad) * at - size / 2.0;
+        Self { low, size, scale: 300.0 / side_m, margin: 0.0, ..*self }
     }
 
     /// A point of the map in units of the drawing.
-    pub(super) fn unit(&self, at: &Point2<f64>) -> [f64; 2] {
-        let from = self.turned(at) - self.low;
-        [self.margin + self.scale * from.x, self.margin + self.scale * (self.size.y - from.y)]
+    pub(super) fn unit(&self, at: &Point2<f64>) -> Point2<f64> {
+        let from = interfaces::rotation(self.turn_rad) * at - self.low;
+        Point2::new(from.x, self.size.y - from.y) * self.scale + Vector2::repeat(self.margin)
     }
 
     /// Where a point is on the plan, in words.
     pub(super) fn words(&self, at: &Point2<f64>) -> String {
-        let from = self.turned(at) - self.low;
+        let from = interfaces::rotation(self.turn_rad) * at - self.low;
         words([from.x / self.size.x, from.y / self.size.y])
     }
 
@@ -141,112 +104,116 @@ impl<'a> Plan<'a> {
     }
 
     /// The size of the drawing, in units.
-    pub(super) fn drawing(&self) -> [f64; 2] {
+    pub(super) fn drawing(&self) -> Vector2<f64> {
         let below = if self.margin > 0.0 { BELOW } else { 0.0 };
-        [2.0 * self.margin + self.scale * self.size.x, 2.0 * self.margin + self.scale * self.size.y + below]
+        self.size * self.scale + Vector2::new(2.0 * self.margin, 2.0 * self.margin + below)
     }
 
-    fn cells(&self, shown: Shown) -> Cells {
-        let layer = if shown == Shown::Places { Layer::Occupancy } else { Layer::Interval };
-        let mut classes = layer.classes(self.mapper, TimeUnit::Second);
+    /// The picture of all cells that every plan on the page shows a part of.
+    pub(super) fn picture(&self, layer: Layer) -> Markup {
+        let mut classes = layer.classes(self.mapper);
         let mut colors: Vec<palette::Rgb> = (0..CHANGED).map(|class| layer.color(class)).collect();
         colors.push(palette::MOVING);
-        if shown == Shown::Places {
+        if layer == Layer::Occupancy {
             let changed = self.mapper.changed().filter(|index| self.mapper.rate(*index) > 0.0);
             changed.for_each(|index| classes.cells_mut()[index] = CHANGED);
         }
-        let rank = |class: u8| match class {
+        // Where several cells meet in one pixel, the one that tells most is shown.
+        let rank = |class: &u8| match *class {
             ..=UNKNOWN => 0,
             FREE => 1,
             BLOCKED => 2,
             class => u8::MAX - class, // short intervals first
         };
-        Cells { classes, colors, rank, outside: UNKNOWN }
+        let (frame, side) = (self.mapper.frame(), self.cells_per_pixel.max(1));
+        let size = [frame.width(), frame.height()].map(|cells| cells.div_ceil(side));
+        let pixel = |column: usize, row: usize| {
+            let cells = (0..side * side).filter_map(|cell| {
+                let [x, y] = [column * side + cell % side, row * side + cell / side];
+                classes.get(Cell::new(x as i32, y as i32)).copied()
+            });
+            cells.max_by_key(rank).unwrap_or(UNKNOWN)
+        };
+        // The rows of a picture count from the top.
+        let rows = (0..size[1]).rev().flat_map(|row| (0..size[0]).map(move |column| (column, row)));
+        let pixels: Vec<u8> = rows.map(|(column, row)| pixel(column, row)).collect();
+        let png = STANDARD.encode(png_of_palette(size.map(|length| length as u32), &colors, &pixels));
+        html! {
+            svg.picture width="0" height="0" {
+                image id=(layer.name()) width=(size[0]) height=(size[1]) href={ "data:image/png;base64," (png) } {}
+            }
+        }
     }
 
-    /// The cells as an element of a drawing.
-    pub(super) fn image(&self, shown: Shown) -> Markup {
-        let longest_m = self.size.x.max(self.size.y);
-        let pixel_m = (longest_m / MAX_PIXELS).max(self.mapper.frame().resolution_m() / 2.0);
-        let pixels = [self.size.x, self.size.y].map(|length_m| (length_m / pixel_m).ceil().max(1.0));
-        let (low, high_y, back) = (self.low, self.low.y + self.size.y, interfaces::rotation(-self.turn_rad));
-        let at = |x: f64, y: f64| back * Point2::new(low.x + x * pixel_m, high_y - y * pixel_m);
-        let address = self.cells(shown).address(pixels.map(|count| count as u32), pixel_m, at);
-        let [width, height] = pixels.map(|count| number(count * pixel_m * self.scale));
-        html! { image x=(number(self.margin)) y=(number(self.margin)) width=(width) height=(height) href=(address) preserveAspectRatio="none" {} }
+    /// The cells of a picture of the page, as an element of a drawing.
+    pub(super) fn cells(&self, layer: Layer) -> Markup {
+        let (low, size) = extent(self.mapper.frame());
+        let pixel_m = self.cells_per_pixel.max(1) as f64 * self.mapper.frame().resolution_m();
+        let rows_m = (size.y / pixel_m).ceil() * pixel_m;
+        // From pixels to units of the drawing.
+        let unit = |x: f64, y: f64| {
+            self.unit(&(low + Vector2::new(x * pixel_m, rows_m - y * pixel_m))) - Vector2::repeat(self.margin)
+        };
+        let origin = unit(0.0, 0.0);
+        let [x, y] = [unit(1.0, 0.0) - origin, unit(0.0, 1.0) - origin];
+        let matrix = [x.x, x.y, y.x, y.y, origin.x, origin.y].map(|value| format!("{value:.5}")).join(" ");
+        let [width, height] = [self.size.x, self.size.y].map(|length_m| number(length_m * self.scale));
+        html! {
+            svg x=(self.margin) y=(self.margin) width=(width) height=(height) {
+                rect width=(width) height=(height) fill=(hex(palette::UNKNOWN)) {}
+                use href={ "#" (layer.name()) } transform={ "matrix(" (matrix) ")" } {}
+            }
+        }
     }
 
     /// A drawing of the cells, with marks, their labels, the scale, and the axes of the map where it is turned.
-    pub(super) fn draw(&self, shown: Shown, marks: &[Mark], what: &str) -> Markup {
-        let [width, height] = self.drawing();
-        let boxes: Vec<Box4> = marks.iter().map(|mark| self.visible(&mark.points)).collect();
-        let found = labels(&boxes, [width, height - BELOW], |at, radius| self.covered(at, radius));
+    pub(super) fn draw(&self, layer: Layer, marks: &[Mark], what: &str) -> Markup {
+        let size = self.drawing();
+        let rectangles: Vec<Rectangle> = marks.iter().map(|mark| self.rectangle(&mark.points)).collect();
+        let found = labels(&rectangles, size - Vector2::new(0.0, BELOW), |at| self.covered(at));
         html! {
-            svg.plan viewBox={ "0 0 " (number(width)) " " (number(height)) } role="img" aria-label=(what) font-family="sans-serif" {
-                (self.image(shown))
-                @for ((mark, rectangle), label) in marks.iter().zip(&boxes).zip(&found) { (drawn(mark, rectangle, label.as_ref())) }
-                (self.scale_bar([self.margin, height - 12.0]))
-                (self.axes([width - self.margin - 30.0, height - 24.0]))
+            svg.plan viewBox={ "0 0 " (number(size.x)) " " (number(size.y)) } role="img" aria-label=(what) font-family="sans-serif" {
+                (self.cells(layer))
+                @for ((mark, rectangle), label) in marks.iter().zip(&rectangles).zip(&found) { (drawn(mark, rectangle, label.as_ref())) }
+                (self.scale_bar([self.margin, size.y - 12.0]))
+                (self.axis("x", 0.0, &size)) (self.axis("y", FRAC_PI_2, &size))
             }
         }
     }
 
-    /// The rectangle around points, in units of the drawing.
-    pub(super) fn rectangle(&self, points: &[Point2<f64>]) -> Box4 {
-        let half = self.mapper.frame().resolution_m() / 2.0 * self.scale;
-        let mut around = [f64::INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY];
-        for [x, y] in points.iter().map(|point| self.unit(point)) {
-            around = [
-                around[0].min(x - half),
-                around[1].min(y - half),
-                around[2].max(x + half),
-                around[3].max(y + half),
-            ];
-        }
-        around
+    /// The rectangle around points, in units of the drawing, wide and high enough to be seen.
+    pub(super) fn rectangle(&self, points: &[Point2<f64>]) -> Rectangle {
+        let [low, high] = span(&points.iter().map(|point| self.unit(point)).collect::<Vec<_>>());
+        let cell = Vector2::repeat(self.mapper.frame().resolution_m() * self.scale);
+        let half = (high - low + cell).sup(&Vector2::repeat(LEAST_SIDE_M * self.scale)) / 2.0;
+        let middle = nalgebra::center(&low, &high);
+        [middle - half, middle + half]
     }
 
-    /// The rectangle around points, wide and high enough to be seen.
-    pub(super) fn visible(&self, points: &[Point2<f64>]) -> Box4 {
-        let [left, top, right, bottom] = self.rectangle(points);
-        let missing = |side: f64| ((LEAST_SIDE_M * self.scale - side) / 2.0).max(0.0);
-        let [x, y] = [missing(right - left), missing(bottom - top)];
-        [left - x, top - y, right + x, bottom + y]
-    }
-
-    /// The share of a circle of the drawing under which something blocks or changes.
-    fn covered(&self, at: [f64; 2], radius: f64) -> f64 {
-        const STEPS: i32 = 4;
-        let frame = self.mapper.frame();
-        let back = interfaces::rotation(-self.turn_rad);
-        let (mut all, mut full) = (0.0, 0.0);
-        for (x, y) in (-STEPS..=STEPS).flat_map(|y| (-STEPS..=STEPS).map(move |x| (x, y))) {
-            let offset = [x, y].map(|step| f64::from(step) / f64::from(STEPS));
-            if offset[0] * offset[0] + offset[1] * offset[1] > 1.0 {
-                continue;
-            }
-            let [x, y] = [at[0] + radius * offset[0], at[1] + radius * offset[1]];
-            let from = Vector2::new(x - self.margin, self.margin - y) / self.scale;
-            let point = back * (self.low + from + Vector2::new(0.0, self.size.y));
-            let index = frame.index(frame.cell_at(&point));
-            all += 1.0;
-            full += index.map_or(0.0, |index| {
-                let is_full = self.mapper.states().cells()[index] == interfaces::CellState::Blocked;
-                if is_full || self.mapper.rate(index) > 0.0 {
-                    1.0
-                } else if self.mapper.was_ever_seen(index) {
-                    0.05
-                } else {
-                    0.0
+    /// The share of a label at a point of the drawing under which something blocks or changes; free space counts a little.
+    fn covered(&self, at: &Point2<f64>) -> f64 {
+        let steps = || (-4..=4).map(|step| RADIUS * f64::from(step) / 4.0);
+        let around = steps().flat_map(|x| steps().map(move |y| Vector2::new(x, y)));
+        let (frame, turned) = (self.mapper.frame(), interfaces::rotation(-self.turn_rad));
+        let hidden = |off: Vector2<f64>| {
+            let from = (at + off - Vector2::repeat(self.margin)).coords / self.scale;
+            let point = turned * (self.low + Vector2::new(from.x, self.size.y - from.y));
+            frame.index(frame.cell_at(&point)).map_or(0.0, |index| {
+                match self.mapper.states().cells()[index] {
+                    _ if self.mapper.rate(index) > 0.0 => 1.0,
+                    CellState::Blocked => 1.0,
+                    CellState::Free => 0.05,
+                    CellState::Unknown => 0.0,
                 }
-            });
-        }
-        full / all
+            })
+        };
+        let shares: Vec<f64> = around.filter(|off| off.norm() <= RADIUS).map(hidden).collect();
+        shares.iter().sum::<f64>() / shares.len() as f64
     }
 
     /// A bar of a round length.
     pub(super) fn scale_bar(&self, [x, y]: [f64; 2]) -> Markup {
-        let longest = 0.3 * (self.drawing()[0] - 2.0 * self.margin);
+        let longest = 0.3 * self.size.x * self.scale;
         let fits = SCALES_M.iter().rev().find(|length_m| *length_m * self.scale <= longest);
         let length_m = fits.copied().unwrap_or(SCALES_M[0]);
         let end = x + length_m * self.scale;
@@ -257,18 +224,32 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// The directions of x and y of the map.
-    fn axes(&self, [x, y]: [f64; 2]) -> Markup {
-        let arrow = |name: &str, angle_rad: f64| {
-            let (sin, cos) = libm::sincos(self.turn_rad + angle_rad);
-            let [to, text] = [22.0, 34.0].map(|length| [x + length * cos, y - length * sin]);
-            html! {
-                line x1=(number(x)) y1=(number(y)) x2=(number(to[0])) y2=(number(to[1])) stroke="#4a5160" stroke-width="2" {}
-                text x=(number(text[0])) y=(number(text[1] + 7.0)) font-size="22" text-anchor="middle" fill="#4a5160" { (name) }
-            }
-        };
-        html! { (arrow("x", 0.0)) (arrow("y", FRAC_PI_2)) }
+    /// The direction of an axis of the map, at the lower right of a drawing.
+    fn axis(&self, name: &str, angle_rad: f64, size: &Vector2<f64>) -> Markup {
+        let from = Point2::new(size.x - self.margin - 30.0, size.y - 24.0);
+        let along = interfaces::rotation(-self.turn_rad - angle_rad) * Vector2::x();
+        let [to, text] = [22.0, 34.0].map(|length| from + along * length);
+        html! {
+            line x1=(number(from.x)) y1=(number(from.y)) x2=(number(to.x)) y2=(number(to.y)) stroke="#4a5160" stroke-width="2" {}
+            text x=(number(text.x)) y=(number(text.y + 7.0)) font-size="22" text-anchor="middle" fill="#4a5160" { (name) }
+        }
     }
+}
+
+/// The rectangle of a turned map that was seen: its lower left corner and its size, m.
+fn seen(mapper: &Mapper, turn_rad: f64) -> (Point2<f64>, Vector2<f64>) {
+    let (frame, rotation) = (mapper.frame(), interfaces::rotation(turn_rad));
+    let points: Vec<Point2<f64>> =
+        mapper.seen().map(|index| rotation * frame.center(frame.cell(index))).collect();
+    let span = |of: fn(&Point2<f64>) -> f64| {
+        let mut values: Vec<f64> = points.iter().map(of).collect();
+        values.sort_by(f64::total_cmp);
+        let tail = (TAIL * values.len() as f64) as usize;
+        let at = |number: usize| values.get(number).copied().unwrap_or_default();
+        [at(tail) - AROUND_M, at(values.len().saturating_sub(1 + tail)) + AROUND_M]
+    };
+    let [x, y] = [span(|at| at.x), span(|at| at.y)];
+    (Point2::new(x[0], y[0]), Vector2::new(x[1] - x[0], y[1] - y[0]))
 }
 
 /// A point in words: in which third of the plan it lies in both directions and, in a middle third, on which side of the middle.

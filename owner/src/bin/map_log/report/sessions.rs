@@ -1,7 +1,7 @@
 //! What is different since the last visit of the robot.
 
 use super::Page;
-use super::marks::{Mark, MarkKind};
+use super::marks::Mark;
 use maud::{Markup, html};
 use nalgebra::{Point2, Vector2};
 use owner::words::{date, length_of, list, rate, times};
@@ -115,7 +115,7 @@ impl Page<'_> {
                 label: letter(number),
                 link: Some("#since".to_owned()),
                 points: vec![at - half, at + half],
-                kind: MarkKind::New,
+                class: "new",
             }
         };
         let since = self.summary.since_last_session.iter();
