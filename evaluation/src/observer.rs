@@ -1,7 +1,7 @@
 //! Measures a run in the physics world against the ground truth, from outside the loop.
 
 use crate::metrics::{
-    ChangingAccuracy, Forecasts, MapScores, PoseErrors, Prediction, Things, TrueChains, map_scores,
+    ChangingAccuracy, Forecasts, Latency, MapScores, PoseErrors, Prediction, Things, TrueChains, map_scores,
 };
 use crate::scheduled_things::ScheduledThings;
 use interfaces::{GroundTruth, LaserReading, Twist};
@@ -25,6 +25,8 @@ pub type Curve = Thinned<(f64, MapScores), 1024>;
 /// The measurements of a run so far.
 #[derive(Clone, Debug, Default, serde::Deserialize, serde::Serialize)]
 pub struct Observer {
+    /// The delays between changes that a beam has shown and the map.
+    pub latency: Latency,
     /// The detection of the things that appeared or disappeared.
     pub things: Things,
     /// The accuracy on swept cells.
@@ -76,6 +78,7 @@ impl Observer {
 
     fn measure(&mut self, world: &PhysicsWorld, reading: &LaserReading, mapper: &Mapper) {
         let (truth, laser) = (world.truth(), world.true_pose() * reading.mount);
+        self.latency.observe(truth, mapper, reading, &laser);
         self.things.observe(world.obstacle_events(), truth.frame(), mapper, reading, &laser);
         self.true_chains.observe(truth);
         self.forecasts.observe(mapper, truth, Some(&self.true_chains));

@@ -183,6 +183,7 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
     /// then.
     ///
     /// # Errors
+    ///
     /// When the mapper refuses a reading.
     pub fn run(&mut self, end_s: f64) -> Result<(), ReadingError> {
         loop {
@@ -215,6 +216,7 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
     pub fn results(&self) -> RunResults {
         let Self { world, pose, robot: Robot { mapper, pilot, .. }, observer, .. } = self;
         let truth = world.truth();
+        let [block_latency, free_latency] = observer.latency.delays();
         let [contacts_while_standing, collisions] = observer.contacts;
         let strategies = pilot.strategies(Features::default()).into_iter();
         let curve = observer.curve.samples().iter();
@@ -228,6 +230,8 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
             passages: passage_scores(mapper, truth),
             rates: rate_scores(mapper, truth),
             age: age(mapper, truth),
+            block_latency,
+            free_latency,
             collisions,
             contacts: Contacts {
                 own_motion: observer.own_contacts,

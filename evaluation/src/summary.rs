@@ -3,7 +3,7 @@
 mod words;
 
 use crate::metrics::{
-    Age, ChangingScores, ForecastScores, IntervalScores, MapScores, PassageScores, PoseScores,
+    Age, ChangingScores, Delays, ForecastScores, IntervalScores, MapScores, PassageScores, PoseScores,
     PredictedScores, RateScores, ReachableScores, ThingReport,
 };
 use crate::scheduled_things::ScheduledScores;
@@ -89,6 +89,10 @@ pub struct RunResults {
     pub rates: RateScores,
     /// The time since cells were last seen, at the end.
     pub age: Age,
+    /// The delays between block events that a beam has shown and the map.
+    pub block_latency: Delays,
+    /// The delays between free events that a beam has shown and the map.
+    pub free_latency: Delays,
     /// The number of contacts of the curious robot that began while it moved.
     pub collisions: usize,
     /// All contacts of the curious robot, by cause.

@@ -10,10 +10,9 @@
 //! - From a FLASER line come the ranges and the time alone: in *corrected* logs its two poses are both the result of an
 //!   earlier estimation. Poses come from ODOM lines, interpolated to the time of the scan. Only on request
 //!   ([`TopicChoice::is_corrected`]) they are those of the FLASER lines.
-//! - A FLASER line does not name the field of view. It is that of the parameter `laser_front_laser_fov`; without it, it follows from
-//!   the number of readings: 180°, in steps of 1° (180 or 181 readings) or 0.5° (360 or 361 readings), or 100° in steps of 0.25° (400
-//!   or 401). Readings go from right to left.
-//! - Ranges of 80 m and more are numbers for failures, and no measurements.
+//! - A FLASER line does not name the field of view. It is that of the parameters `laser_front_laser_fov` and
+//!   `laser_front_laser_resolution`, if they agree with each other; otherwise, it follows from the number of readings: 180°, in steps
+//!   of 1° (180 or 181 readings) or 0.5° (360 or 361 readings), or 100° in steps of 0.25° (400 or 401). Readings go from right to left.
 //! - The pose of the laser on the robot is that of the parameters `robot_frontlaser_offset`, `robot_frontlaser_side_offset` (to the
 //!   left) and `robot_frontlaser_angular_offset` (rad), or for ROBOTLASER1 lines the one between their two poses, if it is the same in
 //!   all lines.

@@ -29,6 +29,11 @@ fn holds(seed: u64) {
         ["/goals/reached", "/goals/approached", "/goals/given_up"].map(|path| summary.number(path));
     at_least("goals reached or approached", reached + approached, 30.0);
     at_most("share of goals given up", given_up / (reached + approached + given_up), 0.02);
+    for (kind, bound_s) in [("block", 0.4), ("free", 1.2)] {
+        at_least(kind, summary.number(&format!("/{kind}_latency/shown")), 1000.0);
+        at_most(kind, summary.number(&format!("/{kind}_latency/median_s")), bound_s);
+        at_most(kind, summary.number(&format!("/{kind}_latency/never_noticed")), 0.05);
+    }
 }
 
 #[test]

@@ -48,6 +48,7 @@ fn walls_that_stand_askew_and_a_noisy_laser_make_few_false_changes() {
 #[test]
 fn swinging_and_sliding_doors_make_few_false_changes() {
     let summary = Run::quiet("--world house").summary();
+    assert!(summary.number("/block_latency/shown") > 1000.0);
     assert!(summary.number("/static_cells") > 10_000.0);
     assert!(summary.number("/false_change_events") <= 20.0, "{}", summary.number("/false_change_events"));
 }

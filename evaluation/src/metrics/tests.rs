@@ -298,3 +298,33 @@ fn a_prediction_whose_time_comes_while_the_robot_rests_is_left_out() {
         }
     }
 }
+
+/// The delays of block events and free events after 30 s of a robot that turns, and looks elsewhere while a box appears or disappears.
+fn delays_of_a_box(times: &str) -> [Delays; 2] {
+    let text = include_str!("../../../worlds/toy_on_the_floor.toml");
+    let (before, toy) = text.split_once("min_m = [11.5, 2.0]").unwrap();
+    let (_, rest) = toy.split_once("appears_s = 300.0").unwrap();
+    let text = format!("{before}min_m = [3.0, 3.0]\nmax_m = [3.4, 3.4]\n{times}{rest}");
+    let text = text.replace("fov_deg = 360.0", "fov_deg = 90.0");
+    let mut world = PhysicsWorld::new(&worldfile::physics::parse_world("toy.toml", &text).unwrap(), 0);
+    let mut mapper = Mapper::new(&MapperSettings::default(), *world.truth().frame()).unwrap();
+    let turn = Twist { angular_radps: 0.5, ..Twist::STOP };
+    let mut latency = Latency::default();
+    while world.time_s() < 30.0 {
+        let reading = world.sense();
+        mapper.update(&reading).unwrap();
+        latency.observe(world.truth(), &mapper, &reading, &(world.true_pose() * reading.mount));
+        world.act(&turn);
+    }
+    latency.delays()
+}
+
+#[test]
+fn a_body_that_stays_counts_like_one_that_leaves() {
+    let [stays, none] = delays_of_a_box("appears_s = 5.0\n");
+    let [leaves, frees] = delays_of_a_box("appears_s = 5.0\ndisappears_s = 18.0\n");
+    assert!(none.shown == 0 && frees.shown > 0, "{none:?} {frees:?}");
+    assert!(stays.shown >= 10 && stays.never_noticed == 0.0, "{stays:?}");
+    assert_eq!((stays.shown, stays.never_noticed), (leaves.shown, leaves.never_noticed));
+    assert_eq!((stays.median_s, stays.p95_s), (leaves.median_s, leaves.p95_s));
+}

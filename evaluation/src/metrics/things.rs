@@ -53,8 +53,7 @@ pub struct Things {
 }
 
 impl Things {
-    /// Measures one tick: what `reading` shows from the true pose of the `laser`, and the present map. `events` are all events since
-    /// the start.
+    /// Measures one tick, like [`super::Latency::observe`]. `events` are all events since the start.
     pub fn observe(
         &mut self,
         events: &[ObstacleEvent],
@@ -82,7 +81,7 @@ impl Things {
             });
         }
         self.events_taken = events.len();
-        let (beams, now_s) = (Beams { reading, laser, frame }, reading.time_s);
+        let (beams, now_s) = (Beams::new(reading, laser, frame), reading.time_s);
         for Thing { report, cells } in &mut self.things {
             if report.right_s.is_some() {
                 continue;

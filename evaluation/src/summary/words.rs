@@ -225,7 +225,7 @@ fn line_of(thing: &ThingReport) -> String {
 mod tests {
     use super::*;
     use crate::metrics::{
-        ChangingAccuracy, ForecastScores, IntervalScores, MapScores, PassageScores, ReachableScores,
+        ChangingAccuracy, Delays, ForecastScores, IntervalScores, MapScores, PassageScores, ReachableScores,
     };
     use std::collections::BTreeMap;
 
@@ -242,6 +242,8 @@ mod tests {
             intervals: IntervalScores::default(),
             rates,
             age,
+            block_latency: Delays::default(),
+            free_latency: Delays::default(),
             collisions: 0,
             contacts: Contacts { own_motion: 1, run_into: 2 },
             pose: PoseScores { mode: "exact", ..PoseScores::default() },

@@ -3,15 +3,18 @@
 use nalgebra::Isometry2;
 use std::f64::consts::{PI, TAU};
 
-/// The largest range of a laser, m: the lasers of such logs do not measure farther, and report failures as 81.83 m and above.
+/// The maximum range of a laser without a parameter, m: a SICK LMS 200 reports failures as 81.83 m and above.
 pub(super) const MAX_RANGE_M: f64 = 80.0;
 /// A laser is nearer to the center of its robot than this, m.
 pub(super) const MAX_OFFSET_M: f64 = 10.0;
 /// The fields of view by the number of readings as CARMEN knows them (`carmen_laser_guess_fov`), degrees. With an even number, the
 /// last reading is left out.
 const FIELDS_DEG: [([usize; 4], f64); 2] = [([180, 181, 360, 361], 180.0), ([400, 401, 400, 401], 100.0)];
-/// Below this, a field of view is in rad: logs have both, and no laser has so small a field of view in degrees.
+/// Below these, an angle of a parameter is in rad: logs have both. No laser has so small a field of view in degrees, and none has
+/// beams that are so far apart in rad.
 const MAX_FOV_RAD: f64 = TAU + 0.01;
+const MAX_RESOLUTION_RAD: f64 = 0.05;
+const MIN_RESOLUTION_RAD: f64 = 1e-4;
 
 /// A parameter of the front laser.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,6 +27,7 @@ pub(super) enum Param {
     MaxRange(f64),
     /// rad
     Fov(f64),
+    Resolution(f64),
 }
 
 impl Param {
@@ -33,12 +37,16 @@ impl Param {
         let fov_deg = if value <= MAX_FOV_RAD { value.to_degrees() } else { value };
         // 3.14159 is 180°.
         let fov_rad = ((fov_deg * 100.0).round() / 100.0).to_radians();
+        let resolution_rad = if value < MAX_RESOLUTION_RAD { value } else { value.to_radians() };
         match name {
             "robot_frontlaser_offset" if is_offset => Some(Self::Ahead(value)),
             "robot_frontlaser_side_offset" if is_offset => Some(Self::Left(value)),
             "robot_frontlaser_angular_offset" if value.abs() <= TAU => Some(Self::Turn(value)),
             "robot_front_laser_max" | "laser_front_laser_max" if value > 0.1 => Some(Self::MaxRange(value)),
             "laser_front_laser_fov" if value > 0.0 && fov_rad <= MAX_FOV_RAD => Some(Self::Fov(fov_rad)),
+            "laser_front_laser_resolution" if resolution_rad > MIN_RESOLUTION_RAD && resolution_rad < 1.0 => {
+                Some(Self::Resolution(resolution_rad))
+            }
             _ => None,
         }
     }
@@ -52,8 +60,11 @@ pub(super) struct Geometry {
     left_m: f64,
     turn_rad: f64,
     fov_rad: Option<f64>,
+    resolution_rad: Option<f64>,
     /// Ranges of FLASER lines from here on are no measurements, m.
     pub(super) range_max_m: f64,
+    /// Whether ranges from 80 m on are numbers for failures, whatever maximum is stated.
+    pub(super) has_codes: bool,
     /// The pose of the laser on the robot, by the two poses of ROBOTLASER1 lines.
     pub(super) robotlaser_mount: Option<Isometry2<f64>>,
 }
@@ -65,21 +76,24 @@ impl Default for Geometry {
             left_m: 0.0,
             turn_rad: 0.0,
             fov_rad: None,
+            resolution_rad: None,
             range_max_m: MAX_RANGE_M,
+            has_codes: false,
             robotlaser_mount: None,
         }
     }
 }
 
 impl Geometry {
-    /// Takes a parameter over. A stated maximum range counts only if no range is beyond it, which is known at the end.
+    /// Takes a parameter over. A stated maximum range below 80 m counts only if no range is beyond it, which is known at the end.
     pub(super) fn set(&mut self, param: Param) {
         match param {
             Param::Ahead(ahead_m) => self.ahead_m = ahead_m,
             Param::Left(left_m) => self.left_m = left_m,
             Param::Turn(turn_rad) => self.turn_rad = turn_rad,
-            Param::MaxRange(_) => {}
+            Param::MaxRange(stated_m) => self.range_max_m = stated_m.max(MAX_RANGE_M),
             Param::Fov(fov_rad) => self.fov_rad = Some(fov_rad),
+            Param::Resolution(resolution_rad) => self.resolution_rad = Some(resolution_rad),
         }
     }
 
@@ -88,13 +102,29 @@ impl Geometry {
         interfaces::pose(self.ahead_m, self.left_m, self.turn_rad)
     }
 
+    /// The maximum range of a laser with this stated one, m.
+    pub(super) fn limited_m(&self, stated_m: f64) -> f64 {
+        if self.has_codes { stated_m.min(MAX_RANGE_M) } else { stated_m }
+    }
+
     /// The field of view of a FLASER line with this number of readings, rad, and the angle between them; and whether it is known.
+    ///
+    /// A stated field of view that contradicts the stated resolution is that of another setting of the laser: then the number of
+    /// readings counts.
     pub(super) fn field(&self, count: usize) -> (f64, f64, bool) {
         let steps = (if count.is_multiple_of(2) { count } else { count - 1 }).max(1) as f64;
         let guess = FIELDS_DEG.iter().find(|(counts, _)| counts.contains(&count));
-        let known_rad = self.fov_rad.or(guess.map(|(_, fov_deg)| fov_deg.to_radians()));
-        let fov_rad = known_rad.unwrap_or(PI);
-        (fov_rad, fov_rad / steps, known_rad.is_some())
+        let guess_rad = guess.map(|(_, fov_deg)| fov_deg.to_radians());
+        let by_resolution_rad = self.resolution_rad.map(|resolution_rad| resolution_rad * steps);
+        let is_near = |fov_rad: f64, other_rad: f64| (fov_rad - other_rad).abs() * steps <= 2.0 * fov_rad;
+        let fov_rad = match (self.fov_rad, by_resolution_rad) {
+            (Some(fov_rad), None) => Some(fov_rad),
+            (Some(fov_rad), Some(other_rad)) if is_near(fov_rad, other_rad) => Some(fov_rad),
+            (fov_rad, other_rad) => guess_rad.or(fov_rad).or(other_rad),
+        };
+        let is_known = fov_rad.is_some_and(|fov_rad| fov_rad <= MAX_FOV_RAD);
+        let fov_rad = fov_rad.filter(|_| is_known).unwrap_or(PI);
+        (fov_rad, fov_rad / steps, is_known)
     }
 }
 

@@ -86,6 +86,8 @@ struct Inspection {
     /// The maximum range that a parameter states, m, and different ranges beyond it, as bits; at most [`MIN_BEYOND`].
     stated_max_m: Option<f64>,
     beyond: BTreeSet<u32>,
+    /// Different ranges from 80 m up to a stated maximum, as bits; at most [`MIN_BEYOND`].
+    far: BTreeSet<u32>,
     /// The numbers of readings of FLASER lines.
     counts: BTreeSet<usize>,
     mounts: Mounts,
@@ -119,6 +121,7 @@ impl Inspection {
                     }
                     Poses::Mount(mount) => mount.iter().for_each(|mount| self.mounts.add(mount)),
                 }
+                self.note_far(&scan.scan.ranges_m);
                 self.scan = scan.reference().map(|pose| (scan.time_s, pose));
                 bounds::one_more(self.times_s.len()).map_err(|what| lines.error(what))?;
                 self.times_s.push(scan.time_s);
@@ -157,6 +160,15 @@ impl Inspection {
         }
     }
 
+    /// Counts how many different ranges there are from 80 m on.
+    fn note_far(&mut self, ranges_m: &[f32]) {
+        for range_m in ranges_m.iter().filter(|range_m| **range_m >= MAX_RANGE_M as f32) {
+            if self.far.len() < MIN_BEYOND {
+                self.far.insert(range_m.to_bits());
+            }
+        }
+    }
+
     /// The first invalid line, if most scans or most poses are invalid.
     fn of_most_invalid(&self) -> Option<(u64, String)> {
         let Self { invalid_scans, invalid_poses, .. } = self;
@@ -185,6 +197,14 @@ impl Inspection {
         let Self { mut geometry, mut notes, .. } = self;
         notes.extend(self.invalid_scans.note("scan", "scans"));
         notes.extend(self.invalid_poses.note("ODOM line", "ODOM lines"));
+        geometry.has_codes = !self.far.is_empty() && self.far.len() < MIN_BEYOND;
+        if geometry.has_codes {
+            notes.push(format!(
+                "the log states a maximum range above {MAX_RANGE_M} m, but the number of different ranges from there on is only {}: they \
+                 are numbers for failures, and no measurements",
+                self.far.len()
+            ));
+        }
         geometry.robotlaser_mount = self.mounts.fixed();
         if let Some(count) = self.counts.iter().find(|count| !geometry.field(**count).2) {
             notes.push(format!(
@@ -196,7 +216,7 @@ impl Inspection {
             Some(max_m) if self.beyond.len() == MIN_BEYOND => notes.push(format!(
                 "a parameter states a maximum range of {max_m} m, but beams measure more: it is ignored"
             )),
-            Some(max_m) => geometry.range_max_m = max_m.min(MAX_RANGE_M),
+            Some(max_m) => geometry.range_max_m = max_m,
             None => {}
         }
         let has_origins = self.with_time > 0;

@@ -92,7 +92,7 @@ fn parse(text: &str, geometry: &Geometry) -> Result<Line, String> {
             Ok(Line::Odometry { time_s: words.time()?, pose, speed_mps })
         }
         Some("FLASER") => flaser(Words { message: "FLASER", words }, geometry).map(Line::Scan),
-        Some("ROBOTLASER1") => robotlaser(Words { message: "ROBOTLASER1", words }).map(Line::Scan),
+        Some("ROBOTLASER1") => robotlaser(Words { message: "ROBOTLASER1", words }, geometry).map(Line::Scan),
         Some("PARAM") => Ok(param(words)),
         _ => Ok(Line::Other { is_cut_off: false }),
     }
@@ -106,7 +106,7 @@ fn param(mut words: SplitAsciiWhitespace) -> Line {
 
 fn flaser(mut words: Words, geometry: &Geometry) -> Result<ScanLine, String> {
     let count = words.count()?;
-    let range_max_m = geometry.range_max_m;
+    let range_max_m = geometry.limited_m(geometry.range_max_m);
     let (ranges_m, typical) = words.ranges(count, range_max_m)?;
     let reference = words.optional_pose("the pose of the laser")?;
     words.skip(3, "the pose of the robot")?;
@@ -123,14 +123,14 @@ fn flaser(mut words: Words, geometry: &Geometry) -> Result<ScanLine, String> {
     Ok(ScanLine { time_s, recorded_s, scan, typical, poses: Poses::Laser(reference) })
 }
 
-fn robotlaser(mut words: Words) -> Result<ScanLine, String> {
+fn robotlaser(mut words: Words, geometry: &Geometry) -> Result<ScanLine, String> {
     words.skip(1, "the type of the laser")?;
     let [angle_min_rad, fov_rad, increment_rad] =
         [words.number("start")?, words.number("fov")?, words.number("resolution")?];
     let max_m = words.number("max_range")?;
     words.skip(2, "accuracy and remission mode")?;
     let count = words.count()?;
-    let range_max_m = if max_m > 0.1 { max_m.min(MAX_RANGE_M) } else { MAX_RANGE_M };
+    let range_max_m = geometry.limited_m(if max_m > 0.1 { max_m } else { MAX_RANGE_M });
     let (ranges_m, typical) = words.ranges(count, range_max_m)?;
     let remissions = words.number("the number of remissions")?;
     if !(0.0..=MAX_READINGS as f64).contains(&remissions) {

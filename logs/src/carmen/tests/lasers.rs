@@ -39,27 +39,45 @@ fn a_range_at_the_maximum_is_no_measurement() {
 fn numbers_for_failures_are_no_measurements_whatever_maximum_is_stated() {
     let head = "PARAM robot_front_laser_max 81.9 h 0\n";
     let code = |step: u32| ["81.83", "81.87", "81.89", "2"][step as usize % 4].to_owned();
-    for text in [ranging(head, code), ranging_as_robotlaser("81.9", code)] {
-        for LaserReading { scan, .. } in readings(&text) {
-            assert_eq!(
-                (scan.range_max_m, scan.ranges_m[1] < 80.0 || scan.ranges_m[1].is_nan()),
-                (80.0, true)
-            );
-        }
+    let far = |step: u32| format!("{:.2}", 80.0 + 0.03 * f64::from(step));
+    for (text, measured) in [
+        (ranging(head, code), false),
+        (ranging_as_robotlaser("81.9", code), false),
+        (ranging(head, far), true),
+        (ranging_as_robotlaser("81.9", far), true),
+    ] {
+        let readings = readings(&text);
+        let values = readings.iter().map(|reading| reading.scan.ranges_m[1]);
+        assert_eq!(values.clone().any(|range_m| range_m >= 80.0), measured);
+        assert!(
+            readings.iter().all(|reading| reading.scan.range_max_m == if measured { 81.9 } else { 80.0 })
+        );
+        let notes = open("test.log", text.as_bytes()).unwrap().summary().notes.join("; ");
+        assert_eq!(
+            notes.contains(
+                "the number of different ranges from there on is only 3: they are numbers for failures"
+            ),
+            !measured
+        );
     }
 }
 
 #[test]
-fn the_field_of_view_is_the_stated_one() {
+fn the_field_of_view_is_the_stated_one_if_it_agrees_with_the_resolution() {
     let fov = |value: &str| format!("PARAM laser_front_laser_fov {value} h 0\n");
+    let resolution = |value: &str| format!("PARAM laser_front_laser_resolution {value} h 0\n");
     let none = String::new();
     for (params, count, fov_deg, increment_deg) in [
         (none.clone(), 401, 100.0, 0.25),
         (none.clone(), 400, 100.0, 0.25),
         (fov("100"), 401, 100.0, 0.25),
         (fov("3.14159"), 361, 180.0, 0.5),
-        (fov("90"), 181, 90.0, 0.5),
+        (fov("90") + &resolution("0.5"), 181, 90.0, 0.5),
         (fov("270"), 1081, 270.0, 0.25),
+        (resolution("0.25"), 1081, 270.0, 0.25),
+        // Of another setting.
+        (resolution("0.5"), 181, 180.0, 1.0),
+        (fov("180") + &resolution("1.0"), 401, 100.0, 0.25),
     ] {
         let text = format!("{params}FLASER {count} {} 0 0 0 0 0 0 1 h 1\n", "2 ".repeat(count));
         let scan = &readings(&text)[0].scan;

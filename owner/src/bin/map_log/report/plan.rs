@@ -8,7 +8,7 @@ use base64::engine::general_purpose::STANDARD;
 use draw::canvas::png_of_palette;
 use draw::layers::{BLOCKED, FREE, Layer, UNKNOWN};
 use draw::palette;
-use draw::scene::{extent, span};
+use draw::scene::span;
 use interfaces::{Cell, CellState};
 use mapper::Mapper;
 use maud::{Markup, html};
@@ -64,7 +64,8 @@ impl<'a> Plan<'a> {
             (low, size) = seen(mapper, turn_rad);
         }
         let scale = (WIDTH - 2.0 * MARGIN) / size.x;
-        let cells_per_pixel = (size.max() / MAX_PIXELS / mapper.frame().resolution_m()).ceil() as usize;
+        let cells_per_pixel =
+            (size.max() / MAX_PIXELS / mapper.frame().resolution_m()).ceil().max(1.0) as usize;
         Self { mapper, turn_rad, low, size, scale, margin: MARGIN, cells_per_pixel }
     }
 
@@ -125,7 +126,7 @@ impl<'a> Plan<'a> {
             BLOCKED => 2,
             class => u8::MAX - class, // short intervals first
         };
-        let (frame, side) = (self.mapper.frame(), self.cells_per_pixel.max(1));
+        let (frame, side) = (self.mapper.frame(), self.cells_per_pixel);
         let size = [frame.width(), frame.height()].map(|cells| cells.div_ceil(side));
         let pixel = |column: usize, row: usize| {
             let cells = (0..side * side).filter_map(|cell| {
@@ -147,12 +148,11 @@ impl<'a> Plan<'a> {
 
     /// The cells of a picture of the page, as an element of a drawing.
     pub(super) fn cells(&self, layer: Layer) -> Markup {
-        let (low, size) = extent(self.mapper.frame());
-        let pixel_m = self.cells_per_pixel.max(1) as f64 * self.mapper.frame().resolution_m();
-        let rows_m = (size.y / pixel_m).ceil() * pixel_m;
+        let (frame, side) = (self.mapper.frame(), self.cells_per_pixel);
+        let (pixel_m, rows) = (side as f64 * frame.resolution_m(), frame.height().div_ceil(side) as f64);
         // From pixels to units of the drawing.
         let unit = |x: f64, y: f64| {
-            self.unit(&(low + Vector2::new(x * pixel_m, rows_m - y * pixel_m))) - Vector2::repeat(self.margin)
+            self.unit(&(frame.origin() + Vector2::new(x, rows - y) * pixel_m)) - Vector2::repeat(self.margin)
         };
         let origin = unit(0.0, 0.0);
         let [x, y] = [unit(1.0, 0.0) - origin, unit(0.0, 1.0) - origin];
