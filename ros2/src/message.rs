@@ -89,7 +89,7 @@ impl PoseWithCovarianceStamped {
 const PLACES: [usize; 3] = [0, 1, 5];
 
 /// The covariance of x, y, z and the angles about them, from that of x, y and heading.
-fn covariance(of_plane: &Matrix3<f64>) -> Covariance {
+pub(crate) fn covariance(of_plane: &Matrix3<f64>) -> Covariance {
     let mut all = Covariance::default();
     for (row, at) in PLACES.into_iter().enumerate() {
         for (column, beside) in PLACES.into_iter().enumerate() {

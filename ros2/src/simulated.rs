@@ -1,11 +1,11 @@
 //! A simulated world as a robot of ROS.
 
 use crate::link::{Event, Link};
-use crate::message::{Clock, Message, Odometry, Pose, Time, Topic, header, transform};
+use crate::message::{Clock, Message, Odometry, Pose, Time, Topic, covariance, header, transform};
 use interfaces::{LaserReading, Twist};
-use nalgebra::Isometry2;
+use nalgebra::{Isometry2, Matrix3};
 use ros::{FIRST_STAMP_NS, scan_message};
-use sim::physics::{Command, Controller, Fleet, RobotView, WorldSpec};
+use sim::physics::{Controller, Fleet, OdometryError, RobotView, Velocity, WorldSpec};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
@@ -43,8 +43,46 @@ pub struct SimulatedRobot<L: Link> {
     /// The time of the last command, s.
     commanded_s: Option<f64>,
     next_odometry_s: f64,
+    drift: Drift,
     mount: Option<Isometry2<f64>>,
     scans: u64,
+}
+
+/// How far the odometry may be off by now.
+#[derive(Debug, Default)]
+struct Drift {
+    error: OdometryError,
+    last: Option<Isometry2<f64>>,
+    travelled_m: f64,
+    turned_rad: f64,
+}
+
+impl Drift {
+    /// The smallest standard deviation: filters that weigh odometry have no use for an exact one, m and rad.
+    const LEAST: f64 = 1e-3;
+
+    fn follow(&mut self, pose: &Isometry2<f64>) {
+        let motion = self.last.map_or(Isometry2::identity(), |last| last.inv_mul(pose));
+        self.travelled_m += motion.translation.vector.norm();
+        self.turned_rad += motion.rotation.angle().abs();
+        self.last = Some(*pose);
+    }
+
+    /// The covariance of the pose since the start: noise grows with the square root of the way, a wrong gain with the way. Jumps
+    /// and slip are not in it, since a robot does not know of them. The error of the position by that of the heading is that of
+    /// a straight way.
+    fn covariance(&self) -> Matrix3<f64> {
+        let (way, turned, error) = (self.travelled_m, self.turned_rad, &self.error);
+        let square = |value: f64| value * value;
+        let heading = square(error.turn_noise_rad) * turned
+            + square(error.turn_gain * turned + error.turn_radpm * way)
+            + square(Self::LEAST);
+        let position = square(error.distance_noise_m) * way
+            + square(error.distance_gain * way)
+            + heading * square(way) / 3.0
+            + square(Self::LEAST);
+        Matrix3::from_diagonal(&[position, position, heading].into())
+    }
 }
 
 /// Takes the scans of a robot, without a command.
@@ -54,7 +92,7 @@ struct Scans {
 }
 
 impl Controller for Scans {
-    fn drive(&mut self, robot: &RobotView<'_>) -> Option<Command> {
+    fn drive(&mut self, robot: &RobotView<'_>) -> Option<Velocity> {
         if robot.index == self.driven {
             self.reading = robot.reading().cloned();
         }
@@ -73,6 +111,7 @@ impl<L: Link> SimulatedRobot<L> {
             settings,
             commanded_s: None,
             next_odometry_s: 0.0,
+            drift: Drift { error: spec.driven().odometry, ..Drift::default() },
             mount: None,
             scans: 0,
         }
@@ -160,6 +199,7 @@ impl<L: Link> SimulatedRobot<L> {
     fn view(&mut self, time_s: f64) -> Option<[Odometry; 2]> {
         let robot = self.fleet.robots().nth(self.driven)?;
         let (pose, twist) = robot.odometry();
+        self.drift.follow(&pose);
         let message = |frame: &str, pose: &Isometry2<f64>, twist: &Twist| {
             Odometry::in_plane(header(self.stamp(time_s), frame), BASE, pose, twist)
         };
@@ -167,7 +207,8 @@ impl<L: Link> SimulatedRobot<L> {
     }
 
     fn publish_odometry(&mut self, time_s: f64, view: Option<[Odometry; 2]>) {
-        let Some([odometry, truth]) = view else { return };
+        let Some([mut odometry, truth]) = view else { return };
+        odometry.pose.covariance = covariance(&self.drift.covariance());
         let transform = odometry.pose.pose;
         self.publish_transform(Topic::Transforms, time_s, (ODOM, BASE), transform);
         self.link.send(Topic::Odometry, Message::Odometry(Box::new(odometry)));
@@ -187,5 +228,36 @@ impl<L: Link> SimulatedRobot<L> {
 
     fn publish_transform(&mut self, topic: Topic, time_s: f64, frames: (&str, &str), pose: Pose) {
         self.link.send(topic, transform(self.stamp(time_s), frames, pose));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Vector2;
+
+    /// The error of simulated odometry after 20 m lies within three of the stated standard deviations.
+    #[test]
+    fn the_covariance_covers_the_error() {
+        let error = OdometryError {
+            distance_gain: 0.02,
+            turn_radpm: 0.01,
+            distance_noise_m: 0.01,
+            turn_noise_rad: 0.02,
+            ..OdometryError::default()
+        };
+        let mut drift = Drift { error, ..Drift::default() };
+        let (mut truth, mut measured) = (Isometry2::identity(), Isometry2::identity());
+        for _ in 0..200 {
+            drift.follow(&measured);
+            truth *= Isometry2::new(Vector2::new(0.1, 0.0), 0.0);
+            measured *=
+                Isometry2::new(Vector2::new(0.1 * (1.0 + error.distance_gain), 0.0), 0.1 * error.turn_radpm);
+        }
+        drift.follow(&measured);
+        let std = drift.covariance().diagonal().map(f64::sqrt);
+        let off = truth.inv_mul(&measured);
+        let [position, heading] = [off.translation.vector.norm() / std.x, off.rotation.angle().abs() / std.z];
+        assert!((0.3..3.0).contains(&position) && (0.3..3.0).contains(&heading), "{position} {heading}");
     }
 }

@@ -7,7 +7,7 @@ use super::sources::Sources;
 use super::tree::Entity;
 use super::{StageRobot, StageWall};
 use interfaces::{is_printable, pose};
-use nalgebra::Isometry2;
+use nalgebra::{Isometry2, Point2};
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::RangeInclusive;
 
@@ -43,6 +43,8 @@ pub(super) struct Builder<'a, 'b> {
     /// The number of names that were generated, by what they begin with.
     pub(super) generated: BTreeMap<String, usize>,
     pub(super) walls: Vec<StageWall>,
+    /// The walls that have a tag, with their position and the place of the tag in the file.
+    pub(super) tagged: Vec<(usize, Point2<f64>, Span)>,
     pub(super) robots: Vec<StageRobot>,
     pub(super) heights: Heights,
 }

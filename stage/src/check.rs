@@ -26,7 +26,7 @@ fn warn_of_drive(sources: &mut Sources<'_>, robot: &StageRobot) {
     let (velocity, is_omni) = (&robot.velocity, robot.drive == Drive::Omni);
     if is_lopsided(velocity.x) || is_lopsided(velocity.turn) || is_omni && is_lopsided(velocity.y) {
         let what = format!("`{name}` may drive or turn faster one way than the other");
-        sources.warning(robot.at, what, "here the larger bound holds both ways");
+        sources.warning(robot.key("velocity_bounds"), what, "here the larger bound holds both ways");
     }
     if let Drive::Car { .. } = robot.drive {
         let what = format!("Stage does not bound how far the wheels of `{name}` turn");

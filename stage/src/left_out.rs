@@ -1,11 +1,13 @@
 //! The parts of Stage that this simulator does not have, so that messages can name them.
 
 /// Kinds of entities that are left out, and why.
-const KINDS: [(&str, &str); 10] = [
+const KINDS: [(&str, &str); 9] = [
     ("camera", "there are no cameras here"),
     ("blobfinder", "nothing here sees colors"),
-    ("fiducial", "there are no fiducial finders here"),
-    ("bumper", "there are no bumpers here"),
+    (
+        "bumper",
+        "Stage's are short beams that may lie anywhere; `[robot.bumper]` is a ring that feels touches",
+    ),
     ("gripper", "there are no grippers here; its body is left out too"),
     ("actuator", "there are no actuators here; it and what it carries are left out"),
     ("charger powerpack power", "there is no energy here"),
@@ -20,21 +22,25 @@ const KINDS: [(&str, &str); 10] = [
 const NO_EFFECT: &str = "window blinkenlight lightindicator color_rgba trail_length trail_interval say wheel \
     gui_nose gui_grid gui_outline gui_boundary gui_move gui_movemask gui_interval gui_disable show_clock \
     show_clock_interval threads speedup paused interval_real event_queue debug test resolution map_resolution \
-    alwayson blob_return blobfinder_return fiducial_return fiducial_key gripper_return friction";
+    alwayson blob_return blobfinder_return gripper_return friction";
 
 /// Keys that Stage knows or knew and that mean nothing here, and why.
-const KEYS: [(&str, &str); 5] = [
+const KEYS: [(&str, &str); 12] = [
     ("samples_per_second", "the rate of a laser is its update_interval"),
     (
         "watts give_watts take_watts joules joules_capacity kjoules kjoules_capacity give input",
         "there is no energy here: batteries are never empty",
     ),
-    ("noblocks", "it is only heeded with the value 1"),
+    ("fiducial_key", "a fiducial finder here finds every tag, whatever its key"),
+    ("odom", "Stage itself no longer knows this key"),
+    ("scount ssize sview sraycount spose spose3", "Stage itself no longer knows this key; use `sensor( … )`"),
     ("view", "Stage itself knows no such key; use `range` and `fov`"),
-    (
-        "odom scount ssize sview sraycount spose spose3 blocks block size3 origin3 pose3 laser_sample_skip",
-        "Stage itself no longer knows this key",
-    ),
+    ("blocks block", "Stage itself no longer knows this key; use `block( … )`"),
+    ("noblocks", "it is only heeded with the value 1"),
+    ("size3", "Stage itself no longer knows this key; use `size`"),
+    ("origin3", "Stage itself no longer knows this key; use `origin`"),
+    ("pose3", "Stage itself no longer knows this key; use `pose`"),
+    ("laser_sample_skip", "Stage itself no longer knows this key; use fewer `samples`"),
 ];
 
 /// Whether a name is one of `names`, whatever its index.

@@ -27,9 +27,13 @@
 //! | the body of a robot | its convex outline, or a disc if the body is one or does not hold the point that the robot turns about |
 //! | `ranger` with `sensor`s, and the older `laser` | a laser; a `sensor` of one sample is a sonar: a cone as wide as its `fov` |
 //! | `samples`, `fov`, `range`, `range_min`, `range_max`, `noise`, `update_interval` | of a laser or a sonar |
+//! | `fiducial` | a fiducial finder, as far as it tells tags apart (`range_max_id`) |
+//! | `fiducial_return` | the tag of a robot, or of a box that stands about its pose |
 //! | `color`, `mass`, `ctrl` | kept in [`StageRobot`] |
 //!
-//! Everything else (windows, cameras, fiducial finders, bumpers, grippers, energy, …) is listed in a warning.
+//! Everything else (windows, cameras, blob finders, bumpers, grippers, energy, …) is listed in a warning. Bumpers
+//! are left out since those of Stage are short beams at any place, and those of this simulator are parts of a ring
+//! around the robot that detect contacts.
 
 mod body;
 mod builder;
@@ -57,6 +61,7 @@ use sources::Sources;
 
 use nalgebra::{Isometry2, Point2};
 use sim::physics::{FleetSpec, Form, OdometryError, Rectangle};
+use std::collections::BTreeMap;
 use std::path::Path;
 use worldfile::{Files, Findings};
 
@@ -86,6 +91,8 @@ pub struct StageWall {
     pub place: String,
     /// The pieces of the model, including those of the plan.
     pub rectangles: Vec<Rectangle>,
+    /// The tag that fiducial finders detect; a wall with a tag is one rectangle.
+    pub tag: Option<u32>,
     at: Span,
 }
 
@@ -115,11 +122,17 @@ pub struct StageRobot {
     pub lasers: Vec<StageSensor>,
     /// The sonars of the robot. In Stage a sonar is a single ray.
     pub sonars: Vec<StageSensor>,
+    /// The fiducial finder; `None` if there is none.
+    pub fiducial: Option<StageSensor>,
+    /// The tag of the robot itself.
+    pub tag: Option<u32>,
     /// The mass, kg.
     pub mass_kg: Option<f64>,
     /// The controllers that Stage would load.
     pub controllers: Vec<String>,
     at: Span,
+    /// The places of the keys of the robot in the file.
+    keys: BTreeMap<String, Span>,
 }
 
 /// The kind of a drive.
@@ -152,7 +165,7 @@ fn fastest([least, most]: [f64; 2]) -> f64 {
     most.max(-least)
 }
 
-/// A laser or a sonar.
+/// A laser, a sonar or a fiducial finder.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StageSensor {
     /// The place in the file, for example `sick.inc:3`.
@@ -179,11 +192,16 @@ impl StageRobot {
         corners.map(|corner| corner.coords.norm()).fold(0.0, f64::max)
     }
 
+    /// The place of this key in the file, or else that of this robot.
+    fn key(&self, key: &str) -> Span {
+        self.keys.get(key).copied().unwrap_or(self.at)
+    }
+
     /// All sensors, each with what it is.
     fn sensors(&self) -> impl Iterator<Item = (&'static str, &StageSensor)> {
         let lasers = self.lasers.iter().map(|sensor| ("laser", sensor));
         let sonars = self.sonars.iter().map(|sensor| ("sonar", sensor));
-        lasers.chain(sonars)
+        lasers.chain(sonars).chain(self.fiducial.iter().map(|sensor| ("fiducial finder", sensor)))
     }
 
     /// The area that the robot covers in this simulator at its start.

@@ -3,18 +3,24 @@
 use super::body::Body;
 use super::builder::{Builder, Pose};
 use super::heights::Solid;
+use super::lexer::Span;
 use super::tree::Entity;
 use super::{StageWall, left_out};
+use sim::physics::{BoxTree, Rectangle};
 use worldfile::Severity;
 
 /// The size of a model, where the file gives none, m.
 pub(super) const DEFAULT_SIZE_M: [f64; 3] = [0.1; 3];
+/// The pose of a box is its middle if it is as near as this, m.
+const NEAR_M: f64 = 1e-6;
 
 /// A model at its pose.
 pub(super) struct Placed {
     pub(super) name: String,
     /// Whether robots bump into it or lasers see it.
     pub(super) is_solid: bool,
+    /// The tag of the model, and the place of the tag in the file.
+    pub(super) tag: Option<(u32, Span)>,
     pub(super) at: Pose,
     /// The reference of the poses of its parts: the pose of the model, on top of it if parts are stacked.
     pub(super) top: Pose,
@@ -44,6 +50,7 @@ impl Builder<'_, '_> {
             let what = "the `mass` of what is no robot changes nothing";
             self.sources.add(Severity::Note, place, what, help);
         }
+        let tag = self.tag(model);
         let at = on.then(&self.pose(model, "pose"));
         let size_m = self.size_m(model, default_size_m);
         let body = self.body(model, &at, size_m, has_box);
@@ -58,7 +65,7 @@ impl Builder<'_, '_> {
             };
             self.sources.warning(model.place, what, help);
         }
-        Placed { name, is_solid: collides || is_seen, at, top, body }
+        Placed { name, is_solid: collides || is_seen, tag, at, top, body }
     }
 
     /// A name that no other model has.
@@ -98,18 +105,26 @@ impl Builder<'_, '_> {
                 let help = "only robots have lasers here";
                 self.left_out(model, "a laser that stands alone is left out", help);
             }
+            "fiducial" => {
+                let help = "only robots have fiducial finders here";
+                self.left_out(model, "a fiducial finder that stands alone is left out", help);
+            }
             _ => self.other(model),
         }
     }
 
     fn wall(&mut self, model: &Entity, on: &Pose) {
         let placed = self.placed(model, on, DEFAULT_SIZE_M, true);
-        let Placed { name, top, body, .. } = placed;
+        let Placed { name, tag, at, top, body, .. } = placed;
         if let Some((_, place)) = self.text(model, "ctrl") {
             let what = "controllers of Stage cannot be loaded";
             self.sources.warning(place, what, "this thing stands still");
         }
         let is_wall = placed.is_solid && !body.is_empty();
+        if let Some((_, place)) = tag.filter(|_| !is_wall) {
+            let help = "only what robots bump into has a tag here";
+            self.sources.warning(place, "the tag of a thing without a body is left out", help);
+        }
         if is_wall {
             let (rectangles, off_m) = body.rectangles();
             if off_m == f64::INFINITY {
@@ -122,8 +137,12 @@ impl Builder<'_, '_> {
             }
             let (solid_name, place) = (name.clone(), model.place);
             self.heights.solids.push(Solid { name: solid_name, robot: None, place, z_m: body.z_m });
+            if let Some((_, place)) = tag {
+                self.tagged.push((self.walls.len(), at.flat.translation.vector.into(), place));
+            }
             let (place, at) = (self.sources.name(place), place);
-            self.walls.push(StageWall { name, place, rectangles, at });
+            let tag = tag.map(|(tag, _)| tag);
+            self.walls.push(StageWall { name, place, rectangles, tag, at });
         }
         for part in model.carried() {
             self.add(part, &top, false);
@@ -157,6 +176,38 @@ impl Builder<'_, '_> {
     pub(super) fn left_out(&mut self, entity: &Entity, what: &str, why: &str) {
         self.sources.warning(entity.place, what, why);
         use_all(entity);
+    }
+
+    /// Leaves the tags of all walls out that cannot be obstacles here, which are one rectangle with the tag in
+    /// its middle and lie outside of walls.
+    pub(super) fn check_tags(&mut self) {
+        let pieces = self.walls.iter().enumerate();
+        let pieces = pieces.flat_map(|(wall, of)| of.rectangles.iter().map(move |piece| (wall, *piece)));
+        let pieces: Vec<(usize, Rectangle)> = pieces.collect();
+        let tree = BoxTree::new(pieces.iter().map(|(_, piece)| piece.bounds()));
+        for (index, position, place) in &self.tagged {
+            let (what, help) = match self.walls[*index].rectangles.as_slice() {
+                [shape] if (shape.pose.translation.vector - position.coords).norm() > NEAR_M => {
+                    let help = "here a tag is in the middle of its thing: give it no `origin`";
+                    ("the tag of a thing that does not lie about its pose is left out", help)
+                }
+                [shape] => {
+                    let overlaps = |other: &Rectangle| shape.overlaps(other);
+                    let is_another = |i: usize| pieces[i].0 != *index && overlaps(&pieces[i].1);
+                    if tree.first_below(usize::MAX, overlaps, is_another).is_none() {
+                        continue;
+                    }
+                    let what = "the tag of a thing that lies in another one is left out";
+                    (what, "here what has a tag lies by itself")
+                }
+                _ => {
+                    let help = "here a tag is that of one rectangle: give the thing no bitmap and no blocks";
+                    ("the tag of a thing of several pieces is left out", help)
+                }
+            };
+            self.walls[*index].tag = None;
+            self.sources.warning(*place, what, help);
+        }
     }
 }
 

@@ -16,7 +16,7 @@ impl Builder<'_, '_> {
     /// Adds a robot with all that it carries.
     pub(super) fn robot(&mut self, entity: &Entity) {
         let placed = self.placed(entity, &Pose::default(), DEFAULT_SIZE_M, true);
-        let Placed { name, at, top, body, .. } = placed;
+        let Placed { name, tag, at, top, body, .. } = placed;
         if !placed.is_solid {
             let help = "here every robot is solid and seen";
             self.sources.warning(entity.place, "this robot is a ghost in Stage", help);
@@ -34,9 +34,12 @@ impl Builder<'_, '_> {
             odometry,
             lasers: Vec::new(),
             sonars: Vec::new(),
+            fiducial: None,
+            tag: tag.map(|(tag, _)| tag),
             mass_kg: self.number(entity, "mass", 0.0..=1e5),
             controllers: self.controllers(entity),
             at: entity.place,
+            keys: entity.properties.iter().map(|(name, key)| (name.clone(), key.place())).collect(),
         };
         let index = self.robots.len();
         self.add_body(&mut robot, entity, &body, index);
@@ -56,6 +59,7 @@ impl Builder<'_, '_> {
     fn carry(&mut self, entity: &Entity, on: &Pose, robot: &mut StageRobot, index: usize) {
         let (is_sensor, size_m) = match entity.kind.as_str() {
             "ranger" | "laser" => (true, DEFAULT_RANGER_SIZE_M),
+            "fiducial" => (true, [0.0; 3]),
             "model" | "puck" => (false, DEFAULT_SIZE_M),
             "position" => {
                 let help = "here it is a part of the robot that carries it";
@@ -65,7 +69,11 @@ impl Builder<'_, '_> {
             }
             _ => return self.other(entity),
         };
-        let Placed { at, top, body, is_solid, .. } = self.placed(entity, on, size_m, !is_sensor);
+        let Placed { tag, at, top, body, is_solid, .. } = self.placed(entity, on, size_m, !is_sensor);
+        if let Some((_, place)) = tag {
+            let help = "a robot has one tag here, that of its own `position`";
+            self.sources.warning(place, "a tag of a part of a robot is left out", help);
+        }
         if is_solid {
             self.add_body(robot, entity, &body, index);
         }

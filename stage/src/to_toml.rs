@@ -27,29 +27,59 @@ const WANDER_MPS: f64 = 0.4;
 /// The keys of a table with their values.
 type Keys = Vec<(&'static str, Value)>;
 
+/// The keys of a world file, and the keys of a Stage robot that they come from.
+const STAGE_KEYS: [(&str, &str); 10] = [
+    ("max_linear_mps", "velocity_bounds"),
+    ("max_left_mps", "velocity_bounds"),
+    ("max_angular_degps", "velocity_bounds"),
+    ("max_linear_acceleration_mps2", "acceleration_bounds"),
+    ("max_left_acceleration_mps2", "acceleration_bounds"),
+    ("max_angular_acceleration_degps2", "acceleration_bounds"),
+    ("wheelbase_m", "wheelbase"),
+    ("mass_kg", "mass"),
+    ("distance_gain", "odom_error"),
+    ("turn_gain", "odom_error"),
+];
+
 /// A world file made of a Stage world.
-pub(super) struct Made {
+pub(super) struct Made<'a> {
     pub(super) text: String,
-    /// The bytes at which tables begin, and what they come from.
-    tables: Vec<(usize, Span)>,
+    tables: Vec<Origin<'a>>,
 }
 
-impl Made {
+/// Where the table that begins at a byte of the text comes from.
+struct Origin<'a> {
+    start: usize,
+    at: Span,
+    robot: Option<&'a StageRobot>,
+}
+
+impl<'a> Made<'a> {
     fn table(&mut self, header: &str, keys: Keys) {
         self.text += &format!("\n{header}\n{}", lines(keys));
     }
 
     /// A table that comes from a thing or a robot at a place.
-    fn table_of(&mut self, header: &str, (at, place): (Span, &str), keys: Keys) {
-        self.tables.push((self.text.len(), at));
+    fn table_of(
+        &mut self,
+        header: &str,
+        (at, place): (Span, &str),
+        robot: Option<&'a StageRobot>,
+        keys: Keys,
+    ) {
+        self.tables.push(Origin { start: self.text.len(), at, robot });
         self.table(&format!("{header}  # {place}"), keys);
     }
 
     /// What a line comes from; `None` for what holds for the whole world.
     pub(super) fn origin(&self, line: usize) -> Option<Span> {
-        let start = self.text.split_inclusive('\n').take(line - 1).map(str::len).sum();
-        let after = self.tables.partition_point(|(table, _)| *table < start);
-        self.tables[..after].last().map(|(_, at)| *at)
+        let mut lines = self.text.split_inclusive('\n');
+        let start: usize = lines.by_ref().take(line - 1).map(str::len).sum();
+        let after = self.tables.partition_point(|table| table.start < start);
+        let Origin { at, robot, .. } = self.tables[..after].last()?;
+        let key = lines.next()?.split(" = ").next()?;
+        let known = STAGE_KEYS.iter().find(|(made, _)| *made == key);
+        Some(known.zip(*robot).map_or(*at, |((_, key), robot)| robot.key(key)))
     }
 }
 
@@ -68,7 +98,7 @@ impl StageWorld {
         self.made().text
     }
 
-    pub(super) fn made(&self) -> Made {
+    pub(super) fn made(&self) -> Made<'_> {
         let map = self.map();
         let (name, low) = (Value::from(self.name.as_str()), point(&map.low));
         let files = self.files.join(", ");
@@ -82,11 +112,15 @@ impl StageWorld {
         for (wall, rectangle) in
             self.walls.iter().flat_map(|wall| wall.rectangles.iter().map(move |r| (wall, r)))
         {
-            made.table_of("[[wall]]", (wall.at, &wall.place), map.wall(rectangle));
+            let (header, keys) = match wall.tag {
+                Some(tag) => ("[[obstacle]]", map.tagged(wall, rectangle, tag)),
+                None => ("[[wall]]", map.wall(rectangle)),
+            };
+            made.table_of(header, (wall.at, &wall.place), None, keys);
         }
         for robot in &self.robots {
             let mut table = |header: &str, keys| {
-                made.table_of(header, (robot.at, &robot.place), keys);
+                made.table_of(header, (robot.at, &robot.place), Some(robot), keys);
             };
             table("[[robot]]", map.robot(robot));
             table("[robot.drive]", drive(robot));
@@ -99,18 +133,19 @@ impl StageWorld {
                 let mut keys = vec![("beams", Value::from(180)), ("fov_deg", number(180.0))];
                 keys.extend([("range_max_m", number(8.0)), ("rate_hz", number(10.0))]);
                 let place = format!("{}: none there", robot.place);
-                made.table_of("[robot.laser]", (robot.at, &place), keys);
+                made.table_of("[robot.laser]", (robot.at, &place), None, keys);
             }
             for (kind, sensor) in robot.sensors() {
                 let header = match kind {
                     "laser" if robot.lasers.len() == 1 => "[robot.laser]",
                     "laser" => "[[robot.laser]]",
-                    _ => "[[robot.sonar]]",
+                    "sonar" => "[[robot.sonar]]",
+                    _ => "[robot.fiducial]",
                 };
                 let keys = self::sensor(kind, sensor, robot.radius_m());
-                made.table_of(header, (sensor.at, &sensor.place), keys);
+                made.table_of(header, (sensor.at, &sensor.place), None, keys);
             }
-            made.table_of("[robot.behavior]", (robot.at, &robot.place), behavior(robot));
+            made.table_of("[robot.behavior]", (robot.at, &robot.place), None, behavior(robot));
         }
         made
     }
@@ -163,6 +198,16 @@ impl Map {
         vec![("from_m", end(-along)), ("to_m", end(along)), ("thickness_m", number(2.0 * x.min(y)))]
     }
 
+    fn tagged(&self, wall: &StageWall, shape: &Rectangle, tag: u32) -> Keys {
+        vec![
+            ("name", Value::from(wall.name.as_str())),
+            ("tag", Value::from(tag)),
+            ("center_m", self.point(shape.pose.translation.vector.into())),
+            ("size_m", point(&(2.0 * shape.half_m).into())),
+            ("heading_deg", heading(&shape.pose)),
+        ]
+    }
+
     fn robot(&self, robot: &StageRobot) -> Keys {
         let outline: Vec<Value> = robot.outline.iter().map(point).collect();
         let mut keys = vec![("name", Value::from(robot.name.as_str()))];
@@ -171,6 +216,7 @@ impl Map {
             false => ("footprint_m", Value::from(outline)),
         });
         keys.extend(robot.mass_kg.map(|mass_kg| ("mass_kg", number(mass_kg))));
+        keys.extend(robot.tag.map(|tag| ("tag", Value::from(tag))));
         keys.push(("pose_m", self.point(robot.pose.translation.vector.into())));
         keys.push(("heading_deg", heading(&robot.pose)));
         keys
@@ -202,12 +248,16 @@ fn drive(robot: &StageRobot) -> Keys {
 }
 
 fn sensor(kind: &str, sensor: &StageSensor, radius_m: f64) -> Keys {
-    let is_sonar = kind == "sonar";
+    let (left_out, angle): (&[&str], _) = match kind {
+        "laser" => (&[], "fov_deg"),
+        "sonar" => (&["beams"], "cone_deg"),
+        _ => (&["beams", "range_min_m", "noise_std_m"], "fov_deg"),
+    };
     // Not farther out than it may be, by more than rounding.
     let mount_m = sensor.mount.translation.vector.cap_magnitude(radius_m + MAX_OUT_M - 1e-7);
     let mut keys = vec![
         ("beams", Value::from(sensor.beams as i64)),
-        (if is_sonar { "cone_deg" } else { "fov_deg" }, degrees(sensor.fov_rad)),
+        (angle, degrees(sensor.fov_rad)),
         ("range_min_m", number(sensor.range_m[0])),
         ("range_max_m", number(sensor.range_m[1])),
         ("rate_hz", number(1000.0 / f64::from(sensor.interval_ms))),
@@ -215,7 +265,7 @@ fn sensor(kind: &str, sensor: &StageSensor, radius_m: f64) -> Keys {
         ("mount_deg", heading(&sensor.mount)),
         ("noise_std_m", number(sensor.noise_std_m)),
     ];
-    keys.retain(|(key, _)| !(is_sonar && *key == "beams"));
+    keys.retain(|(key, _)| !left_out.contains(key));
     keys
 }
 

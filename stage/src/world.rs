@@ -39,6 +39,7 @@ pub(super) fn convert(sources: &mut Sources<'_>, tree: &Entity) -> Option<StageW
         names: BTreeSet::new(),
         generated: BTreeMap::new(),
         walls: Vec::new(),
+        tagged: Vec::new(),
         robots: Vec::new(),
         heights: Heights::default(),
     };
@@ -59,6 +60,7 @@ pub(super) fn convert(sources: &mut Sources<'_>, tree: &Entity) -> Option<StageW
             return None;
         }
     }
+    builder.check_tags();
     let Builder { sources, walls, robots, heights, .. } = builder;
     heights.compare(sources);
     warn_of_unused(sources, tree);

@@ -41,13 +41,14 @@ pub use generate::building_ranges;
 pub use ground_truth::PhysicsGroundTruth;
 pub use report::{Body, Contact, ObstacleEvent, ObstacleView};
 pub use robot::RobotView;
-pub use sensors::SonarReading;
+pub use sensors::{Fiducial, SensorReading, SonarReading};
 pub use shape::Rectangle;
 pub use snapshot::SnapshotError;
 pub use spec::{
-    BehaviorSpec, CircleSpec, ContactModel, DisplacementSpec, DoorSpec, DriveKind, DriveLimits, DrivenError,
-    FleetSpec, Glass, LaserSpec, Leaf, Motion, ObstacleSpec, OdometryError, Opening, PathSpec, PatrolDaySpec,
-    PatrolSpec, PushedSpec, Repeat, RobotSpec, SonarSpec, WanderSpec, WaypointsSpec, WorldSpec,
+    BehaviorSpec, BumperSpec, CircleSpec, ContactModel, DisplacementSpec, DoorSpec, DriveKind, DriveLimits,
+    DrivenError, FiducialSpec, FleetSpec, Glass, LaserSpec, Leaf, Motion, ObstacleSpec, OdometryError,
+    Opening, PathSpec, PatrolDaySpec, PatrolSpec, PushedSpec, Repeat, RobotSpec, SonarSpec, WanderSpec,
+    WaypointsSpec, WorldSpec,
 };
 pub use velocity::Velocity;
 pub use world::{PhysicsWorld, WorldSnapshot};

@@ -71,7 +71,7 @@ fn what_is_not_here_is_named() {
         &[
             (
                 "things",
-                "window( size [1 2] )\nmodel( camera( range [0 8] ) blobfinder( ) fiducial( ) )\nposition( gripper( ) )\nlaser( )",
+                "window( size [1 2] )\nmodel( camera( range [0 8] ) blobfinder( ) )\nposition( gripper( ) )\nlaser( )",
             ),
             ("nothing", "define a model( )"),
             (
@@ -100,6 +100,17 @@ model( color \"red\" pose [2 0 0 0] )\nmodel( color \"red\" pose [3 0 0 0] mass 
 position( pose [2 0 0 0] drive \"omni\" localization \"odom\" odom_error [0.1 0.3 0 0] )",
             ),
             ("bumpers", "position( bumper( bcount 1 bpose[0] [0 0 0 0] blength 0.1 ) )"),
+            (
+                "tags",
+                "model( fiducial_return -1 )\nmodel( pose [1 0 0 0] origin [1 0 0 0] fiducial_return 1 )
+model( pose [5 0 0 0] bitmap \"p.png\" fiducial_return 2 )\nmodel( pose [5 0 0 0] fiducial_return 3 )
+model( pose [9 0 0 0] noblocks 1 fiducial_return 4 )\nposition( pose [7 0 0 0] model( fiducial_return 5 ) )",
+            ),
+            (
+                "fiducial finders",
+                "fiducial( )\nposition( fiducial( range_min 1 fiducial_key 3 ) fiducial( ) )
+position( pose [1 0 0 0] fiducial( range_max 0 ) )",
+            ),
             (
                 "outlines",
                 "position( origin [1 0 0 0] )\nposition( pose [1 0 0 0] model( pose [0.1 0.1 0 0] ) )",

@@ -15,13 +15,55 @@ fn changed(file: &str, at: &prop::sample::Index, length: usize, bytes: &[u8]) ->
     files
 }
 
-const WORDS: &str = "model;position;ranger;laser;sensor;block;define;include;a;b;(;);( );[;];size;pose;origin;points;point[0];\
-    bitmap;\"lab.png\";\"rover.inc\";\"lab.world\";boundary;fov;samples;range;drive;\"omni\";name;\"a\";[0 0];\
-    [1 2 3];[0 0 0 90];-1;0;3;1e9;update_interval;velocity_bounds;localization;\"odom\";\n;#";
-
 /// Words that mean something, in any order.
 fn words() -> impl Strategy<Value = String> {
-    let words = prop::sample::select(WORDS.split(';').collect::<Vec<_>>());
+    let words = prop::sample::select(vec![
+        "model",
+        "position",
+        "ranger",
+        "laser",
+        "sensor",
+        "block",
+        "define",
+        "include",
+        "a",
+        "b",
+        "(",
+        ")",
+        "( )",
+        "[",
+        "]",
+        "size",
+        "pose",
+        "origin",
+        "points",
+        "point[0]",
+        "bitmap",
+        "\"lab.png\"",
+        "\"rover.inc\"",
+        "\"lab.world\"",
+        "boundary",
+        "fov",
+        "samples",
+        "range",
+        "drive",
+        "\"omni\"",
+        "name",
+        "\"a\"",
+        "[0 0]",
+        "[1 2 3]",
+        "[0 0 0 90]",
+        "-1",
+        "0",
+        "3",
+        "1e9",
+        "update_interval",
+        "velocity_bounds",
+        "localization",
+        "\"odom\"",
+        "\n",
+        "#",
+    ]);
     prop::collection::vec(words, 0..60).prop_map(|words| words.join(" "))
 }
 
@@ -76,5 +118,63 @@ proptest! {
             let mut fleet = sim::physics::Fleet::new(&spec, 0);
             fleet.run_until(0.2, &mut ());
         }
+    }
+}
+
+/// The worst megabytes that are known, each read within seconds and 1 GiB: run alone as
+/// `(ulimit -v 1048576; TEST-PROGRAM worst_megabytes --ignored --nocapture)`.
+#[test]
+#[ignore = "slow; for measuring memory and time"]
+fn worst_megabytes() {
+    const SIZE: usize = 1_000_000;
+    let fill = |head: &str, part: &str| format!("{head}{}", part.repeat((SIZE - head.len()) / part.len()));
+    let star: String = (0..1000)
+        .map(|i| {
+            let (y, x) = libm::sincos(f64::from(i) * 0.006283);
+            let radius = if i % 2 == 0 { 1.0 } else { 0.999 };
+            format!("point[{i}] [{:.3} {:.3}]\n", x * radius, y * radius)
+        })
+        .collect();
+    let doubling: String =
+        (1..=25).map(|i| format!("define a{i} model( a{0}( ) a{0}( ) )\n", i - 1)).collect();
+    let worlds = [
+        ("models", fill("", "model()")),
+        ("unlike models", (0..30_000).map(|i| format!("model(pose[{i} 0 {i} 9])\n")).collect()),
+        (
+            "robots",
+            (0..9000).map(|i| format!("position(pose[{i} 0 0 0] size[.1 .1 .1] laser())\n")).collect(),
+        ),
+        (
+            "turned robots",
+            (0..9000)
+                .map(|i| format!("position(pose[{} {} 0 9] laser(samples 10000))\n", i % 95, i / 95))
+                .collect(),
+        ),
+        ("keys", fill("model(", "a 1\n")),
+        ("words", fill("", "a ")),
+        ("brackets", fill("", "a(")),
+        ("lists", fill("model( size [", "1 ")),
+        ("doublings", format!("define a0 model( )\n{doubling}a25( )")),
+        ("stars", format!("define star model( block( points 1000\n{star}) )\n{}", "star()".repeat(500))),
+        ("includes", fill("", "include \"i.inc\"\n")),
+        ("pictures", fill("", "model(bitmap \"p.pbm\")\n")),
+        ("pictured robots", fill("", "position(bitmap \"p.pbm\")\n")),
+    ];
+    for (name, text) in worlds {
+        assert!(text.len() <= SIZE, "{name}: {}", text.len());
+        let mut files = lab_files();
+        files.insert("x.world".into(), text.into_bytes());
+        files.insert("i.inc".into(), fill("", "model()").into_bytes());
+        // Rows of every other pixel, above rows of none: as many corners as there may be.
+        let rows = (0..1000).flat_map(|y| if y % 2 == 0 { [0xaa; 125] } else { [0; 125] });
+        files.insert("p.pbm".into(), b"P4 1000 1000\n".iter().copied().chain(rows).collect());
+        let start = std::time::Instant::now();
+        let (spec, findings) = load(Path::new("x.world"), &files);
+        let (is_good, time) = (spec.is_some(), start.elapsed());
+        println!(
+            "{name}: {time:?}, good: {is_good}, {} errors, {} warnings",
+            findings.errors(),
+            findings.warnings()
+        );
     }
 }

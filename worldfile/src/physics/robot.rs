@@ -2,7 +2,7 @@
 
 use super::behavior::{self, Driver};
 use super::drive::{self, drive};
-use super::sensor::Carrier;
+use super::sensor::{Carrier, bumper};
 use super::space::Space;
 use crate::reader::{Table, Value, valid};
 use crate::schedule::hours;
@@ -16,7 +16,7 @@ use sim::physics::{
 };
 
 pub(super) const KEYS: &str = "name, radius_m, footprint_m, mass_kg, pose_m, heading_deg, drive, odometry, laser, \
-                               sonar, behavior, patrol";
+                               bumper, sonar, fiducial, tag, behavior, patrol";
 
 /// The limits by which a behavior is judged if those of the drive are invalid: nothing is too fast for them.
 const BOUNDLESS: DriveLimits = DriveLimits {
@@ -40,8 +40,10 @@ pub(super) fn robot(table: &Table<'_>, space: &Space) -> Option<RobotSpec> {
     let drive = table.table("drive", drive::KEYS).and_then(|table| drive(&table, inner_m / space.step_s));
     let odometry = odometry(table);
     let lasers = carrier.lasers(table, called);
+    let bumper = bumper(table);
     let sonars = carrier.sonars(table);
-    let mass_kg = table.number_if("mass_kg", 0.001..=100_000.0);
+    let fiducial = carrier.fiducial(table);
+    let (mass_kg, tag) = (table.number_if("mass_kg", 0.001..=100_000.0), table.tag());
     let driver = Driver {
         robot: table,
         name: called,
@@ -56,12 +58,15 @@ pub(super) fn robot(table: &Table<'_>, space: &Space) -> Option<RobotSpec> {
         radius_m: body.radius_m,
         corners: body.corners,
         mass_kg,
+        tag,
         pose,
         drive: drive?,
         odometry: odometry?,
         laser,
         more_lasers,
+        bumper: bumper?,
         sonars: sonars?,
+        fiducial: fiducial?,
         behavior: behavior?,
         patrol: patrol?,
         name: name?,
@@ -197,7 +202,7 @@ fn polygon(value: &Value<'_, '_>) -> Option<Footprint> {
 }
 
 const ODOMETRY_KEYS: &str =
-    "distance_gain, turn_gain, turn_per_m_deg, distance_noise_m, turn_noise_deg, jump, carried";
+    "distance_gain, turn_gain, turn_per_m_deg, distance_noise_m, turn_noise_deg, slip, jump, carried";
 const DISPLACEMENT_KEYS: &str = "every_s, distance_m, turn_deg";
 
 pub(super) fn odometry(robot: &Table<'_>) -> Option<OdometryError> {
@@ -209,6 +214,7 @@ pub(super) fn odometry(robot: &Table<'_>) -> Option<OdometryError> {
         turn_radpm: table.number_or("turn_per_m_deg", 0.0, -90.0..=90.0).to_radians(),
         distance_noise_m: table.number_or("distance_noise_m", 0.0, 0.0..=1.0),
         turn_noise_rad: table.number_or("turn_noise_deg", 0.0, 0.0..=90.0).to_radians(),
+        slip: table.number_or("slip", 0.0, 0.0..=1.0),
         jump: jump?,
         carried: carried?,
     })

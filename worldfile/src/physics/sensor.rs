@@ -1,9 +1,9 @@
-//! The sensors of a robot: lasers, sonars.
+//! The sensors of a robot: lasers, bumpers, sonars, fiducial finders.
 
 use crate::reader::{Figure, Table, valid};
 use interfaces::pose;
 use nalgebra::{Isometry2, Point2};
-use sim::physics::{LaserSpec, SonarSpec};
+use sim::physics::{BumperSpec, FiducialSpec, LaserSpec, SonarSpec};
 
 /// The maximum distance by which a sensor may be outside of the circle around its robot, m.
 pub const MAX_OUT_M: f64 = 1.0;
@@ -80,6 +80,19 @@ impl Carrier {
         })
     }
 
+    /// `Some(None)`: the robot has none.
+    pub(super) fn fiducial(self, robot: &Table<'_>) -> Option<Option<FiducialSpec>> {
+        let Some(value) = robot.get("fiducial") else { return Some(None) };
+        let table = value.table("fov_deg, range_max_m, rate_hz, mount_m, mount_deg")?;
+        let (rate, mount) = (self.rate(&table), self.mount(&table, "a sensor"));
+        table.sound(Some(FiducialSpec {
+            fov_rad: table.number_or("fov_deg", 360.0, 1.0..=360.0).to_radians(),
+            range_max_m: table.number("range_max_m", 0.01..=1000.0),
+            period_steps: rate?.1,
+            mount: mount?,
+        }))
+    }
+
     /// A rate (Hz), and the physics steps from one measurement to the next.
     fn rate(self, table: &Table<'_>) -> Option<(f64, u64)> {
         let (rate_hz, step_s) = (valid(table.number("rate_hz", 0.01..=1000.0))?, self.step_s);
@@ -111,6 +124,14 @@ impl Carrier {
         }
         Some(pose(at.x, at.y, mount_deg.to_radians()))
     }
+}
+
+/// `Some(None)`: the robot has none.
+pub(super) fn bumper(robot: &Table<'_>) -> Option<Option<BumperSpec>> {
+    let Some(value) = robot.get("bumper") else { return Some(None) };
+    let table = value.table("sectors, fov_deg")?;
+    let fov_deg = table.number_or("fov_deg", 360.0, 1.0..=360.0);
+    table.sound(Some(BumperSpec { sectors: table.count("sectors", 1..=64), fov_rad: fov_deg.to_radians() }))
 }
 
 /// The time from the first to the last beam of a laser, s, for a rate (Hz) with the physics steps between scans.

@@ -64,7 +64,8 @@ pub fn to_toml(spec: &FleetSpec) -> Option<String> {
 }
 
 fn obstacle(obstacle: &ObstacleSpec) -> Option<Keys> {
-    let ObstacleSpec { name, shape, motion, appears_s: None, disappears_s: None } = obstacle else {
+    let ObstacleSpec { name, shape, motion, tag: None, appears_s: None, disappears_s: None } = obstacle
+    else {
         return None;
     };
     let mut keys: Keys = vec![("name", name.as_str().into())];
@@ -127,7 +128,8 @@ fn body(robot: &RobotSpec) -> Option<Keys> {
     let is_plain = robot.corners.is_empty()
         && robot.mass_kg.is_none()
         && robot.odometry.is_exact()
-        && (robot.more_lasers.is_empty() && robot.sonars.is_empty());
+        && (robot.more_lasers.is_empty() && robot.sonars.is_empty())
+        && (robot.bumper.is_none() && robot.fiducial.is_none() && robot.tag.is_none());
     let keys = || {
         vec![
             ("name", robot.name.as_str().into()),

@@ -115,21 +115,27 @@ fn faults_of_the_text_are_said_in_plain_words() {
     );
     let long = format!("a: [{}]", "1, ".repeat(300_000));
     let cases = [
-        ("- a", 1, PLAIN),
-        ("just a text", 1, PLAIN),
-        (": 1\nimage: a.pgm", 1, PLAIN),
+        ("- a", 1, "this is not a list of keys with values"),
+        ("just a text", 1, "this is not a list of keys with values"),
+        ("42", 1, "this is not a list of keys with values"),
+        (": 1\nimage: a.pgm", 1, "this is not a list of keys with values"),
+        ("image: a.pgm\n~: 1", 2, "this is not a list of keys with values"),
         ("image: a.pgm\nimage: b.pgm", 2, "a key is given twice"),
         ("image: [a.pgm\nnegate: 0", 0, PLAIN),
+        ("negate: 0\norigin: [1, 2}", 0, PLAIN),
+        ("negate: 0\norigin: 1, 2]: [", 0, PLAIN),
         ("negate: 0\nimage: \"a.pgm\nmode: raw", 0, PLAIN),
+        ("negate: 0\nimage: 'a.pgm", 0, PLAIN),
         ("origin:\n\t- 1", 0, PLAIN),
         ("negate: 0\n a: b: c", 0, PLAIN),
-        ("negate: 0\n---\nnegate: 1", 3, PLAIN),
+        ("negate: 0\nimage a.pgm", 0, PLAIN),
+        ("negate: 0\n---\nnegate: 1", 3, "this is not a list of keys with values"),
         ("negate: 0\nimage: \0", 0, PLAIN),
-        ("negate: *b", 1, PLAIN),
+        ("negate: *b", 1, "this is not a list of keys with values"),
         (&bomb, 0, ""),
         (&deep, 1, ""),
-        (&blocks, 0, PLAIN),
-        (&long, 1, PLAIN),
+        (&blocks, 0, "this is not a list of keys with values"),
+        (&long, 1, "this is not a list of keys with values"),
     ];
     for (yaml, line, what) in cases {
         let (plan, findings) = read(yaml);
@@ -165,6 +171,36 @@ fn values_of_every_kind_are_shown_as_what_they_are() {
     ] {
         let (_, findings) = read(&GOOD.replace(" house.pgm", value));
         assert_eq!(findings.iter().next().unwrap().what, shown, "{findings}");
+    }
+}
+
+#[test]
+fn pictures_that_are_none_are_named_in_plain_words() {
+    let picture = |bytes: &[u8]| {
+        let mut files = BTreeMap::new();
+        files.insert(PathBuf::from("m.yaml"), GOOD.as_bytes().to_vec());
+        files.insert(PathBuf::from("house.pgm"), bytes.to_vec());
+        let mut findings = Findings::default();
+        assert!(read_floor_plan(Path::new("m.yaml"), &files, &mut findings).is_none());
+        findings.iter().next().unwrap().what.clone()
+    };
+    for (bytes, why) in [
+        (&b""[..], "it is neither a PNG nor a PGM picture"),
+        (b"\xff\xd8\xff\xe0 JFIF", "it is neither a PNG nor a PGM picture"),
+        (b"\x89PNG\r\n\x1a\n", "its header is damaged or incomplete, or that of too large a picture"),
+        (
+            b"\x89PNG\r\n\x1a\n\0\0\0\x0dIDAT\0\0\0\x01\0\0\0\x01\x08\0\0\0\0",
+            "its header is damaged or incomplete, or that of too large a picture",
+        ),
+        (b"P5", "its header is damaged or incomplete, or that of too large a picture"),
+        (b"P5 a b 255 ", "its header is damaged or incomplete, or that of too large a picture"),
+        (b"P5 2 2 0 \0\0\0\0", "its header is damaged or incomplete, or that of too large a picture"),
+        (b"P5 2 2 255 \0\0\0", "its pixels are damaged or incomplete"),
+        (b"P2 2 1 255 0 x", "its pixels are damaged or incomplete"),
+        (b"P5 0 5 255 ", "it has no pixels"),
+        (b"P5 99999 99999 255 ", "99999 × 99999 pixels are too many: at most 67108864"),
+    ] {
+        assert_eq!(picture(bytes), format!("cannot read the picture house.pgm: {why}"));
     }
 }
 

@@ -90,6 +90,15 @@ fn thresholds_are_strict() {
 }
 
 #[test]
+fn negate_turns_bright_into_blocked() {
+    for negate in ["1", "true"] {
+        let yaml = YAML.replace("negate: 0", &format!("negate: {negate}"));
+        assert_eq!(states(&yaml, &[0, 49, 50, 51, 254]), "..  #");
+    }
+    assert_eq!(states(&YAML.replace("negate: 0\n", ""), &[0, 255]), "#.");
+}
+
+#[test]
 fn a_colour_picture_counts_by_its_mean() {
     let folder = folder(&YAML.replace("map.pgm", "map.png"), &[]);
     let pixels = [[0, 0, 0], [255, 255, 255], [255, 100, 0], [60, 60, 0]].concat();

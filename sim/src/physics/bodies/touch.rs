@@ -1,6 +1,7 @@
 use super::{Bodies, unpack};
 use crate::physics::report::Body;
 use nalgebra::{Point2, Vector2};
+use rapier2d::prelude as rapier;
 
 /// Bodies that are farther apart than this do not touch any more, m. The distance of a lasting contact varies by
 /// less.
@@ -14,6 +15,8 @@ pub(crate) struct Touch {
     pub(crate) at: Point2<f64>,
     /// The direction from the robot to the other body at the contact, a unit vector.
     pub(crate) towards: Vector2<f64>,
+    /// The ends of the line of contact, m.
+    pub(crate) ends: [Point2<f64>; 2],
     /// The impulse of the last step, N·s; 0: the bodies have not separated yet.
     pub(crate) impulse_ns: f64,
 }
@@ -35,14 +38,19 @@ impl Bodies {
                 return None;
             }
             let pose = self.world.colliders[pair.collider1].position();
-            let at = pose.transform_point(deepest.local_p1);
-            let at = Point2::new(f64::from(at.x), f64::from(at.y));
+            let at = |contact: &rapier::TrackedContact<_>| {
+                let at = pose.transform_point(contact.local_p1);
+                Point2::new(f64::from(at.x), f64::from(at.y))
+            };
+            let mut touching = manifold.points.iter().filter(|contact| contact.dist < SEPARATE_M);
+            let first = touching.next().unwrap_or(deepest);
+            let ends = [first, touching.next_back().unwrap_or(first)].map(at);
             let (other, sign) =
                 if pair.collider1 == own { (pair.collider2, 1.0) } else { (pair.collider1, -1.0) };
             let with = unpack(self.world.colliders[other].user_data);
             let normal = manifold.data.normal;
             let towards = Vector2::new(f64::from(normal.x), f64::from(normal.y)) * sign;
-            Some(Touch { with, at, towards, impulse_ns })
+            Some(Touch { with, at: at(deepest), towards, ends, impulse_ns })
         })
     }
 }

@@ -15,11 +15,13 @@ pub use teleport::TeleportError;
 pub use time::Controller;
 
 use super::bodies::Bodies;
+use super::form::Form;
 use super::obstacles::Obstacle;
 use super::past::Past;
 use super::rays::Scene;
-use super::report::{Contact, ObstacleView};
+use super::report::{Body, Contact, ObstacleView};
 use super::robot::{RobotView, SimulatedRobot};
+use super::sensors::Tagged;
 use super::shape::Rectangle;
 use super::spec::FleetSpec;
 use super::velocity::Velocity;
@@ -110,6 +112,25 @@ impl Fleet {
     pub fn command(&mut self, robot: usize, wanted: impl Into<Velocity>) -> bool {
         let driven = self.robots.get_mut(robot).filter(|robot| robot.is_driven());
         driven.map(|robot| robot.command(&wanted.into())).is_some()
+    }
+
+    /// All present bodies with a tag, robots first; none if no robot has a fiducial finder.
+    pub(crate) fn tagged(&self) -> Vec<Tagged> {
+        if !self.start.has_fiducial_finders {
+            return Vec::new();
+        }
+        let robots = self.robots.iter().enumerate().filter_map(|(index, robot)| {
+            let tag = robot.spec.tag?;
+            Some(Tagged { tag, body: Body::Robot(index), center: robot.at(), form: robot.form() })
+        });
+        let standing = self.obstacles.iter().enumerate().filter(|(_, obstacle)| obstacle.is_standing());
+        let obstacles = standing.filter_map(|(index, obstacle)| {
+            let (tag, shape) = (obstacle.spec.tag?, &obstacle.shape);
+            let (center, form) =
+                (shape.pose.translation.vector.into(), Form::Convex(shape.corners().to_vec()));
+            Some(Tagged { tag, body: Body::Obstacle(index), center, form })
+        });
+        robots.chain(obstacles).collect()
     }
 
     /// The walls, and the obstacles that are present now.

@@ -158,6 +158,7 @@ impl Fleet {
                             with: *with,
                             at: nearest,
                             towards: to.try_normalize(0.0).unwrap_or_else(Vector2::x),
+                            ends: [nearest; 2],
                             impulse_ns: self.bodies.mass_kg(index) * stopped_m / step_s,
                         },
                     ));

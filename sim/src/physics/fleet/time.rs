@@ -7,7 +7,7 @@ use crate::physics::obstacles::{Blockers, Obstacle};
 use crate::physics::past::Recent;
 use crate::physics::report::Contact;
 use crate::physics::robot::{RobotView, SimulatedRobot};
-use crate::physics::sensors::Surroundings;
+use crate::physics::sensors::{Surroundings, bumper};
 use crate::physics::shape::Rectangle;
 use crate::physics::velocity::Velocity;
 use interfaces::LaserReading;
@@ -75,14 +75,14 @@ impl Fleet {
 
     /// What sensors that measure now can see. `sweeps`: a laser of theirs sweeps.
     pub(super) fn surroundings(&self, sweeps: bool) -> Arc<Surroundings> {
-        let scene = self.scene.clone();
+        let (scene, tagged) = (self.scene.clone(), self.tagged());
         let robots = self.robots.iter().map(|robot| robot.pose);
         let obstacles = self.obstacles.iter();
         let obstacles = obstacles.map(|obstacle| obstacle.is_standing().then_some(obstacle.shape.pose));
         let recent =
             if sweeps { self.past.recent(self.spec(), robots, obstacles) } else { Recent::default() };
         let (time_s, glass) = (self.time_s(), self.spec().glass.clone());
-        Arc::new(Surroundings { step: self.step, time_s, scene, glass, recent })
+        Arc::new(Surroundings { step: self.step, time_s, scene, glass, tagged, recent })
     }
 
     /// Moves robots and obstacles by one physics step.
@@ -101,7 +101,7 @@ impl Fleet {
             self.bodies.step();
         }
         for index in 0..self.robots.len() {
-            self.robots[index].end_step(&self.bodies, time_s);
+            self.robots[index].end_step(&self.bodies, time_s, step_s);
             if self.robots[index].has_moved() {
                 self.show_robot(index);
             }
@@ -155,10 +155,14 @@ impl Fleet {
         let time_s = self.time_s();
         for (index, robot) in self.robots.iter_mut().enumerate() {
             let mut touching = Vec::new();
-            for Touch { with, at, towards, impulse_ns } in self.bodies.touches(index) {
+            robot.pressed_bumpers = 0;
+            for Touch { with, at, towards, ends, impulse_ns } in self.bodies.touches(index) {
                 let touched_before = robot.touching.contains(&with);
                 if impulse_ns <= 0.0 && !touched_before {
                     continue;
+                }
+                if let Some(spec) = &robot.spec.bumper {
+                    robot.pressed_bumpers |= bumper::pressed(spec, &robot.pose, &ends);
                 }
                 if !touched_before {
                     let moving = robot.driven != Velocity::STOP;

@@ -7,7 +7,6 @@
 use super::beams::{Beams, EDGE_ON_M};
 use super::disc::Disc;
 use super::edges::Edge;
-use super::polygons::SortedPolygons;
 use interfaces::approximate_atan2;
 use nalgebra::{Isometry2, Point2, Vector2};
 
@@ -15,6 +14,9 @@ use nalgebra::{Isometry2, Point2, Vector2};
 const SAFE: f64 = Disc::SAFE;
 /// A point counts as beside the beams if it is this far beyond their border, m: far above rounding.
 const BESIDE_M: f64 = 1e-6;
+
+/// The number of sides of a body that are compared at a time.
+const MAX_SIDES: usize = 32;
 
 /// The shortest range so far.
 pub(super) struct Nearest<'a> {
@@ -56,12 +58,13 @@ impl<'a> Nearest<'a> {
         right.perp(a).max(right.perp(b)) < -BESIDE_M || left.perp(a).min(left.perp(b)) > BESIDE_M
     }
 
-    /// Adds an edge of a solid, if the edge faces the sensor and a beam may hit it within reach.
-    pub(super) fn add_edge(&mut self, edge: &Edge) {
+    /// The distance squared from the sensor to an edge, m², if the edge faces the sensor and a beam may hit it within
+    /// reach.
+    fn distance2_m2(&self, edge: &Edge) -> Option<f64> {
         let at = Point2::from(self.sensor.translation.vector);
         let gap_m = edge.gap_m(&at);
         if gap_m < EDGE_ON_M || gap_m > self.beams.range_max_m || gap_m > self.reach_m {
-            return;
+            return None;
         }
         let (from, to) = (edge.from - at, edge.to - at);
         let along = to - from;
@@ -72,9 +75,40 @@ impl<'a> Nearest<'a> {
         } else {
             gap_m * gap_m
         };
-        if distance2 > self.reach_m * self.reach_m || self.is_beside(&from, &to) {
-            return;
+        (distance2 <= self.reach_m * self.reach_m && !self.is_beside(&from, &to)).then_some(distance2)
+    }
+
+    /// Adds an edge of a solid, if the edge faces the sensor and is within reach.
+    pub(super) fn add_edge(&mut self, edge: &Edge) {
+        if self.distance2_m2(edge).is_some() {
+            self.take_edge(edge);
         }
+    }
+
+    /// Adds the sides of a convex body.
+    pub(super) fn add_polygon(&mut self, sides: &[Edge]) {
+        let mut distances2 = [f64::INFINITY; MAX_SIDES];
+        for sides in sides.chunks(MAX_SIDES) {
+            let mut nearest = 0;
+            for (index, side) in sides.iter().enumerate() {
+                distances2[index] = self.distance2_m2(side).unwrap_or(f64::INFINITY);
+                if distances2[index] < distances2[nearest] {
+                    nearest = index;
+                }
+            }
+            // The nearest side first: most of the others are then out of reach.
+            for index in [nearest].into_iter().chain(0..sides.len()) {
+                if distances2[index] <= self.reach_m * self.reach_m {
+                    self.take_edge(&sides[index]);
+                    distances2[index] = f64::INFINITY;
+                }
+            }
+        }
+    }
+
+    /// Takes the hits on an edge that faces the sensor.
+    fn take_edge(&mut self, edge: &Edge) {
+        let gap_m = edge.gap_m(&self.sensor.translation.vector.into());
         let seen = |point: &Point2<f64>| self.sensor.inverse_transform_point(point).coords;
         let (from, to) = (seen(&edge.from), seen(&edge.to));
         let normal = self.sensor.rotation.inverse() * edge.normal;
@@ -87,24 +121,6 @@ impl<'a> Nearest<'a> {
             }
         }
         self.take(most);
-    }
-
-    /// Adds round robots, and some bodies with corners; without those of the robot `own`.
-    pub(super) fn add_bodies(
-        &mut self,
-        robots: &[(u32, Disc)],
-        polygons: &SortedPolygons,
-        indices: impl Iterator<Item = u32>,
-        own: usize,
-    ) {
-        for (_, disc) in robots.iter().filter(|(robot, _)| *robot as usize != own) {
-            self.add_disc(disc);
-        }
-        for polygon in indices.map(|index| polygons.get(index)).filter(|polygon| polygon.is_seen_by(own)) {
-            if self.place(&polygon.around).is_some() {
-                polygons.edges(polygon).iter().for_each(|side| self.add_edge(side));
-            }
-        }
     }
 
     /// The center of a disc in the frame of the sensor, m, and its distance, m, if the disc is within reach and not
@@ -122,8 +138,13 @@ impl<'a> Nearest<'a> {
         (!is_beside).then(|| (self.sensor.rotation.inverse() * to, distance2.sqrt()))
     }
 
+    /// Whether a body within a disc could change the result.
+    pub(super) fn may_meet(&self, around: &Disc) -> bool {
+        self.place(around).is_some()
+    }
+
     /// Adds a round body.
-    fn add_disc(&mut self, disc: &Disc) {
+    pub(super) fn add_disc(&mut self, disc: &Disc) {
         let Some((center, distance_m)) = self.place(disc) else { return };
         // As in [`Hits`](super::beams::Hits), to the bit.
         let to = disc.center - self.sensor.translation.vector;

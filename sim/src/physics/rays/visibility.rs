@@ -30,6 +30,8 @@ pub(super) struct PotentiallyVisibleSet {
     cell_m: f64,
     columns: usize,
     rows: usize,
+    /// The column and the row of each cell.
+    places: Vec<[u16; 2]>,
     /// The largest radius of any robot, m.
     radius_m: f64,
     /// The edges that may be seen from each cell, the nearest first.
@@ -59,11 +61,13 @@ impl PotentiallyVisibleSet {
             cell_m,
             columns: count(extent.x),
             rows: count(extent.y),
+            places: Vec::new(),
             radius_m,
             edges: IndexLists::default(),
             cells: IndexLists::default(),
             boxes: IndexLists::default(),
         };
+        set.places = (0..set.len()).map(|cell| set.place(cell).map(|index| index as u16)).collect();
         let mut boxes_in = vec![Vec::new(); set.len()];
         for (i, shape) in boxes.iter().enumerate() {
             let (low, high) = shape.bounds();
@@ -109,8 +113,8 @@ impl PotentiallyVisibleSet {
     /// At most the shortest distance between a point of one cell and a robot with its center in the other one, or a
     /// part of a body that lies in the other one, m.
     pub(super) fn apart_m(&self, cell: usize, other: usize) -> f64 {
-        let ([x, y], [other_x, other_y]) = (self.place(cell), self.place(other));
-        let cells = Vector2::new(x.abs_diff(other_x) as f64, y.abs_diff(other_y) as f64).norm();
+        let ([x, y], [other_x, other_y]) = (self.places[cell], self.places[other]);
+        let cells = Vector2::new(x.abs_diff(other_x), y.abs_diff(other_y)).cast::<f64>().norm();
         (cells - SQRT_2) * self.cell_m - self.radius_m - MARGIN_M
     }
 

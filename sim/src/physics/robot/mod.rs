@@ -16,7 +16,7 @@ use super::spec::{BehaviorSpec, RobotSpec};
 use super::velocity::Velocity;
 use interfaces::{LaserReading, Purpose, RandomStream, Twist, Values, values};
 use nalgebra::{Isometry2, Point2, Vector2};
-use odometry::{Displacements, Odometry};
+use odometry::{Displacements, Odometry, Wheels};
 use std::sync::Arc;
 
 #[derive(Clone)]
@@ -33,8 +33,11 @@ pub(crate) struct SimulatedRobot {
     pub(super) driven: Velocity,
     /// The bodies that the robot touches now.
     pub(super) touching: Vec<Body>,
+    /// The bumpers that touch something, as bits.
+    pub(super) pressed_bumpers: u64,
     command: Velocity,
     drive: Motors,
+    wheels: Wheels,
     odometry: Odometry,
     /// When the odometry jumps, and when the robot is carried away.
     jumps: Option<Displacements>,
@@ -73,8 +76,10 @@ impl SimulatedRobot {
             velocity: Velocity::STOP,
             driven: Velocity::STOP,
             touching: Vec::new(),
+            pressed_bumpers: 0,
             command: Velocity::STOP,
             drive,
+            wheels: Wheels::new(spec.odometry.slip, drive),
             odometry: Odometry::new(spec, random(Purpose::OdometryNoise(index)), pose),
             jumps: displacements(spec.odometry.jump, Purpose::OdometryJump(index)),
             carried: displacements(spec.odometry.carried, Purpose::Carried(index)),
@@ -87,9 +92,11 @@ impl SimulatedRobot {
 
     /// The values that a snapshot holds.
     pub(super) fn values(&mut self) -> Values<'_> {
-        let Self { velocity, driven, touching, command, drive, odometry, .. } = self;
+        let Self { velocity, driven, touching, pressed_bumpers, command, drive, wheels, odometry, .. } = self;
         let mut values = vec![pose(&mut self.pose), pose(&mut self.previous_pose)];
-        values.extend(values![*velocity, *driven, *touching, *command; drive, odometry]);
+        values.extend(
+            values![*velocity, *driven, *touching, *pressed_bumpers, *command; drive, wheels, odometry],
+        );
         let displacements = self.jumps.iter_mut().chain(&mut self.carried);
         values.extend(displacements.flat_map(Displacements::values));
         values.extend(self.behavior.iter_mut().flat_map(Behavior::values));
@@ -119,8 +126,8 @@ impl SimulatedRobot {
 
     /// The time until which the robot rests if no other body moves, s; `None` if it moves, or decides by itself.
     pub(super) fn rests_until_s(&self) -> Option<f64> {
-        let is_still =
-            !self.has_moved() && [self.velocity, self.driven].iter().all(|own| *own == Velocity::STOP);
+        let is_still = !self.has_moved()
+            && [self.velocity, self.driven, self.wheels.slipping].iter().all(|own| *own == Velocity::STOP);
         let obeys = matches!(self.spec.behavior, BehaviorSpec::Driven | BehaviorSpec::Standing);
         let displaced = self.jumps.iter().chain(&self.carried).map(Displacements::next_s);
         (is_still && obeys && self.command == Velocity::STOP).then(|| displaced.fold(f64::INFINITY, f64::min))
@@ -168,6 +175,7 @@ impl SimulatedRobot {
         self.pose = pose;
         self.velocity = Velocity::STOP;
         self.drive = Motors::new(self.spec.drive);
+        self.wheels = Wheels::new(self.spec.odometry.slip, self.drive);
     }
 
     /// Moves the robot to `pose`, at rest. The odometry starts again there.
@@ -177,6 +185,7 @@ impl SimulatedRobot {
         self.command = Velocity::STOP;
         self.odometry.restart(pose);
         self.touching.clear();
+        self.pressed_bumpers = 0;
         self.sensors.iter_mut().for_each(Sensor::clear);
     }
 
@@ -200,7 +209,7 @@ impl SimulatedRobot {
 
     /// Measures with all sensors that are due, and with the main laser scanner if its reading `is_needed` now.
     fn sense(&mut self, surroundings: &Arc<Surroundings>, is_needed: bool) {
-        let look = Look { platform: self.platform(), surroundings: Arc::clone(surroundings) };
+        let look = Look::new(self.platform(), Arc::clone(surroundings));
         let others = if is_needed {
             self.sensors[0].measure(&look);
             &mut self.sensors[1..]
@@ -215,7 +224,11 @@ impl SimulatedRobot {
 
     /// The velocity by odometry.
     pub(super) fn odometry_twist(&self) -> Twist {
-        self.odometry.twist(&self.velocity.twist())
+        let (velocity, slipping) = (self.velocity.twist(), self.wheels.slipping.twist());
+        self.odometry.twist(&Twist {
+            linear_mps: velocity.linear_mps + slipping.linear_mps,
+            angular_radps: velocity.angular_radps + slipping.angular_radps,
+        })
     }
 
     fn platform(&self) -> Platform {
@@ -229,6 +242,7 @@ impl SimulatedRobot {
 
     /// Gives the body the velocity of the next step.
     pub(super) fn start_step(&mut self, bodies: &mut Bodies, step_s: f64) {
+        self.wheels.start_step(&self.drive, &self.command, step_s);
         self.velocity = self.drive.step(&self.command, step_s);
         self.driven = self.velocity;
         bodies.set_velocity(self.index, &self.velocity, step_s);
@@ -244,11 +258,12 @@ impl SimulatedRobot {
     }
 
     /// Takes over the pose and the velocity of the body after the step, which ends at `time_s`.
-    pub(super) fn end_step(&mut self, bodies: &Bodies, time_s: f64) {
+    pub(super) fn end_step(&mut self, bodies: &Bodies, time_s: f64, step_s: f64) {
         self.previous_pose = std::mem::replace(&mut self.pose, bodies.pose(self.index));
         let solved = bodies.velocity(self.index);
         self.velocity = self.drive.settle(&solved);
-        self.odometry.update(&self.previous_pose, &self.pose);
+        self.wheels.end_step(&self.drive, &solved);
+        self.odometry.update(&self.previous_pose, &self.pose, &self.wheels.slipping, step_s);
         if let Some(jumps) = &mut self.jumps
             && jumps.is_due(time_s)
         {

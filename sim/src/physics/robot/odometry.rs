@@ -1,7 +1,9 @@
 //! The odometry of a robot, with wheels that slip, and displacements.
 
+use crate::physics::drives::Motors;
 use crate::physics::snapshot::{self, value};
 use crate::physics::spec::{DisplacementSpec, DriveKind, OdometryError, RobotSpec};
+use crate::physics::velocity::Velocity;
 use interfaces::{RandomStream, Twist, Values, pose, rotation, values, wrap_rad};
 use nalgebra::{Isometry2, Point2, Vector2};
 use std::f64::consts::PI;
@@ -58,8 +60,15 @@ impl Odometry {
         self.pose = pose(at.x, at.y, self.heading_rad);
     }
 
-    /// Measures the motion from pose `before` to pose `after` in one physics step.
-    pub(super) fn update(&mut self, before: &Isometry2<f64>, after: &Isometry2<f64>) {
+    /// Measures the motion from pose `before` to pose `after` in one physics step, and in addition wheels that slip at
+    /// the velocity `slipping`.
+    pub(super) fn update(
+        &mut self,
+        before: &Isometry2<f64>,
+        after: &Isometry2<f64>,
+        slipping: &Velocity,
+        step_s: f64,
+    ) {
         if self.error.is_exact() {
             self.pose = *after;
             return;
@@ -69,6 +78,9 @@ impl Odometry {
         let turn_rad = wrap_rad(interfaces::heading_rad(after) - interfaces::heading_rad(before));
         let moved = rotation(-interfaces::heading_rad(before) - turn_rad / 2.0)
             * (after.translation.vector - before.translation.vector);
+        // Of the wheels, not of the robot. Without slip not a bit changes.
+        let turn_rad = turn_rad + slipping.turn_radps * step_s;
+        let moved = moved + Vector2::new(slipping.forward_mps, slipping.left_mps) * step_s;
         let distance_m = moved.norm();
         // A random walk: the variance grows with the distance, whatever the length of the steps.
         let noise_m = distance_noise_m * distance_m.sqrt() * self.noise.normal();
@@ -81,6 +93,55 @@ impl Odometry {
             self.pose.translation.vector + rotation(self.heading_rad + measured_turn_rad / 2.0) * measured;
         self.heading_rad = wrap_rad(self.heading_rad + measured_turn_rad);
         self.pose = pose(at.x, at.y, self.heading_rad);
+    }
+}
+
+/// The wheels of a robot. While a contact changes the velocity of the robot, they slip: they turn like wheels that no
+/// contact stops. They move nothing, but the odometry measures them.
+#[derive(Clone)]
+pub(super) struct Wheels {
+    /// From 0 to 1, see [`OdometryError::slip`].
+    slip: f64,
+    /// A drive that follows the commands without contacts.
+    free: Motors,
+    /// What the odometry measures in addition to the velocity of the robot.
+    pub(super) slipping: Velocity,
+}
+
+impl Wheels {
+    pub(super) fn new(slip: f64, drive: Motors) -> Self {
+        Self { slip, free: drive, slipping: Velocity::STOP }
+    }
+
+    /// The values that a snapshot holds.
+    pub(super) fn values(&mut self) -> Values<'_> {
+        let mut values = self.free.values();
+        values.push(value(&mut self.slipping));
+        values
+    }
+
+    /// Starts a step with a command; `drive` is the drive of the robot before the step.
+    pub(super) fn start_step(&mut self, drive: &Motors, command: &Velocity, step_s: f64) {
+        if self.slip == 0.0 {
+            return;
+        }
+        if !drive.is_stalled {
+            self.free = *drive;
+        }
+        self.free.step(command, step_s);
+    }
+
+    /// Ends a step; `drive` is the drive of the robot after it, `solved` the velocity of the robot after contacts.
+    pub(super) fn end_step(&mut self, drive: &Motors, solved: &Velocity) {
+        self.slipping = Velocity::STOP;
+        if self.slip > 0.0 && drive.is_stalled {
+            let (free, slip) = (self.free.velocity, self.slip);
+            self.slipping = Velocity {
+                forward_mps: slip * (free.forward_mps - solved.forward_mps),
+                left_mps: slip * (free.left_mps - solved.left_mps),
+                turn_radps: slip * (free.turn_radps - solved.turn_radps),
+            };
+        }
     }
 }
 
@@ -150,7 +211,7 @@ mod tests {
             let mut odometry = Odometry::new(&robot, noise, Isometry2::identity());
             for step in 0..10 {
                 let at = |step: i32| Isometry2::new(towards * f64::from(step) * 0.1, 0.0);
-                odometry.update(&at(step), &at(step + 1));
+                odometry.update(&at(step), &at(step + 1), &Velocity::STOP, 0.05);
             }
             let error = odometry.pose.translation.vector - towards;
             [error.dot(&towards), error.perp(&towards)]

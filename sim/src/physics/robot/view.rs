@@ -1,6 +1,6 @@
 use super::SimulatedRobot;
 use crate::physics::report::Body;
-use crate::physics::sensors::{Sensor, SonarReading};
+use crate::physics::sensors::{Fiducial, Sensor, SensorReading, SonarReading};
 use interfaces::{LaserReading, Twist};
 use nalgebra::{Isometry2, Point2};
 use std::fmt;
@@ -44,6 +44,11 @@ impl<'a> RobotView<'a> {
         self.robot.reading()
     }
 
+    /// The latest readings of all sensors, the main laser scanner first.
+    pub fn readings(&self) -> impl Iterator<Item = SensorReading<'a>> + use<'a> {
+        self.robot.sensors.iter().map(Sensor::reading)
+    }
+
     /// The latest reading of each laser scanner, in the order of the spec.
     pub fn lasers(&self) -> impl Iterator<Item = Option<&'a LaserReading>> + use<'a> {
         self.robot.sensors.iter().filter_map(Sensor::laser_reading)
@@ -52,6 +57,18 @@ impl<'a> RobotView<'a> {
     /// The latest reading of each sonar, in the order of the spec.
     pub fn sonars(&self) -> impl Iterator<Item = Option<SonarReading>> + use<'a> {
         self.robot.sensors.iter().filter_map(Sensor::sonar_reading)
+    }
+
+    /// The latest detections of the fiducial finder, robots first, each in the order of the spec.
+    pub fn fiducials(&self) -> impl Iterator<Item = &'a Fiducial> + use<'a> {
+        self.robot.sensors.iter().filter_map(Sensor::detections).flatten()
+    }
+
+    /// For each bumper, from right to left, whether it touches something now.
+    pub fn bumpers(&self) -> impl ExactSizeIterator<Item = bool> + use<> {
+        let pressed = self.robot.pressed_bumpers;
+        let sectors = self.robot.spec.bumper.map_or(0, |bumper| bumper.sectors);
+        (0..sectors).map(move |sector| pressed >> sector & 1 == 1)
     }
 }
 

@@ -4,13 +4,18 @@
 //! nobody reads cost nothing.
 //!
 //! Stepping, snapshots and views use one list of sensors, [`Sensor::all`]. To add a sensor: write a file, and add a
-//! variant to [`Sensor`].
+//! variant to [`Sensor`] and one to [`SensorReading`].
 
+pub(super) mod bumper;
+mod fiducial_finder;
 mod laser_scanner;
 mod on_demand;
 mod shared_beams;
 mod sonar;
 
+pub use fiducial_finder::Fiducial;
+use fiducial_finder::FiducialFinder;
+pub(super) use fiducial_finder::Tagged;
 pub(super) use laser_scanner::LaserScanner;
 use laser_scanner::LaserStreams;
 pub(super) use on_demand::{Look, OnDemand};
@@ -19,7 +24,7 @@ use sonar::Sonar;
 pub use sonar::SonarReading;
 
 use super::past::Recent;
-use super::rays::Scene;
+use super::rays::{Ring, Scene};
 use super::snapshot::{Values, value};
 use super::spec::{Glass, LaserSpec, RobotSpec};
 use interfaces::{LaserReading, Purpose, RandomStream, Twist};
@@ -31,6 +36,7 @@ use std::sync::Arc;
 pub(super) enum Sensor {
     Laser(Box<OnDemand<LaserScanner>>),
     Sonar(Box<OnDemand<Sonar>>),
+    Fiducials(Box<OnDemand<FiducialFinder>>),
 }
 
 /// The same for every kind of sensor.
@@ -39,6 +45,7 @@ macro_rules! each {
         match $self {
             Sensor::Laser($sensor) => $result,
             Sensor::Sonar($sensor) => $result,
+            Sensor::Fiducials($sensor) => $result,
         }
     };
 }
@@ -48,14 +55,17 @@ impl Sensor {
     pub(super) fn all(spec: &RobotSpec, beams: &mut SharedBeams, seed: u64, robot: usize) -> Vec<Self> {
         // Each sensor has streams of its own; the streams of the first sensor of a kind are those of the robot.
         let stream = |sensor: usize| robot + (sensor << 24);
+        let ring = ring(spec);
         let mut sensors = Vec::new();
         for (index, laser) in spec.lasers().enumerate() {
             sensors.push(Self::laser(laser, beams, seed, stream(index)));
         }
         for (index, sonar) in spec.sonars.iter().enumerate() {
             let noise = RandomStream::new(seed, Purpose::SonarNoise(stream(index)));
-            sensors.push(Self::Sonar(Box::new(OnDemand::new(Sonar::new(sonar, beams), noise))));
+            sensors.push(Self::Sonar(Box::new(OnDemand::new(Sonar::new(sonar, beams, ring), noise))));
         }
+        let finder = spec.fiducial.iter().map(|finder| OnDemand::new(FiducialFinder::new(finder, ring), ()));
+        sensors.extend(finder.map(|finder| Self::Fiducials(Box::new(finder))));
         sensors
     }
 
@@ -93,6 +103,15 @@ impl Sensor {
         each!(self, sensor => sensor.measure(look))
     }
 
+    /// The latest reading.
+    pub(super) fn reading(&self) -> SensorReading<'_> {
+        match self {
+            Self::Laser(laser) => SensorReading::Laser(laser.reading()),
+            Self::Sonar(sonar) => SensorReading::Sonar(sonar.reading().copied()),
+            Self::Fiducials(finder) => SensorReading::Fiducials(finder.reading().map_or(&[], Vec::as_slice)),
+        }
+    }
+
     /// The latest reading, if the sensor is a laser scanner.
     pub(super) fn laser_reading(&self) -> Option<Option<&LaserReading>> {
         let Self::Laser(laser) = self else { return None };
@@ -103,6 +122,12 @@ impl Sensor {
     pub(super) fn sonar_reading(&self) -> Option<Option<SonarReading>> {
         let Self::Sonar(sonar) = self else { return None };
         Some(sonar.reading().copied())
+    }
+
+    /// The latest detections, if the sensor is a fiducial finder.
+    pub(super) fn detections(&self) -> Option<&[Fiducial]> {
+        let Self::Fiducials(finder) = self else { return None };
+        Some(finder.reading().map_or(&[], Vec::as_slice))
     }
 
     /// Removes the latest reading.
@@ -121,8 +146,30 @@ impl Sensor {
                 let (noise, reading) = sonar.state();
                 vec![value(noise), value(reading)]
             }
+            Self::Fiducials(finder) => vec![value(finder.state().1.get_or_insert_default())],
         }
     }
+}
+
+/// The ring of the sonars and of the fiducial finder of a robot.
+fn ring(spec: &RobotSpec) -> Ring {
+    let sonars = spec.sonars.iter().map(|sonar| (sonar.mount, sonar.range_max_m));
+    let finder = spec.fiducial.iter().map(|finder| (finder.mount, finder.range_max_m));
+    sonars.chain(finder).fold(Ring::default(), |ring, (mount, range_m)| Ring {
+        offset_m: ring.offset_m.max(mount.translation.vector.norm()),
+        range_m: ring.range_m.max(range_m),
+    })
+}
+
+/// The latest reading of a sensor; `None` before the first measurement.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SensorReading<'a> {
+    /// The reading of a laser scanner. The pose is the pose by odometry.
+    Laser(Option<&'a LaserReading>),
+    /// The reading of a sonar.
+    Sonar(Option<SonarReading>),
+    /// The bodies that a fiducial finder detected: robots first, then obstacles, each in the order of the spec.
+    Fiducials(&'a [Fiducial]),
 }
 
 /// A robot at the moment of a measurement.
@@ -144,6 +191,7 @@ pub(super) struct Surroundings {
     pub(super) time_s: f64,
     pub(super) scene: Scene,
     pub(super) glass: Vec<Glass>,
+    pub(super) tagged: Vec<Tagged>,
     /// For lasers that sweep.
     pub(super) recent: Recent,
 }

@@ -1,6 +1,7 @@
 //! Readings that are computed when they are first read.
 
 use super::{Platform, Surroundings};
+use crate::physics::rays::{Ring, Vicinity};
 use std::sync::{Arc, OnceLock};
 
 /// A robot and its surroundings at the time of a measurement.
@@ -8,6 +9,20 @@ use std::sync::{Arc, OnceLock};
 pub(crate) struct Look {
     pub(crate) platform: Platform,
     pub(crate) surroundings: Arc<Surroundings>,
+    vicinity: OnceLock<Vicinity>,
+}
+
+impl Look {
+    pub(crate) fn new(platform: Platform, surroundings: Arc<Surroundings>) -> Self {
+        Self { platform, surroundings, vicinity: OnceLock::new() }
+    }
+
+    /// What is around the robot. All sensors of the robot that ask for it must be within `ring`, the same one.
+    pub(super) fn vicinity(&self, ring: &Ring) -> &Vicinity {
+        let Platform { pose, robot, .. } = &self.platform;
+        self.vicinity
+            .get_or_init(|| self.surroundings.scene.vicinity(pose.translation.vector.into(), ring, *robot))
+    }
 }
 
 /// A sensor without its readings.
@@ -28,8 +43,8 @@ pub(crate) trait Device {
     /// Draws what a measurement draws.
     fn skip(&self, streams: &mut Self::Streams);
 
-    /// The time of a reading, s.
-    fn time_s(reading: &Self::Reading) -> f64;
+    /// The time of a reading, s, if there need be no other reading of the same time.
+    fn time_s(reading: &Self::Reading) -> Option<f64>;
 }
 
 /// A sensor whose readings are computed when they are first read. A reading has the same bits, whether the readings
@@ -99,7 +114,7 @@ impl<D: Device> OnDemand<D> {
     pub(super) fn has_measured(&self, time_s: f64) -> bool {
         let last_s = match &self.pending {
             Some(pending) => Some(pending.surroundings.time_s),
-            None => self.reading.as_ref().map(D::time_s),
+            None => self.reading.as_ref().and_then(D::time_s),
         };
         last_s == Some(time_s)
     }

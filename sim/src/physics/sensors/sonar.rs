@@ -1,6 +1,6 @@
 use super::on_demand::{Device, Look};
 use super::{SharedBeams, reported};
-use crate::physics::rays::Beams;
+use crate::physics::rays::{Beams, Ring};
 use crate::physics::spec::SonarSpec;
 use interfaces::RandomStream;
 use serde::{Deserialize, Serialize};
@@ -23,14 +23,16 @@ pub struct SonarReading {
 pub(crate) struct Sonar {
     pub(super) spec: SonarSpec,
     beams: Arc<Beams>,
+    /// Of all sensors of the robot.
+    ring: Ring,
 }
 
 impl Sonar {
-    pub(super) fn new(spec: &SonarSpec, beams: &mut SharedBeams) -> Self {
+    pub(super) fn new(spec: &SonarSpec, beams: &mut SharedBeams, ring: Ring) -> Self {
         let gaps = (spec.cone_rad / BEAM_SPACING_RAD).ceil().max(2.0);
         let (first_rad, spacing_rad) = (-spec.cone_rad / 2.0, spec.cone_rad / gaps);
         let beams = beams.of(first_rad, spacing_rad, gaps as usize + 1, spec.range_max_m);
-        Self { spec: *spec, beams }
+        Self { spec: *spec, beams, ring }
     }
 }
 
@@ -41,7 +43,8 @@ impl Device for Sonar {
     fn measure(&self, look: &Look, noise: &mut RandomStream, _: Option<SonarReading>) -> SonarReading {
         let Look { platform, surroundings, .. } = look;
         let SonarSpec { range_min_m, range_max_m, noise_std_m, mount, .. } = self.spec;
-        let nearest = surroundings.scene.nearest(&self.beams, &(platform.pose * mount), platform.robot);
+        let nearest =
+            surroundings.scene.nearest(&self.beams, &(platform.pose * mount), look.vicinity(&self.ring));
         let noise_m = if noise_std_m > 0.0 { noise_std_m * noise.normal() } else { 0.0 };
         let measured_m = 1.0 / nearest + noise_m;
         let range_m = reported(measured_m, range_min_m, range_max_m);
@@ -54,7 +57,7 @@ impl Device for Sonar {
         }
     }
 
-    fn time_s(reading: &SonarReading) -> f64 {
-        reading.time_s
+    fn time_s(reading: &SonarReading) -> Option<f64> {
+        Some(reading.time_s)
     }
 }

@@ -13,7 +13,7 @@ pub use behavior::{BehaviorSpec, CircleSpec, PatrolSpec, Repeat, WanderSpec, Way
 pub use obstacle::{DoorSpec, Leaf, Motion, ObstacleSpec, Opening, PathSpec, PushedSpec};
 pub use odometry::{DisplacementSpec, OdometryError};
 pub use robot::{DriveKind, DriveLimits, LaserSpec, PatrolDaySpec, RobotSpec};
-pub use senses::SonarSpec;
+pub use senses::{BumperSpec, FiducialSpec, SonarSpec};
 
 use super::shape::{Rectangle, TOUCH_M, Transform, grid_corners};
 use interfaces::{GridFrame, rotation};

@@ -13,6 +13,8 @@ pub struct ObstacleSpec {
     pub shape: Rectangle,
     /// The motion of the obstacle.
     pub motion: Motion,
+    /// The tag that fiducial finders detect; `None` if they do not detect the obstacle.
+    pub tag: Option<u32>,
     /// The time at which the obstacle appears, s; `None` if it is present from the start.
     pub appears_s: Option<f64>,
     /// The time at which the obstacle disappears, s; `None` if it never disappears.
@@ -20,9 +22,9 @@ pub struct ObstacleSpec {
 }
 
 impl ObstacleSpec {
-    /// An obstacle that is there from the start to the end.
+    /// An obstacle without a tag that is there from the start to the end.
     pub fn new(name: &str, shape: Rectangle, motion: Motion) -> Self {
-        Self { name: name.to_owned(), shape, motion, appears_s: None, disappears_s: None }
+        Self { name: name.to_owned(), shape, motion, tag: None, appears_s: None, disappears_s: None }
     }
 
     /// Whether the obstacle ever appears, disappears or moves.

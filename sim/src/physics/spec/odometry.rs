@@ -13,6 +13,10 @@ pub struct OdometryError {
     pub distance_noise_m: f64,
     /// Standard deviation of the heading after a turn of 1 rad, rad; it grows with the square root of the turn.
     pub turn_noise_rad: f64,
+    /// How much the wheels slip while a contact changes the velocity of the robot, from 0 to 1: the share of the motion
+    /// of the free wheels that the odometry measures instead of the motion of the robot. 1: a robot that pushes against
+    /// a wall measures that it drives on, and a robot at rest that is pushed away measures nothing.
+    pub slip: f64,
     /// Jumps: at random times the odometry changes, and the robot does not move.
     pub jump: Option<DisplacementSpec>,
     /// At random times the robot is carried away and set down at rest, and the odometry does not change. The new pose is

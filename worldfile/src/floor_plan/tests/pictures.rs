@@ -101,6 +101,17 @@ fn bombs_noise_and_other_files_are_refused() {
     is_refused(b"P5 1 1 0 \0", "its header is damaged");
 }
 
+/// The largest picture that is allowed, of the fewest bytes, in at most 1 GiB: run alone as
+/// `(ulimit -v 1048576; TEST-PROGRAM largest_picture --ignored)`.
+#[test]
+#[ignore = "slow; for measuring memory"]
+fn largest_picture() {
+    let picture = RgbaImage::from_fn(8192, 8192, |x, y| Rgba([(x / 16 + y / 16) as u8 % 2 * 255, 0, 0, 255]));
+    let bytes = encode(&DynamicImage::ImageRgba8(picture), ImageFormat::Png);
+    let bitmap = Bitmap::decode_dark(&bytes, 0.2).unwrap();
+    assert!(bitmap.rectangles().len() > 100_000);
+}
+
 fn samples() -> Vec<Vec<u8>> {
     let grey = GrayImage::from_fn(9, 7, |x, y| Luma([(x * y * 31 % 256) as u8]));
     let grey = DynamicImage::ImageLuma8(grey);

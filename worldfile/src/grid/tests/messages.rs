@@ -205,3 +205,27 @@ fn a_world_of_the_other_kind_is_called_what_it_is() {
       = help: it must be a table of keys
     ");
 }
+
+#[test]
+fn missing_file() {
+    let error = crate::grid::load("no/such/place.toml").unwrap_err();
+    insta::assert_snapshot!(error, @"cannot read the world file `no/such/place.toml`: No such file or directory (os error 2)");
+}
+
+#[test]
+fn everything_that_is_wrong_is_reported_at_once() {
+    let text = "name = ''\nsensor_radius = 0\nmap = '''\n#####\n#...#\n#####\n'''\n\
+                [[block]]\nname = 'b'\ndwell = 0\ncourse = 'loop'\npath = [[1, 1], [2, 1]]\n";
+    let error = crate::grid::parse("many.toml", text).unwrap_err();
+    let messages = error.messages();
+    let firsts: Vec<&str> = messages.iter().map(|message| message.lines().next().unwrap()).collect();
+    assert_eq!(
+        firsts,
+        [
+            "`name` is empty",
+            "`sensor_radius` is 0, which is out of range",
+            "`block.dwell` is 0, which is out of range"
+        ]
+    );
+    assert_eq!(error.to_string().matches("error: ").count(), 2);
+}

@@ -11,12 +11,12 @@ use crate::schedule::schedule;
 use calendar::Schedule;
 use sim::physics::{Motion, ObstacleSpec, PushedSpec, Rectangle};
 
-pub(super) const KEYS: &str = "name, kind, min_m, max_m, center_m, size_m, heading_deg, appears_s, \
+pub(super) const KEYS: &str = "name, tag, kind, min_m, max_m, center_m, size_m, heading_deg, appears_s, \
                                disappears_s, mass_kg, friction, path_m, dwell_s, speed_mps, times_s, repeat, \
                                from_m, to_m, thickness_m, open_deg, slide_m, opening, closed_s, open_s, \
                                switches_s, move_s, starts_open, schedule, waits_for_robots";
 
-/// The kinds of obstacles; all have a name and a kind as well.
+/// The kinds of obstacles; all have a name, a tag and a kind as well.
 const KINDS: [KindOf; 5] = [
     (
         "fixed",
@@ -50,10 +50,10 @@ struct Obstacle<'a> {
 }
 
 pub(super) fn obstacle(table: &Table<'_>, space: &Space, files: &dyn Files) -> Option<ObstacleSpec> {
-    let name = table.name();
+    let (name, tag) = (table.name(), table.tag());
     let word = table.get("kind").map_or(Some("fixed"), |kind| kind.text())?;
     let kind = kind_of(table, word, &KINDS, "kind of obstacle")?;
-    has_only_own_keys(table, kind, "name, kind", "an obstacle")?;
+    has_only_own_keys(table, kind, "name, tag, kind", "an obstacle")?;
     let (kind, called) = (&kind.0, name.as_deref().unwrap_or_default());
     let obstacle = Obstacle { table, kind, name: called, space, files };
     let spec = match *kind {
@@ -62,7 +62,7 @@ pub(super) fn obstacle(table: &Table<'_>, space: &Space, files: &dyn Files) -> O
         "box" => obstacle.pushed(),
         _ => obstacle.fixed(),
     };
-    table.sound(ObstacleSpec { name: name?, ..spec? })
+    table.sound(ObstacleSpec { tag, name: name?, ..spec? })
 }
 
 impl Obstacle<'_> {

@@ -53,6 +53,9 @@ fn things_that_move() {
 fn odometry() {
     let with = |keys: &str| format!("[robot.odometry]\n{keys}\n\n[robot.drive]");
     let cases = [
+        ("wheels that slip backwards", with("slip = -0.5")),
+        ("wheels that slip more than they turn", with("slip = 1.5")),
+        ("slip that is no number", with("slip = nan")),
         ("jumps without a time", with("jump = { distance_m = 1.0 }")),
         ("jumps of nothing", with("jump = { every_s = 20.0 }")),
         ("jumps back", with("jump = { every_s = 20.0, distance_m = -1.0 }")),
@@ -139,10 +142,16 @@ fn senses() {
     let with = |keys: &str| format!("{keys}\n\n{at}");
     let sonar = "[[robot.sonar]]\ncone_deg = 30.0\nrange_max_m = 3.0\nrate_hz = 10.0";
     let cases = [
+        ("no bumpers", with("[robot.bumper]\nsectors = 0")),
         ("sonar that hears nothing", with(&format!("{sonar}\nrange_min_m = 3.0"))),
         ("sonar off the robot", with(&format!("{sonar}\nmount_m = [1.3, 0.0]"))),
         ("sonar between steps", with(&sonar.replace("10.0", "15.0"))),
         ("sonar as a table", with(&sonar.replace("[[robot.sonar]]", "[robot.sonar]"))),
+        (
+            "finder off the robot",
+            with("[robot.fiducial]\nrange_max_m = 3.0\nrate_hz = 10.0\nmount_m = [2.0, 0.0]"),
+        ),
+        ("wrong tag", with("").replacen("[robot.behavior]", "[robot.behavior]\ntag = 3", 1)),
     ];
     let cases: Vec<_> = cases.iter().map(|(case, to)| (*case, at, to.as_str())).collect();
     compare("senses", &cases);

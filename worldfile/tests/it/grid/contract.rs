@@ -30,6 +30,14 @@ fn shipped_worlds_are_without_warnings_and_read_the_same_when_written() {
 }
 
 #[test]
+fn time_goes_forward_by_one() {
+    for (step, reading) in run(&GridSpec::generate(&GenerateSettings::default(), 1), 0, 50).iter().enumerate()
+    {
+        assert_eq!(reading.time, step as f64);
+    }
+}
+
+#[test]
 fn the_same_seed_gives_the_same_bits_and_another_does_not() {
     for spec in shipped() {
         let spec = spec.with_probabilities(0.8, 0.8);
@@ -37,6 +45,19 @@ fn the_same_seed_gives_the_same_bits_and_another_does_not() {
         assert_eq!(first, run(&spec, 1, 500));
         assert_ne!(first, run(&spec, 2, 500));
     }
+}
+
+#[test]
+fn looking_changes_nothing() {
+    let spec = shipped().next().unwrap().with_probabilities(0.5, 0.5);
+    let (mut one, mut two) = (GridWorld::new(&spec, 5), GridWorld::new(&spec, 5));
+    for step in way(2).take(200) {
+        let first = one.sense();
+        assert_eq!(first, one.sense());
+        one.act(&step);
+        two.act(&step);
+    }
+    assert_eq!(one.sense(), two.sense());
 }
 
 /// The robot observes the true states of cells in the map and within range, each cell once.

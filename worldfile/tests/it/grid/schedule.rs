@@ -28,6 +28,14 @@ fn a_block_stands_for_its_dwell_and_turns_round() {
 }
 
 #[test]
+fn two_cells_are_a_path() {
+    for course in ["back-and-forth", "loop"] {
+        let spec = corridor(&[block("b", 3, course, "[[7, 0], [6, 0]]")]);
+        assert_eq!(columns(&spec, 13), ["7776667776667"], "{course}");
+    }
+}
+
+#[test]
 fn a_loop_goes_round() {
     // Both notations: the path ends beside the first cell, or on it.
     for path in ["[[1, 0], [3, 0], [3, 1], [1, 1]]", "[[1, 0], [3, 0], [3, 1], [1, 1], [1, 0]]"] {
@@ -92,4 +100,23 @@ fn a_block_may_enter_what_an_earlier_one_leaves() {
     assert_eq!(columns(&first_moves_first, 7), ["1122334", "0011223"]);
     // In the other order, the block behind finds the cell occupied at first, and follows one step later.
     assert_eq!(columns(&corridor(&[behind, ahead]), 7), ["0001122", "1122334"]);
+}
+
+#[test]
+fn the_paper_s_blocks_take_42_and_40_steps_for_a_round() {
+    let spec = worldfile::grid::parse("two_blocks.toml", SHIPPED[0].1).unwrap();
+    let mut world = GridWorld::new(&spec, 0);
+    let start: Vec<Cell> = world.blocks().map(|(_, cell)| cell).collect();
+    let mut back = [Vec::new(), Vec::new()];
+    let mut before = start.clone();
+    for step in 1..=84 {
+        world.act(&Step::Stay);
+        for (index, (_, cell)) in world.blocks().enumerate() {
+            if cell == start[index] && cell != before[index] {
+                back[index].push(step);
+            }
+            before[index] = cell;
+        }
+    }
+    assert_eq!(back, [vec![42, 84], vec![40, 80]]);
 }

@@ -5,6 +5,20 @@ use super::*;
 use nalgebra::Point2;
 
 #[test]
+fn alone_a_wanderer_never_touches_anything() {
+    let wander = "kind = \"wander\"\nspeed_mps = 0.5\nclearance_m = 0.2";
+    let mut fleet = Fleet::new(&house(&[robot("one", [2.0, 2.0], 0.0, wander)], ""), 5);
+    let mut rooms = [false; 4];
+    for _ in 0..20 * 600 {
+        fleet.step(&mut nobody);
+        assert_eq!(fleet.contacts(), []);
+        let at = at(&fleet, 0);
+        rooms[usize::from(at.x > 6.0) + 2 * usize::from(at.y > 6.0)] = true;
+    }
+    assert!(rooms.iter().filter(|&&was_there| was_there).count() > 1, "it never left its room");
+}
+
+#[test]
 fn a_circle_is_driven_and_standing_is_not_moving() {
     let circle = "kind = \"circle\"\nspeed_mps = 0.4\nturn_radius_m = 1.0\ndirection = \"right\"";
     let robots =
@@ -57,6 +71,19 @@ fn waypoints_are_visited_in_order() {
         }
         assert_eq!(fleet.contacts(), []);
     }
+}
+
+#[test]
+fn on_its_way_to_a_waypoint_a_robot_waits_for_what_is_in_its_way() {
+    let way = "kind = \"waypoints\"\npoints_m = [[4.5, 1.0]]\nspeed_mps = 0.5\nrepeat = \"once\"";
+    let toy = "[[obstacle]]\nname = \"toy\"\nmin_m = [3.0, 0.9]\nmax_m = [3.2, 1.1]\nappears_s = 0.5\ndisappears_s = 8.0\n";
+    let mut fleet = Fleet::new(&house(&[robot("one", [1.0, 1.0], 0.0, way)], toy), 0);
+    fleet.run_until(7.5, &mut nobody);
+    let waits_at = at(&fleet, 0);
+    assert!((2.3..2.8).contains(&waits_at.x), "{waits_at}");
+    fleet.run_until(25.0, &mut nobody);
+    assert!((at(&fleet, 0).x - 4.5).abs() < 0.03);
+    assert_eq!(fleet.contacts(), []);
 }
 
 #[test]
@@ -171,6 +198,21 @@ fn a_way_may_end_before_a_wall_that_is_too_close_to_be_measured() {
         let visits = visits(&mut fleet, &[[1.0, 0.5], [4.5, 0.5]], 60.0);
         assert_eq!(visits[..4], [0, 1, 0, 1], "{way}, {mount_m} m, {range_min_m} m");
         assert_eq!(fleet.contacts(), []);
+    }
+}
+
+/// A robot gets to the end of its way also if its laser is noisy, and if it starts where it does not measure the wall.
+#[test]
+fn a_wall_that_was_measured_badly_or_never_is_no_obstacle() {
+    let wall = "[[wall]]\nmin_m = [4.8, 0.2]\nmax_m = [4.9, 2.0]\n";
+    let way = "kind = \"wall_patrol\"\nfrom_m = [1.0, 0.5]\nto_m = [4.54, 0.5]\nwall_side = \"right\"\nspeed_mps = 0.4";
+    for (start_m, noise_m) in [(1.0, 0.0), (1.0, 0.01), (1.0, 0.02), (4.44, 0.0)] {
+        let driver = robot("driver", [start_m, 0.5], 0.0, way);
+        let driver = driver.replace("beams = 90", "beams = 360\nrange_min_m = 0.45");
+        let driver = driver.replace("noise_std_m = 0.005", &format!("noise_std_m = {noise_m:?}"));
+        let mut fleet = Fleet::new(&house(&[driver], wall), 1);
+        let visits = visits(&mut fleet, &[[1.0, 0.5], [4.54, 0.5]], 600.0);
+        assert!(visits.len() > 40, "from {start_m} m, noise {noise_m} m: {}", visits.len());
     }
 }
 

@@ -18,6 +18,13 @@ fn noisy() -> WorldSpec {
 }
 
 #[test]
+fn time_goes_forward_by_the_scan_period() {
+    for (step, reading) in run(&four_rooms(), 0, 300).iter().enumerate() {
+        assert!((reading.time_s - step as f64 * 0.1).abs() < 1e-9);
+    }
+}
+
+#[test]
 fn every_scan_is_whole_and_makes_sense() {
     let spec = noisy();
     for reading in run(&spec, 3, 100) {
@@ -31,6 +38,19 @@ fn every_scan_is_whole_and_makes_sense() {
 }
 
 #[test]
+fn looking_twice_shows_the_same_and_changes_nothing() {
+    let spec = noisy();
+    let (mut one, mut two) = (PhysicsWorld::new(&spec, 5), PhysicsWorld::new(&spec, 5));
+    for _ in 0..20 {
+        let first = one.sense();
+        assert_eq!(first, one.sense());
+        assert_eq!(first, two.sense());
+        one.act(&Twist { linear_mps: 0.3, angular_radps: 0.2 });
+        two.act(&Twist { linear_mps: 0.3, angular_radps: 0.2 });
+    }
+}
+
+#[test]
 fn the_same_seed_gives_the_same_bits_and_another_does_not() {
     let spec = noisy();
     let first = run(&spec, 1, 200);
@@ -38,6 +58,11 @@ fn the_same_seed_gives_the_same_bits_and_another_does_not() {
     let other = run(&spec, 2, 200);
     assert_ne!(first[0].scan, other[0].scan);
     assert_ne!(first[200].pose, other[200].pose);
+}
+
+#[test]
+fn without_noise_the_seed_does_not_matter() {
+    assert_eq!(run(&four_rooms(), 1, 50), run(&four_rooms(), 2, 50));
 }
 
 #[test]
@@ -67,6 +92,23 @@ fn exact_odometry_is_the_truth_and_drifting_odometry_drifts() {
     // Both robots started with heading 0, and reached full speed within the first step.
     let felt_rad = interfaces::heading_rad(&reading.pose);
     assert!(interfaces::wrap_rad(felt_rad - 1.05 * 0.5 * 10.0).abs() < 1e-3, "{felt_rad}");
+}
+
+#[test]
+fn the_three_worlds_that_ship_can_be_run() {
+    for (name, text, beams) in [
+        ("four_rooms", FOUR_ROOMS, 720),
+        ("toy_on_the_floor", include_str!("../../../../worlds/toy_on_the_floor.toml"), 720),
+        ("turned_house", include_str!("../../../../worlds/turned_house.toml"), 720),
+    ] {
+        let spec = parse(text);
+        assert!(!spec.name.is_empty() && !spec.description.is_empty(), "{name}");
+        let readings = run(&spec, 0, 20);
+        assert_eq!(readings[20].scan.ranges_m.len(), beams);
+        // The laser covers the room: cells that it cannot see are behind doors.
+        let seen = readings[20].scan.ranges_m.iter().filter(|range| range.is_finite()).count();
+        assert!(seen > beams * 9 / 10, "{name}: {seen}");
+    }
 }
 
 /// A minute of the four rooms with noise, bit by bit. If this number changes, the world has changed: this must be

@@ -152,3 +152,30 @@ fn with_extreme_masses_speeds_and_walls_nobody_passes_a_wall() {
     assert!(boxes > 4 * worlds as usize, "too few boxes fitted in: {boxes}");
     assert!(contacts > 5 * robots, "few contacts: {contacts}");
 }
+
+/// The smallest case that was found: a heavy robot presses a light one against a thin wall.
+#[test]
+fn a_light_robot_stays_on_its_side_of_a_thin_wall() {
+    let robot = |name: &str, radius_m: f64, mass_kg: f64, x_m: f64| {
+        format!(
+            "[[robot]]\nname = \"{name}\"\nradius_m = {radius_m:?}\nmass_kg = {mass_kg:?}\npose_m = [{x_m:?}, 2.0]\n\
+             behavior = {{ kind = \"driven\" }}\n\
+             drive = {{ max_linear_mps = {:?}, max_angular_degps = 90.0, max_linear_acceleration_mps2 = 5.0, max_angular_acceleration_degps2 = 360.0 }}\n\
+             laser = {{ beams = 2, range_max_m = 5.0, rate_hz = 10.0 }}\n",
+            if name == "a" { 0.8 } else { 0.3 },
+        )
+    };
+    let text = format!(
+        "name = \"thin\"\n[map]\nsize_m = [5.0, 4.0]\ncell_m = 0.1\n[[wall]]\nmin_m = [4.0, 0.0]\nmax_m = [4.02, 4.0]\n{}{}",
+        robot("a", 0.2, 10.0, 1.0),
+        robot("b", 0.02, 0.1, 3.5)
+    );
+    let spec = worldfile::physics::parse_fleet("thin.toml", &text).unwrap_or_else(|error| panic!("{error}"));
+    let mut fleet = Fleet::new(&spec, 0);
+    fleet.run_until(10.0, &mut |robot: &RobotView<'_>, _: &LaserReading| Twist {
+        linear_mps: if robot.index == 0 { 0.8 } else { 0.0 },
+        angular_radps: 0.0,
+    });
+    let x: Vec<f64> = fleet.robots().map(|robot| robot.pose.translation.x).collect();
+    assert!(x[1] < 4.0 - 0.015 && x[0] > 3.7, "{x:?}");
+}

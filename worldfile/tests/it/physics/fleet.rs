@@ -72,6 +72,29 @@ fn golden_hash_on_any_number_of_threads() {
 }
 
 #[test]
+fn a_crowd_keeps_moving_and_stays_apart_and_in_its_house() {
+    let spec = crowd();
+    let mut fleet = Fleet::new(&spec, 0);
+    let mut driven_m = vec![0.0; spec.robots.len()];
+    for _ in 0..60 {
+        let before: Vec<_> = (0..driven_m.len()).map(|i| at(&fleet, i)).collect();
+        fleet.run_until(fleet.time_s() + 1.0, &mut nobody);
+        for (i, before) in before.iter().enumerate() {
+            let now = at(&fleet, i);
+            driven_m[i] += (now - before).norm();
+            let wall_m = spec.walls.iter().map(|wall| wall.distance_m(&now)).fold(f64::MAX, f64::min);
+            let others = (0..i).map(|other| (at(&fleet, other) - now).norm());
+            assert!(wall_m > 0.199, "robot {i} is {wall_m} m from a wall");
+            assert!(others.fold(f64::MAX, f64::min) > 0.399, "robot {i} is in another");
+        }
+    }
+    // The distance that they could have driven is 24 m.
+    let mean_m = driven_m.iter().sum::<f64>() / driven_m.len() as f64;
+    assert!(mean_m > 10.0, "they mostly stand: {driven_m:?}");
+    assert!(driven_m.iter().all(|&way_m| way_m > 2.0), "{driven_m:?}");
+}
+
+#[test]
 fn several_driven_robots_ask_the_controller_at_every_scan() {
     let driven = "kind = \"driven\"";
     let robots = [robot("one", [2.0, 2.0], 0.0, driven), robot("two", [2.0, 4.0], 0.0, driven)];

@@ -134,3 +134,40 @@ fn all_plans_together_may_be_too_ragged() {
     let error = plans(4).unwrap_err().to_string();
     assert!(error.starts_with("the floor plans make 30000 pieces of wall together\n"), "{error}");
 }
+
+/// The worlds beside this crate: each can be read, and its robots drive without getting stuck or lost.
+#[test]
+fn the_worlds_of_this_crate_run() {
+    for name in ["cave", "house", "office", "warehouse", "yard"] {
+        let path = PathBuf::from(FOLDER).join(format!("{name}.toml"));
+        // One robot is driven, so that the curious robot can explore the world.
+        let spec = worldfile::physics::load_world(&path).unwrap_or_else(|error| panic!("{error}"));
+        let mut fleet = Fleet::new(spec.fleet(), 3);
+        let starts: Vec<_> = fleet.robots().map(|robot| robot.pose).collect();
+        let mut farthest_m = vec![0.0_f64; starts.len()];
+        let size = Point2::new(
+            spec.frame.width() as f64 * spec.frame.resolution_m(),
+            spec.frame.height() as f64 * spec.frame.resolution_m(),
+        );
+        for second in 1..=60 {
+            fleet.run_until(f64::from(second), &mut ());
+            for (index, robot) in fleet.robots().enumerate() {
+                let at = Point2::from(robot.pose.translation.vector);
+                assert!(at.x > 0.0 && at.y > 0.0 && at.x < size.x && at.y < size.y, "{} at {at}", robot.name);
+                let inside = spec.walls.iter().find(|wall| wall.distance_m(&at) < 0.9 * robot.radius_m);
+                assert!(inside.is_none(), "{}: {} at {at} in {inside:?}", path.display(), robot.name);
+                let moved_m = (at - Point2::from(starts[index].translation.vector)).norm();
+                farthest_m[index] = farthest_m[index].max(moved_m);
+            }
+        }
+        for (index, robot) in fleet.robots().enumerate().filter(|(_, robot)| !robot.is_driven) {
+            assert!(
+                farthest_m[index] > 1.0,
+                "{}: {} got {} m far",
+                path.display(),
+                robot.name,
+                farthest_m[index]
+            );
+        }
+    }
+}

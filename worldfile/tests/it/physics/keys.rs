@@ -71,7 +71,9 @@ const GOOD: &[(&str, &str, &str)] = &[
     ),
     ("`robot.laser`", "robot.laser", "beams = 10\nrange_max_m = 5.0\nrate_hz = 10.0"),
     ("`robot.behavior`", "robot.behavior", "kind = \"driven\""),
+    ("`robot.bumper`", "robot.bumper", "sectors = 4"),
     ("`robot.sonar`", "robot.sonar", "cone_deg = 30.0\nrange_max_m = 5.0\nrate_hz = 10.0"),
+    ("`robot.fiducial`", "robot.fiducial", "range_max_m = 5.0\nrate_hz = 10.0"),
 ];
 
 /// The additional keys that a key needs, if the valid ones do not include them.
@@ -104,7 +106,9 @@ fn world(heading: &str, changed: &str) -> String {
                 | "obstacle.schedule"
                 | "robot.patrol"
                 | "robot.odometry.jump"
+                | "robot.bumper"
                 | "robot.sonar"
+                | "robot.fiducial"
         );
         let holds_it = *known == "`obstacle`" && heading == "`obstacle.schedule`";
         if (is_optional || table_of(heading) == *table) && *known != heading && !holds_it {
@@ -160,7 +164,7 @@ fn the_ranges_are_those_that_are_checked() {
                 keys.lines().filter(|line| !line.starts_with(&format!("{key} ="))).collect();
             for beyond in [least - 0.5 * least.abs() - 1e-5, most * 1.5] {
                 let value = match *key {
-                    "beams" => format!("{}", beyond.max(0.0) as u32),
+                    "beams" | "sectors" => format!("{}", beyond.max(0.0) as u32),
                     "size_m" => format!("[{beyond:?}, {beyond:?}]"),
                     "times_s" | "switches_s" => format!("[{beyond:?}]"),
                     _ => format!("{beyond:?}"),

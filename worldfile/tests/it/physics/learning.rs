@@ -103,6 +103,23 @@ fn a_look_is_of_the_same_instant_as_the_pose() {
 }
 
 #[test]
+fn a_look_when_a_scan_is_due_changes_nothing() {
+    let run = |looks: bool| {
+        let mut fleet = Fleet::new(&crowd(), 3);
+        for _ in 0..100 {
+            fleet.step(&mut ());
+            fleet.step(&mut ());
+            if looks {
+                fleet.look_all();
+            }
+        }
+        fleet.step(&mut ());
+        hash(&fleet)
+    };
+    assert_eq!(run(true), run(false));
+}
+
+#[test]
 fn scans_and_poses_of_all_robots_are_copied() {
     let mut fleet = Fleet::new(&crowd(), 3);
     let mut ranges_m = vec![0.0; fleet.beams()];

@@ -1,4 +1,4 @@
-//! Odometry that jumps, and does not notice that the robot is carried away.
+//! Odometry that slips, jumps, and does not notice that the robot is carried away.
 
 use super::fleet::{house, robot};
 use super::*;
@@ -31,6 +31,38 @@ fn apart(a: &Isometry2<f64>, b: &Isometry2<f64>) -> (f64, f64) {
 
 fn truths(seen: &[(Isometry2<f64>, LaserReading)]) -> Vec<Isometry2<f64>> {
     seen.iter().map(|(pose, _)| *pose).collect()
+}
+
+#[test]
+fn wheels_that_slip_drive_on_against_a_wall() {
+    // From x = 3 to the wall at x = 5.95 it is 2.75 m, which takes 6 s.
+    let ahead = Twist { linear_mps: 0.5, angular_radps: 0.0 };
+    let [whole, half, none] =
+        ["slip = 1.0", "slip = 0.5", "slip = 0.0"].map(|error| run(&place(error, &[]), ahead, 20.0));
+    assert_eq!(truths(&whole), truths(&none));
+    assert_eq!(truths(&half), truths(&none));
+    assert!((whole[199].0.translation.x - 5.75).abs() < 0.01);
+    // Free wheels: 0.5 m/s for 19.9 s, less the half of 0.5 s of acceleration.
+    for (seen, share) in [(&whole, 1.0), (&half, 0.5), (&none, 0.0)] {
+        let expected_m = 2.75 + share * (0.5 * 19.9 - 0.125 - 2.75);
+        let measured_m = seen[199].1.pose.translation.x - 3.0;
+        assert!((measured_m - expected_m).abs() < 0.05, "{measured_m} m, not {expected_m} m");
+        let speed_mps = seen[199].1.twist.linear_mps;
+        assert!((speed_mps - share * 0.5).abs() < 0.05, "{speed_mps} m/s");
+        // Before the wall, nothing slips.
+        assert!(seen[..50].iter().all(|(pose, reading)| apart(pose, &reading.pose).0 < 1e-6));
+    }
+}
+
+#[test]
+fn a_robot_at_rest_that_is_pushed_away_measures_nothing_if_its_wheels_slip() {
+    let pusher =
+        robot("pusher", [2.0, 1.5], 0.0, "kind = \"circle\"\nspeed_mps = 0.5\nturn_radius_m = 1000.0")
+            .replace("radius_m = 0.2", "mass_kg = 50.0\nradius_m = 0.2");
+    let seen = run(&place("slip = 1.0", &[pusher]), Twist::STOP, 5.0);
+    let (truth, reading) = &seen[49];
+    assert!(truth.translation.x > 3.5, "{truth}");
+    assert!((reading.pose.translation.x - 3.0).abs() < 0.02, "{}", reading.pose);
 }
 
 #[test]
@@ -102,7 +134,7 @@ fn a_carried_robot_is_elsewhere_and_does_not_notice() {
 
 #[test]
 fn glitches_are_the_same_again_and_in_a_restored_fleet() {
-    let errors = "turn_gain = 0.05\njump = { every_s = 1.0, distance_m = 0.5, turn_deg = 20.0 }\n\
+    let errors = "turn_gain = 0.05\nslip = 0.7\njump = { every_s = 1.0, distance_m = 0.5, turn_deg = 20.0 }\n\
                   carried = { every_s = 1.5, distance_m = 2.0, turn_deg = 90.0 }";
     let mut spec = place(errors, &[]);
     spec.robots[0].laser.sweep_s = 0.1;
@@ -127,8 +159,8 @@ fn a_world_says_whether_its_poses_are_exact() {
         let spec = WorldSpec::new(place(error, &[])).unwrap();
         PhysicsWorld::new(&spec, 0).poses_are_exact()
     };
-    assert!(says("turn_gain = 0.0"));
-    for error in ["turn_gain = 0.01", "carried = { every_s = 9.0, distance_m = 1.0 }"] {
+    assert!(says("slip = 0.0"));
+    for error in ["turn_gain = 0.01", "slip = 1.0", "carried = { every_s = 9.0, distance_m = 1.0 }"] {
         assert!(!says(error), "{error}");
     }
 }

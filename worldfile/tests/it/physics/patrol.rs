@@ -90,6 +90,45 @@ fn it_stops_for_the_standing_robot_and_goes_on_when_that_has_gone() {
     }
 }
 
+#[test]
+fn it_stops_for_an_obstacle_and_goes_on_when_that_has_gone() {
+    for (min, max) in
+        [("[9.0, 11.4]", "[9.4, 11.6]"), ("[9.0, 11.7]", "[9.4, 11.9]"), ("[9.0, 11.2]", "[9.4, 11.32]")]
+    {
+        let obstacle = format!(
+            "[[obstacle]]\nname = \"box\"\nmin_m = {min}\nmax_m = {max}\nappears_s = 1.0\ndisappears_s = 20.0"
+        );
+        let mut world = PhysicsWorld::new(&four_rooms_but(&[], &obstacle), 0);
+        drive(&mut world, Twist::STOP, 20.0, |world| {
+            let at = Point2::from(world.fleet().robots().nth(1).unwrap().pose.translation.vector);
+            let standing = world.fleet().obstacles().count() == 1;
+            let gap_m = world.spec().obstacles[0].shape.distance_m(&at) - 0.2;
+            assert!(!standing || gap_m > 0.02, "{gap_m} m from the box at {min}");
+        });
+        let (x, _) = dummy(&world);
+        assert!((8.3..9.0).contains(&x), "it stopped too early or not at all: {x}");
+        drive(&mut world, Twist::STOP, 9.0, |_| ());
+        assert!(dummy(&world).0 > 10.5, "it did not go on");
+    }
+}
+
+#[test]
+fn a_thing_behind_the_end_of_its_way_does_not_stop_it() {
+    let obstacle = "[[obstacle]]\nname = \"box\"\nmin_m = [11.5, 11.4]\nmax_m = [11.9, 11.9]";
+    let mut world = PhysicsWorld::new(&four_rooms_but(&[], obstacle), 0);
+    assert!(turns(&mut world, 60.0).len() >= 3);
+}
+
+#[test]
+fn a_laser_off_the_middle_serves_as_well() {
+    let mount = "range_max_m = 5.0\nmount_m = [0.1, 0.05]\nmount_deg = 40.0";
+    let start = "pose_m = [9.5, 11.4]";
+    let mut world = PhysicsWorld::new(&four_rooms_but(&[("range_max_m = 5.0", mount), (FAR, start)], ""), 0);
+    let contacts = drive(&mut world, Twist::STOP, 30.0, |world| assert!(dummy(world).1.abs() < 0.01));
+    assert_eq!(contacts, []);
+    assert!(dummy(&world).0 > 8.8);
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 60, failure_persistence: None, ..Default::default() })]
 

@@ -1,12 +1,13 @@
-//! Sonars, and readings that are computed on demand.
+//! Bumpers, sonars and fiducial finders.
 
 use super::fleet::{house, robot};
 use super::*;
 use interfaces::LaserReading;
 
-const SENSES: &str = "[[robot.sonar]]\ncone_deg = 30.0\nrange_max_m = 5.0\nrate_hz = 10.0\n\
+const SENSES: &str = "[robot.bumper]\nsectors = 4\nfov_deg = 180.0\n\
+    [[robot.sonar]]\ncone_deg = 30.0\nrange_max_m = 5.0\nrate_hz = 10.0\n\
     [[robot.sonar]]\ncone_deg = 30.0\nrange_max_m = 5.0\nrate_hz = 5.0\nmount_deg = 90.0\nnoise_std_m = 0.02\n\
-    [robot.behavior]";
+    [robot.fiducial]\nfov_deg = 180.0\nrange_max_m = 5.0\nrate_hz = 10.0\n[robot.behavior]";
 
 /// A robot at [1, 2] with all sensors, and further keys.
 fn place(more: &[String], things: &str) -> FleetSpec {
@@ -19,14 +20,14 @@ fn stop(_: &RobotView<'_>, _: &LaserReading) -> Twist {
     Twist::STOP
 }
 
-fn standing(name: &str, at: [f64; 2]) -> String {
-    robot(name, at, 0.0, "kind = \"standing\"")
+fn tagged(name: &str, at: [f64; 2], tag: u32) -> String {
+    robot(name, at, 0.0, "kind = \"standing\"").replace("radius_m", &format!("tag = {tag}\nradius_m"))
 }
 
 #[test]
 fn a_sonar_hears_the_nearest_thing_in_its_cone() {
     // 0.5 m beside its axis, 2 m ahead: 14° off it; and one that is nearer, but beside the cone.
-    let others = [standing("in", [3.0, 2.5]), standing("beside", [2.0, 2.9])];
+    let others = [tagged("in", [3.0, 2.5], 1), tagged("beside", [2.0, 2.9], 2)];
     let mut fleet = Fleet::new(&place(&others, ""), 0);
     fleet.step(&mut stop);
     let robot = fleet.robots().next().unwrap();
@@ -57,14 +58,107 @@ fn a_sonar_hears_farther_than_the_laser_sees() {
 }
 
 #[test]
+fn bumpers_feel_where_they_are_touched() {
+    for (turn_deg, sector) in [(0.0, 2), (30.0, 1), (-30.0, 2), (60.0, 0), (-60.0, 3)] {
+        let text = place(&[], "");
+        let mut fleet = Fleet::new(&text, 0);
+        // The outer wall on the left ends at 0.1 m: it drives into it, turned.
+        let heading: f64 = std::f64::consts::PI + f64::to_radians(turn_deg);
+        fleet.teleport(0, &interfaces::pose(0.305, 3.0, heading)).unwrap();
+        assert!(!fleet.robots().next().unwrap().bumpers().any(|pressed| pressed));
+        let mut felt = vec![false; 4];
+        for _ in 0..20 {
+            fleet.step(&mut |_: &RobotView<'_>, _: &LaserReading| Twist {
+                linear_mps: 0.5,
+                angular_radps: 0.0,
+            });
+            for (felt, pressed) in felt.iter_mut().zip(fleet.robots().next().unwrap().bumpers()) {
+                *felt |= pressed;
+            }
+        }
+        if turn_deg == 0.0 {
+            // Straight ahead two of them meet.
+            assert!(felt[1] || felt[2], "{felt:?}");
+        } else {
+            let expected: Vec<bool> = (0..4).map(|i| i == sector).collect();
+            assert_eq!(felt, expected, "turned by {turn_deg}°");
+        }
+    }
+}
+
+#[test]
+fn a_flat_touch_presses_every_bumper_along_it_until_they_part() {
+    let square = |heading_deg: f64| {
+        let robot = robot("one", [5.4, 1.5], heading_deg, "kind = \"driven\"")
+            .replace("[robot.drive]", "[robot.drive]\nkind = \"omni\"\nmax_left_mps = 0.5")
+            .replace("radius_m = 0.2", "footprint_m = [[-0.2, -0.2], [0.2, -0.2], [0.2, 0.2], [-0.2, 0.2]]");
+        // Three sectors of 32° each, right, middle and left; the front is nearly as wide as all of them.
+        let bumper = "[robot.bumper]\nsectors = 3\nfov_deg = 96.0\n[robot.behavior]";
+        house(&[robot.replace("[robot.behavior]", bumper)], "")
+    };
+    let drive =
+        |linear_mps| move |_: &RobotView<'_>, _: &LaserReading| Twist { linear_mps, angular_radps: 0.0 };
+    let mut fleet = Fleet::new(&square(0.0), 0);
+    let pressed = |fleet: &Fleet| fleet.robots().next().unwrap().bumpers().collect::<Vec<_>>();
+    fleet.run_until(2.0, &mut drive(0.5));
+    assert_eq!(pressed(&fleet), [true; 3]);
+    assert_eq!(fleet.contacts().len(), 1);
+    assert_eq!(fleet.robots().next().unwrap().touching, [fleet.contacts()[0].with]);
+    // At rest against the wall the bumper still detects the contact.
+    fleet.run_until(4.0, &mut drive(0.0));
+    assert_eq!(pressed(&fleet), [true; 3]);
+    assert_eq!(fleet.contacts(), []);
+    fleet.run_until(5.0, &mut drive(-0.5));
+    assert_eq!(pressed(&fleet), [false; 3]);
+    // With a corner ahead it is that of the corner alone.
+    let mut fleet = Fleet::new(&square(45.0), 0);
+    fleet.run_until(3.0, &mut |_: &RobotView<'_>, _: &LaserReading| Velocity {
+        forward_mps: libm::sqrt(0.5) * 0.2,
+        left_mps: -libm::sqrt(0.5) * 0.2,
+        turn_radps: 0.0,
+    });
+    assert_eq!(pressed(&fleet), [true, false, false]);
+}
+
+#[test]
+fn tags_are_found_where_nothing_is_in_front() {
+    let others = [
+        tagged("ahead", [3.0, 2.0], 11),
+        tagged("hidden", [4.0, 2.0], 12),
+        tagged("beside", [2.0, 3.5], 13),
+        tagged("far", [5.5, 5.0], 14),
+        tagged("next room", [7.0, 1.0], 15),
+    ];
+    let crate_ = "[[obstacle]]\nname = \"crate\"\nkind = \"box\"\ncenter_m = [1.5, 0.5]\nsize_m = [0.3, 0.3]\nmass_kg = 1.0\ntag = 20\n\
+        [[obstacle]]\nname = \"behind\"\ncenter_m = [0.4, 3.0]\nsize_m = [0.3, 0.3]\ntag = 21\n";
+    let mut fleet = Fleet::new(&place(&others, crate_), 0);
+    fleet.step(&mut stop);
+    let found = fleet.robots().next().unwrap().fiducials().copied().collect::<Vec<_>>();
+    let tags: Vec<u32> = found.iter().map(|found| found.tag).collect();
+    assert_eq!(tags, [11, 13, 20]);
+    assert_eq!(found[0].body, Body::Robot(1));
+    assert!((found[0].range_m - 2.0).abs() < 1e-6 && found[0].bearing_rad.abs() < 1e-6);
+    assert!((found[1].bearing_rad - libm::atan2(1.5, 1.0)).abs() < 1e-6);
+    assert_eq!(found[2].body, Body::Obstacle(0));
+}
+
+#[test]
 fn a_snapshot_knows_what_was_sensed() {
-    let mut fleet = Fleet::new(&place(&[standing("other", [2.0, 2.0])], ""), 3);
+    let mut fleet = Fleet::new(&place(&[tagged("other", [2.0, 2.0], 1)], ""), 3);
     let mut ahead = |_: &RobotView<'_>, _: &LaserReading| Twist { linear_mps: 0.5, angular_radps: 0.1 };
     fleet.run_until(1.25, &mut ahead);
     let snapshot = fleet.snapshot();
     let mut again = Fleet::restored(fleet.spec(), &snapshot).unwrap();
-    let sensed = |fleet: &Fleet| fleet.robots().next().unwrap().sonars().collect::<Vec<_>>();
+    let sensed = |fleet: &Fleet| {
+        let robot = fleet.robots().next().unwrap();
+        (
+            robot.sonars().collect::<Vec<_>>(),
+            robot.bumpers().collect::<Vec<_>>(),
+            robot.fiducials().copied().collect::<Vec<_>>(),
+        )
+    };
     assert_eq!(sensed(&again), sensed(&fleet));
+    assert_eq!(sensed(&fleet).2.len(), 1);
     for fleet in [&mut fleet, &mut again] {
         fleet.run_until(4.0, &mut ahead);
     }
@@ -76,16 +170,13 @@ fn a_snapshot_knows_what_was_sensed() {
 fn readings_do_not_depend_on_which_readings_were_read() {
     let driven = robot("one", [1.0, 2.0], 0.0, "kind = \"driven\"").replace("[robot.behavior]", SENSES);
     let free = robot("free", [4.0, 2.0], 1.0, "kind = \"wander\"\nspeed_mps = 0.3");
-    let robots = [driven, standing("other", [2.0, 2.0]), free];
+    let robots = [driven, tagged("other", [2.0, 2.0], 1), free];
     let robots =
         robots.map(|robot| robot.replace("noise_std_m = 0.005\n", "noise_std_m = 0.005\ndropout = 0.1\n"));
     let spec = house(&robots, "");
     let [mut read, mut unread] = [Fleet::new(&spec, 3), Fleet::new(&spec, 3)];
     let sensed = |fleet: &Fleet| -> Vec<String> {
-        let sensed = |robot: RobotView<'_>| {
-            format!("{:?} {:?}", robot.lasers().collect::<Vec<_>>(), robot.sonars().collect::<Vec<_>>())
-        };
-        fleet.robots().map(sensed).collect()
+        fleet.robots().flat_map(|robot| robot.readings().map(|reading| format!("{reading:?}"))).collect()
     };
     for step in 0..60 {
         read.step(&mut Ahead);

@@ -149,6 +149,14 @@ fn each_beam_measures_at_its_own_time() {
 }
 
 #[test]
+fn a_slow_scan_lasts_many_steps() {
+    let mut spec = sweeping(0.5, std::f64::consts::TAU, 180);
+    spec.robots.iter_mut().for_each(|robot| (robot.laser.rate_hz, robot.laser.period_steps) = (2.0, 10));
+    let [agreed, grazing] = compare(&spec, 300, reckless);
+    assert!(grazing * 2000 < agreed, "{grazing} of {agreed} graze something");
+}
+
+#[test]
 fn a_sweep_of_a_robot_at_rest_is_an_instant_scan() {
     let stop = |_: &RobotView<'_>, _: &LaserReading| Twist::STOP;
     let spec = four_rooms();

@@ -100,6 +100,34 @@ fn a_light_box_is_pushed_and_a_heavy_one_is_not() {
 }
 
 #[test]
+fn a_light_box_holds_a_heavy_robot_where_something_holds_the_box() {
+    // A wall begins at x = 5.95; between it and a robot of 20 kg is a box.
+    for (side_m, mass_kg) in [([0.3, 0.3], 0.02), ([0.3, 0.05], 0.02), ([0.3, 0.3], 1.0)] {
+        let box_ = pushed("crate", [5.7, 2.05], mass_kg, 0.2)
+            .replace("[0.3, 0.3]", &format!("{side_m:?}"))
+            .replace("mass_kg", "heading_deg = 20.0\nmass_kg");
+        let mut fleet = Fleet::new(&yard(&box_), 0);
+        let mut deepest_m = f64::NEG_INFINITY;
+        while fleet.time_s() < 15.0 {
+            fleet.step(&mut ahead);
+            let corners = fleet.obstacles().next().unwrap().corners;
+            let at = robot_at(&fleet, 0);
+            deepest_m = deepest_m.max(-convex::disc_gap_m(&corners, &at, 0.2));
+            deepest_m = deepest_m.max(at.x + 0.2 - 5.95);
+        }
+        assert!(deepest_m > -0.002, "{mass_kg} kg: they never met: {deepest_m} m");
+        assert!(deepest_m < 0.0051, "{mass_kg} kg: {deepest_m} m");
+        // The robot can drive away again.
+        let met = robot_at(&fleet, 0);
+        fleet.run_until(18.0, &mut |_: &RobotView<'_>, _: &LaserReading| Twist {
+            linear_mps: -0.5,
+            angular_radps: 0.0,
+        });
+        assert!((met - robot_at(&fleet, 0)).norm() > 1.0, "{mass_kg} kg: stuck at {met}");
+    }
+}
+
+#[test]
 fn a_box_slows_down_by_its_friction() {
     for friction in [0.03, 0.08] {
         let mut fleet = Fleet::new(&yard(&pushed("puck", [1.8, 2.0], 0.5, friction)), 0);
@@ -264,4 +292,23 @@ fn random_doors_have_their_means_and_their_seed() {
     assert!(f64::abs(open_s - 1000.0) < 4.0 * 75.0, "{open_s}");
     assert_eq!(run(1), (switches, open_s));
     assert_ne!(run(2).1, open_s);
+}
+
+#[test]
+fn what_moves_is_truth_and_contact() {
+    let things = pushed("crate", [2.0, 2.0], 0.02, 0.1);
+    let spec = four_rooms_but(&[("pose_m = [2.0, 2.0]", "pose_m = [1.0, 2.0]")], &things);
+    let mut world = PhysicsWorld::new(&spec, 0);
+    let frame = *world.truth().frame();
+    let state = |world: &PhysicsWorld, x: f64| {
+        world.truth().state(frame.index(frame.cell_at(&Point2::new(x, 2.01))).unwrap())
+    };
+    assert_eq!((state(&world, 2.01), state(&world, 2.51)), (TrueState::Blocked, TrueState::Free));
+    let contacts = drive(&mut world, Twist { linear_mps: 0.4, angular_radps: 0.0 }, 4.5, |_| ());
+    assert!(contacts.iter().any(|contact| contact.with == Body::Obstacle(0)), "{contacts:?}");
+    let is_crate = |index: &usize| world.truth().mover(*index) == Some(Body::Obstacle(0));
+    let cells = (0..frame.len()).filter(is_crate).count();
+    // It has swept more than its own 7 × 7 cells.
+    assert!(cells > 60, "{cells}");
+    assert_eq!(state(&world, 1.86), TrueState::Free);
 }

@@ -76,3 +76,34 @@ fn truth_is_what_sampled_points_say() {
         assert!(blurred * 10 <= partly, "{blurred} of {partly}");
     }
 }
+
+#[test]
+fn of_an_askew_wall_the_inner_side_can_be_seen() {
+    let world = PhysicsWorld::new(&worldfile::physics::parse_world("t", TURNED).unwrap(), 0);
+    let truth = world.truth();
+    let (middle, back) = (Point2::new(6.0, 6.0), interfaces::rotation(-10.0_f64.to_radians()));
+    let (mut free, mut blocked) = (0, 0);
+    for index in 0..truth.frame().len() {
+        let cell = truth.frame().cell(index);
+        if truth.can_be_seen(index) {
+            // It is open, or open on a side that lies within the middle lines of the outer walls.
+            let state = |cell: &Cell| truth.frame().index(*cell).map(|index| truth.state(index));
+            let open = |cell: &Cell| state(cell).is_some_and(|state| state != TrueState::Blocked);
+            let within = |cell: &Cell| {
+                let at = middle + back * (truth.frame().center(*cell) - middle);
+                (0.05..11.95).contains(&at.x) && (0.05..11.95).contains(&at.y)
+            };
+            let places = [cell].into_iter().chain(cell.neighbours4());
+            assert!(places.into_iter().any(|place| open(&place) && within(&place)), "{cell:?}");
+            match truth.state(index) {
+                TrueState::Free => free += 1,
+                _ => blocked += 1,
+            }
+        }
+    }
+    // 12 m × 12 m less 67 m of walls with a fringe of partly covered cells on both sides.
+    assert!((50_500..54_500).contains(&free), "{free}");
+    // A wall of 2 cells covers 0.1/cos 10° − 0.05·tan 10° − 0.05 = 0.0428 m of a column wholly, on
+    // average 0.855 cells: 67 m · cos 10° / 0.05 m columns have 1130, and corners a few more.
+    assert!((1_050..1_250).contains(&blocked), "{blocked}");
+}

@@ -1,3 +1,4 @@
+mod ring;
 mod sweep;
 #[cfg(test)]
 mod tests;
@@ -7,7 +8,6 @@ use super::disc::Disc;
 use super::edges::{Edge, visible_edges};
 use super::hiding::add_edges;
 use super::index_lists::IndexLists;
-use super::nearest::Nearest;
 use super::polygons::{Polygons, SortedPolygons, Tested};
 use super::visibility::PotentiallyVisibleSet;
 use crate::physics::shape::Rectangle;
@@ -151,43 +151,6 @@ impl Scene {
             self.cast_into(beams, laser, own, scratch);
             read(&scratch.inverse)
         })
-    }
-
-    /// One over the shortest range of all beams of a sensor on the robot `own`, 1/m; 0 if no beam hits anything.
-    pub(in crate::physics) fn nearest(&self, beams: &Beams, sensor: &Isometry2<f64>, own: usize) -> f64 {
-        let Walls { solids, edges, visible } = &*self.moving.walls;
-        let Sorted { robots, polygons, are_few } = self.sorted();
-        let at = Point2::from(sensor.translation.vector);
-        let own_cell = visible.cell_at(&at);
-        let body_cell = own_cell.filter(|_| !are_few);
-        if is_in_wall(solids, visible, own_cell, &at) || polygons.contains(body_cell, own, &at) {
-            return f64::INFINITY;
-        }
-        let mut nearest = Nearest::new(beams, sensor);
-        match own_cell {
-            Some(cell) => {
-                let mut seen = visible.edges.get(cell).iter();
-                while let Some(seen) = seen.next().filter(|seen| f64::from(seen.nearest_m) <= nearest.reach_m)
-                {
-                    nearest.add_edge(&edges[seen.edge as usize]);
-                }
-            }
-            None => edges.iter().for_each(|edge| nearest.add_edge(edge)),
-        }
-        let Some(cell) = body_cell else {
-            nearest.add_bodies(&robots.items, polygons, 0..polygons.len() as u32, own);
-            return nearest.inverse;
-        };
-        let beyond = visible.len();
-        nearest.add_bodies(robots.get(beyond), polygons, polygons.in_cell(beyond).iter().copied(), own);
-        for other in visible.cells.get(cell).iter().map(|&other| other as usize) {
-            // The nearest cells come first.
-            if visible.apart_m(cell, other) > nearest.reach_m {
-                break;
-            }
-            nearest.add_bodies(robots.get(other), polygons, polygons.in_cell(other).iter().copied(), own);
-        }
-        nearest.inverse
     }
 
     fn cast_into(&self, beams: &Beams, laser: &Isometry2<f64>, own: usize, scratch: &mut Scratch) {

@@ -1,10 +1,11 @@
 //! Casting the rays of a scan that sweeps.
 
 use super::{SCRATCH, Scene, Walls, is_in_wall};
-use crate::physics::rays::passing::{Passing, Ray};
+use crate::physics::rays::passing::Passing;
+use crate::physics::rays::sectors::{Ray, Sector};
 
-/// What is farther away than the nearest hit by this factor is left out: far above rounding.
-const SAFE: f64 = 1.0 + 1e-9;
+/// The number of rays in a sector.
+const SECTOR_RAYS: usize = 16;
 
 impl Scene {
     /// Computes what the rays of a laser on the robot `own` hit within `range_max_m`: walls, and in each interval of
@@ -20,39 +21,35 @@ impl Scene {
     ) -> T {
         SCRATCH.with_borrow_mut(|scratch| {
             let inverse = &mut scratch.inverse;
-            inverse.clear();
-            inverse.extend(rays.iter().map(|ray| {
-                let bodies = moving[ray.interval].iter().filter(|body| body.is_seen_by(own));
-                let hits = bodies.map(|body| body.hit(ray, range_max_m));
-                hits.fold(self.wall_hit(ray, range_max_m), nearer)
-            }));
+            inverse.resize(rays.len(), 0.0);
+            let visible = &self.moving.walls.visible;
+            let place = |ray: &Ray| (ray.interval, visible.cell_at(&ray.from));
+            let mut rest = &mut inverse[..];
+            for rays in rays.chunk_by(|a, b| place(a) == place(b)).flat_map(|rays| rays.chunks(SECTOR_RAYS)) {
+                let (own_inverse, others) = rest.split_at_mut(rays.len());
+                rest = others;
+                let mut sector = Sector::new(rays, own_inverse, range_max_m);
+                let (interval, cell) = place(&rays[0]);
+                self.add_walls(cell, &mut sector);
+                for body in moving[interval].iter().filter(|body| body.is_seen_by(own)) {
+                    sector.add_passing(body);
+                }
+            }
             read(inverse)
         })
     }
 
-    /// One over the range at which a ray hits a wall, 1/m; 0: it does not hit any, ∞: it begins in one.
-    fn wall_hit(&self, ray: &Ray, range_max_m: f64) -> f64 {
+    /// Adds the walls to a sector whose rays begin in a cell (none: beyond the borders).
+    fn add_walls(&self, cell: Option<usize>, sector: &mut Sector<'_>) {
         let Walls { solids, edges, visible } = &*self.moving.walls;
-        let cell = visible.cell_at(&ray.from);
-        if is_in_wall(solids, visible, cell, &ray.from) {
-            return f64::INFINITY;
-        }
-        let Some(cell) = cell else {
-            return edges.iter().map(|edge| ray.edge_hit(edge, range_max_m)).fold(0.0, nearer);
-        };
-        let mut nearest = 0.0;
+        sector.add_inside(|at| is_in_wall(solids, visible, cell, at));
+        let Some(cell) = cell else { return edges.iter().for_each(|edge| sector.add_edge(edge)) };
         for seen in visible.edges.get(cell) {
             // The nearest edges come first.
-            if f64::from(seen.nearest_m) > SAFE * range_max_m.min(1.0 / nearest) {
-                break;
+            if f64::from(seen.nearest_m) > sector.reach_m {
+                return;
             }
-            nearest = nearer(nearest, ray.edge_hit(&edges[seen.edge as usize], range_max_m));
+            sector.add_edge(&edges[seen.edge as usize]);
         }
-        nearest
     }
-}
-
-/// The larger one of two inverse ranges.
-fn nearer(one: f64, other: f64) -> f64 {
-    if other > one { other } else { one }
 }

@@ -1,6 +1,7 @@
 //! What is left out changes no bit.
 
 use super::*;
+use crate::physics::rays::Ring;
 use interfaces::{Purpose, RandomStream, pose};
 use nalgebra::{Rotation2, Vector2};
 use std::f64::consts::TAU;
@@ -109,7 +110,12 @@ fn what_is_left_out_changes_no_bit() {
             });
             let most = expected.iter().fold(0.0, |most: f64, inverse| most.max(*inverse));
             // One sensor of several on the robot.
-            let nearest = counted(scene.nearest(&beams, &laser, own));
+            let ring =
+                Ring { offset_m: random.uniform(0.0..0.6), range_m: range_m * random.uniform(1.0..2.0) };
+            let (sin, cos) = libm::sincos(random.uniform(0.0..TAU));
+            let robot_at = at + Vector2::new(cos, sin) * ring.offset_m * random.uniform(0.0..1.0);
+            let vicinity = scene.vicinity(robot_at, &ring, own);
+            let nearest = counted(scene.nearest(&beams, &laser, &vicinity));
             assert_eq!(nearest, most, "at {laser}, {count} beams over {fov_rad} rad");
             inside += usize::from(most == f64::INFINITY);
             nothing += usize::from(most == 0.0);

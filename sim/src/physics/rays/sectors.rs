@@ -1,0 +1,165 @@
+//! The beams of a scan that sweeps: each has an origin of its own, and sees bodies at a time of its own.
+//!
+//! Beams that are neighbors in time are neighbors in space. A few of them at a time are a sector: what lies beside the
+//! sector, or behind the hits of all its beams, is left out. All others are compared beam by beam.
+
+use super::beams::EDGE_ON_M;
+use super::disc::Disc;
+use super::edges::Edge;
+use super::passing::Passing;
+use nalgebra::{Point2, Vector2};
+
+/// The borders of a sector are used if no beam is farther away from its middle than 60°: the cosine of the angle.
+const MIN_ALONG: f64 = 0.5;
+/// What is farther away than the farthest hit by this factor may be left out: far above rounding.
+const SAFE: f64 = 1.0 + 1e-9;
+
+/// A beam of a scan that sweeps.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::physics) struct Ray {
+    /// The origin, m.
+    pub(in crate::physics) from: Point2<f64>,
+    /// The direction, a unit vector.
+    pub(in crate::physics) along: Vector2<f64>,
+    /// The index of the interval of time in which the beam measures.
+    pub(in crate::physics) interval: usize,
+    /// The share of the interval that has passed, from 0 to 1.
+    pub(in crate::physics) share: f64,
+}
+
+/// The nearest hits of some rays.
+pub(super) struct Sector<'a> {
+    rays: &'a [Ray],
+    /// One over the range, 1/m; 0 where there is no hit.
+    inverse: &'a mut [f64],
+    /// A circle that contains the origins.
+    origins: Disc,
+    /// The rightmost and the leftmost direction; `None` if the sector is too wide.
+    borders: Option<[Vector2<f64>; 2]>,
+    range_max_m: f64,
+    /// What is farther away from all origins is hidden, m.
+    pub(super) reach_m: f64,
+}
+
+impl<'a> Sector<'a> {
+    /// No hits yet. `inverse` has as many values as there are rays, at least one.
+    pub(super) fn new(rays: &'a [Ray], inverse: &'a mut [f64], range_max_m: f64) -> Self {
+        inverse.fill(0.0);
+        let middle = rays[rays.len() / 2];
+        let radius_m = rays.iter().map(|ray| (ray.from - middle.from).norm()).fold(0.0, f64::max);
+        let (mut right, mut left, mut is_narrow) = (middle.along, middle.along, true);
+        for Ray { along, .. } in rays {
+            is_narrow &= middle.along.dot(along) > MIN_ALONG;
+            right = if right.perp(along) < 0.0 { *along } else { right };
+            left = if left.perp(along) > 0.0 { *along } else { left };
+        }
+        let origins = Disc { center: middle.from, radius_m: radius_m * SAFE };
+        let borders = is_narrow.then_some([right, left]);
+        Self { rays, inverse, origins, borders, range_max_m, reach_m: range_max_m * SAFE }
+    }
+
+    /// Rays for which `is_inside` is true begin in a solid: their range is 0.
+    pub(super) fn add_inside(&mut self, is_inside: impl Fn(&Point2<f64>) -> bool) {
+        self.add(|ray| if is_inside(&ray.from) { f64::INFINITY } else { 0.0 });
+    }
+
+    /// Whether a ray may hit an edge of a solid that does not move.
+    fn may_hit(&self, edge: &Edge) -> bool {
+        let gap_m = edge.gap_m(&self.origins.center);
+        let is_in_reach = gap_m >= -self.origins.radius_m && gap_m <= self.reach_m + self.origins.radius_m;
+        is_in_reach && !self.is_beside(&edge.from, &edge.to, 0.0)
+    }
+
+    /// Adds an edge of a solid that does not move.
+    pub(super) fn add_edge(&mut self, edge: &Edge) {
+        if self.may_hit(edge) {
+            let range_max_m = self.range_max_m;
+            self.add(|ray| edge_hit(ray, edge, range_max_m));
+        }
+    }
+
+    /// Whether a ray may hit a body that moves.
+    fn may_meet(&self, body: &Passing) -> bool {
+        let Disc { center, radius_m } = body.around;
+        let most_m = self.reach_m + self.origins.radius_m + radius_m;
+        (center - self.origins.center).norm_squared() <= most_m * most_m
+            && !self.is_beside(&center, &center, radius_m)
+    }
+
+    /// Adds a body that moves.
+    pub(super) fn add_passing(&mut self, body: &Passing) {
+        if !self.may_meet(body) {
+            return;
+        }
+        let range_max_m = self.range_max_m;
+        match body.still_sides() {
+            [] => self.add(|ray| match body.disc(ray.share) {
+                Some(disc) => disc_hit(ray, &disc),
+                None => polygon_hit(ray, body.sides(ray.share), range_max_m),
+            }),
+            sides => {
+                self.add_inside(|at| sides.iter().all(|side| side.gap_m(at) <= 0.0));
+                sides.iter().for_each(|side| self.add_edge(side));
+            }
+        }
+    }
+
+    /// Whether everything within `around_m` of the line from `a` to `b` lies on one outer side of all rays.
+    fn is_beside(&self, a: &Point2<f64>, b: &Point2<f64>, around_m: f64) -> bool {
+        let Some([right, left]) = &self.borders else { return false };
+        let [a, b] = [a, b].map(|point| point - self.origins.center);
+        // A ray of the sector never crosses the borders outwards, but begins up to a radius beyond them.
+        let beyond_m = self.origins.radius_m + around_m;
+        right.perp(&a).max(right.perp(&b)) < -beyond_m || left.perp(&a).min(left.perp(&b)) > beyond_m
+    }
+
+    /// Adds a body that the rays hit at these inverse ranges, 1/m.
+    fn add(&mut self, hit: impl Fn(&Ray) -> f64) {
+        let (mut is_nearer, mut least) = (false, f64::INFINITY);
+        for (ray, inverse) in self.rays.iter().zip(&mut *self.inverse) {
+            let hit = hit(ray);
+            if hit > *inverse {
+                (*inverse, is_nearer) = (hit, true);
+            }
+            least = least.min(*inverse);
+        }
+        if is_nearer {
+            self.reach_m = self.reach_m.min(SAFE / least);
+        }
+    }
+}
+
+/// One over the range at which a ray hits an edge of a solid from outside, 1/m; 0: it does not hit the edge.
+fn edge_hit(ray: &Ray, edge: &Edge, range_max_m: f64) -> f64 {
+    let gap_m = edge.gap_m(&ray.from);
+    if gap_m < EDGE_ON_M || gap_m > range_max_m {
+        return 0.0;
+    }
+    // Seen from outside, the sides of a counter-clockwise polygon run clockwise.
+    let [left, right] = [edge.from, edge.to].map(|point| point - ray.from);
+    let is_between = right.perp(&ray.along) >= 0.0 && ray.along.perp(&left) >= 0.0;
+    if is_between { -edge.normal.dot(&ray.along) / gap_m } else { 0.0 }
+}
+
+/// The same for a disc; ∞: the ray begins in it.
+fn disc_hit(ray: &Ray, disc: &Disc) -> f64 {
+    let to = disc.center - ray.from;
+    let power = to.norm_squared() - disc.radius_m * disc.radius_m;
+    if power <= 0.0 {
+        return f64::INFINITY;
+    }
+    // The nearer root of t² − 2bt + power = 0 is power / (b + √(b² − power)).
+    let b = to.dot(&ray.along);
+    let root2 = b * b - power;
+    if b > 0.0 && root2 >= 0.0 { (b + root2.sqrt()) / power } else { 0.0 }
+}
+
+/// The same for a convex body.
+fn polygon_hit(ray: &Ray, sides: impl Iterator<Item = Edge>, range_max_m: f64) -> f64 {
+    let (mut most, mut is_inside) = (0.0_f64, true);
+    for side in sides {
+        is_inside &= side.gap_m(&ray.from) <= 0.0;
+        most = most.max(edge_hit(ray, &side, range_max_m));
+    }
+    if is_inside { f64::INFINITY } else { most }
+}
