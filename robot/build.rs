@@ -21,6 +21,9 @@ const ALGORITHMS: [&str; 13] = [
     "worldfile",
 ];
 
+/// The crates whose types are in a state: what was learned of a place. The rest of a run is read by the same build only.
+const LEARNED: [&str; 5] = ["interfaces/", "localizer/", "mapper/", "robot/", "survey/"];
+
 fn main() -> io::Result<()> {
     let root = PathBuf::from(env::var_os("CARGO_MANIFEST_DIR").unwrap_or_default()).join("..");
     let mut files = vec![root.join("Cargo.lock")];
@@ -32,7 +35,7 @@ fn main() -> io::Result<()> {
         files.clear(); // a package of crates.io: its version names its sources
     }
     files.sort();
-    let mut hash = Xxh3::new();
+    let (mut hash, mut layouts) = (Xxh3::new(), Xxh3::new());
     hash.update(env!("CARGO_PKG_VERSION").as_bytes());
     for path in &files {
         println!("cargo::rerun-if-changed={}", path.display());
@@ -41,9 +44,26 @@ fn main() -> io::Result<()> {
         let text = fs::read_to_string(path)?.replace("\r\n", "\n");
         hash.update(format!("{name} {}\n", text.len()).as_bytes());
         hash.update(text.as_bytes());
+        let is_learned = LEARNED.iter().any(|folder| name.starts_with(folder));
+        if is_learned && !name.ends_with("settings.rs") {
+            layout(&text).for_each(|line| layouts.update(line.as_bytes()));
+        }
     }
+    println!("cargo::rustc-env=CURIOUS_LAYOUT={:016x}", layouts.digest());
     println!("cargo::rustc-env=CURIOUS_BUILD={:016x}", hash.digest());
     Ok(())
+}
+
+/// The paragraphs of a source text that decide what is saved: types that serde reads, and lists of values. Settings are saved by
+/// name.
+fn layout(text: &str) -> impl Iterator<Item = &str> {
+    let is_saved =
+        |text: &&str| text.contains("derive(") && text.contains("Deserialize") || text.contains("fn values(");
+    text.split("\n\n")
+        .filter(is_saved)
+        .flat_map(str::lines)
+        .map(str::trim)
+        .filter(|line| !line.starts_with("//"))
 }
 
 /// Adds the sources in a folder, without tests.

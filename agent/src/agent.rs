@@ -1,7 +1,7 @@
 use crate::choosers::{Chooser, Trajectory};
 use crate::goal_sampler::{Goal, sample};
 use crate::policy::Policy;
-use crate::settings::AgentSettings;
+use crate::settings::{AgentSettings, Reward};
 use crate::situation::{Features, Situation, Travel};
 use crate::strategies::Strategy;
 use crate::unseen::UnseenSpace;
@@ -18,10 +18,12 @@ pub struct Agent {
     strategies: Vec<Box<dyn Strategy>>,
     chooser: Box<dyn Chooser>,
     patch_cells: usize,
+    reward: Reward,
     /// Looks into unseen space before the strategies decide; `None`: the strategies decide alone.
     unseen: Option<UnseenSpace>,
     /// The travel time to each cell, for strategies that need it.
     travel: Vec<f64>,
+    reward: Reward,
     rng: RandomStream,
     /// The index of the strategy that sampled the present goal; `None` for a look into unseen space.
     current: Option<usize>,
@@ -73,10 +75,12 @@ impl Agent {
             strategies,
             chooser,
             patch_cells: settings.patch_cells,
+            reward: settings.reward,
             unseen: settings
                 .looks_at_unseen
                 .then(|| UnseenSpace::new(settings.patch_cells, settings.sensor_radius_m)),
             travel: Vec::new(),
+            reward: settings.reward,
             rng,
             current: None,
             trajectory: Vec::new(),
@@ -92,7 +96,7 @@ impl Agent {
         self.features = features;
         if self.current.is_some() {
             self.trajectory.push(features);
-            self.updates += transitions.iter().filter(|transition| transition.event().is_some()).count();
+            self.updates += self.reward.count(transitions);
         }
     }
 

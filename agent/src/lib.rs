@@ -25,6 +25,6 @@ pub use agent::Agent;
 pub use choosers::{Always, Chooser, Coin, Curious, Trajectory};
 pub use goal_sampler::Goal;
 pub use policy::{PURPOSES, Parts, Policy};
-pub use settings::AgentSettings;
+pub use settings::{AgentSettings, Reward};
 pub use situation::{Features, Situation, StraightLineTravel, Travel};
 pub use strategies::{FreshMap, InformationGain, Pick, Poisson, Random, Recency, Stay, Strategy};

@@ -1,4 +1,26 @@
-use interfaces::{SettingsCheck, SettingsError};
+use interfaces::{CellState, SettingsCheck, SettingsError, Transition};
+
+/// The events that count as map updates in the reward of a trajectory.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Reward {
+    /// Changes of a known cell: free to blocked, blocked to free.
+    #[default]
+    Changes,
+    /// First observations as well. A laser has thousands of them in one scan, far more than the temperature.
+    ChangesAndDiscoveries,
+}
+
+impl Reward {
+    /// The number of transitions that count as map updates.
+    pub(crate) fn count(self, transitions: &[Transition]) -> usize {
+        let counts = |transition: &&Transition| {
+            let is_discovery = transition.before == CellState::Unknown;
+            transition.event().is_some() || self == Self::ChangesAndDiscoveries && is_discovery
+        };
+        transitions.iter().filter(counts).count()
+    }
+}
 
 /// Settings of an [`Agent`](crate::Agent).
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
@@ -7,6 +29,8 @@ pub struct AgentSettings {
     pub patch_cells: usize,
     /// The range of the sensor, m. Used by strategies that compute visibility.
     pub sensor_radius_m: f64,
+    /// The events that count as map updates.
+    pub reward: Reward,
     /// Whether the robot looks into unseen space that it can reach before its strategies decide. The paper's robot
     /// does not: in its worlds everything comes into view soon.
     pub looks_at_unseen: bool,
@@ -17,7 +41,13 @@ pub struct AgentSettings {
 
 impl Default for AgentSettings {
     fn default() -> Self {
-        Self { patch_cells: 5, sensor_radius_m: 10.0, looks_at_unseen: false, temperature: 2.0 }
+        Self {
+            patch_cells: 5,
+            sensor_radius_m: 10.0,
+            reward: Reward::default(),
+            looks_at_unseen: false,
+            temperature: 2.0,
+        }
     }
 }
 
@@ -33,6 +63,7 @@ impl AgentSettings {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use interfaces::Cell;
 
     #[test]
     fn invalid_settings_are_refused() {
@@ -48,5 +79,14 @@ mod tests {
         ] {
             assert_eq!(settings.check().unwrap_err().to_string(), format!("agent setting {message}"));
         }
+    }
+    #[test]
+    fn rewards_count_their_transitions() {
+        use CellState::{Blocked, Free, Unknown};
+        let transitions = [(Unknown, Free), (Unknown, Blocked), (Free, Blocked), (Blocked, Free)]
+            .map(|(before, after)| Transition { cell: Cell::new(0, 0), before, after });
+        assert_eq!(Reward::Changes.count(&transitions), 2);
+        assert_eq!(Reward::ChangesAndDiscoveries.count(&transitions), 4);
+        assert_eq!(Reward::Changes.count(&[]), 0);
     }
 }

@@ -58,7 +58,7 @@ pub fn results_folder(out: &Path) -> Result<RunFolder, Failure> {
 ///
 /// When the file cannot be used or read, or is no state.
 pub fn open_state(path: &Path, every_s: f64) -> Result<(StateFile, Option<State>), Failure> {
-    let file =
+    let mut file =
         StateFile::open(path).map_err(|why| state_failure(path, format_args!("cannot use it: {why}")))?;
     let state = file.load().map_err(|why| state_failure(path, why))?;
     Ok((file.every(Duration::from_secs_f64(every_s)), state))

@@ -15,6 +15,7 @@ use gif::{DisposalMethod, Encoder, Frame, Repeat};
 use mapper::{Mapper, ThingKind};
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
+use results::numbers::duration;
 use std::collections::BTreeMap;
 use std::io::{self, Write};
 
@@ -151,7 +152,7 @@ fn doors(panel: &Panel, chart: &Chart<impl DrawingBackend>, mapper: &Mapper) -> 
         let Some(rate) = door.statistics.openings_per_hour().filter(|_| door.statistics.opened >= 2) else {
             continue;
         };
-        let every = format!("door: every {}", period(3600.0 / rate.mean()));
+        let every = format!("door: every {}", duration(3600.0 / rate.mean()));
         let [from, to] = door.closed.ends;
         let (x, y) = plot.map_coordinate(&pair(&nalgebra::center(&from, &to)));
         let [width, height] = panel.text_size(&area, &every)?;
@@ -163,11 +164,6 @@ fn doors(panel: &Panel, chart: &Chart<impl DrawingBackend>, mapper: &Mapper) -> 
         panel.write(&area, (x, y), HPos::Center, &every)?;
     }
     Ok(())
-}
-
-/// A time in the largest unit that keeps two digits: 40 s, 12 min.
-fn period(time_s: f64) -> String {
-    if time_s < 100.0 { format!("{time_s:.0} s") } else { format!("{:.0} min", time_s / 60.0) }
 }
 
 /// The part of a picture that differs from the picture before.

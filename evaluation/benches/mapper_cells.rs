@@ -41,7 +41,7 @@ fn readings() -> (GridSpec, Vec<CellReading>) {
 }
 
 /// The time of [`BATCH`] steps.
-#[divan::bench(args = ["paper", "two-state-gaps"])]
+#[divan::bench(args = ["paper", "two-state", "two-state-gaps"])]
 fn hundred_steps(bencher: Bencher, estimator: &str) {
     let (spec, mut readings) = readings();
     let estimator = estimator.parse().unwrap();

@@ -8,7 +8,7 @@ use agent::Policy;
 use evaluation::physics_trial::{self, PhysicsTrial};
 use evaluation::trial_state::TrialFacts;
 use interfaces::CellState;
-use robot::state::Facts;
+use robot::state::{SavedSettings, Sessions};
 use std::error::Error;
 use std::path::Path;
 use std::time::Instant;
@@ -22,7 +22,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let name = Path::new(&path).file_stem().ok_or("give a world file")?.to_string_lossy();
     let spec = worldfile::physics::load_world(Path::new(&path))?;
     let settings = physics_trial::settings(&spec)?;
-    let facts = TrialFacts::new(&spec, SEED, &settings, Facts::default());
+    let facts = TrialFacts::new(&spec, SEED, &settings, SavedSettings::default());
+    let sessions = Sessions::of("trial");
     let pilot = settings.pilot(settings.agent(&Policy::default(), SEED)?, SEED)?;
     let mut trial = PhysicsTrial::new(&spec, SEED, &settings, None, pilot)?;
     for minutes in arguments {
@@ -30,16 +31,16 @@ fn main() -> Result<(), Box<dyn Error>> {
         let mut copies_ms: Vec<f64> = (0..COPIES)
             .map(|_| {
                 let start = Instant::now();
-                let copy = trial.snapshot(&facts);
+                let copy = trial.snapshot(&facts, &sessions);
                 let copy_ms = 1e3 * start.elapsed().as_secs_f64();
                 drop(copy);
                 copy_ms
             })
             .collect();
         copies_ms.sort_by(f64::total_cmp);
-        let copy = trial.snapshot(&facts);
+        let copy = trial.snapshot(&facts, &sessions);
         let start = Instant::now();
-        let bytes = copy.into_state().to_bytes()?;
+        let bytes = copy().to_bytes()?;
         let write_ms = 1e3 * start.elapsed().as_secs_f64();
         let known =
             trial.robot.mapper.states().cells().iter().filter(|state| **state != CellState::Unknown).count();

@@ -6,7 +6,6 @@
 
 use interfaces::{CellState, PoseMode};
 use logs::{Log, TopicChoice};
-use robot::state::{Facts, State};
 use std::error::Error;
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -52,9 +51,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     );
     for what in ["with", "without"] {
         let start = Instant::now();
-        let (logs, learned) = survey.saved().into_snapshot();
-        let state =
-            State::default().with("logs", Facts::default(), logs).with("survey", Facts::default(), learned);
+        let state = survey.saved()();
         let bytes = state.to_bytes()?.len();
         println!(
             "  {what} poses: bytes {:.0} ms, {} kB, {:.1} bytes per known cell",

@@ -3,83 +3,46 @@
 
 use crate::observer::Observer;
 use crate::physics_trial::PhysicsTrial;
-use interfaces::{PoseMode, Twist, Values, value};
-use robot::state::{Facts, LearnedFacts, LearnedSnapshot, State, StateError};
+use interfaces::{Twist, Values, from_bytes, to_bytes, value};
+use robot::state::{Part, SavedSettings, Sessions, State, StateCopy, StateError, learned, restore};
 use robot::{Pilot, Settings};
-use sim::physics::{WorldSnapshot, WorldSpec};
+use sim::physics::WorldSpec;
 use xxhash_rust::xxh3::xxh3_64;
 
-const WORLD: &str = "world";
-const CONTENT: &str = "content";
-const PILOT: &str = "pilot";
-const MEASUREMENTS: &str = "measurements";
 /// What the state of a run belongs to.
 #[derive(Clone, Debug)]
 pub struct TrialFacts {
-    learned: LearnedFacts,
-    world: Facts,
+    settings: Settings,
+    run: SavedSettings,
     /// What another build prints otherwise, though the world is the same.
-    content: Facts,
-    pilot: Facts,
-    allows_other_build: bool,
+    content: u64,
+    /// Whether a run can go on that another build has begun: its bits are those of neither build.
+    pub allows_other_build: bool,
 }
+
+/// The run in a state: the content of its world, the world, the pilot, the measurements.
+type SavedRun = (u64, Vec<u8>, Vec<u8>, Observer);
 
 impl TrialFacts {
     /// The facts of a run. `pilot` is what its pilot is made of, beside the settings.
-    pub fn new(spec: &WorldSpec, seed: u64, settings: &Settings, pilot: Facts) -> Self {
-        let Settings { mapper, agent, local_steps, drive, pose, localizer, .. } = settings;
-        let localizer = (*pose == PoseMode::Localized).then_some(localizer);
+    pub fn new(spec: &WorldSpec, seed: u64, settings: &Settings, pilot: SavedSettings) -> Self {
+        let run = pilot.with("world", &spec.name).with("seed", &seed);
+        let run = run.with("pose", &settings.pose.name()).with("", settings);
         let content = xxh3_64(format!("{spec:?}").as_bytes());
-        let world = Facts::default().with("world", &spec.name).with("seed", seed);
-        let content = Facts::default().with("content of the world", format!("{content:016x}"));
-        let pilot = pilot
-            .with_settings("agent", agent)
-            .with("local_steps", local_steps)
-            .with_settings("drive", drive);
-        let learned = LearnedFacts::new(mapper, &spec.frame, pose.name(), localizer);
-        Self { learned, world, content, pilot, allows_other_build: false }
-    }
-
-    /// The same; with `allows`, a run can go on that another build has begun: its bits are those of neither build.
-    #[must_use]
-    pub fn allowing_other_build(self, allows: bool) -> Self {
-        Self { allows_other_build: allows, ..self }
-    }
-}
-
-/// A copy of the state of a run. A thread can turn it into bytes while the run goes on.
-#[derive(Clone, Debug)]
-pub struct TrialSnapshot {
-    facts: TrialFacts,
-    learned: LearnedSnapshot,
-    world: WorldSnapshot,
-    pilot: Vec<u8>,
-    observer: Observer,
-}
-
-impl TrialSnapshot {
-    /// The state for a file.
-    pub fn into_state(self) -> State {
-        let Self { facts, learned, world, pilot, observer } = self;
-        let state = State::default()
-            .with(WORLD, facts.world.clone(), world.into_bytes())
-            .with(CONTENT, facts.content, Vec::new())
-            .with(PILOT, facts.pilot, pilot)
-            .with(MEASUREMENTS, facts.world.clone(), interfaces::to_bytes(&observer));
-        learned.added_to(state).with_build()
+        Self { settings: settings.clone(), run, content, allows_other_build: false }
     }
 }
 
 impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
-    /// Copies the state of a run between two [turns](Self::turn). This is short.
-    pub fn snapshot(&mut self, facts: &TrialFacts) -> TrialSnapshot {
-        TrialSnapshot {
-            facts: facts.clone(),
-            learned: facts.learned.snapshot(&mut self.robot),
-            world: self.world.snapshot(),
-            pilot: interfaces::snapshot(self.pilot_values()),
-            observer: self.observer.clone(),
-        }
+    /// Copies the state of a run between two [turns](Self::turn).
+    pub fn snapshot(&mut self, facts: &TrialFacts, sessions: &Sessions) -> StateCopy {
+        let learned = learned(&mut self.robot, &facts.settings, sessions);
+        let (settings, content, world) = (facts.run.clone(), facts.content, self.world.snapshot());
+        let (pilot, observer) = (interfaces::snapshot(self.pilot_values()), self.observer.clone());
+        Box::new(move || {
+            let run: SavedRun = (content, world.into_bytes(), pilot, observer);
+            State { run: Some(Part { settings, bytes: to_bytes(&run) }), ..learned() }
+        })
     }
 
     /// Goes on from a state that a run with the same facts has saved.
@@ -88,19 +51,18 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
     ///
     /// When the state is of another run or of another build; the error names what differs. The run must not be used then.
     pub fn restore(&mut self, state: &State, facts: &TrialFacts) -> Result<(), StateError> {
-        let misfit = |part: &str| StateError::OtherContent(part.to_owned());
-        let world = state.section(WORLD, &facts.world)?;
-        let (pilot, observer) =
-            (state.section(PILOT, &facts.pilot)?, state.section(MEASUREMENTS, &facts.world)?);
+        let run = state.run.as_ref().ok_or(StateError::NoPart("run"))?;
+        run.settings.check(&facts.run)?;
+        let (content, world, pilot, observer): SavedRun = from_bytes(&run.bytes)?;
         match state.check_build() {
             Err(other) if !facts.allows_other_build => return Err(other), // after what differs by a choice
-            Err(_) => {}
-            Ok(()) => drop(state.section(CONTENT, &facts.content)?),
+            Ok(()) if content != facts.content => return Err(StateError::OtherWorld),
+            _ => {}
         }
-        facts.learned.restore(state, &mut self.robot)?;
-        self.world.restore(world).map_err(|_| misfit(WORLD))?;
-        interfaces::restore(self.pilot_values(), pilot).map_err(|_| misfit(PILOT))?;
-        self.observer = interfaces::from_bytes(observer).map_err(|_| misfit(MEASUREMENTS))?;
+        restore(state, &mut self.robot, &facts.settings)?;
+        self.world.restore(&world).map_err(|_| StateError::Damaged)?;
+        interfaces::restore(self.pilot_values(), &pilot)?;
+        self.observer = observer;
         Ok(())
     }
 

@@ -17,7 +17,7 @@ use nalgebra::{Isometry2, Point2};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use robot::Autonomous;
-use robot::state::{Facts, State};
+use robot::state::{SavedSettings, Sessions, State};
 use sim::physics::{PhysicsWorld, WorldSpec};
 use std::collections::BTreeMap;
 use std::fs;
@@ -78,8 +78,8 @@ impl Targets {
         let pilot = settings.pilot(agent, 1).unwrap();
         let mut trial: Trial = PhysicsTrial::new(&spec, 1, &settings, None, pilot).unwrap();
         trial.run(1.0).unwrap();
-        let facts = TrialFacts::new(&spec, 1, &settings, Facts::default());
-        let state = trial.snapshot(&facts).into_state();
+        let facts = TrialFacts::new(&spec, 1, &settings, SavedSettings::default());
+        let state = trial.snapshot(&facts, &Sessions::of("trial"))();
         Self {
             folder: tempfile::tempdir().unwrap(),
             carmen: carmen(&readings),
@@ -132,13 +132,11 @@ impl Targets {
         let mutated = random.mutated(&bytes);
         assert!(mutated == bytes || State::from_bytes(&mutated).is_err(), "a damaged state was read");
         // With a checksum that fits.
-        let parts: Vec<_> = self.state.sections().collect();
-        let chosen = random.below(parts.len());
-        let mut state = State::default();
-        for (index, (name, facts, bytes)) in parts.into_iter().enumerate() {
-            let bytes = if index == chosen { random.mutated(bytes) } else { bytes.to_vec() };
-            state = state.with(name, facts.clone(), bytes);
-        }
+        let mut state = self.state.clone();
+        let (map, run) = (state.map.as_mut().unwrap(), state.run.as_mut().unwrap());
+        let parts = [&mut map.bytes, &mut run.bytes, &mut state.localization.bytes, &mut state.filter];
+        let part = parts.into_iter().nth(random.below(4)).unwrap();
+        *part = random.mutated(part);
         self.trial.restore(&state, &self.facts).ok();
     }
 

@@ -1,5 +1,5 @@
 use crate::{Cell, SparseCells};
-use nalgebra::Point2;
+use nalgebra::{Point2, Vector2};
 
 /// The position and the size of a grid: square cells, row-major, row 0 at the lowest y.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
@@ -53,6 +53,18 @@ impl GridFrame {
         // A millionth of a cell of slack: 12 m in cells of 0.05 m are 240 cells, not 241.
         let cells = |length_m: f64| (length_m / resolution_m - 1e-6).ceil() as usize;
         Self::new(origin, resolution_m, cells(width_m), cells(height_m))
+    }
+
+    /// The smallest frame with the cells of this one that covers another frame as well; `None` if the sides of its cells are others,
+    /// or if it has too many cells.
+    pub fn union(&self, other: &Self) -> Option<Self> {
+        let shift = (other.origin - self.origin) / self.resolution_m;
+        let size = |frame: &Self| Vector2::new(frame.width as f64, frame.height as f64);
+        let low = shift.map(|cells| (cells + 1e-6).floor()).inf(&Vector2::zeros());
+        let high = (shift + size(other)).map(|cells| (cells - 1e-6).ceil()).sup(&size(self));
+        let (origin, cells) = (self.origin + low * self.resolution_m, high - low);
+        let frame = Self::new(origin, self.resolution_m, cells.x as usize, cells.y as usize);
+        frame.filter(|_| self.resolution_m == other.resolution_m)
     }
 
     /// The lower left corner, m.

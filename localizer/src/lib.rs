@@ -71,6 +71,5 @@ pub use localizer::Localizer;
 pub use loop_closing::{Correction, LoopClosed, LoopClosingLocalizer, Switch};
 pub use settings::{LocalizerSettings, OdometryTrust};
 pub use trajectory::{
-    DistanceScale, KnownPlace, PlaceError, Residual, RouteSearch, Trajectory, TrajectoryFinder,
-    TrajectoryPose,
+    DistanceScale, KnownPlace, PlaceError, RouteSearch, Trajectory, TrajectoryFinder, TrajectoryPose,
 };

@@ -25,7 +25,7 @@ use crate::estimate::Localized;
 use crate::first_map::{FirstMap, Log};
 use crate::localizer::Localizer;
 use crate::settings::LocalizerSettings;
-use interfaces::{GridFrame, LaserReading, SettingsError, ValueError, from_bytes, to_bytes};
+use interfaces::{CellState, Grid, GridFrame, LaserReading, SettingsError, ValueError, from_bytes, to_bytes};
 use mapper::Mapper;
 use nalgebra::{Isometry2, Matrix3};
 use replay::{Background, Replay, Replayed, learn};
@@ -252,6 +252,23 @@ impl LoopClosingLocalizer {
             Some(log) => Some(FirstMap::with_log(&self.settings, log).ok_or(ValueError)?),
             None => None,
         };
+        Ok(())
+    }
+
+    /// See [`Localizer::surfaces`].
+    pub fn surfaces(&mut self) -> Vec<u8> {
+        self.localizer.surfaces()
+    }
+
+    /// Begins in a known place, see [`Localizer::begin_in`]; its map is frozen.
+    ///
+    /// # Errors
+    ///
+    /// When the bytes are no surfaces.
+    pub fn begin_in(&mut self, surfaces: &[u8], map: &Grid<CellState>) -> Result<(), ValueError> {
+        if self.localizer.begin_in(surfaces, map)? {
+            (self.background, self.first) = (None, None);
+        }
         Ok(())
     }
 

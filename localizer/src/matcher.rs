@@ -161,29 +161,6 @@ fn kernel(residual: f64, scale: f64) -> f64 {
     root * root
 }
 
-/// The products of three values with each other: the upper half of a symmetric matrix, row by row.
-#[derive(Clone, Copy, Debug, Default)]
-struct Products([f64; 6]);
-
-impl Products {
-    fn of(j: &Vector3<f64>, factor: f64) -> Self {
-        Self(
-            [j.x * j.x, j.x * j.y, j.x * j.z, j.y * j.y, j.y * j.z, j.z * j.z]
-                .map(|product| product * factor),
-        )
-    }
-
-    #[inline]
-    fn add(&mut self, other: &Self, factor: f64) {
-        self.0.iter_mut().zip(other.0).for_each(|(sum, product)| *sum += product * factor);
-    }
-
-    fn matrix(&self) -> Matrix3<f64> {
-        let [xx, xy, xz, yy, yz, zz] = self.0;
-        Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)
-    }
-}
-
 /// How uncertain the distance of a point from its surface is: the same at all steps of a match.
 #[derive(Clone, Copy, Debug)]
 struct Noise {
@@ -209,7 +186,6 @@ fn accumulate(
     gates: &Gates,
 ) -> NormalEquations {
     let mut sums = NormalEquations::default();
-    let [mut end, mut begin, mut cross] = [Products::default(); 3];
     // Well inside of the gate: what moved by a little more than the noise must not pull.
     let scale_m = gate_m / 2.0;
     for (point, noise) in points.iter().zip(noises) {
@@ -226,23 +202,22 @@ fn accumulate(
         let kernel = kernel(off_m, scale_m * noise.kernel_share);
         let certain = weight / noise.variance * kernel;
         let (j, share) = (derivative(&arm, &surfel.normal), placement.share(point));
-        let (hessian, gradient) = (Products::of(&j, certain), j * (off_m * certain));
+        let (hessian, gradient) = (j * j.transpose() * certain, j * (off_m * certain));
         if share < 1.0 {
             let rest = 1.0 - share;
-            end.add(&hessian, share * share);
-            begin.add(&hessian, rest * rest);
-            cross.add(&hessian, rest * share);
+            sums.hessian += hessian * (share * share);
+            sums.begin_hessian += hessian * (rest * rest);
+            sums.cross_hessian += hessian * (rest * share);
             sums.gradient += gradient * share;
             sums.begin_gradient += gradient * rest;
         } else {
-            end.add(&hessian, 1.0);
+            sums.hessian += hessian;
             sums.gradient += gradient;
         }
         sums.squares += off_m * off_m * certain;
         sums.weight += weight * kernel;
         sums.points += point.weight * kernel;
     }
-    (sums.hessian, sums.begin_hessian, sums.cross_hessian) = (end.matrix(), begin.matrix(), cross.matrix());
     // Trust decides between surfels; it does not make a scan worth less than the odometry.
     if sums.weight > 0.0 {
         sums.scale(sums.points / sums.weight);

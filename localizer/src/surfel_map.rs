@@ -14,7 +14,7 @@ mod tests;
 pub(crate) use checking::Checker;
 
 use crate::constants::{SAME_NORMAL, SURFEL_M};
-use interfaces::{GridFrame, Values, runs, value};
+use interfaces::{GridFrame, ValueError, Values, read_value, runs, to_bytes, value};
 use nalgebra::{Point2, Vector2};
 
 /// Surfels in a cell: two sides of a thin wall, and a corner.
@@ -80,22 +80,28 @@ impl SurfelMap {
         Self { frame, cells, surfels: Vec::new(), removed: Vec::new(), scan: 0 }
     }
 
-    /// The map without its surfels, for a frame of the same size: most cells are empty and stay as they are.
-    pub(crate) fn emptied(mut self, frame: &GridFrame) -> Self {
-        let cells = fitted(frame, SURFEL_M, 1);
-        if cells.len() != self.cells.len() {
-            return Self::new(frame);
-        }
-        for surfel in self.surfels.drain(..).filter(|surfel| !surfel.is_removed()) {
-            self.cells[surfel.cell as usize] = [NONE; PER_CELL];
-        }
-        self.removed.clear();
-        Self { frame: cells, scan: 0, ..self }
-    }
-
     /// Everything that scans have changed.
     pub(crate) fn values(&mut self) -> Values<'_> {
         vec![runs(&mut self.cells), value(&mut self.surfels), value(&mut self.removed), value(&mut self.scan)]
+    }
+
+    /// The map as bytes, with the grid of its cells.
+    pub(crate) fn saved(&mut self) -> Vec<u8> {
+        let mut bytes = to_bytes(&self.frame);
+        bytes.extend(interfaces::snapshot(self.values()));
+        bytes
+    }
+
+    /// The map that [`saved`](Self::saved) has written.
+    pub(crate) fn restored(mut bytes: &[u8]) -> Result<Self, ValueError> {
+        let frame: GridFrame = read_value(&mut bytes)?;
+        if frame.len() > MAX_CELLS {
+            return Err(ValueError);
+        }
+        let cells = vec![[NONE; PER_CELL]; frame.len()];
+        let mut map = Self { frame, cells, surfels: Vec::new(), removed: Vec::new(), scan: 0 };
+        interfaces::restore(map.values(), bytes)?;
+        Ok(map)
     }
 
     /// The surfel at an index from [`SurfelMap::nearest`].

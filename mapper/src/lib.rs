@@ -26,8 +26,8 @@ mod things;
 mod tiles;
 
 pub use change::{
-    CellMap, CellStatistics, Estimator, EstimatorChoice, GapWorth, Paper, RateDistribution, ReadingIndex,
-    SharedPrior, TransitionRates, TwoStateGaps,
+    CellMap, CellStatistics, Estimator, EstimatorChoice, GapWorth, Paper, PaperAll, RateDistribution,
+    ReadingIndex, SharedPrior, TransitionRates, TwoState, TwoStateGaps,
 };
 pub use clock::{Calendar, Clock, DAY_S, Look, UnknownZone, UsualChange, UsualSlot, Week, share_interval};
 pub use growth::Growth;
@@ -232,6 +232,7 @@ impl Mapper {
             self.points.clear();
         }
         self.occupancy.grow(&growth, settings);
+        self.settings.steady.range_noise_std_m = settings.steady.range_noise_std_m;
         Ok(is_larger.then_some(growth))
     }
 
@@ -340,6 +341,16 @@ impl Mapper {
     /// The time at which readings have the time 0, in seconds since 1970-01-01 UTC.
     pub fn epoch_s(&self) -> f64 {
         self.tiles.epoch_s
+    }
+
+    /// Whether readings say when they were made.
+    pub fn is_dated(&self) -> bool {
+        self.tiles.is_dated
+    }
+
+    /// The settings.
+    pub fn settings(&self) -> &MapperSettings {
+        &self.settings
     }
 
     /// How the times of readings, [since the epoch](Self::epoch_s), relate to local civil time.

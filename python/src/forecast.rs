@@ -5,7 +5,7 @@ use numpy::PyArray2;
 use pyo3::exceptions::PyOSError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use robot::state::{LoadError, read_state};
+use robot::state::{StateError, read_state};
 use std::path::PathBuf;
 
 /// A place as it will be, from a state file of `map_log --state`: the program `predict`.
@@ -51,8 +51,8 @@ impl Forecast {
     fn new(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
         let name = path.display().to_string();
         let state = py.detach(|| read_state(&path)).map_err(|why| match why {
-            LoadError::Read(why) => PyOSError::new_err(format!("{name}: {why}")),
-            LoadError::State(why) => value_error(format!("{name}: {why}")),
+            StateError::Read(why) => PyOSError::new_err(format!("{name}: {why}")),
+            why => value_error(format!("{name}: {why}")),
         })?;
         let forecast = py.detach(|| survey::Forecast::of_state(&state));
         forecast.map(|forecast| Self { forecast }).map_err(|why| value_error(format!("{name}: {why}")))

@@ -156,16 +156,6 @@ impl Report {
         self.runs.iter().find(|run| run.world == world && run.estimator == estimator)
     }
 
-    /// The table for a terminal: 80 columns, if the names of the strategies are not too long.
-    pub fn table(&self) -> String {
-        table::table(self)
-    }
-
-    /// Whether the table leaves out the single worlds; `report.json` has them.
-    pub fn leaves_out_worlds(&self) -> bool {
-        table::leaves_out_worlds(self)
-    }
-
     /// Writes the figures, and `report.json`, which lists all files of the run, into the folder of the unfinished run.
     /// Returns the names of the files.
     ///

@@ -84,44 +84,50 @@ const COUNTS: [Count; 3] = [
     ("Contacts of the robot by its own motion", |strategy| strategy.collisions.unwrap_or(0)),
 ];
 
-/// The tables of all runs; with many worlds, and with worlds of one trial each, only the runs over all worlds.
-pub(super) fn table(report: &Report) -> String {
-    if report.runs.is_empty() {
-        return "No trial was finished.\n".into();
-    }
-    let length = report.settings.length;
-    let columns = length.choose(&GRID_COLUMNS[..], &PHYSICS_COLUMNS);
-    let is_short = leaves_out_worlds(report);
-    let mut text = String::new();
-    if report.settings.interrupted {
-        let finished = report.finished;
-        text =
-            format!("Interrupted: {finished} of {} trials were finished.\n\n", report.settings.all_trials());
-    }
-    for run in report.runs.iter().filter(|run| !is_short || run.worlds > 1) {
-        let counts = COUNTS.iter().filter_map(|(what, count)| counts(run, what, count));
-        let conclusions = counts.chain(winner(run));
-        let paragraphs = [
-            format!("{}\n{}", run.world, conditions(run, &report.settings)),
-            values(&run.strategies, columns).to_string(),
-            predictions(&run.strategies, length.choose(&[][..], &PREDICTION_COLUMNS)),
-            differences(run).unwrap_or_default(),
-            conclusions.collect::<Vec<_>>().join("\n"),
-        ];
-        for line in
-            paragraphs.iter().filter(|text| !text.is_empty()).flat_map(|text| text.lines().chain([""]))
-        {
-            text.extend([line.trim_end(), "\n"]);
+impl Report {
+    /// The tables for a terminal, with 80 columns if the names of the strategies are not too long; with many
+    /// worlds, and with worlds of one trial each, only the runs over all worlds.
+    pub fn table(&self) -> String {
+        if self.runs.is_empty() {
+            return "No trial was finished.\n".into();
         }
+        let length = self.settings.length;
+        let columns = length.choose(&GRID_COLUMNS[..], &PHYSICS_COLUMNS);
+        let is_short = self.leaves_out_worlds();
+        let mut text = String::new();
+        if self.settings.interrupted {
+            let finished = self.finished;
+            text = format!(
+                "Interrupted: {finished} of {} trials were finished.\n\n",
+                self.settings.all_trials()
+            );
+        }
+        for run in self.runs.iter().filter(|run| !is_short || run.worlds > 1) {
+            let counts = COUNTS.iter().filter_map(|(what, count)| counts(run, what, count));
+            let conclusions = counts.chain(winner(run));
+            let paragraphs = [
+                format!("{}\n{}", run.world, conditions(run, &self.settings)),
+                values(&run.strategies, columns).to_string(),
+                predictions(&run.strategies, length.choose(&[][..], &PREDICTION_COLUMNS)),
+                differences(run).unwrap_or_default(),
+                conclusions.collect::<Vec<_>>().join("\n"),
+            ];
+            for line in
+                paragraphs.iter().filter(|text| !text.is_empty()).flat_map(|text| text.lines().chain([""]))
+            {
+                text.extend([line.trim_end(), "\n"]);
+            }
+        }
+        text.push_str(length.choose(HOW_TO_READ_GRID, HOW_TO_READ_PHYSICS));
+        text
     }
-    text.push_str(length.choose(HOW_TO_READ_GRID, HOW_TO_READ_PHYSICS));
-    text
-}
 
-/// Whether the tables are those over all worlds only.
-pub(super) fn leaves_out_worlds(report: &Report) -> bool {
-    let is_one_of_many = |run: &Run| run.worlds > ONE_BY_ONE || run.worlds > 1 && report.settings.trials == 1;
-    report.runs.iter().any(is_one_of_many)
+    /// Whether the tables leave out the single worlds; `report.json` has them.
+    pub fn leaves_out_worlds(&self) -> bool {
+        let is_one_of_many =
+            |run: &Run| run.worlds > ONE_BY_ONE || run.worlds > 1 && self.settings.trials == 1;
+        self.runs.iter().any(is_one_of_many)
+    }
 }
 
 /// Columns of numbers beside the names.

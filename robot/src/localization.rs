@@ -1,6 +1,6 @@
 use crate::belief::{Belief, Permission};
-use interfaces::{LaserReading, Reading, ValueError, from_bytes, to_bytes};
-use localizer::{Correction, GivenPoses, Localized, Localizer, LoopClosed, LoopClosingLocalizer, PoseState};
+use interfaces::{CellState, Grid, LaserReading, Reading, ValueError, from_bytes, to_bytes};
+use localizer::{Correction, GivenPoses, Localized, LoopClosed, LoopClosingLocalizer, PoseState};
 use mapper::Mapper;
 use nalgebra::{Isometry2, Matrix3};
 
@@ -11,17 +11,35 @@ pub trait Localization<R> {
     fn localize(&mut self, reading: R, mapper: &mut Mapper) -> (R, Belief);
 
     /// Everything that readings have changed, as bytes; settings are not in it.
-    fn snapshot(&mut self) -> Vec<u8>;
+    fn snapshot(&mut self) -> Vec<u8> {
+        Vec::new()
+    }
 
     /// Goes on from the snapshot of a localization of the same kind, with the same settings, bit for bit.
     ///
     /// # Errors
     ///
     /// When the bytes are no such snapshot. The localization must not be used then.
-    fn restore(&mut self, snapshot: &[u8]) -> Result<(), ValueError>;
+    fn restore(&mut self, snapshot: &[u8]) -> Result<(), ValueError> {
+        if snapshot.is_empty() { Ok(()) } else { Err(ValueError) }
+    }
+
+    /// The surfaces in which poses are found, as bytes; none where poses are given.
+    fn surfaces(&mut self) -> Vec<u8> {
+        Vec::new()
+    }
+
+    /// Begins at an unknown pose in surfaces that another localization or a survey has left, or in a map if there are none.
+    ///
+    /// # Errors
+    ///
+    /// When the bytes are no surfaces.
+    fn begin_in(&mut self, _surfaces: &[u8], _map: &Grid<CellState>) -> Result<(), ValueError> {
+        Ok(())
+    }
 
     /// Begins another session in the place that was learned, at a pose that is not known.
-    fn begin_session(&mut self);
+    fn begin_session(&mut self) {}
 
     /// Puts the robot at a pose with a covariance, by the word of a person or of another program. Poses that the source gives stay.
     fn seat(&mut self, _: Isometry2<f64>, _: &Matrix3<f64>) {}
@@ -49,16 +67,6 @@ impl<R: Reading> Localization<R> for ExactPoses {
         let belief = Belief::exact(*reading.pose());
         (reading, belief)
     }
-
-    fn snapshot(&mut self) -> Vec<u8> {
-        Vec::new()
-    }
-
-    fn restore(&mut self, snapshot: &[u8]) -> Result<(), ValueError> {
-        if snapshot.is_empty() { Ok(()) } else { Err(ValueError) }
-    }
-
-    fn begin_session(&mut self) {}
 }
 
 impl Localization<LaserReading> for GivenPoses {
@@ -80,29 +88,6 @@ impl Localization<LaserReading> for GivenPoses {
     }
 }
 
-impl Localization<LaserReading> for Localizer {
-    fn localize(&mut self, reading: LaserReading, mapper: &mut Mapper) -> (LaserReading, Belief) {
-        let localized = Localizer::localize(self, &reading, mapper);
-        believed(localized, self.wants_rest(), None)
-    }
-
-    fn snapshot(&mut self) -> Vec<u8> {
-        Localizer::snapshot(self)
-    }
-
-    fn restore(&mut self, snapshot: &[u8]) -> Result<(), ValueError> {
-        Localizer::restore(self, snapshot)
-    }
-
-    fn begin_session(&mut self) {
-        Localizer::begin_session(self);
-    }
-
-    fn seat(&mut self, pose: Isometry2<f64>, covariance: &Matrix3<f64>) {
-        Localizer::seat(self, pose, covariance);
-    }
-}
-
 impl Localization<LaserReading> for LoopClosingLocalizer {
     fn localize(&mut self, reading: LaserReading, mapper: &mut Mapper) -> (LaserReading, Belief) {
         let LoopClosed { localized, correction } = LoopClosingLocalizer::localize(self, &reading, mapper);
@@ -115,6 +100,14 @@ impl Localization<LaserReading> for LoopClosingLocalizer {
 
     fn restore(&mut self, snapshot: &[u8]) -> Result<(), ValueError> {
         LoopClosingLocalizer::restore(self, snapshot)
+    }
+
+    fn surfaces(&mut self) -> Vec<u8> {
+        LoopClosingLocalizer::surfaces(self)
+    }
+
+    fn begin_in(&mut self, surfaces: &[u8], map: &Grid<CellState>) -> Result<(), ValueError> {
+        LoopClosingLocalizer::begin_in(self, surfaces, map)
     }
 
     fn begin_session(&mut self) {

@@ -6,7 +6,7 @@ use crate::session::max_step_s;
 use agent::{Agent, AgentSettings, Policy};
 use controller::{Controller, DiffDrive, DiffDriveSettings};
 use interfaces::{CellState, Grid, GridFrame, LaserReading, PoseMode, Purpose, RandomStream, SettingsError};
-use localizer::{GivenPoses, Localizer, LocalizerSettings, LoopClosingLocalizer, Start, Switch};
+use localizer::{GivenPoses, LocalizerSettings, LoopClosingLocalizer, Switch};
 use mapper::{Mapper, MapperSettings, NoReturn, ScanFilter, ScanFilterSettings, SharedPrior};
 use nalgebra::Isometry2;
 use serde::Serialize;
@@ -170,15 +170,13 @@ impl Settings {
         start: Isometry2<f64>,
         pilot: P,
     ) -> Result<Robot<LaserReading, P>, SettingsError> {
-        let localization: Box<dyn Localization<LaserReading> + Send + Sync> = match (self.pose, &prior) {
-            (PoseMode::Exact | PoseMode::Odometry | PoseMode::Corrected, _) => {
-                Box::new(GivenPoses::default())
-            }
-            (PoseMode::Localized, Some(map)) => {
-                Box::new(Localizer::in_map(&self.localizer, map, Start::Unknown)?)
-            }
-            (PoseMode::Localized, None) => {
-                let localizer = LoopClosingLocalizer::from_nothing(&self.localizer, &frame, start)?;
+        let localization: Box<dyn Localization<LaserReading> + Send + Sync> = match self.pose {
+            PoseMode::Exact | PoseMode::Odometry | PoseMode::Corrected => Box::new(GivenPoses::default()),
+            PoseMode::Localized => {
+                let mut localizer = LoopClosingLocalizer::from_nothing(&self.localizer, &frame, start)?;
+                if let Some(map) = &prior {
+                    localizer.begin_in(&[], map).unwrap_or_default(); // no bytes are invalid
+                }
                 Box::new(localizer.switching(self.switch.clone()))
             }
         };

@@ -102,9 +102,9 @@ impl<L: Link> CuriousNode<L> {
         state: Option<&Path>,
         output: Output,
     ) -> anyhow::Result<Self> {
-        let notes = Notes::new(output);
+        let mut notes = Notes::new(output);
         let loaded = state.filter(|_| parameters.autostart);
-        let Parts { robot, state_file, continued } = Parts::new(parameters, loaded)?;
+        let Parts { robot, state_file, continued } = Parts::new(parameters, loaded, &mut notes)?;
         let (names, is_localized) = setup::frames(parameters);
         let mut node = Self {
             link,

@@ -2,24 +2,28 @@
 
 use crate::link::Request;
 use crate::message::Time;
+use crate::notes::Notes;
 use crate::parameters::{Navigator, Parameters};
 use crate::pilot::LivePilot;
-use anyhow::{Context, anyhow};
-use interfaces::{GridFrame, LaserReading, PoseMode};
+use anyhow::Context;
+use interfaces::LaserReading;
 use localizer::LocalizerSettings;
-use robot::state::{Facts, LearnedFacts, State, StateFile};
+use robot::state::{Part, SavedSettings, Sessions, State, StateError, StateFile, learned, restore};
 use robot::{Pilot, Robot, Settings};
 use std::path::Path;
 
-/// The names of the sections of the node, beside those of every robot.
-const CLOCK: &str = "clock";
-const PILOT: &str = "pilot";
+/// The name of the program, for its sessions.
+const PROGRAM: &str = "curious_node";
 
 /// The state file of a node.
 pub(crate) struct NodeStateFile {
     pub(crate) file: StateFile,
-    facts: LearnedFacts,
-    pilot: Facts,
+    settings: Settings,
+    /// What the pilot in the file belongs to.
+    pilot: SavedSettings,
+    sessions: Sessions,
+    /// The survey of logs in the state that was loaded: it stays in the file.
+    survey: Option<Part>,
     /// Those who wait until the state is saved, and whether that has not begun.
     pub(crate) askers: Vec<Asker>,
     pub(crate) must_save: bool,
@@ -34,52 +38,59 @@ impl NodeStateFile {
     /// # Errors
     ///
     /// When the file cannot be written, or another run uses it.
-    pub(crate) fn new(
-        path: &Path,
-        settings: &Settings,
-        frame: &GridFrame,
-        parameters: &Parameters,
-    ) -> anyhow::Result<Self> {
+    pub(crate) fn new(path: &Path, settings: &Settings, parameters: &Parameters) -> anyhow::Result<Self> {
+        let mut settings = settings.clone();
         // What was learned does not depend on when the robot counts as lost.
-        let lost_after_s = LocalizerSettings::default().lost_after_s;
-        let localizer = LocalizerSettings { lost_after_s, ..settings.localizer.clone() };
-        let (pose, localizer) = match settings.pose {
-            PoseMode::Localized => ("localized", Some(&localizer)),
-            PoseMode::Exact | PoseMode::Odometry | PoseMode::Corrected => ("given", None),
-        };
-        let pilot = Facts::default().with("strategy", parameters.policy()?.name());
-        let pilot = match parameters.navigator {
-            Navigator::CmdVel => pilot,
-            Navigator::Nav2 | Navigator::GoalPose => pilot.with("navigator", "another"),
-        };
-        Ok(Self {
-            file: StateFile::open(path).with_context(|| format!("{}: cannot use it", path.display()))?,
-            facts: LearnedFacts::new(&settings.mapper, frame, pose, localizer),
-            pilot,
-            askers: Vec::new(),
-            must_save: false,
-        })
+        settings.localizer.lost_after_s = LocalizerSettings::default().lost_after_s;
+        let is_driver = parameters.navigator == Navigator::CmdVel;
+        let pilot = SavedSettings::default()
+            .with("strategy", &parameters.policy()?.name())
+            .with("drives", &is_driver);
+        let file = StateFile::open(path).with_context(|| format!("{}: cannot use it", path.display()))?;
+        let (sessions, survey) = (Sessions::of(PROGRAM), None);
+        Ok(Self { file, settings, pilot, sessions, survey, askers: Vec::new(), must_save: false })
     }
 
-    /// Lets the robot go on from the file: the time of the last reading in it. `None` if there is no such file.
+    /// The state in the file; `None` if there is no such file.
     ///
     /// # Errors
     ///
-    /// When the file is no state, or that of another node.
-    pub(crate) fn restore(&self, robot: &mut Robot<LaserReading, LivePilot>) -> anyhow::Result<Option<Time>> {
+    /// When the file is no state.
+    pub(crate) fn load(&mut self) -> anyhow::Result<Option<State>> {
+        self.file.load().with_context(|| self.name())
+    }
+
+    /// Lets the robot go on from a state of any program: the time of the last reading in it.
+    ///
+    /// # Errors
+    ///
+    /// When the map in the state has other cells or another estimator.
+    pub(crate) fn restore(
+        &mut self,
+        state: State,
+        robot: &mut Robot<LaserReading, LivePilot>,
+        notes: &mut Notes,
+    ) -> anyhow::Result<Time> {
         let name = self.name();
-        let Some(state) = self.file.load().with_context(|| name.clone())? else { return Ok(None) };
-        self.facts.restore(&state, robot).with_context(|| name.clone())?;
-        let clock = state.section(CLOCK, &Facts::default()).with_context(|| name.clone())?;
-        let clock = clock.try_into().map_err(|_| anyhow!("{name}: the part `{CLOCK}` has another length"))?;
+        let note = restore(&state, robot, &self.settings).with_context(|| name.clone())?;
+        note.iter().for_each(|note| notes.say(&format!("{name}: {note}")));
         // Another strategy, or none, has learned nothing that this one could use.
-        if let Ok(learned) = state.section(PILOT, &self.pilot)
-            && !learned.is_empty()
-        {
-            let restored = interfaces::restore(robot.pilot.values(&robot.mapper), learned);
-            restored.map_err(|_| anyhow!("{name}: the part `{PILOT}` does not fit this program"))?;
+        if let Some(pilot) = state.run.as_ref().filter(|run| run.settings == self.pilot) {
+            interfaces::restore(robot.pilot.values(&robot.mapper), &pilot.bytes)
+                .map_err(StateError::from)
+                .with_context(|| name.clone())?;
         }
-        Ok(Some(Time::from_ns(i64::from_le_bytes(clock))))
+        // The state of another program has dates, or no time.
+        let by_date_ns = || (1e9 * (robot.mapper.epoch_s() + robot.mapper.time())) as i64;
+        let last_ns = state.clock_ns.unwrap_or_else(by_date_ns);
+        self.sessions.go_on(&state, &robot.mapper);
+        self.survey = state.survey;
+        Ok(Time::from_ns(last_ns))
+    }
+
+    /// The map is that of another file from now on.
+    pub(crate) fn go_on_from(&mut self, other: &Self) {
+        (self.sessions, self.survey) = (other.sessions.clone(), other.survey.clone());
     }
 
     pub(crate) fn is_due(&self) -> bool {
@@ -93,13 +104,11 @@ impl NodeStateFile {
         robot: &mut Robot<LaserReading, LivePilot>,
     ) -> std::io::Result<()> {
         self.must_save = false;
-        let learned = self.facts.snapshot(robot);
-        let (facts, pilot) = (self.pilot.clone(), interfaces::snapshot(robot.pilot.values(&robot.mapper)));
-        let clock = last.ns().to_le_bytes().to_vec();
-        self.file.save(move || {
-            let state = learned.added_to(State::default()).with(CLOCK, Facts::default(), clock);
-            state.with(PILOT, facts, pilot).with_build()
-        })
+        let learned = learned(robot, &self.settings, &self.sessions);
+        let (settings, survey) = (self.pilot.clone(), self.survey.clone());
+        let pilot = Part { settings, bytes: interfaces::snapshot(robot.pilot.values(&robot.mapper)) };
+        let clock_ns = Some(last.ns());
+        self.file.save(move || State { clock_ns, survey, run: Some(pilot), ..learned() })
     }
 
     /// The name of the file.

@@ -2,13 +2,12 @@
 
 use crate::masks::{keepout_mask, speed_mask};
 use crate::outlook::{Outlook, distance_m, doors};
-use crate::places::Place;
-use crate::settings::SurveySettings;
-use crate::survey::{SavedLogs, SavedSurvey, Survey};
+use crate::places::{Place, places};
+use crate::survey::SavedSurvey;
 use interfaces::{Cell, CellState, Grid};
 use mapper::{Calendar, Door, Mapper};
 use nalgebra::Point2;
-use robot::state::{Facts, State, StateError, saved_mapper};
+use robot::state::{State, StateError};
 
 /// What changes is at most this far from a point that means it, m.
 pub const NEAR_M: f64 = 0.5;
@@ -23,29 +22,17 @@ pub struct Forecast {
 }
 
 impl Forecast {
-    /// The place in a state that `map_log` has written, or a robot.
+    /// The place in a state.
     ///
     /// # Errors
     ///
-    /// When the state holds neither, or was written by another program, and when nothing was learned yet.
+    /// When nothing was learned yet, and when the state does not fit this program.
     pub fn of_state(state: &State) -> Result<Self, StateError> {
-        let Some(facts) = state.facts(SavedSurvey::PART) else {
-            let mapper = saved_mapper(state)?;
-            let is_dated = *mapper.calendar() != Calendar::Relative;
-            let why = (!is_dated).then(|| "it is of a robot that does not know the date".to_owned());
-            return Ok(Self { mapper, places: Vec::new(), why_undated: why });
-        };
-        let misfit = || StateError::OtherContent(SavedSurvey::PART.to_owned());
-        let logs =
-            SavedLogs::read(state.section(SavedLogs::PART, &Facts::default())?).map_err(|_| misfit())?;
-        let settings: SurveySettings = facts.settings("survey").ok_or_else(misfit)?;
-        let learns_noise = facts.get("--noise") == Some("learned");
-        let learned = state.section(SavedSurvey::PART, facts)?;
-        let survey = Survey::restored(settings, learns_noise, logs, learned).map_err(|_| misfit())?;
-        let undated = survey.undated(survey.logs().len());
+        let SavedSurvey { changes, book, logs, .. } = SavedSurvey::of(state)?;
+        let mapper = state.map.as_ref().ok_or(StateError::NothingLearned)?.mapper()?;
+        let undated = logs.iter().map(|log| &log.entry).find(|entry| !entry.is_dated());
         let why_undated = undated.map(|log| format!("{} does not say when it was recorded", log.name));
-        let mapper = survey.mapper().ok_or(StateError::NothingLearned)?.clone();
-        Ok(Self { mapper, places: survey.places(), why_undated })
+        Ok(Self { places: places(&mapper, &changes, &book), mapper, why_undated })
     }
 
     /// The map.
@@ -68,8 +55,7 @@ impl Forecast {
         doors(&self.mapper)
     }
 
-    /// The places where something changes, with the numbers and the names that they have in the report of `map_log`; none in the
-    /// state of a robot.
+    /// The places where something changes, with the numbers and the names that they have in the report of `map_log`.
     pub fn places(&self) -> &[Place] {
         &self.places
     }

@@ -57,6 +57,6 @@ pub use replay::{FoundPoses, Replay};
 pub use route::{FirstPass, Route};
 pub use route_graph::{EdgeOutlook, RouteGraph, RouteGraphError, Travel};
 pub use settings::SurveySettings;
-pub use survey::{SavedLogs, SavedSurvey, Survey};
+pub use survey::{Survey, saved_logs, saved_settings};
 pub use surveyed_log::{LogEntry, SurveyedLog, Travelled};
 pub use upright::upright_rad;

@@ -1,6 +1,6 @@
 //! The second pass: a robot reads a log, at the poses that the first pass has found.
 
-use interfaces::{LaserReading, ValueError, from_bytes, to_bytes};
+use interfaces::LaserReading;
 use localizer::{GivenPoses, PoseEstimate, PoseState, TrajectoryPose};
 use logs::{Log, LogError, Readings};
 use mapper::{Mapper, NoReturn, NoReturns, ScanFilterSettings};
@@ -83,19 +83,6 @@ impl Localization<LaserReading> for FoundPoses {
         let (pose, covariance, support) = (reading.pose, Matrix3::zeros(), 1.0);
         let estimate = Some(PoseEstimate { pose, covariance, support, state });
         (reading, Belief { estimate, ..Belief::exact(pose) })
-    }
-
-    fn snapshot(&mut self) -> Vec<u8> {
-        to_bytes(&self.given)
-    }
-
-    fn restore(&mut self, snapshot: &[u8]) -> Result<(), ValueError> {
-        self.given = from_bytes(snapshot)?;
-        Ok(())
-    }
-
-    fn begin_session(&mut self) {
-        self.given = GivenPoses::default();
     }
 }
 

@@ -8,7 +8,7 @@ use crate::seen_area::SeenArea;
 use crate::settings::SurveySettings;
 use crate::turns::Turns;
 use interfaces::{GridFrame, LaserReading, PoseMode};
-use localizer::{DistanceScale, LocalizerSettings, PoseState, Residual, TrajectoryFinder, TrajectoryPose};
+use localizer::{DistanceScale, LocalizerSettings, PoseState, TrajectoryFinder, TrajectoryPose};
 use mapper::ScanFilter;
 use nalgebra::{Isometry2, Point2};
 use std::ops::Range;
@@ -20,8 +20,8 @@ pub struct Route {
     pub poses: Vec<TrajectoryPose>,
     /// The number of places that were recognized; 0 where no trajectory was searched.
     pub loops: usize,
-    /// The distances of scans from the surfaces of other passes; `None` where they are not known.
-    pub residual: Option<Residual>,
+    /// The distance from the surfaces of other passes, below which 97 % of the points of scans lie, m; `None` where it is not known.
+    pub residual_m: Option<f64>,
     /// The standard deviation of the ranges of a laser that stands, m; `None` where it is not known.
     pub range_std_m: Option<f64>,
     /// How far the trajectory agrees with its own scans.
@@ -223,10 +223,10 @@ impl FirstPass {
 
     /// The log along its trajectory, in the frame of its first pose.
     pub fn finish(self) -> Route {
-        let (poses, loops, residual, distance_scale) = match self.finder {
+        let (poses, loops, residual_m, distance_scale) = match self.finder {
             Some(finder) => {
                 let trajectory = finder.finish();
-                (trajectory.poses, trajectory.loops, trajectory.residual, trajectory.distance_scale)
+                (trajectory.poses, trajectory.loops, trajectory.residual_m, trajectory.distance_scale)
             }
             None => (self.given, 0, None, None),
         };
@@ -235,7 +235,7 @@ impl FirstPass {
         Route {
             poses,
             loops,
-            residual,
+            residual_m,
             range_std_m,
             quality,
             distance_scale,

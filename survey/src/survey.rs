@@ -4,7 +4,8 @@ mod saved;
 #[cfg(test)]
 mod tests;
 
-pub use saved::{SavedLogs, SavedSurvey};
+pub(crate) use saved::SavedSurvey;
+pub use saved::{saved_logs, saved_settings};
 
 use crate::change_log::ChangeLog;
 use crate::error::SurveyError;
@@ -235,7 +236,7 @@ impl Survey {
     /// The first log up to this one that does not say when it was recorded; from it on, nothing has hours.
     pub fn undated(&self, log: usize) -> Option<&LogEntry> {
         let mut entries = self.logs.iter().take(log + 1).map(|log| &log.entry);
-        entries.find(|entry| entry.begin_s.is_none() || !entry.has_times)
+        entries.find(|entry| !entry.is_dated())
     }
 
     /// Tells a mapper the date of the readings of a log.

@@ -7,11 +7,12 @@ use crate::silence;
 use interfaces::GridFrame;
 use localizer::{PoseState, TrajectoryPose};
 use logs::{Log, LogError, TopicChoice};
+use robot::state::Session;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// A log, and its place in time among the logs of one place.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
 pub struct LogEntry {
     /// Its name for people.
     pub name: String,
@@ -87,6 +88,11 @@ impl LogEntry {
         repeats(&self.scans, &other.scans)
     }
 
+    /// Whether it says when it was recorded.
+    pub(crate) fn is_dated(&self) -> bool {
+        self.begin_s.is_some() && self.has_times
+    }
+
     /// The time of its last reading, s after the first reading of the first log.
     pub fn end_s(&self) -> f64 {
         self.offset_s + self.duration_s
@@ -145,6 +151,24 @@ impl SurveyedLog {
         }
     }
 
+    /// A session of a robot, in the map of this frame: a log of which nothing is left to read.
+    pub(crate) fn of_session(session: Session, frame: GridFrame) -> Self {
+        let Session { name, offset_s, begin_s, duration_s, readings: [used, readings], laser, notes } =
+            session;
+        let has_times = begin_s.is_some();
+        let entry =
+            LogEntry { name, offset_s, begin_s, duration_s, has_times, laser, notes, ..LogEntry::default() };
+        let travelled = Travelled { duration_s, ..Travelled::default() };
+        let (quality, poses) = (Quality::default(), Arc::default());
+        Self { entry, readings, used, loops: 0, travelled, quality, noise_m: None, frame, poses }
+    }
+
+    /// The log as a session.
+    pub(crate) fn session(&self) -> Session {
+        let LogEntry { name, offset_s, begin_s, duration_s, laser, notes, .. } = self.entry.clone();
+        Session { name, offset_s, begin_s, duration_s, readings: [self.used, self.readings], laser, notes }
+    }
+
     /// Whether the survey has learned from all readings.
     pub fn is_finished(&self) -> bool {
         self.used >= self.readings
@@ -184,7 +208,7 @@ const MAX_M: f64 = 0.1;
 /// plants and glass, real scans have long tails, each of which would count as a change. Of a laser that stands, it is the noise
 /// of its ranges, from 0.01 to 0.1 m. `None` if no place was seen twice.
 fn noise_m(route: &Route) -> Option<f64> {
-    let found = route.residual.map(|residual| residual.tail_m.clamp(MIN_M, MAX_M));
+    let found = route.residual_m.map(|residual_m| residual_m.clamp(MIN_M, MAX_M));
     found.or_else(|| route.range_std_m.map(|std_m| std_m.clamp(MIN_STANDING_M, MAX_M)))
 }
 

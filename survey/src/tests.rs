@@ -264,26 +264,24 @@ fn lasers_that_stand_are_compared() {
 
 #[test]
 fn a_place_too_large_for_a_map_is_named() {
-    let settings = SurveySettings { resolution_m: 0.005, ..SurveySettings::of(PoseMode::Exact) };
     let (mut readings, _) = drive(2, 0.2);
     readings[1].pose = interfaces::pose(300.0, 300.0, 0.0);
-    let mut pass = FirstPass::new(&settings).unwrap();
-    readings.drain(..2).for_each(|reading| pass.add(reading));
+    let passed = |resolution_m: f64| {
+        let settings = SurveySettings { resolution_m, ..SurveySettings::of(PoseMode::Exact) };
+        let mut pass = FirstPass::new(&settings).unwrap();
+        readings[..2].iter().for_each(|reading| pass.add(reading.clone()));
+        (pass.check(), frame(&[pass.finish()], &settings))
+    };
+    let (check, found) = passed(0.005);
     // Known before the pass is over.
-    assert!(matches!(pass.check(), Err(SurveyError::TooLarge { .. })));
-    let error = frame(&[pass.finish()], &settings).unwrap_err();
-    assert!(matches!(error, SurveyError::TooLarge { .. }), "{error}");
+    assert!(matches!(check, Err(SurveyError::TooLarge { .. })));
+    let error = found.unwrap_err();
     let says =
         ["the place is too large for a map: at least 3", "(--resolution, at least 0.0", "(--max-range)"];
     assert!(says.iter().all(|says| error.to_string().contains(says)), "{error}");
     // What the error advises is enough.
-    let SurveyError::TooLarge { enough_m, .. } = error else { return };
-    let settings = SurveySettings { resolution_m: enough_m, ..settings };
-    let (mut readings, _) = drive(2, 0.2);
-    readings[1].pose = interfaces::pose(300.0, 300.0, 0.0);
-    let mut pass = FirstPass::new(&settings).unwrap();
-    readings.drain(..2).for_each(|reading| pass.add(reading));
-    assert!(frame(&[pass.finish()], &settings).is_ok());
+    let SurveyError::TooLarge { enough_m, .. } = error else { panic!("{error}") };
+    assert!(passed(enough_m).1.is_ok());
 }
 
 #[test]

@@ -43,7 +43,7 @@ fn the_summary_says_what_was_run_and_how_it_went() {
     let summary = RUN.summary();
     assert_eq!(summary.text("/version"), env!("CARGO_PKG_VERSION"));
     assert_eq!(summary.at("/arguments").as_array().unwrap().len(), 4);
-    for part in ["mapper", "agent", "controller", "drive"] {
+    for part in ["mapper", "agent", "drive"] {
         assert!(summary.at("/settings")[part].is_object(), "{part}");
     }
     let choice = ["world", "drive", "strategy", "estimator", "occupancy", "ended_by"];

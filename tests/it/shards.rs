@@ -70,6 +70,29 @@ fn houses_have_shards_as_well() {
 }
 
 #[test]
+fn a_shard_that_was_cut_off_anywhere_goes_on() {
+    let reference = single(Run::grid(), GRID);
+    let run = Run::grid();
+    start(&run, GRID, 3, 1..=3);
+    let path = run.path("shards/shard-2-of-3.jsonl");
+    let whole = fs::read(&path).unwrap();
+    for cut in [0, 17, whole.len() / 3, whole.len() / 2 + 1, whole.len() - 1] {
+        fs::write(&path, &whole[..cut]).unwrap();
+        let missing = run.ends("missing shards");
+        assert_eq!((missing.code, missing.stdout.as_str()), (Some(1), "2\n"), "{missing:?}");
+        let error = refused(&run, "merge shards");
+        assert_eq!(
+            error,
+            "error: shards is not complete: the shards 2 of 3 lack trials, the first is shard-2-of-3.jsonl; run those shards again"
+        );
+        start(&run, GRID, 3, [2]);
+        assert!(merged(&run) == reference, "cut at {cut}");
+    }
+    let missing = run.goes_well("missing shards");
+    assert_eq!(missing.stdout, "");
+}
+
+#[test]
 #[cfg(unix)]
 fn a_killed_shard_goes_on_and_no_other_process_may_have_it() {
     use nix::sys::signal::Signal;

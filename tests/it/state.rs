@@ -36,7 +36,7 @@ fn a_run_in_two_parts_equals_a_whole_one() {
         let saved = fs::read(parts.path("a.state")).unwrap();
         parts.goes_well(&format!("{SHORT} 12 {arguments}"));
         assert!(results(&parts) == results(&whole) && fs::read(parts.path("a.state")).unwrap() == saved);
-        assert_eq!(parts.names(), ["a.state", "out"]);
+        assert_eq!(parts.names(), ["a.state", "a.state.earlier", "out"]);
     }
 }
 
@@ -132,5 +132,5 @@ fn a_killed_run_goes_on() {
         last_s = began_s;
     }
     assert!(last_s > 0.0 && run.summary().number("/simulated_s") > last_s);
-    assert_eq!(run.names(), ["a.state", "out"]);
+    assert_eq!(run.names(), ["a.state", "a.state.earlier", "out"]);
 }

@@ -136,6 +136,14 @@ mod tests {
     }
 
     #[test]
+    fn each_pair_of_a_trajectory_counts() {
+        let mut coder = TileCoder::with_offsets([[0.0, 0.0]]);
+        coder.learn(&[at(0.1, 1.0), at(0.2, 2.0), at(9.0, 2.0), at(0.3, 3.0)], 1.0, 0.5);
+        assert_eq!(coder.value(at(0.0, 0.0)), 1.0 - 0.5f64.powi(3));
+        assert_eq!(coder.value(at(9.0, 0.0)), 0.5);
+    }
+
+    #[test]
     fn the_tiles_visited_longest_ago_are_forgotten() {
         let mut coder = TileCoder::with_offsets([[0.0, 0.0]]);
         let row = |row: usize| at(0.0, 100.0 * row as f64);

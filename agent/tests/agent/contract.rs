@@ -2,7 +2,7 @@
 
 use crate::drawing::{agent, can_be_a_goal, empty, map, names, reading, rng};
 use agent::{
-    Agent, AgentSettings, Chooser, Features, FreshMap, Policy, Random, Recency, Situation,
+    Agent, AgentSettings, Chooser, Features, FreshMap, Policy, Random, Recency, Reward, Situation,
     StraightLineTravel, Trajectory,
 };
 use interfaces::{Cell, CellReading, CellState, RandomStream, Transition};
@@ -176,29 +176,32 @@ fn a_trajectory_is_rewarded_by_its_updates_per_reading() {
     let (found, block, free) = (turn(Unknown, Free), turn(Free, Blocked), turn(Blocked, Free));
     let at = |p| Features { p, r: 10.0 * p };
     let mapper = map(&[(0.0, &["..."])]);
-    let pupil = Pupil::default();
-    let lessons = Lessons::clone(&pupil.lessons);
-    let strategies: Vec<Box<dyn agent::Strategy>> = vec![Box::new(Recency), Box::new(Random)];
-    let mut agent = Agent::with(&AgentSettings::default(), strategies, Box::new(pupil), rng(0)).unwrap();
-    let goal = |agent: &mut Agent| {
-        agent.next_goal(&mapper, &Isometry2::identity(), &mut StraightLineTravel);
-    };
-    agent.watch(at(9.0), &[found; 50]); // Before the first goal: the reward belongs to no strategy.
-    goal(&mut agent);
-    agent.watch(at(1.0), &[block, found]);
-    agent.watch(at(2.0), &[]);
-    agent.watch(at(3.0), &[free, found]);
-    agent.watch(at(4.0), &[]);
-    goal(&mut agent);
-    assert_eq!(agent.last_reward(), 0.5);
-    goal(&mut agent); // No reading since then: nothing to learn.
-    agent.watch(at(5.0), &[block, free]);
-    goal(&mut agent);
-    assert_eq!(agent.last_reward(), 2.0);
-    assert_eq!(
-        *lessons.lock().unwrap(),
-        [(0, vec![at(1.0), at(2.0), at(3.0), at(4.0)], 0.5), (0, vec![at(5.0)], 2.0)]
-    );
+    for (reward, first, second) in [(Reward::Changes, 0.5, 2.0), (Reward::ChangesAndDiscoveries, 1.0, 2.0)] {
+        let pupil = Pupil::default();
+        let lessons = Lessons::clone(&pupil.lessons);
+        let settings = AgentSettings { reward, ..Default::default() };
+        let strategies: Vec<Box<dyn agent::Strategy>> = vec![Box::new(Recency), Box::new(Random)];
+        let mut agent = Agent::with(&settings, strategies, Box::new(pupil), rng(0)).unwrap();
+        let goal = |agent: &mut Agent| {
+            agent.next_goal(&mapper, &Isometry2::identity(), &mut StraightLineTravel);
+        };
+        agent.watch(at(9.0), &[found; 50]); // Before the first goal: the reward belongs to no strategy.
+        goal(&mut agent);
+        agent.watch(at(1.0), &[block, found]);
+        agent.watch(at(2.0), &[]);
+        agent.watch(at(3.0), &[free, found]);
+        agent.watch(at(4.0), &[]);
+        goal(&mut agent);
+        assert_eq!(agent.last_reward(), first);
+        goal(&mut agent); // No reading since then: nothing to learn.
+        agent.watch(at(5.0), &[block, free]);
+        goal(&mut agent);
+        assert_eq!(agent.last_reward(), second);
+        assert_eq!(
+            *lessons.lock().unwrap(),
+            [(0, vec![at(1.0), at(2.0), at(3.0), at(4.0)], first), (0, vec![at(5.0)], second)]
+        );
+    }
 }
 
 #[test]

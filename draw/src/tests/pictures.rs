@@ -21,17 +21,18 @@ fn goals() -> Goals {
     goals
 }
 
+/// Simulates a tenth of a second, with the trails of the robots.
+fn step(run: &mut FakeRun, trails: &mut [Trail; 2]) {
+    run.step();
+    trails.iter_mut().zip(run.positions()).for_each(|(trail, (_, at))| trail.push(at));
+}
+
 /// A simulated run, drawn into a folder.
 fn drawn(ticks: usize) -> Drawn {
     let folder = tempfile::tempdir().unwrap();
     let mut run = FakeRun::new();
     let mut trails = [(); 2].map(|()| Trail::default());
-    for _ in 0..ticks {
-        run.step();
-        for (trail, (_, at)) in trails.iter_mut().zip(run.positions()) {
-            trail.push(at);
-        }
-    }
+    (0..ticks).for_each(|_| step(&mut run, &mut trails));
     let trails = Trails { true_poses: &trails, believed: &Trail::default() };
     write_all(folder.path(), &run.scene, &run.mapper, &trails, &goals(), &Layer::ALL).unwrap();
     Drawn { folder, run }
@@ -148,10 +149,7 @@ fn a_film_is_a_small_gif_that_shows_the_run() {
     let mut film = Film::new(UnfinishedFile::create(&file).unwrap(), run.scene.clone(), 30.0);
     let mut trails = [(); 2].map(|()| Trail::default());
     for _ in 0..300 {
-        run.step();
-        for (trail, (_, at)) in trails.iter_mut().zip(run.positions()) {
-            trail.push(at);
-        }
+        step(&mut run, &mut trails);
         run.with_view(|view| film.add(view, &trails)).unwrap();
     }
     film.write().unwrap();

@@ -106,11 +106,10 @@ fn print_trajectory(trajectory: &Trajectory, per_scan_ms: f64) {
         "trajectory: {length_m:.0} m, {} places recognized, {uncertain} scans without support, {per_scan_ms:.2} ms per scan",
         trajectory.loops
     );
-    if let Some(residual) = trajectory.residual {
+    if let Some(residual_m) = trajectory.residual_m {
         println!(
-            "scans lie within {:.1} cm (standard deviation) of the surfaces of other passes, 97 % of the points within {:.1} cm",
-            residual.std_m * 100.0,
-            residual.tail_m * 100.0
+            "97 % of the points are within {:.1} cm of the surfaces of other passes",
+            residual_m * 100.0
         );
     }
 }

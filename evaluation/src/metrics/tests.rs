@@ -92,6 +92,14 @@ fn show(world: &GridWorld, mapper: &mut Mapper, sees: impl Fn(Cell) -> bool) {
     mapper.update(&CellReading { time: truth.elapsed(), pose: Isometry2::identity(), cells }).unwrap();
 }
 
+/// The accuracy on changing cells, and the scores of the predicted map, of one sample.
+fn sampled(mapper: &Mapper, world: &GridWorld) -> (Option<f64>, PredictedScores) {
+    let (mut accuracy, mut prediction) = (ChangingAccuracy::default(), Prediction::default());
+    accuracy.sample(mapper, world.truth());
+    prediction.sample(mapper, world.truth(), None);
+    (accuracy.scores().all, prediction.scores())
+}
+
 #[test]
 fn a_robot_that_sees_everything_is_correct() {
     let mut world = grid_world();
@@ -106,11 +114,9 @@ fn a_robot_that_sees_everything_is_correct() {
     assert_eq!((scores.rate_error_all, scores.log_error, scores.false_rate_hz), (Some(0.0), Some(0.0), 0.0));
     assert_eq!((scores.false_change_events, scores.false_map_changes), (0, 0));
     assert_eq!(map_scores(&mapper, world.truth()), MapScores { coverage: 1.0, map_quality: 1.0 });
-    let (mut accuracy, mut prediction) = (ChangingAccuracy::default(), Prediction::default());
-    accuracy.sample(&mapper, world.truth());
-    prediction.sample(&mapper, world.truth(), None);
-    assert_eq!(accuracy.scores().all, Some(1.0));
-    assert!(prediction.scores().brier.is_none(), "nothing is out of view");
+    let (accuracy, prediction) = sampled(&mapper, &world);
+    assert_eq!(accuracy, Some(1.0));
+    assert!(prediction.brier.is_none(), "nothing is out of view");
 }
 
 #[test]
@@ -122,12 +128,9 @@ fn a_robot_that_sees_nothing_is_incorrect_by_definition() {
     assert_eq!(scores.rate_error_all, Some(1.0));
     assert_eq!((scores.log_error, MAX_LOG_ERROR), (Some(MAX_LOG_ERROR), libm::log(10.0)));
     assert_eq!(map_scores(&mapper, world.truth()), MapScores { coverage: 0.0, map_quality: 0.0 });
-    let (mut accuracy, mut prediction) = (ChangingAccuracy::default(), Prediction::default());
-    accuracy.sample(&mapper, world.truth());
-    prediction.sample(&mapper, world.truth(), None);
-    let scores = prediction.scores();
-    assert_eq!(accuracy.scores().all, Some(0.0));
-    assert_eq!((scores.brier, scores.brier_last_seen), (Some(0.25), Some(0.25)));
+    let (accuracy, prediction) = sampled(&mapper, &world);
+    assert_eq!(accuracy, Some(0.0));
+    assert_eq!((prediction.brier, prediction.brier_last_seen), (Some(0.25), Some(0.25)));
 }
 
 #[test]
@@ -173,12 +176,10 @@ fn an_old_map_is_incorrect_where_things_have_moved() {
     let visible = (0..28).filter(|&index| world.truth().can_be_seen(index)).count() as f64;
     let scores = map_scores(&mapper, world.truth());
     assert!((scores.map_quality - (visible - 2.0) / visible).abs() < 1e-12, "{scores:?}");
-    let (mut accuracy, mut prediction) = (ChangingAccuracy::default(), Prediction::default());
-    accuracy.sample(&mapper, world.truth());
-    prediction.sample(&mapper, world.truth(), None);
+    let (accuracy, prediction) = sampled(&mapper, &world);
     // Of three free changing cells two are right, of two blocked ones one.
-    assert_eq!(accuracy.scores().all, Some((2.0 / 3.0 + 0.5) / 2.0));
-    assert_eq!(prediction.scores().brier_last_seen, Some(2.0 / 5.0));
+    assert_eq!(accuracy, Some((2.0 / 3.0 + 0.5) / 2.0));
+    assert_eq!(prediction.brier_last_seen, Some(2.0 / 5.0));
 }
 
 /// Rates of the three cells of the fast block, frozen after 20 of 60 steps. The oracle counts the events itself and takes the

@@ -2,9 +2,11 @@
 
 use super::Localizer;
 use crate::constants::NEAR_STD;
+use crate::estimate::Start;
 use crate::faults::FaultFinder;
 use crate::local_trajectory_builder::LocalTrajectoryBuilder;
-use interfaces::{ValueError, Values, value};
+use crate::surfel_map::SurfelMap;
+use interfaces::{CellState, Grid, ValueError, Values, value};
 use nalgebra::{Isometry2, Matrix3};
 
 impl Localizer {
@@ -43,6 +45,30 @@ impl Localizer {
         track.last_motion = Isometry2::identity();
         self.builder.matcher.seat(pose);
         self.much_has_moved = false;
+    }
+
+    /// The surfaces in which poses are found, as bytes: also for a [`KnownPlace`](crate::KnownPlace).
+    pub fn surfaces(&mut self) -> Vec<u8> {
+        self.builder.matcher.surfels.saved()
+    }
+
+    /// Begins at an unknown pose in surfaces that were learned before, in the frame of this localizer, or in a map if there are
+    /// none. If the map has no surface either, the localizer stays as it is. Returns whether there are surfaces.
+    ///
+    /// # Errors
+    ///
+    /// When the bytes are no surfaces.
+    pub fn begin_in(&mut self, surfaces: &[u8], map: &Grid<CellState>) -> Result<bool, ValueError> {
+        let known = match surfaces {
+            [] => SurfelMap::from_grid(map),
+            bytes => SurfelMap::restored(bytes)?.moved_to(map.frame()),
+        };
+        let is_known = !known.is_empty();
+        if is_known {
+            let settings = self.builder.matcher.settings.clone();
+            *self = Self::new(&settings, known, Start::Unknown, false).map_err(|_| ValueError)?;
+        }
+        Ok(is_known)
     }
 
     fn values(&mut self) -> Values<'_> {

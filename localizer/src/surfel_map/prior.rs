@@ -3,7 +3,7 @@
 use super::SurfelMap;
 use crate::constants::{SURFEL_M, THICK_M};
 use crate::work;
-use interfaces::{Cell, CellState, Grid};
+use interfaces::{Cell, CellState, Grid, GridFrame};
 use nalgebra::{Point2, Vector2};
 
 /// Scans as which a surfel of a known map counts: the next ones correct it.
@@ -13,6 +13,15 @@ const PRIOR_SCANS: u32 = 20;
 type Border = (Cell, Point2<f64>, Vector2<f64>);
 
 impl SurfelMap {
+    /// Its surfaces in a map of another frame, as those of a known map.
+    pub(crate) fn moved_to(&self, frame: &GridFrame) -> Self {
+        let mut map = Self::new(frame);
+        for surfel in self.usable() {
+            map.add(surfel.at, surfel.normal, PRIOR_SCANS);
+        }
+        map
+    }
+
     /// The surfaces of a known map: the borders between blocked and free cells, each with the line through the borders
     /// around it.
     pub(crate) fn from_grid(grid: &Grid<CellState>) -> Self {

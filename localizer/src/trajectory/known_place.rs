@@ -15,7 +15,7 @@ use crate::score_grid::ScoreGrid;
 use crate::search::{Window, search};
 use crate::spread::Spread;
 use crate::surfel_map::SurfelMap;
-use interfaces::{GridFrame, LaserReading, ValueError, heading_rad, read_value, to_bytes, wrap_rad};
+use interfaces::{GridFrame, LaserReading, ValueError, heading_rad, wrap_rad};
 use nalgebra::{Isometry2, Vector2};
 
 /// The number of scans that are searched for in the whole map, at most.
@@ -69,7 +69,6 @@ pub enum PlaceError {
 /// exact to some millimeters.
 #[derive(Clone, Debug)]
 pub struct KnownPlace {
-    frame: GridFrame,
     map: SurfelMap,
     given: GivenPoses,
     points: ScanPoints,
@@ -81,7 +80,7 @@ impl KnownPlace {
     /// A place without surfaces, in the rectangle of `frame`.
     pub fn new(frame: &GridFrame) -> Self {
         let (given, points) = (GivenPoses::default(), ScanPoints::default());
-        Self { frame: *frame, map: SurfelMap::new(frame), given, points, last: None }
+        Self { map: SurfelMap::new(frame), given, points, last: None }
     }
 
     /// Adds the next reading of the log, whose pose is that on the trajectory, if the robot has moved by a keyframe since the
@@ -102,20 +101,17 @@ impl KnownPlace {
 
     /// The surfaces, as bytes: what readings of other logs are matched with.
     pub fn snapshot(mut self) -> Vec<u8> {
-        let mut bytes = to_bytes(&self.frame);
-        bytes.extend(interfaces::snapshot(self.map.values()));
-        bytes
+        self.map.saved()
     }
 
-    /// The place from its snapshot. No more readings can be added.
+    /// The place from its snapshot, or from the [surfaces of a localizer](crate::Localizer::surfaces). No more readings can be added.
     ///
     /// # Errors
     ///
-    /// When the bytes are no such snapshot.
-    pub fn restored(mut snapshot: &[u8]) -> Result<Self, ValueError> {
-        let mut place = Self::new(&read_value(&mut snapshot)?);
-        interfaces::restore(place.map.values(), snapshot)?;
-        Ok(place)
+    /// When the bytes are no surfaces.
+    pub fn restored(surfaces: &[u8]) -> Result<Self, ValueError> {
+        let (given, points) = (GivenPoses::default(), ScanPoints::default());
+        Ok(Self { map: SurfelMap::restored(surfaces)?, given, points, last: None })
     }
 }
 

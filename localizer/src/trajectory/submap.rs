@@ -29,12 +29,11 @@ pub(super) struct FinishedSubmap {
 }
 
 impl GrowingSubmap {
-    /// An empty submap around a pose, in the memory of a map that is no longer needed.
-    pub(super) fn new(around: &Isometry2<f64>, spare: Option<SurfelMap>) -> Option<Self> {
+    /// An empty submap around a pose.
+    pub(super) fn new(around: &Isometry2<f64>) -> Option<Self> {
         let low = Point2::from(around.translation.vector - Vector2::repeat(SUBMAP_REACH_M));
         let frame = GridFrame::covering(low, 2.0 * SUBMAP_REACH_M, 2.0 * SUBMAP_REACH_M, SURFEL_M)?;
-        let map = spare.map_or_else(|| SurfelMap::new(&frame), |spare| spare.emptied(&frame));
-        Some(Self { map, keyframes: Vec::new() })
+        Some(Self { map: SurfelMap::new(&frame), keyframes: Vec::new() })
     }
 
     pub(super) fn add(&mut self, number: usize, keyframe: &Keyframe, noise_m: f64) {
@@ -42,16 +41,15 @@ impl GrowingSubmap {
         self.map.learn_keyframe(&keyframe.points, &keyframe.local, noise_m);
     }
 
-    /// The submap with all of its keyframes, and the memory of its map.
-    pub(super) fn finish(self, keyframes: &[Keyframe]) -> (FinishedSubmap, SurfelMap) {
+    /// The submap with all of its keyframes.
+    pub(super) fn finish(self, keyframes: &[Keyframe]) -> FinishedSubmap {
         let anchor = self.keyframes[self.keyframes.len() / 2];
-        let finished = FinishedSubmap {
+        FinishedSubmap {
             anchor,
             first: self.keyframes[0],
             last: anchor.max(*self.keyframes.last().unwrap_or(&anchor)),
             points: self.map.points(&keyframes[anchor].local),
-        };
-        (finished, self.map)
+        }
     }
 }
 

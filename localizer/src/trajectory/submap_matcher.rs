@@ -54,8 +54,6 @@ pub(crate) struct SubmapMatcher {
     /// The older one is matched with, the younger one is only filled.
     growing: Vec<GrowingSubmap>,
     finished: Vec<FinishedSubmap>,
-    /// The memory of the last submap that was finished.
-    spare: Option<SurfelMap>,
     /// Whether the last scan shows no surface.
     pub(super) sees_nothing: bool,
     /// Whether any scan so far shows a surface.
@@ -154,7 +152,7 @@ impl SubmapMatcher {
     /// The growing submaps as they are: there is no further reading.
     pub(super) fn end(&mut self) {
         let growing = self.growing.drain(..);
-        self.finished.extend(growing.map(|submap| submap.finish(&self.keyframes).0));
+        self.finished.extend(growing.map(|submap| submap.finish(&self.keyframes)));
     }
 
     /// The pose relative to the last keyframe.
@@ -274,7 +272,7 @@ impl SubmapMatcher {
         let keyframe = &self.keyframes[number];
         let half = SUBMAP_KEYFRAMES / 2;
         if self.growing.last().is_none_or(|youngest| youngest.keyframes.len() >= half) {
-            self.growing.extend(GrowingSubmap::new(&keyframe.local, self.spare.take()));
+            self.growing.extend(GrowingSubmap::new(&keyframe.local));
         }
         for submap in &mut self.growing {
             submap.add(number, keyframe, self.settings.range_noise_std_m);
@@ -282,9 +280,7 @@ impl SubmapMatcher {
         self.keyframes[number].thin();
         if self.growing.len() > 1 && self.growing[0].keyframes.len() >= SUBMAP_KEYFRAMES {
             let full = self.growing.remove(0);
-            let (finished, spare) = full.finish(&self.keyframes);
-            self.finished.push(finished);
-            self.spare = Some(spare);
+            self.finished.push(full.finish(&self.keyframes));
         }
     }
 }

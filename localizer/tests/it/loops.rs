@@ -34,6 +34,67 @@ fn finder() -> TrajectoryFinder {
     TrajectoryFinder::new(&LocalizerSettings::of_logs()).unwrap()
 }
 
+/// A drive along the corridor.
+struct Drive {
+    from_m: f64,
+    /// Its length, in rounds.
+    rounds: f64,
+    seed: u64,
+    /// A scan per this number of steps of [`PERIOD_S`].
+    stride: usize,
+    /// A turn that the odometry misses halfway, rad.
+    missed_rad: f64,
+}
+
+/// What was measured on a drive, and the true poses.
+struct Driven {
+    readings: Vec<LaserReading>,
+    truth: Vec<Isometry2<f64>>,
+    drift_m: f64,
+}
+
+impl Drive {
+    /// A scan per step, from the begin of the corridor on.
+    fn new(rounds: f64, seed: u64) -> Self {
+        Self { from_m: 0.0, rounds, seed, stride: 1, missed_rad: 0.0 }
+    }
+
+    fn along(&self, corridor: &mut Corridor) -> Driven {
+        let steps = (self.rounds * corridor.round_m() / (SPEED_MPS * PERIOD_S)) as usize;
+        let at = |corridor: &Corridor, step| corridor.at(self.from_m + step as f64 * SPEED_MPS * PERIOD_S);
+        let start = at(corridor, 0);
+        let mut odometry = Odometry::new(start, self.seed);
+        let (mut readings, mut truth) = (Vec::new(), Vec::new());
+        for step in 0..steps {
+            let true_pose = at(corridor, step);
+            let pose = odometry.moved_to(&true_pose);
+            if step == steps / 2 && self.missed_rad != 0.0 {
+                odometry.jump(&interfaces::pose(0.0, 0.0, self.missed_rad));
+            }
+            if step % self.stride == 0 {
+                let reading = corridor.reading(step as f64 * PERIOD_S, true_pose);
+                readings.push(LaserReading { pose, ..reading });
+                truth.push(start.inv_mul(&true_pose));
+            }
+        }
+        let off = odometry.pose.translation.vector - at(corridor, steps - 1).translation.vector;
+        Driven { readings, truth, drift_m: off.norm() }
+    }
+}
+
+impl Driven {
+    /// The trajectory that a finder finds, with a fault of the sensors.
+    fn found(&self, mut finder: TrajectoryFinder, fault: impl Fn(&mut LaserReading)) -> Trip {
+        let mut local = Vec::new();
+        for mut reading in self.readings.iter().cloned() {
+            fault(&mut reading);
+            finder.add(reading);
+            local.push(finder.local_pose());
+        }
+        Trip { trajectory: finder.finish(), local, truth: self.truth.clone(), drift_m: self.drift_m }
+    }
+}
+
 /// A trip around a corridor, and on past the start.
 fn trip(corridor: &mut Corridor, rounds: f64, seed: u64) -> Trip {
     trip_with(corridor, rounds, seed, |_| {})
@@ -41,24 +102,7 @@ fn trip(corridor: &mut Corridor, rounds: f64, seed: u64) -> Trip {
 
 /// The same, with a fault of the sensors.
 fn trip_with(corridor: &mut Corridor, rounds: f64, seed: u64, fault: impl Fn(&mut LaserReading)) -> Trip {
-    let start = corridor.at(0.0);
-    let mut odometry = Odometry::new(start, seed);
-    let mut finder = finder();
-    let end_m = rounds * corridor.round_m();
-    let steps = (end_m / (SPEED_MPS * PERIOD_S)) as usize;
-    let (mut truth, mut local) = (Vec::new(), Vec::new());
-    for step in 0..steps {
-        let pose = corridor.at(step as f64 * SPEED_MPS * PERIOD_S);
-        let mut reading = corridor.reading(step as f64 * PERIOD_S, pose);
-        reading.pose = odometry.moved_to(&pose);
-        fault(&mut reading);
-        truth.push(start.inv_mul(&pose));
-        finder.add(reading);
-        local.push(finder.local_pose());
-    }
-    let last = start * truth[steps - 1];
-    let drift_m = (odometry.pose.translation.vector - last.translation.vector).norm();
-    Trip { trajectory: finder.finish(), local, truth, drift_m }
+    Drive::new(rounds, seed).along(corridor).found(finder(), fault)
 }
 
 impl Trip {

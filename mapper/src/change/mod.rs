@@ -12,7 +12,7 @@ mod transition_kernel;
 
 pub use cell_map::CellMap;
 pub(crate) use cell_map::Slot;
-pub use estimators::{Estimator, EstimatorChoice, Paper, SharedPrior, TwoStateGaps};
+pub use estimators::{Estimator, EstimatorChoice, Paper, PaperAll, SharedPrior, TwoState, TwoStateGaps};
 pub(crate) use exposure::Exposure;
 pub(crate) use gaps::Belief;
 pub use reading_times::ReadingIndex;

@@ -263,11 +263,15 @@ fn a_prior_map_that_needs_too_much_memory_is_refused_before_it_is_allocated() {
 /// Every setting at its limits, in a house where a box appears and disappears.
 #[test]
 fn lawful_settings_are_lived_with() {
-    let edits: [fn(&mut SurfaceGridSettings); 4] = [
+    let edits: [fn(&mut SurfaceGridSettings); 8] = [
         |s| s.range_noise_std_m = 0.0,
         |s| s.range_noise_std_m = 0.5,
         |s| (s.hits_to_block_in_open, s.misses_to_free, s.misses_to_free_fresh) = (1, 1, 1),
         |s| (s.hits_to_block_in_open, s.misses_to_free, s.misses_to_free_fresh) = (100, 100, 100),
+        |s| (s.range_noise_std_m, s.misses_to_free, s.misses_to_free_fresh) = (0.5, 1, 1),
+        |s| (s.range_noise_std_m, s.misses_to_free, s.misses_to_free_fresh) = (0.0, 100, 100),
+        |s| (s.misses_to_free, s.misses_to_free_fresh) = (100, 1),
+        |s| s.hits_to_block_in_open = 100,
     ];
     for (number, edit) in edits.into_iter().enumerate() {
         let mut house = House::new(0.1, 10.0, 0.01, 90, 1);

@@ -98,9 +98,16 @@ impl Book {
     fn rate(&self, index: usize, estimator: &str) -> Option<f64> {
         let seen = self.statistics(index);
         let (block, free) = (f64::from(seen.block_events), f64::from(seen.free_events));
+        let gaps = (f64::from(seen.block_events_after_gap), f64::from(seen.free_events_after_gap));
         let observed = seen.last_seen - seen.first_seen - seen.unobserved;
         let interval = match estimator {
             "paper" => (observed / block).min(observed / free),
+            "paper-all" => (observed / (block + gaps.0)).min(observed / (free + gaps.1)),
+            "two-state" if block + free == 0.0 => f64::INFINITY,
+            "two-state" => {
+                let half_if_none = |events: f64| if events == 0.0 { 0.5 } else { events };
+                seen.watched_free / half_if_none(block) + seen.watched_blocked / half_if_none(free)
+            }
             _ => return None,
         };
         // 0/0: events, but no time in view.

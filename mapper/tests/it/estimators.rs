@@ -1,7 +1,7 @@
 //! Properties of estimates for any observations, and how `two-state-gaps` treats cells that are not Markov chains.
 
 use interfaces::{Cell, CellReading, CellState, GridFrame};
-use mapper::{EstimatorChoice, Mapper, MapperSettings, SharedPrior, TwoStateGaps};
+use mapper::{EstimatorChoice, Mapper, MapperSettings, SharedPrior, TwoState, TwoStateGaps};
 use nalgebra::Point2;
 use proptest::prelude::*;
 use rand::RngExt;
@@ -166,8 +166,9 @@ fn a_cell_that_is_hidden_before_it_gets_blocked_still_has_its_rate() {
         }
         mapper.rate(0) * 25.0
     };
-    let with_gaps = rate(TwoStateGaps.into());
+    let (in_view, with_gaps) = (rate(TwoState.into()), rate(TwoStateGaps.into()));
     assert!((with_gaps - 1.0).abs() < 0.1, "{with_gaps} of the true rate");
+    assert!(in_view < 0.1, "{in_view}: it counts only what it sees happen");
 }
 
 /// Stays of equal length, seen for 30 of about 130 steps at any phase: after 20 steps out of view the stay has

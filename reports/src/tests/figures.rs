@@ -45,7 +45,7 @@ fn names_that_look_alike_in_a_file_s_name_stay_apart() {
 
 #[test]
 fn every_strategy_the_world_and_the_words_are_drawn() {
-    let (_, pictures, texts) = figures(&report(1, &["two-state-gaps"], &FIVE, 5));
+    let (_, pictures, texts) = figures(&report(1, &["two-state"], &FIVE, 5));
     let (picture, text) = (&pictures[0], &texts[0]);
     let count = |colour: [u8; 3]| picture.pixels().filter(|pixel| pixel.0 == colour).count();
     let colors = [[0, 114, 178], [0, 158, 115], [230, 159, 0], [150, 150, 150], [86, 180, 233]];

@@ -74,7 +74,7 @@ fn what_is_undefined_is_null() {
 
 #[test]
 fn the_csv_has_a_row_per_trial_and_sample_and_gives_the_report_again() {
-    let (settings, trials) = experiment(2, &["paper", "two-state-gaps"], &["curious", "recency"], 3);
+    let (settings, trials) = experiment(2, &["paper", "two-state"], &["curious", "recency"], 3);
     let bytes = trial_file(&settings, &trials);
     let report = Report::new(settings, trials);
     let mut reader = csv::Reader::from_reader(bytes.as_slice());

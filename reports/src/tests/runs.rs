@@ -38,7 +38,7 @@ fn nothing_depends_on_the_order_in_which_trials_arrive() {
 
 #[test]
 fn runs_and_strategies_come_as_they_were_asked_for() {
-    let (mut settings, trials) = experiment(2, &["two-state-gaps", "paper"], &THREE, 2);
+    let (mut settings, trials) = experiment(2, &["two-state", "paper"], &THREE, 2);
     let order = |settings: &ReportSettings| {
         let report = Report::new(settings.clone(), trials.clone());
         let name = |run: &Run| format!("{}/{}", run.world, run.estimator);
@@ -49,11 +49,11 @@ fn runs_and_strategies_come_as_they_were_asked_for() {
     assert_eq!(
         runs,
         [
-            "two_blocks/two-state-gaps",
+            "two_blocks/two-state",
             "two_blocks/paper",
-            "generated 1/two-state-gaps",
+            "generated 1/two-state",
             "generated 1/paper",
-            "all worlds (2)/two-state-gaps",
+            "all worlds (2)/two-state",
             "all worlds (2)/paper",
         ]
     );
@@ -149,7 +149,7 @@ fn over_all_worlds_a_world_counts_once_and_is_the_pair() {
     close(found.high, std::f64::consts::LN_10, 1e-12);
     close(all.comparison("x", "y", Measure::Area(Metric::RateError)).unwrap().high, -2.0 + 12.7062, 1e-3);
     assert_eq!(report.runs.len(), 3);
-    assert!(report.run("all worlds (2)", "two-state-gaps").is_none());
+    assert!(report.run("all worlds (2)", "two-state").is_none());
 }
 
 #[test]

@@ -70,9 +70,9 @@ fn a_strategy_is_the_fastest_only_if_that_is_significant() {
 
 #[test]
 fn the_table_names_the_winner() {
-    insta::assert_snapshot!(report(1, &["two-state-gaps"], &["curious", "recency", "full-observation"], 5).table(), @"
+    insta::assert_snapshot!(report(1, &["two-state"], &["curious", "recency", "full-observation"], 5).table(), @"
     two_blocks
-    5 trials of 20,000 steps, estimator two-state-gaps, sensor radius 4
+    5 trials of 20,000 steps, estimator two-state, sensor radius 4
 
                         log error       rate error        map correct      time at
     strategy           final    area   final    area  all cells  changing  changes
@@ -100,7 +100,7 @@ fn the_table_names_the_winner() {
 fn the_table_fits_a_terminal() {
     let all = ["curious", "recency", "poisson", "random", "coin", "information-gain", "full-observation"];
     for (worlds, estimators, seeds) in
-        [(1, ["paper"].as_slice(), 1), (3, &["paper", "two-state-gaps"], 4), (9, &["paper"], 2)]
+        [(1, ["paper"].as_slice(), 1), (3, &["paper", "two-state"], 4), (9, &["paper"], 2)]
     {
         let report = report(worlds, estimators, &all, seeds);
         let table = report.table();

@@ -71,9 +71,7 @@ impl<K: TrialKind> TrialArgs<K> {
         }
         Ok(())
     }
-}
 
-impl<K: TrialKind> TrialArgs<K> {
     /// The threads that run trials.
     pub(super) fn pool(&self) -> anyhow::Result<ThreadPool> {
         let threads = usize::from(self.threads.unwrap_or(0)); // 0: the number of cores

@@ -61,15 +61,12 @@ impl ShardCommand {
         match self {
             Self::Missing { dir } => {
                 let missing = Shards::read(dir).map_err(input)?.missing();
-                if missing.is_empty() {
-                    return Ok(ExitCode::SUCCESS);
+                if !missing.is_empty() {
+                    print(array(&missing))?;
+                    return Ok(ExitCode::FAILURE);
                 }
-                print(array(&missing))?;
-                return Ok(ExitCode::FAILURE);
             }
-            Self::Merge { dir, out, quiet } => {
-                merge::<K>(dir, out.as_deref().unwrap_or(dir), *quiet)?;
-            }
+            Self::Merge { dir, out, quiet } => merge::<K>(dir, out.as_deref().unwrap_or(dir), *quiet)?,
             Self::Status { dir } => print(Shards::read(dir).map_err(input)?.status())?,
         }
         Ok(ExitCode::SUCCESS)

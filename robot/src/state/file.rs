@@ -1,26 +1,15 @@
 //! The file of a state, and the thread that writes it.
 
-use super::format::{State, StateError};
-use files::{FileLock, OutputError, sync_folder_of, temporary_name, write_file};
+use super::format::{Session, State, StateError};
+use files::{FileLock, OutputError, is_another_kind, sync_folder_of, temporary_name, write_file};
 use std::fs::{self, File};
-use std::io::{self, Read};
+use std::io;
 use std::path::{Path, PathBuf};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 /// The time between two writings: what a run loses at most.
 const EVERY: Duration = Duration::from_secs(60);
-
-/// The error for a file that holds no state of this run.
-#[derive(Debug, thiserror::Error)]
-pub enum LoadError {
-    /// The file cannot be read.
-    #[error("cannot read it: {0}")]
-    Read(#[from] io::Error),
-    /// The file is read, but cannot be used.
-    #[error(transparent)]
-    State(#[from] StateError),
-}
 
 /// A file that is replaced by the present state now and then.
 ///
@@ -34,7 +23,9 @@ pub struct StateFile {
     target: PathBuf,
     every: Duration,
     last: Instant,
-    writing: Option<JoinHandle<io::Result<()>>>,
+    writing: Option<JoinHandle<io::Result<bool>>>,
+    /// The number of sessions in the file as it was loaded, if all are complete: before another one is added, the file is kept.
+    sessions: Option<usize>,
     _lock: FileLock,
 }
 
@@ -43,17 +34,16 @@ impl StateFile {
     ///
     /// # Errors
     ///
-    /// When another run uses it, when it is no file that can be replaced (a folder, a pipe, a device), when its folder cannot
-    /// be written, and when a file beside it, which the run would replace, is of somebody else (`house.state.lock`).
+    /// When another run uses it, when its folder cannot be written, and when a file beside it, which the run would replace, is of
+    /// somebody else (`house.state.lock`).
     pub fn open(path: &Path) -> io::Result<Self> {
         let target = target_of(path);
-        match fs::metadata(&target) {
-            Ok(known) if !known.is_file() => return Err(io::Error::other(NO_FILE)),
-            _ => {}
-        }
         let (lock, earlier) = (with_ending(&target, "lock"), with_ending(&target, "earlier"));
-        let unfinished = [&target, &earlier].map(|path| temporary_name(path));
-        [&lock, &earlier].into_iter().chain(&unfinished).try_for_each(|path| check_own(path))?;
+        let own = [temporary_name(&target), temporary_name(&earlier), lock.clone(), earlier];
+        if let Some(other) = own.iter().find(|path| is_another_kind(path, State::MAGIC)) {
+            let why = "no run has written it, and this one would replace it; move it, or give another file by --state";
+            return Err(io::Error::other(format!("{}: {why}", other.display())));
+        }
         let why = "another run uses it; wait for its end, or give another file by --state";
         let busy = || io::Error::new(io::ErrorKind::ResourceBusy, why);
         let lock = FileLock::new(&lock)?.ok_or_else(busy)?;
@@ -63,6 +53,7 @@ impl StateFile {
             every: EVERY,
             last: Instant::now(),
             writing: None,
+            sessions: None,
             _lock: lock,
         })
     }
@@ -84,25 +75,20 @@ impl StateFile {
     /// # Errors
     ///
     /// When the file cannot be read, or is not a state.
-    pub fn load(&self) -> Result<Option<State>, LoadError> {
+    pub fn load(&mut self) -> Result<Option<State>, StateError> {
         match read_state(&self.target) {
-            Err(LoadError::Read(missing)) if missing.kind() == io::ErrorKind::NotFound => Ok(None),
-            state => state.map(Some),
+            Err(StateError::Read(missing)) if missing.kind() == io::ErrorKind::NotFound => Ok(None),
+            Err(other) => Err(other),
+            Ok(state) => {
+                let is_complete =
+                    state.sessions.iter().all(|Session { readings: [used, all], .. }| used >= all);
+                self.sessions = is_complete.then_some(state.sessions.len());
+                Ok(Some(state))
+            }
         }
     }
 
-    /// Keeps the file as it is now beside it, with the ending `.earlier`, so that what is saved next can be undone.
-    ///
-    /// # Errors
-    ///
-    /// When it cannot be kept.
-    pub fn keep_earlier(&self) -> io::Result<()> {
-        let mut present = File::open(&self.target)?;
-        let kept = write_file(&earlier_name(&self.target), |file| io::copy(&mut present, file).map(|_| ()));
-        kept.map_err(|OutputError { why, .. }| why)
-    }
-
-    /// Goes back to the file that was [kept](Self::keep_earlier); there is none then.
+    /// Goes back to the file as it was before the last session was added: it was kept beside this one, with the ending `.earlier`.
     ///
     /// # Errors
     ///
@@ -121,16 +107,23 @@ impl StateFile {
         self.writing.as_ref().is_some_and(|writing| !writing.is_finished())
     }
 
-    /// Begins to write a state. `state` is called in the thread that writes: what takes long belongs there.
+    /// Begins to write a state. `state` is called in the thread that writes: what takes long belongs there. Before the first
+    /// session is added to a file that was loaded, the file is kept, for [`restore_earlier`](Self::restore_earlier).
     ///
     /// # Errors
     ///
     /// When the writing before has failed. The new one has begun nevertheless.
     pub fn save(&mut self, state: impl FnOnce() -> State + Send + 'static) -> io::Result<()> {
         let before = self.wait();
-        let target = self.target.clone();
+        let (target, sessions) = (self.target.clone(), self.sessions);
         self.last = Instant::now();
-        self.writing = Some(std::thread::spawn(move || write(&target, &state())));
+        self.writing = Some(std::thread::spawn(move || {
+            let state = state();
+            let is_longer = sessions.is_some_and(|sessions| state.sessions.len() > sessions);
+            let kept = if is_longer { keep(&target) } else { Ok(()) };
+            write(&target, &state)?;
+            kept.map(|()| is_longer)
+        }));
         before
     }
 
@@ -141,7 +134,10 @@ impl StateFile {
     /// When it could not be written. The file is as it was then.
     pub fn wait(&mut self) -> io::Result<()> {
         let Some(writing) = self.writing.take() else { return Ok(()) };
-        writing.join().unwrap_or_else(|_| Err(io::Error::other("the thread that writes has ended")))
+        let ended = |_| Err(io::Error::other("the thread that writes has ended"));
+        let is_kept = writing.join().unwrap_or_else(ended)?;
+        self.sessions = self.sessions.filter(|_| !is_kept);
+        Ok(())
     }
 }
 
@@ -151,28 +147,21 @@ impl Drop for StateFile {
     }
 }
 
-/// Why something is no state file.
-const NO_FILE: &str = "it is not a file (but a folder, a pipe or a device)";
-
 /// The state in a file, whoever uses it: it is complete at any time.
 ///
 /// # Errors
 ///
 /// When there is none, or it cannot be read.
-pub fn read_state(path: &Path) -> Result<State, LoadError> {
+pub fn read_state(path: &Path) -> Result<State, StateError> {
     if !fs::metadata(path)?.is_file() {
-        return Err(io::Error::other(NO_FILE).into()); // a pipe would wait for ever
+        let why = "it is not a file (but a folder, a pipe or a device)";
+        return Err(io::Error::other(why).into()); // a pipe would wait for ever
     }
-    let mut file = File::open(path)?;
-    // Another kind of file can be very long.
-    let mut bytes = vec![0; State::MAGIC.len()];
-    match file.read_exact(&mut bytes) {
-        Ok(()) if bytes == State::MAGIC => {}
-        Err(other) if other.kind() != io::ErrorKind::UnexpectedEof => return Err(other.into()),
-        _ => return Err(StateError::OtherKind.into()),
+    File::open(path)?;
+    if is_another_kind(path, State::MAGIC) {
+        return Err(StateError::OtherKind); // and perhaps very long
     }
-    file.read_to_end(&mut bytes)?;
-    Ok(State::from_bytes(&bytes)?)
+    State::from_bytes(&fs::read(path)?)
 }
 
 /// The name of the file that [`StateFile::keep_earlier`] keeps: `house.state.earlier` for `house.state`.
@@ -185,27 +174,19 @@ fn target_of(path: &Path) -> PathBuf {
     path.canonicalize().unwrap_or_else(|_| path.to_owned())
 }
 
+/// Copies the file as it is now: what is saved next can be undone.
+fn keep(path: &Path) -> io::Result<()> {
+    let mut present = File::open(path)?;
+    let kept = write_file(&with_ending(path, "earlier"), |file| io::copy(&mut present, file).map(|_| ()));
+    kept.map_err(|OutputError { why, .. }| why)
+}
+
 /// Replaces the file at once and completely, or not at all.
 fn write(path: &Path, state: &State) -> io::Result<()> {
     let bytes = state.to_bytes().map_err(io::Error::other)?;
     write_file(path, |file| file.write_all(&bytes)).map_err(|OutputError { why, .. }| why)?;
     sync_folder_of(path);
     Ok(())
-}
-
-/// Checks that nothing is lost when a run writes this file beside the state: there is none, it is empty, or one of a state.
-fn check_own(path: &Path) -> io::Result<()> {
-    let mut start = Vec::new();
-    let is_own = match path.symlink_metadata() {
-        Ok(known) if known.is_file() => {
-            File::open(path)?.take(State::MAGIC.len() as u64).read_to_end(&mut start)?;
-            State::MAGIC.starts_with(&start)
-        }
-        known => known.is_err(),
-    };
-    let why =
-        "no run has written it, and this one would replace it; move it, or give another file by --state";
-    if is_own { Ok(()) } else { Err(io::Error::other(format!("{}: {why}", path.display()))) }
 }
 
 /// The name of a file beside the state: `house.state.lock` while a run uses it.

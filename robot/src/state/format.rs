@@ -3,56 +3,61 @@
 //! ```text
 //! 0  the kind of file, 8 bytes
 //! 8  the version of the format, 4 bytes
-//! 12 the checksum of all that follows, 8 bytes: XXH3 with the version as its seed
-//! 20 the length of the body, 4 bytes, and the compressed body
+//! 12 the hash of the layout, 16 hexadecimal digits
+//! 28 the checksum of all that follows, 8 bytes: XXH3 with the version as its seed
+//! 36 the length of the body, 4 bytes, and the compressed body
 //! ```
 //!
 //! Numbers are little-endian.
 
-use super::facts::{Difference, Facts};
+use super::settings::SavedSettings;
 use crate::build::{BUILD, other_build};
+use interfaces::{GridFrame, ValueError};
 use serde::{Deserialize, Serialize};
+use std::io;
 use xxhash_rust::xxh3::xxh3_64_with_seed;
 
-/// Count up when the body, or a snapshot in it, changes.
+/// The version of the format.
 const VERSION: u32 = 1;
-/// The part with the build.
-const BUILD_PART: &str = "build";
+/// A hash of the types in a file: see `build.rs`.
+const LAYOUT: &str = env!("CURIOUS_LAYOUT");
 /// The largest body, bytes: what a mapper with the largest map can take.
 const MAX_BODY: usize = 2 << 30;
 
-/// The error for bytes that are not the state of this run.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+/// The error for a state that cannot be used.
+#[derive(Debug, thiserror::Error)]
 pub enum StateError {
+    /// The file cannot be read.
+    #[error("cannot read it: {0}")]
+    Read(#[from] io::Error),
     /// The bytes do not begin like a state.
     #[error("this is not a state file")]
     OtherKind,
     /// The state was written by another version.
-    #[error("this state file has version {found} of the format, and this program reads version {VERSION}")]
-    OtherVersion {
-        /// The version of the bytes.
-        found: u32,
-    },
+    #[error("this state file has version {0} of the format, and this program reads version {VERSION}")]
+    OtherVersion(u32),
+    /// The types in the file have changed since it was written.
+    #[error(
+        "this state file has another layout: until version 0.1.0, only builds with the same layout read it; map the place again"
+    )]
+    OtherLayout,
     /// Bytes are missing, or were changed.
     #[error("the state file is damaged: its checksum does not fit")]
     Damaged,
-    /// The state was saved by a program that has no such part.
+    /// The state has no such part.
     #[error("the state was saved by another program: it has no part `{0}`")]
-    NoSection(String),
+    NoPart(&'static str),
     /// The state is too large for a file.
     #[error(
-        "the state has {bytes} bytes, and a state file holds {MAX_BODY} at most; a map of fewer cells is smaller"
+        "the state has {0} bytes, and a state file holds {MAX_BODY} at most; a map of fewer cells is smaller"
     )]
-    TooLarge {
-        /// The bytes of the body.
-        bytes: usize,
-    },
+    TooLarge(usize),
     /// The state was saved by another build, whose results can differ.
     #[error("the state {0}")]
     OtherBuild(String),
-    /// The state belongs to another run.
+    /// The state was saved with other settings.
     #[error("the state is of another run: `{name}` is {saved} there, and {expected} here")]
-    OtherFacts {
+    OtherSettings {
         /// What differs.
         name: String,
         /// The value of the run that saved the state.
@@ -60,61 +65,86 @@ pub enum StateError {
         /// The value of this run.
         expected: String,
     },
+    /// The state was saved by a run in a world of the same name.
+    #[error("the state is of another run: its world had another content")]
+    OtherWorld,
     /// A run was interrupted or refused before it learned anything.
     #[error(
         "nothing is learned in this state yet: its run ended in the first pass; run map_log again, with logs of this place"
     )]
     NothingLearned,
-    /// The facts are those of this run, but the bytes are not a snapshot of this part.
-    #[error("the part `{0}` of the state does not fit this program")]
-    OtherContent(String),
+    /// The bytes of a part are not those of this program.
+    #[error("a part of the state does not fit this program: {0}")]
+    OtherContent(#[from] ValueError),
 }
 
-/// The snapshots of the parts of a run.
+/// What was learned of a place, and what its last run goes on with.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
 pub struct State {
-    sections: Vec<Section>,
+    /// The build of the program that saved it.
+    pub build: String,
+    /// The logs and the runs of robots from which it was learned, in the order of their times.
+    pub sessions: Vec<Session>,
+    /// The map with all statistics; `None` before something was learned.
+    pub map: Option<SavedMap>,
+    /// The surfaces in which poses are found; empty where poses are given.
+    pub surfaces: Vec<u8>,
+    /// What the scan filter has learned; empty in a survey of logs, which learns it anew for each log.
+    pub filter: Vec<u8>,
+    /// How a robot with the same settings goes on from its last pose.
+    pub localization: Part,
+    /// The time of the last reading by the clock of a live robot, ns.
+    pub clock_ns: Option<i64>,
+    /// The logs, and the names and numbers of places; `None` if no log was learned.
+    pub survey: Option<Part>,
+    /// What only the same run goes on with: the world, the pilot, the random streams.
+    pub run: Option<Part>,
 }
 
+/// Bytes of one part of a program, and the settings that they belong to.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
+pub struct Part {
+    /// The settings.
+    pub settings: SavedSettings,
+    /// The bytes.
+    pub bytes: Vec<u8>,
+}
+
+/// A map in a state.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
-struct Section {
-    name: String,
-    facts: Facts,
-    snapshot: Vec<u8>,
+pub struct SavedMap {
+    /// Its cells.
+    pub frame: GridFrame,
+    /// The settings of its mapper, and of the filter of scans.
+    pub settings: SavedSettings,
+    /// The time at which readings have the time 0, in seconds since 1970-01-01 UTC; `None` where readings have no dates.
+    pub epoch_s: Option<f64>,
+    /// The snapshot of the mapper.
+    pub bytes: Vec<u8>,
+}
+
+/// A session in a place: a log, or a run of a robot.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
+pub struct Session {
+    /// The name of the log, or that of the program with a number.
+    pub name: String,
+    /// When it began, by the times of the map, s.
+    pub offset_s: f64,
+    /// This time in seconds since 1970-01-01 UTC; `None` if it is not known.
+    pub begin_s: Option<f64>,
+    /// The time from its begin to its end, s.
+    pub duration_s: f64,
+    /// The number of readings that entered the map, and of all readings.
+    pub readings: [usize; 2],
+    /// The laser, in words; empty if it is not known.
+    pub laser: String,
+    /// What was repaired, left out or assumed, each a sentence.
+    pub notes: Vec<String>,
 }
 
 impl State {
     /// How a state begins.
-    pub(crate) const MAGIC: &[u8; 8] = b"\x89learned";
-
-    /// Adds the snapshot of a part. `facts` is what it belongs to.
-    #[must_use]
-    pub fn with(mut self, name: &str, facts: Facts, snapshot: Vec<u8>) -> Self {
-        self.sections.push(Section { name: name.to_owned(), facts, snapshot });
-        self
-    }
-
-    /// Whether there is a snapshot of a part.
-    pub fn has(&self, name: &str) -> bool {
-        self.sections.iter().any(|section| section.name == name)
-    }
-
-    /// What the snapshot of a part belongs to.
-    pub fn facts(&self, name: &str) -> Option<&Facts> {
-        self.sections.iter().find(|section| section.name == name).map(|section| &section.facts)
-    }
-
-    /// The state with the build of this program.
-    #[must_use]
-    pub fn with_build(self) -> Self {
-        self.with(BUILD_PART, Facts::default(), BUILD.into())
-    }
-
-    /// The build of the program that saved the state; empty if it did not say it.
-    pub fn build(&self) -> &str {
-        let part = self.sections.iter().find(|section| section.name == BUILD_PART);
-        part.and_then(|section| std::str::from_utf8(&section.snapshot).ok()).unwrap_or_default()
-    }
+    pub(crate) const MAGIC: &[u8; 8] = b"\x89curious";
 
     /// Checks that this program computes the same bits as the one that saved the state.
     ///
@@ -122,32 +152,7 @@ impl State {
     ///
     /// When it is another build, or an unknown one.
     pub fn check_build(&self) -> Result<(), StateError> {
-        match self.build() {
-            BUILD => Ok(()),
-            other => Err(StateError::OtherBuild(other_build(other))),
-        }
-    }
-
-    /// The snapshot of a part.
-    ///
-    /// # Errors
-    ///
-    /// When there is none, and when it belongs to other facts; the error names the first that differs.
-    pub fn section(&self, name: &str, facts: &Facts) -> Result<&[u8], StateError> {
-        let section = self.sections.iter().find(|section| section.name == name);
-        let section = section.ok_or_else(|| StateError::NoSection(name.to_owned()))?;
-        let Some(Difference { name, saved, expected }) = section.facts.difference(facts) else {
-            return Ok(&section.snapshot);
-        };
-        let text = |value: Option<String>| value.map_or("not set".to_owned(), |value| format!("`{value}`"));
-        Err(StateError::OtherFacts { name, saved: text(saved), expected: text(expected) })
-    }
-
-    /// The names of its parts, what each belongs to, and the bytes of each.
-    pub fn sections(&self) -> impl Iterator<Item = (&str, &Facts, &[u8])> {
-        self.sections
-            .iter()
-            .map(|section| (section.name.as_str(), &section.facts, section.snapshot.as_slice()))
+        if self.build == BUILD { Ok(()) } else { Err(StateError::OtherBuild(other_build(&self.build))) }
     }
 
     /// The state as the bytes of a file.
@@ -161,7 +166,8 @@ impl State {
         check_length(body.len())?;
         let packed = lz4_flex::compress_prepend_size(&body);
         let checksum = xxh3_64_with_seed(&packed, VERSION.into());
-        Ok([&Self::MAGIC[..], &VERSION.to_le_bytes(), &checksum.to_le_bytes(), &packed].concat())
+        let version = VERSION.to_le_bytes();
+        Ok([&Self::MAGIC[..], &version, LAYOUT.as_bytes(), &checksum.to_le_bytes(), &packed].concat())
     }
 
     /// The state in the bytes of a file.
@@ -173,13 +179,17 @@ impl State {
         let rest = bytes.strip_prefix(Self::MAGIC).ok_or(StateError::OtherKind)?;
         let (found, rest) = rest.split_first_chunk().ok_or(StateError::Damaged)?;
         let found = u32::from_le_bytes(*found);
+        let (layout, rest) = rest.split_at_checked(LAYOUT.len()).ok_or(StateError::Damaged)?;
         let (checksum, packed) = rest.split_first_chunk().ok_or(StateError::Damaged)?;
         // A flipped bit of the version is damage; another version has another checksum.
         if u64::from_le_bytes(*checksum) != xxh3_64_with_seed(packed, found.into()) {
             return Err(StateError::Damaged);
         }
         if found != VERSION {
-            return Err(StateError::OtherVersion { found });
+            return Err(StateError::OtherVersion(found));
+        }
+        if layout != LAYOUT.as_bytes() {
+            return Err(StateError::OtherLayout);
         }
         let length = packed.first_chunk().ok_or(StateError::Damaged)?;
         check_length(u32::from_le_bytes(*length) as usize)?;
@@ -189,7 +199,7 @@ impl State {
 }
 
 fn check_length(bytes: usize) -> Result<(), StateError> {
-    if bytes > MAX_BODY { Err(StateError::TooLarge { bytes }) } else { Ok(()) }
+    if bytes > MAX_BODY { Err(StateError::TooLarge(bytes)) } else { Ok(()) }
 }
 
 #[cfg(test)]
@@ -198,7 +208,7 @@ mod tests {
 
     #[test]
     fn a_body_that_is_too_large_is_refused() {
-        assert_eq!(check_length(MAX_BODY), Ok(()));
+        check_length(MAX_BODY).unwrap();
         let error = check_length(MAX_BODY + 1).unwrap_err().to_string();
         let expected = "the state has 2147483649 bytes, and a state file holds 2147483648 at most; a map of fewer cells is smaller";
         assert_eq!(error, expected);

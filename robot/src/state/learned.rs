@@ -1,135 +1,170 @@
-//! What a robot has learned about a place: its mapper, and what gives its readings their poses.
+//! What a robot has learned of a place: from its parts into a state, and back.
 
-use super::facts::Facts;
-use super::format::{State, StateError};
-use crate::settings::default_mapper;
-use crate::{Pilot, Robot};
-use interfaces::{GridFrame, LaserReading};
-use localizer::LocalizerSettings;
-use mapper::{Calendar, Mapper, MapperSettings};
-use nalgebra::Point2;
+use super::format::{Part, SavedMap, Session, State, StateError};
+use super::settings::SavedSettings;
+use crate::build::BUILD;
+use crate::{Pilot, Robot, Settings};
+use interfaces::{LaserReading, PoseMode, ValueError};
+use mapper::{Calendar, Mapper, MapperSettings, ScanFilterSettings};
 
-const MAPPER: &str = "mapper";
-const LOCALIZATION: &str = "localization";
-const FILTER: &str = "filter";
-/// The time at which readings have the time 0, in seconds since 1970-01-01 UTC. Absent where readings have no dates.
-const DATES: &str = "dates";
-
-/// The mapper that a robot has left in a state, whatever its settings are. It has the dates of its readings if the robot knew them.
-///
-/// # Errors
-///
-/// When the state has none, or one of another program.
-pub fn saved_mapper(state: &State) -> Result<Mapper, StateError> {
-    let facts = state.facts(MAPPER).ok_or_else(|| StateError::NoSection(MAPPER.to_owned()))?;
-    let numbers = |name, separator| -> Option<[f64; 2]> {
-        let (a, b) = facts.get(name)?.trim_matches(['(', ')']).split_once(separator)?;
-        Some([a.parse().ok()?, b.parse().ok()?])
-    };
-    let frame = || {
-        let resolution_m = facts.get("map.resolution_m")?.parse().ok()?;
-        let ([x, y], [width, height]) = (numbers("map.origin_m", ", ")?, numbers("map.cells", " × ")?);
-        GridFrame::new(Point2::new(x, y), resolution_m, width as usize, height as usize)
-    };
-    let misfit = || StateError::OtherContent(MAPPER.to_owned());
-    let settings: MapperSettings = facts.settings("mapper").ok_or_else(misfit)?;
-    let mut mapper = Mapper::new(&settings, frame().ok_or_else(misfit)?).map_err(|_| misfit())?;
-    mapper.restore(state.section(MAPPER, facts)?).map_err(|_| misfit())?;
-    match state.has(DATES) {
-        true => {
-            let bytes = state.section(DATES, &Facts::default())?.try_into();
-            let epoch_s = f64::from_le_bytes(bytes.map_err(|_| StateError::OtherContent(DATES.to_owned()))?);
-            mapper.set_epoch(epoch_s, true);
-        }
-        false => mapper.set_epoch(0.0, false),
-    }
-    Ok(mapper)
-}
-
-/// The settings that what was learned belongs to.
-#[derive(Clone, Debug, PartialEq)]
-pub struct LearnedFacts {
-    mapper: Facts,
-    localization: Facts,
-    filter: Facts,
-}
-
-impl LearnedFacts {
-    /// The facts of a mapper with this frame, and of a localization. `pose` is the name of the kind of localization;
-    /// `localizer` is `None` if the poses are given.
-    pub fn new(
-        mapper: &MapperSettings,
-        frame: &GridFrame,
-        pose: &str,
-        localizer: Option<&LocalizerSettings>,
-    ) -> Self {
-        let origin = frame.origin();
-        let map = Facts::default()
-            .with("map.resolution_m", frame.resolution_m())
-            .with("map.cells", format!("{} × {}", frame.width(), frame.height()))
-            .with("map.origin_m", format!("({}, {})", origin.x, origin.y));
-        let poses = map.clone().with("pose", pose);
-        let localization = match localizer {
-            Some(settings) => {
-                poses.with_learned_settings("localizer", settings, Some(&LocalizerSettings::default()))
-            }
-            None => poses,
-        };
-        let filter = map.clone();
-        let mapper = map.with_learned_settings("mapper", mapper, Some(&default_mapper()));
-        Self { mapper, localization, filter }
+impl SavedMap {
+    /// The map of a mapper, whose scans were filtered with these settings.
+    pub fn of(mut mapper: Mapper, filter: &ScanFilterSettings) -> Self {
+        let (frame, bytes) = (*mapper.frame(), mapper.snapshot());
+        let settings = settings_of(mapper.settings(), filter, frame.resolution_m());
+        Self { frame, settings, epoch_s: epoch_s(&mapper), bytes }
     }
 
-    /// Copies what was learned. This is short; to turn the copy into bytes takes longer.
-    pub fn snapshot<P: Pilot>(&self, robot: &mut Robot<LaserReading, P>) -> LearnedSnapshot {
-        let (mapper, localization) = (robot.mapper.clone(), robot.localization_mut().snapshot());
-        let filter = robot.filter_mut().map(|filter| interfaces::snapshot(filter.values()));
-        LearnedSnapshot { facts: self.clone(), mapper, localization, filter: filter.unwrap_or_default() }
-    }
-
-    /// Lets a robot that was made with the settings of these facts go on with what was learned.
+    /// The map, with the settings of the program that saved it.
     ///
     /// # Errors
     ///
-    /// When the state does not hold what was learned, or holds it with other settings. The robot must not
-    /// be used then.
-    pub fn restore<P: Pilot>(
+    /// When its settings or its bytes are not those of this program.
+    pub fn mapper(&self) -> Result<Mapper, StateError> {
+        self.read(&self.settings.get("mapper").ok_or(ValueError)?)
+    }
+
+    /// The map with other settings, and a note if they differ from those of the program that saved it. Its clocks go on, in its
+    /// time zone unless another one is set.
+    ///
+    /// # Errors
+    ///
+    /// When a setting differs that must agree.
+    pub fn mapper_with(
         &self,
-        state: &State,
-        robot: &mut Robot<LaserReading, P>,
-    ) -> Result<(), StateError> {
-        let misfit = |part: &str| StateError::OtherContent(part.to_owned());
-        let learned = [
-            state.section(MAPPER, &self.mapper)?, //
-            state.section(LOCALIZATION, &self.localization)?,
-        ];
-        robot.mapper.restore(learned[0]).map_err(|_| misfit(MAPPER))?;
-        robot.localization_mut().restore(learned[1]).map_err(|_| misfit(LOCALIZATION))?;
-        if let (Some(filter), Ok(learned)) = (robot.filter_mut(), state.section(FILTER, &self.filter)) {
-            interfaces::restore(filter.values(), learned).map_err(|_| misfit(FILTER))?;
+        mapper: &MapperSettings,
+        filter: &ScanFilterSettings,
+        resolution_m: f64,
+    ) -> Result<(Mapper, Option<String>), StateError> {
+        let saved: MapperSettings = self.settings.get("mapper").ok_or(ValueError)?;
+        let mut settings = mapper.clone();
+        settings.clocks |= saved.clocks;
+        settings.time_zone = settings.time_zone.or(saved.time_zone);
+        let note = self.settings.agree(&settings_of(&settings, filter, resolution_m))?;
+        Ok((self.read(&settings)?, note))
+    }
+
+    fn read(&self, settings: &MapperSettings) -> Result<Mapper, StateError> {
+        let mut mapper = Mapper::new(settings, self.frame).map_err(|_| ValueError)?;
+        mapper.restore(&self.bytes)?;
+        mapper.set_epoch(self.epoch_s.unwrap_or_default(), self.epoch_s.is_some());
+        Ok(mapper)
+    }
+}
+
+fn settings_of(mapper: &MapperSettings, filter: &ScanFilterSettings, resolution_m: f64) -> SavedSettings {
+    SavedSettings::default().with("resolution_m", &resolution_m).with("mapper", mapper).with("filter", filter)
+}
+
+/// The settings on which the snapshot of a localization depends.
+fn localization_of(settings: &Settings) -> SavedSettings {
+    match settings.pose {
+        PoseMode::Localized => SavedSettings::default().with("localizer", &settings.localizer),
+        PoseMode::Exact | PoseMode::Odometry | PoseMode::Corrected => {
+            SavedSettings::default().with("pose", &"given")
         }
-        Ok(())
     }
 }
 
-/// A copy of what was learned. A thread can turn it into bytes while the robot goes on.
+/// The time at which the readings of a map have the time 0, in seconds since 1970-01-01 UTC, if they have dates.
+fn epoch_s(mapper: &Mapper) -> Option<f64> {
+    let has_dates = mapper.epoch_s() > 0.0 || *mapper.calendar() != Calendar::Relative;
+    (mapper.is_dated() && has_dates).then(|| mapper.epoch_s())
+}
+
+/// The sessions of a state, and that of a robot that goes on with it.
 #[derive(Clone, Debug)]
-pub struct LearnedSnapshot {
-    facts: LearnedFacts,
-    mapper: Mapper,
-    localization: Vec<u8>,
-    filter: Vec<u8>,
+pub struct Sessions {
+    program: &'static str,
+    before: Vec<Session>,
+    /// The time and the readings of the map when the present session began.
+    begin_s: f64,
+    readings: usize,
 }
 
-impl LearnedSnapshot {
-    /// Adds what was learned to a state.
-    pub fn added_to(self, state: State) -> State {
-        let Self { facts, mut mapper, localization, filter } = self;
-        let is_dated = *mapper.calendar() != Calendar::Relative;
-        let epoch_s = mapper.epoch_s().to_le_bytes().to_vec();
-        let state = state.with(MAPPER, facts.mapper, mapper.snapshot());
-        let state = if is_dated { state.with(DATES, Facts::default(), epoch_s) } else { state };
-        let state = state.with(LOCALIZATION, facts.localization, localization);
-        if filter.is_empty() { state } else { state.with(FILTER, facts.filter, filter) }
+impl Sessions {
+    /// The first session in a place, by this program.
+    pub fn of(program: &'static str) -> Self {
+        Self { program, before: Vec::new(), begin_s: 0.0, readings: 0 }
     }
+
+    /// A session begins in the map of a state.
+    pub fn go_on(&mut self, state: &State, mapper: &Mapper) {
+        self.before.clone_from(&state.sessions);
+        (self.begin_s, self.readings) = (mapper.time(), mapper.readings());
+    }
+
+    /// All sessions; the present one ends now, and counts if it has learned something.
+    fn until_now(&self, mapper: &Mapper) -> Vec<Session> {
+        let readings = mapper.readings().saturating_sub(self.readings);
+        let now = || Session {
+            name: format!("{} {}", self.program, self.before.len() + 1),
+            offset_s: self.begin_s,
+            begin_s: epoch_s(mapper).map(|epoch_s| epoch_s + self.begin_s),
+            duration_s: mapper.time() - self.begin_s,
+            readings: [readings; 2],
+            ..Session::default()
+        };
+        self.before.iter().cloned().chain((readings > 0).then(now)).collect()
+    }
+}
+
+/// A copy of what was learned: to make a state of it takes longer than to copy, and a thread can do it while the robot goes on.
+pub type StateCopy = Box<dyn FnOnce() -> State + Send>;
+
+/// Copies what a robot with these settings has learned.
+pub fn learned<P: Pilot>(
+    robot: &mut Robot<LaserReading, P>,
+    settings: &Settings,
+    sessions: &Sessions,
+) -> StateCopy {
+    let (mapper, sessions) = (robot.mapper.clone(), sessions.until_now(&robot.mapper));
+    let (bytes, surfaces) = (robot.localization_mut().snapshot(), robot.localization_mut().surfaces());
+    let localization = Part { settings: localization_of(settings), bytes };
+    let filter = robot.filter_mut().map(|filter| interfaces::snapshot(filter.values())).unwrap_or_default();
+    let filter_settings = settings.filter.clone();
+    Box::new(move || State {
+        build: BUILD.to_owned(),
+        sessions,
+        map: Some(SavedMap::of(mapper, &filter_settings)),
+        surfaces,
+        filter,
+        localization,
+        ..State::default()
+    })
+}
+
+/// Lets a robot with these settings go on with what was learned, by any program. The robot keeps its settings and its frame,
+/// which must cover the saved map. A robot that localizes itself searches for its pose in the saved surfaces, unless the state
+/// has a localization with the same settings and frame. Returns a note if settings differ.
+///
+/// # Errors
+///
+/// When the state does not hold what was learned, or when a setting differs that must agree. The robot must not be used then.
+pub fn restore<P: Pilot>(
+    state: &State,
+    robot: &mut Robot<LaserReading, P>,
+    settings: &Settings,
+) -> Result<Option<String>, StateError> {
+    let map = state.map.as_ref().ok_or(StateError::NothingLearned)?;
+    let (frame, dates) = (*robot.mapper.frame(), (robot.mapper.epoch_s(), robot.mapper.is_dated()));
+    let (mut mapper, note) = map.mapper_with(&settings.mapper, &settings.filter, frame.resolution_m())?;
+    if map.epoch_s.is_none() {
+        mapper.set_epoch(dates.0, dates.1);
+    }
+    let is_same_frame = map.frame == frame;
+    if !is_same_frame && !mapper.grow(&settings.mapper, frame).is_ok_and(|growth| growth.is_some()) {
+        let [saved, expected] = [map.frame, frame].map(|frame| format!("{frame:?}"));
+        return Err(StateError::OtherSettings { name: "frame".to_owned(), saved, expected });
+    }
+    if is_same_frame && state.localization.settings == localization_of(settings) {
+        robot.localization_mut().restore(&state.localization.bytes)?;
+    } else {
+        robot.localization_mut().begin_in(&state.surfaces, mapper.states())?;
+    }
+    robot.mapper = mapper;
+    if let Some(filter) = robot.filter_mut().filter(|_| !state.filter.is_empty()) {
+        interfaces::restore(filter.values(), &state.filter)?;
+    }
+    Ok(note)
 }

@@ -1,19 +1,18 @@
-//! State files: what a run has learned and where it stopped, so that another run can go on from there.
+//! State files: what was learned of a place, in one file that every program reads and writes.
 //!
-//! A [`State`] is a list of named sections of bytes, each with the [`Facts`] that it belongs to: the world, the
-//! resolution, the settings. The bytes are the snapshots of the parts of a run. To read a section needs the facts of the
-//! present run; a section of other facts is refused. [`LearnedFacts`] writes and reads the parts that every robot has:
-//! what it has learned about a place.
+//! A [`State`] has the map, the surfaces in which poses are found, what the scan filter has learned, and the sessions: logs and
+//! runs of robots. Beside this, it has what only one run or one program goes on with. [`learned`] and [`restore`] are all that
+//! the program of a robot needs.
 //!
 //! A file is written under a temporary name, brought to the disk, and renamed: at any time, there is a complete file
 //! under the name. It holds a checksum, so that a damaged file is refused. [`StateFile`] writes in a thread of its own.
 
-mod facts;
 mod file;
 mod format;
 mod learned;
+mod settings;
 
-pub use facts::Facts;
-pub use file::{LoadError, StateFile, earlier_name, read_state};
-pub use format::{State, StateError};
-pub use learned::{LearnedFacts, LearnedSnapshot, saved_mapper};
+pub use file::{StateFile, earlier_name, read_state};
+pub use format::{Part, SavedMap, Session, State, StateError};
+pub use learned::{Sessions, StateCopy, learned, restore};
+pub use settings::SavedSettings;

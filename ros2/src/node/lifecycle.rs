@@ -52,7 +52,8 @@ impl<L: Link> CuriousNode<L> {
     /// Makes what the parameters say; `loads`: with what was learned in earlier runs.
     fn configure(&mut self, loads: bool) -> anyhow::Result<()> {
         let state_path = self.state_path.as_deref().filter(|_| loads);
-        let Parts { robot, state_file, continued } = Parts::new(&self.parameters, state_path)?;
+        let Parts { robot, state_file, continued } =
+            Parts::new(&self.parameters, state_path, &mut self.notes)?;
         let (names, is_localized) = super::setup::frames(&self.parameters);
         self.source.configure(names, is_localized);
         (self.robot, self.state_file, self.continued) = (robot, state_file, continued);

@@ -2,6 +2,7 @@
 
 use crate::message::Time;
 use crate::node_state_file::NodeStateFile;
+use crate::notes::Notes;
 use crate::parameters::Parameters;
 use crate::pilot::LivePilot;
 use crate::source::FrameNames;
@@ -30,15 +31,27 @@ impl Parts {
     /// # Errors
     ///
     /// When a parameter is out of range, or when the state cannot be used.
-    pub(super) fn new(parameters: &Parameters, state: Option<&Path>) -> anyhow::Result<Self> {
+    pub(super) fn new(
+        parameters: &Parameters,
+        state: Option<&Path>,
+        notes: &mut Notes,
+    ) -> anyhow::Result<Self> {
         parameters.check()?;
         let (settings, frame) = of(parameters)?;
         let pilot = LivePilot::new(parameters, &settings)?;
+        let mut file = state.map(|path| NodeStateFile::new(path, &settings, parameters)).transpose()?;
+        let saved = match &mut file {
+            Some(file) => file.load()?,
+            None => None,
+        };
+        let map = saved.as_ref().and_then(|state| state.map.as_ref());
+        let frame = map.and_then(|map| map.frame.union(&frame)).unwrap_or(frame);
         let mut robot = settings.robot(frame, None, Isometry2::identity(), pilot)?;
-        let state_file =
-            state.map(|path| NodeStateFile::new(path, &settings, &frame, parameters)).transpose()?;
-        let continued = state_file.as_ref().map(|file| file.restore(&mut robot)).transpose()?.flatten();
-        Ok(Self { robot, state_file, continued })
+        let continued = match (&mut file, saved) {
+            (Some(file), Some(state)) => Some(file.restore(state, &mut robot, notes)?),
+            _ => None,
+        };
+        Ok(Self { robot, state_file: file, continued })
     }
 }
 

@@ -99,8 +99,9 @@ impl<L: Link> CuriousNode<L> {
     }
 
     fn begin_writing(&mut self, path: &Path) -> anyhow::Result<NodeStateFile> {
-        let (settings, frame) = super::setup::of(&self.parameters)?;
-        let mut file = NodeStateFile::new(path, &settings, &frame, &self.parameters)?;
+        let settings = super::setup::settings(&self.parameters);
+        let mut file = NodeStateFile::new(path, &settings, &self.parameters)?;
+        self.state_file.iter().for_each(|own| file.go_on_from(own));
         let last = self.last.map_or(crate::message::Time::default(), |(last, _)| last);
         file.save(last, &mut self.robot)?;
         Ok(file)
@@ -126,9 +127,12 @@ impl<L: Link> CuriousNode<L> {
             self.notes.warn(&format!("{}: there is no such state", path.display()));
             return INVALID_FILENAME;
         }
-        match Parts::new(&self.parameters, Some(&path)) {
-            Ok(Parts { robot, continued, .. }) => {
+        match Parts::new(&self.parameters, Some(&path), &mut self.notes) {
+            Ok(Parts { robot, state_file, continued }) => {
                 self.stop_robot();
+                if let (Some(own), Some(loaded)) = (&mut self.state_file, state_file) {
+                    own.go_on_from(&loaded);
+                }
                 (self.robot, self.continued, self.last) = (robot, continued, None);
                 self.published = super::outputs::Published::default();
                 self.activate_map();

@@ -1,6 +1,7 @@
 mod glass;
 mod lifecycle;
 mod loops;
+mod one_map;
 mod same_robot;
 mod seating;
 
@@ -192,7 +193,7 @@ fn what_was_learned_survives_a_restart() {
     let coarse = Parameters { resolution_m: 0.1, ..map };
     drop(again);
     let error = refused(&coarse);
-    assert!(error.contains("`map.resolution_m` is `0.05` there, and `0.1` here"), "{error}");
+    assert!(error.contains("`resolution_m` is `0.05` there, and `0.1` here"), "{error}");
 }
 
 #[test]

@@ -13,7 +13,7 @@ use curious::reachability;
 use curious::worlds::{self, Loaded};
 use evaluation::physics_trial::{self, PhysicsTrial};
 use interfaces::{CellState, Grid, Twist};
-use robot::state::Facts;
+use robot::state::SavedSettings;
 use robot::{Autonomous, PatrolDay, Pilot, Settings, Tour};
 use sim::physics::shape::Transform;
 use sim::physics::{PatrolDaySpec, WorldSpec};
@@ -108,17 +108,17 @@ impl Parts {
     }
 
     /// What the state of a pilot belongs to, beside the settings.
-    pub(crate) fn pilot_facts(&self, args: &Args) -> Facts {
-        let facts = Facts::default().with("--drive", args.drive.name());
+    pub(crate) fn pilot_facts(&self, args: &Args) -> SavedSettings {
+        let facts = SavedSettings::default().with("--drive", &args.drive.name());
         let facts = match &self.spec.driven().patrol {
             Some(day) if args.drive == DriveChoice::Agent => {
-                facts.with("--patrol", day.share).with("--battery", day.battery_s)
+                facts.with("--patrol", &day.share).with("--battery", &day.battery_s)
             }
             _ => facts,
         };
         match (args.drive, &args.tour) {
-            (DriveChoice::Agent, _) => facts.with("--strategy", args.strategy().name()),
-            (DriveChoice::Tour, Some(tour)) => facts.with("--tour", tour.display()),
+            (DriveChoice::Agent, _) => facts.with("--strategy", &args.strategy().name()),
+            (DriveChoice::Tour, Some(tour)) => facts.with("--tour", &tour.display().to_string()),
             _ => facts,
         }
     }

@@ -7,13 +7,14 @@ use evaluation::physics_trial::PhysicsTrial;
 use evaluation::trial_state::TrialFacts;
 use interfaces::Twist;
 use robot::Pilot;
-use robot::state::StateFile;
+use robot::state::{Sessions, StateFile};
 use std::io;
 
 /// The state file of a run.
 pub(crate) struct TrialStateFile {
     file: StateFile,
     facts: TrialFacts,
+    sessions: Sessions,
 }
 
 impl TrialStateFile {
@@ -25,12 +26,14 @@ impl TrialStateFile {
     ) -> Result<Option<Self>, Failure> {
         let Some(path) = &args.state else { return Ok(None) };
         let (file, state) = open_state(path, args.state_every)?;
-        let facts = TrialFacts::new(&parts.spec, args.seed, &parts.settings, parts.pilot_facts(args))
-            .allowing_other_build(args.allow_other_build);
+        let mut facts = TrialFacts::new(&parts.spec, args.seed, &parts.settings, parts.pilot_facts(args));
+        facts.allows_other_build = args.allow_other_build;
+        let mut sessions = Sessions::of("four_rooms");
         if let Some(state) = state {
             trial.restore(&state, &facts).map_err(|why| state_failure(path, why))?;
+            sessions.go_on(&state, &trial.robot.mapper);
         }
-        Ok(Some(Self { file, facts }))
+        Ok(Some(Self { file, facts, sessions }))
     }
 
     pub(crate) fn is_due(&self) -> bool {
@@ -39,8 +42,7 @@ impl TrialStateFile {
 
     /// Begins to write the state. An error is that of the writing before.
     pub(crate) fn save(&mut self, trial: &mut PhysicsTrial<impl Pilot<Command = Twist>>) -> io::Result<()> {
-        let snapshot = trial.snapshot(&self.facts);
-        self.file.save(move || snapshot.into_state())
+        self.file.save(trial.snapshot(&self.facts, &self.sessions))
     }
 
     /// Writes the state, and waits until it is on the disk.

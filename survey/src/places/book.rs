@@ -25,7 +25,6 @@ pub(crate) struct PlaceBook {
 
 impl PlaceBook {
     /// The book of a map that was learned without one.
-    #[cfg(test)]
     pub(crate) fn of_map(mapper: &Mapper) -> Self {
         Self { passages: Passages::of_map(mapper), ..Self::default() }
     }

@@ -89,7 +89,6 @@ pub(super) struct Passages {
 
 impl Passages {
     /// The passages of a map whose passages were not counted: the changes in view of the cell with the most of them.
-    #[cfg(test)]
     pub(super) fn of_map(mapper: &Mapper) -> Self {
         let mut passages = Self::default();
         for index in mapper.changed() {

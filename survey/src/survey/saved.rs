@@ -6,110 +6,105 @@ use crate::places::PlaceBook;
 use crate::replay::FoundPoses;
 use crate::settings::SurveySettings;
 use crate::surveyed_log::SurveyedLog;
-use interfaces::{GridFrame, PoseMode, ValueError, from_bytes, to_bytes};
+use interfaces::{GridFrame, from_bytes, to_bytes};
 use localizer::KnownPlace;
-use mapper::Mapper;
-use robot::{NoPilot, Robot};
+use mapper::Growth;
+use robot::state::{Part, SavedMap, SavedSettings, State, StateCopy, StateError};
+use robot::{BUILD, NoPilot, Robot};
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// The logs of a survey that was saved: they can be read before the settings of the survey are known.
-#[derive(Clone, Debug)]
-pub struct SavedLogs {
-    /// How the poses of the logs are used.
-    pub pose: PoseMode,
-    logs: Vec<SurveyedLog>,
-}
-
-impl SavedLogs {
-    /// The name of the part of a state that has the logs.
-    pub const PART: &'static str = "logs";
-
-    /// The logs from their bytes.
-    ///
-    /// # Errors
-    ///
-    /// When the bytes are no logs of a survey.
-    pub fn read(bytes: &[u8]) -> Result<Self, ValueError> {
-        from_bytes(bytes).map(|(pose, logs)| Self { pose, logs })
-    }
-
-    /// The logs, in the order of their times.
-    pub fn logs(&self) -> &[SurveyedLog] {
-        &self.logs
-    }
-}
-
-/// A copy of a survey. A thread can turn it into bytes while the survey goes on.
-#[derive(Clone, Debug)]
-pub struct SavedSurvey {
-    pose: PoseMode,
-    place: Option<Arc<KnownPlace>>,
-    mapper: Option<Mapper>,
-    changes: ChangeLog,
-    book: PlaceBook,
-    logs: Vec<SurveyedLog>,
+/// What a state has of a survey, beside the map and the surfaces.
+#[derive(Debug, Default, Deserialize, Serialize)]
+pub(crate) struct SavedSurvey {
+    /// The frame of the map in which the changes are.
+    frame: Option<GridFrame>,
+    pub(crate) changes: ChangeLog,
+    pub(crate) book: PlaceBook,
+    pub(crate) logs: Vec<SurveyedLog>,
 }
 
 impl SavedSurvey {
-    /// The name of the part of a state with what was learned from the logs.
-    pub const PART: &'static str = "survey";
-
-    /// Everything that logs have changed, as bytes: the logs, and what was learned from them; settings are not in it.
-    pub fn into_snapshot(self) -> (Vec<u8>, Vec<u8>) {
-        let Self { pose, place, mapper, changes, book, logs } = self;
-        let place = place.map(|place| Arc::unwrap_or_clone(place).snapshot());
-        let mapper = mapper.map(|mut mapper| (*mapper.frame(), mapper.snapshot()));
-        (to_bytes(&(pose, logs)), to_bytes(&(place, mapper, changes, book)))
+    /// The survey in a state; its logs end with the sessions of robots that went on in the map. Empty if nothing was learned.
+    pub(crate) fn of(state: &State) -> Result<Self, StateError> {
+        let mut saved = match &state.survey {
+            Some(survey) => from_bytes(&survey.bytes)?,
+            None => Self::default(),
+        };
+        let Some(map) = &state.map else { return Ok(saved) };
+        let later = state.sessions.iter().skip(saved.logs.len());
+        saved.logs.extend(later.map(|session| SurveyedLog::of_session(session.clone(), map.frame)));
+        // A robot can have learned in a larger map since.
+        let growth = saved.frame.replace(map.frame).and_then(|frame| Growth::new(frame, map.frame));
+        growth.iter().for_each(|growth| saved.changes.grow(growth));
+        if state.survey.is_none() {
+            saved.book = PlaceBook::of_map(&map.mapper()?);
+        }
+        Ok(saved)
     }
 }
 
+/// The logs in a state, and the sessions of robots, in the order of their times.
+///
+/// # Errors
+///
+/// When the state is not one of this program.
+pub fn saved_logs(state: &State) -> Result<Vec<SurveyedLog>, StateError> {
+    SavedSurvey::of(state).map(|saved| saved.logs)
+}
+
+/// The settings of the survey in a state; `None` if no log was learned.
+pub fn saved_settings(state: &State) -> Option<SurveySettings> {
+    state.survey.as_ref()?.settings.get("survey")
+}
+
 impl Survey {
-    /// Copies what logs have changed. This is short; to turn the copy into bytes takes longer.
-    pub fn saved(&self) -> SavedSurvey {
-        SavedSurvey {
-            pose: self.settings.pose,
-            place: self.place.clone(),
-            mapper: self.mapper().cloned(),
-            changes: self.changes.clone(),
-            book: self.book.clone(),
-            logs: self.logs.clone(),
-        }
+    /// Copies what logs have changed.
+    pub fn saved(&self) -> StateCopy {
+        let settings = SavedSettings::default().with("survey", &self.settings);
+        let (filter, place, mapper) =
+            (self.settings.filter.clone(), self.place.clone(), self.mapper().cloned());
+        let frame = mapper.as_ref().map(|mapper| *mapper.frame());
+        let (changes, book, logs) = (self.changes.clone(), self.book.clone(), self.logs.clone());
+        Box::new(move || State {
+            build: BUILD.to_owned(),
+            sessions: logs.iter().map(SurveyedLog::session).collect(),
+            map: mapper.map(|mapper| SavedMap::of(mapper, &filter)),
+            surfaces: place.map(|place| Arc::unwrap_or_clone(place).snapshot()).unwrap_or_default(),
+            survey: Some(Part { settings, bytes: to_bytes(&SavedSurvey { frame, changes, book, logs }) }),
+            ..State::default()
+        })
     }
 
-    /// Goes on from the snapshot of a survey with the same settings, bit for bit.
+    /// Goes on from a state: from that of a survey with the same settings bit for bit, from that of a robot in its map. Also
+    /// returns notes on settings that differ.
     ///
     /// # Errors
     ///
-    /// When the bytes are no such snapshot.
+    /// When a setting differs that must agree, and when the state does not fit this program.
     pub fn restored(
         settings: SurveySettings,
         learns_noise: bool,
-        logs: SavedLogs,
-        learned: &[u8],
-    ) -> Result<Self, ValueError> {
-        type Learned = (Option<Vec<u8>>, Option<(GridFrame, Vec<u8>)>, ChangeLog, PlaceBook);
-        let (place, map, changes, book): Learned = from_bytes(learned)?;
-        let place = place.map(|bytes| KnownPlace::restored(&bytes)).transpose()?;
-        let mut survey = Self {
-            settings,
-            learns_noise,
-            place: place.map(Arc::new),
-            robot: None,
-            changes,
-            book,
-            logs: logs.logs,
-            seen_m2: 0.0,
+        state: &State,
+    ) -> Result<(Self, Option<String>), StateError> {
+        let mut note = match &state.survey {
+            Some(survey) => survey.settings.agree(&SavedSettings::default().with("survey", &settings))?,
+            None => None,
         };
-        if let Some((frame, bytes)) = map {
-            // The last log of which something was learned has set the noise.
-            let last = survey.logs.iter().rposition(|log| log.used > 0).ok_or(ValueError)?;
+        let SavedSurvey { changes, book, logs, .. } = SavedSurvey::of(state)?;
+        let place = Some(&state.surfaces).filter(|surfaces| !surfaces.is_empty());
+        let place = place.map(|surfaces| KnownPlace::restored(surfaces)).transpose()?.map(Arc::new);
+        let mut survey = Self { place, changes, book, logs, ..Self::new(settings, learns_noise) };
+        // The last log of which something was learned has set the noise.
+        let last = survey.logs.iter().rposition(|log| log.used > 0);
+        if let (Some(last), Some(map)) = (last, &state.map) {
             let settings = survey.settings_of(last);
-            let mut mapper = Mapper::new(&settings.mapper, frame).map_err(|_| ValueError)?;
+            let (mut mapper, other) =
+                map.mapper_with(&settings.mapper, &settings.filter, settings.resolution_m)?;
+            note = note.or(other);
             survey.date(&mut mapper, last);
-            mapper.restore(&bytes)?;
-            let poses = Box::new(FoundPoses::new(Vec::new()));
-            survey.robot = Some(Robot::new(poses, mapper, NoPilot));
+            survey.robot = Some(Robot::new(Box::new(FoundPoses::new(Vec::new())), mapper, NoPilot));
         }
-        Ok(survey)
+        Ok((survey, note))
     }
 }

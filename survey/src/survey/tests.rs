@@ -2,14 +2,16 @@
 
 mod doubts;
 
-use super::{SavedLogs, Survey};
+use super::{SavedSurvey, Survey};
 use crate::settings::SurveySettings;
 use crate::surveyed_log::LogEntry;
 use crate::tests::drive;
-use interfaces::{LaserReading, PoseMode, ValueError};
+use interfaces::{GridFrame, LaserReading, PoseMode};
 use logs::{Log, McapWriter, TopicChoice};
 use mapper::{NoReturn, ScanFilterSettings};
-use nalgebra::Isometry2;
+use nalgebra::{Isometry2, Point2};
+use robot::state::{Sessions, State, learned, restore};
+use robot::{NoPilot, Settings, Source};
 use std::fs::File;
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -52,8 +54,8 @@ fn learn(survey: &mut Survey, number: usize, log: &Log, most: usize) -> bool {
 }
 
 fn restored(survey: Survey) -> Survey {
-    let (logs, learned) = survey.saved().into_snapshot();
-    Survey::restored(settings(), true, SavedLogs::read(&logs).unwrap(), &learned).unwrap()
+    let state = survey.saved()();
+    Survey::restored(settings(), true, &state).unwrap().0
 }
 
 #[test]
@@ -73,7 +75,7 @@ fn a_survey_that_is_saved_and_goes_on_equals_one_that_was_never_interrupted() {
     assert!(learn(&mut whole, 1, &tuesday, usize::MAX));
     assert!(whole.mapper().unwrap().frame().len() > small.len());
     assert_eq!(*whole.mapper().unwrap().frame(), whole.frame_of(1).unwrap());
-    let whole_bytes = whole.saved().into_snapshot();
+    let whole_bytes = whole.saved()();
 
     // A day later, and in parts.
     for parts in [usize::MAX, 170] {
@@ -86,7 +88,7 @@ fn a_survey_that_is_saved_and_goes_on_equals_one_that_was_never_interrupted() {
             }
             survey = restored(survey);
         }
-        assert!(survey.saved().into_snapshot() == whole_bytes, "{parts} readings at once");
+        assert!(survey.saved()() == whole_bytes, "{parts} readings at once");
     }
     // The place in which later logs find theirs is the same, too.
     let saved = place.as_ref().clone().snapshot();
@@ -98,7 +100,8 @@ fn a_survey_that_is_saved_and_goes_on_equals_one_that_was_never_interrupted() {
     whole.forget_poses();
     assert_eq!((whole.logs()[1].travelled, whole.logs()[1].poses().count()), (travelled, 0));
     assert!(travelled.length_m > 5.0 && travelled.duration_s > 100.0, "{travelled:?}");
-    let [before, after] = [&whole_bytes, &whole.saved().into_snapshot()].map(|(logs, _)| logs.len());
+    let [before, after] = [whole_bytes, whole.saved()()]
+        .map(|state| interfaces::to_bytes(&SavedSurvey::of(&state).unwrap().logs).len());
     assert!(after < 2000 && before > 10 * after, "{before} and {after} bytes");
 }
 
@@ -209,13 +212,66 @@ fn other_bytes_are_no_survey() {
     let mut survey = Survey::new(settings(), true);
     add(&mut survey, &log, "a", 0.0);
     learn(&mut survey, 0, &log, usize::MAX);
-    let (logs, learned) = survey.saved().into_snapshot();
-    for length in [0, 1, logs.len() / 2, logs.len() - 1] {
-        assert!(SavedLogs::read(&logs[..length]).is_err());
+    let whole = survey.saved()();
+    let is_read = |change: &dyn Fn(&mut State)| {
+        let mut state = whole.clone();
+        change(&mut state);
+        Survey::restored(settings(), true, &state).is_ok()
+    };
+    assert!(is_read(&|_| {}));
+    let (map, of_survey) = (&whole.map.as_ref().unwrap().bytes, &whole.survey.as_ref().unwrap().bytes);
+    for share in [0.0, 0.01, 0.5, 0.99] {
+        let cut = |bytes: &[u8]| bytes[..(share * bytes.len() as f64) as usize].to_vec();
+        assert!(!is_read(&|state| state.map.as_mut().unwrap().bytes = cut(map)), "{share}");
+        assert!(!is_read(&|state| state.survey.as_mut().unwrap().bytes = cut(of_survey)), "{share}");
     }
-    let read = |bytes: &[u8]| Survey::restored(settings(), true, SavedLogs::read(&logs).unwrap(), bytes);
-    for length in [0, 1, learned.len() / 2, learned.len() - 1] {
-        assert_eq!(read(&learned[..length]).err(), Some(ValueError));
-    }
-    assert!(read(&learned).is_ok());
+}
+
+/// `map_log` maps a place, a robot finds itself in the map and goes on, and `map_log` adds another log.
+#[test]
+fn a_robot_goes_on_in_the_map_of_a_survey_and_the_survey_in_that_of_the_robot() {
+    let (readings, _) = drive(2, 120.0);
+    let folder = tempfile::tempdir().unwrap();
+    let monday = bag(folder.path(), "monday", &readings, 0.0);
+    let mut survey = Survey::new(settings(), true);
+    add(&mut survey, &monday, "monday", 0.0);
+    learn(&mut survey, 0, &monday, usize::MAX);
+    let again = |state: State| State::from_bytes(&state.to_bytes().unwrap()).unwrap();
+    let state = again(survey.saved()());
+
+    let mut live = Settings::of(&Source { cell_m: 0.1, ..Source::default() });
+    live.mapper.max_gap = 7.0;
+    let own = GridFrame::new(Point2::new(-20.0, -20.0), 0.1, 400, 400).unwrap();
+    let frame = state.map.as_ref().unwrap().frame.union(&own).unwrap();
+    let mut robot = live.robot(frame, None, Isometry2::identity(), NoPilot).unwrap();
+    let note = restore(&state, &mut robot, &live).unwrap().unwrap();
+    assert!(note.contains("mapper.max_gap = `8.0`"), "{note}");
+    let mut sessions = Sessions::of("curious_node");
+    sessions.go_on(&state, &robot.mapper);
+    let before = robot.mapper.readings();
+    robot.begin_session(readings[0].time_s, Some(DAY_S));
+    let certain =
+        readings.iter().filter(|reading| robot.step((*reading).clone()).unwrap().belief.is_certain());
+    let certain = certain.count();
+    assert!(
+        certain > readings.len() / 2 && robot.mapper.readings() > before,
+        "{certain} of {}",
+        readings.len()
+    );
+    let state = again(State { survey: state.survey, ..learned(&mut robot, &live, &sessions)() });
+    let forecast = crate::Forecast::of_state(&state).unwrap();
+    assert!(forecast.why_undated().is_none() && forecast.now_s() > 1e9 + DAY_S);
+    assert_eq!(forecast.mapper().states(), robot.mapper.states());
+    let names: Vec<&str> = state.sessions.iter().map(|session| session.name.as_str()).collect();
+    assert_eq!(names, ["monday", "curious_node 2"]);
+
+    let (mut survey, _) = Survey::restored(settings(), true, &state).unwrap();
+    assert_eq!(survey.logs().len(), 2);
+    let friday = bag(folder.path(), "friday", &readings, 4.0);
+    add(&mut survey, &friday, "friday", 4.0);
+    assert!(learn(&mut survey, 2, &friday, usize::MAX));
+    let state = again(survey.saved()());
+    let forecast = crate::Forecast::of_state(&state).unwrap();
+    assert!(forecast.why_undated().is_none() && forecast.now_s() > 1e9 + 4.0 * DAY_S);
+    assert_eq!(forecast.mapper().states(), survey.mapper().unwrap().states());
 }

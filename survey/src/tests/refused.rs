@@ -65,12 +65,13 @@ fn an_odometry_of_something_else_is_refused() {
     assert_eq!(refused(|_, _| {}), None);
     // One that never moves says nothing.
     assert_eq!(refused(|_, reading| reading.pose = Isometry2::identity()), None);
-    let lengths =
-        refused(|_, reading| reading.scan.ranges_m.iter_mut().for_each(|range_m| *range_m *= 0.3)).unwrap();
-    assert!(lengths.contains("(the scans move 0.29 times as far)"), "{lengths}");
-    let feet =
-        refused(|_, reading| reading.scan.ranges_m.iter_mut().for_each(|range_m| *range_m *= 3.28)).unwrap();
-    assert!(feet.contains("(the scans move 3."), "{feet}");
+    for (unit, says) in [(0.3, "(the scans move 0.29 times as far)"), (3.28, "(the scans move 3.")] {
+        let scaled = |_, reading: &mut LaserReading| {
+            reading.scan.ranges_m.iter_mut().for_each(|range_m| *range_m *= unit);
+        };
+        let error = refused(scaled).unwrap();
+        assert!(error.contains(says), "{error}");
+    }
     let exchanged = refused(|_, reading| {
         let at = &mut reading.pose.translation;
         (at.x, at.y) = (at.y, at.x);

@@ -14,7 +14,7 @@ fn every_strategy_explores_a_grid_world() {
     let names = strategies(&Run::grid());
     assert!(names.len() >= 6 && names.contains(&"curious".to_owned()), "{names:?}");
     let chosen: Vec<String> = names.iter().map(|name| format!("--strategy {name}")).collect();
-    let run = ran(&format!("--steps 3000 --trials 1 --estimator two-state-gaps {}", chosen.join(" ")));
+    let run = ran(&format!("--steps 3000 --trials 1 --estimator two-state {}", chosen.join(" ")));
     let results = results(&run);
     // In the order of the arguments.
     let text = std::fs::read_to_string(run.out("report.json")).unwrap();

@@ -8,7 +8,7 @@ use std::sync::LazyLock;
 /// Two worlds, two estimators, three strategies, three seeds.
 static RUN: LazyLock<Run> = LazyLock::new(|| {
     ran(
-        "--steps 600 --trials 3 --world two_blocks --world open_hall --estimator paper --estimator two-state-gaps \
+        "--steps 600 --trials 3 --world two_blocks --world open_hall --estimator paper --estimator two-state \
          --strategy curious --strategy recency --strategy poisson",
     )
 });

@@ -42,7 +42,7 @@ fn seeds_count_up_from_the_first() {
 fn a_trial_does_not_depend_on_the_others() {
     let alone = hash("--steps 800 --trials 1 --seed 2 --estimator paper --strategy poisson");
     let among = ran(
-        "--steps 800 --trials 2 --seed 1 --estimator two-state-gaps --estimator paper --strategy coin --strategy poisson",
+        "--steps 800 --trials 2 --seed 1 --estimator two-state --estimator paper --strategy coin --strategy poisson",
     );
     let results = super::results(&among);
     let same = results.iter().find(|it| it.estimator == "paper" && it.strategy == "poisson").unwrap();

@@ -17,19 +17,17 @@ fn to(file: &Path) -> Result<Recorder, RecordingError> {
     Recorder::new(Some(file), &[], FakeRun::new().scene)
 }
 
-/// Records `ticks` of a simulated run into a file.
-fn record(file: &Path, ticks: u64) -> FakeRun {
-    record_run(FakeRun::new(), file, ticks)
-}
-
-fn record_run(mut run: FakeRun, file: &Path, ticks: u64) -> FakeRun {
-    let mut recorder = Recorder::new(Some(file), &[], run.scene.clone()).unwrap();
+/// Records `ticks` of a simulated run. Returns the bytes of the file.
+fn record(run: &mut FakeRun, ticks: u64) -> Vec<u8> {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("run.rrd");
+    let mut recorder = Recorder::new(Some(&file), &[], run.scene.clone()).unwrap();
     for _ in 0..ticks {
         run.step();
         run.with_view(|view| recorder.log(view, false)).unwrap();
     }
     run.with_view(|view| recorder.log(view, true)).unwrap();
-    run
+    std::fs::read(&file).unwrap()
 }
 
 fn store(bytes: &[u8], kind: StoreKind) -> ChunkStore {
@@ -125,10 +123,7 @@ const ENTITIES: [&str; 59] = [
 
 #[test]
 fn every_entity_is_there() {
-    let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("run.rrd");
-    record(&file, 300);
-    let store = store(&std::fs::read(&file).unwrap(), StoreKind::Recording);
+    let store = store(&record(&mut FakeRun::new(), 300), StoreKind::Recording);
     let entities: Vec<String> = store
         .all_entities_sorted()
         .iter()
@@ -141,8 +136,6 @@ fn every_entity_is_there() {
 
 #[test]
 fn a_robot_that_is_localized_is_there_twice() {
-    let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("run.rrd");
     let mut run = FakeRun::new();
     run.estimate = Some(PoseEstimate {
         pose: interfaces::pose(3.0, 3.0, 0.5),
@@ -150,8 +143,7 @@ fn a_robot_that_is_localized_is_there_twice() {
         support: 0.75,
         state: PoseState::Tracking,
     });
-    record_run(run, &file, 50);
-    let store = store(&std::fs::read(&file).unwrap(), StoreKind::Recording);
+    let store = store(&record(&mut run, 50), StoreKind::Recording);
     let entities = Vec::from_iter(store.all_entities_sorted().iter().map(|path| path.to_string()));
     for entity in ["body", "scan", "trail", "uncertainty_20_times_enlarged"] {
         assert!(entities.contains(&format!("/world/estimate/{entity}")), "{entity} is not in {entities:?}");
@@ -162,10 +154,8 @@ fn a_robot_that_is_localized_is_there_twice() {
 
 #[test]
 fn what_is_read_back_is_what_happened() {
-    let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("run.rrd");
-    let run = record(&file, 305);
-    let store = store(&std::fs::read(&file).unwrap(), StoreKind::Recording);
+    let mut run = FakeRun::new();
+    let store = store(&record(&mut run, 305), StoreKind::Recording);
 
     let position = Transform3D::descriptor_translation().component;
     for (name, at) in run.positions() {
@@ -199,8 +189,8 @@ fn what_is_read_back_is_what_happened() {
 }
 
 /// The titles of the views in the layout of a recording, sorted.
-fn titles(file: &Path) -> Vec<String> {
-    let store = store(&std::fs::read(file).unwrap(), StoreKind::Blueprint);
+fn titles(recording: &[u8]) -> Vec<String> {
+    let store = store(recording, StoreKind::Blueprint);
     let name = rerun::external::re_sdk_types::blueprint::archetypes::ViewBlueprint::descriptor_display_name();
     let mut names: Vec<String> = Vec::new();
     for chunk in store.iter_physical_chunks() {
@@ -219,11 +209,8 @@ fn timelines(store: &ChunkStore) -> Vec<String> {
 
 #[test]
 fn the_layout_shows_every_view() {
-    let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("run.rrd");
-    record(&file, 3);
     assert_eq!(
-        titles(&file),
+        titles(&record(&mut FakeRun::new(), 3)),
         [
             "Changes expected out of view",
             "Cycle time: seconds per cycle",
@@ -246,11 +233,8 @@ fn the_layout_shows_every_view() {
 
 #[test]
 fn a_minute_is_small() {
-    let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("run.rrd");
-    record(&file, 600);
     // 30 MB are allowed for twenty of them.
-    assert!(std::fs::metadata(&file).unwrap().len() < 1_500_000);
+    assert!(record(&mut FakeRun::new(), 600).len() < 1_500_000);
 }
 
 #[test]

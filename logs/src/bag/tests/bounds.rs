@@ -25,10 +25,6 @@ fn file(chunks: &[Vec<u8>]) -> Vec<u8> {
     [b"\x89MCAP0\r\n".to_vec(), chunks.iter().flat_map(chunk).collect(), end].concat()
 }
 
-fn refused(bytes: &[u8]) -> String {
-    open(bytes, &TopicChoice::default()).expect_err("the bag should be refused").to_string()
-}
-
 /// The memory that was used at most so far, KiB; `None` elsewhere than on Linux.
 fn peak_kib() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;

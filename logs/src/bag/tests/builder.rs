@@ -149,7 +149,7 @@ impl Builder {
 
     /// Why the bag cannot be opened.
     pub(super) fn refused(&self) -> String {
-        self.open(&TopicChoice::default()).expect_err("the bag should be refused").to_string()
+        refused(&self.mcap(plain()))
     }
 }
 
@@ -176,6 +176,11 @@ pub(super) fn open(bytes: &[u8], choice: &TopicChoice) -> Result<Log, LogError> 
         return Err(LogError::Unusable { file: "test".to_owned(), why: "not a bag".to_owned() });
     };
     Bag::open("test", vec![file], choice, Vec::new())
+}
+
+/// Why a bag of one file cannot be opened.
+pub(super) fn refused(bytes: &[u8]) -> String {
+    open(bytes, &TopicChoice::default()).expect_err("the bag should be refused").to_string()
 }
 
 pub(super) fn readings(bag: &Log) -> Vec<LaserReading> {

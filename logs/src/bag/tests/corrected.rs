@@ -45,8 +45,8 @@ fn corrected() -> TopicChoice {
     TopicChoice { is_corrected: true, ..TopicChoice::default() }
 }
 
-fn refused(bag: &Builder, choice: &TopicChoice) -> String {
-    bag.open(choice).expect_err("the bag should be refused").to_string()
+fn refused(bag: &Builder) -> String {
+    bag.open(&corrected()).expect_err("the bag should be refused").to_string()
 }
 
 fn near(reading: &LaserReading, expected: [f64; 3]) -> bool {
@@ -109,7 +109,7 @@ fn frames_have_other_names() {
     assert_in_map(&readings(&bag.open(&choice).unwrap()));
     let expected = "test: no transform (tf) has the frame `map`, in which another SLAM would have corrected the poses; --map-frame \
                     names it; the frames are laser, robot, slam_map, wheels";
-    assert_eq!(refused(&bag, &corrected()), expected);
+    assert_eq!(refused(&bag), expected);
     // A SLAM that publishes its corrections more often than the robot its odometry.
     let mut often = self::bag(&Slam { frames: ["map", "robot1_odom", "base_link"], ..SLAM });
     often.messages.pop();
@@ -150,27 +150,27 @@ fn bags_without_poses_of_another_slam_are_refused() {
     none.odometry("/odom", 0.0, 0.0, 0.0).scan("/scan", 0.0, &scan(0.0, "laser"));
     let expected =
         "test: the bag has no transforms (tf), which would have the corrected poses of another SLAM";
-    assert_eq!(refused(&none, &corrected()), expected);
+    assert_eq!(refused(&none), expected);
     let uncorrected = bag(&Slam { correction: |_| None, ..SLAM });
     let expected = "test: no transform (tf) has the frame `map`, in which another SLAM would have corrected the poses; --map-frame \
                     names it; the frames are base_link, laser, odom";
-    assert_eq!(refused(&uncorrected, &corrected()), expected);
+    assert_eq!(refused(&uncorrected), expected);
     let mut apart = bag(&Slam { correction: |_| None, ..SLAM });
     apart.tf("/tf", 0.0, &[transform(0.0, "map", "other", pose(0.0, 0.0, 0.0))]);
     let expected = "test: no transforms (tf) lead from the map of another SLAM, `map`, to `laser`; the frames are base_link, laser, \
                     map, odom, other (--map-frame and --base-frame name those of the map and of the robot)";
-    assert_eq!(refused(&apart, &corrected()), expected);
+    assert_eq!(refused(&apart), expected);
     let mut still = Builder::default();
     still.mount().tf("/tf_static", 0.0, &[transform(0.0, "map", "base_link", pose(0.0, 0.0, 0.0))]);
     still.scan("/scan", 0.0, &scan(0.0, "laser"));
     let expected = "test: no transform between `map` and `laser` moves: another SLAM gives no poses there";
-    assert_eq!(refused(&still, &corrected()), expected);
+    assert_eq!(refused(&still), expected);
     // Only before the first scan, and long after the last one.
     let mut late = bag(&SLAM);
     late.messages.retain(|(_, type_name, log_ns, _)| {
         let time_s = *log_ns as f64 * 1e-9 - BEGIN_S;
         (type_name == SCAN) == (time_s < 0.4) || time_s == 0.0
     });
-    let error = refused(&late, &corrected());
+    let error = refused(&late);
     assert_eq!(error, "test: at none of the times of 4 scans there is a pose of another SLAM");
 }

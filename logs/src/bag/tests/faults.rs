@@ -13,10 +13,6 @@ fn standing() -> Builder {
     bag
 }
 
-fn refused(bytes: &[u8]) -> String {
-    open(bytes, &TopicChoice::default()).expect_err("the bag should be refused").to_string()
-}
-
 /// The offset of the first record with a code, outside of chunks.
 fn record(bytes: &[u8], code: u8) -> usize {
     let mut at = 8;

@@ -21,10 +21,6 @@ fn scan(time_s: f64) -> String {
     flaser(1.7e9 + time_s, "0 0 0")
 }
 
-fn notes(text: &str) -> Vec<String> {
-    open("test.log", text.as_bytes()).unwrap().summary().notes.clone()
-}
-
 #[test]
 fn invalid_lines_are_left_out() {
     let good: Vec<String> = (0..40).map(|step| odom(f64::from(step)) + &scan(f64::from(step))).collect();
@@ -115,13 +111,12 @@ fn holes_and_restarts_of_the_odometry_are_noted() {
 fn a_log_whose_clock_is_set_has_the_date_of_its_longest_part() {
     // The robot starts with an old clock, which is set after 3 s.
     let set = |time_s: f64| if time_s < 3.0 { time_s - 1e8 } else { time_s };
-    let log = open("test.log", drive(|time_s| odom_at(time_s, set(time_s)) + &scan(set(time_s))).as_bytes())
-        .unwrap();
-    let begin_s = log.summary().begin_s.unwrap();
+    let summary = summary(&drive(|time_s| odom_at(time_s, set(time_s)) + &scan(set(time_s))));
+    let begin_s = summary.begin_s.unwrap();
     assert!((begin_s - 1.7e9).abs() < 1e-3, "{begin_s}");
     let expected = [
         "a jump of the clock counts as 0.100 s",
         "the date and the hours are those of the longest part between jumps of the clock (36.9 s of 39.9 s)",
     ];
-    assert_eq!(log.summary().notes, expected);
+    assert_eq!(summary.notes, expected);
 }

@@ -68,6 +68,10 @@ fn the_field_of_view_is_the_stated_one_if_it_agrees_with_the_resolution() {
     let resolution = |value: &str| format!("PARAM laser_front_laser_resolution {value} h 0\n");
     let none = String::new();
     for (params, count, fov_deg, increment_deg) in [
+        (none.clone(), 180, 180.0, 1.0),
+        (none.clone(), 181, 180.0, 1.0),
+        (none.clone(), 360, 180.0, 0.5),
+        (none.clone(), 361, 180.0, 0.5),
         (none.clone(), 401, 100.0, 0.25),
         (none.clone(), 400, 100.0, 0.25),
         (fov("100"), 401, 100.0, 0.25),
@@ -84,20 +88,12 @@ fn the_field_of_view_is_the_stated_one_if_it_agrees_with_the_resolution() {
         let found = [scan.angle_min_rad, scan.angle_increment_rad].map(f64::to_degrees);
         assert!((found[0] + fov_deg / 2.0).abs() < 1e-9, "{params}{count} {found:?}");
         assert!((found[1] - increment_deg).abs() < 1e-9, "{params}{count} {found:?}");
-        assert!(
-            !open("test.log", text.as_bytes())
-                .unwrap()
-                .summary()
-                .notes
-                .iter()
-                .any(|note| note.contains("180°"))
-        );
+        assert!(!notes(&text).iter().any(|note| note.contains("180°")));
     }
     let text = format!("FLASER 682 {} 0 0 0 0 0 0 1 h 1\n", "2 ".repeat(682));
-    let notes = &open("test.log", text.as_bytes()).unwrap().summary().notes.clone();
     let expected = "FLASER lines with 682 readings do not say their field of view: 180° is assumed; a line `PARAM \
                     laser_front_laser_fov DEGREES` before them states it";
-    assert_eq!(notes[0], expected);
+    assert_eq!(notes(&text)[0], expected);
 }
 
 fn mount(text: &str) -> [f64; 3] {

@@ -6,13 +6,15 @@
 
 mod paper;
 mod shared_prior;
+mod two_state;
 mod two_state_gaps;
 
 use super::{CellStatistics, TransitionRates};
-pub use paper::Paper;
+pub use paper::{Paper, PaperAll};
 pub use shared_prior::SharedPrior;
 use std::fmt;
 use std::sync::Arc;
+pub use two_state::TwoState;
 pub use two_state_gaps::TwoStateGaps;
 
 /// An estimator of the rate at which a cell changes.
@@ -74,7 +76,7 @@ impl Default for EstimatorChoice {
 impl EstimatorChoice {
     /// Every built-in estimator, in the order of reports.
     pub fn all() -> Vec<Self> {
-        vec![Paper.into(), TwoStateGaps.into(), SharedPrior.into()]
+        vec![Paper.into(), PaperAll.into(), TwoState.into(), TwoStateGaps.into(), SharedPrior.into()]
     }
 
     /// The name on the command line, in files and in reports.
@@ -125,6 +127,43 @@ fn valid(interval: f64) -> f64 {
 mod tests {
     use super::*;
 
+    fn seen() -> CellStatistics {
+        CellStatistics {
+            first_seen: 0.0,
+            last_seen: 130.0,
+            period: 1.0,
+            unobserved: 30.0,
+            watched_free: 80.0,
+            watched_blocked: 20.0,
+            block_events: 4,
+            free_events: 5,
+            block_events_after_gap: 6,
+            free_events_after_gap: 1,
+            ..CellStatistics::default()
+        }
+    }
+
+    #[test]
+    fn the_readings_of_equation_1() {
+        assert_eq!(Paper.interval(&seen()), 100.0 / 5.0);
+        assert_eq!(PaperAll.interval(&seen()), 100.0 / 10.0);
+    }
+
+    #[test]
+    fn two_state_adds_the_mean_dwells() {
+        assert_eq!(TwoState.interval(&seen()), 80.0 / 4.0 + 20.0 / 5.0);
+    }
+
+    #[test]
+    fn without_an_event_nothing_changes() {
+        let still = CellStatistics { last_seen: 9.0, watched_free: 9.0, ..Default::default() };
+        for estimator in EstimatorChoice::all() {
+            assert_eq!(estimator.interval(&still), f64::INFINITY);
+            assert_eq!(estimator.rate(&still), 0.0);
+            assert_eq!(estimator.transition_rates(&still), None);
+        }
+    }
+
     #[test]
     fn names_are_unique_and_choose() {
         let all = EstimatorChoice::all();
@@ -134,6 +173,6 @@ mod tests {
         }
         assert!(all.contains(&EstimatorChoice::default()));
         let error = "guess".parse::<EstimatorChoice>().unwrap_err().to_string();
-        assert!(error.starts_with("no estimator is called `guess`; there are paper, "), "{error}");
+        assert!(error.starts_with("no estimator is called `guess`; there are paper, paper-all, "), "{error}");
     }
 }

@@ -1,6 +1,7 @@
 //! The command line.
 
 use crate::logs_in_order::Source;
+use crate::survey_state_file::Loaded;
 use anyhow::ensure;
 use clap::Parser;
 use cli::flags::{folder, input_file, number, output_file, time_zone};
@@ -9,7 +10,7 @@ use interfaces::PoseMode;
 use logs::TopicChoice;
 use mapper::{EstimatorChoice, NoReturn};
 use std::path::PathBuf;
-use survey::{LogEntry, SavedLogs, SurveySettings};
+use survey::{LogEntry, SurveySettings, saved_settings};
 
 /// Maps the logs of a robot: where the place changes, how often, and when last.
 ///
@@ -184,8 +185,8 @@ fn pose_in_log(mode: PoseMode) -> &'static str {
 
 impl Args {
     /// How the poses are known, as this run or the one before says it.
-    fn pose(&self, saved: Option<&SavedLogs>) -> Option<PoseMode> {
-        self.pose.or(saved.map(|saved| saved.pose))
+    fn pose(&self, saved: Option<&Loaded>) -> Option<PoseMode> {
+        self.pose.or_else(|| Some(saved_settings(&saved?.state)?.pose))
     }
 
     /// What to use of logs, after those of a state.
@@ -193,7 +194,7 @@ impl Args {
     /// # Errors
     ///
     /// When a map is named whose poses are not used.
-    pub(crate) fn topics(&self, saved: Option<&SavedLogs>) -> anyhow::Result<TopicChoice> {
+    pub(crate) fn topics(&self, saved: Option<&Loaded>) -> anyhow::Result<TopicChoice> {
         let is_corrected = self.pose(saved) == Some(PoseMode::Corrected);
         ensure!(
             is_corrected || self.map_frame.is_none(),
@@ -212,10 +213,9 @@ impl Args {
     pub(crate) fn settings(
         &self,
         sources: &[Source],
-        saved: Option<&SavedLogs>,
-        saved_zone: Option<String>,
+        saved: Option<&Loaded>,
     ) -> anyhow::Result<SurveySettings> {
-        let earlier = saved.map(SavedLogs::logs).unwrap_or_default();
+        let earlier = saved.map(|saved| &saved.logs[..]).unwrap_or_default();
         let given = sources.iter().map(|source| &source.entry);
         let mut logs: Vec<&LogEntry> = earlier.iter().map(|log| &log.entry).collect();
         logs.extend(given.filter(|given| earlier.iter().all(|log| log.entry.content != given.content)));
@@ -233,6 +233,7 @@ impl Args {
         settings.filter.min_shadow_angle_rad = self.shadow_angle.to_radians();
         settings.mapper.max_bytes = (self.map_memory * f64::from(1 << 30)) as usize;
         settings.mapper.estimator = self.estimator.clone();
+        let saved_zone = saved.and_then(Loaded::time_zone);
         settings.mapper.time_zone = self.time_zone.clone().or(saved_zone).or(settings.mapper.time_zone);
         if let Some(noise_m) = self.noise {
             settings.set_noise(noise_m);
@@ -250,8 +251,8 @@ mod tests {
     fn the_command_line_is_sound() {
         Args::command().debug_assert();
         let args = Args::parse_from(["map_log", "a.log"]);
-        assert_eq!(args.settings(&[], None, None).unwrap().pose, PoseMode::Exact);
+        assert_eq!(args.settings(&[], None).unwrap().pose, PoseMode::Exact);
         let args = Args::parse_from(["map_log", "a.log", "--pose", "localized"]);
-        assert_eq!(args.settings(&[], None, None).unwrap(), SurveySettings::default());
+        assert_eq!(args.settings(&[], None).unwrap(), SurveySettings::default());
     }
 }

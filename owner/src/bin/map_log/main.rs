@@ -27,7 +27,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 use summary::Summary;
 use survey::{Survey, SurveySettings};
-use survey_state_file::{Loaded, SurveyStateFile};
+use survey_state_file::SurveyStateFile;
 
 /// The exit code of a run whose map is not usable.
 const NOT_USABLE: u8 = 3;
@@ -75,12 +75,10 @@ fn run(args: &Args) -> Result<ExitCode, Failure> {
         .map_err(input)?;
     let names = places.map(place_names::read).transpose().map_err(input)?;
     let (mut state_file, loaded) = SurveyStateFile::open(args)?;
-    let (logs, zone) =
-        (loaded.as_ref().map(|loaded| &loaded.logs), loaded.as_ref().and_then(Loaded::time_zone));
-    let choice = args.topics(logs).map_err(input)?;
+    let choice = args.topics(loaded.as_ref()).map_err(input)?;
     let given = logs_in_order::open(&args.files, &choice, state_file.is_kept(), args.quiet).map_err(input)?;
-    let settings = args.settings(&given, logs, zone).map_err(input)?;
-    let mut survey = state_file.survey(loaded, &settings, args.noise)?;
+    let settings = args.settings(&given, loaded.as_ref()).map_err(input)?;
+    let mut survey = state_file.survey(loaded, &settings, args.noise.is_none())?;
     if let Some(names) = names {
         survey.name_places(names);
     }

@@ -3,44 +3,36 @@
 use crate::args::Args;
 use cli::program::{Failure, open_state, state_failure};
 use cli::terminal::say;
-use robot::state::{Facts, State, StateError, StateFile};
+use mapper::MapperSettings;
+use robot::state::{State, StateError, StateFile};
 use std::io::stderr;
-use survey::{SavedLogs, SavedSurvey, Survey, SurveySettings, SurveyedLog};
-
-/// The part of a state with what was learned from logs, beside that with the logs.
-const SURVEY: &str = SavedSurvey::PART;
+use survey::{Survey, SurveySettings, SurveyedLog, saved_logs, saved_settings};
 
 /// The state file of a run, or none.
 pub(crate) struct SurveyStateFile {
     file: Option<StateFile>,
-    /// The number of logs in the file, if all are learned: before another one is added, the file is kept.
-    learned: Option<usize>,
-    facts: Facts,
     /// Whether everything could be written.
     pub(crate) is_written: bool,
 }
 
 /// A state that was loaded, and the logs in it.
 pub(crate) struct Loaded {
-    state: State,
-    pub(crate) logs: SavedLogs,
+    pub(crate) state: State,
+    pub(crate) logs: Vec<SurveyedLog>,
 }
 
 impl SurveyStateFile {
     /// The file of `--state`, and the state in it. Nothing is written yet.
     pub(crate) fn open(args: &Args) -> Result<(Self, Option<Loaded>), Failure> {
-        let mut state_file = Self { file: None, learned: None, facts: Facts::default(), is_written: true };
-        let Some(path) = &args.state else { return Ok((state_file, None)) };
+        let Some(path) = &args.state else { return Ok((Self { file: None, is_written: true }, None)) };
         let (file, state) = open_state(path, args.state_every)?;
-        let loaded = state.map(Loaded::of).transpose().map_err(|why| state_failure(path, why))?;
+        let of_state = |state| Ok(Loaded { logs: saved_logs(&state)?, state });
+        let loaded = state.map(of_state).transpose().map_err(|why: StateError| state_failure(path, why))?;
         if loaded.as_ref().is_some_and(|loaded| loaded.state.check_build().is_err()) {
             let note = "another build of this program has written it, whose results can differ in details";
             say(stderr(), format_args!("note: {}: {note}", path.display()));
         }
-        let logs = loaded.as_ref().map(|loaded| loaded.logs.logs());
-        state_file.learned = logs.filter(|logs| logs.iter().all(SurveyedLog::is_finished)).map(<[_]>::len);
-        state_file.file = Some(file);
-        Ok((state_file, loaded))
+        Ok((Self { file: Some(file), is_written: true }, loaded))
     }
 
     /// Whether there is a state file.
@@ -50,24 +42,18 @@ impl SurveyStateFile {
 
     /// The survey in a state, or a new one.
     pub(crate) fn survey(
-        &mut self,
+        &self,
         loaded: Option<Loaded>,
         settings: &SurveySettings,
-        noise_m: Option<f64>,
+        learns_noise: bool,
     ) -> Result<Survey, Failure> {
-        let noise = noise_m.map_or_else(|| "learned".to_owned(), |noise_m| noise_m.to_string());
-        let default = SurveySettings::of(settings.pose);
-        let facts = Facts::default().with("--pose", default.pose.name()).with("--noise", &noise);
-        self.facts = facts.with_learned_settings("survey", settings, Some(&default));
-        let (settings, learns_noise) = (settings.clone(), noise_m.is_none());
-        let (Some(Loaded { state, logs }), Some(file)) = (loaded, &self.file) else {
-            return Ok(Survey::new(settings, learns_noise));
+        let (Some(Loaded { state, .. }), Some(file)) = (loaded, &self.file) else {
+            return Ok(Survey::new(settings.clone(), learns_noise));
         };
-        let learned = state.section(SURVEY, &self.facts).and_then(|learned| {
-            let survey = Survey::restored(settings, learns_noise, logs, learned);
-            survey.map_err(|_| StateError::OtherContent(SURVEY.to_owned()))
-        });
-        learned.map_err(|why| state_failure(file.path(), why))
+        let restored = Survey::restored(settings.clone(), learns_noise, &state);
+        let (survey, note) = restored.map_err(|why| state_failure(file.path(), why))?;
+        note.iter().for_each(|note| say(stderr(), format_args!("note: {}: {note}", file.path().display())));
+        Ok(survey)
     }
 
     /// Leaves the file as it is from now on.
@@ -83,21 +69,7 @@ impl SurveyStateFile {
     /// Begins to write the survey. What cannot be written is reported, and the run goes on.
     pub(crate) fn save(&mut self, survey: &Survey) {
         let Some(file) = &mut self.file else { return };
-        if self.learned.is_some_and(|learned| survey.logs().len() > learned)
-            && let Err(problem) = file.keep_earlier()
-        {
-            say(stderr(), format_args!("note: the state before this run cannot be kept: {problem}"));
-        }
-        self.learned = self.learned.filter(|learned| survey.logs().len() == *learned);
-        let (survey, facts) = (survey.saved(), self.facts.clone());
-        let saved = file.save(move || {
-            let (logs, learned) = survey.into_snapshot();
-            State::default()
-                .with(SavedLogs::PART, Facts::default(), logs)
-                .with(SURVEY, facts, learned)
-                .with_build()
-        });
-        if let Err(problem) = saved {
+        if let Err(problem) = file.save(survey.saved()) {
             self.is_written = false;
             say(stderr(), format_args!("error: cannot save the state: {problem}; the run goes on"));
         }
@@ -115,11 +87,7 @@ impl SurveyStateFile {
 impl Loaded {
     /// The time zone of the place.
     pub(crate) fn time_zone(&self) -> Option<String> {
-        Some(self.state.facts(SURVEY)?.get("survey.mapper.time_zone")?.to_owned())
-    }
-
-    fn of(state: State) -> Result<Self, StateError> {
-        let logs = SavedLogs::read(state.section(SavedLogs::PART, &Facts::default())?);
-        Ok(Self { logs: logs.map_err(|_| StateError::OtherContent(SavedLogs::PART.to_owned()))?, state })
+        let of_map = self.state.map.as_ref().and_then(|map| map.settings.get::<MapperSettings>("mapper"));
+        of_map.or_else(|| Some(saved_settings(&self.state)?.mapper))?.time_zone
     }
 }

@@ -1,12 +1,18 @@
 use super::*;
-use crate::state::Facts;
+use crate::state::{SavedSettings, Session};
 use proptest::prelude::*;
 use std::collections::BTreeMap;
 
 fn state() -> State {
-    let facts =
-        Facts::default().with("world", "house").with_settings("mapper", &BTreeMap::from([("max_gap", 8.0)]));
-    State::default().with("mapper", facts, vec![1, 2, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 4])
+    of_session("a")
+}
+
+fn of_session(name: &str) -> State {
+    State {
+        sessions: vec![Session { name: name.to_owned(), ..Session::default() }],
+        surfaces: vec![1, 2, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 4],
+        ..State::default()
+    }
 }
 
 #[test]
@@ -70,7 +76,7 @@ fn whoever_has_the_lock_is_alone() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("house.state");
     let count = || match read_state(&path) {
-        Ok(state) => state.section("count", &Facts::default()).unwrap()[0],
+        Ok(state) => state.filter[0],
         Err(_) => 0,
     };
     std::thread::scope(|scope| {
@@ -84,7 +90,7 @@ fn whoever_has_the_lock_is_alone() {
                         }
                     };
                     let next = count() + 1;
-                    file.save(move || State::default().with("count", Facts::default(), vec![next])).unwrap();
+                    file.save(move || State { filter: vec![next], ..State::default() }).unwrap();
                     file.wait().unwrap();
                 }
             });
@@ -114,45 +120,51 @@ fn files_of_others_beside_the_state_stay() {
 #[test]
 fn what_is_no_file_is_refused_at_once() {
     let folder = tempfile::tempdir().unwrap();
-    let expected = "it is not a file (but a folder, a pipe or a device)";
-    assert_eq!(StateFile::open(folder.path()).unwrap_err().to_string(), expected);
-    assert_eq!(read_state(folder.path()).unwrap_err().to_string(), format!("cannot read it: {expected}"));
+    let expected = "cannot read it: it is not a file (but a folder, a pipe or a device)";
+    assert_eq!(read_state(folder.path()).unwrap_err().to_string(), expected);
 }
 
+/// The file is kept when the first session is added to it, and not for a second one.
 #[test]
-fn what_was_kept_comes_back() {
+fn a_file_without_the_last_session_comes_back() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("house.state");
-    let mut file = StateFile::open(&path).unwrap();
-    file.keep_earlier().unwrap_err();
-    file.save(state).unwrap();
-    file.wait().unwrap();
-    file.keep_earlier().unwrap();
-    file.save(State::default).unwrap();
-    file.wait().unwrap();
-    assert_eq!(read_state(&earlier_name(&path)).unwrap(), state());
+    let with_sessions =
+        |count: usize| State { sessions: vec![Session::default(); count], ..State::default() };
+    let save = |counts: &[usize]| {
+        let mut file = StateFile::open(&path).unwrap();
+        file.load().unwrap();
+        for count in counts {
+            let state = with_sessions(*count);
+            file.save(move || state).unwrap();
+            file.wait().unwrap();
+        }
+        file
+    };
+    save(&[1, 1]).restore_earlier().unwrap_err();
+    save(&[1, 2, 2, 3]);
+    assert_eq!(read_state(&earlier_name(&path)).unwrap(), with_sessions(1));
+    let mut file = save(&[]);
     file.restore_earlier().unwrap();
-    assert_eq!(file.load().unwrap(), Some(state()));
+    assert_eq!(file.load().unwrap(), Some(with_sessions(1)));
     file.restore_earlier().unwrap_err();
 }
 
 #[test]
-fn other_facts_and_files_are_refused_with_a_sentence() {
-    let refused = |name: &str, facts| state().section(name, &facts).unwrap_err().to_string();
-    let house = Facts::default().with("world", "house");
-    insta::assert_snapshot!(refused("mapper", Facts::default().with("world", "office")), @"the state is of another run: `world` is `house` there, and `office` here");
-    insta::assert_snapshot!(refused("mapper", house.clone()), @"the state is of another run: `mapper.max_gap` is `8.0` there, and not set here");
-    insta::assert_snapshot!(refused("pilot", house), @"the state was saved by another program: it has no part `pilot`");
+fn other_files_are_refused_with_a_sentence() {
     let read = |bytes: &[u8]| State::from_bytes(bytes).unwrap_err().to_string();
     insta::assert_snapshot!(read(b"[world]\nname = \"house\""), @"this is not a state file");
     insta::assert_snapshot!(read(b""), @"this is not a state file");
     insta::assert_snapshot!(read(&state().to_bytes().unwrap()[..20]), @"the state file is damaged: its checksum does not fit");
-    // A later version of the format, with a checksum as this version has it.
-    let mut later = state().to_bytes().unwrap();
-    later[8] = 12;
-    let checksum = xxhash_rust::xxh3::xxh3_64_with_seed(&later[20..], 12);
-    later[12..20].copy_from_slice(&checksum.to_le_bytes());
-    insta::assert_snapshot!(read(&later), @"this state file has version 12 of the format, and this program reads version 1");
+    // Another version of the format, and another layout, with a checksum as this version has it.
+    let mut other = state().to_bytes().unwrap();
+    other[8] = 12;
+    let checksum = xxhash_rust::xxh3::xxh3_64_with_seed(&other[36..], 12);
+    other[28..36].copy_from_slice(&checksum.to_le_bytes());
+    insta::assert_snapshot!(read(&other), @"this state file has version 12 of the format, and this program reads version 1");
+    let mut other = state().to_bytes().unwrap();
+    other[12] ^= 1;
+    insta::assert_snapshot!(read(&other), @"this state file has another layout: until version 0.1.0, only builds with the same layout read it; map the place again");
 }
 
 proptest! {
@@ -162,10 +174,9 @@ proptest! {
         place in any::<prop::sample::Index>(),
         bit in 0..8_u8,
     ) {
-        let facts = Facts::default().with("world", "house");
-        let state = State::default().with("mapper", facts, snapshot);
+        let state = State { surfaces: snapshot, ..State::default() };
         let whole = state.to_bytes().unwrap();
-        prop_assert_eq!(State::from_bytes(&whole), Ok(state));
+        prop_assert_eq!(State::from_bytes(&whole).unwrap(), state);
         let mut flipped = whole.clone();
         flipped[place.index(whole.len())] ^= 1 << bit;
         prop_assert!(State::from_bytes(&flipped).is_err());
@@ -173,26 +184,19 @@ proptest! {
     }
 }
 
-/// What was learned outlives a default: it is refused only where a person has chosen another setting.
 #[test]
-fn a_changed_default_is_accepted_and_another_choice_is_not() {
-    let settings = |gap: f64| BTreeMap::from([("max_gap", gap)]);
-    let facts = |gap: f64, default: f64| {
-        Facts::default().with_learned_settings("mapper", &settings(gap), Some(&settings(default)))
+fn settings_that_must_agree_are_refused_and_others_are_a_note() {
+    let settings = |estimator: &str, gap: f64| {
+        let mapper = BTreeMap::from([("estimator", estimator.to_owned()), ("max_gap", gap.to_string())]);
+        SavedSettings::default().with("world", &"house").with("mapper", &mapper)
     };
-    let is_read = |saved: Facts, now: &Facts| {
-        State::default().with("mapper", saved, vec![]).section("mapper", now).is_ok()
-    };
-    assert!(is_read(facts(8.0, 8.0), &facts(9.0, 9.0)), "the default of a later version");
-    assert!(is_read(facts(8.0, 7.0), &facts(8.0, 8.0)), "the choice became the default");
-    assert!(!is_read(facts(8.0, 7.0), &facts(9.0, 9.0)), "chosen, and now left out");
-    assert!(!is_read(facts(8.0, 8.0), &facts(9.0, 8.0)), "chosen now");
-    let more = facts(9.0, 9.0).with_learned_settings(
-        "new",
-        &BTreeMap::from([("a", 1)]),
-        Some(&BTreeMap::from([("a", 1)])),
-    );
-    assert!(is_read(facts(8.0, 8.0), &more), "a setting that did not exist");
-    assert!(is_read(more.clone(), &facts(8.0, 8.0)), "a setting that exists no more");
-    assert!(!is_read(facts(8.0, 8.0), &more.with("world", "house")));
+    let saved = settings("paper", 8.0);
+    assert_eq!(saved.get::<String>("world").as_deref(), Some("house"));
+    saved.check(&settings("paper", 8.0)).unwrap();
+    assert_eq!(saved.agree(&settings("paper", 8.0)).unwrap(), None);
+    insta::assert_snapshot!(saved.agree(&settings("paper", 9.0)).unwrap().unwrap(), @"other settings were used so far, those of this run count: mapper.max_gap = `8`");
+    let refused = |result: Result<(), StateError>| result.unwrap_err().to_string();
+    insta::assert_snapshot!(refused(saved.check(&settings("paper", 9.0))), @"the state is of another run: `mapper.max_gap` is `8` there, and `9` here");
+    insta::assert_snapshot!(refused(saved.agree(&settings("shared-prior", 9.0)).map(drop)), @"the state is of another run: `mapper.estimator` is `paper` there, and `shared-prior` here");
+    insta::assert_snapshot!(refused(saved.check(&SavedSettings::default().with("world", &"house"))), @"the state is of another run: `mapper.estimator` is `paper` there, and not set here");
 }

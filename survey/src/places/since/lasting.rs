@@ -1,10 +1,11 @@
 use crate::ChangeLog;
+use crate::patches::connected;
 use crate::places::passages::{Key, cell_key};
 use interfaces::CellState;
 use mapper::{Mapper, ThingKind};
-use nalgebra::{Point2, Vector2};
+use nalgebra::Vector2;
 use serde::Serialize;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Cells are those of one thing if they are at most this far apart, m.
 const APART_M: f64 = 0.15;
@@ -36,34 +37,24 @@ pub(super) fn lasting(mapper: &Mapper, log: &ChangeLog, touched: &BTreeMap<Key, 
         let is_still = last_s.is_some_and(|last_s| seen.last_seen - last_s >= STAYS_S);
         is_still && seen.watched_blocked >= STAYS_S && seen.events() <= MAX_CHANGES
     };
-    let mut left: BTreeMap<Key, (usize, bool)> = BTreeMap::new();
+    let (mut gone, mut new) = (BTreeSet::new(), BTreeSet::new());
     for index in mapper.changed() {
-        let key = cell_key(frame, index);
-        let Some(was_blocked) = touched.get(&key).copied() else { continue };
+        let Some(was_blocked) = touched.get(&cell_key(frame, index)).copied() else { continue };
         let is_other = is_other(mapper.states().cells()[index], was_blocked);
         if is_other && stays(&index) && !is_of_door(mapper, index) {
-            left.insert(key, (index, !was_blocked));
+            (if was_blocked { &mut gone } else { &mut new }).insert(index);
         }
     }
+    let reach = (APART_M / frame.resolution_m()).round().max(1.0) as i32;
     let mut found = Vec::new();
-    while let Some((key, (index, is_new))) = left.pop_first() {
-        let reach = (APART_M / frame.resolution_m()).round().max(1.0) as i32;
-        let (mut keys, mut cells, mut next) = (vec![key], vec![index], 0);
-        while let Some((x, y)) = keys.get(next).copied() {
-            next += 1;
-            for beside in (-reach..=reach).flat_map(|dy| (-reach..=reach).map(move |dx| (x + dx, y + dy))) {
-                if left.get(&beside).is_some_and(|(_, other)| *other == is_new)
-                    && let Some((index, _)) = left.remove(&beside)
-                {
-                    keys.push(beside);
-                    cells.push(index);
-                }
-            }
+    for (is_new, mut left) in [(false, gone), (true, new)] {
+        while let Some(first) = left.pop_first() {
+            let cells = connected(frame, first, reach, &mut left);
+            let centers = cells.iter().map(|index| frame.center(frame.cell(*index)).coords);
+            let middle = centers.sum::<Vector2<f64>>() / cells.len() as f64;
+            let area_m2 = cells.len() as f64 * frame.resolution_m().powi(2);
+            found.push(Lasting { is_new, x_m: middle.x, y_m: middle.y, area_m2 });
         }
-        let centers = cells.iter().map(|index| frame.center(frame.cell(*index)).coords);
-        let Point2 { coords } = Point2::from(centers.sum::<Vector2<f64>>() / cells.len() as f64);
-        let area_m2 = cells.len() as f64 * frame.resolution_m().powi(2);
-        found.push(Lasting { is_new, x_m: coords.x, y_m: coords.y, area_m2 });
     }
     found.retain(|lasting| lasting.area_m2 >= MIN_M2);
     found.sort_by(|a, b| b.area_m2.total_cmp(&a.area_m2));

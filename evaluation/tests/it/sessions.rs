@@ -4,18 +4,14 @@ use agent::{Agent, Policy};
 use controller::{Controller, DiffDrive};
 use evaluation::physics_trial::{self, PhysicsTrial};
 use evaluation::trial_state::TrialFacts;
-use interfaces::{PoseMode, World, heading_rad, pose};
+use interfaces::{World, heading_rad, pose};
 use mapper::Mapper;
-use robot::state::{Facts, LearnedFacts, State};
+use robot::state::{SavedSettings, Sessions, State, learned, restore};
 use robot::{Autonomous, Settings};
 use sim::physics::{PhysicsWorld, WorldSpec};
+use worldfile::shipped;
 
 type Trial = PhysicsTrial<Autonomous<Agent, Controller<DiffDrive>>>;
-
-fn spec(name: &str) -> WorldSpec {
-    let file = format!("{}/../worlds/{name}.toml", env!("CARGO_MANIFEST_DIR"));
-    worldfile::physics::parse_world(name, &std::fs::read_to_string(file).unwrap()).unwrap()
-}
 
 fn trial(spec: &WorldSpec, seed: u64, settings: &Settings, policy: &str) -> Trial {
     let agent = settings.agent(&policy.parse::<Policy>().unwrap(), seed).unwrap();
@@ -36,9 +32,10 @@ fn a_run_that_goes_on_equals_one_that_was_not_interrupted() {
         ("yard", "fresh-map"),
     ];
     for (name, policy) in policies {
-        let spec = spec(name);
+        let spec = shipped::load(name).unwrap();
         let settings = physics_trial::settings(&spec).unwrap();
-        let facts = TrialFacts::new(&spec, 100, &settings, Facts::default());
+        let facts = TrialFacts::new(&spec, 100, &settings, SavedSettings::default());
+        let sessions = Sessions::of("trial");
         let mut whole = trial(&spec, 100, &settings, policy);
         whole.run(40.0).unwrap();
         let mut state = State::default();
@@ -49,12 +46,12 @@ fn a_run_that_goes_on_equals_one_that_was_not_interrupted() {
                 part.restore(&again(&state), &facts).unwrap();
             }
             part.run(end_s).unwrap();
-            state = part.snapshot(&facts).into_state();
+            state = part.snapshot(&facts, &sessions)();
             if end_s == 40.0 {
                 let json = |trial: &Trial| serde_json::to_string(&trial.results()).unwrap();
                 assert_eq!(json(&part), json(&whole), "{name}, {policy}");
                 assert!(part.robot.mapper.states() == whole.robot.mapper.states());
-                assert!(state == whole.snapshot(&facts).into_state(), "{name}, {policy}");
+                assert!(state == whole.snapshot(&facts, &sessions)(), "{name}, {policy}");
             }
         }
     }
@@ -62,17 +59,11 @@ fn a_run_that_goes_on_equals_one_that_was_not_interrupted() {
 
 const GAP_S: f64 = 3.0 * 86_400.0;
 
-fn learned_facts(spec: &WorldSpec, settings: &Settings) -> LearnedFacts {
-    let localizer = (settings.pose == PoseMode::Localized).then_some(&settings.localizer);
-    LearnedFacts::new(&settings.mapper, &spec.frame, settings.pose.name(), localizer)
-}
-
 /// What a run has learned, as another run with another seed reads it from a file.
 fn saved(first: &mut Trial, spec: &WorldSpec, settings: &Settings) -> Trial {
-    let facts = learned_facts(spec, settings);
-    let state = facts.snapshot(&mut first.robot).added_to(State::default());
+    let state = learned(&mut first.robot, settings, &Sessions::of("trial"))();
     let mut second = trial(spec, 101, settings, "curious");
-    facts.restore(&again(&state), &mut second.robot).unwrap();
+    restore(&again(&state), &mut second.robot, settings).unwrap();
     assert!(second.robot.mapper.states() == first.robot.mapper.states());
     second
 }
@@ -97,7 +88,7 @@ fn exposure(mapper: &Mapper) -> [f64; 3] {
 
 #[test]
 fn two_sessions_add_up_with_the_time_between_as_a_gap() {
-    let here = spec("house");
+    let here = shipped::load("house").unwrap();
     let there = moved(&here);
     let settings = physics_trial::settings(&here).unwrap();
     let mut first = trial(&here, 100, &settings, "curious");
@@ -128,9 +119,8 @@ fn two_sessions_add_up_with_the_time_between_as_a_gap() {
 
 #[test]
 fn a_robot_finds_itself_in_the_map_that_it_has_saved() {
-    let here = spec("drifting_house");
+    let here = shipped::load("drifting_house").unwrap();
     let settings = physics_trial::settings(&here).unwrap();
-    let facts = learned_facts(&here, &settings);
     // The frame of the world is that of the map, so that both sessions have the same one.
     let start = |spec: &WorldSpec, seed: u64| {
         let mut world = PhysicsWorld::new(spec, seed);
@@ -143,9 +133,9 @@ fn a_robot_finds_itself_in_the_map_that_it_has_saved() {
         let turn = robot.step(world.sense()).unwrap();
         world.act(&turn.command);
     }
-    let state = facts.snapshot(&mut robot).added_to(State::default());
+    let state = learned(&mut robot, &settings, &Sessions::of("trial"))();
     let (mut world, mut robot) = start(&moved(&here), 101);
-    facts.restore(&again(&state), &mut robot).unwrap();
+    restore(&again(&state), &mut robot, &settings).unwrap();
     robot.begin_session(0.0, Some(GAP_S));
     let (mut certain, mut first_s, mut error) = (0, f64::INFINITY, 0.0_f64);
     while world.time_s() <= 20.0 {

@@ -16,7 +16,7 @@ const MINUTES: usize = 601;
 
 /// Two rooms of the same size, and a door between them that repeats these events; the robot is on patrol for a twentieth of the time.
 fn world() -> WorldSpec {
-    let page = include_str!("../../docs/worlds.md");
+    let page = include_str!("../../../docs/worlds.md");
     let begin = page.find("name = \"two rooms\"").unwrap();
     let text = &page[begin..begin + page[begin..].find("```").unwrap()];
     let (before, rest) = text.split_once("[obstacle.schedule]").unwrap();
