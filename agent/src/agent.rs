@@ -23,7 +23,6 @@ pub struct Agent {
     unseen: Option<UnseenSpace>,
     /// The travel time to each cell, for strategies that need it.
     travel: Vec<f64>,
-    reward: Reward,
     rng: RandomStream,
     /// The index of the strategy that sampled the present goal; `None` for a look into unseen space.
     current: Option<usize>,
@@ -80,7 +79,6 @@ impl Agent {
                 .looks_at_unseen
                 .then(|| UnseenSpace::new(settings.patch_cells, settings.sensor_radius_m)),
             travel: Vec::new(),
-            reward: settings.reward,
             rng,
             current: None,
             trajectory: Vec::new(),

@@ -1,32 +1,5 @@
 //! The connection by DDS: the only part that knows the client library.
 
-/// Calls a macro with the variant of [`Message`] that a topic carries.
-macro_rules! by_type {
-    ($topic:expr, $open:ident) => {
-        match $topic {
-            Topic::Scan => $open!(Scan),
-            Topic::Odometry | Topic::GroundTruth => $open!(Odometry),
-            Topic::Transforms | Topic::StaticTransforms => $open!(Transforms),
-            Topic::Clock => $open!(Clock),
-            Topic::Velocity => $open!(Twist),
-            Topic::StampedVelocity => $open!(TwistStamped),
-            Topic::Resume => $open!(Bool),
-            Topic::Map | Topic::ChangeMap | Topic::PredictedMap => $open!(Grid),
-            Topic::RateMap | Topic::ExpiryMap => $open!(Grid),
-            Topic::SpeedMask | Topic::KeepoutMask => $open!(Grid),
-            Topic::SpeedFilterInfo | Topic::KeepoutFilterInfo => $open!(FilterInfo),
-            Topic::EstimatedPose | Topic::InitialPose => $open!(PoseWithCovariance),
-            Topic::Log => $open!(Log),
-            Topic::ParameterEvents => $open!(ParameterEvent),
-            Topic::TransitionEvents => $open!(TransitionEvent),
-            Topic::Diagnostics => $open!(Diagnostics),
-            Topic::MapUpdates => $open!(GridUpdate),
-            Topic::Path => $open!(Path),
-            Topic::GoalPose => $open!(Pose),
-        }
-    };
-}
-
 mod actions;
 mod discovery;
 mod others;

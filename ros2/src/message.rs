@@ -195,8 +195,9 @@ pub(crate) fn transform(stamp: Time, (parent, child): (&str, &str), transform: P
     Message::Transforms(Transforms { transforms: vec![transform] })
 }
 
-/// A message of any type.
-#[derive(Clone, Debug, PartialEq)]
+/// A message of any type. Only its content is written.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
 pub enum Message {
     /// A scan of a laser.
     Scan(LaserScan),

@@ -113,8 +113,9 @@ pub enum Call {
     Parameters(Vec<Parameter>),
 }
 
-/// What a service answers. Services with the same fields have the same variant.
-#[derive(Clone, Debug, PartialEq)]
+/// What a service answers. Services with the same fields have the same variant. Only its content is written.
+#[derive(Clone, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
+#[serde(untagged)]
 pub enum Reply {
     /// Whether it is done, and one sentence.
     Trigger(Trigger),

@@ -1,3 +1,4 @@
+use interfaces::{Event, Transition};
 use mapper::{Growth, Mapper};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -5,6 +6,13 @@ use std::collections::BTreeMap;
 /// A time, short in a state file.
 #[derive(Clone, Copy, Debug, Deserialize, Serialize)]
 struct Time(#[serde(with = "interfaces::serde_time")] f64);
+
+/// The changes of the last update: the index of each cell, and what happened.
+pub(crate) fn events(mapper: &Mapper) -> impl Iterator<Item = (usize, Event)> {
+    let changed =
+        move |transition: &Transition| mapper.frame().index(transition.cell).zip(transition.event());
+    mapper.transitions().iter().filter_map(changed)
+}
 
 /// When the cells changed last, by index.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
@@ -16,14 +24,9 @@ pub struct ChangeLog {
 impl ChangeLog {
     /// Notes the changes of the last update.
     pub fn note(&mut self, mapper: &Mapper) {
-        for transition in mapper.transitions() {
-            if transition.event().is_none() {
-                continue;
-            }
+        for (index, _) in events(mapper) {
             self.events += 1;
-            if let Some(index) = mapper.frame().index(transition.cell) {
-                self.last_s.insert(index, Time(mapper.time()));
-            }
+            self.last_s.insert(index, Time(mapper.time()));
         }
     }
 

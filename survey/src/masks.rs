@@ -35,7 +35,7 @@ fn slowness(rate_hz: f64) -> u8 {
 }
 
 /// The cells of doors and furniture.
-fn cells_of_things(mapper: &Mapper, is_wanted: impl Fn(&ThingKind) -> bool) -> Vec<u32> {
+pub(crate) fn cells_of_things(mapper: &Mapper, is_wanted: impl Fn(&ThingKind) -> bool) -> Vec<u32> {
     let things = mapper.things().iter().filter(|thing| is_wanted(&thing.kind));
     let mut cells: Vec<u32> = things.flat_map(|thing| thing.cells.iter().copied()).collect();
     cells.sort_unstable();

@@ -4,6 +4,7 @@ mod corrected;
 mod refused;
 mod scaled;
 
+use crate::places::{PlaceBook, places};
 use crate::route::frame;
 use crate::{
     ChangeLog, FirstPass, LogEntry, PassError, Route, Stage, Survey, SurveyError, SurveySettings, masks,
@@ -34,29 +35,25 @@ fn scan(ranges_m: Vec<f32>) -> Scan {
     }
 }
 
-/// The places of a map whose passages were not counted.
-fn places(mapper: &Mapper, log: &ChangeLog) -> Vec<crate::Place> {
-    crate::places::places(mapper, log, &crate::places::PlaceBook::of_map(mapper))
-}
-
 /// A map of 10 × 1 cells in which the cells from 2 to 4 are blocked for `blocked` of 10 readings, 100 times.
-fn changing(blocked: usize) -> (Mapper, ChangeLog) {
+fn changing(blocked: usize) -> (Mapper, ChangeLog, PlaceBook) {
     let frame = GridFrame::new(Point2::origin(), 0.1, 10, 1).unwrap();
     let mut mapper = Mapper::new(&MapperSettings::default(), frame).unwrap();
-    let mut log = ChangeLog::default();
+    let (mut log, mut book) = (ChangeLog::default(), PlaceBook::default());
     for time in 0..1000 {
         let is_blocked = |x: i32| (2..5).contains(&x) && time % 10 < blocked || x == 9;
         let cells = (0..10).map(|x| (interfaces::Cell { x, y: 0 }, is_blocked(x))).collect();
         mapper.update(&CellReading { time: time as f64, pose: Isometry2::identity(), cells }).unwrap();
         log.note(&mapper);
+        book.note(&mapper);
     }
-    (mapper, log)
+    (mapper, log, book)
 }
 
 #[test]
 fn a_place_says_where_how_often_and_when_last() {
-    let (mapper, log) = changing(3);
-    let places = places(&mapper, &log);
+    let (mapper, log, book) = changing(3);
+    let places = places(&mapper, &log, &book);
     let [place] = &places[..] else { panic!("{places:?}") };
     assert!((place.x_m - 0.35).abs() < 1e-9 && (place.area_m2 - 0.03).abs() < 1e-9, "{place:?}");
     assert!((place.low_m[0] - 0.2).abs() < 1e-9 && (place.high_m[0] - 0.5).abs() < 1e-9, "{place:?}");
@@ -72,7 +69,7 @@ fn a_place_says_where_how_often_and_when_last() {
 #[test]
 fn movers_are_not_permanent_and_masks_say_where_they_are() {
     for (blocked, is_usually) in [(3, false), (8, true)] {
-        let (mapper, _) = changing(blocked);
+        let (mapper, ..) = changing(blocked);
         let map = permanent(&mapper);
         assert_eq!(map.cells()[3], CellState::Free);
         assert_eq!(map.cells()[9], CellState::Blocked);

@@ -1,7 +1,6 @@
 //! What the node asks of others: Nav2's action NavigateToPose, and the service of `nav2_route` that closes edges and adjusts their
 //! costs.
 
-use super::services::Flag;
 use super::{WAIT, profile};
 use crate::link::Navigation;
 use crate::message::{DynamicEdges, PoseStamped, Quality};
@@ -28,6 +27,11 @@ struct Goal {
 #[derive(Clone, Debug, Deserialize, Serialize)]
 struct Any {}
 
+/// A yes or no in a message.
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
+struct Flag(bool);
+
+impl Message for Flag {}
 impl Message for Goal {}
 impl Message for Any {}
 impl Message for DynamicEdges {}

@@ -29,24 +29,7 @@ macro_rules! messages {
     ($($kind:ty),* $(,)?) => { $(impl Message for $kind {})* };
 }
 
-messages!(
-    wire::Nothing,
-    wire::Trigger,
-    wire::Deserialize,
-    wire::Labelled,
-    wire::Transition,
-    wire::Prefixes,
-    wire::Listed,
-    wire::Parameter,
-    wire::ParameterValue,
-    wire::SetResult,
-    wire::Description,
-    Flag,
-);
-
-/// A yes or no in a message.
-#[derive(Clone, Copy, Debug, serde::Deserialize, serde::Serialize)]
-pub(super) struct Flag(pub(super) bool);
+messages!(wire::Nothing, wire::Deserialize, wire::Labelled, wire::Prefixes, wire::Parameter, Reply);
 
 /// A request, or why it is none.
 struct Received {
@@ -191,63 +174,33 @@ fn server(
     mapping: ServiceMapping,
 ) -> anyhow::Result<(BoxStream<'static, Received>, Send)> {
     let at = (service, name, mapping);
-    macro_rules! serve {
-        ($request:ty => $call:expr, $answer:ty = $variant:ident) => {
-            serve!($request => $call, $answer, |reply| match reply {
-                Reply::$variant(content) => Some(content),
-                _ => None,
-            })
-        };
-        ($request:ty => $call:expr, $answer:ty, $content:expr) => {
-            serve::<$request, $answer>(node, at, $call, $content)
-        };
-    }
-    let flag = |reply| match reply {
-        Reply::Success(is_done) => Some(Flag(is_done)),
-        _ => None,
-    };
     match service {
-        Service::SaveState => serve!(wire::Nothing => |_| Call::Nothing, wire::Trigger = Trigger),
-        Service::SaveMap | Service::SerializeMap => serve!(String => Call::Name, u8 = Code),
-        Service::DeserializeMap => serve!(wire::Deserialize => Call::Deserialize, u8 = Code),
-        Service::ChangeState => serve!(wire::Labelled => Call::Transition, Flag, flag),
-        Service::GetState => serve!(wire::Nothing => |_| Call::Nothing, wire::Labelled = State),
-        Service::GetAvailableStates => {
-            serve!(wire::Nothing => |_| Call::Nothing, Vec<wire::Labelled> = States)
+        Service::SaveState
+        | Service::GetState
+        | Service::GetAvailableStates
+        | Service::GetAvailableTransitions
+        | Service::GetTransitionGraph => serve(node, at, |_: wire::Nothing| Call::Nothing),
+        Service::SaveMap | Service::SerializeMap => serve(node, at, Call::Name),
+        Service::DeserializeMap => serve(node, at, Call::Deserialize),
+        Service::ChangeState => serve(node, at, Call::Transition),
+        Service::GetParameters | Service::GetParameterTypes | Service::DescribeParameters => {
+            serve(node, at, Call::Names)
         }
-        Service::GetAvailableTransitions | Service::GetTransitionGraph => {
-            serve!(wire::Nothing => |_| Call::Nothing, Vec<wire::Transition> = Transitions)
-        }
-        Service::GetParameters => serve!(Vec<String> => Call::Names, Vec<wire::ParameterValue> = Values),
-        Service::GetParameterTypes => serve!(Vec<String> => Call::Names, Vec<u8> = Types),
-        Service::SetParameters => {
-            serve!(Vec<wire::Parameter> => Call::Parameters, Vec<wire::SetResult> = Results)
-        }
-        Service::SetParametersAtomically => {
-            serve!(Vec<wire::Parameter> => Call::Parameters, wire::SetResult = Result)
-        }
-        Service::ListParameters => serve!(wire::Prefixes => Call::Prefixes, wire::Listed = Listed),
-        Service::DescribeParameters => {
-            serve!(Vec<String> => Call::Names, Vec<wire::Description> = Descriptions)
-        }
+        Service::SetParameters | Service::SetParametersAtomically => serve(node, at, Call::Parameters),
+        Service::ListParameters => serve(node, at, Call::Prefixes),
     }
 }
 
-fn serve<Q, A>(
+fn serve<Q: Message + Clone + std::marker::Send + Sync + 'static>(
     node: &mut Node,
     (service, name, mapping): (Service, &str, ServiceMapping),
     call: fn(Q) -> Call,
-    content: fn(Reply) -> Option<A>,
-) -> anyhow::Result<(BoxStream<'static, Received>, Send)>
-where
-    Q: Message + Clone + std::marker::Send + Sync + 'static,
-    A: Message + std::marker::Send + Sync + 'static,
-{
+) -> anyhow::Result<(BoxStream<'static, Received>, Send)> {
     let quality = profile(&Quality::DEFAULT, WhenFull::Wait(WAIT));
     let (package, kind) = service.type_name();
     let (kind, name) = (ServiceTypeName::new(package, kind), Name::parse(name)?);
-    let server: Arc<Server<Q, A>> =
-        Arc::new(node.create_server(mapping, &name, &kind, quality.clone(), quality)?);
+    let server: Server<Q, Reply> = node.create_server(mapping, &name, &kind, quality.clone(), quality)?;
+    let server = Arc::new(server);
     let sender = server.clone();
     let stream = unfold(server, move |server| async move {
         let taken = server.async_receive_request().await;
@@ -255,10 +208,8 @@ where
         Some((Received { service, content }, server))
     });
     let send = move |id, reply| {
-        if let Some(content) = content(reply) {
-            // The one who asked may be gone.
-            sender.send_response(id, content).ok();
-        }
+        // The one who asked may be gone.
+        sender.send_response(id, reply).ok();
     };
     Ok((stream.boxed(), Box::new(send)))
 }

@@ -5,6 +5,7 @@ use super::others::Endpoints;
 use super::profile;
 use crate::link::Event;
 use crate::message::{Message, Quality, Topic};
+use anyhow::bail;
 use futures::executor::block_on_stream;
 use futures::stream::{BoxStream, StreamExt, select_all, unfold};
 use ros2_client::qos::WhenFull;
@@ -33,13 +34,17 @@ pub(super) fn start(
 ) -> anyhow::Result<()> {
     let mut streams = Vec::new();
     for (topic, name, quality) in topics {
-        let at = (*topic, name.as_str(), quality);
-        macro_rules! subscription {
-            ($variant:ident) => {
-                open(endpoints.node(), at, Message::$variant)
-            };
-        }
-        streams.push(by_type!(topic, subscription)?);
+        let (node, at) = (endpoints.node(), (*topic, name.as_str(), quality));
+        streams.push(match topic {
+            Topic::Scan => open(node, at, Message::Scan),
+            Topic::Odometry => open(node, at, Message::Odometry),
+            Topic::Transforms | Topic::StaticTransforms => open(node, at, Message::Transforms),
+            Topic::Velocity => open(node, at, Message::Twist),
+            Topic::StampedVelocity => open(node, at, Message::TwistStamped),
+            Topic::Resume => open(node, at, Message::Bool),
+            Topic::InitialPose => open(node, at, Message::PoseWithCovariance),
+            _ => bail!("no node subscribes `{name}`"),
+        }?);
     }
     let mut filter = Filter { context: context.clone(), own, known: BTreeMap::new() };
     let to = to.clone();

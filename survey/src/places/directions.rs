@@ -5,6 +5,7 @@
 //! seen before.
 
 use super::passages::{Key, SIDE_M, cell_key, spot_key};
+use crate::change_log::events;
 use interfaces::Event;
 use mapper::{Mapper, share_interval};
 use nalgebra::{Matrix2, Vector2};
@@ -129,9 +130,7 @@ impl Directions {
             }
             !is_over
         });
-        for transition in mapper.transitions() {
-            let is_block = transition.event() == Some(Event::Block);
-            let Some(index) = frame.index(transition.cell).filter(|_| is_block) else { continue };
+        for (index, _) in events(mapper).filter(|(_, event)| *event == Event::Block) {
             let (cell, own) = (cell_key(frame, index), spot_key(frame, index));
             for spot in around(own) {
                 let at =

@@ -20,14 +20,16 @@ mod tests;
 pub(crate) use book::PlaceBook;
 pub use directions::Direction;
 pub use line::is_line;
+pub(crate) use names::still_names;
 pub use names::{PlaceName, StillName};
 pub(crate) use since::since;
 pub use since::{Lasting, PlaceSince, Since, Trend};
 
 use crate::ChangeLog;
+use crate::outlook::doors;
 use crate::permanent::share_blocked;
 use groups::{Group, groups};
-use mapper::{Mapper, RateDistribution, ThingKind};
+use mapper::{Mapper, RateDistribution};
 use nalgebra::Point2;
 use passages::Spot;
 use serde::Serialize;
@@ -188,19 +190,11 @@ pub(crate) fn places(mapper: &Mapper, log: &ChangeLog, book: &PlaceBook) -> Vec<
 /// How lively a place is: the lower end of the interval of the openings of a door, or of the passages, so that places that were
 /// seen for seconds do not come first. What is smaller than a body can be noise, and counts for less.
 fn liveliness(mapper: &Mapper, place: &Place) -> f64 {
-    let thing = mapper.things().iter().find(|thing| place.kind.thing() == Some(thing.id));
-    let openings = thing.and_then(|thing| match &thing.kind {
-        ThingKind::Door(door) => door.statistics.interval_of_openings_per_hour(MASS),
-        ThingKind::Furniture(_) => None,
-    });
+    let door = doors(mapper).find(|(id, _)| place.kind.thing() == Some(*id));
+    let openings = door.and_then(|(_, door)| door.statistics.interval_of_openings_per_hour(MASS));
     let passages = || place.rates.as_ref()?.passages_per_hour_90;
     let least_per_hour = openings.map(|(low, _)| low).or_else(|| passages().map(|[low, _]| low));
     (place.area_m2 / BODY_M2).min(1.0) * least_per_hour.unwrap_or_default()
-}
-
-/// The names that none of the places has.
-pub(crate) fn still_names(mapper: &Mapper, book: &PlaceBook, places: &[Place]) -> Vec<StillName> {
-    names::still(mapper, places, book.names())
 }
 
 fn place(mapper: &Mapper, log: &ChangeLog, group: &Group, spot: Spot) -> Option<Place> {
@@ -251,8 +245,7 @@ fn place(mapper: &Mapper, log: &ChangeLog, group: &Group, spot: Spot) -> Option<
 
 fn kind(mapper: &Mapper, group: &Group, rates: &PlaceRates) -> PlaceKind {
     if let Some(thing) = group.thing {
-        let is_door = |found: &mapper::Thing| found.id == thing && matches!(found.kind, ThingKind::Door(_));
-        let is_door = mapper.things().iter().any(is_door);
+        let is_door = doors(mapper).any(|(id, _)| id == thing);
         return if is_door { PlaceKind::Door { thing } } else { PlaceKind::Furniture { thing } };
     }
     let stays = |index: &usize| {

@@ -1,4 +1,4 @@
-use super::{Place, PlaceKind};
+use super::{Place, PlaceBook, PlaceKind};
 use mapper::Mapper;
 use nalgebra::Point2;
 use serde::{Deserialize, Serialize};
@@ -63,10 +63,10 @@ pub struct StillName {
 }
 
 /// The names that none of the places has.
-pub(super) fn still(mapper: &Mapper, places: &[Place], names: &[PlaceName]) -> Vec<StillName> {
+pub(crate) fn still_names(mapper: &Mapper, book: &PlaceBook, places: &[Place]) -> Vec<StillName> {
     let is_free = |name: &&PlaceName| places.iter().all(|place| place.name.as_ref() != Some(&name.name));
     let still = |name: &PlaceName| StillName { name: name.clone(), observed_s: observed_s(mapper, name) };
-    names.iter().filter(is_free).map(still).collect()
+    book.names().iter().filter(is_free).map(still).collect()
 }
 
 fn observed_s(mapper: &Mapper, name: &PlaceName) -> Option<f64> {

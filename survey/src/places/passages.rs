@@ -3,6 +3,7 @@
 //! A body that passes changes many cells at about the same time, and one cell more than once. It counts once: a passage begins
 //! when a cell becomes blocked in view in a spot where nothing was.
 
+use crate::change_log::events;
 use interfaces::{Event, GridFrame};
 use mapper::Mapper;
 use serde::{Deserialize, Serialize};
@@ -105,10 +106,7 @@ impl Passages {
     /// Counts the changes of the last reading.
     pub(super) fn note(&mut self, mapper: &Mapper) {
         let (frame, now_s) = (mapper.frame(), mapper.time());
-        let changed =
-            mapper.transitions().iter().filter_map(|transition| Some((transition, transition.event()?)));
-        for (transition, event) in changed {
-            let Some(index) = frame.index(transition.cell) else { continue };
+        for (index, event) in events(mapper) {
             let seen = mapper.statistics(index);
             let found = seen.block_events_after_gap + seen.free_events_after_gap;
             let known = self.after_gap.entry(cell_key(frame, index)).or_default();

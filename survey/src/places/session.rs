@@ -1,4 +1,5 @@
 use super::passages::{Key, cell_key, spot_key};
+use crate::change_log::events;
 use interfaces::Event;
 use mapper::Mapper;
 use serde::{Deserialize, Serialize};
@@ -44,9 +45,7 @@ impl Session {
         if self.log == 0 {
             return; // there is nothing to compare with
         }
-        for transition in mapper.transitions() {
-            let event = transition.event();
-            let Some((event, index)) = event.zip(mapper.frame().index(transition.cell)) else { continue };
+        for (index, event) in events(mapper) {
             let entry = self.touched.entry(cell_key(mapper.frame(), index));
             entry.or_insert(event == Event::Free);
         }

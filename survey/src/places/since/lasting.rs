@@ -1,4 +1,5 @@
 use crate::ChangeLog;
+use crate::masks::cells_of_things;
 use crate::patches::connected;
 use crate::places::passages::{Key, cell_key};
 use interfaces::CellState;
@@ -37,13 +38,15 @@ pub(super) fn lasting(mapper: &Mapper, log: &ChangeLog, touched: &BTreeMap<Key, 
         let is_still = last_s.is_some_and(|last_s| seen.last_seen - last_s >= STAYS_S);
         is_still && seen.watched_blocked >= STAYS_S && seen.events() <= MAX_CHANGES
     };
-    let (mut gone, mut new) = (BTreeSet::new(), BTreeSet::new());
-    for index in mapper.changed() {
-        let Some(was_blocked) = touched.get(&cell_key(frame, index)).copied() else { continue };
-        let is_other = is_other(mapper.states().cells()[index], was_blocked);
-        if is_other && stays(&index) && !is_of_door(mapper, index) {
-            (if was_blocked { &mut gone } else { &mut new }).insert(index);
-        }
+    let of_doors = cells_of_things(mapper, |kind| matches!(kind, ThingKind::Door(_)));
+    let lasts = |index: &usize| stays(index) && of_doors.binary_search(&(*index as u32)).is_err();
+    let [mut gone, mut new] = [BTreeSet::new(), BTreeSet::new()];
+    for index in mapper.changed().filter(lasts) {
+        match (touched.get(&cell_key(frame, index)), mapper.states().cells()[index]) {
+            (Some(true), CellState::Free) => gone.insert(index),
+            (Some(false), CellState::Blocked) => new.insert(index),
+            _ => false,
+        };
     }
     let reach = (APART_M / frame.resolution_m()).round().max(1.0) as i32;
     let mut found = Vec::new();
@@ -59,17 +62,4 @@ pub(super) fn lasting(mapper: &Mapper, log: &ChangeLog, touched: &BTreeMap<Key, 
     found.retain(|lasting| lasting.area_m2 >= MIN_M2);
     found.sort_by(|a, b| b.area_m2.total_cmp(&a.area_m2));
     found
-}
-
-/// Whether a cell is one of a door.
-fn is_of_door(mapper: &Mapper, index: usize) -> bool {
-    let is = |thing: &mapper::Thing| {
-        matches!(thing.kind, ThingKind::Door(_)) && thing.cells.binary_search(&(index as u32)).is_ok()
-    };
-    mapper.things().iter().any(is)
-}
-
-/// Whether the state of a cell is another one than before.
-fn is_other(state: CellState, was_blocked: bool) -> bool {
-    state == if was_blocked { CellState::Free } else { CellState::Blocked }
 }
