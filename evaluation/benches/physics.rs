@@ -3,7 +3,7 @@
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use interfaces::{Twist, World};
-use sim::physics::{Command, Controller, Fleet, FleetSpec, PhysicsWorld, RobotView};
+use sim::physics::{Controller, Fleet, FleetSpec, PhysicsWorld, RobotView, Velocity};
 use std::f64::consts::TAU;
 
 const WORLDS: [&str; 7] = ["four_rooms", "turned_house", "house", "office", "cave", "warehouse", "yard"];
@@ -116,7 +116,7 @@ struct Driver {
 }
 
 impl Controller for Driver {
-    fn drive(&mut self, robot: &RobotView<'_>) -> Option<Command> {
+    fn drive(&mut self, robot: &RobotView<'_>) -> Option<Velocity> {
         let count = if self.reads { robot.sonars().count() } else { 0 };
         let side = |(index, reading): (usize, Option<sim::physics::SonarReading>)| {
             f64::from(reading.map_or(0.0, |reading| reading.range_m).clamp(0.0, 5.0))

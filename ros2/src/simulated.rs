@@ -5,7 +5,7 @@ use crate::message::{Clock, Message, Odometry, Pose, Time, Topic, covariance, he
 use interfaces::{LaserReading, Twist};
 use nalgebra::{Isometry2, Matrix3};
 use ros::{FIRST_STAMP_NS, scan_message};
-use sim::physics::{Command, Controller, Fleet, OdometryError, RobotView, WorldSpec};
+use sim::physics::{Controller, Fleet, OdometryError, RobotView, Velocity, WorldSpec};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
@@ -92,7 +92,7 @@ struct Scans {
 }
 
 impl Controller for Scans {
-    fn drive(&mut self, robot: &RobotView<'_>) -> Option<Command> {
+    fn drive(&mut self, robot: &RobotView<'_>) -> Option<Velocity> {
         if robot.index == self.driven {
             self.reading = robot.reading().cloned();
         }

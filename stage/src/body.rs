@@ -154,7 +154,7 @@ impl Builder<'_, '_> {
             self.sources.warning(place, "no pixel of this picture is dark", "it makes no walls");
             return None;
         };
-        let (low, high): (Vector2<u32>, Vector2<u32>) = (bounds.0.into(), bounds.1.into());
+        let (low, high): (Vector2<u32>, Vector2<u32>) = (bounds.min.into(), bounds.max.into());
         let pixel_m = size_m.component_div(&(high - low).cast());
         let lower_left = -size_m / 2.0 - low.cast().component_mul(&pixel_m);
         Some(FloorPlan { bitmap, pixel_m, origin: at * pose(lower_left.x, lower_left.y, 0.0) })

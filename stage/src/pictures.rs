@@ -29,7 +29,7 @@ impl Pictures {
             None => {
                 let bytes = files.read(path, MAX_FILE_BYTES).map_err(|error| error.to_string())?;
                 let bitmap = Bitmap::decode(&bytes, |pixel| pixel.red < BLOCKED_BELOW);
-                let bitmap = Arc::new(bitmap.map_err(|error| error.to_string())?);
+                let bitmap = Arc::new(bitmap?);
                 self.decoded.insert(path.to_owned(), Arc::clone(&bitmap));
                 bitmap
             }
@@ -38,9 +38,7 @@ impl Pictures {
         if self.pixels > MAX_PIXELS {
             return Err(format!("the bitmaps of this world have more than {MAX_PIXELS} pixels together"));
         }
-        if self.rectangles <= MAX_RECTANGLES {
-            self.rectangles += bitmap.rectangles().len();
-        }
+        self.rectangles += bitmap.rectangles().len();
         if self.rectangles > MAX_RECTANGLES {
             return Err(format!(
                 "the bitmaps of this world make more than {MAX_RECTANGLES} rectangles together"

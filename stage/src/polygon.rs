@@ -103,10 +103,10 @@ fn right_angled(corners: &[Point2<f64>]) -> Option<Cover> {
     let (xs, ys) = (lines(0), lines(1));
     let middle = |lines: &[f64], i: usize| (lines[i] + lines[i + 1]) / 2.0;
     let cells = (0..ys.len() - 1).flat_map(|y| (0..xs.len() - 1).map(move |x| (x, y)));
-    let blocked =
+    let blocked: Vec<bool> =
         cells.map(|(x, y)| contains(&local, &Point2::new(middle(&xs, x), middle(&ys, y)))).collect();
-    let bitmap = Bitmap::new(xs.len() as u32 - 1, ys.len() as u32 - 1, blocked).ok()?;
-    let rectangles = bitmap.rectangles().into_iter().map(|cells| {
+    let bitmap = Bitmap::new(xs.len() as u32 - 1, ys.len() as u32 - 1, &blocked).ok()?;
+    let rectangles = bitmap.rectangles().iter().map(|cells| {
         let corner = |[x, y]: [u32; 2]| Point2::new(xs[x as usize], ys[y as usize]);
         let local = Rectangle::between(corner(cells.min), corner(cells.max));
         Rectangle { pose: frame * local.pose, ..local }

@@ -8,7 +8,6 @@
 mod behaviors;
 mod bodies;
 mod box_tree;
-mod command;
 pub mod convex;
 mod drives;
 mod fleet;
@@ -29,11 +28,11 @@ mod snapshot;
 mod spec;
 #[cfg(test)]
 mod tests;
+mod velocity;
 mod visible_cells;
 mod world;
 
 pub use box_tree::BoxTree;
-pub use command::{Acceleration, Command, Velocity};
 pub use fleet::{Controller, Fleet, LengthError, TeleportError};
 pub use form::Form;
 pub use free_poses::FreePoses;
@@ -51,4 +50,5 @@ pub use spec::{
     Opening, PathSpec, PatrolDaySpec, PatrolSpec, PushedSpec, Repeat, RobotSpec, SonarSpec, WanderSpec,
     WaypointsSpec, WorldSpec,
 };
+pub use velocity::Velocity;
 pub use world::{PhysicsWorld, WorldSnapshot};

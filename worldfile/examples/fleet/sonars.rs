@@ -1,4 +1,4 @@
-use sim::physics::{Command, Controller, RobotView};
+use sim::physics::{Controller, RobotView, Velocity};
 use std::f64::consts::TAU;
 
 /// The robot turns if a sonar ahead measures less than this, m; less the farther the sonar looks to the side.
@@ -9,7 +9,7 @@ const SPEED_MPS: f64 = 0.3;
 pub(crate) struct BySonars;
 
 impl Controller for BySonars {
-    fn drive(&mut self, robot: &RobotView<'_>) -> Option<Command> {
+    fn drive(&mut self, robot: &RobotView<'_>) -> Option<Velocity> {
         let count = robot.sonars().count() as f64;
         let (mut x, mut y, mut is_free) = (0.0, 0.0, true);
         for (index, reading) in robot.sonars().enumerate() {

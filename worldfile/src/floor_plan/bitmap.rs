@@ -1,13 +1,30 @@
+//! From blocked pixels to solid rectangles.
+//!
+//! First the blocked pixels are divided into rectangles: equal runs in consecutive rows form one rectangle. A run
+//! is as long as possible, so that each rectangle can only grow upward and downward; it then grows over its
+//! neighbors as far as all its columns are blocked. Rectangles that have become equal are merged. The time is
+//! proportional to the number of pixels (times a logarithm), the memory to the length of the outline.
+
 use super::picture::{self, Pixel};
-use super::{MAX_CORNERS, PlanError};
+
+/// The maximum number of rectangles before they grow: more come from pictures of noise.
+const MAX_PARTS: usize = 1 << 20;
 
 /// The blocked pixels of a picture.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Bitmap {
     width: u32,
     height: u32,
-    /// Row by row from the bottom: y points upwards, as in the world.
-    blocked: Vec<bool>,
+    rectangles: Vec<PixelRectangle>,
+}
+
+/// A rectangle of pixels. Rows are counted from the bottom: y points upwards, as in the world.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct PixelRectangle {
+    /// The lower left corner: column and row.
+    pub min: [u32; 2],
+    /// The upper right corner: column and row.
+    pub max: [u32; 2],
 }
 
 impl Bitmap {
@@ -17,13 +34,13 @@ impl Bitmap {
     ///
     /// When the picture has another format, is too large by its header, is damaged or empty, or contains only
     /// noise.
-    pub fn decode(bytes: &[u8], is_blocked: impl Fn(Pixel) -> bool) -> Result<Self, PlanError> {
+    pub fn decode(bytes: &[u8], is_blocked: impl Fn(Pixel) -> bool) -> Result<Self, String> {
         let image = picture::decode(bytes)?;
         let (width, height) = (image.width(), image.height());
         let rows = (0..height).rev();
-        let blocked = rows.flat_map(|y| picture::row(&image, y)).map(is_blocked).collect();
+        let blocked: Vec<bool> = rows.flat_map(|y| picture::row(&image, y)).map(is_blocked).collect();
         drop(image);
-        Self::new(width, height, blocked)
+        Self::new(width, height, &blocked)
     }
 
     /// Decodes a picture by brightness: pixels darker than `blocked_below` (0 black, 1 white) are blocked.
@@ -32,7 +49,7 @@ impl Bitmap {
     /// # Errors
     ///
     /// The errors of [`Bitmap::decode`].
-    pub fn decode_dark(bytes: &[u8], blocked_below: f64) -> Result<Self, PlanError> {
+    pub fn decode_dark(bytes: &[u8], blocked_below: f64) -> Result<Self, String> {
         Self::decode(bytes, |pixel| pixel.on_white() < blocked_below)
     }
 
@@ -40,14 +57,31 @@ impl Bitmap {
     ///
     /// # Errors
     ///
-    /// When the bitmap is empty or has too many corners.
-    pub fn new(width: u32, height: u32, blocked: Vec<bool>) -> Result<Self, PlanError> {
+    /// When the bitmap is empty or contains only noise.
+    pub fn new(width: u32, height: u32, blocked: &[bool]) -> Result<Self, String> {
         if width == 0 || height == 0 || blocked.len() != width as usize * height as usize {
-            return Err(PlanError::Empty);
+            return Err(picture::EMPTY.to_owned());
         }
-        let bitmap = Self { width, height, blocked };
-        let corners = bitmap.corners();
-        if corners > MAX_CORNERS { Err(PlanError::TooManyCorners { corners }) } else { Ok(bitmap) }
+        let rows: Vec<&[bool]> = blocked.chunks(width as usize).collect();
+        let mut rectangles = parts(&rows).ok_or_else(|| {
+            format!("its blocked pixels are more than {MAX_PARTS} rectangles, which are too many")
+        })?;
+        let columns = columns(&rows);
+        for rectangle in &mut rectangles {
+            let row = rectangle.min[1];
+            // The run of blocked pixels of each column that holds the row.
+            let run = |x: u32| {
+                let changes = &columns[x as usize];
+                let above = changes.partition_point(|change| *change <= row);
+                (changes[above - 1], changes[above])
+            };
+            let runs = (rectangle.min[0]..rectangle.max[0]).map(run);
+            let (low, high) = runs.fold((0, u32::MAX), |(low, high), run| (low.max(run.0), high.min(run.1)));
+            (rectangle.min[1], rectangle.max[1]) = (low, high);
+        }
+        rectangles.sort_unstable();
+        rectangles.dedup();
+        Ok(Self { width, height, rectangles })
     }
 
     /// The number of pixels per row.
@@ -60,56 +94,77 @@ impl Bitmap {
         self.height
     }
 
-    /// Whether the pixel in column `x` and row `y`, counted from the lower left pixel, is blocked; pixels outside
-    /// of the picture are free.
-    pub fn is_blocked(&self, x: u32, y: u32) -> bool {
-        x < self.width && y < self.height && self.row(y)[x as usize]
+    /// Rectangles whose union is what is blocked. None of them could be larger; they overlap.
+    /// Sorted by their lower left corners.
+    pub fn rectangles(&self) -> &[PixelRectangle] {
+        &self.rectangles
     }
 
-    /// The smallest box of pixels that contains all blocked pixels: its lower left and upper right corner; `None`
-    /// if no pixel is blocked.
-    pub fn blocked_bounds(&self) -> Option<([u32; 2], [u32; 2])> {
-        let rows = (0..self.height).filter_map(|y| {
-            let first = self.row(y).iter().position(|blocked| *blocked)?;
-            let last = self.row(y).iter().rposition(|blocked| *blocked)?;
-            Some(([first as u32, y], [last as u32 + 1, y + 1]))
-        });
-        rows.reduce(|(low, high), (first, last)| {
-            ([low[0].min(first[0]), low[1]], [high[0].max(last[0]), last[1]])
+    /// Whether the pixel in column `x` and row `y`, counted from the lower left pixel, is blocked.
+    #[cfg(test)]
+    pub(crate) fn is_blocked(&self, x: u32, y: u32) -> bool {
+        self.rectangles
+            .iter()
+            .any(|PixelRectangle { min, max }| (min[0]..max[0]).contains(&x) && (min[1]..max[1]).contains(&y))
+    }
+
+    /// The smallest box of pixels that contains all blocked pixels; `None` if no pixel is blocked.
+    pub fn blocked_bounds(&self) -> Option<PixelRectangle> {
+        self.rectangles.iter().copied().reduce(|all, next| PixelRectangle {
+            min: [0, 1].map(|axis| all.min[axis].min(next.min[axis])),
+            max: [0, 1].map(|axis| all.max[axis].max(next.max[axis])),
         })
     }
+}
 
-    /// One row of pixels.
-    pub(super) fn row(&self, y: u32) -> &[bool] {
-        let start = y as usize * self.width as usize;
-        &self.blocked[start..start + self.width as usize]
-    }
-
-    /// Visits every border between rows, from the bottom of the lowest row to the top of the
-    /// highest: its y, the row below and the row above.
-    pub(super) fn for_row_pairs(&self, mut visit: impl FnMut(u32, &[bool], &[bool])) {
-        let outside = vec![false; self.width as usize];
-        for y in 0..=self.height {
-            let below = if y == 0 { &outside } else { self.row(y - 1) };
-            let above = if y == self.height { &outside } else { self.row(y) };
-            visit(y, below, above);
-        }
-    }
-
-    /// The corners of the blocked area. Where two blocked pixels touch in a point only, there are two.
-    fn corners(&self) -> usize {
-        let mut corners = 0;
-        self.for_row_pairs(|_, below, above| {
-            let (mut left_below, mut left_above) = (false, false);
-            let outside = std::iter::once((&false, &false));
-            for (&right_below, &right_above) in below.iter().zip(above).chain(outside) {
-                let turns = (left_below != left_above) != (right_below != right_above);
-                let meets_in_a_point =
-                    left_below == right_above && left_above == right_below && left_below != left_above;
-                corners += usize::from(turns) + 2 * usize::from(meets_in_a_point);
-                (left_below, left_above) = (right_below, right_above);
+/// Rectangles that part what is blocked: none overlap. `None` if they are too many.
+fn parts(rows: &[&[bool]]) -> Option<Vec<PixelRectangle>> {
+    let mut parts = Vec::new();
+    // Those that reach up to the row below, from left to right.
+    let mut open: Vec<PixelRectangle> = Vec::new();
+    for (y, row) in (0..).zip(rows) {
+        let mut grown = Vec::new();
+        let mut old = open.into_iter().peekable();
+        for [start, end] in runs(row) {
+            while let Some(ended) = old.next_if(|old| old.min[0] < start) {
+                parts.push(ended);
             }
-        });
-        corners
+            let same = old.next_if(|old| (old.min[0], old.max[0]) == (start, end));
+            let bottom = same.map_or(y, |old| old.min[1]);
+            grown.push(PixelRectangle { min: [start, bottom], max: [end, y + 1] });
+        }
+        parts.extend(old);
+        if parts.len() > MAX_PARTS {
+            return None;
+        }
+        open = grown;
     }
+    parts.extend(open);
+    Some(parts)
+}
+
+/// The runs of blocked pixels in a row: the first pixel, and the one after the last.
+fn runs(row: &[bool]) -> impl Iterator<Item = [u32; 2]> {
+    let mut x = 0;
+    std::iter::from_fn(move || {
+        let start = x + row[x..].iter().position(|blocked| *blocked)?;
+        x = start + row[start..].iter().position(|blocked| !blocked).unwrap_or(row.len() - start);
+        Some([start as u32, x as u32])
+    })
+}
+
+/// The rows at which each column changes between free and blocked, upwards from free.
+fn columns(rows: &[&[bool]]) -> Vec<Vec<u32>> {
+    let mut columns = vec![Vec::new(); rows[0].len()];
+    let outside = vec![false; columns.len()];
+    let mut below = &*outside;
+    for (y, above) in (0..).zip(rows.iter().copied().chain([&*outside])) {
+        for (column, (below, above)) in columns.iter_mut().zip(below.iter().zip(above)) {
+            if below != above {
+                column.push(y);
+            }
+        }
+        below = above;
+    }
+    columns
 }

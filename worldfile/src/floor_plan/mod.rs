@@ -5,62 +5,20 @@
 //! [`FloorPlan::rectangles`], solid rectangles whose union is the blocked area, exact on the borders of pixels. They
 //! overlap where walls meet, so that no seam lies across a flat surface.
 //!
-//! Pictures are bounded before they are decoded: see [`PlanError`].
+//! Pictures are bounded before they are decoded: see [`MAX_PIXELS`].
 
 mod bitmap;
 mod picture;
-mod rectangles;
 #[cfg(test)]
 mod tests;
 
-pub use bitmap::Bitmap;
-pub use picture::{MAX_DECODED_BYTES, MAX_FILE_BYTES, MAX_PIXELS, Pixel};
+pub use bitmap::{Bitmap, PixelRectangle};
+pub use picture::{MAX_FILE_BYTES, MAX_PIXELS, Pixel};
 pub(crate) use picture::{decode, row};
-pub use rectangles::PixelRectangle;
 
 use nalgebra::{Isometry2, Point2, Vector2};
 use sim::physics::Rectangle;
 use std::sync::Arc;
-
-/// The maximum number of corners of a floor plan: a million pieces of wall.
-pub const MAX_CORNERS: usize = 1 << 20;
-
-/// The error for a picture that is not a floor plan.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum PlanError {
-    /// Neither PNG nor PBM, PGM, PPM or PAM, by its first bytes.
-    #[error("it is neither a PNG nor a PGM picture")]
-    Format,
-    /// The header has more pixels than are allowed; nothing was decoded.
-    #[error("{width} × {height} pixels are too many: at most {MAX_PIXELS}")]
-    TooManyPixels {
-        /// The number of pixels per row.
-        width: u32,
-        /// The number of rows.
-        height: u32,
-    },
-    /// The header has more bytes of pixels than are allowed; nothing was decoded.
-    #[error("its pixels take {bytes} bytes, which are too many: at most {MAX_DECODED_BYTES}")]
-    TooManyBytes {
-        /// The number of bytes that the pixels need in memory.
-        bytes: u64,
-    },
-    /// The picture has no pixels.
-    #[error("it has no pixels")]
-    Empty,
-    /// The part before the pixels is damaged.
-    #[error("its header is damaged or incomplete")]
-    DamagedHeader,
-    /// The pixels are damaged.
-    #[error("its pixels are damaged or incomplete")]
-    DamagedPixels,
-    /// The blocked pixels have too many corners, for example in a picture of noise.
-    #[error("its blocked pixels have {corners} corners, which are too many: at most {MAX_CORNERS}")]
-    TooManyCorners {
-        /// The number of corners.
-        corners: usize,
-    },
-}
 
 /// A picture of walls with its size and its place.
 #[derive(Clone, Debug, PartialEq)]
@@ -82,7 +40,7 @@ impl FloorPlan {
 
     /// Solid rectangles whose union is the walls.
     pub fn rectangles(&self) -> impl Iterator<Item = Rectangle> {
-        self.bitmap.rectangles().into_iter().map(|rectangle| {
+        self.bitmap.rectangles().iter().map(|rectangle| {
             let (low, high) = (self.local(rectangle.min), self.local(rectangle.max));
             let middle = self.origin * nalgebra::center(&low, &high);
             Rectangle {

@@ -1,6 +1,5 @@
 //! Pictures as gray values, decoded only if the size in their header is acceptable.
 
-use super::PlanError;
 use image::codecs::png::PngDecoder;
 use image::codecs::pnm::PnmDecoder;
 use image::{DynamicImage, ImageDecoder, Limits, Rgba};
@@ -11,7 +10,11 @@ pub const MAX_FILE_BYTES: u64 = 1 << 28;
 /// The maximum number of pixels: 400 m × 400 m in pixels of 5 cm.
 pub const MAX_PIXELS: u64 = 1 << 26;
 /// The maximum memory of the pixels, bytes.
-pub const MAX_DECODED_BYTES: u64 = 1 << 28;
+const MAX_DECODED_BYTES: u64 = 1 << 28;
+
+/// The errors of pictures that are not floor plans.
+pub(super) const EMPTY: &str = "it has no pixels";
+const DAMAGED_HEADER: &str = "its header is damaged or incomplete, or that of too large a picture";
 
 /// A pixel. All values are from 0 (dark, transparent) to 1 (bright, opaque); a gray pixel has
 /// three equal colors.
@@ -40,36 +43,33 @@ impl Pixel {
 }
 
 /// Decodes a picture, unless it is too large by its header.
-pub(crate) fn decode(bytes: &[u8]) -> Result<DynamicImage, PlanError> {
-    let damaged = |_| PlanError::DamagedHeader;
+pub(crate) fn decode(bytes: &[u8]) -> Result<DynamicImage, String> {
+    let damaged = |_| DAMAGED_HEADER.to_owned();
     match bytes {
         [0x89, b'P', b'N', b'G', ..] => {
-            // Without the first chunk, its place holds no size.
-            if bytes.get(12..16) != Some(b"IHDR") {
-                return Err(PlanError::DamagedHeader);
-            }
-            // The decoder's own limits would hide how large the picture claims to be.
-            if let Some([a, b, c, d, e, f, g, h]) = bytes.get(16..24) {
-                let (width, height) = ([*a, *b, *c, *d], [*e, *f, *g, *h]);
-                check(u32::from_be_bytes(width), u32::from_be_bytes(height))?;
-            }
             let mut limits = Limits::no_limits();
             limits.max_alloc = Some(2 * MAX_DECODED_BYTES);
             read(PngDecoder::with_limits(Cursor::new(bytes), limits).map_err(damaged)?)
         }
         [b'P', b'1'..=b'7', ..] => read(PnmDecoder::new(Cursor::new(bytes)).map_err(damaged)?),
-        _ => Err(PlanError::Format),
+        _ => Err("it is neither a PNG nor a PGM picture".to_owned()),
     }
 }
 
-fn read(decoder: impl ImageDecoder) -> Result<DynamicImage, PlanError> {
-    let (width, height) = decoder.dimensions();
-    check(width, height)?;
-    let bytes = decoder.total_bytes();
-    if bytes > MAX_DECODED_BYTES {
-        return Err(PlanError::TooManyBytes { bytes });
+fn read(decoder: impl ImageDecoder) -> Result<DynamicImage, String> {
+    let ((width, height), bytes) = (decoder.dimensions(), decoder.total_bytes());
+    if u64::from(width) * u64::from(height) > MAX_PIXELS {
+        return Err(format!("{width} × {height} pixels are too many: at most {MAX_PIXELS}"));
     }
-    DynamicImage::from_decoder(decoder).map_err(|_| PlanError::DamagedPixels)
+    if width == 0 || height == 0 {
+        return Err(EMPTY.to_owned());
+    }
+    if bytes > MAX_DECODED_BYTES {
+        return Err(format!(
+            "its pixels take {bytes} bytes, which are too many: at most {MAX_DECODED_BYTES}"
+        ));
+    }
+    DynamicImage::from_decoder(decoder).map_err(|_| "its pixels are damaged or incomplete".to_owned())
 }
 
 /// The pixels of row `y`, counted from the top. Not of all rows at once: that would take too much memory.
@@ -80,12 +80,4 @@ pub(crate) fn row(image: &DynamicImage, y: u32) -> Vec<Pixel> {
         Pixel { red, green, blue, alpha }
     };
     row.pixels().map(pixel).collect()
-}
-
-/// Refuses what is too large to decode, or nothing.
-fn check(width: u32, height: u32) -> Result<(), PlanError> {
-    if u64::from(width) * u64::from(height) > MAX_PIXELS {
-        return Err(PlanError::TooManyPixels { width, height });
-    }
-    if width == 0 || height == 0 { Err(PlanError::Empty) } else { Ok(()) }
 }

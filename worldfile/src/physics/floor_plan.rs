@@ -83,8 +83,7 @@ fn picture(table: &Table<'_>, files: &dyn Files, corner: Option<Point2<f64>>) ->
     let below = table.number_or("blocked_below", 0.5, 0.0..=1.0);
     let image = table.needed("image")?.text()?;
     let bytes = files.read(&table.file.beside(image), MAX_FILE_BYTES).map_err(|error| error.to_string());
-    let bitmap =
-        bytes.and_then(|bytes| Bitmap::decode_dark(&bytes, below).map_err(|error| error.to_string()));
+    let bitmap = bytes.and_then(|bytes| Bitmap::decode_dark(&bytes, below));
     let bitmap = bitmap.map_err(|error| {
         let what = format!("cannot read the picture `{image}`: {error}");
         let help = "`image` names a PNG or PGM picture, in the folder of this file";

@@ -16,7 +16,6 @@
 //! ROS ignores other keys. Here they cause a warning, since a misspelled key would change the map.
 
 mod read;
-mod syntax;
 #[cfg(test)]
 mod tests;
 
@@ -69,8 +68,8 @@ pub fn read_floor_plan(yaml: &Path, files: &dyn Files, findings: &mut Findings) 
         findings.add_file(Severity::Note, yaml, &what, help);
     }
     let frame = map.cells.frame();
-    let blocked = states.iter().map(|state| *state == CellState::Blocked).collect();
-    match Bitmap::new(frame.width() as u32, frame.height() as u32, blocked) {
+    let blocked: Vec<bool> = states.iter().map(|state| *state == CellState::Blocked).collect();
+    match Bitmap::new(frame.width() as u32, frame.height() as u32, &blocked) {
         Ok(bitmap) => {
             let pixel_m = Vector2::repeat(frame.resolution_m());
             Some(FloorPlan { bitmap: Arc::new(bitmap), pixel_m, origin: map.origin })

@@ -1,6 +1,6 @@
 //! Reads a map from the two files of ROS.
 
-use super::{EXAMPLE, RosMap, syntax};
+use super::{EXAMPLE, RosMap};
 use crate::files::Files;
 use crate::findings::{Findings, Severity, SourceText};
 use crate::floor_plan::{self, MAX_FILE_BYTES, Pixel};
@@ -33,8 +33,13 @@ pub fn read(yaml: &Path, files: &dyn Files, findings: &mut Findings) -> Option<R
     let values: BTreeMap<String, Spanned<Value>> = match from_str_with_options(&source.text, options) {
         Ok(values) => values,
         Err(error) => {
-            let (line, what, help) = syntax::fault(error.without_snippet());
-            findings.add(Severity::Error, &source, what, (source.whole_line(line), ""), help);
+            let error = error.without_snippet();
+            let line = error.location().map_or(1, |at| at.line() as usize);
+            let what = match error {
+                serde_saphyr::Error::DuplicateMappingKey { .. } => "a key is given twice",
+                _ => "this is not a list of keys with values",
+            };
+            findings.add(Severity::Error, &source, what, (source.whole_line(line), ""), EXAMPLE);
             return None;
         }
     };
@@ -158,7 +163,7 @@ impl Keys<'_> {
         let (image, image_place) = image?;
         let path = yaml.parent().unwrap_or(Path::new("")).join(image);
         let bytes = files.read(&path, MAX_FILE_BYTES).map_err(|error| error.to_string());
-        let picture = bytes.and_then(|bytes| floor_plan::decode(&bytes).map_err(|error| error.to_string()));
+        let picture = bytes.and_then(|bytes| floor_plan::decode(&bytes));
         let picture = match picture {
             Ok(picture) => picture,
             Err(error) => {

@@ -3,33 +3,8 @@ use interfaces::GridFrame;
 use nalgebra::Point2;
 use proptest::prelude::*;
 
-/// Walls from a drawing, the top row first, and the cell of the robot.
-fn walls(drawing: &str) -> (Grid<bool>, Cell) {
-    let rows: Vec<&str> = drawing.split_whitespace().collect();
-    let frame = GridFrame::new(Point2::origin(), 1.0, rows[0].len(), rows.len()).unwrap();
-    let characters: Vec<u8> = rows.iter().rev().flat_map(|row| row.bytes()).collect();
-    let robot = frame.cell(characters.iter().position(|&character| character == b'R').unwrap());
-    (Grid::from_cells(frame, characters.iter().map(|&c| c == b'#').collect()).unwrap(), robot)
-}
-
 fn look(walls: &Grid<bool>, robot: Cell, radius: u32) -> Vec<(Cell, bool)> {
     LineOfSight::new(radius).look(walls, robot)
-}
-
-/// The view of the robot in a drawing: `.` free, `#` blocked, `?` not seen.
-fn seen(drawing: &str, radius: u32) -> String {
-    let (walls, robot) = walls(drawing);
-    let frame = walls.frame();
-    let seen = look(&walls, robot, radius);
-    let character = |cell: Cell| match seen.iter().find(|(other, _)| *other == cell) {
-        _ if cell == robot => 'R',
-        None => '?',
-        Some((_, true)) => '#',
-        Some((_, false)) => '.',
-    };
-    let row =
-        |y: usize| (0..frame.width()).map(|x| character(Cell::new(x as i32, y as i32))).collect::<String>();
-    (0..frame.height()).rev().map(|y| row(y) + "\n").collect()
 }
 
 /// Whether the segment between the centers of two cells is free, computed for every cell and every corner on the
@@ -101,87 +76,6 @@ fn oracle(walls: &Grid<bool>, robot: Cell, radius: u32) -> Vec<(Cell, bool)> {
 fn sorted(mut cells: Vec<(Cell, bool)>) -> Vec<(Cell, bool)> {
     cells.sort_by_key(|(cell, _)| (cell.y, cell.x));
     cells
-}
-
-#[test]
-fn an_open_space_shows_a_disc() {
-    let drawing = "....... ....... ....... ...R... ....... ....... .......";
-    insta::assert_snapshot!(seen(drawing, 3), @r"
-    ???.???
-    ?.....?
-    ?.....?
-    ...R...
-    ?.....?
-    ?.....?
-    ???.???
-    ");
-}
-
-#[test]
-fn a_pillar_hides_what_is_behind_it() {
-    let drawing = ".......... .......... .......... ...#...... R......... .......... ..........";
-    insta::assert_snapshot!(seen(drawing, 9), @r"
-    .......???
-    ......????
-    ....??????
-    ...#???..?
-    R.........
-    .........?
-    .........?
-    ");
-}
-
-#[test]
-fn cells_behind_a_gap_are_seen() {
-    let drawing = "......... ......... ###.##### ......... ....R....";
-    insta::assert_snapshot!(seen(drawing, 6), @r"
-    ??.??????
-    ???.?????
-    ??#.###??
-    .........
-    ....R....
-    ");
-}
-
-#[test]
-fn a_corner_lets_through_unless_both_sides_are_closed() {
-    insta::assert_snapshot!(seen("#... .... .... R...", 4), @r"
-    #..?
-    ....
-    ....
-    R...
-    ");
-    insta::assert_snapshot!(seen(".... .... #... R...", 4), @r"
-    ????
-    ??..
-    #...
-    R...
-    ");
-    insta::assert_snapshot!(seen(".... .... #... R#..", 4), @r"
-    ????
-    ????
-    #???
-    R#??
-    ");
-    insta::assert_snapshot!(seen(".... .#.. #.#. R...", 4), @r"
-    ????
-    ????
-    #.#?
-    R...
-    ");
-}
-
-#[test]
-fn a_room_shows_its_walls_and_nothing_beyond() {
-    let drawing = "........... .#######... .#.....#... .#..R..#... .#.....#... .#######...";
-    insta::assert_snapshot!(seen(drawing, 8), @r"
-    ???????????
-    ??#####????
-    ?#.....#???
-    ?#..R..#???
-    ?#.....#???
-    ??#####????
-    ");
 }
 
 /// A random map, a free place in it and a radius.

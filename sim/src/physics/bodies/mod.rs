@@ -10,12 +10,12 @@ mod touch;
 pub(super) use movers::Mover;
 pub(super) use touch::{SEPARATE_M, Touch};
 
-use super::command::Velocity;
 use super::convex;
 use super::report::Body;
 use super::shape::Rectangle;
 use super::snapshot::{Values, value};
 use super::spec::{FleetSpec, Motion, RobotSpec};
+use super::velocity::Velocity;
 use interfaces::{heading_rad, rotation};
 use nalgebra::{Isometry2, Translation2, Vector2};
 use rapier2d::prelude as rapier;

@@ -15,7 +15,6 @@ pub use teleport::TeleportError;
 pub use time::Controller;
 
 use super::bodies::Bodies;
-use super::command::Command;
 use super::form::Form;
 use super::obstacles::Obstacle;
 use super::past::Past;
@@ -25,6 +24,7 @@ use super::robot::{RobotView, SimulatedRobot};
 use super::sensors::Tagged;
 use super::shape::Rectangle;
 use super::spec::FleetSpec;
+use super::velocity::Velocity;
 use nalgebra::Point2;
 use slide::Sliding;
 use start::Start;
@@ -109,7 +109,7 @@ impl Fleet {
 
     /// Sets the command of a robot (by index), at any step and not only at a new scan. Returns whether the robot
     /// executes commands: a robot that is not driven does not.
-    pub fn command(&mut self, robot: usize, wanted: impl Into<Command>) -> bool {
+    pub fn command(&mut self, robot: usize, wanted: impl Into<Velocity>) -> bool {
         let driven = self.robots.get_mut(robot).filter(|robot| robot.is_driven());
         driven.map(|robot| robot.command(&wanted.into())).is_some()
     }

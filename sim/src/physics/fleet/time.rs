@@ -2,7 +2,6 @@
 
 use super::Fleet;
 use crate::physics::bodies::Touch;
-use crate::physics::command::{Command, Velocity};
 use crate::physics::form::Form;
 use crate::physics::obstacles::{Blockers, Obstacle};
 use crate::physics::past::Recent;
@@ -10,6 +9,7 @@ use crate::physics::report::Contact;
 use crate::physics::robot::{RobotView, SimulatedRobot};
 use crate::physics::sensors::{Surroundings, bumper};
 use crate::physics::shape::Rectangle;
+use crate::physics::velocity::Velocity;
 use interfaces::LaserReading;
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -196,7 +196,7 @@ impl Fleet {
 }
 
 /// A controller of driven robots: any type, or a closure that takes a robot and the reading of its main laser and
-/// returns a velocity ([`interfaces::Twist`]) or any other [`Command`].
+/// returns an [`interfaces::Twist`] or a [`Velocity`].
 ///
 /// The fleet calls the controller at every scan of the main laser of a driven robot. Sensors that the controller does
 /// not read are not simulated. The controller `&mut ()` gives no commands: the robots keep the command of
@@ -205,21 +205,21 @@ pub trait Controller {
     /// The new command; `None` if the robot keeps its command. The readings of all sensors are in the view of the
     /// robot. A command that contains NaN stops the robot; a command beyond the limits of the drive is limited to
     /// them.
-    fn drive(&mut self, robot: &RobotView<'_>) -> Option<Command>;
+    fn drive(&mut self, robot: &RobotView<'_>) -> Option<Velocity>;
 }
 
 impl<F, C> Controller for F
 where
     F: FnMut(&RobotView<'_>, &LaserReading) -> C,
-    C: Into<Command>,
+    C: Into<Velocity>,
 {
-    fn drive(&mut self, robot: &RobotView<'_>) -> Option<Command> {
+    fn drive(&mut self, robot: &RobotView<'_>) -> Option<Velocity> {
         Some(self(robot, robot.reading()?).into())
     }
 }
 
 impl Controller for () {
-    fn drive(&mut self, _: &RobotView<'_>) -> Option<Command> {
+    fn drive(&mut self, _: &RobotView<'_>) -> Option<Velocity> {
         None
     }
 }

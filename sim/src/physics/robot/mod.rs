@@ -7,13 +7,13 @@ pub use view::RobotView;
 
 use super::behaviors::Behavior;
 use super::bodies::Bodies;
-use super::command::{Command, Velocity};
 use super::drives::Motors;
 use super::form::Form;
 use super::report::Body;
 use super::sensors::{Look, Platform, Sensor, SharedBeams, Surroundings};
 use super::snapshot::pose;
 use super::spec::{BehaviorSpec, RobotSpec};
+use super::velocity::Velocity;
 use interfaces::{LaserReading, Purpose, RandomStream, Twist, Values, values};
 use nalgebra::{Isometry2, Point2, Vector2};
 use odometry::{Displacements, Odometry, Wheels};
@@ -35,7 +35,7 @@ pub(crate) struct SimulatedRobot {
     pub(super) touching: Vec<Body>,
     /// The bumpers that touch something, as bits.
     pub(super) pressed_bumpers: u64,
-    command: Command,
+    command: Velocity,
     drive: Motors,
     wheels: Wheels,
     odometry: Odometry,
@@ -77,7 +77,7 @@ impl SimulatedRobot {
             driven: Velocity::STOP,
             touching: Vec::new(),
             pressed_bumpers: 0,
-            command: Command::STOP,
+            command: Velocity::STOP,
             drive,
             wheels: Wheels::new(spec.odometry.slip, drive),
             odometry: Odometry::new(spec, random(Purpose::OdometryNoise(index)), pose),
@@ -130,7 +130,7 @@ impl SimulatedRobot {
             && [self.velocity, self.driven, self.wheels.slipping].iter().all(|own| *own == Velocity::STOP);
         let obeys = matches!(self.spec.behavior, BehaviorSpec::Driven | BehaviorSpec::Standing);
         let displaced = self.jumps.iter().chain(&self.carried).map(Displacements::next_s);
-        (is_still && obeys && self.command == Command::STOP).then(|| displaced.fold(f64::INFINITY, f64::min))
+        (is_still && obeys && self.command == Velocity::STOP).then(|| displaced.fold(f64::INFINITY, f64::min))
     }
 
     /// Whether the main laser scanner measures at a step. The robot then decides.
@@ -166,7 +166,7 @@ impl SimulatedRobot {
     }
 
     /// Sets the command of the robot.
-    pub(super) fn command(&mut self, command: &Command) {
+    pub(super) fn command(&mut self, command: &Velocity) {
         self.command = *command;
     }
 
@@ -182,7 +182,7 @@ impl SimulatedRobot {
     pub(super) fn put(&mut self, pose: Isometry2<f64>) {
         self.carry(pose);
         self.previous_pose = pose;
-        self.command = Command::STOP;
+        self.command = Velocity::STOP;
         self.odometry.restart(pose);
         self.touching.clear();
         self.pressed_bumpers = 0;
@@ -242,9 +242,8 @@ impl SimulatedRobot {
 
     /// Gives the body the velocity of the next step.
     pub(super) fn start_step(&mut self, bodies: &mut Bodies, step_s: f64) {
-        let at = &self.odometry.pose;
-        self.wheels.start_step(&self.drive, &self.command, at, step_s);
-        self.velocity = self.drive.step(&self.command, at, step_s);
+        self.wheels.start_step(&self.drive, &self.command, step_s);
+        self.velocity = self.drive.step(&self.command, step_s);
         self.driven = self.velocity;
         bodies.set_velocity(self.index, &self.velocity, step_s);
     }

@@ -1,9 +1,9 @@
 //! The odometry of a robot, with wheels that slip, and displacements.
 
-use crate::physics::command::{Command, Velocity};
 use crate::physics::drives::Motors;
 use crate::physics::snapshot::{self, value};
 use crate::physics::spec::{DisplacementSpec, DriveKind, OdometryError, RobotSpec};
+use crate::physics::velocity::Velocity;
 use interfaces::{RandomStream, Twist, Values, pose, rotation, values, wrap_rad};
 use nalgebra::{Isometry2, Point2, Vector2};
 use std::f64::consts::PI;
@@ -120,15 +120,15 @@ impl Wheels {
         values
     }
 
-    /// Starts a step with a command; `drive` is the drive of the robot before the step, `at` the pose by odometry.
-    pub(super) fn start_step(&mut self, drive: &Motors, command: &Command, at: &Isometry2<f64>, step_s: f64) {
+    /// Starts a step with a command; `drive` is the drive of the robot before the step.
+    pub(super) fn start_step(&mut self, drive: &Motors, command: &Velocity, step_s: f64) {
         if self.slip == 0.0 {
             return;
         }
         if !drive.is_stalled {
             self.free = *drive;
         }
-        self.free.step(command, at, step_s);
+        self.free.step(command, step_s);
     }
 
     /// Ends a step; `drive` is the drive of the robot after it, `solved` the velocity of the robot after contacts.

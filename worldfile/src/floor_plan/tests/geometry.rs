@@ -1,6 +1,6 @@
 //! Rectangles against what they stand for: the blocked pixels.
 
-use crate::floor_plan::{Bitmap, FloorPlan};
+use crate::floor_plan::{Bitmap, FloorPlan, PixelRectangle};
 use interfaces::pose;
 use nalgebra::{Point2, Vector2};
 use proptest::prelude::*;
@@ -9,7 +9,7 @@ fn bitmap(rows: &str) -> Bitmap {
     let rows: Vec<&[u8]> = rows.lines().map(str::as_bytes).collect();
     let width = rows.iter().map(|row| row.len()).max().unwrap_or(0);
     let blocked = rows.iter().rev().flat_map(|row| (0..width).map(|x| row.get(x) == Some(&b'#')));
-    Bitmap::new(width as u32, rows.len() as u32, blocked.collect()).unwrap()
+    Bitmap::new(width as u32, rows.len() as u32, &blocked.collect::<Vec<_>>()).unwrap()
 }
 
 /// Two rooms with a door between them, walls one pixel thick.
@@ -43,7 +43,10 @@ fn walls_that_meet_are_as_few_rectangles_as_walls() {
 
 #[test]
 fn the_blocked_part_of_a_picture() {
-    assert_eq!(bitmap("    \n  # \n #  \n    ").blocked_bounds(), Some(([1, 1], [3, 3])));
+    assert_eq!(
+        bitmap("    \n  # \n #  \n    ").blocked_bounds(),
+        Some(PixelRectangle { min: [1, 1], max: [3, 3] })
+    );
     assert_eq!(bitmap("  \n  ").blocked_bounds(), None);
     assert!(bitmap("  \n  ").rectangles().is_empty());
 }
@@ -63,28 +66,25 @@ fn a_plan_lies_at_its_origin() {
     assert_eq!(wall.half_m, Vector2::new(0.25, 0.125));
 }
 
-fn any_bitmap() -> impl Strategy<Value = Bitmap> {
+fn any_pixels() -> impl Strategy<Value = (u32, Vec<bool>)> {
     (1_u32..14, 1_u32..14, 0.0..1.0).prop_flat_map(|(width, height, share)| {
-        proptest::collection::vec(proptest::bool::weighted(share), (width * height) as usize)
-            .prop_map(move |blocked| Bitmap::new(width, height, blocked).unwrap())
+        let pixels = proptest::collection::vec(proptest::bool::weighted(share), (width * height) as usize);
+        (Just(width), pixels)
     })
 }
 
 proptest! {
     #[test]
-    fn rectangles_are_what_is_blocked_and_none_could_be_larger(bitmap in any_bitmap()) {
-        let rectangles = bitmap.rectangles();
-        let inside = |x: u32, y: u32| rectangles.iter().any(|r| {
-            (r.min[0]..r.max[0]).contains(&x) && (r.min[1]..r.max[1]).contains(&y)
-        });
-        for y in 0..bitmap.height() {
-            for x in 0..bitmap.width() {
-                prop_assert_eq!(inside(x, y), bitmap.is_blocked(x, y));
-            }
+    fn rectangles_are_what_is_blocked_and_none_could_be_larger((width, pixels) in any_pixels()) {
+        let height = pixels.len() as u32 / width;
+        let bitmap = Bitmap::new(width, height, &pixels).unwrap();
+        let is_blocked = |x: u32, y: u32| x < width && y < height && pixels[(y * width + x) as usize];
+        for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
+            prop_assert_eq!(bitmap.is_blocked(x, y), is_blocked(x, y));
         }
-        for r in &rectangles {
+        for r in bitmap.rectangles() {
             let all = |mut xs: std::ops::Range<u32>, ys: std::ops::Range<u32>| {
-                xs.all(|x| ys.clone().all(|y| bitmap.is_blocked(x, y)))
+                xs.all(|x| ys.clone().all(|y| is_blocked(x, y)))
             };
             prop_assert!(!all(r.max[0]..r.max[0] + 1, r.min[1]..r.max[1]));
             prop_assert!(!all(r.min[0]..r.max[0], r.max[1]..r.max[1] + 1));

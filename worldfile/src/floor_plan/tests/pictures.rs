@@ -1,6 +1,6 @@
 //! Pictures of every kind, whole and damaged.
 
-use crate::floor_plan::{Bitmap, MAX_PIXELS, PlanError};
+use crate::floor_plan::{Bitmap, MAX_PIXELS};
 use image::{DynamicImage, GrayImage, ImageFormat, Luma, Rgba, RgbaImage};
 use proptest::prelude::*;
 use std::io::Cursor;
@@ -11,7 +11,7 @@ fn encode(picture: &DynamicImage, format: ImageFormat) -> Vec<u8> {
     bytes.into_inner()
 }
 
-fn dark(bytes: &[u8]) -> Result<String, PlanError> {
+fn dark(bytes: &[u8]) -> Result<String, String> {
     let bitmap = Bitmap::decode_dark(bytes, 0.5)?;
     let row = |y| (0..bitmap.width()).map(|x| if bitmap.is_blocked(x, y) { '#' } else { '.' }).collect();
     let rows: Vec<String> = (0..bitmap.height()).rev().map(row).collect();
@@ -77,35 +77,28 @@ fn png_header(width: u32, height: u32, depth: u8, colour: u8) -> Vec<u8> {
 }
 
 #[test]
-fn bombs_are_refused_by_their_headers() {
-    let too_many = |width, height| Err(PlanError::TooManyPixels { width, height });
-    assert_eq!(dark(&png_header(100_000, 100_000, 8, 0)), too_many(100_000, 100_000));
-    assert_eq!(dark(&png_header(0x7fff_ffff, 0x7fff_ffff, 16, 6)), too_many(0x7fff_ffff, 0x7fff_ffff));
-    assert_eq!(dark(b"P5 4000000000 4000000000 255 \0"), too_many(4_000_000_000, 4_000_000_000));
-    assert_eq!(dark(b"P4 65536 65536 \0"), too_many(65_536, 65_536));
-    assert_eq!(dark(&png_header(8000, 8000, 16, 6)), Err(PlanError::TooManyBytes { bytes: 8000 * 8000 * 8 }));
+fn bombs_noise_and_other_files_are_refused() {
+    let is_refused = |bytes: &[u8], why: &str| {
+        let error = dark(bytes).unwrap_err();
+        assert!(error.contains(why), "{error}");
+    };
+    is_refused(&png_header(100_000, 100_000, 8, 0), "too");
+    is_refused(&png_header(0x7fff_ffff, 0x7fff_ffff, 16, 6), "too");
+    is_refused(b"P5 4000000000 4000000000 255 \0", "4000000000 × 4000000000 pixels are too many");
+    is_refused(b"P4 65536 65536 \0", "65536 × 65536 pixels are too many");
+    is_refused(&png_header(8000, 8000, 16, 6), "its pixels take 512000000 bytes");
     // As many pixels as there may be are decoded, so that this is damaged and no bomb.
     assert_eq!(MAX_PIXELS, 8192 * 8192);
-    assert_eq!(dark(&png_header(8192, 8192, 8, 0)), Err(PlanError::DamagedPixels));
-}
-
-#[test]
-fn noise_is_no_floor_plan() {
+    is_refused(&png_header(8192, 8192, 8, 0), "its pixels are damaged");
     let rows = (0..2000).flat_map(|y| [if y % 2 == 0 { 0xaa } else { 0x55 }; 250]);
-    let bytes: Vec<u8> = b"P4 2000 2000\n".iter().copied().chain(rows).collect();
-    // Two at each point inside, where the black ones touch, and what lies on the border.
-    let corners = 2 * 1999 * 1999 + 4 * 1999 + 2;
-    assert_eq!(dark(&bytes), Err(PlanError::TooManyCorners { corners }));
-}
-
-#[test]
-fn other_files_are_refused() {
-    assert_eq!(dark(b""), Err(PlanError::Format));
-    assert_eq!(dark(b"GIF89a"), Err(PlanError::Format));
-    assert_eq!(dark(b"P7\nWIDTH 1\n"), Err(PlanError::DamagedHeader));
-    assert_eq!(dark(b"P5 0 0 255 "), Err(PlanError::Empty));
-    assert_eq!(dark(b"P5 3 3 255 \0"), Err(PlanError::DamagedPixels));
-    assert_eq!(dark(b"P5 1 1 0 \0"), Err(PlanError::DamagedHeader));
+    let noise: Vec<u8> = b"P4 2000 2000\n".iter().copied().chain(rows).collect();
+    is_refused(&noise, "more than 1048576 rectangles");
+    is_refused(b"", "neither a PNG");
+    is_refused(b"GIF89a", "neither a PNG");
+    is_refused(b"P7\nWIDTH 1\n", "its header is damaged");
+    is_refused(b"P5 0 0 255 ", "no pixels");
+    is_refused(b"P5 3 3 255 \0", "its pixels are damaged");
+    is_refused(b"P5 1 1 0 \0", "its header is damaged");
 }
 
 /// The largest picture that is allowed, of the fewest bytes, in at most 1 GiB: run alone as
@@ -138,9 +131,7 @@ proptest! {
     fn no_bytes_make_it_panic(head in 0..8_usize, bytes in proptest::collection::vec(any::<u8>(), 0..300)) {
         let heads: [&[u8]; 8] = [b"", b"\x89PNG\r\n\x1a\n", b"P1", b"P2 ", b"P3 9 9 ", b"P4 9 9 ", b"P5 9 9 255 ", b"P6"];
         let bytes = [heads[head], &bytes].concat();
-        if let Ok(bitmap) = Bitmap::decode_dark(&bytes, 0.5) {
-            bitmap.rectangles();
-        }
+        let _ = Bitmap::decode_dark(&bytes, 0.5);
     }
 
     /// The same with pictures that are almost whole.
@@ -158,8 +149,6 @@ proptest! {
         if let Some(cut) = cut {
             bytes.truncate(cut.index(bytes.len()));
         }
-        if let Ok(bitmap) = Bitmap::decode_dark(&bytes, 0.5) {
-            bitmap.rectangles();
-        }
+        let _ = Bitmap::decode_dark(&bytes, 0.5);
     }
 }

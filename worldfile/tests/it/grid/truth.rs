@@ -72,39 +72,6 @@ fn what_a_block_shuts_in_can_still_be_seen() {
 }
 
 #[test]
-fn a_block_behind_another_cannot_be_seen() {
-    let blocks = block("front", 5, "back-and-forth", "[[3, 1], [2, 1]]")
-        + &block("back", 5, "back-and-forth", "[[4, 1], [3, 1]]");
-    let world = GridWorld::new(&spec("######\n#R...#\n######", &blocks), 0);
-    insta::assert_snapshot!(can_be_seen(&world), @r"
-    -oo---
-    oooo--
-    -oo---
-    ");
-}
-
-#[test]
-fn a_cell_that_one_block_leaves_and_another_enters_has_not_changed() {
-    let ahead = block("ahead", 2, "loop", "[[1, 0], [2, 0], [2, 1], [1, 1], [0, 1], [0, 0]]");
-    let behind = block("behind", 2, "loop", "[[0, 0], [1, 0], [2, 0], [2, 1], [1, 1], [0, 1]]");
-    let mut world = GridWorld::new(
-        &spec("...\n...\n...\n..R", &(ahead + &behind).replace(", 0]", ", 2]").replace(", 1]", ", 3]")),
-        0,
-    );
-    world.act(&Step::Stay);
-    assert!(world.truth().changes().is_empty());
-    world.act(&Step::Stay);
-    let frame = *world.truth().frame();
-    let place = |x, y| frame.index(Cell::new(x, y)).unwrap();
-    let mut changes = changed(&world);
-    changes.sort_unstable();
-    assert_eq!(changes, [place(0, 2), place(2, 2)]);
-    assert_eq!(world.truth().block_events(place(1, 2)), 0);
-    assert_eq!(world.truth().block_events(place(2, 2)), 1);
-    assert_eq!(world.truth().cycle_rate(place(2, 2)), 0.5);
-}
-
-#[test]
 fn things_are_the_cells_of_paths() {
     let blocks = block("a", 1, "back-and-forth", "[[2, 2], [0, 2]]")
         + &block("b", 1, "loop", "[[0, 1], [0, 2], [1, 2], [1, 1]]");

@@ -114,56 +114,86 @@ fn people_let_a_robot_out_before_they_close() {
     assert!(is_closed(&world));
 }
 
+/// A place with an outer wall and others, and doors that close after ten minutes; after a quarter of an hour with a robot that
+/// starts `at`, which doors are open.
+fn open_doors(
+    size: [f64; 2],
+    walls: &[[f64; 4]],
+    doors: &[[f64; 4]],
+    at: [f64; 2],
+    dock: [f64; 2],
+) -> Vec<bool> {
+    let [right, top] = size;
+    let outer = [
+        [0.0, 0.0, right, 0.1],
+        [0.0, top - 0.1, right, top],
+        [0.0, 0.1, 0.1, top - 0.1],
+        [right - 0.1, 0.1, right, top - 0.1],
+    ];
+    let wall = |[left, bottom, right, top]: &[f64; 4]| {
+        format!("[[wall]]\nmin_m = [{left:?}, {bottom:?}]\nmax_m = [{right:?}, {top:?}]\n")
+    };
+    let walls: String = outer.iter().chain(walls).map(wall).collect();
+    let door = |(index, [x, y, to_x, to_y]): (usize, &[f64; 4])| {
+        format!(
+            "[[obstacle]]\nname = \"{index}\"\nkind = \"hinged_door\"\nfrom_m = [{x:?}, {y:?}]\nto_m = [{to_x:?}, {to_y:?}]\n\
+             thickness_m = 0.05\nwaits_for_robots = true\n[obstacle.schedule]\nevents = \"door.csv\"\n"
+        )
+    };
+    let leaves: String = doors.iter().enumerate().map(door).collect();
+    let text = format!(
+        "name = \"doors\"\nstarts = \"Mon 0:00\"\n[map]\nsize_m = {size:?}\ncell_m = 0.05\n{walls}{leaves}\
+         [[robot]]\nname = \"curious\"\nradius_m = 0.2\npose_m = {at:?}\n[robot.drive]\nmax_linear_mps = 0.8\n\
+         max_angular_degps = 150.0\nmax_linear_acceleration_mps2 = 1.5\nmax_angular_acceleration_degps2 = 600.0\n\
+         [robot.laser]\nbeams = 90\nrange_max_m = 10.0\nrate_hz = 10.0\n[robot.behavior]\nkind = \"driven\"\n\
+         [robot.patrol]\nshare = 0.05\nbattery_s = 300.0\ndock_m = {dock:?}\n"
+    );
+    let events = (PathBuf::from("door.csv"), b"time_s,state\n0,0\n600,1\n".to_vec());
+    let spec = worldfile::physics::parse_world_with("doors.toml", &text, &BTreeMap::from([events])).unwrap();
+    let mut world = PhysicsWorld::new(&spec, 0);
+    world.rest(900.0);
+    let is_open = |[x, y, to_x, to_y]: &[f64; 4]| {
+        let middle = nalgebra::Point2::new((x + to_x) / 2.0, (y + to_y) / 2.0);
+        let cell = spec.frame.index(spec.frame.cell_at(&middle)).unwrap();
+        world.truth().state(cell) == interfaces::TrueState::Free
+    };
+    doors.iter().map(is_open).collect()
+}
+
 /// A robot beside a room with its dock, from which two doors lead to it: the one on the way with fewer doors stays open, and only this one.
 /// The second door may close, since the robot does not need it.
 #[test]
 fn a_dock_in_a_room_with_two_doors_is_reached_through_one_of_them() {
-    let wall = |min: [f64; 2], max: [f64; 2]| format!("[[wall]]\nmin_m = {min:?}\nmax_m = {max:?}\n");
     // The dock is in the lower room, 0 to 8 m; above it are two rooms, with a door to the dock's each, and one between them.
     let walls = [
-        ([0.0, 0.0], [8.0, 0.1]),
-        ([0.0, 5.9], [8.0, 6.0]),
-        ([0.0, 0.1], [0.1, 5.9]),
-        ([7.9, 0.1], [8.0, 5.9]),
-        ([0.1, 3.0], [1.5, 3.1]),
-        ([2.4, 3.0], [5.5, 3.1]),
-        ([6.4, 3.0], [7.9, 3.1]),
-        ([4.0, 3.1], [4.1, 4.0]),
-        ([4.0, 4.9], [4.1, 5.9]),
+        [0.1, 3.0, 1.5, 3.1],
+        [2.4, 3.0, 5.5, 3.1],
+        [6.4, 3.0, 7.9, 3.1],
+        [4.0, 3.1, 4.1, 4.0],
+        [4.0, 4.9, 4.1, 5.9],
     ];
-    let walls: String = walls.map(|(min, max)| wall(min, max)).concat();
-    let door = |name: &str, from: [f64; 2], to: [f64; 2]| {
-        format!(
-            "[[obstacle]]\nname = \"{name}\"\nkind = \"hinged_door\"\nfrom_m = {from:?}\nto_m = {to:?}\nthickness_m = 0.05\n\
-             waits_for_robots = true\n[obstacle.schedule]\nevents = \"door.csv\"\n"
-        )
-    };
-    let doors = door("left", [1.5, 3.05], [2.4, 3.05])
-        + &door("right", [5.5, 3.05], [6.4, 3.05])
-        + &door("between", [4.05, 4.0], [4.05, 4.9]);
-    let world = |at: [f64; 2]| {
-        let text = format!(
-            "name = \"two doors\"\nstarts = \"Mon 0:00\"\n[map]\nsize_m = [8.0, 6.0]\ncell_m = 0.05\n{walls}{doors}\
-             [[robot]]\nname = \"curious\"\nradius_m = 0.2\npose_m = {at:?}\n[robot.drive]\nmax_linear_mps = 0.8\n\
-             max_angular_degps = 150.0\nmax_linear_acceleration_mps2 = 1.5\nmax_angular_acceleration_degps2 = 600.0\n\
-             [robot.laser]\nbeams = 90\nrange_max_m = 10.0\nrate_hz = 10.0\n[robot.behavior]\nkind = \"driven\"\n\
-             [robot.patrol]\nshare = 0.05\nbattery_s = 300.0\ndock_m = [4.0, 1.5]\n"
-        );
-        let events = (PathBuf::from("door.csv"), b"time_s,state\n0,0\n600,1\n".to_vec());
-        let spec =
-            worldfile::physics::parse_world_with("two.toml", &text, &BTreeMap::from([events])).unwrap();
-        let mut world = PhysicsWorld::new(&spec, 0);
-        world.rest(900.0);
-        [[1.95, 3.05], [5.95, 3.05], [4.05, 4.45]].map(|[x, y]| {
-            let frame = world.spec().frame;
-            let cell = frame.index(frame.cell_at(&nalgebra::Point2::new(x, y))).unwrap();
-            world.truth().state(cell) == interfaces::TrueState::Free
-        })
-    };
     // Left, right, between.
+    let doors = [[1.5, 3.05, 2.4, 3.05], [5.5, 3.05, 6.4, 3.05], [4.05, 4.0, 4.05, 4.9]];
+    let world = |at: [f64; 2]| open_doors([8.0, 6.0], &walls, &doors, at, [4.0, 1.5]);
     assert_eq!(world([4.0, 1.5]), [false; 3], "at the dock");
     assert_eq!(world([2.0, 4.5]), [true, false, false], "in the left room");
     assert_eq!(world([6.0, 4.5]), [false, true, false], "in the right room");
+}
+
+/// A closed leaf that leaves a gap too narrow for the robot closes the room.
+#[test]
+fn people_let_a_robot_out_although_the_leaf_leaves_a_gap() {
+    let is_open = |gap_m: f64, is_inside: bool| {
+        let walls = [[4.0, 0.1, 4.1, 1.5], [4.0, 2.5 + gap_m, 4.1, 3.9]];
+        let at = if is_inside { [1.0, 1.0] } else { [6.0, 2.0] };
+        open_doors([8.0, 4.0], &walls, &[[4.05, 1.5, 4.05, 2.5]], at, [6.0, 2.0])[0]
+    };
+    for gap_m in [0.0, 0.03, 0.05, 0.1, 0.2, 0.3] {
+        assert!(is_open(gap_m, true), "a gap of {gap_m} m");
+        assert!(!is_open(gap_m, false), "a gap of {gap_m} m, the robot at its dock");
+    }
+    // The robot needs no door.
+    assert!(!is_open(0.6, true));
 }
 
 #[test]
@@ -204,46 +234,6 @@ fn things_repeat_recorded_events() {
         });
         assert_eq!(states, expected, "{more}");
     }
-}
-
-/// A closed leaf that leaves a gap too narrow for the robot closes the room.
-#[test]
-fn people_let_a_robot_out_although_the_leaf_leaves_a_gap() {
-    let is_open = |gap_m: f64, is_inside: bool| {
-        let wall = |min: [f64; 2], max: [f64; 2]| format!("[[wall]]\nmin_m = {min:?}\nmax_m = {max:?}\n");
-        let walls = [
-            ([0.0, 0.0], [8.0, 0.1]),
-            ([0.0, 3.9], [8.0, 4.0]),
-            ([0.0, 0.1], [0.1, 3.9]),
-            ([7.9, 0.1], [8.0, 3.9]),
-            ([4.0, 0.1], [4.1, 1.5]),
-            ([4.0, 2.5 + gap_m], [4.1, 3.9]),
-        ];
-        let walls: String = walls.map(|(min, max)| wall(min, max)).concat();
-        let at = if is_inside { [1.0, 1.0] } else { [6.0, 2.0] };
-        let text = format!(
-            "name = \"gap\"\nstarts = \"Mon 0:00\"\n[map]\nsize_m = [8.0, 4.0]\ncell_m = 0.05\n{walls}\
-             [[obstacle]]\nname = \"door\"\nkind = \"hinged_door\"\nfrom_m = [4.05, 1.5]\nto_m = [4.05, 2.5]\nthickness_m = 0.05\n\
-             waits_for_robots = true\n[obstacle.schedule]\nevents = \"door.csv\"\n\
-             [[robot]]\nname = \"curious\"\nradius_m = 0.2\npose_m = {at:?}\n[robot.drive]\nmax_linear_mps = 0.8\n\
-             max_angular_degps = 150.0\nmax_linear_acceleration_mps2 = 1.5\nmax_angular_acceleration_degps2 = 600.0\n\
-             [robot.laser]\nbeams = 90\nrange_max_m = 10.0\nrate_hz = 10.0\n[robot.behavior]\nkind = \"driven\"\n\
-             [robot.patrol]\nshare = 0.05\nbattery_s = 300.0\ndock_m = [6.0, 2.0]\n"
-        );
-        let events = (PathBuf::from("door.csv"), b"0,0\n600,1\n".to_vec());
-        let spec =
-            worldfile::physics::parse_world_with("gap.toml", &text, &BTreeMap::from([events])).unwrap();
-        let mut world = PhysicsWorld::new(&spec, 0);
-        world.rest(900.0);
-        let middle = spec.frame.cell_at(&nalgebra::Point2::new(4.05, 2.0));
-        world.truth().state(spec.frame.index(middle).unwrap()) == interfaces::TrueState::Free
-    };
-    for gap_m in [0.0, 0.03, 0.05, 0.1, 0.2, 0.3] {
-        assert!(is_open(gap_m, true), "a gap of {gap_m} m");
-        assert!(!is_open(gap_m, false), "a gap of {gap_m} m, the robot at its dock");
-    }
-    // The robot needs no door.
-    assert!(!is_open(0.6, true));
 }
 
 proptest! {

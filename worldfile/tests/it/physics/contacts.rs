@@ -52,46 +52,6 @@ fn a_contact_counts_again_only_after_parting() {
 }
 
 #[test]
-fn bounds_hold_at_every_reading_whatever_the_command() {
-    let mut world = PhysicsWorld::new(&four_rooms(), 0);
-    let limits = world.spec().driven().drive;
-    let inf = f64::INFINITY;
-    let commands = [(9.0, 0.0), (-9.0, 9.0), (inf, -inf), (f64::NAN, 1.0), (0.3, -9.0), (0.0, f64::NAN)];
-    let mut before = world.sense().twist;
-    for (linear_mps, angular_radps) in commands {
-        let contacts = drive(&mut world, Twist { linear_mps, angular_radps }, 1.2, |world| {
-            let now = world.fleet().robots().next().unwrap().twist;
-            let slack = 1e-4;
-            assert!(now.linear_mps.abs() <= limits.max_linear_mps + slack);
-            assert!(now.angular_radps.abs() <= limits.max_angular_radps + slack);
-            let gain = (now.linear_mps - before.linear_mps).abs() / 0.1;
-            assert!(gain <= limits.max_linear_acceleration_mps2 + 0.01, "{gain}");
-            let spin = (now.angular_radps - before.angular_radps).abs() / 0.1;
-            assert!(spin <= limits.max_angular_acceleration_radps2 + 0.01, "{spin}");
-            before = now;
-        });
-        assert_eq!(contacts, []);
-    }
-    // The last command contained NaN: the robot stands still.
-    assert_eq!(before, Twist::STOP);
-}
-
-#[test]
-fn a_circle_is_a_circle() {
-    let mut world = PhysicsWorld::new(&four_rooms(), 0);
-    let twist = Twist { linear_mps: 0.5, angular_radps: 0.5 };
-    // First accelerate to full speed, then drive one full circle.
-    drive(&mut world, twist, 1.0, |_| ());
-    let start = *world.true_pose();
-    let middle = start * Point2::new(0.0, 1.0);
-    let turn_s = std::f64::consts::TAU / 0.5;
-    drive(&mut world, twist, turn_s, |world| {
-        let radius_m: f64 = (middle.coords - world.true_pose().translation.vector).norm();
-        assert!((radius_m - 1.0).abs() < 5e-4, "{radius_m}");
-    });
-}
-
-#[test]
 fn being_run_into_is_no_collision_of_ones_own() {
     // A dummy robot that sees no farther than its own surface.
     let blind =

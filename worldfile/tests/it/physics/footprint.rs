@@ -18,18 +18,6 @@ fn corners(fleet: &Fleet) -> Vec<Point2<f64>> {
 }
 
 #[test]
-fn it_turns_about_its_middle() {
-    let mut fleet = Fleet::new(&house(&[long(0.0)], ""), 0);
-    fleet.run_until(5.0, &mut |_: &RobotView<'_>, _: &LaserReading| Twist {
-        linear_mps: 0.0,
-        angular_radps: 1.0,
-    });
-    let robot = fleet.robots().next().unwrap();
-    assert!((robot.pose.translation.vector - nalgebra::Vector2::new(3.0, 3.0)).norm() < 1e-5);
-    assert!((robot.twist.angular_radps - 1.0).abs() < 1e-5 && !robot.is_stalled);
-}
-
-#[test]
 fn its_corners_stay_out_of_walls_and_it_says_where_it_touches() {
     for heading_deg in [0.0, 25.0, 180.0, 300.0] {
         let spec = house(&[long(heading_deg)], "");

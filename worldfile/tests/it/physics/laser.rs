@@ -14,17 +14,3 @@ fn limits_follow_rep_117() {
     assert_eq!(scan.ranges_m[360], f32::INFINITY);
     assert!((scan.ranges_m[90] - 1.9 * 2.0_f32.sqrt()).abs() < 1e-5);
 }
-
-#[test]
-fn a_robot_sees_the_other_but_not_itself() {
-    let spec = four_rooms_but(&[("pose_m = [2.0, 2.0]", "pose_m = [7.2, 10.5]")], "");
-    let mut world = PhysicsWorld::new(&spec, 0);
-    let scan = world.sense().scan;
-    // The dummy robot is 1 m above, and has a radius of 0.2 m.
-    assert!((scan.ranges_m[540] - 0.8).abs() < 1e-6, "{}", scan.ranges_m[540]);
-    assert!(scan.ranges_m.iter().all(|range| *range > 0.5));
-    world.act(&Twist::STOP);
-    let dummy = world.fleet().robots().nth(1).and_then(|robot| robot.reading()).map(|reading| &reading.scan);
-    let down = dummy.map(|scan| scan.ranges_m[45]).unwrap();
-    assert!((down - 0.8).abs() < 1e-6, "{down}");
-}

@@ -25,18 +25,6 @@ fn it_comes_and_goes_on_time_and_is_solid_meanwhile() {
 }
 
 #[test]
-fn a_robot_runs_into_it_while_it_stands() {
-    let spec = four_rooms_but(&[], &format!("{BOX}disappears_s = 8.0"));
-    let mut world = PhysicsWorld::new(&spec, 0);
-    let contacts = drive(&mut world, Twist { linear_mps: 0.8, angular_radps: 0.0 }, 7.9, |_| ());
-    assert!((world.true_pose().translation.x - 2.8).abs() < 0.002);
-    assert_eq!(contacts.len(), 1);
-    assert_eq!(contacts[0].with, Body::Obstacle(0));
-    assert_eq!(drive(&mut world, Twist { linear_mps: 0.8, angular_radps: 0.0 }, 1.0, |_| ()), []);
-    assert!(world.true_pose().translation.x > 3.0);
-}
-
-#[test]
 fn it_waits_for_its_place() {
     let here = BOX.replace("[3.0, 1.8]", "[2.1, 1.8]");
     let mut world = PhysicsWorld::new(&four_rooms_but(&[], &format!("{here}appears_s = 1.0")), 0);

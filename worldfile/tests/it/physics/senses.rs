@@ -203,7 +203,7 @@ fn readings_do_not_depend_on_which_readings_were_read() {
 struct Ahead;
 
 impl Controller for Ahead {
-    fn drive(&mut self, _: &RobotView<'_>) -> Option<Command> {
+    fn drive(&mut self, _: &RobotView<'_>) -> Option<Velocity> {
         Some(Twist { linear_mps: 0.3, angular_radps: 0.2 }.into())
     }
 }

@@ -65,17 +65,6 @@ fn a_restored_fleet_and_a_fork_live_on_bit_by_bit() {
 }
 
 #[test]
-fn a_fork_goes_its_own_way() {
-    let mut fleet = Fleet::new(&zoo(), 4);
-    fleet.run_until(5.0, &mut drivers);
-    let (mut fork, before) = (fleet.clone(), hash(&fleet));
-    fork.run_until(6.0, &mut ());
-    assert_eq!(hash(&fleet), before);
-    fleet.run_until(6.0, &mut drivers);
-    assert_ne!(hash(&fleet), hash(&fork));
-}
-
-#[test]
 fn snapshots_of_other_places_are_refused() {
     let snapshot = Fleet::new(&crowd(), 1).snapshot();
     assert_eq!(Fleet::restored(&zoo(), &snapshot).err(), Some(SnapshotError::OtherSpec));
