@@ -6,6 +6,7 @@
 //! the list of its keys: an unknown key may be a misspelling of a key that then seems to be missing.
 
 mod spelling;
+mod syntax;
 #[cfg(test)]
 mod tests;
 mod value;
@@ -111,11 +112,10 @@ impl File<'_> {
         Findings::of_errors(shown.collect(), errors.len().saturating_sub(MAX_SHOWN))
     }
 
-    /// The error of a text that is not TOML, in the words of the parser.
     fn syntax_error<T>(&self, error: &toml::de::Error) -> Option<T> {
-        let what = format!("this is not valid TOML: {}", error.message());
-        let help = "a key is written as in `radius_m = 0.2`, a text in quotes, a header as in `[map]` or `[[robot]]`";
-        self.error(&what, (error.span().unwrap_or(0..0), ""), &[], help)
+        let span = error.span().unwrap_or(0..0);
+        let (what, help) = syntax::fault(error.message(), self.text(span.clone()));
+        self.error(what, (span, ""), &[], help)
     }
 
     /// Whether the file does not describe a world of the other kind: `map` is a drawing, or a table of sizes.
