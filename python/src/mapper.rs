@@ -119,7 +119,8 @@ impl Mapper {
     /// `angle_increment`: rad; by default the beams cover a full turn from straight behind. `range_min`, `range_max`:
     /// m. `mount`: the pose of the laser on the robot. `ValueError`: the scan is invalid; the map then stays as it
     /// was.
-    #[pyo3(signature = (*scan, **keywords))]
+    #[pyo3(signature = (*scan, **keywords), text_signature = "($self, time, ranges, pose, *, angle_min=..., angle_increment=None, \
+        range_min=0.0, range_max=10.0, mount=None, sweep=0.0, velocity=...)")]
     fn update(
         &mut self,
         py: Python<'_>,
