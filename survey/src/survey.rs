@@ -97,7 +97,7 @@ impl Survey {
 
     /// The names that none of these places has: nothing changes there, as far as it was seen.
     pub fn still_names(&self, places: &[Place]) -> Vec<StillName> {
-        self.mapper().map(|mapper| still_names(mapper, &self.book, places)).unwrap_or_default()
+        self.mapper().map(|mapper| still_names(mapper, self.book.names(), places)).unwrap_or_default()
     }
 
     /// What is different at these places since the last session; `None` in the first one. A session is one visit of the

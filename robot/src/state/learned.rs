@@ -1,6 +1,7 @@
 //! What a robot has learned of a place: from its parts into a state, and back.
 
-use super::format::{Part, SavedMap, Session, State, StateError};
+use super::error::StateError;
+use super::format::{Part, SavedMap, Session, State};
 use super::settings::SavedSettings;
 use crate::build::BUILD;
 use crate::{Pilot, Robot, Settings};

@@ -1,4 +1,4 @@
-use super::format::StateError;
+use super::error::StateError;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;

@@ -1,9 +1,11 @@
 //! Publishers that this node cannot hear, though they use its topics.
 
-use super::subscribers::Named;
-use crate::message::Topic;
+use crate::message::{Quality, Topic};
 use ros2_client::dds::rustdds::EndpointDescription;
 use ros2_client::dds::rustdds::policy::Reliability;
+
+/// A topic with its full name.
+pub(super) type Named = (Topic, String, Quality);
 
 /// Why a publisher cannot be heard by a node with these subscriptions, in a sentence; `None` if it can, or has another topic.
 pub(super) fn problem(subscribed: &[Named], found: &EndpointDescription) -> Option<String> {

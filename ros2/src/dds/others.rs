@@ -1,8 +1,7 @@
 //! What this node hears of other participants: when one is discovered, and when its readers and writers match with those of this
 //! node. The first call of a service depends on it.
 
-use super::discovery;
-use super::subscribers::Named;
+use super::discovery::{self, Named};
 use crate::link::Event;
 use futures::executor::block_on_stream;
 use ros2_client::dds::rustdds::{DomainParticipantStatusEvent, GUID, RTPSEntity, StatusEvented};

@@ -1,6 +1,6 @@
 //! What the node receives: a thread that waits for all topics at once.
 
-use super::discovery::{dds_type, ros_type};
+use super::discovery::{Named, dds_type, ros_type};
 use super::others::Endpoints;
 use super::profile;
 use crate::link::Event;
@@ -20,9 +20,6 @@ struct Received {
     topic: Topic,
     content: Result<(Message, MessageInfo), ReadError>,
 }
-
-/// A topic with its full name.
-pub(super) type Named = (Topic, String, Quality);
 
 /// Subscribes topics, and sends what comes to `to`. `own` are the publishers of this node.
 pub(super) fn start(

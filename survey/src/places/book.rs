@@ -30,7 +30,7 @@ impl PlaceBook {
     }
 
     /// The names that the user has given.
-    pub(super) fn names(&self) -> &[PlaceName] {
+    pub(crate) fn names(&self) -> &[PlaceName] {
         &self.names
     }
 

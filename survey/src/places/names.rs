@@ -1,4 +1,4 @@
-use super::{Place, PlaceBook, PlaceKind};
+use super::{Place, PlaceKind};
 use mapper::Mapper;
 use nalgebra::Point2;
 use serde::{Deserialize, Serialize};
@@ -62,11 +62,11 @@ pub struct StillName {
     pub observed_s: Option<f64>,
 }
 
-/// The names that none of the places has.
-pub(crate) fn still_names(mapper: &Mapper, book: &PlaceBook, places: &[Place]) -> Vec<StillName> {
+/// Those of these names that none of the places has.
+pub(crate) fn still_names(mapper: &Mapper, names: &[PlaceName], places: &[Place]) -> Vec<StillName> {
     let is_free = |name: &&PlaceName| places.iter().all(|place| place.name.as_ref() != Some(&name.name));
     let still = |name: &PlaceName| StillName { name: name.clone(), observed_s: observed_s(mapper, name) };
-    book.names().iter().filter(is_free).map(still).collect()
+    names.iter().filter(is_free).map(still).collect()
 }
 
 fn observed_s(mapper: &Mapper, name: &PlaceName) -> Option<f64> {

@@ -154,7 +154,7 @@ fn names_go_to_the_nearest_place_and_stay() {
     room.book.set_names(vec![name("Kitchen", 1.4), name("Desk", 3.2), name("Window", 5.0)]);
     assert_eq!(room.at(1.1).name.as_deref(), Some("Kitchen"));
     assert_eq!(room.at(3.1).name.as_deref(), Some("Desk"));
-    let still = still_names(&room.mapper, &room.book, &room.places());
+    let still = still_names(&room.mapper, room.book.names(), &room.places());
     let [window] = &still[..] else { panic!("{still:?}") };
     assert!(window.name.name == "Window" && window.observed_s.is_some_and(|time_s| time_s > 590.0));
     room.next_day();

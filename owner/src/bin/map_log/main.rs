@@ -74,7 +74,7 @@ fn run(args: &Args) -> Result<ExitCode, Failure> {
     check_distinct(&[("--out", out), ("--mcap", mcap), ("--state", state), ("--places", places)])
         .map_err(input)?;
     let names = places.map(place_names::read).transpose().map_err(input)?;
-    let (mut state_file, loaded) = SurveyStateFile::open(args)?;
+    let (mut state_file, loaded) = SurveyStateFile::open(args.state.as_deref(), args.state_every)?;
     let choice = args.topics(loaded.as_ref()).map_err(input)?;
     let given = logs_in_order::open(&args.files, &choice, state_file.is_kept(), args.quiet).map_err(input)?;
     let settings = args.settings(&given, loaded.as_ref()).map_err(input)?;

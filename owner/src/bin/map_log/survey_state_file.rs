@@ -1,11 +1,11 @@
 //! `--state`: what was learned from earlier logs, and what this run leaves for the next one.
 
-use crate::args::Args;
 use cli::program::{Failure, open_state, state_failure};
 use cli::terminal::say;
 use mapper::MapperSettings;
 use robot::state::{State, StateError, StateFile};
 use std::io::stderr;
+use std::path::Path;
 use survey::{Survey, SurveySettings, SurveyedLog, saved_logs, saved_settings};
 
 /// The state file of a run, or none.
@@ -22,10 +22,10 @@ pub(crate) struct Loaded {
 }
 
 impl SurveyStateFile {
-    /// The file of `--state`, and the state in it. Nothing is written yet.
-    pub(crate) fn open(args: &Args) -> Result<(Self, Option<Loaded>), Failure> {
-        let Some(path) = &args.state else { return Ok((Self { file: None, is_written: true }, None)) };
-        let (file, state) = open_state(path, args.state_every)?;
+    /// The file of `--state`, saved once in `every_s`, and the state in it. Nothing is written yet.
+    pub(crate) fn open(path: Option<&Path>, every_s: f64) -> Result<(Self, Option<Loaded>), Failure> {
+        let Some(path) = path else { return Ok((Self { file: None, is_written: true }, None)) };
+        let (file, state) = open_state(path, every_s)?;
         let of_state = |state| Ok(Loaded { logs: saved_logs(&state)?, state });
         let loaded = state.map(of_state).transpose().map_err(|why: StateError| state_failure(path, why))?;
         if loaded.as_ref().is_some_and(|loaded| loaded.state.check_build().is_err()) {
