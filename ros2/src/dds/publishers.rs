@@ -37,8 +37,8 @@ impl Publishers {
 
     /// Sends a message; `false` if it is not sent.
     pub(super) fn send(&mut self, topic: Topic, message: Message) -> bool {
-        let sent = self.by_topic.get(&topic).map(|publisher| publisher.publish(message));
-        let Some(Err(why)) = sent else { return true };
+        let Some(publisher) = self.by_topic.get(&topic) else { return true };
+        let Err(why) = publisher.publish(message) else { return true };
         let why = match why {
             WriteError::WouldBlock { .. } => "a subscriber does not keep up".to_owned(),
             why => why.to_string(),
