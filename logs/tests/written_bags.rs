@@ -141,11 +141,9 @@ fn no_stamp_of_a_run_without_a_date_is_negative() {
 
 #[test]
 fn lasers_have_topics_of_their_own_and_one_that_pans_is_one_laser() {
-    let two = |step: usize| if step % 2 == 1 { [-0.3, 1.0] } else { [0.1, PI] };
-    let pans = |step: usize| [0.1, 0.7 * (step as f64 * 0.4).sin()];
-    let cases: [(&dyn Fn(usize) -> [f64; 2], &[&str]); 2] =
-        [(&two, &["/scan", "/scan_2"]), (&pans, &["/scan"])];
-    for (mount, topics) in cases {
+    let two: fn(usize) -> [f64; 2] = |step| if step % 2 == 1 { [-0.3, 1.0] } else { [0.1, PI] };
+    let pans = |step| [0.1, 0.7 * (step as f64 * 0.4).sin()];
+    for (mount, topics) in [(two, vec!["/scan", "/scan_2"]), (pans, vec!["/scan"])] {
         let mut readings = driven(0.0);
         for (step, reading) in readings.iter_mut().enumerate() {
             let [ahead_m, turn_rad] = mount(step);

@@ -128,7 +128,7 @@ fn check_removable(file: &Path, state: &State, log: &str) -> anyhow::Result<()> 
 /// The session that was added last, if the state before it was kept.
 fn removable(file: &Path, state: &State) -> anyhow::Result<String> {
     let earlier = read_state(&earlier_name(file)).map_err(|_| anyhow!("no earlier state was kept"))?;
-    let [now, before] = [state, &earlier].map(|state| names(state));
+    let [now, before] = [state, &earlier].map(names);
     match now.split_last() {
         Some((last, rest)) if rest == before => Ok(last.clone()),
         Some(_) if now == before => {
