@@ -8,7 +8,6 @@
 //! Points are compared with surfaces that were never seen to move, in the mean over their neighbors on the same surface: that
 //! tells apart what the noise of a single point hides.
 
-use crate::changing_map::ChangingMap;
 use crate::constants::{MAJORITY, MIN_LEFT, MOVED_M, NEAR_STD, SURFEL_STD_M};
 use crate::match_scene::MatchScene;
 use crate::matcher::{Match, Prior, difference};
@@ -49,11 +48,7 @@ pub(crate) struct Stayed {
 
 /// Looks for surfaces that have stayed where the odometry says, against the pose `most` of most of the view. `None` if there
 /// are too few. Not of scans that sweep: most of their view does not fix a pose without the odometry.
-pub(crate) fn stayed<M: ChangingMap>(
-    scene: &MatchScene<M>,
-    predicted: &Predicted,
-    most: &Placement,
-) -> Option<Stayed> {
+pub(crate) fn stayed(scene: &MatchScene, predicted: &Predicted, most: &Placement) -> Option<Stayed> {
     let scene = &scene.tight();
     let prior = predicted.prior().filter(|prior| prior.begin.is_none())?;
     let most = scene.align(&most.pose, None, 0.0, false)?;
@@ -88,8 +83,8 @@ pub(crate) fn stayed<M: ChangingMap>(
 
 /// Matches that may have found what has stayed: most of the view itself, what it leaves over (`left`), and what is near the
 /// odometry, from several headings.
-fn starts<M: ChangingMap>(
-    scene: &MatchScene<M>,
+fn starts(
+    scene: &MatchScene,
     predicted: &Predicted,
     prior: &Prior,
     most: &Match,
@@ -146,12 +141,7 @@ impl Pair {
 
 /// Separates what has stayed from what has moved: each pose is that of the points which lie better there. `None` if the
 /// points do not fix the poses.
-fn separate<M: ChangingMap>(
-    scene: &MatchScene<M>,
-    prior: &Prior,
-    start: Match,
-    most: &Match,
-) -> Option<Pair> {
+fn separate(scene: &MatchScene, prior: &Prior, start: Match, most: &Match) -> Option<Pair> {
     let information = NEAR_STD.information();
     let near_most = Prior { pose: most.placement.pose, information, begin: None };
     let of = |points: &[ScanPoint], at: &Match, prior: &Prior| {
@@ -188,7 +178,7 @@ struct Offsets {
 }
 
 impl Offsets {
-    fn new<M: ChangingMap>(scene: &MatchScene<M>, placement: &Placement) -> Self {
+    fn new(scene: &MatchScene, placement: &Placement) -> Self {
         let rotation = placement.pose.rotation;
         let off_m = |point: &ScanPoint| {
             let normal = rotation * point.normal;

@@ -2,7 +2,7 @@
 
 use crate::constants::{AMBIGUOUS, LOG_NOISE_M, NEAR_STD, SEARCH_EVERY, STDS, SUBMAP_KEYFRAMES};
 use crate::estimate::{Localized, PoseEstimate, PoseState};
-use crate::localizer::PosePrior;
+use crate::motion::PosePrior;
 use crate::openings::has_opening;
 use crate::settings::LocalizerSettings;
 use crate::spread::Spread;

@@ -1,6 +1,5 @@
 //! Several poses that the robot may have. Driving on decides between them.
 
-use crate::changing_map::ChangingMap;
 use crate::constants::{AMBIGUOUS, EQUAL, FOUND_STD, SAME_POSE, WIDE_GATE_M};
 use crate::match_scene::MatchScene;
 use crate::matcher::{Prior, difference};
@@ -32,11 +31,7 @@ pub(crate) struct Hypotheses {
 
 impl Hypotheses {
     /// Refines the poses that a search has found. Poses below `min_score` are dropped.
-    pub(crate) fn start<M: ChangingMap>(
-        scene: &MatchScene<M>,
-        found: &[Isometry2<f64>],
-        min_score: f64,
-    ) -> Self {
+    pub(crate) fn start(scene: &MatchScene, found: &[Isometry2<f64>], min_score: f64) -> Self {
         let covariance = FOUND_STD.covariance();
         let list = found
             .iter()
@@ -112,7 +107,7 @@ impl Hypotheses {
     }
 
     /// Compares all poses with a scan. Poses below `min_score` are dropped.
-    pub(crate) fn compare<M: ChangingMap>(&mut self, scene: &MatchScene<M>, min_score: f64) {
+    pub(crate) fn compare(&mut self, scene: &MatchScene, min_score: f64) {
         self.scans += 1;
         let next = |Hypothesis { pose, covariance, score, .. }: &Hypothesis| {
             refine(scene, pose, covariance, 2.0 * scene.gate_m(), SCORE_MEMORY * score)
@@ -141,8 +136,8 @@ fn is_same(a: &Isometry2<f64>, b: &Isometry2<f64>) -> bool {
 }
 
 /// Matches the scan near a pose.
-fn refine<M: ChangingMap>(
-    scene: &MatchScene<M>,
+fn refine(
+    scene: &MatchScene,
     pose: &Isometry2<f64>,
     covariance: &Matrix3<f64>,
     first_m: f64,

@@ -39,7 +39,6 @@ mod deskew;
 mod estimate;
 mod faults;
 mod first_map;
-mod given_poses;
 mod hypotheses;
 mod local_trajectory_builder;
 mod localizer;
@@ -65,8 +64,8 @@ mod verification;
 mod work;
 
 pub use changing_map::ChangingMap;
+pub use deskew::GivenPoses;
 pub use estimate::{Localized, PoseEstimate, PoseState, Start};
-pub use given_poses::GivenPoses;
 pub use localizer::Localizer;
 pub use loop_closing::{Correction, LoopClosed, LoopClosingLocalizer, Switch};
 pub use settings::{LocalizerSettings, OdometryTrust};

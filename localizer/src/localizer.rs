@@ -1,17 +1,15 @@
 mod estimating;
 mod map_matcher;
-mod pose_prior;
 mod saved;
 mod state;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use pose_prior::PosePrior;
-
 use crate::changing_map::ChangingMap;
 use crate::constants::{LOST_STD, NEAR_STD};
 use crate::estimate::{Localized, PoseEstimate, Start};
 use crate::local_trajectory_builder::{LocalTrajectoryBuilder, Track};
+use crate::motion::PosePrior;
 use crate::scan_points::PointRules;
 use crate::settings::LocalizerSettings;
 use crate::surfel_map::SurfelMap;

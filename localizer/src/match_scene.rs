@@ -1,6 +1,5 @@
 //! All that one scan is compared with.
 
-use crate::changing_map::ChangingMap;
 use crate::constants::SURFEL_STD_M;
 use crate::matcher::{Gates, Match, Prior, align};
 use crate::placement::Placement;
@@ -8,6 +7,7 @@ use crate::scan_points::ScanPoint;
 use crate::settings::LocalizerSettings;
 use crate::support::{ClearBeams, Support, judge};
 use crate::surfel_map::SurfelMap;
+use interfaces::{CellState, Grid};
 use nalgebra::{Isometry2, Point2};
 
 /// The same of points and surfels in live matches, whose maps are followed for hours: with 3, the position is off by 32 mm instead of
@@ -15,9 +15,9 @@ use nalgebra::{Isometry2, Point2};
 const GATE_STDS: f64 = 3.5;
 
 /// One scan, and the maps.
-pub(crate) struct MatchScene<'a, M> {
+pub(crate) struct MatchScene<'a> {
     pub(crate) surfels: &'a SurfelMap,
-    pub(crate) map: &'a M,
+    pub(crate) states: &'a Grid<CellState>,
     pub(crate) points: &'a [ScanPoint],
     pub(crate) clear: &'a ClearBeams,
     /// The pose of the laser in the frame of the robot.
@@ -27,7 +27,7 @@ pub(crate) struct MatchScene<'a, M> {
     pub(crate) is_tight: bool,
 }
 
-impl<M: ChangingMap> MatchScene<'_, M> {
+impl MatchScene<'_> {
     /// The distance up to which a point confirms a surfel, m.
     pub(crate) fn gate_m(&self) -> f64 {
         let stds = if self.is_tight { GATE_STDS / 2.0 } else { GATE_STDS };
@@ -67,8 +67,8 @@ impl<M: ChangingMap> MatchScene<'_, M> {
         let gates_m = [self.tight().gate_m(), self.gate_m()];
         let laser = placement.pose * self.mount;
         let origin = Point2::from(laser.translation.vector);
-        let mut support = judge(self.surfels, self.map, self.points, placement, &origin, gates_m);
-        support.blind = self.clear.contradicted(self.map, &laser);
+        let mut support = judge(self.surfels, self.states, self.points, placement, &origin, gates_m);
+        support.blind = self.clear.contradicted(self.states, &laser);
         support.contradicted += support.blind;
         support
     }

@@ -70,13 +70,9 @@ pub(crate) struct Match {
 /// The sums of the normal equations.
 #[derive(Clone, Copy, Debug, Default)]
 struct NormalEquations {
-    /// Of the pose at the end of the scan.
-    hessian: Matrix3<f64>,
-    gradient: Vector3<f64>,
-    /// Of the pose at its begin, and of begin and end.
-    begin_hessian: Matrix3<f64>,
-    cross_hessian: Matrix3<f64>,
-    begin_gradient: Vector3<f64>,
+    /// Of the pose at the begin of the scan, and of that at its end: of a rigid scan, of the end alone.
+    hessian: Matrix6<f64>,
+    gradient: Vector6<f64>,
     squares: f64,
     weight: f64,
     /// The sum of the weights of the points alone.
@@ -84,49 +80,45 @@ struct NormalEquations {
 }
 
 impl NormalEquations {
-    fn scale(&mut self, by: f64) {
-        self.hessian *= by;
-        self.gradient *= by;
-        self.begin_hessian *= by;
-        self.cross_hessian *= by;
-        self.begin_gradient *= by;
-        self.squares *= by;
+    /// Adds a point that follows the pose at the end with this share, and the begin with the rest.
+    #[inline]
+    fn add(&mut self, hessian: &Matrix3<f64>, gradient: &Vector3<f64>, share: f64) {
+        let rest = 1.0 - share;
+        let blocks = [(3, 3, share * share), (0, 0, rest * rest), (0, 3, rest * share), (3, 0, rest * share)];
+        // A rigid scan has no begin.
+        for (row, column, part) in blocks.into_iter().take(if share < 1.0 { 4 } else { 1 }) {
+            let mut block = self.hessian.fixed_view_mut::<3, 3>(row, column);
+            block += hessian * part;
+        }
+        self.gradient += stack(&(gradient * rest), &(gradient * share));
     }
 
     /// The steps of the end and of the begin. `None` if the points do not fix the pose.
     fn step(&self, placement: &Placement, prior: Option<&Prior>) -> Option<[Vector3<f64>; 2]> {
-        let (mut hessian, mut gradient) = (self.hessian, self.gradient);
         let off = prior.map_or(Vector3::zeros(), |prior| difference(&placement.pose, &prior.pose));
         let Some(begin) = prior.and_then(|prior| prior.begin) else {
             let information = prior.map_or(Matrix3::zeros(), |prior| prior.information);
-            hessian += information;
-            gradient += information * off;
-            return Some([-(hessian.try_inverse()? * gradient), Vector3::zeros()]);
+            let gradient = self.gradient.fixed_rows::<3>(3) + information * off;
+            return Some([-((self.end() + information).try_inverse()? * gradient), Vector3::zeros()]);
         };
         let off = stack(&(placement.begin() - begin.expected), &off);
-        let hessian = begin.joint + self.joint_hessian();
-        let gradient = begin.joint * off + stack(&self.begin_gradient, &gradient);
-        let step = -hessian.cholesky()?.solve(&gradient);
+        let step = -(begin.joint + self.hessian).cholesky()?.solve(&(begin.joint * off + self.gradient));
         Some([step.fixed_rows::<3>(3).into(), step.fixed_rows::<3>(0).into()])
     }
 
-    fn joint_hessian(&self) -> Matrix6<f64> {
-        let mut joint = Matrix6::zeros();
-        joint.fixed_view_mut::<3, 3>(0, 0).copy_from(&self.begin_hessian);
-        joint.fixed_view_mut::<3, 3>(0, 3).copy_from(&self.cross_hessian);
-        joint.fixed_view_mut::<3, 3>(3, 0).copy_from(&self.cross_hessian.transpose());
-        joint.fixed_view_mut::<3, 3>(3, 3).copy_from(&self.hessian);
-        joint
+    /// Of the pose at the end of the scan.
+    fn end(&self) -> Matrix3<f64> {
+        self.hessian.fixed_view::<3, 3>(3, 3).into()
     }
 
     /// What is known about the pose at the end of the scan: of the points alone, and together with the prior; and the
     /// covariance of the pose of a beam, in the mean over all.
     fn known(&self, prior: Option<&Prior>) -> Option<[Matrix3<f64>; 3]> {
         let Some(begin) = prior.and_then(|prior| prior.begin) else {
-            let all = self.hessian + prior.map_or(Matrix3::zeros(), |prior| prior.information);
-            return Some([self.hessian, all, all.try_inverse()?]);
+            let all = self.end() + prior.map_or(Matrix3::zeros(), |prior| prior.information);
+            return Some([self.end(), all, all.try_inverse()?]);
         };
-        let mut scan = self.joint_hessian();
+        let mut scan = self.hessian;
         let all = scan + begin.joint;
         let mut own = scan.fixed_view_mut::<3, 3>(0, 0);
         own += begin.information;
@@ -136,6 +128,11 @@ impl NormalEquations {
         let beam = (block(0, 0) + block(3, 3)) / 3.0 + (block(0, 3) + block(3, 0)) / 6.0;
         Some([end_of(&scan)?, end_of(&all)?, beam])
     }
+}
+
+/// A matrix of both poses, from its blocks.
+pub(crate) fn blocks(blocks: [[Matrix3<f64>; 2]; 2]) -> Matrix6<f64> {
+    Matrix6::from_fn(|row, column| blocks[row / 3][column / 3][(row % 3, column % 3)])
 }
 
 fn stack(begin: &Vector3<f64>, end: &Vector3<f64>) -> Vector6<f64> {
@@ -202,26 +199,16 @@ fn accumulate(
         let kernel = kernel(off_m, scale_m * noise.kernel_share);
         let certain = weight / noise.variance * kernel;
         let (j, share) = (derivative(&arm, &surfel.normal), placement.share(point));
-        let (hessian, gradient) = (j * j.transpose() * certain, j * (off_m * certain));
-        if share < 1.0 {
-            let rest = 1.0 - share;
-            sums.hessian += hessian * (share * share);
-            sums.begin_hessian += hessian * (rest * rest);
-            sums.cross_hessian += hessian * (rest * share);
-            sums.gradient += gradient * share;
-            sums.begin_gradient += gradient * rest;
-        } else {
-            sums.hessian += hessian;
-            sums.gradient += gradient;
-        }
+        sums.add(&(j * j.transpose() * certain), &(j * (off_m * certain)), share);
         sums.squares += off_m * off_m * certain;
         sums.weight += weight * kernel;
         sums.points += point.weight * kernel;
     }
     // Trust decides between surfels; it does not make a scan worth less than the odometry.
     if sums.weight > 0.0 {
-        sums.scale(sums.points / sums.weight);
-        sums.weight = sums.points;
+        let scale = sums.points / sums.weight;
+        (sums.hessian, sums.gradient) = (sums.hessian * scale, sums.gradient * scale);
+        (sums.squares, sums.weight) = (sums.squares * scale, sums.points);
     }
     sums
 }

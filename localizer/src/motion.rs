@@ -1,12 +1,12 @@
 //! The motion between two readings by odometry, and how far it can be trusted.
 
 use crate::constants::DISTRUSTED_STD;
-use crate::matcher::{Begin, Prior, difference};
+use crate::matcher::{Begin, Prior, blocks, difference};
 use crate::placement::shifted;
 use crate::settings::OdometryTrust;
 use crate::spread::Spread;
 use interfaces::heading_rad;
-use nalgebra::{Isometry2, Matrix3, Matrix6, Vector3, Vector6};
+use nalgebra::{Isometry2, Matrix3, Vector3, Vector6};
 
 /// Errors at rest: vibration, and rounding of the odometry.
 const REST_STD: Spread = Spread { m: 2e-4, rad: 1e-4 };
@@ -14,6 +14,9 @@ const REST_STD: Spread = Spread { m: 2e-4, rad: 1e-4 };
 const SLIP: f64 = 0.02;
 /// The expected errors count as larger by this: what is the same from scan to scan would bend the map.
 const PRIOR_FACTOR: f64 = 1.5;
+/// A pose is elsewhere if it is farther from the pose prior than this, beyond its errors.
+const ELSEWHERE: Spread = Spread::of_motion(0.3);
+const ELSEWHERE_STDS: f64 = 4.0;
 
 /// A motion in the frame of the robot before the motion.
 #[derive(Clone, Copy, Debug)]
@@ -82,8 +85,7 @@ impl Motion {
         let shift = pose.rotation * self.delta.translation.vector;
         // A heading error of the pose turns the motion.
         let by_heading = Matrix3::new(1.0, 0.0, -shift.y, 0.0, 1.0, shift.x, 0.0, 0.0, 1.0);
-        let (cos, sin) = (pose.rotation.re, pose.rotation.im);
-        let to_map = Matrix3::new(cos, -sin, 0.0, sin, cos, 0.0, 0.0, 0.0, 1.0);
+        let to_map = pose.rotation.to_homogeneous();
         (by_heading, to_map * self.covariance * to_map.transpose())
     }
 }
@@ -131,6 +133,30 @@ impl Predicted {
     }
 }
 
+/// Where the robot is by another source, in the frame of the map: a pose with its covariance.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PosePrior {
+    pub(crate) pose: Isometry2<f64>,
+    pub(crate) covariance: Matrix3<f64>,
+}
+
+impl PosePrior {
+    /// Whether the robot may be at a pose.
+    fn allows(&self, pose: &Isometry2<f64>) -> bool {
+        let std_m = (self.covariance[(0, 0)] + self.covariance[(1, 1)]).sqrt();
+        let off = difference(pose, &self.pose);
+        off.xy().norm() <= ELSEWHERE.m + ELSEWHERE_STDS * std_m && off.z.abs() <= ELSEWHERE.rad
+    }
+
+    /// The predicted pose, and what the prior says.
+    pub(crate) fn with(&self, predicted: Predicted) -> Predicted {
+        match self.allows(&predicted.pose) {
+            true => predicted.and(&self.pose, &self.covariance),
+            false => Predicted::rigid(self.pose, self.covariance),
+        }
+    }
+}
+
 impl Begin {
     /// What is known about the begin, together with what another source says about the end: its information, and how far it
     /// is from the expected end, which moves by `step`, and with it the place of the begin.
@@ -156,11 +182,7 @@ fn begin(covariance: &Matrix3<f64>, by_heading: &Matrix3<f64>, own: &Matrix3<f64
     let information = (covariance + REST_STD.covariance()).try_inverse()?;
     let motion = own.try_inverse()?;
     let cross = by_heading.transpose() * motion;
-    let mut joint = Matrix6::zeros();
-    joint.fixed_view_mut::<3, 3>(0, 0).copy_from(&(information + cross * by_heading));
-    joint.fixed_view_mut::<3, 3>(0, 3).copy_from(&-cross);
-    joint.fixed_view_mut::<3, 3>(3, 0).copy_from(&-cross.transpose());
-    joint.fixed_view_mut::<3, 3>(3, 3).copy_from(&motion);
+    let joint = blocks([[information + cross * by_heading, -cross], [-cross.transpose(), motion]]);
     let (expected, moved) = (Vector3::zeros(), Vector3::zeros());
     Some(Begin { information, joint, by_heading: *by_heading, expected, moved })
 }

@@ -1,6 +1,5 @@
 //! How well a scan at a pose agrees with the maps.
 
-use crate::changing_map::ChangingMap;
 use crate::constants::{END_M, MOVED_M};
 use crate::matcher::derivative;
 use crate::placement::Placement;
@@ -78,7 +77,7 @@ impl Support {
 /// `place_m` it is in place.
 pub(crate) fn judge(
     surfels: &SurfelMap,
-    map: &impl ChangingMap,
+    states: &Grid<CellState>,
     points: &[ScanPoint],
     placement: &Placement,
     laser: &Point2<f64>,
@@ -108,7 +107,7 @@ pub(crate) fn judge(
                     support.displaced += point.weight;
                 }
                 // What has moved before says nothing against a pose.
-                match !beside.is_some_and(Surfel::is_suspect) && is_contradicted(map, laser, &at) {
+                match !beside.is_some_and(Surfel::is_suspect) && is_contradicted(states, laser, &at) {
                     true => support.contradicted += point.weight,
                     false => support.new += point.weight,
                 }
@@ -119,8 +118,8 @@ pub(crate) fn judge(
 }
 
 /// Whether a point on a surface contradicts the map: the map knows its cell as free, or something in front.
-fn is_contradicted(map: &impl ChangingMap, laser: &Point2<f64>, at: &Point2<f64>) -> bool {
-    state_at(map.states(), at) == CellState::Free || passes_blocked(map, laser, at)
+fn is_contradicted(states: &Grid<CellState>, laser: &Point2<f64>, at: &Point2<f64>) -> bool {
+    state_at(states, at) == CellState::Free || passes_blocked(states, laser, at)
 }
 
 /// The state of the cell that contains a point.
@@ -129,8 +128,7 @@ fn state_at(states: &Grid<CellState>, point: &Point2<f64>) -> CellState {
 }
 
 /// Whether something blocked lies between the laser and a point.
-fn passes_blocked(map: &impl ChangingMap, laser: &Point2<f64>, at: &Point2<f64>) -> bool {
-    let states = map.states();
+fn passes_blocked(states: &Grid<CellState>, laser: &Point2<f64>, at: &Point2<f64>) -> bool {
     let way = at - laser;
     let length_m = way.norm();
     let step_m = states.frame().resolution_m();
@@ -175,10 +173,10 @@ impl ClearBeams {
     }
 
     /// The weight of the beams that pass something blocked.
-    pub(crate) fn contradicted(&self, map: &impl ChangingMap, laser: &Isometry2<f64>) -> f64 {
+    pub(crate) fn contradicted(&self, states: &Grid<CellState>, laser: &Isometry2<f64>) -> f64 {
         let origin = Point2::from(laser.translation.vector);
         let ends = self.directions.iter().map(|along| origin + laser.rotation * along * self.range_m);
-        let passing = ends.filter(|end| passes_blocked(map, &origin, end)).count();
+        let passing = ends.filter(|end| passes_blocked(states, &origin, end)).count();
         passing as f64 * CLEAR_STRIDE as f64 / 2.0
     }
 }

@@ -1,6 +1,5 @@
 //! From the predicted pose to the pose of the scan, and the question whether the robot or the things moved.
 
-use crate::changing_map::ChangingMap;
 use crate::coherent_motion::{Stayed, stayed};
 use crate::constants::{MAJORITY, MIN_SUPPORT, MINOR, MOVED_SHARE, WIDE_GATE_M};
 use crate::match_scene::MatchScene;
@@ -56,11 +55,7 @@ impl Tracked {
 
 /// Finds the pose of a scan near the predicted pose. `others` are other guesses: the pose at rest, the pose at constant
 /// velocity. If no guess gives a supported pose, the result is the match from the predicted pose.
-pub(crate) fn track<M: ChangingMap>(
-    scene: &MatchScene<M>,
-    predicted: &Predicted,
-    others: &[Isometry2<f64>],
-) -> Tracked {
+pub(crate) fn track(scene: &MatchScene, predicted: &Predicted, others: &[Isometry2<f64>]) -> Tracked {
     let (by_odometry, is_surprise) = with_prior(scene, predicted);
     let is_good = |tracked: &Tracked| tracked.support.share() >= MIN_SUPPORT;
     let is_plain = is_good(&by_odometry) && !is_surprise;
@@ -96,7 +91,7 @@ pub(crate) fn track<M: ChangingMap>(
 }
 
 /// The match with the prior of odometry, and whether the motion by odometry was not true.
-fn with_prior<M: ChangingMap>(scene: &MatchScene<M>, predicted: &Predicted) -> (Tracked, bool) {
+fn with_prior(scene: &MatchScene, predicted: &Predicted) -> (Tracked, bool) {
     let Predicted { pose, covariance, .. } = predicted;
     let stay = || {
         let placement = Placement::rigid(pose);
@@ -123,7 +118,7 @@ fn surprise(found: &Match, predicted: &Isometry2<f64>, covariance: &Matrix3<f64>
 
 /// The result of a match, with an honest covariance: inflated where the residuals are larger than the noise, and by the
 /// errors that all points share.
-fn tracked<M: ChangingMap>(scene: &MatchScene<M>, found: &Match) -> Tracked {
+fn tracked(scene: &MatchScene, found: &Match) -> Tracked {
     let inverse = found.information.try_inverse().unwrap_or_else(|| Matrix3::identity() * 1e3);
     let honest =
         |covariance: Matrix3<f64>| covariance * found.residual_ratio.max(1.0) + MODEL_STD.covariance();
@@ -168,7 +163,7 @@ mod tests {
         let (settings, clear) = (LocalizerSettings::default(), ClearBeams::default());
         let scene = MatchScene {
             surfels: &surfels,
-            map: &map,
+            states: &map,
             points: &points,
             clear: &clear,
             mount: Isometry2::identity(),

@@ -31,7 +31,6 @@ mod odometry_drift;
 mod online;
 mod places;
 mod refine;
-mod residual;
 mod score_kernel;
 mod sparse;
 mod submap;
@@ -184,7 +183,7 @@ impl TrajectoryFinder {
         self.search_loops();
         self.closer.accept_strong(&mut self.graph);
         self.graph = self.optimized();
-        let residual_m = residual::residual_m(&self.closer.places, self.keyframes(), &self.graph);
+        let residual_m = refine::residual_m(&self.closer.places, self.keyframes(), &self.graph);
         let loops = self.closer.accepted.len();
         let distance_scale =
             distance_scale::distance_scale(&self.builder.matcher.measured_motions, &self.graph);

@@ -2,7 +2,6 @@
 
 use super::map_matcher::{MapMatcher, Step};
 use super::state::{Event, State};
-use crate::changing_map::ChangingMap;
 use crate::constants::{
     CARRIED_S, CONFIRM_SCANS, END_M, FAIR_SHARE, LIMIT_NOISE_M, MAJORITY, MIN_CONFIRMED, MIN_SUPPORT, MINOR,
     PUSHED, WIDE_GATE_M,
@@ -29,7 +28,7 @@ const LEARNING_LIMITS: f64 = 10.0;
 
 impl MapMatcher {
     /// Estimates the pose, and the state that follows; returns the agreement of the scan with the maps.
-    pub(super) fn estimate<M: ChangingMap>(&mut self, step: &mut Step<M>) -> Support {
+    pub(super) fn estimate(&mut self, step: &mut Step) -> Support {
         let scan = step.scan;
         let predicted = step.prior.map_or(scan.predicted, |prior| prior.with(scan.predicted));
         let is_first = self.from_nothing && self.surfels.is_empty();
@@ -73,7 +72,7 @@ impl MapMatcher {
     }
 
     /// Takes over a supported pose.
-    pub(super) fn accept<M: ChangingMap>(&mut self, step: &mut Step<M>, tracked: &Tracked) {
+    pub(super) fn accept(&mut self, step: &mut Step, tracked: &Tracked) {
         (step.track.pose, step.track.covariance) = (tracked.placement.pose, tracked.covariance);
         step.found.begin += tracked.placement.begin();
         step.found.follower = tracked.follower;
@@ -104,7 +103,7 @@ impl MapMatcher {
     }
 
     /// Verifies a pose that was found by a search, or after a contradiction: it is not certain before.
-    fn verify<M>(&mut self, step: &Step<M>, support: &Support) {
+    fn verify(&mut self, step: &Step, support: &Support) {
         let pose = &step.track.pose;
         let is_near =
             self.times.now_s - self.times.certain_s <= CARRIED_S && self.is_where_odometry_says(pose);
@@ -121,13 +120,7 @@ impl MapMatcher {
     }
 
     /// Doubts a pose that the scan does not support, and searches for another one.
-    fn reject<M: ChangingMap>(
-        &mut self,
-        step: &mut Step<M>,
-        predicted: &Predicted,
-        tracked: &Tracked,
-        is_mirrored: bool,
-    ) {
+    fn reject(&mut self, step: &mut Step, predicted: &Predicted, tracked: &Tracked, is_mirrored: bool) {
         if self.is_unfinished() && !is_mirrored && tracked.support.seen_share() < FAIR_SHARE {
             self.on(Event::Contradicted);
         }
@@ -160,7 +153,7 @@ fn moved(motion: &Motion, scan: &Scan) -> Moved {
 }
 
 /// Whether the scan fits much better upside down: the laser hangs the wrong way around.
-fn is_mirrored<M: ChangingMap>(scene: &MatchScene<M>, pose: &Isometry2<f64>) -> bool {
+fn is_mirrored(scene: &MatchScene, pose: &Isometry2<f64>) -> bool {
     let points = mirrored(scene.points, &scene.mount);
     let scene = MatchScene { points: &points, ..*scene };
     let found = scene.align(pose, None, END_M, false);

@@ -3,7 +3,6 @@
 mod everywhere;
 mod relocalizing;
 
-use super::PosePrior;
 use super::state::{Event, State};
 use crate::changing_map::ChangingMap;
 use crate::constants::{LOST_STD, MIN_SUPPORT};
@@ -11,10 +10,12 @@ use crate::estimate::{PoseState, Start};
 use crate::hypotheses::Hypotheses;
 use crate::local_trajectory_builder::{IncomingScan, Matched, ScanMatcher, Track};
 use crate::match_scene::{MatchScene, exact_m};
+use crate::motion::PosePrior;
 use crate::settings::LocalizerSettings;
 use crate::support::ClearBeams;
 use crate::surfel_map::{Checker, SurfelMap};
 use crate::verification::Verification;
+use interfaces::{CellState, Grid};
 use nalgebra::{Isometry2, Matrix3, Vector3};
 use relocalizing::Relocalization;
 
@@ -24,12 +25,12 @@ const RATES_EVERY: u32 = 100;
 const SETTLE_S: f64 = 2.0;
 
 /// The map of changes, and what another source knows.
-type Around<'a, M> = (&'a M, Option<PosePrior>);
+type Around<'a> = (&'a dyn ChangingMap, Option<PosePrior>);
 
 /// The values of one scan.
-pub(super) struct Step<'a, M> {
+pub(super) struct Step<'a> {
     pub(super) scan: &'a IncomingScan,
-    pub(super) map: &'a M,
+    pub(super) states: &'a Grid<CellState>,
     pub(super) prior: Option<PosePrior>,
     pub(super) clear: &'a ClearBeams,
     pub(super) track: &'a mut Track,
@@ -179,10 +180,10 @@ impl MapMatcher {
         self.from_nothing && self.times.certain_s > f64::NEG_INFINITY
     }
 
-    pub(super) fn scene<'a, M: ChangingMap>(&'a self, step: &Step<'a, M>) -> MatchScene<'a, M> {
+    pub(super) fn scene<'a>(&'a self, step: &Step<'a>) -> MatchScene<'a> {
         MatchScene {
             surfels: &self.surfels,
-            map: step.map,
+            states: step.states,
             points: &step.scan.points,
             clear: step.clear,
             mount: step.scan.reading.mount,
@@ -192,14 +193,14 @@ impl MapMatcher {
     }
 }
 
-impl<'a, M: ChangingMap> ScanMatcher<Around<'a, M>> for MapMatcher {
+impl<'a> ScanMatcher<Around<'a>> for MapMatcher {
     type Found = MapFound;
 
     fn matched(
         &mut self,
         scan: &IncomingScan,
         track: &mut Track,
-        (map, prior): Around<'a, M>,
+        (map, prior): Around<'a>,
     ) -> Matched<Self::Found> {
         self.times.now_s = scan.now_s;
         self.times.start_s.get_or_insert(scan.now_s);
@@ -216,7 +217,7 @@ impl<'a, M: ChangingMap> ScanMatcher<Around<'a, M>> for MapMatcher {
         }
         let clear = ClearBeams::of(&scan.reading.scan);
         let found = MapFound::default();
-        let mut step = Step { scan, map, prior, clear: &clear, track, found };
+        let mut step = Step { scan, states: map.states(), prior, clear: &clear, track, found };
         let support = self.estimate(&mut step);
         let Step { track, mut found, .. } = step;
         found.support = support.share();
@@ -233,7 +234,7 @@ impl<'a, M: ChangingMap> ScanMatcher<Around<'a, M>> for MapMatcher {
         Matched { begin: found.begin, is_reliable, is_outlier: found.is_outlier, found }
     }
 
-    fn insert(&mut self, scan: &IncomingScan, track: &Track, found: &MapFound, _: Around<'a, M>) {
+    fn insert(&mut self, scan: &IncomingScan, track: &Track, found: &MapFound, _: Around<'a>) {
         if !found.learns {
             return;
         }
@@ -247,7 +248,7 @@ impl<'a, M: ChangingMap> ScanMatcher<Around<'a, M>> for MapMatcher {
 }
 
 impl MapMatcher {
-    fn weigh_by_rates(&mut self, map: &impl ChangingMap) {
+    fn weigh_by_rates(&mut self, map: &dyn ChangingMap) {
         let (readings, horizon_s) = (&mut self.times.readings, self.settings.rate_horizon_s);
         *readings = readings.wrapping_add(1);
         // At the first reading, a known map may bring rates.

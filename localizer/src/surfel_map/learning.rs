@@ -83,7 +83,7 @@ impl SurfelMap {
     }
 
     /// Takes over the learned rates of change as weights.
-    pub(crate) fn weigh_by_rates(&mut self, map: &impl ChangingMap, horizon_s: f64) {
+    pub(crate) fn weigh_by_rates(&mut self, map: &dyn ChangingMap, horizon_s: f64) {
         let states = map.states();
         for surfel in self.surfels.iter_mut().filter(|surfel| !surfel.is_removed()) {
             // The map counts a hit a little behind the surface.

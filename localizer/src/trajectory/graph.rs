@@ -61,8 +61,7 @@ impl Edge {
     fn add_to(&self, equations: &mut Equations, poses: &[Isometry2<f64>], weight: f64) {
         let back = poses[self.from].rotation.inverse();
         let motion = poses[self.from].inv_mul(&poses[self.to]).translation.vector;
-        let (cos, sin) = (back.re, back.im);
-        let to = Matrix3::new(cos, -sin, 0.0, sin, cos, 0.0, 0.0, 0.0, 1.0);
+        let to = back.to_homogeneous();
         let mut from = -to;
         // A turn of `from` swings `to` the other way around.
         from[(0, 2)] = motion.y;

@@ -8,8 +8,8 @@
 use super::keyframe::filled;
 use super::matching::fit;
 use crate::constants::{EXAMINED, KEYFRAME, LOG_NOISE_M, MAX_WORK, MIN_AGREEMENT, MIN_OVERLAP, PLACE_STD};
+use crate::deskew::GivenPoses;
 use crate::estimate::Start;
-use crate::given_poses::GivenPoses;
 use crate::scan_points::{PointRules, ScanPoint, ScanPoints};
 use crate::score_grid::ScoreGrid;
 use crate::search::{Window, search};

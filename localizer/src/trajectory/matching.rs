@@ -25,8 +25,7 @@ pub(super) fn gates(noise_m: f64, first_m: f64) -> Gates {
 
 /// An information matrix of shifts along the axes of a map, as one along the axes of a frame with this pose.
 pub(crate) fn in_frame(information: &Matrix3<f64>, frame: &Isometry2<f64>) -> Matrix3<f64> {
-    let (cos, sin) = (frame.rotation.re, frame.rotation.im);
-    let turn = Matrix3::new(cos, -sin, 0.0, sin, cos, 0.0, 0.0, 0.0, 1.0);
+    let turn = frame.rotation.to_homogeneous();
     turn.transpose() * information * turn
 }
 

@@ -1,7 +1,6 @@
 //! The search for the pose in the whole map, part by part. The work per scan is bounded; the rest is done in the next scans.
 
 use super::{MapMatcher, Step};
-use crate::changing_map::ChangingMap;
 use crate::constants::{AMBIGUOUS, CELLS_PER_LOOKUP, MAX_SIDE_M, MAX_WORK, MIN_FOUND, MIN_SCORE};
 use crate::hypotheses::Hypotheses;
 use crate::motion::Motion;
@@ -78,9 +77,9 @@ fn near(points: &[ScanPoint], reach_m: f64) -> Vec<ScanPoint> {
 
 impl MapMatcher {
     /// The poses in a window at which the scan fits.
-    pub(in crate::localizer) fn candidates<M: ChangingMap>(
+    pub(in crate::localizer) fn candidates(
         &self,
-        step: &Step<M>,
+        step: &Step,
         window: &Window,
         left: &mut usize,
     ) -> Vec<Isometry2<f64>> {
@@ -92,15 +91,15 @@ impl MapMatcher {
     }
 
     /// The scores of what can be seen from a window.
-    fn scores<M: ChangingMap>(&self, step: &Step<M>, window: &Window, reach_m: f64) -> ScoreGrid {
+    fn scores(&self, step: &Step, window: &Window, reach_m: f64) -> ScoreGrid {
         let middle = Point2::from(window.pose.translation.vector);
-        ScoreGrid::around(&self.surfels, step.map.states(), &middle, reach_m + window.reach_m)
+        ScoreGrid::around(&self.surfels, step.states, &middle, reach_m + window.reach_m)
     }
 
     /// The poses in the whole map. `None` if the search goes on in the next scan.
-    pub(in crate::localizer) fn search_everywhere<M: ChangingMap>(
+    pub(in crate::localizer) fn search_everywhere(
         &mut self,
-        step: &Step<M>,
+        step: &Step,
         mut left: usize,
     ) -> Option<Hypotheses> {
         let wide = self.relocalization.wide.take();
@@ -120,7 +119,7 @@ impl MapMatcher {
     }
 
     /// Searches in the present part, or in the next one. Returns false after the last one.
-    fn search_part<M: ChangingMap>(&self, step: &Step<M>, wide: &mut WideSearch, left: &mut usize) -> bool {
+    fn search_part(&self, step: &Step, wide: &mut WideSearch, left: &mut usize) -> bool {
         let Some(window) = wide.window(wide.next, &self.surfels.frame) else { return false };
         if wide.scores.as_ref().is_none_or(|(number, _)| *number != wide.next) {
             if *left < MAX_WORK / 2 {

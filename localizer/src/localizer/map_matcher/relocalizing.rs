@@ -3,7 +3,6 @@
 use super::super::state::{Event, State};
 use super::everywhere::WideSearch;
 use super::{MapMatcher, Step};
-use crate::changing_map::ChangingMap;
 use crate::constants::{
     CARRIED, CONFIRM_SCANS, MAJORITY, MAX_WORK, MIN_CONFIRMED, MIN_SCORE, MIN_SUPPORT, MINOR, SEARCH_EVERY,
 };
@@ -33,11 +32,7 @@ impl Default for Relocalization {
 impl MapMatcher {
     /// Searches around a pose that the scan contradicts, though a pose prior allows it: a robot that was carried along a
     /// corridor still sees most of its walls. If another pose is clearly better, the prior was wrong.
-    pub(in crate::localizer) fn doubt_prior<M: ChangingMap>(
-        &mut self,
-        step: &mut Step<M>,
-        tracked: &Tracked,
-    ) {
+    pub(in crate::localizer) fn doubt_prior(&mut self, step: &mut Step, tracked: &Tracked) {
         let share = tracked.support.share();
         if share >= MIN_SUPPORT || !self.is_due() {
             return;
@@ -57,14 +52,14 @@ impl MapMatcher {
     }
 
     /// The poses in a window around the last one.
-    fn search_around<M: ChangingMap>(&self, step: &Step<M>, min_score: f64, left: &mut usize) -> Hypotheses {
+    fn search_around(&self, step: &Step, min_score: f64, left: &mut usize) -> Hypotheses {
         let window = Window { pose: step.track.pose, reach_m: CARRIED.m, reach_rad: CARRIED.rad };
         let candidates = self.candidates(step, &window, left);
         Hypotheses::start(&self.scene(step), &candidates, min_score)
     }
 
     /// Searches for the pose: around the predicted pose, and in the whole map.
-    pub(in crate::localizer) fn search<M: ChangingMap>(&mut self, step: &mut Step<M>, tracked: &Tracked) {
+    pub(in crate::localizer) fn search(&mut self, step: &mut Step, tracked: &Tracked) {
         let is_due = self.is_due() || self.relocalization.wide.is_some();
         let is_near = self.state != State::Lost;
         let (mut found, mut left) = (Hypotheses::default(), MAX_WORK);
@@ -97,7 +92,7 @@ impl MapMatcher {
     }
 
     /// Takes over what a search has found.
-    fn take<M>(&mut self, step: &mut Step<M>, found: Hypotheses) {
+    fn take(&mut self, step: &mut Step, found: Hypotheses) {
         if !found.is_empty() {
             self.on(Event::Found);
         }
@@ -106,7 +101,7 @@ impl MapMatcher {
     }
 
     /// Compares all hypotheses with the scan; the last one that is left becomes the pose.
-    pub(in crate::localizer) fn follow<M: ChangingMap>(&mut self, step: &mut Step<M>) -> Support {
+    pub(in crate::localizer) fn follow(&mut self, step: &mut Step) -> Support {
         let mut hypotheses = std::mem::take(&mut self.relocalization.hypotheses);
         hypotheses.follow_odometry(&step.scan.motion);
         hypotheses.compare(&self.scene(step), MIN_SCORE);
@@ -137,7 +132,7 @@ impl MapMatcher {
     }
 
     /// Follows the odometry: the scan shows nothing, which says nothing against a pose either.
-    pub(in crate::localizer) fn dead_reckon<M>(&mut self, step: &mut Step<M>) {
+    pub(in crate::localizer) fn dead_reckon(&mut self, step: &mut Step) {
         self.relocalization.hypotheses.follow_odometry(&step.scan.motion);
         self.take_best(step);
         self.times.supported_s += if step.scan.fault.is_none() { step.scan.elapsed_s } else { 0.0 };
@@ -145,7 +140,7 @@ impl MapMatcher {
     }
 
     /// Reports the best hypothesis, with the spread of all.
-    fn take_best<M>(&self, step: &mut Step<M>) {
+    fn take_best(&self, step: &mut Step) {
         let hypotheses = &self.relocalization.hypotheses;
         if let Some(best) = hypotheses.best() {
             (step.track.pose, step.track.covariance) = (best.pose, best.covariance + hypotheses.spread());
