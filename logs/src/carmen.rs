@@ -20,7 +20,6 @@
 //! - Corrected logs write a second ODOM line after every scan, with the corrected pose of the scan, and with no time or a
 //!   meaningless one; the next ODOM line continues from there. Such a line is a new origin of the odometry, not a motion.
 
-mod corrected;
 mod geometry;
 mod inspection;
 mod line;
@@ -29,14 +28,22 @@ mod readings;
 mod tests;
 
 use crate::bytes::{Bytes, content_hash};
+use crate::checks::{MIN_MOTION_M, MIN_MOTION_RAD};
 use crate::choice::TopicChoice;
 use crate::error::LogError;
 use crate::lines::{self, Lines};
 use crate::log::{Log, RawReadings, Source};
+use crate::summary::LogSummary;
 use geometry::Geometry;
+use interfaces::heading_rad;
 use line::Line;
 use nalgebra::Isometry2;
 use readings::Readings;
+
+/// Poses of FLASER lines that stay within this of the odometry, m and rad, are those of the odometry at slightly other times: a robot
+/// drives 0.1 m in the 0.1 s between the two.
+const SAME_M: f64 = 0.1;
+const SAME_RAD: f64 = 0.05;
 
 /// A CARMEN log.
 #[derive(Debug)]
@@ -70,14 +77,64 @@ impl CarmenLog {
     /// When the file cannot be read, when most scans or most poses are invalid, when no line is a scan, or when `choice` demands corrected poses and
     /// the log has none. A last line that is cut off is left out, see [`LogSummary::notes`](crate::LogSummary::notes).
     pub(crate) fn open(file: &str, bytes: Bytes, choice: &TopicChoice) -> Result<Log, LogError> {
-        let (rules, times_s, mut summary) = inspection::of(&mut Lines::open(&bytes, file)?)?;
+        let (rules, times_s, summary) = inspection::of(&mut Lines::open(&bytes, file)?, choice.is_corrected)?;
         let mut log = Self { bytes, file: file.to_owned(), rules };
         if choice.is_corrected {
-            corrected::check(&log, &summary)?;
+            log.check_corrected(&summary)?;
             log.rules.takes_scan_poses = true;
-            corrected::note(&mut summary);
         }
         Ok(Log::new(log, times_s, summary))
+    }
+
+    /// Checks that the log has corrected poses.
+    ///
+    /// # Errors
+    ///
+    /// When its scans have no poses, when all poses are the same though the laser moves, or when they are those of the odometry.
+    fn check_corrected(&self, summary: &LogSummary) -> Result<(), LogError> {
+        let why = |what: String| {
+            let why = format!(
+                "no corrected poses: {what}; without --pose corrected, the poses are found from the scans"
+            );
+            LogError::Unusable { file: self.file.clone(), why }
+        };
+        let all = self.reference_poses()?.unwrap_or_default();
+        let given: Vec<Isometry2<f64>> = all.iter().flatten().copied().collect();
+        let (scans, without) = (all.len(), all.len() - given.len());
+        if without > 0 {
+            return Err(why(format!(
+                "{without} of {scans} scans are ROBOTLASER1 lines, or have an invalid pose; those of FLASER lines would be used"
+            )));
+        }
+        if !summary.stands
+            && (1..scans).all(|at| is_near(&given[0], &given[at], [MIN_MOTION_M, MIN_MOTION_RAD]))
+        {
+            let at = given[0].translation.vector;
+            return Err(why(format!("those of the FLASER lines are all the same ({}, {})", at.x, at.y)));
+        }
+        if summary.odometry_poses > 0 && !summary.stands && self.is_odometry(&given)? {
+            let limit = format!("within {SAME_M} m and {SAME_RAD} rad");
+            return Err(why(format!(
+                "those of the FLASER lines are those of the odometry ({limit}), which --pose odometry uses"
+            )));
+        }
+        Ok(())
+    }
+
+    /// Whether the poses of the laser move as the odometry does, over the whole log.
+    fn is_odometry(&self, given: &[Isometry2<f64>]) -> Result<bool, LogError> {
+        let mut readings = self.raw_readings()?;
+        let mut first = None;
+        for laser in given {
+            let Some(reading) = readings.next_reading()? else { break };
+            let odometry = reading.pose * reading.mount;
+            let (from_odometry, from_laser) = *first.get_or_insert((odometry, *laser));
+            let moved = [from_odometry.inv_mul(&odometry), from_laser.inv_mul(laser)];
+            if !is_near(&moved[0], &moved[1], [SAME_M, SAME_RAD]) {
+                return Ok(false);
+            }
+        }
+        Ok(true)
     }
 }
 
@@ -99,9 +156,14 @@ impl Source for CarmenLog {
         let mut poses = Vec::new();
         while let Some(line) = line::next(&mut lines, &self.rules.geometry)? {
             if let Line::Scan(scan) = line {
-                poses.push(scan.reference());
+                poses.push(scan.reference);
             }
         }
         Ok(Some(poses))
     }
+}
+
+fn is_near(a: &Isometry2<f64>, b: &Isometry2<f64>, [far_m, far_rad]: [f64; 2]) -> bool {
+    let step = a.inv_mul(b);
+    step.translation.vector.norm() < far_m && heading_rad(&step).abs() < far_rad
 }

@@ -14,4 +14,4 @@ pub(crate) use holes::{Holes, LONGEST_GAP_S};
 pub(crate) use jumps::Jumps;
 pub(crate) use pace::Pace;
 pub(crate) use speeds::Speeds;
-pub(crate) use standing::{MIN_MOTION_M, MIN_MOTION_RAD, NO_MOTION, Standing, UNKNOWN_MOTION};
+pub(crate) use standing::{MIN_MOTION_M, MIN_MOTION_RAD, Standing};

@@ -1,6 +1,6 @@
 /// What to use of a log. By default, everything in a bag is found by the types of the topics and by the frames, and the poses are
 /// those of the odometry.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, serde::Deserialize, serde::Serialize)]
 pub struct TopicChoice {
     /// The topics of the scans; all if empty.
     pub scan_topics: Vec<String>,

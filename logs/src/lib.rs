@@ -16,7 +16,6 @@ mod choice;
 mod error;
 mod lines;
 mod log;
-mod open;
 mod summary;
 
 pub use choice::TopicChoice;

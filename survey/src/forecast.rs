@@ -4,7 +4,7 @@ use crate::masks::{keepout_mask, speed_mask};
 use crate::outlook::{Outlook, distance_m, doors};
 use crate::places::{Place, places};
 use crate::survey::SavedSurvey;
-use interfaces::{Cell, CellState, Grid};
+use interfaces::{CellState, Grid};
 use mapper::{Calendar, Door, Mapper};
 use nalgebra::Point2;
 use robot::state::{State, StateError};
@@ -77,17 +77,12 @@ impl Forecast {
         Outlook { mapper: &self.mapper, calendar: self.calendar() }
     }
 
-    /// See [`Outlook::blocked`].
-    pub fn blocked(&self, cell: Cell, time_s: f64) -> Option<f64> {
-        self.outlook().blocked(cell, time_s)
-    }
-
     /// The map at a time, s: P(blocked) of every cell; NaN for a cell that was never seen.
     pub fn map(&self, time_s: f64) -> Grid<f64> {
         let frame = *self.mapper.frame();
         let mut grid = Grid::filled(frame, f64::NAN);
         for (index, _) in self.mapper.states().cells().other_than(CellState::Unknown) {
-            if let Some(blocked) = self.blocked(frame.cell(index), time_s) {
+            if let Some(blocked) = self.outlook().blocked(frame.cell(index), time_s) {
                 grid.cells_mut()[index] = blocked;
             }
         }
@@ -98,7 +93,8 @@ impl Forecast {
     /// down where changes are usual then.
     pub fn masks(&self, time_s: f64) -> [Grid<u8>; 2] {
         let pace = self.outlook().by_tile(1.0, |clock| clock.pace(time_s, self.calendar()));
-        let blocked = |index: usize| self.blocked(self.mapper.frame().cell(index), time_s).unwrap_or(0.0);
+        let blocked =
+            |index: usize| self.outlook().blocked(self.mapper.frame().cell(index), time_s).unwrap_or(0.0);
         [speed_mask(&self.mapper, |index| pace.cells()[index]), keepout_mask(&self.mapper, blocked)]
     }
 }

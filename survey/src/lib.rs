@@ -18,12 +18,9 @@ mod error;
 mod extent;
 mod forecast;
 mod masks;
-mod median;
-mod odometry_check;
 mod outlook;
 mod passes;
 mod patches;
-mod permanent;
 mod places;
 mod quality;
 mod range_noise;
@@ -31,7 +28,6 @@ mod repeated;
 mod replay;
 mod route;
 mod route_graph;
-mod seen_area;
 mod settings;
 mod silence;
 mod survey;
@@ -44,10 +40,9 @@ mod upright;
 pub use change_log::ChangeLog;
 pub use error::SurveyError;
 pub use forecast::{Forecast, NEAR_M};
-pub use masks::{MASKS, masks, masks_ahead};
+pub use masks::{MASKS, masks, masks_ahead, permanent};
 pub use outlook::{Outlook, doors};
 pub use passes::{PassError, Stage};
-pub use permanent::permanent;
 pub use places::{
     Direction, Lasting, Place, PlaceKind, PlaceName, PlaceRates, PlaceSince, Since, StillName, TrafficTile,
     Trend, is_line,

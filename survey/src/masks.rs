@@ -1,8 +1,7 @@
-//! Masks for the costmap filters of Nav2, values from 0 to 100.
+//! The map of what is permanent, and masks for the costmap filters of Nav2, values from 0 to 100.
 
 use crate::patches::{areas, fronts};
-use crate::permanent::share_blocked;
-use interfaces::{Cell, Grid};
+use interfaces::{Cell, CellState, Grid};
 use mapper::{Mapper, ThingKind};
 
 /// The names of the masks, in the order of [`masks`] and of [`Forecast::masks`](crate::Forecast::masks).
@@ -25,6 +24,8 @@ const MASS: f64 = 0.9;
 const PROBABLY: f64 = 0.5;
 /// The value of a cell that must not be entered.
 const KEEP_OUT: u8 = 100;
+/// A cell that changes is permanent in a state if it is in this state for at least this share of the time.
+const PERMANENT: f64 = 0.9;
 
 /// The value of the speed mask for the number of times per second that something comes into the way: 0 up to one in 40 passing
 /// robots, 80 from one in 10 on, in proportion to the logarithm of this share in between.
@@ -109,6 +110,33 @@ pub fn masks(mapper: &Mapper) -> [Grid<u8>; 2] {
 pub fn masks_ahead(mapper: &Mapper, ahead_s: f64) -> [Grid<u8>; 2] {
     let blocked = |index| mapper.blocked_probability_later(index, ahead_s);
     [speed_mask(mapper, |_| 1.0), keepout_mask(mapper, blocked)]
+}
+
+/// The map of what is permanent: a cell that never changed is as it was seen; a cell that changes is free where it is
+/// free or will be free again, and blocked only where it is blocked nearly all the time. Movers, and their trails, are not
+/// in this map.
+pub fn permanent(mapper: &Mapper) -> Grid<CellState> {
+    let mut map = mapper.states().clone();
+    let changed: Vec<usize> = mapper.changed().collect();
+    for index in changed {
+        let share = share_blocked(mapper, index);
+        map.cells_mut()[index] = if share >= PERMANENT { CellState::Blocked } else { CellState::Free };
+    }
+    map
+}
+
+/// The share of the time that a cell that changed is blocked, from 0 to 1: by its learned rates, or by the time in view
+/// where there are no rates.
+pub(crate) fn share_blocked(mapper: &Mapper, index: usize) -> f64 {
+    if let Some((block, free)) = mapper.transition_rates(index).filter(|(block, free)| block + free > 0.0) {
+        return block / (block + free);
+    }
+    let seen = mapper.statistics(index);
+    let watched = seen.watched_free + seen.watched_blocked;
+    match watched > 0.0 {
+        true => seen.watched_blocked / watched,
+        false => f64::from(u8::from(mapper.states().cells()[index] == CellState::Blocked)),
+    }
 }
 
 #[cfg(test)]

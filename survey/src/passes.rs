@@ -1,12 +1,11 @@
 //! The first pass over a log.
 
 use crate::error::SurveyError;
-use crate::odometry_check;
 use crate::replay::judged;
 use crate::route::{FirstPass, Route, frame, uncertain};
 use crate::settings::SurveySettings;
-use interfaces::{GridFrame, LaserReading, PoseMode};
-use localizer::{KnownPlace, PlaceError, PoseState, RouteSearch, Start};
+use interfaces::{GridFrame, LaserReading, PoseMode, heading_rad, median};
+use localizer::{KnownPlace, PlaceError, PoseState, RouteSearch, Start, TrajectoryPose};
 use logs::{Log, LogError};
 use mapper::ReadingError;
 use nalgebra::{Isometry2, Vector2};
@@ -48,6 +47,16 @@ pub enum Stage {
 /// How far later logs may leave the extent of the first one and still be aligned there, m.
 const AROUND_M: f64 = 10.0;
 
+/// Motions are compared when one of both is this long, m, or turns by this much, rad.
+const STEP_M: f64 = 0.5;
+const STEP_RAD: f64 = 0.5;
+/// Two motions differ if they are farther apart than this, m and rad, and than this share of the longer one.
+const MIN_APART: f64 = 0.1;
+const MIN_SHARE: f64 = 0.5;
+/// At least this number of motions is compared; of the logs that we know, at most 0.22 of them differ.
+const MIN_STEPS: usize = 20;
+const MAX_DIFFERING: f64 = 0.35;
+
 /// The first pass over one log.
 pub(crate) struct RoutePass<'a, W> {
     pub(crate) log: &'a Log,
@@ -75,7 +84,7 @@ impl<W: FnMut((Stage, usize)) -> ControlFlow<()>> RoutePass<'_, W> {
         if left_out * 2 > scans {
             return Err(SurveyError::MostLeftOut { left_out, scans }.into());
         }
-        odometry_check::check(&route.poses, &odometry)?;
+        check_odometry(&route.poses, &odometry)?;
         Ok(route)
     }
 
@@ -175,4 +184,49 @@ fn around(first: &Route, settings: &SurveySettings) -> Result<GridFrame, SurveyE
     let [width, height] = [extent.width(), extent.height()].map(|cells| cells + 2 * around as usize);
     // Around a place of the largest size, there is no space left.
     Ok(GridFrame::new(origin, extent.resolution_m(), width, height).unwrap_or(extent))
+}
+
+/// Checks the poses of the odometry against those of the trajectory that was found from the scans with its help. An odometry
+/// that never moves, or never turns, says nothing of that.
+///
+/// # Errors
+///
+/// When many motions differ: scans were put together where they do not belong, or all lengths are wrong.
+fn check_odometry(found: &[TrajectoryPose], odometry: &[Isometry2<f64>]) -> Result<(), SurveyError> {
+    let (mut last, mut differing, mut ratios) = (None, Vec::new(), Vec::new());
+    let [mut moved_m, mut turned_rad] = [0.0; 2];
+    for (at, pose) in found.iter().zip(odometry) {
+        if at.state != PoseState::Tracking {
+            last = None;
+            continue;
+        }
+        let (found_before, before) = *last.get_or_insert((at.pose, *pose));
+        let motions = [found_before.inv_mul(&at.pose), before.inv_mul(pose)];
+        let [found_m, odometry_m] = motions.map(|motion| motion.translation.vector.norm());
+        let [found_rad, odometry_rad] = motions.map(|motion| heading_rad(&motion).abs());
+        let (longer_m, longer_rad) = (found_m.max(odometry_m), found_rad.max(odometry_rad));
+        if longer_m < STEP_M && longer_rad < STEP_RAD {
+            continue;
+        }
+        last = Some((at.pose, *pose));
+        let apart_m = (motions[0].translation.vector - motions[1].translation.vector).norm();
+        let apart_rad = heading_rad(&motions[0].inv_mul(&motions[1])).abs();
+        let differs = |apart: f64, longer: f64| apart > MIN_APART.max(MIN_SHARE * longer);
+        differing.push((differs(apart_m, longer_m), differs(apart_rad, longer_rad)));
+        (moved_m, turned_rad) = (moved_m + odometry_m, turned_rad + odometry_rad);
+        if odometry_m > MIN_APART {
+            ratios.push(found_m / odometry_m);
+        }
+    }
+    let steps = differing.len();
+    let (moves, turns) = (moved_m > STEP_M, turned_rad > STEP_RAD);
+    let differing = differing.iter().filter(|(place, heading)| moves && *place || turns && *heading).count();
+    if steps < MIN_STEPS || (differing as f64) < MAX_DIFFERING * steps as f64 {
+        return Ok(());
+    }
+    Err(SurveyError::OtherOdometry {
+        differing,
+        steps,
+        ratio: median(ratios.into_iter()).unwrap_or_default(),
+    })
 }

@@ -1,7 +1,6 @@
 //! The noise of the ranges of a laser that stands, from the ranges themselves.
 
-use crate::median::median;
-use interfaces::{LaserReading, Scan};
+use interfaces::{LaserReading, Scan, median};
 use nalgebra::Isometry2;
 
 /// The number of scans that are kept, at most; at least half of it of a long log, spread over it.
@@ -74,8 +73,8 @@ impl RangeNoise {
         if 2 * ranges.len() < self.scans.len() {
             return None;
         }
-        let middle = median(ranges.iter().copied());
-        Some(STD_PER_MAD * median(ranges.into_iter().map(|range_m| (range_m - middle).abs())))
+        let middle = median(ranges.iter().copied())?;
+        Some(STD_PER_MAD * median(ranges.into_iter().map(|range_m| (range_m - middle).abs()))?)
     }
 }
 

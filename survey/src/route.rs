@@ -1,10 +1,9 @@
 //! The route of a log, and the cells that cover several of them.
 
 use crate::error::SurveyError;
-use crate::extent::{self, Reach};
+use crate::extent::{self, Reach, SeenArea};
 use crate::quality::{Quality, QualityCheck, Verdict};
 use crate::range_noise::RangeNoise;
-use crate::seen_area::SeenArea;
 use crate::settings::SurveySettings;
 use crate::turns::Turns;
 use interfaces::{GridFrame, LaserReading, PoseMode};

@@ -1,11 +1,11 @@
 //! When the laser of a log was silent: nothing was in view then.
 
-use crate::median::median;
+use interfaces::median;
 use localizer::TrajectoryPose;
 
 /// The longest time between two scans of a log during which things are in view, s; see [`robot::max_step_s`].
 pub(crate) fn max_step_s(poses: &[TrajectoryPose], hiding_s: f64) -> f64 {
-    robot::max_step_s(hiding_s, median(steps_s(poses)))
+    robot::max_step_s(hiding_s, median(steps_s(poses)).unwrap_or_default())
 }
 
 /// What users should know about the times without a scan, in a sentence.

@@ -9,13 +9,12 @@ pub use saved::{saved_logs, saved_settings};
 
 use crate::change_log::ChangeLog;
 use crate::error::SurveyError;
-use crate::extent::union;
+use crate::extent::{check_seen, too_much, union};
 use crate::passes::{PassError, RoutePass, Stage};
 use crate::places::{Place, PlaceBook, PlaceName, Since, StillName, places, since, still_names};
 use crate::quality::Verdict;
 use crate::replay::{FoundPoses, Replay, judged};
 use crate::route::frame;
-use crate::seen_area::{self, too_much};
 use crate::settings::SurveySettings;
 use crate::silence::max_step_s;
 use crate::surveyed_log::{LogEntry, SurveyedLog};
@@ -196,7 +195,7 @@ impl Survey {
         if is_followed && self.place.is_none() {
             self.place = Some(Arc::new(pass.place(&route)?));
         }
-        seen_area::check(self.seen_m2 + route.seen_m2, &self.settings)?;
+        check_seen(self.seen_m2 + route.seen_m2, &self.settings)?;
         self.seen_m2 += route.seen_m2;
         self.logs.push(SurveyedLog::new(entry, route, frame, self.settings.mapper.max_gap));
         Ok(())

@@ -20,9 +20,8 @@ pub struct LogEntry {
     pub content: u128,
     /// Hashes of some of its scans, by which a part of it is recognized.
     pub(crate) scans: Vec<u64>,
-    /// What was used of it: the topics of scans, the topic of odometry and the frame of the map of another SLAM, and the frame of
-    /// the robot.
-    pub choice: (Vec<String>, Option<String>, Option<String>),
+    /// What was used of it.
+    pub choice: TopicChoice,
     /// The time of its first reading, s after that of the first log.
     pub offset_s: f64,
     /// This time in seconds since the epoch; `None` if the log does not say it.
@@ -53,20 +52,16 @@ impl LogEntry {
             let view_deg = (step_rad * beams.saturating_sub(1) as f64).to_degrees();
             format!("{beams} beams over {view_deg:.0}°")
         });
-        let TopicChoice { scan_topics, odom_topic, base_frame, map_frame, .. } = choice.clone();
-        let poses = odom_topic.into_iter().chain(map_frame).reduce(|topic, frame| format!("{topic} {frame}"));
         Ok(Self {
             name,
-            content: 0,
-            scans: Vec::new(),
-            choice: (scan_topics, poses, base_frame),
-            offset_s: 0.0,
+            choice: choice.clone(),
             begin_s: summary.begin_s,
             duration_s: summary.duration_s,
             has_times: summary.has_times,
             stands: summary.stands,
             laser,
             notes: summary.notes.clone(),
+            ..Self::default()
         })
     }
 

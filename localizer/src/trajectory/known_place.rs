@@ -15,7 +15,7 @@ use crate::score_grid::ScoreGrid;
 use crate::search::{Window, search};
 use crate::spread::Spread;
 use crate::surfel_map::SurfelMap;
-use interfaces::{GridFrame, LaserReading, ValueError, heading_rad, wrap_rad};
+use interfaces::{GridFrame, LaserReading, ValueError, heading_rad, median, wrap_rad};
 use nalgebra::{Isometry2, Vector2};
 
 /// The number of scans that are searched for in the whole map, at most.
@@ -235,11 +235,11 @@ impl<'a> RouteSearch<'a> {
         }
         let reference = heading_rad(motion);
         let turns = pairs.iter().map(|[map, own]| wrap_rad(heading_rad(map) - heading_rad(own) - reference));
-        let rotation = interfaces::rotation(reference + median(turns));
+        let rotation = interfaces::rotation(reference + median(turns).unwrap_or_default());
         let offset =
             |[map, own]: &[Isometry2<f64>; 2]| map.translation.vector - rotation * own.translation.vector;
         let offsets: Vec<Vector2<f64>> = pairs.iter().map(offset).collect();
-        let [x, y] = [0, 1].map(|axis| median(offsets.iter().map(|at| at[axis])));
+        let [x, y] = [0, 1].map(|axis| median(offsets.iter().map(|at| at[axis])).unwrap_or_default());
         let motion = Isometry2::from_parts(Vector2::new(x, y).into(), rotation);
         Alignment { motion, scans: pairs.len(), confirmed: confirmed.iter().sum() }
     }
@@ -255,11 +255,4 @@ impl<'a> RouteSearch<'a> {
 /// Whether two motions move a pose of the route to about the same pose among the surfaces.
 fn is_same(a: &Isometry2<f64>, b: &Isometry2<f64>, pose: &Isometry2<f64>) -> bool {
     SAME.contains(&(a * pose).inv_mul(&(b * pose)))
-}
-
-/// The middle value, the upper one of two; 0 of none.
-fn median(values: impl Iterator<Item = f64>) -> f64 {
-    let mut sorted: Vec<f64> = values.collect();
-    sorted.sort_by(f64::total_cmp);
-    sorted.get(sorted.len() / 2).copied().unwrap_or_default()
 }

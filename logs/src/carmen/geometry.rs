@@ -16,44 +16,8 @@ const MAX_FOV_RAD: f64 = TAU + 0.01;
 const MAX_RESOLUTION_RAD: f64 = 0.05;
 const MIN_RESOLUTION_RAD: f64 = 1e-4;
 
-/// A parameter of the front laser.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Param {
-    /// The pose of the laser on the robot: m ahead, m to the left, rad to the left.
-    Ahead(f64),
-    Left(f64),
-    Turn(f64),
-    /// m
-    MaxRange(f64),
-    /// rad
-    Fov(f64),
-    Resolution(f64),
-}
-
-impl Param {
-    /// A parameter by its name; `None` if it is another one, or if its value is invalid.
-    pub(super) fn of(name: &str, value: f64) -> Option<Self> {
-        let is_offset = value.abs() < MAX_OFFSET_M;
-        let fov_deg = if value <= MAX_FOV_RAD { value.to_degrees() } else { value };
-        // 3.14159 is 180°.
-        let fov_rad = ((fov_deg * 100.0).round() / 100.0).to_radians();
-        let resolution_rad = if value < MAX_RESOLUTION_RAD { value } else { value.to_radians() };
-        match name {
-            "robot_frontlaser_offset" if is_offset => Some(Self::Ahead(value)),
-            "robot_frontlaser_side_offset" if is_offset => Some(Self::Left(value)),
-            "robot_frontlaser_angular_offset" if value.abs() <= TAU => Some(Self::Turn(value)),
-            "robot_front_laser_max" | "laser_front_laser_max" if value > 0.1 => Some(Self::MaxRange(value)),
-            "laser_front_laser_fov" if value > 0.0 && fov_rad <= MAX_FOV_RAD => Some(Self::Fov(fov_rad)),
-            "laser_front_laser_resolution" if resolution_rad > MIN_RESOLUTION_RAD && resolution_rad < 1.0 => {
-                Some(Self::Resolution(resolution_rad))
-            }
-            _ => None,
-        }
-    }
-}
-
 /// What is known about the laser.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Geometry {
     /// m ahead, m to the left, rad to the left.
     ahead_m: f64,
@@ -61,40 +25,43 @@ pub(super) struct Geometry {
     turn_rad: f64,
     fov_rad: Option<f64>,
     resolution_rad: Option<f64>,
-    /// Ranges of FLASER lines from here on are no measurements, m.
-    pub(super) range_max_m: f64,
+    /// The maximum range that a parameter states, m, and whether beams measure less than this: known at the end.
+    pub(super) stated_max_m: Option<f64>,
+    pub(super) is_max_sure: bool,
     /// Whether ranges from 80 m on are numbers for failures, whatever maximum is stated.
     pub(super) has_codes: bool,
     /// The pose of the laser on the robot, by the two poses of ROBOTLASER1 lines.
     pub(super) robotlaser_mount: Option<Isometry2<f64>>,
 }
 
-impl Default for Geometry {
-    fn default() -> Self {
-        Self {
-            ahead_m: 0.0,
-            left_m: 0.0,
-            turn_rad: 0.0,
-            fov_rad: None,
-            resolution_rad: None,
-            range_max_m: MAX_RANGE_M,
-            has_codes: false,
-            robotlaser_mount: None,
+impl Geometry {
+    /// Takes a parameter of the front laser over. Others are left out, and so are invalid values.
+    pub(super) fn set(&mut self, name: &str, value: f64) {
+        let is_offset = value.abs() < MAX_OFFSET_M;
+        let fov_deg = if value <= MAX_FOV_RAD { value.to_degrees() } else { value };
+        // 3.14159 is 180°.
+        let fov_rad = ((fov_deg * 100.0).round() / 100.0).to_radians();
+        let resolution_rad = if value < MAX_RESOLUTION_RAD { value } else { value.to_radians() };
+        match name {
+            "robot_frontlaser_offset" if is_offset => self.ahead_m = value,
+            "robot_frontlaser_side_offset" if is_offset => self.left_m = value,
+            "robot_frontlaser_angular_offset" if value.abs() <= TAU => self.turn_rad = value,
+            "robot_front_laser_max" | "laser_front_laser_max" if value > 0.1 => {
+                self.stated_max_m = Some(value)
+            }
+            "laser_front_laser_fov" if value > 0.0 && fov_rad <= MAX_FOV_RAD => self.fov_rad = Some(fov_rad),
+            "laser_front_laser_resolution" if resolution_rad > MIN_RESOLUTION_RAD && resolution_rad < 1.0 => {
+                self.resolution_rad = Some(resolution_rad);
+            }
+            _ => {}
         }
     }
-}
 
-impl Geometry {
-    /// Takes a parameter over. A stated maximum range below 80 m counts only if no range is beyond it, which is known at the end.
-    pub(super) fn set(&mut self, param: Param) {
-        match param {
-            Param::Ahead(ahead_m) => self.ahead_m = ahead_m,
-            Param::Left(left_m) => self.left_m = left_m,
-            Param::Turn(turn_rad) => self.turn_rad = turn_rad,
-            Param::MaxRange(stated_m) => self.range_max_m = stated_m.max(MAX_RANGE_M),
-            Param::Fov(fov_rad) => self.fov_rad = Some(fov_rad),
-            Param::Resolution(resolution_rad) => self.resolution_rad = Some(resolution_rad),
-        }
+    /// Ranges of FLASER lines from here on are no measurements, m. A stated maximum range below 80 m counts only if no range is
+    /// beyond it.
+    pub(super) fn range_max_m(&self) -> f64 {
+        let is_sure = |max_m: &f64| self.is_max_sure || *max_m > MAX_RANGE_M;
+        self.limited_m(self.stated_max_m.filter(is_sure).unwrap_or(MAX_RANGE_M))
     }
 
     /// The pose of the laser on the robot, by parameters.

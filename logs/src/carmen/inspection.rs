@@ -1,8 +1,8 @@
 //! The first reading of a log: what it contains, and what makes no sense.
 
 use super::Rules;
-use super::geometry::{Geometry, MAX_RANGE_M, Mounts, Param};
-use super::line::{self, Line, Poses};
+use super::geometry::{Geometry, MAX_RANGE_M, Mounts};
+use super::line::{self, Line};
 use crate::assemble::Odometry;
 use crate::bounds;
 use crate::checks::times::{self, Times};
@@ -20,7 +20,7 @@ const SAME_TIME_S: f64 = 1.0;
 
 /// Reads a log once: how its lines become readings, the times of the readings from the first on, strictly increasing, s, and
 /// what the log contains.
-pub(super) fn of(lines: &mut Lines) -> Result<(Rules, Vec<f64>, LogSummary), LogError> {
+pub(super) fn of(lines: &mut Lines, is_corrected: bool) -> Result<(Rules, Vec<f64>, LogSummary), LogError> {
     let mut inspection = Inspection::default();
     while let Some(line) = line::next(lines, &inspection.geometry)? {
         inspection.add(line, lines)?;
@@ -39,7 +39,7 @@ pub(super) fn of(lines: &mut Lines) -> Result<(Rules, Vec<f64>, LogSummary), Log
         };
         return Err(LogError::Unusable { file: lines.file.clone(), why });
     }
-    let (rules, times_s, mut summary) = inspection.summarized();
+    let (rules, times_s, mut summary) = inspection.summarized(is_corrected);
     if let Some((packed, unpacked)) = lines.cut() {
         let note = format!(
             "the gzip file is cut off after {packed} bytes, and the rest is missing: {} lines ({unpacked} bytes of text) could be \
@@ -83,8 +83,7 @@ struct Inspection {
     scan: Option<(f64, Isometry2<f64>)>,
     /// The number of poses right after a scan that repeat its pose, at about its time, and at another one.
     repeated: [usize; 2],
-    /// The maximum range that a parameter states, m, and different ranges beyond it, as bits; at most [`MIN_BEYOND`].
-    stated_max_m: Option<f64>,
+    /// Different ranges beyond the maximum that a parameter states, as bits; at most [`MIN_BEYOND`].
     beyond: BTreeSet<u32>,
     /// Different ranges from 80 m up to a stated maximum, as bits; at most [`MIN_BEYOND`].
     far: BTreeSet<u32>,
@@ -114,15 +113,12 @@ impl Inspection {
                 self.add_pose(if is_origin { 0.0 } else { time_s }, pose, speed_mps);
             }
             Line::Scan(mut scan) => {
-                match scan.poses {
-                    Poses::Laser(_) => {
-                        self.check_range(&mut scan.scan.ranges_m);
-                        self.counts.insert(scan.scan.ranges_m.len());
-                    }
-                    Poses::Mount(mount) => mount.iter().for_each(|mount| self.mounts.add(mount)),
+                if scan.is_flaser {
+                    self.counts.insert(scan.scan.ranges_m.len());
                 }
-                self.note_far(&scan.scan.ranges_m);
-                self.scan = scan.reference().map(|pose| (scan.time_s, pose));
+                self.check_ranges(&mut scan.scan.ranges_m, scan.is_flaser);
+                scan.mount.iter().for_each(|mount| self.mounts.add(mount));
+                self.scan = scan.reference.map(|pose| (scan.time_s, pose));
                 bounds::one_more(self.times_s.len()).map_err(|what| lines.error(what))?;
                 self.times_s.push(scan.time_s);
                 self.timed.note_scan(scan.time_s);
@@ -130,12 +126,7 @@ impl Inspection {
                 self.doubts.add(scan.typical, &scan.scan.ranges_m);
                 self.standing.add(&Isometry2::identity(), &scan.scan);
             }
-            Line::Param(param) => {
-                if let Param::MaxRange(stated_m) = param {
-                    self.stated_max_m = Some(stated_m);
-                }
-                self.geometry.set(param);
-            }
+            Line::Param { name, value } => self.geometry.set(&name, value),
             Line::Invalid { is_scan, what } => {
                 let invalid = if is_scan { &mut self.invalid_scans } else { &mut self.invalid_poses };
                 invalid.count += 1;
@@ -149,22 +140,20 @@ impl Inspection {
         Ok(())
     }
 
-    /// Removes ranges beyond the stated maximum, and counts how many different ones there are.
-    fn check_range(&mut self, ranges_m: &mut [f32]) {
-        let Some(max_m) = self.stated_max_m else { return };
-        for range_m in ranges_m.iter_mut().filter(|range_m| **range_m >= max_m as f32) {
-            if self.beyond.len() < MIN_BEYOND {
-                self.beyond.insert(range_m.to_bits());
+    /// Removes ranges of FLASER lines beyond the stated maximum. Counts how many different ones there are, and how many from 80 m on.
+    fn check_ranges(&mut self, ranges_m: &mut [f32], is_flaser: bool) {
+        let note = |known: &mut BTreeSet<u32>, range_m: f32| {
+            if known.len() < MIN_BEYOND {
+                known.insert(range_m.to_bits());
             }
-            *range_m = f32::NAN;
-        }
-    }
-
-    /// Counts how many different ranges there are from 80 m on.
-    fn note_far(&mut self, ranges_m: &[f32]) {
-        for range_m in ranges_m.iter().filter(|range_m| **range_m >= MAX_RANGE_M as f32) {
-            if self.far.len() < MIN_BEYOND {
-                self.far.insert(range_m.to_bits());
+        };
+        let max_m = self.geometry.stated_max_m.filter(|_| is_flaser).map(|max_m| max_m as f32);
+        for range_m in ranges_m {
+            if max_m.is_some_and(|max_m| *range_m >= max_m) {
+                note(&mut self.beyond, *range_m);
+                *range_m = f32::NAN;
+            } else if *range_m >= MAX_RANGE_M as f32 {
+                note(&mut self.far, *range_m);
             }
         }
     }
@@ -193,7 +182,7 @@ impl Inspection {
         }
     }
 
-    fn summarized(self) -> (Rules, Vec<f64>, LogSummary) {
+    fn summarized(self, takes_scan_poses: bool) -> (Rules, Vec<f64>, LogSummary) {
         let Self { mut geometry, mut notes, .. } = self;
         notes.extend(self.invalid_scans.note("scan", "scans"));
         notes.extend(self.invalid_poses.note("ODOM line", "ODOM lines"));
@@ -212,12 +201,11 @@ impl Inspection {
                  laser_front_laser_fov DEGREES` before them states it"
             ));
         }
-        match self.stated_max_m {
-            Some(max_m) if self.beyond.len() == MIN_BEYOND => notes.push(format!(
+        geometry.is_max_sure = self.beyond.len() < MIN_BEYOND;
+        if let Some(max_m) = geometry.stated_max_m.filter(|_| !geometry.is_max_sure) {
+            notes.push(format!(
                 "a parameter states a maximum range of {max_m} m, but beams measure more: it is ignored"
-            )),
-            Some(max_m) => geometry.range_max_m = max_m,
-            None => {}
+            ));
         }
         let has_origins = self.with_time > 0;
         let is_corrected = has_origins && self.repeated[1] > self.repeated[0];
@@ -227,7 +215,7 @@ impl Inspection {
             notes.push("no ODOM line: the odometry stands still".to_owned());
         }
         let stands = odometry.stands() && self.standing.looks_so();
-        if odometry.stands() && !stands && odometry_poses > 0 {
+        if odometry.stands() && !stands && odometry_poses > 0 && !takes_scan_poses {
             notes.push(self.standing.note().to_owned());
         }
         let impossible = self.odometry_times.impossible(&self.times_s).or_else(|| odometry.impossible());
@@ -243,6 +231,10 @@ impl Inspection {
         notes.extend(begin_s.and(times.date_note()));
         let Times { times_s, has_times, .. } = times;
         notes.extend(recorded_pace(&self.recorded_s, has_times, &times_s));
+        if takes_scan_poses {
+            notes
+                .push("the poses are those of the FLASER lines, which another SLAM has corrected".to_owned());
+        }
         let summary = LogSummary {
             scans: times_s.len(),
             duration_s: times_s.last().copied().unwrap_or_default(),

@@ -1,6 +1,6 @@
 //! One line of a log.
 
-use super::geometry::{Geometry, MAX_RANGE_M, Param};
+use super::geometry::{Geometry, MAX_RANGE_M};
 use crate::checks::typical;
 use crate::error::LogError;
 use crate::lines::Lines;
@@ -24,7 +24,10 @@ pub(super) enum Line {
         speed_mps: f64,
     },
     Scan(ScanLine),
-    Param(Param),
+    Param {
+        name: String,
+        value: f64,
+    },
     /// A scan or a pose that is left out, and why.
     Invalid {
         is_scan: bool,
@@ -45,26 +48,11 @@ pub(super) struct ScanLine {
     pub(super) scan: Scan,
     /// The typical range as written.
     pub(super) typical: Option<f32>,
-    pub(super) poses: Poses,
-}
-
-/// The poses in a line with a scan; `None` if one is invalid.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Poses {
-    /// A FLASER line: the pose of the laser, the result of an earlier estimation in corrected logs.
-    Laser(Option<Isometry2<f64>>),
-    /// A ROBOTLASER1 line: the pose of the laser in the frame of the robot.
-    Mount(Option<Isometry2<f64>>),
-}
-
-impl ScanLine {
-    /// The pose of the laser in a FLASER line.
-    pub(super) fn reference(&self) -> Option<Isometry2<f64>> {
-        match self.poses {
-            Poses::Laser(pose) => pose,
-            Poses::Mount(_) => None,
-        }
-    }
+    pub(super) is_flaser: bool,
+    /// In a FLASER line the pose of the laser, the result of an earlier estimation in corrected logs; `None` if it is invalid.
+    pub(super) reference: Option<Isometry2<f64>>,
+    /// In a ROBOTLASER1 line the pose of the laser in the frame of the robot; `None` if one of its poses is invalid.
+    pub(super) mount: Option<Isometry2<f64>>,
 }
 
 /// The next line, `None` at the end.
@@ -99,14 +87,14 @@ fn parse(text: &str, geometry: &Geometry) -> Result<Line, String> {
 }
 
 fn param(mut words: SplitAsciiWhitespace) -> Line {
-    let name = words.next().unwrap_or_default();
-    let value = words.next().and_then(|word| word.parse::<f64>().ok()).filter(|value| value.is_finite());
-    value.and_then(|value| Param::of(name, value)).map_or(Line::Other { is_cut_off: false }, Line::Param)
+    let name = words.next().unwrap_or_default().to_owned();
+    let value = words.next().and_then(|word| word.parse().ok()).filter(|value: &f64| value.is_finite());
+    value.map_or(Line::Other { is_cut_off: false }, |value| Line::Param { name, value })
 }
 
 fn flaser(mut words: Words, geometry: &Geometry) -> Result<ScanLine, String> {
     let count = words.count()?;
-    let range_max_m = geometry.limited_m(geometry.range_max_m);
+    let range_max_m = geometry.range_max_m();
     let (ranges_m, typical) = words.ranges(count, range_max_m)?;
     let reference = words.optional_pose("the pose of the laser")?;
     words.skip(3, "the pose of the robot")?;
@@ -120,7 +108,7 @@ fn flaser(mut words: Words, geometry: &Geometry) -> Result<ScanLine, String> {
         ranges_m,
     };
     let (time_s, recorded_s) = words.times()?;
-    Ok(ScanLine { time_s, recorded_s, scan, typical, poses: Poses::Laser(reference) })
+    Ok(ScanLine { time_s, recorded_s, scan, typical, is_flaser: true, reference, mount: None })
 }
 
 fn robotlaser(mut words: Words, geometry: &Geometry) -> Result<ScanLine, String> {
@@ -147,7 +135,7 @@ fn robotlaser(mut words: Words, geometry: &Geometry) -> Result<ScanLine, String>
         Scan { angle_min_rad, angle_increment_rad, range_min_m: 0.0, range_max_m, sweep_s: 0.0, ranges_m };
     scan.check().map_err(|error| format!("ROBOTLASER1: {error}"))?;
     let (time_s, recorded_s) = words.times()?;
-    Ok(ScanLine { time_s, recorded_s, scan, typical, poses: Poses::Mount(mount) })
+    Ok(ScanLine { time_s, recorded_s, scan, typical, is_flaser: false, reference: None, mount })
 }
 
 /// The words after the name of a message.

@@ -1,7 +1,7 @@
 //! The second reading of a log: reading by reading.
 
 use super::Rules;
-use super::line::{self, Line, Poses};
+use super::line::{self, Line};
 use crate::assemble::{Assembler, Waiting};
 use crate::error::LogError;
 use crate::lines::Lines;
@@ -61,12 +61,10 @@ impl RawReadings for Readings {
             match line::next(&mut self.lines, geometry)? {
                 None => self.is_over = true,
                 Some(Line::Scan(line)) => {
-                    self.scan_pose = line.reference();
-                    let mount = match line.poses {
-                        Poses::Laser(_) => geometry.mount(),
-                        Poses::Mount(_) => geometry.robotlaser_mount.unwrap_or(geometry.mount()),
-                    };
-                    let (time_s, tag, scan) = (line.time_s, line.reference(), line.scan);
+                    self.scan_pose = line.reference;
+                    let mount = geometry.robotlaser_mount.filter(|_| !line.is_flaser);
+                    let mount = mount.unwrap_or_else(|| geometry.mount());
+                    let (time_s, tag, scan) = (line.time_s, line.reference, line.scan);
                     self.assembler.waiting.push_back(Waiting { time_s, mount, scan, tag });
                 }
                 Some(Line::Odometry { .. }) if self.rules.stands => {}

@@ -49,9 +49,8 @@ impl Speeds {
         if pieces < MIN_PIECES {
             return None;
         }
-        let mut ratios = self.ratios.clone();
-        let factor = *ratios.select_nth_unstable_by(pieces / 2, f64::total_cmp).1;
-        let near = ratios.iter().filter(|ratio| (*ratio / factor - 1.0).abs() < NEAR).count();
+        let factor = interfaces::median(self.ratios.iter().copied())?;
+        let near = self.ratios.iter().filter(|ratio| (*ratio / factor - 1.0).abs() < NEAR).count();
         let is_wrong = (FACTORS[0]..=FACTORS[1]).contains(&factor.max(1.0 / factor));
         (is_wrong && near as f64 >= MIN_SHARE * pieces as f64).then(|| {
             format!(

@@ -8,10 +8,9 @@ use nalgebra::Isometry2;
 pub(crate) const MIN_MOTION_M: f64 = 0.02;
 pub(crate) const MIN_MOTION_RAD: f64 = 0.02;
 /// A note on an odometry that does not move, while the scans change.
-pub(crate) const NO_MOTION: &str =
-    "the odometry stands still, and the scans do not: the way is that of the scans alone";
+const NO_MOTION: &str = "the odometry stands still, and the scans do not: the way is that of the scans alone";
 /// The same where the scans do not show whether the laser moves.
-pub(crate) const UNKNOWN_MOTION: &str = "the odometry stands still, and too few ranges of the scans can be compared to tell whether \
+const UNKNOWN_MOTION: &str = "the odometry stands still, and too few ranges of the scans can be compared to tell whether \
                                          the robot does: the way is that of the scans alone";
 /// Two ranges of one beam agree if they differ by less than this, m, and this share of the range: more than a laser
 /// errs by, and less than people and robots move.

@@ -54,8 +54,7 @@ pub(crate) fn repaired(raw_s: &[f64]) -> Times {
         let times_s = (0..raw_s.len()).map(|scan| scan as f64 * STEP_WITHOUT_TIMES_S).collect();
         return Times { times_s, has_times: false, begin_s: 0.0, dated_s: None, note: Some(note) };
     }
-    steps.sort_by(f64::total_cmp);
-    let period_s = steps.get(steps.len() / 2).copied().unwrap_or(STEP_WITHOUT_TIMES_S);
+    let period_s = interfaces::median(steps.into_iter()).unwrap_or(STEP_WITHOUT_TIMES_S);
     let (mut jumps, mut back, mut rests_s) = (0, 0, Vec::new());
     // By how much the clock is behind, as far as is known, s.
     let mut behind_s = 0.0;

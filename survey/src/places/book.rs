@@ -61,15 +61,10 @@ impl PlaceBook {
     /// The squares of half a meter of a place with traffic.
     pub(super) fn tiles(&self, mapper: &Mapper, cells: &[usize]) -> Vec<TrafficTile> {
         let tile = |spot: Spot| {
-            let [x_m, y_m] = spot.middle(mapper.frame());
+            let ([x_m, y_m], passages) = (spot.middle(mapper.frame()), spot.all());
             let hours = Some(spot.observed_s / HOUR_S).filter(|hours| *hours > 0.0);
-            TrafficTile {
-                x_m,
-                y_m,
-                passages: spot.passages(),
-                passages_per_hour: hours.map(|hours| f64::from(spot.passages()) / hours),
-                direction: self.directions.of(spot.key),
-            }
+            let passages_per_hour = hours.map(|hours| f64::from(passages) / hours);
+            TrafficTile { x_m, y_m, passages, passages_per_hour, direction: self.direction(&spot) }
         };
         self.passages.spots(mapper, cells).into_iter().map(tile).collect()
     }

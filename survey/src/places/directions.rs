@@ -8,7 +8,7 @@ use super::passages::{Key, SIDE_M, cell_key, spot_key};
 use crate::change_log::events;
 use interfaces::Event;
 use mapper::{Mapper, share_interval};
-use nalgebra::{Matrix2, Vector2};
+use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -55,7 +55,8 @@ pub struct Direction {
     pub across: u32,
 }
 
-/// What passes a spot now: sums over the changes, with times since the first one, s, and positions from the middle of the spot, m.
+/// What passes a spot now: sums over the changes of the time since the first one, s, and of the position from the middle of the
+/// spot, m, and of their products.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, Serialize)]
 struct Trace {
     begin_s: f64,
@@ -64,11 +65,8 @@ struct Trace {
     times: u32,
     /// Whether a cell of the spot itself has changed.
     is_inside: bool,
-    time: f64,
-    time_squared: f64,
-    at: Vector2<f64>,
-    at_time: Vector2<f64>,
-    at_squared: Matrix2<f64>,
+    sum: Vector3<f64>,
+    products: Matrix3<f64>,
 }
 
 impl Trace {
@@ -76,17 +74,14 @@ impl Trace {
         Self { begin_s: now_s, last_s: f64::NEG_INFINITY, ..Self::default() }
     }
 
-    fn add(&mut self, now_s: f64, at: Vector2<f64>, is_inside: bool) {
-        let time = now_s - self.begin_s;
+    fn add(&mut self, now_s: f64, [x_m, y_m]: [f64; 2], is_inside: bool) {
+        let sample = Vector3::new(now_s - self.begin_s, x_m, y_m);
         self.times += u32::from(now_s > self.last_s);
         self.last_s = now_s;
         self.changes += 1;
         self.is_inside |= is_inside;
-        self.time += time;
-        self.time_squared += time * time;
-        self.at += at;
-        self.at_time += at * time;
-        self.at_squared += at * at.transpose();
+        self.sum += sample;
+        self.products += sample * sample.transpose();
     }
 
     /// The heading of what has passed, rad; `None` if it cannot be told.
@@ -94,14 +89,13 @@ impl Trace {
         if !self.is_inside || self.changes < MIN_CHANGES || self.times < MIN_TIMES {
             return None;
         }
-        let count = f64::from(self.changes);
-        let (time, at) = (self.time / count, self.at / count);
-        let of_time = self.time_squared / count - time * time;
-        let with_time = self.at_time / count - at * time;
-        let of_place = self.at_squared / count - at * at.transpose();
+        let mean = self.sum / f64::from(self.changes);
+        let covariance = self.products / f64::from(self.changes) - mean * mean.transpose();
+        let of_place: Matrix2<f64> = covariance.fixed_view::<2, 2>(1, 1).into();
+        let with_time: Vector2<f64> = covariance.fixed_view::<2, 1>(1, 0).into();
         // The time is a linear function of the place; its gradient is the inverse of the velocity.
         let slowness = (of_place + Matrix2::identity() * NOISE_M2).try_inverse()? * with_time;
-        let explained = slowness.dot(&with_time) / of_time;
+        let explained = slowness.dot(&with_time) / covariance[(0, 0)];
         let speed_mps = 1.0 / slowness.norm();
         let along = slowness * speed_mps;
         let spread_m = along.dot(&(of_place * along)).max(0.0).sqrt();
@@ -134,7 +128,7 @@ impl Directions {
             let (cell, own) = (cell_key(frame, index), spot_key(frame, index));
             for spot in around(own) {
                 let at =
-                    Vector2::new(from_middle_m(cell.0, spot.0, frame), from_middle_m(cell.1, spot.1, frame));
+                    [(cell.0, spot.0), (cell.1, spot.1)].map(|(cell, spot)| from_middle_m(cell, spot, frame));
                 let trace = traces.entry(spot).or_insert_with(|| Trace::begin(now_s));
                 trace.add(now_s, at, spot == own);
             }

@@ -26,9 +26,10 @@ pub(crate) use since::since;
 pub use since::{Lasting, PlaceSince, Since, Trend};
 
 use crate::ChangeLog;
+use crate::masks::share_blocked;
 use crate::outlook::doors;
-use crate::permanent::share_blocked;
 use groups::{Group, groups};
+use interfaces::median;
 use mapper::{Mapper, RateDistribution};
 use nalgebra::Point2;
 use passages::Spot;
@@ -210,7 +211,7 @@ fn place(mapper: &Mapper, log: &ChangeLog, group: &Group, spot: Spot) -> Option<
     let median = by_rate[by_rate.len() / 2];
     let interval = mapper.credible_interval(median, MASS);
     let bound = |rate_hz: f64| Some(rate_hz * HOUR_S).filter(|rate| rate.is_finite());
-    let passages = spot.passages();
+    let passages = spot.all();
     let events = PRIOR_PASSAGES + f64::from(passages);
     let rate = RateDistribution { events, time: spot.observed_s / HOUR_S };
     let rate = Some(rate).filter(|rate| rate.time > 0.0);
@@ -252,9 +253,7 @@ fn kind(mapper: &Mapper, group: &Group, rates: &PlaceRates) -> PlaceKind {
         let seen = mapper.statistics(*index);
         (seen.free_events > 0).then(|| seen.watched_blocked / f64::from(seen.free_events))
     };
-    let mut stays_s: Vec<f64> = group.cells.iter().filter_map(stays).collect();
-    stays_s.sort_by(f64::total_cmp);
-    let is_short = stays_s.get(stays_s.len() / 2).is_some_and(|stay_s| *stay_s <= PASSING_S);
+    let is_short = median(group.cells.iter().filter_map(stays)).is_some_and(|stay_s| stay_s <= PASSING_S);
     let is_mostly_free = rates.share_blocked <= 0.5;
     if is_short && is_mostly_free && rates.has_cycle() && !is_line(mapper, &group.cells) {
         PlaceKind::Traffic

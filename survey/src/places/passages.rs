@@ -32,22 +32,10 @@ pub(super) fn spot_key(frame: &GridFrame, index: usize) -> Key {
     (x.div_euclid(side), y.div_euclid(side))
 }
 
-/// A number of passages before the present session, and in it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
-pub(super) struct Count {
-    pub(super) before: u32,
-    pub(super) since: u32,
-}
-
-impl Count {
-    pub(super) fn all(self) -> u32 {
-        self.before + self.since
-    }
-}
-
 #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, Serialize)]
 struct Tally {
-    count: Count,
+    /// The passages before the present session, and in it.
+    passages: [u32; 2],
     after_gap: u32,
     /// The number of cells that are blocked by what came.
     blocked: u32,
@@ -59,7 +47,8 @@ struct Tally {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Spot {
     pub(super) key: Key,
-    pub(super) count: Count,
+    /// The passages before the present session, and in it.
+    pub(super) passages: [u32; 2],
     /// The passages before the present session in all spots.
     pub(super) before_in_all: u32,
     /// Changes that were found after a gap in the view.
@@ -69,8 +58,9 @@ pub(super) struct Spot {
 }
 
 impl Spot {
-    pub(super) fn passages(&self) -> u32 {
-        self.count.all()
+    /// The passages of all sessions.
+    pub(super) fn all(&self) -> u32 {
+        self.passages.iter().sum()
     }
 
     /// Its middle, m.
@@ -97,7 +87,7 @@ impl Passages {
             let after_gap = seen.block_events_after_gap + seen.free_events_after_gap;
             passages.after_gap.insert(cell_key(mapper.frame(), index), after_gap);
             let tally = passages.spots.entry(spot_key(mapper.frame(), index)).or_default();
-            tally.count.before = tally.count.before.max(seen.block_events);
+            tally.passages[0] = tally.passages[0].max(seen.block_events);
             tally.after_gap = tally.after_gap.max(after_gap);
         }
         passages
@@ -117,7 +107,7 @@ impl Passages {
                 // Of many cells at once, one.
                 tally.after_gap += u32::from(tally.last_s != now_s || tally.after_gap == 0);
             } else if event == Event::Block && is_empty {
-                tally.count.since += 1;
+                tally.passages[1] += 1;
             }
             let others = if is_empty { 0 } else { tally.blocked };
             tally.blocked = if event == Event::Block { others + 1 } else { others.saturating_sub(1) };
@@ -128,7 +118,7 @@ impl Passages {
     /// A new session begins.
     pub(super) fn begin_session(&mut self) {
         for tally in self.spots.values_mut() {
-            tally.count = Count { before: tally.count.all(), since: 0 };
+            tally.passages = [tally.passages.iter().sum(), 0];
             tally.blocked = 0;
         }
     }
@@ -142,17 +132,15 @@ impl Passages {
             *count += 1.0;
         }
         let spot = |(key, (sum_s, count)): (Key, (f64, f64))| {
-            let Tally { count: passages, after_gap, .. } = self.spots.get(&key).copied().unwrap_or_default();
-            let before_in_all = passages.before;
-            Spot { key, count: passages, before_in_all, after_gap, observed_s: sum_s / count }
+            let Tally { passages, after_gap, .. } = self.spots.get(&key).copied().unwrap_or_default();
+            Spot { key, passages, before_in_all: passages[0], after_gap, observed_s: sum_s / count }
         };
         spots.into_iter().map(spot).collect()
     }
 
     /// The spot of some cells where the most passages were counted; of equal ones, the one that was in view for longer.
     pub(super) fn busiest(&self, mapper: &Mapper, cells: &[usize]) -> Spot {
-        let order =
-            |a: &Spot, b: &Spot| a.passages().cmp(&b.passages()).then(a.observed_s.total_cmp(&b.observed_s));
+        let order = |a: &Spot, b: &Spot| a.all().cmp(&b.all()).then(a.observed_s.total_cmp(&b.observed_s));
         let spots = self.spots(mapper, cells);
         let before_in_all = spots.iter().map(|spot| spot.before_in_all).sum();
         let busiest = spots.into_iter().max_by(order);

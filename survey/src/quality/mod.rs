@@ -5,9 +5,8 @@ mod evidence;
 #[cfg(test)]
 mod tests;
 
-use crate::median::median;
 use evidence::{Evidence, Judged, PlacedScan};
-use interfaces::{LaserReading, heading_rad};
+use interfaces::{LaserReading, heading_rad, median};
 use localizer::{PoseState, TrajectoryPose};
 use nalgebra::{Isometry2, Point2};
 use serde::{Deserialize, Serialize};
@@ -263,7 +262,7 @@ fn scale(counted: &[CountedScan], poses: &[TrajectoryPose]) -> Option<f64> {
         (odometry_m > 0.5 * COUNTED_M).then(|| found.translation.vector.norm() / odometry_m)
     };
     let ratios: Vec<f64> = counted.windows(2).filter_map(step).collect();
-    (ratios.len() >= MIN_SCANS / 2).then(|| median(ratios.into_iter())).filter(|scale| *scale > 0.0)
+    median(ratios.iter().copied()).filter(|_| ratios.len() >= MIN_SCANS / 2).filter(|scale| *scale > 0.0)
 }
 
 /// How much each scan turned from the one before otherwise than by the odometry, rad.

@@ -4,7 +4,7 @@ use crate::logs_in_order::begin_s;
 use crate::second_pass::{Learned, ignored};
 use anyhow::Context;
 use cli::program::arguments;
-use interfaces::{CellState, PoseMode};
+use interfaces::{CellState, PoseMode, median};
 use mapper::{Mapper, NoReturn, NoReturnEvidence};
 use owner::words::{how_often, list};
 use results::numbers::percent;
@@ -190,9 +190,7 @@ fn is_always_shown(place: &Place) -> bool {
 fn still_observed_s(mapper: &Mapper) -> Option<f64> {
     let is_still = |index: &usize| mapper.was_ever_seen(*index) && mapper.statistics(*index).events() == 0;
     let still = (0..mapper.frame().len()).filter(is_still);
-    let mut times_s: Vec<f64> = still.map(|index| mapper.statistics(index).observed()).collect();
-    times_s.sort_by(f64::total_cmp);
-    times_s.get(times_s.len() / 2).copied()
+    median(still.map(|index| mapper.statistics(index).observed()))
 }
 
 /// Whose hours people and doors have.

@@ -81,7 +81,7 @@ impl Place {
         if let Some(tile) = mapper.tile(index).filter(|tile| tile.last().is_some()) {
             return Some(place.of_clock(forecast, tile.clock(), times_s));
         }
-        let probability = |time_s| forecast.blocked(frame.cell(index), time_s);
+        let probability = |time_s| forecast.outlook().blocked(frame.cell(index), time_s);
         let expected =
             |time_s: &f64| Expected { time_s: *time_s, probability: probability(*time_s), interval_90: None };
         let mut place = Self { expected: times_s.iter().map(expected).collect(), ..place };

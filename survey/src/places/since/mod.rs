@@ -133,7 +133,7 @@ fn compared(book: &PlaceBook, mapper: &Mapper, place: &Place, looked_s: impl Fn(
     let before_s = f64::from(book.session.looked.get(&spot.key).copied().unwrap_or_default());
     Compared {
         is_first: spot.before_in_all == 0,
-        passages: [spot.count.before, spot.count.since],
+        passages: spot.passages,
         observed_s: [before_s, (looked_s(spot.key) - before_s).max(0.0)],
     }
 }
