@@ -96,7 +96,7 @@ impl Forecast {
     /// The probability that the cell at a point (m) is blocked at a time; None where nothing was ever seen.
     fn at(&self, x: f64, y: f64, time: &Bound<'_, PyAny>) -> PyResult<Option<f64>> {
         let cell = self.forecast.mapper().frame().cell_at(&Point2::new(x, y));
-        Ok(self.forecast.blocked(cell, self.seconds(time)?))
+        Ok(self.forecast.outlook().blocked(cell, self.seconds(time)?))
     }
 
     /// The doors that were found, a dict for each, with the number `id`, the ends of the `closed` leaf (m), `is_open` when last seen,
