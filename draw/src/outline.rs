@@ -1,6 +1,7 @@
 //! The field of view of a laser, as a polygon of few corners.
 
 use interfaces::LaserReading;
+use mapper::Segment;
 use nalgebra::Point2;
 
 /// The maximum distance between the drawn and the measured outline, m.
@@ -36,8 +37,9 @@ fn simplify(line: &[Point2<f64>], tolerance_m: f64) -> Vec<Point2<f64>> {
     let mut open = vec![(0, end)];
     while let Some((from, to)) = open.pop() {
         (keep[from], keep[to]) = (true, true);
+        let side = Segment { ends: [line[from], line[to]] };
         let farthest = (from + 1..to)
-            .map(|index| (index, distance_m(&line[index], &line[from], &line[to])))
+            .map(|index| (index, side.distance_m(&line[index])))
             .max_by(|a, b| a.1.total_cmp(&b.1));
         if let Some((index, distance_m)) = farthest
             && distance_m > tolerance_m
@@ -46,14 +48,6 @@ fn simplify(line: &[Point2<f64>], tolerance_m: f64) -> Vec<Point2<f64>> {
         }
     }
     line.iter().zip(keep).filter(|(_, keep)| *keep).map(|(point, _)| *point).collect()
-}
-
-/// The distance of `point` from the line from `a` to `b`, both ends included.
-fn distance_m(point: &Point2<f64>, a: &Point2<f64>, b: &Point2<f64>) -> f64 {
-    let (along, to) = (b - a, point - a);
-    let length = along.norm_squared();
-    let share = if length > 0.0 { (to.dot(&along) / length).clamp(0.0, 1.0) } else { 0.0 };
-    (to - along * share).norm()
 }
 
 #[cfg(test)]
@@ -112,7 +106,8 @@ mod tests {
         for (beam, &range) in reading.scan.ranges_m.iter().enumerate() {
             let (sin, cos) = reading.scan.angle_rad(beam).sin_cos();
             let end = laser * (Point2::new(cos, sin) * f64::from(range));
-            let nearest = outline.windows(2).map(|side| distance_m(&end, &side[0], &side[1]));
+            let nearest =
+                outline.windows(2).map(|side| Segment { ends: [side[0], side[1]] }.distance_m(&end));
             assert!(nearest.fold(f64::INFINITY, f64::min) <= TOLERANCE_M + 1e-9);
         }
     }

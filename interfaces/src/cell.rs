@@ -2,7 +2,9 @@ use nalgebra::Point2;
 
 /// A cell, given by its column (`x`, to the right) and its row (`y`, upward). The numbers are signed: the neighbor
 /// of a border cell is a cell outside the grid, and never a cell of another row.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Deserialize, serde::Serialize)]
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Deserialize, serde::Serialize,
+)]
 pub struct Cell {
     /// Column, counted from the left.
     pub x: i32,
@@ -28,6 +30,18 @@ impl Cell {
     pub fn neighbours8(self) -> [Self; 8] {
         [(-1, -1), (0, -1), (1, -1), (-1, 0), (1, 0), (-1, 1), (0, 1), (1, 1)]
             .map(|(dx, dy)| Self::new(self.x + dx, self.y + dy))
+    }
+
+    /// The cells up to this many columns and rows away, with this one, row by row from the bottom.
+    pub fn square(self, reach: i32) -> impl Iterator<Item = Self> {
+        let rows = self.y - reach..=self.y + reach;
+        rows.flat_map(move |y| (self.x - reach..=self.x + reach).map(move |x| Self::new(x, y)))
+    }
+
+    /// The cells of this [square](Self::square) whose centers are at most `reach` sides of a cell away.
+    pub fn disc(self, reach: i32) -> impl Iterator<Item = Self> {
+        let is_near = move |cell: &Self| (cell.x - self.x).pow(2) + (cell.y - self.y).pow(2) <= reach * reach;
+        self.square(reach).filter(is_near)
     }
 
     /// The cell that contains the mean of the positions of `cells`; `None` for no cells.

@@ -22,6 +22,7 @@ pub mod serde_pose;
 pub mod serde_time;
 mod settings;
 mod sparse_cells;
+mod spread;
 mod state;
 mod values;
 mod world;
@@ -43,6 +44,7 @@ pub use reading::{CellReading, LaserReading, Observation, Reading, VelocitySampl
 pub use scan::{Scan, ScanError};
 pub use settings::{SettingsCheck, SettingsError};
 pub use sparse_cells::{Place, SMALL_GRID, SparseCells};
+pub use spread::Spread;
 pub use state::{CellState, Event, Transition};
 pub use values::{
     CellList, Value, ValueError, Values, cell_runs, converted, from_bytes, read_value, read_values, restore,

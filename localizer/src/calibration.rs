@@ -5,8 +5,7 @@
 //! load and the air in the tires.
 
 use crate::settings::OdometryTrust;
-use crate::spread::Spread;
-use interfaces::heading_rad;
+use interfaces::{Spread, heading_rad};
 use nalgebra::{Isometry2, Matrix2, Vector2};
 
 /// The gains are learned from about this many motions: the floor and the load change.

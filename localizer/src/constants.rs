@@ -1,6 +1,6 @@
 //! Constants with several users: each with its unit and its reason. Others stand beside their formulas.
 
-use crate::spread::Spread;
+use interfaces::Spread;
 
 // Matching
 

@@ -5,9 +5,8 @@ use crate::estimate::{Localized, PoseEstimate, PoseState};
 use crate::motion::PosePrior;
 use crate::openings::has_opening;
 use crate::settings::LocalizerSettings;
-use crate::spread::Spread;
 use crate::trajectory::{TrajectoryFinder, in_frame};
-use interfaces::{CellState, Grid, LaserReading, SettingsError, heading_rad};
+use interfaces::{CellState, Grid, LaserReading, SettingsError, Spread, heading_rad};
 use nalgebra::{Isometry2, Matrix3, Vector2};
 
 /// Motions in the map and by matching that differ by more than this, and than this many standard deviations, are inconsistent.

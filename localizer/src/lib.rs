@@ -55,7 +55,6 @@ mod scan_points;
 mod score_grid;
 mod search;
 mod settings;
-mod spread;
 mod support;
 mod surfel_map;
 mod tracking;

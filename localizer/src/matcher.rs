@@ -7,9 +7,8 @@
 use crate::constants::{MAX_STEPS, STEP, SURFEL_STD_M};
 use crate::placement::Placement;
 use crate::scan_points::ScanPoint;
-use crate::spread::Spread;
 use crate::surfel_map::SurfelMap;
-use interfaces::heading_rad;
+use interfaces::{Spread, heading_rad};
 use nalgebra::{Isometry2, Matrix3, Matrix6, Vector2, Vector3, Vector6};
 
 /// A point whose noise across the surface is small must not pull where it hits another surface: minimum share of the kernel.

@@ -4,8 +4,7 @@ use crate::constants::DISTRUSTED_STD;
 use crate::matcher::{Begin, Prior, blocks, difference};
 use crate::placement::shifted;
 use crate::settings::OdometryTrust;
-use crate::spread::Spread;
-use interfaces::heading_rad;
+use interfaces::{Spread, heading_rad};
 use nalgebra::{Isometry2, Matrix3, Vector3, Vector6};
 
 /// Errors at rest: vibration, and rounding of the odometry.

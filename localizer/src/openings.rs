@@ -24,7 +24,7 @@ pub(crate) fn has_opening(states: &Grid<CellState>) -> bool {
                 Cell::new(low.x.min(cell.x), low.y.min(cell.y)),
                 Cell::new(high.x.max(cell.x), high.y.max(cell.y)),
             );
-            for next in around(cell, 1) {
+            for next in cell.square(1) {
                 let is_new = frame.index(next).is_some_and(|next| std::mem::take(&mut is_left[next]));
                 open.extend(is_new.then_some(next));
             }
@@ -42,12 +42,7 @@ fn is_frontier(states: &Grid<CellState>, index: usize) -> bool {
     let is_blocked = |cell: Cell| states.get(cell) == Some(&CellState::Blocked);
     cells[index] == CellState::Unknown
         && frame.beside(index).any(|beside| cells[beside] == CellState::Free)
-        && !around(frame.cell(index), OPENING_CELLS).any(is_blocked)
-}
-
-/// The cells in a square around a cell.
-fn around(cell: Cell, reach: i32) -> impl Iterator<Item = Cell> {
-    (-reach..=reach).flat_map(move |y| (-reach..=reach).map(move |x| Cell::new(cell.x + x, cell.y + y)))
+        && !frame.cell(index).square(OPENING_CELLS).any(is_blocked)
 }
 
 #[cfg(test)]

@@ -1,7 +1,6 @@
 //! The path of a robot while a scan was measured, from odometry.
 
-use crate::spread::Spread;
-use interfaces::{LaserReading, Twist, VelocitySample, heading_rad};
+use interfaces::{LaserReading, Spread, Twist, VelocitySample, heading_rad};
 use nalgebra::{Complex, Isometry2, Translation2, UnitComplex, Vector2, Vector3};
 
 /// Rotation equivalent to 1 m of a path within a scan, rad.

@@ -26,7 +26,7 @@ const MAX_CELLS: usize = 1 << 26;
 const NONE: u32 = u32::MAX;
 
 /// A short piece of a straight surface.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Deserialize, serde::Serialize)]
 pub(crate) struct Surfel {
     /// A point on the surface, m.
     pub(crate) at: Point2<f64>,
@@ -185,13 +185,10 @@ impl SurfelMap {
             hits: scans,
             scans,
             last_scan: self.scan,
-            misses: 0,
-            displaced: 0,
             last_displaced: self.scan,
-            has_moved: false,
-            is_doubted: false,
             steadiness: 1.0,
             cell: cell as u32,
+            ..Surfel::default()
         };
         let index = match self.removed.pop() {
             Some(index) => {

@@ -6,8 +6,8 @@ use crate::match_scene::MatchScene;
 use crate::matcher::{Match, difference};
 use crate::motion::Predicted;
 use crate::placement::Placement;
-use crate::spread::Spread;
 use crate::support::Support;
+use interfaces::Spread;
 use nalgebra::{Isometry2, Matrix3};
 
 /// Innovation over its covariance above which the odometry is an outlier: 1 in 10⁵ by chance.

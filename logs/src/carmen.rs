@@ -35,15 +35,14 @@ use crate::lines::{self, Lines};
 use crate::log::{Log, RawReadings, Source};
 use crate::summary::LogSummary;
 use geometry::Geometry;
-use interfaces::heading_rad;
+use interfaces::Spread;
 use line::Line;
 use nalgebra::Isometry2;
 use readings::Readings;
 
 /// Poses of FLASER lines that stay within this of the odometry, m and rad, are those of the odometry at slightly other times: a robot
 /// drives 0.1 m in the 0.1 s between the two.
-const SAME_M: f64 = 0.1;
-const SAME_RAD: f64 = 0.05;
+const SAME: Spread = Spread { m: 0.1, rad: 0.05 };
 
 /// A CARMEN log.
 #[derive(Debug)]
@@ -106,14 +105,13 @@ impl CarmenLog {
                 "{without} of {scans} scans are ROBOTLASER1 lines, or have an invalid pose; those of FLASER lines would be used"
             )));
         }
-        if !summary.stands
-            && (1..scans).all(|at| is_near(&given[0], &given[at], [MIN_MOTION_M, MIN_MOTION_RAD]))
-        {
+        let min_motion = Spread { m: MIN_MOTION_M, rad: MIN_MOTION_RAD };
+        if !summary.stands && given.iter().all(|pose| min_motion.contains(&given[0].inv_mul(pose))) {
             let at = given[0].translation.vector;
             return Err(why(format!("those of the FLASER lines are all the same ({}, {})", at.x, at.y)));
         }
         if summary.odometry_poses > 0 && !summary.stands && self.is_odometry(&given)? {
-            let limit = format!("within {SAME_M} m and {SAME_RAD} rad");
+            let limit = format!("within {} m and {} rad", SAME.m, SAME.rad);
             return Err(why(format!(
                 "those of the FLASER lines are those of the odometry ({limit}), which --pose odometry uses"
             )));
@@ -130,7 +128,7 @@ impl CarmenLog {
             let odometry = reading.pose * reading.mount;
             let (from_odometry, from_laser) = *first.get_or_insert((odometry, *laser));
             let moved = [from_odometry.inv_mul(&odometry), from_laser.inv_mul(laser)];
-            if !is_near(&moved[0], &moved[1], [SAME_M, SAME_RAD]) {
+            if !SAME.contains(&moved[0].inv_mul(&moved[1])) {
                 return Ok(false);
             }
         }
@@ -161,9 +159,4 @@ impl Source for CarmenLog {
         }
         Ok(Some(poses))
     }
-}
-
-fn is_near(a: &Isometry2<f64>, b: &Isometry2<f64>, [far_m, far_rad]: [f64; 2]) -> bool {
-    let step = a.inv_mul(b);
-    step.translation.vector.norm() < far_m && heading_rad(&step).abs() < far_rad
 }

@@ -9,7 +9,6 @@ use crate::summary::LogSummary;
 use interfaces::LaserReading;
 use nalgebra::Isometry2;
 use std::fmt::Debug;
-use std::io;
 use std::panic::resume_unwind;
 use std::path::Path;
 use std::sync::Arc;
@@ -90,14 +89,9 @@ impl Log {
     ///
     /// # Errors
     ///
-    /// When the file can no longer be opened.
+    /// When the file can no longer be opened, and when there can be no other thread.
     pub fn readings(&self) -> Result<Readings, LogError> {
-        let times_s = self.times_s.clone();
-        let raw: Box<dyn RawReadings + Send> = match ReadAhead::of(self.source.raw_readings()?) {
-            Ok(ahead) => Box::new(ahead),
-            Err(_) => self.source.raw_readings()?,
-        };
-        Ok(Readings { raw, times_s, given: 0, has_failed: false })
+        Readings::new(self.source.raw_readings()?, self.times_s.clone())
     }
 
     /// Content hash (XXH3-128): it depends neither on the name nor on the compression of the file. The log is read once for it.
@@ -120,24 +114,50 @@ impl Log {
     }
 }
 
-/// The readings of a log, one after the other. After an error, there are no more.
+/// The number of readings that wait at most.
+const AHEAD: usize = 64;
+
+type Next = Result<LaserReading, LogError>;
+
+/// The readings of a log, one after the other. After an error, there are no more. They are read on a thread, some ahead: to
+/// unpack and to parse a log takes as long as to match its scans.
 pub struct Readings {
-    raw: Box<dyn RawReadings + Send>,
+    waiting: Receiver<Next>,
+    /// `None` after the last reading.
+    thread: Option<JoinHandle<()>>,
     times_s: Arc<[f64]>,
     given: usize,
-    has_failed: bool,
+}
+
+impl Readings {
+    fn new(mut raw: Box<dyn RawReadings + Send>, times_s: Arc<[f64]>) -> Result<Self, LogError> {
+        let (to, waiting) = sync_channel(AHEAD);
+        // Ends with the last reading, and when nobody waits for the next one.
+        let read = move || {
+            while let Some(next) = raw.next_reading().transpose() {
+                let has_failed = next.is_err();
+                if to.send(next).is_err() || has_failed {
+                    break;
+                }
+            }
+        };
+        let failed = |why| LogError::Io { file: "the thread that reads a log".to_owned(), why };
+        let thread = Some(Builder::new().name("log".to_owned()).spawn(read).map_err(failed)?);
+        Ok(Self { waiting, thread, times_s, given: 0 })
+    }
 }
 
 impl Iterator for Readings {
-    type Item = Result<LaserReading, LogError>;
+    type Item = Next;
 
     fn next(&mut self) -> Option<Self::Item> {
-        if self.has_failed {
+        let Ok(next) = self.waiting.recv() else {
+            if let Some(Err(panic)) = self.thread.take().map(JoinHandle::join) {
+                resume_unwind(panic);
+            }
             return None;
-        }
-        let next = self.raw.next_reading();
-        self.has_failed = next.is_err();
-        let mut reading = match next.transpose()? {
+        };
+        let mut reading = match next {
             Ok(reading) => reading,
             failed => return Some(failed),
         };
@@ -148,51 +168,6 @@ impl Iterator for Readings {
         reading.velocities.iter_mut().for_each(|sample| sample.time_s += shift_s);
         reading.time_s = time_s;
         Some(Ok(reading))
-    }
-}
-
-/// The number of readings that wait at most.
-const AHEAD: usize = 64;
-
-type Next = Result<LaserReading, LogError>;
-
-/// Readings that are read on a thread, some ahead: to unpack and to parse a log takes as long as to match its scans.
-struct ReadAhead {
-    waiting: Receiver<Next>,
-    /// `None` after the last reading.
-    thread: Option<JoinHandle<()>>,
-}
-
-impl ReadAhead {
-    /// Begins to read. The thread ends with the last reading, and when nobody waits for the next one.
-    ///
-    /// # Errors
-    ///
-    /// When there can be no other thread.
-    fn of(mut raw: Box<dyn RawReadings + Send>) -> io::Result<Self> {
-        let (to, waiting) = sync_channel(AHEAD);
-        let read = move || {
-            while let Some(next) = raw.next_reading().transpose() {
-                let has_failed = next.is_err();
-                if to.send(next).is_err() || has_failed {
-                    break;
-                }
-            }
-        };
-        let thread = Builder::new().name("log".to_owned()).spawn(read)?;
-        Ok(Self { waiting, thread: Some(thread) })
-    }
-}
-
-impl RawReadings for ReadAhead {
-    fn next_reading(&mut self) -> Result<Option<LaserReading>, LogError> {
-        if let Ok(next) = self.waiting.recv() {
-            return next.map(Some);
-        }
-        match self.thread.take().map(JoinHandle::join) {
-            Some(Err(panic)) => resume_unwind(panic),
-            _ => Ok(None),
-        }
     }
 }
 
@@ -230,11 +205,10 @@ mod tests {
 
     #[test]
     fn readings_come_in_their_order_and_end_with_an_error() {
-        let mut ahead = ReadAhead::of(Box::new(Some3(0))).unwrap();
-        let mut next = || ahead.next_reading().map(|reading| reading.map(|reading| reading.time_s));
-        let times_s = [(); 3].map(|()| next().unwrap().unwrap());
+        let mut readings = Readings::new(Box::new(Some3(0)), vec![1.0, 2.0, 3.0, 4.0].into()).unwrap();
+        let times_s: Vec<f64> = (0..3).map(|_| readings.next().unwrap().unwrap().time_s).collect();
         assert_eq!(times_s, [1.0, 2.0, 3.0]);
-        assert_eq!(next().unwrap_err().to_string(), "a: it ends");
-        assert_eq!(next().unwrap(), None);
+        assert_eq!(readings.next().unwrap().unwrap_err().to_string(), "a: it ends");
+        assert!(readings.next().is_none());
     }
 }

@@ -1,8 +1,7 @@
 use crate::belief::{Belief, Permission};
-use interfaces::{CellState, Grid, LaserReading, Reading, ValueError, from_bytes, to_bytes};
+use interfaces::{LaserReading, Reading, ValueError, from_bytes, to_bytes};
 use localizer::{Correction, GivenPoses, Localized, LoopClosed, LoopClosingLocalizer, PoseState};
 use mapper::Mapper;
-use nalgebra::{Isometry2, Matrix3};
 
 /// Gives every reading its pose: the part between the filter and the mapper.
 pub trait Localization<R> {
@@ -24,37 +23,17 @@ pub trait Localization<R> {
         if snapshot.is_empty() { Ok(()) } else { Err(ValueError) }
     }
 
-    /// The surfaces in which poses are found, as bytes; none where poses are given.
-    fn surfaces(&mut self) -> Vec<u8> {
-        Vec::new()
-    }
-
-    /// Begins at an unknown pose in surfaces that another localization or a survey has left, or in a map if there are none.
-    ///
-    /// # Errors
-    ///
-    /// When the bytes are no surfaces.
-    fn begin_in(&mut self, _surfaces: &[u8], _map: &Grid<CellState>) -> Result<(), ValueError> {
-        Ok(())
-    }
-
     /// Begins another session in the place that was learned, at a pose that is not known.
     fn begin_session(&mut self) {}
 
-    /// Puts the robot at a pose with a covariance, by the word of a person or of another program. Poses that the source gives stay.
-    fn seat(&mut self, _: Isometry2<f64>, _: &Matrix3<f64>) {}
-
-    /// Whether nothing is being learned again in another thread.
-    fn is_settled(&self) -> bool {
-        true
+    /// The localizer that finds the poses; `None` where they are given.
+    fn localizer(&self) -> Option<&LoopClosingLocalizer> {
+        None
     }
 
-    /// Waits for what is being learned again, and takes it over: before a snapshot, and before another session.
-    fn settle(&mut self, _: &mut Mapper) {}
-
-    /// See [`LoopClosingLocalizer::switches`].
-    fn switches(&self) -> &[usize] {
-        &[]
+    /// As [`localizer`](Self::localizer).
+    fn localizer_mut(&mut self) -> Option<&mut LoopClosingLocalizer> {
+        None
     }
 }
 
@@ -102,32 +81,16 @@ impl Localization<LaserReading> for LoopClosingLocalizer {
         LoopClosingLocalizer::restore(self, snapshot)
     }
 
-    fn surfaces(&mut self) -> Vec<u8> {
-        LoopClosingLocalizer::surfaces(self)
-    }
-
-    fn begin_in(&mut self, surfaces: &[u8], map: &Grid<CellState>) -> Result<(), ValueError> {
-        LoopClosingLocalizer::begin_in(self, surfaces, map)
-    }
-
     fn begin_session(&mut self) {
         LoopClosingLocalizer::begin_session(self);
     }
 
-    fn seat(&mut self, pose: Isometry2<f64>, covariance: &Matrix3<f64>) {
-        LoopClosingLocalizer::seat(self, pose, covariance);
+    fn localizer(&self) -> Option<&LoopClosingLocalizer> {
+        Some(self)
     }
 
-    fn is_settled(&self) -> bool {
-        LoopClosingLocalizer::is_settled(self)
-    }
-
-    fn settle(&mut self, mapper: &mut Mapper) {
-        LoopClosingLocalizer::settle(self, mapper);
-    }
-
-    fn switches(&self) -> &[usize] {
-        LoopClosingLocalizer::switches(self)
+    fn localizer_mut(&mut self) -> Option<&mut LoopClosingLocalizer> {
+        Some(self)
     }
 }
 

@@ -4,6 +4,7 @@ use crate::pilot::Pilot;
 use crate::session::Session;
 use agent::Features;
 use interfaces::Reading;
+use localizer::LoopClosingLocalizer;
 use mapper::{Mapper, ReadingError, ScanFilter};
 use nalgebra::{Isometry2, Matrix3};
 
@@ -98,27 +99,28 @@ impl<R: Reading, P: Pilot> Robot<R, P> {
         self.localization.begin_session();
     }
 
-    /// Puts the robot at a pose in the map, with its covariance (x and y in m, heading in rad), by the word of a person or of another
+    /// Puts the robot at a pose in the map, with its covariance (x and y in m, heading in rad), set by the user or another
     /// program. Scans must agree before they enter the map.
     pub fn seat(&mut self, pose: Isometry2<f64>, covariance: &Matrix3<f64>) {
         self.settle();
-        self.localization.seat(pose, covariance);
+        if let Some(localizer) = self.localization.localizer_mut() {
+            localizer.seat(pose, covariance);
+        }
         self.pilot.forget_map();
     }
 
     /// Whether nothing is being learned again in another thread.
     pub fn is_settled(&self) -> bool {
-        self.localization.is_settled()
+        self.localization.localizer().is_none_or(LoopClosingLocalizer::is_settled)
     }
 
     /// Waits for what is being learned again, and takes it over. Returns whether the map is another one now.
     pub fn settle(&mut self) -> bool {
-        let is_replaced = !self.is_settled();
-        if is_replaced {
-            self.localization.settle(&mut self.mapper);
-            self.pilot.forget_map();
-        }
-        is_replaced
+        let unsettled = self.localization.localizer_mut().filter(|localizer| !localizer.is_settled());
+        let Some(localizer) = unsettled else { return false };
+        localizer.settle(&mut self.mapper);
+        self.pilot.forget_map();
+        true
     }
 
     /// What is removed from scans; `None` if nothing is.

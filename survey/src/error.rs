@@ -9,34 +9,14 @@ pub enum SurveyError {
     /// No reading has a pose on a map.
     #[error("no reading has a certain pose from which the place has a size")]
     NoPlace,
-    /// The outline of the place has too many cells.
+    /// The outline of the place has too many cells, or more was seen of it than the memory of a map holds.
     #[error(
-        "the place is too large for a map: at least {width_m:.0} × {height_m:.0} m in cells of {resolution_m} m are more than \
-         2^30 cells; larger cells (--resolution, at least {enough_m}) or shorter ranges (--max-range) are fewer"
+        "the place is too large for a map: {what}; larger cells (--resolution, at least {enough_m}) or shorter ranges (--max-range) \
+         need less"
     )]
     TooLarge {
-        /// The size of the place, m.
-        width_m: f64,
-        /// The size of the place, m.
-        height_m: f64,
-        /// The side of a cell, m.
-        resolution_m: f64,
-        /// A side of the cells with which it is small enough, m.
-        enough_m: f64,
-    },
-    /// More was seen of the place than the memory of a map holds.
-    #[error(
-        "the place is too large for a map: about {seen_m2:.0} m² in cells of {resolution_m} m need more than {:.3} GiB; larger cells \
-         (--resolution, at least {enough_m}) or shorter ranges (--max-range) need less, or give the map more memory (--map-memory)",
-        *max_bytes as f64 / f64::from(1 << 30)
-    )]
-    TooMuchSeen {
-        /// The area that was seen, m².
-        seen_m2: f64,
-        /// The side of a cell, m.
-        resolution_m: f64,
-        /// The memory that the map may take, bytes.
-        max_bytes: usize,
+        /// How large it is, and what that exceeds.
+        what: String,
         /// A side of the cells with which it is small enough, m.
         enough_m: f64,
     },

@@ -2,7 +2,7 @@
 
 use crate::error::SurveyError;
 use crate::settings::SurveySettings;
-use interfaces::{GridFrame, LaserReading, heading_rad};
+use interfaces::{GridFrame, LaserReading, Spread};
 use mapper::Mapper;
 use nalgebra::{Isometry2, Point2, Vector2};
 use std::collections::HashSet;
@@ -59,7 +59,10 @@ fn of_cells(low: Point2<f64>, high: Point2<f64>, resolution_m: f64) -> Result<Gr
     let too_large = || {
         let (width_m, height_m) = (cells.x * resolution_m, cells.y * resolution_m);
         let share = cells.x * cells.y / GridFrame::MAX_CELLS as f64;
-        SurveyError::TooLarge { width_m, height_m, resolution_m, enough_m: enough_m(resolution_m, share) }
+        let what = format!(
+            "at least {width_m:.0} × {height_m:.0} m in cells of {resolution_m} m are more than 2^30 cells"
+        );
+        SurveyError::TooLarge { what, enough_m: enough_m(resolution_m, share) }
     };
     // Numbers that are too large become the largest ones.
     let frame = GridFrame::new(low * resolution_m, resolution_m, cells.x as usize, cells.y as usize);
@@ -104,8 +107,7 @@ const SIDE_M: f64 = 0.5;
 /// Along a beam, a square is looked for after each of these steps, m.
 const STEP_M: f64 = 0.25;
 /// A reading counts when the robot has moved by this since the last one that did, m and rad.
-const COUNTED_M: f64 = 1.0;
-const COUNTED_RAD: f64 = 0.8;
+const COUNTED: Spread = Spread { m: 1.0, rad: 0.8 };
 /// The number of beams of a reading that count: 0.4 m apart at 20 m over half a turn.
 const BEAMS: usize = 180;
 
@@ -120,11 +122,8 @@ pub(crate) struct SeenArea {
 impl SeenArea {
     /// Adds a reading that was filtered, with its pose in the map.
     pub(crate) fn add(&mut self, reading: &LaserReading, pose: &Isometry2<f64>) {
-        if let Some(last) = &self.last {
-            let since = last.inv_mul(pose);
-            if since.translation.vector.norm() < COUNTED_M && heading_rad(&since).abs() < COUNTED_RAD {
-                return;
-            }
+        if self.last.is_some_and(|last| COUNTED.contains(&last.inv_mul(pose))) {
+            return;
         }
         self.last = Some(*pose);
         let laser = pose * reading.mount * Point2::origin();
@@ -169,5 +168,9 @@ pub(crate) fn too_much(seen_m2: f64, taken: f64, settings: &SurveySettings) -> S
     const MARGIN: f64 = 1.3;
     let (resolution_m, max_bytes) = (settings.resolution_m, settings.mapper.max_bytes);
     let share = MARGIN * bytes(seen_m2, settings).max(taken) / max_bytes as f64;
-    SurveyError::TooMuchSeen { seen_m2, resolution_m, max_bytes, enough_m: enough_m(resolution_m, share) }
+    let gib = max_bytes as f64 / f64::from(1 << 30);
+    let what = format!(
+        "about {seen_m2:.0} m² in cells of {resolution_m} m need more than {gib:.3} GiB (--map-memory gives the map more)"
+    );
+    SurveyError::TooLarge { what, enough_m: enough_m(resolution_m, share) }
 }

@@ -1,7 +1,7 @@
 //! A place as it will be: P(blocked) at any time, from what was learned.
 
 use crate::masks::{keepout_mask, speed_mask};
-use crate::outlook::{Outlook, distance_m, doors};
+use crate::outlook::{Outlook, doors};
 use crate::places::{Place, places};
 use crate::survey::SavedSurvey;
 use interfaces::{CellState, Grid};
@@ -62,7 +62,7 @@ impl Forecast {
 
     /// The door at a point: its closed leaf is at most half a meter away, m.
     pub fn door_at(&self, point: Point2<f64>) -> Option<(u32, &Door)> {
-        let far_m = |(_, door): &(u32, &Door)| distance_m(&door.closed, point);
+        let far_m = |(_, door): &(u32, &Door)| door.closed.distance_m(&point);
         let near = self.doors().filter(|door| far_m(door) <= NEAR_M);
         near.min_by(|a, b| far_m(a).total_cmp(&far_m(b)))
     }

@@ -1,7 +1,7 @@
 //! The map of what is permanent, and masks for the costmap filters of Nav2, values from 0 to 100.
 
 use crate::patches::{areas, fronts};
-use interfaces::{Cell, CellState, Grid};
+use interfaces::{CellState, Grid};
 use mapper::{Mapper, ThingKind};
 
 /// The names of the masks, in the order of [`masks`] and of [`Forecast::masks`](crate::Forecast::masks).
@@ -74,12 +74,9 @@ pub(crate) fn speed_mask(mapper: &Mapper, pace: impl Fn(usize) -> f64) -> Grid<u
         if value == 0 {
             continue;
         }
-        let center = frame.cell(index);
-        for y in -reach..=reach {
-            for x in (-reach..=reach).filter(|x| x * x + y * y <= reach * reach) {
-                if let Some(near) = mask.get_mut(Cell { x: center.x + x, y: center.y + y }) {
-                    *near = value.max(*near);
-                }
+        for near in frame.cell(index).disc(reach) {
+            if let Some(near) = mask.get_mut(near) {
+                *near = value.max(*near);
             }
         }
     }
@@ -142,7 +139,7 @@ pub(crate) fn share_blocked(mapper: &Mapper, index: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use interfaces::{CellReading, GridFrame};
+    use interfaces::{Cell, CellReading, GridFrame};
     use mapper::MapperSettings;
     use nalgebra::{Isometry2, Point2};
 

@@ -1,7 +1,7 @@
 //! What a map says of other times: P(blocked), doors, for how long a look counts.
 
 use interfaces::{Cell, CellState, Grid, GridFrame};
-use mapper::{Calendar, Clock, Door, Mapper, Segment, ThingKind};
+use mapper::{Calendar, Clock, Door, Mapper, ThingKind};
 use nalgebra::{Point2, Vector2};
 
 /// Cells whose centers are at most this far from the closed leaf of a door are blocked by it, in cells.
@@ -95,18 +95,13 @@ impl<'a> Outlook<'a> {
         for step in (first * steps).floor() as usize..=(last * steps).ceil() as usize {
             let share = step as f64 / steps;
             let (at, time_s) = (from + way * share, time_s(share * length_m));
-            for offset in (-reach..=reach).flat_map(|y| (-reach..=reach).map(move |x| Vector2::new(x, y))) {
-                if offset.dot(&offset) <= reach * reach {
-                    let Cell { x, y } = frame.cell_at(&at);
-                    let cell = Cell::new(x + offset.x, y + offset.y);
-                    let is_leaf =
-                        |door: &&&Door| distance_m(&door.closed, frame.center(cell)) <= LEAF * cell_m;
-                    let found = match doors.iter().find(is_leaf) {
-                        Some(door) => Some(1.0 - door.clock.probability(time_s, self.calendar)),
-                        None => self.blocked(cell, time_s),
-                    };
-                    largest = largest.into_iter().chain(found).reduce(f64::max);
-                }
+            for cell in frame.cell_at(&at).disc(reach) {
+                let is_leaf = |door: &&&Door| door.closed.distance_m(&frame.center(cell)) <= LEAF * cell_m;
+                let found = match doors.iter().find(is_leaf) {
+                    Some(door) => Some(1.0 - door.clock.probability(time_s, self.calendar)),
+                    None => self.blocked(cell, time_s),
+                };
+                largest = largest.into_iter().chain(found).reduce(f64::max);
             }
         }
         largest
@@ -138,14 +133,6 @@ pub fn doors(mapper: &Mapper) -> impl Iterator<Item = (u32, &Door)> {
         ThingKind::Door(door) => Some((thing.id, &**door)),
         ThingKind::Furniture(_) => None,
     })
-}
-
-/// The distance of a point from a segment, m.
-pub(crate) fn distance_m(segment: &Segment, point: Point2<f64>) -> f64 {
-    let [from, to] = segment.ends;
-    let along = to - from;
-    let share = (along.dot(&(point - from)) / along.norm_squared()).clamp(0.0, 1.0);
-    (point - from - along * share).norm()
 }
 
 #[cfg(test)]

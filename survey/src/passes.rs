@@ -80,11 +80,11 @@ impl<W: FnMut((Stage, usize)) -> ControlFlow<()>> RoutePass<'_, W> {
         if settings.pose != PoseMode::Localized {
             return Ok(route);
         }
-        let (left_out, scans) = (uncertain(&route.poses), route.poses.len());
+        let (left_out, scans) = (uncertain(&route.trajectory.poses), route.trajectory.poses.len());
         if left_out * 2 > scans {
             return Err(SurveyError::MostLeftOut { left_out, scans }.into());
         }
-        check_odometry(&route.poses, &odometry)?;
+        check_odometry(&route.trajectory.poses, &odometry)?;
         Ok(route)
     }
 
@@ -105,7 +105,7 @@ impl<W: FnMut((Stage, usize)) -> ControlFlow<()>> RoutePass<'_, W> {
         }
         self.report(Stage::Loops, 0)?;
         let route = pass.finish();
-        self.report(Stage::Loops, route.poses.len())?;
+        self.report(Stage::Loops, route.trajectory.poses.len())?;
         Ok(route)
     }
 
@@ -118,10 +118,10 @@ impl<W: FnMut((Stage, usize)) -> ControlFlow<()>> RoutePass<'_, W> {
     pub(crate) fn in_place(&mut self, place: &KnownPlace, all_stand: bool) -> Result<Route, PassError> {
         let route = self.route()?;
         let start = if all_stand { Start::At(Isometry2::identity()) } else { Start::Unknown };
-        let mut search = RouteSearch::new(place, start, route.poses.len());
+        let mut search = RouteSearch::new(place, start, route.trajectory.poses.len());
         let mut filter = self.settings.scan_filter();
         self.each_reading(Stage::Search, |index, reading| {
-            if let Some(found) = route.poses.get(index) {
+            if let Some(found) = route.trajectory.poses.get(index) {
                 search.add(LaserReading { pose: found.pose, ..filter.filter(reading) });
             }
             Ok(())
@@ -137,9 +137,9 @@ impl<W: FnMut((Stage, usize)) -> ControlFlow<()>> RoutePass<'_, W> {
     pub(crate) fn place(&mut self, route: &Route) -> Result<KnownPlace, PassError> {
         let mut place = KnownPlace::new(&around(route, self.settings)?);
         let mut filter = self.settings.scan_filter();
-        let no_returns = judged(self.log, &route.poses, &self.settings.filter)?;
+        let no_returns = judged(self.log, &route.trajectory.poses, &self.settings.filter)?;
         self.each_reading(Stage::Map, |index, mut reading| {
-            if let Some(found) = route.poses.get(index) {
+            if let Some(found) = route.trajectory.poses.get(index) {
                 let odometry = std::mem::replace(&mut reading.pose, found.pose);
                 no_returns.apply(&mut reading);
                 no_returns.protect(&mut reading);

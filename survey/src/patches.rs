@@ -51,11 +51,10 @@ pub(crate) fn connected(
     left: &mut BTreeSet<usize>,
 ) -> Vec<usize> {
     let (mut cells, mut next) = (vec![first], 0);
-    while let Some(Cell { x, y }) = cells.get(next).map(|index| frame.cell(*index)) {
+    while let Some(cell) = cells.get(next).map(|index| frame.cell(*index)) {
         next += 1;
-        let around =
-            (-reach..=reach).flat_map(|dy| (-reach..=reach).map(move |dx| Cell::new(x + dx, y + dy)));
-        cells.extend(around.filter_map(|cell| frame.index(cell)).filter(|index| left.remove(index)));
+        let around = cell.square(reach).filter_map(|cell| frame.index(cell));
+        cells.extend(around.filter(|index| left.remove(index)));
     }
     cells
 }

@@ -7,7 +7,7 @@ use crate::range_noise::RangeNoise;
 use crate::settings::SurveySettings;
 use crate::turns::Turns;
 use interfaces::{GridFrame, LaserReading, PoseMode};
-use localizer::{DistanceScale, LocalizerSettings, PoseState, TrajectoryFinder, TrajectoryPose};
+use localizer::{DistanceScale, LocalizerSettings, PoseState, Trajectory, TrajectoryFinder, TrajectoryPose};
 use mapper::ScanFilter;
 use nalgebra::{Isometry2, Point2};
 use std::ops::Range;
@@ -15,18 +15,12 @@ use std::ops::Range;
 /// A log along its trajectory.
 #[derive(Clone, Debug)]
 pub struct Route {
-    /// One pose per reading, in the frame of the map.
-    pub poses: Vec<TrajectoryPose>,
-    /// The number of places that were recognized; 0 where no trajectory was searched.
-    pub loops: usize,
-    /// The distance from the surfaces of other passes, below which 97 % of the points of scans lie, m; `None` where it is not known.
-    pub residual_m: Option<f64>,
+    /// The trajectory, in the frame of the map; without loops, a residual and a scale where none was searched.
+    pub trajectory: Trajectory,
     /// The standard deviation of the ranges of a laser that stands, m; `None` where it is not known.
     pub range_std_m: Option<f64>,
     /// How far the trajectory agrees with its own scans.
     pub quality: Quality,
-    /// The scale of the distances of the odometry, as the trajectory shows it; `None` where it is not known.
-    pub distance_scale: Option<DistanceScale>,
     /// The scale with which the pass was repeated; `None` if it was not.
     pub scaled: Option<DistanceScale>,
     /// The readings whose poses are in doubt.
@@ -48,7 +42,7 @@ impl Route {
         mut pass_over: impl FnMut(FirstPass) -> Result<Self, E>,
     ) -> Result<Self, E> {
         let route = pass_over(FirstPass::new(settings)?)?;
-        match route.distance_scale.filter(|scale| scale.is_significant() && scale.is_plausible()) {
+        match route.trajectory.distance_scale.filter(|scale| scale.is_significant() && scale.is_plausible()) {
             Some(scale) => {
                 let scaled = pass_over(FirstPass::new(settings)?.with_distance_scale(&scale))?;
                 Ok(Self { scaled: Some(scale), ..scaled })
@@ -67,7 +61,8 @@ impl Route {
                 percent.abs()
             ));
         }
-        let DistanceScale { scale, .. } = self.distance_scale.filter(|scale| !scale.is_plausible())?;
+        let DistanceScale { scale, .. } =
+            self.trajectory.distance_scale.filter(|scale| !scale.is_plausible())?;
         Some(format!(
             "by its scans, the robot moves {scale:.2} times as far as by its odometry, which wheels do not explain: the odometry was \
              used as it is; check its units, and whether it is of this robot"
@@ -79,7 +74,7 @@ impl Route {
     #[must_use]
     pub(crate) fn without_doubts(mut self) -> Self {
         if self.quality.verdict() == Verdict::UsableWithCare {
-            let poses = &mut self.poses;
+            let poses = &mut self.trajectory.poses;
             let in_doubt = self.in_doubt.iter().flat_map(Range::clone);
             for reading in in_doubt {
                 if poses[reading].state == PoseState::Tracking {
@@ -93,7 +88,7 @@ impl Route {
     /// The route in another frame, whose pose of this frame is `by`.
     #[must_use]
     pub fn moved(mut self, by: &Isometry2<f64>) -> Self {
-        self.poses.iter_mut().for_each(|at| at.pose = by * at.pose);
+        self.trajectory.poses.iter_mut().for_each(|at| at.pose = by * at.pose);
         for doubt in &mut self.quality.doubts {
             let at = by * Point2::new(doubt.x_m, doubt.y_m);
             (doubt.x_m, doubt.y_m) = (at.x, at.y);
@@ -118,7 +113,7 @@ pub(crate) fn uncertain(poses: &[TrajectoryPose]) -> usize {
 ///
 /// When no reading has a certain pose, or when the place is too large for a map.
 pub(crate) fn frame(routes: &[Route], settings: &SurveySettings) -> Result<GridFrame, SurveyError> {
-    let readings = routes.iter().flat_map(|route| route.poses.iter().zip(&route.reaches));
+    let readings = routes.iter().flat_map(|route| route.trajectory.poses.iter().zip(&route.reaches));
     let used = readings.filter(|(pose, _)| pose.state == PoseState::Tracking);
     let placed = used.map(|(pose, reach)| (&pose.pose, reach));
     extent::frame(placed, settings.resolution_m)
@@ -222,26 +217,12 @@ impl FirstPass {
 
     /// The log along its trajectory, in the frame of its first pose.
     pub fn finish(self) -> Route {
-        let (poses, loops, residual_m, distance_scale) = match self.finder {
-            Some(finder) => {
-                let trajectory = finder.finish();
-                (trajectory.poses, trajectory.loops, trajectory.residual_m, trajectory.distance_scale)
-            }
-            None => (self.given, 0, None, None),
+        let trajectory = match self.finder {
+            Some(finder) => finder.finish(),
+            None => Trajectory { poses: self.given, ..Trajectory::default() },
         };
-        let (quality, in_doubt) = self.quality.finish(&poses);
-        let (range_std_m, seen_m2) = (self.range_noise.std_m(), self.area.m2());
-        Route {
-            poses,
-            loops,
-            residual_m,
-            range_std_m,
-            quality,
-            distance_scale,
-            scaled: None,
-            in_doubt,
-            reaches: self.reaches,
-            seen_m2,
-        }
+        let (quality, in_doubt) = self.quality.finish(&trajectory.poses);
+        let (range_std_m, seen_m2, reaches) = (self.range_noise.std_m(), self.area.m2(), self.reaches);
+        Route { trajectory, range_std_m, quality, scaled: None, in_doubt, reaches, seen_m2 }
     }
 }

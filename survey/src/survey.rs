@@ -152,14 +152,9 @@ impl Survey {
 
     /// Whether a session begins with a log: not with the first one.
     fn begins_session(&self, log: usize) -> bool {
-        let [Some(before), Some(entry)] = [log.wrapping_sub(1), log].map(|log| self.logs.get(log)) else {
-            return false;
-        };
-        let gap_s = entry
-            .entry
-            .begin_s
-            .zip(before.entry.begin_s)
-            .map(|(begin_s, before_s)| begin_s - before_s - before.entry.duration_s);
+        let [.., before, log] = &self.logs[..=log] else { return false };
+        let begins_s = log.entry.begin_s.zip(before.entry.begin_s);
+        let gap_s = begins_s.map(|(begin_s, before_s)| begin_s - before_s - before.entry.duration_s);
         gap_s.is_none_or(|gap_s| gap_s >= SESSION_GAP_S)
     }
 

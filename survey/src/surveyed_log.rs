@@ -132,17 +132,19 @@ pub struct Travelled {
 impl SurveyedLog {
     /// `hiding_s`: for how long a body can hide what is in view, s.
     pub(crate) fn new(mut entry: LogEntry, route: Route, frame: GridFrame, hiding_s: f64) -> Self {
-        entry.notes.extend(route.scale_note().into_iter().chain(silence::note(&route.poses, hiding_s)));
+        entry
+            .notes
+            .extend(route.scale_note().into_iter().chain(silence::note(&route.trajectory.poses, hiding_s)));
         Self {
             entry,
-            readings: route.poses.len(),
+            readings: route.trajectory.poses.len(),
             used: 0,
-            loops: route.loops,
+            loops: route.trajectory.loops,
             travelled: Travelled::default(),
             noise_m: noise_m(&route),
             quality: route.quality,
             frame,
-            poses: Arc::new(route.poses),
+            poses: Arc::new(route.trajectory.poses),
         }
     }
 
@@ -203,7 +205,7 @@ const MAX_M: f64 = 0.1;
 /// plants and glass, real scans have long tails, each of which would count as a change. Of a laser that stands, it is the noise
 /// of its ranges, from 0.01 to 0.1 m. `None` if no place was seen twice.
 fn noise_m(route: &Route) -> Option<f64> {
-    let found = route.residual_m.map(|residual_m| residual_m.clamp(MIN_M, MAX_M));
+    let found = route.trajectory.residual_m.map(|residual_m| residual_m.clamp(MIN_M, MAX_M));
     found.or_else(|| route.range_std_m.map(|std_m| std_m.clamp(MIN_STANDING_M, MAX_M)))
 }
 

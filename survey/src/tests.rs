@@ -131,27 +131,33 @@ fn a_later_log_finds_its_place_in_the_first_one() {
     let settings = SurveySettings { resolution_m: 0.15, ..SurveySettings::of(PoseMode::Localized) };
     let (readings, truth) = drive(2, 120.0);
     let first = first_pass(&settings, &readings);
-    assert!(largest_error_m(&first.poses, &truth[0], &truth) < 0.1);
+    assert!(largest_error_m(&first.trajectory.poses, &truth[0], &truth) < 0.1);
     let on_route = |reading: &LaserReading, found: &TrajectoryPose| LaserReading {
         pose: found.pose,
         ..settings.scan_filter().filter(reading.clone())
     };
     let mut place = KnownPlace::new(&frame(std::slice::from_ref(&first), &settings).unwrap());
-    readings.iter().zip(&first.poses).for_each(|(reading, found)| place.add(on_route(reading, found)));
+    readings
+        .iter()
+        .zip(&first.trajectory.poses)
+        .for_each(|(reading, found)| place.add(on_route(reading, found)));
     // The second log begins where the first one has ended, with another odometry.
     let (all, all_truth) = drive(2, 180.0);
     let (later, later_truth) = (&all[1250..], &all_truth[1250..]);
     let second = first_pass(&settings, later);
     let mut search = RouteSearch::new(&place, Start::Unknown, later.len());
-    later.iter().zip(&second.poses).for_each(|(reading, found)| search.add(on_route(reading, found)));
+    later
+        .iter()
+        .zip(&second.trajectory.poses)
+        .for_each(|(reading, found)| search.add(on_route(reading, found)));
     let second = second.moved(&search.finish().unwrap());
-    let error_m = largest_error_m(&second.poses, &truth[0], later_truth);
+    let error_m = largest_error_m(&second.trajectory.poses, &truth[0], later_truth);
     assert!(error_m < 0.015, "{error_m}");
 
     // A place that is another one is refused.
     let mut search = RouteSearch::new(&place, Start::Unknown, 100);
     let blind = LaserReading { scan: scan(vec![1.0; 360]), ..readings[0].clone() };
-    (0..100).for_each(|_| search.add(on_route(&blind, &first.poses[0])));
+    (0..100).for_each(|_| search.add(on_route(&blind, &first.trajectory.poses[0])));
     assert_eq!(search.finish(), Err(PlaceError::Other { certain: 0, compared: 100 }));
 }
 
@@ -302,9 +308,8 @@ fn a_place_of_which_too_much_is_seen_names_a_resolution_that_is_enough() {
     // Known after the first pass, and only found out in the second one.
     for max_bytes in [needed / 3, needed - 1] {
         let error = mapped(0.02, max_bytes).unwrap_err();
-        let PassError::Survey(SurveyError::TooMuchSeen { seen_m2, enough_m, .. }) = error else {
-            panic!("{error}")
-        };
+        let PassError::Survey(SurveyError::TooLarge { what, enough_m }) = error else { panic!("{error}") };
+        let seen_m2: f64 = what.split(' ').nth(1).unwrap().parse().unwrap();
         assert!((20.0..200.0).contains(&seen_m2) && enough_m > 0.02, "{seen_m2} m², {enough_m} m");
         let (used, is_small) = mapped(enough_m, max_bytes).unwrap();
         assert!(is_small || used < max_bytes, "{used} of {max_bytes} bytes with cells of {enough_m} m");

@@ -62,7 +62,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             log.way_m,
             log.readings.len(),
             100.0 * spec.glitches_per_m,
-            ours.loops
+            ours.trajectory.loops
         );
         let p95_m = counts.add("found", &ours, &log);
         counts.logs += 1;
@@ -83,7 +83,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 impl Counts {
     /// Prints and counts a trajectory. Gives the 95 % quantile of its errors, m.
     fn add(&mut self, name: &str, route: &Route, log: &SimulatedLog) -> f64 {
-        let poses: Vec<Isometry2<f64>> = route.poses.iter().map(|at| at.pose).collect();
+        let poses: Vec<Isometry2<f64>> = route.trajectory.poses.iter().map(|at| at.pose).collect();
         let to_truth = to_truth(&poses, &log.truth);
         let ([median_m, p95_m, max_m], quality) = (errors_m(&to_truth, &poses, &log.truth), &route.quality);
         let (verdict, ghosts) = (quality.verdict(), ghosts::share(&to_truth, &poses, log));
@@ -120,7 +120,7 @@ fn route(log: &SimulatedLog, mode: PoseMode) -> Result<Route, SurveyError> {
     Route::of_passes(&SurveySettings::of(mode), |mut pass| {
         log.readings.iter().for_each(|reading| pass.add(reading.clone()));
         let route = pass.finish();
-        if let Some(scale) = route.distance_scale {
+        if let Some(scale) = route.trajectory.distance_scale {
             println!("     scale {:.4} +- {:.4}", scale.scale, scale.std);
         }
         Ok(route)

@@ -10,11 +10,10 @@ use crate::estimate::{PoseEstimate, PoseState};
 use crate::faults::{Fault, mirrored};
 use crate::match_scene::MatchScene;
 use crate::motion::{Motion, Predicted};
-use crate::spread::Spread;
 use crate::support::Support;
 use crate::tracking::{Tracked, track};
 use crate::verification::{Moved, Verdict};
-use interfaces::{Scan, heading_rad};
+use interfaces::{Scan, Spread, heading_rad};
 use nalgebra::Isometry2;
 use std::f64::consts::TAU;
 

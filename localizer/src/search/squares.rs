@@ -3,9 +3,8 @@
 use super::{Node, Search, Window};
 use crate::constants::{FAR_M, SEARCH_CHUNK, TOP};
 use crate::score_grid::ScoreGrid;
-use crate::spread::Spread;
 use crate::work;
-use interfaces::{Cell, GridFrame, heading_rad, wrap_rad};
+use interfaces::{Cell, GridFrame, Spread, heading_rad, wrap_rad};
 use nalgebra::{Point2, Vector2};
 use std::f64::consts::PI;
 

@@ -7,7 +7,7 @@ use super::graph::{Edge, EdgeKind, PoseGraph};
 use super::keyframe::Keyframe;
 use super::matching::in_frame;
 use crate::constants::{CORRELATED, CORRELATED_KEYFRAMES};
-use crate::spread::Spread;
+use interfaces::Spread;
 use rayon::prelude::*;
 use std::ops::Range;
 

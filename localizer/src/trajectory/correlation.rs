@@ -4,8 +4,7 @@
 use super::keyframe::Keyframe;
 use super::score_kernel::{BLOCK, BLOCK_BITS, Scores, TOP_SCORE, index, sums};
 use crate::constants::{CORRELATION_CELL_M, CORRELATION_PENALTY, CORRELATION_RANGE_M, CORRELATION_STEP_RAD};
-use crate::spread::Spread;
-use interfaces::Scan;
+use interfaces::{Scan, Spread};
 use nalgebra::{Isometry2, Point2, Vector2};
 use std::ops::Range;
 

@@ -13,9 +13,8 @@ use crate::estimate::Start;
 use crate::scan_points::{PointRules, ScanPoint, ScanPoints};
 use crate::score_grid::ScoreGrid;
 use crate::search::{Window, search};
-use crate::spread::Spread;
 use crate::surfel_map::SurfelMap;
-use interfaces::{GridFrame, LaserReading, ValueError, heading_rad, median, wrap_rad};
+use interfaces::{GridFrame, LaserReading, Spread, ValueError, heading_rad, median, wrap_rad};
 use nalgebra::{Isometry2, Vector2};
 
 /// The number of scans that are searched for in the whole map, at most.

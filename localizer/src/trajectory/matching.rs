@@ -5,8 +5,8 @@ use crate::constants::{JUDGED_M, MIN_NOISE_M, STDS};
 use crate::match_scene::hit_std_m;
 use crate::matcher::{Gates, Match, Prior, align, difference};
 use crate::scan_points::ScanPoint;
-use crate::spread::Spread;
 use crate::surfel_map::SurfelMap;
+use interfaces::Spread;
 use nalgebra::{Isometry2, Matrix3, Vector3};
 
 /// Contradiction to the odometry over its covariance that means nothing.

@@ -2,7 +2,7 @@
 
 use super::graph::{EdgeKind, PoseGraph};
 use crate::constants::{LOOP_M, TURN_M};
-use crate::spread::Spread;
+use interfaces::Spread;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 

@@ -14,8 +14,8 @@ use crate::matcher::Match;
 use crate::scan_points::ScanPoint;
 use crate::score_grid::ScoreGrid;
 use crate::search::{Window, search};
-use crate::spread::Spread;
 use crate::surfel_map::SurfelMap;
+use interfaces::Spread;
 use nalgebra::Isometry2;
 
 /// Earlier submaps in which one is searched for, with the score grids of twice as many; points that are compared.

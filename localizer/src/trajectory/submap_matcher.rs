@@ -17,9 +17,8 @@ use crate::scan_points::ScanPoint;
 use crate::score_grid::ScoreGrid;
 use crate::search::{Window, search};
 use crate::settings::LocalizerSettings;
-use crate::spread::Spread;
 use crate::surfel_map::SurfelMap;
-use interfaces::LaserReading;
+use interfaces::{LaserReading, Spread};
 use nalgebra::{Isometry2, Matrix3, Vector3};
 
 /// Minimum number of points on a submap.

@@ -41,7 +41,9 @@ impl Chunk {
         let mut fields = Fields::new(&bytes);
         let mut header = || {
             fields.skip(16)?; // the times of the first and the last message
-            Ok((fields.u64()?, fields.u32()?, fields.name()?, fields.u64()?))
+            let unpacked = u64::from_le_bytes(fields.array()?);
+            let (crc, name) = (u32::from_le_bytes(fields.array()?), fields.name()?);
+            Ok((unpacked, crc, name, u64::from_le_bytes(fields.array()?)))
         };
         let (unpacked, expected_crc, compression, packed) =
             header().map_err(|why: String| format!("the header of a chunk of {len} bytes {why}"))?;
@@ -147,24 +149,12 @@ impl<'a> Fields<'a> {
         Ok(skipped)
     }
 
-    fn array<const N: usize>(&mut self) -> Result<[u8; N], String> {
+    pub(super) fn array<const N: usize>(&mut self) -> Result<[u8; N], String> {
         self.skip(N)?.try_into().map_err(|_| "ends too early".to_owned())
     }
 
-    pub(super) fn u16(&mut self) -> Result<u16, String> {
-        self.array().map(u16::from_le_bytes)
-    }
-
-    pub(super) fn u32(&mut self) -> Result<u32, String> {
-        self.array().map(u32::from_le_bytes)
-    }
-
-    pub(super) fn u64(&mut self) -> Result<u64, String> {
-        self.array().map(u64::from_le_bytes)
-    }
-
     pub(super) fn name(&mut self) -> Result<String, String> {
-        let length = self.u32()? as usize;
+        let length = u32::from_le_bytes(self.array()?) as usize;
         if length > MAX_NAME_BYTES {
             return Err(format!("has a name of {length} bytes; at most {MAX_NAME_BYTES} are read"));
         }

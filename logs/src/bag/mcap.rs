@@ -207,13 +207,14 @@ impl Content {
     fn define(&mut self, code: u8, bytes: &[u8]) -> Result<(), Stop> {
         let mut fields = Fields::new(bytes);
         let mut read = || {
-            let id = fields.u16()?;
+            let id = u16::from_le_bytes(fields.array()?);
             if code == SCHEMA {
                 self.schemas.insert(id, fields.name()?);
                 return Ok(());
             }
             // A channel without a schema has no type.
-            let type_name = self.schemas.get(&fields.u16()?).cloned().unwrap_or_default();
+            let type_name =
+                self.schemas.get(&u16::from_le_bytes(fields.array()?)).cloned().unwrap_or_default();
             let topic = Topic { name: fields.name()?, type_name, encoding: fields.name()? };
             // Channels are defined again in later chunks.
             if self.channels.get(&id).is_none_or(|known| *known.topic != topic) {
@@ -229,9 +230,9 @@ impl Content {
     /// The message that begins with this header, if it is wanted; its data is to be read.
     fn message(&mut self, header: &[u8]) -> Result<Option<Message>, Stop> {
         let mut fields = Fields::new(header);
-        let id = fields.u16().unwrap_or_default();
+        let id = u16::from_le_bytes(fields.array().unwrap_or_default());
         let _ = fields.skip(4); // the sequence number
-        let log_ns = fields.u64().unwrap_or_default();
+        let log_ns = u64::from_le_bytes(fields.array().unwrap_or_default());
         let Some(channel) = self.channels.get_mut(&id) else {
             return Err(Stop::Invalid(format!("a message of channel {id}, which is not defined")));
         };

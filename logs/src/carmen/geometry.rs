@@ -1,5 +1,6 @@
 //! What a log says about its laser: its pose on the robot, its field of view and its range.
 
+use interfaces::Spread;
 use nalgebra::Isometry2;
 use std::f64::consts::{PI, TAU};
 
@@ -103,27 +104,20 @@ pub(super) struct Mounts {
 }
 
 /// Poses of the laser on the robot are the same within this, m and rad: logs have rounded poses.
-const SAME_MOUNT: f64 = 0.01;
+const SAME_MOUNT: Spread = Spread::of_motion(0.01);
 
 impl Mounts {
     pub(super) fn add(&mut self, mount: &Isometry2<f64>) {
         let first = *self.first.get_or_insert(*mount);
-        self.changes |= is_apart(&first, mount);
+        self.changes |= !SAME_MOUNT.contains(&first.inv_mul(mount));
     }
 
     /// The pose of the laser on the robot, if there is one: in corrected logs, the pose of the laser is that of another estimation,
     /// and is not fixed to that of the robot. Logs that write the same pose twice do not say it.
     pub(super) fn fixed(&self) -> Option<Isometry2<f64>> {
         let is_mount = |mount: &Isometry2<f64>| {
-            !self.changes
-                && is_apart(mount, &Isometry2::identity())
-                && mount.translation.vector.norm() < MAX_OFFSET_M
+            !self.changes && !SAME_MOUNT.contains(mount) && mount.translation.vector.norm() < MAX_OFFSET_M
         };
         self.first.filter(is_mount)
     }
-}
-
-fn is_apart(a: &Isometry2<f64>, b: &Isometry2<f64>) -> bool {
-    let step = a.inv_mul(b);
-    step.translation.vector.norm() > SAME_MOUNT || interfaces::heading_rad(&step).abs() > SAME_MOUNT
 }

@@ -16,6 +16,13 @@ impl Segment {
         (self.ends[1] - self.ends[0]).norm()
     }
 
+    /// The distance of a point from the segment, both ends included, m.
+    pub fn distance_m(&self, point: &Point2<f64>) -> f64 {
+        let (along, to) = (self.ends[1] - self.ends[0], point - self.ends[0]);
+        let share = (to.dot(&along) / along.norm_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+        (to - along * share).norm()
+    }
+
     /// The segment from a point, m.
     pub(super) fn from(start: Point2<f64>, heading_rad: f64, length_m: f64) -> Self {
         Self { ends: [start, start + interfaces::rotation(heading_rad) * Vector2::x() * length_m] }

@@ -6,6 +6,7 @@ use super::settings::SavedSettings;
 use crate::build::BUILD;
 use crate::{Pilot, Robot, Settings};
 use interfaces::{LaserReading, PoseMode, ValueError};
+use localizer::LoopClosingLocalizer;
 use mapper::{Calendar, Mapper, MapperSettings, ScanFilterSettings};
 
 impl SavedMap {
@@ -120,7 +121,9 @@ pub fn learned<P: Pilot>(
     sessions: &Sessions,
 ) -> StateCopy {
     let (mapper, sessions) = (robot.mapper.clone(), sessions.until_now(&robot.mapper));
-    let (bytes, surfaces) = (robot.localization_mut().snapshot(), robot.localization_mut().surfaces());
+    let bytes = robot.localization_mut().snapshot();
+    let surfaces =
+        robot.localization_mut().localizer_mut().map(LoopClosingLocalizer::surfaces).unwrap_or_default();
     let localization = Part { settings: localization_of(settings), bytes };
     let filter = robot.filter_mut().map(|filter| interfaces::snapshot(filter.values())).unwrap_or_default();
     let filter_settings = settings.filter.clone();
@@ -160,8 +163,8 @@ pub fn restore<P: Pilot>(
     }
     if is_same_frame && state.localization.settings == localization_of(settings) {
         robot.localization_mut().restore(&state.localization.bytes)?;
-    } else {
-        robot.localization_mut().begin_in(&state.surfaces, mapper.states())?;
+    } else if let Some(localizer) = robot.localization_mut().localizer_mut() {
+        localizer.begin_in(&state.surfaces, mapper.states())?;
     }
     robot.mapper = mapper;
     if let Some(filter) = robot.filter_mut().filter(|_| !state.filter.is_empty()) {

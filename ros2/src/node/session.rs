@@ -5,6 +5,7 @@ use super::CuriousNode;
 use crate::link::Link;
 use crate::message::{PoseWithCovarianceStamped, Time};
 use interfaces::{LaserReading, PoseMode};
+use localizer::LoopClosingLocalizer;
 use nalgebra::{Isometry2, Matrix3};
 use ros::flat;
 use std::time::Instant;
@@ -93,7 +94,7 @@ impl<L: Link> CuriousNode<L> {
 
     /// Says with which readings corrected maps have replaced the old ones.
     pub(super) fn say_switches(&mut self) {
-        let switches = self.robot.localization().switches();
+        let switches = self.robot.localization().localizer().map_or(&[][..], LoopClosingLocalizer::switches);
         if switches.len() > self.published.switches {
             self.published.switches = switches.len();
             let readings: Vec<String> = switches.iter().map(usize::to_string).collect();

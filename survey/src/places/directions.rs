@@ -126,9 +126,9 @@ impl Directions {
         });
         for (index, _) in events(mapper).filter(|(_, event)| *event == Event::Block) {
             let (cell, own) = (cell_key(frame, index), spot_key(frame, index));
-            for spot in around(own) {
+            for spot in own.square(AROUND) {
                 let at =
-                    [(cell.0, spot.0), (cell.1, spot.1)].map(|(cell, spot)| from_middle_m(cell, spot, frame));
+                    [(cell.x, spot.x), (cell.y, spot.y)].map(|(cell, spot)| from_middle_m(cell, spot, frame));
                 let trace = traces.entry(spot).or_insert_with(|| Trace::begin(now_s));
                 trace.add(now_s, at, spot == own);
             }
@@ -156,11 +156,6 @@ fn count(counts: &mut BTreeMap<Key, [u32; SECTORS]>, spot: Key, trace: &Trace) {
     if let Some(heading_rad) = trace.heading_rad() {
         counts.entry(spot).or_default()[sector(heading_rad)] += 1;
     }
-}
-
-/// A spot and those around it.
-fn around((x, y): Key) -> impl Iterator<Item = Key> {
-    (-AROUND..=AROUND).flat_map(move |dy| (-AROUND..=AROUND).map(move |dx| (x + dx, y + dy)))
 }
 
 /// The position of a cell from the middle of a spot along one axis, m.

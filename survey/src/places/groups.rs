@@ -68,27 +68,28 @@ fn cells_of<'a>(kind: &'a ThingKind, all: &'a [u32]) -> &'a [u32] {
 /// where the fewest cells are.
 fn divided(frame: &GridFrame, cells: Vec<usize>) -> Vec<Vec<usize>> {
     let most = (MAX_M / frame.resolution_m()).round().max(1.0) as i32;
-    let at = |index: usize| frame.cell(index);
-    let span = |of: &dyn Fn(Cell) -> i32| {
-        let places = || cells.iter().map(|index| of(at(*index)));
-        (places().min().unwrap_or_default(), places().max().unwrap_or_default())
+    let at = |index: usize, axis: usize| {
+        let Cell { x, y } = frame.cell(index);
+        [x, y][axis]
     };
-    let [x, y]: [&dyn Fn(Cell) -> i32; 2] = [&|cell| cell.x, &|cell| cell.y];
-    let length = |(low, high): (i32, i32)| high - low + 1;
-    let along = if length(span(x)) >= length(span(y)) { x } else { y };
-    let (low, high) = span(along);
-    if length((low, high)) <= most {
+    let [x, y] = [0, 1].map(|axis| {
+        let places = || cells.iter().map(|index| at(*index, axis));
+        let low = places().min().unwrap_or_default();
+        (low, places().max().unwrap_or_default() - low + 1)
+    });
+    let (axis, (low, length)) = if x.1 >= y.1 { (0, x) } else { (1, y) };
+    if length <= most {
         return vec![cells];
     }
-    let mut counts = vec![0_usize; length((low, high)) as usize];
-    cells.iter().for_each(|index| counts[(along(at(*index)) - low) as usize] += 1);
+    let mut counts = vec![0_usize; length as usize];
+    cells.iter().for_each(|index| counts[(at(*index, axis) - low) as usize] += 1);
     let quarter = counts.len() / 4;
     let middle = quarter.max(1)..(counts.len() - quarter);
     let half = counts.len() / 2;
     // Of two equal ones, the one nearer to the middle.
     let cut = middle.min_by_key(|line| (counts[*line], line.abs_diff(half))).unwrap_or(half) as i32 + low;
     let (before, after): (Vec<usize>, Vec<usize>) =
-        cells.iter().copied().partition(|index| along(at(*index)) < cut);
+        cells.iter().copied().partition(|index| at(*index, axis) < cut);
     [before, after].into_iter().flat_map(|part| divided(frame, part)).collect()
 }
 

@@ -4,7 +4,7 @@
 //! - `passages`: how often something came into each spot of half a meter.
 //! - `directions`: where what passes a spot goes.
 //! - `book`: the numbers and the names of places, which they keep over all sessions.
-//! - `session`, `since`: what is different since the last session.
+//! - `since`: what is different since the last session.
 
 mod book;
 mod directions;
@@ -12,7 +12,6 @@ mod groups;
 mod line;
 mod names;
 mod passages;
-mod session;
 mod since;
 #[cfg(test)]
 mod tests;
@@ -116,16 +115,6 @@ pub enum PlaceKind {
 }
 
 impl PlaceKind {
-    /// Its name, as in `summary.json`.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Door { .. } => "door",
-            Self::Furniture { .. } => "furniture",
-            Self::Traffic => "traffic",
-            Self::Unknown => "unknown",
-        }
-    }
-
     /// The number of its thing; `None` for what is none.
     pub fn thing(self) -> Option<u32> {
         match self {

@@ -42,11 +42,9 @@ pub(super) fn give(places: &mut [Place], names: &[PlaceName]) {
             let is_door = matches!(place.kind, PlaceKind::Door { .. });
             [f64::from(u8::from(!is_door)), name.distance_m(place), name.middle_m(place)]
         };
-        let found = places.iter_mut().filter(is_free).min_by(|a, b| {
-            let pairs = order(a).into_iter().zip(order(b));
-            pairs.fold(Ordering::Equal, |known, (a, b)| known.then(a.total_cmp(&b)))
-        });
-        if let Some(place) = found {
+        let nearest =
+            |a: &&mut Place, b: &&mut Place| order(a).partial_cmp(&order(b)).unwrap_or(Ordering::Equal);
+        if let Some(place) = places.iter_mut().filter(is_free).min_by(nearest) {
             place.name = Some(name.name.clone());
         }
     }

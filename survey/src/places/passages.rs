@@ -4,7 +4,7 @@
 //! when a cell becomes blocked in view in a spot where nothing was.
 
 use crate::change_log::events;
-use interfaces::{Event, GridFrame};
+use interfaces::{Cell, Event, GridFrame};
 use mapper::Mapper;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -15,21 +15,21 @@ pub(super) const SIDE_M: f64 = 0.5;
 const FORGOTTEN_S: f64 = 30.0;
 
 /// A cell or a spot, counted from the origin of the map's coordinates: the same in a map that has grown.
-pub(super) type Key = (i32, i32);
+pub(super) type Key = Cell;
 
 /// The key of a cell.
 pub(super) fn cell_key(frame: &GridFrame, index: usize) -> Key {
     let (at, cell_m) = (frame.center(frame.cell(index)), frame.resolution_m());
     // Centers are at multiples of half a cell: a quarter keeps them away from the edges, whatever their last bits are.
     let number = |length_m: f64| (length_m / cell_m + 0.25).floor() as i32;
-    (number(at.x), number(at.y))
+    Cell::new(number(at.x), number(at.y))
 }
 
 /// The key of the spot of a cell.
 pub(super) fn spot_key(frame: &GridFrame, index: usize) -> Key {
     let side = (SIDE_M / frame.resolution_m()).round().max(1.0) as i32;
-    let (x, y) = cell_key(frame, index);
-    (x.div_euclid(side), y.div_euclid(side))
+    let Cell { x, y } = cell_key(frame, index);
+    Cell::new(x.div_euclid(side), y.div_euclid(side))
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, Serialize)]
@@ -66,7 +66,7 @@ impl Spot {
     /// Its middle, m.
     pub(super) fn middle(&self, frame: &GridFrame) -> [f64; 2] {
         let side = (SIDE_M / frame.resolution_m()).round().max(1.0);
-        [self.key.0, self.key.1].map(|number| (f64::from(number) + 0.5) * side * frame.resolution_m())
+        [self.key.x, self.key.y].map(|number| (f64::from(number) + 0.5) * side * frame.resolution_m())
     }
 }
 

@@ -1,5 +1,6 @@
 //! What scans say about each other: where they hit, and through which of these cells the beams of others pass.
 
+use interfaces::Cell;
 use nalgebra::{Isometry2, Point2};
 use std::collections::HashMap;
 use std::hash::{BuildHasherDefault, Hasher};
@@ -20,8 +21,6 @@ const ONE_SURFACE_M: f64 = 0.5;
 const ONE_SURFACE: f64 = 0.1;
 /// The number of scans before and after one that see the same on the same pass.
 const SAME_PASS: usize = 15;
-
-type CellKey = (i32, i32);
 
 /// A hash of the two numbers of a cell, by multiplication (Knuth 1998, section 6.4). They come from the scans of one log, and are looked up
 /// at every step of every beam: a hash that withstands chosen keys took most of the time.
@@ -71,13 +70,13 @@ impl PlacedScan {
         in_free.chunk_by(is_one_surface).filter(is_surface).map(|run| run.len() as u32).sum()
     }
 
-    fn cells(&self) -> impl Iterator<Item = CellKey> {
+    fn cells(&self) -> impl Iterator<Item = Cell> {
         self.hits.iter().map(key)
     }
 
     /// Each cell with a hit once, in order.
-    fn distinct_cells(&self) -> Vec<CellKey> {
-        let mut cells: Vec<CellKey> = self.cells().collect();
+    fn distinct_cells(&self) -> Vec<Cell> {
+        let mut cells: Vec<Cell> = self.cells().collect();
         cells.sort_unstable();
         cells.dedup();
         cells
@@ -110,7 +109,7 @@ struct Seen {
 
 /// The cells that were hit. They are only looked up, so that their order is without meaning.
 #[derive(Debug, Default)]
-pub(super) struct Evidence(HashMap<CellKey, Seen, BuildHasherDefault<CellHasher>>);
+pub(super) struct Evidence(HashMap<Cell, Seen, BuildHasherDefault<CellHasher>>);
 
 impl Evidence {
     /// Every scan against all others, in their order.
@@ -178,16 +177,13 @@ impl Evidence {
         let [mut linked, mut seen_once] = [0_u32; 2];
         let mut is_in_free = Vec::with_capacity(scan.hits.len());
         for cell in scan.cells() {
-            let around = || {
-                let cells = (-1..=1).flat_map(|x| (-1..=1).map(move |y| (cell.0 + x, cell.1 + y)));
-                cells.filter_map(|cell| self.0.get(&cell).map(|seen| (cell, *seen)))
-            };
+            let around = || cell.square(1).filter_map(|cell| self.0.get(&cell).map(|seen| (cell, *seen)));
             let hits: u32 =
                 around().map(|(cell, seen)| seen.hits - u32::from(own.binary_search(&cell).is_ok())).sum();
             let passes = self.0.get(&cell).map_or(0, |seen| seen.passes);
             is_in_free.push(passes >= MIN_PASSES && hits < passes);
             linked += u32::from(around().any(|(_, seen)| seen.before > 0));
-            let elsewhere = |(cell, seen): (CellKey, Seen)| {
+            let elsewhere = |(cell, seen): (Cell, Seen)| {
                 seen.hits > seen.before + seen.after + u32::from(own.binary_search(&cell).is_ok())
             };
             seen_once += u32::from(!around().any(elsewhere));
@@ -199,6 +195,6 @@ impl Evidence {
     }
 }
 
-fn key(at: &Point2<f64>) -> CellKey {
-    ((at.x / CELL_M).floor() as i32, (at.y / CELL_M).floor() as i32)
+fn key(at: &Point2<f64>) -> Cell {
+    Cell::new((at.x / CELL_M).floor() as i32, (at.y / CELL_M).floor() as i32)
 }

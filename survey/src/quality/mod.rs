@@ -6,15 +6,14 @@ mod evidence;
 mod tests;
 
 use evidence::{Evidence, Judged, PlacedScan};
-use interfaces::{LaserReading, heading_rad, median};
+use interfaces::{LaserReading, Spread, heading_rad, median};
 use localizer::{PoseState, TrajectoryPose};
 use nalgebra::{Isometry2, Point2};
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
 /// A scan counts after this way or turn since the last one that counted, so that resting does not count more than driving.
-const COUNTED_M: f64 = 0.3;
-const COUNTED_RAD: f64 = 0.3;
+const COUNTED: Spread = Spread::of_motion(0.3);
 /// Hits beyond this range are not compared, m: an error of the heading moves them too far.
 const COMPARED_RANGE_M: f64 = 20.0;
 /// The number of hits of a scan that are compared.
@@ -142,38 +141,44 @@ impl Quality {
 
     fn over(&self, limits: &Limits) -> Vec<String> {
         let percent = |share: f64| format!("{:.1} %", 100.0 * share);
-        let mut reasons = Vec::new();
-        if self.contradicting > limits.contradicting {
-            let share = percent(self.contradicting);
-            reasons.push(format!(
-                "{share} of the scans hit where other scans saw free space: walls are there twice"
-            ));
-        }
-        if self.worst_stretch > limits.worst_stretch {
-            let share = percent(self.worst_stretch);
-            reasons.push(format!(
-                "in the worst stretch of the route, {share} of the hits are where other scans saw free space"
-            ));
-        }
-        if self.weak_links > limits.weak_links {
-            let places = match self.weak_links {
-                1 => "one place".to_owned(),
-                links => format!("{links} places"),
-            };
-            reasons.push(format!(
-                "the route can be broken in {places}, where a scan fits to none of those before it or shows a turn that \
-                 nothing confirms"
-            ));
-        }
-        if self.left_out > limits.left_out {
-            reasons.push(format!("{} of the scans have no certain pose", percent(self.left_out)));
-        }
-        if let Some(scale) = self.scale.filter(|scale| scale.max(scale.recip()) > limits.scale) {
-            reasons.push(format!(
-                "by its scans, the robot moves {scale:.2} times as far as by its odometry: one of both has wrong lengths"
-            ));
-        }
-        reasons
+        let (contradicting, stretch) = (percent(self.contradicting), percent(self.worst_stretch));
+        let places = match self.weak_links {
+            1 => "one place".to_owned(),
+            links => format!("{links} places"),
+        };
+        let scale = self.scale.unwrap_or(1.0);
+        let reasons = [
+            (
+                self.contradicting > limits.contradicting,
+                format!(
+                    "{contradicting} of the scans hit where other scans saw free space: walls are there twice"
+                ),
+            ),
+            (
+                self.worst_stretch > limits.worst_stretch,
+                format!(
+                    "in the worst stretch of the route, {stretch} of the hits are where other scans saw free space"
+                ),
+            ),
+            (
+                self.weak_links > limits.weak_links,
+                format!(
+                    "the route can be broken in {places}, where a scan fits to none of those before it or shows a turn that \
+                     nothing confirms"
+                ),
+            ),
+            (
+                self.left_out > limits.left_out,
+                format!("{} of the scans have no certain pose", percent(self.left_out)),
+            ),
+            (
+                scale.max(scale.recip()) > limits.scale,
+                format!(
+                    "by its scans, the robot moves {scale:.2} times as far as by its odometry: one of both has wrong lengths"
+                ),
+            ),
+        ];
+        reasons.into_iter().filter(|(is_over, _)| *is_over).map(|(_, reason)| reason).collect()
     }
 }
 
@@ -199,11 +204,8 @@ impl QualityCheck {
     /// Adds the next reading; `pose` is what is known of its pose so far.
     pub(crate) fn add(&mut self, reading: &LaserReading, pose: &Isometry2<f64>) {
         self.readings += 1;
-        if let Some(last) = &self.last {
-            let since = last.inv_mul(pose);
-            if since.translation.vector.norm() < COUNTED_M && heading_rad(&since).abs() < COUNTED_RAD {
-                return;
-            }
+        if self.last.is_some_and(|last| COUNTED.contains(&last.inv_mul(pose))) {
+            return;
         }
         self.last = Some(*pose);
         let hits: Vec<Point2<f64>> =
@@ -259,7 +261,7 @@ fn scale(counted: &[CountedScan], poses: &[TrajectoryPose]) -> Option<f64> {
         let found = poses[pair[0].reading].pose.inv_mul(&poses[pair[1].reading].pose);
         let odometry = pair[0].odometry.inv_mul(&pair[1].odometry);
         let odometry_m = odometry.translation.vector.norm();
-        (odometry_m > 0.5 * COUNTED_M).then(|| found.translation.vector.norm() / odometry_m)
+        (odometry_m > 0.5 * COUNTED.m).then(|| found.translation.vector.norm() / odometry_m)
     };
     let ratios: Vec<f64> = counted.windows(2).filter_map(step).collect();
     median(ratios.iter().copied()).filter(|_| ratios.len() >= MIN_SCANS / 2).filter(|scale| *scale > 0.0)

@@ -21,9 +21,9 @@ fn the_pass_is_repeated_if_the_distances_have_a_scale() {
         reading.pose.translation.vector *= 1.04;
     }
     let scaled = route(&readings);
-    let scale = scaled.distance_scale.unwrap();
+    let scale = scaled.trajectory.distance_scale.unwrap();
     assert!((scale.scale * 1.02 * 1.04 - 1.0).abs() < 0.01, "{scale:?}");
-    assert!(largest_error_m(&scaled.poses, &truth[0], &truth) < 0.015);
+    assert!(largest_error_m(&scaled.trajectory.poses, &truth[0], &truth) < 0.015);
     let note = scaled.scale_note().unwrap();
     let [percent, words] =
         note.strip_prefix("the odometry measures distances ").unwrap().split_once(" % ").unwrap().into();
@@ -34,7 +34,11 @@ fn the_pass_is_repeated_if_the_distances_have_a_scale() {
         reading.pose = *truth;
     }
     let exact = route(&readings);
-    assert!(exact.distance_scale.is_none_or(|scale| !scale.is_significant()), "{:?}", exact.distance_scale);
+    assert!(
+        exact.trajectory.distance_scale.is_none_or(|scale| !scale.is_significant()),
+        "{:?}",
+        exact.trajectory.distance_scale
+    );
     assert_eq!(passes, 3);
     assert_eq!(exact.scale_note(), None);
 }

@@ -92,9 +92,6 @@ pub(crate) fn continued(
     survey: &mut Survey,
     leaves_rest: bool,
 ) -> anyhow::Result<Vec<Source>> {
-    let known = |survey: &Survey, source: &Source| {
-        survey.logs().iter().position(|log| log.entry.content == source.entry.content)
-    };
     for (number, source) in sources.iter().enumerate() {
         let is_same = |other: &&Source| other.entry.content == source.entry.content;
         let twice = sources[..number].iter().find(is_same).filter(|_| source.entry.content != 0);
@@ -122,8 +119,8 @@ pub(crate) fn continued(
         }
     }
     sources.retain(|source| {
-        let log = known(survey, source).and_then(|number| survey.logs().get(number));
-        let is_learned = log.is_some_and(|log| log.is_finished());
+        let mut learned = survey.logs().iter().filter(|log| log.is_finished());
+        let is_learned = learned.any(|log| log.entry.content == source.entry.content);
         if is_learned {
             say(stderr(), format_args!("note: {} is learned already", source.entry.name));
         }

@@ -7,15 +7,8 @@ use jiff::{Timestamp, ToSpan, Zoned};
 use mapper::Calendar;
 use survey::Forecast;
 
-const WEEKDAYS: [(&str, Weekday); 7] = [
-    ("monday", Weekday::Monday),
-    ("tuesday", Weekday::Tuesday),
-    ("wednesday", Weekday::Wednesday),
-    ("thursday", Weekday::Thursday),
-    ("friday", Weekday::Friday),
-    ("saturday", Weekday::Saturday),
-    ("sunday", Weekday::Sunday),
-];
+/// The days of the week, from Monday on.
+const WEEKDAYS: [&str; 7] = ["monday", "tuesday", "wednesday", "thursday", "friday", "saturday", "sunday"];
 
 /// The time of `text`, s, as in `forecast`: a time after the last reading (`+10m`), a date (ISO 8601), or the next time of the
 /// day (`17:10`) or of the week (`Tue 17:10`). A date before the last reading is refused: a forecast knows only the present and what
@@ -75,8 +68,8 @@ fn next(now: &Zoned, weekday: Option<Weekday>, time: Time) -> Option<Zoned> {
 
 fn weekday(name: &str) -> Option<Weekday> {
     let name = name.to_lowercase();
-    let is_short = |long: &str| name.len() >= 2 && long.starts_with(&name);
-    WEEKDAYS.iter().find(|(long, _)| is_short(long)).map(|(_, weekday)| *weekday)
+    let day = WEEKDAYS.iter().position(|long| name.len() >= 2 && long.starts_with(&name))?;
+    Weekday::from_monday_zero_offset(day as i8).ok()
 }
 
 fn zoned(time_s: f64, zone: &TimeZone) -> Option<Zoned> {

@@ -1,7 +1,7 @@
 //! A card for each place.
 
 use super::advice::advice;
-use super::marks::{Mark, outline};
+use super::labels::{Mark, outline};
 use super::plan::Plan;
 use super::{Page, middle, number};
 use draw::layers::Layer;

@@ -3,7 +3,6 @@
 mod advice;
 mod card;
 mod labels;
-mod marks;
 mod opening;
 mod plan;
 mod sessions;

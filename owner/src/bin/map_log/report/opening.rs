@@ -1,11 +1,11 @@
 //! The first lines of the page: is the map good, where is it liveliest, how many doors.
 
-use super::marks::Mark;
+use super::labels::Mark;
 use super::{Page, middle};
 use draw::layers::Layer;
 use maud::{Markup, html};
 use nalgebra::{Point2, Vector2};
-use owner::words::{Seen, changed, range};
+use owner::words::{changed, range};
 use survey::{Place, PlaceKind, Verdict};
 
 /// Half the side of the rectangle around a point in doubt, m.
@@ -63,9 +63,7 @@ impl Page<'_> {
     }
 
     fn with_rate(&self, place: &Place) -> String {
-        let Some(rates) = &place.rates else { return String::new() };
-        let seen =
-            self.door(place).map_or_else(|| Seen::of_place(rates), |door| Seen::of_door(&door.statistics));
+        let Some(seen) = self.seen(place).filter(|_| place.rates.is_some()) else { return String::new() };
         let (does, did) = match place.kind {
             PlaceKind::Door { .. } => ("the door opens", "the door opened"),
             PlaceKind::Traffic => ("something passes there", "something passed there"),

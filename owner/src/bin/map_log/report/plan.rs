@@ -1,7 +1,6 @@
 //! The plan of the place: turned so that its walls are upright, and parts of it.
 
-use super::labels::{RADIUS, Rectangle, labels};
-use super::marks::{Mark, drawn};
+use super::labels::{Mark, RADIUS, Rectangle, drawn, labels};
 use super::{hex, number};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -261,18 +260,14 @@ fn words(shares: [f64; 2]) -> String {
         _ => None,
     };
     let (column, row) = (side(shares[0], "left of", "right of"), side(shares[1], "below", "above"));
-    let (edge, side) = match shares.map(third) {
-        [1, 1] => return format!("{} the middle", column.or(row).unwrap_or("in")),
-        [0, 0] => ("at the lower left", None),
-        [2, 0] => ("at the lower right", None),
-        [0, 2] => ("at the upper left", None),
-        [2, 2] => ("at the upper right", None),
-        [_, 0] => ("at the bottom", column),
-        [_, 2] => ("at the top", column),
-        [0, _] => ("at the left", row),
-        _ => ("at the right", row),
+    let [x, y] = shares.map(third);
+    let (edge, side) = match (["left", "", "right"][x], ["lower", "", "upper"][y]) {
+        ("", "") => return format!("{} the middle", column.or(row).unwrap_or("in")),
+        ("", _) => (["bottom", "", "top"][y].to_owned(), column),
+        (edge, "") => (edge.to_owned(), row),
+        (x, y) => (format!("{y} {x}"), None),
     };
-    side.map_or_else(|| edge.to_owned(), |side| format!("{edge} ({side} the middle)"))
+    side.map_or_else(|| format!("at the {edge}"), |side| format!("at the {edge} ({side} the middle)"))
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! What is different since the last visit of the robot.
 
 use super::Page;
-use super::marks::Mark;
+use super::labels::Mark;
 use maud::{Markup, html};
 use nalgebra::{Point2, Vector2};
 use owner::words::{date, length_of, list, rate, times};
