@@ -129,6 +129,7 @@ fn tracked(scene: &MatchScene, found: &Match) -> Tracked {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::constants::USABLE_SCANS;
     use crate::scan_points::ScanPoint;
     use crate::settings::LocalizerSettings;
     use crate::support::ClearBeams;
@@ -151,7 +152,7 @@ mod tests {
         // Two walls of a corridor that is a little wider at one end: their distance fixes the place along it.
         let mut walls = line(Point2::new(-9.0, 0.0), 0.0, 1.0, 180);
         walls.extend(line(Point2::new(-9.0, 2.0), 0.02, -1.0, 180));
-        surfels.learn_keyframe(&walls, &Isometry2::identity(), 0.01);
+        surfels.learn(&walls, &Isometry2::identity(), 0.01, USABLE_SCANS, false);
         // The scan of another place, 6 cm wider, and much that the map does not know.
         let mut points = line(Point2::new(-1.0, -1.0), 0.0, 1.0, 15);
         points.extend(line(Point2::new(-1.0, 1.2 + 0.06), 0.02, -1.0, 15));

@@ -20,14 +20,12 @@
 mod chains;
 mod correlation;
 mod distance_scale;
-mod far_scan;
 mod free_space;
 mod graph;
 mod keyframe;
 mod known_place;
 mod loops;
 mod matching;
-mod odometry_drift;
 mod online;
 mod places;
 mod refine;
@@ -45,7 +43,7 @@ use crate::estimate::PoseState;
 use crate::local_trajectory_builder::LocalTrajectoryBuilder;
 use crate::scan_points::PointRules;
 use crate::settings::LocalizerSettings;
-use graph::{Edge, EdgeKind, PoseGraph};
+use graph::{Edge, PoseGraph};
 use interfaces::{LaserReading, SettingsError};
 use keyframe::Keyframe;
 use loops::LoopCloser;
@@ -156,7 +154,7 @@ impl TrajectoryFinder {
             let mut pose = last * motion;
             pose.rotation.renormalize();
             let (from, to) = (poses.len() - 1, poses.len());
-            edges.push(Edge { from, to, motion, information, kind: EdgeKind::Match });
+            edges.push(Edge { from, to, motion, information, is_loop: false });
             poses.push(pose);
         }
     }

@@ -5,7 +5,7 @@ mod relocalizing;
 
 use super::state::{Event, State};
 use crate::changing_map::ChangingMap;
-use crate::constants::{LOST_STD, MIN_SUPPORT};
+use crate::constants::{LOST_STD, MIN_SUPPORT, USABLE_SCANS};
 use crate::estimate::{PoseState, Start};
 use crate::hypotheses::Hypotheses;
 use crate::local_trajectory_builder::{IncomingScan, Matched, ScanMatcher, Track};
@@ -242,7 +242,9 @@ impl<'a> ScanMatcher<Around<'a>> for MapMatcher {
         if let Some(follower) = &found.follower {
             self.surfels.displace_all(points, &track.pose, follower, exact_m(noise_m));
         }
-        self.surfels.learn(points, &track.pose, noise_m, self.state == State::Tracking);
+        // All that follows is matched with the first scan.
+        let scans = if self.surfels.is_empty() { USABLE_SCANS } else { 1 };
+        self.surfels.learn(points, &track.pose, noise_m, scans, self.state == State::Tracking);
         self.checker.check(&mut self.surfels, &scan.reading, &track.pose);
     }
 }

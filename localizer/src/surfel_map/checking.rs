@@ -49,18 +49,12 @@ impl Checker {
             let is_passed = nearest_m > distance_m + THICK_M;
             let is_displaced =
                 farthest_m < distance_m - SURFEL_M / 2.0 && nearest_m > distance_m - CLEARANCE_M;
-            map.contradict(index as u32, is_passed, is_displaced);
-        }
-    }
-}
-
-impl SurfelMap {
-    /// Counts a contradiction: a displaced surface can also be something in front, and counts a quarter.
-    fn contradict(&mut self, index: u32, is_passed: bool, is_displaced: bool) {
-        let surfel = &mut self.surfels[index as usize];
-        surfel.misses += if is_passed { PASSED_COUNTS } else { u32::from(is_displaced) };
-        if surfel.misses > PASSED_COUNTS * (2 + surfel.scans / SCANS_PER_MISS) {
-            self.remove(index);
+            // A displaced surface can also be something in front, and counts a quarter.
+            let surfel = &mut map.surfels[index];
+            surfel.misses += if is_passed { PASSED_COUNTS } else { u32::from(is_displaced) };
+            if surfel.misses > PASSED_COUNTS * (2 + surfel.scans / SCANS_PER_MISS) {
+                map.remove(index as u32);
+            }
         }
     }
 }

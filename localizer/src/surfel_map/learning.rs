@@ -3,39 +3,16 @@
 use super::SurfelMap;
 use crate::changing_map::ChangingMap;
 use crate::constants::{
-    CLEARANCE_M, FROZEN_SCANS, MIN_NOISE_M, SETTLED_SCANS, STDS, SURFEL_M, TRUSTED_SCANS, USABLE_SCANS,
+    CLEARANCE_M, FROZEN_SCANS, MIN_NOISE_M, SETTLED_SCANS, STDS, SURFEL_M, TRUSTED_SCANS,
 };
 use crate::scan_points::ScanPoint;
 use nalgebra::Isometry2;
 
 impl SurfelMap {
-    /// Updates the map with a scan. If its pose is certain, surfels follow surfaces that have moved; else, what seems to have
-    /// moved stays where it is.
+    /// Updates the map with a scan, whose new surfels count as seen in a number of scans: those of a keyframe, which represents all
+    /// scans around it, take part in matching at once. If `follows`, surfels follow surfaces that have moved; else, what seems to
+    /// have moved stays where it is.
     pub(crate) fn learn(
-        &mut self,
-        points: &[ScanPoint],
-        pose: &Isometry2<f64>,
-        range_noise_std_m: f64,
-        is_certain: bool,
-    ) {
-        // All that follows is matched with the first scan.
-        let scans = if self.surfels.is_empty() { USABLE_SCANS } else { 1 };
-        self.learn_as(points, pose, range_noise_std_m, scans, is_certain);
-    }
-
-    /// Updates the map with a keyframe: one scan represents all around it, and takes part in matching at once.
-    pub(crate) fn learn_keyframe(
-        &mut self,
-        points: &[ScanPoint],
-        pose: &Isometry2<f64>,
-        range_noise_std_m: f64,
-    ) {
-        self.learn_as(points, pose, range_noise_std_m, USABLE_SCANS, false);
-    }
-
-    /// Updates the map with a scan whose new surfels count as seen in a number of scans. `follows`: surfels follow surfaces
-    /// that have moved.
-    fn learn_as(
         &mut self,
         points: &[ScanPoint],
         pose: &Isometry2<f64>,

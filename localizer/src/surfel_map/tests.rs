@@ -1,6 +1,6 @@
 use super::prior::borders;
 use super::*;
-use crate::constants::FROZEN_SCANS;
+use crate::constants::{FROZEN_SCANS, USABLE_SCANS};
 use crate::scan_points::{PointRules, ScanPoint, ScanPoints};
 use crate::work;
 use interfaces::{Cell, CellState, Grid, LaserReading, Purpose, RandomStream, Scan};
@@ -29,6 +29,12 @@ fn wall(angle_rad: f64, distance_m: f64, noise: &mut RandomStream) -> LaserReadi
     }
 }
 
+/// Updates a map with a scan, as a live match does.
+fn learn(map: &mut SurfelMap, points: &[ScanPoint], is_certain: bool) {
+    let scans = if map.is_empty() { USABLE_SCANS } else { 1 };
+    map.learn(points, &Isometry2::identity(), 0.01, scans, is_certain);
+}
+
 #[test]
 fn surfels_lie_on_the_line_of_the_wall() {
     let mut noise = RandomStream::new(200, Purpose::LaserNoise(0));
@@ -37,7 +43,7 @@ fn surfels_lie_on_the_line_of_the_wall() {
         let mut points = ScanPoints::default();
         for _ in 0..100 {
             let points = points.of(&wall(angle_rad, distance_m, &mut noise), |_| 1.0, &RULES);
-            map.learn(&points, &Isometry2::identity(), 0.01, true);
+            learn(&mut map, &points, true);
         }
         let normal = interfaces::rotation(angle_rad) * Vector2::x();
         let seen: Vec<&Surfel> = map.usable().filter(|surfel| surfel.scans >= 50).collect();
@@ -54,11 +60,11 @@ fn surfels_lie_on_the_line_of_the_wall() {
 fn a_surfel_freezes() {
     let mut map = SurfelMap::new(&frame());
     for _ in 0..FROZEN_SCANS {
-        map.learn(&[on_wall(1.0, 0.55)], &Isometry2::identity(), 0.01, true);
+        learn(&mut map, &[on_wall(1.0, 0.55)], true);
     }
     let before = *map.surfel(0);
     for _ in 0..1000 {
-        map.learn(&[on_wall(1.02, 0.55)], &Isometry2::identity(), 0.01, true);
+        learn(&mut map, &[on_wall(1.02, 0.55)], true);
     }
     assert_eq!(map.surfel(0).at, before.at);
     assert_eq!(map.usable().count(), 1, "a second wall beside the first is an error of the pose");
@@ -77,7 +83,7 @@ fn wall_at(x_m: f64) -> Vec<ScanPoint> {
 fn learned(x_m: f64, scans: u32) -> SurfelMap {
     let mut map = SurfelMap::new(&frame());
     for _ in 0..scans {
-        map.learn(&wall_at(x_m), &Isometry2::identity(), 0.01, true);
+        learn(&mut map, &wall_at(x_m), true);
     }
     map
 }
@@ -87,11 +93,11 @@ fn a_surfel_follows_its_surface() {
     let mut map = learned(1.0, 100);
     assert!(map.usable().all(|surfel| surfel.is_permanent() && surfel.weight() == 1.0));
     for _ in 0..2 {
-        map.learn(&wall_at(1.06), &Isometry2::identity(), 0.01, true);
+        learn(&mut map, &wall_at(1.06), true);
     }
     assert!(map.usable().all(Surfel::is_permanent), "two scans are no proof");
     for _ in 0..20 {
-        map.learn(&wall_at(1.06), &Isometry2::identity(), 0.01, true);
+        learn(&mut map, &wall_at(1.06), true);
     }
     assert!(map.usable().count() > 5);
     for surfel in map.usable() {
@@ -100,7 +106,7 @@ fn a_surfel_follows_its_surface() {
     }
     // It follows at once from now on, and counts fully again after ten minutes in one place.
     for _ in 0..6100 {
-        map.learn(&wall_at(1.0), &Isometry2::identity(), 0.01, true);
+        learn(&mut map, &wall_at(1.0), true);
     }
     assert!(map.usable().all(|surfel| (surfel.at.x - 1.0).abs() < 1e-6 && surfel.is_permanent()));
 }
@@ -109,8 +115,8 @@ fn a_surfel_follows_its_surface() {
 fn a_surfel_does_not_follow_a_surface_seen_from_an_uncertain_pose_or_far_away() {
     let (mut uncertain, mut far) = (learned(1.0, 100), learned(1.0, 100));
     for _ in 0..50 {
-        uncertain.learn(&wall_at(1.06), &Isometry2::identity(), 0.01, false);
-        far.learn(&wall_at(1.2), &Isometry2::identity(), 0.01, true);
+        learn(&mut uncertain, &wall_at(1.06), false);
+        learn(&mut far, &wall_at(1.2), true);
     }
     for map in [uncertain, far] {
         assert!(map.usable().all(|surfel| (surfel.at.x - 1.0).abs() < 1e-9 && surfel.is_permanent()));
@@ -123,14 +129,14 @@ fn what_is_out_of_view_of_a_coherent_motion_is_doubted_until_it_is_seen() {
     let other: Vec<ScanPoint> = (0..20).map(|at| on_wall(3.0, 2.0 + 0.05 * f64::from(at))).collect();
     let mut map = SurfelMap::new(&frame());
     for _ in 0..100 {
-        map.learn(&[wall_at(1.0), other.clone()].concat(), &Isometry2::identity(), 0.01, true);
+        learn(&mut map, &[wall_at(1.0), other.clone()].concat(), true);
     }
     let follower = Isometry2::translation(-0.06, 0.0);
     map.displace_all(&wall_at(1.06), &Isometry2::identity(), &follower, 0.01);
     assert!(map.usable().all(Surfel::is_suspect));
     let moved = |surfel: &&Surfel| surfel.at.x < 2.0;
     assert!(map.usable().filter(moved).all(|surfel| (surfel.at.x - 1.06).abs() < 1e-9));
-    map.learn(&other, &Isometry2::identity(), 0.01, true);
+    learn(&mut map, &other, true);
     assert!(map.usable().filter(|surfel| !moved(surfel)).all(Surfel::is_permanent));
     assert!(map.usable().filter(moved).all(Surfel::is_suspect));
 }
@@ -142,7 +148,7 @@ fn what_beams_pass_is_removed() {
         (SurfelMap::new(&frame()), ScanPoints::default(), Checker::default());
     let mut see = |map: &mut SurfelMap, distance_m: f64| {
         let reading = wall(0.0, distance_m, &mut noise);
-        map.learn(&points.of(&reading, |_| 1.0, &RULES), &Isometry2::identity(), 0.01, true);
+        learn(&mut map, &points.of(&reading, |_| 1.0, &RULES), true);
         checker.check(map, &reading, &Isometry2::identity());
     };
     for _ in 0..50 {

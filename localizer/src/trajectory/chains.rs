@@ -1,9 +1,8 @@
 //! The last pass over keyframes that are far from each other: each is correlated with the chains of earlier keyframes around it
 //! (Konolige, Grisetti, Kümmerle, Burgard, Limketkai & Vincent 2010).
 
-use super::correlation::{Correlated, Correlation};
-use super::far_scan::matched_at;
-use super::graph::{Edge, EdgeKind, PoseGraph};
+use super::correlation::{Correlated, Correlation, matched_at};
+use super::graph::{Edge, PoseGraph};
 use super::keyframe::Keyframe;
 use super::matching::in_frame;
 use crate::constants::{CORRELATED, CORRELATED_KEYFRAMES};
@@ -58,7 +57,7 @@ fn edges_of(number: usize, keyframes: &[Keyframe], graph: &PoseGraph) -> Vec<Edg
         let found = matched_at(&pose, &keyframe.points).filter(|_| response >= CHAIN_RESPONSE)?;
         let motion = graph.poses[from].inv_mul(&pose);
         let information = in_frame(&found.information, &graph.poses[from]);
-        Some(Edge { from, to: number, motion, information, kind: EdgeKind::Loop })
+        Some(Edge { from, to: number, motion, information, is_loop: true })
     };
     chains(number, graph).into_iter().filter_map(edge).collect()
 }

@@ -10,13 +10,6 @@ use nalgebra::{Isometry2, Point2};
 /// A beam passes a surface that it ends behind by this share of the range more.
 const PASSED_SHARE: f64 = 0.02;
 
-/// The numbers of beams that end at the surfaces, and that pass them.
-#[derive(Clone, Copy, Debug, Default)]
-struct Beams {
-    ending: usize,
-    passing: usize,
-}
-
 /// The share of beams that pass surfaces of the other submap, of all that reach them. `pose` is the pose of `to` in
 /// `from`.
 pub(super) fn passing_share(
@@ -25,31 +18,26 @@ pub(super) fn passing_share(
     pose: &Isometry2<f64>,
     keyframes: &[Keyframe],
 ) -> f64 {
-    let mut beams = Beams::default();
-    count(from, to, pose, keyframes, &mut beams);
-    count(to, from, &pose.inverse(), keyframes, &mut beams);
-    beams.passing as f64 / (beams.passing + beams.ending).max(1) as f64
+    let pairs = [(from, to, *pose), (to, from, pose.inverse())];
+    let beams: Vec<bool> = pairs.iter().flat_map(|(a, b, pose)| passed(a, b, pose, keyframes)).collect();
+    beams.iter().filter(|is_passed| **is_passed).count() as f64 / beams.len().max(1) as f64
 }
 
-/// Counts the beams of one submap at the surfaces of the other.
-fn count(
+/// For each beam of one submap that reaches a surface of the other, whether it passes.
+fn passed(
     seeing: &FinishedSubmap,
     seen: &FinishedSubmap,
     pose: &Isometry2<f64>,
     keyframes: &[Keyframe],
-    beams: &mut Beams,
-) {
+) -> Vec<bool> {
     let back = keyframes[seeing.anchor].local.inverse();
-    for keyframe in keyframes[seeing.first..=seeing.last].iter().step_by(REFINE[1].0) {
+    let keyframes = keyframes[seeing.first..=seeing.last].iter().step_by(REFINE[1].0);
+    let of_keyframe = |keyframe: &Keyframe| {
         let to_laser = (back * keyframe.local * keyframe.mount).inv_mul(pose);
-        for point in seen.points.iter().step_by(2) {
-            match is_passed(keyframe, point, &to_laser) {
-                Some(true) => beams.passing += 1,
-                Some(false) => beams.ending += 1,
-                None => {}
-            }
-        }
-    }
+        let points = seen.points.iter().step_by(2);
+        points.filter_map(|point| is_passed(keyframe, point, &to_laser)).collect::<Vec<bool>>()
+    };
+    keyframes.flat_map(of_keyframe).collect()
 }
 
 /// Whether the beams of a keyframe pass a surface; `None` if they do not reach it.

@@ -6,25 +6,22 @@
 //! contradicts all that is known.
 
 use super::sparse::Equations;
-use crate::constants::STEP;
+use crate::constants::{LOOP_M, STEP, TURN_M};
 use crate::matcher::difference;
-use interfaces::wrap_rad;
+use interfaces::{Spread, wrap_rad};
 use nalgebra::{Isometry2, Matrix3, Vector3};
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
 
 /// Steps of the graph at most; the change that ends them; a loop off by this (over its covariance) counts a quarter; factor
 /// by which this limit shrinks.
 const GRAPH_STEPS: usize = 25;
 const GRAPH_KERNEL: f64 = 16.0;
 const GRAPH_SHRINK: f64 = 3.0;
-
-/// How a motion was measured.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum EdgeKind {
-    /// From one keyframe to the next, by matching with the submap of the last keyframes.
-    Match,
-    /// By recognizing a place. It can be wrong.
-    Loop,
-}
+/// Errors after a way: at least these, m and rad; per way; per root of the way, rad; at most this, m.
+const DRIFT: Spread = Spread { m: 0.4, rad: 0.08 };
+const DRIFT_PER_M: f64 = 0.03;
+const MAX_DRIFT_M: f64 = 12.0;
 
 /// A measured motion from one keyframe to another.
 #[derive(Clone, Debug)]
@@ -35,7 +32,9 @@ pub(crate) struct Edge {
     pub(crate) motion: Isometry2<f64>,
     /// The inverse covariance of x, y and heading of the motion, in the frame of `from`.
     pub(super) information: Matrix3<f64>,
-    pub(super) kind: EdgeKind,
+    /// Whether the motion was measured by recognizing a place, which can be wrong; otherwise from one keyframe to the next, by matching
+    /// with the submap of the last keyframes.
+    pub(super) is_loop: bool,
 }
 
 /// The pose graph.
@@ -102,11 +101,34 @@ impl PoseGraph {
     /// Removes the loops that contradict the optimum.
     pub(super) fn remove_outliers(&mut self) {
         let poses = &self.poses;
-        self.edges.retain(|edge| edge.kind != EdgeKind::Loop || edge.square(poses) <= 2.0 * GRAPH_KERNEL);
+        self.edges.retain(|edge| !edge.is_loop || edge.square(poses) <= 2.0 * GRAPH_KERNEL);
+    }
+
+    /// The shortest way from a keyframe to every other keyframe, along the edges of the graph, m.
+    pub(super) fn ways_m(&self, from: usize) -> Vec<f64> {
+        let mut neighbors = vec![Vec::new(); self.poses.len()];
+        for edge in &self.edges {
+            let turn_m = interfaces::heading_rad(&edge.motion).abs() * TURN_M;
+            let way_m = if edge.is_loop { LOOP_M } else { edge.motion.translation.vector.norm() + turn_m };
+            // Whole millimeters can be sorted.
+            let way_mm = (way_m * 1e3) as u64;
+            neighbors[edge.from].push((edge.to, way_mm));
+            neighbors[edge.to].push((edge.from, way_mm));
+        }
+        let mut ways_mm = vec![u64::MAX; neighbors.len()];
+        let mut queue = BinaryHeap::from([Reverse((0, from))]);
+        while let Some(Reverse((way_mm, node))) = queue.pop() {
+            if way_mm < ways_mm[node] {
+                ways_mm[node] = way_mm;
+                let next = neighbors[node].iter().map(|(other, step_mm)| Reverse((way_mm + step_mm, *other)));
+                queue.extend(next);
+            }
+        }
+        ways_mm.into_iter().map(|way_mm| way_mm as f64 * 1e-3).collect()
     }
 
     fn loops(&self) -> impl Iterator<Item = &Edge> {
-        self.edges.iter().filter(|edge| edge.kind == EdgeKind::Loop)
+        self.edges.iter().filter(|edge| edge.is_loop)
     }
 
     fn step(&self, scale: f64) -> Option<Vec<Vector3<f64>>> {
@@ -114,11 +136,16 @@ impl PoseGraph {
         equations.add_diagonal(0, &(Matrix3::identity() * 1e12));
         for edge in &self.edges {
             let root = scale / (scale + edge.square(&self.poses));
-            let weight = if edge.kind == EdgeKind::Loop { root * root } else { 1.0 };
+            let weight = if edge.is_loop { root * root } else { 1.0 };
             edge.add_to(&mut equations, &self.poses, weight);
         }
         equations.solve().filter(|step| step.iter().all(|part| part.iter().all(|value| value.is_finite())))
     }
+}
+
+/// The largest error of position (m) and heading (rad) that is expected after a way.
+pub(super) fn reach(way_m: f64) -> (f64, f64) {
+    ((DRIFT.m + DRIFT_PER_M * way_m).min(MAX_DRIFT_M), DRIFT.rad + DRIFT_PER_M * way_m.sqrt())
 }
 
 #[cfg(test)]
@@ -129,9 +156,9 @@ mod tests {
 
     const NODES: usize = 100;
 
-    fn edge(from: usize, to: usize, motion: Isometry2<f64>, std: f64, kind: EdgeKind) -> Edge {
+    fn edge(from: usize, to: usize, motion: Isometry2<f64>, std: f64, is_loop: bool) -> Edge {
         let information = Matrix3::identity() / (std * std);
-        Edge { from, to, motion, information, kind }
+        Edge { from, to, motion, information, is_loop }
     }
 
     /// A circle of 100 m, whose every step turns a little too much.
@@ -143,7 +170,7 @@ mod tests {
             let motion = pose(1.0, 0.0, turn + bend_rad);
             truth.push(truth[node - 1] * pose(1.0, 0.0, turn));
             graph.poses.push(graph.poses[node - 1] * motion);
-            graph.edges.push(edge(node - 1, node, motion, 0.003, EdgeKind::Match));
+            graph.edges.push(edge(node - 1, node, motion, 0.003, false));
         }
         (graph, truth)
     }
@@ -160,7 +187,7 @@ mod tests {
         let (mut graph, truth) = circle(0.01);
         let before_m = worst_m(&graph, &truth);
         let closing = truth[NODES - 1].inv_mul(&truth[0]);
-        graph.edges.push(edge(NODES - 1, 0, closing, 0.001, EdgeKind::Loop));
+        graph.edges.push(edge(NODES - 1, 0, closing, 0.001, true));
         graph.optimize();
         let after_m = worst_m(&graph, &truth);
         assert!(before_m > 5.0 && after_m < 0.1, "{before_m} m before, {after_m} m after");
@@ -172,10 +199,10 @@ mod tests {
         let before_m = worst_m(&graph, &truth);
         for (from, to) in [(NODES - 1, 0), (NODES - 2, 1), (NODES - 3, 0)] {
             let motion = truth[from].inv_mul(&truth[to]);
-            graph.edges.push(edge(from, to, motion, 0.01, EdgeKind::Loop));
+            graph.edges.push(edge(from, to, motion, 0.01, true));
         }
         let wrong = truth[70].inv_mul(&truth[20]) * pose(2.0, 1.0, 0.1);
-        graph.edges.push(edge(70, 20, wrong, 0.01, EdgeKind::Loop));
+        graph.edges.push(edge(70, 20, wrong, 0.01, true));
         assert!(before_m > 3.0, "{before_m} m");
         graph.optimize();
         graph.remove_outliers();

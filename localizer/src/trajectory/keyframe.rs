@@ -8,7 +8,7 @@ const KEYFRAME_RANGE_M: f64 = 25.0;
 /// Neighboring points are on one line up to this share of their distance.
 const OFF_LINE: f64 = 0.15;
 /// Points of a keyframe that are kept for the end: ten thousand keyframes of 1000 points are too many.
-const KEPT_POINTS: usize = 120;
+pub(super) const KEPT_POINTS: usize = 120;
 
 /// A scan that represents all scans around it.
 #[derive(Clone, Debug)]
@@ -17,19 +17,12 @@ pub(super) struct Keyframe {
     pub(super) local: Isometry2<f64>,
     /// The motion from the keyframe before by matching with local submaps alone, and the inverse of its covariance.
     pub(super) from_last: (Isometry2<f64>, Matrix3<f64>),
-    /// The points, in the frame of the robot; see [`Keyframe::thin`].
+    /// The points, in the frame of the robot; a part of them once it is in its submaps.
     pub(super) points: Vec<ScanPoint>,
     /// The pose of the laser in the frame of the robot.
     pub(super) mount: Isometry2<f64>,
     /// The scan.
     pub(super) scan: Scan,
-}
-
-impl Keyframe {
-    /// Keeps a part of the points, evenly taken. A log of hours has ten thousand keyframes of a thousand points each.
-    pub(super) fn thin(&mut self) {
-        self.points = thinned(&self.points, KEPT_POINTS);
-    }
 }
 
 /// At most a number of points, evenly taken.

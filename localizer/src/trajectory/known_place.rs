@@ -7,7 +7,9 @@
 
 use super::keyframe::filled;
 use super::matching::fit;
-use crate::constants::{EXAMINED, KEYFRAME, LOG_NOISE_M, MAX_WORK, MIN_AGREEMENT, MIN_OVERLAP, PLACE_STD};
+use crate::constants::{
+    EXAMINED, KEYFRAME, LOG_NOISE_M, MAX_WORK, MIN_AGREEMENT, MIN_OVERLAP, PLACE_STD, USABLE_SCANS,
+};
 use crate::deskew::GivenPoses;
 use crate::estimate::Start;
 use crate::scan_points::{PointRules, ScanPoint, ScanPoints};
@@ -95,7 +97,7 @@ impl KnownPlace {
         }
         self.last = Some(pose);
         let points = self.points.of(&reading, |_| 1.0, &rules());
-        self.map.learn_keyframe(&filled(&points), &pose, rules().noise_m);
+        self.map.learn(&filled(&points), &pose, rules().noise_m, USABLE_SCANS, false);
     }
 
     /// The surfaces, as bytes: what readings of other logs are matched with.

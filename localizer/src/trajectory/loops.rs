@@ -1,8 +1,7 @@
 //! Loops: recognized places that other recognized places confirm.
 
-use super::graph::{Edge, PoseGraph};
+use super::graph::{Edge, PoseGraph, reach};
 use super::keyframe::Keyframe;
-use super::odometry_drift::reach;
 use super::places::{Places, RecognizedPlace};
 use super::submap::FinishedSubmap;
 use crate::constants::{FOUND_STD, KEYFRAME_WAY_M, NEIGHBORS, SHORT_WAY_M};
@@ -63,14 +62,10 @@ impl LoopCloser {
         }
         let is_confirmed = agreeing > contradicting;
         if is_confirmed {
-            let (confirmed, pending): (Vec<RecognizedPlace>, Vec<RecognizedPlace>) =
-                std::mem::take(&mut self.pending)
-                    .into_iter()
-                    .partition(|other| are_neighbors(found, other) && agree(found, other, graph));
-            self.pending = pending;
-            for other in confirmed {
-                self.accept(other, graph);
-            }
+            let agrees =
+                |other: &mut RecognizedPlace| are_neighbors(found, other) && agree(found, other, graph);
+            let confirmed: Vec<RecognizedPlace> = self.pending.extract_if(.., agrees).collect();
+            confirmed.into_iter().for_each(|other| self.accept(other, graph));
         }
         is_confirmed
     }

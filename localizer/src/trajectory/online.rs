@@ -1,7 +1,7 @@
 //! What is known about the trajectory while the robot still drives.
 
 use super::TrajectoryFinder;
-use super::graph::{Edge, EdgeKind};
+use super::graph::Edge;
 use super::matching::{fit, in_frame};
 use super::places::RecognizedPlace;
 use crate::constants::{FOUND_STD, TURN_M};
@@ -42,7 +42,7 @@ impl TrajectoryFinder {
     /// The motion between two keyframes by matching with local submaps alone, without any loop, and its covariance, in the
     /// frame of the first one.
     pub(crate) fn matched_motion(&self, from: usize, to: usize) -> Option<(Isometry2<f64>, Matrix3<f64>)> {
-        let is_between = |edge: &&Edge| edge.kind == EdgeKind::Match && edge.from >= from && edge.to <= to;
+        let is_between = |edge: &&Edge| !edge.is_loop && edge.from >= from && edge.to <= to;
         let (mut motion, mut spread) = (Isometry2::identity(), Matrix3::zeros());
         for edge in self.graph.edges.iter().filter(is_between) {
             let shift = motion.rotation * edge.motion.translation.vector;

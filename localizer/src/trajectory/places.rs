@@ -1,10 +1,9 @@
 //! Where a submap is in earlier submaps: branch and bound, Gauss-Newton, and the question whether it is the same place.
 
 use super::free_space::passing_share;
-use super::graph::{Edge, EdgeKind, PoseGraph};
+use super::graph::{Edge, PoseGraph, reach};
 use super::keyframe::{Keyframe, thinned};
 use super::matching::{fit, information_of};
-use super::odometry_drift::{reach, ways_m};
 use super::submap::{Agreement, FinishedSubmap};
 use crate::constants::{
     AMBIGUOUS, EXAMINED, MAJORITY, MAX_PASSING, MAX_WORK, MIN_WAY_M, NEAR_M, NEAR_RANGE_M, NEIGHBORS,
@@ -137,8 +136,7 @@ impl Places {
     fn place(&self, to: usize, fit: &Fit) -> Option<RecognizedPlace> {
         let information = information_of(&fit.found, PLACE_MODEL_STD)?;
         let (from, to_anchor) = (self.submaps[fit.from].anchor, self.submaps[to].anchor);
-        let edge =
-            Edge { from, to: to_anchor, motion: fit.found.placement.pose, information, kind: EdgeKind::Loop };
+        let edge = Edge { from, to: to_anchor, motion: fit.found.placement.pose, information, is_loop: true };
         // Half as many beams speak against it.
         let is_strong = fit.holds(MAJORITY, STRONG_AGREEMENT, MAX_PASSING / 2.0);
         Some(RecognizedPlace { from: fit.from, to, way_m: fit.way_m, edge, is_strong })
@@ -147,7 +145,7 @@ impl Places {
     /// The earlier submaps that may cover the place of a submap, and the ways to them, m: the nearest ones.
     fn candidates(&self, to: usize, graph: &PoseGraph) -> Vec<(usize, f64)> {
         let submap = &self.submaps[to];
-        let ways_m = ways_m(graph, submap.anchor);
+        let ways_m = graph.ways_m(submap.anchor);
         let distance_m = |other: &FinishedSubmap| {
             graph.poses[other.anchor].inv_mul(&graph.poses[submap.anchor]).translation.vector.norm()
         };

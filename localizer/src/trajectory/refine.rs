@@ -1,6 +1,6 @@
 //! The last pass: keyframes are matched with the submaps around them.
 
-use super::graph::{Edge, EdgeKind, PoseGraph};
+use super::graph::{Edge, PoseGraph};
 use super::keyframe::Keyframe;
 use super::matching::{fit, information_of};
 use super::places::Places;
@@ -72,7 +72,7 @@ fn edge(anchor: usize, keyframe: usize, (found, agreement): &(Match, Agreement))
         return None;
     }
     let information = information_of(found, SUBMAP_STD)?;
-    Some(Edge { from: anchor, to: keyframe, motion: found.placement.pose, information, kind: EdgeKind::Loop })
+    Some(Edge { from: anchor, to: keyframe, motion: found.placement.pose, information, is_loop: true })
 }
 
 /// The distance from the surfaces of submaps to which they do not belong, below which 97 % of the points of scans lie, m: 2.2

@@ -1,7 +1,7 @@
 //! Submaps: line maps of some consecutive keyframes.
 
 use super::keyframe::Keyframe;
-use crate::constants::{JUDGED_M, SUBMAP_REACH_M, SURFEL_M};
+use crate::constants::{JUDGED_M, SUBMAP_REACH_M, SURFEL_M, USABLE_SCANS};
 use crate::placement::Placement;
 use crate::scan_points::ScanPoint;
 use crate::surfel_map::SurfelMap;
@@ -38,7 +38,7 @@ impl GrowingSubmap {
 
     pub(super) fn add(&mut self, number: usize, keyframe: &Keyframe, noise_m: f64) {
         self.keyframes.push(number);
-        self.map.learn_keyframe(&keyframe.points, &keyframe.local, noise_m);
+        self.map.learn(&keyframe.points, &keyframe.local, noise_m, USABLE_SCANS, false);
     }
 
     /// The submap with all of its keyframes.

@@ -1,8 +1,8 @@
 //! Matches scans with the submap of the last keyframes, and makes keyframes of them.
 
+use super::correlation::{found_among, matched_at};
 use super::distance_scale::MeasuredMotion;
-use super::far_scan::{found_among, matched_at};
-use super::keyframe::{Keyframe, filled};
+use super::keyframe::{KEPT_POINTS, Keyframe, filled, thinned};
 use super::matching::{gates, in_frame, motion_spread};
 use super::submap::{Agreement, FinishedSubmap, GrowingSubmap, agreement};
 use crate::constants::{
@@ -276,7 +276,7 @@ impl SubmapMatcher {
         for submap in &mut self.growing {
             submap.add(number, keyframe, self.settings.range_noise_std_m);
         }
-        self.keyframes[number].thin();
+        self.keyframes[number].points = thinned(&self.keyframes[number].points, KEPT_POINTS);
         if self.growing.len() > 1 && self.growing[0].keyframes.len() >= SUBMAP_KEYFRAMES {
             let full = self.growing.remove(0);
             self.finished.push(full.finish(&self.keyframes));

@@ -1,8 +1,7 @@
 //! The first pass over a bag: which topics and frames there are.
 
 use super::files::BagFile;
-use super::message::{Kind, Message, Selection, Topic};
-use super::messages::Messages;
+use super::messages::{Kind, Message, Messages, Selection, Topic};
 use super::order::RecordedOrder;
 use crate::assemble::Frames;
 use crate::bounds;

@@ -2,8 +2,7 @@
 //! topic.
 
 use super::files::BagFile;
-use super::message::{Kind, Message, Selection, Topic};
-use super::messages::Messages;
+use super::messages::{Kind, Message, Messages, Selection, Topic};
 use crate::error::LogError;
 use std::collections::BTreeMap;
 use std::sync::Arc;

@@ -1,7 +1,7 @@
 //! What to use of a bag: which lasers, where they are mounted, and where the poses come from.
 
 use super::inventory::{Inventory, LaserTopic, no_scans};
-use super::message::{Kind, Topic};
+use super::messages::{Kind, Topic};
 use super::motion::{self, Motion, MotionSource};
 use super::slam;
 use crate::assemble::{Chain, Frames, can_be_base, is_base, is_odom, is_world};

@@ -1,6 +1,6 @@
 //! The second pass over a bag, and all later ones: reading by reading.
 
-use super::message::{Kind, Message};
+use super::messages::{Kind, Message};
 use super::motion::MotionSource;
 use super::order::Merged;
 use super::plan::{Laser, Plan};

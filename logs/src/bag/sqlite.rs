@@ -1,6 +1,6 @@
 //! SQLite databases of rosbag2: the tables `topics` and `messages`. Of a file that is cut off, the messages before the cut are read.
 
-use super::message::{Message, MessageSource, Selection, Topic};
+use super::messages::{Message, MessageSource, Selection, Topic};
 use crate::bounds::MAX_NAME_BYTES;
 use crate::bytes::Bytes;
 use crate::error::LogError;

@@ -85,17 +85,15 @@ pub(crate) fn repaired(raw_s: &[f64]) -> Times {
     let end_s = times_s.last().copied().unwrap_or_default();
     let (dated_s, offset_s) = longer(longest, (end_s - part_s, offset_s));
     let of_back = match back {
-        0 => None,
-        1 => Some(format!("1 scan is not later than the scan before and counts as {MIN_STEP_S} s later")),
-        _ => {
-            Some(format!("{back} scans are not later than the scan before and count as {MIN_STEP_S} s later"))
-        }
+        1 => "1 scan is not later than the scan before and counts".to_owned(),
+        _ => format!("{back} scans are not later than the scan before and count"),
     };
+    let of_back = (back > 0).then(|| format!("{of_back} as {MIN_STEP_S} s later"));
     let of_jumps = match jumps {
-        0 => None,
-        1 => Some(format!("a jump of the clock counts as {period_s:.3} s")),
-        _ => Some(format!("{jumps} jumps of the clock count as {period_s:.3} s")),
+        1 => "a jump of the clock counts".to_owned(),
+        _ => format!("{jumps} jumps of the clock count"),
     };
+    let of_jumps = (jumps > 0).then(|| format!("{of_jumps} as {period_s:.3} s"));
     let of_rests = match rests_s[..] {
         [] => None,
         [rest_s] => Some(format!("{:.1} days without a scan count as a rest of the robot", rest_s / DAY_S)),
