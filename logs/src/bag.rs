@@ -7,9 +7,9 @@ mod chunk;
 mod files;
 mod inventory;
 mod mcap;
+mod message;
 mod messages;
 mod motion;
-mod order;
 mod plan;
 mod readings;
 mod slam;
@@ -28,9 +28,9 @@ use crate::error::LogError;
 use crate::log::{self, Log, RawReadings as _, Source};
 use crate::summary::{LogSummary, since_epoch};
 use inventory::Inventory;
-use messages::Topic;
+use message::Topic;
+use messages::Merged;
 use motion::MotionSource;
-use order::Merged;
 use plan::Plan;
 use readings::{Clock, Counts, RawReadings};
 use std::sync::Arc;
@@ -71,7 +71,7 @@ impl Bag {
         missing.extend(inventory.notes.iter().cloned());
         let plan = Plan::new(&inventory, choice, &mut notes).map_err(|why| in_cut_file(why, &missing));
         let mut plan = Arc::new(plan.map_err(unusable)?);
-        let merged = order::merged_topics(&inventory.order, &inventory.topics, |topic| plan.needs(topic));
+        let merged = messages::merged_topics(&inventory.order, &inventory.topics, |topic| plan.needs(topic));
         let merged = merged.map_err(unusable)?;
         if !merged.is_empty() {
             let note =

@@ -16,6 +16,7 @@ mod choice;
 mod error;
 mod lines;
 mod log;
+mod open;
 mod summary;
 
 pub use choice::TopicChoice;

@@ -1,8 +1,8 @@
 //! The first pass over a bag: which topics and frames there are.
 
 use super::files::BagFile;
-use super::messages::{Kind, Message, Messages, Selection, Topic};
-use super::order::RecordedOrder;
+use super::message::{Kind, Message, Selection, Topic};
+use super::messages::{Messages, RecordedOrder};
 use crate::assemble::Frames;
 use crate::bounds;
 use crate::choice::{bare, listed};

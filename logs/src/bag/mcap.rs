@@ -4,7 +4,7 @@
 //! allocate gigabytes.
 
 use super::chunk::{Chunk, Fields, Records};
-use super::messages::{Message, MessageSource, Selection, Topic};
+use super::message::{Message, MessageSource, Selection, Topic};
 use crate::bounds::{MAX_NAME_BYTES, max_chunk_bytes};
 use crate::bytes::{Bytes, Input, MCAP as MAGIC};
 use crate::error::LogError;

@@ -1,91 +1,16 @@
-//! The messages of a bag, file by file, and what their topics are to us.
+//! The messages of a bag, in the order of its files, or of their times of recording where the files
+//! have them sorted by topic.
 
 use super::files::{BagFile, Format};
 use super::mcap::McapFile;
+use super::message::{Kind, Message, MessageSource, Selection, Topic};
 use super::sqlite::SqliteFile;
 use crate::bytes::ZSTD;
 use crate::error::LogError;
+use std::collections::BTreeMap;
 use std::io::Read;
 use std::sync::Arc;
 use std::vec::IntoIter;
-
-/// A topic of a bag.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) struct Topic {
-    /// Its name, as written.
-    pub(super) name: String,
-    /// The type of its messages, as written: `sensor_msgs/msg/LaserScan`.
-    pub(super) type_name: String,
-    /// The encoding of its messages.
-    pub(super) encoding: String,
-}
-
-/// What a pass over a bag needs.
-#[derive(Clone)]
-pub(super) struct Selection {
-    /// Whether the messages of a topic are wanted; others are skipped.
-    pub(super) is_wanted: Arc<dyn Fn(&Topic) -> bool + Send + Sync>,
-    /// Whether checksums are compared: once is enough, and it takes a third of the time of a pass.
-    pub(super) checks_sums: bool,
-}
-
-/// A message.
-#[derive(Clone, Debug)]
-pub(super) struct Message {
-    pub(super) topic: Arc<Topic>,
-    /// The time at which it was recorded, ns.
-    pub(super) log_ns: i64,
-    pub(super) data: Vec<u8>,
-    pub(super) file: Arc<str>,
-    /// Its number among the messages of its topic in the file, from 1.
-    pub(super) number: u64,
-}
-
-impl Message {
-    /// The error for this message.
-    pub(super) fn error(&self, what: String) -> LogError {
-        let why = format!("message {} of {}: {what}", self.number, self.topic.name);
-        LogError::Unusable { file: self.file.to_string(), why }
-    }
-}
-
-/// The messages of one file, in the order of the file.
-pub(super) trait MessageSource {
-    /// The next message that is wanted.
-    fn next_message(&mut self) -> Result<Option<Message>, LogError>;
-
-    /// All topics that were found so far, and after the last message what is missing in the file.
-    fn report(&self) -> (Vec<Arc<Topic>>, Option<String>);
-}
-
-/// What the messages of a topic are to us.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Kind {
-    Scans,
-    Odometry,
-    Transforms,
-}
-
-impl Kind {
-    /// The kind of a topic by the type of its messages; `None` for all others.
-    pub(super) fn of(topic: &Topic) -> Option<Self> {
-        // Types of ROS 1 have the same names without `msg`; what has their encoding is named in an error.
-        let kind = match topic.type_name.replacen("/msg/", "/", 1).as_str() {
-            "sensor_msgs/LaserScan" => Self::Scans,
-            "nav_msgs/Odometry" => Self::Odometry,
-            "tf2_msgs/TFMessage" => Self::Transforms,
-            _ => return None,
-        };
-        // Other topics of transforms are those of tools, or copies.
-        let is_tf = matches!(topic.name.rsplit('/').next(), Some("tf" | "tf_static"));
-        (kind != Self::Transforms || is_tf).then_some(kind)
-    }
-
-    /// The kind of a topic that can be read.
-    pub(super) fn of_readable(topic: &Topic) -> Option<Self> {
-        Self::of(topic).filter(|_| topic.encoding == "cdr")
-    }
-}
 
 /// The most bytes of a message, unpacked, and the most topics that are listed.
 const MAX_MESSAGE_BYTES: u64 = 64 << 20;
@@ -149,4 +74,104 @@ fn unpacked(message: &Message) -> Result<Vec<u8>, LogError> {
             .error(format!("it unpacks to more than {MAX_MESSAGE_BYTES} bytes; at most these are read")));
     }
     Ok(data)
+}
+
+/// Times of recording that go back by less than this come from threads of the recorder, ns.
+const DISORDER_NS: i64 = 1_000_000_000;
+/// In files that are sorted by topic, the times go back once per block of a topic: in at most one of this number of messages. Where
+/// they go back more often, the topics have different clocks.
+const MESSAGES_PER_BLOCK: usize = 10;
+/// The most topics that are merged: each has a chunk of an MCAP file in memory.
+const MAX_MERGED: usize = 16;
+
+/// Finds out whether messages are sorted by topic: their times of recording go back from one topic to the next, and never within a
+/// topic. Where they go back within a topic, the clock was set, and the order is that of the file.
+#[derive(Debug, Default)]
+pub(super) struct RecordedOrder {
+    last_ns: Option<i64>,
+    last_of: BTreeMap<Arc<Topic>, i64>,
+    messages: usize,
+    /// The messages that are earlier than the one before.
+    earlier: usize,
+    goes_back_within_topic: bool,
+}
+
+impl RecordedOrder {
+    /// Notes the next message in the order of the files.
+    pub(super) fn note(&mut self, message: &Message) {
+        // Recorders repeat static transforms, which hold whenever they come, with their old times.
+        if Kind::of(&message.topic) == Some(Kind::Transforms) && message.topic.name.ends_with("static") {
+            return;
+        }
+        let now_ns = message.log_ns;
+        let is_later = |last_ns: i64| last_ns.saturating_sub(now_ns) > DISORDER_NS;
+        let last_of = self.last_of.insert(message.topic.clone(), now_ns);
+        self.goes_back_within_topic |= last_of.is_some_and(is_later);
+        self.earlier += usize::from(self.last_ns.replace(now_ns).is_some_and(is_later));
+        self.messages += 1;
+    }
+
+    pub(super) fn is_by_topic(&self) -> bool {
+        let is_in_blocks = (1..=self.messages / MESSAGES_PER_BLOCK).contains(&self.earlier);
+        is_in_blocks && !self.goes_back_within_topic
+    }
+}
+
+/// The messages of a bag: one stream in the order of its files, or a stream per topic, merged by the times of recording.
+pub(super) struct Merged {
+    streams: Vec<(Messages, Option<Message>)>,
+}
+
+impl Merged {
+    /// The messages of the topics that are wanted.
+    pub(super) fn new(
+        files: &[BagFile],
+        is_wanted: impl Fn(&Topic) -> bool + Send + Sync + 'static,
+        by_topic: &[Arc<Topic>],
+    ) -> Self {
+        let stream =
+            |is_wanted| (Messages::new(files.to_vec(), Selection { is_wanted, checks_sums: false }), None);
+        if by_topic.is_empty() {
+            return Self { streams: vec![stream(Arc::new(is_wanted))] };
+        }
+        let topics = by_topic.iter().filter(|topic| is_wanted(topic));
+        let streams = topics.cloned().map(|wanted| stream(Arc::new(move |topic: &Topic| *topic == *wanted)));
+        Self { streams: streams.collect() }
+    }
+
+    /// The next message; of several with the same time, that of the first topic.
+    pub(super) fn next_message(&mut self) -> Result<Option<Message>, LogError> {
+        for (messages, next) in &mut self.streams {
+            if next.is_none() {
+                *next = messages.next_message()?;
+            }
+        }
+        let waiting = self.streams.iter_mut().map(|(_, next)| next).filter(|next| next.is_some());
+        let first = waiting.min_by_key(|next| next.as_ref().map(|message| message.log_ns));
+        Ok(first.and_then(Option::take))
+    }
+}
+
+/// The topics to merge: none where the order of the files is that of the recording.
+///
+/// # Errors
+///
+/// When there are too many.
+pub(super) fn merged_topics(
+    order: &RecordedOrder,
+    topics: &[Arc<Topic>],
+    is_wanted: impl Fn(&Topic) -> bool,
+) -> Result<Vec<Arc<Topic>>, String> {
+    if !order.is_by_topic() {
+        return Ok(Vec::new());
+    }
+    let wanted: Vec<_> = topics.iter().filter(|topic| is_wanted(topic)).cloned().collect();
+    let count = wanted.len();
+    if count > MAX_MERGED {
+        return Err(format!(
+            "the messages are sorted by topic, and {count} topics are needed; at most {MAX_MERGED} are merged: sort the messages by \
+             time (`mcap sort FILE.mcap -o SORTED.mcap`, or `ros2 bag convert`), or name fewer lasers with --scan-topic"
+        ));
+    }
+    Ok(wanted)
 }

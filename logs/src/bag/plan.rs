@@ -1,9 +1,8 @@
 //! What to use of a bag: which lasers, where they are mounted, and where the poses come from.
 
 use super::inventory::{Inventory, LaserTopic, no_scans};
-use super::messages::{Kind, Topic};
+use super::message::{Kind, Topic};
 use super::motion::{self, Motion, MotionSource};
-use super::slam;
 use crate::assemble::{Chain, Frames, can_be_base, is_base, is_odom, is_world};
 use crate::choice::{TopicChoice, bare, listed};
 use ros::mounted;
@@ -44,7 +43,7 @@ impl Plan {
         let lasers = chosen_lasers(found, choice, notes)?;
         let frames = &found.frames;
         let Motion { source: motion, moving: moving_frame, correction, fixed } = if choice.is_corrected {
-            slam::poses(found, &lasers, choice)?
+            motion::by_slam(found, &lasers, choice)?
         } else {
             motion::by_odometry(found, &lasers, choice)?
         };

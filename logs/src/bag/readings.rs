@@ -1,8 +1,8 @@
 //! The second pass over a bag, and all later ones: reading by reading.
 
-use super::messages::{Kind, Message};
+use super::message::{Kind, Message};
+use super::messages::Merged;
 use super::motion::MotionSource;
-use super::order::Merged;
 use super::plan::{Laser, Plan};
 use super::slam::Corrections;
 use crate::assemble::{Assembler, Odometry, Waiting};

@@ -1,81 +1,11 @@
-//! The poses of another SLAM in the transforms of a bag (REP-105): from the frame of its map to that of the odometry, which jumps
-//! where the SLAM corrects itself, and from there to the robot, which is smooth.
+//! The corrections of another SLAM in the transforms of a bag (REP-105): from the frame of its map to that of the odometry, which
+//! jumps where the SLAM corrects itself.
 
-use super::inventory::{Inventory, LaserTopic};
-use super::motion::{Motion, MotionSource, chosen_odometry};
-use crate::assemble::{Chain, Frames, is_odom};
+use crate::assemble::{Chain, Frames};
 use crate::checks::Jumps;
-use crate::choice::{TopicChoice, bare, listed};
 use nalgebra::Isometry2;
 use ros::flat;
 use std::collections::{BTreeSet, VecDeque};
-
-/// The frame of the map by default.
-const MAP: &str = "map";
-
-/// The poses of the robot of the first laser in the map of another SLAM.
-///
-/// # Errors
-///
-/// When no transforms lead from the map to the laser, and when none of them moves.
-pub(super) fn poses(
-    found: &Inventory,
-    lasers: &[&LaserTopic],
-    choice: &TopicChoice,
-) -> Result<Motion, String> {
-    let frames = &found.frames;
-    let map = bare(choice.map_frame.as_deref().unwrap_or(MAP));
-    if frames.is_empty() {
-        return Err(
-            "the bag has no transforms (tf), which would have the corrected poses of another SLAM".to_owned()
-        );
-    }
-    let names = listed(frames.names().into_iter());
-    if !frames.names().contains(&map) {
-        return Err(format!(
-            "no transform (tf) has the frame `{map}`, in which another SLAM would have corrected the poses; --map-frame names it; \
-             the frames are {names}"
-        ));
-    }
-    let laser = lasers.first().map_or("", |laser| laser.frame.as_str());
-    let robot = choice.base_frame.as_deref().map_or(laser, bare);
-    let of = |source, correction: Chain, moving: String, parent: &str| {
-        let fixed = vec![map.to_owned(), parent.to_owned()];
-        Motion { source, moving: Some(moving), correction: Some(correction), fixed }
-    };
-    if let Some(chain) = frames.chain(map, robot, &[]) {
-        let Some(at) = moving_part(frames, &chain) else {
-            return Err(format!(
-                "no transform between `{map}` and `{robot}` moves: another SLAM gives no poses there"
-            ));
-        };
-        let edge = frames.edge(chain[at].0);
-        let source = MotionSource::Transform(chain[at].0);
-        return Ok(of(source, chain[..at].to_vec(), edge.child.clone(), &edge.parent));
-    }
-    // The odometry can be in messages alone.
-    if let Some(odometry) = chosen_odometry(found, choice)?
-        && let Some(correction) = frames.chain(map, &odometry.odom_frame, &[])
-    {
-        let source = MotionSource::Topic(odometry.topic.clone());
-        return Ok(of(source, correction, odometry.child_frame.clone(), &odometry.odom_frame));
-    }
-    Err(format!(
-        "no transforms (tf) lead from the map of another SLAM, `{map}`, to `{robot}`; the frames are {names} (--map-frame and \
-         --base-frame name those of the map and of the robot)"
-    ))
-}
-
-/// The part of a chain from a map to a robot that is the odometry: below a frame of odometry by its name, otherwise the one of
-/// which there are most poses.
-fn moving_part(frames: &Frames, chain: &Chain) -> Option<usize> {
-    let down = || chain.iter().enumerate().filter(|(_, (_, is_down))| *is_down);
-    let named =
-        down().find(|(_, (index, _))| is_odom(&frames.edge(*index).parent) && frames.edge(*index).poses > 1);
-    let moving = down().filter(|(_, (index, _))| frames.edge(*index).moves);
-    let most = || moving.max_by_key(|(at, (index, _))| (frames.edge(*index).poses, usize::MAX - at));
-    named.or_else(most).map(|(at, _)| at)
-}
 
 /// The corrections that are kept: scans wait for later poses.
 const KEPT: usize = 512;

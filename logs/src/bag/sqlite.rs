@@ -1,6 +1,6 @@
 //! SQLite databases of rosbag2: the tables `topics` and `messages`. Of a file that is cut off, the messages before the cut are read.
 
-use super::messages::{Message, MessageSource, Selection, Topic};
+use super::message::{Message, MessageSource, Selection, Topic};
 use crate::bounds::MAX_NAME_BYTES;
 use crate::bytes::Bytes;
 use crate::error::LogError;
@@ -161,9 +161,10 @@ fn topics(database: &Connection, file: &Arc<str>, selection: &Selection) -> Resu
             let what = format!("a name in `topics` has {longest} bytes; at most {MAX_NAME_BYTES} are read");
             return Err(damaged(file, &what));
         }
-        let (id, topic) = topic(row).map_err(failed)?;
+        let text = |column: usize| row.get::<_, String>(column).map_err(failed);
+        let topic = Topic { name: text(2)?, type_name: text(3)?, encoding: text(4)? };
         let is_wanted = (selection.is_wanted)(&topic);
-        found.insert(id, (Arc::new(topic), is_wanted, 0));
+        found.insert(row.get(0).map_err(failed)?, (Arc::new(topic), is_wanted, 0));
     }
     Ok(found)
 }
@@ -185,10 +186,6 @@ fn whole_size(bytes: &Bytes) -> io::Result<Option<u64>> {
 
 fn is_corrupt(error: &rusqlite::Error) -> bool {
     error.sqlite_error_code() == Some(ErrorCode::DatabaseCorrupt)
-}
-
-fn topic(row: &Row<'_>) -> rusqlite::Result<(i64, Topic)> {
-    Ok((row.get(0)?, Topic { name: row.get(2)?, type_name: row.get(3)?, encoding: row.get(4)? }))
 }
 
 fn database_error(file: &Arc<str>, error: &rusqlite::Error) -> LogError {

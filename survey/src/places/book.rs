@@ -4,7 +4,7 @@ use super::directions::{Direction, Directions};
 use super::groups::Group;
 use super::names::PlaceName;
 use super::passages::{Key, Passages, Spot, cell_key};
-use super::since::Session;
+use super::session::Session;
 use super::{HOUR_S, Place, TrafficTile};
 use mapper::Mapper;
 use serde::{Deserialize, Serialize};

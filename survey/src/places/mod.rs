@@ -4,7 +4,7 @@
 //! - `passages`: how often something came into each spot of half a meter.
 //! - `directions`: where what passes a spot goes.
 //! - `book`: the numbers and the names of places, which they keep over all sessions.
-//! - `since`: what is different since the last session.
+//! - `session`, `since`: what is different since the last session.
 
 mod book;
 mod directions;
@@ -12,6 +12,7 @@ mod groups;
 mod line;
 mod names;
 mod passages;
+mod session;
 mod since;
 #[cfg(test)]
 mod tests;

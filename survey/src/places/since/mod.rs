@@ -11,15 +11,13 @@ mod lasting;
 pub use lasting::Lasting;
 
 use super::book::PlaceBook;
-use super::passages::{Key, cell_key, spot_key};
+use super::passages::Key;
+use super::session::looked;
 use super::{Place, PlaceKind};
 use crate::ChangeLog;
-use crate::change_log::events;
 use compared::{Compared, significant};
-use interfaces::Event;
 use mapper::Mapper;
-use serde::{Deserialize, Serialize};
-use std::collections::{BTreeMap, BTreeSet};
+use serde::Serialize;
 
 /// The share of findings that may be wrong.
 const FALSE_FINDINGS: f64 = 0.05;
@@ -82,53 +80,6 @@ impl Since {
         let is_it = |place: &&PlaceSince| place.number == number;
         let trend = self.places.iter().find(is_it).map(|place| place.trend);
         matches!(trend, Some(Trend::New | Trend::Gone | Trend::Livelier | Trend::Quieter))
-    }
-}
-
-/// What is known of the present session.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
-pub(super) struct Session {
-    /// Its first log.
-    log: usize,
-    /// The largest number of a place before it.
-    last: u32,
-    /// The things before it.
-    things: BTreeSet<u32>,
-    /// For how long each spot was in view before it, s.
-    looked: BTreeMap<Key, f32>,
-    /// The cells that changed in it: whether each was blocked before.
-    touched: BTreeMap<Key, bool>,
-}
-
-/// For how long each spot was in view: its cell that was in view for the longest time, s.
-fn looked(mapper: &Mapper) -> BTreeMap<Key, f32> {
-    let mut looked: BTreeMap<Key, f32> = BTreeMap::new();
-    for index in (0..mapper.frame().len()).filter(|index| mapper.was_ever_seen(*index)) {
-        let longest_s = looked.entry(spot_key(mapper.frame(), index)).or_default();
-        *longest_s = longest_s.max(mapper.statistics(index).observed() as f32);
-    }
-    looked
-}
-
-impl Session {
-    pub(super) fn begin(mapper: &Mapper, log: usize, last: u32) -> Self {
-        Self {
-            log,
-            last,
-            things: mapper.things().iter().map(|thing| thing.id).collect(),
-            looked: looked(mapper),
-            touched: BTreeMap::new(),
-        }
-    }
-
-    pub(super) fn note(&mut self, mapper: &Mapper) {
-        if self.log == 0 {
-            return; // there is nothing to compare with
-        }
-        for (index, event) in events(mapper) {
-            let entry = self.touched.entry(cell_key(mapper.frame(), index));
-            entry.or_insert(event == Event::Free);
-        }
     }
 }
 

@@ -83,6 +83,14 @@ pub(super) struct Mark {
     pub(super) class: &'static str,
 }
 
+impl Mark {
+    /// A mark on a square around a point, of twice this side.
+    pub(super) fn square(label: String, at: [f64; 2], half_m: f64, class: &'static str) -> Self {
+        let (at, half) = (Point2::from(at), Vector2::repeat(half_m));
+        Self { label, link: None, points: vec![at - half, at + half], class }
+    }
+}
+
 /// A mark with its label beside it.
 pub(super) fn drawn(mark: &Mark, rectangle: &Rectangle, label: Option<&Label>) -> Markup {
     let font = if mark.label.len() > 2 { 20 } else { 25 };

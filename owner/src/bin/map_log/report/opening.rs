@@ -4,7 +4,6 @@ use super::labels::Mark;
 use super::{Page, middle};
 use draw::layers::Layer;
 use maud::{Markup, html};
-use nalgebra::{Point2, Vector2};
 use owner::words::{changed, range};
 use survey::{Place, PlaceKind, Verdict};
 
@@ -103,15 +102,8 @@ impl Page<'_> {
             return html! {};
         }
         let doubts = self.summary.quality.iter().flat_map(|quality| &quality.doubts);
-        let around = Vector2::repeat(HALF_M);
         let mark = |(number, doubt): (usize, &survey::Doubt)| {
-            let at = Point2::new(doubt.x_m, doubt.y_m);
-            Mark {
-                label: number.to_string(),
-                link: None,
-                points: vec![at - around, at + around],
-                class: "doubt",
-            }
+            Mark::square(number.to_string(), [doubt.x_m, doubt.y_m], HALF_M, "doubt")
         };
         let marks: Vec<Mark> = (1..).zip(doubts).map(mark).collect();
         html! {

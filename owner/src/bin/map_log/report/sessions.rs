@@ -3,7 +3,7 @@
 use super::Page;
 use super::labels::Mark;
 use maud::{Markup, html};
-use nalgebra::{Point2, Vector2};
+use nalgebra::Point2;
 use owner::words::{date, length_of, list, rate, times};
 use survey::{Lasting, Place, PlaceSince, Since, Trend};
 
@@ -109,14 +109,9 @@ impl Page<'_> {
     /// The marks of what has come or gone.
     pub(super) fn lasting_marks(&self) -> Vec<Mark> {
         let mark = |(number, lasting): (usize, &Lasting)| {
-            let half = Vector2::repeat(HALF_M.max(lasting.area_m2.sqrt() / 2.0));
-            let at = Point2::new(lasting.x_m, lasting.y_m);
-            Mark {
-                label: letter(number),
-                link: Some("#since".to_owned()),
-                points: vec![at - half, at + half],
-                class: "new",
-            }
+            let half_m = HALF_M.max(lasting.area_m2.sqrt() / 2.0);
+            let mark = Mark::square(letter(number), [lasting.x_m, lasting.y_m], half_m, "new");
+            Mark { link: Some("#since".to_owned()), ..mark }
         };
         let since = self.summary.since_last_session.iter();
         since.flat_map(|since| since.lasting.iter().enumerate().map(mark)).collect()
