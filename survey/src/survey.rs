@@ -24,7 +24,6 @@ use logs::Log;
 use mapper::{Mapper, NoReturnEvidence, ScanFilter};
 use robot::{NoPilot, Robot, Turn};
 use std::ops::ControlFlow;
-use std::sync::Arc;
 
 /// The map of a place and its changes, from one or more logs in the order of their times.
 ///
@@ -37,7 +36,7 @@ pub struct Survey {
     settings: SurveySettings,
     /// Whether the noise of the mapper follows from the routes.
     learns_noise: bool,
-    place: Option<Arc<KnownPlace>>,
+    place: Option<KnownPlace>,
     /// The robot that reads the logs; `None` before the first reading was learned.
     robot: Option<Robot<LaserReading, NoPilot>>,
     changes: ChangeLog,
@@ -160,7 +159,7 @@ impl Survey {
 
     /// Forgets the poses of the logs that were learned: no [`replay`](Self::replay) needs them any more.
     pub fn forget_poses(&mut self) {
-        self.logs.iter_mut().filter(|log| log.is_finished()).for_each(|log| log.poses = Arc::default());
+        self.logs.iter_mut().filter(|log| log.is_finished()).for_each(|log| log.poses = Vec::new());
     }
 
     /// The first pass over the next log: its route, in the frame of the first one. `is_followed`: other logs can follow, and
@@ -188,7 +187,7 @@ impl Survey {
         .without_doubts();
         let frame = frame(std::slice::from_ref(&route), &self.settings)?;
         if is_followed && self.place.is_none() {
-            self.place = Some(Arc::new(pass.place(&route)?));
+            self.place = Some(pass.place(&route)?);
         }
         check_seen(self.seen_m2 + route.seen_m2, &self.settings)?;
         self.seen_m2 += route.seen_m2;

@@ -9,7 +9,6 @@ use localizer::{PoseState, TrajectoryPose};
 use logs::{Log, LogError, TopicChoice};
 use robot::state::Session;
 use serde::{Deserialize, Serialize};
-use std::sync::Arc;
 
 /// A log, and its place in time among the logs of one place.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
@@ -114,8 +113,7 @@ pub struct SurveyedLog {
     /// The cells that cover what was seen.
     pub(crate) frame: GridFrame,
     /// The poses of all readings; forgotten when they are no longer needed.
-    #[serde(with = "shared")]
-    pub(crate) poses: Arc<Vec<TrajectoryPose>>,
+    pub(crate) poses: Vec<TrajectoryPose>,
 }
 
 /// A part of a route.
@@ -144,7 +142,7 @@ impl SurveyedLog {
             noise_m: noise_m(&route),
             quality: route.quality,
             frame,
-            poses: Arc::new(route.trajectory.poses),
+            poses: route.trajectory.poses,
         }
     }
 
@@ -156,7 +154,7 @@ impl SurveyedLog {
         let entry =
             LogEntry { name, offset_s, begin_s, duration_s, has_times, laser, notes, ..LogEntry::default() };
         let travelled = Travelled { duration_s, ..Travelled::default() };
-        let (quality, poses) = (Quality::default(), Arc::default());
+        let (quality, poses) = (Quality::default(), Vec::new());
         Self { entry, readings, used, loops: 0, travelled, quality, noise_m: None, frame, poses }
     }
 
@@ -207,24 +205,4 @@ const MAX_M: f64 = 0.1;
 fn noise_m(route: &Route) -> Option<f64> {
     let found = route.trajectory.residual_m.map(|residual_m| residual_m.clamp(MIN_M, MAX_M));
     found.or_else(|| route.range_std_m.map(|std_m| std_m.clamp(MIN_STANDING_M, MAX_M)))
-}
-
-/// A list that copies share.
-mod shared {
-    use serde::de::DeserializeOwned;
-    use serde::{Deserializer, Serialize, Serializer};
-    use std::sync::Arc;
-
-    pub(super) fn serialize<T: Serialize, S: Serializer>(
-        list: &Arc<Vec<T>>,
-        serializer: S,
-    ) -> Result<S::Ok, S::Error> {
-        list.as_ref().serialize(serializer)
-    }
-
-    pub(super) fn deserialize<'de, T: DeserializeOwned, D: Deserializer<'de>>(
-        deserializer: D,
-    ) -> Result<Arc<Vec<T>>, D::Error> {
-        serde::Deserialize::deserialize(deserializer).map(Arc::new)
-    }
 }

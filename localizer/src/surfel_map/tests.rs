@@ -148,7 +148,7 @@ fn what_beams_pass_is_removed() {
         (SurfelMap::new(&frame()), ScanPoints::default(), Checker::default());
     let mut see = |map: &mut SurfelMap, distance_m: f64| {
         let reading = wall(0.0, distance_m, &mut noise);
-        learn(&mut map, &points.of(&reading, |_| 1.0, &RULES), true);
+        learn(map, &points.of(&reading, |_| 1.0, &RULES), true);
         checker.check(map, &reading, &Isometry2::identity());
     };
     for _ in 0..50 {

@@ -12,7 +12,6 @@ use mapper::Growth;
 use robot::state::{Part, SavedMap, SavedSettings, State, StateCopy, StateError};
 use robot::{BUILD, NoPilot, Robot};
 use serde::{Deserialize, Serialize};
-use std::sync::Arc;
 
 /// What a state has of a survey, beside the map and the surfaces.
 #[derive(Debug, Default, Deserialize, Serialize)]
@@ -70,7 +69,7 @@ impl Survey {
             build: BUILD.to_owned(),
             sessions: logs.iter().map(SurveyedLog::session).collect(),
             map: mapper.map(|mapper| SavedMap::of(mapper, &filter)),
-            surfaces: place.map(|place| Arc::unwrap_or_clone(place).snapshot()).unwrap_or_default(),
+            surfaces: place.map(KnownPlace::snapshot).unwrap_or_default(),
             survey: Some(Part { settings, bytes: to_bytes(&SavedSurvey { frame, changes, book, logs }) }),
             ..State::default()
         })
@@ -93,7 +92,7 @@ impl Survey {
         };
         let SavedSurvey { changes, book, logs, .. } = SavedSurvey::of(state)?;
         let place = Some(&state.surfaces).filter(|surfaces| !surfaces.is_empty());
-        let place = place.map(|surfaces| KnownPlace::restored(surfaces)).transpose()?.map(Arc::new);
+        let place = place.map(|surfaces| KnownPlace::restored(surfaces)).transpose()?;
         let mut survey = Self { place, changes, book, logs, ..Self::new(settings, learns_noise) };
         // The last log of which something was learned has set the noise.
         let last = survey.logs.iter().rposition(|log| log.used > 0);

@@ -91,7 +91,7 @@ fn a_survey_that_is_saved_and_goes_on_equals_one_that_was_never_interrupted() {
         assert!(survey.saved()() == whole_bytes, "{parts} readings at once");
     }
     // The place in which later logs find theirs is the same, too.
-    let saved = place.as_ref().clone().snapshot();
+    let saved = place.clone().snapshot();
     let again = localizer::KnownPlace::restored(&saved).unwrap();
     assert!(again.snapshot() == saved);
 

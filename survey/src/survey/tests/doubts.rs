@@ -9,7 +9,6 @@ use interfaces::{LaserReading, PoseMode, pose};
 use localizer::PoseState;
 use nalgebra::{Isometry2, Point2, Vector2};
 use std::ops::Range;
-use std::sync::Arc;
 
 /// The radius of a thing that is put down, m.
 const RADIUS_M: f64 = 0.2;
@@ -51,7 +50,7 @@ fn learned(readings: &[LaserReading], place: &Point2<f64>, all_count: bool) -> (
     let mut survey = Survey::new(settings, false);
     add(&mut survey, &log, "a", 0.0);
     if all_count {
-        Arc::make_mut(&mut survey.logs[0].poses).iter_mut().for_each(|at| at.state = PoseState::Tracking);
+        survey.logs[0].poses.iter_mut().for_each(|at| at.state = PoseState::Tracking);
     }
     assert!(learn(&mut survey, 0, &log, usize::MAX));
     let (mapper, changes) = (survey.mapper().unwrap(), survey.changes());
