@@ -124,7 +124,9 @@ impl Batch {
         // Not NaN, and rounding may add a little.
         let is_valid = |action: &f32| action.abs() <= 1.0 + ROUNDING;
         if let Some(at) = actions.iter().position(|action| !is_valid(action)) {
-            return Err(TaskError::Action { environment: at / of_task, value: actions[at] });
+            let (environment, value) = (at / of_task, actions[at]);
+            let why = format!("action {value} of environment {environment} is not from -1 to 1");
+            return Err(TaskError::Values(why));
         }
         let is_autoreset = self.is_autoreset;
         let inputs = actions.chunks(of_task).zip(next_seeds).collect();
@@ -158,6 +160,7 @@ impl Batch {
     }
 }
 
-fn check(what: &'static str, found: usize, expected: usize) -> Result<(), TaskError> {
-    if found == expected { Ok(()) } else { Err(TaskError::Length { what, found, expected }) }
+fn check(what: &str, found: usize, expected: usize) -> Result<(), TaskError> {
+    let why = || format!("{what}: {found} values, and not {expected}");
+    if found == expected { Ok(()) } else { Err(TaskError::Values(why())) }
 }

@@ -221,9 +221,10 @@ fn invalid_input_is_refused_and_changes_nothing() {
     );
     let mut nobody = driving_hall();
     nobody.robots.remove(0);
-    let error = DrivePlace::new(&nobody, DriveSettings::default()).err().unwrap();
-    assert!(matches!(error, TaskError::NoDrivenRobot { .. }), "{error}");
-    assert_eq!(ExplorePlace::new(&[], ExploreSettings::default()).err(), Some(TaskError::NoWorld));
+    let error = DrivePlace::new(&nobody, DriveSettings::default()).err().unwrap().to_string();
+    assert!(error.starts_with("no robot of the world `driving_hall` is driven: give one of them"), "{error}");
+    let error = ExplorePlace::new(&[], ExploreSettings::default()).err().unwrap().to_string();
+    assert_eq!(error, "exploring needs at least one world");
 }
 
 /// FNV-1a over all bits of observations and rewards, of actions that are exact in binary. `python/tests/test_envs.py`

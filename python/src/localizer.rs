@@ -91,7 +91,7 @@ impl Localizer {
     /// Returns to the snapshot of a localizer with the same settings. `SnapshotError`: the bytes are not one; nothing
     /// changes then.
     fn restore(&mut self, snapshot: &[u8]) -> PyResult<()> {
-        let (state, before) = (SNAPSHOT.open(snapshot)?, self.localizer.snapshot());
+        let (state, before) = (SNAPSHOT.open(snapshot, true)?, self.localizer.snapshot());
         self.localizer.restore(state).map_err(|_| {
             let was_restored = self.localizer.restore(&before);
             debug_assert!(was_restored.is_ok(), "a localizer takes its own snapshot");

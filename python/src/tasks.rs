@@ -1,6 +1,6 @@
 use crate::convert::{index, snapshot_error, value_error, whole};
 use crate::settings::task_settings;
-use crate::snapshots::{Kind, check_build};
+use crate::snapshots::Kind;
 use crate::spec::{driving, spec_of};
 use environments::{ACTIONS, Drive, DrivePlace, Explore, ExplorePlace, Results, TaskError};
 use numpy::{IntoPyArray, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
@@ -268,8 +268,7 @@ impl Batch {
         allow_other_build: bool,
     ) -> PyResult<Bound<'py, PyArray2<f32>>> {
         self.check(environment)?;
-        let state = self.kind().open(snapshot)?;
-        check_build(snapshot, allow_other_build)?;
+        let state = self.kind().open(snapshot, allow_other_build)?;
         let observations = self.batch.restore(environment, state).map_err(snapshot_error)?.to_vec();
         self.is_ready |= self.environments() == 1;
         self.rows_of_one(py, observations)

@@ -107,8 +107,8 @@ impl Report {
             let conclusions = counts.chain(winner(run));
             let paragraphs = [
                 format!("{}\n{}", run.world, conditions(run, &self.settings)),
-                values(&run.strategies, columns).to_string(),
-                predictions(&run.strategies, length.choose(&[][..], &PREDICTION_COLUMNS)),
+                values(&run.strategies, columns),
+                values(&run.strategies, length.choose(&[][..], &PREDICTION_COLUMNS)),
                 differences(run).unwrap_or_default(),
                 conclusions.collect::<Vec<_>>().join("\n"),
             ];
@@ -139,12 +139,10 @@ fn aligned(rows: Vec<Vec<String>>) -> Table {
 }
 
 /// A row per strategy, if there are columns.
-fn predictions(strategies: &[StrategyResult], columns: &[Column]) -> String {
-    if columns.is_empty() { String::new() } else { values(strategies, columns).to_string() }
-}
-
-/// A row per strategy.
-fn values(strategies: &[StrategyResult], columns: &[Column]) -> Table {
+fn values(strategies: &[StrategyResult], columns: &[Column]) -> String {
+    if columns.is_empty() {
+        return String::new();
+    }
     let head = |name: &str, of: fn(&Column) -> String| {
         [name.to_owned()].into_iter().chain(columns.iter().map(of)).collect()
     };
@@ -163,7 +161,7 @@ fn values(strategies: &[StrategyResult], columns: &[Column]) -> Table {
     }) {
         table.modify((0, column + 1), Span::column(2)).modify((0, column + 1), Alignment::center());
     }
-    table
+    table.to_string()
 }
 
 /// The strategies that can be the best.

@@ -16,7 +16,7 @@ mod tests;
 use crate::lifecycle::State;
 use crate::link::{Event, Link};
 use crate::message::{Message, Time, Topic};
-use crate::node_state_file::NodeStateFile;
+use crate::node_state_file::{Asker, NodeStateFile};
 use crate::notes::{Notes, Output};
 use crate::parameters::Parameters;
 use crate::pilot::LivePilot;
@@ -29,7 +29,6 @@ use robot::{Belief, Robot};
 use routes::Routes;
 use session::Seat;
 use setup::Parts;
-use slam_services::Serializing;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -45,7 +44,7 @@ const SILENCE: Duration = Duration::from_secs(5);
 #[derive(Debug, Default)]
 pub struct Signals {
     /// The node ends.
-    pub stop: AtomicBool,
+    pub stop: Arc<AtomicBool>,
     /// The node saves its state.
     pub save: Arc<AtomicBool>,
 }
@@ -76,7 +75,8 @@ pub struct CuriousNode<L: Link> {
     /// `--state`, as given.
     state_path: Option<PathBuf>,
     state_file: Option<NodeStateFile>,
-    serializing: Serializing,
+    /// States that are written for those who have asked.
+    copies: Vec<NodeStateFile>,
     /// The time of the last reading before this session: of the state that was loaded, or before the node was deactivated.
     continued: Option<Time>,
     /// Where the robot is at its next reading, as somebody says.
@@ -116,7 +116,7 @@ impl<L: Link> CuriousNode<L> {
             state: State::Unconfigured,
             state_path: state.map(Path::to_owned),
             state_file,
-            serializing: Serializing::default(),
+            copies: Vec::new(),
             continued,
             seat: None,
             notes,
@@ -143,7 +143,7 @@ impl<L: Link> CuriousNode<L> {
     pub fn run(&mut self, signals: &Signals) -> anyhow::Result<NodeReport> {
         while !signals.stop.load(Ordering::Relaxed) {
             if signals.save.swap(false, Ordering::Relaxed) {
-                self.save_for(None);
+                self.save_for(Asker::Signal);
             }
             self.turn(self.nap());
         }
@@ -273,7 +273,6 @@ impl<L: Link> CuriousNode<L> {
         }
         self.publish_diagnostics(now);
         self.answer_askers();
-        self.go_on_serializing();
         let is_due = self.state_file.as_ref().is_some_and(NodeStateFile::is_due) && self.last.is_some();
         if is_due
             && self.robot.is_settled()

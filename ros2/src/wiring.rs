@@ -61,9 +61,8 @@ pub fn curious_wiring(parameters: &Parameters, names: &Names, ros: &RosArgs) -> 
         Topic::Odometry => &parameters.odom_topic,
         _ => topic.default_name(),
     };
-    let services = Service::ALL
-        .iter()
-        .map(|service| Ok((*service, names.resolved("service", service.default_name(), ros)?)));
+    let services =
+        Service::all().map(|service| Ok((service, names.resolved("service", service.default_name(), ros)?)));
     Ok(Wiring {
         services: services.collect::<anyhow::Result<_>>()?,
         navigate_to_pose,

@@ -5,7 +5,7 @@ use crate::convert::{
     whole, writable,
 };
 use crate::reading::Reading;
-use crate::snapshots::{Kind, check_build};
+use crate::snapshots::Kind;
 use crate::spec::spec_of;
 use arrays::look_all;
 use interfaces::{LaserReading, Purpose, RandomStream};
@@ -260,8 +260,7 @@ impl Fleet {
     #[pyo3(signature = (snapshot, *, allow_other_build = false))]
     fn restore(&mut self, py: Python<'_>, snapshot: &[u8], allow_other_build: bool) -> PyResult<()> {
         let fleet = &mut self.fleet;
-        let state = SNAPSHOT.open(snapshot)?;
-        check_build(snapshot, allow_other_build)?;
+        let state = SNAPSHOT.open(snapshot, allow_other_build)?;
         py.detach(|| fleet.restore(state)).map_err(snapshot_error)
     }
 

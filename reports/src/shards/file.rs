@@ -1,6 +1,6 @@
 //! The file of a shard that runs.
 
-use super::line;
+use super::line::{self, Line};
 use super::scan::{MAX_LINE, Scan, not_a_shard};
 use super::{Header, Shard, ShardError};
 use evaluation::trials::Trial;
@@ -40,7 +40,8 @@ impl ShardFile {
     ///
     /// When the file cannot be written, another process has opened it, or the folder has shards of another experiment:
     /// nothing is changed then.
-    pub fn open(folder: &Path, header: &Header, shard: Shard) -> Result<Self, ShardError> {
+    pub fn open(folder: &Path, header: &Header) -> Result<Self, ShardError> {
+        let shard = header.shard;
         make_folder(folder)?;
         check_others(folder, header)?;
         let path = folder.join(shard.file_name());
@@ -49,7 +50,7 @@ impl ShardFile {
         let mut file = options.map_err(failed)?;
         lock(&file, &path, "wait for it, or start another shard")?;
         let mut scan = Scan::of(&path, shard, BufReader::new(&file))?;
-        let line = header.line().map_err(|error| failed(error.into()))?;
+        let line = line::write(header, 0).map_err(|error| failed(error.into()))?;
         if scan.header.is_none() && !line.as_bytes().starts_with(&scan.torn) {
             return Err(not_a_shard(&path));
         }
@@ -80,7 +81,8 @@ impl ShardFile {
     /// When the line cannot be written, as on a full disk. The lines before it stay; all later calls fail as well.
     pub fn append(&self, number: u64, trial: &Trial) -> Result<(), OutputError> {
         let failed = |why| OutputError::new(&self.path, why);
-        let line = line::write(number, trial, self.key).map_err(|error| failed(error.into()))?;
+        let line = Line { job: number, trial };
+        let line = line::write(&line, self.key).map_err(|error| failed(error.into()))?;
         let mut appended = self.file.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(earlier) = &appended.failure {
             return Err(failed(again(earlier)));
@@ -133,8 +135,8 @@ fn check_others(folder: &Path, header: &Header) -> Result<(), ShardError> {
         let read = BufReader::new(file).take(MAX_LINE).read_until(b'\n', &mut line);
         read.map_err(|why| ShardError::read(&path, why))?;
         let text = line.strip_suffix(b"\n").and_then(|line| std::str::from_utf8(line).ok());
-        let other = text.and_then(Header::read);
-        if let Some(difference) = other.and_then(|other| other.difference(header)) {
+        let other = text.and_then(|text| line::read(text, 0));
+        if let Some(difference) = other.and_then(|other: Header| other.difference(header)) {
             let why = format!("this shard is {difference}; give another folder by --out");
             return Err(ShardError::content(&path, why));
         }

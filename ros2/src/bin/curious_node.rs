@@ -3,15 +3,15 @@
 use agent::PURPOSES;
 use anyhow::Context;
 use clap::Parser;
-use clap::builder::{PathBufValueParser, PossibleValue, PossibleValuesParser, TypedValueParser};
-use ros2::node_program::{Failure, input, note_unused_files, output, say, start};
+use clap::builder::{PossibleValue, PossibleValuesParser};
+use cli::flags::output_file;
+use cli::program::{Failure, input, interrupt_flag};
+use ros2::node_program::{note_unused_files, output, say, start};
 use ros2::{
     CuriousNode, DdsLink, Environment, Names, Parameters, RosArgs, ScanCount, Signals, Value, curious_wiring,
 };
 use std::path::PathBuf;
 use std::process::ExitCode;
-use std::sync::Arc;
-use std::sync::atomic::Ordering;
 
 /// Maps what a live robot of ROS 2 sees, and learns where and how often the place changes
 ///
@@ -32,7 +32,7 @@ struct Args {
     purpose: Option<String>,
     /// Goes on from this file if it exists, and saves to it: every minute, at the end, at the signal USR1, and when the
     /// service `~/save_state` is called
-    #[arg(long, value_name = "FILE", value_parser = PathBufValueParser::new().try_map(no_folder))]
+    #[arg(long, value_name = "FILE", value_parser = output_file())]
     state: Option<PathBuf>,
     /// Corrected maps replace the old one with these readings, as an earlier run of the same readings has printed: repeats
     /// that run
@@ -46,10 +46,6 @@ fn purposes() -> PossibleValuesParser {
             PossibleValue::new(name).help(format!("{description}: {policy}"))
         }),
     )
-}
-
-fn no_folder(path: PathBuf) -> Result<PathBuf, &'static str> {
-    if path.is_dir() { Err("it is a folder, not a file") } else { Ok(path) }
 }
 
 const MANUAL: &str = concat!(
@@ -117,22 +113,25 @@ fn main() -> ExitCode {
     start(run)
 }
 
-fn run(args: Args, ros: RosArgs) -> Result<(), Failure> {
+fn run(args: &Args, ros: RosArgs) -> Result<ExitCode, Failure> {
     let names = Names::new("curious_node", &ros).map_err(input)?;
     let mut parameters = Parameters::default();
     parameters.set_all(ros.parameters_of(&names.full_name())).map_err(input)?;
     note_unused_files(&names, &ros);
-    if let Some(mode) = args.mode {
-        parameters.set("mode", &Value::Text(mode)).map_err(input)?;
+    for (name, value) in [("mode", &args.mode), ("purpose", &args.purpose)] {
+        value
+            .iter()
+            .try_for_each(|value| parameters.set(name, &Value::Text(value.clone())))
+            .map_err(input)?;
     }
-    if let Some(purpose) = args.purpose {
-        parameters.set("purpose", &Value::Text(purpose)).map_err(input)?;
-    }
-    parameters.switch_at = args.switch_at;
+    parameters.switch_at.clone_from(&args.switch_at);
     parameters.check().map_err(input)?;
     let environment = Environment::read(|name| std::env::var(name).ok()).map_err(input)?;
     let wiring = curious_wiring(&parameters, &names, &ros).map_err(input)?;
-    let signals = signals()?;
+    let signals = Signals { stop: interrupt_flag()?, ..Signals::default() };
+    #[cfg(unix)]
+    signal_hook::flag::register(signal_hook::consts::SIGUSR1, signals.save.clone())
+        .context("cannot listen for SIGUSR1")?;
     let link = DdsLink::open(&wiring, &environment)?;
     let node = CuriousNode::new(link, &parameters, args.state.as_deref(), output(names.node()));
     let mut node = node.map_err(input)?;
@@ -147,18 +146,7 @@ fn run(args: Args, ros: RosArgs) -> Result<(), Failure> {
         report.mapped,
         report.longest_us as f64 * 1e-3
     ));
-    Ok(())
-}
-
-/// Listens for signals.
-fn signals() -> anyhow::Result<Arc<Signals>> {
-    let signals = Arc::new(Signals::default());
-    let to = signals.clone();
-    ctrlc::set_handler(move || to.stop.store(true, Ordering::Relaxed)).context("cannot listen for Ctrl-C")?;
-    #[cfg(unix)]
-    signal_hook::flag::register(signal_hook::consts::SIGUSR1, signals.save.clone())
-        .context("cannot listen for SIGUSR1")?;
-    Ok(signals)
+    Ok(ExitCode::SUCCESS)
 }
 
 #[cfg(test)]

@@ -271,7 +271,7 @@ fn a_state_of_simulated_time_goes_on_in_the_time_of_a_robot() {
     let path = folder.path().join("house.state");
     let mut simulated = Pair::new(&parameters(Mode::Map), 0, Some(&path));
     simulated.run(3.0);
-    simulated.node.run(&Signals { stop: AtomicBool::new(true), ..Signals::default() }).unwrap();
+    simulated.node.run(&Signals { stop: Arc::new(true.into()), ..Signals::default() }).unwrap();
     drop(simulated);
     let mut real = Pair::new(&parameters(Mode::Map), 1_700_000_000, Some(&path));
     real.run(3.0);

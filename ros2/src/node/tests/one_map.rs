@@ -59,7 +59,7 @@ fn a_map_of_logs_goes_to_a_robot_and_back() {
     assert_eq!(pair.node.pose_state, PoseState::Tracking, "{:?}", pair.said);
     assert!(pair.node.report().mapped > 30, "{:?}", pair.node.report());
     assert!((pair.node.mapper().time() - DAY_S).abs() < 60.0, "{} s", pair.node.mapper().time());
-    pair.node.run(&Signals { stop: AtomicBool::new(true), ..Signals::default() }).unwrap();
+    pair.node.run(&Signals { stop: Arc::new(true.into()), ..Signals::default() }).unwrap();
     drop(pair);
 
     add(&path, folder.path(), "friday", 4.0);
