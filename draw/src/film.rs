@@ -6,15 +6,15 @@ use crate::legend;
 use crate::outline::field_of_view;
 use crate::palette::{self, Rgb};
 use crate::panel::{Chart, Panel, pair};
+use crate::plan::NamedLine;
 use crate::scene::Scene;
 use crate::trajectory::line;
 use crate::view::{Trail, View};
 use crate::{ground, plan};
 use files::UnfinishedFile;
 use gif::{DisposalMethod, Encoder, Frame, Repeat};
-use mapper::{Mapper, ThingKind};
+use mapper::{Mapper, Thing, ThingKind};
 use plotters::prelude::*;
-use plotters::style::text_anchor::HPos;
 use results::numbers::duration;
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
@@ -72,7 +72,7 @@ impl Film {
         let size = self.size();
         let canvas = Canvas::draw(size, |area| self.draw(area, view, trails));
         let canvas = canvas.map_err(|why| PictureError::Draw { name: "the moving picture".into(), why })?;
-        let pixels = canvas.pixels().as_chunks::<3>().0;
+        let pixels = canvas.pixels.as_chunks::<3>().0;
         if self.frames.is_empty() {
             self.colors = Colors::of(pixels);
         }
@@ -120,7 +120,7 @@ impl Film {
         left.frame(&chart)?;
         left.legend(&legend, &legend::of_run(&self.scene, view))?;
         let chart = right.layer(&second, view.mapper, Layer::Interval)?;
-        doors(right, &chart, view.mapper)
+        plan::lines(right, &chart, &doors(view.mapper))
     }
 
     /// Draws what is on the map: the field of view, what moves, the plan, and the robots with their trails.
@@ -156,27 +156,15 @@ impl Film {
     }
 }
 
-/// Writes beside every door that opened twice in view how often it opens.
-fn doors(panel: &Panel, chart: &Chart<impl DrawingBackend>, mapper: &Mapper) -> Result<(), String> {
-    let plot = chart.plotting_area();
-    let (area, rows) = (plot.use_screen_coord(), plot.get_pixel_range().1);
-    for thing in mapper.things() {
-        let ThingKind::Door(door) = &thing.kind else { continue };
-        let Some(rate) = door.statistics.openings_per_hour().filter(|_| door.statistics.opened >= 2) else {
-            continue;
-        };
-        let every = format!("door: every {}", duration(3600.0 / rate.mean()));
-        let [from, to] = door.closed.ends;
-        let (x, y) = plot.map_coordinate(&pair(&nalgebra::center(&from, &to)));
-        let [width, height] = panel.text_size(&area, &every)?;
-        // Above the door where there is room, otherwise below.
-        let beside = panel.px(14);
-        let y = if y - 2 * beside > rows.start { y - beside } else { y + beside };
-        let around = [(x - width / 2 - 3, y - height / 2 - 1), (x + width / 2 + 3, y + height / 2 + 1)];
-        area.draw(&Rectangle::new(around, WHITE.mix(0.8).filled())).map_err(why)?;
-        panel.write(&area, (x, y), HPos::Center, &every)?;
-    }
-    Ok(())
+/// The doors that opened twice in view, each with how often it opens.
+fn doors(mapper: &Mapper) -> Vec<NamedLine> {
+    let door = |thing: &Thing| {
+        let ThingKind::Door(door) = &thing.kind else { return None };
+        let rate = door.statistics.openings_per_hour().filter(|_| door.statistics.opened >= 2)?;
+        let name = format!("door: every {}", duration(3600.0 / rate.mean()));
+        Some(NamedLine { ends: door.closed.ends, name })
+    };
+    mapper.things().iter().filter_map(door).collect()
 }
 
 /// The part of a picture that differs from the picture before.

@@ -9,9 +9,13 @@ use sim::physics::SnapshotError;
 /// A number of tasks of the same kind.
 pub struct Batch {
     slots: Vec<Slot>,
-    is_parallel: bool,
-    pool: Option<ThreadPool>,
-    is_autoreset: bool,
+    /// Whether the tasks are stepped on the threads of the pool (the default for more than one task), or on this thread alone. The
+    /// results are the same.
+    pub is_parallel: bool,
+    /// The pool of threads; `None`: the present rayon pool.
+    pub pool: Option<ThreadPool>,
+    /// Whether a task that is over is reset in the same step (the default), or stands still until it is reset.
+    pub is_autoreset: bool,
 }
 
 /// A task, the seed of its episode, and the results of its last step.
@@ -49,26 +53,6 @@ impl Batch {
             tasks.into_iter().map(|task| Slot { results: Results::of(&task), seed: 0, task: Box::new(task) });
         let slots: Vec<Slot> = slots.collect();
         Self { is_parallel: slots.len() > 1, slots, pool: None, is_autoreset: true }
-    }
-
-    /// Whether the tasks are stepped on the threads of the pool (the default for more than one task), or on this thread alone. The results are the same.
-    pub fn set_parallel(&mut self, is_parallel: bool) {
-        self.is_parallel = is_parallel;
-    }
-
-    /// The pool of threads; by default the present rayon pool.
-    pub fn set_pool(&mut self, pool: ThreadPool) {
-        self.pool = Some(pool);
-    }
-
-    /// Whether a task that is over is reset in the same step (the default), or stands still until it is reset.
-    pub fn set_autoreset(&mut self, is_autoreset: bool) {
-        self.is_autoreset = is_autoreset;
-    }
-
-    /// Whether a task that is over is reset in the same step.
-    pub fn is_autoreset(&self) -> bool {
-        self.is_autoreset
     }
 
     /// The number of tasks.

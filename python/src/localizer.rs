@@ -45,7 +45,7 @@ impl Localizer {
     /// Without: anywhere in the known map. `range_noise`: the standard deviation of a range, m.
     #[new]
     #[pyo3(signature = (mapper, pose = None, *, range_noise = 0.01))]
-    fn new(py: Python<'_>, mapper: &Mapper, pose: Option<Numbers<'_>>, range_noise: f64) -> PyResult<Self> {
+    fn new(py: Python<'_>, mapper: &Mapper, pose: Option<Numbers>, range_noise: f64) -> PyResult<Self> {
         let settings = LocalizerSettings { range_noise_std_m: range_noise, ..LocalizerSettings::default() };
         let (map, start) = (mapper.mapper.states(), pose.as_ref().map(crate::convert::pose).transpose()?);
         let is_empty = mapper.mapper.readings() == 0;

@@ -22,21 +22,6 @@ impl OccupancyGrid {
 }
 
 impl OccupancyGridUpdate {
-    /// The smallest rectangle that contains every cell in which two maps with the same frame differ; `None` if none does.
-    pub fn between(before: &Grid<i8>, after: &Grid<i8>, header: Header) -> Option<Self> {
-        let (cells, frame) = (after.cells(), after.frame());
-        let before = before.cells();
-        let changed = cells.stored().filter(|(index, value)| before[*index] != **value);
-        // What has no block any more has the value of all other cells.
-        let gone =
-            before.stored().filter(|(index, value)| !cells.is_stored(*index) && cells[*index] != **value);
-        let is_other_fill = before.fill() != cells.fill();
-        let all =
-            (0..if is_other_fill { cells.len() } else { 0 }).filter(|index| before[*index] != cells[*index]);
-        let changed = changed.chain(gone).map(|(index, _)| index).chain(all);
-        Self::around(after, changed.map(|index| frame.cell(index)), header)
-    }
-
     /// The smallest rectangle of a map that contains these cells; `None` if there is none.
     pub fn around(grid: &Grid<i8>, cells: impl Iterator<Item = Cell>, header: Header) -> Option<Self> {
         let (low, high) = cells.map(|cell| (cell, cell)).reduce(|(low, high), (cell, _)| {

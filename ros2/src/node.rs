@@ -23,7 +23,6 @@ use crate::pilot::LivePilot;
 use crate::source::{LiveReading, ScanCount, Source};
 use interfaces::{LaserReading, PoseMode};
 use localizer::PoseState;
-use mapper::Mapper;
 use outputs::Published;
 use robot::{Belief, Robot};
 use routes::Routes;
@@ -175,16 +174,9 @@ impl<L: Link> CuriousNode<L> {
         NodeReport { scans: self.source.count, ..self.report }
     }
 
-    /// The map.
-    pub fn mapper(&self) -> &Mapper {
-        &self.robot.mapper
-    }
-
     fn nap(&self) -> Duration {
-        let next = self.published.next_transform;
-        let transform = next.map_or(Duration::ZERO, |next| next.saturating_duration_since(Instant::now()));
-        let has_transforms = self.parameters.transform_publish_period_s > 0.0 && self.is_active();
-        if has_transforms { transform.min(NAP) } else { NAP }
+        let next = self.published.next_transform.filter(|_| self.is_active());
+        next.map_or(NAP, |next| next.saturating_duration_since(Instant::now()).min(NAP))
     }
 
     fn take(&mut self, event: Event, now: Instant) {
@@ -284,8 +276,7 @@ impl<L: Link> CuriousNode<L> {
     }
 
     fn tick_active(&mut self, now: Instant) {
-        let period_s = self.parameters.transform_publish_period_s;
-        if period_s > 0.0 && self.published.next_transform.is_none_or(|next| now >= next) {
+        if self.published.next_transform.is_none_or(|next| now >= next) {
             self.publish_transform(now);
         }
         if self.last.is_some_and(|(_, at)| now.duration_since(at) >= BLIND) {

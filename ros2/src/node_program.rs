@@ -23,7 +23,7 @@ pub fn say(text: &str) {
 pub fn note_unused_files(names: &Names, ros: &RosArgs) {
     let name = names.full_name();
     for file in ros.files_without(&name) {
-        say(&format!("[{}] {file} has no parameters for the node {name}", names.node()));
+        say(&format!("[{}] {file} has no parameters for the node {name}", names.node));
     }
 }
 

@@ -124,8 +124,8 @@ impl RunResults {
 
     /// The errors of the poses; `None` if they are exact.
     fn pose(&self) -> Option<String> {
-        let PoseScores { mode, median_m, p95_m, max_m, uncertain_s, lost_s, lock_ins, .. } = self.pose;
-        let (median, p95) = (median_m? * 1e3, p95_m? * 1e3);
+        let PoseScores { mode, median_m, p95_m, max_m, uncertain_s, lost_s, lock_ins, .. } = &self.pose;
+        let (median, p95) = ((*median_m)? * 1e3, (*p95_m)? * 1e3);
         let loops = match self.pose.loops_closed {
             0 => String::new(),
             count => {
@@ -242,7 +242,7 @@ mod tests {
             free_latency: Delays::default(),
             collisions: 0,
             contacts: Contacts { own_motion: 1, run_into: 2 },
-            pose: PoseScores { mode: "exact", ..PoseScores::default() },
+            pose: PoseScores { mode: "exact".into(), ..PoseScores::default() },
             goals: GoalCount::default(),
             strategy_share: BTreeMap::new(),
             things: Vec::new(),

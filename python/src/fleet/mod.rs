@@ -203,13 +203,13 @@ impl Fleet {
     }
 
     /// Puts a robot at a pose (x, y, heading), at rest. `ValueError`: something else is there.
-    fn teleport(&mut self, #[pyo3(from_py_with = index)] robot: usize, pose: Numbers<'_>) -> PyResult<()> {
+    fn teleport(&mut self, #[pyo3(from_py_with = index)] robot: usize, pose: Numbers) -> PyResult<()> {
         self.check_robot(robot)?;
         self.fleet.teleport(robot, &self::pose(&pose)?).map_err(value_error)
     }
 
     /// Whether a robot fits at a pose now.
-    fn fits(&self, #[pyo3(from_py_with = index)] robot: usize, at: Numbers<'_>) -> PyResult<bool> {
+    fn fits(&self, #[pyo3(from_py_with = index)] robot: usize, at: Numbers) -> PyResult<bool> {
         self.check_robot(robot)?;
         Ok(self.fleet.check_fit(robot, &pose(&at)?).is_ok())
     }

@@ -15,7 +15,8 @@ use std::sync::{Mutex, PoisonError};
 /// open it, if the file system has locks.
 #[derive(Debug)]
 pub struct ShardFile {
-    path: PathBuf,
+    /// The file.
+    pub path: PathBuf,
     pub(super) shard: Shard,
     key: u64,
     /// The numbers of the trials that were finished when the file was opened.
@@ -66,11 +67,6 @@ impl ShardFile {
             file: Mutex::new(Appended { file, intact: scan.intact, failure: None }),
             path,
         })
-    }
-
-    /// The file.
-    pub fn path(&self) -> &Path {
-        &self.path
     }
 
     /// Appends a finished trial, which is then in the hands of the operating system: it survives the end of the

@@ -18,7 +18,8 @@ const BATCH: usize = 256;
 /// The shards of an experiment that have files in a folder.
 #[derive(Debug)]
 pub struct Shards {
-    header: Header,
+    /// What all shards have in common.
+    pub header: Header,
     /// Every shard in their order, with the content of its file; `None` for a shard that was never started.
     scans: Vec<(Shard, Option<Scan>)>,
     folder: PathBuf,
@@ -57,11 +58,6 @@ impl Shards {
             all[shard.number() as usize - 1].1 = Some(scan);
         }
         Ok(Self { header, scans: all, folder: folder.to_owned() })
-    }
-
-    /// What all shards have in common.
-    pub fn header(&self) -> &Header {
-        &self.header
     }
 
     /// Every shard, with the content of its file; `None` for a shard that was never started.

@@ -75,7 +75,7 @@ impl ShardCommand {
 fn merge<K: TrialKind>(dir: &Path, out: &Path, quiet: bool) -> Result<(), Failure> {
     let shards = Shards::read(dir).map_err(input)?;
     shards.check(K::NAME, env!("CARGO_PKG_VERSION")).map_err(input)?;
-    let found = shards.header();
+    let found = &shards.header;
     let args =
         TrialArgs::<K>::try_parse_from(once(K::NAME).chain(found.arguments.iter().map(String::as_str)));
     let args = args.context("the arguments of the shards are not valid").map_err(input)?;
@@ -125,7 +125,7 @@ impl<K: TrialKind> TrialArgs<K> {
             return Ok(ExitCode::from(INTERRUPTED));
         }
         if !self.quiet {
-            print(format_args!("shard {shard} is complete: {all} trials in {}", file.path().display()))?;
+            print(format_args!("shard {shard} is complete: {all} trials in {}", file.path.display()))?;
         }
         Ok(ExitCode::SUCCESS)
     }

@@ -77,9 +77,9 @@ fn run(args: &Args, ros: RosArgs) -> Result<ExitCode, Failure> {
     let begin_ns = if args.wall_time { i64::try_from(since_epoch.as_nanos()).unwrap_or(0) } else { 0 };
     let settings = SimulationSettings { seed: args.seed, speed: args.speed, begin_ns };
     let mut robot = SimulatedRobot::new(link, &world, settings);
-    say(&format!("[{}] {}: {:.0} times real time", names.node(), world.name, args.speed));
+    say(&format!("[{}] {}: {:.0} times real time", names.node, world.name, args.speed));
     let scans = robot.run(&stop, args.duration.unwrap_or(f64::INFINITY));
-    say(&format!("[{}] {scans} scans in {:.1} s", names.node(), robot.time_s()));
+    say(&format!("[{}] {scans} scans in {:.1} s", names.node, robot.time_s()));
     Ok(ExitCode::SUCCESS)
 }
 

@@ -59,7 +59,7 @@ fn rows<C: Component + Clone>(
 }
 
 /// The entities of a recording.
-const ENTITIES: [&str; 58] = [
+const ENTITIES: [&str; 57] = [
     "/curves/expected_changes/p",
     "/curves/longest_unseen/r",
     "/curves/scores/coverage",
@@ -109,7 +109,6 @@ const ENTITIES: [&str; 58] = [
     "/world/maps/recency/color_bar",
     "/world/maps/recency/marks",
     "/world/obstacles/toy",
-    "/world/obstacles/toy/name",
     "/world/path",
     "/world/robots/curious/body",
     "/world/robots/curious/body/name",

@@ -1,7 +1,6 @@
 //! The layers of the map, each with its color bar.
 
-use super::coarse::Coarse;
-use super::{Kind, Tracks, WORLD, color, labels, order};
+use super::{Kind, Tracks, WORLD, coarse, color, labels, order};
 use draw::layers::Layer;
 use draw::scene::extent;
 use draw::view::View;
@@ -35,13 +34,13 @@ pub(super) fn add(tracks: &mut Tracks) -> RecordingStreamResult<()> {
             color: Some(*color(layer.color(id), 255)),
         });
         tracks.always(&map(layer), &AnnotationContext::new(classes))?;
-        let coarse = Coarse::new(frame);
-        Picture::of_frame(&coarse.frame).log(tracks, &cells)?;
+        let coarse = coarse::frame(frame);
+        Picture::of_frame(&coarse).log(tracks, &cells)?;
         color_bar(tracks, layer, frame)?;
         let period_s = if layer == Layer::Occupancy { 1.0 } else { 10.0 };
-        let when = (Kind::State, period_s * coarse.frame.len().div_ceil(MANY_CELLS) as f64);
+        let when = (Kind::State, period_s * coarse.len().div_ceil(MANY_CELLS) as f64);
         // The map can still be smaller than the image.
-        let classes = move |view: &View| vec![coarse.classes(&layer.classes(view.mapper))];
+        let classes = move |view: &View| vec![coarse::classes(&coarse, &layer.classes(view.mapper))];
         tracks.add(cells, when, classes, images);
     }
     Ok(())
