@@ -222,7 +222,7 @@ fn invalid_input_is_refused_and_changes_nothing() {
     let mut nobody = driving_hall();
     nobody.robots.remove(0);
     let error = DrivePlace::new(&nobody, DriveSettings::default()).err().unwrap().to_string();
-    assert!(error.starts_with("no robot of the world `driving_hall` is driven: give one of them"), "{error}");
+    assert!(error.starts_with("no robot of the world `driving hall` is driven: give one of them"), "{error}");
     let error = ExplorePlace::new(&[], ExploreSettings::default()).err().unwrap().to_string();
     assert_eq!(error, "exploring needs at least one world");
 }
