@@ -41,7 +41,8 @@ impl Kind {
         }
         let sealed = snapshot.split_last_chunk::<CHECKSUM>();
         let body = sealed.filter(|(body, checksum)| xxh3_64(body).to_le_bytes() == **checksum);
-        let parts = body.and_then(|(body, _)| body[KIND..].split_at_checked(BUILD.len()));
+        let body = body.and_then(|(body, _)| body.get(KIND..));
+        let parts = body.and_then(|body| body.split_at_checked(BUILD.len()));
         let (build, state) = parts.ok_or_else(|| SnapshotError::new_err("the snapshot is damaged"))?;
         if allow_other_build || build == BUILD.as_bytes() {
             return Ok(state);
