@@ -203,7 +203,7 @@ def check_ours(file, print_log):
                 assert len(message.data) == message.info.width * message.info.height, "the map has another size"
             if connection.topic == "/changes":
                 assert len(message.data) == message.width * message.point_step, "the point cloud has another size"
-    topics = ["/changes", "/goal_pose", "/map", "/map_updates", "/odom", "/plan", "/scan", "/tf", "/tf_static"]
+    topics = ["/changes", "/goal_pose", "/map", "/odom", "/plan", "/scan", "/tf", "/tf_static"]
     assert sorted(counts) == topics, f"the topics are {sorted(counts)}"
     printed = subprocess.run([print_log, file, "readings"], capture_output=True, text=True)
     assert printed.returncode == 0, printed.stderr

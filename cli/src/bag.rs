@@ -17,7 +17,7 @@ const CHANGES_S: f64 = 10.0;
 /// The time in which a change matters to a robot on its route, s: maps of changes show the probability of a change
 /// [within](Mapper::change_probability_within) this time. It is 0.63 where a cycle takes this long on average.
 const CHANGE_HORIZON_S: f64 = 600.0;
-/// Maps of changes and predictions of more cells than this are written less often.
+/// Maps of more cells than this are written less often.
 const MANY_CELLS: f64 = 1e6;
 
 /// A bag that is being written. It has its name when it is complete. The first error ends the bag, not the run;
@@ -104,7 +104,7 @@ impl RunBag {
             writer.events(time_s, &events)?;
         }
         if time_s >= self.next_map_s {
-            self.next_map_s = time_s + MAP_S;
+            self.next_map_s = time_s + MAP_S * (frame.len() as f64 / MANY_CELLS).max(1.0);
             writer.grid("/map", time_s, mapper.states(), |state| match state {
                 CellState::Unknown => None,
                 CellState::Free => Some(0.0),

@@ -8,6 +8,7 @@ use files::{OutputError, RunFolder};
 use interfaces::{PoseMode, printable_lines};
 use robot::state::{State, StateFile};
 use std::error::Error;
+use std::ffi::OsString;
 use std::fmt::Display;
 use std::io::stderr;
 use std::path::Path;
@@ -81,11 +82,27 @@ pub fn input(error: impl Into<anyhow::Error>) -> Failure {
 
 /// Runs `program` with its command line, and returns its exit code; a failure is printed to the error output.
 pub fn start<A: Parser>(program: impl FnOnce(&A) -> Result<ExitCode, Failure>) -> ExitCode {
-    let result = match A::try_parse() {
+    finish(with_arguments(std::env::args_os(), program))
+}
+
+/// Runs `program` with a command line, or prints the help that it asks for. An invalid one ends the process.
+///
+/// # Errors
+///
+/// Those of the program.
+pub fn with_arguments<A: Parser>(
+    arguments: impl IntoIterator<Item = OsString>,
+    program: impl FnOnce(&A) -> Result<ExitCode, Failure>,
+) -> Result<ExitCode, Failure> {
+    match A::try_parse_from(arguments) {
         Ok(args) => program(&args),
         Err(invalid) if invalid.use_stderr() => invalid.exit(),
         Err(help) => check_printed(help.print()).map(|()| ExitCode::SUCCESS).map_err(Failure::Run),
-    };
+    }
+}
+
+/// The exit code of a program; a failure is printed to the error output.
+pub fn finish(result: Result<ExitCode, Failure>) -> ExitCode {
     let (code, error) = match result {
         Ok(code) => return code,
         Err(Failure::Input(error)) => (2, error),

@@ -60,10 +60,12 @@ pub fn register_fonts() -> Result<(), String> {
     registered.map_err(|_| "the font cannot be read".into())
 }
 
-/// A finished picture: rows from the top, three bytes per pixel.
+/// A finished picture.
 pub struct Canvas {
-    size: [u32; 2],
-    pixels: Vec<u8>,
+    /// Width and height, pixels.
+    pub size: [u32; 2],
+    /// The rows from the top; red, green and blue of every pixel.
+    pub pixels: Vec<u8>,
 }
 
 impl Canvas {
@@ -96,16 +98,6 @@ impl Canvas {
             size: [width, height],
             pixels: rows.flat_map(|(of, y)| of.pixels[row(of, y)].iter().copied()).collect(),
         }
-    }
-
-    /// Width and height, pixels.
-    pub fn size(&self) -> [u32; 2] {
-        self.size
-    }
-
-    /// The rows from the top; red, green and blue of every pixel.
-    pub fn pixels(&self) -> &[u8] {
-        &self.pixels
     }
 
     /// Writes a PNG file.

@@ -6,16 +6,17 @@ use crate::legend;
 use crate::outline::field_of_view;
 use crate::palette::{self, Rgb};
 use crate::panel::{Chart, Panel, pair};
+use crate::plan::NamedLine;
 use crate::scene::Scene;
 use crate::trajectory::line;
 use crate::view::{Trail, View};
 use crate::{ground, plan};
 use files::UnfinishedFile;
 use gif::{DisposalMethod, Encoder, Frame, Repeat};
-use mapper::{Mapper, ThingKind};
+use mapper::{Mapper, Thing, ThingKind};
 use plotters::prelude::*;
-use plotters::style::text_anchor::HPos;
 use results::numbers::duration;
+use std::cmp::Reverse;
 use std::collections::BTreeMap;
 use std::io::{self, Write};
 
@@ -45,7 +46,15 @@ impl Film {
     /// A moving picture of a run in `scene`, to be written to a GIF file.
     pub fn new(file: UnfinishedFile, scene: Scene, duration_s: f64) -> Self {
         let panels = [false, true].map(|has_bar| Panel::of_film(&scene.frame, has_bar));
-        Self { file, scene, duration_s, panels, colors: Colors::new(), frames: Vec::new(), last: Vec::new() }
+        Self {
+            file,
+            scene,
+            duration_s,
+            panels,
+            colors: Colors::default(),
+            frames: Vec::new(),
+            last: Vec::new(),
+        }
     }
 
     /// Adds the present state of the run, with the trails of the robots. Frames are frequent at the start, when
@@ -63,7 +72,11 @@ impl Film {
         let size = self.size();
         let canvas = Canvas::draw(size, |area| self.draw(area, view, trails));
         let canvas = canvas.map_err(|why| PictureError::Draw { name: "the moving picture".into(), why })?;
-        let (colors, pixels) = (&mut self.colors, canvas.pixels().as_chunks::<3>().0);
+        let pixels = canvas.pixels.as_chunks::<3>().0;
+        if self.frames.is_empty() {
+            self.colors = Colors::of(pixels);
+        }
+        let colors = &mut self.colors;
         let indices: Vec<u8> = pixels.iter().map(|&color| colors.index(color)).collect();
         self.frames.push(difference(&self.last, &indices, size));
         self.last = indices;
@@ -107,7 +120,7 @@ impl Film {
         left.frame(&chart)?;
         left.legend(&legend, &legend::of_run(&self.scene, view))?;
         let chart = right.layer(&second, view.mapper, Layer::Interval)?;
-        doors(right, &chart, view.mapper)
+        plan::lines(right, &chart, &doors(view.mapper))
     }
 
     /// Draws what is on the map: the field of view, what moves, the plan, and the robots with their trails.
@@ -143,27 +156,15 @@ impl Film {
     }
 }
 
-/// Writes beside every door that opened twice in view how often it opens.
-fn doors(panel: &Panel, chart: &Chart<impl DrawingBackend>, mapper: &Mapper) -> Result<(), String> {
-    let plot = chart.plotting_area();
-    let (area, rows) = (plot.use_screen_coord(), plot.get_pixel_range().1);
-    for thing in mapper.things() {
-        let ThingKind::Door(door) = &thing.kind else { continue };
-        let Some(rate) = door.statistics.openings_per_hour().filter(|_| door.statistics.opened >= 2) else {
-            continue;
-        };
-        let every = format!("door: every {}", duration(3600.0 / rate.mean()));
-        let [from, to] = door.closed.ends;
-        let (x, y) = plot.map_coordinate(&pair(&nalgebra::center(&from, &to)));
-        let [width, height] = panel.text_size(&area, &every)?;
-        // Above the door where there is room, otherwise below.
-        let beside = panel.px(14);
-        let y = if y - 2 * beside > rows.start { y - beside } else { y + beside };
-        let around = [(x - width / 2 - 3, y - height / 2 - 1), (x + width / 2 + 3, y + height / 2 + 1)];
-        area.draw(&Rectangle::new(around, WHITE.mix(0.8).filled())).map_err(why)?;
-        panel.write(&area, (x, y), HPos::Center, &every)?;
-    }
-    Ok(())
+/// The doors that opened twice in view, each with how often it opens.
+fn doors(mapper: &Mapper) -> Vec<NamedLine> {
+    let door = |thing: &Thing| {
+        let ThingKind::Door(door) = &thing.kind else { return None };
+        let rate = door.statistics.openings_per_hour().filter(|_| door.statistics.opened >= 2)?;
+        let name = format!("door: every {}", duration(3600.0 / rate.mean()));
+        Some(NamedLine { ends: door.closed.ends, name })
+    };
+    mapper.things().iter().filter_map(door).collect()
 }
 
 /// The part of a picture that differs from the picture before.
@@ -186,7 +187,8 @@ fn difference(before: &[u8], now: &[u8], [width, height]: [u32; 2]) -> Frame<'st
     }
 }
 
-/// The colors of a film.
+/// The colors of a film: the most frequent ones of its first frame, whose maps, color bar and legends have all that matter.
+#[derive(Default)]
 struct Colors {
     all: Vec<Rgb>,
     /// The nearest of all colors.
@@ -194,32 +196,11 @@ struct Colors {
 }
 
 impl Colors {
-    /// The colors of the maps and the robots, and a coarse selection of all others for smooth edges.
-    fn new() -> Self {
-        let mut all = vec![
-            palette::FREE,
-            palette::BLOCKED,
-            palette::BLOCKED_FAINT,
-            palette::UNKNOWN,
-            palette::INK,
-            palette::CURIOUS,
-            palette::OTHER_ROBOT,
-            palette::PATH,
-            palette::GOAL,
-            palette::MOVING,
-            palette::SENSOR,
-            palette::SENSOR_AREA,
-        ];
-        all.extend(
-            Layer::Interval.scale_classes().iter().step_by(2).map(|&class| Layer::Interval.color(class)),
-        );
-        all.extend((1..32).map(|gray| [gray * 8; 3]));
-        let steps =
-            |count: u8| (0..count).map(move |step| (u16::from(step) * 255 / u16::from(count - 1)) as u8);
-        all.extend(
-            steps(6)
-                .flat_map(|red| steps(6).flat_map(move |green| steps(5).map(move |blue| [red, green, blue]))),
-        );
+    fn of(pixels: &[Rgb]) -> Self {
+        let mut counts: BTreeMap<Rgb, usize> = BTreeMap::new();
+        pixels.iter().for_each(|color| *counts.entry(*color).or_default() += 1);
+        let mut all: Vec<Rgb> = counts.keys().copied().collect();
+        all.sort_by_key(|color| Reverse(counts[color]));
         all.truncate(usize::from(SAME));
         Self { all, known: BTreeMap::new() }
     }

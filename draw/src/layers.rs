@@ -16,35 +16,10 @@ pub enum Layer {
     ChangeProbability,
     /// The time since the cell was last seen, s.
     Recency,
-    /// The probability that the cell is blocked now or later, for cells that change: the map as predicted.
-    Predicted(Ahead),
+    /// The probability that the cell is blocked now, or this time ahead, s, for cells that change: the map as predicted.
+    Predicted(u16),
     /// For how long a look at the cell says more than its usual hours, h.
     Expiry,
-}
-
-/// The time ahead of a predicted map.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Ahead {
-    /// Now.
-    Now,
-    /// In 60 s.
-    Minute,
-    /// In 600 s.
-    TenMinutes,
-    /// In 3600 s.
-    Hour,
-}
-
-impl Ahead {
-    /// The time, s.
-    fn time_s(self) -> f64 {
-        match self {
-            Self::Now => 0.0,
-            Self::Minute => 60.0,
-            Self::TenMinutes => 600.0,
-            Self::Hour => 3600.0,
-        }
-    }
 }
 
 /// A cell that was never seen. Class 0 stays unused: the viewer draws nothing for it.
@@ -105,12 +80,8 @@ impl Layer {
         Self::PREDICTED[3],
     ];
     /// The predicted maps, now and at three times ahead.
-    pub const PREDICTED: [Self; 4] = [
-        Self::Predicted(Ahead::Now),
-        Self::Predicted(Ahead::Minute),
-        Self::Predicted(Ahead::TenMinutes),
-        Self::Predicted(Ahead::Hour),
-    ];
+    pub const PREDICTED: [Self; 4] =
+        [Self::Predicted(0), Self::Predicted(60), Self::Predicted(600), Self::Predicted(3600)];
 
     /// The name in entity paths and file names, and the title above the map.
     fn words(self) -> [&'static str; 2] {
@@ -119,10 +90,10 @@ impl Layer {
             Self::Interval => ["interval", "Cycle time: seconds per cycle"],
             Self::ChangeProbability => ["change_probability", "Probability of a change since last seen"],
             Self::Recency => ["recency", "Recency: seconds since last seen"],
-            Self::Predicted(Ahead::Now) => ["predicted", "Probability of being blocked now"],
-            Self::Predicted(Ahead::Minute) => ["predicted_60", "Probability of being blocked in 1 min"],
-            Self::Predicted(Ahead::TenMinutes) => ["predicted_600", "Probability of being blocked in 10 min"],
-            Self::Predicted(Ahead::Hour) => ["predicted_3600", "Probability of being blocked in 1 h"],
+            Self::Predicted(0) => ["predicted", "Probability of being blocked now"],
+            Self::Predicted(60) => ["predicted_60", "Probability of being blocked in 1 min"],
+            Self::Predicted(600) => ["predicted_600", "Probability of being blocked in 10 min"],
+            Self::Predicted(_) => ["predicted_3600", "Probability of being blocked in 1 h"],
             Self::Expiry => ["expiry", "Expiry: hours for which a look counts"],
         }
     }
@@ -164,7 +135,7 @@ impl Layer {
             let interval = mapper.interval(index);
             interval.is_finite().then(|| match self {
                 Self::Interval => interval,
-                Self::Predicted(ahead) => mapper.blocked_probability_later(index, ahead.time_s()),
+                Self::Predicted(ahead_s) => mapper.blocked_probability_later(index, f64::from(ahead_s)),
                 Self::Expiry => f64::NAN,
                 _ => mapper.change_probability(index),
             })

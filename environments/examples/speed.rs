@@ -70,7 +70,7 @@ fn steps<T: Task + 'static>(tasks: Vec<T>, threads: usize, steps: usize) -> Resu
     let mut actions = || (0..count).flat_map(|_| [uniform().abs(), uniform()]).collect();
     let actions: Vec<Vec<f32>> = (0..100).map(|_| actions()).collect();
     let mut batch = Batch::new(tasks);
-    batch.set_parallel(threads > 1);
+    batch.is_parallel = threads > 1;
     let seeds = |step: usize| (0..count).map(|index| (step * count + index) as u64).collect::<Vec<u64>>();
     batch.reset(&seeds(0))?;
     let begin = Clock::now()?;

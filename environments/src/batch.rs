@@ -9,9 +9,13 @@ use sim::physics::SnapshotError;
 /// A number of tasks of the same kind.
 pub struct Batch {
     slots: Vec<Slot>,
-    is_parallel: bool,
-    pool: Option<ThreadPool>,
-    is_autoreset: bool,
+    /// Whether the tasks are stepped on the threads of the pool (the default for more than one task), or on this thread alone. The
+    /// results are the same.
+    pub is_parallel: bool,
+    /// The pool of threads; `None`: the present rayon pool.
+    pub pool: Option<ThreadPool>,
+    /// Whether a task that is over is reset in the same step (the default), or stands still until it is reset.
+    pub is_autoreset: bool,
 }
 
 /// A task, the seed of its episode, and the results of its last step.
@@ -49,26 +53,6 @@ impl Batch {
             tasks.into_iter().map(|task| Slot { results: Results::of(&task), seed: 0, task: Box::new(task) });
         let slots: Vec<Slot> = slots.collect();
         Self { is_parallel: slots.len() > 1, slots, pool: None, is_autoreset: true }
-    }
-
-    /// Whether the tasks are stepped on the threads of the pool (the default for more than one task), or on this thread alone. The results are the same.
-    pub fn set_parallel(&mut self, is_parallel: bool) {
-        self.is_parallel = is_parallel;
-    }
-
-    /// The pool of threads; by default the present rayon pool.
-    pub fn set_pool(&mut self, pool: ThreadPool) {
-        self.pool = Some(pool);
-    }
-
-    /// Whether a task that is over is reset in the same step (the default), or stands still until it is reset.
-    pub fn set_autoreset(&mut self, is_autoreset: bool) {
-        self.is_autoreset = is_autoreset;
-    }
-
-    /// Whether a task that is over is reset in the same step.
-    pub fn is_autoreset(&self) -> bool {
-        self.is_autoreset
     }
 
     /// The number of tasks.
@@ -124,7 +108,9 @@ impl Batch {
         // Not NaN, and rounding may add a little.
         let is_valid = |action: &f32| action.abs() <= 1.0 + ROUNDING;
         if let Some(at) = actions.iter().position(|action| !is_valid(action)) {
-            return Err(TaskError::Action { environment: at / of_task, value: actions[at] });
+            let (environment, value) = (at / of_task, actions[at]);
+            let why = format!("action {value} of environment {environment} is not from -1 to 1");
+            return Err(TaskError::Values(why));
         }
         let is_autoreset = self.is_autoreset;
         let inputs = actions.chunks(of_task).zip(next_seeds).collect();
@@ -158,6 +144,7 @@ impl Batch {
     }
 }
 
-fn check(what: &'static str, found: usize, expected: usize) -> Result<(), TaskError> {
-    if found == expected { Ok(()) } else { Err(TaskError::Length { what, found, expected }) }
+fn check(what: &str, found: usize, expected: usize) -> Result<(), TaskError> {
+    let why = || format!("{what}: {found} values, and not {expected}");
+    if found == expected { Ok(()) } else { Err(TaskError::Values(why())) }
 }

@@ -2,58 +2,41 @@
 
 use interfaces::{Cell, GridFrame};
 use nalgebra::{Point2, Vector2};
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
 
 /// The cost of a step to a cell that shares a side, and to one that shares a corner: 5 : 7 is √2 within 1 %.
 const SIDE: u16 = 5;
 const CORNER: u16 = 7;
-/// More buckets than the largest cost.
-const BUCKETS: usize = 8;
-/// The cost of a cell from which no path leads to the goal.
+/// The cost of a cell from which no path leads to the goal, or only a longer one.
 const UNREACHED: u16 = u16::MAX;
-/// The largest cost: cells that are farther away count as unreached.
-const FARTHEST: u16 = UNREACHED - CORNER - 1;
 
 /// The distances to one goal.
 #[derive(Clone, Debug)]
 pub(crate) struct Distances {
-    costs: Box<[u16]>,
-    /// The neighbor that is nearest to the goal, as an index of [`NEIGHBORS`]; [`NO_NEIGHBOR`] for a cell without one.
-    nearer: Box<[u8]>,
+    costs: Vec<u16>,
 }
-
-const NO_NEIGHBOR: u8 = u8::MAX;
 
 impl Distances {
     /// The distances to the cell `goal` (an index) through cells for which `is_free` is true.
     pub(crate) fn new(frame: &GridFrame, is_free: &[bool], goal: usize) -> Self {
-        let mut costs = vec![UNREACHED; frame.len()].into_boxed_slice();
-        let mut buckets: [Vec<usize>; BUCKETS] = Default::default();
+        let mut costs = vec![UNREACHED; frame.len()];
+        let mut open = BinaryHeap::from([Reverse((0, goal))]);
         costs[goal] = 0;
-        buckets[0].push(goal);
-        let (mut cost, mut waiting) = (0_u16, 1_usize);
-        while waiting > 0 && cost <= FARTHEST {
-            while let Some(index) = buckets[usize::from(cost) % BUCKETS].pop() {
-                waiting -= 1;
-                if costs[index] != cost {
-                    continue;
-                }
-                for (near, (_, _, step)) in neighbors(frame, index).zip(NEIGHBORS) {
-                    let Some(near) = near else { continue };
-                    if is_free[near] && costs[near] > cost + step {
-                        costs[near] = cost + step;
-                        buckets[usize::from(cost + step) % BUCKETS].push(near);
-                        waiting += 1;
-                    }
+        while let Some(Reverse((cost, index))) = open.pop() {
+            if costs[index] != cost {
+                continue;
+            }
+            for (near, (_, _, step)) in neighbors(frame, index).zip(NEIGHBORS) {
+                let Some(near) = near.filter(|near| is_free[*near]) else { continue };
+                let next = cost.saturating_add(step);
+                if next < costs[near] {
+                    costs[near] = next;
+                    open.push(Reverse((next, near)));
                 }
             }
-            cost += 1;
         }
-        let nearer = (0..costs.len()).map(|index| {
-            let neighbors = (0..).zip(neighbors(frame, index));
-            let near = neighbors.filter_map(|(number, near)| Some((number, near?)));
-            near.min_by_key(|(_, near)| costs[*near]).map_or(NO_NEIGHBOR, |(number, _)| number)
-        });
-        Self { nearer: nearer.collect(), costs }
+        Self { costs }
     }
 
     /// The free cell at `point` (m), or the nearest one to the goal within two cells.
@@ -85,8 +68,7 @@ impl Distances {
         let mut index = self.cell_near(frame, point)?;
         let end = self.costs[index].saturating_sub((ahead_m / frame.resolution_m() * f64::from(SIDE)) as u16);
         while self.costs[index] > end {
-            let (dx, dy, _) = NEIGHBORS.get(usize::from(self.nearer[index]))?;
-            index = index.checked_add_signed(*dy as isize * frame.width() as isize + *dx as isize)?;
+            index = neighbors(frame, index).flatten().min_by_key(|near| self.costs[*near])?;
         }
         (frame.center(frame.cell(index)) - point).try_normalize(1e-6)
     }

@@ -1,5 +1,6 @@
 //! The settings of driving tasks.
 
+use crate::task::check_rewards;
 use interfaces::{SettingsCheck, SettingsError};
 
 /// Settings of [`Drive`](crate::Drive).
@@ -56,14 +57,12 @@ impl DriveSettings {
         check.within("max_steps", self.max_steps, 1.0..=1e9, "from 1 to 1000000000")?;
         check.positive("goal_radius_m", self.goal_radius_m)?;
         check.not_negative("min_goal_m", self.min_goal_m)?;
-        for (key, reward) in [
+        let rewards = [
             ("goal_reward", self.goal_reward),
             ("progress_reward", self.progress_reward),
             ("collision_reward", self.collision_reward),
             ("step_reward", self.step_reward),
-        ] {
-            check.within(key, reward, -1e6..=1e6, "from -1000000 to 1000000")?;
-        }
-        Ok(())
+        ];
+        check_rewards(&check, &rewards)
     }
 }

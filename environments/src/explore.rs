@@ -8,10 +8,11 @@ use draw::pictures::bare;
 use draw::scene::{Scene, extent};
 use evaluation::metrics::{MAX_LOG_ERROR, mean_log_error};
 use interfaces::{
-    CellState, LaserReading, Purpose, RandomStream, SparseCells, Twist, ValueError, World, from_bytes,
-    heading_rad, to_bytes,
+    CellState, LaserReading, Purpose, RandomStream, SparseCells, Twist, World, from_bytes, heading_rad,
+    to_bytes,
 };
 use mapper::Mapper;
+use robot::state::{Sessions, State, learned, restore};
 use robot::{NoPilot, Robot};
 use sim::physics::{PhysicsWorld, SnapshotError};
 use std::sync::Arc;
@@ -117,7 +118,9 @@ impl Explore {
         self.episode.steps += 1;
         self.episode.collisions += hits;
         let (settings, after) = (&self.place.settings, self.episode);
-        let reward = settings.update_reward * (after.found - before.found) as f64 / self.one.cells_wide
+        let spec = self.world.spec();
+        let cells_wide = (2.0 * spec.driven().radius_m / spec.frame.resolution_m()).max(1.0);
+        let reward = settings.update_reward * (after.found - before.found) as f64 / cells_wide
             + settings.collision_reward * f64::from(hits)
             + settings.seen_reward * (after.known - before.known) as f64 * self.cell_m2();
         if self.is_over() || after.steps.is_multiple_of(ERROR_EVERY) {
@@ -157,7 +160,7 @@ impl Explore {
         let number = self.path.len() - 1;
         if number.is_multiple_of(NOTE_EVERY) {
             for index in mapper.seen() {
-                let ago = mapper.recency(index) * self.one.rate_hz;
+                let ago = mapper.recency(index) * self.world.spec().driven().laser.rate_hz;
                 self.seen_at.set(index, number.saturating_sub(ago.round() as usize) as u32);
             }
         }
@@ -236,8 +239,8 @@ impl Task for Explore {
     fn observe(&mut self, observations: &mut [f32]) {
         let (scan, rest) = observations.split_at_mut(self.place.beams);
         let (state, map) = rest.split_at_mut(STATE);
-        write_scan(scan, &self.reading.scan.ranges_m, self.one.range_max_m);
         let (spec, pose) = (self.world.spec(), &self.reading.pose);
+        write_scan(scan, &self.reading.scan.ranges_m, spec.driven().laser.range_max_m);
         let (drive, (origin, size_m)) = (&spec.driven().drive, extent(&spec.frame));
         let at = pose.translation.vector - origin.coords;
         let (sin, cos) = libm::sincos(heading_rad(pose));
@@ -269,24 +272,17 @@ impl Task for Explore {
     }
 
     fn snapshot(&mut self) -> Vec<u8> {
-        let filter = self.robot.filter_mut().map(|filter| interfaces::snapshot(filter.values()));
-        let learned = (
-            self.robot.mapper.snapshot(),
-            self.robot.localization_mut().snapshot(),
-            filter.unwrap_or_default(),
-        );
+        let learned = learned(&mut self.robot, &self.one.settings, &Sessions::of("explore"))();
         let world = self.world.snapshot().into_bytes();
         let views = (self.seen_at.to_vec(), &self.path, &self.layers);
         to_bytes(&(self.number, world, learned, &self.reading, self.episode, views))
     }
 
     fn restore(&mut self, snapshot: &[u8]) -> Result<(), SnapshotError> {
-        type Learned = (Vec<u8>, Vec<u8>, Vec<u8>);
         type Views = (Vec<u32>, Vec<[f64; 2]>, Vec<f32>);
-        type Saved = (usize, Vec<u8>, Learned, LaserReading, Episode, Views);
-        let damaged = |_: ValueError| SnapshotError::Damaged;
-        let saved: Saved = from_bytes(snapshot).map_err(damaged)?;
-        let (number, world, (mapper, poses, filter), reading, episode, (seen_at, path, layers)) = saved;
+        type Saved = (usize, Vec<u8>, State, LaserReading, Episode, Views);
+        let saved: Saved = from_bytes(snapshot).map_err(|_| SnapshotError::Damaged)?;
+        let (number, world, learned, reading, episode, (seen_at, path, layers)) = saved;
         if number >= self.place.count() || layers.len() != self.layers.len() {
             return Err(SnapshotError::OtherSpec);
         }
@@ -299,11 +295,7 @@ impl Task for Explore {
         (self.path, self.layers) = (path, layers);
         seen_at.into_iter().enumerate().for_each(|(index, reading)| self.seen_at.set(index, reading));
         self.world.restore(&world)?;
-        self.robot.mapper.restore(&mapper).map_err(damaged)?;
-        self.robot.localization_mut().restore(&poses).map_err(damaged)?;
-        if let Some(own) = self.robot.filter_mut() {
-            interfaces::restore(own.values(), &filter).map_err(damaged)?;
-        }
+        restore(&learned, &mut self.robot, &self.one.settings).map_err(|_| SnapshotError::Damaged)?;
         (self.reading, self.episode) = (reading, episode);
         self.count_found();
         Ok(())

@@ -1,10 +1,10 @@
 //! The worlds of exploring tasks, built once and shared.
 
 use crate::patches::Patches;
-use crate::task::TaskError;
+use crate::place::check_beams;
+use crate::task::{TaskError, check_rewards};
 use evaluation::physics_trial;
-use interfaces::GridFrame;
-use interfaces::{LaserReading, PoseMode, SettingsCheck, SettingsError};
+use interfaces::{GridFrame, LaserReading, PoseMode, SettingsCheck, SettingsError};
 use nalgebra::{Isometry2, Point2};
 use robot::{NoPilot, Robot, Settings};
 use sim::physics::building_ranges::HOUSE;
@@ -46,14 +46,12 @@ impl ExploreSettings {
         if let Some(beams) = self.beams {
             check.within("beams", beams as f64, 2.0..=1e4, "from 2 to 10000")?;
         }
-        for (key, reward) in [
+        let rewards = [
             ("update_reward", self.update_reward),
             ("seen_reward", self.seen_reward),
             ("collision_reward", self.collision_reward),
-        ] {
-            check.within(key, reward, -1e6..=1e6, "from -1000000 to 1000000")?;
-        }
-        Ok(())
+        ];
+        check_rewards(&check, &rewards)
     }
 }
 
@@ -75,11 +73,6 @@ enum Worlds {
 pub(crate) struct One {
     pub(crate) world: PhysicsWorld,
     pub(crate) settings: Settings,
-    pub(crate) range_max_m: f64,
-    /// The number of readings per second.
-    pub(crate) rate_hz: f64,
-    /// The number of cells in the width of the robot.
-    pub(crate) cells_wide: f64,
     /// Where an episode can begin.
     pub(crate) free: Option<FreePoses>,
 }
@@ -95,10 +88,10 @@ impl ExplorePlace {
     pub fn new(worlds: &[WorldSpec], settings: ExploreSettings) -> Result<Self, TaskError> {
         settings.check()?;
         let worlds = worlds.iter().map(|spec| One::new(spec, &settings)).collect::<Result<Vec<_>, _>>()?;
-        let expected = worlds.first().ok_or(TaskError::NoWorld)?.beams();
-        if let Some(other) = worlds.iter().find(|one| one.beams() != expected) {
-            let of = format!("the robot in `{}`", other.world.spec().name);
-            return Err(TaskError::OtherBeams { of, found: other.beams(), expected });
+        let expected = worlds.first().ok_or_else(no_world)?.beams();
+        for One { world, .. } in &worlds {
+            let of = format!("the robot in `{}`", world.spec().name);
+            check_beams(&of, world.spec().driven().laser.beams, expected)?;
         }
         let patches = Patches::covering(worlds.iter().map(|one| &one.world.spec().frame));
         let worlds = Worlds::Kept(worlds.into_iter().map(Arc::new).collect());
@@ -113,8 +106,8 @@ impl ExplorePlace {
     /// When there is no house, or a setting is out of range.
     pub fn of_houses(seeds: Vec<u64>, settings: ExploreSettings) -> Result<Self, TaskError> {
         settings.check()?;
-        let first =
-            One::new(&WorldSpec::generate_house(*seeds.first().ok_or(TaskError::NoWorld)?), &settings)?;
+        let first = seeds.first().ok_or_else(no_world)?;
+        let first = One::new(&WorldSpec::generate_house(*first), &settings)?;
         let cell_m = first.world.spec().frame.resolution_m();
         let largest = GridFrame::covering(Point2::origin(), HOUSE.length_m[1], HOUSE.width_m[1], cell_m);
         let patches = Patches::covering(largest.iter());
@@ -148,13 +141,10 @@ impl One {
         laser.beams = task.beams.unwrap_or(laser.beams);
         let spec = WorldSpec::driving(fleet, driven).unwrap_or_else(|| spec.clone());
         let settings = Settings { pose: PoseMode::Exact, ..physics_trial::settings(&spec)? };
-        let robot = spec.driven();
-        let cells_wide = (2.0 * robot.radius_m / spec.frame.resolution_m()).max(1.0);
-        let (range_max_m, rate_hz) = (robot.laser.range_max_m, robot.laser.rate_hz);
         let mut world = PhysicsWorld::new(&spec, 0);
         world.correct_odometry();
         let free = FreePoses::reachable(spec.fleet(), spec.driven_index());
-        let one = Self { world, settings, range_max_m, rate_hz, cells_wide, free };
+        let one = Self { world, settings, free };
         // Errors of the settings and of the size of the map are found here, and not in an episode.
         one.robot()?;
         Ok(one)
@@ -168,4 +158,8 @@ impl One {
     fn beams(&self) -> usize {
         self.world.spec().driven().laser.beams
     }
+}
+
+fn no_world() -> TaskError {
+    TaskError::World("exploring needs at least one world".to_owned())
 }

@@ -57,7 +57,10 @@ impl DrivePlace {
         settings.check()?;
         let steps = (settings.decision_s / spec.step_s).round();
         if steps < 1.0 || (steps * spec.step_s - settings.decision_s).abs() > 1e-6 {
-            return Err(TaskError::Decision { decision_s: settings.decision_s, step_s: spec.step_s });
+            return Err(TaskError::World(format!(
+                "a decision every {:?} s is not a whole number of physics steps of {:?} s",
+                settings.decision_s, spec.step_s
+            )));
         }
         let size_m = extent(&spec.frame).1;
         let cell_m = spec.frame.resolution_m().max(PATH_CELL_M);
@@ -65,15 +68,20 @@ impl DrivePlace {
             GridFrame::covering(spec.frame.origin(), size_m.x, size_m.y, cell_m).unwrap_or(spec.frame);
         let coarse = FleetSpec { frame, ..spec.clone() };
         let driven: Vec<usize> = spec.driven_robots().collect();
-        let first = driven.first().ok_or_else(|| TaskError::NoDrivenRobot { world: spec.name.clone() })?;
+        let world = &spec.name;
+        let nobody = || {
+            format!(
+                "no robot of the world `{world}` is driven: give one of them `behavior = {{ kind = \"driven\" }}`"
+            )
+        };
+        let first = driven.first().ok_or_else(|| TaskError::World(nobody()))?;
         let expected = spec.robots[*first].laser.beams;
         let agent = |&robot: &usize| {
-            let (name, found) = (&spec.robots[robot].name, spec.robots[robot].laser.beams);
-            if found != expected {
-                return Err(TaskError::OtherBeams { of: format!("the robot `{name}`"), found, expected });
-            }
-            DrivenRobot::new(&coarse, robot)
-                .ok_or_else(|| TaskError::NoSpace { robot: name.clone(), world: spec.name.clone() })
+            let name = &spec.robots[robot].name;
+            check_beams(&format!("the robot `{name}`"), spec.robots[robot].laser.beams, expected)?;
+            let no_space =
+                || format!("the robot `{name}` of the world `{world}` has no free space around its start");
+            DrivenRobot::new(&coarse, robot).ok_or_else(|| TaskError::World(no_space()))
         };
         let robots = driven.iter().map(agent).collect::<Result<_, _>>()?;
         let (fleet, diagonal_m) = (Fleet::new(spec, 0), size_m.x.hypot(size_m.y));
@@ -117,6 +125,12 @@ impl DrivePlace {
         }
         best
     }
+}
+
+/// Checks that the laser of a robot has as many beams as that of the first one.
+pub(crate) fn check_beams(of: &str, found: usize, expected: usize) -> Result<(), TaskError> {
+    let other = || format!("the laser of {of} has {found} beams, and that of the first one has {expected}");
+    if found == expected { Ok(()) } else { Err(TaskError::World(other())) }
 }
 
 impl DrivenRobot {

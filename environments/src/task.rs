@@ -3,7 +3,7 @@
 use draw::canvas::{Canvas, PictureError};
 use draw::scene::Scene;
 use evaluation::scenes::Displayed;
-use interfaces::Twist;
+use interfaces::{SettingsCheck, SettingsError, Twist};
 use sim::physics::{DriveLimits, Fleet, SnapshotError};
 
 /// The number of values of an action: linear and angular velocity.
@@ -178,65 +178,27 @@ impl Part {
 /// The error for a task that cannot be made, or for values of the wrong length or out of range.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TaskError {
-    /// No robot of the world executes commands.
-    #[error(
-        "no robot of the world `{world}` is driven: give one of them `behavior = {{ kind = \"driven\" }}`"
-    )]
-    NoDrivenRobot {
-        /// The name of the world.
-        world: String,
-    },
-    /// A driven robot has no free space at its start.
-    #[error("the robot `{robot}` of the world `{world}` has no free space around its start")]
-    NoSpace {
-        /// The name of the robot.
-        robot: String,
-        /// The name of the world.
-        world: String,
-    },
-    /// The lasers of driven robots, or of the explorers of several worlds, differ.
-    #[error("the laser of {of} has {found} beams, and that of the first one has {expected}")]
-    OtherBeams {
-        /// The robot, or the world.
-        of: String,
-        /// Its number of beams.
-        found: usize,
-        /// The number of beams of the first one.
-        expected: usize,
-    },
-    /// The time of a decision is not a whole number of physics steps.
-    #[error("a decision every {decision_s:?} s is not a whole number of physics steps of {step_s:?} s")]
-    Decision {
-        /// The time from one decision to the next, s.
-        decision_s: f64,
-        /// The physics step of the world, s.
-        step_s: f64,
-    },
+    /// A world does not suit the task.
+    #[error("{0}")]
+    World(String),
     /// A setting is out of range.
     #[error(transparent)]
-    Settings(#[from] interfaces::SettingsError),
+    Settings(#[from] SettingsError),
     /// The controller cannot drive the robot.
     #[error(transparent)]
     Drive(#[from] evaluation::physics_trial::UnsupportedDrive),
-    /// There is no world.
-    #[error("exploring needs at least one world")]
-    NoWorld,
-    /// An action is NaN or beyond −1 to 1.
-    #[error("action {value} of environment {environment} is not from -1 to 1")]
-    Action {
-        /// The index of the environment.
-        environment: usize,
-        /// The action.
-        value: f32,
-    },
-    /// A slice has the wrong length.
-    #[error("{what}: {found} values, and not {expected}")]
-    Length {
-        /// What the slice is for.
-        what: &'static str,
-        /// Its length.
-        found: usize,
-        /// The right length.
-        expected: usize,
-    },
+    /// An action is NaN or beyond −1 to 1, or a slice has the wrong length.
+    #[error("{0}")]
+    Values(String),
+}
+
+/// Checks rewards of settings.
+pub(crate) fn check_rewards(
+    check: &SettingsCheck,
+    rewards: &[(&'static str, f64)],
+) -> Result<(), SettingsError> {
+    let check = |(key, reward): &(&'static str, f64)| {
+        check.within(key, *reward, -1e6..=1e6, "from -1000000 to 1000000")
+    };
+    rewards.iter().try_for_each(check)
 }

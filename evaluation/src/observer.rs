@@ -87,7 +87,8 @@ impl Observer {
             self.changing.sample(mapper, truth);
         }
         if mapper.readings() % SCORE_EVERY == 1 {
-            self.prediction.sample(mapper, truth, Some(&self.true_chains));
+            let is_hidden = |index| !mapper.is_in_view(index);
+            self.prediction.sample(mapper, truth, Some(&self.true_chains), is_hidden);
             self.curve.push((reading.time_s, map_scores(mapper, truth)));
         }
     }

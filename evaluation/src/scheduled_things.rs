@@ -47,11 +47,6 @@ impl ScheduledThings {
     /// The time from sample to sample, s.
     pub const EVERY_S: f64 = 60.0;
 
-    /// Whether nothing was compared.
-    pub fn is_empty(&self) -> bool {
-        self.samples == 0
-    }
-
     /// Compares the map with the world if a sample is due. The map predicts from its last reading.
     pub fn sample(&mut self, world: &PhysicsWorld, mapper: &Mapper) {
         let is_due = world.time_s() + 1e-6 >= self.samples as f64 * Self::EVERY_S;

@@ -4,7 +4,7 @@ mod words;
 
 use crate::metrics::{
     Age, ChangingScores, Delays, ForecastScores, IntervalScores, MapScores, PassageScores, PoseScores,
-    PredictedScores, RateScores, ReachableScores, ThingReport,
+    RateScores, ReachableScores, StateScores, ThingReport,
 };
 use crate::scheduled_things::ScheduledScores;
 use robot::{DayTotals, GoalCount};
@@ -77,7 +77,7 @@ pub struct RunResults {
     #[serde(flatten)]
     pub changing: ChangingScores,
     /// The quality of the predicted map on swept cells out of view, over the run.
-    pub predicted: PredictedScores,
+    pub predicted: StateScores,
     /// How well the frozen map predicted what followed.
     pub forecasts: ForecastScores,
     /// The credible intervals of the rates.

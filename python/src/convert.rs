@@ -57,22 +57,12 @@ where
 }
 
 /// Numbers with one dimension, as a list, a tuple or an array of any type.
-pub(crate) struct Row<'py, T: Element>(PyArrayLike1<'py, T, AllowTypeChange>);
-pub(crate) type Numbers<'py> = Row<'py, f64>;
+pub(crate) struct Row<T>(pub(crate) Vec<T>);
+pub(crate) type Numbers = Row<f64>;
 /// Ranges of a scan.
-pub(crate) type Ranges<'py> = Row<'py, f32>;
+pub(crate) type Ranges = Row<f32>;
 
-impl<T: Element> Row<'_, T> {
-    /// The numbers.
-    pub(crate) fn to_vec(&self) -> Vec<T>
-    where
-        T: Copy,
-    {
-        self.0.as_array().iter().copied().collect()
-    }
-}
-
-impl<'a, 'py, T: Element> FromPyObject<'a, 'py> for Row<'py, T>
+impl<'a, 'py, T: Element + Copy> FromPyObject<'a, 'py> for Row<T>
 where
     PyArrayLike1<'py, T, AllowTypeChange>: FromPyObject<'a, 'py, Error = PyErr>,
 {
@@ -80,7 +70,8 @@ where
 
     fn extract(object: Borrowed<'a, 'py, PyAny>) -> PyResult<Self> {
         check_real(&object)?;
-        let row = object.extract().map_err(|error: PyErr| {
+        let row: PyResult<PyArrayLike1<'py, T, AllowTypeChange>> = object.extract();
+        let row = row.map_err(|error| {
             // The message about dimensions of the crate `numpy` is not a sentence.
             if error.is_instance_of::<PyTypeError>(object.py()) {
                 PyTypeError::new_err(format!("one row of numbers is needed, and not {}", described(&object)))
@@ -88,7 +79,7 @@ where
                 error
             }
         });
-        row.map(Self)
+        Ok(Self(row?.as_array().iter().copied().collect()))
     }
 }
 
@@ -181,8 +172,7 @@ pub(crate) fn no_robot(robot: usize, robots: usize) -> PyErr {
 }
 
 /// Three numbers, finite: x and y (m), heading (rad).
-pub(crate) fn pose(pose: &Numbers<'_>) -> PyResult<Isometry2<f64>> {
-    let values = pose.to_vec();
+pub(crate) fn pose(Row(values): &Numbers) -> PyResult<Isometry2<f64>> {
     match values[..] {
         [x, y, heading] if values.iter().all(|value| value.is_finite()) => {
             Ok(interfaces::pose(x, y, heading))

@@ -45,7 +45,7 @@ impl Localizer {
     /// Without: anywhere in the known map. `range_noise`: the standard deviation of a range, m.
     #[new]
     #[pyo3(signature = (mapper, pose = None, *, range_noise = 0.01))]
-    fn new(py: Python<'_>, mapper: &Mapper, pose: Option<Numbers<'_>>, range_noise: f64) -> PyResult<Self> {
+    fn new(py: Python<'_>, mapper: &Mapper, pose: Option<Numbers>, range_noise: f64) -> PyResult<Self> {
         let settings = LocalizerSettings { range_noise_std_m: range_noise, ..LocalizerSettings::default() };
         let (map, start) = (mapper.mapper.states(), pose.as_ref().map(crate::convert::pose).transpose()?);
         let is_empty = mapper.mapper.readings() == 0;
@@ -91,7 +91,7 @@ impl Localizer {
     /// Returns to the snapshot of a localizer with the same settings. `SnapshotError`: the bytes are not one; nothing
     /// changes then.
     fn restore(&mut self, snapshot: &[u8]) -> PyResult<()> {
-        let (state, before) = (SNAPSHOT.open(snapshot)?, self.localizer.snapshot());
+        let (state, before) = (SNAPSHOT.open(snapshot, true)?, self.localizer.snapshot());
         self.localizer.restore(state).map_err(|_| {
             let was_restored = self.localizer.restore(&before);
             debug_assert!(was_restored.is_ok(), "a localizer takes its own snapshot");

@@ -292,7 +292,7 @@ impl Mapper {
     /// nothing changes then.
     fn restore(&mut self, py: Python<'_>, snapshot: &[u8]) -> PyResult<()> {
         let mut restored = self.mapper.clone();
-        let state = SNAPSHOT.open(snapshot)?;
+        let state = SNAPSHOT.open(snapshot, true)?;
         py.detach(|| restored.restore(state)).map_err(|_| {
             SnapshotError::new_err("the snapshot was taken of a map with other cells or another estimator")
         })?;

@@ -27,17 +27,17 @@ impl Reading {
     #[allow(clippy::too_many_arguments)]
     pub(crate) fn new(
         time: f64,
-        ranges: Ranges<'_>,
-        pose: Numbers<'_>,
+        ranges: Ranges,
+        pose: Numbers,
         angle_min: f64,
         angle_increment: Option<f64>,
         range_min: f64,
         range_max: f64,
-        mount: Option<Numbers<'_>>,
+        mount: Option<Numbers>,
         sweep: f64,
         velocity: [f64; 2],
     ) -> PyResult<Self> {
-        let ranges_m = ranges.to_vec();
+        let ranges_m = ranges.0;
         // By default the beams cover a full turn.
         let full_turn = || std::f64::consts::TAU / ranges_m.len().max(1) as f64;
         let [linear_mps, angular_radps] = velocity;

@@ -12,8 +12,6 @@ use xxhash_rust::xxh3::xxh3_64;
 /// The version of the format; count up when the layout of a state changes.
 const VERSION: u32 = 5;
 const KIND: usize = 8;
-/// The kind, and the build of the program.
-const HEADER: usize = KIND + BUILD.len();
 const CHECKSUM: usize = 8;
 
 /// What a snapshot is of.
@@ -27,16 +25,14 @@ impl Kind {
 
     /// The bytes of a snapshot with this state.
     pub(crate) fn seal<'py>(self, py: Python<'py>, state: &[u8]) -> Bound<'py, PyBytes> {
-        let mut bytes = Vec::with_capacity(HEADER + state.len() + CHECKSUM);
-        bytes.extend(self.header());
-        bytes.extend(BUILD.as_bytes());
-        bytes.extend(state);
+        let mut bytes = [&self.header(), BUILD.as_bytes(), state].concat();
         bytes.extend(xxh3_64(&bytes).to_le_bytes());
         PyBytes::new(py, &bytes)
     }
 
-    /// The state in a snapshot. `SnapshotError`: it is of something else, or damaged.
-    pub(crate) fn open(self, snapshot: &[u8]) -> PyResult<&[u8]> {
+    /// The state in a snapshot. `SnapshotError`: it is of something else, or damaged, or was taken by another build, so that what
+    /// follows from it can have other bits, and such a one is not allowed.
+    pub(crate) fn open(self, snapshot: &[u8], allow_other_build: bool) -> PyResult<&[u8]> {
         if !snapshot.starts_with(&self.header()) {
             return Err(SnapshotError::new_err(format!(
                 "these bytes are not a snapshot of this kind ({}), or they come from another version",
@@ -44,27 +40,17 @@ impl Kind {
             )));
         }
         let sealed = snapshot.split_last_chunk::<CHECKSUM>();
-        match sealed.filter(|(body, checksum)| xxh3_64(body).to_le_bytes() == **checksum) {
-            Some((body, _)) => body.get(HEADER..).ok_or_else(damaged),
-            None => Err(damaged()),
+        let body = sealed.filter(|(body, checksum)| xxh3_64(body).to_le_bytes() == **checksum);
+        let body = body.and_then(|(body, _)| body.get(KIND..));
+        let parts = body.and_then(|body| body.split_at_checked(BUILD.len()));
+        let (build, state) = parts.ok_or_else(|| SnapshotError::new_err("the snapshot is damaged"))?;
+        if allow_other_build || build == BUILD.as_bytes() {
+            return Ok(state);
         }
+        Err(SnapshotError::new_err(format!(
+            "the snapshot was taken by another build ({}, this one is {BUILD}), whose results can differ; \
+             allow_other_build=True takes it",
+            String::from_utf8_lossy(build)
+        )))
     }
-}
-
-/// Checks that a snapshot was taken by this build, so that what follows from it has the same bits. `SnapshotError`: it was
-/// not, and another one is not allowed.
-pub(crate) fn check_build(snapshot: &[u8], allow_other_build: bool) -> PyResult<()> {
-    let build = snapshot.get(KIND..HEADER).ok_or_else(damaged)?;
-    if allow_other_build || build == BUILD.as_bytes() {
-        return Ok(());
-    }
-    Err(SnapshotError::new_err(format!(
-        "the snapshot was taken by another build ({}, this one is {BUILD}), whose results can differ; \
-         allow_other_build=True takes it",
-        String::from_utf8_lossy(build)
-    )))
-}
-
-fn damaged() -> PyErr {
-    SnapshotError::new_err("the snapshot is damaged")
 }

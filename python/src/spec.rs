@@ -23,8 +23,6 @@ pub(crate) enum Source {
     Shipped(String),
     /// The text of a world file, and its name.
     Text { name: String, text: String },
-    /// The seed of a generated house.
-    House(u64),
 }
 
 impl Spec {
@@ -35,10 +33,6 @@ impl Spec {
     fn of_text(name: &str, text: String) -> PyResult<Self> {
         let fleet = worldfile::physics::parse_fleet_with(name, &text, &Disk).map_err(world_error)?;
         Ok(Self::new(fleet, Source::Text { name: name.to_owned(), text }))
-    }
-
-    fn from_seed(seed: u64) -> Self {
-        Self::new(WorldSpec::generate_house(seed).fleet().clone(), Source::House(seed))
     }
 }
 
@@ -118,8 +112,11 @@ impl Spec {
     /// The generated house of a seed: rooms at a corridor, doors, furniture, people. The same seed gives the same
     /// house.
     #[staticmethod]
-    fn house(#[pyo3(from_py_with = whole)] seed: u64) -> Self {
-        Self::from_seed(seed)
+    fn house(#[pyo3(from_py_with = whole)] seed: u64) -> PyResult<Self> {
+        let house = WorldSpec::generate_house(seed);
+        let text = worldfile::physics::to_toml(house.fleet());
+        let text = text.ok_or_else(|| world_error("the house cannot be written as a world file"))?;
+        Ok(Self::new(house.fleet().clone(), Source::Text { name: format!("house-{seed}.toml"), text }))
     }
 
     /// The world of the driving task.
@@ -193,15 +190,11 @@ impl Spec {
     }
 
     /// The world as the text of a world file. Pictures that the file names are not in it.
-    fn to_toml(&self) -> PyResult<String> {
+    fn to_toml(&self) -> String {
         match &self.source {
-            Source::Text { text, .. } => Some(text.clone()),
-            Source::Shipped(name) => worldfile::shipped::text(name).map(str::to_owned),
-            Source::House(_) => worldfile::physics::to_toml(&self.fleet),
+            Source::Text { text, .. } => text.clone(),
+            Source::Shipped(name) => worldfile::shipped::text(name).unwrap_or_default().to_owned(),
         }
-        .ok_or_else(|| {
-            world_error(format!("the world `{}` cannot be written as a world file", self.fleet.name))
-        })
     }
 
     /// A spec never changes: a copy is the same object.
@@ -213,13 +206,12 @@ impl Spec {
         this
     }
 
-    /// For pickle: the name, the text or the seed of the world.
+    /// For pickle: the name or the text of the world.
     fn __reduce__<'py>(this: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
         let (py, class) = (this.py(), this.get_type());
         Ok(match &this.get().source {
             Source::Shipped(name) => (class.getattr("load")?, (name,).into_pyobject(py)?),
             Source::Text { name, text } => (class.getattr("from_toml")?, (text, name).into_pyobject(py)?),
-            Source::House(seed) => (class.getattr("house")?, (*seed,).into_pyobject(py)?),
         })
     }
 

@@ -1,6 +1,6 @@
 use crate::convert::{index, snapshot_error, value_error, whole};
 use crate::settings::task_settings;
-use crate::snapshots::{Kind, check_build};
+use crate::snapshots::Kind;
 use crate::spec::{driving, spec_of};
 use environments::{ACTIONS, Drive, DrivePlace, Explore, ExplorePlace, Results, TaskError};
 use numpy::{IntoPyArray, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
@@ -24,10 +24,10 @@ impl Batch {
     fn with(mut batch: environments::Batch, threads: usize) -> PyResult<Self> {
         match threads {
             0 => {}
-            1 => batch.set_parallel(false),
+            1 => batch.is_parallel = false,
             threads => {
                 let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-                batch.set_pool(pool.map_err(|error| PyRuntimeError::new_err(error.to_string()))?);
+                batch.pool = Some(pool.map_err(|error| PyRuntimeError::new_err(error.to_string()))?);
             }
         }
         Ok(Self { batch, is_ready: false })
@@ -162,12 +162,12 @@ impl Batch {
     /// Whether an environment that is over is reset in the same step: set it to False to reset all of them by `reset`.
     #[getter]
     fn autoreset(&self) -> bool {
-        self.batch.is_autoreset()
+        self.batch.is_autoreset
     }
 
     #[setter]
     fn set_autoreset(&mut self, is_autoreset: bool) {
-        self.batch.set_autoreset(is_autoreset);
+        self.batch.is_autoreset = is_autoreset;
     }
 
     /// Begins an episode in every environment. `seeds`: uint64, one per environment. Returns the observations, shape
@@ -234,8 +234,8 @@ impl Batch {
         self.check(environment)?;
         let picture = self.batch.task(environment).picture(size);
         let picture = picture.map_err(|why| PyRuntimeError::new_err(why.to_string()))?;
-        let [width, height] = picture.size().map(|length| length as usize);
-        picture.pixels().to_vec().into_pyarray(py).reshape([height, width, 3])
+        let [width, height] = picture.size.map(|length| length as usize);
+        picture.pixels.into_pyarray(py).reshape([height, width, 3])
     }
 
     /// The seed of the present episode of an environment; 0 before its first reset.
@@ -268,8 +268,7 @@ impl Batch {
         allow_other_build: bool,
     ) -> PyResult<Bound<'py, PyArray2<f32>>> {
         self.check(environment)?;
-        let state = self.kind().open(snapshot)?;
-        check_build(snapshot, allow_other_build)?;
+        let state = self.kind().open(snapshot, allow_other_build)?;
         let observations = self.batch.restore(environment, state).map_err(snapshot_error)?.to_vec();
         self.is_ready |= self.environments() == 1;
         self.rows_of_one(py, observations)

@@ -1,7 +1,7 @@
 use crate::convert::{from_json, grid, optional_index, pose_array, snapshot_error, value_error, whole};
 use crate::mapper::Mapper;
 use crate::reading::Reading;
-use crate::snapshots::{Kind, check_build};
+use crate::snapshots::Kind;
 use crate::spec::{driving, spec_of};
 use evaluation::metrics::{MapScores, RateScores, map_scores, rate_scores};
 use interfaces::{GroundTruth, TrueState, Twist, World as _};
@@ -152,8 +152,7 @@ impl World {
     fn restore(&mut self, py: Python<'_>, snapshot: &[u8], allow_other_build: bool) -> PyResult<()> {
         let world = &mut self.world;
         let mut restored = world.clone();
-        let state = SNAPSHOT.open(snapshot)?;
-        check_build(snapshot, allow_other_build)?;
+        let state = SNAPSHOT.open(snapshot, allow_other_build)?;
         py.detach(|| restored.restore(state)).map_err(snapshot_error)?;
         *world = restored;
         Ok(())

@@ -107,8 +107,8 @@ impl Report {
             let conclusions = counts.chain(winner(run));
             let paragraphs = [
                 format!("{}\n{}", run.world, conditions(run, &self.settings)),
-                values(&run.strategies, columns).to_string(),
-                predictions(&run.strategies, length.choose(&[][..], &PREDICTION_COLUMNS)),
+                values(&run.strategies, columns),
+                values(&run.strategies, length.choose(&[][..], &PREDICTION_COLUMNS)),
                 differences(run).unwrap_or_default(),
                 conclusions.collect::<Vec<_>>().join("\n"),
             ];
@@ -139,12 +139,10 @@ fn aligned(rows: Vec<Vec<String>>) -> Table {
 }
 
 /// A row per strategy, if there are columns.
-fn predictions(strategies: &[StrategyResult], columns: &[Column]) -> String {
-    if columns.is_empty() { String::new() } else { values(strategies, columns).to_string() }
-}
-
-/// A row per strategy.
-fn values(strategies: &[StrategyResult], columns: &[Column]) -> Table {
+fn values(strategies: &[StrategyResult], columns: &[Column]) -> String {
+    if columns.is_empty() {
+        return String::new();
+    }
     let head = |name: &str, of: fn(&Column) -> String| {
         [name.to_owned()].into_iter().chain(columns.iter().map(of)).collect()
     };
@@ -163,7 +161,7 @@ fn values(strategies: &[StrategyResult], columns: &[Column]) -> Table {
     }) {
         table.modify((0, column + 1), Span::column(2)).modify((0, column + 1), Alignment::center());
     }
-    table
+    table.to_string()
 }
 
 /// The strategies that can be the best.
@@ -248,36 +246,23 @@ fn counts(run: &Run, what: &str, count: impl Fn(&StrategyResult) -> u64) -> Opti
     (!counts.is_empty()).then(|| format!("{what}: {}.", counts.join(", ")))
 }
 
-/// The strategy with the smallest error of the rates, and whether the next one is significantly worse. Strategies are ranked by
-/// their pairs, like the ratio and the test: the means of an interrupted experiment can be those of different trials.
+/// The strategy with the smallest error of the rates, and whether the next one is significantly worse; `None` where means are those
+/// of different trials, or pairs say otherwise.
 fn winner(run: &Run) -> Option<String> {
-    let is_defined = |strategy: &&StrategyResult| !strategy.value(Measure::PRIMARY).is_nan();
-    let names: Vec<&str> =
-        rivals(&run.strategies).filter(is_defined).map(|strategy| strategy.name.as_str()).collect();
-    let against_others = |name: &&str| -> Option<Vec<Comparison>> {
-        let others = names.iter().filter(|other| *other != name);
-        others.map(|other| run.comparison(name, other, Measure::PRIMARY)).collect()
-    };
-    let comparisons = names
-        .iter()
-        .filter_map(against_others)
-        .find(|all| all.iter().all(|comparison| comparison.mean_difference <= 0.0))?;
-    let comparison = comparisons.iter().min_by(|a, b| b.mean_difference.total_cmp(&a.mean_difference))?;
-    let Comparison { a: winner, b: next, pairs, p_holm, .. } = comparison;
-    let ratio = value(comparison.ratio, 2);
-    let units = if run.worlds > 1 { "world" } else { "trial" };
-    let of_both = match pairs {
-        _ if have_same_units(&run.strategies) => String::new(),
-        1 => format!(",\nin the {units} of both"),
-        _ => format!(",\nin the {pairs} {units}s of both"),
-    };
-    let smallest =
-        format!("{winner} has the smallest log error over the run, {ratio} times\nthat of {next}{of_both}");
-    Some(match *p_holm {
+    let error = |strategy: &&StrategyResult| strategy.value(Measure::PRIMARY);
+    let mut ranked: Vec<_> = rivals(&run.strategies).filter(|strategy| !error(strategy).is_nan()).collect();
+    ranked.sort_by(|a, b| error(a).total_cmp(&error(b)));
+    let [winner, next, ..] = ranked[..] else { return None };
+    let comparison = run.comparison(&winner.name, &next.name, Measure::PRIMARY);
+    let Comparison { a: winner, b: next, p_holm, ratio, .. } =
+        comparison.filter(|found| found.mean_difference <= 0.0 && have_same_units(&run.strategies))?;
+    let ratio = value(ratio, 2);
+    let smallest = format!("{winner} has the smallest log error over the run, {ratio} times\nthat of {next}");
+    Some(match p_holm {
         p if p.is_nan() => format!("{smallest}; a single pair cannot be tested."),
         p if p < 0.05 => format!(
             "{winner} learns rates fastest: its log error over the run is {ratio} times\n\
-             that of {next}{of_both} (significant: {} after Holm's correction).",
+             that of {next} (significant: {} after Holm's correction).",
             p_value(p)
         ),
         p => format!(

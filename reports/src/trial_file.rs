@@ -51,23 +51,12 @@ fn rows(trial: &Trial) -> io::Result<Vec<u8>> {
     let mut rows = csv::Writer::from_writer(Vec::new());
     let names = [&trial.world, &trial.estimator, &trial.strategy].map(|name| no_formula(name));
     let seed = trial.seed.to_string();
-    let mut text = Vec::new();
     for sample in &trial.samples {
-        for name in &names {
-            rows.write_field(name.as_ref())?;
-        }
-        rows.write_field(&seed)?;
-        let mut number = |value: &dyn std::fmt::Display| {
-            text.clear();
-            write!(text, "{value}")?;
-            rows.write_field(&text).map_err(io::Error::from)
-        };
-        number(&sample.time)?;
-        for value in Metric::ALL.map(|metric| metric.of(sample)) {
-            if value.is_nan() { number(&"")? } else { number(&value)? }
-        }
-        rows.write_field(&trial.map_hash)?;
-        rows.write_record(None::<&[u8]>)?;
+        let values = Metric::ALL.map(|metric| metric.of(sample));
+        let texts = values.map(|value| if value.is_nan() { String::new() } else { value.to_string() });
+        let time = sample.time.to_string();
+        let before = names.iter().map(AsRef::as_ref).chain([seed.as_str(), &time]);
+        rows.write_record(before.chain(texts.iter().map(String::as_str)).chain([trial.map_hash.as_str()]))?;
     }
     rows.into_inner().map_err(|error| io::Error::other(error.to_string()))
 }

@@ -3,47 +3,48 @@
 use crate::intervals::Intervals;
 use crate::numbers::rounded;
 use files::{OutputError, write_file};
-use interfaces::CellState;
-use mapper::Mapper;
-use std::io;
+use interfaces::Cell;
+use mapper::{CellStatistics, Mapper};
+use nalgebra::Point2;
 use std::path::Path;
 
-/// One row: a cell that was seen at least once. Times are in seconds.
-#[derive(serde::Serialize)]
-struct Row {
-    x_m: Number,
-    y_m: Number,
-    column: i32,
-    row: i32,
-    state: &'static str,
-    first_seen_s: Number,
-    last_seen_s: Number,
-    unobserved_s: Number,
-    watched_free_s: Number,
-    watched_blocked_s: Number,
-    block_events: u32,
-    free_events: u32,
-    block_events_after_gap: u32,
-    free_events_after_gap: u32,
-    /// `inf` for a cell that never changed.
-    interval_s: Number,
-    rate_hz: Number,
-    /// The ends of the 90 % credible interval of the rate; the upper one is `inf` before the second reading.
-    rate_low_hz: Number,
-    rate_high_hz: Number,
-    change_probability: Number,
-    recency_s: Number,
+/// A cell that was seen at least once.
+struct Seen<'a> {
+    mapper: &'a Mapper,
+    index: usize,
+    cell: Cell,
+    center: Point2<f64>,
+    statistics: CellStatistics,
+    /// The ends of the 90 % credible interval of the rate.
+    rate_hz: (f64, f64),
 }
 
-/// A number as the standard library prints it: the shortest digits that give the same value. The standard library is
-/// optimized in every build, unlike the package that prints the numbers of the `csv` crate.
-struct Number(f64);
+/// A column: its name, and the text of a cell. Numbers have the shortest digits that give the same value.
+type Column = (&'static str, fn(&Seen) -> String);
 
-impl serde::Serialize for Number {
-    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_str(&format_args!("{:?}", self.0))
-    }
-}
+/// The columns. Times are in seconds; `interval_s` is `inf` for a cell that never changed, `rate_high_hz` before the second reading.
+const COLUMNS: [Column; 20] = [
+    ("x_m", |of| micro(of.center.x)),
+    ("y_m", |of| micro(of.center.y)),
+    ("column", |of| of.cell.x.to_string()),
+    ("row", |of| of.cell.y.to_string()),
+    ("state", |of| format!("{:?}", of.mapper.states().cells()[of.index]).to_lowercase()),
+    ("first_seen_s", |of| micro(of.statistics.first_seen)),
+    ("last_seen_s", |of| micro(of.statistics.last_seen)),
+    ("unobserved_s", |of| micro(of.statistics.unobserved)),
+    ("watched_free_s", |of| micro(of.statistics.watched_free)),
+    ("watched_blocked_s", |of| micro(of.statistics.watched_blocked)),
+    ("block_events", |of| of.statistics.block_events.to_string()),
+    ("free_events", |of| of.statistics.free_events.to_string()),
+    ("block_events_after_gap", |of| of.statistics.block_events_after_gap.to_string()),
+    ("free_events_after_gap", |of| of.statistics.free_events_after_gap.to_string()),
+    ("interval_s", |of| micro(of.mapper.interval(of.index))),
+    ("rate_hz", |of| exact(of.mapper.rate(of.index))),
+    ("rate_low_hz", |of| exact(of.rate_hz.0)),
+    ("rate_high_hz", |of| exact(of.rate_hz.1)),
+    ("change_probability", |of| exact(of.mapper.change_probability(of.index))),
+    ("recency_s", |of| micro(of.mapper.recency(of.index))),
+];
 
 /// Writes a CSV file with one row for every cell that was seen at least once, row by row from the lower left.
 ///
@@ -51,49 +52,25 @@ impl serde::Serialize for Number {
 ///
 /// When the file cannot be written.
 pub fn write(path: &Path, mapper: &Mapper, intervals: &Intervals) -> Result<(), OutputError> {
+    let frame = mapper.frame();
     write_file(path, |file| {
         let mut table = csv::Writer::from_writer(file);
-        for (index, interval) in intervals.of_cells(mapper) {
-            table.serialize(row(mapper, index, interval)).map_err(io::Error::other)?;
+        table.write_record(COLUMNS.map(|(name, _)| name))?;
+        for (index, rate_hz) in intervals.of_cells(mapper) {
+            let (cell, statistics) = (frame.cell(index), mapper.statistics(index));
+            let of = Seen { mapper, index, cell, center: frame.center(cell), statistics, rate_hz };
+            table.write_record(COLUMNS.map(|(_, text)| text(&of)))?;
         }
         table.flush()
     })
 }
 
-fn row(mapper: &Mapper, index: usize, (rate_low_hz, rate_high_hz): (f64, f64)) -> Row {
-    let (frame, seen) = (mapper.frame(), mapper.statistics(index));
-    let cell = frame.cell(index);
-    let center = frame.center(cell);
-    Row {
-        x_m: micro(center.x),
-        y_m: micro(center.y),
-        column: cell.x,
-        row: cell.y,
-        state: match mapper.states().cells()[index] {
-            CellState::Unknown => "unknown",
-            CellState::Free => "free",
-            CellState::Blocked => "blocked",
-        },
-        first_seen_s: micro(seen.first_seen),
-        last_seen_s: micro(seen.last_seen),
-        unobserved_s: micro(seen.unobserved),
-        watched_free_s: micro(seen.watched_free),
-        watched_blocked_s: micro(seen.watched_blocked),
-        block_events: seen.block_events,
-        free_events: seen.free_events,
-        block_events_after_gap: seen.block_events_after_gap,
-        free_events_after_gap: seen.free_events_after_gap,
-        interval_s: micro(mapper.interval(index)),
-        rate_hz: Number(mapper.rate(index)),
-        rate_low_hz: Number(rate_low_hz),
-        rate_high_hz: Number(rate_high_hz),
-        change_probability: Number(mapper.change_probability(index)),
-        recency_s: micro(mapper.recency(index)),
-    }
+fn micro(value: f64) -> String {
+    exact(rounded(value))
 }
 
-fn micro(value: f64) -> Number {
-    Number(rounded(value))
+fn exact(value: f64) -> String {
+    format!("{value:?}")
 }
 
 #[cfg(test)]

@@ -2,88 +2,39 @@
 
 use crate::numbers::rounded;
 use files::{OutputError, write_file};
-use mapper::{Door, Leaf, Mapper, ThingKind};
+use mapper::{Door, Leaf, Mapper, Thing, ThingKind};
 use nalgebra::Point2;
-use serde::Serialize;
+use serde_json::{Value, json};
 use std::path::Path;
 
 /// The probability with which the interval contains the number of openings per hour.
 const MASS: f64 = 0.9;
-
-/// A thing, as the file has it. Lengths in m, times in s by the clock of the map.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct ThingRecord {
-    /// Its number, which it keeps in later sessions.
-    pub id: u32,
-    /// The time at which it was found, s.
-    pub found_s: f64,
-    /// What it is.
-    #[serde(flatten)]
-    pub kind: KindRecord,
-}
-
-/// What a thing is.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(tag = "kind", rename_all = "snake_case")]
-pub enum KindRecord {
-    /// A door.
-    Door {
-        /// The ends of the closed leaf, m.
-        closed_m: [[f64; 2]; 2],
-        /// The hinge, m, and the end of the open leaf, m; `null` if the open leaf was never seen.
-        hinge_m: Option<[f64; 2]>,
-        /// The end of the open leaf that is not the hinge, m.
-        open_end_m: Option<[f64; 2]>,
-        /// Whether it was open when it was last seen.
-        is_open: Option<bool>,
-        /// The time of the last look, s.
-        last_seen_s: f64,
-        /// Openings and closings in view.
-        opened: u32,
-        /// Closings in view.
-        closed: u32,
-        /// Openings and closings that were found after a gap in the view.
-        moved_after_gap: u32,
-        /// The time in view, s.
-        in_view_s: f64,
-        /// Openings per hour; `null` if it was never in view.
-        openings_per_hour: Option<f64>,
-        /// The ends of the 90 % credible interval of this number.
-        openings_per_hour_90: Option<(f64, f64)>,
-    },
-    /// A piece of furniture that was moved.
-    Furniture {
-        /// Where it stood, m; `null` if that was not seen.
-        from_m: Option<[f64; 2]>,
-        /// Where it stands, m; `null` if that was not seen.
-        to_m: Option<[f64; 2]>,
-        /// It was moved between these times, s.
-        moved_between_s: Option<[f64; 2]>,
-    },
-}
 
 /// To a millimeter.
 fn pair(point: &Point2<f64>) -> [f64; 2] {
     [point.x, point.y].map(|length_m| libm::round(1e3 * length_m) / 1e3)
 }
 
-/// All things of a map, in the order in which they were found.
-pub fn records(mapper: &Mapper) -> Vec<ThingRecord> {
-    let record = |thing: &mapper::Thing| {
-        let kind = match &thing.kind {
-            ThingKind::Door(door) => of_door(door),
-            ThingKind::Furniture(furniture) => KindRecord::Furniture {
-                from_m: furniture.from.as_ref().map(|place| pair(&place.center)),
-                to_m: furniture.to.as_ref().map(|place| pair(&place.center)),
-                moved_between_s: furniture.places().next().map(|place| place.between_s.map(rounded)),
-            },
-        };
-        ThingRecord { id: thing.id, found_s: rounded(thing.found_s), kind }
+/// A thing, as the file has it: lengths in m, times in s by the clock of the map, `null` where something was not seen. It keeps its
+/// number in later sessions.
+fn record(thing: &Thing) -> Value {
+    let mut record = match &thing.kind {
+        ThingKind::Door(door) => of_door(door),
+        // It stood at `from_m`, stands at `to_m`, and was moved between two times.
+        ThingKind::Furniture(furniture) => json!({
+            "kind": "furniture",
+            "from_m": furniture.from.as_ref().map(|place| pair(&place.center)),
+            "to_m": furniture.to.as_ref().map(|place| pair(&place.center)),
+            "moved_between_s": furniture.places().next().map(|place| place.between_s.map(rounded)),
+        }),
     };
-    mapper.things().iter().map(record).collect()
+    (record["id"], record["found_s"]) = (thing.id.into(), rounded(thing.found_s).into());
+    record
 }
 
-fn of_door(door: &Door) -> KindRecord {
+/// A door: the ends of the closed leaf, the hinge and the other end of the open leaf, its state at the last look, and what was counted:
+/// in view, and what was found after a gap in the view; the openings per hour in view with their 90 % credible interval.
+fn of_door(door: &Door) -> Value {
     let seen = &door.statistics;
     let hinged = match door.leaf {
         Leaf::Hinged { hinge, length_m, open_rad, .. } => {
@@ -92,31 +43,32 @@ fn of_door(door: &Door) -> KindRecord {
         }
         Leaf::Sliding => None,
     };
-    KindRecord::Door {
-        closed_m: door.closed.ends.each_ref().map(pair),
-        hinge_m: hinged.map(|(hinge, _)| hinge),
-        open_end_m: hinged.map(|(_, end)| end),
-        is_open: door.is_open,
-        last_seen_s: rounded(door.last_seen_s),
-        opened: seen.opened,
-        closed: seen.closed,
-        moved_after_gap: seen.opened_after_gap + seen.closed_after_gap,
-        in_view_s: rounded(seen.in_view_s),
-        openings_per_hour: seen.openings_per_hour().map(|rate| rounded(rate.mean())),
-        openings_per_hour_90: seen
-            .interval_of_openings_per_hour(MASS)
-            .map(|(low, high)| (rounded(low), rounded(high))),
-    }
+    let interval = seen.interval_of_openings_per_hour(MASS);
+    json!({
+        "kind": "door",
+        "closed_m": door.closed.ends.each_ref().map(pair),
+        "hinge_m": hinged.map(|(hinge, _)| hinge),
+        "open_end_m": hinged.map(|(_, end)| end),
+        "is_open": door.is_open,
+        "last_seen_s": rounded(door.last_seen_s),
+        "opened": seen.opened,
+        "closed": seen.closed,
+        "moved_after_gap": seen.opened_after_gap + seen.closed_after_gap,
+        "in_view_s": rounded(seen.in_view_s),
+        "openings_per_hour": seen.openings_per_hour().map(|rate| rounded(rate.mean())),
+        "openings_per_hour_90": interval.map(|(low, high)| [low, high].map(rounded)),
+    })
 }
 
-/// Writes the file.
+/// Writes the file: all things of a map, in the order in which they were found.
 ///
 /// # Errors
 ///
 /// When the file cannot be written.
 pub fn write(path: &Path, mapper: &Mapper) -> Result<(), OutputError> {
+    let records: Vec<Value> = mapper.things().iter().map(record).collect();
     write_file(path, |file| {
-        serde_json::to_writer_pretty(&mut *file, &records(mapper))?;
+        serde_json::to_writer_pretty(&mut *file, &records)?;
         writeln!(file)
     })
 }

@@ -22,40 +22,20 @@ impl OccupancyGrid {
 }
 
 impl OccupancyGridUpdate {
-    /// The smallest rectangle that contains every cell in which two maps with the same frame differ; `None` if none does.
-    pub fn between(before: &Grid<i8>, after: &Grid<i8>, header: Header) -> Option<Self> {
-        let (low, high) = difference(before, after)?;
-        Some(Self::part(after, low, high, header))
-    }
-
-    /// The rectangle of a map with these corners, both inclusive. Cells outside of the map are left out.
-    pub fn part(grid: &Grid<i8>, low: Cell, high: Cell, header: Header) -> Self {
+    /// The smallest rectangle of a map that contains these cells; `None` if there is none.
+    pub fn around(grid: &Grid<i8>, cells: impl Iterator<Item = Cell>, header: Header) -> Option<Self> {
+        let (low, high) = cells.map(|cell| (cell, cell)).reduce(|(low, high), (cell, _)| {
+            let low = Cell::new(low.x.min(cell.x), low.y.min(cell.y));
+            (low, Cell::new(high.x.max(cell.x), high.y.max(cell.y)))
+        })?;
         let cells = (low.y..=high.y).flat_map(|y| (low.x..=high.x).map(move |x| Cell::new(x, y)));
-        Self {
+        Some(Self {
             header,
             x: low.x,
             y: low.y,
             width: (high.x - low.x + 1) as u32,
             height: (high.y - low.y + 1) as u32,
             data: cells.filter_map(|cell| grid.get(cell).copied()).collect(),
-        }
+        })
     }
-}
-
-/// The corners of the rectangle in which two maps differ, both inclusive.
-fn difference(before: &Grid<i8>, after: &Grid<i8>) -> Option<(Cell, Cell)> {
-    let (before, cells) = (before.cells(), after.cells());
-    let changed = cells.stored().filter(|(index, value)| before[*index] != **value);
-    // What has no block any more has the value of all other cells.
-    let gone = before.stored().filter(|(index, value)| !cells.is_stored(*index) && cells[*index] != **value);
-    let is_other_fill = before.fill() != cells.fill();
-    let all =
-        (0..if is_other_fill { cells.len() } else { 0 }).filter(|index| before[*index] != cells[*index]);
-    let changed = changed.chain(gone).map(|(index, _)| index).chain(all);
-    changed.map(|index| after.frame().cell(index)).map(|cell| (cell, cell)).reduce(
-        |(low, high), (cell, _)| {
-            let low = Cell::new(low.x.min(cell.x), low.y.min(cell.y));
-            (low, Cell::new(high.x.max(cell.x), high.y.max(cell.y)))
-        },
-    )
 }

@@ -12,7 +12,7 @@ mod scan;
 pub use mcap::McapWriter;
 pub use messages::{
     Covariance, Header, LaserScan, OccupancyGrid, OccupancyGridUpdate, Odometry, Path, PointCloud2,
-    PointField, Pose, PoseStamped, PoseWithCovariance, Rotation, Time, TransformStamped, Transforms,
-    TwistWithCovariance, Vector,
+    PointField, Pose, PoseStamped, PoseWithCovariance, Rotation, Time, TransformStamped, Transforms, Twist,
+    Vector,
 };
 pub use scan::{FIRST_STAMP_NS, converted as scan_of, flat, message as scan_message, mounted};

@@ -1,21 +1,21 @@
 //! Recordings as bags of ROS 2: MCAP files that Foxglove shows, and that `logs::Log` reads.
 
 mod channels;
-mod grids;
 mod lasers;
 mod odometry;
 mod schemas;
 mod sorted;
 
 use crate::messages::{
-    Header, Odometry, Path, PointCloud2, PointField, Pose, PoseStamped, Time, TransformStamped, Transforms,
+    Header, OccupancyGrid, Odometry, Path, PointCloud2, PointField, Pose, PoseStamped, Time,
+    TransformStamped, Transforms,
 };
 use crate::scan::{FIRST_STAMP_NS, message as scan_message};
 use channels::Channels;
-use grids::Grids;
 use interfaces::{Event, Grid, LaserReading, Twist};
 use lasers::Laser;
 use nalgebra::{Isometry2, Point2};
+use std::collections::BTreeMap;
 use std::io::{Error, Write};
 
 /// The frames, by REP-105.
@@ -33,7 +33,7 @@ const POINT_BYTES: u32 = 16;
 /// |---|---|---|
 /// | [`reading`](Self::reading) | `/scan` (a second laser `/scan_2`), `/odom`, `/tf`, `/tf_static` | `LaserScan`, `Odometry`, `TFMessage` |
 /// | [`correction`](Self::correction) | `/tf` | `TFMessage`: odom in map |
-/// | [`grid`](Self::grid) | the given one, and with `_updates` | `OccupancyGrid`, `OccupancyGridUpdate` |
+/// | [`grid`](Self::grid) | the given one | `OccupancyGrid` |
 /// | [`goal`](Self::goal), [`path`](Self::path) | `/goal_pose`, `/plan` | `PoseStamped`, `Path` |
 /// | [`events`](Self::events) | `/changes` | `PointCloud2` with the field `change`: 1 blocked, −1 free |
 ///
@@ -49,7 +49,8 @@ pub struct McapWriter<W: Write> {
     begin_ns: i64,
     lasers: Vec<Laser>,
     map_to_odom: Isometry2<f64>,
-    grids: Grids,
+    /// The last map of each topic.
+    grids: BTreeMap<String, Grid<i8>>,
     /// The time (ns) and the pose of the last odometry.
     last_odometry: Option<(i64, Isometry2<f64>)>,
 }
@@ -70,7 +71,7 @@ impl<W: Write> McapWriter<W> {
                 .max(FIRST_STAMP_NS),
             lasers: Vec::new(),
             map_to_odom: Isometry2::identity(),
-            grids: Grids::default(),
+            grids: BTreeMap::new(),
             last_odometry: None,
         })
     }
@@ -92,8 +93,8 @@ impl<W: Write> McapWriter<W> {
         self.transforms("/tf", ns, &[(MAP, ODOM, *map_to_odom)])
     }
 
-    /// Writes a map to `topic`: as a whole at first, when its frame changes and every few seconds, between as the rectangle
-    /// that changed. `share` gives the value of a cell from 0 to 1, `None` if it is unknown.
+    /// Writes a map to `topic` if it differs from the last one there. `share` gives the value of a cell from 0 to 1, `None` if it is
+    /// unknown.
     pub fn grid<T>(
         &mut self,
         topic: &str,
@@ -104,8 +105,13 @@ impl<W: Write> McapWriter<W> {
         let ns = self.ns(time_s);
         let percent =
             |cell: &T| share(cell).map_or(-1, |share| (share.clamp(0.0, 1.0) * 100.0).round() as i8);
-        let header = header(ns, MAP);
-        self.grids.write(&mut self.channels, topic, header, ns, &grid.map(percent))
+        let grid = grid.map(percent);
+        if self.grids.get(topic) == Some(&grid) {
+            return Ok(());
+        }
+        let message = OccupancyGrid::of(&grid, header(ns, MAP));
+        self.grids.insert(topic.to_owned(), grid);
+        self.channels.write(topic, "nav_msgs/OccupancyGrid", ns, &message)
     }
 
     /// Writes the pose to which the robot drives.

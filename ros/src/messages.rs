@@ -1,7 +1,6 @@
 //! The messages. Field by field, they are what CDR encodes.
 #![expect(missing_docs, reason = "the fields have the names, meanings and units of the definitions of ROS")]
 
-use interfaces::Twist;
 use nalgebra::{Isometry2, Isometry3, Quaternion, Translation3, UnitQuaternion};
 use serde::{Deserialize, Serialize};
 
@@ -104,33 +103,40 @@ pub struct PoseWithCovariance {
     pub covariance: Covariance,
 }
 
-/// `geometry_msgs/TwistWithCovariance`.
+/// `geometry_msgs/Twist`: m/s and rad/s, in the frame of the robot.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, Serialize)]
-pub struct TwistWithCovariance {
+pub struct Twist {
     pub linear: Vector,
     pub angular: Vector,
-    pub covariance: Covariance,
 }
 
-/// `nav_msgs/Odometry`.
+impl Twist {
+    /// The velocity of a robot in the plane.
+    pub fn in_plane(twist: &interfaces::Twist) -> Self {
+        let linear = Vector { x: twist.linear_mps, ..Vector::default() };
+        Self { linear, angular: Vector { z: twist.angular_radps, ..Vector::default() } }
+    }
+}
+
+/// `nav_msgs/Odometry`, with its `TwistWithCovariance` as two fields.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Odometry {
     pub header: Header,
     pub child_frame_id: String,
     pub pose: PoseWithCovariance,
-    pub twist: TwistWithCovariance,
+    pub twist: Twist,
+    pub twist_covariance: Covariance,
 }
 
 impl Odometry {
     /// The pose and the velocity of a robot in the plane.
-    pub fn in_plane(header: Header, robot: &str, pose: &Isometry2<f64>, twist: &Twist) -> Self {
-        let linear = Vector { x: twist.linear_mps, ..Vector::default() };
-        let angular = Vector { z: twist.angular_radps, ..Vector::default() };
+    pub fn in_plane(header: Header, robot: &str, pose: &Isometry2<f64>, twist: &interfaces::Twist) -> Self {
         Self {
             header,
             child_frame_id: robot.to_owned(),
             pose: PoseWithCovariance { pose: Pose::in_plane(pose), covariance: Default::default() },
-            twist: TwistWithCovariance { linear, angular, covariance: Default::default() },
+            twist: Twist::in_plane(twist),
+            twist_covariance: Default::default(),
         }
     }
 }

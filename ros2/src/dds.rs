@@ -17,9 +17,9 @@ use others::{Endpoints, Others};
 use publishers::Publishers;
 use ros2_client::dds::rustdds::DomainParticipantBuilder;
 use ros2_client::qos::{Durability, History, QosProfile, Reliability, WhenFull};
-use ros2_client::{Context, NodeName, NodeOptions, ServiceMapping};
+use ros2_client::{Context, Gid, NodeName, NodeOptions, ServiceMapping, WriteError};
 use services::Services;
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::{BTreeSet, VecDeque};
 use std::net::{IpAddr, Ipv4Addr};
 use std::sync::mpsc::{self, Receiver};
 use std::time::{Duration, Instant};
@@ -34,7 +34,6 @@ const MAX_EVENTS: usize = 4096;
 /// A node on the network.
 pub struct DdsLink {
     events: Receiver<Event>,
-    names: BTreeMap<Topic, String>,
     publishers: Publishers,
     problems: VecDeque<String>,
     navigator: Option<Navigator>,
@@ -67,18 +66,18 @@ impl DdsLink {
             environment::Services::Enhanced => ServiceMapping::Enhanced,
             environment::Services::Cyclone => ServiceMapping::Cyclone,
         };
-        let publishers = Publishers::new(&mut endpoints, wiring)?;
+        let publishers = publishers::open(&mut endpoints, wiring)?;
+        let own: BTreeSet<Gid> = publishers.values().map(|(_, publisher)| publisher.gid()).collect();
         let navigator = wiring.navigate_to_pose.as_deref();
         let navigator = navigator.map(|name| Navigator::new(endpoints.node(), name, mapping)).transpose()?;
         let edges = wiring.adjust_edges.as_deref();
         let edges = edges.map(|name| EdgesClient::new(endpoints.node(), name, mapping)).transpose()?;
         let services = Services::open(&mut endpoints, others, &wiring.services, mapping, &to)?;
         let (typed, subscribed) =
-            Typed::new(wiring.subscribed.clone(), context.clone(), publishers.ids(), to.clone());
-        subscribers::start(&mut endpoints, &context, &subscribed, publishers.ids(), &to)?;
+            Typed::new(wiring.subscribed.clone(), context.clone(), own.clone(), to.clone());
+        subscribers::start(&mut endpoints, &context, &subscribed, own, &to)?;
         Ok(Self {
             events,
-            names: wiring.published.iter().map(|(topic, name, _)| (*topic, name.clone())).collect(),
             publishers,
             problems: VecDeque::new(),
             navigator,
@@ -99,11 +98,20 @@ impl DdsLink {
 
 impl Link for DdsLink {
     fn send(&mut self, topic: Topic, message: Message) -> bool {
-        self.publishers.send(topic, message)
+        let Some((name, publisher)) = self.publishers.get(&topic) else { return true };
+        let Err(why) = publisher.publish(message) else { return true };
+        let why = match why {
+            WriteError::WouldBlock { .. } => "a subscriber does not keep up".to_owned(),
+            why => why.to_string(),
+        };
+        if self.problems.is_empty() {
+            self.problems.push_back(format!("a message on `{name}` was not sent: {why}"));
+        }
+        false
     }
 
     fn name(&self, topic: Topic) -> &str {
-        self.names.get(&topic).map_or(topic.default_name(), String::as_str)
+        self.publishers.get(&topic).map_or(topic.default_name(), |(name, _)| name)
     }
 
     fn node(&self) -> &str {
@@ -111,7 +119,6 @@ impl Link for DdsLink {
     }
 
     fn receive(&mut self, patience: Duration) -> Option<Event> {
-        self.problems.extend(self.publishers.take_problem());
         self.problems.extend(self.typed.open(&mut self.endpoints));
         if let Some(problem) = self.problems.pop_front() {
             return Some(Event::Problem(problem));

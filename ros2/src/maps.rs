@@ -110,17 +110,15 @@ impl PublishedMaps {
     fn update(&mut self, mapper: &Mapper, header: &Header) -> Option<OccupancyGridUpdate> {
         let shown = self.shown.as_mut()?;
         let offset = offset(shown.frame(), mapper.frame());
-        let (mut low, mut high): (Option<Cell>, Option<Cell>) = (None, None);
+        let mut changed = Vec::new();
         for transition in mapper.transitions() {
             let cell = Cell::new(transition.cell.x - offset.x, transition.cell.y - offset.y);
             let state = mapper.states().get(transition.cell).copied().unwrap_or(CellState::Unknown);
             let Some(known) = shown.get_mut(cell).filter(|known| **known != percent(state)) else { continue };
             *known = percent(state);
-            low = Some(low.map_or(cell, |low| Cell::new(low.x.min(cell.x), low.y.min(cell.y))));
-            high = Some(high.map_or(cell, |high| Cell::new(high.x.max(cell.x), high.y.max(cell.y))));
+            changed.push(cell);
         }
-        let (low, high) = low.zip(high)?;
-        Some(OccupancyGridUpdate::part(shown, low, high, header.clone()))
+        OccupancyGridUpdate::around(shown, changed.into_iter(), header.clone())
     }
 }
 

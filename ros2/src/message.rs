@@ -2,13 +2,14 @@
 
 pub(crate) use ros::{
     Header, LaserScan, OccupancyGrid, OccupancyGridUpdate, Odometry, Path, Pose, PoseStamped, Time,
-    TransformStamped, Transforms, Vector,
+    TransformStamped, Transforms,
 };
 
 pub(crate) use crate::service::wire::ParameterEvent;
 pub use crate::topic::{Quality, Topic};
+pub use ros::Twist;
 
-use crate::service::wire::Labelled;
+use crate::service::wire::Transition;
 
 use nalgebra::{Isometry2, Matrix3};
 use ros::{Covariance, PoseWithCovariance};
@@ -19,15 +20,6 @@ use serde::{Deserialize, Serialize};
 pub struct Clock {
     /// The time of a simulation.
     pub clock: Time,
-}
-
-/// `geometry_msgs/Twist`: m/s and rad/s, in the frame of the robot.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, Serialize)]
-pub struct Twist {
-    /// The linear velocity, m/s.
-    pub linear: Vector,
-    /// The angular velocity, rad/s.
-    pub angular: Vector,
 }
 
 /// `geometry_msgs/TwistStamped`.
@@ -152,12 +144,8 @@ pub struct DynamicEdges {
 pub struct TransitionEvent {
     /// The time, ns.
     pub timestamp: u64,
-    /// The transition.
-    pub transition: Labelled,
-    /// The state before it.
-    pub start_state: Labelled,
-    /// The state after it.
-    pub goal_state: Labelled,
+    /// The transition, with the states before and after it.
+    pub transition: Transition,
 }
 
 /// `diagnostic_msgs/DiagnosticArray`.

@@ -6,8 +6,10 @@ use anyhow::bail;
 /// The names of a node.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Names {
-    node: String,
-    namespace: String,
+    /// The name of the node.
+    pub node: String,
+    /// Its namespace.
+    pub namespace: String,
 }
 
 impl Names {
@@ -33,16 +35,6 @@ impl Names {
             check("namespace", &namespace)?;
         }
         Ok(Self { node, namespace })
-    }
-
-    /// The name of the node.
-    pub fn node(&self) -> &str {
-        &self.node
-    }
-
-    /// Its namespace.
-    pub fn namespace(&self) -> &str {
-        &self.namespace
     }
 
     /// The name with the namespace: `/robot1/curious_node`.
@@ -111,7 +103,7 @@ mod tests {
         assert_eq!(resolved("scan"), "/scan");
         assert_eq!(resolved("/scan"), "/scan");
         assert_eq!(resolved("~/save_state"), "/curious_node/save_state");
-        assert_eq!(names.namespace(), "/");
+        assert_eq!(names.namespace, "/");
 
         let ros = ros("-r __ns:=/robot -r __node:=mapper -r scan:=front/scan -r /tf:=tf -r map:=/map");
         let names = Names::new("curious_node", &ros).unwrap();

@@ -16,20 +16,18 @@ mod tests;
 use crate::lifecycle::State;
 use crate::link::{Event, Link};
 use crate::message::{Message, Time, Topic};
-use crate::node_state_file::NodeStateFile;
+use crate::node_state_file::{Asker, NodeStateFile};
 use crate::notes::{Notes, Output};
 use crate::parameters::Parameters;
 use crate::pilot::LivePilot;
 use crate::source::{LiveReading, ScanCount, Source};
 use interfaces::{LaserReading, PoseMode};
 use localizer::PoseState;
-use mapper::Mapper;
 use outputs::Published;
 use robot::{Belief, Robot};
 use routes::Routes;
 use session::Seat;
 use setup::Parts;
-use slam_services::Serializing;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -45,7 +43,7 @@ const SILENCE: Duration = Duration::from_secs(5);
 #[derive(Debug, Default)]
 pub struct Signals {
     /// The node ends.
-    pub stop: AtomicBool,
+    pub stop: Arc<AtomicBool>,
     /// The node saves its state.
     pub save: Arc<AtomicBool>,
 }
@@ -76,7 +74,8 @@ pub struct CuriousNode<L: Link> {
     /// `--state`, as given.
     state_path: Option<PathBuf>,
     state_file: Option<NodeStateFile>,
-    serializing: Serializing,
+    /// States that are written for those who have asked.
+    copies: Vec<NodeStateFile>,
     /// The time of the last reading before this session: of the state that was loaded, or before the node was deactivated.
     continued: Option<Time>,
     /// Where the robot is at its next reading, as somebody says.
@@ -116,7 +115,7 @@ impl<L: Link> CuriousNode<L> {
             state: State::Unconfigured,
             state_path: state.map(Path::to_owned),
             state_file,
-            serializing: Serializing::default(),
+            copies: Vec::new(),
             continued,
             seat: None,
             notes,
@@ -143,7 +142,7 @@ impl<L: Link> CuriousNode<L> {
     pub fn run(&mut self, signals: &Signals) -> anyhow::Result<NodeReport> {
         while !signals.stop.load(Ordering::Relaxed) {
             if signals.save.swap(false, Ordering::Relaxed) {
-                self.save_for(None);
+                self.save_for(Asker::Signal);
             }
             self.turn(self.nap());
         }
@@ -175,16 +174,9 @@ impl<L: Link> CuriousNode<L> {
         NodeReport { scans: self.source.count, ..self.report }
     }
 
-    /// The map.
-    pub fn mapper(&self) -> &Mapper {
-        &self.robot.mapper
-    }
-
     fn nap(&self) -> Duration {
-        let next = self.published.next_transform;
-        let transform = next.map_or(Duration::ZERO, |next| next.saturating_duration_since(Instant::now()));
-        let has_transforms = self.parameters.transform_publish_period_s > 0.0 && self.is_active();
-        if has_transforms { transform.min(NAP) } else { NAP }
+        let next = self.published.next_transform.filter(|_| self.is_active());
+        next.map_or(NAP, |next| next.saturating_duration_since(Instant::now()).min(NAP))
     }
 
     fn take(&mut self, event: Event, now: Instant) {
@@ -273,7 +265,6 @@ impl<L: Link> CuriousNode<L> {
         }
         self.publish_diagnostics(now);
         self.answer_askers();
-        self.go_on_serializing();
         let is_due = self.state_file.as_ref().is_some_and(NodeStateFile::is_due) && self.last.is_some();
         if is_due
             && self.robot.is_settled()
@@ -285,8 +276,7 @@ impl<L: Link> CuriousNode<L> {
     }
 
     fn tick_active(&mut self, now: Instant) {
-        let period_s = self.parameters.transform_publish_period_s;
-        if period_s > 0.0 && self.published.next_transform.is_none_or(|next| now >= next) {
+        if self.published.next_transform.is_none_or(|next| now >= next) {
             self.publish_transform(now);
         }
         if self.last.is_some_and(|(_, at)| now.duration_since(at) >= BLIND) {

@@ -25,12 +25,22 @@ pub(crate) struct NodeStateFile {
     /// The survey of logs in the state that was loaded: it stays in the file.
     survey: Option<Part>,
     /// Those who wait until the state is saved, and whether that has not begun.
-    pub(crate) askers: Vec<Asker>,
+    askers: Vec<Asker>,
     pub(crate) must_save: bool,
 }
 
-/// Who has asked to save the state: a request, or a signal.
-pub(crate) type Asker = Option<Request>;
+/// Who has asked to save the state.
+#[derive(Clone, Copy)]
+pub(crate) enum Asker {
+    Signal,
+    /// A call of `save_state`.
+    Save(Request),
+    /// A call of `serialize_map`.
+    Serialize(Request),
+}
+
+/// What is said of a state that is saved, or why it is not.
+pub(crate) type Saved = Result<String, String>;
 
 impl NodeStateFile {
     /// The file, and what it belongs to.
@@ -91,6 +101,27 @@ impl NodeStateFile {
     /// The map is that of another file from now on.
     pub(crate) fn go_on_from(&mut self, other: &Self) {
         (self.sessions, self.survey) = (other.sessions.clone(), other.survey.clone());
+    }
+
+    /// Saves the state for someone as soon as the robot is settled.
+    pub(crate) fn ask(&mut self, asker: Asker) {
+        self.must_save = true;
+        self.askers.push(asker);
+    }
+
+    /// Whether someone waits, and the file is written.
+    pub(crate) fn is_answer_due(&self) -> bool {
+        !self.askers.is_empty() && !self.must_save && !self.file.is_writing()
+    }
+
+    /// Waits until the file is written: those who have asked, and what they are told.
+    pub(crate) fn wait(&mut self) -> (Vec<Asker>, Saved) {
+        let (name, written) = (self.name(), self.file.wait());
+        let saved = match written {
+            Ok(()) => Ok(format!("the state is saved in {name}")),
+            Err(why) => Err(format!("{name}: cannot save the state: {why}")),
+        };
+        (std::mem::take(&mut self.askers), saved)
     }
 
     pub(crate) fn is_due(&self) -> bool {

@@ -1,5 +1,6 @@
 //! Sentences for the error output, each one once in a while.
 
+use crate::message::Log;
 use std::collections::{BTreeMap, VecDeque};
 use std::time::{Duration, Instant};
 
@@ -11,15 +12,6 @@ const MAX_REMEMBERED: usize = 1000;
 /// Where sentences go.
 pub type Output = Box<dyn FnMut(&str) + Send>;
 
-/// How bad a sentence is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Severity {
-    /// Something that happens as it should.
-    Info,
-    /// Something that a user should look at.
-    Warning,
-}
-
 /// Sentences that wait for the log of all nodes; of more, the oldest are dropped.
 const MAX_UNSENT: usize = 100;
 
@@ -27,7 +19,7 @@ const MAX_UNSENT: usize = 100;
 pub(crate) struct Notes {
     output: Output,
     written: BTreeMap<String, (Instant, u64)>,
-    unsent: VecDeque<(Severity, String)>,
+    unsent: VecDeque<(u8, String)>,
 }
 
 impl Notes {
@@ -37,26 +29,26 @@ impl Notes {
 
     /// Writes a sentence that is said once.
     pub(crate) fn say(&mut self, text: &str) {
-        self.write(Severity::Info, text);
+        self.write(Log::INFO, text);
     }
 
     /// Writes a sentence that is said once, and at which a user should look.
     pub(crate) fn warn(&mut self, text: &str) {
-        self.write(Severity::Warning, text);
+        self.write(Log::WARNING, text);
     }
 
-    /// The sentences since the last call, for the log of all nodes.
-    pub(crate) fn take_unsent(&mut self) -> VecDeque<(Severity, String)> {
+    /// The sentences since the last call with their levels, for the log of all nodes.
+    pub(crate) fn take_unsent(&mut self) -> VecDeque<(u8, String)> {
         std::mem::take(&mut self.unsent)
     }
 
-    fn write(&mut self, severity: Severity, text: &str) {
+    fn write(&mut self, level: u8, text: &str) {
         let text = interfaces::printable(text);
         (self.output)(&text);
         if self.unsent.len() >= MAX_UNSENT {
             self.unsent.pop_front();
         }
-        self.unsent.push_back((severity, text.to_string()));
+        self.unsent.push_back((level, text.to_string()));
     }
 
     /// Writes a sentence that may be said often.
@@ -106,6 +98,6 @@ mod tests {
         assert!(!written[3].contains('\x1b'));
         let unsent = notes.take_unsent();
         assert_eq!(unsent.len(), 4);
-        assert_eq!(unsent[0], (Severity::Warning, expected[0].to_owned()));
+        assert_eq!(unsent[0], (Log::WARNING, expected[0].to_owned()));
     }
 }

@@ -42,55 +42,41 @@ pub enum Service {
     DescribeParameters,
 }
 
+/// Every service in the order of the enum: its name below that of the node, and its type, a package and a name.
+#[rustfmt::skip]
+const SERVICES: [(Service, &str, &str, &str); 15] = [
+    (Service::SaveState, "~/save_state", "std_srvs", "Trigger"),
+    (Service::SaveMap, "~/save_map", "slam_toolbox", "SaveMap"),
+    (Service::SerializeMap, "~/serialize_map", "slam_toolbox", "SerializePoseGraph"),
+    (Service::DeserializeMap, "~/deserialize_map", "slam_toolbox", "DeserializePoseGraph"),
+    (Service::ChangeState, "~/change_state", "lifecycle_msgs", "ChangeState"),
+    (Service::GetState, "~/get_state", "lifecycle_msgs", "GetState"),
+    (Service::GetAvailableStates, "~/get_available_states", "lifecycle_msgs", "GetAvailableStates"),
+    (Service::GetAvailableTransitions, "~/get_available_transitions", "lifecycle_msgs", "GetAvailableTransitions"),
+    (Service::GetTransitionGraph, "~/get_transition_graph", "lifecycle_msgs", "GetAvailableTransitions"),
+    (Service::GetParameters, "~/get_parameters", "rcl_interfaces", "GetParameters"),
+    (Service::GetParameterTypes, "~/get_parameter_types", "rcl_interfaces", "GetParameterTypes"),
+    (Service::SetParameters, "~/set_parameters", "rcl_interfaces", "SetParameters"),
+    (Service::SetParametersAtomically, "~/set_parameters_atomically", "rcl_interfaces", "SetParametersAtomically"),
+    (Service::ListParameters, "~/list_parameters", "rcl_interfaces", "ListParameters"),
+    (Service::DescribeParameters, "~/describe_parameters", "rcl_interfaces", "DescribeParameters"),
+];
+
 impl Service {
     /// All services.
-    pub const ALL: [Self; 15] = [
-        Self::SaveState,
-        Self::SaveMap,
-        Self::SerializeMap,
-        Self::DeserializeMap,
-        Self::ChangeState,
-        Self::GetState,
-        Self::GetAvailableStates,
-        Self::GetAvailableTransitions,
-        Self::GetTransitionGraph,
-        Self::GetParameters,
-        Self::GetParameterTypes,
-        Self::SetParameters,
-        Self::SetParametersAtomically,
-        Self::ListParameters,
-        Self::DescribeParameters,
-    ];
+    pub fn all() -> impl Iterator<Item = Self> {
+        SERVICES.iter().map(|(service, ..)| *service)
+    }
 
     /// The name, below that of the node.
     pub fn default_name(self) -> &'static str {
-        self.row().0
+        SERVICES[self as usize].1
     }
 
     /// The type: a package and a name.
     pub fn type_name(self) -> (&'static str, &'static str) {
-        (self.row().1, self.row().2)
-    }
-
-    #[rustfmt::skip]
-    fn row(self) -> (&'static str, &'static str, &'static str) {
-        match self {
-            Self::SaveState => ("~/save_state", "std_srvs", "Trigger"),
-            Self::SaveMap => ("~/save_map", "slam_toolbox", "SaveMap"),
-            Self::SerializeMap => ("~/serialize_map", "slam_toolbox", "SerializePoseGraph"),
-            Self::DeserializeMap => ("~/deserialize_map", "slam_toolbox", "DeserializePoseGraph"),
-            Self::ChangeState => ("~/change_state", "lifecycle_msgs", "ChangeState"),
-            Self::GetState => ("~/get_state", "lifecycle_msgs", "GetState"),
-            Self::GetAvailableStates => ("~/get_available_states", "lifecycle_msgs", "GetAvailableStates"),
-            Self::GetAvailableTransitions => ("~/get_available_transitions", "lifecycle_msgs", "GetAvailableTransitions"),
-            Self::GetTransitionGraph => ("~/get_transition_graph", "lifecycle_msgs", "GetAvailableTransitions"),
-            Self::GetParameters => ("~/get_parameters", "rcl_interfaces", "GetParameters"),
-            Self::GetParameterTypes => ("~/get_parameter_types", "rcl_interfaces", "GetParameterTypes"),
-            Self::SetParameters => ("~/set_parameters", "rcl_interfaces", "SetParameters"),
-            Self::SetParametersAtomically => ("~/set_parameters_atomically", "rcl_interfaces", "SetParametersAtomically"),
-            Self::ListParameters => ("~/list_parameters", "rcl_interfaces", "ListParameters"),
-            Self::DescribeParameters => ("~/describe_parameters", "rcl_interfaces", "DescribeParameters"),
-        }
+        let (_, _, package, kind) = SERVICES[self as usize];
+        (package, kind)
     }
 }
 

@@ -81,54 +81,67 @@ impl Quality {
     pub const LOG: Self = Self { is_reliable: true, is_latched: true, depth: 1000 };
 }
 
+/// Every topic in the order of the enum: the name that other nodes expect, relative to the namespace of the node, except for those
+/// that are absolute; the type of its messages, a package and a name; how they are delivered, as subscribers and publishers of ROS
+/// expect it; whether the mapping node subscribes (in) or publishes (out) it.
+#[rustfmt::skip]
+const TOPICS: [(Topic, &str, &str, &str, Quality, &str); 27] = [
+    (Topic::Scan, "scan", "sensor_msgs", "LaserScan", Quality::SENSOR, "in"),
+    (Topic::Odometry, "odom", "nav_msgs", "Odometry", DEFAULT, "in"),
+    (Topic::Transforms, "/tf", "tf2_msgs", "TFMessage", Quality { depth: 100, ..DEFAULT }, "in, out"),
+    (Topic::StaticTransforms, "/tf_static", "tf2_msgs", "TFMessage", Quality { depth: 100, ..LATCHED }, "in"),
+    (Topic::Clock, "/clock", "rosgraph_msgs", "Clock", Quality { is_reliable: false, ..DEFAULT }, ""),
+    (Topic::Velocity, "cmd_vel", "geometry_msgs", "Twist", DEFAULT, "out"),
+    (Topic::StampedVelocity, "cmd_vel", "geometry_msgs", "TwistStamped", DEFAULT, "out"),
+    (Topic::Resume, "explore/resume", "std_msgs", "Bool", DEFAULT, "in"),
+    (Topic::Map, "map", "nav_msgs", "OccupancyGrid", LATCHED, "out"),
+    (Topic::MapUpdates, "map_updates", "map_msgs", "OccupancyGridUpdate", DEFAULT, "out"),
+    (Topic::ChangeMap, "change_map", "nav_msgs", "OccupancyGrid", LATCHED, "out"),
+    (Topic::PredictedMap, "predicted_map", "nav_msgs", "OccupancyGrid", LATCHED, "out"),
+    (Topic::RateMap, "rate_map", "nav_msgs", "OccupancyGrid", LATCHED, "out"),
+    (Topic::ExpiryMap, "expiry_map", "nav_msgs", "OccupancyGrid", LATCHED, "out"),
+    (Topic::SpeedMask, "speed_mask", "nav_msgs", "OccupancyGrid", LATCHED, "out"),
+    (Topic::KeepoutMask, "keepout_mask", "nav_msgs", "OccupancyGrid", LATCHED, "out"),
+    (Topic::SpeedFilterInfo, "speed_filter_info", "nav2_msgs", "CostmapFilterInfo", LATCHED, "out"),
+    (Topic::KeepoutFilterInfo, "keepout_filter_info", "nav2_msgs", "CostmapFilterInfo", LATCHED, "out"),
+    (Topic::EstimatedPose, "pose", "geometry_msgs", "PoseWithCovarianceStamped", DEFAULT, "out"),
+    (Topic::InitialPose, "initialpose", "geometry_msgs", "PoseWithCovarianceStamped", DEFAULT, "in"),
+    (Topic::Diagnostics, "/diagnostics", "diagnostic_msgs", "DiagnosticArray", DEFAULT, "out"),
+    (Topic::Log, "/rosout", "rcl_interfaces", "Log", Quality::LOG, "out"),
+    (Topic::ParameterEvents, "/parameter_events", "rcl_interfaces", "ParameterEvent", Quality { depth: 1000, ..DEFAULT }, "out"),
+    (Topic::TransitionEvents, "~/transition_event", "lifecycle_msgs", "TransitionEvent", DEFAULT, "out"),
+    (Topic::Path, "explore/path", "nav_msgs", "Path", DEFAULT, "out"),
+    (Topic::GoalPose, "goal_pose", "geometry_msgs", "PoseStamped", DEFAULT, "out"),
+    (Topic::GroundTruth, "ground_truth", "nav_msgs", "Odometry", DEFAULT, ""),
+];
+
+const DEFAULT: Quality = Quality::DEFAULT;
+const LATCHED: Quality = Quality::LATCHED;
+
 impl Topic {
-    /// The name that other nodes expect, relative to the namespace of the node, except for those that are absolute.
+    /// All topics.
+    pub fn all() -> impl Iterator<Item = Self> {
+        TOPICS.iter().map(|(topic, ..)| *topic)
+    }
+
+    /// The name that other nodes expect.
     pub fn default_name(self) -> &'static str {
-        self.row().0
+        TOPICS[self as usize].1
     }
 
     /// The type of its messages: a package and a name.
     pub fn type_name(self) -> (&'static str, &'static str) {
-        (self.row().1, self.row().2)
+        let (_, _, package, kind, ..) = TOPICS[self as usize];
+        (package, kind)
     }
 
-    /// How its messages are delivered, as subscribers and publishers of ROS expect it.
+    /// How its messages are delivered.
     pub fn quality(self) -> Quality {
-        self.row().3
+        TOPICS[self as usize].4
     }
 
-    #[rustfmt::skip]
-    fn row(self) -> (&'static str, &'static str, &'static str, Quality) {
-        const DEFAULT: Quality = Quality::DEFAULT;
-        const LATCHED: Quality = Quality::LATCHED;
-        match self {
-            Self::Scan => ("scan", "sensor_msgs", "LaserScan", Quality::SENSOR),
-            Self::Odometry => ("odom", "nav_msgs", "Odometry", DEFAULT),
-            Self::Transforms => ("/tf", "tf2_msgs", "TFMessage", Quality { depth: 100, ..DEFAULT }),
-            Self::StaticTransforms => ("/tf_static", "tf2_msgs", "TFMessage", Quality { depth: 100, ..LATCHED }),
-            Self::Clock => ("/clock", "rosgraph_msgs", "Clock", Quality { is_reliable: false, ..DEFAULT }),
-            Self::Velocity => ("cmd_vel", "geometry_msgs", "Twist", DEFAULT),
-            Self::StampedVelocity => ("cmd_vel", "geometry_msgs", "TwistStamped", DEFAULT),
-            Self::Resume => ("explore/resume", "std_msgs", "Bool", DEFAULT),
-            Self::Map => ("map", "nav_msgs", "OccupancyGrid", LATCHED),
-            Self::MapUpdates => ("map_updates", "map_msgs", "OccupancyGridUpdate", DEFAULT),
-            Self::ChangeMap => ("change_map", "nav_msgs", "OccupancyGrid", LATCHED),
-            Self::PredictedMap => ("predicted_map", "nav_msgs", "OccupancyGrid", LATCHED),
-            Self::RateMap => ("rate_map", "nav_msgs", "OccupancyGrid", LATCHED),
-            Self::ExpiryMap => ("expiry_map", "nav_msgs", "OccupancyGrid", LATCHED),
-            Self::SpeedMask => ("speed_mask", "nav_msgs", "OccupancyGrid", LATCHED),
-            Self::KeepoutMask => ("keepout_mask", "nav_msgs", "OccupancyGrid", LATCHED),
-            Self::SpeedFilterInfo => ("speed_filter_info", "nav2_msgs", "CostmapFilterInfo", LATCHED),
-            Self::KeepoutFilterInfo => ("keepout_filter_info", "nav2_msgs", "CostmapFilterInfo", LATCHED),
-            Self::EstimatedPose => ("pose", "geometry_msgs", "PoseWithCovarianceStamped", DEFAULT),
-            Self::Diagnostics => ("/diagnostics", "diagnostic_msgs", "DiagnosticArray", DEFAULT),
-            Self::InitialPose => ("initialpose", "geometry_msgs", "PoseWithCovarianceStamped", DEFAULT),
-            Self::Log => ("/rosout", "rcl_interfaces", "Log", Quality::LOG),
-            Self::ParameterEvents => ("/parameter_events", "rcl_interfaces", "ParameterEvent", Quality { depth: 1000, ..DEFAULT }),
-            Self::TransitionEvents => ("~/transition_event", "lifecycle_msgs", "TransitionEvent", DEFAULT),
-            Self::Path => ("explore/path", "nav_msgs", "Path", DEFAULT),
-            Self::GoalPose => ("goal_pose", "geometry_msgs", "PoseStamped", DEFAULT),
-            Self::GroundTruth => ("ground_truth", "nav_msgs", "Odometry", DEFAULT),
-        }
+    /// Whether the mapping node subscribes (`in`) or publishes (`out`) it.
+    pub fn direction(self) -> &'static str {
+        TOPICS[self as usize].5
     }
 }

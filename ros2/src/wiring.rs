@@ -16,41 +16,26 @@ const SCANS: usize = 100;
 ///
 /// When a name is not valid.
 pub fn curious_wiring(parameters: &Parameters, names: &Names, ros: &RosArgs) -> anyhow::Result<Wiring> {
-    let mut subscribed =
-        vec![Topic::Scan, Topic::Odometry, Topic::Transforms, Topic::StaticTransforms, Topic::InitialPose];
-    let mut published = vec![
-        Topic::Transforms,
-        Topic::Map,
-        Topic::MapUpdates,
-        Topic::ChangeMap,
-        Topic::PredictedMap,
-        Topic::RateMap,
-        Topic::ExpiryMap,
-        Topic::EstimatedPose,
-        Topic::Diagnostics,
-        Topic::Log,
-        Topic::ParameterEvents,
-        Topic::TransitionEvents,
-    ];
-    if parameters.mask_update_interval_s > 0.0 {
-        let masks = [Topic::SpeedMask, Topic::KeepoutMask, Topic::SpeedFilterInfo, Topic::KeepoutFilterInfo];
-        published.extend(masks);
-    }
-    let mut navigate_to_pose = None;
-    if parameters.mode == Mode::Explore {
-        subscribed.push(Topic::Resume);
-        published.push(Topic::Path);
-        match parameters.navigator {
-            Navigator::CmdVel if parameters.enable_stamped_cmd_vel => published.push(Topic::StampedVelocity),
-            Navigator::CmdVel => published.push(Topic::Velocity),
-            Navigator::GoalPose => published.push(Topic::GoalPose),
-            Navigator::Nav2 => navigate_to_pose = Some(names.resolved("action", "navigate_to_pose", ros)?),
+    let explores = parameters.mode == Mode::Explore;
+    let drives_by = |navigator| explores && parameters.navigator == navigator;
+    let is_on = |topic: &Topic| match topic {
+        Topic::SpeedMask | Topic::KeepoutMask | Topic::SpeedFilterInfo | Topic::KeepoutFilterInfo => {
+            parameters.mask_update_interval_s > 0.0
         }
-    }
-    let adjust_edges = match parameters.route_graph.is_empty() {
-        true => None,
-        false => Some(names.resolved("service", &parameters.route_edges_service, ros)?),
+        Topic::Resume | Topic::Path => explores,
+        Topic::StampedVelocity => drives_by(Navigator::CmdVel) && parameters.enable_stamped_cmd_vel,
+        Topic::Velocity => drives_by(Navigator::CmdVel) && !parameters.enable_stamped_cmd_vel,
+        Topic::GoalPose => drives_by(Navigator::GoalPose),
+        _ => true,
     };
+    let [subscribed, published] = ["in", "out"].map(|direction| {
+        let topics = Topic::all().filter(|topic| topic.direction().contains(direction));
+        topics.filter(is_on).collect::<Vec<_>>()
+    });
+    let resolved = |kind, name| names.resolved(kind, name, ros);
+    let navigate_to_pose = drives_by(Navigator::Nav2).then(|| resolved("action", "navigate_to_pose"));
+    let has_routes = !parameters.route_graph.is_empty();
+    let adjust_edges = has_routes.then(|| resolved("service", &parameters.route_edges_service));
     let scan = Quality {
         is_reliable: parameters.scan_reliability == "reliable",
         depth: SCANS,
@@ -61,13 +46,11 @@ pub fn curious_wiring(parameters: &Parameters, names: &Names, ros: &RosArgs) -> 
         Topic::Odometry => &parameters.odom_topic,
         _ => topic.default_name(),
     };
-    let services = Service::ALL
-        .iter()
-        .map(|service| Ok((*service, names.resolved("service", service.default_name(), ros)?)));
+    let services = Service::all().map(|service| Ok((service, resolved("service", service.default_name())?)));
     Ok(Wiring {
         services: services.collect::<anyhow::Result<_>>()?,
-        navigate_to_pose,
-        adjust_edges,
+        navigate_to_pose: navigate_to_pose.transpose()?,
+        adjust_edges: adjust_edges.transpose()?,
         ..wiring(names, ros, [&subscribed, &published], scan, name)?
     })
 }
@@ -106,8 +89,8 @@ fn wiring<'a>(
     let all = |topics: &[Topic]| topics.iter().map(named).collect::<anyhow::Result<Vec<_>>>();
     let [subscribed, published] = topics.map(all);
     Ok(Wiring {
-        name: names.node().to_owned(),
-        namespace: names.namespace().to_owned(),
+        name: names.node.clone(),
+        namespace: names.namespace.clone(),
         subscribed: subscribed?,
         published: published?,
         services: Vec::new(),

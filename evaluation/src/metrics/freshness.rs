@@ -1,6 +1,7 @@
 //! How fresh a predicted map is: its Brier score over all things that change at all times, in view or not, and how long
 //! lasting changes stay unknown.
 
+use super::mean::Mean;
 use super::quantile::quantile;
 use serde::Serialize;
 
@@ -11,8 +12,7 @@ const LASTING_S: f64 = 3600.0;
 #[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
 pub struct Freshness {
     step_s: f64,
-    squares: f64,
-    predictions: usize,
+    squares: Mean,
     steps: usize,
     stays: Vec<Option<Stay>>,
     /// Delay and whether it was detected, of each lasting change, s.
@@ -48,7 +48,7 @@ impl Freshness {
     /// Scores of steps of this duration, s.
     pub fn new(step_s: f64) -> Self {
         let (stays, changes) = (Vec::new(), Vec::new());
-        Self { step_s, squares: 0.0, predictions: 0, steps: 0, stays, changes }
+        Self { step_s, squares: Mean::default(), steps: 0, stays, changes }
     }
 
     /// The number of things.
@@ -61,7 +61,7 @@ impl Freshness {
         self.stays.resize(is_blocked.len(), None);
         for (thing, (predicted, is_blocked)) in predicted.iter().zip(is_blocked).enumerate() {
             let error = predicted - f64::from(u8::from(*is_blocked));
-            self.squares += error * error;
+            self.squares.add(error * error);
             if let Some(stay) = self.stays[thing].filter(|stay| stay.is_blocked != *is_blocked) {
                 self.end(stay);
                 let stay = Stay { is_blocked: *is_blocked, begin: Some(self.steps), detected: None };
@@ -73,7 +73,6 @@ impl Freshness {
                 stay.detected = Some(self.steps);
             }
         }
-        self.predictions += is_blocked.len();
         self.steps += 1;
     }
 
@@ -84,7 +83,7 @@ impl Freshness {
         let delays: Vec<f64> = all.changes.iter().map(|change| change.0).collect();
         let missed = all.changes.iter().filter(|change| !change.1).count();
         FreshnessScores {
-            brier: self.squares / self.predictions as f64,
+            brier: self.squares.get().unwrap_or(f64::NAN),
             lasting_changes: delays.len(),
             detection_delay_s: [0.5, 0.95].map(|share| quantile(&delays, share).unwrap_or(f64::NAN)),
             missed: missed as f64 / delays.len() as f64,

@@ -4,6 +4,7 @@ use interfaces::{CellState, Event, GridFrame, GroundTruth, LaserReading, TrueSta
 use mapper::Mapper;
 use nalgebra::{Isometry2, Point2};
 use serde::Serialize;
+use std::collections::BTreeMap;
 
 /// The delays of one kind of change: the time until the map follows a true change that a beam has shown.
 #[derive(Clone, Debug, Default, Serialize)]
@@ -24,8 +25,7 @@ pub struct Delays {
 /// A true change of a cell. It begins with the end of the old state.
 #[derive(Clone, Copy, Debug, serde::Deserialize, serde::Serialize)]
 struct Open {
-    /// The index and the center (m) of the cell.
-    index: usize,
+    /// The center of the cell, m.
     center: Point2<f64>,
     event: Event,
     /// Whether the new state was reached. A cell that becomes only partly covered does not count.
@@ -50,9 +50,8 @@ impl Open {
 /// Measures the delay between a change that a laser shows and the change of the map.
 #[derive(Clone, Debug, Default, serde::Deserialize, serde::Serialize)]
 pub struct Latency {
-    open: Vec<Open>,
-    /// For each cell one more than the position of its change in `open`; 0 without an open change.
-    positions: Vec<u32>,
+    /// By the index of the cell.
+    open: BTreeMap<usize, Open>,
     noticed: [DelayCounts; 2],
     missed: [usize; 2],
 }
@@ -77,7 +76,6 @@ impl Latency {
         laser: &Isometry2<f64>,
     ) {
         let frame = truth.frame();
-        self.positions.resize(frame.len(), 0);
         for change in truth.changes() {
             let Some(index) = frame.index(change.cell) else { continue };
             let mapped = mapper.states().cells()[index];
@@ -89,12 +87,12 @@ impl Latency {
                     self.start(frame, index, Event::Block, is_complete, mapped == CellState::Free);
                 }
                 (_, TrueState::Blocked) => {
-                    if let Some(open) = self.open_at(index).filter(|open| open.event == Event::Block) {
+                    if let Some(open) = self.open.get_mut(&index).filter(|open| open.event == Event::Block) {
                         (open.is_complete, open.is_ending) = (true, false);
                     }
                 }
                 (_, TrueState::PartlyCovered) => {
-                    if let Some(open) = self.open_at(index) {
+                    if let Some(open) = self.open.get_mut(&index) {
                         open.is_ending = true;
                     }
                 }
@@ -105,21 +103,21 @@ impl Latency {
             }
         }
         let beams = Beams::new(reading, laser, frame);
-        for open in self.open.iter_mut().filter(|open| open.shown_s.is_none() && !open.is_ending) {
+        for open in self.open.values_mut().filter(|open| open.shown_s.is_none() && !open.is_ending) {
             if beams.shows(&open.center, open.event) {
                 open.shown_s = Some(reading.time_s);
             }
         }
         // A change is open only if the map had the old state: it is noticed when the map changes.
         for index in mapper.transitions().iter().filter_map(|transition| frame.index(transition.cell)) {
-            let Some(open) = self.open_at(index) else { continue };
+            let Some(open) = self.open.get_mut(&index) else { continue };
             let after = if open.event == Event::Block { CellState::Blocked } else { CellState::Free };
             if open.noticed_s.is_none() && mapper.states().cells()[index] == after {
                 open.noticed_s = Some(reading.time_s);
             }
         }
         // Not only when the cell changes back: a body that stays counts too.
-        let finished = self.open.iter().filter(|open| open.is_finished()).map(|open| open.index);
+        let finished = self.open.iter().filter(|(_, open)| open.is_finished()).map(|(index, _)| *index);
         for index in finished.collect::<Vec<_>>() {
             self.close(index);
         }
@@ -128,25 +126,15 @@ impl Latency {
     fn start(&mut self, frame: &GridFrame, index: usize, event: Event, is_complete: bool, map_is_old: bool) {
         if map_is_old {
             let (center, shown_s, noticed_s) = (frame.center(frame.cell(index)), None, None);
-            self.open.push(Open { index, center, event, is_complete, is_ending: false, shown_s, noticed_s });
-            self.positions[index] = self.open.len() as u32;
+            let open = Open { center, event, is_complete, is_ending: false, shown_s, noticed_s };
+            self.open.insert(index, open);
         }
-    }
-
-    /// The open change of a cell.
-    fn open_at(&mut self, index: usize) -> Option<&mut Open> {
-        self.open.get_mut((self.positions[index] as usize).checked_sub(1)?)
     }
 
     /// Counts the change of a cell whose new state has ended, or is known.
     fn close(&mut self, index: usize) {
-        let Some(position) = (self.positions[index] as usize).checked_sub(1) else { return };
-        self.positions[index] = 0;
-        let closed = self.open.swap_remove(position);
-        if let Some(moved) = self.open.get(position) {
-            self.positions[moved.index] = position as u32 + 1;
-        }
-        if let Open { event, is_complete: true, shown_s: Some(shown_s), noticed_s, .. } = closed {
+        let closed = self.open.remove(&index);
+        if let Some(Open { event, is_complete: true, shown_s: Some(shown_s), noticed_s, .. }) = closed {
             match noticed_s {
                 Some(noticed_s) => self.noticed[event as usize].add(noticed_s - shown_s),
                 None => self.missed[event as usize] += 1,

@@ -26,13 +26,13 @@ mod true_chains;
 pub use alignment::alignment;
 pub use changing::{ChangingAccuracy, ChangingScores};
 pub use deviance::{DevianceScores, FrozenRates, poisson_deviance};
-pub use forecasts::{ForecastScores, Forecasts, StateScores};
+pub use forecasts::{ForecastScores, Forecasts};
 pub use freshness::{Freshness, FreshnessScores};
 pub use latency::{Delays, Latency};
 pub use map::{Age, MapScores, ReachableScores, age, map_scores, reachable_scores};
 pub use passages::{PassageScores, passage_scores};
 pub use pose::{PoseErrors, PoseScores};
-pub use prediction::{BrierOfAll, PredictedScores, Prediction};
+pub use prediction::{Prediction, StateScores};
 pub use probability::ProbabilityScores;
 pub use quantile::quantile;
 pub use rates::{

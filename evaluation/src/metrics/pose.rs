@@ -1,7 +1,6 @@
 use super::counts::Counts;
 use localizer::{Correction, PoseEstimate, PoseState};
 use nalgebra::{Isometry2, Point2, distance};
-use serde::Serialize;
 
 /// Errors larger than this count as this large, m.
 const MAX_ERROR_M: u32 = 100;
@@ -16,22 +15,18 @@ const LOCK_IN_S: f64 = 1.0;
 pub struct PoseErrors {
     positions_m: Counts<100_000, MAX_ERROR_M>,
     headings_rad: Counts<1_000_000, 4>,
-    max_m: f64,
-    uncertain_s: f64,
-    lost_s: f64,
-    lock_ins: usize,
+    /// All but the mode and the quantiles.
+    scores: PoseScores,
     /// The beginning of the present large error with a certain pose, s; counted once it lasts.
     wrong_since_s: Option<f64>,
     last_s: f64,
-    loops_closed: usize,
-    largest_correction_m: f64,
 }
 
 /// The quality of the poses of a run.
-#[derive(Clone, Debug, Default, Serialize)]
+#[derive(Clone, Debug, Default, serde::Deserialize, serde::Serialize)]
 pub struct PoseScores {
     /// How poses were known: `exact`, `odometry` or `localized`.
-    pub mode: &'static str,
+    pub mode: String,
     /// The median error of the position over the readings with a certain pose, m.
     pub median_m: Option<f64>,
     /// The error that 95 % of these readings do not exceed, m.
@@ -66,8 +61,8 @@ impl PoseErrors {
         let elapsed_s = time_s - last_s;
         match estimate.map_or(PoseState::Tracking, |estimate| estimate.state) {
             PoseState::Tracking => {}
-            PoseState::Uncertain => self.uncertain_s += elapsed_s,
-            PoseState::Lost => self.lost_s += elapsed_s,
+            PoseState::Uncertain => self.scores.uncertain_s += elapsed_s,
+            PoseState::Lost => self.scores.lost_s += elapsed_s,
         }
         if estimate.is_some_and(|estimate| estimate.state != PoseState::Tracking) {
             self.wrong_since_s = None;
@@ -79,7 +74,7 @@ impl PoseErrors {
         let error_rad = pose.rotation.angle_to(&truth.rotation).abs();
         self.positions_m.add(error_m);
         self.headings_rad.add(error_rad);
-        self.max_m = self.max_m.max(error_m);
+        self.scores.max_m = self.scores.max_m.max(error_m);
         if error_m <= LOCK_IN_M && error_rad <= LOCK_IN_RAD {
             self.wrong_since_s = None;
             return;
@@ -87,7 +82,7 @@ impl PoseErrors {
         let since_s = *self.wrong_since_s.get_or_insert(time_s);
         // Counted once: at the reading with which the error has lasted.
         if time_s - since_s > LOCK_IN_S && last_s - since_s <= LOCK_IN_S {
-            self.lock_ins += 1;
+            self.scores.lock_ins += 1;
         }
     }
 
@@ -98,23 +93,19 @@ impl PoseErrors {
 
     /// Counts a closed loop.
     pub fn correct(&mut self, correction: &Correction) {
-        self.loops_closed += 1;
-        self.largest_correction_m = self.largest_correction_m.max(correction.largest_m);
+        let PoseScores { loops_closed, largest_correction_m, .. } = &mut self.scores;
+        *loops_closed += 1;
+        *largest_correction_m = largest_correction_m.max(correction.largest_m);
     }
 
     /// The scores so far.
-    pub fn scores(&self, mode: &'static str) -> PoseScores {
+    pub fn scores(&self, mode: &str) -> PoseScores {
         PoseScores {
-            mode,
+            mode: mode.to_owned(),
             median_m: self.positions_m.quantile(0.5),
             p95_m: self.positions_m.quantile(0.95),
-            max_m: self.max_m,
             heading_p95_deg: self.headings_rad.quantile(0.95).map(f64::to_degrees),
-            uncertain_s: self.uncertain_s,
-            lost_s: self.lost_s,
-            lock_ins: self.lock_ins,
-            loops_closed: self.loops_closed,
-            largest_correction_m: self.largest_correction_m,
+            ..self.scores.clone()
         }
     }
 }

@@ -1,27 +1,63 @@
-use super::TrueChains;
+//! How well the map predicts the states of cells.
+
 use super::mean::Mean;
+use super::{ProbabilityScores, TrueChains};
 use interfaces::{CellState, GroundTruth, TrueState};
 use mapper::Mapper;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
-/// The quality of the prediction of the state of swept cells out of view, sampled over a part of a run.
-#[derive(Clone, Copy, Debug, Default, serde::Deserialize, serde::Serialize)]
+/// The probability that a cell is blocked, as predicted, and by simpler predictions.
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
+pub(super) struct PredictedState {
+    model: f64,
+    last_seen: f64,
+    average: f64,
+    true_chain: Option<f64>,
+}
+
+impl PredictedState {
+    /// The prediction for a time after the last reading. `chains` are the true chains, if they are to be compared.
+    pub(super) fn of(
+        mapper: &Mapper,
+        truth: &impl GroundTruth,
+        index: usize,
+        ahead: f64,
+        chains: Option<&TrueChains>,
+    ) -> Self {
+        let last_seen = match mapper.states().cells()[index] {
+            CellState::Unknown => 0.5,
+            CellState::Free => 0.0,
+            CellState::Blocked => 1.0,
+        };
+        let of_chain = |chains: &TrueChains| match mapper.states().cells()[index] {
+            CellState::Unknown => last_seen,
+            _ => chains.blocked_probability(truth, index, last_seen, mapper.recency(index) + ahead),
+        };
+        let seen = mapper.statistics(index);
+        let watched = seen.watched_free + seen.watched_blocked;
+        Self {
+            model: mapper.blocked_probability_later(index, ahead),
+            last_seen,
+            average: if watched > 0.0 { seen.watched_blocked / watched } else { last_seen },
+            true_chain: chains.map(of_chain),
+        }
+    }
+}
+
+/// The quality of predicted states of swept cells so far.
+#[derive(Clone, Copy, Debug, Default, Deserialize, Serialize)]
 pub struct Prediction {
-    model: Mean,
+    model: ProbabilityScores,
     last_seen: Mean,
     average: Mean,
     true_chains: Mean,
-    /// The accuracy on truly free and on truly blocked cells.
-    correct: [Mean; 2],
 }
 
-/// The quality of the predicted map on swept cells that are out of view. The Brier score is the mean of (predicted
-/// probability of "blocked now" − truth)²; lower is better. All are `None` if all swept cells were always in view.
+/// The quality of predicted states. A Brier score is the mean of (predicted probability of "blocked" − truth)²; lower is better. All
+/// are `None` without a prediction. Predictions are for swept cells that are not partly covered then: those out of view at the
+/// moment; in a forecast, those that were known and free, or had changed, when the map was frozen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct PredictedScores {
-    /// The mean of the accuracy on truly free cells and the accuracy on truly blocked cells, for known cells that can
-    /// be seen: is the more probable state the true one? `None` unless there are free and blocked ones.
-    pub balanced_accuracy_out_of_view: Option<f64>,
+pub struct StateScores {
     /// The Brier score of the map as predicted, [`Mapper::blocked_probability`].
     pub brier: Option<f64>,
     /// The Brier score of the state that was last seen; 0.5 for a cell that was never seen.
@@ -32,82 +68,48 @@ pub struct PredictedScores {
     /// The Brier score of a Markov chain with the true rates so far and the true share of the time that the cell is
     /// blocked, after the same observations; 0.5 for a cell that was never seen. `None` where it was not measured.
     pub brier_true_chains: Option<f64>,
+    /// The expected calibration error of the map as predicted: the mean distance of the predicted from the true share of blocked
+    /// cells in ten classes of predictions, by the number of predictions in each.
+    pub calibration_error: Option<f64>,
 }
 
 impl Prediction {
-    /// Compares the predictions for swept cells out of view with the ground truth now. Partly covered cells are
-    /// ignored. `chains` are the true chains, if they are to be compared.
-    pub fn sample(&mut self, mapper: &Mapper, truth: &impl GroundTruth, chains: Option<&TrueChains>) {
-        for &index in truth.swept().iter().filter(|&&index| !mapper.is_in_view(index)) {
-            let is_blocked = match truth.state(index) {
-                TrueState::PartlyCovered => continue,
-                state => state == TrueState::Blocked,
-            };
-            let mapped = mapper.states().cells()[index];
-            let last_seen = match mapped {
-                CellState::Unknown => 0.5,
-                CellState::Free => 0.0,
-                CellState::Blocked => 1.0,
-            };
-            let average = share_blocked(mapper, index).unwrap_or(last_seen);
-            let model = mapper.blocked_probability(index);
-            let square = |prediction: f64| {
-                let error = prediction - f64::from(u8::from(is_blocked));
-                error * error
-            };
-            self.model.add(square(model));
-            self.last_seen.add(square(last_seen));
-            self.average.add(square(average));
-            if let Some(chains) = chains {
-                let is_known = mapped != CellState::Unknown;
-                let of_chain = || chains.blocked_probability(truth, index, last_seen, mapper.recency(index));
-                self.true_chains.add(square(if is_known { of_chain() } else { last_seen }));
-            }
-            if mapped != CellState::Unknown && truth.can_be_seen(index) {
-                self.correct[usize::from(is_blocked)].add_bool((model > 0.5) == is_blocked);
-            }
+    /// Compares the predictions for the swept cells that are `chosen` with the ground truth now.
+    pub fn sample(
+        &mut self,
+        mapper: &Mapper,
+        truth: &impl GroundTruth,
+        chains: Option<&TrueChains>,
+        chosen: impl Fn(usize) -> bool,
+    ) {
+        for &index in truth.swept().iter().filter(|index| chosen(**index)) {
+            self.add(&PredictedState::of(mapper, truth, index, 0.0, chains), truth.state(index));
+        }
+    }
+
+    /// Compares a prediction with the true state. A partly covered cell is ignored.
+    pub(super) fn add(&mut self, predicted: &PredictedState, truth: TrueState) {
+        if truth == TrueState::PartlyCovered {
+            return;
+        }
+        let is_blocked = truth == TrueState::Blocked;
+        let square = |probability: f64| (probability - f64::from(u8::from(is_blocked))).powi(2);
+        self.model.add(predicted.model, is_blocked);
+        self.last_seen.add(square(predicted.last_seen));
+        self.average.add(square(predicted.average));
+        if let Some(of_chain) = predicted.true_chain {
+            self.true_chains.add(square(of_chain));
         }
     }
 
     /// The scores over all samples.
-    pub fn scores(&self) -> PredictedScores {
-        let [free, blocked] = self.correct.map(|accuracy| accuracy.get());
-        PredictedScores {
-            balanced_accuracy_out_of_view: free.zip(blocked).map(|(free, blocked)| (free + blocked) / 2.0),
-            brier: self.model.get(),
+    pub fn scores(&self) -> StateScores {
+        StateScores {
+            brier: self.model.brier(),
             brier_last_seen: self.last_seen.get(),
             brier_mean: self.average.get(),
             brier_true_chains: self.true_chains.get(),
+            calibration_error: self.model.calibration_error(),
         }
     }
-}
-
-/// The Brier score of the predicted map over all swept cells, in view or not, sampled over a part of a run: how fresh the map is.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct BrierOfAll(Mean);
-
-impl BrierOfAll {
-    /// Compares the prediction for every swept cell with the ground truth now. Partly covered cells are ignored.
-    pub fn sample(&mut self, mapper: &Mapper, truth: &impl GroundTruth) {
-        for &index in truth.swept().iter() {
-            let is_blocked = match truth.state(index) {
-                TrueState::PartlyCovered => continue,
-                state => state == TrueState::Blocked,
-            };
-            let error = mapper.blocked_probability(index) - f64::from(u8::from(is_blocked));
-            self.0.add(error * error);
-        }
-    }
-
-    /// The score over all samples; `None` without a swept cell.
-    pub fn get(&self) -> Option<f64> {
-        self.0.get()
-    }
-}
-
-/// The share of the time in view during which a cell was blocked; `None` if the cell was not in view for any time.
-pub(super) fn share_blocked(mapper: &Mapper, index: usize) -> Option<f64> {
-    let seen = mapper.statistics(index);
-    let watched = seen.watched_free + seen.watched_blocked;
-    (watched > 0.0).then(|| seen.watched_blocked / watched)
 }

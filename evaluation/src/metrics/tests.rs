@@ -93,10 +93,10 @@ fn show(world: &GridWorld, mapper: &mut Mapper, sees: impl Fn(Cell) -> bool) {
 }
 
 /// The accuracy on changing cells, and the scores of the predicted map, of one sample.
-fn sampled(mapper: &Mapper, world: &GridWorld) -> (Option<f64>, PredictedScores) {
+fn sampled(mapper: &Mapper, world: &GridWorld) -> (Option<f64>, StateScores) {
     let (mut accuracy, mut prediction) = (ChangingAccuracy::default(), Prediction::default());
     accuracy.sample(mapper, world.truth());
-    prediction.sample(mapper, world.truth(), None);
+    prediction.sample(mapper, world.truth(), None, |index| !mapper.is_in_view(index));
     (accuracy.scores().all, prediction.scores())
 }
 

@@ -1,11 +1,11 @@
 use interfaces::{GroundTruth, TrueState};
+use std::collections::BTreeMap;
 
 /// The two-state Markov chains of all cells, with the true rates so far: the reference for predictions.
 #[derive(Clone, Debug, Default, serde::Deserialize, serde::Serialize)]
 pub struct TrueChains {
-    /// For each cell one more than the position of its chain in `chains`; 0 for a cell that has not changed.
-    positions: Vec<u32>,
-    chains: Vec<TrueChain>,
+    /// Of each cell that has changed, by its index.
+    chains: BTreeMap<usize, TrueChain>,
 }
 
 /// The true states of one cell so far. The time in which the cell is partly covered does not count.
@@ -60,14 +60,10 @@ impl TrueChain {
 impl TrueChains {
     /// Adds the true changes since the last command: called once per reading.
     pub fn observe(&mut self, truth: &impl GroundTruth) {
-        self.positions.resize(truth.frame().len(), 0);
         for change in truth.changes() {
             let Some(index) = truth.frame().index(change.cell) else { continue };
-            if self.positions[index] == 0 {
-                self.chains.push(TrueChain::constant(change.before));
-                self.positions[index] = self.chains.len() as u32;
-            }
-            self.chains[self.positions[index] as usize - 1].change(change.time, change.after);
+            let chain = self.chains.entry(index).or_insert_with(|| TrueChain::constant(change.before));
+            chain.change(change.time, change.after);
         }
     }
 
@@ -81,11 +77,8 @@ impl TrueChains {
         seen: f64,
         elapsed: f64,
     ) -> f64 {
-        let position = self.positions.get(index).map_or(0, |&position| position as usize);
-        let mut chain = match position.checked_sub(1) {
-            Some(position) => self.chains[position],
-            None => TrueChain::constant(truth.state(index)),
-        };
+        let known = self.chains.get(&index).copied();
+        let mut chain = known.unwrap_or_else(|| TrueChain::constant(truth.state(index)));
         chain.pass_to(truth.elapsed());
         let [free, blocked] = chain.times;
         if free + blocked <= 0.0 {

@@ -2,10 +2,10 @@
 
 use super::{Contacts, RunResults, Summary};
 use crate::metrics::{
-    Age, DevianceScores, FreshnessScores, PoseScores, PredictedScores, RateScores, ThingReport,
+    Age, DevianceScores, FreshnessScores, PoseScores, RateScores, StateScores, ThingReport,
 };
 use crate::scheduled_things::ScheduledScores;
-use results::numbers::percent;
+use results::numbers::{duration, percent};
 use robot::GoalCount;
 use std::fmt;
 
@@ -85,7 +85,7 @@ fn of_calendar(scores: &ScheduledScores) -> Vec<(&'static str, String)> {
         format!("Brier score {brier:.4} over {things} things with a schedule, at all times"),
     )];
     if *lasting_changes > 0 {
-        let [median, late] = detection_delay_s.map(length_of);
+        let [median, late] = detection_delay_s.map(duration);
         let missed = percent(*missed);
         let text = format!(
             "{lasting_changes} changes that last an hour or more: on the map after {median} in the median, {late} for 95 %, {missed} missed"
@@ -93,10 +93,6 @@ fn of_calendar(scores: &ScheduledScores) -> Vec<(&'static str, String)> {
         lines.push(("", text));
     }
     lines
-}
-
-fn length_of(time_s: f64) -> String {
-    if time_s < 7200.0 { format!("{:.0} min", time_s / 60.0) } else { format!("{:.1} h", time_s / 3600.0) }
 }
 
 impl RunResults {
@@ -128,8 +124,8 @@ impl RunResults {
 
     /// The errors of the poses; `None` if they are exact.
     fn pose(&self) -> Option<String> {
-        let PoseScores { mode, median_m, p95_m, max_m, uncertain_s, lost_s, lock_ins, .. } = self.pose;
-        let (median, p95) = (median_m? * 1e3, p95_m? * 1e3);
+        let PoseScores { mode, median_m, p95_m, max_m, uncertain_s, lost_s, lock_ins, .. } = &self.pose;
+        let (median, p95) = ((*median_m)? * 1e3, (*p95_m)? * 1e3);
         let loops = match self.pose.loops_closed {
             0 => String::new(),
             count => {
@@ -150,7 +146,7 @@ impl RunResults {
 
     /// The quality of the predicted map beside that of simpler predictions; `None` if nothing changed out of view.
     fn prediction(&self) -> Option<String> {
-        let PredictedScores { brier, brier_last_seen, brier_mean, brier_true_chains, .. } = self.predicted;
+        let StateScores { brier, brier_last_seen, brier_mean, brier_true_chains, .. } = self.predicted;
         let (last_seen, mean, chains) = (brier_last_seen?, brier_mean?, brier_true_chains?);
         Some(format!(
             "Brier score {:.4} on changing cells out of view; as last seen {last_seen:.4}, share of time blocked \
@@ -236,7 +232,7 @@ mod tests {
             map: MapScores { coverage, map_quality: 0.9999 },
             reachable: ReachableScores { coverage_reachable: coverage, map_quality_reachable: 0.9999 },
             changing: ChangingAccuracy::default().scores(),
-            predicted: PredictedScores::default(),
+            predicted: StateScores::default(),
             forecasts: ForecastScores::default(),
             passages: PassageScores::default(),
             intervals: IntervalScores::default(),
@@ -246,7 +242,7 @@ mod tests {
             free_latency: Delays::default(),
             collisions: 0,
             contacts: Contacts { own_motion: 1, run_into: 2 },
-            pose: PoseScores { mode: "exact", ..PoseScores::default() },
+            pose: PoseScores { mode: "exact".into(), ..PoseScores::default() },
             goals: GoalCount::default(),
             strategy_share: BTreeMap::new(),
             things: Vec::new(),
@@ -268,8 +264,8 @@ mod tests {
             ..RateScores::default()
         };
         let age = Age { max_s: 600.0, never_seen: 2 };
-        let predicted = PredictedScores {
-            balanced_accuracy_out_of_view: None,
+        let predicted = StateScores {
+            calibration_error: None,
             brier: Some(0.0159),
             brier_last_seen: Some(0.02702),
             brier_mean: Some(0.01612),

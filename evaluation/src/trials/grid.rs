@@ -49,10 +49,6 @@ impl TrialWorld for GridSpec {
         world.truth()
     }
 
-    fn collisions(_world: &GridWorld) -> Option<u64> {
-        None
-    }
-
     fn agent(trial: &TrialSettings<Self>, policy: &Policy) -> Result<Agent, TrialError> {
         let sensor_radius_m = f64::from(trial.world.sensor_radius) * trial.world.frame().resolution_m();
         let settings = AgentSettings {

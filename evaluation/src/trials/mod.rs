@@ -68,25 +68,15 @@ impl<W: TrialWorld> Experiment<W> {
     pub fn jobs(&self) -> Vec<TrialSettings<'_, W>> {
         let mut seeds: Vec<u64> = (0..self.trials).map(|trial| self.seed.wrapping_add(trial)).collect();
         seeds.sort_unstable();
+        let strategies = |world, estimator| self.strategies.iter().map(move |it| (world, estimator, it));
+        let estimators = |world| self.estimators.iter().flat_map(move |it| strategies(world, it));
         let mut jobs = Vec::new();
         for (trial, seed) in (1..).zip(seeds) {
-            let mut group = 0;
-            for world in &self.worlds {
-                for estimator in &self.estimators {
-                    for strategy in &self.strategies {
-                        let number = group * self.trials + trial;
-                        jobs.push(TrialSettings {
-                            number,
-                            world,
-                            estimator,
-                            strategy,
-                            seed,
-                            experiment: self,
-                        });
-                        group += 1;
-                    }
-                }
-            }
+            let groups = (0..).zip(self.worlds.iter().flat_map(estimators));
+            jobs.extend(groups.map(|(group, (world, estimator, strategy))| {
+                let number = group * self.trials + trial;
+                TrialSettings { number, world, estimator, strategy, seed, experiment: self }
+            }));
         }
         jobs
     }

@@ -47,10 +47,6 @@ impl TrialWorld for WorldSpec {
         Length::Physics { duration_s: length }
     }
 
-    fn sensor_radius(&self) -> Option<u32> {
-        None
-    }
-
     fn in_own_frame(&self, robot: &PhysicsRobot, seed: u64) -> Option<Self> {
         Some(physics_trial::in_own_frame(&robot.settings(self).ok()?, self, seed)?.0)
     }

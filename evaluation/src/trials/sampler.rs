@@ -1,7 +1,7 @@
 use super::{Sample, TrialWorld};
 use crate::metrics::{
-    BrierOfAll, ChangingAccuracy, DevianceScores, Forecasts, PassageScores, Prediction, RateScores,
-    map_scores, passage_scores, rate_scores,
+    ChangingAccuracy, DevianceScores, Forecasts, PassageScores, Prediction, RateScores, map_scores,
+    passage_scores, rate_scores,
 };
 use interfaces::GroundTruth;
 use mapper::Mapper;
@@ -27,7 +27,7 @@ pub(super) struct Sampler {
     /// Since the last sample.
     prediction: Prediction,
     /// Since the last sample.
-    brier_of_all: BrierOfAll,
+    prediction_of_all: Prediction,
     forecasts: Forecasts,
 }
 
@@ -43,8 +43,8 @@ impl Sampler {
         self.forecasts.observe(mapper, truth, None);
         if is_due || self.readings.is_multiple_of(W::COMPARE_EVERY) {
             self.accuracy.sample(mapper, truth);
-            self.prediction.sample(mapper, truth, None);
-            self.brier_of_all.sample(mapper, truth);
+            self.prediction.sample(mapper, truth, None, |index| !mapper.is_in_view(index));
+            self.prediction_of_all.sample(mapper, truth, None, |_| true);
         }
         if self.readings.is_multiple_of(W::VIEW_EVERY) {
             self.views += 1;
@@ -87,7 +87,7 @@ impl Sampler {
             false_rate: false_rate_hz,
             changing_share: self.views_of_changes as f64 / self.views as f64,
             brier: or_nan(brier.brier),
-            brier_of_all: or_nan(std::mem::take(&mut self.brier_of_all).get()),
+            brier_of_all: or_nan(std::mem::take(&mut self.prediction_of_all).scores().brier),
             brier_last_seen: or_nan(brier.brier_last_seen),
             brier_mean: or_nan(brier.brier_mean),
             rate_auc: or_nan(rate_auc),

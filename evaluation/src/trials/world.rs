@@ -45,7 +45,9 @@ pub trait TrialWorld: Sized + Sync {
     fn length(length: u64) -> Length;
 
     /// The range of the sensor of a grid world, in cells.
-    fn sensor_radius(&self) -> Option<u32>;
+    fn sensor_radius(&self) -> Option<u32> {
+        None
+    }
 
     /// The world in the frame of the robot's own map; `None` if the robot knows the frame of the world.
     fn in_own_frame(&self, _: &Self::Robot, _seed: u64) -> Option<Self> {
@@ -59,7 +61,9 @@ pub trait TrialWorld: Sized + Sync {
     fn truth(world: &Self::World) -> &Self::Truth;
 
     /// The number of collisions of the moving robot since the last reading; `None` where no robot can collide.
-    fn collisions(world: &Self::World) -> Option<u64>;
+    fn collisions(_world: &Self::World) -> Option<u64> {
+        None
+    }
 
     /// The agent that follows `policy`.
     ///

@@ -37,7 +37,7 @@ const ALLOWED: &[(&str, &str)] = &[
         "curious",
         "interfaces files calendar sim worldfile stage mapper agent controller robot results evaluation draw viewer cli",
     ),
-    ("ros2", "interfaces sim worldfile mapper localizer ros logs agent controller robot results survey"),
+    ("ros2", "interfaces sim worldfile mapper localizer ros logs agent controller robot results survey cli"),
     // No part of the product: no other crate may use it.
     ("studies", "interfaces calendar sim mapper agent robot evaluation reports"),
 ];

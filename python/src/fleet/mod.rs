@@ -5,7 +5,7 @@ use crate::convert::{
     whole, writable,
 };
 use crate::reading::Reading;
-use crate::snapshots::{Kind, check_build};
+use crate::snapshots::Kind;
 use crate::spec::spec_of;
 use arrays::look_all;
 use interfaces::{LaserReading, Purpose, RandomStream};
@@ -203,13 +203,13 @@ impl Fleet {
     }
 
     /// Puts a robot at a pose (x, y, heading), at rest. `ValueError`: something else is there.
-    fn teleport(&mut self, #[pyo3(from_py_with = index)] robot: usize, pose: Numbers<'_>) -> PyResult<()> {
+    fn teleport(&mut self, #[pyo3(from_py_with = index)] robot: usize, pose: Numbers) -> PyResult<()> {
         self.check_robot(robot)?;
         self.fleet.teleport(robot, &self::pose(&pose)?).map_err(value_error)
     }
 
     /// Whether a robot fits at a pose now.
-    fn fits(&self, #[pyo3(from_py_with = index)] robot: usize, at: Numbers<'_>) -> PyResult<bool> {
+    fn fits(&self, #[pyo3(from_py_with = index)] robot: usize, at: Numbers) -> PyResult<bool> {
         self.check_robot(robot)?;
         Ok(self.fleet.check_fit(robot, &pose(&at)?).is_ok())
     }
@@ -260,8 +260,7 @@ impl Fleet {
     #[pyo3(signature = (snapshot, *, allow_other_build = false))]
     fn restore(&mut self, py: Python<'_>, snapshot: &[u8], allow_other_build: bool) -> PyResult<()> {
         let fleet = &mut self.fleet;
-        let state = SNAPSHOT.open(snapshot)?;
-        check_build(snapshot, allow_other_build)?;
+        let state = SNAPSHOT.open(snapshot, allow_other_build)?;
         py.detach(|| fleet.restore(state)).map_err(snapshot_error)
     }
 

@@ -1,6 +1,6 @@
 //! The file of a shard that runs.
 
-use super::line;
+use super::line::{self, Line};
 use super::scan::{MAX_LINE, Scan, not_a_shard};
 use super::{Header, Shard, ShardError};
 use evaluation::trials::Trial;
@@ -15,7 +15,8 @@ use std::sync::{Mutex, PoisonError};
 /// open it, if the file system has locks.
 #[derive(Debug)]
 pub struct ShardFile {
-    path: PathBuf,
+    /// The file.
+    pub path: PathBuf,
     pub(super) shard: Shard,
     key: u64,
     /// The numbers of the trials that were finished when the file was opened.
@@ -40,7 +41,8 @@ impl ShardFile {
     ///
     /// When the file cannot be written, another process has opened it, or the folder has shards of another experiment:
     /// nothing is changed then.
-    pub fn open(folder: &Path, header: &Header, shard: Shard) -> Result<Self, ShardError> {
+    pub fn open(folder: &Path, header: &Header) -> Result<Self, ShardError> {
+        let shard = header.shard;
         make_folder(folder)?;
         check_others(folder, header)?;
         let path = folder.join(shard.file_name());
@@ -49,7 +51,7 @@ impl ShardFile {
         let mut file = options.map_err(failed)?;
         lock(&file, &path, "wait for it, or start another shard")?;
         let mut scan = Scan::of(&path, shard, BufReader::new(&file))?;
-        let line = header.line().map_err(|error| failed(error.into()))?;
+        let line = line::write(header, 0).map_err(|error| failed(error.into()))?;
         if scan.header.is_none() && !line.as_bytes().starts_with(&scan.torn) {
             return Err(not_a_shard(&path));
         }
@@ -67,11 +69,6 @@ impl ShardFile {
         })
     }
 
-    /// The file.
-    pub fn path(&self) -> &Path {
-        &self.path
-    }
-
     /// Appends a finished trial, which is then in the hands of the operating system: it survives the end of the
     /// program.
     ///
@@ -80,7 +77,8 @@ impl ShardFile {
     /// When the line cannot be written, as on a full disk. The lines before it stay; all later calls fail as well.
     pub fn append(&self, number: u64, trial: &Trial) -> Result<(), OutputError> {
         let failed = |why| OutputError::new(&self.path, why);
-        let line = line::write(number, trial, self.key).map_err(|error| failed(error.into()))?;
+        let line = Line { job: number, trial };
+        let line = line::write(&line, self.key).map_err(|error| failed(error.into()))?;
         let mut appended = self.file.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(earlier) = &appended.failure {
             return Err(failed(again(earlier)));
@@ -133,8 +131,8 @@ fn check_others(folder: &Path, header: &Header) -> Result<(), ShardError> {
         let read = BufReader::new(file).take(MAX_LINE).read_until(b'\n', &mut line);
         read.map_err(|why| ShardError::read(&path, why))?;
         let text = line.strip_suffix(b"\n").and_then(|line| std::str::from_utf8(line).ok());
-        let other = text.and_then(Header::read);
-        if let Some(difference) = other.and_then(|other| other.difference(header)) {
+        let other = text.and_then(|text| line::read(text, 0));
+        if let Some(difference) = other.and_then(|other: Header| other.difference(header)) {
             let why = format!("this shard is {difference}; give another folder by --out");
             return Err(ShardError::content(&path, why));
         }

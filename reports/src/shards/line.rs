@@ -1,6 +1,5 @@
-//! The lines of the file of a shard.
+//! The lines of the file of a shard: JSON objects, each with the hash of its text as the last key.
 
-use evaluation::trials::Trial;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use xxhash_rust::xxh3::xxh3_64_with_seed;
@@ -17,25 +16,19 @@ pub(super) struct Line<T> {
     pub(super) trial: T,
 }
 
-/// The text of a JSON object, with its hash as the last key, and a line's end.
-pub(super) fn seal(object: &str, key: u64) -> String {
-    let text = object.strip_suffix('}').unwrap_or(object);
-    format!("{text}{HASH}{:016x}\"}}\n", xxh3_64_with_seed(text.as_bytes(), key))
+/// An object as a line, with a line's end.
+pub(super) fn write(object: &impl Serialize, key: u64) -> serde_json::Result<String> {
+    let text = serde_json::to_string(object)?;
+    let text = text.strip_suffix('}').unwrap_or(&text);
+    Ok(format!("{text}{HASH}{}\"}}\n", hash(text, key)))
 }
 
-/// The text of an object without its last brace and its hash; `None` if the line, without its end, is not as it was
-/// written.
-pub(super) fn unseal(line: &str, key: u64) -> Option<&str> {
-    let (text, hash) = line.strip_suffix("\"}")?.rsplit_once(HASH)?;
-    (hash == format!("{:016x}", xxh3_64_with_seed(text.as_bytes(), key))).then_some(text)
+/// The object in a line without its end; `None` if the line is not as it was written.
+pub(super) fn read<T: DeserializeOwned>(line: &str, key: u64) -> Option<T> {
+    let (text, found) = line.strip_suffix("\"}")?.rsplit_once(HASH)?;
+    (hash(text, key) == found).then(|| serde_json::from_str(&format!("{text}}}")).ok())?
 }
 
-/// The line of the trial with a number, with a line's end.
-pub(super) fn write(job: u64, trial: &Trial, key: u64) -> serde_json::Result<String> {
-    Ok(seal(&serde_json::to_string(&Line { job, trial })?, key))
-}
-
-/// The content of a line without its end; `None` if the line is not as it was written.
-pub(super) fn read<T: DeserializeOwned>(line: &str, key: u64) -> Option<Line<T>> {
-    serde_json::from_str(&format!("{}}}", unseal(line, key)?)).ok()
+fn hash(text: &str, key: u64) -> String {
+    format!("{:016x}", xxh3_64_with_seed(text.as_bytes(), key))
 }

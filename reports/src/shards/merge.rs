@@ -1,7 +1,7 @@
 //! All shards of a folder, and their trials in the order of the experiment.
 
 use super::file::shards_in;
-use super::line;
+use super::line::{self, Line};
 use super::scan::Scan;
 use super::{Header, Shard, ShardError, array};
 use evaluation::trials::Trial;
@@ -18,9 +18,10 @@ const BATCH: usize = 256;
 /// The shards of an experiment that have files in a folder.
 #[derive(Debug)]
 pub struct Shards {
-    header: Header,
-    /// One per shard, in their order; `None` for a shard without a file.
-    scans: Vec<Option<Scan>>,
+    /// What all shards have in common.
+    pub header: Header,
+    /// Every shard in their order, with the content of its file; `None` for a shard that was never started.
+    scans: Vec<(Shard, Option<Scan>)>,
     folder: PathBuf,
 }
 
@@ -52,24 +53,16 @@ impl Shards {
         let Some((header, _)) = first else {
             return Err(ShardError::content(folder, "this folder has no shard with a finished line"));
         };
-        let count = header.shard().map_or(0, Shard::count);
-        let mut all: Vec<Option<Scan>> = (0..count).map(|_| None).collect();
+        let mut all: Vec<_> = header.shard.all().map(|shard| (shard, None)).collect();
         for (shard, scan) in scans.into_iter().filter(|(_, scan)| scan.header.is_some()) {
-            all[shard.number() as usize - 1] = Some(scan);
+            all[shard.number() as usize - 1].1 = Some(scan);
         }
         Ok(Self { header, scans: all, folder: folder.to_owned() })
     }
 
-    /// What all shards have in common.
-    pub fn header(&self) -> &Header {
-        &self.header
-    }
-
     /// Every shard, with the content of its file; `None` for a shard that was never started.
     pub fn shards(&self) -> impl Iterator<Item = (Shard, Option<&Scan>)> {
-        let count = self.scans.len() as u64;
-        let numbers = (1..=count).filter_map(move |number| Shard::new(number, count));
-        numbers.zip(self.scans.iter().map(Option::as_ref))
+        self.scans.iter().map(|(shard, scan)| (*shard, scan.as_ref()))
     }
 
     /// The shards with trials that are not finished, each with the number of its finished trials.
@@ -78,9 +71,10 @@ impl Shards {
         finished.filter(|(shard, finished)| *finished < shard.trials(self.header.trials))
     }
 
-    /// The numbers of the shards with trials that are not finished.
-    pub fn missing(&self) -> Vec<u64> {
-        self.open().map(|(shard, _)| shard.number()).collect()
+    /// The shards with trials that are not finished, as `sbatch --array` reads them; `None` if there is none.
+    pub fn missing(&self) -> Option<String> {
+        let numbers: Vec<u64> = self.open().map(|(shard, _)| shard.number()).collect();
+        (!numbers.is_empty()).then(|| array(&numbers))
     }
 
     /// The present state as text: one line for each shard that is not complete, and one for all shards.
@@ -115,12 +109,9 @@ impl Shards {
                 return refuse(format!("has shards of {what} {found}: merge them with that {what}"));
             }
         }
-        let missing = self.missing();
-        let Some((first, count)) = missing.first().zip(self.header.shard().map(Shard::count)) else {
-            return Ok(());
-        };
-        let file = Shard::new(*first, count).map(Shard::file_name).unwrap_or_default();
-        let which = format!("the shards {} of {count} lack trials, the first is {file}", array(&missing));
+        let Some((missing, (first, _))) = self.missing().zip(self.open().next()) else { return Ok(()) };
+        let (count, file) = (first.count(), first.file_name());
+        let which = format!("the shards {missing} of {count} lack trials, the first is {file}");
         refuse(format!("is not complete: {which}; run those shards again"))
     }
 
@@ -148,7 +139,7 @@ impl Shards {
             let trial = |(number, path, line): (u64, PathBuf, Result<String, ShardError>)| {
                 let read = line::read(line?.trim_end_matches('\n'), self.header.key());
                 let changed = || ShardError::content(&path, "the file was changed while it was read");
-                read.filter(|line| line.job == number).map(|line| line.trial).ok_or_else(changed)
+                read.filter(|line: &Line<_>| line.job == number).map(|line| line.trial).ok_or_else(changed)
             };
             lines.into_par_iter().map(trial).collect::<Vec<_>>()
         }))
@@ -162,7 +153,7 @@ impl Shards {
         file: &mut BufReader<File>,
         path: &Path,
     ) -> Result<String, ShardError> {
-        let known = self.scans[shard].as_ref().and_then(|scan| scan.lines.get(&number));
+        let known = self.scans[shard].1.as_ref().and_then(|scan| scan.lines.get(&number));
         let missing = || ShardError::content(path, format!("trial {number} is missing"));
         let place = *known.ok_or_else(missing)?;
         let mut line = String::new();

@@ -1,6 +1,6 @@
 //! One pass over the file of a shard.
 
-use super::line;
+use super::line::{self, Line};
 use super::{Header, Shard, ShardError};
 use serde::de::IgnoredAny;
 use std::collections::BTreeMap;
@@ -56,8 +56,8 @@ impl Scan {
             if let Some(header) = &scan.header {
                 scan.add(text, key, header.trials, shard).map_err(|why| invalid(path, number, &why))?;
             } else {
-                let header = Header::read(text).ok_or_else(|| not_a_shard(path))?;
-                if header.shard() != Some(shard) {
+                let header: Header = line::read(text, 0).ok_or_else(|| not_a_shard(path))?;
+                if header.shard != shard {
                     let why = "this is the file of another shard under a new name; give it its name again";
                     return Err(ShardError::content(path, why));
                 }
@@ -70,7 +70,7 @@ impl Scan {
     }
 
     fn add(&mut self, line: &str, key: u64, trials: u64, shard: Shard) -> Result<(), String> {
-        let read = line::read::<IgnoredAny>(line, key).map(|line| line.job);
+        let read = line::read(line, key).map(|Line::<IgnoredAny> { job, .. }| job);
         let job = read.ok_or("is not as it was written: it was edited, or is of another experiment")?;
         if !(1..=trials).contains(&job) || !shard.has(job) {
             return Err(format!("is trial {job}, which does not belong to this shard"));

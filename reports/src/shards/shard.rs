@@ -1,3 +1,4 @@
+use serde::{Deserialize, Serialize};
 use std::fmt::{self, Display, Formatter};
 use std::str::FromStr;
 
@@ -7,9 +8,11 @@ const MAX_SHARDS: u64 = 1000;
 
 /// One part of an experiment, as `3/64`: the trials whose number, divided by 64, has the remainder 3. The last shard
 /// has those without a remainder.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize, Serialize)]
 pub struct Shard {
+    #[serde(rename = "shard")]
     number: u64,
+    #[serde(rename = "shards")]
     count: u64,
 }
 
@@ -32,6 +35,11 @@ impl Shard {
     /// The number of shards.
     pub fn count(self) -> u64 {
         self.count
+    }
+
+    /// All shards of the same experiment.
+    pub(super) fn all(self) -> impl Iterator<Item = Self> {
+        (1..=self.count).map(move |number| Self { number, ..self })
     }
 
     /// Whether the trial with a number, from 1 on, belongs to the shard.

@@ -39,7 +39,7 @@ fn shard(number: u64, count: u64) -> Shard {
 
 /// Runs a shard: the trials that are not finished are appended in a wild order.
 fn run(folder: &Path, shard: Shard, trials: &[Trial]) -> Result<(), ShardError> {
-    let file = ShardFile::open(folder, &header(shard, trials), shard)?;
+    let file = ShardFile::open(folder, &header(shard, trials))?;
     let jobs = (1..).zip(trials).filter(|(job, _)| shard.has(*job) && !file.finished.contains(job));
     let mut jobs: Vec<(u64, &Trial)> = jobs.collect();
     jobs.sort_by_key(|(job, _)| job * 7919 % 101);
@@ -73,7 +73,7 @@ fn every_bit_of_every_trial_comes_back_in_the_order_of_the_experiment() {
     for count in [1, 3, 5, 64] {
         let folder = ran(count, &trials);
         assert_eq!(text(&merged(folder.path()).unwrap()), text(&trials), "{count} shards");
-        assert!(Shards::read(folder.path()).unwrap().missing().is_empty());
+        assert!(Shards::read(folder.path()).unwrap().missing().is_none());
     }
 }
 
@@ -89,7 +89,7 @@ fn a_shard_that_was_cut_off_at_any_byte_goes_on() {
     cuts.extend([0, 1, whole.len() - 1]);
     for cut in cuts {
         fs::write(&path, &whole[..cut]).unwrap();
-        assert_eq!(Shards::read(folder.path()).unwrap().missing(), [2], "cut at {cut}");
+        assert_eq!(Shards::read(folder.path()).unwrap().missing().as_deref(), Some("2"), "cut at {cut}");
         run(folder.path(), shard(2, 3), &trials).unwrap();
         assert_eq!(text(&merged(folder.path()).unwrap()), text(&trials), "cut at {cut}");
     }
@@ -103,9 +103,9 @@ fn missing_shards_are_listed() {
         fs::remove_file(folder.path().join(shard(number, 6).file_name())).unwrap();
     }
     // The header without a trial.
-    drop(ShardFile::open(folder.path(), &header(shard(5, 6), &trials), shard(5, 6)).unwrap());
+    drop(ShardFile::open(folder.path(), &header(shard(5, 6), &trials)).unwrap());
     let shards = Shards::read(folder.path()).unwrap();
-    assert_eq!(array(&shards.missing()), "2,4-5");
+    assert_eq!(shards.missing().as_deref(), Some("2,4-5"));
     let expected = "shard 2/6                0 of 2 trials\nshard 4/6                0 of 2 trials\n\
                     shard 5/6                0 of 2 trials\n6 of 12 trials (50.0 %), 3 of 6 shards complete";
     assert_eq!(shards.status(), expected);
@@ -156,8 +156,7 @@ fn a_shard_of_another_experiment_is_refused_before_anything_is_written() {
     let file = |name: &str| fs::read(folder.path().join(name)).unwrap();
     let before = file("shard-1-of-3.jsonl");
     let refused = |header: &Header| {
-        let shard = header.shard().unwrap();
-        let error = ShardFile::open(folder.path(), header, shard).unwrap_err().to_string();
+        let error = ShardFile::open(folder.path(), header).unwrap_err().to_string();
         error.replace(&folder.path().display().to_string(), "DIR")
     };
     let with = |program: &str, version: &str, trials: &str, settings: &str| {
@@ -168,12 +167,12 @@ fn a_shard_of_another_experiment_is_refused_before_anything_is_written() {
     insta::assert_snapshot!(with("grid_world", "0.2.0", "3", "settings"), @"DIR/shard-1-of-3.jsonl: this shard is of version 0.1.0, not 0.2.0; give another folder by --out");
     insta::assert_snapshot!(with("grid_world", "0.1.0", "4", "settings"), @"DIR/shard-1-of-3.jsonl: this shard is of the experiment `--trials 3`, not `--trials 4`; give another folder by --out");
     insta::assert_snapshot!(with("grid_world", "0.1.0", "3", "other"), @"DIR/shard-1-of-3.jsonl: this shard is of an experiment with the same arguments, but other worlds or settings; give another folder by --out");
-    insta::assert_snapshot!(refused(&own.of_shard(shard(2, 4))), @"DIR/shard-1-of-3.jsonl: this shard is one of 3 shards, not of 4; give another folder by --out");
+    insta::assert_snapshot!(refused(&Header { shard: shard(2, 4), ..own.clone() }), @"DIR/shard-1-of-3.jsonl: this shard is one of 3 shards, not of 4; give another folder by --out");
     assert_eq!(file("shard-1-of-3.jsonl"), before);
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 3);
     // What is no shard is not replaced either.
     fs::write(folder.path().join("shard-2-of-3.jsonl"), "notes").unwrap();
-    refused(&own.of_shard(shard(2, 3)));
+    refused(&Header { shard: shard(2, 3), ..own });
     assert_eq!(file("shard-2-of-3.jsonl"), b"notes");
 }
 
@@ -183,11 +182,12 @@ fn shards_of_another_build_are_refused() {
     let folder = ran(3, &trials);
     let path = folder.path().join("shard-2-of-3.jsonl");
     let own = fs::read_to_string(&path).unwrap();
-    let other = header(shard(2, 3), &trials).of_build("0123").line().unwrap();
+    let other = Header { build: "0123".into(), ..header(shard(2, 3), &trials) };
+    let other = line::write(&other, 0).unwrap();
     fs::write(&path, other + own.split_once('\n').unwrap().1).unwrap();
     let expected = "DIR/shard-2-of-3.jsonl: this shard is of build 0123, not ";
     assert!(message(folder.path()).starts_with(expected), "{}", message(folder.path()));
-    let error = ShardFile::open(folder.path(), &header(shard(1, 3), &trials), shard(1, 3)).unwrap_err();
+    let error = ShardFile::open(folder.path(), &header(shard(1, 3), &trials)).unwrap_err();
     assert!(error.to_string().contains("this shard is of build 0123, not "), "{error}");
 }
 
@@ -196,9 +196,9 @@ fn two_processes_on_one_shard_are_one_too_many() {
     let (_, trials) = small();
     let folder = tempfile::tempdir().unwrap();
     let header = header(shard(1, 3), &trials);
-    let first = ShardFile::open(folder.path(), &header, shard(1, 3)).unwrap();
-    let error = ShardFile::open(folder.path(), &header, shard(1, 3)).unwrap_err().to_string();
+    let first = ShardFile::open(folder.path(), &header).unwrap();
+    let error = ShardFile::open(folder.path(), &header).unwrap_err().to_string();
     assert!(error.ends_with("another run is writing there; wait for it, or start another shard"), "{error}");
     drop(first);
-    ShardFile::open(folder.path(), &header, shard(1, 3)).unwrap();
+    ShardFile::open(folder.path(), &header).unwrap();
 }

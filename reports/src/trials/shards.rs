@@ -2,7 +2,7 @@
 
 use super::run::{Results, experiment_arguments, report_settings};
 use super::{TrialArgs, TrialKind};
-use crate::shards::{Header, Shard, ShardFile, Shards, array};
+use crate::shards::{Header, Shard, ShardFile, Shards};
 use anyhow::{Context, anyhow};
 use clap::{Parser, Subcommand};
 use cli::flags::folder;
@@ -60,9 +60,8 @@ impl ShardCommand {
     pub(super) fn run<K: TrialKind>(&self) -> Result<ExitCode, Failure> {
         match self {
             Self::Missing { dir } => {
-                let missing = Shards::read(dir).map_err(input)?.missing();
-                if !missing.is_empty() {
-                    print(array(&missing))?;
+                if let Some(missing) = Shards::read(dir).map_err(input)?.missing() {
+                    print(missing)?;
                     return Ok(ExitCode::FAILURE);
                 }
             }
@@ -76,13 +75,12 @@ impl ShardCommand {
 fn merge<K: TrialKind>(dir: &Path, out: &Path, quiet: bool) -> Result<(), Failure> {
     let shards = Shards::read(dir).map_err(input)?;
     shards.check(K::NAME, env!("CARGO_PKG_VERSION")).map_err(input)?;
-    let found = shards.header();
+    let found = &shards.header;
     let args =
         TrialArgs::<K>::try_parse_from(once(K::NAME).chain(found.arguments.iter().map(String::as_str)));
     let args = args.context("the arguments of the shards are not valid").map_err(input)?;
     let experiment = args.experiment().map_err(input)?;
-    let shard = found.shard().context("the number of the shard is not valid")?;
-    if !header::<K>(found.arguments.clone(), shard, &experiment).is_same_experiment(found) {
+    if header::<K>(found.arguments.clone(), found.shard, &experiment).difference(found).is_some() {
         let why = "a world file was changed after the shards ran, or the program is another one";
         return Err(input(anyhow!("the experiment of {} cannot be repeated: {why}", dir.display())));
     }
@@ -109,7 +107,7 @@ impl<K: TrialKind> TrialArgs<K> {
         is_canceled: &AtomicBool,
     ) -> Result<ExitCode, Failure> {
         let header = header::<K>(experiment_arguments::<K>(), shard, experiment);
-        let file = ShardFile::open(&self.out, &header, shard).map_err(input)?;
+        let file = ShardFile::open(&self.out, &header).map_err(input)?;
         let (all, open) = (shard.trials(header.trials), file.open_trials(experiment));
         let before = all - open.len() as u64;
         if !self.quiet && before > 0 {
@@ -127,7 +125,7 @@ impl<K: TrialKind> TrialArgs<K> {
             return Ok(ExitCode::from(INTERRUPTED));
         }
         if !self.quiet {
-            print(format_args!("shard {shard} is complete: {all} trials in {}", file.path().display()))?;
+            print(format_args!("shard {shard} is complete: {all} trials in {}", file.path.display()))?;
         }
         Ok(ExitCode::SUCCESS)
     }

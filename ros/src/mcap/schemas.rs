@@ -2,7 +2,7 @@
 
 /// The types by name, and the fields of each (<https://github.com/ros2/common_interfaces>, `geometry2`,
 /// `navigation_msgs`).
-const TYPES: [(&str, &str); 21] = [
+const TYPES: [(&str, &str); 20] = [
     ("builtin_interfaces/Time", "int32 sec\nuint32 nanosec\n"),
     ("std_msgs/Header", "builtin_interfaces/Time stamp\nstring frame_id\n"),
     ("geometry_msgs/Point", "float64 x\nfloat64 y\nfloat64 z\n"),
@@ -36,10 +36,6 @@ const TYPES: [(&str, &str); 21] = [
          geometry_msgs/Pose origin\n",
     ),
     ("nav_msgs/OccupancyGrid", "std_msgs/Header header\nnav_msgs/MapMetaData info\nint8[] data\n"),
-    (
-        "map_msgs/OccupancyGridUpdate",
-        "std_msgs/Header header\nint32 x\nint32 y\nuint32 width\nuint32 height\nint8[] data\n",
-    ),
     ("nav_msgs/Path", "std_msgs/Header header\ngeometry_msgs/PoseStamped[] poses\n"),
     (
         "sensor_msgs/PointField",

@@ -3,22 +3,23 @@
 use agent::PURPOSES;
 use anyhow::Context;
 use clap::Parser;
-use clap::builder::{PathBufValueParser, PossibleValue, PossibleValuesParser, TypedValueParser};
-use ros2::node_program::{Failure, input, note_unused_files, output, say, start};
+use clap::builder::{PossibleValue, PossibleValuesParser};
+use cli::flags::output_file;
+use cli::program::{Failure, input, interrupt_flag};
+use ros2::node_program::{note_unused_files, output, say, start};
 use ros2::{
-    CuriousNode, DdsLink, Environment, Names, Parameters, RosArgs, ScanCount, Signals, Value, curious_wiring,
+    CuriousNode, DdsLink, Environment, Names, Parameters, RosArgs, ScanCount, Service, Signals, Topic, Value,
+    curious_wiring,
 };
 use std::path::PathBuf;
 use std::process::ExitCode;
-use std::sync::Arc;
-use std::sync::atomic::Ordering;
 
 /// Maps what a live robot of ROS 2 sees, and learns where and how often the place changes
 ///
 /// The node needs no installation of ROS. It subscribes to scans, transforms and odometry, and publishes the map, the map of
 /// changes, the prediction, and the transform from the map to the odometry. With `--mode explore` it also drives the robot.
 #[derive(Debug, Parser)]
-#[command(name = "curious_node", version, after_long_help = MANUAL, max_term_width = 100)]
+#[command(name = "curious_node", version, after_long_help = manual(), max_term_width = 100)]
 struct Args {
     /// What the node does; the same as `--ros-args -p mode:=MODE`
     ///
@@ -32,7 +33,7 @@ struct Args {
     purpose: Option<String>,
     /// Goes on from this file if it exists, and saves to it: every minute, at the end, at the signal USR1, and when the
     /// service `~/save_state` is called
-    #[arg(long, value_name = "FILE", value_parser = PathBufValueParser::new().try_map(no_folder))]
+    #[arg(long, value_name = "FILE", value_parser = output_file())]
     state: Option<PathBuf>,
     /// Corrected maps replace the old one with these readings, as an earlier run of the same readings has printed: repeats
     /// that run
@@ -48,52 +49,24 @@ fn purposes() -> PossibleValuesParser {
     )
 }
 
-fn no_folder(path: PathBuf) -> Result<PathBuf, &'static str> {
-    if path.is_dir() { Err("it is a folder, not a file") } else { Ok(path) }
+/// Topics, services, parameters, and more.
+fn manual() -> String {
+    let row = |name: &str, (package, kind): (&str, &str), more: &str| {
+        format!("  {name:<28}{package}/{kind}{}{more}\n", if more.is_empty() { "" } else { ", " })
+    };
+    let topics = Topic::all().filter(|topic| !topic.direction().is_empty());
+    let topics = topics.map(|topic| row(topic.default_name(), topic.type_name(), topic.direction()));
+    let services = Service::all().map(|service| row(service.default_name(), service.type_name(), ""));
+    format!(
+        "TOPICS (docs/robots.md says what they mean; the parameters scan_topic and odom_topic name two of them)\n{}\n\
+         SERVICES, beside clients of navigate_to_pose (navigator:=nav2) and route_edges_service (route_graph)\n{}\n{REST}",
+        topics.collect::<String>(),
+        services.collect::<String>(),
+    )
 }
 
-const MANUAL: &str = concat!(
+const REST: &str = concat!(
     "\
-SUBSCRIBES
-  scan_topic (/scan)      sensor_msgs/LaserScan, sensor-data QoS
-  /tf, /tf_static         tf2_msgs/TFMessage: odom_frame to base_frame, base_frame to the laser
-  odom_topic (odom)       nav_msgs/Odometry: used if /tf has no odometry
-  initialpose             geometry_msgs/PoseWithCovarianceStamped in map_frame: where the robot is
-  explore/resume          std_msgs/Bool: false pauses exploring, true resumes it
-
-PUBLISHES
-  map                     nav_msgs/OccupancyGrid: -1, 0, 100; reliable, transient local
-  map_updates             map_msgs/OccupancyGridUpdate: what changed, at once
-  change_map              nav_msgs/OccupancyGrid: 0 to 100, where the place changes within change_horizon
-  predicted_map           nav_msgs/OccupancyGrid: 0 to 100, where it is probably blocked after prediction_horizon
-  rate_map                nav_msgs/OccupancyGrid: cycles per hour, at most 100
-  expiry_map              nav_msgs/OccupancyGrid: for how long a look is worth something, minutes, at most 100
-  speed_mask, keepout_mask
-                          nav_msgs/OccupancyGrid: for the costmap filters of Nav2, every mask_update_interval
-  speed_filter_info, keepout_filter_info
-                          nav2_msgs/CostmapFilterInfo: what the values of the masks mean
-  pose                    geometry_msgs/PoseWithCovarianceStamped: the robot in the map
-  /diagnostics            diagnostic_msgs/DiagnosticArray: tracking, uncertain or lost; scans left out; once per second
-  /rosout                 rcl_interfaces/Log: what the node prints
-  /parameter_events       rcl_interfaces/ParameterEvent
-  ~/transition_event      lifecycle_msgs/TransitionEvent
-  /tf                     tf2_msgs/TFMessage: map_frame to odom_frame
-  cmd_vel                 geometry_msgs/TwistStamped, or Twist with enable_stamped_cmd_vel:=false
-  goal_pose               geometry_msgs/PoseStamped, with navigator:=goal_pose
-  explore/path            nav_msgs/Path: the path to the goal
-
-SERVICES AND ACTIONS
-  ~/save_state            std_srvs/Trigger: saves the state
-  ~/save_map              slam_toolbox/SaveMap: NAME.pgm and NAME.yaml for the map server
-  ~/serialize_map, ~/deserialize_map
-                          slam_toolbox/SerializePoseGraph, DeserializePoseGraph: writes and loads a state
-  ~/change_state, ~/get_state, ~/get_available_states, ~/get_available_transitions, ~/get_transition_graph
-                          lifecycle_msgs: the managed lifecycle
-  ~/get_parameters, ~/set_parameters, ~/set_parameters_atomically, ~/list_parameters, ~/describe_parameters,
-  ~/get_parameter_types   rcl_interfaces
-  route_edges_service     nav2_msgs/DynamicEdges, with route_graph: a client
-  navigate_to_pose        nav2_msgs/NavigateToPose, with navigator:=nav2: a client
-
 PARAMETERS (--ros-args -p name:=value, or --params-file FILE with a file like this one, which has the defaults)
 ",
     include_str!("../../config/params.yaml"),
@@ -117,48 +90,40 @@ fn main() -> ExitCode {
     start(run)
 }
 
-fn run(args: Args, ros: RosArgs) -> Result<(), Failure> {
+fn run(args: &Args, ros: RosArgs) -> Result<ExitCode, Failure> {
     let names = Names::new("curious_node", &ros).map_err(input)?;
     let mut parameters = Parameters::default();
     parameters.set_all(ros.parameters_of(&names.full_name())).map_err(input)?;
     note_unused_files(&names, &ros);
-    if let Some(mode) = args.mode {
-        parameters.set("mode", &Value::Text(mode)).map_err(input)?;
+    for (name, value) in [("mode", &args.mode), ("purpose", &args.purpose)] {
+        value
+            .iter()
+            .try_for_each(|value| parameters.set(name, &Value::Text(value.clone())))
+            .map_err(input)?;
     }
-    if let Some(purpose) = args.purpose {
-        parameters.set("purpose", &Value::Text(purpose)).map_err(input)?;
-    }
-    parameters.switch_at = args.switch_at;
+    parameters.switch_at.clone_from(&args.switch_at);
     parameters.check().map_err(input)?;
     let environment = Environment::read(|name| std::env::var(name).ok()).map_err(input)?;
     let wiring = curious_wiring(&parameters, &names, &ros).map_err(input)?;
-    let signals = signals()?;
+    let signals = Signals { stop: interrupt_flag()?, ..Signals::default() };
+    #[cfg(unix)]
+    signal_hook::flag::register(signal_hook::consts::SIGUSR1, signals.save.clone())
+        .context("cannot listen for SIGUSR1")?;
     let link = DdsLink::open(&wiring, &environment)?;
-    let node = CuriousNode::new(link, &parameters, args.state.as_deref(), output(names.node()));
+    let node = CuriousNode::new(link, &parameters, args.state.as_deref(), output(&names.node));
     let mut node = node.map_err(input)?;
-    say(&format!("[{}] waiting for scans on {}", names.node(), parameters.scan_topic));
+    say(&format!("[{}] waiting for scans on {}", names.node, parameters.scan_topic));
     let report = node.run(&signals)?;
     let ScanCount { received, invalid, unplaced, late, other } = report.scans;
     say(&format!(
         "[{}] {received} scans: {} readings, {} in the map; {invalid} not valid, {unplaced} without a pose, {late} late, {other} of \
          another laser; longest turn {:.1} ms",
-        names.node(),
+        names.node,
         report.readings,
         report.mapped,
         report.longest_us as f64 * 1e-3
     ));
-    Ok(())
-}
-
-/// Listens for signals.
-fn signals() -> anyhow::Result<Arc<Signals>> {
-    let signals = Arc::new(Signals::default());
-    let to = signals.clone();
-    ctrlc::set_handler(move || to.stop.store(true, Ordering::Relaxed)).context("cannot listen for Ctrl-C")?;
-    #[cfg(unix)]
-    signal_hook::flag::register(signal_hook::consts::SIGUSR1, signals.save.clone())
-        .context("cannot listen for SIGUSR1")?;
-    Ok(signals)
+    Ok(ExitCode::SUCCESS)
 }
 
 #[cfg(test)]

@@ -1,14 +1,14 @@
 //! A simulated world as a robot of ROS 2.
 
-use anyhow::{Context, anyhow};
+use anyhow::anyhow;
 use clap::Parser;
-use ros2::node_program::{Failure, input, note_unused_files, say, start};
+use cli::flags::number;
+use cli::program::{Failure, duration_s, input, interrupt_flag};
+use ros2::node_program::{note_unused_files, say, start};
 use ros2::{
     DdsLink, Environment, Given, Names, RosArgs, SimulatedRobot, SimulationSettings, simulation_wiring,
 };
 use std::process::ExitCode;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{SystemTime, UNIX_EPOCH};
 
 /// Simulates a robot of ROS 2 in one of this project's worlds
@@ -25,11 +25,11 @@ struct Args {
     #[arg(long, default_value_t = 1, allow_negative_numbers = true)]
     seed: u64,
     /// The simulated time per real time
-    #[arg(long, default_value_t = 1.0, value_parser = speed, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 1.0, value_parser = number(0.01..=1000.0), allow_negative_numbers = true)]
     speed: f64,
-    /// Ends after this simulated time, s
-    #[arg(long, value_name = "SECONDS", default_value_t = f64::INFINITY, value_parser = duration, allow_negative_numbers = true)]
-    duration: f64,
+    /// Ends after this simulated time: seconds, or with a unit as in 90s, 20m, 1h [default: at Ctrl-C]
+    #[arg(long, value_name = "TIME", value_parser = duration_s, allow_negative_numbers = true)]
+    duration: Option<f64>,
     /// Times are those of the wall clock at the start, and not from 10 s on: for nodes without use_sim_time; for speed 1
     #[arg(long)]
     wall_time: bool,
@@ -57,21 +57,11 @@ EXAMPLES
 EXIT CODES
   0 ended by Ctrl-C, or by --duration; 1 the node failed; 2 an argument or the world is not valid";
 
-fn speed(text: &str) -> Result<f64, String> {
-    let speed = text.parse::<f64>().unwrap_or(f64::NAN);
-    if (0.01..=1000.0).contains(&speed) { Ok(speed) } else { Err("must be from 0.01 to 1000".to_owned()) }
-}
-
-fn duration(text: &str) -> Result<f64, String> {
-    let time_s = text.parse::<f64>().ok().filter(|time_s| *time_s > 0.0);
-    time_s.ok_or_else(|| "must be a time above 0, s".to_owned())
-}
-
 fn main() -> ExitCode {
     start(run)
 }
 
-fn run(args: Args, ros: RosArgs) -> Result<(), Failure> {
+fn run(args: &Args, ros: RosArgs) -> Result<ExitCode, Failure> {
     let names = Names::new("sim_node", &ros).map_err(input)?;
     let is_unknown = |given: &&Given| given.name != "use_sim_time" && !given.is_for_others_too();
     if let Some(Given { name, .. }) = ros.parameters_of(&names.full_name()).find(is_unknown) {
@@ -81,19 +71,16 @@ fn run(args: Args, ros: RosArgs) -> Result<(), Failure> {
     let world = worldfile::shipped::load(&args.world).map_err(input)?;
     let environment = Environment::read(|name| std::env::var(name).ok()).map_err(input)?;
     let wiring = simulation_wiring(&names, &ros).map_err(input)?;
-    let stop = Arc::new(AtomicBool::new(false));
-    let flag = stop.clone();
-    let handler = ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed));
-    handler.context("cannot listen for Ctrl-C")?;
+    let stop = interrupt_flag()?;
     let link = DdsLink::open(&wiring, &environment)?;
     let since_epoch = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
     let begin_ns = if args.wall_time { i64::try_from(since_epoch.as_nanos()).unwrap_or(0) } else { 0 };
     let settings = SimulationSettings { seed: args.seed, speed: args.speed, begin_ns };
     let mut robot = SimulatedRobot::new(link, &world, settings);
-    say(&format!("[{}] {}: {:.0} times real time", names.node(), world.name, args.speed));
-    let scans = robot.run(&stop, args.duration);
-    say(&format!("[{}] {scans} scans in {:.1} s", names.node(), robot.time_s()));
-    Ok(())
+    say(&format!("[{}] {}: {:.0} times real time", names.node, world.name, args.speed));
+    let scans = robot.run(&stop, args.duration.unwrap_or(f64::INFINITY));
+    say(&format!("[{}] {scans} scans in {:.1} s", names.node, robot.time_s()));
+    Ok(ExitCode::SUCCESS)
 }
 
 #[cfg(test)]

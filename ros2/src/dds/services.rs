@@ -13,7 +13,6 @@ use ros2_client::qos::WhenFull;
 use ros2_client::{Message, Name, Node, ReadError, RmwRequestId, Server, ServiceMapping, ServiceTypeName};
 use serde::Serialize;
 use std::collections::BTreeMap;
-use std::io::{self, Write};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender, SyncSender};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
@@ -25,17 +24,15 @@ const POLL: Duration = Duration::from_millis(2);
 /// Requests that wait for an answer; more are forgotten.
 const MAX_REQUESTS: usize = 100;
 
-macro_rules! messages {
-    ($($kind:ty),* $(,)?) => { $(impl Message for $kind {})* };
-}
+impl Message for wire::Nothing {}
+impl Message for wire::Deserialize {}
+impl Message for wire::Labelled {}
+impl Message for wire::Prefixes {}
+impl Message for wire::Parameter {}
+impl Message for Reply {}
 
-messages!(wire::Nothing, wire::Deserialize, wire::Labelled, wire::Prefixes, wire::Parameter, Reply);
-
-/// A request, or why it is none.
-struct Received {
-    service: Service,
-    content: Result<(RmwRequestId, Call), ReadError>,
-}
+/// A request of a service, or why it is none.
+type Received = (Service, Result<(RmwRequestId, Call), ReadError>);
 
 /// Sends an answer of one type.
 type Send = Box<dyn Fn(RmwRequestId, Reply) + std::marker::Send>;
@@ -115,7 +112,7 @@ impl Services {
     }
 }
 
-fn event(Received { service, content }: Received, asked: &Mutex<Asked>) -> Event {
+fn event((service, content): Received, asked: &Mutex<Asked>) -> Event {
     match content {
         Ok((id, call)) => match asked.lock() {
             Ok(mut asked) => Event::Call(asked.number(service, id), service, call),
@@ -127,14 +124,6 @@ fn event(Received { service, content }: Received, asked: &Mutex<Asked>) -> Event
     }
 }
 
-/// An answer that its client cannot hear yet.
-struct Waiting {
-    service: Service,
-    id: RmwRequestId,
-    reply: Reply,
-    until: Instant,
-}
-
 /// Sends answers. The reader of a client that has just come is often discovered after its request: an answer that is sent before is
 /// not for this reader, since answers are volatile, and the client waits until it gives up.
 fn answer_all(
@@ -142,20 +131,19 @@ fn answer_all(
     senders: &BTreeMap<Service, (String, Send)>,
     others: &Others,
 ) {
-    let mut waiting: Vec<Waiting> = Vec::new();
+    // Answers that their clients cannot hear yet, and until when they wait.
+    let mut waiting: Vec<(Service, RmwRequestId, Reply, Instant)> = Vec::new();
     loop {
         let came = match waiting.is_empty() {
             true => coming.recv().map_err(RecvTimeoutError::from),
             false => coming.recv_timeout(POLL),
         };
         match came {
-            Ok((service, id, reply)) => {
-                waiting.push(Waiting { service, id, reply, until: Instant::now() + PATIENCE });
-            }
+            Ok((service, id, reply)) => waiting.push((service, id, reply, Instant::now() + PATIENCE)),
             Err(RecvTimeoutError::Timeout) => {}
             Err(RecvTimeoutError::Disconnected) => return,
         }
-        waiting.retain(|Waiting { service, id, reply, until }| {
+        waiting.retain(|(service, id, reply, until)| {
             let Some((topic, send)) = senders.get(service) else { return false };
             let is_due = others.has(topic, &id.writer_gid) || Instant::now() >= *until;
             if is_due {
@@ -205,7 +193,7 @@ fn serve<Q: Message + Clone + std::marker::Send + Sync + 'static>(
     let stream = unfold(server, move |server| async move {
         let taken = server.async_receive_request().await;
         let content = taken.map(|(id, request)| (id, call(request)));
-        Some((Received { service, content }, server))
+        Some(((service, content), server))
     });
     let send = move |id, reply| {
         // The one who asked may be gone.
@@ -241,19 +229,8 @@ fn fitting(reply: Reply) -> (Reply, bool) {
 
 /// The number of bytes of a message; 0 if it cannot be written, which is noticed where it is.
 fn length(message: &impl Serialize) -> usize {
-    struct Count(usize);
-    impl Write for Count {
-        fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-            self.0 += bytes.len();
-            Ok(bytes.len())
-        }
-
-        fn flush(&mut self) -> io::Result<()> {
-            Ok(())
-        }
-    }
-    let mut count = Count(0);
-    to_writer_with_rep_id(&mut count, message, RepresentationIdentifier::CDR_LE).map_or(0, |()| count.0)
+    let mut bytes = Vec::new();
+    to_writer_with_rep_id(&mut bytes, message, RepresentationIdentifier::CDR_LE).map_or(0, |()| bytes.len())
 }
 
 #[cfg(test)]

@@ -16,10 +16,7 @@ use std::sync::mpsc::SyncSender;
 use std::time::{Duration, Instant};
 
 /// A message, or why it is none, on a topic.
-struct Received {
-    topic: Topic,
-    content: Result<(Message, MessageInfo), ReadError>,
-}
+type Received = (Topic, Result<(Message, MessageInfo), ReadError>);
 
 /// Subscribes topics, and sends what comes to `to`. `own` are the publishers of this node.
 pub(super) fn start(
@@ -72,7 +69,7 @@ fn open<M: DeserializeOwned + Send + Sync + 'static>(
     let stream = unfold(subscription, move |subscription| async move {
         let taken = subscription.async_take().await;
         let content = taken.map(|(content, info)| (message(content), info));
-        Some((Received { topic, content }, subscription))
+        Some(((topic, content), subscription))
     });
     Ok(stream.boxed())
 }
@@ -89,7 +86,7 @@ struct Filter {
 const MAX_KNOWN: usize = 1000;
 
 impl Filter {
-    fn event(&mut self, Received { topic, content }: Received) -> Option<Event> {
+    fn event(&mut self, (topic, content): Received) -> Option<Event> {
         let expected = dds_type(topic);
         let (message, info) = match content {
             Ok(content) => content,

@@ -5,6 +5,7 @@ use crate::lifecycle::State;
 use crate::link::{Link, Request};
 use crate::maps::PublishedMaps;
 use crate::message::{Message, ParameterEvent, Topic};
+use crate::node_state_file::Asker;
 use crate::parameters::{Parameters, When};
 use crate::service::wire::{Description, Listed, Parameter, ParameterValue, Prefixes, SetResult};
 use crate::service::{Call, Reply, Service};
@@ -18,10 +19,16 @@ impl<L: Link> CuriousNode<L> {
         let list = self.parameters.list();
         let find = |name: &String| list.iter().find(|(known, _)| known == name);
         let reply = match (service, call) {
-            (Service::SaveState, _) => return self.save_for(Some(request)),
+            (Service::SaveState, _) => return self.save_for(Asker::Save(request)),
             (Service::SerializeMap, Call::Name(name)) => return self.serialize(&name, request),
-            (Service::SaveMap, Call::Name(name)) => Reply::Code(self.save_map(&name)),
-            (Service::DeserializeMap, Call::Deserialize(asked)) => Reply::Code(self.deserialize(&asked)),
+            (Service::SaveMap, Call::Name(name)) => {
+                let saved = self.save_map(&name);
+                self.coded(saved)
+            }
+            (Service::DeserializeMap, Call::Deserialize(asked)) => {
+                let loaded = self.deserialize(&asked);
+                self.coded(loaded)
+            }
             (Service::ChangeState, Call::Transition(asked)) => Reply::Success(self.change_state(&asked)),
             (Service::GetState, _) => Reply::State(self.state.labelled()),
             (Service::GetAvailableStates, _) => Reply::States(State::all()),

@@ -3,7 +3,6 @@
 use super::{BLIND, CuriousNode, NodeReport};
 use crate::link::Link;
 use crate::message::{DiagnosticStatus, Diagnostics, Log, Message, Time, Topic, header};
-use crate::notes::Severity;
 use crate::source::ScanCount;
 use localizer::PoseState;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
@@ -37,11 +36,7 @@ impl<L: Link> CuriousNode<L> {
         }
         // As rclcpp names a logger.
         let (stamp, name) = (self.stamp(now), self.link.node().trim_start_matches('/').replace('/', "."));
-        for (severity, msg) in unsent {
-            let level = match severity {
-                Severity::Info => Log::INFO,
-                Severity::Warning => Log::WARNING,
-            };
+        for (level, msg) in unsent {
             let name = name.clone();
             let log = Log { stamp, level, name, msg, file: String::new(), function: String::new(), line: 0 };
             self.link.send(Topic::Log, Message::Log(log));

@@ -41,9 +41,7 @@ impl<L: Link> CuriousNode<L> {
         self.notes.say(&format!("the node is {}", to.labelled().label));
         let event = TransitionEvent {
             timestamp: u64::try_from(self.stamp(Instant::now()).ns()).unwrap_or(0),
-            transition: transition.transition,
-            start_state: transition.start_state,
-            goal_state: transition.goal_state,
+            transition,
         };
         self.link.send(Topic::TransitionEvents, Message::TransitionEvent(event));
         true

@@ -4,7 +4,7 @@ use super::CuriousNode;
 use crate::link::Link;
 use crate::message::{
     Message, Path, Pose, PoseStamped, PoseWithCovarianceStamped, Time, Topic, Twist as TwistMessage,
-    TwistStamped, Vector, header, transform,
+    TwistStamped, header, transform,
 };
 use crate::parameters::{Navigator, Parameters};
 use crate::pilot::Order;
@@ -54,9 +54,7 @@ impl<L: Link> CuriousNode<L> {
             Order::None => {}
             Order::Velocity(twist) => {
                 self.is_stopped = false;
-                let linear = Vector { x: twist.linear_mps, ..Vector::default() };
-                let angular = Vector { z: twist.angular_radps, ..Vector::default() };
-                let twist = TwistMessage { linear, angular };
+                let twist = TwistMessage::in_plane(&twist);
                 if self.parameters.enable_stamped_cmd_vel {
                     let header = header(stamp, self.source.base());
                     let message = Message::TwistStamped(TwistStamped { header, twist });
@@ -95,10 +93,11 @@ impl<L: Link> CuriousNode<L> {
 
     pub(super) fn publish_transform(&mut self, now: Instant) {
         let period_s = self.parameters.transform_publish_period_s;
-        let (Some(map_to_odom), Some((stamp, at))) = (&self.published.map_to_odom, self.last) else { return };
         if period_s <= 0.0 {
             return;
         }
+        self.published.next_transform = Some(now + Duration::from_secs_f64(period_s));
+        let (Some(map_to_odom), Some((stamp, at))) = (&self.published.map_to_odom, self.last) else { return };
         // A robot that has fallen silent does not move in the map for long.
         let timeout_s = self.parameters.transform_timeout_s;
         let since_s = now.duration_since(at).as_secs_f64().min(timeout_s);
@@ -107,6 +106,5 @@ impl<L: Link> CuriousNode<L> {
         let stamp = Time::from_ns(stamp.ns().saturating_add(ahead_ns));
         let message = transform(stamp, (map_frame, odom_frame), Pose::in_plane(map_to_odom));
         self.link.send(Topic::Transforms, message);
-        self.published.next_transform = Some(now + Duration::from_secs_f64(period_s));
     }
 }

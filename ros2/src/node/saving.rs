@@ -1,15 +1,13 @@
-//! The state of the node, and those who ask for it to be saved.
+//! The state of the node in its file and in others, and those who ask for it to be saved.
 
 use super::CuriousNode;
-use crate::link::Link;
-use crate::node_state_file::{Asker, NodeStateFile};
+use super::slam_services::{FAILURE, with_ending};
+use crate::link::{Link, Request};
+use crate::message::Time;
+use crate::node_state_file::{Asker, NodeStateFile, Saved};
 use crate::service::Reply;
 use crate::service::wire::Trigger;
-use anyhow::bail;
-
-fn refused(text: &str) -> Trigger {
-    Trigger { is_done: false, text: text.to_owned() }
-}
+use std::path::Path;
 
 impl<L: Link> CuriousNode<L> {
     /// Begins to save the state; `None` without a file, or before the first reading.
@@ -21,42 +19,58 @@ impl<L: Link> CuriousNode<L> {
 
     /// Saves the state for someone who has asked for it. The answer comes when the file is written.
     pub(super) fn save_for(&mut self, asker: Asker) {
-        match &mut self.state_file {
-            None => {
-                self.answer(asker, refused("there is no state file: start the node with --state FILE"));
-            }
-            Some(_) if self.last.is_none() => {
-                self.answer(asker, refused("there is nothing to save before the first reading"));
-            }
-            Some(state_file) => {
-                // While a map is being learned again, the state waits for it, and the robot does not.
-                state_file.must_save = true;
-                state_file.askers.push(asker);
-            }
-        }
-    }
-
-    /// Answers those who wait for the file, when it is written.
-    pub(super) fn answer_askers(&mut self) {
-        let is_written =
-            |state_file: &&mut NodeStateFile| !state_file.must_save && !state_file.file.is_writing();
-        if self.state_file.as_mut().filter(is_written).is_some_and(|file| !file.askers.is_empty()) {
-            self.answer_all();
-        }
-    }
-
-    /// Waits until the file is written, and answers those who wait for it.
-    pub(super) fn answer_all(&mut self) -> Trigger {
-        let Some(state_file) = &mut self.state_file else { return refused("") };
-        let (name, askers) = (state_file.name(), std::mem::take(&mut state_file.askers));
-        let answer = match state_file.file.wait() {
-            Ok(()) => Trigger { is_done: true, text: format!("the state is saved in {name}") },
-            Err(why) => refused(&format!("{name}: cannot save the state: {why}")),
+        let refusal = match &mut self.state_file {
+            None => "there is no state file: start the node with --state FILE",
+            Some(_) if self.last.is_none() => "there is nothing to save before the first reading",
+            Some(state_file) => return state_file.ask(asker),
         };
-        for asker in askers {
-            self.answer(asker, answer.clone());
+        self.answer(asker, Err(refusal.to_owned()));
+    }
+
+    /// Writes the state to another file, and answers when it is written.
+    pub(super) fn serialize(&mut self, name: &str, request: Request) {
+        let (path, asker) = (with_ending(name), Asker::Serialize(request));
+        let refusal = if self.state_file.as_ref().is_some_and(|own| own.file.path() == path) {
+            "this is the state file of the node: the service `save_state` saves to it".to_owned()
+        } else if name.is_empty() || self.last.is_none() {
+            "a state has a name, and there is nothing to save before the first reading".to_owned()
+        } else {
+            match self.copy(&path) {
+                Ok(mut copy) => {
+                    copy.ask(asker);
+                    return self.copies.push(copy);
+                }
+                Err(why) => format!("{why:#}"),
+            }
+        };
+        self.answer(asker, Err(refusal));
+    }
+
+    fn copy(&self, path: &Path) -> anyhow::Result<NodeStateFile> {
+        let settings = super::setup::settings(&self.parameters);
+        let mut copy = NodeStateFile::new(path, &settings, &self.parameters)?;
+        self.state_file.iter().for_each(|own| copy.go_on_from(own));
+        Ok(copy)
+    }
+
+    /// Goes on with what others have asked for, and answers those whose file is written. While a map is being learned again, they
+    /// wait, and the robot does not.
+    pub(super) fn answer_askers(&mut self) {
+        if self.robot.is_settled() {
+            let last = self.last.map_or(Time::default(), |(last, _)| last);
+            for copy in self.copies.iter_mut().filter(|copy| copy.must_save) {
+                // The error of the writing before: there is none.
+                copy.save(last, &mut self.robot).ok();
+            }
         }
-        answer
+        let mut written = Vec::new();
+        if let Some(own) = self.state_file.as_mut().filter(|own| own.is_answer_due()) {
+            written.push(own.wait());
+        }
+        written.extend(self.copies.extract_if(.., |copy| copy.is_answer_due()).map(|mut copy| copy.wait()));
+        for (askers, saved) in written {
+            askers.into_iter().for_each(|asker| self.answer(asker, saved.clone()));
+        }
     }
 
     /// Saves the state, and waits until it is written.
@@ -65,19 +79,24 @@ impl<L: Link> CuriousNode<L> {
     ///
     /// When it cannot be written.
     pub(super) fn save_at_end(&mut self) -> anyhow::Result<()> {
-        if self.save().is_some() {
-            let answer = self.answer_all();
-            if !answer.is_done {
-                bail!(answer.text);
-            }
+        if self.save().is_none() {
+            return Ok(());
         }
-        Ok(())
+        let Some((askers, saved)) = self.state_file.as_mut().map(NodeStateFile::wait) else { return Ok(()) };
+        askers.into_iter().for_each(|asker| self.answer(asker, saved.clone()));
+        saved.map(drop).map_err(anyhow::Error::msg)
     }
 
-    fn answer(&mut self, asker: Asker, answer: Trigger) {
+    fn answer(&mut self, asker: Asker, saved: Saved) {
+        let is_done = saved.is_ok();
+        let (Ok(text) | Err(text)) = saved;
         match asker {
-            None => self.notes.say(&answer.text),
-            Some(request) => self.link.answer(request, Reply::Trigger(answer)),
+            Asker::Save(request) => self.link.answer(request, Reply::Trigger(Trigger { is_done, text })),
+            Asker::Signal => self.notes.say(&text),
+            Asker::Serialize(request) => {
+                let code = self.coded(if is_done { Ok(text) } else { Err((FAILURE, text)) });
+                self.link.answer(request, code);
+            }
         }
     }
 }

@@ -7,7 +7,7 @@ mod seating;
 
 use super::*;
 use crate::link::Navigation;
-use crate::message::{Bool, Message, Twist as TwistMessage, TwistStamped, Vector};
+use crate::message::{Bool, Message, Twist as TwistMessage, TwistStamped};
 use crate::parameters::{Mode, Navigator};
 use crate::service::wire::Trigger;
 use crate::service::{Call, Reply, Service};
@@ -15,6 +15,7 @@ use crate::simulated::{SimulatedRobot, SimulationSettings};
 use crate::tests::fake::FakeLink;
 use interfaces::{CellState, Grid};
 use nalgebra::{Isometry2, Point2};
+use ros::Vector;
 use sim::physics::WorldSpec;
 use std::sync::{Arc, Mutex};
 
@@ -102,7 +103,7 @@ fn a_robot_that_someone_else_drives_is_mapped() {
     assert_eq!(report.scans, ScanCount { received, ..ScanCount::default() });
     assert_eq!(report.readings, report.mapped);
     assert!(report.readings >= 48, "{report:?}");
-    assert!(known(pair.node.mapper().states()) > 1000);
+    assert!(known(pair.node.robot.mapper.states()) > 1000);
     assert_eq!(pair.others.heard(Topic::StampedVelocity), []);
     let maps = pair.others.heard(Topic::Map);
     let Some(Message::Grid(map)) = maps.first() else { panic!("no map") };
@@ -124,9 +125,9 @@ fn a_robot_that_someone_else_drives_is_mapped() {
 fn a_robot_explores_and_waits() {
     let mut pair = Pair::new(&parameters(Mode::Explore), 1_700_000_000, None);
     pair.run(4.0);
-    let before = known(pair.node.mapper().states());
+    let before = known(pair.node.robot.mapper.states());
     pair.run(40.0);
-    assert!(known(pair.node.mapper().states()) > before + 5000, "{before}");
+    assert!(known(pair.node.robot.mapper.states()) > before + 5000, "{before}");
     let report = pair.node.report();
     assert!(report.mapped * 10 >= report.readings * 9, "{report:?}");
     assert!(pair.is_said("to ("), "no goal");
@@ -171,7 +172,7 @@ fn what_was_learned_survives_a_restart() {
     }
     let (request, answer) = saved(&pair.others);
     assert_eq!((request, answer.is_done), (8, true), "{}", answer.text);
-    let learned = pair.node.mapper().clone();
+    let learned = pair.node.robot.mapper.clone();
     let refused = |parameters: &Parameters| {
         let node = CuriousNode::new(FakeLink::default(), parameters, Some(&path), Box::new(|_| ()));
         format!("{:#}", node.err().unwrap())
@@ -184,9 +185,9 @@ fn what_was_learned_survives_a_restart() {
     let mut again = Pair::new(&map, 1_700_003_600, Some(&path));
     assert!(again.is_said("the map goes on from"));
     assert_eq!(again.others.heard(Topic::Map).len(), 1);
-    assert_eq!(again.node.mapper().states(), learned.states());
+    assert_eq!(again.node.robot.mapper.states(), learned.states());
     again.run(5.0);
-    let time_s = again.node.mapper().time();
+    let time_s = again.node.robot.mapper.time();
     assert!((time_s - learned.time() - 3600.0).abs() < 6.0, "{time_s} {}", learned.time());
     assert!(again.node.report().mapped > 30, "{:?}", again.node.report());
 
@@ -271,11 +272,11 @@ fn a_state_of_simulated_time_goes_on_in_the_time_of_a_robot() {
     let path = folder.path().join("house.state");
     let mut simulated = Pair::new(&parameters(Mode::Map), 0, Some(&path));
     simulated.run(3.0);
-    simulated.node.run(&Signals { stop: AtomicBool::new(true), ..Signals::default() }).unwrap();
+    simulated.node.run(&Signals { stop: Arc::new(true.into()), ..Signals::default() }).unwrap();
     drop(simulated);
     let mut real = Pair::new(&parameters(Mode::Map), 1_700_000_000, Some(&path));
     real.run(3.0);
-    let time_s = real.node.mapper().time();
+    let time_s = real.node.robot.mapper.time();
     assert!((4.0..9.0).contains(&time_s), "{time_s} s");
     assert!(real.is_said("one of the two is simulated"));
 }
@@ -308,7 +309,7 @@ fn a_house_for_hours() {
             "{minutes} min: error up to {worst_m:.3} m, lost {lost} times, {} of {} readings mapped, known {}, {memory}",
             report.mapped,
             report.readings,
-            known(pair.node.mapper().states())
+            known(pair.node.robot.mapper.states())
         );
     }
 }

@@ -59,7 +59,7 @@ fn rows<C: Component + Clone>(
 }
 
 /// The entities of a recording.
-const ENTITIES: [&str; 59] = [
+const ENTITIES: [&str; 57] = [
     "/curves/expected_changes/p",
     "/curves/longest_unseen/r",
     "/curves/scores/coverage",
@@ -73,8 +73,7 @@ const ENTITIES: [&str; 59] = [
     "/curves/strategy_value/recency",
     "/log",
     "/world",
-    "/world/field_of_view/cells",
-    "/world/field_of_view/outline",
+    "/world/field_of_view",
     "/world/goal",
     "/world/legend/lines",
     "/world/legend/rims",
@@ -110,7 +109,6 @@ const ENTITIES: [&str; 59] = [
     "/world/maps/recency/color_bar",
     "/world/maps/recency/marks",
     "/world/obstacles/toy",
-    "/world/obstacles/toy/name",
     "/world/path",
     "/world/robots/curious/body",
     "/world/robots/curious/body/name",

@@ -11,7 +11,7 @@ use mcap::{Compression, WriteOptions};
 use ros::cdr::encoded;
 use ros::{
     Header, LaserScan, Odometry, Pose, PoseWithCovariance, Rotation, Time, TransformStamped, Transforms,
-    TwistWithCovariance, Vector,
+    Twist, Vector,
 };
 use std::collections::BTreeMap;
 use std::io::{Cursor, Write};
@@ -80,7 +80,8 @@ impl Builder {
             header: header(time_s, "odom"),
             child_frame_id: "base_link".to_owned(),
             pose: PoseWithCovariance { pose: pose(x, 0.0, heading_rad), covariance: Default::default() },
-            twist: TwistWithCovariance::default(),
+            twist: Twist::default(),
+            twist_covariance: Default::default(),
         };
         self.add(topic, ODOMETRY, time_s, encoded(&odometry).unwrap())
     }

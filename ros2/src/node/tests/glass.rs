@@ -34,7 +34,7 @@ impl Pair {
             self.sim.take(Event::Message(Topic::Velocity, Message::Twist(TwistMessage { linear, angular })));
             self.run(0.2);
         }
-        let states = self.node.mapper().states().cells();
+        let states = self.node.robot.mapper.states().cells();
         states.iter().filter(|state| **state == CellState::Free).count()
     }
 }

@@ -52,7 +52,7 @@ fn a_manager_configures_activates_deactivates_and_cleans_up() {
     pair.run(4.0);
     let readings = pair.node.report().readings;
     assert!(readings >= 38, "{readings}");
-    assert_eq!(pair.node.mapper().frame().resolution_m(), 0.1);
+    assert_eq!(pair.node.robot.mapper.frame().resolution_m(), 0.1);
     // A name goes before a number.
     assert_eq!(change(&mut pair, 0, "deactivate"), Reply::Success(true));
     pair.others.others(|others| others.heard.clear());
@@ -65,12 +65,12 @@ fn a_manager_configures_activates_deactivates_and_cleans_up() {
     assert_eq!(pair.node.pose_state, PoseState::Tracking, "the robot finds its place again");
     assert_eq!(change(&mut pair, 4, ""), Reply::Success(true));
     assert_eq!(change(&mut pair, 2, ""), Reply::Success(true));
-    assert_eq!((state(&mut pair).as_str(), pair.node.mapper().readings()), ("unconfigured", 0));
+    assert_eq!((state(&mut pair).as_str(), pair.node.robot.mapper.readings()), ("unconfigured", 0));
     assert_eq!(change(&mut pair, 5, "shutdown"), Reply::Success(true));
     assert_eq!(state(&mut pair), "finalized");
     let events = pair.others.heard(Topic::TransitionEvents);
     let Some(Message::TransitionEvent(last)) = events.last() else { panic!("{events:?}") };
-    assert_eq!((last.transition.id, last.goal_state.id), (5, 4));
+    assert_eq!((last.transition.transition.id, last.transition.goal_state.id), (5, 4));
 }
 
 #[test]
@@ -136,7 +136,7 @@ fn a_map_is_saved_and_loaded_as_by_slam_toolbox() {
     let yaml = std::fs::read_to_string(name("house.yaml")).unwrap();
     assert!(yaml.contains("image: house.pgm") && folder.path().join("house.pgm").is_file(), "{yaml}");
     assert_eq!(code(&mut pair, Service::SerializeMap, Call::Name(name("house"))), Reply::Code(0));
-    let learned = pair.node.mapper().states().clone();
+    let learned = pair.node.robot.mapper.states().clone();
 
     let mut again = Pair::new(&parameters(Mode::Map), 1000, None);
     let load = |filename: String, match_type, pose: Isometry2<f64>| {
@@ -148,10 +148,10 @@ fn a_map_is_saved_and_loaded_as_by_slam_toolbox() {
     std::fs::write(name("bad.state"), b"nothing").unwrap();
     assert_eq!(code(&mut again, Service::DeserializeMap, load(name("bad"), 1, start)), Reply::Code(3));
     assert_eq!(code(&mut again, Service::DeserializeMap, load(name("house"), 1, start)), Reply::Code(0));
-    assert_eq!(again.node.mapper().states(), &learned);
+    assert_eq!(again.node.robot.mapper.states(), &learned);
     assert_eq!(again.others.heard(Topic::Map).len(), 1);
     again.run(2.0);
     assert_eq!(again.node.pose_state, PoseState::Tracking);
-    let readings = again.node.mapper().readings();
+    let readings = again.node.robot.mapper.readings();
     assert!(readings > 55, "the map grows from what was loaded: {readings}");
 }

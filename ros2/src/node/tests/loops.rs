@@ -69,7 +69,7 @@ impl Pair {
 
 /// The share of the blocked cells that are wrong.
 fn wrong(pair: &Pair, world: &WorldSpec) -> f64 {
-    let (states, start) = (pair.node.mapper().states(), world.driven().pose);
+    let (states, start) = (pair.node.robot.mapper.states(), world.driven().pose);
     let is_wrong = |at: &Point2<f64>| {
         world.fleet().walls.iter().all(|wall| {
             let outside = wall.pose.inverse_transform_point(at).coords.abs() - wall.half_m;

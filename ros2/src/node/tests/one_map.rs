@@ -58,8 +58,8 @@ fn a_map_of_logs_goes_to_a_robot_and_back() {
     pair.run(8.0);
     assert_eq!(pair.node.pose_state, PoseState::Tracking, "{:?}", pair.said);
     assert!(pair.node.report().mapped > 30, "{:?}", pair.node.report());
-    assert!((pair.node.mapper().time() - DAY_S).abs() < 60.0, "{} s", pair.node.mapper().time());
-    pair.node.run(&Signals { stop: AtomicBool::new(true), ..Signals::default() }).unwrap();
+    assert!((pair.node.robot.mapper.time() - DAY_S).abs() < 60.0, "{} s", pair.node.robot.mapper.time());
+    pair.node.run(&Signals { stop: Arc::new(true.into()), ..Signals::default() }).unwrap();
     drop(pair);
 
     add(&path, folder.path(), "friday", 4.0);

@@ -1,13 +1,13 @@
 //! The layers of the map, each with its color bar.
 
-use super::coarse::Coarse;
-use super::{Tracks, WORLD, class, color, every, labels, order};
+use super::{Kind, Tracks, WORLD, coarse, color, labels, order};
 use draw::layers::Layer;
 use draw::scene::extent;
 use draw::view::View;
 use interfaces::GridFrame;
 use nalgebra::{Point2, Vector2};
 use rerun::components::ImageBuffer;
+use rerun::external::re_sdk_types::datatypes::AnnotationInfo;
 use rerun::{
     AnnotationContext, ChannelDatatype, ImageFormat, RecordingStreamResult, SegmentationImage, Transform3D,
 };
@@ -20,19 +20,27 @@ pub(in crate::recording) fn map(layer: Layer) -> String {
     format!("{WORLD}/maps/{}", layer.name())
 }
 
+/// Images with more cells than this are logged less often: the maps of a building would fill the file.
+const MANY_CELLS: usize = 100_000;
+
 pub(super) fn add(tracks: &mut Tracks) -> RecordingStreamResult<()> {
     let frame = &tracks.scene.frame;
     for layer in Layer::ALL {
         let cells = format!("{}/cells", map(layer));
         let classes = layer.legend().into_iter();
-        let classes = classes.map(|(id, meaning)| class(id, &meaning, color(layer.color(id), 255)));
+        let classes = classes.map(|(id, meaning)| AnnotationInfo {
+            id: id.into(),
+            label: Some(meaning.into()),
+            color: Some(*color(layer.color(id), 255)),
+        });
         tracks.always(&map(layer), &AnnotationContext::new(classes))?;
-        let coarse = Coarse::new(frame);
-        Picture::of_frame(&coarse.frame).log(tracks, &cells, order::MAP, 1.0)?;
+        let coarse = coarse::frame(frame);
+        Picture::of_frame(&coarse).log(tracks, &cells)?;
         color_bar(tracks, layer, frame)?;
-        let when = every(&coarse.frame, if layer == Layer::Occupancy { 1.0 } else { 10.0 });
+        let period_s = if layer == Layer::Occupancy { 1.0 } else { 10.0 };
+        let when = (Kind::State, period_s * coarse.len().div_ceil(MANY_CELLS) as f64);
         // The map can still be smaller than the image.
-        let classes = move |view: &View| vec![coarse.classes(&layer.classes(view.mapper))];
+        let classes = move |view: &View| vec![coarse::classes(&coarse, &layer.classes(view.mapper))];
         tracks.add(cells, when, classes, images);
     }
     Ok(())
@@ -47,7 +55,7 @@ fn color_bar(tracks: &Tracks, layer: Layer, frame: &GridFrame) -> RecordingStrea
     let cell_m = [0.88 * size.x / classes.len() as f64, 0.035 * size.y];
     let bar = Picture { columns: classes.len(), rows: 1, origin: at(0.06, -0.07), cell_m };
     let path = format!("{}/color_bar", map(layer));
-    bar.log(tracks, &path, order::MAP, 1.0)?;
+    bar.log(tracks, &path)?;
     tracks.always(&path, &images(vec![classes]))?;
     let tick = |&value: &f64| super::position(&at(0.06 + 0.88 * scale.position(value), -0.105));
     let texts: Vec<String> = scale.ticks.iter().map(f64::to_string).collect();
@@ -56,13 +64,13 @@ fn color_bar(tracks: &Tracks, layer: Layer, frame: &GridFrame) -> RecordingStrea
 }
 
 /// The components of images: the class of every cell.
-pub(super) fn images(images: Vec<Vec<u8>>) -> SegmentationImage {
+fn images(images: Vec<Vec<u8>>) -> SegmentationImage {
     let buffers = images.into_iter().map(|classes| ImageBuffer(classes.into()));
     SegmentationImage::update_fields().with_many_buffer(buffers)
 }
 
 /// An image of classes: its size and its position.
-pub(super) struct Picture {
+struct Picture {
     columns: usize,
     rows: usize,
     /// The lower left corner, m.
@@ -73,27 +81,21 @@ pub(super) struct Picture {
 
 impl Picture {
     /// The cells of a frame.
-    pub(super) fn of_frame(frame: &GridFrame) -> Self {
+    fn of_frame(frame: &GridFrame) -> Self {
         let cell_m = [frame.resolution_m(); 2];
         Self { columns: frame.width(), rows: frame.height(), origin: frame.origin(), cell_m }
     }
 
     /// Logs everything but the classes.
-    pub(super) fn log(
-        &self,
-        tracks: &Tracks,
-        path: &str,
-        order: f32,
-        opacity: f32,
-    ) -> RecordingStreamResult<()> {
+    fn log(&self, tracks: &Tracks, path: &str) -> RecordingStreamResult<()> {
         let [x, y] = super::position(&self.origin);
         let [width, height] = self.cell_m.map(|side| side as f32);
         let place = Transform3D::from_translation([x, y, 0.0]).with_scale([width, height, 1.0]);
         let size = [self.columns as u32, self.rows as u32];
         let format = SegmentationImage::update_fields()
             .with_format(ImageFormat::segmentation(size, ChannelDatatype::U8))
-            .with_opacity(opacity)
-            .with_draw_order(order);
+            .with_opacity(1.0)
+            .with_draw_order(order::MAP);
         tracks.always(path, &[&place as &dyn rerun::AsComponents, &format])
     }
 }

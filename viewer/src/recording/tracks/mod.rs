@@ -21,9 +21,7 @@ use super::entity::{Entity, Kind, Track};
 use draw::palette::Rgb;
 use draw::scene::Scene;
 use draw::view::View;
-use interfaces::GridFrame;
 use nalgebra::Point2;
-use rerun::external::re_sdk_types::datatypes::AnnotationInfo;
 use rerun::{AsComponents, Color, LineStrips2D, Points2D, Radius, RecordingStream, RecordingStreamResult};
 use rerun::{EntityPathPart, TextLog, TextLogLevel};
 use robot::Level;
@@ -59,14 +57,6 @@ pub(super) fn start(
     curves::add(&mut tracks)?;
     messages(&mut tracks);
     Ok(tracks.tracks)
-}
-
-/// Images with more cells than this are logged less often: the maps of a building would fill the file.
-const MANY_CELLS: usize = 100_000;
-
-/// Images of the cells of `frame`, logged when they have changed, at intervals of at least this time.
-fn every(frame: &GridFrame, period_s: f64) -> (Kind, f64) {
-    (Kind::State, period_s * frame.len().div_ceil(MANY_CELLS) as f64)
 }
 
 impl Tracks<'_> {
@@ -118,7 +108,6 @@ fn messages(tracks: &mut Tracks) {
 /// The drawing order, from the lowest to the highest layer.
 mod order {
     pub(super) const MAP: f32 = -10.0;
-    pub(super) const FIELD_OF_VIEW: f32 = -9.0;
     pub(super) const WALLS: f32 = 1.0;
     pub(super) const SIGHT_OUTLINE: f32 = 2.0;
     pub(super) const TRAIL: f32 = 3.0;
@@ -133,11 +122,6 @@ const LABEL: Rgb = [16, 18, 24];
 
 fn color([red, green, blue]: Rgb, alpha: u8) -> Color {
     Color::from_unmultiplied_rgba(red, green, blue, alpha)
-}
-
-/// The meaning and the color of a class of cells.
-fn class(id: u8, label: &str, color: Color) -> AnnotationInfo {
-    AnnotationInfo { id: id.into(), label: Some(label.into()), color: Some(*color) }
 }
 
 /// The appearance of lines with half a width in points of the viewer.
