@@ -30,26 +30,6 @@ mod tests {
     use interfaces::Purpose;
     use proptest::prelude::*;
 
-    #[test]
-    fn frequencies_follow_the_weights() {
-        let weights = [1.0, 0.0, 2.0, 5.0];
-        let mut counts = [0.0; 4];
-        let mut rng = RandomStream::new(1, Purpose::Agent);
-        let draws = 80_000.0;
-        for _ in 0..draws as usize {
-            counts[proportional(weights.iter().copied(), &mut rng).unwrap()] += 1.0;
-        }
-        assert_eq!(counts[1], 0.0);
-        let chi_square: f64 = [0, 2, 3]
-            .map(|index| {
-                let expected: f64 = draws * weights[index] / 8.0;
-                (counts[index] - expected).powi(2) / expected
-            })
-            .iter()
-            .sum();
-        assert!(chi_square < 13.8, "{counts:?}"); // two degrees of freedom, one in a thousand
-    }
-
     proptest! {
         #[test]
         fn a_weight_of_zero_is_never_drawn(

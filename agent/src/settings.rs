@@ -63,7 +63,6 @@ impl AgentSettings {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use interfaces::Cell;
 
     #[test]
     fn invalid_settings_are_refused() {
@@ -79,14 +78,5 @@ mod tests {
         ] {
             assert_eq!(settings.check().unwrap_err().to_string(), format!("agent setting {message}"));
         }
-    }
-    #[test]
-    fn rewards_count_their_transitions() {
-        use CellState::{Blocked, Free, Unknown};
-        let transitions = [(Unknown, Free), (Unknown, Blocked), (Free, Blocked), (Blocked, Free)]
-            .map(|(before, after)| Transition { cell: Cell::new(0, 0), before, after });
-        assert_eq!(Reward::Changes.count(&transitions), 2);
-        assert_eq!(Reward::ChangesAndDiscoveries.count(&transitions), 4);
-        assert_eq!(Reward::Changes.count(&[]), 0);
     }
 }

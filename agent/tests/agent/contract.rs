@@ -1,6 +1,6 @@
 //! Properties of every agent, in a small environment that changes.
 
-use crate::drawing::{agent, can_be_a_goal, empty, map, names, reading, rng};
+use crate::drawing::{agent, can_be_a_goal, empty, map, names, next, reading, rng, weigh_from};
 use agent::{
     Agent, AgentSettings, Chooser, Features, FreshMap, Policy, Random, Recency, Reward, Situation,
     StraightLineTravel, Trajectory,
@@ -63,15 +63,6 @@ fn live(agent: &mut Agent, mut check: impl FnMut(&Agent, &Mapper, Cell)) -> Vec<
 }
 
 #[test]
-fn goals_are_free_or_touch_a_free_cell() {
-    for choice in names() {
-        live(&mut agent(choice, 1), |_, mapper, goal| {
-            assert!(can_be_a_goal(mapper, goal), "{choice}: {goal:?}");
-        });
-    }
-}
-
-#[test]
 fn the_same_seed_gives_the_same_life_and_another_seed_another() {
     for choice in names() {
         let life = |seed| live(&mut agent(choice, seed), |_, _, _| ());
@@ -83,28 +74,19 @@ fn the_same_seed_gives_the_same_life_and_another_seed_another() {
 }
 
 #[test]
-fn shares_are_those_of_the_goals() {
+fn goals_can_be_goals_shares_are_theirs_and_only_learners_have_values_which_are_finite() {
     for choice in names() {
+        let is_learner = choice == "curious";
         let mut agent = agent(choice, 3);
         assert_eq!(agent.current(), None);
         assert!(agent.shares().all(|share| share == 0.0));
-        let mut counts = vec![0.0; agent.strategies().len()];
-        live(&mut agent, |agent, _, _| {
+        let (mut counts, mut learned) = (vec![0.0; agent.strategies().len()], false);
+        live(&mut agent, |agent, mapper, goal| {
+            assert!(can_be_a_goal(mapper, goal), "{choice}: {goal:?}");
             counts[agent.current().expect("a goal has a strategy")] += 1.0;
             let goals: f64 = counts.iter().sum();
             assert!(agent.shares().zip(&counts).all(|(share, count)| share == count / goals));
             assert!((0.0..=49.0).contains(&agent.last_reward()), "at most all cells in view change");
-        });
-    }
-}
-
-#[test]
-fn learners_know_finite_values_and_others_none() {
-    for choice in names() {
-        let is_learner = choice == "curious";
-        let mut agent = agent(choice, 4);
-        let mut learned = false;
-        live(&mut agent, |agent, _, _| {
             for p in [0.0, 1.0, f64::MAX, f64::INFINITY, f64::NAN] {
                 for r in [0.0, 50.0, f64::MAX, f64::INFINITY, f64::NAN] {
                     for strategy in 0..agent.strategies().len() {
@@ -134,7 +116,7 @@ fn the_first_choice_and_the_coin_are_fair() {
     for choice in ["curious", "coin"] {
         let firsts = (0..1000).filter(|&seed| {
             let mut agent = agent(choice, seed);
-            agent.next_goal(&mapper, &Isometry2::identity(), &mut StraightLineTravel);
+            next(&mut agent, &mapper);
             agent.current() == Some(0)
         });
         // Four standard deviations.
@@ -142,7 +124,7 @@ fn the_first_choice_and_the_coin_are_fair() {
     }
     let mut agent = agent("coin", 1);
     for _ in 0..1000 {
-        agent.next_goal(&mapper, &Isometry2::identity(), &mut StraightLineTravel);
+        next(&mut agent, &mapper);
     }
     assert!(agent.shares().all(|share| (0.436..=0.564).contains(&share)));
 }
@@ -169,6 +151,11 @@ impl Chooser for Pupil {
     }
 }
 
+/// An agent with two strategies.
+fn taught(settings: &AgentSettings, chooser: impl Chooser + 'static) -> Agent {
+    Agent::with(settings, vec![Box::new(Recency), Box::new(Random)], Box::new(chooser), rng(0)).unwrap()
+}
+
 #[test]
 fn a_trajectory_is_rewarded_by_its_updates_per_reading() {
     use CellState::{Blocked, Free, Unknown};
@@ -180,27 +167,21 @@ fn a_trajectory_is_rewarded_by_its_updates_per_reading() {
         let pupil = Pupil::default();
         let lessons = Lessons::clone(&pupil.lessons);
         let settings = AgentSettings { reward, ..Default::default() };
-        let strategies: Vec<Box<dyn agent::Strategy>> = vec![Box::new(Recency), Box::new(Random)];
-        let mut agent = Agent::with(&settings, strategies, Box::new(pupil), rng(0)).unwrap();
-        let goal = |agent: &mut Agent| {
-            agent.next_goal(&mapper, &Isometry2::identity(), &mut StraightLineTravel);
-        };
+        let mut agent = taught(&settings, pupil);
         agent.watch(at(9.0), &[found; 50]); // Before the first goal: the reward belongs to no strategy.
-        goal(&mut agent);
+        next(&mut agent, &mapper);
         agent.watch(at(1.0), &[block, found]);
         agent.watch(at(2.0), &[]);
         agent.watch(at(3.0), &[free, found]);
         agent.watch(at(4.0), &[]);
-        goal(&mut agent);
+        next(&mut agent, &mapper);
         assert_eq!(agent.last_reward(), first);
-        goal(&mut agent); // No reading since then: nothing to learn.
+        next(&mut agent, &mapper); // No reading since then: nothing to learn.
         agent.watch(at(5.0), &[block, free]);
-        goal(&mut agent);
+        next(&mut agent, &mapper);
         assert_eq!(agent.last_reward(), second);
-        assert_eq!(
-            *lessons.lock().unwrap(),
-            [(0, vec![at(1.0), at(2.0), at(3.0), at(4.0)], first), (0, vec![at(5.0)], second)]
-        );
+        let expected = [(0, [1.0, 2.0, 3.0, 4.0].map(at).to_vec(), first), (0, vec![at(5.0)], second)];
+        assert_eq!(*lessons.lock().unwrap(), expected);
     }
 }
 
@@ -210,9 +191,8 @@ fn what_follows_the_end_of_a_goal_belongs_to_no_strategy() {
     let mapper = map(&[(0.0, &["..."])]);
     let pupil = Pupil::default();
     let lessons = Lessons::clone(&pupil.lessons);
-    let strategies: Vec<Box<dyn agent::Strategy>> = vec![Box::new(Recency), Box::new(Random)];
-    let mut agent = Agent::with(&AgentSettings::default(), strategies, Box::new(pupil), rng(0)).unwrap();
-    agent.next_goal(&mapper, &Isometry2::identity(), &mut StraightLineTravel);
+    let mut agent = taught(&AgentSettings::default(), pupil);
+    next(&mut agent, &mapper);
     agent.watch(Features::default(), &[block]);
     for _ in 0..2 {
         agent.end_goal(&mapper, &Isometry2::identity());
@@ -220,7 +200,7 @@ fn what_follows_the_end_of_a_goal_belongs_to_no_strategy() {
     }
     assert_eq!(agent.current(), None);
     assert_eq!(agent.shares().collect::<Vec<_>>(), [1.0, 0.0]);
-    agent.next_goal(&mapper, &Isometry2::identity(), &mut StraightLineTravel);
+    next(&mut agent, &mapper);
     assert_eq!(*lessons.lock().unwrap(), [(0, vec![Features::default()], 1.0)]);
 }
 
@@ -233,19 +213,13 @@ fn a_visit_ends_with_its_goal() {
         let mut strategy = FreshMap::new(&settings);
         let mut mapper = map(&[(0.0, &["....."])]);
         let pose = Isometry2::translation(leaves_at, 0.0);
-        let (travel, mut weights) = ([1.0; 5], vec![0.0; 5]);
-        let weigh = |strategy: &mut FreshMap, mapper: &Mapper, weights: &mut [f64]| {
-            let situation = Situation::new(mapper, &pose, Features::default()).with_travel(&travel);
-            agent::Strategy::weigh(strategy, &situation, weights);
-        };
-        weigh(&mut strategy, &mapper, &mut weights);
+        weigh_from(&pose, &mut strategy, &mapper, &[1.0; 5]);
         agent::Strategy::stay(&mut strategy, Cell::new(goal, 0));
         mapper.update(&reading(10.0, &["....."])).unwrap();
         mapper.update(&reading(20.0, &[".    "])).unwrap();
         agent::Strategy::end(&mut strategy, &Situation::new(&mapper, &pose, Features::default()));
         mapper.update(&reading(25.0, &[".    "])).unwrap();
-        weigh(&mut strategy, &mapper, &mut weights);
-        weights[2]
+        weigh_from(&pose, &mut strategy, &mapper, &[1.0; 5])[2]
     };
     // On the way, the robot was called away: nothing of the view from its goal was seen.
     let away = worth(4, 0.0);
@@ -277,11 +251,8 @@ impl Chooser for Beyond {
 
 #[test]
 fn an_index_beyond_the_strategies_is_the_last_strategy() {
-    let policy = Policy::new("beyond", "the last strategy", |_, _| {
-        (vec![Box::new(Recency), Box::new(Random)], Box::new(Beyond))
-    });
-    let mut agent = Agent::new(&AgentSettings::default(), &policy, rng(0)).unwrap();
-    agent.next_goal(&map(&[(0.0, &["..."])]), &Isometry2::identity(), &mut StraightLineTravel);
+    let mut agent = taught(&AgentSettings::default(), Beyond);
+    next(&mut agent, &map(&[(0.0, &["..."])]));
     assert_eq!(agent.current(), Some(1));
 }
 

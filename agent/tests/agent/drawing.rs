@@ -1,6 +1,6 @@
 //! Maps drawn by hand: `#` blocked, `.` free, a blank not seen; the top line has the highest y.
 
-use agent::{Agent, AgentSettings, Policy, Situation, Strategy};
+use agent::{Agent, AgentSettings, Policy, Situation, StraightLineTravel, Strategy};
 use interfaces::{Cell, CellReading, CellState, GridFrame, Purpose, RandomStream};
 use mapper::{Mapper, MapperSettings};
 use nalgebra::{Isometry2, Point2};
@@ -34,12 +34,27 @@ pub(crate) fn map(sightings: &[(f64, &[&str])]) -> Mapper {
     mapper
 }
 
-/// The weights that `strategy` gives, row by row from the top.
-pub(crate) fn weigh(mut strategy: impl Strategy, mapper: &Mapper) -> Vec<Vec<f64>> {
+/// The weights for a robot at the origin with these travel times to the cells.
+pub(crate) fn weigh(strategy: &mut (impl Strategy + ?Sized), mapper: &Mapper, travel: &[f64]) -> Vec<f64> {
+    weigh_from(&Isometry2::identity(), strategy, mapper, travel)
+}
+
+/// The weights for a robot at a pose.
+pub(crate) fn weigh_from(
+    pose: &Isometry2<f64>,
+    strategy: &mut (impl Strategy + ?Sized),
+    mapper: &Mapper,
+    travel: &[f64],
+) -> Vec<f64> {
     let mut weights = vec![0.0; mapper.frame().len()];
-    let pose = Isometry2::identity();
-    strategy.weigh(&Situation::new(mapper, &pose, Default::default()), &mut weights);
-    weights.chunks(mapper.frame().width()).rev().map(<[f64]>::to_vec).collect()
+    let situation = Situation::new(mapper, pose, Default::default()).with_travel(travel);
+    strategy.weigh(&situation, &mut weights);
+    weights
+}
+
+/// The next goal of a robot that flies.
+pub(crate) fn next(agent: &mut Agent, mapper: &Mapper) -> Cell {
+    agent.next_goal(mapper, &Isometry2::identity(), &mut StraightLineTravel).cell
 }
 
 /// Whether a cell can be a goal: a free cell of the map, or a cell that shares a side with a free cell.

@@ -1,12 +1,11 @@
 //! Which goals follow from which weights.
 
-use crate::drawing::{agent, can_be_a_goal, empty, map, names, reading, rng, weigh};
+use crate::drawing::{agent, can_be_a_goal, empty, map, names, next, reading, rng, weigh};
 use agent::{
     Agent, AgentSettings, Always, Features, Poisson, Random, Recency, Situation, StraightLineTravel, Strategy,
 };
 use interfaces::{Cell, CellReading};
 use mapper::Mapper;
-use nalgebra::Isometry2;
 use proptest::prelude::*;
 use proptest::strategy::Strategy as _;
 
@@ -57,7 +56,7 @@ fn assert_frequencies(agent: &mut Agent, mapper: &Mapper, probabilities: &[f64])
     let draws = 40_000;
     let mut counts = vec![0.0; probabilities.len()];
     for _ in 0..draws {
-        let goal = agent.next_goal(mapper, &Isometry2::identity(), &mut StraightLineTravel).cell;
+        let goal = next(agent, mapper);
         counts[mapper.frame().index(goal).expect("a goal in the grid")] += 1.0;
     }
     let (mut chi_square, mut freedom) = (0.0, -1.0);
@@ -102,9 +101,8 @@ fn recency_and_poisson_are_sampled_by_their_weights() {
     blocked[4] = "#....#..#.###";
     let west = ["#....", "#....", "#....", "#...."];
     let mapper = map(&[(0.0, ROOM), (1.0, &blocked), (2.0, ROOM), (30.0, ROOM), (90.0, &west)]);
-    let flat = |weights: Vec<Vec<f64>>| weights.into_iter().rev().flatten().collect::<Vec<_>>();
-    let recency = flat(weigh(Recency, &mapper));
-    let poisson = flat(weigh(Poisson, &mapper));
+    let recency = weigh(&mut Recency, &mapper, &[]);
+    let poisson = weigh(&mut Poisson, &mapper, &[]);
     assert!(poisson.iter().any(|&weight| weight > 0.0));
     for (choice, weights) in [("recency", recency), ("poisson", poisson)] {
         let expected = probabilities(&mapper, &weights, 5);
@@ -125,8 +123,9 @@ fn without_any_weight_every_candidate_is_as_likely() {
 #[test]
 fn random_is_uniform_whatever_was_seen() {
     let mapper = map(&[(0.0, ROOM), (50.0, &["#....", "#....", "#...."])]);
-    assert_eq!(weigh(Random, &mapper), vec![vec![0.0; 13]; 7]);
-    let uniform = probabilities(&mapper, &vec![0.0; mapper.frame().len()], 5);
+    let none = vec![0.0; mapper.frame().len()];
+    assert_eq!(weigh(&mut Random, &mapper, &[]), none);
+    let uniform = probabilities(&mapper, &none, 5);
     assert_frequencies(&mut agent("random", 4), &mapper, &uniform);
 }
 
@@ -137,7 +136,8 @@ fn recency_weighs_by_the_time_since_a_cell_was_seen() {
         (10.0, &["..   ", "#    "]),
     ]);
     // A cell never seen counts as last seen at 0.
-    assert_eq!(weigh(Recency, &mapper), [[0.0, 0.0, 7.0, 7.0, 10.0], [0.0, 7.0, 7.0, 10.0, 10.0]]);
+    let expected = [0.0, 7.0, 7.0, 10.0, 10.0, 0.0, 0.0, 7.0, 7.0, 10.0];
+    assert_eq!(weigh(&mut Recency, &mapper, &[]), expected, "from the lowest row on");
 }
 
 #[test]
@@ -154,7 +154,7 @@ fn poisson_weighs_by_the_probability_of_a_change() {
     let interval = mapper.interval(1);
     assert!((4.0..16.0).contains(&interval), "{interval}");
     let expected = 1.0 - f64::exp(-3.0 / interval);
-    let [left, middle, right] = weigh(Poisson, &mapper)[0][..] else { panic!("three cells") };
+    let [left, middle, right] = weigh(&mut Poisson, &mapper, &[])[..] else { panic!("three cells") };
     assert_eq!((left, right), (0.0, 0.0));
     assert!((middle - expected).abs() < 1e-12, "{middle} is not {expected}");
 }
@@ -178,10 +178,7 @@ fn weights_that_are_no_numbers_count_as_zero() {
     let weights = vec![f64::NAN, -1.0, f64::NEG_INFINITY, 0.0, 1e-3, -0.0];
     let mut agent = agent_of(Given(weights), 1, 6);
     for _ in 0..100 {
-        assert_eq!(
-            agent.next_goal(&mapper, &Isometry2::identity(), &mut StraightLineTravel).cell,
-            Cell::new(4, 0)
-        );
+        assert_eq!(next(&mut agent, &mapper), Cell::new(4, 0));
     }
 }
 
@@ -244,10 +241,7 @@ fn readings_at_one_instant_leave_only_numbers() {
         for _ in 0..20 {
             let features = Features::of(&mut mapper);
             agent.watch(features, mapper.transitions());
-            assert!(can_be_a_goal(
-                &mapper,
-                agent.next_goal(&mapper, &Isometry2::identity(), &mut StraightLineTravel).cell
-            ));
+            assert!(can_be_a_goal(&mapper, next(&mut agent, &mapper)));
             assert!(agent.last_reward().is_finite());
             for strategy in 0..agent.strategies().len() {
                 assert!(agent.value(strategy, features).is_none_or(f64::is_finite));

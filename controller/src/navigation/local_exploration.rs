@@ -76,15 +76,6 @@ mod tests {
     const CHANGE: Option<Point2<f64>> = Some(Point2::new(5.0, 5.0));
 
     #[test]
-    fn it_follows_changes_up_to_the_bound() {
-        let mut exploration = LocalExploration::default();
-        for _ in 0..42 {
-            assert_eq!(exploration.next(42, CHANGE, || HERE), CHANGE);
-        }
-        assert_eq!(exploration.next(42, CHANGE, || HERE), None);
-    }
-
-    #[test]
     fn it_makes_fewer_than_two_random_steps_in_a_row() {
         let mut exploration = LocalExploration::default();
         assert_eq!(exploration.next(42, None, || HERE), Some(HERE));

@@ -121,15 +121,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_pause_does_not_count_as_a_time_between_readings() {
-        let mut times = ReadingTimes::default();
-        (0..5).for_each(|reading| times.push(0.5 * f64::from(reading)));
-        times.push_after_pause(1000.0);
-        (1..=5).for_each(|reading| times.push(1000.0 + 0.5 * f64::from(reading)));
-        assert_eq!((times.period(6), times.period(7), times.period(12)), (0.5, 0.5, 0.5));
-    }
-
-    #[test]
     fn times_in_use_stay_exact_and_the_others_are_forgotten() {
         let time = |reading: ReadingIndex| 0.05 * f64::from(2 * reading.saturating_sub(PRIOR + 1)) + 3.0;
         let mut times = ReadingTimes::default();

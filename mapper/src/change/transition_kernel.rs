@@ -182,11 +182,11 @@ mod tests {
         for step in STEPS {
             for steps in [1, 2, 3, 10, 100, 1000] {
                 for blocked in [false, true] {
-                    let found =
-                        TransitionKernel::new(step, [0.0; 2]).predict(blocked, f64::from(steps)).blocked;
+                    let kernel = TransitionKernel::new(step, [0.0; 2]);
+                    let found = kernel.predict(blocked, f64::from(steps)).blocked;
                     assert!((found - stepped(step, blocked, steps)).abs() < 1e-12, "{step:?} after {steps}");
-                    let chain =
-                        TransitionRates { block: step.block / 0.1, free: step.free / 0.1, period: 0.1 };
+                    let [block, free] = [step.block, step.free].map(|leave| leave / 0.1);
+                    let chain = TransitionRates { block, free, period: 0.1 };
                     let memory = chain.memory(f64::from(steps) * 0.1, 1.0);
                     let share = chain.share_blocked();
                     let predicted = share + (f64::from(u8::from(blocked)) - share) * memory;
@@ -208,15 +208,9 @@ mod tests {
         for step in &STEPS[..3] {
             for (steps, regular) in [(1.0, [0.0; 2]), (3.0, [0.0; 2]), (41.0, [0.0; 2]), (3.0, [0.3, 0.8])] {
                 for (blocked, state) in [(false, 0), (false, 1), (true, 0), (true, 1)] {
-                    let at = |by: f64| {
-                        TransitionKernel::new(moved(*step, state, by), regular)
-                            .predict(blocked, steps)
-                            .blocked
-                    };
-                    let (found, expected) = (
-                        TransitionKernel::new(*step, regular).predict(blocked, steps).slope[state],
-                        (at(1e-5) - at(-1e-5)) / 2e-5,
-                    );
+                    let at = |step: Step| TransitionKernel::new(step, regular).predict(blocked, steps);
+                    let [less, more] = [-1e-5, 1e-5].map(|by| at(moved(*step, state, by)).blocked);
+                    let (found, expected) = (at(*step).slope[state], (more - less) / 2e-5);
                     assert!((found - expected).abs() < 1e-8, "{step:?}, {steps}: {found}, not {expected}");
                 }
             }
@@ -224,14 +218,10 @@ mod tests {
     }
 
     #[test]
-    fn without_a_period_time_is_continuous() {
+    fn time_is_continuous_without_a_period_and_goes_in_steps_with_one() {
         let chain = TransitionRates { block: 0.2, free: 0.3, period: 0.0 };
         assert!((chain.memory(3.0, 1.0) - (-0.5f64 * 3.0).exp()).abs() < 1e-12);
         assert!((chain.memory(3.0, 2.0) - (-0.5f64 * 6.0).exp()).abs() < 1e-12);
-    }
-
-    #[test]
-    fn a_cell_that_changes_at_every_step_alternates_for_one_step() {
         let chain = TransitionRates { block: 1.0, free: 1.0, period: 1.0 };
         assert_eq!([1.0, 2.0].map(|elapsed| chain.memory(elapsed, 2.0)), [-1.0, 0.0]);
     }

@@ -41,15 +41,13 @@ impl Chain {
 /// The root mean square difference between the clock and the true probability, over the last tenth of `days`.
 fn error_of_chain(calendar: &Calendar, days: u32, ahead: i32, look_every: u32) -> f64 {
     let (mut clock, mut chain) = (Clock::default(), Chain::new([0.005, 0.015], 3));
-    let (mut sum, mut n, mut known) = (0.0, 0.0, 0);
+    let (mut sum, mut n) = (0.0, 0.0);
     let steps = days * 1440;
     for step in 0..steps {
         let is_blocked = chain.step();
         let time_s = MONDAY_S + MINUTE_S * f64::from(step);
-        known += 1;
         if step % look_every == 0 {
             clock.observe(Look { time_s, is_blocked }, calendar);
-            known = 0;
             if step > steps / 10 * 9 {
                 let truth = chain.probability(ahead);
                 let found = clock.probability(time_s + MINUTE_S * f64::from(ahead), calendar);
@@ -58,7 +56,6 @@ fn error_of_chain(calendar: &Calendar, days: u32, ahead: i32, look_every: u32) -
             }
         }
     }
-    assert!(known < look_every);
     libm::sqrt(sum / n)
 }
 
@@ -100,12 +97,8 @@ fn opening_hours_are_learned_and_move_with_summer_time() {
     // 7:30 UTC is 9:30 in summer.
     let [early, late] = [at(0.0, 6.5), at(0.0, 7.5)];
     assert!(early < late, "{early} before opening, {late} after");
-    assert!(
-        Calendar::of_zone("Mars/Olympus")
-            .unwrap_err()
-            .to_string()
-            .starts_with("no time zone is called `Mars/Olympus`")
-    );
+    let error = Calendar::of_zone("Mars/Olympus").unwrap_err().to_string();
+    assert!(error.starts_with("no time zone is called `Mars/Olympus`"), "{error}");
 }
 
 /// A door that opens and closes on working days at these hours, each day a third of an hour earlier or later.

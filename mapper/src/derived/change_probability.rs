@@ -8,14 +8,3 @@ pub(super) fn change_probability(elapsed: f64, rate: f64) -> f64 {
     // its error of 1e-16 is far below the error of any rate.
     1.0 - libm::exp(-elapsed * rate)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn without_a_rate_nothing_changes() {
-        assert_eq!(change_probability(1e6, 0.0), 0.0);
-        assert!((change_probability(10.0, 0.1) - (1.0 - (-1.0f64).exp())).abs() < 1e-15);
-    }
-}

@@ -169,23 +169,6 @@ mod tests {
         assert!((scan.hit(0).unwrap() - expected).norm() < 1e-12);
     }
 
-    #[test]
-    fn ranges_mean_what_rep_117_says() {
-        let scan = &reading(vec![1.0; 4]).scan;
-        let cases = [
-            (f32::INFINITY, BeamReturn::Clear(5.0)),
-            (f32::NEG_INFINITY, BeamReturn::Nothing),
-            (f32::NAN, BeamReturn::Nothing),
-            (0.05, BeamReturn::Nothing),
-            (-1.0, BeamReturn::Nothing),
-            (7.0, BeamReturn::Nothing),
-            (5.0, BeamReturn::Hit(5.0)),
-        ];
-        for (range_m, expected) in cases {
-            assert_eq!(BeamReturn::of(range_m, scan), expected, "{range_m}");
-        }
-    }
-
     proptest::proptest! {
         /// The reference is the exact angle, for scans with any number of beams, in both directions.
         #[test]

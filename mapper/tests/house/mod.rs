@@ -46,6 +46,31 @@ pub(crate) fn rectangle(x0: f64, y0: f64, x1: f64, y1: f64) -> Vec<Point2<f64>> 
     [(x0, y0), (x1, y0), (x1, y1), (x0, y1)].map(|(x, y)| Point2::new(x, y)).to_vec()
 }
 
+/// A scan over a full turn, from a robot at rest.
+pub(crate) fn scan(
+    time_s: f64,
+    pose: Isometry2<f64>,
+    angle_min_rad: f64,
+    ranges_m: Vec<f32>,
+) -> LaserReading {
+    let angle_increment_rad = TAU / ranges_m.len() as f64;
+    LaserReading {
+        time_s,
+        pose,
+        twist: Twist::STOP,
+        velocities: Vec::new(),
+        mount: Isometry2::identity(),
+        scan: Scan {
+            angle_min_rad,
+            angle_increment_rad,
+            range_min_m: 0.05,
+            range_max_m: 10.0,
+            sweep_s: 0.0,
+            ranges_m,
+        },
+    }
+}
+
 /// Outer walls, and a cross of inner walls with a door of 1 m in each arm.
 pub(crate) fn walls(thickness_m: f64) -> Vec<Vec<Point2<f64>>> {
     let (t, s) = (thickness_m, 12.0);
@@ -197,20 +222,6 @@ impl House {
                 if range_m > 10.0 { f32::INFINITY } else { (range_m + noise) as f32 }
             })
             .collect();
-        LaserReading {
-            time_s,
-            pose,
-            twist: Twist::STOP,
-            velocities: Vec::new(),
-            mount: Isometry2::identity(),
-            scan: Scan {
-                angle_min_rad: -TAU / 2.0,
-                angle_increment_rad: increment,
-                range_min_m: 0.05,
-                range_max_m: 10.0,
-                sweep_s: 0.0,
-                ranges_m,
-            },
-        }
+        scan(time_s, pose, -TAU / 2.0, ranges_m)
     }
 }

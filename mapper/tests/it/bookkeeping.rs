@@ -2,7 +2,7 @@
 //! from the definitions each time.
 
 use crate::observed::{assert_sound, features};
-use interfaces::{Cell, CellReading, CellState, Grid, GridFrame, Transition};
+use interfaces::{Cell, CellState, Grid, GridFrame, Transition};
 use mapper::{CellStatistics, EstimatorChoice, Mapper, MapperSettings};
 use nalgebra::Point2;
 use proptest::prelude::*;
@@ -148,12 +148,13 @@ fn assert_statistics(mapper: &Mapper, book: &Book, index: usize) {
         let watched = [seen.unobserved, seen.watched_free, seen.watched_blocked];
         [[seen.first_seen, seen.last_seen, seen.period], watched].concat()
     };
-    let counts = |seen: &CellStatistics| {
-        let in_view = [seen.block_events, seen.free_events];
-        let after_gap = [seen.block_events_after_gap, seen.free_events_after_gap];
-        [in_view, after_gap].concat()
-    };
     let is_near = times(&found).iter().zip(times(&expected)).all(|(&a, b)| near(a, b));
+    let counts = |seen: &CellStatistics| {
+        let CellStatistics {
+            block_events, free_events, block_events_after_gap, free_events_after_gap, ..
+        } = *seen;
+        [block_events, free_events, block_events_after_gap, free_events_after_gap]
+    };
     assert!(is_near && counts(&found) == counts(&expected), "found {found:?}, expected {expected:?}");
 }
 
@@ -196,7 +197,7 @@ proptest! {
                     expected.push(Transition { cell, before, after });
                 }
             }
-            mapper.update(&CellReading { time: book.now, pose: interfaces::pose(0.5, 0.5, 0.0), cells }).unwrap();
+            mapper.update(&crate::cells(book.now, cells)).unwrap();
 
             prop_assert_eq!(mapper.transitions(), expected);
             for index in 0..frame.len() {
@@ -234,8 +235,8 @@ proptest! {
         let mut time: f64 = 0.0;
         for (wait, cells) in readings {
             time = (time + wait).min(f64::MAX);
-            let cells = cells.into_iter().map(|(x, y, blocked)| (Cell::new(x, y), blocked)).collect();
-            mapper.update(&CellReading { time, pose: interfaces::pose(0.5, 0.5, 0.0), cells }).unwrap();
+            let cells = cells.into_iter().map(|(x, y, blocked)| (Cell::new(x, y), blocked));
+            mapper.update(&crate::cells(time, cells)).unwrap();
             assert_sound(&mapper);
         }
     }

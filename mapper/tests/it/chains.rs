@@ -1,6 +1,6 @@
 //! The estimators on cells that are simulated two-state Markov chains, so that the true rates are known.
 
-use interfaces::{Cell, CellReading, GridFrame};
+use interfaces::{Cell, GridFrame};
 use mapper::{EstimatorChoice, Mapper, MapperSettings};
 use nalgebra::Point2;
 use rand_chacha::ChaCha8Rng;
@@ -63,7 +63,7 @@ fn estimates(chain: Chain, looks: impl Fn(usize, bool, usize) -> bool) -> impl F
                 seen.push((Cell::new(x as i32, 0), *blocked));
             }
         }
-        let reading = CellReading { time, pose: interfaces::pose(0.0, 0.0, 0.0), cells: seen };
+        let reading = crate::cells(time, seen);
         for mapper in &mut mappers {
             mapper.update(&reading).unwrap();
         }

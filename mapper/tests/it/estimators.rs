@@ -1,6 +1,6 @@
 //! Properties of estimates for any observations, and how `two-state-gaps` treats cells that are not Markov chains.
 
-use interfaces::{Cell, CellReading, CellState, GridFrame};
+use interfaces::{Cell, CellState, GridFrame};
 use mapper::{EstimatorChoice, Mapper, MapperSettings, SharedPrior, TwoState, TwoStateGaps};
 use nalgebra::Point2;
 use proptest::prelude::*;
@@ -21,8 +21,8 @@ fn mapper(estimator: impl Into<EstimatorChoice>, cells: usize) -> Mapper {
 
 /// Gives a mapper the states of some cells, each with its column.
 fn show(mapper: &mut Mapper, time: f64, cells: impl IntoIterator<Item = (usize, bool)>) {
-    let cells = cells.into_iter().map(|(x, blocked)| (Cell::new(x as i32, 0), blocked)).collect();
-    mapper.update(&CellReading { time, pose: interfaces::pose(0.0, 0.0, 0.0), cells }).unwrap();
+    let cells = cells.into_iter().map(|(x, blocked)| (Cell::new(x as i32, 0), blocked));
+    mapper.update(&crate::cells(time, cells)).unwrap();
 }
 
 /// Chains that leave their states with the probabilities `leave` (free, blocked) per step, `apart` columns from
@@ -238,12 +238,7 @@ fn the_prior_of_a_cell_depends_on_its_place() {
     };
     for step in 0..400 {
         let cells = (0..30).flat_map(|y| (0..60).map(move |x| (Cell::new(x, y), moves(x, y, step))));
-        let reading = CellReading {
-            time: f64::from(step),
-            pose: interfaces::pose(0.5, 0.5, 0.0),
-            cells: cells.collect(),
-        };
-        mapper.update(&reading).unwrap();
+        mapper.update(&crate::cells(f64::from(step), cells)).unwrap();
     }
     let rate = |x, y| mapper.rate(frame.index(Cell::new(x, y)).unwrap());
     let [busy, quiet, beside_wall] = [rate(20, 15), rate(45, 15), rate(45, 0)];

@@ -19,3 +19,11 @@ mod skipped;
 mod things;
 mod tiles;
 mod walls;
+
+use interfaces::{Cell, CellReading};
+use nalgebra::Isometry2;
+
+/// A reading of cells.
+fn cells(time: f64, cells: impl IntoIterator<Item = (Cell, bool)>) -> CellReading {
+    CellReading { time, pose: Isometry2::identity(), cells: cells.into_iter().collect() }
+}

@@ -71,11 +71,8 @@ impl Observed {
 
 /// The changes of known cells in the last update.
 pub(crate) fn changes(mapper: &Mapper) -> impl Iterator<Item = Cell> {
-    mapper
-        .transitions()
-        .iter()
-        .filter(|transition| transition.event().is_some())
-        .map(|transition| transition.cell)
+    let changes = mapper.transitions().iter().filter(|transition| transition.event().is_some());
+    changes.map(|transition| transition.cell)
 }
 
 /// Every number of every cell is valid: no NaN, no infinite rate, no negative time.
@@ -101,10 +98,7 @@ pub(crate) fn assert_sound(mapper: &Mapper) {
         let (low, high) = mapper.credible_interval(index, 0.9);
         assert!(low >= 0.0 && low <= high, "a rate from {low} to {high} of {seen:?}");
         if let Some((block, free)) = mapper.transition_rates(index) {
-            assert!(
-                rate > 0.0 && [block, free].iter().all(|rate| *rate > 0.0 && rate.is_finite()),
-                "{seen:?}"
-            );
+            assert!([rate, block, free].iter().all(|rate| *rate > 0.0 && rate.is_finite()), "{seen:?}");
         }
         let recency = mapper.recency(index);
         assert!(recency.is_finite() && recency >= 0.0, "recency {recency} of {seen:?}");

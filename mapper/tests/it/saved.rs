@@ -1,16 +1,15 @@
 //! A mapper that goes on from a snapshot, and a pause between two sessions.
 
+use crate::cells;
 use interfaces::{Cell, CellReading, GridFrame};
 use mapper::{EstimatorChoice, Mapper, MapperSettings, OccupancyChoice};
-use nalgebra::{Isometry2, Point2};
+use nalgebra::Point2;
 
 /// Two cells that change now and then; the second one is seen in two of three readings.
 fn reading(step: u32) -> CellReading {
-    let mut cells = vec![(Cell::new(0, 0), (step / 5).is_multiple_of(2))];
-    if step % 12 < 8 {
-        cells.push((Cell::new(1, 1), (step / 7).is_multiple_of(3)));
-    }
-    CellReading { time: 0.1 * f64::from(step), pose: Isometry2::identity(), cells }
+    let seldom = (step % 12 < 8).then(|| (Cell::new(1, 1), (step / 7).is_multiple_of(3)));
+    let always = (Cell::new(0, 0), (step / 5).is_multiple_of(2));
+    cells(0.1 * f64::from(step), [always].into_iter().chain(seldom))
 }
 
 fn mapper(settings: &MapperSettings, steps: u32) -> Mapper {

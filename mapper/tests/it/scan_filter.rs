@@ -1,27 +1,13 @@
 //! The scan filter: thin things and walls stay, veils go.
 
-use interfaces::{GridFrame, LaserReading, Scan, Twist, pose};
+use interfaces::{GridFrame, LaserReading};
 use mapper::{Mapper, MapperSettings, NoReturn, ScanFilter, ScanFilterSettings};
-use nalgebra::Point2;
-use std::f64::consts::TAU;
+use nalgebra::{Isometry2, Point2};
 
 fn reading(ranges_m: Vec<f32>) -> LaserReading {
-    let (angle_min_rad, angle_increment_rad) = (0.0, TAU / 360.0);
-    LaserReading {
-        time_s: 0.0,
-        pose: pose(0.0, 0.0, 0.0),
-        twist: Twist::STOP,
-        velocities: Vec::new(),
-        mount: pose(0.0, 0.0, 0.0),
-        scan: Scan {
-            angle_min_rad,
-            angle_increment_rad,
-            range_min_m: 0.0,
-            range_max_m: 10.0,
-            sweep_s: 0.0,
-            ranges_m,
-        },
-    }
+    let mut reading = crate::house::scan(0.0, Isometry2::identity(), 0.0, ranges_m);
+    reading.scan.angle_increment_rad = 1.0_f64.to_radians();
+    reading
 }
 
 /// A round room of 4 m with these ranges from beam 10 on.

@@ -1,11 +1,12 @@
 //! Readings that must not enter the map, because their pose is not certain.
 
+use crate::cells;
 use interfaces::{Cell, CellReading, CellState, GridFrame};
 use mapper::{Mapper, MapperSettings};
-use nalgebra::{Isometry2, Point2};
+use nalgebra::Point2;
 
 fn reading(time: f64, is_blocked: bool) -> CellReading {
-    CellReading { time, pose: Isometry2::identity(), cells: vec![(Cell::new(0, 0), is_blocked)] }
+    cells(time, [(Cell::new(0, 0), is_blocked)])
 }
 
 /// A mapper for which a body can hide a cell for 8 s without interrupting its view.
@@ -29,7 +30,7 @@ fn nothing_is_learned_from_a_skipped_reading_and_its_time_is_not_observed() {
     assert_eq!((mapper.statistics(0).unobserved, mapper.statistics(0).watched_free), (2.0, 1.0));
 
     let mut hidden = self::mapper();
-    hidden.update(&CellReading { cells: Vec::new(), ..reading(3.0, true) }).unwrap();
+    hidden.update(&cells(3.0, [])).unwrap();
     hidden.update(&reading(4.0, false)).unwrap();
     assert_eq!((hidden.statistics(0).unobserved, hidden.statistics(0).watched_free), (0.0, 3.0));
 }

@@ -1,8 +1,9 @@
 //! Tiles in which something changes, with their clocks: a map predicted by the hour.
 
-use interfaces::{Cell, CellReading, CellState, GridFrame};
+use crate::cells;
+use interfaces::{Cell, CellState, GridFrame};
 use mapper::{Calendar, DAY_S, Mapper, MapperSettings};
-use nalgebra::{Isometry2, Point2};
+use nalgebra::Point2;
 
 const HOUR_S: f64 = 3600.0;
 /// Monday, 2024-01-01, 0:00 in Berlin.
@@ -29,8 +30,7 @@ fn look(mapper: &mut Mapper, time_s: f64) {
     for second in 0..30 {
         let time = time_s + f64::from(second);
         let door = DOOR.map(|x| (Cell::new(x, 3), is_closed(time)));
-        let cells = door.chain([(FLOOR, false)]).collect();
-        mapper.update(&CellReading { time, pose: Isometry2::identity(), cells }).unwrap();
+        mapper.update(&cells(time, door.chain([(FLOOR, false)]))).unwrap();
     }
 }
 

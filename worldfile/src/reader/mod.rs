@@ -8,7 +8,7 @@
 mod spelling;
 mod syntax;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 mod value;
 
 use crate::error::WorldError;

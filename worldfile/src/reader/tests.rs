@@ -1,6 +1,6 @@
 //! Everything that is invalid in a file is reported, and nothing else.
 
-mod mutations;
+pub(crate) mod mutations;
 
 use std::ops::Add;
 

@@ -2,19 +2,19 @@
 
 use interfaces::{Cell, CellState, Grid, GridFrame};
 use nalgebra::Point2;
-use std::fs;
-use std::path::Path;
+use std::collections::BTreeMap;
+use std::io::Cursor;
+use std::path::{Path, PathBuf};
+use worldfile::Findings;
 use worldfile::ros_map::{self, RosMap};
-use worldfile::{Disk, Findings};
 
-fn read(path: &Path) -> Result<RosMap, String> {
+/// Reads a map of a picture and a YAML file.
+fn read(picture: Vec<u8>, yaml: &str) -> RosMap {
+    let files = [("map.pgm", picture), ("map.yaml", yaml.as_bytes().to_vec())];
+    let files = BTreeMap::from(files.map(|(name, bytes)| (PathBuf::from(name), bytes)));
     let mut findings = Findings::default();
-    ros_map::read(path, &Disk, &mut findings).ok_or_else(|| findings.error_text())
-}
-
-fn write(folder: &Path, map: &Grid<CellState>) {
-    fs::write(folder.join("map.pgm"), results::ros_map::pgm(map)).unwrap();
-    fs::write(folder.join("map.yaml"), results::ros_map::yaml(map.frame(), "map.pgm")).unwrap();
+    let map = ros_map::read(Path::new("map.yaml"), &files, &mut findings);
+    map.unwrap_or_else(|| panic!("{findings}"))
 }
 
 /// A map drawn with the highest row first: `.` free, `#` blocked, ` ` unknown.
@@ -41,39 +41,29 @@ fn draw(map: &Grid<CellState>) -> Vec<String> {
 const YAML: &str = "image: map.pgm\nresolution: 0.5\norigin: [1.0, -2.0, 0.0]\nnegate: 0\n\
                     occupied_thresh: 0.65\nfree_thresh: 0.196\n";
 
-/// A folder with a picture of one row of pixels and a YAML file.
-fn folder(yaml: &str, pixels: &[u8]) -> tempfile::TempDir {
-    let folder = tempfile::tempdir().unwrap();
+/// A map of one row of pixels.
+fn row(yaml: &str, pixels: &[u8]) -> RosMap {
     let header = format!("P5\n# a comment\n{} 1\n255\n", pixels.len());
-    fs::write(folder.path().join("map.pgm"), [header.as_bytes(), pixels].concat()).unwrap();
-    fs::write(folder.path().join("map.yaml"), yaml).unwrap();
-    folder
+    read([header.as_bytes(), pixels].concat(), yaml)
 }
 
 fn states(yaml: &str, pixels: &[u8]) -> String {
-    let folder = folder(yaml, pixels);
-    let map = read(&folder.path().join("map.yaml")).unwrap();
-    draw(&map.cells).concat()
+    draw(&row(yaml, pixels).cells).concat()
 }
 
 #[test]
 fn what_is_written_comes_back() {
     let map = drawn((-1.25, 3.0), 0.25, &["#####", "#.. #", "#.###"]);
-    let folder = tempfile::tempdir().unwrap();
-    write(folder.path(), &map);
-    let read = read(&folder.path().join("map.yaml")).unwrap();
+    let read = read(results::ros_map::pgm(&map), &results::ros_map::yaml(map.frame(), "map.pgm"));
     assert_eq!(read.onto(map.frame()), map);
 }
 
 #[test]
 fn the_files_are_as_ros_writes_them() {
     let map = drawn((-6.0, 0.5), 0.05, &[".#", " ."]);
-    let folder = tempfile::tempdir().unwrap();
-    write(folder.path(), &map);
-    assert_eq!(fs::read(folder.path().join("map.pgm")).unwrap(), b"P5\n2 2\n255\n\xfe\x00\xcd\xfe");
-    let yaml = fs::read_to_string(folder.path().join("map.yaml")).unwrap();
+    assert_eq!(results::ros_map::pgm(&map), b"P5\n2 2\n255\n\xfe\x00\xcd\xfe");
     assert_eq!(
-        yaml,
+        results::ros_map::yaml(map.frame(), "map.pgm"),
         "image: map.pgm\nmode: trinary\nresolution: 0.05\norigin: [-6.0, 0.5, 0.0]\nnegate: 0\n\
          occupied_thresh: 0.65\nfree_thresh: 0.196\n"
     );
@@ -100,18 +90,16 @@ fn negate_turns_bright_into_blocked() {
 
 #[test]
 fn a_colour_picture_counts_by_its_mean() {
-    let folder = folder(&YAML.replace("map.pgm", "map.png"), &[]);
     let pixels = [[0, 0, 0], [255, 255, 255], [255, 100, 0], [60, 60, 0]].concat();
-    let picture = image::RgbImage::from_raw(4, 1, pixels).unwrap();
-    picture.save(folder.path().join("map.png")).unwrap();
-    let map = read(&folder.path().join("map.yaml")).unwrap();
+    let mut png = Cursor::new(Vec::new());
+    image::RgbImage::from_raw(4, 1, pixels).unwrap().write_to(&mut png, image::ImageFormat::Png).unwrap();
+    let map = read(png.into_inner(), YAML);
     assert_eq!(draw(&map.cells), ["#. #"]);
 }
 
 #[test]
 fn resampling_asks_at_the_middle_of_each_cell() {
-    let folder = folder(YAML, &[0, 255, 0]); // x from 1 to 2.5 m, y from −2 to −1.5 m
-    let map = read(&folder.path().join("map.yaml")).unwrap();
+    let map = row(YAML, &[0, 255, 0]); // x from 1 to 2.5 m, y from −2 to −1.5 m
     let finer = GridFrame::new(Point2::new(0.75, -2.25), 0.25, 9, 4).unwrap();
     assert_eq!(draw(&map.onto(&finer)), ["         ", " ##..##  ", " ##..##  ", "         "]);
     let coarser = GridFrame::new(Point2::new(0.9, -2.1), 0.7, 2, 1).unwrap(); // middles at 1.25 and 1.95
@@ -121,8 +109,7 @@ fn resampling_asks_at_the_middle_of_each_cell() {
 #[test]
 fn a_turned_map_is_turned_back() {
     // A quarter turn: the picture's columns run upwards from (1, −2).
-    let folder = folder(&YAML.replace("-2.0, 0.0]", "-2.0, 1.5707963267948966]"), &[0, 255, 0]);
-    let map = read(&folder.path().join("map.yaml")).unwrap();
+    let map = row(&YAML.replace("-2.0, 0.0]", "-2.0, 1.5707963267948966]"), &[0, 255, 0]);
     let frame = GridFrame::new(Point2::new(0.0, -2.0), 0.5, 3, 3).unwrap();
     assert_eq!(draw(&map.onto(&frame)), [" # ", " . ", " # "]);
     assert_eq!(map.onto(&frame).get(Cell::new(1, 1)), Some(&CellState::Free));

@@ -117,16 +117,4 @@ mod tests {
         counts.count(NEVER, false);
         assert_eq!(counts.oldest(), Some(50_000));
     }
-
-    #[test]
-    fn a_cell_can_become_a_candidate_again_long_after_it_was_seen() {
-        let mut counts = LastSeenCounts::default();
-        (0..10).for_each(|_| counts.open());
-        assert_eq!(counts.oldest(), None);
-        counts.count(4, true);
-        assert_eq!(counts.oldest(), Some(4));
-        counts.count(4, false);
-        counts.count(9, true);
-        assert_eq!(counts.oldest(), Some(9));
-    }
 }

@@ -157,10 +157,8 @@ mod tests {
             let found = records.get(index * 40);
             assert_eq!(found, record);
             assert_eq!(found.watched.map(f64::to_bits), record.watched.map(f64::to_bits));
-            assert_eq!(
-                (records.since(index * 40), records.is_known(index * 40)),
-                (record.since, record.is_known())
-            );
+            assert_eq!(records.since(index * 40), record.since);
+            assert_eq!(records.is_known(index * 40), record.is_known());
         }
         // A long record stays long, and shows the new values.
         records.set(7 * 40, corrected(11));

@@ -127,43 +127,6 @@ fn valid(interval: f64) -> f64 {
 mod tests {
     use super::*;
 
-    fn seen() -> CellStatistics {
-        CellStatistics {
-            first_seen: 0.0,
-            last_seen: 130.0,
-            period: 1.0,
-            unobserved: 30.0,
-            watched_free: 80.0,
-            watched_blocked: 20.0,
-            block_events: 4,
-            free_events: 5,
-            block_events_after_gap: 6,
-            free_events_after_gap: 1,
-            ..CellStatistics::default()
-        }
-    }
-
-    #[test]
-    fn the_readings_of_equation_1() {
-        assert_eq!(Paper.interval(&seen()), 100.0 / 5.0);
-        assert_eq!(PaperAll.interval(&seen()), 100.0 / 10.0);
-    }
-
-    #[test]
-    fn two_state_adds_the_mean_dwells() {
-        assert_eq!(TwoState.interval(&seen()), 80.0 / 4.0 + 20.0 / 5.0);
-    }
-
-    #[test]
-    fn without_an_event_nothing_changes() {
-        let still = CellStatistics { last_seen: 9.0, watched_free: 9.0, ..Default::default() };
-        for estimator in EstimatorChoice::all() {
-            assert_eq!(estimator.interval(&still), f64::INFINITY);
-            assert_eq!(estimator.rate(&still), 0.0);
-            assert_eq!(estimator.transition_rates(&still), None);
-        }
-    }
-
     #[test]
     fn names_are_unique_and_choose() {
         let all = EstimatorChoice::all();

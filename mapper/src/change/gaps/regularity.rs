@@ -112,6 +112,7 @@ mod tests {
 
     #[test]
     fn a_clock_is_regular_once_shown_also_if_it_stops_at_times() {
+        assert_eq!(weight([1.0; 100]), 0.0, "stays of one step tell nothing");
         assert!(weight([7.0; 2]) < 0.2);
         assert_eq!(weight([7.0; 40]), 1.0);
         let waits = |number: u32| if number.is_multiple_of(12) { 30.0 } else { 7.0 };
@@ -134,10 +135,5 @@ mod tests {
         }
         assert!((regularity([]).variation()[0] - 1.0).abs() < 1e-12, "a chain until stays were seen");
         assert!(regularity([40.0; 100]).variation()[1] < 0.05);
-    }
-
-    #[test]
-    fn stays_of_one_step_tell_nothing() {
-        assert_eq!(weight([1.0; 100]), 0.0);
     }
 }

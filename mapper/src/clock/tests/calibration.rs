@@ -2,13 +2,8 @@
 //! what the tests find.
 
 use super::*;
-use rand::RngExt;
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::SeedableRng;
-use rand_distr::{Distribution, Normal};
+use rand_distr::Normal;
 
-/// Monday, 2024-01-01, 0:00 UTC.
-const MONDAY_S: f64 = 1_704_067_200.0;
 const MINUTES: u32 = 1440;
 /// The standard deviation of the hours of a door, h.
 const PUNCTUALITY_H: f64 = 0.33;

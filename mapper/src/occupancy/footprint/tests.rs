@@ -197,37 +197,3 @@ proptest! {
         }
     }
 }
-
-#[test]
-fn beams_reach_beyond_the_fan_on_their_own() {
-    let case = Case {
-        x_m: 2.025,
-        y_m: 2.025,
-        heading_rad: 0.0,
-        angle_min_rad: 0.0,
-        increment_rad: TAU / 8.0,
-        ranges_m: vec![1.0; 8],
-        joined: vec![true; 8],
-        max_gap_m: 0.2,
-    };
-    let (frame, cloud) = (Case::frame(), case.cloud());
-    let mut picture = vec![b'.'; frame.len()];
-    let mark = |picture: &mut Vec<u8>, cells: std::ops::Range<usize>, with| picture[cells].fill(with);
-    Footprint::default().fill(
-        &cloud,
-        &frame,
-        0.2,
-        |_| true,
-        |start, end| mark(&mut picture, start..end, b'o'),
-    );
-    beyond_fan(&cloud, &frame, 0.2, |index| {
-        if picture[index] == b'.' {
-            picture[index] = b'+';
-        }
-    });
-    let drawn: Vec<String> = (28..53)
-        .rev()
-        .map(|row| String::from_utf8_lossy(&picture[row * 80 + 28..row * 80 + 53]).into_owned())
-        .collect();
-    println!("{}", drawn.join("\n"));
-}

@@ -12,43 +12,19 @@ fn bitmap(rows: &str) -> Bitmap {
     Bitmap::new(width as u32, rows.len() as u32, &blocked.collect::<Vec<_>>()).unwrap()
 }
 
-/// Two rooms with a door between them, walls one pixel thick.
-const ROOMS: &str = "\
-#########
-#   #   #
-#       #
-#   #   #
-#########";
-
 #[test]
-fn a_plan_with_right_angles_has_a_rectangle_per_wall() {
-    let rooms = bitmap(ROOMS);
-    // Bottom, top, left, right, and the two stubs, which reach through the outer walls.
-    assert_eq!(rooms.rectangles().len(), 6);
-}
-
-#[test]
-fn pixels_that_touch_in_a_point_are_two_rectangles() {
-    assert_eq!(bitmap("# \n #").rectangles().len(), 2);
-}
-
-#[test]
-fn walls_that_meet_are_as_few_rectangles_as_walls() {
+fn there_are_as_few_rectangles_as_walls() {
+    // Two rooms with a door between them: four outer walls and two stubs. Pixels that touch in a point. Nothing.
+    let rooms = "#########\n#   #   #\n#       #\n#   #   #\n#########";
+    for (plan, rectangles) in [(rooms, 6), ("# \n #", 2), ("  \n  ", 0)] {
+        assert_eq!(bitmap(plan).rectangles().len(), rectangles, "{plan}");
+    }
+    let rectangle = |min, max| PixelRectangle { min, max };
     let crossing = bitmap("  #  \n  #  \n#####\n  #  ");
-    let rectangles = crossing.rectangles();
-    assert_eq!(rectangles.len(), 2, "{rectangles:?}");
-    assert_eq!((rectangles[0].min, rectangles[0].max), ([0, 1], [5, 2]));
-    assert_eq!((rectangles[1].min, rectangles[1].max), ([2, 0], [3, 4]));
-}
-
-#[test]
-fn the_blocked_part_of_a_picture() {
-    assert_eq!(
-        bitmap("    \n  # \n #  \n    ").blocked_bounds(),
-        Some(PixelRectangle { min: [1, 1], max: [3, 3] })
-    );
+    assert_eq!(crossing.rectangles(), [rectangle([0, 1], [5, 2]), rectangle([2, 0], [3, 4])]);
+    let bounds = bitmap("    \n  # \n #  \n    ").blocked_bounds();
+    assert_eq!(bounds, Some(rectangle([1, 1], [3, 3])));
     assert_eq!(bitmap("  \n  ").blocked_bounds(), None);
-    assert!(bitmap("  \n  ").rectangles().is_empty());
 }
 
 #[test]

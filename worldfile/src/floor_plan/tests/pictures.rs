@@ -31,10 +31,9 @@ fn every_depth_says_the_same() {
         DynamicImage::ImageRgba16(grey.to_rgba16()),
     ];
     for picture in &all {
-        assert_eq!(dark(&encode(picture, ImageFormat::Png)).unwrap(), "##./..#");
-    }
-    for picture in &all {
-        assert_eq!(dark(&encode(picture, ImageFormat::Pnm)).unwrap(), "##./..#");
+        for format in [ImageFormat::Png, ImageFormat::Pnm] {
+            assert_eq!(dark(&encode(picture, format)).unwrap(), "##./..#");
+        }
     }
 }
 
@@ -77,7 +76,7 @@ fn png_header(width: u32, height: u32, depth: u8, colour: u8) -> Vec<u8> {
 }
 
 #[test]
-fn bombs_noise_and_other_files_are_refused() {
+fn bombs_and_noise_are_refused() {
     let is_refused = |bytes: &[u8], why: &str| {
         let error = dark(bytes).unwrap_err();
         assert!(error.contains(why), "{error}");
@@ -93,12 +92,6 @@ fn bombs_noise_and_other_files_are_refused() {
     let rows = (0..2000).flat_map(|y| [if y % 2 == 0 { 0xaa } else { 0x55 }; 250]);
     let noise: Vec<u8> = b"P4 2000 2000\n".iter().copied().chain(rows).collect();
     is_refused(&noise, "more than 1048576 rectangles");
-    is_refused(b"", "neither a PNG");
-    is_refused(b"GIF89a", "neither a PNG");
-    is_refused(b"P7\nWIDTH 1\n", "its header is damaged");
-    is_refused(b"P5 0 0 255 ", "no pixels");
-    is_refused(b"P5 3 3 255 \0", "its pixels are damaged");
-    is_refused(b"P5 1 1 0 \0", "its header is damaged");
 }
 
 /// The largest picture that is allowed, of the fewest bytes, in at most 1 GiB: run alone as

@@ -75,6 +75,7 @@ fn numbers() {
 
 #[test]
 fn maps() {
+    let key = &GOOD[GOOD.find("map").unwrap()..GOOD.find("\n[trans").unwrap()];
     let map = &GOOD[GOOD.find("#########").unwrap()..GOOD.find("\"\"\"\n\n").unwrap()];
     compare(
         "maps",
@@ -92,16 +93,8 @@ fn maps() {
             ("too narrow", map, "##\n#.\n##\n"),
             ("too low", map, "#.##\n####\n"),
             ("empty", map, ""),
-            (
-                "on one line",
-                &GOOD[GOOD.find("map").unwrap()..GOOD.find("\n[trans").unwrap()],
-                "map = \"###\"\n",
-            ),
-            (
-                "escaped",
-                &GOOD[GOOD.find("map").unwrap()..GOOD.find("\n[trans").unwrap()],
-                "map = \"###\\n#x#\\n###\"\n",
-            ),
+            ("on one line", key, "map = \"###\"\n"),
+            ("escaped", key, "map = \"###\\n#x#\\n###\"\n"),
         ],
     );
 }
@@ -129,12 +122,11 @@ fn paths() {
 
 #[test]
 fn a_map_may_be_too_large() {
-    let row = format!("{}\n", ".".repeat(2001));
-    let error = crate::grid::parse(
-        "yard.toml",
-        &format!("name = \"plain\"\nsensor_radius = 4\nmap = '''\n{}'''", row.repeat(2000)),
-    );
-    insta::assert_snapshot!(error.unwrap_err(), @r"
+    let of_width = |width: usize| {
+        let map = format!("{}\n", ".".repeat(width)).repeat(2000);
+        crate::grid::parse("yard.toml", &format!("name = 'n'\nsensor_radius = 4\nmap = '''\n{map}'''"))
+    };
+    insta::assert_snapshot!(of_width(2001).unwrap_err(), @r"
     the map is too large
      --> yard.toml:3:7
       |
@@ -143,12 +135,7 @@ fn a_map_may_be_too_large() {
       |
       = help: 3 × 3 cells are the least, 4 million the most; one row of text is one row of cells
     ");
-    let most = format!("{}\n", ".".repeat(2000)).repeat(2000);
-    let spec = crate::grid::parse(
-        "yard.toml",
-        &format!("name = \"plain\"\nsensor_radius = 4\nmap = '''\n{most}'''"),
-    );
-    assert_eq!(spec.unwrap().start, Cell::new(1000, 1000));
+    assert_eq!(of_width(2000).unwrap().start, Cell::new(1000, 1000));
 }
 
 #[test]
@@ -156,8 +143,7 @@ fn a_path_may_be_too_long() {
     let there_and_back = "[1, 5], [6, 5], ".repeat(100_001);
     let text = GOOD.replace("[[1, 5], [6, 5], [6, 4]]", &format!("[{there_and_back}]"));
     let error = crate::grid::parse("yard.toml", &text).unwrap_err().to_string();
-    let first = error.lines().next().unwrap_or_default();
-    assert_eq!(first, "the path of the block `high` is too long");
+    assert!(error.starts_with("the path of the block `high` is too long\n"), "{error}");
 }
 
 #[test]
@@ -194,38 +180,4 @@ fn a_world_of_the_other_kind_is_called_what_it_is() {
       |
       = help: a physics world has a table `[map]` with `size_m` and `cell_m`
     "#);
-    // But not when something else is wrong with it.
-    insta::assert_snapshot!(crate::physics::parse_world("yard.toml", "name = 'n'\nmap = 3").unwrap_err(), @r"
-    `map` has the wrong type
-     --> yard.toml:2:7
-      |
-    2 | map = 3
-      |       ^ this is the number `3`
-      |
-      = help: it must be a table of keys
-    ");
-}
-
-#[test]
-fn missing_file() {
-    let error = crate::grid::load("no/such/place.toml").unwrap_err();
-    insta::assert_snapshot!(error, @"cannot read the world file `no/such/place.toml`: No such file or directory (os error 2)");
-}
-
-#[test]
-fn everything_that_is_wrong_is_reported_at_once() {
-    let text = "name = ''\nsensor_radius = 0\nmap = '''\n#####\n#...#\n#####\n'''\n\
-                [[block]]\nname = 'b'\ndwell = 0\ncourse = 'loop'\npath = [[1, 1], [2, 1]]\n";
-    let error = crate::grid::parse("many.toml", text).unwrap_err();
-    let messages = error.messages();
-    let firsts: Vec<&str> = messages.iter().map(|message| message.lines().next().unwrap()).collect();
-    assert_eq!(
-        firsts,
-        [
-            "`name` is empty",
-            "`sensor_radius` is 0, which is out of range",
-            "`block.dwell` is 0, which is out of range"
-        ]
-    );
-    assert_eq!(error.to_string().matches("error: ").count(), 2);
 }

@@ -30,6 +30,28 @@ fn numbers(text: &str) -> Vec<(usize, &str)> {
     lines.collect()
 }
 
+/// A text with some characters replaced by others.
+pub(crate) fn changed(good: &'static str) -> impl Strategy<Value = String> {
+    (0..good.len(), 0..40_usize, "[ -~\n]{0,12}").prop_map(move |(at, length, text)| {
+        format!("{}{text}{}", &good[..at], &good[(at + length).min(good.len())..])
+    })
+}
+
+/// A text with another number in the place of one of its numbers.
+pub(crate) fn renumbered(
+    good: &'static str,
+    number: impl Strategy<Value = String>,
+) -> impl Strategy<Value = String> {
+    (any::<prop::sample::Index>(), number).prop_map(move |(place, number)| {
+        let is_digit = |c: char| c.is_ascii_digit();
+        let is_first = |at: &usize| !good[..*at].ends_with(|c: char| c.is_ascii_alphanumeric() || c == '.');
+        let places: Vec<usize> = good.match_indices(is_digit).map(|(at, _)| at).filter(is_first).collect();
+        let at = places[place.index(places.len())];
+        let end = at + good[at..].find(|c: char| !is_digit(c) && c != '.').unwrap();
+        format!("{}{number}{}", &good[..at], &good[end..])
+    })
+}
+
 proptest! {
     #[test]
     fn every_unknown_key_is_reported_with_its_line(

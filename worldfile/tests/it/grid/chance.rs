@@ -86,14 +86,3 @@ fn blocks_have_chances_of_their_own() {
     let one = run(&spec(&[line("one", 1)]));
     assert!(both.iter().zip(&one).all(|(both, one)| both[0] == one[0]));
 }
-
-#[test]
-fn without_chance_the_seed_means_nothing() {
-    let spec = worldfile::grid::parse("two_blocks.toml", SHIPPED[0].1).unwrap();
-    let (mut one, mut other) = (GridWorld::new(&spec, 1), GridWorld::new(&spec, 2));
-    for step in way(1).take(500) {
-        assert_eq!(one.sense(), other.sense());
-        one.act(&step);
-        other.act(&step);
-    }
-}

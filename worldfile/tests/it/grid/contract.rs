@@ -18,46 +18,20 @@ fn shipped() -> impl Iterator<Item = GridSpec> {
 }
 
 #[test]
-fn shipped_worlds_are_without_warnings_and_read_the_same_when_written() {
-    for spec in shipped() {
-        assert!(spec.warnings().is_empty(), "{}: {:?}", spec.name, spec.warnings());
-        assert_eq!(worldfile::grid::parse("again.toml", &worldfile::grid::to_toml(&spec)), Ok(spec));
-    }
-    for seed in 0..100 {
-        let spec = GridSpec::generate(&GenerateSettings::default(), seed);
+fn worlds_read_the_same_when_written() {
+    let made = (0..100).map(|seed| GridSpec::generate(&GenerateSettings::default(), seed));
+    for spec in shipped().chain(made) {
         assert_eq!(worldfile::grid::parse("again.toml", &worldfile::grid::to_toml(&spec)), Ok(spec));
     }
 }
 
 #[test]
-fn time_goes_forward_by_one() {
-    for (step, reading) in run(&GridSpec::generate(&GenerateSettings::default(), 1), 0, 50).iter().enumerate()
-    {
-        assert_eq!(reading.time, step as f64);
-    }
-}
-
-#[test]
-fn the_same_seed_gives_the_same_bits_and_another_does_not() {
+fn the_seed_matters_only_with_chance() {
     for spec in shipped() {
+        assert_eq!(run(&spec, 1, 500), run(&spec, 2, 500));
         let spec = spec.with_probabilities(0.8, 0.8);
-        let first = run(&spec, 1, 500);
-        assert_eq!(first, run(&spec, 1, 500));
-        assert_ne!(first, run(&spec, 2, 500));
+        assert_ne!(run(&spec, 1, 500), run(&spec, 2, 500));
     }
-}
-
-#[test]
-fn looking_changes_nothing() {
-    let spec = shipped().next().unwrap().with_probabilities(0.5, 0.5);
-    let (mut one, mut two) = (GridWorld::new(&spec, 5), GridWorld::new(&spec, 5));
-    for step in way(2).take(200) {
-        let first = one.sense();
-        assert_eq!(first, one.sense());
-        one.act(&step);
-        two.act(&step);
-    }
-    assert_eq!(one.sense(), two.sense());
 }
 
 /// The robot observes the true states of cells in the map and within range, each cell once.

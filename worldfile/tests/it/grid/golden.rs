@@ -1,39 +1,28 @@
 use super::*;
 
-/// FNV-1a with 64 bits: a fixed hash function.
-struct Hash(u64);
-
-impl Hash {
-    fn add(&mut self, number: u64) {
-        for byte in number.to_le_bytes() {
-            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3);
-        }
-    }
-}
-
 /// A hash of all readings over 2000 steps, and of the ground truth at the end.
 fn hash(spec: &GridSpec) -> String {
     let mut world = GridWorld::new(spec, 1);
-    let mut hash = Hash(0xcbf2_9ce4_8422_2325);
+    let mut numbers = Vec::new();
     let mut blocked_steps = vec![0; spec.frame().len()];
     for step in way(7).take(2000) {
         let reading = world.sense();
-        for value in [reading.time, reading.pose.translation.x, reading.pose.translation.y] {
-            hash.add(value.to_bits());
-        }
-        for (cell, is_blocked) in reading.cells {
-            hash.add(cell.x as u64 | (cell.y as u64) << 24 | u64::from(is_blocked) << 48);
-        }
+        let at = [reading.time, reading.pose.translation.x, reading.pose.translation.y];
+        numbers.extend(at.map(f64::to_bits));
+        let bits = |(cell, is_blocked): (Cell, bool)| {
+            cell.x as u64 | (cell.y as u64) << 24 | u64::from(is_blocked) << 48
+        };
+        numbers.extend(reading.cells.into_iter().map(bits));
         for (index, steps) in blocked_steps.iter_mut().enumerate() {
             *steps += u64::from(world.truth().is_blocked(index));
         }
         world.act(&step);
     }
     for (index, steps) in blocked_steps.into_iter().enumerate() {
-        hash.add(u64::from(world.truth().block_events(index)));
-        hash.add(steps);
+        numbers.extend([u64::from(world.truth().block_events(index)), steps]);
     }
-    format!("{:016x}", hash.0)
+    let bytes = numbers.into_iter().flat_map(u64::to_le_bytes).map(u64::from);
+    format!("{:016x}", crate::fnv(bytes))
 }
 
 /// The same on every machine, until it is changed on purpose.

@@ -1,26 +1,35 @@
 //! Worlds with a calendar: time passes in large steps, with the results of small ones.
 
-use interfaces::{GroundTruth, Twist, World};
+use super::fleet::{DRIVEN, robot};
+use super::*;
 use proptest::prelude::*;
-use sim::physics::{PhysicsWorld, WorldSpec};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 const HOUR_S: f64 = 3600.0;
+const OFFICE: &str = include_str!("../../../../worlds/office_week.toml");
 
 fn office() -> WorldSpec {
-    worldfile::shipped::load("office_week").unwrap()
+    parse(OFFICE)
+}
+
+/// A world with doors that repeat recorded events.
+fn recorded(text: &str, events: &str) -> WorldSpec {
+    let events = BTreeMap::from([(PathBuf::from("door.csv"), events.as_bytes().to_vec())]);
+    worldfile::physics::parse_world_with("test.toml", text, &events).unwrap()
+}
+
+/// Whether the door of the workshop is closed.
+fn is_closed(world: &PhysicsWorld) -> bool {
+    state_at(world, 1.95, 3.15) != TrueState::Free
 }
 
 /// The office, with a robot that starts in the workshop; its dock is in the corridor. People let it out, or not.
 fn office_with_robot_in_room(is_let_out: bool) -> WorldSpec {
-    let text = include_str!("../../../../worlds/office_week.toml");
-    let inside = text.replace("pose_m = [0.6, 4.2]", "pose_m = [2.0, 1.8]");
+    let inside = OFFICE.replace("pose_m = [0.6, 4.2]", "pose_m = [2.0, 1.8]");
     let inside = inside.replace("battery_s = 300.0", "dock_m = [0.6, 4.2]\nbattery_s = 300.0");
-    assert_ne!(inside, text);
-    let inside = if is_let_out { inside } else { inside.replace("waits_for_robots = true", "") };
-    worldfile::physics::parse_world_with("office.toml", &inside, &BTreeMap::<PathBuf, Vec<u8>>::new())
-        .unwrap()
+    assert_ne!(inside, OFFICE);
+    if is_let_out { parse(&inside) } else { parse(&inside.replace("waits_for_robots = true", "")) }
 }
 
 /// Lets the robot drive for some steps, so that it is elsewhere and has a velocity.
@@ -48,8 +57,7 @@ fn state(mut world: PhysicsWorld) -> Vec<u8> {
 
 #[test]
 fn a_dock_is_where_a_robot_can_be() {
-    let text = include_str!("../../../../worlds/office_week.toml");
-    let with = |dock: &str| text.replace("[robot.patrol]\n", &format!("[robot.patrol]\ndock_m = {dock}\n"));
+    let with = |dock: &str| OFFICE.replace("[robot.patrol]\n", &format!("[robot.patrol]\ndock_m = {dock}\n"));
     let parse = |dock: &str| worldfile::physics::parse_world("office.toml", &with(dock));
     assert!(parse("[2.0, 2.0]").is_ok());
     let error = parse("[0.05, 2.0]").unwrap_err().to_string();
@@ -87,11 +95,6 @@ proptest! {
 /// The door of the workshop is open at noon and closed at night, but for a robot that is still in the room.
 #[test]
 fn people_let_a_robot_out_before_they_close() {
-    let is_closed = |world: &PhysicsWorld| {
-        let middle = nalgebra::Point2::new(1.95, 3.15);
-        let frame = world.spec().frame;
-        world.truth().state(frame.index(frame.cell_at(&middle)).unwrap()) != interfaces::TrueState::Free
-    };
     let at_night = |spec: &WorldSpec| {
         let closed = (0..8).filter(|seed| {
             let mut world = PhysicsWorld::new(spec, *seed);
@@ -130,9 +133,7 @@ fn open_doors(
         [0.0, 0.1, 0.1, top - 0.1],
         [right - 0.1, 0.1, right, top - 0.1],
     ];
-    let wall = |[left, bottom, right, top]: &[f64; 4]| {
-        format!("[[wall]]\nmin_m = [{left:?}, {bottom:?}]\nmax_m = [{right:?}, {top:?}]\n")
-    };
+    let wall = |[left, bottom, right, top]: &[f64; 4]| wall([*left, *bottom], [*right, *top]);
     let walls: String = outer.iter().chain(walls).map(wall).collect();
     let door = |(index, [x, y, to_x, to_y]): (usize, &[f64; 4])| {
         format!(
@@ -142,22 +143,16 @@ fn open_doors(
     };
     let leaves: String = doors.iter().enumerate().map(door).collect();
     let text = format!(
-        "name = \"doors\"\nstarts = \"Mon 0:00\"\n[map]\nsize_m = {size:?}\ncell_m = 0.05\n{walls}{leaves}\
-         [[robot]]\nname = \"curious\"\nradius_m = 0.2\npose_m = {at:?}\n[robot.drive]\nmax_linear_mps = 0.8\n\
-         max_angular_degps = 150.0\nmax_linear_acceleration_mps2 = 1.5\nmax_angular_acceleration_degps2 = 600.0\n\
-         [robot.laser]\nbeams = 90\nrange_max_m = 10.0\nrate_hz = 10.0\n[robot.behavior]\nkind = \"driven\"\n\
-         [robot.patrol]\nshare = 0.05\nbattery_s = 300.0\ndock_m = {dock:?}\n"
+        "name = \"doors\"\nstarts = \"Mon 0:00\"\n[map]\nsize_m = {size:?}\ncell_m = 0.05\n{walls}{leaves}{}\
+         [robot.patrol]\nshare = 0.05\nbattery_s = 300.0\ndock_m = {dock:?}\n",
+        robot("curious", at, 0.0, DRIVEN)
     );
-    let events = (PathBuf::from("door.csv"), b"time_s,state\n0,0\n600,1\n".to_vec());
-    let spec = worldfile::physics::parse_world_with("doors.toml", &text, &BTreeMap::from([events])).unwrap();
-    let mut world = PhysicsWorld::new(&spec, 0);
+    let mut world = PhysicsWorld::new(&recorded(&text, "time_s,state\n0,0\n600,1\n"), 0);
     world.rest(900.0);
-    let is_open = |[x, y, to_x, to_y]: &[f64; 4]| {
-        let middle = nalgebra::Point2::new((x + to_x) / 2.0, (y + to_y) / 2.0);
-        let cell = spec.frame.index(spec.frame.cell_at(&middle)).unwrap();
-        world.truth().state(cell) == interfaces::TrueState::Free
+    let middle_is_free = |[x, y, to_x, to_y]: &[f64; 4]| {
+        state_at(&world, (x + to_x) / 2.0, (y + to_y) / 2.0) == TrueState::Free
     };
-    doors.iter().map(is_open).collect()
+    doors.iter().map(middle_is_free).collect()
 }
 
 /// A robot beside a room with its dock, from which two doors lead to it: the one on the way with fewer doors stays open, and only this one.
@@ -213,21 +208,11 @@ fn a_week_goes_on_from_a_snapshot() {
 
 #[test]
 fn things_repeat_recorded_events() {
-    let text = include_str!("../../../../worlds/office_week.toml");
-    let (before, rest) = text.split_once("[obstacle.schedule]").unwrap();
+    let (before, rest) = OFFICE.split_once("[obstacle.schedule]").unwrap();
     let (_, after) = rest.split_once("# The door").unwrap();
-    let recorded = |more: &str| {
-        let text = format!("{before}[obstacle.schedule]\nevents = \"door.csv\"\n{more}\n# The door{after}");
-        let events = (PathBuf::from("door.csv"), b"time_s,state\n1000,0\n1060,1\n1180,0\n".to_vec());
-        worldfile::physics::parse_world_with("office.toml", &text, &BTreeMap::from([events])).unwrap()
-    };
     for (more, expected) in [("", [false, true, false]), ("one_means = \"free\"\n", [true, false, true])] {
-        let mut world = PhysicsWorld::new(&recorded(more), 0);
-        let is_closed = |world: &PhysicsWorld| {
-            let middle = nalgebra::Point2::new(1.95, 3.15);
-            let frame = world.spec().frame;
-            world.truth().state(frame.index(frame.cell_at(&middle)).unwrap()) != interfaces::TrueState::Free
-        };
+        let text = format!("{before}[obstacle.schedule]\nevents = \"door.csv\"\n{more}\n# The door{after}");
+        let mut world = PhysicsWorld::new(&recorded(&text, "time_s,state\n1000,0\n1060,1\n1180,0\n"), 0);
         let states = [59.0, 70.0, 190.0].map(|time_s| {
             world.rest(time_s);
             is_closed(&world)
@@ -241,12 +226,10 @@ proptest! {
     /// Steps of which no number is exactly the time of the end: `while world.time_s() < end_s { world.rest(end_s) }` ends.
     #[test]
     fn a_rest_gets_to_its_end(step_ms in 10_u32..100, hours in 1_u32..24) {
-        let text = include_str!("../../../../worlds/office_week.toml");
         let step_s = f64::from(step_ms) / 1000.0;
-        let of_step = text.replace("rate_hz = 10.0", &format!("rate_hz = {:?}", 0.25 / step_s));
+        let of_step = OFFICE.replace("rate_hz = 10.0", &format!("rate_hz = {:?}", 0.25 / step_s));
         let of_step = format!("{of_step}\n[physics]\nstep_s = {step_s:?}\n");
-        let spec = worldfile::physics::parse_world_with("office.toml", &of_step, &BTreeMap::<PathBuf, Vec<u8>>::new());
-        let mut world = PhysicsWorld::new(&spec.unwrap(), 0);
+        let mut world = PhysicsWorld::new(&parse(&of_step), 0);
         let end_s = f64::from(hours) * HOUR_S / 2.0;
         world.rest(end_s);
         world.rest(end_s);

@@ -6,8 +6,7 @@ const AHEAD: Twist = Twist { linear_mps: 9.0, angular_radps: 0.0 };
 /// The depth by which the driven robot penetrates a wall, m.
 fn depth_m(world: &PhysicsWorld) -> f64 {
     let at = Point2::from(world.true_pose().translation.vector);
-    let gap = world.spec().walls.iter().map(|wall| wall.distance_m(&at)).fold(f64::INFINITY, f64::min);
-    world.spec().driven().radius_m - gap
+    world.spec().driven().radius_m - wall_m(world.spec(), &at)
 }
 
 /// The four rooms with each model of contacts.

@@ -1,11 +1,7 @@
 //! Random worlds with extreme masses, speeds and walls: nobody passes through a wall.
 
-use super::random::{Chance, Deepest, passes};
+use super::random::{Chance, Deepest, number, passes, runs};
 use super::*;
-use interfaces::LaserReading;
-use nalgebra::Point2;
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::SeedableRng;
 
 /// What a run of all tests can wait for; SIM_EXTREME_WORLDS=20000 asks for more.
 const WORLDS: u64 = 300;
@@ -70,7 +66,7 @@ fn pushed(name: usize, chance: &mut Chance) -> String {
 
 /// A closed room with walls, robots and boxes; what does not fit is left out.
 fn world(seed: u64) -> FleetSpec {
-    let mut chance = Chance(ChaCha8Rng::seed_from_u64(seed));
+    let mut chance = Chance::new(seed);
     let step_s = chance.pick(&[0.02, 0.05, 0.1]);
     let [right, top] = SIZE_M;
     let corners = [[0.06, 0.06], [right - 0.06, 0.06], [right - 0.06, top - 0.06], [0.06, top - 0.06]];
@@ -96,25 +92,20 @@ fn world(seed: u64) -> FleetSpec {
 
 #[test]
 fn with_extreme_masses_speeds_and_walls_nobody_passes_a_wall() {
-    let asked = std::env::var("SIM_EXTREME_WORLDS").ok().and_then(|worlds| worlds.parse().ok());
-    let worlds = asked.unwrap_or(WORLDS);
+    let worlds = number("SIM_EXTREME_WORLDS", WORLDS);
     let (mut robots, mut boxes, mut contacts) = (0, 0, 0);
     let mut deepest = Deepest::default();
     let mut passed = Vec::new();
-    let models = [(ContactModel::RigidBodies, worlds), (ContactModel::Sliding, worlds / 2)];
-    let runs = models.into_iter().flat_map(|(model, worlds)| (0..worlds).map(move |seed| (model, seed)));
-    for (model, seed) in runs {
+    for (model, seed) in runs(worlds) {
         let spec = FleetSpec { contacts: model, ..world(seed) };
         robots += spec.robots.len();
         boxes += spec.obstacles.len();
         let mut fleet = Fleet::new(&spec, seed);
-        let mut chance = Chance(ChaCha8Rng::seed_from_u64(!seed));
+        let mut chance = Chance::new(!seed);
         let mut wanted = vec![Twist::STOP; spec.robots.len()];
         let centers = |fleet: &Fleet| -> Vec<Point2<f64>> {
-            let robots = fleet.robots().map(|robot| robot.pose.translation.vector.into());
-            robots
-                .chain(fleet.obstacles().map(|thing| nalgebra::center(&thing.corners[0], &thing.corners[2])))
-                .collect()
+            let boxes = fleet.obstacles().map(|thing| nalgebra::center(&thing.corners[0], &thing.corners[2]));
+            fleet.robots().map(|robot| robot.pose.translation.vector.into()).chain(boxes).collect()
         };
         let mut from = centers(&fleet);
         while fleet.time_s() < SECONDS {
@@ -141,12 +132,7 @@ fn with_extreme_masses_speeds_and_walls_nobody_passes_a_wall() {
             deepest.note(&fleet, seed);
         }
     }
-    assert!(
-        passed.is_empty(),
-        "{} passed a wall: {}",
-        passed.len(),
-        passed[..passed.len().min(10)].join("\n")
-    );
+    assert!(passed.is_empty(), "{} passed a wall: {}", passed.len(), passed.join("\n"));
     deepest.check();
     assert!(robots > 4 * worlds as usize, "too few robots fitted in: {robots}");
     assert!(boxes > 4 * worlds as usize, "too few boxes fitted in: {boxes}");
@@ -156,22 +142,14 @@ fn with_extreme_masses_speeds_and_walls_nobody_passes_a_wall() {
 /// The smallest case that was found: a heavy robot presses a light one against a thin wall.
 #[test]
 fn a_light_robot_stays_on_its_side_of_a_thin_wall() {
-    let robot = |name: &str, radius_m: f64, mass_kg: f64, x_m: f64| {
-        format!(
-            "[[robot]]\nname = \"{name}\"\nradius_m = {radius_m:?}\nmass_kg = {mass_kg:?}\npose_m = [{x_m:?}, 2.0]\n\
-             behavior = {{ kind = \"driven\" }}\n\
-             drive = {{ max_linear_mps = {:?}, max_angular_degps = 90.0, max_linear_acceleration_mps2 = 5.0, max_angular_acceleration_degps2 = 360.0 }}\n\
-             laser = {{ beams = 2, range_max_m = 5.0, rate_hz = 10.0 }}\n",
-            if name == "a" { 0.8 } else { 0.3 },
-        )
-    };
     let text = format!(
-        "name = \"thin\"\n[map]\nsize_m = [5.0, 4.0]\ncell_m = 0.1\n[[wall]]\nmin_m = [4.0, 0.0]\nmax_m = [4.02, 4.0]\n{}{}",
-        robot("a", 0.2, 10.0, 1.0),
-        robot("b", 0.02, 0.1, 3.5)
+        "name = \"thin\"\n[map]\nsize_m = [5.0, 4.0]\ncell_m = 0.1\n{}{}{}",
+        super::wall([4.0, 0.0], [4.02, 4.0]),
+        jams::robot("a", "radius_m = 0.2", 10.0, [1.0, 2.0]),
+        jams::robot("b", "radius_m = 0.02", 0.1, [3.5, 2.0])
+            .replace("_linear_mps = 1.0", "_linear_mps = 0.3"),
     );
-    let spec = worldfile::physics::parse_fleet("thin.toml", &text).unwrap_or_else(|error| panic!("{error}"));
-    let mut fleet = Fleet::new(&spec, 0);
+    let mut fleet = Fleet::new(&parse_fleet(&text), 0);
     fleet.run_until(10.0, &mut |robot: &RobotView<'_>, _: &LaserReading| Twist {
         linear_mps: if robot.index == 0 { 0.8 } else { 0.0 },
         angular_radps: 0.0,

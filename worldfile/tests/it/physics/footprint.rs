@@ -2,8 +2,6 @@
 
 use super::fleet::{house, robot};
 use super::*;
-use interfaces::GroundTruth;
-use interfaces::LaserReading;
 use nalgebra::Point2;
 
 /// A robot of 0.6 × 0.3 m at [3, 3]; its center is 0.1 m behind the center of its outline.
@@ -25,10 +23,7 @@ fn its_corners_stay_out_of_walls_and_it_says_where_it_touches() {
         let mut contacts = Vec::new();
         while fleet.time_s() < 30.0 {
             let turn = libm::sin(fleet.time_s() * 0.7);
-            fleet.step(&mut |_: &RobotView<'_>, _: &LaserReading| Twist {
-                linear_mps: 0.5,
-                angular_radps: turn,
-            });
+            fleet.step(&mut always(0.5, turn));
             contacts.extend_from_slice(fleet.contacts());
             for corner in corners(&fleet) {
                 let depth_m = spec.walls.iter().map(|wall| depth_m(wall, &corner)).fold(f64::MIN, f64::max);
@@ -60,8 +55,6 @@ fn others_see_its_sides_and_truth_knows_its_cells() {
     // 90 beams over a full turn: beam 45 looks straight ahead, at the front 0.4 m before its middle.
     let range_m = f64::from(world.sense().scan.ranges_m[45]);
     assert!((range_m - 1.6).abs() < 1e-6, "{range_m}");
-    let frame = *world.truth().frame();
-    let state = |x: f64, y: f64| world.truth().state(frame.index(frame.cell_at(&Point2::new(x, y))).unwrap());
     for (x, y, expected) in [
         (2.82, 2.87, TrueState::Blocked),
         (3.38, 3.12, TrueState::Blocked),
@@ -69,7 +62,7 @@ fn others_see_its_sides_and_truth_knows_its_cells() {
         (2.78, 3.0, TrueState::Free),
         (3.0, 3.17, TrueState::Free),
     ] {
-        assert_eq!(state(x, y), expected, "[{x}, {y}]");
+        assert_eq!(state_at(&world, x, y), expected, "[{x}, {y}]");
     }
 }
 

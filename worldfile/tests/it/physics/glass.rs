@@ -2,7 +2,7 @@
 
 use super::fleet::{nobody, robot};
 use super::*;
-use nalgebra::{Point2, Vector2};
+use nalgebra::Vector2;
 use proptest::prelude::*;
 
 proptest! {
@@ -20,7 +20,7 @@ proptest! {
              [[wall]]\nmin_m = [0.0, 3.9]\nmax_m = [8.0, 4.0]\n\
              [[wall]]\nfrom_m = [5.5, 0.5]\nto_m = [7.0, 3.5]\nthickness_m = 0.1\nreturns_within_deg = {within_deg:?}\n{stands}"
         );
-        let spec = worldfile::physics::parse_fleet("test.toml", &text).unwrap_or_else(|error| panic!("{error}"));
+        let spec = parse_fleet(&text);
         let mut fleet = Fleet::new(&spec, 0);
         fleet.step(&mut nobody);
         let robot = fleet.robots().next().unwrap();

@@ -1,13 +1,12 @@
 //! Generated buildings: all rooms connected, nothing inside another thing, and the same as ever.
 
+use super::standstill::oracle::{CELL_M, Positions};
 use nalgebra::Point2;
 use sim::physics::*;
 
 /// The number of houses, and of offices, in each test.
 const HOUSES: u64 = 300;
 const OFFICES: u64 = 60;
-/// The distance of the positions that are tried for the explorer, m.
-const GRID_M: f64 = 0.05;
 
 fn houses() -> impl Iterator<Item = WorldSpec> {
     (0..HOUSES).map(WorldSpec::generate_house)
@@ -34,56 +33,12 @@ fn leaf(obstacle: &ObstacleSpec, openness: f64) -> Option<Rectangle> {
     }
 }
 
-/// The positions at which a disc is free, on a grid of points over the house.
-struct Positions {
-    columns: usize,
-    is_free: Vec<bool>,
-}
-
-impl Positions {
-    fn new(house: &FleetSpec, radius_m: f64, with_doors: bool) -> Self {
-        let (columns, rows) = (house.frame.width(), house.frame.height());
-        let mut positions = Self { columns, is_free: vec![true; columns * rows] };
-        for solid in solids(house, with_doors) {
-            let (low, high) = solid.bounds();
-            let indices = |low_m: f64, high_m: f64, count: usize| {
-                let from = ((low_m - radius_m) / GRID_M).floor().max(0.0) as usize;
-                from..(((high_m + radius_m) / GRID_M).ceil() as usize).min(count)
-            };
-            for row in indices(low.y, high.y, rows) {
-                for column in indices(low.x, high.x, columns) {
-                    let index = row * columns + column;
-                    positions.is_free[index] &= solid.distance_m(&positions.point(index)) >= radius_m;
-                }
-            }
-        }
-        positions
-    }
-
-    fn point(&self, index: usize) -> Point2<f64> {
-        let [x, y] = [index % self.columns, index / self.columns].map(|at| (at as f64 + 0.5) * GRID_M);
-        Point2::new(x, y)
-    }
-
-    /// The indices of the points of every connected part.
-    fn parts(&self) -> Vec<Vec<usize>> {
-        let mut is_new = self.is_free.clone();
-        let mut parts = Vec::new();
-        for start in 0..is_new.len() {
-            let (mut open, mut part) = (vec![start], Vec::new());
-            while let Some(index) = open.pop() {
-                if std::mem::replace(&mut is_new[index], false) {
-                    part.push(index);
-                    // The outer walls are blocked: no point is at the border.
-                    open.extend([index - 1, index + 1, index - self.columns, index + self.columns]);
-                }
-            }
-            if !part.is_empty() {
-                parts.push(part);
-            }
-        }
-        parts
-    }
+/// The parts of the house in which a disc is free.
+fn parts(house: &WorldSpec, radius_m: f64, with_doors: bool) -> Vec<Vec<Point2<f64>>> {
+    let [width, height] = [house.frame.width(), house.frame.height()].map(|cells| cells as f64);
+    let high = Point2::new(width, height) * house.frame.resolution_m();
+    let solids = solids(house, with_doors).into_iter().map(|solid| Form::Convex(solid.corners().to_vec()));
+    Positions::new([Point2::origin(), high], solids, radius_m).parts()
 }
 
 /// Furniture never divides a house; an open door can hide a place behind it, but never a room or a robot.
@@ -91,10 +46,8 @@ impl Positions {
 fn every_place_where_a_robot_fits_can_be_reached() {
     for house in buildings() {
         let radius_m = building_ranges::HOUSE.person_radius_m[1] + 0.03;
-        let parts = Positions::new(&house, radius_m, false).parts();
-        assert_eq!(parts.len(), 1, "{}", house.name);
-        let opened = Positions::new(&house, radius_m, true);
-        let mut parts = opened.parts();
+        assert_eq!(parts(&house, radius_m, false).len(), 1, "{}", house.name);
+        let mut parts = parts(&house, radius_m, true);
         parts.sort_by_key(Vec::len);
         let (whole, pockets) = parts.split_last().unwrap();
         let hidden: usize = pockets.iter().map(Vec::len).sum();
@@ -104,8 +57,8 @@ fn every_place_where_a_robot_fits_can_be_reached() {
             _ => vec![robot.pose.translation.vector.into()],
         });
         for point in points {
-            let is_near = |index: &&usize| (opened.point(**index) - point).norm() < 2.0 * GRID_M;
-            assert!(whole.iter().any(|index| is_near(&index)), "{}: {point}", house.name);
+            let is_near = |place: &Point2<f64>| (place - point).norm() < 2.0 * CELL_M;
+            assert!(whole.iter().any(is_near), "{}: {point}", house.name);
         }
     }
 }
@@ -117,10 +70,7 @@ fn a_file_has_the_same_building() {
     let calendars =
         kinds.flat_map(|(_, kind)| (0..20).map(move |seed| WorldSpec::generate_calendar(kind, seed)));
     for house in buildings().chain(calendars) {
-        let text = worldfile::physics::to_toml(house.fleet()).unwrap();
-        let read =
-            worldfile::physics::parse_world("house.toml", &text).unwrap_or_else(|error| panic!("{error}"));
-        assert_eq!(read, house);
+        assert_eq!(super::parse(&worldfile::physics::to_toml(house.fleet()).unwrap()), house);
     }
 }
 
@@ -148,24 +98,21 @@ fn no_thing_is_inside_another() {
 fn houses_have_what_their_ranges_say() {
     let mut robots = [0_usize; 3];
     let (mut rooms, mut doors, mut furniture) = (Vec::new(), 0, 0);
+    let is_in = |[low, high]: [f64; 2], value: f64| (low..=high).contains(&value);
     for house in houses() {
         rooms.push(house.description.split(' ').next().unwrap().parse::<usize>().unwrap());
         for obstacle in &house.obstacles {
-            match &obstacle.motion {
-                Motion::Door(DoorSpec { opening, .. }) => {
-                    doors += 1;
-                    let (Opening::Periodic { closed_s, open_s } | Opening::Random { closed_s, open_s }) =
-                        opening
-                    else {
-                        panic!("{opening:?}")
-                    };
-                    let [closed, open] = [building_ranges::HOUSE.closed_s, building_ranges::HOUSE.open_s];
-                    assert!(
-                        (closed[0]..=closed[1]).contains(closed_s) && (open[0]..=open[1]).contains(open_s)
-                    );
-                }
-                _ => furniture += 1,
-            }
+            let Motion::Door(DoorSpec { opening, .. }) = &obstacle.motion else {
+                furniture += 1;
+                continue;
+            };
+            doors += 1;
+            let (Opening::Periodic { closed_s, open_s } | Opening::Random { closed_s, open_s }) = *opening
+            else {
+                panic!("{opening:?}")
+            };
+            let ranges = building_ranges::HOUSE;
+            assert!(is_in(ranges.closed_s, closed_s) && is_in(ranges.open_s, open_s));
         }
         for robot in &house.robots {
             let kind = match robot.behavior {
@@ -186,16 +133,10 @@ fn houses_have_what_their_ranges_say() {
 /// Results on houses depend on every number in them: a change must be intended.
 #[test]
 fn houses_are_what_they_always_were() {
-    // FNV-1a.
-    let hash = |text: &str| {
-        text.bytes().fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
-            (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
-        })
-    };
     let line = |name: String| {
         let house = WorldSpec::generated(&name).unwrap();
         let text = worldfile::physics::to_toml(house.fleet()).unwrap();
-        format!("{:016x} {}", hash(&text), house.description)
+        format!("{:016x} {}", crate::fnv(text.bytes().map(u64::from)), house.description)
     };
     let names = (0..4).chain([u64::MAX]).map(|seed| format!("house-{seed}"));
     let names = names.chain((0..2).map(|seed| format!("office-{seed}")));

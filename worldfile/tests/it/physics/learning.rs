@@ -2,7 +2,7 @@
 
 use super::fleet::{crowd, hash};
 use super::*;
-use interfaces::{GroundTruth, LaserReading, Purpose, RandomStream, heading_rad};
+use interfaces::{Purpose, RandomStream, heading_rad};
 use proptest::prelude::*;
 
 /// Commands that depend on the robot and the time.
@@ -65,21 +65,6 @@ proptest! {
         prop_assert_eq!(world.truth().changes(), new.truth().changes());
         prop_assert_eq!(world.sense(), new.sense());
     }
-}
-
-#[test]
-fn a_fleet_returns_to_a_snapshot_and_keeps_its_state_if_it_cannot() {
-    let mut fleet = Fleet::new(&crowd(), 4);
-    fleet.run_until(5.0, &mut drivers);
-    let snapshot = fleet.snapshot();
-    fleet.run_until(9.0, &mut drivers);
-    let later = fleet.snapshot();
-    assert_eq!(fleet.restore(&snapshot[..100]), Err(SnapshotError::Damaged));
-    assert_eq!(fleet.snapshot(), later);
-    assert_eq!(fleet.restore(&snapshot), Ok(()));
-    assert_eq!(fleet.snapshot(), snapshot);
-    fleet.run_until(9.0, &mut drivers);
-    assert_eq!(fleet.snapshot(), later);
 }
 
 #[test]

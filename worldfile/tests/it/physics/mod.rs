@@ -27,13 +27,40 @@ mod sweep;
 mod things;
 mod truth;
 
-use interfaces::{LaserReading, TrueState, Twist, World};
+use interfaces::{GroundTruth, LaserReading, TrueState, Twist, World};
+use nalgebra::Point2;
 use sim::physics::*;
 
 const FOUR_ROOMS: &str = include_str!("../../../../worlds/four_rooms.toml");
 
 fn four_rooms() -> WorldSpec {
     parse(FOUR_ROOMS)
+}
+
+/// A fleet, from the text of its world.
+fn parse_fleet(text: &str) -> FleetSpec {
+    worldfile::physics::parse_fleet("test.toml", text).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// A wall between two corners, in a file.
+fn wall(min_m: [f64; 2], max_m: [f64; 2]) -> String {
+    format!("[[wall]]\nmin_m = {min_m:?}\nmax_m = {max_m:?}\n")
+}
+
+/// A controller with one command for all robots.
+fn always(linear_mps: f64, angular_radps: f64) -> impl FnMut(&RobotView<'_>, &LaserReading) -> Twist {
+    move |_, _| Twist { linear_mps, angular_radps }
+}
+
+/// The state of the cell at a point.
+fn state_at(world: &PhysicsWorld, x_m: f64, y_m: f64) -> TrueState {
+    let frame = &world.spec().frame;
+    world.truth().state(frame.index(frame.cell_at(&Point2::new(x_m, y_m))).unwrap())
+}
+
+/// The distance of a point to the nearest wall, m.
+fn wall_m(spec: &FleetSpec, at: &Point2<f64>) -> f64 {
+    spec.walls.iter().map(|wall| wall.distance_m(at)).fold(f64::INFINITY, f64::min)
 }
 
 fn parse(text: &str) -> WorldSpec {
@@ -66,13 +93,9 @@ fn drive(
     contacts
 }
 
-/// The smallest distance between the bodies of two robots, m.
+/// The distance between the bodies of the two robots, m.
 fn bodies_apart_m(world: &PhysicsWorld) -> f64 {
-    let robots: Vec<RobotView<'_>> = world.fleet().robots().collect();
-    let pairs = (0..robots.len()).flat_map(|b| (0..b).map(move |a| (a, b)));
-    let gap = |(a, b): (usize, usize)| {
-        let between: f64 = (robots[a].pose.translation.vector - robots[b].pose.translation.vector).norm();
-        between - robots[a].radius_m - robots[b].radius_m
-    };
-    pairs.map(gap).fold(f64::INFINITY, f64::min)
+    let [one, other] = [0, 1].map(|index| world.fleet().robot(index).unwrap());
+    let between_m: f64 = (one.pose.translation.vector - other.pose.translation.vector).norm();
+    between_m - one.radius_m - other.radius_m
 }

@@ -1,8 +1,7 @@
 use super::*;
-use interfaces::Cell;
-use interfaces::GroundTruth;
 
 const BOX: &str = "[[obstacle]]\nname = \"box\"\nmin_m = [3.0, 1.8]\nmax_m = [3.4, 2.2]\n";
+const BACK: Twist = Twist { linear_mps: -0.4, angular_radps: 0.0 };
 
 #[test]
 fn it_comes_and_goes_on_time_and_is_solid_meanwhile() {
@@ -15,8 +14,7 @@ fn it_comes_and_goes_on_time_and_is_solid_meanwhile() {
         assert_eq!(world.fleet().obstacles().count(), usize::from(standing), "at {} s", world.time_s());
         assert!((ahead(&mut world) - if standing { 1.0 } else { 3.95 }).abs() < 1e-5);
         let expected = if standing { TrueState::Blocked } else { TrueState::Free };
-        let truth = world.truth();
-        assert_eq!(truth.state(truth.frame().index(Cell::new(64, 40)).unwrap()), expected);
+        assert_eq!(state_at(&world, 3.21, 2.01), expected);
     }
     let events = world.obstacle_events();
     let reported: Vec<_> = events.iter().map(|e| (e.name.as_str(), e.appeared, e.cells.len())).collect();
@@ -30,7 +28,7 @@ fn it_waits_for_its_place() {
     let mut world = PhysicsWorld::new(&four_rooms_but(&[], &format!("{here}appears_s = 1.0")), 0);
     drive(&mut world, Twist::STOP, 3.0, |_| ());
     assert_eq!(world.obstacle_events(), []);
-    let contacts = drive(&mut world, Twist { linear_mps: -0.4, angular_radps: 0.0 }, 1.0, |_| ());
+    let contacts = drive(&mut world, BACK, 1.0, |_| ());
     let event = &world.obstacle_events()[0];
     assert!(event.appeared && event.time_s > 3.0);
     assert_eq!(contacts, []);
@@ -39,6 +37,6 @@ fn it_waits_for_its_place() {
     let late = four_rooms_but(&[], &format!("{here}appears_s = 1.0\ndisappears_s = 2.0"));
     let mut world = PhysicsWorld::new(&late, 0);
     drive(&mut world, Twist::STOP, 3.0, |_| ());
-    drive(&mut world, Twist { linear_mps: -0.4, angular_radps: 0.0 }, 2.0, |_| ());
+    drive(&mut world, BACK, 2.0, |_| ());
     assert_eq!(world.obstacle_events(), []);
 }

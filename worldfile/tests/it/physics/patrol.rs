@@ -1,12 +1,11 @@
 use super::*;
-use nalgebra::Point2;
 use proptest::prelude::*;
 
 const FAR: &str = "pose_m = [2.0, 2.0]";
 
 /// The position of the dummy robot along its path, and the error of its distance to the wall, m.
 fn dummy(world: &PhysicsWorld) -> (f64, f64) {
-    let at = world.fleet().robots().nth(1).unwrap().pose.translation.vector;
+    let at = super::fleet::at(world.fleet(), 1);
     (at.x, at.y - 11.5)
 }
 
@@ -32,32 +31,20 @@ fn it_goes_back_and_forth_between_its_points() {
 }
 
 #[test]
-fn it_keeps_its_distance_to_the_wall() {
-    for noise in ["0.0", "0.03"] {
-        let mut world = PhysicsWorld::new(&with_dummy_noise(noise), 0);
+fn it_keeps_its_distance_to_the_wall_and_finds_back_to_it() {
+    // 4 cm off at the start is what the check allows.
+    for (noise, y) in [("0.0", "11.5"), ("0.03", "11.5"), ("0.0", "11.46")] {
+        let plain = "range_max_m = 5.0\nrate_hz = 10.0\nnoise_std_m = 0.0";
+        let noisy = plain.replace("std_m = 0.0", &format!("std_m = {noise}"));
+        let start = format!("pose_m = [7.2, {y}]");
+        let spec = four_rooms_but(&[(plain, &noisy), ("pose_m = [7.2, 11.5]", &start)], "");
+        let mut world = PhysicsWorld::new(&spec, 0);
+        drive(&mut world, Twist::STOP, if y == "11.5" { 0.0 } else { 10.0 }, |_| ());
         drive(&mut world, Twist::STOP, 60.0, |world| {
             let (_, off_m) = dummy(world);
-            assert!(off_m.abs() < 0.02, "{off_m} m off its way with noise {noise}");
+            assert!(off_m.abs() < 0.02, "{off_m} m off its way with noise {noise}, from {y}");
         });
     }
-}
-
-fn with_dummy_noise(noise: &str) -> WorldSpec {
-    let plain = "range_max_m = 5.0\nrate_hz = 10.0\nnoise_std_m = 0.0";
-    four_rooms_but(
-        &[(plain, &plain.replace("0.0\nnoise_std_m = 0.0", &format!("0.0\nnoise_std_m = {noise}")))],
-        "",
-    )
-}
-
-#[test]
-fn it_finds_back_to_its_distance() {
-    // 4 cm off at the start, which the check allows.
-    let mut world =
-        PhysicsWorld::new(&four_rooms_but(&[("pose_m = [7.2, 11.5]", "pose_m = [7.2, 11.46]")], ""), 0);
-    drive(&mut world, Twist::STOP, 10.0, |_| ());
-    let (_, off_m) = dummy(&world);
-    assert!(off_m.abs() < 0.005, "{off_m}");
 }
 
 #[test]
@@ -100,9 +87,8 @@ fn it_stops_for_an_obstacle_and_goes_on_when_that_has_gone() {
         );
         let mut world = PhysicsWorld::new(&four_rooms_but(&[], &obstacle), 0);
         drive(&mut world, Twist::STOP, 20.0, |world| {
-            let at = Point2::from(world.fleet().robots().nth(1).unwrap().pose.translation.vector);
             let standing = world.fleet().obstacles().count() == 1;
-            let gap_m = world.spec().obstacles[0].shape.distance_m(&at) - 0.2;
+            let gap_m = world.spec().obstacles[0].shape.distance_m(&super::fleet::at(world.fleet(), 1)) - 0.2;
             assert!(!standing || gap_m > 0.02, "{gap_m} m from the box at {min}");
         });
         let (x, _) = dummy(&world);

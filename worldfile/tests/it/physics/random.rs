@@ -1,8 +1,6 @@
 //! Random worlds: no body leaves its place, whatever its surroundings.
 
 use super::*;
-use interfaces::LaserReading;
-use nalgebra::Point2;
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
@@ -14,9 +12,13 @@ const WORLDS: u64 = 100;
 const SECONDS: f64 = 60.0;
 const SIDE_M: f64 = 6.0;
 
-pub(super) struct Chance(pub(super) ChaCha8Rng);
+pub(super) struct Chance(ChaCha8Rng);
 
 impl Chance {
+    pub(super) fn new(seed: u64) -> Self {
+        Self(ChaCha8Rng::seed_from_u64(seed))
+    }
+
     pub(super) fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * (self.0.next_u64() >> 11) as f64 * 2.0_f64.powi(-53)
     }
@@ -29,7 +31,7 @@ impl Chance {
 /// A closed room with walls at all angles, and robots of all sizes with every kind of drive. Parts that do not fit
 /// are left out.
 pub(super) fn world(seed: u64) -> FleetSpec {
-    let mut chance = Chance(ChaCha8Rng::seed_from_u64(seed));
+    let mut chance = Chance::new(seed);
     let mut text = format!("name = \"random\"\n[map]\nsize_m = [{SIDE_M:?}, {SIDE_M:?}]\ncell_m = 0.1\n");
     let corners = [[0.0, 0.0], [SIDE_M, 0.0], [SIDE_M, SIDE_M], [0.0, SIDE_M]];
     for side in 0..4 {
@@ -39,8 +41,7 @@ pub(super) fn world(seed: u64) -> FleetSpec {
         let _ = write!(text, "[[wall]]\nfrom_m = {a:?}\nto_m = {b:?}\nthickness_m = 0.05\n");
     }
     text += &format!("[physics]\nstep_s = {:?}\n", [0.02, 0.05, 0.1][seed as usize % 3]);
-    let mut spec =
-        worldfile::physics::parse_fleet("random.toml", &text).unwrap_or_else(|error| panic!("{error}"));
+    let mut spec = parse_fleet(&text);
     for thing in 0..26 {
         let at = chance.point();
         let more = if thing < 5 {
@@ -53,7 +54,7 @@ pub(super) fn world(seed: u64) -> FleetSpec {
             self::thing(thing, at, &mut chance)
         } else {
             let radius_m = chance.between(0.05, 0.3);
-            let kinds = ["kind = \"driven\"", "kind = \"wander\"\nspeed_mps = 0.3", "kind = \"standing\""];
+            let kinds = ["driven\"", "wander\"\nspeed_mps = 0.3", "standing\""];
             // At most the speed that is allowed at the longest step, for a circle within a footprint.
             let fastest_mps = chance.between(0.2, (radius_m / 0.2).clamp(0.25, 2.0));
             // Every drive, and every third robot is not round.
@@ -69,7 +70,7 @@ pub(super) fn world(seed: u64) -> FleetSpec {
                 "[[robot]]\nname = \"{thing}\"\n{outline}\nmass_kg = {:?}\npose_m = {at:?}\nheading_deg = {:?}\n\
                  [robot.drive]\nkind = \"{drive}\nmax_linear_mps = {fastest_mps:?}\nmax_angular_degps = {:?}\n\
                  max_linear_acceleration_mps2 = {:?}\nmax_angular_acceleration_degps2 = {:?}\n\
-                 [robot.laser]\nbeams = 24\nrange_max_m = 5.0\nrate_hz = 10.0\n[robot.behavior]\n{}\n",
+                 [robot.laser]\nbeams = 24\nrange_max_m = 5.0\nrate_hz = 10.0\n[robot.behavior]\nkind = \"{}\n",
                 chance.between(0.1, 20.0),
                 chance.between(0.0, 360.0),
                 chance.between(10.0, 400.0),
@@ -109,6 +110,17 @@ fn thing(thing: usize, at: [f64; 2], chance: &mut Chance) -> String {
             at[1] + chance.between(0.1, 0.6),
         ),
     }
+}
+
+/// A number that the environment can set.
+pub(super) fn number<T: std::str::FromStr>(variable: &str, default: T) -> T {
+    std::env::var(variable).ok().and_then(|text| text.parse().ok()).unwrap_or(default)
+}
+
+/// The seeds of worlds, with each model of contacts.
+pub(super) fn runs(worlds: u64) -> impl Iterator<Item = (ContactModel, u64)> {
+    let rigid = (0..worlds).map(|seed| (ContactModel::RigidBodies, seed));
+    rigid.chain((0..worlds / 2).map(|seed| (ContactModel::Sliding, seed)))
 }
 
 /// How deep a segment of a robot's way lies in a wall: it passed through if its middle did.
@@ -205,13 +217,10 @@ fn check_robots(spec: &FleetSpec, fleet: &Fleet, seed: u64, from: &[Point2<f64>]
 
 #[test]
 fn in_random_worlds_nobody_leaves_enters_or_passes_a_wall() {
-    let asked = std::env::var("SIM_RANDOM_WORLDS").ok().and_then(|worlds| worlds.parse().ok());
-    let worlds = asked.unwrap_or(WORLDS);
+    let worlds = number("SIM_RANDOM_WORLDS", WORLDS);
     let (mut robots, mut contacts, mut things) = (0, 0, 0);
     let mut deepest = Deepest::default();
-    let models = [(ContactModel::RigidBodies, worlds), (ContactModel::Sliding, worlds / 2)];
-    let runs = models.into_iter().flat_map(|(model, worlds)| (0..worlds).map(move |seed| (model, seed)));
-    for (model, seed) in runs {
+    for (model, seed) in runs(worlds) {
         let mut spec = FleetSpec { contacts: model, ..world(seed) };
         if model == ContactModel::Sliding && seed % 2 == 0 {
             // A box that glides keeps rapier at work.
@@ -219,7 +228,7 @@ fn in_random_worlds_nobody_leaves_enters_or_passes_a_wall() {
         }
         let mut fleet = Fleet::new(&spec, seed);
         robots += spec.robots.len();
-        let mut chance = Chance(ChaCha8Rng::seed_from_u64(!seed));
+        let mut chance = Chance::new(!seed);
         // Commands without regard to obstacles: full speed in any direction, sometimes another direction.
         let mut wanted = vec![Twist::STOP; spec.robots.len()];
         let mut before: Vec<Twist> = wanted.clone();

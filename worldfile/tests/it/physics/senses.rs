@@ -1,10 +1,10 @@
 //! Bumpers, sonars and fiducial finders.
 
 use super::fleet::{house, robot};
+use super::snapshot::sensed;
 use super::*;
-use interfaces::LaserReading;
 
-const SENSES: &str = "[robot.bumper]\nsectors = 4\nfov_deg = 180.0\n\
+pub(super) const SENSES: &str = "[robot.bumper]\nsectors = 4\nfov_deg = 180.0\n\
     [[robot.sonar]]\ncone_deg = 30.0\nrange_max_m = 5.0\nrate_hz = 10.0\n\
     [[robot.sonar]]\ncone_deg = 30.0\nrange_max_m = 5.0\nrate_hz = 5.0\nmount_deg = 90.0\nnoise_std_m = 0.02\n\
     [robot.fiducial]\nfov_deg = 180.0\nrange_max_m = 5.0\nrate_hz = 10.0\n[robot.behavior]";
@@ -16,10 +16,6 @@ fn place(more: &[String], things: &str) -> FleetSpec {
     house(&robots, things)
 }
 
-fn stop(_: &RobotView<'_>, _: &LaserReading) -> Twist {
-    Twist::STOP
-}
-
 fn tagged(name: &str, at: [f64; 2], tag: u32) -> String {
     robot(name, at, 0.0, "kind = \"standing\"").replace("radius_m", &format!("tag = {tag}\nradius_m"))
 }
@@ -29,8 +25,8 @@ fn a_sonar_hears_the_nearest_thing_in_its_cone() {
     // 0.5 m beside its axis, 2 m ahead: 14° off it; and one that is nearer, but beside the cone.
     let others = [tagged("in", [3.0, 2.5], 1), tagged("beside", [2.0, 2.9], 2)];
     let mut fleet = Fleet::new(&place(&others, ""), 0);
-    fleet.step(&mut stop);
-    let robot = fleet.robots().next().unwrap();
+    fleet.step(&mut ());
+    let robot = fleet.robot(0).unwrap();
     let readings: Vec<SonarReading> = robot.sonars().flatten().collect();
     // The beam nearest to its middle may pass that by a quarter of a degree.
     let expected_m = libm::hypot(2.0, 0.5) - 0.2;
@@ -39,9 +35,8 @@ fn a_sonar_hears_the_nearest_thing_in_its_cone() {
     // To the left the border of its cone meets the outer wall, 0.9 m beside it.
     let exact_m = (0.9 / libm::sin(15.0_f64.to_radians())) as f32;
     assert!((readings[1].range_m - exact_m).abs() < 0.1 && readings[1].range_m != exact_m, "{readings:?}");
-    fleet.run_until(0.15, &mut stop);
-    let times: Vec<f64> =
-        fleet.robots().next().unwrap().sonars().flatten().map(|reading| reading.time_s).collect();
+    fleet.run_until(0.15, &mut ());
+    let times: Vec<f64> = fleet.robot(0).unwrap().sonars().flatten().map(|reading| reading.time_s).collect();
     assert!((times[0] - 0.1).abs() < 1e-9 && times[1] == 0.0, "{times:?}");
 }
 
@@ -51,8 +46,8 @@ fn a_sonar_hears_farther_than_the_laser_sees() {
     spec.robots[0].laser.range_max_m = 0.5;
     (spec.robots[0].sonars[0].range_max_m, spec.robots[0].sonars[0].cone_rad) = (10.0, 0.02);
     let mut fleet = Fleet::new(&spec, 0);
-    fleet.step(&mut stop);
-    let reading = fleet.robots().next().unwrap().sonars().next().flatten().unwrap();
+    fleet.step(&mut ());
+    let reading = fleet.robot(0).unwrap().sonars().next().flatten().unwrap();
     // From x = 1 to the wall between the rooms.
     assert!((reading.range_m - 4.95).abs() < 1e-3, "{reading:?}");
 }
@@ -65,16 +60,13 @@ fn bumpers_feel_where_they_are_touched() {
         // The outer wall on the left ends at 0.1 m: it drives into it, turned.
         let heading: f64 = std::f64::consts::PI + f64::to_radians(turn_deg);
         fleet.teleport(0, &interfaces::pose(0.305, 3.0, heading)).unwrap();
-        assert!(!fleet.robots().next().unwrap().bumpers().any(|pressed| pressed));
+        assert!(!fleet.robot(0).unwrap().bumpers().any(|pressed| pressed));
         let mut felt = vec![false; 4];
         for _ in 0..20 {
-            fleet.step(&mut |_: &RobotView<'_>, _: &LaserReading| Twist {
-                linear_mps: 0.5,
-                angular_radps: 0.0,
-            });
-            for (felt, pressed) in felt.iter_mut().zip(fleet.robots().next().unwrap().bumpers()) {
-                *felt |= pressed;
-            }
+            fleet.step(&mut always(0.5, 0.0));
+            felt.iter_mut()
+                .zip(fleet.robot(0).unwrap().bumpers())
+                .for_each(|(felt, pressed)| *felt |= pressed);
         }
         if turn_deg == 0.0 {
             // Straight ahead two of them meet.
@@ -96,19 +88,17 @@ fn a_flat_touch_presses_every_bumper_along_it_until_they_part() {
         let bumper = "[robot.bumper]\nsectors = 3\nfov_deg = 96.0\n[robot.behavior]";
         house(&[robot.replace("[robot.behavior]", bumper)], "")
     };
-    let drive =
-        |linear_mps| move |_: &RobotView<'_>, _: &LaserReading| Twist { linear_mps, angular_radps: 0.0 };
     let mut fleet = Fleet::new(&square(0.0), 0);
-    let pressed = |fleet: &Fleet| fleet.robots().next().unwrap().bumpers().collect::<Vec<_>>();
-    fleet.run_until(2.0, &mut drive(0.5));
+    let pressed = |fleet: &Fleet| fleet.robot(0).unwrap().bumpers().collect::<Vec<_>>();
+    fleet.run_until(2.0, &mut always(0.5, 0.0));
     assert_eq!(pressed(&fleet), [true; 3]);
     assert_eq!(fleet.contacts().len(), 1);
-    assert_eq!(fleet.robots().next().unwrap().touching, [fleet.contacts()[0].with]);
+    assert_eq!(fleet.robot(0).unwrap().touching, [fleet.contacts()[0].with]);
     // At rest against the wall the bumper still detects the contact.
-    fleet.run_until(4.0, &mut drive(0.0));
+    fleet.run_until(4.0, &mut always(0.0, 0.0));
     assert_eq!(pressed(&fleet), [true; 3]);
     assert_eq!(fleet.contacts(), []);
-    fleet.run_until(5.0, &mut drive(-0.5));
+    fleet.run_until(5.0, &mut always(-0.5, 0.0));
     assert_eq!(pressed(&fleet), [false; 3]);
     // With a corner ahead it is that of the corner alone.
     let mut fleet = Fleet::new(&square(45.0), 0);
@@ -132,37 +122,14 @@ fn tags_are_found_where_nothing_is_in_front() {
     let crate_ = "[[obstacle]]\nname = \"crate\"\nkind = \"box\"\ncenter_m = [1.5, 0.5]\nsize_m = [0.3, 0.3]\nmass_kg = 1.0\ntag = 20\n\
         [[obstacle]]\nname = \"behind\"\ncenter_m = [0.4, 3.0]\nsize_m = [0.3, 0.3]\ntag = 21\n";
     let mut fleet = Fleet::new(&place(&others, crate_), 0);
-    fleet.step(&mut stop);
-    let found = fleet.robots().next().unwrap().fiducials().copied().collect::<Vec<_>>();
+    fleet.step(&mut ());
+    let found = fleet.robot(0).unwrap().fiducials().copied().collect::<Vec<_>>();
     let tags: Vec<u32> = found.iter().map(|found| found.tag).collect();
     assert_eq!(tags, [11, 13, 20]);
     assert_eq!(found[0].body, Body::Robot(1));
     assert!((found[0].range_m - 2.0).abs() < 1e-6 && found[0].bearing_rad.abs() < 1e-6);
     assert!((found[1].bearing_rad - libm::atan2(1.5, 1.0)).abs() < 1e-6);
     assert_eq!(found[2].body, Body::Obstacle(0));
-}
-
-#[test]
-fn a_snapshot_knows_what_was_sensed() {
-    let mut fleet = Fleet::new(&place(&[tagged("other", [2.0, 2.0], 1)], ""), 3);
-    let mut ahead = |_: &RobotView<'_>, _: &LaserReading| Twist { linear_mps: 0.5, angular_radps: 0.1 };
-    fleet.run_until(1.25, &mut ahead);
-    let snapshot = fleet.snapshot();
-    let mut again = Fleet::restored(fleet.spec(), &snapshot).unwrap();
-    let sensed = |fleet: &Fleet| {
-        let robot = fleet.robots().next().unwrap();
-        (
-            robot.sonars().collect::<Vec<_>>(),
-            robot.bumpers().collect::<Vec<_>>(),
-            robot.fiducials().copied().collect::<Vec<_>>(),
-        )
-    };
-    assert_eq!(sensed(&again), sensed(&fleet));
-    assert_eq!(sensed(&fleet).2.len(), 1);
-    for fleet in [&mut fleet, &mut again] {
-        fleet.run_until(4.0, &mut ahead);
-    }
-    assert_eq!(again.snapshot(), fleet.snapshot());
 }
 
 /// A reading is computed when it is first read, if at all: this never shows.
@@ -175,9 +142,13 @@ fn readings_do_not_depend_on_which_readings_were_read() {
         robots.map(|robot| robot.replace("noise_std_m = 0.005\n", "noise_std_m = 0.005\ndropout = 0.1\n"));
     let spec = house(&robots, "");
     let [mut read, mut unread] = [Fleet::new(&spec, 3), Fleet::new(&spec, 3)];
-    let sensed = |fleet: &Fleet| -> Vec<String> {
-        fleet.robots().flat_map(|robot| robot.readings().map(|reading| format!("{reading:?}"))).collect()
-    };
+    // Reads nothing.
+    struct Ahead;
+    impl Controller for Ahead {
+        fn drive(&mut self, _: &RobotView<'_>) -> Option<Velocity> {
+            Some(Twist { linear_mps: 0.3, angular_radps: 0.2 }.into())
+        }
+    }
     for step in 0..60 {
         read.step(&mut Ahead);
         unread.step(&mut Ahead);
@@ -197,13 +168,4 @@ fn readings_do_not_depend_on_which_readings_were_read() {
     }
     assert_eq!(sensed(&unread), sensed(&read));
     assert_eq!([unread.snapshot(), restored.snapshot()], [read.snapshot(), read.snapshot()]);
-}
-
-/// A controller that reads nothing.
-struct Ahead;
-
-impl Controller for Ahead {
-    fn drive(&mut self, _: &RobotView<'_>) -> Option<Velocity> {
-        Some(Twist { linear_mps: 0.3, angular_radps: 0.2 }.into())
-    }
 }

@@ -2,10 +2,9 @@
 
 use super::fleet::{crowd, hash, robot};
 use super::*;
-use interfaces::LaserReading;
 use proptest::prelude::*;
 
-/// Every kind of robot and obstacle, and two robots that collide.
+/// Every kind of robot, sensor, fault and obstacle, and two robots that collide.
 pub(super) fn zoo() -> FleetSpec {
     let kinds = [
         ("\"wander\"\nspeed_mps = 0.4", [2.0, 2.0]),
@@ -21,7 +20,18 @@ pub(super) fn zoo() -> FleetSpec {
     ];
     let robots = kinds.iter().enumerate().map(|(i, (kind, at))| {
         let noisy = "[robot.odometry]\ndistance_noise_m = 0.01\n[robot.laser]";
-        robot(&format!("r{i}"), *at, 45.0, &format!("kind = {kind}")).replace("[robot.laser]", noisy)
+        let robot = robot(&format!("r{i}"), *at, 45.0, &format!("kind = {kind}")).replace("[robot.laser]", noisy);
+        // One of the driven robots has every sensor and every fault.
+        if i != 5 {
+            return robot;
+        }
+        let faults = "distance_noise_m = 0.01\nslip = 0.7\njump = { every_s = 1.0, distance_m = 0.5, turn_deg = 20.0 }\n\
+                      carried = { every_s = 5.0, distance_m = 2.0, turn_deg = 90.0 }";
+        let lasers = "dropout = 0.3\nsweep_s = 0.1\n[[robot.laser]]\nbeams = 50\nrange_max_m = 10.0\nrate_hz = 2.0\nnoise_std_m = 0.02\n";
+        robot
+            .replace("distance_noise_m = 0.01", faults)
+            .replace("[robot.laser]", "[[robot.laser]]")
+            .replace("[robot.behavior]", &format!("{lasers}{}", super::senses::SENSES))
     });
     let boxes = "[[obstacle]]\nname = \"one\"\nmin_m = [9.0, 8.0]\nmax_m = [9.2, 8.2]\nappears_s = 2.0\ndisappears_s = 9.0\n\
         [[obstacle]]\nname = \"two\"\nmin_m = [9.5, 8.0]\nmax_m = [9.7, 8.2]\ndisappears_s = 12.0\n";
@@ -32,6 +42,12 @@ pub(super) fn zoo() -> FleetSpec {
 fn drivers(robot: &RobotView<'_>, reading: &LaserReading) -> Twist {
     let turn = libm::sin(reading.time_s) * 0.3;
     Twist { linear_mps: if robot.index == 4 { 0.4 } else { -0.4 }, angular_radps: turn }
+}
+
+/// All poses and readings.
+pub(super) fn sensed(fleet: &Fleet) -> (u64, Vec<String>) {
+    let others = fleet.robots().flat_map(|robot| robot.readings().map(|reading| format!("{reading:?}")));
+    (hash(fleet), others.collect())
 }
 
 #[test]
@@ -48,18 +64,26 @@ fn a_restored_fleet_and_a_fork_live_on_bit_by_bit() {
             fleet.run_until(at_s, &mut drivers);
             let snapshot = fleet.snapshot();
             assert_eq!(fleet.snapshot(), snapshot);
-            let mut fork = fleet.clone();
-            let mut restored = Fleet::restored(spec, &snapshot).unwrap_or_else(|error| panic!("{error}"));
+            let restored = Fleet::restored(spec, &snapshot).unwrap_or_else(|error| panic!("{error}"));
             assert_eq!(restored.snapshot(), snapshot, "at {at_s} s");
+            assert_eq!(sensed(&restored), sensed(&fleet));
+            // A fleet that returns to the snapshot; first it keeps its state, since it cannot.
+            let mut returned = Fleet::new(spec, 4);
+            returned.run_until(at_s + 2.0, &mut drivers);
+            let later = returned.snapshot();
+            assert_eq!(returned.restore(&snapshot[..100]), Err(SnapshotError::Damaged));
+            assert_eq!(returned.snapshot(), later);
+            assert_eq!(returned.restore(&snapshot), Ok(()));
+            let mut others = [fleet.clone(), restored, returned];
             for _ in 0..10 {
-                for other in [&mut fleet, &mut fork, &mut restored] {
+                fleet.run_until(fleet.time_s() + 3.0, &mut drivers);
+                for other in &mut others {
                     other.run_until(other.time_s() + 3.0, &mut drivers);
+                    assert_eq!(sensed(other), sensed(&fleet), "from {at_s} s");
+                    assert_eq!(other.contacts(), fleet.contacts());
                 }
-                assert_eq!(hash(&fork), hash(&fleet), "the fork of {at_s} s");
-                assert_eq!(hash(&restored), hash(&fleet), "restored from {at_s} s");
-                assert_eq!(restored.contacts(), fleet.contacts());
             }
-            assert_eq!(restored.snapshot(), fleet.snapshot());
+            assert!(others.iter().all(|other| other.snapshot() == fleet.snapshot()), "from {at_s} s");
         }
     }
 }
@@ -67,14 +91,15 @@ fn a_restored_fleet_and_a_fork_live_on_bit_by_bit() {
 #[test]
 fn snapshots_of_other_places_are_refused() {
     let snapshot = Fleet::new(&crowd(), 1).snapshot();
-    assert_eq!(Fleet::restored(&zoo(), &snapshot).err(), Some(SnapshotError::OtherSpec));
-    assert_eq!(Fleet::restored(&zoo(), b"").err(), Some(SnapshotError::Unknown));
-    assert_eq!(Fleet::restored(&zoo(), b"something else").err(), Some(SnapshotError::Unknown));
-    assert_eq!(Fleet::restored(&zoo(), &snapshot[..8]).err(), Some(SnapshotError::Damaged));
-    assert_eq!(
-        Fleet::restored(&crowd(), &snapshot[..snapshot.len() - 1]).err(),
-        Some(SnapshotError::Damaged)
-    );
+    for (spec, bytes, error) in [
+        (zoo(), &snapshot[..], SnapshotError::OtherSpec),
+        (zoo(), b"", SnapshotError::Unknown),
+        (zoo(), b"something else", SnapshotError::Unknown),
+        (zoo(), &snapshot[..8], SnapshotError::Damaged),
+        (crowd(), &snapshot[..snapshot.len() - 1], SnapshotError::Damaged),
+    ] {
+        assert_eq!(Fleet::restored(&spec, bytes).err(), Some(error));
+    }
 }
 
 proptest! {

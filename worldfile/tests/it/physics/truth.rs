@@ -1,8 +1,8 @@
 //! The ground truth of whole worlds.
 
 use super::*;
-use interfaces::{Cell, GridFrame, GroundTruth, TrueState};
-use nalgebra::{Point2, Vector2};
+use interfaces::{Cell, GridFrame};
+use nalgebra::Vector2;
 
 /// The states of all cells, by index.
 fn states(truth: &impl GroundTruth) -> Vec<TrueState> {
@@ -13,7 +13,7 @@ const TURNED: &str = include_str!("../../../../worlds/turned_house.toml");
 
 #[test]
 fn changes_lead_from_one_truth_to_the_next() {
-    let mut world = PhysicsWorld::new(&worldfile::physics::parse_world("t", TURNED).unwrap(), 0);
+    let mut world = PhysicsWorld::new(&parse(TURNED), 0);
     let mut expected = states(world.truth());
     let mut passes = vec![0; expected.len()];
     for _ in 0..3100 {
@@ -42,27 +42,22 @@ fn samples(frame: &GridFrame, cell: Cell) -> impl Iterator<Item = Point2<f64>> {
 #[test]
 fn truth_is_what_sampled_points_say() {
     for text in [TURNED, include_str!("../../../../worlds/toy_on_the_floor.toml")] {
-        let mut world = PhysicsWorld::new(&worldfile::physics::parse_world("t", text).unwrap(), 0);
+        let mut world = PhysicsWorld::new(&parse(text), 0);
         for _ in 0..77 {
             world.act(&Twist::STOP);
         }
         let truth = world.truth();
-        let boxes = world.spec().walls.iter().chain(
-            world.spec().obstacles.iter().filter(|o| o.appears_s.is_none()).map(|obstacle| &obstacle.shape),
-        );
-        let boxes: Vec<_> = boxes.collect();
-        let dummy =
-            world.fleet().robots().nth(1).map(|robot| Point2::from(robot.pose.translation.vector)).unwrap();
+        let standing = world.spec().obstacles.iter().filter(|obstacle| obstacle.appears_s.is_none());
+        let boxes: Vec<_> =
+            world.spec().walls.iter().chain(standing.map(|obstacle| &obstacle.shape)).collect();
+        let dummy = super::fleet::at(world.fleet(), 1);
         let (mut partly, mut blurred) = (0, 0);
         for (index, state) in states(truth).into_iter().enumerate() {
             let solid = |point: &Point2<f64>| {
                 boxes.iter().any(|shape| shape.distance_m(point) == 0.0) || (point - dummy).norm() < 0.2
             };
-            let (mut inside, mut count) = (0, 0);
-            for point in samples(truth.frame(), truth.frame().cell(index)) {
-                inside += usize::from(solid(&point));
-                count += 1;
-            }
+            let points: Vec<_> = samples(truth.frame(), truth.frame().cell(index)).collect();
+            let (inside, count) = (points.iter().filter(|point| solid(point)).count(), points.len());
             match state {
                 TrueState::Free => assert_eq!(inside, 0, "cell {index}"),
                 TrueState::Blocked => assert_eq!(inside, count, "cell {index}"),
@@ -79,7 +74,7 @@ fn truth_is_what_sampled_points_say() {
 
 #[test]
 fn of_an_askew_wall_the_inner_side_can_be_seen() {
-    let world = PhysicsWorld::new(&worldfile::physics::parse_world("t", TURNED).unwrap(), 0);
+    let world = PhysicsWorld::new(&parse(TURNED), 0);
     let truth = world.truth();
     let (middle, back) = (Point2::new(6.0, 6.0), interfaces::rotation(-10.0_f64.to_radians()));
     let (mut free, mut blocked) = (0, 0);

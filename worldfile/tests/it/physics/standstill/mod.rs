@@ -1,17 +1,12 @@
 //! No deadlocks: no robot stands still for a minute while there is a way to one of its waypoints.
 
 mod causes;
-mod oracle;
+pub(super) mod oracle;
 pub(super) mod worlds;
 
 use super::random::Chance;
-use interfaces::{LaserReading, Twist};
-use nalgebra::Point2;
-use oracle::Reach;
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::SeedableRng;
+use super::*;
 use rayon::prelude::*;
-use sim::physics::*;
 
 /// A robot stands while it stays within this distance of a place, m, whether it turns or not.
 const PLACE_M: f64 = 0.1;
@@ -40,7 +35,7 @@ struct Longest {
 /// Simulates a world for some seconds. Driven robots get random commands, or none.
 fn longest(spec: &FleetSpec, seed: u64, seconds: f64, is_driving: bool) -> Longest {
     let mut fleet = Fleet::new(spec, seed);
-    let mut chance = Chance(ChaCha8Rng::seed_from_u64(!seed));
+    let mut chance = Chance::new(!seed);
     let mut command = Twist::STOP;
     let mut drive = |robot: &RobotView<'_>, _: &LaserReading| {
         if is_driving && chance.between(0.0, 1.0) < 0.05 {
@@ -91,11 +86,13 @@ fn is_checked(spec: &RobotSpec) -> bool {
 fn has_way(fleet: &Fleet, robot: usize, at: &Point2<f64>) -> bool {
     match &fleet.spec().robots[robot].behavior {
         BehaviorSpec::Waypoints(way) => {
-            let reach = Reach::new(fleet, robot, at);
+            let reached = oracle::reach(fleet, robot, at);
             let mut others = way.points.iter().filter(|point| (*point - at).norm() > PLACE_M);
-            others.any(|point| reach.has(point))
+            others.any(|point| reached.iter().any(|place| (place - point).amax() < oracle::CELL_M))
         }
-        BehaviorSpec::Wander(_) => Reach::new(fleet, robot, at).is_wider_than(at, ROOM_M),
+        BehaviorSpec::Wander(_) => {
+            oracle::reach(fleet, robot, at).iter().any(|place| (place - at).norm() > ROOM_M)
+        }
         _ => false,
     }
 }

@@ -1,10 +1,8 @@
 //! Random houses: rooms at a corridor, with doors, boxes, and robots that go from room to room.
 
 use super::super::random::Chance;
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::SeedableRng;
+use super::super::wall;
 use sim::physics::FleetSpec;
-use std::fmt::Write;
 
 const SIZE_M: [f64; 2] = [10.0, 8.0];
 /// The width of doorways, m.
@@ -18,6 +16,16 @@ struct Room {
     sides_m: [f64; 2],
 }
 
+/// A robot of a house; `kind`: its behavior.
+pub(super) fn body(name: &str, radius_m: f64, at: [f64; 2], heading_deg: f64, kind: &str) -> String {
+    format!(
+        "[[robot]]\nname = \"{name}\"\nradius_m = {radius_m:?}\nmass_kg = 15.0\npose_m = {at:?}\n\
+         heading_deg = {heading_deg:?}\n[robot.drive]\nmax_linear_mps = 0.8\nmax_angular_degps = 120.0\n\
+         max_linear_acceleration_mps2 = 1.0\nmax_angular_acceleration_degps2 = 360.0\n\
+         [robot.laser]\nbeams = 90\nrange_max_m = 4.0\nrate_hz = 10.0\n[robot.behavior]\nkind = {kind}\n"
+    )
+}
+
 struct House {
     chance: Chance,
     /// The lower and the upper wall of the corridor, m.
@@ -29,7 +37,7 @@ struct House {
 
 /// The house of a seed.
 pub(in crate::physics) fn house(seed: u64) -> FleetSpec {
-    let mut chance = Chance(ChaCha8Rng::seed_from_u64(seed));
+    let mut chance = Chance::new(seed);
     let low_m = chance.between(2.6, 3.2);
     let corridor_m = [low_m, low_m + chance.between(0.8, 1.6)];
     let text = format!("name = \"house {seed}\"\n[map]\nsize_m = {SIZE_M:?}\ncell_m = 0.1\n");
@@ -75,7 +83,7 @@ impl House {
     }
 
     fn wall(&mut self, min: [f64; 2], max: [f64; 2]) {
-        let _ = write!(self.text, "[[wall]]\nmin_m = {min:?}\nmax_m = {max:?}\n");
+        self.text += &wall(min, max);
     }
 
     fn walls(&mut self) {
@@ -148,13 +156,7 @@ impl House {
     }
 
     fn body(&mut self, name: &str, radius_m: f64, at: [f64; 2], kind: &str) -> String {
-        let heading_deg = self.chance.between(0.0, 360.0);
-        format!(
-            "[[robot]]\nname = \"{name}\"\nradius_m = {radius_m:?}\nmass_kg = 15.0\npose_m = {at:?}\n\
-             heading_deg = {heading_deg:?}\n[robot.drive]\nmax_linear_mps = 0.8\nmax_angular_degps = 120.0\n\
-             max_linear_acceleration_mps2 = 1.0\nmax_angular_acceleration_degps2 = 360.0\n\
-             [robot.laser]\nbeams = 90\nrange_max_m = 4.0\nrate_hz = 10.0\n[robot.behavior]\nkind = {kind}\n"
-        )
+        body(name, radius_m, at, self.chance.between(0.0, 360.0), kind)
     }
 
     /// A robot that goes from room to room through the corridor. Returns whether it fits.
