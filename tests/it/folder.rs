@@ -1,7 +1,6 @@
 //! The folder of the results holds one run.
 
-use crate::bad_input::refuses;
-use crate::run::{Run, names};
+use crate::run::{Run, names, wait_until};
 
 #[test]
 fn nothing_of_an_earlier_run_stays() {
@@ -22,7 +21,7 @@ fn nothing_of_an_earlier_run_stays() {
 
 #[test]
 fn worlds_of_an_earlier_run_stay_if_they_are_the_input() {
-    let run = Run::grid();
+    let run = Run::of("grid_world");
     let arguments = "--quiet --steps 100 --trials 1 --strategy recency --estimator paper";
     run.goes_well(&format!("{arguments} --generate 2 --save-worlds"));
     let worlds = || names(&run.path("out")).into_iter().filter(|name| name.ends_with(".toml"));
@@ -46,11 +45,7 @@ fn a_run_that_fails_leaves_the_earlier_one() {
 fn a_second_run_into_the_same_folder_is_refused() {
     let run = Run::new();
     let mut first = run.starts("--duration 1h --speed 1 --quiet");
-    let is_open = || run.out("unfinished_run/.lock").exists();
-    assert!((0..1200).any(|_| {
-        std::thread::sleep(std::time::Duration::from_millis(50));
-        is_open()
-    }));
+    wait_until(|| run.out("unfinished_run/.lock").exists());
     let second = run.ends("--duration 2 --no-rrd");
     first.kill().unwrap();
     first.wait().unwrap();
@@ -58,8 +53,7 @@ fn a_second_run_into_the_same_folder_is_refused() {
     insta::assert_snapshot!(second.stderr, @"error: cannot write out: another run is writing there; wait for it, or give this one another folder by --out");
     let ended = run.goes_well("--duration 2 --no-rrd");
     // What the killed run has left is kept, and named.
-    let note = "note: out/unfinished_run_1 has what a killed run has left; remove it if it is not needed";
-    assert!(ended.stderr.contains(note), "{ended:?}");
+    ended.says(&["note: out/unfinished_run_1 has what a killed run has left; remove it if it is not needed"]);
 }
 
 /// What a run may not replace: files that no run wrote, whatever they say.
@@ -71,8 +65,7 @@ fn foreign_files_are_refused_and_stay() {
     for (name, text) in [("report.json", report), ("thesis.tex", "my thesis"), ("data.csv", "1,2,3")] {
         run.write(&format!("out/{name}"), text);
     }
-    let message = refuses(&run, "--duration 2 --no-rrd --quiet", &["out"]);
-    insta::assert_snapshot!(message, @"error: cannot write out/report.json: the results would replace it, and no run of this version wrote it (an earlier version may have); move it, or give another folder by --out");
+    insta::assert_snapshot!(run.refuses("--duration 2 --no-rrd --quiet"), @"error: cannot write out/report.json: the results would replace it, and no run of this version wrote it (an earlier version may have); move it, or give another folder by --out");
     assert_eq!(names(&run.path("out")), ["data.csv", "report.json", "thesis.tex"]);
     // Beside files with other names, there is place for a run; they stay, even if a report lists them.
     std::fs::rename(run.out("report.json"), run.out("old_report.json")).unwrap();
@@ -86,11 +79,11 @@ fn foreign_files_are_refused_and_stay() {
 /// Each file that a program writes is refused before the run, not after it, if it is not of a run.
 #[test]
 fn a_foreign_file_ends_a_run_before_it_begins() {
-    let logs = Run::new().with_map_log();
+    let logs = Run::of("map_log");
     logs.write("a.log", &crate::map_log::standing_log(1.7e9, 60));
     let grid = "--quiet --steps 20 --trials 2 --strategy recency --strategy random --estimator paper";
     for (run, arguments) in
-        [(Run::new(), "--quiet --duration 1"), (logs, "--quiet a.log"), (Run::grid(), grid)]
+        [(Run::new(), "--quiet --duration 1"), (logs, "--quiet a.log"), (Run::of("grid_world"), grid)]
     {
         run.goes_well(arguments);
         let results = names(&run.path("out"));
@@ -98,10 +91,9 @@ fn a_foreign_file_ends_a_run_before_it_begins() {
             std::fs::remove_dir_all(run.path("out")).unwrap();
             std::fs::create_dir(run.path("out")).unwrap();
             run.write(&format!("out/{name}"), "of the user");
-            let ended = run.ends(arguments);
-            assert_eq!(ended.code, Some(2), "{name}: {ended:?}");
+            let message = run.refuses(arguments);
             let before = format!("error: cannot write out/{name}: the results would replace it");
-            assert!(ended.stderr.starts_with(&before), "{ended:?}");
+            assert!(message.starts_with(&before), "{message}");
             assert_eq!(names(&run.path("out")), [name.as_str()], "nothing is written");
         }
     }

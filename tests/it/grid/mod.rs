@@ -16,7 +16,7 @@ use serde_json::Value;
 
 /// A finished run without output on the screen; arguments are separated by spaces.
 fn ran(arguments: &str) -> Run {
-    let run = Run::grid();
+    let run = Run::of("grid_world");
     run.goes_well(&format!("--quiet {arguments}"));
     run
 }

@@ -67,7 +67,7 @@ fn a_part_that_cannot_be_reached_is_a_warning() {
         1,
     );
     assert_ne!(closet, world);
-    let run = Run::grid();
+    let run = Run::of("grid_world");
     run.write("closet.toml", &closet);
     let ended = run.goes_well(&format!("{ONE} --world closet.toml"));
     insta::assert_snapshot!(ended.stderr, @"warning: two blocks: the robot cannot reach the 3 cells around [21, 21]");
