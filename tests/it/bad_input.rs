@@ -119,8 +119,11 @@ fn maps() {
         assert!(message.contains(says), "{message}");
     }
     for broken in ["image: [", "resolution: 0.05", "", "\u{0}"] {
-        let message = refused_file("m.yaml", broken, "--map m.yaml");
-        assert!(message.contains("m.yaml:1"), "{message}");
+        let run = Run::new();
+        run.write("m.yaml", broken);
+        let ended = run.ends("--map m.yaml");
+        assert_eq!((ended.code, run.names()), (Some(2), vec!["m.yaml".to_owned()]));
+        ended.says(&["error: ", "m.yaml:1"]);
     }
 }
 

@@ -81,7 +81,7 @@ fn a_shard_that_was_cut_off_anywhere_goes_on() {
 #[cfg(unix)]
 fn a_killed_shard_goes_on_and_no_other_process_may_have_it() {
     use nix::sys::signal::Signal;
-    let long = GRID.replacen("--steps 300", "--steps 100000", 1);
+    let long = GRID.replacen("--steps 300", "--steps 30000", 1);
     let run = Run::of("grid_world");
     let lines =
         || fs::read_to_string(run.path("shards/shard-1-of-2.jsonl")).map_or(1, |text| text.lines().count());

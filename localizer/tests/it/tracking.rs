@@ -1,7 +1,7 @@
 use crate::house::House;
-use crate::robot::{Robot, furnished};
+use crate::robot::{Robot, furnished, localizer};
 use interfaces::{LaserReading, heading_rad};
-use localizer::{Localizer, LocalizerSettings, PoseState};
+use localizer::PoseState;
 use nalgebra::Isometry2;
 use proptest::prelude::*;
 
@@ -16,8 +16,7 @@ fn a_drifting_robot_knows_where_it_is() {
     let [median_m, most_m] = [0.5, 1.0].map(|share| robot.error_m(share));
     assert!(median_m < 0.004 && most_m < 0.025, "{median_m}, {most_m}");
     assert_eq!(robot.uncertain, 0);
-    let [exact, estimated] = robot.changes;
-    assert!(estimated <= exact + 12, "{estimated} changes, {exact} with exact poses");
+    robot.assert_few_changes(12, "");
 }
 
 #[test]
@@ -54,8 +53,7 @@ fn sweeping(house: &mut House, time_s: f64, from: &Isometry2<f64>, to: &Isometry
 fn the_sweep_of_a_scan_is_undone() {
     let worst_m = |knows_sweep: bool| {
         let mut house = furnished(360, 103);
-        let mut localizer =
-            Localizer::from_nothing(&LocalizerSettings::default(), &house.frame, house.tour(0.0)).unwrap();
+        let mut localizer = localizer(&house.frame, house.tour(0.0));
         let mapper = crate::robot::mapper(house.frame);
         let (mut errors_m, mut before) = (Vec::new(), house.tour(0.0));
         for step in 0..250 {

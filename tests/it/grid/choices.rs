@@ -25,7 +25,7 @@ fn every_strategy_explores_a_grid_world() {
         let coverage = result.entry["final_coverage"].as_f64().unwrap();
         assert!(coverage > 0.3, "{} saw {coverage}", result.strategy);
         assert_eq!(result.entry["false_change_events"], 0, "{}", result.strategy);
-        hashes.insert(result.hashes());
+        hashes.insert(result.hashes.clone());
     }
     assert_eq!(hashes.len(), names.len(), "two strategies did the same");
 }

@@ -35,10 +35,10 @@ fn on_any_number_of_threads_and_again() {
 fn seeds_count_up_from_the_first() {
     let common = "--steps 800 --estimator paper --strategy curious";
     let three = super::results(&ran(&format!("{common} --trials 3 --seed 7")));
-    for (seed, found) in three[0].hashes() {
-        assert_eq!(hash(&format!("{common} --trials 1 --seed {seed}")), found, "seed {seed}");
+    for (seed, found) in &three[0].hashes {
+        assert_eq!(hash(&format!("{common} --trials 1 --seed {seed}")), *found, "seed {seed}");
     }
-    let hashes: BTreeSet<_> = three[0].hashes().into_iter().map(|(_, hash)| hash).collect();
+    let hashes: BTreeSet<_> = three[0].hashes.iter().map(|(_, hash)| hash).collect();
     assert_eq!(hashes.len(), 3, "other seeds differ");
 }
 
@@ -51,5 +51,5 @@ fn a_trial_does_not_depend_on_the_others() {
     );
     let results = super::results(&among);
     let same = results.iter().find(|it| it.estimator == "paper" && it.strategy == "poisson").unwrap();
-    assert!(same.hashes().contains(&("2".to_owned(), alone)), "{:?}", same.hashes());
+    assert!(same.hashes.contains(&("2".to_owned(), alone)), "{:?}", same.hashes);
 }

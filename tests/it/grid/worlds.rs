@@ -29,7 +29,7 @@ fn a_saved_world_is_the_one_that_was_made() {
         assert_eq!(result.world, name);
         let file = run.out(&format!("{name}.toml"));
         let again = hash(&format!("{ONE} --seed 11 --world {}", file.display()));
-        assert_eq!(result.hashes()[0].1, again, "{name}");
+        assert_eq!(result.hashes[0].1, again, "{name}");
         hashes.insert(again);
     }
     assert_eq!(hashes.len(), 3);

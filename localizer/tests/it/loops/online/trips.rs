@@ -2,11 +2,9 @@
 
 use super::super::SPEED_MPS;
 use super::super::world::{Corridor, Plan};
-use crate::robot::{Odometry, PERIOD_S, mapper};
+use crate::robot::{Odometry, PERIOD_S, localizer, mapper};
 use interfaces::{CellState, LaserReading};
-use localizer::{
-    Correction, Localizer, LocalizerSettings, LoopClosed, LoopClosingLocalizer, PoseState, Switch,
-};
+use localizer::{Correction, LocalizerSettings, LoopClosed, LoopClosingLocalizer, PoseState, Switch};
 use mapper::Mapper;
 use nalgebra::Isometry2;
 use std::time::Instant;
@@ -97,9 +95,7 @@ pub(super) struct Trip {
 
 /// A trip around a corridor. `plain`: loops are not closed.
 pub(super) fn trip(corridor: Corridor, rounds: f64, seed: u64, plain: bool) -> Trip {
-    let mut alone =
-        Localizer::from_nothing(&LocalizerSettings::default(), &corridor.frame(0.05), corridor.at(0.0))
-            .unwrap();
+    let mut alone = localizer(&corridor.frame(0.05), corridor.at(0.0));
     let mut run = Run::new(corridor, seed);
     let mut trip = Trip::default();
     let scans = run.scans(rounds);
