@@ -235,24 +235,6 @@ fn another_laser_is_noted() {
     assert!(run.summary().at("/notes").as_array().unwrap().contains(&serde_json::json!(note)));
 }
 
-/// Two runs that read the same state, and write it one after the other, would lose what one of them learned.
-#[test]
-#[cfg(unix)]
-fn a_state_has_one_user_at_a_time() {
-    let run = Run::of("map_log");
-    run.write("a.log", &standing_log(MONDAY_S, 12_000));
-    run.write("b.log", &standing_log(TUESDAY_S, 90));
-    let mut first = run.starts(&format!("a.log {SAVED} --out first"));
-    wait_until(|| run.path("a.state.lock").exists() && run.path("first").exists());
-    insta::assert_snapshot!(run.refuses(&format!("b.log {SAVED} --out second")), @"error: a.state: cannot use it: another run uses it; wait for its end, or give another file by --state");
-    assert!(first.wait().unwrap().success());
-    run.goes_well(&format!("b.log {SAVED} --out second"));
-    assert_eq!(run.names(), ["a.log", "a.state", "a.state.earlier", "b.log", "first", "second"]);
-    let run = run.with("state_file");
-    let shown = run.goes_well("show a.state").stdout;
-    assert!(shown.contains("12000 of 12000 scans") && shown.contains("90 of 90 scans"), "{shown}");
-}
-
 #[test]
 #[cfg(unix)]
 fn a_pipe_is_no_state() {

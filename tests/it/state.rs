@@ -52,24 +52,10 @@ fn a_state_of_something_else_is_refused_and_stays() {
     insta::assert_snapshot!(refused("--pose localized"), @"error: a.state: the state is of another run: `pose` is `exact` there, and `localized` here");
     insta::assert_snapshot!(refused("--drive tour"), @"error: a.state: the state is of another run: `--drive` is `agent` there, and `tour` here");
     assert_eq!(fs::read(run.path("a.state")).unwrap(), saved);
-}
-
-#[test]
-fn a_damaged_state_is_refused_and_stays() {
-    let run = begun("");
-    let saved = fs::read(run.path("a.state")).unwrap();
-    let refused = |bytes: &[u8]| {
-        fs::write(run.path("a.state"), bytes).unwrap();
-        let message = run.refuses("--state a.state");
-        assert_eq!(fs::read(run.path("a.state")).unwrap(), bytes);
-        message
-    };
-    insta::assert_snapshot!(refused(&saved[..saved.len() / 2]), @"error: a.state: the state file is damaged: its checksum does not fit");
-    insta::assert_snapshot!(refused(b""), @"error: a.state: this is not a state file");
-    insta::assert_snapshot!(refused(b"name = \"house\""), @"error: a.state: this is not a state file");
-    let mut flipped = saved;
-    flipped[1000] ^= 1;
-    insta::assert_snapshot!(refused(&flipped), @"error: a.state: the state file is damaged: its checksum does not fit");
+    let half = &saved[..saved.len() / 2];
+    fs::write(run.path("a.state"), half).unwrap();
+    insta::assert_snapshot!(refused(""), @"error: a.state: the state file is damaged: its checksum does not fit");
+    assert_eq!(fs::read(run.path("a.state")).unwrap(), half);
 }
 
 #[test]
