@@ -1,7 +1,7 @@
 //! Scans that show nothing, in a room that looks alike from two sides.
 
 use crate::house::{House, Thing, rectangle};
-use crate::robot::{localizer, mapper};
+use crate::robot::{error_m, localizer, mapper};
 use interfaces::{GridFrame, LaserReading, pose};
 use localizer::{Localized, LocalizerSettings, LoopClosingLocalizer, PoseState};
 use mapper::Mapper;
@@ -38,8 +38,7 @@ fn trip(
         match localized.estimate.state {
             PoseState::Tracking => {
                 map.update(&localized.reading).unwrap();
-                let off = localized.estimate.pose.translation.vector - at(number).translation.vector;
-                worst_m = worst_m.max(off.norm());
+                worst_m = worst_m.max(error_m(&localized, &at(number)));
             }
             _ => map.skip(&localized.reading),
         }

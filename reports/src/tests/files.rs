@@ -16,12 +16,9 @@ fn keys(value: &Value) -> Vec<&str> {
 }
 
 #[test]
-fn the_report_has_the_keys_that_are_promised() {
+fn the_file_has_the_numbers_of_the_report() {
     let report = report(2, &["paper"], &["recency", "curious", "poisson"], 3);
     let (json, text) = json(&report);
-    for key in ["version", "arguments", "steps", "trials", "sensor_radius", "interrupted", "runs"] {
-        assert!(!json[key].is_null(), "{key}");
-    }
     assert_eq!(json["arguments"], serde_json::json!(["--trials", "3"]));
     let runs = json["runs"].as_array().unwrap();
     assert_eq!(runs.len(), 3);
@@ -42,16 +39,10 @@ fn the_report_has_the_keys_that_are_promised() {
                     close(strategy[measure.name()].as_f64().unwrap(), result.value(measure), 1e-12);
                 }
             }
-            for key in ["final_rate_error", "rate_error_area", "final_log_error", "log_error_area"] {
-                assert!(strategy[key].is_f64(), "{key}");
-            }
             assert_eq!(strategy["strategy_share"], serde_json::json!({ "recency": 0.4, "poisson": 0.6 }));
         }
         let comparisons = run["comparisons"].as_array().unwrap();
         assert_eq!(comparisons.len(), expected.comparisons.len());
-        for key in ["a", "b", "metric", "mean_difference", "low", "high", "p_value", "p_holm", "ratio"] {
-            assert!(!comparisons[0][key].is_null(), "{key}");
-        }
         assert_eq!(comparisons[0]["metric"], "log_error_area");
     }
     let files = written(&report);

@@ -226,20 +226,3 @@ fn a_killed_run_leaves_what_was_sent() {
     assert_eq!(messages(&killed[..killed.len() - 5]), all - 1);
     drop(recorder);
 }
-
-#[test]
-fn a_missing_viewer_does_not_stop_a_recording_with_a_file() {
-    let free = std::net::TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap();
-    let live = [Live::Connect(free.to_string())];
-    let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("run.rrd");
-    let mut recorder = Recorder::new(Some(&file), &live, FakeRun::new().scene).unwrap();
-    let problem = recorder.live_problem().unwrap();
-    assert!(problem.starts_with("no viewer answers at "), "{problem}");
-    let mut run = FakeRun::new();
-    run.step();
-    run.with_view(|view| recorder.log(view, true)).unwrap();
-    store(&std::fs::read(&file).unwrap(), StoreKind::Recording);
-
-    assert_eq!(Recorder::new(None, &live, FakeRun::new().scene).err().unwrap().to_string(), problem);
-}

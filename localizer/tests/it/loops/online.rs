@@ -23,12 +23,6 @@ fn mostly_smooth(seed: u64) -> Corridor {
 }
 
 #[test]
-#[ignore = "prints how a robot fares on eight loops with smooth walls (docs/limits.md)"]
-fn robots_beside_smooth_walls() {
-    (100..108).for_each(|seed| trip(mostly_smooth(seed), 1.5, seed, false).report(&format!("seed {seed}")));
-}
-
-#[test]
 fn a_robot_that_was_lost_gets_the_map_of_the_corrected_trajectory() {
     let trip = trip(mostly_smooth(105), 1.5, 105, false);
     // Of the few poses that were certain before, none has moved by what otherwise makes a new map worth it.
