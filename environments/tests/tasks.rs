@@ -157,13 +157,8 @@ fn the_goals_of_the_hall_are_far_and_can_be_reached() {
     }
     let reached = results.terminated.iter().filter(|is| **is).count();
     assert!(reached >= 90, "{reached} of 100 goals");
-    assert!(
-        results
-            .terminated
-            .iter()
-            .zip(&results.truncated)
-            .all(|(terminated, truncated)| terminated != truncated)
-    );
+    let mut ends = results.terminated.iter().zip(&results.truncated);
+    assert!(ends.all(|(terminated, truncated)| terminated != truncated));
     // The same seeds are the same episodes again.
     assert_eq!(batch.reset(&(0..100).collect::<Vec<u64>>()).unwrap(), first);
 }

@@ -65,7 +65,7 @@ pub struct Summary {
 }
 
 /// The results of a run in a physics world.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Default, Serialize)]
 pub struct RunResults {
     /// Coverage and map quality at the end.
     #[serde(flatten)]

@@ -30,24 +30,8 @@ const MAX_MEMORY_BYTES: u64 = 1 << 30;
 /// The longest input, bytes.
 const MAX_INPUT_BYTES: usize = 50_000;
 /// Numbers that programs do not expect.
-const NUMBERS: [&str; 16] = [
-    "nan",
-    "inf",
-    "-inf",
-    "0",
-    "-0",
-    "-1",
-    "1e308",
-    "-1e308",
-    "1e-308",
-    "1e7",
-    "4294967296",
-    "-9223372036854775808",
-    "18446744073709551616",
-    "0.1e-400",
-    "",
-    "x",
-];
+const NUMBERS: &str = "nan inf -inf 0 -0 -1 1e308 -1e308 1e-308 1e7 4294967296 -9223372036854775808 18446744073709551616 \
+                       0.1e-400  x";
 
 type Trial = PhysicsTrial<Autonomous<Agent, Controller<DiffDrive>>>;
 
@@ -96,18 +80,9 @@ impl Targets {
     /// One mutated input, and what becomes of it.
     fn run(&mut self, random: &mut Random) {
         match random.below(7) {
-            0 => {
-                let text = random.mutated_text(&self.carmen);
-                self.read_log("a.log", &text);
-            }
-            1 => {
-                let bytes = random.mutated(&self.mcap);
-                self.read_log("a.mcap", &bytes);
-            }
-            2 => {
-                let bytes = random.mutated(&self.sqlite);
-                self.read_log("a.db3", &bytes);
-            }
+            0 => self.read_log("a.log", &random.mutated_text(&self.carmen)),
+            1 => self.read_log("a.mcap", &random.mutated(&self.mcap)),
+            2 => self.read_log("a.db3", &random.mutated(&self.sqlite)),
             3 => self.read_state(random),
             4 | 5 => self.read_world(random),
             _ => self.read_messages(random),
@@ -263,9 +238,8 @@ impl Random {
                 }
                 5 | 6 => {
                     let width = [2, 4, 8][self.below(3)];
-                    let number =
-                        [0, 1, 0x7fff_ffff, 1 << 31, u64::MAX, 1 << 40, 1 << 62, 0x7ff0 << 48][self.below(8)];
-                    let number = number.to_le_bytes();
+                    let numbers = [0, 1, 0x7fff_ffff, 1 << 31, u64::MAX, 1 << 40, 1 << 62, 0x7ff0 << 48];
+                    let number = numbers[self.below(8)].to_le_bytes();
                     let fits = width.min(bytes.len() - at.min(bytes.len()));
                     bytes[at..at + fits].copy_from_slice(&number[..fits]);
                 }
@@ -284,21 +258,24 @@ impl Random {
         let mut text = String::from_utf8_lossy(text).into_owned();
         for _ in 0..=self.below(4) {
             let is_of_number = |c: char| c.is_ascii_digit() || "+-.e_".contains(c);
-            let starts: Vec<usize> = text
-                .match_indices(is_of_number)
-                .map(|(at, _)| at)
-                .filter(|at| *at == 0 || !text[..*at].ends_with(is_of_number))
-                .collect();
+            let is_start = |at: &usize| *at == 0 || !text[..*at].ends_with(is_of_number);
+            let starts: Vec<usize> =
+                text.match_indices(is_of_number).map(|(at, _)| at).filter(is_start).collect();
             let Some(start) = starts.get(self.below(starts.len())) else { break };
             let end = text[*start..].find(|c| !is_of_number(c)).map_or(text.len(), |length| start + length);
-            text.replace_range(*start..end, NUMBERS[self.below(NUMBERS.len())]);
+            text.replace_range(*start..end, self.word());
         }
         text.truncate(MAX_INPUT_BYTES);
         text.into_bytes()
     }
 
+    /// One of [`NUMBERS`]; one of them is empty.
+    fn word(&mut self) -> &'static str {
+        NUMBERS.split(' ').nth(self.below(16)).unwrap_or_default()
+    }
+
     fn number(&mut self) -> f64 {
-        NUMBERS[self.below(NUMBERS.len())].parse().unwrap_or(f64::from_bits(self.0.next_u64()))
+        self.word().parse().unwrap_or(f64::from_bits(self.0.next_u64()))
     }
 
     fn change_scan(&mut self, scan: &mut LaserScan) {

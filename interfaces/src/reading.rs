@@ -123,19 +123,17 @@ mod tests {
     fn hits_are_in_the_frame_of_the_robot_and_within_the_limits() {
         let nothing = [f32::INFINITY, f32::NEG_INFINITY, f32::NAN, 0.05, 8.5];
         let reading = LaserReading {
-            time_s: 0.0,
             pose: crate::pose(5.0, 5.0, 1.0), // has no influence
-            twist: Twist::STOP,
-            velocities: Vec::new(),
             mount: crate::pose(0.2, 0.0, FRAC_PI_2),
             scan: Scan {
                 angle_min_rad: -FRAC_PI_2,
                 angle_increment_rad: FRAC_PI_2 / 6.0,
                 range_min_m: 0.1,
                 range_max_m: 8.0,
-                sweep_s: 0.0,
                 ranges_m: [&[2.0][..], &nothing, &[8.0]].concat(),
+                ..Scan::default()
             },
+            ..LaserReading::default()
         };
         let hits: Vec<_> = reading.hits().collect();
         // The first beam points ahead of the robot, the last one to its left.

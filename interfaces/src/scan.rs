@@ -105,14 +105,7 @@ mod tests {
     use std::f64::consts::TAU;
 
     fn scan(beams: usize, angle_increment_rad: f64) -> Scan {
-        Scan {
-            angle_min_rad: 0.0,
-            angle_increment_rad,
-            range_min_m: 0.0,
-            range_max_m: 10.0,
-            sweep_s: 0.0,
-            ranges_m: vec![1.0; beams],
-        }
+        Scan { angle_increment_rad, range_max_m: 10.0, ranges_m: vec![1.0; beams], ..Scan::default() }
     }
 
     #[test]

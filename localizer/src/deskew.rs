@@ -183,10 +183,10 @@ mod tests {
         Scan {
             angle_min_rad: -TAU / 2.0,
             angle_increment_rad: TAU / ranges_m.len() as f64,
-            range_min_m: 0.0,
             range_max_m: 10.0,
             sweep_s: 0.1,
             ranges_m,
+            ..Scan::default()
         }
     }
 

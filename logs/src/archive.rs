@@ -63,7 +63,7 @@ fn head(from: impl Read) -> Vec<u8> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
     use crate::{Log, TopicChoice};
     use flate2::Compression;
@@ -79,30 +79,23 @@ mod tests {
         named.unwrap_or_else(|| "a log, or not known".to_owned())
     }
 
-    fn gzipped(bytes: &[u8]) -> Vec<u8> {
-        let mut encoder = GzEncoder::new(Vec::new(), Compression::fast());
+    pub(crate) fn gzipped(bytes: &[u8]) -> Vec<u8> {
+        let mut encoder = GzEncoder::new(Vec::new(), Compression::best());
         encoder.write_all(bytes).unwrap();
         encoder.finish().unwrap()
     }
 
     #[test]
     fn what_is_no_log_is_named() {
-        let convert =
-            "convert it with `rosbags-convert --src FILE.bag --dst FOLDER` (from PyPI: pip install rosbags)";
-        assert_eq!(what(ROS1), format!("a bag of ROS 1; {convert}"));
-        let expected = "a bag of ROS 1, compressed with gzip: after `gzip -d FILE`, ";
-        assert_eq!(what(&gzipped(ROS1)), expected.to_owned() + convert);
         let zstd = zstd::encode_all(ROS1, 0).unwrap();
-        assert_eq!(what(&zstd), expected.replace("gzip", "zstd") + convert);
         let mut tar = vec![0; 257];
         tar.extend(b"ustar");
-        let expected =
-            "a tar archive, compressed with gzip: after `gzip -d FILE`, unpack it with `tar -xf FILE`";
-        assert_eq!(what(&gzipped(&tar)), expected);
-        assert_eq!(what(b"PK\x03\x04"), "a zip archive; unpack it with `unzip FILE`");
-        let expected =
-            "a bag of ROS 2, compressed with gzip, which is not read: unpack it with `gzip -d FILE`";
-        assert_eq!(what(&gzipped(MCAP)), expected);
+        insta::assert_snapshot!(what(ROS1), @"a bag of ROS 1; convert it with `rosbags-convert --src FILE.bag --dst FOLDER` (from PyPI: pip install rosbags)");
+        insta::assert_snapshot!(what(&gzipped(ROS1)), @"a bag of ROS 1, compressed with gzip: after `gzip -d FILE`, convert it with `rosbags-convert --src FILE.bag --dst FOLDER` (from PyPI: pip install rosbags)");
+        assert_eq!(what(&zstd), what(&gzipped(ROS1)).replace("gzip", "zstd"));
+        insta::assert_snapshot!(what(&gzipped(&tar)), @"a tar archive, compressed with gzip: after `gzip -d FILE`, unpack it with `tar -xf FILE`");
+        insta::assert_snapshot!(what(b"PK\x03\x04"), @"a zip archive; unpack it with `unzip FILE`");
+        insta::assert_snapshot!(what(&gzipped(MCAP)), @"a bag of ROS 2, compressed with gzip, which is not read: unpack it with `gzip -d FILE`");
     }
 
     #[test]

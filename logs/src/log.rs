@@ -147,22 +147,7 @@ mod tests {
             if self.0 > 3 {
                 return Err(LogError::Unusable { file: "a".to_owned(), why: "it ends".to_owned() });
             }
-            let scan = interfaces::Scan {
-                angle_min_rad: 0.0,
-                angle_increment_rad: 0.1,
-                range_min_m: 0.0,
-                range_max_m: 10.0,
-                sweep_s: 0.0,
-                ranges_m: vec![1.0; 3],
-            };
-            Ok(Some(LaserReading {
-                time_s: f64::from(self.0),
-                pose: interfaces::pose(0.0, 0.0, 0.0),
-                twist: interfaces::Twist::STOP,
-                velocities: Vec::new(),
-                mount: interfaces::pose(0.0, 0.0, 0.0),
-                scan,
-            }))
+            Ok(Some(LaserReading { time_s: f64::from(self.0), ..LaserReading::default() }))
         }
     }
 

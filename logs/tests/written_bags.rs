@@ -24,13 +24,8 @@ fn driven(sweep_s: f64) -> Vec<LaserReading> {
         let time_s = f64::from(step) * 0.1;
         let mut ranges_m: Vec<f32> = (0..360).map(|beam| 1.0 + (beam + step) as f32 * 0.017).collect();
         ranges_m[7..10].copy_from_slice(&[f32::INFINITY, f32::NEG_INFINITY, f32::NAN]);
-        let velocities = match sweep_s > 0.0 {
-            true => (0..5)
-                .map(|part| f64::from(part) * 0.02)
-                .map(|before_s| VelocitySample { time_s: time_s - 0.08 + before_s, twist })
-                .collect(),
-            false => Vec::new(),
-        };
+        let sample = |part: u32| VelocitySample { time_s: time_s - 0.08 + f64::from(part) * 0.02, twist };
+        let velocities = (0..if sweep_s > 0.0 { 5 } else { 0 }).map(sample).collect();
         LaserReading {
             time_s,
             pose: pose(time_s),
@@ -40,10 +35,10 @@ fn driven(sweep_s: f64) -> Vec<LaserReading> {
             scan: Scan {
                 angle_min_rad: f64::from(-3.0_f32),
                 angle_increment_rad: f64::from((TAU / 360.0) as f32),
-                range_min_m: 0.0,
                 range_max_m: 12.0,
                 sweep_s,
                 ranges_m,
+                ..Scan::default()
             },
         }
     };

@@ -1,12 +1,13 @@
 //! The robot in a tiny world, and with parts that only write down what they are asked.
 
 use crate::{
-    Autonomous, Belief, ExactPoses, GoalCount, GoalSelector, Localization, Permission, Pilot, Robot, explore,
+    Autonomous, Belief, Destination, ExactPoses, GoalCount, GoalSelector, Localization, Permission, Pilot,
+    Robot, explore,
 };
-use agent::{Agent, AgentSettings, Features, Policy};
+use agent::{Agent, AgentSettings, Features, Policy, Travel};
 use controller::{CellDrive, Controller, Driver};
 use interfaces::{
-    Cell, CellReading, GridFrame, LaserReading, Purpose, RandomStream, Scan, Step, Twist, ValueError, World,
+    Cell, CellReading, GridFrame, LaserReading, Purpose, RandomStream, Scan, Step, ValueError, World,
 };
 use localizer::{Correction, PoseEstimate, PoseState};
 use mapper::{Mapper, MapperSettings, NoReturn, ReadingError, ScanFilter, ScanFilterSettings};
@@ -35,10 +36,8 @@ struct Scripted {
 impl Localization<LaserReading> for Scripted {
     fn localize(&mut self, mut reading: LaserReading, mapper: &mut Mapper) -> (LaserReading, Belief) {
         let silent = reading.scan.ranges_m.iter().filter(|range_m| range_m.is_infinite()).count();
-        note(
-            &self.calls,
-            format!("localize {:.1} s, {silent} silent, {} mapped", reading.time_s, mapper.readings()),
-        );
+        let (time_s, mapped) = (reading.time_s, mapper.readings());
+        note(&self.calls, format!("localize {time_s:.1} s, {silent} silent, {mapped} mapped"));
         reading.pose = interfaces::pose(5.0, 5.0, 0.0);
         let state = self.states.remove(0);
         let estimate = PoseEstimate { pose: reading.pose, covariance: Matrix3::zeros(), support: 1.0, state };
@@ -82,15 +81,8 @@ impl Pilot for Counting {
 fn reading(time_s: f64) -> LaserReading {
     let mut ranges_m = vec![2.0; 180];
     ranges_m[..45].fill(f32::INFINITY);
-    let angle_increment_rad = TAU / 180.0;
-    LaserReading {
-        time_s,
-        pose: Isometry2::identity(),
-        twist: Twist::STOP,
-        velocities: Vec::new(),
-        mount: Isometry2::identity(),
-        scan: Scan { angle_increment_rad, range_max_m: 4.0, ranges_m, ..Scan::default() },
-    }
+    let scan = Scan { angle_increment_rad: TAU / 180.0, range_max_m: 4.0, ranges_m, ..Scan::default() };
+    LaserReading { time_s, scan, ..LaserReading::default() }
 }
 
 fn mapper(cells: usize, resolution_m: f64) -> Mapper {
@@ -303,26 +295,9 @@ impl Driver for Jumping {
     }
 }
 
-struct Origin;
-
-impl GoalSelector for Origin {
-    fn next_goal(
-        &mut self,
-        _: &Isometry2<f64>,
-        _: &Mapper,
-        _: &mut impl agent::Travel,
-    ) -> Option<crate::Destination> {
-        Some(crate::Destination { position: Point2::origin(), stay: agent::Stay::Explore })
-    }
-
-    fn reason(&self) -> String {
-        String::new()
-    }
-}
-
 #[test]
 fn permissions_hold_for_every_driver() {
-    let mut pilot = Autonomous::new(Origin, Jumping::default());
+    let mut pilot = Autonomous::new(Ended::default(), Jumping::default());
     let map = mapper(7, 1.0);
     for permission in [Permission::Rest, Permission::LookAround, Permission::Drive] {
         let belief = Belief { permission, ..Belief::exact(Isometry2::identity()) };
@@ -340,13 +315,8 @@ fn permissions_hold_for_every_driver() {
 struct Ended(usize);
 
 impl GoalSelector for Ended {
-    fn next_goal(
-        &mut self,
-        pose: &Isometry2<f64>,
-        mapper: &Mapper,
-        travel: &mut impl agent::Travel,
-    ) -> Option<crate::Destination> {
-        Origin.next_goal(pose, mapper, travel)
+    fn next_goal(&mut self, _: &Isometry2<f64>, _: &Mapper, _: &mut impl Travel) -> Option<Destination> {
+        Some(Destination { position: Point2::origin(), stay: agent::Stay::Explore })
     }
 
     fn end_goal(&mut self, _: &Isometry2<f64>, _: &Mapper) {

@@ -32,7 +32,7 @@ pub struct Header {
 }
 
 /// `sensor_msgs/LaserScan`.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
 pub struct LaserScan {
     pub header: Header,
     pub angle_min: f32,

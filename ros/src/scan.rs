@@ -133,12 +133,11 @@ mod tests {
             angle_min,
             angle_max: angle_min + angle_increment * (ranges.len() - 1) as f32,
             angle_increment,
-            time_increment: 0.0,
             scan_time: 0.1,
             range_min: 0.1,
             range_max: 10.0,
             ranges: ranges.to_vec(),
-            intensities: Vec::new(),
+            ..LaserScan::default()
         }
     }
 

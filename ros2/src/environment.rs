@@ -95,15 +95,11 @@ mod tests {
 
     #[test]
     fn the_environment_is_that_of_ros() {
-        assert_eq!(
-            read(&[]),
-            Ok(Environment { domain: 0, range: Range::Subnet, services: Services::Enhanced })
-        );
+        let services = Services::Enhanced;
+        assert_eq!(read(&[]), Ok(Environment { domain: 0, range: Range::Subnet, services }));
         assert_eq!(read(&[("ROS_DOMAIN_ID", "")]), Ok(Environment::default()));
-        assert_eq!(
-            read(&[("ROS_DOMAIN_ID", "42"), ("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")]),
-            Ok(Environment { domain: 42, range: Range::Localhost, services: Services::Enhanced })
-        );
+        let local = read(&[("ROS_DOMAIN_ID", "42"), ("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")]);
+        assert_eq!(local, Ok(Environment { domain: 42, range: Range::Localhost, services }));
         let both = [("ROS_AUTOMATIC_DISCOVERY_RANGE", "SUBNET"), ("ROS_LOCALHOST_ONLY", "1")];
         assert_eq!(read(&both).unwrap().range, Range::Localhost);
         assert_eq!(read(&[("ROS_AUTOMATIC_DISCOVERY_RANGE", "OFF")]).unwrap().range, Range::Off);
@@ -114,14 +110,8 @@ mod tests {
     #[test]
     fn what_is_not_valid_is_refused() {
         let error = |name, value| read(&[(name, value)]).unwrap_err();
-        assert_eq!(
-            error("ROS_DOMAIN_ID", "233"),
-            "ROS_DOMAIN_ID must be a whole number from 0 to 232, not `233`"
-        );
-        assert_eq!(
-            error("ROS_AUTOMATIC_DISCOVERY_RANGE", "localhost"),
-            "ROS_AUTOMATIC_DISCOVERY_RANGE must be SUBNET, LOCALHOST, OFF or SYSTEM_DEFAULT, not `localhost`"
-        );
+        insta::assert_snapshot!(error("ROS_DOMAIN_ID", "233"), @"ROS_DOMAIN_ID must be a whole number from 0 to 232, not `233`");
+        insta::assert_snapshot!(error("ROS_AUTOMATIC_DISCOVERY_RANGE", "localhost"), @"ROS_AUTOMATIC_DISCOVERY_RANGE must be SUBNET, LOCALHOST, OFF or SYSTEM_DEFAULT, not `localhost`");
         assert_eq!(error("ROS_LOCALHOST_ONLY", "yes"), "ROS_LOCALHOST_ONLY must be 0 or 1, not `yes`");
     }
 }

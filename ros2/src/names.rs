@@ -100,9 +100,8 @@ mod tests {
         let plain = ros("");
         let names = Names::new("curious_node", &plain).unwrap();
         let resolved = |name| names.resolved("topic", name, &plain).unwrap();
-        assert_eq!(resolved("scan"), "/scan");
-        assert_eq!(resolved("/scan"), "/scan");
-        assert_eq!(resolved("~/save_state"), "/curious_node/save_state");
+        let found = ["scan", "/scan", "~/save_state"].map(resolved);
+        assert_eq!(found, ["/scan", "/scan", "/curious_node/save_state"]);
         assert_eq!(names.namespace, "/");
 
         let ros = ros("-r __ns:=/robot -r __node:=mapper -r scan:=front/scan -r /tf:=tf -r map:=/map");
@@ -124,21 +123,9 @@ mod tests {
             names.and_then(|names| names.resolved("topic", "scan", &ros)).unwrap_err().to_string()
         };
         assert_eq!(error("-r scan:=/a//b"), "`/a//b` is not a valid name of a topic: a part of it is empty");
-        assert_eq!(
-            error("-r scan:=é"),
-            "`/é` is not a valid name of a topic: it may contain letters without accents, digits and underscores"
-        );
-        assert_eq!(
-            error("-r scan:=/2nd"),
-            "`/2nd` is not a valid name of a topic: a part of it begins with a digit"
-        );
-        assert_eq!(
-            error("-r __ns:=robot"),
-            "`robot` is not a valid name of a namespace: it must begin with a slash"
-        );
-        assert_eq!(
-            error("-r __node:=a/b"),
-            "`a/b` is not a valid name of a node: it must not contain a slash"
-        );
+        insta::assert_snapshot!(error("-r scan:=é"), @"`/é` is not a valid name of a topic: it may contain letters without accents, digits and underscores");
+        insta::assert_snapshot!(error("-r scan:=/2nd"), @"`/2nd` is not a valid name of a topic: a part of it begins with a digit");
+        insta::assert_snapshot!(error("-r __ns:=robot"), @"`robot` is not a valid name of a namespace: it must begin with a slash");
+        insta::assert_snapshot!(error("-r __node:=a/b"), @"`a/b` is not a valid name of a node: it must not contain a slash");
     }
 }

@@ -119,11 +119,9 @@ mod tests {
                     qos_overrides:\n        /scan:\n          subscription: {reliability: reliable}\n      \
                     others: [1.0, 2.0]\n";
         let found = entries(text).unwrap();
-        let entry = |nodes: &str, name: &str, value| Given {
-            nodes: nodes.to_owned(),
-            name: name.to_owned(),
-            value,
-            place: None,
+        let entry = |nodes: &str, name: &str, value| {
+            let (nodes, name) = (nodes.to_owned(), name.to_owned());
+            Given { nodes, name, value, place: None }
         };
         let node = "/robot1/curious_node";
         let expected = [
@@ -139,33 +137,33 @@ mod tests {
 
     #[test]
     fn patterns_match_as_in_ros() {
-        assert!(matches("/**", "/curious_node") && matches("/**", "/a/b/curious_node"));
-        assert!(matches("/curious_node", "/curious_node") && !matches("/curious_node", "/a/curious_node"));
-        assert!(
-            matches("/*/curious_node", "/a/curious_node") && !matches("/*/curious_node", "/curious_node")
-        );
-        assert!(
-            matches("/**/curious_node", "/curious_node") && matches("/**/curious_node", "/a/b/curious_node")
-        );
-        assert!(!matches("/other", "/curious_node"));
+        let nodes = ["/curious_node", "/a/curious_node", "/a/b/curious_node"];
+        for (pattern, expected) in [
+            ("/**", [true, true, true]),
+            ("/curious_node", [true, false, false]),
+            ("/*/curious_node", [false, true, false]),
+            ("/**/curious_node", [true, true, true]),
+            ("/other", [false, false, false]),
+        ] {
+            assert_eq!(nodes.map(|node| matches(pattern, node)), expected, "{pattern}");
+        }
     }
 
     #[test]
     fn what_is_no_file_of_parameters_is_refused() {
-        let error = |text| entries(text).unwrap_err();
-        let example = "as in `curious_node: {ros__parameters: {resolution: 0.05}}`";
-        assert_eq!(
-            error("curious_node:\n  resolution: 0.1\n"),
-            format!(": `/curious_node/resolution` must be a table with `ros__parameters`, {example}")
-        );
-        assert_eq!(
-            error("ros__parameters: {a: 1}"),
-            format!(": `ros__parameters` must be below a node, {example}")
-        );
-        assert_eq!(error("- 1"), format!(": this must be a table with `ros__parameters`, {example}"));
-        let unclosed = "unclosed bracket '['; parameters are written";
-        assert_eq!(error("a:\n  b: [1,\nc: 2\n"), format!(", line 2: {unclosed} {example}"));
-        assert_eq!(error(""), format!(": this must be a table with `ros__parameters`, {example}"));
+        for (text, says) in [
+            (
+                "curious_node:\n  resolution: 0.1\n",
+                ": `/curious_node/resolution` must be a table with `ros__parameters`,",
+            ),
+            ("ros__parameters: {a: 1}", ": `ros__parameters` must be below a node,"),
+            ("- 1", ": this must be a table with `ros__parameters`,"),
+            ("a:\n  b: [1,\nc: 2\n", ", line 2: unclosed bracket '['; parameters are written"),
+            ("", ": this must be a table with `ros__parameters`,"),
+        ] {
+            let example = "as in `curious_node: {ros__parameters: {resolution: 0.05}}`";
+            assert_eq!(entries(text).unwrap_err(), format!("{says} {example}"));
+        }
     }
 
     #[test]

@@ -173,11 +173,7 @@ mod tests {
         assert!(error(missing).starts_with("cannot read the parameters in none/missing.yaml: "));
         assert_eq!(error("--ros-args -r scan"), "`scan` after -r must be from:=to");
         assert_eq!(error("--ros-args -p :=5"), "`:=5` after -p must be name:=value");
-        assert_eq!(
-            error("--ros-args --mode map"),
-            "`--mode` after --ros-args is not known: there are -p name:=value, -r from:=to, --params-file FILE, and -- at \
-             the end"
-        );
+        insta::assert_snapshot!(error("--ros-args --mode map"), @"`--mode` after --ros-args is not known: there are -p name:=value, -r from:=to, --params-file FILE, and -- at the end");
     }
 
     #[cfg(unix)]

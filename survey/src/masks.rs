@@ -139,9 +139,8 @@ pub(crate) fn share_blocked(mapper: &Mapper, index: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use interfaces::{Cell, CellReading, GridFrame};
-    use mapper::MapperSettings;
-    use nalgebra::{Isometry2, Point2};
+    use interfaces::{Cell, GridFrame};
+    use nalgebra::Point2;
 
     #[test]
     fn the_value_grows_with_the_logarithm_of_the_share_of_robots_that_meet_something() {
@@ -153,14 +152,7 @@ mod tests {
     /// A map of 2 m × 2 m in cells of 0.05 m after 10 min: per cell, whether it is blocked at a time, s.
     fn watched(is_blocked: impl Fn(Cell, u32) -> bool) -> Mapper {
         let frame = GridFrame::new(Point2::origin(), 0.05, 40, 40).unwrap();
-        let mut mapper = Mapper::new(&MapperSettings::default(), frame).unwrap();
-        for time in 0..600 {
-            let cells = (0..frame.len()).map(|index| frame.cell(index));
-            let cells = cells.map(|cell| (cell, is_blocked(cell, time))).collect();
-            let reading = CellReading { time: f64::from(time), pose: Isometry2::identity(), cells };
-            mapper.update(&reading).unwrap();
-        }
-        mapper
+        crate::tests::watched(frame, 600, is_blocked)
     }
 
     fn most(mask: &Grid<u8>) -> u8 {

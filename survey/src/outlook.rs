@@ -138,22 +138,13 @@ pub fn doors(mapper: &Mapper) -> impl Iterator<Item = (u32, &Door)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use interfaces::CellReading;
-    use mapper::MapperSettings;
-    use nalgebra::Isometry2;
+    use crate::tests::watched;
     use std::cell::RefCell;
 
     /// A map of 5 × 2 m from (1, 2) on, in cells of 0.1 m: one cell is blocked.
     fn map(blocked: Cell) -> Mapper {
         let frame = GridFrame::new(Point2::new(1.0, 2.0), 0.1, 50, 20).unwrap();
-        let mut mapper = Mapper::new(&MapperSettings::default(), frame).unwrap();
-        for time in 0..9 {
-            let cells =
-                (0..frame.len()).map(|cell| (frame.cell(cell), frame.cell(cell) == blocked)).collect();
-            let reading = CellReading { time: f64::from(time), pose: Isometry2::identity(), cells };
-            mapper.update(&reading).unwrap();
-        }
-        mapper
+        watched(frame, 9, |cell, _| cell == blocked)
     }
 
     /// Only the part of a way near the map is looked at, whatever the length of the way, at the times of the whole way.
@@ -180,10 +171,8 @@ mod tests {
                     [1.0, 6.0].map(|x_m: f64| (x_m.min(ends_m[1].max(ends_m[0])) - ends_m[0]).abs());
                 let [low_m, high_m] = [inside_m[0].min(inside_m[1]), inside_m[0].max(inside_m[1])];
                 assert!(asked_m.len() < 8000, "{}", asked_m.len());
-                assert!(
-                    asked_m.iter().all(|way_m| (low_m - 1.0..high_m + 1.0).contains(way_m)),
-                    "{ends_m:?}"
-                );
+                let near_m = low_m - 1.0..high_m + 1.0;
+                assert!(asked_m.iter().all(|way_m| near_m.contains(way_m)), "{ends_m:?}");
             }
         }
         // Ways that never come near the map, and one that only comes as near as the radius.

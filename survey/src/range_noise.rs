@@ -88,7 +88,7 @@ fn valid(scan: &Scan) -> Vec<f32> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use interfaces::{Purpose, RandomStream, Twist};
+    use interfaces::{Purpose, RandomStream};
 
     /// A reading of 100 beams at 2 m with noise; something is at 1 m for a ninth of the time.
     fn reading(number: usize, std_m: f64, noise: &mut RandomStream) -> LaserReading {
@@ -96,11 +96,8 @@ mod tests {
         let ranges_m = (0..100).map(|_| (wall_m + std_m * noise.normal()) as f32).collect();
         LaserReading {
             time_s: number as f64,
-            pose: Isometry2::identity(),
-            twist: Twist::STOP,
-            velocities: Vec::new(),
-            mount: Isometry2::identity(),
             scan: Scan { range_max_m: 10.0, ranges_m, ..Scan::default() },
+            ..LaserReading::default()
         }
     }
 

@@ -37,12 +37,8 @@ mod tests {
     use nalgebra::Isometry2;
 
     fn poses(times_s: &[f64]) -> Vec<TrajectoryPose> {
-        let pose = |time_s: &f64| TrajectoryPose {
-            time_s: *time_s,
-            pose: Isometry2::identity(),
-            state: PoseState::Tracking,
-        };
-        times_s.iter().map(pose).collect()
+        let (pose, state) = (Isometry2::identity(), PoseState::Tracking);
+        times_s.iter().map(|time_s| TrajectoryPose { time_s: *time_s, pose, state }).collect()
     }
 
     #[test]

@@ -11,7 +11,7 @@ use crate::{
     permanent,
 };
 use interfaces::{
-    CellReading, CellState, Grid, GridFrame, LaserReading, PoseMode, SMALL_GRID, Scan, Twist, World,
+    Cell, CellReading, CellState, Grid, GridFrame, LaserReading, PoseMode, SMALL_GRID, Scan, Twist, World,
     heading_rad,
 };
 use localizer::{KnownPlace, PlaceError, RouteSearch, Start, TrajectoryPose};
@@ -25,14 +25,7 @@ use std::ops::{ControlFlow, Range};
 use std::path::Path;
 
 fn scan(ranges_m: Vec<f32>) -> Scan {
-    Scan {
-        angle_min_rad: 0.0,
-        angle_increment_rad: TAU / 360.0,
-        range_min_m: 0.0,
-        range_max_m: 20.0,
-        sweep_s: 0.0,
-        ranges_m,
-    }
+    Scan { angle_increment_rad: TAU / 360.0, range_max_m: 20.0, ranges_m, ..Scan::default() }
 }
 
 /// A map of 10 × 1 cells in which the cells from 2 to 4 are blocked for `blocked` of 10 readings, 100 times.
@@ -79,6 +72,26 @@ fn movers_are_not_permanent_and_masks_say_where_they_are() {
         // A cycle in 10 s is far more than one in 10 minutes: the slowest. The value reaches 0.5 m far.
         assert_eq!((slow.cells()[3], slow.cells()[9]), (80, 80));
     }
+}
+
+/// A map all cells of which are seen once a second: whether they are blocked.
+pub(crate) fn watched(frame: GridFrame, seconds: u32, is_blocked: impl Fn(Cell, u32) -> bool) -> Mapper {
+    let mut mapper = Mapper::new(&MapperSettings::default(), frame).unwrap();
+    for time in 0..seconds {
+        let cells = (0..frame.len()).map(|index| (frame.cell(index), is_blocked(frame.cell(index), time)));
+        let reading = CellReading { time: time.into(), pose: Isometry2::identity(), cells: cells.collect() };
+        mapper.update(&reading).unwrap();
+    }
+    mapper
+}
+
+/// The readings by exact poses.
+pub(crate) fn exact(readings: &[LaserReading], truth: &[Isometry2<f64>]) -> Vec<LaserReading> {
+    let posed = |(reading, pose): (&LaserReading, &Isometry2<f64>)| LaserReading {
+        pose: truth[0].inv_mul(pose),
+        ..reading.clone()
+    };
+    readings.iter().zip(truth).map(posed).collect()
 }
 
 /// The readings of a robot that drives through a generated house, by drifting odometry, and its true poses. The house is
@@ -161,12 +174,33 @@ fn a_later_log_finds_its_place_in_the_first_one() {
     assert_eq!(search.finish(), Err(PlaceError::Other { certain: 0, compared: 100 }));
 }
 
-/// A bag with these readings.
-fn bag(path: &Path, readings: &[LaserReading]) -> Log {
-    let mut writer = McapWriter::new(File::create(path).unwrap(), "bag", 1e9).unwrap();
+/// A bag with these readings, and the time of the first ones.
+pub(crate) fn bag_from(path: &Path, readings: &[LaserReading], begin_s: f64) -> Log {
+    let mut writer = McapWriter::new(File::create(path).unwrap(), "bag", begin_s).unwrap();
     readings.iter().for_each(|reading| writer.reading(reading).unwrap());
     writer.finish().unwrap();
     Log::open(path, &TopicChoice::default()).unwrap()
+}
+
+fn bag(path: &Path, readings: &[LaserReading]) -> Log {
+    bag_from(path, readings, 1e9)
+}
+
+fn entry(log: &Log, offset_s: f64) -> LogEntry {
+    let entry = LogEntry::of(String::new(), log, &TopicChoice::default()).unwrap();
+    LogEntry { offset_s, ..entry }
+}
+
+/// Learns a log, or some readings of it. Returns whether it is learned to its end.
+pub(crate) fn learn(survey: &mut Survey, number: usize, log: &Log, most: usize) -> bool {
+    let mut replay = survey.replay(number, log).unwrap().unwrap();
+    for _ in 0..most {
+        survey.turn(&mut replay).unwrap().unwrap();
+        if replay.is_over() {
+            return true;
+        }
+    }
+    false
 }
 
 /// The first pass over logs, one after the other.
@@ -177,8 +211,7 @@ fn surveyed(
 ) -> Result<Survey, PassError> {
     let mut survey = Survey::new(settings.clone(), true);
     for (number, log) in logs.iter().enumerate() {
-        let entry = LogEntry::of(String::new(), log, &TopicChoice::default()).unwrap();
-        let entry = LogEntry { offset_s: 1000.0 * number as f64, ..entry };
+        let entry = entry(log, 1000.0 * number as f64);
         survey.first_pass(log, entry, number + 1 < logs.len(), &mut watch)?;
     }
     Ok(survey)
@@ -223,14 +256,11 @@ fn the_first_pass_finds_the_routes_of_all_logs_in_one_frame() {
 
 /// A log of a laser that stands where a reading was made, and begins `begin_s` seconds after the first log.
 fn standing_log(path: &Path, reading: &LaserReading, begin_s: f64) -> Log {
-    let mut writer = McapWriter::new(File::create(path).unwrap(), "bag", 1e9 + begin_s).unwrap();
-    for step in 0..60 {
-        let (pose, twist, velocities) = (Isometry2::identity(), Twist::STOP, Vec::new());
-        let time_s = f64::from(step) * 0.1;
-        writer.reading(&LaserReading { time_s, pose, twist, velocities, ..reading.clone() }).unwrap();
-    }
-    writer.finish().unwrap();
-    Log::open(path, &TopicChoice::default()).unwrap()
+    let (mount, scan) = (reading.mount, &reading.scan);
+    let times_s = (0..60).map(|step| f64::from(step) * 0.1);
+    let readings =
+        times_s.map(|time_s| LaserReading { time_s, mount, scan: scan.clone(), ..LaserReading::default() });
+    bag_from(path, &readings.collect::<Vec<_>>(), 1e9 + begin_s)
 }
 
 #[test]
@@ -255,10 +285,8 @@ fn lasers_that_stand_are_compared() {
         .unwrap();
     let moved = route_of(&log("moved.mcap", &readings[number], 100.0)).unwrap();
     let off = expected.inv_mul(&moved);
-    assert!(
-        off.translation.vector.norm() < 0.05 && heading_rad(&off).abs() < 0.03,
-        "{moved}, not {expected}"
-    );
+    let is_near = off.translation.vector.norm() < 0.05 && heading_rad(&off).abs() < 0.03;
+    assert!(is_near, "{moved}, not {expected}");
     // A place of which the first log shows nothing.
     let other = LaserReading { scan: scan(vec![1.0; 360]), ..readings[0].clone() };
     let refused = route_of(&log("other.mcap", &other, 100.0)).unwrap_err();
@@ -296,8 +324,7 @@ fn a_place_of_which_too_much_is_seen_names_a_resolution_that_is_enough() {
         let mut settings = SurveySettings { resolution_m, ..SurveySettings::of(PoseMode::Localized) };
         settings.mapper.max_bytes = max_bytes;
         let mut survey = Survey::new(settings, false);
-        let entry = LogEntry::of(String::new(), &log, &TopicChoice::default()).unwrap();
-        survey.first_pass(&log, entry, false, |_| ControlFlow::Continue(()))?;
+        survey.first_pass(&log, entry(&log, 0.0), false, |_| ControlFlow::Continue(()))?;
         let mut replay = survey.replay(0, &log)?.unwrap();
         while survey.turn(&mut replay)?.is_some() {}
         let mapper = survey.mapper().unwrap();
@@ -325,9 +352,7 @@ fn the_second_pass_draws_the_house_without_changes() {
     let folder = tempfile::tempdir().unwrap();
     let log = bag(&folder.path().join("a.mcap"), &readings);
     let mut survey = Survey::new(settings, false);
-    let entry = LogEntry::of(String::new(), &log, &TopicChoice::default()).unwrap();
-    let entry = LogEntry { offset_s: 1000.0, ..entry };
-    survey.first_pass(&log, entry, false, |_| ControlFlow::Continue(())).unwrap();
+    survey.first_pass(&log, entry(&log, 1000.0), false, |_| ControlFlow::Continue(())).unwrap();
     let mut replay = survey.replay(0, &log).unwrap().unwrap();
     let mut seen = 0;
     while survey.turn(&mut replay).unwrap().is_some() {

@@ -50,22 +50,13 @@ fn sharpness(points: &[Point2<f64>], angle_rad: f64, bin_m: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use interfaces::{CellReading, GridFrame};
-    use mapper::MapperSettings;
-    use nalgebra::Isometry2;
+    use crate::tests::watched;
+    use interfaces::GridFrame;
 
     /// A map in which these cells are blocked and all others are free.
     fn map(is_blocked: impl Fn(Point2<f64>) -> bool) -> Mapper {
         let frame = GridFrame::new(Point2::new(-6.0, -6.0), 0.05, 240, 240).unwrap();
-        let mut mapper = Mapper::new(&MapperSettings::default(), frame).unwrap();
-        let cell = |index: usize| (frame.cell(index), is_blocked(frame.center(frame.cell(index))));
-        let cells: Vec<_> = (0..frame.len()).map(cell).collect();
-        for time in 0..3 {
-            let reading =
-                CellReading { time: f64::from(time), pose: Isometry2::identity(), cells: cells.clone() };
-            mapper.update(&reading).unwrap();
-        }
-        mapper
+        watched(frame, 3, |cell, _| is_blocked(frame.center(cell)))
     }
 
     /// The walls of a room of 8 × 5 m that is turned by this angle.

@@ -12,28 +12,12 @@ const MAP: &str = "image: gone.pgm\nresolution: 0.05\norigin: [0.0, 0.0, 0.0]\nn
 fn refused_file(name: &str, text: &str, arguments: &str) -> String {
     let run = Run::new();
     run.write(name, text);
-    refuses(&run, arguments, &[name])
+    run.refuses(arguments)
 }
 
 #[track_caller]
 fn refused(arguments: &str) -> String {
-    refuses(&Run::new(), arguments, &[])
-}
-
-/// The output of the program for `arguments`. The exit code must be 2, and no files but `files` may remain.
-#[track_caller]
-pub(crate) fn refuses(run: &Run, arguments: &str, files: &[&str]) -> String {
-    let ended = run.ends(arguments);
-    assert_eq!(ended.code, Some(2), "{ended:?}");
-    assert_eq!(ended.stdout, "");
-    assert_eq!(
-        ended.stderr.lines().filter(|line| line.starts_with("error: ")).count(),
-        1,
-        "{}",
-        ended.stderr
-    );
-    assert_eq!(run.names(), files, "something was written");
-    ended.stderr
+    Run::new().refuses(arguments)
 }
 
 #[track_caller]
@@ -45,33 +29,6 @@ fn refused_world(right: &str, wrong: &str) -> String {
 #[test]
 fn worlds() {
     insta::assert_snapshot!(refused("--world nowhere"), @"error: --world: there is no world `nowhere`: it is neither a file nor one of those that ship (four_rooms, toy_on_the_floor, turned_house, house, drifting_house, office, warehouse, cave, yard, office_week; or a generated building: house-7, office-7, calendar-office-7 and so on)");
-    insta::assert_snapshot!(refused_world("cell_m = 0.05", "cell_m = = 0.05"), @"
-    error: one `=` too many
-     --> house.toml:9:10
-      |
-    9 | cell_m = = 0.05           # cell size of the ground truth grid, against which maps are scored
-      |          ^
-      |
-      = help: a key and its value are written as in `radius_m = 0.2`
-    ");
-    insta::assert_snapshot!(refused_world("max_linear_mps", "max_liner_mps"), @"
-    error: unknown key `max_liner_mps`
-      --> house.toml:75:1
-       |
-    75 | max_liner_mps = 0.8
-       | ^^^^^^^^^^^^^ not known here
-       |
-       = help: did you mean `max_linear_mps`? the keys here are: kind, max_linear_mps, max_angular_degps, max_linear_acceleration_mps2, max_angular_acceleration_degps2, max_left_mps, max_left_acceleration_mps2, wheelbase_m, max_steer_deg
-    ");
-    insta::assert_snapshot!(refused_world("radius_m = 0.2 ", "radius_m = \"big\""), @r#"
-    error: `robot.radius_m` has the wrong type
-      --> house.toml:70:12
-       |
-    70 | radius_m = "big"         # a round robot; footprint_m gives a polygon instead
-       |            ^^^^^ this is the text "big"
-       |
-       = help: it must be a number
-    "#);
     insta::assert_snapshot!(refused_world("pose_m = [2.0, 2.0]", "pose_m = [6.0, 2.0]"), @"
     error: the robot `curious` starts in a wall or an obstacle
       --> house.toml:71:10
@@ -84,14 +41,27 @@ fn worlds() {
        |
        = help: its middle must keep its radius of 0.2 m away
     ");
-    for wrong in ["nan", "inf", "-0.1", "1e300"] {
-        let message = refused_world("noise_std_m = 0.0 ", &format!("noise_std_m = {wrong}"));
-        let parts = ["robot.laser.noise_std_m", "house.toml:96:15", "it must be a number from 0 to 1"];
-        assert!(parts.iter().all(|part| message.contains(part)), "{message}");
+    let noise = ["nan", "inf", "-0.1", "1e300"].map(|wrong| format!("noise_std_m = {wrong}"));
+    let noise = noise
+        .each_ref()
+        .map(|wrong| ("noise_std_m = 0.0 ", wrong.as_str(), "robot.laser.noise_std_m", "house.toml:96:15"));
+    let others = [
+        ("cell_m = 0.05", "cell_m = = 0.05", "error: one `=` too many\n", "house.toml:9:10"),
+        ("max_linear_mps", "max_liner_mps", "error: unknown key `max_liner_mps`\n", "house.toml:75:1"),
+        (
+            "radius_m = 0.2 ",
+            "radius_m = \"big\"",
+            "`robot.radius_m` has the wrong type\n",
+            "house.toml:70:12",
+        ),
+    ];
+    for (right, wrong, says, place) in noise.into_iter().chain(others) {
+        let message = refused_world(right, wrong);
+        assert!(message.contains(says) && message.contains(place), "{message}");
     }
     let folder = Run::new();
     std::fs::create_dir(folder.path("attic")).unwrap();
-    insta::assert_snapshot!(refuses(&folder, "--world attic", &["attic"]), @"error: --world: cannot read the world file `attic`: it is not a regular file");
+    insta::assert_snapshot!(folder.refuses("--world attic"), @"error: --world: cannot read the world file `attic`: it is not a regular file");
 }
 
 /// A pipe would let a reader wait for ever, a device would fill the memory.
@@ -102,7 +72,7 @@ fn pipes_and_devices() {
     nix::unistd::mkfifo(&folder.path("pipe"), nix::sys::stat::Mode::S_IRWXU).unwrap();
     for argument in ["--world", "--drive tour --tour", "--map"] {
         for file in ["pipe", "/dev/zero"] {
-            let message = refuses(&folder, &format!("{argument} {file}"), &["pipe"]);
+            let message = folder.refuses(&format!("{argument} {file}"));
             assert!(message.contains("it is not a regular file"), "{argument} {file}: {message}");
         }
     }
@@ -129,11 +99,6 @@ fn names_and_values_that_are_not_printable() {
 
 #[test]
 fn maps() {
-    insta::assert_snapshot!(refused("--map no.yaml"), @"
-    error: invalid value 'no.yaml' for '--map <MAP.YAML>': cannot read this file: No such file or directory (os error 2)
-
-    For more information, try '--help'.
-    ");
     insta::assert_snapshot!(refused_file("m.yaml", MAP, "--map m.yaml"), @"
     error: cannot read the picture gone.pgm: No such file or directory (os error 2)
      --> m.yaml:1:8
@@ -143,79 +108,37 @@ fn maps() {
       |
       = help: `image` names a PNG or PGM picture, relative to this file
     ");
-    let picture = |yaml: &str, pixels: &str| {
+    for (yaml, pixels, says) in [
+        (MAP.replace("0.05", "-1"), "P2 1 1 1 0", "error: `resolution` is -1\n --> m.yaml:2:13"),
+        (MAP.to_owned(), "P5\n1000000 1000000\n255\n", "1000000 × 1000000 pixels are too many: at most"),
+    ] {
         let run = Run::new();
-        run.write("m.yaml", yaml);
+        run.write("m.yaml", &yaml);
         run.write("gone.pgm", pixels);
-        refuses(&run, "--map m.yaml", &["gone.pgm", "m.yaml"])
-    };
-    let negative = MAP.replace("resolution: 0.05", "resolution: -1");
-    insta::assert_snapshot!(picture(&negative, "P2 1 1 1 0"), @"
-    error: `resolution` is -1
-     --> m.yaml:2:13
-      |
-    2 | resolution: -1
-      |             ^^
-      |
-      = help: it must be the side of a pixel in meters, from 0.0001 to 100
-    ");
-    insta::assert_snapshot!(picture(MAP, "P5\n1000000 1000000\n255\n"), @"
-    error: cannot read the picture gone.pgm: 1000000 × 1000000 pixels are too many: at most 67108864
-     --> m.yaml:1:8
-      |
-    1 | image: gone.pgm
-      |        ^^^^^^^^
-      |
-      = help: `image` names a PNG or PGM picture, relative to this file
-    ");
+        let message = run.refuses("--map m.yaml");
+        assert!(message.contains(says), "{message}");
+    }
     for broken in ["image: [", "resolution: 0.05", "", "\u{0}"] {
         let run = Run::new();
         run.write("m.yaml", broken);
         let ended = run.ends("--map m.yaml");
-        assert_eq!(
-            (ended.code, ended.stdout.as_str(), run.names()),
-            (Some(2), "", vec!["m.yaml".to_owned()])
-        );
-        assert!(ended.stderr.starts_with("error: ") && ended.stderr.contains("m.yaml:1"), "{}", ended.stderr);
+        assert_eq!((ended.code, run.names()), (Some(2), vec!["m.yaml".to_owned()]));
+        ended.says(&["error: ", "m.yaml:1"]);
     }
 }
 
 #[test]
 fn drives_without_a_controller() {
-    let drive = |kind: &str| {
-        refused_world("[robot.drive]           #", &format!("[robot.drive]\nkind = \"{kind}\"\n#"))
-    };
-    insta::assert_snapshot!(drive("omni"), @r#"error: cannot run `house.toml`: the driven robot `curious` has a drive of `kind = "omni"`, but the controller supports only `kind = "diff"`: change `[robot.drive]`, or let another robot be the driven one"#);
-    let car =
-        refused_world("[robot.drive]           #", "[robot.drive]\nkind = \"car\"\nwheelbase_m = 0.2\n#");
+    let drive = |keys: &str| refused_world("[robot.drive]           #", &format!("[robot.drive]\n{keys}\n#"));
+    insta::assert_snapshot!(drive("kind = \"omni\""), @r#"error: cannot run `house.toml`: the driven robot `curious` has a drive of `kind = "omni"`, but the controller supports only `kind = "diff"`: change `[robot.drive]`, or let another robot be the driven one"#);
+    let car = drive("kind = \"car\"\nwheelbase_m = 0.2");
     assert!(car.contains("has a drive of `kind = \"car\"`, but"), "{car}");
 }
 
 #[test]
 fn tours() {
-    insta::assert_snapshot!(refused("--drive tour --tour no.toml"), @"
-    error: invalid value 'no.toml' for '--tour <FILE>': cannot read this file: No such file or directory (os error 2)
-
-    For more information, try '--help'.
-    ");
-    insta::assert_snapshot!(refused_file("t.toml", "waypoints_m = [\n  [1, 2],\n  [3]\n]", "--drive tour --tour t.toml"), @"
-    error: `waypoints_m` has the wrong type
-     --> t.toml:3:3
-      |
-    3 |   [3]
-      |   ^^^ this is a list of 1
-      |
-      = help: it must be two numbers, as in `[1.0, 2.0]`
-    ");
-    insta::assert_snapshot!(refused_file("t.toml", "waypoint_m = [[1, 2]]", "--drive tour --tour t.toml"), @"
-    error: unknown key `waypoint_m`
-     --> t.toml:1:1
-      |
-    1 | waypoint_m = [[1, 2]]
-      | ^^^^^^^^^^ not known here
-      |
-      = help: did you mean `waypoints_m`? the keys here are: repeat, waypoints_m
-    ");
+    let message = refused_file("t.toml", "waypoint_m = [[1, 2]]", "--drive tour --tour t.toml");
+    assert!(message.starts_with("error: unknown key `waypoint_m`\n --> t.toml:1:1\n"), "{message}");
     insta::assert_snapshot!(refused_file("t.toml", "waypoints_m = [[1, 2]]", "--tour t.toml"), @"error: --tour needs --drive tour");
     insta::assert_snapshot!(refused("--drive tour --strategy recency"), @"error: --strategy is for the agent: leave out --drive, or --strategy");
     insta::assert_snapshot!(refused("--drive tour --world house"), @"error: the tour that ships is for the walls of `four_rooms`: for `house`, give waypoints by --tour FILE");

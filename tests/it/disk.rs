@@ -4,35 +4,18 @@
 use crate::run::{Ended, Run, names};
 
 /// A program, the arguments of a short run, and a file that the run writes.
-struct Program {
-    run: fn() -> Run,
-    arguments: &'static str,
-    file: &'static str,
-}
-
-const PROGRAMS: [Program; 2] = [
-    Program { run: Run::new, arguments: "--duration 30", file: "summary.json" },
-    Program { run: Run::grid, arguments: "--steps 200 --trials 1", file: "report.json" },
+const PROGRAMS: [(&str, &str, &str); 2] = [
+    ("four_rooms", "--duration 30", "summary.json"),
+    ("grid_world", "--steps 200 --trials 1", "report.json"),
 ];
-
-/// The only line on standard error, after lines of progress.
-#[track_caller]
-fn error(run: &Run, arguments: &str) -> String {
-    let ended = run.ends(arguments);
-    assert_eq!((ended.code, ended.stdout.as_str()), (Some(1), ""), "{ended:?}");
-    let lines: Vec<&str> = ended.stderr.lines().filter(|line| !line.contains(" of 30 s, ")).collect();
-    assert_eq!(lines.len(), 1, "{}", ended.stderr);
-    lines[0].to_owned()
-}
 
 #[test]
 fn an_output_folder_that_is_a_file() {
-    for program in PROGRAMS {
-        let run = (program.run)();
+    for (program, arguments, _) in PROGRAMS {
+        let run = Run::of(program);
         run.write("file", "precious");
         for out in ["file", "file/below"] {
-            let message =
-                crate::bad_input::refuses(&run, &format!("{} --out {out}", program.arguments), &["file"]);
+            let message = run.refuses(&format!("{arguments} --out {out}"));
             let says =
                 format!("error: invalid value '{out}' for '--out <DIR>': file is a file, not a folder\n");
             assert!(message.starts_with(&says), "{message}");
@@ -43,11 +26,10 @@ fn an_output_folder_that_is_a_file() {
 
 #[test]
 fn a_file_that_cannot_be_replaced() {
-    for program in PROGRAMS {
-        let run = (program.run)();
-        let file = program.file;
+    for (program, arguments, file) in PROGRAMS {
+        let run = Run::of(program);
         std::fs::create_dir_all(run.out(file).join("taken")).unwrap();
-        let error = crate::bad_input::refuses(&run, program.arguments, &["out"]);
+        let error = run.refuses(arguments);
         let says = format!("error: cannot write out/{file}: the results would replace it");
         assert!(error.starts_with(&says), "{error}");
         assert_eq!(names(&run.path("out")), [file], "known before the run");
@@ -55,45 +37,22 @@ fn a_file_that_cannot_be_replaced() {
 }
 
 #[test]
-fn a_recording_in_a_folder_that_does_not_exist() {
-    let reason = "No such file or directory (os error 2)";
-    cannot_record("no/such/run.rrd", reason);
-}
-
-#[test]
-#[cfg(target_os = "linux")]
-fn a_recording_on_a_full_disk() {
-    cannot_record("/dev/full", "No space left on device (os error 28)");
-}
-
-#[track_caller]
-fn cannot_record(file: &str, reason: &str) {
-    let run = Run::new();
-    let error = error(&run, &format!("--duration 30 --rrd {file}"));
-    assert_eq!(error, format!("error: cannot write the recording {file}: {reason}"));
-    assert_eq!(run.names(), [""; 0]);
-}
-
-#[test]
-fn a_moving_picture_in_a_folder_that_does_not_exist() {
-    let run = Run::new();
-    let error = error(&run, "--duration 30 --no-rrd --gif no/such/run.gif");
-    assert_eq!(error, "error: cannot write no/such/run.gif: No such file or directory (os error 2)");
-    assert_eq!(run.names(), [""; 0]);
-}
-
-#[test]
-fn a_file_that_is_no_recording_is_not_replaced() {
-    let run = Run::new();
-    run.write("thesis.rrd", "precious");
-    let error = error(&run, "--duration 30 --rrd thesis.rrd");
-    assert_eq!(
-        error,
-        "error: cannot write the recording thesis.rrd: there is a file with this name that is not a recording; \
-         choose another name"
-    );
-    assert_eq!(std::fs::read_to_string(run.path("thesis.rrd")).unwrap(), "precious");
-    assert_eq!(run.names(), ["thesis.rrd"]);
+fn recordings_and_moving_pictures_that_cannot_be_written() {
+    let error = |arguments: &str| {
+        let run = Run::new();
+        run.write("thesis.rrd", "precious");
+        let ended = run.ends(&format!("--duration 30 --quiet {arguments}"));
+        assert_eq!((ended.code, ended.stdout.as_str()), (Some(1), ""), "{ended:?}");
+        assert_eq!(run.names(), ["thesis.rrd"]);
+        assert_eq!(std::fs::read_to_string(run.path("thesis.rrd")).unwrap(), "precious");
+        ended.stderr
+    };
+    insta::assert_snapshot!(error("--rrd no/such/run.rrd"), @"error: cannot write the recording no/such/run.rrd: No such file or directory (os error 2)");
+    if cfg!(target_os = "linux") {
+        insta::assert_snapshot!(error("--rrd /dev/full"), @"error: cannot write the recording /dev/full: No space left on device (os error 28)");
+    }
+    insta::assert_snapshot!(error("--rrd thesis.rrd"), @"error: cannot write the recording thesis.rrd: there is a file with this name that is not a recording; choose another name");
+    insta::assert_snapshot!(error("--no-rrd --gif no/such/run.gif"), @"error: cannot write no/such/run.gif: No such file or directory (os error 2)");
 }
 
 #[test]
@@ -114,19 +73,19 @@ fn a_summary_on_a_full_disk() {
         let full = std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
         let ended = Ended::from(run.command(arguments).stdout(full).output().unwrap());
         assert_eq!(ended.code, Some(1), "{arguments}: {ended:?}");
-        let error = ended.stderr.lines().last().unwrap();
-        assert_eq!(
-            error,
-            "error: cannot write to the standard output: No space left on device (os error 28)"
-        );
+        let error = "error: cannot write to the standard output: No space left on device (os error 28)";
+        assert_eq!(ended.stderr.lines().last(), Some(error));
     };
-    for program in PROGRAMS {
-        let run = (program.run)();
-        cannot_print(&run, program.arguments);
-        assert!(run.out(program.file).exists());
+    for (program, arguments, file) in PROGRAMS {
+        let run = Run::of(program);
+        cannot_print(&run, arguments);
+        assert!(run.out(file).exists());
         cannot_print(&run, "--list-worlds");
         cannot_print(&run, "--help");
     }
+    let run = Run::of("check_world");
+    cannot_print(&run, "--png two_blocks open_hall");
+    assert_eq!(run.names(), ["open_hall.png", "two_blocks.png"], "the pictures are complete");
 }
 
 /// A disk that becomes full during the run: a named pipe whose reader closes the pipe after a while.
@@ -139,12 +98,11 @@ fn a_recording_that_cannot_go_on_costs_no_result() {
     nix::unistd::mkfifo(&pipe, nix::sys::stat::Mode::S_IRWXU).unwrap();
     let child = run.starts("--duration 2m --quiet --rrd pipe");
     std::fs::File::open(&pipe).unwrap().read_exact(&mut [0; 1000]).unwrap();
-    let ended = Ended::from(child.wait_with_output().unwrap());
+    let ended = Ended::of(child);
     assert_eq!(ended.code, Some(1), "{ended:?}");
-    assert_eq!(
-        ended.stderr.trim_end(),
-        "error: cannot write the recording pipe: Broken pipe (os error 32); the run goes on without it"
-    );
+    let error =
+        "error: cannot write the recording pipe: Broken pipe (os error 32); the run goes on without it";
+    assert_eq!(ended.stderr.trim_end(), error);
     let without = Run::quiet("--duration 2m");
     assert_eq!(run.summary().hash(), without.summary().hash());
     assert_eq!(names(&run.path("out")), names(&without.path("out")));
@@ -155,11 +113,8 @@ fn a_recording_that_cannot_go_on_costs_no_result() {
 #[cfg(target_os = "linux")]
 fn a_limit_on_the_size_of_files_costs_no_result() {
     let run = Run::new();
-    let program = run.command("--duration 20m --quiet");
-    let mut limited = std::process::Command::new("sh");
     // 10 MB: enough for every result (every free cell has a rate), not for the recording.
-    limited.arg("-c").arg("ulimit -f 20000 && exec \"$0\" \"$@\"").arg(program.get_program());
-    let ended = Ended::from(limited.args(program.get_args()).current_dir(run.path("")).output().unwrap());
+    let ended = run.ends_with_files_up_to(20_000, "--duration 20m --quiet");
     assert_eq!(ended.code, Some(1), "{ended:?}");
     let expected = "error: cannot write the recording out/unfinished_run/four_rooms.rrd: File too large";
     assert!(ended.stderr.starts_with(expected), "{}", ended.stderr);

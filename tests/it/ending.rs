@@ -2,11 +2,10 @@
 #![cfg(unix)]
 
 use crate::recording::Recording;
-use crate::run::{Ended, Run};
+use crate::run::{Ended, Run, wait_until};
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 use std::io::{BufRead, BufReader};
-use std::path::Path;
 use std::process::Child;
 use std::time::Duration;
 
@@ -20,15 +19,6 @@ fn starts(run: &Run) -> Child {
 /// Sends a signal to the program.
 pub(crate) fn send(signal: Signal, child: &Child) {
     kill(Pid::from_raw(child.id() as i32), signal).unwrap();
-}
-
-/// Waits until the recording has begun, at most for a minute.
-fn wait_for_recording(recording: &Path) {
-    let has_begun = (0..1200).any(|_| {
-        std::thread::sleep(Duration::from_millis(50));
-        std::fs::metadata(recording).is_ok_and(|file| file.len() >= 50_000)
-    });
-    assert!(has_begun, "no recording");
 }
 
 #[test]
@@ -52,13 +42,9 @@ fn a_closed_terminal_ends_a_run_in_order() {
 fn ctrl_c_ends_a_slow_run() {
     let run = Run::new();
     let child = run.starts("--duration 1h --speed 0.001");
-    let has_begun = (0..1200).any(|_| {
-        std::thread::sleep(Duration::from_millis(50));
-        run.unfinished("four_rooms.rrd").exists()
-    });
-    assert!(has_begun, "no recording");
+    wait_until(|| run.unfinished("four_rooms.rrd").exists());
     send(Signal::SIGINT, &child);
-    let ended = Ended::from(child.wait_with_output().unwrap());
+    let ended = Ended::of(child);
     assert_eq!(ended.code, Some(130), "{ended:?}");
     assert!(run.summary().number("/simulated_s") < 0.5);
 }
@@ -66,9 +52,10 @@ fn ctrl_c_ends_a_slow_run() {
 fn ends_in_order(signal: Signal) {
     let run = Run::new();
     let child = starts(&run);
-    wait_for_recording(&run.unfinished("four_rooms.rrd"));
+    let recording = run.unfinished("four_rooms.rrd");
+    wait_until(|| std::fs::metadata(&recording).is_ok_and(|file| file.len() >= 50_000));
     send(signal, &child);
-    let ended = Ended::from(child.wait_with_output().unwrap());
+    let ended = Ended::of(child);
     assert_eq!(ended.code, Some(130), "{ended:?}");
     assert!(ended.stdout.starts_with("agent in four rooms, interrupted: "), "{ended:?}");
 
@@ -77,11 +64,8 @@ fn ends_in_order(signal: Signal) {
     let simulated_s = summary.number("/simulated_s");
     assert!(simulated_s > 0.0 && simulated_s < 3600.0, "{simulated_s}");
     // A run with a set speed must not be faster.
-    assert!(
-        summary.number("/real_time_factor") < 1.05 * SPEED + 1.0,
-        "{}",
-        summary.number("/real_time_factor")
-    );
+    let factor = summary.number("/real_time_factor");
+    assert!(factor < 1.05 * SPEED + 1.0, "{factor}");
     assert!((Recording::read(&run.out("four_rooms.rrd")).end_s() - simulated_s).abs() < 1e-6);
     assert_eq!(crate::run::names(&run.path("out")).len(), 15);
 }

@@ -2,21 +2,16 @@
 //! written.
 
 use crate::map_log::standing_log;
-use crate::run::names;
-use std::process::{Command, Stdio};
+use crate::run::{Run, names};
 
-/// A program, a short run of it, and a wrong value of each of its flags; with what else it takes to be refused.
-struct Program {
-    name: &'static str,
-    arguments: &'static str,
-    wrong: &'static [(&'static str, &'static str)],
-}
+/// A program, a short run of it, and a wrong value of each of its flags.
+type Program = (&'static str, &'static str, &'static [(&'static str, &'static str)]);
 
 const PROGRAMS: [Program; 8] = [
-    Program {
-        name: "four_rooms",
-        arguments: "--quiet",
-        wrong: &[
+    (
+        "four_rooms",
+        "--quiet",
+        &[
             ("--world", "nowhere"),
             ("--map", "gone.yaml"),
             ("--seed", "-1"),
@@ -38,15 +33,15 @@ const PROGRAMS: [Program; 8] = [
             ("--connect", "viewer:here"),
             ("--mcap", "folder"),
         ],
-    },
-    Program { name: "grid_world", arguments: "--quiet", wrong: &GRID_WORLD },
-    Program { name: "grid_world", arguments: "merge folder", wrong: &[("--out", "a.log")] },
-    Program { name: "house_trials", arguments: "--quiet", wrong: &HOUSE_TRIALS },
-    Program { name: "house_trials", arguments: "merge folder", wrong: &[("--out", "a.log")] },
-    Program {
-        name: "map_log",
-        arguments: "a.log --quiet",
-        wrong: &[
+    ),
+    ("grid_world", "--quiet", &GRID_WORLD),
+    ("grid_world", "merge folder", &[("--out", "a.log")]),
+    ("house_trials", "--quiet", &HOUSE_TRIALS),
+    ("house_trials", "merge folder", &[("--out", "a.log")]),
+    (
+        "map_log",
+        "a.log --quiet",
+        &[
             ("--scan-topic", "/scan"),
             ("--odom-topic", "/odom"),
             ("--base-frame", "base_link"),
@@ -66,11 +61,11 @@ const PROGRAMS: [Program; 8] = [
             ("--places", "folder"),
             ("--state-every", "0"),
         ],
-    },
-    Program {
-        name: "predict",
-        arguments: concat!(env!("CARGO_MANIFEST_DIR"), "/tests/states/map_log.state"),
-        wrong: &[
+    ),
+    (
+        "predict",
+        concat!(env!("CARGO_MANIFEST_DIR"), "/tests/states/map_log.state"),
+        &[
             ("--at", "teatime"),
             ("--place", "here"),
             ("--door", "front"),
@@ -81,8 +76,8 @@ const PROGRAMS: [Program; 8] = [
             ("--radius", "wide"),
             ("--out", "a.log"),
         ],
-    },
-    Program { name: "check_world", arguments: "four_rooms --png", wrong: &[("--out", "a.log")] },
+    ),
+    ("check_world", "four_rooms --png", &[("--out", "a.log")]),
 ];
 
 const GRID_WORLD: [(&str, &str); 14] = [
@@ -120,11 +115,9 @@ const HOUSE_TRIALS: [(&str, &str); 14] = [
 ];
 
 /// The flags with a value in the help of a program, which clap makes of its definitions.
-fn flags(program: &Program) -> Vec<String> {
-    let subcommand = program.arguments.split(' ').next().filter(|word| *word == "merge");
-    let help =
-        Command::new(crate::run::program(program.name)).args(subcommand).arg("--help").output().unwrap();
-    let help = String::from_utf8(help.stdout).unwrap();
+fn flags(run: &Run, arguments: &str) -> Vec<String> {
+    let subcommand = if arguments.starts_with("merge ") { "merge " } else { "" };
+    let help = run.goes_well(&format!("{subcommand}--help")).stdout;
     let definitions = help.lines().filter_map(|line| {
         line[line.len().min(6)..].split_once(' ').filter(|_| {
             let at = line.len() - line.trim_start().len();
@@ -138,29 +131,24 @@ fn flags(program: &Program) -> Vec<String> {
 
 #[test]
 fn every_flag_refuses_a_wrong_value_by_its_name() {
-    for program in &PROGRAMS {
-        let mut known: Vec<&str> = program.wrong.iter().map(|(flag, _)| *flag).collect();
-        let mut found = flags(program);
+    for (name, arguments, wrong) in PROGRAMS {
+        let run = Run::of(name);
+        std::fs::create_dir(run.path("folder")).unwrap();
+        run.write("a.log", &standing_log(1.7e9, 40));
+        let mut known: Vec<&str> = wrong.iter().map(|(flag, _)| *flag).collect();
+        let mut found = flags(&run, arguments);
         known.sort_unstable();
         found.sort_unstable();
-        assert_eq!(found, known, "{}: each flag needs a wrong value here", program.name);
-        for (flag, value) in program.wrong {
-            let folder = tempfile::tempdir().unwrap();
-            std::fs::create_dir(folder.path().join("folder")).unwrap();
-            std::fs::write(folder.path().join("a.log"), standing_log(1.7e9, 40)).unwrap();
-            let mut command = Command::new(crate::run::program(program.name));
-            command.current_dir(folder.path()).args(program.arguments.split(' ')).args([flag, value]);
-            match *flag {
-                "--state-every" => drop(command.args(["--state", "s.state"])),
-                "--tour" => drop(command.args(["--drive", "tour"])),
-                _ => {}
-            }
-            let output = command.stdin(Stdio::null()).output().unwrap();
-            let message = String::from_utf8_lossy(&output.stderr);
-            assert_eq!(output.status.code(), Some(2), "{} {flag} {value}: {message}", program.name);
-            assert!(message.contains(flag), "{} {flag} {value}: {message}", program.name);
-            assert_eq!(names(folder.path()), ["a.log", "folder"], "{} {flag} {value}", program.name);
-            assert_eq!(names(&folder.path().join("folder")), [""; 0], "{} {flag} {value}", program.name);
+        assert_eq!(found, known, "{name}: each flag needs a wrong value here");
+        for (flag, value) in wrong {
+            let also = match *flag {
+                "--state-every" => "--state s.state",
+                "--tour" => "--drive tour",
+                _ => "",
+            };
+            let message = run.refuses(&format!("{arguments} {flag} {value} {also}"));
+            assert!(message.contains(flag), "{name} {flag} {value}: {message}");
+            assert_eq!(names(&run.path("folder")), [""; 0], "{name} {flag} {value}");
         }
     }
 }

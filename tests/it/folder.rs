@@ -1,7 +1,6 @@
 //! The folder of the results holds one run.
 
-use crate::bad_input::refuses;
-use crate::run::{Run, names};
+use crate::run::{Run, names, wait_until};
 
 #[test]
 fn nothing_of_an_earlier_run_stays() {
@@ -22,7 +21,7 @@ fn nothing_of_an_earlier_run_stays() {
 
 #[test]
 fn worlds_of_an_earlier_run_stay_if_they_are_the_input() {
-    let run = Run::grid();
+    let run = Run::of("grid_world");
     let arguments = "--quiet --steps 100 --trials 1 --strategy recency --estimator paper";
     run.goes_well(&format!("{arguments} --generate 2 --save-worlds"));
     let worlds = || names(&run.path("out")).into_iter().filter(|name| name.ends_with(".toml"));
@@ -32,25 +31,10 @@ fn worlds_of_an_earlier_run_stay_if_they_are_the_input() {
 }
 
 #[test]
-fn a_run_that_fails_leaves_the_earlier_one() {
-    let run = Run::new();
-    run.goes_well("--quiet --duration 2");
-    let before = std::fs::read(run.out("summary.json")).unwrap();
-    let files = names(&run.path("out"));
-    assert_eq!(run.ends("--duration 2 --seed 1 --rrd no/such/folder.rrd").code, Some(1));
-    assert_eq!(std::fs::read(run.out("summary.json")).unwrap(), before);
-    assert_eq!(names(&run.path("out")), files);
-}
-
-#[test]
 fn a_second_run_into_the_same_folder_is_refused() {
     let run = Run::new();
     let mut first = run.starts("--duration 1h --speed 1 --quiet");
-    let is_open = || run.out("unfinished_run/.lock").exists();
-    assert!((0..1200).any(|_| {
-        std::thread::sleep(std::time::Duration::from_millis(50));
-        is_open()
-    }));
+    wait_until(|| run.out("unfinished_run/.lock").exists());
     let second = run.ends("--duration 2 --no-rrd");
     first.kill().unwrap();
     first.wait().unwrap();
@@ -58,39 +42,17 @@ fn a_second_run_into_the_same_folder_is_refused() {
     insta::assert_snapshot!(second.stderr, @"error: cannot write out: another run is writing there; wait for it, or give this one another folder by --out");
     let ended = run.goes_well("--duration 2 --no-rrd");
     // What the killed run has left is kept, and named.
-    let note = "note: out/unfinished_run_1 has what a killed run has left; remove it if it is not needed";
-    assert!(ended.stderr.contains(note), "{ended:?}");
-}
-
-/// What a run may not replace: files that no run wrote, whatever they say.
-#[test]
-fn foreign_files_are_refused_and_stay() {
-    let run = Run::new();
-    std::fs::create_dir(run.path("out")).unwrap();
-    let report = r#"{"files":["thesis.tex","data.csv"]}"#;
-    for (name, text) in [("report.json", report), ("thesis.tex", "my thesis"), ("data.csv", "1,2,3")] {
-        run.write(&format!("out/{name}"), text);
-    }
-    let message = refuses(&run, "--duration 2 --no-rrd --quiet", &["out"]);
-    insta::assert_snapshot!(message, @"error: cannot write out/report.json: the results would replace it, and no run of this version wrote it (an earlier version may have); move it, or give another folder by --out");
-    assert_eq!(names(&run.path("out")), ["data.csv", "report.json", "thesis.tex"]);
-    // Beside files with other names, there is place for a run; they stay, even if a report lists them.
-    std::fs::rename(run.out("report.json"), run.out("old_report.json")).unwrap();
-    run.goes_well("--duration 2 --no-rrd --quiet");
-    run.goes_well("--duration 2 --no-rrd --quiet");
-    for (name, text) in [("old_report.json", report), ("thesis.tex", "my thesis"), ("data.csv", "1,2,3")] {
-        assert_eq!(std::fs::read_to_string(run.out(name)).unwrap(), text);
-    }
+    ended.says(&["note: out/unfinished_run_1 has what a killed run has left; remove it if it is not needed"]);
 }
 
 /// Each file that a program writes is refused before the run, not after it, if it is not of a run.
 #[test]
 fn a_foreign_file_ends_a_run_before_it_begins() {
-    let logs = Run::new().with_map_log();
+    let logs = Run::of("map_log");
     logs.write("a.log", &crate::map_log::standing_log(1.7e9, 60));
     let grid = "--quiet --steps 20 --trials 2 --strategy recency --strategy random --estimator paper";
     for (run, arguments) in
-        [(Run::new(), "--quiet --duration 1"), (logs, "--quiet a.log"), (Run::grid(), grid)]
+        [(Run::new(), "--quiet --duration 1"), (logs, "--quiet a.log"), (Run::of("grid_world"), grid)]
     {
         run.goes_well(arguments);
         let results = names(&run.path("out"));
@@ -98,10 +60,10 @@ fn a_foreign_file_ends_a_run_before_it_begins() {
             std::fs::remove_dir_all(run.path("out")).unwrap();
             std::fs::create_dir(run.path("out")).unwrap();
             run.write(&format!("out/{name}"), "of the user");
-            let ended = run.ends(arguments);
-            assert_eq!(ended.code, Some(2), "{name}: {ended:?}");
-            let before = format!("error: cannot write out/{name}: the results would replace it");
-            assert!(ended.stderr.starts_with(&before), "{ended:?}");
+            let message = run.refuses(arguments);
+            let why = "the results would replace it, and no run of this version wrote it (an earlier version may have); move it, \
+                       or give another folder by --out";
+            assert_eq!(message, format!("error: cannot write out/{name}: {why}\n"));
             assert_eq!(names(&run.path("out")), [name.as_str()], "nothing is written");
         }
     }

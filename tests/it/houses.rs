@@ -1,6 +1,5 @@
 //! Trials in physics worlds, and their report.
 
-use crate::bad_input::refuses;
 use crate::grid::{report, results, same};
 use crate::run::{Run, names};
 
@@ -9,7 +8,7 @@ const SHORT: &str = "--generate 2 --seed 3 --duration 1m --strategy curious --st
 
 /// A finished run without output on the screen.
 fn ran(arguments: &str) -> Run {
-    let run = Run::houses();
+    let run = Run::of("house_trials");
     let ended = run.goes_well(&format!("--quiet {arguments}"));
     assert_eq!((ended.stdout.as_str(), ended.stderr.as_str()), ("", ""));
     run
@@ -17,16 +16,10 @@ fn ran(arguments: &str) -> Run {
 
 #[test]
 fn the_report_has_every_key_and_every_trial() {
-    let run = Run::houses();
+    let run = Run::of("house_trials");
     let ended = run.goes_well(&format!("{SHORT} --strategy full-observation"));
-    for says in [
-        "all worlds (2)\n2 trials of 1 simulated minute",
-        "curious ",
-        "AUC",
-        "Paired differences over worlds",
-    ] {
-        assert!(ended.stdout.contains(says), "{says}: {}", ended.stdout);
-    }
+    ended.prints(&["all worlds (2)\n2 trials of 1 simulated minute", "curious ", "AUC"]);
+    ended.prints(&["Paired differences over worlds"]);
     let table = ended.stdout.lines().filter(|line| !line.starts_with("written to "));
     assert!(table.clone().all(|line| line.chars().count() <= 80), "{}", ended.stdout);
 
@@ -45,12 +38,14 @@ fn the_report_has_every_key_and_every_trial() {
         // Nothing may have changed within a minute.
         let auc = result.entry["final_rate_auc"].as_f64();
         assert!(auc.is_none_or(|auc| (0.0..=1.0).contains(&auc)) && result.entry["rate_auc"].is_array());
-        let is_full = result.strategy == "full-observation";
-        assert!(
-            !is_full || (number("final_map_quality"), number("final_coverage")) == (1.0, 1.0),
-            "{}",
-            result.world
-        );
+        if result.strategy == "full-observation" {
+            assert_eq!(
+                (number("final_map_quality"), number("final_coverage")),
+                (1.0, 1.0),
+                "{}",
+                result.world
+            );
+        }
         // Whole seconds, the last at the end.
         let curve = result.entry["log_error"].as_array().unwrap();
         let times: Vec<u64> = curve.iter().map(|point| point[0].as_u64().unwrap()).collect();
@@ -78,20 +73,20 @@ fn a_saved_house_is_the_one_that_was_made_and_runs_in_four_rooms() {
     for (result, name) in results(&run).iter().zip(saved) {
         let file = run.out(&name).display().to_string();
         let again = results(&ran(&format!("{common} --seed 11 --world {file}")));
-        assert_eq!(again[0].hashes(), result.hashes());
+        assert_eq!(again[0].hashes, result.hashes);
         let alone = Run::quiet(&format!("{common} --seed 11 --world {file}"));
-        assert_eq!(alone.summary().hash(), result.hashes()[0].1);
+        assert_eq!(alone.summary().hash(), result.hashes[0].1);
     }
 }
 
 #[test]
 fn worlds_are_listed() {
-    let listed = Run::houses().goes_well("--list-worlds").stdout;
-    assert!(listed.lines().any(|line| line.starts_with("house ")), "{listed}");
+    Run::of("house_trials").goes_well("--list-worlds").prints(&["\nhouse "]);
 }
 
 #[test]
 fn invalid_input_is_refused() {
+    let run = Run::of("house_trials");
     for (arguments, says) in [
         ("--duration 0.5", "must be whole seconds"),
         ("--duration 0", "must be a time above 0"),
@@ -102,11 +97,9 @@ fn invalid_input_is_refused() {
         ("--world house --calendar office", "--calendar changes only generated worlds"),
         ("--world house --kind office", "--kind changes only generated worlds"),
     ] {
-        let message = refuses(&Run::houses(), arguments, &[]);
+        let message = run.refuses(arguments);
         assert!(message.contains(says), "{arguments}: {message}");
     }
-    let run = Run::houses();
-    let world = include_str!("../../worlds/house.toml");
-    run.write("twin.toml", world);
-    insta::assert_snapshot!(refuses(&run, "--world house --world twin.toml", &["twin.toml"]), @"error: two worlds have the name `house`: results are listed by name, so give each world its own name");
+    run.write("twin.toml", include_str!("../../worlds/house.toml"));
+    insta::assert_snapshot!(run.refuses("--world house --world twin.toml"), @"error: two worlds have the name `house`: results are listed by name, so give each world its own name");
 }

@@ -1,7 +1,7 @@
 //! A user who drives with the keyboard.
 #![cfg(target_os = "linux")]
 
-use crate::run::Run;
+use crate::run::{Run, wait_until};
 use crate::terminal::{self, wait};
 
 const DRIVE: &str = "--drive keyboard --no-rrd --speed 4";
@@ -15,8 +15,7 @@ fn keys_drive_and_q_ends() {
         keys.press("q");
     });
     assert_eq!(ended.code, Some(0), "{ended:?}");
-    assert!(ended.stdout.contains("Q ends the run"), "{ended:?}");
-    assert!(ended.stdout.contains("keyboard in four rooms, ended by the user: "), "{ended:?}");
+    ended.prints(&["Q ends the run", "keyboard in four rooms, ended by the user: "]);
     let summary = run.summary();
     assert_eq!((summary.text("/drive"), summary.text("/ended_by")), ("keyboard", "person"));
     assert_ne!(summary.hash(), stands(summary.number("/simulated_s")), "it did not move");
@@ -38,11 +37,7 @@ fn without_a_key_it_stands_and_ctrl_c_is_a_key() {
 
 /// Waits until the program reads the keys: it creates its folder next.
 fn starts(run: &Run) {
-    let is_there = (0..600).any(|_| {
-        wait(50);
-        run.path("out").exists()
-    });
-    assert!(is_there, "it does not start");
+    wait_until(|| run.path("out").exists());
 }
 
 /// The hash of a robot that stands still for the same time.

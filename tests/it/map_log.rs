@@ -1,69 +1,42 @@
 //! `map_log`: logs and bags become maps of what changes.
 
-use crate::bad_input::refuses;
 use crate::run::{Run, names};
 use std::fs;
+use std::sync::LazyLock;
 
-/// A folder with `a.mcap`: a robot with drifting odometry in a house, for this long.
-pub(crate) fn with_bag(seconds: u32) -> Run {
-    with_bag_of(100, seconds)
-}
-
-fn with_bag_of(seed: u64, seconds: u32) -> Run {
-    let run = Run::new();
-    let arguments = format!("--world drifting_house --seed {seed} --duration {seconds} --mcap a.mcap");
-    run.goes_well(&format!("--quiet --no-rrd {arguments}"));
-    fs::remove_dir_all(run.path("out")).unwrap();
-    run.with_map_log()
+/// A folder for `map_log` with `a.mcap`: a bag of a robot with drifting odometry in a house, for 90 s.
+pub(crate) fn with_bag() -> Run {
+    static DRIVE: LazyLock<Run> =
+        LazyLock::new(|| Run::quiet("--world drifting_house --seed 100 --duration 90 --mcap a.mcap"));
+    let run = Run::of("map_log");
+    fs::copy(DRIVE.path("a.mcap"), run.path("a.mcap")).unwrap();
+    run
 }
 
 #[test]
 fn a_bag_becomes_a_page_maps_masks_and_numbers() {
-    let run = with_bag(60);
+    let run = with_bag();
     let ended = run.goes_well("a.mcap --mcap copy.mcap");
-    for line in ["a.mcap: 601 scans in 60 s", "  route ", "  seen ", "  changes ", "  files     out"] {
-        assert!(ended.stdout.contains(line), "{line}: {}", ended.stdout);
-    }
-    let mut expected = vec![
-        "cell_statistics.csv",
-        "change_probability.png",
-        "figure5.png",
-        "interval.png",
-        "keepout_mask.pgm",
-        "keepout_mask.yaml",
-        "layers.json",
-        "layers.npy",
-        "map.pgm",
-        "map.yaml",
-        "map_log.rrd",
-        "occupancy.png",
-        "permanent.pgm",
-        "permanent.yaml",
-        "predicted.png",
-        "recency.png",
-        "report.html",
-        "speed_mask.pgm",
-        "speed_mask.yaml",
-        "summary.json",
-        "things.json",
-        "trajectory.png",
-        "trajectory.tum",
-    ];
-    let found: Vec<String> = names(&run.path("out"));
-    assert_eq!(found, expected);
+    ended.prints(&["a.mcap: 901 scans in 90 s", "  route ", "  seen ", "  changes ", "  files     out"]);
+    let expected = "cell_statistics.csv change_probability.png figure5.png interval.png keepout_mask.pgm \
+                    keepout_mask.yaml layers.json layers.npy map.pgm map.yaml map_log.rrd occupancy.png \
+                    permanent.pgm permanent.yaml predicted.png recency.png report.html speed_mask.pgm \
+                    speed_mask.yaml summary.json things.json trajectory.png trajectory.tum";
+    let mut expected: Vec<&str> = expected.split(' ').collect();
+    assert_eq!(names(&run.path("out")), expected);
     let summary = run.summary();
     expected.retain(|name| *name != "summary.json");
     assert_eq!(summary.0["files"], serde_json::json!(expected));
-    assert_eq!(summary.number("/scans"), 601.0);
+    assert_eq!(summary.number("/scans"), 901.0);
     assert!((30.0..110.0).contains(&summary.number("/seen_m2")), "{}", summary.number("/seen_m2"));
     assert!(summary.number("/scans_left_out") < 30.0);
     let poses = fs::read_to_string(run.out("trajectory.tum")).unwrap();
-    assert_eq!(poses.lines().count(), 601);
+    assert_eq!(poses.lines().count(), 901);
     // An array with one layer per name, of the size of the map.
     let array = fs::read(run.out("layers.npy")).unwrap();
     assert!(array.starts_with(b"\x93NUMPY"));
     let page = fs::read_to_string(run.out("report.html")).unwrap();
-    for text in ["This map is good", "Where it changes", "601 scans in 60 s", "never seen"] {
+    for text in ["This map is good", "Where it changes", "901 scans in 2 min", "never seen"] {
         assert!(page.contains(text), "{text}");
     }
 
@@ -79,27 +52,20 @@ fn a_bag_becomes_a_page_maps_masks_and_numbers() {
 /// Along the odometry, whose heading drifts, walls are there twice.
 #[test]
 fn a_map_that_is_not_usable_says_so() {
-    let run = with_bag_of(7, 240);
+    let run = with_bag();
     run.goes_well("a.mcap --quiet --no-rrd --state a.state");
     let (state, summary) = (fs::read(run.path("a.state")).unwrap(), run.summary());
-    assert_eq!(
-        (&summary.0["verdict"], &summary.0["verdict_reasons"]),
-        (&"good".into(), &serde_json::json!([]))
-    );
-    assert!(fs::read_to_string(run.out("report.html")).unwrap().contains("This map is good"));
+    assert_eq!((summary.text("/verdict"), summary.at("/verdict_reasons")), ("good", &serde_json::json!([])));
 
     let ended = run.ends("a.mcap --pose odometry --no-rrd --state other.state");
     assert_eq!(ended.code, Some(3), "{}", ended.stderr);
-    assert!(ended.stdout.contains("  map       not usable\n            - "), "{}", ended.stdout);
+    ended.prints(&["  map       not usable\n            - "]);
     let summary = run.summary();
-    assert_eq!((&summary.0["verdict"], &summary.0["is_refused"]), (&"not-usable".into(), &true.into()));
+    assert_eq!((summary.text("/verdict"), summary.at("/is_refused")), ("not-usable", &true.into()));
     assert!(summary.0["quality"][0]["doubts"].as_array().is_some_and(|doubts| !doubts.is_empty()));
     let page = fs::read_to_string(run.out("report.html")).unwrap();
-    assert!(
-        page.contains("This map is not usable")
-            && page.contains("Uncertain places of the map")
-            && !page.contains("per hour")
-    );
+    assert!(["This map is not usable", "Uncertain places of the map"].iter().all(|text| page.contains(text)));
+    assert!(!page.contains("per hour"));
     let found = names(&run.path("out"));
     assert!(found.contains(&"map.pgm".to_owned()));
     assert!(!found.iter().any(|name| name.contains("mask") || name.contains("statistics")), "{found:?}");
@@ -107,46 +73,6 @@ fn a_map_that_is_not_usable_says_so() {
 
     run.goes_well("a.mcap --pose odometry --no-rrd --state other.state --accept-map");
     assert!(run.path("other.state").exists() && run.out("speed_mask.pgm").exists());
-}
-
-#[test]
-fn two_logs_of_one_place_add_up() {
-    let run = with_bag(40);
-    run.goes_well("a.mcap --quiet --no-rrd");
-    let once = run.summary();
-    fs::copy(run.path("a.mcap"), run.path("b.mcap")).unwrap();
-    // The same log under another name would count twice.
-    let ended = run.ends("a.mcap b.mcap --quiet --no-rrd");
-    let twice = "error: b.mcap is given twice: it has the content of a.mcap\n";
-    assert_eq!((ended.code, &ended.stderr[..]), (Some(2), twice));
-    // The same scans in other bytes would as well.
-    run.goes_well("a.mcap --quiet --no-rrd --mcap b.mcap");
-    let ended = run.ends("a.mcap b.mcap --quiet --no-rrd");
-    assert_eq!((ended.code, ended.stderr.contains("have the same scans")), (Some(2), true), "{ended:?}");
-    // Another drive. The time between the logs is not known: both begin at 0.
-    let run = run.with_four_rooms();
-    run.goes_well(
-        "--world drifting_house --seed 101 --duration 40 --mcap c.mcap --quiet --no-rrd --out drive",
-    );
-    let run = run.with_map_log();
-    let ended = run.ends("a.mcap c.mcap --quiet --no-rrd");
-    assert_eq!(ended.code, Some(0), "{ended:?}");
-    let both = run.summary();
-    assert_eq!(both.number("/scans"), 2.0 * once.number("/scans"));
-    assert!(both.number("/seen_m2") > 0.95 * once.number("/seen_m2"));
-    let note = "the time between a.mcap and c.mcap is not known and counts as an hour";
-    assert!(ended.stderr.contains(note), "{}", ended.stderr);
-    assert!(both.0["notes"].as_array().unwrap().contains(&serde_json::json!(note)), "{}", both.0["notes"]);
-    // The hour between them counts as not observed.
-    let mut table = csv::Reader::from_path(run.out("cell_statistics.csv")).unwrap();
-    let column = |name: &str, table: &mut csv::Reader<_>| {
-        table.headers().unwrap().iter().position(|header| header == name).unwrap()
-    };
-    let watched = ["watched_free_s", "watched_blocked_s"].map(|name| column(name, &mut table));
-    for row in table.records().map(Result::unwrap) {
-        let seconds: f64 = watched.iter().map(|column| row[*column].parse::<f64>().unwrap()).sum();
-        assert!(seconds <= 80.0 + 1e-6, "{seconds} s in view, of 80 s of logs");
-    }
 }
 
 /// A CARMEN log of a laser that stands before a wall, in a room 6 m wide: something is before it for every other 10 s.
@@ -157,17 +83,21 @@ pub(crate) fn standing_log(begin_s: f64, seconds: u32) -> String {
 
 /// One scan of this log. What is `near` is 0.35 m wide.
 pub(crate) fn standing_line(time_s: f64, near: bool) -> String {
-    let range_m = |beam: u32| match f64::from(beam).to_radians().sin_cos() {
+    scan_line(time_s, |beam| match f64::from(beam).to_radians().sin_cos() {
         _ if near && (80..100).contains(&beam) => 1.0,
         (ahead, aside) => (4.0 / ahead.max(1e-9)).min(3.0 / aside.abs().max(1e-9)),
-    };
+    })
+}
+
+/// A scan of a laser that stands, with the ranges of 180 beams, a degree apart.
+pub(crate) fn scan_line(time_s: f64, range_m: impl Fn(u32) -> f64) -> String {
     let ranges: String = (0..180).map(|beam| format!("{:.2} ", range_m(beam))).collect();
     format!("ODOM 1 2 0 0 0 0 {time_s} h 0\nFLASER 180 {ranges}0 0 0 0 0 0 {time_s} h 0\n")
 }
 
 #[test]
 fn a_thing_that_comes_and_goes_from_the_first_scan_on_is_a_place_with_its_rate() {
-    let run = Run::new().with_map_log();
+    let run = Run::of("map_log");
     let (mut lines, mut time_s, mut scans) = (String::new(), 0.0, 0);
     for stay in 0..180_u32 {
         // 0.8 to 1.2 s, in an order without a pattern.
@@ -189,10 +119,10 @@ fn a_thing_that_comes_and_goes_from_the_first_scan_on_is_a_place_with_its_rate()
 
 #[test]
 fn a_parked_robot_is_a_laser_that_stands_and_the_page_has_dates() {
-    let run = Run::new().with_map_log();
+    let run = Run::of("map_log");
     // 2023-11-14 22:13:20 UTC.
-    fs::write(run.path("a.log"), standing_log(1.7e9, 120)).unwrap();
-    fs::write(run.path("b.log"), standing_log(1.7e9 + 86_400.0, 120)).unwrap();
+    run.write("a.log", &standing_log(1.7e9, 120));
+    run.write("b.log", &standing_log(1.7e9 + 86_400.0, 120));
     run.goes_well("b.log a.log --no-rrd --quiet --mcap out/run.mcap");
     let summary = run.summary();
     assert_eq!(summary.0["settings"]["pose"], "exact");
@@ -213,18 +143,11 @@ fn a_parked_robot_is_a_laser_that_stands_and_the_page_has_dates() {
 #[cfg(unix)]
 #[test]
 fn the_numbers_of_an_interrupted_run_are_those_of_its_part() {
-    use std::io::{BufRead, BufReader};
     const SCANS: u32 = 30_000;
-    let run = Run::new().with_map_log();
-    fs::write(run.path("a.log"), standing_log(1.7e9, SCANS)).unwrap();
-    let mut child = run.starts("a.log --no-rrd");
-    let mut lines = BufReader::new(child.stderr.take().unwrap()).lines().map(Result::unwrap);
-    assert!(lines.any(|line| line.contains("learning what changes")));
-    crate::ending::send(nix::sys::signal::Signal::SIGINT, &child);
-    // The rest is read, so that the program can write it.
-    lines.for_each(drop);
-    let ended = child.wait_with_output().unwrap();
-    assert_eq!(ended.status.code(), Some(130), "{ended:?}");
+    let run = Run::of("map_log");
+    run.write("a.log", &standing_log(1.7e9, SCANS));
+    let ended = run.interrupted("a.log --no-rrd", |line| line.contains("learning what changes"));
+    assert_eq!(ended.code, Some(130), "{ended:?}");
     let summary = run.summary();
     let scans = summary.number("/scans");
     assert!((1.0..f64::from(SCANS)).contains(&scans), "{scans} scans");
@@ -236,11 +159,9 @@ fn the_numbers_of_an_interrupted_run_are_those_of_its_part() {
 
 #[test]
 fn an_invalid_path_of_the_bag_is_found_at_once() {
-    let refused = |arguments: &str| {
-        let run = Run::new().with_map_log();
-        fs::write(run.path("a.log"), standing_log(1.7e9, 30)).unwrap();
-        refuses(&run, &format!("a.log --no-rrd --mcap {arguments}"), &["a.log"])
-    };
+    let run = Run::of("map_log");
+    run.write("a.log", &standing_log(1.7e9, 30));
+    let refused = |path: &str| run.refuses(&format!("a.log --no-rrd --mcap {path}"));
     insta::assert_snapshot!(refused("no/such/folder.mcap"), @"error: cannot write the bag of --mcap: cannot write no/such/folder.mcap: No such file or directory (os error 2)");
     insta::assert_snapshot!(refused("a.log"), @"error: --mcap a.log would replace a log that is read");
     insta::assert_snapshot!(refused("out/map.pgm"), @"error: cannot write out/map.pgm: in the folder of the results its name must end in .mcap");
@@ -249,23 +170,13 @@ fn an_invalid_path_of_the_bag_is_found_at_once() {
 #[cfg(unix)]
 #[test]
 fn an_interrupt_in_the_first_pass_says_what_happened() {
-    use std::io::{BufRead, BufReader, Read};
+    let run = with_bag();
     for (state, kept) in
         [("", ""), (" --state s", "; s keeps the logs that are finished, and the same command goes on")]
     {
-        let run = with_bag(120);
-        let mut child = run.starts(&format!("a.mcap{state}"));
-        let mut stderr = BufReader::new(child.stderr.take().unwrap());
-        let mut line = String::new();
-        while !line.contains("first pass") {
-            line.clear();
-            assert!(stderr.read_line(&mut line).unwrap() > 0, "the first pass did not begin");
-        }
-        crate::ending::send(nix::sys::signal::Signal::SIGINT, &child);
-        let mut rest = String::new();
-        stderr.read_to_string(&mut rest).unwrap();
-        assert_eq!(child.wait().unwrap().code(), Some(130), "{rest}");
+        let ended = run.interrupted(&format!("a.mcap{state}"), |line| line.contains("first pass"));
+        assert_eq!(ended.code, Some(130), "{ended:?}");
         let says = format!("interrupted in the first pass: no results are written{kept}\n");
-        assert!(rest.ends_with(&says), "{rest}");
+        assert!(ended.stderr.ends_with(&says), "{ended:?}");
     }
 }

@@ -1,8 +1,7 @@
 //! `map_log --state`: what was learned from logs stays, and later logs add to it.
 
-use crate::bad_input::refuses;
 use crate::map_log::standing_log;
-use crate::run::{Run, Summary, names};
+use crate::run::{Ended, Run, Summary, names, wait_until};
 use std::collections::BTreeMap;
 use std::fs;
 
@@ -34,7 +33,7 @@ fn differing(one: &BTreeMap<String, Vec<u8>>, other: &BTreeMap<String, Vec<u8>>)
 
 /// A folder with the logs `a.log` and `b.log` of a laser that stands, a day apart.
 fn with_logs() -> Run {
-    let run = Run::new().with_map_log();
+    let run = Run::of("map_log");
     run.write("a.log", &standing_log(MONDAY_S, 120));
     run.write("b.log", &standing_log(TUESDAY_S, 90));
     run
@@ -64,22 +63,34 @@ fn a_log_of_the_next_day_adds_to_the_state() {
 }
 
 #[test]
-fn a_robot_with_drifting_odometry_finds_its_place_in_the_state() {
+fn drives_of_one_place_add_up_and_a_robot_with_drifting_odometry_finds_its_place_in_the_state() {
     let run = Run::new();
     for (name, seed) in [("a", 100), ("b", 101)] {
         let world = format!("--world drifting_house --seed {seed} --duration 40 --mcap {name}.mcap");
         run.goes_well(&format!("{QUIET} {world}"));
     }
-    fs::remove_dir_all(run.path("out")).unwrap();
-    let run = run.with_map_log();
-    run.goes_well(&format!("a.mcap b.mcap {QUIET}"));
-    let whole = results(&run);
+    let run = run.with("map_log");
     run.goes_well(&format!("a.mcap {SAVED}"));
+    let once = run.summary();
     run.goes_well(&format!("b.mcap {SAVED}"));
-    let differing = differing(&results(&run), &whole);
-    assert_eq!(differing, ["trajectory.png", "trajectory.tum"]);
+    let parts = results(&run);
+    let ended = run.goes_well(&format!("a.mcap b.mcap {QUIET}"));
+    assert_eq!(differing(&parts, &results(&run)), ["trajectory.png", "trajectory.tum"]);
+    let both = run.summary();
+    assert_eq!(both.number("/scans"), 2.0 * once.number("/scans"));
+    assert!(both.number("/seen_m2") > 0.95 * once.number("/seen_m2"));
+    // Both begin at 0. The hour between them counts as not observed.
     let note = "the time between a.mcap and b.mcap is not known and counts as an hour";
-    assert!(run.summary().at("/notes").as_array().unwrap().contains(&serde_json::json!(note)));
+    ended.says(&[note]);
+    assert!(both.at("/notes").as_array().unwrap().contains(&serde_json::json!(note)));
+    assert!(run.cells().iter().all(|cell| cell.watched_s() <= 80.0 + 1e-6), "of 80 s of logs");
+
+    // The same log under another name, and the same scans in other bytes, would count twice.
+    fs::copy(run.path("a.mcap"), run.path("c.mcap")).unwrap();
+    let twice = "error: c.mcap is given twice: it has the content of a.mcap\n";
+    assert_eq!(run.refuses(&format!("a.mcap c.mcap {QUIET}")), twice);
+    run.goes_well(&format!("a.mcap {QUIET} --mcap c.mcap"));
+    assert!(run.refuses(&format!("a.mcap c.mcap {QUIET}")).contains("have the same scans"));
 }
 
 /// Killed again and again at any point, even while it saves: the same command goes on, and its results are those of a run
@@ -89,10 +100,9 @@ fn a_robot_with_drifting_odometry_finds_its_place_in_the_state() {
 fn a_killed_run_goes_on_and_ends_as_if_it_had_not_been_killed() {
     use crate::ending::send;
     use nix::sys::signal::Signal;
-    use std::time::Duration;
 
     const SCANS: u32 = 12_000;
-    let run = Run::new().with_map_log();
+    let run = Run::of("map_log");
     run.write("a.log", &standing_log(MONDAY_S, 1000));
     run.write("b.log", &standing_log(TUESDAY_S, SCANS));
     run.goes_well(&format!("a.log b.log {QUIET}"));
@@ -104,18 +114,14 @@ fn a_killed_run_goes_on_and_ends_as_if_it_had_not_been_killed() {
         let before = modified();
         let mut child = run.starts(command);
         // Until it has saved, and a little longer.
-        let is_over = (0..6000).any(|_| {
-            std::thread::sleep(Duration::from_millis(10));
-            modified() != before || child.try_wait().unwrap().is_some()
-        });
-        assert!(is_over, "no state");
-        std::thread::sleep(Duration::from_millis(17 * round));
+        wait_until(|| modified() != before || child.try_wait().unwrap().is_some());
+        std::thread::sleep(std::time::Duration::from_millis(17 * round));
         // Now and then in good order.
         let signal = if round % 4 == 3 { Signal::SIGINT } else { Signal::SIGKILL };
         if child.try_wait().unwrap().is_none() {
             send(signal, &child);
         }
-        let ended = crate::run::Ended::from(child.wait_with_output().unwrap());
+        let ended = Ended::of(child);
         assert!(matches!(ended.code, None | Some(0 | 130)), "{ended:?}");
         killed += usize::from(ended.code != Some(0));
         froms.extend(ended.stderr.lines().filter_map(|line| {
@@ -135,31 +141,25 @@ fn a_killed_run_goes_on_and_ends_as_if_it_had_not_been_killed() {
 #[test]
 #[cfg(unix)]
 fn an_interrupted_run_keeps_its_part_and_goes_on_with_the_same_trajectory() {
-    use std::io::{BufRead, BufReader};
-    let run = Run::new().with_map_log();
+    let run = Run::of("map_log");
     run.write("a.log", &standing_log(MONDAY_S, 100));
     run.write("b.log", &standing_log(TUESDAY_S, 12_000));
     run.goes_well(&format!("a.log b.log {QUIET}"));
     let whole = results(&run);
-    let mut child = run.starts("a.log b.log --no-rrd --state a.state");
-    let mut lines = BufReader::new(child.stderr.take().unwrap()).lines().map(Result::unwrap);
-    assert!(lines.any(|line| line == "b.log: learning what changes"));
-    crate::ending::send(nix::sys::signal::Signal::SIGINT, &child);
-    lines.for_each(drop);
-    assert_eq!(child.wait().unwrap().code(), Some(130));
+    let is_second = |line: &str| line == "b.log: learning what changes";
+    assert_eq!(run.interrupted("a.log b.log --no-rrd --state a.state", is_second).code, Some(130));
     let scans = run.summary().number("/scans");
     assert!((101.0..12_100.0).contains(&scans), "{scans}");
 
     // Nothing can follow a log that is learned in part, unless its rest is left out.
     run.write("c.log", &standing_log(TUESDAY_S + 86_400.0, 60));
     let kept = fs::read(run.path("a.state")).unwrap();
-    let ended = run.ends(&format!("c.log {SAVED}"));
     let part = scans - 100.0;
     let expected = format!(
         "error: b.log is learned in part ({part} of 12000 scans): give it as well, then it goes on from there, or leave out \
          its rest by --leave-rest\n"
     );
-    assert_eq!((ended.code, ended.stderr), (Some(2), expected));
+    assert_eq!(run.refuses(&format!("c.log {SAVED}")), expected);
     assert!(fs::read(run.path("a.state")).unwrap() == kept);
     fs::copy(run.path("a.state"), run.path("b.state")).unwrap();
     run.goes_well(&format!("c.log {QUIET} --state b.state --leave-rest"));
@@ -174,11 +174,9 @@ fn a_state_that_does_not_fit_is_refused_and_stays() {
     let run = with_logs();
     run.write("early.log", &standing_log(MONDAY_S - 86_400.0, 30));
     run.goes_well(&format!("a.log {SAVED}"));
-    fs::remove_dir_all(run.path("out")).unwrap();
     let saved = fs::read(run.path("a.state")).unwrap();
     let refused = |arguments: &str| {
-        let message =
-            refuses(&run, &format!("{arguments} {SAVED}"), &["a.log", "a.state", "b.log", "early.log"]);
+        let message = run.refuses(&format!("{arguments} {SAVED}"));
         assert!(fs::read(run.path("a.state")).unwrap() == saved);
         message
     };
@@ -187,50 +185,36 @@ fn a_state_that_does_not_fit_is_refused_and_stays() {
     insta::assert_snapshot!(refused("b.log --estimator paper"), @"error: a.state: the state is of another run: `survey.mapper.estimator` is `shared-prior` there, and `paper` here");
     insta::assert_snapshot!(refused("early.log"), @"error: early.log begins before a.log has ended: logs of one robot follow each other");
     insta::assert_snapshot!(refused("b.log b.log"), @"error: b.log is given twice: it has the content of b.log");
-    // Any bit.
-    let mut flipped = saved.clone();
-    let middle = flipped.len() / 2;
-    flipped[middle] ^= 4;
-    fs::write(run.path("a.state"), &flipped).unwrap();
-    let message = refuses(&run, &format!("b.log {SAVED}"), &["a.log", "a.state", "b.log", "early.log"]);
-    insta::assert_snapshot!(message, @"error: a.state: the state file is damaged: its checksum does not fit");
-    assert!(fs::read(run.path("a.state")).unwrap() == flipped);
 }
 
 #[test]
 fn a_log_adds_to_the_map_of_a_robot() {
     let run = Run::new();
     run.goes_well(&format!("--duration 2 {SAVED}"));
-    fs::remove_dir_all(run.path("out")).unwrap();
-    let run = run.with_map_log();
+    let run = run.with("map_log");
     run.write("a.log", &standing_log(MONDAY_S, 60));
-    let files = ["a.log", "a.state"];
-    insta::assert_snapshot!(refuses(&run, &format!("a.log {SAVED} --resolution 0.1"), &files), @"error: a.state: the state is of another run: `resolution_m` is `0.05` there, and `0.1` here");
+    insta::assert_snapshot!(run.refuses(&format!("a.log {SAVED} --resolution 0.1")), @"error: a.state: the state is of another run: `resolution_m` is `0.05` there, and `0.1` here");
     let robot = fs::read(run.path("a.state")).unwrap();
     let ended = run.goes_well(&format!("a.log {SAVED}"));
-    assert!(
-        ended.stderr.contains("note: a.state: other settings were used so far, those of this run count: ")
-    );
-    assert!(ended.stderr.contains("filter.max_range_m = `10.0`"), "{}", ended.stderr);
-    let run = run.with_state_file();
+    ended.says(&["note: a.state: other settings were used so far, those of this run count: "]);
+    ended.says(&["filter.max_range_m = `10.0`"]);
+    let run = run.with("state_file");
     let shown = run.goes_well("show a.state").stdout;
     let sessions: Vec<&str> = shown.lines().filter(|line| line.contains("scans learned")).collect();
     assert!(sessions.len() == 2 && sessions[0].starts_with("  four_rooms 1:"), "{shown}");
     assert!(sessions[1].starts_with("  a.log: 2023-11-14 22:13 UTC"), "{shown}");
     run.goes_well("remove a.state a.log");
     assert!(fs::read(run.path("a.state")).unwrap() == robot);
-    fs::remove_dir_all(run.path("out")).unwrap();
-    let run = run.with_map_log();
-    insta::assert_snapshot!(refuses(&run, &format!("a.log {QUIET} --state missing/b.state"), &files), @"error: missing/b.state: cannot use it: No such file or directory (os error 2)");
+    let run = run.with("map_log");
+    insta::assert_snapshot!(run.refuses(&format!("a.log {QUIET} --state missing/b.state")), @"error: missing/b.state: cannot use it: No such file or directory (os error 2)");
     run.goes_well(&format!("a.log {QUIET} --state b.state"));
-    fs::remove_dir_all(run.path("out")).unwrap();
-    let run = run.with_four_rooms();
-    insta::assert_snapshot!(refuses(&run, &format!("--duration 2 {QUIET} --state b.state"), &["a.log", "a.state", "b.state"]), @"error: b.state: the state was saved by another program: it has no part `run`");
+    let run = run.with("four_rooms");
+    insta::assert_snapshot!(run.refuses(&format!("--duration 2 {QUIET} --state b.state")), @"error: b.state: the state was saved by another program: it has no part `run`");
 }
 
 #[test]
 fn another_laser_is_noted() {
-    let run = Run::new().with_map_log();
+    let run = Run::of("map_log");
     run.write("a.log", &standing_log(MONDAY_S, 60));
     run.goes_well(&format!("a.log {SAVED}"));
     // Every other beam.
@@ -251,37 +235,14 @@ fn another_laser_is_noted() {
     assert!(run.summary().at("/notes").as_array().unwrap().contains(&serde_json::json!(note)));
 }
 
-/// Two runs that read the same state, and write it one after the other, would lose what one of them learned.
-#[test]
-#[cfg(unix)]
-fn a_state_has_one_user_at_a_time() {
-    let run = Run::new().with_map_log();
-    run.write("a.log", &standing_log(MONDAY_S, 12_000));
-    run.write("b.log", &standing_log(TUESDAY_S, 90));
-    let mut first = run.starts(&format!("a.log {SAVED} --out first"));
-    while !run.path("a.state.lock").exists() {
-        std::thread::sleep(std::time::Duration::from_millis(1));
-    }
-    let second = run.ends(&format!("b.log {SAVED} --out second"));
-    assert_eq!(second.code, Some(2));
-    insta::assert_snapshot!(second.stderr, @"error: a.state: cannot use it: another run uses it; wait for its end, or give another file by --state");
-    assert!(first.wait().unwrap().success());
-    run.goes_well(&format!("b.log {SAVED} --out second"));
-    assert_eq!(run.names(), ["a.log", "a.state", "a.state.earlier", "b.log", "first", "second"]);
-    let run = run.with_state_file();
-    let shown = run.goes_well("show a.state").stdout;
-    assert!(shown.contains("12000 of 12000 scans") && shown.contains("90 of 90 scans"), "{shown}");
-}
-
 #[test]
 #[cfg(unix)]
 fn a_pipe_is_no_state() {
     let run = with_logs();
     nix::unistd::mkfifo(&run.path("pipe"), nix::sys::stat::Mode::S_IRWXU).unwrap();
-    let message = refuses(&run, &format!("a.log {QUIET} --state pipe"), &["a.log", "b.log", "pipe"]);
-    insta::assert_snapshot!(message, @"error: pipe: cannot read it: it is not a file (but a folder, a pipe or a device)");
-    let run = run.with_state_file();
-    insta::assert_snapshot!(refuses(&run, "show pipe", &["a.log", "b.log", "pipe"]), @"error: pipe: cannot read it: it is not a file (but a folder, a pipe or a device)");
+    insta::assert_snapshot!(run.refuses(&format!("a.log {QUIET} --state pipe")), @"error: pipe: cannot read it: it is not a file (but a folder, a pipe or a device)");
+    let run = run.with("state_file");
+    insta::assert_snapshot!(run.refuses("show pipe"), @"error: pipe: cannot read it: it is not a file (but a folder, a pipe or a device)");
 }
 
 #[test]
@@ -290,8 +251,7 @@ fn the_last_log_can_be_removed_and_another_one_cannot() {
     run.goes_well(&format!("a.log {SAVED}"));
     let before = fs::read(run.path("a.state")).unwrap();
     run.goes_well(&format!("b.log {SAVED}"));
-    fs::remove_dir_all(run.path("out")).unwrap();
-    let run = run.with_state_file();
+    let run = run.with("state_file");
     let shown = run.goes_well("show a.state").stdout;
     let lines: Vec<&str> = shown.lines().filter(|line| !line.starts_with("  place ")).collect();
     insta::assert_snapshot!(lines.join("\n"), @r"
@@ -302,13 +262,12 @@ fn the_last_log_can_be_removed_and_another_one_cannot() {
     ");
     let settings = run.goes_well("show a.state --settings").stdout;
     assert!(settings.contains("  survey.resolution_m = 0.05\n"), "{settings}");
-    let files = ["a.log", "a.state", "a.state.earlier", "b.log"];
-    insta::assert_snapshot!(refuses(&run, "remove a.state a.log", &files), @"error: a.log cannot be removed: what was learned from all logs is one map, and only b.log was added last; map the other logs into a new file by map_log --state");
-    insta::assert_snapshot!(refuses(&run, "remove a.state c.log", &files), @"error: a.state holds no session c.log, but a.log, b.log");
+    insta::assert_snapshot!(run.refuses("remove a.state a.log"), @"error: a.log cannot be removed: what was learned from all logs is one map, and only b.log was added last; map the other logs into a new file by map_log --state");
+    insta::assert_snapshot!(run.refuses("remove a.state c.log"), @"error: a.state holds no session c.log, but a.log, b.log");
     insta::assert_snapshot!(run.goes_well("remove a.state logs/b.log").stdout, @"b.log is removed: a.state is as it was before");
     assert!(fs::read(run.path("a.state")).unwrap() == before);
-    insta::assert_snapshot!(refuses(&run, "remove a.state a.log", &["a.log", "a.state", "b.log"]), @"error: a.log is the only session in a.state: remove the file");
-    let run = run.with_map_log();
+    insta::assert_snapshot!(run.refuses("remove a.state a.log"), @"error: a.log is the only session in a.state: remove the file");
+    let run = run.with("map_log");
     run.goes_well(&format!("b.log {SAVED}"));
     assert_eq!(run.summary().number("/scans"), 210.0);
 }
@@ -340,8 +299,7 @@ pub(crate) fn moving_log(scans: u32) -> String {
 /// A log and its own halves would count twice.
 #[test]
 fn a_log_of_which_the_halves_are_learned_is_refused() {
-    let run = Run::new();
-    let run = run.with_map_log();
+    let run = Run::of("map_log");
     let log = moving_log(120);
     let lines: Vec<&str> = log.lines().collect();
     let half = 120; // of each scan there are two lines
@@ -350,8 +308,6 @@ fn a_log_of_which_the_halves_are_learned_is_refused() {
     run.write("whole.log", &log);
     run.goes_well(&format!("a.log {SAVED}"));
     run.goes_well(&format!("b.log {SAVED}"));
-    fs::remove_dir_all(run.path("out")).unwrap();
-    let files = ["a.log", "a.state", "a.state.earlier", "b.log", "whole.log"];
-    insta::assert_snapshot!(refuses(&run, &format!("whole.log {SAVED}"), &files), @"error: whole.log and a.log have the same scans, which would count twice: leave one of them out");
-    insta::assert_snapshot!(refuses(&run, &format!("b.log whole.log {QUIET}"), &files), @"error: whole.log and b.log have the same scans, which would count twice: leave one of them out");
+    insta::assert_snapshot!(run.refuses(&format!("whole.log {SAVED}")), @"error: whole.log and a.log have the same scans, which would count twice: leave one of them out");
+    insta::assert_snapshot!(run.refuses(&format!("b.log whole.log {QUIET}")), @"error: whole.log and b.log have the same scans, which would count twice: leave one of them out");
 }

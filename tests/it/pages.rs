@@ -1,11 +1,10 @@
 //! The pages: every link leads to a file and a heading that exist, every flag that a command of a page has exists, and user pages
 //! do not speak of how they came about.
 
-use crate::run::{PROGRAMS, program};
+use crate::run::{PROGRAMS, Run};
 use pulldown_cmark::{Event, Parser, Tag, TagEnd};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
 /// The folders that have pages, below the root of the repository.
 const FOLDERS: [&str; 8] =
@@ -134,11 +133,7 @@ fn commands(text: &str) -> Vec<String> {
 
 #[test]
 fn every_flag_of_a_command_exists() {
-    let help = PROGRAMS.map(|name| {
-        let output = Command::new(program(name)).arg("--help").output().unwrap();
-        (name, String::from_utf8(output.stdout).unwrap())
-    });
-    let help = BTreeMap::from(help);
+    let help = BTreeMap::from(PROGRAMS.map(|name| (name, Run::of(name).goes_well("--help").stdout)));
     let (mut unknown, mut tried) = (Vec::new(), 0);
     for Page { path, text } in pages().iter().filter(|page| !page.path.starts_with("CHANGELOG.md")) {
         for command in commands(text) {

@@ -1,8 +1,7 @@
 //! `predict`: a place at other times, from a state of `map_log`.
 
-use crate::bad_input::refuses;
-use crate::map_log::{standing_line, standing_log};
-use crate::run::{Run, Summary};
+use crate::map_log::{scan_line, standing_line, standing_log};
+use crate::run::{Ended, Run, Summary};
 use serde_json::{Value, json};
 use std::fs;
 
@@ -22,13 +21,12 @@ fn days() -> String {
 
 /// A folder with the state `a.state` of these days.
 fn with_state() -> Run {
-    let run = Run::new().with_map_log();
+    let run = Run::of("map_log");
     run.write("days.log", &days());
     run.goes_well(&format!("days.log --time-zone europe/berlin {SAVED}"));
     assert_eq!(run.summary().text("/hours"), "Europe/Berlin");
     fs::remove_dir_all(run.path("out")).unwrap();
-    fs::remove_file(run.path("days.log")).unwrap();
-    run.with_predict()
+    run.with("predict")
 }
 
 fn feature(kind: &str, properties: Value, coordinates: Option<[f64; 2]>) -> Value {
@@ -45,11 +43,15 @@ fn edge(id: u64, startid: u64, endid: u64) -> Value {
     feature("MultiLineString", properties, None)
 }
 
+fn graph(features: &[Value]) -> String {
+    json!({"type": "FeatureCollection", "name": "graph", "features": features}).to_string()
+}
+
 #[test]
 fn hours_routes_and_graphs_are_predicted() {
     let run = with_state();
     let ended = run.goes_well("a.state --at 2024-01-16T13:00 --at 2024-01-16T03:00 --place 1,0 --place 3,-2");
-    for line in [
+    ended.prints(&[
         "last reading: Mon 2024-01-15 22:10 CET",
         "  Tue 2024-01-16 13:00 CET: blocked with a probability of ",
         " %, from the hours and days around it)",
@@ -57,41 +59,19 @@ fn hours_routes_and_graphs_are_predicted() {
         "Observed on 15 days, in ",
         " intervals of 30 minutes.",
         "  Nothing ever changed within half a meter: it was always free.",
-    ] {
-        assert!(ended.stdout.contains(line), "{line}: {}", ended.stdout);
-    }
+    ]);
     let blocked = |number: usize| run.summary().number(&format!("/places/0/expected/{number}/probability"));
     assert!(blocked(0) > 0.8 && blocked(1) < 0.2, "noon {}, night {}", blocked(0), blocked(1));
-    let expected = [
-        "expiry.npy",
-        "expiry.png",
-        "keepout_mask_1.pgm",
-        "keepout_mask_1.yaml",
-        "keepout_mask_2.pgm",
-        "keepout_mask_2.yaml",
-        "predicted_1.npy",
-        "predicted_1.pgm",
-        "predicted_1.png",
-        "predicted_1.yaml",
-        "predicted_2.npy",
-        "predicted_2.pgm",
-        "predicted_2.png",
-        "predicted_2.yaml",
-        "speed_mask_1.pgm",
-        "speed_mask_1.yaml",
-        "speed_mask_2.pgm",
-        "speed_mask_2.yaml",
-    ];
-    assert_eq!(*run.summary().at("/files"), json!(expected));
+    let expected = "expiry.npy expiry.png keepout_mask_1.pgm keepout_mask_1.yaml keepout_mask_2.pgm keepout_mask_2.yaml \
+                    predicted_1.npy predicted_1.pgm predicted_1.png predicted_1.yaml predicted_2.npy predicted_2.pgm \
+                    predicted_2.png predicted_2.yaml speed_mask_1.pgm speed_mask_1.yaml speed_mask_2.pgm speed_mask_2.yaml";
+    assert_eq!(*run.summary().at("/files"), json!(expected.split(' ').collect::<Vec<_>>()));
 
     // The way through the thing, and the way around it.
     run.write("way.csv", "x,y\n0.5,0\n1.6,0\n1.6,-1\n");
     let nodes = [node(0, 0.5, 0.0), node(1, 2.0, 0.0), node(2, 0.5, -1.0), node(3, 2.0, -1.0)];
     let features = [&nodes[..], &[edge(10, 0, 1), edge(11, 0, 2), edge(12, 2, 3)]].concat();
-    run.write(
-        "g.json",
-        &json!({"type": "FeatureCollection", "name": "graph", "features": features}).to_string(),
-    );
+    run.write("g.json", &graph(&features));
     run.goes_well("a.state --at 13:00 --route way.csv --graph g.json --from 0");
     let graph: Value = serde_json::from_slice(&fs::read(run.out("graph.geojson")).unwrap()).unwrap();
     let [through, first, around] = [4, 5, 6].map(|edge| graph["features"][edge]["properties"].clone());
@@ -112,13 +92,11 @@ fn hours_routes_and_graphs_are_predicted() {
 
 /// A scan before a wall that is 2 m away and has a door of 0.9 m; the room behind it ends at 4 m.
 fn door_line(time_s: f64, is_open: bool) -> String {
-    let range_m = |beam: u32| {
+    scan_line(time_s, |beam| {
         let (ahead, aside) = f64::from(beam).to_radians().sin_cos();
         let wall_m = if is_open && (2.0 * aside / ahead).abs() < 0.45 { 4.0 } else { 2.0 };
         (wall_m / ahead.max(1e-9)).min(3.0 / aside.abs().max(1e-9))
-    };
-    let ranges: String = (0..180).map(|beam| format!("{:.2} ", range_m(beam))).collect();
-    format!("ODOM 1 2 0 0 0 0 {time_s} h 0\nFLASER 180 {ranges}0 0 0 0 0 0 {time_s} h 0\n")
+    })
 }
 
 /// A door that is open from 8 to 18 o'clock, seen for 20 s in every half hour of 15 days, and when it opens and closes.
@@ -136,22 +114,19 @@ fn door_days() -> String {
 
 #[test]
 fn doors_have_hours_and_so_have_masks_and_edges() {
-    let run = Run::new().with_map_log();
+    let run = Run::of("map_log");
     run.write("days.log", &door_days());
     run.write("names.toml", "[[place]]\nname = \"front\"\nx_m = 2.0\ny_m = 0.0\n");
     run.goes_well(&format!("days.log --time-zone Europe/Berlin --places names.toml {SAVED}"));
     fs::remove_dir_all(run.path("out")).unwrap();
-    let run = run.with_predict();
-    let ended = run.goes_well("a.state --at 2024-01-16T13:00 --at 2024-01-16T03:00");
-    for line in [
+    let run = run.with("predict");
+    run.goes_well("a.state --at 2024-01-16T13:00 --at 2024-01-16T03:00").prints(&[
         "door 0, place 1 (front), at (2.0",
         " m wide, closed when it was last seen, Mon 2024-01-15 23:30 CET",
         "  Tue 2024-01-16 13:00 CET: open with a probability of ",
         "  Opens ",
         "  Usually open Mon to Sun ",
-    ] {
-        assert!(ended.stdout.contains(line), "{line}: {}", ended.stdout);
-    }
+    ]);
     let expected = |summary: &Summary, number: usize| {
         let of = |key: &str| summary.number(&format!("/places/0/expected/{number}/{key}"));
         [of("interval_90/0"), of("probability"), of("interval_90/1")]
@@ -170,7 +145,7 @@ fn doors_have_hours_and_so_have_masks_and_edges() {
 
     // A place at the door and an edge through it are predicted as the door.
     let features = [node(0, 1.0, 0.1), node(1, 3.0, 0.1), edge(10, 0, 1)];
-    run.write("g.json", &json!({"type": "FeatureCollection", "features": features}).to_string());
+    run.write("g.json", &graph(&features));
     run.goes_well("a.state --at 2024-01-16T13:00 --place 1.8,0.3 --graph g.json --speed 100");
     assert_eq!(expected(&run.summary(), 0), noon);
     let graph: Value = serde_json::from_slice(&fs::read(run.out("graph.geojson")).unwrap()).unwrap();
@@ -181,99 +156,77 @@ fn doors_have_hours_and_so_have_masks_and_edges() {
         run.goes_well(&format!("a.state --at 2024-01-16T13:00 --place {asked}"));
         let summary = run.summary();
         assert_eq!(expected(&summary, 0), noon);
-        assert_eq!(
-            [summary.0.pointer("/places/0/number"), summary.0.pointer("/places/0/name")].map(Option::unwrap),
-            [&json!(1), &json!("front")]
-        );
-        assert!(
-            summary.text("/places/0/title").starts_with("door 0, place 1 (front), at "),
-            "{}",
-            summary.text("/places/0/title")
-        );
+        assert_eq!((summary.number("/places/0/number"), summary.text("/places/0/name")), (1.0, "front"));
+        let title = summary.text("/places/0/title");
+        assert!(title.starts_with("door 0, place 1 (front), at "), "{title}");
     }
-    let refused = run.ends("a.state --place 9");
-    assert_eq!(
-        (refused.code, refused.stderr.as_str()),
-        (Some(2), "error: --place 9: there is no such place; known are 1 (front)\n")
-    );
-    let refused = run.ends("a.state --door 0 --door 7");
-    assert_eq!(refused.code, Some(2));
-    assert!(
-        refused.stderr.starts_with("error: --door 7: there is no such door; known are 0 at ")
-            && refused.stderr.contains("are those of places: --place"),
-        "{}",
-        refused.stderr
-    );
+    insta::assert_snapshot!(run.refuses("a.state --place 9"), @"error: --place 9: there is no such place; known are 1 (front)");
+    let refused = run.refuses("a.state --door 0 --door 7");
+    let says = ["error: --door 7: there is no such door; known are 0 at ", "are those of places: --place"];
+    assert!(says.iter().all(|says| refused.contains(says)), "{refused}");
 }
 
 #[test]
 fn what_cannot_be_predicted_is_refused_with_a_sentence() {
     let run = with_state();
-    run.write("way.csv", "0,0\n1,up\n");
-    run.write("g.json", "{\"features\": 3}");
-    let files = &["a.state", "g.json", "way.csv"];
-    let refused = |arguments: &str| refuses(&run, arguments, files);
-    let invalid = refused("a.state --at teatime");
-    let expected = "error: --at: `teatime`: must be a time as +10m, 17:10, \"Tue 17:10\", 2024-01-30T17:10 or 2024-01-30T17:10Z\n";
-    assert_eq!(invalid, expected);
-    assert!(refused("a.state --place 99,0").contains("--place 99,0: it is outside of the map, x from "));
-    assert!(refused("way.csv").contains("way.csv: this is not a state file"));
-    assert!(refused("a.state --route way.csv").contains("way.csv, line 2: a point is `x y` or `time x y`"));
-    // Nothing is predicted for the past.
-    let expected =
-        "error: --at: `2024-01-15T22:10`: must not be before the last reading, 2024-01-15T22:10:19 (CET)\n";
-    assert_eq!(refused("a.state --at +1h --at 2024-01-15T22:10"), expected);
-    run.write("far.csv", "0 0\n200000000 0\n");
-    run.write("late.csv", "1 0 0\ninf 1 0\n");
-    run.write("back.csv", "1,0,0\n2,1,0\n1.5,1,1\n");
-    let files = &["a.state", "back.csv", "far.csv", "g.json", "late.csv", "way.csv"];
-    let refused = |arguments: &str| refuses(&run, arguments, files);
-    let expected =
-        "far.csv, line 2: x and y must be numbers from -1000000 to 1000000 m, found 200000000 and 0\n";
-    assert!(refused("a.state --route far.csv").ends_with(expected));
+    let wrong_files = [
+        ("way.csv", "0,0\n1,up\n"),
+        ("far.csv", "0 0\n200000000 0\n"),
+        ("late.csv", "1 0 0\ninf 1 0\n"),
+        ("back.csv", "1,0,0\n2,1,0\n1.5,1,1\n"),
+        ("g.json", "{\"features\": 3}"),
+    ];
+    wrong_files.iter().for_each(|(name, text)| run.write(name, text));
     let time = "a time must be a finite number of seconds, not before that of the point before, found";
-    assert!(refused("a.state --route late.csv").ends_with(&format!("late.csv, line 2: {time} inf\n")));
-    assert!(refused("a.state --route back.csv").ends_with(&format!("back.csv, line 3: {time} 1.5\n")));
-    assert!(
-        refused("a.state --graph g.json")
-            .contains("g.json: this is no graph of nav2_route: it has no list `features`")
-    );
+    for (arguments, says) in [
+        (
+            "a.state --at teatime",
+            "error: --at: `teatime`: must be a time as +10m, 17:10, \"Tue 17:10\", 2024-01-30T17:10 or 2024-01-30T17:10Z\n",
+        ),
+        ("a.state --place 99,0", "--place 99,0: it is outside of the map, x from "),
+        ("way.csv", "way.csv: this is not a state file"),
+        // Nothing is predicted for the past.
+        (
+            "a.state --at +1h --at 2024-01-15T22:10",
+            "error: --at: `2024-01-15T22:10`: must not be before the last reading, 2024-01-15T22:10:19 (CET)\n",
+        ),
+        ("a.state --route way.csv", "way.csv, line 2: a point is `x y` or `time x y`"),
+        (
+            "a.state --route far.csv",
+            "far.csv, line 2: x and y must be numbers from -1000000 to 1000000 m, found 200000000 and 0\n",
+        ),
+        ("a.state --route late.csv", &format!("late.csv, line 2: {time} inf\n")),
+        ("a.state --route back.csv", &format!("back.csv, line 3: {time} 1.5\n")),
+        ("a.state --graph g.json", "g.json: this is no graph of nav2_route: it has no list `features`"),
+    ] {
+        let message = run.refuses(arguments);
+        assert!(message.contains(says), "{arguments}: {message}");
+    }
 }
 
 #[test]
 fn a_state_keeps_its_time_zone_and_an_earlier_one_gets_one() {
-    let run = Run::new().with_map_log();
+    let run = Run::of("map_log");
     run.write("a.log", &standing_log(1.7e9, 60));
     run.goes_well(&format!("a.log --time-zone Europe/Berlin {SAVED}"));
     let before = fs::read(run.path("a.state")).unwrap();
-    let refused = run.ends(&format!("a.log --time-zone UTC {SAVED}"));
-    assert_eq!(refused.code, Some(2));
-    let expected = "error: a.state: the state is of another run: `survey.mapper.time_zone` is `Europe/Berlin` there, and `UTC` here\n";
-    assert_eq!(refused.stderr, expected);
+    insta::assert_snapshot!(run.refuses(&format!("a.log --time-zone UTC {SAVED}")), @"error: a.state: the state is of another run: `survey.mapper.time_zone` is `Europe/Berlin` there, and `UTC` here");
     assert!(fs::read(run.path("a.state")).unwrap() == before);
     run.goes_well(&format!("a.log {SAVED}"));
     assert_eq!(run.summary().text("/settings/mapper/time_zone"), "Europe/Berlin");
-    let refused = run.ends("a.log --time-zone Europe/Berlim");
-    assert!(
-        refused.code == Some(2) && refused.stderr.contains("perhaps Europe/Berlin;"),
-        "{}",
-        refused.stderr
-    );
+    let refused = run.refuses("a.log --time-zone Europe/Berlim");
+    assert!(refused.contains("perhaps Europe/Berlin;"), "{refused}");
 
     // A log without a date has no hours.
     run.write("b.log", &standing_log(10.0, 60));
     run.goes_well("b.log --quiet --no-rrd --state b.state");
     assert_eq!(run.summary().text("/hours"), "none: b.log does not say when it was recorded");
-    let run = run.with_predict();
-    let hours = |state: &str| run.ends(&format!("{state} --at 17:10"));
-    assert!(
-        hours("b.state")
-            .stderr
-            .contains("the state knows no hours (b.log does not say when it was recorded)")
-    );
+    let run = run.with("predict");
+    let refused = run.refuses("b.state --at 17:10");
+    let says = "the state knows no hours (b.log does not say when it was recorded)";
+    assert!(refused.contains(says), "{refused}");
     run.goes_well("b.state --at +10m --place 1,0");
-    let Summary(summary) = run.summary();
-    assert_eq!(summary["places"][0]["expected"].as_array().unwrap().len(), 1);
+    assert_eq!(run.summary().at("/places/0/expected").as_array().unwrap().len(), 1);
 }
 
 /// A world with a calendar has dates: its first week begins on Monday, 2024-01-01. The door of the page on worlds is open from 8 to 18 on
@@ -289,9 +242,9 @@ fn a_simulated_week_is_asked_for_days_and_hours() {
     run.goes_well(&format!("{week} --duration 3d --state week.state"));
     let end_s = run.summary().number("/simulated_s");
     fs::remove_dir_all(run.path("out")).unwrap();
-    let run = run.with_predict();
+    let run = run.with("predict");
     let ended = run.goes_well("week.state --at 2024-01-11T03:00 --at 2024-01-11T13:00Z --at +1h");
-    assert!(ended.stdout.starts_with("last reading: Thu 2024-01-04 "), "{}", ended.stdout);
+    ended.prints(&["last reading: Thu 2024-01-04 "]);
     let summary = run.summary();
     // Monday, 7:00, is the beginning.
     let begin_s = MONDAY_S + 3600.0 + 7.0 * 3600.0;
@@ -301,7 +254,6 @@ fn a_simulated_week_is_asked_for_days_and_hours() {
     assert!(open(0) + 0.15 < open(1), "at night {}, at noon {}", open(0), open(1));
     // By its weekday, in words.
     let mut command = run.command("week.state --place 4.05,1.95");
-    let ended = command.args(["--at", "Tue 14:00"]).output().unwrap();
-    let text = String::from_utf8(ended.stdout).unwrap();
-    assert!(text.contains("  Tue 2024-01-09 14:00 UTC: open with a probability of "), "{text}");
+    let ended = Ended::from(command.args(["--at", "Tue 14:00"]).output().unwrap());
+    ended.prints(&["  Tue 2024-01-09 14:00 UTC: open with a probability of "]);
 }

@@ -24,12 +24,10 @@ fn a_map_of_another_place_is_reported() {
         let run = Run::new();
         let walls: Vec<&str> = (0..48 * 48).map(|pixel| if pixel % 49 == 4 { "0" } else { "254" }).collect();
         run.write("m.pgm", &format!("P2\n48 48\n255\n{}\n", walls.join(" ")));
+        let thresholds = "negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196";
         run.write(
             "m.yaml",
-            &format!(
-                "image: m.pgm\nresolution: 0.25\norigin: [{origin}, 0.0]\nnegate: 0\noccupied_thresh: 0.65\n\
-                 free_thresh: 0.196\n"
-            ),
+            &format!("image: m.pgm\nresolution: 0.25\norigin: [{origin}, 0.0]\n{thresholds}\n"),
         );
         run.ends("--quiet --no-rrd --duration 1 --map m.yaml")
     };

@@ -1,8 +1,7 @@
 //! `docs/programs.md` is what the programs say with `--help`.
 
-use crate::run::{PROGRAMS, program};
+use crate::run::{PROGRAMS, Run};
 use std::path::Path;
-use std::process::Command;
 
 const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/programs.md");
 const HEAD: &str = "# Programs
@@ -14,9 +13,7 @@ installed, with their names. The live nodes `curious_node` and `sim_node` take R
 fn page() -> String {
     let mut page = HEAD.to_owned();
     for name in PROGRAMS {
-        let output = Command::new(program(name)).arg("--help").output().unwrap();
-        assert!(output.status.success(), "{name} --help");
-        let help = String::from_utf8(output.stdout).unwrap();
+        let help = Run::of(name).goes_well("--help").stdout;
         let lines: Vec<&str> = help.trim().lines().map(str::trim_end).collect();
         assert!(lines.iter().all(|line| line.chars().count() <= 100), "{name}: {help}");
         page += &format!("\n## {name}\n\n```text\n{}\n```\n", lines.join("\n"));
@@ -27,9 +24,8 @@ fn page() -> String {
 #[test]
 fn every_version_is_printed() {
     for name in PROGRAMS {
-        let output = Command::new(program(name)).arg("--version").output().unwrap();
         let expected = format!("{name} {}\n", env!("CARGO_PKG_VERSION"));
-        assert_eq!(String::from_utf8_lossy(&output.stdout), expected);
+        assert_eq!(Run::of(name).goes_well("--version").stdout, expected);
     }
 }
 

@@ -1,8 +1,10 @@
 //! One run of a program, in a separate folder.
 
 use serde_json::Value;
+use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
+use std::time::Duration;
 use tempfile::TempDir;
 
 /// All programs but those of ROS 2.
@@ -38,40 +40,48 @@ impl From<Output> for Ended {
     }
 }
 
+impl Ended {
+    /// Waits for the end of a program.
+    pub(crate) fn of(child: Child) -> Self {
+        child.wait_with_output().unwrap().into()
+    }
+
+    /// Standard output has these texts.
+    #[track_caller]
+    pub(crate) fn prints(&self, texts: &[&str]) {
+        texts.iter().for_each(|text| assert!(self.stdout.contains(text), "{text}: {}", self.stdout));
+    }
+
+    /// The error output has these texts.
+    #[track_caller]
+    pub(crate) fn says(&self, texts: &[&str]) {
+        texts.iter().for_each(|text| assert!(self.stderr.contains(text), "{text}: {}", self.stderr));
+    }
+}
+
+/// Waits until something is so, at most for a minute.
+#[track_caller]
+pub(crate) fn wait_until(mut is_so: impl FnMut() -> bool) {
+    let is_in_time = (0..6000).any(|_| {
+        std::thread::sleep(Duration::from_millis(10));
+        is_so()
+    });
+    assert!(is_in_time, "it does not come to this");
+}
+
 impl Run {
     /// A run of `four_rooms`.
     pub(crate) fn new() -> Self {
-        Self { folder: tempfile::tempdir().unwrap(), program: "four_rooms" }
+        Self::of("four_rooms")
     }
 
-    /// A run of `grid_world`.
-    pub(crate) fn grid() -> Self {
-        Self { folder: tempfile::tempdir().unwrap(), program: "grid_world" }
+    pub(crate) fn of(program: &'static str) -> Self {
+        Self { folder: tempfile::tempdir().unwrap(), program }
     }
 
-    /// A run of `house_trials`.
-    pub(crate) fn houses() -> Self {
-        Self { folder: tempfile::tempdir().unwrap(), program: "house_trials" }
-    }
-
-    /// The same folder, for `map_log`.
-    pub(crate) fn with_map_log(self) -> Self {
-        Self { program: "map_log", ..self }
-    }
-
-    /// The same folder, for `predict`.
-    pub(crate) fn with_predict(self) -> Self {
-        Self { program: "predict", ..self }
-    }
-
-    /// The same folder, for `state_file`.
-    pub(crate) fn with_state_file(self) -> Self {
-        Self { program: "state_file", ..self }
-    }
-
-    /// The same folder, for `four_rooms`.
-    pub(crate) fn with_four_rooms(self) -> Self {
-        Self { program: "four_rooms", ..self }
+    /// The same folder, for another program.
+    pub(crate) fn with(self, program: &'static str) -> Self {
+        Self { program, ..self }
     }
 
     /// A finished run of `four_rooms` without a recording, which must succeed; arguments are separated by spaces.
@@ -104,7 +114,8 @@ impl Run {
         let mut command = Command::new(program(self.program));
         command.current_dir(self.folder.path()).args(arguments.split_whitespace());
         let is_on_shards = ["missing ", "merge ", "status "].iter().any(|name| arguments.starts_with(name));
-        if !arguments.contains("--out") && !is_on_shards && self.program != "state_file" {
+        let has_folder = !["state_file", "check_world"].contains(&self.program);
+        if !arguments.contains("--out") && !is_on_shards && has_folder {
             command.args(["--out", "out"]);
         }
         command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
@@ -115,10 +126,48 @@ impl Run {
         self.command(arguments).output().unwrap().into()
     }
 
+    #[track_caller]
     pub(crate) fn goes_well(&self, arguments: &str) -> Ended {
         let ended = self.ends(arguments);
         assert_eq!(ended.code, Some(0), "{arguments}: {ended:?}");
         ended
+    }
+
+    /// The error output of the program for invalid `arguments`: one error, the exit code 2, and nothing is written.
+    #[track_caller]
+    pub(crate) fn refuses(&self, arguments: &str) -> String {
+        let before = self.names();
+        let Ended { code, stdout, stderr } = self.ends(arguments);
+        let errors = stderr.lines().filter(|line| line.starts_with("error: ")).count();
+        assert_eq!((code, stdout.as_str(), errors), (Some(2), "", 1), "{arguments}: {stderr}");
+        assert_eq!(self.names(), before, "something was written");
+        stderr
+    }
+
+    /// A program that may write files of this number of blocks of 512 bytes.
+    pub(crate) fn ends_with_files_up_to(&self, blocks: u32, arguments: &str) -> Ended {
+        let program = self.command(arguments);
+        let mut limited = Command::new("sh");
+        limited.args(["-c", &format!("ulimit -f {blocks} && exec \"$0\" \"$@\"")]).arg(program.get_program());
+        limited.args(program.get_args()).current_dir(&self.folder).output().unwrap().into()
+    }
+
+    /// Sends Ctrl-C to the program after a line on its error output.
+    #[cfg(unix)]
+    pub(crate) fn interrupted(&self, arguments: &str, after: impl Fn(&str) -> bool) -> Ended {
+        let mut child = self.starts(arguments);
+        let mut lines = BufReader::new(child.stderr.take().unwrap()).lines().map(Result::unwrap);
+        let mut stderr = String::new();
+        loop {
+            let line = lines.next().expect("a line that is waited for");
+            stderr += &format!("{line}\n");
+            if after(&line) {
+                break;
+            }
+        }
+        crate::ending::send(nix::sys::signal::Signal::SIGINT, &child);
+        lines.for_each(|line| stderr += &format!("{line}\n"));
+        Ended { stderr, ..Ended::of(child) }
     }
 
     pub(crate) fn starts(&self, arguments: &str) -> Child {
@@ -165,6 +214,8 @@ pub(crate) struct CellRow {
     pub(crate) interval_s: f64,
     pub(crate) rate_hz: f64,
     pub(crate) recency_s: f64,
+    watched_free_s: f64,
+    watched_blocked_s: f64,
 }
 
 impl CellRow {
@@ -172,6 +223,10 @@ impl CellRow {
     pub(crate) fn events(&self) -> [u32; 2] {
         let (blocked, freed) = (self.block_events, self.free_events);
         [blocked + self.block_events_after_gap, freed + self.free_events_after_gap]
+    }
+
+    pub(crate) fn watched_s(&self) -> f64 {
+        self.watched_free_s + self.watched_blocked_s
     }
 }
 

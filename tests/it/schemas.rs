@@ -14,13 +14,13 @@ use std::path::PathBuf;
 fn results() -> [(&'static str, Value); 4] {
     let robot = Run::new();
     robot.goes_well("--world house --duration 20 --pose localized --quiet --no-rrd");
-    let logs = Run::new().with_map_log();
+    let logs = Run::of("map_log");
     logs.write("a.log", &standing_log(1.7e9, 120));
     logs.goes_well("a.log --quiet --no-rrd --state a.state");
     let logged = logs.summary().0;
-    let predicted = logs.with_predict();
+    let predicted = logs.with("predict");
     predicted.goes_well("a.state --place 1,0");
-    let trials = Run::grid();
+    let trials = Run::of("grid_world");
     trials.goes_well("--quiet --steps 200 --trials 2 --strategy recency --strategy random --estimator paper");
     let read = |run: &Run, file: &str| serde_json::from_slice(&fs::read(run.out(file)).unwrap()).unwrap();
     [

@@ -2,12 +2,16 @@
 //! what does not belong together is refused.
 
 use crate::grid::same;
-use crate::run::{Ended, Run, names};
+use crate::run::{Ended, Run, names, wait_until};
 use std::fs;
+use std::sync::LazyLock;
 
 /// Twenty-four trials.
 const GRID: &str = "--steps 300 --trials 2 --generate 2 --seed 100 --strategy curious --strategy recency \
                     --strategy poisson";
+
+/// The results of [`GRID`] without shards.
+static REFERENCE: LazyLock<Vec<(String, Vec<u8>)>> = LazyLock::new(|| single(Run::of("grid_world"), GRID));
 
 /// The results of a run without shards.
 fn single(run: Run, arguments: &str) -> Vec<(String, Vec<u8>)> {
@@ -28,156 +32,103 @@ fn merged(run: &Run) -> Vec<(String, Vec<u8>)> {
     same::files(run)
 }
 
-/// The error of a command that is refused, which is one line, with the exit code 2.
-#[track_caller]
-fn refused(run: &Run, arguments: &str) -> String {
-    let ended = run.ends(arguments);
-    assert_eq!((ended.code, ended.stdout.as_str()), (Some(2), ""), "{arguments}: {ended:?}");
-    ended.stderr.trim_end().to_owned()
-}
-
 #[test]
 fn any_number_of_shards_in_any_order_gives_the_files_of_a_single_run() {
-    let reference = single(Run::grid(), GRID);
-    assert!(reference.iter().any(|(name, _)| name == "trials.csv"));
+    assert!(REFERENCE.iter().any(|(name, _)| name == "trials.csv"));
     for count in [1, 3, 64] {
-        let run = Run::grid();
+        let run = Run::of("grid_world");
         // The last shard first. Neither threads nor the order of the arguments matter.
         let odd = (1..=count).rev().filter(|number| number % 2 == 1);
         start(&run, &format!("--threads 1 {GRID}"), count, odd);
         let even = (1..=count).filter(|number| number % 2 == 0);
-        start(
-            &run,
-            &format!("--threads 3 {}", GRID.replacen("--steps 300 --trials 2", "--trials 2 --steps 300", 1)),
-            count,
-            even,
-        );
-        for ((name, bytes), (expected_name, expected)) in merged(&run).iter().zip(&reference) {
-            assert_eq!(name, expected_name);
-            assert!(bytes == expected, "{name} differs with {count} shards");
-        }
+        let grid = GRID.replacen("--steps 300 --trials 2", "--trials 2 --steps 300", 1);
+        start(&run, &format!("--threads 3 {grid}"), count, even);
+        same::assert_same(&merged(&run), &REFERENCE, &format!("with {count} shards"));
     }
 }
 
 #[test]
 fn houses_have_shards_as_well() {
     let short = "--generate 2 --seed 103 --duration 30s --strategy curious --strategy random";
-    let run = Run::houses();
+    let run = Run::of("house_trials");
     start(&run, short, 3, [2, 3, 1]);
-    assert!(merged(&run) == single(Run::houses(), short));
-    let error = refused(&Run::grid(), &format!("merge {}", run.path("shards").display()));
+    assert!(merged(&run) == single(Run::of("house_trials"), short));
+    let error = Run::of("grid_world").refuses(&format!("merge {}", run.path("shards").display()));
     assert!(error.contains("has shards of house_trials: merge them with `house_trials merge "), "{error}");
-}
-
-#[test]
-fn a_shard_that_was_cut_off_anywhere_goes_on() {
-    let reference = single(Run::grid(), GRID);
-    let run = Run::grid();
-    start(&run, GRID, 3, 1..=3);
-    let path = run.path("shards/shard-2-of-3.jsonl");
-    let whole = fs::read(&path).unwrap();
-    for cut in [0, 17, whole.len() / 3, whole.len() / 2 + 1, whole.len() - 1] {
-        fs::write(&path, &whole[..cut]).unwrap();
-        let missing = run.ends("missing shards");
-        assert_eq!((missing.code, missing.stdout.as_str()), (Some(1), "2\n"), "{missing:?}");
-        let error = refused(&run, "merge shards");
-        assert_eq!(
-            error,
-            "error: shards is not complete: the shards 2 of 3 lack trials, the first is shard-2-of-3.jsonl; run those shards again"
-        );
-        start(&run, GRID, 3, [2]);
-        assert!(merged(&run) == reference, "cut at {cut}");
-    }
-    let missing = run.goes_well("missing shards");
-    assert_eq!(missing.stdout, "");
 }
 
 #[test]
 #[cfg(unix)]
 fn a_killed_shard_goes_on_and_no_other_process_may_have_it() {
     use nix::sys::signal::Signal;
-    use std::time::Duration;
-    let long = GRID.replacen("--steps 300", "--steps 100000", 1);
-    let run = Run::grid();
-    let path = run.path("shards/shard-1-of-2.jsonl");
+    let long = GRID.replacen("--steps 300", "--steps 30000", 1);
+    let run = Run::of("grid_world");
+    let lines =
+        || fs::read_to_string(run.path("shards/shard-1-of-2.jsonl")).map_or(1, |text| text.lines().count());
     for signal in [Signal::SIGKILL, Signal::SIGTERM] {
-        let before = fs::read_to_string(&path).map_or(1, |text| text.lines().count());
+        let before = lines();
         let child = run.starts(&format!("--threads 1 {long} --shard 1/2 --out shards"));
-        while fs::read_to_string(&path).map_or(0, |text| text.lines().count()) < before + 2 {
-            std::thread::sleep(Duration::from_millis(5));
-        }
-        let error = refused(&run, &format!("{long} --shard 1/2 --out shards"));
-        assert_eq!(
-            error,
-            "error: cannot write shards/shard-1-of-2.jsonl: another run is writing there; wait for it, or start another shard"
+        wait_until(|| lines() >= before + 2);
+        let error = run.refuses(&format!("{long} --shard 1/2 --out shards"));
+        assert!(
+            error.ends_with("another run is writing there; wait for it, or start another shard\n"),
+            "{error}"
         );
         crate::ending::send(signal, &child);
-        let ended = Ended::from(child.wait_with_output().unwrap());
+        let ended = Ended::of(child);
         if signal == Signal::SIGTERM {
             assert_eq!(ended.code, Some(130), "{ended:?}");
-            assert!(
-                ended
-                    .stderr
-                    .ends_with(" of 12 trials of shard 1/2 are finished; start the shard again to go on\n"),
-                "{ended:?}"
-            );
+            ended.says(&[" of 12 trials of shard 1/2 are finished; start the shard again to go on\n"]);
         }
     }
     let ended = run.goes_well(&format!("{long} --shard 1/2 --out shards"));
-    assert!(
-        ended.stderr.starts_with("shard 1/2: ")
-            && ended.stderr.contains(" of 12 trials are finished already"),
-        "{ended:?}"
-    );
+    ended.says(&["shard 1/2: ", " of 12 trials are finished already"]);
     assert_eq!(ended.stdout, "shard 1/2 is complete: 12 trials in shards/shard-1-of-2.jsonl\n");
     start(&run, &long, 2, [2]);
-    assert!(merged(&run) == single(Run::grid(), &long));
+    assert!(merged(&run) == single(Run::of("grid_world"), &long));
 }
 
 #[test]
 #[cfg(target_os = "linux")]
 fn a_full_disk_costs_the_trial_in_hand() {
-    let run = Run::grid();
+    let run = Run::of("grid_world");
     let arguments = format!("--quiet {GRID} --shard 1/2 --out shards");
-    let program = run.command(&arguments);
-    let mut limited = std::process::Command::new("sh");
     // 50 kB: the header and a few trials.
-    limited.arg("-c").arg("ulimit -f 100 && exec \"$0\" \"$@\"").arg(program.get_program());
-    let ended = Ended::from(limited.args(program.get_args()).current_dir(run.path("")).output().unwrap());
+    let ended = run.ends_with_files_up_to(100, &arguments);
     assert_eq!((ended.code, ended.stdout.as_str()), (Some(1), ""), "{ended:?}");
-    assert_eq!(
-        ended.stderr,
-        "error: cannot write shards/shard-1-of-2.jsonl: File too large (os error 27); free space, and start the shard again: the trials before are kept\n"
-    );
+    insta::assert_snapshot!(ended.stderr, @"error: cannot write shards/shard-1-of-2.jsonl: File too large (os error 27); free space, and start the shard again: the trials before are kept");
     let kept = fs::read_to_string(run.path("shards/shard-1-of-2.jsonl")).unwrap();
     assert!(kept.ends_with('\n') && (2..12).contains(&kept.lines().count()), "{}", kept.lines().count());
     start(&run, GRID, 2, 1..=2);
-    assert!(merged(&run) == single(Run::grid(), GRID));
+    assert!(merged(&run) == *REFERENCE);
 }
 
 #[test]
 fn invalid_input_is_refused_and_nothing_is_overwritten() {
+    let run = Run::of("grid_world");
     for wrong in ["0/3", "4/3", "1/0", "3", "1/1001", "x/y"] {
-        let run = Run::grid();
-        let error = refused(&run, &format!("{GRID} --shard {wrong} --out shards"));
+        let error = run.refuses(&format!("{GRID} --shard {wrong} --out shards"));
         assert!(error.contains("must be I/N with I from 1 to N, and N at most 1000"), "{error}");
-        assert_eq!(run.names(), [""; 0]);
     }
-    let run = Run::grid();
-    start(&run, GRID, 3, 1..=3);
+    start(&run, GRID, 3, [1, 3]);
+    let missing = run.ends("missing shards");
+    assert_eq!((missing.code, missing.stdout.as_str()), (Some(1), "2\n"), "{missing:?}");
+    insta::assert_snapshot!(run.refuses("merge shards"), @"error: shards is not complete: the shards 2 of 3 lack trials, the first is shard-2-of-3.jsonl; run those shards again");
+    start(&run, GRID, 3, [2]);
+    assert_eq!(run.goes_well("missing shards").stdout, "");
     let files = || {
         let read = |name: String| fs::read(run.path("shards").join(name)).unwrap();
         names(&run.path("shards")).into_iter().map(read).collect::<Vec<_>>()
     };
     let before = files();
     let refusals = [
-        refused(&run, &format!("{GRID} --shard 1/4 --out shards")),
-        refused(&run, &format!("{GRID} --max-steps 7 --shard 1/3 --out shards")),
-        refused(&run, "merge nowhere"),
-        refused(&run, "status nowhere"),
-        refused(&run, "missing ."),
+        run.refuses(&format!("{GRID} --shard 1/4 --out shards")),
+        run.refuses(&format!("{GRID} --max-steps 7 --shard 1/3 --out shards")),
+        run.refuses("merge nowhere"),
+        run.refuses("status nowhere"),
+        run.refuses("missing ."),
     ];
-    insta::assert_snapshot!(refusals.join("\n"), @"
+    insta::assert_snapshot!(refusals.concat(), @"
     error: shards/shard-1-of-3.jsonl: this shard is one of 3 shards, not of 4; give another folder by --out
     error: shards/shard-1-of-3.jsonl: this shard is of the experiment `--generate 2 --strategy curious --strategy recency --strategy poisson --trials 2 --steps 300 --seed 100`, not `--generate 2 --strategy curious --strategy recency --strategy poisson --trials 2 --steps 300 --max-steps 7 --seed 100`; give another folder by --out
     error: cannot read nowhere: No such file or directory (os error 2)
@@ -188,16 +139,16 @@ fn invalid_input_is_refused_and_nothing_is_overwritten() {
         ("--shard 1/3 --generate 1 --save-worlds", "cannot be used with"),
         ("merge shards --steps 3", "unexpected argument '--steps'"),
     ] {
-        let ended = run.ends(arguments);
-        assert!(ended.code == Some(2) && ended.stderr.contains(says), "{arguments}: {ended:?}");
+        let message = run.refuses(arguments);
+        assert!(message.contains(says), "{arguments}: {message}");
     }
     assert!(files() == before);
     // A line edited by hand, and a file of another version.
     let path = run.path("shards/shard-3-of-3.jsonl");
     let text = fs::read_to_string(&path).unwrap();
     fs::write(&path, text.replacen("\"seed\":100", "\"seed\":101", 1)).unwrap();
-    let edited = refused(&run, "merge shards");
-    assert_eq!(refused(&run, &format!("{GRID} --shard 3/3 --out shards")), edited);
+    let edited = run.refuses("merge shards");
+    assert_eq!(run.refuses(&format!("{GRID} --shard 3/3 --out shards")), edited);
     insta::assert_snapshot!(edited, @"error: shards/shard-3-of-3.jsonl: line 2 is not as it was written: it was edited, or is of another experiment; remove the file, and run its shard again");
     assert_eq!(names(&run.path("shards")).len(), 3, "no result is written");
 }
@@ -205,35 +156,29 @@ fn invalid_input_is_refused_and_nothing_is_overwritten() {
 #[test]
 #[cfg(target_os = "linux")]
 fn a_folder_that_cannot_be_written_is_refused() {
-    let run = Run::grid();
+    let run = Run::of("grid_world");
     run.write("file", "precious");
     // Root can write to every ordinary folder.
-    let error = refused(&run, &format!("{GRID} --shard 1/3 --out /sys"));
-    assert!(
-        error.starts_with("error: cannot write ") && error.ends_with("Permission denied (os error 13)"),
-        "{error}"
-    );
-    let error = refused(&run, &format!("{GRID} --shard 1/3 --out file"));
+    let error = run.refuses(&format!("{GRID} --shard 1/3 --out /sys"));
+    let says = ["error: cannot write ", "Permission denied (os error 13)\n"];
+    assert!(error.starts_with(says[0]) && error.ends_with(says[1]), "{error}");
+    let error = run.refuses(&format!("{GRID} --shard 1/3 --out file"));
     assert!(error.contains("'--out <DIR>': file is a file, not a folder"), "{error}");
     assert_eq!(fs::read_to_string(run.path("file")).unwrap(), "precious");
     start(&run, GRID, 1, [1]);
-    let error = refused(&run, "merge shards --out /sys");
+    let error = run.refuses("merge shards --out /sys");
     assert!(error.starts_with("error: cannot write /sys"), "{error}");
 }
 
 #[test]
 fn a_world_that_was_changed_is_not_merged() {
-    let run = Run::grid();
+    let run = Run::of("grid_world");
     let world = include_str!("../../worlds/two_blocks.toml");
     run.write("world.toml", world);
     start(&run, "--world world.toml --steps 100 --trials 1", 2, 1..=2);
     run.write("world.toml", &world.replacen("sensor_radius = 4", "sensor_radius = 5", 1));
-    let error = refused(&run, "merge shards");
-    assert_eq!(
-        error,
-        "error: the experiment of shards cannot be repeated: a world file was changed after the shards ran, or the program is another one"
-    );
-    let error = refused(&run, "--quiet --world world.toml --steps 100 --trials 1 --shard 1/2 --out shards");
+    insta::assert_snapshot!(run.refuses("merge shards"), @"error: the experiment of shards cannot be repeated: a world file was changed after the shards ran, or the program is another one");
+    let error = run.refuses("--quiet --world world.toml --steps 100 --trials 1 --shard 1/2 --out shards");
     assert!(
         error.contains("of an experiment with the same arguments, but other worlds or settings"),
         "{error}"

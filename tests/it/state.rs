@@ -1,7 +1,6 @@
 //! `--state`: a run goes on from a file as if it had never ended.
 
-use crate::bad_input::refuses;
-use crate::run::{Ended, Run, Summary};
+use crate::run::{Ended, Run, Summary, wait_until};
 use std::fs;
 
 const SHORT: &str = "--quiet --no-rrd --state a.state --duration";
@@ -44,8 +43,7 @@ fn a_run_in_two_parts_equals_a_whole_one() {
 fn a_state_of_something_else_is_refused_and_stays() {
     let run = begun("");
     let saved = fs::read(run.path("a.state")).unwrap();
-    fs::remove_dir_all(run.path("out")).unwrap();
-    let refused = |arguments: &str| refuses(&run, &format!("--state a.state {arguments}"), &["a.state"]);
+    let refused = |arguments: &str| run.refuses(&format!("--state a.state {arguments}"));
     insta::assert_snapshot!(refused("--world house"), @"error: a.state: the state is of another run: `world` is `four rooms` there, and `house` here");
     insta::assert_snapshot!(refused("--seed 3"), @"error: a.state: the state is of another run: `seed` is `0` there, and `3` here");
     insta::assert_snapshot!(refused("--strategy recency"), @"error: a.state: the state is of another run: `--strategy` is `curious` there, and `recency` here");
@@ -54,50 +52,18 @@ fn a_state_of_something_else_is_refused_and_stays() {
     insta::assert_snapshot!(refused("--pose localized"), @"error: a.state: the state is of another run: `pose` is `exact` there, and `localized` here");
     insta::assert_snapshot!(refused("--drive tour"), @"error: a.state: the state is of another run: `--drive` is `agent` there, and `tour` here");
     assert_eq!(fs::read(run.path("a.state")).unwrap(), saved);
+    let half = &saved[..saved.len() / 2];
+    fs::write(run.path("a.state"), half).unwrap();
+    insta::assert_snapshot!(refused(""), @"error: a.state: the state file is damaged: its checksum does not fit");
+    assert_eq!(fs::read(run.path("a.state")).unwrap(), half);
 }
 
 #[test]
-fn a_damaged_state_is_refused_and_stays() {
-    let run = begun("");
-    let saved = fs::read(run.path("a.state")).unwrap();
-    fs::remove_dir_all(run.path("out")).unwrap();
-    let refused = |bytes: &[u8]| {
-        fs::write(run.path("a.state"), bytes).unwrap();
-        let message = refuses(&run, "--state a.state", &["a.state"]);
-        assert_eq!(fs::read(run.path("a.state")).unwrap(), bytes);
-        message
-    };
-    insta::assert_snapshot!(refused(&saved[..saved.len() / 2]), @"error: a.state: the state file is damaged: its checksum does not fit");
-    insta::assert_snapshot!(refused(b""), @"error: a.state: this is not a state file");
-    insta::assert_snapshot!(refused(b"name = \"house\""), @"error: a.state: this is not a state file");
-    let mut flipped = saved;
-    flipped[1000] ^= 1;
-    insta::assert_snapshot!(refused(&flipped), @"error: a.state: the state file is damaged: its checksum does not fit");
-}
-
-#[test]
-fn a_state_that_cannot_be_written_ends_before_the_run() {
+fn states_and_bags_that_cannot_be_written_end_before_the_run() {
     let run = Run::new();
-    insta::assert_snapshot!(refuses(&run, "--state missing/a.state", &[]), @"error: missing/a.state: cannot use it: No such file or directory (os error 2)");
-    insta::assert_snapshot!(refuses(&run, "--state .", &[]), @"
-    error: invalid value '.' for '--state <FILE>': it is a folder, not a file
-
-    For more information, try '--help'.
-    ");
-    let ended = run.ends("--state-every 5");
-    assert_eq!(ended.code, Some(2), "{ended:?}");
-}
-
-#[test]
-fn a_bag_that_cannot_be_written_ends_before_the_run() {
-    let run = Run::new();
-    let refused = |path: &str| refuses(&run, &format!("--mcap {path}"), &[]);
-    insta::assert_snapshot!(refused("no/such/run.mcap"), @"error: cannot write the bag of --mcap: cannot write no/such/run.mcap: No such file or directory (os error 2)");
-    insta::assert_snapshot!(refused("."), @"
-    error: invalid value '.' for '--mcap <FILE>': it is a folder, not a file
-
-    For more information, try '--help'.
-    ");
+    insta::assert_snapshot!(run.refuses("--state missing/a.state"), @"error: missing/a.state: cannot use it: No such file or directory (os error 2)");
+    insta::assert_snapshot!(run.refuses("--mcap no/such/run.mcap"), @"error: cannot write the bag of --mcap: cannot write no/such/run.mcap: No such file or directory (os error 2)");
+    run.refuses("--state-every 5");
 }
 
 /// Killed again and again at any point, even while it saves: the file is complete, and the run comes to its end.
@@ -106,23 +72,18 @@ fn a_bag_that_cannot_be_written_ends_before_the_run() {
 fn a_killed_run_goes_on() {
     use crate::ending::send;
     use nix::sys::signal::Signal;
-    use std::time::Duration;
 
     let run = Run::new();
     let slow = "--no-rrd --state a.state --state-every 0.05 --duration 1h --speed 40";
+    let modified = || fs::metadata(run.path("a.state")).and_then(|file| file.modified()).ok();
     let mut last_s = 0.0;
     for round in 0..6_u64 {
-        let child = run.starts(slow);
+        let (before, child) = (modified(), run.starts(slow));
         // Until it has saved, and a little longer.
-        let before = fs::metadata(run.path("a.state")).and_then(|file| file.modified()).ok();
-        let has_saved = (0..1200).any(|_| {
-            std::thread::sleep(Duration::from_millis(50));
-            fs::metadata(run.path("a.state")).and_then(|file| file.modified()).ok() != before
-        });
-        assert!(has_saved, "no state");
-        std::thread::sleep(Duration::from_millis(37 * round));
+        wait_until(|| modified() != before);
+        std::thread::sleep(std::time::Duration::from_millis(37 * round));
         send(if round < 5 { Signal::SIGKILL } else { Signal::SIGINT }, &child);
-        let ended = Ended::from(child.wait_with_output().unwrap());
+        let ended = Ended::of(child);
         assert_eq!(ended.code, (round == 5).then_some(130), "{ended:?}");
         // The first line says where it began.
         let began = ended.stderr.lines().find_map(|line| line.strip_prefix("the run goes on from "));

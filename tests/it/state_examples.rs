@@ -15,7 +15,7 @@ fn example(name: &str) -> PathBuf {
 }
 
 fn run() -> Run {
-    let run = Run::new().with_map_log();
+    let run = Run::of("map_log");
     run.write("a.log", &standing_log(1.7e9, 120));
     run.write("b.log", &standing_log(10.0, 60));
     run

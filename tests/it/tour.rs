@@ -54,7 +54,7 @@ fn waypoints_out_of_reach_are_reported() {
     let run = Run::new();
     run.write("t.toml", "waypoints_m = [[2.0, 3.0], [-1.0, 2.0], [0.0, 0.0]]");
     let ended = run.goes_well("--quiet --no-rrd --duration 1 --drive tour --tour t.toml");
-    insta::assert_snapshot!(ended.stderr.trim_end(), @"
+    insta::assert_snapshot!(ended.stderr, @"
     warning: 2 of the 3 waypoints of the tour are in walls or outside of the map of `four rooms`, the first at [-1.0, 2.0]
       = help: the robot stops at the nearest point that it can reach
     ");

@@ -93,7 +93,7 @@ impl<'a> Beams<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use interfaces::{Purpose, RandomStream, Scan, Twist};
+    use interfaces::{Purpose, RandomStream, Scan};
 
     /// No cell that a beam shows is left out by the comparison that comes first.
     #[test]
@@ -113,23 +113,10 @@ mod tests {
                 .collect();
             let angle_increment_rad = std::f64::consts::TAU / ranges_m.len() as f64;
             let angle_min_rad = -std::f64::consts::PI;
-            let scan = Scan {
-                angle_min_rad,
-                angle_increment_rad,
-                range_min_m: 0.0,
-                range_max_m: 3.0,
-                sweep_s: 0.0,
-                ranges_m,
-            };
+            let scan =
+                Scan { angle_min_rad, angle_increment_rad, range_max_m: 3.0, ranges_m, ..Scan::default() };
             let mount = Isometry2::identity();
-            let reading = LaserReading {
-                time_s: 0.0,
-                pose: laser,
-                twist: Twist::STOP,
-                velocities: Vec::new(),
-                mount,
-                scan,
-            };
+            let reading = LaserReading { pose: laser, mount, scan, ..LaserReading::default() };
             let beams = Beams::new(&reading, &laser, &frame);
             for middle in (0..frame.len()).map(|index| frame.center(frame.cell(index))) {
                 for event in [Event::Block, Event::Free] {

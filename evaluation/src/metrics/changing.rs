@@ -15,7 +15,7 @@ pub struct ChangingAccuracy {
 }
 
 /// Balanced accuracies: the mean of the accuracy on truly free cells and the accuracy on truly blocked cells.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct ChangingScores {
     /// The accuracy on all swept cells; an unknown cell counts as incorrect. If there are only free or only blocked
     /// cells, the accuracy on these; `None` without cells.

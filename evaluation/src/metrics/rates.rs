@@ -183,20 +183,8 @@ mod tests {
     #[test]
     fn the_area_is_the_share_of_pairs_in_order() {
         let (positives, negatives) = ([1.0, 0.0, 3.0], [0.0, 2.0]);
-        let brute: f64 = positives
-            .iter()
-            .flat_map(|p| {
-                negatives.iter().map(move |n| {
-                    if p > n {
-                        1.0
-                    } else if p == n {
-                        0.5
-                    } else {
-                        0.0
-                    }
-                })
-            })
-            .sum();
+        let pairs = positives.iter().flat_map(|p| negatives.iter().map(move |n| (p, n)));
+        let brute: f64 = pairs.map(|(p, n)| 0.5 * (f64::from(p >= n) + f64::from(p > n))).sum();
         assert_eq!(area_under_roc(&positives, &negatives), Some(brute / 6.0));
         assert_eq!(area_under_roc(&[], &negatives), None);
     }

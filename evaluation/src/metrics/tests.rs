@@ -191,8 +191,7 @@ fn the_deviance_is_that_of_an_independent_computation() {
     let cells = [1, 2, 3].map(|x| world.truth().frame().index(Cell::new(x, 2)).unwrap());
     let blocked = |world: &GridWorld| cells.map(|index| world.truth().is_blocked(index));
     let mut entered = [[0.0; 3]; 2];
-    let mut run = |world: &mut GridWorld, mapper: Option<&mut Mapper>, part: usize, steps: u32| {
-        let mut mapper = mapper;
+    let mut run = |world: &mut GridWorld, mut mapper: Option<&mut Mapper>, part: usize, steps: u32| {
         for _ in 0..steps {
             let before = blocked(world);
             if let Some(mapper) = &mut mapper {
@@ -237,10 +236,8 @@ fn the_deviance_is_that_of_an_independent_computation() {
     near(scores.predictive_deviance, explained(chosen, mean));
     // Each cell was in view for 19 steps, up to the reading before the freeze.
     let cycles = cells.map(|index| f64::from(mapper.statistics(index).cycles()));
-    near(
-        scores.predictive_deviance_known,
-        explained(chosen, (cycles.iter().sum::<f64>() + 0.5) / (3.0 * 19.0)),
-    );
+    let known = (cycles.iter().sum::<f64>() + 0.5) / (3.0 * 19.0);
+    near(scores.predictive_deviance_known, explained(chosen, known));
     let full_mean = (entered[0].iter().sum::<f64>() + 0.5) / 60.0;
     let full = entered[0].map(|count| (count + 0.3) / (20.0 + 0.3 / full_mean));
     near(scores.predictive_deviance_ceiling, explained(full, mean));
@@ -265,18 +262,13 @@ fn a_map_that_sees_everything_forecasts_a_clock() {
     let ForecastScores { rates, states_1min, states_10min, states_1h } = forecasts.scores();
     assert_eq!(states_1h, StateScores::default(), "the run is shorter");
     assert_eq!((rates.from, rates.to), (Some(400.0), Some(1200.0)));
-    assert!(rates.predictive_deviance.unwrap() > 0.95, "{rates:?}");
-    assert!(
-        rates.predictive_deviance.unwrap() <= rates.predictive_deviance_ceiling.unwrap() + 0.02,
-        "{rates:?}"
-    );
+    let [found, ceiling] = [rates.predictive_deviance, rates.predictive_deviance_ceiling].map(Option::unwrap);
+    assert!(found > 0.95 && found <= ceiling + 0.02, "{rates:?}");
     for scores in [states_1min, states_10min] {
         let StateScores { brier, brier_last_seen, calibration_error, .. } = scores;
-        assert!(
-            (0.0..0.6).contains(&brier.unwrap()) && (0.0..=1.0).contains(&brier_last_seen.unwrap()),
-            "{scores:?}"
-        );
-        assert!((0.0..=1.0).contains(&calibration_error.unwrap()), "{scores:?}");
+        for (score, most) in [(brier, 0.6), (brier_last_seen, 1.0), (calibration_error, 1.0)] {
+            assert!((0.0..=most).contains(&score.unwrap()), "{scores:?}");
+        }
     }
 }
 

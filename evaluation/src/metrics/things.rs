@@ -171,10 +171,7 @@ mod tests {
     #[test]
     fn nine_of_ten_shown_cells_make_a_thing_correct() {
         assert_eq!(right_at(Some(10.0), 20.0, &cells(10)), Some(10.0 + 0.1 * 9.0));
-    }
-
-    #[test]
-    fn cells_that_were_not_shown_do_not_count() {
+        // Cells that were not shown do not count.
         assert_eq!(right_at(Some(10.0), 20.0, &cells(5)), Some(10.0 + 0.1 * 5.0));
     }
 

@@ -90,10 +90,8 @@ mod tests {
         assert_eq!(rectangles.len(), 10);
         for (index, is_wall) in walls.cells().iter().enumerate() {
             let middle = walls.frame().center(walls.frame().cell(index));
-            let holds = |outline: &&Outline| {
-                (outline[0].x..outline[2].x).contains(&middle.x)
-                    && (outline[0].y..outline[2].y).contains(&middle.y)
-            };
+            let is_between = |axis: usize, of: &Outline| (of[0][axis]..of[2][axis]).contains(&middle[axis]);
+            let holds = |outline: &&Outline| is_between(0, outline) && is_between(1, outline);
             assert_eq!(rectangles.iter().filter(holds).count(), usize::from(*is_wall), "{middle}");
         }
     }

@@ -220,34 +220,17 @@ fn line_of(thing: &ThingReport) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::metrics::{
-        ChangingAccuracy, Delays, ForecastScores, IntervalScores, MapScores, PassageScores, ReachableScores,
-    };
-    use std::collections::BTreeMap;
+    use crate::metrics::{ForecastScores, MapScores, ReachableScores};
 
     fn results(coverage: f64, age: Age, rates: RateScores) -> RunResults {
         RunResults {
-            day: None,
-            scheduled: None,
             map: MapScores { coverage, map_quality: 0.9999 },
             reachable: ReachableScores { coverage_reachable: coverage, map_quality_reachable: 0.9999 },
-            changing: ChangingAccuracy::default().scores(),
-            predicted: StateScores::default(),
-            forecasts: ForecastScores::default(),
-            passages: PassageScores::default(),
-            intervals: IntervalScores::default(),
             rates,
             age,
-            block_latency: Delays::default(),
-            free_latency: Delays::default(),
-            collisions: 0,
             contacts: Contacts { own_motion: 1, run_into: 2 },
             pose: PoseScores { mode: "exact".into(), ..PoseScores::default() },
-            goals: GoalCount::default(),
-            strategy_share: BTreeMap::new(),
-            things: Vec::new(),
-            curve: Vec::new(),
-            map_hash: String::new(),
+            ..RunResults::default()
         }
     }
 

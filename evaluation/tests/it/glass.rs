@@ -6,18 +6,8 @@ use sim::physics::{PhysicsWorld, WorldSpec};
 
 /// A hall of 24 × 6 m, longer than the range of the laser, with this last key of its upper wall.
 fn hall(upper_wall: &str) -> WorldSpec {
-    let text = format!(
-        "name = \"hall\"\n[map]\nsize_m = [24.0, 6.0]\ncell_m = 0.05\n\
-         [[wall]]\nmin_m = [0.0, 0.0]\nmax_m = [24.0, 0.1]\n\
-         [[wall]]\nmin_m = [0.0, 0.1]\nmax_m = [0.1, 6.0]\n\
-         [[wall]]\nmin_m = [23.9, 0.1]\nmax_m = [24.0, 6.0]\n\
-         [[wall]]\nmin_m = [0.1, 5.9]\nmax_m = [23.9, 6.0]\n{upper_wall}\n\
-         [[robot]]\nname = \"curious\"\npose_m = [9.0, 3.0]\nheading_deg = 0.0\nradius_m = 0.2\n\
-         [robot.drive]\nmax_linear_mps = 0.5\nmax_angular_degps = 120.0\n\
-         max_linear_acceleration_mps2 = 1.0\nmax_angular_acceleration_degps2 = 360.0\n\
-         [robot.laser]\nbeams = 720\nrange_max_m = 8.0\nrate_hz = 10.0\n\
-         [robot.behavior]\nkind = \"driven\"\n"
-    );
+    let text = include_str!("../../../ros2/src/node/tests/hall.toml").replace("beams = 360", "beams = 720");
+    let text = text.replace("# the last key of the upper wall", upper_wall);
     worldfile::physics::parse_world("hall.toml", &text).unwrap_or_else(|error| panic!("{error}"))
 }
 

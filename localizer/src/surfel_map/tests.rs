@@ -22,8 +22,8 @@ fn wall(angle_rad: f64, distance_m: f64, noise: &mut RandomStream) -> LaserReadi
             angle_increment_rad: 0.01,
             range_min_m: 0.1,
             range_max_m: 10.0,
-            sweep_s: 0.0,
             ranges_m: (0..200).map(range).collect(),
+            ..Scan::default()
         },
         ..LaserReading::default()
     }
@@ -59,13 +59,9 @@ fn surfels_lie_on_the_line_of_the_wall() {
 #[test]
 fn a_surfel_freezes() {
     let mut map = SurfelMap::new(&frame());
-    for _ in 0..FROZEN_SCANS {
-        learn(&mut map, &[on_wall(1.0, 0.55)], true);
-    }
+    see(&mut map, &[on_wall(1.0, 0.55)], FROZEN_SCANS);
     let before = *map.surfel(0);
-    for _ in 0..1000 {
-        learn(&mut map, &[on_wall(1.02, 0.55)], true);
-    }
+    see(&mut map, &[on_wall(1.02, 0.55)], 1000);
     assert_eq!(map.surfel(0).at, before.at);
     assert_eq!(map.usable().count(), 1, "a second wall beside the first is an error of the pose");
 }
@@ -75,6 +71,11 @@ fn on_wall(x_m: f64, y_m: f64) -> ScanPoint {
     ScanPoint::new(Point2::new(x_m, y_m), -Vector2::x())
 }
 
+/// Learns from some scans of points, at the pose where the robot stands.
+fn see(map: &mut SurfelMap, points: &[ScanPoint], scans: u32) {
+    (0..scans).for_each(|_| learn(map, points, true));
+}
+
 /// A wall, 1 m long.
 fn wall_at(x_m: f64) -> Vec<ScanPoint> {
     (0..20).map(|at| on_wall(x_m, 0.05 * f64::from(at))).collect()
@@ -82,9 +83,7 @@ fn wall_at(x_m: f64) -> Vec<ScanPoint> {
 
 fn learned(x_m: f64, scans: u32) -> SurfelMap {
     let mut map = SurfelMap::new(&frame());
-    for _ in 0..scans {
-        learn(&mut map, &wall_at(x_m), true);
-    }
+    see(&mut map, &wall_at(x_m), scans);
     map
 }
 
@@ -92,22 +91,16 @@ fn learned(x_m: f64, scans: u32) -> SurfelMap {
 fn a_surfel_follows_its_surface() {
     let mut map = learned(1.0, 100);
     assert!(map.usable().all(|surfel| surfel.is_permanent() && surfel.weight() == 1.0));
-    for _ in 0..2 {
-        learn(&mut map, &wall_at(1.06), true);
-    }
+    see(&mut map, &wall_at(1.06), 2);
     assert!(map.usable().all(Surfel::is_permanent), "two scans are no proof");
-    for _ in 0..20 {
-        learn(&mut map, &wall_at(1.06), true);
-    }
+    see(&mut map, &wall_at(1.06), 20);
     assert!(map.usable().count() > 5);
     for surfel in map.usable() {
         assert!((surfel.at.x - 1.06).abs() < 1e-6, "{}", surfel.at.x);
         assert!(surfel.is_suspect() && surfel.weight() < 0.05);
     }
     // It follows at once from now on, and counts fully again after ten minutes in one place.
-    for _ in 0..6100 {
-        learn(&mut map, &wall_at(1.0), true);
-    }
+    see(&mut map, &wall_at(1.0), 6100);
     assert!(map.usable().all(|surfel| (surfel.at.x - 1.0).abs() < 1e-6 && surfel.is_permanent()));
 }
 
@@ -128,15 +121,13 @@ fn what_is_out_of_view_of_a_coherent_motion_is_doubted_until_it_is_seen() {
     // Two walls: one is seen to move by 6 cm, the other is seen only later.
     let other: Vec<ScanPoint> = (0..20).map(|at| on_wall(3.0, 2.0 + 0.05 * f64::from(at))).collect();
     let mut map = SurfelMap::new(&frame());
-    for _ in 0..100 {
-        learn(&mut map, &[wall_at(1.0), other.clone()].concat(), true);
-    }
+    see(&mut map, &[wall_at(1.0), other.clone()].concat(), 100);
     let follower = Isometry2::translation(-0.06, 0.0);
     map.displace_all(&wall_at(1.06), &Isometry2::identity(), &follower, 0.01);
     assert!(map.usable().all(Surfel::is_suspect));
     let moved = |surfel: &&Surfel| surfel.at.x < 2.0;
     assert!(map.usable().filter(moved).all(|surfel| (surfel.at.x - 1.06).abs() < 1e-9));
-    learn(&mut map, &other, true);
+    see(&mut map, &other, 1);
     assert!(map.usable().filter(|surfel| !moved(surfel)).all(Surfel::is_permanent));
     assert!(map.usable().filter(moved).all(Surfel::is_suspect));
 }

@@ -283,10 +283,9 @@ mod tests {
         let scan = Scan {
             angle_min_rad: -1.5,
             angle_increment_rad: 0.02,
-            range_min_m: 0.0,
             range_max_m: 80.0,
-            sweep_s: 0.0,
             ranges_m: (0_u8..150).map(range_m).collect(),
+            ..Scan::default()
         };
         let from_last = (local, Matrix3::zeros());
         let keyframe = Keyframe { local, from_last, points: Vec::new(), mount, scan: scan.clone() };

@@ -73,10 +73,9 @@ mod tests {
         let scan = Scan {
             angle_min_rad: -std::f64::consts::FRAC_PI_2,
             angle_increment_rad: 1_f64.to_radians(),
-            range_min_m: 0.0,
             range_max_m: 80.0,
-            sweep_s: 0.0,
             ranges_m,
+            ..Scan::default()
         };
         let (local, mount) = (Isometry2::identity(), Isometry2::identity());
         let keyframe = Keyframe {

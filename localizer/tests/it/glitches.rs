@@ -36,7 +36,7 @@ fn a_jump_of_the_odometry_is_no_motion() {
         let scans = recovers(&mut robot, pose);
         assert!(scans <= 10, "{scans} scans after a jump of {x} m, {y} m, {turn} rad");
     }
-    assert!(robot.error_m(1.0) < 0.02, "a wrong pose was certain: {} m", robot.error_m(1.0));
+    robot.assert_never_wrong(0.02, "");
 }
 
 #[test]
@@ -50,7 +50,7 @@ fn a_robot_that_was_carried_a_little_finds_itself_within_a_second() {
         robot.odometry.carried_to(&home);
         recovers(&mut robot, home);
     }
-    assert!(robot.error_m(1.0) < 0.02, "a wrong pose was certain: {} m", robot.error_m(1.0));
+    robot.assert_never_wrong(0.02, "");
 }
 
 #[test]
@@ -61,7 +61,7 @@ fn a_robot_that_was_carried_to_another_room_finds_itself_within_five_seconds() {
     robot.odometry.carried_to(&pose);
     let scans = recovers(&mut robot, pose);
     assert!(scans <= 50, "{scans} scans");
-    assert!(robot.error_m(1.0) < 0.02, "a wrong pose was certain: {} m", robot.error_m(1.0));
+    robot.assert_never_wrong(0.02, "");
 }
 
 #[test]
@@ -85,7 +85,6 @@ fn a_robot_that_was_carried_into_unknown_ground_is_never_certain_of_a_wrong_plac
         let scans = recovers(&mut robot, home);
         assert!(scans <= 20, "{scans} scans until it knows that it is at home");
     }
-    assert!(robot.error_m(1.0) < 0.02, "a wrong pose was certain: {} m", robot.error_m(1.0));
-    let [exact, estimated] = robot.changes;
-    assert!(estimated <= exact + 15, "{estimated} changes, {exact} with exact poses");
+    robot.assert_never_wrong(0.02, "");
+    robot.assert_few_changes(15, "");
 }

@@ -62,6 +62,11 @@ impl Odometry {
     }
 }
 
+/// A localizer that knows nothing.
+pub(crate) fn localizer(frame: &GridFrame, start: Isometry2<f64>) -> Localizer {
+    Localizer::from_nothing(&LocalizerSettings::default(), frame, start).unwrap()
+}
+
 /// The robot.
 pub(crate) struct Robot {
     pub(crate) house: House,
@@ -86,15 +91,12 @@ pub(crate) fn mapper(frame: GridFrame) -> Mapper {
 
 impl Robot {
     pub(crate) fn new(house: House, start: Isometry2<f64>, seed: u64) -> Self {
-        let settings = LocalizerSettings::default();
-        let localizer = Localizer::from_nothing(&settings, &house.frame, start).unwrap();
-        let (estimated, exact) = (mapper(house.frame), mapper(house.frame));
         Self {
             odometry: Odometry::new(start, seed),
+            localizer: localizer(&house.frame, start),
+            estimated: mapper(house.frame),
+            exact: mapper(house.frame),
             house,
-            localizer,
-            estimated,
-            exact,
             time_s: 0.0,
             errors_m: Vec::new(),
             uncertain: 0,
@@ -146,6 +148,20 @@ impl Robot {
         while self.time_s < end_s {
             self.step(self.on_tour());
         }
+    }
+
+    /// The map has few changes that the one with exact poses has not.
+    #[track_caller]
+    pub(crate) fn assert_few_changes(&self, more: usize, what: &str) {
+        let [exact, estimated] = self.changes;
+        assert!(estimated <= exact + more, "{what}: {estimated} changes, {exact} with exact poses");
+    }
+
+    /// No wrong pose was ever certain.
+    #[track_caller]
+    pub(crate) fn assert_never_wrong(&self, most_m: f64, what: &str) {
+        let error_m = self.error_m(1.0);
+        assert!(error_m < most_m, "{what}: a pose off by {error_m} m was certain");
     }
 
     /// A quantile of the errors, m.

@@ -1,8 +1,5 @@
-use crate::house::House;
-use crate::robot::{Robot, furnished};
-use interfaces::{LaserReading, heading_rad};
-use localizer::{Localizer, LocalizerSettings, PoseState};
-use nalgebra::Isometry2;
+use crate::robot::{Robot, error_m, furnished};
+use localizer::PoseState;
 use proptest::prelude::*;
 
 #[test]
@@ -16,8 +13,7 @@ fn a_drifting_robot_knows_where_it_is() {
     let [median_m, most_m] = [0.5, 1.0].map(|share| robot.error_m(share));
     assert!(median_m < 0.004 && most_m < 0.025, "{median_m}, {most_m}");
     assert_eq!(robot.uncertain, 0);
-    let [exact, estimated] = robot.changes;
-    assert!(estimated <= exact + 12, "{estimated} changes, {exact} with exact poses");
+    robot.assert_few_changes(12, "");
 }
 
 #[test]
@@ -27,53 +23,11 @@ fn the_uncertainty_covers_the_error() {
     let mut inside = 0;
     for _ in 0..400 {
         let true_pose = robot.on_tour();
-        let estimate = robot.step(true_pose).estimate;
-        let error_m = (estimate.pose.translation.vector - true_pose.translation.vector).norm();
-        inside += usize::from(error_m <= 3.0 * estimate.position_std_m() + 1e-3);
+        let localized = robot.step(true_pose);
+        let within_m = 3.0 * localized.estimate.position_std_m() + 1e-3;
+        inside += usize::from(error_m(&localized, &true_pose) <= within_m);
     }
     assert!(inside > 360, "only {inside} of 400 errors are below three standard deviations");
-}
-
-/// A scan whose beams are measured one after the other, while the robot moves from `from` to `to`.
-fn sweeping(house: &mut House, time_s: f64, from: &Isometry2<f64>, to: &Isometry2<f64>) -> LaserReading {
-    let mut reading = house.reading(time_s, *to, &[]);
-    let (delta, beams) = (from.inv_mul(to), reading.scan.ranges_m.len());
-    for group in 0..24 {
-        let share = (group as f64 + 0.5) / 24.0;
-        let at = delta.translation.vector * share;
-        let pose = from * interfaces::pose(at.x, at.y, heading_rad(&delta) * share);
-        let part = house.reading(time_s, pose, &[]);
-        let range = group * beams / 24..(group + 1) * beams / 24;
-        reading.scan.ranges_m[range.clone()].copy_from_slice(&part.scan.ranges_m[range]);
-    }
-    reading.scan.sweep_s = 0.1;
-    reading
-}
-
-#[test]
-fn the_sweep_of_a_scan_is_undone() {
-    let worst_m = |knows_sweep: bool| {
-        let mut house = furnished(360, 103);
-        let mut localizer =
-            Localizer::from_nothing(&LocalizerSettings::default(), &house.frame, house.tour(0.0)).unwrap();
-        let mapper = crate::robot::mapper(house.frame);
-        let (mut errors_m, mut before) = (Vec::new(), house.tour(0.0));
-        for step in 0..250 {
-            let time_s = 0.1 * f64::from(step);
-            let pose = house.tour((time_s - 2.0).max(0.0));
-            let mut reading = sweeping(&mut house, time_s, &before, &pose);
-            if !knows_sweep {
-                reading.scan.sweep_s = 0.0;
-            }
-            let estimate = localizer.localize(&reading, &mapper).estimate;
-            errors_m.push((estimate.pose.translation.vector - pose.translation.vector).norm());
-            before = pose;
-        }
-        errors_m.sort_by(f64::total_cmp);
-        errors_m[errors_m.len() * 95 / 100]
-    };
-    let (undone_m, ignored_m) = (worst_m(true), worst_m(false));
-    assert!(undone_m < 0.008 && ignored_m > 1.5 * undone_m, "{undone_m}, {ignored_m}");
 }
 
 #[test]

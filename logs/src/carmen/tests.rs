@@ -4,15 +4,13 @@ mod lasers;
 
 use super::CarmenLog;
 use crate::Log;
+use crate::archive::tests::gzipped;
 use crate::bytes::Bytes;
 use crate::choice::TopicChoice;
 use crate::error::LogError;
 use crate::summary::LogSummary;
-use flate2::Compression;
-use flate2::write::GzEncoder;
 use interfaces::{LaserReading, heading_rad};
 use proptest::prelude::*;
-use std::io::Write;
 
 fn open(file: &str, bytes: &[u8]) -> Result<Log, LogError> {
     CarmenLog::open(file, Bytes::Memory(bytes.into()), &TopicChoice::default())
@@ -39,6 +37,11 @@ fn notes(text: &str) -> Vec<String> {
 
 fn error(text: &str) -> String {
     open("test.log", text.as_bytes()).unwrap_err().to_string()
+}
+
+#[track_caller]
+fn assert_has(text: &str, parts: &[&str]) {
+    parts.iter().for_each(|part| assert!(text.contains(part), "{part}: {text}"));
 }
 
 #[test]
@@ -116,9 +119,7 @@ fn robotlaser_lines_name_their_field_of_view() {
 #[test]
 fn compressed_logs_are_recognized_by_their_content() {
     let text = "ODOM 0 0 0 0 0 0 1 h 1\n".to_owned() + &flaser(1.0, "0 0 0") + &flaser(2.0, "0 0 0");
-    let mut encoder = GzEncoder::new(Vec::new(), Compression::fast());
-    encoder.write_all(text.as_bytes()).unwrap();
-    let packed = encoder.finish().unwrap();
+    let packed = gzipped(text.as_bytes());
     let log = open("packed", &packed).unwrap();
     assert_eq!(log.summary().scans, 2);
     let same = log.readings().unwrap().map(Result::unwrap).zip(readings(&text));
@@ -133,14 +134,8 @@ fn compressed_logs_are_recognized_by_their_content() {
 fn errors_name_the_file_and_the_line() {
     assert_eq!(error("# nothing\n"), "test.log: no line is a scan (FLASER or ROBOTLASER1): not a CARMEN log");
     assert_eq!(error("\nFLASER 3 1 2\n"), "test.log:2: FLASER ends before its last reading");
-    assert_eq!(
-        error("FLASER x 1 2\n"),
-        "test.log:1: FLASER: `x` is no valid value for the number of readings"
-    );
-    assert_eq!(
-        error("ODOM 1 nan 0 0 0 0 1 h 1\n"),
-        "test.log:1: ODOM: `nan` is no valid value for x, y and theta"
-    );
+    insta::assert_snapshot!(error("FLASER x 1 2\n"), @"test.log:1: FLASER: `x` is no valid value for the number of readings");
+    insta::assert_snapshot!(error("ODOM 1 nan 0 0 0 0 1 h 1\n"), @"test.log:1: ODOM: `nan` is no valid value for x, y and theta");
     let missing = CarmenLog::open("no/such.log", Bytes::File("no/such.log".into()), &TopicChoice::default())
         .unwrap_err()
         .to_string();
@@ -151,9 +146,10 @@ fn errors_name_the_file_and_the_line() {
 fn a_last_line_that_is_cut_off_is_left_out() {
     let text = flaser(1.0, "0 0 0") + "FLASER 180 1.5 1.5";
     assert_eq!(summary(&text).scans, 1);
-    let expected =
-        ["line 2, the last one, is cut off and left out", "no ODOM line: the odometry stands still"];
-    assert_eq!(notes(&text), expected);
+    insta::assert_snapshot!(notes(&text).join("\n"), @"
+    line 2, the last one, is cut off and left out
+    no ODOM line: the odometry stands still
+    ");
 }
 
 #[test]
@@ -244,15 +240,10 @@ fn a_robot_stands_if_neither_odometry_nor_scans_move() {
 
 #[test]
 fn a_compressed_log_grows_by_a_hundred_at_most() {
-    let mut encoder = GzEncoder::new(Vec::new(), Compression::best());
-    encoder.write_all(flaser(1.0, "0 0 0").as_bytes()).unwrap();
-    (0..90).for_each(|_| encoder.write_all("#\n".repeat(1 << 19).as_bytes()).unwrap());
-    let error = open("a.log.gz", &encoder.finish().unwrap()).unwrap_err().to_string();
+    let text = flaser(1.0, "0 0 0") + &"#\n".repeat(90 << 19);
+    let error = open("a.log.gz", &gzipped(text.as_bytes())).unwrap_err().to_string();
     assert!(error.starts_with("a.log.gz: the "), "{error}");
-    assert!(
-        error.contains("unpack to more than") && error.ends_with("unpack it first: gzip -d FILE"),
-        "{error}"
-    );
+    assert_has(&error, &["unpack to more than", "unpack it first: gzip -d FILE"]);
 }
 
 /// 40 scans of a robot that drives ahead in a room, with a range of this factor; `odometry` writes its lines.
@@ -330,25 +321,20 @@ fn a_recording_at_another_pace_is_noted() {
     };
     let [same, said] = [1.0, 2.0].map(|pace| notes(&log(pace)).join("; "));
     assert!(!same.contains("recording"), "{same}");
-    assert!(
-        said.contains("took 116 s by their own times, which count, and 58 s by those of the recording"),
-        "{said}"
-    );
+    assert_has(&said, &["took 116 s by their own times, which count, and 58 s by those of the recording"]);
 }
 
 #[test]
 fn logs_that_cannot_be_true_are_named() {
     let right = |time_s: f64| format!("ODOM {} 0 0 0 0 0 {time_s} host {time_s}\n", (time_s * 0.3).sin());
     assert_eq!(impossible(&room(1.0, right)), None);
-    let expected = "the ranges look like millimeters: in 40 of 40 scans, their median is beyond 100 m (the first: 2580, which \
-                    would be 2.58 m); ranges are in meters: divide them by 1000";
-    assert_eq!(impossible(&room(1000.0, right)).unwrap(), expected);
-    assert!(
-        impossible(&room(100.0, right)).unwrap().starts_with("the ranges look like centimeters: in 40 of")
-    );
-    assert!(
-        impossible(&room(0.001, right)).unwrap().starts_with("the ranges look like kilometers: in 40 of")
-    );
+    insta::assert_snapshot!(impossible(&room(1000.0, right)).unwrap(), @"the ranges look like millimeters: in 40 of 40 scans, their median is beyond 100 m (the first: 2580, which would be 2.58 m); ranges are in meters: divide them by 1000");
+    for (factor, unit) in [(100.0, "centimeters"), (0.001, "kilometers")] {
+        assert_has(
+            &impossible(&room(factor, right)).unwrap(),
+            &["the ranges look like ", unit, ": in 40 of"],
+        );
+    }
     let swapped =
         |time_s: f64| format!("ODOM {time_s} 0 0 0 0 0 {} host {time_s}\n", 5.0 + (time_s * 0.3).sin());
     let why = impossible(&room(1.0, swapped)).unwrap();
@@ -365,8 +351,6 @@ fn logs_that_cannot_be_true_are_named() {
         None => format!("{line}\n"),
     });
     assert_eq!(impossible(&open.collect::<String>()), None);
-    let nothing = "none of 40 scans has a range between the limits of the laser: nothing is seen";
-    assert_eq!(impossible(&room(0.0, right)).unwrap(), nothing);
-    let one = "one scan: what changes is found by comparing scans, at least 2";
-    assert_eq!(impossible(&flaser(1.0, "0 0 0")).unwrap(), one);
+    insta::assert_snapshot!(impossible(&room(0.0, right)).unwrap(), @"none of 40 scans has a range between the limits of the laser: nothing is seen");
+    insta::assert_snapshot!(impossible(&flaser(1.0, "0 0 0")).unwrap(), @"one scan: what changes is found by comparing scans, at least 2");
 }

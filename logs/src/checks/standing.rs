@@ -120,14 +120,8 @@ mod tests {
 
     /// A scan all around, whatever the number of beams.
     fn scan(ranges_m: Vec<f32>) -> Scan {
-        Scan {
-            angle_min_rad: 0.0,
-            angle_increment_rad: if ranges_m.len() > 1 { TAU / ranges_m.len() as f64 } else { 0.0 },
-            range_min_m: 0.0,
-            range_max_m: 80.0,
-            sweep_s: 0.0,
-            ranges_m,
-        }
+        let angle_increment_rad = if ranges_m.len() > 1 { TAU / ranges_m.len() as f64 } else { 0.0 };
+        Scan { angle_increment_rad, range_max_m: 80.0, ranges_m, ..Scan::default() }
     }
 
     /// Whether a laser seems to stand whose scans have these ranges.

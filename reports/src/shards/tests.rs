@@ -84,10 +84,8 @@ fn a_shard_that_was_cut_off_at_any_byte_goes_on() {
     let path = folder.path().join(shard(2, 3).file_name());
     let whole = fs::read(&path).unwrap();
     let mut stream = ChaCha8Rng::seed_from_u64(1);
-    let mut cuts: Vec<usize> =
-        (0..150).map(|_| (uniform(&mut stream) * whole.len() as f64) as usize).collect();
-    cuts.extend([0, 1, whole.len() - 1]);
-    for cut in cuts {
+    let cuts = (0..150).map(|_| (uniform(&mut stream) * whole.len() as f64) as usize);
+    for cut in cuts.chain([0, 1, whole.len() - 1]) {
         fs::write(&path, &whole[..cut]).unwrap();
         assert_eq!(Shards::read(folder.path()).unwrap().missing().as_deref(), Some("2"), "cut at {cut}");
         run(folder.path(), shard(2, 3), &trials).unwrap();

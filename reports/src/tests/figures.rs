@@ -31,16 +31,13 @@ fn the_run_over_all_worlds_is_figure_3_and_the_others_are_named() {
 
 #[test]
 fn names_that_look_alike_in_a_file_s_name_stay_apart() {
-    let (settings, trials) = experiment(3, &["paper"], &["curious"], 1);
-    let renamed = trials.into_iter().map(|mut trial| {
+    let (settings, mut trials) = experiment(3, &["paper"], &["curious"], 1);
+    for trial in &mut trials {
         trial.world = trial.world.replace("generated 1", "a b").replace("generated 2", "a_b");
-        trial
-    });
-    let (names, ..) = figures(&Report::new(settings, renamed.collect()));
-    assert_eq!(
-        names.iter().filter(|name| name.ends_with("svg")).collect::<Vec<_>>(),
-        ["figure3-a_b-2.svg", "figure3-a_b.svg", "figure3-two_blocks.svg", "figure3.svg"]
-    );
+    }
+    let (mut names, ..) = figures(&Report::new(settings, trials));
+    names.retain(|name| name.ends_with("svg"));
+    assert_eq!(names, ["figure3-a_b-2.svg", "figure3-a_b.svg", "figure3-two_blocks.svg", "figure3.svg"]);
 }
 
 #[test]
@@ -58,48 +55,29 @@ fn every_strategy_the_world_and_the_words_are_drawn() {
     // The walls, and the blocks at their starts.
     assert!(count(palette::WALL) > 1000, "{}", count(palette::WALL));
     assert!(count(palette::MOVING) > 100, "{}", count(palette::MOVING));
-    for words in [
-        "two_blocks: 5 trials of 20,000 steps, estimator two-state, sensor radius 4",
-        "top",
-        "bottom",
-        "Map correct: share of cells",
-        "15,000",
-    ] {
+    let title = "two_blocks: 5 trials of 20,000 steps, estimator two-state, sensor radius 4";
+    for words in [title, "top", "bottom", "Map correct: share of cells", "15,000"] {
         assert!(text.contains(&format!(">\n{words}\n</text>")), "{words}");
     }
     assert!(!text.contains("NaN") && !text.contains("inf"));
     let [width, height] = [picture.width(), picture.height()];
-    assert!(
-        text.starts_with(&format!(
-            "<svg width=\"{width}\" height=\"{height}\" stroke-linejoin=\"round\" viewBox=\"0 0 {}0 {}0\"",
-            width, height
-        )),
-        "the same size"
-    );
+    let size = format!("<svg width=\"{width}\" height=\"{height}\" stroke-linejoin=\"round\"");
+    assert!(text.starts_with(&format!("{size} viewBox=\"0 0 {width}0 {height}0\"")), "the same size");
     assert!(text.ends_with("</svg>\n"));
 }
 
 #[test]
 fn undefined_values_single_samples_and_missing_worlds_can_be_drawn() {
-    let (settings, trials) = experiment(1, &["paper"], &["curious", "recency"], 2);
-    let undefined = trials.iter().cloned().map(|mut trial| {
-        trial.samples.iter_mut().for_each(|sample| sample.rate_error = f64::NAN);
-        trial
-    });
-    let single = trials.iter().cloned().map(|mut trial| {
-        trial.samples.truncate(1);
-        trial
-    });
-    let endless = trials.iter().cloned().map(|mut trial| {
-        trial.samples[70].log_error = f64::INFINITY;
-        trial
-    });
-    let elsewhere = trials.iter().cloned().map(|mut trial| {
-        trial.world = "nowhere".into();
-        trial
-    });
-    for trials in [undefined.collect::<Vec<_>>(), single.collect(), endless.collect(), elsewhere.collect()] {
-        let (_, pictures, texts) = figures(&Report::new(settings.clone(), trials));
+    let changes: [fn(&mut Trial); 4] = [
+        |trial| trial.samples.iter_mut().for_each(|sample| sample.rate_error = f64::NAN),
+        |trial| trial.samples.truncate(1),
+        |trial| trial.samples[70].log_error = f64::INFINITY,
+        |trial| trial.world = "nowhere".into(),
+    ];
+    for change in changes {
+        let (settings, mut trials) = experiment(1, &["paper"], &["curious", "recency"], 2);
+        trials.iter_mut().for_each(change);
+        let (_, pictures, texts) = figures(&Report::new(settings, trials));
         assert_eq!(pictures.len(), 1);
         assert!(!texts[0].contains("NaN") && !texts[0].contains("inf"));
     }

@@ -16,12 +16,9 @@ fn keys(value: &Value) -> Vec<&str> {
 }
 
 #[test]
-fn the_report_has_the_keys_that_are_promised() {
+fn the_file_has_the_numbers_of_the_report() {
     let report = report(2, &["paper"], &["recency", "curious", "poisson"], 3);
     let (json, text) = json(&report);
-    for key in ["version", "arguments", "steps", "trials", "sensor_radius", "interrupted", "runs"] {
-        assert!(!json[key].is_null(), "{key}");
-    }
     assert_eq!(json["arguments"], serde_json::json!(["--trials", "3"]));
     let runs = json["runs"].as_array().unwrap();
     assert_eq!(runs.len(), 3);
@@ -42,16 +39,10 @@ fn the_report_has_the_keys_that_are_promised() {
                     close(strategy[measure.name()].as_f64().unwrap(), result.value(measure), 1e-12);
                 }
             }
-            for key in ["final_rate_error", "rate_error_area", "final_log_error", "log_error_area"] {
-                assert!(strategy[key].is_f64(), "{key}");
-            }
             assert_eq!(strategy["strategy_share"], serde_json::json!({ "recency": 0.4, "poisson": 0.6 }));
         }
         let comparisons = run["comparisons"].as_array().unwrap();
         assert_eq!(comparisons.len(), expected.comparisons.len());
-        for key in ["a", "b", "metric", "mean_difference", "low", "high", "p_value", "p_holm", "ratio"] {
-            assert!(!comparisons[0][key].is_null(), "{key}");
-        }
         assert_eq!(comparisons[0]["metric"], "log_error_area");
     }
     let files = written(&report);
@@ -95,15 +86,10 @@ fn the_csv_has_a_row_per_trial_and_sample_and_gives_the_report_again() {
     for run in report.runs.iter().filter(|run| run.worlds == 1) {
         for strategy in &run.strategies {
             let wanted = [&run.world, &run.estimator, &strategy.name];
-            let areas: Vec<f64> = curves
-                .iter()
-                .filter(|(key, _)| key.iter().zip(wanted).all(|(a, b)| a == b))
-                .map(|(_, curve)| {
-                    let pieces =
-                        curve.windows(2).map(|ends| (ends[1].0 - ends[0].0) * (ends[0].1 + ends[1].1) / 2.0);
-                    pieces.sum::<f64>() / HORIZON as f64
-                })
-                .collect();
+            let own = curves.iter().filter(|(key, _)| key.iter().zip(wanted).all(|(a, b)| a == b));
+            let piece = |ends: &[(f64, f64)]| (ends[1].0 - ends[0].0) * (ends[0].1 + ends[1].1) / 2.0;
+            let areas: Vec<f64> =
+                own.map(|(_, curve)| curve.windows(2).map(piece).sum::<f64>() / HORIZON as f64).collect();
             assert_eq!(areas.len(), 3);
             close(areas.iter().sum::<f64>() / 3.0, strategy.value(Measure::PRIMARY), 1e-12);
         }
@@ -112,20 +98,15 @@ fn the_csv_has_a_row_per_trial_and_sample_and_gives_the_report_again() {
 
 #[test]
 fn a_name_is_no_formula_in_the_csv() {
-    for (name, field) in [
-        ("=1+1", "'=1+1"),
-        ("+1", "'+1"),
-        ("-1", "'-1"),
-        ("@SUM(A1)", "'@SUM(A1)"),
-        ("\tx", "'\tx"),
-        ("two, \"blocks\"", "two, \"blocks\""),
-    ] {
+    for (name, mark) in
+        [("=1+1", "'"), ("+1", "'"), ("-1", "'"), ("@SUM(A1)", "'"), ("\tx", "'"), ("two, \"blocks\"", "")]
+    {
         let (settings, mut trials) = experiment(1, &["paper"], &["curious"], 1);
         trials[0].world = name.into();
         let bytes = trial_file(&settings, &trials);
         let mut reader = csv::Reader::from_reader(bytes.as_slice());
         let rows: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
-        assert!(rows.iter().all(|row| &row[0] == field), "{name:?}: {:?}", rows[0]);
+        assert!(rows.iter().all(|row| row[0] == format!("{mark}{name}")), "{name:?}: {:?}", rows[0]);
     }
 }
 

@@ -46,17 +46,8 @@ fn runs_and_strategies_come_as_they_were_asked_for() {
         (report.runs.iter().map(name).collect::<Vec<_>>(), strategies.collect::<Vec<_>>())
     };
     let (runs, strategies) = order(&settings);
-    assert_eq!(
-        runs,
-        [
-            "two_blocks/two-state",
-            "two_blocks/paper",
-            "generated 1/two-state",
-            "generated 1/paper",
-            "all worlds (2)/two-state",
-            "all worlds (2)/paper",
-        ]
-    );
+    let of_world = |world: &str| ["two-state", "paper"].map(|estimator| format!("{world}/{estimator}"));
+    assert_eq!(runs, ["two_blocks", "generated 1", "all worlds (2)"].map(of_world).concat());
     assert_eq!(strategies, THREE);
     settings.worlds.reverse();
     settings.estimators.clear();
@@ -121,9 +112,7 @@ fn every_pair_of_strategies_is_compared_in_every_measure() {
     assert_eq!(run.comparisons.len(), 10 * Measure::COMPARED.len());
     for comparison in &run.comparisons {
         assert_eq!(comparison.pairs, 3);
-        assert!(
-            comparison.low <= comparison.mean_difference && comparison.mean_difference <= comparison.high
-        );
+        assert!((comparison.low..=comparison.high).contains(&comparison.mean_difference));
         assert!((comparison.p_value..=1.0).contains(&comparison.p_holm), "{comparison:?}");
         let means =
             [&comparison.a, &comparison.b].map(|name| run.strategy(name).unwrap().value(comparison.measure));

@@ -96,8 +96,8 @@ mod tests {
             pose: interfaces::pose(0.1, 0.0, 0.04),
             twist,
             velocities: vec![sample(0.95), sample(1.0)],
-            mount: Isometry2::identity(),
             scan: Scan { sweep_s: 0.1, ..Scan::default() },
+            ..LaserReading::default()
         };
         // The velocities say 8 cm and 0.02 rad.
         let found = steps(&reading, Some((0.9, Isometry2::identity())));

@@ -43,6 +43,12 @@ fn node(
     (node, others, said)
 }
 
+/// Why there is no node.
+fn refused(parameters: &Parameters, state: Option<&Path>) -> String {
+    let node = CuriousNode::new(FakeLink::default(), parameters, state, Box::new(|_| ()));
+    format!("{:#}", node.err().unwrap())
+}
+
 impl Pair {
     fn new(parameters: &Parameters, begin_s: i64, state: Option<&Path>) -> Self {
         Self::in_world(&worldfile::shipped::load("house").unwrap(), parameters, begin_s, state)
@@ -68,24 +74,52 @@ impl Pair {
                     self.node.turn(Duration::ZERO);
                 }
             }
-            let ordered = self.others.others(|others| {
-                others.heard.extract_if(.., |(topic, _)| *topic == Topic::StampedVelocity).collect::<Vec<_>>()
-            });
-            for (topic, message) in ordered {
-                self.sim.take(Event::Message(topic, message));
+            self.orders()
+                .into_iter()
+                .for_each(|message| self.sim.take(Event::Message(Topic::StampedVelocity, message)));
+        }
+    }
+
+    /// Takes the orders of the node so far.
+    fn orders(&mut self) -> Vec<Message> {
+        self.others.others(|others| {
+            let orders = others.heard.extract_if(.., |(topic, _)| *topic == Topic::StampedVelocity);
+            orders.map(|(_, message)| message).collect()
+        })
+    }
+
+    /// Calls a service, and waits for its answer.
+    fn call(&mut self, service: Service, call: Call) -> Reply {
+        self.others.calls(1, service, call);
+        loop {
+            self.node.turn(Duration::ZERO);
+            if let Some((_, reply)) = self.others.answer() {
+                return reply;
             }
         }
+    }
+
+    /// Saves the state by the service.
+    fn save(&mut self) -> Trigger {
+        let reply = self.call(Service::SaveState, Call::Nothing);
+        let Reply::Trigger(answer) = reply else { panic!("{reply:?}") };
+        answer
+    }
+
+    /// Drives by velocities, as another node would.
+    fn drive(&mut self, linear_mps: f64, angular_radps: f64) {
+        let linear = Vector { x: linear_mps, ..Vector::default() };
+        let angular = Vector { z: angular_radps, ..Vector::default() };
+        self.sim.take(Event::Message(Topic::Velocity, Message::Twist(TwistMessage { linear, angular })));
+    }
+
+    fn explore(&mut self, is_on: bool) {
+        self.others.sends(Topic::Resume, Message::Bool(Bool { data: is_on }));
     }
 
     fn is_said(&self, words: &str) -> bool {
         self.said.lock().unwrap().iter().any(|text| text.contains(words))
     }
-}
-
-/// The last answer of the service that saves the state.
-fn saved(others: &FakeLink) -> (u64, Trigger) {
-    let Some((number, Reply::Trigger(answer))) = others.answer() else { panic!("no answer") };
-    (number, answer)
 }
 
 fn known(map: &Grid<CellState>) -> usize {
@@ -132,7 +166,7 @@ fn a_robot_explores_and_waits() {
     assert!(report.mapped * 10 >= report.readings * 9, "{report:?}");
     assert!(pair.is_said("to ("), "no goal");
     assert!(!pair.others.heard(Topic::Path).is_empty());
-    pair.others.sends(Topic::Resume, Message::Bool(Bool { data: false }));
+    pair.explore(false);
     pair.others.others(|others| others.heard.clear());
     let mut orders = Vec::new();
     for _ in 0..30 {
@@ -141,16 +175,17 @@ fn a_robot_explores_and_waits() {
             pair.others.sends(topic, message);
             pair.node.turn(Duration::ZERO);
         }
-        orders.extend(pair.others.others(|others| {
-            others.heard.extract_if(.., |(topic, _)| *topic == Topic::StampedVelocity).collect::<Vec<_>>()
-        }));
+        orders.extend(pair.orders());
     }
     // One order to stop; then a joystick can drive the robot.
-    let [(_, Message::TwistStamped(TwistStamped { twist, .. }))] = orders.as_slice() else {
-        panic!("{orders:?}")
-    };
-    assert_eq!((twist.linear.x, twist.angular.z), (0.0, 0.0));
+    assert_stops(&orders);
     assert!(pair.is_said("exploring is paused"));
+}
+
+#[track_caller]
+fn assert_stops(orders: &[Message]) {
+    let [Message::TwistStamped(TwistStamped { twist, .. })] = orders else { panic!("{orders:?}") };
+    assert_eq!((twist.linear.x, twist.angular.z), (0.0, 0.0));
 }
 
 #[test]
@@ -159,25 +194,16 @@ fn what_was_learned_survives_a_restart() {
     let path = folder.path().join("house.state");
     let map = parameters(Mode::Map);
     let mut pair = Pair::new(&map, 1_700_000_000, Some(&path));
-    pair.others.calls(7, Service::SaveState, Call::Nothing);
-    pair.node.turn(Duration::ZERO);
-    let (request, early) = saved(&pair.others);
-    assert_eq!((request, early.is_done), (7, false));
-    assert_eq!(early.text, "there is nothing to save before the first reading");
+    let early = pair.save();
+    assert_eq!(
+        (early.is_done, &early.text[..]),
+        (false, "there is nothing to save before the first reading")
+    );
     pair.run(5.0);
-    pair.others.calls(8, Service::SaveState, Call::Nothing);
-    pair.node.turn(Duration::ZERO);
-    while pair.others.others(|others| others.answers.is_empty()) {
-        pair.node.turn(Duration::ZERO);
-    }
-    let (request, answer) = saved(&pair.others);
-    assert_eq!((request, answer.is_done), (8, true), "{}", answer.text);
+    let answer = pair.save();
+    assert!(answer.is_done, "{}", answer.text);
     let learned = pair.node.robot.mapper.clone();
-    let refused = |parameters: &Parameters| {
-        let node = CuriousNode::new(FakeLink::default(), parameters, Some(&path), Box::new(|_| ()));
-        format!("{:#}", node.err().unwrap())
-    };
-    let error = refused(&map);
+    let error = refused(&map, Some(&path));
     assert!(error.ends_with("house.state: cannot use it: another run uses it; wait for its end, or give another file by --state"), "{error}");
     drop(pair);
 
@@ -193,16 +219,13 @@ fn what_was_learned_survives_a_restart() {
 
     let coarse = Parameters { resolution_m: 0.1, ..map };
     drop(again);
-    let error = refused(&coarse);
+    let error = refused(&coarse, Some(&path));
     assert!(error.contains("`resolution_m` is `0.05` there, and `0.1` here"), "{error}");
 }
 
 #[test]
 fn without_a_file_nothing_is_saved() {
-    let (mut node, others, _) = node(&parameters(Mode::Map), None);
-    others.calls(1, Service::SaveState, Call::Nothing);
-    node.turn(Duration::ZERO);
-    let (_, answer) = saved(&others);
+    let answer = Pair::new(&parameters(Mode::Map), 0, None).save();
     assert_eq!(answer.text, "there is no state file: start the node with --state FILE");
 }
 
@@ -230,10 +253,10 @@ fn nav2_gets_goals_one_after_the_other() {
     assert_eq!(goals(&pair).len(), 2);
     pair.run(3.0);
     assert_eq!(goals(&pair).len(), 3);
-    pair.others.sends(Topic::Resume, Message::Bool(Bool { data: false }));
+    pair.explore(false);
     pair.run(1.0);
     assert_eq!(goals(&pair).last(), Some(&None));
-    pair.others.sends(Topic::Resume, Message::Bool(Bool { data: true }));
+    pair.explore(true);
     pair.run(1.0);
     assert!(goals(&pair).last().unwrap().is_some());
     // The robot does not move: after a while, the goal is given up.
@@ -249,9 +272,7 @@ fn a_robot_that_falls_silent_is_stopped() {
     pair.others.others(|others| others.heard.clear());
     std::thread::sleep(BLIND);
     pair.node.turn(Duration::ZERO);
-    let orders = pair.others.heard(Topic::StampedVelocity);
-    let [Message::TwistStamped(TwistStamped { twist, .. })] = orders.as_slice() else { panic!("{orders:?}") };
-    assert_eq!((twist.linear.x, twist.angular.z), (0.0, 0.0));
+    assert_stops(&pair.orders());
 }
 
 #[test]

@@ -16,24 +16,24 @@ fn every_parameter_has_a_name_a_value_and_a_slot() {
 
 #[test]
 fn invalid_parameters_are_named() {
-    let error = |name, value: &str| {
+    for (name, value, says) in [
+        ("resolutoin", "1", "there is no parameter `resolutoin`; there are mode, "),
+        ("resolution", "fine", "the parameter `resolution` must be a number, not `fine`"),
+        ("resolution", "0", "node setting `resolution` must be from 0.005 to 1, not 0"),
+        ("mode", "localization", "the parameter `mode` must be map or explore, not `localization`"),
+        ("lost_after", "-1", "node setting `lost_after` must be from 0 to 3600, not -1"),
+        ("base_frame", "", "the parameter `base_frame` must be the name of a frame, not ``"),
+        (
+            "transform_publish_period",
+            "0.001",
+            "node setting `transform_publish_period` must be 0, or from 0.005 to 10, not 0.001",
+        ),
+    ] {
         let mut parameters = Parameters::default();
         let set = parameters.set(name, &crate::params_file::value_of(value));
-        set.and_then(|()| parameters.check()).unwrap_err().to_string()
-    };
-    assert!(error("resolutoin", "1").starts_with("there is no parameter `resolutoin`; there are mode, "));
-    assert_eq!(error("resolution", "fine"), "the parameter `resolution` must be a number, not `fine`");
-    assert_eq!(error("resolution", "0"), "node setting `resolution` must be from 0.005 to 1, not 0");
-    assert_eq!(
-        error("mode", "localization"),
-        "the parameter `mode` must be map or explore, not `localization`"
-    );
-    assert_eq!(error("lost_after", "-1"), "node setting `lost_after` must be from 0 to 3600, not -1");
-    assert_eq!(error("base_frame", ""), "the parameter `base_frame` must be the name of a frame, not ``");
-    assert_eq!(
-        error("transform_publish_period", "0.001"),
-        "node setting `transform_publish_period` must be 0, or from 0.005 to 10, not 0.001"
-    );
+        let error = set.and_then(|()| parameters.check()).unwrap_err().to_string();
+        assert!(error.starts_with(says), "{error}");
+    }
 }
 
 /// The file that launch files pass has every parameter, with its default.
@@ -107,24 +107,16 @@ fn policy(strategy: &str, purpose: &str) -> Result<String, String> {
 
 #[test]
 fn a_purpose_names_a_strategy_where_none_is_given() {
-    assert_eq!(policy("", ""), Ok("curious".to_owned()));
-    assert_eq!(policy("", "fresh-map"), Ok("fresh-map".to_owned()));
-    assert_eq!(policy("", "learn-rates"), Ok("information-gain".to_owned()));
-    assert_eq!(policy("", "paper"), Ok("curious".to_owned()));
-    assert_eq!(policy("recency", ""), Ok("recency".to_owned()));
+    let purposes = ["", "fresh-map", "learn-rates", "paper"].map(|purpose| policy("", purpose).unwrap());
+    assert_eq!(purposes, ["curious", "fresh-map", "information-gain", "curious"]);
+    assert_eq!(policy("recency", "").unwrap(), "recency");
 }
 
 #[test]
 fn wrong_names_and_both_names_are_refused() {
-    assert_eq!(
-        policy("", "fame").unwrap_err(),
-        "the parameter `purpose` must be one of fresh-map, learn-rates, paper, not `fame`"
-    );
+    insta::assert_snapshot!(policy("", "fame").unwrap_err(), @"the parameter `purpose` must be one of fresh-map, learn-rates, paper, not `fame`");
     let error = policy("clever", "").unwrap_err();
     assert!(error.starts_with("the parameter `strategy` must be one of curious, recency, "), "{error}");
     assert!(error.ends_with(", not `clever`"), "{error}");
-    assert_eq!(
-        policy("curious", "paper").unwrap_err(),
-        "the parameters `strategy` (`curious`) and `purpose` (`paper`) both name a strategy: leave one of them empty"
-    );
+    insta::assert_snapshot!(policy("curious", "paper").unwrap_err(), @"the parameters `strategy` (`curious`) and `purpose` (`paper`) both name a strategy: leave one of them empty");
 }

@@ -33,35 +33,81 @@ fn scan(time_s: f64, frame: &str) -> Message {
         angle_min: -1.0,
         angle_max: 1.0,
         angle_increment: 1.0,
-        time_increment: 0.0,
         scan_time: 0.1,
         range_min: 0.1,
         range_max: 10.0,
         ranges: vec![1.0, 2.0, 3.0],
-        intensities: Vec::new(),
+        ..LaserScan::default()
     })
-}
-
-/// A robot that drives 1 m/s along x, by tf, with a laser 0.2 m ahead of its center.
-fn robot(source: &mut Source, now: Instant) {
-    source.take(Topic::StaticTransforms, transform(0.0, "base_footprint", "base_link", at(0.0)), now);
-    source.take(Topic::StaticTransforms, transform(0.0, "base_link", "laser", at(0.2)), now);
-    for step in 0..=10 {
-        let time_s = 0.1 * f64::from(step);
-        source.take(Topic::Transforms, transform(time_s, "odom", "base_footprint", at(5.0 + time_s)), now);
-    }
 }
 
 fn at(x: f64) -> Isometry2<f64> {
     interfaces::pose(x, 0.0, 0.0)
 }
 
+/// A source, and the time at which it gets its messages.
+struct Heard {
+    source: Source,
+    now: Instant,
+}
+
+impl std::ops::Deref for Heard {
+    type Target = Source;
+
+    fn deref(&self) -> &Source {
+        &self.source
+    }
+}
+
+impl Heard {
+    fn nothing() -> Self {
+        Self { source: source(), now: Instant::now() }
+    }
+
+    /// A robot that drives 1 m/s along x, by tf, with a laser 0.2 m ahead of its center.
+    fn robot() -> Self {
+        let mut heard = Self::nothing();
+        heard.drives();
+        heard
+    }
+
+    fn drives(&mut self) {
+        self.take(Topic::StaticTransforms, transform(0.0, "base_footprint", "base_link", at(0.0)));
+        self.take(Topic::StaticTransforms, transform(0.0, "base_link", "laser", at(0.2)));
+        (0..=10).map(|step| 0.1 * f64::from(step)).for_each(|time_s| self.pose(time_s, 5.0 + time_s));
+    }
+
+    fn take(&mut self, topic: Topic, message: Message) {
+        self.source.take(topic, message, self.now);
+    }
+
+    fn tf(&mut self, time_s: f64, parent: &str, child: &str, x: f64) {
+        self.take(Topic::Transforms, transform(time_s, parent, child, at(x)));
+    }
+
+    /// A pose of the odometry.
+    fn pose(&mut self, time_s: f64, x: f64) {
+        self.tf(time_s, "odom", "base_footprint", x);
+    }
+
+    fn scan(&mut self, time_s: f64, frame: &str) {
+        self.take(Topic::Scan, scan(time_s, frame));
+    }
+
+    fn next(&mut self) -> Option<LiveReading> {
+        self.source.next(self.now)
+    }
+
+    fn notes(&mut self) -> Vec<String> {
+        self.source.take_notes()
+    }
+}
+
 #[test]
 fn a_scan_gets_the_pose_at_its_time() {
-    let (mut source, now) = (source(), Instant::now());
-    robot(&mut source, now);
-    source.take(Topic::Scan, scan(0.75, "laser"), now);
-    let live = source.next(now).unwrap();
+    let mut heard = Heard::robot();
+    heard.scan(0.75, "laser");
+    let live = heard.next().unwrap();
     assert!((live.in_odom.translation.x - 5.75).abs() < 1e-9, "{}", live.in_odom);
     // The first pose is the origin.
     assert!((live.reading.pose.translation.x - 0.75).abs() < 1e-9);
@@ -69,39 +115,37 @@ fn a_scan_gets_the_pose_at_its_time() {
     assert!((live.reading.mount.translation.x - 0.2).abs() < 1e-12);
     assert!((live.reading.twist.linear_mps - 1.0).abs() < 1e-6);
     assert_eq!(live.reading.scan.ranges_m, [1.0, 2.0, 3.0]);
-    assert_eq!(source.next(now), None);
-    assert_eq!(source.count, ScanCount { received: 1, ..ScanCount::default() });
+    assert_eq!(heard.next(), None);
+    assert_eq!(heard.count, ScanCount { received: 1, ..ScanCount::default() });
 }
 
 #[test]
 fn a_scan_waits_for_a_later_pose_but_not_for_long() {
-    let (mut source, now) = (source(), Instant::now());
-    robot(&mut source, now);
-    source.take(Topic::Scan, scan(1.05, "laser"), now);
-    assert_eq!(source.next(now), None);
-    source.take(Topic::Transforms, transform(1.1, "odom", "base_footprint", at(6.1)), now);
-    assert!((source.next(now).unwrap().in_odom.translation.x - 6.05).abs() < 1e-9);
-    source.take(Topic::Scan, scan(1.15, "laser"), now);
-    assert_eq!(source.next(now), None);
+    let mut heard = Heard::robot();
+    heard.scan(1.05, "laser");
+    assert_eq!(heard.next(), None);
+    heard.pose(1.1, 6.1);
+    assert!((heard.next().unwrap().in_odom.translation.x - 6.05).abs() < 1e-9);
+    heard.scan(1.15, "laser");
+    assert_eq!(heard.next(), None);
     // A pose that is nearly at its time is better than none.
-    assert!((source.next(now + PATIENCE).unwrap().in_odom.translation.x - 6.1).abs() < 1e-9);
-    source.take(Topic::Scan, scan(1.25, "laser"), now);
-    assert_eq!((source.next(now + PATIENCE), source.count.unplaced), (None, 1));
-    assert_eq!(source.take_notes(), ["a scan is left out: there is no pose of the robot at its time"]);
+    assert!((heard.source.next(heard.now + PATIENCE).unwrap().in_odom.translation.x - 6.1).abs() < 1e-9);
+    heard.scan(1.25, "laser");
+    assert_eq!((heard.source.next(heard.now + PATIENCE), heard.count.unplaced), (None, 1));
+    assert_eq!(heard.notes(), ["a scan is left out: there is no pose of the robot at its time"]);
 }
 
 /// The odometry of many robots starts again at 0 with its driver, on the same clock.
 #[test]
 fn an_odometry_that_is_reset_is_no_motion() {
-    let (mut source, now) = (source(), Instant::now());
-    robot(&mut source, now);
+    let mut heard = Heard::robot();
     for step in 11..=20 {
         let time_s = 0.1 * f64::from(step);
-        source.take(Topic::Transforms, transform(time_s, "odom", "base_footprint", at(time_s - 1.1)), now);
+        heard.pose(time_s, time_s - 1.1);
     }
-    source.take(Topic::Scan, scan(0.95, "laser"), now);
-    source.take(Topic::Scan, scan(1.65, "laser"), now);
-    let [before, after] = [source.next(now).unwrap(), source.next(now).unwrap()];
+    heard.scan(0.95, "laser");
+    heard.scan(1.65, "laser");
+    let [before, after] = [heard.next().unwrap(), heard.next().unwrap()];
     assert!((before.reading.pose.translation.x - 0.95).abs() < 1e-9);
     assert!((after.reading.pose.translation.x - 1.55).abs() < 1e-9, "{}", after.reading.pose);
     // The odometry has it where it publishes it.
@@ -109,98 +153,86 @@ fn an_odometry_that_is_reset_is_no_motion() {
     assert!((after.in_first_odom.translation.x - 6.55).abs() < 1e-9, "{}", after.in_first_odom);
     assert!(!after.is_restart);
     let note = "the odometry jumps by 6.00 m and 0.00 rad in 0.10 s: it was reset, and the jump is no motion";
-    assert_eq!(source.take_notes(), [note]);
+    assert_eq!(heard.notes(), [note]);
 }
 
 #[test]
 fn a_robot_without_a_footprint_is_at_its_base_link() {
-    let (mut source, now) = (source(), Instant::now());
-    source.take(Topic::Transforms, transform(0.0, "odom", "base_link", at(1.0)), now);
-    assert_eq!(source.base(), "base_link");
-    assert_eq!(source.take_notes(), ["there is no frame `base_footprint`: the robot is at `base_link`"]);
-    source.take(Topic::Transforms, transform(0.2, "odom", "base_link", at(1.2)), now);
-    source.take(Topic::Scan, scan(0.1, "base_link"), now);
-    assert!((source.next(now).unwrap().in_odom.translation.x - 1.1).abs() < 1e-9);
+    let mut heard = Heard::nothing();
+    heard.tf(0.0, "odom", "base_link", 1.0);
+    assert_eq!(heard.base(), "base_link");
+    assert_eq!(heard.notes(), ["there is no frame `base_footprint`: the robot is at `base_link`"]);
+    heard.tf(0.2, "odom", "base_link", 1.2);
+    heard.scan(0.1, "base_link");
+    assert!((heard.next().unwrap().in_odom.translation.x - 1.1).abs() < 1e-9);
 }
 
 #[test]
 fn odometry_on_a_topic_is_used_where_tf_has_none() {
-    let (mut source, now) = (source(), Instant::now());
+    let mut heard = Heard::nothing();
     for step in 0..=30 {
         let (time_s, turn) = (0.1 * f64::from(step), interfaces::pose(2.0, 1.0, 0.1 * f64::from(step)));
-        source.take(Topic::Odometry, odometry(time_s, "base_link", turn), now);
-        source.take(Topic::Scan, scan(time_s - 0.05, "base_link"), now);
+        heard.take(Topic::Odometry, odometry(time_s, "base_link", turn));
+        heard.scan(time_s - 0.05, "base_link");
     }
     // For two seconds, tf could still come.
-    assert_eq!(source.count.unplaced, 20);
-    let live = source.next(now).unwrap();
+    assert_eq!(heard.count.unplaced, 20);
+    let live = heard.next().unwrap();
     assert!((heading_rad(&live.in_odom) - 1.95).abs() < 1e-6, "{}", heading_rad(&live.in_odom));
     assert!((live.reading.twist.angular_radps - 1.0).abs() < 1e-6);
 }
 
 #[test]
 fn what_is_missing_is_said() {
-    let (mut source, now) = (source(), Instant::now());
-    source.take(Topic::Scan, scan(0.0, "laser"), now);
-    assert_eq!(
-        source.obstacle().unwrap(),
-        "no pose: neither is there a transform from `odom` to `base_footprint`, nor odometry for `base_footprint`; there \
-         are no transforms on /tf and /tf_static"
-    );
-    source.take(Topic::Transforms, transform(0.0, "odom", "base_footprint", at(0.0)), now);
-    source.take(Topic::Transforms, transform(0.1, "odom", "base_footprint", at(0.0)), now);
-    source.take(Topic::Scan, scan(0.05, "lidar"), now);
-    assert_eq!(
-        source.obstacle().unwrap(),
-        "no place of the laser: `lidar` is not connected with `base_footprint`; the frames in tf are base_footprint, odom"
-    );
-    assert_eq!(source.next(now), None);
-    source.take(Topic::StaticTransforms, transform(0.0, "base_footprint", "lidar", at(0.1)), now);
-    source.take(Topic::Scan, scan(0.06, "lidar"), now);
-    assert!(source.next(now).is_some());
-    assert_eq!(source.obstacle(), None);
+    let mut heard = Heard::nothing();
+    heard.scan(0.0, "laser");
+    insta::assert_snapshot!(heard.obstacle().unwrap(), @"no pose: neither is there a transform from `odom` to `base_footprint`, nor odometry for `base_footprint`; there are no transforms on /tf and /tf_static");
+    heard.pose(0.0, 0.0);
+    heard.pose(0.1, 0.0);
+    heard.scan(0.05, "lidar");
+    insta::assert_snapshot!(heard.obstacle().unwrap(), @"no place of the laser: `lidar` is not connected with `base_footprint`; the frames in tf are base_footprint, odom");
+    assert_eq!(heard.next(), None);
+    heard.take(Topic::StaticTransforms, transform(0.0, "base_footprint", "lidar", at(0.1)));
+    heard.scan(0.06, "lidar");
+    assert!(heard.next().is_some());
+    assert_eq!(heard.obstacle(), None);
 }
 
 #[test]
 fn frames_that_form_a_cycle_do_no_harm() {
-    let (mut source, now) = (source(), Instant::now());
+    let mut heard = Heard::nothing();
     for (parent, child) in [("a", "b"), ("b", "a"), ("odom", "a"), ("b", "base_footprint")] {
-        source.take(Topic::Transforms, transform(0.0, parent, child, at(1.0)), now);
+        heard.tf(0.0, parent, child, 1.0);
     }
-    source.take(Topic::Transforms, transform(0.1, "b", "base_footprint", at(1.0)), now);
-    source.take(Topic::Scan, scan(0.05, "base_footprint"), now);
-    assert!(source.next(now).is_some());
+    heard.tf(0.1, "b", "base_footprint", 1.0);
+    heard.scan(0.05, "base_footprint");
+    assert!(heard.next().is_some());
 }
 
 #[test]
 fn a_clock_that_starts_anew_begins_another_session() {
-    let (mut source, now) = (source(), Instant::now());
-    robot(&mut source, now);
-    source.take(Topic::Scan, scan(0.5, "laser"), now);
-    assert!(!source.next(now).unwrap().is_restart);
+    let mut heard = Heard::robot();
+    heard.scan(0.5, "laser");
+    assert!(!heard.next().unwrap().is_restart);
     // A scan that comes late is no new clock.
-    source.take(Topic::Scan, scan(0.4, "laser"), now);
-    assert_eq!((source.next(now), source.count.late), (None, 1));
+    heard.scan(0.4, "laser");
+    assert_eq!((heard.next(), heard.count.late), (None, 1));
     for step in 0..3 {
         let time_s = -100.0 + 0.1 * f64::from(step);
-        source.take(Topic::Transforms, transform(time_s, "odom", "base_footprint", at(9.0)), now);
+        heard.pose(time_s, 9.0);
     }
-    source.take(Topic::Scan, scan(-99.85, "laser"), now);
-    let live = source.next(now).unwrap();
+    heard.scan(-99.85, "laser");
+    let live = heard.next().unwrap();
     assert!(live.is_restart);
     assert_eq!(live.in_odom.translation.x, 9.0);
-    assert_eq!(
-        source.take_notes(),
-        ["the clock of the scans has gone back by 100.4 s: another session begins"]
-    );
-    source.take(Topic::Scan, scan(-99.83, "laser"), now);
-    assert!(!source.next(now).unwrap().is_restart);
+    assert_eq!(heard.notes(), ["the clock of the scans has gone back by 100.4 s: another session begins"]);
+    heard.scan(-99.83, "laser");
+    assert!(!heard.next().unwrap().is_restart);
 }
 
 #[test]
 fn nonsense_is_left_out() {
-    let (mut source, now) = (source(), Instant::now());
-    robot(&mut source, now);
+    let mut heard = Heard::robot();
     let Message::Scan(good) = scan(0.2, "laser") else { unreachable!() };
     let nonsense = [
         LaserScan { ranges: Vec::new(), ..good.clone() },
@@ -208,67 +240,53 @@ fn nonsense_is_left_out() {
         LaserScan { angle_min: f32::NAN, ..good.clone() },
         LaserScan { time_increment: -5.0, ..good.clone() },
     ];
-    for message in nonsense {
-        source.take(Topic::Scan, Message::Scan(message), now);
-    }
+    nonsense.into_iter().for_each(|message| heard.take(Topic::Scan, Message::Scan(message)));
     let nan = interfaces::pose(f64::NAN, 0.0, 0.0);
-    source.take(Topic::Transforms, transform(1.1, "odom", "base_footprint", nan), now);
-    assert_eq!(source.count.invalid, 4);
-    assert_eq!(source.take_notes().len(), 5);
-    let early = LaserScan {
-        header: Header { stamp: Time { sec: i32::MIN, nanosec: u32::MAX }, ..good.header.clone() },
-        ..good.clone()
-    };
-    source.take(Topic::Scan, Message::Scan(early), now);
-    let late = LaserScan {
-        header: Header { stamp: Time { sec: i32::MAX, nanosec: u32::MAX }, ..good.header.clone() },
-        ..good.clone()
-    };
-    source.take(Topic::Scan, Message::Scan(late), now);
-    assert_eq!(source.next(now + PATIENCE), None);
-    source.take(Topic::Scan, Message::Scan(good), now);
-    assert!(source.next(now + PATIENCE).unwrap().is_restart);
+    heard.take(Topic::Transforms, transform(1.1, "odom", "base_footprint", nan));
+    assert_eq!(heard.count.invalid, 4);
+    assert_eq!(heard.notes().len(), 5);
+    for sec in [i32::MIN, i32::MAX] {
+        let header = Header { stamp: Time { sec, nanosec: u32::MAX }, ..good.header.clone() };
+        heard.take(Topic::Scan, Message::Scan(LaserScan { header, ..good.clone() }));
+    }
+    assert_eq!(heard.source.next(heard.now + PATIENCE), None);
+    heard.take(Topic::Scan, Message::Scan(good));
+    assert!(heard.source.next(heard.now + PATIENCE).unwrap().is_restart);
 }
 
 #[test]
 fn another_localization_is_noticed() {
-    let (mut source, now) = (source(), Instant::now());
-    source.take(Topic::Transforms, transform(0.0, "map", "odom", at(0.0)), now);
-    assert!(source.take_notes()[0].starts_with("another node publishes the transform from `map` to `odom`"));
-    source.is_localized = false;
-    source.take(Topic::Transforms, transform(0.1, "map", "odom", at(0.0)), now);
-    assert_eq!(source.take_notes(), [""; 0]);
+    let mut heard = Heard::nothing();
+    heard.tf(0.0, "map", "odom", 0.0);
+    assert!(heard.notes()[0].starts_with("another node publishes the transform from `map` to `odom`"));
+    heard.source.is_localized = false;
+    heard.tf(0.1, "map", "odom", 0.0);
+    assert_eq!(heard.notes(), [""; 0]);
 }
 
 #[test]
 fn of_two_lasers_one_is_used_and_a_sentence_says_which() {
-    let scans = |source: &mut Source, begin_s: f64, now: Instant| {
-        for step in 0..4 {
-            let time_s = begin_s + 0.1 * f64::from(step);
-            source.take(Topic::Scan, scan(time_s, "laser"), now);
-            source.take(Topic::Scan, scan(time_s + 0.02, "base_link"), now);
+    let scans = |heard: &mut Heard| {
+        for time_s in (0..4).map(|step| 0.2 + 0.1 * f64::from(step)) {
+            heard.scan(time_s, "laser");
+            heard.scan(time_s + 0.02, "base_link");
         }
     };
-    let (mut first, now) = (source(), Instant::now());
-    robot(&mut first, now);
-    scans(&mut first, 0.2, now);
+    let mut first = Heard::robot();
+    scans(&mut first);
     assert_eq!((first.count.received, first.count.other, first.count.late), (8, 4, 0));
     assert_eq!(first.assembler.waiting.iter().filter(|waiting| waiting.mount.translation.x > 0.1).count(), 4);
-    let expected = "scans come from more than one laser: those of `laser` are used, and those of `base_link` are left out; the \
-                    parameter `laser_frame` chooses another one";
-    assert_eq!(first.take_notes()[0], expected);
+    insta::assert_snapshot!(first.notes()[0], @"scans come from more than one laser: those of `laser` are used, and those of `base_link` are left out; the parameter `laser_frame` chooses another one");
     // A laser that falls silent makes way for the other one.
-    source_takes_over(&mut first, now + SILENT);
+    first.now += SILENT;
+    first.scan(0.9, "base_link");
+    assert_eq!((first.count.received, first.count.other), (9, 4));
 
     let [map, odom, base, laser] = ["map", "odom", "base_footprint", "base_link"].map(str::to_owned);
-    let mut chosen = Source::new(FrameNames { map, odom, base, laser }, true);
-    robot(&mut chosen, now);
-    scans(&mut chosen, 0.2, now);
+    let names = FrameNames { map, odom, base, laser };
+    let mut chosen = Heard { source: Source::new(names, true), now: first.now };
+    chosen.drives();
+    scans(&mut chosen);
     assert_eq!(chosen.count.other, 4);
     assert!(chosen.assembler.waiting.iter().all(|waiting| waiting.mount.translation.x.abs() < 1e-9));
-}
-
-fn source_takes_over(source: &mut Source, now: Instant) {
-    source.take(Topic::Scan, scan(0.9, "base_link"), now);
-    assert_eq!((source.count.received, source.count.other), (9, 4));
 }

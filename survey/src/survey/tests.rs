@@ -5,14 +5,13 @@ mod doubts;
 use super::{SavedSurvey, Survey};
 use crate::settings::SurveySettings;
 use crate::surveyed_log::LogEntry;
-use crate::tests::drive;
+use crate::tests::{bag_from, drive, exact, learn};
 use interfaces::{GridFrame, LaserReading, PoseMode};
-use logs::{Log, McapWriter, TopicChoice};
+use logs::{Log, TopicChoice};
 use mapper::{NoReturn, ScanFilterSettings};
 use nalgebra::{Isometry2, Point2};
 use robot::state::{Sessions, State, learned, restore};
 use robot::{NoPilot, Settings, Source};
-use std::fs::File;
 use std::ops::ControlFlow;
 use std::path::Path;
 
@@ -20,12 +19,7 @@ const DAY_S: f64 = 86_400.0;
 
 /// A bag with these readings, recorded some days after the first log.
 fn bag(folder: &Path, name: &str, readings: &[LaserReading], days: f64) -> Log {
-    let path = folder.join(name);
-    let begin_s = 1e9 + days * DAY_S - readings[0].time_s;
-    let mut writer = McapWriter::new(File::create(&path).unwrap(), "bag", begin_s).unwrap();
-    readings.iter().for_each(|reading| writer.reading(reading).unwrap());
-    writer.finish().unwrap();
-    Log::open(&path, &TopicChoice::default()).unwrap()
+    bag_from(&folder.join(name), readings, 1e9 + days * DAY_S - readings[0].time_s)
 }
 
 fn settings() -> SurveySettings {
@@ -39,18 +33,6 @@ fn entry(log: &Log, name: &str, days: f64) -> LogEntry {
 
 fn add(survey: &mut Survey, log: &Log, name: &str, days: f64) {
     survey.first_pass(log, entry(log, name, days), true, |_| ControlFlow::Continue(())).unwrap();
-}
-
-/// Learns a log, or some readings of it. Returns whether it is learned to its end.
-fn learn(survey: &mut Survey, number: usize, log: &Log, most: usize) -> bool {
-    let mut replay = survey.replay(number, log).unwrap().unwrap();
-    for _ in 0..most {
-        survey.turn(&mut replay).unwrap().unwrap();
-        if replay.is_over() {
-            return true;
-        }
-    }
-    false
 }
 
 fn restored(survey: Survey) -> Survey {
@@ -109,11 +91,7 @@ fn a_survey_that_is_saved_and_goes_on_equals_one_that_was_never_interrupted() {
 fn a_map_that_grows_is_the_map_of_the_large_frame() {
     let (readings, truth) = drive(3, 60.0);
     let folder = tempfile::tempdir().unwrap();
-    let exact: Vec<LaserReading> = readings
-        .iter()
-        .zip(&truth)
-        .map(|(reading, pose)| LaserReading { pose: truth[0].inv_mul(pose), ..reading.clone() })
-        .collect();
+    let exact = exact(&readings, &truth);
     let logs = [bag(folder.path(), "a", &exact[..100], 0.0), bag(folder.path(), "b", &exact[100..], 1.0)];
     let settings = SurveySettings { resolution_m: 0.1, ..SurveySettings::of(PoseMode::Exact) };
     let surveyed = || {
@@ -144,14 +122,10 @@ fn a_log_with_a_silent_hour_shows_what_two_logs_show() {
     const HOUR_S: f64 = 3600.0;
     let (readings, truth) = drive(3, 40.0);
     let folder = tempfile::tempdir().unwrap();
-    let exact = |readings: &[LaserReading], later_s: f64| -> Vec<LaserReading> {
-        let posed = |(reading, pose): (&LaserReading, &Isometry2<f64>)| {
-            let (pose, velocities) = (truth[0].inv_mul(pose), Vec::new());
-            LaserReading { pose, velocities, time_s: reading.time_s + later_s, ..reading.clone() }
-        };
-        readings.iter().zip(&truth).map(posed).collect()
-    };
-    let (early, late) = (exact(&readings[..200], 0.0), exact(&readings[..200], HOUR_S));
+    let mut early = exact(&readings[..200], &truth);
+    early.iter_mut().for_each(|reading| reading.velocities.clear());
+    let mut late = early.clone();
+    late.iter_mut().for_each(|reading| reading.time_s += HOUR_S);
     let filter = ScanFilterSettings { no_return: NoReturn::Free, ..ScanFilterSettings::default() };
     let settings = SurveySettings { resolution_m: 0.1, filter, ..SurveySettings::of(PoseMode::Exact) };
     let surveyed = |logs: &[(Log, f64)]| {
@@ -250,14 +224,9 @@ fn a_robot_goes_on_in_the_map_of_a_survey_and_the_survey_in_that_of_the_robot() 
     sessions.go_on(&state, &robot.mapper);
     let before = robot.mapper.readings();
     robot.begin_session(readings[0].time_s, Some(DAY_S));
-    let certain =
-        readings.iter().filter(|reading| robot.step((*reading).clone()).unwrap().belief.is_certain());
-    let certain = certain.count();
-    assert!(
-        certain > readings.len() / 2 && robot.mapper.readings() > before,
-        "{certain} of {}",
-        readings.len()
-    );
+    let is_certain = |reading: &&LaserReading| robot.step((*reading).clone()).unwrap().belief.is_certain();
+    let (certain, count) = (readings.iter().filter(is_certain).count(), readings.len());
+    assert!(certain > count / 2 && robot.mapper.readings() > before, "{certain} of {count}");
     let state = again(State { survey: state.survey, ..learned(&mut robot, &live, &sessions)() });
     let forecast = crate::Forecast::of_state(&state).unwrap();
     assert!(forecast.why_undated().is_none() && forecast.now_s() > 1e9 + DAY_S);

@@ -51,8 +51,7 @@ fn surveyed_drives(
     let mut survey =
         surveyed(&logs.each_ref(), &SurveySettings::of(pose), |_| ControlFlow::Continue(())).unwrap();
     for (number, log) in logs.iter().enumerate() {
-        let mut replay = survey.replay(number, log).unwrap().unwrap();
-        while survey.turn(&mut replay).unwrap().is_some() {}
+        assert!(learn(&mut survey, number, log, usize::MAX));
     }
     (survey, drives.map(|(_, truth)| truth))
 }

@@ -3,24 +3,24 @@
 use super::*;
 use crate::Verdict;
 
+/// The number of passes, and the route.
+fn route(readings: &[LaserReading]) -> (u32, Route) {
+    let mut passes = 0;
+    let route = Route::of_passes(&SurveySettings::of(PoseMode::Localized), |mut pass| {
+        passes += 1;
+        readings.iter().for_each(|reading| pass.add(reading.clone()));
+        Ok::<_, SurveyError>(pass.finish())
+    });
+    (passes, route.unwrap())
+}
+
 #[test]
 fn the_pass_is_repeated_if_the_distances_have_a_scale() {
     // The odometry of the drive measures 2 % too much; with these poses, 6 %.
     let (mut readings, truth) = drive(2, 90.0);
-    let settings = SurveySettings::of(PoseMode::Localized);
-    let mut passes = 0;
-    let mut route = |readings: &[LaserReading]| {
-        Route::of_passes(&settings, |mut pass| {
-            passes += 1;
-            readings.iter().for_each(|reading| pass.add(reading.clone()));
-            Ok::<_, SurveyError>(pass.finish())
-        })
-        .unwrap()
-    };
-    for reading in &mut readings {
-        reading.pose.translation.vector *= 1.04;
-    }
-    let scaled = route(&readings);
+    readings.iter_mut().for_each(|reading| reading.pose.translation.vector *= 1.04);
+    let (passes, scaled) = route(&readings);
+    assert_eq!(passes, 2);
     let scale = scaled.trajectory.distance_scale.unwrap();
     assert!((scale.scale * 1.02 * 1.04 - 1.0).abs() < 0.01, "{scale:?}");
     assert!(largest_error_m(&scaled.trajectory.poses, &truth[0], &truth) < 0.015);
@@ -30,16 +30,13 @@ fn the_pass_is_repeated_if_the_distances_have_a_scale() {
     assert!((percent.parse::<f64>().unwrap() - 6.1).abs() < 1.0, "{note}");
     assert_eq!(words, "too long: the route was found once more with this scale");
     // By the true poses, once.
-    for (reading, truth) in readings.iter_mut().zip(&truth) {
-        reading.pose = *truth;
-    }
-    let exact = route(&readings);
+    let (passes, exact) = route(&exact(&readings, &truth));
     assert!(
         exact.trajectory.distance_scale.is_none_or(|scale| !scale.is_significant()),
         "{:?}",
         exact.trajectory.distance_scale
     );
-    assert_eq!(passes, 3);
+    assert_eq!(passes, 1);
     assert_eq!(exact.scale_note(), None);
 }
 
@@ -47,16 +44,8 @@ fn the_pass_is_repeated_if_the_distances_have_a_scale() {
 fn a_scale_that_wheels_do_not_explain_is_reported_and_not_used() {
     // An odometry that counts three times as much.
     let (mut readings, _) = drive(2, 90.0);
-    for reading in &mut readings {
-        reading.pose.translation.vector *= 3.0;
-    }
-    let mut passes = 0;
-    let route = Route::of_passes(&SurveySettings::of(PoseMode::Localized), |mut pass| {
-        passes += 1;
-        readings.iter().for_each(|reading| pass.add(reading.clone()));
-        Ok::<_, SurveyError>(pass.finish())
-    })
-    .unwrap();
+    readings.iter_mut().for_each(|reading| reading.pose.translation.vector *= 3.0);
+    let (passes, route) = route(&readings);
     assert_eq!(passes, 1);
     let note = route.scale_note().unwrap();
     assert!(note.starts_with("by its scans, the robot moves 0.33 times as far as by its odometry"), "{note}");

@@ -3,35 +3,27 @@
 
 use super::{report, rows};
 use crate::ending::send;
-use crate::run::{Ended, Run};
+use crate::run::{Ended, Run, wait_until};
 use nix::sys::signal::Signal;
 use std::collections::BTreeSet;
-use std::io::{BufRead, BufReader};
 
 #[test]
 fn ctrl_c_keeps_the_finished_trials() {
-    let run = Run::grid();
-    let mut child =
-        run.starts("--trials 100000 --steps 2000 --strategy recency --strategy random --estimator paper");
+    let run = Run::of("grid_world");
+    let trials = "--trials 100000 --steps 2000 --strategy recency --strategy random --estimator paper";
     // The first line of progress: by then there are finished trials.
-    let mut stderr = BufReader::new(child.stderr.take().unwrap());
-    let mut line = String::new();
-    stderr.read_line(&mut line).unwrap();
-    assert!(line.contains(" of 200000 trials, ") && line.ends_with(" left\n"), "{line:?}");
-    send(Signal::SIGINT, &child);
-    let ended = Ended::from(child.wait_with_output().unwrap());
+    let ended = run.interrupted(trials, |_| true);
     assert_eq!(ended.code, Some(130), "{ended:?}");
+    let line = ended.stderr.lines().next().unwrap();
+    assert!(line.contains(" of 200000 trials, ") && line.ends_with(" left"), "{line:?}");
 
     let reported: usize = line.split(' ').next().unwrap().parse().unwrap();
     let report = report(&run);
     assert_eq!(report["interrupted"], true);
     let rows = rows(&run);
     let finished: BTreeSet<_> = rows.iter().map(|row| (row.strategy.clone(), row.seed)).collect();
-    assert!(
-        (reported..200_000).contains(&finished.len()),
-        "{} finished, {reported} reported",
-        finished.len()
-    );
+    let count = finished.len();
+    assert!((reported..200_000).contains(&count), "{count} finished, {reported} reported");
     assert_eq!(rows.len(), 80 * finished.len(), "only whole trials are kept");
     let counted: u64 = ["recency", "random"]
         .map(|name| report["runs"][0]["strategies"][name]["trials"].as_u64().unwrap())
@@ -39,21 +31,16 @@ fn ctrl_c_keeps_the_finished_trials() {
         .sum();
     assert_eq!(counted, finished.len() as u64);
     assert!(run.out("figure3.svg").exists());
-    assert!(ended.stdout.starts_with("Interrupted: "), "{}", ended.stdout);
-    assert!(ended.stdout.contains("written to out"), "{}", ended.stdout);
+    ended.prints(&["Interrupted: ", "written to out"]);
 }
 
 #[test]
 fn nothing_is_written_before_the_first_trial_is_finished() {
-    let run = Run::grid();
+    let run = Run::of("grid_world");
     let child = run.starts("--trials 1 --steps 100000000 --estimator paper");
-    let has_begun = (0..1200).any(|_| {
-        std::thread::sleep(std::time::Duration::from_millis(50));
-        run.out("unfinished_run").exists()
-    });
-    assert!(has_begun);
+    wait_until(|| run.out("unfinished_run").exists());
     send(Signal::SIGTERM, &child);
-    let ended = Ended::from(child.wait_with_output().unwrap());
+    let ended = Ended::of(child);
     assert_eq!(ended.code, Some(130), "{ended:?}");
     insta::assert_snapshot!(ended.stderr, @"interrupted before the first trial was finished: no report");
     assert_eq!(run.names(), [""; 0]);

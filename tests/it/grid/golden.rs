@@ -10,7 +10,7 @@ fn what_is_learned_in_the_shipped_worlds() {
         "{shipped} --steps 3000 --trials 1 --estimator paper --strategy recency --strategy curious"
     ));
     let line = |result: super::Result| {
-        let hash = &result.hashes()[0].1;
+        let hash = &result.hashes[0].1;
         format!("{:<20} {:<8} {hash}", result.world, result.strategy)
     };
     let lines: Vec<String> = results(&run).into_iter().map(line).collect();

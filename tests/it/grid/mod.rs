@@ -16,7 +16,7 @@ use serde_json::Value;
 
 /// A finished run without output on the screen; arguments are separated by spaces.
 fn ran(arguments: &str) -> Run {
-    let run = Run::grid();
+    let run = Run::of("grid_world");
     run.goes_well(&format!("--quiet {arguments}"));
     run
 }
@@ -33,15 +33,8 @@ pub(crate) struct Result {
     pub(crate) strategy: String,
     /// The entry in `report.json`.
     pub(crate) entry: Value,
-    /// See [`Result::hashes`].
-    hashes: Vec<(String, String)>,
-}
-
-impl Result {
     /// The hash of everything that was learned, by seed, from `trials.csv`.
-    pub(crate) fn hashes(&self) -> Vec<(String, String)> {
-        self.hashes.clone()
-    }
+    pub(crate) hashes: Vec<(String, String)>,
 }
 
 /// World, estimator, strategy, seed and hash of every trial, in the order of `trials.csv`.
@@ -69,17 +62,12 @@ pub(crate) fn results(run: &Run) -> Vec<Result> {
         }
         for (strategy, entry) in run["strategies"].as_object().unwrap() {
             let (world, estimator) = (text("world"), text("estimator"));
-            let own = trials
-                .iter()
-                .filter(|trial| trial[..3] == [&world, &estimator, strategy].map(String::as_str));
+            let is_own =
+                |trial: &&[String; 5]| trial[..3] == [&world, &estimator, strategy].map(String::as_str);
+            let own = trials.iter().filter(is_own);
             let hashes = own.map(|trial| (trial[3].clone(), trial[4].clone())).collect();
-            results.push(Result {
-                world,
-                estimator,
-                strategy: strategy.clone(),
-                entry: entry.clone(),
-                hashes,
-            });
+            let (strategy, entry) = (strategy.clone(), entry.clone());
+            results.push(Result { world, estimator, strategy, entry, hashes });
         }
     }
     results
@@ -89,7 +77,7 @@ pub(crate) fn results(run: &Run) -> Vec<Result> {
 fn hash(arguments: &str) -> String {
     let results = results(&ran(arguments));
     let [result] = &results[..] else { panic!("{arguments} makes {} results", results.len()) };
-    let [(_, hash)] = &result.hashes()[..] else { panic!("{arguments} makes more than one trial") };
+    let [(_, hash)] = &result.hashes[..] else { panic!("{arguments} makes more than one trial") };
     hash.clone()
 }
 

@@ -4,7 +4,7 @@ use crate::run::Run;
 
 #[test]
 fn the_table_names_every_strategy_and_fits_a_terminal() {
-    let ended = Run::grid().goes_well("--steps 500");
+    let ended = Run::of("grid_world").goes_well("--steps 500");
     assert_eq!(ended.stderr, "");
     for strategy in ["curious", "recency", "poisson", "random", "coin"] {
         assert!(ended.stdout.lines().any(|line| line.starts_with(strategy)), "{strategy}: {}", ended.stdout);
@@ -16,7 +16,7 @@ fn the_table_names_every_strategy_and_fits_a_terminal() {
 
 #[test]
 fn worlds_are_listed() {
-    insta::assert_snapshot!(Run::grid().goes_well("--list-worlds").stdout, @"
+    insta::assert_snapshot!(Run::of("grid_world").goes_well("--list-worlds").stdout, @"
     two_blocks           The paper's grid world: a slow block in the upper right, a fast block along the bottom wall.
     open_hall            A hall with pillars; four blocks, far from each other, that move at four different rates.
     corridor_with_doors  Rooms along a corridor; six sliding doors that open and close at different rates.

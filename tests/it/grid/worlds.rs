@@ -29,7 +29,7 @@ fn a_saved_world_is_the_one_that_was_made() {
         assert_eq!(result.world, name);
         let file = run.out(&format!("{name}.toml"));
         let again = hash(&format!("{ONE} --seed 11 --world {}", file.display()));
-        assert_eq!(result.hashes()[0].1, again, "{name}");
+        assert_eq!(result.hashes[0].1, again, "{name}");
         hashes.insert(again);
     }
     assert_eq!(hashes.len(), 3);
@@ -67,7 +67,7 @@ fn a_part_that_cannot_be_reached_is_a_warning() {
         1,
     );
     assert_ne!(closet, world);
-    let run = Run::grid();
+    let run = Run::of("grid_world");
     run.write("closet.toml", &closet);
     let ended = run.goes_well(&format!("{ONE} --world closet.toml"));
     insta::assert_snapshot!(ended.stderr, @"warning: two blocks: the robot cannot reach the 3 cells around [21, 21]");

@@ -48,20 +48,28 @@ pub(super) fn pose(x: f64, y: f64, heading_rad: f64) -> Pose {
 pub(super) fn scan(time_s: f64, frame: &str) -> LaserScan {
     LaserScan {
         header: header(time_s, frame),
-        angle_min: 0.0,
         angle_max: 3.0,
         angle_increment: 1.5,
-        time_increment: 0.0,
         scan_time: 0.1,
         range_min: 0.1,
         range_max: 10.0,
         ranges: vec![1.0, 2.0, 3.0],
-        intensities: vec![],
+        ..LaserScan::default()
     }
 }
 
 pub(super) fn transform(time_s: f64, parent: &str, child: &str, transform: Pose) -> TransformStamped {
     TransformStamped { header: header(time_s, parent), child_frame_id: child.to_owned(), transform }
+}
+
+/// A transform without a distance.
+pub(super) fn still(parent: &str, child: &str) -> TransformStamped {
+    transform(0.0, parent, child, pose(0.0, 0.0, 0.0))
+}
+
+/// Times from 0 on, s.
+pub(super) fn times(count: u32, period_s: f64) -> impl Iterator<Item = f64> {
+    (0..count).map(move |step| f64::from(step) * period_s)
 }
 
 impl Builder {
@@ -143,7 +151,17 @@ impl Builder {
         std::fs::read(file.path()).unwrap()
     }
 
-    /// The bag as a small MCAP file, opened with a choice.
+    /// A scan of the usual laser.
+    pub(super) fn laser(&mut self, time_s: f64) -> &mut Self {
+        self.scan("/scan", time_s, &scan(time_s, "laser"))
+    }
+
+    /// The bag as a small MCAP file, opened.
+    pub(super) fn log(&self) -> Log {
+        read(&self.mcap(plain()))
+    }
+
+    /// The same with a choice.
     pub(super) fn open(&self, choice: &TopicChoice) -> Result<Log, LogError> {
         open(&self.mcap(plain()), choice)
     }
@@ -179,9 +197,24 @@ pub(super) fn open(bytes: &[u8], choice: &TopicChoice) -> Result<Log, LogError> 
     Bag::open("test", vec![file], choice, Vec::new())
 }
 
+/// A bag of one file that can be opened.
+pub(super) fn read(bytes: &[u8]) -> Log {
+    open(bytes, &TopicChoice::default()).unwrap()
+}
+
 /// Why a bag of one file cannot be opened.
 pub(super) fn refused(bytes: &[u8]) -> String {
     open(bytes, &TopicChoice::default()).expect_err("the bag should be refused").to_string()
+}
+
+#[track_caller]
+pub(super) fn assert_has(text: &str, parts: &[&str]) {
+    parts.iter().for_each(|part| assert!(text.contains(part), "{part}: {text}"));
+}
+
+/// The notes of a bag, one per line.
+pub(super) fn notes(bag: &Log) -> String {
+    bag.summary().notes.join("\n")
 }
 
 pub(super) fn readings(bag: &Log) -> Vec<LaserReading> {

@@ -27,8 +27,7 @@ const SLAM: Slam = Slam {
 fn bag(Slam { frames: [map, odom, base], correction, odometry_in_tf }: &Slam) -> Builder {
     let mut bag = Builder::default();
     bag.tf("/tf_static", 0.0, &[transform(0.0, base, "laser", pose(0.2, 0.0, 0.0))]);
-    for step in 0..40 {
-        let time_s = f64::from(step) * 0.1;
+    for time_s in times(40, 0.1) {
         if let Some(correction) = correction(time_s) {
             bag.tf("/tf", time_s, &[transform(time_s + 0.5, map, odom, correction)]);
         }
@@ -36,7 +35,7 @@ fn bag(Slam { frames: [map, odom, base], correction, odometry_in_tf }: &Slam) ->
             true => bag.tf("/tf", time_s, &[transform(time_s, odom, base, pose(time_s, 0.0, 0.0))]),
             false => bag.odometry("/odom", time_s, time_s, 0.0),
         };
-        bag.scan("/scan", time_s + 0.05, &scan(time_s + 0.05, "laser"));
+        bag.laser(time_s + 0.05);
     }
     bag
 }
@@ -63,38 +62,34 @@ fn assert_in_map(readings: &[LaserReading]) {
             _ => [ahead * 0.1_f64.cos(), ahead * 0.1_f64.sin(), 0.1],
         };
         assert!(near(reading, expected), "step {step}: {:?} instead of {expected:?}", reading.pose);
-        assert!(
-            (reading.twist.linear_mps - 1.0).abs() < 1e-6,
-            "a correction is no motion: {:?}",
-            reading.twist
-        );
+        let speed_mps = reading.twist.linear_mps;
+        assert!((speed_mps - 1.0).abs() < 1e-6, "a correction is no motion: {speed_mps} m/s");
     }
     assert_eq!(readings.len(), 35);
 }
 
 #[test]
 fn poses_of_another_slam_are_those_of_its_map_and_a_jump_is_no_motion() {
-    for odometry_in_tf in [true, false] {
+    let [in_tf, on_topic] = [true, false].map(|odometry_in_tf| {
         let mut bag = bag(&Slam { odometry_in_tf, ..SLAM });
         // The last scan must not wait for a pose.
         bag.messages.pop();
         let opened = bag.open(&corrected()).unwrap();
         assert_in_map(&readings(&opened));
-        let summary = opened.summary();
-        assert_eq!((summary.scans, summary.stands), (35, false));
-        let expected = [
-            "the poses are those of another SLAM: 1 correction, by 0.81 m \
-             and 5.7° at 1.5 s; a correction is no motion, and scans before it keep their poses",
-            "4 scans are left out, since another SLAM gives no pose at their times (or in the 2 s before)",
-        ];
-        assert_eq!(summary.notes, expected);
-    }
+        assert_eq!((opened.summary().scans, opened.summary().stands), (35, false));
+        notes(&opened)
+    });
+    assert_eq!(in_tf, on_topic);
+    insta::assert_snapshot!(in_tf, @"
+    the poses are those of another SLAM: 1 correction, by 0.81 m and 5.7° at 1.5 s; a correction is no motion, and scans before it keep their poses
+    4 scans are left out, since another SLAM gives no pose at their times (or in the 2 s before)
+    ");
 }
 
 /// The corrections never reach the poses of the odometry.
 #[test]
 fn poses_of_another_slam_are_used_on_request_only() {
-    let opened = bag(&SLAM).open(&TopicChoice::default()).unwrap();
+    let opened = bag(&SLAM).log();
     assert!(opened.summary().notes.is_empty());
     for (step, reading) in (0..39).zip(readings(&opened)) {
         assert!(near(&reading, [f64::from(step) * 0.1 + 0.05, 0.0, 0.0]), "{:?}", reading.pose);
@@ -107,9 +102,7 @@ fn frames_have_other_names() {
     bag.messages.pop();
     let choice = TopicChoice { map_frame: Some("slam_map".to_owned()), ..corrected() };
     assert_in_map(&readings(&bag.open(&choice).unwrap()));
-    let expected = "test: no transform (tf) has the frame `map`, in which another SLAM would have corrected the poses; --map-frame \
-                    names it; the frames are laser, robot, slam_map, wheels";
-    assert_eq!(refused(&bag), expected);
+    insta::assert_snapshot!(refused(&bag), @"test: no transform (tf) has the frame `map`, in which another SLAM would have corrected the poses; --map-frame names it; the frames are laser, robot, slam_map, wheels");
     // A SLAM that publishes its corrections more often than the robot its odometry.
     let mut often = self::bag(&Slam { frames: ["map", "robot1_odom", "base_link"], ..SLAM });
     often.messages.pop();
@@ -147,30 +140,21 @@ fn the_motion_before_a_jump_goes_on_until_the_jump() {
 #[test]
 fn bags_without_poses_of_another_slam_are_refused() {
     let mut none = Builder::default();
-    none.odometry("/odom", 0.0, 0.0, 0.0).scan("/scan", 0.0, &scan(0.0, "laser"));
-    let expected =
-        "test: the bag has no transforms (tf), which would have the corrected poses of another SLAM";
-    assert_eq!(refused(&none), expected);
+    none.odometry("/odom", 0.0, 0.0, 0.0).laser(0.0);
+    insta::assert_snapshot!(refused(&none), @"test: the bag has no transforms (tf), which would have the corrected poses of another SLAM");
     let uncorrected = bag(&Slam { correction: |_| None, ..SLAM });
-    let expected = "test: no transform (tf) has the frame `map`, in which another SLAM would have corrected the poses; --map-frame \
-                    names it; the frames are base_link, laser, odom";
-    assert_eq!(refused(&uncorrected), expected);
+    insta::assert_snapshot!(refused(&uncorrected), @"test: no transform (tf) has the frame `map`, in which another SLAM would have corrected the poses; --map-frame names it; the frames are base_link, laser, odom");
     let mut apart = bag(&Slam { correction: |_| None, ..SLAM });
-    apart.tf("/tf", 0.0, &[transform(0.0, "map", "other", pose(0.0, 0.0, 0.0))]);
-    let expected = "test: no transforms (tf) lead from the map of another SLAM, `map`, to `laser`; the frames are base_link, laser, \
-                    map, odom, other (--map-frame and --base-frame name those of the map and of the robot)";
-    assert_eq!(refused(&apart), expected);
-    let mut still = Builder::default();
-    still.mount().tf("/tf_static", 0.0, &[transform(0.0, "map", "base_link", pose(0.0, 0.0, 0.0))]);
-    still.scan("/scan", 0.0, &scan(0.0, "laser"));
-    let expected = "test: no transform between `map` and `laser` moves: another SLAM gives no poses there";
-    assert_eq!(refused(&still), expected);
+    apart.tf("/tf", 0.0, &[still("map", "other")]);
+    insta::assert_snapshot!(refused(&apart), @"test: no transforms (tf) lead from the map of another SLAM, `map`, to `laser`; the frames are base_link, laser, map, odom, other (--map-frame and --base-frame name those of the map and of the robot)");
+    let mut unmoved = Builder::default();
+    unmoved.mount().tf("/tf_static", 0.0, &[still("map", "base_link")]).laser(0.0);
+    insta::assert_snapshot!(refused(&unmoved), @"test: no transform between `map` and `laser` moves: another SLAM gives no poses there");
     // Only before the first scan, and long after the last one.
     let mut late = bag(&SLAM);
     late.messages.retain(|(_, type_name, log_ns, _)| {
         let time_s = *log_ns as f64 * 1e-9 - BEGIN_S;
         (type_name == SCAN) == (time_s < 0.4) || time_s == 0.0
     });
-    let error = refused(&late);
-    assert_eq!(error, "test: at none of the times of 4 scans there is a pose of another SLAM");
+    insta::assert_snapshot!(refused(&late), @"test: at none of the times of 4 scans there is a pose of another SLAM");
 }

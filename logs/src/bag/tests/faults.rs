@@ -6,9 +6,8 @@ use ros::LaserScan;
 /// Twenty scans, without a pose.
 fn standing() -> Builder {
     let mut bag = Builder::default();
-    for step in 0..20 {
-        let time_s = f64::from(step) * 0.1;
-        bag.scan("/scan", time_s, &scan(time_s, "laser"));
+    for time_s in times(20, 0.1) {
+        bag.laser(time_s);
     }
     bag
 }
@@ -27,26 +26,22 @@ fn what_is_whole_of_a_file_without_its_end_is_read() {
     for options in [plain(), compressed(Compression::Lz4), WriteOptions::new().use_chunks(false)] {
         let bytes = standing().mcap(options);
         let data_end = record(&bytes, 15);
-        let bag = open(&bytes[..data_end], &TopicChoice::default()).unwrap();
+        let bag = read(&bytes[..data_end]);
         assert_eq!(readings(&bag).len(), 20);
-        let note = format!(
-            "test has no end, since it is cut off or its recorder was stopped: what is whole before byte {data_end} of {data_end} \
-             was read"
-        );
+        let note =
+            "test has no end, since it is cut off or its recorder was stopped: what is whole before byte";
         let end = "what could be read ends 1.9 s after the first scan";
-        assert_eq!(bag.summary().notes, [&note[..], end]);
+        assert_eq!(notes(&bag), format!("{note} {data_end} of {data_end} was read\n{end}"));
         let mut zeros = bytes[..data_end].to_vec();
         zeros.resize(data_end + 4096, 0);
-        assert_eq!(open(&zeros, &TopicChoice::default()).unwrap().summary().scans, 20);
+        assert_eq!(read(&zeros).summary().scans, 20);
     }
     let bytes = standing().mcap(plain());
     let chunk = record(&bytes, 6);
     let bag = open(&bytes[..chunk + 1500], &TopicChoice::default()).unwrap();
     let scans = readings(&bag).len();
     assert!((5..20).contains(&scans), "{scans} scans");
-    let expected = "test: no message: the bag is empty; test has no end, since it is cut off or its recorder was stopped: what is \
-                    whole before byte 8 of 10 was read";
-    assert_eq!(refused(&bytes[..10]), expected);
+    insta::assert_snapshot!(refused(&bytes[..10]), @"test: no message: the bag is empty; test has no end, since it is cut off or its recorder was stopped: what is whole before byte 8 of 10 was read");
 }
 
 #[test]
@@ -61,7 +56,7 @@ fn what_is_whole_of_a_file_that_is_cut_off_while_it_is_compressed_is_read() {
     let whole = bag.mcap(plain().chunk_size(Some(10_000)));
     let packed = zstd::encode_all(&whole[..], 0).unwrap();
     let half = &packed[..packed.len() / 2];
-    let found = open(half, &TopicChoice::default()).unwrap();
+    let found = read(half);
     let scans = readings(&found).len();
     assert!((100..2900).contains(&scans), "{scans} scans");
     let [zstd, mcap, end] = &found.summary().notes[..] else { panic!("{:?}", found.summary().notes) };
@@ -71,8 +66,7 @@ fn what_is_whole_of_a_file_that_is_cut_off_while_it_is_compressed_is_read() {
     let duration_s = found.summary().duration_s;
     assert_eq!(*end, format!("what could be read ends {duration_s:.1} s after the first scan"));
     assert!(duration_s > 9.0);
-    let expected = "test: the zstd file is cut off after 12 bytes, before a bag could be unpacked";
-    assert_eq!(refused(&packed[..12]), expected);
+    insta::assert_snapshot!(refused(&packed[..12]), @"test: the zstd file is cut off after 12 bytes, before a bag could be unpacked");
     let database = zstd::encode_all(&bag.sqlite()[..], 0).unwrap();
     let found = open(&database[..database.len() / 2], &TopicChoice::default()).unwrap();
     let scans = readings(&found).len();
@@ -86,28 +80,20 @@ fn what_is_whole_of_a_file_that_is_cut_off_while_it_is_compressed_is_read() {
 fn damaged_records_are_named_by_their_offset() {
     let bytes = standing().mcap(plain());
     let chunk = record(&bytes, 6);
-    let damaged = |at: usize, to: &[u8]| {
+    let (after_head, sizes) =
+        (chunk + 9, [1_u64 << 60, 1 << 30, 5 << 30, 1, 1 << 40, u64::MAX].map(u64::to_le_bytes));
+    for (at, to, says) in [
+        (chunk + 1, &sizes[0][..], "a record (code 6) of 1152921504606846976 bytes"),
+        (chunk + 1, &sizes[1], "a record ends beyond the end of the file, which is not cut off"),
+        (after_head + 16, &sizes[2], "a chunk of 5368709120 bytes, unpacked; at most 1073741824 are read"),
+        (after_head + 24, &sizes[3][..4], "the checksum of the chunk does not match"),
+        (after_head + 41, &sizes[4], "a record is longer than its chunk"),
+        (after_head + 32, &sizes[5], "the records of a chunk have 1844"),
+    ] {
         let mut bytes = bytes.clone();
         bytes[at..at + to.len()].copy_from_slice(to);
-        refused(&bytes)
-    };
-    let expected = format!("test: byte {chunk}: a record (code 6) of 1152921504606846976 bytes");
-    assert_eq!(damaged(chunk + 1, &(1_u64 << 60).to_le_bytes()), expected);
-    let longer = damaged(chunk + 1, &(1_u64 << 30).to_le_bytes());
-    let expected =
-        format!("test: byte {chunk}: a record ends beyond the end of the file, which is not cut off");
-    assert_eq!(longer, expected);
-    let unpacked = damaged(chunk + 9 + 16, &(5_u64 << 30).to_le_bytes());
-    let expected =
-        format!("test: byte {chunk}: a chunk of 5368709120 bytes, unpacked; at most 1073741824 are read");
-    assert_eq!(unpacked, expected);
-    let crc = damaged(chunk + 9 + 24, &1_u32.to_le_bytes());
-    assert_eq!(crc, format!("test: byte {chunk}: the checksum of the chunk does not match"));
-    let records = chunk + 9 + 40;
-    let long = damaged(records + 1, &(1_u64 << 40).to_le_bytes());
-    assert_eq!(long, format!("test: byte {chunk}: a record is longer than its chunk"));
-    let packed = damaged(chunk + 9 + 32, &u64::MAX.to_le_bytes());
-    assert!(packed.starts_with(&format!("test: byte {chunk}: the records of a chunk have 1844")), "{packed}");
+        assert_has(&refused(&bytes), &[&format!("test: byte {chunk}: {says}")]);
+    }
 }
 
 #[test]
@@ -138,7 +124,7 @@ fn damaged_messages_are_named_by_their_number() {
     let error = bag.refused();
     assert!(error.starts_with("test: message 3 of /scan: it is damaged: "), "{error}");
     bag.messages[2].3 = vec![0, 9, 0, 0];
-    assert_eq!(bag.refused(), "test: message 3 of /scan: the encoding 0009 is not CDR");
+    insta::assert_snapshot!(bag.refused(), @"test: message 3 of /scan: the encoding 0009 is not CDR");
     // 2³² − 1 ranges.
     let mut bag = standing();
     let at = bag.messages[0].3.len() - 4 - 3 * 4 - 4;
@@ -152,11 +138,9 @@ fn scans_that_are_none_are_left_out() {
     let swapped = |time_s| LaserScan { range_min: 10.0, range_max: 0.1, ..scan(time_s, "laser") };
     let mut bag = standing();
     bag.scan("/scan", 3.0, &swapped(3.0));
-    let opened = bag.open(&TopicChoice::default()).unwrap();
+    let opened = bag.log();
     assert_eq!(opened.summary().scans, 20);
-    let note = "1 scans are invalid and left out, the first: test: message 21 of /scan: range limits must hold 0 <= range_min \
-                < range_max, finite: 10 m, 0.10000000149011612 m";
-    assert_eq!(opened.summary().notes, [note]);
+    insta::assert_snapshot!(notes(&opened), @"1 scans are invalid and left out, the first: test: message 21 of /scan: range limits must hold 0 <= range_min < range_max, finite: 10 m, 0.10000000149011612 m");
     let mut bag = Builder::default();
     bag.scan("/scan", 3.0, &swapped(3.0));
     assert!(bag.refused().starts_with("test: no scan is valid; the first: test: message 1 of /scan: range"));
@@ -166,8 +150,8 @@ fn scans_that_are_none_are_left_out() {
 fn poses_that_are_none_are_left_out() {
     let mut bag = standing();
     bag.mount().odometry("/odom", 2.0, f64::NAN, 0.0).odometry("/odom", 3.0, 1e30, 0.0);
-    let opened = bag.open(&TopicChoice::default()).unwrap();
-    assert_eq!(opened.summary().notes, ["2 poses of odometry or transforms are invalid and left out"]);
+    let opened = bag.log();
+    insta::assert_snapshot!(notes(&opened), @"2 poses of odometry or transforms are invalid and left out");
 }
 
 #[test]
@@ -175,19 +159,21 @@ fn other_formats_are_named() {
     let error = refused(b"#ROSBAG V2.0\n and so on");
     assert!(error.contains("a bag of ROS 1; convert it with `rosbags-convert --src FILE.bag"), "{error}");
     let packed = zstd::encode_all(&b"something else"[..], 0).unwrap();
-    assert_eq!(refused(&packed), "test: compressed with zstd, but what is in it is no bag");
+    insta::assert_snapshot!(refused(&packed), @"test: compressed with zstd, but what is in it is no bag");
     // A bomb.
     let mut zeros = vec![0; 80 << 20];
     zeros[..16].copy_from_slice(b"SQLite format 3\0");
     let packed = zstd::encode_all(&zeros[..], 0).unwrap();
     let error = refused(&packed);
-    let expected = format!(
-        "test: the {} bytes of the file unpack to more than {}, which is the most that is unpacked; if it is a log, unpack it \
-         first: zstd -d FILE",
+    let most = format!(
+        "test: the {} bytes of the file unpack to more than {}",
         packed.len(),
         packed.len() * 100 + (64 << 20)
     );
-    assert_eq!(error, expected);
+    assert_has(
+        &error,
+        &[&most, "which is the most that is unpacked; if it is a log, unpack it first: zstd -d FILE"],
+    );
 }
 
 #[test]
@@ -197,31 +183,22 @@ fn what_is_before_the_cut_of_a_database_that_is_cut_off_is_read() {
         bag.scan("/scan", 2.0, &scan(2.0 + f64::from(step), "laser"));
     }
     let bytes = bag.sqlite();
-    let whole = readings(&open(&bytes, &TopicChoice::default()).unwrap());
+    let whole = readings(&read(&bytes));
     // Between two pages, and at all kinds of places within one.
     let half = bytes.len() / 8192 * 4096;
     for cut in (half..half + 8192).step_by(512).chain([bytes.len() * 2 / 3, bytes.len() - 4096]) {
-        let found = open(&bytes[..cut], &TopicChoice::default()).unwrap();
+        let found = read(&bytes[..cut]);
         let scans = readings(&found);
         assert_eq!(scans, whole[..scans.len()]);
         let share = cut as f64 / bytes.len() as f64;
-        assert!(
-            scans.len() as f64 > (share - 0.15) * whole.len() as f64 && scans.len() < whole.len(),
-            "{}",
-            scans.len()
-        );
-        let [note, end] = &found.summary().notes[..] else { panic!("{:?}", found.summary().notes) };
-        let expected = format!(
-            "the database test is cut off after {cut} of {} bytes: the messages before the cut were read",
-            bytes.len()
-        );
-        assert_eq!(*note, expected);
-        assert!(end.starts_with("what could be read ends "), "{end}");
+        let least = ((share - 0.15) * whole.len() as f64) as usize;
+        assert!((least..whole.len()).contains(&scans.len()), "{}", scans.len());
+        let note =
+            format!("the database test is cut off after {cut} of {} bytes: the messages before", bytes.len());
+        assert_has(&notes(&found), &[&note, " the cut were read\nwhat could be read ends "]);
     }
     // Without the table of the topics nothing is left.
-    let expected = "test: the database is damaged: database disk image is malformed; `sqlite3 FILE .recover` prints what can \
-                    be saved";
-    assert_eq!(refused(&bytes[..4096]), expected);
+    insta::assert_snapshot!(refused(&bytes[..4096]), @"test: the database is damaged: database disk image is malformed; `sqlite3 FILE .recover` prints what can be saved");
 }
 
 #[test]
@@ -232,24 +209,22 @@ fn other_databases_are_refused() {
         refused(&std::fs::read(file.path()).unwrap())
     };
     let missing = database("CREATE TABLE other(a)");
-    assert_eq!(missing, "test: a database without the table `topics`: not a bag of rosbag2");
+    insta::assert_snapshot!(missing, @"test: a database without the table `topics`: not a bag of rosbag2");
     // Rows without end.
     let endless = "CREATE TABLE topics(id, name, type, serialization_format); CREATE VIEW messages AS WITH RECURSIVE \
                    n(rowid, topic_id, timestamp, data) AS (SELECT 1, 1, 1, x'00' UNION ALL SELECT rowid + 1, 1, 1, x'00' \
                    FROM n) SELECT * FROM n";
-    assert_eq!(database(endless), "test: a database without the table `messages`: not a bag of rosbag2");
+    insta::assert_snapshot!(database(endless), @"test: a database without the table `messages`: not a bag of rosbag2");
     let unknown = "CREATE TABLE topics(id, name, type, serialization_format); CREATE TABLE messages(id INTEGER PRIMARY KEY, \
                    topic_id, timestamp, data); INSERT INTO messages VALUES (1, 7, 0, x'00')";
-    let expected = "test: the database is damaged: row 1 of `messages`: topic 7 is not in `topics`";
-    assert_eq!(database(unknown), expected);
+    insta::assert_snapshot!(database(unknown), @"test: the database is damaged: row 1 of `messages`: topic 7 is not in `topics`");
 }
 
 #[test]
 fn bags_that_cannot_be_true_are_named() {
     let bag = |ranges: Vec<f32>, range_max: f32| {
         let mut bag = Builder::default();
-        for step in 0..20 {
-            let time_s = f64::from(step) * 0.1;
+        for time_s in times(20, 0.1) {
             bag.scan(
                 "/scan",
                 time_s,
@@ -258,7 +233,7 @@ fn bags_that_cannot_be_true_are_named() {
         }
         bag
     };
-    let impossible = |bag: &Builder| bag.open(&TopicChoice::default()).unwrap().summary().impossible.clone();
+    let impossible = |bag: &Builder| bag.log().summary().impossible.clone();
     let ranges: Vec<f32> = (0..60).map(|beam| 2.0 + 0.01 * beam as f32).collect();
     assert_eq!(impossible(&bag(ranges.clone(), 10.0)), None);
     for range_max in [10.0, 10_000.0] {
@@ -269,9 +244,8 @@ fn bags_that_cannot_be_true_are_named() {
     let why = impossible(&bag(vec![f32::INFINITY; 60], 10.0)).unwrap();
     assert!(why.starts_with("none of 20 scans has a range"), "{why}");
     let mut mostly = bag(ranges, 10.0);
-    for step in 20..60 {
-        let time_s = f64::from(step) * 0.1;
+    for time_s in times(60, 0.1).skip(20) {
         mostly.scan("/scan", time_s, &LaserScan { range_min: 20.0, ..scan(time_s, "laser") });
     }
-    assert_eq!(impossible(&mostly).unwrap(), "40 of 60 scans are invalid: what is left is no log of a place");
+    insta::assert_snapshot!(impossible(&mostly).unwrap(), @"40 of 60 scans are invalid: what is left is no log of a place");
 }

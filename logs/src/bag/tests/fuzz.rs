@@ -19,8 +19,7 @@ fn inputs() -> usize {
 fn whole() -> Builder {
     let mut bag = Builder::default();
     bag.mount();
-    for step in 0..6 {
-        let time_s = f64::from(step) * 0.1;
+    for time_s in times(6, 0.1) {
         let moving = transform(time_s, "odom", "base_link", pose(time_s, 0.0, 0.1));
         bag.tf("/tf", time_s, &[moving]).odometry("/odom", time_s, time_s, 0.1 * time_s);
         let sweeping = ros::LaserScan { time_increment: 0.01, ..scan(time_s, "laser") };

@@ -2,7 +2,6 @@
 
 use super::builder::*;
 use super::reading::{assert_near, at};
-use crate::choice::TopicChoice;
 
 /// A driving robot for 2 s whose stamps are changed, with the time at which each message was recorded.
 fn with_stamps(scans: impl Fn(f64) -> f64, odometry: impl Fn(f64) -> f64) -> crate::Log {
@@ -17,15 +16,14 @@ fn with_stamps(scans: impl Fn(f64) -> f64, odometry: impl Fn(f64) -> f64) -> cra
             bag.scan("/scan", time_s, &sweeping);
         }
     }
-    bag.open(&TopicChoice::default()).unwrap()
+    bag.log()
 }
 
 /// A recorder gets a scan after its last beam.
 #[test]
 fn a_scan_that_sweeps_ends_when_it_is_recorded() {
     let bag = with_stamps(|_| 0.0, |time_s| time_s);
-    let note = "the stamps of the scans are unusable: the times of the recording count";
-    assert_eq!(bag.summary().notes, [note]);
+    insta::assert_snapshot!(notes(&bag), @"the stamps of the scans are unusable: the times of the recording count");
     for (step, reading) in (0..).zip(readings(&bag)) {
         assert_near(&at(&reading), &[0.05 + 0.1 * f64::from(step), 0.0, 0.0]);
     }
@@ -36,8 +34,10 @@ fn odometry_whose_stamps_do_not_advance_has_the_times_of_the_recording() {
     // The stamps of a scan are those of its first beam.
     for stamp in [|_| 0.0, f64::floor] {
         let bag = with_stamps(|time_s| time_s - 0.04, stamp);
-        let note = "the stamps of the odometry are unusable: the times of the recording count";
-        assert_eq!(bag.summary().notes, [note]);
+        assert_has(
+            &notes(&bag),
+            &["the stamps of the odometry are unusable: the times of the recording count"],
+        );
         for (step, reading) in (0..).zip(readings(&bag)) {
             assert_near(&at(&reading), &[0.05 + 0.1 * f64::from(step), 0.0, 0.0]);
         }
@@ -54,13 +54,10 @@ fn odometry_without_times_is_not_used_and_a_note_says_so() {
     for step in 0..20 {
         bag.odometry("/odom", 0.0, f64::from(step), 0.0);
     }
-    for step in 0..20 {
-        let time_s = f64::from(step) * 0.1;
-        bag.scan("/scan", time_s, &scan(time_s, "laser"));
+    for time_s in times(20, 0.1) {
+        bag.laser(time_s);
     }
-    let bag = bag.open(&TopicChoice::default()).unwrap();
-    let note =
-        "neither the stamps of the odometry nor the times of its recording advance: its motions are not used";
-    assert_eq!(bag.summary().notes, [note]);
+    let bag = bag.log();
+    insta::assert_snapshot!(notes(&bag), @"neither the stamps of the odometry nor the times of its recording advance: its motions are not used");
     assert!(readings(&bag).iter().all(|reading| at(reading) == [0.0; 3]));
 }

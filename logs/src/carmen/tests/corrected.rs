@@ -43,32 +43,26 @@ fn poses_of_scans_are_used_on_request_only() {
 
 #[test]
 fn logs_without_corrected_poses_are_refused() {
-    let instead = "; without --pose corrected, the poses are found from the scans";
-    let expected = "test.log: no corrected poses: those of the FLASER lines are those of the odometry (within 0.1 m and 0.05 rad), \
-                    which --pose odometry uses";
-    assert_eq!(refused(&drive(|time_s| format!("{} 5 0", time_s + 0.25))), expected.to_owned() + instead);
+    let of_odometry = drive(|time_s| format!("{} 5 0", time_s + 0.25));
+    insta::assert_snapshot!(refused(&of_odometry), @"test.log: no corrected poses: those of the FLASER lines are those of the odometry (within 0.1 m and 0.05 rad), which --pose odometry uses; without --pose corrected, the poses are found from the scans");
     let mut still = drive(|_| "0 0 0".to_owned());
     // The ranges change, so that the robot moves even if its odometry did not.
     still = still.replace("0.5 0 0 0", "0.5 1 2 0");
-    let expected = "test.log: no corrected poses: those of the FLASER lines are all the same (1, 2)";
-    assert_eq!(refused(&still), expected.to_owned() + instead);
+    assert_has(
+        &refused(&still),
+        &["test.log: no corrected poses: those of the FLASER lines are all the same (1, 2); "],
+    );
     let other = "ROBOTLASER1 0 -0.5 1.0 0.5 10 0.01 0 3 1 2 11 2 7 8 0 0 0 0 0 0 0 0 0 0 0 2 h 2\n";
-    let expected = "test.log: no corrected poses: 2 of 2 scans are ROBOTLASER1 lines, or have an invalid pose; those of FLASER lines \
-                    would be used";
-    assert_eq!(refused(&other.repeat(2)), expected.to_owned() + instead);
+    let says = "no corrected poses: 2 of 2 scans are ROBOTLASER1 lines, or have an invalid pose; those of FLASER lines would";
+    assert_has(&refused(&other.repeat(2)), &[says]);
 }
 
 #[test]
 fn what_is_whole_of_a_compressed_log_that_is_cut_off_is_read() {
-    let text: String = (0..400)
-        .map(|step| {
-            let pose = format!("{} 0 0", (step * 7919 % 1000) as f64 * 1e-3);
-            flaser(1e9 + f64::from(step), &pose)
-        })
-        .collect();
-    let mut encoder = GzEncoder::new(Vec::new(), Compression::fast());
-    encoder.write_all(text.as_bytes()).unwrap();
-    let packed = encoder.finish().unwrap();
+    let scan =
+        |step: u32| flaser(1e9 + f64::from(step), &format!("{} 0 0", f64::from(step * 7919 % 1000) * 1e-3));
+    let text: String = (0..400).map(scan).collect();
+    let packed = gzipped(text.as_bytes());
     let half = &packed[..packed.len() / 2];
     let log = open("test.log.gz", half).unwrap();
     let scans = log.summary().scans;
@@ -77,22 +71,13 @@ fn what_is_whole_of_a_compressed_log_that_is_cut_off_is_read() {
     let times = |readings: &[LaserReading]| readings.iter().map(|reading| reading.time_s).collect::<Vec<_>>();
     assert!(times(&found) == times(&readings(&text)[..scans]));
     let [cut, line, _, ..] = &log.summary().notes[..] else { panic!("{:?}", log.summary().notes) };
-    let expected = format!(
-        "the gzip file is cut off after {} bytes, and the rest is missing: {} lines (",
-        half.len(),
-        scans + 1
+    let (bytes, lines, last_s) = (half.len(), scans + 1, scans as f64 - 1.0);
+    assert_has(
+        cut,
+        &[&format!("the gzip file is cut off after {bytes} bytes, and the rest is missing: {lines} lines (")],
     );
-    assert!(cut.starts_with(&expected), "{cut}");
-    assert!(
-        cut.ends_with(&format!(
-            " bytes of text) could be read, up to {:.1} s after the first scan",
-            scans as f64 - 1.0
-        )),
-        "{cut}"
-    );
-    assert_eq!(*line, format!("line {}, the last one, is cut off and left out", scans + 1));
+    assert_has(cut, &[&format!(" bytes of text) could be read, up to {last_s:.1} s after the first scan")]);
+    assert_eq!(*line, format!("line {lines}, the last one, is cut off and left out"));
     assert_eq!(log.content_hash().unwrap(), log.content_hash().unwrap());
-    let empty = "test.log.gz: the gzip file is cut off after 12 bytes, and the 0 bytes of text that could be unpacked have no whole \
-                 scan (FLASER or ROBOTLASER1)";
-    assert_eq!(open("test.log.gz", &packed[..12]).unwrap_err().to_string(), empty);
+    insta::assert_snapshot!(open("test.log.gz", &packed[..12]).unwrap_err().to_string(), @"test.log.gz: the gzip file is cut off after 12 bytes, and the 0 bytes of text that could be unpacked have no whole scan (FLASER or ROBOTLASER1)");
 }

@@ -4,12 +4,8 @@ use proptest::prelude::*;
 use std::collections::BTreeMap;
 
 fn state() -> State {
-    of_session("a")
-}
-
-fn of_session(name: &str) -> State {
     State {
-        sessions: vec![Session { name: name.to_owned(), ..Session::default() }],
+        sessions: vec![Session { name: "a".to_owned(), ..Session::default() }],
         surfaces: vec![1, 2, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 4],
         ..State::default()
     }
@@ -32,7 +28,7 @@ fn a_file_appears_when_it_is_complete_and_is_replaced() {
     drop(file);
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
     fs::write(&path, "[world]").unwrap();
-    assert_eq!(read_state(&path).unwrap_err().to_string(), "this is not a state file");
+    insta::assert_snapshot!(read_state(&path).unwrap_err().to_string(), @"this is not a state file");
 }
 
 #[test]
@@ -75,20 +71,13 @@ fn a_second_user_is_refused_until_the_first_has_ended() {
 fn whoever_has_the_lock_is_alone() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("house.state");
-    let count = || match read_state(&path) {
-        Ok(state) => state.filter[0],
-        Err(_) => 0,
-    };
+    let count = || read_state(&path).map_or(0, |state| state.filter[0]);
     std::thread::scope(|scope| {
         for _ in 0..4 {
             scope.spawn(|| {
                 for _ in 0..25 {
-                    let mut file = loop {
-                        match StateFile::open(&path) {
-                            Ok(file) => break file,
-                            Err(_) => std::thread::yield_now(),
-                        }
-                    };
+                    let mut tries = std::iter::repeat_with(|| StateFile::open(&path));
+                    let mut file = tries.find_map(Result::ok).unwrap();
                     let next = count() + 1;
                     file.save(move || State { filter: vec![next], ..State::default() }).unwrap();
                     file.wait().unwrap();
@@ -120,8 +109,7 @@ fn files_of_others_beside_the_state_stay() {
 #[test]
 fn what_is_no_file_is_refused_at_once() {
     let folder = tempfile::tempdir().unwrap();
-    let expected = "cannot read it: it is not a file (but a folder, a pipe or a device)";
-    assert_eq!(read_state(folder.path()).unwrap_err().to_string(), expected);
+    insta::assert_snapshot!(read_state(folder.path()).unwrap_err().to_string(), @"cannot read it: it is not a file (but a folder, a pipe or a device)");
 }
 
 /// The file is kept when the first session is added to it, and not for a second one.

@@ -5,32 +5,20 @@ use crate::message::Log;
 use crate::service::wire::{Deserialize, Labelled, Parameter};
 use crate::value::Value;
 
-/// Calls a service, and waits for its answer.
-fn call(node: &mut CuriousNode<FakeLink>, others: &FakeLink, service: Service, call: Call) -> Reply {
-    others.calls(1, service, call);
-    node.turn(Duration::ZERO);
-    loop {
-        if let Some((_, reply)) = others.answer() {
-            return reply;
-        }
-        node.turn(Duration::ZERO);
-    }
-}
-
 fn change(pair: &mut Pair, id: u8, label: &str) -> Reply {
     let asked = Labelled { id, label: label.to_owned() };
-    call(&mut pair.node, &pair.others, Service::ChangeState, Call::Transition(asked))
+    pair.call(Service::ChangeState, Call::Transition(asked))
 }
 
 fn state(pair: &mut Pair) -> String {
-    let reply = call(&mut pair.node, &pair.others, Service::GetState, Call::Nothing);
+    let reply = pair.call(Service::GetState, Call::Nothing);
     let Reply::State(state) = reply else { panic!("{reply:?}") };
     state.label
 }
 
 fn set(pair: &mut Pair, name: &str, value: Value) -> (bool, String) {
     let parameter = Parameter { name: name.to_owned(), value: (&value).into() };
-    let reply = call(&mut pair.node, &pair.others, Service::SetParameters, Call::Parameters(vec![parameter]));
+    let reply = pair.call(Service::SetParameters, Call::Parameters(vec![parameter]));
     let Reply::Results(results) = reply else { panic!("{reply:?}") };
     (results[0].successful, results[0].reason.clone())
 }
@@ -99,12 +87,12 @@ fn parameters_are_set_where_that_is_safe() {
     // Every parameter is described, and can be read.
     let names: Vec<String> = pair.node.parameters.list().into_iter().map(|(name, _)| name).collect();
     let asked = Call::Names(names.clone());
-    let reply = call(&mut pair.node, &pair.others, Service::DescribeParameters, asked);
+    let reply = pair.call(Service::DescribeParameters, asked);
     let Reply::Descriptions(all) = reply else { panic!("{reply:?}") };
     assert_eq!(all.len(), names.len());
     assert!(all.iter().all(|one| one.description.len() > 5), "{all:?}");
     assert_eq!(all.iter().filter(|one| one.read_only).count(), 10);
-    let reply = call(&mut pair.node, &pair.others, Service::GetParameters, Call::Names(names));
+    let reply = pair.call(Service::GetParameters, Call::Names(names));
     let Reply::Values(values) = reply else { panic!("{reply:?}") };
     assert!(values.iter().all(|value| value.value().is_some()));
 }
@@ -114,7 +102,7 @@ fn what_the_node_says_is_in_the_log() {
     let mut pair = Pair::new(&parameters(Mode::Map), 0, None);
     pair.run(2.0);
     let asked = Labelled { id: 99, label: String::new() };
-    call(&mut pair.node, &pair.others, Service::ChangeState, Call::Transition(asked));
+    pair.call(Service::ChangeState, Call::Transition(asked));
     let log = pair.others.heard(Topic::Log);
     let Some(Message::Log(last)) = log.last() else { panic!("{log:?}") };
     assert_eq!((last.level, last.name.as_str()), (Log::WARNING, "curious_node"));
@@ -128,14 +116,13 @@ fn a_map_is_saved_and_loaded_as_by_slam_toolbox() {
     let folder = tempfile::tempdir().unwrap();
     let name = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
     let mut pair = Pair::new(&parameters(Mode::Map), 0, None);
-    let none = call(&mut pair.node, &pair.others, Service::SaveMap, Call::Name(name("early")));
+    let none = pair.call(Service::SaveMap, Call::Name(name("early")));
     assert_eq!(none, Reply::Code(2));
     pair.run(5.0);
-    let code = |pair: &mut Pair, service, asked| call(&mut pair.node, &pair.others, service, asked);
-    assert_eq!(code(&mut pair, Service::SaveMap, Call::Name(name("house"))), Reply::Code(0));
+    assert_eq!(pair.call(Service::SaveMap, Call::Name(name("house"))), Reply::Code(0));
     let yaml = std::fs::read_to_string(name("house.yaml")).unwrap();
     assert!(yaml.contains("image: house.pgm") && folder.path().join("house.pgm").is_file(), "{yaml}");
-    assert_eq!(code(&mut pair, Service::SerializeMap, Call::Name(name("house"))), Reply::Code(0));
+    assert_eq!(pair.call(Service::SerializeMap, Call::Name(name("house"))), Reply::Code(0));
     let learned = pair.node.robot.mapper.states().clone();
 
     let mut again = Pair::new(&parameters(Mode::Map), 1000, None);
@@ -144,10 +131,10 @@ fn a_map_is_saved_and_loaded_as_by_slam_toolbox() {
         Call::Deserialize(Deserialize { filename, match_type, initial_pose })
     };
     let start = Isometry2::identity();
-    assert_eq!(code(&mut again, Service::DeserializeMap, load(name("none"), 1, start)), Reply::Code(1));
+    assert_eq!(again.call(Service::DeserializeMap, load(name("none"), 1, start)), Reply::Code(1));
     std::fs::write(name("bad.state"), b"nothing").unwrap();
-    assert_eq!(code(&mut again, Service::DeserializeMap, load(name("bad"), 1, start)), Reply::Code(3));
-    assert_eq!(code(&mut again, Service::DeserializeMap, load(name("house"), 1, start)), Reply::Code(0));
+    assert_eq!(again.call(Service::DeserializeMap, load(name("bad"), 1, start)), Reply::Code(3));
+    assert_eq!(again.call(Service::DeserializeMap, load(name("house"), 1, start)), Reply::Code(0));
     assert_eq!(again.node.robot.mapper.states(), &learned);
     assert_eq!(again.others.heard(Topic::Map).len(), 1);
     again.run(2.0);

@@ -61,9 +61,7 @@ impl Pair {
     /// Drives to where the robot must turn by this. The robot rests at the start.
     fn steer(&mut self, off_rad: f64) {
         let x = if self.sim.time_s() > 2.0 { 0.5 * off_rad.cos().max(0.0) } else { 0.0 };
-        let linear = Vector { x, ..Vector::default() };
-        let angular = Vector { z: off_rad.clamp(-1.0, 1.0), ..Vector::default() };
-        self.sim.take(Event::Message(Topic::Velocity, Message::Twist(TwistMessage { linear, angular })));
+        self.drive(x, off_rad.clamp(-1.0, 1.0));
     }
 }
 

@@ -51,11 +51,8 @@ fn an_initial_pose_that_cannot_be_used_is_one_sentence() {
     let mut pair = Pair::new(&by_odometry, 0, None);
     pair.others.sends(Topic::InitialPose, initial_pose("map", Isometry2::identity()));
     pair.run(0.5);
-    assert!(
-        pair.is_said(
-            "an initial pose is not used: the parameter `pose` says that the odometry knows the pose"
-        )
-    );
+    let says = "an initial pose is not used: the parameter `pose` says that the odometry knows the pose";
+    assert!(pair.is_said(says));
 }
 
 #[test]
@@ -81,8 +78,7 @@ fn nav2_route_hears_which_edges_are_open() {
     pair.run(0.2);
     assert!(pair.is_said("`route_server/DynamicEdgesScorer/adjust_edges` does not answer"));
     std::fs::write(&path, "{}").unwrap();
-    let node = CuriousNode::new(FakeLink::default(), &with_graph, None, Box::new(|_| ()));
-    let error = format!("{:#}", node.err().unwrap());
+    let error = refused(&with_graph, None);
     assert!(
         error.ends_with("graph.geojson: this is no graph of nav2_route: it has no list `features`"),
         "{error}"

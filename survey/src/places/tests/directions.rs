@@ -1,7 +1,7 @@
 //! People who walk through a corridor, seen by a laser: where they go is known, and must be found.
 
 use super::*;
-use interfaces::{LaserReading, Scan, Twist};
+use interfaces::{LaserReading, Scan};
 use nalgebra::Vector2;
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
@@ -84,21 +84,18 @@ fn walked(walks: Walks, seconds: f64, laser: [f64; 2], hz: f64) -> (f64, Room) {
             (range_m(laser, TAU * beam as f64 / BEAMS as f64, at) + noise.sample(&mut random)) as f32
         });
         let scan = Scan {
-            angle_min_rad: 0.0,
             angle_increment_rad: TAU / BEAMS as f64,
             range_min_m: 0.05,
             range_max_m: 20.0,
-            sweep_s: 0.0,
             ranges_m: ranges_m.collect(),
+            ..Scan::default()
         };
         let stands = turn * laser;
         let reading = LaserReading {
             time_s: room.time_s,
             pose: interfaces::pose(stands.x, stands.y, TURN_RAD),
-            mount: Isometry2::identity(),
             scan,
-            twist: Twist::STOP,
-            velocities: Vec::new(),
+            ..LaserReading::default()
         };
         room.mapper.update(&reading).unwrap();
         room.log.note(&room.mapper);

@@ -4,20 +4,6 @@ use super::*;
 use std::io::{self, Write};
 use std::sync::{Arc, Mutex};
 
-#[test]
-fn a_file_that_cannot_be_made_is_one_clear_error() {
-    let error = |file: &str| to(Path::new(file)).err().unwrap().to_string();
-    let missing = error("no/such/folder/run.rrd");
-    assert!(missing.starts_with("cannot write the recording no/such/folder/run.rrd: "), "{missing}");
-    if Path::new("/dev/full").exists() {
-        let full = error("/dev/full");
-        assert!(
-            full.starts_with("cannot write the recording /dev/full: ") && full.contains("No space left"),
-            "{full}"
-        );
-    }
-}
-
 /// A disk with room for a number of bytes.
 #[derive(Clone)]
 struct SmallDisk(Arc<Mutex<usize>>);

@@ -2,14 +2,11 @@
 
 use super::super::SPEED_MPS;
 use super::super::world::{Corridor, Plan};
-use crate::robot::{Odometry, PERIOD_S, mapper};
+use crate::robot::{Odometry, PERIOD_S, error_m, localizer, mapper};
 use interfaces::{CellState, LaserReading};
-use localizer::{
-    Correction, Localizer, LocalizerSettings, LoopClosed, LoopClosingLocalizer, PoseState, Switch,
-};
+use localizer::{Correction, LocalizerSettings, LoopClosed, LoopClosingLocalizer, PoseState, Switch};
 use mapper::Mapper;
 use nalgebra::Isometry2;
-use std::time::Instant;
 
 /// The number of scans at rest before the robot drives.
 pub(super) const RESTING: usize = 20;
@@ -84,44 +81,34 @@ pub(super) struct Trip {
     /// The errors of the certain positions on the first round, and from the second one on, m. The first [`CLOSING_M`] of the
     /// second round belong to the first one.
     pub(super) errors_m: [Vec<f64>; 2],
-    /// After which way, m; and the computing time, ms.
-    pub(super) corrections: Vec<(f64, Correction, f64)>,
+    /// After which way, m.
+    pub(super) corrections: Vec<(f64, Correction)>,
     /// The numbers of scans without a certain pose, on the same ways.
     pub(super) not_certain: [usize; 2],
     /// The way after which the map stands, m.
     stands_m: Option<f64>,
-    per_scan_ms: f64,
     /// The distances of the blocked cells from the walls, m.
     walls_m: Vec<f64>,
 }
 
 /// A trip around a corridor. `plain`: loops are not closed.
 pub(super) fn trip(corridor: Corridor, rounds: f64, seed: u64, plain: bool) -> Trip {
-    let mut alone =
-        Localizer::from_nothing(&LocalizerSettings::default(), &corridor.frame(0.05), corridor.at(0.0))
-            .unwrap();
+    let mut alone = localizer(&corridor.frame(0.05), corridor.at(0.0));
     let mut run = Run::new(corridor, seed);
     let mut trip = Trip::default();
-    let scans = run.scans(rounds);
-    for _ in 0..scans {
+    for _ in 0..run.scans(rounds) {
         let way_m = run.way_m();
         let (reading, truth) = run.reading();
-        let begin = Instant::now();
         let closed = match plain {
             true => LoopClosed { localized: alone.localize(&reading, &run.map), correction: None },
             false => run.localizer.localize(&reading, &mut run.map),
         };
-        let elapsed_ms = begin.elapsed().as_secs_f64() * 1e3;
-        trip.per_scan_ms += elapsed_ms / scans as f64;
         run.learn(&closed);
-        trip.corrections.extend(closed.correction.map(|correction| (way_m, correction, elapsed_ms)));
+        trip.corrections.extend(closed.correction.map(|correction| (way_m, correction)));
         let after = usize::from(way_m > run.corridor.round_m() + CLOSING_M);
         let estimate = &closed.localized.estimate;
         match estimate.state {
-            PoseState::Tracking => {
-                let error = estimate.pose.translation.vector - truth.translation.vector;
-                trip.errors_m[after].push(error.norm());
-            }
+            PoseState::Tracking => trip.errors_m[after].push(error_m(&closed.localized, &truth)),
             _ => trip.not_certain[after] += 1,
         }
         if run.localizer.is_frozen() {
@@ -154,20 +141,19 @@ impl Trip {
             format!("{median:.1} / {most:.1} / {largest:.1} cm")
         };
         println!(
-            "{name}: first round {}, {} not certain; then {}, {} not certain; walls off by {}, {:.2} % not there; {:.2} ms \
-             per scan; stands after {:.0?} m",
+            "{name}: first round {}, {} not certain; then {}, {} not certain; walls off by {}, {:.2} % not there; stands \
+             after {:.0?} m",
             cm(&self.errors_m[0]),
             self.not_certain[0],
             cm(&self.errors_m[1]),
             self.not_certain[1],
             cm(&self.walls_m),
             self.wrong_walls() * 100.0,
-            self.per_scan_ms,
             self.stands_m,
         );
-        for (way_m, correction, elapsed_ms) in &self.corrections {
-            println!("    after {way_m:.1} m: {correction}; {elapsed_ms:.0} ms");
-        }
+        self.corrections
+            .iter()
+            .for_each(|(way_m, correction)| println!("    after {way_m:.1} m: {correction}"));
     }
 
     /// The share of the blocked cells that are more than 10 cm from every wall.
@@ -199,7 +185,7 @@ pub(super) fn switched(switch: Switch) -> Switched {
         poses.push((estimate.state, estimate.pose));
         changes.extend(closed.correction.map(|correction| (run.step, correction.readings)));
         if is_second && estimate.state == PoseState::Tracking {
-            worst_m = worst_m.max((estimate.pose.translation.vector - truth.translation.vector).norm());
+            worst_m = worst_m.max(error_m(&closed.localized, &truth));
         }
         if switch == Switch::WhenReady && !run.localizer.is_settled() {
             // As fast as a robot.
