@@ -5,7 +5,7 @@ use crate::message::{Clock, Message, Odometry, Pose, Time, Topic, covariance, he
 use interfaces::{LaserReading, Twist};
 use nalgebra::{Isometry2, Matrix3};
 use ros::{FIRST_STAMP_NS, scan_message};
-use sim::physics::{Fleet, WorldSpec};
+use sim::physics::{Fleet, OdometryError, WorldSpec};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
@@ -17,8 +17,6 @@ const LASER: &str = "laser";
 const WATCHDOG_S: f64 = 0.5;
 /// The time between two poses by odometry, s.
 const ODOMETRY_S: f64 = 0.02;
-/// The variance of the odometry, m² and rad²: filters that weigh odometry have no use for an exact one.
-const VARIANCE: f64 = 1e-6;
 /// The longest wait for a command.
 const NAP: Duration = Duration::from_millis(50);
 /// A simulation that is behind by more than this does not catch up: its time goes slower.
@@ -45,10 +43,48 @@ pub struct SimulatedRobot<L: Link> {
     /// The time of the last command, s.
     commanded_s: Option<f64>,
     next_odometry_s: f64,
+    drift: Drift,
     mount: Option<Isometry2<f64>>,
     /// The number of scans, and the time of the last one, s.
     scans: u64,
     scanned_s: f64,
+}
+
+/// How far the odometry may be off by now.
+#[derive(Debug, Default)]
+struct Drift {
+    error: OdometryError,
+    last: Option<Isometry2<f64>>,
+    travelled_m: f64,
+    turned_rad: f64,
+}
+
+impl Drift {
+    /// The smallest standard deviation: filters that weigh odometry have no use for an exact one, m and rad.
+    const LEAST: f64 = 1e-3;
+
+    fn follow(&mut self, pose: &Isometry2<f64>) {
+        let motion = self.last.map_or(Isometry2::identity(), |last| last.inv_mul(pose));
+        self.travelled_m += motion.translation.vector.norm();
+        self.turned_rad += motion.rotation.angle().abs();
+        self.last = Some(*pose);
+    }
+
+    /// The covariance of the pose since the start: noise grows with the square root of the way, a wrong gain with the way. Jumps
+    /// and slip are not in it, since a robot does not know of them. The error of the position by that of the heading is that of
+    /// a straight way.
+    fn covariance(&self) -> Matrix3<f64> {
+        let (way, turned, error) = (self.travelled_m, self.turned_rad, &self.error);
+        let square = |value: f64| value * value;
+        let heading = square(error.turn_noise_rad) * turned
+            + square(error.turn_gain * turned + error.turn_radpm * way)
+            + square(Self::LEAST);
+        let position = square(error.distance_noise_m) * way
+            + square(error.distance_gain * way)
+            + heading * square(way) / 3.0
+            + square(Self::LEAST);
+        Matrix3::from_diagonal(&[position, position, heading].into())
+    }
 }
 
 impl<L: Link> SimulatedRobot<L> {
@@ -62,6 +98,7 @@ impl<L: Link> SimulatedRobot<L> {
             settings,
             commanded_s: None,
             next_odometry_s: 0.0,
+            drift: Drift { error: spec.driven().odometry, ..Drift::default() },
             mount: None,
             scans: 0,
             scanned_s: f64::NEG_INFINITY,
@@ -148,9 +185,10 @@ impl<L: Link> SimulatedRobot<L> {
     }
 
     /// The odometry, and the true pose and velocity, at a time.
-    fn view(&self, time_s: f64) -> Option<[Odometry; 2]> {
+    fn view(&mut self, time_s: f64) -> Option<[Odometry; 2]> {
         let robot = self.fleet.robots().nth(self.driven)?;
         let (pose, twist) = robot.odometry();
+        self.drift.follow(&pose);
         let message = |frame: &str, pose: &Isometry2<f64>, twist: &Twist| {
             Odometry::in_plane(header(self.stamp(time_s), frame), BASE, pose, twist)
         };
@@ -159,7 +197,7 @@ impl<L: Link> SimulatedRobot<L> {
 
     fn publish_odometry(&mut self, time_s: f64, view: Option<[Odometry; 2]>) {
         let Some([mut odometry, truth]) = view else { return };
-        odometry.pose.covariance = covariance(&(Matrix3::identity() * VARIANCE));
+        odometry.pose.covariance = covariance(&self.drift.covariance());
         let transform = odometry.pose.pose;
         self.publish_transform(Topic::Transforms, time_s, (ODOM, BASE), transform);
         self.link.send(Topic::Odometry, Message::Odometry(Box::new(odometry)));
@@ -179,5 +217,35 @@ impl<L: Link> SimulatedRobot<L> {
 
     fn publish_transform(&mut self, topic: Topic, time_s: f64, frames: (&str, &str), pose: Pose) {
         self.link.send(topic, transform(self.stamp(time_s), frames, pose));
+    }
+}
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Vector2;
+
+    /// The error of simulated odometry after 20 m lies within three of the stated standard deviations.
+    #[test]
+    fn the_covariance_covers_the_error() {
+        let error = OdometryError {
+            distance_gain: 0.02,
+            turn_radpm: 0.01,
+            distance_noise_m: 0.01,
+            turn_noise_rad: 0.02,
+            ..OdometryError::default()
+        };
+        let mut drift = Drift { error, ..Drift::default() };
+        let (mut truth, mut measured) = (Isometry2::identity(), Isometry2::identity());
+        for _ in 0..200 {
+            drift.follow(&measured);
+            truth *= Isometry2::new(Vector2::new(0.1, 0.0), 0.0);
+            measured *=
+                Isometry2::new(Vector2::new(0.1 * (1.0 + error.distance_gain), 0.0), 0.1 * error.turn_radpm);
+        }
+        drift.follow(&measured);
+        let std = drift.covariance().diagonal().map(f64::sqrt);
+        let off = truth.inv_mul(&measured);
+        let [position, heading] = [off.translation.vector.norm() / std.x, off.rotation.angle().abs() / std.z];
+        assert!((0.3..3.0).contains(&position) && (0.3..3.0).contains(&heading), "{position} {heading}");
     }
 }

@@ -134,7 +134,8 @@ fn a_reading_may_repeat_the_last_time() {
 #[test]
 fn odd_scans_are_taken() {
     const FAR_M: f64 = 1e5;
-    let cases: [(&str, fn(&mut LaserReading)); 12] = [
+    type Case = (&'static str, fn(&mut LaserReading));
+    let cases: [Case; 12] = [
         ("no beams", |r| r.scan.ranges_m.clear()),
         ("one beam", |r| r.scan.ranges_m.truncate(1)),
         ("one beam, no increment", |r| {
