@@ -211,16 +211,8 @@ mod tests {
 
     #[test]
     fn an_octagon_keeps_its_surface() {
-        let octagon = polygon(&[
-            [-0.2, 0.12],
-            [-0.2, -0.12],
-            [-0.12, -0.25],
-            [0.12, -0.25],
-            [0.2, -0.12],
-            [0.2, 0.12],
-            [0.12, 0.25],
-            [-0.12, 0.25],
-        ]);
+        let half = [[-0.2, 0.12], [-0.2, -0.12], [-0.12, -0.25], [0.12, -0.25]];
+        let octagon = polygon(&[half, half.map(|[x, y]| [-x, -y])].concat());
         let cover = cover(&octagon);
         assert_eq!((cover.rectangles.len(), cover.off_m), (8, 0.0));
         for (a, b) in sides(&clean(&octagon)) {

@@ -98,13 +98,6 @@ mod tests {
     }
 
     #[test]
-    fn values_come_back_bit_by_bit() {
-        let (mut number, mut at) = (7, interfaces::pose(0.1, -0.2, 0.3));
-        let snapshot = write(5, vec![value(&mut number), pose(&mut at)]);
-        assert_eq!(restored(&snapshot), Ok((number, at)));
-    }
-
-    #[test]
     fn a_snapshot_with_too_few_values_is_damaged() {
         let (mut number, mut at) = (u64::MAX, interfaces::pose(0.1, -0.2, 0.3));
         let whole = write(5, vec![value(&mut number), pose(&mut at)]);

@@ -1,8 +1,8 @@
 //! Invalid and unsupported parts of files, and that all of them are reported.
 
-use super::{Table, good, one, picture, read};
-use crate::load;
+use super::{good, load_one, one, read, table};
 use std::path::Path;
+use worldfile::Findings;
 
 fn messages(cases: &[(&str, &str)]) -> String {
     cases.iter().map(|(case, text)| format!("# {case}\n\n{}\n\n", one(text).1)).collect()
@@ -130,14 +130,6 @@ position( pose [1 0 0 0] fiducial( range_max 0 ) )",
 
 #[test]
 fn what_the_physics_cannot_do_is_said_at_its_line() {
-    let load_one = |text: &str| {
-        let mut files = Table::new();
-        files.insert("x.world".into(), text.as_bytes().to_vec());
-        files.insert("p.png".into(), picture());
-        let (spec, findings) = load(Path::new("x.world"), &files);
-        assert_eq!(spec.is_none(), findings.errors() > 0);
-        findings.to_string()
-    };
     let cases = [
         ("a car", "position( size [0.4 0.4 1] drive \"car\" laser( ) )"),
         ("one way faster", "position( size [0.4 0.4 1] velocity_bounds [-1 0.5 0 0 0 0 -90 45] laser( ) )"),
@@ -166,7 +158,7 @@ model( size [300 200 1] pose [0 600 0 90] )",
         ),
     ];
     let messages: String =
-        cases.iter().map(|(case, text)| format!("# {case}\n\n{}\n\n", load_one(text))).collect();
+        cases.iter().map(|(case, text)| format!("# {case}\n\n{}\n\n", load_one(text).1)).collect();
     insta::with_settings!({ omit_expression => true }, { insta::assert_snapshot!(messages) });
 }
 
@@ -181,9 +173,8 @@ fn texts_that_are_not_printable_are_refused() {
 
 #[test]
 fn files_that_include_themselves() {
-    let mut files = Table::new();
-    files.insert("a.world".into(), b"model( )\ninclude \"b.inc\"\n".to_vec());
-    files.insert("b.inc".into(), b"\ninclude \"./a.world\"\n".to_vec());
+    let b = "\ninclude \"./a.world\"\n".as_bytes();
+    let files = table(&[("a.world", b"model( )\ninclude \"b.inc\"\n"), ("b.inc", b)]);
     let (world, findings) = read(Path::new("a.world"), &files);
     assert!(world.is_none());
     insta::assert_snapshot!(findings, @r#"
@@ -202,36 +193,35 @@ fn endless_growth_is_cut_short() {
     // 2²⁵ models.
     let doubling: String =
         (1..=25).map(|i| format!("define a{i} model( a{0}( ) a{0}( ) )\n", i - 1)).collect();
+    let first = |findings: Findings| findings.iter().next().unwrap().what.clone();
     let (_, findings) = one(&format!("define a0 model( )\n{doubling}a25( )"));
-    assert_eq!(findings.iter().next().unwrap().what, "too many things");
+    assert_eq!(first(findings), "too many things");
     // A file that is included again and again, but not by itself.
-    let mut files = Table::new();
-    files.insert("a.world".into(), "include \"b.inc\"\n".repeat(5000).into_bytes());
-    files.insert("b.inc".into(), vec![b'#'; 100_000]);
+    let many = "include \"b.inc\"\n".repeat(5000);
+    let mut files = table(&[("a.world", many.as_bytes()), ("b.inc", &[b'#'; 100_000])]);
     let (_, findings) = read(Path::new("a.world"), &files);
-    assert!(findings.iter().next().unwrap().what.contains("it has more than"), "{findings}");
+    assert!(first(findings).contains("it has more than"));
     // A chain of files.
     for i in 0..50 {
         files.insert(format!("{i}.inc").into(), format!("include \"{}.inc\"", i + 1).into_bytes());
     }
     let (_, findings) = read(Path::new("0.inc"), &files);
-    assert_eq!(findings.iter().next().unwrap().what, "too many includes in each other");
+    assert_eq!(first(findings), "too many includes in each other");
     // Brackets.
     let (_, findings) = one(&"model( ".repeat(100_000));
-    assert_eq!(findings.iter().next().unwrap().what, "too many brackets in each other");
+    assert_eq!(first(findings), "too many brackets in each other");
     // A picture that is used often: many pixels, though it is decoded once.
-    let mut files = Table::new();
-    files.insert("x.world".into(), "model( bitmap \"p.pbm\" )\n".repeat(20_000).into_bytes());
     let rows = (0..2000).flat_map(|y| if y % 500 == 0 { [0xff; 250] } else { [0; 250] });
-    files.insert("p.pbm".into(), b"P4 2000 2000\n".iter().copied().chain(rows).collect());
+    let picture: Vec<u8> = b"P4 2000 2000\n".iter().copied().chain(rows).collect();
+    let text = "model( bitmap \"p.pbm\" )\n".repeat(20_000);
+    let files = table(&[("x.world", text.as_bytes()), ("p.pbm", &picture)]);
     let (_, findings) = read(Path::new("x.world"), &files);
     assert!(findings.iter().any(|finding| finding.what.contains("pixels together")), "{findings}");
 }
 
 #[test]
 fn latin_1_files_are_read() {
-    let mut files = Table::new();
-    files.insert("a.world".into(), b"# Andr\xe9\nmodel( name \"caf\xe9\" )".to_vec());
+    let files = table(&[("a.world", b"# Andr\xe9\nmodel( name \"caf\xe9\" )")]);
     let (world, _) = read(Path::new("a.world"), &files);
     assert_eq!(world.unwrap().walls[0].name, "café");
 }

@@ -1,6 +1,6 @@
 //! Any bytes: a world or errors, soon, and never a panic.
 
-use super::{Table, lab_files};
+use super::{Table, lab_files, table};
 use crate::{load, read};
 use proptest::prelude::*;
 use std::path::Path;
@@ -17,53 +17,10 @@ fn changed(file: &str, at: &prop::sample::Index, length: usize, bytes: &[u8]) ->
 
 /// Words that mean something, in any order.
 fn words() -> impl Strategy<Value = String> {
-    let words = prop::sample::select(vec![
-        "model",
-        "position",
-        "ranger",
-        "laser",
-        "sensor",
-        "block",
-        "define",
-        "include",
-        "a",
-        "b",
-        "(",
-        ")",
-        "( )",
-        "[",
-        "]",
-        "size",
-        "pose",
-        "origin",
-        "points",
-        "point[0]",
-        "bitmap",
-        "\"lab.png\"",
-        "\"rover.inc\"",
-        "\"lab.world\"",
-        "boundary",
-        "fov",
-        "samples",
-        "range",
-        "drive",
-        "\"omni\"",
-        "name",
-        "\"a\"",
-        "[0 0]",
-        "[1 2 3]",
-        "[0 0 0 90]",
-        "-1",
-        "0",
-        "3",
-        "1e9",
-        "update_interval",
-        "velocity_bounds",
-        "localization",
-        "\"odom\"",
-        "\n",
-        "#",
-    ]);
+    let words = "model|position|ranger|laser|sensor|block|define|include|a|b|(|)|( )|[|]|size|pose|origin|points|point[0]|\
+                 bitmap|\"lab.png\"|\"rover.inc\"|\"lab.world\"|boundary|fov|samples|range|drive|\"omni\"|name|\"a\"|[0 0]|\
+                 [1 2 3]|[0 0 0 90]|-1|0|3|1e9|update_interval|velocity_bounds|localization|\"odom\"|\n|#";
+    let words = prop::sample::select(words.split('|').collect::<Vec<_>>());
     prop::collection::vec(words, 0..60).prop_map(|words| words.join(" "))
 }
 
@@ -85,9 +42,7 @@ proptest! {
         bytes in prop::collection::vec(any::<u8>(), 0..200),
     ) {
         load(Path::new("lab.world"), &changed("lab.world", &at, length, &bytes));
-        let mut files = Table::new();
-        files.insert("x".into(), bytes);
-        read(Path::new("x"), &files);
+        read(Path::new("x"), &table(&[("x", &bytes)]));
     }
 
     #[test]
@@ -137,18 +92,14 @@ fn worst_megabytes() {
         .collect();
     let doubling: String =
         (1..=25).map(|i| format!("define a{i} model( a{0}( ) a{0}( ) )\n", i - 1)).collect();
+    let each = |count: usize, text: fn(usize) -> String| (0..count).map(text).collect::<String>();
     let worlds = [
         ("models", fill("", "model()")),
-        ("unlike models", (0..30_000).map(|i| format!("model(pose[{i} 0 {i} 9])\n")).collect()),
-        (
-            "robots",
-            (0..9000).map(|i| format!("position(pose[{i} 0 0 0] size[.1 .1 .1] laser())\n")).collect(),
-        ),
+        ("unlike models", each(30_000, |i| format!("model(pose[{i} 0 {i} 9])\n"))),
+        ("robots", each(9000, |i| format!("position(pose[{i} 0 0 0] size[.1 .1 .1] laser())\n"))),
         (
             "turned robots",
-            (0..9000)
-                .map(|i| format!("position(pose[{} {} 0 9] laser(samples 10000))\n", i % 95, i / 95))
-                .collect(),
+            each(9000, |i| format!("position(pose[{} {} 0 9] laser(samples 10000))\n", i % 95, i / 95)),
         ),
         ("keys", fill("model(", "a 1\n")),
         ("words", fill("", "a ")),
@@ -171,10 +122,7 @@ fn worst_megabytes() {
         let start = std::time::Instant::now();
         let (spec, findings) = load(Path::new("x.world"), &files);
         let (is_good, time) = (spec.is_some(), start.elapsed());
-        println!(
-            "{name}: {time:?}, good: {is_good}, {} errors, {} warnings",
-            findings.errors(),
-            findings.warnings()
-        );
+        let (errors, warnings) = (findings.errors(), findings.warnings());
+        println!("{name}: {time:?}, good: {is_good}, {errors} errors, {warnings} warnings");
     }
 }

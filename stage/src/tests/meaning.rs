@@ -1,6 +1,6 @@
 //! What Stage's words mean, by numbers.
 
-use super::{good, load_one, one};
+use super::{fleet, good, one};
 use crate::Bounds;
 use nalgebra::Point2;
 use sim::physics::Rectangle;
@@ -149,15 +149,13 @@ fn bodies_become_convex_outlines() {
     let outline: Vec<[f64; 2]> = world.robots[0].outline.iter().map(|corner| (*corner).into()).collect();
     let expected = [[-0.2, -0.2], [0.4, -0.2], [0.4, 0.2], [-0.2, 0.2]];
     assert_eq!(outline.len(), 4);
-    let is_there = |[x, y]: &[f64; 2]| {
-        outline.iter().any(|[u, v]: &[f64; 2]| (x - u).abs() < 1e-9 && (y - v).abs() < 1e-9)
-    };
+    let is_there =
+        |at: &[f64; 2]| outline.iter().any(|corner| (0..2).all(|i| (at[i] - corner[i]).abs() < 1e-9));
     assert!(expected.iter().all(is_there), "{outline:?}");
     // A long robot starts beside a wall, where its disc would not have room.
-    let (spec, findings) = load_one(
+    let (spec, findings) = fleet(
         "model( size [4 0.1 1] pose [0 0.3 0 0] )\nposition( size [1 0.4 1] laser( pose [0 0 -0.5 0] ) )",
     );
-    let spec = spec.unwrap_or_else(|| panic!("{findings}"));
     assert_eq!((spec.robots[0].corners.len(), findings.warnings()), (4, 0), "{findings}");
     // An L of three quarters of a square; its hull has seven eighths.
     let (world, findings) = one("position( size [2 2 1] origin [0.2 0.2 0 0] laser( ) block( points 6
@@ -186,9 +184,7 @@ fn sensors_sense_in_steps_of_stage() {
 
 #[test]
 fn a_world_is_moved_and_says_by_how_much() {
-    let (spec, findings) =
-        load_one("position( size [0.4 0.4 1] pose [3 -4 0 90] laser( pose [0 0 -0.9 0] ) )");
-    let spec = spec.unwrap_or_else(|| panic!("{findings}"));
+    let (spec, findings) = fleet("position( size [0.4 0.4 1] pose [3 -4 0 90] laser( pose [0 0 -0.9 0] ) )");
     let at = spec.robots[0].pose.translation.vector;
     assert!((at - nalgebra::Vector2::new(0.2, 0.2)).norm() < 1e-9, "{at}");
     insta::assert_snapshot!(findings, @"
@@ -199,10 +195,9 @@ fn a_world_is_moved_and_says_by_how_much() {
 
 #[test]
 fn a_sensor_far_off_its_robot_is_moved_back() {
-    let (spec, findings) = load_one(
+    let (spec, findings) = fleet(
         "position( size [0.6 0.8 1] laser( pose [3 4 -0.9 90] ) ranger( pose [-1 0 -0.9 0] sensor( ) ) )",
     );
-    let spec = spec.unwrap_or_else(|| panic!("{findings}"));
     let robot = &spec.robots[0];
     assert!((robot.laser.mount.translation.vector - nalgebra::Vector2::new(0.9, 1.2)).norm() < 1e-6);
     assert!((robot.laser.mount.rotation.angle() - FRAC_PI_2).abs() < 1e-9);
@@ -214,8 +209,7 @@ fn a_sensor_far_off_its_robot_is_moved_back() {
 
 #[test]
 fn long_turned_walls_are_as_thick_as_their_shorter_side() {
-    let (spec, findings) = load_one("model( size [1 300 1] pose [0 0 0 30] )");
-    let spec = spec.unwrap_or_else(|| panic!("{findings}"));
+    let (spec, findings) = fleet("model( size [1 300 1] pose [0 0 0 30] )");
     let sides = 2.0 * spec.walls[0].half_m;
     assert!((sides - nalgebra::Vector2::new(300.0, 1.0)).norm() < 1e-6, "{sides}");
 }
@@ -239,9 +233,8 @@ fn includes_lie_beside_the_world_or_beside_each_other() {
         ("w/inc/d.inc", "name \"four files\""),
     ];
     // c.inc is not beside the world, but beside b.inc.
-    let table: super::Table =
-        files.map(|(name, text)| (std::path::PathBuf::from(name), text.as_bytes().to_vec())).into();
-    let (world, findings) = super::read(std::path::Path::new("w/a.world"), &table);
+    let files = super::table(&files.map(|(name, text)| (name, text.as_bytes())));
+    let (world, findings) = super::read(std::path::Path::new("w/a.world"), &files);
     let world = world.unwrap_or_else(|| panic!("{findings}"));
     assert_eq!((world.name.as_str(), world.walls.len(), world.files.len()), ("four files", 1, 4));
 }
@@ -254,11 +247,6 @@ fn heights_are_compared() {
         model( name \"bridge\" size [1 1 1] pose [0 5 2 0] )";
     let (_, findings) = one(text);
     let what: Vec<&str> = findings.iter().map(|finding| finding.what.as_str()).collect();
-    assert_eq!(
-        what,
-        [
-            "in Stage these beams, 1.000 m high, miss `step`",
-            "in Stage `position:0` passes over or under `bridge`"
-        ]
-    );
+    let expected = ["these beams, 1.000 m high, miss `step`", "`position:0` passes over or under `bridge`"];
+    assert_eq!(what, expected.map(|what| format!("in Stage {what}")));
 }

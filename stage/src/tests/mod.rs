@@ -21,7 +21,11 @@ fn lab_files() -> Table {
         ("scanner.inc", include_bytes!("../../../worlds/stage/scanner.inc")),
         ("lab.png", include_bytes!("../../../worlds/stage/lab.png")),
     ];
-    files.map(|(name, bytes)| (PathBuf::from(name), bytes.to_vec())).into()
+    table(&files)
+}
+
+fn table(files: &[(&str, &[u8])]) -> Table {
+    files.iter().map(|(name, bytes)| (PathBuf::from(name), bytes.to_vec())).collect()
 }
 
 /// A picture of 6 × 4 pixels, of which 4 × 2 in the middle are dark but for one.
@@ -37,9 +41,7 @@ fn picture() -> Vec<u8> {
 
 /// Reads one text, beside which there is a picture.
 fn one(text: &str) -> (Option<StageWorld>, Findings) {
-    let mut files = Table::new();
-    files.insert("x.world".into(), text.as_bytes().to_vec());
-    files.insert("p.png".into(), picture());
+    let files = table(&[("x.world", text.as_bytes()), ("p.png", &picture())]);
     let (world, findings) = read(Path::new("x.world"), &files);
     assert_eq!(world.is_none(), findings.errors() > 0, "{findings}");
     (world, findings)
@@ -47,9 +49,16 @@ fn one(text: &str) -> (Option<StageWorld>, Findings) {
 
 /// Reads one text and makes a fleet of it.
 fn load_one(text: &str) -> (Option<FleetSpec>, Findings) {
-    let mut files = Table::new();
-    files.insert("x.world".into(), text.as_bytes().to_vec());
-    super::load(Path::new("x.world"), &files)
+    let files = table(&[("x.world", text.as_bytes()), ("p.png", &picture())]);
+    let (spec, findings) = super::load(Path::new("x.world"), &files);
+    assert_eq!(spec.is_none(), findings.errors() > 0);
+    (spec, findings)
+}
+
+/// The same where there must be a fleet.
+fn fleet(text: &str) -> (FleetSpec, Findings) {
+    let (spec, findings) = load_one(text);
+    (spec.unwrap_or_else(|| panic!("{findings}")), findings)
 }
 
 /// The same where there must be a world.

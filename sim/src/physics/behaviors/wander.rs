@@ -200,11 +200,8 @@ mod tests {
             Vector2::new(x, y)
         };
         assert!((length_within_m(&middle, &beam(0.0), 0.2, WIDTH, 0.5) - 0.7).abs() < 1e-12);
-        assert!(
-            (length_within_m(&middle, &beam(80.0), 0.2, WIDTH, 0.5) - 0.22 / libm::sin(80_f64.to_radians()))
-                .abs()
-                < 1e-12
-        );
+        let aside_m = 0.22 / libm::sin(80_f64.to_radians());
+        assert!((length_within_m(&middle, &beam(80.0), 0.2, WIDTH, 0.5) - aside_m).abs() < 1e-12);
         assert_eq!(length_within_m(&middle, &beam(120.0), 0.2, WIDTH, 0.5), 0.0);
         // The body touches the point where a beam ends exactly when it has driven that far.
         for degrees in [-60.0, -20.0, 3.0, 15.0, 40.0] {

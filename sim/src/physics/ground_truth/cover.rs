@@ -149,15 +149,6 @@ mod tests {
         GridFrame::new(Point2::new(-1.0, -1.0), 0.05, 40, 40).unwrap()
     }
 
-    #[test]
-    fn a_wall_on_cell_borders_covers_whole_cells_only() {
-        let wall = Rectangle::between(Point2::new(0.1, -0.35), Point2::new(0.2, 0.65));
-        let mut cells = Vec::new();
-        box_cells(&frame(), &wall, |index, whole| cells.push((frame().cell(index), whole)));
-        assert_eq!(cells.len(), 2 * 20);
-        assert!(cells.iter().all(|(cell, whole)| *whole && (22..24).contains(&cell.x)));
-    }
-
     /// Whether a convex body covers the whole cell; `None` if it does not overlap the cell by more than a touch.
     fn covers_cell(corners: &[Point2<f64>], frame: &GridFrame, cell: Cell) -> Option<bool> {
         let half_m = frame.resolution_m() / 2.0;

@@ -21,12 +21,6 @@ fn drawn(truth: &PhysicsGroundTruth) -> Vec<String> {
 }
 
 #[test]
-fn walls_block_cells_wholly_or_in_part() {
-    let free = ".....++.";
-    assert_eq!(drawn(&small()), [free, free, free, free, free, "########"]);
-}
-
-#[test]
 fn what_can_be_seen_is_this_side_of_the_wall_and_has_a_free_side() {
     let truth = small();
     let index = |x, y| truth.frame().index(Cell::new(x, y));

@@ -13,25 +13,38 @@ fn columns(spec: &GridSpec, steps: usize) -> Vec<String> {
     columns
 }
 
-/// A corridor of nine cells below the robot's.
-fn corridor(blocks: &[String]) -> GridSpec {
-    spec("#########\n####R####\n.........", &blocks.concat())
-}
-
 #[test]
-fn a_block_stands_for_its_dwell_and_turns_round() {
-    let line = "[[2, 0], [5, 0]]";
-    let spec = |dwell| corridor(&[block("b", dwell, "back-and-forth", line)]);
-    assert_eq!(columns(&spec(1), 14), ["23454323454323"]);
-    assert_eq!(columns(&spec(2), 26), ["22334455443322334455443322"]);
-    assert_eq!(columns(&spec(5), 31), ["2222233333444445555544444333332"]);
-}
-
-#[test]
-fn two_cells_are_a_path() {
-    for course in ["back-and-forth", "loop"] {
-        let spec = corridor(&[block("b", 3, course, "[[7, 0], [6, 0]]")]);
-        assert_eq!(columns(&spec, 13), ["7776667776667"], "{course}");
+fn blocks_stand_for_their_dwell_turn_round_and_wait_for_each_other() {
+    let there = |name: &str, dwell: u32, path: &str| block(name, dwell, "back-and-forth", path);
+    let line = |dwell| there("b", dwell, "[[2, 0], [5, 0]]");
+    // Two cells are a path.
+    let pair = |course| block("b", 3, course, "[[7, 0], [6, 0]]");
+    // The first stay is shorter by what has passed.
+    let stood = |steps: u32| there("b", 4, "[[0, 0], [2, 0]]") + &format!("stood = {steps}\n");
+    let right = there("right", 1, "[[0, 0], [5, 0]]");
+    let [ahead, behind] = [there("ahead", 2, "[[1, 0], [8, 0]]"), there("behind", 2, "[[0, 0], [7, 0]]")];
+    let cases: [(&[String], &[&str]); 12] = [
+        (&[line(1)], &["23454323454323"]),
+        (&[line(2)], &["22334455443322334455443322"]),
+        (&[line(5)], &["2222233333444445555544444333332"]),
+        (&[pair("back-and-forth")], &["7776667776667"]),
+        (&[pair("loop")], &["7776667776667"]),
+        (&[stood(0)], &["0000111122221"]),
+        (&[stood(1)], &["000111122221"]),
+        (&[stood(3)], &["0111122221"]),
+        // The blocks face each other forever: neither turns before the end of its path. They meet at 2 and 3: in the
+        // third step the block that comes first in the file moves first, and finds 3 occupied.
+        (&[right.clone(), there("left", 1, "[[5, 0], [2, 0]]")], &["01222222", "54333333"]),
+        // Both blocks move to 2: the one that comes first in the file gets there. The other one waits at 3.
+        (&[right, there("left", 1, "[[4, 0], [2, 0]]")], &["01222222", "43333333"]),
+        // A block may enter what an earlier one leaves. In the other order, the block behind finds the cell occupied at first, and
+        // follows one step later.
+        (&[ahead.clone(), behind.clone()], &["1122334", "0011223"]),
+        (&[behind, ahead], &["0001122", "1122334"]),
+    ];
+    for (blocks, expected) in cases {
+        let spec = spec("#########\n####R####\n.........", &blocks.concat());
+        assert_eq!(columns(&spec, expected[0].len()), expected, "{blocks:?}");
     }
 }
 
@@ -52,15 +65,6 @@ fn a_loop_goes_round() {
 }
 
 #[test]
-fn the_first_stay_is_shorter_by_what_has_passed() {
-    let stood =
-        |steps: u32| block("b", 4, "back-and-forth", "[[0, 0], [2, 0]]") + &format!("stood = {steps}\n");
-    assert_eq!(columns(&corridor(&[stood(0)]), 13), ["0000111122221"]);
-    assert_eq!(columns(&corridor(&[stood(1)]), 12), ["000111122221"]);
-    assert_eq!(columns(&corridor(&[stood(3)]), 10), ["0111122221"]);
-}
-
-#[test]
 fn a_block_waits_for_the_robot_and_then_stands_for_its_dwell_again() {
     let spec = spec("###\n...\n.R.", &block("b", 2, "back-and-forth", "[[0, 1], [2, 1]]"));
     let mut world = GridWorld::new(&spec, 0);
@@ -73,33 +77,6 @@ fn a_block_waits_for_the_robot_and_then_stands_for_its_dwell_again() {
     }
     // The robot acts first: the block enters at the step in which the robot leaves.
     assert_eq!(columns, "0000011221");
-}
-
-#[test]
-fn blocks_wait_for_each_other() {
-    let blocks = [
-        block("right", 1, "back-and-forth", "[[0, 0], [5, 0]]"),
-        block("left", 1, "back-and-forth", "[[5, 0], [2, 0]]"),
-    ];
-    // The blocks face each other forever: neither turns before the end of its path. They meet at 2 and 3: in the
-    // third step the block that comes first in the file moves first, and finds 3 occupied.
-    assert_eq!(columns(&corridor(&blocks), 8), ["01222222", "54333333"]);
-    let odd = [
-        block("right", 1, "back-and-forth", "[[0, 0], [5, 0]]"),
-        block("left", 1, "back-and-forth", "[[4, 0], [2, 0]]"),
-    ];
-    // Both blocks move to 2: the one that comes first in the file gets there. The other one waits at 3.
-    assert_eq!(columns(&corridor(&odd), 8), ["01222222", "43333333"]);
-}
-
-#[test]
-fn a_block_may_enter_what_an_earlier_one_leaves() {
-    let ahead = block("ahead", 2, "back-and-forth", "[[1, 0], [8, 0]]");
-    let behind = block("behind", 2, "back-and-forth", "[[0, 0], [7, 0]]");
-    let first_moves_first = corridor(&[ahead.clone(), behind.clone()]);
-    assert_eq!(columns(&first_moves_first, 7), ["1122334", "0011223"]);
-    // In the other order, the block behind finds the cell occupied at first, and follows one step later.
-    assert_eq!(columns(&corridor(&[behind, ahead]), 7), ["0001122", "1122334"]);
 }
 
 #[test]

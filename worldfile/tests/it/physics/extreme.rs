@@ -1,6 +1,6 @@
 //! Random worlds with extreme masses, speeds and walls: nobody passes through a wall.
 
-use super::random::{Chance, Deepest, number, passes, runs};
+use super::random::{Chance, Deepest, number, of_what_fits, passes, runs};
 use super::*;
 
 /// What a run of all tests can wait for; SIM_EXTREME_WORLDS=20000 asks for more.
@@ -75,19 +75,12 @@ fn world(seed: u64) -> FleetSpec {
     );
     let thickness_m = chance.scale(0.001, 0.1);
     (0..4).for_each(|side| text += &wall(corners[side], corners[(side + 1) % 4], thickness_m));
-    let parse = |text: &str| worldfile::physics::parse_fleet("extreme.toml", text);
-    let mut spec = parse(&text).unwrap_or_else(|error| panic!("{error}"));
-    for thing in 0..24 {
-        let more = match thing {
-            0..4 => wall(chance.at(), chance.at(), chance.scale(0.001, 0.1)),
-            4..14 => robot(thing, step_s, &mut chance),
-            _ => pushed(thing, &mut chance),
-        };
-        if let Ok(fits) = parse(&format!("{text}{more}")) {
-            (spec, text) = (fits, text + &more);
-        }
-    }
-    spec
+    let parts = (0..24).map(|thing| match thing {
+        0..4 => wall(chance.at(), chance.at(), chance.scale(0.001, 0.1)),
+        4..14 => robot(thing, step_s, &mut chance),
+        _ => pushed(thing, &mut chance),
+    });
+    of_what_fits(text, parts)
 }
 
 #[test]

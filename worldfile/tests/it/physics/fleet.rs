@@ -1,5 +1,6 @@
 //! Many robots, each with its own behavior.
 
+use super::specs::crowd;
 use super::*;
 use nalgebra::Isometry2;
 
@@ -20,16 +21,6 @@ pub(super) fn robot(name: &str, pose_m: [f64; 2], heading_deg: f64, behavior: &s
 pub(super) fn house(robots: &[String], more: &str) -> FleetSpec {
     let rooms = &FOUR_ROOMS[..FOUR_ROOMS.find("[[robot]]").unwrap()];
     parse_fleet(&format!("{rooms}\n{}\n{more}", robots.concat()))
-}
-
-/// Wandering robots in all rooms.
-pub(super) fn crowd() -> FleetSpec {
-    let places = (0..36).map(|i| [1.0 + 2.0 * f64::from(i % 6), 1.0 + 2.0 * f64::from(i / 6)]);
-    let wander = "kind = \"wander\"\nspeed_mps = 0.4";
-    let robots = places
-        .enumerate()
-        .map(|(i, at)| robot(&format!("r{i}"), at, f64::from((40 * i as u32) % 360), wander));
-    house(&robots.collect::<Vec<_>>(), "")
 }
 
 /// No robot executes commands.

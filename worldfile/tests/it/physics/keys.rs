@@ -99,17 +99,16 @@ fn world(heading: &str, changed: &str) -> String {
     let table_of = |heading: &str| GOOD.iter().find(|(known, _, _)| *known == heading).unwrap().1;
     for (known, table, good) in GOOD {
         // These exist only where they are asked for.
-        let is_optional = matches!(
-            *table,
-            "floor_plan"
-                | "obstacle"
-                | "obstacle.schedule"
-                | "robot.patrol"
-                | "robot.odometry.jump"
-                | "robot.bumper"
-                | "robot.sonar"
-                | "robot.fiducial"
-        );
+        let is_optional = table.starts_with("obstacle")
+            || [
+                "floor_plan",
+                "robot.patrol",
+                "robot.odometry.jump",
+                "robot.bumper",
+                "robot.sonar",
+                "robot.fiducial",
+            ]
+            .contains(table);
         let holds_it = *known == "`obstacle`" && heading == "`obstacle.schedule`";
         if (is_optional || table_of(heading) == *table) && *known != heading && !holds_it {
             continue;
@@ -138,10 +137,8 @@ fn the_keys_are_those_of_the_schema() {
     for (_, table, _) in GOOD {
         let headings: Vec<&str> =
             GOOD.iter().filter(|(_, other, _)| other == table).map(|(heading, _, _)| *heading).collect();
-        let rows = rows();
-        let documented =
-            rows.iter().filter(|row| headings.contains(&row.heading)).flat_map(|row| row.keys.clone());
-        let documented: BTreeSet<&str> = documented.collect();
+        let rows = rows().into_iter().filter(|row| headings.contains(&row.heading));
+        let documented: BTreeSet<&str> = rows.flat_map(|row| row.keys).collect();
         let error = parse(&world(headings[0], "no_such_key = 1")).unwrap_err();
         let (_, known) = error.split_once("the keys here are: ").unwrap_or_else(|| panic!("{error}"));
         let known: BTreeSet<&str> = known.trim().split(", ").collect();
@@ -184,17 +181,9 @@ fn the_defaults_are_those_that_are_taken() {
     let mut checked = 0;
     for row in rows().iter().filter(|row| row.heading != "The file") {
         let Some(default) = row.default.strip_prefix('`').and_then(|text| text.strip_suffix('`')) else {
-            let known = [
-                "required",
-                "its length",
-                "never",
-                "none",
-                "stands from the start",
-                "its start",
-                "those of active hours",
-                "1 kg per m² of its circle",
-            ];
-            assert!(known.contains(&row.default), "{:?}: {}", row.keys, row.default);
+            let known = "required, its length, never, none, stands from the start, its start, those of active hours, \
+                         1 kg per m² of its circle";
+            assert!(known.split(", ").any(|known| known == row.default), "{:?}: {}", row.keys, row.default);
             continue;
         };
         // The value of another key does not count.

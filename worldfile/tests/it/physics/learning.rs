@@ -1,6 +1,7 @@
 //! What users need who run many episodes: resets, fresh scans, all scans at once, free poses.
 
-use super::fleet::{crowd, hash};
+use super::fleet::hash;
+use super::specs::crowd;
 use super::*;
 use interfaces::{Purpose, RandomStream, heading_rad};
 use proptest::prelude::*;
@@ -23,7 +24,7 @@ proptest! {
     ) {
         let spec = match kind {
             0 => super::snapshot::zoo(),
-            1 => super::things::busy(),
+            1 => super::specs::busy(),
             2 => super::standstill::worlds::house(world),
             3 => super::random::world(world),
             _ => worldfile::shipped::load("drifting_house").unwrap().fleet().clone(),

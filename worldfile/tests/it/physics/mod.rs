@@ -22,6 +22,9 @@ mod patrol;
 mod random;
 mod senses;
 mod snapshot;
+#[allow(dead_code)] // the tests of `sim` use all of them
+#[path = "../../../../sim/src/physics/tests/specs.rs"]
+mod specs;
 mod standstill;
 mod sweep;
 mod things;

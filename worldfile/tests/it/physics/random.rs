@@ -41,10 +41,9 @@ pub(super) fn world(seed: u64) -> FleetSpec {
         let _ = write!(text, "[[wall]]\nfrom_m = {a:?}\nto_m = {b:?}\nthickness_m = 0.05\n");
     }
     text += &format!("[physics]\nstep_s = {:?}\n", [0.02, 0.05, 0.1][seed as usize % 3]);
-    let mut spec = parse_fleet(&text);
-    for thing in 0..26 {
+    let part = |thing: usize| {
         let at = chance.point();
-        let more = if thing < 5 {
+        if thing < 5 {
             let to = chance.point();
             format!(
                 "[[wall]]\nfrom_m = {at:?}\nto_m = {to:?}\nthickness_m = {:?}\n",
@@ -78,9 +77,17 @@ pub(super) fn world(seed: u64) -> FleetSpec {
                 chance.between(90.0, 5000.0),
                 kinds[thing % 3],
             )
-        };
-        if let Ok(fits) = worldfile::physics::parse_fleet("random.toml", &format!("{text}{more}")) {
-            (spec, text) = (fits, text + &more);
+        }
+    };
+    of_what_fits(text, (0..26).map(part))
+}
+
+/// A world with those of further parts that fit.
+pub(super) fn of_what_fits(mut text: String, parts: impl IntoIterator<Item = String>) -> FleetSpec {
+    let mut spec = parse_fleet(&text);
+    for part in parts {
+        if let Ok(fits) = worldfile::physics::parse_fleet("test.toml", &format!("{text}{part}")) {
+            (spec, text) = (fits, text + &part);
         }
     }
     spec

@@ -1,6 +1,7 @@
 //! Snapshots, copies and resets.
 
-use super::fleet::{crowd, hash, robot};
+use super::fleet::{hash, robot};
+use super::specs::crowd;
 use super::*;
 use proptest::prelude::*;
 
@@ -52,7 +53,7 @@ pub(super) fn sensed(fleet: &Fleet) -> (u64, Vec<String>) {
 
 #[test]
 fn a_restored_fleet_and_a_fork_live_on_bit_by_bit() {
-    let (zoo, crowd, busy) = (zoo(), crowd(), super::things::busy());
+    let (zoo, crowd, busy) = (zoo(), crowd(), super::specs::busy());
     // Steps of both kinds.
     let sliding = FleetSpec { contacts: ContactModel::Sliding, ..zoo.clone() };
     // Robots on waypoints that turn round and make detours, and doors that move back.

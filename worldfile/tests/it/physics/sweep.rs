@@ -117,7 +117,7 @@ fn reckless(robot: &RobotView<'_>, reading: &LaserReading) -> Twist {
 
 /// The busy rooms with lasers that sweep for so long, over so much, mounted off the middle.
 fn sweeping(sweep_s: f64, fov_rad: f64, beams: usize) -> FleetSpec {
-    let mut spec = super::things::busy();
+    let mut spec = super::specs::busy();
     for robot in &mut spec.robots {
         let laser = &mut robot.laser;
         (laser.sweep_s, laser.noise_std_m, laser.fov_rad, laser.beams) = (sweep_s, 0.0, fov_rad, beams);

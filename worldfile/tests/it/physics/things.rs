@@ -3,10 +3,6 @@
 use super::fleet::{DRIVEN, at, house, robot};
 use super::*;
 
-fn heavy(name: &str, at: [f64; 2], heading_deg: f64) -> String {
-    robot(name, at, heading_deg, DRIVEN).replace("radius_m", "mass_kg = 20.0\nradius_m")
-}
-
 /// A heavy robot at [1, 2] that drives straight along x, and obstacles.
 fn yard(things: &str) -> Fleet {
     yard_from([1.0, 2.0], things)
@@ -14,7 +10,8 @@ fn yard(things: &str) -> Fleet {
 
 /// The same, with another start of the robot.
 fn yard_from(start: [f64; 2], things: &str) -> Fleet {
-    Fleet::new(&house(&[heavy("driver", start, 0.0)], things), 0)
+    let driver = robot("driver", start, 0.0, DRIVEN).replace("radius_m", "mass_kg = 20.0\nradius_m");
+    Fleet::new(&house(&[driver], things), 0)
 }
 
 pub(super) fn pushed(name: &str, center_m: [f64; 2], mass_kg: f64, friction: f64) -> String {
@@ -26,40 +23,6 @@ pub(super) fn pushed(name: &str, center_m: [f64; 2], mass_kg: f64, friction: f64
 fn middle(fleet: &Fleet, thing: usize) -> Point2<f64> {
     let corners = fleet.obstacles().nth(thing).unwrap().corners;
     nalgebra::center(&corners[0], &corners[2])
-}
-
-/// The four rooms with everything that moves, and robots that push.
-pub(super) fn busy() -> FleetSpec {
-    let places = [[2.0, 2.0], [9.0, 3.0], [3.0, 9.0], [9.5, 9.0]];
-    let mut robots = places.map(|at| heavy(&format!("r{at:?}"), at, 30.0));
-    // One of them is not round.
-    let outline = "footprint_m = [[-0.3, -0.15], [0.3, -0.1], [0.3, 0.1], [-0.3, 0.15]]";
-    robots[3] = robots[3].replace("radius_m = 0.2", outline);
-    let mut things = String::new();
-    for (i, robot) in places.into_iter().enumerate() {
-        for (k, (dx, dy)) in [(0.6, 0.0), (0.0, 0.7), (-0.6, 0.3)].into_iter().enumerate() {
-            let at = [robot[0] + dx, robot[1] + dy];
-            things += &pushed(&format!("box {i} {k}"), at, 0.5 + k as f64, 0.1 * k as f64)
-                .replace("mass_kg", &format!("heading_deg = {}\nmass_kg", 20.0 * k as f64));
-        }
-    }
-    let block = |name: &str, size: [f64; 2], path: &str| {
-        format!(
-            "[[obstacle]]\nname = \"{name}\"\nkind = \"block\"\nsize_m = {size:?}\nheading_deg = 15.0\npath_m = {path}\nspeed_mps = 0.7\n"
-        )
-    };
-    things += &block("long", [1.6, 0.1], "[[4.5, 1.5], [4.0, 4.5]]");
-    things += &block("small", [0.2, 0.3], "[[7.0, 1.0], [11.0, 1.0], [11.0, 5.0]]");
-    for (i, (from, to)) in
-        [([6.0, 2.5], [6.0, 3.5]), ([8.5, 6.0], [9.5, 6.0]), ([2.5, 6.0], [3.5, 6.0])].iter().enumerate()
-    {
-        let kind = if i == 1 { "sliding" } else { "hinged" };
-        things += &format!(
-            "[[obstacle]]\nname = \"door {i}\"\nkind = \"{kind}_door\"\nfrom_m = {from:?}\nto_m = {to:?}\nthickness_m = 0.04\n\
-             opening = \"random\"\nclosed_s = 1.0\nopen_s = 1.5\n"
-        );
-    }
-    house(&robots, &things)
 }
 
 #[test]
