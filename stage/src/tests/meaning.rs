@@ -209,7 +209,7 @@ fn a_sensor_far_off_its_robot_is_moved_back() {
 
 #[test]
 fn long_turned_walls_are_as_thick_as_their_shorter_side() {
-    let (spec, findings) = fleet("model( size [1 300 1] pose [0 0 0 30] )");
+    let (spec, _) = fleet("model( size [1 300 1] pose [0 0 0 30] )");
     let sides = 2.0 * spec.walls[0].half_m;
     assert!((sides - nalgebra::Vector2::new(300.0, 1.0)).norm() < 1e-6, "{sides}");
 }
