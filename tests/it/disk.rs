@@ -114,7 +114,7 @@ fn a_recording_that_cannot_go_on_costs_no_result() {
 fn a_limit_on_the_size_of_files_costs_no_result() {
     let run = Run::new();
     // 10 MB: enough for every result (every free cell has a rate), not for the recording.
-    let ended = run.ends_with_files_up_to(20_000, "--duration 20m --quiet");
+    let ended = run.ends_with_files_up_to(20_000, "--duration 50m --quiet");
     assert_eq!(ended.code, Some(1), "{ended:?}");
     let expected = "error: cannot write the recording out/unfinished_run/four_rooms.rrd: File too large";
     assert!(ended.stderr.starts_with(expected), "{}", ended.stderr);
