@@ -1,6 +1,6 @@
 //! The body of a model: its blocks, its bitmap, or a box.
 
-use super::builder::{Builder, Pose};
+use super::builder::Builder;
 use super::lexer::Span;
 use super::polygon;
 use super::tree::Entity;
@@ -19,8 +19,6 @@ const BOUNDARY_M: f64 = 0.01;
 pub(super) struct Body {
     pub(super) plan: Option<FloorPlan>,
     pub(super) polygons: Vec<Vec<Point2<f64>>>,
-    /// The lowest and the highest point, m.
-    pub(super) z_m: [f64; 2],
 }
 
 impl Body {
@@ -47,26 +45,26 @@ impl Body {
     }
 }
 
-/// The polygon of a block and its heights, before they are scaled to the size of the model, m.
-type Block = (Vec<Point2<f64>>, [f64; 2]);
+/// The polygon of a block, before it is scaled to the size of the model, m.
+type Block = Vec<Point2<f64>>;
 
 impl Builder<'_, '_> {
     /// The body of a model whose pose is `at`. `has_box`: without blocks or a bitmap it is a box.
-    pub(super) fn body(&mut self, model: &Entity, at: &Pose, size_m: [f64; 3], has_box: bool) -> Body {
-        let at = at.then(&self.pose(model, "origin"));
+    pub(super) fn body(&mut self, model: &Entity, at: &Isometry2<f64>, size_m: Vector2<f64>, has_box: bool) -> Body {
+        let at = at * self.pose(model, "origin");
         let parts = model.parts.iter().filter(|part| part.kind == "block");
         let blocks: Vec<Block> = parts.filter_map(|part| self.block(part)).collect();
         let has_no_box = self.flag(model, "noblocks") == Some(true);
         let has_boundary = self.flag(model, "boundary") == Some(true);
-        let [x, y, z] = size_m;
+        let (x, y) = (size_m.x, size_m.y);
         let bitmap = self.text(model, "bitmap");
-        let plan = bitmap.and_then(|(name, place)| self.plan(&name, place, &at.flat, Vector2::new(x, y)));
-        let mut body = Body { plan, polygons: Vec::new(), z_m: [at.z_m, at.z_m + z] };
+        let plan = bitmap.and_then(|(name, place)| self.plan(&name, place, &at, size_m));
+        let mut body = Body { plan, polygons: Vec::new() };
         let has_plan = body.plan.is_some();
         let rectangle = |left: f64, bottom: f64, width: f64, height: f64| -> Vec<Point2<f64>> {
             let (right, top) = (left + width, bottom + height);
             let corners = [(left, bottom), (right, bottom), (right, top), (left, top)];
-            corners.map(|(x, y)| at.flat * Point2::new(x, y)).to_vec()
+            corners.map(|(x, y)| at * Point2::new(x, y)).to_vec()
         };
         let (left, bottom) = (-x / 2.0, -y / 2.0);
         if has_boundary && has_plan {
@@ -83,7 +81,8 @@ impl Builder<'_, '_> {
                 let help = "Stage fits both into the size together, here each fills it by itself";
                 self.sources.warning(model.place, "a thing with a bitmap and blocks", help);
             }
-            self.scale(model.place, &blocks, &at, size_m, &mut body);
+            let blocks = self.scaled(model.place, &blocks, &at, &size_m);
+            body.polygons.extend(blocks);
         } else if !has_plan && has_box && !has_no_box && !model.properties.contains_key("bitmap") {
             body.polygons.push(rectangle(left, bottom, x, y));
         }
@@ -104,31 +103,30 @@ impl Builder<'_, '_> {
             }
             points.push(Point2::from_slice(&self.lengths_m(block, &key, 2)?));
         }
-        let z_m = self.lengths_m(block, "z", 2).map_or([0.0, self.length_m], |z_m| [z_m[0], z_m[1]]);
         if let Some((_, place)) = self.text(block, "color") {
             self.sources.has_no_effect(place, "color");
         }
-        Some((points, z_m))
+        Some(points)
     }
 
-    /// Scales blocks so that they fill the size of their model together, about its middle.
-    fn scale(&mut self, place: Span, blocks: &[Block], at: &Pose, size_m: [f64; 3], body: &mut Body) {
-        let (low, high) = polygon::bounds(blocks.iter().flat_map(|(points, _)| points).copied());
+    /// Blocks in the world, scaled so that they fill the size of their model together, about its middle.
+    fn scaled(
+        &mut self,
+        place: Span,
+        blocks: &[Block],
+        at: &Isometry2<f64>,
+        size_m: &Vector2<f64>,
+    ) -> Vec<Vec<Point2<f64>>> {
+        let (low, high) = polygon::bounds(blocks.iter().flatten().copied());
         let extent = high - low;
         if extent.min() < 1e-9 {
             self.sources.error(place, "the blocks of this thing have no area", "they lie on one line");
-            return;
+            return Vec::new();
         }
-        let scale = Vector2::new(size_m[0], size_m[1]).component_div(&extent);
+        let scale = size_m.component_div(&extent);
         let middle = nalgebra::center(&low, &high);
-        for (points, _) in blocks {
-            let scaled = points.iter().map(|point| Point2::from((point - middle).component_mul(&scale)));
-            body.polygons.push(scaled.map(|point| at.flat * point).collect());
-        }
-        let low_m = blocks.iter().map(|(_, z_m)| z_m[0]).fold(f64::MAX, f64::min);
-        let high_m = blocks.iter().map(|(_, z_m)| z_m[1]).fold(f64::MIN, f64::max);
-        let per_z = if high_m - low_m > 1e-9 { size_m[2] / (high_m - low_m) } else { 1.0 };
-        body.z_m = [at.z_m + low_m * per_z, at.z_m + high_m * per_z];
+        let scaled = |point: &Point2<f64>| at * Point2::from((point - middle).component_mul(&scale));
+        blocks.iter().map(|points| points.iter().map(scaled).collect()).collect()
     }
 
     /// The picture of a bitmap, scaled so that its blocked pixels fill `size_m`.

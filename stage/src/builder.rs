@@ -1,32 +1,17 @@
 //! Reads the values of keys: their number, their units, their range.
 
-use super::heights::Heights;
 use super::lexer::{Kind, Span, Token};
 use super::pictures::Pictures;
 use super::sources::Sources;
 use super::tree::Entity;
 use super::{StageRobot, StageWall};
 use interfaces::{is_printable, pose};
-use nalgebra::{Isometry2, Point2};
+use nalgebra::{Isometry2, Point2, Vector2};
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::RangeInclusive;
 
 /// The maximum absolute value of lengths, speeds and angles.
 const MAX_NUMBER: f64 = 1e5;
-
-/// A pose on the floor and the height above it.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Pose {
-    pub(super) flat: Isometry2<f64>,
-    pub(super) z_m: f64,
-}
-
-impl Pose {
-    /// The pose that is `other` as seen from this one.
-    pub(super) fn then(&self, other: &Self) -> Self {
-        Self { flat: self.flat * other.flat, z_m: self.z_m + other.z_m }
-    }
-}
 
 /// Makes walls and robots from entities, and reads their keys in the units of the file. If a value is invalid, an
 /// error is added and the key counts as missing.
@@ -46,7 +31,6 @@ pub(super) struct Builder<'a, 'b> {
     /// The walls that have a tag, with their position and the place of the tag in the file.
     pub(super) tagged: Vec<(usize, Point2<f64>, Span)>,
     pub(super) robots: Vec<StageRobot>,
-    pub(super) heights: Heights,
 }
 
 impl Builder<'_, '_> {
@@ -133,10 +117,10 @@ impl Builder<'_, '_> {
         chosen.map(|(_, meaning)| *meaning)
     }
 
-    /// `[x y z heading]` in m and rad; the identity where it is not given.
-    pub(super) fn pose(&mut self, entity: &Entity, name: &str) -> Pose {
+    /// `[x y z heading]` in m and rad, without z; the identity where it is not given.
+    pub(super) fn pose(&mut self, entity: &Entity, name: &str) -> Isometry2<f64> {
         let Some((mut numbers, place)) = self.numbers(entity, name, 2..=4) else {
-            return Pose::default();
+            return Isometry2::identity();
         };
         let count = numbers.len();
         if count < 4 {
@@ -145,29 +129,29 @@ impl Builder<'_, '_> {
                 // Old files mean the heading by it, newer ones the height.
                 let help = "it takes 4: x, y, z, and the heading, which is the fourth";
                 self.sources.error(place, what, help);
-                return Pose::default();
+                return Isometry2::identity();
             }
             let help = "it takes 4: x, y, z and heading; Stage 4.3 refuses this, here the others are 0";
             self.sources.warning(place, what, help);
             numbers.resize(4, 0.0);
         }
+        if numbers[2] != 0.0 {
+            self.sources.has_no_effect(place, "the height in a pose");
+        }
         let (m, rad) = (self.length_m, self.angle_rad);
-        Pose { flat: pose(numbers[0] * m, numbers[1] * m, numbers[3] * rad), z_m: numbers[2] * m }
+        pose(numbers[0] * m, numbers[1] * m, numbers[3] * rad)
     }
 
-    /// `[x y z]` in m, all positive but for z; z may be left out.
-    pub(super) fn size_m(&mut self, entity: &Entity, default_m: [f64; 3]) -> [f64; 3] {
+    /// `[x y z]` in m, without z, which may be left out.
+    pub(super) fn size_m(&mut self, entity: &Entity, default_m: f64) -> Vector2<f64> {
         let Some((numbers, place)) = self.numbers(entity, "size", 2..=3) else {
-            return default_m;
+            return Vector2::repeat(default_m);
         };
-        let mut size_m = default_m;
-        for (size, number) in size_m.iter_mut().zip(&numbers) {
-            *size = number * self.length_m;
-        }
-        if size_m[..2].iter().any(|side| *side < 1e-4) || size_m[2] < 0.0 {
+        let size_m = Vector2::new(numbers[0], numbers[1]) * self.length_m;
+        if size_m.min() < 1e-4 {
             let help = "it takes x, y and z, each above 0.0001 m";
             self.sources.error(place, "`size` is not positive", help);
-            return default_m;
+            return Vector2::repeat(default_m);
         }
         size_m
     }

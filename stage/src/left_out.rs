@@ -22,7 +22,7 @@ const KINDS: [(&str, &str); 9] = [
 const NO_EFFECT: &str = "window blinkenlight lightindicator color_rgba trail_length trail_interval say wheel \
     gui_nose gui_grid gui_outline gui_boundary gui_move gui_movemask gui_interval gui_disable show_clock \
     show_clock_interval threads speedup paused interval_real event_queue debug test resolution map_resolution \
-    alwayson blob_return blobfinder_return gripper_return friction";
+    alwayson blob_return blobfinder_return gripper_return friction stack_children z";
 
 /// Keys that Stage knows or knew and that mean nothing here, and why.
 const KEYS: [(&str, &str); 12] = [

@@ -18,8 +18,8 @@
 //! | `name`, `interval_sim`, `quit_time` | the name, the longest physics step, the length of a run |
 //! | `model`, or a `define` of it | walls |
 //! | `bitmap` | a floor plan; its dark pixels (the first color below 128) are scaled to fill `size` |
-//! | `block` with `points`, `point[…]`, `z` | polygons, scaled to fill `size` together |
-//! | `pose`, `origin`, `size`, `boundary`, `stack_children` | as in Stage |
+//! | `block` with `points`, `point[…]` | polygons, scaled to fill `size` together |
+//! | `pose`, `origin`, `size`, `boundary` | as in Stage, without heights: beams and robots meet all that they cross in the plan |
 //! | `obstacle_return`, `ranger_return`, `laser_return` | a model that neither collides nor is seen is left out |
 //! | `position` | a robot |
 //! | `drive`, `wheelbase`, `velocity_bounds`, `acceleration_bounds` | [`StageRobot`] |
@@ -39,7 +39,6 @@ mod body;
 mod builder;
 mod check;
 mod drive;
-mod heights;
 mod left_out;
 mod lexer;
 mod load;

@@ -1,16 +1,16 @@
 //! Models: their names, their bodies, and those that are walls.
 
 use super::body::Body;
-use super::builder::{Builder, Pose};
-use super::heights::Solid;
+use super::builder::Builder;
 use super::lexer::Span;
 use super::tree::Entity;
 use super::{StageWall, left_out};
+use nalgebra::Isometry2;
 use sim::physics::{BoxTree, Rectangle};
 use worldfile::Severity;
 
-/// The size of a model, where the file gives none, m.
-pub(super) const DEFAULT_SIZE_M: [f64; 3] = [0.1; 3];
+/// The length and the width of a model, where the file gives none, m.
+pub(super) const DEFAULT_SIZE_M: f64 = 0.1;
 /// The pose of a box is its middle if it is as near as this, m.
 const NEAR_M: f64 = 1e-6;
 
@@ -21,9 +21,7 @@ pub(super) struct Placed {
     pub(super) is_solid: bool,
     /// The tag of the model, and the place of the tag in the file.
     pub(super) tag: Option<(u32, Span)>,
-    pub(super) at: Pose,
-    /// The reference of the poses of its parts: the pose of the model, on top of it if parts are stacked.
-    pub(super) top: Pose,
+    pub(super) at: Isometry2<f64>,
     pub(super) body: Body,
 }
 
@@ -32,8 +30,8 @@ impl Builder<'_, '_> {
     pub(super) fn placed(
         &mut self,
         model: &Entity,
-        on: &Pose,
-        default_size_m: [f64; 3],
+        on: &Isometry2<f64>,
+        default_size_m: f64,
         has_box: bool,
     ) -> Placed {
         let name = self.name(model);
@@ -51,11 +49,9 @@ impl Builder<'_, '_> {
             self.sources.add(Severity::Note, place, what, help);
         }
         let tag = self.tag(model);
-        let at = on.then(&self.pose(model, "pose"));
+        let at = on * self.pose(model, "pose");
         let size_m = self.size_m(model, default_size_m);
         let body = self.body(model, &at, size_m, has_box);
-        let is_stacked = self.flag(model, "stack_children").unwrap_or(true);
-        let top = Pose { z_m: at.z_m + if is_stacked { size_m[2] } else { 0.0 }, ..at };
         if collides != is_seen && !body.is_empty() {
             let (what, help) = match collides {
                 true => ("this thing cannot be seen in Stage", "here lasers see whatever robots bump into"),
@@ -65,7 +61,7 @@ impl Builder<'_, '_> {
             };
             self.sources.warning(model.place, what, help);
         }
-        Placed { name, is_solid: collides || is_seen, tag, at, top, body }
+        Placed { name, is_solid: collides || is_seen, tag, at, body }
     }
 
     /// A name that no other model has.
@@ -92,7 +88,7 @@ impl Builder<'_, '_> {
     }
 
     /// Adds a model that stands on the floor or on another one that does.
-    pub(super) fn add(&mut self, model: &Entity, on: &Pose, is_first: bool) {
+    pub(super) fn add(&mut self, model: &Entity, on: &Isometry2<f64>, is_first: bool) {
         match model.kind.as_str() {
             "position" if is_first => self.robot(model),
             "position" => {
@@ -113,9 +109,9 @@ impl Builder<'_, '_> {
         }
     }
 
-    fn wall(&mut self, model: &Entity, on: &Pose) {
+    fn wall(&mut self, model: &Entity, on: &Isometry2<f64>) {
         let placed = self.placed(model, on, DEFAULT_SIZE_M, true);
-        let Placed { name, tag, at, top, body, .. } = placed;
+        let Placed { name, tag, at, body, .. } = placed;
         if let Some((_, place)) = self.text(model, "ctrl") {
             let what = "controllers of Stage cannot be loaded";
             self.sources.warning(place, what, "this thing stands still");
@@ -135,17 +131,14 @@ impl Builder<'_, '_> {
                 let help = "walls here are made of rectangles, which do not fill a corner of less than 90°";
                 self.sources.warning(model.place, what, help);
             }
-            let (solid_name, place) = (name.clone(), model.place);
-            self.heights.solids.push(Solid { name: solid_name, robot: None, place, z_m: body.z_m });
             if let Some((_, place)) = tag {
-                self.tagged.push((self.walls.len(), at.flat.translation.vector.into(), place));
+                self.tagged.push((self.walls.len(), at.translation.vector.into(), place));
             }
-            let (place, at) = (self.sources.name(place), place);
-            let tag = tag.map(|(tag, _)| tag);
-            self.walls.push(StageWall { name, place, rectangles, tag, at });
+            let (place, tag) = (self.sources.name(model.place), tag.map(|(tag, _)| tag));
+            self.walls.push(StageWall { name, place, rectangles, tag, at: model.place });
         }
         for part in model.carried() {
-            self.add(part, &top, false);
+            self.add(part, &at, false);
         }
     }
 

@@ -1,22 +1,22 @@
 //! Robots, and what they carry.
 
 use super::body::Body;
-use super::builder::{Builder, Pose};
-use super::heights::Solid;
+use super::builder::Builder;
 use super::models::{DEFAULT_SIZE_M, Placed};
 use super::tree::Entity;
 use super::{StageRobot, outline};
+use nalgebra::Isometry2;
 
-/// The size of a ranger and a laser, where the file gives none, m.
-const DEFAULT_RANGER_SIZE_M: [f64; 3] = [0.15, 0.15, 0.2];
+/// The length and the width of a ranger and a laser, where the file gives none, m.
+const DEFAULT_RANGER_SIZE_M: f64 = 0.15;
 /// The share by which an outline may be larger than the body without a warning.
 const MAX_GAIN: f64 = 0.01;
 
 impl Builder<'_, '_> {
     /// Adds a robot with all that it carries.
     pub(super) fn robot(&mut self, entity: &Entity) {
-        let placed = self.placed(entity, &Pose::default(), DEFAULT_SIZE_M, true);
-        let Placed { name, tag, at, top, body, .. } = placed;
+        let placed = self.placed(entity, &Isometry2::identity(), DEFAULT_SIZE_M, true);
+        let Placed { name, tag, at, body, .. } = placed;
         if !placed.is_solid {
             let help = "here every robot is solid and seen";
             self.sources.warning(entity.place, "this robot is a ghost in Stage", help);
@@ -25,7 +25,7 @@ impl Builder<'_, '_> {
         let mut robot = StageRobot {
             name,
             place: self.sources.name(entity.place),
-            pose: at.flat,
+            pose: at,
             footprint: Vec::new(),
             outline: Vec::new(),
             drive,
@@ -41,10 +41,9 @@ impl Builder<'_, '_> {
             at: entity.place,
             keys: entity.properties.iter().map(|(name, key)| (name.clone(), key.place())).collect(),
         };
-        let index = self.robots.len();
-        self.add_body(&mut robot, entity, &body, index);
+        add_body(&mut robot, &body);
         for part in entity.carried() {
-            self.carry(part, &top, &mut robot, index);
+            self.carry(part, &at, &mut robot);
         }
         if robot.footprint.is_empty() {
             let help = "give it a `size`, a `block` or a `bitmap`";
@@ -56,10 +55,10 @@ impl Builder<'_, '_> {
     }
 
     /// Adds an entity to the robot that carries it.
-    fn carry(&mut self, entity: &Entity, on: &Pose, robot: &mut StageRobot, index: usize) {
+    fn carry(&mut self, entity: &Entity, on: &Isometry2<f64>, robot: &mut StageRobot) {
         let (is_sensor, size_m) = match entity.kind.as_str() {
             "ranger" | "laser" => (true, DEFAULT_RANGER_SIZE_M),
-            "fiducial" => (true, [0.0; 3]),
+            "fiducial" => (true, 0.0),
             "model" | "puck" => (false, DEFAULT_SIZE_M),
             "position" => {
                 let help = "here it is a part of the robot that carries it";
@@ -69,19 +68,19 @@ impl Builder<'_, '_> {
             }
             _ => return self.other(entity),
         };
-        let Placed { tag, at, top, body, is_solid, .. } = self.placed(entity, on, size_m, !is_sensor);
+        let Placed { tag, at, body, is_solid, .. } = self.placed(entity, on, size_m, !is_sensor);
         if let Some((_, place)) = tag {
             let help = "a robot has one tag here, that of its own `position`";
             self.sources.warning(place, "a tag of a part of a robot is left out", help);
         }
         if is_solid {
-            self.add_body(robot, entity, &body, index);
+            add_body(robot, &body);
         }
         if is_sensor {
-            self.sense(entity, &at, robot, index);
+            self.sense(entity, &at, robot);
         }
         for part in entity.carried().filter(|part| part.kind != "sensor") {
-            self.carry(part, &top, robot, index);
+            self.carry(part, &at, robot);
         }
     }
 
@@ -102,17 +101,6 @@ impl Builder<'_, '_> {
         robot.outline = outline.corners;
     }
 
-    fn add_body(&mut self, robot: &mut StageRobot, entity: &Entity, body: &Body, index: usize) {
-        if body.is_empty() {
-            return;
-        }
-        let to_robot = robot.pose.inverse();
-        let corners = body.corners().map(|polygon| polygon.iter().map(|corner| to_robot * corner).collect());
-        robot.footprint.extend(corners);
-        let (name, place) = (robot.name.clone(), entity.place);
-        self.heights.solids.push(Solid { name, robot: Some(index), place, z_m: body.z_m });
-    }
-
     fn controllers(&mut self, robot: &Entity) -> Vec<String> {
         let Some(property) = robot.get("ctrl") else {
             return Vec::new();
@@ -122,4 +110,10 @@ impl Builder<'_, '_> {
         self.sources.warning(property.place(), "controllers of Stage cannot be loaded", help);
         property.values.iter().map(|value| self.sources.text(value.place).to_owned()).collect()
     }
+}
+
+fn add_body(robot: &mut StageRobot, body: &Body) {
+    let to_robot = robot.pose.inverse();
+    let corners = body.corners().map(|polygon| polygon.iter().map(|corner| to_robot * corner).collect());
+    robot.footprint.extend(corners);
 }

@@ -1,8 +1,7 @@
 //! The sensors of a robot.
 
-use super::builder::{Builder, Pose};
+use super::builder::Builder;
 use super::drive::INVERSE_ROOT_3;
-use super::heights::Beam;
 use super::lexer::Span;
 use super::tree::Entity;
 use super::{StageRobot, StageSensor};
@@ -27,34 +26,30 @@ const DEFAULT_FIDUCIAL_RANGE_ID_M: f64 = 5.0;
 const CONE_RAD: [f64; 2] = [PI / 180.0, PI];
 
 impl Builder<'_, '_> {
-    /// Adds the sensors of an entity, whose pose in the world is `at`, to robot `index`.
-    pub(super) fn sense(&mut self, entity: &Entity, at: &Pose, robot: &mut StageRobot, index: usize) {
-        let beam = |z_m: f64| Beam { robot: index, place: entity.place, z_m };
-        let mount = |at: &Pose| Pose { flat: robot.pose.inverse() * at.flat, ..*at };
+    /// Adds the sensors of an entity, whose pose in the world is `at`, to a robot.
+    pub(super) fn sense(&mut self, entity: &Entity, at: &Isometry2<f64>, robot: &mut StageRobot) {
+        let to_robot = robot.pose.inverse();
         if entity.kind == "fiducial" {
             if robot.fiducial.is_some() {
                 let help = "a robot has one here, its first";
                 return self.left_out(entity, "a second fiducial finder on one robot is left out", help);
             }
             // Stage looks from its pose, whatever its origin.
-            robot.fiducial = self.fiducial(entity, mount(at).flat);
-            self.heights.beams.push(beam(at.z_m));
+            robot.fiducial = self.fiducial(entity, to_robot * at);
             return;
         }
-        let mount = mount(&at.then(&self.pose(entity, "origin")));
+        let mount = to_robot * (at * self.pose(entity, "origin"));
         let sensors = match entity.kind.as_str() {
-            "laser" => self.old_laser(entity, &mount).into_iter().collect(),
+            "laser" => self.old_laser(entity, mount).into_iter().collect(),
             _ => self.ranger(entity, &mount),
         };
-        for (sensor, z_m) in sensors {
-            let sensors = if sensor.beams > 1 { &mut robot.lasers } else { &mut robot.sonars };
-            sensors.push(sensor);
-            self.heights.beams.push(beam(z_m));
-        }
+        let (lasers, sonars): (Vec<_>, Vec<_>) = sensors.into_iter().partition(|sensor| sensor.beams > 1);
+        robot.lasers.extend(lasers);
+        robot.sonars.extend(sonars);
     }
 
-    /// The sensors of a `ranger` at `at` on its robot, with their heights, m.
-    fn ranger(&mut self, ranger: &Entity, at: &Pose) -> Vec<(StageSensor, f64)> {
+    /// The sensors of a `ranger` at `at` on its robot.
+    fn ranger(&mut self, ranger: &Entity, at: &Isometry2<f64>) -> Vec<StageSensor> {
         let interval_ms = self.interval_ms(ranger);
         let parts = || ranger.parts.iter().filter(|part| part.kind == "sensor");
         if parts().next().is_none() {
@@ -62,16 +57,14 @@ impl Builder<'_, '_> {
             self.sources.warning(ranger.place, "this ranger has no `sensor`", help);
         }
         let sensors = parts().filter_map(|part| {
-            let mount = at.then(&self.pose(part, "pose"));
-            let size_m = self.size_m(part, [0.02; 3]);
+            let mount = at * self.pose(part, "pose");
+            self.size_m(part, 0.02);
             let range_m = self.lengths_m(part, "range", 2);
             let range_m = range_m.map_or(DEFAULT_SENSOR_RANGE_M, |range_m| [range_m[0], range_m[1]]);
-            let sensor =
-                self.sensor(part, mount.flat, (1.0, DEFAULT_SENSOR_FOV_RAD), range_m, interval_ms)?;
-            Some((sensor, mount.z_m + size_m[2] / 2.0))
+            self.sensor(part, mount, (1.0, DEFAULT_SENSOR_FOV_RAD), range_m, interval_ms)
         });
-        let sensors: Vec<(StageSensor, f64)> = sensors.collect();
-        if sensors.iter().any(|(sensor, _)| sensor.beams == 1) {
+        let sensors: Vec<StageSensor> = sensors.collect();
+        if sensors.iter().any(|sensor| sensor.beams == 1) {
             let help =
                 "here it is a cone as wide as its `fov` (1° to 180°), and the nearest thing in it counts";
             self.sources.warning(ranger.place, "in Stage a sensor of one sample is a single ray", help);
@@ -79,14 +72,13 @@ impl Builder<'_, '_> {
         sensors
     }
 
-    /// The laser of a `laser`, as older files have it, with its height, m.
-    fn old_laser(&mut self, laser: &Entity, at: &Pose) -> Option<(StageSensor, f64)> {
+    /// The laser of a `laser`, as older files have it.
+    fn old_laser(&mut self, laser: &Entity, mount: Isometry2<f64>) -> Option<StageSensor> {
         let interval_ms = self.interval_ms(laser);
         let [min_m, max_m] = DEFAULT_LASER_RANGE_M;
         let min_m = self.length_m(laser, "range_min").unwrap_or(min_m);
         let max_m = self.length_m(laser, "range_max").unwrap_or(max_m);
-        let defaults = (DEFAULT_LASER_SAMPLES, PI);
-        Some((self.sensor(laser, at.flat, defaults, [min_m, max_m], interval_ms)?, at.z_m))
+        self.sensor(laser, mount, (DEFAULT_LASER_SAMPLES, PI), [min_m, max_m], interval_ms)
     }
 
     /// A laser or a sonar, with defaults for its samples and its field of view (rad).

@@ -1,13 +1,13 @@
 //! From the tree of a file to a world.
 
-use super::builder::{Builder, Pose};
-use super::heights::Heights;
+use super::builder::Builder;
 use super::lexer::Span;
 use super::pictures::Pictures;
 use super::sources::Sources;
 use super::tree::Entity;
 use super::{Drive, StageRobot, StageWorld, fastest, left_out};
 use interfaces::printable;
+use nalgebra::Isometry2;
 use std::collections::{BTreeMap, BTreeSet};
 use worldfile::Severity;
 
@@ -41,7 +41,6 @@ pub(super) fn convert(sources: &mut Sources<'_>, tree: &Entity) -> Option<StageW
         walls: Vec::new(),
         tagged: Vec::new(),
         robots: Vec::new(),
-        heights: Heights::default(),
     };
     let lengths = [("m", 1.0), ("cm", 0.01), ("mm", 0.001)];
     let length_m = builder.choice(tree, ("unit_length", "unit", "it is one of m, cm, mm"), &lengths);
@@ -54,15 +53,14 @@ pub(super) fn convert(sources: &mut Sources<'_>, tree: &Entity) -> Option<StageW
     let longest_ms = builder.number(tree, "interval_sim", 1.0..=1e5);
     builder.interval_sim_ms = longest_ms.map_or(DEFAULT_INTERVAL_SIM_MS, |ms| ms.round() as u32);
     for model in &tree.parts {
-        builder.add(model, &Pose::default(), true);
+        builder.add(model, &Isometry2::identity(), true);
         if builder.robots.len() > MAX_ROBOTS {
             builder.sources.error(model.place, "too many robots", format!("{MAX_ROBOTS} are the most"));
             return None;
         }
     }
     builder.check_tags();
-    let Builder { sources, walls, robots, heights, .. } = builder;
-    heights.compare(sources);
+    let Builder { sources, walls, robots, .. } = builder;
     warn_of_unused(sources, tree);
     let Some(step_s) = step_s(longest_ms, &robots) else {
         let help = "a step may not be shorter than 1 ms, a robot may not go farther than its radius in it, and \
