@@ -27,20 +27,6 @@ const WANDER_MPS: f64 = 0.4;
 /// The keys of a table with their values.
 type Keys = Vec<(&'static str, Value)>;
 
-/// The keys of a world file, and the keys of a Stage robot that they come from.
-const STAGE_KEYS: [(&str, &str); 10] = [
-    ("max_linear_mps", "velocity_bounds"),
-    ("max_left_mps", "velocity_bounds"),
-    ("max_angular_degps", "velocity_bounds"),
-    ("max_linear_acceleration_mps2", "acceleration_bounds"),
-    ("max_left_acceleration_mps2", "acceleration_bounds"),
-    ("max_angular_acceleration_degps2", "acceleration_bounds"),
-    ("wheelbase_m", "wheelbase"),
-    ("mass_kg", "mass"),
-    ("distance_gain", "odom_error"),
-    ("turn_gain", "odom_error"),
-];
-
 /// A world file made of a Stage world.
 pub(super) struct Made<'a> {
     pub(super) text: String,
@@ -78,8 +64,19 @@ impl<'a> Made<'a> {
         let after = self.tables.partition_point(|table| table.start < start);
         let Origin { at, robot, .. } = self.tables[..after].last()?;
         let key = lines.next()?.split(" = ").next()?;
-        let known = STAGE_KEYS.iter().find(|(made, _)| *made == key);
-        Some(known.zip(*robot).map_or(*at, |((_, key), robot)| robot.key(key)))
+        Some(robot.map_or(*at, |robot| robot.key(stage_key(key))))
+    }
+}
+
+/// The key of a Stage robot from which a key of a world file is made.
+fn stage_key(key: &str) -> &str {
+    match key {
+        "max_linear_mps" | "max_left_mps" | "max_angular_degps" => "velocity_bounds",
+        "wheelbase_m" => "wheelbase",
+        "mass_kg" => "mass",
+        "distance_gain" | "turn_gain" => "odom_error",
+        _ if key.ends_with("ps2") => "acceleration_bounds",
+        _ => key,
     }
 }
 

@@ -90,11 +90,7 @@ fn stays(value: &Value<'_, '_>) -> Option<Stays> {
 }
 
 fn recorded(table: &Table<'_>, name: &str, files: &dyn Files) -> Option<Schedule> {
-    if let Some(key) = HABIT_KEYS.into_iter().find(|key| table.has(key)) {
-        let what = format!("the schedule of `{name}` has both events and `{key}`");
-        let others = [(table.at("events"), "these events")];
-        return table.error(&what, (table.at(key), "and this"), &others, "leave one of them out");
-    }
+    table.has_none_of(&HABIT_KEYS, "events", name)?;
     let is_one_blocked = table.choice("one_means", &ONE_MEANS)?;
     let file = table.get("events")?.text()?;
     let bytes = files.read(&table.file.beside(file), MAX_FILE_BYTES).map_err(|error| error.to_string());

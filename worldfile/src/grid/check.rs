@@ -100,11 +100,7 @@ fn scheduled(
     drawing: Option<&Drawing>,
     files: &dyn Files,
 ) -> Option<BlockSpec> {
-    if let Some(key) = ["dwell", "stood", "course"].into_iter().find(|key| table.has(key)) {
-        let what = format!("the block `{name}` has both a schedule and `{key}`");
-        let others = [(table.at("schedule"), "this schedule")];
-        return table.error(&what, (table.at(key), "and this"), &others, "leave one of them out");
-    }
+    table.has_none_of(&["dwell", "stood", "course"], "schedule", name)?;
     let (schedule, course) = (schedule(table, name, files), Course::BackAndForth);
     let path = path::cells(table, name, course, drawing);
     let schedule = schedule?.map(Box::new);

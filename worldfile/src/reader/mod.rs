@@ -6,7 +6,6 @@
 //! the list of its keys: an unknown key may be a misspelling of a key that then seems to be missing.
 
 mod spelling;
-mod syntax;
 #[cfg(test)]
 pub(crate) mod tests;
 mod value;
@@ -113,9 +112,10 @@ impl File<'_> {
     }
 
     fn syntax_error<T>(&self, error: &toml::de::Error) -> Option<T> {
-        let span = error.span().unwrap_or(0..0);
-        let (what, help) = syntax::fault(error.message(), self.text(span.clone()));
-        self.error(what, (span, ""), &[], help)
+        let what = format!("this is not valid TOML: {}", error.message());
+        let help = "a value is written as in `a = 0.5`, `a = \"text\"`, `a = true` or `a = [1.0, 2.0]`, the header of a \
+                    table as in `[map]` or `[[robot]]`";
+        self.error(&what, (error.span().unwrap_or(0..0), ""), &[], help)
     }
 
     /// Whether the file does not describe a world of the other kind: `map` is a drawing, or a table of sizes.
@@ -223,6 +223,14 @@ impl<'a> Table<'a> {
     /// Whether a key is given.
     pub(crate) fn has(&self, key: &'static str) -> bool {
         self.get(key).is_some()
+    }
+
+    /// Records an error if the table of a thing has both a key and one of the `others`.
+    pub(crate) fn has_none_of(&self, others: &[&'static str], key: &'static str, name: &str) -> Option<()> {
+        let Some(other) = others.iter().find(|other| self.has(other)) else { return Some(()) };
+        let what = format!("`{name}` has both `{key}` and `{other}`");
+        let mark = (self.at(other), "and this");
+        self.error(&what, mark, &[(self.at(key), "this one")], "leave one of them out")
     }
 
     /// The keys that are given, with the places of their values.

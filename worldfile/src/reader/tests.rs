@@ -115,55 +115,29 @@ fn a_name_that_is_not_printable_is_refused() {
 }
 
 #[test]
-fn a_text_that_is_not_toml_is_described_without_words_of_the_parser() {
-    let value = "this is no value";
-    let number = "this is no number";
-    let text = "a value is missing, or a text in quotes is not complete";
-    let deep = "too many lists or tables in each other";
+fn a_text_that_is_not_toml_is_refused_with_the_words_of_the_parser() {
     let cases = [
-        ("name = ", "a value is missing"),
-        ("name", "a key without a value, or a value without a key"),
-        ("name = room", "this is neither a number nor a text in quotes"),
-        ("name == 'a'", "one `=` too many"),
-        ("name = 'a", text),
-        ("name = \"a\nb = 1", text),
-        ("name = \"\"\"a", text),
-        ("name = \"a\\q\"", text),
-        ("name = \"\\ud8\"", text),
-        ("a = [1, 2", "a list does not end"),
-        ("a = [1 2]", "this is neither a number nor a text in quotes"),
-        ("a = [[1] [2]]", "a comma is missing"),
-        ("a = [1,, 2]", "one comma too many"),
-        ("a = [b = 1]", "one `=` too many"),
-        ("a = {b = 1", "a table does not end"),
-        ("a = {b = 1 c = 2}", "one `=` too many"),
-        ("a = {b}", text),
-        ("a = 1 b = 2", "a line goes on after its value"),
-        ("[map", "the header of a table does not end"),
-        ("[[map]", "the header of a table does not end"),
-        ("[]", "this is no key"),
-        ("a b = 1", "a key without a value, or a value without a key"),
-        ("$ = 1", "this is no key"),
-        ("a = 1\na.b = 2", "a key has both a value and keys of its own"),
-        ("a = 1\na = 2", "a key is given twice"),
-        ("a = 01", number),
-        ("a = 1.", value),
-        ("a = +-1", value),
-        ("a = 1e", value),
-        ("a = 1__0", value),
-        ("a = 0xg", value),
-        ("a = 1979-13-45", value),
-        ("a = tru", value),
-        ("a = 1 # \u{1}", "a control character"),
-        ("a = 1\r", "a control character"),
-        ("\0", "a key without a value, or a value without a key"),
-        (&"a = ".to_owned().add(&"[".repeat(100_000)), deep),
-        (&"a = ".to_owned().add(&"{a = ".repeat(100_000)), deep),
-        (&"a.".repeat(100_000).add("a = 1"), deep),
-        (&format!("[{}a]", "a.".repeat(100_000)), deep),
+        "name = ",
+        "name",
+        "name = \"a\nb = 1",
+        "name = \"\\ud8\"",
+        "a = [1, 2",
+        "a = {b}",
+        "a = 1 b = 2",
+        "[map",
+        "a = 1\na.b = 2",
+        "a = 1__0",
+        "a = 1 # \u{1}",
+        "a = 1\r",
+        "\0",
+        &"a = ".to_owned().add(&"[".repeat(100_000)),
+        &"a = ".to_owned().add(&"{a = ".repeat(100_000)),
+        &"a.".repeat(100_000).add("a = 1"),
+        &format!("[{}a]", "a.".repeat(100_000)),
     ];
-    for (text, what) in cases {
-        assert_eq!(firsts(text)[0], what, "{:?}", &text[..text.len().min(30)]);
+    for text in cases {
+        let first = &firsts(text)[0];
+        assert!(first.starts_with("this is not valid TOML: "), "{:?}: {first}", &text[..text.len().min(30)]);
     }
 }
 

@@ -7,6 +7,9 @@ use std::ops::{Range, RangeInclusive};
 use toml::Spanned;
 use toml::de::{DeFloat, DeInteger, DeValue};
 
+/// The maximum number of points of a path.
+const MAX_POINTS: usize = 1000;
+
 /// A number as one would write it: 1e300 has no 300 digits.
 pub(crate) struct Figure(pub(crate) f64);
 
@@ -149,6 +152,16 @@ impl<'t, 'a> Value<'t, 'a> {
     }
 
     /// Whether the value is a list.
+    /// 1 to 1000 points in a map of a size.
+    pub(crate) fn points(&self, size: &Point2<f64>) -> Option<Vec<Point2<f64>>> {
+        let count = self.items()?.len();
+        if !(1..=MAX_POINTS).contains(&count) {
+            let help = format!("it must have 1 to {MAX_POINTS}, as in `[[1.0, 2.0], [3.0, 2.0]]`");
+            return self.invalid(&format!("has {count} points"), "these points", &help);
+        }
+        self.list(|point| point.point(size))
+    }
+
     pub(crate) fn is_list(&self) -> bool {
         matches!(self.found.get_ref(), DeValue::Array(_))
     }

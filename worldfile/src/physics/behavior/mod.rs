@@ -2,7 +2,7 @@
 
 mod patrol;
 
-use crate::physics::kind::{KindOf, has_only_own_keys, kind_of};
+use crate::physics::kind::{KindOf, kind_of};
 use crate::physics::space::Space;
 use crate::reader::Table;
 use nalgebra::Point2;
@@ -14,6 +14,8 @@ use sim::physics::{
 /// The continuation after the last waypoint.
 pub(super) const REPEATS: [(&str, Repeat); 3] =
     [("loop", Repeat::Loop), ("back_and_forth", Repeat::BackAndForth), ("once", Repeat::Once)];
+
+const SIDES: [(&str, bool); 2] = [("left", true), ("right", false)];
 
 pub(super) const KEYS: &str = "kind, from_m, to_m, speed_mps, wall_side, clearance_m, turn_radius_m, direction, \
                                points_m, repeat";
@@ -39,8 +41,8 @@ pub(super) struct Driver<'a> {
 
 impl Driver<'_> {
     pub(super) fn behavior(&self, table: &Table<'_>) -> Option<BehaviorSpec> {
-        let kind = table.needed("kind")?.text()?;
-        let known = kind_of(table, kind, &KINDS, "behavior")?;
+        table.needed("kind")?;
+        let kind = kind_of(table, &KINDS, "a behavior")?;
         if let DriveKind::Car { .. } = self.drive.kind
             && !["driven", "standing", "circle"].contains(&kind)
         {
@@ -52,14 +54,13 @@ impl Driver<'_> {
                 help,
             );
         }
-        has_only_own_keys(table, known, "kind", "a robot")?;
         let behavior = match kind {
             "driven" => BehaviorSpec::Driven,
             "standing" => BehaviorSpec::Standing,
             "circle" => self.circle(table)?,
             "wander" => {
-                let clearance_m = clearance_m(table);
-                BehaviorSpec::Wander(WanderSpec { speed_mps: self.speed_mps(table)?, clearance_m })
+                let (speed_mps, clearance_m) = (self.speed_mps(table), clearance_m(table));
+                BehaviorSpec::Wander(WanderSpec { speed_mps, clearance_m })
             }
             "waypoints" => self.waypoints(table)?,
             _ => BehaviorSpec::WallPatrol(self.patrol(table)?),
@@ -67,27 +68,13 @@ impl Driver<'_> {
         table.sound(behavior)
     }
 
-    /// Records an error if a key is missing that this kind of behavior needs.
-    fn needs(&self, table: &Table<'_>, key: &'static str) -> Option<()> {
-        if table.has(key) {
-            return Some(());
-        }
-        let kind = table.get("kind")?;
-        let what = format!("the behavior of `{}` has no `{key}`", self.name);
-        let help = format!("a robot that is `{}` needs a line `{key} = …`", kind.text()?);
-        table.error(&what, (kind.span(), "this behavior"), &[], &help)
-    }
-
-    fn speed_mps(&self, table: &Table<'_>) -> Option<f64> {
-        self.needs(table, "speed_mps")?;
-        Some(table.number("speed_mps", 0.01..=self.drive.max_linear_mps))
+    fn speed_mps(&self, table: &Table<'_>) -> f64 {
+        table.number("speed_mps", 0.01..=self.drive.max_linear_mps)
     }
 
     fn circle(&self, table: &Table<'_>) -> Option<BehaviorSpec> {
-        let radius_m =
-            self.needs(table, "turn_radius_m").map(|()| table.number("turn_radius_m", 0.01..=1000.0));
-        let is_left = table.choice("direction", &[("left", true), ("right", false)]);
-        let (speed_mps, radius_m, is_left) = (self.speed_mps(table)?, radius_m?, is_left?);
+        let (speed_mps, radius_m) = (self.speed_mps(table), table.number("turn_radius_m", 0.01..=1000.0));
+        let is_left = table.choice("direction", &SIDES)?;
         let curved_radps = speed_mps * self.drive.max_curvature_radpm();
         let fastest_radps = self.drive.max_angular_radps.min(curved_radps);
         if speed_mps / radius_m > fastest_radps {
@@ -105,20 +92,12 @@ impl Driver<'_> {
     }
 
     fn waypoints(&self, table: &Table<'_>) -> Option<BehaviorSpec> {
-        let points = self.needs(table, "points_m").and_then(|()| {
-            let value = table.get("points_m")?;
-            let count = value.items()?.len();
-            if !(1..=1000).contains(&count) {
-                let help = "it must have 1 to 1000, as in `[[1.0, 2.0], [3.0, 2.0]]`";
-                return value.invalid(&format!("has {count} points"), "these points", help);
-            }
-            value.list(|point| point.point(&self.space.size))
-        });
+        let points = table.needed("points_m").and_then(|value| value.points(&self.space.size));
         let repeat = table.choice("repeat", &REPEATS);
         let (speed_mps, clearance_m) = (self.speed_mps(table), clearance_m(table));
         let (points, repeat) = (points?, repeat?);
         self.is_path_free(table, &points, repeat)?;
-        Some(BehaviorSpec::Waypoints(WaypointsSpec { points, speed_mps: speed_mps?, repeat, clearance_m }))
+        Some(BehaviorSpec::Waypoints(WaypointsSpec { points, speed_mps, repeat, clearance_m }))
     }
 
     /// Checks that the path from the start through all points is free.

@@ -17,22 +17,8 @@ const SAMPLE_EVERY_M: f64 = 0.1;
 
 impl Driver<'_> {
     pub(super) fn patrol(&self, table: &Table<'_>) -> Option<PatrolSpec> {
-        let end = |key: &'static str| {
-            self.needs(table, key)?;
-            table.get(key)?.point(&self.space.size)
-        };
-        let (from, to) = (end("from_m"), end("to_m"));
-        let side = self.needs(table, "wall_side").and_then(|()| {
-            let value = table.get("wall_side")?;
-            match value.text()? {
-                "left" => Some(true),
-                "right" => Some(false),
-                other => {
-                    let help = "it must be \"left\" or \"right\", seen on the way from `from_m` to `to_m`";
-                    value.invalid(&format!("is `{other}`"), "no side", help)
-                }
-            }
-        });
+        let [from, to] = ["from_m", "to_m"].map(|key| table.needed(key)?.point(&self.space.size));
+        let side = table.needed("wall_side").and_then(|value| value.choice(&super::SIDES));
         let (speed_mps, clearance_m) = (self.speed_mps(table), super::clearance_m(table));
         let (from, to, wall_on_left) = (from?, to?, side?);
         let mut wall_distance_m = f64::NAN;
@@ -44,7 +30,7 @@ impl Driver<'_> {
                 wall_distance_m = path.wall_distance_m(wall_on_left)?;
             }
         }
-        Some(PatrolSpec { from, to, speed_mps: speed_mps?, wall_on_left, wall_distance_m, clearance_m })
+        Some(PatrolSpec { from, to, speed_mps, wall_on_left, wall_distance_m, clearance_m })
     }
 }
 

@@ -9,7 +9,6 @@ use sim::physics::shape::TOUCH_M;
 use sim::physics::{Motion, ObstacleSpec, PathSpec, Rectangle, Repeat, convex};
 use std::ops::Range;
 
-const MAX_POINTS: usize = 1000;
 /// The fastest block, m/s.
 const FASTEST_MPS: f64 = 5.0;
 
@@ -25,16 +24,9 @@ enum Pace {
 
 impl Obstacle<'_> {
     pub(super) fn block(self) -> Option<ObstacleSpec> {
-        let sides = self.needed("size_m").and_then(|value| value.pair_within(&(0.001..=100.0)));
+        let sides = self.table.needed("size_m").and_then(|value| value.pair_within(&(0.001..=100.0)));
         let heading_rad = self.heading_rad();
-        let points = self.needed("path_m").and_then(|path| {
-            let count = path.items()?.len();
-            if !(1..=MAX_POINTS).contains(&count) {
-                let help = format!("it must have 1 to {MAX_POINTS}, as in `[[1.0, 2.0], [3.0, 2.0]]`");
-                return path.invalid(&format!("has {count} points"), "these points", &help);
-            }
-            path.list(|point| point.point(&self.space.size))
-        });
+        let points = self.table.needed("path_m").and_then(|path| path.points(&self.space.size));
         let pace = self.pace();
         let repeat = self.table.choice("repeat", &REPEATS);
         let (points, repeat) = (points?, repeat?);

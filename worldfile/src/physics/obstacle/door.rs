@@ -18,8 +18,8 @@ const OPENINGS: [(&str, Option<Stays>); 3] = [
 impl Obstacle<'_> {
     pub(super) fn door(self, is_hinged: bool) -> Option<ObstacleSpec> {
         let table = self.table;
-        let [from, to] = ["from_m", "to_m"].map(|key| self.needed(key)?.point(&self.space.size));
-        let thickness_m = self.needed("thickness_m").and_then(|value| value.within(&(0.01..=1.0)));
+        let [from, to] = ["from_m", "to_m"].map(|key| table.needed(key)?.point(&self.space.size));
+        let thickness_m = table.needed("thickness_m").and_then(|value| value.within(&(0.01..=1.0)));
         let open_deg = table.number_or("open_deg", 90.0, -180.0..=180.0);
         let slide_m = table.number_if("slide_m", -10.0..=10.0);
         let move_s = table.number_or("move_s", 1.0, 0.05..=3600.0);

@@ -4,9 +4,9 @@ mod block;
 mod door;
 
 use crate::files::Files;
-use crate::physics::kind::{KindOf, has_only_own_keys, kind_of};
+use crate::physics::kind::{KindOf, kind_of};
 use crate::physics::space::{MAX_TIME_S, Space, inside, upright};
-use crate::reader::{Table, Value, valid};
+use crate::reader::{Table, valid};
 use crate::schedule::schedule;
 use calendar::Schedule;
 use sim::physics::{Motion, ObstacleSpec, PushedSpec, Rectangle};
@@ -42,7 +42,6 @@ const KINDS: [KindOf; 5] = [
 /// An obstacle of the file, and its surroundings.
 struct Obstacle<'a> {
     table: &'a Table<'a>,
-    kind: &'static str,
     name: &'a str,
     space: &'a Space,
     /// The files beside the file.
@@ -51,14 +50,11 @@ struct Obstacle<'a> {
 
 pub(super) fn obstacle(table: &Table<'_>, space: &Space, files: &dyn Files) -> Option<ObstacleSpec> {
     let (name, tag) = (table.name(), table.tag());
-    let word = table.get("kind").map_or(Some("fixed"), |kind| kind.text())?;
-    let kind = kind_of(table, word, &KINDS, "kind of obstacle")?;
-    has_only_own_keys(table, kind, "name, tag, kind", "an obstacle")?;
-    let (kind, called) = (&kind.0, name.as_deref().unwrap_or_default());
-    let obstacle = Obstacle { table, kind, name: called, space, files };
-    let spec = match *kind {
+    let kind = kind_of(table, &KINDS, "an obstacle")?;
+    let obstacle = Obstacle { table, name: name.as_deref().unwrap_or_default(), space, files };
+    let spec = match kind {
         "block" => obstacle.block(),
-        "hinged_door" | "sliding_door" => obstacle.door(*kind == "hinged_door"),
+        "hinged_door" | "sliding_door" => obstacle.door(kind == "hinged_door"),
         "box" => obstacle.pushed(),
         _ => obstacle.fixed(),
     };
@@ -73,14 +69,6 @@ impl Obstacle<'_> {
 
     fn incomplete<T>(&self, what: &str, help: &str) -> Option<T> {
         self.error(&format!("the {what} `{}` is not complete", self.name), help)
-    }
-
-    /// The value of a key that this kind needs.
-    fn needed(&self, key: &'static str) -> Option<Value<'_, '_>> {
-        self.table.get(key).or_else(|| {
-            let help = format!("an obstacle that is `{}` needs a line `{key} = …`", self.kind);
-            self.error(&format!("the obstacle `{}` has no `{key}`", self.name), &help)
-        })
     }
 
     fn heading_rad(&self) -> Option<f64> {
@@ -99,14 +87,9 @@ impl Obstacle<'_> {
 
     /// The schedule of the obstacle, `Some(None)` if it has none. `others` are the keys that a schedule replaces.
     fn schedule(&self, others: &[&'static str]) -> Option<Option<Schedule>> {
-        let table = self.table;
-        let schedule = schedule(table, self.name, self.files)?;
-        if schedule.is_some()
-            && let Some(other) = others.iter().find(|key| table.has(key))
-        {
-            let what = format!("the obstacle `{}` has both a schedule and `{other}`", self.name);
-            let marks = [(table.at("schedule"), "this schedule")];
-            return table.error(&what, (table.at(other), "and this"), &marks, "leave one of them out");
+        let schedule = schedule(self.table, self.name, self.files)?;
+        if schedule.is_some() {
+            self.table.has_none_of(others, "schedule", self.name)?;
         }
         Some(schedule)
     }
@@ -127,7 +110,7 @@ impl Obstacle<'_> {
 
     fn pushed(self) -> Option<ObstacleSpec> {
         let shape = self.shape();
-        let mass_kg = self.needed("mass_kg").and_then(|mass| mass.within(&(0.001..=100_000.0)));
+        let mass_kg = self.table.needed("mass_kg").and_then(|mass| mass.within(&(0.001..=100_000.0)));
         let friction = self.table.number_or("friction", 0.5, 0.0..=10.0);
         let shape = shape?;
         // A thin box would lie in a wall as a whole before the physics pushes it out.
