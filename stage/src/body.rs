@@ -103,9 +103,6 @@ impl Builder<'_, '_> {
             }
             points.push(Point2::from_slice(&self.lengths_m(block, &key, 2)?));
         }
-        if let Some((_, place)) = self.text(block, "color") {
-            self.sources.has_no_effect(place, "color");
-        }
         Some(points)
     }
 

@@ -29,7 +29,7 @@
 //! | `samples`, `fov`, `range`, `range_min`, `range_max`, `noise`, `update_interval` | of a laser or a sonar |
 //! | `fiducial` | a fiducial finder, as far as it tells tags apart (`range_max_id`) |
 //! | `fiducial_return` | the tag of a robot, or of a box that stands about its pose |
-//! | `color`, `mass`, `ctrl` | kept in [`StageRobot`] |
+//! | `mass`, `ctrl` | kept in [`StageRobot`] |
 //!
 //! Everything else (windows, cameras, blob finders, bumpers, grippers, energy, …) is listed in a warning. Bumpers
 //! are left out since those of Stage are short beams at any place, and those of this simulator are parts of a ring

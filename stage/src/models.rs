@@ -35,9 +35,6 @@ impl Builder<'_, '_> {
         has_box: bool,
     ) -> Placed {
         let name = self.name(model);
-        if let Some((_, place)) = self.text(model, "color") {
-            self.sources.has_no_effect(place, "color");
-        }
         let collides = self.flag(model, "obstacle_return").unwrap_or(true);
         let by_rangers = self.number(model, "ranger_return", -1e5..=1e5).is_none_or(|value| value >= 0.0);
         let by_lasers = self.flag(model, "laser_return").unwrap_or(true);

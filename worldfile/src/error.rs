@@ -1,7 +1,7 @@
 //! The error for a world or a tour that cannot be read.
 
 use crate::files::{Disk, Files, MAX_TEXT_BYTES};
-use crate::findings::{Finding, Findings, Severity};
+use crate::findings::{Finding, Findings};
 use std::io;
 use std::path::Path;
 
@@ -15,21 +15,9 @@ use std::path::Path;
 pub struct WorldError(pub(crate) Findings);
 
 impl WorldError {
-    /// The errors.
+    /// The errors, at least one: the first 20, and the number of all.
     pub fn findings(&self) -> &Findings {
         &self.0
-    }
-
-    /// The errors, one message each; at least one. The first 20 errors are shown; the last message then has the
-    /// number of further errors.
-    pub fn messages(&self) -> Vec<String> {
-        let messages = self.0.messages(Severity::Error).into_iter();
-        messages.map(|message| message.trim_start_matches("error: ").to_owned()).collect()
-    }
-
-    /// The number of errors.
-    pub fn count(&self) -> usize {
-        self.0.errors()
     }
 }
 

@@ -38,20 +38,12 @@ pub(crate) fn schedule(thing: &Table<'_>, name: &str, files: &dyn Files) -> Opti
 
 /// The hours that a list of texts names.
 pub(crate) fn hours(value: &Value<'_, '_>) -> Option<Hours> {
-    let items = value.items()?;
     let mut hours = Hours::never();
-    let texts = items.iter().filter(|item| {
-        let added = item.text().map(|text| hours.add(text));
-        match added {
-            None => true,
-            Some(Ok(())) => false,
-            Some(Err(help)) => {
-                item.invalid::<()>("has hours that are not understood", "these hours", &help);
-                true
-            }
-        }
-    });
-    (texts.count() == 0).then_some(hours)
+    value.list(|item| match hours.add(item.text()?) {
+        Ok(()) => Some(()),
+        Err(help) => item.invalid("has hours that are not understood", "these hours", &help),
+    })?;
+    Some(hours)
 }
 
 fn habit(table: &Table<'_>, name: &str) -> Option<Schedule> {
@@ -60,7 +52,7 @@ fn habit(table: &Table<'_>, name: &str) -> Option<Schedule> {
         let what = format!("the schedule of `{name}` has no events");
         return table.error(&what, (table.at("one_means"), "of which events?"), &[], help);
     }
-    if ![table.has("free_s"), table.has("blocked_s")].iter().all(|has| *has) {
+    if !table.has("free_s") || !table.has("blocked_s") {
         let help = "it needs either `free_s` and `blocked_s`, the mean stays in both states, or `events = \"FILE.csv\"`";
         let what = format!("the schedule of `{name}` is not complete");
         return table.error(&what, (table.span.clone(), "this schedule"), &[], help);

@@ -41,7 +41,7 @@ pub use generate::building_ranges;
 pub use ground_truth::PhysicsGroundTruth;
 pub use report::{Body, Contact, ObstacleEvent, ObstacleView};
 pub use robot::RobotView;
-pub use sensors::{Fiducial, SensorReading, SonarReading};
+pub use sensors::{Fiducial, SonarReading};
 pub use shape::Rectangle;
 pub use snapshot::SnapshotError;
 pub use spec::{

@@ -181,7 +181,7 @@ impl<'t, 'a> Value<'t, 'a> {
     }
 
     /// The items of a list, each as `read` reads it; all of them are read.
-    pub(crate) fn list<T>(&self, read: impl Fn(&Self) -> Option<T>) -> Option<Vec<T>> {
+    pub(crate) fn list<T>(&self, read: impl FnMut(&Self) -> Option<T>) -> Option<Vec<T>> {
         let items: Vec<Option<T>> = self.items()?.iter().map(read).collect();
         items.into_iter().collect()
     }

@@ -4,13 +4,11 @@ use super::{EXAMPLE, RosMap};
 use crate::files::Files;
 use crate::findings::{Findings, Severity, SourceText};
 use crate::floor_plan::{self, MAX_FILE_BYTES, Pixel};
-use crate::reader::Figure;
 use interfaces::{CellState, Grid, GridFrame, is_printable, pose};
 use nalgebra::Point2;
 use serde::Deserialize;
 use serde_saphyr::{NonFiniteFloatPolicy, Spanned, from_str_with_options, options};
 use std::collections::BTreeMap;
-use std::fmt;
 use std::ops::{Range, RangeInclusive};
 use std::path::Path;
 
@@ -53,30 +51,11 @@ pub fn read(yaml: &Path, files: &dyn Files, findings: &mut Findings) -> Option<R
 #[derive(Deserialize)]
 #[serde(untagged)]
 enum Value {
-    None(()),
     Flag(bool),
     Number(f64),
     Text(String),
     List(Vec<f64>),
     Other(serde::de::IgnoredAny),
-}
-
-/// As in `resolution` **is -1**.
-impl fmt::Display for Value {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::None(()) => write!(f, "has no value"),
-            Self::Flag(flag) => write!(f, "is {flag}"),
-            Self::Number(number) => write!(f, "is {}", Figure(*number)),
-            Self::Text(text) if text.is_empty() => write!(f, "is empty"),
-            Self::Text(text) => write!(f, "is \"{text}\""),
-            Self::List(numbers) => {
-                let numbers: Vec<String> = numbers.iter().map(|number| Figure(*number).to_string()).collect();
-                write!(f, "is [{}]", numbers.join(", "))
-            }
-            Self::Other(_) => write!(f, "is a list or a table with other values than numbers"),
-        }
-    }
 }
 
 /// A value and its place.
@@ -216,7 +195,8 @@ impl Keys<'_> {
         let place = self.place(&value);
         let parsed = parse(&value.value);
         if parsed.is_none() {
-            self.error(&format!("`{key}` {}", value.value), place.clone(), &help);
+            let written = &self.source.text[place.clone()];
+            self.error(&format!("`{key}` is `{written}`"), place.clone(), &help);
         }
         Some((parsed?, place))
     }

@@ -25,7 +25,6 @@ use super::sensors::Tagged;
 use super::shape::Rectangle;
 use super::spec::FleetSpec;
 use super::velocity::Velocity;
-use nalgebra::Point2;
 use slide::Sliding;
 use start::Start;
 use std::sync::Arc;
@@ -84,11 +83,6 @@ impl Fleet {
         self.robots.get(robot).map(SimulatedRobot::view)
     }
 
-    /// The corners of all walls, counter-clockwise, m.
-    pub fn walls(&self) -> impl ExactSizeIterator<Item = [Point2<f64>; 4]> {
-        self.spec().walls.iter().map(Rectangle::corners)
-    }
-
     /// The obstacles that are present now, at their present poses.
     pub fn obstacles(&self) -> impl Iterator<Item = ObstacleView<'_>> {
         let standing = self.obstacles.iter().enumerate().filter(|(_, obstacle)| obstacle.is_standing());
@@ -116,7 +110,7 @@ impl Fleet {
 
     /// All present bodies with a tag, robots first; none if no robot has a fiducial finder.
     pub(crate) fn tagged(&self) -> Vec<Tagged> {
-        if !self.start.has_fiducial_finders {
+        if self.spec().robots.iter().all(|robot| robot.fiducial.is_none()) {
             return Vec::new();
         }
         let robots = self.robots.iter().enumerate().filter_map(|(index, robot)| {

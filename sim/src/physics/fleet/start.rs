@@ -30,8 +30,6 @@ pub(super) struct Start {
     pub(super) carried: Vec<Option<FreePoses>>,
     /// The robots that have corners.
     cornered: Vec<usize>,
-    /// Whether any robot has a fiducial finder.
-    pub(super) has_fiducial_finders: bool,
 }
 
 impl Start {
@@ -73,7 +71,6 @@ impl Start {
             rooms: Rooms::new(spec),
             carried: carried.collect(),
             cornered,
-            has_fiducial_finders: spec.robots.iter().any(|robot| robot.fiducial.is_some()),
         };
         let mut scene = start.scene.clone();
         poses.iter().enumerate().for_each(|(index, pose)| start.show_robot(&mut scene, index, pose));

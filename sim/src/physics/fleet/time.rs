@@ -182,15 +182,14 @@ impl Fleet {
     pub(crate) fn update_obstacles(&mut self, mut report: impl FnMut(usize, bool, &[Rectangle])) {
         let time_s = self.time_s();
         for index in 0..self.obstacles.len() {
-            if !self.obstacles[index].is_due(time_s) {
+            let Some(is_present) = self.obstacles[index].due(time_s) else { continue };
+            // If a body is in its place, an obstacle appears later; after its time to disappear, never.
+            if is_present && !self.blockers().has_room(&self.obstacles[index].shape) {
                 continue;
             }
-            let blockers = self.blockers();
-            let appeared = self.obstacles[index].update_presence(index, time_s, &mut self.bodies, &blockers);
-            if let Some(appeared) = appeared {
-                self.show_obstacle(index);
-                report(index, appeared, &self.standing_boxes());
-            }
+            self.obstacles[index].set_present(is_present, index, &mut self.bodies);
+            self.show_obstacle(index);
+            report(index, is_present, &self.standing_boxes());
         }
     }
 }

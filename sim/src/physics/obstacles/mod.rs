@@ -150,70 +150,33 @@ impl Obstacle {
         }
     }
 
-    /// Whether it is time to appear or to disappear.
-    pub(super) fn is_due(&mut self, time_s: f64) -> bool {
-        if let Some(is_wanted) = self.is_wanted(time_s) {
-            return is_wanted != self.is_standing();
-        }
-        match self.state {
-            State::Due => is_past(time_s, self.spec.appears_s),
-            State::Standing(_) => is_past(time_s, self.spec.disappears_s),
-            _ => false,
-        }
+    /// Whether it is time to appear (`true`) or to disappear (`false`).
+    pub(super) fn due(&mut self, time_s: f64) -> Option<bool> {
+        let is_past = |due_s: Option<f64>| due_s.is_some_and(|due_s| time_s >= due_s - SLACK_S);
+        let ObstacleSpec { motion, appears_s, disappears_s, .. } = &self.spec;
+        let is_standing = self.is_standing();
+        let is_wanted = match (&mut self.routine, motion) {
+            (Some(routine), Motion::Scheduled(_)) => routine.is_blocked(time_s + SLACK_S),
+            _ => !is_past(*disappears_s) && (is_standing || is_past(*appears_s)),
+        };
+        (is_wanted != is_standing).then_some(is_wanted)
     }
 
-    /// Whether an obstacle that comes and goes by a schedule is to be present at a time, s; `None` for others.
-    fn is_wanted(&mut self, time_s: f64) -> Option<bool> {
-        let routine = self.routine.as_mut().filter(|_| matches!(self.spec.motion, Motion::Scheduled(_)))?;
-        Some(routine.is_blocked(time_s + SLACK_S))
-    }
-
-    /// Makes the obstacle appear or disappear, if it is time: `Some(true)` or `Some(false)`. If a body is in the
-    /// same place, the appearance is delayed. An obstacle whose place is not free until its time to disappear never
-    /// appears.
-    pub(super) fn update_presence(
-        &mut self,
-        index: usize,
-        time_s: f64,
-        bodies: &mut Bodies,
-        blockers: &Blockers,
-    ) -> Option<bool> {
-        let is_past = |due_s| is_past(time_s, due_s);
-        let is_wanted = self.is_wanted(time_s);
-        match self.state {
-            State::Due if is_past(self.spec.disappears_s) => {
-                self.state = State::Gone;
-                None
-            }
-            State::Due if is_wanted.unwrap_or_else(|| is_past(self.spec.appears_s)) => {
-                if !blockers.has_room(&self.shape) {
-                    return None;
-                }
-                self.state = State::Standing(bodies.add_box(Body::Obstacle(index), &self.shape));
-                Some(true)
-            }
-            State::Standing(handle) if is_wanted == Some(false) => {
-                bodies.remove_box(handle);
-                self.state = State::Due;
-                Some(false)
-            }
-            State::Standing(handle) if is_past(self.spec.disappears_s) => {
-                bodies.remove_box(handle);
-                self.state = State::Gone;
-                Some(false)
-            }
-            _ => None,
+    /// Appears, or disappears: without a schedule, for good.
+    pub(super) fn set_present(&mut self, is_present: bool, index: usize, bodies: &mut Bodies) {
+        if let State::Standing(handle) = self.state {
+            bodies.remove_box(handle);
         }
+        self.state = match (is_present, &self.spec.motion) {
+            (true, _) => State::Standing(bodies.add_box(Body::Obstacle(index), &self.shape)),
+            (false, Motion::Scheduled(_)) => State::Due,
+            (false, _) => State::Gone,
+        };
     }
 }
 
 /// Times are sums of steps: a time within this of an event counts as the time of the event, s.
 const SLACK_S: f64 = 5e-7;
-
-/// Whether `time_s` is not before `due_s`.
-fn is_past(time_s: f64, due_s: Option<f64>) -> bool {
-    due_s.is_some_and(|due_s| time_s >= due_s - SLACK_S)
-}
 
 /// What an obstacle does by its schedule, if it has one.
 fn routine(spec: &ObstacleSpec, index: usize, starts_s: Option<f64>, seed: u64) -> Option<Box<Routine>> {

@@ -77,12 +77,6 @@ impl Beams {
     /// The beams from `from` to `to`, counter-clockwise, less than half a turn apart, both included: one range,
     /// or two where the beams pass the back.
     #[inline]
-    pub(super) fn between(&self, from: &Vector2<f64>, to: &Vector2<f64>) -> [Range<usize>; 2] {
-        self.runs_between(&self.bearing(from), &self.bearing(to))
-    }
-
-    /// See [`Beams::between`].
-    #[inline]
     fn runs_between(&self, from: &Bearing, to: &Bearing) -> [Range<usize>; 2] {
         let (mut first, mut end) = (from.first, to.end);
         if to.angle_rad - from.angle_rad < -PI {
@@ -160,7 +154,7 @@ enum Place {
 pub(super) struct Hits<'a> {
     pub(super) beams: &'a Beams,
     /// One over the range, 1/m; 0 where there is no hit.
-    inverse: &'a mut [f64],
+    pub(super) inverse: &'a mut [f64],
     /// The pose of the laser.
     pub(super) laser: Isometry2<f64>,
 }
@@ -326,7 +320,7 @@ mod tests {
                     };
                     let (from, to) = (vector(from_rad), vector(from_rad + width));
                     let mut chosen = vec![false; count];
-                    beams.between(&from, &to).into_iter().flatten().for_each(|beam| chosen[beam] = true);
+                    beams.runs_between(&beams.bearing(&from), &beams.bearing(&to)).into_iter().flatten().for_each(|beam| chosen[beam] = true);
                     let expected: Vec<bool> = beams
                         .directions()
                         .map(|(x, y)| {

@@ -30,6 +30,14 @@ impl Edge {
         self.normal.dot(&(point - self.from))
     }
 
+    /// The sides of a convex body with these corners.
+    pub(super) fn around(
+        corners: impl Iterator<Item = Point2<f64>> + Clone,
+    ) -> impl Iterator<Item = Self> {
+        let next = corners.clone().cycle().skip(1);
+        corners.zip(next).map(|(from, to)| Self::new(from, to))
+    }
+
     /// The sides of a rectangle.
     pub(super) fn of_rectangle(shape: &Rectangle) -> [Self; 4] {
         let corners = shape.corners();

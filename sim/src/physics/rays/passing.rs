@@ -33,7 +33,7 @@ impl Passing {
         let around_m = ((high - low).norm() / 2.0 + radius_m) * (1.0 + 1e-9);
         let around = Disc { center: nalgebra::center(&low, &high), radius_m: around_m };
         let is_still = radius_m == 0.0 && corners[0] == corners[1];
-        let sides = if is_still { sides(corners[0].iter().copied()).collect() } else { Vec::new() };
+        let sides = if is_still { Edge::around(corners[0].iter().copied()).collect() } else { Vec::new() };
         Self { robot, corners, radius_m, sides, around }
     }
 
@@ -54,17 +54,11 @@ impl Passing {
 
     /// The sides of a body with corners at a share of the interval.
     pub(super) fn sides(&self, share: f64) -> impl Iterator<Item = Edge> {
-        sides((0..self.corners[0].len()).map(move |index| self.corner(index, share)))
+        Edge::around((0..self.corners[0].len()).map(move |index| self.corner(index, share)))
     }
 
     fn corner(&self, index: usize, share: f64) -> Point2<f64> {
         let [from, to] = [0, 1].map(|end| self.corners[end][index]);
         from + (to - from) * share
     }
-}
-
-/// The sides of a convex body with these corners.
-fn sides(corners: impl Iterator<Item = Point2<f64>> + Clone) -> impl Iterator<Item = Edge> {
-    let next = corners.clone().cycle().skip(1);
-    corners.zip(next).map(|(from, to)| Edge::new(from, to))
 }

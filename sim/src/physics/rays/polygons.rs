@@ -82,8 +82,7 @@ impl SortedPolygons {
             let center = nalgebra::center(&low, &high);
             let radius2 = corners.iter().map(|corner| (corner - center).norm_squared()).fold(0.0, f64::max);
             let start = edges.len();
-            let next = corners.iter().skip(1).chain(corners.first());
-            edges.extend(corners.iter().zip(next).map(|(from, to)| Edge::new(*from, *to)));
+            edges.extend(Edge::around(corners.iter().copied()));
             // A little larger, because of rounding.
             let around = Disc { center, radius_m: radius2.sqrt() * (1.0 + 1e-9) };
             bodies.push(Polygon { around, edges: start..edges.len(), robot: *robot });

@@ -41,6 +41,16 @@ pub(super) struct Sector<'a> {
     pub(super) reach_m: f64,
 }
 
+/// Whether two points lie at least `beyond_m` beyond the same one of the two `borders` [right, left] of rays from the origin.
+pub(super) fn is_beside(
+    borders: &Option<[Vector2<f64>; 2]>,
+    [a, b]: [&Vector2<f64>; 2],
+    beyond_m: f64,
+) -> bool {
+    let Some([right, left]) = borders else { return false };
+    right.perp(a).max(right.perp(b)) < -beyond_m || left.perp(a).min(left.perp(b)) > beyond_m
+}
+
 impl<'a> Sector<'a> {
     /// No hits yet. `inverse` has as many values as there are rays, at least one.
     pub(super) fn new(rays: &'a [Ray], inverse: &'a mut [f64], range_max_m: f64) -> Self {
@@ -106,11 +116,9 @@ impl<'a> Sector<'a> {
 
     /// Whether everything within `around_m` of the line from `a` to `b` lies on one outer side of all rays.
     fn is_beside(&self, a: &Point2<f64>, b: &Point2<f64>, around_m: f64) -> bool {
-        let Some([right, left]) = &self.borders else { return false };
         let [a, b] = [a, b].map(|point| point - self.origins.center);
         // A ray of the sector never crosses the borders outwards, but begins up to a radius beyond them.
-        let beyond_m = self.origins.radius_m + around_m;
-        right.perp(&a).max(right.perp(&b)) < -beyond_m || left.perp(&a).min(left.perp(&b)) > beyond_m
+        is_beside(&self.borders, [&a, &b], self.origins.radius_m + around_m)
     }
 
     /// Adds a body that the rays hit at these inverse ranges, 1/m.

@@ -1,9 +1,8 @@
 use super::SimulatedRobot;
 use crate::physics::report::Body;
-use crate::physics::sensors::{Fiducial, Sensor, SensorReading, SonarReading};
+use crate::physics::sensors::{Fiducial, Sensor, SonarReading};
 use interfaces::{LaserReading, Twist};
 use nalgebra::{Isometry2, Point2};
-use std::fmt;
 
 /// The state of a robot, as controllers and viewers read it.
 #[derive(Clone, Copy)]
@@ -44,11 +43,6 @@ impl<'a> RobotView<'a> {
         self.robot.reading()
     }
 
-    /// The latest readings of all sensors, the main laser scanner first.
-    pub fn readings(&self) -> impl Iterator<Item = SensorReading<'a>> + use<'a> {
-        self.robot.sensors.iter().map(Sensor::reading)
-    }
-
     /// The latest reading of each laser scanner, in the order of the spec.
     pub fn lasers(&self) -> impl Iterator<Item = Option<&'a LaserReading>> + use<'a> {
         self.robot.sensors.iter().filter_map(Sensor::laser_reading)
@@ -69,15 +63,6 @@ impl<'a> RobotView<'a> {
         let pressed = self.robot.pressed_bumpers;
         let sectors = self.robot.spec.bumper.map_or(0, |bumper| bumper.sectors);
         (0..sectors).map(move |sector| pressed >> sector & 1 == 1)
-    }
-}
-
-impl fmt::Debug for RobotView<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("RobotView")
-            .field("name", &self.name)
-            .field("pose", &self.pose)
-            .finish_non_exhaustive()
     }
 }
 

@@ -103,15 +103,6 @@ impl Sensor {
         each!(self, sensor => sensor.measure(look))
     }
 
-    /// The latest reading.
-    pub(super) fn reading(&self) -> SensorReading<'_> {
-        match self {
-            Self::Laser(laser) => SensorReading::Laser(laser.reading()),
-            Self::Sonar(sonar) => SensorReading::Sonar(sonar.reading().copied()),
-            Self::Fiducials(finder) => SensorReading::Fiducials(finder.reading().map_or(&[], Vec::as_slice)),
-        }
-    }
-
     /// The latest reading, if the sensor is a laser scanner.
     pub(super) fn laser_reading(&self) -> Option<Option<&LaserReading>> {
         let Self::Laser(laser) = self else { return None };
@@ -159,17 +150,6 @@ fn ring(spec: &RobotSpec) -> Ring {
         offset_m: ring.offset_m.max(mount.translation.vector.norm()),
         range_m: ring.range_m.max(range_m),
     })
-}
-
-/// The latest reading of a sensor; `None` before the first measurement.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum SensorReading<'a> {
-    /// The reading of a laser scanner. The pose is the pose by odometry.
-    Laser(Option<&'a LaserReading>),
-    /// The reading of a sonar.
-    Sonar(Option<SonarReading>),
-    /// The bodies that a fiducial finder detected: robots first, then obstacles, each in the order of the spec.
-    Fiducials(&'a [Fiducial]),
 }
 
 /// A robot at the moment of a measurement.

@@ -108,10 +108,7 @@ fn world_file(name: &str, text: &str, files: &dyn Files) -> Inspection {
     };
     match outcome {
         Ok((content, warnings)) => Inspection { content: Some(content), warnings, ..Inspection::default() },
-        Err(error) => {
-            let errors = error.messages().iter().map(|message| format!("error: {message}")).collect();
-            Inspection { errors, error_count: error.count(), ..Inspection::default() }
-        }
+        Err(error) => found(None, error.findings()),
     }
 }
 

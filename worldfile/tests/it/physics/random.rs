@@ -147,7 +147,7 @@ impl Deepest {
                 *entry = (-gap_m, format!("world {seed} at {:.2} s", fleet.time_s()));
             }
         };
-        let walls: Vec<[Point2<f64>; 4]> = fleet.walls().collect();
+        let walls: Vec<[Point2<f64>; 4]> = fleet.spec().walls.iter().map(Rectangle::corners).collect();
         let kind = |obstacle: &ObstacleView<'_>| match fleet.spec().obstacles[obstacle.index].motion {
             Motion::Pushed(_) => "box",
             _ => "mover",

@@ -60,7 +60,8 @@ impl Scene {
             return f64::INFINITY;
         }
         let offset_m = vicinity.sensors.radius_m;
-        let mut nearest = Nearest::new(beams, sensor);
+        let mut inverse = Vec::new();
+        let mut nearest = Nearest::new(beams, sensor, &mut inverse);
         for (distance_m, thing) in vicinity.things() {
             if distance_m - offset_m > nearest.reach_m {
                 break;
@@ -81,7 +82,7 @@ impl Scene {
                 }
             }
         }
-        nearest.inverse
+        nearest.inverse()
     }
 }
 
