@@ -9,8 +9,6 @@ use sim::physics::{BumperSpec, FiducialSpec, LaserSpec, SonarSpec};
 pub const MAX_OUT_M: f64 = 1.0;
 /// The maximum number of lasers of a robot.
 const MAX_LASERS: usize = 100;
-/// The maximum number of sonars of a robot.
-const MAX_SONARS: usize = 100;
 
 const LASER_KEYS: &str = "beams, fov_deg, range_min_m, range_max_m, rate_hz, sweep_s, mount_m, mount_deg, noise_std_m, dropout, \
      beam_width_deg";
@@ -58,11 +56,6 @@ impl Carrier {
 
     pub(super) fn sonars(self, robot: &Table<'_>) -> Option<Vec<SonarSpec>> {
         let tables = robot.tables("sonar", SONAR_KEYS);
-        if let Some(last) = tables.get(MAX_SONARS) {
-            let help = format!("{MAX_SONARS} are the most");
-            let mark = (last.span.clone(), "one too many");
-            return robot.error("a robot has too many sonars", mark, &[], &help);
-        }
         let sonars: Vec<_> = tables.iter().map(|table| self.sonar(table)).collect();
         sonars.into_iter().collect()
     }

@@ -274,7 +274,7 @@ impl<'a> Table<'a> {
         let items = self.get(key).and_then(|value| value.items()).unwrap_or_default();
         let most = most_tables(key);
         if let Some(first) = items.get(most) {
-            let what = format!("this file has {} tables `[[{}]]`", items.len(), self.path(key));
+            let what = format!("there are {} tables `[[{}]]`", items.len(), self.path(key));
             let help =
                 format!("{most} are the most; walls can be drawn in the picture of a `[[floor_plan]]`");
             self.file.error::<()>(&what, (first.found.span(), "one too many"), &[], &help);
@@ -303,7 +303,11 @@ impl<'a> Table<'a> {
 
 /// The maximum number of tables in a list. What can move is compared with everything else.
 fn most_tables(key: &str) -> usize {
-    if key == "wall" { 100_000 } else { 10_000 }
+    match key {
+        "wall" => 100_000,
+        "sonar" => 100, // of a robot
+        _ => 10_000,
+    }
 }
 
 /// Whether a list of keys has this key.

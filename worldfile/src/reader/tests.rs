@@ -168,7 +168,7 @@ fn no_message_has_a_character_that_is_not_printable() {
 #[test]
 fn a_file_with_too_many_things_is_refused_before_they_are_compared() {
     let boxes = "[[obstacle]]\nname = \"b\"\nkind = \"box\"\n".repeat(10_001);
-    assert_eq!(firsts(&room(&boxes)), ["this file has 10001 tables `[[obstacle]]`"]);
+    assert_eq!(firsts(&room(&boxes)), ["there are 10001 tables `[[obstacle]]`"]);
 }
 
 /// Has every error that a value can have.

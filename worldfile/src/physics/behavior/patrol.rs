@@ -85,9 +85,8 @@ impl PatrolPath<'_> {
             (at, walls.ray_m(&at, &side).min(fixed.ray_m(&at, &side)))
         };
         let (_, first_m) = sample(0.0);
-        let mut i = 0.0;
-        while i <= samples {
-            let (at, distance_m) = sample(i);
+        for i in 0..=samples as u32 {
+            let (at, distance_m) = sample(f64::from(i));
             if distance_m > FARTHEST_WALL_M {
                 let what = format!("has no wall on its {}", if on_left { "left" } else { "right" });
                 let help = format!(
@@ -103,7 +102,6 @@ impl PatrolPath<'_> {
                 );
                 return self.error("does not run along its wall", &[], &help);
             }
-            i += 1.0;
         }
         let (radius_m, relief_m) = (self.radius_m, PatrolSpec::WALL_RELIEF_M);
         if first_m < radius_m + relief_m - TOUCH_M {
