@@ -4,7 +4,7 @@
 //! nobody reads cost nothing.
 //!
 //! Stepping, snapshots and views use one list of sensors, [`Sensor::all`]. To add a sensor: write a file, and add a
-//! variant to [`Sensor`] and one to [`SensorReading`].
+//! variant to [`Sensor`].
 
 pub(super) mod bumper;
 mod fiducial_finder;

@@ -4,7 +4,7 @@ use super::*;
 use crate::physics::bodies::Bodies;
 use crate::physics::past::Recent;
 use crate::physics::rays::{Disc, Scene};
-use crate::physics::sensors::{Look, Platform, Sensor, SensorReading, SharedBeams, Surroundings};
+use crate::physics::sensors::{Look, Platform, Sensor, SharedBeams, Surroundings};
 use crate::physics::shape::grid_corners;
 use interfaces::{Scan, Twist, rotation};
 use nalgebra::{Isometry2, Point2, Vector2};
@@ -59,10 +59,7 @@ pub(super) fn scan(spec: &LaserSpec, at: &Isometry2<f64>, scene: &Scene, own: us
     let surroundings =
         Surroundings { step: 0, time_s: 0.0, scene, glass: Vec::new(), tagged: Vec::new(), recent };
     laser.measure(&Look::new(platform, Arc::new(surroundings)));
-    match laser.reading() {
-        SensorReading::Laser(Some(reading)) => reading.scan.clone(),
-        reading => panic!("{reading:?}"),
-    }
+    laser.laser_reading().flatten().expect("a laser that has measured").scan.clone()
 }
 
 /// The results for the beams that were compared.

@@ -47,7 +47,10 @@ fn drivers(robot: &RobotView<'_>, reading: &LaserReading) -> Twist {
 
 /// All poses and readings.
 pub(super) fn sensed(fleet: &Fleet) -> (u64, Vec<String>) {
-    let others = fleet.robots().flat_map(|robot| robot.readings().map(|reading| format!("{reading:?}")));
+    let others = fleet.robots().map(|robot| {
+        let (lasers, sonars) = (robot.lasers().collect::<Vec<_>>(), robot.sonars().collect::<Vec<_>>());
+        format!("{lasers:?} {sonars:?} {:?}", robot.fiducials().collect::<Vec<_>>())
+    });
     (hash(fleet), others.collect())
 }
 
