@@ -97,7 +97,7 @@ impl Task for Drive {
         if !self.memories.is_empty() {
             slices.extend([("visited", LAYER), ("seen", LAYER)]);
         }
-        vec![Part { slices, ..Part::new("observation", vec![self.observation_len()]) }]
+        vec![Part { name: "observation", shape: vec![self.observation_len()], slices }]
     }
 
     fn info_names(&self) -> &'static [&'static str] {

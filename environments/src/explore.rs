@@ -200,11 +200,10 @@ impl Task for Explore {
     fn parts(&self) -> Vec<Part> {
         let Patches { rows, columns } = self.place.patches;
         let state = vec![("position", 2), ("heading", 2), ("velocity", 2)];
-        let map = Part::new("map", vec![LAYERS.len(), rows, columns]);
         vec![
-            Part::new("scan", vec![self.place.beams]),
-            Part { slices: state, ..Part::new("state", vec![STATE]) },
-            Part { slices: LAYERS.to_vec(), ..map },
+            Part { name: "scan", shape: vec![self.place.beams], slices: Vec::new() },
+            Part { name: "state", shape: vec![STATE], slices: state },
+            Part { name: "map", shape: vec![LAYERS.len(), rows, columns], slices: LAYERS.to_vec() },
         ]
     }
 

@@ -164,11 +164,6 @@ pub struct Part {
 }
 
 impl Part {
-    /// A part without named slices.
-    pub(crate) fn new(name: &'static str, shape: Vec<usize>) -> Self {
-        Self { name, shape, slices: Vec::new() }
-    }
-
     /// The number of values.
     pub fn values(&self) -> usize {
         self.shape.iter().product()

@@ -23,7 +23,7 @@ pub(super) struct Outline {
 
 /// The outline of a body of `parts`; none if it does not hold the origin.
 pub(super) fn of(parts: &[Vec<Point2<f64>>]) -> Option<Outline> {
-    let mut corners = hull(parts.iter().flatten().copied().collect());
+    let mut corners = convex::hull(parts.iter().flatten().copied());
     while let Some((flattest, area_m2)) = flattest(&corners)
         && (corners.len() > MAX_CORNERS || area_m2 < MIN_CORNER_M2)
     {
@@ -43,27 +43,6 @@ pub(super) fn of(parts: &[Vec<Point2<f64>>]) -> Option<Outline> {
 /// The radius of the circle about the origin that lies within, m; negative if it lies outside.
 pub(super) fn inner_m(corners: &[Point2<f64>]) -> f64 {
     -Form::Convex(corners.to_vec()).gap_m_to(&Point2::origin())
-}
-
-/// The convex hull, counter-clockwise (Andrew's monotone chain).
-fn hull(mut points: Vec<Point2<f64>>) -> Vec<Point2<f64>> {
-    points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
-    let chain = |points: &mut dyn Iterator<Item = &Point2<f64>>| {
-        let mut chain: Vec<Point2<f64>> = Vec::new();
-        for point in points {
-            while let [.., a, b] = chain.as_slice()
-                && (b - a).perp(&(point - b)) <= 0.0
-            {
-                chain.pop();
-            }
-            chain.push(*point);
-        }
-        chain.pop();
-        chain
-    };
-    let mut corners = chain(&mut points.iter());
-    corners.extend(chain(&mut points.iter().rev()));
-    corners
 }
 
 /// The corner without which an outline loses least, and twice the area that it loses, m².

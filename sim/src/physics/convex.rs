@@ -46,6 +46,29 @@ pub fn area(polygon: &[Point2<f64>]) -> f64 {
     polygon.windows(2).map(|pair| (pair[0] - first).perp(&(pair[1] - first))).sum::<f64>() / 2.0
 }
 
+/// The convex hull of points (Andrew's monotone chain), without corners that are flat.
+pub fn hull(points: impl IntoIterator<Item = Point2<f64>>) -> Vec<Point2<f64>> {
+    const FLAT_M2: f64 = 1e-12;
+    let mut points: Vec<Point2<f64>> = points.into_iter().collect();
+    points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+    let chain = |points: &mut dyn Iterator<Item = &Point2<f64>>| {
+        let mut chain: Vec<Point2<f64>> = Vec::new();
+        for point in points {
+            while let [.., a, b] = chain.as_slice()
+                && (b - a).perp(&(point - b)) <= FLAT_M2
+            {
+                chain.pop();
+            }
+            chain.push(*point);
+        }
+        chain.pop();
+        chain
+    };
+    let mut corners = chain(&mut points.iter());
+    corners.extend(chain(&mut points.iter().rev()));
+    corners
+}
+
 /// The sides, in order.
 pub fn sides(body: &[Point2<f64>]) -> impl Iterator<Item = (&Point2<f64>, &Point2<f64>)> {
     body.iter().zip(body.iter().cycle().skip(1))
@@ -54,11 +77,28 @@ pub fn sides(body: &[Point2<f64>]) -> impl Iterator<Item = (&Point2<f64>, &Point
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::physics::shape::Rectangle;
 
     fn square(left: f64, bottom: f64) -> Vec<Point2<f64>> {
         [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)]
             .map(|(x, y)| Point2::new(left + x, bottom + y))
             .to_vec()
+    }
+
+    #[test]
+    fn a_hull_holds_all_points_and_is_convex() {
+        let shape = Rectangle::around(Point2::new(1.0, 1.0), Vector2::new(0.4, 0.2), 0.3);
+        let along = shape.pose * Vector2::new(0.4, 0.0);
+        for way in [Vector2::new(2.0, 0.7), Vector2::new(-1.0, -1.0), along, Vector2::zeros()] {
+            let points = [shape.corners(), shape.moved(way).corners()].concat();
+            let hull = hull(points.iter().copied());
+            assert!(points.iter().all(|point| disc_gap_m(&hull, point, 0.0) < 1e-9), "{way}: {hull:?}");
+            let turns = (0..hull.len()).map(|i| {
+                let [a, b, c] = [0, 1, 2].map(|k| hull[(i + k) % hull.len()]);
+                (b - a).perp(&(c - b))
+            });
+            assert!(turns.into_iter().all(|turn| turn > 0.0), "{way}: {hull:?}");
+        }
     }
 
     #[test]

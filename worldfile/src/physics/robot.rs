@@ -129,10 +129,7 @@ fn body(
         let what = format!("the robot `{name}` reaches out of the map");
         return table.error(&what, (table.at("pose_m"), "too near to the border"), &[], &help);
     }
-    let overlaps = |shape: &Rectangle| match &form {
-        Form::Disc { .. } => shape.distance_m(&at) < radius_m - TOUCH_M,
-        Form::Convex(corners) => convex::gap_m(corners, &shape.corners()) < -TOUCH_M,
-    };
+    let overlaps = |shape: &Rectangle| form.gap_m(&shape.corners()) < -TOUCH_M;
     if let Some(solid) = space.first_solid(overlaps).or_else(|| space.movers.first(overlaps)) {
         let what = format!("the robot `{name}` starts in a wall or an obstacle");
         let others = [(solid.span.clone(), "in this one")];

@@ -4,7 +4,7 @@ use super::Obstacle;
 use crate::physics::behavior::REPEATS;
 use crate::physics::space::{MAX_TIME_S, inside};
 use crate::reader::valid;
-use nalgebra::{Point2, Vector2};
+use nalgebra::Point2;
 use sim::physics::shape::TOUCH_M;
 use sim::physics::{Motion, ObstacleSpec, PathSpec, Rectangle, Repeat, convex};
 use std::ops::Range;
@@ -123,7 +123,7 @@ impl Obstacle<'_> {
             let at = |point: &Point2<f64>| shape.moved(point - points[0]);
             let what = format!("the path of `{}` leads out of the map", self.name);
             inside(self.table.file, &what, span.clone(), &at(&to), &self.space.size)?;
-            let swept = swept(&at(&from), &(to - from));
+            let swept = convex::hull([at(&from).corners(), at(&to).corners()].concat());
             let is_in_way = |wall: &Rectangle| convex::gap_m(&swept, &wall.corners()) < -TOUCH_M;
             if let Some(wall) = self.space.walls.first(is_in_way) {
                 let what = format!("the path of `{}` leads through a wall", self.name);
@@ -168,45 +168,4 @@ fn dwelling(points: &[Point2<f64>], speed_mps: f64, dwell_s: f64, repeat: Repeat
         }
     }
     keys
-}
-
-/// The area that a rectangle sweeps along a straight line: a convex body of at most six corners.
-fn swept(shape: &Rectangle, way: &Vector2<f64>) -> Vec<Point2<f64>> {
-    let corners = shape.corners();
-    let mut hull = Vec::new();
-    for i in 0..4 {
-        let (before, at, after) = (corners[(i + 3) % 4], corners[i], corners[(i + 1) % 4]);
-        // Counter-clockwise: a side whose solid lies behind the way's direction moves along.
-        let is_ahead = |from: Point2<f64>, to: Point2<f64>| (to - from).perp(way) < 0.0;
-        match (is_ahead(before, at), is_ahead(at, after)) {
-            (true, true) => hull.push(at + way),
-            (false, false) => hull.push(at),
-            (false, true) => hull.extend([at, at + way]),
-            (true, false) => hull.extend([at + way, at]),
-        }
-    }
-    hull
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_a_block_sweeps_is_the_hull_of_both_ends() {
-        let shape = Rectangle::around(Point2::new(1.0, 1.0), Vector2::new(0.4, 0.2), 0.3);
-        for way in
-            [Vector2::new(2.0, 0.7), Vector2::new(-0.1, 3.0), Vector2::new(-1.0, -1.0), Vector2::zeros()]
-        {
-            let hull = swept(&shape, &way);
-            for corner in shape.corners().into_iter().chain(shape.moved(way).corners()) {
-                assert!(convex::disc_gap_m(&hull, &corner, 0.0) < 1e-9, "{way}: {corner}");
-            }
-            let turns = (0..hull.len()).map(|i| {
-                let [a, b, c] = [0, 1, 2].map(|k| hull[(i + k) % hull.len()]);
-                (b - a).perp(&(c - b))
-            });
-            assert!(turns.into_iter().all(|turn| turn > -1e-9), "{way}: {hull:?}");
-        }
-    }
 }
