@@ -19,7 +19,7 @@ const KINDS: [(&str, &str); 9] = [
 /// Keys and kinds of entities that only affect how Stage draws or runs a world, or that concern something else
 /// which does not exist here: rays and contacts use no grid, nothing sees colors, and nothing slides (nor does it
 /// in Stage).
-const NO_EFFECT: &str = "color window blinkenlight lightindicator color_rgba trail_length trail_interval say wheel \
+const NO_EFFECT: &str = "color quit_time window blinkenlight lightindicator color_rgba trail_length trail_interval say wheel \
     gui_nose gui_grid gui_outline gui_boundary gui_move gui_movemask gui_interval gui_disable show_clock \
     show_clock_interval threads speedup paused interval_real event_queue debug test resolution map_resolution \
     alwayson blob_return blobfinder_return gripper_return friction stack_children z";

@@ -15,7 +15,7 @@
 //! |---|---|
 //! | `include`, `define`, models in models | written out, as in Stage; a file that includes itself is an error |
 //! | `unit_length`, `unit_angle` | m, cm, mm; degrees, radians |
-//! | `name`, `interval_sim`, `quit_time` | the name, the longest physics step, the length of a run |
+//! | `name`, `interval_sim` | the name, the longest physics step |
 //! | `model`, or a `define` of it | walls |
 //! | `bitmap` | a floor plan; its dark pixels (the first color below 128) are scaled to fill `size` |
 //! | `block` with `points`, `point[…]` | polygons, scaled to fill `size` together |
@@ -73,8 +73,6 @@ pub struct StageWorld {
     pub files: Vec<String>,
     /// A physics step that is short enough for every robot and sensor, s.
     pub step_s: f64,
-    /// The simulated time after which Stage would stop, s.
-    pub quit_time_s: Option<f64>,
     /// The models that do not move.
     pub walls: Vec<StageWall>,
     /// The models that drive.
@@ -127,8 +125,8 @@ pub struct StageRobot {
     pub tag: Option<u32>,
     /// The mass, kg.
     pub mass_kg: Option<f64>,
-    /// The controllers that Stage would load.
-    pub controllers: Vec<String>,
+    /// Whether its controller is Stage's `wander`.
+    pub wanders: bool,
     at: Span,
     /// The places of the keys of the robot in the file.
     keys: BTreeMap<String, Span>,

@@ -94,13 +94,8 @@ impl Builder<'_, '_> {
                 self.wall(model, on);
             }
             "model" | "puck" => self.wall(model, on),
-            "ranger" | "laser" => {
-                let help = "only robots have lasers here";
-                self.left_out(model, "a laser that stands alone is left out", help);
-            }
-            "fiducial" => {
-                let help = "only robots have fiducial finders here";
-                self.left_out(model, "a fiducial finder that stands alone is left out", help);
+            "ranger" | "laser" | "fiducial" => {
+                self.left_out(model, "a sensor that stands alone is left out", "only robots have sensors here");
             }
             _ => self.other(model),
         }

@@ -37,7 +37,7 @@ impl Builder<'_, '_> {
             fiducial: None,
             tag: tag.map(|(tag, _)| tag),
             mass_kg: self.number(entity, "mass", 0.0..=1e5),
-            controllers: self.controllers(entity),
+            wanders: self.wanders(entity),
             at: entity.place,
             keys: entity.properties.iter().map(|(name, key)| (name.clone(), key.place())).collect(),
         };
@@ -101,14 +101,13 @@ impl Builder<'_, '_> {
         robot.outline = outline.corners;
     }
 
-    fn controllers(&mut self, robot: &Entity) -> Vec<String> {
-        let Some(property) = robot.get("ctrl") else {
-            return Vec::new();
-        };
+    fn wanders(&mut self, robot: &Entity) -> bool {
+        let Some(property) = robot.get("ctrl") else { return false };
         let help =
             "Stage's controllers are programs of its own; `wander` is replaced by our own, others by none";
         self.sources.warning(property.place(), "controllers of Stage cannot be loaded", help);
-        property.values.iter().map(|value| self.sources.text(value.place).to_owned()).collect()
+        let mut names = property.values.iter().map(|value| self.sources.text(value.place));
+        names.any(|name| name.split_whitespace().next() == Some("wander"))
     }
 }
 

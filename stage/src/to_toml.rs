@@ -267,9 +267,7 @@ fn sensor(kind: &str, sensor: &StageSensor, radius_m: f64) -> Keys {
 }
 
 fn behavior(robot: &StageRobot) -> Keys {
-    let wanders = |name: &String| name.split_whitespace().next() == Some("wander");
-    // A car cannot turn in place, as our wandering robots do.
-    if robot.controllers.iter().any(wanders) && !matches!(robot.drive, Drive::Car { .. }) {
+    if robot.wanders && !matches!(robot.drive, Drive::Car { .. }) {
         let speed_mps = WANDER_MPS.min(fastest(robot.velocity.x));
         return vec![("kind", Value::from("wander")), ("speed_mps", number(speed_mps))];
     }

@@ -49,7 +49,6 @@ pub(super) fn convert(sources: &mut Sources<'_>, tree: &Entity) -> Option<StageW
     builder.length_m = length_m.unwrap_or(builder.length_m);
     builder.angle_rad = angle_rad.unwrap_or(builder.angle_rad);
     let name = builder.text(tree, "name").map(|(name, _)| name);
-    let quit_time_s = builder.number(tree, "quit_time", 0.0..=1e5).filter(|time_s| *time_s > 0.0);
     let longest_ms = builder.number(tree, "interval_sim", 1.0..=1e5);
     builder.interval_sim_ms = longest_ms.map_or(DEFAULT_INTERVAL_SIM_MS, |ms| ms.round() as u32);
     for model in &tree.parts {
@@ -71,7 +70,7 @@ pub(super) fn convert(sources: &mut Sources<'_>, tree: &Entity) -> Option<StageW
     let file = sources.path().file_stem();
     let file = file.map_or_else(String::new, |stem| printable(&stem.to_string_lossy()).into_owned());
     let name = name.filter(|name| !name.is_empty()).unwrap_or(file);
-    Some(StageWorld { name, files: sources.file_names(), step_s, quit_time_s, walls, robots })
+    Some(StageWorld { name, files: sources.file_names(), step_s, walls, robots })
 }
 
 /// A step that is not too long for any robot, and of which the intervals of all sensors are

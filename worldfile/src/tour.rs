@@ -41,14 +41,7 @@ impl TourSpec {
     fn from_table(table: &Table<'_>) -> Option<Self> {
         let repeat = table.flag("repeat");
         let value = table.needed("waypoints_m")?;
-        let waypoints = value.list(|waypoint| {
-            let [x, y] = waypoint.pair()?;
-            if x.abs() <= MAX_M && y.abs() <= MAX_M {
-                return Some(Point2::new(x, y));
-            }
-            let help = "both must be numbers of meters within the map";
-            waypoint.error(&format!("`waypoints_m` has [{x}, {y}]"), "no place", help)
-        })?;
+        let waypoints = value.list(|waypoint| waypoint.pair_within(&(-MAX_M..=MAX_M)))?;
         if waypoints.is_empty() {
             return value.invalid("is empty", "", "a tour needs at least one `[x, y]` in meters");
         }
@@ -82,13 +75,13 @@ mod tests {
           = help: a tour needs at least one `[x, y]` in meters
         ");
         insta::assert_snapshot!(error("repeat = true\nwaypoints_m = [\n  [1.0, 2.0],\n  [nan, 0.0],\n]"), @"
-        `waypoints_m` has [NaN, 0]
+        `waypoints_m` is [NaN, 0], which is out of range
          --> t.toml:4:3
           |
         4 |   [nan, 0.0],
-          |   ^^^^^^^^^^ no place
+          |   ^^^^^^^^^^ out of range
           |
-          = help: both must be numbers of meters within the map
+          = help: both must be numbers from -1000000 to 1000000
         ");
         insta::assert_snapshot!(error("waypoint = [[1, 2]]"), @"
         unknown key `waypoint`

@@ -9,7 +9,7 @@ use std::path::Path;
 fn the_example_says_what_is_in_it() {
     let (world, findings) = read(Path::new("lab.world"), &lab_files());
     let world = world.unwrap_or_else(|| panic!("{findings}"));
-    assert_eq!((world.name.as_str(), world.step_s, world.quit_time_s), ("lab", 0.05, Some(600.0)));
+    assert_eq!((world.name.as_str(), world.step_s), ("lab", 0.05));
     assert_eq!(world.files, ["lab.world", "rover.inc", "scanner.inc"]);
     let [plan, table] = world.walls.as_slice() else { panic!("{:?}", world.walls) };
     assert_eq!([&plan.name, &table.name, &table.place], ["lab", "table", "lab.world:35"]);

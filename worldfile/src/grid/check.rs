@@ -30,7 +30,7 @@ pub(super) fn world(root: &Table<'_>, files: &dyn Files) -> Option<GridSpec> {
     let drawing = root.needed("map").and_then(|map| drawing(root.file, map.text()?, map.span()));
     let chances = root
         .table_or_empty("transitions", "block_chance, robot_chance")
-        .map(|table| ["block_chance", "robot_chance"].map(|key| chance(&table, key)));
+        .map(|table| ["block_chance", "robot_chance"].map(|key| valid(table.number_or(key, 1.0, 1e-9..=1.0))));
     let tables = root.tables("block", "name, dwell, stood, course, path, schedule");
     unique_names("block", &tables);
     let mut blocks: Vec<BlockSpec> = Vec::new();
@@ -129,15 +129,4 @@ fn apart(
     } else {
         starts.insert(start, (block.name.clone(), table.at_item("path", index)));
     }
-}
-
-/// A probability above zero; 1 if it is not given.
-fn chance(table: &Table<'_>, key: &'static str) -> Option<f64> {
-    let Some(value) = table.get(key) else { return Some(1.0) };
-    let number = value.number()?;
-    if number > 0.0 && number <= 1.0 {
-        return Some(number);
-    }
-    let help = "it must be a number above 0 and at most 1";
-    value.invalid(&format!("is {number:?}, which is out of range"), "out of range", help)
 }

@@ -13,8 +13,8 @@
 //! | `step_s` | 10 | 0.001 to 86 400: the time of a step of a world with a calendar, s |
 //! | `sensor_radius` | required | 1 to 100 cells |
 //! | `map` | required | rows of equal length, the top row first: `#` wall, `.` free, `R` where the robot starts (free; without one it starts in the center, column width / 2 and row height / 2, rounded down); 3 × 3 to 4 million cells |
-//! | `transitions.block_chance` | 1 | above 0, at most 1: the probability per step that a block which is due moves; a block with a schedule does not use it |
-//! | `transitions.robot_chance` | 1 | above 0, at most 1: the probability that the robot's action happens |
+//! | `transitions.block_chance` | 1 | 1e-9 to 1: the probability per step that a block which is due moves; a block with a schedule does not use it |
+//! | `transitions.robot_chance` | 1 | 1e-9 to 1: the probability that the robot's action happens |
 //! | `block.name` | required | unique |
 //! | `block.dwell` | required | 1 to 1 000 000 steps on every cell |
 //! | `block.stood` | 0 | 0 to `dwell` − 1: steps that it has stood on its first cell when time begins |

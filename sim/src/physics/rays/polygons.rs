@@ -10,41 +10,13 @@ use crate::physics::form::bounds;
 use nalgebra::Point2;
 use std::ops::Range;
 
-/// Convex bodies, each with an index.
+/// A convex body.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Polygons(Vec<Body>);
-
-#[derive(Clone, Debug, Default)]
-struct Body {
+pub(super) struct Body {
     /// Its corners, counter-clockwise, m; none while the body is absent.
-    corners: Vec<Point2<f64>>,
+    pub(super) corners: Vec<Point2<f64>>,
     /// The robot that the body belongs to: its lasers never see the body.
-    robot: Option<usize>,
-}
-
-impl Polygons {
-    /// Room for `count` bodies, all absent.
-    pub(super) fn new(count: usize) -> Self {
-        Self(vec![Body::default(); count])
-    }
-
-    /// The number of bodies, present or not.
-    pub(super) fn len(&self) -> usize {
-        self.0.len()
-    }
-
-    /// Sets the corners of a body (counter-clockwise, m). No corners: the body is absent.
-    pub(super) fn set(
-        &mut self,
-        index: usize,
-        robot: Option<usize>,
-        corners: impl Iterator<Item = Point2<f64>>,
-    ) {
-        let body = &mut self.0[index];
-        body.robot = robot;
-        body.corners.clear();
-        body.corners.extend(corners);
-    }
+    pub(super) robot: Option<usize>,
 }
 
 /// The bodies that are present, prepared for rays.
@@ -74,9 +46,9 @@ impl Polygon {
 
 impl SortedPolygons {
     /// These bodies, sorted into the cells, if there are cells.
-    pub(super) fn new(polygons: &Polygons, visible: Option<&PotentiallyVisibleSet>) -> Self {
+    pub(super) fn new(polygons: &[Body], visible: Option<&PotentiallyVisibleSet>) -> Self {
         let (mut edges, mut bodies, mut in_cells) = (Vec::new(), Vec::new(), Vec::new());
-        for Body { corners, robot } in polygons.0.iter().filter(|body| !body.corners.is_empty()) {
+        for Body { corners, robot } in polygons.iter().filter(|body| !body.corners.is_empty()) {
             let index = bodies.len() as u32;
             let (low, high) = bounds(corners);
             let center = nalgebra::center(&low, &high);

@@ -8,7 +8,7 @@ use super::disc::Disc;
 use super::edges::{Edge, visible_edges};
 use super::hiding::add_edges;
 use super::index_lists::IndexLists;
-use super::polygons::{Polygons, SortedPolygons, Tested};
+use super::polygons::{Body, SortedPolygons, Tested};
 use super::visibility::PotentiallyVisibleSet;
 use crate::physics::shape::Rectangle;
 use nalgebra::{Isometry2, Point2};
@@ -52,7 +52,7 @@ struct Moving {
     /// threads share: all of them would write to the same memory.
     walls: Arc<Walls>,
     /// The convex bodies that appear, disappear or move.
-    polygons: Polygons,
+    polygons: Vec<Body>,
     /// The robots, by index.
     discs: Vec<Disc>,
     /// The same bodies by position, as soon as a ray is cast.
@@ -109,7 +109,7 @@ impl Scene {
         let radius_m = discs.iter().fold(0.0, |most: f64, disc| most.max(disc.radius_m));
         let visible = PotentiallyVisibleSet::new(low, high, walls, &edges, range_m, radius_m);
         let solids = walls.iter().map(Edge::of_rectangle).collect();
-        let (walls, polygons) = (Arc::new(Walls { solids, edges, visible }), Polygons::new(polygons));
+        let (walls, polygons) = (Arc::new(Walls { solids, edges, visible }), vec![Body::default(); polygons]);
         Self { moving: Arc::new(Moving { walls, polygons, discs, sorted: OnceLock::new() }) }
     }
 
@@ -122,7 +122,10 @@ impl Scene {
         corners: impl Iterator<Item = Point2<f64>>,
     ) {
         let moving = Arc::make_mut(&mut self.moving);
-        moving.polygons.set(index, robot, corners);
+        let body = &mut moving.polygons[index];
+        body.robot = robot;
+        body.corners.clear();
+        body.corners.extend(corners);
         moving.sorted = OnceLock::new();
     }
 
