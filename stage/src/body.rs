@@ -50,7 +50,13 @@ type Block = Vec<Point2<f64>>;
 
 impl Builder<'_, '_> {
     /// The body of a model whose pose is `at`. `has_box`: without blocks or a bitmap it is a box.
-    pub(super) fn body(&mut self, model: &Entity, at: &Isometry2<f64>, size_m: Vector2<f64>, has_box: bool) -> Body {
+    pub(super) fn body(
+        &mut self,
+        model: &Entity,
+        at: &Isometry2<f64>,
+        size_m: Vector2<f64>,
+        has_box: bool,
+    ) -> Body {
         let at = at * self.pose(model, "origin");
         let parts = model.parts.iter().filter(|part| part.kind == "block");
         let blocks: Vec<Block> = parts.filter_map(|part| self.block(part)).collect();

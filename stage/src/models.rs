@@ -95,7 +95,11 @@ impl Builder<'_, '_> {
             }
             "model" | "puck" => self.wall(model, on),
             "ranger" | "laser" | "fiducial" => {
-                self.left_out(model, "a sensor that stands alone is left out", "only robots have sensors here");
+                self.left_out(
+                    model,
+                    "a sensor that stands alone is left out",
+                    "only robots have sensors here",
+                );
             }
             _ => self.other(model),
         }

@@ -24,16 +24,12 @@ pub(super) struct Pictures {
 impl Pictures {
     /// The bitmap of a file: dark is blocked, by the first color as in Stage.
     pub(super) fn get(&mut self, files: &dyn Files, path: &Path) -> Result<Arc<Bitmap>, String> {
-        let bitmap = match self.decoded.get(path) {
-            Some(bitmap) => Arc::clone(bitmap),
-            None => {
-                let bytes = files.read(path, MAX_FILE_BYTES).map_err(|error| error.to_string())?;
-                let bitmap = Bitmap::decode(&bytes, |pixel| pixel.red < BLOCKED_BELOW);
-                let bitmap = Arc::new(bitmap?);
-                self.decoded.insert(path.to_owned(), Arc::clone(&bitmap));
-                bitmap
-            }
-        };
+        if !self.decoded.contains_key(path) {
+            let bytes = files.read(path, MAX_FILE_BYTES).map_err(|error| error.to_string())?;
+            let bitmap = Bitmap::decode(&bytes, |pixel| pixel.red < BLOCKED_BELOW)?;
+            self.decoded.insert(path.to_owned(), Arc::new(bitmap));
+        }
+        let bitmap = Arc::clone(&self.decoded[path]);
         self.pixels += u64::from(bitmap.width()) * u64::from(bitmap.height());
         if self.pixels > MAX_PIXELS {
             return Err(format!("the bitmaps of this world have more than {MAX_PIXELS} pixels together"));

@@ -267,6 +267,7 @@ fn sensor(kind: &str, sensor: &StageSensor, radius_m: f64) -> Keys {
 }
 
 fn behavior(robot: &StageRobot) -> Keys {
+    // A car cannot turn in place, as our wandering robots do.
     if robot.wanders && !matches!(robot.drive, Drive::Car { .. }) {
         let speed_mps = WANDER_MPS.min(fastest(robot.velocity.x));
         return vec![("kind", Value::from("wander")), ("speed_mps", number(speed_mps))];

@@ -25,11 +25,10 @@ impl WorldError {
 pub(crate) fn read_text(kind: &str, path: &Path) -> Result<(String, String), WorldError> {
     let name = path.display().to_string();
     let not_text = |_| io::Error::new(io::ErrorKind::InvalidData, "it is not a text in UTF-8");
-    match Disk.read(path, MAX_TEXT_BYTES).and_then(|bytes| String::from_utf8(bytes).map_err(not_text)) {
-        Ok(text) => Ok((name, text)),
-        Err(error) => {
-            let what = format!("cannot read the {kind} `{name}`: {error}");
-            Err(WorldError(Findings::of_errors(vec![Finding::unreadable(&name, &what)], 0)))
-        }
-    }
+    let text = Disk.read(path, MAX_TEXT_BYTES).and_then(|bytes| String::from_utf8(bytes).map_err(not_text));
+    let text = text.map_err(|error| {
+        let what = format!("cannot read the {kind} `{name}`: {error}");
+        WorldError(Findings::of_errors(vec![Finding::unreadable(&name, &what)], 0))
+    });
+    Ok((name, text?))
 }

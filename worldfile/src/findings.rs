@@ -84,11 +84,7 @@ impl Severity {
     }
 
     fn name(self) -> &'static str {
-        match self {
-            Self::Error => "error",
-            Self::Warning => "warning",
-            Self::Note => "note",
-        }
+        ["note", "warning", "error"][self as usize]
     }
 }
 

@@ -153,9 +153,8 @@ fn bodies_become_convex_outlines() {
         |at: &[f64; 2]| outline.iter().any(|corner| (0..2).all(|i| (at[i] - corner[i]).abs() < 1e-9));
     assert!(expected.iter().all(is_there), "{outline:?}");
     // A long robot starts beside a wall, where its disc would not have room.
-    let (spec, findings) = fleet(
-        "model( size [4 0.1 1] pose [0 0.3 0 0] )\nposition( size [1 0.4 1] laser( ) )",
-    );
+    let (spec, findings) =
+        fleet("model( size [4 0.1 1] pose [0 0.3 0 0] )\nposition( size [1 0.4 1] laser( ) )");
     assert_eq!((spec.robots[0].corners.len(), findings.warnings()), (4, 0), "{findings}");
     // An L of three quarters of a square; its hull has seven eighths.
     let (world, findings) = one("position( size [2 2 1] origin [0.2 0.2 0 0] laser( ) block( points 6
@@ -195,9 +194,8 @@ fn a_world_is_moved_and_says_by_how_much() {
 
 #[test]
 fn a_sensor_far_off_its_robot_is_moved_back() {
-    let (spec, findings) = fleet(
-        "position( size [0.6 0.8 1] laser( pose [3 4 0 90] ) ranger( pose [-1 0 0 0] sensor( ) ) )",
-    );
+    let (spec, findings) =
+        fleet("position( size [0.6 0.8 1] laser( pose [3 4 0 90] ) ranger( pose [-1 0 0 0] sensor( ) ) )");
     let robot = &spec.robots[0];
     assert!((robot.laser.mount.translation.vector - nalgebra::Vector2::new(0.9, 1.2)).norm() < 1e-6);
     assert!((robot.laser.mount.rotation.angle() - FRAC_PI_2).abs() < 1e-9);

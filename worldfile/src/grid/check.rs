@@ -28,9 +28,9 @@ pub(super) fn world(root: &Table<'_>, files: &dyn Files) -> Option<GridSpec> {
     let sensor_radius =
         sensor_radius.and_then(|value| value.integer_within(&(1..=GridSpec::MAX_SENSOR_RADIUS)));
     let drawing = root.needed("map").and_then(|map| drawing(root.file, map.text()?, map.span()));
-    let chances = root
-        .table_or_empty("transitions", "block_chance, robot_chance")
-        .map(|table| ["block_chance", "robot_chance"].map(|key| valid(table.number_or(key, 1.0, 1e-9..=1.0))));
+    let chances = root.table_or_empty("transitions", "block_chance, robot_chance").map(|table| {
+        ["block_chance", "robot_chance"].map(|key| valid(table.number_or(key, 1.0, 1e-9..=1.0)))
+    });
     let tables = root.tables("block", "name, dwell, stood, course, path, schedule");
     unique_names("block", &tables);
     let mut blocks: Vec<BlockSpec> = Vec::new();

@@ -33,19 +33,10 @@ impl<'a> FloorPlans<'a> {
     /// The walls of a floor plan: solid rectangles, which overlap.
     pub(super) fn walls(&mut self, table: &Table<'_>, size: &Point2<f64>) -> Option<Vec<Rectangle>> {
         let corner = table.get("corner_m").map_or(Some(Point2::origin()), |corner| corner.point(size));
-        let is_picture = table.has("image") && table.has("pixel_m");
-        let has_keys_of_picture =
-            ["image", "pixel_m", "heading_deg", "blocked_below"].into_iter().any(|key| table.has(key));
-        let key = match table.has("map") {
-            true if !has_keys_of_picture => "map",
-            false if is_picture => "image",
-            _ => {
-                let help = "give either `image` and `pixel_m`, and `heading_deg` and `blocked_below` if need be, \
-                            or the `map` of ROS, which has these itself";
-                let mark = (table.span.clone(), "this floor plan");
-                return table.error("a floor plan needs one picture", mark, &[], help);
-            }
-        };
+        let key = if table.has("map") { "map" } else { "image" };
+        if key == "map" {
+            table.has_none_of(&["image", "pixel_m", "heading_deg", "blocked_below"], "map", "floor_plan")?;
+        }
         if self.pixels > MAX_ALL_PIXELS || self.pieces > MAX_PIECES {
             return None;
         }
@@ -61,10 +52,7 @@ impl<'a> FloorPlans<'a> {
         let walls: Vec<Rectangle> = plan.rectangles().collect();
         self.pieces += walls.len();
         if self.pieces > MAX_PIECES {
-            let what = match self.pieces == walls.len() {
-                true => format!("this floor plan makes {} pieces of wall", walls.len()),
-                false => format!("the floor plans make {} pieces of wall together", self.pieces),
-            };
+            let what = format!("the floor plans make {} pieces of wall together", self.pieces);
             let help =
                 format!("{MAX_PIECES} are the most: take a coarser picture, or one with fewer rough edges");
             return table.error(&what, (table.at(key), "too ragged"), &[], &help);

@@ -69,15 +69,10 @@ pub fn read_floor_plan(yaml: &Path, files: &dyn Files, findings: &mut Findings) 
     }
     let frame = map.cells.frame();
     let blocked: Vec<bool> = states.iter().map(|state| *state == CellState::Blocked).collect();
-    match Bitmap::new(frame.width() as u32, frame.height() as u32, &blocked) {
-        Ok(bitmap) => {
-            let pixel_m = Vector2::repeat(frame.resolution_m());
-            Some(FloorPlan { bitmap: Arc::new(bitmap), pixel_m, origin: map.origin })
-        }
-        Err(error) => {
-            let help = "take a map with smoother walls";
-            findings.add_file(Severity::Error, yaml, &format!("this map makes no walls: {error}"), help);
-            None
-        }
-    }
+    let bitmap = Bitmap::new(frame.width() as u32, frame.height() as u32, &blocked).map_err(|error| {
+        let what = format!("this map makes no walls: {error}");
+        findings.add_file(Severity::Error, yaml, &what, "take a map with smoother walls");
+    });
+    let (bitmap, pixel_m) = (Arc::new(bitmap.ok()?), Vector2::repeat(frame.resolution_m()));
+    Some(FloorPlan { bitmap, pixel_m, origin: map.origin })
 }

@@ -17,31 +17,23 @@ const MAX_YAML_BYTES: u64 = 1 << 20;
 
 /// Reads a `map.yaml` and the picture that it names. Without a map there are errors among the findings.
 pub fn read(yaml: &Path, files: &dyn Files, findings: &mut Findings) -> Option<RosMap> {
-    let bytes = match files.read(yaml, MAX_YAML_BYTES) {
-        Ok(bytes) => bytes,
-        Err(error) => {
-            let what = format!("cannot read this file: {error}");
-            findings.add_file(Severity::Error, yaml, &what, EXAMPLE);
-            return None;
-        }
-    };
-    let source = SourceText::new(yaml.display().to_string(), bytes);
+    let bytes = files.read(yaml, MAX_YAML_BYTES).map_err(|error| {
+        let what = format!("cannot read this file: {error}");
+        findings.add_file(Severity::Error, yaml, &what, EXAMPLE);
+    });
+    let source = SourceText::new(yaml.display().to_string(), bytes.ok()?);
     // An infinite number is reported as the value of its key, like every other invalid value.
     let options = options! { non_finite_float_policy: NonFiniteFloatPolicy::PassThrough };
-    let values: BTreeMap<String, Spanned<Value>> = match from_str_with_options(&source.text, options) {
-        Ok(values) => values,
-        Err(error) => {
-            let error = error.without_snippet();
-            let line = error.location().map_or(1, |at| at.line() as usize);
-            let what = match error {
-                serde_saphyr::Error::DuplicateMappingKey { .. } => "a key is given twice",
-                _ => "this is not a list of keys with values",
-            };
-            findings.add(Severity::Error, &source, what, (source.whole_line(line), ""), EXAMPLE);
-            return None;
-        }
-    };
-    let mut keys = Keys { source: &source, values, findings };
+    let values = from_str_with_options(&source.text, options).map_err(|error| {
+        let error = error.without_snippet();
+        let line = error.location().map_or(1, |at| at.line() as usize);
+        let what = match error {
+            serde_saphyr::Error::DuplicateMappingKey { .. } => "a key is given twice",
+            _ => "this is not a list of keys with values",
+        };
+        findings.add(Severity::Error, &source, what, (source.whole_line(line), ""), EXAMPLE);
+    });
+    let mut keys = Keys { source: &source, values: values.ok()?, findings };
     let map = keys.map(yaml, files);
     keys.warn_of_others();
     map
@@ -75,6 +67,8 @@ enum Mode {
     Scale,
     Raw,
 }
+
+const MODES: [(&str, Mode); 3] = [("trinary", Mode::Trinary), ("scale", Mode::Scale), ("raw", Mode::Raw)];
 
 impl Rule {
     fn state(&self, pixel: Pixel) -> CellState {
@@ -130,12 +124,7 @@ impl Keys<'_> {
         });
         let modes = "`trinary`, `scale` or `raw`";
         let mode = self.value("mode", Some(Mode::Trinary), modes, |value| match value {
-            Value::Text(text) => match text.as_str() {
-                "trinary" => Some(Mode::Trinary),
-                "scale" => Some(Mode::Scale),
-                "raw" => Some(Mode::Raw),
-                _ => None,
-            },
+            Value::Text(text) => MODES.iter().find(|(name, _)| name == text).map(|(_, mode)| *mode),
             _ => None,
         });
         let is_ordered = self.are_ordered(free.as_ref(), occupied.as_ref());
@@ -143,14 +132,11 @@ impl Keys<'_> {
         let path = yaml.parent().unwrap_or(Path::new("")).join(image);
         let bytes = files.read(&path, MAX_FILE_BYTES).map_err(|error| error.to_string());
         let picture = bytes.and_then(|bytes| floor_plan::decode(&bytes));
-        let picture = match picture {
-            Ok(picture) => picture,
-            Err(error) => {
-                let what = format!("cannot read the picture {}: {error}", path.display());
-                self.error(&what, image_place, "`image` names a PNG or PGM picture, relative to this file");
-                return None;
-            }
-        };
+        let picture = picture.map_err(|error| {
+            let what = format!("cannot read the picture {}: {error}", path.display());
+            self.error(&what, image_place, "`image` names a PNG or PGM picture, relative to this file");
+        });
+        let picture = picture.ok()?;
         is_ordered?;
         let [x, y, yaw] = origin?.0;
         let rule = Rule { negate: negate?.0, occupied: occupied?.0, free: free?.0, mode: mode?.0 };

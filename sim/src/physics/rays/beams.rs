@@ -320,7 +320,11 @@ mod tests {
                     };
                     let (from, to) = (vector(from_rad), vector(from_rad + width));
                     let mut chosen = vec![false; count];
-                    beams.runs_between(&beams.bearing(&from), &beams.bearing(&to)).into_iter().flatten().for_each(|beam| chosen[beam] = true);
+                    beams
+                        .runs_between(&beams.bearing(&from), &beams.bearing(&to))
+                        .into_iter()
+                        .flatten()
+                        .for_each(|beam| chosen[beam] = true);
                     let expected: Vec<bool> = beams
                         .directions()
                         .map(|(x, y)| {

@@ -31,9 +31,7 @@ impl Edge {
     }
 
     /// The sides of a convex body with these corners.
-    pub(super) fn around(
-        corners: impl Iterator<Item = Point2<f64>> + Clone,
-    ) -> impl Iterator<Item = Self> {
+    pub(super) fn around(corners: impl Iterator<Item = Point2<f64>> + Clone) -> impl Iterator<Item = Self> {
         let next = corners.clone().cycle().skip(1);
         corners.zip(next).map(|(from, to)| Self::new(from, to))
     }

@@ -79,7 +79,8 @@ pub(super) fn reach(fleet: &Fleet, robot: usize, at: &Point2<f64>) -> Vec<Point2
         Motion::Door(door) => door.shape(&spec.obstacles[view.index].shape, 1.0).corners(),
         _ => view.corners,
     });
-    let solids = spec.walls.iter().map(Rectangle::corners).chain(things).map(|corners| Form::Convex(corners.to_vec()));
+    let solids =
+        spec.walls.iter().map(Rectangle::corners).chain(things).map(|corners| Form::Convex(corners.to_vec()));
     let others = fleet.robots().zip(&spec.robots).filter(|(other, _)| other.index != robot);
     let others = others.filter(|(_, spec)| !drives(spec)).map(|(view, spec)| spec.form(&view.pose));
     let all = Form::Convex(spec.walls.iter().flat_map(Rectangle::corners).collect()).bounds();
