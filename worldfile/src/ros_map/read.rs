@@ -181,8 +181,11 @@ impl Keys<'_> {
         let place = self.place(&value);
         let parsed = parse(&value.value);
         if parsed.is_none() {
-            let written = &self.source.text[place.clone()];
-            self.error(&format!("`{key}` is `{written}`"), place.clone(), &help);
+            let is = match &self.source.text[place.clone()] {
+                "" => "has no value".to_owned(),
+                written => format!("is `{written}`"),
+            };
+            self.error(&format!("`{key}` {is}"), place.clone(), &help);
         }
         Some((parsed?, place))
     }
