@@ -43,6 +43,7 @@ pub fn read(yaml: &Path, files: &dyn Files, findings: &mut Findings) -> Option<R
 #[derive(Deserialize)]
 #[serde(untagged)]
 enum Value {
+    None(()),
     Flag(bool),
     Number(f64),
     Text(String),
@@ -181,9 +182,9 @@ impl Keys<'_> {
         let place = self.place(&value);
         let parsed = parse(&value.value);
         if parsed.is_none() {
-            let is = match &self.source.text[place.clone()] {
-                "" => "has no value".to_owned(),
-                written => format!("is `{written}`"),
+            let is = match value.value {
+                Value::None(()) => "has no value".to_owned(),
+                _ => format!("is `{}`", &self.source.text[place.clone()]),
             };
             self.error(&format!("`{key}` {is}"), place.clone(), &help);
         }

@@ -152,23 +152,14 @@ fn letter(index: u8) -> char {
 }
 
 #[test]
-fn values_of_every_kind_are_shown_as_what_they_are() {
-    for (value, shown) in [
-        ("", "`image` has no value"),
-        (" ~", "`image` has no value"),
-        (" # none", "`image` has no value"),
-        (" ''", "`image` is empty"),
-        (" \"a\\eb\\n\"", "`image` is \"a\\u{1b}b\\n\""),
-        (" 1e300", "`image` is 1e300"),
-        (" yes", "`image` is true"),
-        (" [1, 2.5, .nan]", "`image` is [1, 2.5, NaN]"),
-        ("\n - 1\n - 2", "`image` is [1, 2]"),
-        (" [a, b]", "`image` is a list or a table with other values than numbers"),
-        (" {a: b}", "`image` is a list or a table with other values than numbers"),
-        (" [[1]]", "`image` is a list or a table with other values than numbers"),
-    ] {
+fn values_of_every_kind_are_shown_as_they_are_written() {
+    for value in ["", " ~", " # none", " ''", " \"a\\eb\\n\"", " 1e300", " [a, b]", " {a: b}"] {
         let (_, findings) = read(&GOOD.replace(" house.pgm", value));
-        assert_eq!(findings.iter().next().unwrap().what, shown, "{findings}");
+        let is = match value {
+            "" | " ~" | " # none" => "has no value".to_owned(),
+            written => format!("is `{}`", written.trim()),
+        };
+        assert_eq!(findings.iter().next().unwrap().what, format!("`image` {is}"), "{findings}");
     }
 }
 
