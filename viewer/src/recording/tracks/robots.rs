@@ -1,6 +1,6 @@
 //! The robots, and the plan of the curious robot.
 
-use super::{EVENTS, LABEL, ON_CHANGE, Strip, Tracks, WORLD, color, escape, labels, line, order, points};
+use super::{EVENTS, LABEL, ON_CHANGE, Strip, Tracks, WORLD, color, escape, line, order, points};
 use super::{position, strips};
 use draw::palette;
 use draw::view::{View, is_next_point};
@@ -54,7 +54,11 @@ fn body(tracks: &mut Tracks, index: usize) -> RecordingStreamResult<()> {
         .with_draw_order(order::HEADING);
     tracks.always(&path, &[&disc as &dyn AsComponents, &heading])?;
     if scene.robots.len() > 1 {
-        let below = labels([robot.name.as_str()]).with_positions([[0.0, -1.2 * radius_m]]);
+        let below = Points2D::new([[0.0, -1.2 * radius_m]])
+            .with_labels([robot.name.as_str()])
+            .with_show_labels(true)
+            .with_radii([Radius::new_ui_points(0.0)])
+            .with_colors([color(LABEL, 255)]);
         tracks.always(&format!("{path}/name"), &below)?;
     }
     let nose = Vector2::new(1.4 * robot.radius_m, 0.0);
