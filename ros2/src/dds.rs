@@ -7,7 +7,7 @@ mod publishers;
 mod services;
 mod subscribers;
 
-use crate::environment::{self, Environment, Range};
+use crate::environment::{Environment, Range};
 use crate::link::{Event, Link, Request, Wiring};
 use crate::message::{DynamicEdges, Message, PoseStamped, Quality, Topic};
 use crate::service::Reply;
@@ -17,13 +17,12 @@ use others::{Endpoints, Others};
 use publishers::Publishers;
 use ros2_client::dds::rustdds::DomainParticipantBuilder;
 use ros2_client::qos::{Durability, History, QosProfile, Reliability, WhenFull};
-use ros2_client::{Context, Gid, NodeName, NodeOptions, ServiceMapping, WriteError};
+use ros2_client::{Context, NodeName, NodeOptions, ServiceMapping, WriteError};
 use services::Services;
-use std::collections::{BTreeSet, VecDeque};
+use std::collections::VecDeque;
 use std::net::{IpAddr, Ipv4Addr};
 use std::sync::mpsc::{self, Receiver};
 use std::time::{Duration, Instant};
-use subscribers::Typed;
 
 /// How long a message that must not be lost waits if a subscriber does not keep up.
 const WAIT: Duration = Duration::from_millis(20);
@@ -41,9 +40,8 @@ pub struct DdsLink {
     services: Services,
     /// The full name of the node.
     name: String,
-    typed: Typed,
     /// Ends the node when it is dropped.
-    endpoints: Endpoints,
+    _endpoints: Endpoints,
 }
 
 impl DdsLink {
@@ -62,20 +60,16 @@ impl DdsLink {
         let (to, events) = mpsc::sync_channel(MAX_EVENTS);
         let others = Others::follow(&context, wiring.subscribed.clone(), to.clone())?;
         let mut endpoints = Endpoints::new(context.new_node(name, options)?, others.clone());
-        let mapping = match environment.services {
-            environment::Services::Enhanced => ServiceMapping::Enhanced,
-            environment::Services::Cyclone => ServiceMapping::Cyclone,
-        };
+        let is_cyclone = environment.is_cyclone;
+        let mapping = if is_cyclone { ServiceMapping::Cyclone } else { ServiceMapping::Enhanced };
         let publishers = publishers::open(&mut endpoints, wiring)?;
-        let own: BTreeSet<Gid> = publishers.values().map(|(_, publisher)| publisher.gid()).collect();
+        let own = publishers.values().map(|(_, publisher)| publisher.gid()).collect();
         let navigator = wiring.navigate_to_pose.as_deref();
         let navigator = navigator.map(|name| Navigator::new(endpoints.node(), name, mapping)).transpose()?;
         let edges = wiring.adjust_edges.as_deref();
         let edges = edges.map(|name| EdgesClient::new(endpoints.node(), name, mapping)).transpose()?;
         let services = Services::open(&mut endpoints, others, &wiring.services, mapping, &to)?;
-        let (typed, subscribed) =
-            Typed::new(wiring.subscribed.clone(), context.clone(), own.clone(), to.clone());
-        subscribers::start(&mut endpoints, &context, &subscribed, own, &to)?;
+        subscribers::start(&mut endpoints, &context, wiring, own, to)?;
         Ok(Self {
             events,
             publishers,
@@ -84,8 +78,7 @@ impl DdsLink {
             edges,
             services,
             name: full_name,
-            typed,
-            endpoints,
+            _endpoints: endpoints,
         })
     }
 
@@ -119,7 +112,6 @@ impl Link for DdsLink {
     }
 
     fn receive(&mut self, patience: Duration) -> Option<Event> {
-        self.problems.extend(self.typed.open(&mut self.endpoints));
         if let Some(problem) = self.problems.pop_front() {
             return Some(Event::Problem(problem));
         }

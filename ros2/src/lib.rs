@@ -36,10 +36,10 @@ mod value;
 mod wiring;
 
 pub use dds::DdsLink;
-pub use environment::{Environment, Range, Services};
+pub use environment::{Environment, Range};
 pub use link::{Event, Link, Navigation, Request, Wiring};
 pub use message::{
-    Bool, Clock, CostmapFilterInfo, DiagnosticStatus, Diagnostics, Log, Message, PoseWithCovarianceStamped,
+    CostmapFilterInfo, DiagnosticStatus, Diagnostics, Log, Message, PoseWithCovarianceStamped,
     Quality, Topic, TransitionEvent, Twist as TwistMessage, TwistStamped,
 };
 pub use names::Names;

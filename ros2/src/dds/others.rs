@@ -5,7 +5,7 @@ use super::discovery::{self, Named};
 use crate::link::Event;
 use futures::executor::block_on_stream;
 use ros2_client::dds::rustdds::{DomainParticipantStatusEvent, GUID, RTPSEntity, StatusEvented};
-use ros2_client::{Context, Gid, Node};
+use ros2_client::{Context, Node};
 use std::collections::BTreeSet;
 use std::net::{SocketAddr, UdpSocket};
 use std::sync::mpsc::SyncSender;
@@ -83,15 +83,14 @@ impl Others {
         self.known.lock().map_or(Duration::MAX, |known| known.newest.elapsed())
     }
 
-    /// Whether a participant has a matched reader of a topic.
-    pub(super) fn has(&self, topic: &str, of: &Gid) -> bool {
+    /// Whether the participant of a client has a matched reader of a topic.
+    pub(super) fn has(&self, topic: &str, client: &[u8; 16]) -> bool {
         let Ok(known) = self.known.lock() else { return true };
-        let participant = &of.to_bytes16()[..PARTICIPANT];
         let readers = self.context.domain_participant().discovered_readers();
         readers.iter().any(|reader| {
             let guid = reader.reader_proxy.remote_reader_guid;
             known.matched.contains(&guid)
-                && guid.to_bytes()[..PARTICIPANT] == *participant
+                && guid.to_bytes()[..PARTICIPANT] == client[..PARTICIPANT]
                 && reader.subscription_topic_data.topic_name() == topic
         })
     }

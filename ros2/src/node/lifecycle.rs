@@ -1,7 +1,7 @@
 //! What the node does at the transitions of the managed lifecycle.
 
 use super::CuriousNode;
-use super::outputs::Published;
+use super::publishing::Published;
 use super::setup::Parts;
 use crate::lifecycle::State;
 use crate::link::Link;
@@ -65,7 +65,9 @@ impl<L: Link> CuriousNode<L> {
         self.next_silence = now + super::SILENCE;
         if let Some(last) = self.continued {
             let header = header(last, &self.parameters.map_frame);
-            let maps = self.published.maps.after(&self.parameters, &self.robot.mapper, &header, now);
+            let (parameters, mapper) = (&self.parameters, &self.robot.mapper);
+            let name = |topic| self.link.name(topic);
+            let maps = self.published.maps.after(parameters, mapper, &header, now, name);
             for (topic, message) in maps {
                 self.link.send(topic, message);
             }
