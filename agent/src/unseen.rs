@@ -134,7 +134,7 @@ impl UnseenSpace {
         }
         let (_, target, cell) = best?;
         self.target = Some(target);
-        Some(Goal { cell, stay: Stay::Watch(WATCH) })
+        Some(Goal { position: mapper.frame().center(cell), stay: Stay::Watch(WATCH) })
     }
 
     /// Whether the last goal has shown what the robot went to look at.

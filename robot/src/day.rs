@@ -1,10 +1,10 @@
 //! The day of a robot: patrols on a battery, rests at its dock, and orders by others.
 
-use crate::autonomous::{Autonomous, Destination, GoalSelector};
+use crate::autonomous::Autonomous;
 use crate::belief::{Belief, Permission};
 use crate::messages::Message;
-use crate::pilot::{GoalCount, Pilot, StrategyState};
-use agent::{Features, Stay, Travel};
+use crate::pilot::{GoalCount, Pilot};
+use agent::{Features, Goal, GoalSelector, Stay, StrategyState, Travel};
 use calendar::{DAY_S, Hours};
 use controller::Driver;
 use interfaces::{Values, value};
@@ -239,13 +239,13 @@ impl Battery {
         pose: &Isometry2<f64>,
         mapper: &Mapper,
         travel: &mut impl Travel,
-    ) -> Option<(Destination, String)> {
+    ) -> Option<(Goal, String)> {
         self.plan(pose, mapper, travel);
         self.state.needs_goal = false;
         if self.state.phase == Phase::Returning || self.must_return(mapper.time()) {
             self.state.phase = Phase::Returning;
             goals.end_goal(pose, mapper);
-            let dock = Destination { position: self.settings.dock, stay: Stay::Watch(WAIT_S) };
+            let dock = Goal { position: self.settings.dock, stay: Stay::Watch(WAIT_S) };
             return Some((dock, "back to the dock".to_owned()));
         }
         let goal = if self.charges() {

@@ -24,13 +24,14 @@ pub mod state;
 mod tests;
 mod tour;
 
-pub use autonomous::{Autonomous, Destination, GoalSelector};
+pub use agent::{GoalSelector, StrategyState};
+pub use autonomous::Autonomous;
 pub use belief::{Belief, Permission};
 pub use build::BUILD;
 pub use day::{Battery, DaySettings, DayTotals, PatrolDay};
 pub use localization::{ExactPoses, Localization};
 pub use messages::{Level, Message};
-pub use pilot::{GoalCount, NoPilot, Pilot, StrategyState};
+pub use pilot::{GoalCount, NoPilot, Pilot};
 pub use robot::{Robot, Turn};
 pub use session::{Session, max_step_s};
 pub use settings::{LOCAL_STEPS, Settings, Source, default_mapper};

@@ -1,6 +1,6 @@
 use crate::belief::Belief;
 use crate::messages::Message;
-use agent::Features;
+use agent::{Features, StrategyState};
 use interfaces::Values;
 use mapper::Mapper;
 use nalgebra::Point2;
@@ -74,18 +74,4 @@ pub struct GoalCount {
     pub approached: u32,
     /// Goals that were given up, because the robot made no progress.
     pub given_up: u32,
-}
-
-/// One strategy of the agent at one instant.
-#[derive(Clone, Debug, PartialEq)]
-pub struct StrategyState {
-    /// The name on the command line.
-    pub name: String,
-    /// The learned value V(p, r) (paper, section 4): the expected number of map updates per observation. `None` if
-    /// the agent does not learn.
-    pub value: Option<f64>,
-    /// The share of goals so far that were selected by this strategy, from 0 to 1.
-    pub share: f64,
-    /// Whether this strategy selected the present goal.
-    pub is_current: bool,
 }

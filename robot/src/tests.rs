@@ -1,10 +1,10 @@
 //! The robot in a tiny world, and with parts that only write down what they are asked.
 
 use crate::{
-    Autonomous, Belief, Destination, ExactPoses, GoalCount, GoalSelector, Localization, Permission, Pilot,
+    Autonomous, Belief, ExactPoses, GoalCount, GoalSelector, Localization, Permission, Pilot,
     Robot, explore,
 };
-use agent::{Agent, AgentSettings, Features, Policy, Travel};
+use agent::{Agent, AgentSettings, Features, Goal, Policy, Travel};
 use controller::{CellDrive, Controller, Driver};
 use interfaces::{
     Cell, CellReading, GridFrame, LaserReading, Purpose, RandomStream, Scan, Step, ValueError, World,
@@ -315,8 +315,8 @@ fn permissions_hold_for_every_driver() {
 struct Ended(usize);
 
 impl GoalSelector for Ended {
-    fn next_goal(&mut self, _: &Isometry2<f64>, _: &Mapper, _: &mut impl Travel) -> Option<Destination> {
-        Some(Destination { position: Point2::origin(), stay: agent::Stay::Explore })
+    fn next_goal(&mut self, _: &Isometry2<f64>, _: &Mapper, _: &mut impl Travel) -> Option<Goal> {
+        Some(Goal { position: Point2::origin(), stay: agent::Stay::Explore })
     }
 
     fn end_goal(&mut self, _: &Isometry2<f64>, _: &Mapper) {

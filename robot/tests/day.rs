@@ -1,13 +1,13 @@
 //! A robot with a battery is back at its dock in time, wherever its goals are.
 
-use agent::{Features, Stay, Travel};
+use agent::{Features, Goal, Stay, Travel};
 use calendar::{DAY_S, Hours, WEEK_S};
 use controller::{ControlInput, Driver, Outcome, Status};
 use interfaces::{CellReading, CellState, Grid, GridFrame, Values};
 use mapper::{Mapper, MapperSettings};
 use nalgebra::{Isometry2, Point2};
 use robot::{
-    Autonomous, Belief, DaySettings, DayTotals, Destination, GoalSelector, PatrolDay, Permission, Pilot,
+    Autonomous, Belief, DaySettings, DayTotals, GoalSelector, PatrolDay, Permission, Pilot,
 };
 use std::cell::Cell;
 use std::rc::Rc;
@@ -24,11 +24,11 @@ struct Corners {
 }
 
 impl GoalSelector for Corners {
-    fn next_goal(&mut self, _: &Isometry2<f64>, _: &Mapper, _: &mut impl Travel) -> Option<Destination> {
+    fn next_goal(&mut self, _: &Isometry2<f64>, _: &Mapper, _: &mut impl Travel) -> Option<Goal> {
         self.count += 1;
         self.has_goal.set(true);
         let position = [[29.0, 1.0], [29.0, 19.0], [1.0, 19.0], [1.0, 1.0]][self.count % 4].into();
-        Some(Destination { position, stay: Stay::Watch(0.0) })
+        Some(Goal { position, stay: Stay::Watch(0.0) })
     }
 
     fn end_goal(&mut self, _: &Isometry2<f64>, _: &Mapper) {
@@ -49,13 +49,13 @@ impl GoalSelector for Farthest {
         pose: &Isometry2<f64>,
         mapper: &Mapper,
         travel: &mut impl Travel,
-    ) -> Option<Destination> {
+    ) -> Option<Goal> {
         let mut times = Vec::new();
         travel.times(mapper, pose, &mut times);
         let reachable = (0..times.len()).filter(|cell| times[*cell].is_finite());
         let cell = reachable.max_by(|one, other| times[*one].total_cmp(&times[*other]))?;
         let position = mapper.frame().center(mapper.frame().cell(cell));
-        Some(Destination { position, stay: Stay::Watch(0.0) })
+        Some(Goal { position, stay: Stay::Watch(0.0) })
     }
 
     fn reason(&self) -> String {
