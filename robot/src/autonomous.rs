@@ -1,11 +1,11 @@
 use crate::belief::{Belief, Permission};
 use crate::messages::{Level, Message};
-use crate::pilot::{GoalCount, Pilot};
+use crate::pilot::{GoalCount, Pilot, PilotView};
 use agent::{Features, Goal, GoalSelector, Stay, StrategyState, Travel};
 use controller::{ControlInput, Driver, Outcome, Status};
 use interfaces::{Values, values};
 use mapper::Mapper;
-use nalgebra::{Isometry2, Point2};
+use nalgebra::Isometry2;
 
 /// The pilot of a robot that explores: a goal selector, and a driver to the goals.
 #[derive(Debug)]
@@ -114,28 +114,17 @@ impl<G: GoalSelector, D: Driver> Pilot for Autonomous<G, D> {
         self.driver.forget_map();
     }
 
-    fn path(&self) -> &[Point2<f64>] {
-        self.driver.path()
-    }
-
-    fn goal(&self) -> Option<Point2<f64>> {
-        self.driver.goal()
+    fn view(&self) -> PilotView<'_> {
+        let (path, goal) = (self.driver.path(), self.driver.goal());
+        PilotView { path, goal, goals: self.goals, is_done: self.is_done }
     }
 
     fn strategies(&self, features: Features) -> Vec<StrategyState> {
         self.selector.strategies(features)
     }
 
-    fn goals(&self) -> GoalCount {
-        self.goals
-    }
-
     fn take_messages(&mut self) -> Vec<Message> {
         std::mem::take(&mut self.messages)
-    }
-
-    fn is_done(&self) -> bool {
-        self.is_done
     }
 
     fn values(&mut self, mapper: &Mapper) -> Values<'_> {

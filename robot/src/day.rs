@@ -3,7 +3,7 @@
 use crate::autonomous::Autonomous;
 use crate::belief::{Belief, Permission};
 use crate::messages::Message;
-use crate::pilot::{GoalCount, Pilot};
+use crate::pilot::{Pilot, PilotView};
 use agent::{Features, Goal, GoalSelector, Stay, StrategyState, Travel};
 use calendar::{DAY_S, Hours};
 use controller::Driver;
@@ -307,28 +307,16 @@ impl<G: GoalSelector, D: Driver> Pilot for PatrolDay<G, D> {
         self.pilot.forget_map();
     }
 
-    fn path(&self) -> &[Point2<f64>] {
-        self.pilot.path()
-    }
-
-    fn goal(&self) -> Option<Point2<f64>> {
-        self.pilot.goal()
+    fn view(&self) -> PilotView<'_> {
+        self.pilot.view()
     }
 
     fn strategies(&self, features: Features) -> Vec<StrategyState> {
         self.pilot.strategies(features)
     }
 
-    fn goals(&self) -> GoalCount {
-        self.pilot.goals()
-    }
-
     fn take_messages(&mut self) -> Vec<Message> {
         self.pilot.take_messages()
-    }
-
-    fn is_done(&self) -> bool {
-        self.pilot.is_done()
     }
 
     fn values(&mut self, mapper: &Mapper) -> Values<'_> {

@@ -31,7 +31,7 @@ pub use build::BUILD;
 pub use day::{Battery, DaySettings, DayTotals, PatrolDay};
 pub use localization::{ExactPoses, Localization};
 pub use messages::{Level, Message};
-pub use pilot::{GoalCount, NoPilot, Pilot};
+pub use pilot::{GoalCount, NoPilot, Pilot, PilotView};
 pub use robot::{Robot, Turn};
 pub use session::{Session, max_step_s};
 pub use settings::{LOCAL_STEPS, Settings, Source, default_mapper};

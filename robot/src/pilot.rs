@@ -17,14 +17,9 @@ pub trait Pilot {
     /// Plans anew: the map is another one, with other cells than its transitions say.
     fn forget_map(&mut self) {}
 
-    /// The planned path, m; empty without a path.
-    fn path(&self) -> &[Point2<f64>] {
-        &[]
-    }
-
-    /// The position of the goal, m; `None` without a goal.
-    fn goal(&self) -> Option<Point2<f64>> {
-        None
+    /// What others may know of the pilot.
+    fn view(&self) -> PilotView<'_> {
+        PilotView::default()
     }
 
     /// The strategies of the agent; empty without an agent.
@@ -32,20 +27,9 @@ pub trait Pilot {
         Vec::new()
     }
 
-    /// The number of goals so far, by outcome.
-    fn goals(&self) -> GoalCount {
-        GoalCount::default()
-    }
-
     /// The messages since the last call.
     fn take_messages(&mut self) -> Vec<Message> {
         Vec::new()
-    }
-
-    /// Whether the pilot has ended the run: a tour ends after its last waypoint, a user can end the run at any
-    /// time.
-    fn is_done(&self) -> bool {
-        false
     }
 
     /// Everything that a reading changes and a later reading needs: what a state file holds of the pilot. `mapper` is that
@@ -53,6 +37,19 @@ pub trait Pilot {
     fn values(&mut self, _mapper: &Mapper) -> Values<'_> {
         Vec::new()
     }
+}
+
+/// What others may know of a pilot.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct PilotView<'a> {
+    /// The planned path, m; empty without a path.
+    pub path: &'a [Point2<f64>],
+    /// The position of the goal, m; `None` without a goal.
+    pub goal: Option<Point2<f64>>,
+    /// The number of goals so far, by outcome.
+    pub goals: GoalCount,
+    /// Whether the pilot has ended the run: a tour ends after its last waypoint, a user can end the run at any time.
+    pub is_done: bool,
 }
 
 /// A pilot that gives no command: of a log, or of a robot that someone else drives.

@@ -305,9 +305,9 @@ fn permissions_hold_for_every_driver() {
     }
     pilot.forget_map();
     assert_eq!(pilot.driver_mut().asked, ["rest", "look around", "drive", "goal", "drive", "forget map"]);
-    assert_eq!(pilot.goals().reached, 0);
+    assert_eq!(pilot.view().goals.reached, 0);
     pilot.command(&Belief::exact(Isometry2::identity()), Features::default(), &map);
-    assert_eq!(pilot.goals().reached, 1);
+    assert_eq!(pilot.view().goals.reached, 1);
 }
 
 /// Goes to the origin, and notes the ends of its goals.
@@ -339,7 +339,7 @@ fn goals_that_a_rest_ends_have_no_outcome() {
     pilot.command(&belief, features, &map);
     let goes = ["drive", "goal", "drive"];
     assert_eq!(pilot.driver_mut().asked, [&goes[..], &["cancel", "rest", "rest"], &goes].concat());
-    assert_eq!((pilot.goals(), pilot.selector_mut().0), (GoalCount::default(), 1));
+    assert_eq!((pilot.view().goals, pilot.selector_mut().0), (GoalCount::default(), 1));
     // The goal is replaced on the way.
     let driver = Jumping { is_slow: true, ..Jumping::default() };
     let mut pilot = Autonomous::new(Ended::default(), driver);
@@ -349,5 +349,5 @@ fn goals_that_a_rest_ends_have_no_outcome() {
         });
     }
     assert_eq!(pilot.driver_mut().asked, [goes, goes].concat());
-    assert_eq!(pilot.goals(), GoalCount::default());
+    assert_eq!(pilot.view().goals, GoalCount::default());
 }

@@ -13,7 +13,7 @@ use interfaces::{CellState, Grid, Values};
 use mapper::Mapper;
 use nalgebra::Point2;
 use navigation::Navigation;
-use robot::{Autonomous, Belief, Message, Pilot, Settings};
+use robot::{Autonomous, Belief, Message, Pilot, PilotView, Settings};
 
 /// Decides what the robot is asked to do.
 pub(crate) struct LivePilot {
@@ -80,12 +80,8 @@ impl Pilot for LivePilot {
         }
     }
 
-    fn path(&self) -> &[Point2<f64>] {
-        self.explorer.as_ref().map_or(Default::default(), Pilot::path)
-    }
-
-    fn goal(&self) -> Option<Point2<f64>> {
-        self.explorer.as_ref().and_then(Pilot::goal)
+    fn view(&self) -> PilotView<'_> {
+        self.explorer.as_ref().map(Pilot::view).unwrap_or_default()
     }
 
     fn take_messages(&mut self) -> Vec<Message> {

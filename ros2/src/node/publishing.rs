@@ -11,7 +11,7 @@ use crate::parameters::{Navigator, Parameters};
 use crate::pilot::Order;
 use interfaces::{LaserReading, Twist};
 use nalgebra::{Isometry2, Point2};
-use robot::{Belief, Level, Pilot, Turn};
+use robot::{Belief, Level, Pilot, PilotView, Turn};
 use std::time::{Duration, Instant};
 
 /// What other nodes have heard.
@@ -43,7 +43,7 @@ impl<L: Link> CuriousNode<L> {
             }
         }
         self.publish_edges(now);
-        let (goal, path) = (self.robot.pilot.goal(), self.robot.pilot.path());
+        let PilotView { goal, path, .. } = self.robot.pilot.view();
         let path: Vec<Point2<f64>> = path.iter().copied().chain(goal).collect();
         if path != self.published.path {
             let stamped = |at: &Point2<f64>| {

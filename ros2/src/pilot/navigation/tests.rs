@@ -55,13 +55,13 @@ fn every_strategy_selects_the_same_goals_whoever_drives() {
         let mut by_nav2 = live(policy, Navigator::Nav2);
         let mut goals = Vec::new();
         while world.time_s() < 60.0 {
-            let before = robot.pilot.goals();
+            let before = robot.pilot.view().goals;
             let turn = robot.step(world.sense()).unwrap();
-            let goal = robot.pilot.goal();
+            let goal = robot.pilot.view().goal;
             let command = by_velocities.command(&turn.belief, turn.features, &robot.mapper);
             assert_eq!(command, Order::Velocity(turn.command), "{}", policy.name());
             let target = navigation(&mut by_nav2).target;
-            if let Some(news) = news(before, robot.pilot.goals(), target) {
+            if let Some(news) = news(before, robot.pilot.view().goals, target) {
                 by_nav2.navigated(news);
             }
             let order = by_nav2.command(&turn.belief, turn.features, &robot.mapper);
