@@ -253,12 +253,7 @@ impl Fleet {
     }
 
     fn __repr__(&self) -> String {
-        let spec = self.fleet.spec();
-        format!(
-            "<curious.Fleet {:?}: {} robots at {:.3} s>",
-            spec.name,
-            spec.robots.len(),
-            self.fleet.time_s()
-        )
+        let (spec, time_s) = (self.fleet.spec(), self.fleet.time_s());
+        format!("<curious.Fleet {:?}: {} robots at {time_s:.3} s>", spec.name, spec.robots.len())
     }
 }

@@ -40,7 +40,7 @@ impl<L: Link> CuriousNode<L> {
                 Reply::Values(names.iter().map(value).collect())
             }
             (Service::GetParameterTypes, Call::Names(names)) => {
-                let kind = |name| find(name).map_or(0, |(_, value)| ParameterValue::from(value).kind());
+                let kind = |name| find(name).map_or(0, |(_, value)| ParameterValue::from(value).kind);
                 Reply::Types(names.iter().map(kind).collect())
             }
             (Service::DescribeParameters, Call::Names(names)) => {
@@ -100,7 +100,7 @@ fn description(name: &str, value: &Value) -> Description {
     };
     Description {
         name: name.to_owned(),
-        kind: ParameterValue::from(value).kind(),
+        kind: ParameterValue::from(value).kind,
         description: Parameters::about(name).to_owned(),
         additional_constraints: when.unwrap_or_default().to_owned(),
         read_only: when.is_none(),

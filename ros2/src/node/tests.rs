@@ -1,7 +1,6 @@
 mod glass;
 mod lifecycle;
 mod loops;
-mod one_map;
 mod same_robot;
 mod seating;
 
