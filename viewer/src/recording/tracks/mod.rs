@@ -3,17 +3,15 @@
 //! To add an entity: write a function that logs the style with `Tracks::always` and calls `Tracks::add`, and add a
 //! line to [`start`].
 
+mod bodies;
 mod coarse;
 mod curves;
 mod estimate;
-mod field_of_view;
 mod maps;
-mod obstacles;
-mod robots;
 
+pub(super) use bodies::robot;
 pub(super) use curves::{STRATEGY, has_choice, plots};
 pub(super) use maps::map;
-pub(super) use robots::robot;
 
 use super::entity::{Entity, Kind, Track};
 use draw::palette::Rgb;
@@ -47,9 +45,7 @@ pub(super) fn start(
 ) -> RecordingStreamResult<Vec<Box<dyn Track>>> {
     let mut tracks = Tracks { stream, scene, view, tracks: Vec::new() };
     maps::add(&mut tracks)?;
-    field_of_view::add(&mut tracks)?;
-    obstacles::add(&mut tracks)?;
-    robots::add(&mut tracks)?;
+    bodies::add(&mut tracks)?;
     estimate::add(&mut tracks)?;
     curves::add(&mut tracks)?;
     messages(&mut tracks);

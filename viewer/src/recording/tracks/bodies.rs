@@ -1,9 +1,9 @@
-//! The robots, and the plan of the curious robot.
+//! Everything solid in the world, what the curious robot sees, and its plan.
 
-use super::{EVENTS, LABEL, ON_CHANGE, Strip, Tracks, WORLD, color, escape, line, order, points};
+use super::{EVENTS, Kind, LABEL, ON_CHANGE, Strip, Tracks, WORLD, closed, color, escape, line, order, points};
 use super::{position, strips};
-use draw::palette;
 use draw::view::{View, is_next_point};
+use draw::{outline, palette};
 use nalgebra::{Isometry2, Vector2};
 use rerun::{Arrows2D, AsComponents, Points2D, Radius, RecordingStreamResult, Transform3D};
 
@@ -13,6 +13,8 @@ pub(in crate::recording) fn robot(name: &str, part: &str) -> String {
 }
 
 pub(super) fn add(tracks: &mut Tracks) -> RecordingStreamResult<()> {
+    field_of_view(tracks)?;
+    obstacles(tracks)?;
     let scene = tracks.scene;
     for (index, robot) in scene.robots.iter().enumerate() {
         body(tracks, index)?;
@@ -22,6 +24,37 @@ pub(super) fn add(tracks: &mut Tracks) -> RecordingStreamResult<()> {
         add_trail(tracks, trail, move |view| Some(view.robots[index].pose));
     }
     plan(tracks)
+}
+
+/// Adds the outline of what the robot sees; nothing if no robot sees in the first view.
+fn field_of_view(tracks: &mut Tracks) -> RecordingStreamResult<()> {
+    if tracks.view.sight().is_none() {
+        return Ok(());
+    }
+    let path = format!("{WORLD}/field_of_view");
+    tracks.always(&path, &line(color(palette::SENSOR, 220), 1.5, order::SIGHT_OUTLINE))?;
+    let outline = |view: &View| {
+        let corners = view.sight().map(outline::field_of_view);
+        corners.iter().map(|corners| corners.iter().map(position).collect()).collect()
+    };
+    tracks.add(path, (Kind::State, 0.2), outline, strips);
+    Ok(())
+}
+
+/// Adds the walls, and everything else that is no robot.
+fn obstacles(tracks: &mut Tracks) -> RecordingStreamResult<()> {
+    let scene = tracks.scene;
+    let walls = line(color(palette::WALL, 255), 1.0, order::WALLS);
+    let walls = walls.with_strips(scene.walls.iter().map(|wall| closed(wall)));
+    tracks.always(&format!("{WORLD}/walls"), &walls)?;
+    for (index, obstacle) in scene.obstacles.iter().enumerate() {
+        let path = format!("{WORLD}/obstacles/{}", escape(&obstacle.name));
+        tracks.always(&path, &line(color(obstacle.color(), 255), 2.5, order::WALLS))?;
+        let outline =
+            move |view: &View| view.obstacles[index].iter().map(|outline| closed(outline)).collect();
+        tracks.add(path, ON_CHANGE, outline, strips);
+    }
+    Ok(())
 }
 
 /// Adds the trail of the poses that `pose` reads from the views: a line from place to place.
