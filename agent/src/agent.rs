@@ -13,12 +13,8 @@ use nalgebra::Isometry2;
 pub trait GoalSelector {
     /// The next goal of a robot at `pose`; `None` when no goal is left. Called when the last goal is finished. `travel` gives
     /// the travel time to every cell.
-    fn next_goal(
-        &mut self,
-        pose: &Isometry2<f64>,
-        mapper: &Mapper,
-        travel: &mut impl Travel,
-    ) -> Option<Goal>;
+    fn next_goal(&mut self, pose: &Isometry2<f64>, mapper: &Mapper, travel: &mut impl Travel)
+    -> Option<Goal>;
 
     /// Whether the present goal has served its purpose before the robot is there.
     fn is_obsolete(&self, _: &Mapper) -> bool {

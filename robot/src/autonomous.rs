@@ -1,6 +1,5 @@
 use crate::belief::{Belief, Permission};
-use crate::messages::{Level, Message};
-use crate::pilot::{GoalCount, Pilot, PilotView};
+use crate::pilot::{GoalCount, Level, Message, Pilot, PilotView};
 use agent::{Features, Goal, GoalSelector, Stay, StrategyState, Travel};
 use controller::{ControlInput, Driver, Outcome, Status};
 use interfaces::{Values, values};

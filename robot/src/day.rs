@@ -2,8 +2,7 @@
 
 use crate::autonomous::Autonomous;
 use crate::belief::{Belief, Permission};
-use crate::messages::Message;
-use crate::pilot::{Pilot, PilotView};
+use crate::pilot::{Message, Pilot, PilotView};
 use agent::{Features, Goal, GoalSelector, Stay, StrategyState, Travel};
 use calendar::{DAY_S, Hours};
 use controller::Driver;

@@ -1,10 +1,29 @@
 use crate::belief::Belief;
-use crate::messages::Message;
 use agent::{Features, StrategyState};
 use interfaces::Values;
 use mapper::Mapper;
 use nalgebra::Point2;
 use serde::{Deserialize, Serialize};
+
+/// The importance of a [`Message`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+pub enum Level {
+    /// A decision of the robot.
+    Decision,
+    /// A change in the world, or the detection of a change.
+    Event,
+    /// A failure: a goal that was given up, a collision.
+    Trouble,
+}
+
+/// A message of the log.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
+pub struct Message {
+    /// The importance of the message.
+    pub level: Level,
+    /// One sentence.
+    pub text: String,
+}
 
 /// Decides the next command of the robot.
 pub trait Pilot {

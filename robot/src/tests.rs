@@ -1,8 +1,7 @@
 //! The robot in a tiny world, and with parts that only write down what they are asked.
 
 use crate::{
-    Autonomous, Belief, ExactPoses, GoalCount, GoalSelector, Localization, Permission, Pilot,
-    Robot, explore,
+    Autonomous, Belief, ExactPoses, GoalCount, GoalSelector, Localization, Permission, Pilot, Robot, explore,
 };
 use agent::{Agent, AgentSettings, Features, Goal, Policy, Travel};
 use controller::{CellDrive, Controller, Driver};

@@ -6,9 +6,7 @@ use controller::{ControlInput, Driver, Outcome, Status};
 use interfaces::{CellReading, CellState, Grid, GridFrame, Values};
 use mapper::{Mapper, MapperSettings};
 use nalgebra::{Isometry2, Point2};
-use robot::{
-    Autonomous, Belief, DaySettings, DayTotals, GoalSelector, PatrolDay, Permission, Pilot,
-};
+use robot::{Autonomous, Belief, DaySettings, DayTotals, GoalSelector, PatrolDay, Permission, Pilot};
 use std::cell::Cell;
 use std::rc::Rc;
 

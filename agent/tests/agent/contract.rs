@@ -81,7 +81,8 @@ fn goals_can_be_goals_shares_are_theirs_and_only_learners_have_values_which_are_
         let is_learner = choice == "curious";
         let mut agent = agent(choice, 3);
         assert_eq!(current(&agent), None);
-        let shares = |agent: &Agent| agent.strategies(Features::default()).into_iter().map(|state| state.share);
+        let shares =
+            |agent: &Agent| agent.strategies(Features::default()).into_iter().map(|state| state.share);
         assert!(shares(&agent).all(|share| share == 0.0));
         let (mut counts, mut learned) = (vec![0.0; shares(&agent).len()], false);
         live(&mut agent, |agent, mapper, goal| {

@@ -73,8 +73,9 @@ impl Services {
         let (reply, is_cut) = fitting(reply);
         if is_cut {
             let name = request.service.default_name();
-            let text =
-                format!("an answer of `{name}` is too long for one datagram: ask for fewer parameters at once");
+            let text = format!(
+                "an answer of `{name}` is too long for one datagram: ask for fewer parameters at once"
+            );
             self.problems.try_send(Event::Problem(text)).ok();
         }
         // The thread ends with the program.

@@ -1,7 +1,6 @@
 //! What the node receives: a thread that waits for all topics at once.
 
-use super::discovery::{dds_type, ros_type};
-use super::others::Endpoints;
+use super::others::{Endpoints, dds_type, ros_type};
 use super::profile;
 use crate::link::{Event, Wiring};
 use crate::message::{Message, Quality, Topic};

@@ -1,6 +1,8 @@
 //! Everything solid in the world, what the curious robot sees, and its plan.
 
-use super::{EVENTS, Kind, LABEL, ON_CHANGE, Strip, Tracks, WORLD, closed, color, escape, line, order, points};
+use super::{
+    EVENTS, Kind, LABEL, ON_CHANGE, Strip, Tracks, WORLD, closed, color, escape, line, order, points,
+};
 use super::{position, strips};
 use draw::view::{View, is_next_point};
 use draw::{outline, palette};
