@@ -1,7 +1,7 @@
 use crate::belief::{Belief, Permission};
 use crate::pilot::{GoalCount, Level, Message, Pilot, PilotView};
 use agent::{Features, Goal, GoalSelector, Stay, StrategyState, Travel};
-use controller::{ControlInput, Driver, Outcome, Status};
+use controller::{ControlInput, Driver, DriverView, Outcome, Status};
 use interfaces::{Values, values};
 use mapper::Mapper;
 use nalgebra::Isometry2;
@@ -55,11 +55,12 @@ impl<G: GoalSelector, D: Driver> Autonomous<G, D> {
             Permission::Drive => {}
         }
         let command = self.driver.drive(&input);
-        match self.driver.status() {
+        let DriverView { status, trouble, .. } = self.driver.view();
+        match status {
             Status::Idle if !self.is_done => {}
             Status::Finished(Outcome::GivenUp) => {
                 self.goals.given_up += 1;
-                self.log(Level::Trouble, format!("goal given up: {}", self.driver.trouble()));
+                self.log(Level::Trouble, format!("goal given up: {trouble}"));
             }
             Status::Finished(Outcome::Reached) => self.goals.reached += 1,
             Status::Finished(Outcome::Nearest) => self.goals.approached += 1,
@@ -90,7 +91,7 @@ impl<G: GoalSelector, D: Driver> Autonomous<G, D> {
     /// Processes one reading of a robot that rests: it leaves its goal, which has no outcome.
     pub(crate) fn rest(&mut self, pose: &Isometry2<f64>, features: Features, mapper: &Mapper) -> D::Command {
         self.selector.observe(features, mapper.transitions());
-        if self.driver.goal().is_some() {
+        if self.driver.view().goal.is_some() {
             // The time of a goal goes on while the robot rests, until the driver gives the goal up.
             self.driver.cancel();
             self.selector.end_goal(pose, mapper);
@@ -114,7 +115,7 @@ impl<G: GoalSelector, D: Driver> Pilot for Autonomous<G, D> {
     }
 
     fn view(&self) -> PilotView<'_> {
-        let (path, goal) = (self.driver.path(), self.driver.goal());
+        let DriverView { path, goal, .. } = self.driver.view();
         PilotView { path, goal, goals: self.goals, is_done: self.is_done }
     }
 

@@ -259,8 +259,13 @@ impl Driver for Jumping {
         self.asked.push("cancel");
     }
 
-    fn goal(&self) -> Option<Point2<f64>> {
-        self.goal
+    fn view(&self) -> controller::DriverView<'_> {
+        let status = match self.goal {
+            Some(_) if self.is_slow => controller::Status::Travelling,
+            Some(_) => controller::Status::Finished(controller::Outcome::Reached),
+            None => controller::Status::Idle,
+        };
+        controller::DriverView { path: &[], goal: self.goal, status, trouble: "" }
     }
 
     fn drive(&mut self, _: &controller::ControlInput) {
@@ -271,22 +276,10 @@ impl Driver for Jumping {
         self.asked.push(if looks_around { "look around" } else { "rest" });
     }
 
-    fn status(&self) -> controller::Status {
-        match self.goal {
-            Some(_) if self.is_slow => controller::Status::Travelling,
-            Some(_) => controller::Status::Finished(controller::Outcome::Reached),
-            None => controller::Status::Idle,
-        }
-    }
-
     fn travel_times(&mut self, _: &controller::ControlInput, _: &mut Vec<f64>) {}
 
     fn forget_map(&mut self) {
         self.asked.push("forget map");
-    }
-
-    fn path(&self) -> &[Point2<f64>] {
-        &[]
     }
 
     fn values(&mut self, _: &interfaces::Grid<interfaces::CellState>) -> interfaces::Values<'_> {

@@ -65,7 +65,7 @@ fn every_strategy_selects_the_same_goals_whoever_drives() {
                 by_nav2.navigated(news);
             }
             let order = by_nav2.command(&turn.belief, turn.features, &robot.mapper);
-            let is_watching = robot.pilot.driver_mut().status() == Status::Exploring;
+            let is_watching = robot.pilot.driver_mut().view().status == Status::Exploring;
             if let Some(target) = &mut navigation(&mut by_nav2).target {
                 // Nav2 makes progress, however long the controller explores around its goal, and is there when it is.
                 target.nearest_s = turn.reading.time_s;
@@ -73,7 +73,7 @@ fn every_strategy_selects_the_same_goals_whoever_drives() {
                     target.reached_s.get_or_insert(turn.reading.time_s);
                 }
             }
-            assert_eq!((by_velocities.goal(), by_nav2.goal()), (goal, goal), "{}", policy.name());
+            assert_eq!((by_velocities.view().goal, by_nav2.view().goal), (goal, goal), "{}", policy.name());
             if goals.last() != Some(&goal) {
                 goals.push(goal);
                 assert!(matches!(order, Order::Goal(_)), "{}: {order:?}", policy.name());
