@@ -103,10 +103,9 @@ impl<L: Link> CuriousNode<L> {
         let mut notes = Notes::new(output);
         let loaded = state.filter(|_| parameters.autostart);
         let Parts { robot, state_file, continued } = Parts::new(parameters, loaded, &mut notes)?;
-        let (names, is_localized) = setup::frames(parameters);
         let mut node = Self {
             link,
-            source: Source::new(names, is_localized),
+            source: Source::new(setup::frames(parameters)),
             parameters: parameters.clone(),
             robot,
             published: Published::default(),

@@ -52,8 +52,7 @@ impl<L: Link> CuriousNode<L> {
         let state_path = self.state_path.as_deref().filter(|_| loads);
         let Parts { robot, state_file, continued } =
             Parts::new(&self.parameters, state_path, &mut self.notes)?;
-        let (names, is_localized) = super::setup::frames(&self.parameters);
-        self.source.configure(names, is_localized);
+        self.source.configure(super::setup::frames(&self.parameters));
         (self.robot, self.state_file, self.continued) = (robot, state_file, continued);
         (self.published, self.last, self.seat) = (Published::default(), None, None);
         Ok(())
