@@ -1,16 +1,13 @@
 //! The messages that the nodes send and receive.
 
+pub(crate) use crate::service::wire::ParameterEvent;
+pub(crate) use crate::topic::{Quality, Topic};
 pub(crate) use ros::{
     Header, LaserScan, OccupancyGrid, OccupancyGridUpdate, Odometry, Path, Pose, PoseStamped, Time,
-    TransformStamped, Transforms,
+    TransformStamped, Transforms, Twist,
 };
 
-pub(crate) use crate::service::wire::ParameterEvent;
-pub use crate::topic::{Quality, Topic};
-pub use ros::Twist;
-
 use crate::service::wire::Transition;
-
 use nalgebra::{Isometry2, Matrix3};
 use ros::{Covariance, PoseWithCovariance};
 use serde::{Deserialize, Serialize};

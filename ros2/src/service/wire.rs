@@ -7,7 +7,7 @@ use serde::{Deserialize as De, Serialize as Se};
 
 /// A message without a field has this one on the wire.
 #[derive(Clone, Copy, Debug, Default, PartialEq, De, Se)]
-pub struct Nothing {
+pub(crate) struct Nothing {
     structure_needs_at_least_one_member: u8,
 }
 
