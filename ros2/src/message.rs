@@ -66,9 +66,9 @@ const PLACES: [usize; 3] = [0, 1, 5];
 /// The covariance of x, y, z and the angles about them, from that of x, y and heading.
 pub(crate) fn covariance(of_plane: &Matrix3<f64>) -> Covariance {
     let mut all = Covariance::default();
-    for row in 0..3 {
-        for column in 0..3 {
-            all[PLACES[row]][PLACES[column]] = of_plane[(row, column)];
+    for (row, at) in PLACES.into_iter().enumerate() {
+        for (column, beside) in PLACES.into_iter().enumerate() {
+            all[at][beside] = of_plane[(row, column)];
         }
     }
     all
