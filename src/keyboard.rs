@@ -6,7 +6,7 @@ use crossterm::event::{self, Event, KeyCode, KeyEvent, KeyEventKind, KeyModifier
 use crossterm::terminal;
 use interfaces::Twist;
 use mapper::Mapper;
-use robot::{Belief, Pilot};
+use robot::{Belief, Pilot, PilotView};
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
 
@@ -89,8 +89,8 @@ impl Pilot for Keyboard {
         self.command
     }
 
-    fn is_done(&self) -> bool {
-        self.is_done
+    fn view(&self) -> PilotView<'_> {
+        PilotView { is_done: self.is_done, ..PilotView::default() }
     }
 }
 

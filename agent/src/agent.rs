@@ -9,10 +9,57 @@ use interfaces::{RandomStream, SettingsError, Transition, Values, values};
 use mapper::Mapper;
 use nalgebra::Isometry2;
 
+/// Selects goals. Implemented by the agent, and by a tour.
+pub trait GoalSelector {
+    /// The next goal of a robot at `pose`; `None` when no goal is left. Called when the last goal is finished. `travel` gives
+    /// the travel time to every cell.
+    fn next_goal(&mut self, pose: &Isometry2<f64>, mapper: &Mapper, travel: &mut impl Travel)
+    -> Option<Goal>;
+
+    /// Whether the present goal has served its purpose before the robot is there.
+    fn is_obsolete(&self, _: &Mapper) -> bool {
+        false
+    }
+
+    /// The robot, at `pose`, leaves the last goal, and no other goal follows for a while: it goes to its dock. Can be called more than
+    /// once.
+    fn end_goal(&mut self, _pose: &Isometry2<f64>, _: &Mapper) {}
+
+    /// Called at every reading: the features after the reading, and the cells that changed their state in it.
+    fn observe(&mut self, _: Features, _: &[Transition]) {}
+
+    /// The reason for the last goal, in a few words.
+    fn reason(&self) -> String;
+
+    /// The strategies, if the selector has any.
+    fn strategies(&self, _features: Features) -> Vec<StrategyState> {
+        Vec::new()
+    }
+
+    /// Everything that readings and goals have changed: what a state file holds of the selector. `mapper` is that of the same
+    /// state; what follows from it is not in the list. Empty for a selector that remembers nothing.
+    fn values(&mut self, _mapper: &Mapper) -> Values<'_> {
+        Vec::new()
+    }
+}
+
+/// One strategy of the agent at one instant.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StrategyState {
+    /// The name on the command line.
+    pub name: String,
+    /// The learned value V(p, r) (section 4): the expected number of map updates per observation. `None` if the agent does not
+    /// learn.
+    pub value: Option<f64>,
+    /// The share of goals so far that were selected by this strategy, from 0 to 1.
+    pub share: f64,
+    /// Whether this strategy selected the present goal. None did before the first goal, and for a look into unseen space.
+    pub is_current: bool,
+}
+
 /// Selects the next goal of the robot (section 4).
 ///
-/// Call [`Agent::watch`] with every reading, and [`Agent::next_goal`] when the controller has finished the last
-/// goal. The same seed, readings and calls give the same goals, bit for bit.
+/// The same seed, readings and calls give the same goals, bit for bit. Readings before the first goal belong to no strategy.
 #[derive(Debug)]
 pub struct Agent {
     strategies: Vec<Box<dyn Strategy>>,
@@ -88,58 +135,9 @@ impl Agent {
         })
     }
 
-    /// Processes one reading: the features after the reading, and the cells that changed their state in it.
-    /// Readings before the first goal belong to no strategy.
-    pub fn watch(&mut self, features: Features, transitions: &[Transition]) {
-        self.features = features;
-        if self.current.is_some() {
-            self.trajectory.push(features);
-            self.updates += self.reward.count(transitions);
-        }
-    }
-
-    /// Ends the trajectory to the last goal, and learns from the trajectory. With
-    /// [`looks_at_unseen`](AgentSettings::looks_at_unseen), and while unseen space can be looked at, the next goal is a
-    /// look, which belongs to no strategy. Otherwise the agent chooses a strategy and samples the next
-    /// goal: a cell that [can be a goal](Mapper::is_candidate). If there is no such cell, the goal is the cell of
-    /// the robot.
-    pub fn next_goal(&mut self, mapper: &Mapper, pose: &Isometry2<f64>, travel: &mut impl Travel) -> Goal {
-        self.learn();
-        self.travel.clear();
-        let looks = self.unseen.as_mut().is_some_and(|unseen| unseen.update(mapper));
-        if looks || self.strategies.iter().any(|strategy| strategy.needs_travel()) {
-            travel.times(mapper, pose, &mut self.travel);
-        }
-        let situation = Situation::new(mapper, pose, self.features).with_travel(&self.travel);
-        if let Some(goal) = self.unseen.as_mut().filter(|_| looks).and_then(|unseen| unseen.goal(&situation))
-        {
-            self.current = None;
-            return goal;
-        }
-        let strategy = self.chooser.choose(&situation, &mut self.rng).min(self.strategies.len() - 1);
-        self.current = Some(strategy);
-        self.goal_counts[strategy] += 1;
-        sample(self.patch_cells, &mut *self.strategies[strategy], &situation, &mut self.rng)
-    }
-
-    /// The robot, at `pose`, leaves the goal that [`next_goal`](Self::next_goal) gave last, and no other goal follows for a
-    /// while: it goes to its dock. Ends the trajectory and the visit, if the robot is there, and learns from them; nothing is
-    /// learned from what the robot sees until the next goal.
-    pub fn end_goal(&mut self, mapper: &Mapper, pose: &Isometry2<f64>) {
-        self.learn();
-        let situation = Situation::new(mapper, pose, self.features);
-        if let Some(strategy) = self.current.take() {
-            self.strategies[strategy].end(&situation);
-        }
-        if let Some(unseen) = &mut self.unseen {
-            unseen.end(&situation);
-        }
-    }
-
-    /// Whether the present goal has served its purpose before the robot is there: a look into unseen space whose
-    /// target is in view already.
-    pub fn is_goal_obsolete(&self, mapper: &Mapper) -> bool {
-        self.current.is_none() && self.unseen.as_ref().is_some_and(|unseen| unseen.is_seen(mapper))
+    /// The reward of the last finished trajectory, in map updates per reading; 0 before the first.
+    pub fn last_reward(&self) -> f64 {
+        self.last_reward
     }
 
     fn learn(&mut self) {
@@ -152,10 +150,85 @@ impl Agent {
         self.trajectory.clear();
         self.updates = 0;
     }
+}
 
-    /// Everything that readings and goals have changed: what a state file holds of the agent. `mapper` is that of the same
-    /// state; what follows from it is not in the list.
-    pub fn values(&mut self, mapper: &Mapper) -> Values<'_> {
+impl GoalSelector for Agent {
+    /// Ends the trajectory to the last goal, and learns from the trajectory. With
+    /// [`looks_at_unseen`](AgentSettings::looks_at_unseen), and while unseen space can be looked at, the next goal is a
+    /// look, which belongs to no strategy. Otherwise the agent chooses a strategy and samples the next
+    /// goal: a cell that [can be a goal](Mapper::is_candidate). If there is no such cell, the goal is the cell of
+    /// the robot.
+    fn next_goal(
+        &mut self,
+        pose: &Isometry2<f64>,
+        mapper: &Mapper,
+        travel: &mut impl Travel,
+    ) -> Option<Goal> {
+        self.learn();
+        self.travel.clear();
+        let looks = self.unseen.as_mut().is_some_and(|unseen| unseen.update(mapper));
+        if looks || self.strategies.iter().any(|strategy| strategy.needs_travel()) {
+            travel.times(mapper, pose, &mut self.travel);
+        }
+        let situation = Situation::new(mapper, pose, self.features).with_travel(&self.travel);
+        let look = self.unseen.as_mut().filter(|_| looks).and_then(|unseen| unseen.goal(&situation));
+        if look.is_some() {
+            self.current = None;
+            return look;
+        }
+        let strategy = self.chooser.choose(&situation, &mut self.rng).min(self.strategies.len() - 1);
+        self.current = Some(strategy);
+        self.goal_counts[strategy] += 1;
+        Some(sample(self.patch_cells, &mut *self.strategies[strategy], &situation, &mut self.rng))
+    }
+
+    /// A look into unseen space is obsolete when its target is in view already.
+    fn is_obsolete(&self, mapper: &Mapper) -> bool {
+        self.current.is_none() && self.unseen.as_ref().is_some_and(|unseen| unseen.is_seen(mapper))
+    }
+
+    /// Ends the trajectory and the visit, if the robot is there, and learns from them; nothing is learned from what the robot sees
+    /// until the next goal.
+    fn end_goal(&mut self, pose: &Isometry2<f64>, mapper: &Mapper) {
+        self.learn();
+        let situation = Situation::new(mapper, pose, self.features);
+        if let Some(strategy) = self.current.take() {
+            self.strategies[strategy].end(&situation);
+        }
+        if let Some(unseen) = &mut self.unseen {
+            unseen.end(&situation);
+        }
+    }
+
+    fn observe(&mut self, features: Features, transitions: &[Transition]) {
+        self.features = features;
+        if self.current.is_some() {
+            self.trajectory.push(features);
+            self.updates += self.reward.count(transitions);
+        }
+    }
+
+    fn reason(&self) -> String {
+        match self.current {
+            Some(current) => {
+                format!("{} (last reward {:.2})", self.strategies[current].name(), self.last_reward)
+            }
+            None => "unseen space".into(),
+        }
+    }
+
+    fn strategies(&self, features: Features) -> Vec<StrategyState> {
+        let goals = self.goal_counts.iter().sum::<usize>().max(1) as f64;
+        let state = |(index, strategy): (usize, &Box<dyn Strategy>)| StrategyState {
+            name: strategy.name().to_owned(),
+            value: self.chooser.value(index, features),
+            share: self.goal_counts[index] as f64 / goals,
+            is_current: self.current == Some(index),
+        };
+        self.strategies.iter().enumerate().map(state).collect()
+    }
+
+    fn values(&mut self, mapper: &Mapper) -> Values<'_> {
         let mut values = values![
             self.rng,
             self.current,
@@ -169,33 +242,5 @@ impl Agent {
         values.extend(self.strategies.iter_mut().flat_map(|strategy| strategy.values(mapper)));
         values.extend(self.chooser.values());
         values
-    }
-
-    /// The names of the strategies, by index.
-    pub fn strategies(&self) -> impl ExactSizeIterator<Item = &'static str> {
-        self.strategies.iter().map(|strategy| strategy.name())
-    }
-
-    /// The index of the strategy that selected the present goal; `None` before the first goal, and for a look into
-    /// unseen space.
-    pub fn current(&self) -> Option<usize> {
-        self.current
-    }
-
-    /// The expected reward per reading of a strategy at `features`, in the unit of the chooser; `None` if the
-    /// chooser has no values, or if no strategy has this index.
-    pub fn value(&self, strategy: usize, features: Features) -> Option<f64> {
-        self.chooser.value(strategy, features)
-    }
-
-    /// The share of the goals that were selected by each strategy, by index; all 0 before the first goal.
-    pub fn shares(&self) -> impl ExactSizeIterator<Item = f64> {
-        let goals: usize = self.goal_counts.iter().sum();
-        self.goal_counts.iter().map(move |&count| count as f64 / goals.max(1) as f64)
-    }
-
-    /// The reward of the last finished trajectory, in map updates per reading; 0 before the first.
-    pub fn last_reward(&self) -> f64 {
-        self.last_reward
     }
 }

@@ -13,6 +13,7 @@ use crate::strategies::{Pick, Stay, Strategy};
 use crate::visibility::Regions;
 use interfaces::{Cell, RandomStream};
 use mapper::Mapper;
+use nalgebra::Point2;
 use rand::RngExt;
 
 /// The limit of weights: larger weights count as this value. The limit is far above any time in seconds, and small
@@ -22,8 +23,8 @@ const MAX_WEIGHT: f64 = 1e200;
 /// A goal, and what to do there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Goal {
-    /// The cell of the goal.
-    pub cell: Cell,
+    /// The position of the goal, m.
+    pub position: Point2<f64>,
     /// What to do at the goal.
     pub stay: Stay,
 }
@@ -43,7 +44,7 @@ pub(crate) fn sample(
         Pick::Best => best(&weights, mapper, rng),
     };
     let cell = best.or_else(|| draw(patch_cells, &weights, mapper, rng)).unwrap_or_else(|| situation.cell());
-    Goal { cell, stay: strategy.stay(cell) }
+    Goal { position: mapper.frame().center(cell), stay: strategy.stay(cell) }
 }
 
 /// The candidate with the largest weight above zero; a random one of several.

@@ -21,7 +21,7 @@ mod strategies;
 mod unseen;
 mod visibility;
 
-pub use agent::Agent;
+pub use agent::{Agent, GoalSelector, StrategyState};
 pub use choosers::{Always, Chooser, Coin, Curious, Trajectory};
 pub use goal_sampler::Goal;
 pub use policy::{PURPOSES, Parts, Policy};

@@ -6,16 +6,14 @@
 //! A look that shows nothing new is repeated after a time that doubles with every such look: what hides the frontier
 //! may be a door, or a body that moves away.
 
-mod lines_of_sight;
-
 use crate::goal_sampler::Goal;
 use crate::situation::Situation;
 use crate::strategies::Stay;
 use crate::visibility::Regions;
 use interfaces::{Cell, CellState, GridFrame, Values, value};
-use lines_of_sight::lines_of_sight;
 use mapper::Mapper;
 use std::cmp::Reverse;
+use std::f64::consts::TAU;
 
 /// The maximum duration of a look, in the time unit of the readings. A map can need some readings before it takes a cell
 /// beside a surface for free.
@@ -134,7 +132,7 @@ impl UnseenSpace {
         }
         let (_, target, cell) = best?;
         self.target = Some(target);
-        Some(Goal { cell, stay: Stay::Watch(WATCH) })
+        Some(Goal { position: mapper.frame().center(cell), stay: Stay::Watch(WATCH) })
     }
 
     /// Whether the last goal has shown what the robot went to look at.
@@ -198,4 +196,44 @@ impl UnseenSpace {
 /// Whether a cell is unknown and beside a free cell.
 fn is_frontier(mapper: &Mapper, cell: usize) -> bool {
     mapper.is_candidate(cell) && mapper.states().cells()[cell] == CellState::Unknown
+}
+
+/// The cells on straight lines in a number of directions from a cell, relative to it, from the cell on. The lines have
+/// the length `range_m`; they end where every map of this size ends.
+fn lines_of_sight(frame: &GridFrame, range_m: f64, directions: u32) -> Vec<Vec<Cell>> {
+    let max_steps = 2 * (frame.width() + frame.height()) as u32;
+    let steps = ((2.0 * range_m / frame.resolution_m()) as u32).min(max_steps);
+    let line = |direction: u32| {
+        let (sin, cos) = libm::sincos(TAU * f64::from(direction) / f64::from(directions));
+        let offset = |slope: f64, step: u32| (slope * f64::from(step) / 2.0).round() as i32;
+        let mut line: Vec<Cell> =
+            (0..steps).map(|step| Cell::new(offset(cos, step), offset(sin, step))).collect();
+        // Steps of half a cell often stay in a cell.
+        line.dedup();
+        line
+    };
+    (0..directions).map(line).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Point2;
+
+    #[test]
+    fn lines_are_the_cells_of_half_steps_without_repetitions() {
+        let frame = |cells| GridFrame::new(Point2::origin(), 0.05, cells, cells).unwrap();
+        let lines = lines_of_sight(&frame(400), 2.0, 240);
+        assert_eq!(lines.len(), 240);
+        for (direction, line) in lines.iter().enumerate() {
+            let (sin, cos) = libm::sincos(TAU * direction as f64 / 240.0);
+            let at = |step: i32, slope: f64| (slope * f64::from(step) / 2.0).round() as i32;
+            let mut cells: Vec<Cell> = (0..80).map(|step| Cell::new(at(step, cos), at(step, sin))).collect();
+            cells.dedup();
+            assert_eq!(*line, cells);
+        }
+        // A long range takes no more memory than the map.
+        let longest = lines_of_sight(&frame(10), 1e6, 4).iter().map(Vec::len).max();
+        assert_eq!(longest, Some(21));
+    }
 }

@@ -5,7 +5,7 @@ use files::{UnfinishedFile, is_another_kind};
 use interfaces::{CellState, Grid, LaserReading};
 use mapper::Mapper;
 use nalgebra::{Isometry2, Point2};
-use robot::{Pilot, Turn};
+use robot::{Pilot, PilotView, Turn};
 use ros::McapWriter;
 use std::fs::File;
 use std::io::{self, BufWriter};
@@ -118,7 +118,7 @@ impl RunBag {
             let predicted = layer(mapper, |index| mapper.blocked_probability(index));
             writer.grid("/predicted_map", time_s, &predicted, |share| *share)?;
         }
-        let (goal, path) = (pilot.goal(), pilot.path());
+        let PilotView { goal, path, .. } = pilot.view();
         if let Some(at) = goal.filter(|_| goal != self.goal) {
             writer.goal(time_s, &interfaces::pose(at.x, at.y, 0.0))?;
         }

@@ -1,5 +1,5 @@
 use crate::control_input::ControlInput;
-use crate::driver::{Driver, Outcome, Status};
+use crate::driver::{Driver, DriverView, Outcome, Status};
 use crate::drives::Drive;
 use crate::dynamic_obstacles::DynamicObstacleFilter;
 use crate::navigation::{LocalExploration, NavigationTask, Progress, Surroundings, Tick, random_step};
@@ -77,15 +77,17 @@ impl<D: Drive> Driver for Controller<D> {
         self.path.clear();
     }
 
-    fn goal(&self) -> Option<Point2<f64>> {
-        match &self.state {
-            State::Idle => None,
-            State::New { goal, .. } => Some(*goal),
-            State::Travelling { task, .. } => Some(*task.goal()),
-            State::Exploring { done, .. } | State::Watching { done, .. } | State::Finished(done) => {
-                Some(done.goal)
+    fn view(&self) -> DriverView<'_> {
+        let (goal, status) = match &self.state {
+            State::Idle => (None, Status::Idle),
+            State::New { goal, .. } => (Some(*goal), Status::Travelling),
+            State::Travelling { task, .. } => (Some(*task.goal()), Status::Travelling),
+            State::Exploring { done, .. } | State::Watching { done, .. } => {
+                (Some(done.goal), Status::Exploring)
             }
-        }
+            State::Finished(done) => (Some(done.goal), Status::Finished(done.outcome)),
+        };
+        DriverView { path: self.path.points(), goal, status, trouble: "no path leads nearer to it" }
     }
 
     fn drive(&mut self, input: &ControlInput) -> D::Command {
@@ -118,15 +120,6 @@ impl<D: Drive> Driver for Controller<D> {
         command
     }
 
-    fn status(&self) -> Status {
-        match self.state {
-            State::Idle => Status::Idle,
-            State::New { .. } | State::Travelling { .. } => Status::Travelling,
-            State::Exploring { .. } | State::Watching { .. } => Status::Exploring,
-            State::Finished(done) => Status::Finished(done.outcome),
-        }
-    }
-
     fn travel_times(&mut self, input: &ControlInput, times: &mut Vec<f64>) {
         let body = self.drive.body();
         times.clear();
@@ -145,10 +138,6 @@ impl<D: Drive> Driver for Controller<D> {
             State::Exploring { done, .. } => State::Finished(done),
             other => other,
         };
-    }
-
-    fn path(&self) -> &[Point2<f64>] {
-        self.path.points()
     }
 
     fn values(&mut self, map: &Grid<CellState>) -> Values<'_> {

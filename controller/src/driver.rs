@@ -26,6 +26,19 @@ pub enum Outcome {
     GivenUp,
 }
 
+/// What others may know of a driver.
+#[derive(Clone, Copy, Debug)]
+pub struct DriverView<'a> {
+    /// The present path, from the position where it was planned to its end, m; empty without a path.
+    pub path: &'a [Point2<f64>],
+    /// The last goal; `None` before the first goal, and after the goal was canceled.
+    pub goal: Option<Point2<f64>>,
+    /// The state after the last tick.
+    pub status: Status,
+    /// Why the last goal was given up, if it was.
+    pub trouble: &'static str,
+}
+
 /// Drives the robot to goals: the [`Controller`](crate::Controller), or the navigation of another system.
 pub trait Driver {
     /// The type of the commands.
@@ -39,8 +52,8 @@ pub trait Driver {
     /// Cancels the goal; the robot stops.
     fn cancel(&mut self);
 
-    /// The last goal; `None` before the first goal, and after the goal was canceled.
-    fn goal(&self) -> Option<Point2<f64>>;
+    /// What others may know of the driver.
+    fn view(&self) -> DriverView<'_>;
 
     /// Returns the command for this tick. After a new goal was set, the method may be called again in the same
     /// tick, with the same input but without its transitions; the robot then starts without delay.
@@ -48,14 +61,6 @@ pub trait Driver {
 
     /// Returns the command for a tick in which the robot does not drive to its goal: it rests, or looks around.
     fn pause(&mut self, input: &ControlInput, looks_around: bool) -> Self::Command;
-
-    /// The state after the last tick.
-    fn status(&self) -> Status;
-
-    /// Why the last goal was given up.
-    fn trouble(&self) -> &'static str {
-        "no path leads nearer to it"
-    }
 
     /// Writes the travel time from the robot to each cell at full speed, in row-major order, s (steps in a grid
     /// world); ∞ where no path is known. Call it after [`drive`](Self::drive), which applies the changes of the
@@ -65,9 +70,6 @@ pub trait Driver {
     /// Forgets the map: the next one is not the last one with some changes. A path to the goal is planned anew; a local
     /// exploration ends.
     fn forget_map(&mut self);
-
-    /// The present path, from the position where it was planned to its end, m; empty without a path.
-    fn path(&self) -> &[Point2<f64>];
 
     /// Everything that a tick changes and a later tick needs: what a state file holds of the driver. `map` is the map
     /// of the last tick; what follows from it is not in the list.

@@ -21,7 +21,7 @@ mod tests;
 
 pub use control_input::ControlInput;
 pub use controller::Controller;
-pub use driver::{Driver, Outcome, Status};
+pub use driver::{Driver, DriverView, Outcome, Status};
 pub use drives::{Body, CellDrive, DiffDrive, DiffDriveSettings, Drive, DriveScene};
 pub use dynamic_obstacles::DynamicObstacleFilter;
 pub use planner::{

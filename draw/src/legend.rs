@@ -1,4 +1,4 @@
-//! The legends of the pictures and of the recording.
+//! The legends of the pictures.
 
 use crate::palette::{self, Rgb};
 use crate::scene::Scene;

@@ -1,7 +1,7 @@
 //! The time to select a goal in a completely seen house of 12 × 12 m in cells of 0.05 m, with 2000 cells that ever
 //! changed. A goal is selected every few seconds of simulated time.
 
-use agent::{Agent, AgentSettings, Features, Policy, StraightLineTravel};
+use agent::{Agent, AgentSettings, Features, GoalSelector, Policy, StraightLineTravel};
 use interfaces::{Cell, CellReading, GridFrame, Purpose, RandomStream};
 use mapper::{Mapper, MapperSettings};
 use nalgebra::{Isometry2, Point2};
@@ -39,8 +39,8 @@ fn next_goal(bencher: divan::Bencher, strategy: &str) {
     // A trajectory of 5 s at 10 Hz; the same call learns from it.
     bencher.bench_local(|| {
         for _ in 0..50 {
-            agent.watch(features, &[]);
+            agent.observe(features, &[]);
         }
-        agent.next_goal(&mapper, &pose, &mut StraightLineTravel)
+        agent.next_goal(&pose, &mapper, &mut StraightLineTravel)
     });
 }

@@ -10,15 +10,15 @@
 
 mod generated;
 
-use agent::{Agent, AgentSettings, Features, Travel};
+use agent::{Agent, AgentSettings, Features, Goal, Travel};
 use controller::{CellDrive, Controller};
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use generated::generated;
-use interfaces::{CellReading, Purpose, RandomStream, Step};
+use interfaces::{CellReading, Purpose, RandomStream, Step, Transition};
 use mapper::{Mapper, MapperSettings, ReadingError};
 use nalgebra::Isometry2;
-use robot::{Autonomous, Belief, Destination, ExactPoses, GoalSelector, Pilot, Robot, explore};
+use robot::{Autonomous, Belief, ExactPoses, GoalSelector, Pilot, Robot, explore};
 use sim::grid::{GridSpec, GridWorld};
 use std::ops::ControlFlow;
 
@@ -86,7 +86,7 @@ fn agent(policy: &str) -> Agent {
 /// An agent, and its recorded decisions.
 struct Remembering {
     agent: Agent,
-    visits: Vec<Destination>,
+    visits: Vec<Goal>,
 }
 
 impl GoalSelector for Remembering {
@@ -95,14 +95,14 @@ impl GoalSelector for Remembering {
         pose: &Isometry2<f64>,
         mapper: &Mapper,
         travel: &mut impl Travel,
-    ) -> Option<Destination> {
-        let visit = GoalSelector::next_goal(&mut self.agent, pose, mapper, travel);
+    ) -> Option<Goal> {
+        let visit = self.agent.next_goal(pose, mapper, travel);
         self.visits.extend(visit);
         visit
     }
 
-    fn observe(&mut self, features: Features, mapper: &Mapper) {
-        GoalSelector::observe(&mut self.agent, features, mapper);
+    fn observe(&mut self, features: Features, transitions: &[Transition]) {
+        self.agent.observe(features, transitions);
     }
 
     fn reason(&self) -> String {
@@ -111,10 +111,10 @@ impl GoalSelector for Remembering {
 }
 
 /// Repeats recorded decisions.
-struct Repeating(std::vec::IntoIter<Destination>);
+struct Repeating(std::vec::IntoIter<Goal>);
 
 impl GoalSelector for Repeating {
-    fn next_goal(&mut self, _: &Isometry2<f64>, _: &Mapper, _: &mut impl Travel) -> Option<Destination> {
+    fn next_goal(&mut self, _: &Isometry2<f64>, _: &Mapper, _: &mut impl Travel) -> Option<Goal> {
         self.0.next()
     }
 

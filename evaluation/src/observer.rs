@@ -97,7 +97,7 @@ impl Observer {
     fn collect_messages(&mut self, world: &PhysicsWorld, pilot: &mut impl Pilot<Command = Twist>) {
         self.messages = pilot.take_messages();
         if self.messages.iter().any(|message| message.level == Level::Decision) {
-            self.goals.extend(pilot.goal());
+            self.goals.extend(pilot.view().goal);
         }
         let mut log = |level, text| self.messages.push(Message { level, text });
         self.things.take_messages().into_iter().for_each(|text| log(Level::Event, text));

@@ -191,7 +191,7 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
                 self.rest(end_s);
                 return Ok(());
             }
-            if self.turn()?.reading.time_s >= end_s || self.robot.pilot.is_done() {
+            if self.turn()?.reading.time_s >= end_s || self.robot.pilot.view().is_done {
                 return Ok(());
             }
         }
@@ -238,7 +238,7 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
                 run_into: contacts_while_standing + collisions - observer.own_contacts,
             },
             pose: observer.poses.scores(pose.name()),
-            goals: pilot.goals(),
+            goals: pilot.view().goals,
             day: (self.battery)(pilot).map(Battery::totals),
             scheduled: observer.scheduled.scores(),
             strategy_share: strategies.map(|strategy| (strategy.name, strategy.share)).collect(),

@@ -19,8 +19,6 @@ const SCHEMA: u32 = 1;
 #[serde(deny_unknown_fields)]
 pub(super) struct Marker {
     schema: u32,
-    program: String,
-    version: String,
     /// The content of every result, by its plain name.
     files: BTreeMap<String, Content>,
 }
@@ -34,12 +32,9 @@ struct Content {
 }
 
 impl Marker {
-    /// The marker of a run of this program without results.
+    /// The marker of a run without results.
     pub(super) fn new() -> Self {
-        let program = std::env::args_os().next().unwrap_or_default();
-        let program = Path::new(&program).file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        let version = env!("CARGO_PKG_VERSION").to_owned();
-        Self { schema: SCHEMA, program, version, files: BTreeMap::new() }
+        Self { schema: SCHEMA, files: BTreeMap::new() }
     }
 
     /// The marker of a folder, or one without files if the folder has none.
@@ -77,7 +72,8 @@ impl Marker {
     /// This marker without the files of which `is_left_out` holds.
     pub(super) fn without(&self, is_left_out: impl Fn(&str) -> bool) -> Self {
         let files = self.files.iter().filter(|(name, _)| !is_left_out(name));
-        Self { files: files.map(|(name, content)| (name.clone(), content.clone())).collect(), ..self.clone() }
+        let files = files.map(|(name, content)| (name.clone(), content.clone())).collect();
+        Self { schema: SCHEMA, files }
     }
 
     /// The names of the results, sorted.

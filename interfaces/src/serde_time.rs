@@ -1,7 +1,6 @@
 //! Times, and other numbers that are near to multiples of a thousandth, in serde structs, bit for bit and short:
-//! `#[serde(with = "interfaces::serde_time")]`. In a form for machines, such a number is the nearest number of thousandths,
-//! and how many floating-point numbers it is away from it: mostly none or a few, from rounding. In a form for people it is
-//! a number.
+//! `#[serde(with = "interfaces::serde_time")]`. Such a number is the nearest number of thousandths, and how many floating-point
+//! numbers it is away from it: mostly none or a few, from rounding.
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de::DeserializeOwned};
 
@@ -9,7 +8,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer, de::DeserializeOwn
 type Coded = (i64, i64);
 
 /// Numbers that have a short form.
-pub trait Times: Serialize + DeserializeOwned {
+pub trait Times {
     /// The short form.
     type Short: Serialize + DeserializeOwned;
 
@@ -56,11 +55,7 @@ impl Times for [f64; 2] {
 ///
 /// The errors of the serializer.
 pub fn serialize<T: Times, S: Serializer>(times: &T, serializer: S) -> Result<S::Ok, S::Error> {
-    if serializer.is_human_readable() {
-        times.serialize(serializer)
-    } else {
-        times.short().serialize(serializer)
-    }
+    times.short().serialize(serializer)
 }
 
 /// Reads times.
@@ -69,11 +64,7 @@ pub fn serialize<T: Times, S: Serializer>(times: &T, serializer: S) -> Result<S:
 ///
 /// The errors of the deserializer.
 pub fn deserialize<'de, T: Times, D: Deserializer<'de>>(deserializer: D) -> Result<T, D::Error> {
-    if deserializer.is_human_readable() {
-        T::deserialize(deserializer)
-    } else {
-        T::Short::deserialize(deserializer).map(T::of)
-    }
+    T::Short::deserialize(deserializer).map(T::of)
 }
 
 #[cfg(test)]

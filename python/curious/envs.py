@@ -124,7 +124,7 @@ def _explore(num_envs: int, threads: int, worlds: Any = None, houses: Any = None
 def _slices(batch: Batch) -> dict[str, Any]:
     """The named slices of the last axis, or of the layers, per part of the observation; of the only part alone."""
     found: dict[str, dict[str, slice]] = {}
-    for part, lengths in batch.slices:
+    for part, _, lengths in batch.parts:
         begin, found[part] = 0, {}
         for name, length in lengths:
             found[part][name] = slice(begin, begin + length)
@@ -154,7 +154,7 @@ class _Native:
         self.render_mode = render_mode
         self.render_size = render_size
         self._batch: Batch | None = type(self)._make(num_envs, threads, **settings)
-        self._parts = self._batch.parts
+        self._parts = [(name, shape) for name, shape, _ in self._batch.parts]
         self._names = self._batch.info_names
         self.slices = _slices(self._batch)
         self._was_reset = False

@@ -91,12 +91,12 @@ impl Localizer {
     /// Returns to the snapshot of a localizer with the same settings. `SnapshotError`: the bytes are not one; nothing
     /// changes then.
     fn restore(&mut self, snapshot: &[u8]) -> PyResult<()> {
-        let (state, before) = (SNAPSHOT.open(snapshot, true)?, self.localizer.snapshot());
-        self.localizer.restore(state).map_err(|_| {
-            let was_restored = self.localizer.restore(&before);
-            debug_assert!(was_restored.is_ok(), "a localizer takes its own snapshot");
+        let mut restored = self.localizer.clone();
+        restored.restore(SNAPSHOT.open(snapshot, true)?).map_err(|_| {
             SnapshotError::new_err("the snapshot was taken of a localizer with another map or other settings")
-        })
+        })?;
+        self.localizer = restored;
+        Ok(())
     }
 }
 

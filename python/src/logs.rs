@@ -239,11 +239,6 @@ impl Survey {
         from_json(py, &self.places)
     }
 
-    /// The middle of each place, shape (places, 2), m.
-    fn points<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        rows_array(py, self.places.iter().map(|place| [place.x_m, place.y_m]))
-    }
-
     fn __repr__(&self) -> String {
         format!("<curious.Survey: {} places that change>", self.places.len())
     }

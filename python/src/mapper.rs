@@ -267,12 +267,8 @@ impl Mapper {
     /// The changes of cells in the last update, shape (changes, 4), int32: row, column, state before, state after.
     fn changes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<i32>>> {
         let row = |change: &Transition| {
-            [
-                change.cell.y,
-                change.cell.x,
-                i32::from(state_number(change.before)),
-                i32::from(state_number(change.after)),
-            ]
+            let [before, after] = [change.before, change.after].map(|state| state_number(state).into());
+            [change.cell.y, change.cell.x, before, after]
         };
         rows_array(py, self.mapper.transitions().iter().map(row))
     }

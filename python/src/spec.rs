@@ -197,16 +197,7 @@ impl Spec {
         }
     }
 
-    /// A spec never changes: a copy is the same object.
-    fn __copy__(this: Bound<'_, Self>) -> Bound<'_, Self> {
-        this
-    }
-
-    fn __deepcopy__<'py>(this: Bound<'py, Self>, _memo: &Bound<'py, PyAny>) -> Bound<'py, Self> {
-        this
-    }
-
-    /// For pickle: the name or the text of the world.
+    /// For pickle and copies: the name or the text of the world.
     fn __reduce__<'py>(this: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
         let (py, class) = (this.py(), this.get_type());
         Ok(match &this.get().source {

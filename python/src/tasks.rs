@@ -20,6 +20,9 @@ pub(crate) struct Batch {
     is_ready: bool,
 }
 
+/// A part of an observation: its name, its shape, and the names and lengths of slices.
+type Part = (&'static str, Vec<usize>, Vec<(&'static str, usize)>);
+
 impl Batch {
     fn with(mut batch: environments::Batch, threads: usize) -> PyResult<Self> {
         match threads {
@@ -129,17 +132,12 @@ impl Batch {
         self.batch.observation_len()
     }
 
-    /// The parts of an observation: names and shapes.
+    /// The parts of an observation: the name, the shape, and names and lengths of slices along the last axis, or along the first axis
+    /// of a part with layers (three axes), in their order; empty where the axis has no names.
     #[getter]
-    fn parts(&self) -> Vec<(&'static str, Vec<usize>)> {
-        self.batch.task(0).parts().into_iter().map(|part| (part.name, part.shape)).collect()
-    }
-
-    /// Names and lengths of slices along the last axis of each part, or along the first axis of a part with layers (three
-    /// axes), in their order; empty where the axis has no names.
-    #[getter]
-    fn slices(&self) -> Vec<(&'static str, Vec<(&'static str, usize)>)> {
-        self.batch.task(0).parts().into_iter().map(|part| (part.name, part.slices)).collect()
+    fn parts(&self) -> Vec<Part> {
+        let parts = self.batch.task(0).parts().into_iter();
+        parts.map(|part| (part.name, part.shape, part.slices)).collect()
     }
 
     /// The names of the columns of the information about a step.

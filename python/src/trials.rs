@@ -5,7 +5,6 @@ use crate::mapper::Mapper;
 use crate::spec::{driving, spec_of};
 use agent::{Policy, Situation as Inputs, Strategy};
 use evaluation::trials::{Experiment, Metric, PhysicsRobot, Trial, TrialStrategy, run_trial};
-use interfaces::Values;
 use mapper::EstimatorChoice;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
@@ -89,10 +88,6 @@ impl Strategy for OfPython {
 
     fn needs_travel(&self) -> bool {
         self.needs_travel
-    }
-
-    fn values(&mut self, _: &mapper::Mapper) -> Values<'_> {
-        Vec::new()
     }
 }
 

@@ -60,12 +60,6 @@ impl World {
         self.world.spec().driven_index()
     }
 
-    /// Whether the poses of readings are exact.
-    #[getter]
-    fn poses_are_exact(&self) -> bool {
-        self.world.poses_are_exact()
-    }
-
     /// The scan of the driven robot now, with its pose by odometry.
     fn sense(&mut self, py: Python<'_>) -> Reading {
         let world = &mut self.world;

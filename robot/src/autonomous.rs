@@ -1,56 +1,10 @@
 use crate::belief::{Belief, Permission};
-use crate::messages::{Level, Message};
-use crate::pilot::{GoalCount, Pilot, StrategyState};
-use agent::{Agent, Features, Goal, Stay, Travel};
-use controller::{ControlInput, Driver, Outcome, Status};
+use crate::pilot::{GoalCount, Level, Message, Pilot, PilotView};
+use agent::{Features, Goal, GoalSelector, Stay, StrategyState, Travel};
+use controller::{ControlInput, Driver, DriverView, Outcome, Status};
 use interfaces::{Values, values};
 use mapper::Mapper;
-use nalgebra::{Isometry2, Point2};
-
-/// The next goal, and what to do there.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Destination {
-    /// The position of the goal, m.
-    pub position: Point2<f64>,
-    /// What to do at the goal.
-    pub stay: Stay,
-}
-
-/// Selects goals. Implemented by the agent, by a tour, and by a reference that knows the ground truth.
-pub trait GoalSelector {
-    /// The next goal of a robot at `pose`; `None` when no goal is left. Called when the last goal is finished. `travel` gives
-    /// the travel time to every cell.
-    fn next_goal(
-        &mut self,
-        pose: &Isometry2<f64>,
-        mapper: &Mapper,
-        travel: &mut impl Travel,
-    ) -> Option<Destination>;
-
-    /// Whether the present goal has served its purpose before the robot is there.
-    fn is_obsolete(&self, _: &Mapper) -> bool {
-        false
-    }
-
-    /// The robot, at `pose`, leaves the last goal, and no other goal follows for a while. Can be called more than once.
-    fn end_goal(&mut self, _pose: &Isometry2<f64>, _: &Mapper) {}
-
-    /// Called at every reading.
-    fn observe(&mut self, _: Features, _: &Mapper) {}
-
-    /// The reason for the last goal, in a few words.
-    fn reason(&self) -> String;
-
-    /// The strategies, if the selector has any.
-    fn strategies(&self, _features: Features) -> Vec<StrategyState> {
-        Vec::new()
-    }
-
-    /// Everything that was selected and learned, as in [`Pilot::values`]. Empty for a selector that remembers nothing.
-    fn values(&mut self, _mapper: &Mapper) -> Values<'_> {
-        Vec::new()
-    }
-}
+use nalgebra::Isometry2;
 
 /// The pilot of a robot that explores: a goal selector, and a driver to the goals.
 #[derive(Debug)]
@@ -91,9 +45,9 @@ impl<G: GoalSelector, D: Driver> Autonomous<G, D> {
         features: Features,
         mapper: &Mapper,
         breaks_off: bool,
-        next: impl FnOnce(&mut G, &mut TravelTimes<'_, D>) -> Option<(Destination, String)>,
+        next: impl FnOnce(&mut G, &mut TravelTimes<'_, D>) -> Option<(Goal, String)>,
     ) -> D::Command {
-        self.selector.observe(features, mapper);
+        self.selector.observe(features, mapper.transitions());
         let input = input(mapper, &belief.pose);
         match belief.permission {
             Permission::Rest => return self.driver.pause(&input, false),
@@ -101,11 +55,12 @@ impl<G: GoalSelector, D: Driver> Autonomous<G, D> {
             Permission::Drive => {}
         }
         let command = self.driver.drive(&input);
-        match self.driver.status() {
+        let DriverView { status, trouble, .. } = self.driver.view();
+        match status {
             Status::Idle if !self.is_done => {}
             Status::Finished(Outcome::GivenUp) => {
                 self.goals.given_up += 1;
-                self.log(Level::Trouble, format!("goal given up: {}", self.driver.trouble()));
+                self.log(Level::Trouble, format!("goal given up: {trouble}"));
             }
             Status::Finished(Outcome::Reached) => self.goals.reached += 1,
             Status::Finished(Outcome::Nearest) => self.goals.approached += 1,
@@ -120,7 +75,7 @@ impl<G: GoalSelector, D: Driver> Autonomous<G, D> {
                 self.driver.cancel();
                 self.is_done = true;
             }
-            Some((Destination { position, stay }, reason)) => {
+            Some((Goal { position, stay }, reason)) => {
                 let watch = match stay {
                     Stay::Explore => None,
                     Stay::Watch(duration) => Some(duration),
@@ -135,8 +90,8 @@ impl<G: GoalSelector, D: Driver> Autonomous<G, D> {
 
     /// Processes one reading of a robot that rests: it leaves its goal, which has no outcome.
     pub(crate) fn rest(&mut self, pose: &Isometry2<f64>, features: Features, mapper: &Mapper) -> D::Command {
-        self.selector.observe(features, mapper);
-        if self.driver.goal().is_some() {
+        self.selector.observe(features, mapper.transitions());
+        if self.driver.view().goal.is_some() {
             // The time of a goal goes on while the robot rests, until the driver gives the goal up.
             self.driver.cancel();
             self.selector.end_goal(pose, mapper);
@@ -159,28 +114,17 @@ impl<G: GoalSelector, D: Driver> Pilot for Autonomous<G, D> {
         self.driver.forget_map();
     }
 
-    fn path(&self) -> &[Point2<f64>] {
-        self.driver.path()
-    }
-
-    fn goal(&self) -> Option<Point2<f64>> {
-        self.driver.goal()
+    fn view(&self) -> PilotView<'_> {
+        let DriverView { path, goal, .. } = self.driver.view();
+        PilotView { path, goal, goals: self.goals, is_done: self.is_done }
     }
 
     fn strategies(&self, features: Features) -> Vec<StrategyState> {
         self.selector.strategies(features)
     }
 
-    fn goals(&self) -> GoalCount {
-        self.goals
-    }
-
     fn take_messages(&mut self) -> Vec<Message> {
         std::mem::take(&mut self.messages)
-    }
-
-    fn is_done(&self) -> bool {
-        self.is_done
     }
 
     fn values(&mut self, mapper: &Mapper) -> Values<'_> {
@@ -209,53 +153,5 @@ pub(crate) struct TravelTimes<'a, D> {
 impl<D: Driver> Travel for TravelTimes<'_, D> {
     fn times(&mut self, mapper: &Mapper, pose: &Isometry2<f64>, times: &mut Vec<f64>) {
         self.driver.travel_times(&input(mapper, pose), times);
-    }
-}
-
-impl GoalSelector for Agent {
-    fn next_goal(
-        &mut self,
-        pose: &Isometry2<f64>,
-        mapper: &Mapper,
-        travel: &mut impl Travel,
-    ) -> Option<Destination> {
-        let Goal { cell, stay } = Agent::next_goal(self, mapper, pose, travel);
-        Some(Destination { position: mapper.frame().center(cell), stay })
-    }
-
-    fn is_obsolete(&self, mapper: &Mapper) -> bool {
-        self.is_goal_obsolete(mapper)
-    }
-
-    fn end_goal(&mut self, pose: &Isometry2<f64>, mapper: &Mapper) {
-        Agent::end_goal(self, mapper, pose);
-    }
-
-    fn observe(&mut self, features: Features, mapper: &Mapper) {
-        Agent::watch(self, features, mapper.transitions());
-    }
-
-    fn reason(&self) -> String {
-        match self.current().and_then(|current| Agent::strategies(self).nth(current)) {
-            Some(name) => format!("{name} (last reward {:.2})", self.last_reward()),
-            None => "unseen space".into(),
-        }
-    }
-
-    fn values(&mut self, mapper: &Mapper) -> Values<'_> {
-        Agent::values(self, mapper)
-    }
-
-    fn strategies(&self, features: Features) -> Vec<StrategyState> {
-        Agent::strategies(self)
-            .zip(self.shares())
-            .enumerate()
-            .map(|(strategy, (name, share))| StrategyState {
-                name: name.to_owned(),
-                value: self.value(strategy, features),
-                share,
-                is_current: self.current() == Some(strategy),
-            })
-            .collect()
     }
 }

@@ -1,10 +1,9 @@
 //! The day of a robot: patrols on a battery, rests at its dock, and orders by others.
 
-use crate::autonomous::{Autonomous, Destination, GoalSelector};
+use crate::autonomous::Autonomous;
 use crate::belief::{Belief, Permission};
-use crate::messages::Message;
-use crate::pilot::{GoalCount, Pilot, StrategyState};
-use agent::{Features, Stay, Travel};
+use crate::pilot::{Message, Pilot, PilotView};
+use agent::{Features, Goal, GoalSelector, Stay, StrategyState, Travel};
 use calendar::{DAY_S, Hours};
 use controller::Driver;
 use interfaces::{Values, value};
@@ -239,13 +238,13 @@ impl Battery {
         pose: &Isometry2<f64>,
         mapper: &Mapper,
         travel: &mut impl Travel,
-    ) -> Option<(Destination, String)> {
+    ) -> Option<(Goal, String)> {
         self.plan(pose, mapper, travel);
         self.state.needs_goal = false;
         if self.state.phase == Phase::Returning || self.must_return(mapper.time()) {
             self.state.phase = Phase::Returning;
             goals.end_goal(pose, mapper);
-            let dock = Destination { position: self.settings.dock, stay: Stay::Watch(WAIT_S) };
+            let dock = Goal { position: self.settings.dock, stay: Stay::Watch(WAIT_S) };
             return Some((dock, "back to the dock".to_owned()));
         }
         let goal = if self.charges() {
@@ -307,28 +306,16 @@ impl<G: GoalSelector, D: Driver> Pilot for PatrolDay<G, D> {
         self.pilot.forget_map();
     }
 
-    fn path(&self) -> &[Point2<f64>] {
-        self.pilot.path()
-    }
-
-    fn goal(&self) -> Option<Point2<f64>> {
-        self.pilot.goal()
+    fn view(&self) -> PilotView<'_> {
+        self.pilot.view()
     }
 
     fn strategies(&self, features: Features) -> Vec<StrategyState> {
         self.pilot.strategies(features)
     }
 
-    fn goals(&self) -> GoalCount {
-        self.pilot.goals()
-    }
-
     fn take_messages(&mut self) -> Vec<Message> {
         self.pilot.take_messages()
-    }
-
-    fn is_done(&self) -> bool {
-        self.pilot.is_done()
     }
 
     fn values(&mut self, mapper: &Mapper) -> Values<'_> {

@@ -1,10 +1,29 @@
 use crate::belief::Belief;
-use crate::messages::Message;
-use agent::Features;
+use agent::{Features, StrategyState};
 use interfaces::Values;
 use mapper::Mapper;
 use nalgebra::Point2;
 use serde::{Deserialize, Serialize};
+
+/// The importance of a [`Message`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+pub enum Level {
+    /// A decision of the robot.
+    Decision,
+    /// A change in the world, or the detection of a change.
+    Event,
+    /// A failure: a goal that was given up, a collision.
+    Trouble,
+}
+
+/// A message of the log.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
+pub struct Message {
+    /// The importance of the message.
+    pub level: Level,
+    /// One sentence.
+    pub text: String,
+}
 
 /// Decides the next command of the robot.
 pub trait Pilot {
@@ -17,14 +36,9 @@ pub trait Pilot {
     /// Plans anew: the map is another one, with other cells than its transitions say.
     fn forget_map(&mut self) {}
 
-    /// The planned path, m; empty without a path.
-    fn path(&self) -> &[Point2<f64>] {
-        &[]
-    }
-
-    /// The position of the goal, m; `None` without a goal.
-    fn goal(&self) -> Option<Point2<f64>> {
-        None
+    /// What others may know of the pilot.
+    fn view(&self) -> PilotView<'_> {
+        PilotView::default()
     }
 
     /// The strategies of the agent; empty without an agent.
@@ -32,20 +46,9 @@ pub trait Pilot {
         Vec::new()
     }
 
-    /// The number of goals so far, by outcome.
-    fn goals(&self) -> GoalCount {
-        GoalCount::default()
-    }
-
     /// The messages since the last call.
     fn take_messages(&mut self) -> Vec<Message> {
         Vec::new()
-    }
-
-    /// Whether the pilot has ended the run: a tour ends after its last waypoint, a user can end the run at any
-    /// time.
-    fn is_done(&self) -> bool {
-        false
     }
 
     /// Everything that a reading changes and a later reading needs: what a state file holds of the pilot. `mapper` is that
@@ -53,6 +56,19 @@ pub trait Pilot {
     fn values(&mut self, _mapper: &Mapper) -> Values<'_> {
         Vec::new()
     }
+}
+
+/// What others may know of a pilot.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct PilotView<'a> {
+    /// The planned path, m; empty without a path.
+    pub path: &'a [Point2<f64>],
+    /// The position of the goal, m; `None` without a goal.
+    pub goal: Option<Point2<f64>>,
+    /// The number of goals so far, by outcome.
+    pub goals: GoalCount,
+    /// Whether the pilot has ended the run: a tour ends after its last waypoint, a user can end the run at any time.
+    pub is_done: bool,
 }
 
 /// A pilot that gives no command: of a log, or of a robot that someone else drives.
@@ -74,18 +90,4 @@ pub struct GoalCount {
     pub approached: u32,
     /// Goals that were given up, because the robot made no progress.
     pub given_up: u32,
-}
-
-/// One strategy of the agent at one instant.
-#[derive(Clone, Debug, PartialEq)]
-pub struct StrategyState {
-    /// The name on the command line.
-    pub name: String,
-    /// The learned value V(p, r) (paper, section 4): the expected number of map updates per observation. `None` if
-    /// the agent does not learn.
-    pub value: Option<f64>,
-    /// The share of goals so far that were selected by this strategy, from 0 to 1.
-    pub share: f64,
-    /// Whether this strategy selected the present goal.
-    pub is_current: bool,
 }

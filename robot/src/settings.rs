@@ -1,9 +1,9 @@
-use crate::autonomous::{Autonomous, GoalSelector};
+use crate::autonomous::Autonomous;
 use crate::localization::Localization;
 use crate::pilot::Pilot;
 use crate::robot::Robot;
 use crate::session::max_step_s;
-use agent::{Agent, AgentSettings, Policy};
+use agent::{Agent, AgentSettings, GoalSelector, Policy};
 use controller::{Controller, DiffDrive, DiffDriveSettings};
 use interfaces::{CellState, Grid, GridFrame, LaserReading, PoseMode, Purpose, RandomStream, SettingsError};
 use localizer::{GivenPoses, LocalizerSettings, LoopClosingLocalizer, Switch};

@@ -1,10 +1,9 @@
 //! The robot in a tiny world, and with parts that only write down what they are asked.
 
 use crate::{
-    Autonomous, Belief, Destination, ExactPoses, GoalCount, GoalSelector, Localization, Permission, Pilot,
-    Robot, explore,
+    Autonomous, Belief, ExactPoses, GoalCount, GoalSelector, Localization, Permission, Pilot, Robot, explore,
 };
-use agent::{Agent, AgentSettings, Features, Policy, Travel};
+use agent::{Agent, AgentSettings, Features, Goal, Policy, Travel};
 use controller::{CellDrive, Controller, Driver};
 use interfaces::{
     Cell, CellReading, GridFrame, LaserReading, Purpose, RandomStream, Scan, Step, ValueError, World,
@@ -260,8 +259,13 @@ impl Driver for Jumping {
         self.asked.push("cancel");
     }
 
-    fn goal(&self) -> Option<Point2<f64>> {
-        self.goal
+    fn view(&self) -> controller::DriverView<'_> {
+        let status = match self.goal {
+            Some(_) if self.is_slow => controller::Status::Travelling,
+            Some(_) => controller::Status::Finished(controller::Outcome::Reached),
+            None => controller::Status::Idle,
+        };
+        controller::DriverView { path: &[], goal: self.goal, status, trouble: "" }
     }
 
     fn drive(&mut self, _: &controller::ControlInput) {
@@ -272,22 +276,10 @@ impl Driver for Jumping {
         self.asked.push(if looks_around { "look around" } else { "rest" });
     }
 
-    fn status(&self) -> controller::Status {
-        match self.goal {
-            Some(_) if self.is_slow => controller::Status::Travelling,
-            Some(_) => controller::Status::Finished(controller::Outcome::Reached),
-            None => controller::Status::Idle,
-        }
-    }
-
     fn travel_times(&mut self, _: &controller::ControlInput, _: &mut Vec<f64>) {}
 
     fn forget_map(&mut self) {
         self.asked.push("forget map");
-    }
-
-    fn path(&self) -> &[Point2<f64>] {
-        &[]
     }
 
     fn values(&mut self, _: &interfaces::Grid<interfaces::CellState>) -> interfaces::Values<'_> {
@@ -305,9 +297,9 @@ fn permissions_hold_for_every_driver() {
     }
     pilot.forget_map();
     assert_eq!(pilot.driver_mut().asked, ["rest", "look around", "drive", "goal", "drive", "forget map"]);
-    assert_eq!(pilot.goals().reached, 0);
+    assert_eq!(pilot.view().goals.reached, 0);
     pilot.command(&Belief::exact(Isometry2::identity()), Features::default(), &map);
-    assert_eq!(pilot.goals().reached, 1);
+    assert_eq!(pilot.view().goals.reached, 1);
 }
 
 /// Goes to the origin, and notes the ends of its goals.
@@ -315,8 +307,8 @@ fn permissions_hold_for_every_driver() {
 struct Ended(usize);
 
 impl GoalSelector for Ended {
-    fn next_goal(&mut self, _: &Isometry2<f64>, _: &Mapper, _: &mut impl Travel) -> Option<Destination> {
-        Some(Destination { position: Point2::origin(), stay: agent::Stay::Explore })
+    fn next_goal(&mut self, _: &Isometry2<f64>, _: &Mapper, _: &mut impl Travel) -> Option<Goal> {
+        Some(Goal { position: Point2::origin(), stay: agent::Stay::Explore })
     }
 
     fn end_goal(&mut self, _: &Isometry2<f64>, _: &Mapper) {
@@ -339,7 +331,7 @@ fn goals_that_a_rest_ends_have_no_outcome() {
     pilot.command(&belief, features, &map);
     let goes = ["drive", "goal", "drive"];
     assert_eq!(pilot.driver_mut().asked, [&goes[..], &["cancel", "rest", "rest"], &goes].concat());
-    assert_eq!((pilot.goals(), pilot.selector_mut().0), (GoalCount::default(), 1));
+    assert_eq!((pilot.view().goals, pilot.selector_mut().0), (GoalCount::default(), 1));
     // The goal is replaced on the way.
     let driver = Jumping { is_slow: true, ..Jumping::default() };
     let mut pilot = Autonomous::new(Ended::default(), driver);
@@ -349,5 +341,5 @@ fn goals_that_a_rest_ends_have_no_outcome() {
         });
     }
     assert_eq!(pilot.driver_mut().asked, [goes, goes].concat());
-    assert_eq!(pilot.goals(), GoalCount::default());
+    assert_eq!(pilot.view().goals, GoalCount::default());
 }

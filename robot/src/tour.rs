@@ -1,5 +1,4 @@
-use crate::autonomous::{Destination, GoalSelector};
-use agent::{Stay, Travel};
+use agent::{Goal, GoalSelector, Stay, Travel};
 use interfaces::{Values, value};
 use mapper::Mapper;
 use nalgebra::{Isometry2, Point2};
@@ -21,13 +20,13 @@ impl Tour {
 }
 
 impl GoalSelector for Tour {
-    fn next_goal(&mut self, _: &Isometry2<f64>, _: &Mapper, _: &mut impl Travel) -> Option<Destination> {
+    fn next_goal(&mut self, _: &Isometry2<f64>, _: &Mapper, _: &mut impl Travel) -> Option<Goal> {
         if self.repeat && self.next == self.waypoints.len() {
             self.next = 0;
         }
         let position = *self.waypoints.get(self.next)?;
         self.next += 1;
-        Some(Destination { position, stay: Stay::Watch(0.0) })
+        Some(Goal { position, stay: Stay::Watch(0.0) })
     }
 
     fn values(&mut self, _: &Mapper) -> Values<'_> {

@@ -1,14 +1,12 @@
 //! A robot with a battery is back at its dock in time, wherever its goals are.
 
-use agent::{Features, Stay, Travel};
+use agent::{Features, Goal, Stay, Travel};
 use calendar::{DAY_S, Hours, WEEK_S};
-use controller::{ControlInput, Driver, Outcome, Status};
+use controller::{ControlInput, Driver, DriverView, Outcome, Status};
 use interfaces::{CellReading, CellState, Grid, GridFrame, Values};
 use mapper::{Mapper, MapperSettings};
 use nalgebra::{Isometry2, Point2};
-use robot::{
-    Autonomous, Belief, DaySettings, DayTotals, Destination, GoalSelector, PatrolDay, Permission, Pilot,
-};
+use robot::{Autonomous, Belief, DaySettings, DayTotals, GoalSelector, PatrolDay, Permission, Pilot};
 use std::cell::Cell;
 use std::rc::Rc;
 
@@ -24,11 +22,11 @@ struct Corners {
 }
 
 impl GoalSelector for Corners {
-    fn next_goal(&mut self, _: &Isometry2<f64>, _: &Mapper, _: &mut impl Travel) -> Option<Destination> {
+    fn next_goal(&mut self, _: &Isometry2<f64>, _: &Mapper, _: &mut impl Travel) -> Option<Goal> {
         self.count += 1;
         self.has_goal.set(true);
         let position = [[29.0, 1.0], [29.0, 19.0], [1.0, 19.0], [1.0, 1.0]][self.count % 4].into();
-        Some(Destination { position, stay: Stay::Watch(0.0) })
+        Some(Goal { position, stay: Stay::Watch(0.0) })
     }
 
     fn end_goal(&mut self, _: &Isometry2<f64>, _: &Mapper) {
@@ -49,13 +47,13 @@ impl GoalSelector for Farthest {
         pose: &Isometry2<f64>,
         mapper: &Mapper,
         travel: &mut impl Travel,
-    ) -> Option<Destination> {
+    ) -> Option<Goal> {
         let mut times = Vec::new();
         travel.times(mapper, pose, &mut times);
         let reachable = (0..times.len()).filter(|cell| times[*cell].is_finite());
         let cell = reachable.max_by(|one, other| times[*one].total_cmp(&times[*other]))?;
         let position = mapper.frame().center(mapper.frame().cell(cell));
-        Some(Destination { position, stay: Stay::Watch(0.0) })
+        Some(Goal { position, stay: Stay::Watch(0.0) })
     }
 
     fn reason(&self) -> String {
@@ -81,8 +79,13 @@ impl Driver for Straight {
         self.goal = None;
     }
 
-    fn goal(&self) -> Option<Point2<f64>> {
-        self.goal
+    fn view(&self) -> DriverView<'_> {
+        let status = match self.goal {
+            None => Status::Idle,
+            Some(_) if self.is_there => Status::Finished(Outcome::Reached),
+            Some(_) => Status::Travelling,
+        };
+        DriverView { path: &[], goal: self.goal, status, trouble: "" }
     }
 
     fn drive(&mut self, input: &ControlInput) {
@@ -92,14 +95,6 @@ impl Driver for Straight {
 
     fn pause(&mut self, _: &ControlInput, _: bool) {}
 
-    fn status(&self) -> Status {
-        match self.goal {
-            None => Status::Idle,
-            Some(_) if self.is_there => Status::Finished(Outcome::Reached),
-            Some(_) => Status::Travelling,
-        }
-    }
-
     fn travel_times(&mut self, input: &ControlInput, times: &mut Vec<f64>) {
         let frame = input.map.frame();
         let way_m = |index| (frame.center(frame.cell(index)).coords - input.pose.translation.vector).norm();
@@ -107,10 +102,6 @@ impl Driver for Straight {
     }
 
     fn forget_map(&mut self) {}
-
-    fn path(&self) -> &[Point2<f64>] {
-        &[]
-    }
 
     fn values(&mut self, _: &Grid<CellState>) -> Values<'_> {
         Vec::new()
@@ -149,7 +140,7 @@ fn week_with(goals: impl GoalSelector, share: f64, battery_s: f64, busy: &str, c
     let (mut mapper, mut time_s, mut at, mut busy_s, mut reached) = (mapper(), 0.0, dock, 0.0, 0);
     while time_s < WEEK_S {
         let (belief, features) = look(&mut mapper, time_s, at);
-        let before = day.goal();
+        let before = day.view().goal;
         day.command(&belief, features, &mapper);
         if let Some(until_s) = day.battery().rests_until_s() {
             assert!(until_s > time_s && until_s <= time_s + DAY_S);
@@ -159,7 +150,7 @@ fn week_with(goals: impl GoalSelector, share: f64, battery_s: f64, busy: &str, c
         }
         busy_s += f64::from(u8::from(hours.is_active(time_s)));
         reached += u32::from(before.is_some_and(|goal| goal != dock && (goal - at).norm() < SPEED_MPS));
-        let goal = day.goal().unwrap();
+        let goal = day.view().goal.unwrap();
         check(goal != dock);
         at += (goal - at).cap_magnitude(SPEED_MPS);
         time_s += 1.0;

@@ -1,7 +1,6 @@
 //! Recordings as bags of ROS 2: MCAP files that Foxglove shows, and that `logs::Log` reads.
 
 mod channels;
-mod lasers;
 mod odometry;
 mod schemas;
 mod sorted;
@@ -13,7 +12,6 @@ use crate::messages::{
 use crate::scan::{FIRST_STAMP_NS, message as scan_message};
 use channels::Channels;
 use interfaces::{Event, Grid, LaserReading, Twist};
-use lasers::Laser;
 use nalgebra::{Isometry2, Point2};
 use std::collections::BTreeMap;
 use std::io::{Error, Write};
@@ -22,6 +20,7 @@ use std::io::{Error, Write};
 const MAP: &str = "map";
 const ODOM: &str = "odom";
 const BASE: &str = "base_link";
+const LASER: &str = "laser";
 /// The type of a number of 32 bits in a point cloud.
 const FLOAT32: u8 = 7;
 /// The bytes of a point: x, y, z and the change.
@@ -31,7 +30,7 @@ const POINT_BYTES: u32 = 16;
 ///
 /// | method | topics | messages |
 /// |---|---|---|
-/// | [`reading`](Self::reading) | `/scan` (a second laser `/scan_2`), `/odom`, `/tf`, `/tf_static` | `LaserScan`, `Odometry`, `TFMessage` |
+/// | [`reading`](Self::reading) | `/scan`, `/odom`, `/tf`, `/tf_static` | `LaserScan`, `Odometry`, `TFMessage` |
 /// | [`correction`](Self::correction) | `/tf` | `TFMessage`: odom in map |
 /// | [`grid`](Self::grid) | the given one | `OccupancyGrid` |
 /// | [`goal`](Self::goal), [`path`](Self::path) | `/goal_pose`, `/plan` | `PoseStamped`, `Path` |
@@ -47,7 +46,8 @@ const POINT_BYTES: u32 = 16;
 pub struct McapWriter<W: Write> {
     channels: Channels<W>,
     begin_ns: i64,
-    lasers: Vec<Laser>,
+    /// Where the laser is on the robot, as last written.
+    mount: Option<Isometry2<f64>>,
     map_to_odom: Isometry2<f64>,
     /// The last map of each topic.
     grids: BTreeMap<String, Grid<i8>>,
@@ -69,7 +69,7 @@ impl<W: Write> McapWriter<W> {
                 .saturating_mul(1_000_000_000)
                 .saturating_add(((begin_s - begin_s.floor()) * 1e9).round() as i64)
                 .max(FIRST_STAMP_NS),
-            lasers: Vec::new(),
+            mount: None,
             map_to_odom: Isometry2::identity(),
             grids: BTreeMap::new(),
             last_odometry: None,
@@ -79,11 +79,10 @@ impl<W: Write> McapWriter<W> {
     /// Writes a reading: scan, odometry and transforms. A scan that sweeps comes with the odometry while it was measured.
     pub fn reading(&mut self, reading: &LaserReading) -> Result<(), Error> {
         let end_ns = self.ns(reading.time_s);
-        let laser = self.laser(end_ns, reading)?;
+        self.laser(end_ns, &reading.mount)?;
         self.odometry(reading)?;
-        let topic = numbered("/scan", laser);
-        let scan = scan_message(reading, numbered("laser", laser), end_ns);
-        self.channels.write(&topic, "sensor_msgs/LaserScan", end_ns, &scan)
+        let scan = scan_message(reading, LASER.to_owned(), end_ns);
+        self.channels.write("/scan", "sensor_msgs/LaserScan", end_ns, &scan)
     }
 
     /// Writes a correction of the odometry: the pose of its frame in the frame of the map. It holds from now on.
@@ -171,22 +170,14 @@ impl<W: Write> McapWriter<W> {
         self.begin_ns.saturating_add((time_s * 1e9).round() as i64)
     }
 
-    /// The number of the laser of a reading. A new one is written as a static transform, one that has moved on the robot as
-    /// a transform.
-    fn laser(&mut self, ns: i64, reading: &LaserReading) -> Result<usize, Error> {
-        let now = Laser::of(reading);
-        let known = self.lasers.iter().position(|laser| laser.mount == now.mount);
-        if let Some(laser) = known.or_else(|| now.moved_from(&self.lasers)) {
-            if self.lasers[laser].mount != now.mount {
-                self.lasers[laser].mount = now.mount;
-                self.transforms("/tf", ns, &[(BASE, &numbered("laser", laser), now.mount)])?;
-            }
-            return Ok(laser);
+    /// Writes where the laser is on the robot: a static transform at first, and a transform when it has moved. The scans of several
+    /// lasers are those of one that moves.
+    fn laser(&mut self, ns: i64, mount: &Isometry2<f64>) -> Result<(), Error> {
+        match self.mount.replace(*mount) {
+            None => self.transforms("/tf_static", ns, &[(BASE, LASER, *mount)]),
+            Some(before) if before != *mount => self.transforms("/tf", ns, &[(BASE, LASER, *mount)]),
+            Some(_) => Ok(()),
         }
-        let (laser, mount) = (self.lasers.len(), now.mount);
-        self.lasers.push(now);
-        self.transforms("/tf_static", ns, &[(BASE, &numbered("laser", laser), mount)])?;
-        Ok(laser)
     }
 
     /// The odometry at the end of a reading, and before it while the scan was measured.
@@ -223,11 +214,6 @@ impl<W: Write> McapWriter<W> {
         let message = Transforms { transforms: transforms.iter().map(stamped).collect() };
         self.channels.write(topic, "tf2_msgs/TFMessage", ns, &message)
     }
-}
-
-/// The name of the first laser, or of a later one.
-fn numbered(name: &str, laser: usize) -> String {
-    if laser == 0 { name.to_owned() } else { format!("{name}_{}", laser + 1) }
 }
 
 fn header(ns: i64, frame: &str) -> Header {

@@ -93,8 +93,8 @@ impl Pose {
     }
 }
 
-/// The covariance of 6 figures: 36 numbers.
-pub type Covariance = ([f64; 18], [f64; 18]);
+/// The covariance of x, y, z and the angles about them.
+pub type Covariance = [[f64; 6]; 6];
 
 /// `geometry_msgs/PoseWithCovariance`.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]

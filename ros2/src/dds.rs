@@ -1,29 +1,27 @@
 //! The connection by DDS: the only part that knows the client library.
 
 mod actions;
-mod discovery;
 mod others;
-mod publishers;
 mod services;
 mod subscribers;
 
-use crate::environment::{self, Environment, Range};
+use crate::environment::{Environment, Range};
 use crate::link::{Event, Link, Request, Wiring};
 use crate::message::{DynamicEdges, Message, PoseStamped, Quality, Topic};
 use crate::service::Reply;
 use actions::{EdgesClient, Navigator};
 use anyhow::Context as _;
 use others::{Endpoints, Others};
-use publishers::Publishers;
 use ros2_client::dds::rustdds::DomainParticipantBuilder;
 use ros2_client::qos::{Durability, History, QosProfile, Reliability, WhenFull};
-use ros2_client::{Context, Gid, NodeName, NodeOptions, ServiceMapping, WriteError};
+use ros2_client::{
+    Context, MessageTypeName, Name, NodeName, NodeOptions, Publisher, ServiceMapping, WriteError,
+};
 use services::Services;
-use std::collections::{BTreeSet, VecDeque};
+use std::collections::{BTreeMap, VecDeque};
 use std::net::{IpAddr, Ipv4Addr};
 use std::sync::mpsc::{self, Receiver};
 use std::time::{Duration, Instant};
-use subscribers::Typed;
 
 /// How long a message that must not be lost waits if a subscriber does not keep up.
 const WAIT: Duration = Duration::from_millis(20);
@@ -31,6 +29,10 @@ const WAIT: Duration = Duration::from_millis(20);
 const POLL: Duration = Duration::from_millis(20);
 /// Events that wait for the node. If there are more, messages are lost on the network, as their QoS has it.
 const MAX_EVENTS: usize = 4096;
+
+/// The topics that a node publishes, each with its full name.
+type Publishers = BTreeMap<Topic, (String, Publisher<Message>)>;
+
 /// A node on the network.
 pub struct DdsLink {
     events: Receiver<Event>,
@@ -41,9 +43,8 @@ pub struct DdsLink {
     services: Services,
     /// The full name of the node.
     name: String,
-    typed: Typed,
     /// Ends the node when it is dropped.
-    endpoints: Endpoints,
+    _endpoints: Endpoints,
 }
 
 impl DdsLink {
@@ -62,20 +63,16 @@ impl DdsLink {
         let (to, events) = mpsc::sync_channel(MAX_EVENTS);
         let others = Others::follow(&context, wiring.subscribed.clone(), to.clone())?;
         let mut endpoints = Endpoints::new(context.new_node(name, options)?, others.clone());
-        let mapping = match environment.services {
-            environment::Services::Enhanced => ServiceMapping::Enhanced,
-            environment::Services::Cyclone => ServiceMapping::Cyclone,
-        };
-        let publishers = publishers::open(&mut endpoints, wiring)?;
-        let own: BTreeSet<Gid> = publishers.values().map(|(_, publisher)| publisher.gid()).collect();
+        let is_cyclone = environment.is_cyclone;
+        let mapping = if is_cyclone { ServiceMapping::Cyclone } else { ServiceMapping::Enhanced };
+        let publishers = publishers(&mut endpoints, wiring)?;
+        let own = publishers.values().map(|(_, publisher)| publisher.gid()).collect();
         let navigator = wiring.navigate_to_pose.as_deref();
         let navigator = navigator.map(|name| Navigator::new(endpoints.node(), name, mapping)).transpose()?;
         let edges = wiring.adjust_edges.as_deref();
         let edges = edges.map(|name| EdgesClient::new(endpoints.node(), name, mapping)).transpose()?;
         let services = Services::open(&mut endpoints, others, &wiring.services, mapping, &to)?;
-        let (typed, subscribed) =
-            Typed::new(wiring.subscribed.clone(), context.clone(), own.clone(), to.clone());
-        subscribers::start(&mut endpoints, &context, &subscribed, own, &to)?;
+        subscribers::start(&mut endpoints, &context, wiring, own, to)?;
         Ok(Self {
             events,
             publishers,
@@ -84,8 +81,7 @@ impl DdsLink {
             edges,
             services,
             name: full_name,
-            typed,
-            endpoints,
+            _endpoints: endpoints,
         })
     }
 
@@ -119,7 +115,6 @@ impl Link for DdsLink {
     }
 
     fn receive(&mut self, patience: Duration) -> Option<Event> {
-        self.problems.extend(self.typed.open(&mut self.endpoints));
         if let Some(problem) = self.problems.pop_front() {
             return Some(Event::Problem(problem));
         }
@@ -169,6 +164,21 @@ fn context(environment: &Environment) -> anyhow::Result<Context> {
         Range::Off => builder.with_only_networks(Vec::<IpAddr>::new()).same_host_loopback(false),
     };
     Ok(Context::from_domain_participant(builder.build()?)?)
+}
+
+/// Opens the publishers of a node.
+fn publishers(endpoints: &mut Endpoints, wiring: &Wiring) -> anyhow::Result<Publishers> {
+    let open = |(topic, name, quality): &(Topic, String, Quality)| {
+        let (package, kind) = topic.type_name();
+        // The robot does not wait for a subscriber that does not keep up: the next message replaces this one. A map, or a scan of
+        // the simulator, is not replaced so soon.
+        let is_waiting = quality.is_latched || *topic == Topic::Scan;
+        let profile = profile(quality, if is_waiting { WhenFull::Wait(WAIT) } else { WhenFull::Fail });
+        let node = endpoints.node();
+        let on = node.create_topic(&Name::parse(name)?, MessageTypeName::new(package, kind), &profile)?;
+        Ok((*topic, (name.clone(), node.create_publisher(&on, None)?)))
+    };
+    wiring.published.iter().map(open).collect()
 }
 
 fn profile(quality: &Quality, when_full: WhenFull) -> QosProfile {

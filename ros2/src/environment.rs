@@ -14,16 +14,6 @@ pub enum Range {
     Off,
 }
 
-/// How requests and answers are matched on the wire: the implementations of ROS differ.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Services {
-    /// By what DDS writes beside a message: Fast DDS, the default of ROS, and others.
-    #[default]
-    Enhanced,
-    /// By a header in the message: CycloneDDS.
-    Cyclone,
-}
-
 /// The domain of a node, and how far it reaches.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Environment {
@@ -31,8 +21,9 @@ pub struct Environment {
     pub domain: u16,
     /// `ROS_AUTOMATIC_DISCOVERY_RANGE`; before Jazzy `ROS_LOCALHOST_ONLY`.
     pub range: Range,
-    /// `RMW_IMPLEMENTATION`: that of the nodes with which services and actions are exchanged. Topics need no choice.
-    pub services: Services,
+    /// `RMW_IMPLEMENTATION`: whether services and actions are exchanged with nodes of CycloneDDS, which match requests and answers by
+    /// a header in the message. All others match them by what DDS writes beside a message. Topics need no choice.
+    pub is_cyclone: bool,
 }
 
 /// The largest domain whose ports exist.
@@ -63,11 +54,8 @@ impl Environment {
         })?;
         // As in ROS, the older variable wins.
         let range = if is_local == Some(true) { Range::Localhost } else { range.unwrap_or_default() };
-        let services = match variable("RMW_IMPLEMENTATION").as_deref() {
-            Some("rmw_cyclonedds_cpp") => Services::Cyclone,
-            _ => Services::Enhanced,
-        };
-        Ok(Self { domain: domain.unwrap_or_default(), range, services })
+        let is_cyclone = variable("RMW_IMPLEMENTATION").as_deref() == Some("rmw_cyclonedds_cpp");
+        Ok(Self { domain: domain.unwrap_or_default(), range, is_cyclone })
     }
 }
 
@@ -95,16 +83,15 @@ mod tests {
 
     #[test]
     fn the_environment_is_that_of_ros() {
-        let services = Services::Enhanced;
-        assert_eq!(read(&[]), Ok(Environment { domain: 0, range: Range::Subnet, services }));
+        let is_cyclone = false;
+        assert_eq!(read(&[]), Ok(Environment { domain: 0, range: Range::Subnet, is_cyclone }));
         assert_eq!(read(&[("ROS_DOMAIN_ID", "")]), Ok(Environment::default()));
         let local = read(&[("ROS_DOMAIN_ID", "42"), ("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")]);
-        assert_eq!(local, Ok(Environment { domain: 42, range: Range::Localhost, services }));
+        assert_eq!(local, Ok(Environment { domain: 42, range: Range::Localhost, is_cyclone }));
         let both = [("ROS_AUTOMATIC_DISCOVERY_RANGE", "SUBNET"), ("ROS_LOCALHOST_ONLY", "1")];
         assert_eq!(read(&both).unwrap().range, Range::Localhost);
         assert_eq!(read(&[("ROS_AUTOMATIC_DISCOVERY_RANGE", "OFF")]).unwrap().range, Range::Off);
-        let cyclone = read(&[("RMW_IMPLEMENTATION", "rmw_cyclonedds_cpp")]).unwrap();
-        assert_eq!(cyclone.services, Services::Cyclone);
+        assert!(read(&[("RMW_IMPLEMENTATION", "rmw_cyclonedds_cpp")]).unwrap().is_cyclone);
     }
 
     #[test]

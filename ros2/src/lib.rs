@@ -36,19 +36,15 @@ mod value;
 mod wiring;
 
 pub use dds::DdsLink;
-pub use environment::{Environment, Range, Services};
-pub use link::{Event, Link, Navigation, Request, Wiring};
-pub use message::{
-    Bool, Clock, CostmapFilterInfo, DiagnosticStatus, Diagnostics, Log, Message, PoseWithCovarianceStamped,
-    Quality, Topic, TransitionEvent, Twist as TwistMessage, TwistStamped,
-};
+pub use environment::Environment;
+pub use link::Link;
 pub use names::Names;
-pub use node::{CuriousNode, NodeReport, Signals};
-pub use notes::Output;
-pub use parameters::{Mode, Navigator, Parameters};
+pub use node::{CuriousNode, Signals};
+pub use parameters::Parameters;
 pub use ros_args::RosArgs;
-pub use service::{Call, Reply, Service, wire};
+pub use service::Service;
 pub use simulated::{SimulatedRobot, SimulationSettings};
 pub use source::ScanCount;
+pub use topic::Topic;
 pub use value::{Given, Value};
 pub use wiring::{curious_wiring, simulation_wiring};

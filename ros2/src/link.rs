@@ -28,9 +28,16 @@ pub trait Link {
     fn adjust_edges(&mut self, edges: DynamicEdges);
 }
 
-/// A request of a service; the link knows who has asked.
+/// A request: of which service, of which client, and the number that the client has given it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Request(pub u64);
+pub struct Request {
+    /// The service that is called.
+    pub service: Service,
+    /// The identity of the client on the network.
+    pub client: [u8; 16],
+    /// The number of the request among those of its client.
+    pub number: i64,
+}
 
 /// What comes from other nodes.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,7 +45,7 @@ pub enum Event {
     /// A message.
     Message(Topic, Message),
     /// A service is called, and must be answered.
-    Call(Request, Service, Call),
+    Call(Request, Call),
     /// The state of the goal that Nav2 has.
     Navigation(Navigation),
     /// Whether `nav2_route` has adjusted the edges.

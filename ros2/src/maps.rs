@@ -30,18 +30,21 @@ pub(crate) struct PublishedMaps {
     shown: Option<Grid<i8>>,
     whole: Option<Instant>,
     changes: Option<Instant>,
+    masks: Option<Instant>,
     /// Whether nothing changed since the last whole map.
     is_whole: bool,
 }
 
 impl PublishedMaps {
-    /// The messages after a reading. `header` has the time of the reading and the frame of the map.
-    pub(crate) fn after(
+    /// The messages after a reading. `header` has the time of the reading and the frame of the map. `name` is the full name of a
+    /// topic: the filters of Nav2 subscribe the masks by it.
+    pub(crate) fn after<'a>(
         &mut self,
         parameters: &Parameters,
         mapper: &Mapper,
         header: &Header,
         now: Instant,
+        name: impl Fn(Topic) -> &'a str,
     ) -> Vec<(Topic, Message)> {
         let mut messages = Vec::new();
         self.is_whole &= mapper.transitions().is_empty();
@@ -50,6 +53,7 @@ impl PublishedMaps {
         } else if let Some(update) = self.update(mapper, header) {
             messages.push((Topic::MapUpdates, Message::GridUpdate(update)));
         }
+        messages.extend(self.masks(parameters, mapper, header, now, name));
         messages
     }
 
@@ -120,17 +124,9 @@ impl PublishedMaps {
         }
         OccupancyGridUpdate::around(shown, changed.into_iter(), header.clone())
     }
-}
 
-/// When the masks were published.
-#[derive(Default)]
-pub(crate) struct PublishedMasks {
-    last: Option<Instant>,
-}
-
-impl PublishedMasks {
-    /// The messages that are due. `name` is the full name of a topic, which the filters subscribe.
-    pub(crate) fn due<'a>(
+    /// The masks, if they are due.
+    fn masks<'a>(
         &mut self,
         parameters: &Parameters,
         mapper: &Mapper,
@@ -138,13 +134,13 @@ impl PublishedMasks {
         now: Instant,
         name: impl Fn(Topic) -> &'a str,
     ) -> Vec<(Topic, Message)> {
-        let is_first = self.last.is_none();
+        let is_first = self.masks.is_none();
         let interval = Duration::from_secs_f64(parameters.mask_update_interval_s);
-        if interval.is_zero() || self.last.is_some_and(|last| now.duration_since(last) < interval) {
+        if interval.is_zero() || self.masks.is_some_and(|last| now.duration_since(last) < interval) {
             return Vec::new();
         }
         let Some(frame) = known_part(mapper.states()) else { return Vec::new() };
-        self.last = Some(now);
+        self.masks = Some(now);
         let [speed, keepout] = masks_ahead(mapper, parameters.prediction_horizon_s);
         let mut messages = Vec::new();
         for (topic, mask) in [(Topic::SpeedMask, speed), (Topic::KeepoutMask, keepout)] {

@@ -1,26 +1,16 @@
 //! The messages that the nodes send and receive.
 
+pub(crate) use crate::service::wire::ParameterEvent;
+pub(crate) use crate::topic::{Quality, Topic};
 pub(crate) use ros::{
     Header, LaserScan, OccupancyGrid, OccupancyGridUpdate, Odometry, Path, Pose, PoseStamped, Time,
-    TransformStamped, Transforms,
+    TransformStamped, Transforms, Twist,
 };
 
-pub(crate) use crate::service::wire::ParameterEvent;
-pub use crate::topic::{Quality, Topic};
-pub use ros::Twist;
-
 use crate::service::wire::Transition;
-
 use nalgebra::{Isometry2, Matrix3};
 use ros::{Covariance, PoseWithCovariance};
 use serde::{Deserialize, Serialize};
-
-/// `rosgraph_msgs/Clock`.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
-pub struct Clock {
-    /// The time of a simulation.
-    pub clock: Time,
-}
 
 /// `geometry_msgs/TwistStamped`.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
@@ -29,13 +19,6 @@ pub struct TwistStamped {
     pub header: Header,
     /// The velocity.
     pub twist: Twist,
-}
-
-/// `std_msgs/Bool`.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
-pub struct Bool {
-    /// The value.
-    pub data: bool,
 }
 
 /// `nav2_msgs/CostmapFilterInfo`: what the values of a mask mean.
@@ -85,9 +68,7 @@ pub(crate) fn covariance(of_plane: &Matrix3<f64>) -> Covariance {
     let mut all = Covariance::default();
     for (row, at) in PLACES.into_iter().enumerate() {
         for (column, beside) in PLACES.into_iter().enumerate() {
-            let place = 6 * at + beside;
-            let half = if place < 18 { &mut all.0 } else { &mut all.1 };
-            half[place % 18] = of_plane[(row, column)];
+            all[at][beside] = of_plane[(row, column)];
         }
     }
     all
@@ -95,11 +76,7 @@ pub(crate) fn covariance(of_plane: &Matrix3<f64>) -> Covariance {
 
 /// The covariance of x, y and heading, from that of x, y, z and the angles about them.
 pub(crate) fn of_plane(all: &Covariance) -> Matrix3<f64> {
-    Matrix3::from_fn(|row, column| {
-        let place = 6 * PLACES[row] + PLACES[column];
-        let half = if place < 18 { &all.0 } else { &all.1 };
-        half[place % 18]
-    })
+    Matrix3::from_fn(|row, column| all[PLACES[row]][PLACES[column]])
 }
 
 /// `rcl_interfaces/Log`: a sentence for the log of all nodes.
@@ -193,14 +170,14 @@ pub enum Message {
     Odometry(Box<Odometry>),
     /// Transforms between frames.
     Transforms(Transforms),
-    /// The time of a simulation.
-    Clock(Clock),
+    /// The time of a simulation, `rosgraph_msgs/Clock`.
+    Clock(Time),
     /// A velocity.
     Twist(Twist),
     /// A velocity with a time.
     TwistStamped(TwistStamped),
-    /// Yes or no.
-    Bool(Bool),
+    /// Yes or no, `std_msgs/Bool`.
+    Bool(bool),
     /// A map.
     Grid(OccupancyGrid),
     /// A part of a map that has changed.

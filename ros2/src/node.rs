@@ -3,7 +3,6 @@
 mod calls;
 mod diagnostics;
 mod lifecycle;
-mod outputs;
 mod publishing;
 mod routes;
 mod saving;
@@ -23,7 +22,7 @@ use crate::pilot::LivePilot;
 use crate::source::{LiveReading, ScanCount, Source};
 use interfaces::{LaserReading, PoseMode};
 use localizer::PoseState;
-use outputs::Published;
+use publishing::Published;
 use robot::{Belief, Robot};
 use routes::Routes;
 use session::Seat;
@@ -104,10 +103,9 @@ impl<L: Link> CuriousNode<L> {
         let mut notes = Notes::new(output);
         let loaded = state.filter(|_| parameters.autostart);
         let Parts { robot, state_file, continued } = Parts::new(parameters, loaded, &mut notes)?;
-        let (names, is_localized) = setup::frames(parameters);
         let mut node = Self {
             link,
-            source: Source::new(names, is_localized),
+            source: Source::new(setup::frames(parameters)),
             parameters: parameters.clone(),
             robot,
             published: Published::default(),
@@ -182,9 +180,9 @@ impl<L: Link> CuriousNode<L> {
     fn take(&mut self, event: Event, now: Instant) {
         match event {
             Event::Message(Topic::Resume, Message::Bool(resume)) => {
-                self.notes.say(if resume.data { "exploring" } else { "exploring is paused" });
-                self.robot.pilot.resume(resume.data);
-                if !resume.data {
+                self.notes.say(if resume { "exploring" } else { "exploring is paused" });
+                self.robot.pilot.resume(resume);
+                if !resume {
                     self.stop_robot();
                 }
             }
@@ -192,7 +190,7 @@ impl<L: Link> CuriousNode<L> {
                 self.take_initial_pose(&pose, now);
             }
             Event::Message(topic, message) => self.source.take(topic, message, now),
-            Event::Call(request, service, call) => self.call(request, service, call),
+            Event::Call(request, call) => self.call(request, call),
             Event::EdgesAdjusted(are_adjusted) => self.note_edges(are_adjusted, now),
             Event::Navigation(navigation) => self.robot.pilot.navigated(navigation),
             Event::Problem(text) => self.notes.note(&text, now),

@@ -10,7 +10,7 @@ const REPEAT: Duration = Duration::from_secs(60);
 const MAX_REMEMBERED: usize = 1000;
 
 /// Where sentences go.
-pub type Output = Box<dyn FnMut(&str) + Send>;
+pub(crate) type Output = Box<dyn FnMut(&str) + Send>;
 
 /// Sentences that wait for the log of all nodes; of more, the oldest are dropped.
 const MAX_UNSENT: usize = 100;

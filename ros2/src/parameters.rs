@@ -2,8 +2,7 @@
 
 mod choices;
 
-pub(crate) use choices::When;
-pub use choices::{Mode, Navigator};
+pub(crate) use choices::{Mode, Navigator, When};
 
 use crate::value::{Given, Value};
 use agent::{PURPOSES, Policy};

@@ -8,12 +8,12 @@ use crate::link;
 use crate::parameters::{Mode, Navigator, Parameters};
 use agent::{Agent, Features};
 use anyhow::Context;
-use controller::{ControlInput, Controller, DiffDrive, Driver, Status};
+use controller::{ControlInput, Controller, DiffDrive, Driver, DriverView};
 use interfaces::{CellState, Grid, Values};
 use mapper::Mapper;
 use nalgebra::Point2;
 use navigation::Navigation;
-use robot::{Autonomous, Belief, Message, Pilot, Settings};
+use robot::{Autonomous, Belief, Message, Pilot, PilotView, Settings};
 
 /// Decides what the robot is asked to do.
 pub(crate) struct LivePilot {
@@ -80,12 +80,8 @@ impl Pilot for LivePilot {
         }
     }
 
-    fn path(&self) -> &[Point2<f64>] {
-        self.explorer.as_ref().map_or(Default::default(), Pilot::path)
-    }
-
-    fn goal(&self) -> Option<Point2<f64>> {
-        self.explorer.as_ref().and_then(Pilot::goal)
+    fn view(&self) -> PilotView<'_> {
+        self.explorer.as_ref().map(Pilot::view).unwrap_or_default()
     }
 
     fn take_messages(&mut self) -> Vec<Message> {
@@ -121,8 +117,9 @@ impl Driver for LiveDriver {
         }
     }
 
-    fn goal(&self) -> Option<Point2<f64>> {
-        self.navigation.as_ref().map_or_else(|| self.controller.goal(), Navigation::goal)
+    fn view(&self) -> DriverView<'_> {
+        let own = self.controller.view();
+        self.navigation.as_ref().map_or(own, |navigation| navigation.view(own.path))
     }
 
     fn drive(&mut self, input: &ControlInput) -> Order {
@@ -143,24 +140,12 @@ impl Driver for LiveDriver {
         }
     }
 
-    fn status(&self) -> Status {
-        self.navigation.as_ref().map_or_else(|| self.controller.status(), Navigation::status)
-    }
-
-    fn trouble(&self) -> &'static str {
-        self.navigation.as_ref().map_or_else(|| self.controller.trouble(), Navigation::trouble)
-    }
-
     fn travel_times(&mut self, input: &ControlInput, times: &mut Vec<f64>) {
         self.controller.travel_times(input, times);
     }
 
     fn forget_map(&mut self) {
         self.controller.forget_map();
-    }
-
-    fn path(&self) -> &[Point2<f64>] {
-        self.controller.path()
     }
 
     fn values(&mut self, map: &Grid<CellState>) -> Values<'_> {

@@ -1,6 +1,6 @@
 //! The services that a node offers: their names, what they are asked, and what they answer.
 
-pub mod wire;
+pub(crate) mod wire;
 
 use wire::{
     Description, Deserialize, Labelled, Listed, Parameter, ParameterValue, Prefixes, SetResult, Transition,

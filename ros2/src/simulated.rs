@@ -1,7 +1,7 @@
 //! A simulated world as a robot of ROS.
 
 use crate::link::{Event, Link};
-use crate::message::{Clock, Message, Odometry, Pose, Time, Topic, covariance, header, transform};
+use crate::message::{Message, Odometry, Pose, Time, Topic, covariance, header, transform};
 use interfaces::{LaserReading, Twist};
 use nalgebra::{Isometry2, Matrix3};
 use ros::{FIRST_STAMP_NS, scan_message};
@@ -134,7 +134,7 @@ impl<L: Link> SimulatedRobot<L> {
             self.command(Twist::STOP);
             self.commanded_s = None;
         }
-        self.link.send(Topic::Clock, Message::Clock(Clock { clock: self.stamp(time_s) }));
+        self.link.send(Topic::Clock, Message::Clock(self.stamp(time_s)));
         let view = self.view(time_s);
         self.fleet.step(&mut ());
         let reading = self.fleet.robots().nth(self.driven).and_then(|robot| robot.reading());

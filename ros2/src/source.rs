@@ -23,7 +23,7 @@ const SILENT: Duration = Duration::from_secs(2);
 const DEFAULT_BASE: &str = "base_footprint";
 const OTHER_BASE: &str = "base_link";
 
-/// The names of the frames of a robot.
+/// The names of the frames of a robot, and who connects them.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct FrameNames {
     pub(crate) map: String,
@@ -31,6 +31,8 @@ pub(crate) struct FrameNames {
     pub(crate) base: String,
     /// The laser in use; empty: the first one.
     pub(crate) laser: String,
+    /// Whether this node publishes the transform from the map to the odometry.
+    pub(crate) are_connected: bool,
 }
 
 /// A reading of the robot, with what it takes to publish transforms.
@@ -88,7 +90,6 @@ pub(crate) struct Source {
     /// The names as given, and those in use.
     given: FrameNames,
     names: FrameNames,
-    is_localized: bool,
     /// Times are since the first pose.
     assembler: Assembler<Arrival>,
     poses: PoseSource,
@@ -108,14 +109,13 @@ pub(crate) struct Source {
 }
 
 impl Source {
-    /// A robot without a message. `is_localized`: this node publishes the transform from the map to the odometry.
-    pub(crate) fn new(names: FrameNames, is_localized: bool) -> Self {
-        Self { given: names.clone(), names, is_localized, ..Self::default() }
+    /// A robot without a message.
+    pub(crate) fn new(names: FrameNames) -> Self {
+        Self { given: names.clone(), names, ..Self::default() }
     }
 
     /// Takes over parameters that have changed. The transforms stay: those that never change are sent once.
-    pub(crate) fn configure(&mut self, names: FrameNames, is_localized: bool) {
-        self.is_localized = is_localized;
+    pub(crate) fn configure(&mut self, names: FrameNames) {
         if names != self.given {
             (self.given, self.names) = (names.clone(), names);
             self.forget_poses();
@@ -333,7 +333,7 @@ impl Source {
         for found in &message.transforms {
             let Header { stamp, frame_id } = &found.header;
             if bare(frame_id) == self.names.map && bare(&found.child_frame_id) == self.names.odom {
-                if self.is_localized {
+                if self.names.are_connected {
                     let (map, odom) = (&self.names.map, &self.names.odom);
                     self.notes.push(format!(
                         "another node publishes the transform from `{map}` to `{odom}` as well; to leave it to the other one, \

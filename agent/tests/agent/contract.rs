@@ -1,9 +1,11 @@
 //! Properties of every agent, in a small environment that changes.
 
-use crate::drawing::{agent, can_be_a_goal, empty, map, names, next, reading, rng, weigh_from};
+use crate::drawing::{
+    agent, can_be_a_goal, current, empty, map, names, next, next_from, reading, rng, weigh_from,
+};
 use agent::{
-    Agent, AgentSettings, Chooser, Features, FreshMap, Policy, Random, Recency, Reward, Situation,
-    StraightLineTravel, Trajectory,
+    Agent, AgentSettings, Chooser, Features, FreshMap, GoalSelector, Policy, Random, Recency, Reward,
+    Situation, Trajectory,
 };
 use interfaces::{Cell, CellReading, CellState, RandomStream, Transition};
 use mapper::Mapper;
@@ -45,9 +47,9 @@ fn live(agent: &mut Agent, mut check: impl FnMut(&Agent, &Mapper, Cell)) -> Vec<
         let seen = look(f64::from(step), cell);
         mapper.update(&seen).unwrap();
         let features = Features::of(&mut mapper);
-        agent.watch(features, mapper.transitions());
+        agent.observe(features, mapper.transitions());
         let target = *goal.get_or_insert_with(|| {
-            let goal = agent.next_goal(&mapper, &seen.pose, &mut StraightLineTravel).cell;
+            let goal = next_from(&seen.pose, agent, &mapper);
             check(agent, &mapper, goal);
             goals.push(goal);
             left = 5;
@@ -78,24 +80,24 @@ fn goals_can_be_goals_shares_are_theirs_and_only_learners_have_values_which_are_
     for choice in names() {
         let is_learner = choice == "curious";
         let mut agent = agent(choice, 3);
-        assert_eq!(agent.current(), None);
-        assert!(agent.shares().all(|share| share == 0.0));
-        let (mut counts, mut learned) = (vec![0.0; agent.strategies().len()], false);
+        assert_eq!(current(&agent), None);
+        let shares =
+            |agent: &Agent| agent.strategies(Features::default()).into_iter().map(|state| state.share);
+        assert!(shares(&agent).all(|share| share == 0.0));
+        let (mut counts, mut learned) = (vec![0.0; shares(&agent).len()], false);
         live(&mut agent, |agent, mapper, goal| {
             assert!(can_be_a_goal(mapper, goal), "{choice}: {goal:?}");
-            counts[agent.current().expect("a goal has a strategy")] += 1.0;
+            counts[current(agent).expect("a goal has a strategy")] += 1.0;
             let goals: f64 = counts.iter().sum();
-            assert!(agent.shares().zip(&counts).all(|(share, count)| share == count / goals));
+            assert!(shares(agent).zip(&counts).all(|(share, count)| share == count / goals));
             assert!((0.0..=49.0).contains(&agent.last_reward()), "at most all cells in view change");
             for p in [0.0, 1.0, f64::MAX, f64::INFINITY, f64::NAN] {
                 for r in [0.0, 50.0, f64::MAX, f64::INFINITY, f64::NAN] {
-                    for strategy in 0..agent.strategies().len() {
-                        let value = agent.value(strategy, Features { p, r });
+                    for value in agent.strategies(Features { p, r }).into_iter().map(|state| state.value) {
                         assert_eq!(value.is_some(), is_learner);
                         assert!(value.is_none_or(f64::is_finite));
                         learned |= value.is_some_and(|value| value > 0.0);
                     }
-                    assert_eq!(agent.value(agent.strategies().len(), Features { p, r }), None);
                 }
             }
         });
@@ -105,9 +107,11 @@ fn goals_can_be_goals_shares_are_theirs_and_only_learners_have_values_which_are_
 
 #[test]
 fn the_strategies_of_each_choice() {
-    let names = |choice| agent(choice, 0).strategies().collect::<Vec<_>>();
-    assert_eq!(names("curious"), ["recency", "poisson"]);
-    assert_eq!(names("coin"), ["recency", "poisson"]);
+    for choice in ["curious", "coin"] {
+        let strategies = agent(choice, 0).strategies(Features::default());
+        assert_eq!([&*strategies[0].name, &*strategies[1].name], ["recency", "poisson"]);
+        assert_eq!(strategies.len(), 2);
+    }
 }
 
 #[test]
@@ -117,7 +121,7 @@ fn the_first_choice_and_the_coin_are_fair() {
         let firsts = (0..1000).filter(|&seed| {
             let mut agent = agent(choice, seed);
             next(&mut agent, &mapper);
-            agent.current() == Some(0)
+            current(&agent) == Some(0)
         });
         // Four standard deviations.
         assert!((436..=564).contains(&firsts.count()), "{choice}");
@@ -126,7 +130,8 @@ fn the_first_choice_and_the_coin_are_fair() {
     for _ in 0..1000 {
         next(&mut agent, &mapper);
     }
-    assert!(agent.shares().all(|share| (0.436..=0.564).contains(&share)));
+    let strategies = agent.strategies(Features::default());
+    assert!(strategies.iter().all(|strategy| (0.436..=0.564).contains(&strategy.share)));
 }
 
 /// What a chooser received: strategy, features, reward.
@@ -168,16 +173,16 @@ fn a_trajectory_is_rewarded_by_its_updates_per_reading() {
         let lessons = Lessons::clone(&pupil.lessons);
         let settings = AgentSettings { reward, ..Default::default() };
         let mut agent = taught(&settings, pupil);
-        agent.watch(at(9.0), &[found; 50]); // Before the first goal: the reward belongs to no strategy.
+        agent.observe(at(9.0), &[found; 50]); // Before the first goal: the reward belongs to no strategy.
         next(&mut agent, &mapper);
-        agent.watch(at(1.0), &[block, found]);
-        agent.watch(at(2.0), &[]);
-        agent.watch(at(3.0), &[free, found]);
-        agent.watch(at(4.0), &[]);
+        agent.observe(at(1.0), &[block, found]);
+        agent.observe(at(2.0), &[]);
+        agent.observe(at(3.0), &[free, found]);
+        agent.observe(at(4.0), &[]);
         next(&mut agent, &mapper);
         assert_eq!(agent.last_reward(), first);
         next(&mut agent, &mapper); // No reading since then: nothing to learn.
-        agent.watch(at(5.0), &[block, free]);
+        agent.observe(at(5.0), &[block, free]);
         next(&mut agent, &mapper);
         assert_eq!(agent.last_reward(), second);
         let expected = [(0, [1.0, 2.0, 3.0, 4.0].map(at).to_vec(), first), (0, vec![at(5.0)], second)];
@@ -193,13 +198,14 @@ fn what_follows_the_end_of_a_goal_belongs_to_no_strategy() {
     let lessons = Lessons::clone(&pupil.lessons);
     let mut agent = taught(&AgentSettings::default(), pupil);
     next(&mut agent, &mapper);
-    agent.watch(Features::default(), &[block]);
+    agent.observe(Features::default(), &[block]);
     for _ in 0..2 {
-        agent.end_goal(&mapper, &Isometry2::identity());
-        agent.watch(Features::default(), &[block; 9]);
+        agent.end_goal(&Isometry2::identity(), &mapper);
+        agent.observe(Features::default(), &[block; 9]);
     }
-    assert_eq!(agent.current(), None);
-    assert_eq!(agent.shares().collect::<Vec<_>>(), [1.0, 0.0]);
+    assert_eq!(current(&agent), None);
+    let [first, second] = &agent.strategies(Features::default())[..] else { panic!("two strategies") };
+    assert_eq!([first.share, second.share], [1.0, 0.0]);
     next(&mut agent, &mapper);
     assert_eq!(*lessons.lock().unwrap(), [(0, vec![Features::default()], 1.0)]);
 }
@@ -253,14 +259,14 @@ impl Chooser for Beyond {
 fn an_index_beyond_the_strategies_is_the_last_strategy() {
     let mut agent = taught(&AgentSettings::default(), Beyond);
     next(&mut agent, &map(&[(0.0, &["..."])]));
-    assert_eq!(agent.current(), Some(1));
+    assert_eq!(current(&agent), Some(1));
 }
 
 #[test]
 fn a_policy_of_one_strategy_has_its_name() {
     for policy in Policy::built_in() {
-        let agent = agent(policy.name(), 0);
-        assert!(agent.strategies().len() > 1 || agent.strategies().all(|name| name == policy.name()));
+        let strategies = agent(policy.name(), 0).strategies(Features::default());
+        assert!(strategies.len() > 1 || strategies[0].name == policy.name());
     }
 }
 

@@ -1,6 +1,6 @@
 //! Maps drawn by hand: `#` blocked, `.` free, a blank not seen; the top line has the highest y.
 
-use agent::{Agent, AgentSettings, Policy, Situation, StraightLineTravel, Strategy};
+use agent::{Agent, AgentSettings, Features, GoalSelector, Policy, Situation, StraightLineTravel, Strategy};
 use interfaces::{Cell, CellReading, CellState, GridFrame, Purpose, RandomStream};
 use mapper::{Mapper, MapperSettings};
 use nalgebra::{Isometry2, Point2};
@@ -54,7 +54,18 @@ pub(crate) fn weigh_from(
 
 /// The next goal of a robot that flies.
 pub(crate) fn next(agent: &mut Agent, mapper: &Mapper) -> Cell {
-    agent.next_goal(mapper, &Isometry2::identity(), &mut StraightLineTravel).cell
+    next_from(&Isometry2::identity(), agent, mapper)
+}
+
+/// The next goal of a robot that flies, at a pose.
+pub(crate) fn next_from(pose: &Isometry2<f64>, agent: &mut Agent, mapper: &Mapper) -> Cell {
+    let goal = agent.next_goal(pose, mapper, &mut StraightLineTravel).unwrap();
+    mapper.frame().cell_at(&goal.position)
+}
+
+/// The index of the strategy that selected the present goal.
+pub(crate) fn current(agent: &Agent) -> Option<usize> {
+    agent.strategies(Features::default()).iter().position(|strategy| strategy.is_current)
 }
 
 /// Whether a cell can be a goal: a free cell of the map, or a cell that shares a side with a free cell.

@@ -1,8 +1,8 @@
 //! Which goals follow from which weights.
 
-use crate::drawing::{agent, can_be_a_goal, empty, map, names, next, reading, rng, weigh};
+use crate::drawing::{agent, can_be_a_goal, empty, map, names, next, next_from, reading, rng, weigh};
 use agent::{
-    Agent, AgentSettings, Always, Features, Poisson, Random, Recency, Situation, StraightLineTravel, Strategy,
+    Agent, AgentSettings, Always, Features, GoalSelector, Poisson, Random, Recency, Situation, Strategy,
 };
 use interfaces::{Cell, CellReading};
 use mapper::Mapper;
@@ -166,7 +166,7 @@ fn without_a_candidate_the_goal_is_where_the_robot_is() {
         for (x, y, cell) in [(1.5, 0.5, Cell::new(1, 0)), (-7.5, 99.5, Cell::new(-8, 99))] {
             for choice in names() {
                 let pose = interfaces::pose(x, y, 0.0);
-                assert_eq!(agent(choice, 5).next_goal(&mapper, &pose, &mut StraightLineTravel).cell, cell);
+                assert_eq!(next_from(&pose, &mut agent(choice, 5), &mapper), cell);
             }
         }
     }
@@ -220,7 +220,7 @@ proptest! {
 
         let mut agent = agent_of(Given(weights.clone()), patch_cells, seed);
         for _ in 0..10 {
-            let goal = agent.next_goal(&mapper, &pose, &mut StraightLineTravel).cell;
+            let goal = next_from(&pose, &mut agent, &mapper);
             if goals.is_empty() {
                 prop_assert_eq!(goal, Cell::new(-5, 0));
             } else {
@@ -240,12 +240,11 @@ fn readings_at_one_instant_leave_only_numbers() {
         let mut agent = agent(choice, 8);
         for _ in 0..20 {
             let features = Features::of(&mut mapper);
-            agent.watch(features, mapper.transitions());
+            agent.observe(features, mapper.transitions());
             assert!(can_be_a_goal(&mapper, next(&mut agent, &mapper)));
             assert!(agent.last_reward().is_finite());
-            for strategy in 0..agent.strategies().len() {
-                assert!(agent.value(strategy, features).is_none_or(f64::is_finite));
-            }
+            let strategies = agent.strategies(features);
+            assert!(strategies.iter().all(|strategy| strategy.value.is_none_or(f64::is_finite)));
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Looks into space that was never seen.
 
-use crate::drawing::{map, reading, rng};
-use agent::{Agent, AgentSettings, Goal, Policy, Stay, Travel};
+use crate::drawing::{current, map, reading, rng};
+use agent::{Agent, AgentSettings, Goal, GoalSelector, Policy, Stay, Travel};
 use interfaces::{Cell, CellState};
 use mapper::Mapper;
 use nalgebra::Isometry2;
@@ -35,8 +35,8 @@ fn agent(looks_at_unseen: bool) -> Agent {
 
 /// The goal, and whether it is a look.
 fn next(agent: &mut Agent, mapper: &Mapper) -> (Goal, bool) {
-    let goal = agent.next_goal(mapper, &Isometry2::identity(), &mut UpTo { gap: 4 });
-    (goal, agent.current().is_none())
+    let goal = agent.next_goal(&Isometry2::identity(), mapper, &mut UpTo { gap: 4 }).unwrap();
+    (goal, current(agent).is_none())
 }
 
 #[test]
@@ -45,7 +45,8 @@ fn unseen_space_is_looked_at_first_from_where_it_can_be_seen() {
     let (goal, is_look) = next(&mut agent(true), &mapper);
     assert!(is_look && matches!(goal.stay, Stay::Watch(_)));
     // The frontier is in the rows of the gap and above it, so that the view is from the row of the gap or below.
-    assert!(mapper.states().get(goal.cell) == Some(&CellState::Free) && goal.cell.x < 4, "{goal:?}");
+    let cell = mapper.frame().cell_at(&goal.position);
+    assert!(mapper.states().get(cell) == Some(&CellState::Free) && cell.x < 4, "{goal:?}");
     assert!(!next(&mut agent(false), &mapper).1, "the paper's robot follows its strategy");
 }
 
@@ -66,7 +67,7 @@ fn a_look_that_shows_nothing_is_repeated_after_a_time_that_doubles() {
 #[test]
 fn a_look_that_shows_more_is_followed_by_the_next_at_once_and_ends_early() {
     let (mut mapper, mut agent) = (map(&[(0.0, &GAP)]), agent(true));
-    assert!(next(&mut agent, &mapper).1 && !agent.is_goal_obsolete(&mapper));
+    assert!(next(&mut agent, &mapper).1 && !agent.is_obsolete(&mapper));
     let more = ["########", "#...#.  ", "#...#.. ", "#.......", "########"];
     mapper.update(&reading(1.0, &more)).unwrap();
     assert!(next(&mut agent, &mapper).1);
@@ -74,9 +75,9 @@ fn a_look_that_shows_more_is_followed_by_the_next_at_once_and_ends_early() {
     for time in 2..4 {
         mapper.update(&reading(f64::from(time), &all)).unwrap();
     }
-    assert!(agent.is_goal_obsolete(&mapper));
+    assert!(agent.is_obsolete(&mapper));
     assert!(!next(&mut agent, &mapper).1, "nothing is unseen");
-    assert!(!agent.is_goal_obsolete(&mapper), "the goal of a strategy stays");
+    assert!(!agent.is_obsolete(&mapper), "the goal of a strategy stays");
 }
 
 #[test]

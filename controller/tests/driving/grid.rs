@@ -67,7 +67,7 @@ fn it_takes_a_shortest_way_one_cell_per_step() {
     let mut steps = 0;
     loop {
         let moved = world.tick(&mut controller);
-        if controller.status() == Status::Finished(Outcome::Reached) {
+        if controller.view().status == Status::Finished(Outcome::Reached) {
             break;
         }
         assert_ne!(moved, Step::Stay);
@@ -84,7 +84,7 @@ fn it_goes_another_way_when_a_block_stands_in_it() {
     world.tick(&mut controller);
     world.change(Cell::new(2, 1), CellState::Blocked);
     let mut steps = 1;
-    while !matches!(controller.status(), Status::Finished(_)) {
+    while !matches!(controller.view().status, Status::Finished(_)) {
         world.tick(&mut controller);
         steps += 1;
         assert!(steps < 12);
@@ -106,7 +106,7 @@ fn it_follows_a_block_one_action_per_step_up_to_the_bound() {
         block += 1;
         world.change(Cell::new(block, 2), CellState::Blocked);
         world.tick(&mut controller);
-        match controller.status() {
+        match controller.view().status {
             Status::Exploring => explored += 1,
             Status::Finished(outcome) => break assert_eq!(outcome, Outcome::Reached),
             _ => {}
@@ -125,9 +125,9 @@ fn it_watches_at_a_goal_for_the_given_time() {
     controller.set_goal(Point2::new(2.5, 0.5), Some(3.0));
     let steps: Vec<_> = (0..5).map(|_| world.tick(&mut controller)).collect();
     assert_eq!(steps, [Step::Right, Step::Right, Step::Stay, Step::Stay, Step::Stay]);
-    assert_eq!(controller.status(), Status::Exploring);
+    assert_eq!(controller.view().status, Status::Exploring);
     world.tick(&mut controller);
-    assert_eq!(controller.status(), Status::Finished(Outcome::Reached));
+    assert_eq!(controller.view().status, Status::Finished(Outcome::Reached));
 }
 
 #[test]

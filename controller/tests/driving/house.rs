@@ -266,10 +266,10 @@ impl House {
         let end_s = self.time_s + limit_s;
         loop {
             self.tick(controller);
-            if let Status::Finished(outcome) = controller.status() {
+            if let Status::Finished(outcome) = controller.view().status {
                 return outcome;
             }
-            assert!(self.time_s < end_s, "still {:?} after {limit_s} s", controller.status());
+            assert!(self.time_s < end_s, "still {:?} after {limit_s} s", controller.view().status);
         }
     }
 }

@@ -179,14 +179,14 @@ fn local_exploration_ends_soon_where_nothing_changes() {
     let (mut house, mut controller) = (House::new(&DOOR), controller());
     controller.set_goal(House::at(8, 7), None);
     let mut explored_s = 0.0;
-    while controller.status() != Status::Finished(Outcome::Reached) {
+    while controller.view().status != Status::Finished(Outcome::Reached) {
         house.tick(&mut controller);
-        explored_s += if controller.status() == Status::Exploring { 0.1 } else { 0.0 };
+        explored_s += if controller.view().status == Status::Exploring { 0.1 } else { 0.0 };
         assert!(house.time_s < 60.0);
     }
     // One random step.
     assert!(explored_s > 0.5 && explored_s < 7.0, "{explored_s} s");
-    assert!(controller.path().is_empty());
+    assert!(controller.view().path.is_empty());
 }
 
 #[test]
@@ -196,9 +196,9 @@ fn local_exploration_stays_with_what_moves_and_does_not_touch_it() {
         vec![Mover { yields_m: 0.3, ..Mover::new([House::at(23, 2), House::at(23, 11)], 0.2, 0.3) }];
     let (mut nearest_m, mut explored_s) = (f64::INFINITY, 0.0);
     controller.set_goal(House::at(18, 7), None);
-    while !matches!(controller.status(), Status::Finished(_)) {
+    while !matches!(controller.view().status, Status::Finished(_)) {
         house.tick(&mut controller);
-        if controller.status() == Status::Exploring {
+        if controller.view().status == Status::Exploring {
             explored_s += 0.1;
             let mover = House::at(23, 7);
             nearest_m = nearest_m.min((house.position().x - mover.x).abs());
@@ -221,7 +221,7 @@ fn it_lives_with_another_robot() {
         ];
         let mut rng = RandomStream::new(seed, Purpose::Controller);
         while house.time_s < 600.0 {
-            match controller.status() {
+            match controller.view().status {
                 Status::Travelling | Status::Exploring => {}
                 status => {
                     goals += 1;
@@ -259,16 +259,19 @@ fn a_robot_that_looks_around_turns_once_then_looks_from_elsewhere() {
 #[test]
 fn a_goal_can_be_taken_back() {
     let (mut house, mut controller) = (House::new(&DOOR), controller());
-    assert_eq!((controller.status(), controller.goal()), (Status::Idle, None));
+    assert_eq!((controller.view().status, controller.view().goal), (Status::Idle, None));
     controller.set_goal(House::at(22, 7), None);
     (0..30).for_each(|_| house.tick(&mut controller));
-    assert_eq!((controller.status(), controller.goal()), (Status::Travelling, Some(House::at(22, 7))));
-    assert!(!controller.path().is_empty());
+    assert_eq!(
+        (controller.view().status, controller.view().goal),
+        (Status::Travelling, Some(House::at(22, 7)))
+    );
+    assert!(!controller.view().path.is_empty());
     controller.cancel();
     (0..20).for_each(|_| house.tick(&mut controller));
     let rested_at = house.position();
     (0..5).for_each(|_| house.tick(&mut controller));
-    assert_eq!((controller.status(), house.position()), (Status::Idle, rested_at));
+    assert_eq!((controller.view().status, house.position()), (Status::Idle, rested_at));
 }
 
 #[test]
@@ -287,10 +290,10 @@ fn a_map_that_was_replaced_is_read_again() {
     let input = ControlInput { map: &map, transitions: &[], ..house.input() };
     let end = |controller: &mut Controller<DiffDrive>| {
         controller.drive(&input);
-        controller.path().last().copied().unwrap()
+        controller.view().path.last().copied().unwrap()
     };
     assert!((end(&mut controller) - goal).norm() < 0.1);
     controller.forget_map();
     assert!(end(&mut controller).x < House::at(13, 0).x);
-    assert_eq!((controller.status(), controller.goal()), (Status::Travelling, Some(goal)));
+    assert_eq!((controller.view().status, controller.view().goal), (Status::Travelling, Some(goal)));
 }

@@ -27,7 +27,7 @@ impl Driver {
             return self.controller.pause(&input, true);
         }
         let command = self.controller.drive(&input);
-        if matches!(self.controller.status(), Status::Idle | Status::Finished(_)) {
+        if matches!(self.controller.view().status, Status::Idle | Status::Finished(_)) {
             let cells = map.states().cells().len() as f64;
             let mut draws = (0..1000).map(|_| self.random.uniform(0.0..cells) as usize);
             if let Some(index) = draws.find(|&index| map.is_candidate(index)) {

@@ -57,8 +57,8 @@ pub fn view<'a>(
         robots: world.fleet().robots().map(robot).collect(),
         belief: Some(&turn.belief).filter(|_| !world.poses_are_exact()),
         obstacles,
-        path: pilot.path(),
-        goal: pilot.goal(),
+        path: pilot.view().path,
+        goal: pilot.view().goal,
         strategies: pilot.strategies(turn.features),
         measured,
     }

@@ -148,11 +148,7 @@ fn a_marker_from_elsewhere_removes_nothing() {
     drop(opened);
     run(path, &["map.pgm"], &[]).unwrap();
     assert_eq!(names(path), [MARKER, "a.toml", "map.pgm", "summary.json"]);
-    for wrong in [
-        r#"{"files":["map.pgm"]}"#,
-        "",
-        r#"{"schema":1,"program":"","version":"","files":{"../a":{"bytes":0,"xxh3":""}}}"#,
-    ] {
+    for wrong in [r#"{"files":["map.pgm"]}"#, "", r#"{"schema":1,"files":{"../a":{"bytes":0,"xxh3":""}}}"#] {
         fs::write(path.join(MARKER), wrong).unwrap();
         assert!(RunFolder::open(path).unwrap_err().is_refusal(), "{wrong}");
     }
@@ -166,9 +162,7 @@ fn a_journal_from_elsewhere_moves_nothing() {
     fs::create_dir_all(path.join(UNFINISHED)).unwrap();
     fs::write(path.join(UNFINISHED).join(LOCK), LOCK_CONTENT).unwrap();
     fs::write(path.join("thesis.tex"), "of the user").unwrap();
-    let marker = |name: &str| {
-        format!(r#"{{"schema":1,"program":"","version":"","files":{{{name:?}:{{"bytes":0,"xxh3":""}}}}}}"#)
-    };
+    let marker = |name: &str| format!(r#"{{"schema":1,"files":{{{name:?}:{{"bytes":0,"xxh3":""}}}}}}"#);
     let journal = path.join(UNFINISHED).join(".exchange.json");
     let outside = format!(r#"{{"earlier":{},"new":{}}}"#, marker("a"), marker("../thesis.tex"));
     for text in [&outside[..], "", "{}"] {

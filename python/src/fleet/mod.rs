@@ -1,15 +1,15 @@
 mod arrays;
 
 use crate::convert::{
-    Numbers, Table, index, no_robot, pose, pose_array, pose_values, rows_array, snapshot_error, value_error,
-    whole, writable,
+    Numbers, Table, index, no_robot, pose, pose_values, rows_array, snapshot_error, value_error, whole,
+    writable,
 };
 use crate::reading::Reading;
 use crate::snapshots::Kind;
 use crate::spec::spec_of;
 use arrays::look_all;
 use interfaces::{LaserReading, Purpose, RandomStream};
-use numpy::{PyArray1, PyArray2, PyArrayDyn};
+use numpy::{PyArray2, PyArrayDyn};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
@@ -208,12 +208,6 @@ impl Fleet {
         self.fleet.teleport(robot, &self::pose(&pose)?).map_err(value_error)
     }
 
-    /// Whether a robot fits at a pose now.
-    fn fits(&self, #[pyo3(from_py_with = index)] robot: usize, at: Numbers) -> PyResult<bool> {
-        self.check_robot(robot)?;
-        Ok(self.fleet.check_fit(robot, &pose(&at)?).is_ok())
-    }
-
     /// `count` random poses that a robot can reach from its start, and at which it fits now, shape (count, 3). The
     /// same seed gives the same poses.
     #[pyo3(signature = (robot, seed, count = 1))]
@@ -238,17 +232,6 @@ impl Fleet {
         rows_array(py, drawn.iter().map(pose_values))
     }
 
-    /// The pose of a robot by odometry at its latest scan; None before the first.
-    fn odometry<'py>(
-        &self,
-        py: Python<'py>,
-        #[pyo3(from_py_with = index)] robot: usize,
-    ) -> PyResult<Option<Bound<'py, PyArray1<f64>>>> {
-        self.check_robot(robot)?;
-        let reading = self.fleet.robot(robot).and_then(|robot| robot.reading());
-        Ok(reading.map(|reading| pose_array(py, &reading.pose)))
-    }
-
     /// The state as bytes.
     fn snapshot<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
         let fleet = &self.fleet;
@@ -270,12 +253,7 @@ impl Fleet {
     }
 
     fn __repr__(&self) -> String {
-        let spec = self.fleet.spec();
-        format!(
-            "<curious.Fleet {:?}: {} robots at {:.3} s>",
-            spec.name,
-            spec.robots.len(),
-            self.fleet.time_s()
-        )
+        let (spec, time_s) = (self.fleet.spec(), self.fleet.time_s());
+        format!("<curious.Fleet {:?}: {} robots at {time_s:.3} s>", spec.name, spec.robots.len())
     }
 }

@@ -1,11 +1,14 @@
 //! What this node hears of other participants: when one is discovered, and when its readers and writers match with those of this
 //! node. The first call of a service depends on it.
 
-use super::discovery::{self, Named};
 use crate::link::Event;
+use crate::message::{Quality, Topic};
 use futures::executor::block_on_stream;
-use ros2_client::dds::rustdds::{DomainParticipantStatusEvent, GUID, RTPSEntity, StatusEvented};
-use ros2_client::{Context, Gid, Node};
+use ros2_client::dds::rustdds::policy::Reliability;
+use ros2_client::dds::rustdds::{
+    DomainParticipantStatusEvent, EndpointDescription, GUID, RTPSEntity, StatusEvented,
+};
+use ros2_client::{Context, Node};
 use std::collections::BTreeSet;
 use std::net::{SocketAddr, UdpSocket};
 use std::sync::mpsc::SyncSender;
@@ -52,7 +55,7 @@ impl Others {
                 let Ok(mut known) = to.lock() else { return };
                 match event {
                     DomainParticipantStatusEvent::WriterDetected { writer } => {
-                        if let Some(problem) = discovery::problem(&subscribed, &writer) {
+                        if let Some(problem) = problem(&subscribed, &writer) {
                             // If the node does not keep up, it has other problems.
                             problems.try_send(Event::Problem(problem)).ok();
                         }
@@ -83,18 +86,46 @@ impl Others {
         self.known.lock().map_or(Duration::MAX, |known| known.newest.elapsed())
     }
 
-    /// Whether a participant has a matched reader of a topic.
-    pub(super) fn has(&self, topic: &str, of: &Gid) -> bool {
+    /// Whether the participant of a client has a matched reader of a topic.
+    pub(super) fn has(&self, topic: &str, client: &[u8; 16]) -> bool {
         let Ok(known) = self.known.lock() else { return true };
-        let participant = &of.to_bytes16()[..PARTICIPANT];
         let readers = self.context.domain_participant().discovered_readers();
         readers.iter().any(|reader| {
             let guid = reader.reader_proxy.remote_reader_guid;
             known.matched.contains(&guid)
-                && guid.to_bytes()[..PARTICIPANT] == *participant
+                && guid.to_bytes()[..PARTICIPANT] == client[..PARTICIPANT]
                 && reader.subscription_topic_data.topic_name() == topic
         })
     }
+}
+
+/// A topic with its full name.
+type Named = (Topic, String, Quality);
+
+/// Why a publisher cannot be heard by a node with these subscriptions, in a sentence; `None` if it can, or has another topic.
+fn problem(subscribed: &[Named], found: &EndpointDescription) -> Option<String> {
+    let name = found.topic_name.strip_prefix("rt")?;
+    let mine = || subscribed.iter().filter(|(_, mine, _)| mine == name);
+    let (expected, ..) = mine().next()?;
+    let Some((.., quality)) = mine().find(|(topic, ..)| dds_type(*topic) == found.type_name) else {
+        let (found, expected) = (ros_type(&found.type_name), ros_type(&dds_type(*expected)));
+        return Some(format!("a publisher of `{name}` has the type {found}, not {expected}: it is ignored"));
+    };
+    let is_reliable = matches!(found.qos.reliability(), Some(Reliability::Reliable { .. }));
+    (quality.is_reliable && !is_reliable).then(|| {
+        format!("a publisher of `{name}` is not reliable, and this node asks for that: it is not heard")
+    })
+}
+
+/// The type of a topic on the wire.
+pub(super) fn dds_type(topic: Topic) -> String {
+    let (package, kind) = topic.type_name();
+    format!("{package}::msg::dds_::{kind}_")
+}
+
+/// A type as ROS writes it: `sensor_msgs/msg/LaserScan` for `sensor_msgs::msg::dds_::LaserScan_`.
+pub(super) fn ros_type(dds: &str) -> String {
+    dds.replace("::dds_::", "/").replace("::", "/").trim_end_matches('_').to_owned()
 }
 
 /// Asks a client of Fast DDS for the request that it has sent before this node knew it, and which this node has therefore dropped.

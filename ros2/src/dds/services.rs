@@ -10,19 +10,17 @@ use futures::executor::block_on_stream;
 use futures::stream::{BoxStream, StreamExt, select_all, unfold};
 use ros2_client::dds::rustdds::{RepresentationIdentifier, serialization::to_writer_with_rep_id};
 use ros2_client::qos::WhenFull;
-use ros2_client::{Message, Name, Node, ReadError, RmwRequestId, Server, ServiceMapping, ServiceTypeName};
+use ros2_client::{Message, Name, Node, RmwRequestId, Server, ServiceMapping, ServiceTypeName};
 use serde::Serialize;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender, SyncSender};
-use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 /// An answer waits at most this long until the client can hear it.
 const PATIENCE: Duration = Duration::from_secs(2);
 /// The time between two looks at who can hear an answer, while one waits.
 const POLL: Duration = Duration::from_millis(2);
-/// Requests that wait for an answer; more are forgotten.
-const MAX_REQUESTS: usize = 100;
 
 impl Message for wire::Nothing {}
 impl Message for wire::Deserialize {}
@@ -31,35 +29,13 @@ impl Message for wire::Prefixes {}
 impl Message for wire::Parameter {}
 impl Message for Reply {}
 
-/// A request of a service, or why it is none.
-type Received = (Service, Result<(RmwRequestId, Call), ReadError>);
-
 /// Sends an answer of one type.
-type Send = Box<dyn Fn(RmwRequestId, Reply) + std::marker::Send>;
-
-/// The requests that are not answered yet.
-#[derive(Default)]
-struct Asked {
-    next: u64,
-    by_number: BTreeMap<u64, (Service, RmwRequestId)>,
-}
-
-impl Asked {
-    fn number(&mut self, service: Service, id: RmwRequestId) -> Request {
-        while self.by_number.len() >= MAX_REQUESTS {
-            self.by_number.pop_first();
-        }
-        self.next += 1;
-        self.by_number.insert(self.next, (service, id));
-        Request(self.next)
-    }
-}
+type Send = Box<dyn Fn(Request, Reply) + std::marker::Send>;
 
 /// The services of a node.
 pub(super) struct Services {
-    asked: Arc<Mutex<Asked>>,
-    answers: Sender<(Service, RmwRequestId, Reply)>,
-    to: SyncSender<Event>,
+    answers: Sender<(Request, Reply)>,
+    problems: SyncSender<Event>,
 }
 
 impl Services {
@@ -77,13 +53,11 @@ impl Services {
             streams.push(stream);
             senders.insert(*service, (format!("rr{name}Reply"), send));
         }
-        let asked = Arc::new(Mutex::new(Asked::default()));
         let (answers, coming) = mpsc::channel();
-        let (numbers, problems) = (asked.clone(), to.clone());
-        let to = to.clone();
+        let (requests, problems) = (to.clone(), to.clone());
         std::thread::Builder::new().name("requests".to_owned()).spawn(move || {
-            for received in block_on_stream(select_all(streams)) {
-                if to.send(event(received, &numbers)).is_err() {
+            for event in block_on_stream(select_all(streams)) {
+                if requests.send(event).is_err() {
                     return; // The node has ended.
                 }
             }
@@ -91,63 +65,48 @@ impl Services {
         std::thread::Builder::new().name("answers".to_owned()).spawn(move || {
             answer_all(&coming, &senders, &others);
         })?;
-        Ok(Self { asked, answers, to: problems })
+        Ok(Self { answers, problems })
     }
 
     /// Answers a request as soon as the client can hear it.
-    pub(super) fn answer(&self, Request(number): Request, reply: Reply) {
-        let asked = self.asked.lock().ok().and_then(|mut asked| asked.by_number.remove(&number));
-        if let Some((service, id)) = asked {
-            let (reply, is_cut) = fitting(reply);
-            if is_cut {
-                let name = service.default_name();
-                let text = format!(
-                    "an answer of `{name}` is too long for one datagram: ask for fewer parameters at once"
-                );
-                self.to.try_send(Event::Problem(text)).ok();
-            }
-            // The thread ends with the program.
-            self.answers.send((service, id, reply)).ok();
+    pub(super) fn answer(&self, request: Request, reply: Reply) {
+        let (reply, is_cut) = fitting(reply);
+        if is_cut {
+            let name = request.service.default_name();
+            let text = format!(
+                "an answer of `{name}` is too long for one datagram: ask for fewer parameters at once"
+            );
+            self.problems.try_send(Event::Problem(text)).ok();
         }
-    }
-}
-
-fn event((service, content): Received, asked: &Mutex<Asked>) -> Event {
-    match content {
-        Ok((id, call)) => match asked.lock() {
-            Ok(mut asked) => Event::Call(asked.number(service, id), service, call),
-            Err(_) => Event::Problem("a request was lost".to_owned()),
-        },
-        Err(why) => {
-            Event::Problem(format!("a request of the service `{}` is damaged: {why}", service.default_name()))
-        }
+        // The thread ends with the program.
+        self.answers.send((request, reply)).ok();
     }
 }
 
 /// Sends answers. The reader of a client that has just come is often discovered after its request: an answer that is sent before is
 /// not for this reader, since answers are volatile, and the client waits until it gives up.
 fn answer_all(
-    coming: &Receiver<(Service, RmwRequestId, Reply)>,
+    coming: &Receiver<(Request, Reply)>,
     senders: &BTreeMap<Service, (String, Send)>,
     others: &Others,
 ) {
     // Answers that their clients cannot hear yet, and until when they wait.
-    let mut waiting: Vec<(Service, RmwRequestId, Reply, Instant)> = Vec::new();
+    let mut waiting: Vec<(Request, Reply, Instant)> = Vec::new();
     loop {
         let came = match waiting.is_empty() {
             true => coming.recv().map_err(RecvTimeoutError::from),
             false => coming.recv_timeout(POLL),
         };
         match came {
-            Ok((service, id, reply)) => waiting.push((service, id, reply, Instant::now() + PATIENCE)),
+            Ok((request, reply)) => waiting.push((request, reply, Instant::now() + PATIENCE)),
             Err(RecvTimeoutError::Timeout) => {}
             Err(RecvTimeoutError::Disconnected) => return,
         }
-        waiting.retain(|(service, id, reply, until)| {
-            let Some((topic, send)) = senders.get(service) else { return false };
-            let is_due = others.has(topic, &id.writer_gid) || Instant::now() >= *until;
+        waiting.retain(|(request, reply, until)| {
+            let Some((topic, send)) = senders.get(&request.service) else { return false };
+            let is_due = others.has(topic, &request.client) || Instant::now() >= *until;
             if is_due {
-                send(*id, reply.clone());
+                send(*request, reply.clone());
             }
             !is_due
         });
@@ -160,7 +119,7 @@ fn server(
     service: Service,
     name: &str,
     mapping: ServiceMapping,
-) -> anyhow::Result<(BoxStream<'static, Received>, Send)> {
+) -> anyhow::Result<(BoxStream<'static, Event>, Send)> {
     let at = (service, name, mapping);
     match service {
         Service::SaveState
@@ -183,7 +142,7 @@ fn serve<Q: Message + Clone + std::marker::Send + Sync + 'static>(
     node: &mut Node,
     (service, name, mapping): (Service, &str, ServiceMapping),
     call: fn(Q) -> Call,
-) -> anyhow::Result<(BoxStream<'static, Received>, Send)> {
+) -> anyhow::Result<(BoxStream<'static, Event>, Send)> {
     let quality = profile(&Quality::DEFAULT, WhenFull::Wait(WAIT));
     let (package, kind) = service.type_name();
     let (kind, name) = (ServiceTypeName::new(package, kind), Name::parse(name)?);
@@ -191,11 +150,20 @@ fn serve<Q: Message + Clone + std::marker::Send + Sync + 'static>(
     let server = Arc::new(server);
     let sender = server.clone();
     let stream = unfold(server, move |server| async move {
-        let taken = server.async_receive_request().await;
-        let content = taken.map(|(id, request)| (id, call(request)));
-        Some(((service, content), server))
+        let event = match server.async_receive_request().await {
+            Ok((id, request)) => {
+                let (client, number) = (id.writer_gid.to_bytes16(), id.sequence_number);
+                Event::Call(Request { service, client, number }, call(request))
+            }
+            Err(why) => {
+                let name = service.default_name();
+                Event::Problem(format!("a request of the service `{name}` is damaged: {why}"))
+            }
+        };
+        Some((event, server))
     });
-    let send = move |id, reply| {
+    let send = move |Request { client, number, .. }: Request, reply| {
+        let id = RmwRequestId { writer_gid: client.into(), sequence_number: number };
         // The one who asked may be gone.
         sender.send_response(id, reply).ok();
     };

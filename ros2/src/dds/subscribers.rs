@@ -1,9 +1,8 @@
 //! What the node receives: a thread that waits for all topics at once.
 
-use super::discovery::{Named, dds_type, ros_type};
-use super::others::Endpoints;
+use super::others::{Endpoints, dds_type, ros_type};
 use super::profile;
-use crate::link::Event;
+use crate::link::{Event, Wiring};
 use crate::message::{Message, Quality, Topic};
 use anyhow::bail;
 use futures::executor::block_on_stream;
@@ -13,21 +12,20 @@ use ros2_client::{Context, Gid, MessageInfo, MessageTypeName, Name, Node, ReadEr
 use serde::de::DeserializeOwned;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::mpsc::SyncSender;
-use std::time::{Duration, Instant};
 
 /// A message, or why it is none, on a topic.
 type Received = (Topic, Result<(Message, MessageInfo), ReadError>);
 
-/// Subscribes topics, and sends what comes to `to`. `own` are the publishers of this node.
+/// Subscribes the topics of a node, and sends what comes to `to`. `own` are the publishers of this node.
 pub(super) fn start(
     endpoints: &mut Endpoints,
     context: &Context,
-    topics: &[Named],
+    wiring: &Wiring,
     own: BTreeSet<Gid>,
-    to: &SyncSender<Event>,
+    to: SyncSender<Event>,
 ) -> anyhow::Result<()> {
     let mut streams = Vec::new();
-    for (topic, name, quality) in topics {
+    for (topic, name, quality) in &wiring.subscribed {
         let (node, at) = (endpoints.node(), (*topic, name.as_str(), quality));
         streams.push(match topic {
             Topic::Scan => open(node, at, Message::Scan),
@@ -41,7 +39,6 @@ pub(super) fn start(
         }?);
     }
     let mut filter = Filter { context: context.clone(), own, known: BTreeMap::new() };
-    let to = to.clone();
     std::thread::Builder::new().name("subscribers".to_owned()).spawn(move || {
         for received in block_on_stream(select_all(streams)) {
             if let Some(event) = filter.event(received)
@@ -126,53 +123,5 @@ impl Filter {
         let found = found.publication_topic_data.type_name;
         self.known.insert(publisher, found.clone());
         Some(found)
-    }
-}
-
-/// The time between two looks at what is published.
-const EVERY: Duration = Duration::from_millis(200);
-
-/// The topics that are not subscribed yet: those that others publish with one of two types, as velocities. Each is subscribed when
-/// somebody publishes with its type, so that the topic has one type.
-pub(super) struct Typed {
-    context: Context,
-    waiting: Vec<Named>,
-    own: BTreeSet<Gid>,
-    to: SyncSender<Event>,
-    next: Instant,
-}
-
-impl Typed {
-    /// Takes out of `topics` those that have a name in common. What comes is sent to `to`; `own` are the publishers of this node.
-    pub(super) fn new(
-        topics: Vec<Named>,
-        context: Context,
-        own: BTreeSet<Gid>,
-        to: SyncSender<Event>,
-    ) -> (Self, Vec<Named>) {
-        let count = |name: &String| topics.iter().filter(|(_, other, _)| other == name).count();
-        let (waiting, topics) = topics.iter().cloned().partition(|(_, name, _)| count(name) > 1);
-        (Self { context, waiting, own, to, next: Instant::now() }, topics)
-    }
-
-    /// Subscribes topics that somebody publishes with their type. An error is one sentence.
-    pub(super) fn open(&mut self, endpoints: &mut Endpoints) -> Option<String> {
-        if self.waiting.is_empty() || Instant::now() < self.next {
-            return None;
-        }
-        self.next = Instant::now() + EVERY;
-        let writers = self.context.domain_participant().discovered_writers();
-        let is_published = |(topic, name, _): &mut Named| {
-            let is_this = |data: &ros2_client::dds::rustdds::discovery::PublicationBuiltinTopicData| {
-                data.topic_name.strip_prefix("rt") == Some(name) && data.type_name == dds_type(*topic)
-            };
-            writers.iter().any(|writer| is_this(&writer.publication_topic_data))
-        };
-        let published: Vec<Named> = self.waiting.extract_if(.., is_published).collect();
-        if published.is_empty() {
-            return None;
-        }
-        let opened = start(endpoints, &self.context, &published, self.own.clone(), &self.to);
-        opened.err().map(|why| format!("a topic cannot be subscribed: {why:#}"))
     }
 }

@@ -6,9 +6,11 @@ use nalgebra::Isometry2;
 /// What is published after a reading, at a time in seconds, with this interval.
 fn publisher(map_update_interval_s: f64) -> impl FnMut(&Mapper, u64) -> Vec<(Topic, Message)> {
     let (mut maps, start) = (PublishedMaps::default(), Instant::now());
-    let parameters = Parameters { map_update_interval_s, ..Parameters::default() };
+    let parameters =
+        Parameters { map_update_interval_s, mask_update_interval_s: 0.0, ..Parameters::default() };
     move |mapper, after_s| {
-        maps.after(&parameters, mapper, &Header::default(), start + Duration::from_secs(after_s))
+        let now = start + Duration::from_secs(after_s);
+        maps.after(&parameters, mapper, &Header::default(), now, Topic::default_name)
     }
 }
 
@@ -95,10 +97,10 @@ fn large_maps_are_published_less_often() {
 #[test]
 fn masks_are_published_rarely_and_their_meaning_once() {
     let (mut mapper, start) = (mapper(), Instant::now());
-    let (mut masks, parameters) = (PublishedMasks::default(), Parameters::default());
+    let (mut maps, parameters) = (PublishedMaps::default(), Parameters::default());
     let mut due = |mapper: &Mapper, after_s: u64| {
         let now = start + Duration::from_secs(after_s);
-        masks.due(&parameters, mapper, &Header::default(), now, Topic::default_name)
+        maps.masks(&parameters, mapper, &Header::default(), now, Topic::default_name)
     };
     assert_eq!(due(&mapper, 0), []);
     // A box of 0.5 m comes to stay where it was free.

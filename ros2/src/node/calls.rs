@@ -11,14 +11,15 @@ use crate::service::wire::{Description, Listed, Parameter, ParameterValue, Prefi
 use crate::service::{Call, Reply, Service};
 use crate::value::Value;
 use anyhow::Context;
+use std::collections::BTreeSet;
 use std::time::Instant;
 
 impl<L: Link> CuriousNode<L> {
     /// Answers a call, at once or later.
-    pub(super) fn call(&mut self, request: Request, service: Service, call: Call) {
+    pub(super) fn call(&mut self, request: Request, call: Call) {
         let list = self.parameters.list();
         let find = |name: &String| list.iter().find(|(known, _)| known == name);
-        let reply = match (service, call) {
+        let reply = match (request.service, call) {
             (Service::SaveState, _) => return self.save_for(Asker::Save(request)),
             (Service::SerializeMap, Call::Name(name)) => return self.serialize(&name, request),
             (Service::SaveMap, Call::Name(name)) => {
@@ -39,7 +40,7 @@ impl<L: Link> CuriousNode<L> {
                 Reply::Values(names.iter().map(value).collect())
             }
             (Service::GetParameterTypes, Call::Names(names)) => {
-                let kind = |name| find(name).map_or(0, |(_, value)| ParameterValue::from(value).kind());
+                let kind = |name| find(name).map_or(0, |(_, value)| ParameterValue::from(value).kind);
                 Reply::Types(names.iter().map(kind).collect())
             }
             (Service::DescribeParameters, Call::Names(names)) => {
@@ -99,7 +100,7 @@ fn description(name: &str, value: &Value) -> Description {
     };
     Description {
         name: name.to_owned(),
-        kind: ParameterValue::from(value).kind(),
+        kind: ParameterValue::from(value).kind,
         description: Parameters::about(name).to_owned(),
         additional_constraints: when.unwrap_or_default().to_owned(),
         read_only: when.is_none(),
@@ -110,24 +111,13 @@ fn description(name: &str, value: &Value) -> Description {
 /// The names as `rclcpp` lists them: below the prefixes, down to a number of levels.
 fn listed(list: &[(String, Value)], Prefixes { prefixes, depth }: &Prefixes) -> Listed {
     let is_within = |rest: &str| *depth == 0 || (rest.matches('.').count() as u64) < *depth;
-    let is_below = |name: &str, prefix: &String| {
-        name == prefix
-            || name
-                .strip_prefix(prefix.as_str())
-                .and_then(|rest| rest.strip_prefix('.'))
-                .is_some_and(|rest| is_within(&format!(".{rest}")))
+    let is_below = |rest: &str| rest.is_empty() || rest.starts_with('.') && is_within(rest);
+    let is_listed = |name: &&String| {
+        let mut below = prefixes.iter().filter_map(|prefix| name.strip_prefix(prefix.as_str()));
+        below.any(is_below) || prefixes.is_empty() && is_within(name)
     };
-    let mut found = Listed::default();
-    for (name, _) in list {
-        let is_all = prefixes.is_empty() && is_within(name);
-        if is_all || prefixes.iter().any(|prefix| is_below(name, prefix)) {
-            found.names.push(name.clone());
-            if let Some((before, _)) = name.rsplit_once('.')
-                && !found.prefixes.iter().any(|known| known == before)
-            {
-                found.prefixes.push(before.to_owned());
-            }
-        }
-    }
-    found
+    let names: Vec<String> = list.iter().map(|(name, _)| name).filter(is_listed).cloned().collect();
+    let before = names.iter().filter_map(|name| Some(name.rsplit_once('.')?.0.to_owned()));
+    let prefixes = BTreeSet::from_iter(before).into_iter().collect();
+    Listed { names, prefixes }
 }

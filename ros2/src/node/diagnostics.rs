@@ -56,10 +56,7 @@ impl<L: Link> CuriousNode<L> {
             true => vec![localization(self.pose_state, is_blind), scans(&report, is_blind)],
             false => {
                 let message = format!("{}: scans are not used", self.state.labelled().label);
-                vec![
-                    status("localization", OK, &message, Vec::new()),
-                    status("scans", OK, &message, Vec::new()),
-                ]
+                ["localization", "scans"].map(|name| status(name, OK, &message, Vec::new())).to_vec()
             }
         };
         let message = Diagnostics { header: header(stamp, ""), status };

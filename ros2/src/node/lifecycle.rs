@@ -1,7 +1,7 @@
 //! What the node does at the transitions of the managed lifecycle.
 
 use super::CuriousNode;
-use super::outputs::Published;
+use super::publishing::Published;
 use super::setup::Parts;
 use crate::lifecycle::State;
 use crate::link::Link;
@@ -52,8 +52,7 @@ impl<L: Link> CuriousNode<L> {
         let state_path = self.state_path.as_deref().filter(|_| loads);
         let Parts { robot, state_file, continued } =
             Parts::new(&self.parameters, state_path, &mut self.notes)?;
-        let (names, is_localized) = super::setup::frames(&self.parameters);
-        self.source.configure(names, is_localized);
+        self.source.configure(super::setup::frames(&self.parameters));
         (self.robot, self.state_file, self.continued) = (robot, state_file, continued);
         (self.published, self.last, self.seat) = (Published::default(), None, None);
         Ok(())
@@ -65,7 +64,9 @@ impl<L: Link> CuriousNode<L> {
         self.next_silence = now + super::SILENCE;
         if let Some(last) = self.continued {
             let header = header(last, &self.parameters.map_frame);
-            let maps = self.published.maps.after(&self.parameters, &self.robot.mapper, &header, now);
+            let (parameters, mapper) = (&self.parameters, &self.robot.mapper);
+            let name = |topic| self.link.name(topic);
+            let maps = self.published.maps.after(parameters, mapper, &header, now, name);
             for (topic, message) in maps {
                 self.link.send(topic, message);
             }

@@ -2,6 +2,7 @@
 
 use super::CuriousNode;
 use crate::link::Link;
+use crate::maps::PublishedMaps;
 use crate::message::{
     Message, Path, Pose, PoseStamped, PoseWithCovarianceStamped, Time, Topic, Twist as TwistMessage,
     TwistStamped, header, transform,
@@ -9,9 +10,24 @@ use crate::message::{
 use crate::parameters::{Navigator, Parameters};
 use crate::pilot::Order;
 use interfaces::{LaserReading, Twist};
-use nalgebra::Point2;
-use robot::{Belief, Level, Pilot, Turn};
+use nalgebra::{Isometry2, Point2};
+use robot::{Belief, Level, Pilot, PilotView, Turn};
 use std::time::{Duration, Instant};
+
+/// What other nodes have heard.
+#[derive(Default)]
+pub(super) struct Published {
+    pub(super) maps: PublishedMaps,
+    pub(super) next_diagnostics: Option<Instant>,
+    /// The path to the goal.
+    path: Vec<Point2<f64>>,
+    /// The pose of the frame of the odometry in the frame of the map.
+    pub(super) map_to_odom: Option<Isometry2<f64>>,
+    pub(super) next_transform: Option<Instant>,
+    pub(super) is_lost: bool,
+    /// The number of maps that were learned again.
+    pub(super) switches: usize,
+}
 
 impl<L: Link> CuriousNode<L> {
     pub(super) fn publish_reading(&mut self, stamp: Time, turn: &Turn<LaserReading, Order>, now: Instant) {
@@ -20,18 +36,14 @@ impl<L: Link> CuriousNode<L> {
         self.publish_pose(stamp, &turn.belief);
         let header = header(stamp, &self.parameters.map_frame);
         let (parameters, mapper) = (&self.parameters, &self.robot.mapper);
-        for (topic, message) in self.published.maps.after(parameters, mapper, &header, now) {
+        let name = |topic| self.link.name(topic);
+        for (topic, message) in self.published.maps.after(parameters, mapper, &header, now, name) {
             if !self.link.send(topic, message) {
                 self.published.maps.repeat();
             }
         }
-        let name = |topic| self.link.name(topic);
-        let masks = self.published.masks.due(parameters, mapper, &header, now, name);
-        for (topic, message) in masks {
-            self.link.send(topic, message);
-        }
         self.publish_edges(now);
-        let (goal, path) = (self.robot.pilot.goal(), self.robot.pilot.path());
+        let PilotView { goal, path, .. } = self.robot.pilot.view();
         let path: Vec<Point2<f64>> = path.iter().copied().chain(goal).collect();
         if path != self.published.path {
             let stamped = |at: &Point2<f64>| {

@@ -37,7 +37,7 @@ impl Parts {
         notes: &mut Notes,
     ) -> anyhow::Result<Self> {
         parameters.check()?;
-        let (settings, frame) = of(parameters)?;
+        let (settings, frame) = (settings(parameters), frame(parameters)?);
         let pilot = LivePilot::new(parameters, &settings)?;
         let mut file = state.map(|path| NodeStateFile::new(path, &settings, parameters)).transpose()?;
         let saved = match &mut file {
@@ -55,16 +55,11 @@ impl Parts {
     }
 }
 
-/// The names of the frames, and whether the node publishes the transform from the map to the odometry.
-pub(super) fn frames(parameters: &Parameters) -> (FrameNames, bool) {
-    let Parameters { map_frame, odom_frame, base_frame, laser_frame, .. } = parameters.clone();
-    let names = FrameNames { map: map_frame, odom: odom_frame, base: base_frame, laser: laser_frame };
-    (names, parameters.transform_publish_period_s > 0.0)
-}
-
-/// The settings of the robot, and the frame of its map.
-pub(super) fn of(parameters: &Parameters) -> anyhow::Result<(Settings, GridFrame)> {
-    Ok((settings(parameters), frame(parameters)?))
+/// The frames of the robot.
+pub(super) fn frames(parameters: &Parameters) -> FrameNames {
+    let Parameters { map_frame: map, odom_frame: odom, base_frame: base, laser_frame: laser, .. } =
+        parameters.clone();
+    FrameNames { map, odom, base, laser, are_connected: parameters.transform_publish_period_s > 0.0 }
 }
 
 /// The settings of the robot, from what the parameters say of it.

@@ -76,7 +76,7 @@ impl<L: Link> CuriousNode<L> {
             own.go_on_from(&loaded);
         }
         (self.robot, self.continued, self.last) = (robot, continued, None);
-        self.published = super::outputs::Published::default();
+        self.published = super::publishing::Published::default();
         if self.is_active() {
             self.activate();
         }

@@ -1,13 +1,12 @@
 mod glass;
 mod lifecycle;
 mod loops;
-mod one_map;
 mod same_robot;
 mod seating;
 
 use super::*;
 use crate::link::Navigation;
-use crate::message::{Bool, Message, Twist as TwistMessage, TwistStamped};
+use crate::message::{Message, Twist as TwistMessage, TwistStamped};
 use crate::parameters::{Mode, Navigator};
 use crate::service::wire::Trigger;
 use crate::service::{Call, Reply, Service};
@@ -114,7 +113,7 @@ impl Pair {
     }
 
     fn explore(&mut self, is_on: bool) {
-        self.others.sends(Topic::Resume, Message::Bool(Bool { data: is_on }));
+        self.others.sends(Topic::Resume, Message::Bool(is_on));
     }
 
     fn is_said(&self, words: &str) -> bool {

@@ -1,7 +1,7 @@
 //! Goals of our agent for another navigation: Nav2, or whatever listens to `goal_pose`.
 
 use crate::link;
-use controller::{ControlInput, Outcome, Status};
+use controller::{ControlInput, DriverView, Outcome, Status};
 use interfaces::{Twist, heading_rad};
 use nalgebra::{Isometry2, Point2};
 
@@ -90,21 +90,15 @@ impl Navigation {
         self.must_cancel |= target.is_some_and(|target| target.is_sent && target.outcome.is_none());
     }
 
-    pub(super) fn goal(&self) -> Option<Point2<f64>> {
-        self.target.map(|target| target.at)
-    }
-
-    pub(super) fn status(&self) -> Status {
-        match self.target {
+    /// As [`controller::Driver::view`], with the path of our controller.
+    pub(super) fn view<'a>(&self, path: &'a [Point2<f64>]) -> DriverView<'a> {
+        let status = match self.target {
             None => Status::Idle,
             Some(Target { outcome: Some(outcome), .. }) => Status::Finished(outcome),
             Some(Target { reached_s: Some(_), .. }) => Status::Exploring,
             Some(_) => Status::Travelling,
-        }
-    }
-
-    pub(super) fn trouble(&self) -> &'static str {
-        self.trouble
+        };
+        DriverView { path, goal: self.target.map(|target| target.at), status, trouble: self.trouble }
     }
 
     /// What the navigation is asked on the way to the goal.

@@ -7,7 +7,7 @@ use serde::{Deserialize as De, Serialize as Se};
 
 /// A message without a field has this one on the wire.
 #[derive(Clone, Copy, Debug, Default, PartialEq, De, Se)]
-pub struct Nothing {
+pub(crate) struct Nothing {
     structure_needs_at_least_one_member: u8,
 }
 
@@ -90,7 +90,8 @@ pub struct Parameter {
 /// `rcl_interfaces/ParameterValue`: the type, and a field for each type.
 #[derive(Clone, Debug, Default, PartialEq, De, Se)]
 pub struct ParameterValue {
-    kind: u8,
+    /// The number of its type.
+    pub kind: u8,
     boolean: bool,
     integer: i64,
     float: f64,
@@ -103,11 +104,6 @@ pub struct ParameterValue {
 }
 
 impl ParameterValue {
-    /// The number of its type.
-    pub fn kind(&self) -> u8 {
-        self.kind
-    }
-
     /// The value; `None`: a list, or nothing.
     pub fn value(&self) -> Option<Value> {
         match self.kind {

@@ -6,7 +6,7 @@ const SECOND_NS: i64 = 1_000_000_000;
 
 fn source() -> Source {
     let [map, odom, base] = ["map", "odom", "base_footprint"].map(str::to_owned);
-    Source::new(FrameNames { map, odom, base, laser: String::new() }, true)
+    Source::new(FrameNames { map, odom, base, laser: String::new(), are_connected: true })
 }
 
 fn header(time_s: f64, frame: &str) -> Header {
@@ -259,7 +259,7 @@ fn another_localization_is_noticed() {
     let mut heard = Heard::nothing();
     heard.tf(0.0, "map", "odom", 0.0);
     assert!(heard.notes()[0].starts_with("another node publishes the transform from `map` to `odom`"));
-    heard.source.is_localized = false;
+    heard.source.names.are_connected = false;
     heard.tf(0.1, "map", "odom", 0.0);
     assert_eq!(heard.notes(), [""; 0]);
 }
@@ -283,8 +283,8 @@ fn of_two_lasers_one_is_used_and_a_sentence_says_which() {
     assert_eq!((first.count.received, first.count.other), (9, 4));
 
     let [map, odom, base, laser] = ["map", "odom", "base_footprint", "base_link"].map(str::to_owned);
-    let names = FrameNames { map, odom, base, laser };
-    let mut chosen = Heard { source: Source::new(names, true), now: first.now };
+    let names = FrameNames { map, odom, base, laser, are_connected: true };
+    let mut chosen = Heard { source: Source::new(names), now: first.now };
     chosen.drives();
     scans(&mut chosen);
     assert_eq!(chosen.count.other, 4);

@@ -33,13 +33,14 @@ impl FakeLink {
     }
 
     /// Calls a service.
-    pub(crate) fn calls(&self, number: u64, service: Service, call: Call) {
-        self.others(|others| others.events.push_back(Event::Call(Request(number), service, call)));
+    pub(crate) fn calls(&self, number: i64, service: Service, call: Call) {
+        let request = Request { service, client: [0; 16], number };
+        self.others(|others| others.events.push_back(Event::Call(request, call)));
     }
 
     /// The last answer, which is taken.
-    pub(crate) fn answer(&self) -> Option<(u64, Reply)> {
-        self.others(|others| others.answers.pop()).map(|(Request(number), reply)| (number, reply))
+    pub(crate) fn answer(&self) -> Option<(i64, Reply)> {
+        self.others(|others| others.answers.pop()).map(|(request, reply)| (request.number, reply))
     }
 
     /// The messages on a topic so far.

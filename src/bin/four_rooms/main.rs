@@ -91,7 +91,7 @@ fn end(
 ) -> Option<Ended> {
     let reasons = [
         (is_interrupted, Ended::Interrupted),
-        (trial.robot.pilot.is_done(), Ended::Pilot),
+        (trial.robot.pilot.view().is_done, Ended::Pilot),
         (trial.robot.mapper.time() >= args.duration, Ended::Duration),
     ];
     reasons.into_iter().find_map(|(holds, reason)| holds.then_some(reason))

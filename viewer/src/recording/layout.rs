@@ -4,7 +4,7 @@
 //! axis of a plot, or how much of a trail is shown.
 
 use super::entity::SIM_TIME;
-use super::tracks::{self, BAR_SHARE, LEGEND_SHARE, has_choice, plots};
+use super::tracks::{self, has_choice, plots};
 use draw::layers::Layer;
 use draw::scene::{Scene, extent};
 use draw::view::View;
@@ -47,6 +47,8 @@ pub(super) fn send(
     Ok(())
 }
 
+/// The margin around a map, as a share of its width.
+const MARGIN: f64 = 0.02;
 /// The ground around the maps. It is light, because labels are dark.
 const GROUND: [u8; 3] = [236, 238, 241];
 
@@ -101,15 +103,14 @@ impl Layout<'_> {
         self.stream.log(format!("{}/{}", view.path, A::name().short_name()), value)
     }
 
-    /// A view of the map with margins around it and below it, as shares of its width and its height. The
-    /// bounds are in the frame of the viewer, whose y axis points down.
-    fn spatial(&mut self, name: &str, contents: &[&str], margins: [f64; 2]) -> RecordingStreamResult<Part> {
+    /// A view of the map with a margin around it. The bounds are in the frame of the viewer, whose y axis points down.
+    fn spatial(&mut self, name: &str, contents: &[&str]) -> RecordingStreamResult<Part> {
         let view = self.view("2D", name, contents)?;
         let (from, size) = extent(&self.scene.frame);
-        let (margin, below) = (margins[0] * size.x, margins[1] * size.y);
+        let margin = MARGIN * size.x;
         let bounds = datatypes::Range2D {
             x_range: [from.x - margin, from.x + size.x + margin].into(),
-            y_range: [-from.y - size.y - margin, -from.y + margin + below].into(),
+            y_range: [-from.y - size.y - margin, -from.y + margin].into(),
         };
         self.property(&view, &blueprint::VisualBounds2D::new(bounds))?;
         let background = blueprint::Background::new(BackgroundKind::SolidColor);
@@ -121,7 +122,7 @@ impl Layout<'_> {
         let scene = self.scene;
         let name = format!("The map so far: {}", scene.title);
         let contents = ["+ /world/**", "- /world/maps/**", "+ /world/maps/occupancy/**"];
-        let part = self.spatial(&name, &contents, [0.02, LEGEND_SHARE])?;
+        let part = self.spatial(&name, &contents)?;
         // Nanoseconds of the curious robot's trail: all of it would hide the map.
         let recent = TimeRangeBoundary::CursorRelative(TimeInt(-300 * 1_000_000_000));
         for robot in &scene.robots {
@@ -137,7 +138,7 @@ impl Layout<'_> {
 
     fn map(&mut self, layer: Layer) -> RecordingStreamResult<Part> {
         let contents = format!("+ {}/**", tracks::map(layer));
-        self.spatial(layer.title(), &[&contents], [0.0, BAR_SHARE])
+        self.spatial(layer.title(), &[&contents])
     }
 
     fn log(&mut self) -> RecordingStreamResult<Part> {

@@ -60,25 +60,13 @@ fn rows<C: Component + Clone>(
 
 /// The entities of a recording.
 fn entities() -> Vec<String> {
-    let maps = [
-        "change_probability",
-        "interval",
-        "predicted",
-        "predicted_60",
-        "predicted_600",
-        "predicted_3600",
-        "recency",
-    ];
-    let of_map = |map| ["", "/cells", "/color_bar", "/marks"].map(|part| format!("/world/maps/{map}{part}"));
     let of_robot = |robot| ["body", "body/name", "trail"].map(|part| format!("/world/robots/{robot}/{part}"));
     let others = "/curves/expected_changes/p /curves/longest_unseen/r /curves/scores/coverage /curves/scores/map_quality \
                   /curves/strategy /curves/strategy_share/poisson /curves/strategy_share/random /curves/strategy_share/recency \
                   /curves/strategy_value/poisson /curves/strategy_value/random /curves/strategy_value/recency /log /world \
-                  /world/field_of_view /world/goal /world/legend/lines /world/legend/rims \
-                  /world/legend/texts /world/maps/occupancy /world/maps/occupancy/cells /world/obstacles/toy \
-                  /world/path /world/walls";
+                  /world/field_of_view /world/goal /world/obstacles/toy /world/path /world/walls";
     let mut entities: Vec<String> = others.split(' ').map(str::to_owned).collect();
-    entities.extend(maps.into_iter().flat_map(of_map));
+    entities.extend(Layer::ALL.map(tracks::map));
     entities.extend(["curious", "dummy"].into_iter().flat_map(of_robot));
     entities.sort();
     entities
@@ -128,7 +116,7 @@ fn what_is_read_back_is_what_happened() {
     }
     let buffer = SegmentationImage::descriptor_buffer().component;
     for layer in Layer::ALL {
-        let maps = rows::<ImageBuffer>(&store, &format!("{}/cells", tracks::map(layer)), buffer);
+        let maps = rows::<ImageBuffer>(&store, &tracks::map(layer), buffer);
         let most = if layer == Layer::Occupancy { 32 } else { 5 };
         assert!((2..=most).contains(&maps.len()), "{layer:?}: {}", maps.len());
         let last = maps.last().unwrap().1[0].0.to_vec();

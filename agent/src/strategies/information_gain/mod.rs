@@ -142,7 +142,7 @@ impl Strategy for InformationGain {
     fn weigh(&mut self, situation: &Situation, weights: &mut [f64]) {
         let (mapper, frame) = (situation.mapper, situation.mapper.frame());
         let regions = self.visibility.update(mapper);
-        self.reliability.end(mapper, &mut self.visibility, &regions, situation.cell());
+        self.reliability.end(mapper, &mut self.visibility, &regions, situation.cell(), false);
         let clusters = Clusters::new(mapper);
         let gains = self.gains(mapper, &clusters, &regions);
         let travel = travel_times::times(situation);
@@ -178,13 +178,9 @@ impl Strategy for InformationGain {
     }
 
     fn end(&mut self, situation: &Situation) {
-        let (mapper, robot) = (situation.mapper, situation.cell());
+        let mapper = situation.mapper;
         let regions = self.visibility.update(mapper);
-        // On the way to its goal, the robot has been called away: that says nothing of the view from there.
-        if self.reliability.goal().is_some_and(|goal| !regions.are_near(robot, mapper.frame().cell(goal))) {
-            self.reliability.decline();
-        }
-        self.reliability.end(mapper, &mut self.visibility, &regions, robot);
+        self.reliability.end(mapper, &mut self.visibility, &regions, situation.cell(), true);
     }
 
     fn values(&mut self, _: &Mapper) -> Values<'_> {

@@ -51,23 +51,15 @@ impl ViewReliability {
         self.visit = Some(Visit { goal, duration, watched });
     }
 
-    /// The index of the cell of the goal that is being visited.
-    pub(super) fn goal(&self) -> Option<usize> {
-        self.visit.as_ref().map(|visit| visit.goal)
-    }
-
-    /// The last goal is not visited.
-    pub(super) fn decline(&mut self) {
-        self.visit = None;
-    }
-
-    /// Ends the last visit. If the robot did not reach the goal, nothing was seen from its region.
+    /// Ends the last visit. If the robot did not reach the goal, nothing was seen from its region; if it `was_called_away` before, that
+    /// says nothing of the view from there.
     pub(super) fn end(
         &mut self,
         mapper: &Mapper,
         visibility: &mut Visibility,
         regions: &Regions,
         robot: Cell,
+        was_called_away: bool,
     ) {
         if self.observations.len() != regions.count() {
             self.observations = vec![Vec::new(); regions.count()];
@@ -76,13 +68,13 @@ impl ViewReliability {
         let Some(Visit { goal, duration, watched: before }) = self.visit.take() else { return };
         let region = regions.of(goal);
         let view = visibility.seen_from(region);
-        // If a wall appeared or disappeared since then, the view is another one.
-        if before.len() != view.len() {
-            return;
-        }
         // The nearest cell of a region is at its border, and the robot stops shortly before its goal: in a fine grid, it
         // mostly stops in another region, with the same view.
         let is_there = regions.are_near(robot, mapper.frame().cell(goal));
+        // If a wall appeared or disappeared since then, the view is another one.
+        if before.len() != view.len() || was_called_away && !is_there {
+            return;
+        }
         let observations = &mut self.observations[region];
         if observations.len() != view.len() {
             *observations = vec![[0.0; 2]; view.len()];

@@ -1,6 +1,6 @@
 use super::DiffDriveSettings;
 use crate::drives::DriveScene;
-use interfaces::CellState;
+use interfaces::{Cell, CellState};
 use nalgebra::{Point2, Vector2};
 
 /// The minimum distance to sensed obstacles, m: less than the footprint padding, so that the robot can follow paths along walls.
@@ -70,23 +70,14 @@ impl CollisionMonitor {
             + MAX_OBSTACLE_MPS * settings.stop_s(speed_mps);
         self.obstacles.clear();
         let robot = scene.input.position();
-        for point in scene.input.points {
+        let (map, corner) = (scene.input.map, Vector2::repeat(reach_m));
+        let (first, last) = (map.frame().cell_at(&(robot - corner)), map.frame().cell_at(&(robot + corner)));
+        let around = (first.y..=last.y).flat_map(|y| (first.x..=last.x).map(move |x| Cell::new(x, y)));
+        let blocked = around.filter(|cell| map.get(*cell) == Some(&CellState::Blocked));
+        let centers = blocked.map(|cell| map.frame().center(cell));
+        for point in scene.input.points.iter().copied().chain(centers) {
             if (point - robot).norm_squared() < reach_m * reach_m {
-                self.add(scene, point);
-            }
-        }
-        let frame = scene.input.map.frame();
-        let corner = Vector2::repeat(reach_m);
-        let (first, last) = (frame.cell_at(&(robot - corner)), frame.cell_at(&(robot + corner)));
-        for y in first.y.max(0)..=last.y.min(frame.height() as i32 - 1) {
-            for x in first.x.max(0)..=last.x.min(frame.width() as i32 - 1) {
-                let cell = interfaces::Cell::new(x, y);
-                if scene.input.map.get(cell) == Some(&CellState::Blocked) {
-                    let center = frame.center(cell);
-                    if (center - robot).norm_squared() < reach_m * reach_m {
-                        self.add(scene, &center);
-                    }
-                }
+                self.add(scene, &point);
             }
         }
     }

@@ -85,7 +85,7 @@ fn a_simulator_a_bag_and_a_live_robot_make_the_same_of_the_same_readings() {
         let turn = simulated.step(as_sent(&reading)).unwrap();
         assert!(apart_m(&simulated.mapper, &node.robot.mapper) < ROUNDING, "at {} s", reading.time_s);
         assert!(simulated.mapper.states() == node.robot.mapper.states(), "at {} s", reading.time_s);
-        assert_eq!(simulated.pilot.goal(), node.robot.pilot.goal(), "at {} s", reading.time_s);
+        assert_eq!(simulated.pilot.view().goal, node.robot.pilot.view().goal, "at {} s", reading.time_s);
         let velocities = others.heard(Topic::StampedVelocity);
         let Some(Message::TwistStamped(TwistStamped { twist, .. })) = velocities.last() else { panic!() };
         let off = [twist.linear.x - turn.command.linear_mps, twist.angular.z - turn.command.angular_radps];

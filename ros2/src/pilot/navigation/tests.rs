@@ -55,17 +55,17 @@ fn every_strategy_selects_the_same_goals_whoever_drives() {
         let mut by_nav2 = live(policy, Navigator::Nav2);
         let mut goals = Vec::new();
         while world.time_s() < 60.0 {
-            let before = robot.pilot.goals();
+            let before = robot.pilot.view().goals;
             let turn = robot.step(world.sense()).unwrap();
-            let goal = robot.pilot.goal();
+            let goal = robot.pilot.view().goal;
             let command = by_velocities.command(&turn.belief, turn.features, &robot.mapper);
             assert_eq!(command, Order::Velocity(turn.command), "{}", policy.name());
             let target = navigation(&mut by_nav2).target;
-            if let Some(news) = news(before, robot.pilot.goals(), target) {
+            if let Some(news) = news(before, robot.pilot.view().goals, target) {
                 by_nav2.navigated(news);
             }
             let order = by_nav2.command(&turn.belief, turn.features, &robot.mapper);
-            let is_watching = robot.pilot.driver_mut().status() == Status::Exploring;
+            let is_watching = robot.pilot.driver_mut().view().status == Status::Exploring;
             if let Some(target) = &mut navigation(&mut by_nav2).target {
                 // Nav2 makes progress, however long the controller explores around its goal, and is there when it is.
                 target.nearest_s = turn.reading.time_s;
@@ -73,7 +73,7 @@ fn every_strategy_selects_the_same_goals_whoever_drives() {
                     target.reached_s.get_or_insert(turn.reading.time_s);
                 }
             }
-            assert_eq!((by_velocities.goal(), by_nav2.goal()), (goal, goal), "{}", policy.name());
+            assert_eq!((by_velocities.view().goal, by_nav2.view().goal), (goal, goal), "{}", policy.name());
             if goals.last() != Some(&goal) {
                 goals.push(goal);
                 assert!(matches!(order, Order::Goal(_)), "{}: {order:?}", policy.name());

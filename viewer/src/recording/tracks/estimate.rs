@@ -1,6 +1,6 @@
 //! Where the curious robot believes to be: its body, its trail, its uncertainty, and the scan at the believed pose.
 
-use super::robots::add_trail;
+use super::bodies::add_trail;
 use super::{Kind, ON_CHANGE, Strip, Tracks, WORLD, closed, color, line, order, points, position, strips};
 use draw::palette;
 use draw::view::View;

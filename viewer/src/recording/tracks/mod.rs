@@ -3,19 +3,15 @@
 //! To add an entity: write a function that logs the style with `Tracks::always` and calls `Tracks::add`, and add a
 //! line to [`start`].
 
+mod bodies;
 mod coarse;
 mod curves;
 mod estimate;
-mod field_of_view;
-mod legend;
 mod maps;
-mod obstacles;
-mod robots;
 
+pub(super) use bodies::robot;
 pub(super) use curves::{STRATEGY, has_choice, plots};
-pub(super) use legend::SHARE as LEGEND_SHARE;
-pub(super) use maps::{BAR_SHARE, map};
-pub(super) use robots::robot;
+pub(super) use maps::map;
 
 use super::entity::{Entity, Kind, Track};
 use draw::palette::Rgb;
@@ -48,11 +44,8 @@ pub(super) fn start(
     view: &View,
 ) -> RecordingStreamResult<Vec<Box<dyn Track>>> {
     let mut tracks = Tracks { stream, scene, view, tracks: Vec::new() };
-    legend::add(&tracks)?;
     maps::add(&mut tracks)?;
-    field_of_view::add(&mut tracks)?;
-    obstacles::add(&mut tracks)?;
-    robots::add(&mut tracks)?;
+    bodies::add(&mut tracks)?;
     estimate::add(&mut tracks)?;
     curves::add(&mut tracks)?;
     messages(&mut tracks);
@@ -130,15 +123,6 @@ fn line(color: Color, radius: f32, order: f32) -> LineStrips2D {
         .with_colors([color])
         .with_radii([Radius::new_ui_points(radius)])
         .with_draw_order(order)
-}
-
-/// The appearance of names without points.
-fn labels<'a>(texts: impl IntoIterator<Item = &'a str>) -> Points2D {
-    Points2D::update_fields()
-        .with_labels(texts)
-        .with_show_labels(true)
-        .with_radii([Radius::new_ui_points(0.0)])
-        .with_colors([color(LABEL, 255)])
 }
 
 /// A position, m.

@@ -1,9 +1,11 @@
-//! The robots, and the plan of the curious robot.
+//! Everything solid in the world, what the curious robot sees, and its plan.
 
-use super::{EVENTS, LABEL, ON_CHANGE, Strip, Tracks, WORLD, color, escape, labels, line, order, points};
+use super::{
+    EVENTS, Kind, LABEL, ON_CHANGE, Strip, Tracks, WORLD, closed, color, escape, line, order, points,
+};
 use super::{position, strips};
-use draw::palette;
 use draw::view::{View, is_next_point};
+use draw::{outline, palette};
 use nalgebra::{Isometry2, Vector2};
 use rerun::{Arrows2D, AsComponents, Points2D, Radius, RecordingStreamResult, Transform3D};
 
@@ -13,6 +15,8 @@ pub(in crate::recording) fn robot(name: &str, part: &str) -> String {
 }
 
 pub(super) fn add(tracks: &mut Tracks) -> RecordingStreamResult<()> {
+    field_of_view(tracks)?;
+    obstacles(tracks)?;
     let scene = tracks.scene;
     for (index, robot) in scene.robots.iter().enumerate() {
         body(tracks, index)?;
@@ -22,6 +26,37 @@ pub(super) fn add(tracks: &mut Tracks) -> RecordingStreamResult<()> {
         add_trail(tracks, trail, move |view| Some(view.robots[index].pose));
     }
     plan(tracks)
+}
+
+/// Adds the outline of what the robot sees; nothing if no robot sees in the first view.
+fn field_of_view(tracks: &mut Tracks) -> RecordingStreamResult<()> {
+    if tracks.view.sight().is_none() {
+        return Ok(());
+    }
+    let path = format!("{WORLD}/field_of_view");
+    tracks.always(&path, &line(color(palette::SENSOR, 220), 1.5, order::SIGHT_OUTLINE))?;
+    let outline = |view: &View| {
+        let corners = view.sight().map(outline::field_of_view);
+        corners.iter().map(|corners| corners.iter().map(position).collect()).collect()
+    };
+    tracks.add(path, (Kind::State, 0.2), outline, strips);
+    Ok(())
+}
+
+/// Adds the walls, and everything else that is no robot.
+fn obstacles(tracks: &mut Tracks) -> RecordingStreamResult<()> {
+    let scene = tracks.scene;
+    let walls = line(color(palette::WALL, 255), 1.0, order::WALLS);
+    let walls = walls.with_strips(scene.walls.iter().map(|wall| closed(wall)));
+    tracks.always(&format!("{WORLD}/walls"), &walls)?;
+    for (index, obstacle) in scene.obstacles.iter().enumerate() {
+        let path = format!("{WORLD}/obstacles/{}", escape(&obstacle.name));
+        tracks.always(&path, &line(color(obstacle.color(), 255), 2.5, order::WALLS))?;
+        let outline =
+            move |view: &View| view.obstacles[index].iter().map(|outline| closed(outline)).collect();
+        tracks.add(path, ON_CHANGE, outline, strips);
+    }
+    Ok(())
 }
 
 /// Adds the trail of the poses that `pose` reads from the views: a line from place to place.
@@ -54,7 +89,11 @@ fn body(tracks: &mut Tracks, index: usize) -> RecordingStreamResult<()> {
         .with_draw_order(order::HEADING);
     tracks.always(&path, &[&disc as &dyn AsComponents, &heading])?;
     if scene.robots.len() > 1 {
-        let below = labels([robot.name.as_str()]).with_positions([[0.0, -1.2 * radius_m]]);
+        let below = Points2D::new([[0.0, -1.2 * radius_m]])
+            .with_labels([robot.name.as_str()])
+            .with_show_labels(true)
+            .with_radii([Radius::new_ui_points(0.0)])
+            .with_colors([color(LABEL, 255)]);
         tracks.always(&format!("{path}/name"), &below)?;
     }
     let nose = Vector2::new(1.4 * robot.radius_m, 0.0);
