@@ -2,13 +2,12 @@
 
 use crate::constants::SURFEL_STD_M;
 use crate::matcher::{Gates, Match, Prior, align};
-use crate::placement::Placement;
 use crate::scan_points::ScanPoint;
 use crate::settings::LocalizerSettings;
-use crate::support::{ClearBeams, Support, judge};
+use crate::support::ClearBeams;
 use crate::surfel_map::SurfelMap;
 use interfaces::{CellState, Grid};
-use nalgebra::{Isometry2, Point2};
+use nalgebra::Isometry2;
 
 /// The same of points and surfels in live matches, whose maps are followed for hours: with 3, the position is off by 32 mm instead of
 /// 19 mm where the noise is 3 cm.
@@ -60,17 +59,6 @@ impl MatchScene<'_> {
     /// The same scene, in which only what lies in place counts.
     pub(crate) fn tight(&self) -> Self {
         MatchScene { is_tight: true, ..*self }
-    }
-
-    /// The agreement of the scan with the maps at a pose.
-    pub(crate) fn judge(&self, placement: &Placement) -> Support {
-        let gates_m = [self.tight().gate_m(), self.gate_m()];
-        let laser = placement.pose * self.mount;
-        let origin = Point2::from(laser.translation.vector);
-        let mut support = judge(self.surfels, self.states, self.points, placement, &origin, gates_m);
-        support.blind = self.clear.contradicted(self.states, &laser);
-        support.contradicted += support.blind;
-        support
     }
 }
 
