@@ -1,5 +1,6 @@
 use crate::{Cell, SparseCells};
 use nalgebra::{Point2, Vector2};
+use std::collections::BTreeSet;
 
 /// The position and the size of a grid: square cells, row-major, row 0 at the lowest y.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
@@ -140,6 +141,27 @@ impl GridFrame {
     pub fn beside(&self, index: usize) -> impl Iterator<Item = usize> + use<> {
         let frame = *self;
         frame.cell(index).neighbours4().into_iter().filter_map(move |cell| frame.index(cell))
+    }
+
+    /// Takes a cell from `left`, the first one, with all that are connected with it; `None` if there is no cell. Cells are connected
+    /// up to a distance of `reach` along both axes: with 1, by sides or corners.
+    pub fn take_connected(&self, left: &mut BTreeSet<usize>, reach: i32) -> Option<Vec<usize>> {
+        let (mut cells, mut next) = (vec![left.pop_first()?], 0);
+        while let Some(cell) = cells.get(next).map(|index| self.cell(*index)) {
+            next += 1;
+            let around = cell.square(reach).filter_map(|cell| self.index(cell));
+            cells.extend(around.filter(|index| left.remove(index)));
+        }
+        Some(cells)
+    }
+
+    /// The longer side of the rectangle around some cells, in cells.
+    pub fn longer_side(&self, cells: &[usize]) -> i32 {
+        let length = |along: fn(Cell) -> i32| {
+            let places = || cells.iter().map(|index| along(self.cell(*index)));
+            places().max().unwrap_or_default() - places().min().unwrap_or_default() + 1
+        };
+        length(|cell| cell.x).max(length(|cell| cell.y))
     }
 }
 

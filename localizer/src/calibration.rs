@@ -4,7 +4,7 @@
 //! Recursive least squares with forgetting (Ljung 1999, section 11.2): the errors of wheels change with the floor, the
 //! load and the air in the tires.
 
-use crate::settings::OdometryTrust;
+use crate::constants::{HARD_DRIFT, HARD_DRIFT_RADPM};
 use interfaces::{Spread, heading_rad};
 use nalgebra::{Isometry2, Matrix2, Vector2};
 
@@ -22,21 +22,20 @@ pub(crate) struct Calibration {
     distance: (f64, f64),
     /// The true turn per measured turn, and per measured distance (rad/m), and their covariance.
     turn: (Vector2<f64>, Matrix2<f64>),
-    /// The largest errors that are expected.
-    pub(crate) trust: OdometryTrust,
+}
+
+/// The variances of the gains before anything was learned, which they never exceed: of the turn, also per measured distance.
+const DISTANCE_VARIANCE: f64 = HARD_DRIFT * HARD_DRIFT;
+const TURN_VARIANCES: [f64; 2] = [DISTANCE_VARIANCE, HARD_DRIFT_RADPM * HARD_DRIFT_RADPM];
+
+impl Default for Calibration {
+    fn default() -> Self {
+        let turn = (Vector2::new(1.0, 0.0), Matrix2::from_diagonal(&TURN_VARIANCES.into()));
+        Self { distance: (1.0, DISTANCE_VARIANCE), turn }
+    }
 }
 
 impl Calibration {
-    pub(crate) fn new(trust: &OdometryTrust) -> Self {
-        let square = |x: f64| x * x;
-        let spread = Vector2::new(square(trust.turn_gain), square(trust.turn_radpm));
-        Self {
-            distance: (1.0, square(trust.distance_gain)),
-            turn: (Vector2::new(1.0, 0.0), Matrix2::from_diagonal(&spread)),
-            trust: *trust,
-        }
-    }
-
     /// The true distance per measured distance is known with a standard deviation.
     pub(crate) fn expect_distance(&mut self, scale: f64, std: f64) {
         self.distance = (scale, std * std);
@@ -62,9 +61,9 @@ impl Calibration {
         let (distance_m, turn_rad) = (measured.translation.vector.norm(), heading_rad(measured).abs());
         let memory = 1.0 - 1.0 / LEARNED_MOTIONS;
         if distance_m >= LEARNED_MOTION.m {
-            let noise = square(MOTION_STD.m) + square(self.trust.distance_noise_m) * distance_m;
+            let noise = square(MOTION_STD.m) + square(HARD_DRIFT) * distance_m;
             let (gain, variance) = &mut self.distance;
-            *variance = (*variance / memory).min(square(self.trust.distance_gain));
+            *variance = (*variance / memory).min(DISTANCE_VARIANCE);
             let k = *variance * distance_m / (noise + *variance * square(distance_m));
             let along_m = estimated.translation.vector.dot(&measured.translation.vector) / distance_m;
             *gain += k * (along_m - *gain * distance_m);
@@ -72,13 +71,12 @@ impl Calibration {
         }
         if distance_m >= LEARNED_MOTION.m || turn_rad >= LEARNED_MOTION.rad {
             let x = self.features(measured);
-            let noise = square(MOTION_STD.rad) + square(self.trust.turn_noise_rad) * turn_rad;
+            let noise = square(MOTION_STD.rad) + square(HARD_DRIFT) * turn_rad;
             let (gains, covariance) = &mut self.turn;
             *covariance /= memory;
             // What was never excited must not grow without a limit.
-            let spread = [self.trust.turn_gain, self.trust.turn_radpm].map(square);
-            for (index, most) in spread.into_iter().enumerate() {
-                if covariance[(index, index)] > most && most > 0.0 {
+            for (index, most) in TURN_VARIANCES.into_iter().enumerate() {
+                if covariance[(index, index)] > most {
                     let scale = (most / covariance[(index, index)]).sqrt();
                     for other in 0..2 {
                         covariance[(index, other)] *= scale;
@@ -105,7 +103,7 @@ mod tests {
 
     #[test]
     fn systematic_errors_are_learned_and_undone() {
-        let mut calibration = Calibration::new(&OdometryTrust::default());
+        let mut calibration = Calibration::default();
         let truth = |step: u32| pose(0.05, 0.0, if step % 40 < 20 { 0.03 } else { -0.06 });
         let measured = |step: u32| {
             let turn = heading_rad(&truth(step)) * 0.95 + 0.05 * 0.05;
@@ -123,7 +121,7 @@ mod tests {
 
     #[test]
     fn hours_of_driving_change_nothing() {
-        let mut calibration = Calibration::new(&OdometryTrust::default());
+        let mut calibration = Calibration::default();
         let mut random = RandomStream::new(1, Purpose::OdometryNoise(0));
         let mut signed = || random.uniform(-1.0..1.0);
         for _ in 0..200_000 {

@@ -124,6 +124,11 @@ pub(crate) const SAME_SURFACE: f64 = 0.95;
 
 // Motion prior
 
+/// The largest errors of an odometry that are expected: systematic errors per meter and per radian, and the standard deviation of
+/// the noise after 1 m (m) and after 1 rad (rad), whose variance grows with the distance.
+pub(crate) const HARD_DRIFT: f64 = 0.05;
+/// The same for the heading per meter traveled, rad/m: 3°.
+pub(crate) const HARD_DRIFT_RADPM: f64 = 0.052;
 /// Errors of an odometry after an outlier, for this many scans; and of a robot without odometry.
 pub(crate) const DISTRUSTED_STD: Spread = Spread { m: 0.05, rad: 0.1 };
 pub(crate) const DISTRUST_SCANS: u32 = 20;

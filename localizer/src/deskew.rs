@@ -102,19 +102,13 @@ fn deskew(scan: &Scan, units: &[Vector2<f64>], laser_before: impl Fn(f64) -> Iso
         cover(scan, units, &before, &after, &mut ranges_m);
         before = after;
     }
-    if scan.is_full_turn() {
-        close(scan, units, &before, &first, &mut ranges_m);
+    // Between the last and the first beam of a full turn lie a gap or an overlap, by the turn of the robot. The neighbors of a gap of
+    // one beam fill it.
+    let gap_rad = wrap_rad(first.angle_rad - before.angle_rad).abs();
+    if scan.is_full_turn() && gap_rad < 2.0 * scan.angle_increment_rad.abs() {
+        cover(scan, units, &before, &first, &mut ranges_m);
     }
     Scan { ranges_m, ..*scan }
-}
-
-/// Between the last and the first beam of a full turn lie a gap or an overlap, by the turn of the robot. The neighbors
-/// of a gap of one beam fill it.
-fn close(scan: &Scan, units: &[Vector2<f64>], last: &End, first: &End, ranges_m: &mut [f32]) {
-    let gap_rad = wrap_rad(first.angle_rad - last.angle_rad).abs();
-    if gap_rad < 2.0 * scan.angle_increment_rad.abs() {
-        cover(scan, units, last, first, ranges_m);
-    }
 }
 
 /// Writes the ranges of the directions from one end point to the next.

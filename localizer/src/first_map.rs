@@ -2,7 +2,7 @@
 
 use crate::constants::{AMBIGUOUS, LOG_NOISE_M, NEAR_STD, SEARCH_EVERY, STDS, SUBMAP_KEYFRAMES};
 use crate::estimate::{Localized, PoseEstimate, PoseState};
-use crate::motion::PosePrior;
+use crate::motion::Predicted;
 use crate::openings::has_opening;
 use crate::settings::LocalizerSettings;
 use crate::trajectory::{TrajectoryFinder, in_frame};
@@ -112,7 +112,7 @@ impl FirstMap {
 
     /// Takes the next reading. The result is where the robot is, from its last certain pose on; `None` if the last reading
     /// was certain, or if a scan since then did not agree with those before.
-    pub(crate) fn pose_prior(&mut self, reading: &LaserReading) -> Option<PosePrior> {
+    pub(crate) fn pose_prior(&mut self, reading: &LaserReading) -> Option<Predicted> {
         let number = self.log.kept.len();
         self.find(reading, number);
         self.log.unsupported = if self.finder.is_supported() { 0 } else { self.log.unsupported + 1 };
@@ -121,7 +121,7 @@ impl FirstMap {
         let (motion, spread) = self.finder.motion_since(last)?;
         let at = self.log.kept[last].pose;
         let covariance = in_frame(&spread, &at.inverse()) + CERTAIN_STD.covariance();
-        Some(PosePrior { pose: at * motion, covariance })
+        Some(Predicted::rigid(at * motion, covariance))
     }
 
     /// Whether the mapper, whose time is `map_s`, has paused since the last reading.
@@ -232,7 +232,7 @@ impl FirstMap {
 
     /// The poses of all readings in the map, by the trajectory with all loops. Where the trajectory begins, it is where the
     /// map is.
-    pub(crate) fn corrected(&self) -> Vec<PosePrior> {
+    pub(crate) fn corrected(&self) -> Vec<Predicted> {
         let found = self.finder.corrected();
         let last = self.keyframes[SUBMAP_KEYFRAMES.min(self.keyframes.len() - 1)];
         let first = || {
@@ -249,7 +249,7 @@ impl FirstMap {
         let shift = shift.sum::<Vector2<f64>>() / count;
         let to_map = Isometry2::from_parts(shift.into(), rotation);
         let covariance = CORRECTED_STD.covariance();
-        found.iter().map(|found| PosePrior { pose: to_map * found, covariance }).collect()
+        found.iter().map(|found| Predicted::rigid(to_map * found, covariance)).collect()
     }
 }
 

@@ -67,7 +67,7 @@ pub use deskew::GivenPoses;
 pub use estimate::{Localized, PoseEstimate, PoseState, Start};
 pub use localizer::Localizer;
 pub use loop_closing::{Correction, LoopClosed, LoopClosingLocalizer, Switch};
-pub use settings::{LocalizerSettings, OdometryTrust};
+pub use settings::LocalizerSettings;
 pub use trajectory::{
     DistanceScale, KnownPlace, PlaceError, RouteSearch, Trajectory, TrajectoryFinder, TrajectoryPose,
 };

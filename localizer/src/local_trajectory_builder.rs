@@ -13,7 +13,6 @@ use crate::motion_prior::MotionPrior;
 use crate::placement::shifted;
 use crate::scan_path::ScanPath;
 use crate::scan_points::{PointRules, ScanPoint};
-use crate::settings::OdometryTrust;
 use interfaces::LaserReading;
 use nalgebra::{Isometry2, Matrix3, Vector3};
 
@@ -83,10 +82,10 @@ pub(crate) struct LocalTrajectoryBuilder<M> {
 }
 
 impl<M> LocalTrajectoryBuilder<M> {
-    pub(crate) fn new(matcher: M, odometry: &OdometryTrust, rules: PointRules) -> Self {
+    pub(crate) fn new(matcher: M, rules: PointRules) -> Self {
         Self {
             faults: FaultFinder::default(),
-            motion_prior: MotionPrior::new(odometry),
+            motion_prior: MotionPrior::default(),
             deskew: Deskew::new(rules),
             matcher,
             track: Track::default(),

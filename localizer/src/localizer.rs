@@ -9,13 +9,16 @@ use crate::changing_map::ChangingMap;
 use crate::constants::{LOST_STD, NEAR_STD};
 use crate::estimate::{Localized, PoseEstimate, Start};
 use crate::local_trajectory_builder::{LocalTrajectoryBuilder, Track};
-use crate::motion::PosePrior;
+use crate::motion::Predicted;
 use crate::scan_points::PointRules;
 use crate::settings::LocalizerSettings;
 use crate::surfel_map::SurfelMap;
 use interfaces::{CellState, Grid, GridFrame, LaserReading, SettingsError};
 use map_matcher::MapMatcher;
 use nalgebra::{Isometry2, Matrix3};
+
+/// Rest at the start from nothing, s: the first scans decide the heading of all that follows (0.076° → 0.024°).
+const SETTLE_S: f64 = 2.0;
 
 /// Estimates the pose of a robot from odometry and scans. The same readings give the same bits.
 #[derive(Clone, Debug)]
@@ -62,7 +65,7 @@ impl Localizer {
         settings.check()?;
         let matcher = MapMatcher::new(settings, surfels, start, from_nothing);
         let rules = PointRules { noise_m: settings.range_noise_std_m, grazing: true };
-        let mut builder = LocalTrajectoryBuilder::new(matcher, &settings.odometry, rules);
+        let mut builder = LocalTrajectoryBuilder::new(matcher, rules);
         builder.motion_prior.exists = true;
         let (pose, covariance) = match start {
             Start::At(pose) if from_nothing => (pose, Matrix3::zeros()),
@@ -76,7 +79,8 @@ impl Localizer {
     /// Whether the robot should rest: at a start without a map, the first scans decide the heading of all that
     /// follows, and should all be made from one pose.
     pub fn wants_rest(&self) -> bool {
-        self.builder.matcher.wants_rest()
+        let MapMatcher { from_nothing, times, .. } = &self.builder.matcher;
+        *from_nothing && times.start_s.is_none_or(|start_s| times.now_s - start_s < SETTLE_S)
     }
 
     /// Estimates the pose of a reading. `map` has learned changes from the readings so far whose pose was certain.
@@ -93,7 +97,7 @@ impl Localizer {
         &mut self,
         reading: &LaserReading,
         map: &impl ChangingMap,
-        prior: Option<PosePrior>,
+        prior: Option<Predicted>,
     ) -> Localized {
         let (mut reading, support) = match self.builder.add(reading, (map, prior)) {
             Some((reading, found)) => {
@@ -107,7 +111,7 @@ impl Localizer {
         };
         let Track { pose, covariance, .. } = self.builder.track;
         reading.pose = pose;
-        let state = self.builder.matcher.reported();
+        let state = self.builder.matcher.state.reported(self.builder.matcher.is_timed_out());
         Localized { reading, estimate: PoseEstimate { pose, covariance, support, state } }
     }
 }

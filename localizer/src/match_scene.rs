@@ -1,12 +1,12 @@
 //! All that one scan is compared with.
 
-use crate::constants::SURFEL_STD_M;
-use crate::matcher::{Gates, Match, Prior, align};
+use crate::constants::{MOVED_M, SURFEL_STD_M};
+use crate::matcher::{Gates, Match, Prior, align, derivative};
 use crate::placement::Placement;
 use crate::scan_points::ScanPoint;
 use crate::settings::LocalizerSettings;
-use crate::support::{ClearBeams, Support, judge};
-use crate::surfel_map::SurfelMap;
+use crate::support::{ClearBeams, Support, is_contradicted};
+use crate::surfel_map::{Surfel, SurfelMap};
 use interfaces::{CellState, Grid};
 use nalgebra::{Isometry2, Point2};
 
@@ -62,13 +62,46 @@ impl MatchScene<'_> {
         MatchScene { is_tight: true, ..*self }
     }
 
-    /// The agreement of the scan with the maps at a pose.
+    /// The agreement of the scan with the maps at a pose. A point within the gate of a surfel is confirmed, within the tight gate it is
+    /// in place.
     pub(crate) fn judge(&self, placement: &Placement) -> Support {
-        let gates_m = [self.tight().gate_m(), self.gate_m()];
+        let MatchScene { surfels, states, points, .. } = *self;
+        let (place_m, gate_m) = (self.tight().gate_m(), self.gate_m());
         let laser = placement.pose * self.mount;
         let origin = Point2::from(laser.translation.vector);
-        let mut support = judge(self.surfels, self.states, self.points, placement, &origin, gates_m);
-        support.blind = self.clear.contradicted(self.states, &laser);
+        let mut support = Support::default();
+        for point in points {
+            let at = placement.place(point);
+            let arm = at.coords - placement.pose.translation.vector;
+            let normal = placement.pose.rotation * point.normal;
+            match surfels.nearest(&at, &normal, gate_m) {
+                Some((index, off_m)) if surfels.surfel(index).weight() > 0.0 => {
+                    support.confirmed += point.weight;
+                    let surfel = surfels.surfel(index);
+                    match off_m.abs() <= place_m {
+                        _ if !surfel.is_permanent() => {}
+                        true => support.in_place += point.weight,
+                        false => support.displaced += point.weight,
+                    }
+                    let j = derivative(&arm, &surfel.normal);
+                    support.geometry += j * j.transpose() * point.weight;
+                }
+                Some(_) => support.new += point.weight,
+                None => {
+                    let beside =
+                        surfels.nearest(&at, &normal, MOVED_M).map(|(index, _)| surfels.surfel(index));
+                    if beside.is_some_and(Surfel::is_permanent) {
+                        support.displaced += point.weight;
+                    }
+                    // What has moved before says nothing against a pose.
+                    match !beside.is_some_and(Surfel::is_suspect) && is_contradicted(states, &origin, &at) {
+                        true => support.contradicted += point.weight,
+                        false => support.new += point.weight,
+                    }
+                }
+            }
+        }
+        support.blind = self.clear.contradicted(states, &laser);
         support.contradicted += support.blind;
         support
     }

@@ -1,9 +1,8 @@
 //! The motion between two readings by odometry, and how far it can be trusted.
 
-use crate::constants::DISTRUSTED_STD;
+use crate::constants::{DISTRUSTED_STD, HARD_DRIFT, HARD_DRIFT_RADPM};
 use crate::matcher::{Begin, Prior, blocks, difference};
 use crate::placement::shifted;
-use crate::settings::OdometryTrust;
 use interfaces::{Spread, heading_rad};
 use nalgebra::{Isometry2, Matrix3, Vector3, Vector6};
 
@@ -27,17 +26,17 @@ pub(crate) struct Motion {
 
 impl Motion {
     /// A measured motion.
-    pub(crate) fn new(delta: Isometry2<f64>, trust: &OdometryTrust) -> Self {
+    pub(crate) fn new(delta: Isometry2<f64>) -> Self {
         let square = |x: f64| x * x;
         let (distance_m, turn_rad) = (delta.translation.vector.norm(), heading_rad(&delta).abs());
-        let along = square(trust.distance_gain * distance_m) + square(trust.distance_noise_m) * distance_m;
-        let heading = square(trust.turn_gain * turn_rad)
-            + square(trust.turn_radpm * distance_m)
-            + square(trust.turn_noise_rad) * (turn_rad + distance_m * trust.turn_radpm);
+        let along = square(HARD_DRIFT * distance_m) + square(HARD_DRIFT) * distance_m;
+        let heading = square(HARD_DRIFT * turn_rad)
+            + square(HARD_DRIFT_RADPM * distance_m)
+            + square(HARD_DRIFT) * (turn_rad + distance_m * HARD_DRIFT_RADPM);
         // An error of the heading on the way shifts the end of the way to the side.
         let across = heading * square(distance_m) / 3.0;
         // A robot that turns in place slips a little in every direction.
-        let slip = square(REST_STD.m + SLIP * trust.turn_gain * turn_rad);
+        let slip = square(REST_STD.m + SLIP * HARD_DRIFT * turn_rad);
         let covariance = Matrix3::from_diagonal(&Vector3::new(
             along + slip,
             across + square(SLIP * distance_m) + slip,
@@ -89,7 +88,7 @@ impl Motion {
     }
 }
 
-/// The pose before a scan is seen.
+/// The pose before a scan is seen, by odometry or by another source, in the frame of the map.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Predicted {
     pub(crate) pose: Isometry2<f64>,
@@ -130,29 +129,16 @@ impl Predicted {
     pub(crate) fn prior(&self) -> Option<Prior> {
         Some(Prior { pose: self.pose, information: self.covariance.try_inverse()?, begin: self.begin })
     }
-}
 
-/// Where the robot is by another source, in the frame of the map: a pose with its covariance.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct PosePrior {
-    pub(crate) pose: Isometry2<f64>,
-    pub(crate) covariance: Matrix3<f64>,
-}
-
-impl PosePrior {
     /// Whether the robot may be at a pose.
     fn allows(&self, pose: &Isometry2<f64>) -> bool {
-        let std_m = (self.covariance[(0, 0)] + self.covariance[(1, 1)]).sqrt();
         let off = difference(pose, &self.pose);
-        off.xy().norm() <= ELSEWHERE.m + ELSEWHERE_STDS * std_m && off.z.abs() <= ELSEWHERE.rad
+        off.xy().norm() <= ELSEWHERE.m + ELSEWHERE_STDS * self.spread_m() && off.z.abs() <= ELSEWHERE.rad
     }
 
-    /// The predicted pose, and what the prior says.
-    pub(crate) fn with(&self, predicted: Predicted) -> Predicted {
-        match self.allows(&predicted.pose) {
-            true => predicted.and(&self.pose, &self.covariance),
-            false => Predicted::rigid(self.pose, self.covariance),
-        }
+    /// The predicted pose, and what this pose of another source says.
+    pub(crate) fn with(self, predicted: Self) -> Self {
+        if self.allows(&predicted.pose) { predicted.and(&self.pose, &self.covariance) } else { self }
     }
 }
 
@@ -195,14 +181,7 @@ mod tests {
     fn the_covariance_of_a_pose_turns_with_the_motion() {
         // The derivative of the pose after the motion, by finite differences.
         let (at, delta) = (pose(1.0, -2.0, 0.7), pose(0.4, 0.1, 0.3));
-        let exact = OdometryTrust {
-            distance_gain: 0.0,
-            turn_gain: 0.0,
-            turn_radpm: 0.0,
-            distance_noise_m: 0.0,
-            turn_noise_rad: 0.0,
-        };
-        let motion = Motion::new(delta, &exact);
+        let motion = Motion { delta, covariance: Matrix3::zeros() };
         let covariance = Matrix3::new(2.0, 0.3, 0.1, 0.3, 1.0, -0.2, 0.1, -0.2, 0.5);
         let values = |pose: &Isometry2<f64>| [pose.translation.x, pose.translation.y, heading_rad(pose)];
         let moved = |x, y, heading| values(&motion.apply(&pose(1.0 + x, -2.0 + y, 0.7 + heading)));
@@ -212,13 +191,12 @@ mod tests {
         let jacobian = Matrix3::from_fn(|row, column| (columns[column][row] - origin[row]) / step);
         let expected = jacobian * covariance * jacobian.transpose();
         let error = motion.propagate(&at, &covariance) - expected;
-        assert!(error.abs().max() < 1e-4, "{error}"); // the noise at rest is below 1e-7
+        assert!(error.abs().max() < 1e-4, "{error}");
     }
 
     #[test]
     fn another_source_of_the_end_says_something_about_the_begin() {
-        let (at, motion) =
-            (pose(1.0, -2.0, 0.7), Motion::new(pose(0.05, 0.0, 0.06), &OdometryTrust::default()));
+        let (at, motion) = (pose(1.0, -2.0, 0.7), Motion::new(pose(0.05, 0.0, 0.06)));
         let covariance = Matrix3::new(2.0, 0.3, 0.1, 0.3, 1.0, -0.2, 0.1, -0.2, 0.5) * 1e-4;
         let predicted = motion.predict(&at, &covariance, true);
         let off = Vector3::new(0.03, -0.02, 0.01);

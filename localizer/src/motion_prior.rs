@@ -3,11 +3,10 @@
 use crate::calibration::Calibration;
 use crate::constants::{DISTRUST_SCANS, MIN_MOTION};
 use crate::motion::Motion;
-use crate::settings::OdometryTrust;
 use nalgebra::Isometry2;
 
 /// The odometry of a robot.
-#[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
+#[derive(Clone, Debug, Default, serde::Deserialize, serde::Serialize)]
 pub(crate) struct MotionPrior {
     pub(crate) calibration: Calibration,
     /// The last valid odometry pose.
@@ -23,10 +22,6 @@ pub(crate) struct MotionPrior {
 }
 
 impl MotionPrior {
-    pub(crate) fn new(trust: &OdometryTrust) -> Self {
-        Self { calibration: Calibration::new(trust), last: None, origin: None, exists: false, distrust: 0 }
-    }
-
     /// Forgets where the odometry was; what was learned about its gains stays.
     pub(crate) fn begin_session(&mut self) {
         (self.last, self.origin, self.distrust) = (None, None, 0);
@@ -42,11 +37,10 @@ impl MotionPrior {
 
     /// The expected motion. Without odometry, the robot goes on as before.
     pub(crate) fn motion(&self, measured: &Isometry2<f64>, last_motion: &Isometry2<f64>) -> Motion {
-        let trust = &self.calibration.trust;
         match self.exists {
-            true if self.distrust == 0 => Motion::new(self.calibration.correct(measured), trust),
-            true => Motion::new(self.calibration.correct(measured), trust).distrusted(),
-            false => Motion::new(*last_motion, trust).distrusted(),
+            true if self.distrust == 0 => Motion::new(self.calibration.correct(measured)),
+            true => Motion::new(self.calibration.correct(measured)).distrusted(),
+            false => Motion::new(*last_motion).distrusted(),
         }
     }
 
@@ -64,7 +58,7 @@ mod tests {
     #[test]
     fn the_odometry_of_a_slow_robot_exists_and_that_of_a_standing_one_does_not() {
         let exists = |step_m: f64| {
-            let mut prior = MotionPrior::new(&OdometryTrust::default());
+            let mut prior = MotionPrior::default();
             for step in 0..100 {
                 prior.measure(&pose(step_m * f64::from(step), 0.0, 0.0));
             }

@@ -1,6 +1,7 @@
 //! Whether a map has openings: places where the known space goes on into space that was never seen.
 
 use interfaces::{Cell, CellState, Grid};
+use std::collections::BTreeSet;
 
 /// A narrower gap is no opening, m; cells so near to a surface are part of it.
 const OPENING_M: f64 = 0.5;
@@ -11,29 +12,10 @@ const OPENING_CELLS: i32 = 2;
 pub(crate) fn has_opening(states: &Grid<CellState>) -> bool {
     let frame = states.frame();
     let width = (OPENING_M / frame.resolution_m()).ceil() as i32;
-    let mut is_left: Vec<bool> = (0..frame.len()).map(|index| is_frontier(states, index)).collect();
-    for index in 0..frame.len() {
-        if !std::mem::take(&mut is_left[index]) {
-            continue;
-        }
-        // All frontier cells that are connected with this one.
-        let first = frame.cell(index);
-        let (mut low, mut high, mut open) = (first, first, vec![first]);
-        while let Some(cell) = open.pop() {
-            (low, high) = (
-                Cell::new(low.x.min(cell.x), low.y.min(cell.y)),
-                Cell::new(high.x.max(cell.x), high.y.max(cell.y)),
-            );
-            for next in cell.square(1) {
-                let is_new = frame.index(next).is_some_and(|next| std::mem::take(&mut is_left[next]));
-                open.extend(is_new.then_some(next));
-            }
-        }
-        if (high.x - low.x).max(high.y - low.y) + 1 >= width {
-            return true;
-        }
-    }
-    false
+    let mut frontier: BTreeSet<usize> =
+        (0..frame.len()).filter(|index| is_frontier(states, *index)).collect();
+    let mut parts = std::iter::from_fn(|| frame.take_connected(&mut frontier, 1));
+    parts.any(|cells| frame.longer_side(&cells) >= width)
 }
 
 /// Whether a cell was never seen, and is beside a free one and away from surfaces.

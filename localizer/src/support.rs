@@ -1,10 +1,6 @@
 //! How well a scan at a pose agrees with the maps.
 
-use crate::constants::{END_M, MOVED_M};
-use crate::matcher::derivative;
-use crate::placement::Placement;
-use crate::scan_points::ScanPoint;
-use crate::surfel_map::{Surfel, SurfelMap};
+use crate::constants::END_M;
 use crate::work;
 use interfaces::{CellState, FARTHEST_M, Grid, GridFrame, Scan};
 use nalgebra::{Isometry2, Matrix3, Point2, Vector2};
@@ -73,52 +69,8 @@ impl Support {
     }
 }
 
-/// Judges the points of a scan at a pose. A point within `gate_m` of a surfel is confirmed, within
-/// `place_m` it is in place.
-pub(crate) fn judge(
-    surfels: &SurfelMap,
-    states: &Grid<CellState>,
-    points: &[ScanPoint],
-    placement: &Placement,
-    laser: &Point2<f64>,
-    [place_m, gate_m]: [f64; 2],
-) -> Support {
-    let mut support = Support::default();
-    for point in points {
-        let at = placement.place(point);
-        let arm = at.coords - placement.pose.translation.vector;
-        let normal = placement.pose.rotation * point.normal;
-        match surfels.nearest(&at, &normal, gate_m) {
-            Some((index, off_m)) if surfels.surfel(index).weight() > 0.0 => {
-                support.confirmed += point.weight;
-                let surfel = surfels.surfel(index);
-                match off_m.abs() <= place_m {
-                    _ if !surfel.is_permanent() => {}
-                    true => support.in_place += point.weight,
-                    false => support.displaced += point.weight,
-                }
-                let j = derivative(&arm, &surfel.normal);
-                support.geometry += j * j.transpose() * point.weight;
-            }
-            Some(_) => support.new += point.weight,
-            None => {
-                let beside = surfels.nearest(&at, &normal, MOVED_M).map(|(index, _)| surfels.surfel(index));
-                if beside.is_some_and(Surfel::is_permanent) {
-                    support.displaced += point.weight;
-                }
-                // What has moved before says nothing against a pose.
-                match !beside.is_some_and(Surfel::is_suspect) && is_contradicted(states, laser, &at) {
-                    true => support.contradicted += point.weight,
-                    false => support.new += point.weight,
-                }
-            }
-        }
-    }
-    support
-}
-
 /// Whether a point on a surface contradicts the map: the map knows its cell as free, or something in front.
-fn is_contradicted(states: &Grid<CellState>, laser: &Point2<f64>, at: &Point2<f64>) -> bool {
+pub(crate) fn is_contradicted(states: &Grid<CellState>, laser: &Point2<f64>, at: &Point2<f64>) -> bool {
     state_at(states, at) == CellState::Free || passes_blocked(states, laser, at)
 }
 

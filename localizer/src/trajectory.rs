@@ -88,7 +88,6 @@ struct Attached {
 /// Finds the trajectory of a robot from its readings, one after the other. The same readings give the same bits.
 #[derive(Debug)]
 pub struct TrajectoryFinder {
-    settings: LocalizerSettings,
     pub(crate) builder: LocalTrajectoryBuilder<SubmapMatcher>,
     closer: LoopCloser,
     graph: PoseGraph,
@@ -104,10 +103,8 @@ impl TrajectoryFinder {
     pub fn new(settings: &LocalizerSettings) -> Result<Self, SettingsError> {
         settings.check()?;
         Ok(Self {
-            settings: settings.clone(),
             builder: LocalTrajectoryBuilder::new(
-                SubmapMatcher::new(settings),
-                &settings.odometry,
+                SubmapMatcher::new(settings.range_noise_std_m),
                 PointRules { noise_m: settings.range_noise_std_m, grazing: false },
             ),
             closer: LoopCloser::new(settings.range_noise_std_m),
@@ -170,7 +167,7 @@ impl TrajectoryFinder {
 
     /// Searches for the submaps that were finished since the last search.
     fn search_loops(&mut self) {
-        while let Some(submap) = self.builder.matcher.next_finished() {
+        while let Some(submap) = self.builder.matcher.finished.pop_front() {
             self.closer.add(submap, &self.builder.matcher.keyframes, &mut self.graph);
         }
     }

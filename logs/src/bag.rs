@@ -70,7 +70,7 @@ impl Bag {
         })?;
         missing.extend(inventory.notes.iter().cloned());
         let plan = Plan::new(&inventory, choice, &mut notes).map_err(|why| in_cut_file(why, &missing));
-        let mut plan = Arc::new(plan.map_err(unusable)?);
+        let plan = Arc::new(plan.map_err(unusable)?);
         let merged = messages::merged_topics(&inventory.order, &inventory.topics, |topic| plan.needs(topic));
         let merged = merged.map_err(unusable)?;
         if !merged.is_empty() {
@@ -79,30 +79,32 @@ impl Bag {
             notes.push(note.to_owned());
         }
         let (stamp_ns, log_ns) = inventory.begin_ns.unwrap_or_default();
-        let inspect = |clock| inspected(&files, &plan, clock, &merged, unusable);
-        let mut inspection = inspect(Clock::Stamps(stamp_ns))?;
+        let mut bag = Self { name: file.to_owned(), files, plan, clock: Clock::Stamps(stamp_ns), merged };
+        let mut inspection = bag.inspected()?;
         if let Some(of) = inspection.without_times() {
-            let recorded = inspect(Clock::Recording(log_ns))?;
-            let is_better = recorded.times.has_times && (of == SCANS || recorded.raw.has_pose_times());
-            if is_better {
+            let by_stamps = std::mem::replace(&mut bag.clock, Clock::Recording(log_ns));
+            let recorded = bag.inspected()?;
+            if recorded.times.has_times && (of == SCANS || recorded.raw.has_pose_times()) {
                 notes.push(format!("the stamps of the {of} are unusable: the times of the recording count"));
                 inspection = recorded;
+            } else {
+                bag.clock = by_stamps;
             }
         }
         let has_pose_times = inspection.raw.has_pose_times();
-        let Inspection { clock, raw, raw_s, standing, times } = inspection;
+        let Inspection { raw, raw_s, standing, times } = inspection;
         let odometry = &raw.assembler.odometry;
         let raw_begin_s = raw_s.first().copied().unwrap_or_default();
-        let stands = odometry.stands() && standing.looks_so() && plan.correction.is_none();
+        let stands = odometry.stands() && standing.looks_so() && bag.plan.correction.is_none();
         let impossible = raw.impossible();
-        notes.extend(odometry.holes_note().into_iter().chain(odometry.restarts_note(raw_begin_s)));
+        notes.extend(odometry.holes.note().into_iter().chain(odometry.restarts_note(raw_begin_s)));
         notes.extend(
             raw.corrections(raw_begin_s).map(|what| format!("the poses are those of another SLAM: {what}")),
         );
         if !has_pose_times {
             let what = "neither the stamps of the odometry nor the times of its recording advance: its motions are not used";
             notes.push(what.to_owned());
-        } else if odometry.stands() && !stands && !matches!(plan.motion, MotionSource::Standing) {
+        } else if odometry.stands() && !stands && !matches!(bag.plan.motion, MotionSource::Standing) {
             notes.push(standing.note().to_owned());
         }
         let counts = raw.counts;
@@ -116,7 +118,7 @@ impl Bag {
             return Err(unusable(in_cut_file(why, &missing)));
         }
         notes.extend(times.note.clone());
-        if let (Clock::Stamps(_), Some(duration_s)) = (clock, times.times_s.last()) {
+        if let (Clock::Stamps(_), Some(duration_s)) = (bag.clock, times.times_s.last()) {
             let recorded_s = inventory.end_ns.saturating_sub(log_ns) as f64 * 1e-9;
             notes.extend(times::other_pace(*duration_s, recorded_s));
         }
@@ -126,13 +128,13 @@ impl Bag {
         }
         notes.splice(0..0, missing);
         let since = |ns: i64, begin_s: f64| since_epoch(ns as f64 * 1e-9 + begin_s);
-        let (begin_s, by_recording_s) = match clock {
+        let (begin_s, by_recording_s) = match bag.clock {
             Clock::Stamps(_) => (since(stamp_ns, times.begin_s), since(log_ns, raw_begin_s)),
             Clock::Recording(_) => (since(log_ns, times.begin_s), None),
         };
         notes.extend(begin_s.and(times.date_note()));
         let begin_s = begin_s.or(by_recording_s).filter(|_| times.has_times);
-        let mut scan_topics: Vec<String> = plan.lasers.iter().map(|laser| laser.topic.clone()).collect();
+        let mut scan_topics: Vec<String> = bag.plan.lasers.iter().map(|laser| laser.topic.clone()).collect();
         scan_topics.dedup();
         let summary = LogSummary {
             scans: times.times_s.len(),
@@ -146,16 +148,34 @@ impl Bag {
             impossible: impossible.or_else(|| counts.doubts.impossible(counts.invalid_scans, stands)),
         };
         if stands {
-            Arc::make_mut(&mut plan).motion = MotionSource::Standing;
+            Arc::make_mut(&mut bag.plan).motion = MotionSource::Standing;
         }
-        let name = file.to_owned();
-        Ok(Log::new(Self { name, files, plan, clock, merged }, times.times_s, summary))
+        Ok(Log::new(bag, times.times_s, summary))
+    }
+
+    fn raw(&self) -> RawReadings {
+        let needed = self.plan.clone();
+        let messages = Merged::new(&self.files, move |topic: &Topic| needed.needs(topic), &self.merged);
+        RawReadings::new(messages, &self.plan, self.clock)
+    }
+
+    /// Reads all scans once.
+    fn inspected(&self) -> Result<Inspection, LogError> {
+        let (mut raw, mut raw_s, mut standing) = (self.raw(), Vec::new(), Standing::default());
+        while let Some(reading) = raw.next_reading()? {
+            let unusable = |why| LogError::Unusable { file: self.name.clone(), why };
+            bounds::one_more(raw_s.len()).map_err(unusable)?;
+            raw_s.push(reading.time_s);
+            standing.add(&reading.mount, &reading.scan);
+        }
+        let times = times::repaired(&raw_s);
+        Ok(Inspection { raw, raw_s, standing, times })
     }
 }
 
 impl Source for Bag {
     fn raw_readings(&self) -> Result<Box<dyn log::RawReadings + Send>, LogError> {
-        Ok(Box::new(raw_readings(&self.files, &self.plan, self.clock, &self.merged)))
+        Ok(Box::new(self.raw()))
     }
 
     fn content_hash(&self) -> Result<u128, LogError> {
@@ -164,15 +184,8 @@ impl Source for Bag {
     }
 }
 
-fn raw_readings(files: &[BagFile], plan: &Arc<Plan>, clock: Clock, merged: &[Arc<Topic>]) -> RawReadings {
-    let needed = plan.clone();
-    let messages = Merged::new(files, move |topic: &Topic| needed.needs(topic), merged);
-    RawReadings::new(messages, plan, clock)
-}
-
 /// What a pass over all scans finds.
 struct Inspection {
-    clock: Clock,
     /// The readings at their end.
     raw: RawReadings,
     /// The times of the scans, s, and how the scans look.
@@ -190,25 +203,6 @@ impl Inspection {
             (true, true) => None,
         }
     }
-}
-
-/// Reads all scans once.
-fn inspected(
-    files: &[BagFile],
-    plan: &Arc<Plan>,
-    clock: Clock,
-    merged: &[Arc<Topic>],
-    unusable: impl Fn(String) -> LogError,
-) -> Result<Inspection, LogError> {
-    let mut raw = raw_readings(files, plan, clock, merged);
-    let (mut raw_s, mut standing) = (Vec::new(), Standing::default());
-    while let Some(reading) = raw.next_reading()? {
-        bounds::one_more(raw_s.len()).map_err(&unusable)?;
-        raw_s.push(reading.time_s);
-        standing.add(&reading.mount, &reading.scan);
-    }
-    let times = times::repaired(&raw_s);
-    Ok(Inspection { clock, raw, raw_s, standing, times })
 }
 
 impl Counts {

@@ -66,9 +66,4 @@ impl Lines {
         let text = self.reader.get_ref();
         text.is_cut.then_some((text.packed, text.count))
     }
-
-    /// The error for the last line.
-    pub(crate) fn error(&self, what: String) -> LogError {
-        LogError::line(&self.file, self.number, what)
-    }
 }

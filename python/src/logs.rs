@@ -158,7 +158,7 @@ impl Signal {
     }
 
     /// The result of a pass that the signal may have ended.
-    fn or<T>(&mut self, result: Result<T, survey::PassError>) -> PyResult<T> {
+    fn or<T>(&mut self, result: Result<T, survey::SurveyError>) -> PyResult<T> {
         match self.0.take() {
             Some(signal) => Err(signal),
             None => result.map_err(value_error),

@@ -1,8 +1,23 @@
 use interfaces::SettingsError;
+use localizer::PlaceError;
+use logs::LogError;
+use mapper::ReadingError;
 
 /// The error for logs from which no map can be made.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Debug, thiserror::Error)]
 pub enum SurveyError {
+    /// A log cannot be read.
+    #[error(transparent)]
+    Log(#[from] LogError),
+    /// The mapper refuses a reading.
+    #[error(transparent)]
+    Reading(#[from] ReadingError),
+    /// A later log finds no place in the map of the first one.
+    #[error(transparent)]
+    Alignment(#[from] PlaceError),
+    /// The callback has interrupted the first pass.
+    #[error("the first pass was interrupted")]
+    Interrupted,
     /// A setting is out of range.
     #[error(transparent)]
     Settings(#[from] SettingsError),

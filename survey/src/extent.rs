@@ -78,16 +78,14 @@ fn enough_m(resolution_m: f64, share: f64) -> f64 {
     (enough_m / digit).ceil() * digit
 }
 
-/// The cells that cover what was hit from these poses. The cells lie on multiples of their side, so that two surveys of
-/// a place have the same cells.
-pub(crate) fn frame<'a>(
-    reaches: impl Iterator<Item = (&'a Isometry2<f64>, &'a Reach)>,
+/// The cells that cover these points. The cells lie on multiples of their side, so that two surveys of a place have the same cells.
+pub(crate) fn frame(
+    points: impl Iterator<Item = Point2<f64>>,
     resolution_m: f64,
 ) -> Result<GridFrame, SurveyError> {
-    let points = reaches.flat_map(|(pose, reach)| reach.hits().map(move |hit| pose * hit));
     let spans = points.map(|point| (point, point));
-    let low_and_high = spans.reduce(|(low, high), (point, _)| (low.inf(&point), high.sup(&point)));
-    let (low, high) = low_and_high.ok_or(SurveyError::NoPlace)?;
+    let span = spans.reduce(|(low, high), (point, _)| (low.inf(&point), high.sup(&point)));
+    let (low, high) = span.ok_or(SurveyError::NoPlace)?;
     around(low, high, resolution_m)
 }
 

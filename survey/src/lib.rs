@@ -42,7 +42,7 @@ pub use error::SurveyError;
 pub use forecast::{Forecast, NEAR_M};
 pub use masks::{MASKS, masks, masks_ahead, permanent};
 pub use outlook::{Outlook, doors};
-pub use passes::{PassError, Stage};
+pub use passes::Stage;
 pub use places::{
     Direction, Lasting, Place, PlaceKind, PlaceName, PlaceRates, PlaceSince, Since, StillName, TrafficTile,
     Trend, is_line,

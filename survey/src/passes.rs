@@ -2,34 +2,13 @@
 
 use crate::error::SurveyError;
 use crate::replay::judged;
-use crate::route::{FirstPass, Route, frame, uncertain};
+use crate::route::{FirstPass, Route, uncertain};
 use crate::settings::SurveySettings;
 use interfaces::{GridFrame, LaserReading, PoseMode, heading_rad, median};
-use localizer::{KnownPlace, PlaceError, PoseState, RouteSearch, Start, TrajectoryPose};
-use logs::{Log, LogError};
-use mapper::ReadingError;
+use localizer::{KnownPlace, PoseState, RouteSearch, Start, TrajectoryPose};
+use logs::Log;
 use nalgebra::{Isometry2, Vector2};
 use std::ops::ControlFlow;
-
-/// The error of a pass over a log.
-#[derive(Debug, thiserror::Error)]
-pub enum PassError {
-    /// A log cannot be read.
-    #[error(transparent)]
-    Log(#[from] LogError),
-    /// The mapper refuses a reading.
-    #[error(transparent)]
-    Reading(#[from] ReadingError),
-    /// No map can be made.
-    #[error(transparent)]
-    Survey(#[from] SurveyError),
-    /// A later log finds no place in the map of the first one.
-    #[error(transparent)]
-    Alignment(#[from] PlaceError),
-    /// The callback has interrupted the pass.
-    #[error("the first pass was interrupted")]
-    Interrupted,
-}
 
 /// What the first pass does with a log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -73,7 +52,7 @@ impl<W: FnMut((Stage, usize)) -> ControlFlow<()>> RoutePass<'_, W> {
     /// When a setting is out of range, when the log cannot be read, when its scans turn against its poses, when most of them
     /// have no certain pose, when they move otherwise than its odometry, when the place is too large for a map, and when the pass
     /// is interrupted.
-    pub(crate) fn route(&mut self) -> Result<Route, PassError> {
+    pub(crate) fn route(&mut self) -> Result<Route, SurveyError> {
         let mut odometry = Vec::new();
         let settings = self.settings;
         let route = Route::of_passes(settings, |pass| self.trajectory(pass, &mut odometry))?;
@@ -82,7 +61,7 @@ impl<W: FnMut((Stage, usize)) -> ControlFlow<()>> RoutePass<'_, W> {
         }
         let (left_out, scans) = (uncertain(&route.trajectory.poses), route.trajectory.poses.len());
         if left_out * 2 > scans {
-            return Err(SurveyError::MostLeftOut { left_out, scans }.into());
+            return Err(SurveyError::MostLeftOut { left_out, scans });
         }
         check_odometry(&route.trajectory.poses, &odometry)?;
         Ok(route)
@@ -93,7 +72,7 @@ impl<W: FnMut((Stage, usize)) -> ControlFlow<()>> RoutePass<'_, W> {
         &mut self,
         mut pass: FirstPass,
         odometry: &mut Vec<Isometry2<f64>>,
-    ) -> Result<Route, PassError> {
+    ) -> Result<Route, SurveyError> {
         odometry.clear();
         self.each_reading(Stage::Trajectory, |_, reading| {
             odometry.push(reading.pose);
@@ -115,7 +94,7 @@ impl<W: FnMut((Stage, usize)) -> ControlFlow<()>> RoutePass<'_, W> {
     /// # Errors
     ///
     /// As for [`RoutePass::route`], and when the log finds no place in the map of the first one.
-    pub(crate) fn in_place(&mut self, place: &KnownPlace, all_stand: bool) -> Result<Route, PassError> {
+    pub(crate) fn in_place(&mut self, place: &KnownPlace, all_stand: bool) -> Result<Route, SurveyError> {
         let route = self.route()?;
         let start = if all_stand { Start::At(Isometry2::identity()) } else { Start::Unknown };
         let mut search = RouteSearch::new(place, start, route.trajectory.poses.len());
@@ -134,7 +113,7 @@ impl<W: FnMut((Stage, usize)) -> ControlFlow<()>> RoutePass<'_, W> {
     /// # Errors
     ///
     /// As for [`RoutePass::route`], and when the place is too large for a map.
-    pub(crate) fn place(&mut self, route: &Route) -> Result<KnownPlace, PassError> {
+    pub(crate) fn place(&mut self, route: &Route) -> Result<KnownPlace, SurveyError> {
         let mut place = KnownPlace::new(&around(route, self.settings)?);
         let mut filter = self.settings.scan_filter();
         let no_returns = judged(self.log, &route.trajectory.poses, &self.settings.filter)?;
@@ -159,7 +138,7 @@ impl<W: FnMut((Stage, usize)) -> ControlFlow<()>> RoutePass<'_, W> {
         &mut self,
         stage: Stage,
         mut add: impl FnMut(usize, LaserReading) -> Result<(), SurveyError>,
-    ) -> Result<(), PassError> {
+    ) -> Result<(), SurveyError> {
         self.report(stage, 0)?;
         for (index, reading) in self.log.readings()?.enumerate() {
             add(index, reading?)?;
@@ -168,17 +147,17 @@ impl<W: FnMut((Stage, usize)) -> ControlFlow<()>> RoutePass<'_, W> {
         Ok(())
     }
 
-    fn report(&mut self, stage: Stage, readings: usize) -> Result<(), PassError> {
+    fn report(&mut self, stage: Stage, readings: usize) -> Result<(), SurveyError> {
         match (self.watch)((stage, readings)) {
             ControlFlow::Continue(()) => Ok(()),
-            ControlFlow::Break(()) => Err(PassError::Interrupted),
+            ControlFlow::Break(()) => Err(SurveyError::Interrupted),
         }
     }
 }
 
 /// The rectangle of the surfaces in which later logs find their place: more than the extent of the first route.
 fn around(first: &Route, settings: &SurveySettings) -> Result<GridFrame, SurveyError> {
-    let extent = frame(std::slice::from_ref(first), settings)?;
+    let extent = first.frame(settings)?;
     let around = (AROUND_M / extent.resolution_m()).ceil();
     let origin = extent.origin() - Vector2::repeat(around * extent.resolution_m());
     let [width, height] = [extent.width(), extent.height()].map(|cells| cells + 2 * around as usize);

@@ -3,7 +3,7 @@
 //! The noise of a laser makes cells change one by one or a few together. What a robot can meet is larger: the two legs of a person, a
 //! chair, the leaf of a door.
 
-use interfaces::{Cell, GridFrame};
+use interfaces::GridFrame;
 use std::collections::BTreeSet;
 
 /// A patch has at least this length and width, m, or this area in another form: as the legs of a person.
@@ -19,44 +19,20 @@ pub(crate) fn areas(frame: &GridFrame, cells: &[usize]) -> Vec<usize> {
 /// from one side, only the front changes, which is one cell deep.
 pub(crate) fn fronts(frame: &GridFrame, cells: &[usize]) -> Vec<usize> {
     let least = (PATCH_M[0] / frame.resolution_m()).round().max(1.0) as i32;
-    let length = |patch: &[usize], along: fn(Cell) -> i32| {
-        let places = || patch.iter().map(|index| along(frame.cell(*index)));
-        places().max().unwrap_or_default() - places().min().unwrap_or_default() + 1
-    };
-    connected_where(frame, cells, |patch| {
-        length(patch, |cell| cell.x).max(length(patch, |cell| cell.y)) >= least
-    })
+    connected_where(frame, cells, |patch| frame.longer_side(patch) >= least)
 }
 
 /// The cells of all connected patches that are kept, in ascending order as `cells`.
 fn connected_where(frame: &GridFrame, cells: &[usize], is_kept: impl Fn(&[usize]) -> bool) -> Vec<usize> {
     let mut left: BTreeSet<usize> = cells.iter().copied().collect();
     let mut found = Vec::new();
-    while let Some(first) = left.pop_first() {
-        let patch = connected(frame, first, 1, &mut left);
+    while let Some(patch) = frame.take_connected(&mut left, 1) {
         if is_kept(&patch) {
             found.extend(patch);
         }
     }
     found.sort_unstable();
     found
-}
-
-/// The cells of `left` that are connected with `first`, with it; they are removed from `left`. Cells are connected up to a distance
-/// of `reach` along both axes: with 1, by sides or corners.
-pub(crate) fn connected(
-    frame: &GridFrame,
-    first: usize,
-    reach: i32,
-    left: &mut BTreeSet<usize>,
-) -> Vec<usize> {
-    let (mut cells, mut next) = (vec![first], 0);
-    while let Some(cell) = cells.get(next).map(|index| frame.cell(*index)) {
-        next += 1;
-        let around = cell.square(reach).filter_map(|cell| frame.index(cell));
-        cells.extend(around.filter(|index| left.remove(index)));
-    }
-    cells
 }
 
 #[cfg(test)]

@@ -13,21 +13,15 @@ const STD_PER_MAD: f64 = 1.4826;
 const NOISY_SHARE: f64 = 0.1;
 
 /// Scans of one laser that stands, a few hundred of a log.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct RangeNoise {
     /// The pose and the mount of the laser; `None` before the first scan.
     stands: Option<(Isometry2<f64>, Isometry2<f64>)>,
     has_moved: bool,
     scans: Vec<Vec<f32>>,
-    /// One in this number of scans is kept.
-    every: usize,
+    /// How often every second scan was left out: one in 2^n scans is kept.
+    halvings: u32,
     passed: usize,
-}
-
-impl Default for RangeNoise {
-    fn default() -> Self {
-        Self { stands: None, has_moved: false, scans: Vec::new(), every: 1, passed: 0 }
-    }
 }
 
 impl RangeNoise {
@@ -40,7 +34,7 @@ impl RangeNoise {
         if self.has_moved || is_other {
             return;
         }
-        if self.passed.is_multiple_of(self.every) {
+        if self.passed.is_multiple_of(1 << self.halvings) {
             self.scans.push(valid(&reading.scan));
         }
         self.passed += 1;
@@ -50,7 +44,7 @@ impl RangeNoise {
                 is_kept = !is_kept;
                 is_kept
             });
-            self.every *= 2;
+            self.halvings += 1;
         }
     }
 

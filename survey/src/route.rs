@@ -37,10 +37,10 @@ impl Route {
     /// # Errors
     ///
     /// When a setting is out of range, and those of `pass_over`.
-    pub fn of_passes<E: From<SurveyError>>(
+    pub fn of_passes(
         settings: &SurveySettings,
-        mut pass_over: impl FnMut(FirstPass) -> Result<Self, E>,
-    ) -> Result<Self, E> {
+        mut pass_over: impl FnMut(FirstPass) -> Result<Self, SurveyError>,
+    ) -> Result<Self, SurveyError> {
         let route = pass_over(FirstPass::new(settings)?)?;
         match route.trajectory.distance_scale.filter(|scale| scale.is_significant() && scale.is_plausible()) {
             Some(scale) => {
@@ -85,6 +85,20 @@ impl Route {
         self
     }
 
+    /// The cells of the map that cover what was seen along the route.
+    ///
+    /// # Errors
+    ///
+    /// When no reading has a certain pose, or when the place is too large for a map.
+    pub(crate) fn frame(&self, settings: &SurveySettings) -> Result<GridFrame, SurveyError> {
+        let readings = self.trajectory.poses.iter().zip(&self.reaches);
+        let certain = readings.filter(|(at, _)| at.state == PoseState::Tracking);
+        extent::frame(
+            certain.flat_map(|(at, reach)| reach.hits().map(|hit| at.pose * hit)),
+            settings.resolution_m,
+        )
+    }
+
     /// The route in another frame, whose pose of this frame is `by`.
     #[must_use]
     pub fn moved(mut self, by: &Isometry2<f64>) -> Self {
@@ -105,18 +119,6 @@ pub(crate) fn distance_m(from: &TrajectoryPose, to: &TrajectoryPose) -> f64 {
 /// The number of readings in a part of a route whose scan does not support their pose.
 pub(crate) fn uncertain(poses: &[TrajectoryPose]) -> usize {
     poses.iter().filter(|pose| pose.state != PoseState::Tracking).count()
-}
-
-/// The cells that cover what was seen along all routes.
-///
-/// # Errors
-///
-/// When no reading has a certain pose, or when the place is too large for a map.
-pub(crate) fn frame(routes: &[Route], settings: &SurveySettings) -> Result<GridFrame, SurveyError> {
-    let readings = routes.iter().flat_map(|route| route.trajectory.poses.iter().zip(&route.reaches));
-    let used = readings.filter(|(pose, _)| pose.state == PoseState::Tracking);
-    let placed = used.map(|(pose, reach)| (&pose.pose, reach));
-    extent::frame(placed, settings.resolution_m)
 }
 
 /// The first pass over a log: its trajectory, and how far its readings reach.

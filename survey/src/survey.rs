@@ -10,11 +10,10 @@ pub use saved::{saved_logs, saved_settings};
 use crate::change_log::ChangeLog;
 use crate::error::SurveyError;
 use crate::extent::{check_seen, too_much, union};
-use crate::passes::{PassError, RoutePass, Stage};
+use crate::passes::{RoutePass, Stage};
 use crate::places::{Place, PlaceBook, PlaceName, Since, StillName, places, since, still_names};
 use crate::quality::Verdict;
 use crate::replay::{FoundPoses, Replay, judged};
-use crate::route::frame;
 use crate::settings::SurveySettings;
 use crate::silence::max_step_s;
 use crate::surveyed_log::{LogEntry, SurveyedLog};
@@ -39,7 +38,8 @@ pub struct Survey {
     place: Option<KnownPlace>,
     /// The robot that reads the logs; `None` before the first reading was learned.
     robot: Option<Robot<LaserReading, NoPilot>>,
-    changes: ChangeLog,
+    /// When the cells changed last.
+    pub changes: ChangeLog,
     book: PlaceBook,
     logs: Vec<SurveyedLog>,
     /// The area that was seen in the first passes of this run, m².
@@ -78,11 +78,6 @@ impl Survey {
         filter.map(|filter| filter.no_returns().evidence().collect()).unwrap_or_default()
     }
 
-    /// When the cells changed last.
-    pub fn changes(&self) -> &ChangeLog {
-        &self.changes
-    }
-
     /// The places where something changes, those with the most change first; none before the first reading was learned.
     pub fn places(&self) -> Vec<Place> {
         self.mapper().map(|mapper| places(mapper, &self.changes, &self.book)).unwrap_or_default()
@@ -90,12 +85,12 @@ impl Survey {
 
     /// Gives names to places, in this session and all later ones, instead of those given before.
     pub fn name_places(&mut self, names: Vec<PlaceName>) {
-        self.book.set_names(names);
+        self.book.names = names;
     }
 
     /// The names that none of these places has: nothing changes there, as far as it was seen.
     pub fn still_names(&self, places: &[Place]) -> Vec<StillName> {
-        self.mapper().map(|mapper| still_names(mapper, self.book.names(), places)).unwrap_or_default()
+        self.mapper().map(|mapper| still_names(mapper, &self.book.names, places)).unwrap_or_default()
     }
 
     /// What is different at these places since the last session; `None` in the first one. A session is one visit of the
@@ -177,7 +172,7 @@ impl Survey {
         entry: LogEntry,
         is_followed: bool,
         watch: impl FnMut((Stage, usize)) -> ControlFlow<()>,
-    ) -> Result<(), PassError> {
+    ) -> Result<(), SurveyError> {
         let all_stand = entry.stands && self.logs.iter().all(|log| log.entry.stands);
         let mut pass = RoutePass { log, settings: &self.settings, watch };
         let route = match &self.place {
@@ -185,7 +180,7 @@ impl Survey {
             None => pass.route()?,
         }
         .without_doubts();
-        let frame = frame(std::slice::from_ref(&route), &self.settings)?;
+        let frame = route.frame(&self.settings)?;
         if is_followed && self.place.is_none() {
             self.place = Some(pass.place(&route)?);
         }
@@ -202,7 +197,7 @@ impl Survey {
     ///
     /// When the log cannot be read, and when the map is too large. `None` if the log has no such reading: it is another one
     /// than in the first pass.
-    pub fn replay(&mut self, number: usize, log: &Log) -> Result<Option<Replay>, PassError> {
+    pub fn replay(&mut self, number: usize, log: &Log) -> Result<Option<Replay>, SurveyError> {
         let Some(surveyed) = self.logs.get(number) else { return Ok(None) };
         let (settings, route, used) = (self.settings_of(number), surveyed.route(), surveyed.used);
         let mut filter = ScanFilter::judged(&settings.filter, judged(log, route, &settings.filter)?);
@@ -264,7 +259,7 @@ impl Survey {
     /// # Errors
     ///
     /// When the log cannot be read to its end, when the mapper refuses a reading, and when the map has taken all of its memory.
-    pub fn turn(&mut self, replay: &mut Replay) -> Result<Option<Turn<LaserReading, ()>>, PassError> {
+    pub fn turn(&mut self, replay: &mut Replay) -> Result<Option<Turn<LaserReading, ()>>, SurveyError> {
         let Self { robot: Some(robot), changes, book, logs, .. } = self else { return Ok(None) };
         let (Some(reading), Some(log)) = (replay.next()?, logs.get_mut(replay.number)) else {
             return Ok(None);
@@ -275,7 +270,7 @@ impl Survey {
         book.note(&robot.mapper);
         if robot.mapper.is_full() {
             let part = log.used as f64 / log.route().len().max(log.used) as f64;
-            return Err(too_much(self.seen_m2, robot.mapper.bytes() as f64 / part, &self.settings).into());
+            return Err(too_much(self.seen_m2, robot.mapper.bytes() as f64 / part, &self.settings));
         }
         if replay.is_over() {
             log.readings = log.used;

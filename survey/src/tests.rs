@@ -4,12 +4,7 @@ mod corrected;
 mod refused;
 mod scaled;
 
-use crate::places::{PlaceBook, places};
-use crate::route::frame;
-use crate::{
-    ChangeLog, FirstPass, LogEntry, PassError, Route, Stage, Survey, SurveyError, SurveySettings, masks,
-    permanent,
-};
+use crate::{FirstPass, LogEntry, Route, Stage, Survey, SurveyError, SurveySettings, masks, permanent};
 use interfaces::{
     Cell, CellReading, CellState, Grid, GridFrame, LaserReading, PoseMode, SMALL_GRID, Scan, Twist, World,
     heading_rad,
@@ -28,41 +23,13 @@ fn scan(ranges_m: Vec<f32>) -> Scan {
     Scan { angle_increment_rad: TAU / 360.0, range_max_m: 20.0, ranges_m, ..Scan::default() }
 }
 
-/// A map of 10 × 1 cells in which the cells from 2 to 4 are blocked for `blocked` of 10 readings, 100 times.
-fn changing(blocked: usize) -> (Mapper, ChangeLog, PlaceBook) {
-    let frame = GridFrame::new(Point2::origin(), 0.1, 10, 1).unwrap();
-    let mut mapper = Mapper::new(&MapperSettings::default(), frame).unwrap();
-    let (mut log, mut book) = (ChangeLog::default(), PlaceBook::default());
-    for time in 0..1000 {
-        let is_blocked = |x: i32| (2..5).contains(&x) && time % 10 < blocked || x == 9;
-        let cells = (0..10).map(|x| (interfaces::Cell { x, y: 0 }, is_blocked(x))).collect();
-        mapper.update(&CellReading { time: time as f64, pose: Isometry2::identity(), cells }).unwrap();
-        log.note(&mapper);
-        book.note(&mapper);
-    }
-    (mapper, log, book)
-}
-
-#[test]
-fn a_place_says_where_how_often_and_when_last() {
-    let (mapper, log, book) = changing(3);
-    let places = places(&mapper, &log, &book);
-    let [place] = &places[..] else { panic!("{places:?}") };
-    assert!((place.x_m - 0.35).abs() < 1e-9 && (place.area_m2 - 0.03).abs() < 1e-9, "{place:?}");
-    assert!((place.low_m[0] - 0.2).abs() < 1e-9 && (place.high_m[0] - 0.5).abs() < 1e-9, "{place:?}");
-    // One cycle in 10 s, and blocked for 3 of them.
-    let rates = place.rates.as_ref().unwrap();
-    assert!((rates.cycles_per_hour / 360.0 - 1.0).abs() < 0.05, "{place:?}");
-    assert!((rates.share_blocked - 0.3).abs() < 0.02, "{place:?}");
-    let [low, high] = rates.cycles_per_hour_90.map(Option::unwrap);
-    assert!(low < 360.0 && high > 360.0 && high < 2.0 * low, "{place:?}");
-    assert_eq!((rates.last_change_s, place.changes, log.events()), (993.0, 199, 3 * 199));
-}
-
 #[test]
 fn movers_are_not_permanent_and_masks_say_where_they_are() {
     for (blocked, is_usually) in [(3, false), (8, true)] {
-        let (mapper, ..) = changing(blocked);
+        let frame = GridFrame::new(Point2::origin(), 0.1, 10, 1).unwrap();
+        // The cells from 2 to 4 are blocked in some of 10 seconds.
+        let mapper =
+            watched(frame, 1000, |cell, time| (2..5).contains(&cell.x) && time % 10 < blocked || cell.x == 9);
         let map = permanent(&mapper);
         assert_eq!(map.cells()[3], CellState::Free);
         assert_eq!(map.cells()[9], CellState::Blocked);
@@ -149,7 +116,7 @@ fn a_later_log_finds_its_place_in_the_first_one() {
         pose: found.pose,
         ..settings.scan_filter().filter(reading.clone())
     };
-    let mut place = KnownPlace::new(&frame(std::slice::from_ref(&first), &settings).unwrap());
+    let mut place = KnownPlace::new(&first.frame(&settings).unwrap());
     readings
         .iter()
         .zip(&first.trajectory.poses)
@@ -208,7 +175,7 @@ fn surveyed(
     logs: &[&Log],
     settings: &SurveySettings,
     mut watch: impl FnMut((Stage, usize)) -> ControlFlow<()>,
-) -> Result<Survey, PassError> {
+) -> Result<Survey, SurveyError> {
     let mut survey = Survey::new(settings.clone(), true);
     for (number, log) in logs.iter().enumerate() {
         let entry = entry(log, 1000.0 * number as f64);
@@ -250,7 +217,7 @@ fn the_first_pass_finds_the_routes_of_all_logs_in_one_frame() {
         calls += 1;
         if readings == 3 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });
-    assert!(matches!(interrupted, Err(PassError::Interrupted)));
+    assert!(matches!(interrupted, Err(SurveyError::Interrupted)));
     assert_eq!(calls, 4);
 }
 
@@ -290,7 +257,7 @@ fn lasers_that_stand_are_compared() {
     // A place of which the first log shows nothing.
     let other = LaserReading { scan: scan(vec![1.0; 360]), ..readings[0].clone() };
     let refused = route_of(&log("other.mcap", &other, 100.0)).unwrap_err();
-    assert!(matches!(refused, PassError::Alignment(_)), "{refused}");
+    assert!(matches!(refused, SurveyError::Alignment(_)), "{refused}");
 }
 
 #[test]
@@ -301,7 +268,7 @@ fn a_place_too_large_for_a_map_is_named() {
         let settings = SurveySettings { resolution_m, ..SurveySettings::of(PoseMode::Exact) };
         let mut pass = FirstPass::new(&settings).unwrap();
         readings[..2].iter().for_each(|reading| pass.add(reading.clone()));
-        (pass.check(), frame(&[pass.finish()], &settings))
+        (pass.check(), pass.finish().frame(&settings))
     };
     let (check, found) = passed(0.005);
     // Known before the pass is over.
@@ -328,14 +295,14 @@ fn a_place_of_which_too_much_is_seen_names_a_resolution_that_is_enough() {
         let mut replay = survey.replay(0, &log)?.unwrap();
         while survey.turn(&mut replay)?.is_some() {}
         let mapper = survey.mapper().unwrap();
-        Ok::<_, PassError>((mapper.bytes(), mapper.frame().len() <= SMALL_GRID))
+        Ok::<_, SurveyError>((mapper.bytes(), mapper.frame().len() <= SMALL_GRID))
     };
     let (needed, is_small) = mapped(0.02, usize::MAX).unwrap();
     assert!(!is_small);
     // Known after the first pass, and only found out in the second one.
     for max_bytes in [needed / 3, needed - 1] {
         let error = mapped(0.02, max_bytes).unwrap_err();
-        let PassError::Survey(SurveyError::TooLarge { what, enough_m }) = error else { panic!("{error}") };
+        let SurveyError::TooLarge { what, enough_m } = error else { panic!("{error}") };
         let seen_m2: f64 = what.split(' ').nth(1).unwrap().parse().unwrap();
         assert!((20.0..200.0).contains(&seen_m2) && enough_m > 0.02, "{seen_m2} m², {enough_m} m");
         let (used, is_small) = mapped(enough_m, max_bytes).unwrap();
@@ -358,7 +325,7 @@ fn the_second_pass_draws_the_house_without_changes() {
     while survey.turn(&mut replay).unwrap().is_some() {
         seen += 1;
     }
-    let (mapper, changes, route) = (survey.mapper().unwrap(), survey.changes(), survey.logs()[0].route());
+    let (mapper, changes, route) = (survey.mapper().unwrap(), &survey.changes, survey.logs()[0].route());
     let frame = *mapper.frame();
     assert_eq!((seen, mapper.readings()), (count, count));
     assert!((mapper.time() - 1000.0 - route.last().unwrap().time_s).abs() < 1e-9);
@@ -391,5 +358,5 @@ fn settings_are_checked() {
         assert!(matches!(FirstPass::new(&settings), Err(SurveyError::Settings(_))));
     }
     let empty = FirstPass::new(&SurveySettings::default()).unwrap().finish();
-    assert_eq!(frame(&[empty], &SurveySettings::default()), Err(SurveyError::NoPlace));
+    assert!(matches!(empty.frame(&SurveySettings::default()), Err(SurveyError::NoPlace)));
 }

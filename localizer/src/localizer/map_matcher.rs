@@ -6,11 +6,11 @@ mod relocalizing;
 use super::state::{Event, State};
 use crate::changing_map::ChangingMap;
 use crate::constants::{LOST_STD, MIN_SUPPORT, USABLE_SCANS};
-use crate::estimate::{PoseState, Start};
+use crate::estimate::Start;
 use crate::hypotheses::Hypotheses;
 use crate::local_trajectory_builder::{IncomingScan, Matched, ScanMatcher, Track};
 use crate::match_scene::{MatchScene, exact_m};
-use crate::motion::PosePrior;
+use crate::motion::Predicted;
 use crate::settings::LocalizerSettings;
 use crate::support::ClearBeams;
 use crate::surfel_map::{Checker, SurfelMap};
@@ -21,17 +21,17 @@ use relocalizing::Relocalization;
 
 /// Scans between two updates of the weights by rates.
 const RATES_EVERY: u32 = 100;
-/// Rest at the start from nothing, s: the first scans decide the heading of all that follows (0.076° → 0.024°).
-const SETTLE_S: f64 = 2.0;
+/// Learned rates of change lower the weight of a surface in a search by exp(−rate · horizon), s.
+const RATE_HORIZON_S: f64 = 1000.0;
 
 /// The map of changes, and what another source knows.
-type Around<'a> = (&'a dyn ChangingMap, Option<PosePrior>);
+type Around<'a> = (&'a dyn ChangingMap, Option<Predicted>);
 
 /// The values of one scan.
 pub(super) struct Step<'a> {
     pub(super) scan: &'a IncomingScan,
     pub(super) states: &'a Grid<CellState>,
-    pub(super) prior: Option<PosePrior>,
+    pub(super) prior: Option<Predicted>,
     pub(super) clear: &'a ClearBeams,
     pub(super) track: &'a mut Track,
     pub(super) found: MapFound,
@@ -140,16 +140,7 @@ impl MapMatcher {
         self.state = State::Uncertain;
     }
 
-    pub(super) fn wants_rest(&self) -> bool {
-        let elapsed_s = self.times.start_s.map_or(0.0, |start_s| self.times.now_s - start_s);
-        self.from_nothing && elapsed_s < SETTLE_S
-    }
-
-    pub(super) fn reported(&self) -> PoseState {
-        self.state.reported(self.is_timed_out())
-    }
-
-    fn is_timed_out(&self) -> bool {
+    pub(super) fn is_timed_out(&self) -> bool {
         self.times.now_s - self.times.supported_s > self.settings.lost_after_s
     }
 
@@ -204,7 +195,11 @@ impl<'a> ScanMatcher<Around<'a>> for MapMatcher {
     ) -> Matched<Self::Found> {
         self.times.now_s = scan.now_s;
         self.times.start_s.get_or_insert(scan.now_s);
-        self.weigh_by_rates(map);
+        self.times.readings = self.times.readings.wrapping_add(1);
+        // At the first reading, a known map may bring rates.
+        if self.times.readings == 1 || self.times.readings.is_multiple_of(RATES_EVERY) {
+            self.surfels.weigh_by_rates(map, RATE_HORIZON_S);
+        }
         self.by_odometry = scan.motion.apply(&self.by_odometry);
         if let Some(wide) = &mut self.relocalization.wide {
             wide.follow_odometry(&scan.motion);
@@ -246,17 +241,5 @@ impl<'a> ScanMatcher<Around<'a>> for MapMatcher {
         let scans = if self.surfels.is_empty() { USABLE_SCANS } else { 1 };
         self.surfels.learn(points, &track.pose, noise_m, scans, self.state == State::Tracking);
         self.checker.check(&mut self.surfels, &scan.reading, &track.pose);
-    }
-}
-
-impl MapMatcher {
-    fn weigh_by_rates(&mut self, map: &dyn ChangingMap) {
-        let (readings, horizon_s) = (&mut self.times.readings, self.settings.rate_horizon_s);
-        *readings = readings.wrapping_add(1);
-        // At the first reading, a known map may bring rates.
-        let is_due = *readings == 1 || readings.is_multiple_of(RATES_EVERY);
-        if is_due && horizon_s > 0.0 {
-            self.surfels.weigh_by_rates(map, horizon_s);
-        }
     }
 }

@@ -6,7 +6,7 @@ use crate::estimate::Start;
 use crate::faults::FaultFinder;
 use crate::local_trajectory_builder::LocalTrajectoryBuilder;
 use crate::surfel_map::SurfelMap;
-use interfaces::{CellState, Grid, ValueError, Values, value};
+use interfaces::{CellState, Grid, ValueError, Values, values};
 use nalgebra::{Isometry2, Matrix3};
 
 impl Localizer {
@@ -73,24 +73,10 @@ impl Localizer {
 
     fn values(&mut self) -> Values<'_> {
         let LocalTrajectoryBuilder { faults, motion_prior, matcher, track, time_s, .. } = &mut self.builder;
-        let mut values = matcher.surfels.values();
-        values.extend([
-            value(&mut matcher.checker),
-            value(&mut matcher.state),
-            value(&mut matcher.verification),
-            value(&mut matcher.relocalization.hypotheses),
-            value(&mut matcher.relocalization.scans),
-            value(&mut matcher.times),
-            value(&mut matcher.by_odometry),
-            value(&mut matcher.accepted_support),
-            value(&mut matcher.from_nothing),
-            value(&mut matcher.ignores_prior),
-            value(faults),
-            value(motion_prior),
-            value(track),
-            value(time_s),
-            value(&mut matcher.relocalization.wide),
-        ]);
-        values
+        values![
+            matcher.checker, matcher.state, matcher.verification, matcher.relocalization, matcher.times,
+            matcher.by_odometry, matcher.accepted_support, matcher.from_nothing, matcher.ignores_prior,
+            *faults, *motion_prior, *track, *time_s; matcher.surfels
+        ]
     }
 }

@@ -5,7 +5,7 @@ use crate::constants::NEAR_STD;
 use crate::estimate::{Localized, PoseEstimate, PoseState};
 use crate::first_map::{FirstMap, Kept};
 use crate::localizer::Localizer;
-use crate::motion::PosePrior;
+use crate::motion::Predicted;
 use interfaces::LaserReading;
 use mapper::Mapper;
 use std::sync::Arc;
@@ -64,7 +64,7 @@ impl Replay {
         &mut self,
         reading: &LaserReading,
         is_after_pause: bool,
-        near: Option<PosePrior>,
+        near: Option<Predicted>,
     ) -> PoseEstimate {
         if let Some(Localized { reading, estimate }) = self.last.take() {
             learn(&mut self.map, &reading, &estimate);
@@ -102,7 +102,7 @@ impl Replay {
     fn log(mut self, mut first: FirstMap) -> Replayed {
         let near = first.corrected();
         let read =
-            |(kept, near): (&Kept, PosePrior)| self.read(&kept.reading, kept.is_after_pause, Some(near));
+            |(kept, near): (&Kept, Predicted)| self.read(&kept.reading, kept.is_after_pause, Some(near));
         let estimates: Vec<PoseEstimate> = first.log.kept.iter().zip(near).map(read).collect();
         let is_certain = |state: PoseState| usize::from(state == PoseState::Tracking);
         let (mut before, mut after, mut largest_m) = (0, 0, 0.0_f64);

@@ -18,26 +18,19 @@ pub(super) fn passing_share(
     pose: &Isometry2<f64>,
     keyframes: &[Keyframe],
 ) -> f64 {
-    let pairs = [(from, to, *pose), (to, from, pose.inverse())];
-    let beams: Vec<bool> = pairs.iter().flat_map(|(a, b, pose)| passed(a, b, pose, keyframes)).collect();
-    beams.iter().filter(|is_passed| **is_passed).count() as f64 / beams.len().max(1) as f64
-}
-
-/// For each beam of one submap that reaches a surface of the other, whether it passes.
-fn passed(
-    seeing: &FinishedSubmap,
-    seen: &FinishedSubmap,
-    pose: &Isometry2<f64>,
-    keyframes: &[Keyframe],
-) -> Vec<bool> {
-    let back = keyframes[seeing.anchor].local.inverse();
-    let keyframes = keyframes[seeing.first..=seeing.last].iter().step_by(REFINE[1].0);
-    let of_keyframe = |keyframe: &Keyframe| {
-        let to_laser = (back * keyframe.local * keyframe.mount).inv_mul(pose);
-        let points = seen.points.iter().step_by(2);
-        points.filter_map(|point| is_passed(keyframe, point, &to_laser)).collect::<Vec<bool>>()
+    // For each beam of one submap that reaches a surface of the other, whether it passes.
+    let passed = |seeing: &FinishedSubmap, seen: &FinishedSubmap, pose: &Isometry2<f64>| {
+        let back = keyframes[seeing.anchor].local.inverse();
+        let of_keyframe = |keyframe: &Keyframe| {
+            let to_laser = (back * keyframe.local * keyframe.mount).inv_mul(pose);
+            let points = seen.points.iter().step_by(2);
+            points.filter_map(|point| is_passed(keyframe, point, &to_laser)).collect::<Vec<bool>>()
+        };
+        let keyframes = keyframes[seeing.first..=seeing.last].iter().step_by(REFINE[1].0);
+        keyframes.flat_map(of_keyframe).collect::<Vec<bool>>()
     };
-    keyframes.flat_map(of_keyframe).collect()
+    let beams = [passed(from, to, pose), passed(to, from, &pose.inverse())].concat();
+    beams.iter().filter(|is_passed| **is_passed).count() as f64 / beams.len().max(1) as f64
 }
 
 /// Whether the beams of a keyframe pass a surface; `None` if they do not reach it.

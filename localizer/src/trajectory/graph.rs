@@ -68,8 +68,8 @@ impl Edge {
         let information = self.information * weight;
         let error = self.error(poses);
         for (node, j) in [(self.from, &from), (self.to, &to)] {
-            equations.add_diagonal(node, &(j.transpose() * information * j));
-            equations.add_right(node, &-(j.transpose() * information * error));
+            equations.diagonal[node] += j.transpose() * information * j;
+            equations.right[node] -= j.transpose() * information * error;
         }
         equations.add_pair(self.from, self.to, &(from.transpose() * information * to));
     }
@@ -133,7 +133,7 @@ impl PoseGraph {
 
     fn step(&self, scale: f64) -> Option<Vec<Vector3<f64>>> {
         let mut equations = Equations::new(self.poses.len());
-        equations.add_diagonal(0, &(Matrix3::identity() * 1e12));
+        equations.diagonal[0] += Matrix3::identity() * 1e12;
         for edge in &self.edges {
             let root = scale / (scale + edge.square(&self.poses));
             let weight = if edge.is_loop { root * root } else { 1.0 };

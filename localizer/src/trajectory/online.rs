@@ -90,7 +90,7 @@ impl TrajectoryFinder {
     ) -> Option<(Isometry2<f64>, f64)> {
         let [from, to] = [found.from, found.to].map(|number| &self.closer.places.submaps[number]);
         let map = SurfelMap::of_points(&from.points)?;
-        let fit = |motion| fit(&map, &to.points, motion, FOUND_STD, self.settings.range_noise_std_m);
+        let fit = |motion| fit(&map, &to.points, motion, FOUND_STD, self.closer.places.noise_m);
         let ((near, agrees), (_, most)) = (fit(motion)?, fit(&found.edge.motion)?);
         Some((near.placement.pose, agrees.confirmed / most.confirmed.max(f64::MIN_POSITIVE)))
     }

@@ -8,10 +8,10 @@ use std::collections::{BTreeMap, BTreeSet};
 /// The equations: a block per node on the diagonal, and a block per pair of neighbors.
 #[derive(Clone, Debug)]
 pub(super) struct Equations {
-    diagonal: Vec<Matrix3<f64>>,
+    pub(super) diagonal: Vec<Matrix3<f64>>,
     /// For each node, its neighbors, with the block of its row and their column.
     neighbors: Vec<BTreeMap<usize, Matrix3<f64>>>,
-    right: Vec<Vector3<f64>>,
+    pub(super) right: Vec<Vector3<f64>>,
 }
 
 impl Equations {
@@ -23,18 +23,10 @@ impl Equations {
         }
     }
 
-    pub(super) fn add_diagonal(&mut self, node: usize, block: &Matrix3<f64>) {
-        self.diagonal[node] += block;
-    }
-
     /// Adds to the block of two different nodes, and its transpose to the other block.
     pub(super) fn add_pair(&mut self, row: usize, column: usize, block: &Matrix3<f64>) {
         *self.neighbors[row].entry(column).or_insert_with(Matrix3::zeros) += block;
         *self.neighbors[column].entry(row).or_insert_with(Matrix3::zeros) += block.transpose();
-    }
-
-    pub(super) fn add_right(&mut self, node: usize, part: &Vector3<f64>) {
-        self.right[node] += part;
     }
 
     /// The solution; `None` if the matrix is not positive definite.
@@ -93,8 +85,8 @@ mod tests {
         let pairs = (1..nodes).map(|node| (node - 1, node)).chain([(0, 9), (2, 7), (7, 2), (3, 11), (1, 5)]);
         for (a, b) in pairs {
             let j = [0, 1].map(|_| Matrix3::from_fn(|_, _| random.uniform(-1.0..1.0)));
-            equations.add_diagonal(a, &(j[0].transpose() * j[0]));
-            equations.add_diagonal(b, &(j[1].transpose() * j[1]));
+            equations.diagonal[a] += j[0].transpose() * j[0];
+            equations.diagonal[b] += j[1].transpose() * j[1];
             equations.add_pair(a, b, &(j[0].transpose() * j[1]));
             for (row, jr) in [(a, &j[0]), (b, &j[1])] {
                 for (column, jc) in [(a, &j[0]), (b, &j[1])] {
@@ -104,9 +96,9 @@ mod tests {
             }
         }
         for node in 0..nodes {
-            equations.add_diagonal(node, &(Matrix3::identity() * 0.1));
+            equations.diagonal[node] += Matrix3::identity() * 0.1;
             let part = Vector3::from_fn(|_, _| random.uniform(-1.0..1.0));
-            equations.add_right(node, &part);
+            equations.right[node] += part;
             right.fixed_rows_mut::<3>(3 * node).copy_from(&part);
             for axis in 0..3 {
                 dense[(3 * node + axis, 3 * node + axis)] += 0.1;

@@ -16,10 +16,10 @@ use crate::motion::Motion;
 use crate::scan_points::ScanPoint;
 use crate::score_grid::ScoreGrid;
 use crate::search::{Window, search};
-use crate::settings::LocalizerSettings;
 use crate::surfel_map::SurfelMap;
 use interfaces::{LaserReading, Spread};
 use nalgebra::{Isometry2, Matrix3, Vector3};
+use std::collections::VecDeque;
 
 /// Minimum number of points on a submap.
 const MIN_POINTS: usize = 12;
@@ -42,7 +42,7 @@ const START_M: f64 = 1.0;
 /// The submaps that grow, and their keyframes.
 #[derive(Debug, Default)]
 pub(crate) struct SubmapMatcher {
-    settings: LocalizerSettings,
+    noise_m: f64,
     /// The motion by odometry since the last keyframe.
     since_keyframe: Isometry2<f64>,
     /// The same motion as it was measured, without what was learned of the odometry.
@@ -52,7 +52,7 @@ pub(crate) struct SubmapMatcher {
     pub(super) keyframes: Vec<Keyframe>,
     /// The older one is matched with, the younger one is only filled.
     growing: Vec<GrowingSubmap>,
-    finished: Vec<FinishedSubmap>,
+    pub(super) finished: VecDeque<FinishedSubmap>,
     /// Whether the last scan shows no surface.
     pub(super) sees_nothing: bool,
     /// Whether any scan so far shows a surface.
@@ -133,19 +133,14 @@ impl ScanMatcher<()> for SubmapMatcher {
 }
 
 impl SubmapMatcher {
-    pub(super) fn new(settings: &LocalizerSettings) -> Self {
-        Self { settings: settings.clone(), sees_nothing: true, ..Self::default() }
+    pub(super) fn new(noise_m: f64) -> Self {
+        Self { noise_m, sees_nothing: true, ..Self::default() }
     }
 
     /// Whether the robot has not left the place where it started.
     fn is_at_start(&self, pose: &Isometry2<f64>) -> bool {
         let from_start = |start: &Keyframe| start.local.inv_mul(pose).translation.vector.norm();
         self.keyframes.first().is_none_or(|start| from_start(start) < START_M)
-    }
-
-    /// The next submap that is full.
-    pub(super) fn next_finished(&mut self) -> Option<FinishedSubmap> {
-        if self.finished.is_empty() { None } else { Some(self.finished.remove(0)) }
     }
 
     /// The growing submaps as they are: there is no further reading.
@@ -174,18 +169,32 @@ impl SubmapMatcher {
     /// The match of the scan with the submap; `None` if there is nothing to match with.
     fn match_submap(&self, scan: &IncomingScan, track: &Track) -> Option<SubmapMatch> {
         let (map, points, pose) = (&self.growing.first()?.map, &scan.points, &track.pose);
-        let prior = scan.predicted.prior()?;
+        let matched_from = |start: &Isometry2<f64>, prior: &Prior, first_m: f64| {
+            let gates = gates(self.noise_m, first_m);
+            let found = align(map, points, start, Some(prior), &gates)?;
+            let agreement = agreement(map, points, &found.placement, gates.last_m);
+            (agreement.confirmed_points >= MIN_POINTS).then_some(SubmapMatch { found, agreement })
+        };
         let at_range_m = 5.0 * track.covariance[(2, 2)].sqrt();
         let first_m = SURFEL_M + 2.0 * (scan.predicted.spread_m() + at_range_m);
-        let matched = self.matched_from(map, points, pose, &prior, first_m)?;
+        let matched = matched_from(pose, &scan.predicted.prior()?, first_m)?;
         if !matched.is_below(MIN_AGREEMENT, MAJORITY) {
             return Some(matched);
         }
         let wide = track.covariance + SEARCHED_STD.covariance();
         let wide = Prior { pose: *pose, information: wide.try_inverse()?, begin: None };
+        // The best of a match and those from other poses.
+        let better = |matched: SubmapMatch, starts: &[Isometry2<f64>]| {
+            let min_confirmed = CLEARLY * matched.agreement.confirmed;
+            let others = starts.iter().filter_map(|start| matched_from(start, &wide, JUDGED_M / 2.0));
+            others
+                .filter(|other| other.agreement.confirmed > min_confirmed)
+                .max_by(|a, b| a.agreement.confirmed.total_cmp(&b.agreement.confirmed))
+                .unwrap_or(matched)
+        };
         let turns_rad = OTHER_TURNS_RAD.into_iter().flat_map(|turn_rad| [turn_rad, -turn_rad]);
         let turned: Vec<_> = turns_rad.map(|turn_rad| pose * interfaces::pose(0.0, 0.0, turn_rad)).collect();
-        let matched = self.better(map, points, matched, &turned, &wide);
+        let matched = better(matched, &turned);
         if !matched.is_below(MAJORITY, MIN_SHARE) {
             return Some(matched);
         }
@@ -193,46 +202,14 @@ impl SubmapMatcher {
         let window = Window { pose: *pose, reach_m: SEARCHED.m, reach_rad: SEARCHED.rad };
         let grid = ScoreGrid::anywhere(&near);
         let found = search(&mut { MAX_WORK }, &grid, points, &window, (MIN_OVERLAP, CLEARLY.recip()));
-        Some(self.better(map, points, matched, &found, &wide))
-    }
-
-    /// The best of a match and those from other poses.
-    fn better(
-        &self,
-        map: &SurfelMap,
-        points: &[ScanPoint],
-        matched: SubmapMatch,
-        starts: &[Isometry2<f64>],
-        prior: &Prior,
-    ) -> SubmapMatch {
-        let min_confirmed = CLEARLY * matched.agreement.confirmed;
-        let others =
-            starts.iter().filter_map(|start| self.matched_from(map, points, start, prior, JUDGED_M / 2.0));
-        others
-            .filter(|other| other.agreement.confirmed > min_confirmed)
-            .max_by(|a, b| a.agreement.confirmed.total_cmp(&b.agreement.confirmed))
-            .unwrap_or(matched)
-    }
-
-    fn matched_from(
-        &self,
-        map: &SurfelMap,
-        points: &[ScanPoint],
-        start: &Isometry2<f64>,
-        prior: &Prior,
-        first_m: f64,
-    ) -> Option<SubmapMatch> {
-        let gates = gates(self.settings.range_noise_std_m, first_m);
-        let found = align(map, points, start, Some(prior), &gates)?;
-        let agreement = agreement(map, points, &found.placement, gates.last_m);
-        (agreement.confirmed_points >= MIN_POINTS).then_some(SubmapMatch { found, agreement })
+        Some(better(matched, &found))
     }
 
     /// Makes the scan a keyframe.
     fn add_keyframe(&mut self, scan: &IncomingScan, track: &Track, found: Option<&Match>) {
         let from_last = self.keyframes.last().map_or((track.pose, Matrix3::zeros()), |last| {
             let motion = last.local.inv_mul(&track.pose);
-            let odometry = Motion::new(self.since_keyframe, &self.settings.odometry);
+            let odometry = Motion::new(self.since_keyframe);
             let by_odometry = match scan.has_odometry {
                 true => {
                     odometry.propagate(&Isometry2::identity(), &Spread::of_motion(SCAN_STD.m).covariance())
@@ -274,12 +251,12 @@ impl SubmapMatcher {
             self.growing.extend(GrowingSubmap::new(&keyframe.local));
         }
         for submap in &mut self.growing {
-            submap.add(number, keyframe, self.settings.range_noise_std_m);
+            submap.add(number, keyframe, self.noise_m);
         }
         self.keyframes[number].points = thinned(&self.keyframes[number].points, KEPT_POINTS);
         if self.growing.len() > 1 && self.growing[0].keyframes.len() >= SUBMAP_KEYFRAMES {
             let full = self.growing.remove(0);
-            self.finished.push(full.finish(&self.keyframes));
+            self.finished.push_back(full.finish(&self.keyframes));
         }
     }
 }

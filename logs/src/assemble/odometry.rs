@@ -34,15 +34,16 @@ pub struct Odometry {
     /// The largest distance from the first pose, m, and the largest turn since then, rad.
     farthest_m: f64,
     farthest_rad: f64,
-    pace: Pace,
-    holes: Holes,
+    pub(crate) pace: Pace,
+    /// Where scans have no pose near them: there, the last pose holds on until the odometry returns.
+    pub(crate) holes: Holes,
     /// The number of starts anew, and the first one: its time, s, and its step; the number of such steps up to the last pose.
     restarts: usize,
     first_restart: Option<(f64, Isometry2<f64>)>,
     leaps: usize,
     /// Whether the poses are kept as written, with their jumps.
     is_as_written: bool,
-    jumps: Jumps,
+    pub(crate) jumps: Jumps,
 }
 
 impl Odometry {
@@ -106,11 +107,6 @@ impl Odometry {
         self.samples.push((time_s, pose));
     }
 
-    /// The jumps of poses that are kept as written.
-    pub(crate) fn jumps(&self) -> &Jumps {
-        &self.jumps
-    }
-
     /// Whether there is a pose at a time, or at most 2 s before it.
     pub(crate) fn knows(&self, time_s: f64) -> bool {
         self.samples.iter().rev().any(|(sample_s, _)| (0.0..=LONGEST_GAP_S).contains(&(time_s - sample_s)))
@@ -145,11 +141,6 @@ impl Odometry {
         self.farthest_m < MIN_MOTION_M && self.farthest_rad < MIN_MOTION_RAD
     }
 
-    /// As [`Pace::impossible`].
-    pub(crate) fn impossible(&self) -> Option<String> {
-        self.pace.impossible()
-    }
-
     /// Motions are measured from this pose on.
     pub fn set_origin(&mut self, pose: Isometry2<f64>) {
         self.written = Some(pose);
@@ -181,16 +172,6 @@ impl Odometry {
             }
             _ => self.newest(),
         }
-    }
-
-    /// Notes a scan of a log: without a pose near it, the last pose holds on until the odometry returns.
-    pub(crate) fn note_scan(&mut self, time_s: f64) {
-        self.holes.add_scan(time_s);
-    }
-
-    /// As [`Holes::note`].
-    pub(crate) fn holes_note(&self) -> Option<String> {
-        self.holes.note()
     }
 
     /// The reading of a scan that ends at a time.
@@ -250,7 +231,7 @@ mod tests {
             let time_s = 0.1 * f64::from(tenth);
             if tenth == 120 && has_scans {
                 (20..120).for_each(|tenth| {
-                    odometry.note_scan(0.1 * f64::from(tenth));
+                    odometry.holes.add_scan(0.1 * f64::from(tenth));
                 });
             }
             odometry.add(time_s, interfaces::pose(time_s, 0.0, 0.0));

@@ -137,7 +137,7 @@ impl RawReadings {
             self.counts.without_pose += 1;
             return None;
         }
-        odometry.note_scan(time_s);
+        odometry.holes.add_scan(time_s);
         if let Some(correction) = correction {
             reading.pose = correction * reading.pose;
         }
@@ -154,12 +154,12 @@ impl RawReadings {
 
     /// The corrections of another SLAM in words, with times after `begin_s`; `None` if the poses are those of the odometry.
     pub(super) fn corrections(&self, begin_s: f64) -> Option<String> {
-        Some(self.corrections.as_ref()?.described(self.assembler.odometry.jumps(), begin_s))
+        Some(self.corrections.as_ref()?.described(&self.assembler.odometry.jumps, begin_s))
     }
 
     /// As [`Odometry::impossible`] and [`Speeds::impossible`].
     pub(super) fn impossible(&self) -> Option<String> {
-        self.assembler.odometry.impossible().or_else(|| self.speeds.impossible())
+        self.assembler.odometry.pace.impossible().or_else(|| self.speeds.impossible())
     }
 
     /// Whether the poses of the odometry have times.

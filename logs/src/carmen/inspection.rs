@@ -119,9 +119,10 @@ impl Inspection {
                 self.check_ranges(&mut scan.scan.ranges_m, scan.is_flaser);
                 scan.mount.iter().for_each(|mount| self.mounts.add(mount));
                 self.scan = scan.reference.map(|pose| (scan.time_s, pose));
-                bounds::one_more(self.times_s.len()).map_err(|what| lines.error(what))?;
+                let is_full = |what| LogError::line(&lines.file, lines.number, what);
+                bounds::one_more(self.times_s.len()).map_err(is_full)?;
                 self.times_s.push(scan.time_s);
-                self.timed.note_scan(scan.time_s);
+                self.timed.holes.add_scan(scan.time_s);
                 self.recorded_s.extend(scan.recorded_s);
                 self.doubts.add(scan.typical, &scan.scan.ranges_m);
                 self.standing.add(&Isometry2::identity(), &scan.scan);
@@ -218,14 +219,14 @@ impl Inspection {
         if odometry.stands() && !stands && odometry_poses > 0 && !takes_scan_poses {
             notes.push(self.standing.note().to_owned());
         }
-        let impossible = self.odometry_times.impossible(&self.times_s).or_else(|| odometry.impossible());
+        let impossible = self.odometry_times.impossible(&self.times_s).or_else(|| odometry.pace.impossible());
         let impossible = impossible.or_else(|| self.speeds.impossible());
         let impossible = impossible.or_else(|| self.doubts.impossible(0, stands));
         let times = times::repaired(&self.times_s);
         let begin_s = since_epoch(times.begin_s).filter(|_| times.has_times);
         if times.has_times && has_origins {
             let begin_s = self.times_s.first().copied().unwrap_or_default();
-            notes.extend(odometry.holes_note().into_iter().chain(odometry.restarts_note(begin_s)));
+            notes.extend(odometry.holes.note().into_iter().chain(odometry.restarts_note(begin_s)));
         }
         notes.extend(times.note.clone());
         notes.extend(begin_s.and(times.date_note()));

@@ -38,7 +38,7 @@ impl Readings {
         }
         let (mut reading, laser) = assembler.next_reading()?;
         if *has_times {
-            assembler.odometry.note_scan(reading.time_s);
+            assembler.odometry.holes.add_scan(reading.time_s);
         } else {
             reading = LaserReading { pose: assembler.odometry.newest().0, twist: Twist::STOP, ..reading };
         }

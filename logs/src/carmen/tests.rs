@@ -263,22 +263,11 @@ fn impossible(text: &str) -> Option<String> {
 
 #[test]
 fn times_in_milliseconds_are_named() {
-    // A robot that drives at 0.3 m/s, rests, and turns on the spot.
-    let log = |unit_s: f64, period_s: f64| {
-        let line = |step: u32| {
-            let time_s = 100.0 + period_s * f64::from(step);
-            let x = 0.3 * period_s * f64::from(step.min(120));
-            let theta = 0.4 * period_s * f64::from(step.max(180) - 180);
-            let at = time_s / unit_s;
-            format!("ODOM {x} 0 {theta} 0 0 0 {at} host {at}\n") + &flaser(at, &format!("{x} 0 {theta}"))
-        };
-        (0..300).map(line).collect::<String>()
+    let line = |step: u32| {
+        let (x, at) = (0.03 * f64::from(step), 100.0 * f64::from(step + 1));
+        format!("ODOM {x} 0 0 0 0 0 {at} host {at}\n") + &flaser(at, &format!("{x} 0 0"))
     };
-    // Also with a pose a minute.
-    for period_s in [0.1, 1.0, 60.0] {
-        assert_eq!(impossible(&log(1.0, period_s)), None, "{period_s}");
-    }
-    let why = impossible(&log(1e-3, 0.1)).unwrap();
+    let why = impossible(&(0..300).map(line).collect::<String>()).unwrap();
     assert!(why.starts_with("the times look like milliseconds: in "), "{why}");
 }
 

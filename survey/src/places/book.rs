@@ -1,6 +1,6 @@
 //! What is kept of places over all sessions: their numbers, their names, and what is needed to compare sessions.
 
-use super::directions::{Direction, Directions};
+use super::directions::Directions;
 use super::groups::Group;
 use super::names::PlaceName;
 use super::passages::{Key, Passages, Spot, cell_key};
@@ -17,7 +17,8 @@ pub(crate) struct PlaceBook {
     cells: BTreeMap<Key, u32>,
     /// The largest number that was given.
     last: u32,
-    names: Vec<PlaceName>,
+    /// The names that the user has given.
+    pub(crate) names: Vec<PlaceName>,
     pub(super) passages: Passages,
     pub(super) session: Session,
     pub(super) directions: Directions,
@@ -27,16 +28,6 @@ impl PlaceBook {
     /// The book of a map that was learned without one.
     pub(crate) fn of_map(mapper: &Mapper) -> Self {
         Self { passages: Passages::of_map(mapper), ..Self::default() }
-    }
-
-    /// The names that the user has given.
-    pub(crate) fn names(&self) -> &[PlaceName] {
-        &self.names
-    }
-
-    /// Replaces all names.
-    pub(crate) fn set_names(&mut self, names: Vec<PlaceName>) {
-        self.names = names;
     }
 
     /// Counts the changes of the last reading.
@@ -53,25 +44,16 @@ impl PlaceBook {
         self.session = Session::begin(mapper, log, self.last);
     }
 
-    /// The busiest spot of some cells.
-    pub(super) fn spot(&self, mapper: &Mapper, cells: &[usize]) -> Spot {
-        self.passages.busiest(mapper, cells)
-    }
-
     /// The squares of half a meter of a place with traffic.
     pub(super) fn tiles(&self, mapper: &Mapper, cells: &[usize]) -> Vec<TrafficTile> {
         let tile = |spot: Spot| {
             let ([x_m, y_m], passages) = (spot.middle(mapper.frame()), spot.all());
             let hours = Some(spot.observed_s / HOUR_S).filter(|hours| *hours > 0.0);
             let passages_per_hour = hours.map(|hours| f64::from(passages) / hours);
-            TrafficTile { x_m, y_m, passages, passages_per_hour, direction: self.direction(&spot) }
+            let direction = self.directions.of(spot.key);
+            TrafficTile { x_m, y_m, passages, passages_per_hour, direction }
         };
         self.passages.spots(mapper, cells).into_iter().map(tile).collect()
-    }
-
-    /// Where most of what passes a spot goes.
-    pub(super) fn direction(&self, spot: &Spot) -> Option<Direction> {
-        self.directions.of(spot.key)
     }
 
     /// The numbers of places. A place has the number of most of its cells, if no other place has more cells of this number; a

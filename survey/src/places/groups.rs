@@ -1,6 +1,5 @@
 //! Cells that change, in groups: those of a door, those of a piece of furniture, and neighboring ones.
 
-use crate::patches::connected;
 use interfaces::{Cell, GridFrame};
 use mapper::{Mapper, ThingKind};
 use std::collections::BTreeSet;
@@ -47,8 +46,7 @@ pub(super) fn groups(mapper: &Mapper) -> Vec<Group> {
         }
     }
     let reach = (APART_M / mapper.frame().resolution_m()).round().max(1.0) as i32;
-    while let Some(first) = left.pop_first() {
-        let cells = connected(mapper.frame(), first, reach, &mut left);
+    while let Some(cells) = mapper.frame().take_connected(&mut left, reach) {
         found.extend(divided(mapper.frame(), cells).into_iter().map(|cells| Group { cells, thing: None }));
     }
     found

@@ -161,11 +161,11 @@ impl PlaceRates {
 pub(crate) fn places(mapper: &Mapper, log: &ChangeLog, book: &PlaceBook) -> Vec<Place> {
     let mut found: Vec<(Place, Group)> = Vec::new();
     for group in groups(mapper) {
-        let spot = book.spot(mapper, &group.cells);
+        let spot = book.passages.busiest(mapper, &group.cells);
         let place = place(mapper, log, &group, spot).filter(|place| group.counts(mapper, place.changes));
         let Some(mut place) = place else { continue };
         if place.kind == PlaceKind::Traffic {
-            place.direction = book.direction(&spot);
+            place.direction = book.directions.of(spot.key);
             place.tiles = book.tiles(mapper, &group.cells);
         }
         found.push((place, group));
@@ -174,7 +174,7 @@ pub(crate) fn places(mapper: &Mapper, log: &ChangeLog, book: &PlaceBook) -> Vec<
     let (mut places, groups): (Vec<Place>, Vec<Group>) = found.into_iter().unzip();
     let numbers = book.numbers(mapper, &groups);
     places.iter_mut().zip(&numbers).for_each(|(place, number)| place.number = *number);
-    names::give(&mut places, book.names());
+    names::give(&mut places, &book.names);
     places
 }
 

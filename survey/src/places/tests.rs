@@ -82,6 +82,23 @@ fn a_body_that_passes_counts_once_and_is_traffic() {
 }
 
 #[test]
+fn a_place_says_where_how_often_and_when_last() {
+    let mut room = Room::new();
+    room.look(1000, |second, cell| (2..5).contains(&cell.x) && cell.y == 0 && second % 10 < 3);
+    let places = room.places();
+    let [place] = &places[..] else { panic!("{places:?}") };
+    assert!((place.x_m - 0.35).abs() < 1e-9 && (place.area_m2 - 0.03).abs() < 1e-9, "{place:?}");
+    assert!((place.low_m[0] - 0.2).abs() < 1e-9 && (place.high_m[0] - 0.5).abs() < 1e-9, "{place:?}");
+    // One cycle in 10 s, and blocked for 3 of them.
+    let rates = place.rates.as_ref().unwrap();
+    assert!((rates.cycles_per_hour / 360.0 - 1.0).abs() < 0.05, "{place:?}");
+    assert!((rates.share_blocked - 0.3).abs() < 0.02, "{place:?}");
+    let [low, high] = rates.cycles_per_hour_90.map(Option::unwrap);
+    assert!(low < 360.0 && high > 360.0 && high < 2.0 * low, "{place:?}");
+    assert_eq!((rates.last_change_s, place.changes, room.log.events()), (993.0, 199, 3 * 199));
+}
+
+#[test]
 fn what_changed_once_is_unknown_and_has_no_cycle() {
     let mut room = Room::new();
     room.look(300, |second, cell| second > 100 && body(10, cell));
@@ -151,10 +168,10 @@ fn names_go_to_the_nearest_place_and_stay() {
         passes(30)(second, cell) || passes(40)(second, cell) || second % 50 < 3 && body(30, cell)
     });
     let name = |name: &str, x_m: f64| PlaceName { name: name.to_owned(), x_m, y_m: 1.0, radius_m: 0.5 };
-    room.book.set_names(vec![name("Kitchen", 1.4), name("Desk", 3.2), name("Window", 5.0)]);
+    room.book.names = vec![name("Kitchen", 1.4), name("Desk", 3.2), name("Window", 5.0)];
     assert_eq!(room.at(1.1).name.as_deref(), Some("Kitchen"));
     assert_eq!(room.at(3.1).name.as_deref(), Some("Desk"));
-    let still = still_names(&room.mapper, room.book.names(), &room.places());
+    let still = still_names(&room.mapper, &room.book.names, &room.places());
     let [window] = &still[..] else { panic!("{still:?}") };
     assert!(window.name.name == "Window" && window.observed_s.is_some_and(|time_s| time_s > 590.0));
     room.next_day();

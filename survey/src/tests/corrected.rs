@@ -74,7 +74,7 @@ fn corrected_logs_are_aligned_and_mapped_as_localized_ones() {
             assert!(error_m < 0.03, "{error_m} m");
         }
         let scans: usize = truth.iter().map(Vec::len).sum();
-        let changes = survey.changes().events();
+        let changes = survey.changes.events();
         assert!(changes as f64 <= 0.02 * scans as f64, "{changes} changes in {scans} scans");
     }
     corrected.iter().for_each(|corrected| assert_same_walls(&localized, corrected));

@@ -9,7 +9,7 @@ fn route(readings: &[LaserReading]) -> (u32, Route) {
     let route = Route::of_passes(&SurveySettings::of(PoseMode::Localized), |mut pass| {
         passes += 1;
         readings.iter().for_each(|reading| pass.add(reading.clone()));
-        Ok::<_, SurveyError>(pass.finish())
+        Ok(pass.finish())
     });
     (passes, route.unwrap())
 }

@@ -14,7 +14,7 @@ use crate::tracking::Tracked;
 use crate::verification::Verification;
 
 /// The search for a pose.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
 pub(in crate::localizer) struct Relocalization {
     pub(in crate::localizer) hypotheses: Hypotheses,
     /// The search in the whole map, while it goes on.

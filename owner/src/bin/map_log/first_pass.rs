@@ -8,7 +8,7 @@ use cli::progress::Progress;
 use cli::terminal::say;
 use std::io::stderr;
 use std::ops::ControlFlow;
-use survey::{PassError, Stage, Survey, Verdict};
+use survey::{Stage, Survey, SurveyError, Verdict};
 
 /// Finds the routes of all logs of which the survey has none. Returns false if interrupted.
 pub(crate) fn routes(
@@ -49,8 +49,8 @@ pub(crate) fn routes(
                 state_file.leave();
             }
             Ok(()) => state_file.save(survey),
-            Err(PassError::Interrupted) => return Ok(false),
-            Err(PassError::Alignment(why)) => {
+            Err(SurveyError::Interrupted) => return Ok(false),
+            Err(SurveyError::Alignment(why)) => {
                 let why = Error::from(why).context(format!("cannot use {}", source.entry.name));
                 if state_file.is_kept() {
                     let way_out = "if it is of another place, it needs a --state of its own";

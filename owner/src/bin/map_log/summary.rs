@@ -152,7 +152,7 @@ impl Summary {
             scans_left_out: logs.iter().map(|log| log.travelled.uncertain).sum(),
             seen_m2: seen as f64 * cell_m2,
             changed_share: mapper.changed().count() as f64 / seen.max(1) as f64,
-            changes: survey.changes().events(),
+            changes: survey.changes.events(),
             rates_withheld: rates_withheld.map(str::to_owned),
             place_count,
             places,

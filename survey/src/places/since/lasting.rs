@@ -1,6 +1,5 @@
 use crate::ChangeLog;
 use crate::masks::cells_of_things;
-use crate::patches::connected;
 use crate::places::passages::{Key, cell_key};
 use interfaces::CellState;
 use mapper::{Mapper, ThingKind};
@@ -51,8 +50,7 @@ pub(super) fn lasting(mapper: &Mapper, log: &ChangeLog, touched: &BTreeMap<Key, 
     let reach = (APART_M / frame.resolution_m()).round().max(1.0) as i32;
     let mut found = Vec::new();
     for (is_new, mut left) in [(false, gone), (true, new)] {
-        while let Some(first) = left.pop_first() {
-            let cells = connected(frame, first, reach, &mut left);
+        while let Some(cells) = frame.take_connected(&mut left, reach) {
             let centers = cells.iter().map(|index| frame.center(frame.cell(*index)).coords);
             let middle = centers.sum::<Vector2<f64>>() / cells.len() as f64;
             let area_m2 = cells.len() as f64 * frame.resolution_m().powi(2);

@@ -129,7 +129,7 @@ fn trend(is_new: bool, compared: &Compared, is_found: bool) -> Trend {
 
 /// `looked_s`: for how long a spot was in view.
 fn compared(book: &PlaceBook, mapper: &Mapper, place: &Place, looked_s: impl Fn(Key) -> f64) -> Compared {
-    let spot = book.spot(mapper, &place.cells);
+    let spot = book.passages.busiest(mapper, &place.cells);
     let before_s = f64::from(book.session.looked.get(&spot.key).copied().unwrap_or_default());
     Compared {
         is_first: spot.before_in_all == 0,

@@ -53,7 +53,7 @@ fn learned(readings: &[LaserReading], place: &Point2<f64>, all_count: bool) -> (
         survey.logs[0].poses.iter_mut().for_each(|at| at.state = PoseState::Tracking);
     }
     assert!(learn(&mut survey, 0, &log, usize::MAX));
-    let (mapper, changes) = (survey.mapper().unwrap(), survey.changes());
+    let (mapper, changes) = (survey.mapper().unwrap(), &survey.changes);
     let frame = mapper.frame();
     let changed = (0..frame.len()).filter(|index| changes.last_s(*index).is_some());
     let (near, elsewhere): (Vec<usize>, Vec<usize>) =
