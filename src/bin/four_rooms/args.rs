@@ -77,10 +77,6 @@ pub(crate) struct Args {
     #[arg(long, value_name = "SHARE", value_parser = share, allow_negative_numbers = true, help_heading = "Pilot")]
     pub(crate) patrol: Option<f64>,
 
-    /// With --patrol: how long a full battery lasts on patrol, at least 1m [default: as in the world file, otherwise 30m]
-    #[arg(long, value_name = "TIME", value_parser = battery_s, requires = "patrol", allow_negative_numbers = true, help_heading = "Pilot")]
-    pub(crate) battery: Option<f64>,
-
     /// The estimator of the rates of change: shared-prior predicts best where doors, people and robots move
     /// (docs/estimators.md)
     #[arg(long, default_value = "shared-prior", value_parser = one_of(EstimatorChoice::all(), EstimatorChoice::name), help_heading = "Mapper")]
@@ -183,14 +179,6 @@ fn strategies() -> impl TypedValueParser<Value = Policy> {
 fn share(text: &str) -> Result<f64, String> {
     let share = text.parse::<f64>().ok().filter(|share| (1e-4..=1.0).contains(share));
     share.ok_or_else(|| "must be a share of the time from 0.0001 to 1".into())
-}
-
-/// As `battery_s` in world files: with less than a minute, a robot would have to return as soon as it leaves its dock.
-fn battery_s(text: &str) -> Result<f64, String> {
-    let time_s = duration_s(text).ok().filter(|time_s| (60.0..=1e6).contains(time_s));
-    time_s.ok_or_else(|| {
-        "must be a time from 60 s to 1000000 s: seconds, or with a unit as in 90s, 20m, 1h".into()
-    })
 }
 
 fn gif(text: &str) -> Result<PathBuf, String> {

@@ -109,7 +109,7 @@ impl Parts {
         let facts = SavedSettings::default().with("--drive", &args.drive.name());
         let facts = match &self.spec.driven().patrol {
             Some(day) if args.drive == DriveChoice::Agent => {
-                facts.with("--patrol", &day.share).with("--battery", &day.battery_s)
+                facts.with("--patrol", &day.share).with("battery_s", &day.battery_s)
             }
             _ => facts,
         };
@@ -136,7 +136,6 @@ fn with_patrol(args: &Args, spec: WorldSpec) -> Result<WorldSpec, Failure> {
     let of_file = spec.driven().patrol.clone();
     let mut day = of_file.unwrap_or_else(|| PatrolDaySpec::of_share(share));
     day.share = share;
-    day.battery_s = args.battery.unwrap_or(day.battery_s);
     Ok(spec.with_patrol(day))
 }
 

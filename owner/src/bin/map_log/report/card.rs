@@ -161,7 +161,7 @@ impl Page<'_> {
         }
     }
 
-    fn often(&self, place: &Place, seen: &Seen) -> String {
+    pub(super) fn often(&self, place: &Place, seen: &Seen) -> String {
         let (does, did) = match place.kind {
             PlaceKind::Door { .. } => ("It opens", "It opened"),
             PlaceKind::Traffic => ("Something passes", "Something passed"),
