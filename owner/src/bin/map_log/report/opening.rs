@@ -54,7 +54,7 @@ impl Page<'_> {
         };
         html! {
             (begin) (self.link(place)) ", " (self.plan.words(&middle(place))) " of the plan."
-            @if place.rates.is_some() && let Some(seen) = self.seen(place) { " " (self.often(place, &seen)) }
+            @if let Some(seen) = self.seen(place).filter(|_| place.rates.is_some()) { " " (self.often(place, &seen)) }
             @if self.has_rates() && !is_any_known {
                 " This is a first impression: no place was observed for long enough to say how often it changes, or where it changes most."
             }
