@@ -242,9 +242,7 @@ mod tests {
                 assert!(line.contains(['█', '░']), "{columns}: {line:?}");
             }
         }
-        let [.., last] = &drawn(60, OF_TIME, [600_000, 1_200_000], &state)[..] else {
-            panic!()
-        };
+        let [.., last] = &drawn(60, OF_TIME, [600_000, 1_200_000], &state)[..] else { panic!() };
         assert!(
             last.starts_with(" 50 % █") && last.ends_with("1199 of 1200 s at 412 x, seen >99.9 %, 30 s left"),
             "{last}"

@@ -111,13 +111,12 @@ pub(crate) fn arc(pose: &Isometry2<f64>, radius_m: f64, angle_rad: f64) -> Vec<P
 /// Writes the names: that of an obstacle in its middle if there is room, every other name below its owner.
 fn names(panel: &Panel, chart: &Chart<impl DrawingBackend>, scene: &Scene) -> Result<(), String> {
     for obstacle in &scene.obstacles {
-        let outline = if obstacle.outline.is_empty() { obstacle.reach.first() } else { Some(&obstacle.outline) };
+        let outline =
+            if obstacle.outline.is_empty() { obstacle.reach.first() } else { Some(&obstacle.outline) };
         outline.map_or(Ok(()), |outline| write_name(panel, chart, &obstacle.name, span(outline), true))?;
     }
     let mut robots = scene.robots.iter();
-    robots.try_for_each(|robot| {
-        write_name(panel, chart, &robot.name, span(&body(robot, &robot.pose)), false)
-    })
+    robots.try_for_each(|robot| write_name(panel, chart, &robot.name, span(&body(robot, &robot.pose)), false))
 }
 
 /// Draws named lines, as the leaves of doors, with the names below their middles.
@@ -147,7 +146,8 @@ fn write_name(
     let plot = chart.plotting_area();
     let (pixels, gap) = (plot.use_screen_coord(), panel.px(3));
     let [width, height] = panel.text_size(&pixels, name)?;
-    let ((left, bottom), (right, top)) = (plot.map_coordinate(&pair(&low)), plot.map_coordinate(&pair(&high)));
+    let ((left, bottom), (right, top)) =
+        (plot.map_coordinate(&pair(&low)), plot.map_coordinate(&pair(&high)));
     let (x, below) = ((left + right) / 2, bottom + gap + height / 2);
     // A name may be a little wider than its obstacle.
     if may_cover && 5 * (right - left) > 4 * width && bottom - top > height {

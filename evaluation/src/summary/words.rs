@@ -41,9 +41,12 @@ impl fmt::Display for RunResults {
             "  map       {correct} correct now; {false_change_events} false changes recorded, {false_map_changes} in the map, on \
              {static_cells} static cells"
         )?;
-        for (name, text) in
-            [("rates", self.rates()), ("predicted", self.prediction()), ("goals", self.goals()), ("pose", self.pose())]
-        {
+        for (name, text) in [
+            ("rates", self.rates()),
+            ("predicted", self.prediction()),
+            ("goals", self.goals()),
+            ("pose", self.pose()),
+        ] {
             text.map_or(Ok(()), |text| writeln!(f, "  {name:<9} {text}"))?;
         }
         let Contacts { own_motion, run_into } = self.contacts;
@@ -59,15 +62,18 @@ impl RunResults {
         let well_seen = rate_error.map_or("none was in view for 3 cycles".into(), |error| {
             format!("{} over the {rate_error_cells} in view for 3 cycles or more", percent(error))
         });
-        let log_error = log_error.map_or_else(String::new, |error| format!("; log error {error:.2} (0.69: a factor of 2)"));
-        let auc = rate_auc.map_or_else(String::new, |auc| format!("; AUC {auc:.2} (1 is perfect, 0.5 chance)"));
+        let log_error = log_error
+            .map_or_else(String::new, |error| format!("; log error {error:.2} (0.69: a factor of 2)"));
+        let auc =
+            rate_auc.map_or_else(String::new, |auc| format!("; AUC {auc:.2} (1 is perfect, 0.5 chance)"));
         Some(format!("mean error {all} over all changing cells, {well_seen}{log_error}{auc}"))
     }
 
     /// The error of the predicted map beside that of simpler predictions; `None` if nothing changed out of view.
     fn prediction(&self) -> Option<String> {
         let StateScores { brier, brier_last_seen, brier_mean, brier_true_chains, .. } = self.predicted;
-        let (predicted, last_seen, mean, chains) = (brier?, brier_last_seen?, brier_mean?, brier_true_chains?);
+        let (predicted, last_seen, mean, chains) =
+            (brier?, brier_last_seen?, brier_mean?, brier_true_chains?);
         Some(format!(
             "error where not looking {predicted:.3} (keep last look {last_seen:.3}, average {mean:.3}, true rates {chains:.3})"
         ))

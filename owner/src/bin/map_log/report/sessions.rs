@@ -24,7 +24,8 @@ impl Page<'_> {
             let those = since.places.iter().filter(move |place| place.trend == trend);
             those.filter_map(|found| Some((found, self.place(found.number)?))).collect()
         };
-        let trends = [Trend::New, Trend::Gone, Trend::Livelier, Trend::Quieter, Trend::FirstSeen, Trend::FirstChange];
+        let trends =
+            [Trend::New, Trend::Gone, Trend::Livelier, Trend::Quieter, Trend::FirstSeen, Trend::FirstChange];
         let is_same = since.lasting.is_empty() && trends.iter().all(|trend| of(*trend).is_empty());
         html! {
             h2 #since { "What changed since the last visit" }
