@@ -3,17 +3,15 @@
 use crate::terminal::{check_printed, print, say};
 use anyhow::{Context, anyhow};
 use clap::Parser;
-use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::builder::{PossibleValue, PossibleValuesParser, StyledStr, TypedValueParser};
 use files::{OutputError, RunFolder};
 use interfaces::{PoseMode, printable_lines};
 use robot::state::{State, StateFile};
-use std::error::Error;
 use std::ffi::OsString;
 use std::fmt::Display;
 use std::io::stderr;
 use std::path::Path;
 use std::process::ExitCode;
-use std::str::FromStr;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
@@ -147,52 +145,32 @@ pub fn list<E: Display>(
     Ok(())
 }
 
-/// A parser of the name of one of `all`.
-pub fn one_of<T>(all: Vec<T>, name: fn(&T) -> &'static str) -> impl TypedValueParser<Value = T>
-where
-    T: FromStr<Err: Error + Send + Sync> + Clone + Send + Sync + 'static,
-{
-    PossibleValuesParser::new(all.iter().map(name)).try_map(|name| name.parse::<T>())
-}
-
-/// A parser of the name of a strategy, one of `all`. `describe`
-/// gives the name and the description of a strategy.
-pub fn strategy_of<T>(
+/// A parser of the name of one of `all`. `describe` gives the name of a value, and what it means unless that is explained elsewhere.
+pub fn one_of<T>(
     all: Vec<T>,
-    describe: fn(&T) -> (&'static str, &'static str),
+    describe: fn(&T) -> (&'static str, Option<&'static str>),
 ) -> impl TypedValueParser<Value = T>
 where
     T: Clone + Send + Sync + 'static,
 {
-    let named = |strategy: &T| {
-        let (name, description) = describe(strategy);
-        PossibleValue::new(name).help(description)
+    let named = |value: &T| {
+        let (name, meaning) = describe(value);
+        PossibleValue::new(name).help(meaning.map(StyledStr::from))
     };
     PossibleValuesParser::new(all.iter().map(named)).try_map(move |name| {
-        all.iter()
-            .find(|strategy| describe(strategy).0 == name)
-            .cloned()
-            .ok_or("not one of the possible values")
+        all.iter().find(|value| describe(value).0 == name).cloned().ok_or("not one of the possible values")
     })
 }
 
-/// A parser of how the pose is known, one of `modes`. `describe` says what a mode means.
-pub fn pose_mode(
-    modes: &[PoseMode],
-    describe: fn(PoseMode) -> &'static str,
-) -> impl TypedValueParser<Value = PoseMode> {
-    let named = modes.iter().map(|mode| PossibleValue::new(mode.name()).help(describe(*mode)));
-    PossibleValuesParser::new(named).map(|name| PoseMode::named(&name).unwrap_or_default())
-}
-
 /// What the ways to know the pose mean in a simulated world.
-pub fn pose_in_world(mode: PoseMode) -> &'static str {
-    match mode {
+pub fn pose_in_world(mode: &PoseMode) -> (&'static str, Option<&'static str>) {
+    let meaning = match mode {
         PoseMode::Exact => "The true pose",
         PoseMode::Odometry => "The pose by odometry, with its drift: the map becomes wrong",
         PoseMode::Localized => "The pose that fits the scan to the map",
         PoseMode::Corrected => "The poses of another SLAM: of logs only",
-    }
+    };
+    (mode.name(), Some(meaning))
 }
 
 /// The longest run, s: 1000 hours.

@@ -1,10 +1,9 @@
 //! The progress of a run: a bar in a terminal, plain lines elsewhere.
 
 use crate::terminal::say;
-use crossterm::terminal;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressFinish, ProgressState, ProgressStyle};
 use results::numbers::{duration, percent};
-use std::fmt::{self, Display, Formatter};
+use std::fmt::{self, Display};
 use std::io::{IsTerminal, stderr};
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
@@ -15,8 +14,6 @@ const LINE_EVERY: Duration = Duration::from_secs(5);
 const BAR_EVERY: Duration = Duration::from_millis(250);
 /// The wall time before the first message on simulated time.
 const FIRST: Duration = Duration::from_millis(500);
-/// In a terminal of fewer columns the text beside the bar is short.
-const NARROW: u16 = 60;
 
 /// The kind of progress of a run.
 #[derive(Clone, Copy, PartialEq)]
@@ -99,19 +96,13 @@ impl Progress {
         if self.kind == Kind::Silent || !self.is_due() {
             return;
         }
-        let state = State {
-            time_s,
-            all_s: self.from_s + self.bar.length().unwrap_or(0) as f64 / 1000.0,
-            speed: (time_s - self.from_s) / self.bar.elapsed().as_secs_f64().max(1e-3),
-            coverage: coverage(),
-        };
-        if self.kind == Kind::Bar {
-            let columns = terminal::size().map_or(NARROW, |(columns, _)| columns);
-            // The text first: each of the two draws the bar.
-            self.bar.set_message(state.beside_bar(columns));
-            self.bar.set_position(milliseconds(time_s - self.from_s));
-        } else {
-            self.bar.set_position(milliseconds(time_s - self.from_s));
+        let all_s = self.from_s + self.bar.length().unwrap_or(0) as f64 / 1000.0;
+        let speed = (time_s - self.from_s) / self.bar.elapsed().as_secs_f64().max(1e-3);
+        let state = state(time_s, all_s, speed, coverage());
+        // The text first: each of the two draws the bar.
+        self.bar.set_message(state.clone());
+        self.bar.set_position(milliseconds(time_s - self.from_s));
+        if self.kind == Kind::Lines {
             // A raw terminal needs the carriage return.
             say(stderr(), format_args!("{state}, {}\r", self.time_left()));
         }
@@ -136,34 +127,11 @@ impl Progress {
     }
 }
 
-/// The state of a run in simulated time.
-struct State {
-    time_s: f64,
-    all_s: f64,
-    /// Simulated time divided by wall time.
-    speed: f64,
-    /// The share of the cells that can be seen that have been seen.
-    coverage: f64,
-}
-
-impl State {
-    /// The text beside a bar in a terminal of `columns`: short, so that the bar has room.
-    fn beside_bar(&self, columns: u16) -> String {
-        let Self { time_s, all_s, speed, coverage } = self;
-        let (decimals, seen) = (decimals(*speed), percent(*coverage));
-        if columns < NARROW {
-            return format!("{time_s:.0} s, seen {seen}");
-        }
-        format!("{time_s:.0} of {all_s:.0} s at {speed:.decimals$} x, seen {seen}")
-    }
-}
-
-impl Display for State {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        let Self { time_s, all_s, speed, coverage } = self;
-        let (decimals, seen) = (decimals(*speed), percent(*coverage));
-        write!(f, "{time_s:.0} of {all_s:.0} s, {speed:.decimals$} x real time, seen {seen}")
-    }
+/// The state of a run in simulated time; `speed` is simulated time divided by wall time, `coverage` the share of the cells that can be
+/// seen that have been seen.
+fn state(time_s: f64, all_s: f64, speed: f64, coverage: f64) -> String {
+    let (decimals, seen) = (decimals(speed), percent(coverage));
+    format!("{time_s:.0} of {all_s:.0} s at {speed:.decimals$} x, seen {seen}")
 }
 
 /// The decimals of a speed: a slow run must not have the speed 0.
@@ -264,9 +232,9 @@ mod tests {
 
     #[test]
     fn the_bar_fits_its_terminal() {
-        let state = State { time_s: 1199.0, all_s: 1200.0, speed: 412.3, coverage: 0.99999 };
-        for columns in [40, 60, 80, 200] {
-            let of_time = drawn(columns, OF_TIME, [1_199_000, 1_200_000], &state.beside_bar(columns));
+        let state = state(1199.0, 1200.0, 412.3, 0.99999);
+        for columns in [60, 80, 200] {
+            let of_time = drawn(columns, OF_TIME, [1_199_000, 1_200_000], &state);
             let of_trials = drawn(columns, OF_COUNT, [3, 40], "");
             assert!(!of_time.is_empty() && !of_trials.is_empty());
             for line in of_time.iter().chain(&of_trials) {
@@ -274,9 +242,7 @@ mod tests {
                 assert!(line.contains(['█', '░']), "{columns}: {line:?}");
             }
         }
-        let [.., last] = &drawn(60, OF_TIME, [600_000, 1_200_000], &state.beside_bar(60))[..] else {
-            panic!()
-        };
+        let [.., last] = &drawn(60, OF_TIME, [600_000, 1_200_000], &state)[..] else { panic!() };
         assert!(
             last.starts_with(" 50 % █") && last.ends_with("1199 of 1200 s at 412 x, seen >99.9 %, 30 s left"),
             "{last}"
@@ -294,9 +260,9 @@ mod tests {
 
     #[test]
     fn a_slow_run_has_a_speed() {
-        let line = |speed| State { time_s: 1.0, all_s: 60.0, speed, coverage: 0.5 }.to_string();
-        assert_eq!(line(0.001), "1 of 60 s, 0.0010 x real time, seen 50.0 %");
-        assert_eq!(line(1.0), "1 of 60 s, 1.0 x real time, seen 50.0 %");
-        assert_eq!(line(412.3), "1 of 60 s, 412 x real time, seen 50.0 %");
+        let line = |speed| state(1.0, 60.0, speed, 0.5);
+        assert_eq!(line(0.001), "1 of 60 s at 0.0010 x, seen 50.0 %");
+        assert_eq!(line(1.0), "1 of 60 s at 1.0 x, seen 50.0 %");
+        assert_eq!(line(412.3), "1 of 60 s at 412 x, seen 50.0 %");
     }
 }

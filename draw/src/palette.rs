@@ -51,9 +51,6 @@ const STRATEGIES: [(&str, Rgb); 7] = [
     ("full-observation", [110, 110, 110]),
 ];
 
-/// For the other robots of a world: Paul Tol's muted scheme beside the colors above.
-const ROBOTS: [Rgb; 5] = [OTHER_ROBOT, [136, 34, 85], [153, 153, 51], SENSOR, [51, 34, 136]];
-
 /// For other strategies: the dark colors of Paul Tol's muted scheme.
 const OTHER_STRATEGIES: [Rgb; 5] =
     [[51, 34, 136], [17, 119, 51], [136, 34, 85], [153, 153, 51], [68, 170, 153]];
@@ -63,11 +60,6 @@ pub fn strategy(name: &str) -> Rgb {
     let known = STRATEGIES.iter().find(|(known, _)| *known == name).map(|(_, color)| *color);
     let other = || (xxh3_64(name.as_bytes()) % OTHER_STRATEGIES.len() as u64) as usize;
     known.unwrap_or_else(|| OTHER_STRATEGIES[other()])
-}
-
-/// The colors of `count` other robots: one for each of a handful, and one for all if there are more.
-pub fn other_robots(count: usize) -> Vec<Rgb> {
-    ROBOTS.get(..count).map_or_else(|| vec![OTHER_ROBOT; count], <[Rgb]>::to_vec)
 }
 
 /// A color of the same hue, bright enough for a dark background.

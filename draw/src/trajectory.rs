@@ -6,7 +6,7 @@ use crate::layers::Layer;
 use crate::legend::{Legend, Mark};
 use crate::palette::{self, Rgb};
 use crate::panel::{Chart, Panel, pair};
-use crate::scene::{Scene, SceneRobot, extent};
+use crate::scene::{Scene, extent};
 use crate::view::Trail;
 use mapper::Mapper;
 use nalgebra::Point2;
@@ -36,9 +36,9 @@ pub(crate) fn draw(
     }
     ground::draw(&chart, scene)?;
     // The other robots' trails on top: the curious robot goes everywhere.
-    let mut drawn: Vec<_> = scene.robots.iter().zip(trails.true_poses).zip(colors(scene)).collect();
-    drawn.sort_by_key(|((robot, _), _)| !robot.is_driven);
-    drawn.iter().try_for_each(|((_, trail), color)| line(panel, &chart, trail.points(), (*color, 3)))?;
+    let mut drawn: Vec<_> = scene.robots.iter().zip(trails.true_poses).collect();
+    drawn.sort_by_key(|(robot, _)| !robot.is_driven);
+    drawn.iter().try_for_each(|(robot, trail)| line(panel, &chart, trail.points(), (robot.color(), 3)))?;
     // Thin and on top, so that the true trail is seen on both sides. A robot that is off by meters leaves the picture.
     let (low, size) = extent(&scene.frame);
     let is_inside = |at: &Point2<f64>| at >= &low && at <= &(low + size);
@@ -51,33 +51,28 @@ pub(crate) fn draw(
         let cross = Cross::new(pair(goal), panel.px(3), panel.line(ink(palette::GOAL), 2));
         plot.draw(&cross).map_err(why)?;
     }
-    for ((_, trail), color) in drawn {
+    for (robot, trail) in drawn {
         if let Some(first) = trail.points().first() {
             let at = plot.map_coordinate(&pair(first));
-            panel.dot(&plot.use_screen_coord(), at, color)?;
+            panel.dot(&plot.use_screen_coord(), at, robot.color())?;
         }
     }
     panel.frame(&chart)?;
     panel.legend(&legend, &entries(scene, trails.believed, goals))
 }
 
-/// The colors of the robots, in the order of the scene.
-fn colors(scene: &Scene) -> Vec<Rgb> {
-    let others = scene.robots.iter().filter(|robot| !robot.is_driven).count();
-    let mut others = palette::other_robots(others).into_iter();
-    let color = |robot: &SceneRobot| if robot.is_driven { None } else { others.next() };
-    scene.robots.iter().map(color).map(|color| color.unwrap_or(palette::CURIOUS)).collect()
-}
-
 /// The entries of the legend.
 pub(crate) fn entries(scene: &Scene, believed: &Trail, goals: &Goals) -> Legend {
-    let mut robots: Vec<(&SceneRobot, Rgb)> = scene.robots.iter().zip(colors(scene)).collect();
-    robots.sort_by_key(|(robot, _)| !robot.is_driven);
-    let entry = |same: &[(&SceneRobot, Rgb)]| match same {
-        [(robot, color)] => (Mark::Line(*color), robot.name.clone()),
-        several => (Mark::Line(several[0].1), format!("{} other robots", several.len())),
+    let name = |is_driven: bool| {
+        let robots = || scene.robots.iter().filter(|robot| robot.is_driven == is_driven);
+        let first = robots().next()?;
+        let name = match robots().count() {
+            1 => first.name.clone(),
+            several => format!("{several} other robots"),
+        };
+        Some((Mark::Line(first.color()), name))
     };
-    let mut entries: Legend = robots.chunk_by(|(_, a), (_, b)| a == b).map(entry).collect();
+    let mut entries: Legend = [true, false].into_iter().filter_map(name).collect();
     if !believed.points().is_empty() {
         entries.push((Mark::Line(palette::ESTIMATE), "where it believed to be".into()));
     }

@@ -21,20 +21,10 @@ pub(crate) fn send(signal: Signal, child: &Child) {
     kill(Pid::from_raw(child.id() as i32), signal).unwrap();
 }
 
+/// Ctrl-C; the request to terminate of `docker stop` and systemd; a closed terminal.
 #[test]
-fn ctrl_c_ends_a_run_in_order() {
-    ends_in_order(Signal::SIGINT);
-}
-
-/// As `docker stop` and systemd do it.
-#[test]
-fn a_request_to_terminate_ends_a_run_in_order() {
-    ends_in_order(Signal::SIGTERM);
-}
-
-#[test]
-fn a_closed_terminal_ends_a_run_in_order() {
-    ends_in_order(Signal::SIGHUP);
+fn signals_end_a_run_in_order() {
+    [Signal::SIGINT, Signal::SIGTERM, Signal::SIGHUP].into_iter().for_each(ends_in_order);
 }
 
 /// Even a run so slow that it is asleep nearly all the time ends soon.

@@ -20,7 +20,6 @@ const PROGRAMS: [Program; 8] = [
             ("--tour", "gone.toml"),
             ("--strategy", "clever"),
             ("--patrol", "0"),
-            ("--battery", "59s"),
             ("--speed", "0"),
             ("--pose", "guessed"),
             ("--estimator", "guess"),

@@ -237,8 +237,8 @@ fn a_simulated_week_is_asked_for_days_and_hours() {
     let begin = page.find("name = \"two rooms\"").unwrap();
     let world = page[begin..begin + page[begin..].find("```").unwrap()].replace("beams = 360", "beams = 180");
     let run = Run::new();
-    run.write("rooms.toml", &world);
-    let week = "--world rooms.toml --patrol 0.03 --battery 3m --seed 1 --quiet --no-rrd";
+    run.write("rooms.toml", &world.replace("battery_s = 300.0", "battery_s = 180.0"));
+    let week = "--world rooms.toml --patrol 0.03 --seed 1 --quiet --no-rrd";
     run.goes_well(&format!("{week} --duration 3d --state week.state"));
     let end_s = run.summary().number("/simulated_s");
     fs::remove_dir_all(run.path("out")).unwrap();

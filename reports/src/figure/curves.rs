@@ -174,29 +174,13 @@ fn band<DB: DrawingBackend>(
     chart.plotting_area().draw(&Polygon::new(outline, color.mix(BAND).filled())).map_err(why)
 }
 
-/// The mean as lines: cut where they leave what is shown, broken where there is no mean.
+/// The mean as lines: broken where it is outside of what is shown, and where there is no mean.
 fn lines(positions: &[f64], curve: &[Estimate], shown: &Range<f64>) -> Vec<Vec<(f64, f64)>> {
     let points: Vec<(f64, f64)> =
         positions.iter().zip(curve).map(|(&position, at)| (position, at.mean)).collect();
-    let mut lines: Vec<Vec<(f64, f64)>> = Vec::new();
-    for piece in points.windows(2).filter_map(|ends| inside(ends[0], ends[1], shown)) {
-        match lines.last_mut() {
-            Some(line) if line.last() == Some(&piece[0]) => line.push(piece[1]),
-            _ => lines.push(piece.into()),
-        }
-    }
-    lines
-}
-
-/// The part of the line from `a` to `b` between the ends of `shown`; `None` if there is none.
-fn inside(a: (f64, f64), b: (f64, f64), shown: &Range<f64>) -> Option<[(f64, f64); 2]> {
-    let cut = |from: (f64, f64), to: (f64, f64)| {
-        let y = from.1.clamp(shown.start, shown.end);
-        let x = if y == from.1 { from.0 } else { from.0 + (y - from.1) / (to.1 - from.1) * (to.0 - from.0) };
-        (x, y)
-    };
-    let is_outside = a.1.min(b.1) > shown.end || a.1.max(b.1) < shown.start;
-    (a.1.is_finite() && b.1.is_finite() && !is_outside).then(|| [cut(a, b), cut(b, a)])
+    let is_shown = |(_, mean): &(f64, f64)| (shown.start..=shown.end).contains(mean);
+    let runs = points.chunk_by(|a, b| is_shown(a) && is_shown(b));
+    runs.filter(|run| is_shown(&run[0])).map(<[_]>::to_vec).collect()
 }
 
 #[cfg(test)]
@@ -204,11 +188,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_line_ends_where_the_axis_does_and_breaks_where_nothing_is_known() {
+    fn a_line_breaks_beyond_the_axis_and_where_nothing_is_known() {
         let at = |mean| Estimate { count: 1, mean, low: f64::NAN, high: f64::NAN };
-        let curve = [2.0, 0.5, 0.25, f64::NAN, 0.5, 1.5, 3.0].map(at);
+        let curve = [2.0, 1.0, 0.25, f64::NAN, 0.5, 1.5, 3.0].map(at);
         let found = lines(&[0.0, 3.0, 4.0, 5.0, 6.0, 8.0, 9.0], &curve, &(0.0..1.0));
-        assert_eq!(found, [vec![(2.0, 1.0), (3.0, 0.5), (4.0, 0.25)], vec![(6.0, 0.5), (7.0, 1.0)]]);
+        assert_eq!(found, [vec![(3.0, 1.0), (4.0, 0.25)], vec![(6.0, 0.5)]]);
     }
 
     #[test]

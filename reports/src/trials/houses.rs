@@ -4,7 +4,7 @@ use super::{TrialKind, one_of_kinds};
 use anyhow::Context;
 use calendar::Kind;
 use clap::Args;
-use cli::program::{duration_s, pose_in_world, pose_mode};
+use cli::program::{duration_s, one_of, pose_in_world};
 use curious::worlds::{Loaded, list_physics_worlds, load};
 use evaluation::physics_trial;
 use evaluation::trials::PhysicsRobot;
@@ -44,7 +44,7 @@ pub struct Houses {
     calendar: Option<Kind>,
 
     /// How the robot knows its pose [default: exact where the world's odometry is exact, otherwise localized]
-    #[arg(long, value_parser = pose_mode(&PoseMode::LIVE, pose_in_world), help_heading = "Comparison")]
+    #[arg(long, value_parser = one_of(PoseMode::LIVE.to_vec(), pose_in_world), help_heading = "Comparison")]
     pose: Option<PoseMode>,
 }
 

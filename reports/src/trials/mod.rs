@@ -12,10 +12,10 @@ pub use run::main;
 use crate::shards::Shard;
 use anyhow::bail;
 use calendar::Kind;
-use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::builder::TypedValueParser;
 use clap::{Args, Parser};
 use cli::flags::{folder, value_of};
-use cli::program::{one_of, strategy_of};
+use cli::program::one_of;
 use cli::terminal::say;
 use evaluation::scenes::Displayed;
 use evaluation::trials::{Experiment, TrialStrategy, TrialWorld};
@@ -113,7 +113,7 @@ pub struct TrialArgs<K: TrialKind> {
 
     /// The estimator of the rates of change: two-state-gaps is best for blocks, shared-prior for doors, people and robots. Can be
     /// repeated
-    #[arg(long, default_values = K::ESTIMATORS.iter().copied(), value_parser = one_of(EstimatorChoice::all(), EstimatorChoice::name), help_heading = "Comparison")]
+    #[arg(long, default_values = K::ESTIMATORS.iter().copied(), value_parser = one_of(EstimatorChoice::all(), |it| (it.name(), None)), help_heading = "Comparison")]
     estimator: Vec<EstimatorChoice>,
 
     /// Trials of each combination, with seeds that count up from --seed
@@ -215,7 +215,7 @@ fn after_help<K: TrialKind>() -> String {
 
 /// A parser of the name of a strategy, or of a reference.
 fn strategies() -> impl TypedValueParser<Value = TrialStrategy> {
-    strategy_of(TrialStrategy::all().collect(), |strategy| (strategy.name(), strategy.description()))
+    one_of(TrialStrategy::all().collect(), |strategy| (strategy.name(), Some(strategy.description())))
 }
 
 /// Every value once, in the order of first occurrence.
@@ -231,7 +231,7 @@ fn distinct<T: PartialEq + Clone>(values: &[T]) -> Vec<T> {
 
 /// The kinds of calendars.
 fn one_of_kinds() -> impl TypedValueParser<Value = Kind> {
-    PossibleValuesParser::new(Kind::ALL.map(|(name, _)| name)).try_map(|name| name.parse::<Kind>())
+    one_of(Kind::ALL.map(|(_, kind)| kind).to_vec(), |kind| (kind.name(), None))
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use agent::Policy;
 use clap::builder::TypedValueParser;
 use clap::{Parser, ValueEnum};
 use cli::flags::{folder, input_file, output_file};
-use cli::program::{duration_s, one_of, pose_in_world, pose_mode, strategy_of};
+use cli::program::{duration_s, one_of, pose_in_world};
 use interfaces::PoseMode;
 use mapper::{EstimatorChoice, OccupancyChoice};
 use std::path::PathBuf;
@@ -61,7 +61,7 @@ pub(crate) struct Args {
     pub(crate) tour: Option<PathBuf>,
 
     /// How the robot knows its pose [default: exact where the world's odometry is exact, otherwise localized]
-    #[arg(long, value_parser = pose_mode(&PoseMode::LIVE, pose_in_world), help_heading = "Robot")]
+    #[arg(long, value_parser = one_of(PoseMode::LIVE.to_vec(), pose_in_world), help_heading = "Robot")]
     pub(crate) pose: Option<PoseMode>,
 
     /// The strategy of the agent [default: curious]
@@ -77,17 +77,13 @@ pub(crate) struct Args {
     #[arg(long, value_name = "SHARE", value_parser = share, allow_negative_numbers = true, help_heading = "Pilot")]
     pub(crate) patrol: Option<f64>,
 
-    /// With --patrol: how long a full battery lasts on patrol, at least 1m [default: as in the world file, otherwise 30m]
-    #[arg(long, value_name = "TIME", value_parser = battery_s, requires = "patrol", allow_negative_numbers = true, help_heading = "Pilot")]
-    pub(crate) battery: Option<f64>,
-
     /// The estimator of the rates of change: shared-prior predicts best where doors, people and robots move
     /// (docs/estimators.md)
-    #[arg(long, default_value = "shared-prior", value_parser = one_of(EstimatorChoice::all(), EstimatorChoice::name), help_heading = "Mapper")]
+    #[arg(long, default_value = "shared-prior", value_parser = one_of(EstimatorChoice::all(), |it| (it.name(), None)), help_heading = "Mapper")]
     pub(crate) estimator: EstimatorChoice,
 
     /// The occupancy model: steady (static walls rarely change) or naive (every beam counts, as in the paper)
-    #[arg(long, default_value = "steady", value_parser = one_of(OccupancyChoice::all(), OccupancyChoice::name), help_heading = "Mapper")]
+    #[arg(long, default_value = "steady", value_parser = one_of(OccupancyChoice::all(), |it| (it.name(), None)), help_heading = "Mapper")]
     pub(crate) occupancy: OccupancyChoice,
 
     /// The folder for all results
@@ -177,20 +173,12 @@ pub(crate) enum DriveChoice {
 }
 
 fn strategies() -> impl TypedValueParser<Value = Policy> {
-    strategy_of(Policy::built_in().to_vec(), |policy| (policy.name(), policy.description()))
+    one_of(Policy::built_in().to_vec(), |policy| (policy.name(), Some(policy.description())))
 }
 
 fn share(text: &str) -> Result<f64, String> {
     let share = text.parse::<f64>().ok().filter(|share| (1e-4..=1.0).contains(share));
     share.ok_or_else(|| "must be a share of the time from 0.0001 to 1".into())
-}
-
-/// As `battery_s` in world files: with less than a minute, a robot would have to return as soon as it leaves its dock.
-fn battery_s(text: &str) -> Result<f64, String> {
-    let time_s = duration_s(text).ok().filter(|time_s| (60.0..=1e6).contains(time_s));
-    time_s.ok_or_else(|| {
-        "must be a time from 60 s to 1000000 s: seconds, or with a unit as in 90s, 20m, 1h".into()
-    })
 }
 
 fn gif(text: &str) -> Result<PathBuf, String> {

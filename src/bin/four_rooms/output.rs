@@ -32,10 +32,6 @@ use std::time::{Duration, Instant};
 use viewer::recording::{Live, Recorder};
 use viewer::show::Show;
 
-/// What another strategy gains over the default one, measured in `docs/strategies.md` and `docs/houses.md`.
-const OTHER_STRATEGY: &str = "--strategy information-gain has 0.64 to 0.69 of the rate error of curious in grid worlds with blocks, \
-                              1.13 to 1.23 times in those with a calendar, and 3 % more in houses";
-
 /// The file that ends a run.
 const SUMMARY: &str = "summary.json";
 /// The longest time for which a run that keeps to real time does not look for Ctrl-C.
@@ -184,11 +180,8 @@ impl<'a> Outputs<'a> {
         }
         self.folder.finish(&[])?;
         if !args.quiet {
-            // For those who did not choose: others know what they want.
-            let has_chosen = args.strategy.is_some() || args.drive != DriveChoice::Agent;
-            let hint = if has_chosen { String::new() } else { format!("\n  hint      {OTHER_STRATEGY}") };
             let (out, picture) = (args.out.display(), args.out.join(FIGURE_5_FILE));
-            print(format_args!("{summary}{hint}\n  files     {out}: open {}", picture.display()))?;
+            print(format_args!("{summary}\n  files     {out}: open {}", picture.display()))?;
         }
         Ok(self.is_complete && failures.is_empty())
     }

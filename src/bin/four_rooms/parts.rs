@@ -9,7 +9,6 @@ use cli::program::{Failure, input};
 use cli::terminal::say;
 use controller::{Controller, DiffDrive};
 use curious::keyboard::Keyboard;
-use curious::reachability;
 use curious::worlds::{self, Loaded};
 use evaluation::physics_trial::{self, PhysicsTrial};
 use interfaces::{CellState, Grid, Twist};
@@ -41,14 +40,12 @@ impl Parts {
         let Loaded { spec, warnings } =
             worlds::load(&args.world).map_err(|error| input(value_of("--world", error)))?;
         warn(warnings);
-        warn(reachability::warnings(spec.fleet()));
         let spec = with_patrol(args, spec)?;
         let settings = physics_trial::settings(&spec).with_context(|| format!("cannot run `{}`", args.world));
         let mut settings = settings.map_err(input)?;
         settings.mapper.estimator = args.estimator.clone();
         settings.mapper.occupancy = args.occupancy.clone();
         settings.pose = args.pose.unwrap_or(settings.pose);
-        warn(combination::odometry(&spec, settings.pose));
         let prior = args.map.as_deref().map(|path| known_map(path, &spec)).transpose()?;
         Ok(Self { spec, settings, prior })
     }
@@ -112,7 +109,7 @@ impl Parts {
         let facts = SavedSettings::default().with("--drive", &args.drive.name());
         let facts = match &self.spec.driven().patrol {
             Some(day) if args.drive == DriveChoice::Agent => {
-                facts.with("--patrol", &day.share).with("--battery", &day.battery_s)
+                facts.with("--patrol", &day.share).with("battery_s", &day.battery_s)
             }
             _ => facts,
         };
@@ -139,7 +136,6 @@ fn with_patrol(args: &Args, spec: WorldSpec) -> Result<WorldSpec, Failure> {
     let of_file = spec.driven().patrol.clone();
     let mut day = of_file.unwrap_or_else(|| PatrolDaySpec::of_share(share));
     day.share = share;
-    day.battery_s = args.battery.unwrap_or(day.battery_s);
     Ok(spec.with_patrol(day))
 }
 

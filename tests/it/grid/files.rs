@@ -1,4 +1,4 @@
-//! The output files of a run with default options, but fewer steps.
+//! The output of a run with default options, but fewer steps: files and a table.
 
 use crate::run::{Run, names};
 
@@ -7,6 +7,12 @@ fn the_output_folder_is_complete() {
     let run = Run::of("grid_world");
     let ended = run.goes_well("--steps 300");
     assert_eq!(run.names(), ["out"]);
+    assert_eq!(ended.stderr, "");
+    for strategy in ["curious", "recency", "poisson", "random", "coin"] {
+        assert!(ended.stdout.lines().any(|line| line.starts_with(strategy)), "{strategy}: {}", ended.stdout);
+    }
+    let mut table = ended.stdout.lines().filter(|line| !line.starts_with("written to "));
+    assert!(table.all(|line| line.chars().count() <= 100), "{}", ended.stdout);
     let written = names(&run.path("out"));
     assert_eq!(written.len(), 6, "{written:?}");
     // With the figure of the second estimator.
@@ -20,4 +26,15 @@ fn the_output_folder_is_complete() {
     assert!(colors.len() > 10, "{} colors", colors.len());
     let drawing = std::fs::read_to_string(run.out("figure3.svg")).unwrap();
     assert!(drawing.contains("<svg") && drawing.trim_end().ends_with("</svg>"));
+}
+
+#[test]
+fn worlds_are_listed() {
+    insta::assert_snapshot!(Run::of("grid_world").goes_well("--list-worlds").stdout, @"
+    two_blocks           The paper's grid world: a slow block in the upper right, a fast block along the bottom wall.
+    open_hall            A hall with pillars; four blocks, far from each other, that move at four different rates.
+    corridor_with_doors  Rooms along a corridor; six sliding doors that open and close at different rates.
+    many_slow_blocks     Twelve slow blocks in nine rooms; each moves once in 20 to 60 steps.
+    one_fast_block       One block that moves at every step, and eight that stay for hundreds of steps.
+    ");
 }

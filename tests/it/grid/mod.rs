@@ -7,7 +7,6 @@ mod files;
 mod golden;
 mod report;
 pub(crate) mod same;
-mod screen;
 mod walls;
 mod worlds;
 

@@ -5,7 +5,7 @@ use crate::survey_state_file::Loaded;
 use anyhow::ensure;
 use clap::Parser;
 use cli::flags::{folder, input_file, number, output_file, time_zone};
-use cli::program::{duration_s, one_of, pose_mode};
+use cli::program::{duration_s, one_of};
 use interfaces::PoseMode;
 use logs::TopicChoice;
 use mapper::{EstimatorChoice, NoReturn};
@@ -64,7 +64,7 @@ pub(crate) struct Args {
     pub(crate) map_frame: Option<String>,
 
     /// How the poses are known [default: exact for a stationary laser, otherwise localized]
-    #[arg(long, value_parser = pose_mode(&PoseMode::ALL, pose_in_log), help_heading = "Poses")]
+    #[arg(long, value_parser = one_of(PoseMode::ALL.to_vec(), pose_in_log), help_heading = "Poses")]
     pub(crate) pose: Option<PoseMode>,
 
     /// The side of a cell, m
@@ -118,12 +118,12 @@ pub(crate) struct Args {
     pub(crate) shadow_angle: f64,
 
     /// What beams without a return mean: free space if the scanner has proven trustworthy, always free space, or nothing
-    #[arg(long, default_value = "learn", value_parser = one_of(NoReturn::all(), NoReturn::name), help_heading = "Map")]
+    #[arg(long, default_value = "learn", value_parser = one_of(NoReturn::all(), |it| (it.name(), None)), help_heading = "Map")]
     pub(crate) no_return: NoReturn,
 
     /// The estimator of the rates of change: shared-prior predicts best where doors, people and robots move
     /// (docs/estimators.md)
-    #[arg(long, default_value = "shared-prior", value_parser = one_of(EstimatorChoice::all(), EstimatorChoice::name), help_heading = "Map")]
+    #[arg(long, default_value = "shared-prior", value_parser = one_of(EstimatorChoice::all(), |it| (it.name(), None)), help_heading = "Map")]
     pub(crate) estimator: EstimatorChoice,
 
     /// The time zone of the place, by its IANA name as Europe/Berlin: people and doors have hours by its clocks, with summer time
@@ -172,15 +172,16 @@ pub(crate) struct Args {
 }
 
 /// What the ways to know the poses of a log mean.
-fn pose_in_log(mode: PoseMode) -> &'static str {
-    match mode {
+fn pose_in_log(mode: &PoseMode) -> (&'static str, Option<&'static str>) {
+    let meaning = match mode {
         PoseMode::Exact => "The poses of the log, which are exact",
         PoseMode::Odometry => "The poses of the odometry, with their drift: the map becomes wrong",
         PoseMode::Localized => "The trajectory is found from the scans",
         PoseMode::Corrected => {
             "The poses of another SLAM: of the FLASER lines of a corrected CARMEN log, or of tf from --map-frame to the robot"
         }
-    }
+    };
+    (mode.name(), Some(meaning))
 }
 
 impl Args {

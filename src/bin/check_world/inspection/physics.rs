@@ -1,6 +1,6 @@
 //! The description of physics worlds and floor plans.
 
-use super::{Content, FLOOR_PLAN, calendar};
+use super::{Content, calendar};
 use draw::scene::Scene;
 use evaluation::scenes::Displayed;
 use interfaces::{GridFrame, printable};
@@ -11,8 +11,6 @@ use sim::physics::{
 use std::path::Path;
 use worldfile::floor_plan::FloorPlan;
 
-/// The maximum number of lines about robots.
-const MAX_ROBOT_LINES: usize = 10;
 /// The minimum side of the cells of a floor plan's frame, m.
 const PLAN_CELL_M: f64 = 0.05;
 
@@ -51,7 +49,7 @@ pub(super) fn floor_plan(path: &Path, plan: &FloorPlan) -> Option<Content> {
     let bitmap = &plan.bitmap;
     let name = printable(&path.file_stem().unwrap_or_default().to_string_lossy()).into_owned();
     Some(Content {
-        kind: FLOOR_PLAN,
+        kind: "floor plan",
         description: String::new(),
         lines: vec![
             ("size", format!("{} × {} m", short(size.x), short(size.y))),
@@ -116,25 +114,15 @@ fn thing_line(obstacle: &ObstacleSpec) -> String {
     )
 }
 
-/// A line for each robot; consecutive robots that differ only in name and pose share a line. Of many lines, the first
-/// ones, and the number of the other robots.
-fn robot_lines(robots: &[RobotSpec]) -> Vec<(&'static str, String)> {
-    let mut others = robots.len();
-    let groups = robots.chunk_by(|one, next| robot_line(one) == robot_line(next)).take(MAX_ROBOT_LINES);
-    let line = |alike: &[RobotSpec]| {
-        others -= alike.len();
-        let (first, last) = (&alike[0], &alike[alike.len() - 1]);
-        let what = robot_line(first);
+/// A line for each robot; consecutive robots that differ only in name and pose share a line.
+fn robot_lines(robots: &[RobotSpec]) -> impl Iterator<Item = (&'static str, String)> {
+    robots.chunk_by(|one, next| robot_line(one) == robot_line(next)).map(|alike| {
+        let (first, last, what) = (&alike[0], &alike[alike.len() - 1], robot_line(&alike[0]));
         match alike.len() {
             1 => ("robot", format!("`{}` {what}", first.name)),
             number => ("robots", format!("{number}, `{}` to `{}`, each {what}", first.name, last.name)),
         }
-    };
-    let mut lines: Vec<_> = groups.map(line).collect();
-    if others > 0 {
-        lines.push(("robots", format!("… and {others} more")));
-    }
-    lines
+    })
 }
 
 fn robot_line(robot: &RobotSpec) -> String {

@@ -4,8 +4,7 @@ use super::labels::Mark;
 use super::{Page, middle};
 use draw::layers::Layer;
 use maud::{Markup, html};
-use owner::words::{changed, range};
-use survey::{Place, PlaceKind, Verdict};
+use survey::{Place, Verdict};
 
 /// Half the side of the rectangle around a point in doubt, m.
 const HALF_M: f64 = 0.4;
@@ -54,45 +53,27 @@ impl Page<'_> {
             (true, false) => "Most was seen at ",
         };
         html! {
-            (begin) (self.link(place)) ", " (self.plan.words(&middle(place))) " of the plan" (self.with_rate(place)) "."
+            (begin) (self.link(place)) ", " (self.plan.words(&middle(place))) " of the plan."
+            @if let Some(seen) = self.seen(place).filter(|_| place.rates.is_some()) { " " (self.often(place, &seen)) }
             @if self.has_rates() && !is_any_known {
                 " This is a first impression: no place was observed for long enough to say how often it changes, or where it changes most."
             }
         }
     }
 
-    fn with_rate(&self, place: &Place) -> String {
-        let Some(seen) = self.seen(place).filter(|_| place.rates.is_some()) else { return String::new() };
-        let (does, did) = match place.kind {
-            PlaceKind::Door { .. } => ("the door opens", "the door opened"),
-            PlaceKind::Traffic => ("something passes there", "something passed there"),
-            _ => ("something comes and goes there", "something came there"),
-        };
-        match (seen.how_often(), seen.per_hour) {
-            (Some(often), Some((rate, ends))) if seen.is_known() => {
-                format!(": {does} {often} (90 % range: {})", range(rate, ends))
-            }
-            (Some(often), _) => format!(": {did} {often}"),
-            (None, _) => format!(": {}", changed(place.changes, &seen)),
-        }
-    }
-
     fn doors(&self) -> Markup {
         let mut doors: Vec<&Place> = self.summary.places.iter().filter(|place| self.is_door(place)).collect();
         doors.sort_by_key(|door| door.number);
-        match &doors[..] {
-            [] => html! { "No door was seen to open or close." },
-            [door] => {
-                html! { "One door was found: " (self.link(door)) ", " (self.plan.words(&middle(door))) " of the plan." }
+        if doors.is_empty() {
+            return html! { "No door was seen to open or close." };
+        }
+        html! {
+            "Doors: "
+            @for (number, door) in doors.iter().enumerate() {
+                @if number > 0 { "; " }
+                (self.link(door)) ", " (self.plan.words(&middle(door))) " of the plan"
             }
-            doors => html! {
-                (doors.len()) " doors were found: "
-                @for (number, door) in doors.iter().enumerate() {
-                    @if number > 0 { (if number + 1 == doors.len() { " and " } else { ", " }) }
-                    (self.link(door)) " " (self.plan.words(&middle(door)))
-                }
-                "."
-            },
+            "."
         }
     }
 
