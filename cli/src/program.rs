@@ -3,7 +3,7 @@
 use crate::terminal::{check_printed, print, say};
 use anyhow::{Context, anyhow};
 use clap::Parser;
-use clap::builder::{PossibleValue, PossibleValuesParser, StyledStr, TypedValueParser};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use files::{OutputError, RunFolder};
 use interfaces::{PoseMode, printable_lines};
 use robot::state::{State, StateFile};
@@ -155,7 +155,8 @@ where
 {
     let named = |value: &T| {
         let (name, meaning) = describe(value);
-        PossibleValue::new(name).help(meaning.map(StyledStr::from))
+        let value = PossibleValue::new(name);
+        if let Some(meaning) = meaning { value.help(meaning) } else { value }
     };
     PossibleValuesParser::new(all.iter().map(named)).try_map(move |name| {
         all.iter().find(|value| describe(value).0 == name).cloned().ok_or("not one of the possible values")
