@@ -219,13 +219,13 @@ impl GoalSelector for Agent {
 
     fn strategies(&self, features: Features) -> Vec<StrategyState> {
         let goals = self.goal_counts.iter().sum::<usize>().max(1) as f64;
-        let state = |(index, strategy): (usize, &Box<dyn Strategy>)| StrategyState {
+        let states = self.strategies.iter().enumerate().map(|(index, strategy)| StrategyState {
             name: strategy.name().to_owned(),
             value: self.chooser.value(index, features),
             share: self.goal_counts[index] as f64 / goals,
             is_current: self.current == Some(index),
-        };
-        self.strategies.iter().enumerate().map(state).collect()
+        });
+        states.collect()
     }
 
     fn values(&mut self, mapper: &Mapper) -> Values<'_> {

@@ -1,6 +1,7 @@
 mod glass;
 mod lifecycle;
 mod loops;
+mod one_map;
 mod same_robot;
 mod seating;
 
