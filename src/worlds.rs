@@ -9,7 +9,7 @@ use sim::physics::WorldSpec;
 use std::path::Path;
 use worldfile::{Disk, Severity};
 
-pub use worldfile::shipped::{GRID as SHIPPED_GRID, PHYSICS as SHIPPED, TOUR};
+pub use worldfile::shipped::{GRID as SHIPPED_GRID, LoadError, PHYSICS as SHIPPED, TOUR};
 
 /// A world to run.
 #[derive(Clone, Debug)]

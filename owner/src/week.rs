@@ -1,6 +1,7 @@
-//! What is usual in a week, in words.
+//! What is usual in a week, in words and as a small picture.
 
 use mapper::{UsualChange, Week};
+use maud::{Markup, html};
 use results::numbers::percent;
 
 const DAYS: [&str; 7] = ["Mon", "Tue", "Wed", "Thu", "Fri", "Sat", "Sun"];
@@ -74,6 +75,48 @@ fn time_of_day(hour: f64) -> String {
     format!("{}:{}0", tens / 6, tens % 6)
 }
 
+/// The width of half an hour and the height of a day in the picture, and the space for the names of days.
+const SLOT: usize = 5;
+const ROW: usize = 12;
+const LEFT: usize = 28;
+/// The steps in which probabilities are drawn: neighbors of one step are one rectangle.
+const STEPS: f64 = 10.0;
+
+/// A picture of a week: a row per day, from 0 to 24 o'clock. White: never blocked; dark: always. Hours of which little is known
+/// are pale.
+pub fn picture(week: &Week, name: &str) -> Markup {
+    let slots = week.slots();
+    let slots_of_day = slots.len() / DAYS.len();
+    let (width, height) = (LEFT + SLOT * slots_of_day + 4, ROW * (DAYS.len() + 1));
+    html! {
+        svg.week xmlns="http://www.w3.org/2000/svg" viewBox={ "0 0 " (width) " " (height) } width=(width) height=(height)
+            role="img" aria-label=(usual_hours(week, name)) font-size="9" font-family="sans-serif" {
+            @for (day, slots) in slots.chunks(slots_of_day).enumerate() {
+                text x="0" y=(ROW * day + 9) { (DAYS[day]) }
+                @let steps: Vec<(u32, u32)> = slots.iter().map(|slot| {
+                    let [low, high] = slot.interval_90;
+                    ((STEPS * slot.probability).round() as u32, (STEPS * (1.0 - 0.8 * (high - low))).round() as u32)
+                }).collect();
+                @let mut at = 0;
+                @for run in steps.chunk_by(|a, b| a == b) {
+                    rect x=(LEFT + SLOT * at) y=(ROW * day) width=(SLOT * run.len()) height=(ROW - 1)
+                        fill=(color(f64::from(run[0].0) / STEPS)) opacity={ (f64::from(run[0].1) / STEPS) } {}
+                    @let () = at += run.len();
+                }
+            }
+            @for hour in [0, 6, 12, 18, 24] {
+                text x=(LEFT + SLOT * slots_of_day * hour / 24) y=(height - 2) text-anchor="middle" { (hour) }
+            }
+        }
+    }
+}
+
+/// From light gray to dark blue.
+fn color(share: f64) -> String {
+    let mix = |from: f64, to: f64| (from + share * (to - from)) as u8;
+    format!("#{:02x}{:02x}{:02x}", mix(232.0, 10.0), mix(234.0, 60.0), mix(238.0, 140.0))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -102,5 +145,12 @@ mod tests {
         assert!(night.contains("to 6:"), "{night}");
         assert_eq!(text(|_, _| true), "open >99.9 % of the time, at no hours in particular");
         assert_eq!(text(|_, _| false), "open <0.1 % of the time, at no hours in particular");
+    }
+
+    #[test]
+    fn the_picture_has_a_row_per_day() {
+        let picture = picture(&week(|day, _| day < 5), "blocked").into_string();
+        assert!(DAYS.iter().all(|day| picture.contains(day)), "{picture}");
+        assert!(picture.matches("<rect").count() >= 7);
     }
 }

@@ -75,7 +75,7 @@ impl RunResults {
         let (predicted, last_seen, mean, chains) =
             (brier?, brier_last_seen?, brier_mean?, brier_true_chains?);
         Some(format!(
-            "error where not looking {predicted:.3} (keep last look {last_seen:.3}, average {mean:.3}, true rates {chains:.3})"
+            "Brier score out of view {predicted:.3} (as last seen {last_seen:.3}, share of time blocked {mean:.3}, true rates {chains:.3})"
         ))
     }
 
@@ -140,7 +140,7 @@ mod tests {
           seen      100.0 % of the cells in sight of reachable places, >99.9 % of free cells and their borders
           map       >99.9 % correct now; 0 false changes recorded, 0 in the map, on 50000 static cells
           rates     mean error 251.0 % over all changing cells, 29.0 % over the 43 in view for 3 cycles or more; log error 0.91 (0.69: a factor of 2); AUC 0.83 (1 is perfect, 0.5 chance)
-          predicted error where not looking 0.016 (keep last look 0.027, average 0.016, true rates 0.014)
+          predicted Brier score out of view 0.016 (as last seen 0.027, share of time blocked 0.016, true rates 0.014)
           contacts  1 by its own motion, 2 in which something ran into it
         ");
     }

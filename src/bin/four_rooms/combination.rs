@@ -1,7 +1,7 @@
 //! A world, a tour and a map that do not fit together: warnings where the run is possible, but not what a user
 //! expects, and an error where it makes no sense.
 
-use interfaces::{Cell, CellState, GroundTruth, TrueState};
+use interfaces::{Cell, CellState, GroundTruth, PoseMode, TrueState};
 use nalgebra::Point2;
 use sim::physics::{PhysicsWorld, WorldSpec};
 use worldfile::ros_map::RosMap;
@@ -10,6 +10,18 @@ use worldfile::ros_map::RosMap;
 /// Robots that pass leave walls in a map that was learned for a short time.
 const MIN_WALLS: f64 = 0.55;
 const MIN_FREE: f64 = 0.95;
+
+/// What the odometry of the driven robot does to the map, if nothing corrects it.
+pub(crate) fn odometry(spec: &WorldSpec, pose: PoseMode) -> Option<String> {
+    let robot = spec.driven();
+    (pose == PoseMode::Odometry && !robot.odometry.is_exact()).then(|| {
+        format!(
+            "warning: the odometry of `{}` drifts, and `--pose odometry` takes its poses as exact: this map will be \
+             wrong\n  = help: `--pose localized` corrects them",
+            robot.name
+        )
+    })
+}
 
 /// Which waypoints the robot cannot reach.
 pub(crate) fn waypoints(spec: &WorldSpec, waypoints: &[Point2<f64>]) -> Option<String> {

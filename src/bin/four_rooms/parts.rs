@@ -9,6 +9,7 @@ use cli::program::{Failure, input};
 use cli::terminal::say;
 use controller::{Controller, DiffDrive};
 use curious::keyboard::Keyboard;
+use curious::reachability;
 use curious::worlds::{self, Loaded};
 use evaluation::physics_trial::{self, PhysicsTrial};
 use interfaces::{CellState, Grid, Twist};
@@ -40,12 +41,14 @@ impl Parts {
         let Loaded { spec, warnings } =
             worlds::load(&args.world).map_err(|error| input(value_of("--world", error)))?;
         warn(warnings);
+        warn(reachability::warnings(spec.fleet()));
         let spec = with_patrol(args, spec)?;
         let settings = physics_trial::settings(&spec).with_context(|| format!("cannot run `{}`", args.world));
         let mut settings = settings.map_err(input)?;
         settings.mapper.estimator = args.estimator.clone();
         settings.mapper.occupancy = args.occupancy.clone();
         settings.pose = args.pose.unwrap_or(settings.pose);
+        warn(combination::odometry(&spec, settings.pose));
         let prior = args.map.as_deref().map(|path| known_map(path, &spec)).transpose()?;
         Ok(Self { spec, settings, prior })
     }

@@ -3,9 +3,11 @@
 mod calendar;
 mod grid;
 mod physics;
+mod runs;
 #[cfg(test)]
 mod tests;
 
+use curious::reachability;
 use curious::worlds::is_of_stage;
 use draw::scene::Scene;
 use interfaces::printable;
@@ -14,6 +16,9 @@ use std::path::Path;
 use worldfile::floor_plan::FloorPlan;
 use worldfile::physics::to_toml;
 use worldfile::{Disk, Files, Findings, MAX_TEXT_BYTES, Severity, ros_map, shipped};
+
+const GRID_WORLD: &str = "grid world";
+const FLOOR_PLAN: &str = "floor plan";
 
 /// The result for one file.
 #[derive(Clone, Debug, Default)]
@@ -37,7 +42,8 @@ pub(crate) struct Content {
     pub(crate) kind: &'static str,
     /// The description in the file; can be empty.
     pub(crate) description: String,
-    /// One line per part of the world: the name of the part, and its description.
+    /// One line per part of the world: the name of the part, and its description; at the end, the program that runs
+    /// the file.
     pub(crate) lines: Vec<(&'static str, String)>,
     /// The world from above; its title is the name of the world.
     pub(crate) scene: Scene,
@@ -65,6 +71,14 @@ pub(crate) fn inspect(name: &str) -> Inspection {
         },
     };
     inspection.file = printable(name).into_owned();
+    if let Some(Content { kind, lines, .. }) = &mut inspection.content {
+        let command = match *kind {
+            GRID_WORLD => runs::in_grid_world(name),
+            FLOOR_PLAN => format!("four_rooms --map {}", inspection.file),
+            _ => runs::in_four_rooms(name),
+        };
+        lines.push(("runs in", command));
+    }
     inspection
 }
 
@@ -90,7 +104,7 @@ fn world_file(name: &str, text: &str, files: &dyn Files) -> Inspection {
         })
     } else {
         worldfile::physics::parse_fleet_with(name, text, files)
-            .map(|world| (physics::content("physics world", &world), Vec::new()))
+            .map(|world| (physics::content("physics world", &world), reachability::warnings(&world)))
     };
     match outcome {
         Ok((content, warnings)) => Inspection { content: Some(content), warnings, ..Inspection::default() },
@@ -100,7 +114,10 @@ fn world_file(name: &str, text: &str, files: &dyn Files) -> Inspection {
 
 fn stage_file(path: &Path) -> Inspection {
     let (world, findings) = stage::load(path, &Disk);
-    found(world.map(|world| physics::content("Stage world", &world)), &findings)
+    let warnings = world.as_ref().map(reachability::warnings).unwrap_or_default();
+    let mut inspection = found(world.map(|world| physics::content("Stage world", &world)), &findings);
+    inspection.warnings.extend(warnings);
+    inspection
 }
 
 fn ros_file(path: &Path) -> Inspection {

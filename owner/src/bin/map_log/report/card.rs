@@ -8,7 +8,7 @@ use draw::layers::Layer;
 use mapper::{Clock, Door, Furniture, Leaf, ThingKind, Week};
 use maud::{Markup, html};
 use nalgebra::{Point2, Vector2};
-use owner::week::usual_hours;
+use owner::week;
 use owner::words::{Seen, changed, date, length_of, range, rate, short, times};
 use std::f64::consts::PI;
 use survey::{Direction, Place, PlaceKind, is_line};
@@ -35,7 +35,7 @@ impl Page<'_> {
                         dt { "How often" } dd { (self.often(place, &seen)) (self.ways(place)) }
                         dt { "When" } dd {
                             p { "Last change: " (self.time(rates.last_change_s)) "." }
-                            @if let Some(week) = &week { p { "Usually " (usual_hours(week, if self.is_door(place) { "open" } else { "blocked" })) "." } }
+                            @if let Some(week) = &week { (week_of(week, if self.is_door(place) { "open" } else { "blocked" })) }
                             @else if let Some(days) = self.few_days(place) { p { (days) } }
                         }
                         dt { "How sure" } dd { (sure(&seen)) }
@@ -301,4 +301,8 @@ fn arrow(plan: &Plan, at: Point2<f64>, direction: &Direction) -> Markup {
             @if direction.share < BOTH_WAYS { polyline points=(head(-1.0)) {} }
         }
     }
+}
+
+fn week_of(week: &Week, state: &str) -> Markup {
+    html! { p { "Usually " (week::usual_hours(week, state)) "." } (week::picture(week, state)) }
 }

@@ -24,8 +24,7 @@ impl Page<'_> {
             let those = since.places.iter().filter(move |place| place.trend == trend);
             those.filter_map(|found| Some((found, self.place(found.number)?))).collect()
         };
-        let trends =
-            [Trend::New, Trend::Gone, Trend::Livelier, Trend::Quieter, Trend::FirstSeen, Trend::FirstChange];
+        let trends = [Trend::New, Trend::Gone, Trend::Livelier, Trend::Quieter, Trend::FirstSeen];
         let is_same = since.lasting.is_empty() && trends.iter().all(|trend| of(*trend).is_empty());
         html! {
             h2 #since { "What changed since the last visit" }
@@ -35,6 +34,20 @@ impl Page<'_> {
                 @for (number, lasting) in since.lasting.iter().enumerate() { li { (self.lasting(number, lasting)) } }
                 @for (trend, found) in trends.iter().flat_map(|trend| of(*trend).into_iter().map(move |found| (trend, found))) {
                     li { (self.difference(*trend, found, since)) }
+                }
+            }
+            (self.list("Changed for the first time, which can be chance: ", &of(Trend::FirstChange)))
+            (self.list("Not looked at on this visit: ", &of(Trend::NotSeen)))
+        }
+    }
+
+    fn list(&self, what: &str, places: &[(&PlaceSince, &Place)]) -> Markup {
+        html! {
+            @if !places.is_empty() {
+                p {
+                    (what)
+                    @for (number, (_, place)) in places.iter().enumerate() { @if number > 0 { ", " } (self.link(place)) }
+                    "."
                 }
             }
         }
@@ -83,8 +96,7 @@ impl Page<'_> {
                 Trend::Gone => { "No more changes: " (self.link(place)) " did not change in " (now_s) " of observation. Before, it changed " (times(found.passages[0])) " in " (before_s) "." }
                 Trend::Livelier => { "More changes: " (self.link(place)) ", " (compared) "." }
                 Trend::Quieter => { "Fewer changes: " (self.link(place)) ", " (compared) "." }
-                Trend::FirstChange => { (self.link(place)) " changed for the first time, which can be chance." (door) }
-                Trend::NotSeen | Trend::Same => {}
+                Trend::FirstChange | Trend::NotSeen | Trend::Same => {}
             }
         }
     }
