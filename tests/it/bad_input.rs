@@ -46,7 +46,7 @@ fn worlds() {
         .each_ref()
         .map(|wrong| ("noise_std_m = 0.0 ", wrong.as_str(), "robot.laser.noise_std_m", "house.toml:96:15"));
     let others = [
-        ("cell_m = 0.05", "cell_m = = 0.05", "error: one `=` too many\n", "house.toml:9:10"),
+        ("cell_m = 0.05", "cell_m = = 0.05", "error: this is not valid TOML: extra `=`, expected nothing\n", "house.toml:9:10"),
         ("max_linear_mps", "max_liner_mps", "error: unknown key `max_liner_mps`\n", "house.toml:75:1"),
         (
             "radius_m = 0.2 ",
@@ -109,7 +109,7 @@ fn maps() {
       = help: `image` names a PNG or PGM picture, relative to this file
     ");
     for (yaml, pixels, says) in [
-        (MAP.replace("0.05", "-1"), "P2 1 1 1 0", "error: `resolution` is -1\n --> m.yaml:2:13"),
+        (MAP.replace("0.05", "-1"), "P2 1 1 1 0", "error: `resolution` is `-1`\n --> m.yaml:2:13"),
         (MAP.to_owned(), "P5\n1000000 1000000\n255\n", "1000000 × 1000000 pixels are too many: at most"),
     ] {
         let run = Run::new();
