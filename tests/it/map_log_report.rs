@@ -79,6 +79,14 @@ fn names_and_numbers_stay_in_the_state() {
 }
 
 #[test]
+fn an_invalid_file_of_names_is_refused() {
+    let run = Run::of("map_log");
+    run.write("a.log", &standing_log(MONDAY_S, 30));
+    run.write("names.toml", &LAMP.replace("y_m", "y"));
+    insta::assert_snapshot!(run.refuses("a.log --quiet --no-rrd --places names.toml"), @"error: names.toml, line 4, `y`: unknown field `y`, expected one of `name`, `x_m`, `y_m`, `radius_m`");
+}
+
+#[test]
 fn the_second_visit_says_what_changed() {
     let run = Run::of("map_log");
     run.write("a.log", &standing_log(MONDAY_S, 240));
