@@ -4,7 +4,7 @@ use crate::message::{DynamicEdges, Message, PoseStamped, Quality, Topic};
 use crate::service::{Call, Reply, Service};
 use std::time::Duration;
 
-/// The connection of a node with other nodes. No method fails: what goes wrong is an [`Event::Problem`].
+/// The connection of a node with other nodes. No method fails: what goes wrong is an event.
 pub trait Link {
     /// Sends a message. `false`: it was not sent, since a subscriber does not keep up.
     fn send(&mut self, topic: Topic, message: Message) -> bool;
