@@ -108,55 +108,150 @@ pub(crate) fn arc(pose: &Isometry2<f64>, radius_m: f64, angle_rad: f64) -> Vec<P
     (0..=CORNERS).map(point).collect()
 }
 
-/// Writes the names: that of an obstacle in its middle if there is room, every other name below its owner.
+/// Writes the names: that of an obstacle in its middle if there is room, every other name beside its owner.
 fn names(panel: &Panel, chart: &Chart<impl DrawingBackend>, scene: &Scene) -> Result<(), String> {
-    for obstacle in &scene.obstacles {
-        let outline =
-            if obstacle.outline.is_empty() { obstacle.reach.first() } else { Some(&obstacle.outline) };
-        outline.map_or(Ok(()), |outline| write_name(panel, chart, &obstacle.name, span(outline), true))?;
+    let obstacles = scene.obstacles.iter().filter_map(|obstacle| {
+        let outline = if obstacle.outline.is_empty() { obstacle.reach.first()? } else { &obstacle.outline };
+        Some((&obstacle.name, outline.clone(), true))
+    });
+    let robots = scene.robots.iter().map(|robot| (&robot.name, body(robot, &robot.pose), false));
+    let plot = chart.plotting_area();
+    let pixels = plot.use_screen_coord();
+    let (mut beside, mut taken) = (Vec::new(), Vec::new());
+    for (name, outline, is_light) in obstacles.chain(robots) {
+        let [low, high] = span(&outline).map(|corner| plot.map_coordinate(&pair(&corner)));
+        let owner = Plate { left: low.0, right: high.0, top: high.1, bottom: low.1 };
+        let size = panel.text_size(&pixels, name)?;
+        // A name may be a little wider than its obstacle.
+        let has_room = is_light && 5 * owner.width() > 4 * size[0] && owner.height() > size[1];
+        if has_room {
+            panel.write(&pixels, owner.center(), HPos::Center, name)?;
+            taken.push(Plate::around(owner.center(), size));
+        } else {
+            beside.push((name, owner, size));
+        }
+        if !is_light {
+            taken.push(owner);
+        }
     }
-    let mut robots = scene.robots.iter();
-    robots.try_for_each(|robot| write_name(panel, chart, &robot.name, span(&body(robot, &robot.pose)), false))
+    write_beside(panel, chart, beside, taken)
 }
 
-/// Draws named lines, as the leaves of doors, with the names below their middles.
+/// Draws named lines, as the leaves of doors, with the names beside their middles.
 pub(crate) fn lines(
     panel: &Panel,
     chart: &Chart<impl DrawingBackend>,
     lines: &[NamedLine],
 ) -> Result<(), String> {
+    let plot = chart.plotting_area();
+    let mut names = Vec::new();
     for NamedLine { ends, name } in lines {
         let style = panel.line(ink(palette::CURIOUS), 5);
-        let line = PathElement::new(ends.map(|end| pair(&end)), style);
-        chart.plotting_area().draw(&line).map_err(why)?;
-        write_name(panel, chart, name, [nalgebra::center(&ends[0], &ends[1]); 2], false)?;
+        plot.draw(&PathElement::new(ends.map(|end| pair(&end)), style)).map_err(why)?;
+        let middle = plot.map_coordinate(&pair(&nalgebra::center(&ends[0], &ends[1])));
+        let size = panel.text_size(&plot.use_screen_coord(), name)?;
+        names.push((name, Plate::around(middle, [panel.px(4); 2]), size));
+    }
+    write_beside(panel, chart, names, Vec::new())
+}
+
+/// Writes names of a size beside their owners, where nothing is `taken`.
+fn write_beside(
+    panel: &Panel,
+    chart: &Chart<impl DrawingBackend>,
+    names: Vec<(&String, Plate, [i32; 2])>,
+    mut taken: Vec<Plate>,
+) -> Result<(), String> {
+    let plot = chart.plotting_area();
+    let ((columns, rows), pixels) = (plot.get_pixel_range(), plot.use_screen_coord());
+    let area = Plate { left: columns.start, right: columns.end, top: rows.start, bottom: rows.end };
+    for (name, owner, size) in names {
+        let plate = owner.place_beside(size, panel.px(2), &area, &taken);
+        // A light ground, because there may be a wall.
+        let corners = [(plate.left, plate.top), (plate.right, plate.bottom)];
+        pixels.draw(&Rectangle::new(corners, WHITE.mix(0.75).filled())).map_err(why)?;
+        panel.write(&pixels, plate.center(), HPos::Center, name)?;
+        taken.push(plate);
     }
     Ok(())
 }
 
-/// Writes a name below the rectangle of its owner, m; at the lower border of the map above it. `may_cover`: in the rectangle, if
-/// there is room.
-fn write_name(
-    panel: &Panel,
-    chart: &Chart<impl DrawingBackend>,
-    name: &str,
-    [low, high]: [Point2<f64>; 2],
-    may_cover: bool,
-) -> Result<(), String> {
-    let plot = chart.plotting_area();
-    let (pixels, gap) = (plot.use_screen_coord(), panel.px(3));
-    let [width, height] = panel.text_size(&pixels, name)?;
-    let ((left, bottom), (right, top)) =
-        (plot.map_coordinate(&pair(&low)), plot.map_coordinate(&pair(&high)));
-    let (x, below) = ((left + right) / 2, bottom + gap + height / 2);
-    // A name may be a little wider than its obstacle.
-    if may_cover && 5 * (right - left) > 4 * width && bottom - top > height {
-        return panel.write(&pixels, (x, (top + bottom) / 2), HPos::Center, name);
+/// A rectangle of pixels; rows count from the top.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Plate {
+    left: i32,
+    right: i32,
+    top: i32,
+    bottom: i32,
+}
+
+impl Plate {
+    /// The rectangle around `center` of a width and a height.
+    fn around((x, y): (i32, i32), [width, height]: [i32; 2]) -> Self {
+        let (left, top) = (x - width / 2, y - height / 2);
+        Self { left, right: left + width, top, bottom: top + height }
     }
-    let has_room_below = below + height / 2 <= plot.get_pixel_range().1.end;
-    let y = if has_room_below { below } else { top - gap - height / 2 };
-    // A light ground, because there may be a wall.
-    let corners = [(x - width / 2, y - height / 2), (x + width / 2, y + height / 2)];
-    pixels.draw(&Rectangle::new(corners, WHITE.mix(0.75).filled())).map_err(why)?;
-    panel.write(&pixels, (x, y), HPos::Center, name)
+
+    fn width(&self) -> i32 {
+        self.right - self.left
+    }
+
+    fn height(&self) -> i32 {
+        self.bottom - self.top
+    }
+
+    fn center(&self) -> (i32, i32) {
+        ((self.left + self.right) / 2, (self.top + self.bottom) / 2)
+    }
+
+    fn overlaps(&self, other: &Self) -> bool {
+        self.left < other.right
+            && other.left < self.right
+            && self.top < other.bottom
+            && other.top < self.bottom
+    }
+
+    fn contains(&self, other: &Self) -> bool {
+        self.left <= other.left
+            && other.right <= self.right
+            && self.top <= other.top
+            && other.bottom <= self.bottom
+    }
+
+    /// A rectangle of `size` beside this one with a `gap`: below, above, at the right or at the left, the first that
+    /// is inside `area` and overlaps nothing that is `taken`; below if there is none.
+    fn place_beside(&self, size: [i32; 2], gap: i32, area: &Self, taken: &[Self]) -> Self {
+        let ((x, y), [width, height]) = (self.center(), size);
+        let below = Self::around((x, self.bottom + gap + height / 2), size);
+        let others = [
+            (x, self.top - gap - height / 2),
+            (self.right + gap + width / 2, y),
+            (self.left - gap - width / 2, y),
+        ];
+        let is_free = |plate: &Self| area.contains(plate) && !taken.iter().any(|other| plate.overlaps(other));
+        let places = others.map(|center| Self::around(center, size));
+        [below].into_iter().chain(places).find(is_free).unwrap_or(below)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const AREA: Plate = Plate { left: 0, right: 100, top: 0, bottom: 100 };
+
+    #[test]
+    fn names_give_way_to_each_other_and_to_the_border() {
+        let owner = Plate::around((50, 50), [10, 10]);
+        let mut taken = Vec::new();
+        let centers = [(); 5].map(|()| {
+            let plate = owner.place_beside([20, 10], 2, &AREA, &taken);
+            taken.push(plate);
+            plate.center()
+        });
+        // Below, above, right, left; then below again.
+        assert_eq!(centers, [(50, 62), (50, 38), (67, 50), (33, 50), (50, 62)]);
+        let at_the_bottom = Plate::around((50, 92), [10, 10]);
+        assert_eq!(at_the_bottom.place_beside([20, 10], 2, &AREA, &[]).center(), (50, 80));
+    }
 }
