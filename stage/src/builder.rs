@@ -136,7 +136,7 @@ impl Builder<'_, '_> {
             numbers.resize(4, 0.0);
         }
         if numbers[2] != 0.0 {
-            self.sources.has_no_effect(place, "the height in a pose");
+            self.sources.has_no_effect(place, "pose z");
         }
         let (m, rad) = (self.length_m, self.angle_rad);
         pose(numbers[0] * m, numbers[1] * m, numbers[3] * rad)

@@ -106,8 +106,8 @@ impl<'a> Nearest<'a> {
     /// Whether a body within a disc could change the result.
     pub(super) fn may_meet(&self, around: &Disc) -> bool {
         let to = around.center.coords - self.hits.laser.translation.vector;
-        let (most_m, beside_m) = (self.reach_m + around.radius_m, around.radius_m * SAFE + BESIDE_M);
-        to.norm_squared() <= most_m * most_m && !is_beside(&self.borders, [&to, &to], beside_m)
+        let (max_m, beside_m) = (self.reach_m + around.radius_m, around.radius_m * SAFE + BESIDE_M);
+        to.norm_squared() <= max_m * max_m && !is_beside(&self.borders, [&to, &to], beside_m)
     }
 
     /// Adds a round body.
