@@ -45,12 +45,11 @@ pub struct LoopClosingLocalizer {
     /// `None`: the first map is frozen, or a thread has it.
     first: Option<FirstMap>,
     switch: Switch,
-    switches: Vec<usize>,
     background: Option<Background>,
 }
 
 /// When the robot changes to the map that it has learned again.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Switch {
     /// At the reading that closes the loop, which takes as long as all readings so far.
     #[default]
@@ -59,9 +58,6 @@ pub enum Switch {
     After(usize),
     /// At the first reading after the new map is complete.
     WhenReady,
-    /// At these readings, which another run has [reported](LoopClosingLocalizer::switches): the same readings give the same
-    /// bits as there.
-    At(Vec<usize>),
 }
 
 /// What a closed loop has changed.
@@ -114,7 +110,6 @@ impl LoopClosingLocalizer {
             localizer: Localizer::from_nothing(settings, frame, pose)?,
             first: Some(FirstMap::new(settings)?),
             switch: Switch::AtOnce,
-            switches: Vec::new(),
             background: None,
         })
     }
@@ -133,11 +128,6 @@ impl LoopClosingLocalizer {
     /// Whether no map is being learned again in another thread.
     pub fn is_settled(&self) -> bool {
         self.background.is_none()
-    }
-
-    /// The numbers of the readings, the first one is 1, with which a thread that had read the readings again has ended.
-    pub fn switches(&self) -> &[usize] {
-        &self.switches
     }
 
     /// Waits for the map that is being learned again, and changes to it: before a snapshot, or another session.
@@ -206,7 +196,7 @@ impl LoopClosingLocalizer {
         if self.localizer.much_has_moved {
             self.background = None;
         } else if let Some(background) = &mut self.background
-            && background.add((reading.clone(), map_s, localized.clone()), &self.switch)
+            && background.add((reading.clone(), map_s, localized.clone()), self.switch)
             && let Some(closed) = self.change_map(map)
         {
             return closed;
@@ -216,9 +206,8 @@ impl LoopClosingLocalizer {
 
     /// Waits for the thread, and takes over what it has learned.
     fn change_map(&mut self, map: &mut Mapper) -> Option<LoopClosed> {
-        let Background { thread, meanwhile, readings, .. } = self.background.take()?;
+        let Background { thread, meanwhile, .. } = self.background.take()?;
         drop(meanwhile); // the thread ends
-        self.switches.push(readings);
         self.take_over(thread.join().ok()?, map)
     }
 

@@ -177,7 +177,7 @@ impl Settings {
                 if let Some(map) = &prior {
                     localizer.begin_in(&[], map).unwrap_or_default(); // no bytes are invalid
                 }
-                Box::new(localizer.switching(self.switch.clone()))
+                Box::new(localizer.switching(self.switch))
             }
         };
         let mapper = match prior {

@@ -242,7 +242,6 @@ impl<L: Link> CuriousNode<L> {
             self.notes.say(&correction.to_string());
             self.published.maps.repeat();
         }
-        self.say_switches();
         let is_lost = belief.state() == PoseState::Lost;
         if std::mem::replace(&mut self.published.is_lost, is_lost) != is_lost {
             match is_lost {

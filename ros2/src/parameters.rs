@@ -31,13 +31,11 @@ macro_rules! parameters {
         #[derive(Clone, Debug, PartialEq)]
         pub struct Parameters {
             $($(#[doc = $doc])* pub $field: $kind,)*
-            /// `--switch-at`: with which readings corrected maps replace the old one, as an earlier run has printed.
-            pub switch_at: Vec<usize>,
         }
 
         impl Default for Parameters {
             fn default() -> Self {
-                Self { $($field: $default,)* switch_at: Vec::new() }
+                Self { $($field: $default,)* }
             }
         }
 

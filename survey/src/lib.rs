@@ -44,8 +44,7 @@ pub use masks::{MASKS, masks, masks_ahead, permanent};
 pub use outlook::{Outlook, doors};
 pub use passes::Stage;
 pub use places::{
-    Direction, Lasting, Place, PlaceKind, PlaceName, PlaceRates, PlaceSince, Since, StillName, TrafficTile,
-    Trend, is_line,
+    Lasting, Place, PlaceKind, PlaceName, PlaceRates, PlaceSince, Since, StillName, Trend, is_line,
 };
 pub use quality::{Doubt, DoubtKind, Quality, Verdict};
 pub use replay::{FoundPoses, Replay};

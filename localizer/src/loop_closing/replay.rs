@@ -33,14 +33,13 @@ pub(super) struct Background {
 
 impl Background {
     /// Passes a reading on. Returns whether the robot changes to the new map with it.
-    pub(super) fn add(&mut self, meanwhile: Meanwhile, switch: &Switch) -> bool {
+    pub(super) fn add(&mut self, meanwhile: Meanwhile, switch: Switch) -> bool {
         let is_up_to_date = self.read.load(Ordering::Relaxed) == self.readings || self.thread.is_finished();
         self.readings += 1;
         // A thread that has failed is noticed by its result.
         self.meanwhile.send(meanwhile).ok();
         match switch {
-            Switch::After(readings) => self.readings - self.begun >= *readings,
-            Switch::At(readings) => readings.contains(&self.readings),
+            Switch::After(readings) => self.readings - self.begun >= readings,
             Switch::AtOnce | Switch::WhenReady => is_up_to_date,
         }
     }

@@ -35,10 +35,6 @@ struct Args {
     /// service `~/save_state` is called
     #[arg(long, value_name = "FILE", value_parser = output_file())]
     state: Option<PathBuf>,
-    /// Corrected maps replace the old one with these readings, as an earlier run of the same readings has printed: repeats
-    /// that run
-    #[arg(long, value_name = "READINGS", value_delimiter = ',')]
-    switch_at: Vec<usize>,
 }
 
 fn purposes() -> PossibleValuesParser {
@@ -101,7 +97,6 @@ fn run(args: &Args, ros: RosArgs) -> Result<ExitCode, Failure> {
             .try_for_each(|value| parameters.set(name, &Value::Text(value.clone())))
             .map_err(input)?;
     }
-    parameters.switch_at.clone_from(&args.switch_at);
     parameters.check().map_err(input)?;
     let environment = Environment::read(|name| std::env::var(name).ok()).map_err(input)?;
     let wiring = curious_wiring(&parameters, &names, &ros).map_err(input)?;
@@ -133,7 +128,7 @@ mod tests {
 
     #[test]
     fn every_flag_refuses_a_wrong_value_by_its_name() {
-        let wrong = [("mode", "sleep"), ("purpose", "fame"), ("state", "/"), ("switch-at", "-")];
+        let wrong = [("mode", "sleep"), ("purpose", "fame"), ("state", "/")];
         for argument in
             Args::command().get_arguments().filter(|argument| argument.get_action().takes_values())
         {

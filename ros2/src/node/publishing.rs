@@ -25,8 +25,6 @@ pub(super) struct Published {
     pub(super) map_to_odom: Option<Isometry2<f64>>,
     pub(super) next_transform: Option<Instant>,
     pub(super) is_lost: bool,
-    /// The number of maps that were learned again.
-    pub(super) switches: usize,
 }
 
 impl<L: Link> CuriousNode<L> {

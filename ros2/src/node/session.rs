@@ -5,7 +5,6 @@ use super::CuriousNode;
 use crate::link::Link;
 use crate::message::{PoseWithCovarianceStamped, Time};
 use interfaces::{LaserReading, PoseMode};
-use localizer::LoopClosingLocalizer;
 use nalgebra::{Isometry2, Matrix3};
 use ros::flat;
 use std::time::Instant;
@@ -88,19 +87,6 @@ impl<L: Link> CuriousNode<L> {
             self.notes.say("waiting for the map that a closed loop has corrected");
             self.robot.settle();
             self.published.maps.repeat();
-            self.say_switches();
-        }
-    }
-
-    /// Says with which readings corrected maps have replaced the old ones.
-    pub(super) fn say_switches(&mut self) {
-        let switches = self.robot.localization().localizer().map_or(&[][..], LoopClosingLocalizer::switches);
-        if switches.len() > self.published.switches {
-            self.published.switches = switches.len();
-            let readings: Vec<String> = switches.iter().map(usize::to_string).collect();
-            let readings = readings.join(",");
-            self.notes
-                .say(&format!("the same readings with `--switch-at {readings}` repeat this run so far"));
         }
     }
 }

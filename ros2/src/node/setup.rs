@@ -81,11 +81,8 @@ pub(crate) fn settings(parameters: &Parameters) -> Settings {
         ..Source::default()
     });
     settings.localizer.lost_after_s = parameters.lost_after_s;
-    settings.switch = match &parameters.switch_at {
-        readings if !readings.is_empty() => Switch::At(readings.clone()),
-        _ if parameters.use_sim_time => Switch::After(SWITCH_READINGS),
-        _ => Switch::WhenReady,
-    };
+    settings.switch =
+        if parameters.use_sim_time { Switch::After(SWITCH_READINGS) } else { Switch::WhenReady };
     settings
 }
 

@@ -1,11 +1,10 @@
 //! What is kept of places over all sessions: their numbers, their names, and what is needed to compare sessions.
 
-use super::directions::Directions;
+use super::Place;
 use super::groups::Group;
 use super::names::PlaceName;
-use super::passages::{Key, Passages, Spot, cell_key};
+use super::passages::{Key, Passages, cell_key};
 use super::session::Session;
-use super::{HOUR_S, Place, TrafficTile};
 use mapper::Mapper;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
@@ -21,7 +20,6 @@ pub(crate) struct PlaceBook {
     pub(crate) names: Vec<PlaceName>,
     pub(super) passages: Passages,
     pub(super) session: Session,
-    pub(super) directions: Directions,
 }
 
 impl PlaceBook {
@@ -33,27 +31,13 @@ impl PlaceBook {
     /// Counts the changes of the last reading.
     pub(crate) fn note(&mut self, mapper: &Mapper) {
         self.passages.note(mapper);
-        self.directions.note(mapper);
         self.session.note(mapper);
     }
 
     /// A new session begins with this log.
     pub(crate) fn begin_session(&mut self, mapper: &Mapper, log: usize) {
         self.passages.begin_session();
-        self.directions.begin_session();
         self.session = Session::begin(mapper, log, self.last);
-    }
-
-    /// The squares of half a meter of a place with traffic.
-    pub(super) fn tiles(&self, mapper: &Mapper, cells: &[usize]) -> Vec<TrafficTile> {
-        let tile = |spot: Spot| {
-            let ([x_m, y_m], passages) = (spot.middle(mapper.frame()), spot.all());
-            let hours = Some(spot.observed_s / HOUR_S).filter(|hours| *hours > 0.0);
-            let passages_per_hour = hours.map(|hours| f64::from(passages) / hours);
-            let direction = self.directions.of(spot.key);
-            TrafficTile { x_m, y_m, passages, passages_per_hour, direction }
-        };
-        self.passages.spots(mapper, cells).into_iter().map(tile).collect()
     }
 
     /// The numbers of places. A place has the number of most of its cells, if no other place has more cells of this number; a

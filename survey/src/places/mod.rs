@@ -2,12 +2,10 @@
 //!
 //! - `groups`: neighboring cells that change, and the cells of doors and of furniture.
 //! - `passages`: how often something came into each spot of half a meter.
-//! - `directions`: where what passes a spot goes.
 //! - `book`: the numbers and the names of places, which they keep over all sessions.
 //! - `session`, `since`: what is different since the last session.
 
 mod book;
-mod directions;
 mod groups;
 mod line;
 mod names;
@@ -18,7 +16,6 @@ mod since;
 mod tests;
 
 pub(crate) use book::PlaceBook;
-pub use directions::Direction;
 pub use line::is_line;
 pub(crate) use names::still_names;
 pub use names::{PlaceName, StillName};
@@ -70,29 +67,9 @@ pub struct Place {
     /// How often it changes; `None` where the times of the log are unusable.
     #[serde(flatten)]
     pub rates: Option<PlaceRates>,
-    /// Of traffic: where most of what passes the spot with the most passages goes. `None` for other places, where too few
-    /// passages were seen, and where they have no common axis.
-    pub direction: Option<Direction>,
-    /// Of traffic: its squares of half a meter; empty for other places.
-    pub tiles: Vec<TrafficTile>,
     /// Its cells, by their index.
     #[serde(skip)]
     pub cells: Vec<usize>,
-}
-
-/// A square of half a meter through which something passes.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct TrafficTile {
-    /// Its middle, m.
-    pub x_m: f64,
-    /// Its middle, m.
-    pub y_m: f64,
-    /// The number of times that something came in view.
-    pub passages: u32,
-    /// The passages per hour in view; `null` if it was never in view between two readings.
-    pub passages_per_hour: Option<f64>,
-    /// Where most of what passes goes; `null` where too few passages were seen, and where they have no common axis.
-    pub direction: Option<Direction>,
 }
 
 /// What a place looks like.
@@ -163,12 +140,7 @@ pub(crate) fn places(mapper: &Mapper, log: &ChangeLog, book: &PlaceBook) -> Vec<
     for group in groups(mapper) {
         let spot = book.passages.busiest(mapper, &group.cells);
         let place = place(mapper, log, &group, spot).filter(|place| group.counts(mapper, place.changes));
-        let Some(mut place) = place else { continue };
-        if place.kind == PlaceKind::Traffic {
-            place.direction = book.directions.of(spot.key);
-            place.tiles = book.tiles(mapper, &group.cells);
-        }
-        found.push((place, group));
+        found.extend(place.map(|place| (place, group)));
     }
     found.sort_by(|(a, _), (b, _)| liveliness(mapper, b).total_cmp(&liveliness(mapper, a)));
     let (mut places, groups): (Vec<Place>, Vec<Group>) = found.into_iter().unzip();
@@ -228,8 +200,6 @@ fn place(mapper: &Mapper, log: &ChangeLog, group: &Group, spot: Spot) -> Option<
         area_m2: cells.len() as f64 * frame.resolution_m().powi(2),
         changes: cells.iter().map(|index| mapper.statistics(*index).events()).max()?,
         rates: Some(rates),
-        direction: None,
-        tiles: Vec::new(),
         cells: cells.clone(),
     })
 }

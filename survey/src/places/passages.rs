@@ -62,12 +62,6 @@ impl Spot {
     pub(super) fn all(&self) -> u32 {
         self.passages.iter().sum()
     }
-
-    /// Its middle, m.
-    pub(super) fn middle(&self, frame: &GridFrame) -> [f64; 2] {
-        let side = (SIDE_M / frame.resolution_m()).round().max(1.0);
-        [self.key.x, self.key.y].map(|number| (f64::from(number) + 0.5) * side * frame.resolution_m())
-    }
 }
 
 /// The passages of every spot.

@@ -5,8 +5,6 @@ use interfaces::{Cell, CellReading, GridFrame};
 use mapper::MapperSettings;
 use nalgebra::Isometry2;
 
-mod directions;
-
 /// A room of 6 × 2 m without walls, in cells of 0.1 m.
 struct Room {
     mapper: Mapper,

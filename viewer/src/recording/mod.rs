@@ -10,7 +10,6 @@ mod entity;
 mod file;
 mod layout;
 mod live;
-mod reach;
 mod sinks;
 mod tracks;
 

@@ -73,7 +73,7 @@ fn a_run_that_goes_on_equals_one_that_was_not_interrupted() {
 fn a_loop_is_closed_beside_the_robot() {
     let at_once = switched(Switch::AtOnce);
     for switch in [Switch::After(30), Switch::WhenReady] {
-        let (poses, changes, worst_m) = switched(switch.clone());
+        let (poses, changes, worst_m) = switched(switch);
         let [(reading, read_again)] = changes[..] else { panic!("{switch:?}: {changes:?}") };
         // Until it changes the map, the robot goes on in the old one.
         let (begun, _) = at_once.1[0];
@@ -83,8 +83,6 @@ fn a_loop_is_closed_beside_the_robot() {
         if switch == Switch::After(30) {
             assert_eq!(reading, begun + 30);
         }
-        // The reading that was recorded repeats the run.
-        assert!(switched(Switch::At(vec![reading])).0 == poses, "{reading}: other bits");
     }
 }
 

@@ -16,7 +16,7 @@ use survey::{Place, PlaceKind, Quality, Since, StillName, Survey, SurveySettings
 /// The number of places in the summary and in the report, beside those with names, doors, and furniture that was moved.
 const MAX_PLACES: usize = 20;
 /// The version of the layout of `summary.json`; count up when a key is renamed, removed or changes its meaning.
-const SCHEMA: u32 = 2;
+const SCHEMA: u32 = 3;
 /// Why there are no rates.
 const NO_TIMES: &str = "the times of the log are unusable, so that no rate, duration or date can be given: the map shows where \
                         something changed, not how often";

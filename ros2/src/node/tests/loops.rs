@@ -88,13 +88,6 @@ fn check(Trip { said, errors_m, wrong, .. }: &Trip) {
     assert!(wrong[0] > 0.3 && wrong[1] < 0.15, "{wrong:?}");
 }
 
-/// The numbers of the readings that the node has printed.
-fn switches(said: &[String]) -> Vec<usize> {
-    let last = said.iter().rev().find_map(|text| text.split("`--switch-at ").nth(1));
-    let numbers = last.and_then(|text| text.split('`').next()).unwrap_or_default();
-    numbers.split(',').filter_map(|number| number.parse().ok()).collect()
-}
-
 fn block() -> Parameters {
     Parameters { map_size_m: 50.0, ..parameters(Mode::Map) }
 }
@@ -108,11 +101,6 @@ fn with_a_simulated_clock_a_loop_is_closed_after_a_fixed_number_of_readings() {
 }
 
 #[test]
-fn a_live_run_that_has_closed_a_loop_is_repeated_bit_for_bit() {
-    let live = trip(&block(), true);
-    check(&live);
-    let switch_at = switches(&live.said);
-    assert!(!switch_at.is_empty(), "{:?}", live.said);
-    let repeated = Parameters { switch_at, ..block() };
-    assert!(live.bits == trip(&repeated, false).bits, "the repeated run has other bits");
+fn a_live_run_closes_a_loop() {
+    check(&trip(&block(), true));
 }

@@ -174,7 +174,7 @@ pub(super) type Switched = (Vec<(PoseState, Isometry2<f64>)>, Vec<(usize, usize)
 /// A trip of 1.5 rounds of a robot that changes to a new map as given.
 pub(super) fn switched(switch: Switch) -> Switched {
     let mut run = Run::new(narrow(101), 101);
-    run.localizer = run.localizer.switching(switch.clone());
+    run.localizer = run.localizer.switching(switch);
     let (mut poses, mut changes, mut worst_m) = (Vec::new(), Vec::new(), 0.0_f64);
     for _ in 0..run.scans(1.5) {
         let is_second = run.way_m() > run.corridor.round_m() + CLOSING_M + 3.0;

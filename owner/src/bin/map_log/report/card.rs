@@ -7,18 +7,15 @@ use super::{Page, middle, number};
 use draw::layers::Layer;
 use mapper::{Clock, Door, Furniture, Leaf, ThingKind, Week};
 use maud::{Markup, html};
-use nalgebra::{Point2, Vector2};
+use nalgebra::Point2;
 use owner::week;
 use owner::words::{Seen, changed, date, length_of, range, rate, short, times};
-use std::f64::consts::PI;
-use survey::{Direction, Place, PlaceKind, is_line};
+use survey::{Place, PlaceKind, is_line};
 
 /// The side of the picture of a place, m.
 const SIDE_M: f64 = 6.0;
 /// What was looked at for this time, s, has an upper bound that says something.
 const LONG_S: f64 = 600.0;
-/// Where a smaller share of the passages has the heading of most, they go both ways.
-const BOTH_WAYS: f64 = 0.75;
 
 impl Page<'_> {
     /// The card of a place.
@@ -32,7 +29,7 @@ impl Page<'_> {
                     dt { "What it looks like" } dd { (self.looks(place)) }
                     @if let Some(rates) = &place.rates {
                         @let seen = self.seen(place).unwrap_or_else(|| Seen::of_place(rates));
-                        dt { "How often" } dd { (self.often(place, &seen)) (self.ways(place)) }
+                        dt { "How often" } dd { (self.often(place, &seen)) }
                         dt { "When" } dd {
                             p { "Last change: " (self.time(rates.last_change_s)) "." }
                             @if let Some(week) = &week { (week_of(week, if self.is_door(place) { "open" } else { "blocked" })) }
@@ -177,19 +174,6 @@ impl Page<'_> {
         }
     }
 
-    /// Where what passes goes, in words.
-    fn ways(&self, place: &Place) -> String {
-        let Some(direction) = &place.direction else { return String::new() };
-        let (heading, back) =
-            (self.plan.towards(direction.heading_rad), self.plan.towards(direction.heading_rad + PI));
-        let share = 100.0 * direction.share;
-        format!(
-            " Of those whose way was seen, {share:.0} % go {heading} in the picture, {:.0} % {back} ({}, arrows).",
-            100.0 - share,
-            times(direction.passages)
-        )
-    }
-
     /// A time of the map, in words. Between logs without a date, an unknown time has passed: their times count each from its own
     /// first scan.
     pub(super) fn time(&self, time_s: f64) -> String {
@@ -219,7 +203,6 @@ impl Page<'_> {
             svg.plan.mark viewBox={ "0 0 " (number(size.x)) " " (number(size.y)) } role="img" aria-label={ "Surroundings of place " (place.number) } font-family="sans-serif" stroke-width="2" {
                 (plan.cells(Layer::Occupancy))
                 @if let Some(door) = self.door(place) { (leaf(&plan, door)) } @else { (outline(&plan.rectangle(&self.cells(place)))) }
-                @for tile in &place.tiles { @if let Some(direction) = &tile.direction { (arrow(&plan, [tile.x_m, tile.y_m].into(), direction)) } }
                 @if let Some(Furniture { from: Some(from), to: Some(to) }) = self.furniture(place) { (line(&plan, [from.center, to.center], "6 4")) }
                 rect x="0" y=(number(size.y - 28.0)) width="106" height="28" fill="#fff" opacity="0.85" {}
                 g stroke-width="0" { (plan.scale_bar([8.0, size.y - 8.0])) }
@@ -283,24 +266,6 @@ fn leaf(plan: &Plan, door: &Door) -> Markup {
 fn line(plan: &Plan, ends: [Point2<f64>; 2], dashes: &str) -> Markup {
     let [from, to] = ends.map(|end| plan.unit(&end));
     html! { line x1=(number(from.x)) y1=(number(from.y)) x2=(number(to.x)) y2=(number(to.y)) stroke="currentColor" stroke-width="4" stroke-dasharray=(dashes) {} }
-}
-
-/// An arrow along the heading of most passages of a tile; with two heads if at least a quarter goes the opposite way.
-fn arrow(plan: &Plan, at: Point2<f64>, direction: &Direction) -> Markup {
-    let point = |along_m: f64, beside_m: f64| {
-        let at = at + interfaces::rotation(direction.heading_rad) * Vector2::new(along_m, beside_m);
-        let at = plan.unit(&at);
-        format!("{},{}", number(at.x), number(at.y))
-    };
-    let head =
-        |way: f64| [point(way * 0.08, 0.08), point(way * 0.2, 0.0), point(way * 0.08, -0.08)].join(" ");
-    html! {
-        g fill="none" stroke="currentColor" {
-            polyline points={ (point(-0.2, 0.0)) " " (point(0.2, 0.0)) } {}
-            polyline points=(head(1.0)) {}
-            @if direction.share < BOTH_WAYS { polyline points=(head(-1.0)) {} }
-        }
-    }
 }
 
 fn week_of(week: &Week, state: &str) -> Markup {
