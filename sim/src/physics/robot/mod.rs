@@ -244,7 +244,8 @@ impl SimulatedRobot {
     pub(super) fn start_step(&mut self, bodies: &mut Bodies, step_s: f64) {
         self.wheels.start_step(&self.drive, &self.command, step_s);
         self.velocity = self.drive.step(&self.command, step_s);
-        self.driven = self.velocity;
+        // Without what contacts gave: wheels that do not roll sideways drive nowhere sideways.
+        self.driven = if self.spec.drive.is_omni() { self.velocity } else { self.velocity.twist().into() };
         bodies.set_velocity(self.index, &self.velocity, step_s);
     }
 

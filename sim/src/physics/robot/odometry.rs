@@ -23,10 +23,9 @@ pub(super) struct Odometry {
 impl Odometry {
     /// Odometry starts at the true pose.
     pub(super) fn new(robot: &RobotSpec, noise: RandomStream, start: Isometry2<f64>) -> Self {
-        let is_omni = matches!(robot.drive.kind, DriveKind::Omni { .. });
         Self {
             error: robot.odometry,
-            is_omni,
+            is_omni: robot.drive.is_omni(),
             noise,
             pose: start,
             heading_rad: interfaces::heading_rad(&start),
