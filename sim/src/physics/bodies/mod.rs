@@ -65,7 +65,7 @@ struct RobotBody {
     pose: Isometry2<f64>,
     /// The pose after the step, and rapier's velocities, if there is no contact.
     free: Isometry2<f64>,
-    driven: (rapier::Vector, f32),
+    driven: rapier::RigidBodyVelocity<f32>,
     /// The direction of the wheels in the middle of the last step.
     forward: Vector2<f64>,
 }
@@ -120,10 +120,7 @@ impl Bodies {
     /// The values that a snapshot holds. The same bodies must have been added before.
     pub(super) fn values(&mut self) -> Values<'_> {
         let mut values = vec![value(&mut self.world)];
-        for robot in &mut self.robots {
-            values.push(pose(&mut robot.pose));
-            values.extend(robot.forward.iter_mut().map(value));
-        }
+        values.extend(self.robots.iter_mut().map(|robot| pose(&mut robot.pose)));
         values
     }
 
@@ -166,8 +163,8 @@ impl Bodies {
         let (body, collider) = self.world.insert(body, collider);
         let inner_m = if is_round { spec.radius_m } else { convex::inner_m(&spec.corners) };
         self.add_free(body, inner_m, self.predicted_m.unwrap_or(own_motion_m));
-        let (pose, free, driven) = (spec.pose, spec.pose, (rapier::Vector::ZERO, 0.0));
-        self.robots.push(RobotBody { body, collider, pose, free, driven, forward: Vector2::x() });
+        let (pose, driven, forward) = (spec.pose, rapier::RigidBodyVelocity::zero(), Vector2::x());
+        self.robots.push(RobotBody { body, collider, pose, free: pose, driven, forward });
     }
 
     /// Notes a body that contacts move, around a disc of `inner_m`.
@@ -191,11 +188,9 @@ impl Bodies {
         let velocity = own.forward * own_velocity.forward_mps + left(&own.forward) * own_velocity.left_mps;
         let at = own.pose.translation.vector + velocity * step_s;
         own.free = Isometry2::from_parts(at.into(), middle * half);
-        let body = &mut self.world.bodies[own.body];
-        own.driven =
-            (rapier::Vector::new(velocity.x as f32, velocity.y as f32), own_velocity.turn_radps as f32);
-        body.set_linvel(own.driven.0, true);
-        body.set_angvel(own.driven.1, true);
+        let velocity = rapier::Vector::new(velocity.x as f32, velocity.y as f32);
+        own.driven = rapier::RigidBodyVelocity::new(velocity, own_velocity.turn_radps as f32);
+        self.world.bodies[own.body].set_vels(own.driven, true);
     }
 
     /// Simulates one step.
@@ -210,7 +205,7 @@ impl Bodies {
             let body = &mut self.world.bodies[own.body];
             let free = to_rapier(&own.free);
             let off_m = f64::from((body.position().translation - free.translation).length());
-            if (body.linvel(), body.angvel()) == own.driven && off_m < ROUNDING_M {
+            if *body.vels() == own.driven && off_m < ROUNDING_M {
                 own.pose = own.free;
                 body.set_position(free, true);
             } else {
@@ -241,8 +236,7 @@ impl Bodies {
         self.robots[robot].pose = *pose;
         let body = &mut self.world.bodies[self.robots[robot].body];
         body.set_position(to_rapier(pose), true);
-        body.set_linvel(rapier::Vector::ZERO, true);
-        body.set_angvel(0.0, true);
+        body.set_vels(rapier::RigidBodyVelocity::zero(), true);
     }
 }
 

@@ -1,9 +1,10 @@
 //! The bodies of obstacles that move: driven ones and pushed ones.
 
 use super::{Bodies, cuboid, from_rapier, to_rapier};
+use crate::physics::drives::GRAVITY_MPS2;
 use crate::physics::report::Body;
 use crate::physics::shape::Rectangle;
-use crate::physics::spec::{GRAVITY_MPS2, PushedSpec};
+use crate::physics::spec::PushedSpec;
 use nalgebra::Isometry2;
 use rapier2d::prelude as rapier;
 use serde::{Deserialize, Serialize};

@@ -30,15 +30,12 @@ impl Bodies {
         })
     }
 
-    /// Moves a robot by the motion of a step (m), and turns it by its velocity. `is_stopped`: the motion is not the wanted
-    /// one.
-    pub(crate) fn slide(&mut self, robot: usize, moved_m: &Vector2<f64>, is_stopped: bool) {
+    /// Moves a robot by the motion of a step (m), and turns it by its velocity.
+    pub(crate) fn slide(&mut self, robot: usize, moved_m: &Vector2<f64>) {
         let own = &mut self.robots[robot];
         let body = &mut self.world.bodies[own.body];
-        if is_stopped {
-            let velocity = moved_m / f64::from(self.world.integration_parameters.dt);
-            body.set_linvel(rapier::Vector::new(velocity.x as f32, velocity.y as f32), true);
-        }
+        let velocity = moved_m / f64::from(self.world.integration_parameters.dt);
+        body.set_linvel(rapier::Vector::new(velocity.x as f32, velocity.y as f32), true);
         own.pose.translation.vector += moved_m;
         own.pose.rotation = own.free.rotation;
         body.set_position(to_rapier(&own.pose), true);

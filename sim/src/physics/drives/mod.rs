@@ -11,9 +11,12 @@
 //! - A robot of mass m pushes a standing one of mass M sideways at the speed s with
 //!   m · min(a, (v − s) / τ) = M · min(s / τ, `lateral_grip` · g).
 
-use super::spec::{DriveKind, DriveLimits, GRAVITY_MPS2};
+use super::spec::{DriveKind, DriveLimits};
 use super::velocity::Velocity;
 use interfaces::{Values, values};
+
+/// Standard gravity, for friction on the floor, m/s².
+pub(super) const GRAVITY_MPS2: f64 = 9.806_65;
 
 /// A solved velocity that differs from the wanted one by more than this shows a contact, m/s or rad/s. The
 /// value is well above the rounding of the physics.

@@ -15,8 +15,6 @@ pub use odometry::{DisplacementSpec, OdometryError};
 pub use robot::{DriveKind, DriveLimits, LaserSpec, PatrolDaySpec, RobotSpec};
 pub use senses::{BumperSpec, FiducialSpec, SonarSpec};
 
-pub(crate) use robot::GRAVITY_MPS2;
-
 use super::shape::{Rectangle, TOUCH_M, Transform, grid_corners};
 use interfaces::{GridFrame, rotation};
 use nalgebra::{Point2, Vector2};

@@ -7,9 +7,6 @@ use interfaces::Scan;
 use nalgebra::{Isometry2, Point2};
 use std::f64::consts::{PI, TAU};
 
-/// Standard gravity, for friction on the floor, m/s².
-pub(crate) const GRAVITY_MPS2: f64 = 9.806_65;
-
 /// A robot with wheels and lasers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RobotSpec {
