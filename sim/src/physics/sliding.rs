@@ -84,7 +84,7 @@ fn nearest(wanted_m: &Vector2<f64>, planes: &[HalfPlane]) -> Slide {
     let mut consider = |change_m: Vector2<f64>, parts: [Option<(usize, f64)>; 2]| {
         let moved_m = wanted_m + change_m;
         let is_allowed = planes.iter().all(|plane| plane.beyond_m(&moved_m) <= ROUNDING_M);
-        if is_allowed && change_m.norm_squared() < best_m2 {
+        if is_allowed && change_m.norm_squared() <= best_m2 {
             best_m2 = change_m.norm_squared();
             best =
                 Slide { moved_m, stops: parts.into_iter().flatten().filter(|stop| stop.1 > 0.0).collect() };

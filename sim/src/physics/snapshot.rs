@@ -10,7 +10,7 @@ use nalgebra::Isometry2;
 use serde::{Deserialize, Serialize};
 
 /// The first eight bytes of a snapshot: the kind of data, and the version of the format.
-const MAGIC: u64 = u64::from_le_bytes(*b"fleet\0\0\x0a");
+const MAGIC: u64 = u64::from_le_bytes(*b"fleet\0\0\x0b");
 
 /// The error for bytes that are not a snapshot of the fleet.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

@@ -7,7 +7,8 @@ use serde::{Deserialize, Serialize};
 pub struct Velocity {
     /// Linear velocity forward, m/s.
     pub forward_mps: f64,
-    /// Linear velocity to the left, m/s; 0 unless the drive is an omni drive.
+    /// Linear velocity to the left, m/s. Of other drives than omni drives: 0 as a command, and unless a contact pushes
+    /// the robot sideways.
     pub left_mps: f64,
     /// Angular velocity, counter-clockwise, rad/s.
     pub turn_radps: f64,

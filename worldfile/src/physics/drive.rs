@@ -5,13 +5,13 @@ use crate::reader::Table;
 use sim::physics::{DriveKind, DriveLimits};
 
 pub(super) const KEYS: &str = "kind, max_linear_mps, max_angular_degps, max_linear_acceleration_mps2, \
-                               max_angular_acceleration_degps2, max_left_mps, max_left_acceleration_mps2, \
-                               wheelbase_m, max_steer_deg";
+                               max_angular_acceleration_degps2, lateral_grip, max_left_mps, \
+                               max_left_acceleration_mps2, wheelbase_m, max_steer_deg";
 
 const KINDS: [KindOf; 3] = [
-    ("diff", "", "drives straight ahead and turns"),
+    ("diff", "lateral_grip", "drives straight ahead and turns"),
     ("omni", "max_left_mps, max_left_acceleration_mps2", "drives in all directions"),
-    ("car", "wheelbase_m, max_steer_deg", "steers with its front wheels"),
+    ("car", "lateral_grip, wheelbase_m, max_steer_deg", "steers with its front wheels"),
 ];
 
 /// The limits of a drive. No robot moves by more than its radius in a step: `radius_per_step_mps` is that speed.
@@ -27,6 +27,7 @@ pub(super) fn drive(table: &Table<'_>, radius_per_step_mps: f64) -> Option<Drive
         max_angular_acceleration_radps2: table
             .number("max_angular_acceleration_degps2", 0.1..=100_000.0)
             .to_radians(),
+        lateral_grip: table.number_or("lateral_grip", DriveLimits::LATERAL_GRIP, 0.0..=10.0),
         kind: match kind_of(table, &KINDS, "a drive")? {
             "car" => DriveKind::Car {
                 wheelbase_m: table.number("wheelbase_m", 0.01..=10.0),

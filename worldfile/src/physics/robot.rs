@@ -25,6 +25,7 @@ const BOUNDLESS: DriveLimits = DriveLimits {
     max_angular_radps: f64::INFINITY,
     max_linear_acceleration_mps2: f64::INFINITY,
     max_angular_acceleration_radps2: f64::INFINITY,
+    lateral_grip: DriveLimits::LATERAL_GRIP,
 };
 
 pub(super) fn robot(table: &Table<'_>, space: &Space) -> Option<RobotSpec> {

@@ -6,8 +6,8 @@ use crate::schedule::write_schedule;
 use crate::toml_value::{degrees, heading, lines, number, point};
 use nalgebra::{Isometry2, Point2};
 use sim::physics::{
-    BehaviorSpec, ContactModel, DoorSpec, DriveKind, FleetSpec, LaserSpec, Leaf, Motion, ObstacleSpec,
-    Opening, PatrolDaySpec, Rectangle, RobotSpec,
+    BehaviorSpec, ContactModel, DoorSpec, DriveKind, DriveLimits, FleetSpec, LaserSpec, Leaf, Motion,
+    ObstacleSpec, Opening, PatrolDaySpec, Rectangle, RobotSpec,
 };
 use toml::Value;
 
@@ -161,7 +161,7 @@ fn drive(robot: &RobotSpec) -> Option<Keys> {
             ("max_angular_acceleration_degps2", degrees(drive.max_angular_acceleration_radps2)),
         ]
     };
-    (drive.kind == DriveKind::Differential).then(keys)
+    (drive.kind == DriveKind::Differential && drive.lateral_grip == DriveLimits::LATERAL_GRIP).then(keys)
 }
 
 fn laser(laser: &LaserSpec) -> Option<Keys> {

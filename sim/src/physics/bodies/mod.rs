@@ -13,7 +13,7 @@ pub(super) use touch::{SEPARATE_M, Touch};
 use super::convex;
 use super::report::Body;
 use super::shape::Rectangle;
-use super::snapshot::{Values, value};
+use super::snapshot::{Values, pose, value};
 use super::spec::{FleetSpec, Motion, RobotSpec};
 use super::velocity::Velocity;
 use interfaces::{heading_rad, rotation};
@@ -61,6 +61,11 @@ struct Free {
 struct RobotBody {
     body: rapier::RigidBodyHandle,
     collider: rapier::ColliderHandle,
+    /// The pose. rapier has a copy in 32 bits; in a step with a contact, the pose is rapier's.
+    pose: Isometry2<f64>,
+    /// The pose after the step, and rapier's velocities, if there is no contact.
+    free: Isometry2<f64>,
+    driven: rapier::RigidBodyVelocity<f32>,
     /// The direction of the wheels in the middle of the last step.
     forward: Vector2<f64>,
 }
@@ -115,7 +120,7 @@ impl Bodies {
     /// The values that a snapshot holds. The same bodies must have been added before.
     pub(super) fn values(&mut self) -> Values<'_> {
         let mut values = vec![value(&mut self.world)];
-        values.extend(self.robots.iter_mut().flat_map(|robot| &mut robot.forward).map(value));
+        values.extend(self.robots.iter_mut().map(|robot| pose(&mut robot.pose)));
         values
     }
 
@@ -158,7 +163,8 @@ impl Bodies {
         let (body, collider) = self.world.insert(body, collider);
         let inner_m = if is_round { spec.radius_m } else { convex::inner_m(&spec.corners) };
         self.add_free(body, inner_m, self.predicted_m.unwrap_or(own_motion_m));
-        self.robots.push(RobotBody { body, collider, forward: Vector2::x() });
+        let (pose, driven, forward) = (spec.pose, rapier::RigidBodyVelocity::zero(), Vector2::x());
+        self.robots.push(RobotBody { body, collider, pose, free: pose, driven, forward });
     }
 
     /// Notes a body that contacts move, around a disc of `inner_m`.
@@ -176,12 +182,15 @@ impl Bodies {
     /// steps form an arc.
     pub(super) fn set_velocity(&mut self, robot: usize, own_velocity: &Velocity, step_s: f64) {
         let own = &mut self.robots[robot];
-        let body = &mut self.world.bodies[own.body];
-        let heading = f64::from(body.rotation().angle()) + own_velocity.turn_radps * step_s / 2.0;
-        own.forward = rotation(heading) * Vector2::x();
+        let half = rotation(own_velocity.turn_radps * step_s / 2.0);
+        let middle = own.pose.rotation * half;
+        own.forward = middle * Vector2::x();
         let velocity = own.forward * own_velocity.forward_mps + left(&own.forward) * own_velocity.left_mps;
-        body.set_linvel(rapier::Vector::new(velocity.x as f32, velocity.y as f32), true);
-        body.set_angvel(own_velocity.turn_radps as f32, true);
+        let at = own.pose.translation.vector + velocity * step_s;
+        own.free = Isometry2::from_parts(at.into(), middle * half);
+        let velocity = rapier::Vector::new(velocity.x as f32, velocity.y as f32);
+        own.driven = rapier::RigidBodyVelocity::new(velocity, own_velocity.turn_radps as f32);
+        self.world.bodies[own.body].set_vels(own.driven, true);
     }
 
     /// Simulates one step.
@@ -192,11 +201,22 @@ impl Bodies {
         }
         self.world.step();
         self.resolve_penetration();
+        for own in &mut self.robots {
+            let body = &mut self.world.bodies[own.body];
+            let free = to_rapier(&own.free);
+            let off_m = f64::from((body.position().translation - free.translation).length());
+            if *body.vels() == own.driven && off_m < ROUNDING_M {
+                own.pose = own.free;
+                body.set_position(free, true);
+            } else {
+                own.pose = from_rapier(body.position());
+            }
+        }
     }
 
     /// The pose of a robot.
     pub(super) fn pose(&self, robot: usize) -> Isometry2<f64> {
-        from_rapier(self.world.bodies[self.robots[robot].body].position())
+        self.robots[robot].pose
     }
 
     /// The velocity of a robot after the contacts of the last step.
@@ -213,10 +233,10 @@ impl Bodies {
 
     /// Puts a robot at a pose, at rest.
     pub(super) fn put(&mut self, robot: usize, pose: &Isometry2<f64>) {
+        self.robots[robot].pose = *pose;
         let body = &mut self.world.bodies[self.robots[robot].body];
         body.set_position(to_rapier(pose), true);
-        body.set_linvel(rapier::Vector::ZERO, true);
-        body.set_angvel(0.0, true);
+        body.set_vels(rapier::RigidBodyVelocity::zero(), true);
     }
 }
 

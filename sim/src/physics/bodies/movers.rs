@@ -1,6 +1,7 @@
 //! The bodies of obstacles that move: driven ones and pushed ones.
 
 use super::{Bodies, cuboid, from_rapier, to_rapier};
+use crate::physics::drives::GRAVITY_MPS2;
 use crate::physics::report::Body;
 use crate::physics::shape::Rectangle;
 use crate::physics::spec::PushedSpec;
@@ -8,8 +9,6 @@ use nalgebra::Isometry2;
 use rapier2d::prelude as rapier;
 use serde::{Deserialize, Serialize};
 
-/// Standard gravity, for the friction of boxes on the floor.
-const GRAVITY_MPS2: f64 = 9.806_65;
 /// The damping of friction while its force is enough, 1/s: almost no speed is left after a step.
 const FRICTION_PER_S: f32 = 1e5;
 

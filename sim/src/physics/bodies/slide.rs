@@ -1,6 +1,6 @@
 //! Steps without rapier: robots are moved, and rapier finds them there in its next step.
 
-use super::{Bodies, Touch, to_rapier};
+use super::{Bodies, RobotBody, Touch, to_rapier};
 use nalgebra::Vector2;
 use rapier2d::prelude as rapier;
 
@@ -10,9 +10,8 @@ const REST: f32 = 1e-5;
 impl Bodies {
     /// The motion of a robot in the next step if nothing is in its way, m.
     pub(crate) fn wanted_m(&self, robot: usize) -> Vector2<f64> {
-        let wanted =
-            self.world.bodies[self.robots[robot].body].linvel() * self.world.integration_parameters.dt;
-        Vector2::new(f64::from(wanted.x), f64::from(wanted.y))
+        let RobotBody { pose, free, .. } = &self.robots[robot];
+        free.translation.vector - pose.translation.vector
     }
 
     /// The mass of a robot, kg.
@@ -31,19 +30,15 @@ impl Bodies {
         })
     }
 
-    /// Moves a robot by the motion of a step (m), and turns it by its velocity. `is_stopped`: the motion is not the wanted
-    /// one.
-    pub(crate) fn slide(&mut self, robot: usize, moved_m: &Vector2<f64>, is_stopped: bool) {
-        let step_s = self.world.integration_parameters.dt;
-        let body = &mut self.world.bodies[self.robots[robot].body];
-        if is_stopped {
-            let velocity = moved_m / f64::from(step_s);
-            body.set_linvel(rapier::Vector::new(velocity.x as f32, velocity.y as f32), true);
-        }
-        let mut pose = super::from_rapier(body.position());
-        pose.translation.vector += moved_m;
-        pose.rotation *= interfaces::rotation(f64::from(body.angvel() * step_s));
-        body.set_position(to_rapier(&pose), true);
+    /// Moves a robot by the motion of a step (m), and turns it by its velocity.
+    pub(crate) fn slide(&mut self, robot: usize, moved_m: &Vector2<f64>) {
+        let own = &mut self.robots[robot];
+        let body = &mut self.world.bodies[own.body];
+        let velocity = moved_m / f64::from(self.world.integration_parameters.dt);
+        body.set_linvel(rapier::Vector::new(velocity.x as f32, velocity.y as f32), true);
+        own.pose.translation.vector += moved_m;
+        own.pose.rotation = own.free.rotation;
+        body.set_position(to_rapier(&own.pose), true);
     }
 
     /// Ends a step without rapier, in which robots (by index) touched bodies.

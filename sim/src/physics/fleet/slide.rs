@@ -144,7 +144,7 @@ impl Fleet {
         let Sliding { walls, wanted_m, slides, near } = sliding;
         for (index, Slide { moved_m, stops }) in slides.iter().enumerate() {
             self.find_near(index, &wanted_m[index], &mut walls[index], near);
-            self.bodies.slide(index, moved_m, moved_m != &wanted_m[index]);
+            self.bodies.slide(index, moved_m);
             let (at, radius_m) = (self.robots[index].at() + moved_m, self.robots[index].spec.radius_m);
             for (body, (with, shape)) in near.bodies.iter().zip(&near.shapes).enumerate() {
                 let stopped_m =

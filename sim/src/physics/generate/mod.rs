@@ -183,6 +183,7 @@ fn robot(
         max_angular_radps: 150.0_f64.to_radians(),
         max_linear_acceleration_mps2: 1.5,
         max_angular_acceleration_radps2: 600.0_f64.to_radians(),
+        lateral_grip: DriveLimits::LATERAL_GRIP,
     };
     if robot.behavior != BehaviorSpec::Driven {
         (robot.laser.beams, robot.laser.range_max_m) = (120, 4.0);

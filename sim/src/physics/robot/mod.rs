@@ -16,7 +16,7 @@ use super::spec::{BehaviorSpec, RobotSpec};
 use super::velocity::Velocity;
 use interfaces::{LaserReading, Purpose, RandomStream, Twist, Values, values};
 use nalgebra::{Isometry2, Point2, Vector2};
-use odometry::{Displacements, Odometry, Wheels};
+use odometry::{Displacements, Odometry};
 use std::sync::Arc;
 
 #[derive(Clone)]
@@ -37,7 +37,8 @@ pub(crate) struct SimulatedRobot {
     pub(super) pressed_bumpers: u64,
     command: Velocity,
     drive: Motors,
-    wheels: Wheels,
+    /// What the odometry measures in addition to the velocity of the robot: the slip of the wheels.
+    slipping: Velocity,
     odometry: Odometry,
     /// When the odometry jumps, and when the robot is carried away.
     jumps: Option<Displacements>,
@@ -67,7 +68,6 @@ impl SimulatedRobot {
         periods.dedup();
         let displacements =
             |spec: Option<_>, purpose| spec.map(|spec| Displacements::new(spec, random(purpose)));
-        let drive = Motors::new(spec.drive);
         let laser_beams = beams.of_laser(&spec.laser);
         Self {
             index,
@@ -78,8 +78,8 @@ impl SimulatedRobot {
             touching: Vec::new(),
             pressed_bumpers: 0,
             command: Velocity::STOP,
-            drive,
-            wheels: Wheels::new(spec.odometry.slip, drive),
+            drive: Motors::new(spec.drive),
+            slipping: Velocity::STOP,
             odometry: Odometry::new(spec, random(Purpose::OdometryNoise(index)), pose),
             jumps: displacements(spec.odometry.jump, Purpose::OdometryJump(index)),
             carried: displacements(spec.odometry.carried, Purpose::Carried(index)),
@@ -92,10 +92,11 @@ impl SimulatedRobot {
 
     /// The values that a snapshot holds.
     pub(super) fn values(&mut self) -> Values<'_> {
-        let Self { velocity, driven, touching, pressed_bumpers, command, drive, wheels, odometry, .. } = self;
+        let Self { velocity, driven, slipping, touching, pressed_bumpers, command, drive, odometry, .. } =
+            self;
         let mut values = vec![pose(&mut self.pose), pose(&mut self.previous_pose)];
         values.extend(
-            values![*velocity, *driven, *touching, *pressed_bumpers, *command; drive, wheels, odometry],
+            values![*velocity, *driven, *slipping, *touching, *pressed_bumpers, *command; drive, odometry],
         );
         let displacements = self.jumps.iter_mut().chain(&mut self.carried);
         values.extend(displacements.flat_map(Displacements::values));
@@ -127,7 +128,7 @@ impl SimulatedRobot {
     /// The time until which the robot rests if no other body moves, s; `None` if it moves, or decides by itself.
     pub(super) fn rests_until_s(&self) -> Option<f64> {
         let is_still = !self.has_moved()
-            && [self.velocity, self.driven, self.wheels.slipping].iter().all(|own| *own == Velocity::STOP);
+            && [self.velocity, self.driven, self.slipping].iter().all(|own| *own == Velocity::STOP);
         let obeys = matches!(self.spec.behavior, BehaviorSpec::Driven | BehaviorSpec::Standing);
         let displaced = self.jumps.iter().chain(&self.carried).map(Displacements::next_s);
         (is_still && obeys && self.command == Velocity::STOP).then(|| displaced.fold(f64::INFINITY, f64::min))
@@ -175,7 +176,7 @@ impl SimulatedRobot {
         self.pose = pose;
         self.velocity = Velocity::STOP;
         self.drive = Motors::new(self.spec.drive);
-        self.wheels = Wheels::new(self.spec.odometry.slip, self.drive);
+        self.slipping = Velocity::STOP;
     }
 
     /// Moves the robot to `pose`, at rest. The odometry starts again there.
@@ -224,7 +225,7 @@ impl SimulatedRobot {
 
     /// The velocity by odometry.
     pub(super) fn odometry_twist(&self) -> Twist {
-        let (velocity, slipping) = (self.velocity.twist(), self.wheels.slipping.twist());
+        let (velocity, slipping) = (self.velocity.twist(), self.slipping.twist());
         self.odometry.twist(&Twist {
             linear_mps: velocity.linear_mps + slipping.linear_mps,
             angular_radps: velocity.angular_radps + slipping.angular_radps,
@@ -242,9 +243,9 @@ impl SimulatedRobot {
 
     /// Gives the body the velocity of the next step.
     pub(super) fn start_step(&mut self, bodies: &mut Bodies, step_s: f64) {
-        self.wheels.start_step(&self.drive, &self.command, step_s);
         self.velocity = self.drive.step(&self.command, step_s);
-        self.driven = self.velocity;
+        // Without what contacts gave: wheels that do not roll sideways drive nowhere sideways.
+        self.driven = if self.spec.drive.is_omni() { self.velocity } else { self.velocity.twist().into() };
         bodies.set_velocity(self.index, &self.velocity, step_s);
     }
 
@@ -257,13 +258,26 @@ impl SimulatedRobot {
         velocity.dot(direction)
     }
 
+    /// The velocity of the wheels that the odometry measures in addition to the velocity `solved` of a robot that a contact
+    /// holds back or pushes: wheels that slip turn as commanded.
+    fn slip(&self, solved: &Velocity) -> Velocity {
+        const LONG_ENOUGH_S: f64 = 1e9;
+        let wheels = Motors::new(self.spec.drive).step(&self.command, LONG_ENOUGH_S);
+        let slip = self.spec.odometry.slip;
+        Velocity {
+            forward_mps: slip * (wheels.forward_mps - solved.forward_mps),
+            left_mps: slip * (wheels.left_mps - solved.left_mps),
+            turn_radps: slip * (wheels.turn_radps - solved.turn_radps),
+        }
+    }
+
     /// Takes over the pose and the velocity of the body after the step, which ends at `time_s`.
     pub(super) fn end_step(&mut self, bodies: &Bodies, time_s: f64, step_s: f64) {
         self.previous_pose = std::mem::replace(&mut self.pose, bodies.pose(self.index));
         let solved = bodies.velocity(self.index);
         self.velocity = self.drive.settle(&solved);
-        self.wheels.end_step(&self.drive, &solved);
-        self.odometry.update(&self.previous_pose, &self.pose, &self.wheels.slipping, step_s);
+        self.slipping = if self.drive.is_stalled { self.slip(&solved) } else { Velocity::STOP };
+        self.odometry.update(&self.previous_pose, &self.pose, &self.slipping, step_s);
         if let Some(jumps) = &mut self.jumps
             && jumps.is_due(time_s)
         {

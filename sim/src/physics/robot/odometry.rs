@@ -1,8 +1,7 @@
 //! The odometry of a robot, with wheels that slip, and displacements.
 
-use crate::physics::drives::Motors;
 use crate::physics::snapshot::{self, value};
-use crate::physics::spec::{DisplacementSpec, DriveKind, OdometryError, RobotSpec};
+use crate::physics::spec::{DisplacementSpec, OdometryError, RobotSpec};
 use crate::physics::velocity::Velocity;
 use interfaces::{RandomStream, Twist, Values, pose, rotation, values, wrap_rad};
 use nalgebra::{Isometry2, Point2, Vector2};
@@ -23,10 +22,9 @@ pub(super) struct Odometry {
 impl Odometry {
     /// Odometry starts at the true pose.
     pub(super) fn new(robot: &RobotSpec, noise: RandomStream, start: Isometry2<f64>) -> Self {
-        let is_omni = matches!(robot.drive.kind, DriveKind::Omni { .. });
         Self {
             error: robot.odometry,
-            is_omni,
+            is_omni: robot.drive.is_omni(),
             noise,
             pose: start,
             heading_rad: interfaces::heading_rad(&start),
@@ -96,55 +94,6 @@ impl Odometry {
     }
 }
 
-/// The wheels of a robot. While a contact changes the velocity of the robot, they slip: they turn like wheels that no
-/// contact stops. They move nothing, but the odometry measures them.
-#[derive(Clone)]
-pub(super) struct Wheels {
-    /// From 0 to 1, see [`OdometryError::slip`].
-    slip: f64,
-    /// A drive that follows the commands without contacts.
-    free: Motors,
-    /// What the odometry measures in addition to the velocity of the robot.
-    pub(super) slipping: Velocity,
-}
-
-impl Wheels {
-    pub(super) fn new(slip: f64, drive: Motors) -> Self {
-        Self { slip, free: drive, slipping: Velocity::STOP }
-    }
-
-    /// The values that a snapshot holds.
-    pub(super) fn values(&mut self) -> Values<'_> {
-        let mut values = self.free.values();
-        values.push(value(&mut self.slipping));
-        values
-    }
-
-    /// Starts a step with a command; `drive` is the drive of the robot before the step.
-    pub(super) fn start_step(&mut self, drive: &Motors, command: &Velocity, step_s: f64) {
-        if self.slip == 0.0 {
-            return;
-        }
-        if !drive.is_stalled {
-            self.free = *drive;
-        }
-        self.free.step(command, step_s);
-    }
-
-    /// Ends a step; `drive` is the drive of the robot after it, `solved` the velocity of the robot after contacts.
-    pub(super) fn end_step(&mut self, drive: &Motors, solved: &Velocity) {
-        self.slipping = Velocity::STOP;
-        if self.slip > 0.0 && drive.is_stalled {
-            let (free, slip) = (self.free.velocity, self.slip);
-            self.slipping = Velocity {
-                forward_mps: slip * (free.forward_mps - solved.forward_mps),
-                left_mps: slip * (free.left_mps - solved.left_mps),
-                turn_radps: slip * (free.turn_radps - solved.turn_radps),
-            };
-        }
-    }
-}
-
 /// Displacements that are due at random times.
 #[derive(Clone)]
 pub(crate) struct Displacements {
@@ -195,7 +144,7 @@ impl Displacements {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::physics::spec::BehaviorSpec;
+    use crate::physics::spec::{BehaviorSpec, DriveKind};
     use interfaces::Purpose;
 
     /// The standard deviation of where a robot believes it is after 1 m in a direction, m: along the way

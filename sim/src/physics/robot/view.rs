@@ -22,7 +22,7 @@ pub struct RobotView<'a> {
     pub is_driven: bool,
     /// The true velocity, m/s and rad/s.
     pub twist: Twist,
-    /// The true velocity to the left, m/s: 0 except for an omni drive.
+    /// The true velocity to the left, m/s: 0 except for an omni drive, and where a contact pushes the robot sideways.
     pub left_mps: f64,
     /// Whether a contact slowed the robot down in the last step.
     pub is_stalled: bool,

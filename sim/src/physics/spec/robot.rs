@@ -82,6 +82,7 @@ impl RobotSpec {
                 max_angular_radps: 120.0_f64.to_radians(),
                 max_linear_acceleration_mps2: 1.0,
                 max_angular_acceleration_radps2: 360.0_f64.to_radians(),
+                lateral_grip: DriveLimits::LATERAL_GRIP,
             },
             odometry: OdometryError::default(),
             laser: LaserSpec {
@@ -160,9 +161,19 @@ pub struct DriveLimits {
     pub max_linear_acceleration_mps2: f64,
     /// The maximum angular acceleration and deceleration, rad/s².
     pub max_angular_acceleration_radps2: f64,
+    /// The coefficient of friction of wheels that are pushed sideways; not used by an omni drive.
+    pub lateral_grip: f64,
 }
 
 impl DriveLimits {
+    /// The lateral grip unless another one is given: rubber on a smooth floor, with casters that carry a third.
+    pub const LATERAL_GRIP: f64 = 0.5;
+
+    /// Whether the wheels roll in every direction.
+    pub(crate) fn is_omni(&self) -> bool {
+        matches!(self.kind, DriveKind::Omni { .. })
+    }
+
     /// The maximum speed in any direction, m/s.
     pub fn fastest_mps(&self) -> f64 {
         match self.kind {

@@ -3,6 +3,7 @@
 
 mod caster;
 mod energy;
+mod grip;
 mod mixed;
 mod moved;
 mod oracle;

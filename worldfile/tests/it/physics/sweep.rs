@@ -4,19 +4,22 @@ use super::*;
 use interfaces::{heading_rad, pose, rotation, wrap_rad};
 use nalgebra::{Isometry2, Vector2};
 
-/// The poses of the robots, and the corners of the obstacles, at one time.
+/// The poses and the corners of the robots, and the corners of the obstacles, at one time.
 struct Moment {
     robots: Vec<Isometry2<f64>>,
+    bodies: Vec<Vec<Point2<f64>>>,
     obstacles: Vec<[Point2<f64>; 4]>,
 }
 
 impl Moment {
     fn of(fleet: &Fleet) -> Self {
         let robots = fleet.robots().map(|robot| robot.pose).collect();
-        Self { robots, obstacles: fleet.obstacles().map(|obstacle| obstacle.corners).collect() }
+        let corners = |robot: RobotView<'_>| robot.corners.iter().map(|corner| robot.pose * corner).collect();
+        let bodies = fleet.robots().map(corners).collect();
+        Self { robots, bodies, obstacles: fleet.obstacles().map(|obstacle| obstacle.corners).collect() }
     }
 
-    /// Between two moments everything moves straight and turns evenly.
+    /// Between two moments everything moves straight and turns evenly; corners move straight.
     fn between(&self, next: &Self, share: f64) -> Self {
         let point = |(a, b): (&Point2<f64>, &Point2<f64>)| a + (b - a) * share;
         let robots = self.robots.iter().zip(&next.robots).map(|(a, b)| {
@@ -26,7 +29,9 @@ impl Moment {
         });
         let obstacles = self.obstacles.iter().zip(&next.obstacles);
         let obstacles = obstacles.map(|(a, b)| [0, 1, 2, 3].map(|i| point((&a[i], &b[i]))));
-        Self { robots: robots.collect(), obstacles: obstacles.collect() }
+        let bodies = self.bodies.iter().zip(&next.bodies);
+        let bodies = bodies.map(|(a, b)| a.iter().zip(b).map(point).collect());
+        Self { robots: robots.collect(), bodies: bodies.collect(), obstacles: obstacles.collect() }
     }
 
     /// The range of a single ray of a robot, m.
@@ -43,8 +48,8 @@ impl Moment {
             (0..4).for_each(|i| side(&corners[i], &corners[(i + 1) % 4]));
         }
         let others = spec.robots.iter().zip(&self.robots).enumerate().filter(|(index, _)| *index != own);
-        for (_, (robot, pose)) in others {
-            let at: Vec<_> = robot.corners.iter().map(|corner| pose * corner).collect();
+        for (index, (robot, pose)) in others {
+            let at = &self.bodies[index];
             (0..at.len()).for_each(|i| side(&at[i], &at[(i + 1) % at.len()]));
             if at.is_empty() {
                 let to = pose.translation.vector - from.coords;
