@@ -7,11 +7,11 @@ use std::collections::BTreeSet;
 
 /// The smallest room that is worth a warning, m².
 const ROOM_M2: f64 = 0.25;
-/// The maximum number of rooms that are named one by one.
+/// The maximum number of rooms, and of waypoints of a robot, that are named one by one.
 const MAX_NAMED: usize = 5;
 
-/// The warnings about a world, with all doors open: open outer walls, and rooms that no robot can reach. Robots that stand
-/// still do not count.
+/// The warnings about a world, with all doors open: open outer walls, rooms that no robot can reach, and waypoints that
+/// their robot cannot reach. Robots that stand still do not count.
 pub fn warnings(spec: &FleetSpec) -> Vec<String> {
     let movers: Vec<&RobotSpec> =
         spec.robots.iter().filter(|robot| robot.behavior != BehaviorSpec::Standing).collect();
@@ -21,7 +21,19 @@ pub fn warnings(spec: &FleetSpec) -> Vec<String> {
     // Wherever a larger robot can drive, the smallest one can.
     let space = FreeSpace::new(spec, least_m);
     let inhabited = movers.iter().filter_map(|robot| own_region(&space, robot)).collect();
-    open_wall(spec, &space, &inhabited).into_iter().chain(rooms(spec, &space, &inhabited)).collect()
+    let mut warnings = Vec::from_iter(open_wall(spec, &space, &inhabited));
+    warnings.extend(rooms(spec, &space, &inhabited));
+    // Robots of the same size share a free space.
+    let mut with_waypoints: Vec<&RobotSpec> =
+        movers.into_iter().filter(|robot| matches!(robot.behavior, BehaviorSpec::Waypoints(_))).collect();
+    with_waypoints.sort_by(|a, b| a.radius_m.total_cmp(&b.radius_m));
+    for alike in with_waypoints.chunk_by(|a, b| a.radius_m == b.radius_m) {
+        let radius_m = alike[0].radius_m;
+        let larger = (radius_m > least_m).then(|| FreeSpace::new(spec, radius_m));
+        let space = larger.as_ref().unwrap_or(&space);
+        warnings.extend(alike.iter().filter_map(|robot| waypoints(spec, space, robot)));
+    }
+    warnings
 }
 
 /// The region in which a robot starts.
@@ -57,18 +69,42 @@ fn rooms(spec: &FleetSpec, space: &FreeSpace, inhabited: &BTreeSet<usize>) -> Op
         let first = space.regions().iter().position(|other| *other == Some(*region))?;
         Some(format!("{area_m2:.1} m² at {}", point(&spec.frame.center(spec.frame.cell(first)))))
     });
-    let named = named.collect::<Vec<_>>().join(", ");
-    let more = match lonely.len().saturating_sub(MAX_NAMED) {
-        0 => String::new(),
-        others => format!(", and {others} more"),
-    };
+    let named = listed(named.collect(), lonely.len());
     (!lonely.is_empty()).then(|| {
         format!(
-            "warning: no robot can reach a part of `{}`, even with all doors open: {named}{more}\n  = help: make a way in \
+            "warning: no robot can reach a part of `{}`, even with all doors open: {named}\n  = help: make a way in \
              that is wider than a robot, or fill the part by a wall",
             spec.name
         )
     })
+}
+
+fn waypoints(spec: &FleetSpec, space: &FreeSpace, robot: &RobotSpec) -> Option<String> {
+    let BehaviorSpec::Waypoints(way) = &robot.behavior else { return None };
+    let own = own_region(space, robot);
+    let is_near =
+        |at: &&Point2<f64>| space.region_near(at, spec.frame.resolution_m()) == own && own.is_some();
+    let lost: Vec<&Point2<f64>> = way.points.iter().filter(|at| !is_near(at)).collect();
+    let named = listed(lost.iter().take(MAX_NAMED).map(|at| point(at)).collect(), lost.len());
+    (!lost.is_empty()).then(|| {
+        format!(
+            "warning: the robot `{}` can never reach {} of its {} waypoints, even with all doors open: {named}\n  = help: \
+             its disc has a radius of {} m; move the waypoints away from walls and things",
+            robot.name,
+            lost.len(),
+            way.points.len(),
+            robot.radius_m
+        )
+    })
+}
+
+/// The names of the first of `count` things.
+fn listed(names: Vec<String>, count: usize) -> String {
+    let more = match count - names.len() {
+        0 => String::new(),
+        others => format!(", and {others} more"),
+    };
+    names.join(", ") + &more
 }
 
 fn point(at: &Point2<f64>) -> String {
@@ -81,14 +117,14 @@ mod tests {
     use crate::worlds;
     use sim::physics::{Rectangle, Repeat, WaypointsSpec};
 
-    /// The four rooms with more walls, and with a robot that drives.
-    fn four_rooms(walls: &[[f64; 4]]) -> FleetSpec {
+    /// The four rooms with more walls, and with a robot on waypoints, the last of which is `waypoint`.
+    fn four_rooms(walls: &[[f64; 4]], waypoint: [f64; 2]) -> FleetSpec {
         let mut world = worlds::load("four_rooms").unwrap().spec.fleet().clone();
         world.walls.extend(walls.iter().map(|[left, bottom, right, top]| {
             Rectangle::between(Point2::new(*left, *bottom), Point2::new(*right, *top))
         }));
         let way = BehaviorSpec::Waypoints(WaypointsSpec {
-            points: vec![Point2::new(2.0, 2.0), Point2::new(3.0, 3.0)],
+            points: vec![Point2::new(2.0, 2.0), waypoint.into()],
             speed_mps: 0.4,
             repeat: Repeat::Loop,
             clearance_m: 0.1,
@@ -105,17 +141,25 @@ mod tests {
     }
 
     #[test]
-    fn a_room_without_a_door_is_reported() {
-        assert_eq!(warnings(&four_rooms(&[])), Vec::<String>::new());
+    fn a_room_without_a_door_is_reported_and_so_is_what_is_in_it() {
+        assert_eq!(warnings(&four_rooms(&[], [3.0, 3.0])), Vec::<String>::new());
         let closet = [[0.1, 4.0, 2.1, 4.1], [2.0, 4.1, 2.1, 5.95]];
-        let found = warnings(&four_rooms(&closet));
-        let [room] = &found[..] else { panic!("{found:?}") };
+        let found = warnings(&four_rooms(&closet, [1.0, 5.0]));
+        let [room, waypoint] = &found[..] else { panic!("{found:?}") };
         assert!(room.contains("even with all doors open: 2.2 m² at [0.33, 4.33]"), "{room}");
+        assert!(waypoint.contains("`cat` can never reach 1 of its 2 waypoints"), "{waypoint}");
+        assert!(waypoint.contains("[1.00, 5.00]"), "{waypoint}");
+    }
+
+    #[test]
+    fn a_waypoint_in_a_wall_is_reported() {
+        let found = warnings(&four_rooms(&[], [6.0, 1.0]));
+        assert!(matches!(&found[..], [one] if one.contains("[6.00, 1.00]")), "{found:?}");
     }
 
     #[test]
     fn an_open_outer_wall_is_reported() {
-        let mut world = four_rooms(&[]);
+        let mut world = four_rooms(&[], [3.0, 3.0]);
         world.walls.remove(0); // at the bottom
         let found = warnings(&world);
         assert!(matches!(&found[..], [one] if one.contains("robots can leave the map")), "{found:?}");

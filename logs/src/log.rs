@@ -5,7 +5,10 @@ use crate::summary::LogSummary;
 use interfaces::LaserReading;
 use nalgebra::Isometry2;
 use std::fmt::Debug;
+use std::panic::resume_unwind;
 use std::sync::Arc;
+use std::sync::mpsc::{Receiver, sync_channel};
+use std::thread::{Builder, JoinHandle};
 
 /// A log of any format.
 #[derive(Clone, Debug)]
@@ -49,10 +52,9 @@ impl Log {
     ///
     /// # Errors
     ///
-    /// When the file can no longer be opened.
+    /// When the file can no longer be opened, and when there can be no other thread.
     pub fn readings(&self) -> Result<Readings, LogError> {
-        let raw = Some(self.source.raw_readings()?);
-        Ok(Readings { raw, times_s: self.times_s.clone(), given: 0 })
+        Readings::new(self.source.raw_readings()?, self.times_s.clone())
     }
 
     /// Content hash (XXH3-128): it depends neither on the name nor on the compression of the file. The log is read once for it.
@@ -75,24 +77,52 @@ impl Log {
     }
 }
 
-/// The readings of a log, one after the other. After an error, there are no more.
+/// The number of readings that wait at most.
+const AHEAD: usize = 64;
+
+type Next = Result<LaserReading, LogError>;
+
+/// The readings of a log, one after the other. After an error, there are no more. They are read on a thread, some ahead: to
+/// unpack and to parse a log takes as long as to match its scans.
 pub struct Readings {
-    /// `None` after an error.
-    raw: Option<Box<dyn RawReadings + Send>>,
+    waiting: Receiver<Next>,
+    /// `None` after the last reading.
+    thread: Option<JoinHandle<()>>,
     times_s: Arc<[f64]>,
     given: usize,
 }
 
+impl Readings {
+    fn new(mut raw: Box<dyn RawReadings + Send>, times_s: Arc<[f64]>) -> Result<Self, LogError> {
+        let (to, waiting) = sync_channel(AHEAD);
+        // Ends with the last reading, and when nobody waits for the next one.
+        let read = move || {
+            while let Some(next) = raw.next_reading().transpose() {
+                let has_failed = next.is_err();
+                if to.send(next).is_err() || has_failed {
+                    break;
+                }
+            }
+        };
+        let failed = |why| LogError::Io { file: "the thread that reads a log".to_owned(), why };
+        let thread = Some(Builder::new().name("log".to_owned()).spawn(read).map_err(failed)?);
+        Ok(Self { waiting, thread, times_s, given: 0 })
+    }
+}
+
 impl Iterator for Readings {
-    type Item = Result<LaserReading, LogError>;
+    type Item = Next;
 
     fn next(&mut self) -> Option<Self::Item> {
-        let mut reading = match self.raw.as_mut()?.next_reading().transpose()? {
-            Ok(reading) => reading,
-            failed => {
-                self.raw = None;
-                return Some(failed);
+        let Ok(next) = self.waiting.recv() else {
+            if let Some(Err(panic)) = self.thread.take().map(JoinHandle::join) {
+                resume_unwind(panic);
             }
+            return None;
+        };
+        let mut reading = match next {
+            Ok(reading) => reading,
+            failed => return Some(failed),
         };
         // The file can have grown since the inspection.
         let time_s = *self.times_s.get(self.given)?;
@@ -123,8 +153,7 @@ mod tests {
 
     #[test]
     fn readings_come_in_their_order_and_end_with_an_error() {
-        let times_s = vec![1.0, 2.0, 3.0, 4.0].into();
-        let mut readings = Readings { raw: Some(Box::new(Some3(0))), times_s, given: 0 };
+        let mut readings = Readings::new(Box::new(Some3(0)), vec![1.0, 2.0, 3.0, 4.0].into()).unwrap();
         let times_s: Vec<f64> = (0..3).map(|_| readings.next().unwrap().unwrap().time_s).collect();
         assert_eq!(times_s, [1.0, 2.0, 3.0]);
         assert_eq!(readings.next().unwrap().unwrap_err().to_string(), "a: it ends");

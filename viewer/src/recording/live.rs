@@ -1,12 +1,12 @@
 //! A live viewer of a run: started here, or already running.
 
+use super::reach::{ANSWER_TIMEOUT, check_answer, reach};
 use rerun::external::re_grpc_client::write::ClientConnectionState;
 use rerun::external::re_uri::ProxyUri;
 use rerun::log::LogMsg;
 use rerun::sink::{GrpcSink, LogSink};
 use std::fmt::Display;
 use std::io;
-use std::net::{TcpStream, ToSocketAddrs};
 use std::process::{Command, Stdio};
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, channel, sync_channel};
 use std::thread;
@@ -43,8 +43,6 @@ impl LiveError {
     }
 }
 
-/// The maximum time until a running viewer answers.
-const ANSWER_TIMEOUT: Duration = Duration::from_millis(1500);
 /// The maximum time until a viewer has started: the first start from a slow disk takes several seconds.
 const START_TIMEOUT: Duration = Duration::from_secs(20);
 /// If a viewer accepts nothing for this time, the connection counts as lost.
@@ -151,17 +149,8 @@ fn wait_for<T>(timeout: Duration, mut poll: impl FnMut() -> Option<T>) -> Option
     }
 }
 
-/// Connects to the server at `uri`, without a word: the SDK tries to connect without end.
-fn reach(uri: &ProxyUri) -> io::Result<TcpStream> {
-    let host = uri.origin.host.to_string();
-    let none = Err(io::Error::new(io::ErrorKind::NotFound, "the name has no address"));
-    (host.trim_matches(['[', ']']), uri.origin.port).to_socket_addrs()?.fold(none, |reached, address| {
-        reached.or_else(|_| TcpStream::connect_timeout(&address, ANSWER_TIMEOUT))
-    })
-}
-
 fn connect(uri: &ProxyUri) -> Result<GrpcSink, LiveError> {
-    reach(uri).map_err(|error| LiveError::unreachable(uri, error))?;
+    check_answer(uri).map_err(|error| LiveError::unreachable(uri, error))?;
     let sink = GrpcSink::new(uri.clone());
     let is_connected = wait_for(ANSWER_TIMEOUT, || match sink.status() {
         ClientConnectionState::Connected => Some(true),
@@ -193,8 +182,8 @@ fn spawn(program: &str, uri: &ProxyUri) -> Result<(), LiveError> {
             format!("cannot start the viewer `{program}`: {why}")
         })
     })?;
-    let started = wait_for(START_TIMEOUT, || match (reach(uri), viewer.try_wait()) {
-        (Ok(_), _) => Some(Ok(())),
+    let started = wait_for(START_TIMEOUT, || match (check_answer(uri), viewer.try_wait()) {
+        (Ok(()), _) => Some(Ok(())),
         // A launcher may end with success while the viewer that it launched goes on.
         (_, Ok(Some(status))) if !status.success() => Some(Err(LiveError(format!(
             "the viewer `{program}` ended at once ({status}); run it by itself to see why"
@@ -208,6 +197,7 @@ fn spawn(program: &str, uri: &ProxyUri) -> Result<(), LiveError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::io::Write;
     use std::net::TcpListener;
 
     fn fails(address: &str) -> String {
@@ -225,11 +215,18 @@ mod tests {
 
     #[test]
     fn a_viewer_that_cannot_show_the_run_is_one_sentence() {
-        let free = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().to_string();
+        let listen = || TcpListener::bind("127.0.0.1:0").unwrap();
+        let address = |server: &TcpListener| server.local_addr().unwrap().to_string();
+        let silent = listen(); // the system accepts connections for it
+        let other = listen();
+        let (free, silent_at, other_at) = (address(&listen()), address(&silent), address(&other));
+        std::thread::spawn(move || other.accept().unwrap().0.write_all(b"HTTP/1.1 400 Bad Request\r\n\r\n"));
         let uri = parse(&free).unwrap();
         let spawns = |program: &str| spawn(program, &uri).unwrap_err().to_string();
         for (message, says) in [
             (fails(&free), format!("no viewer answers at rerun+http://{free}/proxy: ")),
+            (fails(&silent_at), "a program accepts connections there, but does not answer; ".to_owned()),
+            (fails(&other_at), "what listens there is not a viewer".to_owned()),
             (spawns("no-such-viewer-0"), "there is no program `no-such-viewer-0`".to_owned()),
             #[cfg(unix)]
             (spawns("false"), "ended at once".to_owned()),

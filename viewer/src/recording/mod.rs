@@ -10,6 +10,7 @@ mod entity;
 mod file;
 mod layout;
 mod live;
+mod reach;
 mod sinks;
 mod tracks;
 

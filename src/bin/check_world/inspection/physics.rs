@@ -83,11 +83,24 @@ fn thing_line(obstacle: &ObstacleSpec) -> String {
         }
         Motion::Door(door) => {
             let leaf = if matches!(door.leaf, Leaf::Hinged { .. }) { "hinged" } else { "sliding" };
-            let hours = match &door.opening {
-                Opening::Scheduled { schedule, .. } => format!(", closed {}", calendar::of_thing(schedule)),
-                _ => String::new(),
+            let opening = match &door.opening {
+                Opening::Periodic { closed_s, open_s } => {
+                    format!("closed {} s, open {} s", short(*closed_s), short(*open_s))
+                }
+                Opening::Random { closed_s, open_s } => {
+                    format!("at random closed {} s, open {} s in the mean", short(*closed_s), short(*open_s))
+                }
+                Opening::Scheduled { schedule, waits_for_robots } => {
+                    let waits = if *waits_for_robots {
+                        "; open while a robot needs it to get to its dock"
+                    } else {
+                        ""
+                    };
+                    format!("closed {}{waits}", calendar::of_thing(schedule))
+                }
+                Opening::Scripted { switches_s } => format!("moved {} times, as written", switches_s.len()),
             };
-            format!("a {leaf} door{hours}")
+            format!("a {leaf} door, {opening}")
         }
     };
     let when = [("from", obstacle.appears_s), ("until", obstacle.disappears_s)];

@@ -16,6 +16,8 @@ const GAP: f64 = 3.0;
 /// Directions and distances at which a label is tried.
 const DIRECTIONS: u32 = 24;
 const DISTANCES: [f64; 12] = [8.0, 14.0, 22.0, 32.0, 44.0, 58.0, 76.0, 100.0, 130.0, 170.0, 220.0, 290.0];
+/// What a label that covers only walls costs, in units of its distance.
+const COVERS_ALL: f64 = 900.0;
 
 /// A label: the middle of its circle, and where its leader line ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,9 +26,13 @@ pub(super) struct Label {
     pub(super) to: Point2<f64>,
 }
 
-/// Places a label beside each mark, as near as possible, one after the other, within a picture of this size; none where there is no
-/// room.
-pub(super) fn labels(marks: &[Rectangle], size: Vector2<f64>) -> Vec<Option<Label>> {
+/// Places a label beside each mark, one after the other, within a picture of this size; none where there is no room. `covered`: the
+/// share of a label at a point that would hide something.
+pub(super) fn labels(
+    marks: &[Rectangle],
+    size: Vector2<f64>,
+    covered: impl Fn(&Point2<f64>) -> f64,
+) -> Vec<Option<Label>> {
     let mut placed: Vec<Option<Label>> = Vec::new();
     for mark in marks {
         let is_free = |label: &Label| {
@@ -37,20 +43,22 @@ pub(super) fn labels(marks: &[Rectangle], size: Vector2<f64>) -> Vec<Option<Labe
                 && others().all(|other| (other.at - label.at).norm() >= 2.0 * RADIUS + GAP)
                 && others().all(|other| is_clear(other, label) && is_clear(label, other))
         };
-        let free = beside(mark).find(is_free);
-        placed.push(free);
+        let tried = beside(mark).filter(|(_, label)| is_free(label));
+        let costs = tried.map(|(distance, label)| (distance + COVERS_ALL * covered(&label.at), label));
+        let best = costs.min_by(|(a, _), (b, _)| a.total_cmp(b));
+        placed.push(best.map(|(_, label)| label));
     }
     placed
 }
 
-/// The labels that are tried around a rectangle, the nearest first.
-fn beside(mark: &Rectangle) -> impl Iterator<Item = Label> {
+/// The labels that are tried around a rectangle, with their distances from it.
+fn beside(mark: &Rectangle) -> impl Iterator<Item = (f64, Label)> {
     let (middle, half) = (nalgebra::center(&mark[0], &mark[1]), (mark[1] - mark[0]) / 2.0);
     let tried = DISTANCES.iter().flat_map(|distance| (0..DIRECTIONS).map(move |number| (*distance, number)));
     tried.map(move |(distance, number)| {
         let along = interfaces::rotation(-TAU * f64::from(number) / f64::from(DIRECTIONS)) * Vector2::x();
         let at = middle + along.component_mul(&half.add_scalar(RADIUS + distance));
-        Label { at, to: nearest(mark, &at) }
+        (distance, Label { at, to: nearest(mark, &at) })
     })
 }
 
@@ -121,7 +129,7 @@ mod tests {
         // A row of marks that touch each other, as along a corridor.
         let mark = |number: u32| rectangle(100.0 + 30.0 * f64::from(number), 200.0, 28.0, 15.0);
         let marks: Vec<Rectangle> = (0..12).map(mark).collect();
-        let found = labels(&marks, Vector2::new(700.0, 400.0));
+        let found = labels(&marks, Vector2::new(700.0, 400.0), |_| 0.0);
         let placed: Vec<Label> = found.iter().flatten().copied().collect();
         assert_eq!(placed.len(), marks.len());
         for (number, label) in placed.iter().enumerate() {
@@ -134,7 +142,10 @@ mod tests {
     }
 
     #[test]
-    fn a_label_needs_room() {
-        assert_eq!(labels(&[rectangle(0.0, 0.0, 20.0, 20.0)], Vector2::repeat(20.0)), [None]);
+    fn a_label_avoids_what_it_would_hide_and_needs_room() {
+        let wall_above = |at: &Point2<f64>| f64::from(u8::from(at.y < 200.0));
+        let found = labels(&[rectangle(100.0, 200.0, 10.0, 10.0)], Vector2::repeat(300.0), wall_above);
+        assert!(found[0].unwrap().at.y > 200.0, "{found:?}");
+        assert_eq!(labels(&[rectangle(0.0, 0.0, 20.0, 20.0)], Vector2::repeat(20.0), |_| 0.0), [None]);
     }
 }
