@@ -29,7 +29,7 @@ pub use change::{
     CellMap, CellStatistics, Estimator, EstimatorChoice, GapWorth, Paper, PaperAll, RateDistribution,
     ReadingIndex, SharedPrior, TransitionRates, TwoState, TwoStateGaps,
 };
-pub use clock::{Calendar, Clock, DAY_S, Look, UnknownZone, UsualChange, UsualSlot, Week, share_interval};
+pub use clock::{Calendar, Clock, DAY_S, Look, UnknownZone, UsualChange, UsualSlot, Week};
 pub use growth::Growth;
 pub use occupancy::{
     BeamReturn, CloneModel, OccupancyChoice, OccupancyModel, ProjectedScan, SurfaceGridSettings,

@@ -65,11 +65,17 @@ pub(super) fn turns(corners: &[Point2<f64>]) -> impl Iterator<Item = [Vector2<f6
     corners.iter().zip(to).zip(from).map(|((corner, before), from)| [corner - before, from])
 }
 
-/// Whether a point lies in a polygon: an odd number of its sides is to the left.
+/// Where a line along x lies in a polygon, m.
+pub(super) fn spans(corners: &[Point2<f64>], y: f64) -> Vec<[f64; 2]> {
+    let crossing = sides(corners).filter(|(a, b)| (a.y > y) != (b.y > y));
+    let mut xs: Vec<f64> = crossing.map(|(a, b)| a.x + (y - a.y) / (b.y - a.y) * (b.x - a.x)).collect();
+    xs.sort_by(f64::total_cmp);
+    xs.chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect()
+}
+
+/// Whether a point lies in a polygon.
 fn contains(corners: &[Point2<f64>], point: &Point2<f64>) -> bool {
-    let beside = sides(corners).filter(|(a, b)| (a.y > point.y) != (b.y > point.y));
-    let crossings = beside.map(|(a, b)| a.x + (point.y - a.y) / (b.y - a.y) * (b.x - a.x));
-    crossings.filter(|x| *x <= point.x).count() % 2 == 1
+    spans(corners, point.y).iter().any(|[from, to]| (*from..*to).contains(&point.x))
 }
 
 /// The exact cover of a polygon with right angles only: it is drawn on a grid whose lines go

@@ -31,16 +31,6 @@ pub(super) fn beta_cdf([a, b]: [f64; 2], x: f64) -> f64 {
     libm::exp(a * libm::log(x) + b * libm::log1p(-x) - log_beta) / a * (value - 1.0)
 }
 
-/// The interval that contains the share of the first of two outcomes with the probability `mass`, after these numbers of both
-/// (Jeffreys' prior). Where one of them was never seen, the interval ends at 0 or 1, as the share can be that.
-pub fn share_interval(counts: [f64; 2], mass: f64) -> [f64; 2] {
-    let parameters = counts.map(|count| count + 0.5);
-    let tail = (1.0 - mass) / 2.0;
-    let low = if counts[0] > 0.0 { beta_quantile(parameters, tail) } else { 0.0 };
-    let high = if counts[1] > 0.0 { beta_quantile(parameters, 1.0 - tail) } else { 1.0 };
-    [low, high]
-}
-
 /// The value below which a beta variable is with this probability.
 pub(super) fn beta_quantile(parameters: [f64; 2], probability: f64) -> f64 {
     let (mut low, mut high) = (0.0, 1.0);
@@ -77,9 +67,8 @@ mod tests {
         assert!((beta_cdf([0.5, 0.5], 0.25) - 1.0 / 3.0).abs() < 1e-9);
         assert!((beta_quantile([4e4, 4e4], 0.5) - 0.5).abs() < 1e-9);
         // Brown, Cai and DasGupta (2001): Jeffreys' interval of 5 of 10.
-        let [low, high] = share_interval([5.0, 5.0], 0.95);
+        let [low, high] = [0.025, 0.975].map(|probability| beta_quantile([5.5; 2], probability));
         assert!((low - 0.224).abs() < 5e-4 && (high - 0.776).abs() < 5e-4, "{low} to {high}");
-        assert_eq!(share_interval([9.0, 0.0], 0.9)[1], 1.0);
         assert!((beta_quantile([3.0, 1.0], 0.05) - libm::cbrt(0.05)).abs() < 1e-9);
     }
 }

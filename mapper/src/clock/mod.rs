@@ -16,7 +16,6 @@ mod simplex;
 mod tests;
 mod week;
 
-pub use beta::share_interval;
 use calendar::Civil;
 pub use calendar::{Calendar, DAY_S, UnknownZone};
 use guard::{Forecast, Guard, MODELS};

@@ -64,7 +64,7 @@ impl Motors {
         let forward_mps = follow(now.forward_mps, aim.forward_mps, linear, self.is_stalled);
         let turn_radps = follow(now.turn_radps, aim.turn_radps, angular, self.is_stalled);
         let grip = (0.0, limits.lateral_grip * GRAVITY_MPS2);
-        let (left, most_radps) = match limits.kind {
+        let (left, max_turn_radps) = match limits.kind {
             DriveKind::Differential => (grip, f64::INFINITY),
             DriveKind::Omni { max_left_mps, max_left_acceleration_mps2 } => {
                 ((max_left_mps, max_left_acceleration_mps2), f64::INFINITY)
@@ -72,9 +72,15 @@ impl Motors {
             DriveKind::Car { .. } => (grip, limits.max_curvature_radpm() * forward_mps.abs()),
         };
         let left_mps = follow(now.left_mps, aim.left_mps, left, self.is_stalled || !limits.is_omni());
-        let turn_radps = turn_radps.clamp(-most_radps, most_radps);
+        let turn_radps = turn_radps.clamp(-max_turn_radps, max_turn_radps);
         self.velocity = Velocity { forward_mps, left_mps, turn_radps };
         self.velocity
+    }
+
+    /// The velocity that the motors reach in the end under a command, if nothing holds the robot back.
+    pub(super) fn reached(&self, command: &Velocity) -> Velocity {
+        const LONG_ENOUGH_S: f64 = 1e9;
+        Self::new(self.limits).step(command, LONG_ENOUGH_S)
     }
 
     /// Replaces the velocity by the velocity after contacts. A robot that was stopped by a wall must therefore

@@ -261,9 +261,7 @@ impl SimulatedRobot {
     /// The velocity of the wheels that the odometry measures in addition to the velocity `solved` of a robot that a contact
     /// holds back or pushes: wheels that slip turn as commanded.
     fn slip(&self, solved: &Velocity) -> Velocity {
-        const LONG_ENOUGH_S: f64 = 1e9;
-        let wheels = Motors::new(self.spec.drive).step(&self.command, LONG_ENOUGH_S);
-        let slip = self.spec.odometry.slip;
+        let (wheels, slip) = (self.drive.reached(&self.command), self.spec.odometry.slip);
         Velocity {
             forward_mps: slip * (wheels.forward_mps - solved.forward_mps),
             left_mps: slip * (wheels.left_mps - solved.left_mps),
