@@ -26,8 +26,8 @@ mod things;
 mod tiles;
 
 pub use change::{
-    CellMap, CellStatistics, Estimator, EstimatorChoice, GapWorth, Paper, PaperAll, RateDistribution,
-    ReadingIndex, SharedPrior, TransitionRates, TwoState, TwoStateGaps,
+    CellMap, CellStatistics, Estimator, EstimatorChoice, Evidence, GapWorth, Paper, PaperAll, Population,
+    Posterior, RateDistribution, ReadingIndex, SharedPrior, TransitionRates, TwoState, TwoStateGaps,
 };
 pub use clock::{Calendar, Clock, DAY_S, Look, UnknownZone, UsualChange, UsualSlot, Week};
 pub use growth::Growth;
@@ -255,7 +255,8 @@ impl Mapper {
                 self.project(laser);
                 self.cells.open(time);
                 self.occupancy.update(&self.scan, &mut self.cells);
-                self.things.update(&self.cells, self.tiles.dates());
+                let is_doubted = |index: usize| self.occupancy.is_doubted(index, &self.cells);
+                self.things.update(&self.cells, is_doubted, self.tiles.dates());
                 self.leaf_cells.note(self.things.all(), &self.cells);
             }
             Observation::Cells(exact) => {

@@ -1,6 +1,7 @@
 //! How often cells change: the map with its change statistics, and the estimators of rates.
 
 mod cell_map;
+mod chain;
 mod estimators;
 mod exposure;
 mod gaps;
@@ -12,6 +13,7 @@ mod transition_kernel;
 
 pub use cell_map::CellMap;
 pub(crate) use cell_map::Slot;
+pub use chain::{Evidence, Population, Posterior};
 pub use estimators::{Estimator, EstimatorChoice, Paper, PaperAll, SharedPrior, TwoState, TwoStateGaps};
 pub(crate) use exposure::Exposure;
 pub(crate) use gaps::Belief;

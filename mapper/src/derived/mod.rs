@@ -8,6 +8,7 @@ mod expected_changes;
 mod gamma;
 
 use crate::Mapper;
+use crate::things::OfCell;
 use blocked_probability::Chain;
 use change_probability::change_probability;
 pub(crate) use credible_interval::CredibleInterval;
@@ -19,7 +20,9 @@ impl Mapper {
     /// never changed, unless traversable cells [share a prior](crate::Estimator::shares_prior).
     #[inline]
     pub fn interval(&self, index: usize) -> f64 {
-        if self.cells.has_rate(index) {
+        if let Some(object) = self.object(index) {
+            1.0 / object.cycle_rate()
+        } else if self.cells.has_rate(index) {
             self.estimator().interval(&self.statistics(index))
         } else {
             f64::INFINITY
@@ -86,6 +89,9 @@ impl Mapper {
     pub fn credible_intervals(&self, mass: f64) -> impl Fn(usize) -> (f64, f64) {
         let interval = CredibleInterval::new(mass);
         move |index| {
+            if let Some(object) = self.object(index) {
+                return object.interval(mass);
+            }
             if self.cells.has_rate(index)
                 && let Some(posterior) = self.statistics(index).posterior()
             {
@@ -127,15 +133,31 @@ impl Mapper {
         self.predicted(index, last_seen, time).unwrap_or(last_seen)
     }
 
+    /// The object to which a cell belongs, if what is known of the object is worth more than what is known of the cell.
+    fn object(&self, index: usize) -> Option<OfCell<'_>> {
+        let object = self.things.object_of(index).filter(|_| self.estimator().shares_prior())?;
+        object.explains(self.cells.statistics(index).events()).then_some(object)
+    }
+
+    /// The probability that what comes and goes at a cell is there, this much time after the last reading; `None` where nothing
+    /// does.
+    pub fn presence(&self, index: usize, time: f64) -> Option<f64> {
+        Some(self.object(index)?.presence(self.time() + time))
+    }
+
     /// What predicts a cell that changes and was last seen as `observed`, 0 or 1: the last look at it or at its door, its chain,
     /// and the clock of its tile.
     fn predicted(&self, index: usize, observed: f64, time: f64) -> Option<f64> {
         let seen = self.statistics(index);
         let rates = self.estimator().transition_rates(&seen)?;
         let door = self.leaf_cells.look(index, self.things()).filter(|look| look.time_s > seen.last_seen);
+        let is_door = door.is_some();
         let (observed, last_s) = door.map_or((observed, seen.last_seen), |look| (look.blocked, look.time_s));
         let chain = Chain::new(rates, &seen, self.cells.variation(), self.time() - last_s + time);
-        let alone = chain.blocked_probability(observed);
+        let object = self.object(index).filter(|_| !is_door);
+        let alone = object.map_or(chain.blocked_probability(observed), |object| {
+            object.blocked_probability(self.time() + time)
+        });
         let slot = self.cells.slot(index)?;
         let by_tile = self.tiles.of_cell(self.frame().cell(index), slot, self.time() + time);
         let by_door = self.leaf_cells.forecast(index, self.things(), self.time() + time, self.tiles.dates());

@@ -36,6 +36,11 @@ pub trait OccupancyModel: CloneModel + fmt::Debug + Send + Sync {
         cells.observe_states(states);
     }
 
+    /// Whether the last look at a known cell spoke against its state, too rarely so far to change it.
+    fn is_doubted(&self, _index: usize, _cells: &CellMap) -> bool {
+        false
+    }
+
     /// The evidence about all cells, and everything else that an update changes and a later update needs: what a state
     /// file holds of the model.
     fn values(&mut self) -> Values<'_>;

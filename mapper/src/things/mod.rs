@@ -7,6 +7,7 @@
 //!   way at the same time, and shares an end with it, is the open leaf.
 //! - `door`: a door and its statistics.
 //! - `leaf_cells`: what doors say of their cells.
+//! - `object`, `objects`: what comes and goes as a whole.
 //! - `furniture`: what stood for long and is gone, or has come and stays.
 
 mod door;
@@ -17,6 +18,8 @@ mod lasting;
 mod leaf_cells;
 mod line;
 mod motions;
+mod object;
+mod objects;
 mod segment;
 
 use crate::Growth;
@@ -29,6 +32,8 @@ use lasting::{Change, LastingChanges};
 pub(crate) use leaf_cells::LeafCells;
 use line::Line;
 use motions::{Motion, Motions};
+use objects::Objects;
+pub(crate) use objects::OfCell;
 pub use segment::Segment;
 
 /// The largest number of pieces of furniture; then the one that was found first is forgotten. Doors are bounded by the doorways.
@@ -67,6 +72,7 @@ pub(crate) struct Things {
     doorways: Vec<Doorway>,
     places: furniture::Pending,
     things: Vec<Thing>,
+    objects: Objects,
     next_id: u32,
 }
 
@@ -76,8 +82,13 @@ impl Things {
         &self.things
     }
 
-    /// Learns from the open reading.
-    pub(crate) fn update(&mut self, cells: &CellMap, dates: Dates) {
+    /// What the object of a cell says of it.
+    pub(crate) fn object_of(&self, cell: usize) -> Option<OfCell<'_>> {
+        self.objects.of_cell(cell)
+    }
+
+    /// Learns from the open reading. `is_doubted`: whether it speaks against the state of a cell in the map.
+    pub(crate) fn update(&mut self, cells: &CellMap, is_doubted: impl Fn(usize) -> bool, dates: Dates) {
         let (frame, now_s) = (cells.frame(), cells.time());
         self.changes.add(cells);
         while let Some(change) = self.changes.next(cells) {
@@ -86,6 +97,7 @@ impl Things {
         while let Some(motion) = self.motions.next(now_s) {
             self.learn(&motion, cells);
         }
+        self.objects.observe(cells, is_doubted);
         if cells.reading().is_multiple_of(furniture::READINGS) {
             self.check_furniture(cells);
         }
@@ -105,6 +117,7 @@ impl Things {
                 .is_some_and(|line| self.add_line(line, cells));
             if !is_door && !self.is_at_door(&changes) {
                 self.places.add(&changes, cells);
+                self.objects.learn(&changes, cells);
             }
         }
     }
@@ -160,6 +173,7 @@ impl Things {
         self.lines.iter_mut().for_each(|line| line.grow(growth));
         self.doorways.iter_mut().for_each(|doorway| doorway.grow(growth));
         self.places.grow(growth);
+        self.objects.grow(growth);
         for thing in &mut self.things {
             thing.cells.iter_mut().for_each(|cell| *cell = growth.index(*cell as usize) as u32);
             match &mut thing.kind {

@@ -1,7 +1,7 @@
 use super::record::state_index;
 use super::{CellMap, PRIOR, Slot};
 use crate::change::gaps::MEAN_EVENTS;
-use crate::change::{Belief, CellStatistics, Exposure, ReadingIndex, TransitionRates};
+use crate::change::{Belief, CellStatistics, Evidence, Exposure, ReadingIndex, TransitionRates};
 use interfaces::{CellState, Grid, GridFrame};
 
 impl CellMap {
@@ -124,6 +124,14 @@ impl CellMap {
             gap_worth: self.gaps.at(place).worth(period),
             prior: self.rate_prior(place),
         }
+    }
+
+    /// The evidence of a cell that changed about its rates.
+    pub(crate) fn evidence(&self, index: usize) -> Evidence {
+        let seen = self.statistics(index);
+        let events = [seen.block_events, seen.free_events];
+        let gaps = self.gaps[index].histogram.clone();
+        Evidence::of_cell([seen.watched_free, seen.watched_blocked], events, gaps)
     }
 
     /// How often the state of the cell changed in the map: its changes, and the correction of a wrong first observation.

@@ -137,7 +137,8 @@ impl GapHistogram {
         self.bins.iter().copied()
     }
 
-    fn put(&mut self, gap: &Gap) {
+    /// Adds a gap that no later reading corrects.
+    pub(in crate::change) fn put(&mut self, gap: &Gap) {
         let key = gap.key();
         match self.find(key) {
             Ok(at) => {

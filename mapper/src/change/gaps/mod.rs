@@ -12,7 +12,7 @@ use super::transition_kernel::Step;
 use super::{CellStatistics, Exposure, GapWorth};
 use fit::Observations;
 pub(super) use histogram::Gap;
-use histogram::GapHistogram;
+pub(super) use histogram::GapHistogram;
 pub(super) use regularity::Regularity;
 
 /// The number of events of a cell without any observation, in one step. With Jeffreys' prior the rate after n

@@ -155,6 +155,17 @@ impl OccupancyModel for SurfaceGrid {
         self.bodies(scan, cells);
     }
 
+    fn is_doubted(&self, index: usize, cells: &CellMap) -> bool {
+        match cells.state(index) {
+            CellState::Blocked => {
+                let surface = &self.surfaces[index];
+                surface.doubted_since > surface.hit_at
+            }
+            CellState::Free => self.evidence[index] > 0,
+            CellState::Unknown => false,
+        }
+    }
+
     fn values(&mut self) -> Values<'_> {
         vec![cell_runs(&mut self.surfaces, usize::MAX), cell_runs(&mut self.evidence, usize::MAX)]
     }

@@ -1,0 +1,166 @@
+//! Something that comes and goes as a whole, and what looks at it say.
+
+use crate::Growth;
+use crate::change::{CellMap, Evidence};
+use crate::look_counts::LookCounts;
+use interfaces::CellState;
+
+/// A cell counts as blocked in this share of a number of looks before the first one: while its thing is away, and while it is there.
+const PRIOR: [f64; 2] = [0.03, 0.9];
+const PRIOR_LOOKS: f64 = 4.0;
+/// The probability of a cell says no more than this, however often it was seen: maps err.
+const SURE: f64 = 0.03;
+/// Cells near each other err together: all of those in view say at most as much as this number of them.
+const INDEPENDENT: f64 = 4.0;
+/// A look says whether the thing is there if this is more than so many times as probable as the contrary, in the logarithm.
+const MIN_LOG_ODDS: f64 = 2.0;
+/// A thing has come or gone when looks have said so for this time, s.
+const LASTING_S: f64 = 1.0;
+/// It stays in view between two looks that are at most this far apart, s.
+const MAX_GAP_S: f64 = 2.5;
+
+/// Looks that say that the thing has come or gone.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
+struct Doubt {
+    since_s: f64,
+    looks: u32,
+}
+
+/// Something that comes and goes as a whole: a toy, a chair, a box.
+#[derive(Clone, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
+pub(crate) struct Object {
+    /// Its cells, by their index, with the looks at them while it was away, and while it was there.
+    cells: Vec<(u32, [LookCounts; 2])>,
+    pub(super) is_there: bool,
+    /// The time of the last look, s.
+    pub(super) last_s: f64,
+    doubt: Option<Doubt>,
+    pub(super) evidence: Evidence,
+}
+
+impl Object {
+    /// An object that has just come or gone: by its cells that changed, with the looks at one of them before.
+    pub(super) fn new(cells: &[u32], is_there: bool, map: &CellMap) -> Self {
+        let mut spans: Vec<(f64, u32)> =
+            cells.iter().map(|cell| (map.evidence(*cell as usize).span_s(), *cell)).collect();
+        spans.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let typical = spans[spans.len() / 2].1 as usize;
+        let mut object = Self {
+            cells: Vec::new(),
+            is_there,
+            last_s: map.last_seen(typical),
+            doubt: None,
+            evidence: map.evidence(typical),
+        };
+        object.add(cells);
+        object
+    }
+
+    /// Adds cells that have turned out to belong to it.
+    pub(super) fn add(&mut self, cells: &[u32]) {
+        for &cell in cells {
+            if let Err(at) = self.position(cell) {
+                self.cells.insert(at, (cell, Default::default()));
+            }
+        }
+    }
+
+    /// Takes over another object that is the same one, and keeps the longer record.
+    pub(super) fn join(&mut self, other: Self) {
+        for (cell, counts) in other.cells {
+            if let Err(at) = self.position(cell) {
+                self.cells.insert(at, (cell, counts));
+            }
+        }
+        if other.evidence.span_s() > self.evidence.span_s() {
+            (self.evidence, self.is_there, self.last_s) = (other.evidence, other.is_there, other.last_s);
+        }
+    }
+
+    /// Its cells, in ascending order.
+    pub(super) fn cells(&self) -> impl ExactSizeIterator<Item = u32> {
+        self.cells.iter().map(|(cell, _)| *cell)
+    }
+
+    fn position(&self, cell: u32) -> Result<usize, usize> {
+        self.cells.binary_search_by_key(&cell, |(cell, _)| *cell)
+    }
+
+    /// The probability that one of its cells is blocked, while the object is away, and while it is there.
+    pub(super) fn shares(&self, cell: u32) -> Option<[f64; 2]> {
+        Some(shares(self.cells[self.position(cell).ok()?].1))
+    }
+
+    /// Learns from the open reading. `is_doubted`: whether it speaks against the state of a cell in the map. Returns whether the
+    /// evidence grew by more than time in view.
+    pub(super) fn observe(&mut self, map: &CellMap, is_doubted: impl Fn(usize) -> bool) -> bool {
+        let now_s = map.time();
+        let (mut seen, mut log_odds) = (0.0, 0.0);
+        for (cell, counts) in &self.cells {
+            let index = *cell as usize;
+            if !map.is_seen_now(index) {
+                continue;
+            }
+            let is_blocked = (map.state(index) == CellState::Blocked) != is_doubted(index);
+            let [away, there] =
+                shares(*counts).map(|share| if is_blocked { share } else { 1.0 - share }.max(SURE));
+            seen += 1.0;
+            log_odds += libm::log(there / away);
+        }
+        let log_odds = log_odds * f64::min(1.0, INDEPENDENT / seen);
+        if seen == 0.0 || log_odds.abs() < MIN_LOG_ODDS {
+            return false;
+        }
+        let is_there = log_odds > 0.0;
+        if is_there == self.is_there {
+            self.doubt = None;
+            return self.look(now_s, is_there, map, &is_doubted);
+        }
+        let doubt = self.doubt.get_or_insert(Doubt { since_s: now_s, looks: 0 });
+        doubt.looks += 1;
+        if doubt.looks < 2 || now_s - doubt.since_s < LASTING_S {
+            return false;
+        }
+        let since_s = doubt.since_s;
+        self.doubt = None;
+        self.look(since_s, is_there, map, &is_doubted);
+        self.look(now_s, is_there, map, &is_doubted);
+        true
+    }
+
+    /// A look that shows whether the object is there.
+    fn look(
+        &mut self,
+        time_s: f64,
+        is_there: bool,
+        map: &CellMap,
+        is_doubted: &impl Fn(usize) -> bool,
+    ) -> bool {
+        let (before, length_s) = (self.is_there, (time_s - self.last_s).max(0.0));
+        let is_in_view = length_s <= MAX_GAP_S;
+        if is_in_view {
+            self.evidence.watch(before, length_s);
+            if is_there != before {
+                self.evidence.change(before);
+            }
+        } else {
+            self.evidence.gap(before, is_there, length_s);
+        }
+        (self.is_there, self.last_s) = (is_there, time_s);
+        for (cell, counts) in &mut self.cells {
+            let index = *cell as usize;
+            if map.is_seen_now(index) && !is_doubted(index) {
+                counts[usize::from(is_there)].add(map.state(index) == CellState::Blocked);
+            }
+        }
+        !is_in_view || is_there != before
+    }
+
+    pub(super) fn grow(&mut self, growth: &Growth) {
+        self.cells.iter_mut().for_each(|(cell, _)| *cell = growth.index(*cell as usize) as u32);
+    }
+}
+
+fn shares(counts: [LookCounts; 2]) -> [f64; 2] {
+    [0, 1].map(|state| counts[state].share(PRIOR[state], PRIOR_LOOKS))
+}

@@ -1,0 +1,210 @@
+//! The objects of a map: born, recognized, merged, and asked.
+
+use super::lasting::Change;
+use super::object::Object;
+use crate::Growth;
+use crate::change::{CellMap, Population, Posterior};
+use interfaces::{Cell, GridFrame};
+use std::collections::BTreeMap;
+use std::sync::OnceLock;
+
+/// The smallest number of cells that show an object, and its largest extent, m: more is several things, or a crowd.
+const MIN_CELLS: usize = 3;
+const MAX_EXTENT_M: f64 = 1.8;
+/// Changes at most this far from an object that has come or gone alike are its own, m: it is seen from another side.
+const NEAR_M: f64 = 0.1;
+/// Changes are those of an object if this share of them, or of its cells, is common to both.
+const COMMON: f64 = 0.3;
+/// The largest number of objects; then the one that was not seen for the longest time is forgotten.
+const MAX_OBJECTS: usize = 256;
+/// The population is learned anew after a quarter more readings, at least and at most after these numbers of readings.
+const RENEWAL_READINGS: [usize; 2] = [8, 600];
+
+/// An object, and what follows from its evidence.
+#[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
+struct Known {
+    object: Object,
+    #[serde(skip)]
+    posterior: OnceLock<Posterior>,
+}
+
+/// All objects of a map.
+#[derive(Clone, Debug, Default, serde::Deserialize, serde::Serialize)]
+pub(crate) struct Objects {
+    /// By their numbers.
+    objects: BTreeMap<u32, Known>,
+    /// The number of the object of each cell.
+    of_cell: BTreeMap<u32, u32>,
+    next: u32,
+    population: Population,
+    due: usize,
+}
+
+/// What an object says of one of its cells.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct OfCell<'a> {
+    known: &'a Known,
+    population: &'a Population,
+    /// The probability that the cell is blocked, while the object is away, and while it is there.
+    shares: [f64; 2],
+}
+
+impl Objects {
+    /// Learns from the open reading.
+    pub(super) fn observe(&mut self, map: &CellMap, is_doubted: impl Fn(usize) -> bool) {
+        for known in self.objects.values_mut() {
+            if known.object.observe(map, &is_doubted) {
+                known.posterior.take();
+            }
+        }
+        let readings = map.readings();
+        if readings >= self.due {
+            let [least, most] = RENEWAL_READINGS;
+            self.due = readings + (readings / 4).clamp(least, most);
+            let shipped = Population::default();
+            let alone: Vec<Posterior> =
+                self.objects.values().map(|known| Posterior::new(&known.object.evidence, &shipped)).collect();
+            self.population = Population::of(alone.iter());
+            self.objects.values_mut().for_each(|known| drop(known.posterior.take()));
+        }
+    }
+
+    /// Learns from changes that belong together, all of the same kind.
+    pub(super) fn learn(&mut self, changes: &[Change], map: &CellMap) {
+        let Some(Change { is_blocked, .. }) = changes.first().copied() else { return };
+        let cells: Vec<u32> = changes.iter().map(|change| change.cell).collect();
+        let mut same = self.same(&cells, is_blocked, map.frame()).into_iter();
+        let free = |of_cell: &BTreeMap<u32, u32>| -> Vec<u32> {
+            cells.iter().filter(|cell| !of_cell.contains_key(cell)).copied().collect()
+        };
+        let number = match same.next() {
+            Some(number) => number,
+            None => {
+                let cells = free(&self.of_cell);
+                if cells.len() < MIN_CELLS || extent_m(cells.iter().copied(), map.frame()) > MAX_EXTENT_M {
+                    return;
+                }
+                self.make_room();
+                self.next += 1;
+                let object = Object::new(&cells, is_blocked, map);
+                self.objects.insert(self.next, Known { object, posterior: OnceLock::new() });
+                self.next
+            }
+        };
+        for other in same {
+            let is_alike = |known: &Known| known.object.is_there == self.objects[&number].object.is_there;
+            if self.objects.get(&other).is_some_and(is_alike)
+                && let Some(other) = self.objects.remove(&other)
+            {
+                self.of_cell.extend(other.object.cells().map(|cell| (cell, number)));
+                self.objects.entry(number).and_modify(|known| known.object.join(other.object));
+            }
+        }
+        let cells = free(&self.of_cell);
+        if let Some(known) = self.objects.get_mut(&number) {
+            let all = known.object.cells().chain(cells.iter().copied());
+            if extent_m(all, map.frame()) <= MAX_EXTENT_M {
+                known.object.add(&cells);
+                self.of_cell.extend(cells.into_iter().map(|cell| (cell, number)));
+            }
+            known.posterior.take();
+        }
+    }
+
+    /// The objects to which changes belong, the one with the most common cells first.
+    fn same(&self, cells: &[u32], is_blocked: bool, frame: &GridFrame) -> Vec<u32> {
+        let reach = (NEAR_M / frame.resolution_m()).round() as i32;
+        // Of each object, the cells that are its own, and those near it.
+        let mut votes = BTreeMap::<u32, [usize; 2]>::new();
+        for &cell in cells {
+            if let Some(number) = self.of_cell.get(&cell) {
+                votes.entry(*number).or_default()[0] += 1;
+                continue;
+            }
+            let Cell { x, y } = frame.cell(cell as usize);
+            let around =
+                (y - reach..=y + reach).flat_map(|y| (x - reach..=x + reach).map(move |x| Cell::new(x, y)));
+            let near = around.filter_map(|cell| self.of_cell.get(&(frame.index(cell)? as u32)));
+            if let Some(number) = near.min() {
+                votes.entry(*number).or_default()[1] += 1;
+            }
+        }
+        let is_same = |(number, [own, near]): &(u32, [usize; 2])| {
+            let object = &self.objects[number].object;
+            let smaller = cells.len().min(object.cells().len());
+            *own as f64 >= COMMON * smaller as f64 || own + near > 0 && object.is_there == is_blocked
+        };
+        let mut same: Vec<_> = votes.into_iter().filter(is_same).collect();
+        same.sort_by_key(|(number, [own, near])| (std::cmp::Reverse((*own, *near)), *number));
+        same.into_iter().map(|(number, _)| number).collect()
+    }
+
+    fn make_room(&mut self) {
+        let last_s = |known: &Known| known.object.last_s;
+        if self.objects.len() >= MAX_OBJECTS
+            && let Some((&oldest, _)) =
+                self.objects.iter().min_by(|(_, a), (_, b)| last_s(a).total_cmp(&last_s(b)))
+        {
+            self.objects.remove(&oldest);
+            self.of_cell.retain(|_, number| *number != oldest);
+        }
+    }
+
+    /// What the object of a cell says of it; `None` if it belongs to none.
+    pub(crate) fn of_cell(&self, cell: usize) -> Option<OfCell<'_>> {
+        let cell = cell as u32;
+        let known = self.objects.get(self.of_cell.get(&cell)?)?;
+        Some(OfCell { known, population: &self.population, shares: known.object.shares(cell)? })
+    }
+
+    pub(super) fn grow(&mut self, growth: &Growth) {
+        self.objects.values_mut().for_each(|known| known.object.grow(growth));
+        let cells = std::mem::take(&mut self.of_cell).into_iter();
+        self.of_cell = cells.map(|(cell, number)| (growth.index(cell as usize) as u32, number)).collect();
+    }
+}
+
+impl OfCell<'_> {
+    fn posterior(&self) -> &Posterior {
+        self.known.posterior.get_or_init(|| Posterior::new(&self.known.object.evidence, self.population))
+    }
+
+    /// Whether the changes of the object are those of a cell: traffic changes a cell much more often.
+    pub(crate) fn explains(&self, events: u32) -> bool {
+        f64::from(events) <= 1.5 * f64::from(self.known.object.evidence.changes()) + 1.0
+    }
+
+    /// The probability that the object is there, at a time, s.
+    pub(crate) fn presence(&self, time_s: f64) -> f64 {
+        let object = &self.known.object;
+        self.posterior().probability(object.is_there, (time_s - object.last_s).max(0.0))
+    }
+
+    /// The probability that the cell is blocked at a time, s.
+    pub(crate) fn blocked_probability(&self, time_s: f64) -> f64 {
+        let [away, there] = self.shares;
+        away + (there - away) * self.presence(time_s)
+    }
+
+    /// The cycle rate of the object, 1/s.
+    pub(crate) fn cycle_rate(&self) -> f64 {
+        self.posterior().cycle_rate()
+    }
+
+    /// The interval that contains this rate with the probability `mass`, 1/s.
+    pub(crate) fn interval(&self, mass: f64) -> (f64, f64) {
+        self.posterior().interval(mass)
+    }
+}
+
+/// The longer side of the box around cells, m.
+fn extent_m(cells: impl Iterator<Item = u32>, frame: &GridFrame) -> f64 {
+    let ends =
+        cells.map(|cell| frame.cell(cell as usize)).fold(None, |ends: Option<[i32; 4]>, Cell { x, y }| {
+            let [left, right, low, high] = ends.unwrap_or([x, x, y, y]);
+            Some([left.min(x), right.max(x), low.min(y), high.max(y)])
+        });
+    ends.map_or(0.0, |[left, right, low, high]| {
+        f64::from(1 + (right - left).max(high - low)) * frame.resolution_m()
+    })
+}
