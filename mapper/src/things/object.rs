@@ -13,9 +13,14 @@ const SURE: f64 = 0.03;
 /// Cells near each other err together: all of those in view say at most as much as this number of them.
 const INDEPENDENT: f64 = 4.0;
 /// A look says whether the thing is there if this is more than so many times as probable as the contrary, in the logarithm.
-const MIN_LOG_ODDS: f64 = 2.0;
+const MIN_LOG_ODDS: f64 = 4.0;
 /// A thing has come or gone when looks have said so for this time, s.
 const LASTING_S: f64 = 1.0;
+/// In a look at this number of cells, some are blocked if more than the first share is, and most if more than the second share is.
+const PART_CELLS: f64 = 5.0;
+const PART: [f64; 2] = [0.15, 0.6];
+/// What stays for a shorter time on average is traffic, s.
+const MIN_STAY_S: f64 = 6.0;
 /// It stays in view between two looks that are at most this far apart, s.
 const MAX_GAP_S: f64 = 2.5;
 
@@ -23,7 +28,7 @@ const MAX_GAP_S: f64 = 2.5;
 #[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
 struct Doubt {
     since_s: f64,
-    looks: u32,
+    last_s: f64,
 }
 
 /// Something that comes and goes as a whole: a toy, a chair, a box.
@@ -35,22 +40,24 @@ pub(crate) struct Object {
     /// The time of the last look, s.
     pub(super) last_s: f64,
     doubt: Option<Doubt>,
+    /// The number of looks in which some of its cells were blocked, and in which most of them were.
+    pub(super) parts: [u32; 2],
     pub(super) evidence: Evidence,
 }
 
 impl Object {
-    /// An object that has just come or gone: by its cells that changed, with the looks at one of them before.
+    /// An object that has just come or gone: by its cells that changed, with the looks at the one that is known best.
     pub(super) fn new(cells: &[u32], is_there: bool, map: &CellMap) -> Self {
-        let mut spans: Vec<(f64, u32)> =
-            cells.iter().map(|cell| (map.evidence(*cell as usize).span_s(), *cell)).collect();
-        spans.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        let typical = spans[spans.len() / 2].1 as usize;
+        let known_s = |cell: &&u32| map.evidence(**cell as usize).known_s();
+        let best = cells.iter().max_by(|a, b| known_s(a).total_cmp(&known_s(b)).then(b.cmp(a)));
+        let best = best.map_or(0, |cell| *cell as usize);
         let mut object = Self {
             cells: Vec::new(),
             is_there,
-            last_s: map.last_seen(typical),
+            last_s: map.last_seen(best),
             doubt: None,
-            evidence: map.evidence(typical),
+            parts: [0; 2],
+            evidence: map.evidence(best),
         };
         object.add(cells);
         object
@@ -72,7 +79,7 @@ impl Object {
                 self.cells.insert(at, (cell, counts));
             }
         }
-        if other.evidence.span_s() > self.evidence.span_s() {
+        if other.evidence.known_s() > self.evidence.known_s() {
             (self.evidence, self.is_there, self.last_s) = (other.evidence, other.is_there, other.last_s);
         }
     }
@@ -95,7 +102,7 @@ impl Object {
     /// evidence grew by more than time in view.
     pub(super) fn observe(&mut self, map: &CellMap, is_doubted: impl Fn(usize) -> bool) -> bool {
         let now_s = map.time();
-        let (mut seen, mut log_odds) = (0.0, 0.0);
+        let (mut seen, mut blocked, mut log_odds) = (0.0, 0.0, 0.0);
         for (cell, counts) in &self.cells {
             let index = *cell as usize;
             if !map.is_seen_now(index) {
@@ -105,55 +112,83 @@ impl Object {
             let [away, there] =
                 shares(*counts).map(|share| if is_blocked { share } else { 1.0 - share }.max(SURE));
             seen += 1.0;
+            blocked += f64::from(u8::from(is_blocked));
             log_odds += libm::log(there / away);
+        }
+        if seen >= PART_CELLS && blocked > PART[0] * seen {
+            self.parts[usize::from(blocked > PART[1] * seen)] += 1;
         }
         let log_odds = log_odds * f64::min(1.0, INDEPENDENT / seen);
         if seen == 0.0 || log_odds.abs() < MIN_LOG_ODDS {
             return false;
         }
+        if self.doubt.is_some_and(|doubt| now_s - doubt.last_s > MAX_GAP_S) {
+            self.settle();
+        }
         let is_there = log_odds > 0.0;
         if is_there == self.is_there {
             self.doubt = None;
-            return self.look(now_s, is_there, map, &is_doubted);
+            let says_more = self.look(now_s, is_there);
+            self.learn_shares(map, is_doubted);
+            return says_more;
         }
-        let doubt = self.doubt.get_or_insert(Doubt { since_s: now_s, looks: 0 });
-        doubt.looks += 1;
-        if doubt.looks < 2 || now_s - doubt.since_s < LASTING_S {
-            return false;
+        let doubt = self.doubt.get_or_insert(Doubt { since_s: now_s, last_s: now_s });
+        doubt.last_s = now_s;
+        if now_s - doubt.since_s < LASTING_S {
+            return true;
         }
-        let since_s = doubt.since_s;
-        self.doubt = None;
-        self.look(since_s, is_there, map, &is_doubted);
-        self.look(now_s, is_there, map, &is_doubted);
+        self.settle();
+        self.learn_shares(map, is_doubted);
         true
     }
 
-    /// A look that shows whether the object is there.
-    fn look(
-        &mut self,
-        time_s: f64,
-        is_there: bool,
-        map: &CellMap,
-        is_doubted: &impl Fn(usize) -> bool,
-    ) -> bool {
-        let (before, length_s) = (self.is_there, (time_s - self.last_s).max(0.0));
-        let is_in_view = length_s <= MAX_GAP_S;
-        if is_in_view {
-            self.evidence.watch(before, length_s);
-            if is_there != before {
-                self.evidence.change(before);
-            }
-        } else {
-            self.evidence.gap(before, is_there, length_s);
+    /// Takes looks that say that the object has come or gone as true: they have lasted, or the view ended with them.
+    fn settle(&mut self) {
+        if let Some(Doubt { since_s, last_s }) = self.doubt.take() {
+            let is_there = !self.is_there;
+            self.look(since_s, is_there);
+            self.look(last_s, is_there);
         }
+    }
+
+    /// Whether it was there at the last look, and the time of that, s.
+    pub(super) fn last_look(&self) -> (bool, f64) {
+        self.doubt.map_or((self.is_there, self.last_s), |doubt| (!self.is_there, doubt.last_s))
+    }
+
+    /// A look that shows whether the object is there. Returns whether that says more than time in view.
+    fn look(&mut self, time_s: f64, is_there: bool) -> bool {
+        let (before, length_s) = (self.is_there, (time_s - self.last_s).max(0.0));
         (self.is_there, self.last_s) = (is_there, time_s);
+        let is_in_view = length_s <= MAX_GAP_S;
+        if !is_in_view {
+            self.evidence.gap(before, is_there, length_s);
+            return true;
+        }
+        self.evidence.watch(before, length_s);
+        if is_there != before {
+            self.evidence.change(before);
+        }
+        is_there != before
+    }
+
+    /// Counts the cells in view that are blocked.
+    fn learn_shares(&mut self, map: &CellMap, is_doubted: impl Fn(usize) -> bool) {
         for (cell, counts) in &mut self.cells {
             let index = *cell as usize;
             if map.is_seen_now(index) && !is_doubted(index) {
-                counts[usize::from(is_there)].add(map.state(index) == CellState::Blocked);
+                counts[usize::from(self.is_there)].add(map.state(index) == CellState::Blocked);
             }
         }
-        !is_in_view || is_there != before
+    }
+
+    /// Whether what comes and goes here are people who pass: it stays for a moment, covers a part of its cells at a time, or its cells
+    /// change more often than it comes and goes.
+    pub(super) fn is_traffic(&self, map: &CellMap) -> bool {
+        let changes = self.cells().map(|cell| u64::from(map.statistics(cell as usize).events()));
+        self.evidence.seen_stay_s() < MIN_STAY_S
+            || self.parts[0] > self.parts[1]
+            || changes.sum::<u64>() > u64::from(self.evidence.changes()) * self.cells.len() as u64
     }
 
     pub(super) fn grow(&mut self, growth: &Growth) {

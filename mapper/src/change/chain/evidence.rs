@@ -44,9 +44,17 @@ impl Evidence {
         self.changes_in_view() + over_gaps.sum::<u32>()
     }
 
-    /// The time from the first to the last look, s.
-    pub fn span_s(&self) -> f64 {
-        let gaps_s: f64 = self.gaps.iter().map(|bin| bin.length() * f64::from(bin.count)).sum();
+    /// How long the thing stays on average, as far as it was seen, s; ∞ if it was never seen to go.
+    pub fn seen_stay_s(&self) -> f64 {
+        let over_gaps = |after: bool| self.gaps.iter().filter(move |bin| bin.before() && bin.after() == after);
+        let stayed_s: f64 = over_gaps(true).map(|bin| bin.length() * f64::from(bin.count)).sum();
+        let went = self.events[1] + over_gaps(false).map(|bin| bin.count).sum::<u32>();
+        (self.watched_s[1] + stayed_s) / f64::from(went)
+    }
+
+    /// How much of the time is known, s: the time in view, and a minute at most of each gap.
+    pub fn known_s(&self) -> f64 {
+        let gaps_s: f64 = self.gaps.iter().map(|bin| bin.length().min(60.0) * f64::from(bin.count)).sum();
         self.watched_s.iter().sum::<f64>() + gaps_s
     }
 
@@ -59,15 +67,41 @@ impl Evidence {
             .map(|[come, go]| log(come, came) - come * away_s + log(go, went) - go * there_s)
             .collect();
         for bin in self.gaps.iter() {
-            let (count, length_s) = (f64::from(bin.count), bin.length());
-            for (sum, [come, go]) in zip(&mut sum, chains()) {
-                let all = come + go;
-                let leave = if bin.before() { go } else { come };
-                let changed = leave / all * -libm::expm1(-all * length_s);
-                let seen = if bin.before() == bin.after() { 1.0 - changed } else { changed };
-                *sum += count * libm::log(seen);
+            for (sum, chain) in zip(&mut sum, chains()) {
+                let seen = probability_of(chain, bin.before(), bin.after(), bin.length());
+                *sum += f64::from(bin.count) * libm::log(seen);
             }
         }
         sum
     }
+
+    /// The probability of each chain that looks at the same times find a change.
+    pub(super) fn chance_of_change(&self) -> Chains {
+        let watched_s: f64 = self.watched_s.iter().sum();
+        let chance = |[come, go]: [f64; 2]| {
+            let unchanged = [(come, go), (go, come)].map(|(leave, back)| {
+                let share = back / (leave + back);
+                share * libm::exp(-leave * watched_s)
+            });
+            unchanged
+        };
+        let mut unchanged: Vec<[f64; 2]> = chains().map(chance).collect();
+        for bin in self.gaps.iter() {
+            for (unchanged, chain) in zip(&mut unchanged, chains()) {
+                for (state, unchanged) in [false, true].into_iter().zip(unchanged) {
+                    let stays = probability_of(chain, state, state, bin.length());
+                    *unchanged *= libm::pow(stays, f64::from(bin.count));
+                }
+            }
+        }
+        unchanged.into_iter().map(|unchanged| 1.0 - unchanged.iter().sum::<f64>()).collect()
+    }
+}
+
+/// The probability that a chain is in the state `after` this time after it was in the state `before`.
+fn probability_of([come, go]: [f64; 2], before: bool, after: bool, elapsed_s: f64) -> f64 {
+    let all = come + go;
+    let leave = if before { go } else { come };
+    let changed = leave / all * -libm::expm1(-all * elapsed_s);
+    if before == after { 1.0 - changed } else { changed }
 }
