@@ -1,4 +1,3 @@
-#![allow(unsafe_code, static_mut_refs)]
 //! How well a robot knows things that come and go while it is elsewhere, per thing: the Brier score of “it is there” now, 1 and 10
 //! minutes ahead, divided by that of the nominal chain of the world file after the same looks, and by that of a posterior that knows
 //! which cells are which thing (the floor); the log error of cycle rates, and the share inside 90 % intervals.
@@ -20,8 +19,6 @@ const AHEAD_S: [f64; 3] = [0.0, 60.0, 600.0];
 const EVERY_S: f64 = 15.0;
 const MAX_GAP_S: f64 = 2.5;
 const WHO: [&str; 4] = ["ours", "nominal", "floor", "last seen"];
-
-static mut KINDS: [[f64; 3]; 6] = [[0.0; 3]; 6];
 
 struct Thing {
     name: String,
@@ -93,26 +90,10 @@ fn run(spec: &WorldSpec, seed: u64, end_s: f64) -> Result<Vec<Row>, Box<dyn Erro
                 things.iter().map(|thing| Posterior::new(&thing.evidence, &Population::default())).collect();
             for number in 0..things.len() {
                 let others = alone.iter().enumerate().filter(|(other, _)| *other != number);
-                let floor = Posterior::new(&things[number].evidence, &Population::floor(others.map(|(_, p)| p)));
+                let floor =
+                    Posterior::new(&things[number].evidence, &Population::floor(others.map(|(_, p)| p)));
                 let thing = &mut things[number];
                 let Some((last_s, was_there)) = thing.last else { continue };
-                if let Some((state, at_s)) = thing.cell(mapper).and_then(|c| mapper.debug_look(c)) {
-                    let is_there = trial.world.truth().state(thing.center) != TrueState::Free;
-                    let kind = if last_s >= time_s { 0 } else if (at_s - last_s).abs() < 3.0 && state == was_there { 1 } else if at_s > last_s { 2 } else if state == was_there { 3 } else { 4 };
-                    let t = f64::from(u8::from(is_there));
-                    let ours = (thing.predicted(mapper, 0.0) - t).powi(2);
-                    let fl = (floor.probability(was_there, time_s - last_s) - t).powi(2);
-                    if kind == 4 && std::env::var_os("LOOKS").is_some() { println!("DIFF {} t {time_s:.0} floor saw {was_there} at {last_s:.1}, ours {state} at {at_s:.1}, truth {is_there}", thing.name); }
-                    let k = unsafe { &mut KINDS[kind] };
-                    k[0] += 1.0; k[1] += ours; k[2] += fl;
-                } else {
-                    let is_there = trial.world.truth().state(thing.center) != TrueState::Free;
-                    let t = f64::from(u8::from(is_there));
-                    let ours = (thing.predicted(mapper, 0.0) - t).powi(2);
-                    let fl = (floor.probability(was_there, time_s - last_s) - t).powi(2);
-                    let k = unsafe { &mut KINDS[5] };
-                    k[0] += 1.0; k[1] += ours; k[2] += fl;
-                }
                 for (horizon, ahead_s) in AHEAD_S.into_iter().enumerate() {
                     let elapsed_s = time_s - last_s + ahead_s;
                     let last = f64::from(u8::from(was_there));
@@ -133,7 +114,6 @@ fn run(spec: &WorldSpec, seed: u64, end_s: f64) -> Result<Vec<Row>, Box<dyn Erro
             break;
         }
     }
-    println!("KINDS in view, same look, ours later, ours earlier same state, other state, no object: {:?}", unsafe { (&raw const KINDS).read() });
     let mapper = &trial.robot.mapper;
     let intervals = mapper.credible_intervals(0.9);
     let alone: Vec<Posterior> =

@@ -145,11 +145,6 @@ impl Mapper {
         Some(self.object(index)?.presence(self.time() + time))
     }
 
-    #[doc(hidden)]
-    pub fn debug_look(&self, index: usize) -> Option<(bool, f64)> {
-        self.object(index).map(|o| o.debug_look())
-    }
-
     /// What predicts a cell that changes and was last seen as `observed`, 0 or 1: the last look at it or at its door, its chain,
     /// and the clock of its tile.
     fn predicted(&self, index: usize, observed: f64, time: f64) -> Option<f64> {

@@ -21,6 +21,9 @@ const PART_CELLS: f64 = 5.0;
 const PART: [f64; 2] = [0.15, 0.6];
 /// What stays for a shorter time on average is traffic, s.
 const MIN_STAY_S: f64 = 6.0;
+/// What came and went this number of times, or stayed for this time, s, is no person who stands still for a while.
+const SURE_CHANGES: u64 = 3;
+const STANDS_S: f64 = 60.0;
 /// It stays in view between two looks that are at most this far apart, s.
 const MAX_GAP_S: f64 = 2.5;
 
@@ -41,7 +44,7 @@ pub(crate) struct Object {
     pub(super) last_s: f64,
     doubt: Option<Doubt>,
     /// The number of looks in which some of its cells were blocked, and in which most of them were.
-    pub(super) parts: [u32; 2],
+    parts: [u32; 2],
     pub(super) evidence: Evidence,
 }
 
@@ -182,13 +185,16 @@ impl Object {
         }
     }
 
-    /// Whether what comes and goes here are people who pass: it stays for a moment, covers a part of its cells at a time, or its cells
-    /// change more often than it comes and goes.
-    pub(super) fn is_traffic(&self, map: &CellMap) -> bool {
-        let changes = self.cells().map(|cell| u64::from(map.statistics(cell as usize).events()));
-        self.evidence.seen_stay_s() < MIN_STAY_S
-            || self.parts[0] > self.parts[1]
-            || changes.sum::<u64>() > u64::from(self.evidence.changes()) * self.cells.len() as u64
+    /// Whether this is a thing, and not people who pass: they stay for a moment, cover a part of the cells at a time, and change them
+    /// more often than anything comes and goes. Somebody who stands still is told apart when he has gone and does not come back.
+    pub(super) fn is_thing(&self, map: &CellMap) -> bool {
+        let (stayed_s, went) = self.evidence.stays();
+        let changes = u64::from(self.evidence.changes());
+        let of_cells = self.cells().map(|cell| u64::from(map.statistics(cell as usize).events()));
+        (changes >= SURE_CHANGES || stayed_s >= STANDS_S)
+            && stayed_s >= MIN_STAY_S * f64::from(went)
+            && self.parts[0] <= self.parts[1]
+            && of_cells.sum::<u64>() <= changes * self.cells.len() as u64
     }
 
     pub(super) fn grow(&mut self, growth: &Growth) {

@@ -18,13 +18,13 @@ const COMMON: f64 = 0.3;
 /// The largest number of objects; then the one that was not seen for the longest time is forgotten.
 const MAX_OBJECTS: usize = 256;
 /// The population is learned anew after a quarter more readings, at least and at most after these numbers of readings.
-const RENEWAL_READINGS: [usize; 2] = [8, 600];
+const RENEWAL_READINGS: [usize; 2] = [8, 100];
 
 /// An object, and what follows from its evidence.
 #[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
 struct Known {
     object: Object,
-    is_traffic: bool,
+    is_thing: bool,
     #[serde(skip)]
     posterior: OnceLock<Posterior>,
 }
@@ -63,22 +63,11 @@ impl Objects {
             let [least, most] = RENEWAL_READINGS;
             self.due = readings + (readings / 4).clamp(least, most);
             let shipped = Population::default();
-            self.objects.values_mut().for_each(|known| known.is_traffic = known.object.is_traffic(map));
-            let things = || self.objects.values().filter(|known| !known.is_traffic).map(|known| &known.object.evidence);
+            self.objects.values_mut().for_each(|known| known.is_thing = known.object.is_thing(map));
+            let things =
+                || self.objects.values().filter(|known| known.is_thing).map(|known| &known.object.evidence);
             let alone: Vec<Posterior> = things().map(|evidence| Posterior::new(evidence, &shipped)).collect();
-            self.population = Population::of(things().zip(&alone));
-            if std::env::var_os("OBJ").is_some() {
-                eprintln!("{:.0} s: {} objects, {} traffic", map.time(), self.objects.len(), self.objects.values().filter(|k| k.is_traffic).count());
-                for k in self.objects.values().filter(|k| !k.is_traffic) {
-                    let o = &k.object;
-                    let c = map.frame().center(map.frame().cell(o.cells().next().unwrap_or(0) as usize));
-                    let p = Posterior::new(&o.evidence, &self.population);
-                    let mean: f64 = o.cells().map(|c| f64::from(map.statistics(c as usize).events())).sum::<f64>() / o.cells().len() as f64;
-                    let sh: Vec<[f64; 2]> = o.cells().filter_map(|c| o.shares(c)).collect();
-                    let sh = [0, 1].map(|s| sh.iter().map(|x| x[s]).sum::<f64>() / sh.len() as f64);
-                    eprintln!("   at {:.1} {:.1} cells {} parts {:?} there {:?} changes {} (view {}) known {:.0} s, stay {:.0}, cell events {mean:.1}, shares {:.2} {:.2}, later {:.3}, cycle {:.0} s", c.x, c.y, o.cells().len(), o.parts, o.last_look(), o.evidence.changes(), o.evidence.changes_in_view(), o.evidence.known_s(), o.evidence.seen_stay_s(), sh[0], sh[1], p.probability(false, 1e6), 1.0 / p.cycle_rate());
-                }
-            }
+            self.population = Population::of(alone.iter());
             self.objects.values_mut().for_each(|known| drop(known.posterior.take()));
         }
     }
@@ -101,7 +90,7 @@ impl Objects {
                 self.make_room();
                 self.next += 1;
                 let object = Object::new(&cells, is_blocked, map);
-                self.objects.insert(self.next, Known { object, is_traffic: false, posterior: OnceLock::new() });
+                self.objects.insert(self.next, Known { object, is_thing: false, posterior: OnceLock::new() });
                 self.next
             }
         };
@@ -170,7 +159,7 @@ impl Objects {
     /// What the object of a cell says of it; `None` if it belongs to none.
     pub(crate) fn of_cell(&self, cell: usize) -> Option<OfCell<'_>> {
         let cell = cell as u32;
-        let known = self.objects.get(self.of_cell.get(&cell)?).filter(|known| !known.is_traffic)?;
+        let known = self.objects.get(self.of_cell.get(&cell)?).filter(|known| known.is_thing)?;
         Some(OfCell { known, population: &self.population, shares: known.object.shares(cell)? })
     }
 
@@ -189,10 +178,6 @@ impl OfCell<'_> {
     /// Whether the changes of the object are those of a cell: traffic changes a cell much more often.
     pub(crate) fn explains(&self, events: u32) -> bool {
         f64::from(events) <= 1.5 * f64::from(self.known.object.evidence.changes()) + 1.0
-    }
-
-    pub(crate) fn debug_look(&self) -> (bool, f64) {
-        self.known.object.last_look()
     }
 
     /// The probability that the object is there, at a time, s.

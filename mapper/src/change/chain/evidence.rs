@@ -44,12 +44,12 @@ impl Evidence {
         self.changes_in_view() + over_gaps.sum::<u32>()
     }
 
-    /// How long the thing stays on average, as far as it was seen, s; ∞ if it was never seen to go.
-    pub fn seen_stay_s(&self) -> f64 {
-        let over_gaps = |after: bool| self.gaps.iter().filter(move |bin| bin.before() && bin.after() == after);
+    /// The time that the thing was there as far as it was seen, s, and how often it went.
+    pub fn stays(&self) -> (f64, u32) {
+        let over_gaps =
+            |after: bool| self.gaps.iter().filter(move |bin| bin.before() && bin.after() == after);
         let stayed_s: f64 = over_gaps(true).map(|bin| bin.length() * f64::from(bin.count)).sum();
-        let went = self.events[1] + over_gaps(false).map(|bin| bin.count).sum::<u32>();
-        (self.watched_s[1] + stayed_s) / f64::from(went)
+        (self.watched_s[1] + stayed_s, self.events[1] + over_gaps(false).map(|bin| bin.count).sum::<u32>())
     }
 
     /// How much of the time is known, s: the time in view, and a minute at most of each gap.
@@ -73,28 +73,6 @@ impl Evidence {
             }
         }
         sum
-    }
-
-    /// The probability of each chain that looks at the same times find a change.
-    pub(super) fn chance_of_change(&self) -> Chains {
-        let watched_s: f64 = self.watched_s.iter().sum();
-        let chance = |[come, go]: [f64; 2]| {
-            let unchanged = [(come, go), (go, come)].map(|(leave, back)| {
-                let share = back / (leave + back);
-                share * libm::exp(-leave * watched_s)
-            });
-            unchanged
-        };
-        let mut unchanged: Vec<[f64; 2]> = chains().map(chance).collect();
-        for bin in self.gaps.iter() {
-            for (unchanged, chain) in zip(&mut unchanged, chains()) {
-                for (state, unchanged) in [false, true].into_iter().zip(unchanged) {
-                    let stays = probability_of(chain, state, state, bin.length());
-                    *unchanged *= libm::pow(stays, f64::from(bin.count));
-                }
-            }
-        }
-        unchanged.into_iter().map(|unchanged| 1.0 - unchanged.iter().sum::<f64>()).collect()
     }
 }
 

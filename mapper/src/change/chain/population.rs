@@ -33,20 +33,7 @@ impl Default for Population {
 
 impl Population {
     /// The population to which these things belong.
-    pub fn of<'a>(things: impl Iterator<Item = (&'a super::Evidence, &'a super::Posterior)>) -> Self {
-        let Self { mut chains } = Self::default();
-        chains.iter_mut().for_each(|chain| *chain *= SHIPPED_THINGS);
-        let mut sum = vec![0.0; chains.len()];
-        let least: f64 = std::env::var("LEAST").map_or(1.0, |v| v.parse().unwrap());
-        for (evidence, thing) in things {
-            let chance = evidence.chance_of_change();
-            zip(&mut sum, &thing.chains).zip(chance).for_each(|((sum, chain), chance)| *sum += f64::from(*chain) / chance.max(least));
-        }
-        zip(&mut chains, smoothed(&sum)).for_each(|(chain, thing)| *chain += thing);
-        Self::normalized(chains)
-    }
-
-    pub fn floor<'a>(things: impl Iterator<Item = &'a super::Posterior>) -> Self {
+    pub fn of<'a>(things: impl Iterator<Item = &'a super::Posterior>) -> Self {
         let Self { mut chains } = Self::default();
         chains.iter_mut().for_each(|chain| *chain *= SHIPPED_THINGS);
         let mut sum = vec![0.0; chains.len()];

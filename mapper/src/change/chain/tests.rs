@@ -65,7 +65,7 @@ fn rates_are_found_and_intervals_hold_them() {
         let evidence: Vec<Evidence> = things.iter().map(|(_, looks)| evidence(&times_s, looks)).collect();
         let alone: Vec<Posterior> =
             evidence.iter().map(|evidence| Posterior::new(evidence, &Population::default())).collect();
-        let population = Population::of(evidence.iter().zip(&alone));
+        let population = Population::of(alone.iter());
         let (mut errors, mut inside) = (0.0, 0);
         for ((stays_s, _), evidence) in things.iter().zip(&evidence) {
             let (posterior, rate) = (Posterior::new(evidence, &population), 1.0 / (stays_s[0] + stays_s[1]));
