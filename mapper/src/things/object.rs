@@ -101,8 +101,8 @@ impl Object {
         Some(shares(self.cells[self.position(cell).ok()?].1))
     }
 
-    /// Learns from the open reading. `is_doubted`: whether it speaks against the state of a cell in the map. Returns whether the
-    /// evidence grew by more than time in view.
+    /// Learns from the open reading. `is_doubted`: whether it speaks against the state of a cell in the map. Returns whether it
+    /// shows anything of the object.
     pub(super) fn observe(&mut self, map: &CellMap, is_doubted: impl Fn(usize) -> bool) -> bool {
         let now_s = map.time();
         let (mut seen, mut blocked, mut log_odds) = (0.0, 0.0, 0.0);
@@ -131,9 +131,9 @@ impl Object {
         let is_there = log_odds > 0.0;
         if is_there == self.is_there {
             self.doubt = None;
-            let says_more = self.look(now_s, is_there);
+            self.look(now_s, is_there);
             self.learn_shares(map, is_doubted);
-            return says_more;
+            return true;
         }
         let doubt = self.doubt.get_or_insert(Doubt { since_s: now_s, last_s: now_s });
         doubt.last_s = now_s;
@@ -159,20 +159,17 @@ impl Object {
         self.doubt.map_or((self.is_there, self.last_s), |doubt| (!self.is_there, doubt.last_s))
     }
 
-    /// A look that shows whether the object is there. Returns whether that says more than time in view.
-    fn look(&mut self, time_s: f64, is_there: bool) -> bool {
+    /// A look that shows whether the object is there.
+    fn look(&mut self, time_s: f64, is_there: bool) {
         let (before, length_s) = (self.is_there, (time_s - self.last_s).max(0.0));
         (self.is_there, self.last_s) = (is_there, time_s);
-        let is_in_view = length_s <= MAX_GAP_S;
-        if !is_in_view {
-            self.evidence.gap(before, is_there, length_s);
-            return true;
+        if length_s > MAX_GAP_S {
+            return self.evidence.gap(before, is_there, length_s);
         }
         self.evidence.watch(before, length_s);
         if is_there != before {
             self.evidence.change(before);
         }
-        is_there != before
     }
 
     /// Counts the cells in view that are blocked.
