@@ -91,7 +91,7 @@ fn run(spec: &WorldSpec, seed: u64, end_s: f64) -> Result<Vec<Row>, Box<dyn Erro
             for number in 0..things.len() {
                 let others = alone.iter().enumerate().filter(|(other, _)| *other != number);
                 let floor =
-                    Posterior::new(&things[number].evidence, &Population::floor(others.map(|(_, p)| p)));
+                    Posterior::new(&things[number].evidence, &Population::of(others.map(|(_, p)| p)));
                 let thing = &mut things[number];
                 let Some((last_s, was_there)) = thing.last else { continue };
                 for (horizon, ahead_s) in AHEAD_S.into_iter().enumerate() {
@@ -121,7 +121,7 @@ fn run(spec: &WorldSpec, seed: u64, end_s: f64) -> Result<Vec<Row>, Box<dyn Erro
     let mut rows = Vec::new();
     for (number, thing) in things.iter().enumerate().filter(|(_, thing)| thing.last.is_some()) {
         let others = alone.iter().enumerate().filter(|(other, _)| *other != number);
-        let floor = Posterior::new(&thing.evidence, &Population::floor(others.map(|(_, p)| p)));
+        let floor = Posterior::new(&thing.evidence, &Population::of(others.map(|(_, p)| p)));
         let [come, go] = thing.rates;
         let nominal = come * go / (come + go);
         let cell = thing.cell(mapper);
