@@ -187,11 +187,12 @@ impl Object {
     pub(super) fn is_thing(&self, map: &CellMap) -> bool {
         let (stayed_s, went) = self.evidence.stays();
         let changes = u64::from(self.evidence.changes());
-        let of_cells = self.cells().map(|cell| u64::from(map.statistics(cell as usize).events()));
+        let of_cells: u64 = self.cells().map(|cell| u64::from(map.statistics(cell as usize).events())).sum();
+        let of_all = changes * self.cells.len() as u64;
         (changes >= SURE_CHANGES || stayed_s >= STANDS_S)
             && stayed_s >= MIN_STAY_S * f64::from(went)
             && self.parts[0] <= self.parts[1]
-            && of_cells.sum::<u64>() <= changes * self.cells.len() as u64
+            && (of_all / 2..=of_all).contains(&of_cells)
     }
 
     pub(super) fn grow(&mut self, growth: &Growth) {
