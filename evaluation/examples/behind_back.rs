@@ -90,8 +90,7 @@ fn run(spec: &WorldSpec, seed: u64, end_s: f64) -> Result<Vec<Row>, Box<dyn Erro
                 things.iter().map(|thing| Posterior::new(&thing.evidence, &Population::default())).collect();
             for number in 0..things.len() {
                 let others = alone.iter().enumerate().filter(|(other, _)| *other != number);
-                let floor =
-                    Posterior::new(&things[number].evidence, &Population::of(others.map(|(_, p)| p)));
+                let floor = Posterior::new(&things[number].evidence, &Population::of(others.map(|(_, p)| p)));
                 let thing = &mut things[number];
                 let Some((last_s, was_there)) = thing.last else { continue };
                 for (horizon, ahead_s) in AHEAD_S.into_iter().enumerate() {

@@ -192,7 +192,7 @@ impl Object {
         (changes >= SURE_CHANGES || stayed_s >= STANDS_S)
             && stayed_s >= MIN_STAY_S * f64::from(went)
             && self.parts[0] <= self.parts[1]
-            && (of_all / 2..=of_all).contains(&of_cells)
+            && (of_all / 3..=of_all).contains(&of_cells)
     }
 
     pub(super) fn grow(&mut self, growth: &Growth) {

@@ -175,9 +175,11 @@ impl OfCell<'_> {
         self.known.posterior.get_or_init(|| Posterior::new(&self.known.object.evidence, self.population))
     }
 
-    /// Whether the changes of the object are those of a cell: traffic changes a cell much more often.
+    /// Whether the changes of the object are those of a cell: traffic changes a cell much more often, and what stood in another part
+    /// much less.
     pub(crate) fn explains(&self, events: u32) -> bool {
-        f64::from(events) <= 1.5 * f64::from(self.known.object.evidence.changes()) + 1.0
+        let changes = f64::from(self.known.object.evidence.changes());
+        (0.5 * changes..=1.5 * changes + 1.0).contains(&f64::from(events))
     }
 
     /// The probability that the object is there, at a time, s.
