@@ -160,9 +160,8 @@ impl Film {
 fn doors(mapper: &Mapper) -> Vec<NamedLine> {
     let door = |thing: &Thing| {
         let ThingKind::Door(door) = &thing.kind else { return None };
-        let rate = door.statistics.openings_per_hour().filter(|_| door.statistics.opened >= 2)?;
-        let name = format!("door: every {}", duration(3600.0 / rate.mean()));
-        Some(NamedLine { ends: door.closed.ends, name })
+        let name = format!("door: every {}", duration(3600.0 / door.openings_per_hour()));
+        (door.moves()[0] >= 2).then_some(NamedLine { ends: door.closed.ends, name })
     };
     mapper.things().iter().filter_map(door).collect()
 }

@@ -118,8 +118,8 @@ impl Thing {
 
     fn door<'a>(&self, mapper: &'a Mapper) -> Option<&'a Door> {
         let doors = mapper.things().iter().filter_map(|thing| match &thing.kind {
-            ThingKind::Door(door) if door.is_open.is_some() => Some(&**door),
-            _ => None,
+            ThingKind::Door(door) => Some(&**door),
+            ThingKind::Furniture(_) => None,
         });
         let far_m = |door: &&Door| {
             (nalgebra::center(&door.closed.ends[0], &door.closed.ends[1]) - self.center).norm()

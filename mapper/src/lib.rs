@@ -38,7 +38,7 @@ pub use reading_error::ReadingError;
 pub use scan_filter::{
     NoReturn, NoReturnDistrust, NoReturnEvidence, NoReturns, ScanFilter, ScanFilterSettings,
 };
-pub use things::{Door, DoorStatistics, Furniture, Leaf, Place, Segment, Thing, ThingKind};
+pub use things::{Door, Furniture, Leaf, Place, Segment, Thing, ThingKind};
 
 pub use tiles::Tile;
 
@@ -49,7 +49,7 @@ use interfaces::{
 };
 use nalgebra::Point2;
 use reading_error::check_pose;
-use things::{LeafCells, Things};
+use things::Things;
 use tiles::Tiles;
 
 /// Settings of a [`Mapper`].
@@ -122,7 +122,6 @@ pub struct Mapper {
     occupancy: Box<dyn OccupancyModel>,
     expected_changes: ExpectedChanges,
     things: Things,
-    leaf_cells: LeafCells,
     tiles: Tiles,
     scan: ProjectedScan,
     points: Vec<Point2<f64>>,
@@ -190,8 +189,8 @@ impl Mapper {
         let occupancy = settings.occupancy.build(&settings, &mut cells);
         let (expected_changes, scan) = (ExpectedChanges::default(), ProjectedScan::default());
         let tiles = Tiles::new(&settings, cells.frame().resolution_m());
-        let (things, leaf_cells, points) = (Things::default(), LeafCells::default(), Vec::new());
-        Self { settings, cells, occupancy, expected_changes, tiles, things, leaf_cells, scan, points }
+        let (things, points) = (Things::default(), Vec::new());
+        Self { settings, cells, occupancy, expected_changes, tiles, things, scan, points }
     }
 
     /// Makes a mapper with the same settings and the same frame, whose cells are all unknown: when it is called, perhaps in
@@ -227,7 +226,6 @@ impl Mapper {
         if is_larger {
             self.cells.grow(&growth);
             self.things.grow(&growth);
-            self.leaf_cells.grow(&growth);
             self.tiles.grow(&growth);
             self.points.clear();
         }
@@ -257,7 +255,6 @@ impl Mapper {
                 self.occupancy.update(&self.scan, &mut self.cells);
                 let is_doubted = |index: usize| self.occupancy.is_doubted(index, &self.cells);
                 self.things.update(&self.cells, is_doubted, self.tiles.dates());
-                self.leaf_cells.note(self.things.all(), &self.cells);
             }
             Observation::Cells(exact) => {
                 self.points.clear();
@@ -318,7 +315,6 @@ impl Mapper {
         values.push(value(&mut self.expected_changes));
         values.push(self.tiles.value());
         values.push(value(&mut self.things));
-        values.push(value(&mut self.leaf_cells));
         values
     }
 
@@ -408,7 +404,7 @@ impl Mapper {
     #[inline]
     pub fn statistics(&self, index: usize) -> CellStatistics {
         let seen = self.cells.statistics(index);
-        let of_door = seen.prior.and_then(|_| self.leaf_cells.rate_prior(index, self.things()));
+        let of_door = seen.prior.and_then(|_| self.things.of_cell(index)?.rate_prior());
         CellStatistics { prior: of_door.or(seen.prior), ..seen }
     }
 

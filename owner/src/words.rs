@@ -1,7 +1,7 @@
 //! Times and rates in words.
 
 use jiff::Timestamp;
-use mapper::DoorStatistics;
+use mapper::Door;
 use survey::{Place, PlaceRates};
 
 /// Where the ends of the interval are farther apart than this factor, a single figure says too much.
@@ -33,13 +33,14 @@ impl Seen {
     }
 
     /// The openings of a door.
-    pub fn of_door(seen: &DoorStatistics) -> Self {
-        let interval = seen.interval_of_openings_per_hour(MASS);
+    pub fn of_door(door: &Door) -> Self {
+        let interval = door.interval_of_openings_per_hour(MASS);
+        let [opened, closed] = door.moves();
         Self {
-            times: seen.opened.max(seen.closed),
-            observed_s: seen.in_view_s,
-            after_gap: seen.opened_after_gap + seen.closed_after_gap,
-            per_hour: seen.openings_per_hour().map(|rate| rate.mean()).zip(interval.map(<[f64; 2]>::from)),
+            times: opened.max(closed),
+            observed_s: door.in_view_s(),
+            after_gap: door.moves_after_gap(),
+            per_hour: Some((door.openings_per_hour(), interval.into())),
         }
     }
 

@@ -101,7 +101,7 @@ impl Forecast {
 
     /// The doors that were found, a dict for each, with the number `id`, the ends of the `closed` leaf (m), `is_open` when last seen,
     /// at `last_seen` (s); `open_probability` at a time (that of the last reading by default) and the interval
-    /// `open_probability_90` that contains the true one with 90 % (None before it was seen on 14 days); `openings_per_hour` in view and
+    /// `open_probability_90` that contains the true one with 90 % (None before it was seen on 14 days); `openings_per_hour` and
     /// `openings_per_hour_90`; and `usual_hours`, tuples of the hour of the week (0 to 168), the 90 % interval of it, and whether
     /// the door is usually open from then on.
     #[pyo3(signature = (time=None))]
@@ -113,20 +113,20 @@ impl Forecast {
         let time_s = time.map_or(Ok(self.forecast.now_s()), |time| self.seconds(time))?;
         let (calendar, epoch_s) = (self.forecast.calendar(), self.forecast.mapper().epoch_s());
         let dict = |(id, door): (u32, &mapper::Door)| {
-            let (dict, seen) = (PyDict::new(py), &door.statistics);
+            let dict = PyDict::new(py);
             let week = door.clock.week(calendar);
             let changes = week.map(|week| week.usual_changes()).unwrap_or_default();
             let usual =
                 changes.iter().map(|to| (to.hour, (to.earliest_hour, to.latest_hour), to.becomes_blocked));
             dict.set_item("id", id)?;
             dict.set_item("closed", door.closed.ends.map(|end| (end.x, end.y)))?;
-            dict.set_item("is_open", door.is_open)?;
-            dict.set_item("last_seen", epoch_s + door.last_seen_s)?;
+            dict.set_item("is_open", door.is_open())?;
+            dict.set_item("last_seen", epoch_s + door.last_seen_s())?;
             dict.set_item("open_probability", door.clock.probability(time_s, calendar))?;
             let interval = door.clock.interval_90(time_s, calendar);
             dict.set_item("open_probability_90", interval.map(|[low, high]| (low, high)))?;
-            dict.set_item("openings_per_hour", seen.openings_per_hour().map(|rate| rate.mean()))?;
-            dict.set_item("openings_per_hour_90", seen.interval_of_openings_per_hour(0.9))?;
+            dict.set_item("openings_per_hour", door.openings_per_hour())?;
+            dict.set_item("openings_per_hour_90", door.interval_of_openings_per_hour(0.9))?;
             dict.set_item("usual_hours", usual.collect::<Vec<_>>())?;
             Ok(dict)
         };

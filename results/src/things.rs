@@ -33,9 +33,8 @@ fn record(thing: &Thing) -> Value {
 }
 
 /// A door: the ends of the closed leaf, the hinge and the other end of the open leaf, its state at the last look, and what was counted:
-/// in view, and what was found after a gap in the view; the openings per hour in view with their 90 % credible interval.
+/// in view, and what was found after a gap in the view; the openings per hour with their 90 % credible interval.
 fn of_door(door: &Door) -> Value {
-    let seen = &door.statistics;
     let hinged = match door.leaf {
         Leaf::Hinged { hinge, length_m, open_rad, .. } => {
             let end = hinge + interfaces::rotation(open_rad) * nalgebra::Vector2::x() * length_m;
@@ -43,20 +42,21 @@ fn of_door(door: &Door) -> Value {
         }
         Leaf::Sliding => None,
     };
-    let interval = seen.interval_of_openings_per_hour(MASS);
+    let (low, high) = door.interval_of_openings_per_hour(MASS);
+    let [opened, closed] = door.moves();
     json!({
         "kind": "door",
         "closed_m": door.closed.ends.each_ref().map(pair),
         "hinge_m": hinged.map(|(hinge, _)| hinge),
         "open_end_m": hinged.map(|(_, end)| end),
-        "is_open": door.is_open,
-        "last_seen_s": rounded(door.last_seen_s),
-        "opened": seen.opened,
-        "closed": seen.closed,
-        "moved_after_gap": seen.opened_after_gap + seen.closed_after_gap,
-        "in_view_s": rounded(seen.in_view_s),
-        "openings_per_hour": seen.openings_per_hour().map(|rate| rounded(rate.mean())),
-        "openings_per_hour_90": interval.map(|(low, high)| [low, high].map(rounded)),
+        "is_open": door.is_open(),
+        "last_seen_s": rounded(door.last_seen_s()),
+        "opened": opened,
+        "closed": closed,
+        "moved_after_gap": door.moves_after_gap(),
+        "in_view_s": rounded(door.in_view_s()),
+        "openings_per_hour": rounded(door.openings_per_hour()),
+        "openings_per_hour_90": [rounded(low), rounded(high)],
     })
 }
 

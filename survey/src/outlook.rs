@@ -87,8 +87,7 @@ impl<'a> Outlook<'a> {
         let (frame, way) = (self.mapper.frame(), to - from);
         let (cell_m, length_m) = (frame.resolution_m(), way.norm());
         let (steps, reach) = ((length_m / cell_m).ceil().max(1.0), (radius_m / cell_m).round() as i32);
-        let doors: Vec<&Door> =
-            doors(self.mapper).map(|(_, door)| door).filter(|door| door.is_open.is_some()).collect();
+        let doors: Vec<&Door> = doors(self.mapper).map(|(_, door)| door).collect();
         let mut largest: Option<f64> = None;
         let margin_m = (f64::from(reach) + LEAF + 1.0) * cell_m;
         let [first, last] = part_near(frame, margin_m, from, way)?;

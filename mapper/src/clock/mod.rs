@@ -3,7 +3,6 @@
 //!
 //! It starts as the chain, and becomes a clock with data. Work per look and memory are bounded.
 
-mod beta;
 mod calendar;
 mod correlations;
 mod guard;

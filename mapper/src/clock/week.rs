@@ -1,6 +1,6 @@
 //! What is usual in every half hour of the week, as people read it: probabilities with intervals, and the hours of changes.
 
-use super::beta::{beta_cdf, beta_quantile};
+use statrs::function::beta::beta_reg;
 
 /// Half hours from Monday 0:00 to Sunday 24:00, local civil time.
 pub(super) const SLOTS_OF_WEEK: usize = 336;
@@ -55,7 +55,8 @@ impl UsualSlot {
         if self.variance >= UNSEEN_VARIANCE {
             return false;
         }
-        let below = beta_cdf(distribution(self.probability, self.variance), 0.5);
+        let [a, b] = distribution(self.probability, self.variance);
+        let below = beta_reg(a, b, 0.5);
         below.min(1.0 - below) < UNCLEAR
     }
 }
@@ -66,6 +67,16 @@ fn distribution(probability: f64, variance: f64) -> [f64; 2] {
     /// Keeps the parameters apart from 0.
     const MIN: f64 = 1e-3;
     [probability, 1.0 - probability].map(|share| (share / variance).max(MIN))
+}
+
+/// The value below which a beta variable is with this probability.
+fn beta_quantile([a, b]: [f64; 2], probability: f64) -> f64 {
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..40 {
+        let middle = 0.5 * (low + high);
+        *(if beta_reg(a, b, middle) < probability { &mut low } else { &mut high }) = middle;
+    }
+    0.5 * (low + high)
 }
 
 /// The interval that contains this probability with 90 %. It begins at 0, and ends at 1, where all draws can be equal with a

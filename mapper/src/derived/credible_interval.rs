@@ -1,4 +1,4 @@
-use super::gamma::Quantile;
+use super::gamma::quantile;
 use crate::change::{Belief, RateDistribution};
 
 /// Minimum of a probability or an information: the product of two of them is still above 0.
@@ -11,14 +11,15 @@ const DISPERSION: f64 = 2.0;
 /// Credible intervals that contain a rate with a certain probability, with equal probabilities below and above the
 /// interval.
 pub(crate) struct CredibleInterval {
-    ends: [Quantile; 2],
+    /// The probabilities below both ends.
+    ends: [f64; 2],
 }
 
 impl CredibleInterval {
     /// Intervals that contain the rate with the probability `mass`.
     pub(crate) fn new(mass: f64) -> Self {
         let mass = mass.clamp(0.0, 1.0);
-        Self { ends: [0.5 - 0.5 * mass, 0.5 + 0.5 * mass].map(Quantile::new) }
+        Self { ends: [0.5 - 0.5 * mass, 0.5 + 0.5 * mass] }
     }
 
     /// The interval of a gamma distribution whose variance is [`DISPERSION`] times as large.
@@ -29,7 +30,7 @@ impl CredibleInterval {
     /// The interval of a gamma distribution.
     pub(crate) fn of_gamma(&self, rate: RateDistribution) -> (f64, f64) {
         let shape = rate.events;
-        let [low, high] = self.ends.each_ref().map(|end| rate.mean().min(f64::MAX) * end.of(shape));
+        let [low, high] = self.ends.map(|end| rate.mean().min(f64::MAX) * quantile(shape, end));
         (low, high)
     }
 
@@ -51,7 +52,7 @@ impl CredibleInterval {
         let rate = block * free / (block + free) / period;
         // Limits between certain knowledge and no knowledge.
         let shape = (1.0 / variance).clamp(0.05, 1e12);
-        let [low, high] = self.ends.each_ref().map(|end| (rate * end.of(shape)).min(0.5 / period));
+        let [low, high] = self.ends.map(|end| (rate * quantile(shape, end)).min(0.5 / period));
         (low, high)
     }
 }

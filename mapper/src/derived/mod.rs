@@ -133,10 +133,15 @@ impl Mapper {
         self.predicted(index, last_seen, time).unwrap_or(last_seen)
     }
 
-    /// The object to which a cell belongs, if what is known of the object is worth more than what is known of the cell.
+    /// The thing to which a cell belongs, if what is known of the thing is worth more than what is known of the cell.
+    fn thing(&self, index: usize) -> Option<OfCell<'_>> {
+        let thing = self.things.of_cell(index).filter(|_| self.estimator().shares_prior())?;
+        thing.explains(self.cells.statistics(index).events()).then_some(thing)
+    }
+
+    /// The object to which a cell belongs. The rate of a cell of a door has that of the door as its prior, since people pass there.
     fn object(&self, index: usize) -> Option<OfCell<'_>> {
-        let object = self.things.object_of(index).filter(|_| self.estimator().shares_prior())?;
-        object.explains(self.cells.statistics(index).events()).then_some(object)
+        self.thing(index).filter(|thing| !thing.is_door())
     }
 
     /// The probability that what comes and goes at a cell is there, this much time after the last reading; `None` where nothing
@@ -145,23 +150,19 @@ impl Mapper {
         Some(self.object(index)?.presence(self.time() + time))
     }
 
-    /// What predicts a cell that changes and was last seen as `observed`, 0 or 1: the last look at it or at its door, its chain,
-    /// and the clock of its tile.
+    /// What predicts a cell that changes and was last seen as `observed`, 0 or 1: its thing, or its chain, and the clocks of its
+    /// tile and of its door.
     fn predicted(&self, index: usize, observed: f64, time: f64) -> Option<f64> {
         let seen = self.statistics(index);
         let rates = self.estimator().transition_rates(&seen)?;
-        let door = self.leaf_cells.look(index, self.things()).filter(|look| look.time_s > seen.last_seen);
-        let is_door = door.is_some();
-        let (observed, last_s) = door.map_or((observed, seen.last_seen), |look| (look.blocked, look.time_s));
-        let chain = Chain::new(rates, &seen, self.cells.variation(), self.time() - last_s + time);
-        let object = self.object(index).filter(|_| !is_door);
-        let alone = object.map_or(chain.blocked_probability(observed), |object| {
-            object.blocked_probability(self.time() + time)
-        });
-        let slot = self.cells.slot(index)?;
-        let by_tile = self.tiles.of_cell(self.frame().cell(index), slot, self.time() + time);
-        let by_door = self.leaf_cells.forecast(index, self.things(), self.time() + time, self.tiles.dates());
+        let (thing, time_s) = (self.thing(index), self.time() + time);
+        let chain = Chain::new(rates, &seen, self.cells.variation(), time_s - seen.last_seen);
+        let alone = match &thing {
+            Some(thing) => thing.blocked_probability(time_s),
+            None => chain.blocked_probability(observed),
+        };
+        let by_tile = self.tiles.of_cell(self.frame().cell(index), self.cells.slot(index)?, time_s);
         let predicted = by_tile.map_or(alone, |tile| tile.blocked_probability(observed, chain.memory, alone));
-        Some(by_door.map_or(predicted, |door| door.blocked_probability(observed, chain.memory, predicted)))
+        Some(thing.map_or(predicted, |thing| thing.with_clock(predicted, time_s, self.tiles.dates())))
     }
 }

@@ -1,10 +1,11 @@
 //! A door, and what looks at it say.
 
+use super::OfCell;
+use super::presence::{Parts, Presence};
 use super::segment::Segment;
 use crate::Growth;
-use crate::change::{CellMap, CellStatistics, RateDistribution};
+use crate::change::{CellMap, Evidence, Population};
 use crate::clock::{Clock, Dates, Look};
-use crate::derived::CredibleInterval;
 use interfaces::{CellState, GridFrame};
 use nalgebra::Point2;
 
@@ -14,14 +15,10 @@ const IN_VIEW: f64 = 0.4;
 /// is open. A person in the doorway blocks about half of it.
 const CLOSED_FROM: f64 = 0.75;
 const OPEN_TO: f64 = 0.3;
-/// Looks say that a door has moved when they have agreed for this time, s.
-const SURE_S: f64 = 1.0;
-/// A door stays in view between two looks that are at most this far apart, s: people pass between robot and door.
-const MAX_GAP_S: f64 = 2.5;
 /// The clock of a door gets a look after this time without a change, s.
 const LOOK_S: f64 = 1.0;
-/// The number of openings before any look: Jeffreys' prior of a rate.
-const PRIOR_OPENINGS: f64 = 0.5;
+/// A cell counts as free in this number of looks before the first one.
+const FREE_LOOKS: f64 = 6.0;
 const HOUR_S: f64 = 3600.0;
 
 /// How a leaf opens.
@@ -49,76 +46,68 @@ pub struct Door {
     pub closed: Segment,
     /// How it opens.
     pub leaf: Leaf,
-    /// Whether it was open at the last look; `None` before any look.
-    pub is_open: Option<bool>,
-    /// The time of the last look, s.
-    pub last_seen_s: f64,
-    /// What was counted so far.
-    pub statistics: DoorStatistics,
     /// When it is open.
     pub clock: Clock,
-    watch: Watch,
-}
-
-/// What was counted of a door.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Deserialize, serde::Serialize)]
-pub struct DoorStatistics {
-    /// Openings in view.
-    pub opened: u32,
-    /// Closings in view.
-    pub closed: u32,
-    /// Openings that were found after a gap in the view.
-    pub opened_after_gap: u32,
-    /// Closings that were found after a gap in the view.
-    pub closed_after_gap: u32,
-    /// The time in view, s.
-    pub in_view_s: f64,
-}
-
-impl DoorStatistics {
-    /// The distribution of the number of openings per hour; `None` if it was never in view. A door closes as often as it opens:
-    /// both count.
-    pub fn openings_per_hour(&self) -> Option<RateDistribution> {
-        let events = PRIOR_OPENINGS + 0.5 * f64::from(self.opened + self.closed);
-        let time = self.in_view_s / HOUR_S;
-        (time > 0.0).then_some(RateDistribution { events, time })
-    }
-
-    /// The mean number of openings per second.
-    pub(super) fn openings_per_s(&self) -> Option<f64> {
-        Some(self.openings_per_hour()?.mean() / HOUR_S)
-    }
-
-    /// The interval that contains the number of openings per hour with the probability `mass`.
-    pub fn interval_of_openings_per_hour(&self, mass: f64) -> Option<(f64, f64)> {
-        Some(CredibleInterval::new(mass).of_gamma(self.openings_per_hour()?))
-    }
-}
-
-/// What is needed to count.
-#[derive(Clone, Debug, Default, PartialEq, serde::Deserialize, serde::Serialize)]
-struct Watch {
     /// The cells of the closed leaf.
-    closed: Vec<u32>,
-    /// Since when looks say that the door has moved, s.
-    moved_s: Option<f64>,
-    /// Whether the door has been in view since the last look that showed `is_open`.
-    is_unbroken: bool,
+    closed_cells: Vec<u32>,
+    /// The cells that the leaf sweeps, with the looks at them while the door was open, and while it was closed.
+    pub(super) parts: Parts,
+    /// The state "there": closed.
+    pub(super) presence: Presence,
     /// The last look that the clock got, s.
     clock_s: Option<f64>,
 }
 
 impl Door {
-    pub(super) fn new(closed: Segment, found_s: f64) -> Self {
-        Self {
-            closed,
-            leaf: Leaf::Sliding,
-            is_open: None,
-            last_seen_s: found_s,
-            statistics: DoorStatistics::default(),
-            clock: Clock::default(),
-            watch: Watch::default(),
-        }
+    /// A door with this closed leaf. What was seen of it before is that of a cell of this leaf: the one with about as many changes as
+    /// lines were found, since people change these cells as well; of several ones, the one that is known best.
+    pub(super) fn new(closed: Segment, lines: u32, map: &CellMap) -> Self {
+        let closed_cells = closed.cells(map.frame());
+        let known = closed_cells.iter().map(|&cell| (map.evidence(cell as usize), cell as usize));
+        let apart = |evidence: &Evidence| evidence.changes().abs_diff(lines);
+        let best =
+            known.min_by(|(a, _), (b, _)| apart(a).cmp(&apart(b)).then(b.known_s().total_cmp(&a.known_s())));
+        let (evidence, cell) = best.unwrap_or_default();
+        let presence = Presence::new(map.state(cell) == CellState::Blocked, map.last_seen(cell), evidence);
+        let (leaf, clock, parts) = (Leaf::Sliding, Clock::default(), Parts::default());
+        Self { closed, leaf, clock, closed_cells, parts, presence, clock_s: None }
+    }
+
+    /// Whether it was open at the last look.
+    pub fn is_open(&self) -> bool {
+        !self.presence.last_look().0
+    }
+
+    /// The time of the last look, s.
+    pub fn last_seen_s(&self) -> f64 {
+        self.presence.last_look().1
+    }
+
+    /// Openings and closings in view.
+    pub fn moves(&self) -> [u32; 2] {
+        let [closed, opened] = self.presence.evidence().events();
+        [opened, closed]
+    }
+
+    /// Openings and closings that were found after a gap in the view.
+    pub fn moves_after_gap(&self) -> u32 {
+        self.presence.evidence().changes_after_gap()
+    }
+
+    /// The time in view, s.
+    pub fn in_view_s(&self) -> f64 {
+        self.presence.evidence().in_view_s()
+    }
+
+    /// The number of openings per hour, by all looks: in view, and before and after gaps in the view.
+    pub fn openings_per_hour(&self) -> f64 {
+        self.presence.posterior(Population::shipped()).cycle_rate() * HOUR_S
+    }
+
+    /// The interval that contains this number with the probability `mass`.
+    pub fn interval_of_openings_per_hour(&self, mass: f64) -> (f64, f64) {
+        let (low, high) = self.presence.posterior(Population::shipped()).interval(mass);
+        (low * HOUR_S, high * HOUR_S)
     }
 
     /// Sets the place of the door, with the number of the hinge and the open leaf if they are known. Returns its cells.
@@ -129,8 +118,8 @@ impl Door {
         frame: &GridFrame,
     ) -> Vec<u32> {
         self.closed = closed;
-        self.watch.closed = closed.cells(frame);
-        let Some((hinge, open)) = open else { return self.watch.closed.clone() };
+        self.closed_cells = closed.cells(frame);
+        let Some((hinge, open)) = open else { return self.closed_cells.clone() };
         let [hinge, end] = [hinge, 1 - hinge].map(|end| closed.ends[end]);
         let [closed_rad, open_rad] = [end - hinge, open.along()].map(|along| libm::atan2(along.y, along.x));
         let length_m = closed.length_m();
@@ -145,92 +134,40 @@ impl Door {
         cells
     }
 
-    /// Counts what was in view before the door was found, as the median over the cells of the closed leaf. People change these
-    /// cells as well, so that the lines found so far bound the numbers.
-    pub(super) fn count_earlier(&mut self, lines: [u32; 2], cells: &CellMap) {
-        let seen: Vec<_> = self.watch.closed.iter().map(|&cell| cells.statistics(cell as usize)).collect();
-        let median = |of: fn(&CellStatistics) -> u32| median(seen.iter().map(of).collect());
-        let [opened, closed] = [median(|cell| cell.free_events), median(|cell| cell.block_events)];
-        let [opened, closed] = [opened.min(lines[0]), closed.min(lines[1])];
-        self.statistics = DoorStatistics {
-            opened,
-            closed,
-            opened_after_gap: median(|cell| cell.free_events_after_gap).min(lines[0] - opened),
-            closed_after_gap: median(|cell| cell.block_events_after_gap).min(lines[1] - closed),
-            in_view_s: f64::from(median(|cell| cell.observed() as u32)),
-        };
+    /// What it says of one of its cells; `None` unless the cell was seen with the door open, and with the door closed.
+    pub(super) fn of_cell(&self, cell: u32) -> Option<OfCell<'_>> {
+        let counts =
+            self.parts.counts(cell).filter(|counts| counts.iter().all(|counts| !counts.is_empty()))?;
+        let shares = counts.map(|counts| counts.share(0.0, FREE_LOOKS));
+        Some(OfCell {
+            presence: &self.presence,
+            population: Population::shipped(),
+            clock: Some(&self.clock),
+            shares,
+        })
     }
 
-    /// Counts, from what the open reading shows of the door.
-    pub(super) fn observe(&mut self, cells: &CellMap, dates: Dates) {
-        let Some(blocked) = blocked_share(&self.watch.closed, cells) else { return };
-        let now_s = cells.time();
-        self.pass_to(now_s);
-        let is_open = match blocked {
-            CLOSED_FROM.. => false,
-            ..OPEN_TO => true,
+    /// Learns from the open reading.
+    pub(super) fn observe(&mut self, map: &CellMap, dates: Dates) {
+        let now_s = map.time();
+        let is_closed = match blocked_share(&self.closed_cells, map) {
+            Some(CLOSED_FROM..) => true,
+            Some(..OPEN_TO) => false,
             _ => return,
         };
-        if self.is_open.is_none_or(|was_open| was_open == is_open) {
-            self.confirm(now_s, is_open, dates);
-        } else {
-            let moved_s = *self.watch.moved_s.get_or_insert(now_s);
-            if now_s - moved_s >= SURE_S {
-                self.count(is_open);
-                self.tell_clock(moved_s, is_open, dates);
-            }
+        let is_new = is_closed != self.presence.is_there();
+        let is_due = is_new || self.clock_s.is_none_or(|last_s| now_s - last_s >= LOOK_S);
+        if self.presence.see(now_s, is_closed) && is_due {
+            self.clock_s = Some(now_s);
+            dates.observe(&mut self.clock, Look { time_s: now_s, is_blocked: !is_closed });
+            self.parts.learn(is_closed, map, |_| false);
         }
-    }
-
-    /// The door is in view.
-    fn pass_to(&mut self, now_s: f64) {
-        let gap_s = now_s - self.last_seen_s;
-        let is_unbroken = gap_s <= MAX_GAP_S;
-        self.statistics.in_view_s += if is_unbroken { gap_s } else { 0.0 };
-        self.watch.is_unbroken &= is_unbroken;
-        self.last_seen_s = now_s;
-    }
-
-    /// The door is as it was.
-    fn confirm(&mut self, now_s: f64, is_open: bool, dates: Dates) {
-        self.is_open = Some(is_open);
-        (self.watch.is_unbroken, self.watch.moved_s) = (true, None);
-        if self.watch.clock_s.is_none_or(|last_s| now_s - last_s >= LOOK_S) {
-            self.tell_clock(now_s, is_open, dates);
-        }
-    }
-
-    /// The time of the last look that showed whether the door was open, and whether it was, to [`LOOK_S`].
-    pub(super) fn last_look(&self) -> Option<(f64, bool)> {
-        self.watch.clock_s.zip(self.is_open)
     }
 
     pub(super) fn grow(&mut self, growth: &Growth) {
-        self.watch.closed.iter_mut().for_each(|cell| *cell = growth.index(*cell as usize) as u32);
+        self.closed_cells.iter_mut().for_each(|cell| *cell = growth.index(*cell as usize) as u32);
+        self.parts.grow(growth);
     }
-
-    fn tell_clock(&mut self, time_s: f64, is_open: bool, dates: Dates) {
-        self.watch.clock_s = Some(time_s);
-        dates.observe(&mut self.clock, Look { time_s, is_blocked: is_open });
-    }
-
-    fn count(&mut self, is_open: bool) {
-        let statistics = &mut self.statistics;
-        let count = match (is_open, self.watch.is_unbroken) {
-            (true, true) => &mut statistics.opened,
-            (false, true) => &mut statistics.closed,
-            (true, false) => &mut statistics.opened_after_gap,
-            (false, false) => &mut statistics.closed_after_gap,
-        };
-        *count += 1;
-        self.is_open = Some(is_open);
-        (self.watch.is_unbroken, self.watch.moved_s) = (true, None);
-    }
-}
-
-fn median(mut values: Vec<u32>) -> u32 {
-    values.sort_unstable();
-    values.get(values.len() / 2).copied().unwrap_or(0)
 }
 
 /// The share of the cells in view that are blocked; `None` if too few cells are in view.

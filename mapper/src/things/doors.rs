@@ -71,20 +71,18 @@ impl Things {
             return false;
         }
         let (closed, open, lines) = (doorway.closed, doorway.open_leaf(cells), doorway.lines);
-        let new = || ThingKind::Door(Box::new(Door::new(closed, cells.time())));
+        let new = || ThingKind::Door(Box::new(Door::new(closed, lines.iter().sum(), cells)));
         let id = match doorway.thing {
             Some(id) => id,
             None => self.add(new(), Vec::new(), cells.time()),
         };
-        let is_new = self.doorways[position].thing.replace(id).is_none();
+        self.doorways[position].thing = Some(id);
         let mut of_door = Vec::new();
         for thing in self.things.iter_mut().filter(|thing| thing.id == id) {
             if let ThingKind::Door(door) = &mut thing.kind {
                 thing.cells = door.place(closed, open, cells.frame());
                 of_door.clone_from(&thing.cells);
-                if is_new {
-                    door.count_earlier(lines, cells);
-                }
+                door.parts.add(of_door.iter().map(|cell| (*cell, Default::default())));
             }
         }
         // Its leaf can have passed for furniture before.

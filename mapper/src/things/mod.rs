@@ -6,8 +6,9 @@
 //! - `doorway`, `doors`: lines that come and go between two walls are the closed leaf of a door; a line that changes the other
 //!   way at the same time, and shares an end with it, is the open leaf.
 //! - `door`: a door and its statistics.
-//! - `leaf_cells`: what doors say of their cells.
 //! - `object`, `objects`: what comes and goes as a whole.
+//! - `presence`: what looks say of a door or an object: its state, the evidence about its stays, and its cells in both states.
+//! - `of_cell`: what a door or an object says of one of its cells.
 //! - `furniture`: what stood for long and is gone, or has come and stays.
 
 mod door;
@@ -15,25 +16,25 @@ mod doors;
 mod doorway;
 mod furniture;
 mod lasting;
-mod leaf_cells;
 mod line;
 mod motions;
 mod object;
 mod objects;
+mod of_cell;
+mod presence;
 mod segment;
 
 use crate::Growth;
 use crate::change::CellMap;
 use crate::clock::Dates;
-pub use door::{Door, DoorStatistics, Leaf};
+pub use door::{Door, Leaf};
 use doorway::Doorway;
 pub use furniture::{Furniture, Place};
 use lasting::{Change, LastingChanges};
-pub(crate) use leaf_cells::LeafCells;
 use line::Line;
 use motions::{Motion, Motions};
 use objects::Objects;
-pub(crate) use objects::OfCell;
+pub(crate) use of_cell::OfCell;
 pub use segment::Segment;
 
 /// The largest number of pieces of furniture; then the one that was found first is forgotten. Doors are bounded by the doorways.
@@ -82,9 +83,14 @@ impl Things {
         &self.things
     }
 
-    /// What the object of a cell says of it.
-    pub(crate) fn object_of(&self, cell: usize) -> Option<OfCell<'_>> {
-        self.objects.of_cell(cell)
+    /// What the thing to which a cell belongs says of it.
+    pub(crate) fn of_cell(&self, cell: usize) -> Option<OfCell<'_>> {
+        let cell = cell as u32;
+        let doors = self.things.iter().filter_map(|thing| match &thing.kind {
+            ThingKind::Door(door) => Some(door),
+            ThingKind::Furniture(_) => None,
+        });
+        doors.filter_map(|door| door.of_cell(cell)).next().or_else(|| self.objects.of_cell(cell))
     }
 
     /// Learns from the open reading. `is_doubted`: whether it speaks against the state of a cell in the map.

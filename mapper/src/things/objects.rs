@@ -2,11 +2,11 @@
 
 use super::lasting::Change;
 use super::object::Object;
+use super::of_cell::OfCell;
 use crate::Growth;
 use crate::change::{CellMap, Population, Posterior};
 use interfaces::{Cell, GridFrame};
 use std::collections::BTreeMap;
-use std::sync::OnceLock;
 
 /// The smallest number of cells that show an object, and its largest extent, m: more is several things, or a crowd.
 const MIN_CELLS: usize = 3;
@@ -20,13 +20,11 @@ const MAX_OBJECTS: usize = 256;
 /// The population is learned anew after a quarter more readings, at least and at most after these numbers of readings.
 const RENEWAL_READINGS: [usize; 2] = [8, 100];
 
-/// An object, and what follows from its evidence.
+/// An object, and whether it is a thing.
 #[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
 struct Known {
     object: Object,
     is_thing: bool,
-    #[serde(skip)]
-    posterior: OnceLock<Posterior>,
 }
 
 /// All objects of a map.
@@ -41,34 +39,25 @@ pub(crate) struct Objects {
     due: usize,
 }
 
-/// What an object says of one of its cells.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct OfCell<'a> {
-    known: &'a Known,
-    population: &'a Population,
-    /// The probability that the cell is blocked, while the object is away, and while it is there.
-    shares: [f64; 2],
-}
-
 impl Objects {
     /// Learns from the open reading.
     pub(super) fn observe(&mut self, map: &CellMap, is_doubted: impl Fn(usize) -> bool) {
         for known in self.objects.values_mut() {
-            if known.object.observe(map, &is_doubted) {
-                known.posterior.take();
-            }
+            known.object.observe(map, &is_doubted);
         }
         let readings = map.readings();
         if readings >= self.due {
             let [least, most] = RENEWAL_READINGS;
             self.due = readings + (readings / 4).clamp(least, most);
             let shipped = Population::default();
-            self.objects.values_mut().for_each(|known| known.is_thing = known.object.is_thing(map));
-            let things =
-                || self.objects.values().filter(|known| known.is_thing).map(|known| &known.object.evidence);
-            let alone: Vec<Posterior> = things().map(|evidence| Posterior::new(evidence, &shipped)).collect();
+            for known in self.objects.values_mut() {
+                known.is_thing = known.object.is_thing(map);
+                known.object.presence.renew();
+            }
+            let things = self.objects.values().filter(|known| known.is_thing);
+            let evidence = things.map(|known| known.object.presence.evidence());
+            let alone: Vec<Posterior> = evidence.map(|evidence| Posterior::new(evidence, &shipped)).collect();
             self.population = Population::of(alone.iter());
-            self.objects.values_mut().for_each(|known| drop(known.posterior.take()));
         }
     }
 
@@ -90,12 +79,13 @@ impl Objects {
                 self.make_room();
                 self.next += 1;
                 let object = Object::new(&cells, is_blocked, map);
-                self.objects.insert(self.next, Known { object, is_thing: false, posterior: OnceLock::new() });
+                self.objects.insert(self.next, Known { object, is_thing: false });
                 self.next
             }
         };
         for other in same {
-            let is_alike = |known: &Known| known.object.is_there == self.objects[&number].object.is_there;
+            let is_there = |known: &Known| known.object.presence.is_there();
+            let is_alike = |known: &Known| is_there(known) == is_there(&self.objects[&number]);
             let both = [number, other].into_iter().filter_map(|number| self.objects.get(&number));
             let cells = both.flat_map(|known| known.object.cells());
             if extent_m(cells, map.frame()) <= MAX_EXTENT_M
@@ -113,7 +103,7 @@ impl Objects {
                 known.object.add(&cells);
                 self.of_cell.extend(cells.into_iter().map(|cell| (cell, number)));
             }
-            known.posterior.take();
+            known.object.presence.renew();
         }
     }
 
@@ -138,7 +128,8 @@ impl Objects {
         let is_same = |(number, [own, near]): &(u32, [usize; 2])| {
             let object = &self.objects[number].object;
             let smaller = cells.len().min(object.cells().len());
-            *own as f64 >= COMMON * smaller as f64 || own + near > 0 && object.is_there == is_blocked
+            *own as f64 >= COMMON * smaller as f64
+                || own + near > 0 && object.presence.is_there() == is_blocked
         };
         let mut same: Vec<_> = votes.into_iter().filter(is_same).collect();
         same.sort_by_key(|(number, [own, near])| (std::cmp::Reverse((*own, *near)), *number));
@@ -146,7 +137,7 @@ impl Objects {
     }
 
     fn make_room(&mut self) {
-        let last_s = |known: &Known| known.object.last_s;
+        let last_s = |known: &Known| known.object.presence.last_look().1;
         if self.objects.len() >= MAX_OBJECTS
             && let Some((&oldest, _)) =
                 self.objects.iter().min_by(|(_, a), (_, b)| last_s(a).total_cmp(&last_s(b)))
@@ -157,51 +148,16 @@ impl Objects {
     }
 
     /// What the object of a cell says of it; `None` if it belongs to none.
-    pub(crate) fn of_cell(&self, cell: usize) -> Option<OfCell<'_>> {
-        let cell = cell as u32;
+    pub(super) fn of_cell(&self, cell: u32) -> Option<OfCell<'_>> {
         let known = self.objects.get(self.of_cell.get(&cell)?).filter(|known| known.is_thing)?;
-        Some(OfCell { known, population: &self.population, shares: known.object.shares(cell)? })
+        let (presence, population) = (&known.object.presence, &self.population);
+        Some(OfCell { presence, population, clock: None, shares: known.object.shares(cell)? })
     }
 
     pub(super) fn grow(&mut self, growth: &Growth) {
-        self.objects.values_mut().for_each(|known| known.object.grow(growth));
+        self.objects.values_mut().for_each(|known| known.object.parts.grow(growth));
         let cells = std::mem::take(&mut self.of_cell).into_iter();
         self.of_cell = cells.map(|(cell, number)| (growth.index(cell as usize) as u32, number)).collect();
-    }
-}
-
-impl OfCell<'_> {
-    fn posterior(&self) -> &Posterior {
-        self.known.posterior.get_or_init(|| Posterior::new(&self.known.object.evidence, self.population))
-    }
-
-    /// Whether the changes of the object are those of a cell: traffic changes a cell much more often, and what stood in another part
-    /// much less.
-    pub(crate) fn explains(&self, events: u32) -> bool {
-        let changes = f64::from(self.known.object.evidence.changes());
-        (0.5 * changes..=1.5 * changes + 1.0).contains(&f64::from(events))
-    }
-
-    /// The probability that the object is there, at a time, s.
-    pub(crate) fn presence(&self, time_s: f64) -> f64 {
-        let (was_there, last_s) = self.known.object.last_look();
-        self.posterior().probability(was_there, (time_s - last_s).max(0.0))
-    }
-
-    /// The probability that the cell is blocked at a time, s.
-    pub(crate) fn blocked_probability(&self, time_s: f64) -> f64 {
-        let [away, there] = self.shares;
-        away + (there - away) * self.presence(time_s)
-    }
-
-    /// The cycle rate of the object, 1/s.
-    pub(crate) fn cycle_rate(&self) -> f64 {
-        self.posterior().cycle_rate()
-    }
-
-    /// The interval that contains this rate with the probability `mass`, 1/s.
-    pub(crate) fn interval(&self, mass: f64) -> (f64, f64) {
-        self.posterior().interval(mass)
     }
 }
 

@@ -5,7 +5,7 @@
 
 mod predicted;
 
-pub(crate) use predicted::{ByClock, HALF_HOURS};
+pub(crate) use predicted::HALF_HOURS;
 
 use crate::change::{CellMap, Slot};
 use crate::clock::Dates;

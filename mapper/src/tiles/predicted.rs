@@ -10,10 +10,10 @@ const PRIOR_LOOKS: f64 = 30.0;
 /// (seeds 5000 to 5005) are then predicted as well as by the chains alone, after 20 minutes and after 8 hours.
 pub(crate) const HALF_HOURS: f64 = 24.0;
 
-/// What the clock of a tile or of a door says of one of its cells.
+/// What the clock of a tile says of one of its cells.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ByClock {
-    /// The probability that the cell is blocked at a time, and at the last look at the thing, if nothing else is known of it.
+    /// The probability that the cell is blocked at a time, and at the last look at the tile, if nothing else is known of it.
     pub(crate) later: f64,
     pub(crate) then: f64,
     /// The weight of the clock against the cell's own statistics.
@@ -21,7 +21,7 @@ pub(crate) struct ByClock {
 }
 
 impl ByClock {
-    /// The probability that the cell is blocked. What its last state differed from that of the thing by fades with its own
+    /// The probability that the cell is blocked. What its last state differed from that of the tile by fades with its own
     /// memory; `alone` is the probability without the clock.
     pub(crate) fn blocked_probability(self, observed: f64, memory: f64, alone: f64) -> f64 {
         let predicted = (self.later + (observed - self.then) * memory).clamp(0.0, 1.0);

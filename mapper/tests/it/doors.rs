@@ -79,13 +79,12 @@ fn check_door(house: &House, door: &Door) {
         let off_m = door.closed.ends.map(|found| (found - end).norm());
         assert!(off_m[0].min(off_m[1]) < 0.1, "{end}: {:?}", door.closed);
     }
-    let counted = door.statistics;
-    let motions = (END_S / STAY_S) as u32;
-    assert!(counted.opened + counted.closed >= motions - 1, "{counted:?}, {motions} motions");
-    assert!(counted.opened <= motions / 2 && counted.closed <= motions / 2, "{counted:?}, {motions} motions");
-    assert!((0.8 * END_S..=END_S).contains(&counted.in_view_s), "{counted:?}");
-    assert_eq!(door.is_open, Some(motions % 2 == 1));
-    let per_hour = counted.openings_per_hour().unwrap().mean();
+    let (moves, motions) = (door.moves(), (END_S / STAY_S) as u32);
+    assert!(moves.iter().sum::<u32>() >= motions - 1, "{moves:?}, {motions} motions");
+    assert!(moves.iter().all(|moves| *moves <= motions / 2), "{moves:?}, {motions} motions");
+    assert!((0.8 * END_S..=END_S).contains(&door.in_view_s()), "{} s", door.in_view_s());
+    assert_eq!(door.is_open(), motions % 2 == 1);
+    let per_hour = door.openings_per_hour();
     let true_per_hour = 3600.0 / (2.0 * STAY_S);
     assert!((per_hour / true_per_hour).ln().abs() < 0.25, "{per_hour}, not {true_per_hour}");
 }
@@ -136,6 +135,35 @@ fn a_look_at_a_part_of_a_door_says_what_its_other_cells_are() {
     assert!(mapper.recency(open_leaf) > 4.0 && mapper.states().cells()[open_leaf] == CellState::Blocked);
     let predicted = mapper.blocked_probability(open_leaf);
     assert!(predicted < 0.5 * unseen, "{predicted}, and {unseen} without the look");
+}
+
+/// Seen for some moments in each of its states, 20 minutes apart: it may have moved once between two visits, or often.
+#[test]
+fn a_door_that_is_hardly_seen_has_a_rate_by_its_gaps() {
+    const VISIT_S: f64 = 8.0;
+    const BETWEEN_S: f64 = 1200.0;
+    let mut house = House::new(0.1, 0.0, 0.005, 360, 3);
+    for visit in 0..10 {
+        let from_s = f64::from(visit) * BETWEEN_S;
+        let [x0, y0, x1, y1] = if visit % 2 == 0 { CLOSED } else { OPEN };
+        house.add(Thing {
+            corners: rectangle(x0, y0, x1, y1),
+            from_s: from_s - 60.0,
+            until_s: from_s + 60.0,
+        });
+    }
+    let mut mapper = new_mapper(&house);
+    for visit in 0..10 {
+        let first = (f64::from(visit) * BETWEEN_S / PERIOD_S) as u32;
+        watch(&mut mapper, &mut house, first..first + (VISIT_S / PERIOD_S) as u32, false);
+    }
+    let door = only_door(&mapper);
+    assert!(door.moves().iter().sum::<u32>() == 0 && door.moves_after_gap() >= 8, "{door:?}");
+    assert!((40.0..=10.0 * VISIT_S).contains(&door.in_view_s()), "{} s", door.in_view_s());
+    let (low, high) = door.interval_of_openings_per_hour(0.9);
+    // One motion per gap is the least; nothing shows that it is not many times more.
+    assert!((0.5..1.5).contains(&low) && high > 10.0, "{low} to {high} per hour");
+    assert!((low..high).contains(&door.openings_per_hour()), "{}", door.openings_per_hour());
 }
 
 #[test]

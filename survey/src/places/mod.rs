@@ -154,7 +154,7 @@ pub(crate) fn places(mapper: &Mapper, log: &ChangeLog, book: &PlaceBook) -> Vec<
 /// seen for seconds do not come first. What is smaller than a body can be noise, and counts for less.
 fn liveliness(mapper: &Mapper, place: &Place) -> f64 {
     let door = doors(mapper).find(|(id, _)| place.kind.thing() == Some(*id));
-    let openings = door.and_then(|(_, door)| door.statistics.interval_of_openings_per_hour(MASS));
+    let openings = door.map(|(_, door)| door.interval_of_openings_per_hour(MASS));
     let passages = || place.rates.as_ref()?.passages_per_hour_90;
     let least_per_hour = openings.map(|(low, _)| low).or_else(|| passages().map(|[low, _]| low));
     (place.area_m2 / BODY_M2).min(1.0) * least_per_hour.unwrap_or_default()

@@ -33,15 +33,24 @@ impl Evidence {
         self.gaps.put(&Gap { start: 0, end: 0, length, before, after });
     }
 
-    /// The number of changes in view.
-    pub fn changes_in_view(&self) -> u32 {
-        self.events.iter().sum()
+    /// The changes in view, by the state that the thing left.
+    pub fn events(&self) -> [u32; 2] {
+        self.events
+    }
+
+    /// The number of changes over gaps.
+    pub fn changes_after_gap(&self) -> u32 {
+        self.gaps.iter().filter(|bin| bin.before() != bin.after()).map(|bin| bin.count).sum()
     }
 
     /// The number of changes, in view and over gaps.
     pub fn changes(&self) -> u32 {
-        let over_gaps = self.gaps.iter().filter(|bin| bin.before() != bin.after()).map(|bin| bin.count);
-        self.changes_in_view() + over_gaps.sum::<u32>()
+        self.events.iter().sum::<u32>() + self.changes_after_gap()
+    }
+
+    /// The time in view, s.
+    pub fn in_view_s(&self) -> f64 {
+        self.watched_s.iter().sum()
     }
 
     /// The time that the thing was there as far as it was seen, s, and how often it went.
@@ -55,7 +64,7 @@ impl Evidence {
     /// How much of the time is known, s: the time in view, and a minute at most of each gap.
     pub fn known_s(&self) -> f64 {
         let gaps_s: f64 = self.gaps.iter().map(|bin| bin.length().min(60.0) * f64::from(bin.count)).sum();
-        self.watched_s.iter().sum::<f64>() + gaps_s
+        self.in_view_s() + gaps_s
     }
 
     /// The logarithm of the likelihood of each chain: αⁿ¹ βⁿ² e^(−α t₀ − β t₁), and for each gap the transition kernel.

@@ -32,6 +32,12 @@ impl Default for Population {
 }
 
 impl Population {
+    /// The shipped population.
+    pub(crate) fn shipped() -> &'static Self {
+        static SHIPPED: std::sync::LazyLock<Population> = std::sync::LazyLock::new(Population::default);
+        &SHIPPED
+    }
+
     /// The population to which these things belong.
     pub fn of<'a>(things: impl Iterator<Item = &'a super::Posterior>) -> Self {
         let Self { mut chains } = Self::default();

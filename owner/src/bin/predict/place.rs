@@ -49,8 +49,8 @@ pub(crate) struct DoorRecord {
     pub(crate) id: u32,
     pub(crate) width_m: f64,
     /// Openings per hour in view, and their 90 % interval; `None` if it was never in view.
-    pub(crate) openings_per_hour: Option<f64>,
-    pub(crate) openings_per_hour_90: Option<(f64, f64)>,
+    pub(crate) openings_per_hour: f64,
+    pub(crate) openings_per_hour_90: (f64, f64),
 }
 
 /// The probability of a state at a time.
@@ -102,28 +102,25 @@ impl Place {
     /// A door, at times in seconds.
     pub(crate) fn of_door(forecast: &Forecast, id: u32, door: &Door, times_s: &[f64]) -> Self {
         let at = nalgebra::center(&door.closed.ends[0], &door.closed.ends[1]);
-        let (width_m, seen) = (door.closed.length_m(), &door.statistics);
-        let last = match door.is_open {
-            Some(is_open) => format!(
-                "{} when it was last seen, {}",
-                if is_open { "open" } else { "closed" },
-                moment::text(forecast.mapper().epoch_s() + door.last_seen_s, forecast)
-            ),
-            None => "not seen yet".to_owned(),
-        };
+        let width_m = door.closed.length_m();
+        let state = if door.is_open() { "open" } else { "closed" };
+        let seen = moment::text(forecast.mapper().epoch_s() + door.last_seen_s(), forecast);
         let record = DoorRecord {
             id,
             width_m,
-            openings_per_hour: seen.openings_per_hour().map(|rate| rate.mean()),
-            openings_per_hour_90: seen.interval_of_openings_per_hour(0.9),
+            openings_per_hour: door.openings_per_hour(),
+            openings_per_hour_90: door.interval_of_openings_per_hour(0.9),
         };
         let reported = forecast.places().iter().find(|place| place.kind.thing() == Some(id));
         let called = reported.map(|place| format!(", {},", called(place))).unwrap_or_default();
-        let title = format!("door {id}{called} at ({:.2}, {:.2}) m, {width_m:.2} m wide, {last}", at.x, at.y);
+        let title = format!(
+            "door {id}{called} at ({:.2}, {:.2}) m, {width_m:.2} m wide, {state} when it was last seen, {seen}",
+            at.x, at.y
+        );
         let place =
             Self { x_m: at.x, y_m: at.y, state: "open", title, door: Some(record), ..Self::default() };
         let mut place = place.reported(reported).of_clock(forecast, &door.clock, times_s);
-        place.text.insert(times_s.len() + 1, openings(&Seen::of_door(&door.statistics)));
+        place.text.insert(times_s.len() + 1, openings(&Seen::of_door(door)));
         place
     }
 

@@ -68,7 +68,7 @@ impl Page<'_> {
     /// What was seen of the passages or the openings.
     pub(super) fn seen(&self, place: &Place) -> Option<Seen> {
         match self.door(place) {
-            Some(door) => Some(Seen::of_door(&door.statistics)),
+            Some(door) => Some(Seen::of_door(door)),
             None => place.rates.as_ref().map(Seen::of_place),
         }
     }
@@ -120,17 +120,12 @@ impl Page<'_> {
     fn looks(&self, place: &Place) -> String {
         if let Some(door) = self.door(place) {
             let length = short(door.closed.length_m());
-            let state = match door.is_open {
-                Some(true) => " It was open when it was last seen.",
-                Some(false) => " It was closed when it was last seen.",
-                None => "",
+            let state = if door.is_open() { "open" } else { "closed" };
+            let motion = match door.leaf {
+                Leaf::Hinged { .. } => "sweeps about one end",
+                Leaf::Sliding => "comes and goes. It slides, or opens out of sight",
             };
-            return match door.leaf {
-                Leaf::Hinged { .. } => format!("A door: a line of {length} m sweeps about one end.{state}"),
-                Leaf::Sliding => format!(
-                    "A door: a line of {length} m comes and goes. It slides, or opens out of sight.{state}"
-                ),
-            };
+            return format!("A door: a line of {length} m {motion}. It was {state} when it was last seen.");
         }
         match self.furniture(place) {
             Some(furniture) => self.moved(furniture),

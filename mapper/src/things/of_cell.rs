@@ -1,0 +1,107 @@
+//! What a thing says of one of its cells.
+
+use super::presence::Presence;
+use crate::change::{Population, Posterior, RateDistribution};
+use crate::clock::{Clock, Dates};
+use crate::tiles::HALF_HOURS;
+
+/// The passages of a leaf count as much as this number of cycles of the cell in view.
+const CYCLES: f64 = 3.0;
+
+/// What a thing says of one of its cells. The states of an object are away and there, those of a door open and closed.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct OfCell<'a> {
+    pub(super) presence: &'a Presence,
+    pub(super) population: &'a Population,
+    /// The clock of a door; `None` of an object.
+    pub(super) clock: Option<&'a Clock>,
+    /// The probability that the cell is blocked in both states.
+    pub(super) shares: [f64; 2],
+}
+
+impl OfCell<'_> {
+    fn posterior(&self) -> &Posterior {
+        self.presence.posterior(self.population)
+    }
+
+    /// Whether the changes of the thing are those of a cell that changed this often: traffic changes a cell much more often than the
+    /// object that stands there, and what stood in another part much less.
+    pub(crate) fn explains(&self, events: u32) -> bool {
+        let changes = f64::from(self.presence.evidence().changes());
+        self.is_door() || (0.5 * changes..=1.5 * changes + 1.0).contains(&f64::from(events))
+    }
+
+    pub(crate) fn is_door(&self) -> bool {
+        self.clock.is_some()
+    }
+
+    /// The probability of the second state, at a time, s.
+    pub(crate) fn presence(&self, time_s: f64) -> f64 {
+        let (was_there, last_s) = self.presence.last_look();
+        self.posterior().probability(was_there, (time_s - last_s).max(0.0))
+    }
+
+    /// The probability that the cell is blocked at a time, s.
+    pub(crate) fn blocked_probability(&self, time_s: f64) -> f64 {
+        self.mix(self.presence(time_s))
+    }
+
+    /// What the clock of a door makes of this probability at a time, s.
+    pub(crate) fn with_clock(&self, alone: f64, time_s: f64, dates: Dates) -> f64 {
+        let Some(clock) = self.clock else { return alone };
+        let half_hours = clock.half_hours();
+        let later = self.mix(1.0 - clock.probability(dates.epoch_s + time_s, dates.calendar));
+        alone + half_hours / (half_hours + HALF_HOURS) * (later - alone)
+    }
+
+    fn mix(&self, is_there: f64) -> f64 {
+        let [away, there] = self.shares;
+        away + (there - away) * is_there
+    }
+
+    /// The cycle rate of the thing, 1/s.
+    pub(crate) fn cycle_rate(&self) -> f64 {
+        self.posterior().cycle_rate()
+    }
+
+    /// The interval that contains this rate with the probability `mass`, 1/s.
+    pub(crate) fn interval(&self, mass: f64) -> (f64, f64) {
+        self.posterior().interval(mass)
+    }
+
+    /// The prior of the cycle rate of a cell, 1/s, by the motions of its door: where the leaf rests, it passes once per opening, and
+    /// twice elsewhere.
+    pub(crate) fn rate_prior(&self) -> Option<RateDistribution> {
+        let passages = 2.0 - self.shares.iter().sum::<f64>();
+        let rate = || passages * self.cycle_rate();
+        self.clock.map(|_| RateDistribution { events: CYCLES, time: CYCLES / rate() })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::change::Evidence;
+
+    #[test]
+    fn a_leaf_passes_twice_per_opening_but_where_it_rests() {
+        let mut evidence = Evidence::default();
+        for cycle in 0..200 {
+            evidence.watch(cycle % 2 == 0, 180.0);
+            evidence.change(cycle % 2 == 0);
+        }
+        let presence = Presence::new(false, 0.0, evidence);
+        let clock = Clock::default();
+        for (shares, per_opening) in [([0.0, 1.0], 1.0), ([1.0, 0.0], 1.0), ([0.0, 0.0], 2.0)] {
+            let of_cell = OfCell {
+                presence: &presence,
+                population: Population::shipped(),
+                clock: Some(&clock),
+                shares,
+            };
+            let per_hour = 3600.0 * of_cell.rate_prior().unwrap().mean();
+            assert!((per_hour / per_opening - 10.0).abs() < 0.3, "{shares:?}: {per_hour} per hour");
+            assert_eq!(OfCell { clock: None, ..of_cell }.rate_prior(), None);
+        }
+    }
+}
