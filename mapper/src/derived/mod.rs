@@ -156,6 +156,7 @@ impl Mapper {
         let seen = self.statistics(index);
         let rates = self.estimator().transition_rates(&seen)?;
         let (thing, time_s) = (self.thing(index), self.time() + time);
+        let thing = thing.filter(|thing| thing.agrees(observed, seen.last_seen));
         let chain = Chain::new(rates, &seen, self.cells.variation(), time_s - seen.last_seen);
         let alone = match &thing {
             Some(thing) => thing.blocked_probability(time_s),

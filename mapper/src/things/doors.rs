@@ -82,7 +82,7 @@ impl Things {
             if let ThingKind::Door(door) = &mut thing.kind {
                 thing.cells = door.place(closed, open, cells.frame());
                 of_door.clone_from(&thing.cells);
-                door.parts.add(of_door.iter().map(|cell| (*cell, Default::default())));
+                door.parts.set(&of_door);
             }
         }
         // Its leaf can have passed for furniture before.

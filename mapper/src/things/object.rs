@@ -61,9 +61,10 @@ impl Object {
         self.parts.iter().map(|(cell, _)| *cell)
     }
 
-    /// The probability that one of its cells is blocked, while the object is away, and while it is there.
+    /// The probability that one of its cells is blocked, while the object is away, and while it is there; `None` of a cell that was
+    /// never seen while it is there: it may be behind the object.
     pub(super) fn shares(&self, cell: u32) -> Option<[f64; 2]> {
-        self.parts.counts(cell).map(shares)
+        self.parts.counts(cell).filter(|[_, there]| !there.is_empty()).map(shares)
     }
 
     /// Learns from the open reading. `is_doubted`: whether it speaks against the state of a cell in the map.

@@ -31,6 +31,13 @@ impl OfCell<'_> {
         self.is_door() || (0.5 * changes..=1.5 * changes + 1.0).contains(&f64::from(events))
     }
 
+    /// Whether a look at the cell that found it blocked (1) or free (0), at a time, s, is older than the last look at the thing, or says
+    /// the same. Otherwise the cell is no longer a part of the thing, or something else has come to it.
+    pub(crate) fn agrees(&self, observed: f64, time_s: f64) -> bool {
+        let (is_there, last_s) = self.presence.last_look();
+        last_s > time_s || (self.shares[usize::from(is_there)] - observed).abs() < 0.5
+    }
+
     pub(crate) fn is_door(&self) -> bool {
         self.clock.is_some()
     }

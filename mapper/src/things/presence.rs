@@ -123,6 +123,12 @@ impl Parts {
         }
     }
 
+    /// Replaces the cells by these, and keeps the looks at those that are still among them.
+    pub(super) fn set(&mut self, cells: &[u32]) {
+        let counts = |cell: &u32| (*cell, self.counts(*cell).unwrap_or_default());
+        self.0 = cells.iter().map(counts).collect();
+    }
+
     pub(super) fn iter(&self) -> std::slice::Iter<'_, (u32, [LookCounts; 2])> {
         self.0.iter()
     }
