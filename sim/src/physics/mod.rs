@@ -47,8 +47,8 @@ pub use snapshot::SnapshotError;
 pub use spec::{
     BehaviorSpec, BumperSpec, CircleSpec, ContactModel, DisplacementSpec, DoorSpec, DriveKind, DriveLimits,
     DrivenError, FiducialSpec, FleetSpec, Glass, LaserSpec, Leaf, Motion, ObstacleSpec, OdometryError,
-    Opening, PathSpec, PatrolDaySpec, PatrolSpec, PushedSpec, Repeat, RobotSpec, SonarSpec, WanderSpec,
-    WaypointsSpec, WorldSpec,
+    Opening, PathSpec, PatrolDaySpec, PatrolSpec, PushedSpec, Repeat, RobotSpec, SonarSpec, ThingPart,
+    WanderSpec, WaypointsSpec, WorldSpec,
 };
 pub use velocity::Velocity;
 pub use world::{PhysicsWorld, WorldSnapshot};

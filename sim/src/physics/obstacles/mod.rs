@@ -156,7 +156,9 @@ impl Obstacle {
         let ObstacleSpec { motion, appears_s, disappears_s, .. } = &self.spec;
         let is_standing = self.is_standing();
         let is_wanted = match (&mut self.routine, motion) {
-            (Some(routine), Motion::Scheduled(_)) => routine.is_blocked(time_s + SLACK_S),
+            (Some(routine), Motion::Scheduled(_)) => {
+                routine.place(time_s + SLACK_S) == Some(self.spec.place())
+            }
             _ => !is_past(*disappears_s) && (is_standing || is_past(*appears_s)),
         };
         (is_wanted != is_standing).then_some(is_wanted)
@@ -180,8 +182,9 @@ const SLACK_S: f64 = 5e-7;
 
 /// What an obstacle does by its schedule, if it has one.
 fn routine(spec: &ObstacleSpec, index: usize, starts_s: Option<f64>, seed: u64) -> Option<Box<Routine>> {
-    let schedule = spec.schedule()?;
-    Some(Box::new(Routine::new(schedule, starts_s.unwrap_or_default(), index, seed)))
+    let (schedule, part) = (spec.schedule()?, spec.part);
+    let (thing, places) = part.map_or((index, 1), |part| (part.thing, part.places));
+    Some(Box::new(Routine::new(schedule, starts_s.unwrap_or_default(), places, thing, seed)))
 }
 
 /// An obstacle may move to a pose if every other moving body is at least this far away, m: far enough that the
@@ -231,9 +234,8 @@ impl Blockers {
         })
     }
 
-    /// Whether a rectangle can appear.
-    pub(super) fn has_room(&self, shape: &Rectangle) -> bool {
-        let corners = shape.corners();
-        self.things.iter().all(|thing| thing.form.gap_m(&corners) >= ROOM_M)
+    /// Whether a convex body can appear.
+    pub(super) fn has_room(&self, corners: &[Point2<f64>]) -> bool {
+        self.things.iter().all(|thing| thing.form.gap_m(corners) >= ROOM_M)
     }
 }
