@@ -88,7 +88,7 @@ pub enum LoadError {
 }
 
 /// The physics world with the name `name`: a shipped world, or the file with this path, or a generated building
-/// (`house-7`, `office-7`, `calendar-office-7`).
+/// (`house-7`, `office-7`, `rooms-7`, `rooms-day-7`, `calendar-office-7`).
 ///
 /// # Errors
 ///
@@ -103,8 +103,8 @@ pub fn load(name: &str) -> Result<WorldSpec, LoadError> {
     let parse = |name: &str, text: &str| physics::parse_world_with(name, text, &pictures());
     match find(name, &PHYSICS, parse, |path| physics::load_world(path)) {
         Err(LoadError::Unknown { name: printed, shipped }) => {
-            let shipped =
-                shipped + "; or a generated building: house-7, office-7, calendar-office-7 and so on";
+            let shipped = shipped
+                + "; or a generated building: house-7, office-7, rooms-7, rooms-day-7, calendar-office-7 and so on";
             WorldSpec::generated(name).ok_or(LoadError::Unknown { name: printed, shipped })
         }
         found => found,

@@ -28,6 +28,7 @@ mod snapshot;
 mod spec;
 #[cfg(test)]
 mod tests;
+mod things;
 mod velocity;
 mod visible_cells;
 mod world;
@@ -50,5 +51,6 @@ pub use spec::{
     Opening, PathSpec, PatrolDaySpec, PatrolSpec, PushedSpec, Repeat, RobotSpec, SonarSpec, ThingPart,
     WanderSpec, WaypointsSpec, WorldSpec,
 };
+pub use things::Thing;
 pub use velocity::Velocity;
 pub use world::{PhysicsWorld, WorldSnapshot};

@@ -86,7 +86,8 @@ pub(super) fn rooms(ranges: &'static BuildingRanges, seed: u64) -> Option<WorldS
     let mut obstacles = doors::doors(&layout, &plan, &mut rng);
     let doors = obstacles.len();
     // Half hours, as a calendar has them.
-    let change_h = (ranges.closed_s[1] * rng.uniform(CHANGE_STAYS[0]..CHANGE_STAYS[1]) / 1800.0).round() / 2.0;
+    let change_h =
+        (ranges.closed_s[1] * rng.uniform(CHANGE_STAYS[0]..CHANGE_STAYS[1]) / 1800.0).round() / 2.0;
     let change_h = rng.bernoulli(CHANGE_PROBABILITY).then_some(change_h);
     let start = rng.random_range(0..layout.spaces.len());
     let mut things = Things { layout: &layout, change_h, taken: Vec::new(), obstacles: Vec::new(), count: 0 };
@@ -275,8 +276,7 @@ impl Things<'_> {
         rng: &mut RandomStream,
     ) -> Option<([i32; 2], u32)> {
         let (area, clearance) = (&self.layout.spaces[room], cells(self.layout.ranges.clearance_m));
-        let zones: Vec<Area> =
-            self.layout.doorways.iter().flat_map(|doorway| zones(doorway, room)).collect();
+        let zones: Vec<Area> = self.layout.doorways.iter().flat_map(|doorway| zones(doorway, room)).collect();
         let place = if is_at_wall { Placement::Wall } else { Placement::Free };
         for _ in 0..MAX_TRIES {
             let quarters = rng.random_range(0..4);
@@ -313,8 +313,7 @@ impl Things<'_> {
             habit.hours = Hours::daily(&[0], 0.0, change_h);
             habit.quiet = later_s.map(Stays::of_mean);
         }
-        let starts_blocked =
-            habits == Habits::Leaves || rng.bernoulli(blocked_s / (free_s + blocked_s));
+        let starts_blocked = habits == Habits::Leaves || rng.bernoulli(blocked_s / (free_s + blocked_s));
         Schedule { changes: Changes::Habit(habit), starts_blocked }
     }
 }
@@ -384,7 +383,8 @@ impl Part {
     /// The part of a shape with its lower left corner in a cell, after quarter turns of the shape. With short numbers.
     fn placed(&self, corner: &[i32; 2], size: [i32; 2], quarters: u32) -> Rectangle {
         let [x, y] = if quarters.is_multiple_of(2) { size } else { [size[1], size[0]] };
-        let middle = Vector2::new(corner[0] * 2 + x, corner[1] * 2 + y).map(|at| f64::from(at) / 2.0 / CELLS_PER_M);
+        let middle =
+            Vector2::new(corner[0] * 2 + x, corner[1] * 2 + y).map(|at| f64::from(at) / 2.0 / CELLS_PER_M);
         let turned = (0..quarters).fold(self.center, |at, _| Vector2::new(-at.y, at.x));
         let short = |at: Vector2<f64>| Point2::from(at.map(|at_m| (at_m * 1000.0).round() / 1000.0));
         let (at, half_m) = (middle + turned, self.sides / 2.0);

@@ -74,6 +74,14 @@ impl Obstacle {
         !matches!(self.state, State::Due | State::Gone)
     }
 
+    /// For a door, its openness: 0 closed, 1 open.
+    pub(super) fn openness(&self) -> Option<f64> {
+        match &self.state {
+            State::Door(_, door) => Some(door.openness),
+            _ => None,
+        }
+    }
+
     /// Whether robots can push the obstacle.
     pub(super) fn is_pushed(&self) -> bool {
         matches!(self.state, State::Pushed(_))
@@ -182,9 +190,8 @@ const SLACK_S: f64 = 5e-7;
 
 /// What an obstacle does by its schedule, if it has one.
 fn routine(spec: &ObstacleSpec, index: usize, starts_s: Option<f64>, seed: u64) -> Option<Box<Routine>> {
-    let (schedule, part) = (spec.schedule()?, spec.part);
-    let (thing, places) = part.map_or((index, 1), |part| (part.thing, part.places));
-    Some(Box::new(Routine::new(schedule, starts_s.unwrap_or_default(), places, thing, seed)))
+    let (starts_s, places) = (starts_s.unwrap_or_default(), spec.part.map_or(1, |part| part.places));
+    Some(Box::new(Routine::new(spec.schedule()?, starts_s, places, spec.thing(index), seed)))
 }
 
 /// An obstacle may move to a pose if every other moving body is at least this far away, m: far enough that the

@@ -63,6 +63,11 @@ impl ObstacleSpec {
         )
     }
 
+    /// The index of the first obstacle of the thing that it is a part of: its own `index` unless it is one.
+    pub fn thing(&self, index: usize) -> usize {
+        self.part.map_or(index, |part| part.thing)
+    }
+
     /// The place of its thing at which the obstacle is there, from 0 on.
     pub fn place(&self) -> usize {
         self.part.map_or(0, |part| part.place)

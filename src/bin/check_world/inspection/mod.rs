@@ -52,8 +52,7 @@ pub(crate) struct Content {
 /// Reads a shipped world or a generated building by its name, or a file by its format: a world file (physics or grid), a Stage file, or
 /// a ROS map.
 pub(crate) fn inspect(name: &str) -> Inspection {
-    let generated = || WorldSpec::generated(name).and_then(|world| to_toml(world.fleet()));
-    let text = shipped::text(name).map(str::to_owned).or_else(generated);
+    let text = shipped::text(name).map(str::to_owned).or_else(|| generated(name));
     let path = Path::new(name);
     let mut inspection = match (text, path.extension().and_then(|ending| ending.to_str())) {
         (Some(text), _) => world_file(&format!("{name}.toml"), &text, &shipped::pictures()),
@@ -82,11 +81,17 @@ pub(crate) fn inspect(name: &str) -> Inspection {
     inspection
 }
 
-/// A valid Stage world as a world file; `None` for other files.
+/// A valid Stage world or a generated building as a world file; `None` for others.
 pub(crate) fn as_world_file(name: &str) -> Option<String> {
     let path = Path::new(name);
-    let (world, _) = is_of_stage(path).then(|| stage::read(path, &Disk))?;
-    world.map(|world| world.to_toml())
+    if !is_of_stage(path) {
+        return generated(name);
+    }
+    stage::read(path, &Disk).0.map(|world| world.to_toml())
+}
+
+fn generated(name: &str) -> Option<String> {
+    WorldSpec::generated(name).and_then(|world| to_toml(world.fleet()))
 }
 
 fn invalid(error: String) -> Inspection {

@@ -133,6 +133,7 @@ fn houses_are_what_they_always_were() {
     };
     let names = (0..4).chain([u64::MAX]).map(|seed| format!("house-{seed}"));
     let names = names.chain((0..2).map(|seed| format!("office-{seed}")));
+    let names = names.chain(["rooms-0", "rooms-1", "rooms-5", "rooms-day-2"].map(str::to_owned));
     let lines: Vec<String> = names.map(line).collect();
     insta::assert_snapshot!(lines.join("\n"), @"
     4a6acc224a820235 5 rooms at a corridor, doors: 3, people: 1; made at random from the seed 0.
