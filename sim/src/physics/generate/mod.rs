@@ -16,7 +16,7 @@ use super::spec::{
     BehaviorSpec, ContactModel, DriveKind, DriveLimits, FleetSpec, Motion, ObstacleSpec, Repeat, RobotSpec,
     WanderSpec, WaypointsSpec, WorldSpec,
 };
-use crate::building_calendar::BuildingCalendar;
+use crate::building_calendar::{self, BuildingCalendar};
 use ::calendar::Kind;
 use building_ranges::BuildingRanges;
 use draw::{CELLS_PER_M, integer, value};
@@ -78,8 +78,8 @@ impl WorldSpec {
         match kind {
             "house" => Some(Self::generate_house(seed)),
             "office" => Some(Self::generate_office(seed)),
-            "rooms" => rooms::rooms(&rooms::ROOMS, seed),
-            "rooms-day" => rooms::rooms(&rooms::ROOMS_DAY, seed),
+            "rooms" => rooms::rooms(&rooms::ROOMS, &building_calendar::ROOMS, seed),
+            "rooms-day" => rooms::rooms(&rooms::ROOMS_DAY, &building_calendar::ROOMS_DAY, seed),
             _ => Some(Self::generate_calendar(kind.strip_prefix("calendar-")?.parse().ok()?, seed)),
         }
     }

@@ -1,15 +1,16 @@
 //! Random rooms in a grid. In some of them things of several shapes come and go, move between places, or leave for good.
 
 use super::building_ranges::{BuildingRanges, HOUSE, Placement};
-use super::draw::{CELLS_PER_M, between, cells, integer, time_s, value};
+use super::draw::{CELLS_PER_M, between, cells, integer, value};
 use super::layout::{Area, BESIDE_DOORWAY, CORNER, Doorway, Layout, WALL, Wall};
 use super::plan::Plan;
 use super::{STEP_S, doors, furniture, robot};
+use crate::building_calendar::{self, BuildingCalendar, Chains};
 use crate::physics::shape::Rectangle;
 use crate::physics::spec::{
     BehaviorSpec, ContactModel, FleetSpec, Motion, ObstacleSpec, ThingPart, WorldSpec,
 };
-use calendar::{Changes, Habit, Hours, Schedule, Stays};
+use calendar::HOUR_S;
 use interfaces::{GridFrame, Purpose, RandomStream};
 use nalgebra::{Point2, Vector2};
 use rand::RngExt;
@@ -25,14 +26,18 @@ pub(super) const ROOMS: BuildingRanges = BuildingRanges {
     doorway_m: [0.8, 1.2],
     door_probability: 0.5,
     periodic_probability: 0.0,
-    closed_s: [10.0, 1800.0],
-    open_s: [10.0, 1800.0],
+    closed_s: building_calendar::ROOMS.stays_s,
+    open_s: building_calendar::ROOMS.stays_s,
     clearance_m: 0.6,
     ..HOUSE
 };
 /// Rooms for runs of a day.
-pub(super) const ROOMS_DAY: BuildingRanges =
-    BuildingRanges { kind: "rooms-day", closed_s: [10.0, 43_200.0], open_s: [10.0, 43_200.0], ..ROOMS };
+pub(super) const ROOMS_DAY: BuildingRanges = BuildingRanges {
+    kind: "rooms-day",
+    closed_s: building_calendar::ROOMS_DAY.stays_s,
+    open_s: building_calendar::ROOMS_DAY.stays_s,
+    ..ROOMS
+};
 /// The free length and width of a room, m.
 const ROOM_M: [f64; 2] = [3.0, 5.0];
 /// The probability of a doorway between two rooms that are connected anyway. Only such a doorway can have a door.
@@ -68,9 +73,6 @@ const LEAVE_PROBABILITY: f64 = 0.15;
 const MOVE_S: f64 = 10.0;
 /// The stay away of a thing that leaves for good, s.
 const FOR_GOOD_S: f64 = 1e9;
-/// The probability that the rates of all things change once, and when, as shares of the longest mean stay.
-const CHANGE_PROBABILITY: f64 = 0.25;
-const CHANGE_STAYS: [f64; 2] = [1.0, 3.0];
 /// The range of the laser of the robot, m, and its number of beams in multiples of 90.
 const RANGE_M: [f64; 2] = [2.5, 12.0];
 const BEAMS: [i32; 2] = [1, 8];
@@ -80,17 +82,19 @@ const IN_FRONT_M: f64 = 0.7;
 const MAX_TRIES: usize = 60;
 
 /// The world of a seed.
-pub(super) fn rooms(ranges: &'static BuildingRanges, seed: u64) -> Option<WorldSpec> {
+pub(super) fn rooms(
+    ranges: &'static BuildingRanges,
+    chains: &'static Chains,
+    seed: u64,
+) -> Option<WorldSpec> {
     let mut rng = RandomStream::new(seed, Purpose::HouseGenerator);
     let (layout, plan) = (grid(ranges, &mut rng), Plan { is_upright: false });
     let mut obstacles = doors::doors(&layout, &plan, &mut rng);
     let doors = obstacles.len();
-    // Half hours, as a calendar has them.
-    let change_h =
-        (ranges.closed_s[1] * rng.uniform(CHANGE_STAYS[0]..CHANGE_STAYS[1]) / 1800.0).round() / 2.0;
-    let change_h = rng.bernoulli(CHANGE_PROBABILITY).then_some(change_h);
+    let calendar = BuildingCalendar::of_chains(chains, seed);
     let start = rng.random_range(0..layout.spaces.len());
-    let mut things = Things { layout: &layout, change_h, taken: Vec::new(), obstacles: Vec::new(), count: 0 };
+    let mut things =
+        Things { layout: &layout, chains, calendar, taken: Vec::new(), obstacles: Vec::new(), count: 0 };
     things.fill(start, doors, &mut rng);
     let count = things.count;
     obstacles.append(&mut things.obstacles);
@@ -100,7 +104,10 @@ pub(super) fn rooms(ranges: &'static BuildingRanges, seed: u64) -> Option<WorldS
     explorer.laser.beams = 90 * integer(BEAMS, &mut rng) as usize;
     explorer.laser.range_max_m = value(RANGE_M, &mut rng);
     let size = plan.point(layout.size.map(f64::from));
-    let change = change_h.map_or(String::new(), |hours| format!(", rates change after {hours} h"));
+    let change = match things.calendar.change_s() {
+        change_s if change_s.is_finite() => format!(", rates change after {} h", change_s / HOUR_S),
+        _ => String::new(),
+    };
     let fleet = FleetSpec {
         name: format!("{}-{seed}", ranges.kind),
         description: format!(
@@ -196,8 +203,8 @@ fn zones(doorway: &Doorway, room: usize) -> impl Iterator<Item = Area> + use<> {
 /// The things of a world while they are drawn.
 struct Things<'a> {
     layout: &'a Layout<'a>,
-    /// When the rates change, hours after the start.
-    change_h: Option<f64>,
+    chains: &'static Chains,
+    calendar: BuildingCalendar,
     /// The boxes around all places of all things, which never overlap.
     taken: Vec<Area>,
     obstacles: Vec<ObstacleSpec>,
@@ -246,7 +253,13 @@ impl Things<'_> {
         if places.len() < 2 && habits == Habits::Moves {
             habits = Habits::ComesAndGoes;
         }
-        let schedule = self.schedule(habits, rng);
+        let away_s = match habits {
+            Habits::ComesAndGoes => None,
+            Habits::Moves => Some(MOVE_S),
+            Habits::Leaves => Some(FOR_GOOD_S),
+        };
+        let mut schedule = self.calendar.draw_chain(self.chains, away_s);
+        schedule.starts_blocked |= habits == Habits::Leaves;
         self.count += usize::from(!places.is_empty());
         let (name, thing) = (format!("{} {}", shape.name, self.count), first + self.obstacles.len());
         for (place, (corner, quarters)) in places.iter().enumerate() {
@@ -295,26 +308,6 @@ impl Things<'_> {
             }
         }
         None
-    }
-
-    fn schedule(&self, habits: Habits, rng: &mut RandomStream) -> Schedule {
-        let ranges = self.layout.ranges;
-        let mut stays_s = || {
-            let [free_s, blocked_s] = [ranges.open_s, ranges.closed_s].map(|range_s| time_s(range_s, rng));
-            match habits {
-                Habits::ComesAndGoes => [free_s, blocked_s],
-                Habits::Moves => [MOVE_S, blocked_s],
-                Habits::Leaves => [FOR_GOOD_S, blocked_s],
-            }
-        };
-        let ([free_s, blocked_s], later_s) = (stays_s(), stays_s());
-        let mut habit = Habit::chain(free_s, blocked_s);
-        if let Some(change_h) = self.change_h {
-            habit.hours = Hours::daily(&[0], 0.0, change_h);
-            habit.quiet = later_s.map(Stays::of_mean);
-        }
-        let starts_blocked = habits == Habits::Leaves || rng.bernoulli(blocked_s / (free_s + blocked_s));
-        Schedule { changes: Changes::Habit(habit), starts_blocked }
     }
 }
 

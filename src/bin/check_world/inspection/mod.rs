@@ -11,6 +11,7 @@ use curious::reachability;
 use curious::worlds::is_of_stage;
 use draw::scene::Scene;
 use interfaces::printable;
+use sim::grid::GridSpec;
 use sim::physics::WorldSpec;
 use std::path::Path;
 use worldfile::floor_plan::FloorPlan;
@@ -90,8 +91,10 @@ pub(crate) fn as_world_file(name: &str) -> Option<String> {
     stage::read(path, &Disk).0.map(|world| world.to_toml())
 }
 
+/// The file of a generated building.
 fn generated(name: &str) -> Option<String> {
-    WorldSpec::generated(name).and_then(|world| to_toml(world.fleet()))
+    let grid = || GridSpec::generated(name).map(|world| worldfile::grid::to_toml(&world));
+    WorldSpec::generated(name).and_then(|world| to_toml(world.fleet())).or_else(grid)
 }
 
 fn invalid(error: String) -> Inspection {
