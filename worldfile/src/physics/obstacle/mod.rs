@@ -118,7 +118,7 @@ impl Obstacle<'_> {
         let name = table.get("part_of").map_or(Some(""), |name| name.text())?;
         let is_thing = |other: &ObstacleSpec| other.name == name && other.part.is_none();
         let thing = self.before.iter().position(|(_, other)| is_thing(other));
-        match thing.and_then(|thing| Some((thing, &self.before[thing].1.motion))) {
+        match thing.map(|thing| (thing, &self.before[thing].1.motion)) {
             Some((thing, Motion::Scheduled(schedule))) => {
                 let place = place as usize - 1;
                 Some((ThingPart { thing, place, places: 1 }, (**schedule).clone()))
