@@ -3,6 +3,7 @@
 use super::fleet::Fleet;
 use super::ground_truth::cover::box_cells;
 use super::ground_truth::start::walls_cover;
+use super::shape::Rectangle;
 use super::spec::{DoorSpec, FleetSpec, Motion, ObstacleSpec, Opening};
 use calendar::Changes;
 use interfaces::TrueState;
@@ -26,32 +27,37 @@ impl FleetSpec {
         let stands = |obstacle: &&ObstacleSpec| !obstacle.is_mover();
         let fixed = self.obstacles.iter().filter(stands).map(|obstacle| obstacle.shape);
         let solids = walls_cover(&self.frame, &self.walls.iter().copied().chain(fixed).collect::<Vec<_>>());
-        let mut things: Vec<Thing> = Vec::new();
-        for (index, obstacle) in self.obstacles.iter().enumerate() {
-            let (shapes, place) = match &obstacle.motion {
-                Motion::Scheduled(_) => (vec![obstacle.shape], obstacle.place()),
-                Motion::Door(_) => (vec![obstacle.shape, obstacle.opened()], 0),
-                Motion::Fixed | Motion::Pushed(_) | Motion::Path(_) => continue,
-            };
-            let first = obstacle.thing(index);
-            let known = things.iter().position(|thing| thing.obstacle == first);
-            let thing = known.unwrap_or(things.len());
-            if known.is_none() {
-                things.push(Thing { name: obstacle.name.clone(), obstacle: first, places: Vec::new() });
-            }
-            let places = &mut things[thing].places;
-            places.resize(places.len().max(place + shapes.len()), Vec::new());
-            for (cells, shape) in places[place..].iter_mut().zip(&shapes) {
-                let mut all: BTreeSet<usize> = cells.iter().copied().collect();
+        let cells = |shapes: Vec<Rectangle>| {
+            let mut cells = BTreeSet::new();
+            for shape in &shapes {
                 box_cells(&self.frame, shape, |cell, _| {
-                    if solids[cell] == TrueState::Free {
-                        all.insert(cell);
-                    }
+                    cells.extend((solids[cell] == TrueState::Free).then_some(cell));
                 });
-                *cells = all.into_iter().collect();
             }
-        }
-        things
+            cells.into_iter().collect()
+        };
+        let obstacles = || self.obstacles.iter().enumerate();
+        let at = |thing: usize, place: usize| {
+            let parts =
+                obstacles().filter(|(index, part)| (part.thing(*index), part.place()) == (thing, place));
+            parts.map(|(_, part)| part.shape).collect()
+        };
+        let things = obstacles().filter_map(|(obstacle, first)| {
+            let places: Vec<_> = match &first.motion {
+                _ if first.thing(obstacle) != obstacle => return None,
+                Motion::Scheduled(_) => {
+                    (0..first.part.map_or(1, |part| part.places)).map(|place| at(obstacle, place)).collect()
+                }
+                Motion::Door(_) => vec![vec![first.shape], vec![first.opened()]],
+                Motion::Fixed | Motion::Pushed(_) | Motion::Path(_) => return None,
+            };
+            Some(Thing {
+                name: first.name.clone(),
+                obstacle,
+                places: places.into_iter().map(cells).collect(),
+            })
+        });
+        things.collect()
     }
 }
 

@@ -78,8 +78,8 @@ impl WorldSpec {
         match kind {
             "house" => Some(Self::generate_house(seed)),
             "office" => Some(Self::generate_office(seed)),
-            "rooms" => rooms::rooms(&rooms::ROOMS, &building_calendar::ROOMS, seed),
-            "rooms-day" => rooms::rooms(&rooms::ROOMS_DAY, &building_calendar::ROOMS_DAY, seed),
+            "rooms" => rooms::rooms(kind, &building_calendar::ROOMS, seed),
+            "rooms-day" => rooms::rooms(kind, &building_calendar::ROOMS_DAY, seed),
             _ => Some(Self::generate_calendar(kind.strip_prefix("calendar-")?.parse().ok()?, seed)),
         }
     }

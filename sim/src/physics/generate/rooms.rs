@@ -5,7 +5,7 @@ use super::draw::{CELLS_PER_M, between, cells, integer, value};
 use super::layout::{Area, BESIDE_DOORWAY, CORNER, Doorway, Layout, WALL, Wall};
 use super::plan::Plan;
 use super::{STEP_S, doors, furniture, robot};
-use crate::building_calendar::{self, BuildingCalendar, Chains};
+use crate::building_calendar::{BuildingCalendar, Chains};
 use crate::physics::shape::Rectangle;
 use crate::physics::spec::{
     BehaviorSpec, ContactModel, FleetSpec, Motion, ObstacleSpec, ThingPart, WorldSpec,
@@ -19,24 +19,14 @@ use std::f64::consts::PI;
 
 // All ranges in this file were frozen before anything was tuned on these worlds. Results depend on every one of them.
 
-/// Rooms for runs of two hours: `rooms` is the number of columns, and of rows; the times of doors are those of all things.
-pub(super) const ROOMS: BuildingRanges = BuildingRanges {
-    kind: "rooms",
+/// `rooms` is the number of columns, and of rows; mean stays are those of the kind of world.
+const ROOMS: BuildingRanges = BuildingRanges {
     rooms: [2, 8],
     doorway_m: [0.8, 1.2],
     door_probability: 0.5,
     periodic_probability: 0.0,
-    closed_s: building_calendar::ROOMS.stays_s,
-    open_s: building_calendar::ROOMS.stays_s,
     clearance_m: 0.6,
     ..HOUSE
-};
-/// Rooms for runs of a day.
-pub(super) const ROOMS_DAY: BuildingRanges = BuildingRanges {
-    kind: "rooms-day",
-    closed_s: building_calendar::ROOMS_DAY.stays_s,
-    open_s: building_calendar::ROOMS_DAY.stays_s,
-    ..ROOMS
 };
 /// The free length and width of a room, m.
 const ROOM_M: [f64; 2] = [3.0, 5.0];
@@ -66,9 +56,9 @@ const ROBOT_M: f64 = 0.4;
 const DISC_PARTS: u32 = 6;
 /// The probability of a place at a wall.
 const WALL_PROBABILITY: f64 = 0.5;
-/// The probabilities that a thing moves between places, and that it leaves for good. Other things come and go.
+/// The probability that a thing moves between places, and that another thing leaves for good. Other things come and go.
 const MOVE_PROBABILITY: f64 = 0.25;
-const LEAVE_PROBABILITY: f64 = 0.15;
+const LEAVE_PROBABILITY: f64 = 0.2;
 /// The mean time that a thing takes from place to place, s.
 const MOVE_S: f64 = 10.0;
 /// The stay away of a thing that leaves for good, s.
@@ -81,14 +71,11 @@ const IN_FRONT_M: f64 = 0.7;
 /// The number of draws until a thing has room.
 const MAX_TRIES: usize = 60;
 
-/// The world of a seed.
-pub(super) fn rooms(
-    ranges: &'static BuildingRanges,
-    chains: &'static Chains,
-    seed: u64,
-) -> Option<WorldSpec> {
+/// The world of a kind and a seed.
+pub(super) fn rooms(kind: &str, chains: &'static Chains, seed: u64) -> Option<WorldSpec> {
     let mut rng = RandomStream::new(seed, Purpose::HouseGenerator);
-    let (layout, plan) = (grid(ranges, &mut rng), Plan { is_upright: false });
+    let ranges = BuildingRanges { closed_s: chains.stays_s, open_s: chains.stays_s, ..ROOMS };
+    let (layout, plan) = (grid(&ranges, &mut rng), Plan { is_upright: false });
     let mut obstacles = doors::doors(&layout, &plan, &mut rng);
     let doors = obstacles.len();
     let calendar = BuildingCalendar::of_chains(chains, seed);
@@ -109,7 +96,7 @@ pub(super) fn rooms(
         _ => String::new(),
     };
     let fleet = FleetSpec {
-        name: format!("{}-{seed}", ranges.kind),
+        name: format!("{kind}-{seed}"),
         description: format!(
             "{} rooms, things: {count}, doors: {doors}{change}; made at random from the seed {seed}.",
             layout.spaces.len()
@@ -127,7 +114,7 @@ pub(super) fn rooms(
 }
 
 /// Rooms in columns and rows. The doorways without a door connect all of them.
-fn grid(ranges: &'static BuildingRanges, rng: &mut RandomStream) -> Layout<'static> {
+fn grid<'a>(ranges: &'a BuildingRanges, rng: &mut RandomStream) -> Layout<'a> {
     let [columns, rows] = [(); 2].map(|()| {
         let mut end = 0;
         let mut next = |rng: &mut RandomStream| {
@@ -211,14 +198,6 @@ struct Things<'a> {
     count: usize,
 }
 
-/// What a thing does.
-#[derive(Clone, Copy, PartialEq)]
-enum Habits {
-    ComesAndGoes,
-    Moves,
-    Leaves,
-}
-
 impl Things<'_> {
     /// Puts things into some of the rooms, but not into that where the robot starts; `first` is the index of their first obstacle.
     fn fill(&mut self, start: usize, first: usize, rng: &mut RandomStream) {
@@ -235,13 +214,9 @@ impl Things<'_> {
 
     /// Adds a thing to a room, with further places there or in others of `rooms`, if there is space.
     fn thing(&mut self, room: usize, rooms: &[usize], first: usize, rng: &mut RandomStream) {
-        let number = rng.uniform(0.0..1.0);
-        let mut habits = match number {
-            _ if number < MOVE_PROBABILITY => Habits::Moves,
-            _ if number < MOVE_PROBABILITY + LEAVE_PROBABILITY => Habits::Leaves,
-            _ => Habits::ComesAndGoes,
-        };
-        let wanted = if habits == Habits::Moves { integer(PLACES, rng) } else { 1 };
+        let moves = rng.bernoulli(MOVE_PROBABILITY);
+        let leaves = !moves && rng.bernoulli(LEAVE_PROBABILITY);
+        let wanted = if moves { integer(PLACES, rng) } else { 1 };
         let is_at_wall = rng.bernoulli(WALL_PROBABILITY);
         let shape = Shape::draw(is_at_wall, rng);
         let mut places = Vec::new();
@@ -250,16 +225,9 @@ impl Things<'_> {
             let room = if number == 0 || rng.bernoulli(SAME_ROOM_PROBABILITY) { room } else { other };
             places.extend(self.place(&shape, room, is_at_wall, rng));
         }
-        if places.len() < 2 && habits == Habits::Moves {
-            habits = Habits::ComesAndGoes;
-        }
-        let away_s = match habits {
-            Habits::ComesAndGoes => None,
-            Habits::Moves => Some(MOVE_S),
-            Habits::Leaves => Some(FOR_GOOD_S),
-        };
+        let away_s = if leaves { Some(FOR_GOOD_S) } else { (places.len() > 1).then_some(MOVE_S) };
         let mut schedule = self.calendar.draw_chain(self.chains, away_s);
-        schedule.starts_blocked |= habits == Habits::Leaves;
+        schedule.starts_blocked |= leaves;
         self.count += usize::from(!places.is_empty());
         let (name, thing) = (format!("{} {}", shape.name, self.count), first + self.obstacles.len());
         for (place, (corner, quarters)) in places.iter().enumerate() {
@@ -268,15 +236,12 @@ impl Things<'_> {
                     (0, 0) => name.clone(),
                     _ => format!("{name}, place {}, part {}", place + 1, number + 1),
                 };
-                let shape = part.placed(corner, shape.size, *quarters);
-                let mut obstacle =
-                    ObstacleSpec::new(&name, shape, Motion::Scheduled(Box::new(schedule.clone())));
-                obstacle.part = Some(ThingPart { thing, place, places: places.len() });
-                self.obstacles.push(obstacle);
+                let box_ = part.placed(corner, shape.size, *quarters);
+                let motion = Motion::Scheduled(Box::new(schedule.clone()));
+                let part = ThingPart { thing, place, places: places.len() };
+                let part = (places.len() * shape.parts.len() > 1).then_some(part);
+                self.obstacles.push(ObstacleSpec { part, ..ObstacleSpec::new(&name, box_, motion) });
             }
-        }
-        if let Some(single) = self.obstacles.last_mut().filter(|_| places.len() * shape.parts.len() == 1) {
-            single.part = None;
         }
     }
 
