@@ -264,7 +264,14 @@ impl Things<'_> {
             let low = furniture::corner(size, wall, area, clearance, rng);
             let taken = Area { low, high: [low[0] + size[0], low[1] + size[1]] };
             let beside = taken.grown(clearance);
-            if furniture::keeps_off(area, &taken, clearance)
+            // The notch of an L in a corner of the room must not face the corner: a robot there could not leave.
+            let faces_high = [quarters % 3 == 0, quarters < 2];
+            let faces_wall = |axis: usize| match faces_high[axis] {
+                true => taken.high[axis] == area.high[axis],
+                false => taken.low[axis] == area.low[axis],
+            };
+            if !(faces_wall(0) && faces_wall(1))
+                && furniture::keeps_off(area, &taken, clearance)
                 && zones.iter().all(|zone| !zone.overlaps(&taken))
                 && self.taken.iter().all(|other| !other.overlaps(&beside))
             {
