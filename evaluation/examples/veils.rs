@@ -138,6 +138,7 @@ fn house(seed: u64) -> (WorldSpec, Vec<Point2<f64>>) {
         tag: None,
         appears_s: None,
         disappears_s: None,
+        part: None,
     }));
     (WorldSpec::new(fleet).unwrap(), posts)
 }

@@ -2,11 +2,11 @@
 //! without looking.
 
 use crate::metrics::{Freshness, FreshnessScores};
-use interfaces::{CellState, GridFrame, GroundTruth, TrueState};
+use interfaces::{CellState, GridFrame};
 use mapper::{Door, Mapper, ThingKind};
-use nalgebra::{Point2, Vector2};
+use nalgebra::Point2;
 use serde::{Deserialize, Serialize};
-use sim::physics::{Motion, ObstacleSpec, PhysicsGroundTruth, PhysicsWorld, WorldSpec};
+use sim::physics::{self, Motion, PhysicsWorld, Rectangle, WorldSpec};
 use std::collections::BTreeSet;
 
 /// The part of a closed leaf whose cells are those of the door: cells at its ends can belong to the wall.
@@ -57,7 +57,7 @@ impl ScheduledThings {
         let things = self.things.get_or_insert_with(|| things_of(world.spec()));
         let predicted: Vec<f64> =
             things.iter().map(|thing| thing.predicted(mapper, world.time_s())).collect();
-        let is_blocked: Vec<bool> = things.iter().map(|thing| thing.is_blocked(world.truth())).collect();
+        let is_blocked: Vec<bool> = things.iter().map(|thing| thing.is_blocked(world)).collect();
         self.freshness.add(&predicted, &is_blocked);
     }
 
@@ -68,67 +68,84 @@ impl ScheduledThings {
     }
 }
 
-/// The things of a world that have a schedule.
+/// The things of a world that have a schedule, once for each of their places.
 fn things_of(spec: &WorldSpec) -> Vec<Thing> {
-    let scheduled = spec.obstacles.iter().filter(|obstacle| obstacle.schedule().is_some());
-    scheduled.map(|obstacle| Thing::new(obstacle, &spec.frame)).collect()
+    let mut things = Vec::new();
+    for thing in spec.things() {
+        let obstacle = &spec.obstacles[thing.obstacle];
+        let shape = Some(obstacle.shape).filter(|_| matches!(obstacle.motion, Motion::Door(_)));
+        // That a door is open says as much as that it is not closed.
+        let places = thing.places.len().min(if shape.is_some() { 1 } else { usize::MAX });
+        let is_scheduled = obstacle.schedule().is_some();
+        things.extend((0..places).filter(|_| is_scheduled).map(|place| Thing {
+            door: shape.map(|shape| shape.pose.translation.vector.into()),
+            cells: shape.map_or_else(|| thing.places[place].clone(), |leaf| middle(&leaf, &spec.frame)),
+            place,
+            thing: thing.clone(),
+        }));
+    }
+    things
 }
 
 /// A thing that is there, or closed, by a schedule.
 #[derive(Clone, Debug)]
 struct Thing {
-    center: Point2<f64>,
-    is_door: bool,
-    /// The cells that are blocked when it is there, from its center on.
+    thing: physics::Thing,
+    place: usize,
+    /// The center of the leaf of a closed door, m.
+    door: Option<Point2<f64>>,
+    /// The cells that are blocked when it is there.
     cells: Vec<usize>,
 }
 
+/// The cells in the middle of the leaf of a closed door.
+fn middle(leaf: &Rectangle, frame: &GridFrame) -> Vec<usize> {
+    let reach_m = MIDDLE * leaf.half_m.x;
+    let steps = (2.0 * reach_m / frame.resolution_m()).ceil().max(1.0) as i32;
+    let at = |step: i32| leaf.pose * Point2::new(f64::from(step) / f64::from(steps) * reach_m, 0.0);
+    let cells: BTreeSet<usize> =
+        (-steps..=steps).filter_map(|step| frame.index(frame.cell_at(&at(step)))).collect();
+    cells.into_iter().collect()
+}
+
 impl Thing {
-    fn new(obstacle: &ObstacleSpec, frame: &GridFrame) -> Self {
-        let (shape, is_door) = (&obstacle.shape, matches!(obstacle.motion, Motion::Door(_)));
-        let cell_m = frame.resolution_m();
-        let reach = match is_door {
-            true => Vector2::new(MIDDLE * shape.half_m.x, 0.0),
-            false => shape.half_m.map(|half_m| (half_m - cell_m / 2.0).max(0.0)),
-        };
-        let steps = reach.map(|reach_m| (2.0 * reach_m / cell_m).ceil() as i32);
-        let offset = |step: i32, axis: usize| f64::from(step) / f64::from(steps[axis].max(1)) * reach[axis];
-        let points = (-steps.x..=steps.x).flat_map(|x| (-steps.y..=steps.y).map(move |y| (x, y)));
-        let cells: BTreeSet<usize> = points
-            .filter_map(|(x, y)| {
-                frame.index(frame.cell_at(&(shape.pose * Point2::new(offset(x, 0), offset(y, 1)))))
-            })
-            .collect();
-        let center = Point2::from(shape.pose.translation.vector);
-        let own = frame.index(frame.cell_at(&center));
-        let others = cells.into_iter().filter(|cell| Some(*cell) != own);
-        Self { center, is_door, cells: own.into_iter().chain(others).collect() }
-    }
-
-    /// The probability that it is there, or closed, as the map predicts it from its last reading: for a door of the map by its clock,
-    /// otherwise that of the cell that is most probably blocked. ½ if no cell was ever seen.
+    /// The probability that it is there, or closed, as the map predicts it from its last reading: for a door of the map by its clock.
     fn predicted(&self, mapper: &Mapper, time_s: f64) -> f64 {
-        if let Some(door) = self.is_door.then(|| self.door(mapper)).flatten() {
-            return 1.0 - door.clock.probability(mapper.epoch_s() + time_s, mapper.calendar());
+        match self.door.and_then(|center| door(mapper, &center)) {
+            Some(door) => 1.0 - door.clock.probability(mapper.epoch_s() + time_s, mapper.calendar()),
+            None => presence(mapper, &self.cells, (time_s - mapper.time()).max(0.0)),
         }
-        let ahead_s = (time_s - mapper.time()).max(0.0);
-        let known = self.cells.iter().filter(|cell| mapper.states().cells()[**cell] != CellState::Unknown);
-        known.map(|cell| mapper.blocked_probability_later(*cell, ahead_s)).reduce(f64::max).unwrap_or(0.5)
-    }
-
-    fn door<'a>(&self, mapper: &'a Mapper) -> Option<&'a Door> {
-        let doors = mapper.things().iter().filter_map(|thing| match &thing.kind {
-            ThingKind::Door(door) => Some(&**door),
-            ThingKind::Furniture(_) => None,
-        });
-        let far_m = |door: &&Door| {
-            (nalgebra::center(&door.closed.ends[0], &door.closed.ends[1]) - self.center).norm()
-        };
-        doors.filter(|door| far_m(door) <= SAME_DOOR_M).min_by(|a, b| far_m(a).total_cmp(&far_m(b)))
     }
 
     /// Whether it is there, or closed.
-    fn is_blocked(&self, truth: &PhysicsGroundTruth) -> bool {
-        self.cells.first().is_some_and(|cell| truth.state(*cell) != TrueState::Free)
+    fn is_blocked(&self, world: &PhysicsWorld) -> bool {
+        world.fleet().place_of(&self.thing) == Some(self.place)
     }
+}
+
+/// The probability that a thing with these cells is there, this much time after the last reading, s: that of the object to which the
+/// map counts its cells, else that of the cell that is most probably blocked. ½ if no cell was ever seen.
+pub fn presence(mapper: &Mapper, cells: &[usize], ahead_s: f64) -> f64 {
+    let known = cells.iter().filter(|cell| mapper.states().cells()[**cell] != CellState::Unknown);
+    let by_cell = || known.map(|cell| mapper.blocked_probability_later(*cell, ahead_s)).reduce(f64::max);
+    let by_object = object_cell(mapper, cells).and_then(|cell| mapper.presence(cell, ahead_s));
+    by_object.or_else(by_cell).unwrap_or(0.5)
+}
+
+/// Of these cells, the one whose object is there with the median probability of all that have an object.
+pub fn object_cell(mapper: &Mapper, cells: &[usize]) -> Option<usize> {
+    let presence = |cell: &usize| Some((mapper.presence(*cell, 0.0)?, *cell));
+    let mut known: Vec<(f64, usize)> = cells.iter().filter_map(presence).collect();
+    known.sort_by(|a, b| a.0.total_cmp(&b.0));
+    known.get(known.len() / 2).map(|(_, cell)| *cell)
+}
+
+/// The door of the map whose closed leaf is centered near a point, m.
+fn door<'a>(mapper: &'a Mapper, center: &Point2<f64>) -> Option<&'a Door> {
+    let doors = mapper.things().iter().filter_map(|thing| match &thing.kind {
+        ThingKind::Door(door) => Some(&**door),
+        ThingKind::Furniture(_) => None,
+    });
+    let far_m = |door: &&Door| (nalgebra::center(&door.closed.ends[0], &door.closed.ends[1]) - center).norm();
+    doors.filter(|door| far_m(door) <= SAME_DOOR_M).min_by(|a, b| far_m(a).total_cmp(&far_m(b)))
 }

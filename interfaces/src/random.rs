@@ -56,6 +56,8 @@ pub enum Purpose {
     Patrol,
     /// What a thing in a building with a calendar does. Stream `8 << 48 | index`.
     Thing(usize),
+    /// At which of its places a thing is. Stream `9 << 48 | index`.
+    Place(usize),
 }
 
 impl Purpose {
@@ -83,6 +85,7 @@ impl Purpose {
             Self::DayGenerator => 6 << 48,
             Self::Patrol => 7 << 48,
             Self::Thing(index) => 8 << 48 | index as u64,
+            Self::Place(index) => 9 << 48 | index as u64,
         }
     }
 }

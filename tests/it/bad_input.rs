@@ -28,7 +28,7 @@ fn refused_world(right: &str, wrong: &str) -> String {
 
 #[test]
 fn worlds() {
-    insta::assert_snapshot!(refused("--world nowhere"), @"error: --world: there is no world `nowhere`: it is neither a file nor one of those that ship (four_rooms, toy_on_the_floor, turned_house, house, drifting_house, office, warehouse, cave, yard, office_week; or a generated building: house-7, office-7, calendar-office-7 and so on)");
+    insta::assert_snapshot!(refused("--world nowhere"), @"error: --world: there is no world `nowhere`: it is neither a file nor one of those that ship (four_rooms, toy_on_the_floor, turned_house, house, drifting_house, office, warehouse, cave, yard, office_week; or a generated building: house-7, office-7, rooms-7, rooms-day-7, calendar-office-7 and so on)");
     insta::assert_snapshot!(refused_world("pose_m = [2.0, 2.0]", "pose_m = [6.0, 2.0]"), @"
     error: the robot `curious` starts in a wall or an obstacle
       --> house.toml:71:10

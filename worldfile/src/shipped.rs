@@ -88,7 +88,7 @@ pub enum LoadError {
 }
 
 /// The physics world with the name `name`: a shipped world, or the file with this path, or a generated building
-/// (`house-7`, `office-7`, `calendar-office-7`).
+/// (`house-7`, `office-7`, `rooms-7`, `rooms-day-7`, `calendar-office-7`).
 ///
 /// # Errors
 ///
@@ -101,17 +101,26 @@ pub fn load(name: &str) -> Result<WorldSpec, LoadError> {
         return Err(LoadError::Map { name: printable(name).into_owned() });
     }
     let parse = |name: &str, text: &str| physics::parse_world_with(name, text, &pictures());
-    match find(name, &PHYSICS, parse, |path| physics::load_world(path)) {
-        Err(LoadError::Unknown { name: printed, shipped }) => {
-            let shipped =
-                shipped + "; or a generated building: house-7, office-7, calendar-office-7 and so on";
-            WorldSpec::generated(name).ok_or(LoadError::Unknown { name: printed, shipped })
-        }
-        found => found,
-    }
+    let found = find(name, &PHYSICS, parse, |path| physics::load_world(path));
+    or_generated(found, "house-7, office-7, rooms-7, rooms-day-7", || WorldSpec::generated(name))
 }
 
-/// The grid world with the name `name`: a shipped world, or otherwise the file with this path.
+/// The generated building for a name that is neither shipped nor a file; an error names `examples`.
+fn or_generated<T>(
+    found: Result<T, LoadError>,
+    examples: &str,
+    generated: impl FnOnce() -> Option<T>,
+) -> Result<T, LoadError> {
+    let (name, shipped) = match found {
+        Err(LoadError::Unknown { name, shipped }) => (name, shipped),
+        found => return found,
+    };
+    let shipped = format!("{shipped}; or a generated building: {examples}, calendar-office-7 and so on");
+    generated().ok_or(LoadError::Unknown { name, shipped })
+}
+
+/// The grid world with the name `name`: a shipped world, or the file with this path, or a generated world (`generated-7`,
+/// `grid-rooms-7`, `grid-rooms-day-7`, `calendar-office-7`).
 ///
 /// # Errors
 ///
@@ -120,7 +129,8 @@ pub fn load_grid(name: &str) -> Result<GridSpec, LoadError> {
     if PHYSICS.iter().any(|(physics, _)| *physics == name) {
         return Err(LoadError::OtherKind { name: name.to_owned(), kind: "physics", program: "four_rooms" });
     }
-    find(name, &GRID, grid::parse, |path| grid::load(path))
+    let found = find(name, &GRID, grid::parse, |path| grid::load(path));
+    or_generated(found, "generated-7, grid-rooms-7, grid-rooms-day-7", || GridSpec::generated(name))
 }
 
 fn find<T>(

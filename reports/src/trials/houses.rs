@@ -23,7 +23,8 @@ use sim::physics::WorldSpec;
 /// The reference full-observation sees every cell all the time: it shows how far a strategy can get.
 ///
 /// --generate makes houses, or with `--kind office` offices: larger, with more rooms, more people, and doors that stay for
-/// minutes. One of them alone is a world by its name: `--world house-7`, `--world office-7`.
+/// minutes; or with `--kind rooms` rooms in which things come and go (`rooms-day`: with stays of up to 12 h, for runs of a day). One
+/// of them alone is a world by its name: `--world house-7`, `--world office-7`, `--world rooms-7`.
 ///
 /// Options that can be repeated multiply: 2 worlds, 2 estimators, 3 strategies and 10 trials are 120 trials in
 /// total.
@@ -34,7 +35,7 @@ pub struct Houses {
     duration: u64,
 
     /// The kind of the buildings of --generate
-    #[arg(long, value_name = "KIND", default_value = "house", value_parser = ["house", "office"], help_heading = "World")]
+    #[arg(long, value_name = "KIND", default_value = "house", value_parser = ["house", "office", "rooms", "rooms-day"], help_heading = "World")]
     kind: String,
 
     /// Give the buildings of --generate a calendar of this kind: doors and boxes by hours and weekdays, from Monday 0:00 on.
@@ -84,18 +85,16 @@ impl TrialKind for Houses {
     }
 
     fn of_generated(&self) -> Option<&'static str> {
-        let is_office = self.kind == "office";
-        self.calendar.map(|_| "--calendar").or(is_office.then_some("--kind"))
+        let is_other = self.kind != "house";
+        self.calendar.map(|_| "--calendar").or(is_other.then_some("--kind"))
     }
 
     fn generate(&self, seed: u64) -> WorldSpec {
         if let Some(kind) = self.calendar {
             return WorldSpec::generate_calendar(kind, seed);
         }
-        match self.kind.as_str() {
-            "office" => WorldSpec::generate_office(seed),
-            _ => WorldSpec::generate_house(seed),
-        }
+        let named = WorldSpec::generated(&format!("{}-{seed}", self.kind));
+        named.unwrap_or_else(|| WorldSpec::generate_house(seed))
     }
 
     fn length(&self) -> u64 {

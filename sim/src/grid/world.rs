@@ -141,7 +141,7 @@ impl Block {
         seed: u64,
     ) -> Self {
         let starts_s = calendar.map_or(0.0, |calendar| calendar.starts_s);
-        let routine = spec.schedule.as_ref().map(|schedule| Routine::new(schedule, starts_s, index, seed));
+        let routine = spec.schedule.as_ref().map(|schedule| Routine::new(schedule, starts_s, 1, index, seed));
         Self {
             routine: routine.map(Box::new),
             spec: spec.clone(),

@@ -28,6 +28,7 @@ mod snapshot;
 mod spec;
 #[cfg(test)]
 mod tests;
+mod things;
 mod velocity;
 mod visible_cells;
 mod world;
@@ -47,8 +48,9 @@ pub use snapshot::SnapshotError;
 pub use spec::{
     BehaviorSpec, BumperSpec, CircleSpec, ContactModel, DisplacementSpec, DoorSpec, DriveKind, DriveLimits,
     DrivenError, FiducialSpec, FleetSpec, Glass, LaserSpec, Leaf, Motion, ObstacleSpec, OdometryError,
-    Opening, PathSpec, PatrolDaySpec, PatrolSpec, PushedSpec, Repeat, RobotSpec, SonarSpec, WanderSpec,
-    WaypointsSpec, WorldSpec,
+    Opening, PathSpec, PatrolDaySpec, PatrolSpec, PushedSpec, Repeat, RobotSpec, SonarSpec, ThingPart,
+    WanderSpec, WaypointsSpec, WorldSpec,
 };
+pub use things::Thing;
 pub use velocity::Velocity;
 pub use world::{PhysicsWorld, WorldSnapshot};

@@ -31,12 +31,12 @@ use std::process::ExitCode;
         check_world my_house.toml                  describe the world, or report its errors\n  \
         check_world --png four_rooms two_blocks    draw shipped worlds to four_rooms.png, two_blocks.png\n  \
         check_world --png --out plans lab.world    draw a Stage world to plans/lab.world.png\n  \
-        check_world --toml lab.world               convert a Stage world to lab.world.toml, for four_rooms\n\n\
+        check_world --toml lab.world rooms-7       write lab.world.toml and rooms-7.toml, for four_rooms\n\n\
         Exit codes: 0 all files are valid (with or without warnings), 1 a file cannot be written, 2 a file is \
         invalid."
 )]
 struct Args {
-    /// World files, or names of shipped worlds
+    /// World files, or names of shipped worlds or of generated buildings (house-7, rooms-7)
     #[arg(required = true, value_name = "FILE|NAME")]
     files: Vec<String>,
 
@@ -44,7 +44,7 @@ struct Args {
     #[arg(long)]
     png: bool,
 
-    /// Convert each valid Stage world to a world file, FILE.toml
+    /// Write each valid Stage world or generated building as a world file, FILE.toml
     #[arg(long)]
     toml: bool,
 
@@ -125,7 +125,7 @@ fn write(
     }
     if args.toml {
         let Some(text) = as_world_file(file) else {
-            lines.push("  world     not written: only Stage worlds can be converted".into());
+            lines.push("  world     not written: only Stage worlds and generated buildings can be".into());
             return Ok(());
         };
         let world_file = path_with(".toml")?;

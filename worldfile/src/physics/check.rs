@@ -13,8 +13,9 @@ use nalgebra::Point2;
 use sim::physics::shape::TOUCH_M;
 use sim::physics::{
     BoxTree, ContactModel, DrivenError, FleetSpec, Form, Glass, Motion, ObstacleSpec, Rectangle, RobotSpec,
-    WorldSpec,
+    ThingPart, WorldSpec,
 };
+use std::collections::BTreeMap;
 
 /// The models of contacts, the default first.
 pub(super) const CONTACTS: [(&str, ContactModel); 2] =
@@ -56,7 +57,7 @@ pub(super) fn fleet(root: &Table<'_>, files: &dyn Files) -> Option<FleetSpec> {
     let obstacle_tables = root.tables("obstacle", obstacle::KEYS);
     let (mut obstacles, mut fixed, mut movers) = (Vec::new(), Vec::new(), Vec::new());
     for table in &obstacle_tables {
-        let Some(obstacle) = obstacle(table, &space, files) else { continue };
+        let Some(obstacle) = obstacle(table, &space, files, &obstacles) else { continue };
         let solid = |shape| Solid { shape, span: table.span.clone() };
         match &obstacle.motion {
             Motion::Fixed | Motion::Scheduled(_) if !obstacle.starts_present() => {}
@@ -67,6 +68,7 @@ pub(super) fn fleet(root: &Table<'_>, files: &dyn Files) -> Option<FleetSpec> {
         }
         obstacles.push((table, obstacle));
     }
+    join_parts(&mut obstacles);
     (space.fixed, space.movers) = (Solids::new(fixed), Solids::new(movers));
     space.is_whole = root.file.is_sound();
     let robot_tables = root.tables("robot", robot::KEYS);
@@ -94,6 +96,19 @@ pub(super) fn fleet(root: &Table<'_>, files: &dyn Files) -> Option<FleetSpec> {
     };
     spec.turn(turn_rad, &(space.size / 2.0));
     Some(spec)
+}
+
+/// Tells all parts of a thing, and the obstacle that they are parts of, how many places it has.
+fn join_parts(obstacles: &mut [(&Table<'_>, ObstacleSpec)]) {
+    let mut places = BTreeMap::new();
+    for part in obstacles.iter().filter_map(|(_, obstacle)| obstacle.part) {
+        let places = places.entry(part.thing).or_insert(1);
+        *places = part.place.max(*places - 1) + 1;
+    }
+    for (index, (_, obstacle)) in obstacles.iter_mut().enumerate() {
+        let (thing, place) = obstacle.part.map_or((index, 0), |part| (part.thing, part.place));
+        obstacle.part = places.get(&thing).map(|places| ThingPart { thing, place, places: *places });
+    }
 }
 
 /// The walls that are tables of their own, and those of them that are glass.

@@ -15,8 +15,8 @@ use toml::Value;
 type Keys = Vec<(&'static str, Value)>;
 
 /// The text of a world file that describes `spec`: [`super::parse_fleet`] reads the same spec from it. `None` for a
-/// world with parts that generated houses do not have: this function writes upright walls, obstacles that stand still,
-/// doors that open periodically or at random, and round robots with a differential drive and one laser, which are
+/// world with parts that generated buildings do not have: this function writes upright walls, obstacles that stand still, or
+/// come and go by a schedule, doors that open periodically or at random, and round robots with a differential drive and one laser, which are
 /// driven, walk along waypoints or wander.
 pub fn to_toml(spec: &FleetSpec) -> Option<String> {
     let (frame, mut text) = (&spec.frame, String::new());
@@ -46,8 +46,9 @@ pub fn to_toml(spec: &FleetSpec) -> Option<String> {
         table("\n[[wall]]\n", upright(wall)?);
     }
     for obstacle in &spec.obstacles {
-        table("\n[[obstacle]]\n", self::obstacle(obstacle)?);
-        if let Some(schedule) = obstacle.schedule() {
+        let thing = obstacle.part.map(|part| &spec.obstacles[part.thing]).filter(|thing| *thing != obstacle);
+        table("\n[[obstacle]]\n", self::obstacle(obstacle, thing)?);
+        if let Some(schedule) = obstacle.schedule().filter(|_| thing.is_none()) {
             table("\n[obstacle.schedule]\n", write_schedule(schedule)?);
         }
     }
@@ -63,8 +64,9 @@ pub fn to_toml(spec: &FleetSpec) -> Option<String> {
     Some(text)
 }
 
-fn obstacle(obstacle: &ObstacleSpec) -> Option<Keys> {
-    let ObstacleSpec { name, shape, motion, tag: None, appears_s: None, disappears_s: None } = obstacle
+/// An obstacle, which can be a part of a thing.
+fn obstacle(obstacle: &ObstacleSpec, thing: Option<&ObstacleSpec>) -> Option<Keys> {
+    let ObstacleSpec { name, shape, motion, tag: None, appears_s: None, disappears_s: None, .. } = obstacle
     else {
         return None;
     };
@@ -74,6 +76,10 @@ fn obstacle(obstacle: &ObstacleSpec) -> Option<Keys> {
         Motion::Door(spec) => door(shape, spec)?,
         Motion::Pushed(_) | Motion::Path(_) => return None,
     });
+    if let Some(thing) = thing {
+        keys.push(("part_of", thing.name.as_str().into()));
+        keys.push(("place", (obstacle.place() as i64 + 1).into()));
+    }
     Some(keys)
 }
 

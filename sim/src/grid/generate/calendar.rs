@@ -1,7 +1,7 @@
 //! Random worlds with a calendar: rooms with doors, and things that come and go.
 
 use super::{GenerateSettings, between, frame, rooms, stands_free};
-use crate::building_calendar::BuildingCalendar;
+use crate::building_calendar::{self, BuildingCalendar};
 use crate::grid::spec::{BlockSpec, Course, GridCalendar, GridSpec};
 use calendar::{Kind, Schedule, ThingKind};
 use interfaces::{Cell, Grid, Purpose, RandomStream};
@@ -9,8 +9,9 @@ use rand::RngExt;
 use rand::seq::IndexedRandom;
 use std::collections::BTreeSet;
 
-/// The time of a step, s.
+/// The time of a step, s; and in rooms without a calendar.
 const STEP_S: f64 = 10.0;
+const ROOMS_STEP_S: f64 = 1.0;
 /// The largest number of draws until a thing has room.
 const MAX_TRIES: usize = 50;
 /// How far a thing goes when it is not in its place, cells.
@@ -37,44 +38,68 @@ fn ranges(kind: Kind) -> Ranges {
     }
 }
 
+/// Of rooms, whose things change at any time of the day. Frozen before anything was tuned on these worlds.
+const ROOMS: Ranges =
+    Ranges { size: [[15, 45], [15, 45]], walls: [3, 20], things: [3, 20], has_doors: false };
+const ROOMS_SENSOR: [u64; 2] = [3, 12];
+
 impl GridSpec {
+    /// The generated world with this name, as `generated-7`, `calendar-office-7`, `grid-rooms-7` or `grid-rooms-day-7`; `None` for
+    /// other names.
+    ///
+    /// In `grid-rooms-`, boxes, people and parked robots are in their places or a few cells away, with mean stays of 10 s to 30 min
+    /// (`grid-rooms-day-`: to 12 h), in steps of 1 s, in all rooms. In one of four worlds all these stays change once.
+    pub fn generated(name: &str) -> Option<Self> {
+        let (kind, seed) = name.rsplit_once('-')?;
+        let seed = seed.parse().ok()?;
+        let chains = match kind {
+            "generated" => return Some(Self::generate(&GenerateSettings::default(), seed)),
+            "grid-rooms" => &building_calendar::ROOMS,
+            "grid-rooms-day" => &building_calendar::ROOMS_DAY,
+            _ => return Some(Self::generate_calendar(kind.strip_prefix("calendar-")?.parse().ok()?, seed)),
+        };
+        let calendar = BuildingCalendar::of_chains(chains, seed);
+        let world = building(kind, &ROOMS, calendar, ROOMS_STEP_S, seed);
+        let sensor_radius = ROOMS_SENSOR[0] + seed % (ROOMS_SENSOR[1] - ROOMS_SENSOR[0] + 1);
+        Some(world.with_sensor_radius(sensor_radius as u32))
+    }
+
     /// A random world with a calendar, named `calendar-`, its kind and the seed, from Monday 0:00 on, in steps of 10 s: rooms with
     /// doors of one cell (a warehouse has none), and people, boxes and parked robots that are in their places or a few cells away,
     /// with schedules drawn from the ranges of [`WorldSpec::generate_calendar`](crate::physics::WorldSpec::generate_calendar).
     pub fn generate_calendar(kind: Kind, seed: u64) -> Self {
-        let ranges = ranges(kind);
-        let mut rng = RandomStream::new(seed, Purpose::WorldGenerator);
-        let [width, height] = ranges.size.map(|size| between(&mut rng, size, 9..=1000));
-        let frame = frame(width, height);
-        let start = Cell::new(width / 2, height / 2);
-        let settings =
-            GenerateSettings { walls: ranges.walls, opening: [1, 1], pillars: [0, 0], ..Default::default() };
-        let walls = rooms::walls(&settings, frame, start, &mut rng);
-        let mut drawn = Drawn {
-            walls: &walls,
-            taken: BTreeSet::from([start]),
-            calendar: BuildingCalendar::new(kind, seed),
-            blocks: Vec::new(),
-        };
-        if ranges.has_doors {
-            drawn.doors(&mut rng);
-        }
-        for _ in 0..between(&mut rng, ranges.things, 0..=1000) {
-            drawn.thing(&mut rng);
-        }
-        let blocks = drawn.blocks;
-        let name = kind.name();
-        GridSpec {
-            name: format!("calendar-{name}-{seed}"),
-            description: format!("{name}: {width} × {height} cells made at random from the seed {seed}."),
-            walls,
-            blocks,
-            start,
-            sensor_radius: settings.sensor_radius,
-            block_probability: 1.0,
-            robot_probability: 1.0,
-            calendar: Some(GridCalendar { starts_s: 0.0, step_s: STEP_S }),
-        }
+        let name = format!("calendar-{}", kind.name());
+        building(&name, &ranges(kind), BuildingCalendar::new(kind, seed), STEP_S, seed)
+    }
+}
+
+/// The world of a seed, whose name begins with that of its kind.
+fn building(kind: &str, ranges: &Ranges, calendar: BuildingCalendar, step_s: f64, seed: u64) -> GridSpec {
+    let mut rng = RandomStream::new(seed, Purpose::WorldGenerator);
+    let [width, height] = ranges.size.map(|size| between(&mut rng, size, 9..=1000));
+    let frame = frame(width, height);
+    let start = Cell::new(width / 2, height / 2);
+    let settings =
+        GenerateSettings { walls: ranges.walls, opening: [1, 1], pillars: [0, 0], ..Default::default() };
+    let walls = rooms::walls(&settings, frame, start, &mut rng);
+    let mut drawn = Drawn { walls: &walls, taken: BTreeSet::from([start]), calendar, blocks: Vec::new() };
+    if ranges.has_doors {
+        drawn.doors(&mut rng);
+    }
+    for _ in 0..between(&mut rng, ranges.things, 0..=1000) {
+        drawn.thing(&mut rng);
+    }
+    let (blocks, place) = (drawn.blocks, kind.trim_start_matches("calendar-"));
+    GridSpec {
+        name: format!("{kind}-{seed}"),
+        description: format!("{place}: {width} × {height} cells made at random from the seed {seed}."),
+        walls,
+        blocks,
+        start,
+        sensor_radius: settings.sensor_radius,
+        block_probability: 1.0,
+        robot_probability: 1.0,
+        calendar: Some(GridCalendar { starts_s: 0.0, step_s }),
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::Fleet;
 use crate::physics::bodies::Touch;
+use crate::physics::convex;
 use crate::physics::form::Form;
 use crate::physics::obstacles::{Blockers, Obstacle};
 use crate::physics::past::Recent;
@@ -11,6 +12,7 @@ use crate::physics::sensors::{Surroundings, bumper};
 use crate::physics::shape::Rectangle;
 use crate::physics::velocity::Velocity;
 use interfaces::LaserReading;
+use nalgebra::Point2;
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -177,6 +179,16 @@ impl Fleet {
         }
     }
 
+    /// The corners of what is to appear together with an obstacle that appears: the convex hull of its thing, so that no robot is
+    /// ever between the legs of a chair.
+    fn place(&self, index: usize) -> Vec<Point2<f64>> {
+        let Some(own) = self.obstacles[index].spec.part else {
+            return self.obstacles[index].shape.corners().to_vec();
+        };
+        let parts = self.obstacles.iter().filter(|other| other.spec.part == Some(own));
+        convex::hull(parts.flat_map(|part| part.shape.corners()))
+    }
+
     /// Makes obstacles appear and disappear. Each time, `report` receives the index of the obstacle, whether it
     /// appeared, and the walls and obstacles that are present now.
     pub(crate) fn update_obstacles(&mut self, mut report: impl FnMut(usize, bool, &[Rectangle])) {
@@ -184,7 +196,7 @@ impl Fleet {
         for index in 0..self.obstacles.len() {
             let Some(is_present) = self.obstacles[index].due(time_s) else { continue };
             // If a body is in its place, an obstacle appears later; after its time to disappear, never.
-            if is_present && !self.blockers().has_room(&self.obstacles[index].shape) {
+            if is_present && !self.blockers().has_room(&self.place(index)) {
                 continue;
             }
             self.obstacles[index].set_present(is_present, index, &mut self.bodies);

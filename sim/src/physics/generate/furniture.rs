@@ -77,26 +77,39 @@ fn draw(kind: &Furniture, room: &Area, clearance: i32, rng: &mut RandomStream) -
         size = [(f64::from(length) * (sin + cos)).ceil() as i32; 2];
         turned = Some((length, heading_deg));
     }
+    let low = corner(size, (kind.place, axis, is_high), room, clearance, rng);
+    (Area { low, high: [low[0] + size[0], low[1] + size[1]] }, turned)
+}
+
+/// The lower left corner of a piece of this size at a random place: anywhere in the room, or along `axis` at its lower or
+/// higher wall.
+pub(super) fn corner(
+    size: [i32; 2],
+    (place, axis, is_high): (Placement, usize, bool),
+    room: &Area,
+    clearance: i32,
+    rng: &mut RandomStream,
+) -> [i32; 2] {
     let mut low = [0, 1].map(|axis| {
         let spare = (room.size(axis) - size[axis]).max(0);
         let at = rng.random_range(0..=spare);
         // Near the corner of the room: into the corner.
         room.low[axis]
-            + match kind.place {
+            + match place {
                 Placement::Wall if at < clearance => 0,
                 Placement::Wall if spare - at < clearance => spare,
                 _ => at,
             }
     });
-    if kind.place == Placement::Wall {
+    if place == Placement::Wall {
         let across = 1 - axis;
         low[across] = if is_high { room.high[across] - size[across] } else { room.low[across] };
     }
-    (Area { low, high: [low[0] + size[0], low[1] + size[1]] }, turned)
+    low
 }
 
 /// Whether the piece is in the room, and each of its sides touches the wall or keeps the clearance.
-fn keeps_off(room: &Area, area: &Area, clearance: i32) -> bool {
+pub(super) fn keeps_off(room: &Area, area: &Area, clearance: i32) -> bool {
     let is_valid = |gap: i32| gap == 0 || gap >= clearance;
     (0..2)
         .all(|axis| is_valid(area.low[axis] - room.low[axis]) && is_valid(room.high[axis] - area.high[axis]))

@@ -11,9 +11,9 @@ pub(super) const WALL: i32 = 2;
 /// The index of the corridor in [`Layout::spaces`]; the other spaces are rooms.
 pub(super) const CORRIDOR: usize = 0;
 /// The wall between a doorway and the corner of a room.
-const CORNER: i32 = 5;
+pub(super) const CORNER: i32 = 5;
 /// Beside a doorway this much stays free of furniture.
-const BESIDE_DOORWAY: i32 = 3;
+pub(super) const BESIDE_DOORWAY: i32 = 3;
 /// Around the leaf of an open door this much stays free of furniture: with less, leaf and furniture could divide a room.
 const AROUND_LEAF: i32 = 14;
 /// The number of draws until a doorway has room.
@@ -113,7 +113,7 @@ pub(super) struct Layout<'a> {
     /// The corridor, and then the rooms.
     pub(super) spaces: Vec<Area>,
     pub(super) doorways: Vec<Doorway>,
-    walls: Vec<Wall>,
+    pub(super) walls: Vec<Wall>,
 }
 
 impl<'a> Layout<'a> {
@@ -123,8 +123,7 @@ impl<'a> Layout<'a> {
         let [right, top] = size.map(|extent| extent - WALL);
         let corridor = between(ranges.corridor_m, rng);
         let low = rng.random_range(WALL + min_room..=top - min_room - corridor - 2 * WALL) + WALL;
-        let mut house = Self { ranges, size, spaces: Vec::new(), doorways: Vec::new(), walls: Vec::new() };
-        house.outer_walls();
+        let mut house = Self::empty(ranges, size);
 
         let mut along = [WALL, right];
         let end_room = rng.bernoulli(ranges.end_room_probability).then(|| {
@@ -149,14 +148,12 @@ impl<'a> Layout<'a> {
         house
     }
 
-    fn outer_walls(&mut self) {
-        let [length, width] = self.size;
-        for face in [0, width - WALL] {
-            self.walls.push(Wall { across: 1, face, ends: [0, length] });
-        }
-        for face in [0, length - WALL] {
-            self.walls.push(Wall { across: 0, face, ends: [WALL, width - WALL] });
-        }
+    /// Outer walls alone.
+    pub(super) fn empty(ranges: &'a BuildingRanges, size: [i32; 2]) -> Self {
+        let [length, width] = size;
+        let along = [0, width - WALL].map(|face| Wall { across: 1, face, ends: [0, length] });
+        let across = [0, length - WALL].map(|face| Wall { across: 0, face, ends: [WALL, width - WALL] });
+        Self { ranges, size, spaces: Vec::new(), doorways: Vec::new(), walls: [along, across].concat() }
     }
 
     /// The rooms on one side of the corridor, behind `wall`.

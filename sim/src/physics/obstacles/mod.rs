@@ -74,6 +74,14 @@ impl Obstacle {
         !matches!(self.state, State::Due | State::Gone)
     }
 
+    /// For a door, its openness: 0 closed, 1 open.
+    pub(super) fn openness(&self) -> Option<f64> {
+        match &self.state {
+            State::Door(_, door) => Some(door.openness),
+            _ => None,
+        }
+    }
+
     /// Whether robots can push the obstacle.
     pub(super) fn is_pushed(&self) -> bool {
         matches!(self.state, State::Pushed(_))
@@ -156,7 +164,9 @@ impl Obstacle {
         let ObstacleSpec { motion, appears_s, disappears_s, .. } = &self.spec;
         let is_standing = self.is_standing();
         let is_wanted = match (&mut self.routine, motion) {
-            (Some(routine), Motion::Scheduled(_)) => routine.is_blocked(time_s + SLACK_S),
+            (Some(routine), Motion::Scheduled(_)) => {
+                routine.place(time_s + SLACK_S) == Some(self.spec.place())
+            }
             _ => !is_past(*disappears_s) && (is_standing || is_past(*appears_s)),
         };
         (is_wanted != is_standing).then_some(is_wanted)
@@ -180,8 +190,8 @@ const SLACK_S: f64 = 5e-7;
 
 /// What an obstacle does by its schedule, if it has one.
 fn routine(spec: &ObstacleSpec, index: usize, starts_s: Option<f64>, seed: u64) -> Option<Box<Routine>> {
-    let schedule = spec.schedule()?;
-    Some(Box::new(Routine::new(schedule, starts_s.unwrap_or_default(), index, seed)))
+    let (starts_s, places) = (starts_s.unwrap_or_default(), spec.part.map_or(1, |part| part.places));
+    Some(Box::new(Routine::new(spec.schedule()?, starts_s, places, spec.thing(index), seed)))
 }
 
 /// An obstacle may move to a pose if every other moving body is at least this far away, m: far enough that the
@@ -231,9 +241,8 @@ impl Blockers {
         })
     }
 
-    /// Whether a rectangle can appear.
-    pub(super) fn has_room(&self, shape: &Rectangle) -> bool {
-        let corners = shape.corners();
-        self.things.iter().all(|thing| thing.form.gap_m(&corners) >= ROOM_M)
+    /// Whether a convex body can appear.
+    pub(super) fn has_room(&self, corners: &[Point2<f64>]) -> bool {
+        self.things.iter().all(|thing| thing.form.gap_m(corners) >= ROOM_M)
     }
 }

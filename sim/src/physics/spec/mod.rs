@@ -10,7 +10,7 @@ mod robot;
 mod senses;
 
 pub use behavior::{BehaviorSpec, CircleSpec, PatrolSpec, Repeat, WanderSpec, WaypointsSpec};
-pub use obstacle::{DoorSpec, Leaf, Motion, ObstacleSpec, Opening, PathSpec, PushedSpec};
+pub use obstacle::{DoorSpec, Leaf, Motion, ObstacleSpec, Opening, PathSpec, PushedSpec, ThingPart};
 pub use odometry::{DisplacementSpec, OdometryError};
 pub use robot::{DriveKind, DriveLimits, LaserSpec, PatrolDaySpec, RobotSpec};
 pub use senses::{BumperSpec, FiducialSpec, SonarSpec};

@@ -19,12 +19,26 @@ pub struct ObstacleSpec {
     pub appears_s: Option<f64>,
     /// The time at which the obstacle disappears, s; `None` if it never disappears.
     pub disappears_s: Option<f64>,
+    /// The thing with a schedule that the obstacle is a part of, if that has several boxes or places.
+    pub part: Option<ThingPart>,
+}
+
+/// A part of a thing that comes and goes as a whole: a leg of a chair, in one of the places of the chair.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ThingPart {
+    /// The index of the obstacle that is the first part of the thing, at its first place. All parts have its schedule.
+    pub thing: usize,
+    /// The place of the thing at which the part is there, from 0 on.
+    pub place: usize,
+    /// The number of places of the thing. Whenever it comes, it comes to another one of them.
+    pub places: usize,
 }
 
 impl ObstacleSpec {
     /// An obstacle without a tag that is there from the start to the end.
     pub fn new(name: &str, shape: Rectangle, motion: Motion) -> Self {
-        Self { name: name.to_owned(), shape, motion, tag: None, appears_s: None, disappears_s: None }
+        let name = name.to_owned();
+        Self { name, shape, motion, tag: None, appears_s: None, disappears_s: None, part: None }
     }
 
     /// Whether the obstacle ever appears, disappears or moves.
@@ -49,10 +63,20 @@ impl ObstacleSpec {
         )
     }
 
+    /// The index of the first obstacle of the thing that it is a part of: its own `index` unless it is one.
+    pub fn thing(&self, index: usize) -> usize {
+        self.part.map_or(index, |part| part.thing)
+    }
+
+    /// The place of its thing at which the obstacle is there, from 0 on.
+    pub fn place(&self) -> usize {
+        self.part.map_or(0, |part| part.place)
+    }
+
     /// Whether the obstacle is present at the start.
     pub fn starts_present(&self) -> bool {
         match &self.motion {
-            Motion::Scheduled(schedule) => schedule.starts_blocked,
+            Motion::Scheduled(schedule) => schedule.starts_blocked && self.place() == 0,
             _ => self.appears_s.is_none(),
         }
     }

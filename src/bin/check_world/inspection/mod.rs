@@ -11,6 +11,7 @@ use curious::reachability;
 use curious::worlds::is_of_stage;
 use draw::scene::Scene;
 use interfaces::printable;
+use sim::grid::GridSpec;
 use sim::physics::WorldSpec;
 use std::path::Path;
 use worldfile::floor_plan::FloorPlan;
@@ -52,8 +53,7 @@ pub(crate) struct Content {
 /// Reads a shipped world or a generated building by its name, or a file by its format: a world file (physics or grid), a Stage file, or
 /// a ROS map.
 pub(crate) fn inspect(name: &str) -> Inspection {
-    let generated = || WorldSpec::generated(name).and_then(|world| to_toml(world.fleet()));
-    let text = shipped::text(name).map(str::to_owned).or_else(generated);
+    let text = shipped::text(name).map(str::to_owned).or_else(|| generated(name));
     let path = Path::new(name);
     let mut inspection = match (text, path.extension().and_then(|ending| ending.to_str())) {
         (Some(text), _) => world_file(&format!("{name}.toml"), &text, &shipped::pictures()),
@@ -82,11 +82,19 @@ pub(crate) fn inspect(name: &str) -> Inspection {
     inspection
 }
 
-/// A valid Stage world as a world file; `None` for other files.
+/// A valid Stage world or a generated building as a world file; `None` for others.
 pub(crate) fn as_world_file(name: &str) -> Option<String> {
     let path = Path::new(name);
-    let (world, _) = is_of_stage(path).then(|| stage::read(path, &Disk))?;
-    world.map(|world| world.to_toml())
+    if !is_of_stage(path) {
+        return generated(name);
+    }
+    stage::read(path, &Disk).0.map(|world| world.to_toml())
+}
+
+/// The file of a generated building.
+fn generated(name: &str) -> Option<String> {
+    let grid = || GridSpec::generated(name).map(|world| worldfile::grid::to_toml(&world));
+    WorldSpec::generated(name).and_then(|world| to_toml(world.fleet())).or_else(grid)
 }
 
 fn invalid(error: String) -> Inspection {

@@ -33,7 +33,13 @@ pub(super) fn content(kind: &'static str, world: &FleetSpec) -> Content {
         ("walls", format!("{}", world.walls.len())),
     ];
     lines.extend(world.starts_s.map(|starts_s| ("calendar", calendar::of_world(starts_s))));
-    lines.extend(world.obstacles.iter().map(|obstacle| ("thing", thing_line(obstacle))));
+    for (index, obstacle) in world.obstacles.iter().enumerate() {
+        let parts = world.obstacles.iter().enumerate().filter(|(part, other)| other.thing(*part) == index);
+        match parts.filter(|(_, part)| part.place() == 0).count() {
+            0 => {}
+            parts => lines.push(("thing", thing_line(obstacle, parts))),
+        }
+    }
     lines.extend(robot_lines(&world.robots));
     Content { kind, description: world.description.to_owned(), lines, scene: world.scene() }
 }
@@ -70,11 +76,17 @@ pub(super) fn floor_plan(path: &Path, plan: &FloorPlan) -> Option<Content> {
     })
 }
 
-fn thing_line(obstacle: &ObstacleSpec) -> String {
+/// A line about an obstacle, and the other parts of its thing if there is more than one.
+fn thing_line(obstacle: &ObstacleSpec, parts: usize) -> String {
     let size = obstacle.shape.half_m * 2.0;
     let what = match &obstacle.motion {
         Motion::Fixed => "a fixed box".to_owned(),
-        Motion::Scheduled(schedule) => format!("a box that is there {}", calendar::of_thing(schedule)),
+        Motion::Scheduled(schedule) => {
+            let boxes = if parts == 1 { "a box".to_owned() } else { format!("a thing of {parts} boxes") };
+            let places = obstacle.part.map_or(1, |part| part.places);
+            let places = if places == 1 { String::new() } else { format!(" at one of {places} places") };
+            format!("{boxes} that is there{places} {}", calendar::of_thing(schedule))
+        }
         Motion::Pushed(pushed) => format!("a box of {} kg that can be pushed", short(pushed.mass_kg)),
         Motion::Path(path) => {
             let (last_s, _) = path.keys.last().copied().unwrap_or_default();
@@ -106,8 +118,9 @@ fn thing_line(obstacle: &ObstacleSpec) -> String {
     let when = [("from", obstacle.appears_s), ("until", obstacle.disappears_s)];
     let when = when.into_iter().filter_map(|(word, at_s)| Some(format!(", {word} {} s", short(at_s?))));
     format!(
-        "`{}`: {what}, {} × {} m{}",
+        "`{}`: {what}, {}{} × {} m{}",
         obstacle.name,
+        if parts > 1 { "one of them " } else { "" },
         short(size.x),
         short(size.y),
         when.collect::<String>()

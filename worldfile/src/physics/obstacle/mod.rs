@@ -9,18 +9,21 @@ use crate::physics::space::{MAX_TIME_S, Space, inside, upright};
 use crate::reader::{Table, valid};
 use crate::schedule::schedule;
 use calendar::Schedule;
-use sim::physics::{Motion, ObstacleSpec, PushedSpec, Rectangle};
+use sim::physics::{Motion, ObstacleSpec, PushedSpec, Rectangle, ThingPart};
 
 pub(super) const KEYS: &str = "name, tag, kind, min_m, max_m, center_m, size_m, heading_deg, appears_s, \
-                               disappears_s, mass_kg, friction, path_m, dwell_s, speed_mps, times_s, repeat, \
+                               disappears_s, part_of, place, mass_kg, friction, path_m, dwell_s, speed_mps, times_s, repeat, \
                                from_m, to_m, thickness_m, open_deg, slide_m, opening, closed_s, open_s, \
                                switches_s, move_s, starts_open, schedule, waits_for_robots";
+
+/// The largest number of places of a thing.
+const MAX_PLACES: u32 = 100;
 
 /// The kinds of obstacles; all have a name, a tag and a kind as well.
 const KINDS: [KindOf; 5] = [
     (
         "fixed",
-        "min_m, max_m, center_m, size_m, heading_deg, appears_s, disappears_s, schedule",
+        "min_m, max_m, center_m, size_m, heading_deg, appears_s, disappears_s, schedule, part_of, place",
         "stands, and may come and go",
     ),
     ("box", "min_m, max_m, center_m, size_m, heading_deg, mass_kg, friction", "can be pushed"),
@@ -46,12 +49,20 @@ struct Obstacle<'a> {
     space: &'a Space,
     /// The files beside the file.
     files: &'a dyn Files,
+    /// The obstacles before it in the file.
+    before: &'a [(&'a Table<'a>, ObstacleSpec)],
 }
 
-pub(super) fn obstacle(table: &Table<'_>, space: &Space, files: &dyn Files) -> Option<ObstacleSpec> {
+/// The obstacle of a table, after those `before` it in the file.
+pub(super) fn obstacle<'a>(
+    table: &'a Table<'a>,
+    space: &'a Space,
+    files: &'a dyn Files,
+    before: &'a [(&'a Table<'a>, ObstacleSpec)],
+) -> Option<ObstacleSpec> {
     let (name, tag) = (table.name(), table.tag());
     let kind = kind_of(table, &KINDS, "an obstacle")?;
-    let obstacle = Obstacle { table, name: name.as_deref().unwrap_or_default(), space, files };
+    let obstacle = Obstacle { table, name: name.as_deref().unwrap_or_default(), space, files, before };
     let spec = match kind {
         "block" => obstacle.block(),
         "hinged_door" | "sliding_door" => obstacle.door(kind == "hinged_door"),
@@ -77,6 +88,11 @@ impl Obstacle<'_> {
 
     fn fixed(self) -> Option<ObstacleSpec> {
         let (shape, times_s) = (self.shape(), self.stay_s());
+        if self.table.has("part_of") || self.table.has("place") {
+            let (part, schedule) = self.part()?;
+            let motion = Motion::Scheduled(Box::new(schedule));
+            return Some(ObstacleSpec { part: Some(part), ..ObstacleSpec::new(self.name, shape?, motion) });
+        }
         let schedule = self.schedule(&["appears_s", "disappears_s"])?;
         let [appears_s, disappears_s] = times_s?;
         if let Some(schedule) = schedule {
@@ -92,6 +108,29 @@ impl Obstacle<'_> {
             self.table.has_none_of(others, "schedule", self.name)?;
         }
         Some(schedule)
+    }
+
+    /// The thing that the obstacle is a part of, with its schedule. The number of its places is not known yet.
+    fn part(&self) -> Option<(ThingPart, Schedule)> {
+        let table = self.table;
+        table.has_none_of(&["appears_s", "disappears_s", "schedule"], "part_of", self.name)?;
+        let place = table.get("place").map_or(Some(1), |place| place.integer_within(&(1..=MAX_PLACES)))?;
+        let name = table.get("part_of").map_or(Some(""), |name| name.text())?;
+        let is_thing = |other: &ObstacleSpec| other.name == name && other.part.is_none();
+        let thing = self.before.iter().position(|(_, other)| is_thing(other));
+        match thing.map(|thing| (thing, &self.before[thing].1.motion)) {
+            Some((thing, Motion::Scheduled(schedule))) => {
+                let place = place as usize - 1;
+                Some((ThingPart { thing, place, places: 1 }, (**schedule).clone()))
+            }
+            // It can be missing since it is invalid itself.
+            _ if !table.file.is_sound() => None,
+            _ => {
+                let what = format!("the obstacle `{}` is a part of no thing", self.name);
+                let help = "`part_of` names an obstacle before it that has a schedule and is no part itself";
+                self.error(&what, help)
+            }
+        }
     }
 
     /// When the obstacle appears and disappears, s.

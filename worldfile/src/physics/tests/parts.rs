@@ -10,6 +10,9 @@ fn things_that_move() {
     let door = "name = \"door\"\nkind = \"hinged_door\"\nfrom_m = [3.0, 2.0]\nto_m = [3.8, 2.0]\nthickness_m = 0.04\n";
     let crate_ = "name = \"crate\"\nkind = \"box\"\nmin_m = [3.0, 2.0]\nmax_m = [3.4, 2.4]\n";
     let cases = [
+        ("part of nothing", toy.replace("appears_s = 10.0\ndisappears_s = 20.0", "part_of = \"car\"")),
+        ("part with times of its own", format!("{toy}\npart_of = \"car\"")),
+        ("place of no thing", toy.replace("appears_s = 10.0\ndisappears_s = 20.0", "place = 2")),
         ("unknown kind", "name = \"toy\"\nkind = \"ball\"".to_owned()),
         ("key of another kind", format!("{toy}\nfriction = 0.5")),
         ("box without a mass", crate_.to_owned()),

@@ -20,7 +20,12 @@ fn shipped() -> impl Iterator<Item = GridSpec> {
 #[test]
 fn worlds_read_the_same_when_written() {
     let made = (0..100).map(|seed| GridSpec::generate(&GenerateSettings::default(), seed));
-    for spec in shipped().chain(made) {
+    let kinds = ["grid-rooms", "grid-rooms-day", "calendar-office"];
+    let named = kinds.iter().flat_map(|kind| (0..60).map(move |seed| format!("{kind}-{seed}")));
+    let named =
+        named.map(|name| worldfile::shipped::load_grid(&name).unwrap_or_else(|error| panic!("{error}")));
+    for spec in shipped().chain(made).chain(named) {
+        assert_eq!(spec.warnings(), [""; 0], "{}", spec.name);
         assert_eq!(worldfile::grid::parse("again.toml", &worldfile::grid::to_toml(&spec)), Ok(spec));
     }
 }

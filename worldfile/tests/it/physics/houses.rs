@@ -133,6 +133,7 @@ fn houses_are_what_they_always_were() {
     };
     let names = (0..4).chain([u64::MAX]).map(|seed| format!("house-{seed}"));
     let names = names.chain((0..2).map(|seed| format!("office-{seed}")));
+    let names = names.chain(["rooms-0", "rooms-1", "rooms-5", "rooms-day-2"].map(str::to_owned));
     let lines: Vec<String> = names.map(line).collect();
     insta::assert_snapshot!(lines.join("\n"), @"
     4a6acc224a820235 5 rooms at a corridor, doors: 3, people: 1; made at random from the seed 0.
@@ -142,5 +143,9 @@ fn houses_are_what_they_always_were() {
     d0c92e7d66d505fd 6 rooms at a corridor, doors: 3, people: 1; made at random from the seed 18446744073709551615.
     0179d7028a9bd438 13 rooms at a corridor, doors: 10, people: 5; made at random from the seed 0.
     1a04b80498095062 11 rooms at a corridor, doors: 11, people: 6; made at random from the seed 1.
+    7928d773fa8e061e 18 rooms, things: 7, doors: 0; made at random from the seed 0.
+    7ef94c1342176d6c 6 rooms, things: 7, doors: 0; made at random from the seed 1.
+    fcd8a3a8a61294f3 14 rooms, things: 20, doors: 1; made at random from the seed 5.
+    3ead6cc57edfb451 28 rooms, things: 19, doors: 2; made at random from the seed 2.
     ");
 }

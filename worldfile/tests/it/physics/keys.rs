@@ -88,6 +88,10 @@ fn fit(heading: &str, key: &str, good: &str) -> String {
         (_, "slide_m") => good.replace("hinged", "sliding"),
         ("`obstacle.schedule`", "one_means") => "events = \"events.csv\"".to_owned(),
         (_, "switches_s") => good.replace("random", "scripted").replace("closed_s = 1.0\nopen_s = 1.0", ""),
+        (_, "place") => {
+            let thing = format!("{good}\nschedule = {{ free_s = 9.0, blocked_s = 9.0 }}\n");
+            format!("{thing}[[obstacle]]\n{}\npart_of = \"o\"", good.replace("\"o\"", "\"part\""))
+        }
         (_, "times_s") => good.replace("speed_mps = 1.0", ""),
         _ => good.to_owned(),
     }
@@ -161,7 +165,7 @@ fn the_ranges_are_those_that_are_checked() {
                 keys.lines().filter(|line| !line.starts_with(&format!("{key} ="))).collect();
             for beyond in [least - 0.5 * least.abs() - 1e-5, most * 1.5] {
                 let value = match *key {
-                    "beams" | "sectors" => format!("{}", beyond.max(0.0) as u32),
+                    "beams" | "sectors" | "place" => format!("{}", beyond.max(0.0) as u32),
                     "size_m" => format!("[{beyond:?}, {beyond:?}]"),
                     "times_s" | "switches_s" => format!("[{beyond:?}]"),
                     _ => format!("{beyond:?}"),

@@ -20,6 +20,7 @@ mod obstacles;
 mod odometry;
 mod patrol;
 mod random;
+mod rooms;
 mod senses;
 mod snapshot;
 #[allow(dead_code)] // the tests of `sim` use all of them
