@@ -4,7 +4,7 @@ use super::OfCell;
 use super::presence::{Parts, Presence};
 use super::segment::Segment;
 use crate::Growth;
-use crate::change::{CellMap, Evidence, Population};
+use crate::change::{CellMap, Evidence};
 use crate::clock::{Clock, Dates, Look};
 use interfaces::{CellState, GridFrame};
 use nalgebra::Point2;
@@ -101,12 +101,12 @@ impl Door {
 
     /// The number of openings per hour, by all looks: in view, and before and after gaps in the view.
     pub fn openings_per_hour(&self) -> f64 {
-        self.presence.posterior(Population::shipped()).cycle_rate() * HOUR_S
+        self.presence.alone().cycle_rate() * HOUR_S
     }
 
     /// The interval that contains this number with the probability `mass`.
     pub fn interval_of_openings_per_hour(&self, mass: f64) -> (f64, f64) {
-        let (low, high) = self.presence.posterior(Population::shipped()).interval(mass);
+        let (low, high) = self.presence.alone().interval(mass);
         (low * HOUR_S, high * HOUR_S)
     }
 
@@ -141,7 +141,7 @@ impl Door {
         let shares = counts.map(|counts| counts.share(0.0, FREE_LOOKS));
         Some(OfCell {
             presence: &self.presence,
-            population: Population::shipped(),
+            population: None,
             clock: Some(&self.clock),
             shares,
         })

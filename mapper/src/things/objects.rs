@@ -4,7 +4,7 @@ use super::lasting::Change;
 use super::object::Object;
 use super::of_cell::OfCell;
 use crate::Growth;
-use crate::change::{CellMap, Population, Posterior};
+use crate::change::{CellMap, Population};
 use interfaces::{Cell, GridFrame};
 use std::collections::BTreeMap;
 
@@ -49,15 +49,12 @@ impl Objects {
         if readings >= self.due {
             let [least, most] = RENEWAL_READINGS;
             self.due = readings + (readings / 4).clamp(least, most);
-            let shipped = Population::default();
             for known in self.objects.values_mut() {
                 known.is_thing = known.object.is_thing(map);
                 known.object.presence.renew();
             }
             let things = self.objects.values().filter(|known| known.is_thing);
-            let evidence = things.map(|known| known.object.presence.evidence());
-            let alone: Vec<Posterior> = evidence.map(|evidence| Posterior::new(evidence, &shipped)).collect();
-            self.population = Population::of(alone.iter());
+            self.population = Population::of(things.map(|known| known.object.presence.alone()));
         }
     }
 
@@ -150,7 +147,7 @@ impl Objects {
     /// What the object of a cell says of it; `None` if it belongs to none.
     pub(super) fn of_cell(&self, cell: u32) -> Option<OfCell<'_>> {
         let known = self.objects.get(self.of_cell.get(&cell)?).filter(|known| known.is_thing)?;
-        let (presence, population) = (&known.object.presence, &self.population);
+        let (presence, population) = (&known.object.presence, Some(&self.population));
         Some(OfCell { presence, population, clock: None, shares: known.object.shares(cell)? })
     }
 

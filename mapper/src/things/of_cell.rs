@@ -12,7 +12,8 @@ const CYCLES: f64 = 3.0;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct OfCell<'a> {
     pub(super) presence: &'a Presence,
-    pub(super) population: &'a Population,
+    /// The population of the map; `None` for a door.
+    pub(super) population: Option<&'a Population>,
     /// The clock of a door; `None` of an object.
     pub(super) clock: Option<&'a Clock>,
     /// The probability that the cell is blocked in both states.
@@ -21,7 +22,7 @@ pub(crate) struct OfCell<'a> {
 
 impl OfCell<'_> {
     fn posterior(&self) -> &Posterior {
-        self.presence.posterior(self.population)
+        self.population.map_or_else(|| self.presence.alone(), |map| self.presence.posterior(map))
     }
 
     /// Whether the changes of the thing are those of a cell that changed this often: traffic changes a cell much more often than the
@@ -102,7 +103,7 @@ mod tests {
         for (shares, per_opening) in [([0.0, 1.0], 1.0), ([1.0, 0.0], 1.0), ([0.0, 0.0], 2.0)] {
             let of_cell = OfCell {
                 presence: &presence,
-                population: Population::shipped(),
+                population: None,
                 clock: Some(&clock),
                 shares,
             };

@@ -35,17 +35,22 @@ pub(crate) struct Presence {
     last_s: f64,
     doubt: Option<Doubt>,
     evidence: Evidence,
+    /// By the shipped population, and by that of the map.
+    #[serde(skip)]
+    alone: Computed,
     #[serde(skip)]
     posterior: Computed,
 }
 
 impl Presence {
     pub(super) fn new(is_there: bool, last_s: f64, evidence: Evidence) -> Self {
-        Self { is_there, last_s, doubt: None, evidence, posterior: Computed::default() }
+        let [alone, posterior] = Default::default();
+        Self { is_there, last_s, doubt: None, evidence, alone, posterior }
     }
 
     /// Learns from a look. Returns whether the state is certain: a new one needs some time.
     pub(super) fn see(&mut self, now_s: f64, is_there: bool) -> bool {
+        self.alone = Computed::default();
         self.renew();
         if self.doubt.is_some_and(|doubt| now_s - doubt.last_s > MAX_GAP_S) {
             self.settle();
@@ -99,9 +104,14 @@ impl Presence {
         &self.evidence
     }
 
-    /// What follows from the evidence is computed anew: evidence or population have changed.
+    /// The population of the map has changed.
     pub(super) fn renew(&mut self) {
         self.posterior = Computed::default();
+    }
+
+    /// What the evidence says beside the shipped population alone.
+    pub(super) fn alone(&self) -> &Posterior {
+        self.alone.0.get_or_init(|| Posterior::new(&self.evidence, Population::shipped()))
     }
 
     pub(super) fn posterior(&self, population: &Population) -> &Posterior {
