@@ -13,7 +13,7 @@ use crate::view::{Trail, View};
 use crate::{ground, plan};
 use files::UnfinishedFile;
 use gif::{DisposalMethod, Encoder, Frame, Repeat};
-use mapper::{Mapper, Thing, ThingKind};
+use mapper::{Door, Mapper};
 use plotters::prelude::*;
 use results::numbers::duration;
 use std::cmp::Reverse;
@@ -158,12 +158,11 @@ impl Film {
 
 /// The doors that opened twice in view, each with how often it opens.
 fn doors(mapper: &Mapper) -> Vec<NamedLine> {
-    let door = |thing: &Thing| {
-        let ThingKind::Door(door) = &thing.kind else { return None };
+    let door = |door: &Door| {
         let name = format!("door: every {}", duration(3600.0 / door.openings_per_hour()));
         (door.moves()[0] >= 2).then_some(NamedLine { ends: door.closed.ends, name })
     };
-    mapper.things().iter().filter_map(door).collect()
+    mapper.doors().iter().filter_map(door).collect()
 }
 
 /// The part of a picture that differs from the picture before.

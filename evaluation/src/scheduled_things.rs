@@ -3,7 +3,7 @@
 
 use crate::metrics::{Freshness, FreshnessScores};
 use interfaces::{CellState, GridFrame};
-use mapper::{Door, Mapper, ThingKind};
+use mapper::{Door, Mapper};
 use nalgebra::Point2;
 use serde::{Deserialize, Serialize};
 use sim::physics::{self, Motion, PhysicsWorld, Rectangle, WorldSpec};
@@ -142,10 +142,7 @@ pub fn object_cell(mapper: &Mapper, cells: &[usize]) -> Option<usize> {
 
 /// The door of the map whose closed leaf is centered near a point, m.
 fn door<'a>(mapper: &'a Mapper, center: &Point2<f64>) -> Option<&'a Door> {
-    let doors = mapper.things().iter().filter_map(|thing| match &thing.kind {
-        ThingKind::Door(door) => Some(&**door),
-        ThingKind::Furniture(_) => None,
-    });
     let far_m = |door: &&Door| (nalgebra::center(&door.closed.ends[0], &door.closed.ends[1]) - center).norm();
+    let doors = mapper.doors().iter();
     doors.filter(|door| far_m(door) <= SAME_DOOR_M).min_by(|a, b| far_m(a).total_cmp(&far_m(b)))
 }

@@ -10,7 +10,7 @@
 //! - `change`: the change statistics of cells, and the estimators of rates. A new estimator implements
 //!   [`Estimator`].
 //! - `derived`: the maps that follow from both.
-//! - `things`: [`Thing`]s, cells that change together: doors, and furniture that was moved.
+//! - `things`: cells that change together: [`Door`]s, and objects that come and go ([`ObjectReport`]).
 //! - `tiles`: the places where something changes, each with a clock.
 //! - `clock`: [`Clock`], a model of one thing over days: hours of the day and of the week, and a memory of all looks.
 
@@ -38,7 +38,7 @@ pub use reading_error::ReadingError;
 pub use scan_filter::{
     NoReturn, NoReturnDistrust, NoReturnEvidence, NoReturns, ScanFilter, ScanFilterSettings,
 };
-pub use things::{Door, Furniture, Leaf, Place, Segment, Thing, ThingKind};
+pub use things::{Door, Leaf, ObjectReport, Segment};
 
 pub use tiles::Tile;
 
@@ -324,9 +324,14 @@ impl Mapper {
         self.points.extend((0..self.scan.len()).filter_map(|beam| self.scan.hit(beam)));
     }
 
-    /// The things that are known, in the order in which they were found.
-    pub fn things(&self) -> &[Thing] {
-        self.things.all()
+    /// The doors that are known, in the order in which they were found.
+    pub fn doors(&self) -> &[Door] {
+        self.things.doors()
+    }
+
+    /// The objects that come and go as a whole, in the order in which they were found.
+    pub fn objects(&self) -> impl Iterator<Item = ObjectReport> {
+        self.things.objects()
     }
 
     /// Says when readings have the time 0, in seconds since 1970-01-01 UTC; by default they count from there. `is_dated`: whether

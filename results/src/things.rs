@@ -1,9 +1,10 @@
-//! `things.json`: the doors that were found, and the furniture that was moved.
+//! `things.json`: the doors that were found, and the objects that come and go.
 
 use crate::numbers::rounded;
 use files::{OutputError, write_file};
-use mapper::{Door, Leaf, Mapper, Thing, ThingKind};
-use nalgebra::Point2;
+use interfaces::GridFrame;
+use mapper::{Door, Leaf, Mapper, ObjectReport};
+use nalgebra::{Point2, Vector2};
 use serde_json::{Value, json};
 use std::path::Path;
 
@@ -15,21 +16,24 @@ fn pair(point: &Point2<f64>) -> [f64; 2] {
     [point.x, point.y].map(|length_m| libm::round(1e3 * length_m) / 1e3)
 }
 
-/// A thing, as the file has it: lengths in m, times in s by the clock of the map, `null` where something was not seen. It keeps its
-/// number in later sessions.
-fn record(thing: &Thing) -> Value {
-    let mut record = match &thing.kind {
-        ThingKind::Door(door) => of_door(door),
-        // It stood at `from_m`, stands at `to_m`, and was moved between two times.
-        ThingKind::Furniture(furniture) => json!({
-            "kind": "furniture",
-            "from_m": furniture.from.as_ref().map(|place| pair(&place.center)),
-            "to_m": furniture.to.as_ref().map(|place| pair(&place.center)),
-            "moved_between_s": furniture.places().next().map(|place| place.between_s.map(rounded)),
-        }),
-    };
-    (record["id"], record["found_s"]) = (thing.id.into(), rounded(thing.found_s).into());
-    record
+/// An object: the middle of its cells and their number, its state at the last look, and what was counted: in view, and what was found
+/// after a gap in the view; the cycles per hour with their 90 % credible interval.
+fn of_object(object: &ObjectReport, frame: &GridFrame) -> Value {
+    let centers = object.cells.iter().map(|cell| frame.center(frame.cell(*cell as usize)).coords);
+    let [moved, moved_after_gap] = object.changes;
+    json!({
+        "id": object.id,
+        "found_s": rounded(object.found_s),
+        "kind": "object",
+        "at_m": pair(&(centers.sum::<Vector2<f64>>() / object.cells.len() as f64).into()),
+        "cells": object.cells.len(),
+        "is_there": object.is_there,
+        "last_seen_s": rounded(object.last_seen_s),
+        "moved": moved,
+        "moved_after_gap": moved_after_gap,
+        "cycles_per_hour": rounded(object.cycles_per_hour),
+        "cycles_per_hour_90": object.cycles_per_hour_90.map(rounded),
+    })
 }
 
 /// A door: the ends of the closed leaf, the hinge and the other end of the open leaf, its state at the last look, and what was counted:
@@ -37,7 +41,7 @@ fn record(thing: &Thing) -> Value {
 fn of_door(door: &Door) -> Value {
     let hinged = match door.leaf {
         Leaf::Hinged { hinge, length_m, open_rad, .. } => {
-            let end = hinge + interfaces::rotation(open_rad) * nalgebra::Vector2::x() * length_m;
+            let end = hinge + interfaces::rotation(open_rad) * Vector2::x() * length_m;
             Some((pair(&hinge), pair(&end)))
         }
         Leaf::Sliding => None,
@@ -45,6 +49,8 @@ fn of_door(door: &Door) -> Value {
     let (low, high) = door.interval_of_openings_per_hour(MASS);
     let [opened, closed] = door.moves();
     json!({
+        "id": door.id,
+        "found_s": rounded(door.found_s),
         "kind": "door",
         "closed_m": door.closed.ends.each_ref().map(pair),
         "hinge_m": hinged.map(|(hinge, _)| hinge),
@@ -60,13 +66,15 @@ fn of_door(door: &Door) -> Value {
     })
 }
 
-/// Writes the file: all things of a map, in the order in which they were found.
+/// Writes the file: all doors and objects of a map. They keep their numbers in later sessions. Lengths are in m, times in s by the clock of
+/// the map, `null` where something was not seen.
 ///
 /// # Errors
 ///
 /// When the file cannot be written.
 pub fn write(path: &Path, mapper: &Mapper) -> Result<(), OutputError> {
-    let records: Vec<Value> = mapper.things().iter().map(record).collect();
+    let objects = mapper.objects().map(|object| of_object(&object, mapper.frame()));
+    let records: Vec<Value> = mapper.doors().iter().map(of_door).chain(objects).collect();
     write_file(path, |file| {
         serde_json::to_writer_pretty(&mut *file, &records)?;
         writeln!(file)

@@ -1,7 +1,7 @@
 //! A place as it will be: P(blocked) at any time, from what was learned.
 
 use crate::masks::{keepout_mask, speed_mask};
-use crate::outlook::{Outlook, doors};
+use crate::outlook::Outlook;
 use crate::places::{Place, places};
 use crate::survey::SavedSurvey;
 use interfaces::{CellState, Grid};
@@ -52,7 +52,7 @@ impl Forecast {
 
     /// The doors that were found, with their numbers, which they keep.
     pub fn doors(&self) -> impl Iterator<Item = (u32, &Door)> {
-        doors(&self.mapper)
+        self.mapper.doors().iter().map(|door| (door.id, door))
     }
 
     /// The places where something changes, with the numbers and the names that they have in the report of `map_log`.

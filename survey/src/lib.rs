@@ -41,7 +41,7 @@ pub use change_log::ChangeLog;
 pub use error::SurveyError;
 pub use forecast::{Forecast, NEAR_M};
 pub use masks::{MASKS, masks, masks_ahead, permanent};
-pub use outlook::{Outlook, doors};
+pub use outlook::Outlook;
 pub use passes::Stage;
 pub use places::{
     Lasting, Place, PlaceKind, PlaceName, PlaceRates, PlaceSince, Since, StillName, Trend, is_line,

@@ -2,7 +2,7 @@
 
 use crate::patches::{areas, fronts};
 use interfaces::{CellState, Grid};
-use mapper::{Mapper, ThingKind};
+use mapper::Mapper;
 
 /// The names of the masks, in the order of [`masks`] and of [`Forecast::masks`](crate::Forecast::masks).
 pub const MASKS: [&str; 2] = ["speed_mask", "keepout_mask"];
@@ -35,10 +35,9 @@ fn slowness(rate_hz: f64) -> u8 {
     (SLOWEST * part.clamp(0.0, 1.0)).round() as u8 // the logarithm of 0 is below all limits
 }
 
-/// The cells of doors and furniture.
-pub(crate) fn cells_of_things(mapper: &Mapper, is_wanted: impl Fn(&ThingKind) -> bool) -> Vec<u32> {
-    let things = mapper.things().iter().filter(|thing| is_wanted(&thing.kind));
-    let mut cells: Vec<u32> = things.flat_map(|thing| thing.cells.iter().copied()).collect();
+/// The cells of doors.
+pub(crate) fn cells_of_doors(mapper: &Mapper) -> Vec<u32> {
+    let mut cells: Vec<u32> = mapper.doors().iter().flat_map(|door| door.cells.iter().copied()).collect();
     cells.sort_unstable();
     cells
 }
@@ -61,7 +60,7 @@ fn came_and_went(mapper: &Mapper, times: u32) -> Vec<usize> {
 pub(crate) fn speed_mask(mapper: &Mapper, pace: impl Fn(usize) -> f64) -> Grid<u8> {
     let frame = *mapper.frame();
     let [once, twice] = [1, 2].map(|times| came_and_went(mapper, times));
-    let doors = cells_of_things(mapper, |kind| matches!(kind, ThingKind::Door(_)));
+    let doors = cells_of_doors(mapper);
     let (areas, fronts) = (areas(&frame, &once), fronts(&frame, &twice));
     let is_in = |cells: &[usize], cell: &usize| cells.binary_search(cell).is_ok();
     let is_door = |cell: &usize| doors.binary_search(&(*cell as u32)).is_ok();
@@ -84,12 +83,15 @@ pub(crate) fn speed_mask(mapper: &Mapper, pace: impl Fn(usize) -> f64) -> Grid<u
 }
 
 /// The keepout mask: 100 for a cell that changes and is probably blocked, by its index, otherwise 0. Such cells count where they
-/// are a patch of the size of a thing, or belong to a door or to furniture. Cells that never change are in the static map.
+/// are a patch of the size of a thing, or belong to a door or to an object that comes and goes. Cells that never change are in the static map.
 pub(crate) fn keepout_mask(mapper: &Mapper, blocked: impl Fn(usize) -> f64) -> Grid<u8> {
     let mut mask = Grid::filled(*mapper.frame(), 0);
     let mut probable: Vec<usize> = mapper.changed().filter(|index| blocked(*index) >= PROBABLY).collect();
     probable.sort_unstable();
-    let (areas, things) = (areas(mapper.frame(), &probable), cells_of_things(mapper, |_| true));
+    let mut things = cells_of_doors(mapper);
+    things.extend(mapper.objects().flat_map(|object| object.cells));
+    things.sort_unstable();
+    let areas = areas(mapper.frame(), &probable);
     for index in probable {
         if areas.binary_search(&index).is_ok() || things.binary_search(&(index as u32)).is_ok() {
             mask.cells_mut()[index] = KEEP_OUT;

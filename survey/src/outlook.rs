@@ -1,7 +1,7 @@
 //! What a map says of other times: P(blocked), doors, for how long a look counts.
 
 use interfaces::{Cell, CellState, Grid, GridFrame};
-use mapper::{Calendar, Clock, Door, Mapper, ThingKind};
+use mapper::{Calendar, Clock, Door, Mapper};
 use nalgebra::{Point2, Vector2};
 
 /// Cells whose centers are at most this far from the closed leaf of a door are blocked by it, in cells.
@@ -54,10 +54,9 @@ impl<'a> Outlook<'a> {
                 grid.cells_mut()[index] = std::f64::consts::LN_2 / (block + free).max(f64::MIN_POSITIVE);
             }
         }
-        for thing in self.mapper.things() {
-            let ThingKind::Door(door) = &thing.kind else { continue };
+        for door in self.mapper.doors() {
             let expiry_s = door.clock.expiry_s(self.calendar).unwrap_or(f64::INFINITY);
-            for cell in &thing.cells {
+            for cell in &door.cells {
                 grid.cells_mut()[*cell as usize] = expiry_s;
             }
         }
@@ -87,7 +86,7 @@ impl<'a> Outlook<'a> {
         let (frame, way) = (self.mapper.frame(), to - from);
         let (cell_m, length_m) = (frame.resolution_m(), way.norm());
         let (steps, reach) = ((length_m / cell_m).ceil().max(1.0), (radius_m / cell_m).round() as i32);
-        let doors: Vec<&Door> = doors(self.mapper).map(|(_, door)| door).collect();
+        let doors = self.mapper.doors();
         let mut largest: Option<f64> = None;
         let margin_m = (f64::from(reach) + LEAF + 1.0) * cell_m;
         let [first, last] = part_near(frame, margin_m, from, way)?;
@@ -95,7 +94,7 @@ impl<'a> Outlook<'a> {
             let share = step as f64 / steps;
             let (at, time_s) = (from + way * share, time_s(share * length_m));
             for cell in frame.cell_at(&at).disc(reach) {
-                let is_leaf = |door: &&&Door| door.closed.distance_m(&frame.center(cell)) <= LEAF * cell_m;
+                let is_leaf = |door: &&Door| door.closed.distance_m(&frame.center(cell)) <= LEAF * cell_m;
                 let found = match doors.iter().find(is_leaf) {
                     Some(door) => Some(1.0 - door.clock.probability(time_s, self.calendar)),
                     None => self.blocked(cell, time_s),
@@ -124,14 +123,6 @@ fn part_near(frame: &GridFrame, margin_m: f64, from: Point2<f64>, way: Vector2<f
         }
     }
     (first <= last).then_some([first, last])
-}
-
-/// The doors of a map, with their numbers.
-pub fn doors(mapper: &Mapper) -> impl Iterator<Item = (u32, &Door)> {
-    mapper.things().iter().filter_map(|thing| match &thing.kind {
-        ThingKind::Door(door) => Some((thing.id, &**door)),
-        ThingKind::Furniture(_) => None,
-    })
 }
 
 #[cfg(test)]

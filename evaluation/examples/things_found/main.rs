@@ -1,4 +1,4 @@
-//! Which doors and furniture a robot finds, and how well it knows them.
+//! Which doors a robot finds, and how well it knows them.
 //!
 //! ```text
 //! cargo run -p curious-evaluation --example things_found -- MINUTES [WORLD:]SEED..
@@ -11,7 +11,7 @@
 //!
 //! - `must`, `found`: doors that must be found, and those of them that were; `all`, `known`: the same of all doors that moved
 //! - `hinged`, `hinge`: hinged doors that were found, and those whose open leaf is known
-//! - `false`: doors that are none; `furniture`: reports of furniture
+//! - `false`: doors that are none; `objects`: objects that come and go
 //! - `closed_m`, `open_m`: the largest error of an end of the closed leaf, and of the end of the open leaf; the means over doors
 //! - `closed_ok`, `open_ok`: the shares of these errors that are at most 0.1 m
 //! - `log`, `log_all`, `cells`: the log error of the openings per hour of doors that opened at least three times per hour: of known
@@ -22,7 +22,7 @@ mod truth;
 
 use agent::Policy;
 use evaluation::physics_trial::{self, PhysicsTrial};
-use mapper::{Door, Leaf, Mapper, ThingKind};
+use mapper::{Door, Leaf, Mapper};
 use nalgebra::{Point2, Vector2};
 use sim::physics::WorldSpec;
 use std::error::Error;
@@ -40,7 +40,7 @@ const COLUMNS: [&str; 16] = [
     "hinged",
     "hinge",
     "false",
-    "furniture",
+    "objects",
     "closed_m",
     "open_m",
     "closed_ok",
@@ -121,13 +121,8 @@ fn explore(spec: &WorldSpec, seed: u64, end_s: f64) -> Result<Scores, Box<dyn Er
 
 fn scores(doors: &[TrueDoor], mapper: &Mapper, hours: f64) -> Scores {
     let mut scores = Scores::default();
-    let mut found: Vec<&Door> = Vec::new();
-    for thing in mapper.things() {
-        match &thing.kind {
-            ThingKind::Door(door) => found.push(door),
-            ThingKind::Furniture(_) => scores.put("furniture", 1.0),
-        }
-    }
+    let mut found: Vec<&Door> = mapper.doors().iter().collect();
+    scores.put("objects", mapper.objects().count() as f64);
     for truth in doors.iter().filter(|door| door.motions > 0) {
         let best = found.iter().map(|door| (truth.error_m(&door.closed), *door));
         let best = best.min_by(|(a, _), (b, _)| a.total_cmp(b)).filter(|(error_m, _)| *error_m <= FOUND_M);

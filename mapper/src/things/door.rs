@@ -42,6 +42,12 @@ pub enum Leaf {
 /// A door.
 #[derive(Clone, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
 pub struct Door {
+    /// Its number, which it keeps over all sessions.
+    pub id: u32,
+    /// The time at which it was found, s.
+    pub found_s: f64,
+    /// The cells that the leaf sweeps, as far as is known, by their index in ascending order.
+    pub cells: Vec<u32>,
     /// The closed leaf, from wall to wall.
     pub closed: Segment,
     /// How it opens.
@@ -50,7 +56,7 @@ pub struct Door {
     pub clock: Clock,
     /// The cells of the closed leaf.
     closed_cells: Vec<u32>,
-    /// The cells that the leaf sweeps, with the looks at them while the door was open, and while it was closed.
+    /// Its cells, with the looks at them while the door was open, and while it was closed.
     pub(super) parts: Parts,
     /// The state "there": closed.
     pub(super) presence: Presence,
@@ -61,7 +67,7 @@ pub struct Door {
 impl Door {
     /// A door with this closed leaf. What was seen of it before is that of a cell of this leaf: the one with about as many changes as
     /// lines were found, since people change these cells as well; of several ones, the one that is known best.
-    pub(super) fn new(closed: Segment, lines: u32, map: &CellMap) -> Self {
+    pub(super) fn new(id: u32, closed: Segment, lines: u32, map: &CellMap) -> Self {
         let closed_cells = closed.cells(map.frame());
         let known = closed_cells.iter().map(|&cell| (map.evidence(cell as usize), cell as usize));
         let apart = |evidence: &Evidence| evidence.changes().abs_diff(lines);
@@ -69,8 +75,19 @@ impl Door {
             known.min_by(|(a, _), (b, _)| apart(a).cmp(&apart(b)).then(b.known_s().total_cmp(&a.known_s())));
         let (evidence, cell) = best.unwrap_or_default();
         let presence = Presence::new(map.state(cell) == CellState::Blocked, map.last_seen(cell), evidence);
-        let (leaf, clock, parts) = (Leaf::Sliding, Clock::default(), Parts::default());
-        Self { closed, leaf, clock, closed_cells, parts, presence, clock_s: None }
+        let (leaf, clock, parts, cells) = (Leaf::Sliding, Clock::default(), Parts::default(), Vec::new());
+        Self {
+            id,
+            found_s: map.time(),
+            cells,
+            closed,
+            leaf,
+            clock,
+            closed_cells,
+            parts,
+            presence,
+            clock_s: None,
+        }
     }
 
     /// Whether it was open at the last look.
@@ -110,16 +127,20 @@ impl Door {
         (low * HOUR_S, high * HOUR_S)
     }
 
-    /// Sets the place of the door, with the number of the hinge and the open leaf if they are known. Returns its cells.
-    pub(super) fn place(
-        &mut self,
-        closed: Segment,
-        open: Option<(usize, Segment)>,
-        frame: &GridFrame,
-    ) -> Vec<u32> {
+    /// Sets the place of the door, with the number of the hinge and the open leaf if they are known.
+    pub(super) fn place(&mut self, closed: Segment, open: Option<(usize, Segment)>, frame: &GridFrame) {
         self.closed = closed;
         self.closed_cells = closed.cells(frame);
-        let Some((hinge, open)) = open else { return self.closed_cells.clone() };
+        self.cells = match open {
+            Some(open) => self.sweep(open, frame),
+            None => self.closed_cells.clone(),
+        };
+        self.parts.set(&self.cells);
+    }
+
+    /// Sets how the leaf opens, and returns the cells that it sweeps.
+    fn sweep(&mut self, (hinge, open): (usize, Segment), frame: &GridFrame) -> Vec<u32> {
+        let closed = self.closed;
         let [hinge, end] = [hinge, 1 - hinge].map(|end| closed.ends[end]);
         let [closed_rad, open_rad] = [end - hinge, open.along()].map(|along| libm::atan2(along.y, along.x));
         let length_m = closed.length_m();
@@ -139,12 +160,7 @@ impl Door {
         let counts =
             self.parts.counts(cell).filter(|counts| counts.iter().all(|counts| !counts.is_empty()))?;
         let shares = counts.map(|counts| counts.share(0.0, FREE_LOOKS));
-        Some(OfCell {
-            presence: &self.presence,
-            population: None,
-            clock: Some(&self.clock),
-            shares,
-        })
+        Some(OfCell { presence: &self.presence, population: None, clock: Some(&self.clock), shares })
     }
 
     /// Learns from the open reading.
@@ -165,7 +181,8 @@ impl Door {
     }
 
     pub(super) fn grow(&mut self, growth: &Growth) {
-        self.closed_cells.iter_mut().for_each(|cell| *cell = growth.index(*cell as usize) as u32);
+        let cells = self.closed_cells.iter_mut().chain(&mut self.cells);
+        cells.for_each(|cell| *cell = growth.index(*cell as usize) as u32);
         self.parts.grow(growth);
     }
 }

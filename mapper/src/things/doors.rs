@@ -1,9 +1,9 @@
 //! Lines become doorways, and doorways become doors.
 
+use super::Things;
 use super::door::Door;
 use super::doorway::Doorway;
 use super::line::Line;
-use super::{ThingKind, Things, is_mostly_in};
 use crate::change::CellMap;
 
 /// The largest number of lines, and of doorways.
@@ -58,7 +58,7 @@ impl Things {
             let removed = self.doorways.remove(other.max(doorway));
             doorway = other.min(doorway);
             if let Some(thing) = self.doorways[doorway].join(removed) {
-                self.things.retain(|other| other.id != thing);
+                self.doors.retain(|other| other.id != thing);
             }
         }
         doorway
@@ -71,25 +71,17 @@ impl Things {
             return false;
         }
         let (closed, open, lines) = (doorway.closed, doorway.open_leaf(cells), doorway.lines);
-        let new = || ThingKind::Door(Box::new(Door::new(closed, lines.iter().sum(), cells)));
-        let id = match doorway.thing {
-            Some(id) => id,
-            None => self.add(new(), Vec::new(), cells.time()),
-        };
+        let id = doorway.thing.unwrap_or(self.next_id);
         self.doorways[position].thing = Some(id);
-        let mut of_door = Vec::new();
-        for thing in self.things.iter_mut().filter(|thing| thing.id == id) {
-            if let ThingKind::Door(door) = &mut thing.kind {
-                thing.cells = door.place(closed, open, cells.frame());
-                of_door.clone_from(&thing.cells);
-                door.parts.set(&of_door);
-            }
+        if id == self.next_id {
+            self.next_id += 1;
+            self.doors.push(Door::new(id, closed, lines.iter().sum(), cells));
         }
-        // Its leaf can have passed for furniture before.
-        self.things.retain(|thing| match &thing.kind {
-            ThingKind::Door(_) => true,
-            ThingKind::Furniture(_) => !is_mostly_in(&thing.cells, &of_door),
-        });
+        for door in self.doors.iter_mut().filter(|door| door.id == id) {
+            door.place(closed, open, cells.frame());
+            // Its leaf can have passed for an object before.
+            self.objects.forget(&door.cells);
+        }
         true
     }
 }

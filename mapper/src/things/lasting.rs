@@ -14,9 +14,8 @@ pub(super) struct Change {
     pub(super) cell: u32,
     /// Whether the cell is blocked now; otherwise it is free.
     pub(super) is_blocked: bool,
-    /// The time at which the cell left its last lasting state, s, and the time of the last look before.
+    /// The time at which the cell left its last lasting state, s.
     pub(super) time_s: f64,
-    pub(super) seen_before_s: f64,
 }
 
 /// A change that may last.
@@ -65,9 +64,7 @@ impl LastingChanges {
             let cell = cells.changed[slot as usize];
             let is_blocked = cells.state(cell as usize) == CellState::Blocked;
             if is_blocked != was_blocked {
-                let [time_s, seen_before_s] =
-                    [left, cells.seen_before(cell as usize, left)].map(|reading| cells.time_of(reading));
-                return Some(Change { cell, is_blocked, time_s, seen_before_s });
+                return Some(Change { cell, is_blocked, time_s: cells.time_of(left) });
             }
         }
         None

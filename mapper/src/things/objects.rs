@@ -1,5 +1,6 @@
 //! The objects of a map: born, recognized, merged, and asked.
 
+use super::is_mostly_in;
 use super::lasting::Change;
 use super::object::Object;
 use super::of_cell::OfCell;
@@ -19,12 +20,35 @@ const COMMON: f64 = 0.3;
 const MAX_OBJECTS: usize = 256;
 /// The population is learned anew after a quarter more readings, at least and at most after these numbers of readings.
 const RENEWAL_READINGS: [usize; 2] = [8, 100];
+const HOUR_S: f64 = 3600.0;
 
 /// An object, and whether it is a thing.
 #[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
 struct Known {
     object: Object,
+    found_s: f64,
     is_thing: bool,
+}
+
+/// What is known of an object that comes and goes as a whole: a toy, a chair, a box.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ObjectReport {
+    /// Its number, which it keeps over all sessions.
+    pub id: u32,
+    /// The time at which it was found, s.
+    pub found_s: f64,
+    /// The cells that it covers while it is there, by their index in ascending order.
+    pub cells: Vec<u32>,
+    /// Whether it was there at the last look.
+    pub is_there: bool,
+    /// The time of this look, s.
+    pub last_seen_s: f64,
+    /// How often it came or went, in view and found after gaps in the view.
+    pub changes: [u32; 2],
+    /// How often it comes and goes, cycles per hour.
+    pub cycles_per_hour: f64,
+    /// The interval that contains this rate with a probability of 90 %.
+    pub cycles_per_hour_90: [f64; 2],
 }
 
 /// All objects of a map.
@@ -34,7 +58,6 @@ pub(crate) struct Objects {
     objects: BTreeMap<u32, Known>,
     /// The number of the object of each cell.
     of_cell: BTreeMap<u32, u32>,
-    next: u32,
     population: Population,
     due: usize,
 }
@@ -58,8 +81,8 @@ impl Objects {
         }
     }
 
-    /// Learns from changes that belong together, all of the same kind.
-    pub(super) fn learn(&mut self, changes: &[Change], map: &CellMap) {
+    /// Learns from changes that belong together, all of the same kind. `next_id`: the number of the next new thing.
+    pub(super) fn learn(&mut self, changes: &[Change], map: &CellMap, next_id: &mut u32) {
         let Some(Change { is_blocked, .. }) = changes.first().copied() else { return };
         let cells: Vec<u32> = changes.iter().map(|change| change.cell).collect();
         let mut same = self.same(&cells, is_blocked, map.frame()).into_iter();
@@ -74,10 +97,11 @@ impl Objects {
                     return;
                 }
                 self.make_room();
-                self.next += 1;
+                let id = *next_id;
+                *next_id += 1;
                 let object = Object::new(&cells, is_blocked, map);
-                self.objects.insert(self.next, Known { object, is_thing: false });
-                self.next
+                self.objects.insert(id, Known { object, found_s: map.time(), is_thing: false });
+                id
             }
         };
         for other in same {
@@ -139,9 +163,41 @@ impl Objects {
             && let Some((&oldest, _)) =
                 self.objects.iter().min_by(|(_, a), (_, b)| last_s(a).total_cmp(&last_s(b)))
         {
-            self.objects.remove(&oldest);
-            self.of_cell.retain(|_, number| *number != oldest);
+            self.remove(oldest);
         }
+    }
+
+    fn remove(&mut self, number: u32) {
+        self.objects.remove(&number);
+        self.of_cell.retain(|_, other| *other != number);
+    }
+
+    /// Forgets those with most of their cells among these, which are sorted.
+    pub(super) fn forget(&mut self, cells: &[u32]) {
+        let is_in = |known: &Known| is_mostly_in(&known.object.cells().collect::<Vec<_>>(), cells);
+        let within = self.objects.iter().filter(|(_, known)| is_in(known)).map(|(number, _)| *number);
+        within.collect::<Vec<_>>().into_iter().for_each(|number| self.remove(number));
+    }
+
+    /// What is known of those that are things.
+    pub(super) fn reports(&self) -> impl Iterator<Item = ObjectReport> {
+        self.objects.iter().filter(|(_, known)| known.is_thing).map(|(id, known)| {
+            let Known { object, found_s, .. } = known;
+            let (evidence, posterior) =
+                (object.presence.evidence(), object.presence.posterior(&self.population));
+            let (is_there, last_seen_s) = object.presence.last_look();
+            let (low, high) = posterior.interval(0.9);
+            ObjectReport {
+                id: *id,
+                found_s: *found_s,
+                cells: object.cells().collect(),
+                is_there,
+                last_seen_s,
+                changes: [evidence.events().iter().sum(), evidence.changes_after_gap()],
+                cycles_per_hour: posterior.cycle_rate() * HOUR_S,
+                cycles_per_hour_90: [low * HOUR_S, high * HOUR_S],
+            }
+        })
     }
 
     /// What the object of a cell says of it; `None` if it belongs to none.

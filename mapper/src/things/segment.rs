@@ -161,15 +161,6 @@ fn principal(points: &[Point2<f64>], on: &[usize]) -> Option<(Point2<f64>, Vecto
     Some((Point2::from(mean), Vector2::new(libm::cos(angle), libm::sin(angle))))
 }
 
-/// The width of points across their principal direction, m; 0 without enough of them.
-pub(super) fn width_m(points: &[Point2<f64>]) -> f64 {
-    let all: Vec<usize> = (0..points.len()).collect();
-    let Some((middle, along)) = principal(points, &all) else { return 0.0 };
-    let across = points.iter().map(|point| along.perp(&(point - middle)));
-    let (low, high) = across.fold((f64::MAX, f64::MIN), |(low, high), at| (low.min(at), high.max(at)));
-    high - low
-}
-
 /// The segment from one end of points to the other.
 pub(super) fn span(points: &[Point2<f64>], on: &[usize], cell_m: f64) -> Option<Segment> {
     let (middle, along) = principal(points, on)?;

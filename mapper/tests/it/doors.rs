@@ -2,7 +2,7 @@
 
 use crate::house::{House, Thing, rectangle};
 use interfaces::{CellState, GridFrame};
-use mapper::{Door, Leaf, Mapper, MapperSettings, ThingKind};
+use mapper::{Door, Leaf, Mapper, MapperSettings};
 use nalgebra::{Isometry2, Point2};
 use std::f64::consts::FRAC_PI_2;
 
@@ -63,12 +63,9 @@ fn watched(house: &mut House, has_person: bool) -> Mapper {
 }
 
 fn only_door(mapper: &Mapper) -> &Door {
-    match mapper.things() {
-        [thing] => match &thing.kind {
-            ThingKind::Door(door) => door,
-            ThingKind::Furniture(furniture) => panic!("{furniture:?}"),
-        },
-        others => panic!("{} things", others.len()),
+    match mapper.doors() {
+        [door] => door,
+        others => panic!("{} doors", others.len()),
     }
 }
 
@@ -185,7 +182,7 @@ fn a_person_in_a_doorway_is_no_door() {
     let mut house = House::new(0.1, 0.0, 0.005, 360, 3);
     let mapper = watched(&mut house, true);
     assert!(mapper.changed().count() > 500, "the person was seen");
-    assert!(mapper.things().is_empty());
+    assert!(mapper.doors().is_empty() && mapper.objects().next().is_none());
 }
 
 #[test]
@@ -195,21 +192,21 @@ fn a_door_is_the_same_after_a_snapshot_and_in_a_larger_map() {
     let mut whole = new_mapper(&house);
     watch(&mut whole, &mut house, 0..scans / 2, true);
     let snapshot = whole.snapshot();
-    let before = whole.things().to_vec();
+    let before = whole.doors().to_vec();
     assert_eq!(before.len(), 1);
     let (mut restored, mut grown, mut same_house) = (new_mapper(&house), new_mapper(&house), house.clone());
     restored.restore(&snapshot).unwrap();
     grown.restore(&snapshot).unwrap();
     watch(&mut whole, &mut house.clone(), scans / 2..scans, true);
     watch(&mut restored, &mut same_house, scans / 2..scans, true);
-    assert!(restored.things() == whole.things());
+    assert!(restored.doors() == whole.doors());
     assert!(restored.snapshot() == whole.snapshot());
 
     let frame = GridFrame::covering(Point2::new(-1.0, -2.0), 15.0, 15.0, house.frame.resolution_m()).unwrap();
     let growth = grown.grow(&MapperSettings::default(), frame).unwrap().unwrap();
     watch(&mut grown, &mut house, scans / 2..scans, true);
-    let [was, is] = [&whole, &grown].map(|mapper| &mapper.things()[0]);
-    assert_eq!((is.id, grown.things().len()), (before[0].id, 1));
+    let [was, is] = [&whole, &grown].map(|mapper| &mapper.doors()[0]);
+    assert_eq!((is.id, grown.doors().len()), (before[0].id, 1));
     let mut cells: Vec<u32> = was.cells.iter().map(|&cell| growth.index(cell as usize) as u32).collect();
     cells.sort_unstable();
     assert_eq!(is.cells, cells);

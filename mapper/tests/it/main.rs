@@ -10,7 +10,6 @@ mod chains;
 mod doors;
 mod estimators;
 mod fast;
-mod furniture;
 mod observed;
 mod prior;
 mod saved;

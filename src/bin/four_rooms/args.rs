@@ -16,7 +16,7 @@ use viewer::recording::Live;
 /// Without options, the curious agent explores the paper's four rooms for 20 simulated minutes. The folder
 /// four_rooms_out contains the results: pictures of the maps (figure5.png) and of the trajectories
 /// (trajectory.png), a recording (four_rooms.rrd, named after the world; open it with `rerun FILE`), the map in ROS
-/// format (map.yaml, map.pgm), the statistics of every cell (cell_statistics.csv), doors and moved furniture (things.json), the estimated and the true
+/// format (map.yaml, map.pgm), the statistics of every cell (cell_statistics.csv), doors and objects that come and go (things.json), the estimated and the true
 /// trajectory (trajectory.tum, trajectory_true.tum, in the TUM format), and all results as JSON
 /// (summary.json).
 ///

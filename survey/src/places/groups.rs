@@ -1,7 +1,7 @@
-//! Cells that change, in groups: those of a door, those of a piece of furniture, and neighboring ones.
+//! Cells that change, in groups: those of a door, those of an object that comes and goes, and neighboring ones.
 
 use interfaces::{Cell, GridFrame};
-use mapper::{Mapper, ThingKind};
+use mapper::Mapper;
 use std::collections::BTreeSet;
 
 /// Cells that change belong to one place if they are at most this far apart, m.
@@ -31,18 +31,16 @@ impl Group {
     }
 }
 
-/// All groups of cells that changed: things, in the order in which they were found, and then the others.
+/// All groups of cells that changed: doors, objects, and then the others.
 pub(super) fn groups(mapper: &Mapper) -> Vec<Group> {
     let mut left: BTreeSet<usize> = mapper.changed().collect();
     let mut found = Vec::new();
-    let is_door = |thing: &&mapper::Thing| matches!(thing.kind, ThingKind::Door(_));
-    let (doors, furniture): (Vec<_>, Vec<_>) = mapper.things().iter().partition(is_door);
-    for thing in doors.into_iter().chain(furniture) {
-        let cells = cells_of(&thing.kind, &thing.cells);
-        let cells: Vec<usize> =
-            cells.iter().map(|cell| *cell as usize).filter(|cell| left.remove(cell)).collect();
+    let doors = mapper.doors().iter().map(|door| (door.id, door.cells.clone()));
+    for (id, cells) in doors.chain(mapper.objects().map(|object| (object.id, object.cells))) {
+        let cells = cells.iter().map(|cell| *cell as usize);
+        let cells: Vec<usize> = cells.filter(|cell| left.remove(cell)).collect();
         if !cells.is_empty() {
-            found.push(Group { cells, thing: Some(thing.id) });
+            found.push(Group { cells, thing: Some(id) });
         }
     }
     let reach = (APART_M / mapper.frame().resolution_m()).round().max(1.0) as i32;
@@ -50,16 +48,6 @@ pub(super) fn groups(mapper: &Mapper) -> Vec<Group> {
         found.extend(divided(mapper.frame(), cells).into_iter().map(|cells| Group { cells, thing: None }));
     }
     found
-}
-
-/// The cells of a thing where it is: of furniture, where it is now.
-fn cells_of<'a>(kind: &'a ThingKind, all: &'a [u32]) -> &'a [u32] {
-    match kind {
-        ThingKind::Door(_) => all,
-        ThingKind::Furniture(furniture) => {
-            furniture.to.as_ref().or(furniture.from.as_ref()).map_or(all, |place| &place.cells)
-        }
-    }
 }
 
 /// Cells in groups that are at most [`MAX_M`] long: a longer group is cut across its longer side, in the middle half of it,

@@ -1,6 +1,6 @@
 //! Places: what a person would point at, with its number, its name, what it looks like, and how often it changes.
 //!
-//! - `groups`: neighboring cells that change, and the cells of doors and of furniture.
+//! - `groups`: neighboring cells that change, and the cells of doors and of objects.
 //! - `passages`: how often something came into each spot of half a meter.
 //! - `book`: the numbers and the names of places, which they keep over all sessions.
 //! - `session`, `since`: what is different since the last session.
@@ -24,7 +24,6 @@ pub use since::{Lasting, PlaceSince, Since, Trend};
 
 use crate::ChangeLog;
 use crate::masks::share_blocked;
-use crate::outlook::doors;
 use groups::{Group, groups};
 use interfaces::median;
 use mapper::{Mapper, RateDistribution};
@@ -78,12 +77,12 @@ pub struct Place {
 pub enum PlaceKind {
     /// A line that sweeps or slides.
     Door {
-        /// The number of the [`mapper::Thing`].
+        /// The number of the [`mapper::Door`].
         thing: u32,
     },
-    /// A piece of furniture that is elsewhere since.
-    Furniture {
-        /// The number of the [`mapper::Thing`].
+    /// Something that comes and goes as a whole: a chair, a box, a parked robot.
+    Object {
+        /// The number of the [`mapper::ObjectReport`].
         thing: u32,
     },
     /// Something wider than a [line](is_line) comes again and again, and is gone soon: people, carts, robots.
@@ -96,7 +95,7 @@ impl PlaceKind {
     /// The number of its thing; `None` for what is none.
     pub fn thing(self) -> Option<u32> {
         match self {
-            Self::Door { thing } | Self::Furniture { thing } => Some(thing),
+            Self::Door { thing } | Self::Object { thing } => Some(thing),
             Self::Traffic | Self::Unknown => None,
         }
     }
@@ -153,8 +152,8 @@ pub(crate) fn places(mapper: &Mapper, log: &ChangeLog, book: &PlaceBook) -> Vec<
 /// How lively a place is: the lower end of the interval of the openings of a door, or of the passages, so that places that were
 /// seen for seconds do not come first. What is smaller than a body can be noise, and counts for less.
 fn liveliness(mapper: &Mapper, place: &Place) -> f64 {
-    let door = doors(mapper).find(|(id, _)| place.kind.thing() == Some(*id));
-    let openings = door.map(|(_, door)| door.interval_of_openings_per_hour(MASS));
+    let door = mapper.doors().iter().find(|door| place.kind.thing() == Some(door.id));
+    let openings = door.map(|door| door.interval_of_openings_per_hour(MASS));
     let passages = || place.rates.as_ref()?.passages_per_hour_90;
     let least_per_hour = openings.map(|(low, _)| low).or_else(|| passages().map(|[low, _]| low));
     (place.area_m2 / BODY_M2).min(1.0) * least_per_hour.unwrap_or_default()
@@ -206,8 +205,8 @@ fn place(mapper: &Mapper, log: &ChangeLog, group: &Group, spot: Spot) -> Option<
 
 fn kind(mapper: &Mapper, group: &Group, rates: &PlaceRates) -> PlaceKind {
     if let Some(thing) = group.thing {
-        let is_door = doors(mapper).any(|(id, _)| id == thing);
-        return if is_door { PlaceKind::Door { thing } } else { PlaceKind::Furniture { thing } };
+        let is_door = mapper.doors().iter().any(|door| door.id == thing);
+        return if is_door { PlaceKind::Door { thing } } else { PlaceKind::Object { thing } };
     }
     let stays = |index: &usize| {
         let seen = mapper.statistics(*index);

@@ -12,8 +12,8 @@ pub(super) struct Session {
     pub(super) log: usize,
     /// The largest number of a place before it.
     pub(super) last: u32,
-    /// The things before it.
-    pub(super) things: BTreeSet<u32>,
+    /// The doors before it.
+    pub(super) doors: BTreeSet<u32>,
     /// For how long each spot was in view before it, s.
     pub(super) looked: BTreeMap<Key, f32>,
     /// The cells that changed in it: whether each was blocked before.
@@ -35,7 +35,7 @@ impl Session {
         Self {
             log,
             last,
-            things: mapper.things().iter().map(|thing| thing.id).collect(),
+            doors: mapper.doors().iter().map(|door| door.id).collect(),
             looked: looked(mapper),
             touched: BTreeMap::new(),
         }

@@ -54,15 +54,6 @@ impl CellMap {
         self.times.at(reading)
     }
 
-    /// The last reading that observed a cell before a change, which was found in a reading: that before the last gap in its
-    /// view if the change was found soon after it, and if the estimator keeps gaps.
-    pub(crate) fn seen_before(&self, index: usize, found: ReadingIndex) -> ReadingIndex {
-        /// The largest number of readings until the evidence of a change suffices.
-        const EVIDENCE: ReadingIndex = 20;
-        let gap = self.gaps[index].histogram.last();
-        gap.filter(|gap| gap[1] + EVIDENCE >= found).map_or(found, |gap| gap[0])
-    }
-
     /// The index of a cell among those that ever changed.
     pub(crate) fn slot(&self, index: usize) -> Option<Slot> {
         self.records.get(index).slot

@@ -122,11 +122,6 @@ impl GapHistogram {
         self.last = Some(corrected);
     }
 
-    /// The last reading before the last gap, and the first after it.
-    pub(in crate::change) fn last(&self) -> Option<[ReadingIndex; 2]> {
-        self.last.map(|gap| [gap.start, gap.end])
-    }
-
     /// The number of gaps.
     pub(crate) fn count(&self) -> u32 {
         self.bins.iter().map(|bin| bin.count).sum()

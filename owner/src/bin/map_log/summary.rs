@@ -13,10 +13,10 @@ use serde::Serialize;
 use std::fmt;
 use survey::{Place, PlaceKind, Quality, Since, StillName, Survey, SurveySettings, SurveyedLog, Verdict};
 
-/// The number of places in the summary and in the report, beside those with names, doors, and furniture that was moved.
+/// The number of places in the summary and in the report, beside those with names and doors.
 const MAX_PLACES: usize = 20;
 /// The version of the layout of `summary.json`; count up when a key is renamed, removed or changes its meaning.
-const SCHEMA: u32 = 3;
+const SCHEMA: u32 = 4;
 /// Why there are no rates.
 const NO_TIMES: &str = "the times of the log are unusable, so that no rate, duration or date can be given: the map shows where \
                         something changed, not how often";
@@ -183,7 +183,7 @@ fn reasons(survey: &Survey) -> Vec<String> {
 
 /// Whether a place is in the summary however little changes there.
 fn is_always_shown(place: &Place) -> bool {
-    place.name.is_some() || matches!(place.kind, PlaceKind::Door { .. } | PlaceKind::Furniture { .. })
+    place.name.is_some() || matches!(place.kind, PlaceKind::Door { .. })
 }
 
 /// The median time in view of the cells that never changed, s.

@@ -48,7 +48,7 @@ in UTC. (Other states of four_rooms, and those of curious_node, have no hours.) 
 For each time of --at, the folder predict_out has the map of the probability that a cell is blocked, as a picture with the doors \
 (predicted.png), for the map server of Nav2 (predicted.yaml, in the mode `scale`: 100 is certainly blocked) and as an array for NumPy \
 (predicted.npy, rows from the lowest y on, NaN where never seen); and masks for the filters of Nav2: keepout_mask.yaml (100 where a \
-door, a piece of furniture or a group of cells that change is probably blocked then) and speed_mask.yaml (slower where changes are usual at that hour). With several times, the \
+door, an object that comes and goes or a group of cells that change is probably blocked then) and speed_mask.yaml (slower where changes are usual at that hour). With several times, the \
 files are numbered. Also in the folder: for how long a look at a place counts before its usual hours say more (expiry.png, expiry.npy, \
 in hours), and all that is printed, as data (summary.json).
 

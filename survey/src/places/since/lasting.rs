@@ -1,8 +1,8 @@
 use crate::ChangeLog;
-use crate::masks::cells_of_things;
+use crate::masks::cells_of_doors;
 use crate::places::passages::{Key, cell_key};
 use interfaces::CellState;
-use mapper::{Mapper, ThingKind};
+use mapper::Mapper;
 use nalgebra::Vector2;
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
@@ -37,7 +37,7 @@ pub(super) fn lasting(mapper: &Mapper, log: &ChangeLog, touched: &BTreeMap<Key, 
         let is_still = last_s.is_some_and(|last_s| seen.last_seen - last_s >= STAYS_S);
         is_still && seen.watched_blocked >= STAYS_S && seen.events() <= MAX_CHANGES
     };
-    let of_doors = cells_of_things(mapper, |kind| matches!(kind, ThingKind::Door(_)));
+    let of_doors = cells_of_doors(mapper);
     let lasts = |index: &usize| stays(index) && of_doors.binary_search(&(*index as u32)).is_err();
     let [mut gone, mut new] = [BTreeSet::new(), BTreeSet::new()];
     for index in mapper.changed().filter(lasts) {

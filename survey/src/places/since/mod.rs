@@ -87,7 +87,7 @@ impl Since {
 pub(crate) fn since(book: &PlaceBook, mapper: &Mapper, log: &ChangeLog, places: &[Place]) -> Option<Since> {
     let session = &book.session;
     let is_new_door =
-        |place: &&Place| matches!(place.kind, PlaceKind::Door { thing } if !session.things.contains(&thing));
+        |place: &&Place| matches!(place.kind, PlaceKind::Door { thing } if !session.doors.contains(&thing));
     (session.log > 0).then(|| Since {
         first_log: session.log,
         places: trends(book, mapper, places),

@@ -21,7 +21,6 @@ pub(super) fn advice(
     let hours = if has_hours { " Plan another route at the hours above." } else { "" };
     let robot = match kind {
         PlaceKind::Door { .. } => format!("look whether the door is open before planning through it.{hours}"),
-        PlaceKind::Furniture { .. } => "use the new map: it shows the furniture where it is now.".to_owned(),
         PlaceKind::Traffic if !is_known => "slow down here, and look again.".to_owned(),
         _ if !is_known => "look again: this was not seen often enough to rely on.".to_owned(),
         _ if share_blocked > MOSTLY => {
@@ -34,7 +33,7 @@ pub(super) fn advice(
         _ => format!("drive as usual, and expect something in the way.{hours}"),
     };
     let owner = match kind {
-        PlaceKind::Furniture { .. } => Some("check that it should be here.".to_owned()),
+        PlaceKind::Object { .. } => Some("check whether it should be here.".to_owned()),
         PlaceKind::Unknown if is_known => Some("check what it is, and give the place a name.".to_owned()),
         PlaceKind::Unknown if is_line => {
             Some("check whether there is a door, or a wall that is drawn twice.".to_owned())

@@ -5,7 +5,7 @@ use super::labels::{Mark, outline};
 use super::plan::Plan;
 use super::{Page, middle, number};
 use draw::layers::Layer;
-use mapper::{Clock, Door, Furniture, Leaf, ThingKind, Week};
+use mapper::{Clock, Door, Leaf, Week};
 use maud::{Markup, html};
 use nalgebra::Point2;
 use owner::week;
@@ -52,7 +52,7 @@ impl Page<'_> {
     pub(super) fn title(&self, place: &Place) -> String {
         let kind = match place.kind {
             PlaceKind::Door { .. } => "door",
-            PlaceKind::Furniture { .. } => "furniture that was moved",
+            PlaceKind::Object { .. } => "an object that comes and goes",
             PlaceKind::Traffic => "traffic",
             PlaceKind::Unknown => "something that changes",
         };
@@ -81,13 +81,7 @@ impl Page<'_> {
     /// The door of a place, if it is one.
     pub(super) fn door(&self, place: &Place) -> Option<&Door> {
         let PlaceKind::Door { thing } = place.kind else { return None };
-        survey::doors(self.mapper).find(|(id, _)| *id == thing).map(|(_, door)| door)
-    }
-
-    fn furniture(&self, place: &Place) -> Option<&Furniture> {
-        let id = place.kind.thing()?;
-        let thing = self.mapper.things().iter().find(|thing| thing.id == id)?;
-        if let ThingKind::Furniture(furniture) = &thing.kind { Some(furniture) } else { None }
+        self.mapper.doors().iter().find(|door| door.id == thing)
     }
 
     /// What is usual in a week, once it is known.
@@ -127,29 +121,19 @@ impl Page<'_> {
             };
             return format!("A door: a line of {length} m {motion}. It was {state} when it was last seen.");
         }
-        match self.furniture(place) {
-            Some(furniture) => self.moved(furniture),
-            None if place.kind == PlaceKind::Traffic => {
+        match place.kind {
+            PlaceKind::Object { thing } => {
+                let object = self.mapper.objects().find(|object| object.id == thing);
+                let state = object.map_or("", |object| if object.is_there { "there" } else { "away" });
+                format!("An object that comes and goes as a whole. It was {state} when it was last seen.")
+            }
+            PlaceKind::Traffic => {
                 "Traffic: something comes again and again, and is gone within half a minute. People, carts or robots.".to_owned()
             }
-            None if is_line(self.mapper, &place.cells) => "Not known: a thin line that was there at times. It can be a door that moved too rarely \
+            _ if is_line(self.mapper, &place.cells) => "Not known: a thin line that was there at times. It can be a door that moved too rarely \
                  to be recognized, or a part of a wall that was seen a few centimeters beside its place."
                 .to_owned(),
-            None => "Not known: something came or went here, and it is neither a door nor traffic.".to_owned(),
-        }
-    }
-
-    fn moved(&self, furniture: &Furniture) -> String {
-        let between = furniture.places().next().map(|place| place.between_s);
-        let when = between.map_or_else(String::new, |[from, to]| {
-            format!(" between {} and {}", self.time(from), self.time(to))
-        });
-        match (&furniture.from, &furniture.to) {
-            (Some(from), Some(to)) => {
-                format!("Furniture: it was moved by {} m{when}.", short((to.center - from.center).norm()))
-            }
-            (Some(_), None) => format!("Furniture: it was removed{when}. Its new position was not seen."),
-            (None, _) => format!("Furniture: it appeared{when}. Its old position was not seen."),
+            _ => "Not known: something came or went here, and it is neither a door nor traffic.".to_owned(),
         }
     }
 
@@ -198,7 +182,6 @@ impl Page<'_> {
             svg.plan.mark viewBox={ "0 0 " (number(size.x)) " " (number(size.y)) } role="img" aria-label={ "Surroundings of place " (place.number) } font-family="sans-serif" stroke-width="2" {
                 (plan.cells(Layer::Occupancy))
                 @if let Some(door) = self.door(place) { (leaf(&plan, door)) } @else { (outline(&plan.rectangle(&self.cells(place)))) }
-                @if let Some(Furniture { from: Some(from), to: Some(to) }) = self.furniture(place) { (line(&plan, [from.center, to.center], "6 4")) }
                 rect x="0" y=(number(size.y - 28.0)) width="106" height="28" fill="#fff" opacity="0.85" {}
                 g stroke-width="0" { (plan.scale_bar([8.0, size.y - 8.0])) }
             }
