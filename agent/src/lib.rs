@@ -14,7 +14,6 @@ mod agent;
 mod choosers;
 mod goal_sampler;
 mod policy;
-mod sampling;
 mod settings;
 mod situation;
 mod strategies;

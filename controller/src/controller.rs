@@ -1,5 +1,4 @@
-use crate::control_input::ControlInput;
-use crate::driver::{Driver, DriverView, Outcome, Status};
+use crate::driver::{ControlInput, Driver, DriverView, Outcome, Status};
 use crate::drives::Drive;
 use crate::dynamic_obstacles::DynamicObstacleFilter;
 use crate::navigation::{LocalExploration, NavigationTask, Progress, Surroundings, Tick, random_step};

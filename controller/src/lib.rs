@@ -9,7 +9,6 @@
 //! describes the robot and converts paths into commands: [`DiffDrive`] for a differential drive robot, [`CellDrive`] for
 //! a robot in a grid world.
 
-mod control_input;
 mod controller;
 mod driver;
 mod drives;
@@ -19,9 +18,8 @@ mod planner;
 #[cfg(test)]
 mod tests;
 
-pub use control_input::ControlInput;
 pub use controller::Controller;
-pub use driver::{Driver, DriverView, Outcome, Status};
+pub use driver::{ControlInput, Driver, DriverView, Outcome, Status};
 pub use drives::{Body, CellDrive, DiffDrive, DiffDriveSettings, Drive, DriveScene};
 pub use dynamic_obstacles::DynamicObstacleFilter;
 pub use planner::{

@@ -2,7 +2,6 @@
 
 use crate::canvas::{Area, Canvas, PictureError, ink, px, why};
 use crate::layers::Layer;
-use crate::legend;
 use crate::outline::field_of_view;
 use crate::palette::{self, Rgb};
 use crate::panel::{Chart, Panel, pair};
@@ -10,7 +9,7 @@ use crate::plan::NamedLine;
 use crate::scene::Scene;
 use crate::trajectory::line;
 use crate::view::{Trail, View};
-use crate::{ground, plan};
+use crate::{legend, plan};
 use files::UnfinishedFile;
 use gif::{DisposalMethod, Encoder, Frame, Repeat};
 use mapper::{Door, Mapper};
@@ -138,7 +137,7 @@ impl Film {
         }
         for (obstacle, outline) in self.scene.obstacles.iter().zip(&view.obstacles) {
             if let Some(outline) = outline.as_ref().filter(|_| !obstacle.is_fixed()) {
-                ground::fill(chart, outline, palette::MOVING)?;
+                plan::fill(chart, outline, palette::MOVING)?;
             }
         }
         for (robot, trail) in self.scene.robots.iter().zip(trails) {
@@ -147,7 +146,7 @@ impl Film {
         line(panel, chart, view.path, (palette::PATH, 3))?;
         if let Some(goal) = view.goal {
             let goal = plot.map_coordinate(&pair(&goal));
-            panel.dot(&plot.use_screen_coord(), goal, palette::GOAL)?;
+            panel.pen.dot(&plot.use_screen_coord(), goal, palette::GOAL)?;
         }
         for (robot, state) in self.scene.robots.iter().zip(&view.robots) {
             plan::draw_robot(panel, chart, robot, &state.pose, robot.radius_m)?;

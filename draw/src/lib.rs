@@ -8,7 +8,6 @@ pub mod canvas;
 #[path = "tests/fake_run.rs"]
 mod fake_run;
 mod film;
-mod ground;
 pub mod layers;
 pub mod legend;
 pub mod outline;

@@ -3,7 +3,6 @@
 use crate::canvas::{INK, ink, px, why};
 use crate::layers::Layer;
 use crate::legend::Mark;
-use crate::palette::Rgb;
 use crate::pen::{Pen, Sheet};
 use crate::scene::extent;
 use interfaces::{Grid, GridFrame};
@@ -40,7 +39,7 @@ pub(crate) struct Panel {
     unit: &'static str,
     /// The width of the map, in points.
     width: u32,
-    pen: Pen,
+    pub(crate) pen: Pen,
     /// Entries of the legend side by side.
     columns: u32,
     /// Rows of the legend.
@@ -187,16 +186,6 @@ impl Panel {
             self.write(legend, (x + self.px(SWATCH + 5), y), HPos::Left, meaning)?;
         }
         Ok(())
-    }
-
-    /// Draws a filled circle with a white rim; `center` in pixels of `area`.
-    pub(crate) fn dot(
-        &self,
-        area: &Sheet<impl DrawingBackend>,
-        center: (i32, i32),
-        color: Rgb,
-    ) -> Result<(), String> {
-        self.pen.dot(area, center, 5, color)
     }
 
     /// Writes a line; `at` is the middle of its left side, or of the line.

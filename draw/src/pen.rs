@@ -12,6 +12,9 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 /// A part of a picture to draw on.
 pub type Sheet<DB> = DrawingArea<DB, Shift>;
 
+/// The radius of a filled circle, without its rim.
+const DOT: i32 = 5;
+
 /// Converts lengths to the units of a backend.
 #[derive(Clone, Copy, Debug)]
 pub struct Pen {
@@ -90,11 +93,10 @@ impl Pen {
         &self,
         sheet: &Sheet<DB>,
         center: (i32, i32),
-        radius: i32,
         color: Rgb,
     ) -> Result<(), String> {
-        sheet.draw(&Circle::new(center, self.px(radius + 1), WHITE.filled())).map_err(why)?;
-        sheet.draw(&Circle::new(center, self.px(radius), ink(color).filled())).map_err(why)
+        sheet.draw(&Circle::new(center, self.px(DOT + 1), WHITE.filled())).map_err(why)?;
+        sheet.draw(&Circle::new(center, self.px(DOT), ink(color).filled())).map_err(why)
     }
 
     /// Draws the mark of an entry of a legend, of this size; (`x`, `y`), in the units of the backend, is the middle of its left side.
@@ -121,7 +123,7 @@ impl Pen {
                 let style = ink(color).stroke_width((3 * self.scale / 2) as u32);
                 sheet.draw(&Cross::new(middle, half * 2 / 3, style)).map_err(why)
             }
-            Mark::Dot(color) => self.dot(sheet, middle, 5, color),
+            Mark::Dot(color) => self.dot(sheet, middle, color),
         }
     }
 }

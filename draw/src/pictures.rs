@@ -1,15 +1,15 @@
 //! Pictures of a run and of a world: the panels of the paper's Figure 5, the trajectories of its Figure 4, a
 //! plan, and a moving picture.
 
-use crate::canvas::{Area, Canvas, PictureError};
 pub use crate::plan::NamedLine;
 pub use crate::trajectory::Trails;
 
+use crate::canvas::{Area, Canvas, PictureError};
 use crate::layers::Layer;
 use crate::panel::Panel;
 use crate::pen::{Pen, Sheet};
 use crate::scene::{Scene, extent};
-use crate::{ground, palette, plan, trajectory};
+use crate::{palette, plan, trajectory};
 use files::make_folder;
 use interfaces::Grid;
 use mapper::Mapper;
@@ -106,10 +106,10 @@ pub fn bare(
         if let Some(map) = map {
             panel.cells(&chart, Layer::Interval, &Layer::Interval.classes(map))?;
         }
-        ground::draw(&chart, scene)?;
+        plan::ground(&chart, scene)?;
         for (center, radius_m) in goals {
             let disc = plan::arc(&Translation2::from(*center).into(), *radius_m, TAU);
-            ground::fill(&chart, &disc, palette::GOAL)?;
+            plan::fill(&chart, &disc, palette::GOAL)?;
         }
         let mut robots = scene.robots.iter();
         robots.try_for_each(|robot| plan::draw_robot(&panel, &chart, robot, &robot.pose, robot.radius_m))

@@ -1,9 +1,8 @@
 //! A world from above, at its start.
 
 use crate::canvas::{ink, why};
-use crate::ground::{self, fill};
 use crate::legend::{self, Legend, Mark};
-use crate::palette;
+use crate::palette::{self, Rgb};
 use crate::panel::{Chart, Panel, pair};
 use crate::pen::Sheet;
 use crate::scene::{Scene, SceneRobot, Sector, span};
@@ -36,7 +35,7 @@ pub(crate) fn draw(panel: &Panel, area: &Sheet<impl DrawingBackend>, scene: &Sce
         let mut sectors = robot.sectors.iter();
         sectors.try_for_each(|it| fill(&chart, &sector(robot, it), palette::SENSOR_AREA))?;
     }
-    ground::draw(&chart, scene)?;
+    ground(&chart, scene)?;
     for robot in &scene.robots {
         let front = robot.corners.iter().map(|corner| corner.x).reduce(f64::max).unwrap_or(robot.radius_m);
         draw_robot(panel, &chart, robot, &robot.pose, front)?;
@@ -68,7 +67,7 @@ pub(crate) fn entries(scene: &Scene) -> Legend {
         (scene.has_robot(false), Mark::Area(palette::OTHER_ROBOT), "other robot"),
         (with_sensors(scene).next().is_some(), Mark::Area(palette::SENSOR_AREA), "field of view (not range)"),
     ]);
-    [ground::entries(scene), robots].concat()
+    [ground_entries(scene), robots].concat()
 }
 
 fn is_crowded(scene: &Scene) -> bool {
@@ -232,6 +231,38 @@ impl Plate {
         let places = others.map(|center| Self::around(center, size));
         [below].into_iter().chain(places).find(is_free).unwrap_or(below)
     }
+}
+
+// The parts of a scene that every picture shows: walls, furniture, and what moves with the area it sweeps.
+
+/// Draws everything except the robots.
+pub(crate) fn ground(chart: &Chart<impl DrawingBackend>, scene: &Scene) -> Result<(), String> {
+    let swept = scene.obstacles.iter().flat_map(|obstacle| &obstacle.reach);
+    swept.into_iter().try_for_each(|outline| fill(chart, outline, palette::SWEPT))?;
+    scene.walls.iter().try_for_each(|wall| fill(chart, wall, palette::WALL))?;
+    let present = scene.obstacles.iter().filter(|obstacle| !obstacle.outline.is_empty());
+    present.into_iter().try_for_each(|obstacle| fill(chart, &obstacle.outline, obstacle.color()))
+}
+
+/// The entries of the legend for what [`ground`] draws.
+pub(crate) fn ground_entries(scene: &Scene) -> Legend {
+    let has_moving = scene.has_obstacle(false);
+    legend::entries([
+        (!scene.walls.is_empty(), Mark::Area(palette::WALL), "wall"),
+        (scene.has_obstacle(true), Mark::Area(palette::FURNITURE), "furniture"),
+        (has_moving, Mark::Area(palette::MOVING), "what moves"),
+        (has_moving, Mark::Area(palette::SWEPT), "area it sweeps"),
+    ])
+}
+
+/// Fills a polygon.
+pub(crate) fn fill(
+    chart: &Chart<impl DrawingBackend>,
+    corners: &[Point2<f64>],
+    color: Rgb,
+) -> Result<(), String> {
+    let corners: Vec<(f64, f64)> = corners.iter().map(pair).collect();
+    chart.plotting_area().draw(&Polygon::new(corners, ink(color).filled())).map_err(why)
 }
 
 #[cfg(test)]

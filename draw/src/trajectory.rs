@@ -1,11 +1,11 @@
 //! The trajectories of the robots, as the paper's Figure 4.
 
 use crate::canvas::{Area, ink, why};
-use crate::ground;
 use crate::layers::Layer;
 use crate::legend::{Legend, Mark};
 use crate::palette::{self, Rgb};
 use crate::panel::{Chart, Panel, pair};
+use crate::plan;
 use crate::scene::{Scene, extent};
 use crate::view::Trail;
 use mapper::Mapper;
@@ -34,7 +34,7 @@ pub(crate) fn draw(
     if let Some(map) = map {
         panel.cells(&chart, Layer::Occupancy, &Layer::Occupancy.classes(map))?;
     }
-    ground::draw(&chart, scene)?;
+    plan::ground(&chart, scene)?;
     // The other robots' trails on top: the curious robot goes everywhere.
     let mut drawn: Vec<_> = scene.robots.iter().zip(trails.true_poses).collect();
     drawn.sort_by_key(|(robot, _)| !robot.is_driven);
@@ -54,7 +54,7 @@ pub(crate) fn draw(
     for (robot, trail) in drawn {
         if let Some(first) = trail.points().first() {
             let at = plot.map_coordinate(&pair(first));
-            panel.dot(&plot.use_screen_coord(), at, robot.color())?;
+            panel.pen.dot(&plot.use_screen_coord(), at, robot.color())?;
         }
     }
     panel.frame(&chart)?;
@@ -82,7 +82,7 @@ pub(crate) fn entries(scene: &Scene, believed: &Trail, goals: &Goals) -> Legend 
         let of_all = if shown as u64 == all { String::new() } else { format!(" of {all}") };
         entries.push((Mark::Cross(palette::GOAL), format!("{shown}{of_all} goals chosen")));
     }
-    entries.extend(ground::entries(scene));
+    entries.extend(plan::ground_entries(scene));
     entries
 }
 

@@ -27,8 +27,7 @@ impl Distances {
             if costs[index] != cost {
                 continue;
             }
-            for (near, (_, _, step)) in neighbors(frame, index).zip(NEIGHBORS) {
-                let Some(near) = near.filter(|near| is_free[*near]) else { continue };
+            for (near, step) in neighbors(frame, index).filter(|(near, _)| is_free[*near]) {
                 let next = cost.saturating_add(step);
                 if next < costs[near] {
                     costs[near] = next;
@@ -44,10 +43,8 @@ impl Distances {
         let cell = frame.cell_at(point);
         let own = frame.index(cell).filter(|index| self.costs[*index] != UNREACHED);
         own.or_else(|| {
-            let near = (-2..=2).flat_map(|dy| (-2..=2).map(move |dx| Cell::new(cell.x + dx, cell.y + dy)));
-            let reached =
-                near.filter_map(|cell| frame.index(cell)).filter(|index| self.costs[*index] != UNREACHED);
-            reached.min_by_key(|index| self.costs[*index])
+            let near = cell.square(2).filter_map(|cell| frame.index(cell));
+            near.filter(|index| self.costs[*index] != UNREACHED).min_by_key(|index| self.costs[*index])
         })
     }
 
@@ -68,16 +65,17 @@ impl Distances {
         let mut index = self.cell_near(frame, point)?;
         let end = self.costs[index].saturating_sub((ahead_m / frame.resolution_m() * f64::from(SIDE)) as u16);
         while self.costs[index] > end {
-            index = neighbors(frame, index).flatten().min_by_key(|near| self.costs[*near])?;
+            index = neighbors(frame, index).map(|(near, _)| near).min_by_key(|near| self.costs[*near])?;
         }
         (frame.center(frame.cell(index)) - point).try_normalize(1e-6)
     }
 }
 
-/// The neighbors of a cell that are on the map, in the order of [`NEIGHBORS`].
-fn neighbors(frame: &GridFrame, index: usize) -> impl Iterator<Item = Option<usize>> {
+/// The neighbors of a cell that are on the map, with the costs of a step to them, in the order of [`NEIGHBORS`].
+fn neighbors(frame: &GridFrame, index: usize) -> impl Iterator<Item = (usize, u16)> {
     let cell = frame.cell(index);
-    NEIGHBORS.iter().map(move |(dx, dy, _)| frame.index(Cell::new(cell.x + dx, cell.y + dy)))
+    let on_map = move |(dx, dy, cost)| Some((frame.index(Cell::new(cell.x + dx, cell.y + dy))?, cost));
+    NEIGHBORS.into_iter().filter_map(on_map)
 }
 
 const NEIGHBORS: [(i32, i32, u16); 8] = [

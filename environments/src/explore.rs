@@ -1,7 +1,6 @@
 //! Exploring a place that changes.
 
-use crate::explore_place::{ExplorePlace, One};
-use crate::patches::{LAYERS, Patches};
+use crate::explore_place::{ExplorePlace, LAYERS, One, Patches};
 use crate::task::{Part, Results, Task, TaskError, present_scene, twist, write_scan, write_state};
 use draw::canvas::{Canvas, PictureError};
 use draw::pictures::bare;

@@ -22,20 +22,17 @@
 mod batch;
 mod distance;
 mod drive;
-mod drive_settings;
 mod explore;
 mod explore_place;
 mod memory;
-mod patches;
 mod place;
 mod task;
 
 pub use batch::Batch;
 pub use drive::Drive;
-pub use drive_settings::DriveSettings;
 pub use explore::Explore;
 pub use explore_place::{ExplorePlace, ExploreSettings};
-pub use place::DrivePlace;
+pub use place::{DrivePlace, DriveSettings};
 pub use task::{ACTIONS, Part, Results, Task, TaskError};
 
 use sim::physics::FleetSpec;

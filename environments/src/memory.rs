@@ -3,6 +3,7 @@
 //! A robot that only sees its scan and the direction of its goal stays in the first dead end. To know the places where it was is
 //! enough to come out of it (Balch and Arkin, "Avoiding the past", 1993).
 
+use draw::scene::extent;
 use interfaces::{GridFrame, LaserReading, heading_rad};
 use nalgebra::{Isometry2, Point2, Vector2};
 use std::f64::consts::{PI, TAU};
@@ -35,9 +36,8 @@ pub(crate) struct Memory {
 impl Memory {
     /// An empty memory of a world with this frame.
     pub(crate) fn new(world: &GridFrame) -> Self {
-        let (width, height) = (world.width() as f64, world.height() as f64);
-        let (width_m, height_m) = (width * world.resolution_m(), height * world.resolution_m());
-        let frame = GridFrame::covering(world.origin(), width_m, height_m, CELL_M.max(world.resolution_m()));
+        let (origin, size_m) = extent(world);
+        let frame = GridFrame::covering(origin, size_m.x, size_m.y, CELL_M.max(world.resolution_m()));
         let frame = frame.unwrap_or(*world);
         Self { frame, visits: vec![0; frame.len()], seen: vec![false; frame.len()] }
     }
@@ -89,17 +89,15 @@ impl Memory {
     /// The means over the cells around a point.
     fn around(&self, point: &Point2<f64>, reach: i32) -> [f32; 2] {
         let (middle, mut sums) = (self.frame.cell_at(point), [0.0; 2]);
-        for y in middle.y - reach..=middle.y + reach {
-            for x in middle.x - reach..=middle.x + reach {
-                let [visited, seen] = match self.frame.index(interfaces::Cell::new(x, y)) {
-                    Some(index) => {
-                        let visits = f32::from(self.visits[index]);
-                        [visits / (visits + HALF), f32::from(u8::from(self.seen[index]))]
-                    }
-                    None => [1.0, 1.0],
-                };
-                sums = [sums[0] + visited, sums[1] + seen];
-            }
+        for cell in middle.square(reach) {
+            let [visited, seen] = match self.frame.index(cell) {
+                Some(index) => {
+                    let visits = f32::from(self.visits[index]);
+                    [visits / (visits + HALF), f32::from(u8::from(self.seen[index]))]
+                }
+                None => [1.0, 1.0],
+            };
+            sums = [sums[0] + visited, sums[1] + seen];
         }
         sums.map(|sum| sum / (2 * reach + 1).pow(2) as f32)
     }

@@ -8,8 +8,8 @@
 
 use agent::{Agent, Policy};
 use controller::{Controller, DiffDrive};
-use evaluation::map_hash::map_hash;
 use evaluation::observer::Observer;
+use evaluation::observer::map_hash;
 use evaluation::physics_trial::{self, PhysicsTrial};
 use interfaces::{LaserReading, World};
 use mapper::ReadingError;

@@ -1,8 +1,7 @@
 //! A run in a physics world as a library call: what the world says of itself, the robot, and the loop with the observer.
 
-use crate::map_hash::map_hash;
 use crate::metrics::{age, interval_scores, map_scores, passage_scores, rate_scores, reachable_scores};
-use crate::observer::Observer;
+use crate::observer::{Observer, map_hash};
 use crate::scheduled_things::ScheduledThings;
 use crate::summary::{Contacts, CurvePoint, RunResults};
 use agent::Features;

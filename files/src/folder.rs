@@ -1,8 +1,8 @@
 //! The folder of a run's results.
 
 use super::exchange::{Exchange, Moves, check_replaceable};
-use super::marker::Marker;
 use super::{OutputError, disk, lock, make_folder};
+use crate::exchange::Marker;
 use std::collections::BTreeSet;
 use std::ffi::OsStr;
 use std::fs::{self, File};

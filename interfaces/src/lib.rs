@@ -12,7 +12,6 @@ mod cell;
 mod command;
 mod grid;
 mod ground_truth;
-mod median;
 mod pose_mode;
 mod printable;
 mod random;
@@ -22,21 +21,19 @@ pub mod serde_pose;
 pub mod serde_time;
 mod settings;
 mod sparse_cells;
-mod spread;
 mod state;
 mod values;
 mod world;
 
 pub use angle::{
-    APPROXIMATE_ATAN2_ERROR_RAD, FARTHEST_M, approximate_atan2, heading_rad, is_valid_pose, pose, rotation,
-    wrap_rad,
+    APPROXIMATE_ATAN2_ERROR_RAD, FARTHEST_M, Spread, approximate_atan2, heading_rad, is_valid_pose, median,
+    pose, rotation, wrap_rad,
 };
 pub use by_name::UnknownName;
 pub use cell::Cell;
 pub use command::{Step, Twist};
 pub use grid::{Grid, GridFrame};
 pub use ground_truth::{GroundTruth, TrueChange, TrueState};
-pub use median::median;
 pub use pose_mode::PoseMode;
 pub use printable::{is_printable, printable, printable_lines};
 pub use random::{Purpose, RandomStream};
@@ -44,7 +41,6 @@ pub use reading::{CellReading, LaserReading, Observation, Reading, VelocitySampl
 pub use scan::{Scan, ScanError};
 pub use settings::{SettingsCheck, SettingsError};
 pub use sparse_cells::{Place, SMALL_GRID, SparseCells};
-pub use spread::Spread;
 pub use state::{CellState, Event, Transition};
 pub use values::{
     CellList, Value, ValueError, Values, cell_runs, converted, from_bytes, read_value, read_values, restore,

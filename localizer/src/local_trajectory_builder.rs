@@ -8,8 +8,7 @@
 
 use crate::deskew::Deskew;
 use crate::faults::{Fault, FaultFinder};
-use crate::motion::{Motion, Predicted};
-use crate::motion_prior::MotionPrior;
+use crate::motion::{Motion, MotionPrior, Predicted};
 use crate::placement::shifted;
 use crate::scan_path::ScanPath;
 use crate::scan_points::{PointRules, ScanPoint};

@@ -7,10 +7,9 @@
 mod tests;
 
 use crate::constants::{JUDGED_M, SAME_SURFACE, SURFEL_M};
-use crate::moments::Moments;
 use crate::work;
 use interfaces::{FARTHEST_M, LaserReading, Scan};
-use nalgebra::{Isometry2, Point2, Vector2};
+use nalgebra::{Isometry2, Matrix2, Point2, Vector2};
 
 /// End points of neighboring beams that are nearer than this, in spacings of the beams, are on one surface: below about 20° between
 /// beam and surface, a third beam must confirm the surface.
@@ -257,4 +256,45 @@ pub(crate) fn means(points: &[ScanPoint], values: &[Option<f64>]) -> Vec<Option<
         Some(sum / count)
     };
     (0..points.len()).map(mean).collect()
+}
+
+// Lines through runs of points, from sums that are subtracted from each other.
+
+/// The sums of the coordinates, and of their products, of a run of points.
+#[derive(Clone, Copy, Debug, Default)]
+struct Moments {
+    count: f64,
+    sum: Vector2<f64>,
+    products: Matrix2<f64>,
+}
+
+impl Moments {
+    fn plus(mut self, point: &Point2<f64>) -> Self {
+        self.count += 1.0;
+        self.sum += point.coords;
+        self.products += point.coords * point.coords.transpose();
+        self
+    }
+
+    fn minus(&self, other: &Self) -> Self {
+        let (sum, products) = (self.sum - other.sum, self.products - other.products);
+        Self { count: self.count - other.count, sum, products }
+    }
+
+    /// The unit normal of the line through the points (total least squares), and the mean square distance from it.
+    fn line(&self) -> Option<(Vector2<f64>, f64)> {
+        let mean = self.sum / self.count;
+        let spread = self.products / self.count - mean * mean.transpose();
+        let (xx, xy, yy) = (spread[(0, 0)], spread[(0, 1)], spread[(1, 1)]);
+        let (half_sum, half_difference) = ((xx + yy) / 2.0, (xx - yy) / 2.0);
+        let root = (half_difference * half_difference + xy * xy).sqrt();
+        // The direction along the line is the eigenvector of the larger eigenvalue, half_sum + root.
+        let along = if half_difference >= 0.0 {
+            Vector2::new(half_difference + root, xy)
+        } else {
+            Vector2::new(xy, root - half_difference)
+        };
+        let length = along.norm();
+        (length > 1e-12).then(|| (Vector2::new(-along.y, along.x) / length, (half_sum - root).max(0.0)))
+    }
 }

@@ -60,7 +60,8 @@ pub(crate) struct Search {
     found: Vec<Node>,
 }
 
-/// The poses in a window that fit best, the best first: all that differ and reach `ratio` of the best score, up to a number.
+/// The poses in a window that fit best, the best first: all that differ and reach `ratio` of the best score, up to a number,
+/// searched for in passes down to a score.
 /// `left` is what is left of the work of a scan.
 pub(crate) fn search(
     left: &mut usize,
@@ -69,7 +70,11 @@ pub(crate) fn search(
     window: &Window,
     (min_score, ratio): (f64, f64),
 ) -> Vec<Isometry2<f64>> {
-    Search::new(points, *window, lower(1.0, min_score), ratio).all(grid, left, min_score)
+    let mut search = Search::new(points, *window, lower(1.0, min_score), ratio);
+    while search.pass(grid, left) && !search.is_over(min_score) {
+        (search.next, search.min_score) = (0, lower(search.min_score, min_score));
+    }
+    search.candidates(grid)
 }
 
 /// The smallest score of the next pass: few squares can reach a high one, and most scans fit well somewhere.
@@ -81,14 +86,6 @@ impl Search {
     pub(crate) fn new(points: &[ScanPoint], window: Window, min_score: f64, ratio: f64) -> Self {
         let (points, nodes, found) = (spread(points), Vec::new(), Vec::new());
         Self { points, window, min_score, ratio, next: 0, nodes, found }
-    }
-
-    /// Searches in passes down to a score.
-    fn all(mut self, grid: &ScoreGrid, left: &mut usize, min_score: f64) -> Vec<Isometry2<f64>> {
-        while self.pass(grid, left) && !self.is_over(min_score) {
-            (self.next, self.min_score) = (0, lower(self.min_score, min_score));
-        }
-        self.candidates(grid)
     }
 
     /// Whether no pass with a smaller score would find more.

@@ -27,18 +27,18 @@ mod readings;
 #[cfg(test)]
 mod tests;
 
-use crate::bytes::{Bytes, content_hash};
+use crate::bounds::Unpacked;
+use crate::bytes::{Bytes, GZIP, content_hash};
 use crate::checks::{MIN_MOTION_M, MIN_MOTION_RAD};
-use crate::choice::TopicChoice;
-use crate::error::LogError;
-use crate::lines::{self, Lines};
 use crate::log::{Log, RawReadings, Source};
-use crate::summary::LogSummary;
+use crate::summary::{LogError, LogSummary, TopicChoice};
+use flate2::bufread::MultiGzDecoder;
 use geometry::Geometry;
 use interfaces::Spread;
 use line::Line;
 use nalgebra::Isometry2;
 use readings::Readings;
+use std::io::{self, BufRead, BufReader, Error, ErrorKind, Read, Seek, SeekFrom};
 
 /// Poses of FLASER lines that stay within this of the odometry, m and rad, are those of the odometry at slightly other times: a robot
 /// drives 0.1 m in the 0.1 s between the two.
@@ -144,7 +144,7 @@ impl Source for CarmenLog {
 
     fn content_hash(&self) -> Result<u128, LogError> {
         let io = |why| LogError::Io { file: self.file.clone(), why };
-        content_hash([lines::open(&self.bytes)]).map_err(io)
+        content_hash([open_text(&self.bytes)]).map_err(io)
     }
 
     /// The poses of the laser that the FLASER lines contain; `None` for readings of other lines. In a corrected log they are
@@ -158,5 +158,69 @@ impl Source for CarmenLog {
             }
         }
         Ok(Some(poses))
+    }
+}
+
+// A file as lines of text, plain or compressed.
+
+/// The longest line, in bytes: a file that never ends a line must not fill the memory.
+const LONGEST: u64 = 1 << 20;
+
+/// The text of a log; its compression is undone.
+type Text = BufReader<Unpacked<Box<dyn Read + Send>>>;
+
+/// Opens a log. The compression is recognized by the content.
+fn open_text(bytes: &Bytes) -> io::Result<Text> {
+    let mut reader = BufReader::new(bytes.open()?);
+    let is_packed = reader.fill_buf()?.starts_with(&GZIP);
+    let size = reader.seek(SeekFrom::End(0))?;
+    reader.rewind()?;
+    let text = match is_packed {
+        true => Unpacked::new(Box::new(MultiGzDecoder::new(reader)) as Box<_>, size, "gzip -d FILE"),
+        false => Unpacked::plain(Box::new(reader.into_inner()) as Box<_>),
+    };
+    Ok(BufReader::new(text))
+}
+
+/// The lines of a log, one after the other.
+struct Lines {
+    reader: Text,
+    file: String,
+    /// The number of the last line, from 1.
+    number: u64,
+    /// Whether the last line ended with a line feed. Otherwise, it can be cut off.
+    is_complete: bool,
+    line: Vec<u8>,
+}
+
+impl Lines {
+    /// Opens a log. The compression is recognized by the content.
+    fn open(bytes: &Bytes, file: &str) -> Result<Self, LogError> {
+        let reader = open_text(bytes).map_err(|why| LogError::Io { file: file.to_owned(), why })?;
+        Ok(Self { reader, file: file.to_owned(), number: 0, is_complete: true, line: Vec::new() })
+    }
+
+    /// The next line, `None` at the end. Bytes that are no text are replaced.
+    fn next_line(&mut self) -> Result<Option<String>, LogError> {
+        self.line.clear();
+        let mut limited = self.reader.by_ref().take(LONGEST);
+        let read = limited.read_until(b'\n', &mut self.line);
+        let count = read.map_err(|why| LogError::Io { file: self.file.clone(), why })?;
+        if count == 0 {
+            return Ok(None);
+        }
+        self.number += 1;
+        self.is_complete = self.line.ends_with(b"\n");
+        if !self.is_complete && count as u64 == LONGEST {
+            let why = Error::new(ErrorKind::InvalidData, "a line is longer than 1 MiB: not a log");
+            return Err(LogError::Io { file: self.file.clone(), why });
+        }
+        Ok(Some(String::from_utf8_lossy(&self.line).into_owned()))
+    }
+
+    /// The bytes of a compressed file that is cut off, and the bytes of text that could be unpacked; `None` if it is whole so far.
+    fn cut(&self) -> Option<(u64, u64)> {
+        let text = self.reader.get_ref();
+        text.is_cut.then_some((text.packed, text.count))
     }
 }

@@ -5,13 +5,11 @@ mod doubts;
 mod holes;
 mod jumps;
 mod pace;
-mod speeds;
 mod standing;
 pub(crate) mod times;
 
 pub(crate) use doubts::{Doubts, OdometryTimes, typical};
 pub(crate) use holes::{Holes, LONGEST_GAP_S};
-pub(crate) use jumps::Jumps;
+pub(crate) use jumps::{Jumps, Speeds};
 pub(crate) use pace::Pace;
-pub(crate) use speeds::Speeds;
 pub(crate) use standing::{MIN_MOTION_M, MIN_MOTION_RAD, Standing};

@@ -12,15 +12,50 @@ mod bounds;
 mod bytes;
 mod carmen;
 mod checks;
-mod choice;
-mod error;
-mod lines;
 mod log;
-mod open;
 mod summary;
 
-pub use choice::TopicChoice;
-pub use error::LogError;
 pub use log::{Log, Readings};
 pub use ros::{self, McapWriter};
-pub use summary::LogSummary;
+pub use summary::{LogError, LogSummary, TopicChoice};
+
+use crate::bag::{Bag, BagFile, in_folder};
+use crate::bytes::Bytes;
+use crate::carmen::CarmenLog;
+use std::path::Path;
+
+// Opening a log: which format it has.
+
+impl Log {
+    /// Opens a log, and inspects it: it is read once or twice as a whole. `path` is
+    ///
+    /// - a CARMEN log, plain or compressed with gzip,
+    /// - a file of a bag of ROS 2: MCAP, an SQLite database, or one of them compressed with zstd,
+    /// - a folder with such files, in the order of its `metadata.yaml`, or of their names where it is missing.
+    ///
+    /// The format follows from the content, not from the name. See [`TopicChoice`] for `choice`. Of a
+    /// compressed file or an MCAP file that is cut off, what is whole is read.
+    ///
+    /// # Errors
+    ///
+    /// When a file cannot be read or is damaged, when it has no usable scan, when corrected poses are chosen and it has none, or when several topics are odometry and
+    /// `choice` names no topic of odometry. What can be repaired or left out is no error but a note, see
+    /// [`LogSummary::notes`](LogSummary::notes).
+    pub fn open(path: &Path, choice: &TopicChoice) -> Result<Self, LogError> {
+        let name = path.display().to_string();
+        if path.is_dir() {
+            let (files, note) = in_folder(path)?;
+            return Bag::open(&name, files, choice, note.into_iter().collect());
+        }
+        if path.metadata().is_ok_and(|known| !known.is_file()) {
+            // A pipe would wait for ever.
+            let why =
+                "it is not a regular file, and a log is read several times: write it into a file".to_owned();
+            return Err(LogError::Unusable { file: name, why });
+        }
+        match BagFile::open(path)? {
+            Some(file) => Bag::open(&name, vec![file], choice, Vec::new()),
+            None => CarmenLog::open(&name, Bytes::File(path.to_owned()), choice),
+        }
+    }
+}

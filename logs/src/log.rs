@@ -1,7 +1,6 @@
 //! A log of any format.
 
-use crate::error::LogError;
-use crate::summary::LogSummary;
+use crate::summary::{LogError, LogSummary};
 use interfaces::LaserReading;
 use nalgebra::Isometry2;
 use std::fmt::Debug;

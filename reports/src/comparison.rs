@@ -1,8 +1,7 @@
 //! The comparison of two strategies, paired by trial or by world.
 
-use super::measure::Measure;
 use super::statistics::{Moments, Quantiles, holm};
-use super::strategy::{StrategyResult, Unit};
+use super::strategy::{Measure, StrategyResult, Unit};
 use serde::Serialize;
 
 /// The difference between two strategies in one measure. Within a world, trials with the same seed are pairs; in

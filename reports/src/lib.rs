@@ -10,30 +10,24 @@
 mod builder;
 mod comparison;
 mod figure;
-mod files;
-mod measure;
-mod run;
 pub mod shards;
 mod statistics;
 mod strategy;
 mod table;
-mod trial_file;
 #[cfg(feature = "programs")]
 pub mod trials;
 
-pub use builder::{ReportBuilder, UnequalTimes};
+pub use builder::{ReportBuilder, Run, UnequalTimes, collect};
 pub use comparison::Comparison;
-pub use measure::Measure;
-pub use run::Run;
 pub use statistics::{Estimate, PairedTest, paired_test};
-pub use strategy::StrategyResult;
-pub use trial_file::collect;
+pub use strategy::{Measure, StrategyResult};
 
-use ::files::{RunFolder, write_file};
 use draw::canvas::PictureError;
 use draw::scene::Scene;
 use evaluation::scenes::Displayed;
 use evaluation::trials::{Experiment, Length, Trial, TrialError, TrialWorld};
+use files::{RunFolder, write_file};
+use robot::BUILD;
 use serde::Serialize;
 use std::sync::atomic::AtomicBool;
 
@@ -122,6 +116,22 @@ pub struct Report {
     pub runs: Vec<Run>,
 }
 
+/// The version of the layout of `report.json`; count up when a key is renamed, removed or changes its meaning.
+const SCHEMA: u32 = 1;
+
+/// The content of `report.json`.
+#[derive(Serialize)]
+struct Content<'a> {
+    /// The version of the layout.
+    schema: u32,
+    /// The build of the program.
+    build: &'static str,
+    #[serde(flatten)]
+    report: &'a Report,
+    /// The names of the other files.
+    files: &'a [String],
+}
+
 impl Report {
     /// Runs all trials of an experiment with the default rayon pool, and returns their report.
     ///
@@ -172,7 +182,11 @@ impl Report {
         let to = folder.unfinished();
         figure::write_all(to, self, &scenes)?;
         let mut names = folder.results()?;
-        write_file(&to.join(REPORT), |file| files::write_report(self, &names, file))?;
+        let content = Content { schema: SCHEMA, build: BUILD, report: self, files: &names };
+        write_file(&to.join(REPORT), |file| {
+            serde_json::to_writer(&mut *file, &content)?;
+            writeln!(file)
+        })?;
         names.insert(0, REPORT.to_owned());
         Ok(names)
     }

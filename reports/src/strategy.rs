@@ -1,8 +1,9 @@
 //! The results of one strategy: curves, areas, and the units of averages and pairs.
 
-use super::measure::{Measure, area};
 use super::statistics::{Estimate, Moments, Quantiles};
 use evaluation::trials::{Metric, Trial};
+use serde::ser::SerializeMap;
+use serde::{Serialize, Serializer};
 
 /// The results of one strategy.
 #[derive(Clone, Debug, Default)]
@@ -150,5 +151,108 @@ impl StrategySums {
         };
         let (curves, areas) = (Metric::ALL.map(curve).into(), self.areas.iter().map(Moments::mean).collect());
         StrategyResult { curves, areas, ..self.result }
+    }
+}
+
+// The strategies of `report.json`. An undefined value is `null`; names are in the order of the experiment.
+
+impl Serialize for StrategyResult {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        let mut object = to.serialize_map(None)?;
+        object.serialize_entry("trials", &self.trials)?;
+        for measure in Metric::ALL.iter().flat_map(|&metric| [Measure::Final(metric), Measure::Area(metric)])
+        {
+            object.serialize_entry(&measure.name(), &self.value(measure))?;
+        }
+        object.serialize_entry("false_change_events", &self.false_change_events)?;
+        object.serialize_entry("false_map_changes", &self.false_map_changes)?;
+        if let Some(collisions) = self.collisions {
+            object.serialize_entry("collisions", &collisions)?;
+        }
+        object.serialize_entry("strategy_share", &Shares(&self.strategy_share))?;
+        for metric in Metric::ALL {
+            let curve = self.times.iter().zip(self.curve(metric));
+            let points: Vec<_> = curve.map(|(time, at)| (time, at.mean, at.low, at.high)).collect();
+            object.serialize_entry(metric.name(), &points)?;
+        }
+        object.end()
+    }
+}
+
+/// Pairs as an object, in their order.
+struct Shares<'a>(&'a [(String, f64)]);
+
+impl Serialize for Shares<'_> {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        to.collect_map(self.0.iter().map(|(name, share)| (name, share)))
+    }
+}
+
+// The measures in which strategies are compared.
+
+/// One number per trial.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[serde(into = "String")]
+pub enum Measure {
+    /// The value of a metric in the last sample.
+    Final(Metric),
+    /// The area under the curve of a metric divided by the length of the run, that is, the mean over the run, in
+    /// the unit of the metric.
+    Area(Metric),
+}
+
+impl Measure {
+    /// The primary measure: the log error of the rates over the run.
+    pub const PRIMARY: Self = Self::Area(Metric::LogError);
+
+    /// The measures in which strategies are compared pair by pair.
+    pub const COMPARED: [Self; 7] = [
+        Self::PRIMARY,
+        Self::Final(Metric::LogError),
+        Self::Area(Metric::RateError),
+        Self::Final(Metric::RateError),
+        Self::Final(Metric::MapQuality),
+        Self::Final(Metric::MapQualityChanging),
+        Self::Final(Metric::Brier),
+    ];
+
+    /// The name in `report.json`, as `final_log_error` or `log_error_area`.
+    pub fn name(self) -> String {
+        match self {
+            Self::Final(metric) => format!("final_{}", metric.name()),
+            Self::Area(metric) => format!("{}_area", metric.name()),
+        }
+    }
+}
+
+impl From<Measure> for String {
+    fn from(measure: Measure) -> Self {
+        measure.name()
+    }
+}
+
+/// The area under the curve through `values` at `times` (increasing), divided by its length.
+///
+/// Before the first time, the first value is used, so that a curve that begins at step 1 gives a mean over the
+/// whole run. Segments with NaN are left out of area and length. The result is NaN if there is no value.
+pub(super) fn area(times: &[u64], values: &[f64]) -> f64 {
+    let (Some(&first_time), Some(&first)) = (times.first(), values.first()) else { return f64::NAN };
+    let (mut area, mut length) = (0.0, 0.0);
+    if !first.is_nan() {
+        area = first * first_time as f64;
+        length = first_time as f64;
+    }
+    for (times, values) in times.windows(2).zip(values.windows(2)) {
+        let height = (values[0] + values[1]) / 2.0;
+        if !height.is_nan() {
+            let width = (times[1] - times[0]) as f64;
+            area += height * width;
+            length += width;
+        }
+    }
+    if length > 0.0 {
+        area / length
+    } else {
+        values.iter().copied().find(|value| !value.is_nan()).unwrap_or(f64::NAN)
     }
 }

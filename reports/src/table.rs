@@ -1,9 +1,8 @@
 //! The tables for a terminal of 80 columns.
 
+use super::builder::{Run, conditions};
 use super::comparison::Comparison;
-use super::measure::Measure;
-use super::run::{Run, conditions};
-use super::strategy::StrategyResult;
+use super::strategy::{Measure, StrategyResult};
 use super::{ONE_BY_ONE, Report, is_reference};
 use evaluation::trials::Metric;
 use results::numbers::percent;

@@ -1,5 +1,4 @@
-use crate::belief::{Belief, Permission};
-use crate::pilot::{GoalCount, Level, Message, Pilot, PilotView};
+use crate::pilot::{Belief, GoalCount, Level, Message, Permission, Pilot, PilotView};
 use agent::{Features, Goal, GoalSelector, Stay, StrategyState, Travel};
 use controller::{ControlInput, Driver, DriverView, Outcome, Status};
 use interfaces::{Values, values};

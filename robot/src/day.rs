@@ -1,8 +1,7 @@
 //! The day of a robot: patrols on a battery, rests at its dock, and orders by others.
 
 use crate::autonomous::Autonomous;
-use crate::belief::{Belief, Permission};
-use crate::pilot::{Message, Pilot, PilotView};
+use crate::pilot::{Belief, Message, Permission, Pilot, PilotView};
 use agent::{Features, Goal, GoalSelector, Stay, StrategyState, Travel};
 use calendar::{DAY_S, Hours};
 use controller::Driver;

@@ -10,10 +10,8 @@
 //! where a run stopped, so that another run goes on from there.
 
 mod autonomous;
-mod belief;
 mod build;
 mod day;
-mod localization;
 mod pilot;
 mod robot;
 mod session;
@@ -25,12 +23,10 @@ mod tour;
 
 pub use agent::{GoalSelector, StrategyState};
 pub use autonomous::Autonomous;
-pub use belief::{Belief, Permission};
 pub use build::BUILD;
 pub use day::{Battery, DaySettings, DayTotals, PatrolDay};
-pub use localization::{ExactPoses, Localization};
-pub use pilot::{GoalCount, Level, Message, NoPilot, Pilot, PilotView};
-pub use robot::{Robot, Turn};
+pub use pilot::{Belief, GoalCount, Level, Message, NoPilot, Permission, Pilot, PilotView};
+pub use robot::{ExactPoses, Localization, Robot, Turn};
 pub use session::{Session, max_step_s};
 pub use settings::{LOCAL_STEPS, Settings, Source, default_mapper};
 pub use tour::Tour;

@@ -1,7 +1,6 @@
 use crate::autonomous::Autonomous;
-use crate::localization::Localization;
 use crate::pilot::Pilot;
-use crate::robot::Robot;
+use crate::robot::{Localization, Robot};
 use crate::session::max_step_s;
 use agent::{Agent, AgentSettings, GoalSelector, Policy};
 use controller::{Controller, DiffDrive, DiffDriveSettings};

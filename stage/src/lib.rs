@@ -35,16 +35,11 @@
 //! are left out since those of Stage are short beams at any place, and those of this simulator are parts of a ring
 //! around the robot that detect contacts.
 
-mod body;
-mod builder;
-mod check;
-mod drive;
 mod left_out;
 mod lexer;
 mod load;
 mod models;
 mod outline;
-mod pictures;
 mod polygon;
 mod robots;
 mod senses;

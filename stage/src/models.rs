@@ -1,10 +1,10 @@
 //! Models: their names, their bodies, and those that are walls.
 
-use super::body::Body;
-use super::builder::Builder;
 use super::lexer::Span;
 use super::tree::Entity;
 use super::{StageWall, left_out};
+use crate::robots::Body;
+use crate::world::Builder;
 use nalgebra::Isometry2;
 use sim::physics::{BoxTree, Rectangle};
 use worldfile::Severity;

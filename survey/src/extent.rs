@@ -1,7 +1,6 @@
 //! How large a place is, and how much of it is seen: whether its map will fit into the memory is known before it is made.
 
-use crate::error::SurveyError;
-use crate::settings::SurveySettings;
+use crate::settings::{SurveyError, SurveySettings};
 use interfaces::{GridFrame, LaserReading, Spread};
 use mapper::Mapper;
 use nalgebra::{Isometry2, Point2, Vector2};

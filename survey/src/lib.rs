@@ -14,43 +14,36 @@
 //! changes, and the [map](permanent()) of what is permanent.
 
 mod change_log;
-mod error;
 mod extent;
 mod forecast;
 mod masks;
 mod outlook;
 mod passes;
-mod patches;
 mod places;
 mod quality;
 mod range_noise;
 mod repeated;
-mod replay;
 mod route;
 mod route_graph;
 mod settings;
-mod silence;
 mod survey;
 mod surveyed_log;
 #[cfg(test)]
 mod tests;
-mod turns;
 mod upright;
 
 pub use change_log::ChangeLog;
-pub use error::SurveyError;
 pub use forecast::{Forecast, NEAR_M};
 pub use masks::{MASKS, masks, masks_ahead, permanent};
 pub use outlook::Outlook;
-pub use passes::Stage;
+pub use passes::{FoundPoses, Replay, Stage};
 pub use places::{
     Lasting, Place, PlaceKind, PlaceName, PlaceRates, PlaceSince, Since, StillName, Trend, is_line,
 };
 pub use quality::{Doubt, DoubtKind, Quality, Verdict};
-pub use replay::{FoundPoses, Replay};
 pub use route::{FirstPass, Route};
 pub use route_graph::{EdgeOutlook, RouteGraph, RouteGraphError, Travel};
-pub use settings::SurveySettings;
+pub use settings::{SurveyError, SurveySettings};
 pub use survey::{Survey, saved_logs, saved_settings};
 pub use surveyed_log::{LogEntry, SurveyedLog, Travelled};
 pub use upright::upright_rad;

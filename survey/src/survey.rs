@@ -8,14 +8,12 @@ pub(crate) use saved::SavedSurvey;
 pub use saved::{saved_logs, saved_settings};
 
 use crate::change_log::ChangeLog;
-use crate::error::SurveyError;
 use crate::extent::{check_seen, too_much, union};
-use crate::passes::{RoutePass, Stage};
+use crate::passes::{FoundPoses, Replay, RoutePass, Stage, judged};
 use crate::places::{Place, PlaceBook, PlaceName, Since, StillName, places, since, still_names};
 use crate::quality::Verdict;
-use crate::replay::{FoundPoses, Replay, judged};
-use crate::settings::SurveySettings;
-use crate::silence::max_step_s;
+use crate::repeated::max_step_s;
+use crate::settings::{SurveyError, SurveySettings};
 use crate::surveyed_log::{LogEntry, SurveyedLog};
 use interfaces::{GridFrame, LaserReading};
 use localizer::KnownPlace;

@@ -1,9 +1,8 @@
 //! What a survey keeps of a log.
 
 use crate::quality::Quality;
-use crate::repeated::{repeats, sketch};
+use crate::repeated::{repeats, silence_note, sketch};
 use crate::route::{Route, distance_m};
-use crate::silence;
 use interfaces::GridFrame;
 use localizer::{PoseState, TrajectoryPose};
 use logs::{Log, LogError, TopicChoice};
@@ -132,7 +131,7 @@ impl SurveyedLog {
     pub(crate) fn new(mut entry: LogEntry, route: Route, frame: GridFrame, hiding_s: f64) -> Self {
         entry
             .notes
-            .extend(route.scale_note().into_iter().chain(silence::note(&route.trajectory.poses, hiding_s)));
+            .extend(route.scale_note().into_iter().chain(silence_note(&route.trajectory.poses, hiding_s)));
         Self {
             entry,
             readings: route.trajectory.poses.len(),

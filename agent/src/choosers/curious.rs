@@ -1,6 +1,6 @@
 use super::tile_coder::TileCoder;
 use super::{Chooser, Trajectory};
-use crate::sampling::proportional;
+use crate::goal_sampler::proportional;
 use crate::situation::{Features, Situation};
 use interfaces::{RandomStream, Values, value};
 

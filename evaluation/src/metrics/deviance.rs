@@ -3,7 +3,7 @@
 //! The log error compares rates with the past that the robot has seen, and only over cells that truly changed: a wrong rate
 //! of a cell that has not changed yet costs nothing. The deviance of the events to come has no such gap.
 
-use super::mean::Mean;
+use super::statistics::Mean;
 use interfaces::{CellState, GroundTruth};
 use mapper::{Mapper, RateDistribution};
 use serde::{Deserialize, Serialize};

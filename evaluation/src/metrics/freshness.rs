@@ -1,8 +1,7 @@
 //! How fresh a predicted map is: its Brier score over all things that change at all times, in view or not, and how long
 //! lasting changes stay unknown.
 
-use super::mean::Mean;
-use super::quantile::quantile;
+use super::statistics::{Mean, quantile};
 use serde::Serialize;
 
 /// A change lasts if the thing then stays for this long, s.

@@ -1,5 +1,5 @@
 use super::beams::Beams;
-use super::counts::Counts;
+use super::statistics::Counts;
 use interfaces::{CellState, Event, GridFrame, GroundTruth, LaserReading, TrueState};
 use mapper::Mapper;
 use nalgebra::{Isometry2, Point2};

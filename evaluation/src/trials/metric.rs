@@ -153,6 +153,6 @@ pub struct Trial {
     pub false_map_changes: u64,
     /// The number of contacts of the robot that began while it moved; `None` in a grid world.
     pub collisions: Option<u64>,
-    /// The hash of everything that was learned, see [`crate::map_hash`].
+    /// The hash of everything that was learned, see [`crate::observer::map_hash`].
     pub map_hash: String,
 }

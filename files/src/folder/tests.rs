@@ -2,8 +2,8 @@
 
 mod faults;
 
-use super::super::marker::MARKER;
 use super::*;
+use crate::exchange::MARKER;
 
 fn names(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).unwrap();

@@ -1,6 +1,5 @@
 //! Matches scans with the line map of the place, and inserts them in it.
 
-mod everywhere;
 mod relocalizing;
 
 use super::state::{Event, State};

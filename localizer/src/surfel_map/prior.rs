@@ -1,10 +1,11 @@
 //! Surfels from a known occupancy grid.
 
 use super::SurfelMap;
-use crate::constants::{SURFEL_M, THICK_M};
+use crate::constants::{SURFEL_M, THICK_M, TRUSTED_SCANS};
+use crate::scan_points::ScanPoint;
 use crate::work;
 use interfaces::{Cell, CellState, Grid, GridFrame};
-use nalgebra::{Point2, Vector2};
+use nalgebra::{Isometry2, Point2, Vector2};
 
 /// Scans as which a surfel of a known map counts: the next ones correct it.
 const PRIOR_SCANS: u32 = 20;
@@ -87,4 +88,40 @@ pub(super) fn borders(grid: &Grid<CellState>) -> Vec<Border> {
         }
     }
     borders
+}
+
+// A line map as a list of points on surfaces, and back: what is kept of a map that is rarely needed.
+
+/// No map of points is larger, m.
+const MAX_PLACE_M: f64 = 200.0;
+
+impl SurfelMap {
+    /// All surfels that take part in matching, in a frame whose pose in the frame of the map is `pose`.
+    pub(crate) fn points(&self, pose: &Isometry2<f64>) -> Vec<ScanPoint> {
+        let back = pose.inverse();
+        let point = |(beam, surfel): (usize, &crate::surfel_map::Surfel)| ScanPoint {
+            beam,
+            ..ScanPoint::new(back * surfel.at, back.rotation * surfel.normal)
+        };
+        self.usable().enumerate().map(point).collect()
+    }
+
+    /// The map of some points, all with full weight.
+    pub(crate) fn of_points(points: &[ScanPoint]) -> Option<Self> {
+        let first = points.first()?.at;
+        let (low, high) = points.iter().fold((first, first), |(low, high), point| {
+            (low.coords.inf(&point.at.coords).into(), high.coords.sup(&point.at.coords).into())
+        });
+        let size: Vector2<f64> = high - low;
+        if size.max() > MAX_PLACE_M {
+            return None;
+        }
+        let origin: Point2<f64> = low - Vector2::repeat(SURFEL_M);
+        let frame = GridFrame::covering(origin, size.x + 2.0 * SURFEL_M, size.y + 2.0 * SURFEL_M, SURFEL_M)?;
+        let mut map = Self::new(&frame);
+        for point in points {
+            map.add(point.at, point.normal, TRUSTED_SCANS);
+        }
+        Some(map)
+    }
 }

@@ -3,8 +3,7 @@
 
 use super::correlation::{Correlated, Correlation, matched_at};
 use super::graph::{Edge, PoseGraph};
-use super::keyframe::Keyframe;
-use super::matching::in_frame;
+use super::submap::{Keyframe, in_frame};
 use crate::constants::{CORRELATED, CORRELATED_KEYFRAMES};
 use interfaces::Spread;
 use rayon::prelude::*;

@@ -1,9 +1,8 @@
 //! Correlative scan matching (Olson 2009): the best of all poses in a window, by the end points of a scan among those of
 //! keyframes. Coarse cells bound the scores of blocks of shifts, so that few blocks are searched.
 
-use super::keyframe::Keyframe;
-use super::matching::information_of;
 use super::score_kernel::{BLOCK, BLOCK_BITS, Scores, TOP_SCORE, index, sums};
+use super::submap::{Keyframe, information_of};
 use crate::constants::{
     ALL_HEADINGS, CORRELATED, CORRELATED_KEYFRAMES, CORRELATED_M, CORRELATION_CELL_M, CORRELATION_PENALTY,
     CORRELATION_RANGE_M, CORRELATION_STD_M, CORRELATION_STEP_RAD, MIN_RESPONSE, RECENT_KEYFRAMES, SUBMAP_STD,

@@ -1,7 +1,6 @@
 //! Whether the beams of one submap pass the surfaces of another: then they are not the same place.
 
-use super::keyframe::Keyframe;
-use super::submap::FinishedSubmap;
+use super::submap::{FinishedSubmap, Keyframe};
 use crate::beams::ranges_around;
 use crate::constants::{CLEARANCE_M, MIN_SURE_INCIDENCE, NEAR_RANGE_M, REFINE};
 use crate::scan_points::ScanPoint;

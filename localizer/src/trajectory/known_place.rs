@@ -5,8 +5,8 @@
 //! but only the right one is proposed again and again. The most frequent ones are held against scans from everywhere in the
 //! log, and the one with which most of them fit is taken.
 
-use super::keyframe::filled;
-use super::matching::fit;
+use super::submap::filled;
+use super::submap::fit;
 use crate::constants::{
     EXAMINED, KEYFRAME, LOG_NOISE_M, MAX_WORK, MIN_AGREEMENT, MIN_OVERLAP, PLACE_STD, USABLE_SCANS,
 };
@@ -80,8 +80,7 @@ pub struct KnownPlace {
 impl KnownPlace {
     /// A place without surfaces, in the rectangle of `frame`.
     pub fn new(frame: &GridFrame) -> Self {
-        let (given, points) = (GivenPoses::default(), ScanPoints::default());
-        Self { map: SurfelMap::new(frame), given, points, last: None }
+        Self::of_map(SurfelMap::new(frame))
     }
 
     /// Adds the next reading of the log, whose pose is that on the trajectory, if the robot has moved by a keyframe since the
@@ -111,8 +110,11 @@ impl KnownPlace {
     ///
     /// When the bytes are no surfaces.
     pub fn restored(surfaces: &[u8]) -> Result<Self, ValueError> {
-        let (given, points) = (GivenPoses::default(), ScanPoints::default());
-        Ok(Self { map: SurfelMap::restored(surfaces)?, given, points, last: None })
+        SurfelMap::restored(surfaces).map(Self::of_map)
+    }
+
+    fn of_map(map: SurfelMap) -> Self {
+        Self { map, given: GivenPoses::default(), points: ScanPoints::default(), last: None }
     }
 }
 

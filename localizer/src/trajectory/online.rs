@@ -2,8 +2,8 @@
 
 use super::TrajectoryFinder;
 use super::graph::Edge;
-use super::matching::{fit, in_frame};
 use super::places::RecognizedPlace;
+use super::submap::{fit, in_frame};
 use crate::constants::{FOUND_STD, TURN_M};
 use crate::estimate::PoseState;
 use crate::surfel_map::SurfelMap;

@@ -2,9 +2,7 @@
 
 use super::free_space::passing_share;
 use super::graph::{Edge, PoseGraph, reach};
-use super::keyframe::{Keyframe, thinned};
-use super::matching::{fit, information_of};
-use super::submap::{Agreement, FinishedSubmap};
+use super::submap::{Agreement, FinishedSubmap, Keyframe, fit, information_of, thinned};
 use crate::constants::{
     AMBIGUOUS, EXAMINED, MAJORITY, MAX_PASSING, MAX_WORK, MIN_WAY_M, NEAR_M, NEAR_RANGE_M, NEIGHBORS,
     PLACE_AGREEMENT, PLACE_MODEL_STD, PLACE_OVERLAP, PLACE_STD, STRONG_AGREEMENT,

@@ -1,10 +1,8 @@
 //! The last pass: keyframes are matched with the submaps around them.
 
 use super::graph::{Edge, PoseGraph};
-use super::keyframe::Keyframe;
-use super::matching::{fit, information_of};
 use super::places::Places;
-use super::submap::{Agreement, FinishedSubmap};
+use super::submap::{Agreement, FinishedSubmap, Keyframe, fit, information_of};
 use crate::constants::{CLEARANCE_M, MIN_AGREEMENT, MIN_OVERLAP, NEAR_M, REFINE, SUBMAP_STD};
 use crate::matcher::Match;
 use crate::scan_points::ScanPoint;

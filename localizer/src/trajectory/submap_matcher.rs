@@ -2,9 +2,10 @@
 
 use super::correlation::{found_among, matched_at};
 use super::distance_scale::MeasuredMotion;
-use super::keyframe::{KEPT_POINTS, Keyframe, filled, thinned};
-use super::matching::{gates, in_frame, motion_spread};
-use super::submap::{Agreement, FinishedSubmap, GrowingSubmap, agreement};
+use super::submap::{
+    Agreement, FinishedSubmap, GrowingSubmap, KEPT_POINTS, Keyframe, agreement, filled, gates, in_frame,
+    motion_spread, thinned,
+};
 use crate::constants::{
     FAIR_SHARE, FOUND_STD, JUDGED_M, KEYFRAME, KEYFRAME_STD, MAJORITY, MAX_WORK, MIN_AGREEMENT, MIN_OVERLAP,
     MIN_RESPONSE, SCAN_STD, SUBMAP_KEYFRAMES, SURFEL_M,

@@ -1,7 +1,7 @@
 //! Frames and the transforms between them (tf).
 
 use crate::bounds;
-use crate::choice::bare;
+use crate::summary::bare;
 use nalgebra::Isometry3;
 use std::collections::{BTreeMap, VecDeque};
 

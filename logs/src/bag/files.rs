@@ -3,7 +3,7 @@
 use crate::archive;
 use crate::bounds::{self, Unpacked};
 use crate::bytes::{Bytes, MCAP, SQLITE, ZSTD};
-use crate::error::LogError;
+use crate::summary::LogError;
 use serde::Deserialize;
 use std::fs::{self, DirEntry};
 use std::io::{self, Read, Seek, Write};

@@ -7,7 +7,7 @@ use super::chunk::{Chunk, Fields, Records};
 use super::message::{Message, MessageSource, Selection, Topic};
 use crate::bounds::{MAX_NAME_BYTES, max_chunk_bytes};
 use crate::bytes::{Bytes, Input, MCAP as MAGIC};
-use crate::error::LogError;
+use crate::summary::LogError;
 use std::collections::BTreeMap;
 use std::io::{self, BufReader, ErrorKind, Read, Seek, SeekFrom};
 use std::sync::Arc;

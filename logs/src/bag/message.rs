@@ -1,6 +1,6 @@
 //! A message of a bag, and what its topic is to us.
 
-use crate::error::LogError;
+use crate::summary::LogError;
 use std::sync::Arc;
 
 /// A topic of a bag.

@@ -6,7 +6,7 @@ use super::mcap::McapFile;
 use super::message::{Kind, Message, MessageSource, Selection, Topic};
 use super::sqlite::SqliteFile;
 use crate::bytes::ZSTD;
-use crate::error::LogError;
+use crate::summary::LogError;
 use std::collections::BTreeMap;
 use std::io::Read;
 use std::sync::Arc;

@@ -4,7 +4,7 @@ use super::inventory::{Inventory, LaserTopic, no_scans};
 use super::message::{Kind, Topic};
 use super::motion::{self, Motion, MotionSource};
 use crate::assemble::{Chain, Frames, can_be_base, is_base, is_odom, is_world};
-use crate::choice::{TopicChoice, bare, listed};
+use crate::summary::{TopicChoice, bare, listed};
 use ros::mounted;
 
 /// A laser that is used.

@@ -2,14 +2,12 @@
 
 use super::message::{Kind, Message};
 use super::messages::Merged;
-use super::motion::MotionSource;
+use super::motion::{Corrections, MotionSource};
 use super::plan::{Laser, Plan};
-use super::slam::Corrections;
 use crate::assemble::{Assembler, Odometry, Waiting};
 use crate::checks::{Doubts, Speeds, typical};
-use crate::choice::bare;
-use crate::error::LogError;
 use crate::log;
+use crate::summary::{LogError, bare};
 use interfaces::LaserReading;
 use nalgebra::{Isometry3, Vector2};
 use ros::{Header, LaserScan, Transforms, cdr};

@@ -3,7 +3,7 @@
 use super::message::{Message, MessageSource, Selection, Topic};
 use crate::bounds::MAX_NAME_BYTES;
 use crate::bytes::Bytes;
-use crate::error::LogError;
+use crate::summary::LogError;
 use rusqlite::{Connection, ErrorCode, OpenFlags, Row};
 use std::collections::{BTreeMap, VecDeque};
 use std::io::{self, Read as _};

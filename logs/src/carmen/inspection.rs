@@ -1,15 +1,13 @@
 //! The first reading of a log: what it contains, and what makes no sense.
 
-use super::Rules;
 use super::geometry::{Geometry, MAX_RANGE_M, Mounts};
 use super::line::{self, Line};
+use super::{Lines, Rules};
 use crate::assemble::Odometry;
 use crate::bounds;
 use crate::checks::times::{self, Times};
 use crate::checks::{Doubts, OdometryTimes, Speeds, Standing};
-use crate::error::LogError;
-use crate::lines::Lines;
-use crate::summary::{LogSummary, since_epoch};
+use crate::summary::{LogError, LogSummary, since_epoch};
 use nalgebra::Isometry2;
 use std::collections::BTreeSet;
 

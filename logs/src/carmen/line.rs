@@ -1,9 +1,9 @@
 //! One line of a log.
 
+use super::Lines;
 use super::geometry::{Geometry, MAX_RANGE_M};
 use crate::checks::typical;
-use crate::error::LogError;
-use crate::lines::Lines;
+use crate::summary::LogError;
 use interfaces::{Scan, is_valid_pose};
 use nalgebra::Isometry2;
 use std::str::{FromStr, SplitAsciiWhitespace};

@@ -1,11 +1,10 @@
 //! The second reading of a log: reading by reading.
 
-use super::Rules;
 use super::line::{self, Line};
+use super::{Lines, Rules};
 use crate::assemble::{Assembler, Waiting};
-use crate::error::LogError;
-use crate::lines::Lines;
 use crate::log::RawReadings;
+use crate::summary::LogError;
 use interfaces::{LaserReading, Twist};
 use nalgebra::Isometry2;
 

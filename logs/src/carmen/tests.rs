@@ -6,9 +6,7 @@ use super::CarmenLog;
 use crate::Log;
 use crate::archive::tests::gzipped;
 use crate::bytes::Bytes;
-use crate::choice::TopicChoice;
-use crate::error::LogError;
-use crate::summary::LogSummary;
+use crate::summary::{LogError, LogSummary, TopicChoice};
 use interfaces::{LaserReading, heading_rad};
 use proptest::prelude::*;
 

@@ -4,8 +4,8 @@
 
 mod curves;
 
-use super::run::{Run, conditions};
 use super::{ONE_BY_ONE, Report};
+use crate::builder::{Run, conditions};
 use draw::canvas::{Canvas, PictureError, ink, why};
 use draw::palette;
 use draw::pen::{Pen, Sheet, svg};

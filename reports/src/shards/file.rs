@@ -1,14 +1,15 @@
 //! The file of a shard that runs.
 
-use super::line::{self, Line};
-use super::scan::{MAX_LINE, Scan, not_a_shard};
+use super::scan::{Line, MAX_LINE, Scan, not_a_shard, read_line, write_line};
 use super::{Header, Shard, ShardError};
-use evaluation::trials::Trial;
+use evaluation::trials::{Experiment, Trial, TrialSettings, TrialWorld, run_trial};
 use files::{OutputError, lock, make_folder};
+use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use std::collections::BTreeSet;
 use std::fs::{self, DirEntry, File};
 use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 /// The file of a shard, to which finished trials are appended from any thread. While it is open, no other process can
@@ -51,7 +52,7 @@ impl ShardFile {
         let mut file = options.map_err(failed)?;
         lock(&file, &path, "wait for it, or start another shard")?;
         let mut scan = Scan::of(&path, shard, BufReader::new(&file))?;
-        let line = line::write(header, 0).map_err(|error| failed(error.into()))?;
+        let line = write_line(header, 0).map_err(|error| failed(error.into()))?;
         if scan.header.is_none() && !line.as_bytes().starts_with(&scan.torn) {
             return Err(not_a_shard(&path));
         }
@@ -78,7 +79,7 @@ impl ShardFile {
     pub fn append(&self, number: u64, trial: &Trial) -> Result<(), OutputError> {
         let failed = |why| OutputError::new(&self.path, why);
         let line = Line { job: number, trial };
-        let line = line::write(&line, self.key).map_err(|error| failed(error.into()))?;
+        let line = write_line(&line, self.key).map_err(|error| failed(error.into()))?;
         let mut appended = self.file.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(earlier) = &appended.failure {
             return Err(failed(again(earlier)));
@@ -131,11 +132,61 @@ fn check_others(folder: &Path, header: &Header) -> Result<(), ShardError> {
         let read = BufReader::new(file).take(MAX_LINE).read_until(b'\n', &mut line);
         read.map_err(|why| ShardError::read(&path, why))?;
         let text = line.strip_suffix(b"\n").and_then(|line| std::str::from_utf8(line).ok());
-        let other = text.and_then(|text| line::read(text, 0));
+        let other = text.and_then(|text| read_line(text, 0));
         if let Some(difference) = other.and_then(|other: Header| other.difference(header)) {
             let why = format!("this shard is {difference}; give another folder by --out");
             return Err(ShardError::content(&path, why));
         }
     }
     Ok(())
+}
+
+// The trials of a shard, run and appended to its file.
+
+impl ShardFile {
+    /// The trials of the shard that were not finished when the file was opened, in the order in which they are merged.
+    pub fn open_trials<'a, W: TrialWorld>(&self, experiment: &'a Experiment<W>) -> Vec<TrialSettings<'a, W>> {
+        let mut open = experiment.jobs();
+        open.retain(|trial| self.shard.has(trial.number) && !self.finished.contains(&trial.number));
+        open.sort_by_key(|trial| trial.number);
+        open
+    }
+
+    /// Runs trials on the threads of the present rayon pool, and appends them to the file. Returns how many were
+    /// finished: all, unless `is_canceled` was set. `observe` is called after each of them, from any thread.
+    ///
+    /// # Errors
+    ///
+    /// When a trial cannot run or be written. The other trials are canceled then, and those before are kept.
+    pub fn run<W: TrialWorld>(
+        &self,
+        trials: Vec<TrialSettings<W>>,
+        is_canceled: &AtomicBool,
+        observe: impl Fn() + Sync,
+    ) -> Result<u64, ShardError> {
+        let run = |trial| {
+            let ran = self.run_one(&trial, is_canceled);
+            match ran {
+                Ok(true) => observe(),
+                Ok(false) => {}
+                Err(_) => is_canceled.store(true, Ordering::Relaxed), // the other trials cannot be written either
+            }
+            ran.map(u64::from)
+        };
+        trials.into_par_iter().map(run).collect::<Vec<_>>().into_iter().sum()
+    }
+
+    /// Runs one trial and appends it to the file; false if it was canceled.
+    fn run_one<W: TrialWorld>(
+        &self,
+        trial: &TrialSettings<W>,
+        is_canceled: &AtomicBool,
+    ) -> Result<bool, ShardError> {
+        let goes_on = || !is_canceled.load(Ordering::Relaxed);
+        let Some(done) = goes_on().then(|| run_trial(trial, goes_on)).transpose()?.flatten() else {
+            return Ok(false);
+        };
+        self.append(trial.number, &done).map_err(ShardError::Append)?;
+        Ok(true)
+    }
 }

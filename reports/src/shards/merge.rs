@@ -1,8 +1,7 @@
 //! All shards of a folder, and their trials in the order of the experiment.
 
 use super::file::shards_in;
-use super::line::{self, Line};
-use super::scan::Scan;
+use super::scan::{Line, Scan, read_line};
 use super::{Header, Shard, ShardError, array};
 use evaluation::trials::Trial;
 use rayon::prelude::*;
@@ -137,7 +136,7 @@ impl Shards {
             };
             let lines: Vec<_> = numbers.map(&mut line).collect();
             let trial = |(number, path, line): (u64, PathBuf, Result<String, ShardError>)| {
-                let read = line::read(line?.trim_end_matches('\n'), self.header.key());
+                let read = read_line(line?.trim_end_matches('\n'), self.header.key());
                 let changed = || ShardError::content(&path, "the file was changed while it was read");
                 read.filter(|line: &Line<_>| line.job == number).map(|line| line.trial).ok_or_else(changed)
             };

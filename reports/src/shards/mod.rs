@@ -12,20 +12,16 @@
 //! ```
 
 mod file;
-mod header;
-mod line;
 mod merge;
-mod run;
 mod scan;
 mod shard;
 #[cfg(test)]
 mod tests;
 
 pub use file::ShardFile;
-pub use header::Header;
 pub use merge::Shards;
 pub use scan::Scan;
-pub use shard::{InvalidShard, Shard, array};
+pub use shard::{Header, InvalidShard, Shard, array};
 
 use evaluation::trials::TrialError;
 use files::OutputError;

@@ -1,12 +1,13 @@
 //! One pass over the file of a shard.
 
-use super::line::{self, Line};
 use super::{Header, Shard, ShardError};
-use serde::de::IgnoredAny;
+use serde::de::{DeserializeOwned, IgnoredAny};
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
+use xxhash_rust::xxh3::xxh3_64_with_seed;
 
 /// No line is longer, bytes.
 pub(super) const MAX_LINE: u64 = 1 << 20;
@@ -56,7 +57,7 @@ impl Scan {
             if let Some(header) = &scan.header {
                 scan.add(text, key, header.trials, shard).map_err(|why| invalid(path, number, &why))?;
             } else {
-                let header: Header = line::read(text, 0).ok_or_else(|| not_a_shard(path))?;
+                let header: Header = read_line(text, 0).ok_or_else(|| not_a_shard(path))?;
                 if header.shard != shard {
                     let why = "this is the file of another shard under a new name; give it its name again";
                     return Err(ShardError::content(path, why));
@@ -70,7 +71,7 @@ impl Scan {
     }
 
     fn add(&mut self, line: &str, key: u64, trials: u64, shard: Shard) -> Result<(), String> {
-        let read = line::read(line, key).map(|Line::<IgnoredAny> { job, .. }| job);
+        let read = read_line(line, key).map(|Line::<IgnoredAny> { job, .. }| job);
         let job = read.ok_or("is not as it was written: it was edited, or is of another experiment")?;
         if !(1..=trials).contains(&job) || !shard.has(job) {
             return Err(format!("is trial {job}, which does not belong to this shard"));
@@ -96,4 +97,35 @@ pub(super) fn not_a_shard(path: &Path) -> ShardError {
 
 fn invalid(path: &Path, number: u64, what: &str) -> ShardError {
     ShardError::content(path, format!("line {number} {what}; remove the file, and run its shard again"))
+}
+
+// The lines of the file of a shard: JSON objects, each with the hash of its text as the last key.
+
+/// What ends the text of a line, before its hash.
+const HASH: &str = ",\"hash\":\"";
+
+/// A finished trial with its number.
+#[derive(Serialize, Deserialize)]
+pub(super) struct Line<T> {
+    /// The number of the trial.
+    pub(super) job: u64,
+    /// The trial; a type without content where only its number is read.
+    pub(super) trial: T,
+}
+
+/// An object as a line, with a line's end.
+pub(super) fn write_line(object: &impl Serialize, key: u64) -> serde_json::Result<String> {
+    let text = serde_json::to_string(object)?;
+    let text = text.strip_suffix('}').unwrap_or(&text);
+    Ok(format!("{text}{HASH}{}\"}}\n", hash(text, key)))
+}
+
+/// The object in a line without its end; `None` if the line is not as it was written.
+pub(super) fn read_line<T: DeserializeOwned>(line: &str, key: u64) -> Option<T> {
+    let (text, found) = line.strip_suffix("\"}")?.rsplit_once(HASH)?;
+    (hash(text, key) == found).then(|| serde_json::from_str(&format!("{text}}}")).ok())?
+}
+
+fn hash(text: &str, key: u64) -> String {
+    format!("{:016x}", xxh3_64_with_seed(text.as_bytes(), key))
 }

@@ -1,3 +1,4 @@
+use super::scan::write_line;
 use super::*;
 use crate::ReportSettings;
 use crate::tests::synthetic::{experiment, uniform};
@@ -181,7 +182,7 @@ fn shards_of_another_build_are_refused() {
     let path = folder.path().join("shard-2-of-3.jsonl");
     let own = fs::read_to_string(&path).unwrap();
     let other = Header { build: "0123".into(), ..header(shard(2, 3), &trials) };
-    let other = line::write(&other, 0).unwrap();
+    let other = write_line(&other, 0).unwrap();
     fs::write(&path, other + own.split_once('\n').unwrap().1).unwrap();
     let expected = "DIR/shard-2-of-3.jsonl: this shard is of build 0123, not ";
     assert!(message(folder.path()).starts_with(expected), "{}", message(folder.path()));

@@ -1,8 +1,8 @@
 //! Against tables, textbooks and simulation.
 
-use super::super::measure::area;
 use super::super::statistics::{Moments, Quantiles, holm};
 use super::*;
+use crate::strategy::area;
 
 #[test]
 fn half_widths_are_those_of_the_tables_of_student() {

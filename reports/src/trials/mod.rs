@@ -3,7 +3,6 @@
 mod grid;
 mod houses;
 mod run;
-mod shards;
 
 pub use grid::GridWorlds;
 pub use houses::Houses;
@@ -20,7 +19,7 @@ use cli::terminal::say;
 use evaluation::scenes::Displayed;
 use evaluation::trials::{Experiment, TrialStrategy, TrialWorld};
 use mapper::EstimatorChoice;
-use shards::ShardCommand;
+use run::ShardCommand;
 use std::collections::BTreeSet;
 use std::fmt::Debug;
 use std::io::stderr;

@@ -1,7 +1,7 @@
 //! The file of a state, and the thread that writes it.
 
-use super::error::StateError;
 use super::format::{Session, State};
+use super::settings::StateError;
 use files::{FileLock, OutputError, is_another_kind, sync_folder_of, temporary_name, write_file};
 use std::fs::{self, File};
 use std::io;

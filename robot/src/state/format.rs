@@ -10,8 +10,7 @@
 //!
 //! Numbers are little-endian.
 
-use super::error::{MAX_BODY, StateError, VERSION};
-use super::settings::SavedSettings;
+use super::settings::{MAX_BODY, SavedSettings, StateError, VERSION};
 use crate::build::{BUILD, other_build};
 use interfaces::GridFrame;
 use serde::{Deserialize, Serialize};

@@ -1,8 +1,7 @@
 //! What a robot has learned of a place: from its parts into a state, and back.
 
-use super::error::StateError;
 use super::format::{Part, SavedMap, Session, State};
-use super::settings::SavedSettings;
+use super::settings::{SavedSettings, StateError};
 use crate::build::BUILD;
 use crate::{Pilot, Robot, Settings};
 use interfaces::{LaserReading, PoseMode, ValueError};

@@ -7,14 +7,12 @@
 //! A file is written under a temporary name, brought to the disk, and renamed: at any time, there is a complete file
 //! under the name. It holds a checksum, so that a damaged file is refused. [`StateFile`] writes in a thread of its own.
 
-mod error;
 mod file;
 mod format;
 mod learned;
 mod settings;
 
-pub use error::StateError;
 pub use file::{StateFile, earlier_name, read_state};
 pub use format::{Part, SavedMap, Session, State};
 pub use learned::{Sessions, StateCopy, learned, restore};
-pub use settings::SavedSettings;
+pub use settings::{SavedSettings, StateError};

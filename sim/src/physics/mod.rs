@@ -12,7 +12,6 @@ pub mod convex;
 mod drives;
 mod fleet;
 mod form;
-mod free_poses;
 mod free_space;
 mod generate;
 mod ground_truth;
@@ -29,15 +28,14 @@ mod spec;
 #[cfg(test)]
 mod tests;
 mod things;
-mod velocity;
 mod visible_cells;
 mod world;
 
 pub use box_tree::BoxTree;
+pub use drives::Velocity;
 pub use fleet::{Controller, Fleet, LengthError, TeleportError};
 pub use form::Form;
-pub use free_poses::FreePoses;
-pub use free_space::FreeSpace;
+pub use free_space::{FreePoses, FreeSpace};
 pub use generate::building_ranges;
 pub use ground_truth::PhysicsGroundTruth;
 pub use report::{Body, Contact, ObstacleEvent, ObstacleView};
@@ -52,5 +50,4 @@ pub use spec::{
     WanderSpec, WaypointsSpec, WorldSpec,
 };
 pub use things::Thing;
-pub use velocity::Velocity;
 pub use world::{PhysicsWorld, WorldSnapshot};

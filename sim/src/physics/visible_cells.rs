@@ -1,7 +1,6 @@
 //! The cells that the driven robot could see, wherever it drives.
 
-use super::free_poses::FreePoses;
-use super::free_space::solids;
+use super::free_space::{FreePoses, solids};
 use super::ground_truth::start;
 use super::rays::{Beams, Scene};
 use super::shape::{Rectangle, grid_corners};

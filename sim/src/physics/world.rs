@@ -1,5 +1,5 @@
 use super::fleet::Fleet;
-use super::free_poses::FreePoses;
+use super::free_space::FreePoses;
 use super::ground_truth::PhysicsGroundTruth;
 use super::report::{Body, Contact, ObstacleEvent};
 use super::snapshot::{self, SnapshotError};

@@ -4,7 +4,6 @@ mod args;
 mod combination;
 mod output;
 mod parts;
-mod trial_state_file;
 
 use args::{Args, DriveChoice};
 use cli::flags::check_distinct;
@@ -13,12 +12,11 @@ use curious::worlds::list_physics_worlds;
 use evaluation::physics_trial::PhysicsTrial;
 use interfaces::Twist;
 use output::Outputs;
-use parts::Parts;
+use parts::{Parts, TrialStateFile};
 use robot::Pilot;
 use std::process::ExitCode;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
-use trial_state_file::TrialStateFile;
 
 fn main() -> ExitCode {
     start(|args: &Args| {

@@ -2,7 +2,7 @@
 
 use crate::Ended;
 use crate::args::{Args, DriveChoice};
-use crate::trial_state_file::TrialStateFile;
+use crate::parts::TrialStateFile;
 use anyhow::{Context, anyhow};
 use cli::bag::RunBag;
 use cli::program::{Failure, arguments, input, results_folder};
@@ -20,10 +20,9 @@ use evaluation::summary::{SCHEMA, Summary};
 use files::{RunFolder, UnfinishedFile, is_another_kind, write_file};
 use interfaces::{LaserReading, Twist, World};
 use mapper::Mapper;
-use results::TrajectoryFile;
 use results::intervals::Intervals;
 use results::thinned::Goals;
-use results::{cell_statistics, file_name, ros_map, things};
+use results::{TrajectoryFile, cell_statistics, file_name, ros_map, things};
 use robot::{BUILD, Pilot, Robot, Settings, Turn};
 use sim::physics::WorldSpec;
 use std::io::stderr;

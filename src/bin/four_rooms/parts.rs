@@ -5,22 +5,23 @@ use crate::combination;
 use agent::Agent;
 use anyhow::{Context, anyhow};
 use cli::flags::value_of;
-use cli::program::{Failure, input};
+use cli::program::{Failure, input, open_state, state_failure};
 use cli::terminal::say;
 use controller::{Controller, DiffDrive};
 use curious::keyboard::Keyboard;
 use curious::reachability;
 use curious::worlds::{self, Loaded};
 use evaluation::physics_trial::{self, PhysicsTrial};
+use evaluation::trial_state::TrialFacts;
 use interfaces::{CellState, Grid, Twist};
-use robot::state::SavedSettings;
+use robot::state::{SavedSettings, Sessions, StateFile};
 use robot::{Autonomous, PatrolDay, Pilot, Settings, Tour};
 use sim::physics::shape::Transform;
 use sim::physics::{PatrolDaySpec, WorldSpec};
+use std::io;
 use std::io::stderr;
 use std::path::Path;
-use worldfile::ros_map;
-use worldfile::{Disk, Findings, Severity, TourSpec};
+use worldfile::{Disk, Findings, Severity, TourSpec, ros_map};
 
 /// The world and the settings of the robot.
 pub(crate) struct Parts {
@@ -154,4 +155,49 @@ fn known_map(path: &Path, spec: &WorldSpec) -> Result<Grid<CellState>, Failure> 
 
 fn warn(warnings: impl IntoIterator<Item = String>) {
     warnings.into_iter().for_each(|warning| say(stderr(), format_args!("{warning}\n")));
+}
+
+// `--state`: where a run goes on from, and what it leaves for the next one.
+
+/// The state file of a run.
+pub(crate) struct TrialStateFile {
+    file: StateFile,
+    facts: TrialFacts,
+    sessions: Sessions,
+}
+
+impl TrialStateFile {
+    /// The file of `--state`. If there is a state in it, the run goes on from there.
+    pub(crate) fn open(
+        args: &Args,
+        parts: &Parts,
+        trial: &mut PhysicsTrial<impl Pilot<Command = Twist>>,
+    ) -> Result<Option<Self>, Failure> {
+        let Some(path) = &args.state else { return Ok(None) };
+        let (file, state) = open_state(path, args.state_every)?;
+        let mut facts = TrialFacts::new(&parts.spec, args.seed, &parts.settings, parts.pilot_facts(args));
+        facts.allows_other_build = args.allow_other_build;
+        let mut sessions = Sessions::of("four_rooms");
+        if let Some(state) = state {
+            trial.restore(&state, &facts).map_err(|why| state_failure(path, why))?;
+            sessions.go_on(&state, &trial.robot.mapper);
+        }
+        Ok(Some(Self { file, facts, sessions }))
+    }
+
+    pub(crate) fn is_due(&self) -> bool {
+        self.file.is_due()
+    }
+
+    /// Begins to write the state. An error is that of the writing before.
+    pub(crate) fn save(&mut self, trial: &mut PhysicsTrial<impl Pilot<Command = Twist>>) -> io::Result<()> {
+        self.file.save(trial.snapshot(&self.facts, &self.sessions))
+    }
+
+    /// Writes the state, and waits until it is on the disk.
+    pub(crate) fn finish(mut self, trial: &mut PhysicsTrial<impl Pilot<Command = Twist>>) -> io::Result<()> {
+        // What could not be written before is in this state as well.
+        self.save(trial).ok();
+        self.file.wait()
+    }
 }

@@ -7,18 +7,14 @@
 
 mod book;
 mod groups;
-mod line;
-mod names;
 mod passages;
-mod session;
 mod since;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use book::PlaceBook;
-pub use line::is_line;
-pub(crate) use names::still_names;
-pub use names::{PlaceName, StillName};
+pub(crate) use book::{PlaceBook, still_names};
+pub use book::{PlaceName, StillName};
+pub use groups::is_line;
 pub(crate) use since::since;
 pub use since::{Lasting, PlaceSince, Since, Trend};
 
@@ -145,7 +141,7 @@ pub(crate) fn places(mapper: &Mapper, log: &ChangeLog, book: &PlaceBook) -> Vec<
     let (mut places, groups): (Vec<Place>, Vec<Group>) = found.into_iter().unzip();
     let numbers = book.numbers(mapper, &groups);
     places.iter_mut().zip(&numbers).for_each(|(place, number)| place.number = *number);
-    names::give(&mut places, &book.names);
+    book::give(&mut places, &book.names);
     places
 }
 

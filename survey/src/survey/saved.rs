@@ -2,8 +2,8 @@
 
 use super::Survey;
 use crate::change_log::ChangeLog;
+use crate::passes::FoundPoses;
 use crate::places::PlaceBook;
-use crate::replay::FoundPoses;
 use crate::settings::SurveySettings;
 use crate::surveyed_log::SurveyedLog;
 use interfaces::{GridFrame, from_bytes, to_bytes};

@@ -3,15 +3,15 @@
 //! Logged component by component, since the SDK's layout types cannot set a view's bounds, the
 //! axis of a plot, or how much of a trail is shown.
 
-use super::entity::SIM_TIME;
-use super::tracks::{self, has_choice, plots};
+use super::tracks::{self, SIM_TIME, has_choice, plots};
 use draw::layers::Layer;
 use draw::scene::{Scene, extent};
 use draw::view::View;
 use rerun::blueprint::components::{BackgroundKind, ContainerKind, Corner2D, PanelState, PlayState};
 use rerun::external::re_log_types::BlueprintActivationCommand;
+use rerun::external::re_sdk_types::blueprint::archetypes as blueprint;
+use rerun::external::re_sdk_types::blueprint::components::VisibleTimeRange;
 use rerun::external::re_sdk_types::blueprint::datatypes::{TextLogColumn, TextLogColumnKind, TimelineColumn};
-use rerun::external::re_sdk_types::blueprint::{archetypes as blueprint, components::VisibleTimeRange};
 use rerun::external::re_sdk_types::datatypes::{self, TimeInt, TimeRange, TimeRangeBoundary};
 use rerun::{Archetype, AsComponents, RecordingStream, RecordingStreamBuilder, RecordingStreamResult};
 

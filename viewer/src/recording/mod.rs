@@ -6,24 +6,21 @@
 //! To add an entity: write a function in `tracks/`, and add a line to `start` in `tracks/mod.rs`. For data that
 //! [`View`] does not have yet, also add a field to [`View`] and set it.
 
-mod entity;
 mod file;
 mod layout;
 mod live;
-mod reach;
-mod sinks;
 mod tracks;
 
 pub use live::{Live, LiveError};
 
 use draw::scene::Scene;
 use draw::view::View;
-use entity::Track;
+use file::Sinks;
 use rerun::log::ChunkBatcherConfig;
 use rerun::{RecordingStream, RecordingStreamBuilder, RecordingStreamError};
-use sinks::Sinks;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
+use tracks::Track;
 
 /// The error for a recording that cannot be made, or cannot continue.
 #[derive(Debug, thiserror::Error)]

@@ -48,7 +48,7 @@ fn rows<C: Component + Clone>(
     let mut rows = Vec::new();
     for chunk in store.iter_physical_chunks() {
         if chunk.entity_path() == &entity && !chunk.is_static() {
-            let time = chunk.timelines().values().find(|time| time.name() == entity::SIM_TIME);
+            let time = chunk.timelines().values().find(|time| time.name() == tracks::SIM_TIME);
             let times = time.unwrap().times_raw();
             let items = chunk.iter_component::<C>(component).map(|items| items.as_slice().to_vec());
             rows.extend(times.iter().copied().zip(items));

@@ -3,8 +3,7 @@
 use crate::Log;
 use crate::bag::{Bag, BagFile};
 use crate::bytes::Bytes;
-use crate::choice::TopicChoice;
-use crate::error::LogError;
+use crate::summary::{LogError, TopicChoice};
 use interfaces::LaserReading;
 use mcap::records::MessageHeader;
 use mcap::{Compression, WriteOptions};

@@ -1,5 +1,5 @@
 use super::builder::*;
-use crate::choice::TopicChoice;
+use crate::summary::TopicChoice;
 
 #[test]
 fn two_topics_of_odometry_are_a_choice() {

@@ -1,5 +1,5 @@
 use super::builder::*;
-use crate::choice::TopicChoice;
+use crate::summary::TopicChoice;
 use interfaces::{LaserReading, heading_rad};
 use ros::Pose;
 

@@ -5,7 +5,7 @@
 //! ```
 
 use super::builder::*;
-use crate::choice::TopicChoice;
+use crate::summary::TopicChoice;
 use mcap::{Compression, WriteOptions};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;

@@ -1,7 +1,7 @@
 //! Messages that are sorted by topic in their files.
 
 use super::builder::*;
-use crate::choice::TopicChoice;
+use crate::summary::TopicChoice;
 use mcap::WriteOptions;
 
 const NOTE: &str = "the messages are sorted by topic: they are read in the order of their times of recording";

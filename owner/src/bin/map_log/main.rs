@@ -1,12 +1,10 @@
 //! Arguments → logs → first pass → second pass → results.
 
 mod args;
-mod first_pass;
 mod logs_in_order;
-mod output;
+mod passes;
 mod place_names;
 mod report;
-mod second_pass;
 mod summary;
 mod survey_state_file;
 
@@ -89,7 +87,7 @@ fn run(args: &Args) -> Result<ExitCode, Failure> {
     let mut folder = results_folder(&args.out)?;
     let job = Job { args, sources, first_log, first, settings, is_interrupted };
     let bag = bag(&job, &survey, &mut folder)?;
-    if !first_pass::routes(&job, &mut survey, &mut state_file)? {
+    if !passes::routes(&job, &mut survey, &mut state_file)? {
         state_file.finish(&survey);
         let kept = match &args.state {
             Some(state) if state_file.is_written => {
@@ -103,11 +101,11 @@ fn run(args: &Args) -> Result<ExitCode, Failure> {
         job.say(format_args!("interrupted in the first pass: no results are written{kept}"));
         return Ok(ExitCode::from(INTERRUPTED));
     }
-    let learned = second_pass::learn(&job, &mut survey, &mut state_file, bag, folder.unfinished())?;
+    let learned = passes::learn(&job, &mut survey, &mut state_file, bag, folder.unfinished())?;
     state_file.finish(&survey);
     let mut summary = Summary::new(&survey, &learned, args.accept_map)?;
     summary.wall_s = begin.elapsed().as_secs_f64();
-    output::write(&folder, &survey, &learned, &mut summary)?;
+    summary::write(&folder, &survey, &learned, &mut summary)?;
     // A log can be the result of an earlier run.
     folder.finish(&args.files.iter().map(PathBuf::as_path).collect::<Vec<_>>())?;
     if !learned.is_interrupted {
@@ -120,7 +118,7 @@ fn run(args: &Args) -> Result<ExitCode, Failure> {
     }
     if !args.quiet {
         let out = args.out.display();
-        print(format_args!("{summary}\n  files     {out}: open {}", args.out.join(output::PAGE).display()))?;
+        print(format_args!("{summary}\n  files     {out}: open {}", args.out.join(summary::PAGE).display()))?;
     }
     Ok(if !learned.is_shown || !state_file.is_written {
         ExitCode::FAILURE

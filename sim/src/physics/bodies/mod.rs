@@ -5,17 +5,16 @@ mod penetration;
 mod slide;
 #[cfg(test)]
 mod tests;
-mod touch;
 
 pub(super) use movers::Mover;
-pub(super) use touch::{SEPARATE_M, Touch};
+pub(super) use slide::{SEPARATE_M, Touch};
 
 use super::convex;
+use super::drives::Velocity;
 use super::report::Body;
 use super::shape::Rectangle;
 use super::snapshot::{Values, pose, value};
 use super::spec::{FleetSpec, Motion, RobotSpec};
-use super::velocity::Velocity;
 use interfaces::{heading_rad, rotation};
 use nalgebra::{Isometry2, Translation2, Vector2};
 use rapier2d::prelude as rapier;

@@ -1,20 +1,15 @@
 //! Any number of robots in one world.
 
-mod bulk;
-mod carry;
-mod rest;
-mod rooms;
 mod slide;
-mod snapshots;
 mod start;
 mod teleport;
 mod time;
 
-pub use bulk::LengthError;
 pub use teleport::TeleportError;
 pub use time::Controller;
 
 use super::bodies::Bodies;
+use super::drives::Velocity;
 use super::form::Form;
 use super::obstacles::Obstacle;
 use super::past::Past;
@@ -23,8 +18,9 @@ use super::report::{Body, Contact, ObstacleView};
 use super::robot::{RobotView, SimulatedRobot};
 use super::sensors::Tagged;
 use super::shape::Rectangle;
+use super::snapshot::{self, SnapshotError, value};
 use super::spec::FleetSpec;
-use super::velocity::Velocity;
+use interfaces::{Values, heading_rad, values};
 use slide::Sliding;
 use start::Start;
 use std::sync::Arc;
@@ -159,4 +155,151 @@ impl Fleet {
     fn show_obstacle(&mut self, index: usize) {
         start::show_obstacle(&mut self.scene, index, &self.obstacles[index]);
     }
+}
+
+// Fresh measurements, and the scans and poses of all robots in memory of the caller.
+
+/// The error for a slice of another length than that of the result.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the slice for the {what} has {found} values, and must have {expected}")]
+pub struct LengthError {
+    /// What the slice is for.
+    pub what: &'static str,
+    /// The length of the slice.
+    pub found: usize,
+    /// The right length.
+    pub expected: usize,
+}
+
+fn check(what: &'static str, found: usize, expected: usize) -> Result<(), LengthError> {
+    if found == expected { Ok(()) } else { Err(LengthError { what, found, expected }) }
+}
+
+impl Fleet {
+    /// Measures with the main laser of a robot (by index) now, whether or not a scan is due, so that scan and pose are
+    /// of the same instant: after a step, the latest scan is from before the step. `None` if there is no such robot.
+    ///
+    /// A second look at the same time returns the same reading. A scan that is due at this time is this reading. A look
+    /// at another time is one more measurement: it draws noise, so that later readings of this laser have other noise.
+    pub fn look(&mut self, robot: usize) -> Option<RobotView<'_>> {
+        let sweeps = self.robots.get(robot)?.sweeps();
+        let surroundings = self.surroundings(sweeps);
+        self.robots[robot].look(&surroundings);
+        self.robot(robot)
+    }
+
+    /// Measures with the main lasers of all robots now, as [`Fleet::look`] does with one. With
+    /// [parallel lasers](Fleet::set_parallel_lasers) on all threads.
+    pub fn look_all(&mut self) {
+        let surroundings = &self.surroundings(self.robots.iter().any(SimulatedRobot::sweeps));
+        self.for_robots(|_| true, |robot| robot.look(surroundings));
+    }
+
+    /// The number of beams of the main lasers of all robots together: the length of the slice of [`Fleet::copy_scans`].
+    pub fn beams(&self) -> usize {
+        self.spec().robots.iter().map(|robot| robot.laser.beams).sum()
+    }
+
+    /// Copies the latest scan of the main laser of every robot, one robot after the other in the order of the spec, m.
+    /// A robot that has not measured yet has NaN.
+    ///
+    /// # Errors
+    ///
+    /// When the length of the slice is not [`Fleet::beams`]. Nothing is copied then.
+    pub fn copy_scans(&self, ranges_m: &mut [f32]) -> Result<(), LengthError> {
+        check("scans of all robots", ranges_m.len(), self.beams())?;
+        let mut rest = ranges_m;
+        for robot in &self.robots {
+            let (scan, others) = rest.split_at_mut(robot.spec.laser.beams);
+            match robot.reading() {
+                Some(reading) => scan.copy_from_slice(&reading.scan.ranges_m),
+                None => scan.fill(f32::NAN),
+            }
+            rest = others;
+        }
+        Ok(())
+    }
+
+    /// Copies the true pose of every robot in the order of the spec: x (m), y (m), heading (rad, in (−π, π]).
+    ///
+    /// # Errors
+    ///
+    /// When the length of the slice is not the number of robots. Nothing is copied then.
+    pub fn copy_poses(&self, poses: &mut [[f64; 3]]) -> Result<(), LengthError> {
+        check("poses of all robots", poses.len(), self.robots.len())?;
+        for (robot, pose) in self.robots.iter().zip(poses) {
+            *pose = [robot.pose.translation.x, robot.pose.translation.y, heading_rad(&robot.pose)];
+        }
+        Ok(())
+    }
+}
+
+// The state of a fleet: reset to the start, to bytes, and from bytes.
+
+impl Fleet {
+    /// Resets the fleet to the start, with the same seed or another one: the result is that of [`Fleet::new`] with the
+    /// same spec, bit for bit. The place is kept, so that a reset takes little more time than a clone.
+    pub fn reset(&mut self, seed: u64) {
+        let parallel_lasers = self.parallel_lasers;
+        *self = Self::begin(Arc::clone(&self.start), seed);
+        self.parallel_lasers = parallel_lasers;
+    }
+
+    /// The state as bytes. A fleet that [`Fleet::restored`] makes from the bytes continues bit for bit like
+    /// this one.
+    pub fn snapshot(&self) -> Vec<u8> {
+        let mut fleet = self.clone();
+        let mut seed = fleet.seed;
+        let mut values = vec![value(&mut seed)];
+        values.extend(fleet.values());
+        snapshot::write(fingerprint(self.spec()), values)
+    }
+
+    /// The fleet of `spec` in the state of a snapshot.
+    ///
+    /// # Errors
+    ///
+    /// When the bytes are not a snapshot, are damaged, or were taken of a fleet with another spec.
+    pub fn restored(spec: &FleetSpec, snapshot: &[u8]) -> Result<Self, SnapshotError> {
+        let bytes = snapshot::check(snapshot, fingerprint(spec))?;
+        Self::at_snapshot(Arc::new(Start::new(spec)), bytes)
+    }
+
+    /// Returns to the state of a snapshot of a fleet with the same spec. The place is kept, as in [`Fleet::reset`].
+    ///
+    /// # Errors
+    ///
+    /// The errors of [`Fleet::restored`]. The state is then unchanged.
+    pub fn restore(&mut self, snapshot: &[u8]) -> Result<(), SnapshotError> {
+        let bytes = snapshot::check(snapshot, fingerprint(self.spec()))?;
+        let parallel_lasers = self.parallel_lasers;
+        *self = Self::at_snapshot(Arc::clone(&self.start), bytes)?;
+        self.parallel_lasers = parallel_lasers;
+        Ok(())
+    }
+
+    fn at_snapshot(start: Arc<Start>, mut bytes: &[u8]) -> Result<Self, SnapshotError> {
+        let mut seed = 0_u64;
+        snapshot::read(&mut bytes, vec![value(&mut seed)])?;
+        let mut fleet = Self::begin(start, seed);
+        snapshot::read(&mut bytes, fleet.values())?;
+        if !bytes.is_empty() {
+            return Err(SnapshotError::Damaged);
+        }
+        (0..fleet.robots.len()).for_each(|index| fleet.show_robot(index));
+        (0..fleet.obstacles.len()).for_each(|index| fleet.show_obstacle(index));
+        Ok(fleet)
+    }
+
+    fn values(&mut self) -> Values<'_> {
+        let mut values = values![self.step; self.bodies, self.past];
+        values.extend(self.robots.iter_mut().flat_map(|robot| robot.values()));
+        values.extend(self.obstacles.iter_mut().flat_map(|obstacle| obstacle.values()));
+        values
+    }
+}
+
+/// A number that differs between specs.
+fn fingerprint(spec: &FleetSpec) -> u64 {
+    snapshot::fingerprint(format!("{spec:?}").as_bytes())
 }

@@ -15,7 +15,6 @@ mod edges;
 mod hiding;
 mod index_lists;
 mod nearest;
-mod passing;
 mod polygons;
 mod scene;
 mod sectors;
@@ -24,7 +23,6 @@ mod visibility;
 
 pub(super) use beams::Beams;
 pub(super) use disc::Disc;
-pub(super) use passing::Passing;
 pub(super) use scene::Scene;
-pub(super) use sectors::Ray;
+pub(super) use sectors::{Passing, Ray};
 pub(super) use vicinity::{Ring, Vicinity};

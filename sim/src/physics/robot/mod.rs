@@ -7,13 +7,12 @@ pub use view::RobotView;
 
 use super::behaviors::Behavior;
 use super::bodies::Bodies;
-use super::drives::Motors;
+use super::drives::{Motors, Velocity};
 use super::form::Form;
 use super::report::Body;
 use super::sensors::{Look, Platform, Sensor, SharedBeams, Surroundings};
 use super::snapshot::pose;
 use super::spec::{BehaviorSpec, RobotSpec};
-use super::velocity::Velocity;
 use interfaces::{LaserReading, Purpose, RandomStream, Twist, Values, values};
 use nalgebra::{Isometry2, Point2, Vector2};
 use odometry::{Displacements, Odometry};

@@ -1,8 +1,8 @@
 //! The odometry of a robot, with wheels that slip, and displacements.
 
+use crate::physics::drives::Velocity;
 use crate::physics::snapshot::{self, value};
 use crate::physics::spec::{DisplacementSpec, OdometryError, RobotSpec};
-use crate::physics::velocity::Velocity;
 use interfaces::{RandomStream, Twist, Values, pose, rotation, values, wrap_rad};
 use nalgebra::{Isometry2, Point2, Vector2};
 use std::f64::consts::PI;

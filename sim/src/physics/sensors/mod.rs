@@ -6,29 +6,26 @@
 //! Stepping, snapshots and views use one list of sensors, [`Sensor::all`]. To add a sensor: write a file, and add a
 //! variant to [`Sensor`].
 
-pub(super) mod bumper;
 mod fiducial_finder;
 mod laser_scanner;
 mod on_demand;
-mod shared_beams;
-mod sonar;
 
 pub use fiducial_finder::Fiducial;
-use fiducial_finder::FiducialFinder;
 pub(super) use fiducial_finder::Tagged;
 pub(super) use laser_scanner::LaserScanner;
-use laser_scanner::LaserStreams;
 pub(super) use on_demand::{Look, OnDemand};
-pub(super) use shared_beams::SharedBeams;
-use sonar::Sonar;
-pub use sonar::SonarReading;
 
 use super::past::Recent;
-use super::rays::{Ring, Scene};
+use super::rays::{Beams, Ring, Scene};
 use super::snapshot::{Values, value};
-use super::spec::{Glass, LaserSpec, RobotSpec};
+use super::spec::{BumperSpec, Glass, LaserSpec, RobotSpec, SonarSpec};
+use fiducial_finder::FiducialFinder;
 use interfaces::{LaserReading, Purpose, RandomStream, Twist};
-use nalgebra::Isometry2;
+use laser_scanner::LaserStreams;
+use nalgebra::{Isometry2, Point2};
+use on_demand::Device;
+use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
 use std::sync::Arc;
 
 /// A sensor on a robot, with its latest reading.
@@ -184,5 +181,104 @@ fn reported(measured_m: f64, range_min_m: f64, range_max_m: f64) -> f32 {
         f32::NEG_INFINITY
     } else {
         measured_m as f32
+    }
+}
+
+/// The bumpers, as bits, of a robot at `pose` that a contact presses. `ends` are the ends of the line of contact, m.
+pub(crate) fn pressed(spec: &BumperSpec, pose: &Isometry2<f64>, ends: &[Point2<f64>; 2]) -> u64 {
+    let [a, b] = ends.map(|end| pose.inverse_transform_point(&end).coords);
+    let turn_rad = libm::atan2(a.perp(&b), a.dot(&b));
+    let right = if turn_rad < 0.0 { b } else { a };
+    let right_rad = libm::atan2(right.y, right.x);
+    let sector_rad = spec.fov_rad / spec.sectors as f64;
+    let is_pressed = |sector: usize| {
+        let begin_rad = sector as f64 * sector_rad - spec.fov_rad / 2.0;
+        // Two angular ranges overlap where one of them begins within the other.
+        (right_rad - begin_rad).rem_euclid(TAU) < sector_rad
+            || (begin_rad - right_rad).rem_euclid(TAU) < turn_rad.abs()
+    };
+    (0..spec.sectors).filter(|sector| is_pressed(*sector)).fold(0, |pressed, sector| pressed | 1 << sector)
+}
+
+/// The beams of all lasers and sonars. Sensors with the same beams share them.
+#[derive(Clone, Default)]
+pub(crate) struct SharedBeams {
+    known: Vec<(Key, Arc<Beams>)>,
+}
+
+/// First angle, spacing and maximum range, and the number of beams.
+type Key = ([f64; 3], usize);
+
+impl SharedBeams {
+    /// See [`Beams::new`].
+    fn of(&mut self, first_rad: f64, spacing_rad: f64, count: usize, range_max_m: f64) -> Arc<Beams> {
+        let key = ([first_rad, spacing_rad, range_max_m], count);
+        if let Some((_, beams)) = self.known.iter().find(|(known, _)| *known == key) {
+            return Arc::clone(beams);
+        }
+        let beams = Arc::new(Beams::new(first_rad, spacing_rad, count, range_max_m));
+        self.known.push((key, Arc::clone(&beams)));
+        beams
+    }
+
+    /// The beams of a laser.
+    pub(crate) fn of_laser(&mut self, spec: &LaserSpec) -> Arc<Beams> {
+        self.of(spec.angle_min_rad(), spec.angle_increment_rad(), spec.beams, spec.range_max_m)
+    }
+}
+
+/// The angle between two beams of the fan that fills the cone of a sonar, rad: half a degree.
+const BEAM_SPACING_RAD: f64 = std::f64::consts::PI / 360.0;
+
+/// The reading of a sonar.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
+pub struct SonarReading {
+    /// The time of the measurement, s.
+    pub time_s: f64,
+    /// The distance of the nearest surface in the cone, m; −∞ too close, +∞ no surface in range.
+    pub range_m: f32,
+}
+
+/// A sonar or infrared range sensor.
+#[derive(Clone)]
+pub(crate) struct Sonar {
+    spec: SonarSpec,
+    beams: Arc<Beams>,
+    /// Of all sensors of the robot.
+    ring: Ring,
+}
+
+impl Sonar {
+    fn new(spec: &SonarSpec, beams: &mut SharedBeams, ring: Ring) -> Self {
+        let gaps = (spec.cone_rad / BEAM_SPACING_RAD).ceil().max(2.0);
+        let (first_rad, spacing_rad) = (-spec.cone_rad / 2.0, spec.cone_rad / gaps);
+        let beams = beams.of(first_rad, spacing_rad, gaps as usize + 1, spec.range_max_m);
+        Self { spec: *spec, beams, ring }
+    }
+}
+
+impl Device for Sonar {
+    type Reading = SonarReading;
+    type Streams = RandomStream;
+
+    fn measure(&self, look: &Look, noise: &mut RandomStream, _: Option<SonarReading>) -> SonarReading {
+        let Look { platform, surroundings, .. } = look;
+        let SonarSpec { range_min_m, range_max_m, noise_std_m, mount, .. } = self.spec;
+        let nearest =
+            surroundings.scene.nearest(&self.beams, &(platform.pose * mount), look.vicinity(&self.ring));
+        let noise_m = if noise_std_m > 0.0 { noise_std_m * noise.normal() } else { 0.0 };
+        let measured_m = 1.0 / nearest + noise_m;
+        let range_m = reported(measured_m, range_min_m, range_max_m);
+        SonarReading { time_s: surroundings.time_s, range_m }
+    }
+
+    fn skip(&self, noise: &mut RandomStream) {
+        if self.spec.noise_std_m > 0.0 {
+            noise.normal();
+        }
+    }
+
+    fn time_s(reading: &SonarReading) -> Option<f64> {
+        Some(reading.time_s)
     }
 }

@@ -5,14 +5,14 @@
 
 mod behavior;
 mod obstacle;
-mod odometry;
 mod robot;
 mod senses;
 
 pub use behavior::{BehaviorSpec, CircleSpec, PatrolSpec, Repeat, WanderSpec, WaypointsSpec};
 pub use obstacle::{DoorSpec, Leaf, Motion, ObstacleSpec, Opening, PathSpec, PushedSpec, ThingPart};
-pub use odometry::{DisplacementSpec, OdometryError};
-pub use robot::{DriveKind, DriveLimits, LaserSpec, PatrolDaySpec, RobotSpec};
+pub use robot::{
+    DisplacementSpec, DriveKind, DriveLimits, LaserSpec, OdometryError, PatrolDaySpec, RobotSpec,
+};
 pub use senses::{BumperSpec, FiducialSpec, SonarSpec};
 
 use super::shape::{Rectangle, TOUCH_M, Transform, grid_corners};

@@ -1,5 +1,4 @@
 mod ring;
-mod sweep;
 #[cfg(test)]
 mod tests;
 
