@@ -159,7 +159,7 @@ impl Film {
 fn doors(mapper: &Mapper) -> Vec<NamedLine> {
     let door = |door: &Door| {
         let name = format!("door: every {}", duration(3600.0 / door.openings_per_hour()));
-        (door.moves()[0] >= 2).then_some(NamedLine { ends: door.closed.ends, name })
+        (door.evidence().events()[1] >= 2).then_some(NamedLine { ends: door.closed.ends, name })
     };
     mapper.doors().iter().filter_map(door).collect()
 }

@@ -35,11 +35,11 @@ impl Seen {
     /// The openings of a door.
     pub fn of_door(door: &Door) -> Self {
         let interval = door.interval_of_openings_per_hour(MASS);
-        let [opened, closed] = door.moves();
+        let evidence = door.evidence();
         Self {
-            times: opened.max(closed),
-            observed_s: door.in_view_s(),
-            after_gap: door.moves_after_gap(),
+            times: evidence.events().into_iter().max().unwrap_or_default(),
+            observed_s: evidence.in_view_s(),
+            after_gap: evidence.changes_after_gap(),
             per_hour: Some((door.openings_per_hour(), interval.into())),
         }
     }

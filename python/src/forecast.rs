@@ -112,13 +112,13 @@ impl Forecast {
     ) -> PyResult<Vec<Bound<'py, PyDict>>> {
         let time_s = time.map_or(Ok(self.forecast.now_s()), |time| self.seconds(time))?;
         let (calendar, epoch_s) = (self.forecast.calendar(), self.forecast.mapper().epoch_s());
-        let dict = |(id, door): (u32, &mapper::Door)| {
+        let dict = |door: &mapper::Door| {
             let dict = PyDict::new(py);
             let week = door.clock.week(calendar);
             let changes = week.map(|week| week.usual_changes()).unwrap_or_default();
             let usual =
                 changes.iter().map(|to| (to.hour, (to.earliest_hour, to.latest_hour), to.becomes_blocked));
-            dict.set_item("id", id)?;
+            dict.set_item("id", door.id)?;
             dict.set_item("closed", door.closed.ends.map(|end| (end.x, end.y)))?;
             dict.set_item("is_open", door.is_open())?;
             dict.set_item("last_seen", epoch_s + door.last_seen_s())?;
@@ -130,7 +130,7 @@ impl Forecast {
             dict.set_item("usual_hours", usual.collect::<Vec<_>>())?;
             Ok(dict)
         };
-        self.forecast.doors().map(dict).collect()
+        self.forecast.mapper().doors().iter().map(dict).collect()
     }
 
     /// The speed mask and the keepout mask of Nav2 at a time, 0 to 100, shape (rows, columns).

@@ -47,7 +47,8 @@ fn of_door(door: &Door) -> Value {
         Leaf::Sliding => None,
     };
     let (low, high) = door.interval_of_openings_per_hour(MASS);
-    let [opened, closed] = door.moves();
+    let evidence = door.evidence();
+    let [closed, opened] = evidence.events();
     json!({
         "id": door.id,
         "found_s": rounded(door.found_s),
@@ -59,8 +60,8 @@ fn of_door(door: &Door) -> Value {
         "last_seen_s": rounded(door.last_seen_s()),
         "opened": opened,
         "closed": closed,
-        "moved_after_gap": door.moves_after_gap(),
-        "in_view_s": rounded(door.in_view_s()),
+        "moved_after_gap": evidence.changes_after_gap(),
+        "in_view_s": rounded(evidence.in_view_s()),
         "openings_per_hour": rounded(door.openings_per_hour()),
         "openings_per_hour_90": [rounded(low), rounded(high)],
     })

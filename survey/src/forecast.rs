@@ -50,20 +50,15 @@ impl Forecast {
         if self.why_undated.is_none() { self.mapper.calendar() } else { &Calendar::Relative }
     }
 
-    /// The doors that were found, with their numbers, which they keep.
-    pub fn doors(&self) -> impl Iterator<Item = (u32, &Door)> {
-        self.mapper.doors().iter().map(|door| (door.id, door))
-    }
-
     /// The places where something changes, with the numbers and the names that they have in the report of `map_log`.
     pub fn places(&self) -> &[Place] {
         &self.places
     }
 
     /// The door at a point: its closed leaf is at most half a meter away, m.
-    pub fn door_at(&self, point: Point2<f64>) -> Option<(u32, &Door)> {
-        let far_m = |(_, door): &(u32, &Door)| door.closed.distance_m(&point);
-        let near = self.doors().filter(|door| far_m(door) <= NEAR_M);
+    pub fn door_at(&self, point: Point2<f64>) -> Option<&Door> {
+        let far_m = |door: &&Door| door.closed.distance_m(&point);
+        let near = self.mapper.doors().iter().filter(|door| far_m(door) <= NEAR_M);
         near.min_by(|a, b| far_m(a).total_cmp(&far_m(b)))
     }
 

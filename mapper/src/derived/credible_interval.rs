@@ -10,26 +10,21 @@ const DISPERSION: f64 = 2.0;
 
 /// Credible intervals that contain a rate with a certain probability, with equal probabilities below and above the
 /// interval.
-pub(crate) struct CredibleInterval {
+pub(super) struct CredibleInterval {
     /// The probabilities below both ends.
     ends: [f64; 2],
 }
 
 impl CredibleInterval {
     /// Intervals that contain the rate with the probability `mass`.
-    pub(crate) fn new(mass: f64) -> Self {
+    pub(super) fn new(mass: f64) -> Self {
         let mass = mass.clamp(0.0, 1.0);
         Self { ends: [0.5 - 0.5 * mass, 0.5 + 0.5 * mass] }
     }
 
     /// The interval of a gamma distribution whose variance is [`DISPERSION`] times as large.
     pub(super) fn of_rate(&self, rate: RateDistribution) -> (f64, f64) {
-        self.of_gamma(RateDistribution { events: rate.events / DISPERSION, time: rate.time / DISPERSION })
-    }
-
-    /// The interval of a gamma distribution.
-    pub(crate) fn of_gamma(&self, rate: RateDistribution) -> (f64, f64) {
-        let shape = rate.events;
+        let shape = rate.events / DISPERSION;
         let [low, high] = self.ends.map(|end| rate.mean().min(f64::MAX) * quantile(shape, end));
         (low, high)
     }

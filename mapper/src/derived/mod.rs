@@ -11,7 +11,7 @@ use crate::Mapper;
 use crate::things::OfCell;
 use blocked_probability::Chain;
 use change_probability::change_probability;
-pub(crate) use credible_interval::CredibleInterval;
+use credible_interval::CredibleInterval;
 pub(crate) use expected_changes::ExpectedChanges;
 use interfaces::CellState;
 

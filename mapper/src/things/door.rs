@@ -100,20 +100,9 @@ impl Door {
         self.presence.last_look().1
     }
 
-    /// Openings and closings in view.
-    pub fn moves(&self) -> [u32; 2] {
-        let [closed, opened] = self.presence.evidence().events();
-        [opened, closed]
-    }
-
-    /// Openings and closings that were found after a gap in the view.
-    pub fn moves_after_gap(&self) -> u32 {
-        self.presence.evidence().changes_after_gap()
-    }
-
-    /// The time in view, s.
-    pub fn in_view_s(&self) -> f64 {
-        self.presence.evidence().in_view_s()
+    /// What looks say of how long it stays open (the state "away"), and closed.
+    pub fn evidence(&self) -> &Evidence {
+        self.presence.evidence()
     }
 
     /// The number of openings per hour, by all looks: in view, and before and after gaps in the view.

@@ -45,12 +45,14 @@ impl Object {
 
     /// Adds cells that have turned out to belong to it.
     pub(super) fn add(&mut self, cells: &[u32]) {
-        self.parts.add(cells.iter().map(|cell| (*cell, Default::default())));
+        let mut parts = Parts::default();
+        parts.set(cells);
+        self.parts.join(parts);
     }
 
     /// Takes over another object that is the same one, and keeps the longer record.
     pub(super) fn join(&mut self, other: Self) {
-        self.parts.add(other.parts);
+        self.parts.join(other.parts);
         if other.presence.evidence().known_s() > self.presence.evidence().known_s() {
             self.presence = other.presence;
         }

@@ -124,9 +124,9 @@ impl Presence {
 pub(super) struct Parts(Vec<(u32, [LookCounts; 2])>);
 
 impl Parts {
-    /// Adds those cells that are not there yet.
-    pub(super) fn add(&mut self, cells: impl IntoIterator<Item = (u32, [LookCounts; 2])>) {
-        for (cell, counts) in cells {
+    /// Adds those cells of others that are not there yet.
+    pub(super) fn join(&mut self, others: Self) {
+        for (cell, counts) in others.0 {
             if let Err(at) = self.0.binary_search_by_key(&cell, |(cell, _)| *cell) {
                 self.0.insert(at, (cell, counts));
             }
@@ -160,14 +160,5 @@ impl Parts {
 
     pub(super) fn grow(&mut self, growth: &Growth) {
         self.0.iter_mut().for_each(|(cell, _)| *cell = growth.index(*cell as usize) as u32);
-    }
-}
-
-impl IntoIterator for Parts {
-    type Item = (u32, [LookCounts; 2]);
-    type IntoIter = std::vec::IntoIter<Self::Item>;
-
-    fn into_iter(self) -> Self::IntoIter {
-        self.0.into_iter()
     }
 }

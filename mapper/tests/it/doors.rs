@@ -76,10 +76,11 @@ fn check_door(house: &House, door: &Door) {
         let off_m = door.closed.ends.map(|found| (found - end).norm());
         assert!(off_m[0].min(off_m[1]) < 0.1, "{end}: {:?}", door.closed);
     }
-    let (moves, motions) = (door.moves(), (END_S / STAY_S) as u32);
+    let (seen, motions) = (door.evidence(), (END_S / STAY_S) as u32);
+    let moves = seen.events();
     assert!(moves.iter().sum::<u32>() >= motions - 1, "{moves:?}, {motions} motions");
     assert!(moves.iter().all(|moves| *moves <= motions / 2), "{moves:?}, {motions} motions");
-    assert!((0.8 * END_S..=END_S).contains(&door.in_view_s()), "{} s", door.in_view_s());
+    assert!((0.8 * END_S..=END_S).contains(&seen.in_view_s()), "{} s", seen.in_view_s());
     assert_eq!(door.is_open(), motions % 2 == 1);
     let per_hour = door.openings_per_hour();
     let true_per_hour = 3600.0 / (2.0 * STAY_S);
@@ -155,8 +156,9 @@ fn a_door_that_is_hardly_seen_has_a_rate_by_its_gaps() {
         watch(&mut mapper, &mut house, first..first + (VISIT_S / PERIOD_S) as u32, false);
     }
     let door = only_door(&mapper);
-    assert!(door.moves().iter().sum::<u32>() == 0 && door.moves_after_gap() >= 8, "{door:?}");
-    assert!((40.0..=10.0 * VISIT_S).contains(&door.in_view_s()), "{} s", door.in_view_s());
+    let seen = door.evidence();
+    assert!(seen.events() == [0, 0] && seen.changes_after_gap() >= 8, "{seen:?}");
+    assert!((40.0..=10.0 * VISIT_S).contains(&seen.in_view_s()), "{} s", seen.in_view_s());
     let (low, high) = door.interval_of_openings_per_hour(0.9);
     // One motion per gap is the least; nothing shows that it is not many times more.
     assert!((0.5..1.5).contains(&low) && high > 10.0, "{low} to {high} per hour");

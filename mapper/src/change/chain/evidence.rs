@@ -6,7 +6,7 @@ use std::iter::zip;
 #[derive(Clone, Debug, Default, PartialEq, serde::Deserialize, serde::Serialize)]
 pub struct Evidence {
     watched_s: [f64; 2],
-    /// The changes in view, by the state that the thing left.
+    /// The changes in view, by the state that the thing left: how often it came, and went.
     events: [u32; 2],
     /// The times without a look, by their lengths and the states before and after.
     gaps: GapHistogram,
@@ -33,7 +33,7 @@ impl Evidence {
         self.gaps.put(&Gap { start: 0, end: 0, length, before, after });
     }
 
-    /// The changes in view, by the state that the thing left.
+    /// The changes in view, by the state that the thing left: how often it came, and went.
     pub fn events(&self) -> [u32; 2] {
         self.events
     }

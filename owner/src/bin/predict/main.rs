@@ -191,22 +191,22 @@ fn run(args: &Args) -> Result<ExitCode, Failure> {
 
 /// The doors that are asked for; all of them if nothing is.
 fn doors(args: &Args, forecast: &Forecast, times_s: &[f64]) -> anyhow::Result<Vec<Place>> {
-    let known: Vec<_> = forecast.doors().collect();
-    if let Some(door) = args.door.iter().find(|door| known.iter().all(|(id, _)| id != *door)) {
-        let named = |(id, door): &(u32, &Door)| {
+    let known = forecast.mapper().doors();
+    if let Some(id) = args.door.iter().find(|id| known.iter().all(|door| door.id != **id)) {
+        let named = |door: &Door| {
             let at = nalgebra::center(&door.closed.ends[0], &door.closed.ends[1]);
-            format!("{id} at {:.1},{:.1}", at.x, at.y)
+            format!("{} at {:.1},{:.1}", door.id, at.x, at.y)
         };
         let doors: Vec<String> = known.iter().map(named).collect();
         bail!(
-            "--door {door}: there is no such door; known {}. (The numbers in the report of map_log are those of places: --place)",
+            "--door {id}: there is no such door; known {}. (The numbers in the report of map_log are those of places: --place)",
             if doors.is_empty() { "is none".to_owned() } else { format!("are {}", doors.join("; ")) }
         );
     }
     let is_all =
         args.door.is_empty() && args.place.is_empty() && args.route.is_none() && args.graph.is_none();
-    let asked = known.into_iter().filter(|(id, _)| is_all || args.door.contains(id));
-    Ok(asked.map(|(id, door)| Place::of_door(forecast, id, door, times_s)).collect())
+    let asked = known.iter().filter(|door| is_all || args.door.contains(&door.id));
+    Ok(asked.map(|door| Place::of_door(forecast, door, times_s)).collect())
 }
 
 /// Writes the map and the masks at a time.

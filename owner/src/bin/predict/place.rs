@@ -69,8 +69,8 @@ impl Place {
         let mapper = forecast.mapper();
         let frame = mapper.frame();
         let own = frame.index(frame.cell_at(&at))?;
-        if let Some((id, door)) = forecast.door_at(at) {
-            return Some(Self::of_door(forecast, id, door, times_s));
+        if let Some(door) = forecast.door_at(at) {
+            return Some(Self::of_door(forecast, door, times_s));
         }
         // The place that changes is perhaps beside the point.
         let far_m = |index: &usize| (frame.center(frame.cell(*index)) - at).norm();
@@ -100,11 +100,12 @@ impl Place {
     }
 
     /// A door, at times in seconds.
-    pub(crate) fn of_door(forecast: &Forecast, id: u32, door: &Door, times_s: &[f64]) -> Self {
+    pub(crate) fn of_door(forecast: &Forecast, door: &Door, times_s: &[f64]) -> Self {
         let at = nalgebra::center(&door.closed.ends[0], &door.closed.ends[1]);
         let width_m = door.closed.length_m();
         let state = if door.is_open() { "open" } else { "closed" };
         let seen = moment::text(forecast.mapper().epoch_s() + door.last_seen_s(), forecast);
+        let id = door.id;
         let record = DoorRecord {
             id,
             width_m,
@@ -126,11 +127,10 @@ impl Place {
 
     /// A place of the report, at times in seconds.
     pub(crate) fn of_report(forecast: &Forecast, reported: &survey::Place, times_s: &[f64]) -> Option<Self> {
-        let door = forecast.doors().find(|(id, _)| reported.kind.thing() == Some(*id));
-        if let Some((id, door)) = door {
-            return Some(Self::of_door(forecast, id, door, times_s));
-        }
         let mapper = forecast.mapper();
+        if let Some(door) = mapper.doors().iter().find(|door| reported.kind.thing() == Some(door.id)) {
+            return Some(Self::of_door(forecast, door, times_s));
+        }
         let centers = reported.cells.iter().map(|cell| mapper.frame().center(mapper.frame().cell(*cell)));
         // The middle of a ring or an arc is not in it.
         let middle = Point2::new(reported.x_m, reported.y_m);
@@ -218,7 +218,8 @@ impl Place {
 
 /// The closed leaves of the doors, each with its name, the number of its place, or its own number.
 pub(crate) fn door_lines(forecast: &Forecast) -> Vec<NamedLine> {
-    let line = |(id, door): (u32, &Door)| {
+    let line = |door: &Door| {
+        let id = door.id;
         let reported = forecast.places().iter().find(|place| place.kind.thing() == Some(id));
         let name = match reported {
             Some(place) => place.name.clone().unwrap_or_else(|| format!("place {}", place.number)),
@@ -226,7 +227,7 @@ pub(crate) fn door_lines(forecast: &Forecast) -> Vec<NamedLine> {
         };
         NamedLine { ends: door.closed.ends, name }
     };
-    forecast.doors().map(line).collect()
+    forecast.mapper().doors().iter().map(line).collect()
 }
 
 /// A place as it is called in the report.

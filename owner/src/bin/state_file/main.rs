@@ -68,9 +68,9 @@ fn show(file: &Path, settings: bool) -> Result<ExitCode, Failure> {
         session.notes.iter().try_for_each(|note| print(format_args!("    note: {note}")))?;
     }
     if let Ok(forecast) = Forecast::of_state(&state) {
-        for (id, door) in forecast.doors() {
+        for door in forecast.mapper().doors() {
             let at = door.closed.ends[0];
-            print(format_args!("  door {id} at {:.1},{:.1}", at.x, at.y))?;
+            print(format_args!("  door {} at {:.1},{:.1}", door.id, at.x, at.y))?;
         }
         for place in forecast.places() {
             let name = place.name.as_deref().map(|name| format!(", {name}")).unwrap_or_default();
