@@ -35,6 +35,7 @@
 //! are left out since those of Stage are short beams at any place, and those of this simulator are parts of a ring
 //! around the robot that detect contacts.
 
+mod body;
 mod left_out;
 mod lexer;
 mod load;

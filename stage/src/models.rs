@@ -3,7 +3,7 @@
 use super::lexer::Span;
 use super::tree::Entity;
 use super::{StageWall, left_out};
-use crate::robots::Body;
+use crate::body::Body;
 use crate::world::Builder;
 use nalgebra::Isometry2;
 use sim::physics::{BoxTree, Rectangle};

@@ -6,9 +6,14 @@
 #[cfg(all(test, feature = "recording"))]
 #[path = "../../draw/src/tests/fake_run.rs"]
 mod fake_run;
+#[cfg(not(feature = "recording"))]
+mod no_recording;
 #[cfg(feature = "recording")]
 pub mod recording;
-#[cfg(not(feature = "recording"))]
-#[path = "no_recording.rs"]
-pub mod recording;
 pub mod show;
+
+/// There is no recording in a build without the feature `recording`.
+#[cfg(not(feature = "recording"))]
+pub mod recording {
+    pub use crate::no_recording::{Recorder, RecordingError};
+}

@@ -2,6 +2,7 @@
 
 mod args;
 mod logs_in_order;
+mod output;
 mod passes;
 mod place_names;
 mod report;
@@ -105,7 +106,7 @@ fn run(args: &Args) -> Result<ExitCode, Failure> {
     state_file.finish(&survey);
     let mut summary = Summary::new(&survey, &learned, args.accept_map)?;
     summary.wall_s = begin.elapsed().as_secs_f64();
-    summary::write(&folder, &survey, &learned, &mut summary)?;
+    output::write(&folder, &survey, &learned, &mut summary)?;
     // A log can be the result of an earlier run.
     folder.finish(&args.files.iter().map(PathBuf::as_path).collect::<Vec<_>>())?;
     if !learned.is_interrupted {
@@ -118,7 +119,7 @@ fn run(args: &Args) -> Result<ExitCode, Failure> {
     }
     if !args.quiet {
         let out = args.out.display();
-        print(format_args!("{summary}\n  files     {out}: open {}", args.out.join(summary::PAGE).display()))?;
+        print(format_args!("{summary}\n  files     {out}: open {}", args.out.join(output::PAGE).display()))?;
     }
     Ok(if !learned.is_shown || !state_file.is_written {
         ExitCode::FAILURE

@@ -2,25 +2,16 @@
 
 use crate::logs_in_order::begin_s;
 use crate::passes::{Learned, ignored};
-use crate::report;
 use anyhow::Context;
 use cli::program::arguments;
-use draw::layers::Layer;
-use files::{RunFolder, write_file};
 use interfaces::{CellState, PoseMode, median};
 use mapper::{Mapper, NoReturn, NoReturnEvidence};
 use owner::words::{how_often, list};
-use results::intervals::Intervals;
 use results::numbers::percent;
-use results::thinned::Thinned;
-use results::{cell_statistics, raster, ros_map, things};
 use robot::BUILD;
 use serde::Serialize;
 use std::fmt;
-use survey::{
-    MASKS, Place, PlaceKind, Quality, Since, StillName, Survey, SurveySettings, SurveyedLog, Verdict, masks,
-    permanent,
-};
+use survey::{Place, PlaceKind, Quality, Since, StillName, Survey, SurveySettings, SurveyedLog, Verdict};
 
 /// The number of places in the summary and in the report, beside those with names and doors.
 const MAX_PLACES: usize = 20;
@@ -246,43 +237,4 @@ impl fmt::Display for Summary {
         }
         write!(f, "  time      {:.1} s, {per_scan_ms:.2} ms per scan", self.wall_s)
     }
-}
-
-// The files of a survey.
-
-/// The page for people.
-pub(crate) const PAGE: &str = "report.html";
-/// The file that ends a run.
-const SUMMARY: &str = "summary.json";
-
-/// Writes everything except the recording and the trajectory.
-pub(crate) fn write(
-    folder: &RunFolder,
-    survey: &Survey,
-    learned: &Learned,
-    summary: &mut Summary,
-) -> anyhow::Result<()> {
-    let mapper = survey.mapper().context("nothing was learned")?;
-    let to = folder.unfinished();
-    let has_rates = summary.rates_withheld.is_none();
-    let layers: &[Layer] = if has_rates { &Layer::ALL } else { &[Layer::Occupancy] };
-    learned.show.write_pictures(to, mapper, &Thinned::default(), layers)?;
-    for (name, map) in [("map", mapper.states()), ("permanent", &permanent(mapper))] {
-        ros_map::write(to, name, map)?;
-    }
-    if has_rates {
-        for (name, mask) in MASKS.iter().zip(masks(mapper)) {
-            ros_map::write_mask(to, name, &mask)?;
-        }
-        let intervals = Intervals::of(mapper);
-        cell_statistics::write(&to.join("cell_statistics.csv"), mapper, &intervals)?;
-        raster::write(&to.join("layers.npy"), mapper, &intervals)?;
-        things::write(&to.join("things.json"), mapper)?;
-    }
-    let page = report::page(summary, mapper);
-    write_file(&to.join(PAGE), |file| file.write_all(page.as_bytes()))?;
-    summary.files = folder.results()?;
-    let text = serde_json::to_string_pretty(summary)?;
-    write_file(&to.join(SUMMARY), |file| writeln!(file, "{text}"))?;
-    Ok(())
 }
