@@ -2,15 +2,12 @@
 //! without looking.
 
 use crate::metrics::{Freshness, FreshnessScores};
-use interfaces::{CellState, GridFrame};
+use interfaces::CellState;
 use mapper::{Door, Mapper};
 use nalgebra::Point2;
 use serde::{Deserialize, Serialize};
-use sim::physics::{self, Motion, PhysicsWorld, Rectangle, WorldSpec};
-use std::collections::BTreeSet;
+use sim::physics::{self, Motion, PhysicsWorld, WorldSpec};
 
-/// The part of a closed leaf whose cells are those of the door: cells at its ends can belong to the wall.
-const MIDDLE: f64 = 0.6;
 /// A door of the map whose closed leaf is centered this near to that of the world is this door, m.
 const SAME_DOOR_M: f64 = 0.3;
 
@@ -68,21 +65,17 @@ impl ScheduledThings {
     }
 }
 
-/// The things of a world that have a schedule, once for each of their places.
+/// The things of a world that have a schedule, once for each of their places. That a door is open says as much as that it is not closed.
 fn things_of(spec: &WorldSpec) -> Vec<Thing> {
     let mut things = Vec::new();
     for thing in spec.things() {
         let obstacle = &spec.obstacles[thing.obstacle];
-        let shape = Some(obstacle.shape).filter(|_| matches!(obstacle.motion, Motion::Door(_)));
-        // That a door is open says as much as that it is not closed.
-        let places = thing.places.len().min(if shape.is_some() { 1 } else { usize::MAX });
-        let is_scheduled = obstacle.schedule().is_some();
-        things.extend((0..places).filter(|_| is_scheduled).map(|place| Thing {
-            door: shape.map(|shape| shape.pose.translation.vector.into()),
-            cells: shape.map_or_else(|| thing.places[place].clone(), |leaf| middle(&leaf, &spec.frame)),
-            place,
-            thing: thing.clone(),
-        }));
+        let door = Some(obstacle.shape).filter(|_| matches!(obstacle.motion, Motion::Door(_)));
+        let places = if obstacle.schedule().is_none() { 0 } else { thing.places.len() };
+        for place in 0..if door.is_some() { places.min(1) } else { places } {
+            let door = door.map(|leaf| leaf.pose.translation.vector.into());
+            things.push(Thing { door, place, thing: thing.clone() });
+        }
     }
     things
 }
@@ -94,18 +87,6 @@ struct Thing {
     place: usize,
     /// The center of the leaf of a closed door, m.
     door: Option<Point2<f64>>,
-    /// The cells that are blocked when it is there.
-    cells: Vec<usize>,
-}
-
-/// The cells in the middle of the leaf of a closed door.
-fn middle(leaf: &Rectangle, frame: &GridFrame) -> Vec<usize> {
-    let reach_m = MIDDLE * leaf.half_m.x;
-    let steps = (2.0 * reach_m / frame.resolution_m()).ceil().max(1.0) as i32;
-    let at = |step: i32| leaf.pose * Point2::new(f64::from(step) / f64::from(steps) * reach_m, 0.0);
-    let cells: BTreeSet<usize> =
-        (-steps..=steps).filter_map(|step| frame.index(frame.cell_at(&at(step)))).collect();
-    cells.into_iter().collect()
 }
 
 impl Thing {
@@ -113,7 +94,7 @@ impl Thing {
     fn predicted(&self, mapper: &Mapper, time_s: f64) -> f64 {
         match self.door.and_then(|center| door(mapper, &center)) {
             Some(door) => 1.0 - door.clock.probability(mapper.epoch_s() + time_s, mapper.calendar()),
-            None => presence(mapper, &self.cells, (time_s - mapper.time()).max(0.0)),
+            None => presence(mapper, &self.thing.places[self.place], (time_s - mapper.time()).max(0.0)),
         }
     }
 

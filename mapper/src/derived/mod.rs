@@ -141,7 +141,7 @@ impl Mapper {
 
     /// The object to which a cell belongs. The rate of a cell of a door has that of the door as its prior, since people pass there.
     fn object(&self, index: usize) -> Option<OfCell<'_>> {
-        self.thing(index).filter(|thing| !thing.is_door())
+        self.thing(index).filter(|thing| thing.clock.is_none())
     }
 
     /// The probability that what comes and goes at a cell is there, this much time after the last reading; `None` where nothing

@@ -29,6 +29,10 @@ pub(crate) struct Object {
     pub(super) presence: Presence,
     /// The number of looks in which some of its cells were blocked, and in which most of them were.
     looks: [u32; 2],
+    /// The time at which it was found, s.
+    pub(super) found_s: f64,
+    /// Whether it was a thing when this was last asked.
+    pub(super) is_thing: bool,
 }
 
 impl Object {
@@ -38,7 +42,8 @@ impl Object {
         let best = cells.iter().max_by(|a, b| known_s(a).total_cmp(&known_s(b)).then(b.cmp(a)));
         let best = best.map_or(0, |cell| *cell as usize);
         let presence = Presence::new(is_there, map.last_seen(best), map.evidence(best));
-        let mut object = Self { parts: Parts::default(), presence, looks: [0; 2] };
+        let mut object =
+            Self { parts: Parts::default(), presence, looks: [0; 2], found_s: map.time(), is_thing: false };
         object.add(cells);
         object
     }
@@ -93,17 +98,19 @@ impl Object {
         }
     }
 
-    /// Whether this is a thing, and not people who pass: they stay for a moment, cover a part of the cells at a time, and change them
-    /// more often than anything comes and goes. Somebody who stands still is told apart when he has gone and does not come back.
-    pub(super) fn is_thing(&self, map: &CellMap) -> bool {
+    /// The population of the map is learned anew: decides whether this is a thing, and not people who pass. They stay for a moment,
+    /// cover a part of the cells at a time, and change them more often than anything comes and goes. Somebody who stands still is
+    /// told apart when he has gone and does not come back.
+    pub(super) fn renew(&mut self, map: &CellMap) {
+        self.presence.renew();
         let (stayed_s, went) = self.presence.evidence().stays();
         let changes = u64::from(self.presence.evidence().changes());
         let of_cells: u64 = self.cells().map(|cell| u64::from(map.statistics(cell as usize).events())).sum();
         let of_all = changes * self.cells().len() as u64;
-        (changes >= SURE_CHANGES || stayed_s >= STANDS_S)
+        self.is_thing = (changes >= SURE_CHANGES || stayed_s >= STANDS_S)
             && stayed_s >= MIN_STAY_S * f64::from(went)
             && self.looks[0] <= self.looks[1]
-            && (of_all / 3..=of_all).contains(&of_cells)
+            && (of_all / 3..=of_all).contains(&of_cells);
     }
 }
 

@@ -22,14 +22,6 @@ const MAX_OBJECTS: usize = 256;
 const RENEWAL_READINGS: [usize; 2] = [8, 100];
 const HOUR_S: f64 = 3600.0;
 
-/// An object, and whether it is a thing.
-#[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
-struct Known {
-    object: Object,
-    found_s: f64,
-    is_thing: bool,
-}
-
 /// What is known of an object that comes and goes as a whole: a toy, a chair, a box.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ObjectReport {
@@ -55,7 +47,7 @@ pub struct ObjectReport {
 #[derive(Clone, Debug, Default, serde::Deserialize, serde::Serialize)]
 pub(crate) struct Objects {
     /// By their numbers.
-    objects: BTreeMap<u32, Known>,
+    objects: BTreeMap<u32, Object>,
     /// The number of the object of each cell.
     of_cell: BTreeMap<u32, u32>,
     population: Population,
@@ -65,19 +57,14 @@ pub(crate) struct Objects {
 impl Objects {
     /// Learns from the open reading.
     pub(super) fn observe(&mut self, map: &CellMap, is_doubted: impl Fn(usize) -> bool) {
-        for known in self.objects.values_mut() {
-            known.object.observe(map, &is_doubted);
-        }
+        self.objects.values_mut().for_each(|object| object.observe(map, &is_doubted));
         let readings = map.readings();
         if readings >= self.due {
             let [least, most] = RENEWAL_READINGS;
             self.due = readings + (readings / 4).clamp(least, most);
-            for known in self.objects.values_mut() {
-                known.is_thing = known.object.is_thing(map);
-                known.object.presence.renew();
-            }
-            let things = self.objects.values().filter(|known| known.is_thing);
-            self.population = Population::of(things.map(|known| known.object.presence.alone()));
+            self.objects.values_mut().for_each(|object| object.renew(map));
+            let things = self.objects.values().filter(|object| object.is_thing);
+            self.population = Population::of(things.map(|object| object.presence.alone()));
         }
     }
 
@@ -99,32 +86,31 @@ impl Objects {
                 self.make_room();
                 let id = *next_id;
                 *next_id += 1;
-                let object = Object::new(&cells, is_blocked, map);
-                self.objects.insert(id, Known { object, found_s: map.time(), is_thing: false });
+                self.objects.insert(id, Object::new(&cells, is_blocked, map));
                 id
             }
         };
         for other in same {
-            let is_there = |known: &Known| known.object.presence.is_there();
-            let is_alike = |known: &Known| is_there(known) == is_there(&self.objects[&number]);
-            let both = [number, other].into_iter().filter_map(|number| self.objects.get(&number));
-            let cells = both.flat_map(|known| known.object.cells());
-            if extent_m(cells, map.frame()) <= MAX_EXTENT_M
-                && self.objects.get(&other).is_some_and(is_alike)
+            let both = [number, other].map(|number| self.objects.get(&number));
+            let cells = both.into_iter().flatten().flat_map(Object::cells);
+            let [is_there, other_is_there] =
+                both.map(|object| object.map(|object| object.presence.is_there()));
+            if is_there == other_is_there
+                && extent_m(cells, map.frame()) <= MAX_EXTENT_M
                 && let Some(other) = self.objects.remove(&other)
             {
-                self.of_cell.extend(other.object.cells().map(|cell| (cell, number)));
-                self.objects.entry(number).and_modify(|known| known.object.join(other.object));
+                self.of_cell.extend(other.cells().map(|cell| (cell, number)));
+                self.objects.entry(number).and_modify(|object| object.join(other));
             }
         }
         let cells = free(&self.of_cell);
-        if let Some(known) = self.objects.get_mut(&number) {
-            let all = known.object.cells().chain(cells.iter().copied());
+        if let Some(object) = self.objects.get_mut(&number) {
+            let all = object.cells().chain(cells.iter().copied());
             if extent_m(all, map.frame()) <= MAX_EXTENT_M {
-                known.object.add(&cells);
+                object.add(&cells);
                 self.of_cell.extend(cells.into_iter().map(|cell| (cell, number)));
             }
-            known.object.presence.renew();
+            object.presence.renew();
         }
     }
 
@@ -147,7 +133,7 @@ impl Objects {
             }
         }
         let is_same = |(number, [own, near]): &(u32, [usize; 2])| {
-            let object = &self.objects[number].object;
+            let object = &self.objects[number];
             let smaller = cells.len().min(object.cells().len());
             *own as f64 >= COMMON * smaller as f64
                 || own + near > 0 && object.presence.is_there() == is_blocked
@@ -158,7 +144,7 @@ impl Objects {
     }
 
     fn make_room(&mut self) {
-        let last_s = |known: &Known| known.object.presence.last_look().1;
+        let last_s = |object: &Object| object.presence.last_look().1;
         if self.objects.len() >= MAX_OBJECTS
             && let Some((&oldest, _)) =
                 self.objects.iter().min_by(|(_, a), (_, b)| last_s(a).total_cmp(&last_s(b)))
@@ -174,22 +160,21 @@ impl Objects {
 
     /// Forgets those with most of their cells among these, which are sorted.
     pub(super) fn forget(&mut self, cells: &[u32]) {
-        let is_in = |known: &Known| is_mostly_in(&known.object.cells().collect::<Vec<_>>(), cells);
-        let within = self.objects.iter().filter(|(_, known)| is_in(known)).map(|(number, _)| *number);
+        let is_in = |object: &Object| is_mostly_in(&object.cells().collect::<Vec<_>>(), cells);
+        let within = self.objects.iter().filter(|(_, object)| is_in(object)).map(|(number, _)| *number);
         within.collect::<Vec<_>>().into_iter().for_each(|number| self.remove(number));
     }
 
     /// What is known of those that are things.
     pub(super) fn reports(&self) -> impl Iterator<Item = ObjectReport> {
-        self.objects.iter().filter(|(_, known)| known.is_thing).map(|(id, known)| {
-            let Known { object, found_s, .. } = known;
+        self.objects.iter().filter(|(_, object)| object.is_thing).map(|(id, object)| {
             let (evidence, posterior) =
                 (object.presence.evidence(), object.presence.posterior(&self.population));
             let (is_there, last_seen_s) = object.presence.last_look();
             let (low, high) = posterior.interval(0.9);
             ObjectReport {
                 id: *id,
-                found_s: *found_s,
+                found_s: object.found_s,
                 cells: object.cells().collect(),
                 is_there,
                 last_seen_s,
@@ -202,13 +187,13 @@ impl Objects {
 
     /// What the object of a cell says of it; `None` if it belongs to none.
     pub(super) fn of_cell(&self, cell: u32) -> Option<OfCell<'_>> {
-        let known = self.objects.get(self.of_cell.get(&cell)?).filter(|known| known.is_thing)?;
-        let (presence, population) = (&known.object.presence, Some(&self.population));
-        Some(OfCell { presence, population, clock: None, shares: known.object.shares(cell)? })
+        let object = self.objects.get(self.of_cell.get(&cell)?).filter(|object| object.is_thing)?;
+        let (presence, population) = (&object.presence, Some(&self.population));
+        Some(OfCell { presence, population, clock: None, shares: object.shares(cell)? })
     }
 
     pub(super) fn grow(&mut self, growth: &Growth) {
-        self.objects.values_mut().for_each(|known| known.object.parts.grow(growth));
+        self.objects.values_mut().for_each(|object| object.parts.grow(growth));
         let cells = std::mem::take(&mut self.of_cell).into_iter();
         self.of_cell = cells.map(|(cell, number)| (growth.index(cell as usize) as u32, number)).collect();
     }

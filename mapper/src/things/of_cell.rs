@@ -15,7 +15,7 @@ pub(crate) struct OfCell<'a> {
     /// The population of the map; `None` for a door.
     pub(super) population: Option<&'a Population>,
     /// The clock of a door; `None` of an object.
-    pub(super) clock: Option<&'a Clock>,
+    pub(crate) clock: Option<&'a Clock>,
     /// The probability that the cell is blocked in both states.
     pub(super) shares: [f64; 2],
 }
@@ -29,7 +29,7 @@ impl OfCell<'_> {
     /// object that stands there, and what stood in another part much less.
     pub(crate) fn explains(&self, events: u32) -> bool {
         let changes = f64::from(self.presence.evidence().changes());
-        self.is_door() || (0.5 * changes..=1.5 * changes + 1.0).contains(&f64::from(events))
+        self.clock.is_some() || (0.5 * changes..=1.5 * changes + 1.0).contains(&f64::from(events))
     }
 
     /// Whether a look at the cell that found it blocked (1) or free (0), at a time, s, is older than the last look at the thing, or says
@@ -37,10 +37,6 @@ impl OfCell<'_> {
     pub(crate) fn agrees(&self, observed: f64, time_s: f64) -> bool {
         let (is_there, last_s) = self.presence.last_look();
         last_s > time_s || (self.shares[usize::from(is_there)] - observed).abs() < 0.5
-    }
-
-    pub(crate) fn is_door(&self) -> bool {
-        self.clock.is_some()
     }
 
     /// The probability of the second state, at a time, s.
