@@ -102,7 +102,7 @@ impl Door {
 
     /// What looks say of how long it stays open (the state "away"), and closed.
     pub fn evidence(&self) -> &Evidence {
-        self.presence.evidence()
+        &self.presence.evidence
     }
 
     /// The number of openings per hour, by all looks: in view, and before and after gaps in the view.
@@ -160,7 +160,7 @@ impl Door {
             Some(..OPEN_TO) => false,
             _ => return,
         };
-        let is_new = is_closed != self.presence.is_there();
+        let is_new = is_closed != self.presence.is_there;
         let is_due = is_new || self.clock_s.is_none_or(|last_s| now_s - last_s >= LOOK_S);
         if self.presence.see(now_s, is_closed) && is_due {
             self.clock_s = Some(now_s);

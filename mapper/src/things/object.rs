@@ -58,7 +58,7 @@ impl Object {
     /// Takes over another object that is the same one, and keeps the longer record.
     pub(super) fn join(&mut self, other: Self) {
         self.parts.join(other.parts);
-        if other.presence.evidence().known_s() > self.presence.evidence().known_s() {
+        if other.presence.evidence.known_s() > self.presence.evidence.known_s() {
             self.presence = other.presence;
         }
     }
@@ -94,7 +94,7 @@ impl Object {
         }
         let log_odds = log_odds * f64::min(1.0, INDEPENDENT / seen);
         if seen > 0.0 && log_odds.abs() >= MIN_LOG_ODDS && self.presence.see(map.time(), log_odds > 0.0) {
-            self.parts.learn(self.presence.is_there(), map, is_doubted);
+            self.parts.learn(self.presence.is_there, map, is_doubted);
         }
     }
 
@@ -103,8 +103,8 @@ impl Object {
     /// told apart when he has gone and does not come back.
     pub(super) fn renew(&mut self, map: &CellMap) {
         self.presence.renew();
-        let (stayed_s, went) = self.presence.evidence().stays();
-        let changes = u64::from(self.presence.evidence().changes());
+        let (stayed_s, went) = self.presence.evidence.stays();
+        let changes = u64::from(self.presence.evidence.changes());
         let of_cells: u64 = self.cells().map(|cell| u64::from(map.statistics(cell as usize).events())).sum();
         let of_all = changes * self.cells().len() as u64;
         self.is_thing = (changes >= SURE_CHANGES || stayed_s >= STANDS_S)

@@ -93,8 +93,7 @@ impl Objects {
         for other in same {
             let both = [number, other].map(|number| self.objects.get(&number));
             let cells = both.into_iter().flatten().flat_map(Object::cells);
-            let [is_there, other_is_there] =
-                both.map(|object| object.map(|object| object.presence.is_there()));
+            let [is_there, other_is_there] = both.map(|object| object.map(|object| object.presence.is_there));
             if is_there == other_is_there
                 && extent_m(cells, map.frame()) <= MAX_EXTENT_M
                 && let Some(other) = self.objects.remove(&other)
@@ -135,8 +134,7 @@ impl Objects {
         let is_same = |(number, [own, near]): &(u32, [usize; 2])| {
             let object = &self.objects[number];
             let smaller = cells.len().min(object.cells().len());
-            *own as f64 >= COMMON * smaller as f64
-                || own + near > 0 && object.presence.is_there() == is_blocked
+            *own as f64 >= COMMON * smaller as f64 || own + near > 0 && object.presence.is_there == is_blocked
         };
         let mut same: Vec<_> = votes.into_iter().filter(is_same).collect();
         same.sort_by_key(|(number, [own, near])| (std::cmp::Reverse((*own, *near)), *number));
@@ -169,7 +167,7 @@ impl Objects {
     pub(super) fn reports(&self) -> impl Iterator<Item = ObjectReport> {
         self.objects.iter().filter(|(_, object)| object.is_thing).map(|(id, object)| {
             let (evidence, posterior) =
-                (object.presence.evidence(), object.presence.posterior(&self.population));
+                (&object.presence.evidence, object.presence.posterior(&self.population));
             let (is_there, last_seen_s) = object.presence.last_look();
             let (low, high) = posterior.interval(0.9);
             ObjectReport {

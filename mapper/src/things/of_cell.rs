@@ -28,7 +28,7 @@ impl OfCell<'_> {
     /// Whether the changes of the thing are those of a cell that changed this often: traffic changes a cell much more often than the
     /// object that stands there, and what stood in another part much less.
     pub(crate) fn explains(&self, events: u32) -> bool {
-        let changes = f64::from(self.presence.evidence().changes());
+        let changes = f64::from(self.presence.evidence.changes());
         self.clock.is_some() || (0.5 * changes..=1.5 * changes + 1.0).contains(&f64::from(events))
     }
 

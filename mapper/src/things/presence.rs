@@ -31,10 +31,11 @@ impl PartialEq for Computed {
 /// The state of a thing, and the evidence about how long it stays in both.
 #[derive(Clone, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
 pub(crate) struct Presence {
-    is_there: bool,
+    /// The state that is certain.
+    pub(super) is_there: bool,
     last_s: f64,
     doubt: Option<Doubt>,
-    evidence: Evidence,
+    pub(super) evidence: Evidence,
     /// By the shipped population, and by that of the map.
     #[serde(skip)]
     alone: Computed,
@@ -93,15 +94,6 @@ impl Presence {
     /// The state at the last look, and the time of that, s.
     pub(super) fn last_look(&self) -> (bool, f64) {
         self.doubt.map_or((self.is_there, self.last_s), |doubt| (!self.is_there, doubt.last_s))
-    }
-
-    /// The state that is certain.
-    pub(super) fn is_there(&self) -> bool {
-        self.is_there
-    }
-
-    pub(super) fn evidence(&self) -> &Evidence {
-        &self.evidence
     }
 
     /// The population of the map has changed.

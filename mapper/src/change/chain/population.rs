@@ -38,16 +38,11 @@ impl Population {
         &SHIPPED
     }
 
-    /// The population to which these things belong.
-    pub fn of<'a>(things: impl Iterator<Item = &'a super::Posterior>) -> Self {
-        let Self { mut chains } = Self::default();
-        chains.iter_mut().for_each(|chain| *chain *= SHIPPED_THINGS);
-        let mut sum = vec![0.0; chains.len()];
-        for thing in things {
-            zip(&mut sum, &thing.chains).for_each(|(sum, chain)| *sum += f64::from(*chain));
-        }
-        zip(&mut chains, smoothed(&sum)).for_each(|(chain, thing)| *chain += thing);
-        Self::normalized(chains)
+    /// The population of things whose probabilities of each chain have this sum.
+    pub(super) fn of_sum(sum: &Chains) -> Self {
+        let shipped = Self::default().chains.into_iter();
+        let all = zip(shipped, smoothed(sum)).map(|(shipped, things)| SHIPPED_THINGS * shipped + things);
+        Self::normalized(all.collect())
     }
 
     fn normalized(mut chains: Chains) -> Self {

@@ -1,4 +1,4 @@
-use super::{Evidence, Population, RATIO, SHORTEST_S, chains};
+use super::{Evidence, Population, RATIO, SHORTEST_S, STAYS, chains};
 use std::iter::zip;
 
 /// Rates are kept in bins of this width, in the logarithm, from the lowest one of the grid on; and their number.
@@ -81,9 +81,20 @@ impl Posterior {
     }
 }
 
+impl Population {
+    /// The population to which these things belong.
+    pub fn of<'a>(things: impl Iterator<Item = &'a Posterior>) -> Self {
+        let mut sum = vec![0.0; STAYS * STAYS];
+        for thing in things {
+            zip(&mut sum, &thing.chains).for_each(|(sum, chain)| *sum += f64::from(*chain));
+        }
+        Self::of_sum(&sum)
+    }
+}
+
 /// The lower end of the lowest bin: below the cycle rate of the slowest chain.
 fn lowest() -> f64 {
-    -libm::log(SHORTEST_S) - libm::log(RATIO) * super::STAYS as f64 - 1.0
+    -libm::log(SHORTEST_S) - libm::log(RATIO) * STAYS as f64 - 1.0
 }
 
 fn bin(log_rate: f64) -> usize {
