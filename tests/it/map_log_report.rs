@@ -45,7 +45,7 @@ fn the_page_is_one_file_for_people() {
         "Where it changes",
         "The places",
         // It comes every 20 s: 29 times in 10 minutes, since it was there at first.
-        "Something passes about 170 times per hour",
+        "Something comes and goes about 170 times per hour",
     ] {
         (_, rest) = rest.split_once(text).unwrap_or_else(|| panic!("{text}: {page}"));
     }

@@ -135,8 +135,9 @@ impl Mapper {
 
     /// The thing to which a cell belongs, if what is known of the thing is worth more than what is known of the cell.
     fn thing(&self, index: usize) -> Option<OfCell<'_>> {
-        let thing = self.things.of_cell(index).filter(|_| self.estimator().shares_prior())?;
-        thing.explains(self.cells.statistics(index).events()).then_some(thing)
+        let thing = self.things.of_cell(index)?;
+        let speaks = thing.clock.is_some() || self.estimator().shares_prior();
+        (speaks && thing.explains(self.cells.statistics(index).events())).then_some(thing)
     }
 
     /// The object to which a cell belongs. The rate of a cell of a door has that of the door as its prior, since people pass there.

@@ -8,6 +8,7 @@ use crate::change::{CellMap, Evidence};
 use crate::clock::{Clock, Dates, Look};
 use interfaces::{CellState, GridFrame};
 use nalgebra::Point2;
+use std::cmp::Reverse;
 
 /// A door is in view while at least this share of the cells of its closed leaf is.
 const IN_VIEW: f64 = 0.4;
@@ -42,7 +43,7 @@ pub enum Leaf {
 /// A door.
 #[derive(Clone, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
 pub struct Door {
-    /// Its number, which it keeps over all sessions.
+    /// Its number among doors, which it keeps over all sessions.
     pub id: u32,
     /// The time at which it was found, s.
     pub found_s: f64,
@@ -66,13 +67,15 @@ pub struct Door {
 
 impl Door {
     /// A door with this closed leaf. What was seen of it before is that of a cell of this leaf: the one with about as many changes as
-    /// lines were found, since people change these cells as well; of several ones, the one that is known best.
+    /// lines were found, since people change these cells as well; of several ones, the one with the fewest changes in view, since
+    /// the ends of a leaf are seen to change late; and then the one that is known best.
     pub(super) fn new(id: u32, closed: Segment, lines: u32, map: &CellMap) -> Self {
         let closed_cells = closed.cells(map.frame());
         let known = closed_cells.iter().map(|&cell| (map.evidence(cell as usize), cell as usize));
-        let apart = |evidence: &Evidence| evidence.changes().abs_diff(lines);
-        let best =
-            known.min_by(|(a, _), (b, _)| apart(a).cmp(&apart(b)).then(b.known_s().total_cmp(&a.known_s())));
+        let best = known.min_by_key(|(evidence, _)| {
+            let apart = evidence.changes().abs_diff(lines);
+            (apart, evidence.events().iter().sum::<u32>(), Reverse(evidence.known_s() as u64))
+        });
         let (evidence, cell) = best.unwrap_or_default();
         let presence = Presence::new(map.state(cell) == CellState::Blocked, map.last_seen(cell), evidence);
         let (leaf, clock, parts, cells) = (Leaf::Sliding, Clock::default(), Parts::default(), Vec::new());
@@ -153,9 +156,9 @@ impl Door {
     }
 
     /// Learns from the open reading.
-    pub(super) fn observe(&mut self, map: &CellMap, dates: Dates) {
+    pub(super) fn observe(&mut self, map: &CellMap, is_doubted: impl Fn(usize) -> bool, dates: Dates) {
         let now_s = map.time();
-        let is_closed = match blocked_share(&self.closed_cells, map) {
+        let is_closed = match blocked_share(&self.closed_cells, map, &is_doubted) {
             Some(CLOSED_FROM..) => true,
             Some(..OPEN_TO) => false,
             _ => return,
@@ -165,7 +168,7 @@ impl Door {
         if self.presence.see(now_s, is_closed) && is_due {
             self.clock_s = Some(now_s);
             dates.observe(&mut self.clock, Look { time_s: now_s, is_blocked: !is_closed });
-            self.parts.learn(is_closed, map, |_| false);
+            self.parts.learn(is_closed, map, is_doubted);
         }
     }
 
@@ -177,11 +180,11 @@ impl Door {
 }
 
 /// The share of the cells in view that are blocked; `None` if too few cells are in view.
-fn blocked_share(leaf: &[u32], cells: &CellMap) -> Option<f64> {
+fn blocked_share(leaf: &[u32], cells: &CellMap, is_doubted: impl Fn(usize) -> bool) -> Option<f64> {
     let (mut seen, mut blocked) = (0u32, 0u32);
     for index in leaf.iter().map(|&cell| cell as usize).filter(|&index| cells.is_seen_now(index)) {
         seen += 1;
-        blocked += u32::from(cells.state(index) == CellState::Blocked);
+        blocked += u32::from((cells.state(index) == CellState::Blocked) != is_doubted(index));
     }
     let is_in_view = seen > 0 && f64::from(seen) >= IN_VIEW * leaf.len() as f64;
     is_in_view.then(|| f64::from(blocked) / f64::from(seen))

@@ -71,10 +71,10 @@ impl Things {
             return false;
         }
         let (closed, open, lines) = (doorway.closed, doorway.open_leaf(cells), doorway.lines);
-        let id = doorway.thing.unwrap_or(self.next_id);
+        let id = doorway.thing.unwrap_or(self.next_door);
         self.doorways[position].thing = Some(id);
-        if id == self.next_id {
-            self.next_id += 1;
+        if id == self.next_door {
+            self.next_door += 1;
             self.doors.push(Door::new(id, closed, lines.iter().sum(), cells));
         }
         for door in self.doors.iter_mut().filter(|door| door.id == id) {

@@ -46,7 +46,7 @@ pub(crate) struct Things {
     doorways: Vec<Doorway>,
     doors: Vec<Door>,
     objects: Objects,
-    next_id: u32,
+    next_door: u32,
 }
 
 impl Things {
@@ -76,8 +76,8 @@ impl Things {
         while let Some(motion) = self.motions.next(now_s) {
             self.learn(&motion, cells);
         }
-        self.objects.observe(cells, is_doubted);
-        self.doors.iter_mut().for_each(|door| door.observe(cells, dates));
+        self.objects.observe(cells, &is_doubted);
+        self.doors.iter_mut().for_each(|door| door.observe(cells, &is_doubted, dates));
     }
 
     /// Learns from a motion that is over.
@@ -88,7 +88,7 @@ impl Things {
             let is_door = Line::of(&changes, motion.begin_s(), cells.frame())
                 .is_some_and(|line| self.add_line(line, cells));
             if !is_door && !self.is_at_door(&changes) {
-                self.objects.learn(&changes, cells, &mut self.next_id);
+                self.objects.learn(&changes, cells);
             }
         }
     }

@@ -25,7 +25,7 @@ const HOUR_S: f64 = 3600.0;
 /// What is known of an object that comes and goes as a whole: a toy, a chair, a box.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ObjectReport {
-    /// Its number, which it keeps over all sessions.
+    /// Its number among objects, which it keeps over all sessions.
     pub id: u32,
     /// The time at which it was found, s.
     pub found_s: f64,
@@ -52,6 +52,7 @@ pub(crate) struct Objects {
     of_cell: BTreeMap<u32, u32>,
     population: Population,
     due: usize,
+    next_id: u32,
 }
 
 impl Objects {
@@ -68,8 +69,8 @@ impl Objects {
         }
     }
 
-    /// Learns from changes that belong together, all of the same kind. `next_id`: the number of the next new thing.
-    pub(super) fn learn(&mut self, changes: &[Change], map: &CellMap, next_id: &mut u32) {
+    /// Learns from changes that belong together, all of the same kind.
+    pub(super) fn learn(&mut self, changes: &[Change], map: &CellMap) {
         let Some(Change { is_blocked, .. }) = changes.first().copied() else { return };
         let cells: Vec<u32> = changes.iter().map(|change| change.cell).collect();
         let mut same = self.same(&cells, is_blocked, map.frame()).into_iter();
@@ -84,8 +85,8 @@ impl Objects {
                     return;
                 }
                 self.make_room();
-                let id = *next_id;
-                *next_id += 1;
+                let id = self.next_id;
+                self.next_id += 1;
                 self.objects.insert(id, Object::new(&cells, is_blocked, map));
                 id
             }

@@ -1,5 +1,6 @@
 //! Cells that change, in groups: those of a door, those of an object that comes and goes, and neighboring ones.
 
+use super::PlaceKind;
 use interfaces::{Cell, GridFrame};
 use mapper::Mapper;
 use nalgebra::{Matrix2, Vector2};
@@ -19,8 +20,8 @@ const MAX_M: f64 = 3.0;
 /// Cells that belong to one place, by their index.
 pub(super) struct Group {
     pub(super) cells: Vec<usize>,
-    /// The thing that they are; `None` if they are none.
-    pub(super) thing: Option<u32>,
+    /// The door or the object that they are; `None` if they are none.
+    pub(super) kind: Option<PlaceKind>,
 }
 
 impl Group {
@@ -28,7 +29,7 @@ impl Group {
     pub(super) fn counts(&self, mapper: &Mapper, changes: u32) -> bool {
         let (cell_m, cells) = (mapper.frame().resolution_m(), self.cells.len() as f64);
         let is_front = cells * cell_m >= MIN_FRONT_M && changes >= MIN_FRONT_CHANGES;
-        self.thing.is_some() || cells * cell_m.powi(2) >= MIN_M2 || is_front
+        self.kind.is_some() || cells * cell_m.powi(2) >= MIN_M2 || is_front
     }
 }
 
@@ -36,17 +37,18 @@ impl Group {
 pub(super) fn groups(mapper: &Mapper) -> Vec<Group> {
     let mut left: BTreeSet<usize> = mapper.changed().collect();
     let mut found = Vec::new();
-    let doors = mapper.doors().iter().map(|door| (door.id, door.cells.clone()));
-    for (id, cells) in doors.chain(mapper.objects().map(|object| (object.id, object.cells))) {
+    let doors = mapper.doors().iter().map(|door| (PlaceKind::Door { thing: door.id }, door.cells.clone()));
+    let objects = mapper.objects().map(|object| (PlaceKind::Object { thing: object.id }, object.cells));
+    for (kind, cells) in doors.chain(objects) {
         let cells = cells.iter().map(|cell| *cell as usize);
         let cells: Vec<usize> = cells.filter(|cell| left.remove(cell)).collect();
         if !cells.is_empty() {
-            found.push(Group { cells, thing: Some(id) });
+            found.push(Group { cells, kind: Some(kind) });
         }
     }
     let reach = (APART_M / mapper.frame().resolution_m()).round().max(1.0) as i32;
     while let Some(cells) = mapper.frame().take_connected(&mut left, reach) {
-        found.extend(divided(mapper.frame(), cells).into_iter().map(|cells| Group { cells, thing: None }));
+        found.extend(divided(mapper.frame(), cells).into_iter().map(|cells| Group { cells, kind: None }));
     }
     found
 }

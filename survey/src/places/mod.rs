@@ -88,12 +88,9 @@ pub enum PlaceKind {
 }
 
 impl PlaceKind {
-    /// The number of its thing; `None` for what is none.
-    pub fn thing(self) -> Option<u32> {
-        match self {
-            Self::Door { thing } | Self::Object { thing } => Some(thing),
-            Self::Traffic | Self::Unknown => None,
-        }
+    /// The number of the door; `None` for what is none.
+    pub fn door(self) -> Option<u32> {
+        if let Self::Door { thing } = self { Some(thing) } else { None }
     }
 }
 
@@ -148,7 +145,7 @@ pub(crate) fn places(mapper: &Mapper, log: &ChangeLog, book: &PlaceBook) -> Vec<
 /// How lively a place is: the lower end of the interval of the openings of a door, or of the passages, so that places that were
 /// seen for seconds do not come first. What is smaller than a body can be noise, and counts for less.
 fn liveliness(mapper: &Mapper, place: &Place) -> f64 {
-    let door = mapper.doors().iter().find(|door| place.kind.thing() == Some(door.id));
+    let door = mapper.doors().iter().find(|door| place.kind.door() == Some(door.id));
     let openings = door.map(|door| door.interval_of_openings_per_hour(MASS));
     let passages = || place.rates.as_ref()?.passages_per_hour_90;
     let least_per_hour = openings.map(|(low, _)| low).or_else(|| passages().map(|[low, _]| low));
@@ -200,9 +197,8 @@ fn place(mapper: &Mapper, log: &ChangeLog, group: &Group, spot: Spot) -> Option<
 }
 
 fn kind(mapper: &Mapper, group: &Group, rates: &PlaceRates) -> PlaceKind {
-    if let Some(thing) = group.thing {
-        let is_door = mapper.doors().iter().any(|door| door.id == thing);
-        return if is_door { PlaceKind::Door { thing } } else { PlaceKind::Object { thing } };
+    if let Some(kind) = group.kind {
+        return kind;
     }
     let stays = |index: &usize| {
         let seen = mapper.statistics(*index);

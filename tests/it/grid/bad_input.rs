@@ -21,7 +21,7 @@ fn refused_world(right: &str, wrong: &str) -> String {
 
 #[test]
 fn worlds() {
-    insta::assert_snapshot!(refused("--world nowhere"), @"error: --world: there is no world `nowhere`: it is neither a file nor one of those that ship (two_blocks, open_hall, corridor_with_doors, many_slow_blocks, one_fast_block)");
+    insta::assert_snapshot!(refused("--world nowhere"), @"error: --world: there is no world `nowhere`: it is neither a file nor one of those that ship (two_blocks, open_hall, corridor_with_doors, many_slow_blocks, one_fast_block; or a generated building: generated-7, grid-rooms-7, grid-rooms-day-7, calendar-office-7 and so on)");
     let message = refused_world("sensor_radius", "sensor_radios");
     assert!(message.starts_with("error: unknown key `sensor_radios`\n  --> grid.toml:10:1\n"), "{message}");
     for wrong in ["4.5", "0", "-1", "101", "1000000000000"] {

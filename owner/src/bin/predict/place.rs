@@ -112,7 +112,7 @@ impl Place {
             openings_per_hour: door.openings_per_hour(),
             openings_per_hour_90: door.interval_of_openings_per_hour(0.9),
         };
-        let reported = forecast.places().iter().find(|place| place.kind.thing() == Some(id));
+        let reported = forecast.places().iter().find(|place| place.kind.door() == Some(id));
         let called = reported.map(|place| format!(", {},", called(place))).unwrap_or_default();
         let title = format!(
             "door {id}{called} at ({:.2}, {:.2}) m, {width_m:.2} m wide, {state} when it was last seen, {seen}",
@@ -128,7 +128,7 @@ impl Place {
     /// A place of the report, at times in seconds.
     pub(crate) fn of_report(forecast: &Forecast, reported: &survey::Place, times_s: &[f64]) -> Option<Self> {
         let mapper = forecast.mapper();
-        if let Some(door) = mapper.doors().iter().find(|door| reported.kind.thing() == Some(door.id)) {
+        if let Some(door) = mapper.doors().iter().find(|door| reported.kind.door() == Some(door.id)) {
             return Some(Self::of_door(forecast, door, times_s));
         }
         let centers = reported.cells.iter().map(|cell| mapper.frame().center(mapper.frame().cell(*cell)));
@@ -220,7 +220,7 @@ impl Place {
 pub(crate) fn door_lines(forecast: &Forecast) -> Vec<NamedLine> {
     let line = |door: &Door| {
         let id = door.id;
-        let reported = forecast.places().iter().find(|place| place.kind.thing() == Some(id));
+        let reported = forecast.places().iter().find(|place| place.kind.door() == Some(id));
         let name = match reported {
             Some(place) => place.name.clone().unwrap_or_else(|| format!("place {}", place.number)),
             None => format!("door {id}"),
