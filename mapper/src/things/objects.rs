@@ -133,9 +133,11 @@ impl Objects {
             }
         }
         let is_same = |(number, [own, near]): &(u32, [usize; 2])| {
-            let object = &self.objects[number];
-            let smaller = cells.len().min(object.cells().len());
-            *own as f64 >= COMMON * smaller as f64 || own + near > 0 && object.presence.is_there == is_blocked
+            self.objects.get(number).is_some_and(|object| {
+                let smaller = cells.len().min(object.cells().len());
+                *own as f64 >= COMMON * smaller as f64
+                    || own + near > 0 && object.presence.is_there == is_blocked
+            })
         };
         let mut same: Vec<_> = votes.into_iter().filter(is_same).collect();
         same.sort_by_key(|(number, [own, near])| (std::cmp::Reverse((*own, *near)), *number));
