@@ -331,7 +331,7 @@ impl Mapper {
 
     /// The objects that come and go as a whole, in the order in which they were found.
     pub fn objects(&self) -> impl Iterator<Item = ObjectReport> {
-        self.things.objects()
+        self.things.objects.reports()
     }
 
     /// Says when readings have the time 0, in seconds since 1970-01-01 UTC; by default they count from there. `is_dated`: whether
@@ -409,7 +409,7 @@ impl Mapper {
     #[inline]
     pub fn statistics(&self, index: usize) -> CellStatistics {
         let seen = self.cells.statistics(index);
-        let of_door = seen.prior.and_then(|_| self.things.of_cell(index)?.rate_prior());
+        let of_door = seen.prior.and_then(|_| self.things.of_door(index)?.rate_prior());
         CellStatistics { prior: of_door.or(seen.prior), ..seen }
     }
 

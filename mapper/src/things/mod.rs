@@ -45,7 +45,7 @@ pub(crate) struct Things {
     /// Places where a door can be.
     doorways: Vec<Doorway>,
     doors: Vec<Door>,
-    objects: Objects,
+    pub(crate) objects: Objects,
     next_door: u32,
 }
 
@@ -55,15 +55,14 @@ impl Things {
         &self.doors
     }
 
-    /// All objects, in the order in which they were found.
-    pub(crate) fn objects(&self) -> impl Iterator<Item = ObjectReport> {
-        self.objects.reports()
-    }
-
     /// What the thing to which a cell belongs says of it.
     pub(crate) fn of_cell(&self, cell: usize) -> Option<OfCell<'_>> {
-        let cell = cell as u32;
-        self.doors.iter().find_map(|door| door.of_cell(cell)).or_else(|| self.objects.of_cell(cell))
+        self.of_door(cell).or_else(|| self.objects.of_cell(cell as u32))
+    }
+
+    /// What the door to which a cell belongs says of it.
+    pub(crate) fn of_door(&self, cell: usize) -> Option<OfCell<'_>> {
+        self.doors.iter().find_map(|door| door.of_cell(cell as u32))
     }
 
     /// Learns from the open reading. `is_doubted`: whether it speaks against the state of a cell in the map.

@@ -167,7 +167,7 @@ impl Objects {
     }
 
     /// What is known of those that are things.
-    pub(super) fn reports(&self) -> impl Iterator<Item = ObjectReport> {
+    pub(crate) fn reports(&self) -> impl Iterator<Item = ObjectReport> {
         self.objects.iter().filter(|(_, object)| object.is_thing).map(|(id, object)| {
             let (evidence, posterior) =
                 (&object.presence.evidence, object.presence.posterior(&self.population));

@@ -136,7 +136,9 @@ impl Parts {
     }
 
     pub(super) fn counts(&self, cell: u32) -> Option<[LookCounts; 2]> {
-        let at = self.0.binary_search_by_key(&cell, |(cell, _)| *cell).ok()?;
+        // Most cells are far from most things: their index is out of the range.
+        let is_within = self.0.first()?.0 <= cell && cell <= self.0.last()?.0;
+        let at = is_within.then(|| self.0.binary_search_by_key(&cell, |(cell, _)| *cell).ok()).flatten()?;
         Some(self.0[at].1)
     }
 
