@@ -111,8 +111,9 @@ impl Mapper {
 
     /// The probability that the cell is blocked now: the map as predicted. A cell in view is as observed. Out of view,
     /// the probability for a cell that changes goes from the last observed state to the share of the time that the cell
-    /// is blocked; the faster, the more regular the stays of the whole map are. A cell that never changed stays as
-    /// last observed, and an unknown cell has 0.5.
+    /// is blocked; the faster, the more regular the stays of the whole map are. A cell of a door, or of an object that
+    /// comes and goes, follows the state of this thing. A cell that never changed stays as last observed, and an unknown cell
+    /// has 0.5.
     pub fn blocked_probability(&self, index: usize) -> f64 {
         self.blocked_probability_later(index, 0.0)
     }
@@ -136,8 +137,8 @@ impl Mapper {
     /// The thing to which a cell belongs, if what is known of the thing is worth more than what is known of the cell.
     fn thing(&self, index: usize) -> Option<OfCell<'_>> {
         let thing = self.things.of_cell(index)?;
-        let speaks = thing.clock.is_some() || self.estimator().shares_prior();
-        (speaks && thing.explains(self.cells.statistics(index).events())).then_some(thing)
+        let explains = || thing.explains(self.cells.statistics(index).events());
+        (thing.clock.is_some() || self.estimator().shares_prior() && explains()).then_some(thing)
     }
 
     /// The object to which a cell belongs. The rate of a cell of a door has that of the door as its prior, since people pass there.

@@ -22,6 +22,7 @@ const MIN_STAY_S: f64 = 6.0;
 /// What came and went this number of times, or stayed for this time, s, is no person who stands still for a while.
 const SURE_CHANGES: u64 = 3;
 const STANDS_S: f64 = 60.0;
+
 /// Something that comes and goes as a whole: a toy, a chair, a box.
 #[derive(Clone, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
 pub(crate) struct Object {

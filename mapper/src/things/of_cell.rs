@@ -25,11 +25,11 @@ impl OfCell<'_> {
         self.population.map_or_else(|| self.presence.alone(), |map| self.presence.posterior(map))
     }
 
-    /// Whether the changes of the thing are those of a cell that changed this often: traffic changes a cell much more often than the
+    /// Whether the changes of an object are those of a cell that changed this often: traffic changes a cell much more often than the
     /// object that stands there, and what stood in another part much less.
     pub(crate) fn explains(&self, events: u32) -> bool {
         let changes = f64::from(self.presence.evidence.changes());
-        self.clock.is_some() || (0.5 * changes..=1.5 * changes + 1.0).contains(&f64::from(events))
+        (0.5 * changes..=1.5 * changes + 1.0).contains(&f64::from(events))
     }
 
     /// Whether a look at the cell that found it blocked (1) or free (0), at a time, s, is older than the last look at the thing, or says

@@ -52,7 +52,7 @@ impl Page<'_> {
     pub(super) fn title(&self, place: &Place) -> String {
         let kind = match place.kind {
             PlaceKind::Door { .. } => "door",
-            PlaceKind::Object { .. } => "an object that comes and goes",
+            PlaceKind::Object { .. } => "object that comes and goes",
             PlaceKind::Traffic => "traffic",
             PlaceKind::Unknown => "something that changes",
         };
