@@ -6,6 +6,9 @@ use nalgebra::Point2;
 
 /// Changes of one motion are at most this far from each other, m.
 const NEAR_M: f64 = 0.25;
+/// Those of two motions of at most this number of changes are at most this far from each other, m: the legs of a chair.
+const FEW: usize = 8;
+const LEGS_M: f64 = 0.6;
 /// Changes of one motion begin within this time, s: a leaf moves for one or two seconds.
 const TOGETHER_S: f64 = 2.5;
 /// A motion is over when nothing was added for this time, s.
@@ -38,8 +41,9 @@ impl Motion {
     fn is_near(&self, other: &Self) -> bool {
         let [low, high] = &self.corners;
         let [other_low, other_high] = &other.corners;
+        let near_m = if self.changes.len().max(other.changes.len()) > FEW { NEAR_M } else { LEGS_M };
         let is_beside =
-            |axis: usize| low[axis] - NEAR_M <= other_high[axis] && other_low[axis] <= high[axis] + NEAR_M;
+            |axis: usize| low[axis] - near_m <= other_high[axis] && other_low[axis] <= high[axis] + near_m;
         let is_together = self.times_s[0] - TOGETHER_S <= other.times_s[1]
             && other.times_s[0] <= self.times_s[1] + TOGETHER_S
             && self.times_s[1].max(other.times_s[1]) - self.times_s[0].min(other.times_s[0])

@@ -6,17 +6,21 @@ use crate::look_counts::LookCounts;
 use interfaces::CellState;
 
 /// A cell counts as blocked in this share of a number of looks before the first one: while its thing is away, and while it is there.
-const PRIOR: [f64; 2] = [0.03, 0.9];
+const PRIOR: [f64; 2] = [0.03, 0.6];
 const PRIOR_LOOKS: f64 = 4.0;
 /// The probability of a cell says no more than this, however often it was seen: maps err.
 const SURE: f64 = 0.03;
 /// Cells near each other err together: all of those in view say at most as much as this number of them.
 const INDEPENDENT: f64 = 4.0;
 /// A look says whether the thing is there if this is more than so many times as probable as the contrary, in the logarithm.
-const MIN_LOG_ODDS: f64 = 4.0;
+const MIN_LOG_ODDS: f64 = 2.5;
 /// In a look at this number of cells, some are blocked if more than the first share is, and most if more than the second share is.
 const PART_CELLS: f64 = 5.0;
 const PART: [f64; 2] = [0.15, 0.6];
+/// This is not one thing after so many more looks that found some of them blocked than most of them.
+const PARTLY: u32 = 20;
+/// A cell belongs to the thing if its probability of being blocked is higher by more than this while the thing is there.
+const OWN: f64 = 0.5;
 /// What stays for a shorter time on average is traffic, s.
 const MIN_STAY_S: f64 = 6.0;
 /// What came and went this number of times, or stayed for this time, s, is no person who stands still for a while.
@@ -77,21 +81,25 @@ impl Object {
 
     /// Learns from the open reading. `is_doubted`: whether it speaks against the state of a cell in the map.
     pub(super) fn observe(&mut self, map: &CellMap, is_doubted: impl Fn(usize) -> bool) {
-        let (mut seen, mut blocked, mut log_odds) = (0.0, 0.0, 0.0);
+        let (mut seen, mut log_odds) = (0.0, 0.0);
+        let (mut own, mut blocked) = (0.0, 0.0);
         for (cell, counts) in self.parts.iter() {
             let index = *cell as usize;
             if !map.is_seen_now(index) {
                 continue;
             }
+            let shares = shares(*counts);
             let is_blocked = (map.state(index) == CellState::Blocked) != is_doubted(index);
-            let [away, there] =
-                shares(*counts).map(|share| if is_blocked { share } else { 1.0 - share }.max(SURE));
+            let [away, there] = shares.map(|share| if is_blocked { share } else { 1.0 - share }.max(SURE));
             seen += 1.0;
-            blocked += f64::from(u8::from(is_blocked));
             log_odds += libm::log(there / away);
+            if is_own(shares) {
+                own += 1.0;
+                blocked += f64::from(u8::from(is_blocked));
+            }
         }
-        if seen >= PART_CELLS && blocked > PART[0] * seen {
-            self.looks[usize::from(blocked > PART[1] * seen)] += 1;
+        if own >= PART_CELLS && blocked > PART[0] * own {
+            self.looks[usize::from(blocked > PART[1] * own)] += 1;
         }
         let log_odds = log_odds * f64::min(1.0, INDEPENDENT / seen);
         if seen > 0.0 && log_odds.abs() >= MIN_LOG_ODDS && self.presence.see(map.time(), log_odds > 0.0) {
@@ -106,13 +114,20 @@ impl Object {
         self.presence.renew();
         let (stayed_s, went) = self.presence.evidence.stays();
         let changes = u64::from(self.presence.evidence.changes());
-        let of_cells: u64 = self.cells().map(|cell| u64::from(map.statistics(cell as usize).events())).sum();
-        let of_all = changes * self.cells().len() as u64;
+        let own = self.parts.iter().filter(|(_, counts)| is_own(shares(*counts)));
+        let events = own.map(|(cell, _)| u64::from(map.statistics(*cell as usize).events()));
+        let (of_cells, of_all) =
+            events.fold((0, 0), |(of_cells, of_all), events| (of_cells + events, of_all + changes));
         self.is_thing = (changes >= SURE_CHANGES || stayed_s >= STANDS_S)
             && stayed_s >= MIN_STAY_S * f64::from(went)
-            && self.looks[0] <= self.looks[1]
+            && self.looks[0] <= self.looks[1] + PARTLY
             && (of_all / 3..=of_all).contains(&of_cells);
     }
+}
+
+/// Whether a cell belongs to the thing, and is not only near it.
+fn is_own([away, there]: [f64; 2]) -> bool {
+    there - away > OWN
 }
 
 fn shares(counts: [LookCounts; 2]) -> [f64; 2] {

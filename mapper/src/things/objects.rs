@@ -10,7 +10,7 @@ use interfaces::{Cell, GridFrame};
 use std::collections::BTreeMap;
 
 /// The smallest number of cells that show an object, and its largest extent, m: more is several things, or a crowd.
-const MIN_CELLS: usize = 3;
+const MIN_CELLS: usize = 2;
 const MAX_EXTENT_M: f64 = 1.8;
 /// Changes at most this far from an object that has come or gone alike are its own, m: it is seen from another side.
 const NEAR_M: f64 = 0.1;
