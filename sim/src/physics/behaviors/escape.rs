@@ -1,6 +1,5 @@
-use super::legs::{Legs, NARROW_SHARE, Patience};
-use crate::physics::rays::Beams;
-use crate::physics::spec::RobotSpec;
+use super::Chassis;
+use super::legs::{LegScan, Legs, NARROW_SHARE, Patience};
 use interfaces::{LaserReading, RandomStream, Twist, Values, values};
 use nalgebra::{Point2, UnitComplex, Vector2};
 use std::f64::consts::{PI, TAU};
@@ -20,6 +19,9 @@ const SIDE_MARGIN_M: f64 = 0.005;
 /// The number of directions that are compared, at most.
 const DIRECTIONS: usize = 90;
 
+/// The direction of an escape, a unit vector, and its end, m.
+type Leg = (Vector2<f64>, Point2<f64>);
+
 /// Ends a standstill: a robot that does not leave its place, whether it turns or not, turns to a direction in which
 /// the laser sees space, and drives there slowly.
 ///
@@ -29,8 +31,8 @@ const DIRECTIONS: usize = 90;
 pub(super) struct Escape {
     patience: Patience,
     pub(super) legs: Legs,
-    /// The direction of the escape, a unit vector, and its end, m, during an escape.
-    leg: Option<(Vector2<f64>, Point2<f64>)>,
+    /// During an escape.
+    leg: Option<Leg>,
     /// The number of scans until the end of the escape at the latest, and that number at its start.
     scans_left: u32,
     most_scans: u32,
@@ -38,17 +40,16 @@ pub(super) struct Escape {
 
 impl Escape {
     /// The escapes of a robot whose usual speed is `speed_mps`.
-    pub(super) fn new(robot: &RobotSpec, speed_mps: f64, step_s: f64, beams: &Beams) -> Self {
-        let (slow_mps, turn_radps) = (NARROW_SHARE * speed_mps, robot.drive.max_angular_radps);
-        let period_s = robot.laser.period_steps as f64 * step_s;
+    pub(super) fn new(chassis: Chassis, speed_mps: f64) -> Self {
+        let (slow_mps, turn_radps) = (NARROW_SHARE * speed_mps, chassis.robot.drive.max_angular_radps);
         // Twice the time that is needed if nothing holds the robot back.
         let most_s = 2.0 * (PI / turn_radps + FAR_M / slow_mps);
         Self {
-            patience: Patience::with_place(robot, speed_mps, step_s, STANDS_S + TAU / turn_radps, PLACE_M),
-            legs: Legs::new(robot, slow_mps, CLEARANCE_M, step_s, beams),
+            patience: Patience::with_place(chassis, speed_mps, STANDS_S + TAU / turn_radps, PLACE_M),
+            legs: Legs::new(chassis, slow_mps, CLEARANCE_M),
             leg: None,
             scans_left: 0,
-            most_scans: (most_s / period_s).ceil() as u32,
+            most_scans: (most_s / chassis.period_s()).ceil() as u32,
         }
     }
 
@@ -66,8 +67,8 @@ impl Escape {
         let (along, end) = self.leg?;
         let remaining_m = along.dot(&(end - Point2::from(reading.pose.translation.vector)));
         self.scans_left = self.scans_left.saturating_sub(1);
-        let twist = self.legs.drive(reading, &along, remaining_m, |legs, lean| {
-            (legs.free_m(reading, lean, SIDE_MARGIN_M, remaining_m), 0.0)
+        let twist = self.legs.drive(reading, &along, remaining_m, |legs, scan| {
+            (legs.free_m(scan, SIDE_MARGIN_M, remaining_m), 0.0)
         });
         if remaining_m < CLEARANCE_M || self.scans_left == 0 || self.legs.blocked {
             self.leg = None;
@@ -76,19 +77,15 @@ impl Escape {
     }
 
     /// A random free direction among those of the beams, and the end of the way there.
-    fn free_leg(
-        &self,
-        reading: &LaserReading,
-        random: &mut RandomStream,
-    ) -> Option<(Vector2<f64>, Point2<f64>)> {
+    fn free_leg(&self, reading: &LaserReading, random: &mut RandomStream) -> Option<Leg> {
         let beams = &self.legs.beams;
         let ways: Vec<(Vector2<f64>, f64)> = beams
             .iter()
             .step_by(beams.len().div_ceil(DIRECTIONS))
             .map(|beam| {
                 let lean = UnitComplex::from_cos_sin_unchecked(beam.x, beam.y).inverse();
-                let free_m =
-                    self.legs.free_m(reading, &lean, SIDE_MARGIN_M, f64::INFINITY) - self.legs.needed_m();
+                let scan = LegScan { reading, lean };
+                let free_m = self.legs.free_m(&scan, SIDE_MARGIN_M, f64::INFINITY) - self.legs.needed_m();
                 (reading.pose.rotation * beam, free_m.clamp(0.0, FAR_M))
             })
             .collect();

@@ -1,9 +1,8 @@
 //! What the behaviors drive with: straight legs, the pace that lets a robot stop, and the end of its patience.
 
-use crate::physics::rays::Beams;
+use super::Chassis;
 use crate::physics::shape::TOUCH_M;
 use crate::physics::snapshot::{pose, value};
-use crate::physics::spec::RobotSpec;
 use interfaces::{LaserReading, Twist, Values, values};
 use nalgebra::{Isometry2, Point2, UnitComplex, Vector2};
 
@@ -53,22 +52,24 @@ pub(super) struct Legs {
     ahead: Option<Point2<f64>>,
 }
 
+/// A reading on a leg.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct LegScan<'a> {
+    pub(super) reading: &'a LaserReading,
+    /// The rotation from the frame of the robot to the frame of the leg.
+    pub(super) lean: UnitComplex<f64>,
+}
+
 impl Legs {
-    pub(super) fn new(
-        robot: &RobotSpec,
-        speed_mps: f64,
-        clearance_m: f64,
-        step_s: f64,
-        beams: &Beams,
-    ) -> Self {
+    pub(super) fn new(chassis: Chassis, speed_mps: f64, clearance_m: f64) -> Self {
         Self {
-            radius_m: robot.radius_m,
+            radius_m: chassis.robot.radius_m,
             clearance_m,
-            beams: super::in_robot_frame(robot, beams),
-            pace: Pace::new(robot, speed_mps, step_s),
+            beams: chassis.beam_directions(),
+            pace: Pace::new(chassis, speed_mps),
             turning: false,
             blocked: false,
-            can_be_too_close: robot.laser.range_min_m > 0.0,
+            can_be_too_close: chassis.robot.laser.range_min_m > 0.0,
             ahead: None,
         }
     }
@@ -89,23 +90,23 @@ impl Legs {
     }
 
     /// The velocity on the leg in the direction of the unit vector `along`, `remaining_m` before its end. `look`
-    /// receives the rotation from the frame of the robot to the frame of the leg, and returns the free distance
-    /// ahead, m, and the heading to steer to, rad from the direction of the leg.
+    /// returns the free distance ahead, m, and the heading to steer to, rad from the direction of the leg.
     pub(super) fn drive(
         &mut self,
         reading: &LaserReading,
         along: &Vector2<f64>,
         remaining_m: f64,
-        look: impl FnOnce(&Self, &UnitComplex<f64>) -> (f64, f64),
+        look: impl FnOnce(&Self, &LegScan) -> (f64, f64),
     ) -> Twist {
         let lean = UnitComplex::from_cos_sin_unchecked(along.x, along.y).inverse() * reading.pose.rotation;
         let lean_rad = libm::atan2(lean.im, lean.re);
-        self.remember(reading, along, &lean);
+        let scan = LegScan { reading, lean };
+        self.remember(&scan, along);
         self.turning = lean_rad.abs() > if self.turning { TURNED_RAD } else { TURN_BEYOND_RAD };
         if self.turning {
             return Twist { linear_mps: 0.0, angular_radps: self.pace.turn_radps(-lean_rad) };
         }
-        let (gap_m, heading_rad) = look(self, &lean);
+        let (gap_m, heading_rad) = look(self, &scan);
         let hysteresis_m = if self.blocked { HYSTERESIS_M } else { 0.0 };
         let needed_m = self.needed_m() + hysteresis_m;
         // A body behind the end of the leg is not in the way.
@@ -120,40 +121,33 @@ impl Legs {
     }
 
     /// The end points of the beams, in the frame of the leg, m.
-    pub(super) fn points(
-        &self,
-        reading: &LaserReading,
-        lean: &UnitComplex<f64>,
-    ) -> impl Iterator<Item = Vector2<f64>> {
-        self.ends(reading, lean, |range_m| range_m.is_finite().then_some(range_m.into()))
+    pub(super) fn points(&self, scan: &LegScan) -> impl Iterator<Item = Vector2<f64>> {
+        self.ends(scan, |range_m| range_m.is_finite().then_some(range_m.into()))
     }
 
     /// The points on the beams at the distance that `at_m` makes of their ranges, in the frame of the leg, m.
-    fn ends(
-        &self,
-        reading: &LaserReading,
-        lean: &UnitComplex<f64>,
-        at_m: impl Fn(f32) -> Option<f64>,
-    ) -> impl Iterator<Item = Vector2<f64>> {
+    fn ends(&self, scan: &LegScan, at_m: impl Fn(f32) -> Option<f64>) -> impl Iterator<Item = Vector2<f64>> {
+        let LegScan { reading, lean } = *scan;
         let mount = reading.mount.translation.vector;
         let beams = reading.scan.ranges_m.iter().zip(&self.beams);
         beams.filter_map(move |(range_m, beam)| Some(lean * (mount + beam * at_m(*range_m)?)))
     }
 
     /// Remembers the surface ahead while the laser measures it.
-    fn remember(&mut self, reading: &LaserReading, along: &Vector2<f64>, lean: &UnitComplex<f64>) {
+    fn remember(&mut self, scan: &LegScan, along: &Vector2<f64>) {
         let is_ahead = |point: &Vector2<f64>| point.x > 0.0 && point.y.abs() < self.radius_m + END_MARGIN_M;
-        if !self.can_be_too_close || self.blind_ends(reading, lean).any(|end| is_ahead(&end)) {
+        if !self.can_be_too_close || self.blind_ends(scan).any(|end| is_ahead(&end)) {
             return;
         }
-        let points = self.points(reading, lean).filter(is_ahead);
-        let gap_m = points.fold(blind_m(reading) + FREE_M, |gap_m, point| gap_m.min(self.gap_m(&point)));
-        self.ahead = Some(Point2::from(reading.pose.translation.vector) + along * gap_m);
+        let points = self.points(scan).filter(is_ahead);
+        let blind_m = blind_m(scan.reading);
+        let gap_m = points.fold(blind_m + FREE_M, |gap_m, point| gap_m.min(self.gap_m(&point)));
+        self.ahead = Some(Point2::from(scan.reading.pose.translation.vector) + along * gap_m);
     }
 
     /// Whether what is too close to be measured is the wall behind the end of the leg: the surface that was measured before is
     /// behind the end, and now nearer than the minimum range. Of a leg that was never measured, nothing else is known.
-    fn is_wall_behind_end(&self, reading: &LaserReading, lean: &UnitComplex<f64>, remaining_m: f64) -> bool {
+    fn is_wall_behind_end(&self, &LegScan { reading, lean }: &LegScan, remaining_m: f64) -> bool {
         let Some(stop) = self.ahead else { return true };
         let from_robot = stop - Point2::from(reading.pose.translation.vector);
         let way = lean * reading.pose.rotation.inverse() * from_robot;
@@ -163,41 +157,26 @@ impl Legs {
     }
 
     /// The points at the minimum range on the beams that measure something nearer (−∞), in the frame of the leg, m.
-    fn blind_ends(
-        &self,
-        reading: &LaserReading,
-        lean: &UnitComplex<f64>,
-    ) -> impl Iterator<Item = Vector2<f64>> {
-        let range_min_m = reading.scan.range_min_m;
-        self.ends(reading, lean, move |range_m| (range_m == f32::NEG_INFINITY).then_some(range_min_m))
+    fn blind_ends(&self, scan: &LegScan) -> impl Iterator<Item = Vector2<f64>> {
+        let range_min_m = scan.reading.scan.range_min_m;
+        self.ends(scan, move |range_m| (range_m == f32::NEG_INFINITY).then_some(range_min_m))
     }
 
     /// Where something is too close to be measured (−∞), in the frame of the leg, m: as far to the side as the minimum range
     /// reaches, and not farther ahead than a touch. A beam beyond the minimum range would have measured it, so that a wall
     /// beside the way is not in the way. The wall behind the end of the leg, `remaining_m` ahead, is not in the way either.
-    pub(super) fn too_close(
-        &self,
-        reading: &LaserReading,
-        lean: &UnitComplex<f64>,
-        remaining_m: f64,
-    ) -> impl Iterator<Item = Vector2<f64>> {
-        let is_wall = self.is_wall_behind_end(reading, lean, remaining_m);
+    pub(super) fn too_close(&self, scan: &LegScan, remaining_m: f64) -> impl Iterator<Item = Vector2<f64>> {
+        let is_wall = self.is_wall_behind_end(scan, remaining_m);
         let behind_m = if is_wall { remaining_m + END_MARGIN_M } else { f64::INFINITY };
-        let on_leg = self.blind_ends(reading, lean).filter(move |at| self.gap_m(at) < behind_m);
+        let on_leg = self.blind_ends(scan).filter(move |at| self.gap_m(at) < behind_m);
         on_leg.map(move |at| Vector2::new(at.x.min(self.nose_m(&at) + TOUCH_M), at.y))
     }
 
     /// The distance that the round body can drive along the leg, m, with a free space at both sides; the leg ends `remaining_m`
     /// ahead.
-    pub(super) fn free_m(
-        &self,
-        reading: &LaserReading,
-        lean: &UnitComplex<f64>,
-        side_margin_m: f64,
-        remaining_m: f64,
-    ) -> f64 {
+    pub(super) fn free_m(&self, scan: &LegScan, side_margin_m: f64, remaining_m: f64) -> f64 {
         let open_m = self.radius_m + side_margin_m;
-        let points = self.points(reading, lean).chain(self.too_close(reading, lean, remaining_m));
+        let points = self.points(scan).chain(self.too_close(scan, remaining_m));
         let ahead = points.filter(|point| point.x > 0.0 && point.y.abs() < open_m);
         ahead.fold(f64::INFINITY, |free_m, point| free_m.min(self.gap_m(&point)))
     }
@@ -232,8 +211,8 @@ pub(super) struct Pace {
 }
 
 impl Pace {
-    /// The pace of `robot` at `speed_mps`.
-    pub(super) fn new(robot: &RobotSpec, speed_mps: f64, step_s: f64) -> Self {
+    /// The pace of a robot at `speed_mps`.
+    pub(super) fn new(Chassis { robot, step_s, .. }: Chassis, speed_mps: f64) -> Self {
         // Commands come with scans: the robot brakes with half of its maximum deceleration, so that a late command
         // is early enough.
         let braking_mps2 = robot.drive.max_linear_acceleration_mps2 / 2.0;
@@ -279,31 +258,26 @@ pub(super) struct Patience {
 }
 
 impl Patience {
-    /// The patience of `robot` that drives at `speed_mps`.
-    pub(super) fn new(robot: &RobotSpec, speed_mps: f64, step_s: f64) -> Self {
-        let turned_rad = PROGRESS_RAD.min(PROGRESS_SHARE * robot.drive.max_angular_radps * PATIENCE_S);
+    /// The patience of a robot that drives at `speed_mps`.
+    pub(super) fn new(chassis: Chassis, speed_mps: f64) -> Self {
+        let max_turn_radps = chassis.robot.drive.max_angular_radps;
+        let turned_rad = PROGRESS_RAD.min(PROGRESS_SHARE * max_turn_radps * PATIENCE_S);
         Self {
             turned_cos: libm::cos(turned_rad),
-            ..Self::with_place(robot, speed_mps, step_s, PATIENCE_S, PROGRESS_M)
+            ..Self::with_place(chassis, speed_mps, PATIENCE_S, PROGRESS_M)
         }
     }
 
     /// The patience for a time, s, with a robot that does not leave a place of the radius `place_m`, whether it turns
     /// or not.
-    pub(super) fn with_place(
-        robot: &RobotSpec,
-        speed_mps: f64,
-        step_s: f64,
-        patience_s: f64,
-        place_m: f64,
-    ) -> Self {
-        let period_s = robot.laser.period_steps as f64 * step_s;
+    pub(super) fn with_place(chassis: Chassis, speed_mps: f64, patience_s: f64, place_m: f64) -> Self {
+        let period_s = chassis.period_s();
         Self {
             readings: (patience_s / period_s).ceil() as u32,
             period_s,
             moved_m: place_m.min(PROGRESS_SHARE * speed_mps * patience_s),
             turned_cos: f64::NEG_INFINITY,
-            from: robot.pose,
+            from: chassis.robot.pose,
             waited: 0,
         }
     }

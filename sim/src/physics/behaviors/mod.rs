@@ -27,19 +27,18 @@ pub(super) enum Behavior {
 impl Behavior {
     /// The behavior of `robot`, whose main laser has `beams`; `None` if the robot executes commands.
     pub(super) fn of(robot: &RobotSpec, step_s: f64, beams: &Beams, random: RandomStream) -> Option<Self> {
+        let chassis = Chassis { robot, beams, step_s };
         Some(match &robot.behavior {
             BehaviorSpec::Driven => return None,
             BehaviorSpec::Standing => Self::Steady(Twist::STOP),
             BehaviorSpec::Circle(circle) => {
                 Self::Steady(Twist { linear_mps: circle.speed_mps, angular_radps: circle.turn_radps })
             }
-            BehaviorSpec::Wander(spec) => {
-                Self::Wander(Box::new(Wander::new(*spec, robot, step_s, beams, random)))
-            }
+            BehaviorSpec::Wander(spec) => Self::Wander(Box::new(Wander::new(*spec, chassis, random))),
             BehaviorSpec::Waypoints(spec) => {
-                Self::Waypoints(Box::new(Waypoints::new(spec.clone(), robot, step_s, beams, random)))
+                Self::Waypoints(Box::new(Waypoints::new(spec.clone(), chassis, random)))
             }
-            BehaviorSpec::WallPatrol(spec) => Self::WallPatrol(WallPatrol::new(*spec, robot, step_s, beams)),
+            BehaviorSpec::WallPatrol(spec) => Self::WallPatrol(WallPatrol::new(*spec, chassis)),
         })
     }
 
@@ -69,8 +68,23 @@ impl Behavior {
     }
 }
 
-/// The unit vectors of the beams of a laser in the frame of its robot.
-fn in_robot_frame(robot: &RobotSpec, beams: &Beams) -> Vec<Vector2<f64>> {
-    let mount = robot.laser.mount.rotation;
-    beams.directions().map(|(x, y)| mount * Vector2::new(x, y)).collect()
+/// What a behavior drives: a robot, the beams of its main laser, and the length of a step of the world, s.
+#[derive(Clone, Copy)]
+struct Chassis<'a> {
+    robot: &'a RobotSpec,
+    beams: &'a Beams,
+    step_s: f64,
+}
+
+impl Chassis<'_> {
+    /// The time between two scans, s.
+    fn period_s(&self) -> f64 {
+        self.robot.laser.period_steps as f64 * self.step_s
+    }
+
+    /// The unit vectors of the beams in the frame of the robot.
+    fn beam_directions(&self) -> Vec<Vector2<f64>> {
+        let mount = self.robot.laser.mount.rotation;
+        self.beams.directions().map(|(x, y)| mount * Vector2::new(x, y)).collect()
+    }
 }

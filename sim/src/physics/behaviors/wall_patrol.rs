@@ -1,6 +1,6 @@
-use super::legs::Legs;
-use crate::physics::rays::Beams;
-use crate::physics::spec::{PatrolSpec, RobotSpec};
+use super::Chassis;
+use super::legs::{LegScan, Legs};
+use crate::physics::spec::PatrolSpec;
 use interfaces::{LaserReading, Twist, Values, values};
 use nalgebra::{Point2, Vector2};
 
@@ -26,8 +26,8 @@ pub(crate) struct WallPatrol {
 }
 
 impl WallPatrol {
-    pub(super) fn new(spec: PatrolSpec, robot: &RobotSpec, step_s: f64, beams: &Beams) -> Self {
-        let legs = Legs::new(robot, spec.speed_mps, spec.clearance_m, step_s, beams);
+    pub(super) fn new(spec: PatrolSpec, chassis: Chassis) -> Self {
+        let legs = Legs::new(chassis, spec.speed_mps, spec.clearance_m);
         Self { spec, legs, outbound: true }
     }
 
@@ -49,10 +49,8 @@ impl WallPatrol {
         }
         // +1: the wall is on the left of the leg; −1: on the right.
         let side = if self.spec.wall_on_left == self.outbound { 1.0 } else { -1.0 };
-        self.legs.drive(reading, &along, remaining_m, |legs, lean| {
-            let (points, too_close) =
-                (legs.points(reading, lean), legs.too_close(reading, lean, remaining_m));
-            let (wall_m, gap_m) = wall_and_gap_m(&self.spec, side, legs, points, too_close);
+        self.legs.drive(reading, &along, remaining_m, |legs, scan| {
+            let (wall_m, gap_m) = wall_and_gap_m(&self.spec, side, legs, scan, remaining_m);
             let too_far_m = wall_m.map_or(0.0, |wall_m| wall_m - self.spec.wall_distance_m);
             (gap_m, side * (LATERAL_GAIN * too_far_m).clamp(-MAX_LEAN_RAD, MAX_LEAN_RAD))
         })
@@ -65,19 +63,20 @@ impl WallPatrol {
 }
 
 /// Divides the points of a scan into the wall beside the robot and bodies ahead: the distance to the wall, m, if the
-/// laser sees the wall, and the free distance ahead, m. What is too close measures no wall.
+/// laser sees the wall, and the free distance ahead, m. What is too close measures no wall. The leg ends `end_m` ahead.
 fn wall_and_gap_m(
     spec: &PatrolSpec,
     side: f64,
     legs: &Legs,
-    points: impl Iterator<Item = Vector2<f64>>,
-    too_close: impl Iterator<Item = Vector2<f64>>,
+    scan: &LegScan,
+    end_m: f64,
 ) -> (Option<f64>, f64) {
     let (wall_m, open_m) = (spec.wall_distance_m, legs.radius_m + SIDE_MARGIN_M);
     let walled_m = open_m.min(wall_m - PatrolSpec::WALL_RELIEF_M);
     let (mut sum_m, mut count, mut gap_m) = (0.0, 0.0, f64::INFINITY);
-    for (point, is_measured) in points.map(|point| (point, true)).chain(too_close.map(|point| (point, false)))
-    {
+    let measured = legs.points(scan).map(|point| (point, true));
+    let too_close = legs.too_close(scan, end_m).map(|point| (point, false));
+    for (point, is_measured) in measured.chain(too_close) {
         let toward_wall_m = point.y * side;
         let is_wall = (toward_wall_m - wall_m).abs() < WALL_SLACK_M && point.x.abs() < 2.0 * legs.radius_m;
         if is_measured && is_wall {

@@ -1,7 +1,7 @@
+use super::Chassis;
 use super::escape::Escape;
 use super::legs::{NARROW_SHARE, Pace};
-use crate::physics::rays::Beams;
-use crate::physics::spec::{RobotSpec, WanderSpec};
+use crate::physics::spec::WanderSpec;
 use interfaces::{LaserReading, RandomStream, Twist, Values, values};
 use nalgebra::Vector2;
 use std::ops::Range;
@@ -62,29 +62,24 @@ impl Space {
 }
 
 impl Wander {
-    pub(super) fn new(
-        spec: WanderSpec,
-        robot: &RobotSpec,
-        step_s: f64,
-        beams: &Beams,
-        random: RandomStream,
-    ) -> Self {
+    pub(super) fn new(spec: WanderSpec, chassis: Chassis, random: RandomStream) -> Self {
+        let robot = chassis.robot;
         // A laser outside of the body is treated as if it were on the border of the body: obstacles ahead then seem
         // nearer.
         let mount = robot.laser.mount.translation.vector.cap_magnitude(robot.radius_m);
-        let escape = Escape::new(robot, spec.speed_mps, step_s, beams);
-        let beams = super::in_robot_frame(robot, beams);
+        let escape = Escape::new(chassis, spec.speed_mps);
+        let beams = chassis.beam_directions();
         let table = |width: f64, free_m: f64| {
             let lengths_m =
                 beams.iter().map(|beam| length_within_m(&mount, beam, robot.radius_m, width, free_m));
             lengths_m.map(|length_m| length_m as f32).collect()
         };
         let space = |speed_mps: f64, width: f64, clearance_m: f64, hysteresis_m: f64| {
-            let needed_m = clearance_m + Pace::new(robot, speed_mps, step_s).stopping_m;
+            let needed_m = clearance_m + Pace::new(chassis, speed_mps).stopping_m;
             Space { stop_m: table(width, needed_m), go_m: table(width, needed_m + hysteresis_m) }
         };
         let narrow_mps = NARROW_SHARE * spec.speed_mps;
-        let period_s = robot.laser.period_steps as f64 * step_s;
+        let period_s = chassis.period_s();
         let turn_rad = TURN_SHARE * robot.drive.max_angular_radps * period_s;
         Self {
             spec,

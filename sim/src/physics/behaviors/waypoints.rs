@@ -1,7 +1,7 @@
+use super::Chassis;
 use super::legs::{Legs, Patience};
 use super::wander::Wander;
-use crate::physics::rays::Beams;
-use crate::physics::spec::{Repeat, RobotSpec, WanderSpec, WaypointsSpec};
+use crate::physics::spec::{Repeat, WanderSpec, WaypointsSpec};
 use interfaces::{LaserReading, RandomStream, Twist, Values, values};
 use nalgebra::Point2;
 use std::ops::Range;
@@ -42,22 +42,16 @@ pub(crate) struct Waypoints {
 }
 
 impl Waypoints {
-    pub(super) fn new(
-        spec: WaypointsSpec,
-        robot: &RobotSpec,
-        step_s: f64,
-        beams: &Beams,
-        random: RandomStream,
-    ) -> Self {
+    pub(super) fn new(spec: WaypointsSpec, chassis: Chassis, random: RandomStream) -> Self {
         let WaypointsSpec { speed_mps, clearance_m, .. } = spec;
         let wander = WanderSpec { speed_mps, clearance_m };
         Self {
-            legs: Legs::new(robot, speed_mps, clearance_m, step_s, beams),
+            legs: Legs::new(chassis, speed_mps, clearance_m),
             next: Some(0),
             is_returning: false,
-            patience: Patience::new(robot, speed_mps, step_s),
+            patience: Patience::new(chassis, speed_mps),
             turned_at: None,
-            wander: Wander::new(wander, robot, step_s, beams, random),
+            wander: Wander::new(wander, chassis, random),
             detour_scans: 0,
             spec,
         }
@@ -133,8 +127,8 @@ impl Waypoints {
         }
         let leg = self.spec.points[goal] - at;
         let remaining_m = leg.norm();
-        self.legs.drive(reading, &(leg / remaining_m), remaining_m, |legs, lean| {
-            (legs.free_m(reading, lean, SIDE_MARGIN_M, remaining_m), 0.0)
+        self.legs.drive(reading, &(leg / remaining_m), remaining_m, |legs, scan| {
+            (legs.free_m(scan, SIDE_MARGIN_M, remaining_m), 0.0)
         })
     }
 
