@@ -45,6 +45,9 @@ pub const fn ink([red, green, blue]: Rgb) -> RGBColor {
     RGBColor(red, green, blue)
 }
 
+/// What was drawn, or why it could not be.
+pub type Drawn<T = ()> = Result<T, String>;
+
 /// Converts an error of the plotting library to a sentence.
 pub fn why(error: impl std::fmt::Display) -> String {
     error.to_string()
@@ -55,7 +58,7 @@ pub fn why(error: impl std::fmt::Display) -> String {
 /// # Errors
 ///
 /// When the font cannot be read.
-pub fn register_fonts() -> Result<(), String> {
+pub fn register_fonts() -> Drawn {
     let registered = register_font(FONT, FontStyle::Normal, epaint_default_fonts::UBUNTU_LIGHT);
     registered.map_err(|_| "the font cannot be read".into())
 }
@@ -74,7 +77,7 @@ impl Canvas {
     /// # Errors
     ///
     /// When the drawing fails.
-    pub fn draw(size: [u32; 2], draw: impl FnOnce(&Area) -> Result<(), String>) -> Result<Self, String> {
+    pub fn draw(size: [u32; 2], draw: impl FnOnce(&Area) -> Drawn) -> Drawn<Self> {
         register_fonts()?;
         let [width, height] = size.map(|length| length * OVERSAMPLING);
         let mut pixels = vec![255; width as usize * height as usize * 3];

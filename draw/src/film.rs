@@ -1,6 +1,6 @@
 //! A moving picture of a run: the map with the robots on the left, and how often its cells change on the right.
 
-use crate::canvas::{Area, Canvas, PictureError, ink, px, why};
+use crate::canvas::{Area, Canvas, Drawn, PictureError, ink, px, why};
 use crate::layers::Layer;
 use crate::outline::field_of_view;
 use crate::palette::{self, Rgb};
@@ -108,7 +108,7 @@ impl Film {
         [left + right, height.max(other)]
     }
 
-    fn draw(&self, area: &Area, view: &View, trails: &[Trail]) -> Result<(), String> {
+    fn draw(&self, area: &Area, view: &View, trails: &[Trail]) -> Drawn {
         let [left, right] = &self.panels;
         let (first, second) = area.split_horizontally(px(left.size()[0]));
         let time_s = view.time_s as u64;
@@ -129,7 +129,7 @@ impl Film {
         chart: &Chart<impl DrawingBackend>,
         view: &View,
         trails: &[Trail],
-    ) -> Result<(), String> {
+    ) -> Drawn {
         let plot = chart.plotting_area();
         if let Some(reading) = view.sight() {
             let corners: Vec<(f64, f64)> = field_of_view(reading).iter().map(pair).collect();

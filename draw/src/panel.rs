@@ -1,6 +1,6 @@
 //! A map with a title, axes in meters, and a legend below.
 
-use crate::canvas::{INK, ink, px, why};
+use crate::canvas::{Drawn, INK, ink, px, why};
 use crate::layers::Layer;
 use crate::legend::Mark;
 use crate::pen::{Pen, Sheet};
@@ -114,7 +114,7 @@ impl Panel {
         &self,
         area: &'a Sheet<DB>,
         title: &str,
-    ) -> Result<(Chart<'a, DB>, Sheet<DB>), String> {
+    ) -> Drawn<(Chart<'a, DB>, Sheet<DB>)> {
         let middle = (self.px(Y_AXIS + self.width / 2), self.px(TITLE / 2));
         let style = self.pen.text(LETTERS as i32 + 1).pos(Pos::new(HPos::Center, VPos::Center));
         area.draw_text(title, &style, middle).map_err(why)?;
@@ -152,7 +152,7 @@ impl Panel {
     }
 
     /// The chart of a map that fills a picture.
-    pub(crate) fn bare<'a, DB: DrawingBackend>(&self, area: &'a Sheet<DB>) -> Result<Chart<'a, DB>, String> {
+    pub(crate) fn bare<'a, DB: DrawingBackend>(&self, area: &'a Sheet<DB>) -> Drawn<Chart<'a, DB>> {
         let (from, size) = extent(&self.frame);
         let to = from + size;
         ChartBuilder::on(area).build_cartesian_2d(from.x..to.x, from.y..to.y).map_err(why)
@@ -164,7 +164,7 @@ impl Panel {
     }
 
     /// Draws a line around the map.
-    pub(crate) fn frame(&self, chart: &Chart<impl DrawingBackend>) -> Result<(), String> {
+    pub(crate) fn frame(&self, chart: &Chart<impl DrawingBackend>) -> Drawn {
         let (from, size) = extent(&self.frame);
         let to = from + size;
         let border = Rectangle::new([(from.x, from.y), (to.x, to.y)], self.line(INK, 1));
@@ -172,11 +172,7 @@ impl Panel {
     }
 
     /// Draws the entries of the legend.
-    pub(crate) fn legend(
-        &self,
-        legend: &Sheet<impl DrawingBackend>,
-        entries: &[(Mark, String)],
-    ) -> Result<(), String> {
+    pub(crate) fn legend(&self, legend: &Sheet<impl DrawingBackend>, entries: &[(Mark, String)]) -> Drawn {
         let column = (self.width + Y_AXIS) / self.columns;
         let top = if self.has_bar { BAR } else { 0 };
         for (index, (mark, meaning)) in (0..).zip(entries) {
@@ -195,16 +191,12 @@ impl Panel {
         at: (i32, i32),
         anchor: HPos,
         line: &str,
-    ) -> Result<(), String> {
+    ) -> Drawn {
         self.pen.write(area, at, anchor, LETTERS as i32, line)
     }
 
     /// Width and height of a line of text, in pixels to draw with.
-    pub(crate) fn text_size(
-        &self,
-        area: &Sheet<impl DrawingBackend>,
-        line: &str,
-    ) -> Result<[i32; 2], String> {
+    pub(crate) fn text_size(&self, area: &Sheet<impl DrawingBackend>, line: &str) -> Drawn<[i32; 2]> {
         let (width, height) = area.estimate_text_size(line, &self.pen.text(LETTERS as i32)).map_err(why)?;
         Ok([width as i32, height as i32])
     }
@@ -215,7 +207,7 @@ impl Panel {
         area: &'a Sheet<DB>,
         mapper: &Mapper,
         layer: Layer,
-    ) -> Result<Chart<'a, DB>, String> {
+    ) -> Drawn<Chart<'a, DB>> {
         self.classes(area, (layer, layer.title()), &layer.classes(mapper))
     }
 
@@ -225,7 +217,7 @@ impl Panel {
         area: &'a Sheet<DB>,
         (layer, title): (Layer, &str),
         classes: &Grid<u8>,
-    ) -> Result<Chart<'a, DB>, String> {
+    ) -> Drawn<Chart<'a, DB>> {
         let (chart, legend) = self.axes(area, title)?;
         self.cells(&chart, layer, classes)?;
         self.frame(&chart)?;
@@ -266,7 +258,7 @@ impl Panel {
         chart: &Chart<impl DrawingBackend>,
         layer: Layer,
         classes: &Grid<u8>,
-    ) -> Result<(), String> {
+    ) -> Drawn {
         let (from, cell_m) = (self.frame.origin(), self.frame.resolution_m());
         let mut of_row: Vec<u8> = Vec::new();
         for (row, classes) in classes.rows().enumerate() {

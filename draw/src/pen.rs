@@ -1,6 +1,6 @@
 //! Lengths, lines, marks and text, in pictures of pixels and of vectors.
 
-use crate::canvas::{FONT, INK, ink, px, register_fonts, why};
+use crate::canvas::{Drawn, FONT, INK, ink, px, register_fonts, why};
 use crate::legend::Mark;
 use crate::palette::Rgb;
 use interfaces::printable;
@@ -61,7 +61,7 @@ impl Pen {
         anchor: HPos,
         height: i32,
         text: &str,
-    ) -> Result<(), String> {
+    ) -> Drawn {
         let style = self.text(height).pos(Pos::new(anchor, VPos::Center));
         let lower = if self.is_bitmap { self.px(height) / 4 } else { 0 };
         // XML forbids some characters, and names can have any.
@@ -79,7 +79,7 @@ impl Pen {
         [left, top]: [i32; 2],
         [width, height]: [i32; 2],
         color: &impl Color,
-    ) -> Result<(), String> {
+    ) -> Drawn {
         let corners = [(self.px(left), self.px(top)), (self.px(left + width), self.px(top + height))];
         sheet.draw(&Rectangle::new(corners, color.filled())).map_err(why)
     }
@@ -89,12 +89,7 @@ impl Pen {
     /// # Errors
     ///
     /// As of the plotting library.
-    pub fn dot<DB: DrawingBackend>(
-        &self,
-        sheet: &Sheet<DB>,
-        center: (i32, i32),
-        color: Rgb,
-    ) -> Result<(), String> {
+    pub fn dot<DB: DrawingBackend>(&self, sheet: &Sheet<DB>, center: (i32, i32), color: Rgb) -> Drawn {
         sheet.draw(&Circle::new(center, self.px(DOT + 1), WHITE.filled())).map_err(why)?;
         sheet.draw(&Circle::new(center, self.px(DOT), ink(color).filled())).map_err(why)
     }
@@ -106,7 +101,7 @@ impl Pen {
         mark: Mark,
         (x, y): (i32, i32),
         size: i32,
-    ) -> Result<(), String> {
+    ) -> Drawn {
         let half = self.px(size) / 2;
         let middle = (x + half, y);
         match mark {
@@ -133,10 +128,7 @@ impl Pen {
 /// # Errors
 ///
 /// When the drawing fails.
-pub fn svg(
-    size: [u32; 2],
-    draw: impl FnOnce(&Sheet<SVGBackend>) -> Result<(), String>,
-) -> Result<String, String> {
+pub fn svg(size: [u32; 2], draw: impl FnOnce(&Sheet<SVGBackend>) -> Drawn) -> Drawn<String> {
     register_fonts()?;
     let drawn @ [width, height] = size.map(|length| length * Pen::VECTOR.scale as u32);
     let mut text = String::new();

@@ -4,7 +4,7 @@
 pub use crate::plan::NamedLine;
 pub use crate::trajectory::Trails;
 
-use crate::canvas::{Area, Canvas, PictureError};
+use crate::canvas::{Area, Canvas, Drawn, PictureError};
 use crate::layers::Layer;
 use crate::panel::Panel;
 use crate::pen::{Pen, Sheet};
@@ -79,7 +79,7 @@ pub fn draw_plan(path: &Path, scene: &Scene) -> Result<(), PictureError> {
 ///
 /// # Errors
 /// As of the plotting library.
-pub fn plan_on(sheet: &Sheet<impl DrawingBackend>, pen: Pen, scene: &Scene) -> Result<(), String> {
+pub fn plan_on(sheet: &Sheet<impl DrawingBackend>, pen: Pen, scene: &Scene) -> Drawn {
     let (width, height) = sheet.dim_in_pixel();
     let size = [width, height].map(|length| length / pen.px(1) as u32);
     let panel = Panel::within(&scene.frame, scene.is_grid, size, pen, plan::entries(scene).len());
@@ -138,11 +138,7 @@ pub fn draw_values(
     Ok(picture.write(path)?)
 }
 
-fn draw(
-    name: &str,
-    size: [u32; 2],
-    draw: impl FnOnce(&Area) -> Result<(), String>,
-) -> Result<Canvas, PictureError> {
+fn draw(name: &str, size: [u32; 2], draw: impl FnOnce(&Area) -> Drawn) -> Result<Canvas, PictureError> {
     Canvas::draw(size, draw).map_err(|why| PictureError::Draw { name: name.to_owned(), why })
 }
 

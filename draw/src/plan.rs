@@ -1,6 +1,6 @@
 //! A world from above, at its start.
 
-use crate::canvas::{ink, why};
+use crate::canvas::{Drawn, ink, why};
 use crate::legend::{self, Legend, Mark};
 use crate::palette::{self, Rgb};
 use crate::panel::{Chart, Panel, pair};
@@ -29,7 +29,7 @@ pub struct NamedLine {
 }
 
 /// Draws the scene, the robots with the directions of their sensors, and the names.
-pub(crate) fn draw(panel: &Panel, area: &Sheet<impl DrawingBackend>, scene: &Scene) -> Result<(), String> {
+pub(crate) fn draw(panel: &Panel, area: &Sheet<impl DrawingBackend>, scene: &Scene) -> Drawn {
     let (chart, legend) = panel.axes(area, &scene.title)?;
     for robot in with_sensors(scene) {
         let mut sectors = robot.sectors.iter();
@@ -54,7 +54,7 @@ pub(crate) fn draw_robot(
     robot: &SceneRobot,
     pose: &Isometry2<f64>,
     front_m: f64,
-) -> Result<(), String> {
+) -> Drawn {
     fill(chart, &body(robot, pose), robot.color())?;
     let ends = [0.0, front_m].map(|x| pair(&(pose * Point2::new(x, 0.0))));
     chart.plotting_area().draw(&PathElement::new(ends, panel.line(WHITE, 3))).map_err(why)
@@ -108,7 +108,7 @@ pub(crate) fn arc(pose: &Isometry2<f64>, radius_m: f64, angle_rad: f64) -> Vec<P
 }
 
 /// Writes the names: that of an obstacle in its middle if there is room, every other name beside its owner.
-fn names(panel: &Panel, chart: &Chart<impl DrawingBackend>, scene: &Scene) -> Result<(), String> {
+fn names(panel: &Panel, chart: &Chart<impl DrawingBackend>, scene: &Scene) -> Drawn {
     let obstacles = scene.obstacles.iter().filter_map(|obstacle| {
         let outline = if obstacle.outline.is_empty() { obstacle.reach.first()? } else { &obstacle.outline };
         Some((&obstacle.name, outline.clone(), true))
@@ -137,11 +137,7 @@ fn names(panel: &Panel, chart: &Chart<impl DrawingBackend>, scene: &Scene) -> Re
 }
 
 /// Draws named lines, as the leaves of doors, with the names beside their middles.
-pub(crate) fn lines(
-    panel: &Panel,
-    chart: &Chart<impl DrawingBackend>,
-    lines: &[NamedLine],
-) -> Result<(), String> {
+pub(crate) fn lines(panel: &Panel, chart: &Chart<impl DrawingBackend>, lines: &[NamedLine]) -> Drawn {
     let plot = chart.plotting_area();
     let mut names = Vec::new();
     for NamedLine { ends, name } in lines {
@@ -160,7 +156,7 @@ fn write_beside(
     chart: &Chart<impl DrawingBackend>,
     names: Vec<(&String, Plate, [i32; 2])>,
     mut taken: Vec<Plate>,
-) -> Result<(), String> {
+) -> Drawn {
     let plot = chart.plotting_area();
     let ((columns, rows), pixels) = (plot.get_pixel_range(), plot.use_screen_coord());
     let area = Plate { left: columns.start, right: columns.end, top: rows.start, bottom: rows.end };
@@ -236,7 +232,7 @@ impl Plate {
 // The parts of a scene that every picture shows: walls, furniture, and what moves with the area it sweeps.
 
 /// Draws everything except the robots.
-pub(crate) fn ground(chart: &Chart<impl DrawingBackend>, scene: &Scene) -> Result<(), String> {
+pub(crate) fn ground(chart: &Chart<impl DrawingBackend>, scene: &Scene) -> Drawn {
     let swept = scene.obstacles.iter().flat_map(|obstacle| &obstacle.reach);
     swept.into_iter().try_for_each(|outline| fill(chart, outline, palette::SWEPT))?;
     scene.walls.iter().try_for_each(|wall| fill(chart, wall, palette::WALL))?;
@@ -256,11 +252,7 @@ pub(crate) fn ground_entries(scene: &Scene) -> Legend {
 }
 
 /// Fills a polygon.
-pub(crate) fn fill(
-    chart: &Chart<impl DrawingBackend>,
-    corners: &[Point2<f64>],
-    color: Rgb,
-) -> Result<(), String> {
+pub(crate) fn fill(chart: &Chart<impl DrawingBackend>, corners: &[Point2<f64>], color: Rgb) -> Drawn {
     let corners: Vec<(f64, f64)> = corners.iter().map(pair).collect();
     chart.plotting_area().draw(&Polygon::new(corners, ink(color).filled())).map_err(why)
 }

@@ -1,6 +1,6 @@
 //! The trajectories of the robots, as the paper's Figure 4.
 
-use crate::canvas::{Area, ink, why};
+use crate::canvas::{Area, Drawn, ink, why};
 use crate::layers::Layer;
 use crate::legend::{Legend, Mark};
 use crate::palette::{self, Rgb};
@@ -29,7 +29,7 @@ pub(crate) fn draw(
     (scene, map): (&Scene, Option<&Mapper>),
     trails: &Trails,
     goals: &Goals,
-) -> Result<(), String> {
+) -> Drawn {
     let (chart, legend) = panel.axes(area, &format!("Trajectories in {}", scene.title))?;
     if let Some(map) = map {
         panel.cells(&chart, Layer::Occupancy, &Layer::Occupancy.classes(map))?;
@@ -92,7 +92,7 @@ pub(crate) fn line(
     chart: &Chart<impl DrawingBackend>,
     points: &[Point2<f64>],
     (color, width): (Rgb, u32),
-) -> Result<(), String> {
+) -> Drawn {
     let style = panel.line(ink(color), width);
     points.windows(2).try_for_each(|step| {
         let step = PathElement::new(step.iter().map(pair).collect::<Vec<_>>(), style);

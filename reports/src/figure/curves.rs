@@ -3,7 +3,7 @@
 use crate::is_reference;
 use crate::statistics::Estimate;
 use crate::strategy::StrategyResult;
-use draw::canvas::{INK, ink, why};
+use draw::canvas::{Drawn, INK, ink, why};
 use draw::palette;
 use draw::pen::{Pen, Sheet};
 use evaluation::trials::Length;
@@ -39,7 +39,7 @@ pub(super) fn draw<DB: DrawingBackend>(
     metric: Metric,
     length: Length,
     strategies: &[StrategyResult],
-) -> Result<(), String> {
+) -> Drawn {
     let times = strategies.first().map_or(&[][..], |strategy| &strategy.times);
     let horizon = times.last().copied().unwrap_or(0).max(1) as f64;
     let before = |part: f64| times.iter().take_while(|&&time| (time as f64) < part * horizon).count();
@@ -114,7 +114,7 @@ pub(super) fn draw_line<DB: DrawingBackend, C: CoordTranslate>(
     line: Vec<C::From>,
     style: ShapeStyle,
     is_dashed: bool,
-) -> Result<(), String>
+) -> Drawn
 where
     C::From: Clone,
 {
@@ -160,7 +160,7 @@ fn band<DB: DrawingBackend>(
     curve: &[Estimate],
     shown: &Range<f64>,
     color: RGBColor,
-) -> Result<(), String> {
+) -> Drawn {
     let is_known = |at: &Estimate| at.low.is_finite() && at.high.is_finite();
     let known: Vec<(f64, &Estimate)> =
         positions.iter().copied().zip(curve).filter(|(_, at)| is_known(at)).collect();

@@ -6,7 +6,7 @@ mod curves;
 
 use super::{ONE_BY_ONE, Report};
 use crate::builder::{Run, conditions};
-use draw::canvas::{Canvas, PictureError, ink, why};
+use draw::canvas::{Canvas, Drawn, PictureError, ink, why};
 use draw::palette;
 use draw::pen::{Pen, Sheet, svg};
 use draw::pictures::plan_on;
@@ -93,7 +93,7 @@ impl Figure<'_> {
         self.run.strategies.len().div_ceil(LEGEND_COLUMNS) as i32 * LEGEND_ROW
     }
 
-    fn draw<DB: DrawingBackend>(&self, sheet: &Sheet<DB>, pen: &Pen) -> Result<(), String> {
+    fn draw<DB: DrawingBackend>(&self, sheet: &Sheet<DB>, pen: &Pen) -> Drawn {
         sheet.fill(&WHITE).map_err(why)?;
         let sheet = sheet.margin(0, pen.px(MARGIN), pen.px(MARGIN), pen.px(MARGIN));
         let (head, rest) = sheet.split_vertically(pen.px(TITLE));
@@ -116,7 +116,7 @@ impl Figure<'_> {
         panels[1..].iter().zip(curves).try_for_each(|(panel, metric)| draw(panel, metric))
     }
 
-    fn legend<DB: DrawingBackend>(&self, sheet: &Sheet<DB>, pen: &Pen) -> Result<(), String> {
+    fn legend<DB: DrawingBackend>(&self, sheet: &Sheet<DB>, pen: &Pen) -> Drawn {
         let column_width = (WIDTH as i32 - 2 * MARGIN) / LEGEND_COLUMNS as i32;
         for (index, strategy) in self.run.strategies.iter().enumerate() {
             let left = MARGIN + (index % LEGEND_COLUMNS) as i32 * column_width;
