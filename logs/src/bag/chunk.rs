@@ -1,6 +1,7 @@
 //! A chunk of an MCAP file: records, often compressed. It is unpacked as a stream, so that one that claims gigabytes needs
 //! no memory.
 
+use super::message::Usable;
 use crate::bounds::MAX_NAME_BYTES;
 use crate::bytes::Input;
 use flate2::Crc;
@@ -26,12 +27,7 @@ pub(super) struct Chunk {
 
 impl Chunk {
     /// Reads a chunk of `len` bytes, of which the file has `available`.
-    pub(super) fn read(
-        input: &mut dyn Read,
-        len: u64,
-        available: u64,
-        checks_sum: bool,
-    ) -> Result<Self, String> {
+    pub(super) fn read(input: &mut dyn Read, len: u64, available: u64, checks_sum: bool) -> Usable<Self> {
         if len.min(available) > MAX_PACKED {
             return Err(format!("a chunk of {len} bytes; at most {MAX_PACKED} are read"));
         }
@@ -143,17 +139,17 @@ impl<'a> Fields<'a> {
         Self { bytes }
     }
 
-    pub(super) fn skip(&mut self, count: usize) -> Result<&'a [u8], String> {
+    pub(super) fn skip(&mut self, count: usize) -> Usable<&'a [u8]> {
         let (skipped, rest) = self.bytes.split_at_checked(count).ok_or("ends too early")?;
         self.bytes = rest;
         Ok(skipped)
     }
 
-    pub(super) fn array<const N: usize>(&mut self) -> Result<[u8; N], String> {
+    pub(super) fn array<const N: usize>(&mut self) -> Usable<[u8; N]> {
         self.skip(N)?.try_into().map_err(|_| "ends too early".to_owned())
     }
 
-    pub(super) fn name(&mut self) -> Result<String, String> {
+    pub(super) fn name(&mut self) -> Usable<String> {
         let length = u32::from_le_bytes(self.array()?) as usize;
         if length > MAX_NAME_BYTES {
             return Err(format!("has a name of {length} bytes; at most {MAX_NAME_BYTES} are read"));

@@ -1,7 +1,7 @@
 //! The first pass over a bag: which topics and frames there are.
 
 use super::files::BagFile;
-use super::message::{Kind, Message, Selection, Topic};
+use super::message::{Kind, Message, Selection, Topic, Usable};
 use super::messages::{Messages, RecordedOrder};
 use crate::assemble::Frames;
 use crate::bounds;
@@ -72,7 +72,7 @@ impl Inventory {
         Ok(inventory)
     }
 
-    fn count_scan(&mut self, message: &Message) -> Result<(), String> {
+    fn count_scan(&mut self, message: &Message) -> Usable<()> {
         let Stamped { header } = cdr::decoded(&message.data)?;
         self.begin_ns.get_or_insert((header.stamp.ns(), message.log_ns));
         self.end_ns = message.log_ns;
@@ -86,7 +86,7 @@ impl Inventory {
         Ok(())
     }
 
-    fn count_odometry(&mut self, message: &Message) -> Result<(), String> {
+    fn count_odometry(&mut self, message: &Message) -> Usable<()> {
         let Odometry { header, child_frame_id, .. } = cdr::decoded(&message.data)?;
         let topic = &message.topic.name;
         if self.odometry.iter().any(|odometry| odometry.topic == *topic) {
@@ -103,7 +103,7 @@ impl Inventory {
         Ok(())
     }
 
-    fn count_transforms(&mut self, message: &Message) -> Result<(), String> {
+    fn count_transforms(&mut self, message: &Message) -> Usable<()> {
         let Transforms { transforms } = cdr::decoded(&message.data)?;
         for transform in transforms {
             let (parent, child) = (&transform.header.frame_id, &transform.child_frame_id);

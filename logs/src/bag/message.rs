@@ -14,6 +14,9 @@ pub(super) struct Topic {
     pub(super) encoding: String,
 }
 
+/// A part of a bag, or why the bag cannot be used.
+pub(super) type Usable<T> = Result<T, String>;
+
 /// What a pass over a bag needs.
 #[derive(Clone)]
 pub(super) struct Selection {

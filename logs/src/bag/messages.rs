@@ -3,7 +3,7 @@
 
 use super::files::{BagFile, Format};
 use super::mcap::McapFile;
-use super::message::{Kind, Message, MessageSource, Selection, Topic};
+use super::message::{Kind, Message, MessageSource, Selection, Topic, Usable};
 use super::sqlite::SqliteFile;
 use crate::bytes::ZSTD;
 use crate::summary::LogError;
@@ -161,7 +161,7 @@ pub(super) fn merged_topics(
     order: &RecordedOrder,
     topics: &[Arc<Topic>],
     is_wanted: impl Fn(&Topic) -> bool,
-) -> Result<Vec<Arc<Topic>>, String> {
+) -> Usable<Vec<Arc<Topic>>> {
     if !order.is_by_topic() {
         return Ok(Vec::new());
     }

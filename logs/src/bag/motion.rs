@@ -1,6 +1,7 @@
 //! Where the motions of the robot of a bag come from: the odometry, or another SLAM.
 
 use super::inventory::{Inventory, LaserTopic, OdometryTopic};
+use super::message::Usable;
 use crate::assemble::{Chain, Frames, can_be_base, is_odom, is_world};
 use crate::checks::Jumps;
 use crate::summary::{TopicChoice, bare, listed};
@@ -33,11 +34,7 @@ pub(super) struct Motion {
 }
 
 /// The motions by odometry: of its topic, or of a transform.
-pub(super) fn by_odometry(
-    found: &Inventory,
-    lasers: &[&LaserTopic],
-    choice: &TopicChoice,
-) -> Result<Motion, String> {
+pub(super) fn by_odometry(found: &Inventory, lasers: &[&LaserTopic], choice: &TopicChoice) -> Usable<Motion> {
     let of = |source, moving, fixed| Motion { source, moving, correction: None, fixed };
     if let Some(OdometryTopic { topic, odom_frame, child_frame }) = chosen_odometry(found, choice)? {
         let (moving, fixed) = (Some(child_frame.clone()), vec![odom_frame.clone()]);
@@ -55,11 +52,7 @@ pub(super) fn by_odometry(
 /// # Errors
 ///
 /// When no transforms lead from the map to the laser, and when none of them moves.
-pub(super) fn by_slam(
-    found: &Inventory,
-    lasers: &[&LaserTopic],
-    choice: &TopicChoice,
-) -> Result<Motion, String> {
+pub(super) fn by_slam(found: &Inventory, lasers: &[&LaserTopic], choice: &TopicChoice) -> Usable<Motion> {
     let frames = &found.frames;
     let map = bare(choice.map_frame.as_deref().unwrap_or(MAP));
     if frames.is_empty() {
@@ -115,10 +108,7 @@ fn moving_part(frames: &Frames, chain: &Chain) -> Option<usize> {
 }
 
 /// The topic of odometry, if there is one.
-fn chosen_odometry<'a>(
-    found: &'a Inventory,
-    choice: &TopicChoice,
-) -> Result<Option<&'a OdometryTopic>, String> {
+fn chosen_odometry<'a>(found: &'a Inventory, choice: &TopicChoice) -> Usable<Option<&'a OdometryTopic>> {
     let topics = || listed(found.odometry.iter().map(|odometry| odometry.topic.as_str()));
     match &choice.odom_topic {
         Some(name) => {
@@ -139,11 +129,7 @@ fn chosen_odometry<'a>(
 
 /// The transform that is the odometry: from a frame of odometry, or of the world, to the robot. Where a transform below the world
 /// moves, that of the world is the correction by another SLAM.
-fn moving_edge(
-    frames: &Frames,
-    lasers: &[&LaserTopic],
-    choice: &TopicChoice,
-) -> Result<Option<usize>, String> {
+fn moving_edge(frames: &Frames, lasers: &[&LaserTopic], choice: &TopicChoice) -> Usable<Option<usize>> {
     let starts = choice.base_frame.iter().map(|base| bare(base));
     for start in starts.chain(lasers.iter().map(|laser| laser.frame.as_str())) {
         let above = frames.above(start)?;

@@ -1,7 +1,7 @@
 //! What to use of a bag: which lasers, where they are mounted, and where the poses come from.
 
 use super::inventory::{Inventory, LaserTopic, no_scans};
-use super::message::{Kind, Topic};
+use super::message::{Kind, Topic, Usable};
 use super::motion::{self, Motion, MotionSource};
 use crate::assemble::{Chain, Frames, can_be_base, is_base, is_odom, is_world};
 use crate::summary::{TopicChoice, bare, listed};
@@ -35,11 +35,7 @@ impl Plan {
     /// # Errors
     ///
     /// When there is no scan, when the choice is up to the user, or when no laser is connected to the robot.
-    pub(super) fn new(
-        found: &Inventory,
-        choice: &TopicChoice,
-        notes: &mut Vec<String>,
-    ) -> Result<Self, String> {
+    pub(super) fn new(found: &Inventory, choice: &TopicChoice, notes: &mut Vec<String>) -> Usable<Self> {
         let lasers = chosen_lasers(found, choice, notes)?;
         let frames = &found.frames;
         let Motion { source: motion, moving: moving_frame, correction, fixed } = if choice.is_corrected {
@@ -87,7 +83,7 @@ fn chosen_lasers<'a>(
     found: &'a Inventory,
     choice: &TopicChoice,
     notes: &mut Vec<String>,
-) -> Result<Vec<&'a LaserTopic>, String> {
+) -> Usable<Vec<&'a LaserTopic>> {
     let mut lasers: Vec<&LaserTopic> = found.lasers.iter().collect();
     if lasers.is_empty() {
         return Err(no_scans(&found.topics));
@@ -120,7 +116,7 @@ fn chosen_lasers<'a>(
 }
 
 /// The frame of a robot that is not named: one above its first laser with the usual name, or what all lasers are mounted on.
-fn likely_base(frames: &Frames, lasers: &[&LaserTopic]) -> Result<String, String> {
+fn likely_base(frames: &Frames, lasers: &[&LaserTopic]) -> Usable<String> {
     let Some(first) = lasers.first() else { return Ok(String::new()) };
     let above = frames.above(&first.frame)?;
     let parents = above.iter().map(|index| frames.edge(*index).parent.as_str());
@@ -145,7 +141,7 @@ fn connected(
     base: &str,
     world: &[&str],
     notes: &mut Vec<String>,
-) -> Result<Vec<Laser>, String> {
+) -> Usable<Vec<Laser>> {
     let (mut kept, mut refused) = (Vec::new(), Vec::new());
     for LaserTopic { topic, frame, .. } in lasers {
         frames.above(frame)?; // not in a cycle

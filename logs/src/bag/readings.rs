@@ -1,6 +1,6 @@
 //! The second pass over a bag, and all later ones: reading by reading.
 
-use super::message::{Kind, Message};
+use super::message::{Kind, Message, Usable};
 use super::messages::Merged;
 use super::motion::{Corrections, MotionSource};
 use super::plan::{Laser, Plan};
@@ -165,7 +165,7 @@ impl RawReadings {
         self.timed_steps * STEPS_PER_TIME >= self.steps
     }
 
-    fn take_scan(&mut self, message: &Message) -> Result<(), String> {
+    fn take_scan(&mut self, message: &Message) -> Usable<()> {
         let found: LaserScan = cdr::decoded(&message.data)?;
         let (frame, topic) = (bare(&found.header.frame_id), &message.topic.name);
         let is_this = |laser: &Laser| laser.frame == frame && laser.topic == *topic;
@@ -193,7 +193,7 @@ impl RawReadings {
         Ok(())
     }
 
-    fn take_odometry(&mut self, message: &Message) -> Result<(), String> {
+    fn take_odometry(&mut self, message: &Message) -> Usable<()> {
         let found: ros::Odometry = cdr::decoded(&message.data)?;
         self.take_pose(&found.header, message, &found.pose.pose);
         let ros::Vector { x, y, .. } = found.twist.linear;
@@ -203,7 +203,7 @@ impl RawReadings {
         Ok(())
     }
 
-    fn take_transforms(&mut self, message: &Message) -> Result<(), String> {
+    fn take_transforms(&mut self, message: &Message) -> Usable<()> {
         let Transforms { transforms } = cdr::decoded(&message.data)?;
         for found in transforms {
             let Some(pose) = found.transform.isometry() else {

@@ -1,6 +1,6 @@
 //! SQLite databases of rosbag2: the tables `topics` and `messages`. Of a file that is cut off, the messages before the cut are read.
 
-use super::message::{Message, MessageSource, Selection, Topic};
+use super::message::{Message, MessageSource, Selection, Topic, Usable};
 use crate::bounds::MAX_NAME_BYTES;
 use crate::bytes::Bytes;
 use crate::summary::LogError;
@@ -119,7 +119,7 @@ impl SqliteFile {
 
 impl MessageTable {
     /// Adds the message of a row, and returns the number of its bytes.
-    fn add(&mut self, row: &Row<'_>) -> Result<usize, String> {
+    fn add(&mut self, row: &Row<'_>) -> Usable<usize> {
         self.rows += 1;
         let row_id: i64 = row.get(0).map_err(|_| "a row of `messages` without a number".to_owned())?;
         if row_id <= self.last_row || self.rows > self.size / MIN_ROW {
