@@ -106,13 +106,7 @@ pub fn is_another_kind(path: &Path, start: &[u8]) -> bool {
 
 /// The name of a file while it is incomplete. It keeps its ending, so that a viewer opens it.
 pub fn temporary_name(path: &Path) -> PathBuf {
-    let mut name = path.file_stem().unwrap_or_default().to_owned();
-    name.push(".unfinished");
-    if let Some(ending) = path.extension() {
-        name.push(".");
-        name.push(ending);
-    }
-    path.with_file_name(name)
+    path.with_extension("unfinished").with_added_extension(path.extension().unwrap_or_default())
 }
 
 #[cfg(test)]

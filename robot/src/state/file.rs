@@ -39,7 +39,7 @@ impl StateFile {
     /// somebody else (`house.state.lock`).
     pub fn open(path: &Path) -> io::Result<Self> {
         let target = target_of(path);
-        let (lock, earlier) = (with_ending(&target, "lock"), with_ending(&target, "earlier"));
+        let (lock, earlier) = (target.with_added_extension("lock"), target.with_added_extension("earlier"));
         let own = [temporary_name(&target), temporary_name(&earlier), lock.clone(), earlier];
         if let Some(other) = own.iter().find(|path| is_another_kind(path, State::MAGIC)) {
             let why = "no run has written it, and this one would replace it; move it, or give another file by --state";
@@ -95,7 +95,7 @@ impl StateFile {
     ///
     /// When no file was kept.
     pub fn restore_earlier(&self) -> io::Result<()> {
-        fs::rename(with_ending(&self.target, "earlier"), &self.target)
+        fs::rename(self.target.with_added_extension("earlier"), &self.target)
     }
 
     /// Whether it is time to [`save`](Self::save).
@@ -167,7 +167,7 @@ pub fn read_state(path: &Path) -> Result<State, StateError> {
 
 /// The name of the file that a [`StateFile`] keeps before a session is added: `house.state.earlier` for `house.state`.
 pub fn earlier_name(path: &Path) -> PathBuf {
-    with_ending(&target_of(path), "earlier")
+    target_of(path).with_added_extension("earlier")
 }
 
 /// The file to which a name leads.
@@ -178,7 +178,8 @@ fn target_of(path: &Path) -> PathBuf {
 /// Copies the file as it is now: what is saved next can be undone.
 fn keep(path: &Path) -> io::Result<()> {
     let mut present = File::open(path)?;
-    let kept = write_file(&with_ending(path, "earlier"), |file| io::copy(&mut present, file).map(|_| ()));
+    let kept =
+        write_file(&path.with_added_extension("earlier"), |file| io::copy(&mut present, file).map(|_| ()));
     kept.map_err(|OutputError { why, .. }| why)
 }
 
@@ -188,14 +189,6 @@ fn write(path: &Path, state: &State) -> io::Result<()> {
     write_file(path, |file| file.write_all(&bytes)).map_err(|OutputError { why, .. }| why)?;
     sync_folder_of(path);
     Ok(())
-}
-
-/// The name of a file beside the state: `house.state.lock` while a run uses it.
-fn with_ending(path: &Path, ending: &str) -> PathBuf {
-    let mut name = path.file_name().unwrap_or_default().to_owned();
-    name.push(".");
-    name.push(ending);
-    path.with_file_name(name)
 }
 
 #[cfg(test)]

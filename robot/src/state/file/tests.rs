@@ -16,7 +16,7 @@ fn a_file_appears_when_it_is_complete_and_is_replaced() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("house.state");
     fs::write(temporary_name(&path), &state().to_bytes().unwrap()[..30]).unwrap(); // of a killed run
-    fs::write(with_ending(&path, "lock"), "").unwrap();
+    fs::write(path.with_added_extension("lock"), "").unwrap();
     let mut file = StateFile::open(&path).unwrap();
     assert!(file.load().unwrap().is_none() && !file.is_due());
     file.save(State::default).unwrap();
@@ -93,7 +93,7 @@ fn whoever_has_the_lock_is_alone() {
 fn files_of_others_beside_the_state_stay() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("Cargo");
-    let [lock, earlier] = ["lock", "earlier"].map(|ending| with_ending(&path, ending));
+    let [lock, earlier] = ["lock", "earlier"].map(|ending| path.with_added_extension(ending));
     for other in [lock, temporary_name(&path), temporary_name(&earlier), earlier] {
         fs::write(&other, "of the user").unwrap();
         let error = StateFile::open(&path).unwrap_err().to_string();
