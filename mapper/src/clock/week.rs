@@ -1,6 +1,6 @@
 //! What is usual in every half hour of the week, as people read it: probabilities with intervals, and the hours of changes.
 
-use statrs::function::beta::beta_reg;
+use statrs::function::beta::{beta_reg, inv_beta_reg};
 
 /// Half hours from Monday 0:00 to Sunday 24:00, local civil time.
 pub(super) const SLOTS_OF_WEEK: usize = 336;
@@ -69,23 +69,13 @@ fn distribution(probability: f64, variance: f64) -> [f64; 2] {
     [probability, 1.0 - probability].map(|share| (share / variance).max(MIN))
 }
 
-/// The value below which a beta variable is with this probability.
-fn beta_quantile([a, b]: [f64; 2], probability: f64) -> f64 {
-    let (mut low, mut high) = (0.0, 1.0);
-    for _ in 0..40 {
-        let middle = 0.5 * (low + high);
-        *(if beta_reg(a, b, middle) < probability { &mut low } else { &mut high }) = middle;
-    }
-    0.5 * (low + high)
-}
-
 /// The interval that contains this probability with 90 %. It begins at 0, and ends at 1, where all draws can be equal with a
 /// probability of 5 %.
 pub(super) fn interval_90(probability: f64, variance: f64) -> [f64; 2] {
-    let distribution = distribution(probability, variance);
+    let [a, b] = distribution(probability, variance);
     let can_be_equal = |share: f64| libm::pow(1.0 - share, 1.0 / variance) > TAIL;
-    let low = if can_be_equal(probability) { 0.0 } else { beta_quantile(distribution, TAIL) };
-    let high = if can_be_equal(1.0 - probability) { 1.0 } else { beta_quantile(distribution, 1.0 - TAIL) };
+    let low = if can_be_equal(probability) { 0.0 } else { inv_beta_reg(a, b, TAIL) };
+    let high = if can_be_equal(1.0 - probability) { 1.0 } else { inv_beta_reg(a, b, 1.0 - TAIL) };
     // Nearly all of a very skewed distribution is on one side of its mean.
     [low.min(probability), high.max(probability)]
 }
