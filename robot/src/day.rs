@@ -55,14 +55,6 @@ pub struct DayTotals {
     pub flat: u32,
 }
 
-impl DayTotals {
-    /// The share of the time on patrol; `None` before any time has passed.
-    pub fn patrol_share(&self) -> Option<f64> {
-        let all_s = self.patrol_s + self.rest_s;
-        (all_s > 0.0).then(|| self.patrol_s / all_s)
-    }
-}
-
 /// The pilot of a robot with a battery: it lets another pilot drive while the robot is on patrol, and sends the robot to its dock
 /// in time.
 ///
