@@ -218,9 +218,7 @@ impl LoopClosingLocalizer {
         (self.localizer, *map) = (localizer, learned);
         Some(LoopClosed { localized: last?, correction: Some(correction) })
     }
-}
 
-impl LoopClosingLocalizer {
     /// Everything that readings have changed, as bytes; settings are not in it. While the first map is young, that is all
     /// readings. A map that is being learned again must be [settled](Self::settle) before.
     pub fn snapshot(&mut self) -> Vec<u8> {

@@ -84,6 +84,22 @@ fn near(points: &[ScanPoint], reach_m: f64) -> Vec<ScanPoint> {
     points.iter().filter(|point| point.at.coords.norm() <= reach_m).copied().collect()
 }
 
+/// The search for a pose.
+#[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
+pub(in crate::localizer) struct Relocalization {
+    pub(in crate::localizer) hypotheses: Hypotheses,
+    /// The search in the whole map, while it goes on.
+    pub(in crate::localizer) wide: Option<WideSearch>,
+    /// The number of scans since the last search in the whole map.
+    pub(in crate::localizer) scans: u32,
+}
+
+impl Default for Relocalization {
+    fn default() -> Self {
+        Self { hypotheses: Hypotheses::default(), wide: None, scans: u32::MAX }
+    }
+}
+
 impl MapMatcher {
     /// The poses in a window at which the scan fits.
     pub(in crate::localizer) fn candidates(
@@ -157,25 +173,7 @@ impl MapMatcher {
         }
         true
     }
-}
 
-/// The search for a pose.
-#[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
-pub(in crate::localizer) struct Relocalization {
-    pub(in crate::localizer) hypotheses: Hypotheses,
-    /// The search in the whole map, while it goes on.
-    pub(in crate::localizer) wide: Option<WideSearch>,
-    /// The number of scans since the last search in the whole map.
-    pub(in crate::localizer) scans: u32,
-}
-
-impl Default for Relocalization {
-    fn default() -> Self {
-        Self { hypotheses: Hypotheses::default(), wide: None, scans: u32::MAX }
-    }
-}
-
-impl MapMatcher {
     /// Searches around a pose that the scan contradicts, though a pose prior allows it: a robot that was carried along a
     /// corridor still sees most of its walls. If another pose is clearly better, the prior was wrong.
     pub(in crate::localizer) fn doubt_prior(&mut self, step: &mut Step, tracked: &Tracked) {

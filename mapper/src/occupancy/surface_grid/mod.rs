@@ -134,9 +134,7 @@ impl SurfaceGrid {
             body: Body::default(),
         }
     }
-}
 
-impl SurfaceGrid {
     /// Whether the first observation of a cell can still be wrong.
     fn is_unconfirmed(&self, index: usize, cells: &CellMap) -> bool {
         cells.is_unconfirmed(index, CONFIRM_S.max(MIN_CONFIRMING * cells.period()))

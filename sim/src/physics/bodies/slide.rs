@@ -8,6 +8,24 @@ use rapier2d::prelude as rapier;
 /// A body that is slower than this is at rest, m/s and rad/s.
 const REST: f32 = 1e-5;
 
+/// Bodies that are farther apart than this do not touch any more, m. The distance of a lasting contact varies by
+/// less.
+pub(crate) const SEPARATE_M: f32 = 0.001;
+
+/// A contact of a robot.
+#[derive(Clone, Copy)]
+pub(crate) struct Touch {
+    pub(crate) with: Body,
+    /// The point of the deepest penetration, m.
+    pub(crate) at: Point2<f64>,
+    /// The direction from the robot to the other body at the contact, a unit vector.
+    pub(crate) towards: Vector2<f64>,
+    /// The ends of the line of contact, m.
+    pub(crate) ends: [Point2<f64>; 2],
+    /// The impulse of the last step, N·s; 0: the bodies have not separated yet.
+    pub(crate) impulse_ns: f64,
+}
+
 impl Bodies {
     /// The motion of a robot in the next step if nothing is in its way, m.
     pub(crate) fn wanted_m(&self, robot: usize) -> Vector2<f64> {
@@ -52,27 +70,7 @@ impl Bodies {
         }
         self.slid = Some(touches);
     }
-}
 
-/// Bodies that are farther apart than this do not touch any more, m. The distance of a lasting contact varies by
-/// less.
-pub(crate) const SEPARATE_M: f32 = 0.001;
-
-/// A contact of a robot.
-#[derive(Clone, Copy)]
-pub(crate) struct Touch {
-    pub(crate) with: Body,
-    /// The point of the deepest penetration, m.
-    pub(crate) at: Point2<f64>,
-    /// The direction from the robot to the other body at the contact, a unit vector.
-    pub(crate) towards: Vector2<f64>,
-    /// The ends of the line of contact, m.
-    pub(crate) ends: [Point2<f64>; 2],
-    /// The impulse of the last step, N·s; 0: the bodies have not separated yet.
-    pub(crate) impulse_ns: f64,
-}
-
-impl Bodies {
     /// All bodies that a robot presses against, or has not separated from yet.
     pub(crate) fn touches(&self, robot: usize) -> impl Iterator<Item = Touch> {
         let slid = self.slid.iter().flatten().filter(move |(of, _)| *of == robot).map(|(_, touch)| *touch);
