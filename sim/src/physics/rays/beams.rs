@@ -85,7 +85,7 @@ impl Beams {
             // Both are at the back, on one line of sight except for rounding.
             first += self.count;
         }
-        self.runs(first, end)
+        self.runs((first, end))
     }
 
     /// The beams that are less than `half_rad` away from `angle_rad`, and perhaps a few more: the index of the
@@ -110,7 +110,7 @@ impl Beams {
 
     /// The beams of `first..end`, where indices continue after the last beam.
     #[inline]
-    pub(super) fn runs(&self, first: usize, end: usize) -> [Range<usize>; 2] {
+    pub(super) fn runs(&self, (first, end): (usize, usize)) -> [Range<usize>; 2] {
         let count = self.count;
         let (low, high) = (first.min(count), end.min(count));
         // In a narrow view, indices behind the view may continue past the end a second time.
@@ -248,8 +248,7 @@ impl<'a> Hits<'a> {
             Place::Beyond => {}
             Place::Around => self.add_inside(),
             Place::At { center, power, angle_rad, half_rad, nearest } => {
-                let (first, end) = self.beams.around(angle_rad, half_rad);
-                let runs = self.beams.runs(first, end);
+                let runs = self.beams.runs(self.beams.around(angle_rad, half_rad));
                 runs.into_iter().for_each(|run| self.add_disc_to(run, &center, power, nearest));
             }
         }
@@ -270,8 +269,7 @@ impl<'a> Hits<'a> {
     /// Whether nearer bodies hide everything with directions less than `half_rad` away from `angle_rad` and inverse
     /// ranges of at most `nearest`.
     pub(super) fn is_hidden(&self, angle_rad: f64, half_rad: f64, nearest: f64) -> bool {
-        let (first, end) = self.beams.around(angle_rad, half_rad);
-        let runs = self.beams.runs(first, end);
+        let runs = self.beams.runs(self.beams.around(angle_rad, half_rad));
         runs.into_iter().all(|run| self.inverse[run].iter().all(|&inverse| inverse >= nearest))
     }
 

@@ -83,16 +83,18 @@ impl ObstacleSpec {
 
     /// The shape at the start; for a door, open or closed.
     pub fn start(&self) -> Rectangle {
-        match &self.motion {
-            Motion::Door(door) => door.shape(&self.shape, f64::from(u8::from(door.starts_open))),
-            Motion::Fixed | Motion::Pushed(_) | Motion::Path(_) | Motion::Scheduled(_) => self.shape,
-        }
+        self.with_door(|door| f64::from(u8::from(door.starts_open)))
     }
 
     /// The shape at the start, but with a door open.
     pub fn opened(&self) -> Rectangle {
+        self.with_door(|_| 1.0)
+    }
+
+    /// The shape at the start, but of a door with the openness that is given for it.
+    fn with_door(&self, openness: impl Fn(&DoorSpec) -> f64) -> Rectangle {
         match &self.motion {
-            Motion::Door(door) => door.shape(&self.shape, 1.0),
+            Motion::Door(door) => door.shape(&self.shape, openness(door)),
             Motion::Fixed | Motion::Pushed(_) | Motion::Path(_) | Motion::Scheduled(_) => self.shape,
         }
     }
