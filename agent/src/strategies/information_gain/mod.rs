@@ -197,7 +197,7 @@ impl Strategy for InformationGain {
         let Some(Plan { regions, watches, watched }) = &self.plan else { return Stay::Watch(0.0) };
         let Some(goal) = regions.index(goal) else { return Stay::Watch(0.0) };
         let watch = watches[regions.of(goal)];
-        self.reliability.begin(&mut self.visibility, regions, watched, goal, watch);
+        self.reliability.begin(self.visibility.seen_from(regions.of(goal)), watched, goal, watch);
         Stay::Watch(watch)
     }
 }

@@ -37,16 +37,9 @@ pub(super) fn watched(mapper: &Mapper, regions: &Regions, region: usize) -> f64 
 }
 
 impl ViewReliability {
-    /// Begins the visit of a goal, the index of a cell. `watched` is the time that each region was observed before.
-    pub(super) fn begin(
-        &mut self,
-        visibility: &mut Visibility,
-        regions: &Regions,
-        watched: &[f64],
-        goal: usize,
-        duration: f64,
-    ) {
-        let view = visibility.seen_from(regions.of(goal));
+    /// Begins the visit of a goal, the index of a cell from which the regions in `view` can be seen. `watched` is the time that each
+    /// region was observed before.
+    pub(super) fn begin(&mut self, view: &[u32], watched: &[f64], goal: usize, duration: f64) {
         let watched = view.iter().map(|&seen| watched[seen as usize]).collect();
         self.visit = Some(Visit { goal, duration, watched });
     }
