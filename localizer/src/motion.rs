@@ -60,16 +60,11 @@ impl Motion {
     }
 
     /// The pose after the motion from a pose with the given covariance, with its covariance; all in the frame of the map.
-    pub(crate) fn predict(
-        &self,
-        pose: &Isometry2<f64>,
-        covariance: &Matrix3<f64>,
-        sweeps: bool,
-    ) -> Predicted {
-        let (by_heading, own) = self.spread(pose);
+    pub(crate) fn predict(&self, at: &Isometry2<f64>, covariance: &Matrix3<f64>, sweeps: bool) -> Predicted {
+        let (by_heading, own) = self.spread(at);
         let begin = if sweeps { begin(covariance, &by_heading, &own) } else { None };
         let covariance = by_heading * covariance * by_heading.transpose() + own;
-        Predicted { pose: self.apply(pose), covariance, begin }
+        Predicted { pose: self.apply(at), covariance, begin }
     }
 
     /// The covariance after the motion from a pose with the given covariance; both in the frame of the map.

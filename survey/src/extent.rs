@@ -12,6 +12,9 @@ const DIRECTIONS: usize = 16;
 /// Space around the hits, m: the border of a map is not seen by chance.
 const MARGIN_M: f64 = 0.5;
 
+/// The frame of a map, or why there is none.
+type Framed = Result<GridFrame, SurveyError>;
+
 /// The hits of a reading that are farthest from the robot in some directions, in the frame of the robot, m. Single
 /// precision saves memory: there is one per reading of a log.
 #[derive(Clone, Copy, Debug)]
@@ -41,7 +44,7 @@ impl Reach {
 }
 
 /// The cells that cover some frames, all of them with cells of the same side that lie on multiples of it.
-pub(crate) fn union<'a>(frames: impl Iterator<Item = &'a GridFrame>) -> Result<GridFrame, SurveyError> {
+pub(crate) fn union<'a>(frames: impl Iterator<Item = &'a GridFrame>) -> Framed {
     let span = |frame: &GridFrame| {
         let low = frame.origin().map(|m| (m / frame.resolution_m()).round());
         (low, low + Vector2::new(frame.width() as f64, frame.height() as f64), frame.resolution_m())
@@ -53,7 +56,7 @@ pub(crate) fn union<'a>(frames: impl Iterator<Item = &'a GridFrame>) -> Result<G
 }
 
 /// The frame of the cells with these numbers from the origin on.
-fn of_cells(low: Point2<f64>, high: Point2<f64>, resolution_m: f64) -> Result<GridFrame, SurveyError> {
+fn of_cells(low: Point2<f64>, high: Point2<f64>, resolution_m: f64) -> Framed {
     let cells = high - low;
     let too_large = || {
         let (width_m, height_m) = (cells.x * resolution_m, cells.y * resolution_m);
@@ -78,10 +81,7 @@ fn enough_m(resolution_m: f64, share: f64) -> f64 {
 }
 
 /// The cells that cover these points. The cells lie on multiples of their side, so that two surveys of a place have the same cells.
-pub(crate) fn frame(
-    points: impl Iterator<Item = Point2<f64>>,
-    resolution_m: f64,
-) -> Result<GridFrame, SurveyError> {
+pub(crate) fn frame(points: impl Iterator<Item = Point2<f64>>, resolution_m: f64) -> Framed {
     let spans = points.map(|point| (point, point));
     let span = spans.reduce(|(low, high), (point, _)| (low.inf(&point), high.sup(&point)));
     let (low, high) = span.ok_or(SurveyError::NoPlace)?;
@@ -89,11 +89,7 @@ pub(crate) fn frame(
 }
 
 /// The cells that cover a rectangle and its margin.
-pub(crate) fn around(
-    low: Point2<f64>,
-    high: Point2<f64>,
-    resolution_m: f64,
-) -> Result<GridFrame, SurveyError> {
+pub(crate) fn around(low: Point2<f64>, high: Point2<f64>, resolution_m: f64) -> Framed {
     let low = low.map(|m| ((m - MARGIN_M) / resolution_m).floor());
     let high = high.map(|m| ((m + MARGIN_M) / resolution_m).ceil());
     of_cells(low, high, resolution_m)

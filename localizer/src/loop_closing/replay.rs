@@ -59,16 +59,11 @@ pub(super) struct Replay {
 
 impl Replay {
     /// Reads the next reading, near a pose if one is known.
-    fn read(
-        &mut self,
-        reading: &LaserReading,
-        is_after_pause: bool,
-        near: Option<Predicted>,
-    ) -> PoseEstimate {
+    fn read(&mut self, reading: &LaserReading, after_pause: bool, near: Option<Predicted>) -> PoseEstimate {
         if let Some(Localized { reading, estimate }) = self.last.take() {
             learn(&mut self.map, &reading, &estimate);
         }
-        if is_after_pause {
+        if after_pause {
             self.map.pause(reading.time_s);
         }
         let localized = self.localizer.localize_near(reading, &self.map, near);

@@ -46,15 +46,10 @@ impl Segmentation {
 
     /// At an edge, where a neighboring beam passes the hit: the direction along the surface, away from
     /// the edge.
-    pub(super) fn inward(
-        &self,
-        beam: usize,
-        end: &Point2<f64>,
-        scan: &ProjectedScan,
-    ) -> Option<Vector2<f64>> {
+    pub(super) fn inward(&self, beam: usize, at: &Point2<f64>, scan: &ProjectedScan) -> Option<Vector2<f64>> {
         let (first, last) = self.surfaces[beam];
         let passes = |neighbour: usize| scan.returns[neighbour].clear_m() > scan.returns[beam].clear_m();
-        let toward = |neighbour: usize| (self.ends[neighbour]? - end).try_normalize(1e-6);
+        let toward = |neighbour: usize| (self.ends[neighbour]? - at).try_normalize(1e-6);
         if first == last {
             None
         } else if beam == first && beam > 0 && passes(beam - 1) {
@@ -68,18 +63,13 @@ impl Segmentation {
 
     /// The normal of the surface at a hit, toward the sensor. At a corner of the surface, the normal of the
     /// straighter side: a normal across the corner would point out of the body. `None` without a straight side.
-    pub(super) fn normal(
-        &self,
-        beam: usize,
-        end: &Point2<f64>,
-        scan: &ProjectedScan,
-    ) -> Option<Vector2<f64>> {
+    pub(super) fn normal(&self, beam: usize, at: &Point2<f64>, scan: &ProjectedScan) -> Option<Vector2<f64>> {
         let range_m = scan.returns[beam].clear_m();
         let step = 1 + ((CHORD_M / (range_m * scan.spacing_rad)) as u32 as usize).min(scan.len());
         let (first, last) = self.surfaces[beam];
         // One beam to each side on the same surface, and the chords to their end points, m.
         let (before, after) = (beam.saturating_sub(step).max(first), (beam + step).min(last));
-        let chord = |to: usize| self.ends[to].map_or_else(Vector2::zeros, |to| to - end);
+        let chord = |to: usize| self.ends[to].map_or_else(Vector2::zeros, |to| to - at);
         let (back, ahead) = (chord(before), chord(after));
         let along = ahead.dot(&back);
         let turns_corner = along > 0.0

@@ -2,7 +2,7 @@
 
 use crate::logs_in_order::Source;
 use crate::survey_state_file::Loaded;
-use anyhow::ensure;
+use anyhow::{Result, ensure};
 use clap::Parser;
 use cli::flags::{folder, input_file, number, output_file, time_zone};
 use cli::program::{duration_s, one_of};
@@ -195,7 +195,7 @@ impl Args {
     /// # Errors
     ///
     /// When a map is named whose poses are not used.
-    pub(crate) fn topics(&self, saved: Option<&Loaded>) -> anyhow::Result<TopicChoice> {
+    pub(crate) fn topics(&self, saved: Option<&Loaded>) -> Result<TopicChoice> {
         let is_corrected = self.pose(saved) == Some(PoseMode::Corrected);
         ensure!(
             is_corrected || self.map_frame.is_none(),
@@ -211,11 +211,7 @@ impl Args {
     }
 
     /// The settings of the survey of these logs, after the logs of a state and in its time zone.
-    pub(crate) fn settings(
-        &self,
-        sources: &[Source],
-        saved: Option<&Loaded>,
-    ) -> anyhow::Result<SurveySettings> {
+    pub(crate) fn settings(&self, sources: &[Source], saved: Option<&Loaded>) -> Result<SurveySettings> {
         let earlier = saved.map(|saved| &saved.logs[..]).unwrap_or_default();
         let given = sources.iter().map(|source| &source.entry);
         let mut logs: Vec<&LogEntry> = earlier.iter().map(|log| &log.entry).collect();

@@ -1,6 +1,6 @@
 //! A route, and a graph of routes, at the times of arrival.
 
-use anyhow::{Context, bail, ensure};
+use anyhow::{Context, Result, bail, ensure};
 use interfaces::FARTHEST_M;
 use nalgebra::Point2;
 use serde::Serialize;
@@ -20,7 +20,7 @@ pub(crate) struct Stop {
 }
 
 /// The points of the route in a file: a line for each, with x and y (m), or with time (s), x and y, as in a TUM trajectory.
-pub(crate) fn route(path: &Path, forecast: &Forecast, travel: Travel) -> anyhow::Result<Vec<Stop>> {
+pub(crate) fn route(path: &Path, forecast: &Forecast, travel: Travel) -> Result<Vec<Stop>> {
     let text =
         std::fs::read_to_string(path).with_context(|| format!("{}: cannot read it", path.display()))?;
     let mut points: Vec<(Option<f64>, Point2<f64>)> = Vec::new();
@@ -71,12 +71,7 @@ pub(crate) fn route(path: &Path, forecast: &Forecast, travel: Travel) -> anyhow:
 }
 
 /// The graph of routes in a file, with the probability that each edge is open at the time of arrival.
-pub(crate) fn graph(
-    path: &Path,
-    forecast: &Forecast,
-    travel: Travel,
-    from: Option<u64>,
-) -> anyhow::Result<Value> {
+pub(crate) fn graph(path: &Path, forecast: &Forecast, travel: Travel, from: Option<u64>) -> Result<Value> {
     let name = path.display();
     let text = std::fs::read_to_string(path).with_context(|| format!("{name}: cannot read it"))?;
     let graph =

@@ -9,6 +9,7 @@ mod tests;
 use super::spec::{BlockSpec, GridSpec};
 use interfaces::{Cell, Grid, GridFrame, Purpose, RandomStream};
 use nalgebra::Point2;
+use paths::BlockPath;
 use rand::RngExt;
 use std::ops::RangeInclusive;
 
@@ -100,12 +101,7 @@ fn draw(settings: &GenerateSettings, wanted: usize, seed: u64, rng: &mut RandomS
     }
 }
 
-fn block(
-    settings: &GenerateSettings,
-    number: usize,
-    path: paths::BlockPath,
-    rng: &mut RandomStream,
-) -> BlockSpec {
+fn block(settings: &GenerateSettings, number: usize, path: BlockPath, rng: &mut RandomStream) -> BlockSpec {
     let (low, high) = cut(settings.dwell, 1..=BlockSpec::MAX_DWELL);
     let (log_low, log_high) = (libm::log(f64::from(low)), libm::log(f64::from(high) + 1.0));
     let log_dwell = log_low + rng.random::<f64>() * (log_high - log_low);

@@ -57,7 +57,7 @@ impl Door {
 
     /// The openness after a step that ends at `time_s`, if nothing is in the way. The direction of the motion
     /// changes at the exact time of a change, also within the step.
-    pub(super) fn next(&mut self, spec: &DoorSpec, mut calls: Calls<'_>, time_s: f64, step_s: f64) -> f64 {
+    pub(super) fn next(&mut self, spec: &DoorSpec, mut calls: Calls, time_s: f64, step_s: f64) -> f64 {
         if let Some(retreat) = self.retreat {
             let (is_to_open, _) = self.target(spec, &mut calls, time_s - step_s);
             if is_to_open != retreat.is_to_open && retreat.pause_s > SLACK_S {
@@ -77,12 +77,7 @@ impl Door {
     }
 
     /// The time until which the door does not move, s, from `time_s` on; `None` if it moves now.
-    pub(super) fn rests_until_s(
-        &mut self,
-        spec: &DoorSpec,
-        mut calls: Calls<'_>,
-        time_s: f64,
-    ) -> Option<f64> {
+    pub(super) fn rests_until_s(&mut self, spec: &DoorSpec, mut calls: Calls, time_s: f64) -> Option<f64> {
         let (is_to_open, until_s) = self.target(spec, &mut calls, time_s);
         let is_there = self.openness == f64::from(u8::from(is_to_open));
         (is_there && self.retreat.is_none() && self.blocked_s == 0.0).then_some(until_s)
@@ -115,7 +110,7 @@ impl Door {
 
     /// Whether the door must be open from a time on, and the time of the next change, s. The time must not decrease
     /// between calls.
-    fn target(&mut self, spec: &DoorSpec, calls: &mut Calls<'_>, time_s: f64) -> (bool, f64) {
+    fn target(&mut self, spec: &DoorSpec, calls: &mut Calls, time_s: f64) -> (bool, f64) {
         let time_s = time_s + SLACK_S;
         match &spec.opening {
             Opening::Periodic { closed_s, open_s } => {
