@@ -9,8 +9,9 @@ use nalgebra::{Isometry2, Matrix3};
 /// A robot that localizes itself, maps what it sees, and decides where to go. Its source gives readings and takes commands.
 pub struct Robot<R, P> {
     /// Removes from scans what must not enter a map; `None`: the sensor has no errors.
-    filter: Option<ScanFilter>,
-    localization: Box<dyn Localization<R> + Send + Sync>,
+    pub(crate) filter: Option<ScanFilter>,
+    /// Gives the readings their poses.
+    pub(crate) localization: Box<dyn Localization<R> + Send + Sync>,
     /// The map and the change statistics.
     pub mapper: Mapper,
     /// Decides the commands.
@@ -124,21 +125,6 @@ impl<R: Reading, P: Pilot> Robot<R, P> {
     /// What is removed from scans; `None` if nothing is.
     pub fn filter(&self) -> Option<&ScanFilter> {
         self.filter.as_ref()
-    }
-
-    /// What is removed from scans; `None` if nothing is.
-    pub fn filter_mut(&mut self) -> Option<&mut ScanFilter> {
-        self.filter.as_mut()
-    }
-
-    /// What gives the readings their poses.
-    pub fn localization(&self) -> &(dyn Localization<R> + Send + Sync) {
-        self.localization.as_ref()
-    }
-
-    /// What gives the readings their poses.
-    pub fn localization_mut(&mut self) -> &mut (dyn Localization<R> + Send + Sync) {
-        self.localization.as_mut()
     }
 }
 

@@ -120,11 +120,11 @@ pub fn learned<P: Pilot>(
     sessions: &Sessions,
 ) -> StateCopy {
     let (mapper, sessions) = (robot.mapper.clone(), sessions.until_now(&robot.mapper));
-    let bytes = robot.localization_mut().snapshot();
-    let surfaces =
-        robot.localization_mut().localizer_mut().map(LoopClosingLocalizer::surfaces).unwrap_or_default();
+    let bytes = robot.localization.snapshot();
+    let surfaces = robot.localization.localizer_mut().map(LoopClosingLocalizer::surfaces).unwrap_or_default();
     let localization = Part { settings: localization_of(settings), bytes };
-    let filter = robot.filter_mut().map(|filter| interfaces::snapshot(filter.values())).unwrap_or_default();
+    let filter =
+        robot.filter.as_mut().map(|filter| interfaces::snapshot(filter.values())).unwrap_or_default();
     let filter_settings = settings.filter.clone();
     Box::new(move || State {
         build: BUILD.to_owned(),
@@ -161,12 +161,12 @@ pub fn restore<P: Pilot>(
         return Err(StateError::OtherSettings { name: "frame".to_owned(), saved, expected });
     }
     if is_same_frame && state.localization.settings == localization_of(settings) {
-        robot.localization_mut().restore(&state.localization.bytes)?;
-    } else if let Some(localizer) = robot.localization_mut().localizer_mut() {
+        robot.localization.restore(&state.localization.bytes)?;
+    } else if let Some(localizer) = robot.localization.localizer_mut() {
         localizer.begin_in(&state.surfaces, mapper.states())?;
     }
     robot.mapper = mapper;
-    if let Some(filter) = robot.filter_mut().filter(|_| !state.filter.is_empty()) {
+    if let Some(filter) = robot.filter.as_mut().filter(|_| !state.filter.is_empty()) {
         interfaces::restore(filter.values(), &state.filter)?;
     }
     Ok(note)
