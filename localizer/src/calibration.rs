@@ -19,7 +19,7 @@ const MOTION_STD: Spread = Spread { m: 0.004, rad: 0.002 };
 #[derive(Clone, Debug, serde::Deserialize, serde::Serialize)]
 pub(crate) struct Calibration {
     /// The true distance per measured distance, and its variance.
-    distance: (f64, f64),
+    pub(crate) distance: (f64, f64),
     /// The true turn per measured turn, and per measured distance (rad/m), and their covariance.
     turn: (Vector2<f64>, Matrix2<f64>),
 }
@@ -36,11 +36,6 @@ impl Default for Calibration {
 }
 
 impl Calibration {
-    /// The true distance per measured distance is known with a standard deviation.
-    pub(crate) fn expect_distance(&mut self, scale: f64, std: f64) {
-        self.distance = (scale, std * std);
-    }
-
     /// The motion that a measured motion means.
     pub(crate) fn correct(&self, measured: &Isometry2<f64>) -> Isometry2<f64> {
         let at = measured.translation.vector * self.distance.0;

@@ -114,7 +114,7 @@ impl TrajectoryFinder {
     /// The same finder, for an odometry whose distances are known to have a scale.
     #[must_use]
     pub fn with_distance_scale(mut self, scale: &DistanceScale) -> Self {
-        self.builder.motion_prior.calibration.expect_distance(scale.scale, scale.std);
+        self.builder.motion_prior.calibration.distance = (scale.scale, scale.std * scale.std);
         self
     }
 

@@ -88,7 +88,7 @@ pub(super) fn fleet(root: &Table<'_>, files: &dyn Files) -> Option<FleetSpec> {
         frame,
         step_s: space.step_s,
         contacts: contacts?,
-        walls: space.walls.shapes().collect(),
+        walls: space.walls.solids.iter().map(|solid| solid.shape).collect(),
         glass,
         obstacles: obstacles.into_iter().map(|(_, obstacle)| obstacle).collect(),
         robots: robots.into_iter().map(|(_, robot)| robot).collect(),

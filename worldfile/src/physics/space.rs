@@ -19,7 +19,7 @@ pub(super) struct Solid {
 /// Solid things in the order of the file. A search does not look at all of them.
 #[derive(Default)]
 pub(super) struct Solids {
-    solids: Vec<Solid>,
+    pub(super) solids: Vec<Solid>,
     tree: BoxTree,
 }
 
@@ -27,10 +27,6 @@ impl Solids {
     pub(super) fn new(solids: Vec<Solid>) -> Self {
         let tree = BoxTree::new(solids.iter().map(|solid| solid.shape.bounds()));
         Self { solids, tree }
-    }
-
-    pub(super) fn shapes(&self) -> impl Iterator<Item = Rectangle> {
-        self.solids.iter().map(|solid| solid.shape)
     }
 
     /// The first solid for whose shape `is_near` holds. It must hold for a shape that holds a smaller one for which

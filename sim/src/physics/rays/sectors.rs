@@ -102,7 +102,7 @@ impl<'a> Sector<'a> {
             return;
         }
         let range_max_m = self.range_max_m;
-        match body.still_sides() {
+        match body.sides.as_slice() {
             [] => self.add(|ray| match body.disc(ray.share) {
                 Some(disc) => disc_hit(ray, &disc),
                 None => polygon_hit(ray, body.sides(ray.share), range_max_m),
@@ -214,11 +214,6 @@ impl Passing {
     /// The disc that the body is at a share of the interval; `None` if the body has corners.
     pub(super) fn disc(&self, share: f64) -> Option<Disc> {
         (self.radius_m > 0.0).then(|| Disc { center: self.corner(0, share), radius_m: self.radius_m })
-    }
-
-    /// The sides of a body with corners that does not move in the interval; empty for all others.
-    pub(super) fn still_sides(&self) -> &[Edge] {
-        &self.sides
     }
 
     /// The sides of a body with corners at a share of the interval.

@@ -20,7 +20,7 @@ pub(in crate::recording) fn map(layer: Layer) -> String {
 const MANY_CELLS: usize = 100_000;
 
 pub(super) fn add(tracks: &mut Tracks) -> RecordingStreamResult<()> {
-    let frame = coarse_frame(&tracks.scene.frame);
+    let frame = of_at_most(&tracks.scene.frame, MAX_CELLS);
     let ([x, y], side) = (position(&frame.origin()), frame.resolution_m() as f32);
     let place = Transform3D::from_translation([x, y, 0.0]).with_scale([side, side, 1.0]);
     let size = [frame.width() as u32, frame.height() as u32];
@@ -53,11 +53,6 @@ pub(super) fn add(tracks: &mut Tracks) -> RecordingStreamResult<()> {
 
 /// The maximum number of cells of an image: a square of 145 m with cells of 0.05 m.
 const MAX_CELLS: usize = 1 << 23;
-
-/// The cells of the images of a map with this frame at the end of the run.
-pub(super) fn coarse_frame(whole: &GridFrame) -> GridFrame {
-    of_at_most(whole, MAX_CELLS)
-}
 
 fn of_at_most(whole: &GridFrame, most: usize) -> GridFrame {
     let frame = |side: usize| {
@@ -102,6 +97,6 @@ mod tests {
         assert_eq!(coarse_classes(&coarse, &map), [2, 3, 1, 1, 4, 1, 1, 9]);
         let fine = coarse_classes(&of_at_most(&whole, 28), &map);
         assert_eq!((fine[1], fine.len()), (2, 28));
-        assert_eq!(coarse_classes(&coarse_frame(&before), &map), map.cells().to_vec());
+        assert_eq!(coarse_classes(&of_at_most(&before, MAX_CELLS), &map), map.cells().to_vec());
     }
 }
