@@ -95,11 +95,8 @@ impl Builder<'_, '_> {
             }
             "model" | "puck" => self.wall(model, on),
             "ranger" | "laser" | "fiducial" => {
-                self.left_out(
-                    model,
-                    "a sensor that stands alone is left out",
-                    "only robots have sensors here",
-                );
+                let what = "a sensor that stands alone is left out";
+                self.left_out(model, what, "only robots have sensors here");
             }
             _ => self.other(model),
         }

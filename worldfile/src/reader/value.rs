@@ -134,11 +134,8 @@ impl<'t, 'a> Value<'t, 'a> {
             return Some(Point2::new(x, y));
         }
         let is = format!("is [{}, {}], which is out of range", Figure(x), Figure(y));
-        self.invalid(
-            &is,
-            "out of range",
-            &format!("both must be numbers from {} to {}", range.start(), range.end()),
-        )
+        let help = format!("both must be numbers from {} to {}", range.start(), range.end());
+        self.invalid(&is, "out of range", &help)
     }
 
     /// A point (m) in the map of `size` (m).

@@ -47,12 +47,8 @@ impl Driver<'_> {
             && !["driven", "standing", "circle"].contains(&kind)
         {
             let help = "it cannot turn in place: it is \"driven\" or \"standing\", or drives a \"circle\"";
-            return table.error(
-                &format!("a car cannot be `{kind}`"),
-                (table.at("kind"), "not for a car"),
-                &[],
-                help,
-            );
+            let what = format!("a car cannot be `{kind}`");
+            return table.error(&what, (table.at("kind"), "not for a car"), &[], help);
         }
         let behavior = match kind {
             "driven" => BehaviorSpec::Driven,
@@ -116,12 +112,8 @@ impl Driver<'_> {
             // The robot may start on its first point.
             if leg > 0 && (b - a).norm() < 0.1 {
                 let others = [(from.clone(), "from here")];
-                return table.error(
-                    "two waypoints coincide",
-                    mark,
-                    &others,
-                    "they must be at least 0.1 m apart",
-                );
+                let help = "they must be at least 0.1 m apart";
+                return table.error("two waypoints coincide", mark, &others, help);
             }
             let is_near = |shape: &Rectangle| shape.segment_distance_m(a, b) < keep_m - TOUCH_M;
             if let Some(solid) = self.space.first_solid(is_near) {
