@@ -122,11 +122,7 @@ impl MapMatcher {
     }
 
     /// The poses in the whole map. `None` if the search goes on in the next scan.
-    pub(in crate::localizer) fn search_everywhere(
-        &mut self,
-        step: &Step,
-        mut left: usize,
-    ) -> Option<Hypotheses> {
+    fn search_everywhere(&mut self, step: &Step, mut left: usize) -> Option<Hypotheses> {
         let wide = self.relocalization.wide.take();
         let mut wide = wide.unwrap_or_else(|| WideSearch::new(&step.scan.points));
         wide.found.compare(&self.scene(step), MIN_SCORE);

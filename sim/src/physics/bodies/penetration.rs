@@ -13,7 +13,7 @@ use super::{Bodies, Free, MAX_MOVER_M, from_rapier};
 use crate::physics::form::Form;
 use nalgebra::{Point2, Vector2};
 use rapier2d::parry::query::contact;
-use rapier2d::prelude as rapier;
+use rapier2d::prelude::{self as rapier, RigidBodyHandle};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The allowed penetration, m. A deeper penetration is reduced to half of this value.
@@ -64,7 +64,7 @@ impl Bodies {
     /// Separates all bodies that penetrate each other by more than allowed, or passed through each other, in a
     /// step.
     pub(super) fn resolve_penetration(&mut self) {
-        let quick: Vec<rapier::RigidBodyHandle> = self
+        let quick: Vec<RigidBodyHandle> = self
             .free
             .iter()
             .filter(|free| self.motion_m(free) > free.reach_m)
@@ -117,7 +117,7 @@ impl Bodies {
     }
 
     /// Adds all pairs with bodies that moved farther than contacts were predicted for.
-    fn add_near(&self, bodies: &[rapier::RigidBodyHandle], step: &mut Step) {
+    fn add_near(&self, bodies: &[RigidBodyHandle], step: &mut Step) {
         if bodies.is_empty() {
             return;
         }
@@ -226,12 +226,7 @@ impl Bodies {
     }
 
     /// Shifts two bodies apart, and returns those that were shifted.
-    fn shift_apart(
-        &mut self,
-        pair: Pair,
-        is_weighted: bool,
-        step: &mut Step,
-    ) -> Vec<rapier::RigidBodyHandle> {
+    fn shift_apart(&mut self, pair: Pair, is_weighted: bool, step: &mut Step) -> Vec<RigidBodyHandle> {
         let Some((normal, depth_m)) = self.way_out(pair, step) else { return Vec::new() };
         let short_m = (depth_m - self.allowed_m(pair) / 2.0) as f32;
         let bodies = pair.map(|collider| self.world.colliders[collider].parent());
@@ -283,7 +278,7 @@ impl Bodies {
         true
     }
 
-    fn place(&mut self, body: rapier::RigidBodyHandle, pose: rapier::Pose) {
+    fn place(&mut self, body: RigidBodyHandle, pose: rapier::Pose) {
         self.world.bodies[body].set_position(pose, true);
         self.world.bodies.propagate_modified_body_positions_to_colliders(&mut self.world.colliders);
     }
