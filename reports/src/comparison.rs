@@ -75,16 +75,11 @@ pub(super) fn compare_all(strategies: &[StrategyResult], quantiles: &Quantiles) 
     all
 }
 
-fn compare(
-    a: &StrategyResult,
-    b: &StrategyResult,
-    measure: Measure,
-    quantiles: &Quantiles,
-) -> Option<Comparison> {
+fn compare(a: &StrategyResult, b: &StrategyResult, by: Measure, quantiles: &Quantiles) -> Option<Comparison> {
     let pair = |unit: &Unit| {
         // Units are in the order of their keys.
         let partner = b.units.binary_search_by_key(&unit.key, |unit| unit.key).ok()?;
-        let pair = [unit, &b.units[partner]].map(|unit| unit.value(measure));
+        let pair = [unit, &b.units[partner]].map(|unit| unit.value(by));
         (!pair.iter().any(|value| value.is_nan())).then_some(pair)
     };
     let pairs: Vec<[f64; 2]> = a.units.iter().filter_map(pair).collect();
@@ -94,14 +89,14 @@ fn compare(
     let [mean_a, mean_b] = [0, 1].map(|side| Moments::of(pairs.iter().map(|pair| pair[side])).mean());
     let test = quantiles.paired_test(pairs.iter().map(|[a, b]| a - b));
     // No difference is larger than the range of the metric.
-    let range = match measure {
+    let range = match by {
         Measure::Final(metric) | Measure::Area(metric) => metric.range(),
     };
     let most = range.end() - range.start();
     Some(Comparison {
         a: a.name.clone(),
         b: b.name.clone(),
-        measure,
+        measure: by,
         pairs: pairs.len(),
         mean_b,
         mean_difference: test.difference.mean,

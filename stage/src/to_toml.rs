@@ -46,15 +46,9 @@ impl<'a> Made<'a> {
     }
 
     /// A table that comes from a thing or a robot at a place.
-    fn table_of(
-        &mut self,
-        header: &str,
-        (at, place): (Span, &str),
-        robot: Option<&'a StageRobot>,
-        keys: Keys,
-    ) {
+    fn table_of(&mut self, head: &str, (at, place): (Span, &str), robot: Option<&'a StageRobot>, keys: Keys) {
         self.tables.push(Origin { start: self.text.len(), at, robot });
-        self.table(&format!("{header}  # {place}"), keys);
+        self.table(&format!("{head}  # {place}"), keys);
     }
 
     /// What a line comes from; `None` for what holds for the whole world.

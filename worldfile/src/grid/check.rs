@@ -94,15 +94,10 @@ fn block(table: &Table<'_>, drawing: Option<&Drawing>, files: &dyn Files) -> Opt
 }
 
 /// A block that is on its first cell, or on its last one, by a schedule.
-fn scheduled(
-    table: &Table<'_>,
-    name: &str,
-    drawing: Option<&Drawing>,
-    files: &dyn Files,
-) -> Option<BlockSpec> {
+fn scheduled(table: &Table<'_>, name: &str, drawn: Option<&Drawing>, files: &dyn Files) -> Option<BlockSpec> {
     table.has_none_of(&["dwell", "stood", "course"], "schedule", name)?;
     let (schedule, course) = (schedule(table, name, files), Course::BackAndForth);
-    let path = path::cells(table, name, course, drawing);
+    let path = path::cells(table, name, course, drawn);
     let schedule = schedule?.map(Box::new);
     table.sound(BlockSpec { name: name.to_owned(), dwell: 1, stood: 0, course, path: path?, schedule })
 }

@@ -23,18 +23,14 @@ use viewer::show::Show;
 // First pass
 
 /// Finds the routes of all logs of which the survey has none. Returns false if interrupted.
-pub(crate) fn routes(
-    job: &Job,
-    survey: &mut Survey,
-    state_file: &mut SurveyStateFile,
-) -> Result<bool, Failure> {
+pub(crate) fn routes(job: &Job, survey: &mut Survey, state: &mut SurveyStateFile) -> Result<bool, Failure> {
     for (number, source) in job.sources.iter().enumerate() {
         let log = job.first_log + number;
         if log < survey.logs().len() {
             continue;
         }
         let can_align = source.entry.stands || job.settings.pose.is_consistent();
-        let is_followed = can_align && (state_file.is_kept() || number + 1 < job.sources.len());
+        let is_followed = can_align && (state.is_kept() || number + 1 < job.sources.len());
         let mut shown: Option<Progress> = None;
         let watch = |(stage, readings)| {
             match (readings, &shown) {
@@ -55,16 +51,16 @@ pub(crate) fn routes(
         }
         match found {
             Ok(()) if survey.verdict() == Verdict::NotUsable && !job.args.accept_map => {
-                if state_file.is_kept() {
+                if state.is_kept() {
                     job.say(format_args!("the map is not usable: the state stays as it was (--accept-map)"));
                 }
-                state_file.leave();
+                state.leave();
             }
-            Ok(()) => state_file.save(survey),
+            Ok(()) => state.save(survey),
             Err(SurveyError::Interrupted) => return Ok(false),
             Err(SurveyError::Alignment(why)) => {
                 let why = Error::from(why).context(format!("cannot use {}", source.entry.name));
-                if state_file.is_kept() {
+                if state.is_kept() {
                     let way_out = "if it is of another place, it needs a --state of its own";
                     job.say(format_args!("{} is not added to the state: {way_out}", source.entry.name));
                 }

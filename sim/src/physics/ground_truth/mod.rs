@@ -109,41 +109,30 @@ impl PhysicsGroundTruth {
     }
 
     /// Updates the cells of an obstacle that has appeared or disappeared. `boxes` are the walls and obstacles that
-    /// are present now; `mover` is the obstacle if it is a moving thing. Returns the cells that the obstacle
+    /// are present now; `by` is the obstacle if it is a moving thing. Returns the cells that the obstacle
     /// covers, completely or partly.
-    pub(super) fn change_box(
-        &mut self,
-        shape: &Rectangle,
-        boxes: &[Rectangle],
-        mover: Option<Body>,
-    ) -> Vec<Cell> {
+    pub(super) fn change_box(&mut self, at: &Rectangle, boxes: &[Rectangle], by: Option<Body>) -> Vec<Cell> {
         let mut cells = Vec::new();
-        let near = boxes.iter().filter(|other| may_meet(shape, other)).copied();
-        self.update_under(shape, Cover::new(&self.frame, near), mover, |cell| cells.push(cell), |_| false);
+        let near = boxes.iter().filter(|other| may_meet(at, other)).copied();
+        self.update_under(at, Cover::new(&self.frame, near), by, |cell| cells.push(cell), |_| false);
         cells
     }
 
-    /// Updates the cells of an obstacle that moved from `before` to `after`. `boxes` are the walls and obstacles that
+    /// Updates the cells of an obstacle that moved from `from` to `to`. `boxes` are the walls and obstacles that
     /// are present now.
-    pub(super) fn move_box(
-        &mut self,
-        before: &Rectangle,
-        after: &Rectangle,
-        boxes: &[Rectangle],
-        mover: Body,
-    ) {
+    pub(super) fn move_box(&mut self, from: &Rectangle, to: &Rectangle, boxes: &[Rectangle], mover: Body) {
         let near = |shape: &Rectangle| {
             let near = boxes.iter().enumerate().filter(|(_, other)| may_meet(shape, other));
             near.map(|(index, _)| index).collect::<Vec<_>>()
         };
-        let [near_before, near_after] = [before, after].map(near);
+        let [near_before, near_after] = [from, to].map(near);
         let is_same = near_before == near_after;
         let [was, is] = [near_before, near_after]
             .map(|near| Cover::new(&self.frame, near.into_iter().map(|index| boxes[index])));
-        self.update_under(before, was, Some(mover), |_| (), |_| false);
+        self.update_under(from, was, Some(mover), |_| (), |_| false);
         // Most cells were under the shape before as well, and are known already.
-        let known = cover::BoxTest::new(&self.frame, before);
-        self.update_under(after, is, Some(mover), |_| (), |center| is_same && known.covers(center).is_some());
+        let known = cover::BoxTest::new(&self.frame, from);
+        self.update_under(to, is, Some(mover), |_| (), |center| is_same && known.covers(center).is_some());
     }
 
     /// Updates the cells under `shape` where `is_known` does not hold for the center.

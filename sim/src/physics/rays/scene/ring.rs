@@ -46,24 +46,19 @@ impl Scene {
     }
 
     /// One over the shortest range of all `beams` of a sensor at the pose `sensor`, 1/m; 0 without a hit. The sensor is
-    /// one of those for which the vicinity was computed. The value is the largest one of [`Scene::cast`].
-    pub(in crate::physics) fn nearest(
-        &self,
-        beams: &Beams,
-        sensor: &Isometry2<f64>,
-        vicinity: &Vicinity,
-    ) -> f64 {
+    /// one of those for which the vicinity `near` was computed. The value is the largest one of [`Scene::cast`].
+    pub(in crate::physics) fn nearest(&self, beams: &Beams, sensor: &Isometry2<f64>, near: &Vicinity) -> f64 {
         let Walls { solids, edges, .. } = &*self.moving.walls;
         let Sorted { polygons, .. } = self.sorted();
         let at = Point2::from(sensor.translation.vector);
-        let mut containing = vicinity.solids.iter().map(|&solid| &solids[solid as usize]);
+        let mut containing = near.solids.iter().map(|&solid| &solids[solid as usize]);
         if containing.any(|sides| sides.iter().all(|side| side.gap_m(&at) <= 0.0)) {
             return f64::INFINITY;
         }
-        let offset_m = vicinity.sensors.radius_m;
+        let offset_m = near.sensors.radius_m;
         let mut inverse = Vec::new();
         let mut nearest = Nearest::new(beams, sensor, &mut inverse);
-        for (distance_m, thing) in vicinity.things() {
+        for (distance_m, thing) in near.things() {
             if distance_m - offset_m > nearest.reach_m {
                 break;
             }
@@ -98,20 +93,14 @@ impl Sorted {
         self.add(found, &self.robots.items, 0..self.polygons.len() as u32, own);
     }
 
-    fn add(
-        &self,
-        found: &mut Vicinity,
-        robots: &[(u32, Disc)],
-        polygons: impl Iterator<Item = u32>,
-        own: usize,
-    ) {
-        for (robot, disc) in robots.iter().filter(|(robot, _)| *robot as usize != own) {
-            found.add_disc(disc, Thing::Robot(*robot as usize));
+    fn add(&self, to: &mut Vicinity, discs: &[(u32, Disc)], polygons: impl Iterator<Item = u32>, own: usize) {
+        for (robot, disc) in discs.iter().filter(|(robot, _)| *robot as usize != own) {
+            to.add_disc(disc, Thing::Robot(*robot as usize));
         }
         for index in polygons {
             let polygon = self.polygons.get(index);
             if polygon.is_seen_by(own) {
-                found.add_disc(&polygon.around, Thing::Polygon(index));
+                to.add_disc(&polygon.around, Thing::Polygon(index));
             }
         }
     }
