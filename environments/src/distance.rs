@@ -54,15 +54,20 @@ impl Distances {
         Some(f64::from(self.costs[index]) / f64::from(SIDE) * frame.resolution_m())
     }
 
-    /// The unit vector from `at` (m) to the place that is `far_m` farther along the shortest path; `None` at the
+    /// The unit vector from `point` (m) to the place that is `ahead_m` farther along the shortest path; `None` at the
     /// goal, and where there is no path.
-    pub(crate) fn direction(&self, frame: &GridFrame, at: &Point2<f64>, far_m: f64) -> Option<Vector2<f64>> {
-        let mut index = self.cell_near(frame, at)?;
-        let end = self.costs[index].saturating_sub((far_m / frame.resolution_m() * f64::from(SIDE)) as u16);
+    pub(crate) fn direction(
+        &self,
+        frame: &GridFrame,
+        point: &Point2<f64>,
+        ahead_m: f64,
+    ) -> Option<Vector2<f64>> {
+        let mut index = self.cell_near(frame, point)?;
+        let end = self.costs[index].saturating_sub((ahead_m / frame.resolution_m() * f64::from(SIDE)) as u16);
         while self.costs[index] > end {
             index = neighbors(frame, index).map(|(near, _)| near).min_by_key(|near| self.costs[*near])?;
         }
-        (frame.center(frame.cell(index)) - at).try_normalize(1e-6)
+        (frame.center(frame.cell(index)) - point).try_normalize(1e-6)
     }
 }
 

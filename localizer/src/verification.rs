@@ -69,16 +69,22 @@ impl Verification {
 
     /// Counts a scan after a motion of the robot. A pose is certain after `min_scans` at the earliest.
     /// `is_near`: the pose is near that which the odometry says.
-    pub(crate) fn count(&mut self, seen: &Support, moved: &Moved, is_near: bool, min_scans: u32) -> Verdict {
+    pub(crate) fn count(
+        &mut self,
+        support: &Support,
+        moved: &Moved,
+        is_near: bool,
+        min_scans: u32,
+    ) -> Verdict {
         let is_first = !std::mem::replace(&mut self.has_first_view, true);
         self.is_near = if is_first { is_near } else { self.is_near };
         let views = if is_first { FIRST_VIEWS * moved.field } else { moved.views() };
         self.scans = self.scans.saturating_add(1);
-        let (new, fair) = if self.is_near { (0.0, FAIR_NEAR) } else { (seen.new, FAIR) };
-        let against = CONTRADICTION * seen.contradicted + new;
-        let agreement = (seen.confirmed - against) / seen.weight().max(1e-9);
+        let (new, fair) = if self.is_near { (0.0, FAIR_NEAR) } else { (support.new, FAIR) };
+        let against = CONTRADICTION * support.contradicted + new;
+        let agreement = (support.confirmed - against) / support.weight().max(1e-9);
         self.evidence_for = (self.evidence_for + views * GAIN * (agreement - fair)).max(0.0);
-        let against = views.max(MINOR) * LOSS * (FAIR_SHARE - seen.share());
+        let against = views.max(MINOR) * LOSS * (FAIR_SHARE - support.share());
         self.evidence_against = (self.evidence_against + against).max(0.0);
         if self.evidence_against >= ENOUGH {
             Verdict::Wrong
