@@ -24,7 +24,7 @@ const OWN: f64 = 0.5;
 /// What stays for a shorter time on average is traffic, s.
 const MIN_STAY_S: f64 = 6.0;
 /// What came and went this number of times, or stayed for this time, s, is no person who stands still for a while.
-const SURE_CHANGES: u64 = 3;
+const SURE_CHANGES: u32 = 3;
 const STANDS_S: f64 = 60.0;
 
 /// Something that comes and goes as a whole: a toy, a chair, a box.
@@ -113,15 +113,16 @@ impl Object {
     pub(super) fn renew(&mut self, map: &CellMap) {
         self.presence.renew();
         let (stayed_s, went) = self.presence.evidence.stays();
-        let changes = u64::from(self.presence.evidence.changes());
+        let changes = self.presence.evidence.changes();
         let own = self.parts.iter().filter(|(_, counts)| is_own(shares(*counts)));
-        let events = own.map(|(cell, _)| u64::from(map.statistics(*cell as usize).events()));
-        let (of_cells, of_all) =
-            events.fold((0, 0), |(of_cells, of_all), events| (of_cells + events, of_all + changes));
+        let mut events: Vec<u32> = own.map(|(cell, _)| map.statistics(*cell as usize).events()).collect();
+        events.sort_unstable();
+        // The median: cells at its edges flicker.
+        let of_cells = events.get(events.len() / 2).copied().unwrap_or_default();
         self.is_thing = (changes >= SURE_CHANGES || stayed_s >= STANDS_S)
             && stayed_s >= MIN_STAY_S * f64::from(went)
             && self.looks[0] <= self.looks[1] + PARTLY
-            && (of_all / 3..=of_all).contains(&of_cells);
+            && (changes / 3..=changes + changes / 2).contains(&of_cells);
     }
 }
 
