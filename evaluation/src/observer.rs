@@ -1,5 +1,6 @@
 //! Measures a run in the physics world against the ground truth, from outside the loop.
 
+use crate::known_things::KnownThings;
 use crate::metrics::{
     ChangingAccuracy, Forecasts, Latency, MapScores, PoseErrors, Prediction, Things, TrueChains, map_scores,
 };
@@ -38,6 +39,8 @@ pub struct Observer {
     pub forecasts: Forecasts,
     /// The comparison with the things of a calendar, also at rest.
     pub scheduled: ScheduledThings,
+    /// The comparison with the things that come and go.
+    pub known_things: KnownThings,
     /// The true chains of all cells.
     pub true_chains: TrueChains,
     /// The errors of the poses that the robot used.
@@ -84,6 +87,7 @@ impl Observer {
         self.true_chains.observe(truth);
         self.forecasts.observe(mapper, truth, Some(&self.true_chains));
         self.scheduled.sample(world, mapper);
+        self.known_things.sample(world, mapper);
         if mapper.readings().is_multiple_of(SAMPLE_EVERY) {
             self.changing.sample(mapper, truth);
         }

@@ -1,5 +1,6 @@
 //! A run in a physics world as a library call: what the world says of itself, the robot, and the loop with the observer.
 
+use crate::known_things::KnownThingsScores;
 use crate::metrics::{age, interval_scores, map_scores, passage_scores, rate_scores, reachable_scores};
 use crate::observer::{Observer, map_hash};
 use crate::scheduled_things::ScheduledThings;
@@ -207,6 +208,7 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
         self.command = None;
         self.world.rest_watched(until_s, ScheduledThings::EVERY_S, |world| {
             self.observer.scheduled.sample(world, &self.robot.mapper);
+            self.observer.known_things.sample(world, &self.robot.mapper);
         });
         self.observer.poses.rest(until_s);
     }
@@ -240,6 +242,7 @@ impl<P: Pilot<Command = Twist>> PhysicsTrial<P> {
             goals: pilot.view().goals,
             day: (self.battery)(pilot).map(Battery::totals),
             scheduled: observer.scheduled.scores(),
+            known_things: KnownThingsScores::of(&observer.known_things.rows(world, mapper)),
             strategy_share: strategies.map(|strategy| (strategy.name, strategy.share)).collect(),
             things: observer.things.reports().cloned().collect(),
             curve: curve.map(|&(time_s, scores)| CurvePoint { time_s, scores }).collect(),

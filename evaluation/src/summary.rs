@@ -1,5 +1,6 @@
 //! The results of a run in a physics world, as `summary.json` has them.
 
+use crate::known_things::{KnownThingsScores, ThingBrier};
 use crate::metrics::{
     Age, ChangingScores, Delays, ForecastScores, IntervalScores, MapScores, PassageScores, PoseScores,
     RateScores, ReachableScores, StateScores, ThingReport,
@@ -107,6 +108,9 @@ pub struct RunResults {
     /// How well the predicted map knew the things with a schedule, at all times, rests included; only in worlds with a calendar.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub scheduled: Option<ScheduledScores>,
+    /// How well the robot knows the things that come and go, each with one place; only in worlds with such things.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub known_things: Option<KnownThingsScores>,
     /// For each strategy, the share of the goals that it selected.
     pub strategy_share: BTreeMap<String, f64>,
     /// The detection of the things that appeared or disappeared: at most two entries per thing, since a thing
@@ -167,6 +171,7 @@ impl fmt::Display for RunResults {
         for (name, text) in [
             ("rates", self.rates()),
             ("predicted", self.prediction()),
+            ("things", self.known_things()),
             ("goals", self.goals()),
             ("pose", self.pose()),
         ] {
@@ -199,6 +204,16 @@ impl RunResults {
             (brier?, brier_last_seen?, brier_mean?, brier_true_chains?);
         Some(format!(
             "Brier score out of view {predicted:.3} (as last seen {last_seen:.3}, share of time blocked {mean:.3}, true rates {chains:.3})"
+        ))
+    }
+
+    /// How well things that come and go are known; `None` without one that was seen.
+    fn known_things(&self) -> Option<String> {
+        let KnownThingsScores { things, objects, all, .. } = self.known_things?;
+        let ThingBrier { brier, by_nominal, by_floor, last_seen_by_nominal } = all.now?;
+        Some(format!(
+            "{things} come and go, {objects} known as objects; Brier score {brier:.3}: {by_nominal:.2} times that of their true laws (as \
+             last seen {last_seen_by_nominal:.2}), {by_floor:.2} times the best possible from the same looks"
         ))
     }
 

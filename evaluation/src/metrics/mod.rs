@@ -31,6 +31,7 @@ pub use rates::{
     IntervalScores, MAX_LOG_ERROR, PassageScores, RateScores, interval_scores, log_error, mean_log_error,
     mean_log_error_of_range, passage_scores, rate_scores,
 };
+pub(crate) use statistics::Mean;
 pub use statistics::{ProbabilityScores, quantile};
 pub use things::{ThingReport, Things};
 pub use true_chains::TrueChains;

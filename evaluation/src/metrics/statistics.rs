@@ -44,13 +44,13 @@ impl<const STEPS: u32, const MAX: u32> Counts<STEPS, MAX> {
 
 /// A running mean.
 #[derive(Clone, Copy, Debug, Default, serde::Deserialize, serde::Serialize)]
-pub(super) struct Mean {
+pub(crate) struct Mean {
     sum: f64,
     pub(super) count: usize,
 }
 
 impl Mean {
-    pub(super) fn add(&mut self, value: f64) {
+    pub(crate) fn add(&mut self, value: f64) {
         self.sum += value;
         self.count += 1;
     }
@@ -67,7 +67,7 @@ impl Mean {
     }
 
     /// The mean; `None` without values.
-    pub(super) fn get(&self) -> Option<f64> {
+    pub(crate) fn get(&self) -> Option<f64> {
         (self.count > 0).then(|| self.sum / self.count as f64)
     }
 }

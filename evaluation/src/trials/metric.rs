@@ -59,7 +59,7 @@ macro_rules! metrics {
 }
 
 metrics! {
-    17:
+    19:
     /// Mean relative error of the rates over the cells that truly changed.
     rate_error => RateError in NOT_NEGATIVE,
     /// The log error of the rates: per moving thing, then over the things.
@@ -94,6 +94,10 @@ metrics! {
     passages_log_error => PassagesLogError in 0.0..=MAX_LOG_ERROR,
     /// The share of the truly busiest tenth of these tiles that is in the busiest tenth by the estimates.
     busiest_tenth_hit => BusiestTenthHit in SHARE,
+    /// Brier score of things that come and go, divided by that of the nominal chains of the world.
+    things_by_nominal => ThingsByNominal in NOT_NEGATIVE,
+    /// The same, divided by that of a posterior that knows which cells are which thing.
+    things_by_floor => ThingsByFloor in NOT_NEGATIVE,
 }
 
 impl From<Sample> for String {

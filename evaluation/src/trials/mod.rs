@@ -25,6 +25,7 @@ use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use results::numbers::thousands;
 use robot::{Autonomous, GoalSelector, Robot};
 use serde::Serialize;
+use sim::physics::PhysicsWorld;
 use std::fmt;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -243,8 +244,8 @@ pub trait TrialWorld: Sized + Sync {
     /// The ground truth of a world.
     fn truth(world: &Self::World) -> &Self::Truth;
 
-    /// The number of collisions of the moving robot since the last reading; `None` where no robot can collide.
-    fn collisions(_world: &Self::World) -> Option<u64> {
+    /// The world if it is a physics world: its robots can collide, and its things come and go.
+    fn physics(_world: &Self::World) -> Option<&PhysicsWorld> {
         None
     }
 

@@ -59,8 +59,8 @@ impl TrialWorld for WorldSpec {
         world.truth()
     }
 
-    fn collisions(world: &PhysicsWorld) -> Option<u64> {
-        Some(world.contacts().iter().filter(|contact| contact.moving).count() as u64)
+    fn physics(world: &PhysicsWorld) -> Option<&PhysicsWorld> {
+        Some(world)
     }
 
     fn agent(trial: &TrialSettings<Self>, policy: &Policy) -> Result<Agent, TrialError> {

@@ -1,4 +1,5 @@
 use super::{Sample, Trial, TrialError, TrialSettings, TrialStrategy, TrialWorld};
+use crate::known_things::{KnownThings, KnownThingsScores};
 use crate::metrics::{
     ChangingAccuracy, DevianceScores, Forecasts, PassageScores, Prediction, RateScores, map_scores,
     passage_scores, rate_scores,
@@ -45,10 +46,11 @@ fn run<W: TrialWorld, G: GoalSelector>(
             map.update(&observed(truth, &turn.reading))?;
         }
         let mapper = full_map.as_ref().unwrap_or(&robot.mapper);
-        if let Some(count) = W::collisions(world) {
-            *collisions.get_or_insert(0) += count;
+        if let Some(world) = W::physics(world) {
+            let own = world.contacts().iter().filter(|contact| contact.moving);
+            *collisions.get_or_insert(0) += own.count() as u64;
         }
-        sampler.update::<W>(mapper, truth);
+        sampler.update::<W>(mapper, world);
         let is_complete = sampler.is_complete(mapper.time());
         if is_complete {
             rates = Some(rate_scores(mapper, truth));
@@ -107,6 +109,7 @@ struct Sampler {
     /// Since the last sample.
     prediction_of_all: Prediction,
     forecasts: Forecasts,
+    known_things: KnownThings,
 }
 
 impl Sampler {
@@ -116,7 +119,10 @@ impl Sampler {
     }
 
     /// Measures one reading, and takes a sample if one is due.
-    fn update<W: TrialWorld>(&mut self, mapper: &Mapper, truth: &W::Truth) {
+    fn update<W: TrialWorld>(&mut self, mapper: &Mapper, world: &W::World) {
+        let truth = W::truth(world);
+        let physics = W::physics(world);
+        physics.into_iter().for_each(|world| self.known_things.sample(world, mapper));
         let is_due = has_come(mapper.time(), self.due);
         self.forecasts.observe(mapper, truth, None);
         if is_due || self.readings.is_multiple_of(W::COMPARE_EVERY) {
@@ -130,7 +136,8 @@ impl Sampler {
         }
         self.readings += 1;
         if is_due {
-            let sample = self.sample(mapper, truth);
+            let things = physics.map(|world| self.known_things.rows(world, mapper)).unwrap_or_default();
+            let sample = self.sample(mapper, truth, KnownThingsScores::of(&things));
             self.samples.push(sample);
             self.due = sample_time(self.samples.len() as u64, self.length);
         }
@@ -141,13 +148,19 @@ impl Sampler {
         has_come(time, self.length)
     }
 
-    fn sample(&mut self, mapper: &Mapper, truth: &impl GroundTruth) -> Sample {
+    fn sample(
+        &mut self,
+        mapper: &Mapper,
+        truth: &impl GroundTruth,
+        things: Option<KnownThingsScores>,
+    ) -> Sample {
         let (rates, map) = (rate_scores(mapper, truth), map_scores(mapper, truth));
         let RateScores { rate_error_all, log_error, log_error_of_range, rate_auc, false_rate_hz, .. } = rates;
         let PassageScores { log_error_busy, busiest_tenth_hit } = passage_scores(mapper, truth);
         let DevianceScores { predictive_deviance, predictive_deviance_known, .. } =
             self.forecasts.scores().rates;
         let brier = std::mem::take(&mut self.prediction).scores();
+        let things = things.and_then(|things| things.all.now);
         let or_nan = |value: Option<f64>| value.unwrap_or(f64::NAN);
         Sample {
             time: self.due,
@@ -168,6 +181,8 @@ impl Sampler {
             predictive_deviance_known: or_nan(predictive_deviance_known),
             passages_log_error: or_nan(log_error_busy),
             busiest_tenth_hit: or_nan(busiest_tenth_hit),
+            things_by_nominal: or_nan(things.map(|things| things.by_nominal)),
+            things_by_floor: or_nan(things.map(|things| things.by_floor)),
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Trials in simulated worlds: sensors, sessions and schedules. One binary, because linking takes longer than compiling.
 
 mod glass;
+mod known_things;
 mod scan_filter;
 mod scheduled_things;
 mod sessions;

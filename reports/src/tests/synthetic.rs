@@ -61,6 +61,8 @@ pub(crate) fn trial(world: usize, estimator: &str, strategy: &str, seed: u64) ->
             predictive_deviance_known: later(learned - 0.1),
             passages_log_error: later(0.7 * log_error),
             busiest_tenth_hit: later(learned),
+            things_by_nominal: later(1.0 + log_error),
+            things_by_floor: later(1.0 + log_error),
         }
     });
     Trial {
