@@ -1,6 +1,6 @@
 //! How well the robot knows the things that come and go while it is elsewhere, per thing with one place: the Brier score of “it is
 //! there”, beside that of the nominal chain of the world after the same looks, and that of a posterior that knows which cells are which
-//! thing (the floor). A look is a reading with one of its cells in view.
+//! thing (the floor). A look is a reading with one of its cells in view; the world is compared with the readings once per second.
 
 use crate::metrics::Mean;
 use crate::scheduled_things::{object_cell, presence};
@@ -20,8 +20,8 @@ const HOUR_S: f64 = 3600.0;
 /// What comes less often than once in this time stays away for good, and has no rate, s.
 const LONGEST_CYCLE_S: f64 = 1e7;
 
-/// Squared errors of the map, the nominal chain, the floor, and the state last seen.
-type Errors = [f64; 4];
+/// A number for each of the four that predict: the map, the nominal chain, the floor, and the state last seen.
+type OfEach = [f64; 4];
 
 /// Compares what the map says of things with the truth.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
@@ -42,9 +42,9 @@ struct State {
     /// The time of the last look, s, and whether the thing was there.
     last: Option<(f64, bool)>,
     /// For each horizon the forecasts that are not due: when they are, s, whether they were made in the first hour, and the probabilities.
-    open: [Vec<(f64, bool, Errors)>; 3],
+    open: [Vec<(f64, bool, OfEach)>; 3],
     /// For each horizon the sums and numbers of the squared errors over the run, and of those forecasts made in the first hour.
-    sums: [[(Errors, f64); 2]; 3],
+    sums: [[(OfEach, f64); 2]; 3],
     /// Follows from the evidence.
     #[serde(skip)]
     floor: Option<Posterior>,
@@ -53,7 +53,7 @@ struct State {
 /// The scores of one thing.
 #[derive(Clone, Debug)]
 pub struct KnownThing {
-    brier: [[Option<Errors>; 2]; 3],
+    brier: [[Option<OfEach>; 2]; 3],
     /// Of a thing with a rate: the log errors of the map's and of the floor's, and whether their 90 % intervals hold it.
     rates: Option<([f64; 2], [bool; 2])>,
     is_object: bool,
@@ -171,7 +171,7 @@ impl KnownThingsScores {
     pub fn of(rows: &[KnownThing]) -> Option<Self> {
         let briers = |part: usize| {
             let at = |horizon: usize| {
-                let all: Vec<Errors> = rows.iter().filter_map(|row| row.brier[horizon][part]).collect();
+                let all: Vec<OfEach> = rows.iter().filter_map(|row| row.brier[horizon][part]).collect();
                 let mean = |who: usize| mean(all.iter().map(|brier| brier[who]));
                 let (brier, nominal) = (mean(0)?, mean(1)?);
                 let (by_nominal, by_floor) = (brier / nominal, brier / mean(2)?);

@@ -17,7 +17,8 @@ const MIN_LOG_ODDS: f64 = 2.5;
 /// In a look at this number of cells, some are blocked if more than the first share is, and most if more than the second share is.
 const PART_CELLS: f64 = 5.0;
 const PART: [f64; 2] = [0.15, 0.6];
-/// This is not one thing after so many more looks that found some of them blocked than most of them.
+/// The cells are not those of one thing if looks that found some of them blocked outnumber those that found most of them blocked by
+/// more than this.
 const PARTLY: u32 = 20;
 /// A cell belongs to the thing if its probability of being blocked is higher by more than this while the thing is there.
 const OWN: f64 = 0.5;
