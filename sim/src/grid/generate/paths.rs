@@ -11,14 +11,6 @@ const MAX_TRIES: usize = 400;
 /// The probability that a winding path goes straight on.
 const STRAIGHT_ON: f64 = 0.7;
 
-/// A straight line, the border of a rectangle, or a path with random bends that never crosses itself.
-#[derive(Clone, Copy, PartialEq)]
-enum Kind {
-    Line,
-    Ring,
-    Winding,
-}
-
 pub(super) struct BlockPath {
     pub(super) cells: Vec<Cell>,
     pub(super) course: Course,
@@ -45,17 +37,17 @@ pub(super) fn paths(
     paths
 }
 
-/// A random path, if all of its cells are open.
+/// A random path, if all of its cells are open: a straight line, the border of a rectangle, or a path with random
+/// bends that never crosses itself.
 fn path(settings: &GenerateSettings, open: &Grid<bool>, rng: &mut RandomStream) -> Option<BlockPath> {
-    let kind = [Kind::Line, Kind::Ring, Kind::Winding][rng.random_range(0..3_usize)];
+    let kind = rng.random_range(0..3_usize);
     let (low, high) = cut(settings.path_cells, 2..=1000);
     let first = open.frame().cell(rng.random_range(0..open.frame().len()));
-    let cells = match kind {
-        Kind::Line => line(first, rng.random_range(low..=high), rng),
-        Kind::Ring => ring(first, low, high, rng)?,
-        Kind::Winding => winding(first, rng.random_range(low..=high), open, rng)?,
+    let (cells, course) = match kind {
+        0 => (line(first, rng.random_range(low..=high), rng), Course::BackAndForth),
+        1 => (ring(first, low, high, rng)?, Course::Loop),
+        _ => (winding(first, rng.random_range(low..=high), open, rng)?, Course::BackAndForth),
     };
-    let course = if kind == Kind::Ring { Course::Loop } else { Course::BackAndForth };
     cells.iter().all(|cell| open.get(*cell) == Some(&true)).then_some(BlockPath { cells, course })
 }
 
