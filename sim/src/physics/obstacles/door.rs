@@ -139,15 +139,10 @@ impl Door {
         }
     }
 
-    /// The time until the next change of a door that opens at random, s.
+    /// The time until the next change of a door that opens at random, s; infinite for other doors.
     fn stay_s(&mut self, spec: &DoorSpec) -> f64 {
-        match spec.opening {
-            Opening::Random { closed_s, open_s } => {
-                let mean_s = if self.is_to_open { open_s } else { closed_s };
-                self.random.exponential(mean_s)
-            }
-            Opening::Periodic { .. } | Opening::Scripted { .. } | Opening::Scheduled { .. } => f64::INFINITY,
-        }
+        let Opening::Random { closed_s, open_s } = spec.opening else { return f64::INFINITY };
+        self.random.exponential(if self.is_to_open { open_s } else { closed_s })
     }
 }
 

@@ -76,10 +76,8 @@ impl Obstacle {
 
     /// For a door, its openness: 0 closed, 1 open.
     pub(super) fn openness(&self) -> Option<f64> {
-        match &self.state {
-            State::Door(_, door) => Some(door.openness),
-            _ => None,
-        }
+        let State::Door(_, door) = &self.state else { return None };
+        Some(door.openness)
     }
 
     /// Whether robots can push the obstacle.
@@ -117,12 +115,8 @@ impl Obstacle {
                 }
             }
             (State::Door(mover, door), Motion::Door(spec)) => {
-                let openness = door.next(
-                    spec,
-                    Calls { routine: self.routine.as_deref_mut(), is_needed },
-                    time_s,
-                    step_s,
-                );
+                let calls = Calls { routine: self.routine.as_deref_mut(), is_needed };
+                let openness = door.next(spec, calls, time_s, step_s);
                 let is_free = go(&mut self.shape, mover, spec.shape(&self.spec.shape, openness));
                 door.end_step(openness, is_free, step_s);
             }

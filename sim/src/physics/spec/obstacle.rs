@@ -93,10 +93,8 @@ impl ObstacleSpec {
 
     /// The shape at the start, but of a door with the openness that is given for it.
     fn with_door(&self, openness: impl Fn(&DoorSpec) -> f64) -> Rectangle {
-        match &self.motion {
-            Motion::Door(door) => door.shape(&self.shape, openness(door)),
-            Motion::Fixed | Motion::Pushed(_) | Motion::Path(_) | Motion::Scheduled(_) => self.shape,
-        }
+        let Motion::Door(door) = &self.motion else { return self.shape };
+        door.shape(&self.shape, openness(door))
     }
 
     /// Moves the obstacle with the world.
@@ -104,12 +102,8 @@ impl ObstacleSpec {
         self.shape = self.shape.transformed(by);
         match &mut self.motion {
             Motion::Fixed | Motion::Pushed(_) | Motion::Scheduled(_) => {}
-            Motion::Path(path) => {
-                path.keys.iter_mut().for_each(|(_, at)| *at = by.point(at));
-            }
-            Motion::Door(DoorSpec { leaf: Leaf::Hinged { hinge, .. }, .. }) => {
-                *hinge = by.point(hinge);
-            }
+            Motion::Path(path) => path.keys.iter_mut().for_each(|(_, at)| *at = by.point(at)),
+            Motion::Door(DoorSpec { leaf: Leaf::Hinged { hinge, .. }, .. }) => *hinge = by.point(hinge),
             Motion::Door(DoorSpec { leaf: Leaf::Sliding { by_m }, .. }) => *by_m = by.turn * *by_m,
         }
     }
