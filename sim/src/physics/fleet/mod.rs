@@ -241,8 +241,7 @@ impl Fleet {
     /// same spec, bit for bit. The place is kept, so that a reset takes little more time than a clone.
     pub fn reset(&mut self, seed: u64) {
         let parallel_lasers = self.parallel_lasers;
-        *self = Self::begin(Arc::clone(&self.start), seed);
-        self.parallel_lasers = parallel_lasers;
+        *self = Self { parallel_lasers, ..Self::begin(Arc::clone(&self.start), seed) };
     }
 
     /// The state as bytes. A fleet that [`Fleet::restored`] makes from the bytes continues bit for bit like
@@ -273,8 +272,7 @@ impl Fleet {
     pub fn restore(&mut self, snapshot: &[u8]) -> Result<(), SnapshotError> {
         let bytes = snapshot::check(snapshot, fingerprint(self.spec()))?;
         let parallel_lasers = self.parallel_lasers;
-        *self = Self::at_snapshot(Arc::clone(&self.start), bytes)?;
-        self.parallel_lasers = parallel_lasers;
+        *self = Self { parallel_lasers, ..Self::at_snapshot(Arc::clone(&self.start), bytes)? };
         Ok(())
     }
 

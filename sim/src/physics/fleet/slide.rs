@@ -152,16 +152,14 @@ impl Fleet {
                 let nearest = shape.nearest(&at);
                 let to = nearest - at;
                 if stopped_m > 0.0 || to.norm() - radius_m < f64::from(SEPARATE_M) {
-                    touches.push((
-                        index,
-                        Touch {
-                            with: *with,
-                            at: nearest,
-                            towards: to.try_normalize(0.0).unwrap_or_else(Vector2::x),
-                            ends: [nearest; 2],
-                            impulse_ns: self.bodies.mass_kg(index) * stopped_m / step_s,
-                        },
-                    ));
+                    let touch = Touch {
+                        with: *with,
+                        at: nearest,
+                        towards: to.try_normalize(0.0).unwrap_or_else(Vector2::x),
+                        ends: [nearest; 2],
+                        impulse_ns: self.bodies.mass_kg(index) * stopped_m / step_s,
+                    };
+                    touches.push((index, touch));
                 }
             }
         }

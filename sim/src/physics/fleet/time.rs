@@ -243,27 +243,26 @@ impl Fleet {
     ///
     /// Such steps are not simulated, however many of them are taken at once: a large step is many small ones, bit for bit.
     pub(crate) fn steps_at_rest(&mut self, most: u64) -> u64 {
-        let time_s = self.time_s();
+        let Some(until_s) = self.rests_until_s() else { return 0 };
+        // The step in which something happens, and the one before it, are simulated.
+        let steps = ((until_s - self.time_s()) / self.spec().step_s - 1.0).floor();
+        if steps >= most as f64 { most } else { steps.max(0.0) as u64 }
+    }
+
+    /// The time until which nothing happens in a world with a calendar, s; `None` if a body moves, and in other worlds.
+    fn rests_until_s(&mut self) -> Option<f64> {
         if self.spec().starts_s.is_none() || !self.bodies.boxes_rest() {
-            return 0;
+            return None;
         }
-        let mut until_s = f64::INFINITY;
+        let (time_s, mut until_s) = (self.time_s(), f64::INFINITY);
         for robot in &self.robots {
-            match robot.rests_until_s() {
-                Some(robot_s) => until_s = until_s.min(robot_s),
-                None => return 0,
-            }
+            until_s = until_s.min(robot.rests_until_s()?);
         }
         for (index, obstacle) in self.obstacles.iter_mut().enumerate() {
             let is_needed = self.start.rooms.is_needed(index, &self.robots);
-            match obstacle.rests_until_s(time_s, is_needed) {
-                Some(obstacle_s) => until_s = until_s.min(obstacle_s),
-                None => return 0,
-            }
+            until_s = until_s.min(obstacle.rests_until_s(time_s, is_needed)?);
         }
-        // The step in which something happens, and the one before it, are simulated.
-        let steps = ((until_s - time_s) / self.spec().step_s - 1.0).floor();
-        if steps >= most as f64 { most } else { steps.max(0.0) as u64 }
+        Some(until_s)
     }
 
     /// Lets a number of [steps at rest](Self::steps_at_rest) pass.
