@@ -45,8 +45,6 @@ pub(super) struct Legs {
     turning: bool,
     /// Whether something was in the way at the last reading.
     pub(super) blocked: bool,
-    /// Whether the laser has a minimum range.
-    can_be_too_close: bool,
     /// Where a surface ahead would stop the center of the robot, by odometry, as it was measured last: nearer than the minimum
     /// range, no laser measures it. Beyond the minimum range if the way was free.
     ahead: Option<Point2<f64>>,
@@ -69,7 +67,6 @@ impl Legs {
             pace: Pace::new(chassis, speed_mps),
             turning: false,
             blocked: false,
-            can_be_too_close: chassis.robot.laser.range_min_m > 0.0,
             ahead: None,
         }
     }
@@ -136,7 +133,8 @@ impl Legs {
     /// Remembers the surface ahead while the laser measures it.
     fn remember(&mut self, scan: &LegScan, along: &Vector2<f64>) {
         let is_ahead = |point: &Vector2<f64>| point.x > 0.0 && point.y.abs() < self.radius_m + END_MARGIN_M;
-        if !self.can_be_too_close || self.blind_ends(scan).any(|end| is_ahead(&end)) {
+        let has_minimum_range = scan.reading.scan.range_min_m > 0.0;
+        if !has_minimum_range || self.blind_ends(scan).any(|end| is_ahead(&end)) {
             return;
         }
         let points = self.points(scan).filter(is_ahead);
