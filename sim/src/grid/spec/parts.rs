@@ -23,10 +23,8 @@ pub(crate) fn warnings(walls: &Grid<bool>, start: Cell) -> Vec<String> {
     for index in 0..frame.len() {
         if !walls.cells()[index] && !reached[index] {
             let cell = frame.cell(index);
-            parts.push((
-                cell,
-                flood(frame, cell, |index| !walls.cells()[index] && !replace(&mut reached[index], true)),
-            ));
+            let enter = |index: usize| !walls.cells()[index] && !replace(&mut reached[index], true);
+            parts.push((cell, flood(frame, cell, enter)));
         }
     }
     let name = |(cell, count): &(Cell, usize)| {

@@ -185,11 +185,8 @@ impl<'a> Layout<'a> {
             if !is_inner[room - first] {
                 // Nothing else is at this part of the wall yet.
                 let Area { low, high } = self.spaces[room];
-                let spaces = if wall.face < self.spaces[CORRIDOR].low[1] {
-                    [room, CORRIDOR]
-                } else {
-                    [CORRIDOR, room]
-                };
+                let is_below = wall.face < self.spaces[CORRIDOR].low[1];
+                let spaces = if is_below { [room, CORRIDOR] } else { [CORRIDOR, room] };
                 self.doorway(Wall { ends: [low[0], high[0]], ..wall }, spaces, rng);
                 if let Some(beside) = beside.filter(|_| rng.bernoulli(self.ranges.side_doorway_probability)) {
                     self.doorway(beside, [room - 1, room], rng);

@@ -13,8 +13,8 @@ mod routes;
 
 use super::shape::Rectangle;
 use super::spec::{
-    BehaviorSpec, ContactModel, DriveKind, DriveLimits, FleetSpec, Motion, ObstacleSpec, Repeat, RobotSpec,
-    WanderSpec, WaypointsSpec, WorldSpec,
+    BehaviorSpec, ContactModel, DriveLimits, FleetSpec, Motion, ObstacleSpec, Repeat, RobotSpec, WanderSpec,
+    WaypointsSpec, WorldSpec,
 };
 use crate::building_calendar::{self, BuildingCalendar};
 use ::calendar::Kind;
@@ -185,12 +185,11 @@ fn robot(
     let mut robot = RobotSpec::new(name, pose(at.x, at.y, heading_rad), behavior);
     robot.radius_m = radius_m;
     robot.drive = DriveLimits {
-        kind: DriveKind::Differential,
         max_linear_mps,
         max_angular_radps: 150.0_f64.to_radians(),
         max_linear_acceleration_mps2: 1.5,
         max_angular_acceleration_radps2: 600.0_f64.to_radians(),
-        lateral_grip: DriveLimits::LATERAL_GRIP,
+        ..robot.drive
     };
     if robot.behavior != BehaviorSpec::Driven {
         (robot.laser.beams, robot.laser.range_max_m) = (120, 4.0);
