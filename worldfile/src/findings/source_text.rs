@@ -61,10 +61,8 @@ impl SourceText {
     /// An error at `mark`; `others` are places that explain it, and `help` states what is valid.
     pub(crate) fn error(&self, what: &str, mark: &Mark<'_>, others: &[Mark<'_>], help: &str) -> Finding {
         let message = self.report(Severity::Error, what, mark, others, help);
-        Finding {
-            message,
-            ..Finding::new(Severity::Error, &self.name, self.line_number(mark.0.start), what, help)
-        }
+        let line = self.line_number(mark.0.start);
+        Finding { message, ..Finding::new(Severity::Error, &self.name, line, what, help) }
     }
 
     pub(super) fn report(

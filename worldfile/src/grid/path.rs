@@ -66,11 +66,8 @@ impl BlockPath<'_> {
         match (i32::try_from(x), i32::try_from(y)) {
             (Ok(x), Ok(y)) if frame.contains(Cell::new(x, y)) => Some(Cell::new(x, y)),
             _ => {
-                let help = format!(
-                    "the cells of the map are [0, 0] (lower left) to [{}, {}]",
-                    frame.width() - 1,
-                    frame.height() - 1
-                );
+                let (right, top) = (frame.width() - 1, frame.height() - 1);
+                let help = format!("the cells of the map are [0, 0] (lower left) to [{right}, {top}]");
                 self.error("leaves the map", self.mark(index, "outside of the map"), &[], &help)
             }
         }

@@ -136,16 +136,14 @@ fn map(table: &Table<'_>) -> (Option<Point2<f64>>, Option<(GridFrame, f64)>) {
     };
     let frame = match covering(&size, cell_m, turn_rad) {
         Ok(frame) => Some((frame, turn_rad)),
-        Err(cells) => table.error(
-            "the map has too many cells",
-            (table.at("cell_m"), "cells of this size"),
-            &[(table.at("size_m"), "on a map of this size")],
-            &format!(
-                "it has {}, and {} are the most: make the cells larger or the map smaller",
-                cost(cells),
-                cost(MAX_CELLS)
-            ),
-        ),
+        Err(cells) => {
+            let (found, most) = (cost(cells), cost(MAX_CELLS));
+            let help =
+                format!("it has {found}, and {most} are the most: make the cells larger or the map smaller");
+            let others = [(table.at("size_m"), "on a map of this size")];
+            let mark = (table.at("cell_m"), "cells of this size");
+            table.error("the map has too many cells", mark, &others, &help)
+        }
     };
     (Some(size), frame)
 }

@@ -93,12 +93,8 @@ fn patrol(
     if let Some(solid) = dock.flatten().as_ref().and_then(in_solid) {
         let what = format!("the dock of the robot `{name}` is in a wall or an obstacle");
         let others = [(solid.span.clone(), "in this one")];
-        return table.error(
-            &what,
-            (table.at("dock_m"), "stands here"),
-            &others,
-            "a robot at its dock is within 0.5 m of it",
-        );
+        let help = "a robot at its dock is within 0.5 m of it";
+        return table.error(&what, (table.at("dock_m"), "stands here"), &others, help);
     }
     if behavior.as_ref().is_some_and(|behavior| *behavior != BehaviorSpec::Driven) {
         let what = format!("the robot `{name}` has a patrol, and is not driven");

@@ -133,10 +133,8 @@ fn sweep(laser: &Table<'_>, rate: Option<(f64, u64)>) -> Option<f64> {
     let period_s = 1.0 / rate?.0;
     // The period may be rounded: 0.333333 s at 3 Hz, and 0.333333 Hz for 3 s.
     if sweep_s > period_s * (1.0 + 1e-5) {
-        let what = format!(
-            "`{}` is {sweep_s}: a sweep takes longer than from one scan to the next",
-            laser.path("sweep_s")
-        );
+        let path = laser.path("sweep_s");
+        let what = format!("`{path}` is {sweep_s}: a sweep takes longer than from one scan to the next");
         let others = [(laser.at("rate_hz"), "the time between scans")];
         let help = format!("it must be at most 1 / `rate_hz`, which is {}", Figure(period_s));
         return laser.error(&what, (laser.at("sweep_s"), "too long"), &others, &help);

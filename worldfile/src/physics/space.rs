@@ -98,13 +98,7 @@ pub(super) fn inside(
     if low.x >= -TOUCH_M && low.y >= -TOUCH_M && high.x <= size.x + TOUCH_M && high.y <= size.y + TOUCH_M {
         return Some(());
     }
-    let help = format!(
-        "it spans [{:.3}, {:.3}] to [{:.3}, {:.3}], the map {}",
-        low.x,
-        low.y,
-        high.x,
-        high.y,
-        extent(size)
-    );
+    let [from, to] = [low, high].map(|corner| format!("[{:.3}, {:.3}]", corner.x, corner.y));
+    let help = format!("it spans {from} to {to}, the map {}", extent(size));
     file.error(what, (span, "this one"), &[], &help)
 }

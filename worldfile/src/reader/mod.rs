@@ -180,12 +180,8 @@ impl<'a> Table<'a> {
             let near = is_judged.then(|| spelling::nearest(key.get_ref(), keys.split(", "))).flatten();
             let hint = near.map(|near| format!("did you mean `{near}`? ")).unwrap_or_default();
             let help = format!("{hint}the keys here are: {keys}");
-            file.error::<()>(
-                &format!("unknown key `{}`", key.get_ref()),
-                (key.span(), "not known here"),
-                &[],
-                &help,
-            );
+            let what = format!("unknown key `{}`", key.get_ref());
+            file.error::<()>(&what, (key.span(), "not known here"), &[], &help);
             table.has_only_known_keys = false;
             table.meant.extend(near);
         }
