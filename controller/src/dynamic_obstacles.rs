@@ -1,5 +1,5 @@
 use crate::ControlInput;
-use interfaces::{Cell, CellState, Grid, Value, cell_runs};
+use interfaces::{CellState, Grid, Value, cell_runs};
 use nalgebra::Point2;
 
 /// The time for which a cell counts as dynamic after a change in or beside it, s.
@@ -29,7 +29,7 @@ impl DynamicObstacleFilter {
     /// Applies the changes of this update.
     pub fn update(&mut self, input: &ControlInput) {
         for changed in input.transitions.iter().filter(|transition| transition.event().is_some()) {
-            for cell in around(changed.cell) {
+            for cell in changed.cell.square(1) {
                 self.changed_at.set(cell, input.time);
             }
         }
@@ -40,13 +40,8 @@ impl DynamicObstacleFilter {
         let cell = input.map.frame().cell_at(point);
         let changed_at = self.changed_at.get(cell).copied().unwrap_or(f64::NEG_INFINITY);
         let blocked = |cell| input.map.get(cell) == Some(&CellState::Blocked);
-        input.time - changed_at < MEMORY_S || !around(cell).any(blocked)
+        input.time - changed_at < MEMORY_S || !cell.square(1).any(blocked)
     }
-}
-
-/// A cell and its eight neighbors.
-fn around(cell: Cell) -> impl Iterator<Item = Cell> {
-    std::iter::once(cell).chain(cell.neighbours8())
 }
 
 #[cfg(test)]

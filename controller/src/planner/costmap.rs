@@ -63,8 +63,7 @@ impl Costmap {
         }
         let slot = self.slot(cell);
         self.costs[slot] = cost.min(MAX_COST);
-        self.uniform[slot] = self.is_uniform_around(slot);
-        for around in cell.neighbours8() {
+        for around in cell.square(1) {
             if self.frame.contains(around) {
                 let slot = self.slot(around);
                 self.uniform[slot] = self.is_uniform_around(slot);

@@ -115,7 +115,6 @@ impl Inflation {
             }
             self.count_around(transition.cell, if is { 1 } else { -1 }, |costmap, cell, cost| {
                 match (costmap.cost(cell), cost) {
-                    (before, after) if before == after => return,
                     (_, LETHAL) => blocked(cell),
                     (LETHAL, _) => cleared(cell),
                     _ => {}

@@ -34,7 +34,6 @@ pub struct PlanEnd {
 pub struct Planner {
     inflation: Inflation,
     wavefront: Wavefront,
-    moves: Moves,
     /// The distance from a lethal cell within which the robot looks for a traversable one, cells.
     exit_reach: i32,
     /// The cells of the last path.
@@ -53,7 +52,6 @@ impl Planner {
         Self {
             inflation: Inflation::new(inflation, radius_m, map),
             wavefront: Wavefront::new(frame, moves),
-            moves,
             exit_reach: (exit_m / frame.resolution_m()).ceil() as i32 + 1,
             on_path: BTreeSet::new(),
             goal: Cell::new(0, 0),
@@ -122,7 +120,7 @@ impl Planner {
         let costmap = self.inflation.costmap();
         let cells = self.wavefront.descend(costmap, start);
         let cost = |index: usize| self.wavefront.path_cost(cells[index]).unwrap_or(0);
-        let corners = match self.moves {
+        let corners = match self.wavefront.moves {
             Moves::Eight => {
                 corners(&cells, |from, to| cost(from) - cost(to), |from, to| costmap.line_cost(from, to))
             }

@@ -37,7 +37,7 @@ struct Entry {
 /// waves covered.
 #[derive(Clone, Debug)]
 pub struct Wavefront {
-    moves: Moves,
+    pub(super) moves: Moves,
     frame: GridFrame,
     /// The difference between slot indices for each direction.
     steps: [isize; 8],
