@@ -2,7 +2,7 @@
 //! Nav2. The crate `worldfile` reads maps.
 
 use files::{OutputError, write_file};
-use interfaces::{CellState, Grid, GridFrame};
+use interfaces::{CellState, Grid};
 use std::path::Path;
 
 /// What a map is saved with. 205 is p = 0.19608: with the customary threshold of 0.25 it would
@@ -19,7 +19,7 @@ const BLOCKED: u8 = 0;
 ///
 /// When a file cannot be written.
 pub fn write(folder: &Path, name: &str, map: &Grid<CellState>) -> Result<(), OutputError> {
-    write_both(folder, name, (map, map_pixel), yaml(map.frame(), &format!("{name}.pgm")))
+    write_both(folder, name, (map, map_pixel), "trinary", [OCCUPIED_THRESHOLD, FREE_THRESHOLD])
 }
 
 /// Writes a mask with values from 0 to 100 into a folder, as [`write()`].
@@ -28,12 +28,7 @@ pub fn write(folder: &Path, name: &str, map: &Grid<CellState>) -> Result<(), Out
 ///
 /// When a file cannot be written.
 pub fn write_mask(folder: &Path, name: &str, mask: &Grid<u8>) -> Result<(), OutputError> {
-    write_both(folder, name, (mask, mask_pixel), mask_yaml(mask.frame(), &format!("{name}.pgm")))
-}
-
-/// The picture of a map.
-pub fn pgm(map: &Grid<CellState>) -> Vec<u8> {
-    picture(map, map_pixel)
+    write_both(folder, name, (mask, mask_pixel), "scale", [1.0, 0.0])
 }
 
 fn map_pixel(state: &CellState) -> u8 {
@@ -44,11 +39,6 @@ fn map_pixel(state: &CellState) -> u8 {
     }
 }
 
-/// The YAML file of a map with this frame, whose picture is called `image`.
-pub fn yaml(frame: &GridFrame, image: &str) -> String {
-    description(frame, image, "trinary", [OCCUPIED_THRESHOLD, FREE_THRESHOLD])
-}
-
 /// The pixel of a mask; a value above 100 counts as 100.
 ///
 /// In the mode `scale` with the thresholds 0 and 1, the map server takes a pixel p as the value
@@ -57,46 +47,34 @@ fn mask_pixel(value: &u8) -> u8 {
     255 - ((u32::from((*value).min(100)) * 255 + 50) / 100) as u8
 }
 
-fn mask_yaml(frame: &GridFrame, image: &str) -> String {
-    description(frame, image, "scale", [1.0, 0.0])
-}
-
-fn picture<T>(grid: &Grid<T>, pixel: fn(&T) -> u8) -> Vec<u8> {
-    let mut bytes = header(grid.frame());
-    bytes.extend(grid.rows().rev().flatten().map(pixel));
-    bytes
-}
-
-fn header(frame: &GridFrame) -> Vec<u8> {
-    format!("P5\n{} {}\n255\n", frame.width(), frame.height()).into_bytes()
-}
-
-fn description(frame: &GridFrame, image: &str, mode: &str, [occupied, free]: [f64; 2]) -> String {
-    let (origin, resolution_m) = (frame.origin(), frame.resolution_m());
-    format!(
-        "image: {image}\nmode: {mode}\nresolution: {resolution_m:?}\norigin: [{:?}, {:?}, 0.0]\nnegate: 0\n\
-         occupied_thresh: {occupied:?}\nfree_thresh: {free:?}\n",
-        origin.x, origin.y
-    )
-}
-
 fn write_both<T>(
     folder: &Path,
     name: &str,
     (grid, pixel): (&Grid<T>, fn(&T) -> u8),
-    yaml: String,
+    mode: &str,
+    [occupied, free]: [f64; 2],
 ) -> Result<(), OutputError> {
+    let frame = grid.frame();
     // Row by row: the picture of a large place is larger than its map in memory.
     write_file(&folder.join(format!("{name}.pgm")), |file| {
-        file.write_all(&header(grid.frame()))?;
+        write!(file, "P5\n{} {}\n255\n", frame.width(), frame.height())?;
         grid.rows().rev().try_for_each(|row| file.write_all(&row.map(pixel).collect::<Vec<_>>()))
     })?;
-    write_file(&folder.join(format!("{name}.yaml")), |file| file.write_all(yaml.as_bytes()))
+    let (origin, resolution_m) = (frame.origin(), frame.resolution_m());
+    write_file(&folder.join(format!("{name}.yaml")), |file| {
+        write!(
+            file,
+            "image: {name}.pgm\nmode: {mode}\nresolution: {resolution_m:?}\norigin: [{:?}, {:?}, 0.0]\nnegate: 0\n\
+             occupied_thresh: {occupied:?}\nfree_thresh: {free:?}\n",
+            origin.x, origin.y
+        )
+    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use interfaces::GridFrame;
     use nalgebra::Point2;
 
     /// The value that the map server of Nav2 gives a pixel, in the mode `scale` (nav2_map_server, map_io.cpp).
@@ -111,12 +89,14 @@ mod tests {
         let values: Vec<u8> = (0..=100).collect();
         let frame = GridFrame::new(Point2::new(-1.0, 2.0), 0.5, values.len(), 1).unwrap();
         let mask = Grid::from_cells(frame, values.clone()).unwrap();
-        let picture = picture(&mask, mask_pixel);
+        let folder = tempfile::tempdir().unwrap();
+        write_mask(folder.path(), "m", &mask).unwrap();
+        let picture = std::fs::read(folder.path().join("m.pgm")).unwrap();
         let pixels = &picture[picture.len() - values.len()..];
         let back: Vec<u8> = pixels.iter().map(|pixel| served(*pixel, 1.0, 0.0)).collect();
         assert_eq!(back, values);
         let expected = "image: m.pgm\nmode: scale\nresolution: 0.5\norigin: [-1.0, 2.0, 0.0]\nnegate: 0\n\
                         occupied_thresh: 1.0\nfree_thresh: 0.0\n";
-        assert_eq!(mask_yaml(&frame, "m.pgm"), expected);
+        assert_eq!(std::fs::read_to_string(folder.path().join("m.yaml")).unwrap(), expected);
     }
 }

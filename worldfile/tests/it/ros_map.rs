@@ -17,6 +17,14 @@ fn read(picture: Vec<u8>, yaml: &str) -> RosMap {
     map.unwrap_or_else(|| panic!("{findings}"))
 }
 
+/// The picture and the YAML file that are written of a map.
+fn written(map: &Grid<CellState>) -> (Vec<u8>, String) {
+    let folder = tempfile::tempdir().unwrap();
+    results::ros_map::write(folder.path(), "map", map).unwrap();
+    let picture = std::fs::read(folder.path().join("map.pgm")).unwrap();
+    (picture, std::fs::read_to_string(folder.path().join("map.yaml")).unwrap())
+}
+
 /// A map drawn with the highest row first: `.` free, `#` blocked, ` ` unknown.
 fn drawn(origin: (f64, f64), resolution_m: f64, rows: &[&str]) -> Grid<CellState> {
     let origin = Point2::new(origin.0, origin.1);
@@ -54,16 +62,18 @@ fn states(yaml: &str, pixels: &[u8]) -> String {
 #[test]
 fn what_is_written_comes_back() {
     let map = drawn((-1.25, 3.0), 0.25, &["#####", "#.. #", "#.###"]);
-    let read = read(results::ros_map::pgm(&map), &results::ros_map::yaml(map.frame(), "map.pgm"));
+    let (picture, yaml) = written(&map);
+    let read = read(picture, &yaml);
     assert_eq!(read.onto(map.frame()), map);
 }
 
 #[test]
 fn the_files_are_as_ros_writes_them() {
     let map = drawn((-6.0, 0.5), 0.05, &[".#", " ."]);
-    assert_eq!(results::ros_map::pgm(&map), b"P5\n2 2\n255\n\xfe\x00\xcd\xfe");
+    let (picture, yaml) = written(&map);
+    assert_eq!(picture, b"P5\n2 2\n255\n\xfe\x00\xcd\xfe");
     assert_eq!(
-        results::ros_map::yaml(map.frame(), "map.pgm"),
+        yaml,
         "image: map.pgm\nmode: trinary\nresolution: 0.05\norigin: [-6.0, 0.5, 0.0]\nnegate: 0\n\
          occupied_thresh: 0.65\nfree_thresh: 0.196\n"
     );
