@@ -260,10 +260,8 @@ impl Panel {
         classes: &Grid<u8>,
     ) -> Drawn {
         let (from, cell_m) = (self.frame.origin(), self.frame.resolution_m());
-        let mut of_row: Vec<u8> = Vec::new();
         for (row, classes) in classes.rows().enumerate() {
-            of_row.clear();
-            of_row.extend(classes);
+            let of_row: Vec<u8> = classes.copied().collect();
             let y_m = [row, row + 1].map(|row| from.y + row as f64 * cell_m);
             let mut column = 0;
             for run in of_row.chunk_by(|a, b| a == b) {

@@ -235,10 +235,8 @@ impl LoopClosingLocalizer {
         let (localizer, log): (Vec<u8>, Option<Log>) = from_bytes(snapshot)?;
         self.background = None;
         self.localizer.restore(&localizer)?;
-        self.first = match log {
-            Some(log) => Some(FirstMap::with_log(&self.settings, log).ok_or(ValueError)?),
-            None => None,
-        };
+        let read = |log| FirstMap::with_log(&self.settings, log).ok_or(ValueError);
+        self.first = log.map(read).transpose()?;
         Ok(())
     }
 
