@@ -288,8 +288,7 @@ impl<L: Link> CuriousNode<L> {
     }
 
     fn finish(&mut self) -> anyhow::Result<NodeReport> {
-        self.stop_robot();
-        self.link.navigate(None);
+        self.leave_robot();
         self.save_at_end()?;
         self.publish_log(Instant::now());
         Ok(self.report())

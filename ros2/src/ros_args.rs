@@ -98,13 +98,10 @@ impl RosArgs {
 
     /// What a name of a node is replaced by.
     pub fn remapped(&self, node: &str, is_from: impl Fn(&str) -> bool) -> Option<&str> {
-        let first = self.remaps.iter().find(|(of, from, _)| is_for(of, node) && is_from(from));
+        let is_for = |of: &Option<String>| of.as_ref().is_none_or(|of| of.trim_start_matches('/') == node);
+        let first = self.remaps.iter().find(|(of, from, _)| is_for(of) && is_from(from));
         first.map(|(_, _, to)| to.as_str())
     }
-}
-
-fn is_for(of: &Option<String>, node: &str) -> bool {
-    of.as_ref().is_none_or(|of| of.trim_start_matches('/') == node)
 }
 
 /// Splits `node:left:=right`, where the node may be missing.

@@ -304,12 +304,7 @@ impl Source {
     /// The transforms from the robot to a laser.
     fn chain_to(&mut self, laser: &str) -> Option<Chain> {
         let chain = self.assembler.frames.chain(&self.names.base, laser, &[&self.names.odom]);
-        let is_lost = chain.is_none();
-        if is_lost && self.lost_laser.as_deref() != Some(laser) {
-            self.lost_laser = Some(laser.to_owned());
-        } else if !is_lost {
-            self.lost_laser = None;
-        }
+        self.lost_laser = chain.is_none().then(|| laser.to_owned());
         chain
     }
 

@@ -92,7 +92,7 @@ impl<L: Link> CuriousNode<L> {
         self.configure(false)
     }
 
-    fn leave_robot(&mut self) {
+    pub(super) fn leave_robot(&mut self) {
         self.stop_robot();
         self.link.navigate(None);
     }

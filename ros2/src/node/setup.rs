@@ -40,10 +40,7 @@ impl Parts {
         let (settings, frame) = (settings(parameters), frame(parameters)?);
         let pilot = LivePilot::new(parameters, &settings)?;
         let mut file = state.map(|path| NodeStateFile::new(path, &settings, parameters)).transpose()?;
-        let saved = match &mut file {
-            Some(file) => file.load()?,
-            None => None,
-        };
+        let saved = file.as_mut().map(NodeStateFile::load).transpose()?.flatten();
         let map = saved.as_ref().and_then(|state| state.map.as_ref());
         let frame = map.and_then(|map| map.frame.union(&frame)).unwrap_or(frame);
         let mut robot = settings.robot(frame, None, Isometry2::identity(), pilot)?;
