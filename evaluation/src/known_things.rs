@@ -14,8 +14,6 @@ const AHEAD_S: [f64; 3] = [0.0, 60.0, 600.0];
 const LOOK_S: f64 = 1.0;
 const EVERY_S: f64 = 15.0;
 const POPULATION_S: f64 = 300.0;
-/// The thing is in view between two looks that are at most this far apart, s.
-const MAX_GAP_S: f64 = 2.5;
 const HOUR_S: f64 = 3600.0;
 /// What comes less often than once in this time stays away for good, and has no rate, s.
 const LONGEST_CYCLE_S: f64 = 1e7;
@@ -141,20 +139,25 @@ impl KnownThings {
 
     /// The scores of each thing that was seen.
     pub fn rows(&self, world: &PhysicsWorld, mapper: &Mapper) -> Vec<KnownThing> {
-        let intervals = mapper.credible_intervals(0.9);
         let row = |(thing, state): (&physics::Thing, &State)| {
             state.last?;
             let [come, go] = nominal(thing, world)?;
             let (rate, cells) = (come * go / (come + go), &thing.places[0]);
             let object = object_cell(mapper, cells);
-            let cell =
-                object.or_else(|| cells.iter().copied().find(|cell| mapper.statistics(*cell).events() > 0));
+            let changed = || cells.iter().copied().find(|cell| mapper.statistics(*cell).events() > 0);
+            let cell = object.or_else(changed).or(cells.first().copied());
             let floor = Posterior::new(&state.evidence, &self.population);
             let error = |found: f64| (found / rate).ln().abs().min(10f64.ln());
             let holds = |(low, high): (f64, f64)| (low..=high).contains(&rate);
             let rates = || {
                 let errors = [error(cell.map_or(0.0, |cell| mapper.rate(cell))), error(floor.cycle_rate())];
-                (errors, [cell.is_some_and(|cell| holds(intervals(cell))), holds(floor.interval(0.9))])
+                (
+                    errors,
+                    [
+                        cell.is_some_and(|cell| holds(mapper.credible_interval(cell, 0.9))),
+                        holds(floor.interval(0.9)),
+                    ],
+                )
             };
             let brier = state
                 .sums
@@ -208,13 +211,7 @@ impl State {
     fn look(&mut self, time_s: f64, is_there: bool) {
         let Some((last_s, was_there)) = self.last.replace((time_s, is_there)) else { return };
         self.floor = None;
-        if time_s - last_s > MAX_GAP_S {
-            return self.evidence.gap(was_there, is_there, time_s - last_s);
-        }
-        self.evidence.watch(was_there, time_s - last_s);
-        if is_there != was_there {
-            self.evidence.change(was_there);
-        }
+        self.evidence.look(was_there, is_there, time_s - last_s);
     }
 
     fn forecast(

@@ -211,10 +211,8 @@ impl Mapper {
             return Err(value_error(format!("the probability must be above 0 and below 1, not {mass}")));
         }
         let mapper = &self.mapper;
-        let (low, high): (Vec<f64>, Vec<f64>) = py.detach(|| {
-            let interval = mapper.credible_intervals(mass);
-            (0..mapper.frame().len()).map(interval).unzip()
-        });
+        let (low, high): (Vec<f64>, Vec<f64>) = py
+            .detach(|| (0..mapper.frame().len()).map(|index| mapper.credible_interval(index, mass)).unzip());
         Ok((grid(py, mapper.frame(), low)?, grid(py, mapper.frame(), high)?))
     }
 

@@ -13,8 +13,7 @@ pub struct Intervals(Vec<(f64, f64)>);
 impl Intervals {
     /// The intervals of a map.
     pub fn of(mapper: &Mapper) -> Self {
-        let interval = mapper.credible_intervals(CREDIBLE_MASS);
-        Self(mapper.seen().map(interval).collect())
+        Self(mapper.seen().map(|index| mapper.credible_interval(index, CREDIBLE_MASS)).collect())
     }
 
     /// The cells that were seen, by ascending index, with their intervals. The map is that of [`Intervals::of`].

@@ -51,11 +51,11 @@ pub struct IntervalScores {
 /// Compares the credible intervals of `mapper` with the true rates so far.
 pub fn interval_scores(mapper: &Mapper, truth: &impl GroundTruth) -> IntervalScores {
     let [inside_50, inside_90] = [0.5, 0.9].map(|mass| {
-        let (interval_of, mut inside) = (mapper.credible_intervals(mass), Mean::default());
+        let mut inside = Mean::default();
         for index in (0..truth.frame().len()).filter(|&index| mapper.was_ever_seen(index)) {
             let true_rate = f64::from(truth.predicted_events(index)) / truth.elapsed();
             if true_rate > 0.0 {
-                let (low, high) = interval_of(index);
+                let (low, high) = mapper.credible_interval(index, mass);
                 inside.add_bool((low..=high).contains(&true_rate));
             }
         }

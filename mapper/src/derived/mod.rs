@@ -8,10 +8,10 @@ mod expected_changes;
 mod gamma;
 
 use crate::Mapper;
+use crate::change::{Evidence, Posterior};
 use crate::things::OfCell;
 use blocked_probability::Chain;
 use change_probability::change_probability;
-use credible_interval::CredibleInterval;
 pub(crate) use expected_changes::ExpectedChanges;
 use interfaces::CellState;
 
@@ -22,6 +22,8 @@ impl Mapper {
     pub fn interval(&self, index: usize) -> f64 {
         if let Some(object) = self.object(index) {
             1.0 / object.cycle_rate()
+        } else if let Some(alone) = self.alone(index) {
+            1.0 / alone.cycle_rate()
         } else if self.cells.has_rate(index) {
             self.estimator().interval(&self.statistics(index))
         } else {
@@ -81,25 +83,19 @@ impl Mapper {
     /// Before the second reading the interval is 0 to ∞. Where traversable
     /// cells [share a prior](crate::Estimator::shares_prior), it is the interval of the posterior with this prior.
     pub fn credible_interval(&self, index: usize, mass: f64) -> (f64, f64) {
-        self.credible_intervals(mass)(index)
-    }
-
-    /// The [credible interval](Self::credible_interval) of every cell, by index. This takes less time than one call per
-    /// cell.
-    pub fn credible_intervals(&self, mass: f64) -> impl Fn(usize) -> (f64, f64) {
-        let interval = CredibleInterval::new(mass);
-        move |index| {
-            if let Some(object) = self.object(index) {
-                return object.interval(mass);
-            }
-            if self.cells.has_rate(index)
-                && let Some(posterior) = self.statistics(index).posterior()
-            {
-                return interval.of_rate(posterior);
-            }
-            let belief = self.cells.belief(index);
-            belief.map_or((0.0, f64::INFINITY), |(belief, period)| interval.of_cycle_rate(belief, period))
+        if let Some(object) = self.object(index) {
+            return object.interval(mass);
         }
+        if let Some(alone) = self.alone(index) {
+            return alone.interval(mass);
+        }
+        if self.cells.has_rate(index)
+            && let Some(posterior) = self.statistics(index).posterior()
+        {
+            return posterior.interval(mass);
+        }
+        let belief = self.cells.belief(index);
+        belief.map_or((0.0, f64::INFINITY), |(belief, period)| belief.interval(period, mass))
     }
 
     /// The rates at which the cell leaves its states, per unit of time: free → blocked (α) and blocked → free (β).
@@ -146,6 +142,22 @@ impl Mapper {
         self.thing(index).filter(|thing| thing.clock.is_none())
     }
 
+    /// What looks say of how long a cell stays free (the state “away”) and blocked (“there”): those at its object, or its own.
+    pub fn evidence(&self, index: usize) -> Evidence {
+        self.object(index)
+            .map_or_else(|| self.cells.evidence(index), |object| object.presence.evidence.clone())
+    }
+
+    /// What is known of a cell that was mostly found to have changed out of view, and belongs to nothing: it is a thing of one cell.
+    fn alone(&self, index: usize) -> Option<Posterior> {
+        if !self.estimator().shares_prior() || !self.cells.has_changed(index) {
+            return None;
+        }
+        let evidence = self.cells.evidence(index);
+        let is_alone = evidence.is_mostly_after_gap() && evidence.stands();
+        is_alone.then(|| Posterior::new(&evidence, &self.things.objects.population))
+    }
+
     /// The probability that what comes and goes at a cell is there, this much time after the last reading; `None` where nothing
     /// does.
     pub fn presence(&self, index: usize, time: f64) -> Option<f64> {
@@ -162,7 +174,10 @@ impl Mapper {
         let chain = Chain::new(rates, &seen, self.cells.variation(), time_s - seen.last_seen);
         let alone = match &thing {
             Some(thing) => thing.blocked_probability(time_s),
-            None => chain.blocked_probability(observed),
+            None => match self.alone(index) {
+                Some(alone) => alone.probability(observed > 0.5, time_s - seen.last_seen),
+                None => chain.blocked_probability(observed),
+            },
         };
         let by_tile = self.tiles.of_cell(self.frame().cell(index), self.cells.slot(index)?, time_s);
         let predicted = by_tile.map_or(alone, |tile| tile.blocked_probability(observed, chain.memory, alone));

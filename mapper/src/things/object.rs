@@ -22,12 +22,6 @@ const PART: [f64; 2] = [0.15, 0.6];
 const PARTLY: u32 = 20;
 /// A cell belongs to the thing if its probability of being blocked is higher by more than this while the thing is there.
 const OWN: f64 = 0.5;
-/// What stays for a shorter time on average is traffic, s.
-const MIN_STAY_S: f64 = 6.0;
-/// What came and went this number of times, or stayed for this time, s, is no person who stands still for a while.
-const SURE_CHANGES: u32 = 3;
-const STANDS_S: f64 = 60.0;
-
 /// Something that comes and goes as a whole: a toy, a chair, a box.
 #[derive(Clone, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
 pub(crate) struct Object {
@@ -83,14 +77,18 @@ impl Object {
     /// Learns from the open reading. `is_doubted`: whether it speaks against the state of a cell in the map.
     pub(super) fn observe(&mut self, map: &CellMap, is_doubted: impl Fn(usize) -> bool) {
         let (mut seen, mut log_odds) = (0.0, 0.0);
-        let (mut own, mut blocked) = (0.0, 0.0);
+        let (mut own, mut blocked, mut doubted) = (0.0, 0.0, false);
         for (cell, counts) in self.parts.iter() {
             let index = *cell as usize;
             if !map.is_seen_now(index) {
                 continue;
             }
             let shares = shares(*counts);
-            let is_blocked = (map.state(index) == CellState::Blocked) != is_doubted(index);
+            if is_doubted(index) {
+                doubted |= is_own(shares);
+                continue;
+            }
+            let is_blocked = map.state(index) == CellState::Blocked;
             let [away, there] = shares.map(|share| if is_blocked { share } else { 1.0 - share }.max(SURE));
             seen += 1.0;
             log_odds += libm::log(there / away);
@@ -103,7 +101,11 @@ impl Object {
             self.looks[usize::from(blocked > PART[1] * own)] += 1;
         }
         let log_odds = log_odds * f64::min(1.0, INDEPENDENT / seen);
-        if seen > 0.0 && log_odds.abs() >= MIN_LOG_ODDS && self.presence.see(map.time(), log_odds > 0.0) {
+        let is_told = seen > 0.0 && log_odds.abs() >= MIN_LOG_ODDS;
+        if doubted && !is_told {
+            self.presence.hold(map.time());
+        }
+        if is_told && self.presence.see(map.time(), log_odds > 0.0) {
             self.parts.learn(self.presence.is_there, map, is_doubted);
         }
     }
@@ -113,15 +115,13 @@ impl Object {
     /// told apart when he has gone and does not come back.
     pub(super) fn renew(&mut self, map: &CellMap) {
         self.presence.renew();
-        let (stayed_s, went) = self.presence.evidence.stays();
         let changes = self.presence.evidence.changes();
         let own = self.parts.iter().filter(|(_, counts)| is_own(shares(*counts)));
         let mut events: Vec<u32> = own.map(|(cell, _)| map.statistics(*cell as usize).events()).collect();
         events.sort_unstable();
         // The median: cells at its edges flicker.
-        let of_cells = events.get(events.len() / 2).copied().unwrap_or_default();
-        self.is_thing = (changes >= SURE_CHANGES || stayed_s >= STANDS_S)
-            && stayed_s >= MIN_STAY_S * f64::from(went)
+        let of_cells = events.get(events.len().saturating_sub(1) / 2).copied().unwrap_or_default();
+        self.is_thing = self.presence.evidence.stands()
             && self.looks[0] <= self.looks[1] + PARTLY
             && (changes / 3..=changes + changes / 2).contains(&of_cells);
     }

@@ -50,7 +50,7 @@ pub(crate) struct Objects {
     objects: BTreeMap<u32, Object>,
     /// The number of the object of each cell.
     of_cell: BTreeMap<u32, u32>,
-    population: Population,
+    pub(crate) population: Population,
     due: usize,
     next_id: u32,
 }

@@ -11,7 +11,7 @@ const CYCLES: f64 = 3.0;
 /// What a thing says of one of its cells. The states of an object are away and there, those of a door open and closed.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct OfCell<'a> {
-    pub(super) presence: &'a Presence,
+    pub(crate) presence: &'a Presence,
     /// The population of the map; `None` for a door.
     pub(super) population: Option<&'a Population>,
     /// The clock of a door; `None` of an object.
@@ -91,8 +91,9 @@ mod tests {
     fn a_leaf_passes_twice_per_opening_but_where_it_rests() {
         let mut evidence = Evidence::default();
         for cycle in 0..200 {
-            evidence.watch(cycle % 2 == 0, 180.0);
-            evidence.change(cycle % 2 == 0);
+            let is_there = cycle % 2 == 0;
+            (0..90).for_each(|_| evidence.look(is_there, is_there, 2.0));
+            evidence.look(is_there, !is_there, 0.0);
         }
         let presence = Presence::new(false, 0.0, evidence);
         let clock = Clock::default();

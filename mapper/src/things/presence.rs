@@ -8,8 +8,13 @@ use std::sync::OnceLock;
 
 /// The thing has changed when looks have said so for this time, s.
 const LASTING_S: f64 = 1.0;
-/// It stays in view between two looks that are at most this far apart, s: people pass between robot and thing.
-const MAX_GAP_S: f64 = 2.5;
+/// What is found to have changed this soon after a time out of view changed in that time, s: the map needs some looks.
+const BEGIN_S: f64 = 3.0;
+/// The rates of a thing have changed if that is at least so much more probable, in the logarithm, and are the same as before if it is
+/// less than so much more probable, or after this number of changes; until then, more looks will tell.
+const DRIFTED: f64 = 4.0;
+const SAME: f64 = -1.0;
+const SOON: u32 = 8;
 
 /// Looks that say that the state has changed.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
@@ -29,13 +34,18 @@ impl PartialEq for Computed {
 }
 
 /// The state of a thing, and the evidence about how long it stays in both.
-#[derive(Clone, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, serde::Deserialize, serde::Serialize)]
 pub(crate) struct Presence {
     /// The state that is certain.
     pub(super) is_there: bool,
     last_s: f64,
+    /// When the present view of it began, s.
+    view_s: f64,
     doubt: Option<Doubt>,
-    pub(super) evidence: Evidence,
+    /// Since its rates have changed.
+    pub(crate) evidence: Evidence,
+    /// The part of it since it was last asked whether they have.
+    recent: Evidence,
     /// By the shipped population, and by that of the map.
     #[serde(skip)]
     alone: Computed,
@@ -45,15 +55,12 @@ pub(crate) struct Presence {
 
 impl Presence {
     pub(super) fn new(is_there: bool, last_s: f64, evidence: Evidence) -> Self {
-        let [alone, posterior] = Default::default();
-        Self { is_there, last_s, doubt: None, evidence, alone, posterior }
+        Self { is_there, last_s, view_s: f64::NEG_INFINITY, evidence, ..Self::default() }
     }
 
     /// Learns from a look. Returns whether the state is certain: a new one needs some time.
     pub(super) fn see(&mut self, now_s: f64, is_there: bool) -> bool {
-        self.alone = Computed::default();
-        self.renew();
-        if self.doubt.is_some_and(|doubt| now_s - doubt.last_s > MAX_GAP_S) {
+        if self.doubt.is_some_and(|doubt| now_s - doubt.last_s > Evidence::MAX_GAP_S) {
             self.settle();
         }
         if is_there == self.is_there {
@@ -70,9 +77,17 @@ impl Presence {
         is_certain
     }
 
-    /// Takes looks that say that the state has changed as true: they have lasted, or the view ended with them.
+    /// Stays in view, while the map does not decide on its state.
+    pub(super) fn hold(&mut self, now_s: f64) {
+        if now_s - self.last_s <= Evidence::MAX_GAP_S && self.doubt.is_none() {
+            self.look(now_s, self.is_there);
+        }
+    }
+
+    /// Takes looks that say that the state has changed as true: they have lasted, or the view ended with them. One look alone can err.
     fn settle(&mut self) {
-        if let Some(Doubt { since_s, last_s }) = self.doubt.take() {
+        let Some(Doubt { since_s, last_s }) = self.doubt.take() else { return };
+        if last_s > since_s {
             let is_there = !self.is_there;
             self.look(since_s, is_there);
             self.look(last_s, is_there);
@@ -80,14 +95,24 @@ impl Presence {
     }
 
     fn look(&mut self, time_s: f64, is_there: bool) {
+        self.alone = Computed::default();
+        self.renew();
         let (before, length_s) = (self.is_there, (time_s - self.last_s).max(0.0));
         (self.is_there, self.last_s) = (is_there, time_s);
-        if length_s > MAX_GAP_S {
-            return self.evidence.gap(before, is_there, length_s);
+        let is_gap = length_s > Evidence::MAX_GAP_S;
+        self.view_s = if is_gap { time_s } else { self.view_s };
+        let is_at_begin = time_s - self.view_s <= BEGIN_S;
+        if is_gap || is_there != before && !is_at_begin {
+            match self.evidence.drift(&self.recent) {
+                DRIFTED.. => self.evidence.forget_before(std::mem::take(&mut self.recent)),
+                SAME.. if self.recent.changes() < SOON => {}
+                _ => self.recent = Evidence::default(),
+            }
         }
-        self.evidence.watch(before, length_s);
-        if is_there != before {
-            self.evidence.change(before);
+        for evidence in [&mut self.evidence, &mut self.recent] {
+            if is_gap || !is_at_begin || !evidence.correct_gap(is_there) {
+                evidence.look(before, is_there, length_s);
+            }
         }
     }
 
@@ -154,5 +179,60 @@ impl Parts {
 
     pub(super) fn grow(&mut self, growth: &Growth) {
         self.0.iter_mut().for_each(|(cell, _)| *cell = growth.index(*cell as usize) as u32);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Looks five times per second from one time to another, s.
+    fn see(presence: &mut Presence, [from_s, to_s]: [f64; 2], is_there: bool) {
+        let looks = ((to_s - from_s) / 0.2).round() as u32;
+        for look in 0..=looks {
+            presence.see(from_s + 0.2 * f64::from(look), is_there);
+        }
+    }
+
+    fn counts(presence: &Presence) -> ([u32; 2], u32) {
+        (presence.evidence.events(), presence.evidence.changes_after_gap())
+    }
+
+    #[test]
+    fn what_a_view_begins_with_has_changed_out_of_view() {
+        let mut presence = Presence::new(true, 0.0, Evidence::default());
+        see(&mut presence, [0.0, 10.0], true);
+        // The map of the place is old for a moment.
+        see(&mut presence, [3600.0, 3601.0], true);
+        see(&mut presence, [3601.2, 3610.0], false);
+        assert_eq!((counts(&presence), presence.last_look()), (([0, 0], 1), (false, 3610.0)));
+        see(&mut presence, [3610.2, 3620.0], true);
+        assert_eq!(counts(&presence), ([1, 0], 1), "this was in view");
+    }
+
+    #[test]
+    fn one_look_at_the_end_of_a_view_is_no_change() {
+        let mut presence = Presence::new(true, 0.0, Evidence::default());
+        for visit in 0..9 {
+            let begin_s = 100.0 * f64::from(visit);
+            see(&mut presence, [begin_s, begin_s + 10.0], true);
+            presence.see(begin_s + 10.2, false);
+        }
+        see(&mut presence, [900.0, 910.0], true);
+        assert_eq!(counts(&presence), ([0, 0], 0));
+    }
+
+    #[test]
+    fn evidence_from_before_the_rates_changed_is_left_out() {
+        let mut presence = Presence::new(false, 0.0, Evidence::default());
+        let mut begin_s = 0.0;
+        for stay_s in std::iter::repeat_n(20.0, 60).chain(std::iter::repeat_n(600.0, 12)) {
+            let is_there = !presence.is_there;
+            see(&mut presence, [begin_s, begin_s + stay_s], is_there);
+            begin_s += stay_s + 0.2;
+        }
+        let (low, high) = presence.alone().interval(0.9);
+        assert!(low < 1.0 / 1200.0 && 1.0 / 1200.0 < high, "{low} to {high} Hz");
+        assert_eq!(presence.evidence.changes(), 72, "how often it changed is known all the same");
     }
 }

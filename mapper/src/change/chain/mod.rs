@@ -4,6 +4,7 @@
 //! and shipped knowledge say; both give a [`Posterior`] over a fixed grid of chains: mean stay away × mean stay there.
 
 mod evidence;
+mod kernel;
 mod population;
 mod posterior;
 #[cfg(test)]

@@ -1,9 +1,37 @@
-use super::{Evidence, Population, RATIO, SHORTEST_S, STAYS, chains};
+use super::{Chains, Evidence, Population, RATIO, SHORTEST_S, STAYS, chains};
 use std::iter::zip;
+use std::ops::Range;
+use std::sync::LazyLock;
 
 /// Rates are kept in bins of this width, in the logarithm, from the lowest one of the grid on; and their number.
 const WIDTH: f64 = 0.1;
 const BINS: usize = 160;
+
+/// The logarithm of what is as good as nothing beside the most probable chain.
+const NOTHING: f64 = -40.0;
+
+/// What a posterior asks of a chain.
+struct Chain {
+    /// The sum of its rates, 1/s, its share of the time there, and the logarithm of its cycle rate.
+    all: f64,
+    share: f64,
+    log_rate: f64,
+    /// The bin of the sum of its rates, and those of its cycle rate: it stands for the chains up to half a step around it.
+    fades: usize,
+    spread: Range<usize>,
+}
+
+static CHAINS: LazyLock<Vec<Chain>> = LazyLock::new(|| {
+    let half_step = (libm::log(RATIO) / WIDTH / 2.0) as usize;
+    let of = |[come, go]: [f64; 2]| {
+        let all = come + go;
+        let log_rate = libm::log(come * go / all);
+        let at = bin(log_rate);
+        let spread = at.saturating_sub(half_step)..(at + half_step + 1).min(BINS);
+        Chain { all, share: come / all, log_rate, fades: bin(libm::log(all)), spread }
+    };
+    chains().map(of).collect()
+});
 
 /// What is known of the chain of a thing.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,28 +49,18 @@ pub struct Posterior {
 impl Posterior {
     /// The posterior by evidence and population.
     pub fn new(evidence: &Evidence, population: &Population) -> Self {
-        let mut weights = evidence.log_likelihood();
-        let most = weights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        zip(&mut weights, &population.chains)
-            .for_each(|(weight, prior)| *weight = libm::exp(*weight - most) * prior);
+        let (mut weights, _) = weighed(evidence.log_likelihood(), population);
         let sum: f64 = weights.iter().sum();
         weights.iter_mut().for_each(|weight| *weight /= sum);
 
         let (mut fading, mut cycle_rates) = (vec![[0.0; 3]; BINS], vec![0.0; BINS]);
         let mut mean_log_rate = 0.0;
-        let half_step = (libm::log(RATIO) / WIDTH / 2.0) as usize;
-        for (weight, [come, go]) in zip(&weights, chains()).filter(|(weight, _)| **weight > 0.0) {
-            let all = come + go;
-            let log_rate = libm::log(come * go / all);
-            mean_log_rate += weight * log_rate;
-            let at = bin(libm::log(all));
-            zip(&mut fading[at], [weight * all, *weight, weight * come / all])
+        for (weight, chain) in zip(&weights, &*CHAINS).filter(|(weight, _)| **weight > 0.0) {
+            mean_log_rate += weight * chain.log_rate;
+            zip(&mut fading[chain.fades], [weight * chain.all, *weight, weight * chain.share])
                 .for_each(|(sum, value)| *sum += value);
-            // A chain stands for those up to half a step around it.
-            let at = bin(log_rate);
-            let spread = at.saturating_sub(half_step)..=(at + half_step).min(BINS - 1);
-            let share = weight / spread.clone().count() as f64;
-            cycle_rates[spread].iter_mut().for_each(|rate| *rate += share);
+            let share = weight / chain.spread.len() as f64;
+            cycle_rates[chain.spread.clone()].iter_mut().for_each(|rate| *rate += share);
         }
         fading.retain(|[_, weight, _]| *weight > 1e-9);
         fading.iter_mut().for_each(|[all, weight, _]| *all /= *weight);
@@ -79,6 +97,33 @@ impl Posterior {
         };
         (end(0.5 - 0.5 * mass), end(0.5 + 0.5 * mass))
     }
+}
+
+impl Evidence {
+    /// How much more probable than one chain it is that the rates of a thing have changed when `recent` began, which is a part of this
+    /// evidence, in the logarithm.
+    pub(crate) fn drift(&self, recent: &Self) -> f64 {
+        let (all, recent) = (self.log_likelihood(), recent.log_likelihood());
+        let before = zip(&all, &recent).map(|(all, recent)| all - recent).collect();
+        let [all, before, recent] = [all, before, recent].map(log_evidence);
+        before + recent - all
+    }
+}
+
+/// The logarithm of the probability of what has this logarithm of a likelihood, in the shipped population.
+fn log_evidence(log_likelihood: Chains) -> f64 {
+    let (weights, most) = weighed(log_likelihood, Population::shipped());
+    most + libm::log(weights.iter().sum())
+}
+
+/// The probability of each chain, by the logarithm of its likelihood, divided by a number, and the logarithm of this number.
+fn weighed(mut chains: Chains, population: &Population) -> (Chains, f64) {
+    let most = chains.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    for (chain, prior) in zip(&mut chains, &population.chains) {
+        let apart = *chain - most;
+        *chain = if apart > NOTHING { libm::exp(apart) * prior } else { 0.0 };
+    }
+    (chains, most)
 }
 
 impl Population {

@@ -34,15 +34,7 @@ fn times_s(between_s: f64, end_s: f64) -> Vec<f64> {
 fn evidence(times_s: &[f64], looks: &[bool]) -> Evidence {
     let mut evidence = Evidence::default();
     for (times_s, looks) in times_s.windows(2).zip(looks.windows(2)) {
-        let length_s = times_s[1] - times_s[0];
-        if length_s > 2.0 {
-            evidence.gap(looks[0], looks[1], length_s);
-        } else {
-            evidence.watch(looks[0], length_s);
-            if looks[0] != looks[1] {
-                evidence.change(looks[0]);
-            }
-        }
+        evidence.look(looks[0], looks[1], times_s[1] - times_s[0]);
     }
     evidence
 }
@@ -125,5 +117,21 @@ fn nothing_is_certain_and_the_order_of_gaps_does_not_count() {
         }
         let (low, high) = posterior.interval(0.9);
         assert!(0.0 < low && low < posterior.cycle_rate() && posterior.cycle_rate() < high);
+    }
+}
+
+#[test]
+fn the_kernel_between_known_lengths_is_that_of_the_chains() {
+    for length_s in [0.3, 2.6, 47.0, 63.9, 5000.0, 1e6] {
+        for (before, after) in [(false, true), (true, false), (true, true)] {
+            let mut evidence = Evidence::default();
+            evidence.gap(before, after, length_s);
+            for (found, [come, go]) in evidence.log_likelihood().into_iter().zip(super::chains()) {
+                let (all, leave) = (come + go, if before { go } else { come });
+                let changed = leave / all * (1.0 - libm::exp(-all * length_s));
+                let expected = if before == after { 1.0 - changed } else { changed };
+                assert!((libm::exp(found) - expected).abs() < 0.006, "{length_s} s: {found}");
+            }
+        }
     }
 }

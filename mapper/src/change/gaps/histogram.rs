@@ -105,9 +105,9 @@ impl GapHistogram {
     }
 
     /// The cell has had another state, `after`, since the reading `since`. If `since` is before the end of the last
-    /// gap, corrects the states of the gap.
-    pub(in crate::change) fn correct_last(&mut self, since: ReadingIndex, after: bool) {
-        let Some(last) = self.last.filter(|last| since <= last.end) else { return };
+    /// gap, corrects the states of the gap. Returns whether it is.
+    pub(in crate::change) fn correct_last(&mut self, since: ReadingIndex, after: bool) -> bool {
+        let Some(last) = self.last.filter(|last| since <= last.end) else { return false };
         if let Ok(at) = self.find(last.key()) {
             let bin = &mut self.bins[at];
             bin.count -= 1;
@@ -120,6 +120,7 @@ impl GapHistogram {
         let corrected = Gap { before, after, ..last };
         self.put(&corrected);
         self.last = Some(corrected);
+        true
     }
 
     /// The number of gaps.
