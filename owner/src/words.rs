@@ -1,12 +1,10 @@
 //! Times and rates in words.
 
 use jiff::Timestamp;
-use mapper::Door;
 use survey::{Place, PlaceRates};
 
 /// Where the ends of the interval are farther apart than this factor, a single figure says too much.
 const WIDE: f64 = 10.0;
-const MASS: f64 = 0.9;
 
 /// What was seen of something that happens again and again.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,60 +13,64 @@ pub struct Seen {
     pub times: u32,
     /// The time in view, s.
     pub observed_s: f64,
-    /// How often it was found to have happened out of view.
+    /// How often it was found to have changed out of view.
     pub after_gap: u32,
+    /// The number of looks with times out of view between them.
+    pub looks: u32,
     /// How often it happens per hour, and the ends of the 90 % credible interval; `None` if it was never in view.
     pub per_hour: Option<(f64, [f64; 2])>,
+    /// Whether a full cycle was seen: it happened, was over, and happened again. Less says nothing about how often it happens.
+    pub has_cycle: bool,
 }
 
 impl Seen {
-    /// What came to a place.
+    /// What was seen of a place.
     pub fn of_place(rates: &PlaceRates) -> Self {
+        let [low, high] = rates.cycles_per_hour_90.map(|end| end.unwrap_or(f64::INFINITY));
+        let passages = rates.passages_per_hour.zip(rates.passages_per_hour_90);
         Self {
             times: rates.passages,
             observed_s: rates.spot_observed_s,
             after_gap: rates.changes_after_gap,
-            per_hour: rates.passages_per_hour.zip(rates.passages_per_hour_90),
+            looks: rates.looks,
+            per_hour: passages.or(Some((rates.cycles_per_hour, [low, high]))),
+            has_cycle: rates.has_cycle(),
         }
     }
 
-    /// The openings of a door.
-    pub fn of_door(door: &Door) -> Self {
-        let interval = door.interval_of_openings_per_hour(MASS);
-        let evidence = door.evidence();
-        Self {
-            times: evidence.events().into_iter().max().unwrap_or_default(),
-            observed_s: evidence.in_view_s(),
-            after_gap: evidence.changes_after_gap(),
-            per_hour: Some((door.openings_per_hour(), interval.into())),
-        }
-    }
-
-    /// Whether a full cycle was seen: it happened, was over, and happened again. Less says nothing about how often it happens.
-    pub fn has_cycle(&self) -> bool {
-        self.times >= 2
+    /// Whether most changes were found after a time out of view.
+    pub fn is_after_gap(&self) -> bool {
+        self.after_gap > 2 * self.times
     }
 
     /// How often it happens, in words; `None` unless a full cycle was seen. Where the range is wide, the words say only what was
     /// seen.
     pub fn how_often(&self) -> Option<String> {
-        let (per_hour, _) = self.per_hour.filter(|_| self.has_cycle())?;
-        Some(if self.is_known() { format!("about {}", rate(per_hour)) } else { self.seen() })
+        let (per_hour, ends) = self.per_hour.filter(|_| self.has_cycle)?;
+        let about = format!("about {}", rate(per_hour));
+        Some(match (self.is_known(), self.is_after_gap()) {
+            (false, _) => self.seen(),
+            (true, false) => about,
+            (true, true) => format!("{}: {about} ({})", self.seen(), range(per_hour, ends)),
+        })
     }
 
     /// Whether a figure can be given: a full cycle was seen, and the range is not wide.
     pub fn is_known(&self) -> bool {
-        self.has_cycle() && self.per_hour.is_some_and(|(_, [low, high])| high <= WIDE * low)
+        self.has_cycle && self.per_hour.is_some_and(|(_, [low, high])| high <= WIDE * low)
     }
 
     /// What was seen, in words.
     pub fn seen(&self) -> String {
-        format!("{} in {} of observation", times(self.times), length_of(self.observed_s))
+        match self.is_after_gap() {
+            true => format!("changed {} between {} looks", times(self.after_gap), self.looks),
+            false => format!("{} in {} of observation", times(self.times), length_of(self.observed_s)),
+        }
     }
 
     /// How sure the rate is, in a word.
     pub fn sureness(&self) -> &'static str {
-        match self.per_hour.filter(|_| self.has_cycle()) {
+        match self.per_hour.filter(|_| self.has_cycle) {
             Some((_, [low, high])) if high <= 2.0 * low => "sure",
             Some((_, [low, high])) if high <= 4.0 * low => "fairly sure",
             Some((_, [low, high])) if high <= WIDE * low => "roughly known",
@@ -86,9 +88,9 @@ pub fn how_often(place: &Place) -> Option<String> {
 /// What was seen where nothing came twice, as a sentence without its end. `changes` are those of the cell with the most of them.
 pub fn changed(changes: u32, seen: &Seen) -> String {
     let looked = length_of(seen.observed_s);
-    match (seen.times, seen.after_gap) {
-        (0, 1..) => format!("changed while the robot was not looking, found {}", times(seen.after_gap)),
-        _ if changes > 2 => {
+    match changes {
+        _ if seen.is_after_gap() => seen.seen(),
+        changes if changes > 2 => {
             format!("single cells changed up to {} in {looked} of observation", times(changes))
         }
         _ => format!("changed {} in {looked} of observation", times(changes)),
@@ -171,7 +173,7 @@ mod tests {
 
     fn seen(times: u32, low: f64, high: f64) -> Seen {
         let per_hour = Some(((low * high).sqrt(), [low, high]));
-        Seen { times, observed_s: 1320.0, after_gap: 0, per_hour }
+        Seen { times, observed_s: 1320.0, after_gap: 0, looks: 1, per_hour, has_cycle: times >= 2 }
     }
 
     #[test]
@@ -181,8 +183,11 @@ mod tests {
         assert_eq!(seen(4, 0.05, 0.2).how_often().unwrap(), "about once in 10 h");
         assert_eq!(seen(1, 15.0, 26.7).how_often(), None);
         assert_eq!(changed(1, &seen(1, 0.1, 9.0)), "changed once in 22 min of observation");
-        let gap = Seen { after_gap: 2, ..seen(0, 0.1, 9.0) };
-        assert_eq!(changed(2, &gap), "changed while the robot was not looking, found twice");
+        let gaps = Seen { after_gap: 2, looks: 9, ..seen(0, 0.1, 9.0) };
+        assert_eq!((gaps.how_often(), &*changed(2, &gaps)), (None, "changed twice between 9 looks"));
+        let gaps = Seen { after_gap: 3, looks: 9, has_cycle: true, ..seen(0, 1.5, 11.0) };
+        let words = "changed 3 times between 9 looks: about 4 times per hour (1.5 to 11 times per hour)";
+        assert_eq!(gaps.how_often().unwrap(), words);
         let words = [(20, 15.0), (20, 8.0), (20, 4.0), (20, 1.0), (1, 15.0)];
         let words = words.map(|(times, low)| seen(times, low, 26.7).sureness());
         let expected =

@@ -65,11 +65,10 @@ pub(crate) fn speed_mask(mapper: &Mapper, pace: impl Fn(usize) -> f64) -> Grid<u
     let is_in = |cells: &[usize], cell: &usize| cells.binary_search(cell).is_ok();
     let is_door = |cell: &usize| doors.binary_search(&(*cell as u32)).is_ok();
     let counted = once.iter().filter(|cell| is_in(&areas, cell) || is_in(&fronts, cell) || is_door(cell));
-    let interval = mapper.credible_intervals(MASS);
     let mut mask = Grid::filled(frame, 0);
     let reach = (DISTANCE_M / frame.resolution_m()).round() as i32;
     for &index in counted {
-        let value = slowness(interval(index).0 * pace(index));
+        let value = slowness(mapper.credible_interval(index, MASS).0 * pace(index));
         if value == 0 {
             continue;
         }

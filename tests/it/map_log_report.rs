@@ -44,8 +44,8 @@ fn the_page_is_one_file_for_people() {
         "No door was seen",
         "Where it changes",
         "The places",
-        // It comes every 20 s: 29 times in 10 minutes, since it was there at first.
-        "Something comes and goes about 170 times per hour",
+        // It goes every 20 s.
+        "Something comes and goes about 180 times per hour",
     ] {
         (_, rest) = rest.split_once(text).unwrap_or_else(|| panic!("{text}: {page}"));
     }

@@ -97,32 +97,35 @@ impl PlaceKind {
 /// How often a place changes, and when: it follows from the times of the readings.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PlaceRates {
-    /// The cycles per hour (blocked, free, blocked again) of the cell with the median rate.
+    /// The cycles per hour (blocked, free, blocked again): the openings of a door, or those of the cell with the median rate.
     pub cycles_per_hour: f64,
     /// The ends of the 90 % credible interval of this rate, 1/h; the upper one is `null` without an upper bound.
     pub cycles_per_hour_90: [Option<f64>; 2],
-    /// The number of times that something came in view, in the spot of half a meter where this happened most often.
+    /// The number of times that something came in view, in the spot of half a meter where this happened most often; of a door, an
+    /// object, or what mostly changed out of view: the cycles in view.
     pub passages: u32,
-    /// The number of times that this spot was found blocked or free otherwise than before, after a time out of view.
+    /// The number of times that the cell (door, object) was found blocked or free otherwise than before, after a time out of view.
     pub changes_after_gap: u32,
-    /// The time in view of this spot, s.
+    /// The number of times that it was looked at, with times out of view between.
+    pub looks: u32,
+    /// The time in view of this spot (door, object), s.
     pub spot_observed_s: f64,
-    /// The passages per hour in view; `null` if the spot was never in view between two readings.
+    /// The passages per hour in view; `null` where they do not say how often it changes: of a door, an object, what mostly changed out
+    /// of view, and if the spot was never in view between two readings.
     pub passages_per_hour: Option<f64>,
     /// The ends of the 90 % credible interval of this rate, 1/h.
     pub passages_per_hour_90: Option<[f64; 2]>,
     /// The mean share of the time that the cells are blocked, from 0 to 1.
     pub share_blocked: f64,
-    /// The time in view of the cells, mean, s.
-    pub observed_s: f64,
     /// The time of the last change, s.
     pub last_change_s: f64,
 }
 
 impl PlaceRates {
-    /// Whether a full cycle was seen: something came, was gone, and came again. Less says nothing about the time of a cycle.
+    /// Whether a full cycle was seen: something came, was gone, and came again, in view or not. Less says nothing about the time of
+    /// a cycle.
     pub fn has_cycle(&self) -> bool {
-        self.passages >= 2
+        self.passages >= 2 || self.passages_per_hour.is_none() && self.changes_after_gap >= 3
     }
 }
 
@@ -134,7 +137,7 @@ pub(crate) fn places(mapper: &Mapper, log: &ChangeLog, book: &PlaceBook) -> Vec<
         let place = place(mapper, log, &group, spot).filter(|place| group.counts(mapper, place.changes));
         found.extend(place.map(|place| (place, group)));
     }
-    found.sort_by(|(a, _), (b, _)| liveliness(mapper, b).total_cmp(&liveliness(mapper, a)));
+    found.sort_by(|(a, _), (b, _)| liveliness(b).total_cmp(&liveliness(a)));
     let (mut places, groups): (Vec<Place>, Vec<Group>) = found.into_iter().unzip();
     let numbers = book.numbers(mapper, &groups);
     places.iter_mut().zip(&numbers).for_each(|(place, number)| place.number = *number);
@@ -142,20 +145,17 @@ pub(crate) fn places(mapper: &Mapper, log: &ChangeLog, book: &PlaceBook) -> Vec<
     places
 }
 
-/// How lively a place is: the lower end of the interval of the openings of a door, or of the passages, so that places that were
+/// How lively a place is: the lower end of the interval of the passages, or of the cycles, so that places that were
 /// seen for seconds do not come first. What is smaller than a body can be noise, and counts for less.
-fn liveliness(mapper: &Mapper, place: &Place) -> f64 {
-    let door = mapper.doors().iter().find(|door| place.kind.door() == Some(door.id));
-    let openings = door.map(|door| door.interval_of_openings_per_hour(MASS));
-    let passages = || place.rates.as_ref()?.passages_per_hour_90;
-    let least_per_hour = openings.map(|(low, _)| low).or_else(|| passages().map(|[low, _]| low));
+fn liveliness(place: &Place) -> f64 {
+    let least =
+        |rates: &PlaceRates| rates.passages_per_hour_90.map(|[low, _]| low).or(rates.cycles_per_hour_90[0]);
+    let least_per_hour = place.rates.as_ref().and_then(least);
     (place.area_m2 / BODY_M2).min(1.0) * least_per_hour.unwrap_or_default()
 }
 
 fn place(mapper: &Mapper, log: &ChangeLog, group: &Group, spot: Spot) -> Option<Place> {
     let (frame, cells) = (mapper.frame(), &group.cells);
-    let mean =
-        |of: &dyn Fn(usize) -> f64| cells.iter().map(|index| of(*index)).sum::<f64>() / cells.len() as f64;
     let centers: Vec<Point2<f64>> = cells.iter().map(|index| frame.center(frame.cell(*index))).collect();
     let half_m = frame.resolution_m() / 2.0;
     let spans = centers.iter().map(|at| (*at, *at));
@@ -163,22 +163,32 @@ fn place(mapper: &Mapper, log: &ChangeLog, group: &Group, spot: Spot) -> Option<
     let mut by_rate = cells.clone();
     by_rate.sort_by(|a, b| mapper.rate(*a).total_cmp(&mapper.rate(*b)));
     let median = by_rate[by_rate.len() / 2];
-    let interval = mapper.credible_interval(median, MASS);
-    let bound = |rate_hz: f64| Some(rate_hz * HOUR_S).filter(|rate| rate.is_finite());
-    let passages = spot.all();
+    let door = mapper.doors().iter().find(|door| group.kind.and_then(PlaceKind::door) == Some(door.id));
+    let evidence = door.map_or_else(|| mapper.evidence(median), |door| door.evidence().clone());
+    let (least, most) = mapper.credible_interval(median, MASS);
+    let (per_hour, (least, most)) = match door {
+        Some(door) => (door.openings_per_hour(), door.interval_of_openings_per_hour(MASS)),
+        None => (mapper.rate(median) * HOUR_S, (least * HOUR_S, most * HOUR_S)),
+    };
+    let is_passed = group.kind.is_none() && !evidence.is_mostly_after_gap();
+    let [came, went] = evidence.events();
+    let (passages, spot_s) = match is_passed {
+        true => (spot.all(), spot.observed_s),
+        false => (came.max(went), evidence.in_view_s()),
+    };
     let events = PRIOR_PASSAGES + f64::from(passages);
-    let rate = RateDistribution { events, time: spot.observed_s / HOUR_S };
-    let rate = Some(rate).filter(|rate| rate.time > 0.0);
+    let rate = (is_passed && spot_s > 0.0).then(|| RateDistribution { events, time: spot_s / HOUR_S });
     let rates = PlaceRates {
-        cycles_per_hour: mapper.rate(median) * HOUR_S,
-        cycles_per_hour_90: [bound(interval.0), bound(interval.1)],
+        cycles_per_hour: per_hour,
+        cycles_per_hour_90: [least, most].map(|per_hour| Some(per_hour).filter(|rate| rate.is_finite())),
         passages,
-        changes_after_gap: spot.after_gap,
-        spot_observed_s: spot.observed_s,
+        changes_after_gap: evidence.changes_after_gap(),
+        looks: evidence.looks(),
+        spot_observed_s: spot_s,
         passages_per_hour: rate.map(|rate| f64::from(passages) / rate.time),
         passages_per_hour_90: rate.map(|rate| rate.interval(MASS).into()),
-        share_blocked: mean(&|index| share_blocked(mapper, index)),
-        observed_s: mean(&|index| mapper.statistics(index).observed()),
+        share_blocked: cells.iter().map(|cell| share_blocked(mapper, *cell)).sum::<f64>()
+            / cells.len() as f64,
         last_change_s: cells.iter().filter_map(|index| log.last_s(*index)).reduce(f64::max)?,
     };
     Some(Place {

@@ -36,7 +36,6 @@ pub(super) fn spot_key(frame: &GridFrame, index: usize) -> Key {
 struct Tally {
     /// The passages before the present session, and in it.
     passages: [u32; 2],
-    after_gap: u32,
     /// The number of cells that are blocked by what came.
     blocked: u32,
     #[serde(with = "interfaces::serde_time")]
@@ -51,8 +50,6 @@ pub(super) struct Spot {
     pub(super) passages: [u32; 2],
     /// The passages before the present session in all spots.
     pub(super) before_in_all: u32,
-    /// Changes that were found after a gap in the view.
-    pub(super) after_gap: u32,
     /// The time in view, mean over its cells that changed, s.
     pub(super) observed_s: f64,
 }
@@ -82,7 +79,6 @@ impl Passages {
             passages.after_gap.insert(cell_key(mapper.frame(), index), after_gap);
             let tally = passages.spots.entry(spot_key(mapper.frame(), index)).or_default();
             tally.passages[0] = tally.passages[0].max(seen.block_events);
-            tally.after_gap = tally.after_gap.max(after_gap);
         }
         passages
     }
@@ -97,10 +93,7 @@ impl Passages {
             let is_after_gap = found > std::mem::replace(known, found);
             let tally = self.spots.entry(spot_key(frame, index)).or_default();
             let is_empty = tally.blocked == 0 || now_s - tally.last_s > FORGOTTEN_S;
-            if is_after_gap {
-                // Of many cells at once, one.
-                tally.after_gap += u32::from(tally.last_s != now_s || tally.after_gap == 0);
-            } else if event == Event::Block && is_empty {
+            if !is_after_gap && event == Event::Block && is_empty {
                 tally.passages[1] += 1;
             }
             let others = if is_empty { 0 } else { tally.blocked };
@@ -126,8 +119,8 @@ impl Passages {
             *count += 1.0;
         }
         let spot = |(key, (sum_s, count)): (Key, (f64, f64))| {
-            let Tally { passages, after_gap, .. } = self.spots.get(&key).copied().unwrap_or_default();
-            Spot { key, passages, before_in_all: passages[0], after_gap, observed_s: sum_s / count }
+            let Tally { passages, .. } = self.spots.get(&key).copied().unwrap_or_default();
+            Spot { key, passages, before_in_all: passages[0], observed_s: sum_s / count }
         };
         spots.into_iter().map(spot).collect()
     }

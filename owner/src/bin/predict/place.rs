@@ -121,7 +121,9 @@ impl Place {
         let place =
             Self { x_m: at.x, y_m: at.y, state: "open", title, door: Some(record), ..Self::default() };
         let mut place = place.reported(reported).of_clock(forecast, &door.clock, times_s);
-        place.text.insert(times_s.len() + 1, openings(&Seen::of_door(door)));
+        if let Some(rates) = reported.and_then(|reported| reported.rates.as_ref()) {
+            place.text.insert(times_s.len() + 1, openings(&Seen::of_place(rates)));
+        }
         place
     }
 
@@ -239,8 +241,8 @@ fn called(place: &survey::Place) -> String {
 /// How often a door opens: as the card of the report, a rate only where it opened twice.
 fn openings(seen: &Seen) -> String {
     match seen.per_hour {
-        Some((per_hour, ends)) if seen.has_cycle() => {
-            format!("Opens {} ({}, 90 % interval).", rate(per_hour), range(per_hour, ends))
+        Some((per_hour, ends)) if seen.has_cycle => {
+            format!("Opens {} ({}, 90 % interval): {}.", rate(per_hour), range(per_hour, ends), seen.seen())
         }
         _ => format!("How often it opens is not known yet: {}.", changed(seen.times, seen)),
     }

@@ -28,7 +28,7 @@ impl Page<'_> {
                 dl {
                     dt { "What it looks like" } dd { (self.looks(place)) }
                     @if let Some(rates) = &place.rates {
-                        @let seen = self.seen(place).unwrap_or_else(|| Seen::of_place(rates));
+                        @let seen = Seen::of_place(rates);
                         dt { "How often" } dd { (self.often(place, &seen)) }
                         dt { "When" } dd {
                             p { "Last change: " (self.time(rates.last_change_s)) "." }
@@ -63,14 +63,6 @@ impl Page<'_> {
     pub(super) fn link(&self, place: &Place) -> Markup {
         let name = place.name.as_ref().map(|name| format!(" ({name})")).unwrap_or_default();
         html! { a href={ "#place-" (place.number) } { "place " (place.number) (name) } }
-    }
-
-    /// What was seen of the passages or the openings.
-    pub(super) fn seen(&self, place: &Place) -> Option<Seen> {
-        match self.door(place) {
-            Some(door) => Some(Seen::of_door(door)),
-            None => place.rates.as_ref().map(Seen::of_place),
-        }
     }
 
     /// Whether a place is a door.
@@ -144,11 +136,9 @@ impl Page<'_> {
             _ => ("Something comes and goes", "Something came"),
         };
         match seen.how_often() {
+            Some(often) if seen.is_after_gap() => format!("It {often}."),
             Some(often) if seen.is_known() => format!("{does} {often}."),
             Some(often) => format!("{did} {often}."),
-            None if self.door(place).is_some() && seen.times > 0 => {
-                format!("It opened or closed {}.", seen.seen())
-            }
             None => format!("{}.", sentence(&changed(place.changes, seen))),
         }
     }
@@ -217,8 +207,8 @@ fn sentence(words: &str) -> String {
 fn sure(seen: &Seen) -> String {
     let first = sentence(seen.sureness());
     match seen.per_hour {
-        Some((rate, ends)) if seen.has_cycle() => {
-            format!("{first}: {} (90 % range). Seen {}.", range(rate, ends), seen.seen())
+        Some((rate, ends)) if seen.has_cycle => {
+            format!("{first}: {} (90 % range). {}.", range(rate, ends), sentence(&seen.seen()))
         }
         Some((_, [_, high])) if seen.observed_s >= LONG_S => {
             format!(

@@ -187,7 +187,7 @@ impl Page<'_> {
                 p {
                     "Passages count how often something came into the spot of half a meter where this happened most often. A 90 % range \
                      contains the true rate in 9 of 10 cases, if changes come at random. A rate is given once something came, was gone, and \
-                     came again in view; before, only what was seen."
+                     came again; before, only what was seen. “Between looks” means that the robot was elsewhere when it changed."
                 }
             }
             @if !summary.notes.is_empty() {

@@ -4,6 +4,7 @@ use super::labels::Mark;
 use super::{Page, middle};
 use draw::layers::Layer;
 use maud::{Markup, html};
+use owner::words::Seen;
 use survey::{Place, Verdict};
 
 /// Half the side of the rectangle around a point in doubt, m.
@@ -45,7 +46,8 @@ impl Page<'_> {
         let Some(place) = self.summary.places.first() else {
             return html! { "Nothing of 0.02 m² or more was seen to change." };
         };
-        let is_known = |place: &Place| self.seen(place).is_none_or(|seen| seen.is_known());
+        let is_known =
+            |place: &Place| place.rates.as_ref().is_none_or(|rates| Seen::of_place(rates).is_known());
         let is_any_known = self.summary.places.iter().any(is_known);
         let begin = match (self.has_rates(), is_any_known) {
             (false, _) => "Most cells changed at ",
@@ -54,7 +56,7 @@ impl Page<'_> {
         };
         html! {
             (begin) (self.link(place)) ", " (self.plan.words(&middle(place))) " of the plan."
-            @if let Some(seen) = self.seen(place).filter(|_| place.rates.is_some()) { " " (self.often(place, &seen)) }
+            @if let Some(rates) = &place.rates { " " (self.often(place, &Seen::of_place(rates))) }
             @if self.has_rates() && !is_any_known {
                 " This is a first impression: no place was observed for long enough to say how often it changes, or where it changes most."
             }
