@@ -151,13 +151,8 @@ impl KnownThings {
             let holds = |(low, high): (f64, f64)| (low..=high).contains(&rate);
             let rates = || {
                 let errors = [error(cell.map_or(0.0, |cell| mapper.rate(cell))), error(floor.cycle_rate())];
-                (
-                    errors,
-                    [
-                        cell.is_some_and(|cell| holds(mapper.credible_interval(cell, 0.9))),
-                        holds(floor.interval(0.9)),
-                    ],
-                )
+                let holds_map = cell.is_some_and(|cell| holds(mapper.credible_interval(cell, 0.9)));
+                (errors, [holds_map, holds(floor.interval(0.9))])
             };
             let brier = state
                 .sums

@@ -17,8 +17,8 @@ pub struct Seen {
     pub after_gap: u32,
     /// The number of looks with times out of view between them.
     pub looks: u32,
-    /// How often it happens per hour, and the ends of the 90 % credible interval; `None` if it was never in view.
-    pub per_hour: Option<(f64, [f64; 2])>,
+    /// How often it happens per hour, and the ends of the 90 % credible interval.
+    pub per_hour: (f64, [f64; 2]),
     /// Whether a full cycle was seen: it happened, was over, and happened again. Less says nothing about how often it happens.
     pub has_cycle: bool,
 }
@@ -33,12 +33,12 @@ impl Seen {
             observed_s: rates.spot_observed_s,
             after_gap: rates.changes_after_gap,
             looks: rates.looks,
-            per_hour: passages.or(Some((rates.cycles_per_hour, [low, high]))),
+            per_hour: passages.unwrap_or((rates.cycles_per_hour, [low, high])),
             has_cycle: rates.has_cycle(),
         }
     }
 
-    /// Whether most changes were found after a time out of view.
+    /// Whether most changes were found after a time out of view: what happens in view is two changes.
     pub fn is_after_gap(&self) -> bool {
         self.after_gap > 2 * self.times
     }
@@ -46,9 +46,9 @@ impl Seen {
     /// How often it happens, in words; `None` unless a full cycle was seen. Where the range is wide, the words say only what was
     /// seen.
     pub fn how_often(&self) -> Option<String> {
-        let (per_hour, ends) = self.per_hour.filter(|_| self.has_cycle)?;
+        let (per_hour, ends) = self.per_hour;
         let about = format!("about {}", rate(per_hour));
-        Some(match (self.is_known(), self.is_after_gap()) {
+        self.has_cycle.then(|| match (self.is_known(), self.is_after_gap()) {
             (false, _) => self.seen(),
             (true, false) => about,
             (true, true) => format!("{}: {about} ({})", self.seen(), range(per_hour, ends)),
@@ -57,7 +57,8 @@ impl Seen {
 
     /// Whether a figure can be given: a full cycle was seen, and the range is not wide.
     pub fn is_known(&self) -> bool {
-        self.has_cycle && self.per_hour.is_some_and(|(_, [low, high])| high <= WIDE * low)
+        let (_, [low, high]) = self.per_hour;
+        self.has_cycle && high <= WIDE * low
     }
 
     /// What was seen, in words.
@@ -70,10 +71,10 @@ impl Seen {
 
     /// How sure the rate is, in a word.
     pub fn sureness(&self) -> &'static str {
-        match self.per_hour.filter(|_| self.has_cycle) {
-            Some((_, [low, high])) if high <= 2.0 * low => "sure",
-            Some((_, [low, high])) if high <= 4.0 * low => "fairly sure",
-            Some((_, [low, high])) if high <= WIDE * low => "roughly known",
+        match self.per_hour {
+            (_, [low, high]) if self.has_cycle && high <= 2.0 * low => "sure",
+            (_, [low, high]) if self.has_cycle && high <= 4.0 * low => "fairly sure",
+            _ if self.is_known() => "roughly known",
             _ => "a first impression only",
         }
     }
@@ -172,7 +173,7 @@ mod tests {
     }
 
     fn seen(times: u32, low: f64, high: f64) -> Seen {
-        let per_hour = Some(((low * high).sqrt(), [low, high]));
+        let per_hour = ((low * high).sqrt(), [low, high]);
         Seen { times, observed_s: 1320.0, after_gap: 0, looks: 1, per_hour, has_cycle: times >= 2 }
     }
 

@@ -101,11 +101,11 @@ impl Object {
             self.looks[usize::from(blocked > PART[1] * own)] += 1;
         }
         let log_odds = log_odds * f64::min(1.0, INDEPENDENT / seen);
-        let is_told = seen > 0.0 && log_odds.abs() >= MIN_LOG_ODDS;
-        if doubted && !is_told {
+        let is_clear = seen > 0.0 && log_odds.abs() >= MIN_LOG_ODDS;
+        if doubted && !is_clear {
             self.presence.hold(map.time());
         }
-        if is_told && self.presence.see(map.time(), log_odds > 0.0) {
+        if is_clear && self.presence.see(map.time(), log_odds > 0.0) {
             self.parts.learn(self.presence.is_there, map, is_doubted);
         }
     }

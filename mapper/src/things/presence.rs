@@ -10,11 +10,12 @@ use std::sync::OnceLock;
 const LASTING_S: f64 = 1.0;
 /// What is found to have changed this soon after a time out of view changed in that time, s: the map needs some looks.
 const BEGIN_S: f64 = 3.0;
-/// The rates of a thing have changed if that is at least so much more probable, in the logarithm, and are the same as before if it is
-/// less than so much more probable, or after this number of changes; until then, more looks will tell.
+/// Older looks are left out when the logarithm of the ratio of probabilities, “the rates have changed” to “they are the same”, reaches
+/// this.
 const DRIFTED: f64 = 4.0;
+/// The recent looks begin anew when the ratio is below this, or after this number of changes.
 const SAME: f64 = -1.0;
-const SOON: u32 = 8;
+const MAX_RECENT_CHANGES: u32 = 8;
 
 /// Looks that say that the state has changed.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
@@ -42,9 +43,9 @@ pub(crate) struct Presence {
     /// When the present view of it began, s.
     view_s: f64,
     doubt: Option<Doubt>,
-    /// Since its rates have changed.
+    /// The looks since its rates changed last.
     pub(crate) evidence: Evidence,
-    /// The part of it since it was last asked whether they have.
+    /// The last of these looks, which are compared with those before.
     recent: Evidence,
     /// By the shipped population, and by that of the map.
     #[serde(skip)]
@@ -77,7 +78,7 @@ impl Presence {
         is_certain
     }
 
-    /// Stays in view, while the map does not decide on its state.
+    /// A look in which the map has not decided yet: the thing stays in view, and in its last state.
     pub(super) fn hold(&mut self, now_s: f64) {
         if now_s - self.last_s <= Evidence::MAX_GAP_S && self.doubt.is_none() {
             self.look(now_s, self.is_there);
@@ -105,7 +106,7 @@ impl Presence {
         if is_gap || is_there != before && !is_at_begin {
             match self.evidence.drift(&self.recent) {
                 DRIFTED.. => self.evidence.forget_before(std::mem::take(&mut self.recent)),
-                SAME.. if self.recent.changes() < SOON => {}
+                SAME.. if self.recent.changes() < MAX_RECENT_CHANGES => {}
                 _ => self.recent = Evidence::default(),
             }
         }

@@ -160,15 +160,15 @@ fn place(mapper: &Mapper, log: &ChangeLog, group: &Group, spot: Spot) -> Option<
     let half_m = frame.resolution_m() / 2.0;
     let spans = centers.iter().map(|at| (*at, *at));
     let (low, high) = spans.reduce(|(low, high), (at, _)| (low.inf(&at), high.sup(&at)))?;
-    let mut by_rate = cells.clone();
-    by_rate.sort_by(|a, b| mapper.rate(*a).total_cmp(&mapper.rate(*b)));
-    let median = by_rate[by_rate.len() / 2];
+    let mut by_rate: Vec<(f64, usize)> = cells.iter().map(|cell| (mapper.rate(*cell), *cell)).collect();
+    by_rate.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+    let (rate_hz, median) = by_rate[by_rate.len() / 2];
     let door = mapper.doors().iter().find(|door| group.kind.and_then(PlaceKind::door) == Some(door.id));
     let evidence = door.map_or_else(|| mapper.evidence(median), |door| door.evidence().clone());
     let (least, most) = mapper.credible_interval(median, MASS);
     let (per_hour, (least, most)) = match door {
         Some(door) => (door.openings_per_hour(), door.interval_of_openings_per_hour(MASS)),
-        None => (mapper.rate(median) * HOUR_S, (least * HOUR_S, most * HOUR_S)),
+        None => (rate_hz * HOUR_S, (least * HOUR_S, most * HOUR_S)),
     };
     let is_passed = group.kind.is_none() && !evidence.is_mostly_after_gap();
     let [came, went] = evidence.events();

@@ -241,7 +241,7 @@ fn called(place: &survey::Place) -> String {
 /// How often a door opens: as the card of the report, a rate only where it opened twice.
 fn openings(seen: &Seen) -> String {
     match seen.per_hour {
-        Some((per_hour, ends)) if seen.has_cycle => {
+        (per_hour, ends) if seen.has_cycle => {
             format!("Opens {} ({}, 90 % interval): {}.", rate(per_hour), range(per_hour, ends), seen.seen())
         }
         _ => format!("How often it opens is not known yet: {}.", changed(seen.times, seen)),

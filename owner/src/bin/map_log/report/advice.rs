@@ -17,7 +17,7 @@ pub(super) fn advice(
     is_line: bool,
 ) -> Vec<(&'static str, String)> {
     let is_known = seen.is_known();
-    let is_busy = seen.has_cycle && seen.per_hour.is_some_and(|(rate, _)| rate >= BUSY_PER_HOUR);
+    let is_busy = seen.has_cycle && seen.per_hour.0 >= BUSY_PER_HOUR;
     let hours = if has_hours { " Plan another route at the hours above." } else { "" };
     let robot = match kind {
         PlaceKind::Door { .. } => format!("look whether the door is open before planning through it.{hours}"),

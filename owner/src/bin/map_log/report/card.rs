@@ -207,10 +207,10 @@ fn sentence(words: &str) -> String {
 fn sure(seen: &Seen) -> String {
     let first = sentence(seen.sureness());
     match seen.per_hour {
-        Some((rate, ends)) if seen.has_cycle => {
+        (rate, ends) if seen.has_cycle => {
             format!("{first}: {} (90 % range). {}.", range(rate, ends), sentence(&seen.seen()))
         }
-        Some((_, [_, high])) if seen.observed_s >= LONG_S => {
+        (_, [_, high]) if seen.observed_s >= LONG_S => {
             format!(
                 "{first}: nothing was seen to come, go, and come again. With 95 % probability it comes not more than {}.",
                 rate(high)
