@@ -158,7 +158,7 @@ impl Film {
 /// The doors that opened twice in view, each with how often it opens.
 fn doors(mapper: &Mapper) -> Vec<NamedLine> {
     let door = |door: &Door| {
-        let name = format!("door: every {}", duration(3600.0 / door.openings_per_hour()));
+        let name = format!("door: every {}", duration(3600.0 / door.openings_per_hour().0));
         (door.evidence().events()[1] >= 2).then_some(NamedLine { ends: door.closed.ends, name })
     };
     mapper.doors().iter().filter_map(door).collect()

@@ -39,6 +39,8 @@ struct State {
     evidence: Evidence,
     /// The time of the last look, s, and whether the thing was there.
     last: Option<(f64, bool)>,
+    /// The time of the last sample, s, and the probability that the thing is there by its nominal chain.
+    nominal: (f64, f64),
     /// For each horizon the forecasts that are not due: when they are, s, whether they were made in the first hour, and the probabilities.
     open: [Vec<(f64, bool, OfEach)>; 3],
     /// For each horizon the sums and numbers of the squared errors over the run, and of those forecasts made in the first hour.
@@ -123,13 +125,15 @@ impl KnownThings {
         }
         for (thing, state) in things.iter().zip(&mut self.states) {
             let is_there = world.fleet().place_of(thing).is_some();
+            let rates = nominal(thing, world);
             state.score(time_s, is_there);
+            state.age(time_s, rates);
             let is_reading = since_s < LOOK_S;
             if is_reading && thing.places[0].iter().any(|cell| mapper.is_in_view(*cell)) {
                 state.look(time_s, is_there);
             }
             if is_due[1]
-                && let Some(rates) = nominal(thing, world)
+                && let Some(rates) = rates
             {
                 let map = |ahead_s: f64| presence(mapper, &thing.places[0], since_s + ahead_s);
                 state.forecast(time_s, rates, &self.population, map);
@@ -203,25 +207,25 @@ impl State {
         }
     }
 
+    /// The nominal chain goes on: its rates can change with the hour.
+    fn age(&mut self, time_s: f64, rates: Option<[f64; 2]>) {
+        let (before_s, was_there) = self.nominal;
+        self.nominal = (time_s, rates.map_or(was_there, |rates| later(rates, was_there, time_s - before_s)));
+    }
+
     fn look(&mut self, time_s: f64, is_there: bool) {
+        self.nominal.1 = f64::from(u8::from(is_there));
         let Some((last_s, was_there)) = self.last.replace((time_s, is_there)) else { return };
         self.floor = None;
         self.evidence.look(was_there, is_there, time_s - last_s);
     }
 
-    fn forecast(
-        &mut self,
-        time_s: f64,
-        [come, go]: [f64; 2],
-        population: &Population,
-        map: impl Fn(f64) -> f64,
-    ) {
+    fn forecast(&mut self, time_s: f64, rates: [f64; 2], population: &Population, map: impl Fn(f64) -> f64) {
         let Some((last_s, was_there)) = self.last else { return };
         let floor = self.floor.get_or_insert_with(|| Posterior::new(&self.evidence, population));
         for (open, ahead_s) in self.open.iter_mut().zip(AHEAD_S) {
             let (elapsed_s, last) = (time_s - last_s + ahead_s, f64::from(u8::from(was_there)));
-            let share = come / (come + go);
-            let nominal = share + (last - share) * (-(come + go) * elapsed_s).exp();
+            let nominal = later(rates, self.nominal.1, ahead_s);
             let predicted = [map(ahead_s), nominal, floor.probability(was_there, elapsed_s), last];
             open.push((time_s + ahead_s, time_s < HOUR_S, predicted));
         }
@@ -236,6 +240,12 @@ fn things_of(world: &PhysicsWorld) -> Vec<physics::Thing> {
 /// The nominal rates of coming and going, 1/s.
 fn nominal(thing: &physics::Thing, world: &PhysicsWorld) -> Option<[f64; 2]> {
     Some(thing.mean_stays_s(world.spec(), world.time_s())?.map(|stay_s| 1.0 / stay_s))
+}
+
+/// The probability that a thing is there, this much time after it was there with another one, s.
+fn later([come, go]: [f64; 2], probability: f64, time_s: f64) -> f64 {
+    let share = come / (come + go);
+    share + (probability - share) * (-(come + go) * time_s).exp()
 }
 
 fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {

@@ -125,8 +125,9 @@ impl Forecast {
             dict.set_item("open_probability", door.clock.probability(time_s, calendar))?;
             let interval = door.clock.interval_90(time_s, calendar);
             dict.set_item("open_probability_90", interval.map(|[low, high]| (low, high)))?;
-            dict.set_item("openings_per_hour", door.openings_per_hour())?;
-            dict.set_item("openings_per_hour_90", door.interval_of_openings_per_hour(0.9))?;
+            let (per_hour, [low, high]) = door.openings_per_hour();
+            dict.set_item("openings_per_hour", per_hour)?;
+            dict.set_item("openings_per_hour_90", (low, high))?;
             dict.set_item("usual_hours", usual.collect::<Vec<_>>())?;
             Ok(dict)
         };

@@ -8,9 +8,6 @@ use nalgebra::{Point2, Vector2};
 use serde_json::{Value, json};
 use std::path::Path;
 
-/// The probability with which the interval contains the number of openings per hour.
-const MASS: f64 = 0.9;
-
 /// To a millimeter.
 fn pair(point: &Point2<f64>) -> [f64; 2] {
     [point.x, point.y].map(|length_m| libm::round(1e3 * length_m) / 1e3)
@@ -20,7 +17,6 @@ fn pair(point: &Point2<f64>) -> [f64; 2] {
 /// after a gap in the view; the cycles per hour with their 90 % credible interval.
 fn of_object(object: &ObjectReport, frame: &GridFrame) -> Value {
     let centers = object.cells.iter().map(|cell| frame.center(frame.cell(*cell as usize)).coords);
-    let [moved, moved_after_gap] = object.changes;
     json!({
         "id": object.id,
         "found_s": rounded(object.found_s),
@@ -29,8 +25,8 @@ fn of_object(object: &ObjectReport, frame: &GridFrame) -> Value {
         "cells": object.cells.len(),
         "is_there": object.is_there,
         "last_seen_s": rounded(object.last_seen_s),
-        "moved": moved,
-        "moved_after_gap": moved_after_gap,
+        "moved": object.evidence.events().iter().sum::<u32>(),
+        "moved_after_gap": object.evidence.changes_after_gap(),
         "cycles_per_hour": rounded(object.cycles_per_hour),
         "cycles_per_hour_90": object.cycles_per_hour_90.map(rounded),
     })
@@ -46,7 +42,7 @@ fn of_door(door: &Door) -> Value {
         }
         Leaf::Sliding => None,
     };
-    let (low, high) = door.interval_of_openings_per_hour(MASS);
+    let (per_hour, ends) = door.openings_per_hour();
     let evidence = door.evidence();
     let [closed, opened] = evidence.events();
     json!({
@@ -62,8 +58,8 @@ fn of_door(door: &Door) -> Value {
         "closed": closed,
         "moved_after_gap": evidence.changes_after_gap(),
         "in_view_s": rounded(evidence.in_view_s()),
-        "openings_per_hour": rounded(door.openings_per_hour()),
-        "openings_per_hour_90": [rounded(low), rounded(high)],
+        "openings_per_hour": rounded(per_hour),
+        "openings_per_hour_90": ends.map(rounded),
     })
 }
 

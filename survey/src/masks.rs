@@ -126,14 +126,12 @@ pub fn permanent(mapper: &Mapper) -> Grid<CellState> {
 /// The share of the time that a cell that changed is blocked, from 0 to 1: by its learned rates, or by the time in view
 /// where there are no rates.
 pub(crate) fn share_blocked(mapper: &Mapper, index: usize) -> f64 {
-    if let Some((block, free)) = mapper.transition_rates(index).filter(|(block, free)| block + free > 0.0) {
-        return block / (block + free);
-    }
     let seen = mapper.statistics(index);
     let watched = seen.watched_free + seen.watched_blocked;
-    match watched > 0.0 {
-        true => seen.watched_blocked / watched,
-        false => f64::from(u8::from(mapper.states().cells()[index] == CellState::Blocked)),
+    match mapper.transition_rates(index) {
+        Some((block, free)) if block + free > 0.0 => block / (block + free),
+        _ if watched > 0.0 => seen.watched_blocked / watched,
+        _ => f64::from(u8::from(mapper.states().cells()[index] == CellState::Blocked)),
     }
 }
 

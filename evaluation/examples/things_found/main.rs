@@ -176,12 +176,12 @@ fn compare_rate(truth: &TrueDoor, door: Option<&Door>, mapper: &Mapper, hours: f
     let mut rates: Vec<f64> = truth.cells.iter().map(|&index| 3600.0 * mapper.rate(index)).collect();
     rates.sort_by(f64::total_cmp);
     scores.put("cells", error(rates.get(rates.len() / 2).copied()));
-    let own = error(door.map(Door::openings_per_hour));
+    let own = error(door.map(|door| door.openings_per_hour().0));
     scores.put("log_all", own);
     if door.is_some() {
         scores.put("log", own);
     }
-    if let Some((low, high)) = door.map(|door| door.interval_of_openings_per_hour(0.9)) {
+    if let Some((_, [low, high])) = door.map(Door::openings_per_hour) {
         scores.put("in_90", f64::from(u8::from((low..=high).contains(&true_rate))));
     }
 }

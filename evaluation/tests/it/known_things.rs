@@ -10,7 +10,7 @@ use robot::Autonomous;
 use sim::physics::{PhysicsWorld, WorldSpec};
 use std::collections::BTreeMap;
 
-/// Two rooms with an opening between them, a chair with four legs in the left one and a box in the right one.
+/// Two rooms with an opening between them, a chair with four legs in the left one, a box and an L of two parts in the right one.
 fn world() -> WorldSpec {
     let mut text = String::from(
         "name = \"chair and box\"\n[map]\nsize_m = [8.0, 4.0]\ncell_m = 0.05\n[[robot]]\nname = \"curious\"\nradius_m = 0.2\n\
@@ -27,17 +27,19 @@ fn world() -> WorldSpec {
     for [x, y, right, top] in walls {
         text += &format!("[[wall]]\nmin_m = [{x}, {y}]\nmax_m = [{right}, {top}]\n");
     }
-    let mut obstacle = |name: &str, [x, y, size]: [f64; 3], rest: &str| {
-        let [right, top] = [x + size, y + size];
+    let mut obstacle = |name: &str, [x, y, width, height]: [f64; 4], rest: &str| {
+        let [right, top] = [x + width, y + height];
         text += &format!(
             "[[obstacle]]\nname = \"{name}\"\nmin_m = [{x}, {y}]\nmax_m = [{right}, {top}]\n{rest}\n"
         );
     };
-    obstacle("chair", [1.5, 1.0, 0.05], "schedule = { free_s = 60.0, blocked_s = 90.0 }");
+    obstacle("chair", [1.5, 1.0, 0.05, 0.05], "schedule = { free_s = 60.0, blocked_s = 90.0 }");
     for (leg, x, y) in [(2, 1.9, 1.0), (3, 1.5, 1.4), (4, 1.9, 1.4)] {
-        obstacle(&format!("leg {leg}"), [x, y, 0.05], "part_of = \"chair\"");
+        obstacle(&format!("leg {leg}"), [x, y, 0.05, 0.05], "part_of = \"chair\"");
     }
-    obstacle("box", [6.0, 1.0, 0.5], "schedule = { free_s = 90.0, blocked_s = 60.0 }");
+    obstacle("box", [6.0, 1.0, 0.5, 0.5], "schedule = { free_s = 90.0, blocked_s = 60.0 }");
+    obstacle("L", [5.4, 2.0, 1.1, 0.1], "schedule = { free_s = 70.0, blocked_s = 80.0 }");
+    obstacle("side of the L", [5.4, 2.1, 0.1, 1.0], "part_of = \"L\"");
     worldfile::physics::parse_world_with("rooms.toml", &text, &BTreeMap::new()).unwrap()
 }
 
@@ -53,7 +55,7 @@ fn trial(minutes: f64) -> Trial {
 }
 
 #[test]
-fn a_chair_and_a_box_are_objects_with_scores() {
+fn a_chair_a_box_and_an_l_are_objects_with_scores() {
     let trial = trial(30.0);
     let mapper = &trial.robot.mapper;
     for thing in trial.world.spec().things() {
@@ -66,7 +68,7 @@ fn a_chair_and_a_box_are_objects_with_scores() {
         assert!((8.0..72.0).contains(&object.cycles_per_hour), "{object:?}");
     }
     let scores = trial.results().known_things.unwrap();
-    assert_eq!((scores.things, scores.objects, scores.all), (2, 2, scores.first_hour));
+    assert_eq!((scores.things, scores.objects, scores.all), (3, 3, scores.first_hour));
     for scores in [scores.all.now, scores.all.in_1min, scores.all.in_10min].map(Option::unwrap) {
         assert!(scores.last_seen_by_nominal > 1.0 && scores.brier < 0.4, "{scores:?}");
         // The posterior learns the rates, which the nominal chain knows.

@@ -14,16 +14,15 @@ use blocked_probability::Chain;
 use change_probability::change_probability;
 pub(crate) use expected_changes::ExpectedChanges;
 use interfaces::CellState;
+use std::borrow::Cow;
 
 impl Mapper {
     /// The cycle time T of the cell (equation 1): the mean duration of blocked → free → blocked; ∞ for a cell that
     /// never changed, unless traversable cells [share a prior](crate::Estimator::shares_prior).
     #[inline]
     pub fn interval(&self, index: usize) -> f64 {
-        if let Some(object) = self.object(index) {
-            1.0 / object.cycle_rate()
-        } else if let Some(alone) = self.alone(index) {
-            1.0 / alone.cycle_rate()
+        if let Some(posterior) = self.posterior(index) {
+            1.0 / posterior.cycle_rate()
         } else if self.cells.has_rate(index) {
             self.estimator().interval(&self.statistics(index))
         } else {
@@ -83,11 +82,8 @@ impl Mapper {
     /// Before the second reading the interval is 0 to ∞. Where traversable
     /// cells [share a prior](crate::Estimator::shares_prior), it is the interval of the posterior with this prior.
     pub fn credible_interval(&self, index: usize, mass: f64) -> (f64, f64) {
-        if let Some(object) = self.object(index) {
-            return object.interval(mass);
-        }
-        if let Some(alone) = self.alone(index) {
-            return alone.interval(mass);
+        if let Some(posterior) = self.posterior(index) {
+            return posterior.interval(mass);
         }
         if self.cells.has_rate(index)
             && let Some(posterior) = self.statistics(index).posterior()
@@ -99,10 +95,15 @@ impl Mapper {
     }
 
     /// The rates at which the cell leaves its states, per unit of time: free → blocked (α) and blocked → free (β).
-    /// Multiplied by the time between two readings they are the probabilities per step. `None` for a cell that
-    /// never changed, or if the estimator in use has no rate for the cell.
+    /// Multiplied by the time between two readings they are the probabilities per step. Of a cell of an object, they are those by
+    /// which the cell follows the object. `None` for a cell that never changed, or if the estimator in use has no rate for the cell.
     pub fn transition_rates(&self, index: usize) -> Option<(f64, f64)> {
-        self.cells.transition_rates(index).map(|rates| (rates.block, rates.free))
+        let Some((share, fading)) = self.posterior(index).map(|posterior| posterior.share_and_fading())
+        else {
+            return self.cells.transition_rates(index).map(|rates| (rates.block, rates.free));
+        };
+        let share = self.object(index).map_or(share, |object| object.mix(share));
+        Some((share * fading, (1.0 - share) * fading))
     }
 
     /// The probability that the cell is blocked now: the map as predicted. A cell in view is as observed. Out of view,
@@ -133,7 +134,7 @@ impl Mapper {
     /// The thing to which a cell belongs, if what is known of the thing is worth more than what is known of the cell.
     fn thing(&self, index: usize) -> Option<OfCell<'_>> {
         let thing = self.things.of_cell(index)?;
-        let explains = || thing.explains(self.cells.statistics(index).events());
+        let explains = || thing.presence.evidence.explains(&self.cells.evidence(index));
         (thing.clock.is_some() || self.estimator().shares_prior() && explains()).then_some(thing)
     }
 
@@ -146,6 +147,12 @@ impl Mapper {
     pub fn evidence(&self, index: usize) -> Evidence {
         self.object(index)
             .map_or_else(|| self.cells.evidence(index), |object| object.presence.evidence.clone())
+    }
+
+    /// What is known of the object of a cell, or of the cell as a thing of its own.
+    fn posterior(&self, index: usize) -> Option<Cow<'_, Posterior>> {
+        let of_object = self.object(index).map(|object| Cow::Borrowed(object.posterior()));
+        of_object.or_else(|| self.alone(index).map(Cow::Owned))
     }
 
     /// What is known of a cell that was mostly found to have changed out of view, and belongs to nothing: it is a thing of one cell.

@@ -20,7 +20,6 @@ const OPEN_TO: f64 = 0.3;
 const LOOK_S: f64 = 1.0;
 /// A cell counts as free in this number of looks before the first one.
 const FREE_LOOKS: f64 = 6.0;
-const HOUR_S: f64 = 3600.0;
 
 /// How a leaf opens.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
@@ -77,7 +76,8 @@ impl Door {
             (apart, evidence.events().iter().sum::<u32>(), Reverse(evidence.known_s() as u64))
         });
         let (evidence, cell) = best.unwrap_or_default();
-        let presence = Presence::new(map.state(cell) == CellState::Blocked, map.last_seen(cell), evidence);
+        let presence =
+            Presence::new(map.state(cell) == CellState::Blocked, map.last_seen(cell), evidence, None);
         let (leaf, clock, parts, cells) = (Leaf::Sliding, Clock::default(), Parts::default(), Vec::new());
         Self {
             id,
@@ -108,15 +108,9 @@ impl Door {
         &self.presence.evidence
     }
 
-    /// The number of openings per hour, by all looks: in view, and before and after gaps in the view.
-    pub fn openings_per_hour(&self) -> f64 {
-        self.presence.alone().cycle_rate() * HOUR_S
-    }
-
-    /// The interval that contains this number with the probability `mass`.
-    pub fn interval_of_openings_per_hour(&self, mass: f64) -> (f64, f64) {
-        let (low, high) = self.presence.alone().interval(mass);
-        (low * HOUR_S, high * HOUR_S)
+    /// The number of openings per hour, by all looks: in view, and before and after gaps in the view; and its 90 % credible interval.
+    pub fn openings_per_hour(&self) -> (f64, [f64; 2]) {
+        self.presence.alone().per_hour()
     }
 
     /// Sets the place of the door, with the number of the hinge and the open leaf if they are known.

@@ -75,7 +75,10 @@ impl Things {
         while let Some(motion) = self.motions.next(now_s) {
             self.learn(&motion, cells);
         }
-        self.objects.observe(cells, &is_doubted);
+        // A cell that has just become blocked may be inside of a body, and not seen.
+        let new: std::collections::BTreeSet<usize> =
+            cells.transitions.iter().filter_map(|transition| frame.index(transition.cell)).collect();
+        self.objects.observe(cells, |index| is_doubted(index) || new.contains(&index));
         self.doors.iter_mut().for_each(|door| door.observe(cells, &is_doubted, dates));
     }
 

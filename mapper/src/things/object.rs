@@ -1,7 +1,7 @@
 //! Something that comes and goes as a whole, and what looks at it say.
 
 use super::presence::{Parts, Presence};
-use crate::change::CellMap;
+use crate::change::{CellMap, Evidence};
 use crate::look_counts::LookCounts;
 use interfaces::CellState;
 
@@ -23,10 +23,12 @@ const PARTLY: u32 = 20;
 /// A cell belongs to the thing if its probability of being blocked is higher by more than this while the thing is there.
 const OWN: f64 = 0.5;
 /// Something that comes and goes as a whole: a toy, a chair, a box.
-#[derive(Clone, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, serde::Deserialize, serde::Serialize)]
 pub(crate) struct Object {
     pub(super) parts: Parts,
     pub(super) presence: Presence,
+    /// Whether it was seen while it was there, since it was found.
+    was_seen: bool,
     /// The number of looks in which some of its cells were blocked, and in which most of them were.
     looks: [u32; 2],
     /// The time at which it was found, s.
@@ -41,9 +43,9 @@ impl Object {
         let known_s = |cell: &&u32| map.evidence(**cell as usize).known_s();
         let best = cells.iter().max_by(|a, b| known_s(a).total_cmp(&known_s(b)).then(b.cmp(a)));
         let best = best.map_or(0, |cell| *cell as usize);
-        let presence = Presence::new(is_there, map.last_seen(best), map.evidence(best));
-        let mut object =
-            Self { parts: Parts::default(), presence, looks: [0; 2], found_s: map.time(), is_thing: false };
+        let recent = Some(Evidence::default());
+        let presence = Presence::new(is_there, map.last_seen(best), map.evidence(best), recent);
+        let mut object = Self { presence, found_s: map.time(), ..Self::default() };
         object.add(cells);
         object
     }
@@ -69,9 +71,9 @@ impl Object {
     }
 
     /// The probability that one of its cells is blocked, while the object is away, and while it is there; `None` of a cell that was
-    /// never seen while it is there: it may be behind the object.
+    /// not seen when the object was: it may be behind it.
     pub(super) fn shares(&self, cell: u32) -> Option<[f64; 2]> {
-        self.parts.counts(cell).filter(|[_, there]| !there.is_empty()).map(shares)
+        self.parts.counts(cell).filter(|[_, there]| !self.was_seen || !there.is_empty()).map(shares)
     }
 
     /// Learns from the open reading. `is_doubted`: whether it speaks against the state of a cell in the map.
@@ -89,6 +91,9 @@ impl Object {
                 continue;
             }
             let is_blocked = map.state(index) == CellState::Blocked;
+            if self.was_seen && counts[1].is_empty() && !is_blocked {
+                continue;
+            }
             let [away, there] = shares.map(|share| if is_blocked { share } else { 1.0 - share }.max(SURE));
             seen += 1.0;
             log_odds += libm::log(there / away);
@@ -106,6 +111,7 @@ impl Object {
             self.presence.hold(map.time());
         }
         if is_clear && self.presence.see(map.time(), log_odds > 0.0) {
+            self.was_seen |= self.presence.is_there;
             self.parts.learn(self.presence.is_there, map, is_doubted);
         }
     }
@@ -115,15 +121,14 @@ impl Object {
     /// told apart when he has gone and does not come back.
     pub(super) fn renew(&mut self, map: &CellMap) {
         self.presence.renew();
-        let changes = self.presence.evidence.changes();
         let own = self.parts.iter().filter(|(_, counts)| is_own(shares(*counts)));
-        let mut events: Vec<u32> = own.map(|(cell, _)| map.statistics(*cell as usize).events()).collect();
-        events.sort_unstable();
-        // The median: cells at its edges flicker.
-        let of_cells = events.get(events.len().saturating_sub(1) / 2).copied().unwrap_or_default();
-        self.is_thing = self.presence.evidence.stands()
+        let mut cells: Vec<Evidence> = own.map(|(cell, _)| map.evidence(*cell as usize)).collect();
+        cells.sort_by_key(Evidence::changes);
+        let evidence = &self.presence.evidence;
+        self.is_thing = evidence.stands()
             && self.looks[0] <= self.looks[1] + PARTLY
-            && (changes / 3..=changes + changes / 2).contains(&of_cells);
+            // The median: cells at its edges flicker.
+            && cells.get(cells.len().saturating_sub(1) / 2).is_some_and(|cell| evidence.explains(cell));
     }
 }
 

@@ -5,7 +5,7 @@ use super::lasting::Change;
 use super::object::Object;
 use super::of_cell::OfCell;
 use crate::Growth;
-use crate::change::{CellMap, Population};
+use crate::change::{CellMap, Evidence, Population};
 use interfaces::{Cell, GridFrame};
 use std::collections::BTreeMap;
 
@@ -20,7 +20,6 @@ const COMMON: f64 = 0.3;
 const MAX_OBJECTS: usize = 256;
 /// The population is learned anew after a quarter more readings, at least and at most after these numbers of readings.
 const RENEWAL_READINGS: [usize; 2] = [8, 100];
-const HOUR_S: f64 = 3600.0;
 
 /// What is known of an object that comes and goes as a whole: a toy, a chair, a box.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,8 +34,8 @@ pub struct ObjectReport {
     pub is_there: bool,
     /// The time of this look, s.
     pub last_seen_s: f64,
-    /// How often it came or went, in view and found after gaps in the view.
-    pub changes: [u32; 2],
+    /// What looks say of how long it stays away, and there.
+    pub evidence: Evidence,
     /// How often it comes and goes, cycles per hour.
     pub cycles_per_hour: f64,
     /// The interval that contains this rate with a probability of 90 %.
@@ -169,19 +168,18 @@ impl Objects {
     /// What is known of those that are things.
     pub(crate) fn reports(&self) -> impl Iterator<Item = ObjectReport> {
         self.objects.iter().filter(|(_, object)| object.is_thing).map(|(id, object)| {
-            let (evidence, posterior) =
-                (&object.presence.evidence, object.presence.posterior(&self.population));
+            let (cycles_per_hour, cycles_per_hour_90) =
+                object.presence.posterior(&self.population).per_hour();
             let (is_there, last_seen_s) = object.presence.last_look();
-            let (low, high) = posterior.interval(0.9);
             ObjectReport {
                 id: *id,
                 found_s: object.found_s,
                 cells: object.cells().collect(),
                 is_there,
                 last_seen_s,
-                changes: [evidence.events().iter().sum(), evidence.changes_after_gap()],
-                cycles_per_hour: posterior.cycle_rate() * HOUR_S,
-                cycles_per_hour_90: [low * HOUR_S, high * HOUR_S],
+                evidence: object.presence.evidence.clone(),
+                cycles_per_hour,
+                cycles_per_hour_90,
             }
         })
     }

@@ -20,16 +20,10 @@ pub(crate) struct OfCell<'a> {
     pub(super) shares: [f64; 2],
 }
 
-impl OfCell<'_> {
-    fn posterior(&self) -> &Posterior {
+impl<'a> OfCell<'a> {
+    /// What is known of the thing.
+    pub(crate) fn posterior(&self) -> &'a Posterior {
         self.population.map_or_else(|| self.presence.alone(), |map| self.presence.posterior(map))
-    }
-
-    /// Whether the changes of an object are those of a cell that changed this often: traffic changes a cell much more often than the
-    /// object that stands there, and what stood in another part much less.
-    pub(crate) fn explains(&self, events: u32) -> bool {
-        let changes = f64::from(self.presence.evidence.changes());
-        (0.5 * changes..=1.5 * changes + 1.0).contains(&f64::from(events))
     }
 
     /// Whether a look at the cell that found it blocked (1) or free (0), at a time, s, is older than the last look at the thing, or says
@@ -58,26 +52,17 @@ impl OfCell<'_> {
         alone + half_hours / (half_hours + HALF_HOURS) * (later - alone)
     }
 
-    fn mix(&self, is_there: f64) -> f64 {
+    /// The probability that the cell is blocked if the second state has this one.
+    pub(crate) fn mix(&self, is_there: f64) -> f64 {
         let [away, there] = self.shares;
         away + (there - away) * is_there
-    }
-
-    /// The cycle rate of the thing, 1/s.
-    pub(crate) fn cycle_rate(&self) -> f64 {
-        self.posterior().cycle_rate()
-    }
-
-    /// The interval that contains this rate with the probability `mass`, 1/s.
-    pub(crate) fn interval(&self, mass: f64) -> (f64, f64) {
-        self.posterior().interval(mass)
     }
 
     /// The prior of the cycle rate of a cell, 1/s, by the motions of its door: where the leaf rests, it passes once per opening, and
     /// twice elsewhere.
     pub(crate) fn rate_prior(&self) -> Option<RateDistribution> {
         let passages = 2.0 - self.shares.iter().sum::<f64>();
-        let rate = || passages * self.cycle_rate();
+        let rate = || passages * self.posterior().cycle_rate();
         self.clock.map(|_| RateDistribution { events: CYCLES, time: CYCLES / rate() })
     }
 }
@@ -95,7 +80,7 @@ mod tests {
             (0..90).for_each(|_| evidence.look(is_there, is_there, 2.0));
             evidence.look(is_there, !is_there, 0.0);
         }
-        let presence = Presence::new(false, 0.0, evidence);
+        let presence = Presence::new(false, 0.0, evidence, None);
         let clock = Clock::default();
         for (shares, per_opening) in [([0.0, 1.0], 1.0), ([1.0, 0.0], 1.0), ([0.0, 0.0], 2.0)] {
             let of_cell = OfCell { presence: &presence, population: None, clock: Some(&clock), shares };

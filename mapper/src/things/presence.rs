@@ -45,8 +45,8 @@ pub(crate) struct Presence {
     doubt: Option<Doubt>,
     /// The looks since its rates changed last.
     pub(crate) evidence: Evidence,
-    /// The last of these looks, which are compared with those before.
-    recent: Evidence,
+    /// The last of these looks, which are compared with those before; `None` of a door: people pass it in bursts.
+    recent: Option<Evidence>,
     /// By the shipped population, and by that of the map.
     #[serde(skip)]
     alone: Computed,
@@ -55,8 +55,9 @@ pub(crate) struct Presence {
 }
 
 impl Presence {
-    pub(super) fn new(is_there: bool, last_s: f64, evidence: Evidence) -> Self {
-        Self { is_there, last_s, view_s: f64::NEG_INFINITY, evidence, ..Self::default() }
+    /// `recent`: the looks with which those before are compared, where rates can change.
+    pub(super) fn new(is_there: bool, last_s: f64, evidence: Evidence, recent: Option<Evidence>) -> Self {
+        Self { is_there, last_s, view_s: f64::NEG_INFINITY, evidence, recent, ..Self::default() }
     }
 
     /// Learns from a look. Returns whether the state is certain: a new one needs some time.
@@ -103,14 +104,16 @@ impl Presence {
         let is_gap = length_s > Evidence::MAX_GAP_S;
         self.view_s = if is_gap { time_s } else { self.view_s };
         let is_at_begin = time_s - self.view_s <= BEGIN_S;
-        if is_gap || is_there != before && !is_at_begin {
-            match self.evidence.drift(&self.recent) {
-                DRIFTED.. => self.evidence.forget_before(std::mem::take(&mut self.recent)),
-                SAME.. if self.recent.changes() < MAX_RECENT_CHANGES => {}
-                _ => self.recent = Evidence::default(),
+        if let Some(recent) = &mut self.recent
+            && (is_gap || is_there != before && !is_at_begin)
+        {
+            match self.evidence.drift(recent) {
+                DRIFTED.. => self.evidence.forget_before(std::mem::take(recent)),
+                SAME.. if recent.changes() < MAX_RECENT_CHANGES => {}
+                _ => *recent = Evidence::default(),
             }
         }
-        for evidence in [&mut self.evidence, &mut self.recent] {
+        for evidence in std::iter::once(&mut self.evidence).chain(&mut self.recent) {
             if is_gap || !is_at_begin || !evidence.correct_gap(is_there) {
                 evidence.look(before, is_there, length_s);
             }
@@ -201,7 +204,7 @@ mod tests {
 
     #[test]
     fn what_a_view_begins_with_has_changed_out_of_view() {
-        let mut presence = Presence::new(true, 0.0, Evidence::default());
+        let mut presence = Presence::new(true, 0.0, Evidence::default(), None);
         see(&mut presence, [0.0, 10.0], true);
         // The map of the place is old for a moment.
         see(&mut presence, [3600.0, 3601.0], true);
@@ -213,7 +216,7 @@ mod tests {
 
     #[test]
     fn one_look_at_the_end_of_a_view_is_no_change() {
-        let mut presence = Presence::new(true, 0.0, Evidence::default());
+        let mut presence = Presence::new(true, 0.0, Evidence::default(), None);
         for visit in 0..9 {
             let begin_s = 100.0 * f64::from(visit);
             see(&mut presence, [begin_s, begin_s + 10.0], true);
@@ -225,7 +228,7 @@ mod tests {
 
     #[test]
     fn evidence_from_before_the_rates_changed_is_left_out() {
-        let mut presence = Presence::new(false, 0.0, Evidence::default());
+        let mut presence = Presence::new(false, 0.0, Evidence::default(), Some(Evidence::default()));
         let mut begin_s = 0.0;
         for stay_s in std::iter::repeat_n(20.0, 60).chain(std::iter::repeat_n(600.0, 12)) {
             let is_there = !presence.is_there;

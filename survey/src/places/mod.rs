@@ -164,11 +164,14 @@ fn place(mapper: &Mapper, log: &ChangeLog, group: &Group, spot: Spot) -> Option<
     by_rate.sort_by(|(a, _), (b, _)| a.total_cmp(b));
     let (rate_hz, median) = by_rate[by_rate.len() / 2];
     let door = mapper.doors().iter().find(|door| group.kind.and_then(PlaceKind::door) == Some(door.id));
-    let evidence = door.map_or_else(|| mapper.evidence(median), |door| door.evidence().clone());
-    let (least, most) = mapper.credible_interval(median, MASS);
-    let (per_hour, (least, most)) = match door {
-        Some(door) => (door.openings_per_hour(), door.interval_of_openings_per_hour(MASS)),
-        None => (rate_hz * HOUR_S, (least * HOUR_S, most * HOUR_S)),
+    let object = mapper.objects().find(|object| group.kind == Some(PlaceKind::Object { thing: object.id }));
+    let (evidence, (per_hour, ends)) = match (door, object) {
+        (Some(door), _) => (door.evidence().clone(), door.openings_per_hour()),
+        (None, Some(object)) => (object.evidence, (object.cycles_per_hour, object.cycles_per_hour_90)),
+        (None, None) => {
+            let ends: [f64; 2] = mapper.credible_interval(median, MASS).into();
+            (mapper.evidence(median), (rate_hz * HOUR_S, ends.map(|rate_hz| rate_hz * HOUR_S)))
+        }
     };
     let is_passed = group.kind.is_none() && !evidence.is_mostly_after_gap();
     let [came, went] = evidence.events();
@@ -180,7 +183,7 @@ fn place(mapper: &Mapper, log: &ChangeLog, group: &Group, spot: Spot) -> Option<
     let rate = (is_passed && spot_s > 0.0).then(|| RateDistribution { events, time: spot_s / HOUR_S });
     let rates = PlaceRates {
         cycles_per_hour: per_hour,
-        cycles_per_hour_90: [least, most].map(|per_hour| Some(per_hour).filter(|rate| rate.is_finite())),
+        cycles_per_hour_90: ends.map(|end| Some(end).filter(|end| end.is_finite())),
         passages,
         changes_after_gap: evidence.changes_after_gap(),
         looks: evidence.looks(),

@@ -90,6 +90,13 @@ impl Evidence {
         self.watched_s[1] + stayed_s >= MIN_STAY_S * f64::from(went + 1)
     }
 
+    /// Whether the changes of a thing are those of a cell with this evidence. What stood in another part of the thing changes less, and
+    /// traffic changes a cell much more often than the thing that stands there. A cell that stands can flicker: thin legs are missed.
+    pub(crate) fn explains(&self, cell: &Self) -> bool {
+        self.changes() <= 2 * cell.changes()
+            && (2 * cell.changes() <= 3 * self.changes() + 2 || cell.stands())
+    }
+
     /// How much of the time is known, s: the time in view, and a minute at most of each gap.
     pub fn known_s(&self) -> f64 {
         let gaps_s: f64 = self.gaps.iter().map(|bin| bin.length().min(60.0) * f64::from(bin.count)).sum();

@@ -9,6 +9,7 @@ const BINS: usize = 160;
 
 /// The logarithm of what is as good as nothing beside the most probable chain.
 const NOTHING: f64 = -40.0;
+const HOUR_S: f64 = 3600.0;
 
 /// What a posterior asks of a chain.
 struct Chain {
@@ -77,9 +78,21 @@ impl Posterior {
             .sum()
     }
 
+    /// The share of the time that the thing is there, and the rate at which a look at it fades, 1/s: the sum of both rates.
+    pub(crate) fn share_and_fading(&self) -> (f64, f64) {
+        let sum = |of: fn(&[f64; 3]) -> f64| self.fading.iter().map(of).sum::<f64>();
+        (sum(|[_, _, there]| *there), libm::exp(sum(|[all, weight, _]| weight * libm::log(*all))))
+    }
+
     /// The cycle rate, 1/s: the median, about.
     pub fn cycle_rate(&self) -> f64 {
         libm::exp(self.mean_log_rate)
+    }
+
+    /// The cycles per hour, and the interval that contains them with a probability of 90 %.
+    pub fn per_hour(&self) -> (f64, [f64; 2]) {
+        let (low, high) = self.interval(0.9);
+        (self.cycle_rate() * HOUR_S, [low, high].map(|rate| rate * HOUR_S))
     }
 
     /// The interval that contains the cycle rate with this probability, 1/s.
@@ -130,9 +143,9 @@ impl Population {
     /// The population to which these things belong.
     pub fn of<'a>(things: impl Iterator<Item = &'a Posterior>) -> Self {
         let mut sum = vec![0.0; STAYS * STAYS];
-        for thing in things {
-            zip(&mut sum, &thing.chains).for_each(|(sum, chain)| *sum += f64::from(*chain));
-        }
+        things.for_each(|thing| {
+            zip(&mut sum, &thing.chains).for_each(|(sum, chain)| *sum += f64::from(*chain))
+        });
         Self::of_sum(&sum)
     }
 }

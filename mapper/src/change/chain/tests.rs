@@ -135,3 +135,42 @@ fn the_kernel_between_known_lengths_is_that_of_the_chains() {
         }
     }
 }
+
+#[test]
+fn a_look_fades_at_the_sum_of_the_rates_to_the_share_of_the_time() {
+    let mut evidence = Evidence::default();
+    for cycle in 0..2000 {
+        let is_there = cycle % 2 == 0;
+        let looks = if is_there { 15 } else { 45 };
+        (0..looks).for_each(|_| evidence.look(is_there, is_there, 2.0));
+        evidence.look(is_there, !is_there, 0.0);
+    }
+    let posterior = Posterior::new(&evidence, &Population::default());
+    let (share, fading_hz) = posterior.share_and_fading();
+    assert!(
+        (share / 0.25 - 1.0).abs() < 0.3 && (fading_hz * 22.5 - 1.0).abs() < 0.3,
+        "{share}, {fading_hz} Hz"
+    );
+    assert!((posterior.probability(true, 1e9) - share).abs() < 1e-6);
+}
+
+#[test]
+fn a_cell_that_flickers_is_explained_by_its_thing_and_traffic_is_not() {
+    // A thing that stays for an hour, twice; a cell of it that is missed for a moment every ten minutes; and people who pass.
+    let stays = |stay_s: f64, changes: u32| {
+        let mut evidence = Evidence::default();
+        for change in 0..changes {
+            let is_there = change % 2 == 0;
+            let looks = if is_there { (stay_s / 2.0) as u32 } else { 1 };
+            (0..looks).for_each(|_| evidence.look(is_there, is_there, 2.0));
+            evidence.look(is_there, !is_there, 0.0);
+        }
+        evidence
+    };
+    let [thing, flickers, traffic, other] =
+        [(3600.0, 4), (600.0, 24), (2.0, 24), (3600.0, 1)].map(|(stay_s, changes)| stays(stay_s, changes));
+    assert_eq!(
+        [&thing, &flickers, &traffic, &other].map(|cell| thing.explains(cell)),
+        [true, true, false, false]
+    );
+}

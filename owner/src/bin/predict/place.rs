@@ -50,7 +50,7 @@ pub(crate) struct DoorRecord {
     pub(crate) width_m: f64,
     /// Openings per hour in view, and their 90 % interval; `None` if it was never in view.
     pub(crate) openings_per_hour: f64,
-    pub(crate) openings_per_hour_90: (f64, f64),
+    pub(crate) openings_per_hour_90: [f64; 2],
 }
 
 /// The probability of a state at a time.
@@ -106,12 +106,8 @@ impl Place {
         let state = if door.is_open() { "open" } else { "closed" };
         let seen = moment::text(forecast.mapper().epoch_s() + door.last_seen_s(), forecast);
         let id = door.id;
-        let record = DoorRecord {
-            id,
-            width_m,
-            openings_per_hour: door.openings_per_hour(),
-            openings_per_hour_90: door.interval_of_openings_per_hour(0.9),
-        };
+        let (openings_per_hour, openings_per_hour_90) = door.openings_per_hour();
+        let record = DoorRecord { id, width_m, openings_per_hour, openings_per_hour_90 };
         let reported = forecast.places().iter().find(|place| place.kind.door() == Some(id));
         let called = reported.map(|place| format!(", {},", called(place))).unwrap_or_default();
         let title = format!(
