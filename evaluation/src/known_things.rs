@@ -132,9 +132,7 @@ impl KnownThings {
             if is_reading && thing.places[0].iter().any(|cell| mapper.is_in_view(*cell)) {
                 state.look(time_s, is_there);
             }
-            if is_due[1]
-                && let Some(rates) = rates
-            {
+            if let (true, Some(rates)) = (is_due[1], rates) {
                 let map = |ahead_s: f64| presence(mapper, &thing.places[0], since_s + ahead_s);
                 state.forecast(time_s, rates, &self.population, map);
             }

@@ -21,12 +21,10 @@ impl Mapper {
     /// never changed, unless traversable cells [share a prior](crate::Estimator::shares_prior).
     #[inline]
     pub fn interval(&self, index: usize) -> f64 {
-        if let Some(posterior) = self.posterior(index) {
-            1.0 / posterior.cycle_rate()
-        } else if self.cells.has_rate(index) {
-            self.estimator().interval(&self.statistics(index))
-        } else {
-            f64::INFINITY
+        match self.posterior(index) {
+            Some(posterior) => 1.0 / posterior.cycle_rate(),
+            None if self.cells.has_rate(index) => self.estimator().interval(&self.statistics(index)),
+            None => f64::INFINITY,
         }
     }
 
@@ -98,12 +96,14 @@ impl Mapper {
     /// Multiplied by the time between two readings they are the probabilities per step. Of a cell of an object, they are those by
     /// which the cell follows the object. `None` for a cell that never changed, or if the estimator in use has no rate for the cell.
     pub fn transition_rates(&self, index: usize) -> Option<(f64, f64)> {
-        let Some((share, fading)) = self.posterior(index).map(|posterior| posterior.share_and_fading())
-        else {
-            return self.cells.transition_rates(index).map(|rates| (rates.block, rates.free));
-        };
-        let share = self.object(index).map_or(share, |object| object.mix(share));
-        Some((share * fading, (1.0 - share) * fading))
+        let of_object = self.object(index).map(|object| {
+            let (share, fading) = object.posterior().share_and_fading();
+            (object.mix(share), fading)
+        });
+        match of_object.or_else(|| Some(self.alone(index)?.share_and_fading())) {
+            Some((share, fading)) => Some((share * fading, (1.0 - share) * fading)),
+            None => self.cells.transition_rates(index).map(|rates| (rates.block, rates.free)),
+        }
     }
 
     /// The probability that the cell is blocked now: the map as predicted. A cell in view is as observed. Out of view,
@@ -157,10 +157,8 @@ impl Mapper {
 
     /// What is known of a cell that was mostly found to have changed out of view, and belongs to nothing: it is a thing of one cell.
     fn alone(&self, index: usize) -> Option<Posterior> {
-        if !self.estimator().shares_prior() || !self.cells.has_changed(index) {
-            return None;
-        }
-        let evidence = self.cells.evidence(index);
+        let may_be = self.estimator().shares_prior() && self.cells.has_changed(index);
+        let evidence = may_be.then(|| self.cells.evidence(index))?;
         let is_alone = evidence.is_mostly_after_gap() && evidence.stands();
         is_alone.then(|| Posterior::new(&evidence, &self.things.objects.population))
     }
@@ -179,12 +177,10 @@ impl Mapper {
         let (thing, time_s) = (self.thing(index), self.time() + time);
         let thing = thing.filter(|thing| thing.agrees(observed, seen.last_seen));
         let chain = Chain::new(rates, &seen, self.cells.variation(), time_s - seen.last_seen);
+        let by_cell = |alone: &Posterior| alone.probability(observed > 0.5, time_s - seen.last_seen);
         let alone = match &thing {
             Some(thing) => thing.blocked_probability(time_s),
-            None => match self.alone(index) {
-                Some(alone) => alone.probability(observed > 0.5, time_s - seen.last_seen),
-                None => chain.blocked_probability(observed),
-            },
+            None => self.alone(index).as_ref().map_or_else(|| chain.blocked_probability(observed), by_cell),
         };
         let by_tile = self.tiles.of_cell(self.frame().cell(index), self.cells.slot(index)?, time_s);
         let predicted = by_tile.map_or(alone, |tile| tile.blocked_probability(observed, chain.memory, alone));

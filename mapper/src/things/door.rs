@@ -77,7 +77,7 @@ impl Door {
         });
         let (evidence, cell) = best.unwrap_or_default();
         let presence =
-            Presence::new(map.state(cell) == CellState::Blocked, map.last_seen(cell), evidence, None);
+            Presence::new(map.state(cell) == CellState::Blocked, map.last_seen(cell), evidence, false);
         let (leaf, clock, parts, cells) = (Leaf::Sliding, Clock::default(), Parts::default(), Vec::new());
         Self {
             id,

@@ -75,7 +75,7 @@ impl Things {
         while let Some(motion) = self.motions.next(now_s) {
             self.learn(&motion, cells);
         }
-        // A cell that has just become blocked may be inside of a body, and not seen.
+        // A cell that has just changed says nothing: the inside of a body becomes blocked without being seen.
         let new: std::collections::BTreeSet<usize> =
             cells.transitions.iter().filter_map(|transition| frame.index(transition.cell)).collect();
         self.objects.observe(cells, |index| is_doubted(index) || new.contains(&index));

@@ -43,8 +43,7 @@ impl Object {
         let known_s = |cell: &&u32| map.evidence(**cell as usize).known_s();
         let best = cells.iter().max_by(|a, b| known_s(a).total_cmp(&known_s(b)).then(b.cmp(a)));
         let best = best.map_or(0, |cell| *cell as usize);
-        let recent = Some(Evidence::default());
-        let presence = Presence::new(is_there, map.last_seen(best), map.evidence(best), recent);
+        let presence = Presence::new(is_there, map.last_seen(best), map.evidence(best), true);
         let mut object = Self { presence, found_s: map.time(), ..Self::default() };
         object.add(cells);
         object

@@ -52,7 +52,7 @@ impl<'a> OfCell<'a> {
         alone + half_hours / (half_hours + HALF_HOURS) * (later - alone)
     }
 
-    /// The probability that the cell is blocked if the second state has this one.
+    /// The probability that the cell is blocked, by that of the second state.
     pub(crate) fn mix(&self, is_there: f64) -> f64 {
         let [away, there] = self.shares;
         away + (there - away) * is_there
@@ -62,8 +62,8 @@ impl<'a> OfCell<'a> {
     /// twice elsewhere.
     pub(crate) fn rate_prior(&self) -> Option<RateDistribution> {
         let passages = 2.0 - self.shares.iter().sum::<f64>();
-        let rate = || passages * self.posterior().cycle_rate();
-        self.clock.map(|_| RateDistribution { events: CYCLES, time: CYCLES / rate() })
+        let time = || CYCLES / (passages * self.posterior().cycle_rate());
+        self.clock.map(|_| RateDistribution { events: CYCLES, time: time() })
     }
 }
 
@@ -80,7 +80,7 @@ mod tests {
             (0..90).for_each(|_| evidence.look(is_there, is_there, 2.0));
             evidence.look(is_there, !is_there, 0.0);
         }
-        let presence = Presence::new(false, 0.0, evidence, None);
+        let presence = Presence::new(false, 0.0, evidence, false);
         let clock = Clock::default();
         for (shares, per_opening) in [([0.0, 1.0], 1.0), ([1.0, 0.0], 1.0), ([0.0, 0.0], 2.0)] {
             let of_cell = OfCell { presence: &presence, population: None, clock: Some(&clock), shares };

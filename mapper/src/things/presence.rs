@@ -55,8 +55,9 @@ pub(crate) struct Presence {
 }
 
 impl Presence {
-    /// `recent`: the looks with which those before are compared, where rates can change.
-    pub(super) fn new(is_there: bool, last_s: f64, evidence: Evidence, recent: Option<Evidence>) -> Self {
+    /// `can_drift`: whether its rates can change.
+    pub(super) fn new(is_there: bool, last_s: f64, evidence: Evidence, can_drift: bool) -> Self {
+        let recent = can_drift.then(Evidence::default);
         Self { is_there, last_s, view_s: f64::NEG_INFINITY, evidence, recent, ..Self::default() }
     }
 
@@ -97,8 +98,7 @@ impl Presence {
     }
 
     fn look(&mut self, time_s: f64, is_there: bool) {
-        self.alone = Computed::default();
-        self.renew();
+        (self.alone, self.posterior) = Default::default();
         let (before, length_s) = (self.is_there, (time_s - self.last_s).max(0.0));
         (self.is_there, self.last_s) = (is_there, time_s);
         let is_gap = length_s > Evidence::MAX_GAP_S;
@@ -204,7 +204,7 @@ mod tests {
 
     #[test]
     fn what_a_view_begins_with_has_changed_out_of_view() {
-        let mut presence = Presence::new(true, 0.0, Evidence::default(), None);
+        let mut presence = Presence::new(true, 0.0, Evidence::default(), false);
         see(&mut presence, [0.0, 10.0], true);
         // The map of the place is old for a moment.
         see(&mut presence, [3600.0, 3601.0], true);
@@ -216,7 +216,7 @@ mod tests {
 
     #[test]
     fn one_look_at_the_end_of_a_view_is_no_change() {
-        let mut presence = Presence::new(true, 0.0, Evidence::default(), None);
+        let mut presence = Presence::new(true, 0.0, Evidence::default(), false);
         for visit in 0..9 {
             let begin_s = 100.0 * f64::from(visit);
             see(&mut presence, [begin_s, begin_s + 10.0], true);
@@ -228,7 +228,7 @@ mod tests {
 
     #[test]
     fn evidence_from_before_the_rates_changed_is_left_out() {
-        let mut presence = Presence::new(false, 0.0, Evidence::default(), Some(Evidence::default()));
+        let mut presence = Presence::new(false, 0.0, Evidence::default(), true);
         let mut begin_s = 0.0;
         for stay_s in std::iter::repeat_n(20.0, 60).chain(std::iter::repeat_n(600.0, 12)) {
             let is_there = !presence.is_there;

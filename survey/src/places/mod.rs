@@ -164,13 +164,14 @@ fn place(mapper: &Mapper, log: &ChangeLog, group: &Group, spot: Spot) -> Option<
     by_rate.sort_by(|(a, _), (b, _)| a.total_cmp(b));
     let (rate_hz, median) = by_rate[by_rate.len() / 2];
     let door = mapper.doors().iter().find(|door| group.kind.and_then(PlaceKind::door) == Some(door.id));
-    let object = mapper.objects().find(|object| group.kind == Some(PlaceKind::Object { thing: object.id }));
+    let of_kind = |kind| mapper.objects().find(|object| kind == PlaceKind::Object { thing: object.id });
+    let object = group.kind.and_then(of_kind);
     let (evidence, (per_hour, ends)) = match (door, object) {
         (Some(door), _) => (door.evidence().clone(), door.openings_per_hour()),
         (None, Some(object)) => (object.evidence, (object.cycles_per_hour, object.cycles_per_hour_90)),
         (None, None) => {
             let ends: [f64; 2] = mapper.credible_interval(median, MASS).into();
-            (mapper.evidence(median), (rate_hz * HOUR_S, ends.map(|rate_hz| rate_hz * HOUR_S)))
+            (mapper.evidence(median), (rate_hz * HOUR_S, ends.map(|end_hz| end_hz * HOUR_S)))
         }
     };
     let is_passed = group.kind.is_none() && !evidence.is_mostly_after_gap();

@@ -9,6 +9,7 @@ const BINS: usize = 160;
 
 /// The logarithm of what is as good as nothing beside the most probable chain.
 const NOTHING: f64 = -40.0;
+
 const HOUR_S: f64 = 3600.0;
 
 /// What a posterior asks of a chain.
@@ -143,9 +144,9 @@ impl Population {
     /// The population to which these things belong.
     pub fn of<'a>(things: impl Iterator<Item = &'a Posterior>) -> Self {
         let mut sum = vec![0.0; STAYS * STAYS];
-        things.for_each(|thing| {
-            zip(&mut sum, &thing.chains).for_each(|(sum, chain)| *sum += f64::from(*chain))
-        });
+        for thing in things {
+            zip(&mut sum, &thing.chains).for_each(|(sum, chain)| *sum += f64::from(*chain));
+        }
         Self::of_sum(&sum)
     }
 }

@@ -48,7 +48,7 @@ pub(crate) struct DoorRecord {
     /// Its number, as in `things.json`.
     pub(crate) id: u32,
     pub(crate) width_m: f64,
-    /// Openings per hour in view, and their 90 % interval; `None` if it was never in view.
+    /// Openings per hour, by all looks, and their 90 % interval.
     pub(crate) openings_per_hour: f64,
     pub(crate) openings_per_hour_90: [f64; 2],
 }
