@@ -59,6 +59,7 @@ impl Object {
     /// Takes over another object that is the same one, and keeps the longer record.
     pub(super) fn join(&mut self, other: Self) {
         self.parts.join(other.parts);
+        self.was_seen |= other.was_seen;
         if other.presence.evidence.known_s() > self.presence.evidence.known_s() {
             self.presence = other.presence;
         }

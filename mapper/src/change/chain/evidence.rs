@@ -93,7 +93,7 @@ impl Evidence {
     /// Whether the changes of a thing are those of a cell with this evidence. What stood in another part of the thing changes less, and
     /// traffic changes a cell much more often than the thing that stands there. A cell that stands can flicker: thin legs are missed.
     pub(crate) fn explains(&self, cell: &Self) -> bool {
-        self.changes() <= 2 * cell.changes()
+        self.changes() <= 3 * cell.changes()
             && (2 * cell.changes() <= 3 * self.changes() + 2 || cell.stands())
     }
 
