@@ -15,6 +15,8 @@ use std::path::{Path, PathBuf};
 
 /// What is read of a file of ours that lists names; a longer one is none of ours.
 const MAX_BYTES: u64 = 1 << 26;
+/// How such a file begins.
+const LIST_START: &[u8] = b"{\n  \"schema\": ";
 const FLAGS: OFlags = OFlags::CLOEXEC.union(OFlags::NOFOLLOW);
 
 /// An open folder.
@@ -121,16 +123,20 @@ impl Folder {
         Ok(rustix::fs::openat(&self.handle, name.as_ref(), flags, Mode::from(0o666))?.into())
     }
 
-    /// Writes a file that is either complete or as it was. A file with this name is replaced.
+    /// Writes a file that lists names: it is either complete or as it was. What a killed run has left of it is removed.
     pub(super) fn write(&self, name: &str, bytes: &[u8]) -> Result<(), OutputError> {
+        let is_left = |new: &String| {
+            let start = self.read(new).ok().flatten().unwrap_or_else(|| b"another file".to_vec());
+            let length = start.len().min(LIST_START.len());
+            start[..length] == LIST_START[..length]
+        };
         self.run(name, || {
-            let mut free = (1..100).map(|number| format!("{name}_{number}"));
-            let new = free.find(|new| self.is_free(new)).unwrap_or_default();
+            let mut free = (1..10).map(|number| format!("{name}_{number}"));
+            let new = free.find(|new| self.is_free(new) || is_left(new)).unwrap_or_default();
+            unless(Errno::NOENT, rustix::fs::unlinkat(&self.handle, new.as_str(), AtFlags::empty()))?;
             let mut file = self.create(&new)?;
-            let written = file.write_all(bytes).and_then(|()| file.sync_all());
-            let renamed = written
-                .and_then(|()| Ok(rustix::fs::renameat(&self.handle, new.as_str(), &self.handle, name)?));
-            renamed.inspect_err(|_| drop(rustix::fs::unlinkat(&self.handle, new.as_str(), AtFlags::empty())))
+            file.write_all(bytes).and_then(|()| file.sync_all())?;
+            Ok(rustix::fs::renameat(&self.handle, new.as_str(), &self.handle, name)?)
         })
     }
 

@@ -156,7 +156,7 @@ impl RunFolder {
         Ok(names.filter(|name| name != LOCK && self.unfinished.has_file(name)).collect())
     }
 
-    /// Replaces the results of the earlier run, except `inputs` of this one, by the files that were written. The file with
+    /// Replaces the results of the earlier run, except `inputs` of this one and what is in them, by the files that were written. The file with
     /// the summary comes last.
     ///
     /// # Errors
@@ -179,7 +179,7 @@ impl RunFolder {
             self.earlier.check_replaceable(folder, &name)?;
             new.add(unfinished, &name).map_err(|why| self.failed(why))?;
         }
-        let is_kept = |name: &str| inputs.iter().any(|input| same(input, &folder.join(name)));
+        let is_kept = |name: &str| inputs.iter().any(|input| is_below(&folder.join(name), input));
         let earlier =
             self.earlier.without(|name| self.adopted.contains(name) || is_kept(name) && !new.lists(name));
         for name in self.adopted.iter().filter(|name| folder.has_file(name)) {
@@ -290,9 +290,12 @@ fn keep_left_over(folder: &Folder, unfinished: &Folder) -> Result<Option<String>
     Ok(Some(format!("{path} has what a killed run has left; remove it if it is not needed")))
 }
 
-/// Whether two paths lead to the same file or folder.
-fn same(a: &Path, b: &Path) -> bool {
-    a.canonicalize().is_ok_and(|a| b.canonicalize().is_ok_and(|b| a == b))
+/// Whether a file is the same as another one, or is in or below a folder.
+pub fn is_below(file: &Path, other: &Path) -> bool {
+    let folder = file.parent().map(|folder| if folder == "" { Path::new(".") } else { folder });
+    let folder = folder.and_then(|folder| folder.canonicalize().ok());
+    let path = folder.zip(file.file_name()).map(|(folder, name)| folder.join(name));
+    path.is_some_and(|path| other.canonicalize().is_ok_and(|other| path.starts_with(other)))
 }
 
 #[cfg(test)]

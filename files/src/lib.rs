@@ -6,7 +6,7 @@ mod folder;
 mod marker;
 mod unfinished;
 
-pub use folder::RunFolder;
+pub use folder::{RunFolder, is_below};
 pub use unfinished::{Proof, UnfinishedFile, check_output, check_proven, open_to_append, replace};
 
 use disk::Folder;

@@ -87,6 +87,11 @@ impl UnfinishedFile {
         &self.path
     }
 
+    /// The path under which it is written.
+    pub fn unfinished(&self) -> PathBuf {
+        self.target.as_ref().map_or(self.path.clone(), |target| target.folder.join(&target.partial))
+    }
+
     /// The open file, to write to.
     pub fn file(&self) -> &File {
         &self.file

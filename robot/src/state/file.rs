@@ -4,7 +4,7 @@ use super::format::{Session, State};
 use super::settings::StateError;
 use files::{FileLock, OutputError, UnfinishedFile, check_proven, replace, sync_folder_of};
 use std::fs::{self, File};
-use std::io::{self, Read, Write};
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
@@ -27,7 +27,8 @@ pub struct StateFile {
     writing: Option<JoinHandle<io::Result<bool>>>,
     /// The number of sessions in the file as it was loaded, if all are complete: before another one is added, the file is kept.
     sessions: Option<usize>,
-    _lock: FileLock,
+    /// Until the value is dropped; `None` if the file is only read.
+    lock: Option<FileLock>,
 }
 
 impl StateFile {
@@ -45,14 +46,25 @@ impl StateFile {
         let why = "another run uses it; wait for its end, or give another file by --state";
         let busy = || io::Error::new(io::ErrorKind::ResourceBusy, why);
         let lock = FileLock::new(&target.with_added_extension("lock"))?.ok_or_else(busy)?;
+        let mut file = Self::to_load(path)?;
+        file.lock = Some(lock);
+        Ok(file)
+    }
+
+    /// The file with this name, to [`load`](Self::load) it: nothing is written, no lock either.
+    ///
+    /// # Errors
+    ///
+    /// When it is a link that leads to no file.
+    pub fn to_load(path: &Path) -> io::Result<Self> {
         Ok(Self {
             path: path.to_owned(),
-            target,
+            target: target_of(path)?,
             every: EVERY,
             last: Instant::now(),
             writing: None,
             sessions: None,
-            _lock: lock,
+            lock: None,
         })
     }
 
@@ -142,6 +154,7 @@ impl StateFile {
 impl Drop for StateFile {
     fn drop(&mut self) {
         self.wait().ok(); // the lock lasts until the last writing has ended
+        self.lock = None;
     }
 }
 
@@ -157,7 +170,7 @@ pub fn read_state(path: &Path) -> Result<State, StateError> {
     }
     let mut file = File::open(path)?;
     let mut bytes = Vec::new();
-    file.by_ref().take(State::MAGIC.len() as u64).read_to_end(&mut bytes)?;
+    (&file).take(State::MAGIC.len() as u64).read_to_end(&mut bytes)?;
     if !bytes.is_empty() && bytes != State::MAGIC {
         return Err(StateError::OtherKind); // and perhaps very long
     }

@@ -26,6 +26,7 @@ use results::{TrajectoryFile, cell_statistics, file_name, ros_map, things};
 use robot::{BUILD, Pilot, Robot, Settings, Turn};
 use sim::physics::WorldSpec;
 use std::io::stderr;
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 use viewer::recording::{Live, Recorder};
@@ -177,7 +178,8 @@ impl<'a> Outputs<'a> {
             say(stderr(), format_args!("error: {problem}"));
             failures.push(problem.to_string());
         }
-        self.folder.finish(&[])?;
+        let read = [Some(args.world.as_ref()), args.map.as_deref(), args.tour.as_deref()];
+        self.folder.finish(&read.into_iter().flatten().collect::<Vec<&Path>>())?;
         if !args.quiet {
             let (out, picture) = (args.out.display(), args.out.join(FIGURE_5_FILE));
             print(format_args!("{summary}\n  files     {out}: open {}", picture.display()))?;

@@ -115,7 +115,8 @@ fn what_the_node_says_is_in_the_log() {
 fn a_map_is_saved_and_loaded_as_by_slam_toolbox() {
     let folder = tempfile::tempdir().unwrap();
     let name = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
-    let mut pair = Pair::new(&parameters(Mode::Map), 0, None);
+    let map_folder = folder.path().to_str().unwrap().to_owned();
+    let mut pair = Pair::new(&Parameters { map_folder, ..parameters(Mode::Map) }, 0, None);
     let none = pair.call(Service::SaveMap, Call::Name(name("early")));
     assert_eq!(none, Reply::Code(2));
     pair.run(5.0);
