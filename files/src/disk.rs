@@ -93,9 +93,10 @@ impl Folder {
         self.open_file(name.as_ref(), OFlags::RDONLY)
     }
 
-    /// Opens a regular file to read and to write.
-    pub(super) fn file_to_write(&self, name: impl AsRef<Path>) -> io::Result<Option<File>> {
-        self.open_file(name.as_ref(), OFlags::RDWR)
+    /// Opens a regular file to read and to write; it is made unless it exists.
+    pub(super) fn file_to_write(&self, name: impl AsRef<Path>) -> io::Result<File> {
+        let name = name.as_ref();
+        self.open_file(name, OFlags::RDWR)?.map_or_else(|| self.create(name), Ok)
     }
 
     fn open_file(&self, name: &Path, access: OFlags) -> io::Result<Option<File>> {

@@ -59,7 +59,7 @@ impl Exchange {
     ) -> Result<(), OutputError> {
         let is_waiting = |name: &str| unfinished.has_file(name);
         for name in self.new.names().filter(|name| is_waiting(name)) {
-            self.earlier.check_replaceable(folder, name)?;
+            self.earlier.check_result(folder, name)?;
         }
         let earlier = moves.earlier.insert(unfinished.make_inner(EARLIER)?);
         let is_replaced = |name: &&String| is_waiting(name) || !self.new.lists(name);

@@ -106,7 +106,7 @@ impl RunFolder {
     ///
     /// When it would replace a file that no run wrote ([`OutputError::is_refusal`]).
     pub fn reserve(&self, name: &str) -> Result<PathBuf, OutputError> {
-        self.earlier.check_replaceable(&self.folder, name)?;
+        self.earlier.check_result(&self.folder, name)?;
         Ok(self.unfinished.join(name))
     }
 
@@ -176,7 +176,7 @@ impl RunFolder {
         let Self { folder, unfinished, .. } = self;
         let mut new = Marker::new();
         for name in self.written()? {
-            self.earlier.check_replaceable(folder, &name)?;
+            self.earlier.check_result(folder, &name)?;
             new.add(unfinished, &name).map_err(|why| self.failed(why))?;
         }
         let is_kept = |name: &str| inputs.iter().any(|input| is_below(&folder.join(name), input));
@@ -257,14 +257,13 @@ fn check_folder(folder: &Folder) -> Result<(), OutputError> {
 
 /// Checks that the results of no run would replace a file that no run wrote.
 fn check_names(folder: &Folder, earlier: &Marker) -> Result<(), OutputError> {
-    NAMES.split(' ').try_for_each(|name| earlier.check_replaceable(folder, name))
+    NAMES.split(' ').try_for_each(|name| earlier.check_result(folder, name))
 }
 
 /// Locks the inner folder.
 fn lock_folder(folder: &Folder, unfinished: &Folder) -> Result<File, OutputError> {
     let failed = |why| OutputError::new(&folder.path, why);
-    let known = unfinished.file_to_write(LOCK).map_err(failed)?;
-    let mut locked = known.map_or_else(|| unfinished.create(LOCK), Ok).map_err(failed)?;
+    let mut locked = unfinished.file_to_write(LOCK).map_err(failed)?;
     lock(&locked, &folder.path, "wait for it, or give this one another folder by --out")?;
     locked.write_all(LOCK_CONTENT).map_err(failed)?;
     Ok(locked)

@@ -7,7 +7,7 @@ mod marker;
 mod unfinished;
 
 pub use folder::{RunFolder, is_below};
-pub use unfinished::{Proof, UnfinishedFile, check_output, check_proven, open_to_append, replace};
+pub use unfinished::{Proof, UnfinishedFile, check_output, open_to_append, replace};
 
 use disk::Folder;
 use std::ffi::OsString;
@@ -56,12 +56,6 @@ pub fn write_file(
     UnfinishedFile::create(path)?.write(write)
 }
 
-/// Returns when the names in the folder of a file are on the disk. Not every file system can do this; the file is complete under
-/// one of its names.
-pub fn sync_folder_of(path: &Path) {
-    Folder::of(path).ok().and_then(|(folder, _)| folder.sync().ok());
-}
-
 /// Makes a folder, and its parent folders, unless it exists.
 ///
 /// # Errors
@@ -100,6 +94,9 @@ fn is_locked(file: &File) -> bool {
     false
 }
 
+/// Why a file beside a state, or the state, is not replaced.
+const FOREIGN: &str = "no run has written it, or it was changed since, and this one would replace it; move it, or give another file \
+                       by --state";
 /// The content of a lock: a file with another one is none.
 const LOCK: &[u8] = b"A run of curious uses the file beside this one.\n";
 
@@ -109,8 +106,6 @@ pub struct FileLock {
     folder: Folder,
     name: OsString,
     file: File,
-    /// Whether a run has made the file: an empty one of somebody else stays.
-    is_own: bool,
 }
 
 impl FileLock {
@@ -126,29 +121,25 @@ impl FileLock {
             io::Error::new(why.kind(), text)
         };
         for _ in 0..LOCK_TRIES {
-            let known = folder.file_to_write(&name).map_err(failed)?;
-            let is_new = known.is_none();
-            let made = known.map_or_else(|| folder.create(&name), Ok);
-            if is_new && made.as_ref().is_err_and(|why| why.kind() == io::ErrorKind::AlreadyExists) {
-                continue; // of another run, just now
-            }
-            let mut file = made.map_err(failed)?;
-            if is_new {
-                file.write_all(LOCK).map_err(failed)?;
-            }
+            let mut file = match folder.file_to_write(&name) {
+                Err(why) if why.kind() == io::ErrorKind::AlreadyExists => continue, // of another run, just now
+                file => file.map_err(failed)?,
+            };
             if !is_locked(&file) {
                 return Ok(None);
             }
             // Another run can have removed the file after it was opened here.
-            let Some(named) = folder.file(&name)?.filter(|named| is_same(&file, named)) else { continue };
-            let mut content = Vec::new();
-            named.take(1 + LOCK.len() as u64).read_to_end(&mut content)?;
-            let is_own = content == LOCK;
-            if !is_own && !content.is_empty() {
-                let why = "no run has written it; move it, or give another file";
-                return Err(io::Error::other(format!("{}: {why}", path.display())));
+            if folder.file(&name)?.is_none_or(|named| !is_same(&file, &named)) {
+                continue;
             }
-            return Ok(Some(Self { folder, name, file, is_own }));
+            let mut content = Vec::new();
+            (&file).take(1 + LOCK.len() as u64).read_to_end(&mut content)?;
+            if content.is_empty() {
+                file.write_all(LOCK).map_err(failed)?;
+            } else if content != LOCK {
+                return Err(io::Error::other(format!("{}: {FOREIGN}", path.display())));
+            }
+            return Ok(Some(Self { folder, name, file }));
         }
         Ok(None)
     }
@@ -157,11 +148,10 @@ impl FileLock {
 impl Drop for FileLock {
     fn drop(&mut self) {
         // While it is locked: a process that has opened it looks again.
-        if self.is_own
-            && self
-                .folder
-                .file(&self.name)
-                .is_ok_and(|named| named.is_some_and(|named| is_same(&self.file, &named)))
+        if self
+            .folder
+            .file(&self.name)
+            .is_ok_and(|named| named.is_some_and(|named| is_same(&self.file, &named)))
         {
             self.folder.remove(&self.name).ok();
         }

@@ -41,7 +41,7 @@ pub(super) struct Marker {
 /// The length in bytes, and the hash (XXH3-128, hexadecimal), of a file.
 #[derive(Clone, Debug, Deserialize, PartialEq, Eq, Serialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Content {
+struct Content {
     bytes: u64,
     xxh3: String,
 }
@@ -84,13 +84,8 @@ impl Marker {
     /// Adds the file with this name in `folder`.
     pub(super) fn add(&mut self, folder: &Folder, name: &str) -> io::Result<()> {
         let file = folder.file(name)?.ok_or(io::ErrorKind::NotFound)?;
-        self.set(name, Content::of(file)?);
+        self.files.insert(name.to_owned(), Content::of(file)?);
         Ok(())
-    }
-
-    /// Adds a file.
-    pub(super) fn set(&mut self, name: &str, content: Content) {
-        self.files.insert(name.to_owned(), content);
     }
 
     /// This marker without the files of which `is_left_out` holds.
@@ -117,29 +112,18 @@ impl Marker {
         is_as_long && Content::of(file).is_ok_and(|found| found == *content)
     }
 
-    /// Checks that nothing has this name in the folder, or that it is a file of this marker.
+    /// Checks that nothing has the name of a result in the folder, or that it is a file of this marker.
     ///
     /// # Errors
     ///
     /// When it is something else.
-    pub(super) fn check_replaceable(&self, folder: &Folder, name: &str) -> Result<(), OutputError> {
-        if folder.is_free(name) || self.proves(folder, name) {
-            return Ok(());
-        }
-        let why = if self.lists(name) {
-            "it was changed since a run wrote it, and the results would replace it"
-        } else {
-            "the results would replace it, and no run of this version wrote it (an earlier version may have)"
-        };
-        Err(OutputError::refused(
-            &folder.join(name),
-            format!("{why}; move it, or give another folder by --out"),
-        ))
+    pub(super) fn check_result(&self, folder: &Folder, name: &str) -> Result<(), OutputError> {
+        check(&[self], folder, name, "give another folder by --out")
     }
 }
 
 impl Content {
-    pub(super) fn of(mut file: File) -> io::Result<Self> {
+    fn of(mut file: File) -> io::Result<Self> {
         let mut hash = Xxh3::new();
         let bytes = io::copy(&mut file, &mut hash)?;
         Ok(Self { bytes, xxh3: format!("{:032x}", hash.digest128()) })
@@ -168,33 +152,36 @@ pub(super) fn is_of_a_run(folder: &Folder) -> bool {
 ///
 /// When it is something else, or a name that runs use for themselves.
 pub(super) fn check_file(folder: &Folder, name: &OsStr) -> Result<(), OutputError> {
-    let refused = |why: &str| Err(OutputError::refused(&folder.join(name), why.into()));
     let Some(plain) = name.to_str().filter(|name| is_plain(name)) else {
-        return refused("a file of a run has no such name; choose another one");
+        let why = "a file of a run has no such name; choose another one";
+        return Err(OutputError::refused(&folder.join(name), why.into()));
     };
     let markers = [Marker::read(folder, FILES)?, Marker::read(folder, RESULTS)?];
-    if folder.find(name).map_err(|why| OutputError::new(&folder.join(name), why))?.is_none() {
-        Ok(())
-    } else if !folder.has_file(name) {
-        refused("it is a link or no file, and is not replaced; choose another name")
-    } else if is_of_a_run(folder) || !markers.iter().any(|marker| marker.lists(plain)) {
-        refused(
-            "there is a file with this name that no run of this version wrote; move it, or choose another name",
-        )
-    } else if !markers.iter().any(|marker| marker.proves(folder, plain)) {
-        refused("it was changed since a run wrote it; move it, or choose another name")
-    } else {
-        Ok(())
+    let markers = if is_of_a_run(folder) { Vec::new() } else { Vec::from_iter(&markers) };
+    check(&markers, folder, plain, "choose another name")
+}
+
+fn check(markers: &[&Marker], folder: &Folder, name: &str, advice: &str) -> Result<(), OutputError> {
+    let path = folder.join(name);
+    let found = folder.find(name).map_err(|why| OutputError::new(&path, why))?;
+    if found.is_none() || markers.iter().any(|marker| marker.proves(folder, name)) {
+        return Ok(());
     }
+    let why = if markers.iter().any(|marker| marker.lists(name)) {
+        "it was changed since a run wrote it"
+    } else {
+        "no run of this version wrote it (an earlier version may have)"
+    };
+    let why = format!("the results would replace it, and {why}; move it, or {advice}");
+    Err(OutputError::refused(&path, why))
 }
 
 /// Lists a file that a run wrote, and leaves out what is gone.
-pub(super) fn record(folder: &Folder, name: &OsStr, content: Content) -> Result<(), OutputError> {
-    let Some(name) = name.to_str() else { return Ok(()) };
+pub(super) fn record(folder: &Folder, name: &str) -> Result<(), OutputError> {
     // Other runs list their files in the same marker.
     let lock = folder.to_lock().and_then(|lock| lock.lock().map(|()| lock));
     let mut marker = Marker::read(folder, FILES)?.without(|name| folder.is_free(name));
-    marker.set(name, content);
+    marker.add(folder, name).map_err(|why| OutputError::new(&folder.join(name), why))?;
     let written = marker.write(folder, FILES);
     drop(lock);
     written

@@ -1,11 +1,12 @@
 //! A file that has its name only when it is complete.
 
 use super::disk::Folder;
-use super::marker::{Content, check_file, is_of_a_run, record};
-use super::{OutputError, is_locked};
+use super::marker::{check_file, is_of_a_run, record};
+use super::{FOREIGN, OutputError, is_locked};
 use std::ffi::{OsStr, OsString};
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
+use std::os::unix::fs::FileTypeExt;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::channel;
 use std::thread;
@@ -56,20 +57,16 @@ impl UnfinishedFile {
         Self::with_proof(path, None)
     }
 
-    /// The same for a kind of file whose content shows that a run wrote it.
+    /// The same, with a proof for a kind of file whose content shows that a run wrote it.
     ///
     /// # Errors
     ///
     /// As [`UnfinishedFile::create`].
-    pub fn create_proven(path: &Path, proof: Proof) -> Result<Self, OutputError> {
-        Self::with_proof(path, Some(proof))
-    }
-
-    fn with_proof(path: &Path, proof: Option<Proof>) -> Result<Self, OutputError> {
+    pub fn with_proof(path: &Path, proof: Option<Proof>) -> Result<Self, OutputError> {
         let failed = |why: io::Error| OutputError::new(path, why);
         match fs::metadata(path) {
             Ok(known) if known.is_dir() => return Err(failed(io::ErrorKind::IsADirectory.into())),
-            Ok(known) if !known.is_file() => {
+            Ok(known) if known.file_type().is_char_device() || known.file_type().is_fifo() => {
                 let file = open_device(path).map_err(failed)?;
                 return Ok(Self { path: path.to_owned(), target: None, file });
             }
@@ -125,13 +122,13 @@ impl UnfinishedFile {
             self.target = None;
             return Err(OutputError::refused(&error.path, why));
         }
-        let written = folder.file(partial).map_err(failed)?;
-        let written =
-            written.ok_or_else(|| failed(io::Error::other("it was removed while it was written")))?;
-        let is_listed = proof.is_none() && !is_of_a_run(folder); // such a run lists its files itself
-        let content = is_listed.then(|| Content::of(written)).transpose().map_err(failed)?;
+        if !folder.has_file(partial) {
+            return Err(failed(io::Error::other("it was removed while it was written")));
+        }
         folder.rename(partial, folder, name)?;
-        let recorded = content.map_or(Ok(()), |content| record(folder, name, content));
+        // A run lists the files in its folder itself.
+        let listed = name.to_str().filter(|_| proof.is_none() && !is_of_a_run(folder));
+        let recorded = listed.map_or_else(|| folder.sync(), |name| record(folder, name));
         self.target = None;
         recorded
     }
@@ -155,28 +152,17 @@ impl Drop for UnfinishedFile {
     }
 }
 
-/// Checks that a run may write this file, before any work on it.
+/// Checks that a run may write this file, with its proof if it has one, before any work on it.
 ///
 /// # Errors
 ///
 /// As [`UnfinishedFile::create`].
-pub fn check_output(path: &Path) -> Result<(), OutputError> {
+pub fn check_output(path: &Path, proof: Option<Proof>) -> Result<(), OutputError> {
     match Folder::of(path) {
         Err(why) if why.kind() == io::ErrorKind::NotFound => Ok(()), // the folder is still to be made
-        found => found
-            .map_err(|why| OutputError::new(path, why))
-            .and_then(|(folder, name)| check_file(&folder, &name)),
+        Err(why) => Err(OutputError::new(path, why)),
+        Ok((folder, name)) => check(&folder, &name, proof),
     }
-}
-
-/// The same for a kind of file whose content shows that a run wrote it.
-///
-/// # Errors
-///
-/// As [`UnfinishedFile::create`].
-pub fn check_proven(path: &Path, proof: Proof) -> Result<(), OutputError> {
-    let (folder, name) = Folder::of(path).map_err(|why| OutputError::new(path, why))?;
-    check(&folder, &name, Some(proof))
 }
 
 /// Gives a file with a proof the name of another one with a proof, in the same folder.
@@ -201,7 +187,7 @@ pub fn replace(file: &Path, by: &Path, proof: Proof) -> Result<(), OutputError> 
 /// When the file cannot be written, or is a link.
 pub fn open_to_append(path: &Path) -> io::Result<File> {
     let (folder, name) = Folder::of(path)?;
-    folder.file_to_write(&name)?.map_or_else(|| folder.create(&name), Ok)
+    folder.file_to_write(&name)
 }
 
 fn check(folder: &Folder, name: &OsStr, proof: Option<Proof>) -> Result<(), OutputError> {
@@ -209,8 +195,7 @@ fn check(folder: &Folder, name: &OsStr, proof: Option<Proof>) -> Result<(), Outp
     if folder.is_free(name) || folder.file(name).is_ok_and(|file| file.is_some_and(|file| proof(&file))) {
         return Ok(());
     }
-    let why = "no run has written it, or it was changed since, and this run would replace it; move it, or give another file";
-    Err(OutputError::refused(&folder.join(name), why.into()))
+    Err(OutputError::refused(&folder.join(name), FOREIGN.into()))
 }
 
 /// Creates the file with the first temporary name that is free.

@@ -1,6 +1,6 @@
 use files::{OutputError, UnfinishedFile};
-use pyo3::exceptions::{PyFileExistsError, PyOSError};
 use pyo3::prelude::*;
+use std::io;
 use std::path::PathBuf;
 
 /// A file that appears when it is complete: `with curious.Output("map.npz") as path: np.savez(path, ...)` writes to a temporary
@@ -33,8 +33,5 @@ impl Output {
 }
 
 fn os_error(error: OutputError) -> PyErr {
-    match error.is_refusal() {
-        true => PyFileExistsError::new_err(error.to_string()),
-        false => PyOSError::new_err(error.to_string()),
-    }
+    io::Error::new(error.why.kind(), error.to_string()).into()
 }

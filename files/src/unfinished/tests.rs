@@ -94,7 +94,7 @@ fn a_file_with_a_proof_is_replaced_by_it_alone() {
     let folder = tempfile::tempdir().unwrap();
     let [path, other] = ["a.state", "b.state"].map(|name| folder.path().join(name));
     let write = |text: &str| {
-        UnfinishedFile::create_proven(&path, is_own)?.write(|file| file.write_all(text.as_bytes()))
+        UnfinishedFile::with_proof(&path, Some(is_own))?.write(|file| file.write_all(text.as_bytes()))
     };
     write("own 1").unwrap();
     write("own 2").unwrap();

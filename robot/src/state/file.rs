@@ -2,7 +2,7 @@
 
 use super::format::{Session, State};
 use super::settings::StateError;
-use files::{FileLock, OutputError, UnfinishedFile, check_proven, replace, sync_folder_of};
+use files::{FileLock, OutputError, UnfinishedFile, check_output, replace};
 use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
@@ -42,7 +42,7 @@ impl StateFile {
         let target = target_of(path)?;
         let other =
             |OutputError { path, why }| io::Error::new(why.kind(), format!("{}: {why}", path.display()));
-        check_proven(&earlier_of(&target), is_state).map_err(other)?;
+        check_output(&earlier_of(&target), Some(is_state)).map_err(other)?;
         let why = "another run uses it; wait for its end, or give another file by --state";
         let busy = || io::Error::new(io::ErrorKind::ResourceBusy, why);
         let lock = FileLock::new(&target.with_added_extension("lock"))?.ok_or_else(busy)?;
@@ -213,7 +213,7 @@ fn is_state(mut file: &File) -> bool {
 /// Copies the file as it is now: what is saved next can be undone.
 fn keep(path: &Path) -> io::Result<()> {
     let mut present = File::open(path)?;
-    let kept = UnfinishedFile::create_proven(&earlier_of(path), is_state)
+    let kept = UnfinishedFile::with_proof(&earlier_of(path), Some(is_state))
         .and_then(|file| file.write(|file| io::copy(&mut present, file).map(drop)));
     kept.map_err(|OutputError { why, .. }| why)
 }
@@ -221,11 +221,9 @@ fn keep(path: &Path) -> io::Result<()> {
 /// Replaces the file at once and completely, or not at all.
 fn write(path: &Path, state: &State) -> io::Result<()> {
     let bytes = state.to_bytes().map_err(io::Error::other)?;
-    let written = UnfinishedFile::create_proven(path, is_state)
+    let written = UnfinishedFile::with_proof(path, Some(is_state))
         .and_then(|file| file.write(|file| file.write_all(&bytes)));
-    written.map_err(|OutputError { why, .. }| why)?;
-    sync_folder_of(path);
-    Ok(())
+    written.map_err(|OutputError { why, .. }| why)
 }
 
 #[cfg(test)]

@@ -117,7 +117,7 @@ impl State {
     ///
     /// When the bytes are another kind of file, are damaged, or come from another version.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, StateError> {
-        let Header { version, layout, packed } = Header::of(bytes)?;
+        let (version, layout, packed) = Self::parts(bytes)?;
         if version != VERSION {
             return Err(StateError::OtherVersion(version));
         }
@@ -132,29 +132,19 @@ impl State {
 
     /// Whether these are the bytes of a state of any version, as a program wrote them.
     pub(super) fn is_intact(bytes: &[u8]) -> bool {
-        Header::of(bytes).is_ok()
+        Self::parts(bytes).is_ok()
     }
-}
 
-/// The parts of a file whose checksum is right.
-struct Header<'a> {
-    version: u32,
-    layout: &'a [u8],
-    packed: &'a [u8],
-}
-
-impl<'a> Header<'a> {
-    fn of(bytes: &'a [u8]) -> Result<Self, StateError> {
-        let rest = bytes.strip_prefix(State::MAGIC).ok_or(StateError::OtherKind)?;
+    /// The version, the layout and the compressed body of a file with the right checksum.
+    fn parts(bytes: &[u8]) -> Result<(u32, &[u8], &[u8]), StateError> {
+        let rest = bytes.strip_prefix(Self::MAGIC).ok_or(StateError::OtherKind)?;
         let (version, rest) = rest.split_first_chunk().ok_or(StateError::Damaged)?;
         let version = u32::from_le_bytes(*version);
         let (layout, rest) = rest.split_at_checked(LAYOUT.len()).ok_or(StateError::Damaged)?;
         let (checksum, packed) = rest.split_first_chunk().ok_or(StateError::Damaged)?;
         // A flipped bit of the version is damage; another version has another checksum.
-        if u64::from_le_bytes(*checksum) != xxh3_64_with_seed(packed, version.into()) {
-            return Err(StateError::Damaged);
-        }
-        Ok(Self { version, layout, packed })
+        let is_right = u64::from_le_bytes(*checksum) == xxh3_64_with_seed(packed, version.into());
+        if is_right { Ok((version, layout, packed)) } else { Err(StateError::Damaged) }
     }
 }
 

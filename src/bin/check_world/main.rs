@@ -61,7 +61,7 @@ fn main() -> ExitCode {
 fn check(args: &Args) -> Result<ExitCode, Failure> {
     let endings = [(args.png, ".png"), (args.toml, ".toml")];
     for (_, ending) in endings.iter().filter(|(is_asked, _)| *is_asked) {
-        args.files.iter().try_for_each(|file| check_output(&result(args, file, ending)))?;
+        args.files.iter().try_for_each(|file| check_output(&result(args, file, ending), None))?;
     }
     let (mut code, mut written, mut printed) = (ExitCode::SUCCESS, BTreeSet::new(), Ok(()));
     for file in &args.files {
