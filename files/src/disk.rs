@@ -76,16 +76,7 @@ impl Folder {
 
     /// Whether a regular file has this name in the folder.
     pub(super) fn has_file(&self, name: impl AsRef<Path>) -> bool {
-        self.kind(name) == Some(FileType::RegularFile)
-    }
-
-    /// Whether a folder has this name in the folder.
-    pub(super) fn is_folder(&self, name: impl AsRef<Path>) -> bool {
-        self.kind(name) == Some(FileType::Directory)
-    }
-
-    fn kind(&self, name: impl AsRef<Path>) -> Option<FileType> {
-        self.find(name).ok().flatten().map(|found| FileType::from_raw_mode(found.st_mode))
+        self.find(name).is_ok_and(|found| found.is_some_and(|found| kind(&found).is_file()))
     }
 
     /// Opens a regular file; `None` if there is none. Links and what is not a file are errors: a pipe would wait for ever.
@@ -100,10 +91,10 @@ impl Folder {
     }
 
     fn open_file(&self, name: &Path, access: OFlags) -> io::Result<Option<File>> {
+        let flags = access | FLAGS | OFlags::NONBLOCK;
         match self.find(name)? {
             None => Ok(None),
-            Some(_) if self.has_file(name) => {
-                let flags = access | FLAGS | OFlags::NONBLOCK;
+            Some(found) if kind(&found).is_file() => {
                 Ok(Some(rustix::fs::openat(&self.handle, name, flags, Mode::empty())?.into()))
             }
             Some(_) => Err(io::Error::other("it is not a regular file")),
@@ -158,13 +149,9 @@ impl Folder {
         self.run(name, || unless(Errno::NOENT, rustix::fs::unlinkat(&self.handle, name, AtFlags::empty())))
     }
 
-    /// Removes a folder in this one, if it exists. A folder with something in it stays.
+    /// Removes a folder in this one. A folder with something in it stays.
     pub(super) fn remove_inner(&self, name: &str) -> Result<(), OutputError> {
-        let remove = || match rustix::fs::unlinkat(&self.handle, name, AtFlags::REMOVEDIR) {
-            Err(Errno::NOTEMPTY | Errno::EXIST | Errno::NOENT) => Ok(()),
-            removed => Ok(removed?),
-        };
-        self.run(name, remove)
+        self.run(name, || unless(Errno::NOTEMPTY, rustix::fs::unlinkat(&self.handle, name, AtFlags::REMOVEDIR)))
     }
 
     /// All names in the folder, sorted.
@@ -181,11 +168,6 @@ impl Folder {
     /// Returns when the names in the folder are on the disk. Not every file system can do this.
     pub(super) fn sync(&self) -> Result<(), OutputError> {
         self.run("", || Ok(rustix::fs::fsync(&self.handle).unwrap_or(())))
-    }
-
-    /// Returns when a file in the folder is on the disk.
-    pub(super) fn sync_file(&self, name: &str) -> Result<(), OutputError> {
-        self.run(name, || self.file(name)?.map_or(Ok(()), |file| file.sync_all()))
     }
 
     /// Whether a path still leads to this folder.
@@ -209,6 +191,10 @@ impl Folder {
         let operation = || faults::next().and_then(|()| operation());
         operation().map_err(failed)
     }
+}
+
+pub(super) fn kind(found: &Stat) -> FileType {
+    FileType::from_raw_mode(found.st_mode)
 }
 
 fn unless(harmless: Errno, done: rustix::io::Result<()>) -> io::Result<()> {

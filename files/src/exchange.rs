@@ -40,9 +40,7 @@ impl Exchange {
 
     /// Writes the journal: from now on the exchange is finished, by this run or by the next one.
     pub(super) fn begin(&self, unfinished: &Folder) -> Result<(), OutputError> {
-        // After a loss of power as well, a journal belongs to complete results.
-        let mut written = self.new.names().filter(|name| unfinished.has_file(name));
-        written.try_for_each(|name| unfinished.sync_file(name))?;
+        // After a loss of power as well, a journal belongs to complete results: each of them is on the disk.
         unfinished.write(JOURNAL, &json(self))
     }
 

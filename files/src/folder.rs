@@ -218,14 +218,12 @@ impl Drop for RunFolder {
 /// with it the lock.
 fn remove_unfinished(folder: &Folder, unfinished: &Folder) -> Result<(), OutputError> {
     let names = unfinished.names().map_err(|why| OutputError::new(&unfinished.path, why))?;
-    let (folders, files): (Vec<_>, Vec<_>) =
-        names.into_iter().filter(|name| name != LOCK).partition(|name| unfinished.is_folder(name));
-    files.iter().try_for_each(|name| unfinished.remove(name))?;
-    if folders.is_empty() {
-        unfinished.remove(LOCK)?;
-        folder.remove_inner(UNFINISHED)?;
+    let others = names.iter().filter(|name| *name != LOCK);
+    if others.filter(|name| unfinished.remove(name).is_err()).count() > 0 {
+        return Ok(());
     }
-    Ok(())
+    unfinished.remove(LOCK)?;
+    folder.remove_inner(UNFINISHED)
 }
 
 /// Checks that a folder is none of a run that goes on, that what it has of an unfinished run is of a run, and that no result would
