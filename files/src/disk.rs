@@ -151,7 +151,9 @@ impl Folder {
 
     /// Removes a folder in this one. A folder with something in it stays.
     pub(super) fn remove_inner(&self, name: &str) -> Result<(), OutputError> {
-        self.run(name, || unless(Errno::NOTEMPTY, rustix::fs::unlinkat(&self.handle, name, AtFlags::REMOVEDIR)))
+        self.run(name, || {
+            unless(Errno::NOTEMPTY, rustix::fs::unlinkat(&self.handle, name, AtFlags::REMOVEDIR))
+        })
     }
 
     /// All names in the folder, sorted.

@@ -5,7 +5,7 @@ use super::marker::{check_file, is_of_a_run, record};
 use super::{FOREIGN, OutputError, is_locked};
 use std::ffi::{OsStr, OsString};
 use std::fs::{self, File};
-use std::io::{self, BufWriter, Write};
+use std::io::{self, BufWriter, Read, Write};
 use std::os::unix::fs::FileTypeExt;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::channel;
@@ -17,8 +17,14 @@ const READER_TIMEOUT: Duration = Duration::from_secs(5);
 /// The number of incomplete files that killed runs can leave of one file.
 const MAX_LEFT: u32 = 9;
 
-/// Whether the content of a file shows that a run wrote it, and that it was not changed since.
-pub type Proof = fn(&File) -> bool;
+/// A kind of file whose content shows that a run wrote it.
+#[derive(Clone, Copy, Debug)]
+pub struct Proof {
+    /// How such a file begins: of an incomplete one, nothing else is known.
+    pub start: &'static [u8],
+    /// Whether a file is complete, and was not changed.
+    pub is_intact: fn(&File) -> bool,
+}
 
 /// A file that is being written under a temporary name in the same folder: `run.unfinished.rrd` for `run.rrd`. A file
 /// that is dropped before it is finished is removed; a killed run leaves it, and the next one takes another name:
@@ -74,7 +80,7 @@ impl UnfinishedFile {
         }
         let (folder, name) = Folder::of(path).map_err(failed)?;
         check(&folder, &name, proof)?;
-        let (file, partial) = partial(&folder, &name)?;
+        let (file, partial) = partial(&folder, &name, proof)?;
         let target = Target { folder, name, partial, proof };
         Ok(Self { path: path.to_owned(), target: Some(target), file })
     }
@@ -192,25 +198,34 @@ pub fn open_to_append(path: &Path) -> io::Result<File> {
 
 fn check(folder: &Folder, name: &OsStr, proof: Option<Proof>) -> Result<(), OutputError> {
     let Some(proof) = proof else { return check_file(folder, name) };
-    if folder.is_free(name) || folder.file(name).is_ok_and(|file| file.is_some_and(|file| proof(&file))) {
+    if folder.is_free(name)
+        || folder.file(name).is_ok_and(|file| file.is_some_and(|file| (proof.is_intact)(&file)))
+    {
         return Ok(());
     }
     Err(OutputError::refused(&folder.join(name), FOREIGN.into()))
 }
 
-/// Creates the file with the first temporary name that is free.
-fn partial(folder: &Folder, name: &OsStr) -> Result<(File, OsString), OutputError> {
+/// Creates the file with the first temporary name that is free. What a killed run has left of a file with a proof is removed.
+fn partial(folder: &Folder, name: &OsStr, proof: Option<Proof>) -> Result<(File, OsString), OutputError> {
     let path = folder.join(name);
-    for number in 1..=MAX_LEFT {
-        let partial = temporary_name(Path::new(name), number);
-        match folder.create(&partial) {
-            Err(why) if why.kind() == io::ErrorKind::AlreadyExists => {
-                let left = folder.file(&partial).ok().flatten();
-                if left.is_some_and(|left| !is_locked(&left)) {
-                    let why = "another run is writing there; wait for it, or give another name";
-                    return Err(OutputError::new(&path, io::Error::new(io::ErrorKind::ResourceBusy, why)));
-                }
+    for partial in (1..=MAX_LEFT).map(|number| temporary_name(Path::new(name), number)) {
+        if let Some(left) = folder.file(&partial).ok().flatten() {
+            if !is_locked(&left) {
+                let why = "another run is writing there; wait for it, or give another name";
+                return Err(OutputError::new(&path, io::Error::new(io::ErrorKind::ResourceBusy, why)));
             }
+            let mut start = Vec::new();
+            let is_left = |proof: Proof| {
+                left.take(proof.start.len() as u64).read_to_end(&mut start).is_ok()
+                    && proof.start.starts_with(&start)
+            };
+            if proof.is_some_and(is_left) {
+                folder.remove(&partial)?;
+            }
+        }
+        match folder.create(&partial) {
+            Err(why) if why.kind() == io::ErrorKind::AlreadyExists => {}
             created => {
                 let file = created.map_err(|why| OutputError::new(&path, why))?;
                 is_locked(&file); // nobody else has opened it

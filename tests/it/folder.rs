@@ -120,7 +120,8 @@ fn a_log_that_is_read_stays() {
     run.goes_well("--quiet --duration 30 --no-rrd --out bag --mcap bag/a.mcap");
     let before = std::fs::read(run.path("bag/a.mcap")).unwrap();
     let run = run.with("map_log");
-    for arguments in ["bag --mcap bag/a.mcap", "bag/a.mcap --mcap bag/../bag/a.mcap", "bag --mcap bag/b.mcap"] {
+    for arguments in ["bag --mcap bag/a.mcap", "bag/a.mcap --mcap bag/../bag/a.mcap", "bag --mcap bag/b.mcap"]
+    {
         let ended = run.ends(&format!("{arguments} --no-rrd --quiet"));
         assert_eq!(ended.code, Some(2), "{ended:?}");
         ended.says(&["would replace a log that is read, or be in its folder"]);

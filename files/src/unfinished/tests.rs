@@ -91,12 +91,25 @@ fn a_file_with_a_proof_is_replaced_by_it_alone() {
         let mut text = String::new();
         io::Read::read_to_string(&mut file, &mut text).is_ok() && text.starts_with("own")
     }
+    let is_own = Proof { start: b"own", is_intact: is_own };
     let folder = tempfile::tempdir().unwrap();
     let [path, other] = ["a.state", "b.state"].map(|name| folder.path().join(name));
     let write = |text: &str| {
         UnfinishedFile::with_proof(&path, Some(is_own))?.write(|file| file.write_all(text.as_bytes()))
     };
+    let [killed, foreign] =
+        ["a.unfinished.state", "a.unfinished_2.state"].map(|name| folder.path().join(name));
+    for left in ["", "o", "own half"] {
+        fs::write(&killed, left).unwrap();
+        write("own 1").unwrap();
+        assert!(!killed.exists(), "{left}");
+    }
+    [&killed, &foreign].iter().for_each(|file| fs::write(file, "of the user").unwrap());
     write("own 1").unwrap();
+    [killed, foreign].iter().for_each(|file| {
+        assert_eq!(fs::read(file).unwrap(), b"of the user");
+        fs::remove_file(file).unwrap();
+    });
     write("own 2").unwrap();
     assert!(super::replace(&path, &other, is_own).unwrap_err().why.kind() == io::ErrorKind::NotFound);
     fs::write(&other, "of the user").unwrap();

@@ -2,7 +2,7 @@
 
 use super::format::{Session, State};
 use super::settings::StateError;
-use files::{FileLock, OutputError, UnfinishedFile, check_output, replace};
+use files::{FileLock, OutputError, Proof, UnfinishedFile, check_output, replace};
 use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
@@ -42,7 +42,7 @@ impl StateFile {
         let target = target_of(path)?;
         let other =
             |OutputError { path, why }| io::Error::new(why.kind(), format!("{}: {why}", path.display()));
-        check_output(&earlier_of(&target), Some(is_state)).map_err(other)?;
+        check_output(&earlier_of(&target), Some(PROOF)).map_err(other)?;
         let why = "another run uses it; wait for its end, or give another file by --state";
         let busy = || io::Error::new(io::ErrorKind::ResourceBusy, why);
         let lock = FileLock::new(&target.with_added_extension("lock"))?.ok_or_else(busy)?;
@@ -104,7 +104,7 @@ impl StateFile {
     ///
     /// When no file was kept.
     pub fn restore_earlier(&self) -> io::Result<()> {
-        replace(&self.target, &earlier_of(&self.target), is_state).map_err(|OutputError { why, .. }| why)
+        replace(&self.target, &earlier_of(&self.target), PROOF).map_err(|OutputError { why, .. }| why)
     }
 
     /// Whether it is time to [`save`](Self::save).
@@ -204,6 +204,9 @@ fn target_of(path: &Path) -> io::Result<PathBuf> {
     }
 }
 
+/// How a state shows that a run wrote it.
+const PROOF: Proof = Proof { start: State::MAGIC, is_intact: is_state };
+
 /// Whether a file is a state as it was written: it has its checksum.
 fn is_state(mut file: &File) -> bool {
     let mut bytes = Vec::new();
@@ -213,7 +216,7 @@ fn is_state(mut file: &File) -> bool {
 /// Copies the file as it is now: what is saved next can be undone.
 fn keep(path: &Path) -> io::Result<()> {
     let mut present = File::open(path)?;
-    let kept = UnfinishedFile::with_proof(&earlier_of(path), Some(is_state))
+    let kept = UnfinishedFile::with_proof(&earlier_of(path), Some(PROOF))
         .and_then(|file| file.write(|file| io::copy(&mut present, file).map(drop)));
     kept.map_err(|OutputError { why, .. }| why)
 }
@@ -221,7 +224,7 @@ fn keep(path: &Path) -> io::Result<()> {
 /// Replaces the file at once and completely, or not at all.
 fn write(path: &Path, state: &State) -> io::Result<()> {
     let bytes = state.to_bytes().map_err(io::Error::other)?;
-    let written = UnfinishedFile::with_proof(path, Some(is_state))
+    let written = UnfinishedFile::with_proof(path, Some(PROOF))
         .and_then(|file| file.write(|file| file.write_all(&bytes)));
     written.map_err(|OutputError { why, .. }| why)
 }

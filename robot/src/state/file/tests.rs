@@ -16,7 +16,7 @@ fn a_file_appears_when_it_is_complete_and_is_replaced() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("house.state");
     let left = folder.path().join("house.unfinished.state");
-    fs::write(&left, &state().to_bytes().unwrap()[..30]).unwrap(); // of a killed run, or of the user
+    fs::write(&left, &state().to_bytes().unwrap()[..30]).unwrap(); // of a killed run
     fs::write(path.with_added_extension("lock"), "").unwrap();
     let mut file = StateFile::open(&path).unwrap();
     assert!(file.load().unwrap().is_none() && !file.is_due());
@@ -27,8 +27,13 @@ fn a_file_appears_when_it_is_complete_and_is_replaced() {
     let file = file.every(Duration::ZERO);
     assert!(file.is_due());
     drop(file);
-    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
-    assert_eq!(fs::read(left).unwrap().len(), 30);
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    fs::write(&left, "of the user").unwrap();
+    let mut file = StateFile::open(&path).unwrap();
+    file.save(state).unwrap();
+    file.wait().unwrap();
+    drop(file);
+    assert_eq!(fs::read_to_string(&left).unwrap(), "of the user");
     fs::write(&path, "[world]").unwrap();
     insta::assert_snapshot!(read_state(&path).unwrap_err().to_string(), @"this is not a state file");
 }

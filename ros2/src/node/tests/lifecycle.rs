@@ -174,8 +174,28 @@ fn services_replace_no_file_of_others() {
     };
     let before = [&maps, &home].map(|folder| everything(folder));
     for bad in [
-        "other", "picture", "foreign", "locked", "kept", "dangling", "link/new", "link/other", "../home/new", "none/new", "..", "/", "below/",
-        "a\nimage: /etc/passwd\n#", "a: {b", "\u{1b}[2J", "~/.x$", "/dev/null", "/proc/self/x", &outside, &"x".repeat(300), &"a/".repeat(3000),
+        "other",
+        "picture",
+        "foreign",
+        "locked",
+        "kept",
+        "dangling",
+        "link/new",
+        "link/other",
+        "../home/new",
+        "none/new",
+        "..",
+        "/",
+        "below/",
+        "a\nimage: /etc/passwd\n#",
+        "a: {b",
+        "\u{1b}[2J",
+        "~/.x$",
+        "/dev/null",
+        "/proc/self/x",
+        &outside,
+        &"x".repeat(300),
+        &"a/".repeat(3000),
     ] {
         let saved = pair.call(Service::SaveMap, Call::Name(bad.to_owned()));
         let has_own_endings = ["foreign", "locked", "kept"].contains(&bad);
@@ -183,7 +203,8 @@ fn services_replace_no_file_of_others() {
         assert_eq!(saved == Reply::Code(0), has_own_endings, "{bad}");
         assert_eq!(serialized == Reply::Code(0), ["other", "picture", "dangling"].contains(&bad), "{bad}");
     }
-    let changed: Vec<_> = before.iter().flatten().filter(|(text, file)| std::fs::read(file).ok() != *text).collect();
+    let changed: Vec<_> =
+        before.iter().flatten().filter(|(text, file)| std::fs::read(file).ok() != *text).collect();
     assert!(changed.is_empty(), "{changed:?}");
     assert_eq!(everything(&home), before[1]);
 }
@@ -195,7 +216,13 @@ fn frames_have_names_of_their_own() {
         Parameters { map_frame, odom_frame, base_frame, ..parameters(Mode::Map) }.check()
     };
     frames("map", "odom", "base_link").unwrap();
-    for (map, odom, base) in [("map", "map", "b"), ("map", "/map", "b"), ("map", "odom", "odom"), ("map", "odom", "/map"), ("map", "/", "b")] {
+    for (map, odom, base) in [
+        ("map", "map", "b"),
+        ("map", "/map", "b"),
+        ("map", "odom", "odom"),
+        ("map", "odom", "/map"),
+        ("map", "/", "b"),
+    ] {
         frames(map, odom, base).unwrap_err();
     }
     let error = frames("map", "map", "base_link").unwrap_err().to_string();
