@@ -8,8 +8,8 @@ use sim::physics::SnapshotError;
 /// A number of tasks of the same kind.
 pub struct Batch {
     slots: Vec<Slot>,
-    /// Whether the tasks are stepped on the threads of the present rayon pool (the default for more than one task), or on this thread alone. The
-    /// results are the same.
+    /// Whether the tasks are stepped on the threads of the present rayon pool (the default for more than one
+    /// task), or on this thread alone. The results are the same.
     pub is_parallel: bool,
     /// Whether a task that is over is reset in the same step (the default), or stands still until it is reset.
     pub is_autoreset: bool,

@@ -1,7 +1,8 @@
-//! Folders by open handles, and the operations on files in them. In tests, each operation that changes something can fail.
+//! Folders by open handles, and the operations on files in them. In tests, each operation that changes
+//! something can fail.
 //!
-//! A folder can come from a stranger. A name in it is therefore always looked up in the open folder and never followed if it is a
-//! link: whatever is read, made, moved or removed is inside.
+//! A folder can come from a stranger. A name in it is therefore always looked up in the open folder and never
+//! followed if it is a link: whatever is read, made, moved or removed is inside.
 
 use super::OutputError;
 use rustix::fs::{AtFlags, Dir, FileType, Mode, OFlags, Stat};
@@ -79,7 +80,8 @@ impl Folder {
         self.find(name).is_ok_and(|found| found.is_some_and(|found| kind(&found).is_file()))
     }
 
-    /// Opens a regular file; `None` if there is none. Links and what is not a file are errors: a pipe would wait for ever.
+    /// Opens a regular file; `None` if there is none. Links and what is not a file are errors: a pipe would
+    /// wait for ever.
     pub(super) fn file(&self, name: impl AsRef<Path>) -> io::Result<Option<File>> {
         self.open_file(name.as_ref(), OFlags::RDONLY)
     }
@@ -115,7 +117,8 @@ impl Folder {
         Ok(rustix::fs::openat(&self.handle, name.as_ref(), flags, Mode::from(0o666))?.into())
     }
 
-    /// Writes a file that lists names: it is either complete or as it was. What a killed run has left of it is removed.
+    /// Writes a file that lists names: it is either complete or as it was. What a killed run has left of it
+    /// is removed.
     pub(super) fn write(&self, name: &str, bytes: &[u8]) -> Result<(), OutputError> {
         let is_left = |new: &String| {
             let start = self.read(new).ok().flatten().unwrap_or_else(|| b"another file".to_vec());

@@ -156,8 +156,8 @@ impl RunFolder {
         Ok(names.filter(|name| name != LOCK && self.unfinished.has_file(name)).collect())
     }
 
-    /// Replaces the results of the earlier run, except `inputs` of this one and what is in them, by the files that were written. The file with
-    /// the summary comes last.
+    /// Replaces the results of the earlier run, except `inputs` of this one and what is in them, by the files
+    /// that were written. The file with the summary comes last.
     ///
     /// # Errors
     ///
@@ -182,7 +182,9 @@ impl RunFolder {
         let is_kept = |name: &str| inputs.iter().any(|input| is_below(&folder.join(name), input));
         let earlier =
             self.earlier.without(|name| self.adopted.contains(name) || is_kept(name) && !new.lists(name));
-        for name in self.adopted.iter().filter(|name| folder.has_file(name)) {
+        // Not what somebody else has put in their place.
+        let named = Marker::read(folder, marker::FILES)?;
+        for name in self.adopted.iter().filter(|name| named.proves(folder, name)) {
             new.add(folder, name).map_err(|why| self.failed(why))?;
         }
         let exchange = Exchange { earlier, new };
@@ -214,8 +216,8 @@ impl Drop for RunFolder {
     }
 }
 
-/// Removes the files in the subfolder, and the subfolder, in which the lock goes last. A folder in it is not of a run: it stays, and
-/// with it the lock.
+/// Removes the files in the subfolder, and the subfolder, in which the lock goes last. A folder in it is not
+/// of a run: it stays, and with it the lock.
 fn remove_unfinished(folder: &Folder, unfinished: &Folder) -> Result<(), OutputError> {
     let names = unfinished.names().map_err(|why| OutputError::new(&unfinished.path, why))?;
     let others = names.iter().filter(|name| *name != LOCK);
@@ -226,8 +228,8 @@ fn remove_unfinished(folder: &Folder, unfinished: &Folder) -> Result<(), OutputE
     folder.remove_inner(UNFINISHED)
 }
 
-/// Checks that a folder is none of a run that goes on, that what it has of an unfinished run is of a run, and that no result would
-/// replace another file.
+/// Checks that a folder is none of a run that goes on, that what it has of an unfinished run is of a run, and
+/// that no result would replace another file.
 fn check_folder(folder: &Folder) -> Result<(), OutputError> {
     if marker::is_of_a_run(folder) {
         let why = "a run writes there, or has left it when it was killed; give another folder by --out";

@@ -12,7 +12,8 @@ use xxhash_rust::xxh3::Xxh3;
 
 /// The marker of the results of a run, which the next run replaces or removes.
 pub(super) const RESULTS: &str = ".curious_run.json";
-/// The marker of files that were written by their own names, as by `--mcap FILE`. They stay until they are written again.
+/// The marker of files that were written by their own names, as by `--mcap FILE`. They stay until they are
+/// written again.
 pub(super) const FILES: &str = ".curious_files.json";
 /// The folder for the files of a run that goes on, inside the folder of the results.
 pub(super) const UNFINISHED: &str = "unfinished_run";
@@ -20,7 +21,8 @@ pub(super) const UNFINISHED: &str = "unfinished_run";
 pub(super) const LOCK: &str = ".lock";
 pub(super) const LOCK_CONTENT: &[u8] =
     b"A run of curious writes here. What a killed run leaves is kept by the next one.\n";
-/// The journal of an exchange, and the folder for the results of the earlier run, inside the folder of the unfinished run.
+/// The journal of an exchange, and the folder for the results of the earlier run, inside the folder of the
+/// unfinished run.
 pub(super) const JOURNAL: &str = ".exchange.json";
 pub(super) const EARLIER: &str = ".earlier";
 /// Names that no result has.
@@ -28,8 +30,8 @@ const RESERVED: [&str; 6] = [RESULTS, FILES, UNFINISHED, LOCK, JOURNAL, EARLIER]
 /// The schema of a marker; count up when its layout changes.
 const SCHEMA: u32 = 1;
 
-/// What runs say of the files that they wrote in a folder. Only files that are still as they were written count as those of a run, and
-/// only these are ever removed or replaced.
+/// What runs say of the files that they wrote in a folder. Only files that are still as they were written
+/// count as those of a run, and only these are ever removed or replaced.
 #[derive(Clone, Debug, Deserialize, PartialEq, Eq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Marker {

@@ -26,12 +26,13 @@ pub struct Proof {
     pub is_intact: fn(&File) -> bool,
 }
 
-/// A file that is being written under a temporary name in the same folder: `run.unfinished.rrd` for `run.rrd`. A file
-/// that is dropped before it is finished is removed; a killed run leaves it, and the next one takes another name:
-/// `run.unfinished_2.rrd`.
+/// A file that is being written under a temporary name in the same folder: `run.unfinished.rrd` for
+/// `run.rrd`. A file that is dropped before it is finished is removed; a killed run leaves it, and the next
+/// one takes another name: `run.unfinished_2.rrd`.
 ///
-/// Every file that a program writes is opened here, and one rule holds for all: a file that exists is replaced only if a marker
-/// in its folder has its hash, or if its content has one. Everything else is refused, and stays.
+/// Every file that a program writes is opened here, and one rule holds for all: a file that exists is
+/// replaced only if a marker in its folder has its hash, or if its content has one. Everything else is
+/// refused, and stays.
 ///
 /// A device or a pipe is written directly.
 #[derive(Debug)]
@@ -57,8 +58,8 @@ impl UnfinishedFile {
     ///
     /// # Errors
     ///
-    /// When the file cannot be written, when another run is writing it, or when it would replace a file that no run wrote
-    /// ([`OutputError::is_refusal`]).
+    /// When the file cannot be written, when another run is writing it, or when it would replace a file that
+    /// no run wrote ([`OutputError::is_refusal`]).
     pub fn create(path: &Path) -> Result<Self, OutputError> {
         Self::with_proof(path, None)
     }
@@ -117,8 +118,8 @@ impl UnfinishedFile {
     ///
     /// # Errors
     ///
-    /// When the file cannot be brought to the disk, or cannot be renamed. If somebody has given its name to another file, the new one
-    /// stays under its temporary name.
+    /// When the file cannot be brought to the disk, or cannot be renamed. If somebody has given its name to
+    /// another file, the new one stays under its temporary name.
     pub fn finish(mut self) -> Result<(), OutputError> {
         let Some(Target { folder, name, partial, proof }) = &self.target else { return Ok(()) };
         let failed = |why| OutputError::new(&self.path, why);
@@ -186,7 +187,8 @@ pub fn replace(file: &Path, by: &Path, proof: Proof) -> Result<(), OutputError> 
     folder.rename(by, &folder, &name)
 }
 
-/// Opens a file to which lines are appended, with what it has; it is made unless it exists. The caller checks that the lines are its own.
+/// Opens a file to which lines are appended, with what it has; it is made unless it exists. The caller checks
+/// that the lines are its own.
 ///
 /// # Errors
 ///
@@ -206,7 +208,8 @@ fn check(folder: &Folder, name: &OsStr, proof: Option<Proof>) -> Result<(), Outp
     Err(OutputError::refused(&folder.join(name), FOREIGN.into()))
 }
 
-/// Creates the file with the first temporary name that is free. What a killed run has left of a file with a proof is removed.
+/// Creates the file with the first temporary name that is free. What a killed run has left of a file with a
+/// proof is removed.
 fn partial(folder: &Folder, name: &OsStr, proof: Option<Proof>) -> Result<(File, OsString), OutputError> {
     let path = folder.join(name);
     for partial in (1..=MAX_LEFT).map(|number| temporary_name(Path::new(name), number)) {

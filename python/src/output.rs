@@ -3,9 +3,9 @@ use pyo3::prelude::*;
 use std::io;
 use std::path::PathBuf;
 
-/// A file that appears when it is complete: `with curious.Output("map.npz") as path: np.savez(path, ...)` writes to a temporary
-/// name. After an exception there is no file. `FileExistsError`: it would replace a file that was not written like this, or that was
-/// changed since.
+/// A file that appears when it is complete: `with curious.Output("map.npz") as path: np.savez(path, ...)`
+/// writes to a temporary name. After an exception there is no file. `FileExistsError`: it would replace a
+/// file that was not written like this, or that was changed since.
 #[pyclass(module = "curious")]
 pub(crate) struct Output(Option<UnfinishedFile>);
 

@@ -1,5 +1,5 @@
-//! The threads of this process. A process that was forked has none of the threads of the other one, and would wait for them for ever:
-//! it gets its own.
+//! The threads of this process. A process that was forked has none of the threads of the other one, and would
+//! wait for them for ever: it gets its own.
 
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
@@ -10,8 +10,8 @@ use std::sync::{Mutex, PoisonError};
 /// The pools, by process and number of threads. They stay: threads of another process cannot be ended.
 static POOLS: Mutex<BTreeMap<(u32, usize), &'static ThreadPool>> = Mutex::new(BTreeMap::new());
 
-/// Runs `work` without the interpreter; what is parallel in it runs on this number of threads, 0 for one per core;
-/// nothing is with 1.
+/// Runs `work` without the interpreter; what is parallel in it runs on this number of threads, 0 for one per
+/// core; nothing is with 1.
 ///
 /// # Errors
 ///

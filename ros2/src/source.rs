@@ -74,8 +74,9 @@ struct Arrival {
     is_restart: bool,
 }
 
-/// The clock of one kind of messages. A stamp that runs ahead of the time that has passed here is left out, unless the next one
-/// confirms it: as in a log, a clock that is wrong for one message is no other time, and a clock that was set is.
+/// The clock of one kind of messages. A stamp that runs ahead of the time that has passed here is left out,
+/// unless the next one confirms it: as in a log, a clock that is wrong for one message is no other time, and
+/// a clock that was set is.
 #[derive(Default)]
 struct Clock {
     /// The last stamp, ns, and when it came.

@@ -46,7 +46,7 @@ fn a_file_that_is_written_directly_is_a_result() {
         for wrong in ["map.pgm", "unfinished_run/own.rrd"] {
             run.adopt(&folder.path().join(wrong), "rrd").unwrap_err();
         }
-        fs::write(&file, text).unwrap();
+        crate::write_file(&file, |file| file.write_all(text.as_bytes())).unwrap();
         assert_eq!(run.results().unwrap(), ["own.rrd"]);
         let summary = serde_json::json!({ "files": run.results().unwrap() });
         fs::write(run.unfinished().join("summary.json"), summary.to_string()).unwrap();
@@ -54,7 +54,15 @@ fn a_file_that_is_written_directly_is_a_result() {
         assert_eq!(fs::read_to_string(&file).unwrap(), text);
     }
     run(folder.path(), &["map.pgm"], &[]).unwrap();
-    assert_eq!(names(folder.path()), [MARKER, "map.pgm", "summary.json"]);
+    assert_eq!(names(folder.path()), [marker::FILES, MARKER, "map.pgm", "summary.json"]);
+    // The user puts another file in its place during a run.
+    let mut own = RunFolder::open(folder.path()).unwrap();
+    own.adopt(&file, "rrd").unwrap();
+    fs::write(&file, "of the user").unwrap();
+    assert!(crate::write_file(&file, |file| file.write_all(b"third")).unwrap_err().is_refusal());
+    own.finish(&[]).unwrap();
+    run(folder.path(), &["map.pgm"], &[]).unwrap();
+    assert_eq!(fs::read_to_string(&file).unwrap(), "of the user");
 }
 
 #[test]
@@ -215,7 +223,8 @@ fn everything(folder: &Path) -> Vec<(std::path::PathBuf, String)> {
     all
 }
 
-/// A folder of results from a stranger, who has prepared an exchange and put links in the place of any two files and folders.
+/// A folder of results from a stranger, who has prepared an exchange and put links in the place of any two
+/// files and folders.
 #[test]
 fn a_prepared_folder_changes_nothing_outside() {
     let [text, evil] = ["of the user", "of the stranger"];

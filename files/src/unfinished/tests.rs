@@ -163,8 +163,8 @@ fn texts(folder: &Path) -> BTreeMap<String, String> {
     files.map(|path| (name(&path), fs::read_to_string(&path).unwrap())).collect()
 }
 
-/// Every text of the user is under its name until the user removes it, and so is every text outside of the folder.
-/// `FOLDERS=5000 cargo test -p curious-files random_events` tries more folders.
+/// Every text of the user is under its name until the user removes it, and so is every text outside of the
+/// folder. `FOLDERS=5000 cargo test -p curious-files random_events` tries more folders.
 #[test]
 fn random_events_lose_nothing_of_the_user() {
     let cases = std::env::var("FOLDERS").map_or(150, |count| count.parse().unwrap());

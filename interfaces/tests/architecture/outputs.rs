@@ -1,5 +1,5 @@
-//! Only the crate `files` makes, replaces, renames and removes files: it knows which of them a run wrote. The programs, the crates
-//! and the examples are checked; tests, build scripts and the studies are not.
+//! Only the crate `files` makes, replaces, renames and removes files: it knows which of them a run wrote. The
+//! programs, the crates and the examples are checked; tests, build scripts and the studies are not.
 
 use crate::references::is_test;
 use crate::workspace::root;

@@ -36,8 +36,8 @@ impl StateFile {
     ///
     /// # Errors
     ///
-    /// When another run uses it, when its folder cannot be written, when it is a link that leads to no file, and when a file beside
-    /// it, which the run would replace, is of somebody else (`house.state.lock`).
+    /// When another run uses it, when its folder cannot be written, when it is a link that leads to no file,
+    /// and when a file beside it, which the run would replace, is of somebody else (`house.state.lock`).
     pub fn open(path: &Path) -> io::Result<Self> {
         let target = target_of(path)?;
         let other =

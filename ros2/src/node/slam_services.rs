@@ -88,11 +88,13 @@ impl<L: Link> CuriousNode<L> {
     }
 }
 
-/// The file that a service writes: `name` is its path below the folder for maps, or an absolute path in or below it.
+/// The file that a service writes: `name` is its path below the folder for maps, or an absolute path in or
+/// below it.
 ///
 /// # Errors
 ///
-/// When the file would be elsewhere, or its name is not plain: one sentence. Everybody in the network can call a service.
+/// When the file would be elsewhere, or its name is not plain: one sentence. Everybody in the network can
+/// call a service.
 pub(super) fn saved_in(map_folder: &str, name: &str) -> Result<PathBuf, String> {
     let maps = Path::new(if map_folder.is_empty() { "." } else { map_folder });
     files::make_folder(maps).map_err(|why| why.to_string())?;

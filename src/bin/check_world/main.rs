@@ -98,8 +98,8 @@ fn describe(inspection: &Inspection) -> Vec<String> {
     [first].into_iter().chain(second).chain(others).collect()
 }
 
-/// The file of a result. Its name is the name of the input with one more extension: with the extension replaced, the picture could
-/// have the name of the floor plan that the world file uses.
+/// The file of a result. Its name is the name of the input with one more extension: with the extension
+/// replaced, the picture could have the name of the floor plan that the world file uses.
 fn result(args: &Args, file: &str, ending: &str) -> PathBuf {
     let mut name = Path::new(file).file_name().unwrap_or_default().to_owned();
     name.push(ending);

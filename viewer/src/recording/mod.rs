@@ -69,9 +69,9 @@ pub struct Recorder {
 }
 
 impl Recorder {
-    /// Begins the `.rrd` file (an older recording is replaced when this one is complete) and opens the viewers that show the
-    /// run live. A viewer that cannot be reached does not stop a recording with a file: see
-    /// [`Recorder::live_problem`].
+    /// Begins the `.rrd` file (an older recording is replaced when this one is complete) and opens the
+    /// viewers that show the run live. A viewer that cannot be reached does not stop a recording with a file:
+    /// see [`Recorder::live_problem`].
     ///
     /// # Errors
     ///

@@ -144,7 +144,8 @@ fn a_map_is_saved_and_loaded_as_by_slam_toolbox() {
     assert!(readings > 55, "the map grows from what was loaded: {readings}");
 }
 
-/// Everybody in the network can call the services: they write below one folder, and replace only files of a run.
+/// Everybody in the network can call the services: they write below one folder, and replace only files of a
+/// run.
 #[test]
 fn services_replace_no_file_of_others() {
     let outer = tempfile::tempdir().unwrap();
