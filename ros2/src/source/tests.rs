@@ -251,7 +251,9 @@ fn nonsense_is_left_out() {
     }
     assert_eq!(heard.source.next(heard.now + PATIENCE), None);
     heard.take(Topic::Scan, Message::Scan(good));
-    assert!(heard.source.next(heard.now + PATIENCE).unwrap().is_restart);
+    assert_eq!(heard.source.next(heard.now + PATIENCE), None, "far from the stamp before");
+    heard.scan(0.3, "laser");
+    assert!(!heard.source.next(heard.now + PATIENCE).unwrap().is_restart);
 }
 
 #[test]
