@@ -72,7 +72,7 @@ impl Exchange {
             unfinished.rename(name, folder, name)?;
             moves.into.push(name);
         }
-        folder.sync()?;
+        folder.sync();
         self.new.write(folder, RESULTS)
     }
 

@@ -135,7 +135,8 @@ impl UnfinishedFile {
         folder.rename(partial, folder, name)?;
         // A run lists the files in its folder itself.
         let listed = name.to_str().filter(|_| proof.is_none() && !is_of_a_run(folder));
-        let recorded = listed.map_or_else(|| folder.sync(), |name| record(folder, name));
+        let recorded = listed.map_or(Ok(()), |name| record(folder, name));
+        folder.sync();
         self.target = None;
         recorded
     }
