@@ -353,7 +353,8 @@ def test_services():
     saved = reader("rr/curious_node/save_mapReply", CodeResponse)
     save = writer("rq/curious_node/save_mapRequest", SaveMapRequest)
     expiry = reader("rt/expiry_map", OccupancyGrid, LATCHED)
-    node = explore("-p", f"route_graph:={graph}", "-p", "route_update_interval:=1.0")
+    settings = [f"route_graph:={graph}", "route_update_interval:=1.0", f"map_folder:={WORK}"]
+    node = explore(*(part for setting in settings for part in ("-p", setting)))
     asked, maps, codes = [], [], []
 
     def turn():

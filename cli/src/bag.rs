@@ -1,13 +1,11 @@
 //! `--mcap`: a run as a bag of ROS 2.
 
-use anyhow::bail;
-use files::{UnfinishedFile, is_another_kind};
+use files::{OutputError, UnfinishedFile};
 use interfaces::{CellState, Grid, LaserReading};
 use mapper::Mapper;
 use nalgebra::{Isometry2, Point2};
 use robot::{Pilot, PilotView, Turn};
 use ros::McapWriter;
-use std::fs::File;
 use std::io::{self, BufWriter};
 use std::path::Path;
 
@@ -23,8 +21,7 @@ const MANY_CELLS: f64 = 1e6;
 /// A bag that is being written. It has its name when it is complete. The first error ends the bag, not the run;
 /// [`finish`](Self::finish) reports it.
 pub struct RunBag {
-    file: UnfinishedFile,
-    writer: Result<McapWriter<BufWriter<File>>, io::Error>,
+    writer: Result<McapWriter<BufWriter<UnfinishedFile>>, io::Error>,
     /// What was written last.
     correction: Option<Isometry2<f64>>,
     goal: Option<Point2<f64>>,
@@ -38,16 +35,12 @@ impl RunBag {
     ///
     /// # Errors
     ///
-    /// When the file cannot be written, or is another kind of file, which is not replaced.
-    pub fn create(path: &Path, begin_s: f64) -> anyhow::Result<Self> {
-        if is_another_kind(path, b"\x89MCAP0\r\n") {
-            bail!("there is a file {} that is not an MCAP file; choose another name", path.display());
-        }
-        let file = UnfinishedFile::create(path)?;
-        let to = BufWriter::new(file.file().try_clone()?);
+    /// When the file cannot be written, or would replace another file than one of a run.
+    pub fn create(path: &Path, begin_s: f64) -> Result<Self, OutputError> {
+        let to = BufWriter::new(UnfinishedFile::create(path)?);
+        let writer = McapWriter::new(to, &path.display().to_string(), begin_s);
         Ok(Self {
-            file,
-            writer: Ok(McapWriter::new(to, &path.display().to_string(), begin_s)?),
+            writer: Ok(writer.map_err(|why| OutputError::new(path, why))?),
             correction: None,
             goal: None,
             path: Vec::new(),
@@ -78,8 +71,7 @@ impl RunBag {
     ///
     /// When a part of it could not be written. There is no file then.
     pub fn finish(self) -> anyhow::Result<()> {
-        self.writer?.finish()?;
-        Ok(self.file.finish()?)
+        Ok(self.writer?.finish()?.into_inner().map_err(|error| error.into_error())?.finish()?)
     }
 
     fn write(

@@ -10,7 +10,6 @@ use crate::panel::Panel;
 use crate::pen::{Pen, Sheet};
 use crate::scene::{Scene, extent};
 use crate::{palette, plan, trajectory};
-use files::make_folder;
 use interfaces::Grid;
 use mapper::Mapper;
 use nalgebra::{Point2, Translation2};
@@ -39,7 +38,6 @@ pub fn write_all(
     goals: &Goals,
     layers: &[Layer],
 ) -> Result<(), PictureError> {
-    make_folder(folder)?;
     let file = |name: &str| folder.join(format!("{name}.png"));
     let panel = Panel::of_layer(mapper.frame());
     let mut panels = Vec::new();

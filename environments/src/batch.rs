@@ -2,18 +2,15 @@
 
 use crate::task::{ACTIONS, ROUNDING, Results, Task, TaskError};
 use interfaces::{from_bytes, to_bytes};
-use rayon::ThreadPool;
 use rayon::prelude::*;
 use sim::physics::SnapshotError;
 
 /// A number of tasks of the same kind.
 pub struct Batch {
     slots: Vec<Slot>,
-    /// Whether the tasks are stepped on the threads of the pool (the default for more than one task), or on this thread alone. The
-    /// results are the same.
+    /// Whether the tasks are stepped on the threads of the present rayon pool (the default for more than one
+    /// task), or on this thread alone. The results are the same.
     pub is_parallel: bool,
-    /// The pool of threads; `None`: the present rayon pool.
-    pub pool: Option<ThreadPool>,
     /// Whether a task that is over is reset in the same step (the default), or stands still until it is reset.
     pub is_autoreset: bool,
 }
@@ -52,7 +49,7 @@ impl Batch {
         let slots =
             tasks.into_iter().map(|task| Slot { results: Results::of(&task), seed: 0, task: Box::new(task) });
         let slots: Vec<Slot> = slots.collect();
-        Self { is_parallel: slots.len() > 1, slots, pool: None, is_autoreset: true }
+        Self { is_parallel: slots.len() > 1, slots, is_autoreset: true }
     }
 
     /// The number of tasks.
@@ -72,14 +69,11 @@ impl Batch {
 
     /// Calls `run` with every slot and its input.
     fn each<I: Send>(&mut self, inputs: Vec<I>, run: impl Fn(&mut Slot, I) + Sync + Send) {
-        let Self { slots, pool, .. } = self;
-        if !self.is_parallel {
-            return slots.iter_mut().zip(inputs).for_each(|(slot, input)| run(slot, input));
-        }
-        let all = || slots.par_iter_mut().zip(inputs).for_each(|(slot, input)| run(slot, input));
-        match pool {
-            Some(pool) => pool.install(all),
-            None => all(),
+        let slots = &mut self.slots;
+        if self.is_parallel {
+            slots.par_iter_mut().zip(inputs).for_each(|(slot, input)| run(slot, input));
+        } else {
+            slots.iter_mut().zip(inputs).for_each(|(slot, input)| run(slot, input));
         }
     }
 

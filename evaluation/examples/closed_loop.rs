@@ -15,13 +15,13 @@
 use agent::Policy;
 use evaluation::metrics::{RateScores, alignment, quantile, rate_scores};
 use evaluation::physics_trial::{self, PhysicsTrial};
+use files::UnfinishedFile;
 use interfaces::{GridFrame, LaserReading, PoseMode, World, heading_rad};
 use localizer::TrajectoryPose;
 use logs::{Log, McapWriter, TopicChoice};
 use mapper::{Mapper, NoReturn, ScanFilter, ScanFilterSettings};
 use robot::{NoPilot, Robot, Settings};
 use std::error::Error;
-use std::fs::File;
 use std::io::BufWriter;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
@@ -48,7 +48,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut truth = vec![Vec::new(); sessions as usize];
     let bags: Vec<PathBuf> = (0..sessions).map(|bag| folder.path().join(format!("{bag}.mcap"))).collect();
     for (number, bag) in bags.iter().enumerate() {
-        let mut writer = McapWriter::new(BufWriter::new(File::create(bag)?), "bag", 1e9)?;
+        let mut writer = McapWriter::new(BufWriter::new(UnfinishedFile::create(bag)?), "bag", 1e9)?;
         let end_s = (number + 1) as f64 * minutes as f64 * 60.0;
         while trial.world.time_s() < end_s {
             trial.turn()?;
@@ -57,7 +57,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             truth[number].push(pose);
             exact.step(LaserReading { pose, ..raw })?;
         }
-        writer.finish()?;
+        writer.finish()?.into_inner()?.finish()?;
     }
 
     let mut settings = SurveySettings::of(PoseMode::Localized);

@@ -23,11 +23,12 @@ const COLOURS: [RGBColor; 5] = [
 ];
 
 /// Draws the log error of every estimator over the true rate, for cells that are blocked half of the time.
-pub(crate) fn draw(outcomes: &[Outcome], path: &str) -> anyhow::Result<()> {
+pub(crate) fn draw(outcomes: &[Outcome]) -> anyhow::Result<String> {
+    let mut text = String::new();
     // In the drawing, text stays text; the font is used only to measure text.
     register_font("sans-serif", FontStyle::Normal, epaint_default_fonts::UBUNTU_LIGHT)
         .map_err(|_| anyhow::anyhow!("the font is damaged"))?;
-    let area = SVGBackend::new(path, SIZE).into_drawing_area();
+    let area = SVGBackend::with_string(&mut text, SIZE).into_drawing_area();
     area.fill(&WHITE)?;
     let rows = Pattern::ALL.len().div_ceil(COLUMNS);
     for (number, (panel, pattern)) in area.split_evenly((rows, COLUMNS)).iter().zip(Pattern::ALL).enumerate()
@@ -71,5 +72,6 @@ pub(crate) fn draw(outcomes: &[Outcome], path: &str) -> anyhow::Result<()> {
         }
     }
     area.present()?;
-    Ok(())
+    drop(area);
+    Ok(text)
 }

@@ -1,5 +1,6 @@
 //! The accuracy of the rate estimators, all on the same streams of observations: in block worlds, and on simulated
-//! two-state chains. Writes `docs/estimators/tables.md` and `docs/estimators/chains.svg`.
+//! two-state chains. Writes `docs/estimators/tables.md` and
+//! `docs/estimators/chains.svg`; remove those of git first, which no run has written.
 //!
 //! ```text
 //! cargo run --release --example estimators              60 block worlds of 20,000 steps
@@ -16,6 +17,7 @@ mod room;
 mod score;
 mod tables;
 
+use files::write_file;
 use interfaces::SettingsError;
 use mapper::{EstimatorChoice, Mapper, MapperSettings};
 
@@ -43,6 +45,8 @@ fn main() -> anyhow::Result<()> {
     let outcomes = chains::all(steps)?;
     text += &tables::chains(&outcomes);
     text += &tables::unlike_neighbours(&chains::unlike_neighbours(steps)?);
-    std::fs::write(TABLES, text)?;
-    curves::draw(&outcomes, CURVES)
+    write_file(TABLES.as_ref(), |file| file.write_all(text.as_bytes()))?;
+    let curves = curves::draw(&outcomes)?;
+    write_file(CURVES.as_ref(), |file| file.write_all(curves.as_bytes()))?;
+    Ok(())
 }

@@ -2,6 +2,7 @@
 
 use crate::things::{BOXES, cleared_after};
 use crate::{TURNED, false_changes};
+use files::write_file;
 use mapper::OccupancyChoice;
 use plotters::prelude::*;
 use plotters::style::{FontStyle, register_font};
@@ -50,7 +51,8 @@ pub(crate) fn draw(points: &[Point], path: &str) -> anyhow::Result<()> {
         .map_err(|_| anyhow::anyhow!("the font is damaged"))?;
     let most = |of: fn(&Point) -> f64| points.iter().map(of).fold(0.0, f64::max);
     let (right_s, top) = (most(|point| point.half_cleared_s) * 1.1, most(|point| point.false_changes) * 1.5);
-    let area = SVGBackend::new(path, (720, 420)).into_drawing_area();
+    let mut drawing = String::new();
+    let area = SVGBackend::with_string(&mut drawing, (720, 420)).into_drawing_area();
     area.fill(&WHITE)?;
     let mut chart = ChartBuilder::on(&area)
         .margin(16)
@@ -73,5 +75,6 @@ pub(crate) fn draw(points: &[Point], path: &str) -> anyhow::Result<()> {
             + Text::new(point.misses_to_free.to_string(), (6, -16), ("sans-serif", 14))
     }))?;
     area.present()?;
-    Ok(())
+    drop((chart, area));
+    Ok(write_file(path.as_ref(), |file| file.write_all(drawing.as_bytes()))?)
 }

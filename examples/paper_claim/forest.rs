@@ -2,6 +2,7 @@
 
 use crate::Finding;
 use crate::claim::Claim;
+use files::write_file;
 use plotters::prelude::*;
 use plotters::style::{FontStyle, register_font};
 use reports::Comparison;
@@ -31,7 +32,8 @@ pub(crate) fn draw(findings: &[Finding], path: &Path) -> anyhow::Result<()> {
         }
     }
     let height = (TOP + ROW * rows.len() as i32 + 30) as u32;
-    let area = SVGBackend::new(path, (WIDTH, height)).into_drawing_area();
+    let mut drawing = String::new();
+    let area = SVGBackend::with_string(&mut drawing, (WIDTH, height)).into_drawing_area();
     area.fill(&WHITE)?;
     let text = ("sans-serif", 14).into_font();
     let title = "Log error of the rates over the run: curious minus another, with 95 % interval";
@@ -69,7 +71,8 @@ pub(crate) fn draw(findings: &[Finding], path: &Path) -> anyhow::Result<()> {
         area.draw(&verdict)?;
     }
     area.present()?;
-    Ok(())
+    drop(area);
+    Ok(write_file(path, |file| file.write_all(drawing.as_bytes()))?)
 }
 
 fn whisker(

@@ -1,79 +1,209 @@
-//! The operations on files of which an exchange of results consists. In tests, each of them can fail.
+//! Folders by open handles, and the operations on files in them. In tests, each operation that changes
+//! something can fail.
+//!
+//! A folder can come from a stranger. A name in it is therefore always looked up in the open folder and never
+//! followed if it is a link: whatever is read, made, moved or removed is inside.
 
-use super::{OutputError, UnfinishedFile};
-use std::fs::{self, File};
-use std::io::{self, Write};
-use std::path::Path;
+use super::OutputError;
+use rustix::fs::{AtFlags, Dir, FileType, Mode, OFlags, Stat};
+use rustix::io::Errno;
+use std::ffi::OsString;
+use std::fs::File;
+use std::io::{self, Read, Write};
+use std::os::fd::OwnedFd;
+use std::os::unix::ffi::OsStringExt;
+use std::path::{Path, PathBuf};
 
-/// Gives a file another name.
-pub(super) fn rename(from: &Path, to: &Path) -> Result<(), OutputError> {
-    run(to, || fs::rename(from, to))
+/// What is read of a file of ours that lists names; a longer one is none of ours.
+const MAX_BYTES: u64 = 1 << 26;
+/// How such a file begins.
+const LIST_START: &[u8] = b"{\n  \"schema\": ";
+const FLAGS: OFlags = OFlags::CLOEXEC.union(OFlags::NOFOLLOW);
+
+/// An open folder.
+#[derive(Debug)]
+pub(super) struct Folder {
+    /// Its name in messages.
+    pub(super) path: PathBuf,
+    handle: OwnedFd,
 }
 
-/// Makes a folder, unless it exists.
-pub(super) fn make_folder(path: &Path) -> Result<(), OutputError> {
-    run(path, || fs::create_dir_all(path))
-}
+impl Folder {
+    /// Opens the folder with a path that the user has given. Links in the path are followed.
+    pub(super) fn open(path: &Path) -> io::Result<Self> {
+        let from = if path == "" { Path::new(".") } else { path };
+        let handle = rustix::fs::open(from, OFlags::DIRECTORY | OFlags::CLOEXEC, Mode::empty())?;
+        Ok(Self { path: path.to_owned(), handle })
+    }
 
-/// Writes a file that is either complete or as it was.
-pub(super) fn write(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
-    run(path, || {
-        let file = UnfinishedFile::create(path).map_err(|error| error.why)?;
-        file.file().write_all(bytes)?;
-        file.finish().map_err(|error| error.why)
-    })
-}
+    /// The folder of a file, and the name of the file in it.
+    pub(super) fn of(file: &Path) -> io::Result<(Self, OsString)> {
+        let name = file.file_name().ok_or(io::ErrorKind::InvalidFilename)?;
+        Ok((Self::open(file.parent().unwrap_or(Path::new("")))?, name.to_owned()))
+    }
 
-/// Removes a file, if it exists.
-pub(super) fn remove(path: &Path) -> Result<(), OutputError> {
-    run(path, || unless_missing(fs::remove_file(path)))
-}
+    /// The path of a file in the folder, for messages.
+    pub(super) fn join(&self, name: impl AsRef<Path>) -> PathBuf {
+        self.path.join(name)
+    }
 
-/// Removes a folder with everything in it, if it exists.
-pub(super) fn remove_folder(path: &Path) -> Result<(), OutputError> {
-    run(path, || unless_missing(fs::remove_dir_all(path)))
-}
+    /// A folder in this one; a link is none.
+    pub(super) fn inner(&self, name: &str) -> io::Result<Self> {
+        let handle = rustix::fs::openat(&self.handle, name, FLAGS | OFlags::DIRECTORY, Mode::empty())?;
+        Ok(Self { path: self.join(name), handle })
+    }
 
-/// Removes the files in a folder, and the folder, in which the file `last` goes last. A folder in it is not of a run: it
-/// stays, and with it `last`.
-pub(super) fn remove_run(folder: &Path, last: &str) -> Result<(), OutputError> {
-    run(folder, || {
-        for entry in fs::read_dir(folder)? {
-            let entry = entry?;
-            if !entry.file_type()?.is_dir() && entry.file_name() != last {
-                fs::remove_file(entry.path())?;
-            }
+    /// The same, made unless it exists. What has its name and is no folder is refused.
+    pub(super) fn make_inner(&self, name: &str) -> Result<Self, OutputError> {
+        self.run(name, || unless(Errno::EXIST, rustix::fs::mkdirat(&self.handle, name, Mode::from(0o777))))?;
+        self.inner(name).map_err(|_| {
+            let why = "it is a link or a file; move it, or give another folder by --out";
+            OutputError::refused(&self.join(name), why.into())
+        })
+    }
+
+    /// What has a name in the folder; `None` if nothing has.
+    pub(super) fn find(&self, name: impl AsRef<Path>) -> io::Result<Option<Stat>> {
+        match rustix::fs::statat(&self.handle, name.as_ref(), AtFlags::SYMLINK_NOFOLLOW) {
+            Err(Errno::NOENT) => Ok(None),
+            found => Ok(Some(found?)),
         }
-        if fs::read_dir(folder)?.count() > 1 { Ok(()) } else { fs::remove_dir_all(folder) }
-    })
-}
+    }
 
-/// The content of a file; `None` if there is none. Links and what is not a file are errors: a pipe would wait for ever.
-pub(super) fn read(path: &Path) -> io::Result<Option<Vec<u8>>> {
-    match path.symlink_metadata() {
-        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
-        Err(error) => Err(error),
-        Ok(known) if known.is_file() => fs::read(path).map(Some),
-        Ok(_) => Err(io::Error::other("it is not a regular file")),
+    /// Whether nothing has this name in the folder, as far as can be known.
+    pub(super) fn is_free(&self, name: impl AsRef<Path>) -> bool {
+        matches!(self.find(name), Ok(None))
+    }
+
+    /// Whether a regular file has this name in the folder.
+    pub(super) fn has_file(&self, name: impl AsRef<Path>) -> bool {
+        self.find(name).is_ok_and(|found| found.is_some_and(|found| kind(&found).is_file()))
+    }
+
+    /// Opens a regular file; `None` if there is none. Links and what is not a file are errors: a pipe would
+    /// wait for ever.
+    pub(super) fn file(&self, name: impl AsRef<Path>) -> io::Result<Option<File>> {
+        self.open_file(name.as_ref(), OFlags::RDONLY)
+    }
+
+    /// Opens a regular file to read and to write; it is made unless it exists.
+    pub(super) fn file_to_write(&self, name: impl AsRef<Path>) -> io::Result<File> {
+        let name = name.as_ref();
+        self.open_file(name, OFlags::RDWR)?.map_or_else(|| self.create(name), Ok)
+    }
+
+    fn open_file(&self, name: &Path, access: OFlags) -> io::Result<Option<File>> {
+        let flags = access | FLAGS | OFlags::NONBLOCK;
+        match self.find(name)? {
+            None => Ok(None),
+            Some(found) if kind(&found).is_file() => {
+                Ok(Some(rustix::fs::openat(&self.handle, name, flags, Mode::empty())?.into()))
+            }
+            Some(_) => Err(io::Error::other("it is not a regular file")),
+        }
+    }
+
+    /// The content of a regular file that lists names; `None` if there is none.
+    pub(super) fn read(&self, name: &str) -> io::Result<Option<Vec<u8>>> {
+        let Some(file) = self.file(name)? else { return Ok(None) };
+        let mut bytes = Vec::new();
+        file.take(MAX_BYTES).read_to_end(&mut bytes)?;
+        Ok(Some(bytes))
+    }
+
+    /// Makes a file with a name that nothing has.
+    pub(super) fn create(&self, name: impl AsRef<Path>) -> io::Result<File> {
+        let flags = OFlags::RDWR | OFlags::CREATE | OFlags::EXCL | FLAGS;
+        Ok(rustix::fs::openat(&self.handle, name.as_ref(), flags, Mode::from(0o666))?.into())
+    }
+
+    /// Writes a file that lists names: it is either complete or as it was. What a killed run has left of it
+    /// is removed.
+    pub(super) fn write(&self, name: &str, bytes: &[u8]) -> Result<(), OutputError> {
+        let is_left = |new: &String| {
+            let start = self.read(new).ok().flatten().unwrap_or_else(|| b"another file".to_vec());
+            let length = start.len().min(LIST_START.len());
+            start[..length] == LIST_START[..length]
+        };
+        self.run(name, || {
+            let mut free = (1..10).map(|number| format!("{name}_{number}"));
+            let new = free.find(|new| self.is_free(new) || is_left(new)).unwrap_or_default();
+            unless(Errno::NOENT, rustix::fs::unlinkat(&self.handle, new.as_str(), AtFlags::empty()))?;
+            let mut file = self.create(&new)?;
+            file.write_all(bytes).and_then(|()| file.sync_all())?;
+            Ok(rustix::fs::renameat(&self.handle, new.as_str(), &self.handle, name)?)
+        })
+    }
+
+    /// Gives a file another name, here or in another folder.
+    pub(super) fn rename(
+        &self,
+        name: impl AsRef<Path>,
+        to: &Self,
+        new: impl AsRef<Path>,
+    ) -> Result<(), OutputError> {
+        let (name, new) = (name.as_ref(), new.as_ref());
+        to.run(new, || Ok(rustix::fs::renameat(&self.handle, name, &to.handle, new)?))
+    }
+
+    /// Removes a file or a link, if it exists.
+    pub(super) fn remove(&self, name: impl AsRef<Path>) -> Result<(), OutputError> {
+        let name = name.as_ref();
+        self.run(name, || unless(Errno::NOENT, rustix::fs::unlinkat(&self.handle, name, AtFlags::empty())))
+    }
+
+    /// Removes a folder in this one. A folder with something in it stays.
+    pub(super) fn remove_inner(&self, name: &str) -> Result<(), OutputError> {
+        self.run(name, || {
+            unless(Errno::NOTEMPTY, rustix::fs::unlinkat(&self.handle, name, AtFlags::REMOVEDIR))
+        })
+    }
+
+    /// All names in the folder, sorted.
+    pub(super) fn names(&self) -> io::Result<Vec<OsString>> {
+        let mut names = Vec::new();
+        for entry in Dir::read_from(&self.handle)? {
+            names.push(OsString::from_vec(entry?.file_name().to_bytes().to_vec()));
+        }
+        names.retain(|name| name != "." && name != "..");
+        names.sort();
+        Ok(names)
+    }
+
+    /// Returns when the names in the folder are on the disk. Not every file system can do this.
+    pub(super) fn sync(&self) {
+        rustix::fs::fsync(&self.handle).ok();
+    }
+
+    /// Whether a path still leads to this folder.
+    pub(super) fn is_at(&self, path: &Path) -> bool {
+        let id = |folder: &Self| rustix::fs::fstat(&folder.handle).map(|known| (known.st_dev, known.st_ino));
+        Self::open(path).is_ok_and(|other| id(&other).is_ok_and(|there| Ok(there) == id(self)))
+    }
+
+    /// The folder as a file, to lock it.
+    pub(super) fn to_lock(&self) -> io::Result<File> {
+        Ok(self.handle.try_clone()?.into())
+    }
+
+    fn run(
+        &self,
+        name: impl AsRef<Path>,
+        operation: impl FnOnce() -> io::Result<()>,
+    ) -> Result<(), OutputError> {
+        let failed = |why| OutputError::new(&self.join(name), why);
+        #[cfg(test)]
+        let operation = || faults::next().and_then(|()| operation());
+        operation().map_err(failed)
     }
 }
 
-/// Returns when a file or folder is on the disk.
-pub(super) fn sync(path: &Path) -> Result<(), OutputError> {
-    // Not every file system can do this for folders.
-    run(path, || {
-        File::open(path)?.sync_all().or_else(|error| if path.is_dir() { Ok(()) } else { Err(error) })
-    })
+pub(super) fn kind(found: &Stat) -> FileType {
+    FileType::from_raw_mode(found.st_mode)
 }
 
-fn unless_missing(done: io::Result<()>) -> io::Result<()> {
-    done.or_else(|error| if error.kind() == io::ErrorKind::NotFound { Ok(()) } else { Err(error) })
-}
-
-fn run(path: &Path, operation: impl FnOnce() -> io::Result<()>) -> Result<(), OutputError> {
-    #[cfg(test)]
-    faults::next().map_err(|why| OutputError::new(path, why))?;
-    operation().map_err(|why| OutputError::new(path, why))
+fn unless(harmless: Errno, done: rustix::io::Result<()>) -> io::Result<()> {
+    Ok(done.or_else(|error| if error == harmless { Ok(()) } else { Err(error) })?)
 }
 
 /// Makes operations of this thread fail.

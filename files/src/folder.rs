@@ -1,23 +1,20 @@
 //! The folder of a run's results.
 
-use super::exchange::{Exchange, Moves, check_replaceable};
-use super::{OutputError, disk, lock, make_folder};
-use crate::exchange::Marker;
+use super::disk::Folder;
+use super::exchange::{Exchange, Moves};
+use super::marker::{self, LOCK, LOCK_CONTENT, Marker, RESULTS, UNFINISHED};
+use super::{OutputError, lock, make_folder};
 use std::collections::BTreeSet;
-use std::ffi::OsStr;
+use std::ffi::{OsStr, OsString};
 use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-/// The folder for the files of a run that goes on, inside the folder of the results.
-const UNFINISHED: &str = "unfinished_run";
-/// The file in it that a run locks, and its content: without it, the folder is not one of a run.
-const LOCK: &str = ".lock";
-const LOCK_CONTENT: &[u8] =
-    b"A run of curious writes here. What a killed run leaves is kept by the next one.\n";
+/// The number of folders that killed runs can leave: the user removes those that are not needed.
+const MAX_LEFT: u32 = 9;
 /// Results of the programs whose names do not depend on the world: a folder that has other files with these names is
 /// refused before the run. Other names are checked at the end.
-const RESULTS: &str = "\
+const NAMES: &str = "\
     map_log.rrd summary.json report.json report.html trials.csv map.pgm map.yaml \
     permanent.pgm permanent.yaml speed_mask.pgm speed_mask.yaml keepout_mask.pgm keepout_mask.yaml \
     cell_statistics.csv things.json layers.npy layers.json trajectory.tum trajectory_true.tum \
@@ -33,8 +30,8 @@ const RESULTS: &str = "\
 /// leaves otherwise is kept, as `unfinished_run_1` and so on.
 #[derive(Debug)]
 pub struct RunFolder {
-    path: PathBuf,
-    unfinished: PathBuf,
+    folder: Folder,
+    unfinished: Folder,
     /// The results of the earlier run.
     earlier: Marker,
     /// The names of results that are written directly.
@@ -57,48 +54,40 @@ impl RunFolder {
     /// When the folder cannot be written, when another run is writing to it, or when results would replace a file that
     /// no run wrote, or that was changed since ([`OutputError::is_refusal`]).
     pub fn open(path: &Path) -> Result<Self, OutputError> {
-        if disk::read(&path.join(LOCK)).is_ok_and(|lock| lock.as_deref() == Some(LOCK_CONTENT)) {
-            let why = "a run writes there, or has left it when it was killed; give another folder by --out";
-            return Err(OutputError::refused(path, why.into()));
-        }
-        let is_new = !path.exists();
-        let unfinished = path.join(UNFINISHED);
-        let mut earlier = Marker::read(path)?;
-        check_unfinished(&unfinished)?;
         let failed = |why| OutputError::new(path, why);
-        let begun = Exchange::begun(&unfinished)?;
-        if begun.is_none() {
-            check_names(path, &earlier)?; // before anything is made
+        let is_new = !path.exists();
+        if !is_new {
+            check_folder(&Folder::open(path).map_err(failed)?)?; // before anything is made
         }
-        let locked = lock_folder(path, &unfinished)?;
+        make_folder(path)?;
+        let folder = Folder::open(path).map_err(failed)?;
+        let unfinished = folder.make_inner(UNFINISHED)?;
+        let locked = lock_folder(&folder, &unfinished)?;
         let mut notes = Vec::new();
         // Again: another run may have ended it.
+        let mut earlier = Marker::read(&folder, RESULTS)?;
         if let Some(exchange) = Exchange::begun(&unfinished)? {
-            exchange.carry_out(path, &unfinished, &mut Moves::default())?;
-            Exchange::clean_up(&unfinished)?;
+            exchange.carry_out(&folder, &unfinished, &mut Moves::default())?;
+            exchange.clean_up(&unfinished)?;
             notes.push(format!("the results of a run that was killed are now in {}", path.display()));
             earlier = exchange.new;
         }
-        notes.extend(keep_left_over(path, &unfinished).map_err(failed)?);
-        let changed = earlier.names().filter(|name| path.join(name).exists() && !earlier.proves(path, name));
-        notes.extend(
-            changed.map(|name| {
-                format!("{} was changed since a run wrote it: it stays", path.join(name).display())
-            }),
-        );
-        let adopted = BTreeSet::new();
-        let folder = Self {
-            path: path.to_owned(),
+        notes.extend(keep_left_over(&folder, &unfinished)?);
+        let changed = earlier.names().filter(|name| !folder.is_free(name) && !earlier.proves(&folder, name));
+        notes.extend(changed.map(|name| {
+            format!("{} was changed since a run wrote it: it stays", folder.join(name).display())
+        }));
+        check_names(&folder, &earlier)?;
+        Ok(Self {
+            folder,
             unfinished,
             earlier,
-            adopted,
+            adopted: BTreeSet::new(),
             _locked: locked,
             is_new,
             keeps_unfinished: false,
             notes,
-        };
-        check_names(path, &folder.earlier)?;
-        Ok(folder)
+        })
     }
 
     /// What the user should know: files that stay, an exchange that was finished. One sentence each.
@@ -108,7 +97,7 @@ impl RunFolder {
 
     /// The folder to write to.
     pub fn unfinished(&self) -> &Path {
-        &self.unfinished
+        &self.unfinished.path
     }
 
     /// The path to write a result to that is known by its name early, before the work on it.
@@ -117,7 +106,7 @@ impl RunFolder {
     ///
     /// When it would replace a file that no run wrote ([`OutputError::is_refusal`]).
     pub fn reserve(&self, name: &str) -> Result<PathBuf, OutputError> {
-        check_replaceable(&self.earlier, &self.path, name)?;
+        self.earlier.check_result(&self.folder, name)?;
         Ok(self.unfinished.join(name))
     }
 
@@ -129,12 +118,12 @@ impl RunFolder {
     /// When the name has another ending, or when the file would be in the subfolder of the unfinished run.
     pub fn adopt(&mut self, path: &Path, ending: &str) -> Result<(), OutputError> {
         let folder = path.parent().map(|folder| if folder == "" { Path::new(".") } else { folder });
-        let is_in = |own: &Path| folder.is_some_and(|folder| same(folder, own));
+        let is_in = |own: &Folder| folder.is_some_and(|folder| own.is_at(folder));
         if is_in(&self.unfinished) {
             let why = "this folder is removed at the end of the run; choose another one";
             return Err(OutputError::new(path, io::Error::other(why)));
         }
-        let Some(name) = path.file_name().and_then(OsStr::to_str).filter(|_| is_in(&self.path)) else {
+        let Some(name) = path.file_name().and_then(OsStr::to_str).filter(|_| is_in(&self.folder)) else {
             return Ok(());
         };
         if path.extension().is_none_or(|own| own != ending) {
@@ -158,17 +147,17 @@ impl RunFolder {
 
     /// The names of the files in the subfolder.
     fn written(&self) -> Result<BTreeSet<String>, OutputError> {
-        let mut names = BTreeSet::new();
-        for entry in fs::read_dir(&self.unfinished).map_err(|why| self.failed(why))? {
-            let entry = entry.map_err(|why| self.failed(why))?;
-            names.extend(entry.file_name().into_string().ok().filter(|_| !entry.path().is_dir()));
+        if !self.unfinished.is_at(&self.unfinished.path) {
+            let why = "the folder was moved or removed while the run wrote to it: its results are lost";
+            return Err(self.failed(io::Error::other(why)));
         }
-        names.remove(LOCK);
-        Ok(names)
+        let names = self.unfinished.names().map_err(|why| self.failed(why))?;
+        let names = names.into_iter().filter_map(|name| name.into_string().ok());
+        Ok(names.filter(|name| name != LOCK && self.unfinished.has_file(name)).collect())
     }
 
-    /// Replaces the results of the earlier run, except `inputs` of this one, by the files that were written. The file with
-    /// the summary comes last.
+    /// Replaces the results of the earlier run, except `inputs` of this one and what is in them, by the files
+    /// that were written. The file with the summary comes last.
     ///
     /// # Errors
     ///
@@ -178,36 +167,39 @@ impl RunFolder {
         let exchanged = self.exchange(inputs);
         exchanged.map_err(|error| {
             self.keeps_unfinished = true;
-            let why = format!("{}; the results are in {}", error.why, self.unfinished.display());
+            let why = format!("{}; the results are in {}", error.why, self.unfinished.path.display());
             OutputError::new(&error.path, io::Error::new(error.why.kind(), why))
         })
     }
 
     fn exchange(&self, inputs: &[&Path]) -> Result<(), OutputError> {
+        let Self { folder, unfinished, .. } = self;
         let mut new = Marker::new();
         for name in self.written()? {
-            check_replaceable(&self.earlier, &self.path, &name)?;
-            new.add(&self.unfinished, &name).map_err(|why| self.failed(why))?;
+            self.earlier.check_result(folder, &name)?;
+            new.add(unfinished, &name).map_err(|why| self.failed(why))?;
         }
-        let is_kept = |name: &str| inputs.iter().any(|input| same(input, &self.path.join(name)));
+        let is_kept = |name: &str| inputs.iter().any(|input| is_below(&folder.join(name), input));
         let earlier =
             self.earlier.without(|name| self.adopted.contains(name) || is_kept(name) && !new.lists(name));
-        for name in self.adopted.iter().filter(|name| self.path.join(name).is_file()) {
-            new.add(&self.path, name).map_err(|why| self.failed(why))?;
+        // Not what somebody else has put in their place.
+        let named = Marker::read(folder, marker::FILES)?;
+        for name in self.adopted.iter().filter(|name| named.proves(folder, name)) {
+            new.add(folder, name).map_err(|why| self.failed(why))?;
         }
         let exchange = Exchange { earlier, new };
-        exchange.begin(&self.unfinished)?;
+        exchange.begin(unfinished)?;
         let mut moves = Moves::default();
-        exchange.carry_out(&self.path, &self.unfinished, &mut moves).inspect_err(|_| {
+        exchange.carry_out(folder, unfinished, &mut moves).inspect_err(|_| {
             // What cannot be put back is finished by the next run.
-            Exchange::undo(&self.unfinished, &moves).ok();
+            exchange.undo(folder, unfinished, &moves).ok();
         })?;
-        Exchange::clean_up(&self.unfinished).ok(); // the next run does it
+        exchange.clean_up(unfinished).ok(); // the next run does it
         Ok(())
     }
 
     fn failed(&self, why: io::Error) -> OutputError {
-        OutputError::new(&self.path, why)
+        OutputError::new(&self.folder.path, why)
     }
 }
 
@@ -217,64 +209,92 @@ impl Drop for RunFolder {
             return;
         }
         // What fails has a reason that was reported, or is kept by the next run.
-        disk::remove_run(&self.unfinished, LOCK).ok();
+        remove_unfinished(&self.folder, &self.unfinished).ok();
         if self.is_new {
-            fs::remove_dir(&self.path).ok(); // only if it is empty
+            fs::remove_dir(&self.folder.path).ok(); // only if it is empty
         }
     }
 }
 
-/// Checks that there is nothing, or what a run has left.
-fn check_unfinished(unfinished: &Path) -> Result<(), OutputError> {
-    let entries = match fs::read_dir(unfinished) {
-        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
-        entries => entries.map_err(|why| OutputError::new(unfinished, why))?,
-    };
-    let lock = disk::read(&unfinished.join(LOCK)).map(Option::unwrap_or_default);
-    let lock = lock.unwrap_or_else(|_| b"not a file".into());
-    let is_alone = lock.is_empty() && entries.flatten().all(|entry| entry.file_name() == LOCK);
-    let is_link = unfinished.symlink_metadata().is_ok_and(|known| known.is_symlink());
-    if !is_link && (lock == LOCK_CONTENT || is_alone) {
+/// Removes the files in the subfolder, and the subfolder, in which the lock goes last. A folder in it is not
+/// of a run: it stays, and with it the lock.
+fn remove_unfinished(folder: &Folder, unfinished: &Folder) -> Result<(), OutputError> {
+    let names = unfinished.names().map_err(|why| OutputError::new(&unfinished.path, why))?;
+    let others = names.iter().filter(|name| *name != LOCK);
+    if others.filter(|name| unfinished.remove(name).is_err()).count() > 0 {
         return Ok(());
     }
-    let why =
-        "it is not a folder that a run of this version has left; move it, or give another folder by --out";
-    Err(OutputError::refused(unfinished, why.into()))
+    unfinished.remove(LOCK)?;
+    folder.remove_inner(UNFINISHED)
+}
+
+/// Checks that a folder is none of a run that goes on, that what it has of an unfinished run is of a run, and
+/// that no result would replace another file.
+fn check_folder(folder: &Folder) -> Result<(), OutputError> {
+    if marker::is_of_a_run(folder) {
+        let why = "a run writes there, or has left it when it was killed; give another folder by --out";
+        return Err(OutputError::refused(&folder.path, why.into()));
+    }
+    let earlier = Marker::read(folder, RESULTS)?;
+    if folder.is_free(UNFINISHED) {
+        return check_names(folder, &earlier);
+    }
+    let path = folder.join(UNFINISHED);
+    let failed = |why| OutputError::new(&path, why);
+    let unfinished = folder.inner(UNFINISHED).ok();
+    let names = unfinished.as_ref().map_or(Ok(Vec::new()), Folder::names).map_err(failed)?;
+    let lock =
+        unfinished.as_ref().map_or(Ok(None), |folder| folder.read(LOCK)).map(Option::unwrap_or_default);
+    let lock = lock.unwrap_or_else(|_| b"not a file".into());
+    let is_alone = lock.is_empty() && names.iter().all(|name| name == LOCK);
+    let Some(unfinished) = unfinished.filter(|_| lock == LOCK_CONTENT || is_alone) else {
+        let why = "it is not a folder that a run of this version has left; move it, or give another folder by --out";
+        return Err(OutputError::refused(&path, why.into()));
+    };
+    // An exchange that was begun is finished first.
+    if Exchange::begun(&unfinished)?.is_none() { check_names(folder, &earlier) } else { Ok(()) }
 }
 
 /// Checks that the results of no run would replace a file that no run wrote.
-fn check_names(path: &Path, earlier: &Marker) -> Result<(), OutputError> {
-    RESULTS.split(' ').try_for_each(|name| check_replaceable(earlier, path, name))
+fn check_names(folder: &Folder, earlier: &Marker) -> Result<(), OutputError> {
+    NAMES.split(' ').try_for_each(|name| earlier.check_result(folder, name))
 }
 
-/// Makes both folders, and locks the inner one.
-fn lock_folder(path: &Path, unfinished: &Path) -> Result<File, OutputError> {
-    make_folder(unfinished)?;
-    let failed = |why| OutputError::new(path, why);
-    let file = unfinished.join(LOCK);
-    let mut locked = File::options().write(true).create(true).truncate(false).open(file).map_err(failed)?;
-    lock(&locked, path, "wait for it, or give this one another folder by --out")?;
+/// Locks the inner folder.
+fn lock_folder(folder: &Folder, unfinished: &Folder) -> Result<File, OutputError> {
+    let failed = |why| OutputError::new(&folder.path, why);
+    let mut locked = unfinished.file_to_write(LOCK).map_err(failed)?;
+    lock(&locked, &folder.path, "wait for it, or give this one another folder by --out")?;
     locked.write_all(LOCK_CONTENT).map_err(failed)?;
     Ok(locked)
 }
 
 /// Moves what a killed run has left into a folder of its own.
-fn keep_left_over(path: &Path, unfinished: &Path) -> io::Result<Option<String>> {
-    let left: Vec<_> = fs::read_dir(unfinished)?.collect::<io::Result<_>>()?;
-    let left: Vec<_> = left.iter().filter(|entry| entry.file_name() != LOCK).collect();
+fn keep_left_over(folder: &Folder, unfinished: &Folder) -> Result<Option<String>, OutputError> {
+    let names = unfinished.names().map_err(|why| OutputError::new(&unfinished.path, why))?;
+    let left: Vec<OsString> = names.into_iter().filter(|name| name != LOCK).collect();
     if left.is_empty() {
         return Ok(None);
     }
-    let mut free = (1..).map(|number| path.join(format!("{UNFINISHED}_{number}")));
-    let kept = free.find(|folder| folder.symlink_metadata().is_err()).unwrap_or_default();
-    fs::create_dir(&kept)?;
-    left.iter().try_for_each(|entry| fs::rename(entry.path(), kept.join(entry.file_name())))?;
-    Ok(Some(format!("{} has what a killed run has left; remove it if it is not needed", kept.display())))
+    let mut names = (1..=MAX_LEFT).map(|number| format!("{UNFINISHED}_{number}"));
+    let Some(free) = names.find(|name| folder.is_free(name)) else {
+        let why = format!(
+            "it has what killed runs have left in {UNFINISHED}_1 to {UNFINISHED}_{MAX_LEFT}; remove those folders that are not needed"
+        );
+        return Err(OutputError::refused(&folder.path, why));
+    };
+    let kept = folder.make_inner(&free)?;
+    left.iter().try_for_each(|name| unfinished.rename(name, &kept, name))?;
+    let path = kept.path.display();
+    Ok(Some(format!("{path} has what a killed run has left; remove it if it is not needed")))
 }
 
-/// Whether two paths lead to the same file or folder.
-fn same(a: &Path, b: &Path) -> bool {
-    a.canonicalize().is_ok_and(|a| b.canonicalize().is_ok_and(|b| a == b))
+/// Whether a file is the same as another one, or is in or below a folder.
+pub fn is_below(file: &Path, other: &Path) -> bool {
+    let folder = file.parent().map(|folder| if folder == "" { Path::new(".") } else { folder });
+    let folder = folder.and_then(|folder| folder.canonicalize().ok());
+    let path = folder.zip(file.file_name()).map(|(folder, name)| folder.join(name));
+    path.is_some_and(|path| other.canonicalize().is_ok_and(|other| path.starts_with(other)))
 }
 
 #[cfg(test)]

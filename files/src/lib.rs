@@ -3,13 +3,17 @@
 mod disk;
 mod exchange;
 mod folder;
+mod marker;
 mod unfinished;
 
-pub use folder::RunFolder;
-pub use unfinished::{UnfinishedFile, is_another_kind, temporary_name};
+pub use folder::{RunFolder, is_below};
+pub use unfinished::{Proof, UnfinishedFile, check_output, open_to_append, replace};
 
+use disk::Folder;
+use std::ffi::OsString;
 use std::fs::{self, File, TryLockError};
-use std::io::{self, Write};
+use std::io::{self, Read, Write};
+use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -52,13 +56,6 @@ pub fn write_file(
     UnfinishedFile::create(path)?.write(write)
 }
 
-/// Returns when the names in the folder of a file are on the disk. Not every file system can do this; the file is complete under
-/// one of its names.
-pub fn sync_folder_of(path: &Path) {
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    File::open(folder).and_then(|folder| folder.sync_all()).ok();
-}
-
 /// Makes a folder, and its parent folders, unless it exists.
 ///
 /// # Errors
@@ -97,11 +94,18 @@ fn is_locked(file: &File) -> bool {
     false
 }
 
+/// Why a file beside a state, or the state, is not replaced.
+const FOREIGN: &str = "no run has written it, or it was changed since, and this one would replace it; move it, or give another file \
+                       by --state";
+/// The content of a lock: a file with another one is none.
+const LOCK: &[u8] = b"A run of curious uses the file beside this one.\n";
+
 /// A file that exists while one process has it.
 #[derive(Debug)]
 pub struct FileLock {
-    path: PathBuf,
-    file: Option<File>,
+    folder: Folder,
+    name: OsString,
+    file: File,
 }
 
 impl FileLock {
@@ -109,21 +113,33 @@ impl FileLock {
     ///
     /// # Errors
     ///
-    /// When the file cannot be written.
+    /// When the file cannot be written, or is not a lock.
     pub fn new(path: &Path) -> io::Result<Option<Self>> {
+        let (folder, name) = Folder::of(path)?;
+        let failed = |why: io::Error| {
+            let text = format!("its lock {} cannot be written: {why}", path.display());
+            io::Error::new(why.kind(), text)
+        };
         for _ in 0..LOCK_TRIES {
-            let file = File::options().write(true).create(true).truncate(false).open(path);
-            let file = file.map_err(|why| match why.kind() {
-                io::ErrorKind::NotFound => why, // the folder
-                kind => io::Error::new(kind, format!("its lock {} cannot be written: {why}", path.display())),
-            })?;
+            let mut file = match folder.file_to_write(&name) {
+                Err(why) if why.kind() == io::ErrorKind::AlreadyExists => continue, // of another run, just now
+                file => file.map_err(failed)?,
+            };
             if !is_locked(&file) {
                 return Ok(None);
             }
             // Another run can have removed the file after it was opened here.
-            if is_file_at(&file, path) {
-                return Ok(Some(Self { path: path.to_owned(), file: Some(file) }));
+            if folder.file(&name)?.is_none_or(|named| !is_same(&file, &named)) {
+                continue;
             }
+            let mut content = Vec::new();
+            (&file).take(1 + LOCK.len() as u64).read_to_end(&mut content)?;
+            if content.is_empty() {
+                file.write_all(LOCK).map_err(failed)?;
+            } else if content != LOCK {
+                return Err(io::Error::other(format!("{}: {FOREIGN}", path.display())));
+            }
+            return Ok(Some(Self { folder, name, file }));
         }
         Ok(None)
     }
@@ -131,23 +147,21 @@ impl FileLock {
 
 impl Drop for FileLock {
     fn drop(&mut self) {
-        fs::remove_file(&self.path).ok(); // while it is locked: a process that has opened it looks again
-        self.file.take();
+        // While it is locked: a process that has opened it looks again.
+        if self
+            .folder
+            .file(&self.name)
+            .is_ok_and(|named| named.is_some_and(|named| is_same(&self.file, &named)))
+        {
+            self.folder.remove(&self.name).ok();
+        }
     }
 }
 
-/// Whether an open file still has this name.
-#[cfg(unix)]
-fn is_file_at(file: &File, path: &Path) -> bool {
-    use std::os::unix::fs::MetadataExt;
-    let id = |known: fs::Metadata| (known.dev(), known.ino());
-    file.metadata().is_ok_and(|open| fs::metadata(path).is_ok_and(|named| id(open) == id(named)))
-}
-
-/// An open file cannot be removed on this system.
-#[cfg(not(unix))]
-fn is_file_at(_file: &File, _path: &Path) -> bool {
-    true
+/// Whether two open files are one.
+fn is_same(a: &File, b: &File) -> bool {
+    let id = |file: &File| file.metadata().map(|known| (known.dev(), known.ino()));
+    id(a).is_ok_and(|a| id(b).is_ok_and(|b| a == b))
 }
 
 #[cfg(test)]
@@ -155,7 +169,10 @@ mod tests {
     use super::*;
 
     fn names(folder: &Path) -> Vec<String> {
-        fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect()
+        let names = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name());
+        let mut names: Vec<_> = names.map(|name| name.into_string().unwrap()).collect();
+        names.sort();
+        names
     }
 
     #[test]
@@ -166,14 +183,14 @@ mod tests {
             write_file(&path, |file| file.write_all(text.as_bytes())).unwrap();
             assert_eq!(fs::read_to_string(&path).unwrap(), text);
         }
-        assert_eq!(names(folder.path()), ["a.txt"]);
+        assert_eq!(names(folder.path()), [marker::FILES, "a.txt"]);
     }
 
     #[test]
     fn a_failure_half_way_leaves_what_was_there() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.txt");
-        fs::write(&path, "old").unwrap();
+        write_file(&path, |file| file.write_all(b"old")).unwrap();
         let error = write_file(&path, |file| {
             file.write_all(&[b'x'; 100_000])?;
             Err(io::ErrorKind::StorageFull.into())
@@ -183,7 +200,7 @@ mod tests {
             format!("cannot write {}: no storage space", path.display())
         );
         assert_eq!(fs::read_to_string(&path).unwrap(), "old");
-        assert_eq!(names(folder.path()), ["a.txt"]);
+        assert_eq!(names(folder.path()), [marker::FILES, "a.txt"]);
     }
 
     #[test]

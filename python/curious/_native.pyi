@@ -2,6 +2,7 @@
 
 from datetime import datetime
 from os import PathLike
+from pathlib import Path
 from typing import Any, Iterator, Literal, Protocol, Sequence, TypeAlias, final
 
 import numpy as np
@@ -53,6 +54,12 @@ class Spec:
     @property
     def walls(self) -> Floats: ...
     def to_toml(self) -> str: ...
+
+@final
+class Output:
+    def __init__(self, path: str | PathLike[str]) -> None: ...
+    def __enter__(self) -> Path: ...
+    def __exit__(self, kind: object, value: object, traceback: object) -> None: ...
 
 @final
 class Reading:

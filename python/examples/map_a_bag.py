@@ -22,4 +22,5 @@ for place in survey.places[:10]:
         continue
     low, high = ("?" if bound is None else f"{bound:.0f}" for bound in place["passages_per_hour_90"])
     print(f"{at}: {place['passages']} times in {place['observed_s']:.0f} s of looking: {low} to {high} times per hour")
-np.savez("map.npz", states=survey.mapper.states(), rates=rates, permanent=survey.permanent, path=survey.trajectory)
+with curious.Output("map.npz") as file:
+    np.savez(file, states=survey.mapper.states(), rates=rates, permanent=survey.permanent, path=survey.trajectory)

@@ -119,7 +119,8 @@ def draw(curves: dict[str, list[tuple[float, int, float, float]]], lines: dict[s
     axes.set(ylabel="goals reached, % (500 episodes)", ylim=(0, 100))
     axes.legend(fontsize=7, ncols=2)
     below.set(xlabel="minutes of training", ylabel="contacts per episode", ylim=(0, None))
-    figure.savefig(path, dpi=120)
+    with curious.Output(path) as file:
+        figure.savefig(file, dpi=120)
 
 
 def main() -> None:
@@ -168,7 +169,7 @@ def main() -> None:
             flush=True,
         )
     if arguments.json:
-        with open(arguments.json, "w") as file:
+        with curious.Output(arguments.json) as path, open(path, "w") as file:
             json.dump({"curves": curves, **{name: found.tolist() for name, found in results.items()}}, file)
     if arguments.picture and curves:
         draw(curves, {name: float(found[..., 0].mean()) for name, found in results.items()}, arguments.picture)

@@ -6,6 +6,7 @@ The policy is saved to `driver.zip`, loaded again, and evaluated with seeds that
 import argparse
 from typing import Any
 
+import curious
 import numpy as np
 from curious.envs import DriveVectorEnv
 from curious.sb3 import SB3VecEnv
@@ -19,8 +20,9 @@ args = parser.parse_args()
 
 env = SB3VecEnv(DriveVectorEnv(num_envs=64))
 model = PPO("MlpPolicy", env, n_steps=128, batch_size=1024, n_epochs=4, learning_rate=5e-4, ent_coef=0.003, seed=0, device="cpu", verbose=1)
-model.learn(args.steps)
-model.save("driver")
+with curious.Output("driver.zip") as file:  # before the training: an error is known at once
+    model.learn(args.steps)
+    model.save(file)
 env.close()
 
 model = PPO.load("driver", device="cpu")

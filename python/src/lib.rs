@@ -9,11 +9,13 @@ mod forecast;
 mod localizer;
 mod logs;
 mod mapper;
+mod output;
 mod reading;
 mod settings;
 mod snapshots;
 mod spec;
 mod tasks;
+mod threads;
 mod trials;
 mod world;
 
@@ -33,6 +35,8 @@ mod _native {
     use crate::logs::{Log, Readings, Survey, map_log};
     #[pymodule_export]
     use crate::mapper::Mapper;
+    #[pymodule_export]
+    use crate::output::Output;
     #[pymodule_export]
     use crate::reading::Reading;
     #[pymodule_export]

@@ -2,6 +2,7 @@ use crate::convert::{from_json, log_error, pose_values, rows_array, state_number
 use crate::mapper::Mapper;
 use crate::reading::Reading;
 use crate::settings::mapper_settings;
+use crate::threads::on_threads;
 use ::logs::{LogSummary, TopicChoice};
 use interfaces::PoseMode;
 use localizer::{PoseState, TrajectoryPose};
@@ -142,7 +143,7 @@ pub(crate) fn map_log(
     let mut settings = SurveySettings { resolution_m: cell, ..SurveySettings::of(mode) };
     settings.filter.max_range_m = max_range;
     settings.mapper = mapper_settings(settings.mapper, estimator, None, None, range_noise)?;
-    py.detach(|| learn(&log.log, settings, range_noise.is_none()))
+    on_threads(py, 0, || learn(&log.log, settings, range_noise.is_none()))?
 }
 
 /// A signal of the user, which is looked for once in many readings.

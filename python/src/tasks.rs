@@ -2,6 +2,7 @@ use crate::convert::{index, snapshot_error, value_error, whole};
 use crate::settings::task_settings;
 use crate::snapshots::Kind;
 use crate::spec::{driving, spec_of};
+use crate::threads::on_threads;
 use environments::{ACTIONS, Drive, DrivePlace, Explore, ExplorePlace, Results, TaskError};
 use numpy::{IntoPyArray, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::{PyIndexError, PyRuntimeError};
@@ -16,6 +17,8 @@ use std::sync::Arc;
 #[pyclass(module = "curious")]
 pub(crate) struct Batch {
     batch: environments::Batch,
+    /// 0 for one per core.
+    threads: usize,
     /// Whether every environment was reset once.
     is_ready: bool,
 }
@@ -24,16 +27,9 @@ pub(crate) struct Batch {
 type Part = (&'static str, Vec<usize>, Vec<(&'static str, usize)>);
 
 impl Batch {
-    fn with(mut batch: environments::Batch, threads: usize) -> PyResult<Self> {
-        match threads {
-            0 => {}
-            1 => batch.is_parallel = false,
-            threads => {
-                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-                batch.pool = Some(pool.map_err(|error| PyRuntimeError::new_err(error.to_string()))?);
-            }
-        }
-        Ok(Self { batch, is_ready: false })
+    fn with(mut batch: environments::Batch, threads: usize) -> Self {
+        batch.is_parallel &= threads != 1;
+        Self { batch, threads, is_ready: false }
     }
 
     fn rows(&self) -> usize {
@@ -85,7 +81,7 @@ impl Batch {
             let place = Arc::new(DrivePlace::new(&spec, settings)?);
             Ok(environments::Batch::new((0..environments).map(|_| Drive::new(&place))))
         });
-        Self::with(batch.map_err(value_error)?, threads)
+        Ok(Self::with(batch.map_err(value_error)?, threads))
     }
 
     /// Exploring tasks in some worlds, or in houses that are generated from seeds; each episode is in one of them. `threads` as
@@ -111,7 +107,7 @@ impl Batch {
             let tasks = (0..environments).map(|_| Explore::new(&place)).collect::<Result<Vec<_>, _>>()?;
             Ok(environments::Batch::new(tasks))
         });
-        Self::with(batch.map_err(value_error)?, threads)
+        Ok(Self::with(batch.map_err(value_error)?, threads))
     }
 
     /// The number of environments.
@@ -176,7 +172,7 @@ impl Batch {
         seeds: PyReadonlyArray1<'py, u64>,
     ) -> PyResult<Bound<'py, PyArray2<f32>>> {
         let (batch, seeds) = (&mut self.batch, seeds.as_array().to_vec());
-        let observations = py.detach(|| batch.reset(&seeds)).map_err(value_error)?;
+        let observations = on_threads(py, self.threads, || batch.reset(&seeds))?.map_err(value_error)?;
         self.is_ready = true;
         observations.into_pyarray(py).reshape([self.rows(), self.observation_len()])
     }
@@ -205,7 +201,8 @@ impl Batch {
         let (actions, next_seeds) =
             (actions.as_array().iter().copied().collect::<Vec<f32>>(), next_seeds.as_array().to_vec());
         let batch = &mut self.batch;
-        let results = py.detach(|| batch.step(&actions, &next_seeds)).map_err(value_error)?;
+        let results =
+            on_threads(py, self.threads, || batch.step(&actions, &next_seeds))?.map_err(value_error)?;
         let Results { observations, rewards, terminated, truncated, last_observations, info, was_reset } =
             results;
         let last = was_reset.contains(&true).then(|| last_observations.into_pyarray(py));

@@ -1,7 +1,11 @@
 """Fleets and worlds."""
 
 import copy
+import json
+import os
 import pickle
+import select
+import signal
 import threading
 
 import curious
@@ -217,3 +221,45 @@ def test_threads_at_the_same_time():
     for thread in threads:
         thread.join()
     assert len({fleet.snapshot() for fleet in fleets}) == 1
+
+
+def test_forked_process_has_its_own_threads():
+    """The threads of another process do not exist in a forked one, which would wait for them for ever."""
+    if not hasattr(os, "fork"):
+        pytest.skip("this system does not fork")
+
+    def drive(fleet: curious.Fleet) -> list[float]:
+        fleet.step(steps=40, scans=fleet.scans())
+        return fleet.poses().ravel().tolist()
+
+    before = curious.Fleet("house", 3, threads=True)
+    expected = drive(before)
+    reader, writer = os.pipe()
+    child = os.fork()
+    if child == 0:
+        drive(before)
+        os.write(writer, json.dumps(drive(curious.Fleet("house", 3, threads=True))).encode())
+        os._exit(0)
+    os.close(writer)
+    ready, _, _ = select.select([reader], [], [], 60)
+    if not ready:
+        os.kill(child, signal.SIGKILL)
+    os.waitpid(child, 0)
+    assert ready and json.loads(os.read(reader, 1 << 20)) == expected
+
+
+def test_output_replaces_only_its_own_files(tmp_path):
+    path = tmp_path / "a.txt"
+    for text in ("one", "two"):
+        with curious.Output(path) as file:
+            file.write_text(text)
+        assert path.read_text() == text
+    with pytest.raises(ZeroDivisionError):
+        with curious.Output(path) as file:
+            file.write_text("half")
+            1 / 0
+    assert path.read_text() == "two" and not file.exists()
+    path.write_text("edited")
+    with pytest.raises(FileExistsError, match="it was changed since a run wrote it"):
+        curious.Output(path)
+    assert path.read_text() == "edited"

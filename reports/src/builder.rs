@@ -5,12 +5,11 @@ use super::statistics::Quantiles;
 use super::strategy::{Measure, StrategyResult, StrategySums};
 use super::{Report, ReportSettings, position};
 use evaluation::trials::{Metric, Trial};
-use files::OutputError;
+use files::{OutputError, UnfinishedFile};
 use rayon::prelude::*;
 use serde::{Serialize, Serializer};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
-use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
@@ -180,7 +179,7 @@ pub fn collect<E: From<OutputError> + From<UnequalTimes>>(
 ) -> Result<Report, E> {
     let path = folder.join("trials.csv");
     let failed = |why: io::Error| OutputError::new(&path, why);
-    let mut file = BufWriter::new(File::create(&path).map_err(failed)?);
+    let mut file = BufWriter::new(UnfinishedFile::create(&path)?);
     let names = Metric::ALL.map(Metric::name);
     let head = ["world", "estimator", "strategy", "seed", settings.length.column()];
     let head = csv::Writer::from_writer(&mut file)
@@ -197,7 +196,7 @@ pub fn collect<E: From<OutputError> + From<UnequalTimes>>(
         texts.into_iter().try_for_each(|text| file.write_all(&text?)).map_err(failed)?;
         batch.iter().try_for_each(|trial| report.add(trial))?;
     }
-    file.flush().map_err(failed)?;
+    file.into_inner().map_err(|error| failed(error.into_error()))?.finish()?;
     Ok(report.finish())
 }
 

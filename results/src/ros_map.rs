@@ -1,7 +1,7 @@
 //! Maps as the two files of the ROS `map_server`, a picture (PGM, binary) and a YAML file, and masks for the costmap filters of
 //! Nav2. The crate `worldfile` reads maps.
 
-use files::{OutputError, write_file};
+use files::{OutputError, UnfinishedFile};
 use interfaces::{CellState, Grid};
 use std::path::Path;
 
@@ -55,13 +55,15 @@ fn write_both<T>(
     [occupied, free]: [f64; 2],
 ) -> Result<(), OutputError> {
     let frame = grid.frame();
+    let file = |ending| UnfinishedFile::create(&folder.join(format!("{name}.{ending}")));
+    let (picture, description) = (file("pgm")?, file("yaml")?); // both or none
     // Row by row: the picture of a large place is larger than its map in memory.
-    write_file(&folder.join(format!("{name}.pgm")), |file| {
+    picture.write(|file| {
         write!(file, "P5\n{} {}\n255\n", frame.width(), frame.height())?;
         grid.rows().rev().try_for_each(|row| file.write_all(&row.map(pixel).collect::<Vec<_>>()))
     })?;
     let (origin, resolution_m) = (frame.origin(), frame.resolution_m());
-    write_file(&folder.join(format!("{name}.yaml")), |file| {
+    description.write(|file| {
         write!(
             file,
             "image: {name}.pgm\nmode: {mode}\nresolution: {resolution_m:?}\norigin: [{:?}, {:?}, 0.0]\nnegate: 0\n\

@@ -1,21 +1,21 @@
 //! Trajectories in the TUM format: one line per pose, `time x y z qx qy qz qw` (s, m, a unit quaternion). Programs that
 //! evaluate trajectories read it, such as `evo`.
 
+use files::{OutputError, UnfinishedFile};
 use nalgebra::Isometry2;
-use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
 /// A trajectory file that is being written. The first error ends the file; [`finish`](Self::finish) reports it.
 #[derive(Debug)]
 pub struct TrajectoryFile {
-    file: io::Result<BufWriter<File>>,
+    file: io::Result<BufWriter<UnfinishedFile>>,
 }
 
 impl TrajectoryFile {
-    /// Creates the file.
+    /// Creates the file. It has its name when it is complete.
     pub fn create(path: &Path) -> Self {
-        Self { file: File::create(path).map(BufWriter::new) }
+        Self { file: UnfinishedFile::create(path).map(BufWriter::new).map_err(why) }
     }
 
     /// Adds the pose at a time, s, m and rad.
@@ -33,8 +33,12 @@ impl TrajectoryFile {
     ///
     /// When the file could not be created, or a line could not be written.
     pub fn finish(self) -> io::Result<()> {
-        self.file?.flush()
+        self.file?.into_inner().map_err(|error| error.into_error())?.finish().map_err(why)
     }
+}
+
+fn why(error: OutputError) -> io::Error {
+    error.why
 }
 
 #[cfg(test)]

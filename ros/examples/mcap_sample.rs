@@ -6,12 +6,12 @@
 //!
 //! A robot drives around in a square room, and a door in the right wall opens and closes.
 
+use files::UnfinishedFile;
 use interfaces::{Cell, Event, Grid, GridFrame, LaserReading, Scan, Twist, pose, rotation};
 use nalgebra::{Isometry2, Point2, Vector2};
 use ros::McapWriter;
 use std::error::Error;
 use std::f64::consts::TAU;
-use std::fs::File;
 use std::io::BufWriter;
 
 /// Half the side of the room, m.
@@ -23,7 +23,7 @@ const BEGIN_S: f64 = 1_767_225_600.0;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let Some(path) = std::env::args().nth(1) else { return Err("usage: mcap_sample FILE.mcap".into()) };
-    let mut writer = McapWriter::new(BufWriter::new(File::create(&path)?), &path, BEGIN_S)?;
+    let mut writer = McapWriter::new(BufWriter::new(UnfinishedFile::create(path.as_ref())?), &path, BEGIN_S)?;
     for step in 0..300 {
         let time_s = f64::from(step) * PERIOD_S;
         let reading = reading(time_s);

@@ -15,7 +15,7 @@ mod tests;
 use crate::lifecycle::State;
 use crate::link::{Event, Link};
 use crate::message::{Message, Time, Topic};
-use crate::node_state_file::{Asker, NodeStateFile};
+use crate::node_state_file::{Asker, NodeStateFile, open};
 use crate::notes::{Notes, Output};
 use crate::parameters::Parameters;
 use crate::pilot::LivePilot;
@@ -101,7 +101,7 @@ impl<L: Link> CuriousNode<L> {
         output: Output,
     ) -> anyhow::Result<Self> {
         let mut notes = Notes::new(output);
-        let loaded = state.filter(|_| parameters.autostart);
+        let loaded = state.filter(|_| parameters.autostart).map(open).transpose()?;
         let Parts { robot, state_file, continued } = Parts::new(parameters, loaded, &mut notes)?;
         let mut node = Self {
             link,

@@ -42,13 +42,22 @@ pub(crate) enum Asker {
 /// What is said of a state that is saved, or why it is not.
 pub(crate) type Saved = Result<String, String>;
 
+/// Locks a file to load and to save it.
+///
+/// # Errors
+///
+/// When the file cannot be written, or another run uses it.
+pub(crate) fn open(path: &Path) -> anyhow::Result<StateFile> {
+    StateFile::open(path).with_context(|| format!("{}: cannot use it", path.display()))
+}
+
 impl NodeStateFile {
     /// The file, and what it belongs to.
     ///
     /// # Errors
     ///
-    /// When the file cannot be written, or another run uses it.
-    pub(crate) fn new(path: &Path, settings: &Settings, parameters: &Parameters) -> anyhow::Result<Self> {
+    /// When the parameters name no strategy.
+    pub(crate) fn new(file: StateFile, settings: &Settings, parameters: &Parameters) -> anyhow::Result<Self> {
         let mut settings = settings.clone();
         // What was learned does not depend on when the robot counts as lost.
         settings.localizer.lost_after_s = LocalizerSettings::default().lost_after_s;
@@ -56,7 +65,6 @@ impl NodeStateFile {
         let pilot = SavedSettings::default()
             .with("strategy", &parameters.policy()?.name())
             .with("drives", &is_driver);
-        let file = StateFile::open(path).with_context(|| format!("{}: cannot use it", path.display()))?;
         let (sessions, survey) = (Sessions::of(PROGRAM), None);
         Ok(Self { file, settings, pilot, sessions, survey, askers: Vec::new(), must_save: false })
     }

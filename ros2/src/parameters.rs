@@ -83,6 +83,8 @@ parameters! {
     Start "scan_topic", scan_topic: String = "/scan".to_owned();
     /// For a robot whose odometry is not in tf.
     Start "odom_topic", odom_topic: String = "odom".to_owned();
+    /// The folder in and below which the services `save_map` and `serialize_map` write.
+    Start "map_folder", map_folder: String = ".".to_owned();
     /// The side of a cell, m.
     Unconfigured "resolution", resolution_m: f64 = 0.05;
     /// The sides of the map, whose center is where the robot starts, m.
@@ -190,13 +192,20 @@ impl Parameters {
         check.valid("transform_publish_period", period, "0, or from 0.005 to 10", is_period)?;
         check.within("transform_timeout", self.transform_timeout_s, 0.0..=10.0, "from 0 to 10")?;
         check.within("lost_after", self.lost_after_s, 0.0..=3600.0, "from 0 to 3600")?;
-        for (name, frame) in [
+        let frames = [
             ("map_frame", &self.map_frame),
             ("odom_frame", &self.odom_frame),
             ("base_frame", &self.base_frame),
-        ] {
-            if frame.is_empty() {
-                return Err(invalid(name, "the name of a frame", &Value::Text(String::new())));
+        ];
+        for (number, (name, frame)) in frames.into_iter().enumerate() {
+            // tf has no slash before a name, and source::bare removes it.
+            let bare = |frame: &str| frame.trim_start_matches('/').to_owned();
+            let found = || Value::Text(frame.clone());
+            if bare(frame).is_empty() {
+                return Err(invalid(name, "the name of a frame", &found()));
+            }
+            if let Some((other, _)) = frames[..number].iter().find(|(_, other)| bare(other) == bare(frame)) {
+                return Err(invalid(name, &format!("another frame than `{other}`"), &found()));
             }
         }
         if !PoseMode::LIVE.contains(&self.pose) {

@@ -74,6 +74,34 @@ struct Arrival {
     is_restart: bool,
 }
 
+/// The clock of one kind of messages. A stamp that runs ahead of the time that has passed here is left out,
+/// unless the next one confirms it: as in a log, a clock that is wrong for one message is no other time, and
+/// a clock that was set is.
+#[derive(Default)]
+struct Clock {
+    /// The last stamp, ns, and when it came.
+    last: Option<(i64, Instant)>,
+    /// The stamp that was left out last, if it was the last one.
+    ahead_ns: Option<i64>,
+}
+
+impl Clock {
+    /// Takes a stamp, ns. If it is to be left out: by how much it is ahead, s.
+    fn ahead_s(&mut self, ns: i64, now: Instant) -> Option<f64> {
+        let passed_ns =
+            |since: Instant| i64::try_from(now.duration_since(since).as_nanos()).unwrap_or(i64::MAX);
+        let expected = self.last.map(|(last_ns, since)| last_ns.saturating_add(passed_ns(since)));
+        let ahead_ns = expected.map_or(0, |expected_ns| ns.saturating_sub(expected_ns));
+        let is_confirmed = self.ahead_ns.is_some_and(|ahead| ns.saturating_sub(ahead).abs() < RESTART_NS);
+        if ahead_ns > RESTART_NS && !is_confirmed {
+            self.ahead_ns = Some(ns);
+            return Some(ahead_ns as f64 * 1e-9);
+        }
+        *self = Self { last: Some((ns, now)), ahead_ns: None };
+        None
+    }
+}
+
 /// Where the poses come from. Transforms are preferred to messages of odometry.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 enum PoseSource {
@@ -93,6 +121,9 @@ pub(crate) struct Source {
     /// Times are since the first pose.
     assembler: Assembler<Arrival>,
     poses: PoseSource,
+    /// The clocks of the scans and of the poses.
+    scan_clock: Clock,
+    pose_clock: Clock,
     /// The time of the first pose of all, ns: times count from it on.
     origin_ns: Option<i64>,
     /// The times of the first and the last pose by the clock of now, ns.
@@ -138,9 +169,9 @@ impl Source {
     pub(crate) fn take(&mut self, topic: Topic, message: Message, now: Instant) {
         match message {
             Message::Scan(scan) => self.take_scan(scan, now),
-            Message::Odometry(odometry) => self.take_odometry(&odometry),
+            Message::Odometry(odometry) => self.take_odometry(&odometry, now),
             Message::Transforms(transforms) => {
-                self.take_transforms(&transforms, topic == Topic::StaticTransforms);
+                self.take_transforms(&transforms, topic == Topic::StaticTransforms, now);
             }
             _ => {}
         }
@@ -210,6 +241,11 @@ impl Source {
             return;
         }
         let end_ns = begin_ns.saturating_add((scan.sweep_s * 1e9).round() as i64);
+        if let Some(ahead_s) = self.scan_clock.ahead_s(end_ns, now) {
+            self.count.invalid += 1;
+            self.notes.push(format!("a scan is left out: its stamp is {ahead_s:.1} s ahead of the clock"));
+            return;
+        }
         if let Some(last_ns) = self.last_ns.filter(|last_ns| end_ns <= *last_ns) {
             if last_ns.saturating_sub(end_ns) < RESTART_NS {
                 self.count.late += 1;
@@ -280,7 +316,11 @@ impl Source {
     }
 
     /// Adds a pose that is not older than the last one. If the odometry was reset, that is no motion.
-    fn add_pose(&mut self, ns: i64, pose: &Isometry3<f64>, chain: &Chain) {
+    fn add_pose(&mut self, ns: i64, pose: &Isometry3<f64>, chain: &Chain, now: Instant) {
+        if let Some(ahead_s) = self.pose_clock.ahead_s(ns, now) {
+            self.notes.push(format!("a pose is left out: its stamp is {ahead_s:.1} s ahead of the clock"));
+            return;
+        }
         if let Some((_, last_ns)) = self.pose_span_ns.filter(|(_, last_ns)| ns <= *last_ns) {
             if last_ns.saturating_sub(ns) < RESTART_NS {
                 return;
@@ -308,7 +348,7 @@ impl Source {
         chain
     }
 
-    fn take_odometry(&mut self, message: &Odometry) {
+    fn take_odometry(&mut self, message: &Odometry, now: Instant) {
         let Some(pose) = message.pose.pose.isometry() else {
             self.notes.push("a pose of the odometry is not valid".to_owned());
             return;
@@ -317,13 +357,13 @@ impl Source {
         let frames = &self.assembler.frames;
         let chain = frames.chain(&message.child_frame_id, &self.names.base, &[&self.names.odom]);
         let Some(chain) = chain.filter(|_| self.poses != PoseSource::Transforms) else { return };
-        self.add_pose(message.header.stamp.ns(), &pose, &chain);
+        self.add_pose(message.header.stamp.ns(), &pose, &chain, now);
         if self.pose_span_ns.is_some_and(|(first_ns, last_ns)| last_ns - first_ns >= WAIT_FOR_TF_NS) {
             self.poses = PoseSource::Topic;
         }
     }
 
-    fn take_transforms(&mut self, message: &Transforms, is_static: bool) {
+    fn take_transforms(&mut self, message: &Transforms, is_static: bool, now: Instant) {
         let mut edges = Vec::new();
         for found in &message.transforms {
             let Header { stamp, frame_id } = &found.header;
@@ -362,7 +402,7 @@ impl Source {
                 self.poses = PoseSource::Transforms;
             }
             if self.poses == PoseSource::Transforms {
-                self.add_pose(*stamp_ns, &pose, &Chain::new());
+                self.add_pose(*stamp_ns, &pose, &Chain::new(), now);
             }
         }
     }

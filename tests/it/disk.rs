@@ -38,21 +38,21 @@ fn a_file_that_cannot_be_replaced() {
 
 #[test]
 fn recordings_and_moving_pictures_that_cannot_be_written() {
-    let error = |arguments: &str| {
+    let error = |code: i32, arguments: &str| {
         let run = Run::new();
         run.write("thesis.rrd", "precious");
         let ended = run.ends(&format!("--duration 30 --quiet {arguments}"));
-        assert_eq!((ended.code, ended.stdout.as_str()), (Some(1), ""), "{ended:?}");
+        assert_eq!((ended.code, ended.stdout.as_str()), (Some(code), ""), "{ended:?}");
         assert_eq!(run.names(), ["thesis.rrd"]);
         assert_eq!(std::fs::read_to_string(run.path("thesis.rrd")).unwrap(), "precious");
         ended.stderr
     };
-    insta::assert_snapshot!(error("--rrd no/such/run.rrd"), @"error: cannot write the recording no/such/run.rrd: No such file or directory (os error 2)");
+    insta::assert_snapshot!(error(1, "--rrd no/such/run.rrd"), @"error: cannot write no/such/run.rrd: No such file or directory (os error 2)");
     if cfg!(target_os = "linux") {
-        insta::assert_snapshot!(error("--rrd /dev/full"), @"error: cannot write the recording /dev/full: No space left on device (os error 28)");
+        insta::assert_snapshot!(error(1, "--rrd /dev/full"), @"error: cannot write the recording /dev/full: No space left on device (os error 28)");
     }
-    insta::assert_snapshot!(error("--rrd thesis.rrd"), @"error: cannot write the recording thesis.rrd: there is a file with this name that is not a recording; choose another name");
-    insta::assert_snapshot!(error("--no-rrd --gif no/such/run.gif"), @"error: cannot write no/such/run.gif: No such file or directory (os error 2)");
+    insta::assert_snapshot!(error(2, "--rrd thesis.rrd"), @"error: cannot write thesis.rrd: the results would replace it, and no run of this version wrote it (an earlier version may have); move it, or choose another name");
+    insta::assert_snapshot!(error(1, "--no-rrd --gif no/such/run.gif"), @"error: cannot write no/such/run.gif: No such file or directory (os error 2)");
 }
 
 #[test]

@@ -68,3 +68,78 @@ fn a_foreign_file_ends_a_run_before_it_begins() {
         }
     }
 }
+
+/// Files that a flag names: of nobody, of a run, changed since, of the user, and a link.
+#[test]
+#[cfg(unix)]
+fn only_files_of_a_run_are_replaced() {
+    let log = crate::map_log::standing_log(1.7e9, 30);
+    for (program, arguments, name) in [
+        ("four_rooms", "--quiet --duration 1 --no-rrd --mcap a.mcap", "a.mcap"),
+        ("four_rooms", "--quiet --duration 1 --no-rrd --gif a.gif", "a.gif"),
+        ("four_rooms", "--quiet --duration 1 --rrd a.rrd", "a.rrd"),
+        ("map_log", "a.log --quiet --no-rrd --mcap a.mcap", "a.mcap"),
+        ("check_world", "--png rooms-7", "rooms-7.png"),
+        ("check_world", "--toml rooms-7", "rooms-7.toml"),
+    ] {
+        let run = Run::of(program);
+        run.write("a.log", &log);
+        let (file, read) = (run.path(name), || std::fs::read(run.path(name)).unwrap());
+        let refused = || {
+            let before = read();
+            run.refuses(arguments);
+            assert_eq!(read(), before, "{arguments}");
+        };
+        let unfinished = file.with_extension("unfinished").with_added_extension(file.extension().unwrap());
+        std::fs::write(&unfinished, "of the user").unwrap();
+        run.write(name, "of the user");
+        refused();
+        run.write(name, "");
+        refused();
+        std::fs::remove_file(&file).unwrap();
+        run.goes_well(arguments);
+        run.goes_well(arguments);
+        let written = read();
+        std::fs::rename(&file, run.path("copy")).unwrap();
+        std::os::unix::fs::symlink("copy", &file).unwrap();
+        refused();
+        std::fs::remove_file(&file).unwrap();
+        std::fs::hard_link(run.path("copy"), &file).unwrap();
+        run.goes_well(arguments);
+        assert_eq!(std::fs::read(run.path("copy")).unwrap(), written, "another name of the same file");
+        std::fs::write(&file, [&read()[..], b" "].concat()).unwrap();
+        refused();
+        assert_eq!(std::fs::read_to_string(&unfinished).unwrap(), "of the user");
+    }
+}
+
+/// A bag that a run wrote is read: neither the bag of --mcap nor the results of the next run take its place.
+#[test]
+fn a_log_that_is_read_stays() {
+    let run = Run::new();
+    run.goes_well("--quiet --duration 30 --no-rrd --out bag --mcap bag/a.mcap");
+    let before = std::fs::read(run.path("bag/a.mcap")).unwrap();
+    let run = run.with("map_log");
+    for arguments in ["bag --mcap bag/a.mcap", "bag/a.mcap --mcap bag/../bag/a.mcap", "bag --mcap bag/b.mcap"]
+    {
+        let ended = run.ends(&format!("{arguments} --no-rrd --quiet"));
+        assert_eq!(ended.code, Some(2), "{ended:?}");
+        ended.says(&["would replace a log that is read, or be in its folder"]);
+    }
+    for arguments in ["bag", "bag/a.mcap"] {
+        run.ends(&format!("{arguments} --no-rrd --quiet --out bag"));
+        assert!(run.path("bag/report.html").exists());
+    }
+    assert_eq!(std::fs::read(run.path("bag/a.mcap")).unwrap(), before);
+}
+
+#[test]
+#[cfg(unix)]
+fn a_folder_that_is_removed_during_a_run_is_an_error() {
+    let run = Run::new();
+    let mut child = run.starts("--quiet --duration 1h --speed 50");
+    wait_until(|| run.out("unfinished_run/trajectory.unfinished.tum").exists());
+    std::fs::remove_dir_all(run.path("out")).unwrap();
+    crate::ending::send(nix::sys::signal::Signal::SIGINT, &child);
+    assert_eq!(child.wait().unwrap().code(), Some(1));
+}

@@ -163,7 +163,7 @@ fn an_invalid_path_of_the_bag_is_found_at_once() {
     run.write("a.log", &standing_log(1.7e9, 30));
     let refused = |path: &str| run.refuses(&format!("a.log --no-rrd --mcap {path}"));
     insta::assert_snapshot!(refused("no/such/folder.mcap"), @"error: cannot write the bag of --mcap: cannot write no/such/folder.mcap: No such file or directory (os error 2)");
-    insta::assert_snapshot!(refused("a.log"), @"error: --mcap a.log would replace a log that is read");
+    insta::assert_snapshot!(refused("a.log"), @"error: --mcap a.log would replace a log that is read, or be in its folder; choose another name");
     insta::assert_snapshot!(refused("out/map.pgm"), @"error: cannot write out/map.pgm: in the folder of the results its name must end in .mcap");
 }
 

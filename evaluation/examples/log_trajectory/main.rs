@@ -76,7 +76,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             poses.map(|(laser, reading)| Some(laser? * reading.mount.inverse())),
         )?;
     }
-    std::fs::create_dir_all(&folder)?;
+    files::make_folder(&folder)?;
     let mut file = TrajectoryFile::create(&folder.join("trajectory.tum"));
     trajectory.poses.iter().for_each(|pose| file.add(pose.time_s, &pose.pose));
     file.finish()?;

@@ -1,10 +1,12 @@
 //! All points along a trajectory as a picture: the darker, the more often a place was hit. A wall that is there twice
 //! shows at once.
 
+use image::codecs::png::PngEncoder;
 use image::{Rgb, RgbImage};
 use interfaces::LaserReading;
 use localizer::Trajectory;
 use nalgebra::{Point2, Vector2};
+use std::io;
 use std::path::Path;
 
 /// The side of a pixel, m; larger where the picture would have more than [`MAX_PIXELS`] along a side.
@@ -52,6 +54,6 @@ pub(crate) fn write(
         let (x, y) = pixel(point);
         image.put_pixel(x, y, Rgb([220, 60, 30]));
     }
-    image.save(file)?;
+    files::write_file(file, |to| image.write_with_encoder(PngEncoder::new(to)).map_err(io::Error::other))?;
     Ok(())
 }

@@ -16,12 +16,12 @@ mod ghosts;
 
 use drive::{LogSpec, SimulatedLog};
 use evaluation::metrics::{alignment, quantile};
+use files::{UnfinishedFile, make_folder};
 use interfaces::PoseMode;
 use logs::McapWriter;
 use nalgebra::{Isometry2, Point2};
 use results::TrajectoryFile;
 use std::error::Error;
-use std::fs::{File, create_dir_all};
 use std::path::Path;
 use survey::{Route, SurveyError, SurveySettings, Verdict};
 
@@ -104,14 +104,14 @@ impl Counts {
 }
 
 fn write(folder: &Path, seed: u64, log: &SimulatedLog) -> Result<(), Box<dyn Error>> {
-    create_dir_all(folder)?;
-    let mut bag = McapWriter::new(File::create(folder.join(format!("{seed}.mcap")))?, "bag", 1e9)?;
+    make_folder(folder)?;
+    let mut bag = McapWriter::new(UnfinishedFile::create(&folder.join(format!("{seed}.mcap")))?, "bag", 1e9)?;
     let mut truth = TrajectoryFile::create(&folder.join(format!("{seed}.tum")));
     for (reading, pose) in log.readings.iter().zip(&log.truth) {
         bag.reading(reading)?;
         truth.add(reading.time_s, pose);
     }
-    bag.finish()?;
+    bag.finish()?.finish()?;
     truth.finish()?;
     Ok(())
 }

@@ -3,7 +3,7 @@
 mod faults;
 
 use super::*;
-use crate::exchange::MARKER;
+use crate::marker::RESULTS as MARKER;
 
 fn names(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).unwrap();
@@ -46,7 +46,7 @@ fn a_file_that_is_written_directly_is_a_result() {
         for wrong in ["map.pgm", "unfinished_run/own.rrd"] {
             run.adopt(&folder.path().join(wrong), "rrd").unwrap_err();
         }
-        fs::write(&file, text).unwrap();
+        crate::write_file(&file, |file| file.write_all(text.as_bytes())).unwrap();
         assert_eq!(run.results().unwrap(), ["own.rrd"]);
         let summary = serde_json::json!({ "files": run.results().unwrap() });
         fs::write(run.unfinished().join("summary.json"), summary.to_string()).unwrap();
@@ -54,7 +54,15 @@ fn a_file_that_is_written_directly_is_a_result() {
         assert_eq!(fs::read_to_string(&file).unwrap(), text);
     }
     run(folder.path(), &["map.pgm"], &[]).unwrap();
-    assert_eq!(names(folder.path()), [MARKER, "map.pgm", "summary.json"]);
+    assert_eq!(names(folder.path()), [marker::FILES, MARKER, "map.pgm", "summary.json"]);
+    // The user puts another file in its place during a run.
+    let mut own = RunFolder::open(folder.path()).unwrap();
+    own.adopt(&file, "rrd").unwrap();
+    fs::write(&file, "of the user").unwrap();
+    assert!(crate::write_file(&file, |file| file.write_all(b"third")).unwrap_err().is_refusal());
+    own.finish(&[]).unwrap();
+    run(folder.path(), &["map.pgm"], &[]).unwrap();
+    assert_eq!(fs::read_to_string(&file).unwrap(), "of the user");
 }
 
 #[test]
@@ -196,4 +204,126 @@ fn a_folder_of_the_user_in_that_of_a_run_stays() {
         let kept = folder.path().join(format!("{UNFINISHED}_{number}/mine/notes.txt"));
         assert_eq!(fs::read_to_string(kept).unwrap(), "of the user");
     }
+}
+
+/// Every file below a folder, with its content, and every link, with its target.
+fn everything(folder: &Path) -> Vec<(std::path::PathBuf, String)> {
+    let mut all = Vec::new();
+    for entry in fs::read_dir(folder).unwrap().map(Result::unwrap) {
+        let path = entry.path();
+        match entry.file_type().unwrap() {
+            kind if kind.is_symlink() => {
+                all.push((path.clone(), fs::read_link(&path).unwrap().display().to_string()))
+            }
+            kind if kind.is_dir() => all.extend(everything(&path)),
+            _ => all.push((path.clone(), fs::read_to_string(&path).unwrap())),
+        }
+    }
+    all.sort();
+    all
+}
+
+/// A folder of results from a stranger, who has prepared an exchange and put links in the place of any two
+/// files and folders.
+#[test]
+fn a_prepared_folder_changes_nothing_outside() {
+    let [text, evil] = ["of the user", "of the stranger"];
+    let places = [
+        MARKER,
+        ".curious_run.json_1",
+        ".curious_files.json",
+        UNFINISHED,
+        "unfinished_run_1",
+        "map.pgm",
+        ".bashrc",
+        "a.mcap",
+        "a.unfinished.mcap",
+        "unfinished_run/.lock",
+        "unfinished_run/.exchange.json",
+        "unfinished_run/.exchange.json_1",
+        "unfinished_run/.earlier",
+        "unfinished_run/.earlier/.bashrc",
+        "unfinished_run/map.pgm",
+        "unfinished_run/.bashrc",
+    ];
+    let hash = |text: &str| format!("{:032x}", xxhash_rust::xxh3::xxh3_128(text.as_bytes()));
+    let listed = |names: &[&str]| {
+        let content = format!(r#"{{"bytes":{},"xxh3":"{}"}}"#, evil.len(), hash(evil));
+        let files = names.iter().map(|name| format!("{name:?}:{content}")).collect::<Vec<_>>().join(",");
+        format!(r#"{{"schema":1,"files":{{{files}}}}}"#)
+    };
+    let pairs = places
+        .iter()
+        .enumerate()
+        .flat_map(|(at, first)| places[at..].iter().map(move |second| (first, second)));
+    for (first, second) in pairs {
+        for to_folder in [false, true] {
+            let outer = tempfile::tempdir().unwrap();
+            let [path, home] = ["out", "home"].map(|name| outer.path().join(name));
+            fs::create_dir_all(path.join(UNFINISHED)).unwrap();
+            fs::create_dir(&home).unwrap();
+            for name in [".bashrc", "map.pgm", "a.mcap", LOCK, MARKER, "summary.json"] {
+                fs::write(home.join(name), text).unwrap();
+            }
+            for name in [".bashrc", "a.mcap", "unfinished_run/map.pgm"] {
+                fs::write(path.join(name), evil).unwrap();
+            }
+            let both = format!(r#"{{"earlier":{},"new":{}}}"#, listed(&[".bashrc"]), listed(&["map.pgm"]));
+            fs::write(path.join(MARKER), listed(&[".bashrc", "a.mcap"])).unwrap();
+            fs::write(path.join(UNFINISHED).join(LOCK), LOCK_CONTENT).unwrap();
+            fs::write(path.join(UNFINISHED).join(".exchange.json"), both).unwrap();
+            for place in [first, second].map(|place| path.join(place)) {
+                drop(fs::remove_file(&place).or_else(|_| fs::remove_dir_all(&place)));
+                let to = if to_folder { home.clone() } else { home.join(".bashrc") };
+                if place.parent().unwrap().symlink_metadata().is_ok_and(|parent| parent.is_dir()) {
+                    std::os::unix::fs::symlink(to, &place).unwrap();
+                }
+            }
+            let before = everything(&home);
+            for _ in 0..2 {
+                if let Ok(mut run) = RunFolder::open(&path) {
+                    let bag = path.join("a.mcap");
+                    drop(run.adopt(&bag, "mcap"));
+                    drop(crate::write_file(&bag, |file| file.write_all(b"bag")));
+                    drop(crate::write_file(&run.unfinished().join("map.pgm"), |file| file.write_all(b"map")));
+                    drop(run.finish(&[]));
+                }
+            }
+            assert_eq!(everything(&home), before, "{first} {second} {to_folder}");
+        }
+    }
+}
+
+#[test]
+fn a_folder_that_is_removed_during_a_run_is_an_error() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("out");
+    for made_again in [false, true] {
+        let run = RunFolder::open(&path).unwrap();
+        fs::write(run.unfinished().join("map.pgm"), "new").unwrap();
+        fs::remove_dir_all(&path).unwrap();
+        if made_again {
+            fs::create_dir_all(run.unfinished()).unwrap();
+        }
+        assert!(run.finish(&[]).unwrap_err().to_string().contains("was moved or removed while the run"));
+        drop(fs::remove_dir_all(&path));
+    }
+}
+
+#[test]
+fn killed_runs_leave_a_bounded_number_of_folders() {
+    let folder = tempfile::tempdir().unwrap();
+    for number in 1..=MAX_LEFT {
+        fs::create_dir(folder.path().join(format!("{UNFINISHED}_{number}"))).unwrap();
+    }
+    drop(RunFolder::open(folder.path()).unwrap());
+    fs::create_dir(folder.path().join(UNFINISHED)).unwrap();
+    fs::write(folder.path().join(UNFINISHED).join(LOCK), LOCK_CONTENT).unwrap();
+    fs::write(folder.path().join(UNFINISHED).join("map.pgm"), "half").unwrap();
+    let error = RunFolder::open(folder.path()).unwrap_err();
+    assert!(
+        error.is_refusal() && error.to_string().contains("remove those folders that are not needed"),
+        "{error}"
+    );
+    assert_eq!(fs::read_to_string(folder.path().join(UNFINISHED).join("map.pgm")).unwrap(), "half");
 }

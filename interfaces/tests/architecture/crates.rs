@@ -27,7 +27,7 @@ const ALLOWED: &[(&str, &str)] = &[
     ("environments", "interfaces sim worldfile mapper agent controller robot evaluation draw"),
     (
         "python",
-        "interfaces sim worldfile stage mapper localizer logs agent robot survey evaluation environments draw",
+        "interfaces files sim worldfile stage mapper localizer logs agent robot survey evaluation environments draw",
     ),
     ("draw", "interfaces files mapper agent robot results"),
     ("viewer", "interfaces files mapper localizer agent robot results draw"),
@@ -37,7 +37,10 @@ const ALLOWED: &[(&str, &str)] = &[
         "curious",
         "interfaces files calendar sim worldfile stage mapper agent controller robot results evaluation draw viewer cli",
     ),
-    ("ros2", "interfaces sim worldfile mapper localizer ros logs agent controller robot results survey cli"),
+    (
+        "ros2",
+        "interfaces files sim worldfile mapper localizer ros logs agent controller robot results survey cli",
+    ),
     // No part of the product: no other crate may use it.
     ("studies", "interfaces calendar sim mapper agent robot evaluation reports"),
 ];

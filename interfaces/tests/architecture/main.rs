@@ -8,6 +8,7 @@
 mod circle;
 mod crates;
 mod modules;
+mod outputs;
 mod references;
 mod resolve;
 mod synthetic;

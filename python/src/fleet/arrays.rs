@@ -2,6 +2,7 @@
 
 use super::Fleet;
 use crate::convert::{Table, value_error};
+use crate::threads::on_threads;
 use numpy::ndarray::Ix2;
 use numpy::{Element, PyReadwriteArrayDyn, PyUntypedArrayMethods};
 use pyo3::prelude::*;
@@ -22,7 +23,7 @@ impl Fleet {
         end_s: f64,
         mut scans: Option<&mut [f32]>,
     ) -> PyResult<()> {
-        let Self { fleet, contacts, .. } = self;
+        let Self { fleet, contacts, threads, .. } = self;
         let spec = fleet.spec();
         let steps = (end_s - fleet.time_s()) / spec.step_s * spec.robots.len() as f64;
         contacts.clear();
@@ -36,7 +37,7 @@ impl Fleet {
                     None => Ok(()),
                 }
             };
-            if steps <= SHORT_STEPS { run() } else { py.detach(run) }?;
+            if steps <= SHORT_STEPS && *threads == 1 { run() } else { on_threads(py, *threads, run)? }?;
             contacts.extend_from_slice(fleet.contacts());
             if is_end {
                 return Ok(());

@@ -7,6 +7,7 @@ use crate::convert::{
 use crate::reading::Reading;
 use crate::snapshots::Kind;
 use crate::spec::spec_of;
+use crate::threads::on_threads;
 use arrays::look_all;
 use interfaces::{LaserReading, Purpose, RandomStream};
 use numpy::{PyArray2, PyArrayDyn};
@@ -22,6 +23,8 @@ use sim::physics::{Body, Contact, FreePoses, Velocity};
 pub(crate) struct Fleet {
     fleet: sim::physics::Fleet,
     driven: Vec<usize>,
+    /// The number of threads on which lasers measure; 0 for one per core.
+    threads: usize,
     /// The number of beams of each robot, if it is the same.
     beams: Option<usize>,
     /// The contacts that began in the last `step` or `run`.
@@ -67,7 +70,7 @@ impl Fleet {
         let beams = Some(first).filter(|beams| spec.robots.iter().all(|robot| robot.laser.beams == *beams));
         let mut fleet = py.detach(|| sim::physics::Fleet::new(&spec, seed));
         fleet.set_parallel_lasers(threads);
-        Ok(Self { fleet, driven, beams, contacts: Vec::new() })
+        Ok(Self { fleet, driven, threads: usize::from(!threads), beams, contacts: Vec::new() })
     }
 
     /// The time since the start, s.
@@ -159,7 +162,7 @@ impl Fleet {
         let array = out.unwrap_or_else(|| PyArrayDyn::<f32>::zeros(py, self.scans_shape(), false).into_any());
         let mut out = writable(&array, "out")?;
         let (ranges_m, fleet) = (self.scans_of(&mut out)?, &mut self.fleet);
-        py.detach(|| look_all(fleet, ranges_m))?;
+        on_threads(py, self.threads, || look_all(fleet, ranges_m))??;
         Ok(array)
     }
 

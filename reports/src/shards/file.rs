@@ -3,7 +3,7 @@
 use super::scan::{Line, MAX_LINE, Scan, not_a_shard, read_line, write_line};
 use super::{Header, Shard, ShardError};
 use evaluation::trials::{Experiment, Trial, TrialSettings, TrialWorld, run_trial};
-use files::{OutputError, lock, make_folder};
+use files::{OutputError, lock, make_folder, open_to_append};
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use std::collections::BTreeSet;
 use std::fs::{self, DirEntry, File};
@@ -48,8 +48,7 @@ impl ShardFile {
         check_others(folder, header)?;
         let path = folder.join(shard.file_name());
         let failed = |why| ShardError::from(OutputError::new(&path, why));
-        let options = File::options().read(true).write(true).create(true).truncate(false).open(&path);
-        let mut file = options.map_err(failed)?;
+        let mut file = open_to_append(&path).map_err(failed)?;
         lock(&file, &path, "wait for it, or start another shard")?;
         let mut scan = Scan::of(&path, shard, BufReader::new(&file))?;
         let line = write_line(header, 0).map_err(|error| failed(error.into()))?;

@@ -2,9 +2,9 @@
 
 use super::format::{Session, State};
 use super::settings::StateError;
-use files::{FileLock, OutputError, is_another_kind, sync_folder_of, temporary_name, write_file};
+use files::{FileLock, OutputError, Proof, UnfinishedFile, check_output, replace};
 use std::fs::{self, File};
-use std::io;
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
@@ -27,7 +27,8 @@ pub struct StateFile {
     writing: Option<JoinHandle<io::Result<bool>>>,
     /// The number of sessions in the file as it was loaded, if all are complete: before another one is added, the file is kept.
     sessions: Option<usize>,
-    _lock: FileLock,
+    /// Until the value is dropped; `None` if the file is only read.
+    lock: Option<FileLock>,
 }
 
 impl StateFile {
@@ -35,27 +36,35 @@ impl StateFile {
     ///
     /// # Errors
     ///
-    /// When another run uses it, when its folder cannot be written, and when a file beside it, which the run would replace, is of
-    /// somebody else (`house.state.lock`).
+    /// When another run uses it, when its folder cannot be written, when it is a link that leads to no file,
+    /// and when a file beside it, which the run would replace, is of somebody else (`house.state.lock`).
     pub fn open(path: &Path) -> io::Result<Self> {
-        let target = target_of(path);
-        let (lock, earlier) = (target.with_added_extension("lock"), target.with_added_extension("earlier"));
-        let own = [temporary_name(&target), temporary_name(&earlier), lock.clone(), earlier];
-        if let Some(other) = own.iter().find(|path| is_another_kind(path, State::MAGIC)) {
-            let why = "no run has written it, and this one would replace it; move it, or give another file by --state";
-            return Err(io::Error::other(format!("{}: {why}", other.display())));
-        }
+        let target = target_of(path)?;
+        let other =
+            |OutputError { path, why }| io::Error::new(why.kind(), format!("{}: {why}", path.display()));
+        check_output(&earlier_of(&target), Some(PROOF)).map_err(other)?;
         let why = "another run uses it; wait for its end, or give another file by --state";
         let busy = || io::Error::new(io::ErrorKind::ResourceBusy, why);
-        let lock = FileLock::new(&lock)?.ok_or_else(busy)?;
+        let lock = FileLock::new(&target.with_added_extension("lock"))?.ok_or_else(busy)?;
+        let mut file = Self::to_load(path)?;
+        file.lock = Some(lock);
+        Ok(file)
+    }
+
+    /// The file with this name, to [`load`](Self::load) it: nothing is written, no lock either.
+    ///
+    /// # Errors
+    ///
+    /// When it is a link that leads to no file.
+    pub fn to_load(path: &Path) -> io::Result<Self> {
         Ok(Self {
             path: path.to_owned(),
-            target,
+            target: target_of(path)?,
             every: EVERY,
             last: Instant::now(),
             writing: None,
             sessions: None,
-            _lock: lock,
+            lock: None,
         })
     }
 
@@ -95,7 +104,7 @@ impl StateFile {
     ///
     /// When no file was kept.
     pub fn restore_earlier(&self) -> io::Result<()> {
-        fs::rename(self.target.with_added_extension("earlier"), &self.target)
+        replace(&self.target, &earlier_of(&self.target), PROOF).map_err(|OutputError { why, .. }| why)
     }
 
     /// Whether it is time to [`save`](Self::save).
@@ -145,6 +154,7 @@ impl StateFile {
 impl Drop for StateFile {
     fn drop(&mut self) {
         self.wait().ok(); // the lock lasts until the last writing has ended
+        self.lock = None;
     }
 }
 
@@ -158,37 +168,65 @@ pub fn read_state(path: &Path) -> Result<State, StateError> {
         let why = "it is not a file (but a folder, a pipe or a device)";
         return Err(io::Error::other(why).into()); // a pipe would wait for ever
     }
-    File::open(path)?;
-    if is_another_kind(path, State::MAGIC) {
+    let mut file = File::open(path)?;
+    let mut bytes = Vec::new();
+    (&file).take(State::MAGIC.len() as u64).read_to_end(&mut bytes)?;
+    if !bytes.is_empty() && bytes != State::MAGIC {
         return Err(StateError::OtherKind); // and perhaps very long
     }
-    State::from_bytes(&fs::read(path)?)
+    file.read_to_end(&mut bytes)?;
+    State::from_bytes(&bytes)
 }
 
 /// The name of the file that a [`StateFile`] keeps before a session is added: `house.state.earlier` for `house.state`.
 pub fn earlier_name(path: &Path) -> PathBuf {
-    target_of(path).with_added_extension("earlier")
+    earlier_of(&target_of(path).unwrap_or_else(|_| path.to_owned()))
+}
+
+fn earlier_of(target: &Path) -> PathBuf {
+    target.with_added_extension("earlier")
 }
 
 /// The file to which a name leads.
-fn target_of(path: &Path) -> PathBuf {
-    path.canonicalize().unwrap_or_else(|_| path.to_owned())
+fn target_of(path: &Path) -> io::Result<PathBuf> {
+    match path.canonicalize() {
+        Err(_) if path.is_symlink() => {
+            let to = path.read_link()?;
+            Err(io::Error::new(
+                io::ErrorKind::NotFound,
+                format!(
+                    "it is a link to {}, which is not there; make that file's folder available, or remove the link",
+                    to.display()
+                ),
+            ))
+        }
+        target => Ok(target.unwrap_or_else(|_| path.to_owned())),
+    }
+}
+
+/// How a state shows that a run wrote it.
+const PROOF: Proof = Proof { start: State::MAGIC, is_intact: is_state };
+
+/// Whether a file is a state as it was written: it has its checksum.
+fn is_state(mut file: &File) -> bool {
+    let mut bytes = Vec::new();
+    file.read_to_end(&mut bytes).is_ok() && State::is_intact(&bytes)
 }
 
 /// Copies the file as it is now: what is saved next can be undone.
 fn keep(path: &Path) -> io::Result<()> {
     let mut present = File::open(path)?;
-    let kept =
-        write_file(&path.with_added_extension("earlier"), |file| io::copy(&mut present, file).map(|_| ()));
+    let kept = UnfinishedFile::with_proof(&earlier_of(path), Some(PROOF))
+        .and_then(|file| file.write(|file| io::copy(&mut present, file).map(drop)));
     kept.map_err(|OutputError { why, .. }| why)
 }
 
 /// Replaces the file at once and completely, or not at all.
 fn write(path: &Path, state: &State) -> io::Result<()> {
     let bytes = state.to_bytes().map_err(io::Error::other)?;
-    write_file(path, |file| file.write_all(&bytes)).map_err(|OutputError { why, .. }| why)?;
-    sync_folder_of(path);
-    Ok(())
+    let written = UnfinishedFile::with_proof(path, Some(PROOF))
+        .and_then(|file| file.write(|file| file.write_all(&bytes)));
+    written.map_err(|OutputError { why, .. }| why)
 }
 
 #[cfg(test)]

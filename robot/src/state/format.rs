@@ -117,17 +117,9 @@ impl State {
     ///
     /// When the bytes are another kind of file, are damaged, or come from another version.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, StateError> {
-        let rest = bytes.strip_prefix(Self::MAGIC).ok_or(StateError::OtherKind)?;
-        let (found, rest) = rest.split_first_chunk().ok_or(StateError::Damaged)?;
-        let found = u32::from_le_bytes(*found);
-        let (layout, rest) = rest.split_at_checked(LAYOUT.len()).ok_or(StateError::Damaged)?;
-        let (checksum, packed) = rest.split_first_chunk().ok_or(StateError::Damaged)?;
-        // A flipped bit of the version is damage; another version has another checksum.
-        if u64::from_le_bytes(*checksum) != xxh3_64_with_seed(packed, found.into()) {
-            return Err(StateError::Damaged);
-        }
-        if found != VERSION {
-            return Err(StateError::OtherVersion(found));
+        let (version, layout, packed) = Self::parts(bytes)?;
+        if version != VERSION {
+            return Err(StateError::OtherVersion(version));
         }
         if layout != LAYOUT.as_bytes() {
             return Err(StateError::OtherLayout);
@@ -136,6 +128,23 @@ impl State {
         check_length(u32::from_le_bytes(*length) as usize)?;
         let body = lz4_flex::decompress_size_prepended(packed).map_err(|_| StateError::Damaged)?;
         postcard::from_bytes(&body).map_err(|_| StateError::Damaged)
+    }
+
+    /// Whether these are the bytes of a state of any version, as a program wrote them.
+    pub(super) fn is_intact(bytes: &[u8]) -> bool {
+        Self::parts(bytes).is_ok()
+    }
+
+    /// The version, the layout and the compressed body of a file with the right checksum.
+    fn parts(bytes: &[u8]) -> Result<(u32, &[u8], &[u8]), StateError> {
+        let rest = bytes.strip_prefix(Self::MAGIC).ok_or(StateError::OtherKind)?;
+        let (version, rest) = rest.split_first_chunk().ok_or(StateError::Damaged)?;
+        let version = u32::from_le_bytes(*version);
+        let (layout, rest) = rest.split_at_checked(LAYOUT.len()).ok_or(StateError::Damaged)?;
+        let (checksum, packed) = rest.split_first_chunk().ok_or(StateError::Damaged)?;
+        // A flipped bit of the version is damage; another version has another checksum.
+        let is_right = u64::from_le_bytes(*checksum) == xxh3_64_with_seed(packed, version.into());
+        if is_right { Ok((version, layout, packed)) } else { Err(StateError::Damaged) }
     }
 }
 

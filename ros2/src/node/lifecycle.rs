@@ -6,6 +6,7 @@ use super::setup::Parts;
 use crate::lifecycle::State;
 use crate::link::Link;
 use crate::message::{Message, Topic, TransitionEvent, header};
+use crate::node_state_file::open;
 use crate::service::wire::Labelled;
 use std::time::Instant;
 
@@ -49,9 +50,8 @@ impl<L: Link> CuriousNode<L> {
 
     /// Makes what the parameters say; `loads`: with what was learned in earlier runs.
     fn configure(&mut self, loads: bool) -> anyhow::Result<()> {
-        let state_path = self.state_path.as_deref().filter(|_| loads);
-        let Parts { robot, state_file, continued } =
-            Parts::new(&self.parameters, state_path, &mut self.notes)?;
+        let state = self.state_path.as_deref().filter(|_| loads).map(open).transpose()?;
+        let Parts { robot, state_file, continued } = Parts::new(&self.parameters, state, &mut self.notes)?;
         self.source.configure(super::setup::frames(&self.parameters));
         (self.robot, self.state_file, self.continued) = (robot, state_file, continued);
         (self.published, self.last, self.seat) = (Published::default(), None, None);

@@ -1,13 +1,13 @@
 //! The state of the node in its file and in others, and those who ask for it to be saved.
 
 use super::CuriousNode;
-use super::slam_services::{FAILURE, with_ending};
+use super::slam_services::{FAILURE, saved_in, with_ending};
 use crate::link::{Link, Request};
 use crate::message::Time;
-use crate::node_state_file::{Asker, NodeStateFile, Saved};
+use crate::node_state_file::{Asker, NodeStateFile, Saved, open};
 use crate::service::Reply;
 use crate::service::wire::Trigger;
-use std::path::Path;
+use anyhow::bail;
 
 impl<L: Link> CuriousNode<L> {
     /// Begins to save the state; `None` without a file, or before the first reading.
@@ -29,26 +29,28 @@ impl<L: Link> CuriousNode<L> {
 
     /// Writes the state to another file, and answers when it is written.
     pub(super) fn serialize(&mut self, name: &str, request: Request) {
-        let (path, asker) = (with_ending(name), Asker::Serialize(request));
-        let refusal = if self.state_file.as_ref().is_some_and(|own| own.file.path() == path) {
-            "this is the state file of the node: the service `save_state` saves to it".to_owned()
-        } else if name.is_empty() || self.last.is_none() {
-            "a state has a name, and there is nothing to save before the first reading".to_owned()
-        } else {
-            match self.copy(&path) {
-                Ok(mut copy) => {
-                    copy.ask(asker);
-                    return self.copies.push(copy);
-                }
-                Err(why) => format!("{why:#}"),
+        let asker = Asker::Serialize(request);
+        match self.copy(name) {
+            Ok(mut copy) => {
+                copy.ask(asker);
+                self.copies.push(copy);
             }
-        };
-        self.answer(asker, Err(refusal));
+            Err(why) => self.answer(asker, Err(format!("{why:#}"))),
+        }
     }
 
-    fn copy(&self, path: &Path) -> anyhow::Result<NodeStateFile> {
+    fn copy(&self, name: &str) -> anyhow::Result<NodeStateFile> {
+        if name.is_empty() || self.last.is_none() {
+            bail!("a state has a name, and there is nothing to save before the first reading");
+        }
+        let path = saved_in(&self.parameters.map_folder, name).map_err(anyhow::Error::msg)?;
+        let path = with_ending(path);
+        let own = self.state_file.as_ref().and_then(|own| own.file.path().canonicalize().ok());
+        if own.is_some_and(|own| path.canonicalize().is_ok_and(|path| path == own)) {
+            bail!("this is the state file of the node: the service `save_state` saves to it");
+        }
         let settings = super::setup::settings(&self.parameters);
-        let mut copy = NodeStateFile::new(path, &settings, &self.parameters)?;
+        let mut copy = NodeStateFile::new(open(&path)?, &settings, &self.parameters)?;
         self.state_file.iter().for_each(|own| copy.go_on_from(own));
         Ok(copy)
     }

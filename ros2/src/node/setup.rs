@@ -11,8 +11,8 @@ use controller::DiffDriveSettings;
 use interfaces::{GridFrame, LaserReading};
 use localizer::Switch;
 use nalgebra::{Isometry2, Point2};
+use robot::state::StateFile;
 use robot::{Robot, Settings, Source};
-use std::path::Path;
 
 /// With a simulated clock, the map that a closed loop has corrected replaces the old one after this number of readings.
 const SWITCH_READINGS: usize = 50;
@@ -33,13 +33,13 @@ impl Parts {
     /// When a parameter is out of range, or when the state cannot be used.
     pub(super) fn new(
         parameters: &Parameters,
-        state: Option<&Path>,
+        state: Option<StateFile>,
         notes: &mut Notes,
     ) -> anyhow::Result<Self> {
         parameters.check()?;
         let (settings, frame) = (settings(parameters), frame(parameters)?);
         let pilot = LivePilot::new(parameters, &settings)?;
-        let mut file = state.map(|path| NodeStateFile::new(path, &settings, parameters)).transpose()?;
+        let mut file = state.map(|file| NodeStateFile::new(file, &settings, parameters)).transpose()?;
         let saved = file.as_mut().map(NodeStateFile::load).transpose()?.flatten();
         let map = saved.as_ref().and_then(|state| state.map.as_ref());
         let frame = map.and_then(|map| map.frame.union(&frame)).unwrap_or(frame);

@@ -251,7 +251,9 @@ fn nonsense_is_left_out() {
     }
     assert_eq!(heard.source.next(heard.now + PATIENCE), None);
     heard.take(Topic::Scan, Message::Scan(good));
-    assert!(heard.source.next(heard.now + PATIENCE).unwrap().is_restart);
+    assert_eq!(heard.source.next(heard.now + PATIENCE), None, "far from the stamp before");
+    heard.scan(0.3, "laser");
+    assert!(!heard.source.next(heard.now + PATIENCE).unwrap().is_restart);
 }
 
 #[test]
@@ -289,4 +291,38 @@ fn of_two_lasers_one_is_used_and_a_sentence_says_which() {
     scans(&mut chosen);
     assert_eq!(chosen.count.other, 4);
     assert!(chosen.assembler.waiting.iter().all(|waiting| waiting.mount.translation.x.abs() < 1e-9));
+}
+
+/// Messages with a wrong clock begin no other session, and all readings around them are complete.
+#[test]
+fn a_stamp_ahead_of_the_clock_is_left_out() {
+    for ahead_s in [1.5, 10.0, 3.1e7] {
+        for (is_pose_ahead, is_scan_ahead) in [(false, true), (true, false), (true, true)] {
+            let mut heard = Heard::robot();
+            let (mut readings, mut left_s) = (Vec::new(), 0.0);
+            for step in 11..60 {
+                // From here on the clock of the robot is another one.
+                let time_s = 0.1 * f64::from(step) + if step < 40 { 0.0 } else { 1000.0 };
+                for time_s in [time_s, time_s + ahead_s].into_iter().take(1 + usize::from(step % 3 == 0)) {
+                    let is_ahead = time_s > 0.1 * f64::from(step) + 1000.5 || step < 40 && time_s > 6.0;
+                    if !is_ahead || is_pose_ahead {
+                        heard.pose(time_s, 5.0);
+                    }
+                    if !is_ahead || is_scan_ahead {
+                        heard.scan(time_s - 0.2, "laser");
+                    }
+                }
+                readings.extend(std::iter::from_fn(|| heard.next()));
+                left_s = time_s;
+            }
+            assert!(readings.iter().all(|live| !live.is_restart), "{ahead_s} {:?}", heard.notes());
+            assert!(readings.iter().all(|live| live.reading.time_s <= left_s), "{ahead_s}");
+            // At the change of the clock, a scan and a pose are left out, and the scan that has no pose then.
+            assert!(
+                (46..=48).contains(&readings.len()),
+                "{ahead_s} {is_pose_ahead} {is_scan_ahead}: {}",
+                readings.len()
+            );
+        }
+    }
 }

@@ -8,7 +8,7 @@ use cli::flags::folder;
 use cli::program::{Failure, start};
 use cli::terminal::{print, say};
 use draw::pictures::draw_plan;
-use files::{make_folder, write_file};
+use files::{check_output, make_folder, write_file};
 use inspection::{Content, Inspection, as_world_file, inspect};
 use interfaces::printable;
 use std::collections::BTreeSet;
@@ -59,6 +59,10 @@ fn main() -> ExitCode {
 
 /// Checks every file, and writes what is asked for. Standard output that cannot be written is an error at the end.
 fn check(args: &Args) -> Result<ExitCode, Failure> {
+    let endings = [(args.png, ".png"), (args.toml, ".toml")];
+    for (_, ending) in endings.iter().filter(|(is_asked, _)| *is_asked) {
+        args.files.iter().try_for_each(|file| check_output(&result(args, file, ending), None))?;
+    }
     let (mut code, mut written, mut printed) = (ExitCode::SUCCESS, BTreeSet::new(), Ok(()));
     for file in &args.files {
         let inspection = inspect(file);
@@ -94,9 +98,15 @@ fn describe(inspection: &Inspection) -> Vec<String> {
     [first].into_iter().chain(second).chain(others).collect()
 }
 
-/// Writes the picture and the world file, and adds their names to the `lines` for the user. The name of a file is
-/// the name of the input with one more extension: with the extension replaced, the picture could overwrite the floor
-/// plan that the world file uses.
+/// The file of a result. Its name is the name of the input with one more extension: with the extension
+/// replaced, the picture could have the name of the floor plan that the world file uses.
+fn result(args: &Args, file: &str, ending: &str) -> PathBuf {
+    let mut name = Path::new(file).file_name().unwrap_or_default().to_owned();
+    name.push(ending);
+    args.out.join(name)
+}
+
+/// Writes the picture and the world file, and adds their names to the `lines` for the user.
 fn write(
     content: &Content,
     file: &str,
@@ -104,11 +114,8 @@ fn write(
     written: &mut BTreeSet<PathBuf>,
     lines: &mut Vec<String>,
 ) -> anyhow::Result<()> {
-    let name = Path::new(file).file_name().unwrap_or_default();
     let mut path_with = |ending: &str| {
-        let mut name = name.to_owned();
-        name.push(ending);
-        let path = args.out.join(name);
+        let path = result(args, file, ending);
         if !written.insert(path.clone()) {
             bail!(
                 "two results would be written to {}; check the files one by one, with --out",

@@ -3,7 +3,7 @@
 use crate::Ended;
 use crate::args::{Args, DriveChoice};
 use crate::parts::TrialStateFile;
-use anyhow::{Context, anyhow};
+use anyhow::Context;
 use cli::bag::RunBag;
 use cli::program::{Failure, arguments, input, results_folder};
 use cli::progress::Progress;
@@ -17,7 +17,7 @@ use evaluation::metrics::map_scores;
 use evaluation::physics_trial::PhysicsTrial;
 use evaluation::scenes::{Displayed, view};
 use evaluation::summary::{SCHEMA, Summary};
-use files::{RunFolder, UnfinishedFile, is_another_kind, write_file};
+use files::{RunFolder, UnfinishedFile, write_file};
 use interfaces::{LaserReading, Twist, World};
 use mapper::Mapper;
 use results::intervals::Intervals;
@@ -26,6 +26,7 @@ use results::{TrajectoryFile, cell_statistics, file_name, ros_map, things};
 use robot::{BUILD, Pilot, Robot, Settings, Turn};
 use sim::physics::WorldSpec;
 use std::io::stderr;
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 use viewer::recording::{Live, Recorder};
@@ -177,7 +178,8 @@ impl<'a> Outputs<'a> {
             say(stderr(), format_args!("error: {problem}"));
             failures.push(problem.to_string());
         }
-        self.folder.finish(&[])?;
+        let read = [Some(args.world.as_ref()), args.map.as_deref(), args.tour.as_deref()];
+        self.folder.finish(&read.into_iter().flatten().collect::<Vec<&Path>>())?;
         if !args.quiet {
             let (out, picture) = (args.out.display(), args.out.join(FIGURE_5_FILE));
             print(format_args!("{summary}\n  files     {out}: open {}", picture.display()))?;
@@ -191,19 +193,16 @@ fn show(args: &Args, scene: Scene, folder: &mut RunFolder) -> Result<Show, Failu
     for (path, ending) in [(&args.rrd, "rrd"), (&args.gif, "gif")] {
         path.as_ref().map_or(Ok(()), |path| folder.adopt(path, ending)).map_err(input)?;
     }
-    if let Some(path) = args.gif.as_ref().filter(|path| is_another_kind(path, b"GIF8")) {
-        let path = path.display();
-        return Err(input(anyhow!("there is a file {path} that is not a GIF picture; choose another name")));
-    }
     let mut live = Vec::from_iter(args.connect.clone());
     live.extend(args.view.then_some(Live::Spawn));
     let named = || folder.reserve(&format!("{}.rrd", file_name::of(&scene.title)));
     let file = (!args.no_rrd).then(|| args.rrd.clone().map_or_else(named, Ok)).transpose()?;
-    let recorder = match &file {
+    let [file, gif] = [&file, &args.gif].map(|path| path.as_deref().map(UnfinishedFile::create).transpose());
+    let (file, gif) = (file?, gif?);
+    let recorder = match file {
         None if live.is_empty() => None,
-        file => Some(Recorder::new(file.as_deref(), &live, scene.clone()).map_err(anyhow::Error::from)?),
+        file => Some(Recorder::new(file, &live, scene.clone()).map_err(anyhow::Error::from)?),
     };
-    let gif = args.gif.as_deref().map(UnfinishedFile::create).transpose().map_err(anyhow::Error::from)?;
     let film = gif.map(|file| Film::new(file, scene.clone(), args.duration));
     Ok(Show::new(scene, recorder, film))
 }

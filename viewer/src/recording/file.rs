@@ -2,7 +2,7 @@
 
 use super::live::LiveFeed;
 use super::{Live, RecordingError};
-use files::{OutputError, UnfinishedFile, is_another_kind};
+use files::UnfinishedFile;
 use rerun::external::re_log_encoding::rrd::{EncodeError, Encoder, EncodingOptions};
 use rerun::log::LogMsg;
 use rerun::sink::{LogSink, SinkFlushError};
@@ -11,8 +11,6 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-/// The first bytes of every recording, before the version of the format.
-const MAGIC: &[u8] = b"RRF";
 /// The number of messages that the footer of a file can list, about 1.5 simulated hours at full speed. The encoder keeps
 /// about 2 kB per message until the end; the file of a longer run has no footer. A viewer then reads the whole file
 /// before it shows everything.
@@ -38,24 +36,17 @@ pub(super) struct RrdFile {
 type Output = Box<dyn Write + Send>;
 
 impl RrdFile {
-    /// Creates the file, and writes its header. An older recording stays until this one is complete; a file that is
-    /// no recording is not replaced.
-    pub(super) fn create(path: &Path) -> Result<Self, RecordingError> {
+    /// Writes the header of the file. An older recording stays until this one is complete.
+    pub(super) fn new(unfinished: UnfinishedFile) -> Result<Self, RecordingError> {
+        let path = unfinished.path();
         let failed = |why| RecordingError::File { path: path.to_owned(), why };
-        if is_another_kind(path, MAGIC) {
-            return Err(failed(
-                "there is a file with this name that is not a recording; choose another name".into(),
-            ));
-        }
-        let unfinished =
-            UnfinishedFile::create(path).map_err(|OutputError { why, .. }| failed(why.to_string()))?;
         let output = unfinished.file().try_clone().map_err(|error| failed(error.to_string()))?;
         let mut file = Self::with_output(path, Box::new(output)).map_err(failed)?;
         file.unfinished = Some(unfinished);
         Ok(file)
     }
 
-    /// Like [`RrdFile::create`], with an `output`; `path` is used only in errors.
+    /// Like [`RrdFile::new`], with an `output`; `path` is used only in errors.
     pub(super) fn with_output(path: &Path, output: Output) -> Result<Self, String> {
         let version = rerun::build_info().version;
         let encoder = Encoder::new_eager(version, EncodingOptions::PROTOBUF_COMPRESSED, output);
@@ -111,10 +102,10 @@ struct Outputs {
 impl Sinks {
     /// Opens every destination. Returns also why a viewer is missing, if one is missing and there is a file.
     pub(super) fn open(
-        file: Option<&Path>,
+        file: Option<UnfinishedFile>,
         viewers: &[Live],
     ) -> Result<(Self, Option<String>), RecordingError> {
-        let file = file.map(RrdFile::create).transpose()?;
+        let file = file.map(RrdFile::new).transpose()?;
         let (mut live, mut problem) = (Vec::new(), None);
         for viewer in viewers {
             match LiveFeed::open(viewer) {

@@ -16,9 +16,10 @@ pub use live::{Live, LiveError};
 use draw::scene::Scene;
 use draw::view::View;
 use file::Sinks;
+use files::UnfinishedFile;
 use rerun::log::ChunkBatcherConfig;
 use rerun::{RecordingStream, RecordingStreamBuilder, RecordingStreamError};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 use tracks::Track;
 
@@ -68,15 +69,15 @@ pub struct Recorder {
 }
 
 impl Recorder {
-    /// Opens the `.rrd` file (an older recording is replaced when this one is complete) and the viewers that show the
-    /// run live. A viewer that cannot be reached does not stop a recording with a file: see
-    /// [`Recorder::live_problem`].
+    /// Begins the `.rrd` file (an older recording is replaced when this one is complete) and opens the
+    /// viewers that show the run live. A viewer that cannot be reached does not stop a recording with a file:
+    /// see [`Recorder::live_problem`].
     ///
     /// # Errors
     ///
     /// When the file cannot be written, or when there is no file and a viewer cannot be reached. Both are
     /// known within five seconds, unless a viewer has to be started.
-    pub fn new(file: Option<&Path>, live: &[Live], scene: Scene) -> Result<Self, RecordingError> {
+    pub fn new(file: Option<UnfinishedFile>, live: &[Live], scene: Scene) -> Result<Self, RecordingError> {
         let (sinks, live_problem) = Sinks::open(file, live)?;
         let (_, info, properties, ..) =
             RecordingStreamBuilder::new(APPLICATION).recording_name(scene.title.clone()).into_args();

@@ -14,6 +14,7 @@ use rerun::{
 use std::path::Path;
 
 fn to(file: &Path) -> Result<Recorder, RecordingError> {
+    let file = UnfinishedFile::create(file).map_err(|error| RecordingError::Sdk(error.to_string()))?;
     Recorder::new(Some(file), &[], FakeRun::new().scene)
 }
 
@@ -21,7 +22,8 @@ fn to(file: &Path) -> Result<Recorder, RecordingError> {
 fn record(run: &mut FakeRun, ticks: u64) -> Vec<u8> {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("run.rrd");
-    let mut recorder = Recorder::new(Some(&file), &[], run.scene.clone()).unwrap();
+    let mut recorder =
+        Recorder::new(Some(UnfinishedFile::create(&file).unwrap()), &[], run.scene.clone()).unwrap();
     for _ in 0..ticks {
         run.step();
         run.with_view(|view| recorder.log(view, false)).unwrap();

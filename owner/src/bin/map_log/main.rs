@@ -15,7 +15,7 @@ use cli::bag::RunBag;
 use cli::flags::check_distinct;
 use cli::program::{Failure, INTERRUPTED, input, interrupt_flag, results_folder, start};
 use cli::terminal::{print, say};
-use files::RunFolder;
+use files::{RunFolder, is_below};
 use logs_in_order::Source;
 use owner::words::list;
 use std::io::stderr;
@@ -135,10 +135,9 @@ fn run(args: &Args) -> Result<ExitCode, Failure> {
 /// The bag of `--mcap`, before the first pass: an invalid path is found at once.
 fn bag(job: &Job, survey: &Survey, folder: &mut RunFolder) -> Result<Option<RunBag>, Failure> {
     let Some(path) = &job.args.mcap else { return Ok(None) };
-    let own = path.canonicalize().ok();
-    let is_input = |file: &PathBuf| own.is_some() && file.canonicalize().ok() == own;
-    if job.args.files.iter().any(is_input) {
-        return Err(input(anyhow!("--mcap {} would replace a log that is read", path.display())));
+    if job.args.files.iter().any(|log| is_below(path, log)) {
+        let why = "would replace a log that is read, or be in its folder";
+        return Err(input(anyhow!("--mcap {} {why}; choose another name", path.display())));
     }
     folder.adopt(path, "mcap").map_err(input)?;
     let earlier = survey.logs().iter().take(job.first_log).map(|log| &log.entry);

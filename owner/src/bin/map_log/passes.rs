@@ -153,7 +153,8 @@ pub(crate) fn learn(
 
 #[cfg(feature = "recording")]
 fn recorder(path: &Path, scene: &Scene) -> anyhow::Result<Option<Recorder>> {
-    Ok(Some(Recorder::new(Some(path), &[], scene.clone())?))
+    let file = files::UnfinishedFile::create(path)?;
+    Ok(Some(Recorder::new(Some(file), &[], scene.clone())?))
 }
 
 /// A program without the feature makes no recording.

@@ -15,7 +15,8 @@ fn state() -> State {
 fn a_file_appears_when_it_is_complete_and_is_replaced() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("house.state");
-    fs::write(temporary_name(&path), &state().to_bytes().unwrap()[..30]).unwrap(); // of a killed run
+    let left = folder.path().join("house.unfinished.state");
+    fs::write(&left, &state().to_bytes().unwrap()[..30]).unwrap(); // of a killed run
     fs::write(path.with_added_extension("lock"), "").unwrap();
     let mut file = StateFile::open(&path).unwrap();
     assert!(file.load().unwrap().is_none() && !file.is_due());
@@ -27,6 +28,12 @@ fn a_file_appears_when_it_is_complete_and_is_replaced() {
     assert!(file.is_due());
     drop(file);
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    fs::write(&left, "of the user").unwrap();
+    let mut file = StateFile::open(&path).unwrap();
+    file.save(state).unwrap();
+    file.wait().unwrap();
+    drop(file);
+    assert_eq!(fs::read_to_string(&left).unwrap(), "of the user");
     fs::write(&path, "[world]").unwrap();
     insta::assert_snapshot!(read_state(&path).unwrap_err().to_string(), @"this is not a state file");
 }
@@ -94,11 +101,11 @@ fn files_of_others_beside_the_state_stay() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("Cargo");
     let [lock, earlier] = ["lock", "earlier"].map(|ending| path.with_added_extension(ending));
-    for other in [lock, temporary_name(&path), temporary_name(&earlier), earlier] {
+    for other in [lock, earlier] {
         fs::write(&other, "of the user").unwrap();
         let error = StateFile::open(&path).unwrap_err().to_string();
-        let why =
-            "no run has written it, and this one would replace it; move it, or give another file by --state";
+        let why = "no run has written it, or it was changed since, and this one would replace it; move it, or give another file by \
+                   --state";
         assert_eq!(error, format!("{}: {why}", other.display()));
         assert_eq!(fs::read_to_string(&other).unwrap(), "of the user");
         fs::remove_file(other).unwrap();
@@ -187,4 +194,41 @@ fn settings_that_must_agree_are_refused_and_others_are_a_note() {
     insta::assert_snapshot!(refused(saved.check(&settings("paper", 9.0))), @"the state is of another run: `mapper.max_gap` is `8` there, and `9` here");
     insta::assert_snapshot!(refused(saved.agree(&settings("shared-prior", 9.0)).map(drop)), @"the state is of another run: `mapper.estimator` is `paper` there, and `shared-prior` here");
     insta::assert_snapshot!(refused(saved.check(&SavedSettings::default().with("world", &"house"))), @"the state is of another run: `mapper.estimator` is `paper` there, and not set here");
+}
+
+/// A file that the user or another program puts in the place of the state is not replaced, whatever it is.
+#[test]
+fn what_is_no_state_is_not_replaced() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("house.state");
+    let mut damaged = state().to_bytes().unwrap();
+    *damaged.last_mut().unwrap() ^= 1;
+    for other in [b"of the user".to_vec(), Vec::new(), State::MAGIC.to_vec(), damaged] {
+        let mut file = StateFile::open(&path).unwrap();
+        file.save(state).unwrap();
+        file.wait().unwrap();
+        fs::write(&path, &other).unwrap();
+        file.save(State::default).unwrap();
+        let error = file.wait().unwrap_err().to_string();
+        assert!(error.starts_with("no run has written it, or it was changed"), "{error}");
+        assert_eq!(fs::read(&path).unwrap(), other);
+        fs::remove_file(&path).unwrap();
+    }
+    let mut other_version = state().to_bytes().unwrap();
+    other_version[12] ^= 1; // the layout, of which the checksum knows nothing
+    fs::write(&path, other_version).unwrap();
+    let mut file = StateFile::open(&path).unwrap();
+    file.save(state).unwrap();
+    file.wait().unwrap();
+}
+
+#[test]
+#[cfg(unix)]
+fn a_link_that_leads_to_no_file_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("house.state");
+    std::os::unix::fs::symlink("disk/house.state", &path).unwrap();
+    let error = StateFile::open(&path).unwrap_err().to_string();
+    assert!(error.starts_with("it is a link to disk/house.state, which is not there"), "{error}");
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
 }

@@ -91,7 +91,7 @@ fn parameters_are_set_where_that_is_safe() {
     let Reply::Descriptions(all) = reply else { panic!("{reply:?}") };
     assert_eq!(all.len(), names.len());
     assert!(all.iter().all(|one| one.description.len() > 5), "{all:?}");
-    assert_eq!(all.iter().filter(|one| one.read_only).count(), 10);
+    assert_eq!(all.iter().filter(|one| one.read_only).count(), 11);
     let reply = pair.call(Service::GetParameters, Call::Names(names));
     let Reply::Values(values) = reply else { panic!("{reply:?}") };
     assert!(values.iter().all(|value| value.value().is_some()));
@@ -115,7 +115,8 @@ fn what_the_node_says_is_in_the_log() {
 fn a_map_is_saved_and_loaded_as_by_slam_toolbox() {
     let folder = tempfile::tempdir().unwrap();
     let name = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
-    let mut pair = Pair::new(&parameters(Mode::Map), 0, None);
+    let map_folder = folder.path().to_str().unwrap().to_owned();
+    let mut pair = Pair::new(&Parameters { map_folder, ..parameters(Mode::Map) }, 0, None);
     let none = pair.call(Service::SaveMap, Call::Name(name("early")));
     assert_eq!(none, Reply::Code(2));
     pair.run(5.0);
@@ -141,4 +142,91 @@ fn a_map_is_saved_and_loaded_as_by_slam_toolbox() {
     assert_eq!(again.node.pose_state, PoseState::Tracking);
     let readings = again.node.robot.mapper.readings();
     assert!(readings > 55, "the map grows from what was loaded: {readings}");
+}
+
+/// Everybody in the network can call the services: they write below one folder, and replace only files of a
+/// run.
+#[test]
+fn services_replace_no_file_of_others() {
+    let outer = tempfile::tempdir().unwrap();
+    let [maps, home] = ["maps", "home"].map(|name| outer.path().join(name));
+    std::fs::create_dir_all(maps.join("below")).unwrap();
+    std::fs::create_dir(&home).unwrap();
+    std::os::unix::fs::symlink(&home, maps.join("link")).unwrap();
+    for name in ["other.yaml", "picture.pgm", "foreign.state", "locked.state.lock", "kept.state.earlier"] {
+        [&maps, &home].iter().for_each(|folder| std::fs::write(folder.join(name), "of the user").unwrap());
+    }
+    std::os::unix::fs::symlink(home.join("new.yaml"), maps.join("dangling.yaml")).unwrap();
+    let map_folder = maps.to_str().unwrap().to_owned();
+    let mut pair = Pair::new(&Parameters { map_folder, ..parameters(Mode::Map) }, 0, None);
+    pair.run(2.0);
+    let inside = maps.join("inside").to_str().unwrap().to_owned();
+    let outside = home.join("other").to_str().unwrap().to_owned();
+    for good in ["a", "a", "below/b c", &inside, "below/../d"] {
+        for service in [Service::SaveMap, Service::SerializeMap] {
+            assert_eq!(pair.call(service, Call::Name(good.to_owned())), Reply::Code(0), "{good}");
+        }
+    }
+    let everything = |folder: &Path| {
+        let files = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+        let files = files.filter(|file| !file.ends_with(".curious_files.json"));
+        let mut all: Vec<_> = files.map(|file| (std::fs::read(&file).ok(), file)).collect();
+        all.sort();
+        all
+    };
+    let before = [&maps, &home].map(|folder| everything(folder));
+    for bad in [
+        "other",
+        "picture",
+        "foreign",
+        "locked",
+        "kept",
+        "dangling",
+        "link/new",
+        "link/other",
+        "../home/new",
+        "none/new",
+        "..",
+        "/",
+        "below/",
+        "a\nimage: /etc/passwd\n#",
+        "a: {b",
+        "\u{1b}[2J",
+        "~/.x$",
+        "/dev/null",
+        "/proc/self/x",
+        &outside,
+        &"x".repeat(300),
+        &"a/".repeat(3000),
+    ] {
+        let saved = pair.call(Service::SaveMap, Call::Name(bad.to_owned()));
+        let has_own_endings = ["foreign", "locked", "kept"].contains(&bad);
+        let serialized = pair.call(Service::SerializeMap, Call::Name(bad.to_owned()));
+        assert_eq!(saved == Reply::Code(0), has_own_endings, "{bad}");
+        assert_eq!(serialized == Reply::Code(0), ["other", "picture", "dangling"].contains(&bad), "{bad}");
+    }
+    let changed: Vec<_> =
+        before.iter().flatten().filter(|(text, file)| std::fs::read(file).ok() != *text).collect();
+    assert!(changed.is_empty(), "{changed:?}");
+    assert_eq!(everything(&home), before[1]);
+}
+
+#[test]
+fn frames_have_names_of_their_own() {
+    let frames = |map: &str, odom: &str, base: &str| {
+        let [map_frame, odom_frame, base_frame] = [map, odom, base].map(str::to_owned);
+        Parameters { map_frame, odom_frame, base_frame, ..parameters(Mode::Map) }.check()
+    };
+    frames("map", "odom", "base_link").unwrap();
+    for (map, odom, base) in [
+        ("map", "map", "b"),
+        ("map", "/map", "b"),
+        ("map", "odom", "odom"),
+        ("map", "odom", "/map"),
+        ("map", "/", "b"),
+    ] {
+        frames(map, odom, base).unwrap_err();
+    }
+    let error = frames("map", "map", "base_link").unwrap_err().to_string();
+    assert_eq!(error, "the parameter `odom_frame` must be another frame than `map_frame`, not `map`");
 }
