@@ -1,11 +1,14 @@
-//! Files that are either complete or absent, locks, and the folder of the results of a run. It depends on nothing of ours.
+//! Files that are either complete or absent, the reader of files, locks, and the folder of the results of a run. It depends on
+//! nothing of ours.
 
 mod disk;
 mod exchange;
 mod folder;
+mod read;
 mod unfinished;
 
 pub use folder::RunFolder;
+pub use read::{open, read, read_text, within};
 pub use unfinished::{UnfinishedFile, is_another_kind, temporary_name};
 
 use std::fs::{self, File, TryLockError};

@@ -15,7 +15,7 @@ use crate::constants::{
     CLEARANCE_M, FROZEN_SCANS, MIN_NOISE_M, SAME_NORMAL, SETTLED_SCANS, STDS, SURFEL_M, TRUSTED_SCANS,
 };
 use crate::scan_points::ScanPoint;
-use interfaces::{GridFrame, ValueError, Values, read_value, runs, to_bytes, value};
+use interfaces::{FARTHEST_M, GridFrame, ValueError, Values, read_value, runs, to_bytes, value};
 use nalgebra::{Isometry2, Point2, Vector2};
 
 /// Surfels in a cell: two sides of a thin wall, and a corner.
@@ -23,6 +23,12 @@ const PER_CELL: usize = 4;
 
 /// The maximum number of cells of a grid of the localizer: they are stored one by one, seen or not.
 const MAX_CELLS: usize = 1 << 26;
+/// What a state can hold: maps up to the first number of cells, and larger ones up to the second number per byte: a few bytes must
+/// not take gigabytes.
+const SMALL_MAP_CELLS: usize = 1 << 25;
+const CELLS_PER_BYTE: usize = 256;
+/// The most scans of a state: those of ten years at 10 Hz.
+const MAX_SCANS: u32 = 1 << 31;
 /// No surfel at this place in a cell.
 const NONE: u32 = u32::MAX;
 
@@ -96,13 +102,33 @@ impl SurfelMap {
     /// The map that [`saved`](Self::saved) has written.
     pub(crate) fn restored(mut bytes: &[u8]) -> Result<Self, ValueError> {
         let frame: GridFrame = read_value(&mut bytes)?;
-        if frame.len() > MAX_CELLS {
+        if frame.len() > MAX_CELLS.min(SMALL_MAP_CELLS + CELLS_PER_BYTE * bytes.len()) {
             return Err(ValueError);
         }
         let cells = vec![[NONE; PER_CELL]; frame.len()];
         let mut map = Self { frame, cells, surfels: Vec::new(), removed: Vec::new(), scan: 0 };
         interfaces::restore(map.values(), bytes)?;
+        map.check()?;
         Ok(map)
+    }
+
+    /// Checks values that were read: a state can hold anything.
+    ///
+    /// # Errors
+    ///
+    /// When a surfel does not exist to which others refer, or is nowhere.
+    pub(crate) fn check(&self) -> Result<(), ValueError> {
+        let (surfels, cells) = (self.surfels.len(), self.cells.len());
+        let is_sound = |surfel: &Surfel| {
+            let numbers = surfel.at.iter().chain(surfel.normal.iter()).chain([&surfel.steadiness]);
+            (surfel.is_removed() || (surfel.cell as usize) < cells)
+                && numbers.into_iter().all(|number| number.abs() <= FARTHEST_M)
+        };
+        let listed = self.cells.iter().flatten().filter(|index| **index != NONE).chain(&self.removed);
+        let is_sound = listed.into_iter().all(|index| (*index as usize) < surfels)
+            && self.surfels.iter().all(is_sound)
+            && self.scan <= MAX_SCANS;
+        if is_sound { Ok(()) } else { Err(ValueError) }
     }
 
     /// The surfel at an index from [`SurfelMap::nearest`].

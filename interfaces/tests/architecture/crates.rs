@@ -8,12 +8,12 @@ const ALLOWED: &[(&str, &str)] = &[
     ("files", ""),
     ("calendar", "interfaces"),
     ("sim", "interfaces calendar"),
-    ("worldfile", "interfaces calendar sim"),
+    ("worldfile", "interfaces files calendar sim"),
     ("stage", "interfaces sim worldfile"),
     ("mapper", "interfaces"),
     ("localizer", "interfaces mapper"),
     ("ros", "interfaces"),
-    ("logs", "interfaces ros"),
+    ("logs", "interfaces files ros"),
     ("agent", "interfaces mapper"),
     ("controller", "interfaces"),
     ("robot", "interfaces files calendar mapper localizer agent controller"),
@@ -37,7 +37,10 @@ const ALLOWED: &[(&str, &str)] = &[
         "curious",
         "interfaces files calendar sim worldfile stage mapper agent controller robot results evaluation draw viewer cli",
     ),
-    ("ros2", "interfaces sim worldfile mapper localizer ros logs agent controller robot results survey cli"),
+    (
+        "ros2",
+        "interfaces files sim worldfile mapper localizer ros logs agent controller robot results survey cli",
+    ),
     // No part of the product: no other crate may use it.
     ("studies", "interfaces calendar sim mapper agent robot evaluation reports"),
 ];

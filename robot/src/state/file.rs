@@ -1,7 +1,7 @@
 //! The file of a state, and the thread that writes it.
 
 use super::format::{Session, State};
-use super::settings::StateError;
+use super::settings::{MAX_FILE, StateError};
 use files::{FileLock, OutputError, is_another_kind, sync_folder_of, temporary_name, write_file};
 use std::fs::{self, File};
 use std::io;
@@ -154,15 +154,11 @@ impl Drop for StateFile {
 ///
 /// When there is none, or it cannot be read.
 pub fn read_state(path: &Path) -> Result<State, StateError> {
-    if !fs::metadata(path)?.is_file() {
-        let why = "it is not a file (but a folder, a pipe or a device)";
-        return Err(io::Error::other(why).into()); // a pipe would wait for ever
-    }
-    File::open(path)?;
+    files::open(path)?;
     if is_another_kind(path, State::MAGIC) {
         return Err(StateError::OtherKind); // and perhaps very long
     }
-    State::from_bytes(&fs::read(path)?)
+    State::from_bytes(&files::read(path, MAX_FILE)?)
 }
 
 /// The name of the file that a [`StateFile`] keeps before a session is added: `house.state.earlier` for `house.state`.

@@ -26,6 +26,23 @@ impl Default for LastSeenCounts {
 }
 
 impl LastSeenCounts {
+    /// Whether these are the counts of candidates with these last readings, up to the reading that is open.
+    pub(super) fn is_sound(
+        &self,
+        candidates: impl Iterator<Item = ReadingIndex>,
+        open: ReadingIndex,
+    ) -> bool {
+        let last = u64::from(self.start) + self.recent.len() as u64;
+        if self.recent.len() < 2 || last != u64::from(open) + 1 {
+            return false;
+        }
+        let mut counts = BTreeMap::new();
+        candidates.for_each(|reading| *counts.entry(reading).or_default() += 1u32);
+        let recent = (self.start..).zip(self.recent.iter().copied()).filter(|(_, count)| *count > 0);
+        let old = self.old.iter().map(|(reading, count)| (*reading, *count));
+        old.chain(recent).eq(counts)
+    }
+
     /// Opens the next reading.
     pub(super) fn open(&mut self) {
         self.recent.push_back(0);

@@ -8,6 +8,9 @@ use serde_json::Value;
 use std::path::Path;
 use survey::{Forecast, RouteGraph, Travel};
 
+/// The longest file of a route, bytes.
+const MAX_BYTES: u64 = 16 << 20;
+
 /// A point of a route.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Stop {
@@ -22,7 +25,7 @@ pub(crate) struct Stop {
 /// The points of the route in a file: a line for each, with x and y (m), or with time (s), x and y, as in a TUM trajectory.
 pub(crate) fn route(path: &Path, forecast: &Forecast, travel: Travel) -> Result<Vec<Stop>> {
     let text =
-        std::fs::read_to_string(path).with_context(|| format!("{}: cannot read it", path.display()))?;
+        files::read_text(path, MAX_BYTES).with_context(|| format!("{}: cannot read it", path.display()))?;
     let mut points: Vec<(Option<f64>, Point2<f64>)> = Vec::new();
     for (number, line) in (1..).zip(text.lines().map(str::trim)) {
         if line.is_empty() || line.starts_with('#') {
@@ -73,7 +76,8 @@ pub(crate) fn route(path: &Path, forecast: &Forecast, travel: Travel) -> Result<
 /// The graph of routes in a file, with the probability that each edge is open at the time of arrival.
 pub(crate) fn graph(path: &Path, forecast: &Forecast, travel: Travel, from: Option<u64>) -> Result<Value> {
     let name = path.display();
-    let text = std::fs::read_to_string(path).with_context(|| format!("{name}: cannot read it"))?;
+    let text =
+        files::read_text(path, RouteGraph::MAX_BYTES).with_context(|| format!("{name}: cannot read it"))?;
     let graph =
         RouteGraph::parse(&text).with_context(|| format!("{name}: this is no graph of nav2_route"))?;
     let edges = graph.outlook(&forecast.outlook(), travel, from)?;
