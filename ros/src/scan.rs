@@ -5,8 +5,8 @@ use interfaces::{LaserReading, Scan};
 use nalgebra::{Isometry2, Isometry3, UnitComplex, Vector3};
 use std::f64::consts::TAU;
 
-/// The most beams of a scan: a message that claims more is invalid.
-const MAX_BEAMS: usize = 100_000;
+/// The most beams of a scan, 55 per degree: a message or a line that claims more is invalid.
+pub const MAX_BEAMS: usize = 20_000;
 /// No laser reaches farther, m: some simulators write ∞.
 const FARTHEST_M: f64 = 300.0;
 /// A scan never takes longer than this, s.

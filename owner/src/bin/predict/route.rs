@@ -11,6 +11,9 @@ use survey::{Forecast, RouteGraph, Travel};
 /// The longest file of a route, bytes.
 const MAX_BYTES: u64 = 16 << 20;
 
+/// The most points of a route: those of three hours at 10 Hz, which take a few seconds.
+const MAX_POINTS: usize = 100_000;
+
 /// A point of a route.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Stop {
@@ -41,6 +44,11 @@ pub(crate) fn route(path: &Path, forecast: &Forecast, travel: Travel) -> Result<
         }
         let Some((time_s, at)) = points.last() else { continue };
         let line = || format!("{}, line {number}", path.display());
+        ensure!(
+            points.len() <= MAX_POINTS,
+            "{}: a route has at most {MAX_POINTS} points; leave some out",
+            line()
+        );
         ensure!(
             at.iter().all(|at_m| at_m.abs() <= FARTHEST_M),
             "{}: x and y must be numbers from -{FARTHEST_M} to {FARTHEST_M} m, found {} and {}",

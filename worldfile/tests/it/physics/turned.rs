@@ -7,7 +7,7 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use std::path::PathBuf;
-use worldfile::physics::parse_world_with;
+use worldfile::physics::{parse_world, parse_world_with};
 use worldfile::shipped;
 
 /// A world without walls.
@@ -86,7 +86,7 @@ fn walls_on_nearly_one_line_run_at_any_angle() {
             let high = [2.1 + 0.37 * f64::from(wall), 2.54 - 0.011 * f64::from(wall) * random.next()];
             text += &format!("[[wall]]\nmin_m = [2.0, 2.0]\nmax_m = [{:.4}, {:.4}]\n", high[0], high[1]);
         }
-        runs_at_any_angle(&physics::parse_world("walls", &text).unwrap(), 3, &mut random);
+        runs_at_any_angle(&parse_world("walls", &text).unwrap(), 3, &mut random);
     }
 }
 
