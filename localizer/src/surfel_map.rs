@@ -23,12 +23,6 @@ const PER_CELL: usize = 4;
 
 /// The maximum number of cells of a grid of the localizer: they are stored one by one, seen or not.
 const MAX_CELLS: usize = 1 << 26;
-/// What a state can hold: maps up to the first number of cells, and larger ones up to the second number per byte: a few bytes must
-/// not take gigabytes.
-const SMALL_MAP_CELLS: usize = 1 << 25;
-const CELLS_PER_BYTE: usize = 256;
-/// The most scans of a state: those of ten years at 10 Hz.
-const MAX_SCANS: u32 = 1 << 31;
 /// No surfel at this place in a cell.
 const NONE: u32 = u32::MAX;
 
@@ -102,7 +96,8 @@ impl SurfelMap {
     /// The map that [`saved`](Self::saved) has written.
     pub(crate) fn restored(mut bytes: &[u8]) -> Result<Self, ValueError> {
         let frame: GridFrame = read_value(&mut bytes)?;
-        if frame.len() > MAX_CELLS.min(SMALL_MAP_CELLS + CELLS_PER_BYTE * bytes.len()) {
+        // A few bytes must not take gigabytes.
+        if frame.len() > MAX_CELLS.min((1 << 25) + 256 * bytes.len()) {
             return Err(ValueError);
         }
         let cells = vec![[NONE; PER_CELL]; frame.len()];
@@ -127,7 +122,7 @@ impl SurfelMap {
         let listed = self.cells.iter().flatten().filter(|index| **index != NONE).chain(&self.removed);
         let is_sound = listed.into_iter().all(|index| (*index as usize) < surfels)
             && self.surfels.iter().all(is_sound)
-            && self.scan <= MAX_SCANS;
+            && self.scan <= u32::MAX / 2;
         if is_sound { Ok(()) } else { Err(ValueError) }
     }
 

@@ -180,7 +180,7 @@ mod tests {
         let refused = |message: LaserScan| converted(message, false).unwrap_err();
         assert_eq!(
             refused(LaserScan { ranges: Vec::new(), ..good.clone() }),
-            "0 ranges; a scan has 1 to 100000"
+            "0 ranges; a scan has 1 to 20000"
         );
         let swapped = LaserScan { range_min: 10.0, range_max: 0.1, ..good.clone() };
         assert!(refused(swapped).starts_with("range limits must hold"));

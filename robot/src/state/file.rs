@@ -154,7 +154,6 @@ impl Drop for StateFile {
 ///
 /// When there is none, or it cannot be read.
 pub fn read_state(path: &Path) -> Result<State, StateError> {
-    files::open(path)?;
     if is_another_kind(path, State::MAGIC) {
         return Err(StateError::OtherKind); // and perhaps very long
     }

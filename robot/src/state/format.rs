@@ -160,7 +160,7 @@ mod tests {
     fn a_few_bytes_do_not_take_gigabytes() {
         let signed = |packed: &[u8]| {
             let checksum = xxh3_64_with_seed(packed, VERSION.into()).to_le_bytes();
-            [State::MAGIC, &VERSION.to_le_bytes(), LAYOUT.as_bytes(), &checksum, packed].concat()
+            [&State::MAGIC[..], &VERSION.to_le_bytes(), LAYOUT.as_bytes(), &checksum, packed].concat()
         };
         let of_body = |body: &[u8]| State::from_bytes(&signed(&lz4_flex::compress_prepend_size(body)));
         assert_eq!(of_body(&postcard::to_stdvec(&State::default()).unwrap()).unwrap(), State::default());

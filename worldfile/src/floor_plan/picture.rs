@@ -74,18 +74,18 @@ fn read(decoder: impl ImageDecoder) -> Result<DynamicImage, String> {
 
 /// The pixels of row `y`, counted from the top. Not of all rows at once: that would take too much memory.
 pub(crate) fn row(image: &DynamicImage, y: u32) -> Vec<Pixel> {
-    let (channels, bytes) = (image.color().channel_count(), usize::from(image.color().bytes_per_pixel()));
+    let color = image.color();
+    let [channels, bytes] = [color.channel_count(), color.bytes_per_pixel()].map(usize::from);
     let width = image.width() as usize * bytes;
-    let row = image.as_bytes().get(y as usize * width..).unwrap_or_default();
     let pixel = |pixel: &[u8]| {
-        let value = |channel: u8| match &pixel[bytes / usize::from(channels) * usize::from(channel)..] {
-            _ if bytes == usize::from(channels) => f64::from(pixel[usize::from(channel)]) / 255.0,
-            [low, high, ..] => f64::from(u16::from_ne_bytes([*low, *high])) / 65535.0,
-            _ => 1.0,
+        let value = |channel: usize| match pixel[channel * bytes / channels..] {
+            [low, high, ..] if bytes > channels => f64::from(u16::from_ne_bytes([low, high])) / 65535.0,
+            [value, ..] => f64::from(value) / 255.0,
+            [] => 1.0,
         };
         let [red, green, blue] = if channels < 3 { [value(0); 3] } else { [0, 1, 2].map(value) };
         let alpha = if channels.is_multiple_of(2) { value(channels - 1) } else { 1.0 };
         Pixel { red, green, blue, alpha }
     };
-    row.chunks_exact(bytes).take(image.width() as usize).map(pixel).collect()
+    image.as_bytes()[y as usize * width..][..width].chunks_exact(bytes).map(pixel).collect()
 }

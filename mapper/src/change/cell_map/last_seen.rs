@@ -32,15 +32,14 @@ impl LastSeenCounts {
         candidates: impl Iterator<Item = ReadingIndex>,
         open: ReadingIndex,
     ) -> bool {
-        let last = u64::from(self.start) + self.recent.len() as u64;
-        if self.recent.len() < 2 || last != u64::from(open) + 1 {
-            return false;
-        }
         let mut counts = BTreeMap::new();
-        candidates.for_each(|reading| *counts.entry(reading).or_default() += 1u32);
-        let recent = (self.start..).zip(self.recent.iter().copied()).filter(|(_, count)| *count > 0);
-        let old = self.old.iter().map(|(reading, count)| (*reading, *count));
-        old.chain(recent).eq(counts)
+        candidates.for_each(|reading| *counts.entry(reading).or_default() += 1);
+        let recent = (self.start..=open).zip(&self.recent).filter(|(_, count)| **count > 0);
+        let end = self.start as usize + self.recent.len();
+        let known: BTreeMap<ReadingIndex, u32> = recent.map(|(reading, count)| (reading, *count)).collect();
+        self.recent.len() >= 2
+            && end == open as usize + 1
+            && self.old.clone().into_iter().chain(known).eq(counts)
     }
 
     /// Opens the next reading.

@@ -8,9 +8,6 @@ use serde_json::Value;
 use std::path::Path;
 use survey::{Forecast, RouteGraph, Travel};
 
-/// The longest file of a route, bytes.
-const MAX_BYTES: u64 = 16 << 20;
-
 /// The most points of a route: those of three hours at 10 Hz, which take a few seconds.
 const MAX_POINTS: usize = 100_000;
 
@@ -27,8 +24,8 @@ pub(crate) struct Stop {
 
 /// The points of the route in a file: a line for each, with x and y (m), or with time (s), x and y, as in a TUM trajectory.
 pub(crate) fn route(path: &Path, forecast: &Forecast, travel: Travel) -> Result<Vec<Stop>> {
-    let text =
-        files::read_text(path, MAX_BYTES).with_context(|| format!("{}: cannot read it", path.display()))?;
+    let text = files::read_text(path, RouteGraph::MAX_BYTES)
+        .with_context(|| format!("{}: cannot read it", path.display()))?;
     let mut points: Vec<(Option<f64>, Point2<f64>)> = Vec::new();
     for (number, line) in (1..).zip(text.lines().map(str::trim)) {
         if line.is_empty() || line.starts_with('#') {
