@@ -39,9 +39,8 @@ pub fn time_zone(name: &str) -> Result<String, String> {
 
 /// A parser of the path of a file that is read: it must be a regular one.
 pub fn input_file() -> impl TypedValueParser<Value = PathBuf> {
-    PathBufValueParser::new().try_map(|path| match path.metadata() {
-        Ok(found) if found.is_file() => Ok(path),
-        Ok(_) => Err("it is not a regular file".to_owned()),
+    PathBufValueParser::new().try_map(|path| match files::open(&path) {
+        Ok(_) => Ok(path),
         Err(why) => Err(format!("cannot read this file: {why}")),
     })
 }

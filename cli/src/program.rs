@@ -5,7 +5,7 @@ use anyhow::{Context, anyhow};
 use clap::Parser;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use files::{OutputError, RunFolder};
-use interfaces::{PoseMode, printable_lines};
+use interfaces::PoseMode;
 use robot::state::{State, StateFile};
 use std::ffi::OsString;
 use std::fmt::Display;
@@ -47,7 +47,7 @@ impl From<OutputError> for Failure {
 /// As [`RunFolder::open`].
 pub fn results_folder(out: &Path) -> Result<RunFolder, Failure> {
     let folder = RunFolder::open(out)?;
-    folder.notes().iter().for_each(|note| say(stderr(), format_args!("note: {}", printable_lines(note))));
+    folder.notes().iter().for_each(|note| say(stderr(), format_args!("note: {note}")));
     Ok(folder)
 }
 
@@ -83,7 +83,7 @@ pub fn start<A: Parser>(program: impl FnOnce(&A) -> Result<ExitCode, Failure>) -
     finish(with_arguments(std::env::args_os(), program))
 }
 
-/// Runs `program` with a command line, or prints the help that it asks for. An invalid one ends the process.
+/// Runs `program` with a command line, or prints the help that it asks for, or what is invalid.
 ///
 /// # Errors
 ///
@@ -94,7 +94,10 @@ pub fn with_arguments<A: Parser>(
 ) -> Result<ExitCode, Failure> {
     match A::try_parse_from(arguments) {
         Ok(args) => program(&args),
-        Err(invalid) if invalid.use_stderr() => invalid.exit(),
+        Err(invalid) if invalid.use_stderr() => {
+            say(stderr(), invalid.render().to_string().trim_end()); // with what was given: perhaps not printable
+            Ok(ExitCode::from(2))
+        }
         Err(help) => check_printed(help.print()).map(|()| ExitCode::SUCCESS).map_err(Failure::Run),
     }
 }
@@ -106,7 +109,7 @@ pub fn finish(result: Result<ExitCode, Failure>) -> ExitCode {
         Err(Failure::Input(error)) => (2, error),
         Err(Failure::Run(error)) => (1, error),
     };
-    say(stderr(), format_args!("error: {}", printable_lines(&format!("{error:#}"))));
+    say(stderr(), format_args!("error: {error:#}"));
     ExitCode::from(code)
 }
 

@@ -2,6 +2,7 @@
 
 use crate::terminal::say;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressFinish, ProgressState, ProgressStyle};
+use interfaces::printable;
 use results::numbers::{duration, percent};
 use std::fmt::{self, Display};
 use std::io::{IsTerminal, stderr};
@@ -62,7 +63,7 @@ impl Progress {
     pub fn of_work(what: String, is_quiet: bool) -> Self {
         let is_hidden = is_quiet || !stderr().is_terminal();
         let progress = Self::new(0, OF_WORK, LINE_EVERY, is_hidden, false);
-        progress.bar.set_message(what);
+        progress.bar.set_message(printable(&what).into_owned());
         if progress.kind == Kind::Bar {
             progress.bar.enable_steady_tick(BAR_EVERY);
         }

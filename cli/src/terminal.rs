@@ -1,26 +1,40 @@
-//! Lines for the user. Results go to the standard output; errors, warnings and progress go to the error output.
+//! Lines for the user. Results go to the standard output; errors, warnings and progress go to the error output. All of them
+//! are [printable](interfaces::printable): they hold names and values from files.
 
 use anyhow::Context;
+use interfaces::{printable, printable_lines};
 use std::fmt::Display;
 use std::io::{self, ErrorKind, Write, stdout};
 
-/// Prints a line to the error output. A failure is ignored: there is no other place to report it.
+/// Prints lines to the error output. A failure is ignored: there is no other place to report it.
 pub fn say(mut to: impl Write, what: impl Display) {
-    let _ = writeln!(to, "{what}");
+    let text = what.to_string();
+    // A raw terminal needs the carriage return.
+    let (lines, end) = text.strip_suffix('\r').map_or((&*text, ""), |lines| (lines, "\r"));
+    let _ = writeln!(to, "{}{end}", printable_lines(lines));
 }
 
-/// Prints a line to the standard output.
+/// Prints one line to the standard output: a line break in a name forges no other one.
+///
+/// # Errors
+///
+/// As [`print_lines`].
+pub fn print(what: impl Display) -> anyhow::Result<()> {
+    print_lines(printable(&what.to_string()))
+}
+
+/// Prints lines to the standard output.
 ///
 /// # Errors
 ///
 /// When the line cannot be written, for example to a file on a full disk. A closed pipe (for example `| head`) is
 /// no error.
-pub fn print(what: impl Display) -> anyhow::Result<()> {
+pub fn print_lines(what: impl Display) -> anyhow::Result<()> {
     let mut to = stdout().lock();
-    check_printed(writeln!(to, "{what}").and_then(|()| to.flush()))
+    check_printed(writeln!(to, "{}", printable_lines(&what.to_string())).and_then(|()| to.flush()))
 }
 
-/// The outcome of writing to the standard output; see [`print`].
+/// The outcome of writing to the standard output; see [`print_lines`].
 pub(crate) fn check_printed(outcome: io::Result<()>) -> anyhow::Result<()> {
     match outcome {
         Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),

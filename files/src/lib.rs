@@ -1,12 +1,15 @@
-//! Files that are either complete or absent, locks, and the folder of the results of a run. It depends on nothing of ours.
+//! Files that are either complete or absent, the reader of files, locks, and the folder of the results of a run. It depends on
+//! nothing of ours.
 
 mod disk;
 mod exchange;
 mod folder;
 mod marker;
+mod read;
 mod unfinished;
 
 pub use folder::{RunFolder, is_below};
+pub use read::{open, read, read_text, within};
 pub use unfinished::{Proof, UnfinishedFile, check_output, open_to_append, replace};
 
 use disk::Folder;

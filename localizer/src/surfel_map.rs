@@ -15,7 +15,7 @@ use crate::constants::{
     CLEARANCE_M, FROZEN_SCANS, MIN_NOISE_M, SAME_NORMAL, SETTLED_SCANS, STDS, SURFEL_M, TRUSTED_SCANS,
 };
 use crate::scan_points::ScanPoint;
-use interfaces::{GridFrame, ValueError, Values, read_value, runs, to_bytes, value};
+use interfaces::{FARTHEST_M, GridFrame, ValueError, Values, read_value, runs, to_bytes, value};
 use nalgebra::{Isometry2, Point2, Vector2};
 
 /// Surfels in a cell: two sides of a thin wall, and a corner.
@@ -96,13 +96,34 @@ impl SurfelMap {
     /// The map that [`saved`](Self::saved) has written.
     pub(crate) fn restored(mut bytes: &[u8]) -> Result<Self, ValueError> {
         let frame: GridFrame = read_value(&mut bytes)?;
-        if frame.len() > MAX_CELLS {
+        // A few bytes must not take gigabytes.
+        if frame.len() > MAX_CELLS.min((1 << 25) + 256 * bytes.len()) {
             return Err(ValueError);
         }
         let cells = vec![[NONE; PER_CELL]; frame.len()];
         let mut map = Self { frame, cells, surfels: Vec::new(), removed: Vec::new(), scan: 0 };
         interfaces::restore(map.values(), bytes)?;
+        map.check()?;
         Ok(map)
+    }
+
+    /// Checks values that were read: a state can hold anything.
+    ///
+    /// # Errors
+    ///
+    /// When a surfel does not exist to which others refer, or is nowhere.
+    pub(crate) fn check(&self) -> Result<(), ValueError> {
+        let (surfels, cells) = (self.surfels.len(), self.cells.len());
+        let is_sound = |surfel: &Surfel| {
+            let numbers = surfel.at.iter().chain(surfel.normal.iter()).chain([&surfel.steadiness]);
+            (surfel.is_removed() || (surfel.cell as usize) < cells)
+                && numbers.into_iter().all(|number| number.abs() <= FARTHEST_M)
+        };
+        let listed = self.cells.iter().flatten().filter(|index| **index != NONE).chain(&self.removed);
+        let is_sound = listed.into_iter().all(|index| (*index as usize) < surfels)
+            && self.surfels.iter().all(is_sound)
+            && self.scan <= u32::MAX / 2;
+        if is_sound { Ok(()) } else { Err(ValueError) }
     }
 
     /// The surfel at an index from [`SurfelMap::nearest`].

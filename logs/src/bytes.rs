@@ -1,6 +1,5 @@
 //! Where the bytes of a log come from.
 
-use std::fs::File;
 use std::io::{self, Read, Seek};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -30,7 +29,7 @@ impl<T: Read + Seek + Send> Input for T {}
 impl Bytes {
     pub(crate) fn open(&self) -> io::Result<Box<dyn Input>> {
         Ok(match self {
-            Self::File(path) => Box::new(File::open(path)?),
+            Self::File(path) => Box::new(files::open(path)?),
             Self::Unpacked(file) => Box::new(file.reopen()?),
             #[cfg(test)]
             Self::Memory(bytes) => Box::new(io::Cursor::new(bytes.clone())),

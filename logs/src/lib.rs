@@ -47,12 +47,6 @@ impl Log {
             let (files, note) = in_folder(path)?;
             return Bag::open(&name, files, choice, note.into_iter().collect());
         }
-        if path.metadata().is_ok_and(|known| !known.is_file()) {
-            // A pipe would wait for ever.
-            let why =
-                "it is not a regular file, and a log is read several times: write it into a file".to_owned();
-            return Err(LogError::Unusable { file: name, why });
-        }
         match BagFile::open(path)? {
             Some(file) => Bag::open(&name, vec![file], choice, Vec::new()),
             None => CarmenLog::open(&name, Bytes::File(path.to_owned()), choice),

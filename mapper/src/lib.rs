@@ -304,9 +304,12 @@ impl Mapper {
     /// When the bytes are no such snapshot. The mapper must not be used then.
     pub fn restore(&mut self, snapshot: &[u8]) -> Result<(), ValueError> {
         interfaces::restore(self.values(), snapshot)?;
-        self.cells.derive();
+        self.cells.derive()?;
         self.points.clear();
-        Ok(())
+        let is_sound = self.expected_changes.is_sound(&self.cells)
+            && self.tiles.is_sound(&self.cells)
+            && self.things.is_sound(&self.cells);
+        if is_sound { Ok(()) } else { Err(ValueError) }
     }
 
     fn values(&mut self) -> Values<'_> {

@@ -1,5 +1,6 @@
 //! Times and rates in words.
 
+use interfaces::printable;
 use jiff::Timestamp;
 use survey::{Place, PlaceRates};
 
@@ -128,8 +129,10 @@ pub fn range(per_hour: f64, [low, high]: [f64; 2]) -> String {
 /// Names in a row; of many, the first and the last.
 pub fn list(names: &[String]) -> String {
     match names {
-        [first, .., last] if names.len() > 4 => format!("{first}, …, {last} ({} logs)", names.len()),
-        few => few.join(", "),
+        [first, .., last] if names.len() > 4 => {
+            printable(&format!("{first}, …, {last} ({} logs)", names.len())).into_owned()
+        }
+        few => printable(&few.join(", ")).into_owned(),
     }
 }
 

@@ -1,6 +1,6 @@
 //! Errors and arrays.
 
-use interfaces::{CellState, GridFrame, heading_rad};
+use interfaces::{CellState, GridFrame, heading_rad, printable_lines};
 use nalgebra::Isometry2;
 use numpy::{
     AllowTypeChange, Element, IntoPyArray, PyArray1, PyArray2, PyArrayDescrMethods, PyArrayLike1,
@@ -129,20 +129,25 @@ pub(crate) fn writable<'py, T: Element>(
     })
 }
 
+/// A message: it holds names and values from files.
+fn message(error: impl Display) -> String {
+    printable_lines(&error.to_string()).into_owned()
+}
+
 /// A `ValueError` with the message of an error.
 pub(crate) fn value_error(error: impl Display) -> PyErr {
-    PyValueError::new_err(error.to_string())
+    PyValueError::new_err(message(error))
 }
 
 /// A `WorldError` with the message of an error.
 pub(crate) fn world_error(error: impl Display) -> PyErr {
-    WorldError::new_err(error.to_string())
+    WorldError::new_err(message(error))
 }
 
 /// The error for a world that cannot be loaded.
 pub(crate) fn load_error(error: LoadError) -> PyErr {
     match error {
-        LoadError::Unknown { .. } => PyFileNotFoundError::new_err(error.to_string()),
+        LoadError::Unknown { .. } => PyFileNotFoundError::new_err(message(error)),
         LoadError::OtherKind { name, kind, .. } => {
             world_error(format!("`{name}` is a {kind} world: the program `grid_world` runs it"))
         }
@@ -152,7 +157,7 @@ pub(crate) fn load_error(error: LoadError) -> PyErr {
 
 /// A `SnapshotError` with the message of an error.
 pub(crate) fn snapshot_error(error: impl Display) -> PyErr {
-    SnapshotError::new_err(error.to_string())
+    SnapshotError::new_err(message(error))
 }
 
 /// The error for a log: an `OSError` of the fitting kind if the file cannot be read.
@@ -161,7 +166,7 @@ pub(crate) fn log_error(path: &std::path::Path, error: logs::LogError) -> PyErr 
         logs::LogError::Io { why, .. } if why.kind() == std::io::ErrorKind::NotFound => {
             PyFileNotFoundError::new_err(format!("there is no log `{}`", path.display()))
         }
-        logs::LogError::Io { .. } => pyo3::exceptions::PyOSError::new_err(error.to_string()),
+        logs::LogError::Io { .. } => pyo3::exceptions::PyOSError::new_err(message(error)),
         other => value_error(other),
     }
 }
@@ -212,8 +217,8 @@ pub(crate) fn from_json<'py>(py: Python<'py>, value: &impl Serialize) -> PyResul
 }
 
 /// A warning of Python.
-pub(crate) fn warn(py: Python<'_>, message: &str) -> PyResult<()> {
-    let message = CString::new(message.replace('\0', " "))?;
+pub(crate) fn warn(py: Python<'_>, text: &str) -> PyResult<()> {
+    let message = CString::new(message(text))?; // without a zero byte, which no C string can have
     PyErr::warn(py, &py.get_type::<PyUserWarning>(), &message, 2)
 }
 

@@ -6,6 +6,7 @@ use super::strategy::{Measure, StrategyResult, StrategySums};
 use super::{Report, ReportSettings, position};
 use evaluation::trials::{Metric, Trial};
 use files::{OutputError, UnfinishedFile};
+use interfaces::printable;
 use rayon::prelude::*;
 use serde::{Serialize, Serializer};
 use std::borrow::Cow;
@@ -215,7 +216,8 @@ fn rows(trial: &Trial) -> io::Result<Vec<u8>> {
     rows.into_inner().map_err(|error| io::Error::other(error.to_string()))
 }
 
-/// A name that a spreadsheet shows as it is: with an apostrophe before what would begin a formula.
+/// A name that a spreadsheet shows as it is: printable, with an apostrophe before what would begin a formula.
 fn no_formula(name: &str) -> Cow<'_, str> {
-    if name.starts_with(['=', '+', '-', '@', '\t', '\r']) { format!("'{name}").into() } else { name.into() }
+    let name = printable(name);
+    if name.starts_with(['=', '+', '-', '@']) { format!("'{name}").into() } else { name }
 }

@@ -15,4 +15,4 @@ pub use messages::{
     PointField, Pose, PoseStamped, PoseWithCovariance, Rotation, Time, TransformStamped, Transforms, Twist,
     Vector,
 };
-pub use scan::{FIRST_STAMP_NS, converted as scan_of, flat, message as scan_message, mounted};
+pub use scan::{FIRST_STAMP_NS, MAX_BEAMS, converted as scan_of, flat, message as scan_message, mounted};

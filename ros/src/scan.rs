@@ -5,8 +5,8 @@ use interfaces::{LaserReading, Scan};
 use nalgebra::{Isometry2, Isometry3, UnitComplex, Vector3};
 use std::f64::consts::TAU;
 
-/// The most beams of a scan: a message that claims more is invalid.
-const MAX_BEAMS: usize = 100_000;
+/// The most beams of a scan, 55 per degree: a message or a line that claims more is invalid.
+pub const MAX_BEAMS: usize = 20_000;
 /// No laser reaches farther, m: some simulators write ∞.
 const FARTHEST_M: f64 = 300.0;
 /// A scan never takes longer than this, s.
@@ -180,7 +180,7 @@ mod tests {
         let refused = |message: LaserScan| converted(message, false).unwrap_err();
         assert_eq!(
             refused(LaserScan { ranges: Vec::new(), ..good.clone() }),
-            "0 ranges; a scan has 1 to 100000"
+            "0 ranges; a scan has 1 to 20000"
         );
         let swapped = LaserScan { range_min: 10.0, range_max: 0.1, ..good.clone() };
         assert!(refused(swapped).starts_with("range limits must hold"));

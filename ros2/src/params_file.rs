@@ -13,8 +13,6 @@ use crate::value::{Given, Value};
 use anyhow::{anyhow, bail};
 use serde::Deserialize;
 use serde_json::Value as Yaml;
-use std::fs::File;
-use std::io::{self, Read};
 use std::path::Path;
 
 /// The key below which the parameters of a node are.
@@ -26,7 +24,8 @@ const EXAMPLE: &str = "as in `curious_node: {ros__parameters: {resolution: 0.05}
 /// All parameters of a file; those for all nodes come before those for one.
 pub(crate) fn read(path: &Path) -> anyhow::Result<Vec<Given>> {
     let file = path.display().to_string();
-    let text = text(path).map_err(|why| anyhow!("cannot read the parameters in {file}: {why}"))?;
+    let text = files::read_text(path, MAX_BYTES)
+        .map_err(|why| anyhow!("cannot read the parameters in {file}: {why}"))?;
     let found = entries(&text).map_err(|what| anyhow!("{file}{what}"))?;
     Ok(found.into_iter().map(|given| Given { place: Some(file.clone()), ..given }).collect())
 }
@@ -34,15 +33,6 @@ pub(crate) fn read(path: &Path) -> anyhow::Result<Vec<Given>> {
 /// The value of a text on the command line, as YAML has it: `true`, `5`, `0.05`, `"text"`, `text`.
 pub(crate) fn value_of(text: &str) -> Value {
     serde_saphyr::from_str(text).unwrap_or_else(|_| Value::Text(text.trim().to_owned()))
-}
-
-fn text(path: &Path) -> io::Result<String> {
-    let mut text = String::new();
-    File::open(path)?.take(MAX_BYTES + 1).read_to_string(&mut text)?;
-    if text.len() as u64 > MAX_BYTES {
-        return Err(io::Error::other("it is longer than 1 MiB"));
-    }
-    Ok(text)
 }
 
 /// # Errors

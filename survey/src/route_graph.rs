@@ -68,6 +68,9 @@ fn error<T>(text: impl Into<String>) -> Result<T, RouteGraphError> {
 }
 
 impl RouteGraph {
+    /// The longest file of a graph or a route, bytes.
+    pub const MAX_BYTES: u64 = 16 << 20;
+
     /// The graph in the text of a file.
     ///
     /// # Errors

@@ -61,7 +61,7 @@ fn worlds() {
     }
     let folder = Run::new();
     std::fs::create_dir(folder.path("attic")).unwrap();
-    insta::assert_snapshot!(folder.refuses("--world attic"), @"error: --world: cannot read the world file `attic`: it is not a regular file");
+    insta::assert_snapshot!(folder.refuses("--world attic"), @"error: --world: cannot read the world file `attic`: it is not a regular file (but a folder, a pipe or a device)");
 }
 
 /// A pipe would let a reader wait for ever, a device would fill the memory.

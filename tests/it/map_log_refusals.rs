@@ -55,7 +55,10 @@ fn pipes_are_no_logs_and_no_lists_of_results() {
     let run = Run::of("map_log");
     let pipe = |name: &str| nix::unistd::mkfifo(&run.path(name), nix::sys::stat::Mode::S_IRWXU).unwrap();
     pipe("pipe");
-    insta::assert_snapshot!(run.refuses("pipe"), @"error: pipe: it is not a regular file, and a log is read several times: write it into a file");
+    insta::assert_snapshot!(run.refuses("pipe"), @"error: pipe: it is not a regular file (but a folder, a pipe or a device)");
+    fs::create_dir(run.path("bag")).unwrap();
+    pipe("bag/metadata.yaml");
+    insta::assert_snapshot!(run.refuses("bag"), @"error: bag/metadata.yaml: it is not a regular file (but a folder, a pipe or a device)");
     run.write("a.log", &standing_log(1.7e9, 40));
     fs::create_dir(run.path("out")).unwrap();
     pipe("out/.curious_run.json");

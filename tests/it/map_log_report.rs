@@ -1,7 +1,7 @@
 //! `map_log`: the page, names of places, and what changed since the last visit.
 
 use crate::map_log::{standing_line, standing_log};
-use crate::run::Run;
+use crate::run::{Ended, Run};
 use serde_json::json;
 use std::fs;
 
@@ -18,6 +18,32 @@ fn page(run: &Run) -> String {
 /// A log of the same laser in which nothing comes.
 fn quiet_log(begin_s: f64, seconds: u32) -> String {
     (0..seconds).map(|second| standing_line(begin_s + f64::from(second), false)).collect()
+}
+
+/// Names of logs and places could reach the terminal and the browser as control characters, and forge lines.
+#[test]
+fn names_from_outside_are_printable_wherever_they_are_shown() {
+    let run = Run::of("map_log");
+    let name = "\u{1b}[2J\u{202e}\nforged: a.log";
+    run.write(name, &standing_log(MONDAY_S, 600));
+    let place = LAMP.replace("Lamp &", "Lamp \\u001b[2J\\u009b\\nforged: &");
+    run.write("places.toml", &place);
+    let ended = |run: &Run, arguments: &str, last: &[&str]| -> Ended {
+        run.command(arguments).args(last).output().unwrap().into()
+    };
+    let mapped = ended(&run, "--no-rrd --state a.state --places places.toml", &[name]);
+    let page = page(&run);
+    let predicted = run.with("predict");
+    let asked = ended(&predicted, "a.state --place 1", &[]);
+    let shown = predicted.with("state_file");
+    let listed = [ended(&shown, "show a.state --settings", &[]), ended(&shown, "remove a.state", &[name])];
+    let all = [mapped, asked].into_iter().chain(listed);
+    for text in all.flat_map(|ended| [ended.stdout, ended.stderr]).chain([page]) {
+        let is_safe = |line: &str| {
+            !line.trim_start().starts_with("forged") && line.chars().all(interfaces::is_printable)
+        };
+        assert!(text.lines().all(is_safe), "{text:?}");
+    }
 }
 
 #[test]

@@ -241,9 +241,9 @@ fn another_laser_is_noted() {
 fn a_pipe_is_no_state() {
     let run = with_logs();
     nix::unistd::mkfifo(&run.path("pipe"), nix::sys::stat::Mode::S_IRWXU).unwrap();
-    insta::assert_snapshot!(run.refuses(&format!("a.log {QUIET} --state pipe")), @"error: pipe: cannot read it: it is not a file (but a folder, a pipe or a device)");
+    insta::assert_snapshot!(run.refuses(&format!("a.log {QUIET} --state pipe")), @"error: pipe: cannot read it: it is not a regular file (but a folder, a pipe or a device)");
     let run = run.with("state_file");
-    insta::assert_snapshot!(run.refuses("show pipe"), @"error: pipe: cannot read it: it is not a file (but a folder, a pipe or a device)");
+    insta::assert_snapshot!(run.refuses("show pipe"), @"error: pipe: cannot read it: it is not a regular file (but a folder, a pipe or a device)");
 }
 
 #[test]

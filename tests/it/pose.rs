@@ -23,3 +23,14 @@ fn a_localizer_corrects_odometry_that_drifts() {
     assert!(localized.0 < 0.02 && localized.1 == "localized", "{localized:?}");
     assert!(odometry.0 > 0.1 && odometry.1 == "odometry", "{odometry:?}");
 }
+
+/// A localized robot has its own frame: walls are turned by any angle in it.
+#[test]
+fn every_shipped_world_runs_however_the_pose_is_known() {
+    for (name, _) in worldfile::shipped::PHYSICS {
+        for pose in ["exact", "odometry", "localized"] {
+            let arguments = format!("--quiet --no-rrd --world {name} --duration 3 --pose {pose} --seed 2");
+            Run::new().goes_well(&arguments);
+        }
+    }
+}

@@ -168,11 +168,12 @@ fn doors_have_hours_and_so_have_masks_and_edges() {
 
 #[test]
 fn what_cannot_be_predicted_is_refused_with_a_sentence() {
-    let run = with_state();
+    let (run, many) = (with_state(), "0 0\n".repeat(100_001));
     let wrong_files = [
         ("way.csv", "0,0\n1,up\n"),
         ("far.csv", "0 0\n200000000 0\n"),
         ("late.csv", "1 0 0\ninf 1 0\n"),
+        ("many.csv", many.as_str()),
         ("back.csv", "1,0,0\n2,1,0\n1.5,1,1\n"),
         ("g.json", "{\"features\": 3}"),
     ];
@@ -197,6 +198,7 @@ fn what_cannot_be_predicted_is_refused_with_a_sentence() {
         ),
         ("a.state --route late.csv", &format!("late.csv, line 2: {time} inf\n")),
         ("a.state --route back.csv", &format!("back.csv, line 3: {time} 1.5\n")),
+        ("a.state --route many.csv", "many.csv, line 100001: a route has at most 100000 points"),
         ("a.state --graph g.json", "g.json: this is no graph of nav2_route: it has no list `features`"),
     ] {
         let message = run.refuses(arguments);

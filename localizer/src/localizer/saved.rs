@@ -21,7 +21,8 @@ impl Localizer {
     ///
     /// When the bytes are no such snapshot. The localizer must not be used then.
     pub fn restore(&mut self, snapshot: &[u8]) -> Result<(), ValueError> {
-        interfaces::restore(self.values(), snapshot)
+        interfaces::restore(self.values(), snapshot)?;
+        self.builder.matcher.surfels.check()
     }
 
     /// Begins another session in the map that was learned: the robot can be anywhere in it. What was learned about the

@@ -6,7 +6,7 @@ use crate::bytes::{Bytes, MCAP, SQLITE, ZSTD};
 use crate::summary::LogError;
 use serde::Deserialize;
 use std::fs::{self, DirEntry};
-use std::io::{self, Read, Seek, Write};
+use std::io::{self, Read as _, Seek, Write};
 use std::path::{Component, Path};
 use std::sync::Arc;
 use tempfile::NamedTempFile;
@@ -118,13 +118,11 @@ struct Information {
 pub(crate) fn in_folder(folder: &Path) -> Result<(Vec<BagFile>, Option<String>), LogError> {
     let metadata = folder.join("metadata.yaml");
     let io = |why| LogError::Io { file: metadata.display().to_string(), why };
-    let file = match fs::File::open(&metadata) {
-        Ok(file) => file,
+    let text = match files::read_text(&metadata, MAX_METADATA) {
+        Ok(text) => text,
         Err(error) if error.kind() == io::ErrorKind::NotFound => return by_name(folder),
         Err(error) => return Err(io(error)),
     };
-    let mut text = String::new();
-    file.take(MAX_METADATA).read_to_string(&mut text).map_err(io)?;
     let unusable = |why: String| LogError::Unusable { file: metadata.display().to_string(), why };
     let Metadata { rosbag2_bagfile_information: information } =
         serde_saphyr::from_str(&text).map_err(|error| {

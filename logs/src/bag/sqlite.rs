@@ -17,9 +17,10 @@ const MIN_ROW: u64 = 4;
 /// The largest message.
 const MAX_BYTES: i64 = 64 << 20;
 
-/// A table that is a table: a view of a hostile file can have rows without end.
-const IS_TABLE: &str =
-    "SELECT count(*) FROM sqlite_schema WHERE type = 'table' AND name = ?1 AND rootpage > 0";
+/// A table that is a table, with columns that are stored: a view of a hostile file can have rows without end, and a column that is
+/// computed when it is read gigabytes.
+const IS_TABLE: &str = "SELECT count(*) FROM sqlite_schema WHERE type = 'table' AND name = ?1 AND rootpage > 0 \
+                        AND NOT EXISTS (SELECT 1 FROM pragma_table_xinfo(?1) WHERE hidden <> 0)";
 /// With the bytes of the longest of the names: SQLite knows them without reading it.
 const TOPICS: &str = "SELECT id, max(octet_length(name), octet_length(type), octet_length(serialization_format)), name, \
                       type, serialization_format FROM topics LIMIT 65536";
@@ -68,7 +69,7 @@ impl SqliteFile {
         for name in ["topics", "messages"] {
             let count: i64 = database.query_row(IS_TABLE, [name], |row| row.get(0)).map_err(failed)?;
             if count != 1 {
-                let why = format!("a database without the table `{name}`: not a bag of rosbag2");
+                let why = format!("a database without a stored table `{name}`: not a bag of rosbag2");
                 return Err(LogError::Unusable { file: file.to_string(), why });
             }
         }

@@ -6,10 +6,9 @@ use crate::checks::typical;
 use crate::summary::LogError;
 use interfaces::{Scan, is_valid_pose};
 use nalgebra::Isometry2;
+use ros::MAX_BEAMS;
 use std::str::{FromStr, SplitAsciiWhitespace};
 
-/// The largest number of readings of a scan: a line that claims more is invalid.
-const MAX_READINGS: usize = 20_000;
 const ODOM: &str = "ODOM";
 /// The most characters of a word in a message.
 const MAX_WORD: usize = 40;
@@ -121,7 +120,7 @@ fn robotlaser(mut words: Words, geometry: &Geometry) -> Result<ScanLine, String>
     let range_max_m = geometry.limited_m(if max_m > 0.1 { max_m } else { MAX_RANGE_M });
     let (ranges_m, typical) = words.ranges(count, range_max_m)?;
     let remissions = words.number("the number of remissions")?;
-    if !(0.0..=MAX_READINGS as f64).contains(&remissions) {
+    if !(0.0..=MAX_BEAMS as f64).contains(&remissions) {
         return Err(words.invalid("the number of remissions", &remissions.to_string()));
     }
     words.skip(remissions as usize, "its last remission")?;
@@ -183,7 +182,7 @@ impl Words<'_> {
     }
 
     fn count(&mut self) -> Result<usize, String> {
-        self.parsed("the number of readings", |count| (1..=MAX_READINGS).contains(count))
+        self.parsed("the number of readings", |count| (1..=MAX_BEAMS).contains(count))
     }
 
     fn pose(&mut self, what: &str) -> Result<Isometry2<f64>, String> {

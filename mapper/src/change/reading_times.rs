@@ -7,6 +7,9 @@ pub type ReadingIndex = u32;
 pub(super) const NEVER: ReadingIndex = 0;
 pub(super) const PRIOR: ReadingIndex = 1;
 
+/// What a state can hold: readings of four years at 10 Hz, and times far beyond any calendar, s.
+const MAX_READINGS: ReadingIndex = 1 << 30;
+const MAX_TIME_S: f64 = 1e15;
 /// The number of recent readings whose times are all kept, at least half of it at any time: almost two hours at 10 Hz.
 const MAX_RECENT: usize = 1 << 16;
 
@@ -32,6 +35,23 @@ impl Default for ReadingTimes {
 }
 
 impl ReadingTimes {
+    /// Whether every reading up to the last one has a time: a state can hold anything.
+    pub(super) fn is_sound(&self) -> bool {
+        let last = self.recent.len().checked_sub(1).and_then(|later| u32::try_from(later).ok());
+        let last = last.and_then(|later| self.start.checked_add(later));
+        let first = self.old.first().map_or(self.start, |(first, _)| *first);
+        let starts = self.old.iter().map(|(reading, _)| *reading).chain([self.start]);
+        let times = self.old.iter().map(|(_, time)| time).chain(&self.recent);
+        let sums = self.pauses.iter().map(|(_, sum)| sum);
+        let mut pauses = self.pauses.iter().map(|(reading, _)| *reading);
+        last.is_some_and(|last| {
+            (PRIOR..MAX_READINGS).contains(&last) && pauses.all(|after| (PRIOR..=last).contains(&after))
+        }) && first == NEVER
+            && starts.is_sorted_by(|before, after| before < after)
+            && times.clone().is_sorted()
+            && times.chain(sums).chain([&self.first]).all(|time| time.abs() <= MAX_TIME_S)
+    }
+
     /// Begins the next reading.
     pub(super) fn push(&mut self, time: f64) {
         if self.last() == PRIOR {

@@ -57,6 +57,17 @@ impl ExpectedChanges {
         }
     }
 
+    /// Whether the lists are those of the cells that ever changed.
+    pub(crate) fn is_sound(&self, cells: &CellMap) -> bool {
+        let Self { survival, factor, rate, last_seen, is_in_view, in_view, .. } = self;
+        let count = survival.len();
+        count <= cells.changed.len()
+            && [factor.len(), rate.len(), last_seen.len(), is_in_view.len()] == [count; 4]
+            && in_view.len() <= count
+            && in_view.iter().all(|slot| *slot < count)
+            && self.age <= RENEWAL
+    }
+
     /// The expected number of cells that changed since they were last observed.
     pub(super) fn sum(&mut self, cells: &CellMap) -> f64 {
         let now = cells.time();

@@ -125,7 +125,7 @@ impl ScanFilter {
         let jumps = Jumps::new(scan, self.settings.min_shadow_angle_rad);
         let (mut removed, count) = jumps.veils();
         for (sum, count) in self.veils.iter_mut().zip([removed.len(), count]) {
-            *sum += count as u64;
+            *sum = sum.saturating_add(count as u64);
         }
         if !self.makes_veils() {
             removed.clear();

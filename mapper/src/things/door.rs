@@ -3,7 +3,6 @@
 use super::OfCell;
 use super::presence::{Parts, Presence};
 use super::segment::Segment;
-use crate::Growth;
 use crate::change::{CellMap, Evidence};
 use crate::clock::{Clock, Dates, Look};
 use interfaces::{CellState, GridFrame};
@@ -166,10 +165,9 @@ impl Door {
         }
     }
 
-    pub(super) fn grow(&mut self, growth: &Growth) {
-        let cells = self.closed_cells.iter_mut().chain(&mut self.cells);
-        cells.for_each(|cell| *cell = growth.index(*cell as usize) as u32);
-        self.parts.grow(growth);
+    pub(super) fn each_cell(&mut self, f: &mut dyn FnMut(&mut u32)) {
+        self.closed_cells.iter_mut().chain(&mut self.cells).for_each(&mut *f);
+        self.parts.each_cell(f);
     }
 }
 

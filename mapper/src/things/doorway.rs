@@ -2,7 +2,6 @@
 
 use super::line::Line;
 use super::segment::{self, LENGTHS_M, Segment};
-use crate::Growth;
 use crate::change::CellMap;
 use interfaces::CellState;
 use nalgebra::{Point2, Vector2};
@@ -46,8 +45,8 @@ impl CellCounts {
         self.0.iter().filter(move |(_, count)| f64::from(*count) >= min).map(|(cell, _)| *cell)
     }
 
-    fn grow(&mut self, growth: &Growth) {
-        self.0.iter_mut().for_each(|(cell, _)| *cell = growth.index(*cell as usize) as u32);
+    fn each_cell(&mut self, f: &mut dyn FnMut(&mut u32)) {
+        self.0.iter_mut().for_each(|(cell, _)| f(cell));
         self.0.sort_unstable();
     }
 }
@@ -198,9 +197,9 @@ impl Doorway {
         Some((best / 2, Segment { ends: [foot, foot + along * self.closed.length_m()] }))
     }
 
-    pub(super) fn grow(&mut self, growth: &Growth) {
-        self.cells.grow(growth);
-        self.open.iter_mut().for_each(|open| open.cells.grow(growth));
+    pub(super) fn each_cell(&mut self, f: &mut dyn FnMut(&mut u32)) {
+        self.cells.each_cell(f);
+        self.open.iter_mut().for_each(|open| open.cells.each_cell(f));
     }
 }
 

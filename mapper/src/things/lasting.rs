@@ -1,6 +1,5 @@
 //! Changes that last: a person who walks past changes cells for a moment only.
 
-use crate::Growth;
 use crate::change::{CellMap, ReadingIndex};
 use interfaces::CellState;
 use std::collections::{BTreeMap, VecDeque};
@@ -69,10 +68,12 @@ impl LastingChanges {
         }
         None
     }
-}
 
-impl Change {
-    pub(super) fn grow(&mut self, growth: &Growth) {
-        self.cell = growth.index(self.cell as usize) as u32;
+    /// Whether all changes are of cells of the map, and of readings that it knows.
+    pub(super) fn is_sound(&self, map: &CellMap) -> bool {
+        let slots = self.pending.keys().chain(self.recent.iter().map(|(slot, ..)| slot));
+        let mut slots = slots.map(|slot| *slot as usize);
+        slots.all(|slot| slot < map.changed.len())
+            && self.pending.values().all(|pending| pending.left <= map.reading())
     }
 }

@@ -1,6 +1,5 @@
 use super::lasting::Change;
 use super::segment::{self, Segment};
-use crate::Growth;
 use interfaces::GridFrame;
 
 /// Two lines change together within this time, s.
@@ -31,7 +30,7 @@ impl Line {
         self.is_blocked != other.is_blocked && (self.time_s - other.time_s).abs() < TOGETHER_S
     }
 
-    pub(super) fn grow(&mut self, growth: &Growth) {
-        self.cells.iter_mut().for_each(|cell| *cell = growth.index(*cell as usize) as u32);
+    pub(super) fn each_cell(&mut self, f: &mut dyn FnMut(&mut u32)) {
+        self.cells.iter_mut().for_each(f);
     }
 }

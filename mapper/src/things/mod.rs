@@ -103,11 +103,22 @@ impl Things {
 
     /// Moves all cells into a larger map.
     pub(crate) fn grow(&mut self, growth: &Growth) {
-        self.motions.grow(growth);
-        self.lines.iter_mut().for_each(|line| line.grow(growth));
-        self.doorways.iter_mut().for_each(|doorway| doorway.grow(growth));
-        self.objects.grow(growth);
-        self.doors.iter_mut().for_each(|door| door.grow(growth));
+        self.each_cell(&mut |cell| *cell = growth.index(*cell as usize) as u32);
+    }
+
+    /// Whether all values can be those of a map: a state can hold anything.
+    pub(crate) fn is_sound(&mut self, map: &CellMap) -> bool {
+        let (mut is_in_map, cells) = (true, map.frame().len());
+        self.each_cell(&mut |cell| is_in_map &= (*cell as usize) < cells);
+        is_in_map && self.changes.is_sound(map)
+    }
+
+    fn each_cell(&mut self, f: &mut dyn FnMut(&mut u32)) {
+        self.motions.each_cell(f);
+        self.lines.iter_mut().for_each(|line| line.each_cell(f));
+        self.doorways.iter_mut().for_each(|doorway| doorway.each_cell(f));
+        self.objects.each_cell(f);
+        self.doors.iter_mut().for_each(|door| door.each_cell(f));
     }
 }
 

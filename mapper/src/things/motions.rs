@@ -1,7 +1,6 @@
 //! Changes that belong together: near each other, at about the same time.
 
 use super::lasting::Change;
-use crate::Growth;
 use nalgebra::Point2;
 
 /// Changes of one motion are at most this far from each other, m.
@@ -75,8 +74,8 @@ impl Motions {
         self.0.push(motion);
     }
 
-    pub(super) fn grow(&mut self, growth: &Growth) {
-        self.0.iter_mut().flat_map(|motion| &mut motion.changes).for_each(|change| change.grow(growth));
+    pub(super) fn each_cell(&mut self, f: &mut dyn FnMut(&mut u32)) {
+        self.0.iter_mut().flat_map(|motion| &mut motion.changes).for_each(|change| f(&mut change.cell));
     }
 
     /// The next motion that is over.

@@ -4,7 +4,6 @@ use super::is_mostly_in;
 use super::lasting::Change;
 use super::object::Object;
 use super::of_cell::OfCell;
-use crate::Growth;
 use crate::change::{CellMap, Evidence, Population};
 use interfaces::{Cell, GridFrame};
 use std::collections::BTreeMap;
@@ -191,10 +190,11 @@ impl Objects {
         Some(OfCell { presence, population, clock: None, shares: object.shares(cell)? })
     }
 
-    pub(super) fn grow(&mut self, growth: &Growth) {
-        self.objects.values_mut().for_each(|object| object.parts.grow(growth));
-        let cells = std::mem::take(&mut self.of_cell).into_iter();
-        self.of_cell = cells.map(|(cell, number)| (growth.index(cell as usize) as u32, number)).collect();
+    pub(super) fn each_cell(&mut self, f: &mut dyn FnMut(&mut u32)) {
+        self.objects.values_mut().for_each(|object| object.parts.each_cell(f));
+        let mut cells: Vec<(u32, u32)> = std::mem::take(&mut self.of_cell).into_iter().collect();
+        cells.iter_mut().for_each(|(cell, _)| f(cell));
+        self.of_cell = cells.into_iter().collect();
     }
 }
 

@@ -1,6 +1,5 @@
 //! What looks say of a thing that is in one of two states: there or away, open or closed.
 
-use crate::Growth;
 use crate::change::{CellMap, Evidence, Population, Posterior};
 use crate::look_counts::LookCounts;
 use interfaces::CellState;
@@ -181,8 +180,8 @@ impl Parts {
         }
     }
 
-    pub(super) fn grow(&mut self, growth: &Growth) {
-        self.0.iter_mut().for_each(|(cell, _)| *cell = growth.index(*cell as usize) as u32);
+    pub(super) fn each_cell(&mut self, f: &mut dyn FnMut(&mut u32)) {
+        self.0.iter_mut().for_each(|(cell, _)| f(cell));
     }
 }
 

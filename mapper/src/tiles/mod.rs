@@ -20,6 +20,8 @@ const SIDE_M: f64 = 0.5;
 /// Every tile in view is looked at once in this time, s: a clock counts the looks of its half hours, and with looks at every
 /// change a tile through which people pass would seem blocked for too much of the time.
 const SPACING_S: f64 = 5.0;
+/// The farthest corner, in cells: that of the largest map that has grown.
+const MAX_CORNER: u32 = 1 << 28;
 /// A look needs this share of the cells of a tile in view.
 const MIN_SEEN: f64 = 0.5;
 
@@ -120,6 +122,18 @@ impl Tiles {
 
     pub(crate) fn dates(&self) -> Dates<'_> {
         Dates { calendar: self.calendar(), epoch_s: self.epoch_s }
+    }
+
+    /// Whether all tiles and cells to which values refer exist.
+    pub(crate) fn is_sound(&self, cells: &CellMap) -> bool {
+        let Learned { tiles, places, corner, cells: own, next, .. } = &self.learned;
+        let is_cell = |slot: &Slot| (*slot as usize) < own.len();
+        own.len() <= cells.changed.len()
+            && own.iter().all(|cell| (cell.tile as usize) < tiles.len())
+            && places.values().all(|tile| (*tile as usize) < tiles.len())
+            && tiles.iter().all(|tile| tile.cells.iter().all(is_cell))
+            && *next <= tiles.len()
+            && [corner.0, corner.1].iter().all(|at| at.unsigned_abs() <= MAX_CORNER)
     }
 
     /// Looks at some of the tiles, each in turn.

@@ -127,7 +127,7 @@ pub(super) fn shards_in(folder: &Path) -> Result<Vec<(Shard, PathBuf)>, ShardErr
 fn check_others(folder: &Path, header: &Header) -> Result<(), ShardError> {
     for (_, path) in shards_in(folder)? {
         let mut line = Vec::new();
-        let file = File::open(&path).map_err(|why| ShardError::read(&path, why))?;
+        let file = files::open(&path).map_err(|why| ShardError::read(&path, why))?;
         let read = BufReader::new(file).take(MAX_LINE).read_until(b'\n', &mut line);
         read.map_err(|why| ShardError::read(&path, why))?;
         let text = line.strip_suffix(b"\n").and_then(|line| std::str::from_utf8(line).ok());

@@ -122,7 +122,7 @@ impl Shards {
     pub fn trials(&self) -> Result<impl Iterator<Item = Result<Trial, ShardError>>, ShardError> {
         let open = |(shard, _): (Shard, Option<&Scan>)| {
             let path = self.folder.join(shard.file_name());
-            let file = File::open(&path).map_err(|why| ShardError::read(&path, why))?;
+            let file = files::open(&path).map_err(|why| ShardError::read(&path, why))?;
             Ok((BufReader::with_capacity(1 << 16, file), path))
         };
         let mut files = self.shards().map(open).collect::<Result<Vec<_>, ShardError>>()?;

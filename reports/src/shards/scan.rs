@@ -4,7 +4,6 @@ use super::{Header, Shard, ShardError};
 use serde::de::{DeserializeOwned, IgnoredAny};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 use xxhash_rust::xxh3::xxh3_64_with_seed;
@@ -33,7 +32,7 @@ impl Scan {
     ///
     /// When the file cannot be read, or a line is not as it was written, is twice in the file, or is of another shard.
     pub(super) fn read(path: &Path, shard: Shard) -> Result<Self, ShardError> {
-        let file = File::open(path).map_err(|why| ShardError::read(path, why))?;
+        let file = files::open(path).map_err(|why| ShardError::read(path, why))?;
         Self::of(path, shard, BufReader::with_capacity(1 << 18, file))
     }
 

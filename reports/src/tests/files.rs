@@ -1,6 +1,7 @@
 //! `report.json` and `trials.csv`, read again.
 
 use super::*;
+use interfaces::printable;
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -98,15 +99,24 @@ fn the_csv_has_a_row_per_trial_and_sample_and_gives_the_report_again() {
 
 #[test]
 fn a_name_is_no_formula_in_the_csv() {
-    for (name, mark) in
-        [("=1+1", "'"), ("+1", "'"), ("-1", "'"), ("@SUM(A1)", "'"), ("\tx", "'"), ("two, \"blocks\"", "")]
-    {
+    for (name, mark) in [
+        ("=1+1", "'"),
+        ("+1", "'"),
+        ("-1", "'"),
+        ("@SUM(A1)", "'"),
+        ("two, \"blocks\"", ""),
+        ("x\t\u{1b}[2J\n", ""),
+    ] {
         let (settings, mut trials) = experiment(1, &["paper"], &["curious"], 1);
         trials[0].world = name.into();
         let bytes = trial_file(&settings, &trials);
         let mut reader = csv::Reader::from_reader(bytes.as_slice());
         let rows: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
-        assert!(rows.iter().all(|row| row[0] == format!("{mark}{name}")), "{name:?}: {:?}", rows[0]);
+        assert!(
+            rows.iter().all(|row| row[0] == format!("{mark}{}", printable(name))),
+            "{name:?}: {:?}",
+            rows[0]
+        );
     }
 }
 

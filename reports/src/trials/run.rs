@@ -9,7 +9,7 @@ use clap::{CommandFactory, Parser, Subcommand};
 use cli::flags::folder;
 use cli::program::{Failure, INTERRUPTED, input, interrupt_flag, results_folder, start};
 use cli::progress::Progress;
-use cli::terminal::{print, say};
+use cli::terminal::{print, print_lines, say};
 use evaluation::scenes::Displayed;
 use evaluation::trials::{Experiment, Trial, TrialWorld};
 use files::{RunFolder, write_file};
@@ -135,9 +135,9 @@ impl Results<'_> {
         let inputs: Vec<&Path> = self.world_names.iter().map(Path::new).collect();
         self.folder.finish(&inputs)?;
         if !self.quiet {
-            print(report.table())?;
+            print_lines(report.table())?;
             if report.leaves_out_worlds() {
-                print(format_args!("The worlds one by one are in {REPORT}.\n"))?;
+                print_lines(format_args!("The worlds one by one are in {REPORT}.\n"))?;
             }
             print(format_args!("written to {}: {}", self.out.display(), written.join(", ")))?;
         }
@@ -192,12 +192,12 @@ impl ShardCommand {
         match self {
             Self::Missing { dir } => {
                 if let Some(missing) = Shards::read(dir).map_err(input)?.missing() {
-                    print(missing)?;
+                    print_lines(missing)?;
                     return Ok(ExitCode::FAILURE);
                 }
             }
             Self::Merge { dir, out, quiet } => merge::<K>(dir, out.as_deref().unwrap_or(dir), *quiet)?,
-            Self::Status { dir } => print(Shards::read(dir).map_err(input)?.status())?,
+            Self::Status { dir } => print_lines(Shards::read(dir).map_err(input)?.status())?,
         }
         Ok(ExitCode::SUCCESS)
     }

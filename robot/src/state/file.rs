@@ -1,7 +1,7 @@
 //! The file of a state, and the thread that writes it.
 
 use super::format::{Session, State};
-use super::settings::StateError;
+use super::settings::{MAX_FILE, StateError};
 use files::{FileLock, OutputError, Proof, UnfinishedFile, check_output, replace};
 use std::fs::{self, File};
 use std::io::{self, Read};
@@ -164,18 +164,14 @@ impl Drop for StateFile {
 ///
 /// When there is none, or it cannot be read.
 pub fn read_state(path: &Path) -> Result<State, StateError> {
-    if !fs::metadata(path)?.is_file() {
-        let why = "it is not a file (but a folder, a pipe or a device)";
-        return Err(io::Error::other(why).into()); // a pipe would wait for ever
-    }
-    let mut file = File::open(path)?;
+    let file = files::open(path)?;
     let mut bytes = Vec::new();
     (&file).take(State::MAGIC.len() as u64).read_to_end(&mut bytes)?;
     if !bytes.is_empty() && bytes != State::MAGIC {
         return Err(StateError::OtherKind); // and perhaps very long
     }
-    file.read_to_end(&mut bytes)?;
-    State::from_bytes(&bytes)
+    file.take(MAX_FILE).read_to_end(&mut bytes)?;
+    State::from_bytes(&files::within(bytes, MAX_FILE)?)
 }
 
 /// The name of the file that a [`StateFile`] keeps before a session is added: `house.state.earlier` for `house.state`.

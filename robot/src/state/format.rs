@@ -16,6 +16,10 @@ use interfaces::GridFrame;
 use serde::{Deserialize, Serialize};
 use xxhash_rust::xxh3::xxh3_64_with_seed;
 
+/// A body may be longer than the first number of bytes only up to this multiple of the compressed bytes: those of maps are shorter
+/// than 10 times, and lists of empty texts take 24 bytes of memory for each of their bytes.
+const MAX_SMALL_BODY: usize = 16 << 20;
+const MAX_GROWTH: usize = 64;
 /// A hash of the types in a file: see `build.rs`.
 const LAYOUT: &str = env!("CURIOUS_LAYOUT");
 
@@ -125,7 +129,11 @@ impl State {
             return Err(StateError::OtherLayout);
         }
         let length = packed.first_chunk().ok_or(StateError::Damaged)?;
-        check_length(u32::from_le_bytes(*length) as usize)?;
+        let length = u32::from_le_bytes(*length) as usize;
+        check_length(length)?;
+        if length > MAX_SMALL_BODY + MAX_GROWTH * packed.len() {
+            return Err(StateError::Damaged);
+        }
         let body = lz4_flex::decompress_size_prepended(packed).map_err(|_| StateError::Damaged)?;
         postcard::from_bytes(&body).map_err(|_| StateError::Damaged)
     }
@@ -155,6 +163,26 @@ fn check_length(bytes: usize) -> Result<(), StateError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A list of empty texts takes 24 times as much memory as its body, which LZ4 makes up to 255 times shorter.
+    #[test]
+    fn a_few_bytes_do_not_take_gigabytes() {
+        let signed = |packed: &[u8]| {
+            let checksum = xxh3_64_with_seed(packed, VERSION.into()).to_le_bytes();
+            [&State::MAGIC[..], &VERSION.to_le_bytes(), LAYOUT.as_bytes(), &checksum, packed].concat()
+        };
+        let of_body = |body: &[u8]| State::from_bytes(&signed(&lz4_flex::compress_prepend_size(body)));
+        assert_eq!(of_body(&postcard::to_stdvec(&State::default()).unwrap()).unwrap(), State::default());
+        let session = Session { notes: vec![String::new(); 1000], ..Session::default() };
+        let state = State { sessions: vec![session], ..State::default() };
+        assert_eq!(State::from_bytes(&state.to_bytes().unwrap()).unwrap(), state);
+        assert!(matches!(of_body(&vec![0; 2 * MAX_SMALL_BODY]), Err(StateError::Damaged)));
+        let length = (MAX_BODY as u32).to_le_bytes();
+        assert!(matches!(
+            State::from_bytes(&signed(&[&length[..], &[0; 99]].concat())),
+            Err(StateError::Damaged)
+        ));
+    }
 
     #[test]
     fn a_body_that_is_too_large_is_refused() {

@@ -104,6 +104,8 @@ fn add_fields(name: &str, value: &Value, fields: &mut Vec<(String, String)>) {
 pub(super) const VERSION: u32 = 1;
 /// The largest body, bytes: what a mapper with the largest map can take.
 pub(super) const MAX_BODY: usize = 2 << 30;
+/// The longest file, bytes: what cannot be compressed takes a little more.
+pub(super) const MAX_FILE: u64 = (MAX_BODY + MAX_BODY / 128) as u64;
 
 /// The error for a state that cannot be used.
 #[derive(Debug, thiserror::Error)]

@@ -31,7 +31,8 @@ impl Routes {
         if name.is_empty() {
             return Ok(None);
         }
-        let text = std::fs::read_to_string(name).with_context(|| format!("{name}: cannot read it"))?;
+        let text = files::read_text(name.as_ref(), RouteGraph::MAX_BYTES)
+            .with_context(|| format!("{name}: cannot read it"))?;
         let graph =
             RouteGraph::parse(&text).with_context(|| format!("{name}: this is no graph of nav2_route"))?;
         if let Some(id) = graph.edges().find(|id| u16::try_from(*id).is_err()) {

@@ -6,7 +6,7 @@ use anyhow::bail;
 use clap::Parser;
 use cli::flags::folder;
 use cli::program::{Failure, start};
-use cli::terminal::{print, say};
+use cli::terminal::{print_lines, say};
 use draw::pictures::draw_plan;
 use files::{check_output, make_folder, write_file};
 use inspection::{Content, Inspection, as_world_file, inspect};
@@ -77,7 +77,7 @@ fn check(args: &Args) -> Result<ExitCode, Failure> {
                 Ok(())
             }
         };
-        printed = printed.and(print(lines.join("\n")));
+        printed = printed.and(print_lines(lines.join("\n")));
         outcome?;
     }
     printed?;

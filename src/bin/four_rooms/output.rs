@@ -7,7 +7,7 @@ use anyhow::Context;
 use cli::bag::RunBag;
 use cli::program::{Failure, arguments, input, results_folder};
 use cli::progress::Progress;
-use cli::terminal::{print, say};
+use cli::terminal::{print_lines, say};
 use draw::Film;
 use draw::layers::Layer;
 use draw::pictures::FIGURE_5_FILE;
@@ -182,7 +182,7 @@ impl<'a> Outputs<'a> {
         self.folder.finish(&read.into_iter().flatten().collect::<Vec<&Path>>())?;
         if !args.quiet {
             let (out, picture) = (args.out.display(), args.out.join(FIGURE_5_FILE));
-            print(format_args!("{summary}\n  files     {out}: open {}", picture.display()))?;
+            print_lines(format_args!("{summary}\n  files     {out}: open {}", picture.display()))?;
         }
         Ok(self.is_complete && failures.is_empty())
     }

@@ -6,7 +6,6 @@ use super::{Place, PlaceKind};
 use mapper::Mapper;
 use nalgebra::Point2;
 use serde::{Deserialize, Serialize};
-use std::cmp::Ordering;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The numbers and the names of places, and how often something passed.
@@ -111,12 +110,12 @@ impl PlaceName {
 pub(super) fn give(places: &mut [Place], names: &[PlaceName]) {
     for name in names {
         let is_free = |place: &&mut Place| place.name.is_none() && name.distance_m(place) <= name.radius_m;
-        let order = |place: &Place| -> [f64; 3] {
-            let is_door = matches!(place.kind, PlaceKind::Door { .. });
-            [f64::from(u8::from(!is_door)), name.distance_m(place), name.middle_m(place)]
+        let is_door = |place: &Place| matches!(place.kind, PlaceKind::Door { .. });
+        let nearest = |a: &&mut Place, b: &&mut Place| {
+            let apart_m = name.distance_m(a).total_cmp(&name.distance_m(b));
+            let middle_m = name.middle_m(a).total_cmp(&name.middle_m(b));
+            is_door(b).cmp(&is_door(a)).then(apart_m).then(middle_m)
         };
-        let nearest =
-            |a: &&mut Place, b: &&mut Place| order(a).partial_cmp(&order(b)).unwrap_or(Ordering::Equal);
         if let Some(place) = places.iter_mut().filter(is_free).min_by(nearest) {
             place.name = Some(name.name.clone());
         }

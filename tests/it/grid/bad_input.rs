@@ -31,7 +31,7 @@ fn worlds() {
     insta::assert_snapshot!(refused_world("name = \"two blocks\"", "name = \"two blocks\""), @"error: two worlds have the name `two blocks`: results are listed by name, so give each world its own name");
     let folder = Run::of("grid_world");
     std::fs::create_dir(folder.path("grid")).unwrap();
-    insta::assert_snapshot!(folder.refuses("--world grid"), @"error: --world: cannot read the world file `grid`: it is not a regular file");
+    insta::assert_snapshot!(folder.refuses("--world grid"), @"error: --world: cannot read the world file `grid`: it is not a regular file (but a folder, a pipe or a device)");
 }
 
 /// Files of results contain the names of worlds.

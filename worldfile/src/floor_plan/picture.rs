@@ -2,7 +2,7 @@
 
 use image::codecs::png::PngDecoder;
 use image::codecs::pnm::PnmDecoder;
-use image::{DynamicImage, ImageDecoder, Limits, Rgba};
+use image::{DynamicImage, ImageDecoder, Limits};
 use std::io::Cursor;
 
 /// The maximum size of a file, bytes.
@@ -74,10 +74,18 @@ fn read(decoder: impl ImageDecoder) -> Result<DynamicImage, String> {
 
 /// The pixels of row `y`, counted from the top. Not of all rows at once: that would take too much memory.
 pub(crate) fn row(image: &DynamicImage, y: u32) -> Vec<Pixel> {
-    let row = image.crop_imm(0, y, image.width(), 1).into_rgba16();
-    let pixel = |Rgba(values): &Rgba<u16>| {
-        let [red, green, blue, alpha] = values.map(|value| f64::from(value) / 65535.0);
+    let color = image.color();
+    let [channels, bytes] = [color.channel_count(), color.bytes_per_pixel()].map(usize::from);
+    let width = image.width() as usize * bytes;
+    let pixel = |pixel: &[u8]| {
+        let value = |channel: usize| match pixel[channel * bytes / channels..] {
+            [low, high, ..] if bytes > channels => f64::from(u16::from_ne_bytes([low, high])) / 65535.0,
+            [value, ..] => f64::from(value) / 255.0,
+            [] => 1.0,
+        };
+        let [red, green, blue] = if channels < 3 { [value(0); 3] } else { [0, 1, 2].map(value) };
+        let alpha = if channels.is_multiple_of(2) { value(channels - 1) } else { 1.0 };
         Pixel { red, green, blue, alpha }
     };
-    row.pixels().map(pixel).collect()
+    image.as_bytes()[y as usize * width..][..width].chunks_exact(bytes).map(pixel).collect()
 }

@@ -209,12 +209,21 @@ fn other_databases_are_refused() {
         refused(&std::fs::read(file.path()).unwrap())
     };
     let missing = database("CREATE TABLE other(a)");
-    insta::assert_snapshot!(missing, @"test: a database without the table `topics`: not a bag of rosbag2");
+    insta::assert_snapshot!(missing, @"test: a database without a stored table `topics`: not a bag of rosbag2");
     // Rows without end.
     let endless = "CREATE TABLE topics(id, name, type, serialization_format); CREATE VIEW messages AS WITH RECURSIVE \
                    n(rowid, topic_id, timestamp, data) AS (SELECT 1, 1, 1, x'00' UNION ALL SELECT rowid + 1, 1, 1, x'00' \
                    FROM n) SELECT * FROM n";
-    insta::assert_snapshot!(database(endless), @"test: a database without the table `messages`: not a bag of rosbag2");
+    insta::assert_snapshot!(database(endless), @"test: a database without a stored table `messages`: not a bag of rosbag2");
+    // Gigabytes from a few bytes: columns that are computed when they are read.
+    for (name, other) in [("data", "topic_id, timestamp"), ("timestamp", "topic_id, data")] {
+        let computed = format!(
+            "CREATE TABLE topics(id, name, type, serialization_format); CREATE TABLE messages(id INTEGER PRIMARY KEY, {other}, \
+             {name} GENERATED ALWAYS AS (hex(zeroblob(400000000))) VIRTUAL)"
+        );
+        let expected = "test: a database without a stored table `messages`: not a bag of rosbag2";
+        assert_eq!(database(&computed), expected);
+    }
     let unknown = "CREATE TABLE topics(id, name, type, serialization_format); CREATE TABLE messages(id INTEGER PRIMARY KEY, \
                    topic_id, timestamp, data); INSERT INTO messages VALUES (1, 7, 0, x'00')";
     insta::assert_snapshot!(database(unknown), @"test: the database is damaged: row 1 of `messages`: topic 7 is not in `topics`");

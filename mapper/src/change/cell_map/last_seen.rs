@@ -26,6 +26,22 @@ impl Default for LastSeenCounts {
 }
 
 impl LastSeenCounts {
+    /// Whether these are the counts of candidates with these last readings, up to the reading that is open.
+    pub(super) fn is_sound(
+        &self,
+        candidates: impl Iterator<Item = ReadingIndex>,
+        open: ReadingIndex,
+    ) -> bool {
+        let mut counts = BTreeMap::new();
+        candidates.for_each(|reading| *counts.entry(reading).or_default() += 1);
+        let recent = (self.start..=open).zip(&self.recent).filter(|(_, count)| **count > 0);
+        let end = self.start as usize + self.recent.len();
+        let known: BTreeMap<ReadingIndex, u32> = recent.map(|(reading, count)| (reading, *count)).collect();
+        self.recent.len() >= 2
+            && end == open as usize + 1
+            && self.old.clone().into_iter().chain(known).eq(counts)
+    }
+
     /// Opens the next reading.
     pub(super) fn open(&mut self) {
         self.recent.push_back(0);

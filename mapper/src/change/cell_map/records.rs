@@ -103,6 +103,20 @@ impl Records {
         self.short.stored_values().flat_map(|record| [record.first, record.since])
     }
 
+    /// Whether the records of all cells that changed, and only those, have their number among these, and count at most one event per
+    /// reading.
+    pub(super) fn are_sound(&self, changed: &[u32], open: ReadingIndex) -> bool {
+        let slots = self.long.iter().filter_map(|record| record.slot);
+        let has_slot = |(slot, index): (usize, &u32)| self.get(*index as usize).slot == Some(slot as u32);
+        slots.count() == changed.len()
+            && changed.iter().enumerate().all(has_slot)
+            && self
+                .long
+                .iter()
+                .flat_map(|record| record.in_view.iter().chain(&record.after_gap))
+                .all(|count| *count <= open)
+    }
+
     /// Moves all cells into a larger map.
     pub(super) fn grow(&mut self, growth: &Growth) {
         growth.sparse(&mut self.short);

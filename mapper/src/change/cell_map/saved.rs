@@ -1,10 +1,11 @@
 //! The cells in a state file, and in a larger map.
 
+use super::observing::UNSETTLED;
 use super::record::Flags;
 use super::{CellMap, NEVER};
 use crate::Growth;
 use crate::change::shared_cells;
-use interfaces::{CellState, SparseCells, Values, cell_runs, value};
+use interfaces::{CellState, SparseCells, ValueError, Values, cell_runs, value};
 
 impl CellMap {
     /// The changing values. Values that follow from others are not in the list.
@@ -30,17 +31,38 @@ impl CellMap {
     }
 
     /// Computes what follows from the values.
-    pub(crate) fn derive(&mut self) {
+    ///
+    /// # Errors
+    ///
+    /// When they do not fit each other: a state can hold anything.
+    pub(crate) fn derive(&mut self) -> Result<(), ValueError> {
         let frame = *self.frame();
+        if !self.times.is_sound() || self.changed.iter().any(|index| *index as usize >= frame.len()) {
+            return Err(ValueError);
+        }
         self.flags = SparseCells::new(frame.width(), frame.height(), Flags::default());
         for index in self.free_cells() {
             self.flags[index].is_candidate = true;
             frame.beside(index).for_each(|index| self.flags[index].is_candidate = true);
         }
-        for index in self.changed.iter().map(|index| *index as usize).filter(|index| *index < frame.len()) {
-            self.flags[index].has_changed = true;
+        for index in &self.changed {
+            self.flags[*index as usize].has_changed = true;
         }
         self.gap_bytes = self.gaps.changed().map(|gaps| gaps.histogram.owned_bytes()).sum();
+        if self.is_sound() { Ok(()) } else { Err(ValueError) }
+    }
+
+    /// Whether all readings and cells to which values refer exist.
+    fn is_sound(&self) -> bool {
+        let open = self.reading();
+        let seen = self.observed.stored_values().map(|last| last & !UNSETTLED);
+        let mut readings = seen.chain(self.records.readings()).chain([self.interrupted]);
+        let candidates = self.flags.stored().filter(|(_, flags)| flags.is_candidate);
+        let candidates = candidates.map(|(index, _)| self.last_reading(index));
+        readings.all(|reading| reading <= open)
+            && self.returned.iter().all(|slot| (*slot as usize) < self.changed.len())
+            && self.records.are_sound(&self.changed, open)
+            && self.last_seen_counts.is_sound(candidates, open)
     }
 
     /// Moves all cells into a larger map.

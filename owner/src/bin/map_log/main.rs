@@ -14,7 +14,7 @@ use args::Args;
 use cli::bag::RunBag;
 use cli::flags::check_distinct;
 use cli::program::{Failure, INTERRUPTED, input, interrupt_flag, results_folder, start};
-use cli::terminal::{print, say};
+use cli::terminal::{print_lines, say};
 use files::{RunFolder, is_below};
 use logs_in_order::Source;
 use owner::words::list;
@@ -119,7 +119,10 @@ fn run(args: &Args) -> Result<ExitCode, Failure> {
     }
     if !args.quiet {
         let out = args.out.display();
-        print(format_args!("{summary}\n  files     {out}: open {}", args.out.join(output::PAGE).display()))?;
+        print_lines(format_args!(
+            "{summary}\n  files     {out}: open {}",
+            args.out.join(output::PAGE).display()
+        ))?;
     }
     Ok(if !learned.is_shown || !state_file.is_written {
         ExitCode::FAILURE

@@ -21,6 +21,8 @@ const RADIUS_M: f64 = 1.0;
 const RADII_M: RangeInclusive<f64> = 0.05..=100.0;
 const COORDINATES_M: RangeInclusive<f64> = -1e6..=1e6;
 const MAX_LETTERS: usize = 60;
+/// The longest file, bytes.
+const MAX_BYTES: u64 = 1 << 20;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -39,7 +41,7 @@ struct Entry {
 
 /// The names in a file.
 pub(crate) fn read(path: &Path) -> Result<Vec<PlaceName>> {
-    let text = std::fs::read_to_string(path)
+    let text = files::read_text(path, MAX_BYTES)
         .with_context(|| format!("--places {}: cannot read it", path.display()))?;
     names(&path.display().to_string(), &text)
 }

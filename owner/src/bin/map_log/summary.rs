@@ -4,7 +4,7 @@ use crate::logs_in_order::begin_s;
 use crate::passes::{Learned, ignored};
 use anyhow::Context;
 use cli::program::arguments;
-use interfaces::{CellState, PoseMode, median};
+use interfaces::{CellState, PoseMode, median, printable};
 use mapper::{Mapper, NoReturn, NoReturnEvidence};
 use owner::words::{how_often, list};
 use results::numbers::percent;
@@ -228,7 +228,7 @@ impl fmt::Display for Summary {
         writeln!(f, "  changes   {}, counted cell by cell, in {} places", self.changes, self.place_count)?;
         for place in self.places.iter().take(3) {
             let rate = how_often(place).map(|rate| format!(", {rate}")).unwrap_or_default();
-            let name = place.name.as_ref().map(|name| format!("{name}, ")).unwrap_or_default();
+            let name = place.name.as_ref().map(|name| format!("{}, ", printable(name))).unwrap_or_default();
             writeln!(f, "    {}.      {name}at ({:.1}, {:.1}) m{rate}", place.number, place.x_m, place.y_m)?;
         }
         writeln!(f, "  hours     {}", self.hours)?;

@@ -8,6 +8,9 @@ use serde_json::Value;
 use std::path::Path;
 use survey::{Forecast, RouteGraph, Travel};
 
+/// The most points of a route: those of three hours at 10 Hz, which take a few seconds.
+const MAX_POINTS: usize = 100_000;
+
 /// A point of a route.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Stop {
@@ -21,8 +24,8 @@ pub(crate) struct Stop {
 
 /// The points of the route in a file: a line for each, with x and y (m), or with time (s), x and y, as in a TUM trajectory.
 pub(crate) fn route(path: &Path, forecast: &Forecast, travel: Travel) -> Result<Vec<Stop>> {
-    let text =
-        std::fs::read_to_string(path).with_context(|| format!("{}: cannot read it", path.display()))?;
+    let text = files::read_text(path, RouteGraph::MAX_BYTES)
+        .with_context(|| format!("{}: cannot read it", path.display()))?;
     let mut points: Vec<(Option<f64>, Point2<f64>)> = Vec::new();
     for (number, line) in (1..).zip(text.lines().map(str::trim)) {
         if line.is_empty() || line.starts_with('#') {
@@ -38,6 +41,11 @@ pub(crate) fn route(path: &Path, forecast: &Forecast, travel: Travel) -> Result<
         }
         let Some((time_s, at)) = points.last() else { continue };
         let line = || format!("{}, line {number}", path.display());
+        ensure!(
+            points.len() <= MAX_POINTS,
+            "{}: a route has at most {MAX_POINTS} points; leave some out",
+            line()
+        );
         ensure!(
             at.iter().all(|at_m| at_m.abs() <= FARTHEST_M),
             "{}: x and y must be numbers from -{FARTHEST_M} to {FARTHEST_M} m, found {} and {}",
@@ -73,7 +81,8 @@ pub(crate) fn route(path: &Path, forecast: &Forecast, travel: Travel) -> Result<
 /// The graph of routes in a file, with the probability that each edge is open at the time of arrival.
 pub(crate) fn graph(path: &Path, forecast: &Forecast, travel: Travel, from: Option<u64>) -> Result<Value> {
     let name = path.display();
-    let text = std::fs::read_to_string(path).with_context(|| format!("{name}: cannot read it"))?;
+    let text =
+        files::read_text(path, RouteGraph::MAX_BYTES).with_context(|| format!("{name}: cannot read it"))?;
     let graph =
         RouteGraph::parse(&text).with_context(|| format!("{name}: this is no graph of nav2_route"))?;
     let edges = graph.outlook(&forecast.outlook(), travel, from)?;

@@ -116,7 +116,7 @@ fn files_of_others_beside_the_state_stay() {
 #[test]
 fn what_is_no_file_is_refused_at_once() {
     let folder = tempfile::tempdir().unwrap();
-    insta::assert_snapshot!(read_state(folder.path()).unwrap_err().to_string(), @"cannot read it: it is not a file (but a folder, a pipe or a device)");
+    insta::assert_snapshot!(read_state(folder.path()).unwrap_err().to_string(), @"cannot read it: it is not a regular file (but a folder, a pipe or a device)");
 }
 
 /// The file is kept when the first session is added to it, and not for a second one.

@@ -75,9 +75,12 @@ fn merged(edges: Vec<Edge>) -> Vec<Edge> {
     };
     let start_m = |edge: &Edge, line: &Edge| along(line).dot(&edge.from.coords);
     let end_m = |edge: &Edge, line: &Edge| along(line).dot(&edge.to.coords);
+    // All edges of one key are ordered along the key's own direction: directions of edges differ by rounding, and
+    // to compare along one of the two would not be a total order.
+    let position = |[x, y, _]: [i64; 3], edge: &Edge| x as f64 * edge.from.y - y as f64 * edge.from.x;
     let mut keyed: Vec<([i64; 3], Edge)> = edges.iter().map(|edge| (key(edge), *edge)).collect();
     keyed.sort_by(|(a_key, a), (b_key, b)| {
-        a_key.cmp(b_key).then_with(|| start_m(a, a).total_cmp(&start_m(b, a)))
+        a_key.cmp(b_key).then_with(|| position(*a_key, a).total_cmp(&position(*b_key, b)))
     });
     let mut merged: Vec<([i64; 3], Edge)> = Vec::new();
     for (key, edge) in keyed {
@@ -103,6 +106,9 @@ fn along(edge: &Edge) -> Vector2<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::physics::shape::point_segment_m;
+    use nalgebra::Isometry2;
+    use proptest::prelude::*;
 
     fn between(min: [f64; 2], max: [f64; 2]) -> Rectangle {
         Rectangle::between(min.into(), max.into())
@@ -136,5 +142,37 @@ mod tests {
         assert_eq!(visible_edges(&[turned, between([4.0, 0.0], [5.0, 1.0])]).len(), 8);
         // The same box twice: each would hide the other if covers were not about what lies outside.
         assert_eq!(visible_edges(&[turned, turned]).len(), 4);
+    }
+
+    /// Whether a point is on one of the edges.
+    fn is_on(edges: &[Edge], point: &Point2<f64>) -> bool {
+        edges.iter().any(|edge| point_segment_m(point, &edge.from, &edge.to) < 1e-6)
+    }
+
+    proptest! {
+        /// Boxes with common corners, turned: their sides lie on lines that rounding separates.
+        #[test]
+        fn the_outline_is_the_same_at_any_angle(
+            turn_rad in -4.0f64..4.0,
+            sizes in prop::collection::vec((0u8..4, 0u8..4, 1u8..60, 1u8..60), 25..60),
+        ) {
+            let upright: Vec<Rectangle> = sizes
+                .iter()
+                .map(|&(x, y, width, height)| {
+                    let low = [f64::from(x) + 2.0, f64::from(y) + 2.0];
+                    between(low, [low[0] + 0.037 * f64::from(width), low[1] + 0.011 * f64::from(height)])
+                })
+                .collect();
+            let turn = Isometry2::rotation(turn_rad);
+            let turned: Vec<Rectangle> =
+                upright.iter().map(|shape| Rectangle { pose: turn * shape.pose, ..*shape }).collect();
+            let (before, after) = (visible_edges(&upright), visible_edges(&turned));
+            for edge in &before {
+                prop_assert!(is_on(&after, &(turn * nalgebra::center(&edge.from, &edge.to))), "{:?}", edge);
+            }
+            for edge in &after {
+                prop_assert!(is_on(&before, &(turn.inverse() * nalgebra::center(&edge.from, &edge.to))), "{:?}", edge);
+            }
+        }
     }
 }

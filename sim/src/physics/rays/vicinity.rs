@@ -4,7 +4,6 @@ use super::disc::Disc;
 use super::edges::Edge;
 use crate::physics::shape::point_segment_m;
 use nalgebra::Point2;
-use std::cmp::Ordering;
 
 /// The positions and ranges of the sensors of a robot.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -16,7 +15,7 @@ pub(in crate::physics) struct Ring {
 }
 
 /// A wall or a body, by its index.
-#[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Thing {
     /// A visible edge of the walls.
     Edge(usize),
@@ -75,7 +74,7 @@ impl Vicinity {
 
     /// Sorts the things by their distance, and removes those that were added twice.
     pub(super) fn sort(&mut self) {
-        self.things.sort_unstable_by(|a, b| a.partial_cmp(b).unwrap_or(Ordering::Equal));
+        self.things.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         self.things.dedup();
     }
 

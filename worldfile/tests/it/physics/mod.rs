@@ -30,6 +30,7 @@ mod standstill;
 mod sweep;
 mod things;
 mod truth;
+mod turned;
 
 use interfaces::{GroundTruth, LaserReading, TrueState, Twist, World};
 use nalgebra::Point2;

@@ -10,6 +10,7 @@ mod sessions;
 use crate::summary::Summary;
 use draw::layers::Layer;
 use draw::palette::{self, Rgb};
+use interfaces::printable_lines;
 use mapper::Mapper;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use nalgebra::Point2;
@@ -29,7 +30,8 @@ struct Page<'a> {
 
 /// The page.
 pub(crate) fn page(summary: &Summary, mapper: &Mapper) -> String {
-    Page { summary, mapper, plan: Plan::whole(mapper) }.html().into_string()
+    let page = Page { summary, mapper, plan: Plan::whole(mapper) }.html().into_string();
+    printable_lines(&page).into_owned() // names of logs and places come from outside
 }
 
 impl Page<'_> {

@@ -2,12 +2,11 @@
 //! 10 s, or takes more than 1 GiB.
 //!
 //! 10,000 inputs by default. More, and where to begin:
-//! `CASES=1000000 cargo test -p curious-evaluation --test fuzz -- --nocapture`; `FIRST=4711 CASES=1` repeats one.
+//! `CASES=1000000 cargo test -p curious-evaluation --test fuzz -- --nocapture`; `FIRST=4711 CASES=1` repeats one;
+//! `KIND=3` tries only states.
 
-use agent::{Agent, Policy};
-use controller::{Controller, DiffDrive};
-use evaluation::physics_trial::{self, PhysicsTrial};
-use evaluation::trial_state::TrialFacts;
+mod states;
+
 use interfaces::{GridFrame, LaserReading, Twist, World};
 use localizer::{Localizer, LocalizerSettings};
 use logs::ros::{LaserScan, scan_message, scan_of};
@@ -16,9 +15,8 @@ use mapper::{Mapper, MapperSettings};
 use nalgebra::{Isometry2, Point2};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
-use robot::Autonomous;
-use robot::state::{SavedSettings, Sessions, State};
 use sim::physics::{PhysicsWorld, WorldSpec};
+use states::States;
 use std::collections::BTreeMap;
 use std::fs;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -33,8 +31,6 @@ const MAX_INPUT_BYTES: usize = 50_000;
 const NUMBERS: &str = "nan inf -inf 0 -0 -1 1e308 -1e308 1e-308 1e7 4294967296 -9223372036854775808 18446744073709551616 \
                        0.1e-400  x";
 
-type Trial = PhysicsTrial<Autonomous<Agent, Controller<DiffDrive>>>;
-
 /// The inputs as they should be, and what reads them.
 struct Targets {
     folder: tempfile::TempDir,
@@ -43,9 +39,7 @@ struct Targets {
     mcap: Vec<u8>,
     sqlite: Vec<u8>,
     worlds: Vec<(String, Vec<u8>)>,
-    trial: Trial,
-    facts: TrialFacts,
-    state: State,
+    states: States,
 }
 
 impl Targets {
@@ -57,33 +51,30 @@ impl Targets {
         let text = std::str::from_utf8(&worlds[0].1).unwrap();
         let spec = worldfile::physics::parse_world("four_rooms", text).unwrap();
         let readings = readings(&spec);
-        let settings = physics_trial::settings(&spec).unwrap();
-        let agent = settings.agent(&"curious".parse::<Policy>().unwrap(), 1).unwrap();
-        let pilot = settings.pilot(agent, 1).unwrap();
-        let mut trial: Trial = PhysicsTrial::new(&spec, 1, &settings, None, pilot).unwrap();
-        trial.run(1.0).unwrap();
-        let facts = TrialFacts::new(&spec, 1, &settings, SavedSettings::default());
-        let state = trial.snapshot(&facts, &Sessions::of("trial"))();
+        let folder = tempfile::tempdir().unwrap();
+        let log = folder.path().join("whole.mcap");
+        fs::write(&log, bag(&readings)).unwrap();
+        let house = std::str::from_utf8(&worlds[1].1).unwrap();
+        let house = worldfile::physics::parse_world("house", house).unwrap();
+        let states = States::new(&house, &log, &readings[0]);
         Self {
-            folder: tempfile::tempdir().unwrap(),
+            folder,
             carmen: carmen(&readings),
             mcap: bag(&readings),
             sqlite: database(&bag(&readings[..8])),
             worlds: worlds.into(),
-            trial,
-            facts,
-            state,
+            states,
             readings,
         }
     }
 
     /// One mutated input, and what becomes of it.
     fn run(&mut self, random: &mut Random) {
-        match random.below(7) {
+        match setting("KIND", random.below(7) as u64) {
             0 => self.read_log("a.log", &random.mutated_text(&self.carmen)),
             1 => self.read_log("a.mcap", &random.mutated(&self.mcap)),
             2 => self.read_log("a.db3", &random.mutated(&self.sqlite)),
-            3 => self.read_state(random),
+            3 => self.states.run(random),
             4 | 5 => self.read_world(random),
             _ => self.read_messages(random),
         }
@@ -100,19 +91,6 @@ impl Targets {
             let localized = localizer.localize(&reading, &mapper);
             mapper.update(&LaserReading { pose: localized.estimate.pose, ..reading }).ok();
         }
-    }
-
-    fn read_state(&mut self, random: &mut Random) {
-        let bytes = self.state.to_bytes().unwrap();
-        let mutated = random.mutated(&bytes);
-        assert!(mutated == bytes || State::from_bytes(&mutated).is_err(), "a damaged state was read");
-        // With a checksum that fits.
-        let mut state = self.state.clone();
-        let (map, run) = (state.map.as_mut().unwrap(), state.run.as_mut().unwrap());
-        let parts = [&mut map.bytes, &mut run.bytes, &mut state.localization.bytes, &mut state.filter];
-        let part = parts.into_iter().nth(random.below(4)).unwrap();
-        *part = random.mutated(part);
-        self.trial.restore(&state, &self.facts).ok();
     }
 
     fn read_world(&self, random: &mut Random) {
@@ -248,6 +226,29 @@ impl Random {
         }
         bytes.truncate(MAX_INPUT_BYTES);
         bytes
+    }
+
+    /// A part of a state with other bytes or numbers of variable length.
+    fn mutated_part(&mut self, part: &[u8]) -> Vec<u8> {
+        if self.below(2) == 0 {
+            return self.mutated(part);
+        }
+        let mut part = part.to_vec();
+        let at = self.below(part.len());
+        let end =
+            part[at..].iter().position(|byte| *byte < 0x80).map_or(part.len(), |length| at + length + 1);
+        let numbers: [&[u8]; 8] = [
+            &[0],
+            &[1],
+            &[2],
+            &[0x7f],
+            &[0x80, 0x40],
+            &[0xff, 0xff, 0x3f],
+            &[0xff, 0xff, 0xff, 0xff, 0x0f],
+            &[0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0x01],
+        ];
+        part.splice(at..end, numbers[self.below(8)].iter().copied());
+        part
     }
 
     /// The text with other words, or changed as bytes.
