@@ -6,12 +6,14 @@ Arguments: a folder for files, the program curious_node, the program sim_node; `
 
 import os
 import signal
+import socket
 import statistics
+import struct
 import subprocess
 import sys
 import time
 
-from drive_ros2 import CURIOUS, DISCOVERY_S, LATCHED, RELIABLE, SIM, WORK, Peer, Program, check, parameter
+from drive_ros2 import CURIOUS, DISCOVERY_S, LATCHED, PORT, RELIABLE, SIM, WORK, Peer, Program, check, parameter
 
 from geometry_msgs.msg import PoseWithCovarianceStamped, Twist
 from lifecycle_msgs.msg import TransitionEvent
@@ -141,6 +143,14 @@ def test_parameters(peer):
     check("another one is refused", not results[1].successful and "unconfigured" in results[1].reason, results[1].reason)
     values = done(client.get_parameters(["change_horizon", "resolution"])).values
     check("it has the value", [value.double_value for value in values] == [600.0, 0.05])
+    # Answers that would be longer than a datagram: the file of another program, and nonsense.
+    others = [Parameter(f"of_another_program.{i}", value=i) for i in range(3)]
+    results = done(client.set_parameters(others)).results
+    check("three unknown parameters are refused", [r.reason[:28] for r in results] == ["there is no parameter `of_an"] * 3, results)
+    check("thousands of names", done(client.get_parameter_types(["seed"] * 3000)) is not None)
+    refused = done(client.set_parameters([Parameter("x" * 70_000, value=1)])).results
+    check("a name of 70,000 letters", refused[0].reason.startswith("there is no parameter `xxx"), refused[0].reason[:30])
+    check("the node still answers", len(done(client.get_parameters(["seed"])).values) == 1)
 
 
 def test_initial_pose(peer, node):
@@ -162,6 +172,22 @@ def test_initial_pose(peer, node):
     check("in the map it is used", "the robot is put at (0.20, 0.00)" in node.text())
 
 
+def test_memory():
+    """Fragments of messages that say that they are long: the library reserves the memory. Some ports are those of others."""
+    node = Program(CURIOUS)
+    node.says("waiting for scans")
+    stranger = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    for number in range(40):
+        fragment = bytes([0, 1, 0, 0xC7, 0, 1, 0, 0xC2]) + struct.pack("<iIIHHI", 0, number + 1, 1, 1, 1000, 200_000_000) + bytes(1000)
+        fragment = bytes([0x16, 1]) + struct.pack("<HHH", len(fragment) + 4, 0, 28) + fragment
+        for port in range(20):
+            stranger.sendto(b"RTPS\x02\x03\x01\x12" + bytes([9] * 11 + [number]) + fragment, ("127.0.0.1", PORT + port))
+        time.sleep(0.02)
+    code = node.process.wait(30)
+    Program.running.remove(node)
+    check("a node whose memory the network fills ends", code == 1 and "error: the node takes" in node.text(), node.text()[-200:])
+
+
 def test_types(peer):
     publisher = peer.node.create_publisher(Twist, "cmd_vel", 10)
     check("the simulator hears a Twist", peer.spin(DISCOVERY_S, lambda: publisher.get_subscription_count() > 0))
@@ -175,6 +201,7 @@ def main():
     test_first_call()
     test_start()
     test_lifecycle()
+    test_memory()
     print(f"all checks passed in {time.monotonic() - begin:.0f} s")
 
 

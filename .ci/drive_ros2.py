@@ -18,6 +18,7 @@ os.environ.pop("ROS_LOCALHOST_ONLY", None)
 DOMAIN = int(os.environ.get("DRIVE_ROS2_DOMAIN", 10 + os.getpid() % 90))
 os.environ["DRIVE_ROS2_DOMAIN"] = str(DOMAIN)
 os.environ["ROS_DOMAIN_ID"] = str(DOMAIN)
+PORT = 7400 + 250 * DOMAIN  # the first one of this domain
 
 import numpy as np
 import rclpy
@@ -337,9 +338,8 @@ def test_faults(node, robot):
 
     garbage = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     noise = random.Random(1)
-    begin = 7400 + 250 * DOMAIN
     for number in range(20_000):
-        port = begin + noise.choice([10, 11, 12, 13, 14, 15, 0, 1])
+        port = PORT + noise.choice([10, 11, 12, 13, 14, 15, 0, 1])
         data = bytearray(noise.randbytes(noise.randrange(0, 400)))
         if number % 2:
             kind = noise.choice([0x06, 0x07, 0x08, 0x09, 0x0C, 0x0E, 0x12, 0x13, 0x15, 0x16])

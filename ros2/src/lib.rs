@@ -13,6 +13,7 @@
 
 mod dds;
 mod environment;
+mod guard;
 mod lifecycle;
 mod link;
 mod maps;
@@ -37,6 +38,7 @@ mod wiring;
 
 pub use dds::DdsLink;
 pub use environment::Environment;
+pub use guard::Guard;
 pub use link::Link;
 pub use names::Names;
 pub use node::{CuriousNode, Signals};

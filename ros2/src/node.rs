@@ -151,6 +151,13 @@ impl<L: Link> CuriousNode<L> {
     pub fn turn(&mut self, patience: Duration) {
         let event = self.link.receive(patience);
         let now = Instant::now();
+        self.turn_with(event, now);
+        let took_us = u64::try_from(now.elapsed().as_micros()).unwrap_or(u64::MAX);
+        self.report.longest_us = self.report.longest_us.max(took_us);
+    }
+
+    /// Takes an event, if one has come, and does all that is due now.
+    fn turn_with(&mut self, event: Option<Event>, now: Instant) {
         if let Some(event) = event {
             self.take(event, now);
         }
@@ -163,8 +170,6 @@ impl<L: Link> CuriousNode<L> {
             self.notes.note(&note, now);
         }
         self.tick(now);
-        let took_us = u64::try_from(now.elapsed().as_micros()).unwrap_or(u64::MAX);
-        self.report.longest_us = self.report.longest_us.max(took_us);
     }
 
     /// What the node has done so far.

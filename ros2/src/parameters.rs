@@ -138,12 +138,16 @@ parameters! {
     /// Whether the clock is simulated: then a corrected map replaces the old one after a fixed number of readings, and not
     /// when it is ready. All times are those of the messages.
     Start "use_sim_time", use_sim_time: bool = false;
+    /// The memory of the program at which it ends, MiB: the network can ask the library for any amount.
+    Start "memory_limit", memory_limit_mib: f64 = 1024.0;
     /// `best_effort` or `reliable`.
     Start "qos_overrides./scan.subscription.reliability", scan_reliability: String = "best_effort".to_owned();
 }
 
 /// Intervals: 0 switches something off, for which there are topics only if it is on at the start.
 const SWITCHES: [&str; 2] = ["mask_update_interval", "transform_publish_period"];
+/// The longest name of a frame, bytes.
+const MAX_FRAME: usize = 255;
 /// The longest horizon, s.
 const DAY_S: f64 = 86400.0;
 
@@ -192,6 +196,7 @@ impl Parameters {
         check.valid("transform_publish_period", period, "0, or from 0.005 to 10", is_period)?;
         check.within("transform_timeout", self.transform_timeout_s, 0.0..=10.0, "from 0 to 10")?;
         check.within("lost_after", self.lost_after_s, 0.0..=3600.0, "from 0 to 3600")?;
+        check.within("memory_limit", self.memory_limit_mib, 64.0..=1048576.0, "from 64 to 1048576")?;
         let frames = [
             ("map_frame", &self.map_frame),
             ("odom_frame", &self.odom_frame),
@@ -201,7 +206,7 @@ impl Parameters {
             // tf has no slash before a name, and source::bare removes it.
             let bare = |frame: &str| frame.trim_start_matches('/').to_owned();
             let found = || Value::Text(frame.clone());
-            if bare(frame).is_empty() {
+            if bare(frame).is_empty() || frame.len() > MAX_FRAME {
                 return Err(invalid(name, "the name of a frame", &found()));
             }
             if let Some((other, _)) = frames[..number].iter().find(|(_, other)| bare(other) == bare(frame)) {

@@ -128,3 +128,38 @@ pub enum Reply {
     /// Descriptions of parameters.
     Descriptions(Vec<Description>),
 }
+
+impl Reply {
+    /// The sentences in it.
+    pub(crate) fn texts_mut(&mut self) -> Vec<&mut String> {
+        match self {
+            Self::Trigger(trigger) => vec![&mut trigger.text],
+            Self::Result(result) => vec![&mut result.reason],
+            Self::Results(all) => all.iter_mut().map(|result| &mut result.reason).collect(),
+            Self::Descriptions(all) => all
+                .iter_mut()
+                .flat_map(|one| [&mut one.description, &mut one.additional_constraints])
+                .collect(),
+            _ => Vec::new(),
+        }
+    }
+
+    /// The answer without its content, for one that is too long.
+    pub(crate) fn emptied(self) -> Self {
+        match self {
+            Self::States(_) => Self::States(Vec::new()),
+            Self::Transitions(_) => Self::Transitions(Vec::new()),
+            Self::Values(_) => Self::Values(Vec::new()),
+            Self::Types(_) => Self::Types(Vec::new()),
+            Self::Results(_) => Self::Results(Vec::new()),
+            Self::Listed(_) => Self::Listed(Listed::default()),
+            Self::Descriptions(_) => Self::Descriptions(Vec::new()),
+            // Of one length, without their texts.
+            reply @ (Self::Trigger(_)
+            | Self::Code(_)
+            | Self::Success(_)
+            | Self::State(_)
+            | Self::Result(_)) => reply,
+        }
+    }
+}

@@ -160,6 +160,12 @@ impl<L: Link> SimulatedRobot<L> {
         Some([robot.pose, robot.odometry().0])
     }
 
+    /// Sets the robot down elsewhere; `false`: it does not fit there.
+    #[cfg(test)]
+    pub(crate) fn put(&mut self, pose: &Isometry2<f64>) -> bool {
+        self.fleet.teleport(self.driven, pose).is_ok()
+    }
+
     /// Takes a command; what else comes is ignored.
     pub fn take(&mut self, event: Event) {
         let twist = match event {

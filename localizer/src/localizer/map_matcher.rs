@@ -164,10 +164,9 @@ impl MapMatcher {
         }
     }
 
-    /// Whether the true place may be missing in the map: in one that the robot has made itself, since it knows where it is. At
-    /// the begin of another session, the robot is somewhere in the map.
+    /// Whether the true place may be missing in the map: in one that the robots have made themselves, in any session.
     pub(super) fn is_unfinished(&self) -> bool {
-        self.from_nothing && self.times.certain_s > f64::NEG_INFINITY
+        self.from_nothing
     }
 
     pub(super) fn scene<'a>(&'a self, step: &Step<'a>) -> MatchScene<'a> {

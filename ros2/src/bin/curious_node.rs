@@ -8,8 +8,8 @@ use cli::flags::output_file;
 use cli::program::{Failure, input, interrupt_flag};
 use ros2::node_program::{note_unused_files, output, say, start};
 use ros2::{
-    CuriousNode, DdsLink, Environment, Names, Parameters, RosArgs, ScanCount, Service, Signals, Topic, Value,
-    curious_wiring,
+    CuriousNode, DdsLink, Environment, Guard, Names, Parameters, RosArgs, ScanCount, Service, Signals, Topic,
+    Value, curious_wiring,
 };
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -105,10 +105,13 @@ fn run(args: &Args, ros: RosArgs) -> Result<ExitCode, Failure> {
     signal_hook::flag::register(signal_hook::consts::SIGUSR1, signals.save.clone())
         .context("cannot listen for SIGUSR1")?;
     let link = DdsLink::open(&wiring, &environment)?;
+    let guard = Guard::start(signals.stop.clone(), parameters.memory_limit_mib)
+        .context("cannot watch the network")?;
     let node = CuriousNode::new(link, &parameters, args.state.as_deref(), output(&names.node));
     let mut node = node.map_err(input)?;
     say(&format!("[{}] waiting for scans on {}", names.node, parameters.scan_topic));
     let report = node.run(&signals)?;
+    guard.check()?;
     let ScanCount { received, invalid, unplaced, late, other } = report.scans;
     say(&format!(
         "[{}] {received} scans: {} readings, {} in the map; {invalid} not valid, {unplaced} without a pose, {late} late, {other} of \

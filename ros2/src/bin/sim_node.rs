@@ -1,12 +1,12 @@
 //! A simulated world as a robot of ROS 2.
 
-use anyhow::anyhow;
+use anyhow::{Context, anyhow};
 use clap::Parser;
 use cli::flags::number;
 use cli::program::{Failure, duration_s, input, interrupt_flag};
 use ros2::node_program::{note_unused_files, say, start};
 use ros2::{
-    DdsLink, Environment, Given, Names, RosArgs, SimulatedRobot, SimulationSettings, simulation_wiring,
+    DdsLink, Environment, Given, Guard, Names, RosArgs, SimulatedRobot, SimulationSettings, simulation_wiring,
 };
 use std::process::ExitCode;
 use std::time::{SystemTime, UNIX_EPOCH};
@@ -57,6 +57,9 @@ EXAMPLES
 EXIT CODES
   0 ended by Ctrl-C, or by --duration; 1 the node failed; 2 an argument or the world is not valid";
 
+/// The simulation takes less than a hundredth of it: what the network may fill.
+const MAX_MEMORY_MIB: f64 = 1024.0;
+
 fn main() -> ExitCode {
     start(run)
 }
@@ -73,12 +76,14 @@ fn run(args: &Args, ros: RosArgs) -> Result<ExitCode, Failure> {
     let wiring = simulation_wiring(&names, &ros).map_err(input)?;
     let stop = interrupt_flag()?;
     let link = DdsLink::open(&wiring, &environment)?;
+    let guard = Guard::start(stop.clone(), MAX_MEMORY_MIB).context("cannot watch the network")?;
     let since_epoch = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
     let begin_ns = if args.wall_time { i64::try_from(since_epoch.as_nanos()).unwrap_or(0) } else { 0 };
     let settings = SimulationSettings { seed: args.seed, speed: args.speed, begin_ns };
     let mut robot = SimulatedRobot::new(link, &world, settings);
     say(&format!("[{}] {}: {:.0} times real time", names.node, world.name, args.speed));
     let scans = robot.run(&stop, args.duration.unwrap_or(f64::INFINITY));
+    guard.check()?;
     say(&format!("[{}] {scans} scans in {:.1} s", names.node, robot.time_s()));
     Ok(ExitCode::SUCCESS)
 }

@@ -170,29 +170,30 @@ fn serve<Q: Message + Clone + std::marker::Send + Sync + 'static>(
     Ok((stream.boxed(), Box::new(send)))
 }
 
-/// The longest answer, bytes: a datagram of 1452 bytes without the headers of RTPS.
+/// The longest answer, bytes: a datagram on a link with an MTU of 1500 without the headers of IP and RTPS.
 const MAX_REPLY: usize = 1200;
+/// The texts of an answer that is too long are cut to these lengths in turn, letters, until it fits.
+const CUTS: [usize; 3] = [300, 60, 0];
 
-/// The answer, or a shorter one that fits in one datagram, and whether something that was asked for is missing.
+/// The answer, or a shorter one that fits in one datagram, and whether what was asked for is missing.
 ///
 /// The library writes fragments of an answer with one byte too many before the identity of the request (rustdds 0.15.1, `DataFrag`: the
 /// tag of an `Option`). No client can read them, and a build with debug assertions ends the thread of the network. Other messages
 /// have no such identity, and are sent in fragments as they should.
-fn fitting(reply: Reply) -> (Reply, bool) {
-    match reply {
-        Reply::Values(values) if length(&values) > MAX_REPLY => (Reply::Values(Vec::new()), true),
-        Reply::Descriptions(mut all) if length(&all) > MAX_REPLY => {
-            for one in &mut all {
-                one.description.clear();
-                one.additional_constraints.clear();
-            }
-            match length(&all) > MAX_REPLY {
-                true => (Reply::Descriptions(Vec::new()), true),
-                false => (Reply::Descriptions(all), false),
+fn fitting(mut reply: Reply) -> (Reply, bool) {
+    for cut in CUTS {
+        if length(&reply) <= MAX_REPLY {
+            return (reply, false);
+        }
+        for text in reply.texts_mut() {
+            if let Some((end, _)) = text.char_indices().nth(cut) {
+                text.truncate(end);
+                text.push_str(if cut > 0 { " …" } else { "" });
             }
         }
-        reply => (reply, false),
     }
+    let fits = length(&reply) <= MAX_REPLY;
+    (if fits { reply } else { reply.emptied() }, !fits)
 }
 
 /// The number of bytes of a message; 0 if it cannot be written, which is noticed where it is.
@@ -204,19 +205,44 @@ fn length(message: &impl Serialize) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::service::wire::{Description, ParameterValue};
+    use crate::service::wire::{Description, Labelled, Listed, ParameterValue, SetResult, Trigger};
     use crate::value::Value;
 
     #[test]
-    fn an_answer_that_is_too_long_is_empty() {
+    fn every_answer_fits_in_one_datagram() {
+        let long = || "a long sentence, ".repeat(5000);
+        let label = Labelled { id: 1, label: long() };
         let values = |count| Reply::Values(vec![ParameterValue::from(&Value::Float(1.0)); count]);
-        assert_eq!(fitting(values(20)), (values(20), false));
-        assert_eq!(fitting(values(30)), (Reply::Values(Vec::new()), true));
-        let text = "What it means. ".repeat(10);
-        let described =
-            |count| vec![Description { description: text.clone(), ..Description::default() }; count];
-        assert_eq!(fitting(Reply::Descriptions(described(5))), (Reply::Descriptions(described(5)), false));
-        let (Reply::Descriptions(cut), false) = fitting(Reply::Descriptions(described(15))) else { panic!() };
-        assert!(cut.len() == 15 && cut.iter().all(|one| one.description.is_empty()));
+        let result = |reason: String| SetResult { successful: false, reason };
+        let described = |count, text: &str| {
+            let one = Description { description: text.to_owned(), ..Description::default() };
+            Reply::Descriptions(vec![one; count])
+        };
+        for count in [0, 1, 3, 20, 100, 3000] {
+            for reply in [
+                values(count),
+                Reply::Types(vec![3; count]),
+                Reply::States(vec![label.clone(); count]),
+                Reply::Results(vec![result(long()); count]),
+                Reply::Result(result("x".repeat(count))),
+                Reply::Trigger(Trigger { is_done: true, text: "\u{1f6aa}".repeat(count) }),
+                Reply::Listed(Listed { names: vec!["name".to_owned(); count], prefixes: vec![long()] }),
+                described(count, &long()),
+            ] {
+                let fits = length(&reply) <= MAX_REPLY;
+                let (sent, is_missing) = fitting(reply.clone());
+                assert!(length(&sent) <= MAX_REPLY, "{count} {reply:?}");
+                assert!(!fits || sent == reply && !is_missing);
+                assert_eq!(std::mem::discriminant(&sent), std::mem::discriminant(&reply));
+            }
+        }
+        // What was asked for is there as long as there is room: three unknown parameters, and twenty descriptions.
+        let (Reply::Results(three), false) = fitting(Reply::Results(vec![result(long()); 3])) else {
+            panic!()
+        };
+        assert!(three.len() == 3 && three[2].reason.starts_with("a long sentence, a long"), "{three:?}");
+        let (Reply::Descriptions(cut), false) = fitting(described(20, &long())) else { panic!() };
+        assert_eq!(cut.len(), 20);
+        assert_eq!(fitting(values(30)), (values(0), true));
     }
 }

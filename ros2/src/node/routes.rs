@@ -11,6 +11,10 @@ use survey::{EdgeOutlook, Outlook, RouteGraph, Travel};
 /// An edge that is open with a smaller probability is closed: its cost would be more than ten times its length.
 const CLOSED_BELOW: f64 = 0.1;
 
+/// The number of edges in a request, so that it fits in one datagram: with CycloneDDS, a longer one is damaged as answers are
+/// (`dds/services.rs`).
+const MAX_EDGES: usize = 100;
+
 /// The graph, and what is known of its edges.
 pub(super) struct Routes {
     graph: RouteGraph,
@@ -41,7 +45,8 @@ impl Routes {
         Ok(Some(Self { graph, next_round: Instant::now(), next_edge: 0, found: Vec::new() }))
     }
 
-    /// Looks at the next edge. After the last one, a request with all edges that were ever seen.
+    /// Looks at the next edge. A request when there are enough, and after the last one: all edges that were ever seen are told in each
+    /// round, so that a server that has started anew knows them as well.
     fn next(
         &mut self,
         outlook: &Outlook<'_>,
@@ -54,20 +59,20 @@ impl Routes {
         }
         self.found.extend(self.graph.edge_outlook(self.next_edge, outlook, travel));
         self.next_edge += 1;
-        if self.next_edge < self.graph.edges().count() {
-            return None;
+        let is_last = self.next_edge >= self.graph.edges().count();
+        if is_last {
+            self.next_edge = 0;
         }
-        self.next_edge = 0;
-        let found = std::mem::take(&mut self.found);
-        if found.is_empty() {
+        if self.found.is_empty() || !is_last && self.found.len() < MAX_EDGES {
             return None; // nothing is known of the place yet
         }
-        self.next_round = now + Duration::from_secs_f64(interval_s);
-        Some(request(&found))
+        if is_last {
+            self.next_round = now + Duration::from_secs_f64(interval_s);
+        }
+        Some(request(&std::mem::take(&mut self.found)))
     }
 }
 
-/// All of it at once, so that a server that has started anew knows it as well.
 fn request(found: &[EdgeOutlook]) -> DynamicEdges {
     let is_closed = |edge: &&EdgeOutlook| edge.open < CLOSED_BELOW;
     let id = |edge: &EdgeOutlook| edge.id as u16;

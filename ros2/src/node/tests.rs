@@ -4,6 +4,7 @@ mod loops;
 mod one_map;
 mod same_robot;
 mod seating;
+mod storm;
 
 use super::*;
 use crate::link::Navigation;
