@@ -22,7 +22,7 @@ pub use deviance::{DevianceScores, FrozenRates, poisson_deviance};
 pub use freshness::{Freshness, FreshnessScores};
 pub use latency::{Delays, Latency};
 pub use map::{Age, ChangingAccuracy, ChangingScores, MapScores, age, map_scores};
-pub use pose::{PoseErrors, PoseScores, alignment};
+pub use pose::{PoseErrors, PoseScores};
 pub use prediction::{ForecastScores, Forecasts, Prediction, StateScores};
 pub use rates::{
     IntervalScores, MAX_LOG_ERROR, PassageScores, RateScores, interval_scores, log_error, mean_log_error,
