@@ -8,7 +8,7 @@
 //! radius_m = 1.5   # 1 without it
 //! ```
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, anyhow, bail};
 use serde::de::Error;
 use serde::{Deserialize, Deserializer};
 use std::collections::BTreeSet;
@@ -73,7 +73,9 @@ pub(crate) fn read(path: &Path) -> Result<Vec<PlaceName>> {
 }
 
 fn names(text: &str) -> Result<Vec<PlaceName>> {
-    let File { place: entries } = toml::from_str(text)?;
+    let File { place: entries } = toml::from_str(text).map_err(|error| {
+        anyhow!(error.to_string().trim_end().replace("expected f64", "expected a number"))
+    })?;
     let mut names = BTreeSet::new();
     if let Some(Entry { name, .. }) = entries.iter().find(|entry| !names.insert(&entry.name)) {
         bail!("two places have the `name` {name:?}: give each its own");
@@ -97,14 +99,56 @@ mod tests {
     #[test]
     fn errors_show_the_line_and_say_what_is_right() {
         let error = |lines: &str| names(&format!("[[place]]\n{lines}")).unwrap_err().to_string();
-        insta::assert_snapshot!(error("name = \"a\"\nx = 1\ny_m = 2\n"), @"");
-        insta::assert_snapshot!(error("name = \"a\"\nx_m = \"1\"\ny_m = 2\n"), @"");
-        insta::assert_snapshot!(error("name = \"a\"\nx_m = 1\n"), @"");
-        insta::assert_snapshot!(error("name = \"a\nx_m = 1\n"), @"");
-        insta::assert_snapshot!(error("name = \" \"\nx_m = 1\ny_m = 2\n"), @"");
-        insta::assert_snapshot!(error("name = \"a\"\nx_m = inf\ny_m = 2\n"), @"");
-        insta::assert_snapshot!(error("name = \"a\"\nx_m = 1\ny_m = 2\nradius_m = 0\n"), @"");
-        insta::assert_snapshot!(error("name = \"a\"\nx_m = 1\ny_m = 2\n[[place]]\nname = \" a\"\nx_m = 1\ny_m = 2\n"), @"");
-        insta::assert_snapshot!(names("").unwrap_err().to_string(), @"");
+        insta::assert_snapshot!(error("name = \"a\"\nx = 1\ny_m = 2\n"), @"
+        TOML parse error at line 3, column 1
+          |
+        3 | x = 1
+          | ^
+        unknown field `x`, expected one of `name`, `x_m`, `y_m`, `radius_m`
+        ");
+        insta::assert_snapshot!(error("name = \"a\"\nx_m = \"1\"\ny_m = 2\n"), @r#"
+        TOML parse error at line 3, column 7
+          |
+        3 | x_m = "1"
+          |       ^^^
+        invalid type: string "1", expected a number
+        "#);
+        insta::assert_snapshot!(error("name = \"a\"\nx_m = 1\n"), @"
+        TOML parse error at line 1, column 1
+          |
+        1 | [[place]]
+          | ^^^^^^^^^
+        missing field `y_m`
+        ");
+        insta::assert_snapshot!(error("name = \"a\nx_m = 1\n"), @r#"
+        TOML parse error at line 2, column 10
+          |
+        2 | name = "a
+          |          ^
+        invalid basic string, expected `"`
+        "#);
+        insta::assert_snapshot!(error("name = \" \"\nx_m = 1\ny_m = 2\n"), @r#"
+        TOML parse error at line 2, column 8
+          |
+        2 | name = " "
+          |        ^^^
+        a name has 1 to 60 letters, and this one has 0
+        "#);
+        insta::assert_snapshot!(error("name = \"a\"\nx_m = inf\ny_m = 2\n"), @"
+        TOML parse error at line 3, column 7
+          |
+        3 | x_m = inf
+          |       ^^^
+        must be a number from -1000000 to 1000000 m, and not inf
+        ");
+        insta::assert_snapshot!(error("name = \"a\"\nx_m = 1\ny_m = 2\nradius_m = 0\n"), @"
+        TOML parse error at line 5, column 12
+          |
+        5 | radius_m = 0
+          |            ^
+        must be a number from 0.05 to 100 m, and not 0
+        ");
+        insta::assert_snapshot!(error("name = \"a\"\nx_m = 1\ny_m = 2\n[[place]]\nname = \" a\"\nx_m = 1\ny_m = 2\n"), @r#"two places have the `name` "a": give each its own"#);
+        assert!(names("").unwrap_err().to_string().ends_with("missing field `place`"));
     }
 }
